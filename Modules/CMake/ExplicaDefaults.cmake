@@ -1,0 +1,34 @@
+# SPDX-FileCopyrightText: The Explica developers
+# SPDX-License-Identifier: Apache-2.0
+# Build-wide defaults: language level, build type, output folder, compiler cache, flags of every target.
+
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
+endif()
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/bin")
+set(CMAKE_LIBRARY_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/lib")
+set(CMAKE_ARCHIVE_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/lib")
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+
+find_program(EXPLICA_CCACHE ccache)
+if(EXPLICA_CCACHE)
+  set(CMAKE_C_COMPILER_LAUNCHER "${EXPLICA_CCACHE}")
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${EXPLICA_CCACHE}")
+endif()
+
+# Flags live on targets: call this for every library and executable of the project.
+function(explica_set_flags target)
+  target_compile_options(${target} PRIVATE
+    -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
+    -ffp-contract=off  # equal bytes on machines with and without fused multiply-add
+    $<$<BOOL:${EXPLICA_WARNINGS_AS_ERRORS}>:-Werror>)
+  if(EXPLICA_SANITIZE)
+    target_compile_options(${target} PRIVATE -fsanitize=address,undefined -fno-omit-frame-pointer)
+    target_link_options(${target} PUBLIC -fsanitize=address,undefined)
+  endif()
+endfunction()

@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Core/TriangleMesh.h"
+
+#include <Eigen/Geometry>
+
+#include <functional>
+#include <vector>
+
+namespace explica::geometry {
+
+using Box = Eigen::AlignedBox3d;
+
+/// Nearest point of a surface.
+struct ClosestPoint {
+  Point point = Point::Constant(kNaN);
+  std::int32_t face = -1;
+  double squaredDistance = kInfinity;  ///< mm^2
+};
+
+/// Bounding-volume hierarchy over boxes, built once; for faces, edges or anything that has a box.
+class BoxTree {
+ public:
+  BoxTree() = default;
+  /// Builds over `boxes`; item i is boxes[i].  O(n log n), threaded, deterministic.
+  explicit BoxTree(const std::vector<Box>& boxes);
+
+  /// Calls visit(item) for every item whose box overlaps `box` (touching counts), in tree order.
+  void forOverlaps(const Box& box, const std::function<void(std::int32_t item)>& visit) const;
+
+  /// All pairs i < j of items whose boxes overlap, sorted.  Threaded; deterministic.
+  [[nodiscard]] std::vector<std::array<std::int32_t, 2>> overlappingPairs() const;
+
+  /// New boxes for the same items: keeps the hierarchy, updates its boxes.
+  void refit(const std::vector<Box>& boxes);
+
+  /// One node: children are `left` and `left + 1`; a leaf has count > 0 items from `first`.
+  struct Node {
+    Box box;
+    std::int32_t left = -1;
+    std::int32_t first = 0;
+    std::int32_t count = 0;
+  };
+  [[nodiscard]] const std::vector<Node>& nodes() const { return nodes_; }
+  [[nodiscard]] const std::vector<std::int32_t>& items() const { return items_; }
+  [[nodiscard]] const std::vector<Box>& boxes() const { return boxes_; }
+
+ private:
+  std::vector<Node> nodes_;
+  std::vector<std::int32_t> items_;
+  std::vector<Box> boxes_;
+};
+
+/// Box tree over a mesh's faces with distance queries.  Keeps a copy of the mesh.
+class FaceTree {
+ public:
+  explicit FaceTree(TriangleMesh mesh);
+
+  [[nodiscard]] ClosestPoint closestPoint(const Point& query) const;
+  [[nodiscard]] const BoxTree& boxes() const { return tree_; }
+  [[nodiscard]] const TriangleMesh& mesh() const { return mesh_; }
+
+ private:
+  TriangleMesh mesh_;
+  BoxTree tree_;
+};
+
+/// Boxes of a mesh's faces, widened by `margin` mm on every side.
+[[nodiscard]] std::vector<Box> faceBoxes(const TriangleMesh& mesh, double margin = 0);
+
+/// Nearest point of the triangle (a, b, c) to q.
+[[nodiscard]] Point closestPointOnTriangle(const Point& q, const Point& a, const Point& b,
+                                           const Point& c);
+
+}  // namespace explica::geometry

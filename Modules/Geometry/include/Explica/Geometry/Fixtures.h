@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Core/TriangleMesh.h"
+
+namespace explica::geometry {
+
+/// Sphere by subdividing an icosahedron `levels` times: 20 * 4^levels faces, vertices on the sphere,
+/// faces counter-clockwise from outside.
+[[nodiscard]] TriangleMesh makeIcosphere(int levels, double radius = 1.0,
+                                         const Point& centre = Point::Zero());
+
+/// Torus about the z axis: `major` to the tube's centre, `minor` the tube; genus 1.
+[[nodiscard]] TriangleMesh makeTorus(int majorSegments, int minorSegments, double major,
+                                     double minor);
+
+/// Flat rectangle [0, width] x [0, height] in z = 0, normal +z, cells split in two.
+[[nodiscard]] TriangleMesh makeRectangle(int columns, int rows, double width, double height);
+
+/// A sphere whose radius is modulated by sin waves into folds as deep as `depth` (share of the radius):
+/// a small closed stand-in for cortex, without self-intersections.
+[[nodiscard]] TriangleMesh makeFoldedSphere(int levels, double radius = 1.0, double depth = 0.25,
+                                            int waves = 6);
+
+/// Each face into four; new vertices at edge midpoints, old ones keep their numbers.
+[[nodiscard]] TriangleMesh subdivide(const TriangleMesh& mesh);
+
+}  // namespace explica::geometry

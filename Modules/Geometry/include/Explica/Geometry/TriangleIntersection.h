@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Core/Types.h"
+
+#include <array>
+
+namespace explica::geometry {
+
+using Triangle = std::array<Point, 3>;
+
+/// True if two triangles without common vertices share a point; touching counts.  Exact.
+[[nodiscard]] bool trianglesIntersect(const Triangle& s, const Triangle& t);
+
+/// True if triangles (p, a, b) and (p, c, d) share a point other than p.  Exact.
+[[nodiscard]] bool trianglesSharingVertexIntersect(const Point& p, const Point& a, const Point& b,
+                                                   const Point& c, const Point& d);
+
+/// True if triangles (p, q, a) and (q, p, b) share a point off their common edge: they are coplanar
+/// and folded onto each other.  Exact.
+[[nodiscard]] bool trianglesSharingEdgeIntersect(const Point& p, const Point& q, const Point& a,
+                                                 const Point& b);
+
+}  // namespace explica::geometry
