@@ -4,8 +4,8 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Grid.h"
 
-#include <Eigen/Geometry>
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 namespace explica {
 namespace {
@@ -14,9 +14,8 @@ Grid obliqueGrid() {
   Grid grid;
   grid.size = {5, 7, 3};
   grid.spacing = {0.7, 1.1, 3.0};
-  grid.direction =
-      (Eigen::AngleAxisd(0.4, Vector(1, 2, 3).normalized())).toRotationMatrix() *
-      Vector(-1, 1, 1).asDiagonal();
+  grid.direction = (Eigen::AngleAxisd(0.4, Vector(1, 2, 3).normalized())).toRotationMatrix() *
+                   Vector(-1, 1, 1).asDiagonal();
   grid.origin = {10, -20, 30};
   return grid;
 }

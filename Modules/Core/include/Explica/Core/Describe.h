@@ -29,13 +29,15 @@ struct Field {
 /// Members may be bool, int, double, std::string, Eigen::Vector3d, an enum with EnumNames, and
 /// std::optional or std::vector of these.
 
-/// Names of an enum's values, as users write them; specialise with `static constexpr std::array table`
-/// of std::pair{value, "name"}.
+/// Names of an enum's values, as users write them; specialise with `static constexpr std::array
+/// table` of std::pair{value, "name"}.
 template <class Enum>
 struct EnumNames;
 
 template <class Enum>
-concept NamedEnum = requires { EnumNames<Enum>::table; };
+concept NamedEnum = requires {
+  EnumNames<Enum>::table;
+};
 
 /// The user's word for a value.
 template <NamedEnum Enum>

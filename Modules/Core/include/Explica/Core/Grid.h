@@ -57,7 +57,8 @@ struct Grid {
 /// @throws InvalidInput  zero, non-finite or sheared (beyond 1e-4 of a right angle) columns
 [[nodiscard]] Grid gridFromAffine(const std::array<int, 3>& size, const Eigen::Matrix4d& affine);
 
-/// True if both grids have equal sizes and place every voxel within `tolerance` voxels of each other.
+/// True if both grids have equal sizes and place every voxel within `tolerance` voxels of each
+/// other.
 [[nodiscard]] bool sameGrid(const Grid& a, const Grid& b, double tolerance = 1e-3);
 
 }  // namespace explica

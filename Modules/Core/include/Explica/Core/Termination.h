@@ -22,14 +22,13 @@ enum class Termination {
 
 template <>
 struct EnumNames<Termination> {
-  static constexpr std::array table = {
-      std::pair{Termination::NotRun, "not-run"},
-      std::pair{Termination::Converged, "converged"},
-      std::pair{Termination::TargetReached, "target-reached"},
-      std::pair{Termination::MaxIterations, "max-iterations"},
-      std::pair{Termination::MaxTime, "max-time"},
-      std::pair{Termination::Interrupted, "interrupted"},
-      std::pair{Termination::Stalled, "stalled"}};
+  static constexpr std::array table = {std::pair{Termination::NotRun, "not-run"},
+                                       std::pair{Termination::Converged, "converged"},
+                                       std::pair{Termination::TargetReached, "target-reached"},
+                                       std::pair{Termination::MaxIterations, "max-iterations"},
+                                       std::pair{Termination::MaxTime, "max-time"},
+                                       std::pair{Termination::Interrupted, "interrupted"},
+                                       std::pair{Termination::Stalled, "stalled"}};
 };
 
 /// True if the method did what it was asked to do.

@@ -19,7 +19,9 @@ struct Volume {
   explicit Volume(Grid g, T value = T{}) : grid(std::move(g)), data(grid.voxelCount(), value) {}
 
   [[nodiscard]] T& operator()(int i, int j, int k) { return data[grid.linear(i, j, k)]; }
-  [[nodiscard]] const T& operator()(int i, int j, int k) const { return data[grid.linear(i, j, k)]; }
+  [[nodiscard]] const T& operator()(int i, int j, int k) const {
+    return data[grid.linear(i, j, k)];
+  }
   [[nodiscard]] T& operator[](std::size_t v) { return data[v]; }
   [[nodiscard]] const T& operator[](std::size_t v) const { return data[v]; }
   [[nodiscard]] std::size_t size() const { return data.size(); }

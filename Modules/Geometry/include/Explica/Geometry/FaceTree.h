@@ -24,7 +24,7 @@ struct ClosestPoint {
 class BoxTree {
  public:
   BoxTree() = default;
-  /// Builds over `boxes`; item i is boxes[i].  O(n log n), threaded, deterministic.
+  /// Builds over `boxes`; item i is boxes[i].  O(n log n).
   explicit BoxTree(const std::vector<Box>& boxes);
 
   /// Calls visit(item) for every item whose box overlaps `box` (touching counts), in tree order.

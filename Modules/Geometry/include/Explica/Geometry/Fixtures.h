@@ -6,8 +6,8 @@
 
 namespace explica::geometry {
 
-/// Sphere by subdividing an icosahedron `levels` times: 20 * 4^levels faces, vertices on the sphere,
-/// faces counter-clockwise from outside.
+/// Sphere by subdividing an icosahedron `levels` times: 20 * 4^levels faces, vertices on the
+/// sphere, faces counter-clockwise from outside.
 [[nodiscard]] TriangleMesh makeIcosphere(int levels, double radius = 1.0,
                                          const Point& centre = Point::Zero());
 
@@ -18,8 +18,8 @@ namespace explica::geometry {
 /// Flat rectangle [0, width] x [0, height] in z = 0, normal +z, cells split in two.
 [[nodiscard]] TriangleMesh makeRectangle(int columns, int rows, double width, double height);
 
-/// A sphere whose radius is modulated by sin waves into folds as deep as `depth` (share of the radius):
-/// a small closed stand-in for cortex, without self-intersections.
+/// A sphere whose radius is modulated by sin waves into folds as deep as `depth` (share of the
+/// radius): a small closed stand-in for cortex, without self-intersections.
 [[nodiscard]] TriangleMesh makeFoldedSphere(int levels, double radius = 1.0, double depth = 0.25,
                                             int waves = 6);
 

@@ -13,7 +13,8 @@ namespace explica::geometry {
 [[nodiscard]] Eigen::VectorXd faceAreas(const TriangleMesh& mesh);
 [[nodiscard]] double totalArea(const TriangleMesh& mesh);
 
-/// Signed volume enclosed by a closed mesh, mm^3; positive if faces are counter-clockwise from outside.
+/// Signed volume enclosed by a closed mesh, mm^3; positive if faces are counter-clockwise from
+/// outside.
 [[nodiscard]] double enclosedVolume(const TriangleMesh& mesh);
 
 /// A third of the areas of the faces at each vertex, mm^2.

@@ -23,11 +23,11 @@ struct IndexLists {
 
 /// Who is next to whom in a triangulated surface whose edges have one or two faces.
 struct MeshTopology {
-  Edges edges;               ///< E x 2, smaller vertex first, in lexicographic order
-  Edges edgeFaces;           ///< E x 2, the faces at each edge; second is -1 on the boundary
-  Faces faceEdges;           ///< F x 3, edge k joins corners k and (k + 1) % 3
-  IndexLists vertexFaces;    ///< faces at each vertex
-  IndexLists vertexVertices; ///< neighbours of each vertex
+  Edges edges;                ///< E x 2, smaller vertex first, in lexicographic order
+  Edges edgeFaces;            ///< E x 2, the faces at each edge; second is -1 on the boundary
+  Faces faceEdges;            ///< F x 3, edge k joins corners k and (k + 1) % 3
+  IndexLists vertexFaces;     ///< faces at each vertex
+  IndexLists vertexVertices;  ///< neighbours of each vertex
 };
 
 /// Adjacency of a face list.
@@ -63,7 +63,8 @@ struct MeshCondition {
 
 [[nodiscard]] MeshCondition inspectMesh(const TriangleMesh& mesh);
 
-/// Demands an oriented manifold with finite positions; `name` (a file, an argument) starts the message.
+/// Demands an oriented manifold with finite positions; `name` (a file, an argument) starts the
+/// message.
 /// @throws InvalidInput  says every count that is wrong and how to mend it
 void requireManifold(const TriangleMesh& mesh, std::string_view name);
 
@@ -72,7 +73,8 @@ void requireClosedManifold(const TriangleMesh& mesh, std::string_view name);
 
 /// Component of each face, numbered from 0 in the order of their first faces; faces belong together
 /// if they share a vertex.
-[[nodiscard]] std::vector<std::int32_t> faceComponents(const Faces& faces, Eigen::Index vertexCount);
+[[nodiscard]] std::vector<std::int32_t> faceComponents(const Faces& faces,
+                                                       Eigen::Index vertexCount);
 
 /// The faces listed, on their own vertices only.
 struct SubMesh {

@@ -7,7 +7,8 @@
 namespace explica::geometry {
 
 /// Exact sign of the area of the triangle (a, b, c) in the plane: 1 counter-clockwise, 0 collinear.
-/// Decided in floating point where its error bound allows, in rational arithmetic otherwise.
+/// Decided in floating point where its error bound allows, in exact expansions otherwise
+/// [Shewchuk1997].
 [[nodiscard]] int orientation(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
                               const Eigen::Vector2d& c);
 

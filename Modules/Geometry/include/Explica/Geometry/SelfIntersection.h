@@ -12,8 +12,8 @@ namespace explica::geometry {
 
 using FacePair = std::array<std::int32_t, 2>;  ///< smaller face first
 
-/// All pairs of faces that meet where a surface may not: apart from a common vertex or edge, or at all
-/// if they have none in common.  Exact: the sign of every decision is that of the real numbers.
+/// All pairs of faces that meet where a surface may not: apart from a common vertex or edge, or at
+/// all if they have none in common.  Exact: the sign of every decision is that of the real numbers.
 /// Sorted.  Faces of zero area count as the segments they are.  Threaded; deterministic.
 [[nodiscard]] std::vector<FacePair> findSelfIntersections(const TriangleMesh& mesh);
 
