@@ -1,0 +1,11 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace explica::io {
+
+/// Makes MGH and MGZ known to every itk::ImageFileReader and itk::ImageFileWriter of this process.
+/// Safe to call again.
+void registerMghWithItk();
+
+}  // namespace explica::io

@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Core/TriangleMesh.h"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace explica::io {
+
+/// One value a vertex (or a face, where a writer says so).
+struct VertexMap {
+  std::string name;        ///< "thickness"
+  std::string unit;        ///< "mm", "mm^-1", "" if none
+  Eigen::VectorXd values;  ///< V
+};
+
+/// What a key of a LabelMap stands for.
+struct LabelEntry {
+  Label key = 0;
+  std::string name;
+  std::array<float, 4> colour = {0, 0, 0, 0};  ///< red, green, blue, opacity in [0, 1]
+};
+
+/// One label a vertex, and the table of names.
+struct LabelMap {
+  std::string name;
+  Eigen::Matrix<Label, Eigen::Dynamic, 1> keys;  ///< V
+  std::vector<LabelEntry> table;                 ///< ascending keys
+};
+
+/// Reads per-vertex values: GIFTI (.shape.gii, .func.gii and so on, any encoding, also .gz),
+/// FreeSurfer curv (old and new), MGH/MGZ with one value a vertex, point data of VTK files.
+///
+/// @param vertexCount  demanded number of values a map, if given
+/// @throws IOError       missing, truncated or of no known format
+/// @throws InvalidInput  no per-vertex values in it, or not `vertexCount` of them
+[[nodiscard]] std::vector<VertexMap> readVertexMaps(const std::filesystem::path& path,
+                                                    std::optional<Eigen::Index> vertexCount = {});
+
+/// Reads one label a vertex: GIFTI label, FreeSurfer annot, FreeSurfer label (a list of vertices:
+/// key 1 on the list and 0 off it; needs `vertexCount`).
+///
+/// @throws as readVertexMaps; InvalidInput also for a vertex list without `vertexCount` or beyond
+/// it
+[[nodiscard]] LabelMap readVertexLabels(const std::filesystem::path& path,
+                                        std::optional<Eigen::Index> vertexCount = {});
+
+/// Writes GIFTI metric data: FLOAT32, gzip-base64, one array a map; Workbench wants `.shape.gii` or
+/// `.func.gii`.  Not-a-number, which Workbench's statistics cannot bear, is written as 0 (the
+/// reader of the map needs a mask of where it holds).
+/// @return how many values were not finite and became 0
+/// @throws InvalidInput      no map, or maps of different length
+/// @throws EnvironmentError  the file cannot be written
+Eigen::Index writeGiftiShape(const std::filesystem::path& path, const std::vector<VertexMap>& maps,
+                             const std::string& structure);
+
+/// Writes GIFTI labels: INT32 keys and the table; Workbench wants `.label.gii`.
+/// @throws InvalidInput      a key that the table lacks
+/// @throws EnvironmentError  the file cannot be written
+void writeGiftiLabel(const std::filesystem::path& path, const LabelMap& labels,
+                     const std::string& structure);
+
+/// Writes FreeSurfer's new curv format (`lh.thickness`): big-endian float32.
+void writeFreeSurferCurv(const std::filesystem::path& path, const Eigen::VectorXd& values,
+                         Eigen::Index faceCount);
+
+/// Writes FreeSurfer's annot format with its colour table; keys index the table's order.
+void writeFreeSurferAnnot(const std::filesystem::path& path, const LabelMap& labels);
+
+/// Writes FreeSurfer's label format: the vertices where `keys` is not 0, with their positions.
+void writeFreeSurferLabel(const std::filesystem::path& path, const LabelMap& labels,
+                          const Positions& positions);
+
+}  // namespace explica::io
