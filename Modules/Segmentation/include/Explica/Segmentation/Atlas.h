@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Core/Types.h"
+
+#include <map>
+#include <string>
+#include <string_view>
+
+namespace explica::segmentation {
+
+/// Which half of the brain a structure lies in.
+enum class Side { Both, Left, Right };
+
+/// What a structure of an atlas is to the cortex.
+enum class StructureKind {
+  Cortex,    ///< part of the folded ribbon
+  Deep,      ///< enclosed by the white surface: basal ganglia, thalamus, hippocampus, amygdala
+  BelowTent  ///< cerebellum and vermis: left out
+};
+
+/// One label of an atlas.
+struct AtlasStructure {
+  std::string name;
+  Side side = Side::Both;
+  StructureKind kind = StructureKind::Cortex;
+};
+
+/// What the labels of an atlas mean.
+using AtlasLegend = std::map<Label, AtlasStructure>;
+
+/// Reads a legend: one structure a line, "value name", anything after the name ignored; empty lines
+/// and lines that start with '#' are skipped.  Side comes from the name's end (_L, _R) and the kind
+/// from its beginning, as the AAL atlas names them [TzourioMazoyer2002].
+/// @param name  the legend's file, for messages
+/// @throws InvalidInput  a line without value and name, a value named twice, or no cortical
+/// structure
+///                       of one side
+[[nodiscard]] AtlasLegend parseAtlasLegend(std::string_view text, std::string_view name);
+
+}  // namespace explica::segmentation

@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Core/Grid.h"
+
+#include <vector>
+
+namespace explica::segmentation {
+
+/// What each brain voxel says about the bias field there: numerator / denominator, by weight.
+struct BiasSamples {
+  const std::vector<std::size_t>* voxel = nullptr;  ///< linear indices, not owned
+  std::vector<float> numerator;
+  std::vector<float> denominator;
+};
+
+/// Smooth positive field at the sampled voxels, of geometric mean 1: the ratio of numerator and
+/// denominator after both passed a Gaussian of `width` mm.  Smoothing happens on blocks of about
+/// width / 4 and is interpolated trilinearly; the field is smoother than that by construction.
+[[nodiscard]] std::vector<float> fitBiasField(const Grid& grid, const BiasSamples& samples,
+                                              double width);
+
+}  // namespace explica::segmentation

@@ -1,0 +1,300 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Explica/Segmentation/Hemisphere.h"
+
+#include "VoxelSets.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace explica::segmentation {
+namespace {
+
+/// What the atlas says of each voxel.
+struct AtlasMap {
+  Volume<std::uint8_t> kind;  ///< 0 unlabelled, else 1 + StructureKind
+  Volume<std::uint8_t> side;  ///< 1 left, 2 right, 0 otherwise
+  Volume<std::uint8_t>
+      medialTemporal;  ///< nonzero in structures that border the brain stem's cisterns
+};
+
+constexpr std::uint8_t kindCode(StructureKind kind) {
+  return static_cast<std::uint8_t>(1 + static_cast<int>(kind));
+}
+constexpr std::uint8_t sideCode(Side side) {
+  return static_cast<std::uint8_t>(side);
+}
+
+bool bordersStem(const std::string& name) {
+  for (const std::string_view beginning :
+       {"Hippocampus", "ParaHippocampal", "Amygdala", "Lingual", "Fusiform"}) {
+    if (name.compare(0, beginning.size(), beginning) == 0) return true;
+  }
+  return false;
+}
+
+AtlasMap mapAtlas(const Volume<Label>& atlas, const AtlasLegend& legend) {
+  AtlasMap map{Volume<std::uint8_t>(atlas.grid), Volume<std::uint8_t>(atlas.grid),
+               Volume<std::uint8_t>(atlas.grid)};
+  for (std::size_t v = 0; v < atlas.size(); ++v) {
+    if (atlas[v] == 0) continue;
+    const auto entry = legend.find(atlas[v]);
+    if (entry == legend.end()) {
+      throw InvalidInput("atlas: label " + std::to_string(atlas[v]) +
+                         " is not in the legend; give the legend that belongs to this atlas");
+    }
+    map.kind[v] = kindCode(entry->second.kind);
+    map.side[v] = sideCode(entry->second.side);
+    map.medialTemporal[v] = bordersStem(entry->second.name) ? 1 : 0;
+  }
+  return map;
+}
+
+template <class Test>
+VoxelSet setWhere(const Grid& grid, const Test& test) {
+  VoxelSet set(grid, 0);
+  for (std::size_t v = 0; v < set.size(); ++v) set[v] = test(v) ? 1 : 0;
+  return set;
+}
+
+/// Axis of the grid that runs nearest to a world axis, and whether it runs the same way.
+struct NearestAxis {
+  int axis;
+  bool sameWay;
+};
+NearestAxis axisAlong(const Grid& grid, int world) {
+  NearestAxis nearest{0, true};
+  double best = -1;
+  for (int a = 0; a < 3; ++a) {
+    const double c = grid.direction(world, a);
+    if (std::abs(c) > best) {
+      best = std::abs(c);
+      nearest = {a, c > 0};
+    }
+  }
+  return nearest;
+}
+
+/// The brain stem: see extractHemisphere.
+VoxelSet findStem(const AtlasMap& map, const AtlasLegend& legend, const Volume<Label>& atlas) {
+  const Grid& grid = atlas.grid;
+  std::vector<double> heights;
+  for (std::size_t v = 0; v < atlas.size(); ++v) {
+    if (map.kind[v] != kindCode(StructureKind::Deep)) continue;
+    if (legend.at(atlas[v]).name.compare(0, 8, "Thalamus") != 0) continue;
+    const auto [i, j, k] = grid.subscripts(v);
+    heights.push_back(grid.toWorld(Vector(i, j, k)).z());
+  }
+  VoxelSet stem(grid, 0);
+  if (heights.empty()) return stem;
+  const auto low = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 20);
+  std::nth_element(heights.begin(), low, heights.end());
+  const double top = *low;
+
+  const NearestAxis right = axisAlong(grid, 0);
+  const NearestAxis front = axisAlong(grid, 1);
+  const int planes = grid.size[front.axis];
+  // Positions along the left-right axis, counted towards the right.
+  std::vector<int> leftBorder(planes, -1);
+  std::vector<int> rightBorder(planes, grid.size[right.axis]);
+  const auto towardsRight = [&](const std::array<int, 3>& at) {
+    return right.sameWay ? at[right.axis] : grid.size[right.axis] - 1 - at[right.axis];
+  };
+  const auto below = [&](const std::array<int, 3>& at) {
+    return grid.toWorld(Vector(at[0], at[1], at[2])).z() < top;
+  };
+  for (std::size_t v = 0; v < atlas.size(); ++v) {
+    if (map.medialTemporal[v] == 0) continue;
+    const auto at = grid.subscripts(v);
+    if (!below(at)) continue;
+    const int plane = at[front.axis];
+    const int x = towardsRight(at);
+    if (map.side[v] == sideCode(Side::Left)) leftBorder[plane] = std::max(leftBorder[plane], x);
+    if (map.side[v] == sideCode(Side::Right)) rightBorder[plane] = std::min(rightBorder[plane], x);
+  }
+  for (std::size_t v = 0; v < atlas.size(); ++v) {
+    if (map.kind[v] != 0) continue;
+    const auto at = grid.subscripts(v);
+    const int plane = at[front.axis];
+    if (leftBorder[plane] < 0 || rightBorder[plane] == grid.size[right.axis]) continue;
+    const int x = towardsRight(at);
+    if (x > leftBorder[plane] && x < rightBorder[plane] && below(at)) stem[v] = 1;
+  }
+  return stem;
+}
+
+bool touches(const Grid& grid, std::size_t v, const VoxelSet& set) {
+  const auto at = grid.subscripts(v);
+  for (int n = 0; n < 6; ++n) {
+    auto next = at;
+    next[n / 2] += n % 2 == 0 ? -1 : 1;
+    if (grid.contains(next[0], next[1], next[2]) &&
+        set[grid.linear(next[0], next[1], next[2])] != 0)
+      return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+Hemisphere extractHemisphere(const TissueSegmentation& tissue, const Volume<Label>& atlas,
+                             const AtlasLegend& legend, const HemisphereOptions& options,
+                             const Monitor& monitor) {
+  const Grid& grid = tissue.labels.grid;
+  if (!sameGrid(grid, atlas.grid)) {
+    throw InvalidInput(
+        "atlas: lies on another grid than the segmentation; resample its labels to the T1's grid");
+  }
+  if (options.side == Side::Both) throw InvalidInput("hemisphere: found 'both', expected L or R");
+  const std::uint8_t side = sideCode(options.side);
+  const std::uint8_t otherSide = sideCode(options.side == Side::Left ? Side::Right : Side::Left);
+  const Volume<Label>& seg = tissue.labels;
+
+  const AtlasMap map = mapAtlas(atlas, legend);
+  const auto cerebral = [&](std::size_t v) {
+    return map.kind[v] != 0 && map.kind[v] != kindCode(StructureKind::BelowTent);
+  };
+  monitor.progress(0.1, "nearest atlas labels");
+  const Volume<float> toSide = squaredDistanceTo(
+      setWhere(grid, [&](std::size_t v) { return cerebral(v) && map.side[v] == side; }));
+  const Volume<float> toOther = squaredDistanceTo(
+      setWhere(grid, [&](std::size_t v) { return cerebral(v) && map.side[v] == otherSide; }));
+  const Volume<float> toBelow = squaredDistanceTo(setWhere(
+      grid, [&](std::size_t v) { return map.kind[v] == kindCode(StructureKind::BelowTent); }));
+  const Volume<float> toCortex = squaredDistanceTo(setWhere(
+      grid, [&](std::size_t v) { return map.kind[v] == kindCode(StructureKind::Cortex); }));
+  const VoxelSet stem = findStem(map, legend, atlas);
+
+  // Ties between the halves go to the left, so that the two hemispheres never share a voxel.
+  const auto ours = [&](std::size_t v) {
+    const bool half = options.side == Side::Left ? toSide[v] <= toOther[v] : toSide[v] < toOther[v];
+    return half && toSide[v] <= toBelow[v] && stem[v] == 0;
+  };
+  const VoxelSet own = setWhere(grid, [&](std::size_t v) { return seg[v] != 0 && ours(v); });
+
+  monitor.progress(0.5, "filling deep structures and ventricles");
+  Hemisphere result;
+  VoxelSet white(grid, 0);
+  VoxelSet filled(grid, 0);
+  const VoxelSet deep = setWhere(grid, [&](std::size_t v) {
+    return own[v] != 0 && map.kind[v] == kindCode(StructureKind::Deep);
+  });
+  for (std::size_t v = 0; v < own.size(); ++v) {
+    if (own[v] != 0 && seg[v] == kWhite) white[v] = 1;
+    if (deep[v] == 0) continue;
+    if (white[v] == 0) ++result.deepVoxels;
+    white[v] = filled[v] = 1;
+  }
+  {
+    const double leastSquared = options.coreDepth * options.coreDepth;
+    const Components voids = componentsOf(setWhere(grid, [&](std::size_t v) {
+      return ours(v) && map.kind[v] == 0 && seg[v] != kWhite && toCortex[v] >= leastSquared;
+    }));
+    const VoxelSet outside = setWhere(grid, [&](std::size_t v) { return seg[v] == 0; });
+    std::vector<std::uint8_t> nearDeep(voids.size.size(), 0);
+    std::vector<std::uint8_t> open(voids.size.size(), 0);
+    for (std::size_t v = 0; v < own.size(); ++v) {
+      const std::int32_t n = voids.number[v];
+      if (n < 0) continue;
+      if (touches(grid, v, deep)) nearDeep[n] = 1;
+      if (outside[v] != 0 || touches(grid, v, outside)) open[n] = 1;
+    }
+    bool found = false;
+    for (std::size_t v = 0; v < own.size(); ++v) {
+      const std::int32_t n = voids.number[v];
+      if (n < 0 || nearDeep[n] == 0 || open[n] != 0) continue;
+      white[v] = filled[v] = 1;
+      ++result.ventricleVoxels;
+      found = true;
+    }
+    if (!found) {
+      monitor.warn(
+          "no ventricle was found next to the deep structures: where fluid borders white matter "
+          "inside the hemisphere, the white surface will follow it");
+    }
+  }
+
+  // Only the largest piece of white matter counts; what it encloses is filled.
+  monitor.progress(0.7, "cleaning the hemisphere");
+  {
+    const Components pieces = componentsOf(white);
+    const std::int32_t largest = pieces.largest();
+    if (largest < 0) {
+      throw InvalidInput(
+          "segmentation: no white matter voxel in the hemisphere; check that atlas and T1 overlap");
+    }
+    for (std::size_t v = 0; v < white.size(); ++v) {
+      if (white[v] == 0 || pieces.number[v] == largest) continue;
+      white[v] = 0;
+      ++result.strayVoxels;
+    }
+    const Components around =
+        componentsOf(setWhere(grid, [&](std::size_t v) { return white[v] == 0; }));
+    const std::int32_t outside = around.largest();
+    for (std::size_t v = 0; v < white.size(); ++v) {
+      if (white[v] != 0 || around.number[v] == outside) continue;
+      white[v] = filled[v] = 1;
+      ++result.cavityVoxels;
+    }
+  }
+  VoxelSet tissueSet = setWhere(grid, [&](std::size_t v) {
+    return white[v] != 0 || (own[v] != 0 && (seg[v] == kGrey || seg[v] == kWhite));
+  });
+  {
+    const Components pieces = componentsOf(tissueSet);
+    const std::int32_t largest = pieces.largest();
+    for (std::size_t v = 0; v < tissueSet.size(); ++v) {
+      if (tissueSet[v] == 0 || pieces.number[v] == largest) continue;
+      tissueSet[v] = 0;
+      ++result.strayVoxels;
+    }
+  }
+
+  result.labels = Volume<Label>(grid, 0);
+  result.whiteShare = Volume<float>(grid, 0.0f);
+  result.tissueShare = Volume<float>(grid, 0.0f);
+  for (std::size_t v = 0; v < own.size(); ++v) {
+    if (white[v] != 0) {
+      result.labels[v] = kWhite;
+      ++result.whiteVoxels;
+      result.whiteShare[v] = filled[v] != 0 ? 1.0f : tissue.probability[2][v];
+      result.tissueShare[v] =
+          filled[v] != 0 ? 1.0f : tissue.probability[1][v] + tissue.probability[2][v];
+    } else if (tissueSet[v] != 0) {
+      result.labels[v] = kGrey;
+      ++result.greyVoxels;
+      // A voxel that is mostly white but stray stays below one half.
+      result.whiteShare[v] = std::min(tissue.probability[2][v], 0.49f);
+      result.tissueShare[v] = tissue.probability[1][v] + tissue.probability[2][v];
+    } else if (own[v] != 0) {
+      result.labels[v] = kCsf;
+      result.tissueShare[v] = std::min(tissue.probability[1][v] + tissue.probability[2][v], 0.49f);
+    } else if (seg[v] == kWhite || map.kind[v] == kindCode(StructureKind::Deep) ||
+               (stem[v] != 0 && seg[v] == kGrey)) {
+      result.labels[v] = kCut;
+    }
+  }
+  if (result.greyVoxels == 0) {
+    throw InvalidInput(
+        "segmentation: no grey matter voxel in the hemisphere; check that atlas and T1 overlap");
+  }
+  monitor.progress(1, "hemisphere");
+  return result;
+}
+
+Volume<Label> resampleLabels(const Volume<Label>& labels, const Grid& grid) {
+  Volume<Label> resampled(grid, 0);
+  for (std::size_t v = 0; v < resampled.size(); ++v) {
+    const auto [i, j, k] = grid.subscripts(v);
+    const Vector at = labels.grid.toIndex(grid.toWorld(Vector(i, j, k)));
+    const int si = static_cast<int>(std::lround(at.x()));
+    const int sj = static_cast<int>(std::lround(at.y()));
+    const int sk = static_cast<int>(std::lround(at.z()));
+    if (labels.grid.contains(si, sj, sk)) resampled[v] = labels(si, sj, sk);
+  }
+  return resampled;
+}
+
+}  // namespace explica::segmentation

@@ -1,0 +1,401 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Explica/Segmentation/Tissue.h"
+
+#include "BiasField.h"
+#include "Explica/Core/Parallel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace explica::segmentation {
+namespace {
+
+constexpr int kClasses = 3;
+constexpr std::size_t kGrain = 16384;
+// Spread of a pure tissue, of the range of means: a narrower one is a single grey value, a wider
+// one has begun to stand for mixtures.
+constexpr double kLeastDeviation = 0.02;
+constexpr double kMostDeviation = 0.08;
+constexpr double kFirstDeviation = 0.06;   // of the range of means: the noise to start from
+constexpr double kFirstMixedShare = 0.15;  // of the voxels, for each of the two mixtures
+
+/// Fluid, grey, white, and the voxels where two of them meet.
+enum Component { kPureCsf, kPureGrey, kPureWhite, kCsfGrey, kGreyWhite, kComponents };
+constexpr std::array<std::array<float, kClasses>, kComponents> kComposition = {
+    {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.5f, 0.5f, 0}, {0, 0.5f, 0.5f}}};
+
+using Shares = std::array<float, kClasses>;        // of the tissues in a voxel
+using Posterior = std::array<float, kComponents>;  // of the components
+
+/// The mixture's parameters.
+struct Mixture {
+  std::array<double, kClasses> mean{};
+  std::array<double, kClasses> deviation{};
+  std::array<double, kComponents> share{};
+};
+
+/// The brain's voxels, packed, with the packed indices of their six neighbours (-1 outside).
+struct Brain {
+  std::vector<std::size_t> voxel;
+  std::vector<std::array<std::int32_t, 6>> neighbours;
+  std::vector<float> intensity;
+  [[nodiscard]] std::size_t size() const { return voxel.size(); }
+};
+
+Brain packBrain(const Volume<float>& image, const Volume<Label>& mask) {
+  const Grid& grid = image.grid;
+  std::vector<std::int32_t> packed(grid.voxelCount(), -1);
+  Brain brain;
+  for (std::size_t v = 0; v < image.size(); ++v) {
+    if (!std::isfinite(image[v])) {
+      const auto [i, j, k] = grid.subscripts(v);
+      throw InvalidInput("T1: voxel (" + std::to_string(i) + ", " + std::to_string(j) + ", " +
+                         std::to_string(k) + ") is not a finite number; replace such voxels by 0");
+    }
+    const bool inside = mask.size() == 0 ? image[v] > 0 : mask[v] != 0;
+    if (!inside) continue;
+    packed[v] = static_cast<std::int32_t>(brain.voxel.size());
+    brain.voxel.push_back(v);
+  }
+  brain.neighbours.resize(brain.size());
+  brain.intensity.resize(brain.size());
+  for (std::size_t b = 0; b < brain.size(); ++b) {
+    const auto at = grid.subscripts(brain.voxel[b]);
+    brain.intensity[b] = image[brain.voxel[b]];
+    for (int n = 0; n < 6; ++n) {
+      auto next = at;
+      next[n / 2] += n % 2 == 0 ? -1 : 1;
+      brain.neighbours[b][n] = grid.contains(next[0], next[1], next[2])
+                                   ? packed[grid.linear(next[0], next[1], next[2])]
+                                   : -1;
+    }
+  }
+  return brain;
+}
+
+/// First guess: the two thresholds that leave the least variance within three classes [Otsu1979],
+/// by trying all pairs on a histogram of the middle 99 % of the intensities.
+Mixture firstGuess(const Brain& brain) {
+  constexpr int kBins = 256;
+  std::vector<float> sorted = brain.intensity;
+  std::sort(sorted.begin(), sorted.end());
+  const std::size_t first = sorted.size() / 200;
+  const std::size_t last = sorted.size() - first;
+  const double low = sorted[first];
+  const double high = sorted[last - 1];
+  std::array<double, kBins + 1> count{};
+  std::array<double, kBins + 1> sum{};
+  for (std::size_t s = first; s < last; ++s) {
+    const int bin =
+        high > low ? std::min(static_cast<int>((sorted[s] - low) / (high - low) * kBins), kBins - 1)
+                   : 0;
+    count[bin + 1] += 1;
+    sum[bin + 1] += sorted[s];
+  }
+  for (int bin = 0; bin < kBins; ++bin) {
+    count[bin + 1] += count[bin];
+    sum[bin + 1] += sum[bin];
+  }
+  double most = -1;
+  std::array<int, kClasses + 1> border = {0, 0, 0, kBins};
+  for (int a = 1; a < kBins; ++a) {
+    for (int b = a + 1; b < kBins; ++b) {
+      const std::array<int, kClasses + 1> tried = {0, a, b, kBins};
+      double between = 0;
+      for (int k = 0; k < kClasses; ++k) {
+        const double n = count[tried[k + 1]] - count[tried[k]];
+        const double m = sum[tried[k + 1]] - sum[tried[k]];
+        between = n > 0 && between >= 0 ? between + m * m / n : -1;
+      }
+      if (between > most) {
+        most = between;
+        border = tried;
+      }
+    }
+  }
+  if (most < 0) {
+    throw InvalidInput("T1: fewer than three distinct intensities in the brain (from " +
+                       std::to_string(sorted.front()) + " to " + std::to_string(sorted.back()) +
+                       "); give the skull-stripped image, not a mask");
+  }
+  std::array<double, kClasses> mean;
+  for (int k = 0; k < kClasses; ++k) {
+    mean[k] = (sum[border[k + 1]] - sum[border[k]]) / (count[border[k + 1]] - count[border[k]]);
+  }
+  Mixture mixture;
+  mixture.mean = mean;
+  mixture.deviation.fill(kFirstDeviation * (mean[2] - mean[0]));
+  for (int k = 0; k < kClasses; ++k) {
+    mixture.share[k] =
+        (1 - 2 * kFirstMixedShare) * (count[border[k + 1]] - count[border[k]]) / count[kBins];
+  }
+  mixture.share[kCsfGrey] = kFirstMixedShare;
+  mixture.share[kGreyWhite] = kFirstMixedShare;
+  return mixture;
+}
+
+/// Logarithm of each component's weighted density between the outer means, tabulated.
+/// A mixed voxel's intensity is uniform between two means, blurred by the noise [Santago1993]:
+/// (Phi((y - a) / s) - Phi((y - b) / s)) / (b - a).
+class LogDensities {
+ public:
+  explicit LogDensities(const Mixture& mixture)
+      : low_(static_cast<float>(mixture.mean.front())),
+        high_(static_cast<float>(mixture.mean.back())),
+        scale_(kCells / (high_ - low_)),
+        table_(kCells + 1) {
+    for (int cell = 0; cell <= kCells; ++cell) {
+      const double y = low_ + cell / static_cast<double>(scale_);
+      for (int c = 0; c < kComponents; ++c) {
+        table_[cell][c] = static_cast<float>(
+            std::log(std::max(mixture.share[c], 1e-9) * density(mixture, c, y) + 1e-30));
+      }
+    }
+  }
+
+  /// Beyond the outer means only the outer classes are meant, so y is clamped to them: a wide class
+  /// must not win there.
+  [[nodiscard]] Posterior operator()(float y) const {
+    const float x = (std::clamp(y, low_, high_) - low_) * scale_;
+    const int cell = std::min(static_cast<int>(x), kCells - 1);
+    const float t = x - static_cast<float>(cell);
+    Posterior log;
+    for (int c = 0; c < kComponents; ++c)
+      log[c] = (1 - t) * table_[cell][c] + t * table_[cell + 1][c];
+    return log;
+  }
+
+ private:
+  static constexpr int kCells = 2048;
+
+  static double density(const Mixture& m, int component, double y) {
+    if (component < kClasses) {
+      const double z = (y - m.mean[component]) / m.deviation[component];
+      return std::exp(-0.5 * z * z) / (m.deviation[component] * std::sqrt(2 * kPi));
+    }
+    const int a = component == kCsfGrey ? 0 : 1;
+    const auto below = [&](int k) {
+      return 0.5 * (1 + std::erf((y - m.mean[k]) / (m.deviation[k] * std::sqrt(2.0))));
+    };
+    return std::max(0.0, below(a) - below(a + 1)) / (m.mean[a + 1] - m.mean[a]);
+  }
+
+  float low_;
+  float high_;
+  float scale_;
+  std::vector<Posterior> table_;
+};
+
+/// What a voxel holds, given its components' posterior and its intensity: a mixed voxel's shares
+/// are where it lies between the two means.
+Shares sharesOf(const Posterior& p, float y, const Mixture& mixture) {
+  Shares shares = {p[kPureCsf], p[kPureGrey], p[kPureWhite]};
+  for (int a = 0; a < 2; ++a) {
+    const auto low = static_cast<float>(mixture.mean[a]);
+    const auto high = static_cast<float>(mixture.mean[a + 1]);
+    const float upper = std::clamp((y - low) / (high - low), 0.0f, 1.0f);
+    const float mixed = p[a == 0 ? kCsfGrey : kGreyWhite];
+    shares[a] += (1 - upper) * mixed;
+    shares[a + 1] += upper * mixed;
+  }
+  return shares;
+}
+
+/// Posterior of each voxel given the mixture and its neighbours' contents.
+void expect(const Brain& brain, const std::vector<float>& corrected, const Mixture& mixture,
+            const std::array<float, 6>& weights, const std::vector<Shares>& before,
+            std::vector<Posterior>& after) {
+  const LogDensities densities(mixture);
+  parallelForBlocks(brain.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      Posterior energy = densities(corrected[b]);
+      if (!before.empty()) {
+        Shares around = {};
+        for (int n = 0; n < 6; ++n) {
+          const std::int32_t other = brain.neighbours[b][n];
+          if (other < 0) continue;
+          for (int k = 0; k < kClasses; ++k) around[k] += weights[n] * before[other][k];
+        }
+        for (int c = 0; c < kComponents; ++c) {
+          for (int k = 0; k < kClasses; ++k) energy[c] += kComposition[c][k] * around[k];
+        }
+      }
+      const float highest = *std::max_element(energy.begin(), energy.end());
+      float sum = 0;
+      for (int c = 0; c < kComponents; ++c) {
+        after[b][c] = std::exp(energy[c] - highest);
+        sum += after[b][c];
+      }
+      for (int c = 0; c < kComponents; ++c) after[b][c] /= sum;
+    }
+  });
+}
+
+/// Sums of the maximisation step.
+struct Moments {
+  std::array<double, kComponents> weight{};
+  std::array<double, kClasses> first{};
+  std::array<double, kClasses> second{};
+  Moments& operator+=(const Moments& other) {
+    for (int c = 0; c < kComponents; ++c) weight[c] += other.weight[c];
+    for (int k = 0; k < kClasses; ++k) {
+      first[k] += other.first[k];
+      second[k] += other.second[k];
+    }
+    return *this;
+  }
+};
+
+Mixture maximise(const std::vector<float>& corrected, const std::vector<Posterior>& posterior) {
+  const Moments sums =
+      parallelSum(corrected.size(), kGrain, Moments{}, [&](std::size_t begin, std::size_t end) {
+        Moments part;
+        for (std::size_t b = begin; b < end; ++b) {
+          const double y = corrected[b];
+          for (int c = 0; c < kComponents; ++c) part.weight[c] += posterior[b][c];
+          for (int k = 0; k < kClasses; ++k) {
+            part.first[k] += posterior[b][k] * y;
+            part.second[k] += posterior[b][k] * y * y;
+          }
+        }
+        return part;
+      });
+  Mixture mixture;
+  for (int k = 0; k < kClasses; ++k) {
+    mixture.mean[k] = sums.first[k] / sums.weight[k];
+  }
+  for (int c = 0; c < kComponents; ++c) {
+    mixture.share[c] = sums.weight[c] / static_cast<double>(corrected.size());
+  }
+  const double range = mixture.mean[2] - mixture.mean[0];
+  for (int k = 0; k < kClasses; ++k) {
+    const double variance = sums.second[k] / sums.weight[k] - mixture.mean[k] * mixture.mean[k];
+    mixture.deviation[k] = std::clamp(std::sqrt(std::max(0.0, variance)), kLeastDeviation * range,
+                                      kMostDeviation * range);
+  }
+  return mixture;
+}
+
+/// The field that best explains what the pure grey and white voxels show.  Fluid and mixtures are
+/// left out: what they should show is less certain.
+std::vector<float> updateBias(const Grid& grid, const Brain& brain, const Mixture& mixture,
+                              const std::vector<Posterior>& posterior, double width) {
+  BiasSamples samples;
+  samples.voxel = &brain.voxel;
+  samples.numerator.resize(brain.size());
+  samples.denominator.resize(brain.size());
+  parallelForBlocks(brain.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      double numerator = 0;
+      double denominator = 0;
+      for (int k = kPureGrey; k <= kPureWhite; ++k) {
+        const double p = posterior[b][k] / (mixture.deviation[k] * mixture.deviation[k]);
+        numerator += p * mixture.mean[k] * brain.intensity[b];
+        denominator += p * mixture.mean[k] * mixture.mean[k];
+      }
+      samples.numerator[b] = static_cast<float>(numerator);
+      samples.denominator[b] = static_cast<float>(denominator);
+    }
+  });
+  return fitBiasField(grid, samples, width);
+}
+
+void checkOptions(const TissueOptions& options) {
+  if (!(options.smooth >= 0)) throw InvalidInput("smooth: must be 0 or more");
+  if (!(options.biasWidth >= 0)) throw InvalidInput("bias-width: must be 0 mm or more");
+  if (options.maxIterations < 1) throw InvalidInput("max-iterations: must be 1 or more");
+  if (!(options.tolerance > 0)) throw InvalidInput("tolerance: must be above 0");
+}
+
+}  // namespace
+
+TissueSegmentation segmentTissue(const Volume<float>& intensity, const Volume<Label>& mask,
+                                 const TissueOptions& options, const Monitor& monitor) {
+  checkOptions(options);
+  if (mask.size() != 0 && !sameGrid(mask.grid, intensity.grid)) {
+    throw InvalidInput("mask: lies on another grid than the T1; resample it to the T1's grid");
+  }
+  const Brain brain = packBrain(intensity, mask);
+  if (brain.size() < 100) {
+    throw InvalidInput("T1: found " + std::to_string(brain.size()) +
+                       " brain voxels (intensity above 0, or in the mask), expected a "
+                       "skull-stripped brain");
+  }
+
+  TissueSegmentation result;
+  result.brainVoxels = static_cast<std::int64_t>(brain.size());
+  result.termination = Termination::MaxIterations;
+  Mixture mixture = firstGuess(brain);
+
+  std::array<float, 6> weights;
+  const Vector spacing = intensity.grid.spacing;
+  for (int n = 0; n < 6; ++n) {
+    weights[n] = static_cast<float>(options.smooth * spacing.minCoeff() / spacing[n / 2]);
+  }
+
+  std::vector<float> corrected = brain.intensity;
+  std::vector<float> field(brain.size(), 1.0f);
+  std::vector<Posterior> posterior(brain.size());
+  std::vector<Shares> shares;
+  for (int iteration = 1; iteration <= options.maxIterations; ++iteration) {
+    if (monitor.shouldStop()) {
+      result.termination = Termination::Interrupted;
+      break;
+    }
+    monitor.progress(static_cast<double>(iteration - 1) / options.maxIterations, "tissue classes");
+    expect(brain, corrected, mixture, weights, shares, posterior);
+    if (options.biasWidth > 0) {
+      field = updateBias(intensity.grid, brain, mixture, posterior, options.biasWidth);
+      parallelForBlocks(brain.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t b = begin; b < end; ++b) corrected[b] = brain.intensity[b] / field[b];
+      });
+    }
+    const Mixture updated = maximise(corrected, posterior);
+    if (!(updated.mean[0] < updated.mean[1] && updated.mean[1] < updated.mean[2])) {
+      throw InvalidInput(
+          "T1: the intensities do not separate into fluid, grey and white matter; "
+          "check that the image is T1-weighted and skull-stripped");
+    }
+    double moved = 0;
+    for (int k = 0; k < kClasses; ++k) {
+      moved = std::max(moved, std::abs(updated.mean[k] - mixture.mean[k]));
+    }
+    mixture = updated;
+    shares.resize(brain.size());
+    parallelForBlocks(brain.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t b = begin; b < end; ++b) {
+        shares[b] = sharesOf(posterior[b], corrected[b], mixture);
+      }
+    });
+    result.iterations = iteration;
+    if (iteration > 3 && moved <= options.tolerance * (mixture.mean[2] - mixture.mean[0])) {
+      result.termination = Termination::Converged;
+      break;
+    }
+  }
+
+  for (int k = 0; k < kClasses; ++k) {
+    result.classes[k] = {mixture.mean[k], mixture.deviation[k], 0};
+  }
+  result.labels = Volume<Label>(intensity.grid, 0);
+  result.bias = Volume<float>(intensity.grid, 1.0f);
+  for (auto& p : result.probability) p = Volume<float>(intensity.grid, 0.0f);
+  for (std::size_t b = 0; b < shares.size(); ++b) {
+    const std::size_t v = brain.voxel[b];
+    for (int k = 0; k < kClasses; ++k) {
+      result.probability[k][v] = shares[b][k];
+      result.classes[k].share += shares[b][k] / static_cast<double>(brain.size());
+    }
+    result.labels[v] = static_cast<Label>(std::max_element(shares[b].begin(), shares[b].end()) -
+                                          shares[b].begin()) +
+                       kCsf;
+    result.bias[v] = field[b];
+  }
+  monitor.progress(1, "tissue classes");
+  return result;
+}
+
+}  // namespace explica::segmentation

@@ -1,0 +1,150 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Explica/Segmentation/Hemisphere.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace explica::segmentation {
+namespace {
+
+/// Two mirrored half balls of white with a grey shell, a deep structure and a ventricle in each,
+/// joined at the midline, and a stem below.  Grid axes may be flipped.
+struct Phantom {
+  TissueSegmentation tissue;
+  Volume<Label> atlas;
+  AtlasLegend legend;
+};
+
+constexpr std::string_view kLegend =
+    "1 Frontal_L 2101\n2 Frontal_R 2102\n3 Thalamus_L\n4 Thalamus_R\n5 Cerebelum_L\n"
+    "6 Hippocampus_L\n7 Hippocampus_R\n";
+
+Phantom makePhantom(bool flipX) {
+  Grid grid;
+  grid.size = {70, 60, 60};
+  grid.origin = Point(-34.5, -30, -30);
+  if (flipX) {
+    grid.direction.col(0) *= -1;
+    grid.origin.x() = 34.5;
+  }
+  Phantom p;
+  p.legend = parseAtlasLegend(kLegend, "legend");
+  p.tissue.labels = Volume<Label>(grid, 0);
+  for (auto& q : p.tissue.probability) q = Volume<float>(grid, 0.0f);
+  p.atlas = Volume<Label>(grid, 0);
+  for (std::size_t v = 0; v < p.atlas.size(); ++v) {
+    const auto [i, j, k] = grid.subscripts(v);
+    const Point w = grid.toWorld(Vector(i, j, k));
+    const bool left = w.x() < 0;
+    const Point m(std::abs(w.x()), w.y(), w.z());
+    Label tissue = 0;
+    const double r = w.norm();
+    if (r < 26) tissue = kGrey;
+    if (r < 22) tissue = kWhite;
+    if (r >= 22 && r < 26) p.atlas[v] = left ? 1 : 2;
+    if ((m - Point(6, 0, 0)).norm() < 4) {
+      tissue = kGrey;
+      p.atlas[v] = left ? 3 : 4;
+    }
+    if ((m - Point(6, 0, 6)).norm() < 3) {
+      tissue = kCsf;
+      p.atlas[v] = 0;
+    }
+    // Hippocampus below the thalamus, and between the two the stem.
+    if ((m - Point(11, 0, -10)).norm() < 4) {
+      tissue = kGrey;
+      p.atlas[v] = left ? 6 : 7;
+    }
+    p.tissue.labels[v] = tissue;
+    if (tissue != 0) p.tissue.probability[tissue - 1][v] = 1;
+  }
+  return p;
+}
+
+TEST(Hemisphere, TakesTheNamedSideWhicheverWayTheGridRuns) {
+  for (const bool flip : {false, true}) {
+    const Phantom p = makePhantom(flip);
+    const Hemisphere left = extractHemisphere(p.tissue, p.atlas, p.legend);
+    for (std::size_t v = 0; v < left.labels.size(); ++v) {
+      if (left.labels[v] != kWhite && left.labels[v] != kGrey) continue;
+      const auto [i, j, k] = p.atlas.grid.subscripts(v);
+      ASSERT_LT(p.atlas.grid.toWorld(Vector(i, j, k)).x(), 0);
+    }
+    EXPECT_GT(left.whiteVoxels, 15000);
+  }
+}
+
+TEST(Hemisphere, FillsDeepStructuresAndVentricles) {
+  const Phantom p = makePhantom(false);
+  const Hemisphere left = extractHemisphere(p.tissue, p.atlas, p.legend);
+  const auto labelAt = [&](const Point& w) {
+    const Vector at = p.atlas.grid.toIndex(w);
+    return left.labels(static_cast<int>(std::lround(at.x())), static_cast<int>(std::lround(at.y())),
+                       static_cast<int>(std::lround(at.z())));
+  };
+  EXPECT_EQ(labelAt(Point(-6, 0, 0)), kWhite);
+  EXPECT_EQ(labelAt(Point(-6, 0, 6)), kWhite);
+  EXPECT_EQ(labelAt(Point(-24, 0, 0)), kGrey);
+  EXPECT_GT(left.deepVoxels, 100);
+  EXPECT_GT(left.ventricleVoxels, 30);
+}
+
+TEST(Hemisphere, LeavesTheStemOutAndMarksTheCut) {
+  const Phantom p = makePhantom(false);
+  const Hemisphere left = extractHemisphere(p.tissue, p.atlas, p.legend);
+  const Vector stem = p.atlas.grid.toIndex(Point(-2.5, 0, -10));
+  const Vector across = p.atlas.grid.toIndex(Point(3.5, 10, 0));
+  EXPECT_EQ(left.labels(static_cast<int>(std::lround(stem.x())), static_cast<int>(stem.y()),
+                        static_cast<int>(stem.z())),
+            kCut);
+  EXPECT_EQ(left.labels(static_cast<int>(std::lround(across.x())), static_cast<int>(across.y()),
+                        static_cast<int>(across.z())),
+            kCut);
+}
+
+TEST(Hemisphere, LeftAndRightShareNoVoxel) {
+  const Phantom p = makePhantom(false);
+  HemisphereOptions options;
+  const Hemisphere left = extractHemisphere(p.tissue, p.atlas, p.legend, options);
+  options.side = Side::Right;
+  const Hemisphere right = extractHemisphere(p.tissue, p.atlas, p.legend, options);
+  for (std::size_t v = 0; v < left.labels.size(); ++v) {
+    const bool inLeft = left.labels[v] == kWhite || left.labels[v] == kGrey;
+    const bool inRight = right.labels[v] == kWhite || right.labels[v] == kGrey;
+    ASSERT_FALSE(inLeft && inRight);
+  }
+  EXPECT_EQ(left.greyVoxels, right.greyVoxels);
+}
+
+TEST(Hemisphere, SaysWhatIsWrongWithTheAtlas) {
+  Phantom p = makePhantom(false);
+  p.atlas[5] = 99;
+  EXPECT_THROW((void)extractHemisphere(p.tissue, p.atlas, p.legend), InvalidInput);
+  EXPECT_THROW((void)parseAtlasLegend("1 Frontal_L\n", "legend"), InvalidInput);
+  EXPECT_THROW((void)parseAtlasLegend("1 A_L\n1 B_R\n", "legend"), InvalidInput);
+  EXPECT_THROW((void)parseAtlasLegend("word\n", "legend"), InvalidInput);
+}
+
+TEST(AtlasLegend, ReadsSidesAndKindsFromNames) {
+  const AtlasLegend legend = parseAtlasLegend(kLegend, "legend");
+  EXPECT_EQ(legend.at(1).side, Side::Left);
+  EXPECT_EQ(legend.at(4).kind, StructureKind::Deep);
+  EXPECT_EQ(legend.at(5).kind, StructureKind::BelowTent);
+}
+
+TEST(ResampledLabels, KeepValuesOnAShiftedGrid) {
+  Grid a;
+  a.size = {4, 4, 4};
+  Volume<Label> labels(a, 0);
+  labels(2, 1, 3) = 7;
+  Grid b = a;
+  b.origin = Point(1, 0, 0);
+  const Volume<Label> moved = resampleLabels(labels, b);
+  EXPECT_EQ(moved(1, 1, 3), 7);
+  EXPECT_EQ(moved(3, 0, 0), 0);
+}
+
+}  // namespace
+}  // namespace explica::segmentation

@@ -1,0 +1,130 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Explica/Segmentation/Tissue.h"
+
+#include "Explica/Core/Parallel.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <random>
+
+namespace explica::segmentation {
+namespace {
+
+/// Concentric balls of white, grey and fluid, with noise and a multiplicative ramp along x; voxels
+/// on a border hold the mixture of their tissues.
+struct Phantom {
+  Volume<float> image;
+  Volume<Label> truth;
+};
+
+Phantom makePhantom(double noise, double ramp, const Vector& spacing = Vector::Ones()) {
+  Grid grid;
+  grid.spacing = spacing;
+  const double extent = 60;
+  for (int a = 0; a < 3; ++a) grid.size[a] = static_cast<int>(extent / spacing[a]);
+  Phantom phantom{Volume<float>(grid, 0.0f), Volume<Label>(grid, 0)};
+  std::mt19937 generator(7);
+  std::normal_distribution<double> gauss(0, 1);
+  const auto share = [](double inside) { return std::clamp(0.5 + inside, 0.0, 1.0); };
+  for (std::size_t v = 0; v < phantom.image.size(); ++v) {
+    const auto [i, j, k] = grid.subscripts(v);
+    const Point p = grid.toWorld(Vector(i, j, k)) - Point::Constant(extent / 2);
+    const double r = p.norm();
+    if (r > 28) continue;
+    const double white = share(16 - r);
+    const double grey = share(22 - r) - white;
+    const double csf = 1 - white - grey;
+    phantom.truth[v] = white > 0.5 ? kWhite : (csf > 0.5 ? kCsf : kGrey);
+    const double clean = 35 * csf + 85 * grey + 115 * white;
+    phantom.image[v] = static_cast<float>(
+        std::max(1.0, (clean + noise * gauss(generator)) * (1 + ramp * p.x() / 28)));
+  }
+  return phantom;
+}
+
+double agreement(const Volume<Label>& found, const Volume<Label>& truth) {
+  std::size_t same = 0;
+  std::size_t all = 0;
+  for (std::size_t v = 0; v < truth.size(); ++v) {
+    if (truth[v] == 0) continue;
+    ++all;
+    same += found[v] == truth[v];
+  }
+  return static_cast<double>(same) / static_cast<double>(all);
+}
+
+TEST(TissueSegmentation, FindsThreeTissuesInNoise) {
+  const Phantom phantom = makePhantom(4, 0);
+  const TissueSegmentation found = segmentTissue(phantom.image);
+  EXPECT_EQ(found.termination, Termination::Converged);
+  EXPECT_GT(agreement(found.labels, phantom.truth), 0.98);
+  EXPECT_NEAR(found.classes[0].mean, 35, 2);
+  EXPECT_NEAR(found.classes[1].mean, 85, 2);
+  EXPECT_NEAR(found.classes[2].mean, 115, 2);
+}
+
+TEST(TissueSegmentation, ToleratesABiasField) {
+  const Phantom phantom = makePhantom(3, 0.25);
+  TissueOptions without;
+  without.biasWidth = 0;
+  const double flat = agreement(segmentTissue(phantom.image, {}, without).labels, phantom.truth);
+  TissueOptions with;
+  with.biasWidth = 15;  // the phantom is a third of a head across
+  const TissueSegmentation found = segmentTissue(phantom.image, {}, with);
+  EXPECT_GT(agreement(found.labels, phantom.truth), 0.97);
+  EXPECT_GT(agreement(found.labels, phantom.truth), flat + 0.01);
+}
+
+TEST(TissueSegmentation, WorksOnAnisotropicVoxels) {
+  const Phantom phantom = makePhantom(4, 0, Vector(0.8, 1, 2.5));
+  EXPECT_GT(agreement(segmentTissue(phantom.image).labels, phantom.truth), 0.97);
+}
+
+TEST(TissueSegmentation, SharesSumToOneInsideAndZeroOutside) {
+  const Phantom phantom = makePhantom(4, 0);
+  const TissueSegmentation found = segmentTissue(phantom.image);
+  for (std::size_t v = 0; v < phantom.truth.size(); ++v) {
+    const float sum = found.probability[0][v] + found.probability[1][v] + found.probability[2][v];
+    ASSERT_NEAR(sum, phantom.truth[v] == 0 ? 0 : 1, 1e-5);
+  }
+}
+
+TEST(TissueSegmentation, BorderSharesAreSubVoxel) {
+  const Phantom phantom = makePhantom(0.5, 0);
+  const TissueSegmentation found = segmentTissue(phantom.image);
+  // Along +x from the centre the white share must cross one half at radius 16.
+  const int c = phantom.image.grid.size[1] / 2;
+  double crossing = 0;
+  for (int i = c; i + 1 < phantom.image.grid.size[0]; ++i) {
+    const double a = found.probability[2](i, c, c);
+    const double b = found.probability[2](i + 1, c, c);
+    if (a >= 0.5 && b < 0.5) crossing = i + (a - 0.5) / (a - b) - c;
+  }
+  EXPECT_NEAR(crossing, 16, 0.25);
+}
+
+TEST(TissueSegmentation, DoesNotDependOnThreads) {
+  const Phantom phantom = makePhantom(5, 0.1);
+  setThreadCount(1);
+  const TissueSegmentation one = segmentTissue(phantom.image);
+  setThreadCount(4);
+  const TissueSegmentation four = segmentTissue(phantom.image);
+  setThreadCount(0);
+  EXPECT_EQ(std::memcmp(one.probability[1].data.data(), four.probability[1].data.data(),
+                        one.probability[1].size() * sizeof(float)),
+            0);
+}
+
+TEST(TissueSegmentation, RefusesWhatIsNotABrain) {
+  Phantom phantom = makePhantom(4, 0);
+  EXPECT_THROW((void)segmentTissue(Volume<float>(phantom.image.grid, 0.0f)), InvalidInput);
+  EXPECT_THROW((void)segmentTissue(Volume<float>(phantom.image.grid, 1.0f)), InvalidInput);
+  phantom.image[phantom.image.size() / 2] = std::nanf("");
+  EXPECT_THROW((void)segmentTissue(phantom.image), InvalidInput);
+}
+
+}  // namespace
+}  // namespace explica::segmentation
