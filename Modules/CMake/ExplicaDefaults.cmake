@@ -25,6 +25,7 @@ endif()
 function(explica_set_flags target)
   target_compile_options(${target} PRIVATE
     -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>  # GCC 12 warns falsely inside std::string (its bug 105651)
     -ffp-contract=off  # equal bytes on machines with and without fused multiply-add
     $<$<BOOL:${EXPLICA_WARNINGS_AS_ERRORS}>:-Werror>)
   if(EXPLICA_SANITIZE)
