@@ -26,7 +26,8 @@ enum class SurfaceSpace {
 
 struct SurfaceReadOptions {
   SurfaceSpace space = SurfaceSpace::Stated;
-  std::optional<std::string> fsVolume;  ///< volume (orig.mgz) whose geometry places a tkr surface
+  std::optional<std::string> fsVolume =
+      std::nullopt;  ///< volume (orig.mgz) whose geometry places a tkr surface
 };
 
 template <class Visitor>

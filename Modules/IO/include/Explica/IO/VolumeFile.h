@@ -28,10 +28,11 @@ enum class PlacementChoice {
 /// What readers do about files that leave something open, and which files they refuse.
 struct VolumeReadOptions {
   PlacementChoice placement = PlacementChoice::Agreed;
-  std::optional<int> frame;      ///< which volume of a file with several, from 0; refused if unset
-  std::optional<int> dimension;  ///< 2 or 3: refuse volumes of the other kind
-  bool allowNonFinite = false;   ///< else NaN and infinity are refused
-  bool allowAllZero = false;     ///< else a volume without any non-zero voxel is refused
+  std::optional<int> frame =
+      std::nullopt;  ///< which volume of a file with several, from 0; refused if unset
+  std::optional<int> dimension = std::nullopt;  ///< 2 or 3: refuse volumes of the other kind
+  bool allowNonFinite = false;                  ///< else NaN and infinity are refused
+  bool allowAllZero = false;  ///< else a volume without any non-zero voxel is refused
 };
 
 template <class Visitor>
@@ -45,12 +46,12 @@ void describe(VolumeReadOptions& options, Visitor&& visit) {
 /// Where a volume came from and how its file was understood; goes into the provenance record.
 struct VolumeOrigin {
   std::filesystem::path path;
-  std::string format;            ///< "NIfTI-1", "NIfTI-2", "MGH", "NRRD", "MetaImage", "PNG"
-  std::string storedType;        ///< "uint8", "float32", ...
-  std::vector<int> storedSize;   ///< as the file has it, all dimensions
-  std::string placement;         ///< "sform", "qform", "sform and qform agree", "none", "header"
-  std::optional<int> qformCode;  ///< NIfTI only
-  std::optional<int> sformCode;  ///< NIfTI only
+  std::string format;           ///< "NIfTI-1", "NIfTI-2", "MGH", "NRRD", "MetaImage", "PNG"
+  std::string storedType;       ///< "uint8", "float32", ...
+  std::vector<int> storedSize;  ///< as the file has it, all dimensions
+  std::string placement;        ///< "sform", "qform", "sform and qform agree", "none", "header"
+  std::optional<int> qformCode = std::nullopt;           ///< NIfTI only
+  std::optional<int> sformCode = std::nullopt;           ///< NIfTI only
   Eigen::Matrix4d affine = Eigen::Matrix4d::Identity();  ///< index to RAS mm that was used
   std::vector<std::string>
       notes;  ///< facts that a user may want to know: defaults, units converted

@@ -1,0 +1,258 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "ByteSource.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include <array>
+#include <cerrno>
+#include <system_error>
+#include <utility>
+
+namespace explica::io {
+namespace {
+
+constexpr std::uint64_t kLargestInflation = 1032;  // deflate packs at most 258 bytes into 2 bits
+constexpr uInt kLongestStep = 1U << 30;            // zlib counts in 32 bits
+constexpr int kAnyWrapper = 15 + 32;               // zlib or gzip, told by its header
+
+bool isGzip(ByteView bytes) {
+  return bytes.size() > 2 && bytes[0] == 0x1f && bytes[1] == 0x8b;
+}
+
+}  // namespace
+
+Bytes readFile(const std::filesystem::path& path) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (descriptor < 0) {
+    const int cause = errno;
+    failToRead(path, cause == ENOENT   ? "no such file"
+                     : cause == EACCES ? "permission to read it is denied"
+                                       : std::generic_category().message(cause));
+  }
+  struct Closer {
+    int descriptor;
+    ~Closer() { ::close(descriptor); }
+  } const closer{descriptor};
+  struct stat status {};
+  if (::fstat(descriptor, &status) != 0) failToRead(path, std::generic_category().message(errno));
+  if (S_ISDIR(status.st_mode)) failToRead(path, "is a folder; a file is needed");
+  if (!S_ISREG(status.st_mode)) failToRead(path, "is not a regular file");
+  if (status.st_size == 0) failToRead(path, "is empty");
+  Bytes bytes(static_cast<std::size_t>(status.st_size));
+  std::size_t filled = 0;
+  while (filled < bytes.size()) {
+    const ssize_t got = ::read(descriptor, bytes.data() + filled,
+                               std::min<std::size_t>(bytes.size() - filled, kLongestStep));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) failToRead(path, std::generic_category().message(errno));
+    if (got == 0) break;
+    filled += static_cast<std::size_t>(got);
+  }
+  bytes.resize(filled);
+  return bytes;
+}
+
+struct ByteSource::Inflater {
+  z_stream stream{};
+  bool memberDone = false;
+  bool done = false;
+};
+
+ByteSource::ByteSource(const std::filesystem::path& path) : path_(path), bytes_(readFile(path)) {
+  if (!isGzip(bytes_)) return;
+  inflater_ = std::make_unique<Inflater>();
+  if (inflateInit2(&inflater_->stream, kAnyWrapper) != Z_OK) {
+    throw EnvironmentError(quoted(path_) + ": no memory to unpack it");
+  }
+}
+
+ByteSource::~ByteSource() {
+  if (inflater_) inflateEnd(&inflater_->stream);
+}
+
+ByteView ByteSource::peek(std::size_t count) {
+  peeked_.erase(peeked_.begin(), peeked_.begin() + static_cast<std::ptrdiff_t>(peekedAt_));
+  peekedAt_ = 0;
+  if (peeked_.size() < count) {
+    const std::size_t held = peeked_.size();
+    peeked_.resize(count);
+    peeked_.resize(held + readOn(peeked_.data() + held, count - held));
+  }
+  return ByteView(peeked_).first(std::min(count, peeked_.size()));
+}
+
+std::size_t ByteSource::read(std::uint8_t* to, std::size_t count) {
+  const std::size_t held = std::min(count, peeked_.size() - peekedAt_);
+  if (held > 0) std::memcpy(to, peeked_.data() + peekedAt_, held);
+  peekedAt_ += held;
+  return held + (held < count ? readOn(to + held, count - held) : 0);
+}
+
+std::size_t ByteSource::readOn(std::uint8_t* to, std::size_t count) {
+  if (!inflater_) {
+    const std::size_t taken = std::min(count, bytes_.size() - at_);
+    if (taken > 0) std::memcpy(to, bytes_.data() + at_, taken);
+    at_ += taken;
+    return taken;
+  }
+  z_stream& stream = inflater_->stream;
+  std::size_t filled = 0;
+  while (!inflater_->done) {
+    if (inflater_->memberDone) {
+      if (!isGzip(ByteView(bytes_).subspan(at_))) {  // padding after the last member is allowed
+        inflater_->done = true;
+        break;
+      }
+      inflateReset(&stream);
+      inflater_->memberDone = false;
+    }
+    const uInt input = static_cast<uInt>(std::min<std::size_t>(bytes_.size() - at_, kLongestStep));
+    const uInt room = static_cast<uInt>(std::min<std::size_t>(count - filled, kLongestStep));
+    stream.next_in = bytes_.data() + at_;
+    stream.avail_in = input;
+    stream.next_out = to + filled;
+    stream.avail_out = room;
+    const int status = inflate(&stream, Z_NO_FLUSH);
+    at_ += input - stream.avail_in;
+    filled += room - stream.avail_out;
+    if (status == Z_STREAM_END) {
+      inflater_->memberDone = true;
+    } else if (status == Z_BUF_ERROR || (status == Z_OK && stream.avail_out > 0)) {
+      if (filled == count && at_ < bytes_.size()) break;  // no room given, nothing wrong
+      if (at_ == bytes_.size()) failToRead(path_, "the gzip data end too early; it is truncated");
+    } else if (status != Z_OK) {
+      failToRead(path_, "the gzip data are damaged");
+    }
+    if (filled == count && !inflater_->memberDone) break;
+  }
+  return filled;
+}
+
+Bytes ByteSource::take(std::uint64_t count) {
+  if (count > leftAtMost()) {
+    failToRead(path_, "the file is too short for the " + std::to_string(count) +
+                          " bytes that its header announces; it is truncated or damaged");
+  }
+  Bytes taken(count);
+  const std::size_t got = read(taken.data(), taken.size());
+  if (got < count) {
+    failToRead(path_, "the file ends " + std::to_string(count - got) + " bytes too early (" +
+                          std::to_string(count) + " needed here); it is truncated");
+  }
+  return taken;
+}
+
+void ByteSource::skip(std::uint64_t count) {
+  std::array<std::uint8_t, 1 << 14> scratch;
+  while (count > 0) {
+    const std::size_t step = std::min<std::uint64_t>(count, scratch.size());
+    const std::size_t got = read(scratch.data(), step);
+    if (got < step) failToRead(path_, "the file ends before its data; it is truncated");
+    count -= got;
+  }
+}
+
+void ByteSource::finish() {
+  if (!inflater_) return;
+  std::array<std::uint8_t, 1 << 14> scratch;
+  while (read(scratch.data(), scratch.size()) > 0) {
+  }
+}
+
+Bytes ByteSource::rest() {
+  if (!inflater_ && at_ - (peeked_.size() - peekedAt_) == 0) {
+    peeked_.clear();
+    peekedAt_ = 0;
+    at_ = 0;
+    return std::exchange(bytes_, {});
+  }
+  Bytes all;
+  std::size_t filled = 0;
+  std::size_t room = 4 * bytes_.size() + 4096;
+  while (true) {
+    all.resize(filled + room);
+    const std::size_t got = read(all.data() + filled, room);
+    filled += got;
+    if (got < room) break;
+    room = filled;
+  }
+  all.resize(filled);
+  return all;
+}
+
+std::uint64_t ByteSource::leftAtMost() const {
+  const std::uint64_t left = bytes_.size() - at_;
+  const std::uint64_t held = peeked_.size() - peekedAt_;
+  // What zlib has taken in but not yet given out is bounded by two windows.
+  return held + (inflater_ ? left * kLargestInflation + (1U << 16) : left);
+}
+
+Bytes inflateExactly(const std::filesystem::path& path, ByteView packed, std::uint64_t size) {
+  if (size > packed.size() * kLargestInflation + 64) {
+    failToRead(path, "a packed block is too short for the values it should hold");
+  }
+  Bytes unpacked(size);
+  z_stream stream{};
+  if (inflateInit2(&stream, kAnyWrapper) != Z_OK) {
+    throw EnvironmentError(quoted(path) + ": no memory to unpack it");
+  }
+  std::size_t in = 0;
+  std::size_t out = 0;
+  std::uint8_t none = 0;  // zlib wants an address even for no room
+  int status = Z_OK;
+  while (status == Z_OK) {
+    const uInt input = static_cast<uInt>(std::min<std::size_t>(packed.size() - in, kLongestStep));
+    const uInt room = static_cast<uInt>(std::min<std::size_t>(size - out, kLongestStep));
+    stream.next_in = const_cast<std::uint8_t*>(packed.data()) + in;
+    stream.avail_in = input;
+    stream.next_out = room > 0 ? unpacked.data() + out : &none;
+    stream.avail_out = room;
+    status = inflate(&stream, Z_NO_FLUSH);
+    in += input - stream.avail_in;
+    out += room - stream.avail_out;
+    if (status == Z_OK && input == stream.avail_in && room == stream.avail_out) break;
+  }
+  inflateEnd(&stream);
+  if (status != Z_STREAM_END || out != size) {
+    failToRead(path, "a packed block is damaged, or holds another number of values than stated");
+  }
+  return unpacked;
+}
+
+Bytes decodeBase64(const std::filesystem::path& path, std::string_view text) {
+  static constexpr std::string_view kAlphabet =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  static const std::array<std::int8_t, 256> kValues = [] {
+    std::array<std::int8_t, 256> values;
+    values.fill(-1);
+    for (std::size_t i = 0; i < kAlphabet.size(); ++i) {
+      values[static_cast<std::uint8_t>(kAlphabet[i])] = static_cast<std::int8_t>(i);
+    }
+    for (const char blank : {' ', '\n', '\r', '\t'}) values[static_cast<std::uint8_t>(blank)] = -2;
+    return values;
+  }();
+  Bytes decoded;
+  decoded.reserve(text.size() / 4 * 3 + 3);
+  std::uint32_t bits = 0;
+  int held = 0;
+  for (const char c : text) {
+    if (c == '=') break;
+    const int value = kValues[static_cast<std::uint8_t>(c)];
+    if (value == -2) continue;
+    if (value < 0) failToRead(path, "base64 data hold a character that is not base64's");
+    bits = bits << 6 | static_cast<std::uint32_t>(value);
+    held += 6;
+    if (held >= 8) {
+      held -= 8;
+      decoded.push_back(static_cast<std::uint8_t>(bits >> held));
+    }
+  }
+  return decoded;
+}
+
+}  // namespace explica::io

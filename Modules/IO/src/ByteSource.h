@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Bytes.h"
+
+#include <filesystem>
+#include <memory>
+
+namespace explica::io {
+
+/// Content of a regular file.
+/// @throws IOError  missing, a folder, not permitted, empty
+[[nodiscard]] Bytes readFile(const std::filesystem::path& path);
+
+/// A file's content as a stream, unpacked on the way if it is gzip (one or several members).
+class ByteSource {
+ public:
+  explicit ByteSource(const std::filesystem::path& path);
+  ~ByteSource();
+  ByteSource(const ByteSource&) = delete;
+  ByteSource& operator=(const ByteSource&) = delete;
+
+  /// The first bytes of what is left, fewer only at the end; they stay to be read.
+  [[nodiscard]] ByteView peek(std::size_t count);
+  /// Next bytes, fewer only at the end.
+  /// @throws IOError  damaged or truncated gzip data
+  std::size_t read(std::uint8_t* to, std::size_t count);
+  /// Exactly `count` bytes.
+  /// @throws IOError  too few left, told before anything large is allocated
+  [[nodiscard]] Bytes take(std::uint64_t count);
+  void skip(std::uint64_t count);
+  /// Reads on to the end, so that gzip's checksum is verified.
+  void finish();
+  /// All that is left.
+  [[nodiscard]] Bytes rest();
+  /// How many bytes can be left at most: a compressed byte gives at most 1032.
+  [[nodiscard]] std::uint64_t leftAtMost() const;
+  [[nodiscard]] bool compressed() const { return inflater_ != nullptr; }
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  struct Inflater;
+
+  std::size_t readOn(std::uint8_t* to, std::size_t count);
+
+  std::filesystem::path path_;
+  Bytes bytes_;
+  std::size_t at_ = 0;
+  Bytes peeked_;
+  std::size_t peekedAt_ = 0;
+  std::unique_ptr<Inflater> inflater_;
+};
+
+/// Unpacks zlib or gzip data of a known unpacked size.
+/// @throws IOError  damaged, or not of that size
+[[nodiscard]] Bytes inflateExactly(const std::filesystem::path& path, ByteView packed,
+                                   std::uint64_t size);
+
+/// Decodes base64, skipping blanks.
+/// @throws IOError  a character that is not base64's
+[[nodiscard]] Bytes decodeBase64(const std::filesystem::path& path, std::string_view text);
+
+}  // namespace explica::io

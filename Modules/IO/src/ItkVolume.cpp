@@ -1,0 +1,410 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "ItkVolume.h"
+
+#include "ByteSource.h"
+
+#include <itkMetaImageIO.h>
+#include <itkNrrdImageIO.h>
+#include <itkPNGImageIO.h>
+
+#include <Eigen/Geometry>
+
+#include <cctype>
+#include <map>
+#include <new>
+#include <optional>
+#include <sstream>
+
+namespace explica::io {
+namespace {
+
+constexpr std::size_t kLongestHeader = 1 << 16;
+
+std::string lower(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+std::string trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t\r");
+  if (first == std::string_view::npos) return {};
+  return std::string(text.substr(first, text.find_last_not_of(" \t\r") - first + 1));
+}
+
+/// The `key: value` or `key = value` lines of a text header, keys in lower case.
+struct TextHeader {
+  std::map<std::string, std::string> fields;
+  std::size_t size = 0;  ///< bytes before the data
+
+  [[nodiscard]] std::string operator[](const std::string& key) const {
+    const auto found = fields.find(key);
+    return found == fields.end() ? std::string() : found->second;
+  }
+};
+
+TextHeader parseHeader(const std::filesystem::path& path, ByteView bytes, ItkFormat format) {
+  TextHeader header;
+  ByteCursor cursor(path, bytes, false);
+  while (cursor.left() > 0) {
+    if (cursor.position() > kLongestHeader) failToRead(path, "its header does not end");
+    const std::string_view line = cursor.line();
+    header.size = cursor.position();
+    if (format == ItkFormat::Nrrd && line.empty()) break;
+    for (const char c : line) {
+      if (static_cast<unsigned char>(c) >= 127 ||
+          (static_cast<unsigned char>(c) < 32 && c != '\t')) {
+        failToRead(path, "its header holds characters that are no text; it is damaged");
+      }
+    }
+    if (line.starts_with('#')) continue;
+    const std::size_t mark = line.find(format == ItkFormat::Nrrd ? ':' : '=');
+    if (mark == std::string_view::npos) continue;
+    const bool custom = format == ItkFormat::Nrrd && line.substr(mark).starts_with(":=");
+    if (custom) continue;
+    const std::string key = lower(trimmed(line.substr(0, mark)));
+    if (!header.fields.emplace(key, trimmed(line.substr(mark + 1))).second) {
+      failToRead(path, "its header states '" + key + "' twice");
+    }
+    if (format == ItkFormat::MetaImage && key == "elementdatafile") break;
+  }
+  return header;
+}
+
+std::vector<double> numbersIn(const std::filesystem::path& path, const std::string& key,
+                              const std::string& text) {
+  std::vector<double> numbers;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    numbers.push_back(parseNumber<double>(path, word));
+    if (!std::isfinite(numbers.back())) {
+      failToRead(path, "its header has a value that is not finite in '" + key + "'");
+    }
+  }
+  return numbers;
+}
+
+std::vector<std::int64_t> sizesIn(const std::filesystem::path& path, const std::string& text) {
+  std::vector<std::int64_t> sizes;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) sizes.push_back(parseNumber<std::int64_t>(path, word));
+  return sizes;
+}
+
+int dimensionIn(const std::filesystem::path& path, const std::string& text) {
+  const int dimension = parseNumber<int>(path, text);
+  if (dimension < 2 || dimension > 5) {
+    failToRead(path, "its header announces " + text + " dimensions; 2 to 5 are understood");
+  }
+  return dimension;
+}
+
+std::optional<StoredType> metaType(const std::string& word) {
+  static const std::map<std::string, StoredType> kTypes = {
+      {"met_char", StoredType::Int8},       {"met_uchar", StoredType::UInt8},
+      {"met_short", StoredType::Int16},     {"met_ushort", StoredType::UInt16},
+      {"met_int", StoredType::Int32},       {"met_uint", StoredType::UInt32},
+      {"met_float", StoredType::Float32},   {"met_double", StoredType::Float64},
+      {"met_long_long", StoredType::Int64}, {"met_ulong_long", StoredType::UInt64}};
+  const auto found = kTypes.find(lower(word));
+  if (found == kTypes.end()) return {};
+  return found->second;
+}
+
+std::optional<StoredType> nrrdType(const std::string& word) {
+  static const std::map<std::string, StoredType> kTypes = {
+      {"signed char", StoredType::Int8},
+      {"int8", StoredType::Int8},
+      {"int8_t", StoredType::Int8},
+      {"uchar", StoredType::UInt8},
+      {"unsigned char", StoredType::UInt8},
+      {"uint8", StoredType::UInt8},
+      {"uint8_t", StoredType::UInt8},
+      {"short", StoredType::Int16},
+      {"short int", StoredType::Int16},
+      {"signed short", StoredType::Int16},
+      {"signed short int", StoredType::Int16},
+      {"int16", StoredType::Int16},
+      {"int16_t", StoredType::Int16},
+      {"ushort", StoredType::UInt16},
+      {"unsigned short", StoredType::UInt16},
+      {"unsigned short int", StoredType::UInt16},
+      {"uint16", StoredType::UInt16},
+      {"uint16_t", StoredType::UInt16},
+      {"int", StoredType::Int32},
+      {"signed int", StoredType::Int32},
+      {"int32", StoredType::Int32},
+      {"int32_t", StoredType::Int32},
+      {"uint", StoredType::UInt32},
+      {"unsigned int", StoredType::UInt32},
+      {"uint32", StoredType::UInt32},
+      {"uint32_t", StoredType::UInt32},
+      {"longlong", StoredType::Int64},
+      {"long long", StoredType::Int64},
+      {"int64", StoredType::Int64},
+      {"int64_t", StoredType::Int64},
+      {"ulonglong", StoredType::UInt64},
+      {"unsigned long long", StoredType::UInt64},
+      {"uint64", StoredType::UInt64},
+      {"uint64_t", StoredType::UInt64},
+      {"float", StoredType::Float32},
+      {"double", StoredType::Float64}};
+  const auto found = kTypes.find(lower(word));
+  if (found == kTypes.end()) return {};
+  return found->second;
+}
+
+/// Bytes that the file with the data can hold at most when unpacked.
+std::uint64_t dataLimit(const std::filesystem::path& path, const TextHeader& header,
+                        const std::string& dataFile, std::uint64_t fileSize, bool packed) {
+  std::uint64_t size = fileSize - header.size;
+  if (!dataFile.empty() && lower(dataFile) != "local") {
+    if (dataFile.find('%') != std::string::npos || lower(dataFile).starts_with("list")) {
+      refuse(path, "spreads its data over several files; store it in one");
+    }
+    const std::filesystem::path data = path.parent_path() / dataFile;
+    std::error_code error;
+    size =
+        std::filesystem::is_regular_file(data, error) ? std::filesystem::file_size(data, error) : 0;
+    if (error || size == 0) failToRead(path, "its data file '" + data.string() + "' is missing");
+  }
+  return packed ? size * 1032 : size;
+}
+
+void checkNrrd(const std::filesystem::path& path, ByteView bytes) {
+  const TextHeader header = parseHeader(path, bytes, ItkFormat::Nrrd);
+  const int dimension = dimensionIn(path, header["dimension"]);
+  const std::vector<std::int64_t> sizes = sizesIn(path, header["sizes"]);
+  if (static_cast<int>(sizes.size()) != dimension) {
+    failToRead(path, "its header gives " + std::to_string(sizes.size()) + " sizes for " +
+                         std::to_string(dimension) + " dimensions");
+  }
+  const std::optional<StoredType> type = nrrdType(header["type"]);
+  if (!type) refuse(path, "has NRRD type '" + header["type"] + "'; a type of numbers is needed");
+  const std::string encoding = lower(header["encoding"]);
+  const bool packed = encoding == "gzip" || encoding == "gz";
+  const bool text = encoding == "ascii" || encoding == "text" || encoding == "txt";
+  if (!packed && !text && encoding != "raw") {
+    refuse(path, "has NRRD encoding '" + encoding + "'; raw, gzip and ascii are understood");
+  }
+  const std::string dataFile =
+      header["data file"].empty() ? header["datafile"] : header["data file"];
+  for (const char* skip : {"line skip", "byte skip", "lineskip", "byteskip"}) {
+    if (!header[skip].empty() && header[skip] != "0" && header[skip] != "-1") {
+      refuse(path, std::string("uses '") + skip + "', which is not supported; store it anew");
+    }
+  }
+  const std::uint64_t needed = checkedProduct(path, sizes) * (text ? 2 : widthOf(*type)) - text;
+  if (needed > dataLimit(path, header, dataFile, bytes.size(), packed)) {
+    failToRead(path,
+               "the data end too early for the sizes of the header; it is truncated or damaged");
+  }
+}
+
+void checkMetaImage(const std::filesystem::path& path, ByteView bytes) {
+  const TextHeader header = parseHeader(path, bytes, ItkFormat::MetaImage);
+  const std::string kind = lower(header["objecttype"]);
+  if (!kind.empty() && kind != "image")
+    refuse(path, "is a MetaIO " + kind + "; an image is needed");
+  const auto dimension = static_cast<std::size_t>(dimensionIn(path, header["ndims"]));
+  const std::vector<std::int64_t> sizes = sizesIn(path, header["dimsize"]);
+  if (sizes.size() != dimension) {
+    failToRead(path, "its header gives " + std::to_string(sizes.size()) + " sizes for " +
+                         std::to_string(dimension) + " dimensions");
+  }
+  const std::pair<const char*, std::size_t> lengths[] = {{"elementspacing", dimension},
+                                                         {"elementsize", dimension},
+                                                         {"offset", dimension},
+                                                         {"position", dimension},
+                                                         {"origin", dimension},
+                                                         {"transformmatrix", dimension * dimension},
+                                                         {"rotation", dimension * dimension},
+                                                         {"orientation", dimension * dimension},
+                                                         {"centerofrotation", dimension}};
+  for (const auto& [key, length] : lengths) {
+    if (header[key].empty()) continue;
+    const std::vector<double> numbers = numbersIn(path, key, header[key]);
+    if (numbers.size() != length) {
+      failToRead(path, std::string("its header gives ") + std::to_string(numbers.size()) +
+                           " values for '" + key + "'; " + std::to_string(length) + " are needed");
+    }
+  }
+  const std::optional<StoredType> type = metaType(header["elementtype"]);
+  if (!type) {
+    refuse(path, "has MetaImage type '" + header["elementtype"] + "'; a type of numbers is needed");
+  }
+  std::int64_t channels = 1;
+  if (!header["elementnumberofchannels"].empty()) {
+    channels = parseNumber<std::int64_t>(path, header["elementnumberofchannels"]);
+  }
+  if (channels < 1 || channels > 64) {
+    failToRead(path, "its header announces " + std::to_string(channels) + " channels");
+  }
+  if (!header["headersize"].empty() && header["headersize"] != "0") {
+    refuse(path, "uses 'HeaderSize', which is not supported; store it anew");
+  }
+  const bool packed = lower(header["compresseddata"]) == "true";
+  if (packed && lower(header["binarydata"]) == "false") {
+    failToRead(path, "its header says compressed text");
+  }
+  const bool text = lower(header["binarydata"]) == "false";
+  const std::string dataFile = header["elementdatafile"];
+  if (dataFile.empty()) failToRead(path, "its header does not name the data (ElementDataFile)");
+  const bool local = lower(dataFile) == "local";
+  if (!header["compresseddatasize"].empty()) {
+    const auto size = parseNumber<std::int64_t>(path, header["compresseddatasize"]);
+    const auto room = static_cast<std::int64_t>(bytes.size() - header.size);
+    if (size < 1 || (local && size > room)) {
+      failToRead(path, "the packed data end too early; it is truncated");
+    }
+  }
+  std::vector<std::int64_t> all = sizes;
+  all.push_back(channels);
+  const std::uint64_t needed = checkedProduct(path, all) * (text ? 2 : widthOf(*type)) - text;
+  if (needed > dataLimit(path, header, dataFile, bytes.size(), packed)) {
+    failToRead(path,
+               "the data end too early for the sizes of the header; it is truncated or damaged");
+  }
+}
+
+void checkPng(const std::filesystem::path& path, ByteView bytes) {
+  // Signature 8, then the IHDR chunk: length, type, width, height, bits, colour, ...
+  constexpr std::int64_t kWidestPixel = 8;
+  if (bytes.size() < 33) failToRead(path, "the file ends too early; it is truncated");
+  const std::int64_t width = load<std::uint32_t>(bytes.data() + 16, true);
+  const std::int64_t height = load<std::uint32_t>(bytes.data() + 20, true);
+  const std::int64_t pixels = checkedProduct(path, {width, height});
+  if (pixels > static_cast<std::int64_t>(bytes.size()) * 1032 * kWidestPixel) {
+    failToRead(path, "the file is too short for the size that its header announces");
+  }
+}
+
+std::optional<StoredType> typeOf(itk::IOComponentEnum type) {
+  switch (type) {
+    case itk::IOComponentEnum::CHAR:
+      return StoredType::Int8;
+    case itk::IOComponentEnum::UCHAR:
+      return StoredType::UInt8;
+    case itk::IOComponentEnum::SHORT:
+      return StoredType::Int16;
+    case itk::IOComponentEnum::USHORT:
+      return StoredType::UInt16;
+    case itk::IOComponentEnum::INT:
+      return StoredType::Int32;
+    case itk::IOComponentEnum::UINT:
+      return StoredType::UInt32;
+    case itk::IOComponentEnum::LONG:
+    case itk::IOComponentEnum::LONGLONG:
+      return StoredType::Int64;
+    case itk::IOComponentEnum::ULONG:
+    case itk::IOComponentEnum::ULONGLONG:
+      return StoredType::UInt64;
+    case itk::IOComponentEnum::FLOAT:
+      return StoredType::Float32;
+    case itk::IOComponentEnum::DOUBLE:
+      return StoredType::Float64;
+    default:
+      return {};
+  }
+}
+
+/// ITK's physical space is LPS: x and y change sign.
+Eigen::Matrix4d affineOf(const std::filesystem::path& path, const itk::ImageIOBase& reader) {
+  const unsigned dimensions = std::min(reader.GetNumberOfDimensions(), 3U);
+  Eigen::Matrix4d affine = Eigen::Matrix4d::Identity();
+  for (unsigned axis = 0; axis < dimensions; ++axis) {
+    const double spacing = reader.GetSpacing(axis);
+    if (!(spacing > 0) || !std::isfinite(spacing)) {
+      refuse(path, "its header gives a voxel size of " + std::to_string(spacing) + " along axis " +
+                       std::to_string(axis) + "; correct the header");
+    }
+    const std::vector<double> direction = reader.GetDirection(axis);
+    for (unsigned row = 0; row < dimensions; ++row) affine(row, axis) = direction[row] * spacing;
+    affine(axis, 3) = reader.GetOrigin(axis);
+  }
+  affine.topRows<2>() *= -1;
+  if (dimensions == 2) affine.block<3, 1>(0, 2) << 0, 0, 1;
+  return affine;
+}
+
+}  // namespace
+
+StoredVolume readWithItk(const std::filesystem::path& path, ItkFormat format, Extent extent) {
+  StoredVolume volume;
+  volume.origin.path = path;
+  volume.origin.placement = "header";
+  volume.interleaved = true;
+  itk::ImageIOBase::Pointer reader;
+  {
+    const Bytes bytes = readFile(path);
+    switch (format) {
+      case ItkFormat::Nrrd:
+        checkNrrd(path, bytes);
+        volume.origin.format = "NRRD";
+        reader = itk::NrrdImageIO::New();
+        break;
+      case ItkFormat::MetaImage:
+        checkMetaImage(path, bytes);
+        volume.origin.format = "MetaImage";
+        reader = itk::MetaImageIO::New();
+        break;
+      case ItkFormat::Png:
+        checkPng(path, bytes);
+        volume.origin.format = "PNG";
+        volume.origin.placement = "none";
+        reader = itk::PNGImageIO::New();
+        break;
+    }
+  }
+  try {
+    reader->SetFileName(path.string());
+    reader->ReadImageInformation();
+    const std::optional<StoredType> type = typeOf(reader->GetComponentType());
+    if (!type) failToRead(path, "has a voxel type that is not understood");
+    volume.type = *type;
+    volume.origin.storedType = nameOf(*type);
+    const unsigned dimensions = reader->GetNumberOfDimensions();
+    std::vector<std::int64_t> sizes;
+    itk::ImageIORegion region(dimensions);
+    for (unsigned i = 0; i < dimensions; ++i) {
+      sizes.push_back(static_cast<std::int64_t>(reader->GetDimensions(i)));
+      region.SetSize(i, reader->GetDimensions(i));
+      region.SetIndex(i, 0);
+    }
+    volume.origin.storedSize.assign(sizes.begin(), sizes.end());
+    const std::int64_t components = reader->GetNumberOfComponents();
+    if (components > 1) volume.origin.storedSize.push_back(static_cast<int>(components));
+    std::int64_t frames = 1;
+    for (std::size_t i = 3; i < sizes.size(); ++i) frames *= sizes[i];
+    if (format == ItkFormat::Png && components > 2) {
+      refuse(path, "is a picture in colour; a grey one is needed");
+    }
+    if (components > 1 && frames > 1) {
+      refuse(path, "holds several volumes of several components each; store one of them alone");
+    }
+    volume.interleaved = components > 1;
+    volume.valuesPerVoxel = components * frames;
+    sizes.resize(3, 1);
+    sizes.push_back(volume.valuesPerVoxel);
+    const std::int64_t valueCount = checkedProduct(path, sizes);
+    volume.origin.affine = affineOf(path, *reader);
+    volume.grid = gridOf(
+        path, {static_cast<int>(sizes[0]), static_cast<int>(sizes[1]), static_cast<int>(sizes[2])},
+        volume.origin.affine);
+    if (extent == Extent::Header) return volume;
+    reader->SetIORegion(region);
+    volume.values.resize(static_cast<std::size_t>(valueCount) * widthOf(volume.type));
+    if (reader->GetImageSizeInBytes() !=
+        static_cast<itk::ImageIOBase::SizeType>(volume.values.size())) {
+      failToRead(path, "its header contradicts itself about the number of values");
+    }
+    reader->Read(volume.values.data());
+  } catch (const itk::ExceptionObject& error) {
+    const std::string cause = error.GetDescription();
+    failToRead(path, "cannot be read: " + cause.substr(0, cause.find('\n')));
+  }
+  return volume;
+}
+
+}  // namespace explica::io

@@ -1,0 +1,384 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "NiftiFormat.h"
+
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace explica::io {
+namespace {
+
+constexpr std::size_t kHeader1 = 348;
+constexpr std::size_t kHeader2 = 540;
+constexpr double kAgreement = 0.01;  // voxels: q- and sform that round differently differ by 1e-4
+
+/// The fields of either header version that matter here.
+struct Header {
+  int version = 1;
+  bool bigEndian = false;
+  bool pair = false;  ///< header and image in two files
+  std::array<std::int64_t, 8> dim{};
+  std::array<double, 8> pixdim{};
+  int datatype = 0;
+  std::int64_t offset = 0;
+  double slope = 0, intercept = 0;
+  int units = 0;
+  int qformCode = 0, sformCode = 0;
+  std::array<double, 6> quaternion{};  ///< b, c, d, offsets x, y, z
+  std::array<double, 12> srow{};
+};
+
+struct Detected {
+  int version;
+  bool bigEndian;
+};
+
+std::optional<Detected> detect(ByteView bytes) {
+  if (bytes.size() < kHeader1) return {};
+  for (const bool bigEndian : {false, true}) {
+    const auto size = load<std::int32_t>(bytes.data(), bigEndian);
+    if (size == static_cast<std::int32_t>(kHeader1)) return Detected{1, bigEndian};
+    if (size == static_cast<std::int32_t>(kHeader2)) return Detected{2, bigEndian};
+  }
+  return {};
+}
+
+Header parse(const std::filesystem::path& path, const Bytes& bytes, const Detected& detected) {
+  Header header;
+  header.version = detected.version;
+  header.bigEndian = detected.bigEndian;
+  const auto at = [&]<class T>(std::size_t offset, T) {
+    return load<T>(bytes.data() + offset, header.bigEndian);
+  };
+  const bool one = header.version == 1;
+  const char* magic = reinterpret_cast<const char*>(bytes.data()) + (one ? 344 : 4);
+  header.pair = std::memcmp(magic, one ? "ni1" : "ni2", 3) == 0;
+  if (!header.pair && std::memcmp(magic, one ? "n+1" : "n+2", 3) != 0) {
+    failToRead(
+        path,
+        "is an Analyze header or a damaged NIfTI header (no NIfTI signature); Analyze files do "
+        "not say which side is left: convert to NIfTI");
+  }
+  for (std::size_t i = 0; i < 8; ++i) {
+    header.dim[i] = one ? at(40 + 2 * i, std::int16_t{}) : at(16 + 8 * i, std::int64_t{});
+    header.pixdim[i] = one ? at(76 + 4 * i, float{}) : at(104 + 8 * i, double{});
+  }
+  header.datatype = at(one ? 70 : 12, std::int16_t{});
+  header.offset = one ? static_cast<std::int64_t>(std::clamp(at(108, float{}), -1.0F, 1e15F))
+                      : at(168, std::int64_t{});
+  header.slope = one ? at(112, float{}) : at(176, double{});
+  header.intercept = one ? at(116, float{}) : at(184, double{});
+  header.units = one ? bytes[123] : at(500, std::int32_t{});
+  header.qformCode = one ? at(252, std::int16_t{}) : at(344, std::int32_t{});
+  header.sformCode = one ? at(254, std::int16_t{}) : at(348, std::int32_t{});
+  for (std::size_t i = 0; i < 6; ++i) {
+    header.quaternion[i] = one ? at(256 + 4 * i, float{}) : at(352 + 8 * i, double{});
+  }
+  for (std::size_t i = 0; i < 12; ++i) {
+    header.srow[i] = one ? at(280 + 4 * i, float{}) : at(400 + 8 * i, double{});
+  }
+  return header;
+}
+
+struct TypeRow {
+  int code;
+  StoredType type;
+};
+constexpr TypeRow kTypes[] = {{2, StoredType::UInt8},    {4, StoredType::Int16},
+                              {8, StoredType::Int32},    {16, StoredType::Float32},
+                              {64, StoredType::Float64}, {256, StoredType::Int8},
+                              {512, StoredType::UInt16}, {768, StoredType::UInt32},
+                              {1024, StoredType::Int64}, {1280, StoredType::UInt64}};
+
+StoredType typeOf(const std::filesystem::path& path, int code) {
+  for (const TypeRow& row : kTypes) {
+    if (row.code == code) return row.type;
+  }
+  switch (code) {
+    case 128:
+    case 2304:
+      refuse(path, "holds colours; a volume of scalars is needed");
+    case 32:
+    case 1792:
+    case 2048:
+      refuse(path, "holds complex numbers; a volume of scalars is needed");
+    case 1536:
+      refuse(path, "holds 128-bit numbers; convert it to float32");
+    default:
+      failToRead(path, "has the unknown NIfTI data type " + std::to_string(code));
+  }
+}
+
+/// Voxel sizes, in mm; a missing third one of a single slice is 1.
+Vector spacingOf(const std::filesystem::path& path, const Header& header,
+                 const std::array<int, 3>& size, double unit) {
+  Vector spacing;
+  for (int axis = 0; axis < 3; ++axis) {
+    double width = header.pixdim[axis + 1];
+    if (size[axis] == 1 && axis == 2 && width == 0) width = 1;
+    if (!(width > 0) || !std::isfinite(width)) {
+      refuse(path, "its header gives a voxel size of " + std::to_string(width) + " along axis " +
+                       std::to_string(axis) + "; correct the header (pixdim)");
+    }
+    spacing[axis] = width * unit;
+  }
+  return spacing;
+}
+
+Eigen::Matrix4d qformOf(const std::filesystem::path& path, const Header& header,
+                        const Vector& spacing, double unit) {
+  const Vector bcd(header.quaternion[0], header.quaternion[1], header.quaternion[2]);
+  const double square = bcd.squaredNorm();
+  constexpr double kLongest = 1 + 1e-4;  // float32 rounding stays below
+  if (!(square <= kLongest)) {
+    refuse(path,
+           "the quaternion of its qform is no rotation; correct the header or use --xform sform");
+  }
+  Eigen::Quaterniond rotation(std::sqrt(std::max(0.0, 1 - square)), bcd[0], bcd[1], bcd[2]);
+  rotation.normalize();
+  Eigen::Matrix4d affine = Eigen::Matrix4d::Identity();
+  affine.topLeftCorner<3, 3>() = rotation.toRotationMatrix() * spacing.asDiagonal();
+  if (header.pixdim[0] < 0) affine.col(2) *= -1;
+  for (int axis = 0; axis < 3; ++axis) affine(axis, 3) = header.quaternion[axis + 3] * unit;
+  return affine;
+}
+
+Eigen::Matrix4d sformOf(const Header& header, const std::array<int, 3>& size, double unit) {
+  Eigen::Matrix4d affine = Eigen::Matrix4d::Identity();
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 4; ++column)
+      affine(row, column) = header.srow[4 * row + column] * unit;
+  }
+  const Vector normal = affine.block<3, 1>(0, 0).cross(affine.block<3, 1>(0, 1));
+  if (size[2] == 1 && affine.block<3, 1>(0, 2).isZero(0) && normal.norm() > 0) {
+    affine.block<3, 1>(0, 2) = normal.normalized();
+  }
+  return affine;
+}
+
+/// Largest distance between two placements of the corner voxels, in voxels of the smallest size.
+double disagreement(const Eigen::Matrix4d& a, const Eigen::Matrix4d& b,
+                    const std::array<int, 3>& size) {
+  double worst = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector4d index((corner & 1) ? size[0] : 0, (corner & 2) ? size[1] : 0,
+                                (corner & 4) && size[2] > 1 ? size[2] : 0, 1);
+    const double distance = (a * index - b * index).norm();
+    if (!(distance <= worst)) worst = distance;
+  }
+  const double smallest = a.block<3, 3>(0, 0).colwise().norm().minCoeff();
+  return worst / smallest;
+}
+
+Eigen::Matrix4d place(const Header& header, const std::array<int, 3>& size, PlacementChoice choice,
+                      VolumeOrigin& origin) {
+  double unit = 1;
+  const int lengthUnit = header.units & 7;
+  if (lengthUnit == 1 || lengthUnit == 3) {
+    unit = lengthUnit == 1 ? 1000 : 0.001;
+    origin.notes.push_back(std::string("header lengths in ") +
+                           (lengthUnit == 1 ? "metres" : "micrometres") + ", converted to mm");
+  }
+  const std::filesystem::path& path = origin.path;
+  const bool hasQ = header.qformCode > 0;
+  const bool hasS = header.sformCode > 0;
+  origin.qformCode = header.qformCode;
+  origin.sformCode = header.sformCode;
+  const std::string codes = "qform code " + std::to_string(header.qformCode) + ", sform code " +
+                            std::to_string(header.sformCode);
+  const auto qform = [&] {
+    return qformOf(path, header, spacingOf(path, header, size, unit), unit);
+  };
+  switch (choice) {
+    case PlacementChoice::Qform:
+      if (!hasQ) refuse(path, "has no qform (" + codes + "); use --xform sform");
+      origin.placement = "qform";
+      return qform();
+    case PlacementChoice::Sform:
+      if (!hasS) refuse(path, "has no sform (" + codes + "); use --xform qform");
+      origin.placement = "sform";
+      return sformOf(header, size, unit);
+    case PlacementChoice::None: {
+      origin.placement = "none";
+      Eigen::Matrix4d affine = Eigen::Matrix4d::Identity();
+      affine.diagonal().head<3>() = spacingOf(path, header, size, unit);
+      return affine;
+    }
+    case PlacementChoice::Agreed:
+      break;
+  }
+  if (!hasQ && !hasS) {
+    refuse(
+        path,
+        "does not say where its voxels lie (qform and sform codes are 0), and programs differ on "
+        "what to assume; set its header, or use --xform none for voxel (0, 0, 0) at 0 and axes "
+        "along right, anterior, superior");
+  }
+  if (!hasS) {
+    origin.placement = "qform";
+    return qform();
+  }
+  const Eigen::Matrix4d sform = sformOf(header, size, unit);
+  if (!hasQ) {
+    origin.placement = "sform";
+    return sform;
+  }
+  const double apart = disagreement(qform(), sform, size);
+  if (!(apart <= kAgreement)) {
+    refuse(path, "its qform and sform place the voxels differently (by up to " +
+                     std::to_string(apart) + " voxels; " + codes +
+                     "), and programs differ on which to believe; choose with --xform qform or "
+                     "--xform sform");
+  }
+  origin.placement = "sform and qform agree";
+  return sform;
+}
+
+std::filesystem::path imageOfPair(const std::filesystem::path& header) {
+  std::string stem = header.string();
+  for (const std::string_view ending : {".gz", ".hdr", ".img"}) {
+    if (stem.ends_with(ending)) stem.resize(stem.size() - ending.size());
+  }
+  for (const char* ending : {".img", ".img.gz"}) {
+    if (std::filesystem::exists(stem + ending)) return stem + ending;
+  }
+  failToRead(header, "is a NIfTI header without its image '" + stem + ".img'");
+}
+
+}  // namespace
+
+bool looksLikeNifti(ByteView firstBytes) {
+  return detect(firstBytes).has_value();
+}
+
+StoredVolume readNifti(ByteSource& source, PlacementChoice placement, Extent extent) {
+  const std::filesystem::path& path = source.path();
+  Bytes first = source.take(kHeader1);
+  const std::optional<Detected> detected = detect(first);
+  if (!detected) failToRead(path, "is not a NIfTI file");
+  if (detected->version == 2) {
+    const Bytes more = source.take(kHeader2 - kHeader1);
+    first.insert(first.end(), more.begin(), more.end());
+  }
+  const Header header = parse(path, first, *detected);
+
+  StoredVolume volume;
+  volume.origin.path = path;
+  volume.origin.format = header.version == 1 ? "NIfTI-1" : "NIfTI-2";
+  if (header.dim[0] < 1 || header.dim[0] > 7) {
+    failToRead(path, "its header announces " + std::to_string(header.dim[0]) + " dimensions");
+  }
+  std::vector<std::int64_t> sizes(header.dim.begin() + 1, header.dim.begin() + 1 + header.dim[0]);
+  const std::int64_t valueCount = checkedProduct(path, sizes);
+  volume.origin.storedSize.assign(sizes.begin(), sizes.end());
+  sizes.resize(std::max<std::size_t>(sizes.size(), 3), 1);
+  const std::array<int, 3> size = {static_cast<int>(sizes[0]), static_cast<int>(sizes[1]),
+                                   static_cast<int>(sizes[2])};
+  volume.valuesPerVoxel = valueCount / (sizes[0] * sizes[1] * sizes[2]);
+  volume.type = typeOf(path, header.datatype);
+  volume.origin.storedType = nameOf(volume.type);
+  if (header.slope != 0 && std::isfinite(header.slope)) {
+    volume.slope = header.slope;
+    if (std::isfinite(header.intercept)) volume.intercept = header.intercept;
+  }
+  const Eigen::Matrix4d affine = place(header, size, placement, volume.origin);
+  volume.grid = gridOf(path, size, affine);
+  volume.origin.affine = affine;
+  if (extent == Extent::Header) return volume;
+
+  const std::size_t width = widthOf(volume.type);
+  const auto readValues = [&](ByteSource& from, std::uint64_t skipped) {
+    from.skip(skipped);
+    volume.values = from.take(static_cast<std::uint64_t>(valueCount) * width);
+    from.finish();
+  };
+  if (header.pair) {
+    ByteSource image(imageOfPair(path));
+    readValues(image, static_cast<std::uint64_t>(std::max<std::int64_t>(header.offset, 0)));
+  } else {
+    const auto read = static_cast<std::int64_t>(first.size());
+    if (header.offset != 0 && header.offset < read) {
+      failToRead(path, "its header places the data inside the header (vox_offset " +
+                           std::to_string(header.offset) + ")");
+    }
+    // Some writers leave the offset at 0 and mean the usual place.
+    const std::int64_t start = header.offset == 0 ? read + 4 : header.offset;
+    readValues(source, static_cast<std::uint64_t>(start - read));
+  }
+  if (header.bigEndian) swapBytes(volume.values.data(), valueCount, width);
+  return volume;
+}
+
+Bytes niftiHeader(const VolumeToWrite& volume) {
+  const Grid& grid = volume.grid;
+  const bool one = *std::max_element(grid.size.begin(), grid.size.end()) <=
+                   std::numeric_limits<std::int16_t>::max();
+  constexpr std::size_t kExtensionFlag = 4;  // four zeros: no extension follows
+  Bytes bytes((one ? kHeader1 : kHeader2) + kExtensionFlag);
+  const auto put = [&](std::size_t at, auto value) { store(bytes.data() + at, value, false); };
+  const auto real = [&](std::size_t at1, std::size_t at2, double value) {
+    if (one) {
+      put(at1, static_cast<float>(value));
+    } else {
+      put(at2, value);
+    }
+  };
+  put(0, static_cast<std::int32_t>(one ? kHeader1 : kHeader2));
+  std::memcpy(bytes.data() + (one ? 344 : 4), one ? "n+1\0" : "n+2\0\r\n\032\n", one ? 4 : 8);
+
+  const int dimensions = volume.valuesPerVoxel > 1 ? 4 : 3;
+  const std::array<std::int64_t, 8> dim = {
+      dimensions, grid.size[0], grid.size[1], grid.size[2], volume.valuesPerVoxel, 1, 1, 1};
+  for (std::size_t i = 0; i < 8; ++i) {
+    if (one) {
+      put(40 + 2 * i, static_cast<std::int16_t>(dim[i]));
+    } else {
+      put(16 + 8 * i, dim[i]);
+    }
+  }
+  for (const TypeRow& row : kTypes) {
+    if (row.type != volume.type) continue;
+    put(one ? 70 : 12, static_cast<std::int16_t>(row.code));
+    put(one ? 72 : 14, static_cast<std::int16_t>(8 * widthOf(row.type)));
+  }
+  // qform: a rotation, and a sign for grids whose axes are left-handed.
+  Eigen::Matrix3d axes = grid.direction;
+  const double handedness = axes.determinant() < 0 ? -1 : 1;
+  axes.col(2) *= handedness;
+  Eigen::Quaterniond rotation(axes);
+  rotation.normalize();
+  if (rotation.w() < 0) rotation.coeffs() *= -1;
+  const std::array<double, 8> pixdim = {
+      handedness, grid.spacing[0], grid.spacing[1], grid.spacing[2], 1, 1, 1, 1};
+  for (std::size_t i = 0; i < 8; ++i) real(76 + 4 * i, 104 + 8 * i, pixdim[i]);
+  real(112, 176, 1);  // slope
+  const std::array<double, 6> quaternion = {rotation.x(),   rotation.y(),   rotation.z(),
+                                            grid.origin[0], grid.origin[1], grid.origin[2]};
+  for (std::size_t i = 0; i < 6; ++i) real(256 + 4 * i, 352 + 8 * i, quaternion[i]);
+  const Eigen::Matrix4d affine = grid.affine();
+  for (int i = 0; i < 12; ++i) real(280 + 4 * i, 400 + 8 * i, affine(i / 4, i % 4));
+
+  constexpr int kMillimetres = 2;
+  constexpr int kScanner = 1;
+  static constexpr char kDescription[] = "Explica";
+  if (one) {
+    bytes[123] = kMillimetres;
+    put(108, static_cast<float>(bytes.size()));
+    put(252, static_cast<std::int16_t>(kScanner));
+    put(254, static_cast<std::int16_t>(kScanner));
+    std::memcpy(bytes.data() + 148, kDescription, sizeof(kDescription));
+  } else {
+    put(500, static_cast<std::int32_t>(kMillimetres));
+    put(168, static_cast<std::int64_t>(bytes.size()));
+    put(344, static_cast<std::int32_t>(kScanner));
+    put(348, static_cast<std::int32_t>(kScanner));
+    std::memcpy(bytes.data() + 240, kDescription, sizeof(kDescription));
+  }
+  return bytes;
+}
+
+}  // namespace explica::io

@@ -1,0 +1,543 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/IO/VolumeFile.h"
+
+#include "ByteSource.h"
+#include "ItkVolume.h"
+#include "MghFormat.h"
+#include "NiftiFormat.h"
+#include "PackedFile.h"
+#include "StoredVolume.h"
+
+#include "Explica/Core/Parallel.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
+
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+namespace explica::io {
+namespace {
+
+constexpr std::size_t kGrain = 1 << 18;  // voxels a task
+
+std::string sizeText(const std::vector<int>& size) {
+  std::string text;
+  for (const int n : size) text += (text.empty() ? "" : " x ") + std::to_string(n);
+  return text;
+}
+
+std::string voxelText(const Grid& grid, std::size_t voxel) {
+  const std::array<int, 3> at = grid.subscripts(voxel);
+  return "(" + std::to_string(at[0]) + ", " + std::to_string(at[1]) + ", " + std::to_string(at[2]) +
+         ")";
+}
+
+/// Calls action with a null pointer of the stored type.
+template <class Action>
+void withType(StoredType type, const Action& action) {
+  switch (type) {
+    case StoredType::Int8:
+      return action(static_cast<const std::int8_t*>(nullptr));
+    case StoredType::UInt8:
+      return action(static_cast<const std::uint8_t*>(nullptr));
+    case StoredType::Int16:
+      return action(static_cast<const std::int16_t*>(nullptr));
+    case StoredType::UInt16:
+      return action(static_cast<const std::uint16_t*>(nullptr));
+    case StoredType::Int32:
+      return action(static_cast<const std::int32_t*>(nullptr));
+    case StoredType::UInt32:
+      return action(static_cast<const std::uint32_t*>(nullptr));
+    case StoredType::Int64:
+      return action(static_cast<const std::int64_t*>(nullptr));
+    case StoredType::UInt64:
+      return action(static_cast<const std::uint64_t*>(nullptr));
+    case StoredType::Float32:
+      return action(static_cast<const float*>(nullptr));
+    case StoredType::Float64:
+      return action(static_cast<const double*>(nullptr));
+  }
+}
+
+/// What a pass over the voxels found.
+struct Survey {
+  std::size_t nonZero = 0;
+  std::size_t bad = 0;
+  std::size_t firstBad = std::numeric_limits<std::size_t>::max();
+
+  Survey& operator+=(const Survey& other) {
+    nonZero += other.nonZero;
+    bad += other.bad;
+    firstBad = std::min(firstBad, other.firstBad);
+    return *this;
+  }
+  void addBad(std::size_t voxel) {
+    ++bad;
+    firstBad = std::min(firstBad, voxel);
+  }
+};
+
+/// Puts the scaled values of one frame or component through `take(value, voxel, survey)`.
+template <class Take>
+Survey passOver(const StoredVolume& stored, std::size_t frame, const Take& take) {
+  const std::size_t voxels = stored.grid.voxelCount();
+  const auto perVoxel = static_cast<std::size_t>(stored.valuesPerVoxel);
+  const std::size_t step = stored.interleaved ? perVoxel : 1;
+  const std::size_t start = stored.interleaved ? frame : frame * voxels;
+  const bool scaled = stored.slope != 1 || stored.intercept != 0;
+  Survey survey;
+  withType(stored.type, [&]<class In>(const In*) {
+    survey = parallelSum(voxels, kGrain, Survey{}, [&](std::size_t begin, std::size_t end) {
+      Survey part;
+      const std::uint8_t* from = stored.values.data() + (start + begin * step) * sizeof(In);
+      for (std::size_t v = begin; v < end; ++v, from += step * sizeof(In)) {
+        In value;
+        std::memcpy(&value, from, sizeof(In));
+        if (scaled) {
+          take(static_cast<double>(value) * stored.slope + stored.intercept, v, part);
+        } else {
+          take(value, v, part);
+        }
+      }
+      return part;
+    });
+  });
+  return survey;
+}
+
+void checkFrameAndDimension(const StoredVolume& stored, const VolumeReadOptions& options,
+                            std::int64_t valuesNeeded) {
+  const VolumeOrigin& origin = stored.origin;
+  const std::string size = sizeText(origin.storedSize);
+  if (options.dimension && *options.dimension != stored.grid.dimension()) {
+    refuse(origin.path,
+           stored.grid.dimension() == 2
+               ? "is two-dimensional (" + size + "); a volume of several slices is needed"
+               : "is three-dimensional (" + size + "); a single slice is needed");
+  }
+  if (valuesNeeded == 3) {
+    if (stored.valuesPerVoxel != 3) {
+      refuse(origin.path, "holds " + std::to_string(stored.valuesPerVoxel) + " values a voxel (" +
+                              size + "); three are needed");
+    }
+    return;
+  }
+  if (options.frame) {
+    if (*options.frame < 0 || *options.frame >= stored.valuesPerVoxel) {
+      refuse(origin.path, "holds " + std::to_string(stored.valuesPerVoxel) +
+                              " volume(s); --frame " + std::to_string(*options.frame) +
+                              " does not exist (0 to " + std::to_string(stored.valuesPerVoxel - 1) +
+                              ")");
+    }
+  } else if (stored.valuesPerVoxel > 1) {
+    refuse(origin.path, "holds " + std::to_string(stored.valuesPerVoxel) + " volumes (" + size +
+                            "); choose one with --frame 0 to --frame " +
+                            std::to_string(stored.valuesPerVoxel - 1));
+  }
+}
+
+void checkValues(const StoredVolume& stored, const Survey& survey, const VolumeReadOptions& options,
+                 const char* zero) {
+  const VolumeOrigin& origin = stored.origin;
+  if (survey.bad > 0 && !options.allowNonFinite) {
+    refuse(origin.path, std::to_string(survey.bad) + " of " +
+                            std::to_string(stored.grid.voxelCount()) +
+                            " voxels are not a finite number, the first at " +
+                            voxelText(stored.grid, survey.firstBad) +
+                            "; replace NaN and infinity by numbers first");
+  }
+  if (survey.nonZero == 0 && !options.allowAllZero) {
+    refuse(origin.path, std::string(zero) + "; is it the right file?");
+  }
+}
+
+/// Scalars, or one component of vectors, into every `step`-th float.
+Survey toFloats(const StoredVolume& stored, std::size_t frame, float* to, std::size_t step) {
+  return passOver(stored, frame, [&](auto value, std::size_t v, Survey& survey) {
+    const auto real = static_cast<float>(value);
+    to[v * step] = real;
+    survey.nonZero += real != 0;
+    if (!std::isfinite(real)) survey.addBad(v);
+  });
+}
+
+struct NamedFormat {
+  enum class Kind { Nifti, Mgh, Nrrd, MetaImage } kind;
+  bool packed;
+};
+
+NamedFormat formatOf(const std::filesystem::path& path) {
+  const std::string name = path.filename().string();
+  using Kind = NamedFormat::Kind;
+  static constexpr std::pair<const char*, NamedFormat> kFormats[] = {
+      {".nii", {Kind::Nifti, false}},    {".nii.gz", {Kind::Nifti, true}},
+      {".mgh", {Kind::Mgh, false}},      {".mgz", {Kind::Mgh, true}},
+      {".mgh.gz", {Kind::Mgh, true}},    {".nrrd", {Kind::Nrrd, true}},
+      {".mha", {Kind::MetaImage, false}}};
+  for (const auto& [ending, format] : kFormats) {
+    if (name.ends_with(ending)) return format;
+  }
+  throw InvalidInput("cannot tell the format of volume " + quoted(path) +
+                     " from its name; end it in .nii.gz, .nii, .mgz, .mgh, .nrrd or .mha");
+}
+
+std::string joined(const std::array<double, 3>& values, char separator) {
+  std::string text;
+  for (const double value : values) {
+    if (!text.empty()) text += separator;
+    appendNumber(text, value);
+  }
+  return text;
+}
+
+std::array<double, 3> components(const Vector& v) {
+  return {v[0], v[1], v[2]};
+}
+
+Bytes bytesOf(const std::string& text) {
+  return Bytes(text.begin(), text.end());
+}
+
+const char* nrrdNameOf(StoredType type) {
+  switch (type) {
+    case StoredType::UInt8:
+      return "uint8";
+    case StoredType::Int16:
+      return "int16";
+    case StoredType::Int32:
+      return "int32";
+    default:
+      return "float";
+  }
+}
+
+Bytes nrrdHeader(const VolumeToWrite& volume) {
+  const Grid& grid = volume.grid;
+  const bool vectors = volume.valuesPerVoxel > 1;
+  std::string text = "NRRD0004\n# written by Explica\ntype: ";
+  text += nrrdNameOf(volume.type);
+  text += vectors ? "\ndimension: 4" : "\ndimension: 3";
+  text += "\nspace: right-anterior-superior\nsizes:";
+  if (vectors) text += " " + std::to_string(volume.valuesPerVoxel);
+  for (const int n : grid.size) text += " " + std::to_string(n);
+  text += "\nspace directions:";
+  if (vectors) text += " none";
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vector column = grid.direction.col(axis) * grid.spacing[axis];
+    text += " (" + joined(components(column), ',') + ")";
+  }
+  text += vectors ? "\nkinds: vector domain domain domain" : "\nkinds: domain domain domain";
+  text += "\nendian: little\nencoding: gzip\nspace origin: (" +
+          joined(components(grid.origin), ',') + ")\n\n";
+  return bytesOf(text);
+}
+
+const char* metaNameOf(StoredType type) {
+  switch (type) {
+    case StoredType::UInt8:
+      return "MET_UCHAR";
+    case StoredType::Int16:
+      return "MET_SHORT";
+    case StoredType::Int32:
+      return "MET_INT";
+    default:
+      return "MET_FLOAT";
+  }
+}
+
+Bytes metaHeader(const VolumeToWrite& volume) {
+  const Grid& grid = volume.grid;
+  const Eigen::Matrix3d lps = Vector(-1, -1, 1).asDiagonal();
+  std::string text =
+      "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\n"
+      "CompressedData = False\nTransformMatrix =";
+  for (int axis = 0; axis < 3; ++axis) {
+    text += " " + joined(components(lps * grid.direction.col(axis)), ' ');
+  }
+  text += "\nOffset = " + joined(components(lps * grid.origin), ' ');
+  text += "\nCenterOfRotation = 0 0 0\nAnatomicalOrientation = ";
+  for (int axis = 0; axis < 3; ++axis) {  // the letters from which an axis runs
+    int along = 0;
+    grid.direction.col(axis).cwiseAbs().maxCoeff(&along);
+    text += grid.direction(along, axis) > 0 ? "LPI"[along] : "RAS"[along];
+  }
+  text += "\nElementSpacing = " + joined(components(grid.spacing), ' ') + "\nDimSize =";
+  for (const int n : grid.size) text += " " + std::to_string(n);
+  if (volume.valuesPerVoxel > 1) {
+    text += "\nElementNumberOfChannels = " + std::to_string(volume.valuesPerVoxel);
+  }
+  text += std::string("\nElementType = ") + metaNameOf(volume.type) + "\nElementDataFile = LOCAL\n";
+  return bytesOf(text);
+}
+
+void writeValues(const std::filesystem::path& path, VolumeToWrite volume,
+                 const VolumeWriteOptions& options) {
+  const NamedFormat format = formatOf(path);
+  if (volume.grid.voxelCount() == 0) {
+    throw InvalidInput("volume for " + quoted(path) + ": it has no voxels");
+  }
+  if (options.compression < 1 || options.compression > 9) {
+    throw InvalidInput("compression: " + std::to_string(options.compression) +
+                       " is not between 1 and 9");
+  }
+  using Kind = NamedFormat::Kind;
+  const bool interleaved = format.kind == Kind::Nrrd || format.kind == Kind::MetaImage;
+  const bool bigEndian = format.kind == Kind::Mgh;
+  const std::size_t width = widthOf(volume.type);
+  Content content;
+  content.bodySize = volume.grid.voxelCount() * volume.valuesPerVoxel * width;
+  content.body = [&, interleaved, bigEndian, width](std::size_t begin, std::uint8_t* to,
+                                                    std::size_t count) {
+    volume.fill(begin / width, count / width, interleaved, to);
+    if (bigEndian) swapBytes(to, count / width, width);
+  };
+  WholeFile file(path);
+  switch (format.kind) {
+    case Kind::Nifti:
+      content.head = niftiHeader(volume);
+      break;
+    case Kind::Mgh:
+      content.head = mghHeader(volume);
+      content.tail = mghFooter();
+      break;
+    case Kind::Nrrd: {
+      const Bytes header = nrrdHeader(volume);  // stands before the packed data
+      file.write(header.data(), header.size());
+      break;
+    }
+    case Kind::MetaImage:
+      content.head = metaHeader(volume);
+      break;
+  }
+  if (format.packed) {
+    writeGzip(file, content, options.compression);
+  } else {
+    writePlain(file, content);
+  }
+  file.commit();
+}
+
+/// Writes scalars of type In, stored as Out.
+template <class Out, class In>
+void writeScalars(const std::filesystem::path& path, const Volume<In>& volume, StoredType type,
+                  const VolumeWriteOptions& options) {
+  VolumeToWrite values;
+  values.grid = volume.grid;
+  values.type = type;
+  values.fill = [&volume](std::size_t begin, std::size_t count, bool, std::uint8_t* to) {
+    const In* from = volume.data.data() + begin;
+    if constexpr (std::is_same_v<In, Out>) {
+      std::memcpy(to, from, count * sizeof(Out));
+    } else {
+      for (std::size_t i = 0; i < count; ++i) {
+        const auto value = static_cast<Out>(from[i]);
+        std::memcpy(to + i * sizeof(Out), &value, sizeof(Out));
+      }
+    }
+  };
+  writeValues(path, std::move(values), options);
+}
+
+}  // namespace
+
+std::size_t widthOf(StoredType type) {
+  std::size_t width = 0;
+  withType(type, [&]<class In>(const In*) { width = sizeof(In); });
+  return width;
+}
+
+const char* nameOf(StoredType type) {
+  switch (type) {
+    case StoredType::Int8:
+      return "int8";
+    case StoredType::UInt8:
+      return "uint8";
+    case StoredType::Int16:
+      return "int16";
+    case StoredType::UInt16:
+      return "uint16";
+    case StoredType::Int32:
+      return "int32";
+    case StoredType::UInt32:
+      return "uint32";
+    case StoredType::Int64:
+      return "int64";
+    case StoredType::UInt64:
+      return "uint64";
+    case StoredType::Float32:
+      return "float32";
+    case StoredType::Float64:
+      return "float64";
+  }
+  return "unknown";
+}
+
+Grid gridOf(const std::filesystem::path& path, const std::array<int, 3>& size,
+            const Eigen::Matrix4d& affine) {
+  if (!affine.allFinite())
+    refuse(path, "its header places the voxels at positions that are not finite");
+  try {
+    Grid grid = gridFromAffine(size, affine);
+    // Headers round the axes; the nearest orthonormal ones make writing and reading again exact.
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(grid.direction,
+                                                Eigen::ComputeFullU | Eigen::ComputeFullV);
+    grid.direction = svd.matrixU() * svd.matrixV().transpose();
+    return grid;
+  } catch (const InvalidInput& error) {
+    refuse(path, error.what());
+  }
+}
+
+std::int64_t checkedProduct(const std::filesystem::path& path,
+                            const std::vector<std::int64_t>& sizes) {
+  constexpr std::int64_t kMost = std::int64_t{1} << 40;
+  std::int64_t product = 1;
+  for (const std::int64_t size : sizes) {
+    if (size < 1 || size > std::numeric_limits<std::int32_t>::max()) {
+      failToRead(path, "its header gives a size of " + std::to_string(size) + " along one axis");
+    }
+    if (product > kMost / size)
+      failToRead(path, "its header announces more voxels than can be held");
+    product *= size;
+  }
+  return product;
+}
+
+StoredVolume readStored(const std::filesystem::path& path, const VolumeReadOptions& options,
+                        Extent extent) {
+  std::filesystem::path opened = path;
+  if (path.extension() == ".img") opened.replace_extension(".hdr");
+  if (!std::filesystem::exists(opened)) opened = path;
+  ByteSource source(opened);
+  const ByteView first = source.peek(348);
+  const std::string_view text(reinterpret_cast<const char*>(first.data()), first.size());
+  if (looksLikeNifti(first)) return readNifti(source, options.placement, extent);
+  if (text.starts_with("NRRD000")) return readWithItk(path, ItkFormat::Nrrd, extent);
+  if (text.starts_with("\x89PNG\r\n\x1a\n")) return readWithItk(path, ItkFormat::Png, extent);
+  if (text.starts_with("ObjectType") || text.starts_with("NDims")) {
+    return readWithItk(path, ItkFormat::MetaImage, extent);
+  }
+  if (looksLikeMgh(first)) return readMgh(source, extent);
+  failToRead(path, "is not an image of a known format (NIfTI, MGH, NRRD, MetaImage, PNG)");
+}
+
+LoadedVolume<float> readScalars(const std::filesystem::path& path,
+                                const VolumeReadOptions& options) {
+  const StoredVolume stored = readStored(path, options, Extent::Everything);
+  checkFrameAndDimension(stored, options, 1);
+  LoadedVolume<float> loaded{Volume<float>(stored.grid), stored.origin};
+  const Survey survey = toFloats(stored, options.frame.value_or(0), loaded.volume.data.data(), 1);
+  checkValues(stored, survey, options, "every voxel is 0");
+  return loaded;
+}
+
+LoadedVolume<Label> readLabels(const std::filesystem::path& path,
+                               const VolumeReadOptions& options) {
+  const StoredVolume stored = readStored(path, options, Extent::Everything);
+  checkFrameAndDimension(stored, options, 1);
+  LoadedVolume<Label> loaded{Volume<Label>(stored.grid), stored.origin};
+  Label* to = loaded.volume.data.data();
+  const auto take = [to](auto value, std::size_t v, Survey& survey) {
+    using Value = decltype(value);
+    constexpr double kLowest = std::numeric_limits<Label>::lowest();
+    constexpr double kHighest = std::numeric_limits<Label>::max();
+    if constexpr (std::is_integral_v<Value> && sizeof(Value) < sizeof(Label)) {
+      to[v] = value;
+    } else {
+      const auto real = static_cast<double>(value);
+      if (!(real >= kLowest && real <= kHighest && std::trunc(real) == real)) {
+        survey.addBad(v);
+        return;
+      }
+      to[v] = static_cast<Label>(value);
+    }
+    survey.nonZero += to[v] != 0;
+  };
+  const Survey survey = passOver(stored, options.frame.value_or(0), take);
+  if (survey.bad > 0) {
+    refuse(path, std::to_string(survey.bad) +
+                     " voxels hold no whole number of 32 bits, the first at " +
+                     voxelText(stored.grid, survey.firstBad) + "; labels are needed");
+  }
+  checkValues(stored, survey, options, "every voxel has label 0");
+  return loaded;
+}
+
+LoadedVolume<Eigen::Vector3f> readVectors(const std::filesystem::path& path,
+                                          const VolumeReadOptions& options) {
+  const StoredVolume stored = readStored(path, options, Extent::Everything);
+  checkFrameAndDimension(stored, options, 3);
+  LoadedVolume<Eigen::Vector3f> loaded{
+      Volume<Eigen::Vector3f>(stored.grid, Eigen::Vector3f::Zero()), stored.origin};
+  Survey survey;
+  for (std::size_t c = 0; c < 3; ++c) {
+    survey += toFloats(stored, c, loaded.volume.data.data()->data() + c, 3);
+  }
+  checkValues(stored, survey, options, "every vector is 0");
+  return loaded;
+}
+
+Grid readGrid(const std::filesystem::path& path, const VolumeReadOptions& options) {
+  return readStored(path, options, Extent::Header).grid;
+}
+
+void writeVolume(const std::filesystem::path& path, const Volume<float>& volume,
+                 const VolumeWriteOptions& options) {
+  writeScalars<float>(path, volume, StoredType::Float32, options);
+}
+
+void writeVolume(const std::filesystem::path& path, const Volume<double>& volume,
+                 const VolumeWriteOptions& options) {
+  writeScalars<float>(path, volume, StoredType::Float32, options);
+}
+
+void writeVolume(const std::filesystem::path& path, const Volume<std::uint8_t>& volume,
+                 const VolumeWriteOptions& options) {
+  writeScalars<std::uint8_t>(path, volume, StoredType::UInt8, options);
+}
+
+void writeVolume(const std::filesystem::path& path, const Volume<Label>& volume,
+                 const VolumeWriteOptions& options) {
+  Label lowest = 0;
+  Label highest = 0;
+  for (const Label label : volume.data) {
+    lowest = std::min(lowest, label);
+    highest = std::max(highest, label);
+  }
+  if (lowest >= 0 && highest <= std::numeric_limits<std::uint8_t>::max()) {
+    writeScalars<std::uint8_t>(path, volume, StoredType::UInt8, options);
+  } else if (lowest >= std::numeric_limits<std::int16_t>::lowest() &&
+             highest <= std::numeric_limits<std::int16_t>::max()) {
+    writeScalars<std::int16_t>(path, volume, StoredType::Int16, options);
+  } else {
+    writeScalars<Label>(path, volume, StoredType::Int32, options);
+  }
+}
+
+void writeVolume(const std::filesystem::path& path, const Volume<Eigen::Vector3f>& volume,
+                 const VolumeWriteOptions& options) {
+  VolumeToWrite values;
+  values.grid = volume.grid;
+  values.type = StoredType::Float32;
+  values.valuesPerVoxel = 3;
+  values.fill = [&volume](std::size_t begin, std::size_t count, bool interleaved,
+                          std::uint8_t* to) {
+    const float* from = volume.data.data()->data();
+    if (interleaved) {
+      std::memcpy(to, from + begin, count * sizeof(float));
+      return;
+    }
+    const std::size_t voxels = volume.data.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t at = begin + i;
+      std::memcpy(to + i * sizeof(float), from + at % voxels * 3 + at / voxels, sizeof(float));
+    }
+  };
+  writeValues(path, std::move(values), options);
+}
+
+}  // namespace explica::io
