@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Collision/ContinuousCollision.h"
+#include "Explica/Core/TriangleMesh.h"
+#include "Explica/Geometry/FaceTree.h"
+
+#include <span>
+#include <vector>
+
+namespace explica::collision {
+
+/// A vertex and a face, or two edges (smaller first), of a CollisionScene.
+struct Pair {
+  PairKind kind = PairKind::VertexFace;
+  std::int32_t first = -1;
+  std::int32_t second = -1;
+  friend auto operator<=>(const Pair&, const Pair&) = default;
+};
+
+/// A surface of which some vertices move, and who can meet whom in it.
+///
+/// Every vertex-face and edge-edge pair with at least one moving vertex counts, except those that
+/// share a vertex; so the ring of faces that joins moving vertices to fixed surroundings is in it.
+class CollisionScene {
+ public:
+  /// @param vertexMoves  V flags; edges and faces with a moving vertex move
+  CollisionScene(const TriangleMesh& mesh, const std::vector<bool>& vertexMoves);
+
+  /// All pairs that come within `reach` mm of each other at some time in [0, 1] while every vertex
+  /// goes straight from `start` to `start + motion`; a superset by little.  Fixed vertices must
+  /// stand where they stood at construction.  Threaded; order and content do not depend on threads.
+  [[nodiscard]] std::vector<Pair> findPairs(const Positions& start, const Positions& motion,
+                                            double reach) const;
+
+  /// The four vertices of a pair: vertex and face corners, or ends of both edges.
+  [[nodiscard]] std::array<std::int32_t, 4> vertices(const Pair& pair) const;
+  [[nodiscard]] FourPoints points(const Pair& pair, const Positions& positions) const;
+
+  [[nodiscard]] const Edges& edges() const { return edges_; }
+  [[nodiscard]] const Faces& faces() const { return faces_; }
+  [[nodiscard]] const std::vector<std::int32_t>& movingVertices() const { return moving_.vertices; }
+  [[nodiscard]] const std::vector<std::int32_t>& movingEdges() const { return moving_.edges; }
+  [[nodiscard]] const std::vector<std::int32_t>& movingFaces() const { return moving_.faces; }
+
+ private:
+  struct Elements {
+    std::vector<std::int32_t> vertices, edges, faces;
+  };
+  Faces faces_;
+  Edges edges_;  ///< those of any face, in lexicographic order
+  Elements moving_, fixed_;
+  geometry::BoxTree fixedVertexTree_, fixedEdgeTree_, fixedFaceTree_;
+};
+
+/// Largest step t in [0, limit] that brings no pair to contact; see safeTime().  Threaded.
+[[nodiscard]] double largestSafeStep(const CollisionScene& scene, std::span<const Pair> pairs,
+                                     const Positions& start, const Positions& motion,
+                                     double limit = 1, const AdvanceOptions& options = {});
+
+}  // namespace explica::collision

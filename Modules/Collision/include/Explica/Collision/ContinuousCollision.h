@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Collision/Proximity.h"
+
+namespace explica::collision {
+
+/// How near a pair may come on its way.
+struct AdvanceOptions {
+  double keptShare = 0.1;  ///< of the pair's distance at the start, in (0, 1)
+  int maxAdvances = 200;   ///< conservative advances per pair; what is reached by then is returned
+};
+
+/// Largest t found in [0, limit] such that for every time in [0, t] the pair x + time * motion
+/// stays apart by `keptShare` of its distance at the start, by additive conservative advancement
+/// [Li2021].
+///
+/// Conservative in floating point: each advance uses distanceBound() and a speed bound that is
+/// rounded up, so that no contact in [0, t] is missed.  The result may be
+/// smaller than the true time; it is 0 for a pair that already touches.
+[[nodiscard]] double safeTime(PairKind kind, const FourPoints& x, const FourPoints& motion,
+                              double limit = 1, const AdvanceOptions& options = {});
+
+/// Bound on the speed at which the pair's two features can approach each other, mm per unit time.
+[[nodiscard]] double approachBound(PairKind kind, const FourPoints& motion);
+
+}  // namespace explica::collision
