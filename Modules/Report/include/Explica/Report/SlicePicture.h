@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Core/Describe.h"
+#include "Explica/Core/TriangleMesh.h"
+#include "Explica/Core/Volume.h"
+#include "Explica/Report/ColourMap.h"
+#include "Explica/Report/Picture.h"
+
+#include <array>
+#include <utility>
+#include <vector>
+
+namespace explica::report {
+
+/// A plane perpendicular to one of the head's axes.
+enum class SliceAxis {
+  Sagittal,  ///< perpendicular to left-right; anterior to the left
+  Coronal,   ///< perpendicular to back-front; the patient's left on the left
+  Axial      ///< perpendicular to feet-head; the patient's left on the left, anterior up
+};
+
+/// A surface's cut line in a slice.
+struct Contour {
+  const TriangleMesh* mesh = nullptr;  ///< not owned
+  Colour colour = {1, 0.2f, 0};
+  double width = 1.6;  ///< pixels
+};
+
+/// The part of the world that a slice shows, and how large.
+struct SliceFrame {
+  SliceAxis axis = SliceAxis::Axial;
+  double position = 0;                               ///< along the axis, RAS mm
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();  ///< of the picture, in-plane RAS mm
+  double pixel = 0.5;                                ///< mm
+  int width = 400;
+  int height = 400;
+};
+
+/// A frame that holds a box of the world, RAS mm, with a margin.
+[[nodiscard]] SliceFrame frameAround(SliceAxis axis, double position, const Point& low,
+                                     const Point& high, int height);
+
+/// A slice of a scalar volume with cut lines of surfaces on it.  Any grid, oblique ones too: each
+/// pixel is interpolated trilinearly at its place in the world; beyond the volume it is black.
+[[nodiscard]] Picture renderSlice(const Volume<float>& image, const SliceFrame& frame,
+                                  const ColourScale& scale,
+                                  const std::vector<Contour>& contours = {});
+
+/// A slice of labels, each in its colour; 0 is black.
+[[nodiscard]] Picture renderLabelSlice(const Volume<Label>& labels, const SliceFrame& frame);
+
+}  // namespace explica::report
+
+namespace explica {
+
+template <>
+struct EnumNames<report::SliceAxis> {
+  static constexpr std::array table = {std::pair{report::SliceAxis::Sagittal, "sagittal"},
+                                       std::pair{report::SliceAxis::Coronal, "coronal"},
+                                       std::pair{report::SliceAxis::Axial, "axial"}};
+};
+
+}  // namespace explica

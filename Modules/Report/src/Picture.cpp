@@ -1,0 +1,288 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Explica/Report/Picture.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/WholeFile.h"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace explica::report {
+namespace {
+
+void appendBigEndian(std::string& bytes, std::uint32_t value) {
+  for (int shift = 24; shift >= 0; shift -= 8) bytes.push_back(static_cast<char>(value >> shift));
+}
+
+void appendChunk(std::string& file, const char* type, const std::string& data) {
+  appendBigEndian(file, static_cast<std::uint32_t>(data.size()));
+  const std::string body = type + data;
+  file += body;
+  appendBigEndian(file,
+                  static_cast<std::uint32_t>(crc32(0, reinterpret_cast<const Bytef*>(body.data()),
+                                                   static_cast<uInt>(body.size()))));
+}
+
+/// Rows under the filter "difference to the pixel above", which suits smooth shading, deflated.
+std::string compressRows(const Picture& picture) {
+  const std::size_t stride = static_cast<std::size_t>(picture.width) * 3;
+  std::string rows;
+  rows.reserve((stride + 1) * picture.height);
+  for (int y = 0; y < picture.height; ++y) {
+    const std::uint8_t* row = picture.rgb.data() + y * stride;
+    rows.push_back(y == 0 ? 1 : 2);
+    for (std::size_t b = 0; b < stride; ++b) {
+      const std::uint8_t before = y == 0 ? (b < 3 ? 0 : row[b - 3]) : row[b - stride];
+      rows.push_back(static_cast<char>(row[b] - before));
+    }
+  }
+  uLongf size = compressBound(static_cast<uLong>(rows.size()));
+  std::string packed(size, '\0');
+  compress2(reinterpret_cast<Bytef*>(packed.data()), &size,
+            reinterpret_cast<const Bytef*>(rows.data()), static_cast<uLong>(rows.size()), 6);
+  packed.resize(size);
+  return packed;
+}
+
+std::string pngHead(const Picture& picture) {
+  std::string file = "\x89PNG\r\n\x1a\n";
+  std::string header;
+  appendBigEndian(header, static_cast<std::uint32_t>(picture.width));
+  appendBigEndian(header, static_cast<std::uint32_t>(picture.height));
+  header += std::string("\x08\x02\x00\x00\x00", 5);
+  appendChunk(file, "IHDR", header);
+  return file;
+}
+
+void requireFrames(const std::vector<Picture>& frames) {
+  if (frames.empty()) throw InvalidInput("film: no frames");
+  for (const Picture& frame : frames) {
+    if (frame.width != frames[0].width || frame.height != frames[0].height) {
+      throw InvalidInput("film: frames differ in size");
+    }
+  }
+}
+
+void appendLittleEndian(std::string& bytes, int value) {
+  bytes.push_back(static_cast<char>(value & 0xff));
+  bytes.push_back(static_cast<char>((value >> 8) & 0xff));
+}
+
+constexpr std::array<int, 3> kGifLevels = {6, 7, 6};  // of red, green, blue: 252 colours
+
+/// Index of the fixed colour nearest to a pixel, displaced by an 8 x 8 ordered dither.
+std::vector<std::uint8_t> ditherFrame(const Picture& frame) {
+  std::array<float, 64> threshold;
+  for (int y = 0; y < 8; ++y) {
+    for (int x = 0; x < 8; ++x) {
+      int value = 0;
+      for (int bit = 0; bit < 3; ++bit) {
+        const int a = (x >> bit) & 1;
+        const int b = (y >> bit) & 1;
+        value |= ((a ^ b) << (5 - 2 * bit)) | (b << (4 - 2 * bit));
+      }
+      threshold[y * 8 + x] = (static_cast<float>(value) + 0.5f) / 64 - 0.5f;
+    }
+  }
+  std::vector<std::uint8_t> indices(static_cast<std::size_t>(frame.width) * frame.height);
+  for (int y = 0; y < frame.height; ++y) {
+    for (int x = 0; x < frame.width; ++x) {
+      const std::uint8_t* p = frame.pixel(x, y);
+      int index = 0;
+      for (int c = 0; c < 3; ++c) {
+        const float level = p[c] / 255.0f * static_cast<float>(kGifLevels[c] - 1);
+        // A pixel that is exactly a level (white above all) stays what it is.
+        const float moved = level + 0.9f * threshold[(y % 8) * 8 + x % 8];
+        const int rounded = std::clamp(static_cast<int>(std::lround(moved)), 0, kGifLevels[c] - 1);
+        index = index * kGifLevels[c] + rounded;
+      }
+      indices[static_cast<std::size_t>(y) * frame.width + x] = static_cast<std::uint8_t>(index);
+    }
+  }
+  return indices;
+}
+
+/// GIF's variable-width LZW in sub-blocks of at most 255 bytes.
+std::string compressLzw(const std::vector<std::uint8_t>& indices) {
+  constexpr int kClear = 256;
+  constexpr int kEnd = 257;
+  std::string bytes;
+  std::uint32_t bits = 0;
+  int bitCount = 0;
+  int width = 9;
+  const auto emit = [&](int code) {
+    bits |= static_cast<std::uint32_t>(code) << bitCount;
+    bitCount += width;
+    while (bitCount >= 8) {
+      bytes.push_back(static_cast<char>(bits & 0xff));
+      bits >>= 8;
+      bitCount -= 8;
+    }
+  };
+  std::vector<std::int16_t> next(4096 * 256, -1);
+  int count = 258;
+  emit(kClear);
+  int prefix = indices[0];
+  for (std::size_t i = 1; i < indices.size(); ++i) {
+    std::int16_t& entry = next[static_cast<std::size_t>(prefix) * 256 + indices[i]];
+    if (entry >= 0) {
+      prefix = entry;
+      continue;
+    }
+    emit(prefix);
+    if (count == 4096) {
+      emit(kClear);
+      std::fill(next.begin(), next.end(), std::int16_t{-1});
+      count = 258;
+      width = 9;
+    } else {
+      if (count == (1 << width)) ++width;
+      entry = static_cast<std::int16_t>(count++);
+    }
+    prefix = indices[i];
+  }
+  emit(prefix);
+  emit(kEnd);
+  if (bitCount > 0) bytes.push_back(static_cast<char>(bits & 0xff));
+  std::string blocks;
+  for (std::size_t at = 0; at < bytes.size(); at += 255) {
+    const std::size_t length = std::min<std::size_t>(255, bytes.size() - at);
+    blocks.push_back(static_cast<char>(length));
+    blocks.append(bytes, at, length);
+  }
+  blocks.push_back('\0');
+  return blocks;
+}
+
+}  // namespace
+
+Picture::Picture(int w, int h, std::array<std::uint8_t, 3> fill)
+    : width(w), height(h), rgb(static_cast<std::size_t>(w) * h * 3) {
+  for (std::size_t p = 0; p < rgb.size(); ++p) rgb[p] = fill[p % 3];
+}
+
+std::uint8_t encodeSrgb(float linear) {
+  const float x = std::clamp(linear, 0.0f, 1.0f);
+  const float encoded = x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f;
+  return static_cast<std::uint8_t>(std::lround(255 * encoded));
+}
+
+float decodeSrgb(std::uint8_t byte) {
+  const float x = byte / 255.0f;
+  return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f);
+}
+
+std::string encodePng(const Picture& picture) {
+  std::string file = pngHead(picture);
+  appendChunk(file, "IDAT", compressRows(picture));
+  appendChunk(file, "IEND", "");
+  return file;
+}
+
+std::string encodeAnimatedPng(const std::vector<Picture>& frames, double framesPerSecond) {
+  requireFrames(frames);
+  std::string file = pngHead(frames[0]);
+  std::string control;
+  appendBigEndian(control, static_cast<std::uint32_t>(frames.size()));
+  appendBigEndian(control, 0);
+  appendChunk(file, "acTL", control);
+  std::uint32_t sequence = 0;
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    std::string frame;
+    appendBigEndian(frame, sequence++);
+    appendBigEndian(frame, static_cast<std::uint32_t>(frames[f].width));
+    appendBigEndian(frame, static_cast<std::uint32_t>(frames[f].height));
+    appendBigEndian(frame, 0);
+    appendBigEndian(frame, 0);
+    const auto milliseconds = static_cast<std::uint32_t>(std::lround(1000 / framesPerSecond));
+    frame.push_back(static_cast<char>(milliseconds >> 8));
+    frame.push_back(static_cast<char>(milliseconds & 0xff));
+    frame += std::string("\x03\xe8\x00\x00", 4);  // of 1000 ms; replace what was there
+    appendChunk(file, "fcTL", frame);
+    const std::string rows = compressRows(frames[f]);
+    if (f == 0) {
+      appendChunk(file, "IDAT", rows);
+    } else {
+      std::string numbered;
+      appendBigEndian(numbered, sequence++);
+      appendChunk(file, "fdAT", numbered + rows);
+    }
+  }
+  appendChunk(file, "IEND", "");
+  return file;
+}
+
+std::string encodeGif(const std::vector<Picture>& frames, double framesPerSecond) {
+  requireFrames(frames);
+  std::string file = "GIF89a";
+  appendLittleEndian(file, frames[0].width);
+  appendLittleEndian(file, frames[0].height);
+  file += std::string("\xf7\x00\x00", 3);  // a table of 256 colours of 8 bits
+  for (int index = 0; index < 256; ++index) {
+    int rest = index;
+    std::array<int, 3> level = {0, 0, 0};
+    for (int c = 2; c >= 0; --c) {
+      level[c] = rest % kGifLevels[c];
+      rest /= kGifLevels[c];
+    }
+    for (int c = 0; c < 3; ++c) {
+      file.push_back(static_cast<char>(index < 252 ? 255 * level[c] / (kGifLevels[c] - 1) : 0));
+    }
+  }
+  file += std::string("\x21\xff\x0bNETSCAPE2.0\x03\x01\x00\x00\x00", 19);  // repeat for ever
+  const int hundredths = std::max(2, static_cast<int>(std::lround(100 / framesPerSecond)));
+  for (const Picture& frame : frames) {
+    file += std::string("\x21\xf9\x04\x04", 4);
+    appendLittleEndian(file, hundredths);
+    file += std::string("\x00\x00\x2c\x00\x00\x00\x00", 7);
+    appendLittleEndian(file, frame.width);
+    appendLittleEndian(file, frame.height);
+    file += std::string("\x00\x08", 2);
+    file += compressLzw(ditherFrame(frame));
+  }
+  file.push_back(';');
+  return file;
+}
+
+void writePng(const std::filesystem::path& path, const Picture& picture) {
+  WholeFile file(path);
+  file.write(encodePng(picture));
+  file.commit();
+}
+
+void pastePicture(Picture& whole, const Picture& part, int x, int y) {
+  const int left = std::max(0, -x);
+  const int right = std::min(part.width, whole.width - x);
+  for (int row = std::max(0, -y); row < part.height && row + y < whole.height; ++row) {
+    if (left < right) {
+      std::copy(part.pixel(left, row), part.pixel(left, row) + 3 * (right - left),
+                whole.pixel(x + left, y + row));
+    }
+  }
+}
+
+Picture tilePictures(const std::vector<Picture>& pictures, int columns) {
+  if (pictures.empty()) return {};
+  columns = std::clamp(columns, 1, static_cast<int>(pictures.size()));
+  int width = 0;
+  int height = 0;
+  for (const Picture& p : pictures) {
+    width = std::max(width, p.width);
+    height = std::max(height, p.height);
+  }
+  const int rows = (static_cast<int>(pictures.size()) + columns - 1) / columns;
+  Picture whole(width * columns, height * rows);
+  for (std::size_t p = 0; p < pictures.size(); ++p) {
+    const int column = static_cast<int>(p) % columns;
+    const int row = static_cast<int>(p) / columns;
+    pastePicture(whole, pictures[p], column * width + (width - pictures[p].width) / 2,
+                 row * height + (height - pictures[p].height) / 2);
+  }
+  return whole;
+}
+
+}  // namespace explica::report

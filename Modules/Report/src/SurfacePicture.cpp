@@ -1,0 +1,321 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Explica/Report/SurfacePicture.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/Parallel.h"
+#include "Explica/Geometry/MeshMeasures.h"
+#include "Explica/Geometry/MeshTopology.h"
+
+#include <embree3/rtcore.h>
+#include <pmmintrin.h>
+#include <xmmintrin.h>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace explica::report {
+namespace {
+
+constexpr int kSkyRays = 12;        // a vertex; neighbours are averaged afterwards
+constexpr int kSkySmoothing = 2;    // passes
+constexpr double kSkyReach = 0.10;  // of the surface's diagonal
+constexpr double kMargin = 1.04;    // of the picture around the surface
+constexpr int kTile = 32;           // pixels; one task
+
+/// Embree's traversal wants denormals flushed; our own arithmetic must not be left that way.
+class FlushDenormals {
+ public:
+  FlushDenormals() : before_(_mm_getcsr()) { _mm_setcsr(before_ | 0x8040); }
+  ~FlushDenormals() { _mm_setcsr(before_); }
+  FlushDenormals(const FlushDenormals&) = delete;
+  FlushDenormals& operator=(const FlushDenormals&) = delete;
+
+ private:
+  unsigned before_;
+};
+
+struct DeviceRelease {
+  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+};
+struct SceneRelease {
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+using Device = std::unique_ptr<std::remove_pointer_t<RTCDevice>, DeviceRelease>;
+using Scene = std::unique_ptr<std::remove_pointer_t<RTCScene>, SceneRelease>;
+
+RTCRayHit rayFrom(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float near,
+                  float far) {
+  RTCRayHit query;
+  std::memset(&query, 0, sizeof query);
+  query.ray.org_x = origin.x();
+  query.ray.org_y = origin.y();
+  query.ray.org_z = origin.z();
+  query.ray.dir_x = direction.x();
+  query.ray.dir_y = direction.y();
+  query.ray.dir_z = direction.z();
+  query.ray.tnear = near;
+  query.ray.tfar = far;
+  query.ray.mask = 0xffffffffu;
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  return query;
+}
+
+/// Cosine-weighted directions about +z: a spiral that covers the disc evenly, turned by `turn`.
+std::array<Eigen::Vector3f, kSkyRays> skyDirections(float turn) {
+  std::array<Eigen::Vector3f, kSkyRays> directions;
+  for (int r = 0; r < kSkyRays; ++r) {
+    const double radius = std::sqrt((r + 0.5) / kSkyRays);
+    const double angle = r * kPi * (3 - std::sqrt(5.0)) + 2 * kPi * turn;
+    directions[r] = Eigen::Vector3d(radius * std::cos(angle), radius * std::sin(angle),
+                                    std::sqrt(std::max(0.0, 1 - radius * radius)))
+                        .cast<float>();
+  }
+  return directions;
+}
+
+Eigen::Vector3f perpendicular(const Eigen::Vector3f& n) {
+  return n.cross(std::abs(n.x()) < 0.7f ? Eigen::Vector3f::UnitX() : Eigen::Vector3f::UnitY())
+      .normalized();
+}
+
+}  // namespace
+
+struct SurfaceScene::Implementation {
+  Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor> positions;
+  Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor> normals;
+  Faces faces;
+  std::vector<float> openness;
+  double diagonal = 1;
+  Device device;
+  Scene scene;
+
+  void build(const TriangleMesh& mesh);
+  void measureOpenness(const TriangleMesh& mesh);
+};
+
+void SurfaceScene::Implementation::build(const TriangleMesh& mesh) {
+  if (mesh.faceCount() == 0) throw InvalidInput("surface: no faces to draw");
+  if (!mesh.positions.allFinite()) throw InvalidInput("surface: a vertex's position is not finite");
+  positions = mesh.positions.cast<float>();
+  normals = geometry::vertexNormals(mesh).cast<float>();
+  faces = mesh.faces;
+  diagonal = (mesh.positions.colwise().maxCoeff() - mesh.positions.colwise().minCoeff()).norm();
+
+  device.reset(rtcNewDevice(nullptr));
+  if (!device) throw EnvironmentError("Embree cannot start on this processor; pictures need it");
+  scene.reset(rtcNewScene(device.get()));
+  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+  RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* vertices = static_cast<float*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                              3 * sizeof(float), static_cast<std::size_t>(positions.rows())));
+  auto* indices = static_cast<unsigned*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                              3 * sizeof(unsigned), static_cast<std::size_t>(faces.rows())));
+  if (vertices == nullptr || indices == nullptr) {
+    rtcReleaseGeometry(geometry);
+    throw EnvironmentError("not enough memory to draw a surface of " +
+                           std::to_string(faces.rows()) + " faces");
+  }
+  std::copy(positions.data(), positions.data() + positions.size(), vertices);
+  std::copy(faces.data(), faces.data() + faces.size(), indices);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(scene.get(), geometry);
+  rtcReleaseGeometry(geometry);
+  rtcCommitScene(scene.get());
+  measureOpenness(mesh);
+}
+
+void SurfaceScene::Implementation::measureOpenness(const TriangleMesh& mesh) {
+  const auto count = static_cast<std::size_t>(positions.rows());
+  std::vector<float> seen(count, 1.0f);
+  const auto reach = static_cast<float>(kSkyReach * diagonal);
+  const auto lift = static_cast<float>(1e-4 * diagonal);
+  parallelForBlocks(count, 2048, [&](std::size_t begin, std::size_t end) {
+    const FlushDenormals flush;
+    for (std::size_t v = begin; v < end; ++v) {
+      const Eigen::Vector3f n = normals.row(static_cast<Eigen::Index>(v)).transpose();
+      if (n.squaredNorm() < 0.5f) continue;
+      const Eigen::Vector3f a = perpendicular(n);
+      const Eigen::Vector3f b = n.cross(a);
+      // A different turn at each vertex; averaging over neighbours then sees many directions.
+      const float turn = static_cast<float>((v * 2654435761u) & 0xffffu) / 65536.0f;
+      const Eigen::Vector3f origin =
+          positions.row(static_cast<Eigen::Index>(v)).transpose() + lift * n;
+      float open = 0;
+      for (const Eigen::Vector3f& d : skyDirections(turn)) {
+        const Eigen::Vector3f direction = d.x() * a + d.y() * b + d.z() * n;
+        RTCRayHit query = rayFrom(origin, direction, 0, reach);
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        rtcIntersect1(scene.get(), &context, &query);
+        // A wall far away hides less of the sky's light than one close by.
+        open += query.hit.geomID == RTC_INVALID_GEOMETRY_ID
+                    ? 1.0f
+                    : std::min(1.0f, query.ray.tfar / reach);
+      }
+      seen[v] = open / kSkyRays;
+    }
+  });
+  // Averages over neighbours, over face corners so that non-manifold meshes can be drawn, too.
+  for (int pass = 0; pass < kSkySmoothing; ++pass) {
+    std::vector<float> sum(seen);
+    std::vector<float> weight(count, 1.0f);
+    for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
+      for (int k = 0; k < 3; ++k) {
+        const std::int32_t v = mesh.faces(f, k);
+        sum[v] += seen[mesh.faces(f, (k + 1) % 3)];
+        weight[v] += 1;
+      }
+    }
+    for (std::size_t v = 0; v < count; ++v) seen[v] = sum[v] / weight[v];
+  }
+  openness = std::move(seen);
+}
+
+SurfaceScene::SurfaceScene(const TriangleMesh& mesh)
+    : implementation_(std::make_unique<Implementation>()) {
+  implementation_->build(mesh);
+}
+SurfaceScene::~SurfaceScene() = default;
+SurfaceScene::SurfaceScene(SurfaceScene&&) noexcept = default;
+SurfaceScene& SurfaceScene::operator=(SurfaceScene&&) noexcept = default;
+
+const std::vector<float>& SurfaceScene::openness() const {
+  return implementation_->openness;
+}
+
+Picture SurfaceScene::render(const Camera& camera, const std::vector<Colour>& colours,
+                             Filling filling, const SurfacePictureOptions& options) const {
+  const Implementation& self = *implementation_;
+  if (!colours.empty() && colours.size() != static_cast<std::size_t>(self.positions.rows())) {
+    throw InvalidInput("colours: found " + std::to_string(colours.size()) +
+                       ", expected one for each of " + std::to_string(self.positions.rows()) +
+                       " vertices");
+  }
+  if (options.width < 1 || options.height < 1 || options.width > 20000 || options.height > 20000) {
+    throw InvalidInput("width, height: must lie in 1 to 20000 pixels");
+  }
+  if (options.samples < 1 || options.samples > 8) throw InvalidInput("samples: must lie in 1 to 8");
+  const Colour plain = {0.60f, 0.58f, 0.56f};
+  const Eigen::Vector3f towards = camera.towards.normalized().cast<float>();
+  const Eigen::Vector3f up = camera.up.normalized().cast<float>();
+  const Eigen::Vector3f right = towards.cross(up);
+  const Eigen::Vector3f key = (-towards + 0.45f * up - 0.45f * right).normalized();
+  const auto step = static_cast<float>(2 * camera.halfHeight / options.height / options.samples);
+  const auto back = static_cast<float>(4 * self.diagonal);
+  const Eigen::Vector3f corner =
+      camera.target.cast<float>() - back * towards +
+      (0.5f * static_cast<float>(options.height * options.samples) * step) * up -
+      (0.5f * static_cast<float>(options.width * options.samples) * step) * right;
+  const auto occlusion = static_cast<float>(options.occlusion);
+
+  Picture picture(options.width, options.height);
+  const int columns = (options.width + kTile - 1) / kTile;
+  const int rows = (options.height + kTile - 1) / kTile;
+  parallelFor(static_cast<std::size_t>(columns) * rows, 1, [&](std::size_t tile) {
+    const FlushDenormals flush;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    const int x0 = static_cast<int>(tile % columns) * kTile;
+    const int y0 = static_cast<int>(tile / columns) * kTile;
+    for (int y = y0; y < std::min(y0 + kTile, options.height); ++y) {
+      for (int x = x0; x < std::min(x0 + kTile, options.width); ++x) {
+        Colour sum = {0, 0, 0};
+        for (int s = 0; s < options.samples * options.samples; ++s) {
+          const float px = static_cast<float>(x * options.samples + s % options.samples) + 0.5f;
+          const float py = static_cast<float>(y * options.samples + s / options.samples) + 0.5f;
+          RTCRayHit query =
+              rayFrom(corner + px * step * right - py * step * up, towards, 0, 2 * back);
+          rtcIntersect1(self.scene.get(), &context, &query);
+          if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
+            for (float& c : sum) c += 1;
+            continue;
+          }
+          const auto face = static_cast<Eigen::Index>(query.hit.primID);
+          const std::array<float, 3> weight = {1 - query.hit.u - query.hit.v, query.hit.u,
+                                               query.hit.v};
+          Eigen::Vector3f normal = Eigen::Vector3f::Zero();
+          float open = 0;
+          Colour base = {0, 0, 0};
+          int nearest = 0;
+          for (int k = 0; k < 3; ++k) {
+            const std::int32_t v = self.faces(face, k);
+            normal += weight[k] * self.normals.row(v).transpose();
+            open += weight[k] * self.openness[v];
+            if (weight[k] > weight[nearest]) nearest = k;
+            const Colour& colour = colours.empty() ? plain : colours[v];
+            for (int c = 0; c < 3; ++c) base[c] += weight[k] * colour[c];
+          }
+          if (filling == Filling::Discrete && !colours.empty())
+            base = colours[self.faces(face, nearest)];
+          const Eigen::Vector3f outward(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z);
+          const bool inside = outward.dot(towards) > 0;
+          normal.normalize();
+          if (inside) normal = -normal;
+          const float facing = std::max(0.0f, -normal.dot(towards));
+          const float lit = 0.18f + 0.47f * std::max(0.0f, normal.dot(key)) + 0.40f * facing;
+          const float dark = inside ? 0.5f : 1 - occlusion * (1 - std::min(1.0f, 1.25f * open));
+          for (int c = 0; c < 3; ++c) {
+            const float tint = inside ? (c == 2 ? 0.75f : 0.5f) : 1.0f;
+            sum[c] += std::min(1.0f, tint * base[c] * lit * dark);
+          }
+        }
+        const auto count = static_cast<float>(options.samples * options.samples);
+        std::uint8_t* pixel = picture.pixel(x, y);
+        for (int c = 0; c < 3; ++c) pixel[c] = encodeSrgb(sum[c] / count);
+      }
+    }
+  });
+  return picture;
+}
+
+Camera cameraTowards(const TriangleMesh& mesh, const Vector& towards, const Vector& up, int width,
+                     int height) {
+  if (!(towards.norm() > 0)) throw InvalidInput("direction: must not be zero");
+  Camera camera;
+  camera.towards = towards.normalized();
+  Vector sideways = camera.towards.cross(up);
+  if (sideways.norm() < 1e-6 * up.norm()) {
+    sideways = camera.towards.cross(std::abs(camera.towards.z()) < 0.9 ? Vector(0, 0, 1)
+                                                                       : Vector(0, 1, 0));
+  }
+  sideways.normalize();
+  camera.up = sideways.cross(camera.towards);
+  const Eigen::VectorXd x = mesh.positions * sideways;
+  const Eigen::VectorXd y = mesh.positions * camera.up;
+  const Eigen::VectorXd z = mesh.positions * camera.towards;
+  camera.target = 0.5 * (x.minCoeff() + x.maxCoeff()) * sideways +
+                  0.5 * (y.minCoeff() + y.maxCoeff()) * camera.up +
+                  0.5 * (z.minCoeff() + z.maxCoeff()) * camera.towards;
+  const double halfWidth = 0.5 * (x.maxCoeff() - x.minCoeff());
+  const double halfHeight = 0.5 * (y.maxCoeff() - y.minCoeff());
+  camera.halfHeight = kMargin * std::max({halfHeight, halfWidth * height / width, 1e-9});
+  return camera;
+}
+
+Camera cameraFor(const TriangleMesh& mesh, ViewName view, int width, int height) {
+  const Vector superior(0, 0, 1);
+  const Vector anterior(0, 1, 0);
+  switch (view) {
+    case ViewName::Left:
+      return cameraTowards(mesh, Vector(1, 0, 0), superior, width, height);
+    case ViewName::Right:
+      return cameraTowards(mesh, Vector(-1, 0, 0), superior, width, height);
+    case ViewName::Front:
+      return cameraTowards(mesh, Vector(0, -1, 0), superior, width, height);
+    case ViewName::Back:
+      return cameraTowards(mesh, Vector(0, 1, 0), superior, width, height);
+    case ViewName::Top:
+      return cameraTowards(mesh, Vector(0, 0, -1), anterior, width, height);
+    default:
+      return cameraTowards(mesh, Vector(0, 0, 1), anterior, width, height);
+  }
+}
+
+}  // namespace explica::report

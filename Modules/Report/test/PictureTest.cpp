@@ -1,0 +1,200 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Explica/Report/Picture.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Report/ColourMap.h"
+#include "Explica/Report/Drawing.h"
+
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include <cmath>
+
+namespace explica::report {
+namespace {
+
+std::uint32_t bigEndianAt(const std::string& bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  for (int b = 0; b < 4; ++b) value = value << 8 | static_cast<std::uint8_t>(bytes[at + b]);
+  return value;
+}
+
+Picture gradient(int width, int height) {
+  Picture p(width, height);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      p.pixel(x, y)[0] = static_cast<std::uint8_t>(x * 7);
+      p.pixel(x, y)[1] = static_cast<std::uint8_t>(y * 5);
+      p.pixel(x, y)[2] = static_cast<std::uint8_t>(x ^ y);
+    }
+  }
+  return p;
+}
+
+/// Decodes the PNG files that we write: 8-bit RGB, one IDAT, filters 1 and 2.
+Picture decode(const std::string& png) {
+  Picture p(static_cast<int>(bigEndianAt(png, 16)), static_cast<int>(bigEndianAt(png, 20)));
+  std::size_t at = 8;
+  while (png.compare(at + 4, 4, "IDAT") != 0) at += 12 + bigEndianAt(png, at);
+  const std::uint32_t length = bigEndianAt(png, at);
+  const std::size_t stride = static_cast<std::size_t>(p.width) * 3;
+  std::string rows((stride + 1) * p.height, '\0');
+  uLongf size = rows.size();
+  EXPECT_EQ(uncompress(reinterpret_cast<Bytef*>(rows.data()), &size,
+                       reinterpret_cast<const Bytef*>(png.data() + at + 8), length),
+            Z_OK);
+  for (int y = 0; y < p.height; ++y) {
+    const int filter = rows[y * (stride + 1)];
+    for (std::size_t b = 0; b < stride; ++b) {
+      int value = static_cast<std::uint8_t>(rows[y * (stride + 1) + 1 + b]);
+      if (filter == 1 && b >= 3) value += p.rgb[y * stride + b - 3];
+      if (filter == 2) value += p.rgb[(y - 1) * stride + b];
+      p.rgb[y * stride + b] = static_cast<std::uint8_t>(value);
+    }
+  }
+  return p;
+}
+
+TEST(Png, ComesBackBitByBit) {
+  const Picture p = gradient(37, 23);
+  EXPECT_EQ(decode(encodePng(p)).rgb, p.rgb);
+}
+
+TEST(Png, ChunksCarryTheirChecksums) {
+  const std::string png = encodePng(gradient(5, 4));
+  for (std::size_t at = 8; at < png.size();) {
+    const std::uint32_t length = bigEndianAt(png, at);
+    const auto sum = crc32(0, reinterpret_cast<const Bytef*>(png.data() + at + 4), length + 4);
+    EXPECT_EQ(bigEndianAt(png, at + 8 + length), static_cast<std::uint32_t>(sum));
+    at += 12 + length;
+  }
+}
+
+/// Pixels of the first frame of a GIF that we wrote, as palette indices, by a plain LZW decoder.
+std::vector<int> firstGifFrame(const std::string& gif, std::size_t pixels) {
+  std::size_t at = gif.find('\x2c') + 10;
+  while (gif.compare(at - 10, 5, std::string("\x2c\x00\x00\x00\x00", 5)) != 0)
+    at = gif.find('\x2c', at - 9) + 10;
+  const int codeSize = gif[at++];
+  std::string data;
+  while (gif[at] != 0) {
+    const auto length = static_cast<std::uint8_t>(gif[at]);
+    data.append(gif, at + 1, length);
+    at += length + 1;
+  }
+  std::vector<std::vector<int>> table;
+  const int clear = 1 << codeSize;
+  int width = codeSize + 1;
+  std::vector<int> out;
+  std::vector<int> previous;
+  std::size_t bit = 0;
+  while (out.size() < pixels) {
+    int code = 0;
+    for (int b = 0; b < width; ++b, ++bit) code |= ((data[bit / 8] >> (bit % 8)) & 1) << b;
+    if (code == clear) {
+      table.assign(static_cast<std::size_t>(clear) + 2, {});
+      for (int i = 0; i < clear; ++i) table[i] = {i};
+      width = codeSize + 1;
+      previous.clear();
+      continue;
+    }
+    if (code == clear + 1) break;
+    std::vector<int> entry;
+    if (code < static_cast<int>(table.size())) {
+      entry = table[code];
+    } else {
+      entry = previous;
+      entry.push_back(previous.front());
+    }
+    if (!previous.empty() && table.size() < 4096) {
+      previous.push_back(entry.front());
+      table.push_back(previous);
+      if (table.size() == (std::size_t{1} << width) && width < 12) ++width;
+    }
+    out.insert(out.end(), entry.begin(), entry.end());
+    previous = entry;
+  }
+  return out;
+}
+
+TEST(Gif, DecodesToColoursNearThePicture) {
+  const Picture p = gradient(300, 200);  // long enough for the code table to fill and be cleared
+  const std::vector<int> indices = firstGifFrame(encodeGif({p, p}, 10), 60000);
+  ASSERT_EQ(indices.size(), 60000u);
+  double sum = 0;
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    sum += std::abs(indices[i] / 42 * 51 - p.rgb[3 * i]);
+  }
+  EXPECT_LT(sum / 60000, 30);
+}
+
+TEST(Films, RefuseFramesOfDifferentSize) {
+  EXPECT_THROW((void)encodeGif({gradient(4, 4), gradient(5, 4)}, 10), InvalidInput);
+  EXPECT_THROW((void)encodeAnimatedPng({}, 10), InvalidInput);
+}
+
+TEST(ColourMaps, GrowLighterStepByStep) {
+  for (const ColourMap map : {ColourMap::Sequential, ColourMap::Heat, ColourMap::Grey}) {
+    double before = -1;
+    for (int s = 0; s <= 100; ++s) {
+      const Colour c = colourAt(map, s / 100.0);
+      const double luminance = 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
+      ASSERT_GT(luminance, before);
+      before = luminance;
+    }
+  }
+}
+
+TEST(ColourMaps, DivergingIsLightestInTheMiddle) {
+  const auto luminance = [](double t) {
+    const Colour c = colourAt(ColourMap::Diverging, t);
+    return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
+  };
+  EXPECT_GT(luminance(0.5), luminance(0.3));
+  EXPECT_GT(luminance(0.3), luminance(0.0));
+  EXPECT_GT(luminance(0.7), luminance(1.0));
+  EXPECT_GT(colourAt(ColourMap::Diverging, 0)[2], colourAt(ColourMap::Diverging, 0)[0]);
+}
+
+TEST(ColourScale, TakesADivergingMapOnlyWhereSignsMatter) {
+  EXPECT_EQ(scaleFor(Eigen::VectorXd::LinSpaced(100, 1, 4), "thickness", "mm").map,
+            ColourMap::Sequential);
+  const ColourScale both = scaleFor(Eigen::VectorXd::LinSpaced(100, -2, 4), "flux", "");
+  EXPECT_EQ(both.map, ColourMap::Diverging);
+  EXPECT_DOUBLE_EQ(both.low, -both.high);
+  const ColourScale constant = scaleFor(Eigen::VectorXd::Constant(10, 3.0), "x", "");
+  EXPECT_LT(constant.low, constant.high);
+}
+
+TEST(Drawing, LineCoversItsWidth) {
+  Picture p(40, 40);
+  drawSegments(p, {{{5, 20}, {35, 20}}}, {0, 0, 0}, 4);
+  double dark = 0;
+  for (int y = 0; y < 40; ++y) dark += (255 - p.pixel(20, y)[0]) / 255.0;
+  EXPECT_NEAR(dark, 4, 0.6);
+  EXPECT_EQ(p.pixel(20, 5)[0], 255);
+}
+
+TEST(Drawing, TextHasInkWhereItSaysItHasWidth) {
+  Picture p(300, 40);
+  drawText(p, "thickness [mm\u00b2] -0.25", {10, 30}, 14, {0, 0, 0});
+  const int end = 10 + static_cast<int>(textWidth("thickness [mm\u00b2] -0.25", 14));
+  int lastInk = 0;
+  for (int x = 0; x < 300; ++x) {
+    for (int y = 0; y < 40; ++y) {
+      if (p.pixel(x, y)[0] < 128) lastInk = x;
+    }
+  }
+  EXPECT_NEAR(lastInk, end, 3);
+}
+
+TEST(Ticks, HaveTheDigitsThatTheRangeNeeds) {
+  EXPECT_EQ(tickText(2.5, 4), "2.5");
+  EXPECT_EQ(tickText(0, 4), "0");
+  EXPECT_EQ(tickText(-0.25, 1), "-0.25");
+  EXPECT_EQ(tickText(60, 120), "60");
+}
+
+}  // namespace
+}  // namespace explica::report

@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Explica/Report/SurfacePicture.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/Parallel.h"
+#include "Explica/Geometry/Fixtures.h"
+#include "Explica/Report/SlicePicture.h"
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace explica::report {
+namespace {
+
+SurfacePictureOptions small() {
+  SurfacePictureOptions options;
+  options.width = 200;
+  options.height = 160;
+  return options;
+}
+
+bool isWhite(const Picture& p, int x, int y) {
+  return p.pixel(x, y)[0] == 255 && p.pixel(x, y)[1] == 255 && p.pixel(x, y)[2] == 255;
+}
+
+TEST(SurfacePicture, SphereFillsItsDisc) {
+  const TriangleMesh sphere = geometry::makeIcosphere(4, 50);
+  const SurfaceScene scene(sphere);
+  const Picture p =
+      scene.render(cameraFor(sphere, ViewName::Left, 200, 160), {}, Filling::Smooth, small());
+  int covered = 0;
+  for (int y = 0; y < 160; ++y) {
+    for (int x = 0; x < 200; ++x) covered += !isWhite(p, x, y);
+  }
+  const double radius = 80 / 1.04;
+  EXPECT_NEAR(covered, kPi * radius * radius, 0.03 * kPi * radius * radius);
+}
+
+TEST(SurfacePicture, ViewsShowTheSidesTheyAreNamedAfter) {
+  TriangleMesh sphere = geometry::makeIcosphere(3, 50);
+  std::vector<Colour> colours(sphere.vertexCount());
+  for (Eigen::Index v = 0; v < sphere.vertexCount(); ++v) {
+    colours[v] = sphere.positions(v, 0) < 0 ? Colour{1, 0, 0} : Colour{0, 0, 1};
+  }
+  const SurfaceScene scene(sphere);
+  const auto middle = [&](ViewName view) {
+    const Picture p =
+        scene.render(cameraFor(sphere, view, 200, 160), colours, Filling::Smooth, small());
+    return std::array<int, 2>{p.pixel(100, 80)[0], p.pixel(100, 80)[2]};
+  };
+  EXPECT_GT(middle(ViewName::Left)[0], middle(ViewName::Left)[1]);
+  EXPECT_GT(middle(ViewName::Right)[1], middle(ViewName::Right)[0]);
+  // From the front, the patient's right is on the picture's left.
+  const Picture front =
+      scene.render(cameraFor(sphere, ViewName::Front, 200, 160), colours, Filling::Smooth, small());
+  EXPECT_GT(front.pixel(70, 80)[2], front.pixel(70, 80)[0]);
+  // From above with the nose up, the patient's left is on the left.
+  const Picture top =
+      scene.render(cameraFor(sphere, ViewName::Top, 200, 160), colours, Filling::Smooth, small());
+  EXPECT_GT(top.pixel(70, 80)[0], top.pixel(70, 80)[2]);
+}
+
+TEST(SurfacePicture, FoldsAreDarkerThanCrowns) {
+  const TriangleMesh folded = geometry::makeFoldedSphere(5, 50, 0.25, 6);
+  const SurfaceScene scene(folded);
+  const Eigen::VectorXd radius = folded.positions.rowwise().norm();
+  const double middle = 0.5 * (radius.minCoeff() + radius.maxCoeff());
+  double low = 0;
+  double high = 0;
+  int lows = 0;
+  int highs = 0;
+  for (Eigen::Index v = 0; v < radius.size(); ++v) {
+    if (radius[v] < middle) {
+      low += scene.openness()[v];
+      ++lows;
+    } else {
+      high += scene.openness()[v];
+      ++highs;
+    }
+  }
+  EXPECT_LT(low / lows + 0.01, high / highs);
+}
+
+TEST(SurfacePicture, DoesNotDependOnThreads) {
+  const TriangleMesh folded = geometry::makeFoldedSphere(4, 50, 0.25, 6);
+  const auto picture = [&](int threads) {
+    setThreadCount(threads);
+    const SurfaceScene scene(folded);
+    const Picture p =
+        scene.render(cameraFor(folded, ViewName::Top, 200, 160), {}, Filling::Smooth, small());
+    setThreadCount(0);
+    return p.rgb;
+  };
+  EXPECT_EQ(picture(1), picture(4));
+}
+
+TEST(SurfacePicture, RefusesColoursOfAnotherSurface) {
+  const TriangleMesh sphere = geometry::makeIcosphere(1);
+  const SurfaceScene scene(sphere);
+  EXPECT_THROW(
+      (void)scene.render(cameraFor(sphere, ViewName::Left, 10, 10), std::vector<Colour>(3)),
+      InvalidInput);
+  EXPECT_THROW(SurfaceScene(TriangleMesh{}), InvalidInput);
+}
+
+TEST(SlicePicture, ContourLiesOnTheEdgeOfWhatItOutlines) {
+  // An oblique, anisotropic grid holding a ball: the ball's contour must hide its edge everywhere.
+  Grid grid;
+  grid.size = {90, 70, 60};
+  grid.spacing = Vector(0.9, 1.1, 1.4);
+  grid.direction = Eigen::AngleAxisd(0.4, Vector(1, 2, 3).normalized()).toRotationMatrix();
+  grid.origin = -grid.direction * grid.spacing.cwiseProduct(Vector(45, 35, 30));
+  Volume<float> ball(grid, 0.0f);
+  for (std::size_t v = 0; v < ball.size(); ++v) {
+    const auto [i, j, k] = grid.subscripts(v);
+    ball[v] = static_cast<float>(std::clamp(20.5 - grid.toWorld(Vector(i, j, k)).norm(), 0.0, 1.0));
+  }
+  const TriangleMesh sphere = geometry::makeIcosphere(5, 20);
+  for (const SliceAxis axis : {SliceAxis::Sagittal, SliceAxis::Coronal, SliceAxis::Axial}) {
+    const SliceFrame frame = frameAround(axis, 5, Point::Constant(-24), Point::Constant(24), 240);
+    const ColourScale grey{ColourMap::Grey, 0, 1, "", ""};
+    const Picture plain = renderSlice(ball, frame, grey);
+    const Picture lined = renderSlice(ball, frame, grey, {{&sphere, {1, 0, 0}, 2}});
+    const double radius = std::sqrt(20.0 * 20 - 25) / frame.pixel;
+    int wrong = 0;
+    int red = 0;
+    for (int y = 0; y < frame.height; ++y) {
+      for (int x = 0; x < frame.width; ++x) {
+        const double r = std::hypot(x + 0.5 - 0.5 * frame.width, y + 0.5 - 0.5 * frame.height);
+        if (r < radius - 8 && plain.pixel(x, y)[1] < 250) ++wrong;
+        if (r > radius + 8 && plain.pixel(x, y)[1] > 5) ++wrong;
+        if (lined.pixel(x, y)[0] > 200 && lined.pixel(x, y)[1] < 60) {
+          ++red;
+          if (std::abs(r - radius) > 2) ++wrong;
+        }
+      }
+    }
+    EXPECT_EQ(wrong, 0);
+    EXPECT_GT(red, 2 * radius);
+  }
+}
+
+}  // namespace
+}  // namespace explica::report
