@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Core/TriangleMesh.h"
+#include "Explica/Visibility/Viewpoints.h"
+
+namespace explica::visibility {
+
+struct VisibleFractionOptions {
+  int subdivision = 3;  ///< rays per face: one to each of subdivision^2 equal sub-triangles
+};
+
+/// What is truly seen, by ray casting.
+struct VisibleFraction {
+  Eigen::VectorXd face;    ///< F, share of each face's area that is seen, in [0, 1]
+  Eigen::VectorXd vertex;  ///< V, the same of the area around each vertex; 0 at vertices of no face
+  double total = 0;        ///< share of the whole area, in [0, 1]
+
+  /// Share of the area of the listed faces.
+  [[nodiscard]] double of(const TriangleMesh& mesh, const std::vector<std::int32_t>& faces) const;
+};
+
+/// Share of each face that is seen from the viewpoints: it faces the viewpoint, and no other face
+/// lies between.  One ray per sample from the surface to the viewpoint.  Embree in single precision
+/// about the mesh's centre, robust traversal; the sample's own face never hides it.  Deterministic.
+/// @throws InvalidInput  no face, no viewpoint, a non-finite position, or subdivision outside [1,
+/// 64]
+[[nodiscard]] VisibleFraction visibleFraction(const TriangleMesh& mesh,
+                                              const Viewpoints& viewpoints,
+                                              const VisibleFractionOptions& options = {});
+
+}  // namespace explica::visibility

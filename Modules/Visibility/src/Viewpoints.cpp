@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Visibility/Viewpoints.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/Parallel.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <string>
+
+namespace explica::visibility {
+
+Viewpoints viewpoint(const Point& point) {
+  if (!point.allFinite()) throw InvalidInput("viewpoint: not finite");
+  return {{point}, {1.0}};
+}
+
+Viewpoints viewLine(const Point& start, const Point& end, int count) {
+  if (count < 1 || count > 64) {
+    throw InvalidInput("view line: " + std::to_string(count) +
+                       " points; between 1 and 64 are possible");
+  }
+  if (!start.allFinite() || !end.allFinite()) throw InvalidInput("view line: an end is not finite");
+  // Golub-Welsch: nodes and weights from the Jacobi matrix of the Legendre polynomials.
+  Eigen::MatrixXd jacobi = Eigen::MatrixXd::Zero(count, count);
+  for (int k = 1; k < count; ++k) {
+    jacobi(k, k - 1) = jacobi(k - 1, k) = k / std::sqrt(4.0 * k * k - 1);
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(jacobi);
+  Viewpoints result;
+  for (int k = 0; k < count; ++k) {
+    const double s = (1 + solver.eigenvalues()[k]) / 2;
+    const double root = solver.eigenvectors()(0, k);
+    result.points.push_back((1 - s) * start + s * end);
+    result.weights.push_back(root * root);
+  }
+  return result;
+}
+
+Viewpoints viewSurface(const TriangleMesh& surface) {
+  Viewpoints result;
+  double total = 0;
+  for (Eigen::Index f = 0; f < surface.faceCount(); ++f) {
+    const Point a = surface.corner(f, 0);
+    const Point b = surface.corner(f, 1);
+    const Point c = surface.corner(f, 2);
+    const double area = (b - a).cross(c - a).norm() / 2;
+    if (area == 0) continue;
+    total += area;
+    for (int k = 0; k < 3; ++k) {
+      result.points.push_back((a + b + c) / 6 + surface.corner(f, k) / 2);
+      result.weights.push_back(area / 3);
+    }
+  }
+  if (!(total > 0) || !std::isfinite(total)) {
+    throw InvalidInput("view surface: it has no face of finite positive area");
+  }
+  for (double& w : result.weights) w /= total;
+  return result;
+}
+
+double windingNumber(const TriangleMesh& surface, const Point& point) {
+  const double sum = parallelSum(
+      static_cast<std::size_t>(surface.faceCount()), 4096, 0.0,
+      [&](std::size_t begin, std::size_t end) {
+        double angle = 0;
+        for (auto f = static_cast<Eigen::Index>(begin); f < static_cast<Eigen::Index>(end); ++f) {
+          const Vector a = surface.corner(f, 0) - point;
+          const Vector b = surface.corner(f, 1) - point;
+          const Vector c = surface.corner(f, 2) - point;
+          const double la = a.norm();
+          const double lb = b.norm();
+          const double lc = c.norm();
+          angle += 2 * std::atan2(a.dot(b.cross(c)),
+                                  la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+        }
+        return angle;
+      });
+  return sum / (4 * kPi);
+}
+
+}  // namespace explica::visibility

@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Visibility/VisibleFraction.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/Parallel.h"
+#include "Explica/Geometry/Fixtures.h"
+
+#include <gtest/gtest.h>
+
+namespace explica::visibility {
+namespace {
+
+TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b) {
+  TriangleMesh both;
+  both.positions.resize(a.vertexCount() + b.vertexCount(), 3);
+  both.positions << a.positions, b.positions;
+  both.faces.resize(a.faceCount() + b.faceCount(), 3);
+  both.faces << a.faces, (b.faces.array() + static_cast<std::int32_t>(a.vertexCount())).matrix();
+  return both;
+}
+
+TEST(VisibleFraction, OfASphereIsTheCapTowardsTheViewpoint) {
+  // The cap of points x with x . P > R^2 has the share (1 - R/D)/2 of the area.
+  for (const double distance : {1.5, 4.0, 1000.0}) {
+    const Point from = distance * Point(1, 2, 2) / 3;
+    const VisibleFraction seen = visibleFraction(geometry::makeIcosphere(5), viewpoint(from));
+    EXPECT_NEAR(seen.total, (1 - 1 / distance) / 2, 4e-3) << distance;
+  }
+}
+
+TEST(VisibleFraction, OfASphereFarFromTheOriginIsTheSame) {
+  const Point centre(800, -900, 700);
+  const VisibleFraction seen =
+      visibleFraction(geometry::makeIcosphere(4, 1.0, centre), viewpoint(centre + Point(0, 0, 4)));
+  EXPECT_NEAR(seen.total, 0.375, 1e-2);
+}
+
+TEST(VisibleFraction, OfAPlateIsAllOrNothing) {
+  const TriangleMesh plate = geometry::makeRectangle(7, 5, 2, 1);
+  const VisibleFraction front = visibleFraction(plate, viewpoint(Point(1, 0.5, 3)));
+  EXPECT_EQ(front.total, 1);
+  EXPECT_EQ(front.vertex.minCoeff(), 1);
+  EXPECT_EQ(visibleFraction(plate, viewpoint(Point(1, 0.5, -3))).total, 0);
+}
+
+TEST(VisibleFraction, BehindASmallerPlateIsItsShadow) {
+  // Seen from height 2, the unit square at height 1 covers a 2 x 2 square of the 4 x 4 plate at 0.
+  TriangleMesh floor = geometry::makeRectangle(40, 40, 4, 4);
+  TriangleMesh lid = geometry::makeRectangle(1, 1, 1, 1);
+  lid.positions.col(0).array() += 1.5;
+  lid.positions.col(1).array() += 1.5;
+  lid.positions.col(2).array() += 1;
+  const TriangleMesh both = joined(floor, lid);
+  const VisibleFraction seen = visibleFraction(both, viewpoint(Point(2, 2, 2)), {4});
+  std::vector<std::int32_t> floorFaces;
+  for (Eigen::Index f = 0; f < floor.faceCount(); ++f) {
+    floorFaces.push_back(static_cast<std::int32_t>(f));
+  }
+  EXPECT_NEAR(seen.of(both, floorFaces), 0.75, 1e-2);
+  EXPECT_NEAR(visibleFraction(floor, viewpoint(Point(2, 2, 2))).total, 1, 1e-12);
+}
+
+TEST(VisibleFraction, FromALineIsTheMeanOfItsPoints) {
+  const TriangleMesh plate = geometry::makeRectangle(3, 3, 1, 1);
+  const Viewpoints line = viewLine(Point(0.5, 0.5, -1), Point(0.5, 0.5, 1), 2);
+  EXPECT_NEAR(visibleFraction(plate, line).total, 0.5, 1e-12);
+}
+
+TEST(VisibleFraction, DoesNotDependOnTheNumberOfThreads) {
+  const TriangleMesh folded = geometry::makeFoldedSphere(4);
+  setThreadCount(1);
+  const VisibleFraction one = visibleFraction(folded, viewpoint(Point(0, 0, 4)));
+  setThreadCount(4);
+  const VisibleFraction four = visibleFraction(folded, viewpoint(Point(0, 0, 4)));
+  setThreadCount(0);
+  EXPECT_EQ(one.face, four.face);
+  EXPECT_EQ(one.vertex, four.vertex);
+}
+
+TEST(VisibleFraction, RefusesBadInput) {
+  TriangleMesh sphere = geometry::makeIcosphere(0);
+  EXPECT_THROW((void)visibleFraction(TriangleMesh{}, viewpoint(Point(0, 0, 1))), InvalidInput);
+  EXPECT_THROW((void)visibleFraction(sphere, Viewpoints{}), InvalidInput);
+  EXPECT_THROW((void)visibleFraction(sphere, viewpoint(Point(0, 0, 3)), {0}), InvalidInput);
+  sphere.positions(3, 1) = kNaN;
+  EXPECT_THROW((void)visibleFraction(sphere, viewpoint(Point(0, 0, 3))), InvalidInput);
+}
+
+}  // namespace
+}  // namespace explica::visibility
