@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Core/Monitor.h"
+#include "Explica/Core/Termination.h"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace explica::app {
+
+class Command;
+struct Outcome;
+
+/// What a running command sees of the world: files to read and write, progress, and the account that
+/// becomes summary.json and provenance.json.
+class Context {
+ public:
+  /// Work in progress; ends with its scope.  Times, and takes note of how it went.
+  class Step {
+   public:
+    Step(Context& context, std::string name);
+    ~Step();
+    Step(const Step&) = delete;
+    Step& operator=(const Step&) = delete;
+    void iterations(int count);
+    void termination(Termination termination);
+
+   private:
+    Context& context_;
+    std::size_t entry_;
+    double begin_;
+  };
+
+  /// Takes note of a file that is about to be read (hash, size, the record that made it) and gives
+  /// its path back.  Files named by declared inputs are noted already: call this for others, such as
+  /// those found inside a folder.
+  /// @throws IOError  absent, unreadable or not a regular file
+  std::filesystem::path input(const std::filesystem::path& path, std::string_view role = "file");
+
+  /// Where to write an output; `name` is relative to --out and must match a declared output.
+  /// Folders in it are made.  The file appears in --out when the command has ended well.
+  [[nodiscard]] std::filesystem::path output(const std::string& name);
+
+  /// The output directory as the user named it, for reading what an earlier run left there.
+  [[nodiscard]] std::filesystem::path outputFolder() const;
+
+  /// Begins a part of the work.  In a dry run the command ends here, so read and check all inputs
+  /// before the first step.
+  [[nodiscard]] Step step(std::string name);
+
+  /// A number or text for summary.json; NaN becomes null.  A key that starts with "seconds" is a time.
+  void result(const std::string& key, double value);
+  void result(const std::string& key, int value);
+  void result(const std::string& key, long value);
+  void result(const std::string& key, long long value);
+  void result(const std::string& key, std::size_t value);
+  void result(const std::string& key, bool value);
+  void result(const std::string& key, const std::string& value);
+  void result(const std::string& key, const char* value);
+  void result(const std::string& key, const std::vector<double>& values);
+  /// Any JSON (include <nlohmann/json.hpp>).
+  void result(const std::string& key, const nlohmann::ordered_json& value);
+
+  /// Something about how an input was understood, for the record: the affine used, its codes, ...
+  void note(const std::string& key, const nlohmann::ordered_json& value);
+
+  /// Progress, warnings and stop requests, to hand to long work.
+  [[nodiscard]] const Monitor& monitor() const;
+
+  /// A line for the user (hidden by --quiet), a detail (shown by --verbose), a warning (recorded).
+  void info(const std::string& message);
+  void detail(const std::string& message);
+  void warn(const std::string& message);
+
+  /// True if the user set this option, on the command line or in the configuration file.
+  [[nodiscard]] bool given(std::string_view name) const;
+  [[nodiscard]] int threads() const;
+
+  /// Runs another command as a step, into the folder `name` of this command's output, with the given
+  /// option values (JSON as in --config).  Only for commands declared inPlace().
+  Outcome runCommand(const Command& command, const std::string& name,
+                     const nlohmann::ordered_json& options);
+
+  struct State;
+  explicit Context(State& state) : state_(&state) {}
+
+ private:
+  State* state_;
+};
+
+}  // namespace explica::app

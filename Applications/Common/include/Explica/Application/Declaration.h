@@ -1,0 +1,170 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Provenance/Options.h"
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace explica::app {
+
+/// What a file holds: said in help, and to the tools that call Explica by its descriptors.
+enum class FileKind {
+  Volume,       ///< scalar image, 2D or 3D
+  LabelVolume,  ///< image of whole numbers
+  PointVolume,  ///< image of RAS points or vectors
+  Surface,      ///< triangulated surface
+  VertexData,   ///< values on a surface's vertices
+  VertexLabel,  ///< labels on a surface's vertices
+  Grid,         ///< unstructured grid
+  Polygon,      ///< closed 2D polygon
+  Table,        ///< tab-separated values
+  Json,
+  Picture,
+  Report,  ///< HTML
+  Record,  ///< provenance.json
+  Folder,
+  Any
+};
+
+}  // namespace explica::app
+
+template <>
+struct explica::EnumNames<explica::app::FileKind> {
+  using Kind = explica::app::FileKind;
+  static constexpr std::array table = {std::pair{Kind::Volume, "volume"},
+                                       std::pair{Kind::LabelVolume, "label volume"},
+                                       std::pair{Kind::PointVolume, "point volume"},
+                                       std::pair{Kind::Surface, "surface"},
+                                       std::pair{Kind::VertexData, "vertex data"},
+                                       std::pair{Kind::VertexLabel, "vertex labels"},
+                                       std::pair{Kind::Grid, "grid"},
+                                       std::pair{Kind::Polygon, "polygon"},
+                                       std::pair{Kind::Table, "table"},
+                                       std::pair{Kind::Json, "JSON"},
+                                       std::pair{Kind::Picture, "picture"},
+                                       std::pair{Kind::Report, "report"},
+                                       std::pair{Kind::Record, "provenance record"},
+                                       std::pair{Kind::Folder, "folder"},
+                                       std::pair{Kind::Any, "file"}};
+};
+
+namespace explica::app {
+
+/// One thing that the user may give: a positional argument or an option.
+struct Parameter {
+  provenance::Option option;      ///< name, unit, help, category and where the value goes
+  std::optional<FileKind> file;   ///< the value is a path that is read (hashed and recorded)
+  bool positional = false;
+  bool required = false;
+  std::string defaultText;        ///< the default as a user would write it; empty if none
+};
+
+/// A file that a command writes into its output directory.
+struct OutputSlot {
+  std::string pattern;  ///< "thickness.nii.gz"; '*' stands for any characters: "frames/frame-*.gii"
+  FileKind kind = FileKind::Any;
+  std::string help;
+  bool varies = false;  ///< holds times or the like: equal runs may give different bytes
+};
+
+/// What a command is, said once.  Parser, --help, configuration files, provenance, reference page,
+/// descriptors, completion and man page all follow from it.
+///
+/// The functions that take a reference bind the place where the value is wanted; its present value
+/// is the default.
+class Declaration {
+ public:
+  /// One line, without a full stop: "thickness of the tissue between two boundaries".
+  Declaration& synopsis(std::string line);
+  /// A paragraph or two on what is computed and when to use which option.
+  Declaration& description(std::string text);
+  /// A paper, as "Jones, Buchbinder, Aharon 2000, Human Brain Mapping 11:12-32".
+  Declaration& reference(std::string citation);
+  /// A command line that works, and what it does.
+  Declaration& example(std::string commandLine, std::string what);
+
+  /// A file to read, by position.  `name` in capitals: "SEG".  A std::optional<std::string> may be
+  /// left out; a std::vector<std::string> takes one or more.
+  Declaration& input(std::string name, FileKind kind, std::string help, std::string& path);
+  Declaration& input(std::string name, FileKind kind, std::string help,
+                     std::optional<std::string>& path);
+  Declaration& input(std::string name, FileKind kind, std::string help,
+                     std::vector<std::string>& paths);
+
+  /// A file to read, by option: --mask FILE.  A vector's option may be repeated.
+  Declaration& inputOption(std::string name, FileKind kind, std::string help,
+                           std::optional<std::string>& path, std::string category = "Inputs");
+  Declaration& inputOption(std::string name, FileKind kind, std::string help,
+                           std::vector<std::string>& paths, std::string category = "Inputs");
+
+  /// A word by position that is not a file: participant|group.
+  template <class T>
+  Declaration& argument(const Field& field, T& value) {
+    return add(provenance::makeOption(field, value), "", true, true);
+  }
+
+  /// One option.
+  template <class T>
+  Declaration& option(const std::string& category, const Field& field, T& value) {
+    return add(provenance::makeOption(field, value), category, false, false);
+  }
+
+  /// All options of a struct that has a `describe` function (Core/Describe.h).  `prefix` goes before
+  /// each name: "unfold." gives --unfold.radius.
+  template <class Options>
+  Declaration& options(const std::string& category, Options& values, std::string_view prefix = {}) {
+    for (auto& listed : provenance::listOptions(values, prefix)) {
+      add(std::move(listed), category, false, false);
+    }
+    return *this;
+  }
+
+  /// Says that an option or positional declared before must be given.
+  Declaration& require(std::string_view name);
+  /// Leaves out options declared before, e.g. one of a struct that makes no sense here.
+  Declaration& without(std::string_view name);
+  /// Takes over every option (not the positionals) of another declaration, names prefixed.
+  Declaration& include(const Declaration& other, std::string_view prefix);
+
+  /// A file written into --out.
+  Declaration& output(std::string pattern, FileKind kind, std::string help);
+  /// As output(), for a file whose bytes hold times or the like.
+  Declaration& varyingOutput(std::string pattern, FileKind kind, std::string help);
+  /// The command writes no directory: no --out, no summary, no record.
+  Declaration& withoutOutput();
+  /// Outputs go straight into --out, which may hold files already: for commands made of steps that
+  /// each keep whole-or-not-at-all themselves.
+  Declaration& inPlace();
+  /// While `*reuse` is true, --out may hold files already (as with --resume).
+  Declaration& reuseOutputIf(const bool& reuse);
+  /// Where to write if --out is not given.
+  Declaration& defaultOut(const std::string& folder);
+
+  /// The option or positional of that name, or nullptr.
+  [[nodiscard]] Parameter* find(std::string_view name);
+
+  std::string name;  ///< as typed: "thickness", "phantom shell"
+  std::string synopsisText;
+  std::string descriptionText;
+  std::vector<std::string> references;
+  struct Example {
+    std::string commandLine, what;
+  };
+  std::vector<Example> examples;
+  std::vector<Parameter> parameters;  ///< in order of declaration
+  std::vector<OutputSlot> outputs;
+  bool writesOutput = true;
+  bool writesInPlace = false;
+  const bool* reuse = nullptr;
+  const std::string* fallbackOut = nullptr;
+
+ private:
+  Declaration& add(provenance::Option option, const std::string& category, bool positional,
+                   bool required, std::optional<FileKind> file = {});
+};
+
+}  // namespace explica::app

@@ -1,0 +1,100 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Console.h"
+
+#include "Explica/Core/Errors.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <ctime>
+
+namespace explica::app {
+
+std::string timeNow() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text;
+}
+
+Console::Console() : terminal_(isatty(STDERR_FILENO) == 1), log_(nullptr, &std::fclose) {}
+
+Console::~Console() { endProgress(); }
+
+void Console::openLog(const std::string& path) {
+  log_.reset(std::fopen(path.c_str(), "a"));
+  if (!log_) {
+    throw EnvironmentError(path + ": the log cannot be written (" + std::strerror(errno) + ")");
+  }
+}
+
+void Console::line(std::string_view kind, const std::string& message, bool shown) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (log_) {
+    std::fprintf(log_.get(), "%s %.*s%s\n", timeNow().c_str(), static_cast<int>(kind.size()),
+                 kind.data(), message.c_str());
+    std::fflush(log_.get());
+  }
+  if (!shown) return;
+  clearBar();
+  std::fprintf(stderr, "%.*s%s\n", static_cast<int>(kind.size()), kind.data(), message.c_str());
+}
+
+void Console::info(const std::string& message) { line("", message, level_ != Level::Quiet); }
+void Console::detail(const std::string& message) { line("", message, level_ == Level::Verbose); }
+void Console::warning(const std::string& message) { line("warning: ", message, true); }
+void Console::error(const std::string& message) { line("error: ", message, true); }
+
+void Console::progress(double fraction, std::string_view activity) {
+  if (!std::isfinite(fraction)) return;
+  fraction = std::clamp(fraction, 0.0, 1.0);
+  const auto now = std::chrono::steady_clock::now();
+  const int tenth = static_cast<int>(fraction * 10);
+  std::string text;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const bool newActivity = activity != lastActivity_;
+    if (terminal_ && level_ != Level::Quiet) {
+      constexpr auto kRedraw = std::chrono::milliseconds(100);
+      if (newActivity || now - lastDrawn_ > kRedraw || fraction >= 1.0) {
+        constexpr int kWidth = 30;
+        const int filled = static_cast<int>(fraction * kWidth);
+        std::fprintf(stderr, "\r\033[K[%s%s] %3d %%  %.*s", std::string(filled, '=').c_str(),
+                     std::string(kWidth - filled, ' ').c_str(), static_cast<int>(fraction * 100),
+                     static_cast<int>(activity.size()), activity.data());
+        std::fflush(stderr);
+        barShown_ = true;
+        lastDrawn_ = now;
+      }
+    }
+    if (!newActivity && tenth == lastTenth_) return;
+    lastActivity_ = activity;
+    lastTenth_ = tenth;
+    text = std::string(activity) + ": " + std::to_string(tenth * 10) + " %";
+  }
+  if (!terminal_) {
+    line("", text, level_ != Level::Quiet);
+  }
+}
+
+void Console::endProgress() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  clearBar();
+  lastTenth_ = -1;
+  lastActivity_.clear();
+}
+
+void Console::clearBar() {
+  if (!barShown_) return;
+  std::fprintf(stderr, "\r\033[K");
+  barShown_ = false;
+}
+
+}  // namespace explica::app

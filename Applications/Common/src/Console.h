@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <string_view>
+
+namespace explica::app {
+
+/// Messages to standard error and to the log file: a progress bar on a terminal, plain lines elsewhere.
+/// May be called from several threads.
+class Console {
+ public:
+  enum class Level { Quiet, Normal, Verbose };
+
+  Console();
+  ~Console();
+  void setLevel(Level level) { level_ = level; }
+  /// @throws EnvironmentError  the file cannot be written
+  void openLog(const std::string& path);
+
+  void info(const std::string& message);
+  void detail(const std::string& message);
+  void warning(const std::string& message);
+  void error(const std::string& message);
+  void progress(double fraction, std::string_view activity);
+  void endProgress();
+
+ private:
+  void line(std::string_view kind, const std::string& message, bool shown);
+  void clearBar();
+
+  std::mutex mutex_;
+  Level level_ = Level::Normal;
+  bool terminal_ = false;
+  bool barShown_ = false;
+  int lastTenth_ = -1;
+  std::string lastActivity_;
+  std::chrono::steady_clock::time_point lastDrawn_{};
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> log_;
+};
+
+/// Now, UTC, ISO 8601 to the second.
+[[nodiscard]] std::string timeNow();
+
+}  // namespace explica::app

@@ -1,0 +1,179 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Provenance/Software.h"
+#include "Parse.h"
+#include "Run.h"
+
+#include <algorithm>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <new>
+
+namespace explica::app {
+namespace {
+
+using provenance::Json;
+
+std::string overview() {
+  std::string text =
+      "Explica measures folded annular tissue and unfolds it for a chosen viewpoint.\n\n"
+      "Usage: explica COMMAND [arguments] [options]\n\nCommands:\n";
+  for (const Command& command : allCommands()) {
+    const std::string name = command.name();
+    text += "  " + name + std::string(name.size() < 20 ? 20 - name.size() : 1, ' ') +
+            command.begin().declaration.synopsisText + "\n";
+  }
+  return text + "\nexplica COMMAND --help says more.  Exit codes: 0 done, 1 usage, 2 bad input,\n"
+                "3 stopped before its goal (outputs written and marked), 4 environment.\n";
+}
+
+/// Commands whose names start with `verb `: the kinds of a verb.
+std::vector<const Command*> kindsOf(const std::string& verb) {
+  std::vector<const Command*> kinds;
+  for (const Command& command : allCommands()) {
+    if (command.name().rfind(verb + " ", 0) == 0) kinds.push_back(&command);
+  }
+  return kinds;
+}
+
+bool has(const std::vector<std::string>& words, const std::string& wanted) {
+  const auto end = std::find(words.begin(), words.end(), "--");
+  return std::find(words.begin(), end, wanted) != end;
+}
+
+int runCommandLine(std::vector<std::string> words, const std::vector<std::string>& argv,
+                   Console& console, std::string& commandName) {
+  if (words.empty()) {
+    std::cerr << overview();
+    return kUsage;
+  }
+  if (words[0] == "--version") {
+    std::cout << provenance::softwareText() << "\n";
+    return kDone;
+  }
+  if (words[0] == "help") words.erase(words.begin()), words.push_back("--help");
+  if (words[0] == "--help" || words[0] == "-h") {
+    std::cout << overview();
+    return kDone;
+  }
+  if (words[0] == "--describe") {
+    Json all = Json::array();
+    for (const Command& command : allCommands()) all.push_back(describeJson(command.begin().declaration));
+    std::cout << all.dump(2) << "\n";
+    return kDone;
+  }
+
+  const Command* command = nullptr;
+  if (words.size() > 1) command = findCommand(words[0] + " " + words[1]);
+  std::size_t used = command ? 2 : 1;
+  if (!command) command = findCommand(words[0]);
+  if (!command) {
+    const auto kinds = kindsOf(words[0]);
+    if (!kinds.empty()) {
+      std::string text = "explica " + words[0] + " KIND; kinds are\n";
+      for (const Command* kind : kinds) {
+        text += "  " + kind->name() + ": " + kind->begin().declaration.synopsisText + "\n";
+      }
+      if (has(words, "--help")) {
+        std::cout << text;
+        return kDone;
+      }
+      throw UsageError(words.size() > 1 ? "unknown kind '" + words[1] + "': " + text : text);
+    }
+    std::vector<std::string> names;
+    for (const Command& candidate : allCommands()) names.push_back(candidate.name());
+    const std::string near = nearestWord(words[0], names);
+    throw UsageError("unknown command '" + words[0] + "'" +
+                     (near.empty() ? "; see explica --help" : "; did you mean '" + near + "'?"));
+  }
+  commandName = command->name();
+  words.erase(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(used));
+
+  Run run;
+  run.invocation = command->begin();
+  Declaration& declaration = run.invocation.declaration;
+  if (has(words, "--help") || has(words, "-h")) {
+    std::cout << helpText(declaration);
+    return kDone;
+  }
+  if (has(words, "--version")) {
+    std::cout << provenance::softwareText() << "\n";
+    return kDone;
+  }
+  if (has(words, "--describe")) {
+    std::cout << describeJson(declaration).dump(2) << "\n";
+    return kDone;
+  }
+  if (has(words, "--describe=page")) {
+    std::cout << referencePage(declaration);
+    return kDone;
+  }
+  run.given = parseWords(declaration, run.common, words);
+  requireGiven(declaration, run.given);
+  run.argv = argv;
+  if (run.common.quiet) console.setLevel(Console::Level::Quiet);
+  if (run.common.verbose) console.setLevel(Console::Level::Verbose);
+  if (run.common.log) console.openLog(*run.common.log);
+
+  const Outcome outcome = execute(run, console);
+  if (run.common.dryRun) {
+    Json options = Json::object();
+    for (const Parameter& parameter : declaration.parameters) {
+      options[parameter.option.name] = provenance::valueOf(parameter.option);
+    }
+    std::cout << options.dump(2) << "\n";
+    console.info("dry run: inputs and options are usable; nothing was written");
+  } else if (!outcome.record.empty()) {
+    const std::string where = outcome.record.parent_path().string();
+    if (outcome.exitCode == kStoppedEarly) {
+      console.warning("stopped before its goal (" + std::string(nameOf(outcome.termination)) +
+                      "); what was reached is in " + where);
+    } else {
+      console.info("done: results in " + where);
+    }
+  }
+  return outcome.exitCode;
+}
+
+}  // namespace
+
+const Command* findCommand(std::string_view name) {
+  for (const Command& command : allCommands()) {
+    if (command.name() == name) return &command;
+  }
+  return nullptr;
+}
+
+int runMain(int argc, char** argv) {
+  const std::vector<std::string> all(argv, argv + argc);
+  Console console;
+  std::string command;
+  const auto fail = [&](int code, const std::string& message) {
+    console.endProgress();
+    console.error("explica" + (command.empty() ? "" : " " + command) + ": " + message);
+    return code;
+  };
+  catchSignals();
+  try {
+    return runCommandLine({all.begin() + (all.empty() ? 0 : 1), all.end()}, all, console, command);
+  } catch (const UsageError& error) {
+    return fail(kUsage, error.what());
+  } catch (const InvalidInput& error) {
+    return fail(kBadInput, error.what());
+  } catch (const IOError& error) {
+    return fail(kBadInput, error.what());
+  } catch (const EnvironmentError& error) {
+    return fail(kEnvironment, error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(kEnvironment, "out of memory");
+  } catch (const std::filesystem::filesystem_error& error) {
+    return fail(kEnvironment, error.what());
+  } catch (const std::exception& error) {
+    return fail(kEnvironment, std::string("internal error, please report it: ") + error.what());
+  }
+}
+
+}  // namespace explica::app

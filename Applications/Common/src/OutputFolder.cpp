@@ -1,0 +1,290 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "OutputFolder.h"
+
+#include "Console.h"
+#include "Explica/Core/Errors.h"
+#include "Explica/Provenance/Record.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+namespace explica::app {
+namespace {
+
+namespace fs = std::filesystem;
+using provenance::Json;
+
+constexpr auto kHeartbeat = std::chrono::seconds(30);
+constexpr auto kSilence = std::chrono::minutes(10);  // a host silent for so long is taken for dead
+
+std::string hostName() {
+  char name[256] = {};
+  return gethostname(name, sizeof name - 1) == 0 ? name : "unknown";
+}
+
+/// Clock ticks at which a process began: tells a process from a later one of the same number.
+std::string processStart(long pid) {
+  std::ifstream stat("/proc/" + std::to_string(pid) + "/stat");
+  std::string text((std::istreambuf_iterator<char>(stat)), {});
+  const auto close = text.rfind(')');
+  if (close == std::string::npos) return "";
+  std::istringstream fields(text.substr(close + 1));
+  std::string field;
+  constexpr int kStartField = 20;  // 22nd of proc(5), counted after the command's name
+  for (int i = 0; i < kStartField; ++i) fields >> field;
+  return field;
+}
+
+std::string ownLock(const std::string& command) {
+  return Json{{"host", hostName()},
+              {"pid", static_cast<long>(getpid())},
+              {"process_start", processStart(getpid())},
+              {"started", timeNow()},
+              {"command", command}}
+             .dump() +
+         "\n";
+}
+
+/// Empty if the lock's owner is gone; else a sentence on who holds it.
+std::string holderOf(const fs::path& lock) {
+  std::ifstream file(lock);
+  const Json held = Json::parse(file, nullptr, false);
+  std::error_code fault;
+  const auto touched = fs::last_write_time(lock, fault);
+  if (fault) return "";
+  const bool silent = fs::file_time_type::clock::now() - touched > kSilence;
+  if (!held.is_object() || !held.contains("pid")) return silent ? "" : "a run that is just starting";
+  const std::string host = held.value("host", "");
+  const long pid = held.value("pid", 0L);
+  if (host == hostName()) {
+    if (kill(static_cast<pid_t>(pid), 0) != 0 && errno == ESRCH) return "";
+    const std::string start = processStart(pid);
+    if (!start.empty() && start != held.value("process_start", "")) return "";
+  } else if (silent) {
+    return "";
+  }
+  return "process " + std::to_string(pid) + " on " + host + " (explica " +
+         held.value("command", "") + ", since " + held.value("started", "") + ")";
+}
+
+[[noreturn]] void cannot(const std::string& what, const fs::path& path, const std::string& cause) {
+  throw EnvironmentError(path.string() + ": " + what + " (" + cause + ")");
+}
+
+}  // namespace
+
+OutputFolder::OutputFolder(fs::path folder, const OutputRules& rules,
+                           const std::function<void(const std::string&)>& warn)
+    : folder_(std::move(folder)), inPlace_(rules.inPlace), replaceEarlier_(rules.replaceEarlier) {
+  if (!folder_.has_filename()) folder_ = folder_.parent_path();  // "results/" is "results"
+  std::error_code fault;
+  const auto status = fs::status(folder_, fault);
+  existed_ = fs::exists(status);
+  if (existed_ && !fs::is_directory(status)) {
+    throw UsageError(folder_.string() + ": --out must be a folder, this is a file");
+  }
+  if (existed_ && !rules.mayHoldFiles) {
+    fs::directory_iterator entries(folder_, fault);
+    if (fault) cannot("the output folder cannot be read", folder_, fault.message());
+    for (const auto& entry : entries) {
+      const std::string name = entry.path().filename().string();
+      if (name.rfind(".explica-", 0) == 0) continue;  // left by a run that was killed
+      throw UsageError(folder_.string() + ": the output folder is not empty (it holds " + name +
+                       "); give another --out, or --force to replace what is there");
+    }
+  }
+  if (rules.checkOnly) {
+    auto parent = fs::absolute(folder_);
+    while (!fs::exists(parent, fault) && parent.has_relative_path()) parent = parent.parent_path();
+    if (access(parent.c_str(), W_OK) != 0) {
+      cannot("the output folder cannot be made", folder_, std::strerror(errno));
+    }
+    published_ = true;
+    return;
+  }
+
+  const fs::path absolute = fs::absolute(folder_);
+  const bool inside = existed_ || inPlace_;
+  std::vector<fs::path> missing;
+  for (fs::path p = inside ? absolute : absolute.parent_path();
+       !fs::exists(p, fault) && p.has_relative_path(); p = p.parent_path()) {
+    missing.push_back(p);
+  }
+  for (auto it = missing.rbegin(); it != missing.rend(); ++it) {
+    if (mkdir(it->c_str(), 0777) != 0 && errno != EEXIST) {
+      const std::string cause = std::strerror(errno);
+      for (auto made = madeFolders_.rbegin(); made != madeFolders_.rend(); ++made) {
+        fs::remove(*made, fault);
+      }
+      cannot("the output folder cannot be made", folder_, cause);
+    }
+    madeFolders_.push_back(*it);
+  }
+  const std::string name = absolute.filename().string();
+  lock_ = inside ? absolute / ".explica-lock" : absolute.parent_path() / ("." + name + ".explica-lock");
+  stage_ = inPlace_ ? absolute
+           : inside ? absolute / ".explica-stage"
+                    : absolute.parent_path() / ("." + name + ".explica-stage");
+  try {
+    acquireLock(rules, warn);
+    if (!inPlace_) {
+      fs::remove_all(stage_);
+      fs::create_directory(stage_);
+    }
+  } catch (const fs::filesystem_error& error) {
+    releaseLock();
+    cannot("the output folder cannot be used", folder_, error.code().message());
+  } catch (...) {
+    releaseLock();
+    for (auto made = madeFolders_.rbegin(); made != madeFolders_.rend(); ++made) {
+      fs::remove(*made, fault);
+    }
+    throw;
+  }
+}
+
+void OutputFolder::acquireLock(const OutputRules& rules,
+                               const std::function<void(const std::string&)>& warn) {
+  for (int attempt = 0; attempt < 3; ++attempt) {
+    const int descriptor = open(lock_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
+    if (descriptor >= 0) {
+      const std::string text = ownLock(rules.command);
+      const bool written = write(descriptor, text.data(), text.size()) ==
+                           static_cast<ssize_t>(text.size());
+      const std::string cause = std::strerror(errno);
+      close(descriptor);
+      locked_ = true;
+      if (!written) cannot("the output folder cannot be written", folder_, cause);
+      heartbeat_ = std::thread([this] {
+        std::unique_lock<std::mutex> guard(mutex_);
+        while (!wake_.wait_for(guard, kHeartbeat, [this] { return stopping_; })) {
+          std::error_code ignored;
+          fs::last_write_time(lock_, fs::file_time_type::clock::now(), ignored);
+        }
+      });
+      return;
+    }
+    if (errno != EEXIST) cannot("the output folder cannot be written", folder_, std::strerror(errno));
+    const std::string holder = holderOf(lock_);
+    if (!holder.empty()) {
+      throw EnvironmentError(folder_.string() + ": in use by " + holder +
+                             "; wait for it, or give another --out");
+    }
+    // Only one of several takers succeeds in moving the stale lock away.
+    const fs::path aside = lock_.string() + "." + std::to_string(getpid());
+    if (rename(lock_.c_str(), aside.c_str()) == 0) {
+      unlink(aside.c_str());
+      warn(folder_.string() + ": an earlier run was killed here; its unfinished files are removed");
+    }
+  }
+  throw EnvironmentError(folder_.string() + ": other runs contend for this folder; give another --out");
+}
+
+void OutputFolder::releaseLock() {
+  if (heartbeat_.joinable()) {
+    {
+      const std::lock_guard<std::mutex> guard(mutex_);
+      stopping_ = true;
+    }
+    wake_.notify_all();
+    heartbeat_.join();
+  }
+  if (locked_) {
+    std::error_code ignored;
+    fs::remove(lock_, ignored);
+    locked_ = false;
+  }
+}
+
+OutputFolder::~OutputFolder() {
+  std::error_code ignored;
+  if (!published_ && !inPlace_ && !stage_.empty()) fs::remove_all(stage_, ignored);
+  releaseLock();
+  if (!published_) {
+    for (auto made = madeFolders_.rbegin(); made != madeFolders_.rend(); ++made) {
+      fs::remove(*made, ignored);  // only if empty
+    }
+  }
+}
+
+fs::path OutputFolder::place(const std::string& name) {
+  const fs::path path = stage_ / name;
+  std::error_code fault;
+  fs::create_directories(path.parent_path(), fault);
+  if (fault) cannot("cannot be made", path.parent_path(), fault.message());
+  if (std::find(placed_.begin(), placed_.end(), name) == placed_.end()) placed_.push_back(name);
+  return path;
+}
+
+std::vector<std::string> OutputFolder::files() const {
+  std::vector<std::string> names;
+  std::error_code ignored;
+  for (const auto& name : placed_) {
+    if (fs::is_regular_file(stage_ / name, ignored)) names.push_back(name);
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+void OutputFolder::removeEarlier(const std::vector<std::string>& keep) const {
+  const fs::path record = folder_ / provenance::kRecordName;
+  std::error_code ignored;
+  if (!fs::exists(record, ignored)) return;
+  try {
+    const Json earlier = provenance::readRecord(record);
+    fs::remove(record);
+    for (const Json& output : earlier["outputs"]) {
+      const std::string name = output["path"];
+      const fs::path path = folder_ / name;
+      const bool ours = output.contains("sha256") && fs::is_regular_file(path, ignored) &&
+                        provenance::digestOf(path).sha256 == output["sha256"];
+      if (ours && std::find(keep.begin(), keep.end(), name) == keep.end()) fs::remove(path);
+    }
+  } catch (const IOError&) {
+    fs::remove(record, ignored);  // damaged: it must not describe the new files
+  }
+}
+
+void OutputFolder::publish(const std::string& last) {
+  const auto names = files();
+  try {
+    if (inPlace_) {
+      // Files are in place already.
+    } else if (!existed_) {
+      releaseLock();
+      fs::rename(stage_, folder_);
+    } else {
+      if (replaceEarlier_) {
+        removeEarlier(names);
+      } else {
+        fs::remove(folder_ / last);
+      }
+      for (const auto& name : names) {
+        if (name == last) continue;
+        fs::create_directories((folder_ / name).parent_path());
+        fs::rename(stage_ / name, folder_ / name);
+      }
+      if (std::find(names.begin(), names.end(), last) != names.end()) {
+        fs::rename(stage_ / last, folder_ / last);
+      }
+      fs::remove_all(stage_);
+    }
+  } catch (const fs::filesystem_error& error) {
+    cannot("the results cannot be put in place", folder_, error.code().message());
+  }
+  published_ = true;
+  releaseLock();
+}
+
+}  // namespace explica::app

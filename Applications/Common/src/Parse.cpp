@@ -1,0 +1,193 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Parse.h"
+
+#include "Explica/Core/Errors.h"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <numeric>
+
+namespace explica::app {
+namespace {
+
+/// Where CLI11 leaves the words of one parameter.
+struct Words {
+  Parameter* parameter = nullptr;
+  std::vector<std::string> values;
+  int flagCount = 0;
+  CLI::Option* handle = nullptr;
+};
+
+std::string dashed(const Parameter& parameter) {
+  return parameter.positional ? parameter.option.name : "--" + parameter.option.name;
+}
+
+/// `--viewpoint -10,2,3` would look like an option -1: binds a negative number to the option before.
+std::vector<std::string> bindNegativeNumbers(const std::vector<std::string>& words) {
+  const auto startsNegative = [](const std::string& word) {
+    if (word.size() < 2 || word[0] != '-') return false;
+    const char next = word[1];
+    return std::isdigit(static_cast<unsigned char>(next)) || next == '.' ||
+           word.rfind("-inf", 0) == 0;
+  };
+  std::vector<std::string> bound;
+  for (const auto& word : words) {
+    const bool afterOption = !bound.empty() && bound.back().rfind("--", 0) == 0 &&
+                             bound.back().size() > 2 &&
+                             bound.back().find('=') == std::string::npos;
+    if (afterOption && startsNegative(word)) {
+      bound.back() += "=" + word;
+    } else {
+      bound.push_back(word);
+    }
+  }
+  return bound;
+}
+
+}  // namespace
+
+std::string nearestWord(const std::string& word, const std::vector<std::string>& candidates) {
+  std::string best;
+  std::size_t bestDistance = word.size() / 3 + 2;
+  for (const auto& candidate : candidates) {
+    std::vector<std::size_t> row(candidate.size() + 1);
+    std::iota(row.begin(), row.end(), 0);
+    for (std::size_t i = 1; i <= word.size(); ++i) {
+      std::size_t diagonal = row[0];
+      row[0] = i;
+      for (std::size_t j = 1; j <= candidate.size(); ++j) {
+        const std::size_t substituted = diagonal + (word[i - 1] == candidate[j - 1] ? 0 : 1);
+        diagonal = row[j];
+        row[j] = std::min({row[j] + 1, row[j - 1] + 1, substituted});
+      }
+    }
+    if (row.back() < bestDistance) {
+      bestDistance = row.back();
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+std::vector<Parameter> commonParameters(const Declaration& declaration, CommonOptions& common) {
+  std::vector<Parameter> parameters;
+  for (auto& option : provenance::listOptions(common)) {
+    const bool concernsOutput = option.name == "out" || option.name == "force" ||
+                                option.name == "dry-run" || option.name == "private";
+    if (concernsOutput && !declaration.writesOutput) continue;
+    Parameter parameter;
+    parameter.option = std::move(option);
+    parameter.option.category = "Common";
+    parameters.push_back(std::move(parameter));
+  }
+  return parameters;
+}
+
+std::set<std::string> applyJson(std::vector<Parameter*> parameters, const provenance::Json& values,
+                                const std::string& source) {
+  if (!values.is_object()) throw UsageError(source + ": must hold one JSON object");
+  const provenance::Json flat = provenance::flattenKeys(values);
+  std::set<std::string> names;
+  for (const auto& [key, value] : flat.items()) {
+    const auto found = std::find_if(parameters.begin(), parameters.end(),
+                                    [&](const Parameter* p) { return p->option.name == key; });
+    if (found == parameters.end()) {
+      std::vector<std::string> known;
+      for (const Parameter* p : parameters) known.push_back(p->option.name);
+      const std::string near = nearestWord(key, known);
+      throw UsageError(source + ": unknown option '" + key + "'" +
+                       (near.empty() ? "" : "; did you mean '" + near + "'?"));
+    }
+    try {
+      provenance::setValue((*found)->option, value);
+    } catch (const UsageError& error) {
+      throw UsageError(source + ": " + error.what());
+    }
+    if (!value.is_null()) names.insert(key);
+  }
+  return names;
+}
+
+std::set<std::string> parseWords(Declaration& declaration, CommonOptions& common,
+                                 const std::vector<std::string>& words) {
+  std::vector<Parameter> shared = commonParameters(declaration, common);
+  std::vector<Parameter*> all;
+  for (Parameter& parameter : declaration.parameters) all.push_back(&parameter);
+  for (Parameter& parameter : shared) all.push_back(&parameter);
+
+  CLI::App parser;
+  parser.set_help_flag();
+  std::vector<Words> bindings(all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    Words& binding = bindings[i];
+    binding.parameter = all[i];
+    const auto& option = all[i]->option;
+    if (option.isFlag()) {
+      std::string names = "--" + option.name;
+      if (option.name.rfind("no-", 0) != 0) names += ",!--no-" + option.name;
+      binding.handle = parser.add_flag(names, binding.flagCount);
+      continue;
+    }
+    binding.handle = parser.add_option(dashed(*all[i]), binding.values);
+    if (all[i]->positional && option.isList()) {
+      binding.handle->expected(1, 1 << 20);
+    } else {
+      binding.handle->expected(1)->allow_extra_args(false);
+      binding.handle->multi_option_policy(option.isList() ? CLI::MultiOptionPolicy::TakeAll
+                                                          : CLI::MultiOptionPolicy::Throw);
+    }
+  }
+
+  try {
+    auto reversed = bindNegativeNumbers(words);
+    std::reverse(reversed.begin(), reversed.end());
+    parser.parse(reversed);
+  } catch (const CLI::ExtrasError&) {
+    std::vector<std::string> known;
+    for (const Parameter* p : all) {
+      if (!p->positional) known.push_back("--" + p->option.name);
+    }
+    const std::string extra = parser.remaining().empty() ? "" : parser.remaining().front();
+    const std::string word = extra.substr(0, extra.find('='));
+    if (word.rfind('-', 0) != 0) throw UsageError("'" + extra + "' was not expected");
+    const std::string near = nearestWord(word, known);
+    throw UsageError("unknown option " + word +
+                     (near.empty() ? "; see --help" : "; did you mean " + near + "?"));
+  } catch (const CLI::ArgumentMismatch& error) {
+    throw UsageError(std::string(error.what()) + " (give the option once, with one value)");
+  } catch (const CLI::ParseError& error) {
+    throw UsageError(error.what());
+  }
+
+  std::set<std::string> given;
+  for (const Words& binding : bindings) {
+    if (binding.parameter->option.name == "config" && !binding.values.empty()) {
+      const std::string& path = binding.values.back();
+      given = applyJson(all, provenance::readJson(path), path);
+    }
+  }
+  for (Words& binding : bindings) {
+    if (binding.handle->count() == 0) continue;
+    auto& option = binding.parameter->option;
+    if (option.isFlag()) {
+      option.setText({binding.flagCount > 0 ? "true" : "false"});
+    } else {
+      option.setText(binding.values);
+    }
+    given.insert(option.name);
+  }
+  return given;
+}
+
+void requireGiven(const Declaration& declaration, const std::set<std::string>& given) {
+  for (const Parameter& parameter : declaration.parameters) {
+    if (parameter.required && !given.count(parameter.option.name)) {
+      throw UsageError(dashed(parameter) + " is missing: " + parameter.option.help);
+    }
+  }
+}
+
+}  // namespace explica::app

@@ -1,0 +1,355 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Run.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/Parallel.h"
+#include "Explica/Provenance/Record.h"
+#include "Explica/Provenance/Software.h"
+#include "OutputFolder.h"
+#include "Parse.h"
+
+#include <fnmatch.h>
+#include <signal.h>
+#include <sys/resource.h>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <iostream>
+#include <optional>
+
+namespace explica::app {
+namespace {
+
+namespace fs = std::filesystem;
+using provenance::Json;
+
+/// Ends a dry run at the first step.
+struct DryRunEnds {};
+
+double secondsNow() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// Result keys that start so are times: they differ between equal runs.
+bool isTime(const std::string& key) { return key.rfind("seconds", 0) == 0; }
+
+volatile sig_atomic_t signalCount = 0;
+
+void onSignal(int number) {
+  signalCount = signalCount + 1;
+  if (signalCount > 1) {
+    signal(number, SIG_DFL);
+    raise(number);
+  }
+}
+
+double finite(double value) { return value; }
+
+Json numberOrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+}  // namespace
+
+bool signalled() { return signalCount > 0; }
+
+void catchSignals() {
+  struct sigaction action {};
+  action.sa_handler = onSignal;
+  sigemptyset(&action.sa_mask);
+  action.sa_flags = SA_RESTART;
+  for (const int number : {SIGINT, SIGTERM, SIGUSR1}) sigaction(number, &action, nullptr);
+  // A file size limit then shows as a failed write, with its cause, instead of ending the process.
+  signal(SIGXFSZ, SIG_IGN);
+}
+
+struct Context::State {
+  Run& run;
+  Console& console;
+  provenance::Record record;
+  Json summary = Json::object();
+  Monitor monitor;
+  std::optional<OutputFolder> folder;
+  std::vector<std::string> varying;  ///< names of outputs whose bytes may differ
+  std::vector<std::pair<std::string, fs::path>> nestedRecords;
+  int openSteps = 0;
+
+  [[nodiscard]] const Declaration& declaration() const { return run.invocation.declaration; }
+  void setResult(const std::string& key, Json value) { summary[key] = std::move(value); }
+};
+
+Context::Step::Step(Context& context, std::string name)
+    : context_(context), entry_(context.state_->record.steps.size()), begin_(secondsNow()) {
+  context.state_->console.detail(context.state_->run.prefix + name);
+  context.state_->record.steps.push_back({std::move(name), 0, {}, Termination::NotRun});
+}
+
+Context::Step::~Step() {
+  auto& entry = context_.state_->record.steps[entry_];
+  entry.seconds = secondsNow() - begin_;
+  context_.state_->console.endProgress();
+}
+
+void Context::Step::iterations(int count) {
+  context_.state_->record.steps[entry_].iterations = count;
+}
+
+void Context::Step::termination(Termination termination) {
+  context_.state_->record.steps[entry_].termination = termination;
+}
+
+fs::path Context::input(const fs::path& path, std::string_view role) {
+  provenance::InputFile file;
+  file.role = role;
+  file.given = path;
+  file.digest = provenance::digestOf(path);
+  std::error_code ignored;
+  file.absolute = fs::absolute(path, ignored).lexically_normal();
+  auto& inputs = state_->record.inputs;
+  const bool known = std::any_of(inputs.begin(), inputs.end(), [&](const auto& other) {
+    return other.absolute == file.absolute && other.role == file.role;
+  });
+  if (known) return path;
+  if (const auto found = provenance::findRecordOf(path, file.digest)) {
+    if (found->sameContent) {
+      file.parent = provenance::Parent{found->record["id"], provenance::digestOf(found->path).sha256,
+                                       found->path};
+    } else {
+      warn(path.string() + " was changed since " + found->path.string() + " recorded it");
+    }
+  }
+  inputs.push_back(std::move(file));
+  return path;
+}
+
+fs::path Context::output(const std::string& name) {
+  if (state_->run.common.dryRun) throw DryRunEnds{};
+  if (!state_->folder) throw std::logic_error("command writes no folder, yet asks for " + name);
+  const auto& slots = state_->declaration().outputs;
+  const auto slot = std::find_if(slots.begin(), slots.end(), [&](const OutputSlot& s) {
+    return fnmatch(s.pattern.c_str(), name.c_str(), 0) == 0;
+  });
+  if (slot == slots.end()) throw std::logic_error("undeclared output " + name);
+  if (slot->varies) state_->varying.push_back(name);
+  return state_->folder->place(name);
+}
+
+fs::path Context::outputFolder() const {
+  return state_->run.common.out ? fs::path(*state_->run.common.out) : fs::path();
+}
+
+Context::Step Context::step(std::string name) {
+  if (state_->run.common.dryRun) throw DryRunEnds{};
+  return Step(*this, std::move(name));
+}
+
+void Context::result(const std::string& key, double value) {
+  state_->setResult(key, numberOrNull(finite(value)));
+}
+void Context::result(const std::string& key, int value) { state_->setResult(key, value); }
+void Context::result(const std::string& key, long value) { state_->setResult(key, value); }
+void Context::result(const std::string& key, long long value) { state_->setResult(key, value); }
+void Context::result(const std::string& key, std::size_t value) { state_->setResult(key, value); }
+void Context::result(const std::string& key, bool value) { state_->setResult(key, value); }
+void Context::result(const std::string& key, const std::string& value) {
+  state_->setResult(key, value);
+}
+void Context::result(const std::string& key, const char* value) { state_->setResult(key, value); }
+void Context::result(const std::string& key, const std::vector<double>& values) {
+  Json array = Json::array();
+  for (const double value : values) array.push_back(numberOrNull(value));
+  state_->setResult(key, array);
+}
+void Context::result(const std::string& key, const Json& value) { state_->setResult(key, value); }
+
+void Context::note(const std::string& key, const Json& value) { state_->record.notes[key] = value; }
+
+const Monitor& Context::monitor() const { return state_->monitor; }
+
+void Context::info(const std::string& message) { state_->console.info(state_->run.prefix + message); }
+void Context::detail(const std::string& message) {
+  state_->console.detail(state_->run.prefix + message);
+}
+void Context::warn(const std::string& message) { state_->monitor.warn(message); }
+
+bool Context::given(std::string_view name) const {
+  return state_->run.given.count(std::string(name)) > 0;
+}
+int Context::threads() const { return state_->record.threads; }
+
+Outcome Context::runCommand(const Command& command, const std::string& name, const Json& options) {
+  if (state_->run.common.dryRun) throw DryRunEnds{};
+  if (!state_->folder || !state_->declaration().writesInPlace) {
+    throw std::logic_error("runCommand: the command must be declared inPlace()");
+  }
+  Run nested;
+  nested.invocation = command.begin();
+  std::vector<Parameter*> parameters;
+  for (Parameter& p : nested.invocation.declaration.parameters) parameters.push_back(&p);
+  nested.given = applyJson(parameters, options, command.name());
+  requireGiven(nested.invocation.declaration, nested.given);
+  nested.common = state_->run.common;
+  nested.common.out = (outputFolder() / name).string();
+  nested.common.force = true;
+  nested.argv = {"explica", command.name(), options.dump()};
+  nested.parent = &state_->monitor;
+  nested.prefix = state_->run.prefix + name + ": ";
+  Step timing = step(name);
+  const Outcome outcome = execute(nested, state_->console);
+  timing.termination(outcome.termination);
+  if (!outcome.record.empty()) {
+    state_->nestedRecords.emplace_back(name + "/" + provenance::kRecordName, outcome.record);
+  }
+  return outcome;
+}
+
+namespace {
+
+/// Hashes every file that a declared input names, so that a missing one is told before any work.
+void noteDeclaredInputs(Context& context, const Declaration& declaration) {
+  for (const Parameter& parameter : declaration.parameters) {
+    if (!parameter.file) continue;
+    const Json value = provenance::valueOf(parameter.option);
+    if (value.is_null()) continue;
+    for (const auto& element : value.is_array() ? value : Json::array({value})) {
+      const std::string path = element.get<std::string>();
+      const bool mayBeFolder = *parameter.file == FileKind::Folder ||
+                               *parameter.file == FileKind::Any;
+      std::error_code fault;
+      if (mayBeFolder && fs::is_directory(path, fault)) continue;
+      if (*parameter.file == FileKind::Folder) {
+        throw IOError(path + (fs::exists(path, fault) ? ": is a file; a folder is needed"
+                                                      : ": no such folder"));
+      }
+      context.input(path, parameter.option.name);
+    }
+  }
+}
+
+std::uint64_t peakMemory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+double cpuSeconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
+         1e-6 * static_cast<double>(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
+}
+
+/// The values of a declaration: those of files apart, because paths may differ between equal runs.
+void recordValues(const Declaration& declaration, provenance::Record& record) {
+  for (const Parameter& parameter : declaration.parameters) {
+    const Json value = provenance::valueOf(parameter.option);
+    if (parameter.file || parameter.positional) {
+      if (!value.is_null()) record.arguments[parameter.option.name] = value;
+    }
+    if (!parameter.file) record.options[parameter.option.name] = value;
+  }
+}
+
+}  // namespace
+
+Outcome execute(Run& run, Console& console) {
+  const Declaration& declaration = run.invocation.declaration;
+  const ThreadChoice threads = chooseThreads(run.common.threads);
+  setThreadCount(threads.count);
+  Eigen::setNbThreads(threads.count);
+
+  Context::State state{run, console, {}, Json::object(), {}, {}, {}, {}, 0};
+  Context context(state);
+  provenance::Record& record = state.record;
+  record.command = declaration.name;
+  record.argv = run.argv;
+  record.directory = fs::current_path();
+  record.started = timeNow();
+  record.threads = threads.count;
+  record.threadsBecause = threads.because;
+  record.withNames = !run.common.privateRecord;
+  const double begin = secondsNow();
+  const double cpuBegin = cpuSeconds();
+
+  std::mutex warningsMutex;
+  state.monitor.onWarning = [&](const std::string& message) {
+    const std::lock_guard<std::mutex> lock(warningsMutex);
+    record.warnings.push_back(message);
+    if (run.parent) {
+      run.parent->warn(run.prefix + message);
+    } else {
+      console.warning(message);
+    }
+  };
+  state.monitor.onProgress = [&](double fraction, std::string_view activity) {
+    console.progress(fraction, run.prefix + std::string(activity));
+  };
+  state.monitor.stopWanted = [&] {
+    return signalled() || (run.parent && run.parent->shouldStop());
+  };
+
+  noteDeclaredInputs(context, declaration);
+  recordValues(declaration, record);
+
+  if (declaration.writesOutput) {
+    if (!run.common.out && declaration.fallbackOut) run.common.out = *declaration.fallbackOut;
+    if (!run.common.out) throw UsageError("--out is missing: the folder for the results");
+    const bool reuse = declaration.reuse && *declaration.reuse;
+    const OutputRules rules{run.common.force || reuse, run.common.force && !reuse,
+                            declaration.writesInPlace, run.common.dryRun, declaration.name};
+    state.folder.emplace(*run.common.out, rules,
+                         [&](const std::string& message) { state.monitor.warn(message); });
+    std::error_code ignored;
+    record.out = fs::absolute(*run.common.out, ignored);
+  }
+
+  Termination termination = Termination::NotRun;
+  try {
+    termination = run.invocation.run(context);
+  } catch (const DryRunEnds&) {
+    return {};
+  }
+  console.endProgress();
+  if (run.common.dryRun) return {};
+
+  Outcome outcome;
+  outcome.termination = termination;
+  outcome.exitCode = reachedGoal(termination) ? kDone : kStoppedEarly;
+  if (!declaration.writesOutput) return outcome;
+
+  record.termination = termination;
+  record.exitCode = outcome.exitCode;
+  record.ended = timeNow();
+  record.seconds = secondsNow() - begin;
+  record.cpuSeconds = cpuSeconds() - cpuBegin;
+  record.peakMemoryBytes = peakMemory();
+
+  Json summary = {{"command", declaration.name}, {"termination", nameOf(termination)}};
+  summary.update(state.summary);
+  for (const auto& [key, value] : summary.items()) {
+    if (!isTime(key)) record.results[key] = value;
+  }
+  if (!summary.contains("seconds")) summary["seconds"] = record.seconds;
+  summary["peak_memory_bytes"] = record.peakMemoryBytes;
+  summary["warnings"] = record.warnings;
+  provenance::writeJson(state.folder->place(provenance::kSummaryName), summary);
+  state.varying.push_back(provenance::kSummaryName);
+
+  for (const auto& name : state.folder->files()) {
+    const bool varies =
+        std::find(state.varying.begin(), state.varying.end(), name) != state.varying.end();
+    record.outputs.push_back({name, provenance::digestOf(state.folder->place(name)), varies});
+  }
+  for (const auto& [name, path] : state.nestedRecords) {
+    record.outputs.push_back({name, provenance::digestOf(path), true});
+  }
+  provenance::writeJson(state.folder->place(provenance::kRecordName), toJson(record));
+  state.folder->publish(provenance::kRecordName);
+  outcome.record = fs::path(*run.common.out) / provenance::kRecordName;
+  return outcome;
+}
+
+}  // namespace explica::app

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Provenance/Options.h"
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <string_view>
+
+namespace explica::provenance {
+
+/// JSON whose keys keep their order, so that records read well and equal records are equal bytes.
+using Json = nlohmann::ordered_json;
+
+/// An option's value: unset is null, points are arrays, infinities are "inf" and "-inf".
+[[nodiscard]] Json valueOf(const Option& option);
+
+/// Sets an option from JSON as valueOf() writes it; text as on the command line is accepted too.
+/// @throws UsageError  names the option, what was found and what is expected
+void setValue(Option& option, const Json& value);
+
+/// All values of a struct that has a `describe` function, as an object.
+template <class Options>
+[[nodiscard]] Json optionsToJson(const Options& options) {
+  Options copy = options;
+  Json object = Json::object();
+  for (const Option& option : listOptions(copy)) object[option.name] = valueOf(option);
+  return object;
+}
+
+/// Sets the members that an object names; the others keep their defaults.
+/// @throws UsageError  unknown key, or a value of the wrong type
+void setOptions(std::vector<Option>& options, const Json& object);
+
+template <class Options>
+void optionsFromJson(const Json& object, Options& options) {
+  auto listed = listOptions(options);
+  setOptions(listed, object);
+}
+
+/// {"unfold": {"radius": 30}} becomes {"unfold.radius": 30}.
+[[nodiscard]] Json flattenKeys(const Json& object);
+
+/// Reads a JSON file; comments are allowed.
+/// @throws IOError  names the file and, for a syntax error, the place
+[[nodiscard]] Json readJson(const std::filesystem::path& path);
+
+/// Writes a JSON file, indented, ending in a newline; NaN becomes null.
+/// @throws EnvironmentError  the file cannot be written
+void writeJson(const std::filesystem::path& path, const Json& value);
+
+/// Checks a value against a JSON schema (draft 7).
+/// @return one sentence per fault, each with the place in the value; empty if valid
+[[nodiscard]] std::vector<std::string> schemaFaults(const Json& value, std::string_view schema);
+
+}  // namespace explica::provenance

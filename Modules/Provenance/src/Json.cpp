@@ -1,0 +1,169 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Provenance/Json.h"
+
+#include "Explica/Core/Errors.h"
+
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+namespace explica::provenance {
+namespace {
+
+Json elementToJson(double value) {
+  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
+  return value;
+}
+Json elementToJson(bool value) { return value; }
+Json elementToJson(int value) { return value; }
+Json elementToJson(const std::string& value) { return value; }
+template <int N>
+Json elementToJson(const Eigen::Matrix<double, N, 1>& value) {
+  Json array = Json::array();
+  for (int i = 0; i < N; ++i) array.push_back(elementToJson(value[i]));
+  return array;
+}
+template <class T>
+Json elementToJson(const std::optional<T>& value) {
+  return value ? elementToJson(*value) : Json(nullptr);
+}
+template <class T>
+Json elementToJson(const std::vector<T>& values) {
+  Json array = Json::array();
+  for (const auto& value : values) array.push_back(elementToJson(value));
+  return array;
+}
+
+std::string wordOf(const Json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  return value.dump();
+}
+
+/// [1, 2, 3] as "1,2,3".
+std::string commaJoined(const Json& array) {
+  std::string joined;
+  for (const auto& element : array) joined += (joined.empty() ? "" : ",") + wordOf(element);
+  return joined;
+}
+
+/// Empties an optional or a list.
+void unset(Option& option) {
+  std::visit(
+      [&](auto& where) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(where)>, ChoiceTarget>) {
+          where.set({});
+        } else if constexpr (requires { where->reset(); }) {
+          where->reset();
+        } else if constexpr (requires { where->shrink_to_fit(); where->pop_back(); }) {
+          where->clear();
+        }
+      },
+      option.target);
+}
+
+}  // namespace
+
+Json valueOf(const Option& option) {
+  return std::visit(
+      [](const auto& where) -> Json {
+        if constexpr (std::is_same_v<std::decay_t<decltype(where)>, ChoiceTarget>) {
+          const auto words = where.get();
+          if (where.list) return words;
+          return words.empty() ? Json(nullptr) : Json(words.front());
+        } else {
+          return elementToJson(*where);
+        }
+      },
+      option.target);
+}
+
+void setValue(Option& option, const Json& value) {
+  const bool isPoint = option.type() == "point2" || option.type() == "point3";
+  const auto refuse = [&](const std::string& expected) {
+    throw UsageError(option.name + ": " + value.dump() + " is not " + expected);
+  };
+  if (value.is_null()) {
+    if (!option.isOptional()) refuse("a value for this option");
+    unset(option);
+  } else if (value.is_object()) {
+    refuse("a value for this option");
+  } else if (option.isList() && value.is_array()) {
+    if (value.empty()) {
+      unset(option);
+      return;
+    }
+    std::vector<std::string> words;
+    for (const auto& element : value) {
+      words.push_back(element.is_array() ? commaJoined(element) : wordOf(element));
+    }
+    option.setText(words);
+  } else if (value.is_array()) {
+    if (!isPoint) refuse("a single value");
+    option.setText({commaJoined(value)});
+  } else {
+    if (option.isFlag() && !value.is_boolean()) refuse("true or false");
+    option.setText({wordOf(value)});
+  }
+}
+
+void setOptions(std::vector<Option>& options, const Json& object) {
+  for (const auto& [key, value] : object.items()) {
+    bool known = false;
+    for (Option& option : options) {
+      if (option.name == key) {
+        setValue(option, value);
+        known = true;
+      }
+    }
+    if (!known) {
+      std::string names;
+      for (const Option& option : options) names += (names.empty() ? "" : ", ") + option.name;
+      throw UsageError("unknown option '" + key + "'; known are " + names);
+    }
+  }
+}
+
+Json flattenKeys(const Json& object) {
+  Json flat = Json::object();
+  for (const auto& [key, value] : object.items()) {
+    if (value.is_object()) {
+      const Json inner = flattenKeys(value);
+      for (const auto& [innerKey, innerValue] : inner.items()) {
+        flat[key + "." + innerKey] = innerValue;
+      }
+    } else {
+      flat[key] = value;
+    }
+  }
+  return flat;
+}
+
+Json readJson(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  std::stringstream text;
+  if (!file || !(text << file.rdbuf())) {
+    std::error_code ignored;
+    const bool folder = std::filesystem::is_directory(path, ignored);
+    throw IOError(path.string() + ": cannot be read (" +
+                  (folder ? "it is a folder" : std::strerror(errno)) + ")");
+  }
+  try {
+    return Json::parse(text.str(), nullptr, true, true);
+  } catch (const Json::parse_error& error) {
+    throw IOError(path.string() + ": not JSON: " + error.what());
+  }
+}
+
+void writeJson(const std::filesystem::path& path, const Json& value) {
+  std::ofstream file(path, std::ios::binary);
+  file << value.dump(2) << '\n';
+  file.close();
+  if (!file) {
+    throw EnvironmentError(path.string() + ": cannot be written (" + std::strerror(errno) + ")");
+  }
+}
+
+}  // namespace explica::provenance

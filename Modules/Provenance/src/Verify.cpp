@@ -1,0 +1,209 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Provenance/Verify.h"
+
+#include "Explica/Core/Errors.h"
+
+#include <algorithm>
+#include <set>
+#include <sstream>
+
+namespace explica::provenance {
+namespace {
+
+namespace fs = std::filesystem;
+
+FileState stateOf(const fs::path& path, const Json& entry) {
+  try {
+    const Digest found = digestOf(path);
+    return found.sha256 == entry.at("sha256") && found.size == entry.at("size") ? FileState::Same
+                                                                                : FileState::Changed;
+  } catch (const IOError&) {
+    return FileState::Missing;
+  }
+}
+
+bool isThere(const fs::path& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored);
+}
+
+/// The record that made an input, where it is now.
+std::optional<fs::path> locateParent(const Json& record, std::size_t input, const fs::path& located) {
+  const Json& execution = record["execution"]["inputs"][input];
+  if (!execution.contains("parent_record")) return std::nullopt;
+  const std::string wanted = record["inputs"][input].value("parent", "");
+  if (const auto found = findRecordOf(located, Digest{0, record["inputs"][input]["sha256"]})) {
+    if (found->record["id"] == wanted) return found->path;
+  }
+  return fs::path(execution["parent_record"].value("path", located.parent_path() / kRecordName));
+}
+
+void verifyInto(const fs::path& recordPath, bool deep, Verification& all, std::set<fs::path>& seen) {
+  std::error_code ignored;
+  if (!seen.insert(fs::weakly_canonical(recordPath, ignored)).second) return;
+  const Json record = readRecord(recordPath);
+  ++all.records;
+  const fs::path folder = recordPath.parent_path();
+  for (std::size_t i = 0; i < record["inputs"].size(); ++i) {
+    const Json& input = record["inputs"][i];
+    const fs::path path = locateInput(record, i, recordPath);
+    all.files.push_back({"input " + input["role"].get<std::string>(), path, stateOf(path, input),
+                         recordPath});
+    if (!deep) continue;
+    if (const auto parent = locateParent(record, i, path)) {
+      if (!isThere(*parent)) {
+        all.files.push_back({"record of " + path.string(), *parent, FileState::Missing, recordPath});
+        continue;
+      }
+      try {
+        verifyInto(*parent, true, all, seen);
+      } catch (const Error&) {
+        all.files.push_back({"record of " + path.string(), *parent, FileState::Changed, recordPath});
+      }
+    }
+  }
+  const Json& varying = record["execution"]["varying_outputs"];
+  for (const Json& output : record["outputs"]) {
+    const std::string name = output["path"];
+    const fs::path path = folder / name;
+    const Json* hashed = &output;
+    for (const Json& entry : varying) {
+      if (entry["path"] == name) hashed = &entry;
+    }
+    all.files.push_back({"output " + name, path, stateOf(path, *hashed), recordPath});
+  }
+}
+
+void historyInto(const fs::path& recordPath, int depth, std::ostringstream& text,
+                 std::set<fs::path>& seen) {
+  const std::string indent(2 * static_cast<std::size_t>(depth), ' ');
+  const Json record = readRecord(recordPath);
+  const Json& software = record["software"];
+  const Json& execution = record["execution"];
+  text << indent << "explica " << record["command"].get<std::string>() << "  ("
+       << software["version"].get<std::string>() << ", commit "
+       << software["commit"].get<std::string>().substr(0, 10)
+       << (software["dirty"].get<bool>() ? ", changed" : "") << "; "
+       << execution["started"].get<std::string>() << ", " << execution["seconds"].get<double>()
+       << " s; " << record["termination"].get<std::string>() << ")\n";
+  text << indent << "  record: " << recordPath.string() << '\n';
+  std::string argv;
+  for (const auto& word : execution["argv"]) argv += " " + word.get<std::string>();
+  text << indent << "  command line:" << argv << '\n';
+  for (const auto& warning : record["warnings"]) {
+    text << indent << "  warning: " << warning.get<std::string>() << '\n';
+  }
+  if (!seen.insert(recordPath).second) return;
+  for (std::size_t i = 0; i < record["inputs"].size(); ++i) {
+    const Json& input = record["inputs"][i];
+    const fs::path path = locateInput(record, i, recordPath);
+    text << indent << "  from " << input["role"].get<std::string>() << ": " << path.string()
+         << "  sha256 " << input["sha256"].get<std::string>().substr(0, 12) << '\n';
+    if (const auto parent = locateParent(record, i, path)) {
+      if (isThere(*parent)) {
+        historyInto(*parent, depth + 2, text, seen);
+      } else {
+        text << indent << "    its record is gone: " << parent->string() << '\n';
+      }
+    }
+  }
+}
+
+}  // namespace
+
+bool Verification::allSame() const {
+  return std::all_of(files.begin(), files.end(), [](const VerifiedFile& file) {
+    return file.state == FileState::Same || file.state == FileState::Unhashed;
+  });
+}
+
+fs::path locateInput(const Json& record, std::size_t input, const fs::path& recordPath) {
+  const Json& execution = record["execution"];
+  const Json& paths = execution["inputs"].at(input);
+  const fs::path given = paths["given"].get<std::string>();
+  std::vector<fs::path> candidates;
+  if (paths.contains("absolute")) candidates.emplace_back(paths["absolute"].get<std::string>());
+  if (execution.contains("directory")) {
+    candidates.push_back(fs::path(execution["directory"].get<std::string>()) / given);
+  }
+  candidates.push_back(given);
+  candidates.push_back(recordPath.parent_path() / given);
+  candidates.push_back(recordPath.parent_path() / given.filename());
+  for (const auto& candidate : candidates) {
+    if (isThere(candidate)) return candidate;
+  }
+  return candidates.front();
+}
+
+Verification verifyRecord(const fs::path& record, bool deep) {
+  Verification all;
+  std::set<fs::path> seen;
+  verifyInto(record, deep, all, seen);
+  return all;
+}
+
+std::string historyOf(const fs::path& file) {
+  std::ostringstream text;
+  std::set<fs::path> seen;
+  if (file.filename() == kRecordName) {
+    historyInto(file, 0, text, seen);
+    return text.str();
+  }
+  const Digest digest = digestOf(file);
+  const auto found = findRecordOf(file, digest);
+  if (!found) {
+    throw InvalidInput(file.string() + ": no " + kRecordName +
+                       " beside it or above names it; it was not made by explica, or was moved "
+                       "without its record");
+  }
+  text << file.string() << "  sha256 " << digest.sha256.substr(0, 12)
+       << (found->sameContent ? "" : "  CHANGED since it was made") << '\n';
+  historyInto(found->path, 1, text, seen);
+  return text.str();
+}
+
+Json toProvJson(const Json& record) {
+  const std::string activity = "explica:run-" + record["id"].get<std::string>();
+  const Json& execution = record["execution"];
+  Json prov = Json::object();
+  prov["prefix"] = {{"explica", "https://explica.invalid/ns#"},
+                    {"sha256", "urn:sha256:"},
+                    {"prov", "http://www.w3.org/ns/prov#"}};
+  prov["activity"][activity] = {{"prov:startTime", execution["started"]},
+                                {"prov:endTime", execution["ended"]},
+                                {"prov:label", "explica " + record["command"].get<std::string>()},
+                                {"explica:options", record["options"].dump()},
+                                {"explica:termination", record["termination"]}};
+  const std::string agent = "explica:software-" + record["software"]["version"].get<std::string>();
+  prov["agent"][agent] = {{"prov:type", "prov:SoftwareAgent"},
+                          {"explica:commit", record["software"]["commit"]}};
+  prov["wasAssociatedWith"]["_:association"] = {{"prov:activity", activity}, {"prov:agent", agent}};
+  prov["entity"] = Json::object();
+  std::size_t link = 0;
+  for (const Json& input : record["inputs"]) {
+    const std::string entity = "sha256:" + input["sha256"].get<std::string>();
+    prov["entity"][entity] = {{"prov:label", input["name"]}, {"explica:size", input["size"]}};
+    prov["used"]["_:used" + std::to_string(link++)] = {
+        {"prov:activity", activity}, {"prov:entity", entity}, {"prov:role", input["role"]}};
+    if (input.contains("parent")) {
+      prov["wasGeneratedBy"]["_:parent" + std::to_string(link)] = {
+          {"prov:entity", entity},
+          {"prov:activity", "explica:run-" + input["parent"].get<std::string>()}};
+      prov["activity"]["explica:run-" + input["parent"].get<std::string>()] = Json::object();
+    }
+  }
+  const auto addOutput = [&](const Json& output) {
+    if (!output.contains("sha256")) return;
+    const std::string entity = "sha256:" + output["sha256"].get<std::string>();
+    prov["entity"][entity] = {{"prov:label", output["path"]}, {"explica:size", output["size"]}};
+    prov["wasGeneratedBy"]["_:generated" + std::to_string(link++)] = {{"prov:entity", entity},
+                                                                     {"prov:activity", activity}};
+  };
+  for (const Json& output : record["outputs"]) addOutput(output);
+  for (const Json& output : execution["varying_outputs"]) addOutput(output);
+  return prov;
+}
+
+}  // namespace explica::provenance

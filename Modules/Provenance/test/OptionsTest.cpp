@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/Termination.h"
+#include "Explica/Provenance/Json.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace explica::provenance {
+namespace {
+
+struct Sample {
+  bool fast = false;
+  int count = 3;
+  double weight = 0.1;
+  double limit = std::numeric_limits<double>::infinity();
+  std::string note = "none";
+  Eigen::Vector3d viewpoint = {1, 2, 3};
+  std::optional<double> radius;
+  std::optional<Eigen::Vector3d> centre;
+  std::vector<int> labels = {1, 2};
+  Termination stop = Termination::Converged;
+  std::optional<Termination> other;
+  std::vector<Eigen::Vector3d> line;
+};
+
+template <class Visitor>
+void describe(Sample& s, Visitor&& visit) {
+  visit(Field{"fast", "", "a flag"}, s.fast);
+  visit(Field{"count", "", "a count"}, s.count);
+  visit(Field{"weight", "", "a weight"}, s.weight);
+  visit(Field{"limit", "s", "a limit"}, s.limit);
+  visit(Field{"note", "", "a text"}, s.note);
+  visit(Field{"viewpoint", "mm", "a point"}, s.viewpoint);
+  visit(Field{"radius", "mm", "an optional"}, s.radius);
+  visit(Field{"centre", "mm", "an optional point"}, s.centre);
+  visit(Field{"labels", "", "a list"}, s.labels);
+  visit(Field{"stop", "", "a choice"}, s.stop);
+  visit(Field{"other", "", "an optional choice"}, s.other);
+  visit(Field{"line", "mm", "points"}, s.line);
+}
+
+Option optionNamed(std::vector<Option>& options, const std::string& name) {
+  for (auto& option : options) {
+    if (option.name == name) return option;
+  }
+  throw std::logic_error(name);
+}
+
+TEST(Options, JsonRoundTripKeepsEveryValue) {
+  Sample sample;
+  sample.fast = true;
+  sample.weight = 1.0 / 3.0;
+  sample.centre = Eigen::Vector3d(-1, 0.5, 1e-7);
+  sample.labels = {7};
+  sample.other = Termination::Stalled;
+  sample.line = {{1, 2, 3}, {4, 5, 6}};
+  const Json json = optionsToJson(sample);
+  Sample back;
+  optionsFromJson(Json::parse(json.dump()), back);
+  EXPECT_EQ(optionsToJson(back), json);
+  EXPECT_EQ(back.weight, 1.0 / 3.0);
+  EXPECT_TRUE(std::isinf(back.limit));
+  EXPECT_EQ(*back.centre, Eigen::Vector3d(-1, 0.5, 1e-7));
+}
+
+TEST(Options, TextSetsEachType) {
+  Sample sample;
+  auto options = listOptions(sample);
+  optionNamed(options, "viewpoint").setText({"-10,2,3.5"});
+  optionNamed(options, "labels").setText({"4,5", "6"});
+  optionNamed(options, "stop").setText({"max-time"});
+  optionNamed(options, "radius").setText({"+2.5"});
+  optionNamed(options, "line").setText({"0,0,1", "-1,0,0"});
+  EXPECT_EQ(sample.viewpoint, Eigen::Vector3d(-10, 2, 3.5));
+  EXPECT_EQ(sample.labels, (std::vector<int>{4, 5, 6}));
+  EXPECT_EQ(sample.stop, Termination::MaxTime);
+  EXPECT_EQ(sample.radius, 2.5);
+  EXPECT_EQ(sample.line.size(), 2u);
+}
+
+TEST(Options, WrongTextIsRefusedWithNameAndExpectation) {
+  Sample sample;
+  auto options = listOptions(sample, "unfold.");
+  const auto message = [&](const std::string& name, const std::string& text) -> std::string {
+    try {
+      optionNamed(options, name).setText({text});
+    } catch (const UsageError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(message("unfold.count", "3.5"), "unfold.count: '3.5' is not a whole number");
+  EXPECT_EQ(message("unfold.weight", "nan"), "unfold.weight: 'nan' is not a number");
+  EXPECT_EQ(message("unfold.weight", "1mm"), "unfold.weight: '1mm' is not a number");
+  EXPECT_NE(message("unfold.viewpoint", "1,2").find("three numbers"), std::string::npos);
+  EXPECT_NE(message("unfold.stop", "tired").find("max-iterations"), std::string::npos);
+  EXPECT_EQ(sample.count, 3);
+}
+
+TEST(Options, UnknownKeyIsRefused) {
+  Sample sample;
+  EXPECT_THROW(optionsFromJson(Json{{"cuont", 1}}, sample), UsageError);
+}
+
+TEST(Options, NestedKeysFlatten) {
+  EXPECT_EQ(flattenKeys(Json::parse(R"({"a": {"b": 1, "c": {"d": 2}}, "e": 3})")),
+            Json::parse(R"({"a.b": 1, "a.c.d": 2, "e": 3})"));
+}
+
+}  // namespace
+}  // namespace explica::provenance
