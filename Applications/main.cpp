@@ -3,4 +3,6 @@
 
 #include "Explica/Application/Execute.h"
 
-int main(int argc, char** argv) { return explica::app::runMain(argc, argv); }
+int main(int argc, char** argv) {
+  return explica::app::runMain(argc, argv);
+}

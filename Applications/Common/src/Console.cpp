@@ -26,7 +26,9 @@ std::string timeNow() {
 
 Console::Console() : terminal_(isatty(STDERR_FILENO) == 1), log_(nullptr, &std::fclose) {}
 
-Console::~Console() { endProgress(); }
+Console::~Console() {
+  endProgress();
+}
 
 void Console::openLog(const std::string& path) {
   log_.reset(std::fopen(path.c_str(), "a"));
@@ -47,10 +49,18 @@ void Console::line(std::string_view kind, const std::string& message, bool shown
   std::fprintf(stderr, "%.*s%s\n", static_cast<int>(kind.size()), kind.data(), message.c_str());
 }
 
-void Console::info(const std::string& message) { line("", message, level_ != Level::Quiet); }
-void Console::detail(const std::string& message) { line("", message, level_ == Level::Verbose); }
-void Console::warning(const std::string& message) { line("warning: ", message, true); }
-void Console::error(const std::string& message) { line("error: ", message, true); }
+void Console::info(const std::string& message) {
+  line("", message, level_ != Level::Quiet);
+}
+void Console::detail(const std::string& message) {
+  line("", message, level_ == Level::Verbose);
+}
+void Console::warning(const std::string& message) {
+  line("warning: ", message, true);
+}
+void Console::error(const std::string& message) {
+  line("error: ", message, true);
+}
 
 void Console::progress(double fraction, std::string_view activity) {
   if (!std::isfinite(fraction)) return;

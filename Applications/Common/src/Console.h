@@ -11,8 +11,8 @@
 
 namespace explica::app {
 
-/// Messages to standard error and to the log file: a progress bar on a terminal, plain lines elsewhere.
-/// May be called from several threads.
+/// Messages to standard error and to the log file: a progress bar on a terminal, plain lines
+/// elsewhere. May be called from several threads.
 class Console {
  public:
   enum class Level { Quiet, Normal, Verbose };

@@ -69,14 +69,16 @@ std::string rightColumn(const Parameter& parameter) {
   if (parameter.positional && option.isList()) append("one or more");
   if (!parameter.positional && option.isList() && parameter.file) append("may be repeated");
   if (option.isFlag()) {
-    if (parameter.defaultText == "true") append("default on; --no-" + option.name + " to switch off");
+    if (parameter.defaultText == "true")
+      append("default on; --no-" + option.name + " to switch off");
   } else if (!parameter.defaultText.empty()) {
     append("default " + parameter.defaultText);
   }
   return text + (aside.empty() ? "" : " (" + aside + ")");
 }
 
-void wrap(std::ostringstream& out, const std::string& text, std::size_t indent, std::size_t column) {
+void wrap(std::ostringstream& out, const std::string& text, std::size_t indent,
+          std::size_t column) {
   constexpr std::size_t kWidth = 96;
   std::istringstream words(text);
   std::string word;
@@ -269,9 +271,8 @@ std::string referencePage(const Declaration& d) {
   };
   table("Argument", d.parameters, [](const Parameter& p) { return p.positional; });
   for (const auto& category : categoriesOf(d.parameters)) {
-    table(category, d.parameters, [&](const Parameter& p) {
-      return !p.positional && p.option.category == category;
-    });
+    table(category, d.parameters,
+          [&](const Parameter& p) { return !p.positional && p.option.category == category; });
   }
   if (d.writesOutput) {
     out << "\n| Writes | |\n|---|---|\n";

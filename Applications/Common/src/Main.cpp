@@ -26,8 +26,9 @@ std::string overview() {
     text += "  " + name + std::string(name.size() < 20 ? 20 - name.size() : 1, ' ') +
             command.begin().declaration.synopsisText + "\n";
   }
-  return text + "\nexplica COMMAND --help says more.  Exit codes: 0 done, 1 usage, 2 bad input,\n"
-                "3 stopped before its goal (outputs written and marked), 4 environment.\n";
+  return text +
+         "\nexplica COMMAND --help says more.  Exit codes: 0 done, 1 usage, 2 bad input,\n"
+         "3 stopped before its goal (outputs written and marked), 4 environment.\n";
 }
 
 /// Commands whose names start with `verb `: the kinds of a verb.
@@ -61,7 +62,8 @@ int runCommandLine(std::vector<std::string> words, const std::vector<std::string
   }
   if (words[0] == "--describe") {
     Json all = Json::array();
-    for (const Command& command : allCommands()) all.push_back(describeJson(command.begin().declaration));
+    for (const Command& command : allCommands())
+      all.push_back(describeJson(command.begin().declaration));
     std::cout << all.dump(2) << "\n";
     return kDone;
   }

@@ -64,7 +64,8 @@ std::string holderOf(const fs::path& lock) {
   const auto touched = fs::last_write_time(lock, fault);
   if (fault) return "";
   const bool silent = fs::file_time_type::clock::now() - touched > kSilence;
-  if (!held.is_object() || !held.contains("pid")) return silent ? "" : "a run that is just starting";
+  if (!held.is_object() || !held.contains("pid"))
+    return silent ? "" : "a run that is just starting";
   const std::string host = held.value("host", "");
   const long pid = held.value("pid", 0L);
   if (host == hostName()) {
@@ -132,7 +133,8 @@ OutputFolder::OutputFolder(fs::path folder, const OutputRules& rules,
     madeFolders_.push_back(*it);
   }
   const std::string name = absolute.filename().string();
-  lock_ = inside ? absolute / ".explica-lock" : absolute.parent_path() / ("." + name + ".explica-lock");
+  lock_ =
+      inside ? absolute / ".explica-lock" : absolute.parent_path() / ("." + name + ".explica-lock");
   stage_ = inPlace_ ? absolute
            : inside ? absolute / ".explica-stage"
                     : absolute.parent_path() / ("." + name + ".explica-stage");
@@ -160,8 +162,8 @@ void OutputFolder::acquireLock(const OutputRules& rules,
     const int descriptor = open(lock_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
     if (descriptor >= 0) {
       const std::string text = ownLock(rules.command);
-      const bool written = write(descriptor, text.data(), text.size()) ==
-                           static_cast<ssize_t>(text.size());
+      const bool written =
+          write(descriptor, text.data(), text.size()) == static_cast<ssize_t>(text.size());
       const std::string cause = std::strerror(errno);
       close(descriptor);
       locked_ = true;
@@ -175,7 +177,8 @@ void OutputFolder::acquireLock(const OutputRules& rules,
       });
       return;
     }
-    if (errno != EEXIST) cannot("the output folder cannot be written", folder_, std::strerror(errno));
+    if (errno != EEXIST)
+      cannot("the output folder cannot be written", folder_, std::strerror(errno));
     const std::string holder = holderOf(lock_);
     if (!holder.empty()) {
       throw EnvironmentError(folder_.string() + ": in use by " + holder +
@@ -188,7 +191,8 @@ void OutputFolder::acquireLock(const OutputRules& rules,
       warn(folder_.string() + ": an earlier run was killed here; its unfinished files are removed");
     }
   }
-  throw EnvironmentError(folder_.string() + ": other runs contend for this folder; give another --out");
+  throw EnvironmentError(folder_.string() +
+                         ": other runs contend for this folder; give another --out");
 }
 
 void OutputFolder::releaseLock() {

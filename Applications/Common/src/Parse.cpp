@@ -25,7 +25,8 @@ std::string dashed(const Parameter& parameter) {
   return parameter.positional ? parameter.option.name : "--" + parameter.option.name;
 }
 
-/// `--viewpoint -10,2,3` would look like an option -1: binds a negative number to the option before.
+/// `--viewpoint -10,2,3` would look like an option -1: binds a negative number to the option
+/// before.
 std::vector<std::string> bindNegativeNumbers(const std::vector<std::string>& words) {
   const auto startsNegative = [](const std::string& word) {
     if (word.size() < 2 || word[0] != '-') return false;
@@ -36,8 +37,7 @@ std::vector<std::string> bindNegativeNumbers(const std::vector<std::string>& wor
   std::vector<std::string> bound;
   for (const auto& word : words) {
     const bool afterOption = !bound.empty() && bound.back().rfind("--", 0) == 0 &&
-                             bound.back().size() > 2 &&
-                             bound.back().find('=') == std::string::npos;
+                             bound.back().size() > 2 && bound.back().find('=') == std::string::npos;
     if (afterOption && startsNegative(word)) {
       bound.back() += "=" + word;
     } else {

@@ -36,7 +36,9 @@ double secondsNow() {
 }
 
 /// Result keys that start so are times: they differ between equal runs.
-bool isTime(const std::string& key) { return key.rfind("seconds", 0) == 0; }
+bool isTime(const std::string& key) {
+  return key.rfind("seconds", 0) == 0;
+}
 
 volatile sig_atomic_t signalCount = 0;
 
@@ -48,13 +50,19 @@ void onSignal(int number) {
   }
 }
 
-double finite(double value) { return value; }
+double finite(double value) {
+  return value;
+}
 
-Json numberOrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json numberOrNull(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
 
 }  // namespace
 
-bool signalled() { return signalCount > 0; }
+bool signalled() {
+  return signalCount > 0;
+}
 
 void catchSignals() {
   struct sigaction action {};
@@ -115,8 +123,8 @@ fs::path Context::input(const fs::path& path, std::string_view role) {
   if (known) return path;
   if (const auto found = provenance::findRecordOf(path, file.digest)) {
     if (found->sameContent) {
-      file.parent = provenance::Parent{found->record["id"], provenance::digestOf(found->path).sha256,
-                                       found->path};
+      file.parent = provenance::Parent{found->record["id"],
+                                       provenance::digestOf(found->path).sha256, found->path};
     } else {
       warn(path.string() + " was changed since " + found->path.string() + " recorded it");
     }
@@ -149,36 +157,60 @@ Context::Step Context::step(std::string name) {
 void Context::result(const std::string& key, double value) {
   state_->setResult(key, numberOrNull(finite(value)));
 }
-void Context::result(const std::string& key, int value) { state_->setResult(key, value); }
-void Context::result(const std::string& key, long value) { state_->setResult(key, value); }
-void Context::result(const std::string& key, long long value) { state_->setResult(key, value); }
-void Context::result(const std::string& key, std::size_t value) { state_->setResult(key, value); }
-void Context::result(const std::string& key, bool value) { state_->setResult(key, value); }
+void Context::result(const std::string& key, int value) {
+  state_->setResult(key, value);
+}
+void Context::result(const std::string& key, long value) {
+  state_->setResult(key, value);
+}
+void Context::result(const std::string& key, long long value) {
+  state_->setResult(key, value);
+}
+void Context::result(const std::string& key, std::size_t value) {
+  state_->setResult(key, value);
+}
+void Context::result(const std::string& key, bool value) {
+  state_->setResult(key, value);
+}
 void Context::result(const std::string& key, const std::string& value) {
   state_->setResult(key, value);
 }
-void Context::result(const std::string& key, const char* value) { state_->setResult(key, value); }
+void Context::result(const std::string& key, const char* value) {
+  state_->setResult(key, value);
+}
 void Context::result(const std::string& key, const std::vector<double>& values) {
   Json array = Json::array();
   for (const double value : values) array.push_back(numberOrNull(value));
   state_->setResult(key, array);
 }
-void Context::result(const std::string& key, const Json& value) { state_->setResult(key, value); }
+void Context::result(const std::string& key, const Json& value) {
+  state_->setResult(key, value);
+}
 
-void Context::note(const std::string& key, const Json& value) { state_->record.notes[key] = value; }
+void Context::note(const std::string& key, const Json& value) {
+  state_->record.notes[key] = value;
+}
 
-const Monitor& Context::monitor() const { return state_->monitor; }
+const Monitor& Context::monitor() const {
+  return state_->monitor;
+}
 
-void Context::info(const std::string& message) { state_->console.info(state_->run.prefix + message); }
+void Context::info(const std::string& message) {
+  state_->console.info(state_->run.prefix + message);
+}
 void Context::detail(const std::string& message) {
   state_->console.detail(state_->run.prefix + message);
 }
-void Context::warn(const std::string& message) { state_->monitor.warn(message); }
+void Context::warn(const std::string& message) {
+  state_->monitor.warn(message);
+}
 
 bool Context::given(std::string_view name) const {
   return state_->run.given.count(std::string(name)) > 0;
 }
-int Context::threads() const { return state_->record.threads; }
+int Context::threads() const {
+  return state_->record.threads;
+}
 
 Outcome Context::runCommand(const Command& command, const std::string& name, const Json& options) {
   if (state_->run.common.dryRun) throw DryRunEnds{};
@@ -216,8 +248,8 @@ void noteDeclaredInputs(Context& context, const Declaration& declaration) {
     if (value.is_null()) continue;
     for (const auto& element : value.is_array() ? value : Json::array({value})) {
       const std::string path = element.get<std::string>();
-      const bool mayBeFolder = *parameter.file == FileKind::Folder ||
-                               *parameter.file == FileKind::Any;
+      const bool mayBeFolder =
+          *parameter.file == FileKind::Folder || *parameter.file == FileKind::Any;
       std::error_code fault;
       if (mayBeFolder && fs::is_directory(path, fault)) continue;
       if (*parameter.file == FileKind::Folder) {

@@ -15,10 +15,10 @@ namespace explica::app {
 struct Run {
   Invocation invocation;
   CommonOptions common;
-  std::set<std::string> given;       ///< names that the user set
-  std::vector<std::string> argv;     ///< for the record
-  const Monitor* parent = nullptr;   ///< of the command that this one is a step of
-  std::string prefix;                ///< starts its messages: "unfold: "
+  std::set<std::string> given;      ///< names that the user set
+  std::vector<std::string> argv;    ///< for the record
+  const Monitor* parent = nullptr;  ///< of the command that this one is a step of
+  std::string prefix;               ///< starts its messages: "unfold: "
 };
 
 /// Checks inputs and output folder, runs, writes summary and record, and makes the results appear.

@@ -23,9 +23,7 @@ class Sha256 {
       throw EnvironmentError("OpenSSL offers no SHA-256");
     }
   }
-  void add(const void* bytes, std::size_t count) {
-    EVP_DigestUpdate(context_.get(), bytes, count);
-  }
+  void add(const void* bytes, std::size_t count) { EVP_DigestUpdate(context_.get(), bytes, count); }
   std::string hex() {
     unsigned char raw[EVP_MAX_MD_SIZE];
     unsigned int count = 0;
@@ -46,7 +44,9 @@ class Sha256 {
 }  // namespace
 
 Digest digestOf(const std::filesystem::path& file) {
-  const auto refuse = [&](const std::string& cause) { throw IOError(file.string() + ": " + cause); };
+  const auto refuse = [&](const std::string& cause) {
+    throw IOError(file.string() + ": " + cause);
+  };
   std::error_code fault;
   const auto status = std::filesystem::status(file, fault);
   if (status.type() == std::filesystem::file_type::not_found) refuse("no such file");
@@ -65,7 +65,8 @@ Digest digestOf(const std::filesystem::path& file) {
     hash.add(block.data(), count);
     digest.size += count;
   }
-  if (std::ferror(stream.get())) refuse(std::string("cannot be read (") + std::strerror(errno) + ")");
+  if (std::ferror(stream.get()))
+    refuse(std::string("cannot be read (") + std::strerror(errno) + ")");
   digest.sha256 = hash.hex();
   return digest;
 }

@@ -17,9 +17,15 @@ Json elementToJson(double value) {
   if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
   return value;
 }
-Json elementToJson(bool value) { return value; }
-Json elementToJson(int value) { return value; }
-Json elementToJson(const std::string& value) { return value; }
+Json elementToJson(bool value) {
+  return value;
+}
+Json elementToJson(int value) {
+  return value;
+}
+Json elementToJson(const std::string& value) {
+  return value;
+}
 template <int N>
 Json elementToJson(const Eigen::Matrix<double, N, 1>& value) {
   Json array = Json::array();
@@ -57,7 +63,10 @@ void unset(Option& option) {
           where.set({});
         } else if constexpr (requires { where->reset(); }) {
           where->reset();
-        } else if constexpr (requires { where->shrink_to_fit(); where->pop_back(); }) {
+        } else if constexpr (requires {
+                               where->shrink_to_fit();
+                               where->pop_back();
+                             }) {
           where->clear();
         }
       },

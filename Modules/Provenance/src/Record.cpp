@@ -38,8 +38,10 @@ Json toJson(const Record& r) {
   json["format_version"] = 1;
   json["id"] = r.id();
   const Software& made = software();
-  json["software"] = {
-      {"name", "explica"}, {"version", made.version}, {"commit", made.commit}, {"dirty", made.dirty}};
+  json["software"] = {{"name", "explica"},
+                      {"version", made.version},
+                      {"commit", made.commit},
+                      {"dirty", made.dirty}};
   json["command"] = r.command;
   json["options"] = r.options;
 
@@ -134,9 +136,9 @@ std::optional<FoundRecord> findRecordOf(const std::filesystem::path& file, const
         Json record = readRecord(candidate);
         const auto name = absolute.lexically_relative(folder).generic_string();
         for (const char* list : {"outputs", "varying"}) {
-          const Json& outputs =
-              std::string_view(list) == "outputs" ? record["outputs"]
-                                                  : record["execution"]["varying_outputs"];
+          const Json& outputs = std::string_view(list) == "outputs"
+                                    ? record["outputs"]
+                                    : record["execution"]["varying_outputs"];
           for (const auto& output : outputs) {
             if (output["path"] != name || !output.contains("sha256")) continue;
             const bool same = output["sha256"] == digest.sha256;

@@ -17,8 +17,9 @@ namespace fs = std::filesystem;
 FileState stateOf(const fs::path& path, const Json& entry) {
   try {
     const Digest found = digestOf(path);
-    return found.sha256 == entry.at("sha256") && found.size == entry.at("size") ? FileState::Same
-                                                                                : FileState::Changed;
+    return found.sha256 == entry.at("sha256") && found.size == entry.at("size")
+               ? FileState::Same
+               : FileState::Changed;
   } catch (const IOError&) {
     return FileState::Missing;
   }
@@ -30,7 +31,8 @@ bool isThere(const fs::path& path) {
 }
 
 /// The record that made an input, where it is now.
-std::optional<fs::path> locateParent(const Json& record, std::size_t input, const fs::path& located) {
+std::optional<fs::path> locateParent(const Json& record, std::size_t input,
+                                     const fs::path& located) {
   const Json& execution = record["execution"]["inputs"][input];
   if (!execution.contains("parent_record")) return std::nullopt;
   const std::string wanted = record["inputs"][input].value("parent", "");
@@ -40,7 +42,8 @@ std::optional<fs::path> locateParent(const Json& record, std::size_t input, cons
   return fs::path(execution["parent_record"].value("path", located.parent_path() / kRecordName));
 }
 
-void verifyInto(const fs::path& recordPath, bool deep, Verification& all, std::set<fs::path>& seen) {
+void verifyInto(const fs::path& recordPath, bool deep, Verification& all,
+                std::set<fs::path>& seen) {
   std::error_code ignored;
   if (!seen.insert(fs::weakly_canonical(recordPath, ignored)).second) return;
   const Json record = readRecord(recordPath);
@@ -49,18 +52,20 @@ void verifyInto(const fs::path& recordPath, bool deep, Verification& all, std::s
   for (std::size_t i = 0; i < record["inputs"].size(); ++i) {
     const Json& input = record["inputs"][i];
     const fs::path path = locateInput(record, i, recordPath);
-    all.files.push_back({"input " + input["role"].get<std::string>(), path, stateOf(path, input),
-                         recordPath});
+    all.files.push_back(
+        {"input " + input["role"].get<std::string>(), path, stateOf(path, input), recordPath});
     if (!deep) continue;
     if (const auto parent = locateParent(record, i, path)) {
       if (!isThere(*parent)) {
-        all.files.push_back({"record of " + path.string(), *parent, FileState::Missing, recordPath});
+        all.files.push_back(
+            {"record of " + path.string(), *parent, FileState::Missing, recordPath});
         continue;
       }
       try {
         verifyInto(*parent, true, all, seen);
       } catch (const Error&) {
-        all.files.push_back({"record of " + path.string(), *parent, FileState::Changed, recordPath});
+        all.files.push_back(
+            {"record of " + path.string(), *parent, FileState::Changed, recordPath});
       }
     }
   }
@@ -199,7 +204,7 @@ Json toProvJson(const Json& record) {
     const std::string entity = "sha256:" + output["sha256"].get<std::string>();
     prov["entity"][entity] = {{"prov:label", output["path"]}, {"explica:size", output["size"]}};
     prov["wasGeneratedBy"]["_:generated" + std::to_string(link++)] = {{"prov:entity", entity},
-                                                                     {"prov:activity", activity}};
+                                                                      {"prov:activity", activity}};
   };
   for (const Json& output : record["outputs"]) addOutput(output);
   for (const Json& output : execution["varying_outputs"]) addOutput(output);

@@ -19,8 +19,8 @@ struct Invocation {
   std::shared_ptr<void> settings;  ///< what the declaration's options point into
 };
 
-/// A verb of `explica`.  Holds no state: each begin() is independent, so that several may live in one
-/// process.
+/// A verb of `explica`.  Holds no state: each begin() is independent, so that several may live in
+/// one process.
 class Command {
  public:
   Command(std::string name, std::function<Invocation()> begin)

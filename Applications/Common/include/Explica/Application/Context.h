@@ -18,8 +18,8 @@ namespace explica::app {
 class Command;
 struct Outcome;
 
-/// What a running command sees of the world: files to read and write, progress, and the account that
-/// becomes summary.json and provenance.json.
+/// What a running command sees of the world: files to read and write, progress, and the account
+/// that becomes summary.json and provenance.json.
 class Context {
  public:
   /// Work in progress; ends with its scope.  Times, and takes note of how it went.
@@ -39,8 +39,8 @@ class Context {
   };
 
   /// Takes note of a file that is about to be read (hash, size, the record that made it) and gives
-  /// its path back.  Files named by declared inputs are noted already: call this for others, such as
-  /// those found inside a folder.
+  /// its path back.  Files named by declared inputs are noted already: call this for others, such
+  /// as those found inside a folder.
   /// @throws IOError  absent, unreadable or not a regular file
   std::filesystem::path input(const std::filesystem::path& path, std::string_view role = "file");
 
@@ -55,7 +55,8 @@ class Context {
   /// before the first step.
   [[nodiscard]] Step step(std::string name);
 
-  /// A number or text for summary.json; NaN becomes null.  A key that starts with "seconds" is a time.
+  /// A number or text for summary.json; NaN becomes null.  A key that starts with "seconds" is a
+  /// time.
   void result(const std::string& key, double value);
   void result(const std::string& key, int value);
   void result(const std::string& key, long value);
@@ -83,8 +84,8 @@ class Context {
   [[nodiscard]] bool given(std::string_view name) const;
   [[nodiscard]] int threads() const;
 
-  /// Runs another command as a step, into the folder `name` of this command's output, with the given
-  /// option values (JSON as in --config).  Only for commands declared inPlace().
+  /// Runs another command as a step, into the folder `name` of this command's output, with the
+  /// given option values (JSON as in --config).  Only for commands declared inPlace().
   Outcome runCommand(const Command& command, const std::string& name,
                      const nlohmann::ordered_json& options);
 

@@ -56,11 +56,11 @@ namespace explica::app {
 
 /// One thing that the user may give: a positional argument or an option.
 struct Parameter {
-  provenance::Option option;      ///< name, unit, help, category and where the value goes
-  std::optional<FileKind> file;   ///< the value is a path that is read (hashed and recorded)
+  provenance::Option option;     ///< name, unit, help, category and where the value goes
+  std::optional<FileKind> file;  ///< the value is a path that is read (hashed and recorded)
   bool positional = false;
   bool required = false;
-  std::string defaultText;        ///< the default as a user would write it; empty if none
+  std::string defaultText;  ///< the default as a user would write it; empty if none
 };
 
 /// A file that a command writes into its output directory.
@@ -113,8 +113,8 @@ class Declaration {
     return add(provenance::makeOption(field, value), category, false, false);
   }
 
-  /// All options of a struct that has a `describe` function (Core/Describe.h).  `prefix` goes before
-  /// each name: "unfold." gives --unfold.radius.
+  /// All options of a struct that has a `describe` function (Core/Describe.h).  `prefix` goes
+  /// before each name: "unfold." gives --unfold.radius.
   template <class Options>
   Declaration& options(const std::string& category, Options& values, std::string_view prefix = {}) {
     for (auto& listed : provenance::listOptions(values, prefix)) {

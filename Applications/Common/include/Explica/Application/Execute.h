@@ -51,8 +51,8 @@ struct Outcome {
 };
 
 /// The number of threads and what decided it: --threads, EXPLICA_NTHREADS, SLURM_CPUS_PER_TASK,
-/// NSLOTS, PBS_NCPUS, OMP_NUM_THREADS, ITK_GLOBAL_DEFAULT_NUMBER_OF_THREADS, affinity; the first that
-/// is set wins.
+/// NSLOTS, PBS_NCPUS, OMP_NUM_THREADS, ITK_GLOBAL_DEFAULT_NUMBER_OF_THREADS, affinity; the first
+/// that is set wins.
 /// @throws UsageError  a setting that is not a positive whole number
 struct ThreadChoice {
   int count = 0;

@@ -17,11 +17,11 @@ namespace explica::provenance {
 
 /// A member whose values have names (an enum, or an optional or list of one), seen as words.
 struct ChoiceTarget {
-  std::vector<std::string> choices;                             ///< every word, in order
-  bool optional = false;                                        ///< may be unset
-  bool list = false;                                            ///< holds any number of words
-  std::function<std::vector<std::string>()> get;                ///< the words held now
-  std::function<void(const std::vector<std::string>& w)> set;   ///< throws InvalidInput
+  std::vector<std::string> choices;                            ///< every word, in order
+  bool optional = false;                                       ///< may be unset
+  bool list = false;                                           ///< holds any number of words
+  std::function<std::vector<std::string>()> get;               ///< the words held now
+  std::function<void(const std::vector<std::string>& w)> set;  ///< throws InvalidInput
 };
 
 /// Where an option's value lives: a typed pointer into the option struct.
@@ -52,8 +52,8 @@ struct Option {
   [[nodiscard]] std::vector<std::string> choices() const;
   /// The value now, as a user would write it: "1,2,3"; empty if unset.
   [[nodiscard]] std::string text() const;
-  /// Sets the value from a user's words: one, or several for a list.  Points and lists of numbers or
-  /// choices separate by commas; lists of text take one element per word.
+  /// Sets the value from a user's words: one, or several for a list.  Points and lists of numbers
+  /// or choices separate by commas; lists of text take one element per word.
   /// @throws UsageError  names the option, the text and what is expected
   void setText(const std::vector<std::string>& words);
 };
@@ -119,7 +119,10 @@ struct Target<std::vector<Enum>> {
 /// One option from a name and the place of its value.
 template <class T>
 [[nodiscard]] Option makeOption(const Field& field, T& value) {
-  return Option{std::string(field.name), std::string(field.unit), std::string(field.help), {},
+  return Option{std::string(field.name),
+                std::string(field.unit),
+                std::string(field.help),
+                {},
                 detail::Target<T>::of(value)};
 }
 

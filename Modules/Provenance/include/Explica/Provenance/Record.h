@@ -52,28 +52,28 @@ struct StepEntry {
 /// Written as JSON, all that may differ between two equal runs (times, host, paths, threads) stands
 /// in the one block `execution`; the rest is equal byte for byte.
 struct Record {
-  std::string command;                  ///< "thickness"
-  Json options = Json::object();        ///< every option with its value, given or default; no paths
-  Json arguments = Json::object();      ///< paths and words as given, by argument or option name
+  std::string command;              ///< "thickness"
+  Json options = Json::object();    ///< every option with its value, given or default; no paths
+  Json arguments = Json::object();  ///< paths and words as given, by argument or option name
   std::vector<InputFile> inputs;
   std::vector<OutputFile> outputs;
   std::vector<StepEntry> steps;
   std::vector<std::string> warnings;
   Termination termination = Termination::NotRun;
   int exitCode = 0;
-  Json results = Json::object();        ///< summary.json without times
-  Json notes = Json::object();          ///< how each input was understood (affine used, ...)
+  Json results = Json::object();  ///< summary.json without times
+  Json notes = Json::object();    ///< how each input was understood (affine used, ...)
 
   std::vector<std::string> argv;
-  std::filesystem::path directory;      ///< working directory
-  std::filesystem::path out;            ///< where outputs went, absolute
-  std::string started, ended;           ///< UTC, ISO 8601
+  std::filesystem::path directory;  ///< working directory
+  std::filesystem::path out;        ///< where outputs went, absolute
+  std::string started, ended;       ///< UTC, ISO 8601
   double seconds = 0;
   double cpuSeconds = 0;
   std::uint64_t peakMemoryBytes = 0;
   int threads = 0;
-  std::string threadsBecause;           ///< what decided the number of threads
-  bool withNames = true;                ///< false leaves out host and user, and absolute paths
+  std::string threadsBecause;  ///< what decided the number of threads
+  bool withNames = true;       ///< false leaves out host and user, and absolute paths
 
   /// Equal work has an equal id: SHA-256 of software version, command, options, input hashes.
   [[nodiscard]] std::string id() const;

@@ -27,8 +27,8 @@ struct Verification {
   [[nodiscard]] bool allSame() const;
 };
 
-/// Where an input of a record is now: its absolute path, else as given from the working directory of
-/// then, else relative to the record, else beside the record.
+/// Where an input of a record is now: its absolute path, else as given from the working directory
+/// of then, else relative to the record, else beside the record.
 [[nodiscard]] std::filesystem::path locateInput(const Json& record, std::size_t input,
                                                 const std::filesystem::path& recordPath);
 

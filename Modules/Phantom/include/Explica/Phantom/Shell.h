@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Core/Describe.h"
+#include "Explica/Core/Volume.h"
+
+namespace explica::phantom {
+
+/// A spherical shell of tissue about the grid's centre.
+struct ShellOptions {
+  int size = 64;                                     ///< voxels along the first axis, >= 8
+  double spacing = 1.0;                              ///< mm, along the first axis
+  double innerRadius = 0.5;                          ///< of the half width of the grid
+  double outerRadius = 0.8;                          ///< of the half width of the grid
+  Eigen::Vector3d aspect = Eigen::Vector3d::Ones();  ///< spacing along each axis over `spacing`
+};
+
+template <class Visitor>
+void describe(ShellOptions& options, Visitor&& visit) {
+  visit(Field{"size", "", "voxels along the first axis"}, options.size);
+  visit(Field{"spacing", "mm", "voxel size along the first axis"}, options.spacing);
+  visit(Field{"inner-radius", "", "inner radius over half the grid's width"}, options.innerRadius);
+  visit(Field{"outer-radius", "", "outer radius over half the grid's width"}, options.outerRadius);
+  visit(Field{"aspect", "", "voxel size along each axis over --spacing"}, options.aspect);
+}
+
+/// Labels and what is known of them exactly.
+struct Shell {
+  static constexpr Label kOuter = 0, kInner = 1, kTissue = 2;
+  Volume<Label> labels;  ///< by the voxel centre's distance from the centre
+  Volume<float> level;   ///< distance from the centre minus the inner radius, mm: subvoxel boundary
+  Volume<float> harmonic;  ///< u = (1/a - 1/r) / (1/a - 1/b) in the tissue, 0 inside, 1 outside
+  double thickness = 0;    ///< mm, everywhere
+  double innerRadius = 0;  ///< a, mm
+  double outerRadius = 0;  ///< b, mm
+};
+
+/// Concentric spheres of radii a < b: trajectories are radii, thickness is b - a everywhere, and
+/// the harmonic function between them is linear in 1/r.
+/// @throws InvalidInput  an option out of range, or a shell that does not fit its grid
+[[nodiscard]] Shell makeShell(const ShellOptions& options = {});
+
+}  // namespace explica::phantom
