@@ -1,0 +1,156 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Application/Command.h"
+#include "Explica/Core/Errors.h"
+#include "Explica/IO/VolumeFile.h"
+#include "Explica/Segmentation/Hemisphere.h"
+#include "Explica/Segmentation/Tissue.h"
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+namespace explica::app {
+namespace {
+
+struct Settings {
+  std::string image;
+  std::optional<std::string> mask;
+  std::optional<std::string> atlas;
+  std::optional<std::string> legend;
+  io::VolumeReadOptions reading;
+  segmentation::TissueOptions tissue;
+  segmentation::HemisphereOptions hemisphere;
+};
+
+void declare(Declaration& d, Settings& s) {
+  d.synopsis("fluid, grey and white matter of a skull-stripped T1, and one hemisphere by an atlas")
+      .description(
+          "Finds three tissues by expectation-maximisation of a mixture of pure and mixed voxels "
+          "with a "
+          "Markov prior, while a smooth bias field is estimated and divided out. With an atlas in "
+          "the "
+          "image's space, such as AAL, one hemisphere is taken out, too: its white matter filled "
+          "with deep "
+          "structures and ventricles, without cerebellum and brain stem, and its grey ribbon; "
+          "label 4 "
+          "marks tissue cut off at the midline and the stem.")
+      .reference(
+          "Van Leemput, Maes, Vandermeulen, Suetens 1999, IEEE Trans. Med. Imaging 18(10):897-908")
+      .reference("Santago, Gage 1993, IEEE Trans. Med. Imaging 12(3):566-574")
+      .example("explica segment ch2bet.nii.gz --out tissue", "Tissues of a skull-stripped head")
+      .example("explica segment ch2bet.nii.gz --atlas aal.nii.gz --hemisphere L --out tissue",
+               "The same, and the left hemisphere")
+      .input("T1", FileKind::Volume,
+             "skull-stripped T1-weighted image: the brain is where it is above 0", s.image)
+      .inputOption("mask", FileKind::LabelVolume, "the brain is where this is not 0", s.mask)
+      .inputOption("atlas", FileKind::LabelVolume, "labels in the space of the T1, as AAL's",
+                   s.atlas)
+      .inputOption(
+          "atlas-legend", FileKind::Any,
+          "what the atlas's labels mean, one 'value name' a line (default: the atlas's name "
+          "with .txt for .gz)",
+          s.legend)
+      .options("Reading", s.reading)
+      .options("Tissues", s.tissue)
+      .options("Hemisphere", s.hemisphere)
+      .output("seg.nii.gz", FileKind::LabelVolume, "1 fluid, 2 grey, 3 white, 0 outside")
+      .output("csf.nii.gz", FileKind::Volume, "share of fluid in each voxel")
+      .output("gm.nii.gz", FileKind::Volume, "share of grey matter in each voxel")
+      .output("wm.nii.gz", FileKind::Volume, "share of white matter in each voxel")
+      .output("bias.nii.gz", FileKind::Volume, "multiplicative bias field")
+      .output(
+          "hemisphere.nii.gz", FileKind::LabelVolume,
+          "with --atlas: 3 white matter, filled; 2 grey ribbon; 1 fluid; 4 cut tissue; 0 outside")
+      .output("white_share.nii.gz", FileKind::Volume, "with --atlas: 0.5 is the white surface")
+      .output("tissue_share.nii.gz", FileKind::Volume, "with --atlas: 0.5 is the pial surface");
+}
+
+std::filesystem::path legendBeside(const std::filesystem::path& atlas) {
+  std::filesystem::path legend = atlas;
+  if (legend.extension() == ".gz") legend.replace_extension();
+  return legend += ".txt";
+}
+
+segmentation::AtlasLegend readLegend(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file)
+    throw IOError(path.string() +
+                  ": cannot be opened; name the atlas's legend with --atlas-legend");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  return segmentation::parseAtlasLegend(text, path.string());
+}
+
+Termination run(Context& context, const Settings& s) {
+  io::VolumeReadOptions reading = s.reading;
+  reading.dimension = 3;
+  const Volume<float> image = io::readScalars(s.image, reading).volume;
+  Volume<Label> mask;
+  if (s.mask) mask = io::readLabels(*s.mask, reading).volume;
+  Volume<Label> atlas;
+  segmentation::AtlasLegend legend;
+  if (s.atlas) {
+    atlas = io::readLabels(*s.atlas, reading).volume;
+    const std::filesystem::path path =
+        s.legend ? std::filesystem::path(*s.legend) : legendBeside(*s.atlas);
+    legend = readLegend(s.legend ? path : context.input(path, "atlas-legend"));
+    if (!sameGrid(atlas.grid, image.grid)) {
+      context.info("atlas: on another grid than the T1; each voxel takes the nearest label");
+      atlas = segmentation::resampleLabels(atlas, image.grid);
+    }
+  }
+
+  segmentation::TissueSegmentation tissue;
+  {
+    auto step = context.step("tissue");
+    tissue = segmentation::segmentTissue(image, mask, s.tissue, context.monitor());
+    step.iterations(tissue.iterations);
+    step.termination(tissue.termination);
+  }
+  context.result("brain_voxels", tissue.brainVoxels);
+  context.result("iterations", tissue.iterations);
+  constexpr std::array<const char*, 3> kNames = {"csf", "grey", "white"};
+  for (int k = 0; k < 3; ++k) {
+    context.result(std::string(kNames[k]) + "_mean", tissue.classes[k].mean);
+    context.result(std::string(kNames[k]) + "_deviation", tissue.classes[k].deviation);
+    context.result(std::string(kNames[k]) + "_share", tissue.classes[k].share);
+  }
+
+  segmentation::Hemisphere hemisphere;
+  if (s.atlas) {
+    auto step = context.step("hemisphere");
+    hemisphere =
+        segmentation::extractHemisphere(tissue, atlas, legend, s.hemisphere, context.monitor());
+    context.result("hemisphere", std::string(nameOf(s.hemisphere.side)));
+    context.result("white_voxels", hemisphere.whiteVoxels);
+    context.result("grey_voxels", hemisphere.greyVoxels);
+    context.result("deep_voxels_filled", hemisphere.deepVoxels);
+    context.result("ventricle_voxels_filled", hemisphere.ventricleVoxels);
+    context.result("cavity_voxels_filled", hemisphere.cavityVoxels);
+    context.result("stray_voxels_dropped", hemisphere.strayVoxels);
+  }
+
+  auto step = context.step("write");
+  io::writeVolume(context.output("seg.nii.gz"), tissue.labels);
+  io::writeVolume(context.output("csf.nii.gz"), tissue.probability[0]);
+  io::writeVolume(context.output("gm.nii.gz"), tissue.probability[1]);
+  io::writeVolume(context.output("wm.nii.gz"), tissue.probability[2]);
+  io::writeVolume(context.output("bias.nii.gz"), tissue.bias);
+  if (s.atlas) {
+    io::writeVolume(context.output("hemisphere.nii.gz"), hemisphere.labels);
+    io::writeVolume(context.output("white_share.nii.gz"), hemisphere.whiteShare);
+    io::writeVolume(context.output("tissue_share.nii.gz"), hemisphere.tissueShare);
+  }
+  return tissue.termination;
+}
+
+}  // namespace
+
+Command segmentCommand() {
+  return makeCommand<Settings>("segment", declare, run);
+}
+
+}  // namespace explica::app

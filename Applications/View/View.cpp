@@ -1,0 +1,250 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Application/Command.h"
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/WholeFile.h"
+#include "Explica/IO/SurfaceFile.h"
+#include "Explica/IO/VertexDataFile.h"
+#include "Explica/IO/VolumeFile.h"
+#include "Explica/Report/Figure.h"
+#include "Explica/Report/Picture.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+namespace explica::app {
+namespace {
+
+struct Settings {
+  std::vector<std::string> files;
+  std::optional<std::string> screenshot;
+  std::optional<std::string> film;
+  std::optional<std::string> map;
+  std::optional<std::string> mapName;
+  std::optional<std::string> labels;
+  std::optional<std::string> region;
+  std::vector<report::ViewName> views;
+  std::optional<Eigen::Vector3d> direction;
+  bool focus = false;
+  std::optional<report::ColourMap> colours;
+  std::optional<Eigen::Vector2d> range;
+  int columns = 2;
+  int slices = 3;
+  double framesPerSecond = 10;
+  io::SurfaceReadOptions reading;
+  report::SurfacePictureOptions picture;
+};
+
+void declare(Declaration& d, Settings& s) {
+  d.synopsis("pictures of surfaces and volumes; --screenshot needs no display")
+      .description(
+          "Surfaces are drawn with a map or labels on their vertices, from one or more sides; a "
+          "volume is "
+          "shown in slices with the cut lines of the surfaces named after it (the first red, the "
+          "second "
+          "yellow); a folder of `explica unfold` is shown as its evolution with --film. "
+          "Everything is drawn on the processor, without a display.")
+      .example(
+          "explica view pial.surf.gii --map thickness.shape.gii --views left,right --screenshot "
+          "pial.png",
+          "Thickness on the pial surface, from both sides")
+      .example("explica view T1.nii.gz white.surf.gii pial.surf.gii --screenshot slices.png",
+               "White and pial surface on the T1")
+      .input("FILE", FileKind::Any,
+             "surfaces; or a volume and surfaces; or a folder of `explica unfold`", s.files)
+      .option("Picture", Field{"screenshot", "", "PNG file to write"}, s.screenshot)
+      .option(
+          "Picture",
+          Field{"film", "", "animated .gif or .png to write, from a folder of `explica unfold`"},
+          s.film)
+      .inputOption("map", FileKind::VertexData, "per-vertex values to colour the surface by", s.map)
+      .option("Picture", Field{"map-name", "", "which of the map file's maps (default: the first)"},
+              s.mapName)
+      .inputOption("labels", FileKind::VertexLabel, "per-vertex labels to colour the surface by",
+                   s.labels)
+      .inputOption("region", FileKind::VertexLabel, "labels: vertices of label 0 are drawn paler",
+                   s.region)
+      .option("Picture", Field{"views", "", "sides to look from (default: left,right)"}, s.views)
+      .option("Picture",
+              Field{"direction", "",
+                    "look from this side instead: a direction from the surface to the eye"},
+              s.direction)
+      .option("Picture", Field{"focus", "", "fill the picture with the --region"}, s.focus)
+      .option("Picture", Field{"colours", "", "colour map (default: by the values)"}, s.colours)
+      .option("Picture", Field{"range", "", "values of the first and last colour"}, s.range)
+      .option("Picture", Field{"columns", "", "views in a row"}, s.columns)
+      .option("Picture", Field{"slices", "", "slices of a volume in each direction"}, s.slices)
+      .option("Picture", Field{"fps", "", "frames a second of a film"}, s.framesPerSecond)
+      .options("Picture", s.picture)
+      .options("Reading", s.reading)
+      .withoutOutput();
+}
+
+bool isVolume(const std::filesystem::path& path) {
+  const std::string name = path.filename().string();
+  const auto endsWith = [&](std::string_view ending) {
+    return name.size() >= ending.size() &&
+           name.compare(name.size() - ending.size(), ending.size(), ending) == 0;
+  };
+  for (const char* ending :
+       {".nii", ".nii.gz", ".mgh", ".mgz", ".nrrd", ".nhdr", ".mha", ".mhd", ".hdr", ".img"}) {
+    if (endsWith(ending)) return true;
+  }
+  return false;
+}
+
+report::SurfacePaint readPaint(const Settings& s, Eigen::Index vertexCount) {
+  report::SurfacePaint paint;
+  if (s.map) {
+    const auto maps = io::readVertexMaps(*s.map, vertexCount);
+    const auto chosen =
+        s.mapName ? std::find_if(maps.begin(), maps.end(),
+                                 [&](const io::VertexMap& m) { return m.name == *s.mapName; })
+                  : maps.begin();
+    if (chosen == maps.end()) {
+      std::string names;
+      for (const auto& m : maps) names += (names.empty() ? "" : ", ") + m.name;
+      throw InvalidInput(*s.map + ": holds no map named '" + s.mapName.value_or("") + "' but " +
+                         names);
+    }
+    paint.values = chosen->values;
+    paint.scale = report::scaleFor(paint.values, chosen->name, chosen->unit, s.colours);
+    if (s.range) {
+      paint.scale.low = s.range->x();
+      paint.scale.high = s.range->y();
+    }
+  } else if (s.labels) {
+    paint.labels = io::readVertexLabels(*s.labels, vertexCount).keys;
+  }
+  if (s.region) paint.region = io::readVertexLabels(*s.region, vertexCount).keys;
+  return paint;
+}
+
+std::vector<report::FigureView> viewsOf(const Settings& s, const report::SurfacePaint& paint) {
+  std::vector<report::FigureView> views;
+  if (s.direction) {
+    report::FigureView view;
+    view.towards = -*s.direction;
+    views.push_back(view);
+  }
+  std::vector<report::ViewName> names = s.views;
+  if (names.empty() && !s.direction) names = {report::ViewName::Left, report::ViewName::Right};
+  for (const report::ViewName name : names) {
+    report::FigureView view;
+    view.name = name;
+    views.push_back(view);
+  }
+  if (s.focus) {
+    if (paint.region.size() == 0) throw UsageError("--focus needs --region");
+    for (report::FigureView& view : views) {
+      for (Eigen::Index v = 0; v < paint.region.size(); ++v) {
+        if (paint.region[v] != 0) view.focus.push_back(static_cast<std::int32_t>(v));
+      }
+    }
+  }
+  return views;
+}
+
+report::Picture drawSlices(const Settings& s) {
+  const Volume<float> image = io::readScalars(s.files.front()).volume;
+  std::vector<TriangleMesh> meshes;
+  for (std::size_t f = 1; f < s.files.size(); ++f)
+    meshes.push_back(io::readSurface(s.files[f], s.reading).mesh);
+  const std::array<report::Colour, 4> colours = {
+      {{1, 0.05f, 0.03f}, {1, 0.75f, 0}, {0.05f, 0.6f, 1}, {0.1f, 0.9f, 0.3f}}};
+  std::vector<report::Contour> contours;
+  for (std::size_t m = 0; m < meshes.size(); ++m)
+    contours.push_back({&meshes[m], colours[m % colours.size()], 1.4});
+  return report::sliceFigure(image, contours, s.slices, s.picture.height / 3);
+}
+
+report::Picture drawSurfaces(const Settings& s) {
+  std::vector<report::Picture> figures;
+  for (const std::string& file : s.files) {
+    const TriangleMesh mesh = io::readSurface(file, s.reading).mesh;
+    const report::SurfacePaint paint = readPaint(s, mesh.vertexCount());
+    figures.push_back(report::surfaceFigure(mesh, paint, viewsOf(s, paint), s.columns, s.picture));
+  }
+  return report::tilePictures(figures, s.columns);
+}
+
+/// The frames of an unfolding, all from where the first one is seen best.
+std::vector<report::Picture> drawFrames(const Settings& s, const std::filesystem::path& folder) {
+  std::set<std::filesystem::path> files;
+  const std::filesystem::path frames =
+      std::filesystem::exists(folder / "frames") ? folder / "frames" : folder;
+  for (const auto& entry : std::filesystem::directory_iterator(frames)) {
+    const std::string name = entry.path().filename().string();
+    if (name.rfind("frame-", 0) == 0 && name.find(".gii") != std::string::npos)
+      files.insert(entry.path());
+  }
+  if (files.empty()) {
+    throw InvalidInput(folder.string() +
+                       ": holds no frames/frame-*.surf.gii; unfold with --frames");
+  }
+  std::vector<report::Picture> pictures;
+  std::vector<report::Camera> cameras;
+  for (const auto& file : files) {
+    const TriangleMesh mesh = io::readSurface(file, s.reading).mesh;
+    const report::SurfacePaint paint = readPaint(s, mesh.vertexCount());
+    if (cameras.empty()) {
+      for (const auto& view : viewsOf(s, paint)) {
+        cameras.push_back(report::cameraOf(mesh, view, s.picture.width, s.picture.height));
+      }
+    }
+    const report::SurfaceScene scene(mesh);
+    const std::vector<report::Colour> colours = coloursOf(paint, mesh.vertexCount());
+    std::vector<report::Picture> views;
+    for (const report::Camera& camera : cameras) {
+      views.push_back(scene.render(camera, colours,
+                                   paint.values.size() == 0 && paint.labels.size() != 0
+                                       ? report::Filling::Discrete
+                                       : report::Filling::Smooth,
+                                   s.picture));
+    }
+    pictures.push_back(report::tilePictures(views, s.columns));
+  }
+  return pictures;
+}
+
+void writeFilm(const std::filesystem::path& path, const std::vector<report::Picture>& frames,
+               double fps) {
+  const std::string ending = path.extension().string();
+  if (ending != ".gif" && ending != ".png" && ending != ".apng") {
+    throw UsageError("--film " + path.string() + ": expected a name ending in .gif, .png or .apng");
+  }
+  WholeFile file(path);
+  file.write(ending == ".gif" ? report::encodeGif(frames, fps)
+                              : report::encodeAnimatedPng(frames, fps));
+  file.commit();
+}
+
+Termination run(Context& context, const Settings& s) {
+  if (!s.screenshot && !s.film) {
+    throw EnvironmentError(
+        "explica view: no window can be opened here; write a picture with --screenshot FILE.png "
+        "or a film with --film FILE.gif");
+  }
+  if (s.screenshot && std::filesystem::path(*s.screenshot).extension() != ".png") {
+    throw UsageError("--screenshot " + *s.screenshot + ": expected a name ending in .png");
+  }
+  if (s.film) {
+    writeFilm(*s.film, drawFrames(s, s.files.front()), s.framesPerSecond);
+    context.info("wrote " + *s.film);
+  }
+  if (s.screenshot) {
+    report::writePng(*s.screenshot, isVolume(s.files.front()) ? drawSlices(s) : drawSurfaces(s));
+    context.info("wrote " + *s.screenshot);
+  }
+  return Termination::NotRun;
+}
+
+}  // namespace
+
+Command viewCommand() {
+  return makeCommand<Settings>("view", declare, run);
+}
+
+}  // namespace explica::app

@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Core/TriangleMesh.h"
+#include "Explica/Core/Volume.h"
+#include "Explica/Report/ColourMap.h"
+#include "Explica/Report/SlicePicture.h"
+#include "Explica/Report/SurfacePicture.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace explica::report {
+
+/// What colours a surface: values or labels of its vertices, or nothing.
+struct SurfacePaint {
+  Eigen::VectorXd values;                          ///< V, or empty
+  ColourScale scale;                               ///< of the values
+  Eigen::Matrix<Label, Eigen::Dynamic, 1> labels;  ///< V, or empty; used where there are no values
+  Eigen::Matrix<Label, Eigen::Dynamic, 1> region;  ///< V, or empty: what is 0 here is shown paler
+};
+
+/// Colours of a surface's vertices; empty if the paint is.
+[[nodiscard]] std::vector<Colour> coloursOf(const SurfacePaint& paint, Eigen::Index vertexCount);
+
+/// Where to look from and at what.
+struct FigureView {
+  std::optional<ViewName> name;      ///< a standard view of the whole surface
+  Vector towards = Vector(1, 0, 0);  ///< direction of sight where there is no name
+  Vector up = Vector(0, 0, 1);
+  std::vector<std::int32_t> focus;  ///< vertices to fill the picture with; empty for all
+};
+
+/// The views side by side in rows of `columns`, with one colour bar at the right if there are
+/// values.
+[[nodiscard]] Picture surfaceFigure(const TriangleMesh& mesh, const SurfacePaint& paint,
+                                    const std::vector<FigureView>& views, int columns,
+                                    const SurfacePictureOptions& options = {});
+
+/// Camera of a view.
+[[nodiscard]] Camera cameraOf(const TriangleMesh& mesh, const FigureView& view, int width,
+                              int height);
+
+/// Slices through a volume with cut lines: one row for each direction, `count` evenly spaced ones
+/// in each, over the box of the contours' meshes or else of the voxels above 0.
+[[nodiscard]] Picture sliceFigure(const Volume<float>& image, const std::vector<Contour>& contours,
+                                  int count, int height);
+
+/// A box of the voxels above `threshold`, RAS mm, with the first and last voxel's centres inside.
+struct WorldBox {
+  Point low = Point::Constant(kInfinity);
+  Point high = Point::Constant(-kInfinity);
+  [[nodiscard]] bool empty() const { return !(low.array() <= high.array()).all(); }
+};
+[[nodiscard]] WorldBox boxAbove(const Volume<float>& image, double threshold);
+
+}  // namespace explica::report

@@ -1,0 +1,156 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Explica/Report/Figure.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Report/Drawing.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace explica::report {
+namespace {
+
+constexpr float kPale = 0.72f;  // share of light grey in what lies off the region
+
+template <class Values>
+void requireLength(const Values& values, Eigen::Index vertexCount, const char* what) {
+  if (values.size() != 0 && values.size() != vertexCount) {
+    throw InvalidInput(std::string(what) + ": found " + std::to_string(values.size()) +
+                       " values, expected one for each of the surface's " +
+                       std::to_string(vertexCount) + " vertices");
+  }
+}
+
+}  // namespace
+
+std::vector<Colour> coloursOf(const SurfacePaint& paint, Eigen::Index vertexCount) {
+  requireLength(paint.values, vertexCount, "map");
+  requireLength(paint.labels, vertexCount, "labels");
+  requireLength(paint.region, vertexCount, "region");
+  std::vector<Colour> colours;
+  if (paint.values.size() != 0) {
+    colours = coloursOf(paint.values, paint.scale);
+  } else if (paint.labels.size() != 0) {
+    for (const Label label : paint.labels) colours.push_back(colourOfLabel(label));
+  }
+  if (paint.region.size() != 0 && !colours.empty()) {
+    for (Eigen::Index v = 0; v < vertexCount; ++v) {
+      if (paint.region[v] != 0) continue;
+      for (float& c : colours[v]) c = (1 - kPale) * c + kPale * 0.62f;
+    }
+  }
+  return colours;
+}
+
+Camera cameraOf(const TriangleMesh& mesh, const FigureView& view, int width, int height) {
+  TriangleMesh seen;
+  if (!view.focus.empty()) {
+    seen.positions.resize(static_cast<Eigen::Index>(view.focus.size()), 3);
+    for (std::size_t v = 0; v < view.focus.size(); ++v) {
+      seen.positions.row(static_cast<Eigen::Index>(v)) = mesh.positions.row(view.focus[v]);
+    }
+  }
+  const TriangleMesh& shown = view.focus.empty() ? mesh : seen;
+  Camera camera = view.name ? cameraFor(shown, *view.name, width, height)
+                            : cameraTowards(shown, view.towards, view.up, width, height);
+  if (!view.focus.empty()) camera.halfHeight *= 1.3;
+  return camera;
+}
+
+Picture surfaceFigure(const TriangleMesh& mesh, const SurfacePaint& paint,
+                      const std::vector<FigureView>& views, int columns,
+                      const SurfacePictureOptions& options) {
+  const SurfaceScene scene(mesh);
+  const std::vector<Colour> colours = coloursOf(paint, mesh.vertexCount());
+  const bool discrete = paint.values.size() == 0 && paint.labels.size() != 0;
+  std::vector<Picture> pictures;
+  for (const FigureView& view : views) {
+    pictures.push_back(scene.render(cameraOf(mesh, view, options.width, options.height), colours,
+                                    discrete ? Filling::Discrete : Filling::Smooth, options));
+  }
+  const Picture tiled = tilePictures(pictures, columns);
+  if (paint.values.size() == 0) return tiled;
+  const int barHeight = std::min(std::max(tiled.height * 3 / 5, 120), tiled.height);
+  const int barWidth = std::max(110, std::min(150, tiled.height / 5));
+  Picture whole(tiled.width + barWidth, tiled.height);
+  pastePicture(whole, tiled, 0, 0);
+  const std::string title = paint.scale.unit.empty()
+                                ? paint.scale.title
+                                : paint.scale.title + " [" + paint.scale.unit + "]";
+  // A long title starts further left, over the picture's white margin.
+  const int shift =
+      std::max(0, static_cast<int>(textWidth(title, std::clamp(barHeight / 24.0, 8.0, 14.0))) -
+                      barWidth + 20);
+  ColourScale untitled = paint.scale;
+  untitled.title.clear();
+  untitled.unit.clear();
+  const int top = (tiled.height - barHeight) / 2;
+  drawColourBar(whole, untitled, tiled.width + 10, top, barWidth - 20, barHeight);
+  drawText(whole, title,
+           Eigen::Vector2d(tiled.width + 10 - shift,
+                           top + 1.5 * std::clamp(barHeight / 24.0, 8.0, 14.0)),
+           std::clamp(barHeight / 24.0, 8.0, 14.0), {0.02f, 0.02f, 0.02f});
+  return whole;
+}
+
+WorldBox boxAbove(const Volume<float>& image, double threshold) {
+  WorldBox box;
+  for (std::size_t v = 0; v < image.size(); ++v) {
+    if (!(image[v] > threshold)) continue;
+    const auto [i, j, k] = image.grid.subscripts(v);
+    const Point p = image.grid.toWorld(Vector(i, j, k));
+    box.low = box.low.cwiseMin(p);
+    box.high = box.high.cwiseMax(p);
+  }
+  return box;
+}
+
+Picture sliceFigure(const Volume<float>& image, const std::vector<Contour>& contours, int count,
+                    int height) {
+  WorldBox box;
+  for (const Contour& contour : contours) {
+    if (contour.mesh->vertexCount() == 0) continue;
+    box.low = box.low.cwiseMin(contour.mesh->positions.colwise().minCoeff().transpose());
+    box.high = box.high.cwiseMax(contour.mesh->positions.colwise().maxCoeff().transpose());
+  }
+  const WorldBox tissue = boxAbove(image, 0);
+  if (box.empty()) box = tissue;
+  if (box.empty()) throw InvalidInput("volume: every voxel is 0 or less; there is nothing to show");
+  std::vector<float> values;
+  for (const float v : image.data) {
+    if (v > 0 && std::isfinite(v)) values.push_back(v);
+  }
+  std::sort(values.begin(), values.end());
+  ColourScale grey{ColourMap::Grey, 0, 1, "", ""};
+  if (!values.empty()) grey.high = 1.05 * values[values.size() - 1 - values.size() / 200];
+  WorldBox frame = tissue.empty() ? box : tissue;
+  std::vector<Picture> rows;
+  for (const SliceAxis axis : {SliceAxis::Axial, SliceAxis::Coronal, SliceAxis::Sagittal}) {
+    const int normal = axis == SliceAxis::Sagittal ? 0 : (axis == SliceAxis::Coronal ? 1 : 2);
+    std::vector<Picture> slices;
+    for (int s = 0; s < count; ++s) {
+      const double share = (s + 1.0) / (count + 1.0);
+      // A little off the vertices' likely lattice, so that no plane runs along faces.
+      const double at = box.low[normal] + share * (box.high[normal] - box.low[normal]) + 1e-4;
+      Picture slice =
+          renderSlice(image, frameAround(axis, at, frame.low, frame.high, height), grey, contours);
+      const char letter = normal == 0 ? 'x' : (normal == 1 ? 'y' : 'z');
+      drawText(slice,
+               std::string(1, letter) + " = " + std::to_string(static_cast<int>(std::lround(at))) +
+                   " mm",
+               {8, height - 8.0}, 9, {0.8f, 0.8f, 0.8f});
+      slices.push_back(std::move(slice));
+    }
+    rows.push_back(tilePictures(slices, count));
+  }
+  int width = 0;
+  for (const Picture& row : rows) width = std::max(width, row.width);
+  Picture whole(width, height * static_cast<int>(rows.size()), {0, 0, 0});
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    pastePicture(whole, rows[r], (width - rows[r].width) / 2, static_cast<int>(r) * height);
+  }
+  return whole;
+}
+
+}  // namespace explica::report
