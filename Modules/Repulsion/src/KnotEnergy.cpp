@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Repulsion/KnotEnergy.h"
+
+#include "Explica/Repulsion/AllPairs.h"
+
+namespace explica::repulsion {
+
+std::unique_ptr<KnotEnergy> makeKnotEnergy(KnotMethod method, const TriangleMesh& mesh,
+                                           const std::vector<bool>& vertexMoves) {
+  switch (method) {
+    case KnotMethod::Tree:
+    case KnotMethod::ThesisTree:
+    case KnotMethod::AllPairs:
+      return std::make_unique<AllPairs>(mesh, vertexMoves);
+    case KnotMethod::Off:
+      break;
+  }
+  return nullptr;
+}
+
+}  // namespace explica::repulsion
