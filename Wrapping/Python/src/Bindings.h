@@ -1,0 +1,14 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+namespace explica::python {
+
+// One function a module, each in a source of its own.
+void bindCore(pybind11::module_& m);
+void bindGeometry(pybind11::module_& m);
+void bindIO(pybind11::module_& m);
+
+}  // namespace explica::python

@@ -1,0 +1,11 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Bindings.h"
+
+PYBIND11_MODULE(_explica, m) {
+  m.doc() = "Explica's compiled functions; import `explica` instead.";
+  explica::python::bindCore(m);
+  explica::python::bindGeometry(m);
+  explica::python::bindIO(m);
+}
