@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
+#include "Explica/Application/Descriptors.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Provenance/Software.h"
 #include "Parse.h"
@@ -61,10 +62,7 @@ int runCommandLine(std::vector<std::string> words, const std::vector<std::string
     return kDone;
   }
   if (words[0] == "--describe") {
-    Json all = Json::array();
-    for (const Command& command : allCommands())
-      all.push_back(describeJson(command.begin().declaration));
-    std::cout << all.dump(2) << "\n";
+    std::cout << describeAllCommands().dump(2) << "\n";
     return kDone;
   }
 
@@ -107,6 +105,10 @@ int runCommandLine(std::vector<std::string> words, const std::vector<std::string
   }
   if (has(words, "--describe")) {
     std::cout << describeJson(declaration).dump(2) << "\n";
+    return kDone;
+  }
+  if (has(words, "--xml")) {
+    std::cout << slicerXmlOf(describeJson(declaration), provenance::software().version);
     return kDone;
   }
   if (has(words, "--describe=page")) {

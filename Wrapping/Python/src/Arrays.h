@@ -27,8 +27,8 @@ namespace py = pybind11;
 /// Scalars of any numeric array, as float32.
 [[nodiscard]] Volume<float> scalarVolume(const py::array& values, const Eigen::Matrix4d& affine);
 
-/// Array of shape (I, J, K) over the volume's own memory, which moves into it; first axis fastest, as
-/// nibabel keeps images.
+/// Array of shape (I, J, K) over the volume's own memory, which moves into it; first axis fastest,
+/// as nibabel keeps images.
 template <class T>
 [[nodiscard]] py::array arrayOf(Volume<T>&& volume) {
   const auto [i, j, k] = volume.grid.size;

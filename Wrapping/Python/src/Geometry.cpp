@@ -70,7 +70,8 @@ void bindGeometry(py::module_& m) {
       [](const PositionsIn& positions, const FacesIn& faces) {
         return conditionOf(geometry::inspectMesh({positions, faces}));
       },
-      p, f, "Counts of what makes a surface usable or not: Euler characteristic, boundary, defects.");
+      p, f,
+      "Counts of what makes a surface usable or not: Euler characteristic, boundary, defects.");
   m.def(
       "self_intersections",
       [](const PositionsIn& positions, const FacesIn& faces) {
@@ -95,7 +96,8 @@ void bindGeometry(py::module_& m) {
         return geometry::geodesicDistances(mesh, topology, sources, limit);
       },
       p, f, py::arg("sources"), py::arg("limit") = kInfinity,
-      "Distance along the surface from the nearest source vertex, mm, shape (V,); inf beyond limit.");
+      "Distance along the surface from the nearest source vertex, mm, shape (V,); inf beyond "
+      "limit.");
   m.def(
       "closest_points",
       [](const PositionsIn& positions, const FacesIn& faces, const PositionsIn& queries) {

@@ -17,9 +17,9 @@ namespace explica::python {
 
 namespace py = pybind11;
 
-/// Lets long work run without Python's lock while Python stays in charge: progress goes to a callback
-/// (fraction, activity), which may return False to stop; Ctrl-C stops at the next consistent state and
-/// is raised afterwards; warnings become Python warnings.
+/// Lets long work run without Python's lock while Python stays in charge: progress goes to a
+/// callback (fraction, activity), which may return False to stop; Ctrl-C stops at the next
+/// consistent state and is raised afterwards; warnings become Python warnings.
 class Watch {
  public:
   explicit Watch(py::object callback) : callback_(std::move(callback)) {}
@@ -81,7 +81,8 @@ class Watch {
 
   void raisePending() {
     for (const std::string& warning : warnings_) {
-      if (PyErr_WarnEx(PyExc_RuntimeWarning, warning.c_str(), 2) != 0) throw py::error_already_set();
+      if (PyErr_WarnEx(PyExc_RuntimeWarning, warning.c_str(), 2) != 0)
+        throw py::error_already_set();
     }
     if (pending_) throw py::error_already_set(std::move(*pending_));
   }

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Provenance/Json.h"
+
+#include <string>
+#include <vector>
+
+namespace explica::app {
+
+using provenance::Json;
+
+// Each function turns declarations, as `explica COMMAND --describe` prints them, into what another
+// tool reads.  `version` is the software's.
+
+/// Boutiques descriptor, schema 0.5.
+[[nodiscard]] Json boutiquesOf(const Json& command, const std::string& version);
+
+/// Command description of 3D Slicer's execution model, as XML.
+[[nodiscard]] std::string slicerXmlOf(const Json& command, const std::string& version);
+
+/// A Python module with one nipype CommandLine interface a command.
+[[nodiscard]] std::string nipypeOf(const Json& commands, const std::string& version);
+
+[[nodiscard]] std::string bashCompletionOf(const Json& commands);
+[[nodiscard]] std::string zshCompletionOf(const Json& commands);
+
+/// Manual page, section 1, in roff.
+[[nodiscard]] std::string manPageOf(const Json& command, const std::string& version);
+
+/// All declarations, in the order of their names.
+[[nodiscard]] Json describeAllCommands();
+
+}  // namespace explica::app
