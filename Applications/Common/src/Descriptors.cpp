@@ -11,10 +11,17 @@
 namespace explica::app {
 namespace {
 
-/// Letters and digits of a name, words joined by `joint`: "phantom shell" -> "phantom_shell".
+/// Letters and digits of a name, words joined by one `joint`: "frames/frame-*.gii" becomes
+/// "frames_frame_gii".
 std::string identifier(const std::string& name, char joint = '_') {
   std::string id;
-  for (const char c : name) id += std::isalnum(static_cast<unsigned char>(c)) ? c : joint;
+  for (const char c : name) {
+    if (std::isalnum(static_cast<unsigned char>(c))) {
+      id += c;
+    } else if (!id.empty() && id.back() != joint) {
+      id += joint;
+    }
+  }
   return id;
 }
 
@@ -215,7 +222,10 @@ std::string nipypeTrait(const Json& p) {
 std::string nipypeArgument(const Json& p) {
   const std::string name = p["positional"] ? "" : "--" + word(p["name"]);
   if (isFlag(p)) return name;
-  const std::string format = p["type"] == "integer" && !p["list"] ? "%d" : "%s";
+  // A tuple fills one place a coordinate.
+  const std::string format = p["type"] == "point2"   ? "%s,%s"
+                             : p["type"] == "point3" ? "%s,%s,%s"
+                                                     : "%s";
   const std::string argument = name + (name.empty() ? "" : " ") + format;
   return p["list"] && !isJoined(p) && !p["positional"] ? argument + "..." : argument;
 }
@@ -235,7 +245,7 @@ std::string nipypeInput(const Json& p, int position) {
   }
   const std::string start = trait.substr(0, trait.size() - 1);
   const std::string comma = start.back() == '(' ? "" : ", ";
-  return line + start + comma + metadata + (isPoint(p) ? ", sep=\",\"" : "") + ")\n";
+  return line + start + comma + metadata + ")\n";
 }
 
 // Completion ------------------------------------------------------------------------------------
