@@ -100,6 +100,11 @@ Declaration& Declaration::inPlace() {
   return *this;
 }
 
+Declaration& Declaration::writesThrough() {
+  handsOutputOn = true;
+  return *this;
+}
+
 Declaration& Declaration::reuseOutputIf(const bool& flag) {
   reuse = &flag;
   return *this;

@@ -212,22 +212,33 @@ int Context::threads() const {
   return state_->record.threads;
 }
 
-Outcome Context::runCommand(const Command& command, const std::string& name, const Json& options) {
-  if (state_->run.common.dryRun) throw DryRunEnds{};
-  if (!state_->folder || !state_->declaration().writesInPlace) {
-    throw std::logic_error("runCommand: the command must be declared inPlace()");
-  }
+namespace {
+
+/// A run of `command` as a part of `outer`, its values taken from JSON.
+Run nestedRun(const Command& command, const Json& options, const Run& outer,
+              const Monitor& monitor) {
   Run nested;
   nested.invocation = command.begin();
   std::vector<Parameter*> parameters;
   for (Parameter& p : nested.invocation.declaration.parameters) parameters.push_back(&p);
   nested.given = applyJson(parameters, options, command.name());
   requireGiven(nested.invocation.declaration, nested.given);
-  nested.common = state_->run.common;
+  nested.common = outer.common;
+  nested.argv = {"explica", command.name(), options.dump()};
+  nested.parent = &monitor;
+  return nested;
+}
+
+}  // namespace
+
+Outcome Context::runCommand(const Command& command, const std::string& name, const Json& options) {
+  if (state_->run.common.dryRun) throw DryRunEnds{};
+  if (!state_->folder || !state_->declaration().writesInPlace) {
+    throw std::logic_error("runCommand: the command must be declared inPlace()");
+  }
+  Run nested = nestedRun(command, options, state_->run, state_->monitor);
   nested.common.out = (outputFolder() / name).string();
   nested.common.force = true;
-  nested.argv = {"explica", command.name(), options.dump()};
-  nested.parent = &state_->monitor;
   nested.prefix = state_->run.prefix + name + ": ";
   Step timing = step(name);
   const Outcome outcome = execute(nested, state_->console);
@@ -236,6 +247,14 @@ Outcome Context::runCommand(const Command& command, const std::string& name, con
     state_->nestedRecords.emplace_back(name + "/" + provenance::kRecordName, outcome.record);
   }
   return outcome;
+}
+
+Outcome Context::runThrough(const Command& command, const Json& options) {
+  if (!state_->declaration().handsOutputOn) {
+    throw std::logic_error("runThrough: the command must be declared writesThrough()");
+  }
+  Run nested = nestedRun(command, options, state_->run, state_->monitor);
+  return execute(nested, state_->console);
 }
 
 namespace {
@@ -329,6 +348,8 @@ Outcome execute(Run& run, Console& console) {
   if (declaration.writesOutput) {
     if (!run.common.out && declaration.fallbackOut) run.common.out = *declaration.fallbackOut;
     if (!run.common.out) throw UsageError("--out is missing: the folder for the results");
+  }
+  if (declaration.writesOutput && !declaration.handsOutputOn) {
     const bool reuse = declaration.reuse && *declaration.reuse;
     const OutputRules rules{run.common.force || reuse, run.common.force && !reuse,
                             declaration.writesInPlace, run.common.dryRun, declaration.name};
@@ -350,7 +371,7 @@ Outcome execute(Run& run, Console& console) {
   Outcome outcome;
   outcome.termination = termination;
   outcome.exitCode = reachedGoal(termination) ? kDone : kStoppedEarly;
-  if (!declaration.writesOutput) return outcome;
+  if (!state.folder) return outcome;
 
   record.termination = termination;
   record.exitCode = outcome.exitCode;

@@ -89,6 +89,9 @@ class Context {
   Outcome runCommand(const Command& command, const std::string& name,
                      const nlohmann::ordered_json& options);
 
+  /// Runs another command into this command's --out.  Only for commands declared writesThrough().
+  Outcome runThrough(const Command& command, const nlohmann::ordered_json& options);
+
   struct State;
   explicit Context(State& state) : state_(&state) {}
 

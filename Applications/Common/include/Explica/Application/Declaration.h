@@ -139,6 +139,8 @@ class Declaration {
   /// Outputs go straight into --out, which may hold files already: for commands made of steps that
   /// each keep whole-or-not-at-all themselves.
   Declaration& inPlace();
+  /// The results of --out are another command's, run by Context::runThrough.
+  Declaration& writesThrough();
   /// While `*reuse` is true, --out may hold files already (as with --resume).
   Declaration& reuseOutputIf(const bool& reuse);
   /// Where to write if --out is not given.
@@ -159,6 +161,7 @@ class Declaration {
   std::vector<OutputSlot> outputs;
   bool writesOutput = true;
   bool writesInPlace = false;
+  bool handsOutputOn = false;
   const bool* reuse = nullptr;
   const std::string* fallbackOut = nullptr;
 

@@ -1,0 +1,261 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+// What every command has from Applications/Common, tried on the quickest of them.
+
+#include "Explica/Testing/Command.h"
+
+#include <gtest/gtest.h>
+
+#include <signal.h>
+#include <unistd.h>
+
+#include <cstdlib>
+
+namespace explica::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::Test;
+
+/// Arguments of a small, quick run into `out`.
+std::vector<std::string> shell(const std::string& out, std::vector<std::string> more = {}) {
+  std::vector<std::string> words = {"phantom", "shell", "--size", "8", "--out", out};
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST(Framework, EveryCommandHelpsFromItsDeclaration) {
+  const auto all = nlohmann::ordered_json::parse(explica({"--describe"}).out);
+  ASSERT_GE(all.size(), 3u);
+  for (const auto& command : all) {
+    const std::string name = command["command"];
+    SCOPED_TRACE(name);
+    EXPECT_FALSE(command["synopsis"].get<std::string>().empty());
+    std::vector<std::string> words;
+    if (const auto space = name.find(' '); space != std::string::npos) {
+      words = {name.substr(0, space), name.substr(space + 1)};
+    } else {
+      words = {name};
+    }
+    words.push_back("--help");
+    const auto help = explica(words);
+    EXPECT_EQ(help.exitCode, 0);
+    EXPECT_TRUE(help.err.empty()) << help.err;
+    for (const auto& parameter : command["parameters"]) {
+      const std::string dashes = parameter["positional"].get<bool>() ? "" : "--";
+      EXPECT_TRUE(contains(help.out, dashes + parameter["name"].get<std::string>()));
+      EXPECT_FALSE(parameter["help"].get<std::string>().empty()) << parameter["name"];
+    }
+  }
+}
+
+TEST(Framework, VersionNamesTheCommit) {
+  const auto version = explica({"--version"});
+  EXPECT_EQ(version.exitCode, 0);
+  EXPECT_TRUE(contains(version.out, "explica ")) << version;
+  EXPECT_TRUE(contains(version.out, "commit ")) << version;
+}
+
+TEST(Framework, WrongUseIsExitCodeOneWithAHint) {
+  TemporaryFolder folder;
+  const struct {
+    std::vector<std::string> words;
+    std::string expected;
+  } rows[] = {
+      {{}, "Usage"},
+      {{"thikness"}, "unknown command 'thikness'"},
+      {{"verfy", "x"}, "did you mean 'verify'?"},
+      {{"phantom", "cube"}, "unknown kind 'cube'"},
+      {{"phantom", "shell"}, "--out is missing"},
+      {{"verify"}, "PROVENANCE is missing"},
+      {shell(folder / "a", {"--sizes", "3"}), "did you mean --size?"},
+      {shell(folder / "a", {"--size", "9"}), "--size"},
+      {shell(folder / "a", {"--spacing", "wide"}), "spacing: 'wide' is not a number"},
+      {shell(folder / "a", {"--aspect", "1,2"}), "three numbers"},
+      {shell(folder / "a", {"surplus"}), "'surplus' was not expected"},
+      {shell(folder / "a", {"--threads", "0"}), "threads: '0' is not a positive whole number"},
+      {shell(folder / "a", {"--spacing"}), "--spacing"},
+  };
+  for (const auto& row : rows) {
+    const auto result = explica(row.words);
+    EXPECT_EQ(result.exitCode, 1) << result;
+    EXPECT_TRUE(contains(result.err, row.expected)) << row.expected << "\n" << result;
+    EXPECT_TRUE(result.out.empty()) << result;
+  }
+  EXPECT_TRUE(folder.entries().empty());
+}
+
+TEST(Framework, NegativeNumbersAreValuesNotOptions) {
+  TemporaryFolder folder;
+  const auto result = explica(shell(folder / "a", {"--aspect", "-1,2,2"}));
+  EXPECT_EQ(result.exitCode, 2) << result;  // understood, and refused for what it says
+  EXPECT_TRUE(contains(result.err, "must be positive")) << result;
+  EXPECT_EQ(explica(shell(folder / "b", {"--spacing", "-.5"})).exitCode, 2);
+}
+
+TEST(Framework, ConfigurationFileIsOverruledByTheCommandLine) {
+  TemporaryFolder folder;
+  writeText(folder / "c.json", R"({"size": 10, "spacing": 0.5, "threads": 1})");
+  const auto result = explica({"phantom", "shell", "--config", folder / "c.json", "--spacing",
+                               "0.25", "--out", folder / "a"});
+  ASSERT_EQ(result.exitCode, 0) << result;
+  const auto record = readJson(folder / "a/provenance.json");
+  EXPECT_EQ(record["options"]["size"], 10);
+  EXPECT_EQ(record["options"]["spacing"], 0.25);
+  EXPECT_EQ(record["options"]["inner-radius"], 0.5);  // a default is recorded too
+  EXPECT_EQ(record["execution"]["threads"]["count"], 1);
+
+  writeText(folder / "wrong.json", R"({"sise": 10})");
+  const auto wrong =
+      explica({"phantom", "shell", "--config", folder / "wrong.json", "--out", folder / "b"});
+  EXPECT_EQ(wrong.exitCode, 1);
+  EXPECT_TRUE(contains(wrong.err, "did you mean 'size'?")) << wrong;
+  writeText(folder / "broken.json", "{");
+  EXPECT_EQ(explica({"phantom", "shell", "--config", folder / "broken.json", "--out", folder / "b"})
+                .exitCode,
+            2);
+  EXPECT_FALSE(fs::exists(folder / "b"));
+}
+
+TEST(Framework, ThreadsFollowThePrecedence) {
+  TemporaryFolder folder;
+  const std::map<std::string, std::string> none = {
+      {"EXPLICA_NTHREADS", ""}, {"SLURM_CPUS_PER_TASK", ""},
+      {"NSLOTS", ""},           {"PBS_NCPUS", ""},
+      {"OMP_NUM_THREADS", ""},  {"ITK_GLOBAL_DEFAULT_NUMBER_OF_THREADS", ""}};
+  int run = 0;
+  const auto threads = [&](std::map<std::string, std::string> extra,
+                           std::vector<std::string> words = {}) {
+    CommandSetting setting;
+    setting.environment = none;
+    for (auto& [name, value] : extra) setting.environment[name] = value;
+    const std::string out = folder / std::to_string(run++);
+    const auto result = explica(shell(out, std::move(words)), setting);
+    EXPECT_EQ(result.exitCode, 0) << result;
+    const auto record = readJson(out + "/provenance.json")["execution"]["threads"];
+    return record["count"].dump() + " " + record["because"].get<std::string>();
+  };
+  EXPECT_EQ(threads({{"OMP_NUM_THREADS", "3,2"}}), "3 OMP_NUM_THREADS");
+  EXPECT_EQ(threads({{"OMP_NUM_THREADS", "3"}, {"SLURM_CPUS_PER_TASK", "5"}}),
+            "5 SLURM_CPUS_PER_TASK");
+  EXPECT_EQ(threads({{"SLURM_CPUS_PER_TASK", "5"}, {"EXPLICA_NTHREADS", "2"}}),
+            "2 EXPLICA_NTHREADS");
+  EXPECT_EQ(threads({{"EXPLICA_NTHREADS", "2"}}, {"--threads", "4"}), "4 --threads");
+  EXPECT_TRUE(contains(threads({}), "affinity"));
+}
+
+TEST(Framework, AFolderThatHoldsFilesIsRefusedUnlessForced) {
+  TemporaryFolder folder;
+  ASSERT_EQ(explica(shell(folder / "a")).exitCode, 0);
+  writeText(folder / "a/mine.txt", "keep me");
+  const auto refused = explica(shell(folder / "a"));
+  EXPECT_EQ(refused.exitCode, 1);
+  EXPECT_TRUE(contains(refused.err, "--force")) << refused;
+
+  const auto forced = explica(shell(folder / "a", {"--force", "--spacing", "2"}));
+  EXPECT_EQ(forced.exitCode, 0) << forced;
+  EXPECT_EQ(readJson(folder / "a/provenance.json")["options"]["spacing"], 2.0);
+  EXPECT_EQ(readText(folder / "a/mine.txt"), "keep me");
+  EXPECT_EQ(explica({"verify", folder / "a"}).exitCode, 0);
+}
+
+TEST(Framework, BadInputLeavesNothingBehind) {
+  TemporaryFolder folder;
+  const auto result = explica(shell(folder / "deep/er/a", {"--inner-radius", "0.9"}));
+  EXPECT_EQ(result.exitCode, 2) << result;
+  EXPECT_TRUE(folder.entries().empty());
+
+  fs::create_directory(folder / "there");
+  EXPECT_EQ(explica(shell(folder / "there", {"--inner-radius", "0.9"})).exitCode, 2);
+  EXPECT_EQ(folder.entries(), std::vector<std::string>{"there"});
+}
+
+TEST(Framework, ADryRunChecksAndWritesNothing) {
+  TemporaryFolder folder;
+  const auto result = explica(shell(folder / "a", {"--dry-run"}));
+  EXPECT_EQ(result.exitCode, 0) << result;
+  EXPECT_EQ(nlohmann::json::parse(result.out)["size"], 8);
+  EXPECT_TRUE(folder.entries().empty());
+  EXPECT_EQ(explica(shell("/proc/nowhere/a", {"--dry-run"})).exitCode, 4);
+}
+
+TEST(Framework, AFullDiskIsExitCodeFourAndLeavesNothing) {
+  TemporaryFolder folder;
+  CommandSetting setting;
+  setting.fileSizeLimit = 2000;
+  const auto result = explica({"phantom", "shell", "--size", "40", "--out", folder / "a"}, setting);
+  EXPECT_EQ(result.exitCode, 4) << result;
+  EXPECT_TRUE(contains(result.err, ".nii.gz")) << result;
+  EXPECT_TRUE(folder.entries().empty());
+}
+
+TEST(Framework, AnOutputFolderThatCannotBeMadeIsExitCodeFour) {
+  const auto result = explica(shell("/proc/nowhere/a"));
+  EXPECT_EQ(result.exitCode, 4) << result;
+  TemporaryFolder folder;
+  writeText(folder / "file", "x");
+  EXPECT_EQ(explica(shell(folder / "file")).exitCode, 1);
+  EXPECT_EQ(explica(shell(folder / "file/a")).exitCode, 4);
+  EXPECT_EQ(readText(folder / "file"), "x");
+}
+
+TEST(Framework, ASecondRunIntoTheSameFolderRefuses) {
+  TemporaryFolder folder;
+  fs::create_directory(folder / "a");
+  char host[256] = {};
+  gethostname(host, sizeof host - 1);
+  const std::string start = [] {  // of this very process, which is alive
+    std::string text = readText("/proc/self/stat");
+    text = text.substr(text.rfind(')') + 1);
+    std::istringstream fields(text);
+    std::string field;
+    for (int i = 0; i < 20; ++i) fields >> field;
+    return field;
+  }();
+  const auto lock = [&](long pid, const std::string& since) {
+    return nlohmann::json{{"host", host},
+                          {"pid", pid},
+                          {"process_start", since},
+                          {"started", "2026-01-01T00:00:00Z"},
+                          {"command", "unfold"}}
+        .dump();
+  };
+  writeText(folder / "a/.explica-lock", lock(getpid(), start));
+  const auto refused = explica(shell(folder / "a"));
+  EXPECT_EQ(refused.exitCode, 4) << refused;
+  EXPECT_TRUE(contains(refused.err, std::to_string(getpid()))) << refused;
+  EXPECT_TRUE(contains(refused.err, host)) << refused;
+
+  // The same number, but of a process that began at another time: the owner is gone.
+  writeText(folder / "a/.explica-lock", lock(getpid(), "1"));
+  const auto taken = explica(shell(folder / "a"));
+  EXPECT_EQ(taken.exitCode, 0) << taken;
+  EXPECT_TRUE(contains(taken.err, "killed")) << taken;
+  EXPECT_FALSE(fs::exists(folder / "a/.explica-lock"));
+}
+
+TEST(Framework, PrivateRecordsNameNoHostUserOrFolder) {
+  TemporaryFolder folder;
+  ASSERT_EQ(explica(shell(folder / "a", {"--private"})).exitCode, 0);
+  const auto execution = readJson(folder / "a/provenance.json")["execution"];
+  EXPECT_FALSE(execution["machine"].contains("host"));
+  EXPECT_FALSE(execution["machine"].contains("user"));
+  EXPECT_FALSE(execution.contains("directory"));
+  EXPECT_EQ(readText(folder / "a/provenance.json").find(folder.path().string()), std::string::npos);
+  EXPECT_EQ(explica({"verify", folder / "a"}).exitCode, 0);
+}
+
+TEST(Framework, QuietSaysNothingAndTheLogSaysAll) {
+  TemporaryFolder folder;
+  const auto result = explica(shell(folder / "a", {"--quiet", "--log", folder / "log.txt"}));
+  EXPECT_EQ(result.exitCode, 0);
+  EXPECT_TRUE(result.err.empty()) << result;
+  EXPECT_TRUE(contains(readText(folder / "log.txt"), "done: results in"));
+}
+
+}  // namespace
+}  // namespace explica::testing
