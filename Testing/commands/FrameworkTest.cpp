@@ -180,7 +180,8 @@ TEST(Framework, ADryRunChecksAndWritesNothing) {
   EXPECT_EQ(result.exitCode, 0) << result;
   EXPECT_EQ(nlohmann::json::parse(result.out)["size"], 8);
   EXPECT_TRUE(folder.entries().empty());
-  EXPECT_EQ(explica(shell("/proc/nowhere/a", {"--dry-run"})).exitCode, 4);
+  writeText(folder / "file", "x");
+  EXPECT_EQ(explica(shell(folder / "file/a", {"--dry-run"})).exitCode, 4);
 }
 
 TEST(Framework, AFullDiskIsExitCodeFourAndLeavesNothing) {

@@ -61,7 +61,7 @@ TEST_P(SameBytes, WhateverTheNumberOfThreads) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Commands, SameBytes, ::testing::ValuesIn(kRows),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& row) { return row.param.name; });
 
 }  // namespace
 }  // namespace explica::testing

@@ -148,7 +148,8 @@ std::map<std::string, std::string> stableHashes(const fs::path& folder) {
     files.push_back(entry.path());
     if (entry.path().filename() != "provenance.json") continue;
     varying.insert(entry.path());
-    for (const auto& output : readJson(entry.path())["execution"]["varying_outputs"]) {
+    const auto record = readJson(entry.path());
+    for (const auto& output : record["execution"]["varying_outputs"]) {
       varying.insert(entry.path().parent_path() / output["path"].get<std::string>());
     }
   }

@@ -108,6 +108,9 @@ OutputFolder::OutputFolder(fs::path folder, const OutputRules& rules,
   if (rules.checkOnly) {
     auto parent = fs::absolute(folder_);
     while (!fs::exists(parent, fault) && parent.has_relative_path()) parent = parent.parent_path();
+    if (!fs::is_directory(parent, fault)) {
+      cannot("the output folder cannot be made", folder_, parent.string() + " is a file");
+    }
     if (access(parent.c_str(), W_OK) != 0) {
       cannot("the output folder cannot be made", folder_, std::strerror(errno));
     }

@@ -13,6 +13,22 @@ Json digestJson(const Digest& digest) {
   return {{"size", digest.size}, {"sha256", digest.sha256}};
 }
 
+/// Names of files without their folders, in any value: for records that shall not tell folders.
+Json withoutFolders(const Json& value) {
+  if (value.is_string()) {
+    const auto text = value.get<std::string>();
+    const auto equals = text.rfind("--", 0) == 0 ? text.find('=') : std::string::npos;
+    const auto slash = text.rfind('/');
+    if (slash == std::string::npos) return value;
+    const std::string option = equals == std::string::npos ? "" : text.substr(0, equals + 1);
+    return option + text.substr(slash + 1);
+  }
+  if (!value.is_array() && !value.is_object()) return value;
+  Json all = value;
+  for (auto& element : all) element = withoutFolders(element);
+  return all;
+}
+
 Json wordList(const std::vector<std::string>& words) {
   Json array = Json::array();
   for (const auto& word : words) array.push_back(word);
@@ -93,15 +109,16 @@ Json toJson(const Record& r) {
   execution["libraries"] = describeLibraries();
   execution["machine"] = describeMachine(r.withNames);
   execution["private"] = !r.withNames;
-  execution["arguments"] = r.arguments;
-  execution["argv"] = wordList(r.argv);
+  execution["arguments"] = r.withNames ? r.arguments : withoutFolders(r.arguments);
+  execution["argv"] = r.withNames ? wordList(r.argv) : withoutFolders(wordList(r.argv));
   if (r.withNames) {
     execution["directory"] = r.directory.string();
     execution["out"] = r.out.string();
   }
   execution["inputs"] = Json::array();
   for (const auto& input : r.inputs) {
-    Json entry = {{"role", input.role}, {"given", input.given.string()}};
+    Json entry = {{"role", input.role},
+                  {"given", (r.withNames ? input.given : input.given.filename()).string()}};
     if (r.withNames) entry["absolute"] = input.absolute.string();
     if (input.parent) {
       entry["parent_record"] = {{"sha256", input.parent->sha256}};
