@@ -7,8 +7,8 @@
 #include "Explica/Geometry/Fixtures.h"
 #include "Explica/Report/SlicePicture.h"
 
-#include <Eigen/Geometry>
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include <cmath>
 

@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace explica::report {
+
+/// One line of a chart.
+struct Series {
+  std::string name;
+  std::vector<double> x;
+  std::vector<double> y;  ///< as long as x; what is not finite is left out
+};
+
+/// What stands around a chart.
+struct ChartText {
+  std::string title;
+  std::string xTitle;  ///< with unit
+  std::string yTitle;
+};
+
+/// How often values occur, as a self-contained SVG element; from the 0.5th to the 99.5th
+/// percentile, with the median marked.  A sentence says so where there is nothing to show.
+[[nodiscard]] std::string histogramSvg(const Eigen::VectorXd& values, const ChartText& text);
+
+/// Lines over a common axis, as a self-contained SVG element, with a legend if there are several.
+[[nodiscard]] std::string curvesSvg(const std::vector<Series>& series, const ChartText& text);
+
+/// Text as it may stand in HTML and SVG: &, <, >, quotes replaced.
+[[nodiscard]] std::string escapeHtml(std::string_view text);
+
+}  // namespace explica::report

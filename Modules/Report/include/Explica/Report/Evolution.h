@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Core/TriangleMesh.h"
+#include "Explica/Report/ColourMap.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace explica::report {
+
+/// Values on the vertices of an evolving surface.
+struct EvolutionMap {
+  Eigen::VectorXd values;  ///< V
+  ColourScale scale;
+};
+
+/// A surface of which some vertices move from frame to frame: what the interactive view plays.
+struct Evolution {
+  TriangleMesh mesh;                     ///< as it is at the start
+  std::vector<std::int32_t> moved;       ///< vertices that differ in any frame, ascending
+  std::vector<Positions> frames;         ///< positions of `moved`; the first frame is the start
+  std::vector<std::string> frameTitles;  ///< "iteration 12", one a frame
+  std::vector<EvolutionMap> maps;
+  std::optional<Point> viewpoint;  ///< RAS mm; the first view looks from there
+};
+
+/// The surface of several meshes with equal faces: finds what moved.
+/// @throws InvalidInput  no mesh, or meshes that differ in faces or number of vertices
+[[nodiscard]] Evolution evolutionOf(const std::vector<TriangleMesh>& frames);
+
+/// The evolution as JSON for the page's script: positions quantised to 1/65535 of the box, frames
+/// as differences, everything deflated.
+[[nodiscard]] std::string evolutionJson(const Evolution& evolution);
+
+}  // namespace explica::report

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Encoding.h"
+
+#include <zlib.h>
+
+#include <algorithm>
+
+namespace explica::report {
+
+std::string base64(std::string_view bytes) {
+  static constexpr char kDigits[] =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t at = 0; at < bytes.size(); at += 3) {
+    std::uint32_t group = 0;
+    const std::size_t left = std::min<std::size_t>(3, bytes.size() - at);
+    for (std::size_t b = 0; b < 3; ++b) {
+      group = group << 8 | (b < left ? static_cast<std::uint8_t>(bytes[at + b]) : 0u);
+    }
+    for (std::size_t d = 0; d < 4; ++d) {
+      text.push_back(d <= left ? kDigits[(group >> (18 - 6 * d)) & 63] : '=');
+    }
+  }
+  return text;
+}
+
+std::string deflated(std::string_view bytes) {
+  uLongf size = compressBound(static_cast<uLong>(bytes.size()));
+  std::string packed(size, '\0');
+  compress2(reinterpret_cast<Bytef*>(packed.data()), &size,
+            reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uLong>(bytes.size()), 6);
+  packed.resize(size);
+  return packed;
+}
+
+std::string packIntegers(const std::vector<std::int32_t>& values, int stride) {
+  std::vector<std::uint32_t> folded(values.size());
+  std::uint32_t most = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::int32_t before =
+        stride > 0 && i >= static_cast<std::size_t>(stride) ? values[i - stride] : 0;
+    const std::int32_t difference = values[i] - before;
+    folded[i] =
+        static_cast<std::uint32_t>(difference) << 1 ^ static_cast<std::uint32_t>(difference >> 31);
+    most = std::max(most, folded[i]);
+  }
+  int planes = 1;
+  while (planes < 4 && most >> (8 * planes) != 0) ++planes;
+  std::string bytes;
+  bytes.reserve(values.size() * planes);
+  for (int p = 0; p < planes; ++p) {
+    for (const std::uint32_t value : folded) bytes.push_back(static_cast<char>(value >> (8 * p)));
+  }
+  return "{\"n\":" + std::to_string(values.size()) + ",\"s\":" + std::to_string(stride) +
+         ",\"p\":" + std::to_string(planes) + ",\"d\":\"" + base64(deflated(bytes)) + "\"}";
+}
+
+}  // namespace explica::report

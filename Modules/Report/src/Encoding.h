@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace explica::report {
+
+[[nodiscard]] std::string base64(std::string_view bytes);
+
+/// zlib stream of bytes.
+[[nodiscard]] std::string deflated(std::string_view bytes);
+
+/// Integers for the page's script: differences to the value `stride` before (0: the values
+/// themselves), signs folded into the lowest bit, bytes of equal weight together, deflated, base64;
+/// as a JSON object
+/// {"n": count, "s": stride, "p": planes, "d": "..."}.
+[[nodiscard]] std::string packIntegers(const std::vector<std::int32_t>& values, int stride);
+
+}  // namespace explica::report

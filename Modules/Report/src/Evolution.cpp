@@ -1,0 +1,130 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Explica/Report/Evolution.h"
+
+#include "Encoding.h"
+#include "Explica/Core/Errors.h"
+#include "Explica/Report/SurfacePicture.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace explica::report {
+namespace {
+
+constexpr double kSteps = 65535;  // of the box along each axis
+
+std::string number(double value) {
+  return nlohmann::json(value).dump();
+}
+
+}  // namespace
+
+Evolution evolutionOf(const std::vector<TriangleMesh>& frames) {
+  if (frames.empty()) throw InvalidInput("evolution: no frames");
+  Evolution evolution;
+  evolution.mesh = frames.front();
+  const TriangleMesh& first = frames.front();
+  std::vector<bool> differs(static_cast<std::size_t>(first.vertexCount()), false);
+  for (const TriangleMesh& frame : frames) {
+    if (frame.vertexCount() != first.vertexCount() || frame.faces.rows() != first.faces.rows() ||
+        frame.faces != first.faces) {
+      throw InvalidInput("evolution: frames differ in vertices or faces");
+    }
+    for (Eigen::Index v = 0; v < first.vertexCount(); ++v) {
+      if (frame.positions.row(v) != first.positions.row(v)) differs[v] = true;
+    }
+  }
+  for (std::size_t v = 0; v < differs.size(); ++v) {
+    if (differs[v]) evolution.moved.push_back(static_cast<std::int32_t>(v));
+  }
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    Positions positions(static_cast<Eigen::Index>(evolution.moved.size()), 3);
+    for (std::size_t m = 0; m < evolution.moved.size(); ++m) {
+      positions.row(static_cast<Eigen::Index>(m)) = frames[f].positions.row(evolution.moved[m]);
+    }
+    evolution.frames.push_back(std::move(positions));
+    evolution.frameTitles.push_back("frame " + std::to_string(f));
+  }
+  return evolution;
+}
+
+std::string evolutionJson(const Evolution& evolution) {
+  const TriangleMesh& mesh = evolution.mesh;
+  Point low = mesh.positions.colwise().minCoeff().transpose();
+  Point high = mesh.positions.colwise().maxCoeff().transpose();
+  for (const Positions& frame : evolution.frames) {
+    if (frame.rows() == 0) continue;
+    low = low.cwiseMin(frame.colwise().minCoeff().transpose());
+    high = high.cwiseMax(frame.colwise().maxCoeff().transpose());
+  }
+  const double unit = std::max((high - low).maxCoeff(), 1e-9) / kSteps;
+  const auto quantise = [&](double x, int axis) {
+    return static_cast<std::int32_t>(std::lround((x - low[axis]) / unit));
+  };
+
+  std::vector<std::int32_t> positions;
+  for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
+    for (int c = 0; c < 3; ++c) positions.push_back(quantise(mesh.positions(v, c), c));
+  }
+  const std::vector<std::int32_t> faces(mesh.faces.data(), mesh.faces.data() + mesh.faces.size());
+  const SurfaceScene scene(mesh);
+  std::vector<std::int32_t> openness;
+  for (const float open : scene.openness())
+    openness.push_back(static_cast<std::int32_t>(std::lround(255 * open)));
+
+  std::string json = "{\"low\":[" + number(low.x()) + "," + number(low.y()) + "," +
+                     number(low.z()) + "],\"unit\":" + number(unit);
+  json += ",\"positions\":" + packIntegers(positions, 3);
+  json += ",\"faces\":" + packIntegers(faces, 1);
+  json += ",\"openness\":" + packIntegers(openness, 1);
+  json += ",\"moved\":" + packIntegers(evolution.moved, 1);
+  json += ",\"frames\":[";
+  std::vector<std::int32_t> before;
+  for (const std::int32_t v : evolution.moved) {
+    for (int c = 0; c < 3; ++c) before.push_back(positions[3 * static_cast<std::size_t>(v) + c]);
+  }
+  for (std::size_t f = 0; f < evolution.frames.size(); ++f) {
+    std::vector<std::int32_t> change(before.size());
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      const int axis = static_cast<int>(i % 3);
+      const std::int32_t now =
+          quantise(evolution.frames[f](static_cast<Eigen::Index>(i / 3), axis), axis);
+      change[i] = now - before[i];
+      before[i] = now;
+    }
+    json += (f == 0 ? "" : ",") + packIntegers(change, 0);
+  }
+  json += "],\"titles\":" + nlohmann::json(evolution.frameTitles).dump();
+  json += ",\"maps\":[";
+  for (std::size_t m = 0; m < evolution.maps.size(); ++m) {
+    const EvolutionMap& map = evolution.maps[m];
+    std::vector<std::int32_t> values;
+    for (const double v : map.values) {
+      const double t = (v - map.scale.low) / (map.scale.high - map.scale.low);
+      values.push_back(std::isfinite(t)
+                           ? static_cast<std::int32_t>(std::lround(254 * std::clamp(t, 0.0, 1.0)))
+                           : 255);
+    }
+    std::string colours;
+    for (int e = 0; e < 256; ++e) {
+      const Colour colour = colourAt(map.scale.map, e == 255 ? kNaN : e / 254.0);
+      for (const float c : colour) colours.push_back(static_cast<char>(encodeSrgb(c)));
+    }
+    json += (m == 0 ? "" : ",");
+    json += "{\"name\":" + nlohmann::json(map.scale.title).dump() +
+            ",\"unit\":" + nlohmann::json(map.scale.unit).dump() +
+            ",\"low\":" + number(map.scale.low) + ",\"high\":" + number(map.scale.high) +
+            ",\"colours\":\"" + base64(colours) + "\",\"values\":" + packIntegers(values, 1) + "}";
+  }
+  json += "]";
+  if (evolution.viewpoint) {
+    const Point& p = *evolution.viewpoint;
+    json += ",\"viewpoint\":[" + number(p.x()) + "," + number(p.y()) + "," + number(p.z()) + "]";
+  }
+  return json + "}";
+}
+
+}  // namespace explica::report

@@ -1,0 +1,338 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+// Plays the evolution in the report page.  Needs THREE, inlined before it.
+(async function () {
+  'use strict';
+  const byId = (id) => document.getElementById(id);
+  const message = byId('stage-message');
+  const canvas = byId('canvas');
+
+  async function inflate(text) {
+    const binary = atob(text);
+    const bytes = new Uint8Array(binary.length);
+    for (let i = 0; i < bytes.length; ++i) bytes[i] = binary.charCodeAt(i);
+    const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate'));
+    return new Uint8Array(await new Response(stream).arrayBuffer());
+  }
+
+  // The inverse of packIntegers in Encoding.cpp.
+  async function unpack(packed) {
+    const bytes = await inflate(packed.d);
+    const values = new Int32Array(packed.n);
+    for (let p = 0; p < packed.p; ++p) {
+      const offset = p * packed.n;
+      for (let i = 0; i < packed.n; ++i) values[i] |= bytes[offset + i] << (8 * p);
+    }
+    for (let i = 0; i < packed.n; ++i) values[i] = (values[i] >>> 1) ^ -(values[i] & 1);
+    if (packed.s > 0) for (let i = packed.s; i < packed.n; ++i) values[i] += values[i - packed.s];
+    return values;
+  }
+
+  let data;
+  let renderer;
+  try {
+    data = JSON.parse(byId('evolution').textContent);
+    renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
+  } catch (fault) {
+    message.textContent = 'This browser cannot show the surface (' + fault.message + '); the pictures below show its views.';
+    byId('controls').style.display = 'none';
+    return;
+  }
+
+  const start = await unpack(data.positions);
+  const faces = await unpack(data.faces);
+  const openness = await unpack(data.openness);
+  const moved = await unpack(data.moved);
+  const vertexCount = start.length / 3;
+  const frames = [];
+  {
+    let before = new Int32Array(moved.length * 3);
+    for (let m = 0; m < moved.length; ++m) for (let c = 0; c < 3; ++c) before[3 * m + c] = start[3 * moved[m] + c];
+    for (const packed of data.frames) {
+      const change = await unpack(packed);
+      const now = new Int32Array(before.length);
+      for (let i = 0; i < now.length; ++i) now[i] = before[i] + change[i];
+      frames.push(now);
+      before = now;
+    }
+  }
+  const maps = [];
+  for (const map of data.maps) {
+    maps.push({ name: map.name, unit: map.unit, low: map.low, high: map.high, values: await unpack(map.values),
+                colours: Uint8Array.from(atob(map.colours), (c) => c.charCodeAt(0)) });
+  }
+
+  // Geometry in millimetres about the middle of what moves, or of everything.
+  const positions = new Float32Array(vertexCount * 3);
+  for (let i = 0; i < positions.length; ++i) positions[i] = data.low[i % 3] + data.unit * start[i];
+  const isMoved = new Uint8Array(vertexCount);
+  for (const v of moved) isMoved[v] = 1;
+  function boxOf(filter) {
+    const low = [Infinity, Infinity, Infinity];
+    const high = [-Infinity, -Infinity, -Infinity];
+    for (let v = 0; v < vertexCount; ++v) {
+      if (!filter(v)) continue;
+      for (let c = 0; c < 3; ++c) {
+        low[c] = Math.min(low[c], positions[3 * v + c]);
+        high[c] = Math.max(high[c], positions[3 * v + c]);
+      }
+    }
+    return { middle: low.map((x, c) => 0.5 * (x + high[c])), size: Math.hypot(...low.map((x, c) => high[c] - x)) };
+  }
+  const whole = boxOf(() => true);
+
+  const normals = new Float32Array(vertexCount * 3);
+  function computeNormals() {
+    normals.fill(0);
+    for (let f = 0; f < faces.length; f += 3) {
+      const a = 3 * faces[f], b = 3 * faces[f + 1], c = 3 * faces[f + 2];
+      const ux = positions[b] - positions[a], uy = positions[b + 1] - positions[a + 1], uz = positions[b + 2] - positions[a + 2];
+      const vx = positions[c] - positions[a], vy = positions[c + 1] - positions[a + 1], vz = positions[c + 2] - positions[a + 2];
+      const nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
+      for (const v of [a, b, c]) { normals[v] += nx; normals[v + 1] += ny; normals[v + 2] += nz; }
+    }
+    for (let v = 0; v < normals.length; v += 3) {
+      const length = Math.hypot(normals[v], normals[v + 1], normals[v + 2]) || 1;
+      normals[v] /= length; normals[v + 1] /= length; normals[v + 2] /= length;
+    }
+  }
+
+  const colours = new Float32Array(vertexCount * 3);
+  const open = new Float32Array(vertexCount);
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute('position', new THREE.BufferAttribute(positions, 3));
+  geometry.setAttribute('normal', new THREE.BufferAttribute(normals, 3));
+  geometry.setAttribute('tone', new THREE.BufferAttribute(colours, 3));
+  geometry.setAttribute('open', new THREE.BufferAttribute(open, 1));
+  const allFaces = new THREE.BufferAttribute(Uint32Array.from(faces), 1);
+  const partFaces = [];
+  for (let f = 0; f < faces.length; f += 3) {
+    if (isMoved[faces[f]] && isMoved[faces[f + 1]] && isMoved[faces[f + 2]]) partFaces.push(faces[f], faces[f + 1], faces[f + 2]);
+  }
+  const someFaces = new THREE.BufferAttribute(Uint32Array.from(partFaces), 1);
+  geometry.setIndex(allFaces);
+  const material = new THREE.ShaderMaterial({
+    side: THREE.DoubleSide,
+    vertexShader: 'attribute vec3 tone; attribute float open; varying vec3 vTone; varying float vOpen; varying vec3 vNormal;' +
+      'void main() { vTone = tone; vOpen = open; vNormal = normalMatrix * normal;' +
+      'gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }',
+    fragmentShader: 'varying vec3 vTone; varying float vOpen; varying vec3 vNormal;' +
+      'void main() { vec3 n = normalize(vNormal); float inside = gl_FrontFacing ? 0.0 : 1.0; n = gl_FrontFacing ? n : -n;' +
+      'float light = 0.18 + 0.47 * max(0.0, dot(n, normalize(vec3(-0.45, 0.45, 1.0)))) + 0.40 * max(0.0, n.z);' +
+      'float dark = mix(1.0 - 0.9 * (1.0 - min(1.0, 1.25 * vOpen)), 0.5, inside);' +
+      'vec3 c = vTone * light * dark * mix(vec3(1.0), vec3(0.5, 0.5, 0.75), inside);' +
+      'gl_FragColor = vec4(pow(c, vec3(1.0 / 2.2)), 1.0); }'
+  });
+  const scene = new THREE.Scene();
+  scene.background = new THREE.Color(0xeef1f4);
+  const mesh = new THREE.Mesh(geometry, material);
+  mesh.frustumCulled = false;
+  scene.add(mesh);
+
+  // The eye turns about `target`: parallel projection, a quaternion for the turn.
+  const camera = new THREE.OrthographicCamera(-1, 1, 1, -1, 0.1, 10000);
+  const eye = { target: new THREE.Vector3(), turn: new THREE.Quaternion(), half: 100 };
+  function resetView() {
+    const focus = alone.checked && moved.length > 0 ? boxOf((v) => isMoved[v] === 1) : whole;
+    eye.target.set(...focus.middle);
+    eye.half = 0.36 * focus.size;
+    const from = data.viewpoint ? new THREE.Vector3(...data.viewpoint).sub(eye.target) : new THREE.Vector3(-1, 0, 0);
+    const up = Math.abs(from.clone().normalize().z) > 0.9 ? new THREE.Vector3(0, 1, 0) : new THREE.Vector3(0, 0, 1);
+    const matrix = new THREE.Matrix4().lookAt(from, new THREE.Vector3(), up);
+    eye.turn.setFromRotationMatrix(matrix);
+    draw();
+  }
+  let pending = false;
+  function draw() {
+    if (pending) return;
+    pending = true;
+    requestAnimationFrame(() => {
+      pending = false;
+      const width = canvas.clientWidth, height = canvas.clientHeight;
+      const ratio = Math.min(window.devicePixelRatio || 1, 2);
+      if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
+        renderer.setPixelRatio(ratio);
+        renderer.setSize(width, height, false);
+      }
+      const aspect = width / height;
+      camera.left = -eye.half * aspect; camera.right = eye.half * aspect;
+      camera.top = eye.half; camera.bottom = -eye.half;
+      camera.quaternion.copy(eye.turn);
+      camera.position.set(0, 0, 5 * whole.size).applyQuaternion(eye.turn).add(eye.target);
+      camera.far = 10 * whole.size;
+      camera.updateProjectionMatrix();
+      renderer.render(scene, camera);
+    });
+  }
+  function rotate(dx, dy) {
+    const turn = new THREE.Quaternion().setFromEuler(new THREE.Euler(-dy, -dx, 0));
+    eye.turn.multiply(turn);
+    draw();
+  }
+  function zoom(factor) {
+    eye.half = Math.min(Math.max(eye.half * factor, 0.005 * whole.size), 3 * whole.size);
+    draw();
+  }
+  function shift(dx, dy) {
+    const step = 2 * eye.half / canvas.clientHeight;
+    eye.target.add(new THREE.Vector3(-dx * step, dy * step, 0).applyQuaternion(eye.turn));
+    draw();
+  }
+
+  const slider = byId('frame');
+  const title = byId('frame-title');
+  const play = byId('play');
+  const chooser = byId('map');
+  const alone = byId('alone');
+  let frame = 0;
+  let playing = null;
+
+  const linear = (byte) => Math.pow(byte / 255, 2.2);
+  function paint() {
+    const choice = chooser.value;
+    const bar = byId('bar');
+    if (choice === 'facing') {
+      // Cosine between the outward normal and the direction to the viewpoint: the flux density now.
+      const eyeAt = data.viewpoint || [whole.middle[0] - 1e4, whole.middle[1], whole.middle[2]];
+      const ramp = facingMap.colours;
+      for (let v = 0; v < vertexCount; ++v) {
+        let x = eyeAt[0] - positions[3 * v], y = eyeAt[1] - positions[3 * v + 1], z = eyeAt[2] - positions[3 * v + 2];
+        const cosine = (x * normals[3 * v] + y * normals[3 * v + 1] + z * normals[3 * v + 2]) / Math.hypot(x, y, z);
+        const entry = 3 * Math.round(127 * (1 + Math.max(-1, Math.min(1, cosine))));
+        for (let c = 0; c < 3; ++c) colours[3 * v + c] = linear(ramp[entry + c]);
+      }
+    } else if (choice === 'none') {
+      for (let v = 0; v < vertexCount; ++v) {
+        const shade = isMoved[v] ? [0.80, 0.50, 0.28] : [0.60, 0.58, 0.56];
+        colours.set(shade, 3 * v);
+      }
+    } else {
+      const map = maps[Number(choice)];
+      for (let v = 0; v < vertexCount; ++v) {
+        const entry = 3 * map.values[v];
+        for (let c = 0; c < 3; ++c) colours[3 * v + c] = linear(map.colours[entry + c]);
+      }
+    }
+    const shown = choice === 'none' ? null : (choice === 'facing' ? facingMap : maps[Number(choice)]);
+    bar.style.display = shown ? 'block' : 'none';
+    if (shown) {
+      byId('bar-title').textContent = shown.name + (shown.unit ? ' [' + shown.unit + ']' : '');
+      byId('bar-high').textContent = String(Number(shown.high.toPrecision(3)));
+      byId('bar-low').textContent = String(Number(shown.low.toPrecision(3)));
+      const pen = byId('bar-colours').getContext('2d');
+      for (let y = 0; y < 128; ++y) {
+        const entry = 3 * Math.round(254 * (1 - y / 127));
+        pen.fillStyle = 'rgb(' + shown.colours[entry] + ',' + shown.colours[entry + 1] + ',' + shown.colours[entry + 2] + ')';
+        pen.fillRect(0, y, 14, 1);
+      }
+    }
+    geometry.attributes.tone.needsUpdate = true;
+    draw();
+  }
+
+  function show(number) {
+    frame = Math.max(0, Math.min(frames.length - 1, number));
+    if (frames.length > 0) {
+      const now = frames[frame];
+      for (let m = 0; m < moved.length; ++m) {
+        for (let c = 0; c < 3; ++c) positions[3 * moved[m] + c] = data.low[c] + data.unit * now[3 * m + c];
+      }
+    }
+    computeNormals();
+    // What unfolds comes out of the shade.
+    const share = frames.length > 1 ? frame / (frames.length - 1) : 0;
+    for (let v = 0; v < vertexCount; ++v) {
+      const shade = openness[v] / 255;
+      open[v] = isMoved[v] ? shade + share * (1 - shade) : shade;
+    }
+    for (const name of ['position', 'normal', 'open']) geometry.attributes[name].needsUpdate = true;
+    slider.value = String(frame);
+    title.textContent = data.titles[frame] || '';
+    if (chooser.value === 'facing') paint(); else draw();
+  }
+  function pause() {
+    clearInterval(playing);
+    playing = null;
+    play.textContent = '\u25b6';
+  }
+  function togglePlay() {
+    if (playing !== null) { pause(); return; }
+    if (frame >= frames.length - 1) show(0);
+    play.textContent = '\u23f8';
+    playing = setInterval(() => {
+      if (frame >= frames.length - 1) pause(); else show(frame + 1);
+    }, 100);
+  }
+
+  const facingMap = { name: 'faces the viewpoint', unit: '', low: -1, high: 1, colours: new Uint8Array(3 * 256) };
+  for (let e = 0; e < 256; ++e) {
+    const t = e / 254;
+    const mix = (a, b, s) => Math.round(a + (b - a) * s);
+    const ends = t < 0.5 ? [[30, 70, 150], [236, 236, 236], 2 * t] : [[236, 236, 236], [150, 75, 10], 2 * t - 1];
+    for (let c = 0; c < 3; ++c) facingMap.colours[3 * e + c] = mix(ends[0][c], ends[1][c], Math.min(1, ends[2]));
+  }
+  const addChoice = (value, text) => {
+    const option = document.createElement('option');
+    option.value = value;
+    option.textContent = text;
+    chooser.appendChild(option);
+  };
+  addChoice('none', moved.length > 0 ? 'region' : 'plain');
+  addChoice('facing', 'faces the viewpoint');
+  maps.forEach((map, m) => addChoice(String(m), map.name));
+  slider.max = String(Math.max(0, frames.length - 1));
+  if (frames.length < 2) {
+    for (const id of ['play', 'frame', 'before-after']) byId(id).disabled = true;
+  }
+
+  slider.addEventListener('input', () => { pause(); show(Number(slider.value)); });
+  play.addEventListener('click', togglePlay);
+  chooser.addEventListener('change', paint);
+  byId('before-after').addEventListener('click', () => { pause(); show(frame === 0 ? frames.length - 1 : 0); });
+  byId('reset').addEventListener('click', resetView);
+  alone.addEventListener('change', () => { geometry.setIndex(alone.checked ? someFaces : allFaces); resetView(); });
+  const pointers = new Map();
+  canvas.addEventListener('pointerdown', (event) => {
+    canvas.setPointerCapture(event.pointerId);
+    pointers.set(event.pointerId, { x: event.clientX, y: event.clientY, button: event.button });
+  });
+  canvas.addEventListener('pointermove', (event) => {
+    const before = pointers.get(event.pointerId);
+    if (!before) return;
+    const dx = event.clientX - before.x, dy = event.clientY - before.y;
+    if (pointers.size === 2) {
+      const other = [...pointers.entries()].find(([id]) => id !== event.pointerId)[1];
+      const was = Math.hypot(before.x - other.x, before.y - other.y) || 1;
+      const is = Math.hypot(event.clientX - other.x, event.clientY - other.y) || 1;
+      zoom(was / is);
+    } else if (before.button === 2 || event.shiftKey) {
+      shift(dx, dy);
+    } else {
+      rotate(0.008 * dx, 0.008 * dy);
+    }
+    before.x = event.clientX;
+    before.y = event.clientY;
+  });
+  for (const name of ['pointerup', 'pointercancel']) canvas.addEventListener(name, (event) => pointers.delete(event.pointerId));
+  canvas.addEventListener('contextmenu', (event) => event.preventDefault());
+  canvas.addEventListener('wheel', (event) => { event.preventDefault(); zoom(Math.exp(0.001 * event.deltaY)); }, { passive: false });
+  canvas.addEventListener('keydown', (event) => {
+    const actions = {
+      ArrowLeft: () => rotate(-0.1, 0), ArrowRight: () => rotate(0.1, 0), ArrowUp: () => rotate(0, -0.1), ArrowDown: () => rotate(0, 0.1),
+      '+': () => zoom(0.9), '=': () => zoom(0.9), '-': () => zoom(1.1), ' ': togglePlay,
+      ',': () => { pause(); show(frame - 1); }, '.': () => { pause(); show(frame + 1); },
+      b: () => byId('before-after').click(), r: resetView
+    };
+    const action = actions[event.key] || actions[event.key.toLowerCase()];
+    if (!action) return;
+    event.preventDefault();
+    action();
+  });
+  window.addEventListener('resize', draw);
+
+  message.textContent = '';
+  resetView();
+  show(0);
+  paint();
+  canvas.dataset.ready = 'true';
+})();

@@ -1,0 +1,146 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Explica/Report/Page.h"
+
+#include "Encoding.h"
+#include "Explica/Core/Errors.h"
+#include "Explica/Geometry/Fixtures.h"
+#include "Explica/Report/Chart.h"
+
+#include <gtest/gtest.h>
+#include <zlib.h>
+#include <nlohmann/json.hpp>
+
+namespace explica::report {
+namespace {
+
+std::string decodeBase64(const std::string& text) {
+  const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string bytes;
+  std::uint32_t group = 0;
+  int count = 0;
+  for (const char c : text) {
+    if (c == '=') break;
+    group = group << 6 | static_cast<std::uint32_t>(digits.find(c));
+    count += 6;
+    if (count >= 8) {
+      count -= 8;
+      bytes.push_back(static_cast<char>(group >> count));
+    }
+  }
+  return bytes;
+}
+
+/// What the page's script does.
+std::vector<std::int32_t> unpack(const nlohmann::json& packed) {
+  const std::size_t n = packed.at("n");
+  const int planes = packed.at("p");
+  std::string bytes(n * planes, '\0');
+  const std::string deflated = decodeBase64(packed.at("d"));
+  uLongf size = bytes.size();
+  EXPECT_EQ(uncompress(reinterpret_cast<Bytef*>(bytes.data()), &size,
+                       reinterpret_cast<const Bytef*>(deflated.data()), deflated.size()),
+            Z_OK);
+  std::vector<std::int32_t> values(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    std::uint32_t folded = 0;
+    for (int p = 0; p < planes; ++p)
+      folded |= static_cast<std::uint32_t>(static_cast<std::uint8_t>(bytes[p * n + i])) << (8 * p);
+    values[i] = static_cast<std::int32_t>(folded >> 1) ^ -static_cast<std::int32_t>(folded & 1);
+  }
+  const std::size_t stride = packed.at("s");
+  for (std::size_t i = stride; stride > 0 && i < n; ++i) values[i] += values[i - stride];
+  return values;
+}
+
+TEST(PackedIntegers, ComeBack) {
+  const std::vector<std::int32_t> values = {0, 5, -7, 300, -70000, 1 << 28, 3};
+  for (const int stride : {0, 1, 3}) {
+    EXPECT_EQ(unpack(nlohmann::json::parse(packIntegers(values, stride))), values);
+  }
+}
+
+Evolution movingSphere() {
+  std::vector<TriangleMesh> frames;
+  for (int f = 0; f < 4; ++f) {
+    TriangleMesh sphere = geometry::makeIcosphere(3, 30);
+    for (Eigen::Index v = 0; v < sphere.vertexCount(); ++v) {
+      if (sphere.positions(v, 2) > 15) sphere.positions(v, 2) += 0.7 * f;
+    }
+    frames.push_back(std::move(sphere));
+  }
+  return evolutionOf(frames);
+}
+
+TEST(Evolution, FindsWhatMoved) {
+  const Evolution evolution = movingSphere();
+  ASSERT_FALSE(evolution.moved.empty());
+  for (const std::int32_t v : evolution.moved) EXPECT_GT(evolution.mesh.positions(v, 2), 15);
+}
+
+TEST(Evolution, FramesComeBackWithinAQuantisationStep) {
+  const Evolution evolution = movingSphere();
+  const auto json = nlohmann::json::parse(evolutionJson(evolution));
+  const std::vector<std::int32_t> start = unpack(json["positions"]);
+  const double unit = json["unit"];
+  std::vector<std::int32_t> now;
+  for (const std::int32_t v : evolution.moved) {
+    for (int c = 0; c < 3; ++c) now.push_back(start[3 * v + c]);
+  }
+  for (std::size_t f = 0; f < evolution.frames.size(); ++f) {
+    const std::vector<std::int32_t> change = unpack(json["frames"][f]);
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      now[i] += change[i];
+      const double x = json["low"][i % 3].get<double>() + unit * now[i];
+      ASSERT_NEAR(x, evolution.frames[f](i / 3, i % 3), 0.51 * unit);
+    }
+  }
+}
+
+TEST(Evolution, RefusesFramesOfDifferentFaces) {
+  EXPECT_THROW((void)evolutionOf({geometry::makeIcosphere(1), geometry::makeIcosphere(2)}),
+               InvalidInput);
+}
+
+TEST(ReportPage, ShowsAFailedStepAndEscapesItsWords) {
+  ReportContent content;
+  content.title = "sub-01 <left>";
+  ReportStep step;
+  step.name = "unfold";
+  step.state = StepState::Failed;
+  step.message = "pial.surf.gii: <no> faces & \"more\"";
+  content.steps.push_back(step);
+  const std::string page = reportPage(content);
+  EXPECT_NE(page.find("badge bad'>failed"), std::string::npos);
+  EXPECT_NE(page.find("&lt;no&gt; faces &amp; &quot;more&quot;"), std::string::npos);
+  EXPECT_EQ(page.find("<no>"), std::string::npos);
+}
+
+TEST(ReportPage, NamesNothingToFetch) {
+  ReportContent content;
+  content.title = "page";
+  content.evolution = movingSphere();
+  content.pictures.push_back({"White", "white square", Picture(8, 8)});
+  const std::string page = reportPage(content);
+  for (const char* fetching :
+       {" src='http", " src=\"http", "<link rel=\"stylesheet", "import(", "@import", "url(http"}) {
+    EXPECT_EQ(page.find(fetching), std::string::npos) << fetching;
+  }
+  EXPECT_EQ(page, reportPage(content));
+}
+
+TEST(Charts, SayWhenThereIsNothingToShow) {
+  EXPECT_NE(histogramSvg(Eigen::VectorXd(), {"Thickness", "mm", ""}).find("no values"),
+            std::string::npos);
+  EXPECT_NE(curvesSvg({}, {"Visibility", "", ""}).find("no values"), std::string::npos);
+}
+
+TEST(Charts, DrawConstantsAndGaps) {
+  EXPECT_NE(histogramSvg(Eigen::VectorXd::Constant(9, 2.0), {"t", "", ""}).find("<svg"),
+            std::string::npos);
+  const std::string svg = curvesSvg({{"a", {0, 1, 2}, {1, kNaN, 1}}}, {"t", "", ""});
+  EXPECT_EQ(svg.find("nan"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace explica::report
