@@ -1,9 +1,16 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
-#include "Explica/IO/SurfaceFile.h"
+#include "SurfaceFrame.h"
 
-#include <Eigen/Geometry>
+#include "Bytes.h"
+#include "StoredVolume.h"
+
+#include "Explica/IO/VolumeFile.h"
+
+#include <Eigen/LU>
+
+#include <cmath>
 
 namespace explica::io {
 
@@ -28,6 +35,73 @@ Eigen::Matrix4d scannerFromTkr(const Grid& volume) {
   torig.row(2) << 0, -h[1], 0, 0.5 * h[1] * volume.size[1];
   torig(3, 3) = 1;
   return volume.affine() * torig.inverse();
+}
+
+Grid gridOfVolumeText(const std::filesystem::path& path, const VolumeText& text) {
+  constexpr double kLargest = 1e6;
+  std::array<int, 3> size{};
+  for (int i = 0; i < 3; ++i) {
+    if (!(text.size[i] >= 1 && text.size[i] <= kLargest) || !(text.spacing[i] > 0)) {
+      refuse(path,
+             "the volume geometry that it holds has a size or voxel size that is not positive");
+    }
+    size[i] = static_cast<int>(text.size[i]);
+  }
+  Eigen::Matrix4d affine = Eigen::Matrix4d::Identity();
+  affine.topLeftCorner<3, 3>() = text.axes * text.spacing.asDiagonal();
+  affine.topRightCorner<3, 1>() =
+      text.centre - affine.topLeftCorner<3, 3>() * (0.5 * text.size).eval();
+  return gridOf(path, size, affine);
+}
+
+void moveToScanner(LoadedSurface& surface, const FrameInFile& frame,
+                   const SurfaceReadOptions& options) {
+  SurfaceOrigin& origin = surface.origin;
+  std::optional<Grid> volume;
+  if (options.fsVolume) {
+    volume = readGrid(*options.fsVolume);
+  } else if (frame.tkrVolume) {
+    volume = frame.tkrVolume;
+  }
+  bool tkr = false;
+  switch (options.space) {
+    case SurfaceSpace::Scanner:
+      origin.space = "scanner, as chosen";
+      return;
+    case SurfaceSpace::Tkr:
+      if (!volume) {
+        refuse(
+            origin.path,
+            "its coordinates are to be FreeSurfer's surface RAS, but it holds no volume geometry "
+            "to place them; name the volume with --fs-volume orig.mgz");
+      }
+      tkr = true;
+      break;
+    case SurfaceSpace::Stated:
+      if (!frame.stated.empty()) {
+        origin.space = frame.stated;
+        return;
+      }
+      tkr = volume.has_value();
+      break;
+  }
+  if (!tkr) {
+    origin.space = "not stated";
+    origin.notes.push_back(
+        "the file does not say in which frame its coordinates are; used as they stand (say it with "
+        "--surface-space scanner, or tkr and --fs-volume orig.mgz)");
+    return;
+  }
+  origin.space = "tkr, moved to scanner";
+  origin.applied = scannerFromTkr(*volume);
+  // Where both frames coincide, coordinates stay to the last bit.
+  if (origin.applied.isIdentity(1e-12)) {
+    origin.applied.setIdentity();
+    return;
+  }
+  const Eigen::Matrix3d linear = origin.applied.topLeftCorner<3, 3>();
+  const Eigen::RowVector3d shift = origin.applied.topRightCorner<3, 1>().transpose();
+  surface.mesh.positions = ((surface.mesh.positions * linear.transpose()).rowwise() + shift).eval();
 }
 
 }  // namespace explica::io

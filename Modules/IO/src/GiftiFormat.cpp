@@ -1,0 +1,549 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "GiftiFormat.h"
+
+#include "ByteSource.h"
+#include "MeshBuilder.h"
+#include "PackedFile.h"
+#include "SurfaceFrame.h"
+#include "Xml.h"
+
+#include "Explica/Core/WholeFile.h"
+
+#include <Eigen/LU>
+
+#include <cmath>
+#include <limits>
+#include <set>
+
+namespace explica::io {
+namespace {
+
+constexpr int kCompression = 6;  // as other GIFTI writers; level 1 saves 0.1 s a hemisphere
+
+Metadata metadataOf(const XmlElement& element) {
+  Metadata metadata;
+  const XmlElement* list = element.child("MetaData");
+  if (list == nullptr) return metadata;
+  for (const XmlElement& entry : list->children) {
+    const XmlElement* name = entry.child("Name");
+    const XmlElement* value = entry.child("Value");
+    if (name == nullptr || value == nullptr) continue;
+    metadata[trimmedText(name->text)] = trimmedText(value->text);
+  }
+  return metadata;
+}
+
+struct TypeRow {
+  const char* name;
+  std::size_t width;
+  double (*load)(const std::uint8_t*, bool);
+};
+
+template <class T>
+double loadReal(const std::uint8_t* from, bool bigEndian) {
+  return static_cast<double>(load<T>(from, bigEndian));
+}
+
+const TypeRow& typeOf(const std::filesystem::path& path, const std::string& name) {
+  static constexpr TypeRow kTypes[] = {{"NIFTI_TYPE_FLOAT32", 4, loadReal<float>},
+                                       {"NIFTI_TYPE_INT32", 4, loadReal<std::int32_t>},
+                                       {"NIFTI_TYPE_UINT8", 1, loadReal<std::uint8_t>},
+                                       {"NIFTI_TYPE_FLOAT64", 8, loadReal<double>},
+                                       {"NIFTI_TYPE_UINT32", 4, loadReal<std::uint32_t>},
+                                       {"NIFTI_TYPE_INT16", 2, loadReal<std::int16_t>},
+                                       {"NIFTI_TYPE_UINT16", 2, loadReal<std::uint16_t>},
+                                       {"NIFTI_TYPE_INT8", 1, loadReal<std::int8_t>},
+                                       {"NIFTI_TYPE_INT64", 8, loadReal<std::int64_t>},
+                                       {"NIFTI_TYPE_UINT64", 8, loadReal<std::uint64_t>}};
+  for (const TypeRow& row : kTypes) {
+    if (name == row.name) return row;
+  }
+  failToRead(path, "has a GIFTI array of the unknown type '" + name + "'");
+}
+
+/// From column-major to row-major order.
+std::vector<double> transposed(const std::vector<double>& values, std::int64_t rows) {
+  const auto columns = static_cast<std::int64_t>(values.size()) / rows;
+  std::vector<double> result(values.size());
+  for (std::int64_t row = 0; row < rows; ++row) {
+    for (std::int64_t column = 0; column < columns; ++column) {
+      result[row * columns + column] = values[column * rows + row];
+    }
+  }
+  return result;
+}
+
+Bytes rawValues(const std::filesystem::path& path, const XmlElement& array, const std::string& text,
+                std::uint64_t byteCount) {
+  const std::string encoding = array["Encoding"];
+  Bytes raw;
+  if (encoding == "GZipBase64Binary" || encoding == "GIFTI_ENCODING_B64GZ") {
+    raw = inflateExactly(path, decodeBase64(path, text), byteCount);
+  } else if (encoding == "Base64Binary" || encoding == "GIFTI_ENCODING_B64BIN") {
+    raw = decodeBase64(path, text);
+  } else if (encoding == "ExternalFileBinary" || encoding == "GIFTI_ENCODING_EXTBIN") {
+    const std::filesystem::path external = path.parent_path() / array["ExternalFileName"];
+    const std::string offsetText = array["ExternalFileOffset"];
+    const auto offset = offsetText.empty() ? 0 : parseNumber<std::int64_t>(path, offsetText);
+    const Bytes whole = readFile(external);
+    if (offset < 0 || static_cast<std::uint64_t>(offset) > whole.size() ||
+        byteCount > whole.size() - static_cast<std::uint64_t>(offset)) {
+      failToRead(external, "is too short for an array of '" + path.string() + "'");
+    }
+    raw.assign(whole.begin() + offset,
+               whole.begin() + offset + static_cast<std::int64_t>(byteCount));
+  } else {
+    failToRead(path, "has a GIFTI array in the unknown encoding '" + encoding + "'");
+  }
+  if (raw.size() != byteCount) {
+    failToRead(path, "has a GIFTI array of " + std::to_string(raw.size()) + " bytes where " +
+                         std::to_string(byteCount) + " are announced; it is damaged");
+  }
+  return raw;
+}
+
+GiftiArray parseArray(const std::filesystem::path& path, const XmlElement& element) {
+  constexpr std::int64_t kMostValues = std::int64_t{1} << 33;
+  GiftiArray array;
+  array.intent = element["Intent"];
+  array.metadata = metadataOf(element);
+  const auto dimensions = parseNumber<int>(path, element["Dimensionality"]);
+  if (dimensions < 1 || dimensions > 6) {
+    failToRead(path, "has a GIFTI array of " + std::to_string(dimensions) + " dimensions");
+  }
+  std::int64_t count = 1;
+  for (int i = 0; i < dimensions; ++i) {
+    const auto size = parseNumber<std::int64_t>(path, element["Dim" + std::to_string(i)]);
+    if (size < 0 || (size > 0 && count > kMostValues / size)) {
+      failToRead(path, "has a GIFTI array of size " + std::to_string(size));
+    }
+    count *= size;
+    array.size.push_back(size);
+  }
+  if (const XmlElement* system = element.child("CoordinateSystemTransformMatrix")) {
+    if (const XmlElement* space = system->child("DataSpace")) {
+      array.dataSpace = trimmedText(space->text);
+    }
+    if (const XmlElement* matrix = system->child("MatrixData")) {
+      ByteCursor cursor(
+          path,
+          ByteView(reinterpret_cast<const std::uint8_t*>(matrix->text.data()), matrix->text.size()),
+          false);
+      for (int i = 0; i < 16; ++i) {
+        const std::string_view word = cursor.word();
+        if (word.empty()) break;
+        if (parseNumber<double>(path, word) != (i % 5 == 0 ? 1 : 0)) array.identityMatrix = false;
+      }
+    }
+  }
+  const XmlElement* data = element.child("Data");
+  static const std::string kNone;
+  const std::string& text = data == nullptr ? kNone : data->text;
+  const std::string encoding = element["Encoding"];
+  if (encoding == "ASCII" || encoding == "GIFTI_ENCODING_ASCII") {
+    if (static_cast<std::uint64_t>(count) > text.size() / 2 + 1) {
+      failToRead(path, "has a GIFTI array with fewer numbers than announced; it is truncated");
+    }
+    array.values.reserve(static_cast<std::size_t>(count));
+    ByteCursor cursor(
+        path, ByteView(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()), false);
+    for (std::int64_t i = 0; i < count; ++i) {
+      array.values.push_back(parseNumber<double>(path, cursor.word()));
+    }
+  } else {
+    const TypeRow& type = typeOf(path, element["DataType"]);
+    const Bytes raw =
+        rawValues(path, element, text, static_cast<std::uint64_t>(count) * type.width);
+    const std::string endian = element["Endian"];
+    const bool bigEndian =
+        endian.find("Big") != std::string::npos || endian.find("BIG") != std::string::npos;
+    array.values.resize(static_cast<std::size_t>(count));
+    for (std::size_t i = 0; i < array.values.size(); ++i) {
+      array.values[i] = type.load(raw.data() + i * type.width, bigEndian);
+    }
+  }
+  if (element["ArrayIndexingOrder"].find("ol") == 1 && array.size.size() == 2 && count > 0) {
+    array.values = transposed(array.values, array.size[0]);  // "ColumnMajorOrder"
+  }
+  return array;
+}
+
+std::vector<LabelEntry> tableOf(const std::filesystem::path& path, const XmlElement& root) {
+  std::vector<LabelEntry> table;
+  const XmlElement* list = root.child("LabelTable");
+  if (list == nullptr) return table;
+  for (const XmlElement& label : list->children) {
+    LabelEntry entry;
+    const std::string key = label["Key"].empty() ? label["Index"] : label["Key"];
+    entry.key = parseNumber<Label>(path, key);
+    entry.name = trimmedText(label.text);
+    const char* channels[] = {"Red", "Green", "Blue", "Alpha"};
+    for (std::size_t c = 0; c < 4; ++c) {
+      const std::string value = label[channels[c]];
+      if (!value.empty()) entry.colour[c] = parseNumber<float>(path, value);
+    }
+    table.push_back(entry);
+  }
+  std::sort(table.begin(), table.end(),
+            [](const LabelEntry& a, const LabelEntry& b) { return a.key < b.key; });
+  return table;
+}
+
+const GiftiArray* find(const GiftiFile& file, std::string_view intent) {
+  for (const GiftiArray& array : file.arrays) {
+    if (array.intent == intent) return &array;
+  }
+  return nullptr;
+}
+
+const GiftiArray& needColumns(const std::filesystem::path& path, const GiftiFile& file,
+                              const char* intent, const char* what) {
+  const GiftiArray* array = find(file, intent);
+  if (array == nullptr) {
+    refuse(path, std::string("is GIFTI without ") + what + "; a surface (.surf.gii) is needed");
+  }
+  if (array->size.size() != 2 || array->size[1] != 3) {
+    failToRead(path, std::string("its ") + what + " are not three a row");
+  }
+  return *array;
+}
+
+std::string valueOr(const Metadata& metadata, const char* key, const std::string& other = {}) {
+  const auto found = metadata.find(key);
+  return found == metadata.end() ? other : found->second;
+}
+
+/// The volume that mris_convert describes with a surface, if all keys are there.
+std::optional<Grid> volumeOf(const std::filesystem::path& path, const Metadata& metadata) {
+  VolumeText text;
+  const auto read = [&](const char* key, double& to) {
+    const auto found = metadata.find(key);
+    if (found == metadata.end()) return false;
+    to = parseNumber<double>(path, found->second);
+    return true;
+  };
+  bool whole = read("VolGeomWidth", text.size[0]) && read("VolGeomHeight", text.size[1]) &&
+               read("VolGeomDepth", text.size[2]) && read("VolGeomXsize", text.spacing[0]) &&
+               read("VolGeomYsize", text.spacing[1]) && read("VolGeomZsize", text.spacing[2]);
+  const char axes[] = {'X', 'Y', 'Z', 'C'};
+  const char letters[] = {'R', 'A', 'S'};
+  for (int axis = 0; axis < 4 && whole; ++axis) {
+    for (int row = 0; row < 3; ++row) {
+      const std::string key = std::string("VolGeom") + axes[axis] + "_" + letters[row];
+      double& to = axis < 3 ? text.axes(row, axis) : text.centre[row];
+      whole = whole && read(key.c_str(), to);
+    }
+  }
+  if (!whole) return {};
+  return gridOfVolumeText(path, text);
+}
+
+std::string spaceWord(const std::string& dataSpace) {
+  constexpr std::string_view kPrefix = "NIFTI_XFORM_";
+  std::string word = dataSpace.starts_with(kPrefix) ? dataSpace.substr(kPrefix.size()) : dataSpace;
+  return word.empty() ? "UNKNOWN" : word;
+}
+
+void appendMetadata(std::string& text, const Metadata& metadata) {
+  text += "<MetaData>";
+  for (const auto& [name, value] : metadata) {
+    if (value.empty()) continue;
+    text +=
+        "\n<MD><Name>" + escapedXml(name) + "</Name><Value>" + escapedXml(value) + "</Value></MD>";
+  }
+  text += "</MetaData>\n";
+}
+
+struct ArrayToWrite {
+  const char* intent;
+  const char* type;
+  std::vector<std::int64_t> size;
+  Metadata metadata;
+  bool placed = false;  ///< carries the coordinate system
+  ByteView bytes;
+};
+
+void appendArray(std::string& text, const ArrayToWrite& array) {
+  text += std::string("<DataArray Intent=\"") + array.intent + "\" DataType=\"" + array.type +
+          "\" ArrayIndexingOrder=\"RowMajorOrder\" Dimensionality=\"" +
+          std::to_string(array.size.size()) + "\"";
+  for (std::size_t i = 0; i < array.size.size(); ++i) {
+    text += " Dim" + std::to_string(i) + "=\"" + std::to_string(array.size[i]) + "\"";
+  }
+  text +=
+      " Encoding=\"GZipBase64Binary\" Endian=\"LittleEndian\" ExternalFileName=\"\" "
+      "ExternalFileOffset=\"\">\n";
+  appendMetadata(text, array.metadata);
+  if (array.placed) {
+    text +=
+        "<CoordinateSystemTransformMatrix>\n<DataSpace>NIFTI_XFORM_SCANNER_ANAT</DataSpace>\n"
+        "<TransformedSpace>NIFTI_XFORM_SCANNER_ANAT</TransformedSpace>\n<MatrixData>"
+        "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1</MatrixData>\n</CoordinateSystemTransformMatrix>\n";
+  }
+  text += "<Data>";
+  appendBase64(text, packZlib(array.bytes, kCompression));
+  text += "</Data>\n</DataArray>\n";
+}
+
+std::string opening(std::size_t arrays, const Metadata& metadata, const std::string& table) {
+  std::string text =
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!DOCTYPE GIFTI SYSTEM "
+      "\"http://www.nitrc.org/frs/download.php/115/gifti.dtd\">\n<GIFTI "
+      "Version=\"1.0\" NumberOfDataArrays=\"" +
+      std::to_string(arrays) + "\">\n";
+  appendMetadata(text, metadata);
+  return text + table;
+}
+
+void writeText(const std::filesystem::path& path, const std::string& text) {
+  if (path.extension() != ".gz") {
+    writeTextFile(path, text);
+    return;
+  }
+  Content content;
+  content.head.assign(text.begin(), text.end());
+  WholeFile file(path);
+  writeGzip(file, content, 1);
+  file.commit();
+}
+
+template <class T>
+ByteView viewOf(const std::vector<T>& values) {
+  return {reinterpret_cast<const std::uint8_t*>(values.data()), values.size() * sizeof(T)};
+}
+
+/// True if each side of a face is shared with a face that runs it the other way.
+bool isClosed(const Faces& faces) {
+  std::vector<std::uint64_t> sides;
+  sides.reserve(static_cast<std::size_t>(faces.size()));
+  for (Eigen::Index f = 0; f < faces.rows(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      const auto a = static_cast<std::uint32_t>(faces(f, k));
+      const auto b = static_cast<std::uint32_t>(faces(f, (k + 1) % 3));
+      // Side and direction: an even number marks the falling one.
+      sides.push_back((static_cast<std::uint64_t>(std::max(a, b)) << 32 | std::min(a, b)) << 1 |
+                      static_cast<std::uint64_t>(a < b));
+    }
+  }
+  std::sort(sides.begin(), sides.end());
+  if (sides.size() % 2 != 0) return false;
+  for (std::size_t i = 0; i < sides.size(); i += 2) {
+    if (sides[i + 1] != sides[i] + 1 || sides[i] % 2 != 0) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+bool looksLikeGifti(ByteView bytes) {
+  constexpr std::size_t kFarEnough = 4096;
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()),
+                              std::min(bytes.size(), kFarEnough));
+  return text.find("<GIFTI") != std::string_view::npos ||
+         text.find("<!DOCTYPE GIFTI") != std::string_view::npos;
+}
+
+GiftiFile parseGifti(const std::filesystem::path& path, ByteView bytes) {
+  const XmlElement root =
+      parseXml(path, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  if (root.name != "GIFTI") failToRead(path, "is XML, but not GIFTI");
+  GiftiFile file;
+  file.metadata = metadataOf(root);
+  file.table = tableOf(path, root);
+  for (const XmlElement& child : root.children) {
+    if (child.name == "DataArray") file.arrays.push_back(parseArray(path, child));
+  }
+  return file;
+}
+
+LoadedSurface readGiftiSurface(const std::filesystem::path& path, ByteView bytes,
+                               const SurfaceReadOptions& options) {
+  const GiftiFile file = parseGifti(path, bytes);
+  const GiftiArray& points = needColumns(path, file, "NIFTI_INTENT_POINTSET", "points");
+  const GiftiArray& faces = needColumns(path, file, "NIFTI_INTENT_TRIANGLE", "triangles");
+  MeshBuilder builder;
+  builder.coordinates = points.values;
+  builder.triangles.reserve(faces.values.size());
+  for (const double corner : faces.values) {
+    const bool whole = std::abs(corner) < 1e15 && std::trunc(corner) == corner;
+    builder.triangles.push_back(whole ? static_cast<std::int64_t>(corner) : -1);
+  }
+  LoadedSurface surface;
+  surface.origin.path = path;
+  surface.origin.format = "GIFTI";
+  surface.mesh = builder.finish(path, surface.origin.notes);
+
+  surface.metadata.structure =
+      valueOr(points.metadata, "AnatomicalStructurePrimary",
+              valueOr(file.metadata, "AnatomicalStructurePrimary", structureFromName(path)));
+  surface.metadata.secondary = valueOr(points.metadata, "AnatomicalStructureSecondary");
+  surface.metadata.geometricType = valueOr(points.metadata, "GeometricType", "Anatomical");
+  surface.metadata.topologicalType = valueOr(faces.metadata, "TopologicalType");
+  surface.metadata.name = valueOr(points.metadata, "Name");
+  surface.metadata.extra = file.metadata;
+  surface.metadata.extra.erase("AnatomicalStructurePrimary");
+  if (!points.identityMatrix) {
+    surface.origin.notes.push_back(
+        "the matrix of the file is not applied to its coordinates, as in Workbench and nibabel");
+  }
+  FrameInFile frame;
+  const std::string space = spaceWord(points.dataSpace);
+  frame.stated = space == "UNKNOWN" ? std::string() : space;
+  if (frame.stated.empty()) frame.tkrVolume = volumeOf(path, points.metadata);
+  moveToScanner(surface, frame, options);
+  return surface;
+}
+
+std::vector<VertexMap> readGiftiMaps(const std::filesystem::path& path, ByteView bytes) {
+  std::vector<VertexMap> maps;
+  for (const GiftiArray& array : parseGifti(path, bytes).arrays) {
+    if (array.intent == "NIFTI_INTENT_POINTSET" || array.intent == "NIFTI_INTENT_TRIANGLE")
+      continue;
+    const std::int64_t rows = array.size[0];
+    const std::int64_t columns =
+        rows == 0 ? 0 : static_cast<std::int64_t>(array.values.size()) / rows;
+    const std::string name = valueOr(array.metadata, "Name");
+    for (std::int64_t column = 0; column < columns; ++column) {
+      VertexMap map;
+      map.name = columns > 1 ? name + "[" + std::to_string(column) + "]" : name;
+      map.unit = valueOr(array.metadata, "Explica:Unit");
+      map.values.resize(rows);
+      for (std::int64_t row = 0; row < rows; ++row) {
+        map.values[row] = array.values[row * columns + column];
+      }
+      maps.push_back(std::move(map));
+    }
+  }
+  return maps;
+}
+
+LabelMap readGiftiLabels(const std::filesystem::path& path, ByteView bytes) {
+  const GiftiFile file = parseGifti(path, bytes);
+  const GiftiArray* array = find(file, "NIFTI_INTENT_LABEL");
+  for (const GiftiArray& candidate : file.arrays) {  // some writers give labels another intent
+    const bool mesh =
+        candidate.intent == "NIFTI_INTENT_POINTSET" || candidate.intent == "NIFTI_INTENT_TRIANGLE";
+    if (array == nullptr && !mesh) array = &candidate;
+  }
+  if (array == nullptr) refuse(path, "is GIFTI without labels");
+  LabelMap labels;
+  labels.name = valueOr(array->metadata, "Name");
+  labels.table = file.table;
+  labels.keys.resize(array->size[0]);
+  if (array->values.size() != static_cast<std::size_t>(labels.keys.size())) {
+    refuse(path, "holds several labels a vertex; one is needed");
+  }
+  for (Eigen::Index v = 0; v < labels.keys.size(); ++v) {
+    const double value = array->values[v];
+    if (!(std::abs(value) <= std::numeric_limits<Label>::max() && std::trunc(value) == value)) {
+      refuse(path, "vertex " + std::to_string(v) +
+                       " has a value that is no whole number; labels "
+                       "are needed");
+    }
+    labels.keys[v] = static_cast<Label>(value);
+  }
+  return labels;
+}
+
+void writeGiftiSurface(const std::filesystem::path& path, const TriangleMesh& mesh,
+                       const SurfaceMetadata& metadata) {
+  if (mesh.vertexCount() == 0 || mesh.faceCount() == 0) {
+    throw InvalidInput("surface for " + quoted(path) + ": it has no triangles");
+  }
+  Metadata ofFile = metadata.extra;
+  ofFile["AnatomicalStructurePrimary"] = metadata.structure;
+  std::string text = opening(2, ofFile, "<LabelTable/>\n");
+
+  std::vector<float> positions(static_cast<std::size_t>(mesh.positions.size()));
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    positions[i] = static_cast<float>(mesh.positions.data()[i]);
+  }
+  appendArray(text, {"NIFTI_INTENT_POINTSET",
+                     "NIFTI_TYPE_FLOAT32",
+                     {mesh.vertexCount(), 3},
+                     {{"AnatomicalStructurePrimary", metadata.structure},
+                      {"AnatomicalStructureSecondary", metadata.secondary},
+                      {"GeometricType", metadata.geometricType},
+                      {"Name", metadata.name}},
+                     true,
+                     viewOf(positions)});
+  const std::string topology = !metadata.topologicalType.empty() ? metadata.topologicalType
+                               : isClosed(mesh.faces)            ? "Closed"
+                                                                 : "Open";
+  const ByteView faces(reinterpret_cast<const std::uint8_t*>(mesh.faces.data()),
+                       static_cast<std::size_t>(mesh.faces.size()) * sizeof(std::int32_t));
+  appendArray(text, {"NIFTI_INTENT_TRIANGLE",
+                     "NIFTI_TYPE_INT32",
+                     {mesh.faceCount(), 3},
+                     {{"TopologicalType", topology}},
+                     false,
+                     faces});
+  writeText(path, text + "</GIFTI>\n");
+}
+
+Eigen::Index writeGiftiShape(const std::filesystem::path& path, const std::vector<VertexMap>& maps,
+                             const std::string& structure) {
+  if (maps.empty()) throw InvalidInput("per-vertex maps for " + quoted(path) + ": there are none");
+  std::string text =
+      opening(maps.size(), {{"AnatomicalStructurePrimary", structure}}, "<LabelTable/>\n");
+  Eigen::Index replaced = 0;
+  for (const VertexMap& map : maps) {
+    if (map.values.size() != maps.front().values.size()) {
+      throw InvalidInput("per-vertex maps for " + quoted(path) + ": '" + map.name + "' has " +
+                         std::to_string(map.values.size()) + " values and '" + maps.front().name +
+                         "' " + std::to_string(maps.front().values.size()));
+    }
+    std::vector<float> values(static_cast<std::size_t>(map.values.size()));
+    for (Eigen::Index v = 0; v < map.values.size(); ++v) {
+      const auto value = static_cast<float>(map.values[v]);
+      replaced += !std::isfinite(value);
+      values[v] = std::isfinite(value) ? value : 0;
+    }
+    appendArray(text, {"NIFTI_INTENT_SHAPE",
+                       "NIFTI_TYPE_FLOAT32",
+                       {map.values.size()},
+                       {{"Name", map.name}, {"Explica:Unit", map.unit}},
+                       false,
+                       viewOf(values)});
+  }
+  writeText(path, text + "</GIFTI>\n");
+  return replaced;
+}
+
+void writeGiftiLabel(const std::filesystem::path& path, const LabelMap& labels,
+                     const std::string& structure) {
+  std::set<Label> known;
+  std::string table = "<LabelTable>\n";
+  for (const LabelEntry& entry : labels.table) {
+    known.insert(entry.key);
+    table += "<Label Key=\"" + std::to_string(entry.key) + "\"";
+    const char* channels[] = {"Red", "Green", "Blue", "Alpha"};
+    for (std::size_t c = 0; c < 4; ++c) {
+      table += std::string(" ") + channels[c] + "=\"";
+      appendNumber(table, entry.colour[c]);
+      table += "\"";
+    }
+    table += ">" + escapedXml(entry.name) + "</Label>\n";
+  }
+  table += "</LabelTable>\n";
+  std::vector<std::int32_t> keys(static_cast<std::size_t>(labels.keys.size()));
+  for (Eigen::Index v = 0; v < labels.keys.size(); ++v) {
+    if (!known.contains(labels.keys[v])) {
+      throw InvalidInput("labels for " + quoted(path) + ": key " + std::to_string(labels.keys[v]) +
+                         " at vertex " + std::to_string(v) + " is not in the table of names");
+    }
+    keys[v] = labels.keys[v];
+  }
+  std::string text = opening(1, {{"AnatomicalStructurePrimary", structure}}, table);
+  appendArray(text, {"NIFTI_INTENT_LABEL",
+                     "NIFTI_TYPE_INT32",
+                     {labels.keys.size()},
+                     {{"Name", labels.name}},
+                     false,
+                     viewOf(keys)});
+  writeText(path, text + "</GIFTI>\n");
+}
+
+}  // namespace explica::io

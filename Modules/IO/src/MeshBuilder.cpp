@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "MeshBuilder.h"
+
+#include <cmath>
+#include <limits>
+
+namespace explica::io {
+
+void MeshBuilder::addPolygon(const std::filesystem::path& path, const std::int64_t* corners,
+                             std::size_t count) {
+  if (count < 3) failToRead(path, "has a face of " + std::to_string(count) + " corners");
+  splitPolygons += count > 3;
+  for (std::size_t k = 2; k < count; ++k) {
+    triangles.insert(triangles.end(), {corners[0], corners[k - 1], corners[k]});
+  }
+}
+
+TriangleMesh MeshBuilder::finish(const std::filesystem::path& path,
+                                 std::vector<std::string>& notes) const {
+  const std::size_t vertexCount = coordinates.size() / 3;
+  const std::size_t faceCount = triangles.size() / 3;
+  if (vertexCount == 0 || faceCount == 0) refuse(path, "holds no triangles; a surface is needed");
+  if (std::max(vertexCount, faceCount) > std::numeric_limits<std::int32_t>::max()) {
+    refuse(path, "has more vertices or faces than 32-bit indices count");
+  }
+  TriangleMesh mesh;
+  mesh.positions.resize(static_cast<Eigen::Index>(vertexCount), 3);
+  for (std::size_t i = 0; i < coordinates.size(); ++i) {
+    if (!std::isfinite(coordinates[i])) {
+      refuse(path, "vertex " + std::to_string(i / 3) + " has a coordinate that is not finite");
+    }
+    mesh.positions.data()[i] = coordinates[i];
+  }
+  mesh.faces.resize(static_cast<Eigen::Index>(faceCount), 3);
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    if (triangles[i] < 0 || triangles[i] >= static_cast<std::int64_t>(vertexCount)) {
+      refuse(path, "face " + std::to_string(i / 3) + " names vertex " +
+                       std::to_string(triangles[i]) + "; there are " + std::to_string(vertexCount));
+    }
+    mesh.faces.data()[i] = static_cast<std::int32_t>(triangles[i]);
+  }
+  if (splitPolygons > 0) {
+    notes.push_back(std::to_string(splitPolygons) + " polygons were split into triangles");
+  }
+  return mesh;
+}
+
+std::size_t checkedCount(const std::filesystem::path& path, std::int64_t count,
+                         std::size_t bytesLeft, std::size_t bytesEach, const char* what) {
+  if (count < 0 || static_cast<std::uint64_t>(count) > bytesLeft / bytesEach) {
+    failToRead(path, "announces " + std::to_string(count) + " " + what +
+                         ", more than it can hold; it is truncated or damaged");
+  }
+  return static_cast<std::size_t>(count);
+}
+
+}  // namespace explica::io

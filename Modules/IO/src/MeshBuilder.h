@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Bytes.h"
+
+#include "Explica/IO/SurfaceFile.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace explica::io {
+
+/// Gathers what a surface file holds and checks it as a whole.
+struct MeshBuilder {
+  std::vector<double> coordinates;      ///< x, y, z of each vertex
+  std::vector<std::int64_t> triangles;  ///< three vertices each, as the file has them
+  std::int64_t splitPolygons = 0;
+
+  /// Adds a polygon, cut into a fan of triangles.
+  /// @throws IOError  fewer than 3 corners
+  void addPolygon(const std::filesystem::path& path, const std::int64_t* corners,
+                  std::size_t count);
+
+  /// The mesh; notes how many polygons were split.
+  /// @throws InvalidInput  no triangle, a missing vertex, a coordinate that is not finite
+  [[nodiscard]] TriangleMesh finish(const std::filesystem::path& path,
+                                    std::vector<std::string>& notes) const;
+};
+
+/// A count from a file, bounded by the bytes that each item takes at least.
+/// @throws IOError  negative, or more than fit
+[[nodiscard]] std::size_t checkedCount(const std::filesystem::path& path, std::int64_t count,
+                                       std::size_t bytesLeft, std::size_t bytesEach,
+                                       const char* what);
+
+}  // namespace explica::io

@@ -1,0 +1,463 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "PlainMeshFormats.h"
+
+#include "MeshBuilder.h"
+
+#include "Explica/Core/WholeFile.h"
+
+#include <Eigen/Geometry>
+
+#include <array>
+#include <numeric>
+#include <utility>
+
+namespace explica::io {
+namespace {
+
+LoadedSurface finished(const std::filesystem::path& path, const char* format,
+                       const MeshBuilder& builder) {
+  LoadedSurface surface;
+  surface.origin.path = path;
+  surface.origin.format = format;
+  surface.metadata.structure = structureFromName(path);
+  surface.mesh = builder.finish(path, surface.origin.notes);
+  return surface;
+}
+
+enum class PlyType { Int8, UInt8, Int16, UInt16, Int32, UInt32, Float32, Float64 };
+
+PlyType plyTypeOf(const std::filesystem::path& path, std::string_view word) {
+  static constexpr std::pair<std::string_view, PlyType> kTypes[] = {
+      {"char", PlyType::Int8},      {"int8", PlyType::Int8},       {"uchar", PlyType::UInt8},
+      {"uint8", PlyType::UInt8},    {"short", PlyType::Int16},     {"int16", PlyType::Int16},
+      {"ushort", PlyType::UInt16},  {"uint16", PlyType::UInt16},   {"int", PlyType::Int32},
+      {"int32", PlyType::Int32},    {"uint", PlyType::UInt32},     {"uint32", PlyType::UInt32},
+      {"float", PlyType::Float32},  {"float32", PlyType::Float32}, {"double", PlyType::Float64},
+      {"float64", PlyType::Float64}};
+  for (const auto& [name, type] : kTypes) {
+    if (name == word) return type;
+  }
+  failToRead(path, "has the unknown PLY type '" + std::string(word) + "'");
+}
+
+struct PlyProperty {
+  std::string name;
+  PlyType type = PlyType::Float32;
+  bool list = false;
+  PlyType countType = PlyType::UInt8;
+};
+
+struct PlyElement {
+  std::string name;
+  std::int64_t count = 0;
+  std::vector<PlyProperty> properties;
+};
+
+class PlyValues {
+ public:
+  PlyValues(const std::filesystem::path& path, ByteCursor& cursor, bool text)
+      : path_(path), cursor_(cursor), text_(text) {}
+  double take(PlyType type) {
+    if (text_) return parseNumber<double>(path_, cursor_.word());
+    switch (type) {
+      case PlyType::Int8:
+        return cursor_.take<std::int8_t>();
+      case PlyType::UInt8:
+        return cursor_.take<std::uint8_t>();
+      case PlyType::Int16:
+        return cursor_.take<std::int16_t>();
+      case PlyType::UInt16:
+        return cursor_.take<std::uint16_t>();
+      case PlyType::Int32:
+        return cursor_.take<std::int32_t>();
+      case PlyType::UInt32:
+        return cursor_.take<std::uint32_t>();
+      case PlyType::Float32:
+        return cursor_.take<float>();
+      case PlyType::Float64:
+        return cursor_.take<double>();
+    }
+    return 0;
+  }
+  std::int64_t takeWhole(PlyType type) {
+    const double value = take(type);
+    constexpr double kLargest = 9e15;
+    if (!(std::abs(value) <= kLargest) ||
+        value != static_cast<double>(static_cast<std::int64_t>(value))) {
+      failToRead(path_, "has a vertex number that is no whole number");
+    }
+    return static_cast<std::int64_t>(value);
+  }
+
+ private:
+  const std::filesystem::path& path_;
+  ByteCursor& cursor_;
+  bool text_;
+};
+
+struct PlyHeader {
+  bool text = false;
+  bool bigEndian = false;
+  std::vector<PlyElement> elements;
+  std::size_t size = 0;
+};
+
+PlyHeader plyHeaderOf(const std::filesystem::path& path, ByteView bytes) {
+  PlyHeader header;
+  ByteCursor cursor(path, bytes, false);
+  static_cast<void>(cursor.line());
+  bool formatGiven = false;
+  while (true) {
+    if (cursor.left() == 0) failToRead(path, "its PLY header does not end; it is truncated");
+    const std::string_view line = cursor.line();
+    ByteCursor words(
+        path, ByteView(reinterpret_cast<const std::uint8_t*>(line.data()), line.size()), false);
+    const std::string_view word = words.word();
+    if (word == "end_header") break;
+    if (word == "format") {
+      const std::string_view kind = words.word();
+      header.text = kind == "ascii";
+      header.bigEndian = kind == "binary_big_endian";
+      formatGiven = header.text || header.bigEndian || kind == "binary_little_endian";
+    } else if (word == "element") {
+      PlyElement element;
+      element.name = words.word();
+      element.count = parseNumber<std::int64_t>(path, words.word());
+      header.elements.push_back(element);
+    } else if (word == "property") {
+      if (header.elements.empty()) failToRead(path, "has a PLY property before any element");
+      PlyProperty property;
+      std::string_view type = words.word();
+      if (type == "list") {
+        property.list = true;
+        property.countType = plyTypeOf(path, words.word());
+        type = words.word();
+      }
+      property.type = plyTypeOf(path, type);
+      property.name = words.word();
+      header.elements.back().properties.push_back(property);
+    }
+  }
+  if (!formatGiven) failToRead(path, "has a PLY header without a known format");
+  header.size = cursor.position();
+  return header;
+}
+
+}  // namespace
+
+LoadedSurface readPly(const std::filesystem::path& path, ByteView bytes) {
+  const PlyHeader header = plyHeaderOf(path, bytes);
+  ByteCursor cursor(path, bytes, header.bigEndian);
+  cursor.moveTo(header.size);
+  PlyValues values(path, cursor, header.text);
+  MeshBuilder builder;
+  std::vector<VertexMap> maps;
+  std::vector<std::int64_t> corners;
+  for (const PlyElement& element : header.elements) {
+    const bool vertices = element.name == "vertex";
+    const std::size_t count =
+        checkedCount(path, element.count, cursor.left(),
+                     std::max<std::size_t>(1, element.properties.size()), "elements");
+    std::vector<int> axisOf(element.properties.size(), -1);
+    std::vector<std::size_t> mapOf(element.properties.size());
+    if (vertices) {
+      builder.coordinates.assign(3 * count, 0);
+      int axes = 0;
+      for (std::size_t p = 0; p < element.properties.size(); ++p) {
+        const std::string& name = element.properties[p].name;
+        if (name == "x" || name == "y" || name == "z") {
+          axisOf[p] = name[0] - 'x';
+          ++axes;
+        } else {
+          mapOf[p] = maps.size();
+          maps.push_back({name, "", Eigen::VectorXd::Zero(static_cast<Eigen::Index>(count))});
+        }
+      }
+      if (axes != 3) failToRead(path, "has PLY vertices without x, y and z");
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t p = 0; p < element.properties.size(); ++p) {
+        const PlyProperty& property = element.properties[p];
+        if (!property.list) {
+          const double value = values.take(property.type);
+          if (axisOf[p] >= 0) {
+            builder.coordinates[3 * i + axisOf[p]] = value;
+          } else if (vertices) {
+            maps[mapOf[p]].values[static_cast<Eigen::Index>(i)] = value;
+          }
+          continue;
+        }
+        const std::size_t length =
+            checkedCount(path, values.takeWhole(property.countType), cursor.left(), 1, "corners");
+        corners.resize(length);
+        for (std::int64_t& corner : corners) corner = values.takeWhole(property.type);
+        if (element.name == "face" &&
+            (property.name == "vertex_indices" || property.name == "vertex_index")) {
+          builder.addPolygon(path, corners.data(), corners.size());
+        }
+      }
+    }
+  }
+  LoadedSurface surface = finished(path, "PLY", builder);
+  surface.maps = std::move(maps);
+  return surface;
+}
+
+void writePly(const std::filesystem::path& path, const TriangleMesh& mesh) {
+  const std::string header =
+      "ply\nformat binary_little_endian 1.0\ncomment RAS mm, written by Explica\nelement vertex " +
+      std::to_string(mesh.vertexCount()) +
+      "\nproperty double x\nproperty double y\nproperty double z\nelement face " +
+      std::to_string(mesh.faceCount()) + "\nproperty list uchar int vertex_indices\nend_header\n";
+  constexpr std::size_t kFace = 13;
+  Bytes faces(kFace * static_cast<std::size_t>(mesh.faceCount()));
+  for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
+    std::uint8_t* to = faces.data() + kFace * static_cast<std::size_t>(f);
+    *to = 3;
+    std::memcpy(to + 1, mesh.faces.data() + 3 * f, 12);
+  }
+  WholeFile file(path);
+  file.write(header);
+  file.write(mesh.positions.data(),
+             sizeof(double) * static_cast<std::size_t>(mesh.positions.size()));
+  file.write(faces.data(), faces.size());
+  file.commit();
+}
+
+LoadedSurface readObj(const std::filesystem::path& path, ByteView bytes) {
+  ByteCursor cursor(path, bytes, false);
+  MeshBuilder builder;
+  std::vector<std::int64_t> corners;
+  while (cursor.left() > 0) {
+    const std::string_view line = cursor.line();
+    ByteCursor words(
+        path, ByteView(reinterpret_cast<const std::uint8_t*>(line.data()), line.size()), false);
+    const std::string_view kind = words.word();
+    if (kind == "v") {
+      for (int k = 0; k < 3; ++k) {
+        builder.coordinates.push_back(parseNumber<double>(path, words.word()));
+      }
+    } else if (kind == "f") {
+      corners.clear();
+      for (std::string_view word = words.word(); !word.empty(); word = words.word()) {
+        const auto number = parseNumber<std::int64_t>(path, word.substr(0, word.find('/')));
+        const auto vertices = static_cast<std::int64_t>(builder.coordinates.size() / 3);
+        // Counted from 1, or backwards from the last vertex so far.
+        corners.push_back(number > 0 ? number - 1 : number < 0 ? vertices + number : -1);
+      }
+      builder.addPolygon(path, corners.data(), corners.size());
+    }
+  }
+  return finished(path, "OBJ", builder);
+}
+
+void writeObj(const std::filesystem::path& path, const TriangleMesh& mesh) {
+  std::string text = "# RAS mm, written by Explica\n";
+  for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
+    text += "v";
+    for (int k = 0; k < 3; ++k) {
+      text += ' ';
+      appendNumber(text, mesh.positions(v, k));
+    }
+    text += '\n';
+  }
+  for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
+    text += "f";
+    for (int k = 0; k < 3; ++k) {
+      text += ' ';
+      appendNumber(text, mesh.faces(f, k) + 1);
+    }
+    text += '\n';
+  }
+  writeTextFile(path, text);
+}
+
+bool looksLikeOff(std::string_view text) {
+  for (const std::string_view start : {"OFF", "COFF", "NOFF", "CNOFF"}) {
+    if (text.starts_with(start) && text.size() > start.size() &&
+        (text[start.size()] == '\n' || text[start.size()] == '\r' || text[start.size()] == ' ')) {
+      return true;
+    }
+  }
+  return false;
+}
+
+LoadedSurface readOff(const std::filesystem::path& path, ByteView bytes) {
+  ByteCursor cursor(path, bytes, false);
+  static_cast<void>(cursor.word());
+  // The rest of a line, without its comment, that is not blank.
+  const auto nextLine = [&]() -> std::string_view {
+    while (cursor.left() > 0) {
+      std::string_view line = cursor.line();
+      line = line.substr(0, line.find('#'));
+      if (line.find_first_not_of(" \t") != std::string_view::npos) return line;
+    }
+    failToRead(path, "the file ends too early; it is truncated");
+  };
+  const auto wordsOf = [&path](std::string_view line) {
+    return ByteCursor(
+        path, ByteView(reinterpret_cast<const std::uint8_t*>(line.data()), line.size()), false);
+  };
+  ByteCursor counts = wordsOf(nextLine());
+  const auto announcedVertices = parseNumber<std::int64_t>(path, counts.word());
+  const auto announcedFaces = parseNumber<std::int64_t>(path, counts.word());
+  const std::size_t vertices = checkedCount(path, announcedVertices, cursor.left(), 6, "vertices");
+  const std::size_t faces = checkedCount(path, announcedFaces, cursor.left(), 4, "faces");
+  MeshBuilder builder;
+  builder.coordinates.reserve(3 * vertices);
+  for (std::size_t v = 0; v < vertices; ++v) {
+    ByteCursor words = wordsOf(nextLine());
+    for (int k = 0; k < 3; ++k) {
+      builder.coordinates.push_back(parseNumber<double>(path, words.word()));
+    }
+  }
+  std::vector<std::int64_t> corners;
+  for (std::size_t f = 0; f < faces; ++f) {
+    ByteCursor words = wordsOf(nextLine());
+    const std::size_t count = checkedCount(path, parseNumber<std::int64_t>(path, words.word()),
+                                           words.left(), 1, "corners");
+    corners.resize(count);
+    for (std::int64_t& corner : corners) corner = parseNumber<std::int64_t>(path, words.word());
+    builder.addPolygon(path, corners.data(), corners.size());
+  }
+  return finished(path, "OFF", builder);
+}
+
+void writeOff(const std::filesystem::path& path, const TriangleMesh& mesh) {
+  std::string text = "OFF\n" + std::to_string(mesh.vertexCount()) + " " +
+                     std::to_string(mesh.faceCount()) + " 0\n";
+  for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
+    for (int k = 0; k < 3; ++k) {
+      appendNumber(text, mesh.positions(v, k));
+      text += k < 2 ? ' ' : '\n';
+    }
+  }
+  for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
+    text += '3';
+    for (int k = 0; k < 3; ++k) {
+      text += ' ';
+      appendNumber(text, mesh.faces(f, k));
+    }
+    text += '\n';
+  }
+  writeTextFile(path, text);
+}
+
+namespace {
+
+constexpr std::size_t kStlHeader = 84;
+constexpr std::size_t kStlFacet = 50;
+
+std::string_view textOf(ByteView bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+bool isBinaryStl(ByteView bytes) {
+  return bytes.size() >= kStlHeader &&
+         bytes.size() == kStlHeader + kStlFacet * static_cast<std::size_t>(load<std::uint32_t>(
+                                                      bytes.data() + 80, false));
+}
+
+using Corner = std::array<double, 3>;
+
+/// Numbers equal corners alike, in the order of their first appearance.
+void mergeCorners(const std::vector<Corner>& corners, MeshBuilder& builder) {
+  std::vector<std::size_t> order(corners.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&corners](std::size_t a, std::size_t b) {
+    return corners[a] != corners[b] ? corners[a] < corners[b] : a < b;
+  });
+  std::vector<std::size_t> first(corners.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const bool same = i > 0 && corners[order[i]] == corners[order[i - 1]];
+    first[order[i]] = same ? first[order[i - 1]] : order[i];
+  }
+  std::vector<std::int64_t> number(corners.size());
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    if (first[i] == i) {
+      number[i] = static_cast<std::int64_t>(builder.coordinates.size() / 3);
+      builder.coordinates.insert(builder.coordinates.end(), corners[i].begin(), corners[i].end());
+    }
+    builder.triangles.push_back(number[first[i]]);
+  }
+}
+
+}  // namespace
+
+bool looksLikeStl(ByteView bytes) {
+  constexpr std::size_t kFarEnough = 1024;
+  const std::string_view text = textOf(bytes).substr(0, kFarEnough);
+  return isBinaryStl(bytes) ||
+         (text.starts_with("solid") && text.find("facet") != std::string_view::npos);
+}
+
+LoadedSurface readStl(const std::filesystem::path& path, ByteView bytes) {
+  std::vector<Corner> corners;
+  ByteCursor cursor(path, bytes, false);
+  if (isBinaryStl(bytes)) {
+    for (std::size_t facet = kStlHeader; facet < bytes.size(); facet += kStlFacet) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        Corner corner;
+        for (std::size_t c = 0; c < 3; ++c) {
+          corner[c] = load<float>(bytes.data() + facet + 12 + 12 * k + 4 * c, false);
+        }
+        corners.push_back(corner);
+      }
+    }
+  } else {
+    if (!textOf(bytes).starts_with("solid")) {
+      failToRead(path, "its length does not fit the facets that it announces; it is truncated");
+    }
+    bool ended = false;
+    while (cursor.left() > 0) {
+      const std::string_view line = cursor.line();
+      ByteCursor words(
+          path, ByteView(reinterpret_cast<const std::uint8_t*>(line.data()), line.size()), false);
+      const std::string_view word = words.word();
+      if (word == "endsolid") ended = true;
+      if (word != "vertex") continue;
+      Corner corner;
+      for (double& c : corner) c = parseNumber<double>(path, words.word());
+      corners.push_back(corner);
+    }
+    if (!ended || corners.size() % 3 != 0)
+      failToRead(path, "the file ends too early; it is truncated");
+  }
+  for (Corner& corner : corners) {
+    for (double& c : corner) {
+      if (!std::isfinite(c)) refuse(path, "has a coordinate that is not finite");
+      c += 0.0;  // negative zero equals zero
+    }
+  }
+  MeshBuilder builder;
+  mergeCorners(corners, builder);
+  LoadedSurface surface = finished(path, "STL", builder);
+  surface.origin.notes.push_back(std::to_string(corners.size()) + " corners merged to " +
+                                 std::to_string(surface.mesh.vertexCount()) + " vertices");
+  return surface;
+}
+
+void writeStl(const std::filesystem::path& path, const TriangleMesh& mesh) {
+  Bytes bytes(kStlHeader + kStlFacet * static_cast<std::size_t>(mesh.faceCount()));
+  static constexpr char kTitle[] = "RAS mm, written by Explica";
+  std::memcpy(bytes.data(), kTitle, sizeof(kTitle));
+  store(bytes.data() + 80, static_cast<std::uint32_t>(mesh.faceCount()), false);
+  for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
+    std::uint8_t* to = bytes.data() + kStlHeader + kStlFacet * static_cast<std::size_t>(f);
+    const Point a = mesh.corner(f, 0);
+    const Vector normal = (mesh.corner(f, 1) - a).cross(mesh.corner(f, 2) - a).normalized();
+    for (int c = 0; c < 3; ++c) {
+      store(to + 4 * c, static_cast<float>(normal[c]), false);
+      for (int k = 0; k < 3; ++k) {
+        store(to + 12 + 12 * k + 4 * c, static_cast<float>(mesh.corner(f, k)[c]), false);
+      }
+    }
+  }
+  WholeFile file(path);
+  file.write(bytes.data(), bytes.size());
+  file.commit();
+}
+
+}  // namespace explica::io

@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/IO/VertexDataFile.h"
+
+#include "ByteSource.h"
+#include "FreeSurferFormat.h"
+#include "GiftiFormat.h"
+#include "MghFormat.h"
+#include "PlainMeshFormats.h"
+#include "StoredVolume.h"
+#include "VtkFormat.h"
+
+#include "Explica/IO/VolumeFile.h"
+
+namespace explica::io {
+namespace {
+
+/// FreeSurfer keeps overlays as volumes of V x 1 x 1 voxels, one frame a map.
+std::vector<VertexMap> readMghOverlay(const std::filesystem::path& path) {
+  VolumeReadOptions options;
+  options.allowAllZero = true;
+  options.allowNonFinite = true;
+  ByteSource source(path);
+  const std::int64_t frames = readMgh(source, Extent::Header).valuesPerVoxel;
+  std::vector<VertexMap> maps;
+  for (int frame = 0; frame < frames; ++frame) {
+    options.frame = frame;
+    const Volume<float> volume = readScalars(path, options).volume;
+    if (volume.grid.size[1] != 1 || volume.grid.size[2] != 1) {
+      refuse(path, "is a volume; one value a vertex is needed");
+    }
+    VertexMap map;
+    map.name = path.stem().string();
+    map.values.resize(static_cast<Eigen::Index>(volume.size()));
+    for (std::size_t v = 0; v < volume.size(); ++v) {
+      map.values[static_cast<Eigen::Index>(v)] = volume[v];
+    }
+    maps.push_back(std::move(map));
+  }
+  return maps;
+}
+
+void checkCount(const std::filesystem::path& path, Eigen::Index found,
+                std::optional<Eigen::Index> wanted) {
+  if (wanted && found != *wanted) {
+    refuse(path, "holds " + std::to_string(found) + " values, but the surface has " +
+                     std::to_string(*wanted) + " vertices: do they belong together?");
+  }
+}
+
+}  // namespace
+
+std::vector<VertexMap> readVertexMaps(const std::filesystem::path& path,
+                                      std::optional<Eigen::Index> vertexCount) {
+  ByteSource source(path);
+  const ByteView first = source.peek(64);
+  std::vector<VertexMap> maps;
+  if (looksLikeMgh(first)) {
+    maps = readMghOverlay(path);
+  } else {
+    const Bytes bytes = source.rest();
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    if (looksLikeGifti(bytes)) {
+      maps = readGiftiMaps(path, bytes);
+    } else if (looksLikeVtkLegacy(bytes) || looksLikeVtkXml(bytes)) {
+      maps = readPolyData(path, bytes).pointMaps;
+    } else if (text.starts_with("ply\n") || text.starts_with("ply\r\n")) {
+      maps = readPly(path, bytes).maps;
+    } else if (freeSurferKindOf(bytes) == FreeSurferKind::Curv || looksLikeOldCurv(bytes)) {
+      maps = {readFreeSurferCurv(path, bytes)};
+    } else if (freeSurferKindOf(bytes) == FreeSurferKind::Surface && bytes[2] == 0xff &&
+               load<std::int32_t>(bytes.data() + 11, true) == 1) {
+      // A curv file by its header, whose length does not fit.
+      failToRead(path, "the file ends too early for its number of values; it is truncated");
+    } else {
+      failToRead(path,
+                 "holds no per-vertex values of a known format (GIFTI, FreeSurfer curv, MGH, VTK)");
+    }
+  }
+  if (maps.empty()) refuse(path, "holds no per-vertex values");
+  for (const VertexMap& map : maps) checkCount(path, map.values.size(), vertexCount);
+  return maps;
+}
+
+LabelMap readVertexLabels(const std::filesystem::path& path,
+                          std::optional<Eigen::Index> vertexCount) {
+  const Bytes bytes = ByteSource(path).rest();
+  LabelMap labels;
+  const bool listed = !bytes.empty() && (bytes[0] == '#' || path.extension() == ".label");
+  if (looksLikeGifti(bytes)) {
+    labels = readGiftiLabels(path, bytes);
+  } else if (listed) {
+    labels = readFreeSurferLabel(path, bytes, vertexCount);
+  } else if (looksLikeAnnot(bytes)) {
+    labels = readFreeSurferAnnot(path, bytes);
+  } else {
+    failToRead(path, "holds no labels of a known format (GIFTI, FreeSurfer label or annot)");
+  }
+  checkCount(path, labels.keys.size(), vertexCount);
+  return labels;
+}
+
+}  // namespace explica::io

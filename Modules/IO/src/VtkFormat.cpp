@@ -1,0 +1,532 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "VtkFormat.h"
+
+#include "ByteSource.h"
+#include "MeshBuilder.h"
+#include "Xml.h"
+
+#include <cmath>
+#include <optional>
+
+namespace explica::io {
+namespace {
+
+std::string_view textOf(ByteView bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+ByteView bytesOf(std::string_view text) {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+struct TypeRow {
+  std::string_view legacy;
+  std::string_view xml;
+  std::size_t width;
+  double (*load)(const std::uint8_t*, bool);
+};
+
+template <class T>
+double loadReal(const std::uint8_t* from, bool bigEndian) {
+  return static_cast<double>(load<T>(from, bigEndian));
+}
+
+constexpr TypeRow kTypes[] = {{"float", "Float32", 4, loadReal<float>},
+                              {"double", "Float64", 8, loadReal<double>},
+                              {"int", "Int32", 4, loadReal<std::int32_t>},
+                              {"vtktypeint64", "Int64", 8, loadReal<std::int64_t>},
+                              {"vtkIdType", "Int64", 4, loadReal<std::int32_t>},
+                              {"long", "Int64", 8, loadReal<std::int64_t>},
+                              {"unsigned_int", "UInt32", 4, loadReal<std::uint32_t>},
+                              {"unsigned_long", "UInt64", 8, loadReal<std::uint64_t>},
+                              {"short", "Int16", 2, loadReal<std::int16_t>},
+                              {"unsigned_short", "UInt16", 2, loadReal<std::uint16_t>},
+                              {"char", "Int8", 1, loadReal<std::int8_t>},
+                              {"signed_char", "Int8", 1, loadReal<std::int8_t>},
+                              {"unsigned_char", "UInt8", 1, loadReal<std::uint8_t>},
+                              {"vtktypeuint64", "UInt64", 8, loadReal<std::uint64_t>}};
+
+std::int64_t wholeOf(const std::filesystem::path& path, double value) {
+  constexpr double kLargest = 9e15;
+  if (!(std::abs(value) <= kLargest) || std::trunc(value) != value) {
+    failToRead(path, "has a vertex number that is no whole number");
+  }
+  return static_cast<std::int64_t>(value);
+}
+
+std::vector<std::int64_t> wholeOf(const std::filesystem::path& path,
+                                  const std::vector<double>& values) {
+  std::vector<std::int64_t> whole;
+  whole.reserve(values.size());
+  for (const double value : values) whole.push_back(wholeOf(path, value));
+  return whole;
+}
+
+/// Checks that the offsets rise from 0 to the length of the connectivity.
+void checkCells(const std::filesystem::path& path, const CellList& cells) {
+  bool rising = !cells.offsets.empty() && cells.offsets.front() == 0 &&
+                cells.offsets.back() == static_cast<std::int64_t>(cells.connectivity.size());
+  for (std::size_t c = 1; c < cells.offsets.size(); ++c) {
+    rising = rising && cells.offsets[c] >= cells.offsets[c - 1];
+  }
+  if (!rising) failToRead(path, "has cells whose offsets do not fit; it is damaged");
+}
+
+void addMaps(std::vector<VertexMap>& maps, const std::string& name,
+             const std::vector<double>& values, std::size_t components) {
+  const std::size_t rows = values.size() / components;
+  for (std::size_t c = 0; c < components; ++c) {
+    VertexMap map;
+    map.name = components > 1 ? name + "[" + std::to_string(c) + "]" : name;
+    map.values.resize(static_cast<Eigen::Index>(rows));
+    for (std::size_t row = 0; row < rows; ++row) {
+      map.values[static_cast<Eigen::Index>(row)] = values[row * components + c];
+    }
+    maps.push_back(std::move(map));
+  }
+}
+
+/// The legacy format: keywords and values, text or big-endian binary.
+class LegacyReader {
+ public:
+  LegacyReader(const std::filesystem::path& path, ByteView bytes)
+      : path_(path), cursor_(path, bytes, true) {}
+
+  PolyData read() {
+    static_cast<void>(cursor_.line());  // version
+    static_cast<void>(cursor_.line());  // title
+    const std::string_view encoding = cursor_.word();
+    if (encoding != "ASCII" && encoding != "BINARY") {
+      failToRead(path_, "is neither ASCII nor BINARY, as VTK files are");
+    }
+    text_ = encoding == "ASCII";
+    if (cursor_.word() != "DATASET") failToRead(path_, "names no VTK dataset");
+    const std::string_view dataset = cursor_.word();
+    if (dataset != "POLYDATA") {
+      refuse(path_, "is a VTK " + std::string(dataset.substr(0, 40)) + "; POLYDATA is needed");
+    }
+    while (true) {
+      const std::string_view keyword = cursor_.word();
+      if (keyword.empty()) break;
+      section(keyword);
+    }
+    return std::move(data_);
+  }
+
+ private:
+  void section(std::string_view keyword) {
+    if (keyword == "POINTS") {
+      const std::int64_t count = whole();
+      const TypeRow& type = typeOf(cursor_.word());
+      data_.coordinates = values(count, 3, type);
+    } else if (keyword == "LINES") {
+      data_.lines = cells();
+    } else if (keyword == "POLYGONS") {
+      data_.polygons = cells();
+    } else if (keyword == "TRIANGLE_STRIPS") {
+      data_.strips = cells();
+    } else if (keyword == "VERTICES") {
+      static_cast<void>(cells());
+    } else if (keyword == "POINT_DATA") {
+      rows_ = whole();
+      ofPoints_ = true;
+    } else if (keyword == "CELL_DATA") {
+      rows_ = whole();
+      ofPoints_ = false;
+    } else if (keyword == "SCALARS") {
+      scalars();
+    } else if (keyword == "COLOR_SCALARS") {
+      const std::string name(cursor_.word());
+      const std::int64_t components = whole();
+      keep(name, values(rows_, components, typeOf(text_ ? "float" : "unsigned_char")), components);
+    } else if (keyword == "LOOKUP_TABLE") {
+      static_cast<void>(cursor_.word());
+      const std::int64_t entries = whole();
+      static_cast<void>(values(entries, 4, typeOf(text_ ? "float" : "unsigned_char")));
+    } else if (keyword == "VECTORS" || keyword == "NORMALS") {
+      const std::string name(cursor_.word());
+      keep(name, values(rows_, 3, typeOf(cursor_.word())), 3);
+    } else if (keyword == "TENSORS") {
+      const std::string name(cursor_.word());
+      keep(name, values(rows_, 9, typeOf(cursor_.word())), 9);
+    } else if (keyword == "TEXTURE_COORDINATES") {
+      const std::string name(cursor_.word());
+      const std::int64_t components = whole();
+      keep(name, values(rows_, components, typeOf(cursor_.word())), components);
+    } else if (keyword == "FIELD") {
+      field();
+    } else if (keyword == "METADATA") {
+      skipMetadata();
+    } else {
+      failToRead(path_, "has the unknown VTK section '" + std::string(keyword.substr(0, 40)) + "'");
+    }
+  }
+
+  std::int64_t whole() { return parseNumber<std::int64_t>(path_, cursor_.word()); }
+
+  const TypeRow& typeOf(std::string_view word) const {
+    for (const TypeRow& row : kTypes) {
+      if (row.legacy == word) return row;
+    }
+    failToRead(path_, "has the unknown VTK type '" + std::string(word.substr(0, 40)) + "'");
+  }
+
+  std::vector<double> values(std::int64_t rows, std::int64_t columns, const TypeRow& type) {
+    constexpr std::int64_t kMostColumns = 1024;
+    if (columns < 1 || columns > kMostColumns) failToRead(path_, "has arrays of no sensible width");
+    if (!text_) static_cast<void>(cursor_.line());
+    const std::size_t each = static_cast<std::size_t>(columns) * (text_ ? 1 : type.width);
+    const std::size_t count = checkedCount(path_, rows, cursor_.left() + 1, each, "values") *
+                              static_cast<std::size_t>(columns);
+    std::vector<double> result(count);
+    if (text_) {
+      for (double& value : result) value = parseNumber<double>(path_, lowered(cursor_.word()));
+    } else {
+      const ByteView raw = cursor_.view(count * type.width);
+      for (std::size_t i = 0; i < count; ++i) {
+        result[i] = type.load(raw.data() + i * type.width, true);
+      }
+    }
+    return result;
+  }
+
+  static std::string_view lowered(std::string_view word) { return word == "NaN" ? "nan" : word; }
+
+  CellList cells() {
+    const std::int64_t first = whole();
+    const std::int64_t second = whole();
+    CellList list;
+    const std::size_t before = cursor_.position();
+    if (cursor_.word() == "OFFSETS") {  // version 5: offsets, then connectivity
+      const TypeRow& offsetType = typeOf(cursor_.word());
+      list.offsets = wholeOf(path_, values(first, 1, offsetType));
+      if (list.offsets.empty()) list.offsets = {0};
+      if (cursor_.word() != "CONNECTIVITY") failToRead(path_, "has cells without connectivity");
+      const TypeRow& type = typeOf(cursor_.word());
+      list.connectivity = wholeOf(path_, values(second, 1, type));
+    } else {  // each cell: its length and its vertices
+      cursor_.moveTo(before);
+      const std::vector<std::int64_t> all = wholeOf(path_, values(second, 1, typeOf("int")));
+      std::size_t at = 0;
+      for (std::int64_t c = 0; c < first; ++c) {
+        if (at >= all.size() || all[at] < 0 ||
+            static_cast<std::size_t>(all[at]) > all.size() - at - 1) {
+          failToRead(path_, "has cells that do not fit their announced size; it is damaged");
+        }
+        const auto length = static_cast<std::size_t>(all[at]);
+        list.connectivity.insert(list.connectivity.end(), all.begin() + at + 1,
+                                 all.begin() + at + 1 + length);
+        list.offsets.push_back(static_cast<std::int64_t>(list.connectivity.size()));
+        at += 1 + length;
+      }
+    }
+    checkCells(path_, list);
+    return list;
+  }
+
+  void scalars() {
+    const std::string name(cursor_.word());
+    const TypeRow& type = typeOf(cursor_.word());
+    std::int64_t components = 1;
+    std::size_t before = cursor_.position();
+    std::string_view next = cursor_.word();
+    if (next != "LOOKUP_TABLE") {
+      components = parseNumber<std::int64_t>(path_, next);
+      before = cursor_.position();
+      next = cursor_.word();
+    }
+    if (next == "LOOKUP_TABLE") {
+      static_cast<void>(cursor_.word());
+    } else {
+      cursor_.moveTo(before);
+    }
+    keep(name, values(rows_, components, type), components);
+  }
+
+  void field() {
+    static_cast<void>(cursor_.word());
+    const std::int64_t arrays = whole();
+    for (std::int64_t a = 0; a < arrays; ++a) {
+      std::string name(cursor_.word());
+      if (name == "METADATA") {
+        skipMetadata();
+        name = cursor_.word();
+      }
+      if (name.empty()) failToRead(path_, "the file ends too early; it is truncated");
+      const std::int64_t components = whole();
+      const std::int64_t rows = whole();
+      const std::string_view type = cursor_.word();
+      if (type == "string") {
+        static_cast<void>(cursor_.line());
+        for (std::int64_t row = 0; row < rows && cursor_.left() > 0; ++row) {
+          static_cast<void>(cursor_.line());
+        }
+        continue;
+      }
+      const std::vector<double> all = values(rows, components, typeOf(type));
+      if (rows_ < 0) {
+        data_.saysRas = data_.saysRas || (name == "SpaceRAS" && all.size() == 1 && all[0] == 1);
+      } else if (rows == rows_) {
+        keep(name, all, components);
+      }
+    }
+  }
+
+  /// A block that ends with an empty line.
+  void skipMetadata() {
+    static_cast<void>(cursor_.line());
+    while (cursor_.left() > 0 && !cursor_.line().empty()) {
+    }
+  }
+
+  void keep(const std::string& name, const std::vector<double>& all, std::int64_t components) {
+    if (ofPoints_) addMaps(data_.pointMaps, name, all, static_cast<std::size_t>(components));
+  }
+
+  const std::filesystem::path& path_;
+  ByteCursor cursor_;
+  PolyData data_;
+  bool text_ = false;
+  bool ofPoints_ = false;
+  std::int64_t rows_ = -1;
+};
+
+/// The XML format: arrays as text, base64, or appended after the document.
+class XmlReader {
+ public:
+  XmlReader(const std::filesystem::path& path, ByteView bytes) : path_(path) {
+    // Raw appended data are no XML: cut them out before parsing.
+    const std::string_view text = textOf(bytes);
+    const std::size_t tag = text.find("<AppendedData");
+    if (tag == std::string_view::npos) {
+      root_ = parseXml(path, text);
+      return;
+    }
+    const std::size_t end = text.find('>', tag);
+    const std::size_t start = end == std::string_view::npos ? end : text.find('_', end);
+    if (start == std::string_view::npos)
+      failToRead(path, "the file ends too early; it is truncated");
+    appended_ = bytes.subspan(start + 1);
+    const std::string_view opening = text.substr(tag, end - tag);
+    appendedRaw_ = opening.find("\"raw\"") != std::string_view::npos;
+    root_ = parseXml(path, std::string(text.substr(0, tag)) + "</VTKFile>");
+  }
+
+  PolyData read() {
+    if (root_.name != "VTKFile") failToRead(path_, "is XML, but no VTK file");
+    if (root_["type"] != "PolyData") {
+      refuse(path_, "is a VTK " + root_["type"] + "; PolyData is needed");
+    }
+    bigEndian_ = root_["byte_order"] == "BigEndian";
+    wideHeaders_ = root_["header_type"] == "UInt64";
+    const std::string compressor = root_["compressor"];
+    packed_ = !compressor.empty();
+    if (packed_ && compressor != "vtkZLibDataCompressor") {
+      refuse(path_, "is packed by " + compressor + "; save it with zlib or without compression");
+    }
+    const XmlElement* poly = root_.child("PolyData");
+    if (poly == nullptr) failToRead(path_, "holds no PolyData");
+    PolyData data;
+    if (const XmlElement* fields = poly->child("FieldData")) {
+      for (const XmlElement& array : fields->children) {
+        if (array["Name"] != "SpaceRAS") continue;
+        const std::vector<double> values = valuesOf(array);
+        data.saysRas = values.size() == 1 && values[0] == 1;
+      }
+    }
+    std::size_t pieces = 0;
+    for (const XmlElement& piece : poly->children) {
+      if (piece.name != "Piece") continue;
+      if (++pieces > 1) {
+        refuse(path_, "holds several pieces; merge them to one (ParaView: Clean)");
+      }
+      addPiece(piece, data);
+    }
+    return data;
+  }
+
+ private:
+  void addPiece(const XmlElement& piece, PolyData& data) const {
+    if (const XmlElement* points = piece.child("Points")) {
+      const XmlElement* array = points->child("DataArray");
+      if (array != nullptr) data.coordinates = valuesOf(*array);
+    }
+    data.lines = cellsOf(piece, "Lines");
+    data.polygons = cellsOf(piece, "Polys");
+    data.strips = cellsOf(piece, "Strips");
+    const XmlElement* maps = piece.child("PointData");
+    if (maps == nullptr) return;
+    const std::size_t points = data.coordinates.size() / 3;
+    for (const XmlElement& array : maps->children) {
+      if (array.name != "DataArray") continue;
+      const std::vector<double> values = valuesOf(array);
+      const std::string components = array["NumberOfComponents"];
+      const auto width = components.empty() ? 1 : parseNumber<std::int64_t>(path_, components);
+      if (width < 1 || values.size() != static_cast<std::size_t>(width) * points) {
+        failToRead(path_, "has a point array '" + array["Name"] + "' of the wrong length");
+      }
+      addMaps(data.pointMaps, array["Name"], values, static_cast<std::size_t>(width));
+    }
+  }
+
+  CellList cellsOf(const XmlElement& piece, const char* name) const {
+    CellList cells;
+    const XmlElement* element = piece.child(name);
+    if (element == nullptr) return cells;
+    for (const XmlElement& array : element->children) {
+      if (array["Name"] == "connectivity") cells.connectivity = wholeOf(path_, valuesOf(array));
+      if (array["Name"] == "offsets") {
+        const std::vector<std::int64_t> ends = wholeOf(path_, valuesOf(array));
+        cells.offsets.insert(cells.offsets.end(), ends.begin(), ends.end());
+      }
+    }
+    checkCells(path_, cells);
+    return cells;
+  }
+
+  std::vector<double> valuesOf(const XmlElement& array) const {
+    const std::string format = array["format"];
+    if (format == "ascii" || format.empty()) {
+      std::vector<double> values;
+      ByteCursor cursor(path_, bytesOf(array.text), false);
+      for (std::string_view word = cursor.word(); !word.empty(); word = cursor.word()) {
+        values.push_back(parseNumber<double>(path_, word));
+      }
+      return values;
+    }
+    const TypeRow* type = nullptr;
+    for (const TypeRow& row : kTypes) {
+      if (row.xml == array["type"] && (row.xml != "Int64" || row.width == 8)) type = &row;
+    }
+    if (type == nullptr) failToRead(path_, "has the unknown VTK type '" + array["type"] + "'");
+    Bytes raw;
+    if (format == "appended") {
+      const auto offset = parseNumber<std::int64_t>(path_, array["offset"]);
+      if (offset < 0 || static_cast<std::size_t>(offset) >= appended_.size()) {
+        failToRead(path_, "the appended data end too early; it is truncated");
+      }
+      const ByteView from = appended_.subspan(static_cast<std::size_t>(offset));
+      raw = appendedRaw_ ? rawBlock(from) : base64Block(textOf(from));
+    } else if (format == "binary") {
+      raw = base64Block(trimmedText(array.text));
+    } else {
+      failToRead(path_, "has an array in the unknown format '" + format + "'");
+    }
+    std::vector<double> values(raw.size() / type->width);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      values[i] = type->load(raw.data() + i * type->width, bigEndian_);
+    }
+    return values;
+  }
+
+  [[nodiscard]] std::size_t headerWidth() const { return wideHeaders_ ? 8 : 4; }
+  std::uint64_t headerNumber(ByteCursor& cursor) const {
+    return wideHeaders_ ? cursor.take<std::uint64_t>() : cursor.take<std::uint32_t>();
+  }
+
+  /// A block of bytes with its header before it.
+  Bytes rawBlock(ByteView from) const {
+    ByteCursor cursor(path_, from, bigEndian_);
+    const std::uint64_t first = headerNumber(cursor);
+    if (!packed_) {
+      const ByteView bytes = cursor.view(first);
+      return {bytes.begin(), bytes.end()};
+    }
+    const std::vector<std::uint64_t> sizes = blockSizes(first, cursor);
+    return unpacked(sizes, cursor);
+  }
+
+  /// Base64 encodes the header of packed data for itself; that of plain data may go with them.
+  Bytes base64Block(std::string_view text) const {
+    const auto charactersFor = [](std::size_t bytes) { return (bytes + 2) / 3 * 4; };
+    text = text.substr(0, text.find_first_not_of(
+                              "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/="));
+    if (!packed_) {
+      const std::string_view start = text.substr(0, charactersFor(headerWidth()));
+      const Bytes header = decodeBase64(path_, start);
+      ByteCursor cursor(path_, header, bigEndian_);
+      const std::uint64_t size = headerNumber(cursor);
+      if (size > text.size()) failToRead(path_, "an array ends too early; it is truncated");
+      if (start.find('=') != std::string_view::npos) {
+        Bytes body = decodeBase64(path_, text.substr(start.size(), charactersFor(size)));
+        if (body.size() < size) failToRead(path_, "an array ends too early; it is truncated");
+        body.resize(size);
+        return body;
+      }
+      const Bytes all = decodeBase64(path_, text.substr(0, charactersFor(headerWidth() + size)));
+      return rawBlock(all);
+    }
+    const std::size_t three = charactersFor(3 * headerWidth());
+    Bytes header = decodeBase64(path_, text.substr(0, three));
+    ByteCursor first(path_, header, bigEndian_);
+    const std::uint64_t blocks = headerNumber(first);
+    if (blocks > text.size()) failToRead(path_, "an array ends too early; it is truncated");
+    const std::size_t whole = charactersFor((3 + blocks) * headerWidth());
+    header = decodeBase64(path_, text.substr(0, whole));
+    ByteCursor cursor(path_, header, bigEndian_);
+    const std::uint64_t count = headerNumber(cursor);
+    const std::vector<std::uint64_t> sizes = blockSizes(count, cursor);
+    const Bytes body = decodeBase64(path_, text.substr(std::min(whole, text.size())));
+    ByteCursor bodyCursor(path_, body, bigEndian_);
+    return unpacked(sizes, bodyCursor);
+  }
+
+  /// Unpacked and packed sizes of blocks: u0, p0, u1, p1, ...
+  std::vector<std::uint64_t> blockSizes(std::uint64_t blocks, ByteCursor& cursor) const {
+    const std::uint64_t size = headerNumber(cursor);
+    const std::uint64_t lastSize = headerNumber(cursor);
+    const std::size_t count = checkedCount(path_, static_cast<std::int64_t>(blocks), cursor.left(),
+                                           headerWidth(), "blocks");
+    std::vector<std::uint64_t> sizes;
+    for (std::size_t b = 0; b < count; ++b) {
+      sizes.push_back(b + 1 == count && lastSize > 0 ? lastSize : size);
+      sizes.push_back(headerNumber(cursor));
+    }
+    return sizes;
+  }
+
+  Bytes unpacked(const std::vector<std::uint64_t>& sizes, ByteCursor& cursor) const {
+    Bytes all;
+    for (std::size_t b = 0; b < sizes.size(); b += 2) {
+      const Bytes block = inflateExactly(path_, cursor.view(sizes[b + 1]), sizes[b]);
+      all.insert(all.end(), block.begin(), block.end());
+    }
+    return all;
+  }
+
+  const std::filesystem::path& path_;
+  XmlElement root_;
+  ByteView appended_;
+  bool appendedRaw_ = false;
+  bool bigEndian_ = false;
+  bool wideHeaders_ = false;
+  bool packed_ = false;
+};
+
+}  // namespace
+
+bool looksLikeVtkLegacy(ByteView bytes) {
+  return textOf(bytes).starts_with("# vtk DataFile") || textOf(bytes).starts_with("#vtk DataFile");
+}
+
+bool looksLikeVtkXml(ByteView bytes) {
+  constexpr std::size_t kFarEnough = 1024;
+  return textOf(bytes).substr(0, kFarEnough).find("<VTKFile") != std::string_view::npos;
+}
+
+PolyData readPolyData(const std::filesystem::path& path, ByteView bytes) {
+  PolyData data =
+      looksLikeVtkLegacy(bytes) ? LegacyReader(path, bytes).read() : XmlReader(path, bytes).read();
+  if (data.coordinates.size() % 3 != 0) failToRead(path, "has points of fewer than 3 coordinates");
+  const std::size_t points = data.coordinates.size() / 3;
+  for (const VertexMap& map : data.pointMaps) {
+    if (static_cast<std::size_t>(map.values.size()) != points) {
+      failToRead(path, "has a point array '" + map.name + "' of the wrong length");
+    }
+  }
+  return data;
+}
+
+}  // namespace explica::io

@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Bytes.h"
+
+#include "Explica/IO/VertexDataFile.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace explica::io {
+
+/// Cells of different lengths: cell c has connectivity[offsets[c] .. offsets[c + 1]).
+struct CellList {
+  std::vector<std::int64_t> connectivity;
+  std::vector<std::int64_t> offsets = {0};
+
+  [[nodiscard]] std::size_t count() const { return offsets.size() - 1; }
+};
+
+/// VTK polydata as far as surfaces and polygons need it.
+struct PolyData {
+  std::vector<double> coordinates;  ///< x, y, z of each point
+  CellList lines;
+  CellList polygons;
+  CellList strips;
+  std::vector<VertexMap> pointMaps;
+  bool saysRas = false;  ///< has the field SpaceRAS
+};
+
+[[nodiscard]] bool looksLikeVtkLegacy(ByteView bytes);
+[[nodiscard]] bool looksLikeVtkXml(ByteView bytes);
+/// Reads either kind.
+[[nodiscard]] PolyData readPolyData(const std::filesystem::path& path, ByteView bytes);
+
+}  // namespace explica::io
