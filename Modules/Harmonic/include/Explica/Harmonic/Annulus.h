@@ -1,0 +1,208 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Core/Describe.h"
+#include "Explica/Core/Monitor.h"
+#include "Explica/Core/Volume.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace explica::harmonic {
+
+/// What a voxel is to the tissue.
+enum class Site : std::uint8_t {
+  Tissue,    ///< solved for
+  Inner,     ///< enclosed region; u = 0 at its boundary
+  Outer,     ///< what lies around; u = 1 at its boundary
+  Insulated  ///< neither: no flux crosses into it (cut plane, edge of the field of view)
+};
+
+/// Codes that stand for a voxel outside the tissue wherever a tissue number is expected.
+inline constexpr std::int32_t kInner = -1, kOuter = -2, kInsulated = -3;
+
+/// How the boundary lies between voxel centres.
+enum class BoundaryModel {
+  Subvoxel,   ///< where the level sets cross zero: Shortley-Weller stencil
+  Staircase,  ///< at the first centre outside: the thesis's baseline
+  Embedding   ///< grid values found so that u meets 0 and 1 on the level sets (thesis 3.2)
+};
+
+/// Directions of a voxel's six links: -i, +i, -j, +j, -k, +k.
+[[nodiscard]] constexpr int axisOf(int direction) {
+  return direction >> 1;
+}
+[[nodiscard]] constexpr int signOf(int direction) {
+  return (direction & 1) ? 1 : -1;
+}
+[[nodiscard]] constexpr int opposite(int direction) {
+  return direction ^ 1;
+}
+
+/// Tissue between an inner and an outer boundary: the tissue's voxels, numbered, and for each of
+/// their six links either the neighbour's number or what ends it, and where.
+///
+/// Only a box around the tissue is stored, one voxel wider than the tissue on each side.  Tissue is
+/// numbered in four runs: even (i + j + k of the box) voxels with six tissue neighbours, other even
+/// ones, odd ones with six tissue neighbours, other odd ones; each run in storage order.
+/// A link may also end between two tissue voxels: there the outer boundary is a sheet without
+/// thickness (a buried sulcus).
+struct Annulus {
+  Grid grid;                             ///< of the whole volume
+  std::array<int, 3> first = {0, 0, 0};  ///< voxel of `grid` at the box's (0, 0, 0), may be -1
+  std::array<int, 3> size = {0, 0, 0};   ///< voxels of the box along i, j, k
+  std::vector<std::int32_t> numberAt;    ///< per box voxel: tissue number, or kInner...
+  std::vector<std::int32_t> place;       ///< per tissue number: its box voxel
+  std::vector<std::array<std::int32_t, 6>> links;  ///< per tissue number
+  std::vector<std::array<float, 6>> fractions;  ///< per irregular voxel: boundary's place on each
+                                                ///< link, (0, 1] of the spacing; 1 if not cut
+  std::array<std::int32_t, 4> runEnd = {0, 0, 0, 0};
+  BoundaryModel model = BoundaryModel::Subvoxel;
+  std::size_t droppedVoxels = 0;  ///< tissue that misses one side, left out
+  int droppedComponents = 0;
+  int components = 0;              ///< 6-connected pieces of tissue that are solved for
+  std::size_t directContacts = 0;  ///< voxel faces where inner and outer region touch
+  std::optional<std::array<int, 3>> firstContact;  ///< a voxel of `grid` where they do
+
+  [[nodiscard]] std::size_t count() const { return place.size(); }
+  [[nodiscard]] std::array<int, 3> boxSubscripts(std::int32_t number) const {
+    const std::int32_t p = place[number];
+    const std::int32_t row = p / size[0];
+    return {p % size[0], row % size[1], row / size[1]};
+  }
+  /// Continuous index in `grid` of a tissue voxel's centre.
+  [[nodiscard]] Vector index(std::int32_t number) const {
+    const auto s = boxSubscripts(number);
+    return Vector(s[0] + first[0], s[1] + first[1], s[2] + first[2]);
+  }
+  [[nodiscard]] Point world(std::int32_t number) const { return grid.toWorld(index(number)); }
+  /// Position of a tissue voxel in the storage order of the whole volume.
+  [[nodiscard]] std::size_t linear(std::int32_t number) const {
+    const auto s = boxSubscripts(number);
+    return grid.linear(s[0] + first[0], s[1] + first[1], s[2] + first[2]);
+  }
+  /// Row of `fractions`, or -1 for a voxel with six uncut links.
+  [[nodiscard]] std::int32_t irregular(std::int32_t number) const {
+    if (number < runEnd[0]) return -1;
+    if (number < runEnd[1]) return number - runEnd[0];
+    if (number < runEnd[2]) return -1;
+    return number - runEnd[2] + runEnd[1] - runEnd[0];
+  }
+  [[nodiscard]] std::array<std::int32_t, 3> strides() const {
+    return {1, size[0], size[0] * size[1]};
+  }
+};
+
+/// Which labels play which part.
+struct LabelRoles {
+  std::vector<Label> inner;      ///< enclosed region
+  std::vector<Label> tissue;     ///< voxels to solve for
+  std::vector<Label> outer;      ///< surroundings; empty: every label not named elsewhere
+  std::vector<Label> insulated;  ///< no flux crosses into these
+};
+
+template <class Visitor>
+void describe(LabelRoles& roles, Visitor&& visit) {
+  visit(Field{"inner", "", "labels of the enclosed region: white matter, blood pool"}, roles.inner);
+  visit(Field{"tissue", "", "labels of the tissue between the two boundaries"}, roles.tissue);
+  visit(Field{"outer", "", "labels outside the tissue (default: all other labels)"}, roles.outer);
+  visit(Field{"insulated", "", "labels that neither side owns: no flux crosses into them"},
+        roles.insulated);
+}
+
+/// How boundaries are found.
+struct AnnulusOptions {
+  BoundaryModel boundary = BoundaryModel::Subvoxel;
+  bool openEnds = false;  ///< insulate the tissue's first and last slice along k
+};
+
+template <class Visitor>
+void describe(AnnulusOptions& options, Visitor&& visit) {
+  visit(Field{"boundary", "", "where the boundary lies between voxel centres"}, options.boundary);
+  visit(Field{"open-ends", "", "insulate the planes beyond the tissue's first and last slice"},
+        options.openEnds);
+}
+
+/// On which side of a level set the enclosed region is.
+enum class LevelInside {
+  Automatic,  ///< the side that holds the smaller part of the volume's border
+  Above,      ///< values above the level, as in a probability map
+  Below       ///< values below the level, as in a signed distance
+};
+
+/// How a scalar volume describes a boundary.
+struct LevelOptions {
+  double level = 0;  ///< value on the boundary
+  LevelInside inside = LevelInside::Automatic;
+};
+
+/// Level set of a mask, in mm, negative inside, made free of the voxels' steps: Gaussian-blurred
+/// (standard deviation 0.8 voxel along each axis, at most 1.6 of the finest spacing), turned into
+/// the distance that a plane would have, and held to each voxel's own side.  Voxels of unknown side
+/// count for nothing.
+/// @param side  1 inside, 0 outside, 255 unknown
+[[nodiscard]] Volume<float> antialiasedLevel(const Volume<std::uint8_t>& side);
+
+/// Annulus of a label volume; boundaries from antialiasedLevel().
+/// @throws InvalidInput  a named label is absent (the message lists those present), no tissue, no
+///                       inner or outer region, roles that overlap, or no piece of tissue touches
+///                       both sides
+[[nodiscard]] Annulus annulusFromLabels(const Volume<Label>& labels, const LabelRoles& roles,
+                                        const AnnulusOptions& options = {},
+                                        const Monitor& monitor = {});
+
+/// Annulus of two level sets: the tissue is inside the outer and outside the inner one.
+/// @param insulated  1 where no flux may enter; empty grid: nowhere
+/// @throws InvalidInput  grids differ, a level that is nowhere crossed, or as annulusFromLabels
+[[nodiscard]] Annulus annulusFromLevels(const Volume<float>& inner, const Volume<float>& outer,
+                                        const LevelOptions& levels = {},
+                                        const AnnulusOptions& options = {},
+                                        const Volume<std::uint8_t>& insulated = {},
+                                        const Monitor& monitor = {});
+
+/// Annulus of sites and two level sets in mm, negative inside.  The sites decide; where a level's
+/// sign disagrees with a site, the boundary is put halfway along the link.
+[[nodiscard]] Annulus annulusFromSites(const Volume<Site>& sites, const Volume<float>& innerLevel,
+                                       const Volume<float>& outerLevel,
+                                       const AnnulusOptions& options = {},
+                                       const Monitor& monitor = {});
+
+/// A place where the outer boundary passes between two neighbouring tissue voxels.
+struct Cut {
+  std::int32_t number = 0;  ///< tissue voxel
+  int axis = 0;             ///< the other one is its neighbour along +axis
+  double fraction = 0.5;    ///< boundary's place from `number`, in (0, 1)
+};
+
+/// The same tissue with more boundary; the numbering changes.
+[[nodiscard]] Annulus withCuts(const Annulus& annulus, const std::vector<Cut>& cuts);
+
+/// A field of tissue voxels on the whole volume's grid.
+[[nodiscard]] Volume<float> spread(const Annulus& annulus, const std::vector<double>& values,
+                                   float elsewhere = 0, std::optional<float> innerValue = {},
+                                   std::optional<float> outerValue = {});
+
+}  // namespace explica::harmonic
+
+namespace explica {
+
+template <>
+struct EnumNames<harmonic::BoundaryModel> {
+  static constexpr std::array table{std::pair{harmonic::BoundaryModel::Subvoxel, "subvoxel"},
+                                    std::pair{harmonic::BoundaryModel::Staircase, "staircase"},
+                                    std::pair{harmonic::BoundaryModel::Embedding, "embedding"}};
+};
+
+template <>
+struct EnumNames<harmonic::LevelInside> {
+  static constexpr std::array table{std::pair{harmonic::LevelInside::Automatic, "auto"},
+                                    std::pair{harmonic::LevelInside::Above, "above"},
+                                    std::pair{harmonic::LevelInside::Below, "below"}};
+};
+
+}  // namespace explica

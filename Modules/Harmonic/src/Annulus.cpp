@@ -1,0 +1,669 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Explica/Harmonic/Annulus.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/Parallel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <set>
+#include <sstream>
+
+namespace explica::harmonic {
+
+namespace {
+
+using Code = std::uint8_t;
+constexpr Code codeOf(Site site) {
+  return static_cast<Code>(site);
+}
+constexpr Code kTissueCode = codeOf(Site::Tissue);
+
+// Closest that a boundary may come to a voxel's centre, in voxels: moves it by no more than that
+// and keeps 1 / fraction well inside single precision.
+constexpr double kSmallestFraction = 1e-4;
+// Room around the tissue within which level sets are made from labels: the blur's reach.
+constexpr int kLabelMargin = 4;
+
+/// Part of a volume's index space: voxel (0, 0, 0) of the box is voxel `first` of the grid.
+struct Box {
+  std::array<int, 3> first{}, size{};
+  [[nodiscard]] std::size_t count() const {
+    return static_cast<std::size_t>(size[0]) * size[1] * size[2];
+  }
+  [[nodiscard]] std::size_t linear(int i, int j, int k) const {
+    return i + static_cast<std::size_t>(size[0]) * (j + static_cast<std::size_t>(size[1]) * k);
+  }
+};
+
+/// Smallest box around voxels for which `wanted(row, i)`, widened.
+Box boxAround(const Grid& grid, int margin,
+              const std::function<void(std::size_t row, int& low, int& high)>& extentOfRow) {
+  struct Extent {
+    int low = 0, high = -1;
+  };
+  const std::size_t rows = static_cast<std::size_t>(grid.size[1]) * grid.size[2];
+  std::vector<Extent> extents(rows);
+  parallelFor(rows, 256,
+              [&](std::size_t row) { extentOfRow(row, extents[row].low, extents[row].high); });
+  std::array<int, 3> low = grid.size, high = {-1, -1, -1};
+  for (std::size_t row = 0; row < rows; ++row) {
+    if (extents[row].high < extents[row].low) continue;
+    const int j = static_cast<int>(row % grid.size[1]), k = static_cast<int>(row / grid.size[1]);
+    low = {std::min(low[0], extents[row].low), std::min(low[1], j), std::min(low[2], k)};
+    high = {std::max(high[0], extents[row].high), std::max(high[1], j), std::max(high[2], k)};
+  }
+  Box box;
+  for (int a = 0; a < 3; ++a) {
+    if (high[a] < low[a]) return Box{};
+    const int room = (a == 2 && grid.dimension() == 2) ? 1 : margin;
+    // Beyond the volume one layer is enough: it is insulated.
+    box.first[a] = std::max(low[a] - room, -1);
+    box.size[a] = std::min(high[a] + room, grid.size[a]) - box.first[a] + 1;
+  }
+  return box;
+}
+
+/// Position of the zero between a (inside the tissue) and b, from four values in a row, in (0, 1].
+/// The second difference is the smaller of both ends', so that a ridge beside the edge does no
+/// harm.
+double crossing(double before, double a, double b, double after) {
+  const double linear = a / (a - b);
+  const double atA = before - 2 * a + b, atB = a - 2 * b + after;
+  double second = 0;
+  if (atA * atB > 0) second = std::abs(atA) < std::abs(atB) ? atA : atB;
+  double s = linear;
+  for (int k = 0; k < 4; ++k) {
+    const double value = a + (b - a) * s - 0.5 * second * s * (1 - s);
+    const double slope = (b - a) - 0.5 * second * (1 - 2 * s);
+    if (slope * (b - a) <= 0) return linear;
+    s -= value / slope;
+    if (!(s > 0 && s < 1)) return linear;
+  }
+  return s;
+}
+
+/// Numbers the tissue and makes its links; fractions stay 1.
+void number(Annulus& annulus, const std::vector<Code>& sites,
+            const std::vector<std::uint8_t>& cutBits) {
+  const auto strides = annulus.strides();
+  const std::size_t total = sites.size();
+  const std::size_t sliceSize = static_cast<std::size_t>(annulus.size[0]) * annulus.size[1];
+  const std::size_t slices = annulus.size[2];
+  // The run of a tissue voxel: 0 even regular, 1 even irregular, 2 odd regular, 3 odd irregular.
+  const auto runOf = [&](std::size_t p, int i, int j, int k) {
+    bool regular = cutBits.empty() || cutBits[p] == 0;
+    for (int d = 0; regular && d < 6; ++d) {
+      const std::ptrdiff_t step = static_cast<std::ptrdiff_t>(signOf(d)) * strides[axisOf(d)];
+      regular = sites[p + step] == kTissueCode;
+    }
+    return 2 * ((i + j + k) & 1) + (regular ? 0 : 1);
+  };
+  annulus.numberAt.assign(total, 0);
+  std::vector<std::array<std::int32_t, 4>> counts(slices + 1, {0, 0, 0, 0});
+  parallelFor(slices, 1, [&](std::size_t k) {
+    std::size_t p = k * sliceSize;
+    for (int j = 0; j < annulus.size[1]; ++j) {
+      for (int i = 0; i < annulus.size[0]; ++i, ++p) {
+        switch (static_cast<Site>(sites[p])) {
+          case Site::Tissue: {
+            const int run = runOf(p, i, j, static_cast<int>(k));
+            annulus.numberAt[p] = run;
+            ++counts[k][run];
+            break;
+          }
+          case Site::Inner:
+            annulus.numberAt[p] = kInner;
+            break;
+          case Site::Outer:
+            annulus.numberAt[p] = kOuter;
+            break;
+          case Site::Insulated:
+            annulus.numberAt[p] = kInsulated;
+            break;
+        }
+      }
+    }
+  });
+  std::int32_t next = 0;
+  for (int run = 0; run < 4; ++run) {
+    for (std::size_t k = 0; k < slices; ++k) {
+      const std::int32_t here = counts[k][run];
+      counts[k][run] = next;
+      next += here;
+    }
+    annulus.runEnd[run] = next;
+  }
+  annulus.place.resize(next);
+  annulus.links.resize(next);
+  parallelFor(slices, 1, [&](std::size_t k) {
+    auto cursor = counts[k];
+    for (std::size_t p = k * sliceSize; p < (k + 1) * sliceSize; ++p) {
+      if (sites[p] != kTissueCode) continue;
+      const std::int32_t n = cursor[annulus.numberAt[p]]++;
+      annulus.numberAt[p] = n;
+      annulus.place[n] = static_cast<std::int32_t>(p);
+    }
+  });
+  parallelFor(annulus.count(), 1 << 14, [&](std::size_t n) {
+    const std::int32_t p = annulus.place[n];
+    for (int d = 0; d < 6; ++d) {
+      const bool cut = !cutBits.empty() && (cutBits[p] >> d & 1);
+      annulus.links[n][d] = cut ? kOuter : annulus.numberAt[p + signOf(d) * strides[axisOf(d)]];
+    }
+  });
+  const std::int32_t irregulars =
+      annulus.runEnd[1] - annulus.runEnd[0] + annulus.runEnd[3] - annulus.runEnd[2];
+  annulus.fractions.assign(irregulars, {1, 1, 1, 1, 1, 1});
+}
+
+/// Removes pieces of tissue that miss one side (they become insulated); counts what remains.
+void keepSpanningPieces(Annulus& annulus, std::vector<Code>& sites, const Monitor& monitor) {
+  const std::array<std::int32_t, 3> strides = annulus.strides();
+  std::vector<std::uint8_t> seen(sites.size(), 0);
+  std::vector<std::int32_t> piece;
+  bool anyInner = false, anyOuter = false;
+  for (std::size_t start = 0; start < sites.size(); ++start) {
+    if (sites[start] != kTissueCode || seen[start]) continue;
+    piece.assign(1, static_cast<std::int32_t>(start));
+    seen[start] = 1;
+    bool inner = false, outer = false;
+    for (std::size_t head = 0; head < piece.size(); ++head) {
+      for (int d = 0; d < 6; ++d) {
+        const std::int32_t q = piece[head] + signOf(d) * strides[axisOf(d)];
+        switch (static_cast<Site>(sites[q])) {
+          case Site::Tissue:
+            if (!seen[q]) {
+              seen[q] = 1;
+              piece.push_back(q);
+            }
+            break;
+          case Site::Inner:
+            inner = true;
+            break;
+          case Site::Outer:
+            outer = true;
+            break;
+          case Site::Insulated:
+            break;
+        }
+      }
+    }
+    anyInner |= inner;
+    anyOuter |= outer;
+    if (inner && outer) {
+      ++annulus.components;
+      continue;
+    }
+    for (const std::int32_t p : piece) sites[p] = codeOf(Site::Insulated);
+    annulus.droppedVoxels += piece.size();
+    ++annulus.droppedComponents;
+  }
+  if (annulus.components == 0) {
+    if (annulus.droppedVoxels == 0) throw InvalidInput("no tissue voxel was found");
+    if (anyInner && anyOuter) {
+      throw InvalidInput(
+          "no connected piece of tissue touches both the inner and the outer region");
+    }
+    throw InvalidInput(std::string("the tissue touches only the ") +
+                       (anyInner   ? "inner"
+                        : anyOuter ? "outer"
+                                   : "insulated") +
+                       " region; it must lie between an inner and an outer one");
+  }
+  if (annulus.droppedComponents > 0) {
+    std::ostringstream text;
+    text << annulus.droppedComponents << " piece(s) of tissue (" << annulus.droppedVoxels
+         << " voxels) touch only one side and are left out";
+    monitor.warn(text.str());
+  }
+}
+
+void countContacts(Annulus& annulus, const std::vector<Code>& sites, const Monitor& monitor) {
+  const auto strides = annulus.strides();
+  const std::size_t sliceSize = strides[2];
+  struct Found {
+    std::size_t count = 0;
+    std::size_t at = 0;
+    Found& operator+=(const Found& other) {
+      if (count == 0) at = other.at;
+      count += other.count;
+      return *this;
+    }
+  };
+  // Per slice, so that the warning can say where the ring is open.
+  std::vector<Found> bySlice(annulus.size[2]);
+  parallelFor(annulus.size[2] - 1, 1, [&](std::size_t k) {
+    for (int j = 0; j + 1 < annulus.size[1]; ++j) {
+      for (int i = 0; i + 1 < annulus.size[0]; ++i) {
+        const std::size_t p = i + static_cast<std::size_t>(strides[1]) * j + sliceSize * k;
+        for (int a = 0; a < 3; ++a) {
+          const Code s = sites[p], t = sites[p + strides[a]];
+          if ((s == codeOf(Site::Inner) && t == codeOf(Site::Outer)) ||
+              (s == codeOf(Site::Outer) && t == codeOf(Site::Inner))) {
+            if (bySlice[k].count++ == 0) bySlice[k].at = p;
+          }
+        }
+      }
+    }
+  });
+  Found all;
+  std::vector<int> slices;
+  for (std::size_t k = 0; k < bySlice.size(); ++k) {
+    if (bySlice[k].count == 0) continue;
+    all += bySlice[k];
+    slices.push_back(static_cast<int>(k) + annulus.first[2]);
+  }
+  annulus.directContacts = all.count;
+  if (all.count == 0) return;
+  const std::int32_t row = static_cast<std::int32_t>(all.at) / annulus.size[0];
+  annulus.firstContact = {{static_cast<int>(all.at % annulus.size[0]) + annulus.first[0],
+                           row % annulus.size[1] + annulus.first[1],
+                           row / annulus.size[1] + annulus.first[2]}};
+  std::ostringstream text;
+  text << "the inner region touches the outer one without tissue between them at " << all.count
+       << " voxel faces, first at voxel (" << (*annulus.firstContact)[0] << ", "
+       << (*annulus.firstContact)[1] << ", " << (*annulus.firstContact)[2] << ")";
+  if (slices.size() <= 12) {
+    text << ": the ring is open in slice";
+    if (slices.size() > 1) text << "s";
+    for (std::size_t k = 0; k < slices.size(); ++k) text << (k ? ", " : " ") << slices[k];
+  } else {
+    text << ", in slices " << slices.front() << " to " << slices.back();
+  }
+  monitor.warn(text.str());
+}
+
+/// Sites of the box and the levels on it, to the annulus.
+Annulus assemble(const Grid& grid, const Box& box, std::vector<Code> sites,
+                 const std::vector<float>& innerLevel, const std::vector<float>& outerLevel,
+                 const AnnulusOptions& options, const Monitor& monitor) {
+  Annulus annulus;
+  annulus.grid = grid;
+  annulus.first = box.first;
+  annulus.size = box.size;
+  annulus.model = options.boundary;
+  if (options.openEnds && grid.dimension() == 3) {
+    int low = box.size[2], high = -1;
+    const std::size_t sliceSize = static_cast<std::size_t>(box.size[0]) * box.size[1];
+    for (int k = 0; k < box.size[2]; ++k) {
+      const auto begin = sites.begin() + static_cast<std::ptrdiff_t>(k * sliceSize);
+      if (std::find(begin, begin + static_cast<std::ptrdiff_t>(sliceSize), kTissueCode) !=
+          begin + static_cast<std::ptrdiff_t>(sliceSize)) {
+        low = std::min(low, k);
+        high = std::max(high, k);
+      }
+    }
+    for (int k = 0; k < box.size[2]; ++k) {
+      if (k >= low && k <= high) continue;
+      std::fill_n(sites.begin() + static_cast<std::ptrdiff_t>(k * sliceSize), sliceSize,
+                  codeOf(Site::Insulated));
+    }
+  }
+  countContacts(annulus, sites, monitor);
+  keepSpanningPieces(annulus, sites, monitor);
+  number(annulus, sites, {});
+  if (options.boundary == BoundaryModel::Staircase) return annulus;
+
+  const auto strides = annulus.strides();
+  parallelFor(annulus.count(), 1 << 12, [&](std::size_t index) {
+    const auto n = static_cast<std::int32_t>(index);
+    const std::int32_t row = annulus.irregular(n);
+    if (row < 0) return;
+    const std::int32_t p = annulus.place[n];
+    const auto s = annulus.boxSubscripts(n);
+    for (int d = 0; d < 6; ++d) {
+      const std::int32_t link = annulus.links[n][d];
+      if (link != kInner && link != kOuter) continue;
+      const std::vector<float>& level = link == kInner ? innerLevel : outerLevel;
+      const float outward = link == kInner ? 1.0F : -1.0F;  // makes the tissue's side positive
+      const int a = axisOf(d), step = signOf(d) * strides[a];
+      const double here = outward * level[p], there = outward * level[p + step];
+      double fraction = 0.5;
+      if (here > 0 && there <= 0) {
+        const int twoOn = s[a] + 2 * signOf(d), oneBack = s[a] - signOf(d);
+        const double linearBack = 2 * here - there, linearOn = 2 * there - here;
+        const bool on = twoOn >= 0 && twoOn < box.size[a];
+        const bool back = oneBack >= 0 && oneBack < box.size[a];
+        fraction = crossing(back ? outward * level[p - step] : linearBack, here, there,
+                            on ? outward * level[p + 2 * step] : linearOn);
+      }
+      annulus.fractions[row][d] = static_cast<float>(std::clamp(fraction, kSmallestFraction, 1.0));
+    }
+  });
+  return annulus;
+}
+
+std::string listed(const std::vector<Label>& labels) {
+  std::ostringstream text;
+  for (std::size_t k = 0; k < labels.size(); ++k) text << (k ? ", " : "") << labels[k];
+  return text.str();
+}
+
+void checkGrid(const Grid& grid) {
+  for (int a = 0; a < 3; ++a) {
+    if (!(grid.spacing[a] > 0) || !std::isfinite(grid.spacing[a])) {
+      throw InvalidInput("the voxel size along axis " + std::to_string(a) + " is " +
+                         std::to_string(grid.spacing[a]) + " mm; it must be positive");
+    }
+    if (grid.size[a] < 1) throw InvalidInput("the volume is empty");
+  }
+}
+
+}  // namespace
+
+Annulus annulusFromLabels(const Volume<Label>& labels, const LabelRoles& roles,
+                          const AnnulusOptions& options, const Monitor& monitor) {
+  checkGrid(labels.grid);
+  if (roles.tissue.empty()) throw InvalidInput("no tissue label was given (--tissue)");
+  if (roles.inner.empty()) throw InvalidInput("no inner label was given (--inner)");
+
+  // Role of each label value; labels are few, so a sorted list of pairs serves.
+  std::vector<std::pair<Label, Code>> table;
+  const auto assign = [&](const std::vector<Label>& values, Site site) {
+    for (const Label value : values) {
+      for (const auto& [other, code] : table) {
+        if (other == value && code != codeOf(site)) {
+          throw InvalidInput("label " + std::to_string(value) +
+                             " is given two roles; each label has one");
+        }
+      }
+      table.emplace_back(value, codeOf(site));
+    }
+  };
+  assign(roles.inner, Site::Inner);
+  assign(roles.tissue, Site::Tissue);
+  assign(roles.insulated, Site::Insulated);
+  assign(roles.outer, Site::Outer);
+  // If the outer labels are named, the rest belongs to neither side.
+  const Code rest = codeOf(roles.outer.empty() ? Site::Outer : Site::Insulated);
+  const auto roleOf = [&](Label value) {
+    for (const auto& [other, code] : table) {
+      if (other == value) return code;
+    }
+    return rest;
+  };
+
+  // Which labels exist: collect per slice.
+  const Grid& grid = labels.grid;
+  const std::size_t sliceSize = static_cast<std::size_t>(grid.size[0]) * grid.size[1];
+  std::vector<std::set<Label>> presentBySlice(grid.size[2]);
+  parallelFor(grid.size[2], 1, [&](std::size_t k) {
+    Label last = labels[k * sliceSize];
+    presentBySlice[k].insert(last);
+    for (std::size_t v = k * sliceSize; v < (k + 1) * sliceSize; ++v) {
+      if (labels[v] == last) continue;
+      last = labels[v];
+      presentBySlice[k].insert(last);
+    }
+  });
+  std::set<Label> present;
+  for (const auto& slice : presentBySlice) present.insert(slice.begin(), slice.end());
+  std::vector<Label> missing;
+  for (const auto& [value, code] : table) {
+    if (!present.contains(value)) missing.push_back(value);
+  }
+  if (!missing.empty()) {
+    std::vector<Label> found(present.begin(), present.end());
+    const bool many = found.size() > 40;
+    if (many) found.resize(40);
+    throw InvalidInput("label " + listed(missing) + " is absent; the file has " + listed(found) +
+                       (many ? ", ..." : ""));
+  }
+
+  const Box box = boxAround(grid, kLabelMargin, [&](std::size_t row, int& low, int& high) {
+    const Label* line = labels.data.data() + row * grid.size[0];
+    Label last = line[0];
+    bool tissue = roleOf(last) == kTissueCode;
+    low = grid.size[0];
+    for (int i = 0; i < grid.size[0]; ++i) {
+      if (line[i] != last) {
+        last = line[i];
+        tissue = roleOf(last) == kTissueCode;
+      }
+      if (!tissue) continue;
+      low = std::min(low, i);
+      high = i;
+    }
+  });
+
+  std::vector<Code> sites(box.count(), codeOf(Site::Insulated));
+  parallelFor(box.size[2], 1, [&](std::size_t kk) {
+    const int k = static_cast<int>(kk);
+    for (int j = 0; j < box.size[1]; ++j) {
+      const int gj = j + box.first[1], gk = k + box.first[2];
+      if (gj < 0 || gk < 0 || gj >= grid.size[1] || gk >= grid.size[2]) continue;
+      Label last = 0;
+      Code code = roleOf(last);
+      for (int i = 0; i < box.size[0]; ++i) {
+        const int gi = i + box.first[0];
+        if (gi < 0 || gi >= grid.size[0]) continue;
+        const Label value = labels(gi, gj, gk);
+        if (value != last) {
+          last = value;
+          code = roleOf(value);
+        }
+        sites[box.linear(i, j, k)] = code;
+      }
+    }
+  });
+
+  std::vector<float> innerLevel, outerLevel;
+  if (options.boundary != BoundaryModel::Staircase) {
+    Volume<std::uint8_t> side;
+    side.grid = grid;
+    side.grid.size = box.size;
+    // The box of a 2D image has insulated layers above and below: blur in the plane only.
+    if (grid.dimension() == 2) side.grid.size[2] = 1;
+    const std::size_t offset = grid.dimension() == 2 ? box.linear(0, 0, 1) : 0;
+    const auto levelOf = [&](bool outer) {
+      side.data.resize(side.grid.voxelCount());
+      parallelFor(side.size(), 1 << 16, [&](std::size_t v) {
+        const auto site = static_cast<Site>(sites[v + offset]);
+        if (site == Site::Insulated) {
+          side[v] = 255;
+        } else {
+          side[v] = site == Site::Inner || (outer && site == Site::Tissue) ? 1 : 0;
+        }
+      });
+      const Volume<float> level = antialiasedLevel(side);
+      if (offset == 0) return level.data;
+      std::vector<float> all(box.count(), 0);
+      std::copy(level.data.begin(), level.data.end(),
+                all.begin() + static_cast<std::ptrdiff_t>(offset));
+      return all;
+    };
+    innerLevel = levelOf(false);
+    outerLevel = levelOf(true);
+  }
+  return assemble(grid, box, std::move(sites), innerLevel, outerLevel, options, monitor);
+}
+
+Annulus annulusFromSites(const Volume<Site>& sites, const Volume<float>& innerLevel,
+                         const Volume<float>& outerLevel, const AnnulusOptions& options,
+                         const Monitor& monitor) {
+  checkGrid(sites.grid);
+  if (!sameGrid(sites.grid, innerLevel.grid) || !sameGrid(sites.grid, outerLevel.grid)) {
+    throw InvalidInput("the sites and the two level sets lie on different grids");
+  }
+  const Grid& grid = sites.grid;
+  const Box box = boxAround(grid, 2, [&](std::size_t row, int& low, int& high) {
+    const Site* line = sites.data.data() + row * grid.size[0];
+    low = grid.size[0];
+    for (int i = 0; i < grid.size[0]; ++i) {
+      if (line[i] != Site::Tissue) continue;
+      low = std::min(low, i);
+      high = i;
+    }
+  });
+  if (box.count() == 0) throw InvalidInput("no tissue voxel was found");
+  std::vector<Code> codes(box.count(), codeOf(Site::Insulated));
+  std::vector<float> inner(box.count(), 0), outer(box.count(), 0);
+  parallelFor(box.size[2], 1, [&](std::size_t kk) {
+    const int k = static_cast<int>(kk);
+    for (int j = 0; j < box.size[1]; ++j) {
+      for (int i = 0; i < box.size[0]; ++i) {
+        const int gi = i + box.first[0], gj = j + box.first[1], gk = k + box.first[2];
+        const std::size_t p = box.linear(i, j, k);
+        if (grid.contains(gi, gj, gk)) {
+          const std::size_t v = grid.linear(gi, gj, gk);
+          codes[p] = codeOf(sites[v]);
+          inner[p] = innerLevel[v];
+          outer[p] = outerLevel[v];
+        } else {
+          // Nearest voxel of the volume, so that the crossing's curvature sees no jump.
+          const std::size_t v =
+              grid.linear(std::clamp(gi, 0, grid.size[0] - 1), std::clamp(gj, 0, grid.size[1] - 1),
+                          std::clamp(gk, 0, grid.size[2] - 1));
+          inner[p] = innerLevel[v];
+          outer[p] = outerLevel[v];
+        }
+      }
+    }
+  });
+  return assemble(grid, box, std::move(codes), inner, outer, options, monitor);
+}
+
+Annulus annulusFromLevels(const Volume<float>& inner, const Volume<float>& outer,
+                          const LevelOptions& levels, const AnnulusOptions& options,
+                          const Volume<std::uint8_t>& insulated, const Monitor& monitor) {
+  checkGrid(inner.grid);
+  if (!sameGrid(inner.grid, outer.grid)) {
+    throw InvalidInput("the inner and the outer level set lie on different grids");
+  }
+  const Grid& grid = inner.grid;
+  const bool haveInsulated = insulated.size() > 0;
+  if (haveInsulated && !sameGrid(grid, insulated.grid)) {
+    throw InvalidInput("the insulated region lies on another grid than the level sets");
+  }
+  // Sign that makes a level set negative inside.
+  const auto signOfInside = [&](const Volume<float>& volume, const char* name) {
+    std::size_t above = 0, borderAbove = 0, border = 0;
+    for (std::size_t v = 0; v < volume.size(); ++v) {
+      if (!std::isfinite(volume[v])) {
+        throw InvalidInput(std::string("the ") + name +
+                           " level set holds a value that is not finite");
+      }
+      const bool isAbove = volume[v] > levels.level;
+      above += isAbove;
+      const auto s = grid.subscripts(v);
+      const bool onBorder =
+          s[0] == 0 || s[1] == 0 || s[0] + 1 == grid.size[0] || s[1] + 1 == grid.size[1];
+      border += onBorder;
+      borderAbove += onBorder && isAbove;
+    }
+    if (above == 0 || above == volume.size()) {
+      throw InvalidInput(std::string("the ") + name + " level set is nowhere equal to " +
+                         std::to_string(levels.level) + "; all its values are on one side");
+    }
+    if (levels.inside == LevelInside::Above) return -1.0F;
+    if (levels.inside == LevelInside::Below) return 1.0F;
+    return 2 * borderAbove >= border ? 1.0F : -1.0F;
+  };
+  const float innerSign = signOfInside(inner, "inner");
+  const float outerSign = signOfInside(outer, "outer");
+  Volume<float> innerLevel(grid), outerLevel(grid);
+  Volume<Site> sites(grid, Site::Outer);
+  parallelFor(grid.voxelCount(), 1 << 16, [&](std::size_t v) {
+    innerLevel[v] = innerSign * (inner[v] - static_cast<float>(levels.level));
+    outerLevel[v] = outerSign * (outer[v] - static_cast<float>(levels.level));
+    if (haveInsulated && insulated[v]) {
+      sites[v] = Site::Insulated;
+    } else if (innerLevel[v] <= 0) {
+      sites[v] = Site::Inner;
+    } else if (outerLevel[v] < 0) {
+      sites[v] = Site::Tissue;
+    }
+  });
+  return annulusFromSites(sites, innerLevel, outerLevel, options, monitor);
+}
+
+Annulus withCuts(const Annulus& annulus, const std::vector<Cut>& cuts) {
+  const auto strides = annulus.strides();
+  std::vector<Code> sites(annulus.numberAt.size(), kTissueCode);
+  parallelFor(sites.size(), 1 << 16, [&](std::size_t p) {
+    switch (annulus.numberAt[p]) {
+      case kInner:
+        sites[p] = codeOf(Site::Inner);
+        break;
+      case kOuter:
+        sites[p] = codeOf(Site::Outer);
+        break;
+      case kInsulated:
+        sites[p] = codeOf(Site::Insulated);
+        break;
+      default:
+        break;
+    }
+  });
+  std::vector<std::uint8_t> cutBits(sites.size(), 0);
+  // Cuts that the annulus has already.
+  for (std::size_t n = 0; n < annulus.count(); ++n) {
+    const std::int32_t p = annulus.place[n];
+    for (int d = 0; d < 6; ++d) {
+      const std::int32_t q = p + signOf(d) * strides[axisOf(d)];
+      if (annulus.links[n][d] == kOuter && sites[q] == kTissueCode) cutBits[p] |= 1U << d;
+    }
+  }
+  for (const Cut& cut : cuts) {
+    const std::int32_t p = annulus.place[cut.number];
+    const std::int32_t q = p + strides[cut.axis];
+    if (sites[q] != kTissueCode) continue;
+    cutBits[p] |= 1U << (2 * cut.axis + 1);
+    cutBits[q] |= 1U << (2 * cut.axis);
+  }
+  Annulus result = annulus;
+  number(result, sites, cutBits);
+  for (std::size_t n = 0; n < annulus.count(); ++n) {
+    const std::int32_t old = annulus.irregular(static_cast<std::int32_t>(n));
+    if (old < 0) continue;
+    result.fractions[result.irregular(result.numberAt[annulus.place[n]])] = annulus.fractions[old];
+  }
+  for (const Cut& cut : cuts) {
+    const std::int32_t p = annulus.place[cut.number];
+    const std::int32_t q = p + strides[cut.axis];
+    if (sites[q] != kTissueCode) continue;
+    const double fraction =
+        annulus.model == BoundaryModel::Staircase
+            ? 1.0
+            : std::clamp(cut.fraction, kSmallestFraction, 1 - kSmallestFraction);
+    const double rest = annulus.model == BoundaryModel::Staircase ? 1.0 : 1 - fraction;
+    result.fractions[result.irregular(result.numberAt[p])][2 * cut.axis + 1] =
+        static_cast<float>(fraction);
+    result.fractions[result.irregular(result.numberAt[q])][2 * cut.axis] = static_cast<float>(rest);
+  }
+  return result;
+}
+
+Volume<float> spread(const Annulus& annulus, const std::vector<double>& values, float elsewhere,
+                     std::optional<float> innerValue, std::optional<float> outerValue) {
+  Volume<float> volume(annulus.grid, elsewhere);
+  if (outerValue) std::fill(volume.data.begin(), volume.data.end(), *outerValue);
+  const Grid& grid = annulus.grid;
+  parallelFor(annulus.size[2], 1, [&](std::size_t kk) {
+    const int k = static_cast<int>(kk) + annulus.first[2];
+    if (k < 0 || k >= grid.size[2]) return;
+    std::size_t p = kk * annulus.strides()[2];
+    for (int j = annulus.first[1]; j < annulus.first[1] + annulus.size[1]; ++j) {
+      for (int i = annulus.first[0]; i < annulus.first[0] + annulus.size[0]; ++i, ++p) {
+        if (!grid.contains(i, j, k)) continue;
+        float& target = volume(i, j, k);
+        const std::int32_t n = annulus.numberAt[p];
+        if (n >= 0) {
+          target = static_cast<float>(values[n]);
+        } else if (n == kInner) {
+          target = innerValue.value_or(elsewhere);
+        } else if (n == kOuter) {
+          target = outerValue.value_or(elsewhere);
+        } else {
+          target = elsewhere;
+        }
+      }
+    }
+  });
+  return volume;
+}
+
+}  // namespace explica::harmonic

@@ -1,0 +1,201 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Explica/Harmonic/Interpolant.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/Parallel.h"
+#include "Explica/Harmonic/Phantoms.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace explica;
+using namespace explica::harmonic;
+
+namespace {
+
+struct Errors {
+  double u = 0, boundaryGradient = 0;
+  int iterations = 0;
+};
+
+Annulus annulusOf(const ExactAnnulus& exact, const Grid& grid, const AnnulusOptions& options = {}) {
+  return annulusFromLevels(sampled(grid, exact.innerLevel), sampled(grid, exact.outerLevel),
+                           {0, LevelInside::Below}, options);
+}
+
+Errors errorsOf(const ExactAnnulus& exact, const Grid& grid) {
+  const Annulus annulus = annulusOf(exact, grid);
+  const Interpolant solved = solveInterpolant(annulus);
+  EXPECT_EQ(solved.termination, Termination::Converged);
+  Errors errors;
+  errors.iterations = solved.iterations;
+  const double step = 1e-4;
+  for (std::int32_t n = 0; n < static_cast<std::int32_t>(annulus.count()); ++n) {
+    const Point x = annulus.world(n);
+    errors.u = std::max(errors.u, std::abs(solved.u[n] - exact.answer(x).u));
+    if (annulus.irregular(n) < 0 && exact.dimension == 3) continue;
+    Vector gradient = Vector::Zero();
+    for (int a = 0; a < exact.dimension; ++a) {
+      const Vector e = step * Vector::Unit(a);
+      gradient[a] = (exact.answer(x + e).u - exact.answer(x - e).u) / (2 * step);
+    }
+    errors.boundaryGradient =
+        std::max(errors.boundaryGradient, (gradient - solved.gradient[n].cast<double>()).norm());
+  }
+  return errors;
+}
+
+/// Least-squares slope of log(error) over log(spacing).
+double order(const std::vector<double>& spacing, const std::vector<double>& error) {
+  double sx = 0, sy = 0, sxx = 0, sxy = 0;
+  const auto n = static_cast<double>(spacing.size());
+  for (std::size_t k = 0; k < spacing.size(); ++k) {
+    const double x = std::log(spacing[k]), y = std::log(error[k]);
+    sx += x;
+    sy += y;
+    sxx += x * x;
+    sxy += x * y;
+  }
+  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
+}
+
+void expectSecondOrder(const ExactAnnulus& exact, double extent, const std::vector<int>& sizes,
+                       const Vector& ratio = Vector::Ones()) {
+  std::vector<double> spacings, u, gradient;
+  for (const int size : sizes) {
+    const double h = extent / size;
+    std::array<int, 3> n{};
+    for (int a = 0; a < 3; ++a) n[a] = static_cast<int>(std::ceil(extent / (h * ratio[a])));
+    if (exact.dimension == 2) n[2] = 1;
+    const Errors errors = errorsOf(exact, centredGrid(n, h * ratio));
+    spacings.push_back(h);
+    u.push_back(errors.u);
+    gradient.push_back(errors.boundaryGradient);
+    std::printf("h %.4f  u %.3e  gradient at boundary %.3e  iterations %d\n", h, errors.u,
+                errors.boundaryGradient, errors.iterations);
+  }
+  EXPECT_GE(order(spacings, u), 1.8);
+  EXPECT_LE(order(spacings, u), 3.2);
+  EXPECT_GE(order(spacings, gradient), 1.0);
+}
+
+}  // namespace
+
+TEST(HarmonicInterpolant, IsLinearAcrossASlab) {
+  Grid grid = centredGrid({8, 6, 40}, {0.9, 1.3, 0.4});
+  Volume<Site> sites(grid, Site::Outer);
+  const auto inner = sampled(grid, [](const Point& x) { return x[2] + 4.03; });
+  const auto outer = sampled(grid, [](const Point& x) { return x[2] - 5.11; });
+  for (std::size_t v = 0; v < sites.size(); ++v) {
+    sites[v] = inner[v] <= 0 ? Site::Inner : outer[v] < 0 ? Site::Tissue : Site::Outer;
+  }
+  const Annulus annulus = annulusFromSites(sites, inner, outer);
+  const Interpolant solved = solveInterpolant(annulus);
+  for (std::int32_t n = 0; n < static_cast<std::int32_t>(annulus.count()); ++n) {
+    EXPECT_NEAR(solved.u[n], (annulus.world(n)[2] + 4.03) / 9.14, 1e-6);
+    EXPECT_NEAR(solved.gradient[n][2], 1 / 9.14, 1e-5);
+  }
+}
+
+TEST(HarmonicInterpolant, IsOfSecondOrderOnACylinder) {
+  expectSecondOrder(exactShell(4.1, 9.3, 2), 21, {32, 64, 128, 256});
+}
+
+TEST(HarmonicInterpolant, IsOfSecondOrderOnAShell) {
+  expectSecondOrder(exactShell(4.1, 9.3), 21, {24, 40, 64});
+}
+
+TEST(HarmonicInterpolant, IsOfSecondOrderOnAShellWithThickSlices) {
+  expectSecondOrder(exactShell(4.1, 9.3), 21, {32, 48, 72}, {1, 1, 2.3});
+}
+
+TEST(HarmonicInterpolant, IsOfSecondOrderOnEccentricCircles) {
+  expectSecondOrder(exactEccentric(4, 10, 3), 22, {40, 80, 160, 320});
+}
+
+TEST(HarmonicInterpolant, IsOfSecondOrderOnConfocalSpheroids) {
+  expectSecondOrder(exactSpheroids(6, 0.9, 1.4), 22, {64, 96, 144});
+}
+
+TEST(HarmonicInterpolant, ObeysTheMaximumPrincipleExactly) {
+  const auto exact = exactEccentric(4, 10, 3);
+  const Annulus annulus = annulusOf(exact, centredGrid({150, 150, 1}, {0.15, 0.15, 1}));
+  InterpolantOptions loose;
+  loose.relativeTolerance = 1e-2;
+  for (const auto& options : {loose, InterpolantOptions{}}) {
+    for (const double u : solveInterpolant(annulus, options).u) {
+      EXPECT_GE(u, 0);
+      EXPECT_LE(u, 1);
+    }
+  }
+}
+
+TEST(HarmonicInterpolant, DoesNotDependOnTheNumberOfThreads) {
+  const Annulus annulus = annulusOf(exactShell(7, 12), centredGrid({48, 48, 48}, {0.6, 0.6, 0.6}));
+  setThreadCount(1);
+  const auto one = solveInterpolant(annulus).u;
+  setThreadCount(4);
+  const auto four = solveInterpolant(annulus).u;
+  setThreadCount(0);
+  EXPECT_EQ(one, four);
+}
+
+TEST(HarmonicInterpolant, KeepsFluxOutOfInsulatedVoxels) {
+  // A shell cut by a plane through its centre has the whole shell's interpolant.
+  const auto exact = exactShell(7, 12);
+  const Grid grid = centredGrid({56, 56, 56}, Vector::Constant(0.5));
+  const auto inner = sampled(grid, exact.innerLevel), outer = sampled(grid, exact.outerLevel);
+  Volume<std::uint8_t> insulated(grid, 0);
+  for (int k = 28; k < 56; ++k) {
+    for (int j = 0; j < 56; ++j) {
+      for (int i = 0; i < 56; ++i) insulated(i, j, k) = 1;
+    }
+  }
+  const Annulus annulus = annulusFromLevels(inner, outer, {0, LevelInside::Below}, {}, insulated);
+  const Interpolant solved = solveInterpolant(annulus);
+  for (std::int32_t n = 0; n < static_cast<std::int32_t>(annulus.count()); ++n) {
+    EXPECT_NEAR(solved.u[n], exact.answer(annulus.world(n)).u, 0.004);
+  }
+}
+
+TEST(Annulus, SaysWhichLabelsTheFileHas) {
+  Volume<Label> labels(centredGrid({8, 8, 8}, Vector::Ones()), 0);
+  labels(3, 3, 3) = 7;
+  try {
+    (void)annulusFromLabels(labels, {{1}, {7}, {}, {}});
+    FAIL();
+  } catch (const InvalidInput& error) {
+    EXPECT_NE(std::string(error.what()).find("label 1 is absent; the file has 0, 7"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(Annulus, RefusesTissueThatTouchesOneSideOnly) {
+  Volume<Label> labels(centredGrid({12, 12, 12}, Vector::Ones()), 0);
+  labels(2, 2, 2) = 1;
+  for (int k = 6; k < 9; ++k) labels(6, 6, k) = 2;
+  EXPECT_THROW((void)annulusFromLabels(labels, {{1}, {2}, {}, {}}), InvalidInput);
+}
+
+TEST(Annulus, RefusesAVoxelSizeOfZero) {
+  Volume<Label> labels(centredGrid({4, 4, 4}, Vector::Ones()), 0);
+  labels.grid.spacing[1] = 0;
+  EXPECT_THROW((void)annulusFromLabels(labels, {{1}, {2}, {}, {}}), InvalidInput);
+}
+
+TEST(Annulus, ReportsAHoleThatJoinsInsideAndOutside) {
+  auto labels = makePhantom(PhantomKind::Shell, {64, 1}).labels;
+  for (int i = 32; i < 64; ++i) {
+    if (labels(i, 32, 32) == 2) labels(i, 32, 32) = 0;
+  }
+  std::vector<std::string> warnings;
+  Monitor monitor;
+  monitor.onWarning = [&](const std::string& text) { warnings.push_back(text); };
+  const Annulus annulus = annulusFromLabels(labels, {{1}, {2}, {}, {}}, {}, monitor);
+  EXPECT_EQ(annulus.directContacts, 1U);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].find("slice 32"), std::string::npos) << warnings[0];
+}
