@@ -21,7 +21,7 @@ void declare(Declaration& d, Settings&) {
           "command line, so they cannot disagree with it.")
       .example("explica descriptors --out descriptors",
                "Everything that lets other tools call Explica")
-      .output("boutiques/explica-*.json", FileKind::Json, "Boutiques descriptors, schema 0.5")
+      .output("boutiques/explica-*.json", FileKind::JsonFile, "Boutiques descriptors, schema 0.5")
       .output("slicer/explica-*.xml", FileKind::Any, "3D Slicer command descriptions")
       .output("nipype/explica_nipype.py", FileKind::Any, "nipype interfaces, one a command")
       .output("completion/explica.bash", FileKind::Any, "completion for bash")

@@ -147,7 +147,7 @@ std::vector<Parameter> allParameters(const Declaration& declaration, CommonOptio
 std::vector<OutputSlot> allOutputs(const Declaration& d) {
   std::vector<OutputSlot> outputs = d.outputs;
   if (d.writesOutput) {
-    outputs.push_back({"summary.json", FileKind::Json, "the numbers", true});
+    outputs.push_back({"summary.json", FileKind::JsonFile, "the numbers", true});
     outputs.push_back({"provenance.json", FileKind::Record, "what ran on what, with hashes", true});
   }
   return outputs;

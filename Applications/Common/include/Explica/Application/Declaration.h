@@ -22,7 +22,7 @@ enum class FileKind {
   Grid,         ///< unstructured grid
   Polygon,      ///< closed 2D polygon
   Table,        ///< tab-separated values
-  Json,
+  JsonFile,
   Picture,
   Report,  ///< HTML
   Record,  ///< provenance.json
@@ -44,7 +44,7 @@ struct explica::EnumNames<explica::app::FileKind> {
                                        std::pair{Kind::Grid, "grid"},
                                        std::pair{Kind::Polygon, "polygon"},
                                        std::pair{Kind::Table, "table"},
-                                       std::pair{Kind::Json, "JSON"},
+                                       std::pair{Kind::JsonFile, "JSON"},
                                        std::pair{Kind::Picture, "picture"},
                                        std::pair{Kind::Report, "report"},
                                        std::pair{Kind::Record, "provenance record"},
