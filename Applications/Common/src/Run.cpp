@@ -5,6 +5,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
+#include "Explica/IO/ItkFormats.h"
 #include "Explica/Provenance/Record.h"
 #include "Explica/Provenance/Software.h"
 #include "OutputFolder.h"
@@ -311,6 +312,7 @@ Outcome execute(Run& run, Console& console) {
   const ThreadChoice threads = chooseThreads(run.common.threads);
   setThreadCount(threads.count);
   Eigen::setNbThreads(threads.count);
+  io::setItkThreadCount(threads.count);  // Embree runs on TBB and follows it
 
   Context::State state{run, console, {}, Json::object(), {}, {}, {}, {}, 0};
   Context context(state);

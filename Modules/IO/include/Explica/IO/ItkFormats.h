@@ -8,4 +8,8 @@ namespace explica::io {
 /// Safe to call again.
 void registerMghWithItk();
 
+/// Limits every later use of ITK in this process to so many threads, whatever the environment says.
+void setItkThreadCount(int count);
+[[nodiscard]] int itkThreadCount();
+
 }  // namespace explica::io

@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+// What must hold for every command that writes a folder, on one quick run of each.
+
+#include "QuickRuns.h"
+
+#include <gtest/gtest.h>
+
+namespace explica::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+class EveryCommand : public ::testing::TestWithParam<QuickRun> {
+ protected:
+  void SetUp() override {
+    for (const auto& line : GetParam().before) {
+      const auto made = explica(filled(line, folder_));
+      ASSERT_TRUE(made.exitCode == 0 || made.exitCode == 3) << made;
+    }
+    words_ = filled(GetParam().words, folder_);
+  }
+
+  TemporaryFolder folder_;
+  std::vector<std::string> words_;
+};
+
+TEST_P(EveryCommand, GivesTheSameBytesWithAnyNumberOfThreads) {
+  std::map<std::string, std::string> first;
+  nlohmann::ordered_json firstResults;
+  for (const std::string threads : {"1", "2", "4"}) {
+    const std::string out = folder_ / ("threads-" + threads);
+    const auto result =
+        explica(words_ + std::vector<std::string>{"--threads", threads, "--out", out});
+    ASSERT_TRUE(result.exitCode == 0 || result.exitCode == 3) << result;
+    const auto hashes = stableHashes(out);
+    const auto results = readJson(out + "/provenance.json")["results"];
+    EXPECT_FALSE(hashes.empty());
+    if (first.empty()) {
+      first = hashes;
+      firstResults = results;
+    }
+    EXPECT_EQ(hashes, first) << threads << " threads";
+    EXPECT_EQ(results, firstResults) << threads << " threads";
+  }
+}
+
+TEST_P(EveryCommand, IsRecordedVerifiedAndReplayed) {
+  const auto made = explica(words_ + std::vector<std::string>{"--out", folder_ / "a"});
+  ASSERT_TRUE(made.exitCode == 0 || made.exitCode == 3) << made;
+  const auto verified = explica({"verify", "--deep", folder_ / "a"});
+  EXPECT_EQ(verified.exitCode, 0) << verified;
+  const auto replayed = explica({"replay", folder_ / "a", "--out", folder_ / "b"});
+  EXPECT_EQ(replayed.exitCode, 0) << replayed;
+}
+
+TEST_P(EveryCommand, WritesNothingInADryRun) {
+  const auto before = folder_.entries();
+  const auto result =
+      explica(words_ + std::vector<std::string>{"--dry-run", "--out", folder_ / "a"});
+  EXPECT_EQ(result.exitCode, 0) << result;
+  EXPECT_EQ(folder_.entries(), before);
+}
+
+TEST_P(EveryCommand, LeavesNothingOnAFullDisk) {
+  const auto before = folder_.entries();
+  CommandSetting setting;
+  setting.fileSizeLimit = 400;  // room for the lock file only
+  const auto result = explica(words_ + std::vector<std::string>{"--out", folder_ / "a"}, setting);
+  EXPECT_EQ(result.exitCode, 4) << result;
+  EXPECT_EQ(folder_.entries(), before);
+}
+
+INSTANTIATE_TEST_SUITE_P(Quick, EveryCommand, ::testing::ValuesIn(quickRuns()),
+                         [](const auto& row) { return row.param.name; });
+
+}  // namespace
+}  // namespace explica::testing
