@@ -110,7 +110,9 @@ report::SurfacePaint readPaint(const Settings& s, Eigen::Index vertexCount) {
                          names);
     }
     paint.values = chosen->values;
-    paint.scale = report::scaleFor(paint.values, chosen->name, chosen->unit, s.colours);
+    paint.scale =
+        report::scaleFor(paint.values, std::filesystem::path(chosen->name).filename().string(),
+                         chosen->unit, s.colours);
     if (s.range) {
       paint.scale.low = s.range->x();
       paint.scale.high = s.range->y();
@@ -224,7 +226,7 @@ void writeFilm(const std::filesystem::path& path, const std::vector<report::Pict
 Termination run(Context& context, const Settings& s) {
   if (!s.screenshot && !s.film) {
     throw EnvironmentError(
-        "explica view: no window can be opened here; write a picture with --screenshot FILE.png "
+        "no window can be opened here; write a picture with --screenshot FILE.png "
         "or a film with --film FILE.gif");
   }
   if (s.screenshot && std::filesystem::path(*s.screenshot).extension() != ".png") {

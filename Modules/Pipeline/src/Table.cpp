@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Table.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/Types.h"
+
+#include <fstream>
+#include <sstream>
+
+namespace explica::pipeline {
+namespace {
+
+std::vector<std::string> cells(const std::string& line) {
+  std::vector<std::string> all;
+  std::istringstream stream(line);
+  std::string cell;
+  while (std::getline(stream, cell, '\t')) all.push_back(cell);
+  return all;
+}
+
+}  // namespace
+
+const std::vector<double>* Table::column(std::string_view name) const {
+  for (std::size_t c = 0; c < names.size(); ++c) {
+    if (names[c] == name) return &columns[c];
+  }
+  return nullptr;
+}
+
+Table readTable(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  std::string line;
+  if (!stream || !std::getline(stream, line))
+    throw IOError(file.string() + ": no table can be read from it");
+  Table table;
+  table.names = cells(line);
+  table.columns.resize(table.names.size());
+  while (std::getline(stream, line)) {
+    const std::vector<std::string> row = cells(line);
+    if (row.size() != table.names.size()) continue;
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      std::istringstream digits(row[c]);
+      digits.imbue(std::locale::classic());
+      double value = kNaN;
+      if (!(digits >> value)) value = kNaN;
+      table.columns[c].push_back(value);
+    }
+  }
+  return table;
+}
+
+}  // namespace explica::pipeline
