@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Core/Describe.h"
+#include "Explica/Core/Monitor.h"
+#include "Explica/Core/TriangleMesh.h"
+#include "Explica/Visibility/Viewpoints.h"
+
+#include <array>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace explica::unfolding {
+
+/// How a region's radius is measured.
+enum class RegionMetric {
+  Euclidean,  ///< straight, connected to the centre through vertices within the radius
+  Geodesic    ///< along the surface
+};
+
+/// Which part of a surface is to be unfolded.  Without a label, `center`, `vertex` or `cone` says
+/// where it is.
+struct RegionOptions {
+  std::optional<Eigen::Vector3d> center;  ///< the surface's nearest vertex becomes the centre
+  std::optional<int> vertex;
+  double radius = 25;  ///< mm, > 0
+  RegionMetric metric = RegionMetric::Euclidean;
+  std::optional<double> cone;  ///< half angle, degrees
+};
+
+template <class Visitor>
+void describe(RegionOptions& options, Visitor&& visit) {
+  visit(Field{"center", "mm", "the vertex nearest to this point is the region's centre"},
+        options.center);
+  visit(Field{"vertex", "", "vertex that is the region's centre, from 0"}, options.vertex);
+  visit(Field{"radius", "mm", "how far the region reaches from its centre"}, options.radius);
+  visit(Field{"metric", "", "how the radius is measured"}, options.metric);
+  visit(Field{"cone", "degrees",
+              "region of what lies within this angle of the line from viewpoint to centre, on the "
+              "near side and connected to the centre"},
+        options.cone);
+}
+
+/// Part of a surface: its faces and exactly their vertices.
+struct Region {
+  std::vector<std::int32_t> vertices;  ///< ascending
+  std::vector<std::int32_t> faces;     ///< ascending
+  std::int32_t centre = -1;            ///< vertex; -1 for a region given by labels
+  double radius = kNaN;                ///< mm; NaN for a region without one
+  int pieces = 0;                      ///< components of faces that share vertices
+  int holes = 0;                       ///< boundary loops beyond one per piece
+};
+
+/// Faces whose three vertices lie within the radius of the centre vertex, or within the cone.
+/// @throws InvalidInput  no centre, radius or cone out of range, nothing or everything in reach
+[[nodiscard]] Region selectRegion(const TriangleMesh& mesh, const RegionOptions& options,
+                                  const visibility::Viewpoints* viewpoints = nullptr);
+
+/// Faces whose three vertices are marked.
+/// @throws InvalidInput  `marked` is not as long as the mesh has vertices; no or every face
+[[nodiscard]] Region regionOfMarked(const TriangleMesh& mesh, const std::vector<bool>& marked);
+
+/// The condition of the method ([Thesis, section 5.1]): average visibility above zero at the start.
+///
+/// Grows or shrinks the radius, by a tenth at a time and the smaller change first, until the region
+/// satisfies it.  A region without radius loses its outermost ring of faces at a time.
+/// @throws InvalidInput  no radius from half to twice the first, or no ring, makes it positive
+[[nodiscard]] Region adjustRegion(const TriangleMesh& mesh, const Region& region,
+                                  const RegionOptions& options,
+                                  const visibility::Viewpoints& viewpoints);
+
+/// Demands that viewpoints look at the surface from outside and not from on it.
+/// @throws InvalidInput  a viewpoint inside the closed surface or within `clearance` mm of it
+void requireViewFromOutside(const TriangleMesh& mesh, const visibility::Viewpoints& viewpoints,
+                            double clearance = 1e-3);
+
+}  // namespace explica::unfolding
+
+template <>
+struct explica::EnumNames<explica::unfolding::RegionMetric> {
+  static constexpr std::array table = {
+      std::pair{explica::unfolding::RegionMetric::Euclidean, "euclidean"},
+      std::pair{explica::unfolding::RegionMetric::Geodesic, "geodesic"}};
+};

@@ -1,0 +1,150 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Core/Describe.h"
+#include "Explica/Core/TriangleMesh.h"
+#include "Explica/Unfolding/Region.h"
+#include "Explica/Visibility/Viewpoints.h"
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace explica::unfolding {
+
+/// What becomes of the surface around the region.
+enum class Surround {
+  Fixed,    ///< stays, and is an obstacle [Thesis]
+  Elastic,  ///< a collar follows, the rest stays
+  None      ///< the region alone
+};
+
+/// Strengths of the terms of the objective, all without unit; may be changed between steps.
+struct UnfoldWeights {
+  double area = 20;      ///< stiffness of areas; multipliers make them exact whatever it is
+  double spring = 2;     ///< stiffness of edge lengths
+  double contact = 0.2;  ///< strength of the contact barrier
+  double collar = 0.02;  ///< stiffness of the collar's areas and lengths beside the region's
+};
+
+struct UnfolderOptions {
+  Surround surround = Surround::Fixed;
+  int collarRings = 6;         ///< rings of faces of an elastic collar, > 0
+  double contactRange = 0.25;  ///< of the mean edge length: the barrier acts below it, > 0
+  double largestMove = 3;      ///< mean edge lengths that a vertex goes per iteration at most, > 0
+  UnfoldWeights weights;
+};
+
+template <class Visitor>
+void describe(UnfoldWeights& weights, Visitor&& visit) {
+  visit(Field{"area-weight", "", "stiffness of face areas before it is tightened"}, weights.area);
+  visit(Field{"spring-weight", "", "stiffness of edge lengths"}, weights.spring);
+  visit(Field{"contact-weight", "", "strength of the contact barrier"}, weights.contact);
+  visit(Field{"collar-weight", "", "stiffness of an elastic collar beside the region's"},
+        weights.collar);
+}
+
+template <class Visitor>
+void describe(UnfolderOptions& options, Visitor&& visit) {
+  visit(Field{"surround", "",
+              "the surface around the region stays, follows with a collar, or is "
+              "left out"},
+        options.surround);
+  visit(Field{"collar-rings", "", "rings of faces of an elastic collar"}, options.collarRings);
+  visit(Field{"contact-range", "", "reach of the contact barrier in mean edge lengths"},
+        options.contactRange);
+  visit(Field{"largest-move", "", "mean edge lengths that a vertex goes per iteration at most"},
+        options.largestMove);
+  describe(options.weights, visit);
+}
+
+/// One iteration's account: a row of evolution.tsv.
+struct IterationRecord {
+  int iteration = 0;
+  double visibility = kNaN;     ///< average flux density of the region, [-1, 1]
+  double areaErrorMean = kNaN;  ///< mean |A / A0 - 1| over the region's faces
+  double areaErrorMax = kNaN;
+  double edgeStrainMean = kNaN;  ///< mean |l / l0 - 1| over the region's edges
+  double energyVisibility = 0;   ///< terms of the objective after the step, mm^2
+  double energyArea = 0;
+  double energySpring = 0;
+  double energyContact = 0;
+  double energyKnot = 0;
+  double objectiveBefore = 0;    ///< sum of the terms before the step ...
+  double objectiveAfter = 0;     ///< ... and after it, with the same multipliers: never larger
+  int contacts = 0;              ///< pairs within the barrier's range
+  double nearestContact = kNaN;  ///< mm; NaN without contacts
+  double safeStep = 1;           ///< share of the step that collision detection allows
+  double step = 1;               ///< share that was taken
+  double largestMove = 0;        ///< mm, of any vertex
+  double damping = 0;
+  int solves = 0;      ///< linear systems solved for this step
+  double seconds = 0;  ///< wall time since the run began, set by unfold()
+};
+
+/// Everything that the next step depends on, beyond the inputs of construction.
+struct UnfoldState {
+  Positions positions;          ///< V x 3, all vertices of the surface
+  Eigen::VectorXd multipliers;  ///< one per kept face
+  double damping = 1;
+  double areaStiffness = 0;  ///< current, >= weights.area
+  int iteration = 0;
+  bool separating = true;  ///< pairs that start almost in contact are parted first
+  bool stalled = false;    ///< no step lowered the objective
+};
+
+/// Unfolds a region one iteration at a time, so that a viewer or a script can watch and steer.
+///
+/// Each iteration minimises a quadratic model of
+///   sum A0 (1 - n . d)  +  areas kept, with multipliers  +  edge springs  +  contact barrier
+/// plus damping in a Sobolev metric, caps the step by continuous collision detection over all pairs
+/// with a moving vertex, and backtracks until the objective does not rise.  So no state has an
+/// intersection that the start did not have, and crossings of the start stay as they are.
+///
+/// Results are the same for any number of threads.
+class Unfolder {
+ public:
+  /// @throws InvalidInput  ill-formed mesh, viewpoint or option; a region face of zero area
+  Unfolder(TriangleMesh mesh, Region region, visibility::Viewpoints viewpoints,
+           const UnfolderOptions& options = {});
+  ~Unfolder();
+  Unfolder(Unfolder&&) noexcept;
+  Unfolder& operator=(Unfolder&&) noexcept;
+
+  /// One iteration; false if none that lowers the objective was found (the state is then marked
+  /// stalled and unchanged).
+  bool step();
+
+  [[nodiscard]] const UnfoldState& state() const;
+  /// Continues from a state of the same inputs: bit-identical to never having stopped.
+  /// @throws InvalidInput  sizes that do not fit
+  void restore(UnfoldState state);
+
+  /// Account of the last iteration; before the first, of the start.
+  [[nodiscard]] const IterationRecord& record() const;
+
+  /// The surface that moves: all of it, or the region alone (Surround::None), on all vertices.
+  [[nodiscard]] const TriangleMesh& reference() const;
+  [[nodiscard]] TriangleMesh current() const;
+  [[nodiscard]] const Region& region() const;
+  [[nodiscard]] const std::vector<std::int32_t>& movingVertices() const;
+
+  void setViewpoints(visibility::Viewpoints viewpoints);
+  void setWeights(const UnfoldWeights& weights);
+  [[nodiscard]] const UnfoldWeights& weights() const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> self_;
+};
+
+}  // namespace explica::unfolding
+
+template <>
+struct explica::EnumNames<explica::unfolding::Surround> {
+  static constexpr std::array table = {std::pair{explica::unfolding::Surround::Fixed, "fixed"},
+                                       std::pair{explica::unfolding::Surround::Elastic, "elastic"},
+                                       std::pair{explica::unfolding::Surround::None, "none"}};
+};

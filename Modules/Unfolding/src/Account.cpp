@@ -1,0 +1,100 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Unfolding/Account.h"
+
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <cstdio>
+#include <set>
+#include <utility>
+
+namespace explica::unfolding {
+namespace {
+
+Vector areaVector(const TriangleMesh& mesh, std::int32_t face) {
+  return 0.5 * (mesh.corner(face, 1) - mesh.corner(face, 0))
+                   .cross(mesh.corner(face, 2) - mesh.corner(face, 0));
+}
+
+}  // namespace
+
+Eigen::VectorXd vertexMeans(const TriangleMesh& mesh, std::span<const std::int32_t> faces,
+                            const Eigen::VectorXd& faceValues, double elsewhere) {
+  Eigen::VectorXd sums = Eigen::VectorXd::Zero(mesh.vertexCount());
+  Eigen::VectorXd areas = Eigen::VectorXd::Zero(mesh.vertexCount());
+  for (std::size_t n = 0; n < faces.size(); ++n) {
+    const double area = areaVector(mesh, faces[n]).norm();
+    for (int k = 0; k < 3; ++k) {
+      sums[mesh.faces(faces[n], k)] += area * faceValues[static_cast<Eigen::Index>(n)];
+      areas[mesh.faces(faces[n], k)] += area;
+    }
+  }
+  return (areas.array() > 0).select(sums.cwiseQuotient(areas.cwiseMax(1e-300)), elsewhere);
+}
+
+Eigen::VectorXd vertexStrains(const TriangleMesh& reference, const Positions& deformed,
+                              std::span<const std::int32_t> faces) {
+  std::set<std::pair<std::int32_t, std::int32_t>> edges;
+  for (const std::int32_t f : faces) {
+    for (int k = 0; k < 3; ++k) {
+      edges.insert(std::minmax(reference.faces(f, k), reference.faces(f, (k + 1) % 3)));
+    }
+  }
+  Eigen::VectorXd sums = Eigen::VectorXd::Zero(reference.vertexCount());
+  Eigen::VectorXd counts = sums;
+  for (const auto& [a, b] : edges) {
+    const double length = (reference.positions.row(a) - reference.positions.row(b)).norm();
+    if (!(length > 0)) continue;
+    const double strain = std::abs((deformed.row(a) - deformed.row(b)).norm() / length - 1);
+    for (const std::int32_t v : {a, b}) {
+      sums[v] += strain;
+      counts[v] += 1;
+    }
+  }
+  return sums.cwiseQuotient(counts.cwiseMax(1));
+}
+
+std::string evolutionTable(const std::vector<IterationRecord>& history) {
+  std::string table =
+      "iteration\tvisibility\tarea_error_mean\tarea_error_max\tedge_strain_mean\tenergy_"
+      "visibility\t"
+      "energy_area\tenergy_spring\tenergy_contact\tenergy_knot\tobjective_before\tobjective_after\t"
+      "contacts\tnearest_contact\tsafe_step\tstep\tlargest_move\tdamping\tsolves\tseconds\n";
+  for (const IterationRecord& r : history) {
+    char line[512];
+    std::snprintf(
+        line, sizeof line,
+        "%d\t%.6f\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.9g\t%.9g\t%d\t%.6g\t%.6g\t"
+        "%.6g\t%.6g\t%.6g\t%d\t%.3f\n",
+        r.iteration, r.visibility, r.areaErrorMean, r.areaErrorMax, r.edgeStrainMean,
+        r.energyVisibility, r.energyArea, r.energySpring, r.energyContact, r.energyKnot,
+        r.objectiveBefore, r.objectiveAfter, r.contacts, r.nearestContact, r.safeStep, r.step,
+        r.largestMove, r.damping, r.solves, r.seconds);
+    table += line;
+  }
+  return table;
+}
+
+Positions roundedToSingle(const Positions& positions) {
+  return positions.cast<float>().cast<double>();
+}
+
+double backfacingShare(const TriangleMesh& mesh, std::span<const std::int32_t> faces,
+                       const visibility::Viewpoints& viewpoints) {
+  double away = 0, all = 0;
+  for (const std::int32_t f : faces) {
+    const Vector area = areaVector(mesh, f);
+    const Point centroid = (mesh.corner(f, 0) + mesh.corner(f, 1) + mesh.corner(f, 2)) / 3;
+    double flux = 0;
+    for (std::size_t k = 0; k < viewpoints.points.size(); ++k) {
+      flux += viewpoints.weights[k] * area.dot((viewpoints.points[k] - centroid).normalized());
+    }
+    all += area.norm();
+    if (flux < 0) away += area.norm();
+  }
+  return all > 0 ? away / all : 0;
+}
+
+}  // namespace explica::unfolding

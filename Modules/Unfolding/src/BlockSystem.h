@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Core/Types.h"
+
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+
+#include <utility>
+#include <vector>
+
+namespace explica::unfolding {
+
+/// Unordered pairs of unknowns that some term couples: first > second.
+using Couplings = std::vector<std::pair<std::int32_t, std::int32_t>>;
+
+/// Symmetric positive definite system of 3 x 3 blocks, one unknown point per row.
+///
+/// The fill-reducing ordering is found on the graph of points, a ninth of the work of ordering
+/// scalars, and kept as long as the couplings stay the same.
+class BlockSystem {
+ public:
+  /// Makes room for the couplings (any order, repetitions allowed) and sets all values to zero.
+  void reset(std::int32_t pointCount, Couplings couplings);
+
+  /// Adds `block` at (i, j), and with i != j its transpose at (j, i): call once per unordered pair.
+  void add(std::int32_t i, std::int32_t j, const Eigen::Matrix3d& block);
+
+  /// Adds to every diagonal entry.
+  void addDiagonal(double value);
+
+  /// Solves for N x 3 unknowns.
+  /// @return false if the matrix is not positive definite to working precision
+  [[nodiscard]] bool solve(const Positions& rightSide, Positions& solution);
+
+  [[nodiscard]] Eigen::Index nonZerosOfFactor() const { return factorNonZeros_; }
+
+ private:
+  void layOut();
+
+  std::int32_t count_ = 0;
+  Couplings couplings_;
+  std::vector<std::int32_t> place_;     ///< position of each point in the elimination order
+  std::vector<std::int32_t> begin_;     ///< of each block column's rows
+  std::vector<std::int32_t> rows_;      ///< block rows >= column, ascending, in elimination order
+  Eigen::SparseMatrix<double> matrix_;  ///< lower triangle
+  Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>>
+      factor_;
+  bool analysed_ = false;
+  Eigen::Index factorNonZeros_ = 0;
+};
+
+}  // namespace explica::unfolding

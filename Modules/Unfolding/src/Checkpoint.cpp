@@ -1,0 +1,149 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/WholeFile.h"
+#include "Explica/Unfolding/Unfold.h"
+
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+namespace explica::unfolding {
+namespace {
+
+constexpr char kMagic[] = "ExplicaUnfold1\n";
+static_assert(sizeof(std::int64_t) == 8 && sizeof(double) == 8);
+
+/// FNV-1a: tells a damaged file, not a forged one.
+std::uint64_t checkSum(std::string_view bytes) {
+  std::uint64_t sum = 14695981039346656037u;
+  for (const char c : bytes) sum = (sum ^ static_cast<unsigned char>(c)) * 1099511628211u;
+  return sum;
+}
+
+class Writer {
+ public:
+  void number(double value) { raw(&value, sizeof value); }
+  void count(std::int64_t value) { raw(&value, sizeof value); }
+  void points(const Positions& p) {
+    count(p.rows());
+    raw(p.data(), static_cast<std::size_t>(p.size()) * sizeof(double));
+  }
+  void raw(const void* data, std::size_t size) {
+    bytes.append(static_cast<const char*>(data), size);
+  }
+  std::string bytes;
+};
+
+class Reader {
+ public:
+  Reader(std::string bytes, std::string name) : bytes_(std::move(bytes)), name_(std::move(name)) {}
+  double number() {
+    double value;
+    raw(&value, sizeof value);
+    return value;
+  }
+  std::int64_t count() {
+    std::int64_t value;
+    raw(&value, sizeof value);
+    if (value < 0 || static_cast<std::size_t>(value) > bytes_.size()) fail("is damaged");
+    return value;
+  }
+  Positions points() {
+    Positions p(count(), 3);
+    raw(p.data(), static_cast<std::size_t>(p.size()) * sizeof(double));
+    return p;
+  }
+  void raw(void* data, std::size_t size) {
+    if (at_ + size > bytes_.size()) fail("is truncated");
+    std::memcpy(data, bytes_.data() + at_, size);
+    at_ += size;
+  }
+  [[noreturn]] void fail(const std::string& cause) const {
+    throw IOError(name_ + " " + cause + "; it is not a complete state of an unfolding");
+  }
+
+ private:
+  std::string bytes_, name_;
+  std::size_t at_ = 0;
+};
+
+/// The members of a record, one list for writing and reading.
+template <class Record, class Visit>
+void visitNumbers(Record& r, const Visit& visit) {
+  for (auto* member : {&r.visibility, &r.areaErrorMean, &r.areaErrorMax, &r.edgeStrainMean,
+                       &r.energyVisibility, &r.energyArea, &r.energySpring, &r.energyContact,
+                       &r.energyKnot, &r.objectiveBefore, &r.objectiveAfter, &r.nearestContact,
+                       &r.safeStep, &r.step, &r.largestMove, &r.damping, &r.seconds}) {
+    visit(*member);
+  }
+}
+
+}  // namespace
+
+void writeCheckpoint(const std::filesystem::path& path, const Checkpoint& checkpoint) {
+  Writer w;
+  const UnfoldState& s = checkpoint.state;
+  w.points(s.positions);
+  w.count(s.multipliers.size());
+  w.raw(s.multipliers.data(), static_cast<std::size_t>(s.multipliers.size()) * sizeof(double));
+  w.number(s.damping);
+  w.number(s.areaStiffness);
+  w.count(s.iteration);
+  w.count(s.separating);
+  w.count(s.stalled);
+  w.count(static_cast<std::int64_t>(checkpoint.history.size()));
+  for (const IterationRecord& r : checkpoint.history) {
+    w.count(r.iteration);
+    w.count(r.contacts);
+    w.count(r.solves);
+    visitNumbers(r, [&](const double& value) { w.number(value); });
+  }
+  w.count(static_cast<std::int64_t>(checkpoint.path.size()));
+  for (const Positions& p : checkpoint.path) w.points(p);
+  const std::uint64_t sum = checkSum(w.bytes);
+
+  WholeFile file(path);
+  file.write(kMagic);
+  file.write(&sum, sizeof sum);
+  file.write(w.bytes);
+  file.commit();
+}
+
+Checkpoint readCheckpoint(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw IOError(path.string() + " cannot be read; nothing was left to resume from");
+  std::string all{std::istreambuf_iterator<char>(in), {}};
+  const std::size_t head = sizeof kMagic - 1;
+  Reader whole(all, path.string());
+  if (all.compare(0, head, kMagic) != 0 || all.size() < head + 8) whole.fail("has another format");
+  std::uint64_t sum;
+  std::memcpy(&sum, all.data() + head, sizeof sum);
+  Reader r(all.substr(head + 8), path.string());
+  if (sum != checkSum(std::string_view(all).substr(head + 8))) r.fail("is damaged");
+
+  Checkpoint c;
+  c.state.positions = r.points();
+  c.state.multipliers.resize(r.count());
+  r.raw(c.state.multipliers.data(),
+        static_cast<std::size_t>(c.state.multipliers.size()) * sizeof(double));
+  c.state.damping = r.number();
+  c.state.areaStiffness = r.number();
+  c.state.iteration = static_cast<int>(r.count());
+  c.state.separating = r.count() != 0;
+  c.state.stalled = r.count() != 0;
+  c.history.resize(static_cast<std::size_t>(r.count()));
+  for (IterationRecord& row : c.history) {
+    row.iteration = static_cast<int>(r.count());
+    row.contacts = static_cast<int>(r.count());
+    row.solves = static_cast<int>(r.count());
+    visitNumbers(row, [&](double& value) { value = r.number(); });
+  }
+  c.path.resize(static_cast<std::size_t>(r.count()));
+  for (Positions& p : c.path) p = r.points();
+  return c;
+}
+
+}  // namespace explica::unfolding

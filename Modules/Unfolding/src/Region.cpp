@@ -1,0 +1,249 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Unfolding/Region.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Geometry/FaceTree.h"
+#include "Explica/Geometry/Geodesic.h"
+#include "Explica/Geometry/MeshTopology.h"
+#include "Explica/Visibility/AverageVisibility.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <string>
+
+namespace explica::unfolding {
+namespace {
+
+std::string text(double value) {
+  std::string s = std::to_string(value);
+  s.erase(s.find_last_not_of('0') + 1);
+  if (s.back() == '.') s.pop_back();
+  return s;
+}
+
+geometry::IndexLists neighboursOf(const TriangleMesh& mesh) {
+  return geometry::buildTopology(mesh.faces, mesh.vertexCount()).vertexVertices;
+}
+
+std::vector<bool> connectedWithin(const geometry::IndexLists& neighbours, std::int32_t centre,
+                                  const std::vector<bool>& allowed) {
+  std::vector<bool> reached(allowed.size(), false);
+  std::vector<std::int32_t> front = {centre};
+  reached[centre] = true;
+  while (!front.empty()) {
+    const std::int32_t v = front.back();
+    front.pop_back();
+    for (const std::int32_t w : neighbours[v]) {
+      if (allowed[w] && !reached[w]) {
+        reached[w] = true;
+        front.push_back(w);
+      }
+    }
+  }
+  return reached;
+}
+
+/// Loops of edges that only one of the listed faces has, joined at vertices.
+int boundaryLoops(const TriangleMesh& mesh, const std::vector<std::int32_t>& faces) {
+  std::map<std::pair<std::int32_t, std::int32_t>, int> uses;
+  for (const std::int32_t f : faces) {
+    for (int k = 0; k < 3; ++k) {
+      const std::int32_t a = mesh.faces(f, k), b = mesh.faces(f, (k + 1) % 3);
+      ++uses[{std::min(a, b), std::max(a, b)}];
+    }
+  }
+  std::map<std::int32_t, std::int32_t> parent;
+  const auto root = [&](std::int32_t v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  for (const auto& [edge, count] : uses) {
+    if (count != 1) continue;
+    parent.try_emplace(edge.first, edge.first);
+    parent.try_emplace(edge.second, edge.second);
+    parent[root(edge.first)] = root(edge.second);
+  }
+  int loops = 0;
+  for (const auto& [v, p] : parent) loops += v == p;
+  return loops;
+}
+
+}  // namespace
+
+Region regionOfMarked(const TriangleMesh& mesh, const std::vector<bool>& marked) {
+  if (static_cast<Eigen::Index>(marked.size()) != mesh.vertexCount()) {
+    throw InvalidInput("region: labels for " + std::to_string(marked.size()) +
+                       " vertices, but the surface has " + std::to_string(mesh.vertexCount()) +
+                       "; they belong to another surface");
+  }
+  Region region;
+  std::vector<bool> used(marked.size(), false);
+  for (std::int32_t f = 0; f < mesh.faceCount(); ++f) {
+    if (marked[mesh.faces(f, 0)] && marked[mesh.faces(f, 1)] && marked[mesh.faces(f, 2)]) {
+      region.faces.push_back(f);
+      for (int k = 0; k < 3; ++k) used[mesh.faces(f, k)] = true;
+    }
+  }
+  if (region.faces.empty()) {
+    throw InvalidInput("region: no face has all three vertices in it; enlarge it");
+  }
+  for (std::int32_t v = 0; v < mesh.vertexCount(); ++v) {
+    if (used[v]) region.vertices.push_back(v);
+  }
+  const geometry::SubMesh part = geometry::extractFaces(mesh, region.faces);
+  const auto components = geometry::faceComponents(part.mesh.faces, part.mesh.vertexCount());
+  region.pieces = 1 + *std::max_element(components.begin(), components.end());
+  const int loops = boundaryLoops(mesh, region.faces);
+  if (loops == 0) {
+    throw InvalidInput(
+        "region: it is a whole closed surface, whose average visibility is zero from any "
+        "viewpoint; "
+        "choose a part of it");
+  }
+  region.holes = std::max(0, loops - region.pieces);
+  return region;
+}
+
+Region selectRegion(const TriangleMesh& mesh, const RegionOptions& options,
+                    const visibility::Viewpoints* viewpoints) {
+  if (!options.center && !options.vertex) {
+    throw InvalidInput("region: no centre; give a centre point, a vertex or a label file");
+  }
+  if (options.center && options.vertex) {
+    throw InvalidInput("region: both a centre point and a vertex are given; give one");
+  }
+  std::int32_t centre = -1;
+  if (options.vertex) {
+    centre = *options.vertex;
+    if (centre < 0 || centre >= mesh.vertexCount()) {
+      throw InvalidInput("vertex: " + std::to_string(centre) +
+                         " is none of the surface's vertices 0 to " +
+                         std::to_string(mesh.vertexCount() - 1));
+    }
+  } else {
+    if (!options.center->allFinite()) throw InvalidInput("center: not a finite point");
+    (void)(mesh.positions.rowwise() - options.center->transpose())
+        .rowwise()
+        .squaredNorm()
+        .minCoeff(&centre);
+  }
+  const geometry::MeshTopology topology = geometry::buildTopology(mesh.faces, mesh.vertexCount());
+  const Point middle = mesh.positions.row(centre).transpose();
+  std::vector<bool> within(static_cast<std::size_t>(mesh.vertexCount()), false);
+  if (options.cone) {
+    if (!(*options.cone > 0 && *options.cone < 90)) {
+      throw InvalidInput("cone: " + text(*options.cone) + " degrees is not between 0 and 90");
+    }
+    if (viewpoints == nullptr || viewpoints->points.empty()) {
+      throw InvalidInput("cone: needs a viewpoint");
+    }
+    Point eye = Point::Zero();
+    for (std::size_t k = 0; k < viewpoints->points.size(); ++k) {
+      eye += viewpoints->weights[k] * viewpoints->points[k];
+    }
+    const Vector axis = (middle - eye).normalized();
+    const double least = std::cos(*options.cone * kPi / 180);
+    for (std::size_t v = 0; v < within.size(); ++v) {
+      const Vector ray = mesh.positions.row(static_cast<Eigen::Index>(v)).transpose() - eye;
+      within[v] = ray.dot(axis) >= least * ray.norm();
+    }
+    if (std::isfinite(options.radius)) {
+      // A narrow cone from afar pierces the whole surface; the radius keeps it on the near side.
+      for (std::size_t v = 0; v < within.size(); ++v) {
+        const Vector off = mesh.positions.row(static_cast<Eigen::Index>(v)).transpose() - middle;
+        within[v] = within[v] && std::abs(off.dot(axis)) <= options.radius;
+      }
+    }
+  } else {
+    if (!(options.radius > 0) || !std::isfinite(options.radius)) {
+      throw InvalidInput("radius: " + text(options.radius) + " mm is not a positive length");
+    }
+    if (options.metric == RegionMetric::Geodesic) {
+      const std::array<std::int32_t, 1> source = {centre};
+      const Eigen::VectorXd distance =
+          geometry::geodesicDistances(mesh, topology, source, options.radius);
+      for (std::size_t v = 0; v < within.size(); ++v) within[v] = distance[v] <= options.radius;
+    } else {
+      for (std::size_t v = 0; v < within.size(); ++v) {
+        within[v] =
+            (mesh.positions.row(static_cast<Eigen::Index>(v)).transpose() - middle).norm() <=
+            options.radius;
+      }
+    }
+  }
+  within[centre] = true;
+  Region region = regionOfMarked(mesh, connectedWithin(topology.vertexVertices, centre, within));
+  region.centre = centre;
+  region.radius = options.radius;
+  return region;
+}
+
+Region adjustRegion(const TriangleMesh& mesh, const Region& region, const RegionOptions& options,
+                    const visibility::Viewpoints& viewpoints) {
+  const auto isPositive = [&](const Region& candidate) {
+    return visibility::AverageVisibility(mesh.faces, candidate.faces, viewpoints)
+               .value(mesh.positions) > 0;
+  };
+  if (isPositive(region)) return region;
+  if (region.centre >= 0) {
+    for (int tenths = 1; tenths <= 10; ++tenths) {
+      for (const double factor : {1 - 0.1 * tenths, 1 + 0.1 * tenths}) {
+        if (factor < 0.5 - 1e-9) continue;
+        RegionOptions changed = options;
+        changed.radius *= factor;
+        if (changed.cone) *changed.cone *= factor;
+        try {
+          Region candidate = selectRegion(mesh, changed, &viewpoints);
+          if (isPositive(candidate)) return candidate;
+        } catch (const InvalidInput&) {
+          continue;  // too small or everything: the other direction may still do
+        }
+      }
+    }
+  } else {
+    const auto neighbours = neighboursOf(mesh);
+    std::vector<bool> marked(static_cast<std::size_t>(mesh.vertexCount()), false);
+    for (const std::int32_t v : region.vertices) marked[v] = true;
+    for (int ring = 0; ring < 20; ++ring) {
+      const std::vector<bool> before = marked;
+      for (std::size_t v = 0; v < marked.size(); ++v) {
+        for (const std::int32_t w : neighbours[v]) marked[v] = marked[v] && before[w];
+      }
+      if (std::find(marked.begin(), marked.end(), true) == marked.end()) break;
+      try {
+        Region candidate = regionOfMarked(mesh, marked);
+        if (isPositive(candidate)) return candidate;
+      } catch (const InvalidInput&) {
+        break;  // no face left
+      }
+    }
+  }
+  throw InvalidInput(
+      "region: its average visibility is not positive, and no larger or smaller one nearby is; "
+      "look "
+      "from another side");
+}
+
+void requireViewFromOutside(const TriangleMesh& mesh, const visibility::Viewpoints& viewpoints,
+                            double clearance) {
+  const bool closed = geometry::inspectMesh(mesh).closedManifold();
+  const geometry::FaceTree tree(mesh);
+  for (const Point& eye : viewpoints.points) {
+    if (!eye.allFinite()) throw InvalidInput("viewpoint: not a finite point");
+    const std::string name =
+        "viewpoint: (" + text(eye[0]) + ", " + text(eye[1]) + ", " + text(eye[2]) + ") lies ";
+    if (std::sqrt(tree.closestPoint(eye).squaredDistance) < clearance) {
+      throw InvalidInput(name + "on the surface; move it away");
+    }
+    if (closed && visibility::windingNumber(mesh, eye) > 0.5) {
+      throw InvalidInput(name +
+                         "inside the surface, whose outer side it cannot see; move it outside");
+    }
+  }
+}
+
+}  // namespace explica::unfolding

@@ -1,0 +1,463 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Unfolding/Unfolder.h"
+
+#include "BlockSystem.h"
+#include "PatchEnergy.h"
+
+#include "Explica/Collision/CollisionScene.h"
+#include "Explica/Collision/ContactPotential.h"
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/Parallel.h"
+#include "Explica/Geometry/MeshMeasures.h"
+#include "Explica/Geometry/MeshTopology.h"
+#include "Explica/Visibility/AverageVisibility.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace explica::unfolding {
+namespace {
+
+using collision::Contact;
+using collision::Pair;
+using collision::PairKind;
+
+constexpr double kSeparated = 0.25;  // of their range: pairs that start nearer are parted first
+constexpr int kSeparatingIterations = 60;  // then the rest goes on beside the unfolding
+constexpr double kMultiplierRate = 0.3;    // of the full update: the inner problem is not solved
+constexpr double kLargestMultiplier = 20;  // times the pull of the visibility term
+constexpr double kLeastDamping = 0.1;      // below it steps overshoot the quadratic model
+constexpr double kSlowGain = 0.003;        // visibility per iteration below which areas tighten ...
+constexpr double kTightening = 1.2;        // ... by this factor ...
+constexpr double kTightest = 20;           // ... up to this one
+
+std::vector<bool> flags(std::size_t count, const std::vector<std::int32_t>& marked) {
+  std::vector<bool> result(count, false);
+  for (const std::int32_t i : marked) result[i] = true;
+  return result;
+}
+
+}  // namespace
+
+struct Unfolder::Implementation {
+  TriangleMesh mesh;  ///< reference positions; faces that move or stand in the way
+  Region region;      ///< faces are rows of mesh.faces
+  visibility::Viewpoints viewpoints;
+  UnfolderOptions options;
+  UnfoldState state;
+  IterationRecord record;
+
+  double edge = 0;                    ///< mean edge length of the region, mm
+  double contactRange = 0;            ///< mm
+  std::vector<std::int32_t> moving;   ///< vertices that move
+  std::vector<std::int32_t> unknown;  ///< V: row of the system, or -1
+  PatchEnergy patch;
+  std::unique_ptr<collision::CollisionScene> scene;
+  std::map<Pair, double> rangeOfPair;  ///< of pairs nearer at the start than the barrier's range
+  Couplings meshCouplings;
+  BlockSystem system;
+  std::vector<Pair> near;  ///< pairs that may be within range at state.positions
+  bool nearKnown = false;
+
+  void build();
+  Contact contactOf(const Pair& pair) const;
+  std::vector<Contact> contactsOf(const std::vector<Pair>& pairs) const;
+  double objective(const Positions& x, const std::vector<Contact>& contacts,
+                   IterationRecord* account) const;
+  PatchStrengths strengths() const {
+    return {state.separating ? 0.0 : 1.0, state.areaStiffness, options.weights.spring};
+  }
+  double contactScale() const { return options.weights.contact * edge * edge; }
+  void measure(IterationRecord& account) const;
+  void updateMultipliers();
+  bool step();
+};
+
+void Unfolder::Implementation::build() {
+  if (!(options.contactRange > 0)) throw InvalidInput("contactRange: must be positive");
+  if (!(options.largestMove > 0)) throw InvalidInput("largestMove: must be positive");
+  if (options.collarRings <= 0) throw InvalidInput("collarRings: must be positive");
+  if (region.faces.empty()) throw InvalidInput("region: has no face");
+  const auto vertexCount = static_cast<std::size_t>(mesh.vertexCount());
+  if (options.surround == Surround::None) {
+    Faces own(static_cast<Eigen::Index>(region.faces.size()), 3);
+    for (std::size_t f = 0; f < region.faces.size(); ++f) {
+      own.row(static_cast<Eigen::Index>(f)) = mesh.faces.row(region.faces[f]);
+      region.faces[f] = static_cast<std::int32_t>(f);
+    }
+    mesh.faces = own;
+  }
+  const auto topology = geometry::buildTopology(mesh.faces, mesh.vertexCount());
+
+  // Faces that belong to the patch: the region, and rings of a collar.
+  std::vector<bool> moves = flags(vertexCount, region.vertices);
+  std::vector<bool> inPatch = flags(static_cast<std::size_t>(mesh.faceCount()), region.faces);
+  const std::vector<bool> inRegion = inPatch;
+  if (options.surround == Surround::Elastic) {
+    for (int ring = 0; ring < options.collarRings; ++ring) {
+      std::vector<bool> grown = moves;
+      for (std::size_t v = 0; v < vertexCount; ++v) {
+        if (!moves[v]) continue;
+        for (const std::int32_t f : topology.vertexFaces[v]) inPatch[f] = true;
+        if (ring + 1 == options.collarRings) continue;  // the outermost ring ends at fixed vertices
+        for (const std::int32_t w : topology.vertexVertices[v]) grown[w] = true;
+      }
+      moves = grown;
+    }
+  }
+  unknown.assign(vertexCount, -1);
+  for (std::size_t v = 0; v < vertexCount; ++v) {
+    if (!moves[v]) continue;
+    unknown[v] = static_cast<std::int32_t>(moving.size());
+    moving.push_back(static_cast<std::int32_t>(v));
+  }
+
+  const Eigen::VectorXd areas = geometry::faceAreas(mesh);
+  double regionArea = 0, edgeSum = 0;
+  for (const std::int32_t f : region.faces) {
+    if (!(areas[f] > 0)) {
+      throw InvalidInput("region: face " + std::to_string(f) +
+                         " has zero area, so its area cannot be kept; remesh the surface there");
+    }
+    regionArea += areas[f];
+    for (int k = 0; k < 3; ++k) edgeSum += (mesh.corner(f, k) - mesh.corner(f, (k + 1) % 3)).norm();
+  }
+  edge = edgeSum / (3 * static_cast<double>(region.faces.size()));
+  contactRange = options.contactRange * edge;
+
+  // Needles: relative area errors of a face far smaller than the rest must not rule the others.
+  constexpr double kNeedleShare = 0.02;
+  const double needle = kNeedleShare * regionArea / static_cast<double>(region.faces.size());
+  std::vector<PatchFace> faces;
+  Eigen::VectorXd faceWeight = Eigen::VectorXd::Zero(mesh.faceCount());
+  for (std::int32_t f = 0; f < mesh.faceCount(); ++f) {
+    if (!inPatch[f]) continue;
+    const double area = std::max(areas[f], 1e-12 * regionArea);
+    const double share = inRegion[f] ? 1 : options.weights.collar;
+    faceWeight[f] = share * area * area / (area + needle);
+    faces.push_back({{mesh.faces(f, 0), mesh.faces(f, 1), mesh.faces(f, 2)},
+                     area,
+                     faceWeight[f],
+                     static_cast<bool>(inRegion[f])});
+  }
+  std::vector<PatchSpring> springs;
+  for (Eigen::Index e = 0; e < topology.edges.rows(); ++e) {
+    double weight = 0;
+    for (int side = 0; side < 2; ++side) {
+      const std::int32_t f = topology.edgeFaces(e, side);
+      if (f >= 0 && inPatch[f]) weight += faceWeight[f] / 3;
+    }
+    if (weight == 0) continue;
+    const std::int32_t a = topology.edges(e, 0), b = topology.edges(e, 1);
+    const double length = (mesh.positions.row(a) - mesh.positions.row(b)).norm();
+    springs.push_back({{a, b}, length, weight});
+    if (unknown[a] >= 0 && unknown[b] >= 0) {
+      meshCouplings.emplace_back(std::max(unknown[a], unknown[b]),
+                                 std::min(unknown[a], unknown[b]));
+    }
+  }
+  patch = PatchEnergy(std::move(faces), std::move(springs));
+  std::sort(meshCouplings.begin(), meshCouplings.end());
+
+  scene = std::make_unique<collision::CollisionScene>(mesh, moves);
+  state.positions = mesh.positions;
+  state.multipliers = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(patch.faces().size()));
+  state.areaStiffness = options.weights.area;
+
+  // A pair that starts within range keeps its distance as range, so that the start is free of
+  // forces; but very near pairs are parted a little, and neighbours in the surface, which stay
+  // near, are left half of their distance.
+  near = scene->findPairs(mesh.positions, Positions::Zero(mesh.vertexCount(), 3), contactRange);
+  nearKnown = true;
+  const auto adjacent = [&](std::int32_t a, std::int32_t b) {
+    const auto list = topology.vertexVertices[a];
+    return std::binary_search(list.begin(), list.end(), b);
+  };
+  for (const Pair& pair : near) {
+    const double distance =
+        std::sqrt(collision::squaredDistance(pair.kind, scene->points(pair, mesh.positions)));
+    const auto v = scene->vertices(pair);
+    const int split = pair.kind == PairKind::VertexFace ? 1 : 2;
+    bool neighbours = false;
+    for (int i = 0; i < split; ++i) {
+      for (int j = split; j < 4; ++j) neighbours = neighbours || adjacent(v[i], v[j]);
+    }
+    constexpr double kParted = 0.2;
+    rangeOfPair[pair] = neighbours ? 0.5 * distance : std::max(distance, kParted * contactRange);
+  }
+  measure(record);
+}
+
+Contact Unfolder::Implementation::contactOf(const Pair& pair) const {
+  Contact contact;
+  contact.vertices = scene->vertices(pair);
+  contact.kind = pair.kind;
+  const auto found = rangeOfPair.find(pair);
+  contact.range = found == rangeOfPair.end() ? contactRange : found->second;
+  if (pair.kind == PairKind::EdgeEdge) {
+    const auto x = scene->points(pair, mesh.positions);
+    constexpr double kParallel = 1e-3;  // of |u|^2 |v|^2, as in incremental potential contact
+    contact.parallelArea = kParallel * (x[1] - x[0]).squaredNorm() * (x[3] - x[2]).squaredNorm();
+  }
+  return contact;
+}
+
+std::vector<Contact> Unfolder::Implementation::contactsOf(const std::vector<Pair>& pairs) const {
+  std::vector<Contact> contacts(pairs.size());
+  parallelFor(pairs.size(), 1024, [&](std::size_t n) { contacts[n] = contactOf(pairs[n]); });
+  return contacts;
+}
+
+double Unfolder::Implementation::objective(const Positions& x, const std::vector<Contact>& contacts,
+                                           IterationRecord* account) const {
+  const PatchValue value = patch.value(x, viewpoints, strengths(), state.multipliers);
+  const double contact = contactScale() * collision::contactEnergy(contacts, x);
+  if (account != nullptr) {
+    account->energyVisibility = value.visibility;
+    account->energyArea = value.area;
+    account->energySpring = value.spring;
+    account->energyContact = contact;
+  }
+  return value.total() + contact;
+}
+
+void Unfolder::Implementation::measure(IterationRecord& account) const {
+  account.visibility =
+      visibility::AverageVisibility(mesh.faces, region.faces, viewpoints).value(state.positions);
+  double sum = 0, largest = 0, count = 0;
+  for (const PatchFace& face : patch.faces()) {
+    if (!face.looked) continue;
+    const Point a = state.positions.row(face.vertices[0]).transpose(),
+                b = state.positions.row(face.vertices[1]).transpose(),
+                c = state.positions.row(face.vertices[2]).transpose();
+    const double error = std::abs(0.5 * (b - a).cross(c - a).norm() / face.restArea - 1);
+    sum += error;
+    largest = std::max(largest, error);
+    count += 1;
+  }
+  account.areaErrorMean = sum / count;
+  account.areaErrorMax = largest;
+  sum = count = 0;
+  for (const PatchSpring& spring : patch.springs()) {
+    const double length =
+        (state.positions.row(spring.vertices[0]) - state.positions.row(spring.vertices[1])).norm();
+    sum += std::abs(length / spring.restLength - 1);
+    count += 1;
+  }
+  account.edgeStrainMean = sum / count;
+}
+
+void Unfolder::Implementation::updateMultipliers() {
+  for (std::size_t f = 0; f < patch.faces().size(); ++f) {
+    const PatchFace& face = patch.faces()[f];
+    if (!face.looked) continue;
+    const Point a = state.positions.row(face.vertices[0]).transpose(),
+                b = state.positions.row(face.vertices[1]).transpose(),
+                c = state.positions.row(face.vertices[2]).transpose();
+    const double error = 0.5 * (b - a).cross(c - a).norm() / face.restArea - 1;
+    state.multipliers[f] =
+        std::clamp(state.multipliers[f] + kMultiplierRate * state.areaStiffness * error,
+                   -kLargestMultiplier, kLargestMultiplier);
+  }
+}
+
+bool Unfolder::Implementation::step() {
+  const Positions& x = state.positions;
+  if (!nearKnown) {
+    near = scene->findPairs(x, Positions::Zero(x.rows(), 3), contactRange);
+    nearKnown = true;
+  }
+  std::sort(near.begin(), near.end());  // sums must not depend on how the pairs were found
+  std::vector<Contact> contacts = contactsOf(near);
+  std::erase_if(contacts, [&](const Contact& c) {
+    collision::FourPoints p;
+    for (int i = 0; i < 4; ++i) p[i] = x.row(c.vertices[i]).transpose();
+    return collision::squaredDistance(c.kind, p) >= c.range * c.range;
+  });
+
+  if (state.separating) {
+    double least = 1;
+    for (const Contact& c : contacts) {
+      collision::FourPoints p;
+      for (int i = 0; i < 4; ++i) p[i] = x.row(c.vertices[i]).transpose();
+      least = std::min(least, std::sqrt(collision::squaredDistance(c.kind, p)) / c.range);
+    }
+    if (least > kSeparated || state.iteration >= kSeparatingIterations) state.separating = false;
+  }
+  IterationRecord now;
+  now.iteration = state.iteration + 1;
+  now.objectiveBefore = objective(x, contacts, nullptr);
+
+  Positions gradient = Positions::Zero(x.rows(), 3);
+  patch.addGradient(x, viewpoints, strengths(), state.multipliers, gradient);
+  const auto forces = collision::contactForces(contacts, x);
+  const double scale = contactScale();
+  for (std::size_t n = 0; n < contacts.size(); ++n) {
+    for (int i = 0; i < 4; ++i) {
+      gradient.row(contacts[n].vertices[i]) +=
+          scale * forces[n].gradient.segment<3>(3 * i).transpose();
+    }
+  }
+  const auto unknownCount = static_cast<std::int32_t>(moving.size());
+  Positions rightSide(unknownCount, 3);
+  for (std::int32_t i = 0; i < unknownCount; ++i) rightSide.row(i) = -gradient.row(moving[i]);
+
+  Couplings couplings = meshCouplings;
+  for (const Contact& contact : contacts) {
+    for (int i = 0; i < 4; ++i) {
+      for (int j = 0; j < i; ++j) {
+        const std::int32_t a = unknown[contact.vertices[i]], b = unknown[contact.vertices[j]];
+        if (a >= 0 && b >= 0) couplings.emplace_back(std::max(a, b), std::min(a, b));
+      }
+    }
+  }
+
+  constexpr int kMaxAttempts = 12;
+  Positions direction;
+  for (int attempt = 0; attempt < kMaxAttempts; ++attempt, state.damping *= 4) {
+    system.reset(unknownCount, couplings);
+    patch.addStiffness(x, strengths(), state.multipliers, unknown, system);
+    for (std::size_t n = 0; n < contacts.size(); ++n) {
+      if (forces[n].curvature == 0) continue;
+      for (int i = 0; i < 4; ++i) {
+        const std::int32_t a = unknown[contacts[n].vertices[i]];
+        if (a < 0) continue;
+        for (int j = 0; j <= i; ++j) {
+          const std::int32_t b = unknown[contacts[n].vertices[j]];
+          if (b < 0) continue;
+          system.add(a, b,
+                     scale * forces[n].curvature * forces[n].direction.segment<3>(3 * i) *
+                         forces[n].direction.segment<3>(3 * j).transpose());
+        }
+      }
+    }
+    constexpr double kMassShare = 0.01;  // of the damping: the rest is the graph Laplacian
+    const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
+    for (const auto& [i, j] : meshCouplings) {
+      system.add(i, i, state.damping * identity);
+      system.add(j, j, state.damping * identity);
+      system.add(i, j, -state.damping * identity);
+    }
+    system.addDiagonal(kMassShare * state.damping + 1e-9);
+    ++now.solves;
+    if (!system.solve(rightSide, direction)) continue;
+
+    double largest = std::sqrt(direction.rowwise().squaredNorm().maxCoeff());
+    const double cap = options.largestMove * edge;
+    if (largest > cap) {
+      direction *= cap / largest;
+      largest = cap;
+    }
+    const double slope = -(rightSide.array() * direction.array()).sum();
+    if (!(slope < 0)) continue;
+    Positions motion = Positions::Zero(x.rows(), 3);
+    for (std::int32_t i = 0; i < unknownCount; ++i) motion.row(moving[i]) = direction.row(i);
+
+    std::vector<Pair> pairs = scene->findPairs(x, motion, contactRange);
+    now.safeStep = collision::largestSafeStep(*scene, pairs, x, motion);
+    const std::vector<Contact> onTheWay = contactsOf(pairs);
+    double taken = now.safeStep;
+    constexpr int kMaxHalvings = 8;
+    bool accepted = false;
+    Positions trial;
+    for (int halving = 0; halving < kMaxHalvings && taken > 0; ++halving, taken *= 0.5) {
+      trial = x + taken * motion;
+      now.objectiveAfter = objective(trial, onTheWay, &now);
+      constexpr double kArmijo = 1e-4;
+      if (now.objectiveAfter <= now.objectiveBefore + kArmijo * taken * slope) {
+        accepted = true;
+        break;
+      }
+    }
+    if (!accepted) continue;
+
+    now.step = taken;
+    now.largestMove = taken * largest;
+    now.damping = state.damping;
+    now.contacts = static_cast<int>(contacts.size());
+    double nearest = kInfinity;
+    for (const Contact& c : contacts) {
+      collision::FourPoints p;
+      for (int i = 0; i < 4; ++i) p[i] = x.row(c.vertices[i]).transpose();
+      nearest = std::min(nearest, collision::squaredDistance(c.kind, p));
+    }
+    now.nearestContact = contacts.empty() ? kNaN : std::sqrt(nearest);
+    state.positions = trial;
+    state.iteration = now.iteration;
+    near = std::move(pairs);
+    if (taken == 1) {
+      state.damping = std::max(kLeastDamping, state.damping / 4);
+    } else if (taken < 0.25 * now.safeStep) {
+      state.damping *= 2;
+    }
+    updateMultipliers();
+    measure(now);
+    if (!state.separating && std::abs(now.visibility - record.visibility) < kSlowGain) {
+      state.areaStiffness =
+          std::min(kTightest * options.weights.area, kTightening * state.areaStiffness);
+    }
+    record = now;
+    return true;
+  }
+  state.stalled = true;
+  return false;
+}
+
+Unfolder::Unfolder(TriangleMesh mesh, Region region, visibility::Viewpoints viewpoints,
+                   const UnfolderOptions& options)
+    : self_(std::make_unique<Implementation>()) {
+  self_->mesh = std::move(mesh);
+  self_->region = std::move(region);
+  self_->viewpoints = std::move(viewpoints);
+  self_->options = options;
+  self_->build();
+}
+Unfolder::~Unfolder() = default;
+Unfolder::Unfolder(Unfolder&&) noexcept = default;
+Unfolder& Unfolder::operator=(Unfolder&&) noexcept = default;
+
+bool Unfolder::step() {
+  return self_->step();
+}
+const UnfoldState& Unfolder::state() const {
+  return self_->state;
+}
+void Unfolder::restore(UnfoldState state) {
+  if (state.positions.rows() != self_->mesh.vertexCount() ||
+      state.multipliers.size() != self_->state.multipliers.size()) {
+    throw InvalidInput("state: it belongs to another surface or region");
+  }
+  self_->state = std::move(state);
+  self_->nearKnown = false;
+  self_->measure(self_->record);
+}
+const IterationRecord& Unfolder::record() const {
+  return self_->record;
+}
+const TriangleMesh& Unfolder::reference() const {
+  return self_->mesh;
+}
+TriangleMesh Unfolder::current() const {
+  return {self_->state.positions, self_->mesh.faces};
+}
+const Region& Unfolder::region() const {
+  return self_->region;
+}
+const std::vector<std::int32_t>& Unfolder::movingVertices() const {
+  return self_->moving;
+}
+void Unfolder::setViewpoints(visibility::Viewpoints viewpoints) {
+  self_->viewpoints = std::move(viewpoints);
+}
+void Unfolder::setWeights(const UnfoldWeights& weights) {
+  self_->options.weights = weights;
+  self_->state.areaStiffness = std::max(self_->state.areaStiffness, weights.area);
+}
+const UnfoldWeights& Unfolder::weights() const {
+  return self_->options.weights;
+}
+
+}  // namespace explica::unfolding
