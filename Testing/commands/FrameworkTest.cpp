@@ -9,7 +9,9 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdlib>
+#include <sstream>
 
 namespace explica::testing {
 namespace {
@@ -237,6 +239,49 @@ TEST(Framework, ASecondRunIntoTheSameFolderRefuses) {
   EXPECT_EQ(taken.exitCode, 0) << taken;
   EXPECT_TRUE(contains(taken.err, "killed")) << taken;
   EXPECT_FALSE(fs::exists(folder / "a/.explica-lock"));
+}
+
+TEST(Framework, AKilledRunLeavesWholeFilesAndTheNextGivesTheSameBytes) {
+  TemporaryFolder folder;
+  const std::vector<std::string> line = {"phantom", "shell", "--size", "64", "--threads", "1"};
+  const auto run = [&](const std::string& out, const CommandSetting& setting = {}) {
+    auto words = line;
+    words.insert(words.end(), {"--force", "--out", out});
+    return explica(words, setting);
+  };
+  const auto begin = std::chrono::steady_clock::now();
+  ASSERT_EQ(run(folder / "undisturbed").exitCode, 0);
+  const std::chrono::duration<double> whole = std::chrono::steady_clock::now() - begin;
+  const auto expected = stableHashes(folder / "undisturbed");
+
+  constexpr int kKills = 50;
+  int killed = 0;
+  for (int i = 0; i < kKills; ++i) {
+    // A fresh folder, and one that is there: results appear in two different ways.
+    const std::string out = folder / (i % 2 ? "fresh" : "there");
+    if (i % 2 == 0) fs::create_directories(out);
+    CommandSetting setting;
+    setting.signal = SIGKILL;
+    setting.signalAfter = whole.count() * (i + 0.5) / kKills;
+    killed += run(out, setting).exitCode == 128 + SIGKILL;
+    if (fs::exists(out)) {
+      for (const auto& entry : fs::directory_iterator(out)) {
+        const std::string name = entry.path().filename().string();
+        if (name.rfind(".explica-", 0) == 0) continue;
+        if (expected.count(name)) {
+          ASSERT_EQ(readText(entry.path()), readText(folder / "undisturbed/" + name)) << name;
+        } else {
+          ASSERT_NO_THROW((void)readJson(entry.path())) << name;
+        }
+      }
+    }
+    const auto again = run(out);
+    ASSERT_EQ(again.exitCode, 0) << again;
+    ASSERT_EQ(stableHashes(out), expected) << "after kill " << i;
+    fs::remove_all(out);
+  }
+  EXPECT_GT(killed, kKills / 4);
+  EXPECT_EQ(folder.entries().size(), expected.size() + 3);  // the undisturbed run's, no remains
 }
 
 TEST(Framework, PrivateRecordsNameNoHostUserOrFolder) {

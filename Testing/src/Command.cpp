@@ -71,7 +71,7 @@ CommandResult runProgram(const std::vector<std::string>& words, const CommandSet
   std::string* texts[2] = {&result.out, &result.err};
   int open = 2;
   while (open > 0) {
-    poll(ends, 2, 50);
+    poll(ends, 2, 2);
     for (int i = 0; i < 2; ++i) {
       if (ends[i].fd < 0 || !(ends[i].revents & (POLLIN | POLLHUP))) continue;
       char buffer[4096];

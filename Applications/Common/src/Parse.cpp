@@ -91,7 +91,9 @@ std::set<std::string> applyJson(std::vector<Parameter*> parameters, const proven
   if (!values.is_object()) throw UsageError(source + ": must hold one JSON object");
   const provenance::Json flat = provenance::flattenKeys(values);
   std::set<std::string> names;
-  for (const auto& [key, value] : flat.items()) {
+  for (const auto& entry : flat.items()) {
+    const std::string& key = entry.key();
+    const provenance::Json& value = entry.value();
     const auto found = std::find_if(parameters.begin(), parameters.end(),
                                     [&](const Parameter* p) { return p->option.name == key; });
     if (found == parameters.end()) {
