@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Core/Volume.h"
+
+#include <array>
+#include <cstdint>
+
+namespace explica::surface {
+
+/// A boundary with sub-voxel position: the zero of a scalar that is positive inside.
+///
+/// Values are without unit, in [-1, 1]: twice a share of the voxel, less one.
+using LevelSet = Volume<float>;
+
+/// A sign's least magnitude: a lattice point is never nearer to the surface than this share of
+/// an edge whose other end has level 1.
+inline constexpr float kLeastLevel = 0.05F;
+
+/// Voxels of the smallest box that holds every voxel of `mask` that is not 0, widened by `margin`
+/// voxels; the box may reach beyond the volume.
+struct VoxelBox {
+  std::array<int, 3> low = {0, 0, 0};
+  std::array<int, 3> size = {0, 0, 0};  ///< all 0 if the mask is empty
+};
+[[nodiscard]] VoxelBox boundingBox(const Volume<std::uint8_t>& mask, int margin);
+
+/// The lattice of a box.
+[[nodiscard]] Grid gridOf(const Grid& grid, const VoxelBox& box);
+
+/// Part of a volume; voxels beyond it get `outside`.
+[[nodiscard]] Volume<std::uint8_t> crop(const Volume<std::uint8_t>& volume, const VoxelBox& box,
+                                        std::uint8_t outside = 0);
+[[nodiscard]] Volume<float> crop(const Volume<float>& volume, const VoxelBox& box, float outside);
+
+/// Level set of a mask without its staircase.
+///
+/// The mask is blurred by a Gaussian of `blur` voxels, and its sign is then enforced at every voxel
+/// with at least kLeastLevel: so the surface is smooth where the mask allows it, and thin sheets
+/// and strands of one voxel survive.  Threaded; deterministic.
+[[nodiscard]] LevelSet levelSetOf(const Volume<std::uint8_t>& mask, double blur);
+
+/// Level set of shares in [0, 1] whose 0.5 is the boundary: 2 p - 1, kept off zero.
+[[nodiscard]] LevelSet levelSetOf(const Volume<float>& share);
+
+/// Trilinear value and gradient (per mm, world axes) of a level set; beyond the lattice the nearest
+/// border cell's.
+struct LevelSample {
+  double value = 0;
+  Vector gradient = Vector::Zero();
+};
+[[nodiscard]] LevelSample sample(const LevelSet& level, const Point& world);
+
+}  // namespace explica::surface

@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Core/Monitor.h"
+#include "Explica/Core/TriangleMesh.h"
+#include "Explica/Surface/LevelSet.h"
+
+#include <cstdint>
+
+namespace explica::surface {
+
+/// How a closed surface gets triangles of nearly equal shape and size.
+struct RemeshOptions {
+  std::int64_t faces = 150000;  ///< wanted; met exactly (to the next even number) where possible
+  int rounds = 5;               ///< of splitting, collapsing, flipping and smoothing
+};
+
+/// What a remeshing did.
+struct RemeshResult {
+  TriangleMesh mesh;
+  double edgeLength = 0;          ///< aimed at, mm
+  std::int64_t stepsRefused = 0;  ///< vertex moves that would have made the surface meet itself
+};
+
+/// Isotropic remeshing of a level set's surface [Botsch2004]: long edges are split, short ones
+/// collapsed, valences evened by flips, vertices centred among their neighbours in the tangent
+/// plane and put back on the level set.
+///
+/// Every step keeps the topology and is refused if it would make the surface intersect itself,
+/// judged by exact predicates: so the result has the topology of the input and, as the input,
+/// no self-intersection.
+///
+/// @param mesh   closed manifold without self-intersection, near the zero of `level`
+/// @throws InvalidInput  mesh not closed, or fewer than 100 faces wanted
+/// Deterministic.
+[[nodiscard]] RemeshResult remesh(const TriangleMesh& mesh, const LevelSet& level,
+                                  const RemeshOptions& options = {}, const Monitor& monitor = {});
+
+}  // namespace explica::surface

@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Core/Describe.h"
+#include "Explica/Core/Monitor.h"
+#include "Explica/Surface/LevelSet.h"
+
+#include <array>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace explica::surface {
+
+/// What was wrong with the segmentation at one place.
+enum class DefectKind {
+  Handle,  ///< a bridge of foreground, cut
+  Tunnel,  ///< a hole through foreground, filled
+  Island,  ///< foreground that is not connected to the rest, removed
+  Cavity   ///< background enclosed by foreground, filled
+};
+
+/// Whether handles and tunnels are removed.
+enum class GenusRule {
+  Zero,  ///< the surface becomes a sphere
+  Keep   ///< handles and tunnels stay; islands and cavities do not
+};
+
+/// One correction.
+struct Defect {
+  DefectKind kind = DefectKind::Handle;
+  Point place = Point::Zero();    ///< centre of the changed voxels, RAS mm
+  std::int64_t voxels = 0;        ///< changed
+  double cost = 0;                ///< sum of |level| over them: evidence overruled
+  double alternativeCost = kNaN;  ///< of the other side's correction; NaN if there was none
+};
+
+struct TopologyResult {
+  LevelSet level;               ///< as given, with the sign of changed voxels turned
+  std::vector<Defect> defects;  ///< largest first
+  std::int64_t voxelsChanged = 0;
+  std::int64_t handlesLeft = 0;  ///< genus of the result; 0 unless GenusRule::Keep
+};
+
+/// Makes the set of positive voxels a ball in the sense of the Freudenthal triangulation of the
+/// lattice: connected, without cavity, without handle; so that its boundary, which
+/// extractIsoSurface() gives, is a sphere.
+///
+/// Two homotopic growths bound the correction from both sides: from the deepest voxel outward,
+/// deepest first, within the foreground (what it cannot reach are cuts), and from the border of
+/// the box inward, farthest first, outside the foreground (what it cannot reach are fills).  Each
+/// fill that lets the growth recover more evidence than it overrules replaces the cuts that it
+/// makes needless.  Ranks are Euclidean distances in mm, so anisotropic voxels are treated alike.
+///
+/// @param level  positive inside, nowhere 0, negative on the border of the box
+/// @throws InvalidInput  no positive voxel, or one on the border of the box
+/// Does not depend on the number of threads.
+[[nodiscard]] TopologyResult correctTopology(const LevelSet& level,
+                                             GenusRule rule = GenusRule::Zero,
+                                             const Monitor& monitor = {});
+
+/// Euler characteristic of the boundary between positive and negative voxels.
+[[nodiscard]] std::int64_t boundaryEulerCharacteristic(const LevelSet& level);
+
+/// Distance from each voxel's centre to the nearest voxel with mask == target, mm; 0 on those.
+[[nodiscard]] Volume<float> distanceTo(const Volume<std::uint8_t>& mask, std::uint8_t target);
+
+}  // namespace explica::surface
+
+namespace explica {
+
+template <>
+struct EnumNames<surface::DefectKind> {
+  static constexpr std::array table = {std::pair{surface::DefectKind::Handle, "handle"},
+                                       std::pair{surface::DefectKind::Tunnel, "tunnel"},
+                                       std::pair{surface::DefectKind::Island, "island"},
+                                       std::pair{surface::DefectKind::Cavity, "cavity"}};
+};
+
+template <>
+struct EnumNames<surface::GenusRule> {
+  static constexpr std::array table = {std::pair{surface::GenusRule::Zero, "zero"},
+                                       std::pair{surface::GenusRule::Keep, "keep"}};
+};
+
+}  // namespace explica

@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Core/TriangleMesh.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace explica::surface {
+
+/// A closed triangle mesh that changes by small steps and cannot intersect itself.
+///
+/// Each step (moving a vertex, collapsing, flipping or splitting an edge) is refused if it would
+/// change the topology, or if one of the faces that it makes would meet another face apart from a
+/// common vertex or edge, as decided by exact predicates.  So a mesh that starts without
+/// self-intersection never has one.  Faces are found through a lattice of cells in space.
+class GuardedMesh {
+ public:
+  using Corners = std::array<std::int32_t, 3>;
+
+  /// @param mesh  closed manifold without self-intersection (not checked)
+  /// @param cell  edge of the search cells, mm; about the length of an edge
+  GuardedMesh(const TriangleMesh& mesh, double cell);
+
+  [[nodiscard]] std::int32_t vertexSlots() const {
+    return static_cast<std::int32_t>(positions_.size());
+  }
+  [[nodiscard]] std::int32_t faceSlots() const { return static_cast<std::int32_t>(faces_.size()); }
+  [[nodiscard]] std::int64_t faceCount() const { return faceCount_; }
+  [[nodiscard]] bool hasVertex(std::int32_t v) const { return !vertexFaces_[v].empty(); }
+  [[nodiscard]] bool hasFace(std::int32_t f) const { return faces_[f][0] >= 0; }
+  [[nodiscard]] const Point& at(std::int32_t v) const { return positions_[v]; }
+  [[nodiscard]] const Corners& face(std::int32_t f) const { return faces_[f]; }
+  [[nodiscard]] const std::vector<std::int32_t>& facesOf(std::int32_t v) const {
+    return vertexFaces_[v];
+  }
+  [[nodiscard]] std::size_t valence(std::int32_t v) const { return vertexFaces_[v].size(); }
+  /// (b - a) x (c - a).
+  [[nodiscard]] Vector normalOf(std::int32_t f) const;
+  /// The corner that faces the directed edge (a, b) from its left side, or -1.
+  [[nodiscard]] std::int32_t opposite(std::int32_t a, std::int32_t b) const;
+  [[nodiscard]] bool areJoined(std::int32_t a, std::int32_t b) const;
+
+  /// Moves a vertex.
+  bool move(std::int32_t v, const Point& to);
+  /// As move(), for several threads at once: `scratch` is the caller's own, and no two threads may
+  /// work within `kReach` faces of each other.
+  struct Scratch {
+    std::vector<std::uint32_t> stamp;  ///< per face: query that met it last
+    std::uint32_t query = 0;
+  };
+  bool move(std::int32_t v, const Point& to, Scratch& scratch);
+
+  /// What a collapse must keep.
+  struct CollapseLimits {
+    double longestEdge = 0;      ///< no new edge may be longer, mm
+    double leastCosine = 0.2;    ///< between a face's normals before and after
+    double leastQuality = 0.15;  ///< 4 sqrt(3) area / sum of squared edges of new faces
+  };
+  /// Joins u to v, which goes to `to`.
+  bool collapse(std::int32_t u, std::int32_t v, const Point& to, const CollapseLimits& limits);
+  /// Replaces edge (a, b) by the one between the corners that face it.
+  bool flip(std::int32_t a, std::int32_t b);
+  /// Puts a vertex at the middle of edge (a, b).
+  /// @return the vertex, or -1 if refused
+  std::int32_t split(std::int32_t a, std::int32_t b);
+
+  /// The mesh, vertices and faces in the order of their slots.
+  [[nodiscard]] TriangleMesh toMesh() const;
+
+ private:
+  struct Placed {
+    Corners corners;
+    std::array<Point, 3> points;
+    std::array<float, 6> box;
+  };
+  using CellRange = std::array<int, 6>;
+
+  [[nodiscard]] Placed place(const Corners& corners, std::int32_t moved, const Point& to) const;
+  /// True if the faces made meet nothing but what they may; `removed` are left out of account.
+  bool admissible(std::span<const Placed> made, std::span<const std::int32_t> removed,
+                  Scratch& scratch) const;
+  [[nodiscard]] CellRange cellsOf(const std::array<float, 6>& box) const;
+  void enter(std::int32_t f);
+  void leave(std::int32_t f);
+  std::int32_t addFace(const Corners& corners);
+  void removeFace(std::int32_t f);
+
+  std::vector<Point> positions_;
+  std::vector<Corners> faces_;
+  std::vector<std::array<float, 6>> boxes_;
+  std::vector<std::vector<std::int32_t>> vertexFaces_;
+  std::vector<std::int32_t> freeFaces_, freeVertices_;
+  std::int64_t faceCount_ = 0;
+  Point cellOrigin_ = Point::Zero();
+  double cellsPerMm_ = 1;
+  std::array<int, 3> cellSize_ = {1, 1, 1};
+  std::vector<std::vector<std::int32_t>> cells_;
+  Scratch scratch_;
+};
+
+}  // namespace explica::surface

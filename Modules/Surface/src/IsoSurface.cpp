@@ -1,0 +1,143 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Surface/IsoSurface.h"
+
+#include "Explica/Core/Errors.h"
+#include "Freudenthal.h"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <array>
+
+namespace explica::surface {
+namespace {
+
+/// Corners of a cell are numbered by bits: 1 along i, 2 along j, 4 along k.
+constexpr std::array<std::array<int, 4>, 6> kTetrahedra = {
+    {{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}}};
+
+/// Step number of the difference of two corners, higher less lower.
+constexpr std::array<int, 8> kStepOfBits = {-1, 0, 1, 3, 2, 4, 5, 6};
+
+/// Walks cells slice by slice and remembers the vertices on the edges of two slices.
+class Marcher {
+ public:
+  explicit Marcher(const LevelSet& level) : level_(level), size_(level.grid.size) {
+    for (auto& slice : vertexOnEdge_) slice.assign(7ul * size_[0] * size_[1], -1);
+    turned_ = level.grid.direction.determinant() < 0;
+  }
+
+  TriangleMesh run() {
+    for (int k = 0; k + 1 < size_[2]; ++k) {
+      for (int j = 0; j + 1 < size_[1]; ++j) {
+        for (int i = 0; i + 1 < size_[0]; ++i) visitCell(i, j, k);
+      }
+      std::swap(vertexOnEdge_[0], vertexOnEdge_[1]);
+      std::fill(vertexOnEdge_[1].begin(), vertexOnEdge_[1].end(), -1);
+    }
+    TriangleMesh mesh;
+    mesh.positions.resize(static_cast<Eigen::Index>(points_.size()), 3);
+    for (std::size_t v = 0; v < points_.size(); ++v) mesh.positions.row(v) = points_[v];
+    mesh.faces.resize(static_cast<Eigen::Index>(faces_.size()), 3);
+    for (std::size_t f = 0; f < faces_.size(); ++f) {
+      for (int c = 0; c < 3; ++c) mesh.faces(f, c) = faces_[f][c];
+    }
+    return mesh;
+  }
+
+ private:
+  void visitCell(int i, int j, int k) {
+    unsigned inside = 0;
+    for (int c = 0; c < 8; ++c) {
+      value_[c] = level_(i + (c & 1), j + (c >> 1 & 1), k + (c >> 2));
+      if (value_[c] > 0) inside |= 1u << c;
+    }
+    if (inside == 0 || inside == 0xff) return;
+    corner_ = {i, j, k};
+    for (const auto& tetrahedron : kTetrahedra) visitTetrahedron(tetrahedron, inside);
+  }
+
+  void visitTetrahedron(std::array<int, 4> t, unsigned inside) {
+    // Inside corners first, by swaps; each swap turns the orientation.
+    bool even = !turned_;
+    int count = 0;
+    for (int c = 0; c < 4; ++c) {
+      if (!(inside >> t[c] & 1u)) continue;
+      if (c != count) {
+        std::swap(t[c], t[count]);
+        even = !even;
+      }
+      ++count;
+    }
+    if (count == 1) {
+      addFace(vertexOn(t[0], t[1]), vertexOn(t[0], t[2]), vertexOn(t[0], t[3]), even);
+    } else if (count == 3) {
+      addFace(vertexOn(t[3], t[0]), vertexOn(t[3], t[1]), vertexOn(t[3], t[2]), even);
+    } else if (count == 2) {
+      const int ac = vertexOn(t[0], t[2]), ad = vertexOn(t[0], t[3]);
+      const int bd = vertexOn(t[1], t[3]), bc = vertexOn(t[1], t[2]);
+      if ((points_[ac] - points_[bd]).squaredNorm() <= (points_[ad] - points_[bc]).squaredNorm()) {
+        addFace(ac, ad, bd, even);
+        addFace(ac, bd, bc, even);
+      } else {
+        addFace(ac, ad, bc, even);
+        addFace(ad, bd, bc, even);
+      }
+    }
+  }
+
+  void addFace(int a, int b, int c, bool even) {
+    faces_.push_back(even ? std::array{a, b, c} : std::array{a, c, b});
+  }
+
+  int vertexOn(int a, int b) {
+    if (a > b) std::swap(a, b);
+    const int step = kStepOfBits[b ^ a];
+    const int i = corner_[0] + (a & 1), j = corner_[1] + (a >> 1 & 1), up = a >> 2;
+    int& vertex = vertexOnEdge_[up][7ul * (i + static_cast<std::size_t>(size_[0]) * j) + step];
+    if (vertex < 0) {
+      const double t = std::clamp(static_cast<double>(value_[a]) / (value_[a] - value_[b]),
+                                  kLeastFraction, 1 - kLeastFraction);
+      const Vector low(i, j, corner_[2] + up);
+      const Vector way(kSteps[step][0], kSteps[step][1], kSteps[step][2]);
+      vertex = static_cast<int>(points_.size());
+      points_.push_back(level_.grid.toWorld(low + t * way));
+    }
+    return vertex;
+  }
+
+  const LevelSet& level_;
+  std::array<int, 3> size_;
+  bool turned_ = false;
+  std::array<int, 3> corner_ = {0, 0, 0};
+  std::array<float, 8> value_ = {};
+  std::array<std::vector<int>, 2> vertexOnEdge_;
+  std::vector<Point> points_;
+  std::vector<std::array<int, 3>> faces_;
+};
+
+void requireNegativeBorder(const LevelSet& level) {
+  const auto& n = level.grid.size;
+  for (int k = 0; k < n[2]; ++k) {
+    for (int j = 0; j < n[1]; ++j) {
+      const bool wholeRow = k == 0 || j == 0 || k == n[2] - 1 || j == n[1] - 1;
+      for (int i = 0; i < n[0]; i += wholeRow ? 1 : std::max(1, n[0] - 1)) {
+        if (level(i, j, k) > 0) {
+          throw InvalidInput(
+              "level: positive on the border of its box; widen the box by a layer of background");
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+
+TriangleMesh extractIsoSurface(const LevelSet& level) {
+  requireNegativeBorder(level);
+  return Marcher(level).run();
+}
+
+}  // namespace explica::surface

@@ -1,0 +1,235 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Surface/Remesh.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Geometry/MeshMeasures.h"
+#include "Explica/Geometry/MeshTopology.h"
+#include "GuardedMesh.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+namespace explica::surface {
+namespace {
+
+/// Edges longer than kLong times the aim are split, shorter than kShort times it are collapsed
+/// [Botsch2004, Sec. 4].
+constexpr double kLong = 4.0 / 3;
+constexpr double kShort = 4.0 / 5;
+
+using Edge = std::array<std::int32_t, 2>;
+
+class Remesher {
+ public:
+  Remesher(const TriangleMesh& mesh, const LevelSet& level, double edge)
+      : mesh_(mesh, edge), level_(level), edge_(edge), voxel_(level.grid.spacing.minCoeff()) {}
+
+  void setEdge(double edge) { edge_ = edge; }
+  [[nodiscard]] double edge() const { return edge_; }
+  [[nodiscard]] GuardedMesh& mesh() { return mesh_; }
+  [[nodiscard]] std::int64_t refused() const { return refused_; }
+
+  void splitLong() {
+    for (const Edge& e : edges([&](double length) { return length > kLong * edge_; }, true)) {
+      if (mesh_.areJoined(e[0], e[1])) mesh_.split(e[0], e[1]);
+    }
+  }
+
+  void collapseShort(double share) {
+    GuardedMesh::CollapseLimits limits;
+    limits.longestEdge = kLong * edge_;
+    for (const Edge& e : edges([&](double length) { return length < share * edge_; }, false)) {
+      if (stillShort(e, share * edge_)) collapse(e, limits);
+    }
+  }
+
+  void flipForValence() {
+    for (std::int32_t f = 0; f < mesh_.faceSlots(); ++f) {
+      if (!mesh_.hasFace(f)) continue;
+      for (int k = 0; k < 3 && mesh_.hasFace(f); ++k) {
+        const std::int32_t a = mesh_.face(f)[k], b = mesh_.face(f)[(k + 1) % 3];
+        if (a < b && wantsFlip(a, b)) mesh_.flip(a, b);
+      }
+    }
+  }
+
+  void smooth() {
+    for (std::int32_t v = 0; v < mesh_.vertexSlots(); ++v) {
+      if (!mesh_.hasVertex(v)) continue;
+      const Point target = centred(v);
+      if (mesh_.move(v, onLevel(v, target))) continue;
+      // Half way is often free where the whole way is not.
+      if (!mesh_.move(v, 0.5 * (mesh_.at(v) + target))) ++refused_;
+    }
+  }
+
+  /// Collapses the shortest or splits the longest edges until the count is met.
+  void meetCount(std::int64_t wanted) {
+    for (int pass = 0; pass < 6 && mesh_.faceCount() != wanted; ++pass) {
+      const bool tooMany = mesh_.faceCount() > wanted;
+      GuardedMesh::CollapseLimits limits;
+      limits.longestEdge = (kLong + 0.2 * pass) * edge_;
+      limits.leastQuality = 0.3;
+      const double share = tooMany ? kShort + 0.15 * (pass + 1) : 1.1 - 0.1 * pass;
+      for (const Edge& e : edges(
+               [&](double length) {
+                 return tooMany ? length < share * edge_ : length > share * edge_;
+               },
+               !tooMany)) {
+        if (tooMany ? mesh_.faceCount() <= wanted : mesh_.faceCount() >= wanted) break;
+        if (!mesh_.hasVertex(e[0]) || !mesh_.hasVertex(e[1]) || !mesh_.areJoined(e[0], e[1])) {
+          continue;
+        }
+        if (tooMany) {
+          collapse(e, limits);
+        } else {
+          mesh_.split(e[0], e[1]);
+        }
+      }
+    }
+  }
+
+ private:
+  /// Edges whose length fulfils a condition, shortest first or longest first.
+  template <class Condition>
+  std::vector<Edge> edges(const Condition& wanted, bool longestFirst) const {
+    std::vector<std::pair<double, Edge>> found;
+    for (std::int32_t f = 0; f < mesh_.faceSlots(); ++f) {
+      if (!mesh_.hasFace(f)) continue;
+      for (int k = 0; k < 3; ++k) {
+        const std::int32_t a = mesh_.face(f)[k], b = mesh_.face(f)[(k + 1) % 3];
+        if (a > b) continue;
+        const double length = (mesh_.at(a) - mesh_.at(b)).norm();
+        if (wanted(length)) found.push_back({longestFirst ? -length : length, {a, b}});
+      }
+    }
+    std::sort(found.begin(), found.end());
+    std::vector<Edge> sorted;
+    sorted.reserve(found.size());
+    for (const auto& [length, e] : found) sorted.push_back(e);
+    return sorted;
+  }
+
+  [[nodiscard]] bool stillShort(const Edge& e, double limit) const {
+    return mesh_.hasVertex(e[0]) && mesh_.hasVertex(e[1]) && mesh_.areJoined(e[0], e[1]) &&
+           (mesh_.at(e[0]) - mesh_.at(e[1])).norm() < limit;
+  }
+
+  void collapse(const Edge& e, const GuardedMesh::CollapseLimits& limits) {
+    const Point middle = 0.5 * (mesh_.at(e[0]) + mesh_.at(e[1]));
+    if (mesh_.collapse(e[0], e[1], onLevel(e[1], middle), limits)) return;
+    if (mesh_.collapse(e[0], e[1], mesh_.at(e[1]), limits)) return;
+    mesh_.collapse(e[1], e[0], mesh_.at(e[0]), limits);
+  }
+
+  [[nodiscard]] bool wantsFlip(std::int32_t a, std::int32_t b) const {
+    const std::int32_t c = mesh_.opposite(a, b), d = mesh_.opposite(b, a);
+    if (c < 0 || d < 0) return false;
+    const auto excess = [&](std::int32_t v, int change) {
+      const int e = static_cast<int>(mesh_.valence(v)) + change - 6;
+      return e * e;
+    };
+    const int before = excess(a, 0) + excess(b, 0) + excess(c, 0) + excess(d, 0);
+    const int after = excess(a, -1) + excess(b, -1) + excess(c, 1) + excess(d, 1);
+    if (after >= before) return false;
+    // Flat enough before and after, so that the shape stays.
+    const Point &pa = mesh_.at(a), &pb = mesh_.at(b), &pc = mesh_.at(c), &pd = mesh_.at(d);
+    const Vector n1 = (pb - pa).cross(pc - pa), n2 = (pd - pa).cross(pb - pa);
+    const Vector m1 = (pd - pa).cross(pc - pa), m2 = (pb - pd).cross(pc - pd);
+    constexpr double kFlat = 0.7;
+    const auto flat = [](const Vector& x, const Vector& y) {
+      return x.dot(y) > kFlat * x.norm() * y.norm();
+    };
+    return flat(m1, m2) && flat(n1 + n2, m1) && flat(n1 + n2, m2);
+  }
+
+  /// Area-weighted mean of the ring's centroids, moved in the tangent plane only.
+  [[nodiscard]] Point centred(std::int32_t v) const {
+    Vector sum = Vector::Zero(), normal = Vector::Zero();
+    double weight = 0;
+    for (const std::int32_t f : mesh_.facesOf(v)) {
+      const auto& c = mesh_.face(f);
+      const Vector n = mesh_.normalOf(f);
+      const double area = n.norm();
+      sum += area / 3 * (mesh_.at(c[0]) + mesh_.at(c[1]) + mesh_.at(c[2]));
+      weight += area;
+      normal += n;
+    }
+    if (weight == 0) return mesh_.at(v);
+    const double length = normal.norm();
+    const Vector step = sum / weight - mesh_.at(v);
+    if (length == 0) return mesh_.at(v) + 0.5 * step;
+    normal /= length;
+    return mesh_.at(v) + step - normal * normal.dot(step);
+  }
+
+  /// Nearest zero of the level set along the gradient, if it is near and the surface's side of it
+  /// is right; the point itself otherwise.
+  [[nodiscard]] Point onLevel(std::int32_t v, const Point& from) const {
+    Vector normal = Vector::Zero();
+    for (const std::int32_t f : mesh_.facesOf(v)) normal += mesh_.normalOf(f);
+    Point p = from;
+    const double most = 0.5 * std::min(edge_, voxel_ * 2);
+    for (int step = 0; step < 3; ++step) {
+      const LevelSample s = sample(level_, p);
+      const double squared = s.gradient.squaredNorm();
+      if (squared < 1e-8 || s.gradient.dot(normal) > 0) return from;
+      p -= s.value / squared * s.gradient;
+      if ((p - from).squaredNorm() > most * most) return from;
+    }
+    return p;
+  }
+
+  GuardedMesh mesh_;
+  const LevelSet& level_;
+  double edge_;
+  double voxel_;
+  std::int64_t refused_ = 0;
+};
+
+double edgeFor(double area, std::int64_t faces) {
+  return std::sqrt(4 / std::sqrt(3.0) * area / static_cast<double>(faces));
+}
+
+}  // namespace
+
+RemeshResult remesh(const TriangleMesh& mesh, const LevelSet& level, const RemeshOptions& options,
+                    const Monitor& monitor) {
+  constexpr std::int64_t kFewestFaces = 100;
+  if (options.faces < kFewestFaces) {
+    throw InvalidInput("faces: " + std::to_string(options.faces) + " asked; at least " +
+                       std::to_string(kFewestFaces) + " are needed");
+  }
+  geometry::requireClosedManifold(mesh, "mesh");
+  // An equilateral mesh of edge a has edges from 4/5 to 4/3 of it; their mean area is a little less
+  // than that of the aim, which the rounds correct.
+  Remesher remesher(mesh, level, edgeFor(geometry::totalArea(mesh), options.faces));
+  const std::int64_t wanted = options.faces + options.faces % 2;
+  for (int round = 0; round < options.rounds && !monitor.shouldStop(); ++round) {
+    monitor.progress(static_cast<double>(round) / options.rounds, "remeshing");
+    remesher.splitLong();
+    if (round == 0) {
+      for (const double share : {0.4, 0.6}) remesher.collapseShort(share);
+      remesher.flipForValence();
+    }
+    remesher.collapseShort(kShort);
+    remesher.flipForValence();
+    remesher.smooth();
+    const double ratio = static_cast<double>(remesher.mesh().faceCount()) / wanted;
+    remesher.setEdge(remesher.edge() * std::clamp(std::sqrt(ratio), 0.7, 1.4));
+  }
+  remesher.meetCount(wanted);
+  for (int pass = 0; pass < 3; ++pass) {
+    remesher.flipForValence();
+    remesher.smooth();
+  }
+  monitor.progress(1.0, "remeshed");
+  return {remesher.mesh().toMesh(), remesher.edge(), remesher.refused()};
+}
+
+}  // namespace explica::surface

@@ -1,0 +1,451 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Surface/TopologyCorrection.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/Parallel.h"
+#include "Freudenthal.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace explica::surface {
+namespace {
+
+using Mask = std::vector<std::uint8_t>;
+
+/// Linear offsets of the 14 neighbours; border voxels must never be asked.
+std::array<std::ptrdiff_t, kNeighbours> neighbourOffsets(const Grid& grid) {
+  const std::ptrdiff_t row = grid.size[0], slice = row * grid.size[1];
+  std::array<std::ptrdiff_t, kNeighbours> offsets{};
+  for (int n = 0; n < kNeighbours; ++n) {
+    offsets[n] = kSteps[n][0] + kSteps[n][1] * row + kSteps[n][2] * slice;
+  }
+  return offsets;
+}
+
+bool onBorder(const Grid& grid, std::size_t v) {
+  const auto at = grid.subscripts(v);
+  for (int a = 0; a < 3; ++a) {
+    if (at[a] == 0 || at[a] == grid.size[a] - 1) return true;
+  }
+  return false;
+}
+
+/// Voxels by rank, highest first; equal ranks last in, first out.
+class RankedQueue {
+ public:
+  /// Ranks from 0 to `highest` mm are told apart at a sixteenth of `unit`.
+  RankedQueue(double highest, double unit)
+      : perMm_(16 / unit), buckets_(static_cast<std::size_t>(highest * perMm_) + 2) {}
+
+  void push(double rank, std::size_t voxel) {
+    const auto bucket =
+        std::min(buckets_.size() - 1, static_cast<std::size_t>(std::max(0.0, rank) * perMm_));
+    buckets_[bucket].push_back(static_cast<std::uint32_t>(voxel));
+    top_ = std::max(top_, static_cast<std::ptrdiff_t>(bucket));
+  }
+  /// Next voxel, or -1 if there is none.
+  std::ptrdiff_t pop() {
+    while (top_ >= 0 && buckets_[top_].empty()) --top_;
+    if (top_ < 0) return -1;
+    const std::ptrdiff_t voxel = buckets_[top_].back();
+    buckets_[top_].pop_back();
+    return voxel;
+  }
+
+ private:
+  double perMm_;
+  std::vector<std::vector<std::uint32_t>> buckets_;
+  std::ptrdiff_t top_ = -1;
+};
+
+/// A set of voxels that changes by simple points only.
+class HomotopicSet {
+ public:
+  HomotopicSet(const Grid& grid, Mask members)
+      : offsets_(neighbourOffsets(grid)), members_(std::move(members)) {}
+
+  [[nodiscard]] bool canChange(std::size_t v) const {
+    unsigned around = 0;
+    for (int n = 0; n < kNeighbours; ++n) {
+      around |= static_cast<unsigned>(members_[v + offsets_[n]]) << n;
+    }
+    return isSimple(static_cast<Neighbourhood>(around));
+  }
+
+  /// Turns every voxel with wanted[v] != members[v] that a chain of simple changes reaches, in the
+  /// order of rank.
+  void approach(const Mask& wanted, const Volume<float>& rank, double unit) {
+    double highest = 0;
+    for (float r : rank.data) highest = std::max(highest, static_cast<double>(r));
+    RankedQueue queue(highest, unit);
+    Mask queued(members_.size(), 0);
+    const auto offer = [&](std::size_t v) {
+      if (wanted[v] != members_[v] && !queued[v]) {
+        queued[v] = 1;
+        queue.push(rank[v], v);
+      }
+    };
+    for (std::size_t v = 0; v < members_.size(); ++v) {
+      if (wanted[v] == members_[v]) continue;
+      for (const auto offset : offsets_) {
+        if (members_[v + offset] == wanted[v]) {
+          offer(v);
+          break;
+        }
+      }
+    }
+    for (std::ptrdiff_t v = queue.pop(); v >= 0; v = queue.pop()) {
+      queued[v] = 0;
+      if (!canChange(v)) continue;
+      members_[v] = wanted[v];
+      for (const auto offset : offsets_) offer(v + offset);
+    }
+  }
+
+  [[nodiscard]] const Mask& members() const { return members_; }
+  [[nodiscard]] Mask& members() { return members_; }
+  [[nodiscard]] const auto& offsets() const { return offsets_; }
+
+ private:
+  std::array<std::ptrdiff_t, kNeighbours> offsets_;
+  Mask members_;
+};
+
+/// Pieces of a mask, each a list of voxels in the order of discovery; voxels on the border of the
+/// box are not followed.
+std::vector<std::vector<std::size_t>> pieces(const Mask& mask, const Grid& grid) {
+  const auto offsets = neighbourOffsets(grid);
+  std::vector<std::vector<std::size_t>> found;
+  Mask seen(mask.size(), 0);
+  for (std::size_t start = 0; start < mask.size(); ++start) {
+    if (!mask[start] || seen[start]) continue;
+    std::vector<std::size_t> piece = {start};
+    seen[start] = 1;
+    for (std::size_t next = 0; next < piece.size(); ++next) {
+      const std::size_t v = piece[next];
+      if (onBorder(grid, v)) continue;
+      for (const auto offset : offsets) {
+        const std::size_t w = v + offset;
+        if (mask[w] && !seen[w]) {
+          seen[w] = 1;
+          piece.push_back(w);
+        }
+      }
+    }
+    found.push_back(std::move(piece));
+  }
+  return found;
+}
+
+/// Squared distances along one row: lower envelope of parabolas of curvature `squaredStep`
+/// [Felzenszwalb2012].
+void transformRow(std::vector<double>& f, double squaredStep, std::vector<int>& sites,
+                  std::vector<double>& from, std::vector<double>& out) {
+  const int n = static_cast<int>(f.size());
+  int last = -1;
+  for (int q = 0; q < n; ++q) {
+    if (f[q] == kInfinity) continue;
+    double start = -kInfinity;
+    while (last >= 0) {
+      const int p = sites[last];
+      start = ((f[q] - f[p]) / squaredStep + static_cast<double>(q) * q -
+               static_cast<double>(p) * p) /
+              (2.0 * (q - p));
+      if (start > from[last]) break;
+      --last;
+    }
+    ++last;
+    sites[last] = q;
+    from[last] = last == 0 ? -kInfinity : start;
+  }
+  if (last < 0) return;
+  int current = 0;
+  for (int q = 0; q < n; ++q) {
+    while (current < last && from[current + 1] <= q) ++current;
+    const double d = q - sites[current];
+    out[q] = squaredStep * d * d + f[sites[current]];
+  }
+  f = out;
+}
+
+Defect describeChange(const LevelSet& level, const std::vector<std::size_t>& voxels,
+                      DefectKind kind) {
+  Defect defect;
+  defect.kind = kind;
+  defect.voxels = static_cast<std::int64_t>(voxels.size());
+  Vector sum = Vector::Zero();
+  for (const std::size_t v : voxels) {
+    const auto at = level.grid.subscripts(v);
+    sum += Vector(at[0], at[1], at[2]);
+    defect.cost += std::abs(level[v]);
+  }
+  defect.place = level.grid.toWorld(sum / static_cast<double>(voxels.size()));
+  return defect;
+}
+
+/// Turns islands and cavities over; records them.
+void cleanPieces(const LevelSet& level, Mask& inside, std::vector<Defect>& defects) {
+  const auto turnAllBut = [&](Mask side, std::uint8_t becomes, DefectKind kind, auto keep) {
+    auto parts = pieces(side, level.grid);
+    const auto kept = keep(parts);
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      if (static_cast<std::ptrdiff_t>(p) == kept) continue;
+      for (const std::size_t v : parts[p]) inside[v] = becomes;
+      defects.push_back(describeChange(level, parts[p], kind));
+    }
+  };
+  turnAllBut(inside, 0, DefectKind::Island, [](const auto& parts) {
+    const auto largest =
+        std::max_element(parts.begin(), parts.end(),
+                         [](const auto& a, const auto& b) { return a.size() < b.size(); });
+    return largest - parts.begin();
+  });
+  // The background that reaches the border: the box's border voxels are joined through voxel 0.
+  Mask outside(inside.size());
+  for (std::size_t v = 0; v < inside.size(); ++v) outside[v] = !inside[v] && !onBorder(level.grid, v);
+  const auto offsets = neighbourOffsets(level.grid);
+  for (const auto& part : pieces(outside, level.grid)) {
+    const bool open = std::any_of(part.begin(), part.end(), [&](std::size_t v) {
+      return std::any_of(offsets.begin(), offsets.end(),
+                         [&](std::ptrdiff_t o) { return onBorder(level.grid, v + o); });
+    });
+    if (open) continue;
+    for (const std::size_t v : part) inside[v] = 1;
+    defects.push_back(describeChange(level, part, DefectKind::Cavity));
+  }
+}
+
+/// Voxels of a fill, grown into `set`, and what of `cut` became reachable by that; empty if it is
+/// not worth it.
+struct Trial {
+  std::vector<std::size_t> added;
+  double filledCost = 0;
+  double recoveredCost = 0;
+};
+
+Trial tryFill(HomotopicSet& set, const std::vector<std::size_t>& fill, const Mask& target,
+              Mask& inFill, const LevelSet& level) {
+  Trial trial;
+  std::vector<std::size_t> waiting(fill.rbegin(), fill.rend());
+  for (const std::size_t v : fill) inFill[v] = 1;
+  const auto& offsets = set.offsets();
+  // The fill's voxels first; then whatever of the cuts they have made simple.
+  for (const bool recovering : {false, true}) {
+    if (recovering) {
+      waiting.clear();
+      const std::vector<std::size_t> seeds = trial.added;
+      for (const std::size_t v : seeds) {
+        for (const auto offset : offsets) {
+          const std::size_t w = v + offset;
+          if (target[w] && !set.members()[w]) waiting.push_back(w);
+        }
+      }
+    }
+    while (!waiting.empty()) {
+      const std::size_t v = waiting.back();
+      waiting.pop_back();
+      if (set.members()[v] || !set.canChange(v)) continue;
+      set.members()[v] = 1;
+      trial.added.push_back(v);
+      (target[v] ? trial.recoveredCost : trial.filledCost) += std::abs(level[v]);
+      for (const auto offset : offsets) {
+        const std::size_t w = v + offset;
+        if (set.members()[w]) continue;
+        if (inFill[w] || (recovering && target[w])) waiting.push_back(w);
+      }
+    }
+  }
+  for (const std::size_t v : fill) inFill[v] = 0;
+  return trial;
+}
+
+/// Takes fill voxels back that the set does not need: simple ones, outermost first as listed.
+void takeBack(HomotopicSet& set, const std::vector<std::size_t>& added, const Mask& target) {
+  bool changed = true;
+  while (changed) {
+    changed = false;
+    for (const std::size_t v : added) {
+      if (!target[v] && set.members()[v] && set.canChange(v)) {
+        set.members()[v] = 0;
+        changed = true;
+      }
+    }
+  }
+}
+
+}  // namespace
+
+Volume<float> distanceTo(const Volume<std::uint8_t>& mask, std::uint8_t target) {
+  const Grid& grid = mask.grid;
+  const auto& n = grid.size;
+  Volume<float> squared(grid);
+  parallelFor(mask.size(), 1 << 16, [&](std::size_t v) {
+    squared[v] = mask[v] == target ? 0.0F : static_cast<float>(kInfinity);
+  });
+  for (int axis = 0; axis < 3; ++axis) {
+    const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+    const std::size_t strides[3] = {1, static_cast<std::size_t>(n[0]),
+                                    static_cast<std::size_t>(n[0]) * n[1]};
+    const double squaredStep = grid.spacing[axis] * grid.spacing[axis];
+    parallelForBlocks(n[b], 4, [&](std::size_t begin, std::size_t end) {
+      std::vector<double> f(n[axis]), from(n[axis]), out(n[axis]);
+      std::vector<int> sites(n[axis]);
+      for (std::size_t y = begin; y < end; ++y) {
+        for (int x = 0; x < n[a]; ++x) {
+          float* row = squared.data.data() + x * strides[a] + y * strides[b];
+          for (int i = 0; i < n[axis]; ++i) f[i] = row[i * strides[axis]];
+          transformRow(f, squaredStep, sites, from, out);
+          for (int i = 0; i < n[axis]; ++i) row[i * strides[axis]] = static_cast<float>(f[i]);
+        }
+      }
+    });
+  }
+  parallelFor(mask.size(), 1 << 16,
+              [&](std::size_t v) { squared[v] = std::sqrt(squared[v]); });
+  return squared;
+}
+
+std::int64_t boundaryEulerCharacteristic(const LevelSet& level) {
+  // The boundary surface's Euler characteristic is twice that of the foreground's complex; that is
+  // a sum over foreground simplices: points, edges, triangles, tetrahedra.
+  const auto offsets = neighbourOffsets(level.grid);
+  std::int64_t sum = 0;
+  for (std::size_t v = 0; v < level.size(); ++v) {
+    if (level[v] <= 0 || onBorder(level.grid, v)) continue;
+    // Simplices are counted at their lowest point: chains of steps up.
+    std::int64_t here = 1;
+    std::array<bool, 8> in{};
+    constexpr std::array<int, 7> bitsOfStep = {1, 2, 4, 3, 5, 6, 7};
+    for (int n = 0; n < 7; ++n) in[bitsOfStep[n]] = level[v + offsets[n]] > 0;
+    for (int a = 1; a < 8; ++a) {
+      if (!in[a]) continue;
+      --here;
+      for (int b = a + 1; b < 8; ++b) {
+        if (!in[b] || (a & b) != a) continue;
+        ++here;
+        for (int c = b + 1; c < 8; ++c) {
+          if (in[c] && (b & c) == b) --here;
+        }
+      }
+    }
+    sum += here;
+  }
+  return 2 * sum;
+}
+
+TopologyResult correctTopology(const LevelSet& level, GenusRule rule, const Monitor& monitor) {
+  const Grid& grid = level.grid;
+  TopologyResult result;
+  result.level = level;
+
+  Mask inside(level.size());
+  bool any = false;
+  for (std::size_t v = 0; v < level.size(); ++v) {
+    inside[v] = level[v] > 0;
+    any = any || inside[v];
+    if (inside[v] && onBorder(grid, v)) {
+      throw InvalidInput("level: positive on the border of its box; widen the box by background");
+    }
+  }
+  if (!any) throw InvalidInput("level: no positive voxel; nothing is inside the surface");
+
+  monitor.progress(0.0, "islands and cavities");
+  cleanPieces(level, inside, result.defects);
+
+  if (rule == GenusRule::Zero) {
+    const double unit = grid.spacing.minCoeff();
+    Volume<std::uint8_t> mask(grid);
+    mask.data = inside;
+
+    monitor.progress(0.2, "growing from inside");
+    const Volume<float> depth = distanceTo(mask, 0);
+    Mask seed(inside.size(), 0);
+    seed[std::max_element(depth.data.begin(), depth.data.end()) - depth.data.begin()] = 1;
+    HomotopicSet grown(grid, std::move(seed));
+    grown.approach(inside, depth, unit);
+
+    if (grown.members() != inside) {
+      monitor.progress(0.5, "growing from outside");
+      Mask box(inside.size());
+      for (std::size_t v = 0; v < box.size(); ++v) box[v] = !onBorder(grid, v);
+      HomotopicSet shrunk(grid, std::move(box));
+      shrunk.approach(inside, distanceTo(mask, 1), unit);
+
+      monitor.progress(0.8, "choosing between fills and cuts");
+      Mask difference(inside.size());
+      for (std::size_t v = 0; v < inside.size(); ++v) {
+        difference[v] = shrunk.members()[v] && !inside[v];
+      }
+      auto fills = pieces(difference, grid);
+      std::vector<std::pair<double, std::size_t>> order;
+      for (std::size_t f = 0; f < fills.size(); ++f) {
+        order.emplace_back(describeChange(level, fills[f], DefectKind::Tunnel).cost, f);
+      }
+      std::sort(order.begin(), order.end());
+      Mask inFill(inside.size(), 0);
+      std::vector<std::pair<Point, double>> accepted;  // place of a fill, what it recovered
+      for (const auto& [cost, f] : order) {
+        const Trial trial = tryFill(grown, fills[f], inside, inFill, level);
+        if (trial.recoveredCost > trial.filledCost) {
+          takeBack(grown, trial.added, inside);
+          accepted.emplace_back(describeChange(level, fills[f], DefectKind::Tunnel).place,
+                                trial.recoveredCost);
+        } else {
+          for (const std::size_t v : trial.added) grown.members()[v] = 0;
+        }
+      }
+      // Cuts whose fill was refused get that fill's price as the alternative.
+      const auto report = [&](DefectKind kind, bool cut) {
+        for (std::size_t v = 0; v < inside.size(); ++v) {
+          difference[v] = cut ? inside[v] && !grown.members()[v] : grown.members()[v] && !inside[v];
+        }
+        for (const auto& piece : pieces(difference, grid)) {
+          Defect defect = describeChange(level, piece, kind);
+          double nearest = kInfinity;
+          if (cut) {
+            for (const auto& [fillCost, f] : order) {
+              const Defect fill = describeChange(level, fills[f], DefectKind::Tunnel);
+              const double d = (fill.place - defect.place).squaredNorm();
+              if (d < nearest) {
+                nearest = d;
+                defect.alternativeCost = fillCost;
+              }
+            }
+          } else {
+            for (const auto& [place, recovered] : accepted) {
+              const double d = (place - defect.place).squaredNorm();
+              if (d < nearest) {
+                nearest = d;
+                defect.alternativeCost = recovered;
+              }
+            }
+          }
+          result.defects.push_back(defect);
+        }
+      };
+      report(DefectKind::Handle, true);
+      report(DefectKind::Tunnel, false);
+      inside = grown.members();
+    }
+  }
+
+  for (std::size_t v = 0; v < level.size(); ++v) {
+    if ((level[v] > 0) != (inside[v] != 0)) {
+      result.level[v] = inside[v] ? kLeastLevel : -kLeastLevel;
+      ++result.voxelsChanged;
+    }
+  }
+  std::sort(result.defects.begin(), result.defects.end(), [](const Defect& a, const Defect& b) {
+    return a.voxels != b.voxels ? a.voxels > b.voxels
+                                : std::lexicographical_compare(a.place.begin(), a.place.end(),
+                                                               b.place.begin(), b.place.end());
+  });
+  result.handlesLeft = 1 - boundaryEulerCharacteristic(result.level) / 2;
+  monitor.progress(1.0, "topology corrected");
+  return result;
+}
+
+}  // namespace explica::surface
