@@ -68,6 +68,9 @@ bool facesMeet(const GuardedMesh::Corners& fc, const std::array<Point, 3>& fp,
   }
 }
 
+/// Files hold float32: what is checked must be what is written.
+Point asStored(const Point& p) { return p.cast<float>().cast<double>(); }
+
 double qualityOf(const std::array<Point, 3>& p) {
   const double squares = (p[1] - p[0]).squaredNorm() + (p[2] - p[1]).squaredNorm() +
                          (p[0] - p[2]).squaredNorm();
@@ -80,7 +83,7 @@ GuardedMesh::GuardedMesh(const TriangleMesh& mesh, double cell)
     : positions_(mesh.vertexCount()), vertexFaces_(mesh.vertexCount()), cellsPerMm_(1 / cell) {
   Point low = Point::Constant(kInfinity), high = Point::Constant(-kInfinity);
   for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
-    positions_[v] = mesh.positions.row(v);
+    positions_[v] = asStored(mesh.positions.row(v));
     low = low.cwiseMin(positions_[v]);
     high = high.cwiseMax(positions_[v]);
   }
@@ -234,7 +237,8 @@ bool GuardedMesh::admissible(std::span<const Placed> made, std::span<const std::
 
 bool GuardedMesh::move(std::int32_t v, const Point& to) { return move(v, to, scratch_); }
 
-bool GuardedMesh::move(std::int32_t v, const Point& to, Scratch& scratch) {
+bool GuardedMesh::move(std::int32_t v, const Point& wanted, Scratch& scratch) {
+  const Point to = asStored(wanted);
   const auto& ring = vertexFaces_[v];
   if (ring.size() > kMostFaces) return false;
   std::array<Placed, kMostFaces> made;
@@ -253,8 +257,9 @@ bool GuardedMesh::move(std::int32_t v, const Point& to, Scratch& scratch) {
   return true;
 }
 
-bool GuardedMesh::collapse(std::int32_t u, std::int32_t v, const Point& to,
+bool GuardedMesh::collapse(std::int32_t u, std::int32_t v, const Point& wanted,
                            const CollapseLimits& limits) {
+  const Point to = asStored(wanted);
   std::array<std::int32_t, 2 * kMostFaces> removed;
   std::array<Placed, kMostFaces> made;
   std::size_t removedCount = 0, madeCount = 0;
@@ -342,7 +347,7 @@ std::int32_t GuardedMesh::split(std::int32_t a, std::int32_t b) {
     m = freeVertices_.back();
     freeVertices_.pop_back();
   }
-  positions_[m] = 0.5 * (positions_[a] + positions_[b]);
+  positions_[m] = asStored(0.5 * (positions_[a] + positions_[b]));
   std::array<std::int32_t, 2> removed = {-1, -1};
   int found = 0;
   for (const std::int32_t f : vertexFaces_[a]) {

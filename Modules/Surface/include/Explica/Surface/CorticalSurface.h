@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Core/Describe.h"
+#include "Explica/Core/Monitor.h"
+#include "Explica/Core/TriangleMesh.h"
+#include "Explica/Surface/CorticalTissue.h"
+#include "Explica/Surface/TopologyCorrection.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace explica::surface {
+
+/// How the surfaces are made.
+struct SurfaceOptions {
+  GenusRule genus = GenusRule::Zero;
+  int faces = 150000;  ///< of each surface
+  int steps = 16;      ///< in which the outer surface grows out of the white one, even
+};
+
+/// The surface of white matter.
+struct WhiteSurface {
+  TriangleMesh mesh;
+  LevelSet level;               ///< topology-corrected
+  std::vector<Defect> defects;  ///< corrected, largest first
+  std::int64_t voxelsChanged = 0;
+  std::int64_t genus = 0;
+  double edgeLength = 0;        ///< aimed at by the remeshing, mm
+};
+
+/// White, middle and outer surface with the same faces; vertex i of one corresponds to vertex i of
+/// the others.
+struct CorticalSurfaces {
+  WhiteSurface white;
+  TriangleMesh mid;    ///< at half the way
+  TriangleMesh pial;
+  Eigen::VectorXd thickness;      ///< arc length of the trajectory, mm; 0 where there is no ribbon
+  Eigen::VectorXd curvature;      ///< mean, of the white surface, mm^-1; positive in sulci
+  Eigen::VectorXd sulcalDepth;    ///< of the middle surface below the closed hull, mm
+  std::int64_t noRibbon = 0;      ///< vertices without grey matter: all three surfaces coincide
+  std::int64_t endedAtBank = 0;   ///< trajectories that end in the middle of a buried sulcus
+  std::int64_t cutLinks = 0;      ///< grid links that buried sulci cut
+  std::int64_t heldBackMid = 0;   ///< vertices kept short of half their way, so that faces do not
+  std::int64_t heldBackPial = 0;  ///< meet; or of their whole way
+  double heldBackMean = 0;        ///< mean distance that pial ones among them fall short, mm
+  double heldBackMost = 0;        ///< mm
+};
+
+/// Topology correction, extraction and remeshing.  The mesh is closed, of genus 0 (unless asked
+/// otherwise), of `faces` faces, and free of self-intersections by an exact test.
+[[nodiscard]] WhiteSurface extractWhite(const CorticalTissue& tissue,
+                                        const SurfaceOptions& options = {},
+                                        const Monitor& monitor = {});
+
+/// All three surfaces.  Pial vertices lie on the trajectories of the harmonic interpolant that
+/// start at the white vertices; mid ones at half the arc length.  Both grow out of the white
+/// surface by small moves, each checked exactly, so that neither intersects itself; a vertex
+/// whose faces would meet others waits on its trajectory.
+/// @throws InvalidInput  no grey matter
+[[nodiscard]] CorticalSurfaces buildSurfaces(const CorticalTissue& tissue,
+                                             const SurfaceOptions& options = {},
+                                             const Monitor& monitor = {});
+
+template <class Visitor>
+void describe(SurfaceOptions& options, Visitor&& visit) {
+  visit(Field{"genus", "", "whether handles and tunnels are removed"}, options.genus);
+  visit(Field{"faces", "", "faces of each surface"}, options.faces);
+  visit(Field{"steps", "", "in which the outer surface grows out of the white one"}, options.steps);
+}
+
+}  // namespace explica::surface

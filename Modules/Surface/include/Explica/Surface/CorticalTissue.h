@@ -1,0 +1,134 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Core/Describe.h"
+#include "Explica/Core/Monitor.h"
+#include "Explica/Core/Volume.h"
+#include "Explica/Surface/LevelSet.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace explica::surface {
+
+/// Which half of the brain.
+enum class Side { Left, Right };
+
+/// What the labels of a volume mean.
+enum class LabelPreset {
+  Auto,        ///< told by the labels that are present
+  Aseg,        ///< FreeSurfer's aseg, aparc+aseg; SynthSeg, FastSurfer
+  Ribbon,      ///< FreeSurfer's ribbon: 2, 3, 41, 42
+  ThreeClass,  ///< 1 fluid, 2 grey, 3 white, 4 neither (a cut), as `explica segment` writes
+  Wm,          ///< FreeSurfer's wm (5 and more are white) or filled (127 right, 255 left)
+  None         ///< white and grey are named
+};
+
+/// How labels become the inner and outer boundary of a cortical ribbon.
+struct TissueOptions {
+  LabelPreset preset = LabelPreset::Auto;
+  std::vector<Label> white;      ///< enclosed region; empty: the preset's
+  std::vector<Label> grey;       ///< ribbon; empty: the preset's
+  std::vector<Label> fill;       ///< joined to white: deep structures, ventricles; empty: preset's
+  std::vector<Label> insulated;  ///< neither inside nor outside; empty: the preset's
+  std::optional<Side> hemisphere;
+  bool noFill = false;      ///< leave the preset's deep structures and ventricles out
+  bool closeEdges = false;  ///< tissue may end at the edge of the field of view
+  double blur = 0.55;       ///< of label boundaries, standard deviation in voxels
+};
+
+/// Boundaries of one cortical ribbon on a box around it.
+struct CorticalTissue {
+  LevelSet white;                  ///< positive in white matter
+  LevelSet tissue;                 ///< positive in white and grey matter
+  Volume<std::uint8_t> insulated;  ///< 1 where neither side is; same box
+  std::string structure;           ///< "CortexLeft", "CortexRight", "Cortex"
+  LabelPreset preset = LabelPreset::None;  ///< as used
+  bool hasGrey = true;
+  std::int64_t whiteVoxels = 0;    ///< labelled white
+  std::int64_t filledVoxels = 0;   ///< joined to it
+  std::int64_t greyVoxels = 0;
+  std::int64_t cutContact = 0;     ///< voxel faces between the hemispheres where white was cut
+};
+
+/// Boundaries from labels.
+///
+/// A preset's hemisphere is taken by its labels; labels without side (callosum, white-matter
+/// hypointensities) go to the nearer hemisphere's.  Where both hemispheres share one label, white
+/// matter is parted where waves from both sides, 10 mm and more away from the plane that holds least
+/// white matter, meet within white matter: so the cut crosses the callosum near its middle, and
+/// gyri that bulge over the plane stay whole.
+///
+/// @throws InvalidInput  a label absent, white matter at the edge of the field of view, both
+///                       hemispheres present and none chosen, nothing left after separation: with
+///                       the numbers found
+[[nodiscard]] CorticalTissue tissueFromLabels(const Volume<Label>& labels,
+                                              const TissueOptions& options = {},
+                                              const Monitor& monitor = {});
+
+/// Boundaries from shares of each voxel in [0, 1]; 0.5 is the boundary.
+/// @param white      share of (filled) white matter
+/// @param tissue     share of white and grey matter together; empty grid: white only
+/// @param insulated  labels or mask, not 0 where neither side is; empty grid: nowhere
+/// @throws InvalidInput  grids differ, or as tissueFromLabels
+[[nodiscard]] CorticalTissue tissueFromShares(const Volume<float>& white,
+                                              const Volume<float>& tissue,
+                                              const Volume<std::uint8_t>& insulated = {},
+                                              const TissueOptions& options = {},
+                                              const Monitor& monitor = {});
+
+/// Side of each voxel of a white-matter mask that holds both hemispheres: 0 off the mask, 1 left,
+/// 2 right.
+/// @throws InvalidInput  one side has less than a tenth of the voxels
+[[nodiscard]] Volume<std::uint8_t> splitHemispheres(const Volume<std::uint8_t>& white,
+                                                    const Monitor& monitor = {});
+
+}  // namespace explica::surface
+
+namespace explica {
+
+template <>
+struct EnumNames<surface::Side> {
+  static constexpr std::array table = {std::pair{surface::Side::Left, "L"},
+                                       std::pair{surface::Side::Right, "R"}};
+};
+
+template <>
+struct EnumNames<surface::LabelPreset> {
+  static constexpr std::array table = {std::pair{surface::LabelPreset::Auto, "auto"},
+                                       std::pair{surface::LabelPreset::Aseg, "aseg"},
+                                       std::pair{surface::LabelPreset::Ribbon, "ribbon"},
+                                       std::pair{surface::LabelPreset::ThreeClass, "three-class"},
+                                       std::pair{surface::LabelPreset::Wm, "wm"},
+                                       std::pair{surface::LabelPreset::None, "none"}};
+};
+
+namespace surface {
+
+template <class Visitor>
+void describe(TissueOptions& options, Visitor&& visit) {
+  visit(Field{"preset", "", "what the labels mean"}, options.preset);
+  visit(Field{"white", "", "labels of white matter (default: the preset's)"}, options.white);
+  visit(Field{"grey", "", "labels of grey matter (default: the preset's)"}, options.grey);
+  visit(Field{"fill", "", "labels joined to white matter, such as deep structures and ventricles "
+                          "(default: the preset's)"},
+        options.fill);
+  visit(Field{"insulated", "", "labels that are neither inside nor outside (default: the preset's)"},
+        options.insulated);
+  visit(Field{"hemisphere", "", "which hemisphere to take, where labels hold both"},
+        options.hemisphere);
+  visit(Field{"no-fill", "", "join nothing to white matter"}, options.noFill);
+  visit(Field{"close-edges", "", "close the surface where tissue meets the edge of the field of "
+                                 "view, instead of refusing"},
+        options.closeEdges);
+  visit(Field{"blur", "voxels", "standard deviation that takes the staircase off label boundaries"},
+        options.blur);
+}
+
+}  // namespace surface
+}  // namespace explica
