@@ -13,6 +13,7 @@
 #include "RibbonField.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 namespace explica::surface {
@@ -29,6 +30,20 @@ Monitor partOf(const Monitor& monitor, double from, double to) {
   }
   return part;
 }
+
+/// Time since the last look, s.
+class Stopwatch {
+ public:
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    const double seconds = std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+    return seconds;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
 
 /// Vertices on their trajectories, advancing together and never through each other.
 class Advance {
@@ -84,18 +99,33 @@ std::int64_t countShort(const Advance& advance, const std::vector<Trajectory>& p
 WhiteSurface extractWhite(const CorticalTissue& tissue, const SurfaceOptions& options,
                           const Monitor& monitor) {
   WhiteSurface white;
+  Stopwatch watch;
   TopologyResult topology = correctTopology(tissue.white, options.genus, partOf(monitor, 0, 0.1));
   white.level = std::move(topology.level);
   white.defects = std::move(topology.defects);
   white.voxelsChanged = topology.voxelsChanged;
   white.genus = topology.handlesLeft;
+  white.seconds.topology = watch.lap();
+  const TriangleMesh raw = extractIsoSurface(white.level);
+  white.seconds.extraction = watch.lap();
   RemeshOptions remeshing;
   remeshing.faces = options.faces;
-  RemeshResult result =
-      remesh(extractIsoSurface(white.level), white.level, remeshing, partOf(monitor, 0.1, 1));
+  RemeshResult result = remesh(raw, white.level, remeshing, partOf(monitor, 0.1, 1));
+  white.seconds.remeshing = watch.lap();
   white.mesh = std::move(result.mesh);
   white.edgeLength = result.edgeLength;
   return white;
+}
+
+double meanThickness(const CorticalSurfaces& surfaces) {
+  const Eigen::VectorXd areas = geometry::vertexAreas(surfaces.white.mesh);
+  double sum = 0, weight = 0;
+  for (Eigen::Index v = 0; v < areas.size(); ++v) {
+    if (surfaces.thickness[v] <= 0) continue;
+    sum += areas[v] * surfaces.thickness[v];
+    weight += areas[v];
+  }
+  return weight > 0 ? sum / weight : 0;
 }
 
 CorticalSurfaces buildSurfaces(const CorticalTissue& tissue, const SurfaceOptions& options,
@@ -109,6 +139,8 @@ CorticalSurfaces buildSurfaces(const CorticalTissue& tissue, const SurfaceOption
   CorticalSurfaces result;
   result.white = extractWhite(tissue, options, partOf(monitor, 0, 0.5));
   const TriangleMesh& white = result.white.mesh;
+  result.seconds = result.white.seconds;
+  Stopwatch watch;
 
   CorticalTissue corrected = tissue;
   corrected.white = result.white.level;
@@ -117,6 +149,7 @@ CorticalSurfaces buildSurfaces(const CorticalTissue& tissue, const SurfaceOption
   }
   const RibbonField field(corrected, white, partOf(monitor, 0.5, 0.65));
   result.cutLinks = field.cutLinks();
+  result.seconds.interpolant = watch.lap();
 
   monitor.progress(0.65, "trajectories");
   const Positions normals = geometry::vertexNormals(white);
@@ -130,6 +163,7 @@ CorticalSurfaces buildSurfaces(const CorticalTissue& tissue, const SurfaceOption
     result.noRibbon += paths[v].end == TrajectoryEnd::NoRibbon;
     result.endedAtBank += paths[v].end == TrajectoryEnd::Bank;
   }
+  result.seconds.trajectories = watch.lap();
 
   Advance advance(white, paths, result.white.edgeLength);
   for (int step = 1; step <= options.steps; ++step) {
@@ -149,10 +183,12 @@ CorticalSurfaces buildSurfaces(const CorticalTissue& tissue, const SurfaceOption
     result.heldBackMean += shortfall / static_cast<double>(result.heldBackPial);
     result.heldBackMost = std::max(result.heldBackMost, shortfall);
   }
+  result.seconds.growing = watch.lap();
 
   monitor.progress(0.96, "curvature and depth");
   result.curvature = meanCurvature(white);
   result.sulcalDepth = depthBelowHull(corrected.tissue, result.mid.positions);
+  result.seconds.measures = watch.lap();
   monitor.progress(1.0, "surfaces");
   return result;
 }

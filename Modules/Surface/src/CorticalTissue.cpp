@@ -139,11 +139,12 @@ std::int64_t countOnEdge(const Mask& mask) {
 void requireInside(const Mask& mask, bool closeEdges, const Monitor& monitor) {
   const std::int64_t atEdge = countOnEdge(mask);
   if (atEdge == 0) return;
-  const std::string found = "white matter touches the edge of the field of view at " +
-                            std::to_string(atEdge) + " voxels";
+  const std::string found =
+      "white matter touches the edge of the field of view at " + std::to_string(atEdge) + " voxels";
   if (!closeEdges) {
-    throw InvalidInput(found + "; the surface needs background around it: give a larger field of "
-                               "view, or --close-edges to close it there");
+    throw InvalidInput(found +
+                       "; the surface needs background around it: give a larger field of "
+                       "view, or --close-edges to close it there");
   }
   monitor.warn(found + "; the surface is closed there");
 }
@@ -260,8 +261,7 @@ std::int64_t addNearer(const Mask& unsided, Mask& own, const Mask& other) {
 }
 
 /// The box, and everything of it, that later steps need.
-CorticalTissue assemble(const Mask& white, const Mask& tissue, const Mask& insulated,
-                        double blur) {
+CorticalTissue assemble(const Mask& white, const Mask& tissue, const Mask& insulated, double blur) {
   // Room for the blur and for one layer of background.
   constexpr int kMargin = 5;
   const VoxelBox box = boundingBox(tissue, kMargin);
@@ -273,6 +273,50 @@ CorticalTissue assemble(const Mask& white, const Mask& tissue, const Mask& insul
 }
 
 }  // namespace
+
+Volume<float> sharesOf(const Volume<float>& scalars, std::optional<double> level,
+                       const std::string& name) {
+  const auto [low, high] = std::minmax_element(scalars.data.begin(), scalars.data.end());
+  if (scalars.size() == 0) throw InvalidInput(name + ": empty volume");
+  const bool isShare = *low >= 0;
+  const double boundary = level.value_or(isShare ? 0.5 * *high : 0.0);
+  if (!(*low < boundary && boundary < *high)) {
+    throw InvalidInput(name + ": level " + std::to_string(boundary) +
+                       " is nowhere crossed (values from " + std::to_string(*low) + " to " +
+                       std::to_string(*high) + ")");
+  }
+  // Distances count up to two voxels from the boundary; farther off nobody asks.
+  const double scale = isShare && !level
+                           ? *high
+                           : (isShare ? 2 * std::max(boundary - *low, *high - boundary)
+                                      : 4 * scalars.grid.spacing.maxCoeff());
+  const auto& n = scalars.grid.size;
+  std::int64_t above = 0, below = 0;
+  for (int k = 0; k < n[2]; ++k) {
+    for (int j = 0; j < n[1]; ++j) {
+      const bool wholeRow = k == 0 || j == 0 || k == n[2] - 1 || j == n[1] - 1;
+      for (int i = 0; i < n[0]; i += wholeRow ? 1 : std::max(1, n[0] - 1)) {
+        ++(scalars(i, j, k) > boundary ? above : below);
+      }
+    }
+  }
+  const double sign = above <= below ? 1 : -1;
+  Volume<float> share(scalars.grid);
+  parallelFor(share.size(), 1 << 18, [&](std::size_t v) {
+    share[v] =
+        static_cast<float>(std::clamp(0.5 + sign * (scalars[v] - boundary) / scale, 0.0, 1.0));
+  });
+  return share;
+}
+
+Volume<float> addShares(const Volume<float>& a, const Volume<float>& b) {
+  if (!sameGrid(a.grid, b.grid)) {
+    throw InvalidInput("shares: white and grey matter are on different grids");
+  }
+  Volume<float> sum(a.grid);
+  parallelFor(sum.size(), 1 << 18, [&](std::size_t v) { sum[v] = std::min(1.0F, a[v] + b[v]); });
+  return sum;
+}
 
 Volume<std::uint8_t> splitHemispheres(const Volume<std::uint8_t>& white, const Monitor& monitor) {
   const Grid& grid = white.grid;
@@ -336,8 +380,7 @@ CorticalTissue tissueFromLabels(const Volume<Label>& labels, const TissueOptions
     }
     const Side side = options.hemisphere.value_or(left > 0 ? Side::Left : Side::Right);
     const SidedLabels& own = freeSurferLabels(side);
-    const SidedLabels& other =
-        freeSurferLabels(side == Side::Left ? Side::Right : Side::Left);
+    const SidedLabels& other = freeSurferLabels(side == Side::Left ? Side::Right : Side::Left);
     if (white.empty()) white = own.white;
     if (grey.empty()) grey = own.grey;
     if (fill.empty() && preset == LabelPreset::Aseg && !options.noFill) {
@@ -409,8 +452,7 @@ CorticalTissue tissueFromLabels(const Volume<Label>& labels, const TissueOptions
         ++result.filledVoxels;
       }
     }
-    result.filledVoxels +=
-        addNearer(maskOf(labels, unsided), inner, maskOf(labels, otherWhite));
+    result.filledVoxels += addNearer(maskOf(labels, unsided), inner, maskOf(labels, otherWhite));
   }
 
   if (split) {
@@ -485,8 +527,8 @@ CorticalTissue tissueFromLabels(const Volume<Label>& labels, const TissueOptions
 }
 
 CorticalTissue tissueFromShares(const Volume<float>& white, const Volume<float>& tissue,
-                                const Volume<std::uint8_t>& insulated,
-                                const TissueOptions& options, const Monitor& monitor) {
+                                const Volume<std::uint8_t>& insulated, const TissueOptions& options,
+                                const Monitor& monitor) {
   const bool hasTissue = tissue.size() > 0;
   if (hasTissue && !sameGrid(white.grid, tissue.grid)) {
     throw InvalidInput("tissue: not on the grid of the white matter's shares");
@@ -535,7 +577,7 @@ CorticalTissue tissueFromShares(const Volume<float>& white, const Volume<float>&
   }
   result.insulated = crop(neither, box);
   result.hasGrey = hasTissue && result.greyVoxels > 0;
-  result.structure = !options.hemisphere ? "Cortex"
+  result.structure = !options.hemisphere                 ? "Cortex"
                      : *options.hemisphere == Side::Left ? "CortexLeft"
                                                          : "CortexRight";
   return result;

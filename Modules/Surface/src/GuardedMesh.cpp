@@ -69,11 +69,13 @@ bool facesMeet(const GuardedMesh::Corners& fc, const std::array<Point, 3>& fp,
 }
 
 /// Files hold float32: what is checked must be what is written.
-Point asStored(const Point& p) { return p.cast<float>().cast<double>(); }
+Point asStored(const Point& p) {
+  return p.cast<float>().cast<double>();
+}
 
 double qualityOf(const std::array<Point, 3>& p) {
-  const double squares = (p[1] - p[0]).squaredNorm() + (p[2] - p[1]).squaredNorm() +
-                         (p[0] - p[2]).squaredNorm();
+  const double squares =
+      (p[1] - p[0]).squaredNorm() + (p[2] - p[1]).squaredNorm() + (p[0] - p[2]).squaredNorm();
   return 2 * std::sqrt(3.0) * (p[1] - p[0]).cross(p[2] - p[0]).norm() / squares;
 }
 
@@ -92,8 +94,8 @@ GuardedMesh::GuardedMesh(const TriangleMesh& mesh, double cell)
   constexpr int kMostCells = 512;
   cellOrigin_ = low - Point::Constant(kMargin);
   for (int a = 0; a < 3; ++a) {
-    cellSize_[a] = std::clamp(
-        static_cast<int>((high[a] - low[a] + 2 * kMargin) * cellsPerMm_) + 1, 1, kMostCells);
+    cellSize_[a] = std::clamp(static_cast<int>((high[a] - low[a] + 2 * kMargin) * cellsPerMm_) + 1,
+                              1, kMostCells);
   }
   cells_.resize(static_cast<std::size_t>(cellSize_[0]) * cellSize_[1] * cellSize_[2]);
   faces_.reserve(mesh.faceCount());
@@ -151,7 +153,9 @@ void GuardedMesh::enter(std::int32_t f) {
   for (int k = r[2]; k <= r[5]; ++k) {
     for (int j = r[1]; j <= r[4]; ++j) {
       for (int i = r[0]; i <= r[3]; ++i) {
-        cells_[i + static_cast<std::size_t>(cellSize_[0]) * (j + static_cast<std::size_t>(cellSize_[1]) * k)].push_back(f);
+        cells_[i + static_cast<std::size_t>(cellSize_[0]) *
+                       (j + static_cast<std::size_t>(cellSize_[1]) * k)]
+            .push_back(f);
       }
     }
   }
@@ -162,7 +166,9 @@ void GuardedMesh::leave(std::int32_t f) {
   for (int k = r[2]; k <= r[5]; ++k) {
     for (int j = r[1]; j <= r[4]; ++j) {
       for (int i = r[0]; i <= r[3]; ++i) {
-        erase(cells_[i + static_cast<std::size_t>(cellSize_[0]) * (j + static_cast<std::size_t>(cellSize_[1]) * k)], f);
+        erase(cells_[i + static_cast<std::size_t>(cellSize_[0]) *
+                             (j + static_cast<std::size_t>(cellSize_[1]) * k)],
+              f);
       }
     }
   }
@@ -216,7 +222,9 @@ bool GuardedMesh::admissible(std::span<const Placed> made, std::span<const std::
   for (int k = r[2]; k <= r[5]; ++k) {
     for (int j = r[1]; j <= r[4]; ++j) {
       for (int i = r[0]; i <= r[3]; ++i) {
-        for (const std::int32_t g : cells_[i + static_cast<std::size_t>(cellSize_[0]) * (j + static_cast<std::size_t>(cellSize_[1]) * k)]) {
+        for (const std::int32_t g :
+             cells_[i + static_cast<std::size_t>(cellSize_[0]) *
+                            (j + static_cast<std::size_t>(cellSize_[1]) * k)]) {
           if (scratch.stamp[g] == query) continue;
           scratch.stamp[g] = query;
           if (!overlap(all, boxes_[g])) continue;
@@ -235,7 +243,9 @@ bool GuardedMesh::admissible(std::span<const Placed> made, std::span<const std::
   return true;
 }
 
-bool GuardedMesh::move(std::int32_t v, const Point& to) { return move(v, to, scratch_); }
+bool GuardedMesh::move(std::int32_t v, const Point& to) {
+  return move(v, to, scratch_);
+}
 
 bool GuardedMesh::move(std::int32_t v, const Point& wanted, Scratch& scratch) {
   const Point to = asStored(wanted);

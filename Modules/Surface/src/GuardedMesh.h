@@ -16,8 +16,8 @@ namespace explica::surface {
 /// Each step (moving a vertex, collapsing, flipping or splitting an edge) is refused if it would
 /// change the topology, or if one of the faces that it makes would meet another face apart from a
 /// common vertex or edge, as decided by exact predicates.  So a mesh that starts without
-/// self-intersection never has one.  Positions are float32 numbers, as files hold them, so that what
-/// is checked is what is written.  Faces are found through a lattice of cells in space.
+/// self-intersection never has one.  Positions are float32 numbers, as files hold them, so that
+/// what is checked is what is written.  Faces are found through a lattice of cells in space.
 class GuardedMesh {
  public:
   using Corners = std::array<std::int32_t, 3>;

@@ -107,8 +107,7 @@ Volume<float> crop(const Volume<float>& volume, const VoxelBox& box, float outsi
 
 LevelSet levelSetOf(const Volume<std::uint8_t>& mask, double blur) {
   LevelSet level(mask.grid);
-  parallelFor(level.size(), 1 << 16,
-              [&](std::size_t v) { level[v] = mask[v] ? 1.0F : -1.0F; });
+  parallelFor(level.size(), 1 << 16, [&](std::size_t v) { level[v] = mask[v] ? 1.0F : -1.0F; });
   if (blur > 0) {
     const auto weights = gaussianWeights(blur);
     for (int axis = 0; axis < 3; ++axis) level = filterAlong(level, axis, weights);
@@ -152,9 +151,8 @@ LevelSample sample(const LevelSet& level, const Point& world) {
   const auto bilinear = [](double a, double b, double c, double d, double s, double r) {
     return (a * (1 - s) + b * s) * (1 - r) + (c * (1 - s) + d * s) * r;
   };
-  const Vector perIndex(
-      bilinear(c100 - c000, c110 - c010, c101 - c001, c111 - c011, t[1], t[2]),
-      (x10 - x00) * (1 - t[2]) + (x11 - x01) * t[2], y1 - y0);
+  const Vector perIndex(bilinear(c100 - c000, c110 - c010, c101 - c001, c111 - c011, t[1], t[2]),
+                        (x10 - x00) * (1 - t[2]) + (x11 - x01) * t[2], y1 - y0);
   result.gradient = grid.axesToWorld(perIndex.cwiseQuotient(grid.spacing));
   return result;
 }

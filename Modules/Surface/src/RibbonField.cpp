@@ -245,8 +245,7 @@ Vector RibbonField::direction(const Vector& index, const Vector& previous) const
     if (n < 0) continue;
     const Vector slope = slope_[n].cast<double>();
     if (slope.dot(previous) <= 0) continue;
-    const double weight =
-        (i ? t[0] : 1 - t[0]) * (j ? t[1] : 1 - t[1]) * (k ? t[2] : 1 - t[2]);
+    const double weight = (i ? t[0] : 1 - t[0]) * (j ? t[1] : 1 - t[1]) * (k ? t[2] : 1 - t[2]);
     sum += weight * slope;
     weightSum += weight;
   }
@@ -265,12 +264,15 @@ Trajectory RibbonField::trace(const Point& start, const Vector& normal) const {
   Trajectory path;
   path.points.push_back(start);
   path.along.push_back(0);
-  const auto toAxes = [&](const Vector& world) -> Vector { return grid_.direction.transpose() * world; };
+  const auto toAxes = [&](const Vector& world) -> Vector {
+    return grid_.direction.transpose() * world;
+  };
   const auto outside = [&](const Point& p) { return sample(tissue_.tissue, p).value <= 0; };
   const double gap = kMiddleGap * grid_.spacing.minCoeff();
   const auto checked = [&](const Point& p) {
     const Vector index = grid_.toIndex(p);
-    const int i = static_cast<int>(std::lround(index[0])), j = static_cast<int>(std::lround(index[1])),
+    const int i = static_cast<int>(std::lround(index[0])),
+              j = static_cast<int>(std::lround(index[1])),
               k = static_cast<int>(std::lround(index[2]));
     return grid_.contains(i, j, k) && nearMiddle_[grid_.linear(i, j, k)] != 0;
   };

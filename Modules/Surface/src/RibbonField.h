@@ -14,9 +14,9 @@ namespace explica::surface {
 
 /// What ended a trajectory.
 enum class TrajectoryEnd : std::uint8_t {
-  Outer,   ///< the outer boundary
-  Bank,    ///< the middle between the banks of a buried sulcus
-  NoRibbon ///< there is no tissue at the start
+  Outer,    ///< the outer boundary
+  Bank,     ///< the middle between the banks of a buried sulcus
+  NoRibbon  ///< there is no tissue at the start
 };
 
 /// From a point of the white surface along the gradient of the harmonic interpolant.
@@ -66,13 +66,13 @@ class RibbonField {
   geometry::FaceTree white_;
   const Grid& grid_;
   double step_;
-  std::vector<std::int32_t> nodeAt_;       ///< per voxel; -1 off the ribbon
-  std::vector<std::uint32_t> voxelOf_;     ///< per node, even ones first
+  std::vector<std::int32_t> nodeAt_;    ///< per voxel; -1 off the ribbon
+  std::vector<std::uint32_t> voxelOf_;  ///< per node, even ones first
   std::size_t evenCount_ = 0;
   std::vector<Node> nodes_;
   std::vector<float> u_;
-  std::vector<Eigen::Vector3f> slope_;     ///< per node: unit vector, along the axes
-  std::vector<std::uint8_t> nearMiddle_;   ///< per voxel
+  std::vector<Eigen::Vector3f> slope_;       ///< per node: unit vector, along the axes
+  std::vector<std::uint8_t> nearMiddle_;     ///< per voxel
   std::vector<Eigen::Vector3f> bankNormal_;  ///< per node: of the nearest white surface
   std::vector<float> bankDistance_;          ///< per node, mm
   std::int64_t cutLinks_ = 0;

@@ -151,9 +151,9 @@ void transformRow(std::vector<double>& f, double squaredStep, std::vector<int>& 
     double start = -kInfinity;
     while (last >= 0) {
       const int p = sites[last];
-      start = ((f[q] - f[p]) / squaredStep + static_cast<double>(q) * q -
-               static_cast<double>(p) * p) /
-              (2.0 * (q - p));
+      start =
+          ((f[q] - f[p]) / squaredStep + static_cast<double>(q) * q - static_cast<double>(p) * p) /
+          (2.0 * (q - p));
       if (start > from[last]) break;
       --last;
     }
@@ -205,7 +205,8 @@ void cleanPieces(const LevelSet& level, Mask& inside, std::vector<Defect>& defec
   });
   // The background that reaches the border: the box's border voxels are joined through voxel 0.
   Mask outside(inside.size());
-  for (std::size_t v = 0; v < inside.size(); ++v) outside[v] = !inside[v] && !onBorder(level.grid, v);
+  for (std::size_t v = 0; v < inside.size(); ++v)
+    outside[v] = !inside[v] && !onBorder(level.grid, v);
   const auto offsets = neighbourOffsets(level.grid);
   for (const auto& part : pieces(outside, level.grid)) {
     const bool open = std::any_of(part.begin(), part.end(), [&](std::size_t v) {
@@ -303,8 +304,7 @@ Volume<float> distanceTo(const Volume<std::uint8_t>& mask, std::uint8_t target) 
       }
     });
   }
-  parallelFor(mask.size(), 1 << 16,
-              [&](std::size_t v) { squared[v] = std::sqrt(squared[v]); });
+  parallelFor(mask.size(), 1 << 16, [&](std::size_t v) { squared[v] = std::sqrt(squared[v]); });
   return squared;
 }
 

@@ -20,6 +20,17 @@ struct SurfaceOptions {
   int steps = 16;      ///< in which the outer surface grows out of the white one, even
 };
 
+/// Wall-clock time of each part, s.
+struct SurfaceTimes {
+  double topology = 0;
+  double extraction = 0;
+  double remeshing = 0;
+  double interpolant = 0;  ///< with the recovery of buried sulci
+  double trajectories = 0;
+  double growing = 0;  ///< middle and outer surface
+  double measures = 0;
+};
+
 /// The surface of white matter.
 struct WhiteSurface {
   TriangleMesh mesh;
@@ -27,14 +38,15 @@ struct WhiteSurface {
   std::vector<Defect> defects;  ///< corrected, largest first
   std::int64_t voxelsChanged = 0;
   std::int64_t genus = 0;
-  double edgeLength = 0;        ///< aimed at by the remeshing, mm
+  double edgeLength = 0;  ///< aimed at by the remeshing, mm
+  SurfaceTimes seconds;
 };
 
 /// White, middle and outer surface with the same faces; vertex i of one corresponds to vertex i of
 /// the others.
 struct CorticalSurfaces {
   WhiteSurface white;
-  TriangleMesh mid;    ///< at half the way
+  TriangleMesh mid;  ///< at half the way
   TriangleMesh pial;
   Eigen::VectorXd thickness;      ///< arc length of the trajectory, mm; 0 where there is no ribbon
   Eigen::VectorXd curvature;      ///< mean, of the white surface, mm^-1; positive in sulci
@@ -46,6 +58,7 @@ struct CorticalSurfaces {
   std::int64_t heldBackPial = 0;  ///< meet; or of their whole way
   double heldBackMean = 0;        ///< mean distance that pial ones among them fall short, mm
   double heldBackMost = 0;        ///< mm
+  SurfaceTimes seconds;
 };
 
 /// Topology correction, extraction and remeshing.  The mesh is closed, of genus 0 (unless asked
@@ -62,6 +75,9 @@ struct CorticalSurfaces {
 [[nodiscard]] CorticalSurfaces buildSurfaces(const CorticalTissue& tissue,
                                              const SurfaceOptions& options = {},
                                              const Monitor& monitor = {});
+
+/// Mean thickness over the white surface where there is grey matter, weighted by area, mm.
+[[nodiscard]] double meanThickness(const CorticalSurfaces& surfaces);
 
 template <class Visitor>
 void describe(SurfaceOptions& options, Visitor&& visit) {

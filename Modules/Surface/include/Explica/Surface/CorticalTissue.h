@@ -44,25 +44,25 @@ struct TissueOptions {
 
 /// Boundaries of one cortical ribbon on a box around it.
 struct CorticalTissue {
-  LevelSet white;                  ///< positive in white matter
-  LevelSet tissue;                 ///< positive in white and grey matter
-  Volume<std::uint8_t> insulated;  ///< 1 where neither side is; same box
-  std::string structure;           ///< "CortexLeft", "CortexRight", "Cortex"
+  LevelSet white;                          ///< positive in white matter
+  LevelSet tissue;                         ///< positive in white and grey matter
+  Volume<std::uint8_t> insulated;          ///< 1 where neither side is; same box
+  std::string structure;                   ///< "CortexLeft", "CortexRight", "Cortex"
   LabelPreset preset = LabelPreset::None;  ///< as used
   bool hasGrey = true;
-  std::int64_t whiteVoxels = 0;    ///< labelled white
-  std::int64_t filledVoxels = 0;   ///< joined to it
+  std::int64_t whiteVoxels = 0;   ///< labelled white
+  std::int64_t filledVoxels = 0;  ///< joined to it
   std::int64_t greyVoxels = 0;
-  std::int64_t cutContact = 0;     ///< voxel faces between the hemispheres where white was cut
+  std::int64_t cutContact = 0;  ///< voxel faces between the hemispheres where white was cut
 };
 
 /// Boundaries from labels.
 ///
 /// A preset's hemisphere is taken by its labels; labels without side (callosum, white-matter
 /// hypointensities) go to the nearer hemisphere's.  Where both hemispheres share one label, white
-/// matter is parted where waves from both sides, 10 mm and more away from the plane that holds least
-/// white matter, meet within white matter: so the cut crosses the callosum near its middle, and
-/// gyri that bulge over the plane stay whole.
+/// matter is parted where waves from both sides, 10 mm and more away from the plane that holds
+/// least white matter, meet within white matter: so the cut crosses the callosum near its middle,
+/// and gyri that bulge over the plane stay whole.
 ///
 /// @throws InvalidInput  a label absent, white matter at the edge of the field of view, both
 ///                       hemispheres present and none chosen, nothing left after separation: with
@@ -81,6 +81,20 @@ struct CorticalTissue {
                                               const Volume<std::uint8_t>& insulated = {},
                                               const TissueOptions& options = {},
                                               const Monitor& monitor = {});
+
+/// Shares from any scalar that crosses a level at the boundary.
+///
+/// Without `level`, values that are never negative are shares of their largest value, and the
+/// boundary is at one half; others are distances in mm, and the boundary is at 0.  Inside is the
+/// side that holds the smaller part of the volume's border: so the sign of distances does not
+/// matter.
+/// @throws InvalidInput  the level is nowhere crossed; names the values' range
+[[nodiscard]] Volume<float> sharesOf(const Volume<float>& scalars, std::optional<double> level,
+                                     const std::string& name);
+
+/// Sum of two shares on one grid, at most 1.
+/// @throws InvalidInput  grids differ
+[[nodiscard]] Volume<float> addShares(const Volume<float>& a, const Volume<float>& b);
 
 /// Side of each voxel of a white-matter mask that holds both hemispheres: 0 off the mask, 1 left,
 /// 2 right.
@@ -115,16 +129,19 @@ void describe(TissueOptions& options, Visitor&& visit) {
   visit(Field{"preset", "", "what the labels mean"}, options.preset);
   visit(Field{"white", "", "labels of white matter (default: the preset's)"}, options.white);
   visit(Field{"grey", "", "labels of grey matter (default: the preset's)"}, options.grey);
-  visit(Field{"fill", "", "labels joined to white matter, such as deep structures and ventricles "
-                          "(default: the preset's)"},
+  visit(Field{"fill", "",
+              "labels joined to white matter, such as deep structures and ventricles "
+              "(default: the preset's)"},
         options.fill);
-  visit(Field{"insulated", "", "labels that are neither inside nor outside (default: the preset's)"},
-        options.insulated);
+  visit(
+      Field{"insulated", "", "labels that are neither inside nor outside (default: the preset's)"},
+      options.insulated);
   visit(Field{"hemisphere", "", "which hemisphere to take, where labels hold both"},
         options.hemisphere);
   visit(Field{"no-fill", "", "join nothing to white matter"}, options.noFill);
-  visit(Field{"close-edges", "", "close the surface where tissue meets the edge of the field of "
-                                 "view, instead of refusing"},
+  visit(Field{"close-edges", "",
+              "close the surface where tissue meets the edge of the field of "
+              "view, instead of refusing"},
         options.closeEdges);
   visit(Field{"blur", "voxels", "standard deviation that takes the staircase off label boundaries"},
         options.blur);

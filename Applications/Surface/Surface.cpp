@@ -1,0 +1,331 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Application/Command.h"
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/WholeFile.h"
+#include "Explica/Geometry/MeshMeasures.h"
+#include "Explica/Geometry/MeshTopology.h"
+#include "Explica/Geometry/SelfIntersection.h"
+#include "Explica/IO/SpecFile.h"
+#include "Explica/IO/SurfaceFile.h"
+#include "Explica/IO/VertexDataFile.h"
+#include "Explica/IO/VolumeFile.h"
+#include "Explica/Surface/CorticalSurface.h"
+#include "Explica/Surface/CorticalTissue.h"
+#include "Explica/Surface/Measures.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <sstream>
+
+namespace explica::app {
+namespace {
+
+struct Settings {
+  std::optional<std::string> segmentation;
+  std::optional<std::string> innerLevel;
+  std::optional<std::string> outerLevel;
+  std::optional<std::string> greyShare;
+  std::optional<std::string> insulatedMask;
+  std::optional<double> level;
+  std::optional<std::string> freeSurfer;
+  std::optional<std::string> fsVolume;
+  io::VolumeReadOptions reading;
+  surface::TissueOptions tissue;
+  surface::SurfaceOptions surface;
+};
+
+void declare(Declaration& d, Settings& s) {
+  d.synopsis("inner, middle and outer surface of the cortical ribbon, vertex by vertex")
+      .description(
+          "From labels, or from volumes that cross a level at the boundaries. The white surface "
+          "has the topology of a sphere (each corrected defect is listed), lies between voxels, "
+          "and is meshed with even triangles. Outer vertices lie on the trajectories of the "
+          "harmonic interpolant that start at the white ones, middle ones half way; the hidden "
+          "boundary of buried sulci is recovered. None of the surfaces intersects itself, by an "
+          "exact test.")
+      .reference("Jones, Buchbinder, Aharon 2000, Human Brain Mapping 11:12-32")
+      .reference("Han, Pham, Tosun, Rettmann, Xu, Prince 2004, NeuroImage 23:997-1012")
+      .reference("Botsch, Kobbelt 2004, Symposium on Geometry Processing, 185-192")
+      .example("explica surface aseg.mgz --hemisphere L --out left",
+               "Left hemisphere of a FreeSurfer, FastSurfer or SynthSeg segmentation")
+      .example("explica surface seg.nii.gz --white 3 --grey 2 --faces 80000 --out brain",
+               "Labels by name")
+      .example("explica surface --inner-level wm.nii.gz --grey-share gm.nii.gz --out brain",
+               "From tissue probabilities, with sub-voxel boundaries")
+      .input("SEG", FileKind::LabelVolume, "labels; may be left out if --inner-level is given",
+             s.segmentation)
+      .inputOption("inner-level", FileKind::Volume,
+                   "scalars that cross a level at the white surface: a probability or a distance",
+                   s.innerLevel)
+      .inputOption("outer-level", FileKind::Volume,
+                   "scalars that cross a level at the outer surface", s.outerLevel)
+      .inputOption("grey-share", FileKind::Volume,
+                   "probability of grey matter: with --inner-level the outer surface is where both "
+                   "together reach one half",
+                   s.greyShare)
+      .inputOption("insulated-mask", FileKind::LabelVolume,
+                   "with --inner-level: not 0 where neither side is (a cut)", s.insulatedMask)
+      .option("Inputs",
+              Field{"level", "",
+                    "value on the boundaries of level volumes (default: half the "
+                    "largest value of shares, 0 of distances)"},
+              s.level)
+      .options("Reading", s.reading)
+      .options("Tissue", s.tissue)
+      .options("Surface", s.surface)
+      .option("Output",
+              Field{"freesurfer", "",
+                    "write lh.white, lh.pial, lh.thickness and so on, too, into "
+                    "this folder (within --out if relative)"},
+              s.freeSurfer)
+      .inputOption("fs-volume", FileKind::Volume,
+                   "volume (orig.mgz) whose surface RAS FreeSurfer files use (default: the labels, "
+                   "if FreeSurfer's)",
+                   s.fsVolume, "Output")
+      .output("white.surf.gii", FileKind::Surface, "white surface")
+      .output("mid.surf.gii", FileKind::Surface, "surface at half depth, same faces")
+      .output("pial.surf.gii", FileKind::Surface, "outer surface, same faces")
+      .output("thickness.shape.gii", FileKind::VertexData,
+              "length of each vertex's trajectory, mm; 0 where there is no grey matter")
+      .output("curvature.shape.gii", FileKind::VertexData,
+              "mean curvature of the white surface, 1/mm, positive in sulci")
+      .output("sulc.shape.gii", FileKind::VertexData,
+              "depth of the middle surface below the hull, mm")
+      .output("area.shape.gii", FileKind::VertexData,
+              "area at each vertex of the white, middle and outer surface, mm^2")
+      .output("topology.tsv", FileKind::Table, "one row for each corrected defect")
+      .output("surface.spec", FileKind::Any, "opens everything in Workbench")
+      .output("*lh.*", FileKind::Any, "with --freesurfer: FreeSurfer files, left")
+      .output("*rh.*", FileKind::Any, "with --freesurfer: FreeSurfer files, right");
+}
+
+std::string defectTable(const std::vector<surface::Defect>& defects) {
+  std::ostringstream table;
+  table << "kind\tx_mm\ty_mm\tz_mm\tvoxels\tcost\talternative_cost\tside\twhy\n";
+  for (const auto& defect : defects) {
+    using surface::DefectKind;
+    const bool filled = defect.kind == DefectKind::Tunnel || defect.kind == DefectKind::Cavity;
+    const char* why = defect.kind == DefectKind::Island   ? "not connected to the white matter"
+                      : defect.kind == DefectKind::Cavity ? "enclosed by white matter"
+                      : filled ? "filling overrules less evidence than cutting"
+                               : "cutting overrules less evidence than filling";
+    table << nameOf(defect.kind) << '\t' << defect.place.x() << '\t' << defect.place.y() << '\t'
+          << defect.place.z() << '\t' << defect.voxels << '\t' << defect.cost << '\t';
+    if (defect.alternativeCost == defect.alternativeCost) {
+      table << defect.alternativeCost;
+    } else {
+      table << "n/a";
+    }
+    table << '\t' << (filled ? "filled" : "removed") << '\t' << why << '\n';
+  }
+  return table.str();
+}
+
+struct Inputs {
+  surface::CorticalTissue tissue;
+  Grid grid;
+};
+
+Inputs readTissue(Context& context, const Settings& s) {
+  if (s.segmentation.has_value() == s.innerLevel.has_value()) {
+    throw UsageError("surface: give either SEG or --inner-level");
+  }
+  io::VolumeReadOptions reading = s.reading;
+  reading.dimension = 3;
+  Inputs inputs;
+  if (s.segmentation) {
+    const Volume<Label> labels = io::readLabels(*s.segmentation, reading).volume;
+    inputs.grid = labels.grid;
+    auto step = context.step("tissue");
+    inputs.tissue = surface::tissueFromLabels(labels, s.tissue, context.monitor());
+    return inputs;
+  }
+  const Volume<float> inner = io::readScalars(*s.innerLevel, reading).volume;
+  inputs.grid = inner.grid;
+  Volume<float> outer, grey;
+  Volume<std::uint8_t> insulated;
+  if (s.outerLevel) outer = io::readScalars(*s.outerLevel, reading).volume;
+  if (s.greyShare) grey = io::readScalars(*s.greyShare, reading).volume;
+  if (s.insulatedMask) {
+    const Volume<Label> mask = io::readLabels(*s.insulatedMask, reading).volume;
+    insulated = Volume<std::uint8_t>(mask.grid);
+    std::transform(mask.data.begin(), mask.data.end(), insulated.data.begin(),
+                   [](Label label) { return static_cast<std::uint8_t>(label != 0); });
+  }
+  auto step = context.step("tissue");
+  const Volume<float> white = surface::sharesOf(inner, s.level, "inner-level");
+  Volume<float> tissue;
+  if (s.outerLevel) tissue = surface::sharesOf(outer, s.level, "outer-level");
+  if (s.greyShare) {
+    tissue = surface::addShares(white, surface::sharesOf(grey, s.level, "grey-share"));
+  }
+  inputs.tissue = surface::tissueFromShares(white, tissue, insulated, s.tissue, context.monitor());
+  return inputs;
+}
+
+/// What every surface must be; reported, so that nobody has to believe it.
+struct Checked {
+  std::int64_t selfIntersections = 0;
+  geometry::MeshCondition condition;
+};
+
+Checked check(const TriangleMesh& mesh) {
+  return {static_cast<std::int64_t>(geometry::findSelfIntersections(mesh).size()),
+          geometry::inspectMesh(mesh)};
+}
+
+io::SurfaceMetadata metadataOf(const std::string& structure, const std::string& secondary) {
+  io::SurfaceMetadata metadata;
+  metadata.structure = structure;
+  metadata.secondary = secondary;
+  metadata.name = secondary;
+  return metadata;
+}
+
+Termination run(Context& context, const Settings& s) {
+  const Inputs inputs = readTissue(context, s);
+  const surface::CorticalTissue& tissue = inputs.tissue;
+  std::optional<Grid> fsGrid;
+  if (s.fsVolume) {
+    fsGrid = io::readGrid(*s.fsVolume);
+  } else if (tissue.preset == surface::LabelPreset::Aseg ||
+             tissue.preset == surface::LabelPreset::Ribbon ||
+             tissue.preset == surface::LabelPreset::Wm) {
+    fsGrid = inputs.grid;
+  }
+
+  surface::CorticalSurfaces made;
+  {
+    auto step = context.step("surfaces");
+    if (tissue.hasGrey) {
+      made = surface::buildSurfaces(tissue, s.surface, context.monitor());
+    } else {
+      context.warn("no grey matter given: only the white surface is made");
+      made.white = surface::extractWhite(tissue, s.surface, context.monitor());
+      made.seconds = made.white.seconds;
+      made.curvature = surface::meanCurvature(made.white.mesh);
+    }
+  }
+  struct Named {
+    const char* file;
+    const char* fsName;
+    const char* secondary;
+    const char* key;
+    const TriangleMesh* mesh;
+  };
+  std::vector<Named> surfaces = {
+      {"white.surf.gii", "white", "GrayWhite", "white", &made.white.mesh}};
+  if (tissue.hasGrey) {
+    surfaces.push_back({"mid.surf.gii", "mid", "MidThickness", "mid", &made.mid});
+    surfaces.push_back({"pial.surf.gii", "pial", "Pial", "pial", &made.pial});
+  }
+
+  std::int64_t selfIntersections = 0;
+  {
+    auto step = context.step("check");
+    for (const Named& surface : surfaces) {
+      const Checked checked = check(*surface.mesh);
+      selfIntersections += checked.selfIntersections;
+      if (surface.mesh == &made.white.mesh) {
+        context.result("vertices", checked.condition.vertices);
+        context.result("faces", checked.condition.faces);
+        context.result("euler_characteristic", checked.condition.eulerCharacteristic);
+        context.result("components", checked.condition.components);
+        context.result("closed_manifold", checked.condition.closedManifold());
+      }
+      context.result("area_" + std::string(surface.key), geometry::totalArea(*surface.mesh));
+      context.result("volume_" + std::string(surface.key), geometry::enclosedVolume(*surface.mesh));
+    }
+    context.result("self_intersections", selfIntersections);
+  }
+
+  auto step = context.step("write");
+  std::vector<io::SpecEntry> spec;
+  for (const Named& surface : surfaces) {
+    io::writeGiftiSurface(context.output(surface.file), *surface.mesh,
+                          metadataOf(tissue.structure, surface.secondary));
+    spec.push_back({tissue.structure, surface.file});
+  }
+  const auto writeShape = [&](const std::string& file, const std::vector<io::VertexMap>& maps) {
+    io::writeGiftiShape(context.output(file), maps, tissue.structure);
+    spec.push_back({tissue.structure, file});
+  };
+  writeShape("curvature.shape.gii", {{"curvature", "mm^-1", made.curvature}});
+  std::vector<io::VertexMap> areas;
+  for (const Named& surface : surfaces) {
+    areas.push_back(
+        {std::string("area_") + surface.key, "mm^2", geometry::vertexAreas(*surface.mesh)});
+  }
+  writeShape("area.shape.gii", areas);
+  if (tissue.hasGrey) {
+    writeShape("thickness.shape.gii", {{"thickness", "mm", made.thickness}});
+    writeShape("sulc.shape.gii", {{"sulc", "mm", made.sulcalDepth}});
+  }
+  io::writeSpec(context.output("surface.spec"), spec);
+  writeTextFile(context.output("topology.tsv"), defectTable(made.white.defects));
+
+  if (s.freeSurfer) {
+    const std::string hemi = tissue.structure == "CortexRight" ? "rh." : "lh.";
+    const std::filesystem::path folder = *s.freeSurfer;
+    if (folder.is_absolute()) std::filesystem::create_directories(folder);
+    const auto place = [&](const std::string& name) {
+      return folder.is_absolute() ? folder / (hemi + name)
+                                  : context.output((folder / (hemi + name)).string());
+    };
+    for (const Named& surface : surfaces) {
+      io::writeFreeSurferSurface(place(surface.fsName), *surface.mesh, fsGrid);
+    }
+    const Eigen::Index faces = made.white.mesh.faceCount();
+    io::writeFreeSurferCurv(place("curv"), made.curvature, faces);
+    io::writeFreeSurferCurv(place("area"), areas.front().values, faces);
+    if (tissue.hasGrey) {
+      io::writeFreeSurferCurv(place("thickness"), made.thickness, faces);
+      io::writeFreeSurferCurv(place("sulc"), made.sulcalDepth, faces);
+      io::writeFreeSurferCurv(place("area.pial"), areas.back().values, faces);
+    }
+  }
+
+  context.result("structure", tissue.structure);
+  context.result("preset", std::string(nameOf(tissue.preset)));
+  context.result("white_voxels", tissue.whiteVoxels);
+  context.result("filled_voxels", tissue.filledVoxels);
+  context.result("grey_voxels", tissue.greyVoxels);
+  context.result("defects_corrected", made.white.defects.size());
+  context.result("voxels_changed", made.white.voxelsChanged);
+  context.result("genus", made.white.genus);
+  context.result("edge_length", made.white.edgeLength);
+  const Eigen::VectorXd angles = geometry::smallestAnglesRad(made.white.mesh);
+  std::vector<double> sorted(angles.begin(), angles.end());
+  std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 20, sorted.end());
+  context.result("smallest_angle_p05_deg", sorted[sorted.size() / 20] * 180 / kPi);
+  if (tissue.hasGrey) {
+    context.result("thickness_mean", surface::meanThickness(made));
+    context.result("vertices_without_grey", made.noRibbon);
+    context.result("vertices_ended_at_bank", made.endedAtBank);
+    context.result("sulcal_links_recovered", made.cutLinks);
+    context.result("vertices_held_back_mid", made.heldBackMid);
+    context.result("vertices_held_back_pial", made.heldBackPial);
+    context.result("held_back_mean", made.heldBackMean);
+    context.result("held_back_most", made.heldBackMost);
+  }
+  context.result("seconds_topology", made.seconds.topology);
+  context.result("seconds_extraction", made.seconds.extraction);
+  context.result("seconds_remeshing", made.seconds.remeshing);
+  context.result("seconds_interpolant", made.seconds.interpolant);
+  context.result("seconds_trajectories", made.seconds.trajectories);
+  context.result("seconds_growing", made.seconds.growing);
+  context.result("seconds_measures", made.seconds.measures);
+  return context.monitor().shouldStop() ? Termination::Interrupted : Termination::NotRun;
+}
+
+}  // namespace
+
+Command surfaceCommand() {
+  return makeCommand<Settings>("surface", declare, run);
+}
+
+}  // namespace explica::app

@@ -1,0 +1,246 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/Parallel.h"
+#include "Explica/Geometry/Fixtures.h"
+#include "Explica/Geometry/MeshMeasures.h"
+#include "Explica/Geometry/MeshTopology.h"
+#include "Explica/Geometry/SelfIntersection.h"
+#include "Explica/Surface/CorticalSurface.h"
+#include "Explica/Surface/IsoSurface.h"
+#include "Explica/Surface/Measures.h"
+#include "Explica/Surface/Remesh.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace explica::surface {
+namespace {
+
+/// Centred lattice with oblique axes; spacing in mm.
+Grid lattice(int n, const Vector& spacing) {
+  Grid grid;
+  grid.size = {n, n, n};
+  grid.spacing = spacing;
+  grid.direction << std::cos(0.3), -std::sin(0.3), 0, std::sin(0.3), std::cos(0.3), 0, 0, 0, 1;
+  grid.origin = -(grid.direction * (0.5 * (n - 1) * spacing));
+  return grid;
+}
+
+template <class Value>
+auto volumeOf(const Grid& grid, const Value& value) {
+  using T = decltype(value(Point()));
+  Volume<T> volume(grid);
+  for (std::size_t v = 0; v < volume.size(); ++v) {
+    const auto s = grid.subscripts(v);
+    volume[v] = value(grid.toWorld(Vector(s[0], s[1], s[2])));
+  }
+  return volume;
+}
+
+/// Share of the ball of radius r in a voxel, to first order.
+float shareOf(const Point& p, double r, double h) {
+  return static_cast<float>(std::clamp(0.5 + (r - p.norm()) / h, 0.0, 1.0));
+}
+
+CorticalTissue shell(double inner, double outer, double h) {
+  const int n = static_cast<int>(2 * (outer + 4 * h) / h);
+  const Grid grid = lattice(n, Vector::Constant(h));
+  return tissueFromShares(volumeOf(grid, [&](const Point& p) { return shareOf(p, inner, 4 * h); }),
+                          volumeOf(grid, [&](const Point& p) { return shareOf(p, outer, 4 * h); }));
+}
+
+/// Two folds: a ball whose radius waves, as labels 3 (white) in a ribbon 2.
+Volume<Label> foldedLabels(double h) {
+  const int n = static_cast<int>(56 / h);
+  return volumeOf(lattice(n, Vector::Constant(h)), [](const Point& p) -> Label {
+    const double r = p.norm();
+    const double wave = 3.2 * std::sin(6 * std::atan2(p.y(), p.x())) *
+                        std::pow(std::hypot(p.x(), p.y()) / std::max(r, 1e-9), 2);
+    if (r < 16 + wave) return 3;
+    return r < 18.5 + 0.4 * wave || r < 18.5 + wave ? 2 : 0;
+  });
+}
+
+void expectSound(const TriangleMesh& mesh) {
+  const auto condition = geometry::inspectMesh(mesh);
+  EXPECT_TRUE(condition.closedManifold());
+  EXPECT_EQ(condition.eulerCharacteristic, 2);
+  EXPECT_EQ(condition.components, 1);
+  EXPECT_TRUE(geometry::findSelfIntersections(mesh).empty());
+  EXPECT_GT(geometry::enclosedVolume(mesh), 0);
+}
+
+TEST(Remesh, MakesEvenTrianglesAndMeetsTheCount) {
+  const auto tissue = shell(12, 15, 1);
+  const auto iso = extractIsoSurface(tissue.white);
+  for (const std::int64_t faces : {1000, 8000, 20000}) {
+    SCOPED_TRACE(faces);
+    RemeshOptions options;
+    options.faces = faces;
+    const auto result = remesh(iso, tissue.white, options);
+    expectSound(result.mesh);
+    EXPECT_EQ(result.mesh.faceCount(), faces);
+    const auto angles = geometry::smallestAnglesRad(result.mesh);
+    std::vector<double> sorted(angles.begin(), angles.end());
+    std::sort(sorted.begin(), sorted.end());
+    EXPECT_GT(sorted[sorted.size() / 20] * 180 / kPi, 40);
+    EXPECT_GT(sorted.front() * 180 / kPi, 15);
+  }
+  RemeshOptions few;
+  few.faces = 10;
+  EXPECT_THROW((void)remesh(iso, tissue.white, few), InvalidInput);
+}
+
+TEST(Remesh, ConvergesToTheSphereAtSecondOrder) {
+  double error[3];
+  for (int s = 0; s < 3; ++s) {
+    const double h = 1.6 / (1 << s);
+    const auto tissue = shell(12.13, 15, h);
+    RemeshOptions options;
+    options.faces = 1000 << (2 * s);
+    const auto mesh = remesh(extractIsoSurface(tissue.white), tissue.white, options).mesh;
+    error[s] = std::abs(geometry::enclosedVolume(mesh) / (4.0 / 3 * kPi * std::pow(12.13, 3)) - 1);
+  }
+  EXPECT_NEAR(0.5 * std::log2(error[0] / error[2]), 2, 0.4);
+}
+
+TEST(CorticalSurface, FindsTheThicknessOfAShell) {
+  const auto tissue = shell(14, 17, 1);
+  SurfaceOptions options;
+  options.faces = 6000;
+  const auto made = buildSurfaces(tissue, options);
+  for (const TriangleMesh* mesh : {&made.white.mesh, &made.mid, &made.pial}) expectSound(*mesh);
+  EXPECT_EQ(made.noRibbon, 0);
+  EXPECT_EQ(made.heldBackPial, 0);
+  EXPECT_NEAR(made.thickness.mean(), 3, 0.03);
+  EXPECT_LT((made.thickness.array() - 3).abs().maxCoeff(), 0.15);
+  for (Eigen::Index v = 0; v < made.pial.vertexCount(); ++v) {
+    // Trajectories are radii.
+    const Vector white = made.white.mesh.positions.row(v), pial = made.pial.positions.row(v);
+    EXPECT_GT(white.normalized().dot(pial.normalized()), std::cos(0.02));
+    EXPECT_NEAR(made.mid.positions.row(v).norm(), 15.5, 0.12);
+  }
+  EXPECT_NEAR(made.curvature.mean(), -1.0 / 14, 0.005);
+}
+
+TEST(CorticalSurface, HoldsFoldsApart) {
+  SurfaceOptions options;
+  options.faces = 12000;
+  TissueOptions labels;
+  labels.preset = LabelPreset::ThreeClass;
+  const auto made = buildSurfaces(tissueFromLabels(foldedLabels(0.8), labels), options);
+  for (const TriangleMesh* mesh : {&made.white.mesh, &made.mid, &made.pial}) expectSound(*mesh);
+  EXPECT_GT(geometry::enclosedVolume(made.pial), geometry::enclosedVolume(made.mid));
+  EXPECT_GT(geometry::enclosedVolume(made.mid), geometry::enclosedVolume(made.white.mesh));
+}
+
+TEST(CorticalSurface, RecoversTheBoundaryOfABuriedSulcus) {
+  // Two plates of white matter, 5 mm of grey between them and 3 mm around: where the banks face
+  // each other the grey matter is 2.5 mm thick, though labels show no fluid between.
+  const Grid grid = lattice(48, Vector::Constant(1));
+  const auto labels = volumeOf(grid, [](const Point& p) -> Label {
+    const auto plate = [&](double x0, double x1, double grow) {
+      return p.x() > x0 - grow && p.x() < x1 + grow && std::abs(p.y()) < 14 + grow &&
+             p.z() > -14 - grow && p.z() < 14 + grow;
+    };
+    const bool base = std::abs(p.x()) < 8 && std::abs(p.y()) < 14 && p.z() > -14 && p.z() < -9;
+    if (plate(-8, -2.5, 0) || plate(2.5, 8, 0) || base) return 3;
+    return plate(-8, -2.5, 3) || plate(2.5, 8, 3) ? 2 : 0;
+  });
+  TissueOptions options;
+  options.preset = LabelPreset::ThreeClass;
+  SurfaceOptions surfaces;
+  surfaces.faces = 8000;
+  const auto made = buildSurfaces(tissueFromLabels(labels, options), surfaces);
+  expectSound(made.white.mesh);
+  expectSound(made.pial);
+  EXPECT_GT(made.cutLinks, 100);
+  double sum = 0;
+  int count = 0;
+  for (Eigen::Index v = 0; v < made.thickness.size(); ++v) {
+    const Point p = made.white.mesh.positions.row(v);
+    if (std::abs(p.x()) > 3.2 || std::abs(p.y()) > 9 || std::abs(p.z()) > 6) continue;
+    sum += made.thickness[v];
+    ++count;
+  }
+  ASSERT_GT(count, 50);
+  EXPECT_NEAR(sum / count, 2.4, 0.2);  // 2.5 less the gap that is kept
+}
+
+TEST(CorticalSurface, DoesNotDependOnThreads) {
+  SurfaceOptions options;
+  options.faces = 3000;
+  const auto tissue = shell(9, 11.5, 1);
+  setThreadCount(1);
+  const auto one = buildSurfaces(tissue, options);
+  setThreadCount(3);
+  const auto three = buildSurfaces(tissue, options);
+  setThreadCount(0);
+  EXPECT_EQ(one.pial.positions, three.pial.positions);
+  EXPECT_EQ(one.thickness, three.thickness);
+}
+
+TEST(CorticalTissue, NamesWhatIsWrong) {
+  const Grid grid = lattice(30, Vector::Constant(1));
+  const auto ball = volumeOf(
+      grid, [](const Point& p) -> Label { return p.norm() < 8 ? 2 : (p.norm() < 10 ? 3 : 0); });
+  TissueOptions options;
+  options.white = {7};
+  EXPECT_THROW((void)tissueFromLabels(ball, options), InvalidInput);
+  options.white = {2};
+  options.grey = {2};
+  EXPECT_THROW((void)tissueFromLabels(ball, options), InvalidInput);
+  options.grey = {3};
+  EXPECT_EQ(tissueFromLabels(ball, options).structure, "Cortex");
+  const auto cut = volumeOf(grid, [](const Point&) -> Label { return 2; });
+  options.grey.clear();
+  EXPECT_THROW((void)tissueFromLabels(cut, options), InvalidInput);
+  options.closeEdges = true;
+  EXPECT_GT(tissueFromLabels(cut, options).whiteVoxels, 0);
+}
+
+TEST(CorticalTissue, CutsTwoHemispheresAtTheirBridge) {
+  // Two balls joined by a bar, the left with a bulge over the plane that the bar does not hold.
+  const Grid grid = lattice(80, Vector::Constant(1));
+  const auto white = volumeOf(grid, [](const Point& p) -> std::uint8_t {
+    const bool left = (p - Point(-19, 0, 0)).norm() < 16, right = (p - Point(19, 0, 0)).norm() < 16;
+    const bool bar = std::abs(p.x()) < 10 && std::hypot(p.y(), p.z()) < 3;
+    const bool bulge = p.x() > -12 && p.x() < 2.5 && std::hypot(p.y() - 9, p.z()) < 2.5;
+    return left || right || bar || bulge ? 1 : 0;
+  });
+  const auto sides = splitHemispheres(white);
+  for (std::size_t v = 0; v < sides.size(); ++v) {
+    if (!white[v]) continue;
+    const auto s = grid.subscripts(v);
+    const Point p = grid.toWorld(Vector(s[0], s[1], s[2]));
+    const bool bulge = p.x() < 2.5 && p.y() > 6;
+    if (bulge || p.x() < -3) {
+      EXPECT_EQ(sides[v], 1) << p.transpose();
+    }
+    if (!bulge && p.x() > 3) {
+      EXPECT_EQ(sides[v], 2) << p.transpose();
+    }
+  }
+}
+
+TEST(DepthBelowHull, IsTheDepthOfAGroove) {
+  const Grid grid = lattice(50, Vector::Constant(1));
+  const auto level =
+      levelSetOf(volumeOf(grid,
+                          [](const Point& p) -> std::uint8_t {
+                            return p.norm() < 18 && !(std::abs(p.x()) < 2 && p.z() > 5) ? 1 : 0;
+                          }),
+                 0.0);
+  Positions points(2, 3);
+  points << 0, 0, 8, -12, 0, 0;
+  const auto depth = depthBelowHull(level, points);
+  EXPECT_NEAR(depth[0], 9.5, 1.2);
+  EXPECT_NEAR(depth[1], 6, 1.2);
+}
+
+}  // namespace
+}  // namespace explica::surface
