@@ -1,0 +1,185 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Meander.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/Parallel.h"
+#include "Explica/Geometry/SelfIntersection.h"
+#include "Explica/Unfolding/Distortion.h"
+#include "Explica/Unfolding/Unfold.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+namespace explica::unfolding {
+namespace {
+
+constexpr int kColumns = 48, kRows = 16;
+
+struct Case {
+  TriangleMesh mesh = makeMeander(kColumns, kRows);
+  Region region = regionOfMarked(mesh, interiorOf(kColumns, kRows, 3));
+  visibility::Viewpoints view = visibility::viewpoint(Point(8, 8, 1000));
+};
+
+UnfolderOptions with(Surround surround) {
+  UnfolderOptions options;
+  options.surround = surround;
+  return options;
+}
+
+TEST(Unfolder, OverhangingFoldsOpenAndKeepTheirAreas) {
+  const Case c;
+  UnfoldOptions options;
+  options.unfolder.surround = Surround::None;
+  options.targetVisibility = 0.98;
+  const UnfoldResult result = unfold(c.mesh, c.region, c.view, options);
+  EXPECT_EQ(result.termination, Termination::TargetReached);
+  EXPECT_LT(result.history.front().visibility, 0.4);
+  EXPECT_GE(result.history.back().visibility, 0.98);
+  const Distortion d = measureDistortion({c.mesh.positions, result.mesh.faces},
+                                         result.mesh.positions, result.region.faces);
+  EXPECT_LT(d.areaErrorMean, 0.003);
+  EXPECT_LT(d.edgeStrainMean, 0.03);  // the sheet is developable: it can open without strain
+}
+
+TEST(Unfolder, NoAcceptedStepIntersectsAndNoObjectiveRises) {
+  const Case c;
+  for (const Surround surround : {Surround::Fixed, Surround::Elastic, Surround::None}) {
+    Unfolder unfolder(c.mesh, c.region, c.view, with(surround));
+    for (int n = 0; n < 40; ++n) {
+      ASSERT_TRUE(unfolder.step());
+      const IterationRecord& r = unfolder.record();
+      ASSERT_LE(r.objectiveAfter, r.objectiveBefore) << n;
+      ASSERT_TRUE(geometry::findSelfIntersections(unfolder.current()).empty())
+          << nameOf(surround) << " iteration " << n;
+    }
+    EXPECT_GT(unfolder.record().visibility, 0.8) << nameOf(surround);
+  }
+}
+
+TEST(Unfolder, SurroundingsMoveOnlyWhereTheyMay) {
+  const Case c;
+  Unfolder fixed(c.mesh, c.region, c.view, with(Surround::Fixed));
+  UnfolderOptions collar = with(Surround::Elastic);
+  collar.collarRings = 2;
+  Unfolder elastic(c.mesh, c.region, c.view, collar);
+  EXPECT_GT(elastic.movingVertices().size(), fixed.movingVertices().size());
+  for (Unfolder* unfolder : {&fixed, &elastic}) {
+    for (int n = 0; n < 3; ++n) unfolder->step();
+    std::vector<bool> moves(static_cast<std::size_t>(c.mesh.vertexCount()), false);
+    for (const std::int32_t v : unfolder->movingVertices()) moves[v] = true;
+    for (Eigen::Index v = 0; v < c.mesh.vertexCount(); ++v) {
+      if (!moves[v]) {
+        ASSERT_EQ(unfolder->state().positions.row(v), c.mesh.positions.row(v));
+      }
+    }
+  }
+}
+
+TEST(Unfolder, AFlatDiscStaysPut) {
+  const TriangleMesh flat = geometry::makeRectangle(12, 12, 12, 12);
+  const Region region = regionOfMarked(flat, interiorOf(12, 12, 0));
+  // So far away that rays through the disc are parallel to 1e-8.
+  Unfolder unfolder(flat, region, visibility::viewpoint(Point(6, 6, 1e9)), with(Surround::None));
+  for (int n = 0; n < 5; ++n) unfolder.step();
+  EXPECT_LT((unfolder.state().positions - flat.positions).cwiseAbs().maxCoeff(), 1e-6);
+  EXPECT_NEAR(unfolder.record().visibility, 1, 1e-9);
+}
+
+TEST(Unfolder, ThreadsDoNotChangeAnyBit) {
+  const Case c;
+  std::vector<Positions> ends;
+  for (const int threads : {1, 2, 4}) {
+    setThreadCount(threads);
+    Unfolder unfolder(c.mesh, c.region, c.view, with(Surround::Fixed));
+    for (int n = 0; n < 15; ++n) unfolder.step();
+    ends.push_back(unfolder.state().positions);
+  }
+  setThreadCount(0);
+  EXPECT_EQ(ends[0], ends[1]);
+  EXPECT_EQ(ends[0], ends[2]);
+}
+
+TEST(Unfold, ResumedRunsEqualUninterruptedOnesToTheLastBit) {
+  const Case c;
+  UnfoldOptions options;
+  options.maxIterations = 24;
+  options.frames = 5;
+  const UnfoldResult whole = unfold(c.mesh, c.region, c.view, options);
+  options.maxIterations = 11;
+  const UnfoldResult part = unfold(c.mesh, c.region, c.view, options);
+  EXPECT_EQ(part.termination, Termination::MaxIterations);
+  const auto path = std::filesystem::temp_directory_path() / "explica-checkpoint-test.state";
+  writeCheckpoint(path, part.checkpoint);
+  const Checkpoint read = readCheckpoint(path);
+  options.maxIterations = 24;
+  const UnfoldResult rest = unfold(c.mesh, c.region, c.view, options, {}, &read);
+  EXPECT_EQ(whole.mesh.positions, rest.mesh.positions);
+  EXPECT_EQ(whole.checkpoint.state.multipliers, rest.checkpoint.state.multipliers);
+  ASSERT_EQ(whole.history.size(), rest.history.size());
+  for (std::size_t n = 0; n < whole.history.size(); ++n) {
+    EXPECT_EQ(whole.history[n].objectiveAfter, rest.history[n].objectiveAfter) << n;
+  }
+  ASSERT_EQ(whole.frames.size(), rest.frames.size());
+  for (std::size_t n = 0; n < whole.frames.size(); ++n) {
+    EXPECT_EQ(whole.frames[n].positions, rest.frames[n].positions);
+  }
+
+  std::filesystem::resize_file(path, std::filesystem::file_size(path) - 5);
+  EXPECT_THROW((void)readCheckpoint(path), IOError);
+  std::filesystem::remove(path);
+  EXPECT_THROW((void)readCheckpoint(path), IOError);
+}
+
+TEST(Unfold, FramesAreEvenlySpacedInVisibilityAndFreeOfIntersections) {
+  const Case c;
+  UnfoldOptions options;
+  options.frames = 9;
+  options.targetVisibility = 0.8;
+  options.areaTolerance = 1;
+  const UnfoldResult result = unfold(c.mesh, c.region, c.view, options);
+  ASSERT_EQ(result.frames.size(), 9u);
+  const double step = (result.frames[8].visibility - result.frames[0].visibility) / 8;
+  for (int n = 1; n < 9; ++n) {
+    EXPECT_NEAR(result.frames[n].visibility - result.frames[n - 1].visibility, step, 1e-4);
+    EXPECT_TRUE(
+        geometry::findSelfIntersections({result.frames[n].positions, result.mesh.faces}).empty());
+  }
+  EXPECT_EQ(result.frames[0].positions, c.mesh.positions);
+  EXPECT_EQ(result.frames[8].positions, result.mesh.positions);
+}
+
+TEST(Unfold, StopsWhenAskedAndSaysSo) {
+  const Case c;
+  int calls = 0;
+  Monitor monitor;
+  monitor.stopWanted = [&] { return ++calls > 4; };
+  const UnfoldResult stopped = unfold(c.mesh, c.region, c.view, {}, monitor);
+  EXPECT_EQ(stopped.termination, Termination::Interrupted);
+  EXPECT_EQ(stopped.history.back().iteration, 4);
+  UnfoldOptions brief;
+  brief.maxTime = 1e-9;
+  EXPECT_EQ(unfold(c.mesh, c.region, c.view, brief).termination, Termination::MaxTime);
+}
+
+TEST(Unfold, RefusesWhatItCannotUnfold) {
+  const Case c;
+  const auto below = visibility::viewpoint(Point(8, 8, -1000));
+  EXPECT_THROW((void)unfold(c.mesh, c.region, below), InvalidInput);
+  UnfoldOptions bad;
+  bad.maxIterations = 0;
+  EXPECT_THROW((void)unfold(c.mesh, c.region, c.view, bad), InvalidInput);
+  bad = {};
+  bad.targetVisibility = 1.5;
+  EXPECT_THROW((void)unfold(c.mesh, c.region, c.view, bad), InvalidInput);
+  TriangleMesh needle = c.mesh;
+  needle.positions.row(needle.faces(c.region.faces[0], 1)) =
+      needle.positions.row(needle.faces(c.region.faces[0], 0));
+  EXPECT_THROW((void)Unfolder(needle, c.region, c.view), InvalidInput);
+}
+
+}  // namespace
+}  // namespace explica::unfolding
