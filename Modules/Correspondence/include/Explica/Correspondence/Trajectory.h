@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Harmonic/Annulus.h"
+#include "Explica/Harmonic/Interpolant.h"
+
+#include <memory>
+#include <optional>
+
+namespace explica::correspondence {
+
+/// How carefully trajectories are followed.
+struct TraceOptions {
+  double tolerance = 1e-3;  ///< greatest error estimate of a step, in voxels
+  double maxStep = 0.5;     ///< longest step, in voxels of the finest spacing; at most 0.5, so that
+                            ///< a step never leaves the neighbourhood whose bank is known
+};
+
+/// Where a trajectory came to.
+struct Trace {
+  Point point = Point::Constant(kNaN);  ///< RAS mm
+  double length = kNaN;                 ///< mm along the trajectory, >= 0
+  double u = kNaN;                      ///< there
+  bool reached = false;                 ///< false: left the tissue or stagnated; the rest is where
+};
+
+/// Follows trajectories of T = grad u / |grad u| through the tissue [thesis 3.1, Lagrangian].
+///
+/// T is the trilinear interpolant of the voxels' gradients, and u that of their first-order Taylor
+/// expansions, which is exact for quadratic u.  Next to a boundary, values beyond it are extended
+/// from the trajectory's own side, so that neither the other bank of a sulcus nor the jump at the
+/// boundary enters.  Steps are those of the embedded Runge-Kutta pair 3(2) [BogackiShampine1989].
+///
+/// Keeps references to the annulus and the interpolant; both must outlive it.  Safe to use from
+/// several threads.
+class TrajectoryTracer {
+ public:
+  TrajectoryTracer(const harmonic::Annulus& annulus, const harmonic::Interpolant& interpolant,
+                   const TraceOptions& options = {});
+  ~TrajectoryTracer();
+  TrajectoryTracer(TrajectoryTracer&&) noexcept;
+
+  /// From a world point in or within two voxels of the tissue to the level u = target: 0 inner
+  /// boundary, 1 outer boundary, or between.  Goes up or down as needed.  A start beyond the level
+  /// comes back to it, its length counted positive.
+  [[nodiscard]] Trace trace(const Point& start, double target) const;
+
+  /// From a tissue voxel's centre.
+  [[nodiscard]] Trace trace(std::int32_t number, double target) const;
+
+  /// Interpolated u, extended past the boundary; nothing if no tissue is within two voxels.
+  [[nodiscard]] std::optional<double> value(const Point& point) const;
+
+  /// Unit direction T at a point, RAS; nothing if no tissue is within two voxels.
+  [[nodiscard]] std::optional<Vector> direction(const Point& point) const;
+
+  [[nodiscard]] const harmonic::Annulus& annulus() const;
+
+  struct Field;
+  [[nodiscard]] const Field& field() const { return *field_; }
+
+ private:
+  std::unique_ptr<Field> field_;
+};
+
+}  // namespace explica::correspondence

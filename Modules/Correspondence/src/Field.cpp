@@ -1,0 +1,470 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Field.h"
+
+#include "Explica/Core/Parallel.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace explica::correspondence {
+
+using harmonic::kInner;
+using harmonic::kInsulated;
+using harmonic::kOuter;
+
+namespace {
+
+constexpr int kMaxSteps = 4000;
+// Slope (change of u per voxel) below which a trajectory's direction is round-off.
+constexpr double kFlat = 1e-9;
+// A walk may not be longer than this many voxels per step taken on average: it circles.
+constexpr double kTinyStep = 1e-6;
+// Nearer than this (in voxels) a wall's one-sided slope is round-off.
+constexpr double kTooClose = 0.02;
+
+}  // namespace
+
+TrajectoryTracer::Field::Field(const harmonic::Annulus& a, const harmonic::Interpolant& i,
+                               const TraceOptions& o)
+    : annulus(a), interpolant(i), options(o) {
+  flat = annulus.grid.dimension() == 2;
+  const Vector& h = annulus.grid.spacing;
+  finest = flat ? std::min(h[0], h[1]) : h.minCoeff();
+  inverseSpacing = h.cwiseInverse();
+  options.maxStep = std::min(options.maxStep, 0.5);
+  bool anyCut = false;
+  std::vector<std::uint8_t> cut(annulus.count(), 0);
+  const auto strides = annulus.strides();
+  for (std::size_t n = 0; n < annulus.count(); ++n) {
+    if (annulus.irregular(static_cast<std::int32_t>(n)) < 0) continue;
+    for (int d = 0; d < 6; ++d) {
+      const std::int32_t q = annulus.place[n] + harmonic::signOf(d) * strides[harmonic::axisOf(d)];
+      if (annulus.links[n][d] < 0 && annulus.numberAt[q] >= 0) cut[n] = 1;
+    }
+    anyCut = anyCut || cut[n];
+  }
+  if (anyCut) onCut = std::move(cut);
+}
+
+Vector TrajectoryTracer::Field::toBox(const Point& world) const {
+  const Vector index = annulus.grid.toIndex(world);
+  return index - Vector(annulus.first[0], annulus.first[1], annulus.first[2]);
+}
+
+Point TrajectoryTracer::Field::toWorld(const Vector& x) const {
+  return annulus.grid.toWorld(x + Vector(annulus.first[0], annulus.first[1], annulus.first[2]));
+}
+
+TrajectoryTracer::Field::Sample TrajectoryTracer::Field::sample(const Vector& x,
+                                                                std::int32_t home) const {
+  std::array<int, 3> base{};
+  Vector f;
+  for (int a = 0; a < 3; ++a) {
+    const double low = std::clamp(std::floor(x[a]), 0.0, annulus.size[a] - 2.0);
+    base[a] = static_cast<int>(low);
+    f[a] = x[a] - low;
+  }
+  if (flat) {
+    base[2] = static_cast<int>(std::lround(x[2]));
+    f[2] = 0;
+  }
+  const auto strides = annulus.strides();
+  const std::int32_t p = base[0] + base[1] * strides[1] + base[2] * strides[2];
+  std::int32_t corner[8];
+  const int corners = flat ? 4 : 8;
+  bool whole = true;
+  for (int c = 0; c < corners; ++c) {
+    const std::int32_t q = p + (c & 1) + (c >> 1 & 1) * strides[1] + (c >> 2) * strides[2];
+    corner[c] = annulus.numberAt[q];
+    whole = whole && corner[c] >= 0 && (onCut.empty() || !onCut[corner[c]]);
+  }
+  if (!whole) return sampleBesideBoundary(x, base, f, corner, home);
+
+  Sample result;
+  result.u = 0;
+  double best = -1;
+  for (int c = 0; c < corners; ++c) {
+    double weight = 1;
+    Vector away;
+    for (int a = 0; a < 3; ++a) {
+      const int bit = c >> a & 1;
+      away[a] = f[a] - bit;
+      weight *= bit ? f[a] : 1 - f[a];
+    }
+    const std::int32_t n = corner[c];
+    const Vector g = interpolant.gradient[n].cast<double>().cwiseProduct(annulus.grid.spacing);
+    result.u += weight * (interpolant.u[n] + 0.5 * g.dot(away));
+    result.gradient += weight * g;
+    if (weight > best) {
+      best = weight;
+      result.home = n;
+    }
+  }
+  return result;
+}
+
+TrajectoryTracer::Field::Sample TrajectoryTracer::Field::sampleBesideBoundary(
+    const Vector& x, const std::array<int, 3>& base, const Vector& f, const std::int32_t* corner,
+    std::int32_t home) const {
+  (void)x;
+  (void)base;
+  const int axes = flat ? 2 : 3;
+  const int corners = flat ? 4 : 8;
+  double weight[8];
+  for (int c = 0; c < corners; ++c) {
+    weight[c] = 1;
+    for (int a = 0; a < axes; ++a) weight[c] *= (c >> a & 1) ? f[a] : 1 - f[a];
+  }
+  int seed = -1;
+  for (int c = 0; c < corners; ++c) {
+    if (corner[c] >= 0 && corner[c] == home) seed = c;
+  }
+  if (seed < 0) {
+    for (int c = 0; c < corners; ++c) {
+      if (corner[c] >= 0 && (seed < 0 || weight[c] > weight[seed])) seed = c;
+    }
+  }
+  Sample result;
+  if (seed < 0) return result;
+
+  enum : std::uint8_t { kUnknown, kReached, kExtended };
+  std::uint8_t state[8] = {};
+  double u[8];
+  Vector g[8];
+  const Vector& h = annulus.grid.spacing;
+  int stack[8];
+  int depth = 0;
+  const auto reach = [&](int c) {
+    state[c] = kReached;
+    u[c] = interpolant.u[corner[c]];
+    g[c] = interpolant.gradient[corner[c]].cast<double>().cwiseProduct(h);
+    stack[depth++] = c;
+  };
+  reach(seed);
+  while (depth > 0) {
+    const int c = stack[--depth];
+    for (int a = 0; a < axes; ++a) {
+      const int other = c ^ (1 << a);
+      const int d = 2 * a + ((c >> a & 1) ? 0 : 1);
+      if (state[other] == kUnknown && corner[other] >= 0 &&
+          annulus.links[corner[c]][d] == corner[other]) {
+        reach(other);
+      }
+    }
+  }
+
+  // Extend along axes: the parabola through the voxel, the boundary on this link and what is
+  // behind.
+  int extended[8];
+  int extensions = 0;
+  for (int c = 0; c < corners; ++c) {
+    if (state[c] == kReached) continue;
+    double sumU = 0;
+    Vector sumG = Vector::Zero();
+    int found = 0;
+    for (int a = 0; a < axes; ++a) {
+      const int from = c ^ (1 << a);
+      if (state[from] != kReached) continue;
+      const std::int32_t n = corner[from];
+      const int d = 2 * a + ((from >> a & 1) ? 0 : 1);
+      const int back = harmonic::opposite(d);
+      const std::int32_t row = annulus.irregular(n);
+      const auto& links = annulus.links[n];
+      const double sign = harmonic::signOf(d);
+      Vector slope = g[from];
+      if (links[d] == kInsulated) {
+        slope[a] = -slope[a];
+        sumU += u[from];
+      } else {
+        const double wall = links[d] == kInner ? 0.0 : 1.0;
+        const double theta = annulus.fractions[row][d], behind = annulus.fractions[row][back];
+        const double outward = sign * g[from][a];
+        double backSlope = 0;  // an insulated voxel behind mirrors this one
+        if (links[back] >= 0) {
+          backSlope = u[from] - interpolant.u[links[back]];
+        } else if (links[back] != kInsulated) {
+          backSlope = (u[from] - (links[back] == kInner ? 0.0 : 1.0)) / behind;
+        }
+        const double second = theta < kTooClose
+                                  ? 2 * (outward - backSlope) / behind
+                                  : 2 * ((wall - u[from]) / theta - backSlope) / (theta + behind);
+        sumU += u[from] + outward + 0.5 * second;
+        if (links[back] >= 0) {
+          const Vector gBack = interpolant.gradient[links[back]].cast<double>().cwiseProduct(h);
+          slope += g[from] - gBack;
+        }
+        slope[a] = sign * (outward + second);
+      }
+      sumG += slope;
+      ++found;
+    }
+    if (found == 0) continue;
+    u[c] = sumU / found;
+    g[c] = sumG / found;
+    extended[extensions++] = c;
+  }
+  for (int k = 0; k < extensions; ++k) state[extended[k]] = kExtended;
+
+  // Then across faces and the cube: gradients add up as in a parallelogram.
+  for (int pass = 0; pass < 2; ++pass) {
+    extensions = 0;
+    for (int c = 0; c < corners; ++c) {
+      if (state[c] != kUnknown) continue;
+      double sumU = 0;
+      Vector sumG = Vector::Zero();
+      int found = 0;
+      for (int a = 0; a < axes; ++a) {
+        for (int b = a + 1; b < axes; ++b) {
+          const int p = c ^ (1 << a), q = c ^ (1 << b), r = c ^ (1 << a) ^ (1 << b);
+          if (state[p] == kUnknown || state[q] == kUnknown || state[r] == kUnknown) continue;
+          const Vector slope = g[p] + g[q] - g[r];
+          const double signA = (c >> a & 1) ? 1 : -1, signB = (c >> b & 1) ? 1 : -1;
+          sumU += 0.5 * (u[p] + signA * 0.5 * (g[p][a] + slope[a]) + u[q] +
+                         signB * 0.5 * (g[q][b] + slope[b]));
+          sumG += slope;
+          ++found;
+        }
+      }
+      if (found == 0) continue;
+      u[c] = sumU / found;
+      g[c] = sumG / found;
+      extended[extensions++] = c;
+    }
+    for (int k = 0; k < extensions; ++k) state[extended[k]] = kExtended;
+  }
+  for (int pass = 0; pass < 3; ++pass) {
+    for (int c = 0; c < corners; ++c) {
+      if (state[c] != kUnknown) continue;
+      for (int a = 0; a < axes; ++a) {
+        const int p = c ^ (1 << a);
+        if (state[p] == kUnknown) continue;
+        g[c] = g[p];
+        u[c] = u[p] + ((c >> a & 1) ? 1 : -1) * g[p][a];
+        state[c] = kExtended;
+        break;
+      }
+    }
+  }
+
+  result.u = 0;
+  double best = -1;
+  for (int c = 0; c < corners; ++c) {
+    Vector away = Vector::Zero();
+    for (int a = 0; a < axes; ++a) away[a] = f[a] - (c >> a & 1);
+    result.u += weight[c] * (u[c] + 0.5 * g[c].dot(away));
+    result.gradient += weight[c] * g[c];
+    if (state[c] == kReached && weight[c] > best) {
+      best = weight[c];
+      result.home = corner[c];
+    }
+  }
+  return result;
+}
+
+Vector TrajectoryTracer::Field::velocityOf(const Sample& sample, int uphill) const {
+  // G per voxel is (per mm) * spacing; T = grad / |grad| in mm, then per voxel again.
+  Vector perMm = sample.gradient.cwiseProduct(inverseSpacing);
+  if (flat) perMm[2] = 0;
+  const double norm = perMm.norm();
+  if (!(norm * finest > kFlat)) return Vector::Zero();
+  return (uphill / norm) * perMm.cwiseProduct(inverseSpacing);
+}
+
+TrajectoryTracer::Field::Walk TrajectoryTracer::Field::begin(const Vector& x, std::int32_t home,
+                                                             int uphill) const {
+  Walk walk;
+  walk.x = x;
+  const Sample here = sample(x, home);
+  walk.home = here.home;
+  walk.u = here.u;
+  walk.velocity = velocityOf(here, uphill);
+  walk.step = options.maxStep * finest;
+  walk.stuck = here.home < 0 || walk.velocity.isZero(0);
+  return walk;
+}
+
+TrajectoryTracer::Field::Walk TrajectoryTracer::Field::begin(std::int32_t number,
+                                                             int uphill) const {
+  const auto s = annulus.boxSubscripts(number);
+  Walk walk;
+  walk.x = Vector(s[0], s[1], s[2]);
+  walk.home = number;
+  walk.u = interpolant.u[number];
+  Sample here;
+  here.gradient = interpolant.gradient[number].cast<double>().cwiseProduct(annulus.grid.spacing);
+  walk.velocity = velocityOf(here, uphill);
+  walk.step = options.maxStep * finest;
+  walk.stuck = walk.velocity.isZero(0);
+  return walk;
+}
+
+bool TrajectoryTracer::Field::advance(Walk& walk, double target, int uphill) const {
+  const double longest = options.maxStep * finest;
+  for (;;) {
+    const double s = walk.step;
+    const Vector& k1 = walk.velocity;
+    const Sample two = sample(walk.x + 0.5 * s * k1, walk.home);
+    const Vector k2 = velocityOf(two, uphill);
+    const Sample three = sample(walk.x + 0.75 * s * k2, walk.home);
+    const Vector k3 = velocityOf(three, uphill);
+    const Vector next = walk.x + s * (2.0 / 9 * k1 + 1.0 / 3 * k2 + 4.0 / 9 * k3);
+    const Sample four = sample(next, walk.home);
+    const Vector k4 = velocityOf(four, uphill);
+    const bool lost = two.home < 0 || three.home < 0 || four.home < 0 || k4.isZero(0);
+    const double error = s * (-5.0 / 72 * k1 + 1.0 / 12 * k2 + 1.0 / 9 * k3 - 1.0 / 8 * k4).norm();
+    if (lost || error > options.tolerance) {
+      if (s < kTinyStep * finest) {
+        walk.stuck = true;
+        return false;
+      }
+      walk.step = lost ? 0.25 * s : s * std::max(0.2, 0.9 * std::cbrt(options.tolerance / error));
+      continue;
+    }
+    if (uphill * (four.u - target) < 0) {
+      walk.x = next;
+      walk.velocity = k4;
+      walk.home = four.home;
+      walk.u = four.u;
+      walk.length += s;
+      const double factor = error > 0 ? 0.9 * std::cbrt(options.tolerance / error) : 4.0;
+      walk.step = std::min(longest, s * std::clamp(factor, 0.3, 4.0));
+      return false;
+    }
+    // The target is between: find it on the step's cubic by regula falsi (Illinois).
+    const Vector start = walk.x;
+    const auto at = [&](double t) {
+      const double t2 = t * t, t3 = t2 * t;
+      return Vector((2 * t3 - 3 * t2 + 1) * start + (t3 - 2 * t2 + t) * s * k1 +
+                    (-2 * t3 + 3 * t2) * next + (t3 - t2) * s * k4);
+    };
+    double low = 0, high = 1;
+    double fLow = uphill * (walk.u - target), fHigh = uphill * (four.u - target);
+    double t = 1;
+    if (fLow >= 0) {
+      t = 0;
+    } else {
+      for (int k = 0; k < 12; ++k) {
+        t = (low * fHigh - high * fLow) / (fHigh - fLow);
+        const double value = uphill * (sample(at(t), walk.home).u - target);
+        if (std::abs(value) < 1e-9) break;
+        if (value < 0) {
+          low = t;
+          fLow = value;
+          fHigh *= 0.5;
+        } else {
+          high = t;
+          fHigh = value;
+          fLow *= 0.5;
+        }
+      }
+    }
+    walk.x = at(t);
+    walk.u = target;
+    walk.length += t * s;
+    walk.home = four.home;
+    return true;
+  }
+}
+
+Trace TrajectoryTracer::Field::run(Walk walk, double target, int uphill) const {
+  Trace result;
+  bool done = uphill * (walk.u - target) >= 0;
+  for (int k = 0; !done && !walk.stuck && k < kMaxSteps; ++k) done = advance(walk, target, uphill);
+  result.reached = done;
+  result.point = toWorld(walk.x);
+  result.length = walk.length;
+  result.u = walk.u;
+  return result;
+}
+
+std::int32_t TrajectoryTracer::Field::homeOf(const Vector& x) const {
+  std::array<int, 3> centre{};
+  for (int a = 0; a < 3; ++a) centre[a] = static_cast<int>(std::lround(x[a]));
+  std::int32_t best = -1;
+  double nearest = kInfinity;
+  const auto strides = annulus.strides();
+  const int depth = flat ? 0 : 2;
+  for (int dk = -depth; dk <= depth; ++dk) {
+    for (int dj = -2; dj <= 2; ++dj) {
+      for (int di = -2; di <= 2; ++di) {
+        const int i = centre[0] + di, j = centre[1] + dj, k = centre[2] + dk;
+        if (i < 0 || j < 0 || k < 0 || i >= annulus.size[0] || j >= annulus.size[1] ||
+            k >= annulus.size[2]) {
+          continue;
+        }
+        const std::int32_t n = annulus.numberAt[i + j * strides[1] + k * strides[2]];
+        if (n < 0) continue;
+        const double distance =
+            (Vector(i, j, k) - x).cwiseProduct(annulus.grid.spacing).squaredNorm();
+        if (distance < nearest) {
+          nearest = distance;
+          best = n;
+        }
+      }
+    }
+  }
+  return best;
+}
+
+TrajectoryTracer::TrajectoryTracer(const harmonic::Annulus& annulus,
+                                   const harmonic::Interpolant& interpolant,
+                                   const TraceOptions& options)
+    : field_(std::make_unique<Field>(annulus, interpolant, options)) {}
+TrajectoryTracer::~TrajectoryTracer() = default;
+TrajectoryTracer::TrajectoryTracer(TrajectoryTracer&&) noexcept = default;
+
+const harmonic::Annulus& TrajectoryTracer::annulus() const {
+  return field_->annulus;
+}
+
+Trace TrajectoryTracer::trace(std::int32_t number, double target) const {
+  const int uphill = field_->interpolant.u[number] < target ? 1 : -1;
+  return field_->run(field_->begin(number, uphill), target, uphill);
+}
+
+Trace TrajectoryTracer::trace(const Point& start, double target) const {
+  Trace result;
+  result.point = start;
+  Vector x = field_->toBox(start);
+  if (field_->flat) x[2] = std::round(x[2]);
+  const std::int32_t home = field_->homeOf(x);
+  if (home < 0) return result;
+  Field::Sample here = field_->sample(x, home);
+  double lead = 0;  // straight way to the tissue's cell, if the point's own has no tissue
+  if (here.home < 0) {
+    const auto s = field_->annulus.boxSubscripts(home);
+    const Vector goal(s[0], s[1], s[2]);
+    const Vector origin = x;
+    double t = 0;
+    while (here.home < 0 && t < 1) {
+      t = std::min(1.0, t + 0.125);
+      x = origin + t * (goal - origin);
+      here = field_->sample(x, home);
+    }
+    lead = (x - origin).cwiseProduct(field_->annulus.grid.spacing).norm();
+  }
+  const int uphill = here.u < target ? 1 : -1;
+  result = field_->run(field_->begin(x, here.home, uphill), target, uphill);
+  result.length += lead;
+  return result;
+}
+
+std::optional<double> TrajectoryTracer::value(const Point& point) const {
+  const Vector x = field_->toBox(point);
+  const auto sample = field_->sample(x, field_->homeOf(x));
+  if (sample.home < 0) return {};
+  return sample.u;
+}
+
+std::optional<Vector> TrajectoryTracer::direction(const Point& point) const {
+  const Vector x = field_->toBox(point);
+  const auto sample = field_->sample(x, field_->homeOf(x));
+  if (sample.home < 0) return {};
+  const Vector perMm = sample.gradient.cwiseProduct(field_->inverseSpacing);
+  const double norm = perMm.norm();
+  if (!(norm > 0)) return {};
+  return field_->annulus.grid.axesToWorld(perMm / norm);
+}
+
+}  // namespace explica::correspondence

@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Correspondence/Trajectory.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace explica::correspondence {
+
+/// u and its gradient between voxel centres.  Positions are continuous indices of the annulus' box;
+/// gradients are per voxel (index space), so that du = G . dx.
+struct TrajectoryTracer::Field {
+  struct Sample {
+    double u = kNaN;
+    Vector gradient = Vector::Zero();
+    std::int32_t home = -1;  ///< nearest tissue voxel of this side; -1: no tissue in the cell
+  };
+
+  /// State of a walk along a trajectory.
+  struct Walk {
+    Vector x = Vector::Zero();
+    Vector velocity = Vector::Zero();  ///< dx / ds, voxels per mm
+    std::int32_t home = -1;
+    double u = kNaN;
+    double length = 0;  ///< mm so far
+    double step = 0;    ///< next step to try, mm
+    bool stuck = false;
+  };
+
+  Field(const harmonic::Annulus& a, const harmonic::Interpolant& i, const TraceOptions& o);
+
+  /// @param home  tissue voxel that tells the side, or -1
+  [[nodiscard]] Sample sample(const Vector& x, std::int32_t home) const;
+
+  [[nodiscard]] Walk begin(const Vector& x, std::int32_t home, int uphill) const;
+  [[nodiscard]] Walk begin(std::int32_t number, int uphill) const;
+
+  /// One accepted step towards the target; true when it was reached (the walk then ends on it).
+  bool advance(Walk& walk, double target, int uphill) const;
+
+  [[nodiscard]] Trace run(Walk walk, double target, int uphill) const;
+
+  /// Tissue voxel to start from for any point: in its cell, else the nearest within two voxels.
+  [[nodiscard]] std::int32_t homeOf(const Vector& x) const;
+
+  [[nodiscard]] Vector toBox(const Point& world) const;
+  [[nodiscard]] Point toWorld(const Vector& x) const;
+
+  const harmonic::Annulus& annulus;
+  const harmonic::Interpolant& interpolant;
+  TraceOptions options;
+  double finest = 1;  ///< mm
+  Vector inverseSpacing;
+  bool flat = false;                ///< two-dimensional
+  std::vector<std::uint8_t> onCut;  ///< per tissue voxel: a link to tissue is cut; empty if none is
+
+ private:
+  [[nodiscard]] Sample sampleBesideBoundary(const Vector& x, const std::array<int, 3>& base,
+                                            const Vector& f, const std::int32_t* corner,
+                                            std::int32_t home) const;
+  [[nodiscard]] Vector velocityOf(const Sample& sample, int uphill) const;
+};
+
+}  // namespace explica::correspondence
