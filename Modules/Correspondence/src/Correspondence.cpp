@@ -198,14 +198,14 @@ class Sweep {
       const double lengthBefore = walk.length;
       done = tracer_.advance(walk, target_, uphill_);
       if (done) break;
-      if (faceBetween(n, before, walk.x, lengthBefore, walk.length, walk.home)) return;
+      if (faceBetween(n, before, walk.x, lengthBefore, walk.length)) return;
     }
     if (done) store(n, walk.x, walk.length);
   }
 
   bool faceBetween(std::int32_t n, const Vector& from, const Vector& to, double lengthFrom,
-                   double lengthTo, std::int32_t home) {
-    const int axes = annulus_.grid.dimension();
+                   double lengthTo) {
+    const int axes = annulus_.planar ? 2 : 3;
     // Steps are at most half a voxel: at most one plane of each axis lies between.
     struct Pierced {
       double t;
@@ -220,8 +220,11 @@ class Sweep {
       if (plane > high || high - low < 1e-12) continue;
       pierced[count++] = {(plane - from[a]) / (to[a] - from[a]), a, static_cast<int>(plane)};
     }
-    std::sort(pierced, pierced + count,
-              [](const Pierced& p, const Pierced& q) { return p.t < q.t; });
+    for (int k = 1; k < count; ++k) {
+      for (int m = k; m > 0 && pierced[m].t < pierced[m - 1].t; --m) {
+        std::swap(pierced[m], pierced[m - 1]);
+      }
+    }
     const auto strides = annulus_.strides();
     for (int k = 0; k < count; ++k) {
       const Vector x = from + pierced[k].t * (to - from);
@@ -241,16 +244,13 @@ class Sweep {
       const int corners = axes == 2 ? 2 : 4;
       std::int32_t corner[4];
       bool usable = true;
-      bool ownSide = false;
       for (int e = 0; usable && e < corners; ++e) {
         const std::int32_t q = p + (e & 1) * strides[b] + (e >> 1) * strides[c];
         corner[e] = annulus_.numberAt[q];
         usable = corner[e] >= 0 && corner[e] != n && solved_[corner[e]] &&
                  (tracer_.onCut.empty() || !tracer_.onCut[corner[e]]);
-        ownSide = ownSide || corner[e] == home;
       }
       if (!usable) continue;
-      (void)ownSide;
       Vector points[4];
       for (int e = 0; e < corners; ++e) points[e] = wallPoint(corner[e]);
       for (int e = 0; usable && e < corners; ++e) {
@@ -335,6 +335,33 @@ Correspondence findCorrespondences(const Annulus& annulus, const Interpolant& in
                                  return sum;
                                });
   return result;
+}
+
+std::vector<double> thicknessOf(const Correspondence& correspondence) {
+  std::vector<double> thickness(correspondence.innerDistance.size());
+  parallelFor(thickness.size(), 1 << 14,
+              [&](std::size_t n) { thickness[n] = correspondence.thickness(n); });
+  return thickness;
+}
+
+ThicknessSummary summaryOf(const Correspondence& correspondence) {
+  std::vector<double> known = thicknessOf(correspondence);
+  std::erase_if(known, [](double t) { return std::isnan(t); });
+  ThicknessSummary summary;
+  if (known.empty()) return summary;
+  double sum = 0;
+  for (const double t : known) sum += t;
+  summary.mean = sum / static_cast<double>(known.size());
+  const auto quantile = [&](double q) {
+    const auto at = known.begin() +
+                    static_cast<std::ptrdiff_t>(q * static_cast<double>(known.size() - 1) + 0.5);
+    std::nth_element(known.begin(), at, known.end());
+    return *at;
+  };
+  summary.median = quantile(0.5);
+  summary.p05 = quantile(0.05);
+  summary.p95 = quantile(0.95);
+  return summary;
 }
 
 Volume<Eigen::Vector3f> spreadPoints(const Annulus& annulus,

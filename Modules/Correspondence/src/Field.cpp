@@ -28,7 +28,7 @@ constexpr double kTooClose = 0.02;
 TrajectoryTracer::Field::Field(const harmonic::Annulus& a, const harmonic::Interpolant& i,
                                const TraceOptions& o)
     : annulus(a), interpolant(i), options(o) {
-  flat = annulus.grid.dimension() == 2;
+  flat = annulus.planar;
   const Vector& h = annulus.grid.spacing;
   finest = flat ? std::min(h[0], h[1]) : h.minCoeff();
   inverseSpacing = h.cwiseInverse();

@@ -63,7 +63,8 @@ Fronts frontsFromInside(const Annulus& annulus) {
     if (done[n] || distance > fronts.distance[n]) continue;
     done[n] = 1;
     const std::int32_t p = annulus.place[n];
-    for (int dk = -1; dk <= 1; ++dk) {
+    const int depth = annulus.planar ? 0 : 1;
+    for (int dk = -depth; dk <= depth; ++dk) {
       for (int dj = -1; dj <= 1; ++dj) {
         for (int di = -1; di <= 1; ++di) {
           const std::int32_t m = annulus.numberAt[p + di + dj * strides[1] + dk * strides[2]];

@@ -94,7 +94,7 @@ void number(Annulus& annulus, const std::vector<Code>& sites,
   const std::size_t slices = annulus.size[2];
   // The run of a tissue voxel: 0 even regular, 1 even irregular, 2 odd regular, 3 odd irregular.
   const auto runOf = [&](std::size_t p, int i, int j, int k) {
-    bool regular = cutBits.empty() || cutBits[p] == 0;
+    bool regular = !annulus.planar && (cutBits.empty() || cutBits[p] == 0);
     for (int d = 0; regular && d < 6; ++d) {
       const std::ptrdiff_t step = static_cast<std::ptrdiff_t>(signOf(d)) * strides[axisOf(d)];
       regular = sites[p + step] == kTissueCode;
@@ -171,7 +171,7 @@ void keepSpanningPieces(Annulus& annulus, std::vector<Code>& sites, const Monito
     seen[start] = 1;
     bool inner = false, outer = false;
     for (std::size_t head = 0; head < piece.size(); ++head) {
-      for (int d = 0; d < 6; ++d) {
+      for (int d = 0; d < (annulus.planar ? 4 : 6); ++d) {
         const std::int32_t q = piece[head] + signOf(d) * strides[axisOf(d)];
         switch (static_cast<Site>(sites[q])) {
           case Site::Tissue:
@@ -239,7 +239,7 @@ void countContacts(Annulus& annulus, const std::vector<Code>& sites, const Monit
     for (int j = 0; j + 1 < annulus.size[1]; ++j) {
       for (int i = 0; i + 1 < annulus.size[0]; ++i) {
         const std::size_t p = i + static_cast<std::size_t>(strides[1]) * j + sliceSize * k;
-        for (int a = 0; a < 3; ++a) {
+        for (int a = 0; a < (annulus.planar ? 2 : 3); ++a) {
           const Code s = sites[p], t = sites[p + strides[a]];
           if ((s == codeOf(Site::Inner) && t == codeOf(Site::Outer)) ||
               (s == codeOf(Site::Outer) && t == codeOf(Site::Inner))) {
@@ -285,6 +285,7 @@ Annulus assemble(const Grid& grid, const Box& box, std::vector<Code> sites,
   annulus.first = box.first;
   annulus.size = box.size;
   annulus.model = options.boundary;
+  annulus.planar = options.perSlice || grid.dimension() == 2;
   if (options.openEnds && grid.dimension() == 3) {
     int low = box.size[2], high = -1;
     const std::size_t sliceSize = static_cast<std::size_t>(box.size[0]) * box.size[1];
@@ -468,7 +469,7 @@ Annulus annulusFromLabels(const Volume<Label>& labels, const LabelRoles& roles,
           side[v] = site == Site::Inner || (outer && site == Site::Tissue) ? 1 : 0;
         }
       });
-      const Volume<float> level = antialiasedLevel(side);
+      const Volume<float> level = antialiasedLevel(side, options.perSlice);
       if (offset == 0) return level.data;
       std::vector<float> all(box.count(), 0);
       std::copy(level.data.begin(), level.data.end(),
@@ -602,7 +603,7 @@ Annulus withCuts(const Annulus& annulus, const std::vector<Cut>& cuts) {
   // Cuts that the annulus has already.
   for (std::size_t n = 0; n < annulus.count(); ++n) {
     const std::int32_t p = annulus.place[n];
-    for (int d = 0; d < 6; ++d) {
+    for (int d = 0; d < (annulus.planar ? 4 : 6); ++d) {
       const std::int32_t q = p + signOf(d) * strides[axisOf(d)];
       if (annulus.links[n][d] == kOuter && sites[q] == kTissueCode) cutBits[p] |= 1U << d;
     }
@@ -652,7 +653,7 @@ Volume<float> spread(const Annulus& annulus, const std::vector<double>& values, 
         float& target = volume(i, j, k);
         const std::int32_t n = annulus.numberAt[p];
         if (n >= 0) {
-          target = static_cast<float>(values[n]);
+          target = std::isnan(values[n]) ? elsewhere : static_cast<float>(values[n]);
         } else if (n == kInner) {
           target = innerValue.value_or(elsewhere);
         } else if (n == kOuter) {
@@ -662,6 +663,28 @@ Volume<float> spread(const Annulus& annulus, const std::vector<double>& values, 
         }
       }
     }
+  });
+  return volume;
+}
+
+Volume<Label> spreadLabels(const Annulus& annulus, const std::vector<int>& values) {
+  Volume<Label> volume(annulus.grid, 0);
+  parallelFor(annulus.count(), 1 << 14, [&](std::size_t n) {
+    volume[annulus.linear(static_cast<std::int32_t>(n))] = values[n];
+  });
+  return volume;
+}
+
+Volume<Label> maskOf(const Annulus& annulus, const std::vector<std::int32_t>& voxels) {
+  Volume<Label> volume(annulus.grid, 0);
+  for (const std::int32_t n : voxels) volume[annulus.linear(n)] = 1;
+  return volume;
+}
+
+Volume<std::uint8_t> maskOf(const Volume<Label>& labels, const std::vector<Label>& wanted) {
+  Volume<std::uint8_t> volume(labels.grid, 0);
+  parallelFor(labels.size(), 1 << 16, [&](std::size_t v) {
+    volume[v] = std::find(wanted.begin(), wanted.end(), labels[v]) != wanted.end();
   });
   return volume;
 }

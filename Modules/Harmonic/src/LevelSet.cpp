@@ -103,10 +103,11 @@ void blurAxis(std::vector<float>& values, const std::array<int, 3>& size, int ax
 
 }  // namespace
 
-Volume<float> antialiasedLevel(const Volume<std::uint8_t>& side) {
+Volume<float> antialiasedLevel(const Volume<std::uint8_t>& side, bool perSlice) {
   const Grid& grid = side.grid;
+  const int axes = perSlice ? 2 : grid.dimension();
   const double finest =
-      grid.dimension() == 2 ? std::min(grid.spacing[0], grid.spacing[1]) : grid.spacing.minCoeff();
+      axes == 2 ? std::min(grid.spacing[0], grid.spacing[1]) : grid.spacing.minCoeff();
   std::array<double, 3> sigma{};  // mm
   for (int a = 0; a < 3; ++a) {
     sigma[a] = std::min(kBlur * grid.spacing[a], kBlurOfFinest * finest);
@@ -116,7 +117,7 @@ Volume<float> antialiasedLevel(const Volume<std::uint8_t>& side) {
     inside[v] = side[v] == 1 ? 1.0F : 0.0F;
     known[v] = side[v] == 255 ? 0.0F : 1.0F;
   });
-  for (int a = 0; a < 3; ++a) {
+  for (int a = 0; a < axes; ++a) {
     const auto weights = gaussianWeights(sigma[a] / grid.spacing[a]);
     blurAxis(inside, grid.size, a, weights);
     blurAxis(known, grid.size, a, weights);
@@ -127,7 +128,7 @@ Volume<float> antialiasedLevel(const Volume<std::uint8_t>& side) {
   });
 
   Volume<float> level(grid);
-  const bool isotropic = sigma[0] == sigma[1] && (grid.dimension() == 2 || sigma[1] == sigma[2]);
+  const bool isotropic = sigma[0] == sigma[1] && (axes == 2 || sigma[1] == sigma[2]);
   const float farAway = static_cast<float>(normalQuantile(1 - kSmallest));
   parallelForBlocks(side.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
@@ -144,7 +145,7 @@ Volume<float> antialiasedLevel(const Volume<std::uint8_t>& side) {
           // A plane with normal n is blurred by sqrt(sum n_a^2 sigma_a^2).
           const auto s = grid.subscripts(v);
           double normSquared = 0, spread = 0;
-          for (int a = 0; a < grid.dimension(); ++a) {
+          for (int a = 0; a < axes; ++a) {
             auto lower = s, upper = s;
             lower[a] = std::max(0, s[a] - 1);
             upper[a] = std::min(grid.size[a] - 1, s[a] + 1);

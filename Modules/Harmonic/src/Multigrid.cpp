@@ -88,7 +88,7 @@ void Multigrid::Hierarchy::build() {
     h[a] = annulus.grid.spacing[a];
     unit[a] = static_cast<float>(1 / (h[a] * h[a]));
   }
-  const int axes = annulus.grid.dimension();
+  const int axes = annulus.planar ? 2 : 3;
   std::array<float, 3> extent = {1, 1, 1};  // cell size in finest voxels
   for (int level = 0; level < kMaxLevels && countOf(level) > kCoarsestSize; ++level) {
     double finest = kInfinity;

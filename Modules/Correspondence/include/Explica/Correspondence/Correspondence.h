@@ -60,6 +60,15 @@ struct Correspondence {
                                                  const CorrespondenceOptions& options = {},
                                                  const Monitor& monitor = {});
 
+/// L0 + L1 per tissue voxel.
+[[nodiscard]] std::vector<double> thicknessOf(const Correspondence& correspondence);
+
+/// Of the voxels whose thickness is known, mm.
+struct ThicknessSummary {
+  double mean = kNaN, median = kNaN, p05 = kNaN, p95 = kNaN;
+};
+[[nodiscard]] ThicknessSummary summaryOf(const Correspondence& correspondence);
+
 /// Boundary points as a map on the whole grid: RAS mm in the tissue, 0 elsewhere.
 [[nodiscard]] Volume<Eigen::Vector3f> spreadPoints(const harmonic::Annulus& annulus,
                                                    const std::vector<Eigen::Vector3f>& offsets);

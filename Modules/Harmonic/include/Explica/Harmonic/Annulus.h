@@ -63,6 +63,7 @@ struct Annulus {
                                                 ///< link, (0, 1] of the spacing; 1 if not cut
   std::array<std::int32_t, 4> runEnd = {0, 0, 0, 0};
   BoundaryModel model = BoundaryModel::Subvoxel;
+  bool planar = false;            ///< slices stand alone: no links along k
   std::size_t droppedVoxels = 0;  ///< tissue that misses one side, left out
   int droppedComponents = 0;
   int components = 0;              ///< 6-connected pieces of tissue that are solved for
@@ -118,7 +119,8 @@ void describe(LabelRoles& roles, Visitor&& visit) {
 /// How boundaries are found.
 struct AnnulusOptions {
   BoundaryModel boundary = BoundaryModel::Subvoxel;
-  bool openEnds = false;  ///< insulate the tissue's first and last slice along k
+  bool openEnds = false;  ///< insulate the planes beyond the tissue's first and last slice
+  bool perSlice = false;  ///< every slice on its own, in two dimensions
 };
 
 template <class Visitor>
@@ -145,8 +147,10 @@ struct LevelOptions {
 /// (standard deviation 0.8 voxel along each axis, at most 1.6 of the finest spacing), turned into
 /// the distance that a plane would have, and held to each voxel's own side.  Voxels of unknown side
 /// count for nothing.
-/// @param side  1 inside, 0 outside, 255 unknown
-[[nodiscard]] Volume<float> antialiasedLevel(const Volume<std::uint8_t>& side);
+/// @param side      1 inside, 0 outside, 255 unknown
+/// @param perSlice  blur within slices only
+[[nodiscard]] Volume<float> antialiasedLevel(const Volume<std::uint8_t>& side,
+                                             bool perSlice = false);
 
 /// Annulus of a label volume; boundaries from antialiasedLevel().
 /// @throws InvalidInput  a named label is absent (the message lists those present), no tissue, no
@@ -182,10 +186,20 @@ struct Cut {
 /// The same tissue with more boundary; the numbering changes.
 [[nodiscard]] Annulus withCuts(const Annulus& annulus, const std::vector<Cut>& cuts);
 
-/// A field of tissue voxels on the whole volume's grid.
+/// A field of tissue voxels on the whole volume's grid; `elsewhere` also where it is NaN.
 [[nodiscard]] Volume<float> spread(const Annulus& annulus, const std::vector<double>& values,
                                    float elsewhere = 0, std::optional<float> innerValue = {},
                                    std::optional<float> outerValue = {});
+
+/// Labels of tissue voxels on the whole volume's grid; 0 elsewhere.
+[[nodiscard]] Volume<Label> spreadLabels(const Annulus& annulus, const std::vector<int>& values);
+
+/// 1 at the listed tissue voxels, 0 elsewhere.
+[[nodiscard]] Volume<Label> maskOf(const Annulus& annulus, const std::vector<std::int32_t>& voxels);
+
+/// 1 where a voxel has one of the labels.
+[[nodiscard]] Volume<std::uint8_t> maskOf(const Volume<Label>& labels,
+                                          const std::vector<Label>& wanted);
 
 }  // namespace explica::harmonic
 

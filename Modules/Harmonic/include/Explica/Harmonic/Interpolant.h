@@ -14,7 +14,7 @@ namespace explica::harmonic {
 struct InterpolantOptions {
   double relativeTolerance = 1e-9;  ///< stop once |b - A u| <= relativeTolerance |b|, rows scaled
                                     ///< to unit diagonal
-  int maxIterations = 200;  ///< BiCGStab iterations, two V-cycles each
+  int maxIterations = 200;          ///< BiCGStab iterations, two V-cycles each
 };
 
 /// The interpolant and an account of the solve.
