@@ -37,5 +37,14 @@ from .surfaces import (
     write_shape,
     write_surface,
 )
+from .unfolding import (
+    Unfolder,
+    average_visibility,
+    distortion,
+    knot_energy,
+    select_region,
+    unfold,
+    visible_fraction,
+)
 
 __all__ = [name for name in dir() if not name.startswith("_")]

@@ -25,7 +25,7 @@ def as_mesh(surface):
     )
 
 
-def _of_mesh(function):
+def of_mesh(function):
     """Lets a compiled function of positions and faces take any surface as its first argument."""
 
     @functools.wraps(function)
@@ -36,14 +36,14 @@ def _of_mesh(function):
     return call
 
 
-closest_points = _of_mesh(_explica.closest_points)
-enclosed_volume = _of_mesh(_explica.enclosed_volume)
-face_areas = _of_mesh(_explica.face_areas)
-geodesic_distances = _of_mesh(_explica.geodesic_distances)
-inspect_mesh = _of_mesh(_explica.inspect_mesh)
-self_intersections = _of_mesh(_explica.self_intersections)
-vertex_areas = _of_mesh(_explica.vertex_areas)
-vertex_normals = _of_mesh(_explica.vertex_normals)
+closest_points = of_mesh(_explica.closest_points)
+enclosed_volume = of_mesh(_explica.enclosed_volume)
+face_areas = of_mesh(_explica.face_areas)
+geodesic_distances = of_mesh(_explica.geodesic_distances)
+inspect_mesh = of_mesh(_explica.inspect_mesh)
+self_intersections = of_mesh(_explica.self_intersections)
+vertex_areas = of_mesh(_explica.vertex_areas)
+vertex_normals = of_mesh(_explica.vertex_normals)
 
 
 def write_surface(path, surface, structure="Other", secondary=""):

@@ -10,5 +10,7 @@ namespace explica::python {
 void bindCore(pybind11::module_& m);
 void bindGeometry(pybind11::module_& m);
 void bindIO(pybind11::module_& m);
+void bindVisibility(pybind11::module_& m);
+void bindUnfolding(pybind11::module_& m);
 
 }  // namespace explica::python

@@ -8,4 +8,6 @@ PYBIND11_MODULE(_explica, m) {
   explica::python::bindCore(m);
   explica::python::bindGeometry(m);
   explica::python::bindIO(m);
+  explica::python::bindVisibility(m);
+  explica::python::bindUnfolding(m);
 }

@@ -1,0 +1,201 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Arrays.h"
+#include "Bindings.h"
+#include "Options.h"
+#include "Viewpoints.h"
+#include "Watch.h"
+
+#include "Explica/Geometry/MeshTopology.h"
+#include "Explica/Unfolding/Distortion.h"
+#include "Explica/Unfolding/Unfold.h"
+
+namespace explica::python {
+namespace {
+
+using namespace py::literals;
+using PositionsIn = Eigen::Ref<const Positions>;
+using FacesIn = Eigen::Ref<const Faces>;
+using unfolding::IterationRecord;
+using unfolding::Unfolder;
+
+py::dict recordOf(const IterationRecord& r) {
+  return py::dict("iteration"_a = r.iteration, "visibility"_a = r.visibility,
+                  "area_error_mean"_a = r.areaErrorMean, "area_error_max"_a = r.areaErrorMax,
+                  "edge_strain_mean"_a = r.edgeStrainMean,
+                  "energy_visibility"_a = r.energyVisibility, "energy_area"_a = r.energyArea,
+                  "energy_spring"_a = r.energySpring, "energy_contact"_a = r.energyContact,
+                  "energy_knot"_a = r.energyKnot, "objective_before"_a = r.objectiveBefore,
+                  "objective_after"_a = r.objectiveAfter, "contacts"_a = r.contacts,
+                  "nearest_contact"_a = r.nearestContact, "safe_step"_a = r.safeStep,
+                  "step"_a = r.step, "largest_move"_a = r.largestMove, "damping"_a = r.damping,
+                  "solves"_a = r.solves, "seconds"_a = r.seconds);
+}
+
+unfolding::Region regionOf(const TriangleMesh& mesh, const std::vector<std::int32_t>& vertices) {
+  std::vector<bool> marked(static_cast<std::size_t>(mesh.vertexCount()), false);
+  for (const std::int32_t v : vertices) {
+    if (v < 0 || v >= mesh.vertexCount()) {
+      throw InvalidInput("region: vertex " + std::to_string(v) + " is not one of 0.." +
+                         std::to_string(mesh.vertexCount() - 1));
+    }
+    marked[v] = true;
+  }
+  return unfolding::regionOfMarked(mesh, marked);
+}
+
+py::dict regionDict(const unfolding::Region& region) {
+  return py::dict("vertices"_a = region.vertices, "faces"_a = region.faces,
+                  "centre"_a = region.centre, "radius"_a = region.radius,
+                  "pieces"_a = region.pieces, "holes"_a = region.holes);
+}
+
+py::dict resultDict(unfolding::UnfoldResult result) {
+  py::list history;
+  for (const IterationRecord& record : result.history) history.append(recordOf(record));
+  py::list frames;
+  for (auto& frame : result.frames) {
+    frames.append(py::make_tuple(frame.visibility, py::cast(std::move(frame.positions))));
+  }
+  return py::dict("positions"_a = std::move(result.mesh.positions),
+                  "faces"_a = std::move(result.mesh.faces),
+                  "termination"_a = std::string(nameOf(result.termination)), "history"_a = history,
+                  "frames"_a = frames);
+}
+
+/// An unfolder that can be given another region on the way; Python's face of unfolding::Unfolder.
+class Stepper {
+ public:
+  Stepper(TriangleMesh mesh, const std::vector<std::int32_t>& region,
+          visibility::Viewpoints viewpoints, unfolding::UnfolderOptions options)
+      : mesh_(std::move(mesh)),
+        viewpoints_(std::move(viewpoints)),
+        options_(options),
+        unfolder_(mesh_, regionOf(mesh_, region), viewpoints_, options_) {}
+
+  bool step(int count) {
+    for (int n = 0; n < count; ++n) {
+      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+      const py::gil_scoped_release unlocked;
+      if (!unfolder_.step()) return false;
+    }
+    return true;
+  }
+
+  /// Lengths and areas to be kept are still those of the surface given at construction.
+  void setRegion(const std::vector<std::int32_t>& vertices) {
+    Unfolder next(mesh_, regionOf(mesh_, vertices), viewpoints_, options_);
+    unfolding::UnfoldState state = next.state();
+    state.positions = unfolder_.state().positions;
+    state.iteration = unfolder_.state().iteration;
+    next.restore(std::move(state));
+    unfolder_ = std::move(next);
+  }
+
+  void setViewpoints(visibility::Viewpoints viewpoints) {
+    viewpoints_ = viewpoints;
+    unfolder_.setViewpoints(std::move(viewpoints));
+  }
+
+  void setWeights(const py::kwargs& keywords) {
+    setFromKeywords(provenance::listOptions(options_.weights), keywords);
+    unfolder_.setWeights(options_.weights);
+  }
+
+  [[nodiscard]] const Unfolder& unfolder() const { return unfolder_; }
+
+ private:
+  TriangleMesh mesh_;
+  visibility::Viewpoints viewpoints_;
+  unfolding::UnfolderOptions options_;
+  Unfolder unfolder_;
+};
+
+}  // namespace
+
+void bindUnfolding(py::module_& m) {
+  m.def(
+      "select_region",
+      [](const PositionsIn& positions, const FacesIn& faces, const py::kwargs& keywords) {
+        return regionDict(unfolding::selectRegion(meshOf(positions, faces),
+                                                  optionsOf<unfolding::RegionOptions>(keywords)));
+      },
+      "positions"_a, "faces"_a,
+      ("Vertices and faces of a region of a surface." + keywordHelp<unfolding::RegionOptions>())
+          .c_str());
+  m.def(
+      "unfold",
+      [](const PositionsIn& positions, const FacesIn& faces,
+         const std::vector<std::int32_t>& region, const PositionsIn& viewpoints,
+         const py::object& progress, const py::kwargs& keywords) {
+        const auto options = optionsOf<unfolding::UnfoldOptions>(keywords);
+        const TriangleMesh mesh = meshOf(positions, faces);
+        geometry::requireManifold(mesh, "surface");
+        const unfolding::Region chosen = regionOf(mesh, region);
+        const visibility::Viewpoints from = viewpointsOf(viewpoints);
+        return resultDict(Watch(progress).run([&](const Monitor& monitor) {
+          return unfolding::unfold(mesh, chosen, from, options, monitor);
+        }));
+      },
+      "positions"_a, "faces"_a, "region"_a, "viewpoints"_a, "progress"_a = py::none(),
+      ("Unfold the region (its vertices) for viewpoints (N, 3), RAS mm.  Returns positions, "
+       "faces,\n"
+       "termination, history (one dict an iteration) and frames [(visibility, positions)].\n"
+       "`progress(fraction, activity)` may return False to stop." +
+       keywordHelp<unfolding::UnfoldOptions>())
+          .c_str());
+  m.def(
+      "distortion",
+      [](const PositionsIn& positions, const FacesIn& faces, const PositionsIn& deformed,
+         const std::vector<std::int32_t>& region) {
+        const TriangleMesh mesh = meshOf(positions, faces);
+        auto d = unfolding::measureDistortion(mesh, deformed, region);
+        return py::dict(
+            "area_ratio"_a = std::move(d.areaRatio),
+            "angle_error_rad"_a = std::move(d.angleErrorRad),
+            "edge_strain"_a = std::move(d.edgeStrain), "area_error_mean"_a = d.areaErrorMean,
+            "area_error_max"_a = d.areaErrorMax, "angle_error_mean_rad"_a = d.angleErrorMeanRad,
+            "edge_strain_mean"_a = d.edgeStrainMean, "edge_strain_p95"_a = d.edgeStrainP95,
+            "geodesic_error_mean"_a = d.geodesicErrorMean);
+      },
+      "positions"_a, "faces"_a, "deformed"_a, "region"_a,
+      "How the listed faces differ between two embeddings of the same mesh.");
+
+  py::class_<Stepper>(m, "Unfolder",
+                      ("An unfolding advanced one iteration at a time, to be watched and steered." +
+                       keywordHelp<unfolding::UnfolderOptions>())
+                          .c_str())
+      .def(py::init([](const PositionsIn& positions, const FacesIn& faces,
+                       const std::vector<std::int32_t>& region, const PositionsIn& viewpoints,
+                       const py::kwargs& keywords) {
+             return std::make_unique<Stepper>(meshOf(positions, faces), region,
+                                              viewpointsOf(viewpoints),
+                                              optionsOf<unfolding::UnfolderOptions>(keywords));
+           }),
+           "positions"_a, "faces"_a, "region"_a, "viewpoints"_a)
+      .def("step", &Stepper::step, "count"_a = 1,
+           "Advance; False once no further step lowers the objective.")
+      .def_property_readonly(
+          "positions", [](const Stepper& s) -> Positions { return s.unfolder().state().positions; },
+          "All vertices now, (V, 3), RAS mm.")
+      .def_property_readonly(
+          "record", [](const Stepper& s) { return recordOf(s.unfolder().record()); },
+          "Visibility, energies, errors and contacts after the last iteration.")
+      .def_property_readonly(
+          "region", [](const Stepper& s) { return regionDict(s.unfolder().region()); },
+          "Vertices and faces of the region.")
+      .def(
+          "set_viewpoints",
+          [](Stepper& s, const PositionsIn& v) { s.setViewpoints(viewpointsOf(v)); },
+          "viewpoints"_a, "Look from elsewhere from the next step on.")
+      .def("set_region", &Stepper::setRegion, "vertices"_a,
+           "Unfold another region from the next step on; what moved so far stays where it is, and\n"
+           "areas and lengths to keep are those of the first surface.")
+      .def(
+          "set_weights", [](Stepper& s, const py::kwargs& keywords) { s.setWeights(keywords); },
+          ("Change strengths of the objective's terms." + keywordHelp<unfolding::UnfoldWeights>())
+              .c_str());
+}
+
+}  // namespace explica::python
