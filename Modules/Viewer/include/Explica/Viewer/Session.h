@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Core/TriangleMesh.h"
+#include "Explica/Unfolding/Unfolder.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace explica::viewer {
+
+/// What the user has chosen so far; all that an unfolding depends on.
+struct Choice {
+  std::int32_t centre = -1;       ///< vertex; -1 before one is picked
+  double radius = 25;             ///< mm
+  Vector direction = {-1, 0, 0};  ///< from the surface to the viewer, any length > 0
+  double distance = 1000;         ///< of the viewpoint from the region's centroid, mm
+  unfolding::UnfolderOptions unfolder;
+};
+
+/// The region that a choice makes, before anything moves.
+struct Preview {
+  unfolding::Region region;
+  double visibility = kNaN;  ///< average, in [-1, 1]; the method needs it above zero
+  std::string problem;       ///< why there is no region, or why it cannot be unfolded; else empty
+};
+
+enum class Activity {
+  Choosing,  ///< the choice may change
+  Running,   ///< iterations go on in their own thread
+  Paused,
+  Stalled  ///< no further step lowers the objective
+};
+
+/// One state on the way; number 0 is the start.
+struct Moment {
+  Positions positions;
+  unfolding::IterationRecord record;
+};
+
+/// An unfolding that is watched and steered: what an interactive window shows and changes, without
+/// the window.
+///
+/// Iterations run in a thread of the session's own; every member function may be called from the
+/// window's thread at any time and returns at once, or, for pause() and reset(), after the
+/// iteration in progress.  Every state of the way is kept.
+class Session {
+ public:
+  /// @throws InvalidInput  not a manifold surface
+  explicit Session(TriangleMesh surface);
+  ~Session();
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  [[nodiscard]] const TriangleMesh& surface() const;
+  [[nodiscard]] Choice choice() const;
+
+  /// Changes the choice; drops the states of an earlier unfolding.  While it runs, nothing changes.
+  /// @return what the choice selects; also available as preview()
+  const Preview& choose(const Choice& choice);
+  [[nodiscard]] const Preview& preview() const;
+
+  /// Vertex nearest to a point of the surface.
+  [[nodiscard]] std::int32_t nearestVertex(const Point& point) const;
+
+  /// Starts, or goes on from the last state.  Nothing happens if the preview has a problem.
+  void run();
+  void pause();
+  /// Back to choosing; keeps the choice.
+  void reset();
+  [[nodiscard]] Activity activity() const;
+
+  /// States so far; at least the start once it ran.
+  [[nodiscard]] std::size_t momentCount() const;
+  [[nodiscard]] Moment moment(std::size_t number) const;
+
+  /// Options of `explica unfold`, in the order of a command line, that give the state of `number`.
+  [[nodiscard]] std::vector<std::pair<std::string, std::string>> batchOptions(
+      std::size_t number) const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> self_;
+};
+
+}  // namespace explica::viewer

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Viewer/Session.h"
+
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace explica::viewer {
+
+struct WindowOptions {
+  int width = 1400;  ///< pixels
+  int height = 900;  ///< pixels
+  std::string title = "Explica";
+  std::optional<std::string> events;   ///< file of recorded events to play; the window then closes
+  std::optional<std::string> picture;  ///< PNG of the window, written when it closes
+};
+
+/// What saving did: shown in the window.
+using Save = std::function<std::string(const Session& session, std::size_t moment)>;
+
+/// Opens a window on a session and returns when it is closed.
+///
+/// Left drag rotates, right drag zooms, middle drag pans.  Keys: c picks the region's centre under
+/// the pointer, v makes the present view the viewpoint, space runs and pauses, left and right step
+/// through the states, home and end go to the first and last, m changes the map, r resets, w saves,
+/// h shows the keys, q closes.  Sliders set the radius and the state.  While iterations run in the
+/// session's thread, the picture follows and can be turned.
+///
+/// @param save  called on w with the state shown
+/// @throws EnvironmentError  no display, or none that answers
+void showWindow(Session& session, const Save& save, const WindowOptions& options = {});
+
+}  // namespace explica::viewer

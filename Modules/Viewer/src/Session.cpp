@@ -1,0 +1,247 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Viewer/Session.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Geometry/FaceTree.h"
+#include "Explica/Geometry/MeshTopology.h"
+#include "Explica/Visibility/AverageVisibility.h"
+
+#include <atomic>
+#include <charconv>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+namespace explica::viewer {
+namespace {
+
+/// Shortest text that gives the same double back.
+std::string exactText(double value) {
+  char buffer[32];
+  const auto end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
+  return {buffer, end};
+}
+
+std::string exactText(const Vector& v) {
+  return exactText(v.x()) + "," + exactText(v.y()) + "," + exactText(v.z());
+}
+
+/// Where the viewpoint lies: from the region's area centroid along the direction, as `explica
+/// unfold
+/// --direction --distance` places it.
+Point viewpointOf(const TriangleMesh& surface, const unfolding::Region& region,
+                  const Choice& choice) {
+  Vector weighted = Vector::Zero();
+  double area = 0;
+  for (const std::int32_t f : region.faces) {
+    const Point a = surface.corner(f, 0), b = surface.corner(f, 1), c = surface.corner(f, 2);
+    const double faceArea = 0.5 * Eigen::Vector3d((b - a).cross(c - a)).norm();
+    weighted += faceArea * (a + b + c) / 3;
+    area += faceArea;
+  }
+  return weighted / area + choice.distance * choice.direction.normalized();
+}
+
+/// A state, kept as what differs from the start: a region moves, the rest of a hemisphere does not.
+struct Kept {
+  std::vector<std::int32_t> vertices;
+  Positions positions;
+  unfolding::IterationRecord record;
+};
+
+Kept keep(const Positions& start, const Positions& now, const unfolding::IterationRecord& record) {
+  Kept kept;
+  kept.record = record;
+  for (std::int32_t v = 0; v < now.rows(); ++v) {
+    if (now.row(v) != start.row(v)) kept.vertices.push_back(v);
+  }
+  kept.positions = now(kept.vertices, Eigen::all);
+  return kept;
+}
+
+}  // namespace
+
+struct Session::Implementation {
+  explicit Implementation(TriangleMesh mesh) : surface(std::move(mesh)), tree(surface) {}
+
+  const TriangleMesh surface;
+  const geometry::FaceTree tree;
+  Choice choice;
+  Preview preview;
+
+  // Shared between the window's thread and the iterations', under the mutex.
+  mutable std::mutex mutex;
+  std::vector<Kept> moments;
+  Activity activity = Activity::Choosing;
+
+  std::unique_ptr<unfolding::Unfolder>
+      unfolder;  // touched by the iterations' thread only while it runs
+  std::thread worker;
+  std::atomic<bool> pauseWanted{false};
+
+  visibility::Viewpoints viewpoints() const {
+    return visibility::viewpoint(viewpointOf(surface, preview.region, choice));
+  }
+
+  void iterate() {
+    while (!pauseWanted) {
+      const bool moved = unfolder->step();
+      Kept kept;
+      if (moved) kept = keep(surface.positions, unfolder->state().positions, unfolder->record());
+      const std::lock_guard<std::mutex> hold(mutex);
+      if (!moved) {
+        activity = Activity::Stalled;
+        return;
+      }
+      moments.push_back(std::move(kept));
+    }
+    const std::lock_guard<std::mutex> hold(mutex);
+    activity = Activity::Paused;
+  }
+
+  void join() {
+    pauseWanted = true;
+    if (worker.joinable()) worker.join();
+  }
+};
+
+Session::Session(TriangleMesh surface) {
+  geometry::requireManifold(surface, "surface");
+  self_ = std::make_unique<Implementation>(std::move(surface));
+  self_->preview.problem = "no centre is chosen";
+}
+
+Session::~Session() {
+  self_->join();
+}
+
+const TriangleMesh& Session::surface() const {
+  return self_->surface;
+}
+
+Choice Session::choice() const {
+  return self_->choice;
+}
+
+const Preview& Session::preview() const {
+  return self_->preview;
+}
+
+const Preview& Session::choose(const Choice& choice) {
+  Implementation& s = *self_;
+  if (activity() == Activity::Running) return s.preview;
+  s.join();
+  {
+    const std::lock_guard<std::mutex> hold(s.mutex);
+    s.moments.clear();
+    s.activity = Activity::Choosing;
+  }
+  s.unfolder.reset();
+  s.choice = choice;
+  s.preview = Preview{};
+  if (choice.centre < 0) {
+    s.preview.problem = "no centre is chosen";
+    return s.preview;
+  }
+  try {
+    unfolding::RegionOptions options;
+    options.vertex = choice.centre;
+    options.radius = choice.radius;
+    s.preview.region = unfolding::selectRegion(s.surface, options);
+    const visibility::AverageVisibility energy(s.surface.faces, s.preview.region.faces,
+                                               s.viewpoints());
+    s.preview.visibility = energy.value(s.surface.positions);
+    if (!(s.preview.visibility > 0)) {
+      s.preview.problem =
+          "the region's average visibility is not positive: change the viewpoint, the "
+          "centre or the radius";
+    }
+  } catch (const InvalidInput& error) {
+    s.preview.problem = error.what();
+  }
+  return s.preview;
+}
+
+std::int32_t Session::nearestVertex(const Point& point) const {
+  const Implementation& s = *self_;
+  const geometry::ClosestPoint nearest = s.tree.closestPoint(point);
+  std::int32_t best = s.surface.faces(nearest.face, 0);
+  for (int k = 0; k < 3; ++k) {
+    const std::int32_t v = s.surface.faces(nearest.face, k);
+    if ((s.surface.positions.row(v).transpose() - point).norm() <
+        (s.surface.positions.row(best).transpose() - point).norm()) {
+      best = v;
+    }
+  }
+  return best;
+}
+
+void Session::run() {
+  Implementation& s = *self_;
+  if (activity() == Activity::Running || !s.preview.problem.empty()) return;
+  s.join();
+  if (!s.unfolder) {
+    try {
+      s.unfolder = std::make_unique<unfolding::Unfolder>(s.surface, s.preview.region,
+                                                         s.viewpoints(), s.choice.unfolder);
+    } catch (const InvalidInput& error) {
+      s.preview.problem = error.what();
+      return;
+    }
+    const std::lock_guard<std::mutex> hold(s.mutex);
+    s.moments.push_back(
+        keep(s.surface.positions, s.unfolder->state().positions, s.unfolder->record()));
+  }
+  s.pauseWanted = false;
+  {
+    const std::lock_guard<std::mutex> hold(s.mutex);
+    s.activity = Activity::Running;
+  }
+  s.worker = std::thread([&s] { s.iterate(); });
+}
+
+void Session::pause() {
+  if (activity() != Activity::Running) return;
+  self_->join();
+}
+
+void Session::reset() {
+  self_->join();
+  {
+    const std::lock_guard<std::mutex> hold(self_->mutex);
+    if (self_->activity == Activity::Running) self_->activity = Activity::Paused;
+  }
+  choose(self_->choice);
+}
+
+Activity Session::activity() const {
+  const std::lock_guard<std::mutex> hold(self_->mutex);
+  return self_->activity;
+}
+
+std::size_t Session::momentCount() const {
+  const std::lock_guard<std::mutex> hold(self_->mutex);
+  return self_->moments.size();
+}
+
+Moment Session::moment(std::size_t number) const {
+  const std::lock_guard<std::mutex> hold(self_->mutex);
+  const Kept& kept = self_->moments.at(number);
+  Moment moment{self_->surface.positions, kept.record};
+  moment.positions(kept.vertices, Eigen::all) = kept.positions;
+  return moment;
+}
+
+std::vector<std::pair<std::string, std::string>> Session::batchOptions(std::size_t number) const {
+  const Choice& c = self_->choice;
+  return {{"vertex", std::to_string(c.centre)},
+          {"radius", exactText(c.radius)},
+          {"direction", exactText(c.direction)},
+          {"distance", exactText(c.distance)},
+          {"surround", std::string(nameOf(c.unfolder.surround))},
+          {"max-iterations", std::to_string(number)}};
+}
+
+}  // namespace explica::viewer

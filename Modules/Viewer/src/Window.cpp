@@ -1,0 +1,443 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Viewer/Window.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Visibility/AverageVisibility.h"
+
+#include <X11/Xlib.h>
+#include <vtkActor.h>
+#include <vtkCallbackCommand.h>
+#include <vtkCamera.h>
+#include <vtkCellArray.h>
+#include <vtkCellPicker.h>
+#include <vtkFloatArray.h>
+#include <vtkIdTypeArray.h>
+#include <vtkInteractorEventRecorder.h>
+#include <vtkInteractorStyleTrackballCamera.h>
+#include <vtkNew.h>
+#include <vtkPNGWriter.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkPolyDataNormals.h>
+#include <vtkProperty.h>
+#include <vtkProperty2D.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderWindowInteractor.h>
+#include <vtkRenderer.h>
+#include <vtkScalarBarActor.h>
+#include <vtkSliderRepresentation2D.h>
+#include <vtkSliderWidget.h>
+#include <vtkTextActor.h>
+#include <vtkTextProperty.h>
+#include <vtkUnsignedCharArray.h>
+#include <vtkWindowToImageFilter.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <utility>
+
+namespace explica::viewer {
+namespace {
+
+constexpr int kFrameMilliseconds = 40;  // the picture follows iterations 25 times a second
+
+enum class Map { Region, Flux, Count };
+
+const char* mapName(Map map) {
+  return map == Map::Region ? "region" : "flux (1 faces the viewer)";
+}
+
+using Rgb = std::array<unsigned char, 3>;
+
+/// Blue through light grey to brown: readable by colour-blind people, t in [-1, 1].
+Rgb divergingColour(double t) {
+  constexpr std::array<double, 3> low = {33, 102, 172}, middle = {236, 236, 232},
+                                  high = {166, 97, 26};
+  const auto& end = t < 0 ? low : high;
+  const double share = std::min(std::abs(t), 1.0);
+  Rgb colour;
+  for (int c = 0; c < 3; ++c) {
+    colour[c] = static_cast<unsigned char>(middle[c] + share * (end[c] - middle[c]));
+  }
+  return colour;
+}
+
+void requireDisplay() {
+  const char* name = std::getenv("DISPLAY");
+  Display* display = name && *name ? XOpenDisplay(name) : nullptr;
+  if (!display) {
+    throw EnvironmentError(
+        std::string("no window can be opened: ") +
+        (name && *name ? "the display '" + std::string(name) + "' does not answer"
+                       : "DISPLAY is not set") +
+        "; use --screenshot, which needs none, or log in with a display (ssh -X)");
+  }
+  XCloseDisplay(display);
+}
+
+/// The window's objects and what the user's events do to them.
+class Stage {
+ public:
+  Stage(Session& session, const Save& save, const WindowOptions& options)
+      : session_(session), save_(save), options_(options) {
+    buildSurface();
+    buildOverlays();
+    renderer_->SetBackground(1, 1, 1);
+    window_->AddRenderer(renderer_);
+    window_->SetSize(options.width, options.height);
+    window_->SetWindowName(options.title.c_str());
+    window_->SetMultiSamples(4);
+    interactor_->SetRenderWindow(window_);
+    vtkNew<vtkInteractorStyleTrackballCamera> style;
+    interactor_->SetInteractorStyle(style);
+    listen(style, vtkCommand::CharEvent, &Stage::onChar);
+    listen(interactor_, vtkCommand::KeyPressEvent, &Stage::onKey);
+    listen(interactor_, vtkCommand::TimerEvent, &Stage::onTimer);
+    buildSliders();
+    look(session_.choice().direction);
+    refresh();
+  }
+
+  void run() {
+    interactor_->Initialize();
+    window_->Render();
+    interactor_->CreateRepeatingTimer(kFrameMilliseconds);
+    if (options_.events) {
+      vtkNew<vtkInteractorEventRecorder> recorder;
+      recorder->SetInteractor(interactor_);
+      recorder->SetFileName(options_.events->c_str());
+      recorder->On();
+      recorder->Play();
+      recorder->Off();
+    } else {
+      interactor_->Start();
+    }
+    session_.pause();
+    if (options_.picture) savePicture(*options_.picture);
+  }
+
+ private:
+  using Handler = void (Stage::*)();
+
+  void listen(vtkObject* source, unsigned long event, Handler handler) {
+    struct Bound {
+      Stage* stage;
+      Handler handler;
+    };
+    vtkNew<vtkCallbackCommand> command;
+    command->SetClientData(new Bound{this, handler});
+    command->SetClientDataDeleteCallback([](void* data) { delete static_cast<Bound*>(data); });
+    command->SetCallback([](vtkObject*, unsigned long, void* data, void*) {
+      const auto* bound = static_cast<Bound*>(data);
+      (bound->stage->*bound->handler)();
+    });
+    source->AddObserver(event, command, 1.0f);
+  }
+
+  void buildSurface() {
+    const TriangleMesh& surface = session_.surface();
+    points_->SetDataTypeToFloat();
+    points_->SetNumberOfPoints(surface.vertexCount());
+    vtkNew<vtkCellArray> cells;
+    for (Eigen::Index f = 0; f < surface.faceCount(); ++f) {
+      const vtkIdType corners[3] = {surface.faces(f, 0), surface.faces(f, 1), surface.faces(f, 2)};
+      cells->InsertNextCell(3, corners);
+    }
+    mesh_->SetPoints(points_);
+    mesh_->SetPolys(cells);
+    colours_->SetNumberOfComponents(3);
+    colours_->SetNumberOfTuples(surface.vertexCount());
+    mesh_->GetPointData()->SetScalars(colours_);
+    normals_->SetInputData(mesh_);
+    normals_->SplittingOff();
+    normals_->ConsistencyOff();
+    mapper_->SetInputConnection(normals_->GetOutputPort());
+    actor_->SetMapper(mapper_);
+    actor_->GetProperty()->SetSpecular(0.15);
+    actor_->GetProperty()->SetAmbient(0.15);
+    actor_->GetProperty()->SetDiffuse(0.85);
+    renderer_->AddActor(actor_);
+  }
+
+  void buildOverlays() {
+    for (vtkTextActor* text : {status_.Get(), help_.Get()}) {
+      text->GetTextProperty()->SetFontSize(16);
+      text->GetTextProperty()->SetColor(0.1, 0.1, 0.1);
+      text->GetTextProperty()->SetFontFamilyToCourier();
+      renderer_->AddActor2D(text);
+    }
+    status_->SetPosition(16, options_.height - 120);
+    help_->SetPosition(16, 90);
+    help_->SetInput(
+        "c centre under pointer   v view is viewpoint   space run/pause   left/right step\n"
+        "home/end first/last      m map                 r reset           w save   h help   q "
+        "close");
+  }
+
+  void buildSlider(vtkSliderWidget* slider, vtkSliderRepresentation2D* shape, const char* title,
+                   double left, double right, Handler handler) {
+    shape->SetTitleText(title);
+    shape->GetPoint1Coordinate()->SetCoordinateSystemToNormalizedDisplay();
+    shape->GetPoint1Coordinate()->SetValue(left, 0.06);
+    shape->GetPoint2Coordinate()->SetCoordinateSystemToNormalizedDisplay();
+    shape->GetPoint2Coordinate()->SetValue(right, 0.06);
+    shape->SetSliderLength(0.015);
+    shape->SetTubeWidth(0.004);
+    shape->SetEndCapLength(0.002);
+    for (vtkTextProperty* text : {shape->GetTitleProperty(), shape->GetLabelProperty()}) {
+      text->SetColor(0.1, 0.1, 0.1);
+      text->ShadowOff();
+      text->BoldOff();
+    }
+    shape->GetTubeProperty()->SetColor(0.75, 0.75, 0.75);
+    shape->GetSliderProperty()->SetColor(0.13, 0.4, 0.67);
+    slider->SetInteractor(interactor_);
+    slider->SetRepresentation(shape);
+    slider->SetAnimationModeToJump();
+    slider->EnabledOn();
+    listen(slider, vtkCommand::InteractionEvent, handler);
+  }
+
+  void buildSliders() {
+    radiusShape_->SetMinimumValue(2);
+    radiusShape_->SetMaximumValue(80);
+    radiusShape_->SetValue(session_.choice().radius);
+    radiusShape_->SetLabelFormat("%.1f");
+    buildSlider(radiusSlider_, radiusShape_, "radius, mm", 0.05, 0.4, &Stage::onRadius);
+    momentShape_->SetMinimumValue(0);
+    momentShape_->SetMaximumValue(1);
+    momentShape_->SetValue(0);
+    momentShape_->SetLabelFormat("%.0f");
+    buildSlider(momentSlider_, momentShape_, "iteration", 0.5, 0.95, &Stage::onMoment);
+  }
+
+  void look(const Vector& direction) {
+    const Positions& p = session_.surface().positions;
+    const Point middle = 0.5 * (p.colwise().minCoeff() + p.colwise().maxCoeff()).transpose();
+    const double size = (p.colwise().maxCoeff() - p.colwise().minCoeff()).norm();
+    const Point eye = middle + 2 * size * direction.normalized();
+    vtkCamera* camera = renderer_->GetActiveCamera();
+    camera->SetFocalPoint(middle.x(), middle.y(), middle.z());
+    camera->SetPosition(eye.x(), eye.y(), eye.z());
+    if (std::abs(direction.normalized().z()) > 0.95) {
+      camera->SetViewUp(0, 1, 0);
+    } else {
+      camera->SetViewUp(0, 0, 1);
+    }
+    renderer_->ResetCamera();
+    renderer_->ResetCameraClippingRange();
+  }
+
+  /// Draws the state shown, its colours and the words about it.
+  void refresh() {
+    const std::size_t count = session_.momentCount();
+    shown_ = count == 0 ? 0 : std::min(shown_, count - 1);
+    TriangleMesh mesh = session_.surface();
+    unfolding::IterationRecord record;
+    if (count > 0) {
+      Moment moment = session_.moment(shown_);
+      mesh.positions = std::move(moment.positions);
+      record = moment.record;
+    }
+    for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
+      points_->SetPoint(v, mesh.positions(v, 0), mesh.positions(v, 1), mesh.positions(v, 2));
+    }
+    points_->Modified();
+    paint(mesh);
+    describe(record, count);
+    if (count > 1) momentShape_->SetMaximumValue(static_cast<double>(count - 1));
+    momentShape_->SetValue(static_cast<double>(shown_));
+    renderer_->ResetCameraClippingRange();
+    window_->Render();
+  }
+
+  void paint(const TriangleMesh& mesh) {
+    const Preview& preview = session_.preview();
+    std::vector<bool> inRegion(static_cast<std::size_t>(mesh.vertexCount()), false);
+    for (const std::int32_t v : preview.region.vertices) inRegion[v] = true;
+    Eigen::VectorXd flux;
+    if (map_ == Map::Flux) {
+      const Choice choice = session_.choice();
+      const Point far = mesh.positions.colwise().mean().transpose() +
+                        choice.distance * choice.direction.normalized();
+      flux = visibility::vertexFlux(mesh, visibility::viewpoint(far));
+    }
+    for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
+      Rgb colour = {205, 198, 190};
+      if (map_ == Map::Flux) colour = divergingColour(flux[v]);
+      if (map_ == Map::Region && inRegion[v]) colour = {88, 150, 214};
+      colours_->SetTypedTuple(v, colour.data());
+    }
+    colours_->Modified();
+  }
+
+  void describe(const unfolding::IterationRecord& record, std::size_t count) {
+    const Preview& preview = session_.preview();
+    char text[512];
+    if (count == 0) {
+      std::snprintf(text, sizeof text,
+                    "region %zu faces, radius %.1f mm\naverage visibility %.3f\n%s",
+                    preview.region.faces.size(), session_.choice().radius, preview.visibility,
+                    preview.problem.c_str());
+    } else {
+      static constexpr const char* kWords[] = {"choosing", "running", "paused", "no further step"};
+      std::snprintf(text, sizeof text,
+                    "iteration %zu of %zu (%s)\naverage visibility %.3f\narea error %.2f %%, "
+                    "edge strain %.1f %%\nmap: %s",
+                    shown_, count - 1, kWords[static_cast<int>(session_.activity())],
+                    record.visibility, 100 * record.areaErrorMean, 100 * record.edgeStrainMean,
+                    mapName(map_));
+    }
+    status_->SetInput((std::string(text) + (message_.empty() ? "" : "\n" + message_)).c_str());
+  }
+
+  void onTimer() {
+    const std::size_t count = session_.momentCount();
+    if (count == seen_ || !follow_) return;
+    seen_ = count;
+    shown_ = count > 0 ? count - 1 : 0;
+    refresh();
+  }
+
+  /// Characters that VTK's style would take for itself (w wireframe, e exit, ...) are ours.
+  void onChar() {}
+
+  void onKey() {
+    const std::string key = interactor_->GetKeySym() ? interactor_->GetKeySym() : "";
+    message_.clear();
+    if (key == "c") pickCentre();
+    if (key == "v") takeView();
+    if (key == "space") toggle();
+    if (key == "Left" && shown_ > 0) step(shown_ - 1);
+    if (key == "Right") step(shown_ + 1);
+    if (key == "Home") step(0);
+    if (key == "End") step(session_.momentCount());
+    if (key == "m")
+      map_ = static_cast<Map>((static_cast<int>(map_) + 1) % static_cast<int>(Map::Count));
+    if (key == "r") session_.reset(), shown_ = seen_ = 0;
+    if (key == "w") saveState();
+    if (key == "h") help_->SetVisibility(!help_->GetVisibility());
+    if (key == "q") {
+      interactor_->TerminateApp();
+      return;
+    }
+    refresh();
+  }
+
+  void pickCentre() {
+    const int* at = interactor_->GetEventPosition();
+    vtkNew<vtkCellPicker> picker;
+    picker->SetTolerance(1e-4);
+    picker->AddPickList(actor_);
+    picker->PickFromListOn();
+    if (!picker->Pick(at[0], at[1], 0, renderer_)) {
+      message_ = "no surface under the pointer";
+      return;
+    }
+    const double* where = picker->GetPickPosition();
+    Choice choice = session_.choice();
+    choice.centre = session_.nearestVertex(Point(where[0], where[1], where[2]));
+    choose(choice);
+  }
+
+  void takeView() {
+    vtkCamera* camera = renderer_->GetActiveCamera();
+    Choice choice = session_.choice();
+    double towards[3];
+    camera->GetDirectionOfProjection(towards);
+    choice.direction = -Vector(towards[0], towards[1], towards[2]);
+    choose(choice);
+  }
+
+  void choose(const Choice& choice) {
+    if (session_.activity() == Activity::Running) {
+      message_ = "running: pause (space) before you change the choice";
+      return;
+    }
+    session_.choose(choice);
+    shown_ = seen_ = 0;
+  }
+
+  void toggle() {
+    if (session_.activity() == Activity::Running) {
+      session_.pause();
+    } else {
+      follow_ = true;
+      session_.run();
+    }
+  }
+
+  void step(std::size_t number) {
+    follow_ = number + 1 >= session_.momentCount();
+    shown_ = number;
+  }
+
+  void saveState() {
+    session_.pause();
+    message_ = session_.momentCount() == 0 ? "nothing to save before the first iteration"
+                                           : save_(session_, shown_);
+  }
+
+  void onRadius() {
+    Choice choice = session_.choice();
+    choice.radius = radiusShape_->GetValue();
+    choose(choice);
+    refresh();
+  }
+
+  void onMoment() {
+    step(static_cast<std::size_t>(std::lround(momentShape_->GetValue())));
+    refresh();
+  }
+
+  void savePicture(const std::string& path) {
+    window_->Render();
+    vtkNew<vtkWindowToImageFilter> grab;
+    grab->SetInput(window_);
+    grab->ReadFrontBufferOff();
+    vtkNew<vtkPNGWriter> writer;
+    writer->SetFileName(path.c_str());
+    writer->SetInputConnection(grab->GetOutputPort());
+    writer->Write();
+  }
+
+  Session& session_;
+  const Save& save_;
+  const WindowOptions& options_;
+  std::size_t shown_ = 0;  ///< state in the picture
+  std::size_t seen_ = 0;   ///< states that the picture knows of
+  bool follow_ = true;     ///< the picture goes with the newest state
+  Map map_ = Map::Region;
+  std::string message_;
+
+  vtkNew<vtkRenderWindow> window_;
+  vtkNew<vtkRenderWindowInteractor> interactor_;
+  vtkNew<vtkRenderer> renderer_;
+  vtkNew<vtkPoints> points_;
+  vtkNew<vtkPolyData> mesh_;
+  vtkNew<vtkUnsignedCharArray> colours_;
+  vtkNew<vtkPolyDataNormals> normals_;
+  vtkNew<vtkPolyDataMapper> mapper_;
+  vtkNew<vtkActor> actor_;
+  vtkNew<vtkTextActor> status_;
+  vtkNew<vtkTextActor> help_;
+  vtkNew<vtkSliderWidget> radiusSlider_;
+  vtkNew<vtkSliderRepresentation2D> radiusShape_;
+  vtkNew<vtkSliderWidget> momentSlider_;
+  vtkNew<vtkSliderRepresentation2D> momentShape_;
+};
+
+}  // namespace
+
+void showWindow(Session& session, const Save& save, const WindowOptions& options) {
+  requireDisplay();
+  Stage(session, save, options).run();
+}
+
+}  // namespace explica::viewer

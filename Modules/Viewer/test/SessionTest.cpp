@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Viewer/Session.h"
+
+#include "Explica/Geometry/Fixtures.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+
+namespace explica::viewer {
+namespace {
+
+/// A folded ball of 30 mm, its region at the side that faces -x.
+Choice sideChoice(const Session& session) {
+  Choice choice;
+  choice.centre = session.nearestVertex(Point(-30, 0, 0));
+  choice.radius = 12;
+  return choice;
+}
+
+void waitFor(const Session& session, std::size_t moments) {
+  while (session.activity() == Activity::Running && session.momentCount() < moments) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+}
+
+TEST(Session, PreviewFollowsTheChoice) {
+  Session session(geometry::makeFoldedSphere(3, 30));
+  EXPECT_FALSE(session.preview().problem.empty());
+  Choice choice = sideChoice(session);
+  const std::size_t small = session.choose(choice).region.faces.size();
+  EXPECT_TRUE(session.preview().problem.empty()) << session.preview().problem;
+  EXPECT_GT(session.preview().visibility, 0);
+  choice.radius = 20;
+  EXPECT_GT(session.choose(choice).region.faces.size(), small);
+}
+
+TEST(Session, RegionSeenFromBehindIsAProblem) {
+  Session session(geometry::makeFoldedSphere(3, 30));
+  Choice choice = sideChoice(session);
+  choice.direction = {1, 0, 0};
+  EXPECT_LT(session.choose(choice).visibility, 0);
+  EXPECT_NE(session.preview().problem.find("not positive"), std::string::npos);
+  session.run();
+  EXPECT_EQ(session.activity(), Activity::Choosing);
+}
+
+TEST(Session, RunsPausesGoesOnAndKeepsEveryState) {
+  Session session(geometry::makeFoldedSphere(3, 30));
+  session.choose(sideChoice(session));
+  session.run();
+  waitFor(session, 4);
+  session.pause();
+  const std::size_t first = session.momentCount();
+  ASSERT_GE(first, 4u);
+  EXPECT_EQ(session.moment(0).positions, session.surface().positions);
+  EXPECT_GT(session.moment(first - 1).record.visibility, session.moment(0).record.visibility);
+  session.run();
+  waitFor(session, first + 2);
+  session.pause();
+  EXPECT_GE(session.momentCount(), first + 1);
+}
+
+TEST(Session, StatesDoNotDependOnPauses) {
+  const TriangleMesh ball = geometry::makeFoldedSphere(3, 30);
+  Session once(ball), often(ball);
+  once.choose(sideChoice(once));
+  often.choose(sideChoice(often));
+  once.run();
+  waitFor(once, 6);
+  once.pause();
+  for (std::size_t n = 2; n <= 6; n += 2) {
+    often.run();
+    waitFor(often, n);
+    often.pause();
+  }
+  ASSERT_GE(once.momentCount(), 6u);
+  ASSERT_GE(often.momentCount(), 6u);
+  for (std::size_t n = 0; n < 6; ++n)
+    EXPECT_EQ(once.moment(n).positions, often.moment(n).positions);
+}
+
+TEST(Session, NewChoiceDropsTheStates) {
+  Session session(geometry::makeFoldedSphere(3, 30));
+  session.choose(sideChoice(session));
+  session.run();
+  waitFor(session, 2);
+  session.pause();
+  session.reset();
+  EXPECT_EQ(session.momentCount(), 0u);
+  EXPECT_EQ(session.activity(), Activity::Choosing);
+}
+
+TEST(Session, BatchOptionsNameEveryChoice) {
+  Session session(geometry::makeFoldedSphere(3, 30));
+  Choice choice = sideChoice(session);
+  choice.radius = 12.3456789012345678;
+  session.choose(choice);
+  const auto options = session.batchOptions(17);
+  double radius = 0;
+  for (const auto& [name, value] : options) {
+    if (name == "radius") radius = std::stod(value);
+    if (name == "max-iterations") EXPECT_EQ(value, "17");
+  }
+  EXPECT_EQ(radius, choice.radius);
+}
+
+}  // namespace
+}  // namespace explica::viewer
