@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
+#include "Steer.h"
+
 #include "Explica/Application/Command.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/WholeFile.h"
@@ -35,17 +37,22 @@ struct Settings {
   double framesPerSecond = 10;
   io::SurfaceReadOptions reading;
   report::SurfacePictureOptions picture;
+  SteerOptions window;
 };
 
 void declare(Declaration& d, Settings& s) {
-  d.synopsis("pictures of surfaces and volumes; --screenshot needs no display")
+  d.synopsis("choose and steer an unfolding in a window; pictures and films without one")
       .description(
+          "Without --screenshot or --film a window opens on one surface: pick a centre (c), take "
+          "the view "
+          "as viewpoint (v), drag the radius, run and pause (space), step back and forth, save "
+          "(w). "
           "Surfaces are drawn with a map or labels on their vertices, from one or more sides; a "
           "volume is "
           "shown in slices with the cut lines of the surfaces named after it (the first red, the "
           "second "
           "yellow); a folder of `explica unfold` is shown as its evolution with --film. "
-          "Everything is drawn on the processor, without a display.")
+          "Pictures and films are drawn on the processor, without a display.")
       .example(
           "explica view pial.surf.gii --map thickness.shape.gii --views left,right --screenshot "
           "pial.png",
@@ -78,6 +85,7 @@ void declare(Declaration& d, Settings& s) {
       .option("Picture", Field{"slices", "", "slices of a volume in each direction"}, s.slices)
       .option("Picture", Field{"fps", "", "frames a second of a film"}, s.framesPerSecond)
       .options("Picture", s.picture)
+      .options("Window", s.window)
       .options("Reading", s.reading)
       .withoutOutput();
 }
@@ -225,9 +233,14 @@ void writeFilm(const std::filesystem::path& path, const std::vector<report::Pict
 
 Termination run(Context& context, const Settings& s) {
   if (!s.screenshot && !s.film) {
-    throw EnvironmentError(
-        "no window can be opened here; write a picture with --screenshot FILE.png "
-        "or a film with --film FILE.gif");
+    if (s.files.size() != 1 || isVolume(s.files.front())) {
+      throw UsageError(
+          "the window shows one surface; write a picture with --screenshot FILE.png or a "
+          "film with --film FILE.gif");
+    }
+    const TriangleMesh surface = io::readSurface(s.files.front(), s.reading).mesh;
+    steer(context, s.files.front(), surface, s.direction.value_or(Vector(-1, 0, 0)), s.window);
+    return Termination::NotRun;
   }
   if (s.screenshot && std::filesystem::path(*s.screenshot).extension() != ".png") {
     throw UsageError("--screenshot " + *s.screenshot + ": expected a name ending in .png");

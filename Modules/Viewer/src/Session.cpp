@@ -241,6 +241,7 @@ std::vector<std::pair<std::string, std::string>> Session::batchOptions(std::size
           {"direction", exactText(c.direction)},
           {"distance", exactText(c.distance)},
           {"surround", std::string(nameOf(c.unfolder.surround))},
+          {"target-visibility", "1"},  // never reached: the number of iterations decides
           {"max-iterations", std::to_string(number)}};
 }
 

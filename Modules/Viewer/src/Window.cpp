@@ -14,7 +14,6 @@
 #include <vtkCellPicker.h>
 #include <vtkFloatArray.h>
 #include <vtkIdTypeArray.h>
-#include <vtkInteractorEventRecorder.h>
 #include <vtkInteractorStyleTrackballCamera.h>
 #include <vtkNew.h>
 #include <vtkPNGWriter.h>
@@ -37,9 +36,13 @@
 #include <vtkWindowToImageFilter.h>
 
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <thread>
 #include <utility>
 
 namespace explica::viewer {
@@ -108,18 +111,12 @@ class Stage {
     interactor_->Initialize();
     window_->Render();
     interactor_->CreateRepeatingTimer(kFrameMilliseconds);
-    if (options_.events) {
-      vtkNew<vtkInteractorEventRecorder> recorder;
-      recorder->SetInteractor(interactor_);
-      recorder->SetFileName(options_.events->c_str());
-      recorder->On();
-      recorder->Play();
-      recorder->Off();
+    if (options_.script) {
+      play(*options_.script);
     } else {
       interactor_->Start();
     }
     session_.pause();
-    if (options_.picture) savePicture(*options_.picture);
   }
 
  private:
@@ -144,6 +141,7 @@ class Stage {
     const TriangleMesh& surface = session_.surface();
     points_->SetDataTypeToFloat();
     points_->SetNumberOfPoints(surface.vertexCount());
+    place(surface.positions);
     vtkNew<vtkCellArray> cells;
     for (Eigen::Index f = 0; f < surface.faceCount(); ++f) {
       const vtkIdType corners[3] = {surface.faces(f, 0), surface.faces(f, 1), surface.faces(f, 2)};
@@ -173,7 +171,7 @@ class Stage {
       renderer_->AddActor2D(text);
     }
     status_->SetPosition(16, options_.height - 120);
-    help_->SetPosition(16, 90);
+    help_->SetPosition(16, 120);
     help_->SetInput(
         "c centre under pointer   v view is viewpoint   space run/pause   left/right step\n"
         "home/end first/last      m map                 r reset           w save   h help   q "
@@ -184,12 +182,14 @@ class Stage {
                    double left, double right, Handler handler) {
     shape->SetTitleText(title);
     shape->GetPoint1Coordinate()->SetCoordinateSystemToNormalizedDisplay();
-    shape->GetPoint1Coordinate()->SetValue(left, 0.06);
+    shape->GetPoint1Coordinate()->SetValue(left, 0.075);
     shape->GetPoint2Coordinate()->SetCoordinateSystemToNormalizedDisplay();
-    shape->GetPoint2Coordinate()->SetValue(right, 0.06);
+    shape->GetPoint2Coordinate()->SetValue(right, 0.075);
     shape->SetSliderLength(0.015);
     shape->SetTubeWidth(0.004);
     shape->SetEndCapLength(0.002);
+    shape->SetTitleHeight(0.018);
+    shape->SetLabelHeight(0.018);
     for (vtkTextProperty* text : {shape->GetTitleProperty(), shape->GetLabelProperty()}) {
       text->SetColor(0.1, 0.1, 0.1);
       text->ShadowOff();
@@ -234,6 +234,13 @@ class Stage {
     renderer_->ResetCameraClippingRange();
   }
 
+  void place(const Positions& positions) {
+    for (Eigen::Index v = 0; v < positions.rows(); ++v) {
+      points_->SetPoint(v, positions(v, 0), positions(v, 1), positions(v, 2));
+    }
+    points_->Modified();
+  }
+
   /// Draws the state shown, its colours and the words about it.
   void refresh() {
     const std::size_t count = session_.momentCount();
@@ -245,10 +252,7 @@ class Stage {
       mesh.positions = std::move(moment.positions);
       record = moment.record;
     }
-    for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
-      points_->SetPoint(v, mesh.positions(v, 0), mesh.positions(v, 1), mesh.positions(v, 2));
-    }
-    points_->Modified();
+    place(mesh.positions);
     paint(mesh);
     describe(record, count);
     if (count > 1) momentShape_->SetMaximumValue(static_cast<double>(count - 1));
@@ -297,7 +301,64 @@ class Stage {
     status_->SetInput((std::string(text) + (message_.empty() ? "" : "\n" + message_)).c_str());
   }
 
+  void play(const std::string& path) {
+    std::ifstream script(path);
+    if (!script) throw IOError(path + ": cannot be read");
+    std::string line;
+    while (std::getline(script, line)) {
+      std::istringstream words(line);
+      std::string verb;
+      if (!(words >> verb) || verb[0] == '#') continue;
+      if (!playEvent(verb, words)) {
+        throw InvalidInput(path + ": '" + line + "' is no event (key, drag, wait, saved, picture)");
+      }
+    }
+  }
+
+  bool playEvent(const std::string& verb, std::istringstream& words) {
+    if (verb == "key") {
+      std::string key;
+      int x = 0, y = 0;
+      if (!(words >> key >> x >> y)) return false;
+      const char code = key.size() == 1 ? key[0] : '\0';
+      interactor_->SetEventInformation(x, y, 0, 0, code, 0, key.c_str());
+      interactor_->InvokeEvent(vtkCommand::KeyPressEvent);
+      interactor_->InvokeEvent(vtkCommand::CharEvent);
+    } else if (verb == "drag") {
+      int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+      if (!(words >> x0 >> y0 >> x1 >> y1)) return false;
+      interactor_->SetEventInformation(x0, y0);
+      interactor_->InvokeEvent(vtkCommand::LeftButtonPressEvent);
+      interactor_->SetEventInformation(x1, y1);
+      interactor_->InvokeEvent(vtkCommand::MouseMoveEvent);
+      interactor_->InvokeEvent(vtkCommand::LeftButtonReleaseEvent);
+    } else if (verb == "wait") {
+      std::size_t states = 0;
+      if (!(words >> states)) return false;
+      while (session_.activity() == Activity::Running && session_.momentCount() < states) pass();
+    } else if (verb == "saved") {
+      while (saving_.valid()) pass();
+    } else if (verb == "picture") {
+      std::string file;
+      if (!(words >> file)) return false;
+      savePicture(file);
+    } else {
+      return false;
+    }
+    return true;
+  }
+
+  /// A little time goes by, as between two frames.
+  void pass() {
+    std::this_thread::sleep_for(std::chrono::milliseconds(kFrameMilliseconds));
+    onTimer();
+  }
+
   void onTimer() {
+    if (saving_.valid() && saving_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+      message_ = saving_.get();
+      refresh();
+    }
     const std::size_t count = session_.momentCount();
     if (count == seen_ || !follow_) return;
     seen_ = count;
@@ -367,6 +428,7 @@ class Stage {
   void toggle() {
     if (session_.activity() == Activity::Running) {
       session_.pause();
+      step(session_.momentCount() - 1);
     } else {
       follow_ = true;
       session_.run();
@@ -380,8 +442,14 @@ class Stage {
 
   void saveState() {
     session_.pause();
-    message_ = session_.momentCount() == 0 ? "nothing to save before the first iteration"
-                                           : save_(session_, shown_);
+    if (session_.momentCount() == 0) {
+      message_ = "nothing to save before the first iteration";
+    } else if (saving_.valid()) {
+      message_ = "still saving";
+    } else {
+      saving_ = save_(session_, shown_);
+      message_ = "saving ...";
+    }
   }
 
   void onRadius() {
@@ -415,6 +483,7 @@ class Stage {
   bool follow_ = true;     ///< the picture goes with the newest state
   Map map_ = Map::Region;
   std::string message_;
+  std::future<std::string> saving_;
 
   vtkNew<vtkRenderWindow> window_;
   vtkNew<vtkRenderWindowInteractor> interactor_;

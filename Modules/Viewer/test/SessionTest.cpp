@@ -103,7 +103,9 @@ TEST(Session, BatchOptionsNameEveryChoice) {
   double radius = 0;
   for (const auto& [name, value] : options) {
     if (name == "radius") radius = std::stod(value);
-    if (name == "max-iterations") EXPECT_EQ(value, "17");
+    if (name == "max-iterations") {
+      EXPECT_EQ(value, "17");
+    }
   }
   EXPECT_EQ(radius, choice.radius);
 }

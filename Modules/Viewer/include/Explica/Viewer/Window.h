@@ -5,6 +5,7 @@
 #include "Explica/Viewer/Session.h"
 
 #include <functional>
+#include <future>
 #include <optional>
 #include <string>
 
@@ -14,12 +15,11 @@ struct WindowOptions {
   int width = 1400;  ///< pixels
   int height = 900;  ///< pixels
   std::string title = "Explica";
-  std::optional<std::string> events;   ///< file of recorded events to play; the window then closes
-  std::optional<std::string> picture;  ///< PNG of the window, written when it closes
+  std::optional<std::string> script;  ///< file of events to play; the window then closes
 };
 
-/// What saving did: shown in the window.
-using Save = std::function<std::string(const Session& session, std::size_t moment)>;
+/// Saves a state; the text, shown when it is there, says what came of it.
+using Save = std::function<std::future<std::string>(const Session& session, std::size_t moment)>;
 
 /// Opens a window on a session and returns when it is closed.
 ///
@@ -29,7 +29,12 @@ using Save = std::function<std::string(const Session& session, std::size_t momen
 /// h shows the keys, q closes.  Sliders set the radius and the state.  While iterations run in the
 /// session's thread, the picture follows and can be turned.
 ///
+/// A script has one event a line, for tests and demonstrations; positions are pixels from the lower
+/// left: `key KEY X Y` (space, Left, c, ...), `drag X0 Y0 X1 Y1`, `wait N` (until N states exist or
+/// nothing runs), `saved` (until saving is over), `picture FILE.png`.
+///
 /// @param save  called on w with the state shown
+/// @throws InvalidInput      a line of the script that is none of these
 /// @throws EnvironmentError  no display, or none that answers
 void showWindow(Session& session, const Save& save, const WindowOptions& options = {});
 

@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Application/Context.h"
+#include "Explica/Core/Describe.h"
+#include "Explica/Core/TriangleMesh.h"
+#include "Explica/Unfolding/Unfolder.h"
+
+#include <optional>
+#include <string>
+
+namespace explica::app {
+
+/// How the interactive window starts, and where it saves.
+struct SteerOptions {
+  std::optional<int> vertex;
+  double radius = 25;
+  double distance = 1000;
+  unfolding::Surround surround = unfolding::Surround::Fixed;
+  std::string save = "unfolded";
+  std::optional<std::string> script;
+};
+
+template <class Visitor>
+void describe(SteerOptions& o, Visitor&& visit) {
+  visit(Field{"vertex", "", "centre of the region to start with"}, o.vertex);
+  visit(Field{"radius", "mm", "of the region to start with"}, o.radius);
+  visit(Field{"distance", "mm", "of the viewpoint from the region"}, o.distance);
+  visit(Field{"surround", "", "what becomes of the surface around the region"}, o.surround);
+  visit(Field{"save", "", "folder for saved states: each goes into iteration-N in it"}, o.save);
+  visit(Field{"script", "", "file of events to play instead of waiting for the user's"}, o.script);
+}
+
+/// Opens the window on a surface.  A saved state is what `explica unfold` writes when it runs with
+/// the same choices, in a process of its own: same outputs, same record.
+/// @param path       of the surface's file
+/// @param direction  from the surface to the viewer
+void steer(Context& context, const std::string& path, const TriangleMesh& surface,
+           const Vector& direction, const SteerOptions& options);
+
+}  // namespace explica::app
