@@ -280,7 +280,7 @@ void appendArray(std::string& text, const ArrayToWrite& array) {
     text +=
         "<CoordinateSystemTransformMatrix>\n<DataSpace>NIFTI_XFORM_SCANNER_ANAT</DataSpace>\n"
         "<TransformedSpace>NIFTI_XFORM_SCANNER_ANAT</TransformedSpace>\n<MatrixData>"
-        "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1</MatrixData>\n</CoordinateSystemTransformMatrix>\n";
+        "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1</MatrixData>\n</CoordinateSystemTransformMatrix>\n";
   }
   text += "<Data>";
   appendBase64(text, packZlib(array.bytes, kCompression));

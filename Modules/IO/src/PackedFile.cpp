@@ -8,7 +8,7 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <utility>
+#include <memory>
 
 namespace explica::io {
 namespace {
@@ -23,26 +23,48 @@ struct Packed {
   std::size_t size = 0;
 };
 
-/// Raw deflate data of one block, ended at a byte border and not marked as last.
-Packed packBlock(ByteView block, int level) {
-  z_stream stream{};
-  if (deflateInit2(&stream, level, Z_DEFLATED, kRawDeflate, 8, Z_DEFAULT_STRATEGY) != Z_OK) {
-    throw EnvironmentError("no memory to compress a file");
+/// zlib's state and room for the result, kept by each thread: they are larger than a block.
+class Deflater {
+ public:
+  explicit Deflater(int level) : level_(level) {
+    if (deflateInit2(&stream_, level, Z_DEFLATED, kRawDeflate, 8, Z_DEFAULT_STRATEGY) != Z_OK) {
+      throw EnvironmentError("no memory to compress a file");
+    }
   }
-  Packed packed;
-  packed.size = block.size();
-  packed.checksum = crc32(0, block.data(), static_cast<uInt>(block.size()));
-  packed.bytes.resize(deflateBound(&stream, block.size()) + 16);
-  stream.next_in = const_cast<std::uint8_t*>(block.data());
-  stream.avail_in = static_cast<uInt>(block.size());
-  stream.next_out = packed.bytes.data();
-  stream.avail_out = static_cast<uInt>(packed.bytes.size());
-  const int status = deflate(&stream, Z_SYNC_FLUSH);
-  packed.bytes.resize(packed.bytes.size() - stream.avail_out);
-  const bool whole = status == Z_OK && stream.avail_in == 0;
-  deflateEnd(&stream);
-  if (!whole) throw EnvironmentError("zlib could not compress a block");
-  return packed;
+  ~Deflater() { deflateEnd(&stream_); }
+  Deflater(const Deflater&) = delete;
+  Deflater& operator=(const Deflater&) = delete;
+
+  [[nodiscard]] int level() const { return level_; }
+
+  /// Raw deflate data of one block, ended at a byte border and not marked as last.
+  [[nodiscard]] Packed pack(ByteView block) {
+    deflateReset(&stream_);
+    room_.resize(std::max(room_.size(), deflateBound(&stream_, block.size()) + 16));
+    stream_.next_in = const_cast<std::uint8_t*>(block.data());
+    stream_.avail_in = static_cast<uInt>(block.size());
+    stream_.next_out = room_.data();
+    stream_.avail_out = static_cast<uInt>(room_.size());
+    if (deflate(&stream_, Z_SYNC_FLUSH) != Z_OK || stream_.avail_in != 0) {
+      throw EnvironmentError("zlib could not compress a block");
+    }
+    Packed packed;
+    packed.size = block.size();
+    packed.checksum = crc32(0, block.data(), static_cast<uInt>(block.size()));
+    packed.bytes.assign(room_.data(), room_.data() + (room_.size() - stream_.avail_out));
+    return packed;
+  }
+
+ private:
+  int level_;
+  z_stream stream_{};
+  Bytes room_;
+};
+
+Packed packBlock(ByteView block, int level) {
+  static thread_local std::unique_ptr<Deflater> deflater;
+  if (!deflater || deflater->level() != level) deflater = std::make_unique<Deflater>(level);
+  return deflater->pack(block);
 }
 
 bool allZero(ByteView bytes) {
@@ -98,7 +120,8 @@ void writeGzip(WholeFile& file, const Content& content, int level) {
     const std::size_t count = std::min(kBlocksAtOnce, blocks - first);
     parallelFor(count, 1, [&](std::size_t b) {
       const std::size_t begin = (first + b) * kBlock;
-      Bytes block(std::min(kBlock, content.bodySize - begin));
+      static thread_local Bytes block;
+      block.resize(std::min(kBlock, content.bodySize - begin));
       content.body(begin, block.data(), block.size());
       const bool empty = block.size() == kBlock && allZero(block);
       batch[b] = empty ? emptyBlock : packBlock(block, level);

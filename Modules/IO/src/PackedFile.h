@@ -11,7 +11,8 @@
 
 namespace explica::io {
 
-/// Produces `count` bytes of a long sequence from its byte `begin` on; called from several threads.
+/// Produces `count` bytes of a long sequence from its byte `begin` on; called from several threads,
+/// and must not start a parallel loop itself.
 using FillBytes = std::function<void(std::size_t begin, std::uint8_t* to, std::size_t count)>;
 
 /// A sequence of bytes to be written: a head, a body made on demand, a tail.

@@ -532,9 +532,15 @@ void writeVolume(const std::filesystem::path& path, const Volume<Eigen::Vector3f
       return;
     }
     const std::size_t voxels = volume.data.size();
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t at = begin + i;
-      std::memcpy(to + i * sizeof(float), from + at % voxels * 3 + at / voxels, sizeof(float));
+    for (std::size_t done = 0; done < count;) {  // one run for each component that is touched
+      const std::size_t component = (begin + done) / voxels;
+      const std::size_t voxel = (begin + done) % voxels;
+      const std::size_t run = std::min(count - done, voxels - voxel);
+      for (std::size_t i = 0; i < run; ++i) {
+        std::memcpy(to + (done + i) * sizeof(float), from + 3 * (voxel + i) + component,
+                    sizeof(float));
+      }
+      done += run;
     }
   };
   writeValues(path, std::move(values), options);

@@ -47,6 +47,7 @@ inline std::string contentOf(const std::filesystem::path& path) {
 }
 
 inline void putContent(const std::filesystem::path& path, const std::string& content) {
+  std::filesystem::remove(path);  // ext4 waits for the disk when a file is rewritten in place
   std::ofstream(path, std::ios::binary) << content;
 }
 

@@ -369,6 +369,22 @@ TEST(VolumeFile, AnUnknownEndingIsRefusedAndNothingIsWritten) {
   EXPECT_EQ(folder.entryCount(), 0);
 }
 
+TEST(VolumeFile, MghWithoutGeometryIsCoronalAsInFreeSurfer) {
+  const TemporaryFolder folder;
+  Grid grid;
+  grid.size = {4, 6, 8};
+  io::writeVolume(folder / "a.mgh", Volume<std::uint8_t>(grid, 1));
+  std::string bytes = contentOf(folder / "a.mgh");
+  bytes[29] = 0;  // goodRASFlag
+  putContent(folder / "a.mgh", bytes);
+  const io::LoadedVolume<float> read = io::readScalars(folder / "a.mgh");
+  EXPECT_EQ(read.volume.grid.direction.col(0), Vector(-1, 0, 0));
+  EXPECT_EQ(read.volume.grid.direction.col(1), Vector(0, 0, -1));
+  EXPECT_EQ(read.volume.grid.direction.col(2), Vector(0, 1, 0));
+  EXPECT_EQ(read.volume.grid.toWorld(Vector(2, 3, 4)), Point(0, 0, 0));
+  EXPECT_EQ(read.origin.notes.size(), 1U);
+}
+
 TEST(VolumeFile, ManySlicesNeedNiftiTwo) {
   const TemporaryFolder folder;
   Grid grid;
