@@ -22,6 +22,11 @@ constexpr double kFlat = 1e-9;
 constexpr double kTinyStep = 1e-6;
 // Nearer than this (in voxels) a wall's one-sided slope is round-off.
 constexpr double kTooClose = 0.02;
+// A step whose gain in u is below this share of |grad u| ds is inconsistent; the boundary is near
+// within this many voxels; and a walk may have so many such steps.
+constexpr double kPoorGain = 0.25;
+constexpr double kNearEnd = 1.5;
+constexpr int kStrikes = 8;
 
 }  // namespace
 
@@ -262,11 +267,12 @@ TrajectoryTracer::Field::Sample TrajectoryTracer::Field::sampleBesideBoundary(
   return result;
 }
 
-Vector TrajectoryTracer::Field::velocityOf(const Sample& sample, int uphill) const {
+Vector TrajectoryTracer::Field::velocityOf(const Sample& sample, int uphill, double* slope) const {
   // G per voxel is (per mm) * spacing; T = grad / |grad| in mm, then per voxel again.
   Vector perMm = sample.gradient.cwiseProduct(inverseSpacing);
   if (flat) perMm[2] = 0;
   const double norm = perMm.norm();
+  if (slope != nullptr) *slope = norm;
   if (!(norm * finest > kFlat)) return Vector::Zero();
   return (uphill / norm) * perMm.cwiseProduct(inverseSpacing);
 }
@@ -278,7 +284,7 @@ TrajectoryTracer::Field::Walk TrajectoryTracer::Field::begin(const Vector& x, st
   const Sample here = sample(x, home);
   walk.home = here.home;
   walk.u = here.u;
-  walk.velocity = velocityOf(here, uphill);
+  walk.velocity = velocityOf(here, uphill, &walk.slope);
   walk.step = options.maxStep * finest;
   walk.stuck = here.home < 0 || walk.velocity.isZero(0);
   return walk;
@@ -293,7 +299,7 @@ TrajectoryTracer::Field::Walk TrajectoryTracer::Field::begin(std::int32_t number
   walk.u = interpolant.u[number];
   Sample here;
   here.gradient = interpolant.gradient[number].cast<double>().cwiseProduct(annulus.grid.spacing);
-  walk.velocity = velocityOf(here, uphill);
+  walk.velocity = velocityOf(here, uphill, &walk.slope);
   walk.step = options.maxStep * finest;
   walk.stuck = walk.velocity.isZero(0);
   return walk;
@@ -310,7 +316,8 @@ bool TrajectoryTracer::Field::advance(Walk& walk, double target, int uphill) con
     const Vector k3 = velocityOf(three, uphill);
     const Vector next = walk.x + s * (2.0 / 9 * k1 + 1.0 / 3 * k2 + 4.0 / 9 * k3);
     const Sample four = sample(next, walk.home);
-    const Vector k4 = velocityOf(four, uphill);
+    double slope = 0;
+    const Vector k4 = velocityOf(four, uphill, &slope);
     const bool lost = two.home < 0 || three.home < 0 || four.home < 0 || k4.isZero(0);
     const double error = s * (-5.0 / 72 * k1 + 1.0 / 12 * k2 + 1.0 / 9 * k3 - 1.0 / 8 * k4).norm();
     if (lost || error > options.tolerance) {
@@ -322,10 +329,27 @@ bool TrajectoryTracer::Field::advance(Walk& walk, double target, int uphill) con
       continue;
     }
     if (uphill * (four.u - target) < 0) {
+      // Where the tissue is thinner than the grid resolves, the extension beyond the boundary may
+      // bend a trajectory along it.  Then u does not gain what its slope promises: if the boundary
+      // is near, go straight to it.
+      if (uphill * (four.u - walk.u) < kPoorGain * walk.slope * s) {
+        const double rest = uphill * (target - walk.u) / walk.slope;
+        if (rest < kNearEnd * finest) {
+          walk.x += rest * k1;
+          walk.length += rest;
+          walk.u = target;
+          return true;
+        }
+        if (++walk.strikes > kStrikes) {
+          walk.stuck = true;
+          return false;
+        }
+      }
       walk.x = next;
       walk.velocity = k4;
       walk.home = four.home;
       walk.u = four.u;
+      walk.slope = slope;
       walk.length += s;
       const double factor = error > 0 ? 0.9 * std::cbrt(options.tolerance / error) : 4.0;
       walk.step = std::min(longest, s * std::clamp(factor, 0.3, 4.0));

@@ -27,6 +27,8 @@ struct TrajectoryTracer::Field {
     double u = kNaN;
     double length = 0;  ///< mm so far
     double step = 0;    ///< next step to try, mm
+    double slope = 0;   ///< |grad u| here, 1/mm
+    int strikes = 0;    ///< steps along which u did not change as its gradient says
     bool stuck = false;
   };
 
@@ -61,7 +63,7 @@ struct TrajectoryTracer::Field {
   [[nodiscard]] Sample sampleBesideBoundary(const Vector& x, const std::array<int, 3>& base,
                                             const Vector& f, const std::int32_t* corner,
                                             std::int32_t home) const;
-  [[nodiscard]] Vector velocityOf(const Sample& sample, int uphill) const;
+  [[nodiscard]] Vector velocityOf(const Sample& sample, int uphill, double* slope = nullptr) const;
 };
 
 }  // namespace explica::correspondence

@@ -28,7 +28,6 @@ struct Fronts {
 
 Fronts frontsFromInside(const Annulus& annulus) {
   const Vector& h = annulus.grid.spacing;
-  const auto strides = annulus.strides();
   Fronts fronts;
   fronts.source.assign(annulus.count(), Vector::Constant(kNaN));
   fronts.distance.assign(annulus.count(), kInfinity);
@@ -62,20 +61,16 @@ Fronts frontsFromInside(const Annulus& annulus) {
     queue.pop();
     if (done[n] || distance > fronts.distance[n]) continue;
     done[n] = 1;
-    const std::int32_t p = annulus.place[n];
-    const int depth = annulus.planar ? 0 : 1;
-    for (int dk = -depth; dk <= depth; ++dk) {
-      for (int dj = -1; dj <= 1; ++dj) {
-        for (int di = -1; di <= 1; ++di) {
-          const std::int32_t m = annulus.numberAt[p + di + dj * strides[1] + dk * strides[2]];
-          if (m < 0 || done[m]) continue;
-          const double there = (centre(m) - fronts.source[n]).norm();
-          if (there < fronts.distance[m]) {
-            fronts.distance[m] = there;
-            fronts.source[m] = fronts.source[n];
-            queue.emplace(there, m);
-          }
-        }
+    // Along links only: so every voxel hangs together with its source through voxels of the same
+    // source, between which no sheet can come.
+    for (int d = 0; d < 6; ++d) {
+      const std::int32_t m = annulus.links[n][d];
+      if (m < 0 || done[m]) continue;
+      const double there = (centre(m) - fronts.source[n]).norm();
+      if (there < fronts.distance[m]) {
+        fronts.distance[m] = there;
+        fronts.source[m] = fronts.source[n];
+        queue.emplace(there, m);
       }
     }
   }
