@@ -14,13 +14,18 @@ namespace explica::surface {
 namespace {
 
 /// Fronts meet head-on if the angle between their normals is more than this (cosine).
-constexpr float kHeadOn = -0.3F;
+constexpr float kHeadOn = -0.5F;
 /// Each front must also run along the link between the voxels.
 constexpr float kAlongLink = 0.25F;
 /// The surface keeps this share of a voxel from the middle between two banks.
 constexpr double kMiddleGap = 0.1;
 /// Steps a voxel of a trajectory.
 constexpr double kStepsPerVoxel = 4;
+/// A path is looked at again if it is longer than this many times its end's distance to white matter
+/// and this many mm; it is cut where that distance grows at less than this rate along it.
+constexpr double kStallRatio = 1.3;
+constexpr double kStallSlack = 0.25;
+constexpr double kStallRate = 0.3;
 /// No cortex is thicker, mm; a longer trajectory has lost its way and is ended there.
 constexpr double kLongest = 12;
 
@@ -260,6 +265,25 @@ bool RibbonField::pastMiddle(const Point& p, const Vector& along) const {
   return (p - nearest.point).dot(along) < -0.2 * std::sqrt(nearest.squaredDistance);
 }
 
+void RibbonField::cutWhereItStalls(Trajectory& path) const {
+  const auto distanceAt = [&](const Point& p) {
+    return std::sqrt(white_.closestPoint(p).squaredDistance);
+  };
+  if (path.length() < kStallRatio * distanceAt(path.points.back()) + kStallSlack) return;
+  constexpr std::size_t kWindow = 3;
+  std::vector<double> distance;
+  for (std::size_t k = 0; k < path.points.size(); ++k) {
+    distance.push_back(distanceAt(path.points[k]));
+    if (k < kWindow + 1) continue;
+    const double way = path.along[k] - path.along[k - kWindow];
+    if (distance[k] - distance[k - kWindow] >= kStallRate * way) continue;
+    path.points.resize(k - kWindow + 1);
+    path.along.resize(k - kWindow + 1);
+    path.end = TrajectoryEnd::Bank;
+    return;
+  }
+}
+
 Trajectory RibbonField::trace(const Point& start, const Vector& normal) const {
   Trajectory path;
   path.points.push_back(start);
@@ -307,6 +331,7 @@ Trajectory RibbonField::trace(const Point& start, const Vector& normal) const {
       path.points.push_back(p + low * world);
       path.along.push_back(static_cast<float>(arc));
       path.end = end;
+      cutWhereItStalls(path);
       return path;
     }
     arc += step_;
@@ -316,6 +341,7 @@ Trajectory RibbonField::trace(const Point& start, const Vector& normal) const {
     path.along.push_back(static_cast<float>(arc));
   }
   path.end = TrajectoryEnd::Outer;
+  cutWhereItStalls(path);
   return path;
 }
 

@@ -61,6 +61,9 @@ class RibbonField {
   [[nodiscard]] Vector direction(const Vector& index, const Vector& previous) const;
   /// True if the nearest white matter lies ahead: the middle between two banks was passed.
   [[nodiscard]] bool pastMiddle(const Point& p, const Vector& direction) const;
+  /// Ends a path where it no longer leaves white matter behind: from there it only follows the
+  /// floor between two banks.
+  void cutWhereItStalls(Trajectory& path) const;
 
   const CorticalTissue& tissue_;
   geometry::FaceTree white_;
