@@ -30,28 +30,30 @@ Declaration& Declaration::example(std::string commandLine, std::string what) {
   return *this;
 }
 
-Declaration& Declaration::input(std::string inputName, FileKind kind, std::string help,
-                                std::string& path) {
+Declaration& Declaration::input(const std::string& inputName, FileKind kind,
+                                const std::string& help, std::string& path) {
   return add(makeOption(Field{inputName, "", help}, path), "", true, true, kind);
 }
 
-Declaration& Declaration::input(std::string inputName, FileKind kind, std::string help,
-                                std::optional<std::string>& path) {
+Declaration& Declaration::input(const std::string& inputName, FileKind kind,
+                                const std::string& help, std::optional<std::string>& path) {
   return add(makeOption(Field{inputName, "", help}, path), "", true, false, kind);
 }
 
-Declaration& Declaration::input(std::string inputName, FileKind kind, std::string help,
-                                std::vector<std::string>& paths) {
+Declaration& Declaration::input(const std::string& inputName, FileKind kind,
+                                const std::string& help, std::vector<std::string>& paths) {
   return add(makeOption(Field{inputName, "", help}, paths), "", true, true, kind);
 }
 
-Declaration& Declaration::inputOption(std::string optionName, FileKind kind, std::string help,
-                                      std::optional<std::string>& path, std::string category) {
+Declaration& Declaration::inputOption(const std::string& optionName, FileKind kind,
+                                      const std::string& help, std::optional<std::string>& path,
+                                      const std::string& category) {
   return add(makeOption(Field{optionName, "", help}, path), category, false, false, kind);
 }
 
-Declaration& Declaration::inputOption(std::string optionName, FileKind kind, std::string help,
-                                      std::vector<std::string>& paths, std::string category) {
+Declaration& Declaration::inputOption(const std::string& optionName, FileKind kind,
+                                      const std::string& help, std::vector<std::string>& paths,
+                                      const std::string& category) {
   return add(makeOption(Field{optionName, "", help}, paths), category, false, false, kind);
 }
 

@@ -51,10 +51,6 @@ void onSignal(int number) {
   }
 }
 
-double finite(double value) {
-  return value;
-}
-
 Json numberOrNull(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
@@ -84,7 +80,6 @@ struct Context::State {
   std::optional<OutputFolder> folder;
   std::vector<std::string> varying;  ///< names of outputs whose bytes may differ
   std::vector<std::pair<std::string, fs::path>> nestedRecords;
-  int openSteps = 0;
 
   [[nodiscard]] const Declaration& declaration() const { return run.invocation.declaration; }
   void setResult(const std::string& key, Json value) { summary[key] = std::move(value); }
@@ -156,7 +151,7 @@ Context::Step Context::step(std::string name) {
 }
 
 void Context::result(const std::string& key, double value) {
-  state_->setResult(key, numberOrNull(finite(value)));
+  state_->setResult(key, numberOrNull(value));
 }
 void Context::result(const std::string& key, int value) {
   state_->setResult(key, value);
@@ -314,7 +309,7 @@ Outcome execute(Run& run, Console& console) {
   Eigen::setNbThreads(threads.count);
   io::setItkThreadCount(threads.count);  // Embree runs on TBB and follows it
 
-  Context::State state{run, console, {}, Json::object(), {}, {}, {}, {}, 0};
+  Context::State state{run, console, {}, Json::object(), {}, {}, {}, {}};
   Context context(state);
   provenance::Record& record = state.record;
   record.command = declaration.name;

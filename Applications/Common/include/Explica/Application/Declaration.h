@@ -89,17 +89,19 @@ class Declaration {
 
   /// A file to read, by position.  `name` in capitals: "SEG".  A std::optional<std::string> may be
   /// left out; a std::vector<std::string> takes one or more.
-  Declaration& input(std::string name, FileKind kind, std::string help, std::string& path);
-  Declaration& input(std::string name, FileKind kind, std::string help,
+  Declaration& input(const std::string& name, FileKind kind, const std::string& help,
+                     std::string& path);
+  Declaration& input(const std::string& name, FileKind kind, const std::string& help,
                      std::optional<std::string>& path);
-  Declaration& input(std::string name, FileKind kind, std::string help,
+  Declaration& input(const std::string& name, FileKind kind, const std::string& help,
                      std::vector<std::string>& paths);
 
   /// A file to read, by option: --mask FILE.  A vector's option may be repeated.
-  Declaration& inputOption(std::string name, FileKind kind, std::string help,
-                           std::optional<std::string>& path, std::string category = "Inputs");
-  Declaration& inputOption(std::string name, FileKind kind, std::string help,
-                           std::vector<std::string>& paths, std::string category = "Inputs");
+  Declaration& inputOption(const std::string& name, FileKind kind, const std::string& help,
+                           std::optional<std::string>& path,
+                           const std::string& category = "Inputs");
+  Declaration& inputOption(const std::string& name, FileKind kind, const std::string& help,
+                           std::vector<std::string>& paths, const std::string& category = "Inputs");
 
   /// A word by position that is not a file: participant|group.
   template <class T>
