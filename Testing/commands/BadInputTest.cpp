@@ -31,6 +31,7 @@ std::string faultOfRefusal(const CommandResult& result, const std::string& file,
 struct VolumeCommand {
   std::string name;
   std::vector<std::string> words;
+  std::string accepts = {};  ///< the case that is no fault for this command
 };
 void PrintTo(const VolumeCommand& command, std::ostream* stream) {
   *stream << command.name;
@@ -38,12 +39,16 @@ void PrintTo(const VolumeCommand& command, std::ostream* stream) {
 
 const VolumeCommand kVolumeCommands[] = {
     {"Segment", {"segment", "{file}"}},
+    {"Surface", {"surface", "{file}"}},
+    {"SurfaceLevel", {"surface", "--inner-level", "{file}"}},
+    {"Thickness", {"thickness", "{file}", "--inner", "1", "--tissue", "2"}, "TwoDimensional"},
 };
 
 class BadVolumeInput : public ::testing::TestWithParam<std::tuple<VolumeCommand, BadVolume>> {};
 
 TEST_P(BadVolumeInput, IsRefusedInOneSentence) {
   const auto& [command, volume] = GetParam();
+  if (command.accepts == volume.name) return;
   TemporaryFolder folder;
   const std::string file = folder / volume.file;
   volume.make(file);
@@ -61,6 +66,133 @@ INSTANTIATE_TEST_SUITE_P(Table, BadVolumeInput,
                          [](const auto& row) {
                            return std::get<0>(row.param).name + std::get<1>(row.param).name;
                          });
+
+// ---- commands that read a surface; {file} is the bad one ----
+
+struct BadSurface {
+  std::string name;
+  std::string file;
+  std::string text;  ///< of the file; empty: there is none
+  std::vector<std::string> message;
+};
+void PrintTo(const BadSurface& surface, std::ostream* stream) {
+  *stream << surface.name;
+}
+
+/// A tetrahedron of 10 mm as OFF, which the cases below damage.
+const std::string kVertices = "0 0 0\n10 0 0\n0 10 0\n0 0 10\n";
+const std::string kFaces = "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+
+const BadSurface kBadSurfaces[] = {
+    {"Missing", "absent.surf.gii", "", {"no such file"}},
+    {"NotASurface", "letter.surf.gii", "Dear reader, this is a letter.\n", {}},
+    {"Truncated", "cut.off", "OFF\n4 4 0\n" + kVertices + "3 0 2 1\n3 0 1", {}},
+    {"TruncatedGifti", "cut.surf.gii", "<?xml version=\"1.0\"?>\n<GIFTI Version=\"1.0\"><Data", {}},
+    {"IndexOutOfRange",
+     "range.off",
+     "OFF\n4 4 0\n" + kVertices + "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 9\n",
+     {}},
+    {"NotANumber", "nan.off", "OFF\n4 4 0\n0 0 0\nnan 0 0\n0 10 0\n0 0 10\n" + kFaces, {}},
+    {"NoFaces", "points.off", "OFF\n4 0 0\n" + kVertices, {}},
+    {"NonManifold",
+     "fan.off",
+     "OFF\n5 5 0\n" + kVertices + "5 5 5\n" + kFaces + "3 1 2 4\n",
+     {"manifold"}},
+    {"Inconsistent",
+     "turned.off",
+     "OFF\n4 4 0\n" + kVertices + "3 0 1 2\n3 0 1 3\n3 0 3 2\n3 1 2 3\n",
+     {}},
+};
+
+const VolumeCommand kSurfaceCommands[] = {
+    {"Unfold", {"unfold", "{file}", "--vertex", "0", "--radius", "5", "--direction", "0,0,1"}},
+};
+
+class BadSurfaceInput : public ::testing::TestWithParam<std::tuple<VolumeCommand, BadSurface>> {};
+
+TEST_P(BadSurfaceInput, IsRefusedInOneSentence) {
+  const auto& [command, surface] = GetParam();
+  TemporaryFolder folder;
+  const std::string file = folder / surface.file;
+  if (!surface.text.empty()) writeText(file, surface.text);
+  const auto before = folder.entries();
+  auto words = command.words;
+  std::replace(words.begin(), words.end(), std::string("{file}"), file);
+  const auto result = explica(words + std::vector<std::string>{"--out", folder / "out"});
+  EXPECT_EQ(faultOfRefusal(result, file, surface.message), "") << result;
+  EXPECT_EQ(folder.entries(), before);
+}
+
+INSTANTIATE_TEST_SUITE_P(Table, BadSurfaceInput,
+                         ::testing::Combine(::testing::ValuesIn(kSurfaceCommands),
+                                            ::testing::ValuesIn(kBadSurfaces)),
+                         [](const auto& row) {
+                           return std::get<0>(row.param).name + std::get<1>(row.param).name;
+                         });
+
+// ---- readable files that do not suit what is asked of them ----
+
+struct Unsuitable {
+  std::string name;
+  std::vector<std::vector<std::string>> before;
+  std::vector<std::string> words;
+  std::string file;  ///< that the sentence must name
+  std::vector<std::string> message;
+};
+void PrintTo(const Unsuitable& row, std::ostream* stream) {
+  *stream << row.name;
+}
+
+const std::vector<std::string> kShell = {"phantom", "shell", "--size",
+                                         "16",      "--out", "{folder}/shell"};
+const std::string kLabels = "{folder}/shell/labels.nii.gz";
+
+const Unsuitable kUnsuitable[] = {
+    {"TissueLabelAbsent",
+     {kShell},
+     {"thickness", kLabels, "--inner", "1", "--tissue", "7"},
+     kLabels,
+     {"7"}},
+    {"InnerLabelAbsent",
+     {kShell},
+     {"thickness", kLabels, "--inner", "9", "--tissue", "2"},
+     kLabels,
+     {"9"}},
+    {"TissueMissesTheOuterSide",
+     {kShell},
+     {"thickness", kLabels, "--inner", "0,1", "--tissue", "2"},
+     kLabels,
+     {"outer"}},
+    {"WhiteLabelAbsent",
+     {kShell},
+     {"surface", kLabels, "--white", "8", "--grey", "2"},
+     kLabels,
+     {"8"}},
+    {"FractionsAreNoLabels",
+     {kShell},
+     {"thickness", "{folder}/shell/harmonic.nii.gz", "--inner", "1", "--tissue", "2"},
+     "{folder}/shell/harmonic.nii.gz",
+     {"whole"}},
+};
+
+class UnsuitableInput : public ::testing::TestWithParam<Unsuitable> {};
+
+TEST_P(UnsuitableInput, IsRefusedInOneSentence) {
+  TemporaryFolder folder;
+  for (const auto& line : GetParam().before) {
+    const auto made = explica(filled(line, folder));
+    ASSERT_EQ(made.exitCode, 0) << made;
+  }
+  const auto before = folder.entries();
+  const auto result = explica(filled(GetParam().words, folder) +
+                              std::vector<std::string>{"--quiet", "--out", folder / "out"});
+  EXPECT_EQ(faultOfRefusal(result, filled({GetParam().file}, folder)[0], GetParam().message), "")
+      << result;
+  EXPECT_EQ(folder.entries(), before);
+}
+
+INSTANTIATE_TEST_SUITE_P(Table, UnsuitableInput, ::testing::ValuesIn(kUnsuitable),
+                         [](const auto& row) { return row.param.name; });
 
 }  // namespace
 }  // namespace explica::testing

@@ -119,7 +119,7 @@ const std::vector<BadVolume>& badVolumes() {
          holed.value = [](std::size_t v) { return v == 7 ? std::nanf("") : 1.f; };
          holed.write(path);
        },
-       {"NaN"}},
+       {}},
       {"ShearedSform",
        "sheared.nii",
        [](const std::string& path) {

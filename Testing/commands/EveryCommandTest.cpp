@@ -18,6 +18,7 @@ class EveryCommand : public ::testing::TestWithParam<QuickRun> {
       const auto made = explica(filled(line, folder_));
       ASSERT_TRUE(made.exitCode == 0 || made.exitCode == 3) << made;
     }
+    if (GetParam().prepare) GetParam().prepare(folder_);
     words_ = filled(GetParam().words, folder_);
   }
 

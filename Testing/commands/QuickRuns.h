@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "Explica/Geometry/Fixtures.h"
+#include "Explica/IO/SurfaceFile.h"
 #include "Explica/Testing/Command.h"
 
+#include <functional>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -16,7 +19,14 @@ struct QuickRun {
   std::string name;
   std::vector<std::vector<std::string>> before;  ///< command lines that make its inputs
   std::vector<std::string> words;
+  std::function<void(const TemporaryFolder&)> prepare =
+      {};  ///< writes inputs that no command makes
 };
+
+/// A folded sphere of 30 mm, 1280 faces.
+inline void writeFoldedSphere(const TemporaryFolder& folder) {
+  io::writeSurface(folder / "sphere.surf.gii", geometry::makeFoldedSphere(3, 30.0));
+}
 
 inline void PrintTo(const QuickRun& run, std::ostream* stream) {
   *stream << run.name;
@@ -24,8 +34,24 @@ inline void PrintTo(const QuickRun& run, std::ostream* stream) {
 
 /// One row a command: tried for equal bytes with 1, 2 and 4 threads, replay, dry run and full disk.
 inline const std::vector<QuickRun>& quickRuns() {
+  const std::vector<std::string> kShell = {"phantom", "shell", "--size",
+                                           "20",      "--out", "{folder}/shell"};
   static const std::vector<QuickRun> runs = {
       {"PhantomShell", {}, {"phantom", "shell", "--size", "24"}},
+      {"Segment", {kShell}, {"segment", "{folder}/shell/level.nii.gz", "--max-iterations", "4"}},
+      {"Surface",
+       {kShell},
+       {"surface", "{folder}/shell/labels.nii.gz", "--white", "1", "--grey", "2", "--faces",
+        "2000"}},
+      {"Thickness",
+       {kShell},
+       {"thickness", "{folder}/shell/labels.nii.gz", "--inner", "1", "--tissue", "2", "--layers",
+        "3"}},
+      {"Unfold",
+       {},
+       {"unfold", "{folder}/sphere.surf.gii", "--center", "0,0,30", "--radius", "12", "--direction",
+        "0,0,1", "--max-iterations", "3"},
+       writeFoldedSphere},
   };
   return runs;
 }

@@ -300,6 +300,17 @@ void recordValues(const Declaration& declaration, provenance::Record& record) {
   }
 }
 
+/// A sentence that names no input file gets the files named: modules see values, not paths.
+std::string withInputNames(const std::string& message, const provenance::Record& record) {
+  std::string names;
+  for (const auto& input : record.inputs) {
+    const std::string path = input.given.string();
+    if (message.find(path) != std::string::npos) return message;
+    names += (names.empty() ? "" : ", ") + input.role + " is " + path;
+  }
+  return names.empty() ? message : message + " (" + names + ")";
+}
+
 }  // namespace
 
 Outcome execute(Run& run, Console& console) {
@@ -361,6 +372,8 @@ Outcome execute(Run& run, Console& console) {
     termination = run.invocation.run(context);
   } catch (const DryRunEnds&) {
     return {};
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(withInputNames(error.what(), record));
   }
   console.endProgress();
   if (run.common.dryRun) return {};
