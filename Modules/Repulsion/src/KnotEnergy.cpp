@@ -4,6 +4,7 @@
 #include "Explica/Repulsion/KnotEnergy.h"
 
 #include "Explica/Repulsion/AllPairs.h"
+#include "Explica/Repulsion/MultipoleTree.h"
 
 namespace explica::repulsion {
 
@@ -11,6 +12,7 @@ std::unique_ptr<KnotEnergy> makeKnotEnergy(KnotMethod method, const TriangleMesh
                                            const std::vector<bool>& vertexMoves) {
   switch (method) {
     case KnotMethod::Tree:
+      return std::make_unique<MultipoleTree>(mesh, vertexMoves);
     case KnotMethod::ThesisTree:
     case KnotMethod::AllPairs:
       return std::make_unique<AllPairs>(mesh, vertexMoves);

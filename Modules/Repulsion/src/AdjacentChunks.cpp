@@ -1,0 +1,224 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "AdjacentChunks.h"
+
+#include "Explica/Core/Parallel.h"
+#include "Explica/Repulsion/PairIntegral.h"
+#include "Kernels.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <numeric>
+
+namespace explica::repulsion {
+namespace {
+
+constexpr std::size_t kChunk = 512;  // pairs
+
+template <class T>
+std::int32_t indexIn(const std::vector<T>& sorted, const T& value) {
+  return static_cast<std::int32_t>(std::lower_bound(sorted.begin(), sorted.end(), value) -
+                                   sorted.begin());
+}
+
+template <class T>
+void sortUnique(std::vector<T>& values) {
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+}
+
+}  // namespace
+
+struct AdjacentChunks::EdgeKind {
+  using Batch = kernels::EdgeBatch;
+  static constexpr int kArms = 3;
+  static constexpr std::array<int, 3> kCornersT = {0, 1, 3};
+  static void choose(const Batch& batch, std::int32_t* rules) {
+    kernels::chooseEdgeRules(batch, rules);
+  }
+  static void integrate(Batch& batch, int rule) { kernels::integrateEdge(batch, rule); }
+  static PairIntegral exactly(const Corners& s, const Corners& t) {
+    return integrateEdgeSharing(s, t);
+  }
+};
+
+struct AdjacentChunks::VertexKind {
+  using Batch = kernels::VertexBatch;
+  static constexpr int kArms = 4;
+  static constexpr std::array<int, 3> kCornersT = {0, 3, 4};
+  static void choose(const Batch& batch, std::int32_t* rules) {
+    kernels::chooseVertexRules(batch, rules);
+  }
+  static void integrate(Batch& batch, int rule) { kernels::integrateVertex(batch, rule); }
+  static PairIntegral exactly(const Corners& s, const Corners& t) {
+    return integrateVertexSharing(s, t);
+  }
+};
+
+AdjacentChunks::AdjacentChunks(const MovingSet& set, const std::vector<std::int32_t>& rank)
+    : edgeChunks_(cut(set, set.edgePairs, rank, true)),
+      vertexChunks_(cut(set, set.vertexPairs, rank, false)) {}
+
+std::vector<AdjacentChunks::Chunk> AdjacentChunks::cut(const MovingSet& set,
+                                                       const std::vector<AdjacentPair>& pairs,
+                                                       const std::vector<std::int32_t>& rank,
+                                                       bool edges) {
+  std::vector<std::int32_t> sorted(pairs.size());
+  std::iota(sorted.begin(), sorted.end(), 0);
+  std::stable_sort(sorted.begin(), sorted.end(), [&](std::int32_t l, std::int32_t r) {
+    return rank[pairs[l].s] < rank[pairs[r].s];
+  });
+  std::vector<Chunk> chunks((pairs.size() + kChunk - 1) / kChunk);
+  parallelFor(chunks.size(), 1, [&](std::size_t c) {
+    Chunk& chunk = chunks[c];
+    const std::size_t begin = c * kChunk;
+    const std::size_t end = std::min(begin + kChunk, sorted.size());
+    std::vector<std::int32_t> faces;
+    for (std::size_t i = begin; i < end; ++i) {
+      const AdjacentPair& pair = pairs[sorted[i]];
+      faces.insert(faces.end(), {pair.s, pair.t});
+      chunk.vertices.insert(chunk.vertices.end(), pair.cornersS.begin(), pair.cornersS.end());
+      chunk.vertices.insert(chunk.vertices.end(), pair.cornersT.begin(), pair.cornersT.end());
+    }
+    sortUnique(faces);
+    sortUnique(chunk.vertices);
+    for (const std::int32_t f : faces) {
+      chunk.faces.push_back({indexIn(chunk.vertices, set.faces(f, 0)),
+                             indexIn(chunk.vertices, set.faces(f, 1)),
+                             indexIn(chunk.vertices, set.faces(f, 2))});
+    }
+    for (std::size_t i = begin; i < end; ++i) {
+      const AdjacentPair& p = pairs[sorted[i]];
+      const auto corners = edges ? std::array{p.cornersS[0], p.cornersS[1], p.cornersS[2],
+                                              p.cornersT[2], p.cornersT[2]}
+                                 : std::array{p.cornersS[0], p.cornersS[1], p.cornersS[2],
+                                              p.cornersT[1], p.cornersT[2]};
+      Pair pair{};
+      for (std::size_t k = 0; k < corners.size(); ++k) {
+        pair.vertex[k] = indexIn(chunk.vertices, corners[k]);
+      }
+      pair.s = indexIn(faces, p.s);
+      pair.t = indexIn(faces, p.t);
+      chunk.pairs.push_back(pair);
+    }
+  });
+  return chunks;
+}
+
+template <class Kind>
+AdjacentChunks::Sum AdjacentChunks::sumOf(const Chunk& chunk, const Positions& positions,
+                                          double unit) {
+  constexpr int kArms = Kind::kArms;
+  constexpr int kLanes = kernels::kLanes;
+  std::vector<Point> x(chunk.vertices.size());
+  for (std::size_t v = 0; v < x.size(); ++v) x[v] = positions.row(chunk.vertices[v]).transpose();
+  std::vector<AreaGradient> areas(chunk.faces.size());
+  for (std::size_t f = 0; f < areas.size(); ++f) {
+    const auto& v = chunk.faces[f];
+    areas[f] = areaGradient({x[v[0]], x[v[1]], x[v[2]]});
+  }
+  Sum sum;
+  sum.gradient.assign(x.size(), Vector::Zero());
+  std::vector<double> byArea(chunk.faces.size(), 0.0);  // derivative by each face's area
+
+  struct Waiting {
+    typename Kind::Batch batch;
+    std::array<const Pair*, kLanes> pair;
+    int filled = 0;
+  };
+  std::array<Waiting, kernels::kRules> waiting;
+
+  const auto flush = [&](int rule) {
+    Waiting& w = waiting[rule];
+    if (w.filled == 0) return;
+    for (auto& row : w.batch.arm) std::fill(row + w.filled, row + kLanes, row[0]);
+    Kind::integrate(w.batch, rule);
+    for (int lane = 0; lane < w.filled; ++lane) {
+      const Pair& pair = *w.pair[lane];
+      const double mean = 2 * w.batch.value[lane] / (unit * unit);
+      const double areaS = areas[pair.s].area;
+      const double areaT = areas[pair.t].area;
+      sum.value += areaS * areaT * mean;
+      byArea[pair.s] += areaT * mean;
+      byArea[pair.t] += areaS * mean;
+      const double factor = 2 * areaS * areaT / (unit * unit * unit);
+      Vector rest = Vector::Zero();
+      for (int arm = 0; arm < kArms; ++arm) {
+        const Vector by =
+            factor * Vector(w.batch.byArm[3 * arm][lane], w.batch.byArm[3 * arm + 1][lane],
+                            w.batch.byArm[3 * arm + 2][lane]);
+        sum.gradient[pair.vertex[arm + 1]] += by;
+        rest -= by;
+      }
+      sum.gradient[pair.vertex[0]] += rest;
+    }
+    w.filled = 0;
+  };
+
+  const double inverseUnit = 1 / unit;
+  for (std::size_t begin = 0; begin < chunk.pairs.size(); begin += kLanes) {
+    const int count = static_cast<int>(std::min<std::size_t>(kLanes, chunk.pairs.size() - begin));
+    typename Kind::Batch batch;
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const auto& v =
+          chunk.pairs[begin + static_cast<std::size_t>(std::min(lane, count - 1))].vertex;
+      for (int k = 0; k < kArms; ++k) {
+        for (int a = 0; a < 3; ++a) {
+          batch.arm[3 * k + a][lane] =
+              static_cast<float>((x[v[k + 1]][a] - x[v[0]][a]) * inverseUnit);
+        }
+      }
+    }
+    std::array<std::int32_t, kLanes> rules;
+    Kind::choose(batch, rules.data());
+    for (int lane = 0; lane < count; ++lane) {
+      const Pair& pair = chunk.pairs[begin + static_cast<std::size_t>(lane)];
+      const int rule = rules[lane];
+      if (rule == kernels::kRules) {
+        const auto& v = pair.vertex;
+        const auto& t = Kind::kCornersT;
+        const PairIntegral exact =
+            Kind::exactly({x[v[0]], x[v[1]], x[v[2]]}, {x[v[t[0]]], x[v[t[1]]], x[v[t[2]]]});
+        sum.value += 2 * exact.value;
+        for (int k = 0; k < 3; ++k) {
+          sum.gradient[v[k]] += 2 * exact.byS[k];
+          sum.gradient[v[t[k]]] += 2 * exact.byT[k];
+        }
+        continue;
+      }
+      Waiting& w = waiting[rule];
+      for (int row = 0; row < 3 * kArms; ++row) w.batch.arm[row][w.filled] = batch.arm[row][lane];
+      w.pair[w.filled++] = &pair;
+      if (w.filled == kLanes) flush(rule);
+    }
+  }
+  for (int rule = 0; rule < kernels::kRules; ++rule) flush(rule);
+
+  for (std::size_t f = 0; f < areas.size(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      sum.gradient[chunk.faces[f][k]] += byArea[f] * areas[f].byCorner[k];
+    }
+  }
+  return sum;
+}
+
+void AdjacentChunks::add(const Positions& positions, double unit, double& value,
+                         Positions& gradient) const {
+  const std::size_t edges = edgeChunks_.size();
+  std::vector<Sum> sums(edges + vertexChunks_.size());
+  parallelFor(sums.size(), 1, [&](std::size_t c) {
+    sums[c] = c < edges ? sumOf<EdgeKind>(edgeChunks_[c], positions, unit)
+                        : sumOf<VertexKind>(vertexChunks_[c - edges], positions, unit);
+  });
+  for (std::size_t c = 0; c < sums.size(); ++c) {
+    const Chunk& chunk = c < edges ? edgeChunks_[c] : vertexChunks_[c - edges];
+    value += sums[c].value;
+    for (std::size_t v = 0; v < chunk.vertices.size(); ++v) {
+      gradient.row(chunk.vertices[v]) += sums[c].gradient[v].transpose();
+    }
+  }
+}
+
+}  // namespace explica::repulsion

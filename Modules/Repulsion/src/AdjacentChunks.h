@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Core/TriangleMesh.h"
+#include "MovingSet.h"
+
+#include <vector>
+
+namespace explica::repulsion {
+
+/// Pairs of faces with common corners, in chunks of neighbours that are summed side by side:
+/// vectorised by rules that fit the pair's shape, by integrateEdgeSharing() and
+/// integrateVertexSharing() at needles and folds that are too sharp for them.
+class AdjacentChunks {
+ public:
+  AdjacentChunks() = default;
+  /// @param rank  of each face: pairs are sorted by that of their first face
+  AdjacentChunks(const MovingSet& set, const std::vector<std::int32_t>& rank);
+
+  /// Adds the energy of both orders of every pair to `value`, its derivatives to `gradient` (V x
+  /// 3).
+  void add(const Positions& positions, double unit, double& value, Positions& gradient) const;
+
+ private:
+  /// A pair within its chunk: the common corners come first, then those of S, then those of T.
+  struct Pair {
+    std::array<std::int32_t, 5> vertex;  // the last is unused if there is a common edge
+    std::int32_t s;
+    std::int32_t t;
+  };
+  struct Chunk {
+    std::vector<std::int32_t> vertices;              // of the mesh
+    std::vector<std::array<std::int32_t, 3>> faces;  // on the chunk's vertices
+    std::vector<Pair> pairs;
+  };
+  struct Sum {
+    double value = 0;
+    std::vector<Vector> gradient;
+  };
+  struct EdgeKind;
+  struct VertexKind;
+
+  static std::vector<Chunk> cut(const MovingSet& set, const std::vector<AdjacentPair>& pairs,
+                                const std::vector<std::int32_t>& rank, bool edges);
+  template <class Kind>
+  static Sum sumOf(const Chunk& chunk, const Positions& positions, double unit);
+
+  std::vector<Chunk> edgeChunks_;
+  std::vector<Chunk> vertexChunks_;
+};
+
+}  // namespace explica::repulsion

@@ -1,0 +1,598 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Kernels.h"
+
+#include "Quadrature.h"
+
+#include <array>
+#include <utility>
+#include <vector>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "Kernels.cpp"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+#include <hwy/highway.h>
+
+#ifndef EXPLICA_REPULSION_KERNEL_TABLES
+#define EXPLICA_REPULSION_KERNEL_TABLES
+namespace explica::repulsion::kernels {
+
+// Added to squared distances so that a pair that is left out anyway cannot divide by zero; edges
+// are about one long.
+constexpr float kTiny = 1e-18F;
+
+struct Weighted {
+  float weight;
+  float lambda[3];
+};
+
+template <std::size_t N>
+inline std::array<Weighted, N> asFloats(Rule rule) {
+  std::array<Weighted, N> result{};
+  for (std::size_t i = 0; i < N; ++i) {
+    result[i].weight = static_cast<float>(rule[i].weight);
+    for (int k = 0; k < 3; ++k) result[i].lambda[k] = static_cast<float>(rule[i].lambda[k]);
+  }
+  return result;
+}
+
+/// A quadrature point of a reduced integral: z is this combination of the arms.
+template <int kArms>
+struct ArmPoint {
+  float weight;
+  float coefficient[kArms];
+};
+
+// Distance of the domain's centre from the singularity, in its radii, from which each rule errs by
+// less than about 1e-3 of a pair's gradient (measured on a pial surface).
+constexpr float kEdgeRatio[kRules] = {1.0F, 0.5F, 0.25F};
+constexpr float kVertexRatio[kRules] = {1.0F, 0.7F, 0.35F};
+
+using Corner = std::array<double, 3>;
+
+/// The similar parts that `halvings` bisections of every edge leave, corners as coordinates.
+inline std::vector<std::vector<Corner>> partsOfTriangle(int halvings) {
+  std::vector<std::vector<Corner>> parts = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  const auto middle = [](const Corner& a, const Corner& b) {
+    return Corner{(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2};
+  };
+  for (; halvings > 0; --halvings) {
+    std::vector<std::vector<Corner>> finer;
+    for (const auto& t : parts) {
+      const Corner ab = middle(t[0], t[1]);
+      const Corner bc = middle(t[1], t[2]);
+      const Corner ca = middle(t[2], t[0]);
+      finer.push_back({t[0], ab, ca});
+      finer.push_back({ab, t[1], bc});
+      finer.push_back({ca, bc, t[2]});
+      finer.push_back({ab, bc, ca});
+    }
+    parts = std::move(finer);
+  }
+  return parts;
+}
+
+inline std::vector<std::vector<Corner>> partsOfSegment(int halvings) {
+  const int count = 1 << halvings;
+  std::vector<std::vector<Corner>> parts;
+  for (int i = 0; i < count; ++i) {
+    const double from = static_cast<double>(i) / count;
+    const double to = static_cast<double>(i + 1) / count;
+    parts.push_back({{1 - from, from, 0}, {1 - to, to, 0}});
+  }
+  return parts;
+}
+
+/// A rule on each part, as a rule of the whole.
+inline std::vector<RulePoint> composite(Rule rule, const std::vector<std::vector<Corner>>& parts) {
+  std::vector<RulePoint> points;
+  for (const auto& part : parts) {
+    for (const RulePoint& p : rule) {
+      RulePoint point{{0, 0, 0}, p.weight / static_cast<double>(parts.size())};
+      for (std::size_t k = 0; k < part.size(); ++k) {
+        for (int axis = 0; axis < 3; ++axis) point.lambda[axis] += p.lambda[k] * part[k][axis];
+      }
+      points.push_back(point);
+    }
+  }
+  return points;
+}
+
+inline std::vector<ArmPoint<3>> edgePoints(int halvings) {
+  static constexpr int kCorners[6][3][3] = {
+      {{0, 1, 0}, {1, 0, 0}, {1, 0, -1}},   {{0, 1, 0}, {1, 0, -1}, {0, 1, -1}},
+      {{0, 0, -1}, {1, 0, -1}, {0, 1, -1}}, {{0, 0, -1}, {-1, 0, 0}, {-1, 1, 0}},
+      {{0, 0, -1}, {-1, 1, 0}, {0, 1, -1}}, {{0, 1, 0}, {-1, 1, 0}, {0, 1, -1}}};
+  std::vector<ArmPoint<3>> result;
+  for (const auto& triangle : kCorners) {
+    for (const RulePoint& p : composite(triangleRule16(), partsOfTriangle(halvings))) {
+      ArmPoint<3> point{};
+      point.weight = static_cast<float>(p.weight);
+      for (int arm = 0; arm < 3; ++arm) {
+        double c = 0;
+        for (int k = 0; k < 3; ++k) c += p.lambda[k] * triangle[k][arm];
+        point.coefficient[arm] = static_cast<float>(c);
+      }
+      result.push_back(point);
+    }
+  }
+  return result;
+}
+
+inline std::vector<ArmPoint<4>> vertexPoints(Rule segment, Rule triangle, int halvings) {
+  std::vector<ArmPoint<4>> result;
+  for (const bool edgeOfS : {true, false}) {
+    for (const RulePoint& e : composite(segment, partsOfSegment(halvings))) {
+      for (const RulePoint& f : composite(triangle, partsOfTriangle(halvings))) {
+        const double edge[2] = {e.lambda[0], e.lambda[1]};
+        const double face[2] = {f.lambda[1], f.lambda[2]};
+        const double* s = edgeOfS ? edge : face;
+        const double* t = edgeOfS ? face : edge;
+        result.push_back({static_cast<float>(e.weight * f.weight),
+                          {static_cast<float>(s[0]), static_cast<float>(s[1]),
+                           static_cast<float>(-t[0]), static_cast<float>(-t[1])}});
+      }
+    }
+  }
+  return result;
+}
+
+inline const std::vector<ArmPoint<3>>& edgeRule(int rule) {
+  static const std::array<std::vector<ArmPoint<3>>, kRules> rules = {edgePoints(0), edgePoints(1),
+                                                                     edgePoints(2)};
+  return rules[rule];
+}
+
+inline const std::vector<ArmPoint<4>>& vertexRule(int rule) {
+  static const std::array<std::vector<ArmPoint<4>>, kRules> rules = {
+      vertexPoints(segmentRule3(), triangleRule7(), 0),
+      vertexPoints(segmentRule4(), triangleRule12(), 0),
+      vertexPoints(segmentRule4(), triangleRule12(), 1)};
+  return rules[rule];
+}
+
+}  // namespace explica::repulsion::kernels
+#endif  // EXPLICA_REPULSION_KERNEL_TABLES
+
+HWY_BEFORE_NAMESPACE();
+namespace explica::repulsion::kernels::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Tag = hn::CappedTag<float, kLanes>;
+using Vec = hn::Vec<Tag>;
+
+HWY_INLINE Vec reciprocal(Tag d, Vec x) {
+  const Vec two = hn::Set(d, 2.0F);
+  Vec r = hn::ApproximateReciprocal(x);
+  r = hn::Mul(r, hn::NegMulAdd(x, r, two));
+#if !HWY_ARCH_X86
+  r = hn::Mul(r, hn::NegMulAdd(x, r, two));
+#endif
+  return r;
+}
+
+HWY_INLINE Vec squaredNorm(Tag d, Vec x, Vec y, Vec z) {
+  return hn::MulAdd(x, x, hn::MulAdd(y, y, hn::MulAdd(z, z, hn::Set(d, kTiny))));
+}
+
+void FarNodes(TargetLeaf& target, int set, const FarNode* HWY_RESTRICT nodes, std::size_t count) {
+  const Tag d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  for (int lane = 0; lane < kLanes; lane += lanes) {
+    for (int q = 0; q < 3; ++q) {
+      const Vec x = hn::Load(d, target.point[q][0] + lane);
+      const Vec y = hn::Load(d, target.point[q][1] + lane);
+      const Vec z = hn::Load(d, target.point[q][2] + lane);
+      Vec phi = hn::Load(d, target.phi[set][q] + lane);
+      Vec gx = hn::Load(d, target.g[q][0] + lane);
+      Vec gy = hn::Load(d, target.g[q][1] + lane);
+      Vec gz = hn::Load(d, target.g[q][2] + lane);
+      for (std::size_t i = 0; i < count; ++i) {
+        const FarNode& n = nodes[i];
+        const Vec rx = hn::Sub(x, hn::Set(d, n.centre[0]));
+        const Vec ry = hn::Sub(y, hn::Set(d, n.centre[1]));
+        const Vec rz = hn::Sub(z, hn::Set(d, n.centre[2]));
+        const Vec s = reciprocal(d, squaredNorm(d, rx, ry, rz));
+        const Vec xy = hn::Set(d, n.xy);
+        const Vec xz = hn::Set(d, n.xz);
+        const Vec yz = hn::Set(d, n.yz);
+        const Vec ux = hn::MulAdd(hn::Set(d, n.xx), rx, hn::MulAdd(xy, ry, hn::Mul(xz, rz)));
+        const Vec uy = hn::MulAdd(xy, rx, hn::MulAdd(hn::Set(d, n.yy), ry, hn::Mul(yz, rz)));
+        const Vec uz = hn::MulAdd(xz, rx, hn::MulAdd(yz, ry, hn::Mul(hn::Set(d, n.zz), rz)));
+        const Vec qs = hn::Mul(s, hn::MulAdd(ux, rx, hn::MulAdd(uy, ry, hn::Mul(uz, rz))));
+        const Vec mass = hn::Set(d, n.mass);
+        const Vec trace = hn::Set(d, n.trace);
+        const Vec four = hn::Set(d, 4.0F);
+        // phi = s (m + s (4 q s - trace)), s = 1/r^2, q = r . Q r
+        phi = hn::MulAdd(s, hn::MulAdd(s, hn::MulSub(four, qs, trace), mass), phi);
+        // grad phi = s^2 ((-2 m + s (4 trace - 24 q s)) r + 8 s Q r)
+        const Vec s2 = hn::Mul(s, s);
+        const Vec bend = hn::Mul(s, hn::MulAdd(four, trace, hn::Mul(hn::Set(d, -24.0F), qs)));
+        const Vec radial = hn::Mul(s2, hn::MulAdd(hn::Set(d, -2.0F), mass, bend));
+        const Vec turn = hn::Mul(hn::Mul(s2, s), hn::Set(d, 8.0F));
+        gx = hn::MulAdd(radial, rx, hn::MulAdd(turn, ux, gx));
+        gy = hn::MulAdd(radial, ry, hn::MulAdd(turn, uy, gy));
+        gz = hn::MulAdd(radial, rz, hn::MulAdd(turn, uz, gz));
+      }
+      hn::Store(phi, d, target.phi[set][q] + lane);
+      hn::Store(gx, d, target.g[q][0] + lane);
+      hn::Store(gy, d, target.g[q][1] + lane);
+      hn::Store(gz, d, target.g[q][2] + lane);
+    }
+  }
+}
+
+std::size_t CloseLeaves(TargetLeaf& target, int set, const CloseLeaf* HWY_RESTRICT leaves,
+                        std::size_t count, float nearRatio, NearHit* HWY_RESTRICT hits) {
+  const Tag d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  std::size_t hitCount = 0;
+  for (int lane = 0; lane < kLanes; lane += lanes) {
+    const Vec radius = hn::Load(d, target.radius + lane);
+    Vec phi0 = hn::Load(d, target.phi[set][0] + lane);
+    Vec phi1 = hn::Load(d, target.phi[set][1] + lane);
+    Vec phi2 = hn::Load(d, target.phi[set][2] + lane);
+    // Sums of +r/r^4; the factor -2 comes last.
+    Vec gx0 = hn::Zero(d), gy0 = hn::Zero(d), gz0 = hn::Zero(d);
+    Vec gx1 = hn::Zero(d), gy1 = hn::Zero(d), gz1 = hn::Zero(d);
+    Vec gx2 = hn::Zero(d), gy2 = hn::Zero(d), gz2 = hn::Zero(d);
+    for (std::size_t l = 0; l < count; ++l) {
+      const CloseLeaf& leaf = leaves[l];
+      const Vec ox = hn::Set(d, leaf.offset[0]);
+      const Vec oy = hn::Set(d, leaf.offset[1]);
+      const Vec oz = hn::Set(d, leaf.offset[2]);
+      const Vec cx = hn::Sub(hn::Load(d, target.centroid[0] + lane), ox);
+      const Vec cy = hn::Sub(hn::Load(d, target.centroid[1] + lane), oy);
+      const Vec cz = hn::Sub(hn::Load(d, target.centroid[2] + lane), oz);
+      const Vec x0 = hn::Sub(hn::Load(d, target.point[0][0] + lane), ox);
+      const Vec y0 = hn::Sub(hn::Load(d, target.point[0][1] + lane), oy);
+      const Vec z0 = hn::Sub(hn::Load(d, target.point[0][2] + lane), oz);
+      const Vec x1 = hn::Sub(hn::Load(d, target.point[1][0] + lane), ox);
+      const Vec y1 = hn::Sub(hn::Load(d, target.point[1][1] + lane), oy);
+      const Vec z1 = hn::Sub(hn::Load(d, target.point[1][2] + lane), oz);
+      const Vec x2 = hn::Sub(hn::Load(d, target.point[2][0] + lane), ox);
+      const Vec y2 = hn::Sub(hn::Load(d, target.point[2][1] + lane), oy);
+      const Vec z2 = hn::Sub(hn::Load(d, target.point[2][2] + lane), oz);
+      for (std::int32_t f = 0; f < leaf.count; ++f) {
+        const SourceFace& source = leaf.faces[f];
+        const Vec dx = hn::Sub(cx, hn::Set(d, source.centroid[0]));
+        const Vec dy = hn::Sub(cy, hn::Set(d, source.centroid[1]));
+        const Vec dz = hn::Sub(cz, hn::Set(d, source.centroid[2]));
+        const Vec reach =
+            hn::Mul(hn::Set(d, nearRatio), hn::Add(radius, hn::Set(d, source.radius)));
+        const auto isNear = hn::Lt(squaredNorm(d, dx, dy, dz), hn::Mul(reach, reach));
+        Vec weight = hn::Set(d, source.weight);
+        if (HWY_UNLIKELY(!hn::AllFalse(d, isNear))) {
+          weight = hn::IfThenZeroElse(isNear, weight);
+          std::uint8_t bits[8] = {0, 0, 0, 0, 0, 0, 0, 0};
+          hn::StoreMaskBits(d, isNear, bits);
+          const std::uint32_t flags =
+              static_cast<std::uint32_t>(bits[0]) | (static_cast<std::uint32_t>(bits[1]) << 8);
+          hits[hitCount++] = {leaf.first + f, flags << lane};
+        }
+        for (int p = 0; p < 3; ++p) {
+          const Vec sx = hn::Set(d, source.point[p][0]);
+          const Vec sy = hn::Set(d, source.point[p][1]);
+          const Vec sz = hn::Set(d, source.point[p][2]);
+          const auto add = [&](Vec tx, Vec ty, Vec tz, Vec& phi, Vec& gx, Vec& gy, Vec& gz)
+                               HWY_ATTR {
+                                 const Vec rx = hn::Sub(tx, sx);
+                                 const Vec ry = hn::Sub(ty, sy);
+                                 const Vec rz = hn::Sub(tz, sz);
+                                 const Vec s = reciprocal(d, squaredNorm(d, rx, ry, rz));
+                                 const Vec term = hn::Mul(weight, s);
+                                 phi = hn::Add(phi, term);
+                                 const Vec pull = hn::Mul(term, s);
+                                 gx = hn::MulAdd(pull, rx, gx);
+                                 gy = hn::MulAdd(pull, ry, gy);
+                                 gz = hn::MulAdd(pull, rz, gz);
+                               };
+          add(x0, y0, z0, phi0, gx0, gy0, gz0);
+          add(x1, y1, z1, phi1, gx1, gy1, gz1);
+          add(x2, y2, z2, phi2, gx2, gy2, gz2);
+        }
+      }
+    }
+    const auto keep = [&](int q, Vec phi, Vec gx, Vec gy, Vec gz) HWY_ATTR {
+      const Vec factor = hn::Set(d, -2.0F);
+      hn::Store(phi, d, target.phi[set][q] + lane);
+      const auto addTo = [&](Vec g, float* to)
+                             HWY_ATTR { hn::Store(hn::MulAdd(factor, g, hn::Load(d, to)), d, to); };
+      addTo(gx, target.g[q][0] + lane);
+      addTo(gy, target.g[q][1] + lane);
+      addTo(gz, target.g[q][2] + lane);
+    };
+    keep(0, phi0, gx0, gy0, gz0);
+    keep(1, phi1, gx1, gy1, gz1);
+    keep(2, phi2, gx2, gy2, gz2);
+  }
+  return hitCount;
+}
+
+template <std::size_t N>
+HWY_INLINE void Apart(ApartBatch& batch, const std::array<Weighted, N>& rule) {
+  const Tag d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  for (int lane = 0; lane < kLanes; lane += lanes) {
+    HWY_ALIGN float y[3 * N * kLanes];
+    for (std::size_t j = 0; j < N; ++j) {
+      for (int axis = 0; axis < 3; ++axis) {
+        Vec v = hn::Zero(d);
+        for (int k = 0; k < 3; ++k) {
+          v = hn::MulAdd(hn::Set(d, rule[j].lambda[k]), hn::Load(d, batch.t[3 * k + axis] + lane),
+                         v);
+        }
+        hn::Store(v, d, y + (3 * j + axis) * kLanes);
+      }
+    }
+    Vec value = hn::Zero(d);
+    Vec by[9];
+    for (Vec& b : by) b = hn::Zero(d);
+    for (std::size_t i = 0; i < N; ++i) {
+      Vec x[3];
+      for (int axis = 0; axis < 3; ++axis) {
+        x[axis] = hn::Zero(d);
+        for (int k = 0; k < 3; ++k) {
+          x[axis] = hn::MulAdd(hn::Set(d, rule[i].lambda[k]),
+                               hn::Load(d, batch.s[3 * k + axis] + lane), x[axis]);
+        }
+      }
+      Vec sum = hn::Zero(d), gx = hn::Zero(d), gy = hn::Zero(d), gz = hn::Zero(d);
+      for (std::size_t j = 0; j < N; ++j) {
+        const Vec rx = hn::Sub(x[0], hn::Load(d, y + (3 * j) * kLanes));
+        const Vec ry = hn::Sub(x[1], hn::Load(d, y + (3 * j + 1) * kLanes));
+        const Vec rz = hn::Sub(x[2], hn::Load(d, y + (3 * j + 2) * kLanes));
+        const Vec s = reciprocal(d, squaredNorm(d, rx, ry, rz));
+        const Vec term = hn::Mul(hn::Set(d, rule[j].weight), s);
+        sum = hn::Add(sum, term);
+        const Vec pull = hn::Mul(term, s);
+        gx = hn::MulAdd(pull, rx, gx);
+        gy = hn::MulAdd(pull, ry, gy);
+        gz = hn::MulAdd(pull, rz, gz);
+      }
+      value = hn::MulAdd(hn::Set(d, rule[i].weight), sum, value);
+      for (int k = 0; k < 3; ++k) {
+        const Vec w = hn::Set(d, -2 * rule[i].weight * rule[i].lambda[k]);
+        by[3 * k] = hn::MulAdd(w, gx, by[3 * k]);
+        by[3 * k + 1] = hn::MulAdd(w, gy, by[3 * k + 1]);
+        by[3 * k + 2] = hn::MulAdd(w, gz, by[3 * k + 2]);
+      }
+    }
+    hn::Store(value, d, batch.value + lane);
+    for (int k = 0; k < 9; ++k) hn::Store(by[k], d, batch.byS[k] + lane);
+  }
+}
+
+void IntegrateApart(ApartBatch& batch, bool fine) {
+  static const auto kSeven = asFloats<7>(triangleRule7());
+  static const auto kTwelve = asFloats<12>(triangleRule12());
+  if (fine) {
+    Apart(batch, kTwelve);
+  } else {
+    Apart(batch, kSeven);
+  }
+}
+
+template <int kArms, class Batch>
+HWY_INLINE void Reduced(Batch& batch, const std::vector<ArmPoint<kArms>>& points) {
+  const Tag d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  for (int lane = 0; lane < kLanes; lane += lanes) {
+    Vec arm[3 * kArms];
+    Vec by[3 * kArms];
+    for (int k = 0; k < 3 * kArms; ++k) {
+      arm[k] = hn::Load(d, batch.arm[k] + lane);
+      by[k] = hn::Zero(d);
+    }
+    Vec value = hn::Zero(d);
+    for (const ArmPoint<kArms>& p : points) {
+      Vec x = hn::Zero(d), y = hn::Zero(d), z = hn::Zero(d);
+      for (int k = 0; k < kArms; ++k) {
+        const Vec c = hn::Set(d, p.coefficient[k]);
+        x = hn::MulAdd(c, arm[3 * k], x);
+        y = hn::MulAdd(c, arm[3 * k + 1], y);
+        z = hn::MulAdd(c, arm[3 * k + 2], z);
+      }
+      const Vec s = reciprocal(d, squaredNorm(d, x, y, z));
+      const Vec term = hn::Mul(hn::Set(d, p.weight), s);
+      value = hn::Add(value, term);
+      const Vec pull = hn::Mul(hn::Set(d, -2.0F), hn::Mul(term, s));
+      x = hn::Mul(x, pull);
+      y = hn::Mul(y, pull);
+      z = hn::Mul(z, pull);
+      for (int k = 0; k < kArms; ++k) {
+        const Vec c = hn::Set(d, p.coefficient[k]);
+        by[3 * k] = hn::MulAdd(c, x, by[3 * k]);
+        by[3 * k + 1] = hn::MulAdd(c, y, by[3 * k + 1]);
+        by[3 * k + 2] = hn::MulAdd(c, z, by[3 * k + 2]);
+      }
+    }
+    hn::Store(value, d, batch.value + lane);
+    for (int k = 0; k < 3 * kArms; ++k) hn::Store(by[k], d, batch.byArm[k] + lane);
+  }
+}
+
+void IntegrateEdge(EdgeBatch& batch, int rule) {
+  Reduced<3>(batch, edgeRule(rule));
+}
+void IntegrateVertex(VertexBatch& batch, int rule) {
+  Reduced<4>(batch, vertexRule(rule));
+}
+
+struct Vec3 {
+  Vec x, y, z;
+};
+HWY_INLINE Vec3 Difference(Vec3 a, Vec3 b) {
+  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+HWY_INLINE Vec SquaredNorm(Vec3 a) {
+  return hn::MulAdd(a.x, a.x, hn::MulAdd(a.y, a.y, hn::Mul(a.z, a.z)));
+}
+HWY_INLINE Vec3 LoadArm(Tag d, const float (*arm)[kLanes], int k, int lane) {
+  return {hn::Load(d, arm[3 * k] + lane), hn::Load(d, arm[3 * k + 1] + lane),
+          hn::Load(d, arm[3 * k + 2] + lane)};
+}
+HWY_INLINE Vec3 Centre(Tag d, Vec3 a, Vec3 b, Vec3 c) {
+  const Vec third = hn::Set(d, 1.0F / 3);
+  return {hn::Mul(third, hn::Add(a.x, hn::Add(b.x, c.x))),
+          hn::Mul(third, hn::Add(a.y, hn::Add(b.y, c.y))),
+          hn::Mul(third, hn::Add(a.z, hn::Add(b.z, c.z)))};
+}
+HWY_INLINE Vec SquaredRadius(Vec3 centre, Vec3 a, Vec3 b, Vec3 c) {
+  return hn::Max(SquaredNorm(Difference(a, centre)),
+                 hn::Max(SquaredNorm(Difference(b, centre)), SquaredNorm(Difference(c, centre))));
+}
+
+/// Writes the number of thresholds above `ratio`; not-a-number is above none, so counts all.
+HWY_INLINE void StoreRules(Tag d, Vec ratio, const float* thresholds, std::int32_t* rules,
+                           int lane) {
+  HWY_ALIGN float values[kLanes];
+  hn::Store(ratio, d, values);
+  for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
+    std::int32_t rule = 0;
+    while (rule < kRules && !(values[i] >= thresholds[rule])) ++rule;
+    rules[static_cast<std::size_t>(lane) + i] = rule;
+  }
+}
+
+void ChooseEdgeRules(const EdgeBatch& batch, std::int32_t* rules) {
+  const Tag d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  for (int lane = 0; lane < kLanes; lane += lanes) {
+    const Vec3 zero = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+    const Vec3 e = LoadArm(d, batch.arm, 0, lane);
+    const Vec3 a = LoadArm(d, batch.arm, 1, lane);
+    const Vec3 b = LoadArm(d, batch.arm, 2, lane);
+    const Vec3 minusE = Difference(zero, e);
+    const Vec3 minusB = Difference(zero, b);
+    const Vec3 eMinusB = Difference(e, b);
+    const Vec3 aMinusB = Difference(a, b);
+    const Vec3 aMinusE = Difference(a, e);
+    const auto ratio = [&](Vec3 p, Vec3 q, Vec3 r) HWY_ATTR {
+      const Vec3 centre = Centre(d, p, q, r);
+      return hn::Div(SquaredNorm(centre), SquaredRadius(centre, p, q, r));
+    };
+    Vec least = hn::Min(ratio(a, e, eMinusB), ratio(a, eMinusB, aMinusB));
+    least =
+        hn::Min(least, hn::Min(ratio(minusB, eMinusB, aMinusB), ratio(minusB, minusE, aMinusE)));
+    least = hn::Min(least, hn::Min(ratio(minusB, aMinusE, aMinusB), ratio(a, aMinusE, aMinusB)));
+    StoreRules(d, hn::Sqrt(least), kEdgeRatio, rules, lane);
+  }
+}
+
+void ChooseVertexRules(const VertexBatch& batch, std::int32_t* rules) {
+  const Tag d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  for (int lane = 0; lane < kLanes; lane += lanes) {
+    const Vec3 zero = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+    const Vec3 s1 = LoadArm(d, batch.arm, 0, lane);
+    const Vec3 s2 = LoadArm(d, batch.arm, 1, lane);
+    const Vec3 t1 = LoadArm(d, batch.arm, 2, lane);
+    const Vec3 t2 = LoadArm(d, batch.arm, 3, lane);
+    const auto ratio = [&](Vec3 p, Vec3 q, Vec3 r, Vec3 s) HWY_ATTR {
+      const Vec half = hn::Set(d, 0.5F);
+      const Vec3 middle = {hn::Mul(half, hn::Add(p.x, q.x)), hn::Mul(half, hn::Add(p.y, q.y)),
+                           hn::Mul(half, hn::Add(p.z, q.z))};
+      const Vec3 centre = Centre(d, zero, r, s);
+      const Vec reach = hn::MulAdd(half, hn::Sqrt(SquaredNorm(Difference(p, q))),
+                                   hn::Sqrt(SquaredRadius(centre, zero, r, s)));
+      return hn::Div(hn::Sqrt(SquaredNorm(Difference(middle, centre))), reach);
+    };
+    StoreRules(d, hn::Min(ratio(s1, s2, t1, t2), ratio(t1, t2, s1, s2)), kVertexRatio, rules, lane);
+  }
+}
+
+void CentroidPairs(const float* HWY_RESTRICT x, const float* HWY_RESTRICT y,
+                   const float* HWY_RESTRICT z, const float* HWY_RESTRICT w, std::size_t count,
+                   std::size_t begin, std::size_t end, float* HWY_RESTRICT phi,
+                   float* HWY_RESTRICT gx, float* HWY_RESTRICT gy, float* HWY_RESTRICT gz) {
+  const Tag d;
+  const std::size_t lanes = hn::Lanes(d);
+  for (std::size_t i = begin; i < end; i += lanes) {
+    const Vec xi = hn::LoadU(d, x + i);
+    const Vec yi = hn::LoadU(d, y + i);
+    const Vec zi = hn::LoadU(d, z + i);
+    Vec sum = hn::Zero(d), ax = hn::Zero(d), ay = hn::Zero(d), az = hn::Zero(d);
+    for (std::size_t j = 0; j < count; ++j) {
+      const Vec rx = hn::Sub(xi, hn::Set(d, x[j]));
+      const Vec ry = hn::Sub(yi, hn::Set(d, y[j]));
+      const Vec rz = hn::Sub(zi, hn::Set(d, z[j]));
+      const Vec squared = hn::MulAdd(rx, rx, hn::MulAdd(ry, ry, hn::Mul(rz, rz)));
+      const Vec s = hn::IfThenZeroElse(hn::Eq(squared, hn::Zero(d)), reciprocal(d, squared));
+      const Vec term = hn::Mul(hn::Set(d, w[j]), s);
+      sum = hn::Add(sum, term);
+      const Vec pull = hn::Mul(term, s);
+      ax = hn::MulAdd(pull, rx, ax);
+      ay = hn::MulAdd(pull, ry, ay);
+      az = hn::MulAdd(pull, rz, az);
+    }
+    const Vec factor = hn::Set(d, -2.0F);
+    hn::StoreU(sum, d, phi + i);
+    hn::StoreU(hn::Mul(factor, ax), d, gx + i);
+    hn::StoreU(hn::Mul(factor, ay), d, gy + i);
+    hn::StoreU(hn::Mul(factor, az), d, gz + i);
+  }
+}
+
+const char* InstructionSet() {
+  return hwy::TargetName(HWY_TARGET);
+}
+
+}  // namespace explica::repulsion::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace explica::repulsion::kernels {
+
+HWY_EXPORT(FarNodes);
+HWY_EXPORT(CloseLeaves);
+HWY_EXPORT(IntegrateApart);
+HWY_EXPORT(IntegrateEdge);
+HWY_EXPORT(IntegrateVertex);
+HWY_EXPORT(ChooseEdgeRules);
+HWY_EXPORT(ChooseVertexRules);
+HWY_EXPORT(CentroidPairs);
+HWY_EXPORT(InstructionSet);
+
+void addFarNodes(TargetLeaf& target, int set, const FarNode* nodes, std::size_t count) {
+  HWY_DYNAMIC_DISPATCH(FarNodes)(target, set, nodes, count);
+}
+
+std::size_t addCloseLeaves(TargetLeaf& target, int set, const CloseLeaf* leaves, std::size_t count,
+                           float nearRatio, NearHit* hits) {
+  return HWY_DYNAMIC_DISPATCH(CloseLeaves)(target, set, leaves, count, nearRatio, hits);
+}
+
+void integrateApart(ApartBatch& batch, bool fine) {
+  HWY_DYNAMIC_DISPATCH(IntegrateApart)(batch, fine);
+}
+
+void chooseEdgeRules(const EdgeBatch& batch, std::int32_t* rules) {
+  HWY_DYNAMIC_DISPATCH(ChooseEdgeRules)(batch, rules);
+}
+
+void chooseVertexRules(const VertexBatch& batch, std::int32_t* rules) {
+  HWY_DYNAMIC_DISPATCH(ChooseVertexRules)(batch, rules);
+}
+
+void integrateEdge(EdgeBatch& batch, int rule) {
+  HWY_DYNAMIC_DISPATCH(IntegrateEdge)(batch, rule);
+}
+
+void integrateVertex(VertexBatch& batch, int rule) {
+  HWY_DYNAMIC_DISPATCH(IntegrateVertex)(batch, rule);
+}
+
+void addCentroidPairs(const float* x, const float* y, const float* z, const float* w,
+                      std::size_t count, std::size_t begin, std::size_t end, float* phi, float* gx,
+                      float* gy, float* gz) {
+  HWY_DYNAMIC_DISPATCH(CentroidPairs)(x, y, z, w, count, begin, end, phi, gx, gy, gz);
+}
+
+const char* instructionSet() {
+  return HWY_DYNAMIC_DISPATCH(InstructionSet)();
+}
+
+}  // namespace explica::repulsion::kernels
+#endif  // HWY_ONCE
