@@ -190,7 +190,7 @@ std::string nipypeName(const Json& p) {
   std::string name = identifier(word(p["name"]));
   std::transform(name.begin(), name.end(), name.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return name;
+  return name == "lambda" ? "lambda_" : name;  // the one option that is a word of Python's own
 }
 
 std::string nipypeTrait(const Json& p) {

@@ -75,7 +75,8 @@ TEST(Geodesic, NearestOfSeveralSourcesCounts) {
   const Eigen::VectorXd least = fromVertex(mesh, 0).cwiseMin(fromVertex(mesh, 300));
   EXPECT_EQ(joint[0], 0);
   EXPECT_EQ(joint[300], 0);
-  // Where the fronts meet, an edge holds one distance of each: a share of an edge is lost, not more.
+  // Where the fronts meet, an edge holds one distance of each: a share of an edge is lost, not
+  // more.
   EXPECT_LT((joint - least).cwiseAbs().maxCoeff(), 0.3 * meanEdgeLength(mesh));
 }
 

@@ -139,7 +139,7 @@ class Nipype(unittest.TestCase):
                 if p["required"] or p["name"] == "out"
             }
             mandatory = {
-                t.replace("_", "-")
+                t.rstrip("_").replace("_", "-")
                 for t, trait in interface.input_spec().traits().items()
                 if trait.mandatory
             }

@@ -13,7 +13,7 @@ namespace {
 std::string pythonName(std::string name) {
   std::replace(name.begin(), name.end(), '-', '_');
   std::replace(name.begin(), name.end(), '.', '_');
-  return name;
+  return name == "lambda" ? "lambda_" : name;  // the one option that is a word of Python's own
 }
 
 provenance::Json jsonOf(const py::handle& value) {
