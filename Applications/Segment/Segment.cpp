@@ -66,6 +66,7 @@ void declare(Declaration& d, Settings& s) {
           "hemisphere.nii.gz", FileKind::LabelVolume,
           "with --atlas: 3 white matter, filled; 2 grey ribbon; 1 fluid; 4 cut tissue; 0 outside")
       .output("white_share.nii.gz", FileKind::Volume, "with --atlas: 0.5 is the white surface")
+      .output("cut.nii.gz", FileKind::LabelVolume, "with --atlas: 1 in cut tissue")
       .output("tissue_share.nii.gz", FileKind::Volume, "with --atlas: 0.5 is the pial surface");
 }
 
@@ -143,6 +144,8 @@ Termination run(Context& context, const Settings& s) {
     io::writeVolume(context.output("hemisphere.nii.gz"), hemisphere.labels);
     io::writeVolume(context.output("white_share.nii.gz"), hemisphere.whiteShare);
     io::writeVolume(context.output("tissue_share.nii.gz"), hemisphere.tissueShare);
+    io::writeVolume(context.output("cut.nii.gz"),
+                    segmentation::maskOf(hemisphere.labels, segmentation::kCut));
   }
   return tissue.termination;
 }

@@ -8,6 +8,7 @@
 #include "Explica/IO/ItkFormats.h"
 #include "Explica/Provenance/Record.h"
 #include "Explica/Provenance/Software.h"
+#include "Explica/Provenance/Verify.h"
 #include "OutputFolder.h"
 #include "Parse.h"
 
@@ -243,6 +244,53 @@ Outcome Context::runCommand(const Command& command, const std::string& name, con
     state_->nestedRecords.emplace_back(name + "/" + provenance::kRecordName, outcome.record);
   }
   return outcome;
+}
+
+std::optional<Outcome> Context::reuseCommand(const Command& command, const std::string& name,
+                                             const Json& options) {
+  if (state_->run.common.dryRun) throw DryRunEnds{};
+  const fs::path path = outputFolder() / name / provenance::kRecordName;
+  std::error_code ignored;
+  if (!fs::exists(path, ignored)) return {};
+  const Run nested = nestedRun(command, options, state_->run, state_->monitor);
+  try {
+    const Json record = provenance::readRecord(path);
+    const auto& here = provenance::software();
+    const Json& made = record["software"];
+    if (record["command"] != command.name() || record["exit_code"] != 0 ||
+        made["version"] != here.version || made["commit"] != here.commit) {
+      return {};
+    }
+    std::multiset<std::string> wanted, found;
+    for (const Parameter& parameter : nested.invocation.declaration.parameters) {
+      const Json value = provenance::valueOf(parameter.option);
+      if (!parameter.file) {
+        if (record["options"].value(parameter.option.name, Json()) != value) return {};
+        continue;
+      }
+      const Json& named = record["execution"]["arguments"];
+      if (value.is_null() != named.value(parameter.option.name, Json()).is_null()) return {};
+      if (value.is_null()) continue;
+      for (const Json& input : record["inputs"]) {
+        if (input["role"] == parameter.option.name) {
+          found.insert(parameter.option.name + " " + input["sha256"].get<std::string>());
+        }
+      }
+      for (const auto& element : value.is_array() ? value : Json::array({value})) {
+        const std::string file = element.get<std::string>();
+        if (fs::is_directory(file, ignored)) continue;
+        wanted.insert(parameter.option.name + " " + provenance::digestOf(file).sha256);
+      }
+    }
+    if (wanted != found || !provenance::verifyRecord(path).allSame()) return {};
+    Outcome outcome;
+    outcome.termination = valueOf<Termination>(record["termination"].get<std::string>());
+    outcome.record = path;
+    state_->nestedRecords.emplace_back(name + "/" + provenance::kRecordName, path);
+    return outcome;
+  } catch (const Error&) {
+    return {};  // a record or file that cannot be read proves nothing
+  }
 }
 
 Outcome Context::runThrough(const Command& command, const Json& options) {

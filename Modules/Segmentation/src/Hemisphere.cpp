@@ -284,6 +284,10 @@ Hemisphere extractHemisphere(const TissueSegmentation& tissue, const Volume<Labe
   return result;
 }
 
+Volume<std::uint8_t> maskOf(const Volume<Label>& labels, Label label) {
+  return setWhere(labels.grid, [&](std::size_t v) { return labels[v] == label; });
+}
+
 Volume<Label> resampleLabels(const Volume<Label>& labels, const Grid& grid) {
   Volume<Label> resampled(grid, 0);
   for (std::size_t v = 0; v < resampled.size(); ++v) {

@@ -9,6 +9,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -88,6 +89,12 @@ class Context {
   /// given option values (JSON as in --config).  Only for commands declared inPlace().
   Outcome runCommand(const Command& command, const std::string& name,
                      const nlohmann::ordered_json& options);
+
+  /// The outcome of a step that an earlier run left in the folder `name`, if doing it again could
+  /// only give the same: same version and commit, same options, same bytes of every input and
+  /// output, and it reached its goal.  Its record then counts as this run's.
+  std::optional<Outcome> reuseCommand(const Command& command, const std::string& name,
+                                      const nlohmann::ordered_json& options);
 
   /// Runs another command into this command's --out.  Only for commands declared writesThrough().
   Outcome runThrough(const Command& command, const nlohmann::ordered_json& options);

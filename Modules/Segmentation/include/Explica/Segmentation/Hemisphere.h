@@ -71,6 +71,9 @@ struct Hemisphere {
                                            const HemisphereOptions& options = {},
                                            const Monitor& monitor = {});
 
+/// 1 where a label is, 0 elsewhere.
+[[nodiscard]] Volume<std::uint8_t> maskOf(const Volume<Label>& labels, Label label);
+
 /// Labels on another grid: the nearest voxel's, 0 beyond the source.  Labels are not interpolated.
 [[nodiscard]] Volume<Label> resampleLabels(const Volume<Label>& labels, const Grid& grid);
 

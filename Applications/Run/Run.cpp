@@ -1,0 +1,203 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Application/Command.h"
+#include "Explica/Application/Execute.h"
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/WholeFile.h"
+#include "Explica/IO/SurfaceFile.h"
+#include "Explica/Pipeline/Plan.h"
+#include "Explica/Pipeline/StudyReport.h"
+#include "Explica/Provenance/Json.h"
+#include "Explica/Report/Page.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <exception>
+#include <filesystem>
+
+namespace explica::app {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr std::array kStepCommands = {"segment", "thickness", "surface", "unfold"};
+
+struct Settings {
+  std::string input;
+  std::optional<std::string> atlas;
+  pipeline::PlanOptions plan;
+  bool resume = false;
+  std::vector<Invocation> steps;  ///< whose options are included, prefixed
+};
+
+void declare(Declaration& d, Settings& s) {
+  d.synopsis(
+       "from a T1, label volume or FreeSurfer subject to an unfolded patch of cortex and a report")
+      .description(
+          "Runs segment, thickness, surface and unfold in order, each into its own folder with its "
+          "own "
+          "summary and record, and writes a report on all of them. Every option of a step can be "
+          "given with "
+          "the step's name before it: --unfold.radius 30. With --resume, steps whose inputs, "
+          "options and "
+          "outputs are what their records say are not done again.")
+      .example("explica run ch2bet.nii.gz --atlas aal.nii.gz --out colin",
+               "Left hemisphere of a skull-stripped T1, all the way")
+      .example("explica run bert --hemisphere R --out bert-right",
+               "A FreeSurfer subject's right hemisphere")
+      .input("INPUT", FileKind::Any,
+             "skull-stripped T1, label volume, or FreeSurfer subject directory", s.input)
+      .inputOption("atlas", FileKind::LabelVolume, "for a T1: labels in its space, as AAL's",
+                   s.atlas)
+      .options("Run", s.plan)
+      .option("Run",
+              Field{"resume", "", "keep steps of an earlier run into --out that are still true"},
+              s.resume)
+      .reuseOutputIf(s.resume)
+      .inPlace()
+      .varyingOutput("report.html", FileKind::Report, "everything to look at")
+      .varyingOutput(pipeline::kRunStateName, FileKind::Any, "how each step went")
+      .output("segment", FileKind::Folder, "tissues and hemisphere")
+      .output("thickness", FileKind::Folder, "harmonic interpolant, correspondences, thickness")
+      .output("surface", FileKind::Folder, "white, middle and pial surface")
+      .output("unfold", FileKind::Folder, "the unfolded patch and its evolution");
+  for (const char* name : kStepCommands) {
+    const Command* command = findCommand(name);
+    if (command == nullptr) continue;
+    s.steps.push_back(command->begin());
+    d.include(s.steps.back().declaration, std::string(name) + ".");
+  }
+}
+
+/// What the plan says, and on top what the user set with the step's prefix.
+Json valuesOf(const Context& context, const Settings& s, const pipeline::PlannedStep& step) {
+  Json values = *step.values;
+  for (const Invocation& invocation : s.steps) {
+    if (invocation.declaration.name != step.command) continue;
+    for (const Parameter& parameter : invocation.declaration.parameters) {
+      if (parameter.positional || !context.given(step.command + "." + parameter.option.name))
+        continue;
+      values[parameter.option.name] = provenance::valueOf(parameter.option);
+    }
+  }
+  return values;
+}
+
+/// The user's choice of a place or viewpoint replaces the plan's.
+void settleView(const Context& context, const pipeline::PlannedStep& step, Json& values) {
+  const auto given = [&](const char* name) { return context.given("unfold." + std::string(name)); };
+  if (given("viewpoint") || given("view-line") || given("view-surface")) values.erase("direction");
+  if (given("center") || given("vertex") || given("label")) return;
+  Vector direction(-1, 0, 0);
+  if (values.contains("direction")) {
+    for (int a = 0; a < 3; ++a) direction[a] = values["direction"][a];
+  }
+  const TriangleMesh mesh = io::readSurface((*step.values)["SURFACE"].get<std::string>()).mesh;
+  const Point centre = pipeline::outermostPoint(mesh, direction);
+  values["center"] = {centre.x(), centre.y(), centre.z()};
+}
+
+/// The first step that this one needs and that has no outputs.
+const std::string* missingNeed(const pipeline::PlannedStep& step,
+                               const std::vector<pipeline::StepNote>& notes) {
+  for (const std::string& need : step.needs) {
+    for (const auto& note : notes) {
+      const bool present =
+          note.state == report::StepState::Done || note.state == report::StepState::StoppedEarly;
+      if (note.name == need && !present) return &need;
+    }
+  }
+  return nullptr;
+}
+
+void runStep(Context& context, const Settings& s, const pipeline::PlannedStep& step,
+             pipeline::StepNote& note, Termination& worst) {
+  const Command* command = findCommand(step.command);
+  if (command == nullptr)
+    throw EnvironmentError("explica " + step.command + " is not part of this build");
+  Json values = valuesOf(context, s, step);
+  if (step.command == "unfold") settleView(context, step, values);
+  std::optional<Outcome> outcome;
+  if (s.resume) outcome = context.reuseCommand(*command, step.name, values);
+  if (outcome) {
+    context.info(step.name + ": kept, nothing that it depends on has changed");
+  } else {
+    outcome = context.runCommand(*command, step.name, values);
+  }
+  note.state =
+      outcome->exitCode == kDone ? report::StepState::Done : report::StepState::StoppedEarly;
+  if (!reachedGoal(outcome->termination)) worst = outcome->termination;
+}
+
+/// The report must not be lost to a fault of its own.
+void writeReport(Context& context, const fs::path& out) {
+  try {
+    writeTextFile(context.output("report.html"),
+                  report::reportPage(pipeline::collectReport(out, context.monitor())));
+  } catch (const Error& fault) {
+    context.warn(std::string("report: ") + fault.what());
+  }
+}
+
+Termination run(Context& context, const Settings& s) {
+  pipeline::PlanOptions options = s.plan;
+  if (options.kind == pipeline::InputKind::Auto) {
+    options.kind = s.atlas ? pipeline::InputKind::T1 : pipeline::detectKind(s.input);
+    context.info(s.input + ": taken as " + std::string(nameOf(options.kind)));
+  }
+  context.note("INPUT", Json{{"kind", nameOf(options.kind)}});
+  const fs::path out = context.outputFolder();
+  const std::vector<pipeline::PlannedStep> plan = pipeline::planRun(s.input, out, s.atlas, options);
+
+  std::vector<pipeline::StepNote> notes;
+  for (const auto& step : plan)
+    notes.push_back({step.name, step.command, report::StepState::Missing, ""});
+  const bool withReport =
+      options.steps.empty() || std::find(options.steps.begin(), options.steps.end(),
+                                         pipeline::RunStep::Report) != options.steps.end();
+  const std::string state = context.output(pipeline::kRunStateName).string();
+  Termination worst = Termination::NotRun;
+  std::exception_ptr failure;
+  for (std::size_t n = 0; n < plan.size(); ++n) {
+    if (const std::string* missing = missingNeed(plan[n], notes)) {
+      notes[n].message = "needs " + *missing;
+      continue;
+    }
+    if (context.monitor().shouldStop()) {
+      notes[n].message = "the run was stopped before it";
+      worst = Termination::Interrupted;
+      continue;
+    }
+    try {
+      runStep(context, s, plan[n], notes[n], worst);
+    } catch (const Error& fault) {
+      // What does not depend on it goes on; the report says what failed, and so does the end.
+      notes[n].state = report::StepState::Failed;
+      notes[n].message = fault.what();
+      context.warn(plan[n].name + ": " + fault.what());
+      if (!failure) failure = std::current_exception();
+    }
+    pipeline::writeRunState(state, notes);
+  }
+  pipeline::writeRunState(state, notes);
+  for (const auto& note : notes) {
+    context.result(note.name, note.state == report::StepState::Done ? "done" : "stopped early");
+  }
+  if (withReport) {
+    auto step = context.step("report");
+    writeReport(context, out);
+  }
+  if (failure) std::rethrow_exception(failure);
+  return worst;
+}
+
+}  // namespace
+
+Command runCommand() {
+  return makeCommand<Settings>("run", declare, run);
+}
+
+}  // namespace explica::app
