@@ -412,11 +412,26 @@ void showEvolution(const Study& study, const StepFolder& step, report::ReportCon
   report::Evolution evolution = report::evolutionOf(frames);
   for (std::size_t f = 0; f < files.size(); ++f) {
     const std::string stem = files[f].filename().string();
-    evolution.frameTitles[f] = "frame " + std::to_string(std::stoi(stem.substr(6)));
+    const std::size_t number = std::stoul(stem.substr(6));
+    evolution.frameTitles[f] = "frame " + std::to_string(number);
+    const Json visibilities = step.summary.value("frame_visibilities", Json::array());
+    if (number < visibilities.size() && visibilities[number].is_number()) {
+      std::array<char, 40> text{};
+      std::snprintf(text.data(), text.size(), ", visibility %.3f",
+                    visibilities[number].get<double>());
+      evolution.frameTitles[f] += text.data();
+    }
   }
+  const Json options = step.record.value("options", Json::object());
   evolution.viewpoint = pointIn(step.summary, "viewpoint");
-  if (!evolution.viewpoint)
-    evolution.viewpoint = pointIn(step.record.value("options", Json::object()), "viewpoint");
+  if (!evolution.viewpoint) evolution.viewpoint = pointIn(options, "viewpoint");
+  if (const auto direction = pointIn(options, "direction"); !evolution.viewpoint && direction) {
+    Point middle = Point::Zero();
+    for (Eigen::Index m = 0; m < evolution.frames.front().rows(); ++m)
+      middle += evolution.frames.front().row(m).transpose();
+    middle /= std::max<double>(1, static_cast<double>(evolution.moved.size()));
+    evolution.viewpoint = middle + options.value("distance", 1000.0) * direction->normalized();
+  }
   addMaps(step, evolution, "visibility.shape.gii", true);
   addMaps(step, evolution, "distortion.shape.gii", true);
   if (const StepFolder* surface = study.step("surface")) {

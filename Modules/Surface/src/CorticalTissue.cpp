@@ -93,6 +93,8 @@ void requirePresent(const Histogram& histogram, const Labels& labels, const std:
 
 LabelPreset guessPreset(const Histogram& histogram) {
   const auto has = [&](Label label) { return histogram.contains(label); };
+  // FreeSurfer gives label 1 to nothing.
+  if (has(1) && has(2) && has(3) && histogram.rbegin()->first <= 4) return LabelPreset::ThreeClass;
   const bool freeSurfer = (has(2) && has(3)) || (has(41) && has(42));
   if (freeSurfer && (has(41) || has(10) || has(4))) {
     return has(10) || has(49) || has(4) || has(43) ? LabelPreset::Aseg : LabelPreset::Ribbon;
@@ -548,7 +550,8 @@ CorticalTissue tissueFromShares(const Volume<float>& white, const Volume<float>&
   if (result.whiteVoxels == 0) throw InvalidInput("white: no share reaches 0.5");
 
   Volume<float> own = white, both = hasTissue ? tissue : white;
-  if (options.hemisphere) {
+  // Where the caller says what was cut off, the shares hold one hemisphere already.
+  if (options.hemisphere && insulated.size() == 0) {
     const Mask sides = splitHemispheres(inner, monitor);
     Mask reached = sides;
     spreadLabels(all, reached);
