@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+// A signal ends an iterative command at a consistent state: outputs written and marked.
+
+#include "QuickRuns.h"
+
+#include <gtest/gtest.h>
+
+#include <signal.h>
+
+namespace explica::testing {
+namespace {
+
+class Interrupt : public ::testing::TestWithParam<int> {};
+
+TEST_P(Interrupt, WritesAndMarksWhatWasReachedAndResumes) {
+  TemporaryFolder folder;
+  io::writeSurface(folder / "sphere.surf.gii", geometry::makeFoldedSphere(6, 30.0));
+  const std::vector<std::string> words = {"unfold",      folder / "sphere.surf.gii",
+                                          "--center",    "0,0,30",
+                                          "--radius",    "25",
+                                          "--direction", "0,0,1",
+                                          "--out",       folder / "a"};
+  CommandSetting setting;
+  setting.signal = GetParam();
+  setting.signalAfter = 0.3;
+  const auto stopped = explica(words, setting);
+  ASSERT_EQ(stopped.exitCode, 3) << stopped;
+  EXPECT_NE(stopped.err.find("interrupted"), std::string::npos) << stopped;
+  const auto record = readJson(folder / "a/provenance.json");
+  EXPECT_EQ(record["termination"], "interrupted");
+  EXPECT_EQ(record["exit_code"], 3);
+  EXPECT_EQ(readJson(folder / "a/summary.json")["termination"], "interrupted");
+  EXPECT_EQ(readJson(folder / "a/summary.json")["self_intersections_final"], 0);
+  EXPECT_EQ(explica({"verify", folder / "a"}).exitCode, 0);
+
+  const auto resumed =
+      explica(words + std::vector<std::string>{"--resume", "--max-iterations", "2"});
+  EXPECT_TRUE(resumed.exitCode == 0 || resumed.exitCode == 3) << resumed;
+  EXPECT_NE(readJson(folder / "a/summary.json")["termination"], "interrupted");
+  EXPECT_EQ(explica({"verify", folder / "a"}).exitCode, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Signals, Interrupt, ::testing::Values(SIGINT, SIGUSR1),
+                         [](const auto& row) { return "Signal" + std::to_string(row.param); });
+
+}  // namespace
+}  // namespace explica::testing
