@@ -54,7 +54,8 @@ double contactEnergy(std::span<const Contact> contacts, const Positions& positio
       const FourPoints x = pointsOf(contact, positions);
       const double squared = squaredDistance(contact.kind, x);
       if (squared >= contact.range * contact.range) continue;
-      sum += fadeOf(contact, x).value * evaluateBarrier(std::sqrt(squared), contact.range).value;
+      sum += fadeOf(contact, x).value *
+             evaluateBarrier(std::sqrt(squared), contact.range, contact.softBelow).value;
     }
     return sum;
   });
@@ -69,7 +70,7 @@ std::vector<ContactForce> contactForces(std::span<const Contact> contacts,
     const Proximity proximity = findProximity(contact.kind, x);
     if (proximity.squaredDistance >= contact.range * contact.range) return;
     const double distance = std::sqrt(proximity.squaredDistance);
-    const BarrierValue barrier = evaluateBarrier(distance, contact.range);
+    const BarrierValue barrier = evaluateBarrier(distance, contact.range, contact.softBelow);
     const Fade fade = fadeOf(contact, x);
     ContactForce& force = forces[n];
     force.direction = squaredDistanceGradient(proximity) / (2 * distance);

@@ -31,6 +31,20 @@ TEST(Barrier, IsTwiceContinuousWhereItEnds) {
   EXPECT_EQ(evaluateBarrier(2, 1).value, 0);
 }
 
+TEST(Barrier, SoftBarrierIsTwiceContinuousAndBounded) {
+  const BarrierValue above = evaluateBarrier(0.1 + 1e-9, 1, 0.1),
+                     below = evaluateBarrier(0.1 - 1e-9, 1, 0.1);
+  EXPECT_NEAR(above.value, below.value, 1e-6);
+  EXPECT_NEAR(above.slope, below.slope, 1e-5);
+  EXPECT_NEAR(above.curvature, below.curvature, 1e-4);
+  const BarrierValue contact = evaluateBarrier(0, 1, 0.1);
+  EXPECT_NEAR(contact.value,
+              evaluateBarrier(0.1, 1).value - 0.1 * evaluateBarrier(0.1, 1).slope +
+                  0.005 * evaluateBarrier(0.1, 1).curvature,
+              1e-12);
+  EXPECT_LT(contact.slope, evaluateBarrier(0.1, 1).slope);
+}
+
 TEST(Barrier, GrowsWithoutBoundTowardsContactAndIsConvex) {
   double last = 0;
   for (double d = 0.9; d > 1e-12; d *= 0.7) {

@@ -30,9 +30,12 @@ constexpr int kSeparatingIterations = 60;  // then the rest goes on beside the u
 constexpr double kMultiplierRate = 0.3;    // of the full update: the inner problem is not solved
 constexpr double kLargestMultiplier = 20;  // times the pull of the visibility term
 constexpr double kLeastDamping = 0.1;      // below it steps overshoot the quadratic model
-constexpr double kSlowGain = 0.003;        // visibility per iteration below which areas tighten ...
-constexpr double kTightening = 1.2;        // ... by this factor ...
-constexpr double kTightest = 20;           // ... up to this one
+constexpr double kSoftBelow = 0.1;         // of a contact's range: below it force is bounded
+constexpr double kBlocked = 0.3;        // share of a step below which the pairs that stop it lock
+constexpr double kLockStiffness = 1e5;  // against about 1 of the other terms
+constexpr double kSlowGain = 0.003;     // visibility per iteration below which areas tighten ...
+constexpr double kTightening = 1.2;     // ... by this factor ...
+constexpr double kTightest = 20;        // ... up to this one
 
 std::vector<bool> flags(std::size_t count, const std::vector<std::int32_t>& marked) {
   std::vector<bool> result(count, false);
@@ -71,6 +74,10 @@ struct Unfolder::Implementation {
     return {state.separating ? 0.0 : 1.0, state.areaStiffness, options.weights.spring};
   }
   double contactScale() const { return options.weights.contact * edge * edge; }
+  void couple(const std::array<std::int32_t, 4>& vertices, Couplings& couplings) const;
+  void addLock(const Pair& pair, const Positions& x);
+  std::vector<Pair> blockingPairs(const std::vector<Pair>& pairs, const Positions& x,
+                                  const Positions& motion) const;
   void measure(IterationRecord& account) const;
   void updateMultipliers();
   bool step();
@@ -168,10 +175,21 @@ void Unfolder::Implementation::build() {
   state.areaStiffness = options.weights.area;
 
   // A pair that starts within range keeps its distance as range, so that the start is free of
-  // forces; but very near pairs are parted a little, and neighbours in the surface, which stay
-  // near, are left half of their distance.
+  // forces; but very near pairs are parted a little.  Neighbours in the surface may stay as near as
+  // the needles among their faces make them.
   near = scene->findPairs(mesh.positions, Positions::Zero(mesh.vertexCount(), 3), contactRange);
   nearKnown = true;
+  Eigen::VectorXd thinnest = Eigen::VectorXd::Constant(mesh.vertexCount(), kInfinity);
+  for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
+    double longest = 0;
+    for (int k = 0; k < 3; ++k) {
+      longest = std::max(longest, (mesh.corner(f, k) - mesh.corner(f, (k + 1) % 3)).norm());
+    }
+    for (int k = 0; k < 3 && longest > 0; ++k) {
+      double& thin = thinnest[mesh.faces(f, k)];
+      thin = std::min(thin, 2 * areas[f] / longest);
+    }
+  }
   const auto adjacent = [&](std::int32_t a, std::int32_t b) {
     const auto list = topology.vertexVertices[a];
     return std::binary_search(list.begin(), list.end(), b);
@@ -182,11 +200,16 @@ void Unfolder::Implementation::build() {
     const auto v = scene->vertices(pair);
     const int split = pair.kind == PairKind::VertexFace ? 1 : 2;
     bool neighbours = false;
+    double thin = kInfinity;
     for (int i = 0; i < split; ++i) {
-      for (int j = split; j < 4; ++j) neighbours = neighbours || adjacent(v[i], v[j]);
+      for (int k = split; k < 4; ++k) neighbours = neighbours || adjacent(v[i], v[k]);
     }
-    constexpr double kParted = 0.2;
-    rangeOfPair[pair] = neighbours ? 0.5 * distance : std::max(distance, kParted * contactRange);
+    for (const std::int32_t vertex : v) thin = std::min(thin, thinnest[vertex]);
+    constexpr double kParted = 0.2;   // of the barrier's range
+    constexpr double kNeedle = 0.25;  // of the needle's height
+    const double wanted = std::max(distance, kParted * contactRange);
+    rangeOfPair[pair] =
+        neighbours ? std::max(0.5 * distance, std::min(wanted, kNeedle * thin)) : wanted;
   }
   measure(record);
 }
@@ -195,6 +218,7 @@ Contact Unfolder::Implementation::contactOf(const Pair& pair) const {
   Contact contact;
   contact.vertices = scene->vertices(pair);
   contact.kind = pair.kind;
+  contact.softBelow = kSoftBelow;
   const auto found = rangeOfPair.find(pair);
   contact.range = found == rangeOfPair.end() ? contactRange : found->second;
   if (pair.kind == PairKind::EdgeEdge) {
@@ -222,6 +246,50 @@ double Unfolder::Implementation::objective(const Positions& x, const std::vector
     account->energyContact = contact;
   }
   return value.total() + contact;
+}
+
+void Unfolder::Implementation::couple(const std::array<std::int32_t, 4>& vertices,
+                                      Couplings& couplings) const {
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j < i; ++j) {
+      const std::int32_t a = unknown[vertices[i]], b = unknown[vertices[j]];
+      if (a >= 0 && b >= 0) couplings.emplace_back(std::max(a, b), std::min(a, b));
+    }
+  }
+}
+
+/// Stiff springs along the six lines that join a pair's four vertices: the pair can then turn and
+/// shift, and open, but not slide or shear.  A rigid turn that is followed along straight lines
+/// brings nothing closer, so a locked pair does not stop the step.
+void Unfolder::Implementation::addLock(const Pair& pair, const Positions& x) {
+  const auto v = scene->vertices(pair);
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j < i; ++j) {
+      const Vector along = (x.row(v[i]) - x.row(v[j])).transpose();
+      const Eigen::Matrix3d block =
+          kLockStiffness / along.squaredNorm() * along * along.transpose();
+      const std::int32_t a = unknown[v[i]], b = unknown[v[j]];
+      if (a >= 0) system.add(a, a, block);
+      if (b >= 0) system.add(b, b, block);
+      if (a >= 0 && b >= 0) system.add(a, b, -block);
+    }
+  }
+}
+
+/// Pairs that alone would stop the motion before kBlocked of it.
+std::vector<Pair> Unfolder::Implementation::blockingPairs(const std::vector<Pair>& pairs,
+                                                          const Positions& x,
+                                                          const Positions& motion) const {
+  std::vector<char> blocks(pairs.size(), 0);
+  parallelFor(pairs.size(), 512, [&](std::size_t n) {
+    blocks[n] = collision::safeTime(pairs[n].kind, scene->points(pairs[n], x),
+                                    scene->points(pairs[n], motion), kBlocked) < kBlocked;
+  });
+  std::vector<Pair> blocking;
+  for (std::size_t n = 0; n < pairs.size(); ++n) {
+    if (blocks[n]) blocking.push_back(pairs[n]);
+  }
+  return blocking;
 }
 
 void Unfolder::Implementation::measure(IterationRecord& account) const {
@@ -306,19 +374,16 @@ bool Unfolder::Implementation::step() {
   for (std::int32_t i = 0; i < unknownCount; ++i) rightSide.row(i) = -gradient.row(moving[i]);
 
   Couplings couplings = meshCouplings;
-  for (const Contact& contact : contacts) {
-    for (int i = 0; i < 4; ++i) {
-      for (int j = 0; j < i; ++j) {
-        const std::int32_t a = unknown[contact.vertices[i]], b = unknown[contact.vertices[j]];
-        if (a >= 0 && b >= 0) couplings.emplace_back(std::max(a, b), std::min(a, b));
-      }
-    }
-  }
+  for (const Contact& contact : contacts) couple(contact.vertices, couplings);
 
   constexpr int kMaxAttempts = 12;
+  constexpr int kMaxLockings = 6;
+  std::vector<Pair> locked;
+  int lockings = 0;
   Positions direction;
   for (int attempt = 0; attempt < kMaxAttempts; ++attempt, state.damping *= 4) {
     system.reset(unknownCount, couplings);
+    for (const Pair& pair : locked) addLock(pair, x);
     patch.addStiffness(x, strengths(), state.multipliers, unknown, system);
     for (std::size_t n = 0; n < contacts.size(); ++n) {
       if (forces[n].curvature == 0) continue;
@@ -358,6 +423,21 @@ bool Unfolder::Implementation::step() {
 
     std::vector<Pair> pairs = scene->findPairs(x, motion, contactRange);
     now.safeStep = collision::largestSafeStep(*scene, pairs, x, motion);
+    if (now.safeStep < kBlocked && lockings < kMaxLockings) {
+      // Few pairs, almost in contact, would stop all the rest: let each of them move as one.
+      const std::size_t before = locked.size();
+      for (const Pair& pair : blockingPairs(pairs, x, motion)) {
+        if (std::find(locked.begin(), locked.end(), pair) == locked.end()) locked.push_back(pair);
+      }
+      for (std::size_t n = before; n < locked.size(); ++n)
+        couple(scene->vertices(locked[n]), couplings);
+      if (locked.size() > before) {
+        ++lockings;
+        --attempt;
+        state.damping /= 4;  // of the loop: this is no failure of the model
+        continue;
+      }
+    }
     const std::vector<Contact> onTheWay = contactsOf(pairs);
     double taken = now.safeStep;
     constexpr int kMaxHalvings = 8;

@@ -17,6 +17,7 @@ struct Contact {
   /// mm^4, edge pairs: below this |u x v|^2 of the edges u, v the barrier fades out, since the
   /// distance of parallel edges has a kink there and vertex-face pairs hold them apart.
   double parallelArea = 0;
+  double softBelow = 0;  ///< of the range: see evaluateBarrier()
 };
 
 /// One contact's share of the potential's derivatives.
@@ -26,7 +27,8 @@ struct ContactForce {
   double curvature = 0;  ///< mm^-2, >= 0: stiffness direction * direction^T, positive semi-definite
 };
 
-/// Sum of barriers over contacts, no unit; infinite if a pair touches.  Threaded, deterministic.
+/// Sum of barriers over contacts, no unit; infinite if a pair without softBelow touches.  Threaded,
+/// deterministic.
 [[nodiscard]] double contactEnergy(std::span<const Contact> contacts, const Positions& positions);
 
 /// Derivatives contact by contact, in their order.
