@@ -5,6 +5,7 @@
 
 #include "Explica/Repulsion/AllPairs.h"
 #include "Explica/Repulsion/MultipoleTree.h"
+#include "Explica/Repulsion/ThesisTree.h"
 
 namespace explica::repulsion {
 
@@ -14,6 +15,7 @@ std::unique_ptr<KnotEnergy> makeKnotEnergy(KnotMethod method, const TriangleMesh
     case KnotMethod::Tree:
       return std::make_unique<MultipoleTree>(mesh, vertexMoves);
     case KnotMethod::ThesisTree:
+      return std::make_unique<ThesisTree>(mesh, vertexMoves);
     case KnotMethod::AllPairs:
       return std::make_unique<AllPairs>(mesh, vertexMoves);
     case KnotMethod::Off:

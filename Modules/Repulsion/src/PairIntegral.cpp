@@ -76,8 +76,21 @@ struct Ladder {
   double sixteen;  // degree 8; below it the larger simplex is halved
   int depth;       // halvings at most
 };
+constexpr Ladder kCoarse = {4.0, 1.5, 0.8, 12};
 constexpr Ladder kStandard = {14, 4.5, 2.0, 20};
 constexpr Ladder kFine = {200, 14, 4.0, 28};
+
+const Ladder& ladderFor(PairAccuracy accuracy) {
+  switch (accuracy) {
+    case PairAccuracy::Coarse:
+      return kCoarse;
+    case PairAccuracy::Fine:
+      return kFine;
+    case PairAccuracy::Standard:
+      break;
+  }
+  return kStandard;
+}
 
 Rule ruleFor(int corners, double ratio, const Ladder& ladder) {
   if (corners == 1) return pointRule();
@@ -154,7 +167,7 @@ void addMean(const Simplex& a, const Simplex& b, const Ladder& ladder, int depth
 
 Mean meanOver(const Simplex& a, const Simplex& b, PairAccuracy accuracy) {
   Mean mean;
-  addMean(a, b, accuracy == PairAccuracy::Fine ? kFine : kStandard, 0, mean);
+  addMean(a, b, ladderFor(accuracy), 0, mean);
   return mean;
 }
 

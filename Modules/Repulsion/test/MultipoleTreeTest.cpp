@@ -49,11 +49,11 @@ TEST(MultipoleTree, AgreesWithAllPairsWhereSomeFacesAreFixed) {
 }
 
 TEST(MultipoleTree, AgreesWithAllPairsForNeedlesAndSheetsThatAlmostTouch) {
-  TriangleMesh lower = geometry::makeRectangle(12, 2, 1, 1);
-  TriangleMesh upper = geometry::makeRectangle(2, 8, 1, 1);
+  TriangleMesh lower = geometry::makeRectangle(6, 2, 1, 1);
+  TriangleMesh upper = geometry::makeRectangle(2, 4, 1, 1);
   TriangleMesh sheets;
   sheets.positions.resize(lower.vertexCount() + upper.vertexCount(), 3);
-  upper.positions.col(2).array() += 0.05;
+  upper.positions.col(2).array() += 0.1;
   sheets.positions << lower.positions, upper.positions;
   sheets.faces.resize(lower.faceCount() + upper.faceCount(), 3);
   sheets.faces << lower.faces,

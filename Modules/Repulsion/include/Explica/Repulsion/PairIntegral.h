@@ -20,6 +20,7 @@ struct PairIntegral {
 
 /// How finely a pair is integrated.
 enum class PairAccuracy {
+  Coarse,    ///< relative error about 1e-3
   Standard,  ///< relative error about 1e-6 for faces that are not needles
   Fine       ///< about 1e-9, for tests
 };

@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Repulsion/ThesisTree.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/Parallel.h"
+#include "Explica/Geometry/Fixtures.h"
+#include "Explica/Repulsion/AllPairs.h"
+
+#include <gtest/gtest.h>
+
+namespace explica::repulsion {
+namespace {
+
+using List = std::vector<std::int32_t>;
+
+std::vector<bool> all(const TriangleMesh& mesh) {
+  return std::vector<bool>(static_cast<std::size_t>(mesh.vertexCount()), true);
+}
+
+/// [Thesis, figure 5.23]: nine faces in a row, each the neighbour of the next, so spaced that the
+/// tree is the figure's.  Numbers are the figure's less one.
+MergingTree figureTree() {
+  const std::vector<double> at = {0, 1, 4, 5.2, 6.8, 10, 11.4, 15, 16.6};
+  std::vector<Point> centroids;
+  std::vector<List> neighbours(at.size());
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    centroids.emplace_back(at[i], 0, 0);
+    if (i > 0) neighbours[i].push_back(static_cast<std::int32_t>(i) - 1);
+    if (i + 1 < at.size()) neighbours[i].push_back(static_cast<std::int32_t>(i) + 1);
+  }
+  return buildMergingTree(centroids, std::vector<double>(at.size(), 1.0), neighbours);
+}
+
+TEST(MergingTree, IsThatOfTheThesisForItsNineFaces) {
+  const MergingTree tree = figureTree();
+  ASSERT_EQ(tree.nodes.size(), 16);
+  EXPECT_EQ(tree.nodes[9].children, (List{0, 1}));      // node 10
+  EXPECT_EQ(tree.nodes[10].children, (List{2, 3, 4}));  // node 11 has three children
+  EXPECT_EQ(tree.nodes[11].children, (List{5, 6}));     // node 12
+  EXPECT_EQ(tree.nodes[12].children, (List{7, 8}));     // node 13
+  EXPECT_EQ(tree.nodes[13].children, (List{9, 10}));    // node 14
+  EXPECT_EQ(tree.nodes[14].children, (List{11, 12}));   // node 15
+  EXPECT_EQ(tree.nodes[15].children, (List{13, 14}));   // node 16, the root
+  EXPECT_EQ(tree.nodes[15].parent, -1);
+  EXPECT_DOUBLE_EQ(tree.nodes[15].area, 9);
+  EXPECT_NEAR(tree.nodes[10].centroid.x(), (4 + 5.2 + 6.8) / 3, 1e-12);
+}
+
+TEST(MergingTree, LeavesTheSubtreesThatTheThesisNames) {
+  const MergingTree tree = figureTree();
+  // Figure 5.23(b): face 1 has the one neighbour 2; the recursion starts with node 15, then 11.
+  EXPECT_EQ(recursionStarts(tree, 0, {1}), (List{14, 10}));
+  // Figure 5.23(c): face 4 with neighbours 3 and 5 leaves 15 and 10.
+  EXPECT_EQ(recursionStarts(tree, 3, {2, 4}), (List{14, 9}));
+  // Figure 5.23(d): face 6 with neighbours 5 and 7 leaves 13, 10 and the faces 4 and 3.
+  EXPECT_EQ(recursionStarts(tree, 5, {4, 6}), (List{12, 9, 3, 2}));
+}
+
+TEST(MergingTree, HoldsEveryFaceOnceAndItsArea) {
+  const MergingTree tree = figureTree();
+  std::vector<int> seen(9, 0);
+  for (const auto& node : tree.nodes) {
+    for (const std::int32_t child : node.children) {
+      if (child < 9) ++seen[child];
+    }
+  }
+  EXPECT_EQ(seen, std::vector<int>(9, 1));
+}
+
+TEST(MergingTree, JoinsPartsThatAreNoNeighbours) {
+  const MergingTree tree =
+      buildMergingTree({Point(0, 0, 0), Point(1, 0, 0), Point(9, 0, 0)}, {1, 2, 3}, {{1}, {0}, {}});
+  ASSERT_EQ(tree.nodes.size(), 5);
+  EXPECT_DOUBLE_EQ(tree.nodes[4].area, 6);
+}
+
+TEST(ThesisTree, AgreesWithAllPairsToItsOwnAccuracy) {
+  const TriangleMesh folded = geometry::makeFoldedSphere(2);
+  const KnotValue exact = AllPairs(folded, all(folded)).evaluate(folded.positions);
+  const KnotValue tree = ThesisTree(folded, all(folded)).evaluate(folded.positions);
+  EXPECT_NEAR(tree.value, exact.value, 0.01 * exact.value);
+  EXPECT_LT((tree.gradient - exact.gradient).norm(), 0.05 * exact.gradient.norm());
+  ThesisTreeOptions careful;
+  careful.nearDistance = 8;
+  careful.relativeError = 1e-4;
+  const KnotValue better = ThesisTree(folded, all(folded), careful).evaluate(folded.positions);
+  EXPECT_LT((better.gradient - exact.gradient).norm(),
+            0.5 * (tree.gradient - exact.gradient).norm());
+}
+
+TEST(ThesisTree, CountsFixedFacesTwice) {
+  const TriangleMesh folded = geometry::makeFoldedSphere(2);
+  std::vector<bool> some(static_cast<std::size_t>(folded.vertexCount()), false);
+  for (std::size_t v = 0; v < some.size(); ++v) {
+    some[v] = folded.positions(static_cast<Eigen::Index>(v), 2) > 0.4;
+  }
+  const KnotValue exact = AllPairs(folded, some).evaluate(folded.positions);
+  const KnotValue tree = ThesisTree(folded, some).evaluate(folded.positions);
+  EXPECT_NEAR(tree.value, exact.value, 0.01 * exact.value);
+}
+
+TEST(ThesisTree, DoesNotDependOnTheNumberOfThreads) {
+  const TriangleMesh folded = geometry::makeFoldedSphere(2);
+  const ThesisTree tree(folded, all(folded));
+  setThreadCount(1);
+  const KnotValue one = tree.evaluate(folded.positions);
+  setThreadCount(4);
+  const KnotValue four = tree.evaluate(folded.positions);
+  setThreadCount(0);
+  EXPECT_EQ(one.value, four.value);
+  EXPECT_EQ(one.gradient, four.gradient);
+}
+
+TEST(ThesisTree, RefusesOptionsOutOfRange) {
+  const TriangleMesh sphere = geometry::makeIcosphere(0);
+  EXPECT_THROW(ThesisTree(sphere, all(sphere), {-1, 0.02}), InvalidInput);
+  EXPECT_THROW(ThesisTree(sphere, all(sphere), {1, 0}), InvalidInput);
+}
+
+}  // namespace
+}  // namespace explica::repulsion
