@@ -66,6 +66,8 @@ Volume<Label> foldedLabels(double h) {
 }
 
 void expectSound(const TriangleMesh& mesh) {
+  // What is checked is what a file of float32 numbers holds.
+  for (const double x : mesh.positions.reshaped()) EXPECT_EQ(x, static_cast<float>(x));
   const auto condition = geometry::inspectMesh(mesh);
   EXPECT_TRUE(condition.closedManifold());
   EXPECT_EQ(condition.eulerCharacteristic, 2);
