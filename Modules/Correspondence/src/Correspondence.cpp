@@ -23,6 +23,9 @@ namespace {
 
 using Tracer = TrajectoryTracer::Field;
 constexpr int kMaxSteps = 4000;
+// Default lambda in voxels.  Corners of a grid face are up to sqrt(2) voxels apart, and so are
+// their boundary points where trajectories run in parallel: beyond this they diverge.
+constexpr double kLambda = 2;
 
 /// Tissue voxels by ascending u (radix sort of 32-bit fixed point; equal values by number).
 std::vector<std::int32_t> orderByValue(const std::vector<double>& u) {
@@ -67,7 +70,8 @@ class Sweep {
         inner_(inner),
         uphill_(inner ? -1 : 1),
         target_(inner ? 0.0 : 1.0),
-        wall_(inner ? kInner : kOuter) {
+        wall_(inner ? kInner : kOuter),
+        lambda_(options.lambda.value_or(kLambda * tracer.finest)) {
     values_.length.assign(annulus.count(), kNaN);
     values_.offset.assign(annulus.count(), Eigen::Vector3f::Zero());
   }
@@ -100,12 +104,15 @@ class Sweep {
     for (std::size_t k = 0; k < order.size(); ++k) {
       const std::int32_t n = order[inner_ ? k : order.size() - 1 - k];
       if (!solved_[n]) {
-        if (!fromNeighbours(n, hybrid)) {
-          ++values_.traced;
+        // A finite lambda takes the value at the face that the trajectory pierces, which is (3.1)
+        // without its numerical diffusion; an infinite one is (3.1) itself.
+        const bool upwind = !hybrid || lambda_ == kInfinity;
+        if (!upwind || !fromNeighbours(n, hybrid)) {
           if (hybrid) {
             traceToFace(n);
           } else {
             traceToWall(n);
+            ++values_.traced;
           }
         }
         solved_[n] = !std::isnan(values_.length[n]);
@@ -178,7 +185,7 @@ class Sweep {
     if (hybrid) {
       for (int p = 0; p < count; ++p) {
         for (int q = p + 1; q < count; ++q) {
-          if ((points[p] - points[q]).norm() >= options_.lambda) return false;
+          if ((points[p] - points[q]).norm() >= lambda_) return false;
         }
       }
     }
@@ -191,6 +198,7 @@ class Sweep {
   /// Follows the trajectory to the boundary, or to the first grid face whose corners are solved and
   /// agree within lambda.
   void traceToFace(std::int32_t n) {
+    disagreed_ = false;
     auto walk = tracer_.begin(n, uphill_);
     bool done = uphill_ * (walk.u - target_) >= 0;
     for (int k = 0; !done && !walk.stuck && k < kMaxSteps; ++k) {
@@ -198,15 +206,49 @@ class Sweep {
       const double lengthBefore = walk.length;
       done = tracer_.advance(walk, target_, uphill_);
       if (done) break;
-      if (faceBetween(n, before, walk.x, lengthBefore, walk.length)) return;
+      if (faceBetween(n, before, walk.x, lengthBefore, walk.length)) {
+        values_.traced += disagreed_;
+        return;
+      }
     }
+    ++values_.traced;
     if (done) store(n, walk.x, walk.length);
+  }
+
+  /// Adds the second-order term of interpolation along one axis of a face: -f (1 - f) / 2 times the
+  /// second difference, from whichever voxels in line with the corners are solved.
+  /// @param corner  pairs (0, 1) and (2, 3) lie along the axis
+  void bendAlong(const std::int32_t* corner, std::int32_t stride, double f, int corners,
+                 double across, Vector& point, double& length) const {
+    const double factor = 0.5 * f * (1 - f);
+    if (factor == 0) return;
+    for (int pair = 0; pair < corners; pair += 2) {
+      const double weight = corners == 2 ? 1 : pair == 0 ? 1 - across : across;
+      const std::int32_t low = corner[pair], high = corner[pair + 1];
+      Vector second = Vector::Zero();
+      double secondLength = 0;
+      int found = 0;
+      const auto use = [&](std::int32_t middle, std::int32_t other, std::int32_t step) {
+        const std::int32_t m = annulus_.numberAt[annulus_.place[middle] + step];
+        if (m < 0 || !solved_[m] || (!tracer_.onCut.empty() && tracer_.onCut[m])) return;
+        const Vector difference = wallPoint(m) - 2 * wallPoint(middle) + wallPoint(other);
+        if (difference.norm() >= 2 * lambda_) return;
+        second += difference;
+        secondLength += values_.length[m] - 2 * values_.length[middle] + values_.length[other];
+        ++found;
+      };
+      use(low, high, -stride);
+      use(high, low, stride);
+      if (found == 0) continue;
+      point -= weight * factor / found * second;
+      length -= weight * factor / found * secondLength;
+    }
   }
 
   bool faceBetween(std::int32_t n, const Vector& from, const Vector& to, double lengthFrom,
                    double lengthTo) {
     const int axes = annulus_.planar ? 2 : 3;
-    // Steps are at most half a voxel: at most one plane of each axis lies between.
+    // Steps are at most a voxel: at most one plane of each axis lies between.
     struct Pierced {
       double t;
       int axis;
@@ -255,8 +297,9 @@ class Sweep {
       for (int e = 0; e < corners; ++e) points[e] = wallPoint(corner[e]);
       for (int e = 0; usable && e < corners; ++e) {
         for (int f = e + 1; f < corners; ++f) {
-          if ((points[e] - points[f]).norm() >= options_.lambda) {
+          if ((points[e] - points[f]).norm() >= lambda_) {
             usable = false;
+            disagreed_ = true;
             break;
           }
         }
@@ -268,6 +311,13 @@ class Sweep {
         const double weight = ((e & 1) ? fb : 1 - fb) * (corners == 2 ? 1 : (e >> 1) ? fc : 1 - fc);
         point += weight * points[e];
         length += weight * values_.length[corner[e]];
+      }
+      if (lambda_ < kInfinity) {
+        bendAlong(corner, strides[b], fb, corners, fc, point, length);
+        if (corners == 4) {
+          const std::int32_t swapped[4] = {corner[0], corner[2], corner[1], corner[3]};
+          bendAlong(swapped, strides[c], fc, corners, fb, point, length);
+        }
       }
       const auto s = annulus_.boxSubscripts(n);
       values_.offset[n] =
@@ -286,6 +336,8 @@ class Sweep {
   int uphill_;
   double target_;
   std::int32_t wall_;
+  double lambda_;
+  bool disagreed_ = false;  ///< the walk passed a solved face whose corners differ by lambda
   SideValues values_;
   std::vector<std::uint8_t> solved_;
 };
@@ -294,12 +346,13 @@ class Sweep {
 
 Correspondence findCorrespondences(const Annulus& annulus, const Interpolant& interpolant,
                                    const CorrespondenceOptions& options, const Monitor& monitor) {
-  if (!(options.lambda >= 0)) throw InvalidInput("lambda must be 0 or more millimetres");
+  if (options.lambda && !(*options.lambda >= 0))
+    throw InvalidInput("lambda must be 0 or more millimetres");
   const TrajectoryTracer tracer(annulus, interpolant, options.trace);
   Sweep inner(annulus, interpolant, tracer.field(), options, true);
   Sweep outer(annulus, interpolant, tracer.field(), options, false);
   const bool all = options.method == Method::Lagrangian ||
-                   (options.method == Method::Hybrid && options.lambda == 0);
+                   (options.method == Method::Hybrid && options.lambda == 0.0);
   if (all) {
     inner.traceAll(monitor);
     monitor.progress(0.5, "correspondences");

@@ -24,6 +24,7 @@ constexpr double kTinyStep = 1e-6;
 constexpr double kTooClose = 0.02;
 // A step whose gain in u is below this share of |grad u| ds is inconsistent; the boundary is near
 // within this many voxels; and a walk may have so many such steps.
+constexpr double kEnough = 1e-5;  // voxels from the boundary at which a walk has arrived
 constexpr double kPoorGain = 0.25;
 constexpr double kNearEnd = 1.5;
 constexpr int kStrikes = 8;
@@ -37,7 +38,7 @@ TrajectoryTracer::Field::Field(const harmonic::Annulus& a, const harmonic::Inter
   const Vector& h = annulus.grid.spacing;
   finest = flat ? std::min(h[0], h[1]) : h.minCoeff();
   inverseSpacing = h.cwiseInverse();
-  options.maxStep = std::min(options.maxStep, 0.5);
+  options.maxStep = std::min(options.maxStep, 1.0);
   bool anyCut = false;
   std::vector<std::uint8_t> cut(annulus.count(), 0);
   const auto strides = annulus.strides();
@@ -50,6 +51,7 @@ TrajectoryTracer::Field::Field(const harmonic::Annulus& a, const harmonic::Inter
     anyCut = anyCut || cut[n];
   }
   if (anyCut) onCut = std::move(cut);
+  prepareCells();
 }
 
 Vector TrajectoryTracer::Field::toBox(const Point& world) const {
@@ -61,78 +63,186 @@ Point TrajectoryTracer::Field::toWorld(const Vector& x) const {
   return annulus.grid.toWorld(x + Vector(annulus.first[0], annulus.first[1], annulus.first[2]));
 }
 
+void TrajectoryTracer::Field::prepareCells() {
+  const Eigen::Vector3f h = annulus.grid.spacing.cast<float>();
+  node_.resize(annulus.count());
+  parallelFor(annulus.count(), 1 << 13, [&](std::size_t n) {
+    node_[n].head<3>() = interpolant.gradient[n].array() * h.array();
+    node_[n][3] = static_cast<float>(interpolant.u[n]);
+  });
+  const auto strides = annulus.strides();
+  const int corners = flat ? 4 : 8;
+  const std::size_t sliceSize = strides[2];
+  const int slices = annulus.size[2];
+  cellAt_.assign(annulus.numberAt.size(), kEmpty);
+  std::vector<std::int32_t> start(slices + 1, 0);
+  const auto numbersOf = [&](std::size_t p, std::int32_t* number) {
+    int tissue = 0;
+    for (int c = 0; c < corners; ++c) {
+      number[c] = annulus.numberAt[p + (c & 1) + (c >> 1 & 1) * strides[1] + (c >> 2) * strides[2]];
+      tissue += number[c] >= 0;
+    }
+    return tissue;
+  };
+  const auto forCells = [&](int k, const auto& body) {
+    if (!flat && k + 1 >= slices) return;
+    for (int j = 0; j + 1 < annulus.size[1]; ++j) {
+      for (int i = 0; i + 1 < annulus.size[0]; ++i) {
+        body(i + static_cast<std::size_t>(j) * strides[1] + k * sliceSize);
+      }
+    }
+  };
+  const auto firstOf = [&](const std::int32_t* number) {
+    int seed = 0;
+    while (number[seed] < 0) ++seed;
+    return seed;
+  };
+  parallelFor(slices, 1, [&](std::size_t k) {
+    forCells(static_cast<int>(k), [&](std::size_t p) {
+      std::int32_t number[8];
+      const int tissue = numbersOf(p, number);
+      if (tissue == 0) return;
+      bool cut = false;
+      for (int c = 0; c < corners && !onCut.empty(); ++c) {
+        cut = cut || (number[c] >= 0 && onCut[number[c]]);
+      }
+      if (tissue == corners && !cut) {
+        cellAt_[p] = kWhole;
+        return;
+      }
+      // One side if a walk along uncut links reaches every tissue corner.
+      unsigned reached = 1U << firstOf(number);
+      for (bool grown = true; grown;) {
+        grown = false;
+        for (int c = 0; c < corners; ++c) {
+          if (!(reached >> c & 1)) continue;
+          for (int a = 0; a < (flat ? 2 : 3); ++a) {
+            const int other = c ^ (1 << a);
+            const int d = 2 * a + ((c >> a & 1) ? 0 : 1);
+            if ((reached >> other & 1) || number[other] < 0 ||
+                annulus.links[number[c]][d] != number[other]) {
+              continue;
+            }
+            reached |= 1U << other;
+            grown = true;
+          }
+        }
+      }
+      bool one = true;
+      for (int c = 0; c < corners; ++c) one = one && (number[c] < 0 || (reached >> c & 1));
+      if (!one) {
+        cellAt_[p] = kDivided;
+        return;
+      }
+      cellAt_[p] = start[k + 1]++;
+    });
+  });
+  for (int k = 0; k < slices; ++k) start[k + 1] += start[k];
+  cells_.resize(start[slices]);
+  parallelFor(slices, 1, [&](std::size_t k) {
+    forCells(static_cast<int>(k), [&](std::size_t p) {
+      if (cellAt_[p] < 0) return;
+      cellAt_[p] += start[k];
+      std::int32_t number[8];
+      numbersOf(p, number);
+      extend(number, firstOf(number), cells_[cellAt_[p]].corner.data());
+    });
+  });
+}
+
 TrajectoryTracer::Field::Sample TrajectoryTracer::Field::sample(const Vector& x,
                                                                 std::int32_t home) const {
   std::array<int, 3> base{};
-  Vector f;
+  float f[3];
   for (int a = 0; a < 3; ++a) {
     const double low = std::clamp(std::floor(x[a]), 0.0, annulus.size[a] - 2.0);
     base[a] = static_cast<int>(low);
-    f[a] = x[a] - low;
+    f[a] = static_cast<float>(x[a] - low);
   }
+  const auto strides = annulus.strides();
+  std::int32_t upper = strides[2];
   if (flat) {
     base[2] = static_cast<int>(std::lround(x[2]));
     f[2] = 0;
+    upper = 0;
   }
-  const auto strides = annulus.strides();
   const std::int32_t p = base[0] + base[1] * strides[1] + base[2] * strides[2];
-  std::int32_t corner[8];
-  const int corners = flat ? 4 : 8;
-  bool whole = true;
-  for (int c = 0; c < corners; ++c) {
-    const std::int32_t q = p + (c & 1) + (c >> 1 & 1) * strides[1] + (c >> 2) * strides[2];
-    corner[c] = annulus.numberAt[q];
-    whole = whole && corner[c] >= 0 && (onCut.empty() || !onCut[corner[c]]);
-  }
-  if (!whole) return sampleBesideBoundary(x, base, f, corner, home);
-
+  const auto offset = [&](int c) { return (c & 1) + (c >> 1 & 1) * strides[1] + (c >> 2) * upper; };
+  const std::int32_t cell = cellAt_[p];
   Sample result;
-  result.u = 0;
-  double best = -1;
-  for (int c = 0; c < corners; ++c) {
-    double weight = 1;
-    Vector away;
-    for (int a = 0; a < 3; ++a) {
-      const int bit = c >> a & 1;
-      away[a] = f[a] - bit;
-      weight *= bit ? f[a] : 1 - f[a];
+  if (cell == kEmpty) return result;
+
+  const Corner* corner[8];
+  Corner own[8];
+  const int nearest = (f[0] > 0.5F ? 1 : 0) + (f[1] > 0.5F ? 2 : 0) + (f[2] > 0.5F ? 4 : 0);
+  if (cell == kWhole) {
+    for (int c = 0; c < 8; ++c) corner[c] = &node_[annulus.numberAt[p + offset(c)]];
+    result.home = annulus.numberAt[p + offset(nearest)];
+  } else if (cell >= 0) {
+    for (int c = 0; c < 8; ++c) corner[c] = &cells_[cell].corner[flat ? c & 3 : c];
+    result.home = annulus.numberAt[p + offset(nearest)];
+    for (int c = 0; result.home < 0; ++c) result.home = annulus.numberAt[p + offset(c)];
+  } else {
+    std::int32_t number[8];
+    float weight[8];
+    int seed = -1;
+    const int corners = flat ? 4 : 8;
+    for (int c = 0; c < corners; ++c) {
+      number[c] = annulus.numberAt[p + offset(c)];
+      weight[c] = 1;
+      for (int a = 0; a < 3; ++a) weight[c] *= (c >> a & 1) ? f[a] : 1 - f[a];
+      if (number[c] >= 0 && number[c] == home) seed = c;
     }
-    const std::int32_t n = corner[c];
-    const Vector g = interpolant.gradient[n].cast<double>().cwiseProduct(annulus.grid.spacing);
-    result.u += weight * (interpolant.u[n] + 0.5 * g.dot(away));
-    result.gradient += weight * g;
-    if (weight > best) {
-      best = weight;
-      result.home = n;
+    for (int c = 0; seed < 0 && c < corners; ++c) {
+      if (number[c] >= 0) seed = c;
     }
+    if (number[seed] != home) {
+      for (int c = 0; c < corners; ++c) {
+        if (number[c] >= 0 && weight[c] > weight[seed]) seed = c;
+      }
+    }
+    const std::uint8_t side = extend(number, seed, own);
+    float best = -1;
+    for (int c = 0; c < 8; ++c) {
+      corner[c] = &own[flat ? c & 3 : c];
+      if (c < corners && (side >> c & 1) && weight[c] > best) {
+        best = weight[c];
+        result.home = number[c];
+      }
+    }
+    result.divided = true;
   }
+
+  // Trilinear in gradient and u; then u's half-Taylor term, which turns each axis' linear error
+  // f (1 - f) / 2 times the difference of slopes into one of third order.
+  Corner edge[4], face[2];
+  float bendX[4], bendY[2];
+  for (int j = 0; j < 4; ++j) {
+    const Corner difference = *corner[2 * j + 1] - *corner[2 * j];
+    edge[j] = *corner[2 * j] + f[0] * difference;
+    bendX[j] = difference[0];
+  }
+  for (int k = 0; k < 2; ++k) {
+    const Corner difference = edge[2 * k + 1] - edge[2 * k];
+    face[k] = edge[2 * k] + f[1] * difference;
+    bendY[k] = difference[1];
+  }
+  const Corner difference = face[1] - face[0];
+  const Corner value = face[0] + f[2] * difference;
+  const float lowX = bendX[0] + f[1] * (bendX[1] - bendX[0]);
+  const float highX = bendX[2] + f[1] * (bendX[3] - bendX[2]);
+  const float bend = f[0] * (1 - f[0]) * (lowX + f[2] * (highX - lowX)) +
+                     f[1] * (1 - f[1]) * (bendY[0] + f[2] * (bendY[1] - bendY[0])) +
+                     f[2] * (1 - f[2]) * difference[2];
+  result.u = static_cast<double>(value[3]) - 0.5 * static_cast<double>(bend);
+  result.gradient = value.head<3>().matrix().cast<double>();
   return result;
 }
 
-TrajectoryTracer::Field::Sample TrajectoryTracer::Field::sampleBesideBoundary(
-    const Vector& x, const std::array<int, 3>& base, const Vector& f, const std::int32_t* corner,
-    std::int32_t home) const {
-  (void)x;
-  (void)base;
+std::uint8_t TrajectoryTracer::Field::extend(const std::int32_t* number, int seed,
+                                             Corner* corner) const {
   const int axes = flat ? 2 : 3;
   const int corners = flat ? 4 : 8;
-  double weight[8];
-  for (int c = 0; c < corners; ++c) {
-    weight[c] = 1;
-    for (int a = 0; a < axes; ++a) weight[c] *= (c >> a & 1) ? f[a] : 1 - f[a];
-  }
-  int seed = -1;
-  for (int c = 0; c < corners; ++c) {
-    if (corner[c] >= 0 && corner[c] == home) seed = c;
-  }
-  if (seed < 0) {
-    for (int c = 0; c < corners; ++c) {
-      if (corner[c] >= 0 && (seed < 0 || weight[c] > weight[seed])) seed = c;
-    }
-  }
-  Sample result;
-  if (seed < 0) return result;
-
   enum : std::uint8_t { kUnknown, kReached, kExtended };
   std::uint8_t state[8] = {};
   double u[8];
@@ -142,8 +252,8 @@ TrajectoryTracer::Field::Sample TrajectoryTracer::Field::sampleBesideBoundary(
   int depth = 0;
   const auto reach = [&](int c) {
     state[c] = kReached;
-    u[c] = interpolant.u[corner[c]];
-    g[c] = interpolant.gradient[corner[c]].cast<double>().cwiseProduct(h);
+    u[c] = interpolant.u[number[c]];
+    g[c] = interpolant.gradient[number[c]].cast<double>().cwiseProduct(h);
     stack[depth++] = c;
   };
   reach(seed);
@@ -152,8 +262,8 @@ TrajectoryTracer::Field::Sample TrajectoryTracer::Field::sampleBesideBoundary(
     for (int a = 0; a < axes; ++a) {
       const int other = c ^ (1 << a);
       const int d = 2 * a + ((c >> a & 1) ? 0 : 1);
-      if (state[other] == kUnknown && corner[other] >= 0 &&
-          annulus.links[corner[c]][d] == corner[other]) {
+      if (state[other] == kUnknown && number[other] >= 0 &&
+          annulus.links[number[c]][d] == number[other]) {
         reach(other);
       }
     }
@@ -171,7 +281,7 @@ TrajectoryTracer::Field::Sample TrajectoryTracer::Field::sampleBesideBoundary(
     for (int a = 0; a < axes; ++a) {
       const int from = c ^ (1 << a);
       if (state[from] != kReached) continue;
-      const std::int32_t n = corner[from];
+      const std::int32_t n = number[from];
       const int d = 2 * a + ((from >> a & 1) ? 0 : 1);
       const int back = harmonic::opposite(d);
       const std::int32_t row = annulus.irregular(n);
@@ -252,19 +362,13 @@ TrajectoryTracer::Field::Sample TrajectoryTracer::Field::sampleBesideBoundary(
     }
   }
 
-  result.u = 0;
-  double best = -1;
+  std::uint8_t side = 0;
   for (int c = 0; c < corners; ++c) {
-    Vector away = Vector::Zero();
-    for (int a = 0; a < axes; ++a) away[a] = f[a] - (c >> a & 1);
-    result.u += weight[c] * (u[c] + 0.5 * g[c].dot(away));
-    result.gradient += weight[c] * g[c];
-    if (state[c] == kReached && weight[c] > best) {
-      best = weight[c];
-      result.home = corner[c];
-    }
+    corner[c].head<3>() = g[c].cast<float>().array();
+    corner[c][3] = static_cast<float>(u[c]);
+    if (state[c] == kReached) side |= static_cast<std::uint8_t>(1U << c);
   }
-  return result;
+  return side;
 }
 
 Vector TrajectoryTracer::Field::velocityOf(const Sample& sample, int uphill, double* slope) const {
@@ -285,6 +389,7 @@ TrajectoryTracer::Field::Walk TrajectoryTracer::Field::begin(const Vector& x, st
   walk.home = here.home;
   walk.u = here.u;
   walk.velocity = velocityOf(here, uphill, &walk.slope);
+  walk.divided = here.divided;
   walk.step = options.maxStep * finest;
   walk.stuck = here.home < 0 || walk.velocity.isZero(0);
   return walk;
@@ -306,7 +411,9 @@ TrajectoryTracer::Field::Walk TrajectoryTracer::Field::begin(std::int32_t number
 }
 
 bool TrajectoryTracer::Field::advance(Walk& walk, double target, int uphill) const {
-  const double longest = options.maxStep * finest;
+  // Half a voxel at most where the side must be known: a step then never leaves its neighbourhood.
+  const double longest = (walk.divided ? std::min(0.5, options.maxStep) : options.maxStep) * finest;
+  walk.step = std::min(walk.step, longest);
   for (;;) {
     const double s = walk.step;
     const Vector& k1 = walk.velocity;
@@ -348,11 +455,12 @@ bool TrajectoryTracer::Field::advance(Walk& walk, double target, int uphill) con
       walk.x = next;
       walk.velocity = k4;
       walk.home = four.home;
+      walk.divided = four.divided;
       walk.u = four.u;
       walk.slope = slope;
       walk.length += s;
       const double factor = error > 0 ? 0.9 * std::cbrt(options.tolerance / error) : 4.0;
-      walk.step = std::min(longest, s * std::clamp(factor, 0.3, 4.0));
+      walk.step = std::min(options.maxStep * finest, s * std::clamp(factor, 0.3, 4.0));
       return false;
     }
     // The target is between: find it on the step's cubic by regula falsi (Illinois).
@@ -371,7 +479,7 @@ bool TrajectoryTracer::Field::advance(Walk& walk, double target, int uphill) con
       for (int k = 0; k < 12; ++k) {
         t = (low * fHigh - high * fLow) / (fHigh - fLow);
         const double value = uphill * (sample(at(t), walk.home).u - target);
-        if (std::abs(value) < 1e-9) break;
+        if (std::abs(value) < kEnough * walk.slope * finest) break;
         if (value < 0) {
           low = t;
           fLow = value;

@@ -17,6 +17,7 @@ struct TrajectoryTracer::Field {
     double u = kNaN;
     Vector gradient = Vector::Zero();
     std::int32_t home = -1;  ///< nearest tissue voxel of this side; -1: no tissue in the cell
+    bool divided = false;    ///< the cell has more than one side
   };
 
   /// State of a walk along a trajectory.
@@ -25,10 +26,11 @@ struct TrajectoryTracer::Field {
     Vector velocity = Vector::Zero();  ///< dx / ds, voxels per mm
     std::int32_t home = -1;
     double u = kNaN;
-    double length = 0;  ///< mm so far
-    double step = 0;    ///< next step to try, mm
-    double slope = 0;   ///< |grad u| here, 1/mm
-    int strikes = 0;    ///< steps along which u did not change as its gradient says
+    double length = 0;     ///< mm so far
+    double step = 0;       ///< next step to try, mm
+    double slope = 0;      ///< |grad u| here, 1/mm
+    bool divided = false;  ///< the last cell has more than one side
+    int strikes = 0;       ///< steps along which u did not change as its gradient says
     bool stuck = false;
   };
 
@@ -60,10 +62,23 @@ struct TrajectoryTracer::Field {
   std::vector<std::uint8_t> onCut;  ///< per tissue voxel: a link to tissue is cut; empty if none is
 
  private:
-  [[nodiscard]] Sample sampleBesideBoundary(const Vector& x, const std::array<int, 3>& base,
-                                            const Vector& f, const std::int32_t* corner,
-                                            std::int32_t home) const;
+  /// Gradient per voxel and u, of a cell's corner.
+  using Corner = Eigen::Array4f;
+  /// The corners of a cell next to a boundary, extended from the only side it has.
+  struct Cell {
+    std::array<Corner, 8> corner;
+  };
+  enum : std::int32_t { kWhole = -1, kDivided = -2, kEmpty = -3 };
+
+  void prepareCells();
+  /// Corners from the side of `seed`; a bit per corner that belongs to it.
+  std::uint8_t extend(const std::int32_t* number, int seed, Corner* corner) const;
   [[nodiscard]] Vector velocityOf(const Sample& sample, int uphill, double* slope = nullptr) const;
+
+  std::vector<Corner> node_;          ///< per tissue voxel
+  std::vector<std::int32_t> cellAt_;  ///< per box voxel, the cell with it as lowest corner: row of
+                                      ///< cells_, or what else
+  std::vector<Cell> cells_;
 };
 
 }  // namespace explica::correspondence

@@ -5,6 +5,7 @@
 #include "Explica/Correspondence/Trajectory.h"
 
 #include <array>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -19,9 +20,10 @@ enum class Method {
 
 struct CorrespondenceOptions {
   Method method = Method::Hybrid;
-  double lambda = 0.1;  ///< mm; neighbours' boundary points nearer than this are interpolated; 0
-                        ///< gives the Lagrangian result, infinity the sweep with better boundary
-                        ///< values
+  std::optional<double>
+      lambda;  ///< mm; neighbours' boundary points nearer than this are
+               ///< interpolated; 0 gives the Lagrangian result, infinity the
+               ///< sweep with better boundary values; unset: twice the finest spacing
   TraceOptions trace;
 };
 
@@ -30,7 +32,7 @@ void describe(CorrespondenceOptions& options, Visitor&& visit) {
   visit(Field{"method", "", "how boundary points and lengths are found"}, options.method);
   visit(Field{"lambda", "mm",
               "hybrid: boundary points of neighbours nearer than this are interpolated, others "
-              "followed; 0 follows all"},
+              "followed; 0 follows all (default: twice the finest voxel size)"},
         options.lambda);
 }
 

@@ -13,8 +13,8 @@ namespace explica::correspondence {
 /// How carefully trajectories are followed.
 struct TraceOptions {
   double tolerance = 1e-3;  ///< greatest error estimate of a step, in voxels
-  double maxStep = 0.5;     ///< longest step, in voxels of the finest spacing; at most 0.5, so that
-                            ///< a step never leaves the neighbourhood whose bank is known
+  double maxStep = 1;       ///< longest step, in voxels of the finest spacing, at most 1; where two
+                            ///< banks share a cell, half a voxel, so that the bank stays known
 };
 
 /// Where a trajectory came to.
