@@ -15,6 +15,7 @@
 #include <map>
 #include <new>
 #include <optional>
+#include <set>
 #include <sstream>
 
 namespace explica::io {
@@ -33,7 +34,7 @@ std::string trimmed(std::string_view text) {
   return std::string(text.substr(first, text.find_last_not_of(" \t\r") - first + 1));
 }
 
-/// The `key: value` or `key = value` lines of a text header, keys in lower case.
+/// The `key: value` or `key = value` lines of a text header; NRRD's keys in lower case.
 struct TextHeader {
   std::map<std::string, std::string> fields;
   std::size_t size = 0;  ///< bytes before the data
@@ -43,6 +44,14 @@ struct TextHeader {
     return found == fields.end() ? std::string() : found->second;
   }
 };
+
+/// MetaIO reads as many numbers for these as NDims said before.
+bool needsDimension(const std::string& key) {
+  static const std::set<std::string> kKeys = {
+      "DimSize", "ElementSpacing",  "ElementSize", "Offset",      "Position",
+      "Origin",  "TransformMatrix", "Rotation",    "Orientation", "CenterOfRotation"};
+  return kKeys.contains(key);
+}
 
 TextHeader parseHeader(const std::filesystem::path& path, ByteView bytes, ItkFormat format) {
   TextHeader header;
@@ -63,11 +72,15 @@ TextHeader parseHeader(const std::filesystem::path& path, ByteView bytes, ItkFor
     if (mark == std::string_view::npos) continue;
     const bool custom = format == ItkFormat::Nrrd && line.substr(mark).starts_with(":=");
     if (custom) continue;
-    const std::string key = lower(trimmed(line.substr(0, mark)));
+    std::string key = trimmed(line.substr(0, mark));
+    if (format == ItkFormat::Nrrd) key = lower(key);
+    if (format == ItkFormat::MetaImage && needsDimension(key) && header["NDims"].empty()) {
+      failToRead(path, "its header states '" + key + "' before NDims");
+    }
     if (!header.fields.emplace(key, trimmed(line.substr(mark + 1))).second) {
       failToRead(path, "its header states '" + key + "' twice");
     }
-    if (format == ItkFormat::MetaImage && key == "elementdatafile") break;
+    if (format == ItkFormat::MetaImage && key == "ElementDataFile") break;
   }
   return header;
 }
@@ -204,24 +217,24 @@ void checkNrrd(const std::filesystem::path& path, ByteView bytes) {
 
 void checkMetaImage(const std::filesystem::path& path, ByteView bytes) {
   const TextHeader header = parseHeader(path, bytes, ItkFormat::MetaImage);
-  const std::string kind = lower(header["objecttype"]);
+  const std::string kind = lower(header["ObjectType"]);
   if (!kind.empty() && kind != "image")
     refuse(path, "is a MetaIO " + kind + "; an image is needed");
-  const auto dimension = static_cast<std::size_t>(dimensionIn(path, header["ndims"]));
-  const std::vector<std::int64_t> sizes = sizesIn(path, header["dimsize"]);
+  const auto dimension = static_cast<std::size_t>(dimensionIn(path, header["NDims"]));
+  const std::vector<std::int64_t> sizes = sizesIn(path, header["DimSize"]);
   if (sizes.size() != dimension) {
     failToRead(path, "its header gives " + std::to_string(sizes.size()) + " sizes for " +
                          std::to_string(dimension) + " dimensions");
   }
-  const std::pair<const char*, std::size_t> lengths[] = {{"elementspacing", dimension},
-                                                         {"elementsize", dimension},
-                                                         {"offset", dimension},
-                                                         {"position", dimension},
-                                                         {"origin", dimension},
-                                                         {"transformmatrix", dimension * dimension},
-                                                         {"rotation", dimension * dimension},
-                                                         {"orientation", dimension * dimension},
-                                                         {"centerofrotation", dimension}};
+  const std::pair<const char*, std::size_t> lengths[] = {{"ElementSpacing", dimension},
+                                                         {"ElementSize", dimension},
+                                                         {"Offset", dimension},
+                                                         {"Position", dimension},
+                                                         {"Origin", dimension},
+                                                         {"TransformMatrix", dimension * dimension},
+                                                         {"Rotation", dimension * dimension},
+                                                         {"Orientation", dimension * dimension},
+                                                         {"CenterOfRotation", dimension}};
   for (const auto& [key, length] : lengths) {
     if (header[key].empty()) continue;
     const std::vector<double> numbers = numbersIn(path, key, header[key]);
@@ -230,30 +243,30 @@ void checkMetaImage(const std::filesystem::path& path, ByteView bytes) {
                            " values for '" + key + "'; " + std::to_string(length) + " are needed");
     }
   }
-  const std::optional<StoredType> type = metaType(header["elementtype"]);
+  const std::optional<StoredType> type = metaType(header["ElementType"]);
   if (!type) {
-    refuse(path, "has MetaImage type '" + header["elementtype"] + "'; a type of numbers is needed");
+    refuse(path, "has MetaImage type '" + header["ElementType"] + "'; a type of numbers is needed");
   }
   std::int64_t channels = 1;
-  if (!header["elementnumberofchannels"].empty()) {
-    channels = parseNumber<std::int64_t>(path, header["elementnumberofchannels"]);
+  if (!header["ElementNumberOfChannels"].empty()) {
+    channels = parseNumber<std::int64_t>(path, header["ElementNumberOfChannels"]);
   }
   if (channels < 1 || channels > 64) {
     failToRead(path, "its header announces " + std::to_string(channels) + " channels");
   }
-  if (!header["headersize"].empty() && header["headersize"] != "0") {
+  if (!header["HeaderSize"].empty() && header["HeaderSize"] != "0") {
     refuse(path, "uses 'HeaderSize', which is not supported; store it anew");
   }
-  const bool packed = lower(header["compresseddata"]) == "true";
-  if (packed && lower(header["binarydata"]) == "false") {
+  const bool packed = lower(header["CompressedData"]) == "true";
+  if (packed && lower(header["BinaryData"]) == "false") {
     failToRead(path, "its header says compressed text");
   }
-  const bool text = lower(header["binarydata"]) == "false";
-  const std::string dataFile = header["elementdatafile"];
+  const bool text = lower(header["BinaryData"]) == "false";
+  const std::string dataFile = header["ElementDataFile"];
   if (dataFile.empty()) failToRead(path, "its header does not name the data (ElementDataFile)");
   const bool local = lower(dataFile) == "local";
-  if (!header["compresseddatasize"].empty()) {
-    const auto size = parseNumber<std::int64_t>(path, header["compresseddatasize"]);
+  if (!header["CompressedDataSize"].empty()) {
+    const auto size = parseNumber<std::int64_t>(path, header["CompressedDataSize"]);
     const auto room = static_cast<std::int64_t>(bytes.size() - header.size);
     if (size < 1 || (local && size > room)) {
       failToRead(path, "the packed data end too early; it is truncated");

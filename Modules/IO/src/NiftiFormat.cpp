@@ -222,7 +222,7 @@ Eigen::Matrix4d place(const Header& header, const std::array<int, 3>& size, Plac
     origin.placement = "qform";
     return qform();
   }
-  const Eigen::Matrix4d sform = sformOf(header, size, unit);
+  Eigen::Matrix4d sform = sformOf(header, size, unit);
   if (!hasQ) {
     origin.placement = "sform";
     return sform;
