@@ -37,7 +37,12 @@ inline const std::vector<QuickRun>& quickRuns() {
   const std::vector<std::string> kShell = {"phantom", "shell", "--size",
                                            "20",      "--out", "{folder}/shell"};
   static const std::vector<QuickRun> runs = {
+      {"PhantomPolygon19", {}, {"phantom", "polygon19"}},
+      {"PhantomPolygon34", {}, {"phantom", "polygon34"}},
       {"PhantomShell", {}, {"phantom", "shell", "--size", "24"}},
+      {"Polygon",
+       {{"phantom", "polygon19", "--out", "{folder}/p19"}},
+       {"polygon", "{folder}/p19/polygon.csv", "--region", "0:19", "--viewpoint", "50.5,4000"}},
       {"Segment", {kShell}, {"segment", "{folder}/shell/level.nii.gz", "--max-iterations", "4"}},
       {"Surface",
        {kShell},

@@ -1,0 +1,257 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Application/Command.h"
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/WholeFile.h"
+#include "Explica/IO/PolygonFile.h"
+#include "Explica/IO/VolumeFile.h"
+#include "Explica/Planar/AngularSweep.h"
+#include "Explica/Planar/Contour.h"
+#include "Explica/Planar/EvolutionFigure.h"
+#include "Explica/Planar/PolygonMeasures.h"
+#include "Explica/Planar/PolygonUnfolding.h"
+#include "Explica/Planar/PolygonVisibility.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace explica::app {
+namespace {
+
+struct Settings {
+  std::string file;
+  io::VolumeReadOptions reading;
+  std::optional<int> label;
+  std::optional<int> slice;
+  int contour = 0;
+  std::optional<int> edges;
+  planar::ContourOptions contours;
+  std::optional<std::string> region;
+  std::optional<Eigen::Vector2d> viewpoint;
+  std::optional<Eigen::Vector2d> direction;
+  double distance = 1000;
+  planar::PolygonUnfoldingOptions unfolding;
+  int frames = 0;
+  int stages = 6;
+};
+
+void declare(Declaration& d, Settings& s) {
+  d.synopsis("a region of a polygon opened towards a viewpoint, lengths kept")
+      .description(
+          "Moves the region's vertices until every edge faces the viewpoint. Edges of the region "
+          "keep their lengths and never cross. The polygon comes from a file, or is the sub-pixel "
+          "contour of a label in a slice of an image; without a viewpoint it is only measured and "
+          "written.")
+      .reference("Rocha, Yezzi, Tannenbaum 2007, IEEE Int. Conf. Image Processing")
+      .example("explica phantom polygon34 --out p34",
+               "A folded polygon; its summary names region and viewpoint")
+      .example("explica polygon p34/polygon.csv --region 0:34 --viewpoint 80.9,4000 --out flat",
+               "Unfold it; evolution.svg shows the stages")
+      .example("explica polygon ED_label.nii.gz --label 2 --slice 4 --out contour",
+               "Outer contour of a label, RAS mm")
+      .input("FILE", FileKind::Any, "polygon (CSV, VTK polydata), or label image", s.file)
+      .options("Reading", s.reading)
+      .option("Contour", Field{"label", "", "take the contour of this label of an image"}, s.label)
+      .option("Contour",
+              Field{"slice", "", "slice along the third axis; default: where the label is largest"},
+              s.slice)
+      .option("Contour", Field{"contour", "", "which contour, by area, 0 the largest"}, s.contour)
+      .option("Contour", Field{"edges", "", "resample the contour to this many equal edges"},
+              s.edges)
+      .option("Contour", Field{"smooth", "voxels", "Gaussian that anti-aliases the label's mask"},
+              s.contours.smoothing)
+      .option("Region",
+              Field{"region", "", "first and last vertex, I:J; default: the whole polygon"},
+              s.region)
+      .option("Viewpoint", Field{"viewpoint", "mm", "point to look from"}, s.viewpoint)
+      .option("Viewpoint",
+              Field{"direction", "", "look from the region's centroid plus --distance along this"},
+              s.direction)
+      .option("Viewpoint",
+              Field{"distance", "mm", "how far off a viewpoint given by --direction is"},
+              s.distance)
+      .options("Unfolding", s.unfolding)
+      .option("Output", Field{"frames", "", "write this many states on the way"}, s.frames)
+      .option("Output", Field{"stages", "", "panels of evolution.svg"}, s.stages)
+      .output("polygon.csv", FileKind::Polygon, "the polygon as it was understood")
+      .output("unfolded.csv", FileKind::Polygon, "the unfolded polygon")
+      .output("unfolded.vtp", FileKind::Polygon, "the same with flux and seen share of each edge")
+      .varyingOutput("evolution.tsv", FileKind::Table, "one row an iteration")
+      .output("evolution.svg", FileKind::Picture,
+              "start, stages and end, with the direction of view")
+      .output("frames/frame-*.csv", FileKind::Polygon, "states on the way");
+}
+
+planar::Curve readCurve(Context& context, const Settings& s) {
+  planar::Curve curve;
+  if (!s.label) {
+    curve.positions = io::readPolygon(s.file);
+    return curve;
+  }
+  const Volume<Label> labels = io::readLabels(s.file, s.reading).volume;
+  const int slice = s.slice.value_or(planar::largestSlice(labels, *s.label));
+  if (slice < 0) {
+    throw InvalidInput(s.file + ": label " + std::to_string(*s.label) + " is absent");
+  }
+  const auto contours = planar::contoursOfLabel(labels, *s.label, slice, s.contours);
+  if (s.contour < 0 || s.contour >= static_cast<int>(contours.size())) {
+    throw InvalidInput("contour " + std::to_string(s.contour) + " is not among the " +
+                       std::to_string(contours.size()) + " contours of slice " +
+                       std::to_string(slice));
+  }
+  curve = contours[s.contour];
+  if (planar::signedArea(curve.positions) < 0) {  // a hole's rim: taken as a polygon of its own
+    curve.positions = curve.positions.colwise().reverse().eval();
+  }
+  if (s.edges) curve = planar::resampled(curve, *s.edges);
+  const planar::PlaneFrame frame = planar::frameOfSlice(labels.grid, slice);
+  const auto array = [](const Eigen::Vector3d& v) {
+    return std::vector<double>{v.x(), v.y(), v.z()};
+  };
+  context.result("slice", slice);
+  context.result("contours", contours.size());
+  context.result("plane_origin", array(frame.origin));
+  context.result("plane_x", array(frame.axisX));
+  context.result("plane_y", array(frame.axisY));
+  return curve;
+}
+
+planar::Region regionOf(const planar::Curve& curve, const std::optional<std::string>& text) {
+  if (!text) return planar::wholeRegion(curve);
+  int first = 0;
+  int last = 0;
+  int used = 0;
+  if (std::sscanf(text->c_str(), "%d:%d%n", &first, &last, &used) != 2 ||
+      used != static_cast<int>(text->size())) {
+    throw UsageError("--region '" + *text + "': expected I:J, first and last vertex");
+  }
+  return planar::regionBetween(curve, first, last);
+}
+
+std::optional<planar::Point2> viewpointOf(const Settings& s, const planar::Curve& curve,
+                                          const planar::Region& region) {
+  if (s.viewpoint && s.direction) {
+    throw UsageError("give --viewpoint or --direction, not both");
+  }
+  if (s.viewpoint) return *s.viewpoint;
+  if (!s.direction) return std::nullopt;
+  if (!(s.direction->norm() > 0)) throw UsageError("--direction has no length");
+  return planar::centroidOf(curve, region) + s.distance * s.direction->normalized();
+}
+
+std::string tableOf(const std::vector<planar::PolygonIteration>& history) {
+  std::string table =
+      "iteration\tvisibility\tflux_variance\tlength\tlength_error\tleast_distance\tknot_energy\t"
+      "step\tseconds\n";
+  for (const planar::PolygonIteration& row : history) {
+    char line[320];
+    std::snprintf(line, sizeof line, "%d\t%.9g\t%.9g\t%.9g\t%.3g\t%.6g\t%.9g\t%.6g\t%.6f\n",
+                  row.iteration, row.visibility, row.variance, row.length, row.lengthError,
+                  row.leastDistance, row.knotEnergy, row.step, row.seconds);
+    table += line;
+  }
+  return table;
+}
+
+/// One value an edge of the curve, NaN off the region.
+io::VertexMap edgeMap(const planar::Curve& curve, const planar::Region& region, std::string name,
+                      const Eigen::VectorXd& values) {
+  io::VertexMap map{std::move(name), "", Eigen::VectorXd::Constant(curve.edgeCount(), kNaN)};
+  const std::vector<int> edges = planar::edgesOf(curve, region);
+  for (std::size_t k = 0; k < edges.size(); ++k) {
+    map.values[edges[k]] = values[static_cast<Eigen::Index>(k)];
+  }
+  return map;
+}
+
+void writeUnfolding(Context& context, const Settings& s, const planar::PolygonUnfolding& result,
+                    const planar::Point2& viewpoint) {
+  io::writePolygonCsv(context.output("unfolded.csv"), result.curve.positions);
+  std::vector<io::VertexMap> edgeMaps;
+  if (result.curve.closed) {
+    edgeMaps = {edgeMap(result.curve, result.region, "flux",
+                        planar::polygonVisibility(result.curve, result.region, viewpoint).edgeFlux),
+                edgeMap(result.curve, result.region, "seen",
+                        planar::visiblePart(result.curve, result.region, viewpoint).edgeSeen)};
+  }
+  io::writePolygonVtp(context.output("unfolded.vtp"), result.curve.positions, {}, edgeMaps);
+  writeTextFile(context.output("evolution.tsv"), tableOf(result.history));
+
+  std::vector<double> visibilities;
+  for (const auto& row : result.history) visibilities.push_back(row.visibility);
+  std::vector<planar::EvolutionStage> stages;
+  for (std::size_t k : planar::evenStages(visibilities, static_cast<std::size_t>(s.stages))) {
+    const planar::PolygonIteration& row = result.history[k];
+    const std::string title =
+        row.iteration == 0 ? "start" : "iteration " + std::to_string(row.iteration);
+    stages.push_back({title, result.path[k].positions, result.path[k].region, row.visibility,
+                      row.variance, row.length});
+  }
+  writeTextFile(context.output("evolution.svg"),
+                planar::drawEvolution(result.curve.closed, viewpoint, stages));
+  int number = 0;
+  for (std::size_t k : planar::evenStages(visibilities, static_cast<std::size_t>(s.frames))) {
+    char name[40];
+    std::snprintf(name, sizeof name, "frames/frame-%04d.csv", number++);
+    io::writePolygonCsv(context.output(name), result.path[k].positions);
+  }
+}
+
+Termination run(Context& context, const Settings& s) {
+  if (s.frames < 0 || s.stages < 1) throw UsageError("--frames and --stages count states");
+  const planar::Curve curve = readCurve(context, s);
+  planar::requireUsable(curve);
+  const planar::Region region = regionOf(curve, s.region);
+  const std::optional<planar::Point2> viewpoint = viewpointOf(s, curve, region);
+
+  context.result("region_edges", region.edgeCount);
+  context.result("length_initial", planar::lengthOf(curve, region));
+  context.result("area", planar::signedArea(curve.positions));
+  context.result("self_occlusion", planar::selfOcclusion(curve));
+  context.result("self_intersections_initial", planar::intersectingEdges(curve).size());
+  {
+    auto step = context.step("polygon");
+    io::writePolygonCsv(context.output("polygon.csv"), curve.positions);
+  }
+  if (!viewpoint) return Termination::NotRun;
+
+  auto step = context.step("unfold");
+  context.result("viewpoint", std::vector<double>{viewpoint->x(), viewpoint->y()});
+  const planar::PolygonUnfolding result =
+      planar::unfoldPolygon(curve, region, *viewpoint, s.unfolding, context.monitor());
+  const planar::PolygonIteration& start = result.history.front();
+  const planar::PolygonIteration& end = result.history.back();
+  step.iterations(end.iteration);
+  step.termination(result.termination);
+  writeUnfolding(context, s, result, *viewpoint);
+
+  context.result("length_final", end.length);
+  context.result("length_error_max", s.unfolding.noLength ? kNaN : end.lengthError);
+  context.result("visibility_initial", start.visibility);
+  context.result("visibility_final", end.visibility);
+  context.result("flux_variance_initial", start.variance);
+  context.result("flux_variance_final", end.variance);
+  context.result("seen_initial", planar::visiblePart(curve, region, *viewpoint).fraction);
+  context.result("seen_final",
+                 planar::visiblePart(result.curve, result.region, *viewpoint).fraction);
+  context.result("self_intersections_final", result.intersectionsFinal.size());
+  context.result("first_crossing", result.firstCrossing);
+  context.result("vertices_merged", result.verticesMerged);
+  context.result("iterations", end.iteration);
+  context.result("seconds", result.seconds);
+  context.result("seconds_topology", result.secondsTopology);
+  context.result("stop_reason", std::string(nameOf(result.termination)));
+  return result.termination;
+}
+
+}  // namespace
+
+Command polygonCommand() {
+  return makeCommand<Settings>("polygon", declare, run);
+}
+
+}  // namespace explica::app

@@ -1,0 +1,121 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Planar/PolygonCollision.h"
+
+#include "Segment.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace explica::planar {
+namespace {
+
+constexpr double kKeptShare = 0.5;      // of a pair's distance that a step must leave
+constexpr int kMostAdvances = 100;      // conservative: what is reached by then is returned
+constexpr double kLeastAdvance = 1e-4;  // of the step; less gains nothing
+
+/// As largestSafeStep() for one pair, up to `limit`.
+double safeTime(const std::array<Point2, 3>& x, std::array<Point2, 3> motion, double limit) {
+  const Point2 mean = (motion[0] + motion[1] + motion[2]) / 3;
+  for (Point2& m : motion) m -= mean;
+  const double speed = motion[0].norm() + std::max(motion[1].norm(), motion[2].norm());
+  const double start = distanceToSegment(x[0], x[1], x[2]);
+  if (start == 0) return 0;
+  const double kept = kKeptShare * start;
+  if (speed * limit < start - kept) return limit;
+  double t = 0;
+  double distance = start;
+  for (int k = 0; k < kMostAdvances; ++k) {
+    const double advance = 0.99 * (distance - kept) / speed;
+    if (t + advance >= limit) return limit;
+    if (advance < kLeastAdvance * limit) break;
+    t += advance;
+    distance = distanceToSegment(x[0] + t * motion[0], x[1] + t * motion[1], x[2] + t * motion[2]);
+  }
+  return t;
+}
+
+}  // namespace
+
+VertexEdgeDistance vertexEdgeDistance(const Curve& curve, int vertex, int edge) {
+  const Point2 a = curve.point(edge);
+  const Point2 b = curve.point(curve.next(edge));
+  const Point2 q = curve.point(vertex);
+  VertexEdgeDistance result;
+  result.parameter = nearestParameter(q, a, b);
+  const Point2 d = q - a - result.parameter * (b - a);
+  result.distance = d.norm();
+  if (result.distance > 0) result.direction = d / result.distance;
+  return result;
+}
+
+std::vector<VertexEdgePair> nearbyPairs(const Curve& curve, const std::vector<bool>& moving,
+                                        const Eigen::VectorXd& restLengths, double range,
+                                        double reach) {
+  const int n = curve.vertexCount();
+  std::vector<VertexEdgePair> pairs;
+  for (int e = 0; e < curve.edgeCount(); ++e) {
+    const int f = curve.next(e);
+    const Point2 a = curve.point(e);
+    const Point2 b = curve.point(f);
+    const bool edgeMoves = moving[e] || moving[f];
+    const Eigen::Array2d low = a.cwiseMin(b).array() - reach;
+    const Eigen::Array2d high = a.cwiseMax(b).array() + reach;
+    for (int v = 0; v < n; ++v) {
+      if (v == e || v == f || !(edgeMoves || moving[v])) continue;
+      const double x = curve.positions(v, 0);
+      const double y = curve.positions(v, 1);
+      if (x < low[0] || x > high[0] || y < low[1] || y > high[1]) continue;
+      if (distanceToSegment({x, y}, a, b) > reach) continue;
+      double pairRange = range;
+      if (v < curve.edgeCount() && curve.next(v) == e) {
+        pairRange = std::min(pairRange, 0.5 * restLengths[v]);
+      }
+      if (f < curve.edgeCount() && curve.next(f) == v) {
+        pairRange = std::min(pairRange, 0.5 * restLengths[f]);
+      }
+      pairs.push_back({v, e, pairRange});
+    }
+  }
+  return pairs;
+}
+
+double largestSafeStep(const Curve& curve, const Positions2& target,
+                       const std::vector<VertexEdgePair>& pairs) {
+  double limit = 1;
+  for (const VertexEdgePair& pair : pairs) {
+    const std::array<int, 3> vertices = {pair.vertex, pair.edge, curve.next(pair.edge)};
+    std::array<Point2, 3> x;
+    std::array<Point2, 3> motion;
+    for (int k = 0; k < 3; ++k) {
+      x[k] = curve.point(vertices[k]);
+      motion[k] = target.row(vertices[k]).transpose() - x[k];
+    }
+    limit = std::min(limit, safeTime(x, motion, limit));
+    if (limit <= 0) return 0;
+  }
+  return limit;
+}
+
+BarrierValue barrier(double distance, double range) {
+  if (distance >= range) return {};
+  const double s = distance / range;
+  const double log = std::log(s);
+  const double below = s - 1;
+  BarrierValue result;
+  result.value = -below * below * log;
+  result.slope = (-2 * below * log - below * below / s) / range;
+  result.curvature = (-2 * log - 4 * below / s + below * below / (s * s)) / (range * range);
+  return result;
+}
+
+double leastDistance(const Curve& curve, const std::vector<VertexEdgePair>& pairs) {
+  double least = kInfinity;
+  for (const VertexEdgePair& pair : pairs) {
+    least = std::min(least, vertexEdgeDistance(curve, pair.vertex, pair.edge).distance);
+  }
+  return least;
+}
+
+}  // namespace explica::planar
