@@ -6,6 +6,7 @@
 #include "Explica/Core/Errors.h"
 
 #include <Eigen/Geometry>
+#include <Eigen/SVD>
 
 #include <cmath>
 #include <string>
@@ -42,6 +43,10 @@ Grid gridFromAffine(const std::array<int, 3>& size, const Eigen::Matrix4d& affin
                          std::to_string(cosine) + "); resample to an orthogonal grid first");
     }
   }
+  // Headers round the axes; the nearest orthonormal ones make writing and reading again exact.
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(grid.direction,
+                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
+  grid.direction = svd.matrixU() * svd.matrixV().transpose();
   return grid;
 }
 

@@ -13,7 +13,6 @@
 #include "Explica/Core/Parallel.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 
 #include <cmath>
 #include <limits>
@@ -381,12 +380,7 @@ Grid gridOf(const std::filesystem::path& path, const std::array<int, 3>& size,
   if (!affine.allFinite())
     refuse(path, "its header places the voxels at positions that are not finite");
   try {
-    Grid grid = gridFromAffine(size, affine);
-    // Headers round the axes; the nearest orthonormal ones make writing and reading again exact.
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(grid.direction,
-                                                Eigen::ComputeFullU | Eigen::ComputeFullV);
-    grid.direction = svd.matrixU() * svd.matrixV().transpose();
-    return grid;
+    return gridFromAffine(size, affine);
   } catch (const InvalidInput& error) {
     refuse(path, error.what());
   }

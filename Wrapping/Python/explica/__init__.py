@@ -37,6 +37,7 @@ from .surfaces import (
     write_shape,
     write_surface,
 )
+from .tissue import segment, surfaces_of, thickness, thickness_of_levels
 from .unfolding import (
     Unfolder,
     average_visibility,

@@ -10,6 +10,8 @@ namespace explica::python {
 void bindCore(pybind11::module_& m);
 void bindGeometry(pybind11::module_& m);
 void bindIO(pybind11::module_& m);
+void bindAnnular(pybind11::module_& m);
+void bindCortex(pybind11::module_& m);
 void bindVisibility(pybind11::module_& m);
 void bindUnfolding(pybind11::module_& m);
 

@@ -12,10 +12,11 @@
 namespace explica::python {
 namespace {
 
+/// The affine is the file's own, from which the reader made its grid: functions that are given it
+/// make the same grid, to the last bit.
 template <class T>
-py::tuple volumeTuple(Volume<T> volume) {
-  const Eigen::Matrix4d affine = volume.grid.affine();
-  return py::make_tuple(arrayOf(std::move(volume)), affine);
+py::tuple volumeTuple(io::LoadedVolume<T> loaded) {
+  return py::make_tuple(arrayOf(std::move(loaded.volume)), loaded.origin.affine);
 }
 
 std::vector<io::VertexMap> mapsOf(const py::dict& maps) {
@@ -34,7 +35,7 @@ void bindIO(py::module_& m) {
       "read_scalars",
       [](const std::string& path, const py::kwargs& keywords) {
         const auto options = optionsOf<io::VolumeReadOptions>(keywords);
-        return volumeTuple(io::readScalars(path, options).volume);
+        return volumeTuple(io::readScalars(path, options));
       },
       "path"_a,
       ("Image of scalars: (array (I, J, K) float32, affine (4, 4) index to RAS mm)." +
@@ -44,7 +45,7 @@ void bindIO(py::module_& m) {
       "read_labels",
       [](const std::string& path, const py::kwargs& keywords) {
         const auto options = optionsOf<io::VolumeReadOptions>(keywords);
-        return volumeTuple(io::readLabels(path, options).volume);
+        return volumeTuple(io::readLabels(path, options));
       },
       "path"_a,
       ("Segmentation: (array (I, J, K) int32, affine (4, 4) index to RAS mm)." +

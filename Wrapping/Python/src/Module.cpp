@@ -8,6 +8,8 @@ PYBIND11_MODULE(_explica, m) {
   explica::python::bindCore(m);
   explica::python::bindGeometry(m);
   explica::python::bindIO(m);
+  explica::python::bindAnnular(m);
+  explica::python::bindCortex(m);
   explica::python::bindVisibility(m);
   explica::python::bindUnfolding(m);
 }

@@ -53,7 +53,8 @@ struct Grid {
   [[nodiscard]] Eigen::Matrix4d affine() const;
 };
 
-/// Grid of an affine whose columns are orthogonal; the third axis of a 2D grid may be arbitrary.
+/// Grid of an affine whose columns are orthogonal up to rounding; the grid's axes are the nearest
+/// orthonormal ones.
 /// @throws InvalidInput  zero, non-finite or sheared (beyond 1e-4 of a right angle) columns
 [[nodiscard]] Grid gridFromAffine(const std::array<int, 3>& size, const Eigen::Matrix4d& affine);
 

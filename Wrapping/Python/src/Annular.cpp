@@ -1,0 +1,134 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Arrays.h"
+#include "Bindings.h"
+#include "Options.h"
+#include "Watch.h"
+
+#include "Explica/Correspondence/Layers.h"
+#include "Explica/Correspondence/Sulci.h"
+#include "Explica/Harmonic/Annulus.h"
+#include "Explica/Harmonic/Interpolant.h"
+
+namespace explica::python {
+namespace {
+
+using namespace py::literals;
+
+/// Every option of `explica thickness` that is not a file.
+struct ThicknessOptions {
+  harmonic::LabelRoles roles;
+  harmonic::AnnulusOptions annulus;
+  correspondence::SulcusOptions sulcus;
+  correspondence::CorrespondenceOptions correspondence;
+  correspondence::LayerOptions layers;
+};
+
+template <class Visitor>
+void describe(ThicknessOptions& o, Visitor&& visit) {
+  describe(o.roles, visit);
+  describe(o.annulus, visit);
+  describe(o.sulcus, visit);
+  describe(o.correspondence, visit);
+  describe(o.layers, visit);
+}
+
+struct Measured {
+  harmonic::Annulus annulus;
+  harmonic::Interpolant interpolant;
+  correspondence::Correspondence found;
+  std::vector<int> layers;
+  std::size_t sulcalVoxels = 0;
+};
+
+Measured measure(harmonic::Annulus annulus, const ThicknessOptions& options, bool recoverSulci,
+                 const Monitor& monitor) {
+  Measured m;
+  if (recoverSulci) {
+    auto recovered = correspondence::recoverSulci(annulus, options.sulcus, monitor);
+    annulus = std::move(recovered.annulus);
+    m.sulcalVoxels = recovered.voxels.size();
+  }
+  m.interpolant = harmonic::solveInterpolant(annulus, {}, monitor);
+  m.found =
+      correspondence::findCorrespondences(annulus, m.interpolant, options.correspondence, monitor);
+  const bool byDepth = options.layers.layerKind == correspondence::LayerKind::Depth;
+  m.layers = correspondence::layersOf(
+      byDepth ? correspondence::depthOf(m.found)
+              : correspondence::volumeDepthOf(annulus, m.interpolant, m.found),
+      options.layers.layers);
+  m.annulus = std::move(annulus);
+  return m;
+}
+
+py::dict arraysOf(const Measured& m) {
+  const auto field = [&](const std::vector<double>& values) {
+    return arrayOf(harmonic::spread(m.annulus, values));
+  };
+  const correspondence::ThicknessSummary summary = correspondence::summaryOf(m.found);
+  return py::dict(
+      "harmonic"_a = arrayOf(harmonic::spread(m.annulus, m.interpolant.u, 0, 0, 1)),
+      "thickness"_a = field(correspondence::thicknessOf(m.found)),
+      "inner_distance"_a = field(m.found.innerDistance),
+      "outer_distance"_a = field(m.found.outerDistance),
+      "depth"_a = field(correspondence::depthOf(m.found)),
+      "inner_point"_a = arrayOf(correspondence::spreadPoints(m.annulus, m.found.innerPoint)),
+      "outer_point"_a = arrayOf(correspondence::spreadPoints(m.annulus, m.found.outerPoint)),
+      "layers"_a = arrayOf(harmonic::spreadLabels(m.annulus, m.layers)),
+      "affine"_a = m.annulus.grid.affine(),
+      "summary"_a =
+          py::dict("voxels"_a = m.annulus.count(), "thickness_mean"_a = summary.mean,
+                   "thickness_median"_a = summary.median, "thickness_p05"_a = summary.p05,
+                   "thickness_p95"_a = summary.p95, "residual"_a = m.interpolant.relativeResidual,
+                   "sulcal_voxels_recovered"_a = m.sulcalVoxels,
+                   "voxels_without_thickness"_a = m.found.missing));
+}
+
+constexpr const char* kReturns =
+    "\n\nReturns a dict of arrays (I, J, K): harmonic (u), thickness, inner_distance and\n"
+    "outer_distance (L0, L1, mm), depth, layers; inner_point and outer_point (I, J, K, 3), RAS "
+    "mm;\n"
+    "affine; and summary, the numbers of summary.json.";
+
+}  // namespace
+
+void bindAnnular(py::module_& m) {
+  m.def(
+      "thickness",
+      [](const py::array& labels, const Eigen::Matrix4d& affine, bool sulci,
+         const py::object& progress, const py::kwargs& keywords) {
+        const auto options = optionsOf<ThicknessOptions>(keywords);
+        const Volume<Label> volume = labelVolume(labels, affine);
+        return arraysOf(Watch(progress).run([&](const Monitor& monitor) {
+          return measure(
+              harmonic::annulusFromLabels(volume, options.roles, options.annulus, monitor), options,
+              sulci, monitor);
+        }));
+      },
+      "labels"_a, "affine"_a, "recover_sulci"_a = true, "progress"_a = py::none(),
+      ("Thickness, depth and layers of the tissue between two boundaries of a segmentation." +
+       std::string(kReturns) + keywordHelp<ThicknessOptions>())
+          .c_str());
+  m.def(
+      "thickness_of_levels",
+      [](const py::array& inner, const py::array& outer, const Eigen::Matrix4d& affine,
+         double level, bool sulci, const py::object& progress, const py::kwargs& keywords) {
+        const auto options = optionsOf<ThicknessOptions>(keywords);
+        const Volume<float> in = scalarVolume(inner, affine);
+        const Volume<float> out = scalarVolume(outer, affine);
+        harmonic::LevelOptions levels;
+        levels.level = level;
+        return arraysOf(Watch(progress).run([&](const Monitor& monitor) {
+          return measure(harmonic::annulusFromLevels(in, out, levels, options.annulus, {}, monitor),
+                         options, sulci, monitor);
+        }));
+      },
+      "inner"_a, "outer"_a, "affine"_a, "level"_a = 0.0, "recover_sulci"_a = true,
+      "progress"_a = py::none(),
+      ("As thickness(), between the surfaces where two scalar volumes cross `level`." +
+       std::string(kReturns) + keywordHelp<ThicknessOptions>())
+          .c_str());
+}
+
+}  // namespace explica::python
