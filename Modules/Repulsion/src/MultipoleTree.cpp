@@ -25,8 +25,8 @@ constexpr int kLanes = kernels::kLanes;
 
 // Distances of centroids, in sums of radii, from which seven and twelve points a face are enough;
 // faces nearer than the last are halved.
-constexpr float kSevenRatio = 1.3F;
-constexpr float kTwelveRatio = 0.9F;
+constexpr float kSevenRatio = 0.9F;
+constexpr float kTwelveRatio = 0.5F;
 constexpr int kHalvings = 8;  // at most: then the faces touch
 
 /// A face or a part of it, single precision, relative to the target leaf's centre.

@@ -41,10 +41,10 @@ struct MergingTree {
 struct ThesisTreeOptions {
   /// Faces whose centroids are nearer than this many mean edges are integrated by [Thesis,
   /// Eq. 5.43].
-  double nearDistance = 1.5;
+  double nearDistance = 3;
   /// A node's children are good enough once they agree with the node to this relative error,
   /// averaged over the face's corners.
-  double relativeError = 0.02;
+  double relativeError = 0.01;
 };
 
 /// Knot energy by the merging tree and recursion, [Thesis, section 5.4]: the baseline.

@@ -1,0 +1,210 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+//
+// Error beside time of the knot energy's evaluators.  Errors are relative L2, against all pairs, on
+// at most 200 moving vertices (the gradient at a vertex does not depend on what else moves).
+//   patches of a pial surface:  --benchmark_filter=Patch
+//   whole closed surfaces:      --benchmark_filter=Closed
+
+#include "../src/Kernels.h"
+#include "Explica/Core/Parallel.h"
+#include "Explica/Geometry/Fixtures.h"
+#include "Explica/Repulsion/AllPairs.h"
+#include "Explica/Repulsion/MultipoleTree.h"
+#include "Explica/Repulsion/ThesisTree.h"
+
+#include <benchmark/benchmark.h>
+#include <Eigen/Geometry>
+
+#include <bit>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string>
+
+namespace {
+
+using namespace explica;
+using namespace explica::repulsion;
+
+constexpr int kSamples = 200;  // vertices at which the error is measured
+
+/// FreeSurfer's binary triangles: three bytes of magic, two lines of comment, big-endian numbers.
+TriangleMesh readPial() {
+  std::ifstream file(std::string(EXPLICA_REAL_DATA) + "/fsaverage5/fs_binary/lh.pial",
+                     std::ios::binary);
+  const auto number = [&file](int bytes) {
+    std::uint32_t value = 0;
+    for (; bytes > 0; --bytes) value = value << 8 | static_cast<unsigned char>(file.get());
+    return value;
+  };
+  TriangleMesh mesh;
+  if (!file) return mesh;
+  number(3);
+  std::string line;
+  std::getline(file, line);
+  std::getline(file, line);
+  const std::uint32_t vertices = number(4);
+  const std::uint32_t faces = number(4);
+  mesh.positions.resize(vertices, 3);
+  mesh.faces.resize(faces, 3);
+  for (Eigen::Index i = 0; i < mesh.positions.size(); ++i) {
+    mesh.positions.data()[i] = std::bit_cast<float>(number(4));
+  }
+  for (Eigen::Index i = 0; i < mesh.faces.size(); ++i) {
+    mesh.faces.data()[i] = static_cast<std::int32_t>(number(4));
+  }
+  return mesh;
+}
+
+struct Scene {
+  TriangleMesh mesh;
+  std::vector<bool> moves;
+  std::int64_t movingFaces = 0;
+  std::vector<bool> sampled;
+  KnotValue exact;  // of the sampled vertices
+};
+
+void finish(Scene& scene, bool withTruth) {
+  const auto& f = scene.mesh.faces;
+  std::vector<std::size_t> moving;
+  for (std::size_t v = 0; v < scene.moves.size(); ++v) {
+    if (scene.moves[v]) moving.push_back(v);
+  }
+  for (Eigen::Index i = 0; i < f.rows(); ++i) {
+    scene.movingFaces += scene.moves[f(i, 0)] || scene.moves[f(i, 1)] || scene.moves[f(i, 2)];
+  }
+  scene.sampled.assign(scene.moves.size(), false);
+  const std::size_t step = std::max<std::size_t>(1, moving.size() / kSamples);
+  for (std::size_t i = 0; i < moving.size(); i += step) scene.sampled[moving[i]] = true;
+  if (withTruth) scene.exact = AllPairs(scene.mesh, scene.sampled).evaluate(scene.mesh.positions);
+}
+
+/// About 1,500 moving faces of fsaverage5's left pial surface, after `levels` subdivisions; the
+/// patch of the unfolding's first example, a little larger.
+const Scene& patch(int levels, double radius) {
+  static std::map<std::pair<int, double>, Scene> scenes;
+  const std::pair key(levels, radius);
+  if (const auto found = scenes.find(key); found != scenes.end()) return found->second;
+  Scene& scene = scenes[key];
+  scene.mesh = readPial();
+  if (scene.mesh.faceCount() == 0) return scene;
+  for (int i = 0; i < levels; ++i) scene.mesh = geometry::subdivide(scene.mesh);
+  const Point centroid = scene.mesh.positions.colwise().mean().transpose();
+  Eigen::Index centre = 0;
+  ((scene.mesh.positions.rowwise() - centroid.transpose()) * Vector(-1, 0.2, 0.2))
+      .maxCoeff(&centre);
+  scene.moves.resize(static_cast<std::size_t>(scene.mesh.vertexCount()));
+  for (Eigen::Index v = 0; v < scene.mesh.vertexCount(); ++v) {
+    scene.moves[static_cast<std::size_t>(v)] =
+        (scene.mesh.positions.row(v) - scene.mesh.positions.row(centre)).norm() < radius;
+  }
+  finish(scene, true);
+  return scene;
+}
+
+const Scene& closed(int levels, bool folded) {
+  static std::map<std::pair<int, bool>, Scene> scenes;
+  const std::pair key(levels, folded);
+  if (const auto found = scenes.find(key); found != scenes.end()) return found->second;
+  Scene& scene = scenes[key];
+  scene.mesh = folded ? geometry::makeFoldedSphere(levels) : geometry::makeIcosphere(levels);
+  scene.moves.assign(static_cast<std::size_t>(scene.mesh.vertexCount()), true);
+  finish(scene, true);
+  return scene;
+}
+
+void report(benchmark::State& state, const Scene& scene, const KnotValue& found) {
+  double difference = 0;
+  double size = 0;
+  for (std::size_t v = 0; v < scene.sampled.size(); ++v) {
+    if (!scene.sampled[v]) continue;
+    const auto row = static_cast<Eigen::Index>(v);
+    difference += (found.gradient.row(row) - scene.exact.gradient.row(row)).squaredNorm();
+    size += scene.exact.gradient.row(row).squaredNorm();
+  }
+  state.counters["faces"] = static_cast<double>(scene.mesh.faceCount());
+  state.counters["moving"] = static_cast<double>(scene.movingFaces);
+  state.counters["gradient_error"] = std::sqrt(difference / size);
+}
+
+template <class Evaluator, class... Options>
+void run(benchmark::State& state, const Scene& scene, const Options&... options) {
+  if (scene.mesh.faceCount() == 0) {
+    state.SkipWithError("skipped: no real data");
+    return;
+  }
+  const Evaluator evaluator(scene.mesh, scene.moves, options...);
+  KnotValue found;
+  for (auto _ : state) found = evaluator.evaluate(scene.mesh.positions);
+  report(state, scene, found);
+  const double value =
+      Evaluator(scene.mesh, scene.sampled, options...).evaluate(scene.mesh.positions).value;
+  state.counters["value_error"] = std::abs(value / scene.exact.value - 1);
+}
+
+void PatchTree(benchmark::State& state) {
+  const double radius = static_cast<double>(state.range(1)) / 2;
+  run<MultipoleTree>(state, patch(static_cast<int>(state.range(0)), radius));
+  state.SetLabel(MultipoleTree::instructionSet());
+}
+/// Near distance in mean edges; relative error per mille.
+void PatchThesisTree(benchmark::State& state) {
+  const ThesisTreeOptions options = {static_cast<double>(state.range(0)),
+                                     static_cast<double>(state.range(1)) / 1000};
+  run<ThesisTree>(state, patch(0, 27.5), options);
+}
+void ClosedTree(benchmark::State& state) {
+  run<MultipoleTree>(state, closed(static_cast<int>(state.range(0)), state.range(1) != 0));
+  state.SetLabel(MultipoleTree::instructionSet());
+}
+
+/// What a plain vectorised sum over all pairs of centroids takes, single precision.
+void ClosedCentroidPairs(benchmark::State& state) {
+  const TriangleMesh mesh = geometry::makeIcosphere(static_cast<int>(state.range(0)));
+  const auto count = static_cast<std::size_t>(mesh.faceCount()) / 16 * 16;
+  std::vector<float> x(count), y(count), z(count), w(count), phi(count), gx(count), gy(count),
+      gz(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto f = static_cast<Eigen::Index>(i);
+    const Point c = (mesh.corner(f, 0) + mesh.corner(f, 1) + mesh.corner(f, 2)) / 3;
+    x[i] = static_cast<float>(c.x());
+    y[i] = static_cast<float>(c.y());
+    z[i] = static_cast<float>(c.z());
+    w[i] = static_cast<float>((mesh.corner(f, 1) - mesh.corner(f, 0))
+                                  .cross(mesh.corner(f, 2) - mesh.corner(f, 0))
+                                  .norm() /
+                              2);
+  }
+  for (auto _ : state) {
+    parallelForBlocks(count, 256, [&](std::size_t begin, std::size_t end) {
+      kernels::addCentroidPairs(x.data(), y.data(), z.data(), w.data(), count, begin, end,
+                                phi.data(), gx.data(), gy.data(), gz.data());
+    });
+    benchmark::DoNotOptimize(phi.data());
+  }
+  state.counters["faces"] = static_cast<double>(mesh.faceCount());
+}
+
+BENCHMARK(PatchTree)
+    ->Args({0, 55})
+    ->Args({1, 55})
+    ->Args({2, 55})
+    ->Args({2, 124})
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK(PatchThesisTree)
+    ->Args({2, 20})
+    ->Args({3, 10})
+    ->Args({6, 2})
+    ->Iterations(1)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK(ClosedTree)
+    ->ArgsProduct({{3, 4, 5, 6, 7}, {0, 1}})
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK(ClosedCentroidPairs)->Arg(6)->Iterations(1)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+}  // namespace
