@@ -32,8 +32,7 @@ constexpr int kRightCortex = 42;
 
 enum class Naming { FreeSurfer, Ribbon, ThreeClass, Unknown };
 
-Naming namingOf(const Volume<Label>& labels) {
-  std::set<Label> found(labels.data.begin(), labels.data.end());
+Naming namingOf(const std::set<Label>& found) {
   const auto has = [&](Label label) { return found.count(label) != 0; };
   if (has(kLeftCortex) && has(kRightCortex) && has(2) && has(41)) {
     return *found.rbegin() > 42 || has(10) ? Naming::FreeSurfer : Naming::Ribbon;
@@ -51,28 +50,44 @@ std::shared_ptr<Json> values(Json json) {
   return std::make_shared<Json>(std::move(json));
 }
 
-Json thicknessValues(const fs::path& labels, Naming naming, bool left) {
+/// @param found  labels that the volume holds; empty if it is yet to be made and will hold all
+Json thicknessValues(const fs::path& labels, Naming naming, bool left,
+                     const std::set<Label>& found) {
   Json json = {{"SEG", labels.string()}};
   std::vector<int> inside;
   std::vector<int> insulated;
-  if (naming == Naming::ThreeClass) {
-    json["inner"] = {3};
-    json["tissue"] = {2};
-    json["insulated"] = {4};
-  } else if (naming == Naming::Ribbon || naming == Naming::FreeSurfer) {
-    // The other hemisphere's inside and the stem touch ours where it is cut.
-    inside = left ? kLeftInside : kRightInside;
-    insulated = left ? kRightInside : kLeftInside;
-    insulated.insert(insulated.end(), kBetween.begin(), kBetween.end());
-    if (naming == Naming::Ribbon) {
+  switch (naming) {
+    case Naming::ThreeClass:
+      inside = {3};
+      insulated = {4};
+      json["tissue"] = {2};
+      break;
+    case Naming::Ribbon:
       inside = {left ? 2 : 41};
       insulated = {left ? 41 : 2};
-    }
-    json["inner"] = inside;
-    json["tissue"] = {left ? kLeftCortex : kRightCortex};
-    json["insulated"] = insulated;
+      json["tissue"] = {left ? kLeftCortex : kRightCortex};
+      break;
+    case Naming::FreeSurfer:
+      // The other hemisphere's inside and the stem touch ours where it is cut.
+      inside = left ? kLeftInside : kRightInside;
+      insulated = left ? kRightInside : kLeftInside;
+      insulated.insert(insulated.end(), kBetween.begin(), kBetween.end());
+      json["tissue"] = {left ? kLeftCortex : kRightCortex};
+      break;
+    case Naming::Unknown:
+      return json;
   }
+  const auto absent = [&](int label) { return !found.empty() && found.count(label) == 0; };
+  inside.erase(std::remove_if(inside.begin(), inside.end(), absent), inside.end());
+  insulated.erase(std::remove_if(insulated.begin(), insulated.end(), absent), insulated.end());
+  json["inner"] = inside;
+  if (!insulated.empty()) json["insulated"] = insulated;
   return json;
+}
+
+std::set<Label> labelsIn(const fs::path& file) {
+  const Volume<Label> labels = io::readLabels(file).volume;
+  return {labels.data.begin(), labels.data.end()};
 }
 
 }  // namespace
@@ -105,6 +120,7 @@ std::vector<PlannedStep> planRun(const fs::path& input, const fs::path& out,
   const std::string side = left ? "L" : "R";
   std::vector<PlannedStep> plan;
   fs::path labels;
+  std::set<Label> found;
   Naming naming = Naming::ThreeClass;
   std::vector<std::string> needs;
   switch (options.kind) {
@@ -131,17 +147,19 @@ std::vector<PlannedStep> planRun(const fs::path& input, const fs::path& out,
     }
     case InputKind::Labels:
       labels = input;
-      naming = namingOf(io::readLabels(input).volume);
+      found = labelsIn(labels);
+      naming = namingOf(found);
       break;
     case InputKind::FreeSurfer:
       labels = input / "mri" / "ribbon.mgz";
+      found = labelsIn(labels);
       naming = Naming::Ribbon;
       break;
   }
 
   if (wanted(options, RunStep::Thickness)) {
     plan.push_back(
-        {"thickness", "thickness", needs, values(thicknessValues(labels, naming, left))});
+        {"thickness", "thickness", needs, values(thicknessValues(labels, naming, left, found))});
   }
   if (wanted(options, RunStep::Surface)) {
     Json json;
@@ -162,6 +180,7 @@ std::vector<PlannedStep> planRun(const fs::path& input, const fs::path& out,
         {"SURFACE",
          (out / "surface" / (std::string(nameOf(options.unfolded)) + ".surf.gii")).string()},
         {"direction", {left ? -1 : 1, 0, 0}},
+        {"surround", "none"},  // a patch alone opens all the way
         {"frames", kFrames}};
     plan.push_back({"unfold", "unfold", {"surface"}, values(json)});
   }

@@ -397,6 +397,22 @@ void addMaps(const StepFolder& step, report::Evolution& evolution, const char* f
   }
 }
 
+/// The part's faces, and those of the whole that touch no vertex of the part.
+Faces withSurroundings(const Faces& part, const TriangleMesh& whole) {
+  std::vector<bool> inPart(static_cast<std::size_t>(whole.vertexCount()), false);
+  for (const std::int32_t v : part.reshaped()) inPart[v] = true;
+  Faces faces(part.rows() + whole.faceCount(), 3);
+  faces.topRows(part.rows()) = part;
+  Eigen::Index count = part.rows();
+  for (Eigen::Index f = 0; f < whole.faceCount(); ++f) {
+    if (inPart[whole.faces(f, 0)] || inPart[whole.faces(f, 1)] || inPart[whole.faces(f, 2)])
+      continue;
+    faces.row(count++) = whole.faces.row(f);
+  }
+  faces.conservativeResize(count, 3);
+  return faces;
+}
+
 void showEvolution(const Study& study, const StepFolder& step, report::ReportContent& content) {
   const std::optional<fs::path> source = inputOf(step, "SURFACE");
   std::vector<TriangleMesh> frames;
@@ -409,7 +425,15 @@ void showEvolution(const Study& study, const StepFolder& step, report::ReportCon
     if (frames.size() == 2 && frames[0].faces.rows() != frames[1].faces.rows())
       frames.erase(frames.begin());
   }
+  // A patch that was unfolded alone is shown beside the surface it was taken from.
+  std::optional<TriangleMesh> whole;
+  if (source && fs::exists(*source)) whole = io::readSurface(*source).mesh;
   report::Evolution evolution = report::evolutionOf(frames);
+  if (whole && whole->faceCount() > evolution.mesh.faceCount() &&
+      whole->vertexCount() == evolution.mesh.vertexCount()) {
+    evolution.mesh.faces = withSurroundings(evolution.mesh.faces, *whole);
+    evolution.mesh.positions = whole->positions;
+  }
   for (std::size_t f = 0; f < files.size(); ++f) {
     const std::string stem = files[f].filename().string();
     const std::size_t number = std::stoul(stem.substr(6));
@@ -447,7 +471,7 @@ void showEvolution(const Study& study, const StepFolder& step, report::ReportCon
 
   // Before and after from the viewpoint and from the side, filled by the region.
   if (!evolution.moved.empty() && evolution.viewpoint) {
-    const TriangleMesh& before = frames.front();
+    const TriangleMesh& before = whole ? *whole : frames.front();
     const TriangleMesh& after = frames.back();
     Point middle = Point::Zero();
     for (const std::int32_t v : evolution.moved) middle += before.positions.row(v).transpose();

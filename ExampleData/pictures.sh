@@ -1,0 +1,23 @@
+#!/bin/sh
+# SPDX-FileCopyrightText: The Explica developers
+# SPDX-License-Identifier: Apache-2.0
+# Draws the pictures of the README from the worked example's results (ExampleData/run.sh).
+set -eu
+cd "$(dirname "$0")/.."
+out=${1:-build/colin27}
+to=ExampleData/pictures
+view="build/bin/explica view"
+mkdir -p "$to"
+
+$view /usr/share/mricron/templates/ch2bet.nii.gz "$out/surface/white.surf.gii" "$out/surface/pial.surf.gii" \
+  --slices 2 --height 660 --screenshot "$to/slices.png"
+$view "$out/surface/pial.surf.gii" --map "$out/surface/thickness.shape.gii" --width 420 --height 330 \
+  --screenshot "$to/thickness.png"
+frames=$(find "$out/unfold/frames" -name 'frame-*.surf.gii' | sort)
+first=$(echo "$frames" | head -n 1)
+last=$(echo "$frames" | tail -n 1)
+$view "$first" "$last" --labels "$out/unfold/region.label.gii" --region "$out/unfold/region.label.gii" \
+  --direction -1,0,0 --focus --width 420 --height 330 --screenshot "$to/unfolding.png"
+$view "$out/unfold" --labels "$out/unfold/region.label.gii" --region "$out/unfold/region.label.gii" \
+  --direction -1,0,0 --focus --width 280 --height 220 --film "$to/unfolding.gif"
+echo "Look at $to"

@@ -1,0 +1,19 @@
+#!/bin/sh
+# SPDX-FileCopyrightText: The Explica developers
+# SPDX-License-Identifier: Apache-2.0
+# The worked example: installs what is needed, builds, and takes Colin27 (a real 1 mm T1 of Debian's
+# mricron-data, skull-stripped, with the AAL atlas in its space) from T1 to an unfolded patch of its left
+# hemisphere.  Safe to run again: steps that are still true are kept.
+#   ExampleData/run.sh [options of explica run]
+set -eu
+cd "$(dirname "$0")/.."
+Testing/setup.sh
+
+templates=/usr/share/mricron/templates
+out=build/colin27
+build/bin/explica run "$templates/ch2bet.nii.gz" --atlas "$templates/aal.nii.gz" --out "$out" --resume "$@" || status=$?
+# 3: stopped before its goal, with results.
+if [ "${status:-0}" != 0 ] && [ "${status:-0}" != 3 ]; then
+  exit "$status"
+fi
+echo "Look at $PWD/$out/report.html in a browser"

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Explica/Phantom/Cortex.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/Parallel.h"
+
+#include <gtest/gtest.h>
+
+namespace explica::phantom {
+namespace {
+
+CortexOptions small() {
+  CortexOptions options;
+  options.size = 40;
+  return options;
+}
+
+TEST(CortexPhantom, LabelsFollowTheDistance) {
+  const Cortex cortex = makeCortex(small());
+  for (std::size_t v = 0; v < cortex.level.size(); ++v) {
+    const bool grey = cortex.level[v] > 0 && cortex.level[v] <= cortex.thickness;
+    ASSERT_EQ(cortex.labels[v] == Cortex::kGrey, grey);
+    ASSERT_EQ(cortex.labels[v] == Cortex::kWhite, cortex.level[v] <= 0);
+  }
+}
+
+TEST(CortexPhantom, DistanceChangesByAtMostTheWay) {
+  const Cortex cortex = makeCortex(small());
+  const Grid& grid = cortex.level.grid;
+  for (std::size_t v = 0; v < cortex.level.size(); ++v) {
+    const auto [i, j, k] = grid.subscripts(v);
+    if (i + 1 >= grid.size[0]) continue;
+    ASSERT_LE(std::abs(cortex.level(i + 1, j, k) - cortex.level(i, j, k)), 1 + 1e-4);
+  }
+}
+
+TEST(CortexPhantom, DoesNotDependOnThreads) {
+  setThreadCount(1);
+  const Cortex one = makeCortex(small());
+  setThreadCount(4);
+  const Cortex four = makeCortex(small());
+  setThreadCount(0);
+  EXPECT_EQ(one.image.data, four.image.data);
+}
+
+TEST(CortexPhantom, RefusesARibbonWithoutRoom) {
+  CortexOptions options = small();
+  options.thickness = 20;
+  EXPECT_THROW((void)makeCortex(options), InvalidInput);
+}
+
+}  // namespace
+}  // namespace explica::phantom

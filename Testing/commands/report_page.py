@@ -1,0 +1,70 @@
+# SPDX-FileCopyrightText: The Explica developers
+# SPDX-License-Identifier: Apache-2.0
+"""Opens a report in headless Chromium; prints what a reader would notice, one fact a line, and ends with 0
+if the page is sound: no console message of level error, no request but the page itself, a canvas that is not
+of one colour, and a slider and a map choice that change the picture."""
+import json
+import sys
+import time
+
+from selenium import webdriver
+from selenium.webdriver.chrome.options import Options
+from selenium.webdriver.chrome.service import Service
+
+options = Options()
+options.binary_location = "/usr/bin/chromium"
+for flag in ("--headless=new --no-sandbox --use-gl=angle --use-angle=swiftshader --enable-unsafe-swiftshader "
+             "--ignore-gpu-blocklist --window-size=1000,900").split():
+    options.add_argument(flag)
+options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+driver = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
+faults = []
+
+
+def picture():
+    time.sleep(0.7)
+    return driver.execute_script("return document.getElementById('canvas').toDataURL()")
+
+
+def check(fact, holds):
+    print(("ok    " if holds else "FAULT ") + fact)
+    if not holds:
+        faults.append(fact)
+
+
+try:
+    driver.get("file://" + sys.argv[1])
+    end = time.time() + 60
+    while time.time() < end and not driver.execute_script(
+            "return document.getElementById('canvas').dataset.ready === 'true'"):
+        time.sleep(0.2)
+    first = picture()
+    colours = driver.execute_script("""
+        const from = document.getElementById('canvas'), to = document.createElement('canvas');
+        to.width = from.width; to.height = from.height;
+        const pen = to.getContext('2d'); pen.drawImage(from, 0, 0);
+        return new Set(new Uint32Array(pen.getImageData(0, 0, to.width, to.height).data.buffer)).size;""")
+    check("canvas shows %d colours" % colours, colours > 20)
+    driver.execute_script("const s = document.getElementById('frame'); s.value = s.max;"
+                          "s.dispatchEvent(new Event('input'));")
+    last = picture()
+    check("slider changes the picture", last != first)
+    driver.execute_script("document.getElementById('before-after').click()")
+    check("before/after goes back", picture() == first)
+    driver.execute_script("const m = document.getElementById('map'); m.value = 'facing';"
+                          "m.dispatchEvent(new Event('change'));")
+    facing = picture()
+    check("map choice changes the picture", facing != first)
+    driver.execute_script("const c = document.getElementById('canvas');"
+                          "c.dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowRight'}));")
+    check("arrow key turns the surface", picture() != facing)
+    for entry in driver.get_log("browser"):
+        check("console: " + entry["message"][:200], entry["level"] != "SEVERE")
+    for entry in driver.get_log("performance"):
+        event = json.loads(entry["message"])["message"]
+        if event["method"] == "Network.requestWillBeSent":
+            url = event["params"]["request"]["url"]
+            check("request: " + url[:80], url.startswith(("data:", "blob:", "file://" + sys.argv[1])))
+finally:
+    driver.quit()
+sys.exit(1 if faults else 0)
