@@ -57,6 +57,10 @@ inline const std::vector<QuickRun>& quickRuns() {
        {"unfold", "{folder}/sphere.surf.gii", "--center", "0,0,30", "--radius", "12", "--direction",
         "0,0,1", "--max-iterations", "3"},
        writeFoldedSphere},
+      {"Run",
+       {kShell},
+       {"run", "{folder}/shell/labels.nii.gz", "--kind", "labels", "--steps", "thickness,report",
+        "--thickness.inner", "1", "--thickness.tissue", "2"}},
   };
   return runs;
 }
