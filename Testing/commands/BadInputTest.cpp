@@ -104,8 +104,19 @@ const BadSurface kBadSurfaces[] = {
      {}},
 };
 
+const VolumeCommand kPolygonCommands[] = {
+    {"Polygon", {"polygon", "{file}", "--viewpoint", "0,100"}},
+};
+
 const VolumeCommand kSurfaceCommands[] = {
     {"Unfold", {"unfold", "{file}", "--vertex", "0", "--radius", "5", "--direction", "0,0,1"}},
+};
+
+const BadSurface kBadPolygons[] = {
+    {"Missing", "absent.csv", "", {"no such file"}},
+    {"NotAPolygon", "letter.csv", "Dear reader, this is a letter.\n", {}},
+    {"TwoVertices", "edge.csv", "x,y\n0,0\n1,0\n", {}},
+    {"NotANumber", "nan.csv", "x,y\n0,0\n1,0\nnan,1\n0,1\n", {}},
 };
 
 class BadSurfaceInput : public ::testing::TestWithParam<std::tuple<VolumeCommand, BadSurface>> {};
@@ -126,6 +137,13 @@ TEST_P(BadSurfaceInput, IsRefusedInOneSentence) {
 INSTANTIATE_TEST_SUITE_P(Table, BadSurfaceInput,
                          ::testing::Combine(::testing::ValuesIn(kSurfaceCommands),
                                             ::testing::ValuesIn(kBadSurfaces)),
+                         [](const auto& row) {
+                           return std::get<0>(row.param).name + std::get<1>(row.param).name;
+                         });
+
+INSTANTIATE_TEST_SUITE_P(Polygons, BadSurfaceInput,
+                         ::testing::Combine(::testing::ValuesIn(kPolygonCommands),
+                                            ::testing::ValuesIn(kBadPolygons)),
                          [](const auto& row) {
                            return std::get<0>(row.param).name + std::get<1>(row.param).name;
                          });
