@@ -69,7 +69,9 @@ TEST_P(EveryCommand, LeavesNothingOnAFullDisk) {
   setting.fileSizeLimit = 400;  // room for the lock file only
   const auto result = explica(words_ + std::vector<std::string>{"--out", folder_ / "a"}, setting);
   EXPECT_EQ(result.exitCode, 4) << result;
-  EXPECT_EQ(folder_.entries(), before);
+  auto after = folder_.entries();
+  for (const auto& name : GetParam().account) std::erase(after, name);
+  EXPECT_EQ(after, before);
 }
 
 INSTANTIATE_TEST_SUITE_P(Quick, EveryCommand, ::testing::ValuesIn(quickRuns()),

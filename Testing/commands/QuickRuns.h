@@ -19,8 +19,10 @@ struct QuickRun {
   std::string name;
   std::vector<std::vector<std::string>> before;  ///< command lines that make its inputs
   std::vector<std::string> words;
-  std::function<void(const TemporaryFolder&)> prepare =
-      {};  ///< writes inputs that no command makes
+  /// Writes inputs that no command makes.
+  std::function<void(const TemporaryFolder&)> prepare = {};
+  /// What may stay in {folder} after a failure: the account of a command made of steps.
+  std::vector<std::string> account = {};
 };
 
 /// A folded sphere of 30 mm, 1280 faces.
@@ -60,7 +62,9 @@ inline const std::vector<QuickRun>& quickRuns() {
       {"Run",
        {kShell},
        {"run", "{folder}/shell/labels.nii.gz", "--kind", "labels", "--steps", "thickness,report",
-        "--thickness.inner", "1", "--thickness.tissue", "2"}},
+        "--thickness.inner", "1", "--thickness.tissue", "2"},
+       {},
+       {"a", "a/run.json"}},
   };
   return runs;
 }
