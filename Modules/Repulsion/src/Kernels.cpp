@@ -503,37 +503,52 @@ void ChooseVertexRules(const VertexBatch& batch, std::int32_t* rules) {
   }
 }
 
-void CentroidPairs(const float* HWY_RESTRICT x, const float* HWY_RESTRICT y,
-                   const float* HWY_RESTRICT z, const float* HWY_RESTRICT w, std::size_t count,
-                   std::size_t begin, std::size_t end, float* HWY_RESTRICT phi,
-                   float* HWY_RESTRICT gx, float* HWY_RESTRICT gy, float* HWY_RESTRICT gz) {
-  const Tag d;
-  const std::size_t lanes = hn::Lanes(d);
-  for (std::size_t i = begin; i < end; i += lanes) {
-    const Vec xi = hn::LoadU(d, x + i);
-    const Vec yi = hn::LoadU(d, y + i);
-    const Vec zi = hn::LoadU(d, z + i);
-    Vec sum = hn::Zero(d), ax = hn::Zero(d), ay = hn::Zero(d), az = hn::Zero(d);
-    for (std::size_t j = 0; j < count; ++j) {
-      const Vec rx = hn::Sub(xi, hn::Set(d, x[j]));
-      const Vec ry = hn::Sub(yi, hn::Set(d, y[j]));
-      const Vec rz = hn::Sub(zi, hn::Set(d, z[j]));
-      const Vec squared = hn::MulAdd(rx, rx, hn::MulAdd(ry, ry, hn::Mul(rz, rz)));
-      const Vec s = hn::IfThenZeroElse(hn::Eq(squared, hn::Zero(d)), reciprocal(d, squared));
-      const Vec term = hn::Mul(hn::Set(d, w[j]), s);
-      sum = hn::Add(sum, term);
-      const Vec pull = hn::Mul(term, s);
+template <class T, class D, class Invert>
+HWY_INLINE void AllCentroids(D d, const Invert& invert, const CentroidSum<T>& sum,
+                             std::size_t begin, std::size_t end) {
+  using V = hn::Vec<D>;
+  for (std::size_t i = begin; i < end; i += hn::Lanes(d)) {
+    const V xi = hn::LoadU(d, sum.x + i);
+    const V yi = hn::LoadU(d, sum.y + i);
+    const V zi = hn::LoadU(d, sum.z + i);
+    V phi = hn::Zero(d), ax = hn::Zero(d), ay = hn::Zero(d), az = hn::Zero(d);
+    for (std::size_t j = 0; j < sum.count; ++j) {
+      const V rx = hn::Sub(xi, hn::Set(d, sum.x[j]));
+      const V ry = hn::Sub(yi, hn::Set(d, sum.y[j]));
+      const V rz = hn::Sub(zi, hn::Set(d, sum.z[j]));
+      const V squared = hn::MulAdd(rx, rx, hn::MulAdd(ry, ry, hn::Mul(rz, rz)));
+      const V s = hn::IfThenZeroElse(hn::Eq(squared, hn::Zero(d)), invert(squared));
+      const V term = hn::Mul(hn::Set(d, sum.w[j]), s);
+      phi = hn::Add(phi, term);
+      const V pull = hn::Mul(term, s);
       ax = hn::MulAdd(pull, rx, ax);
       ay = hn::MulAdd(pull, ry, ay);
       az = hn::MulAdd(pull, rz, az);
     }
-    const Vec factor = hn::Set(d, -2.0F);
-    hn::StoreU(sum, d, phi + i);
-    hn::StoreU(hn::Mul(factor, ax), d, gx + i);
-    hn::StoreU(hn::Mul(factor, ay), d, gy + i);
-    hn::StoreU(hn::Mul(factor, az), d, gz + i);
+    const V factor = hn::Set(d, T{-2});
+    hn::StoreU(phi, d, sum.phi + i);
+    hn::StoreU(hn::Mul(factor, ax), d, sum.gx + i);
+    hn::StoreU(hn::Mul(factor, ay), d, sum.gy + i);
+    hn::StoreU(hn::Mul(factor, az), d, sum.gz + i);
   }
 }
+
+void CentroidsSingle(const CentroidSum<float>& sum, std::size_t begin, std::size_t end) {
+  const Tag d;
+  AllCentroids(
+      d, [d](Vec x) HWY_ATTR { return reciprocal(d, x); }, sum, begin, end);
+}
+
+#if HWY_HAVE_FLOAT64
+void CentroidsDouble(const CentroidSum<double>& sum, std::size_t begin, std::size_t end) {
+  const hn::CappedTag<double, kLanes> d;
+  using V = hn::Vec<decltype(d)>;
+  AllCentroids(
+      d, [d](V x) HWY_ATTR { return hn::Div(hn::Set(d, 1.0), x); }, sum, begin, end);
+}
+#else
+void CentroidsDouble(const CentroidSum<double>&, std::size_t, std::size_t) {}
+#endif
 
 const char* InstructionSet() {
   return hwy::TargetName(HWY_TARGET);
@@ -552,7 +567,8 @@ HWY_EXPORT(IntegrateEdge);
 HWY_EXPORT(IntegrateVertex);
 HWY_EXPORT(ChooseEdgeRules);
 HWY_EXPORT(ChooseVertexRules);
-HWY_EXPORT(CentroidPairs);
+HWY_EXPORT(CentroidsSingle);
+HWY_EXPORT(CentroidsDouble);
 HWY_EXPORT(InstructionSet);
 
 void addFarNodes(TargetLeaf& target, int set, const FarNode* nodes, std::size_t count) {
@@ -584,10 +600,12 @@ void integrateVertex(VertexBatch& batch, int rule) {
   HWY_DYNAMIC_DISPATCH(IntegrateVertex)(batch, rule);
 }
 
-void addCentroidPairs(const float* x, const float* y, const float* z, const float* w,
-                      std::size_t count, std::size_t begin, std::size_t end, float* phi, float* gx,
-                      float* gy, float* gz) {
-  HWY_DYNAMIC_DISPATCH(CentroidPairs)(x, y, z, w, count, begin, end, phi, gx, gy, gz);
+void sumCentroids(const CentroidSum<float>& sum, std::size_t begin, std::size_t end) {
+  HWY_DYNAMIC_DISPATCH(CentroidsSingle)(sum, begin, end);
+}
+
+void sumCentroids(const CentroidSum<double>& sum, std::size_t begin, std::size_t end) {
+  HWY_DYNAMIC_DISPATCH(CentroidsDouble)(sum, begin, end);
 }
 
 const char* instructionSet() {

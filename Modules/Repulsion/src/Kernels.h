@@ -95,12 +95,16 @@ struct alignas(64) VertexBatch {
 void chooseVertexRules(const VertexBatch& batch, std::int32_t* rules);
 void integrateVertex(VertexBatch& batch, int rule);
 
-/// Sum over all ordered pairs of centroids of w_i w_j / d^2 and its gradient by the centroids: the
-/// plain all-pairs sum that tree codes are compared with.  Arrays of `count` floats, a multiple of
-/// 16, padded with weight 0 and distinct points.
-void addCentroidPairs(const float* x, const float* y, const float* z, const float* w,
-                      std::size_t count, std::size_t begin, std::size_t end, float* phi, float* gx,
-                      float* gy, float* gz);
+/// The plain all-pairs sum that tree codes are compared with: sums of w_j / d^2 over all other
+/// centroids, and their gradients.  Arrays of `count`, a multiple of 16.
+template <class T>
+struct CentroidSum {
+  const T *x, *y, *z, *w;
+  std::size_t count;
+  T *phi, *gx, *gy, *gz;
+};
+void sumCentroids(const CentroidSum<float>& sum, std::size_t begin, std::size_t end);
+void sumCentroids(const CentroidSum<double>& sum, std::size_t begin, std::size_t end);
 
 /// Name of the instruction set in use.
 [[nodiscard]] const char* instructionSet();

@@ -62,6 +62,16 @@ TEST(VisibleFraction, BehindASmallerPlateIsItsShadow) {
   EXPECT_NEAR(visibleFraction(floor, viewpoint(Point(2, 2, 2))).total, 1, 1e-12);
 }
 
+TEST(VisibleFraction, RemovingAnOccluderHidesNothing) {
+  const TriangleMesh folded = geometry::makeFoldedSphere(3);
+  TriangleMesh part = folded;
+  part.faces.conservativeResize(folded.faceCount() * 3 / 4, 3);
+  const Viewpoints from = viewpoint(Point(0.5, 1, 4));
+  const VisibleFraction whole = visibleFraction(folded, from);
+  const VisibleFraction less = visibleFraction(part, from);
+  for (Eigen::Index f = 0; f < part.faceCount(); ++f) EXPECT_GE(less.face[f], whole.face[f]) << f;
+}
+
 TEST(VisibleFraction, FromALineIsTheMeanOfItsPoints) {
   const TriangleMesh plate = geometry::makeRectangle(3, 3, 1, 1);
   const Viewpoints line = viewLine(Point(0.5, 0.5, -1), Point(0.5, 0.5, 1), 2);
