@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "Explica/Application/Command.h"
+#include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Segmentation/Hemisphere.h"
@@ -88,13 +89,13 @@ segmentation::AtlasLegend readLegend(const std::filesystem::path& path) {
 Termination run(Context& context, const Settings& s) {
   io::VolumeReadOptions reading = s.reading;
   reading.dimension = 3;
-  const Volume<float> image = io::readScalars(s.image, reading).volume;
+  const Volume<float> image = readScalars(context, "T1", s.image, reading);
   Volume<Label> mask;
-  if (s.mask) mask = io::readLabels(*s.mask, reading).volume;
+  if (s.mask) mask = readLabels(context, "mask", *s.mask, reading);
   Volume<Label> atlas;
   segmentation::AtlasLegend legend;
   if (s.atlas) {
-    atlas = io::readLabels(*s.atlas, reading).volume;
+    atlas = readLabels(context, "atlas", *s.atlas, reading);
     const std::filesystem::path path =
         s.legend ? std::filesystem::path(*s.legend) : legendBeside(*s.atlas);
     legend = readLegend(s.legend ? path : context.input(path, "atlas-legend"));

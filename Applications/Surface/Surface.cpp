@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "Explica/Application/Command.h"
+#include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Geometry/MeshMeasures.h"
@@ -138,20 +139,20 @@ Inputs readTissue(Context& context, const Settings& s) {
   reading.dimension = 3;
   Inputs inputs;
   if (s.segmentation) {
-    const Volume<Label> labels = io::readLabels(*s.segmentation, reading).volume;
+    const Volume<Label> labels = readLabels(context, "SEG", *s.segmentation, reading);
     inputs.grid = labels.grid;
     auto step = context.step("tissue");
     inputs.tissue = surface::tissueFromLabels(labels, s.tissue, context.monitor());
     return inputs;
   }
-  const Volume<float> inner = io::readScalars(*s.innerLevel, reading).volume;
+  const Volume<float> inner = readScalars(context, "inner-level", *s.innerLevel, reading);
   inputs.grid = inner.grid;
   Volume<float> outer, grey;
   Volume<std::uint8_t> insulated;
-  if (s.outerLevel) outer = io::readScalars(*s.outerLevel, reading).volume;
-  if (s.greyShare) grey = io::readScalars(*s.greyShare, reading).volume;
+  if (s.outerLevel) outer = readScalars(context, "outer-level", *s.outerLevel, reading);
+  if (s.greyShare) grey = readScalars(context, "grey-share", *s.greyShare, reading);
   if (s.insulatedMask) {
-    const Volume<Label> mask = io::readLabels(*s.insulatedMask, reading).volume;
+    const Volume<Label> mask = readLabels(context, "insulated-mask", *s.insulatedMask, reading);
     insulated = Volume<std::uint8_t>(mask.grid);
     std::transform(mask.data.begin(), mask.data.end(), insulated.data.begin(),
                    [](Label label) { return static_cast<std::uint8_t>(label != 0); });

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "Explica/Application/Command.h"
+#include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Correspondence/Correspondence.h"
 #include "Explica/Correspondence/Layers.h"
@@ -107,11 +108,11 @@ harmonic::Annulus readAnnulus(Context& context, const Settings& s) {
     throw UsageError("give a label volume, or --inner-level and --outer-level");
   }
   Volume<Label> labels;
-  if (s.labels) labels = io::readLabels(*s.labels, s.reading).volume;
+  if (s.labels) labels = readLabels(context, "SEG", *s.labels, s.reading);
   Volume<float> inner, outer;
   if (s.innerLevel) {
-    inner = io::readScalars(*s.innerLevel, s.reading).volume;
-    outer = io::readScalars(*s.outerLevel, s.reading).volume;
+    inner = readScalars(context, "inner-level", *s.innerLevel, s.reading);
+    outer = readScalars(context, "outer-level", *s.outerLevel, s.reading);
   }
   auto step = context.step("boundary");
   if (!s.innerLevel) {

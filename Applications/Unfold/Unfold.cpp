@@ -3,6 +3,7 @@
 
 #include "Explica/Unfolding/Unfold.h"
 #include "Explica/Application/Command.h"
+#include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Geometry/MeshMeasures.h"
@@ -149,7 +150,7 @@ unfolding::Region regionOf(const TriangleMesh& mesh, const Settings& s,
 
 Termination run(Context& context, const Settings& s) {
   const auto begin = std::chrono::steady_clock::now();
-  const io::LoadedSurface loaded = io::readSurface(s.surface, s.reading);
+  const io::LoadedSurface loaded = readSurface(context, "SURFACE", s.surface, s.reading);
   const TriangleMesh& mesh = loaded.mesh;
   geometry::requireManifold(mesh, s.surface);
   const auto condition = geometry::inspectMesh(mesh);
@@ -189,6 +190,8 @@ Termination run(Context& context, const Settings& s) {
   }
   std::optional<unfolding::Checkpoint> checkpoint;
   if (s.resume) checkpoint = unfolding::readCheckpoint(context.outputFolder() / kStateFile);
+
+  sayHowRead(context, loaded.origin);
 
   std::vector<geometry::FacePair> crossings;
   {
