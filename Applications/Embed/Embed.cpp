@@ -1,0 +1,251 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Coefficients.h"
+#include "Explica/Application/Command.h"
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/WholeFile.h"
+#include "Explica/IO/PolygonFile.h"
+#include "Explica/IO/SurfaceFile.h"
+#include "Explica/IO/VolumeFile.h"
+#include "Explica/Shapes/ShapeFit.h"
+#include "Explica/Shapes/ShapeLevel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace explica::app {
+namespace {
+
+struct Settings {
+  std::vector<std::string> targets;
+  bool fit = false;
+  bool average = false;
+  std::vector<double> weights;
+  std::optional<Eigen::Vector3d> centre;
+  std::optional<double> innerRadius;
+  std::optional<double> outerRadius;
+  std::optional<int> order;
+  int samples = 2000;
+  int grid = 96;
+  int frames = 6;
+  shapes::ShapeFitOptions fitting;
+};
+
+void declare(Declaration& d, Settings& s) {
+  d.synopsis("closed shapes as harmonic functions: fitted, averaged, combined")
+      .description(
+          "A closed curve or surface in an annulus is the 1/2 level of a harmonic function, and "
+          "its "
+          "coefficients can be averaged and combined: every convex combination is again one closed "
+          "shape. Targets are polygons (CSV), surfaces, or coefficients.json of an earlier run; "
+          "all share one annulus.")
+      .reference("Duci, Yezzi, Soatto, Rocha 2006, J. Mathematical Imaging and Vision 25:341-352")
+      .example("explica embed contour.csv --fit --out fit", "Coefficients of a contour")
+      .example("explica embed a.csv b.csv --average --out mean", "Mean shape of two contours")
+      .example("explica embed a.surf.gii b.surf.gii --combine 0.3,0.7 --out mix",
+               "Between two surfaces")
+      .input("TARGET", FileKind::Any, "polygons, surfaces or coefficients.json", s.targets)
+      .option("Shape", Field{"fit", "", "fit a single target (default for one target)"}, s.fit)
+      .option("Shape", Field{"average", "", "mean of the targets (default for several)"}, s.average)
+      .option("Shape", Field{"combine", "", "weights of the targets, one each"}, s.weights)
+      .option("Annulus", Field{"centre", "mm", "default: mean of the targets' points"}, s.centre)
+      .option("Annulus", Field{"inner-radius", "mm", "default: 0.85 of the nearest target point"},
+              s.innerRadius)
+      .option("Annulus", Field{"outer-radius", "mm", "default: 1.15 of the farthest target point"},
+              s.outerRadius)
+      .option("Annulus",
+              Field{"order", "", "highest angular frequency; default 64 in 2D, 14 in 3D"}, s.order)
+      .option("Fit", Field{"samples", "", "points of each target's boundary that are fitted"},
+              s.samples)
+      .options("Fit", s.fitting)
+      .option("Output", Field{"grid", "", "voxels per side, for drawing the shape"}, s.grid)
+      .option("Output", Field{"frames", "", "states of the first target's fit"}, s.frames)
+      .output("coefficients.json", FileKind::JsonFile, "the shape's coefficients")
+      .output("field.nii.gz", FileKind::Volume, "in 3D: u on the grid; the shape is its 1/2 level")
+      .output("shape.csv", FileKind::Polygon, "in 2D: the shape")
+      .output("shape.surf.gii", FileKind::Surface, "in 3D: the shape")
+      .output("fit.tsv", FileKind::Table, "one row a target and iteration")
+      .output("frames/frame-*.csv", FileKind::Polygon,
+              "in 2D: from the initial estimate to the fit")
+      .output("frames/frame-*.surf.gii", FileKind::Surface, "in 3D: the same");
+}
+
+/// A target as it was read: one of the three.
+struct Target {
+  std::optional<shapes::HarmonicShape> shape;
+  std::optional<planar::Curve> curve;
+  std::optional<TriangleMesh> mesh;
+
+  [[nodiscard]] int dimension() const { return shape ? shape->annulus.dimension : (curve ? 2 : 3); }
+};
+
+bool endsWith(const std::string& text, std::string_view end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+Target readTarget(const std::string& path) {
+  Target target;
+  if (endsWith(path, ".json")) {
+    target.shape = readCoefficients(path);
+  } else if (endsWith(path, ".csv") || endsWith(path, ".txt") || endsWith(path, ".tsv")) {
+    target.curve = planar::Curve{io::readPolygon(path), true};
+    planar::requireUsable(*target.curve);
+  } else {
+    target.mesh = io::readSurface(path).mesh;
+  }
+  return target;
+}
+
+shapes::HarmonicAnnulus annulusFor(const Settings& s, const std::vector<Target>& targets,
+                                   const std::vector<shapes::TargetSamples>& samples) {
+  for (const Target& t : targets) {
+    if (t.dimension() != targets.front().dimension()) {
+      throw InvalidInput("targets in the plane and in space cannot be mixed");
+    }
+  }
+  for (const Target& t : targets) {
+    if (t.shape) return t.shape->annulus;  // coefficients fix the annulus for all
+  }
+  shapes::HarmonicAnnulus annulus;
+  annulus.dimension = targets.front().dimension();
+  annulus.order = s.order.value_or(annulus.dimension == 2 ? 64 : 14);
+  Point sum = Point::Zero();
+  double weight = 0;
+  for (const auto& set : samples) {
+    sum += set.points.transpose() * set.weights / set.weights.sum();
+    ++weight;
+  }
+  annulus.centre = s.centre.value_or(sum / weight);
+  if (annulus.dimension == 2) annulus.centre.z() = 0;
+  double nearest = kInfinity;
+  double farthest = 0;
+  for (const auto& set : samples) {
+    const auto r = (set.points.rowwise() - annulus.centre.transpose()).rowwise().norm().eval();
+    nearest = std::min(nearest, r.minCoeff());
+    farthest = std::max(farthest, r.maxCoeff());
+  }
+  annulus.innerRadius = s.innerRadius.value_or(0.85 * nearest);
+  annulus.outerRadius = s.outerRadius.value_or(1.15 * farthest);
+  return annulus;
+}
+
+void writeShape(Context& context, const std::string& stem, const shapes::HarmonicShape& shape,
+                int grid) {
+  if (shape.annulus.dimension == 2) {
+    io::writePolygonCsv(context.output(stem + ".csv"),
+                        shapes::levelCurves(shape, grid).front().positions);
+  } else {
+    io::writeGiftiSurface(context.output(stem + ".surf.gii"), shapes::levelSurface(shape, grid));
+  }
+}
+
+/// Distances both ways between the fitted shape and its target.
+void reportDistance(Context& context, const shapes::HarmonicShape& shape, const Target& target,
+                    int grid) {
+  shapes::LevelDistance there;
+  shapes::LevelDistance back;
+  if (target.curve) {
+    const planar::Curve curve = shapes::levelCurves(shape, grid).front();
+    there = shapes::distanceBetween(curve, *target.curve);
+    back = shapes::distanceBetween(*target.curve, curve);
+  } else if (target.mesh) {
+    const TriangleMesh mesh = shapes::levelSurface(shape, grid);
+    there = shapes::distanceBetween(mesh, *target.mesh);
+    back = shapes::distanceBetween(*target.mesh, mesh);
+  } else {
+    return;
+  }
+  context.result("distance_mean", std::max(there.mean, back.mean));
+  context.result("distance_max", std::max(there.max, back.max));
+}
+
+Termination run(Context& context, const Settings& s) {
+  const int asked = int{s.fit} + int{s.average} + int{!s.weights.empty()};
+  if (asked > 1) throw UsageError("give one of --fit, --average and --combine");
+  if (s.fit && s.targets.size() != 1) throw UsageError("--fit takes one target");
+  if (s.grid < 16 || s.samples < 16 || s.frames < 0) {
+    throw UsageError("--grid and --samples need at least 16, --frames at least 0");
+  }
+  std::vector<Target> targets;
+  std::vector<shapes::TargetSamples> samples;
+  for (const std::string& path : s.targets) {
+    targets.push_back(readTarget(path));
+    const Target& t = targets.back();
+    if (t.curve) samples.push_back(shapes::samplesOf(*t.curve, s.samples));
+    if (t.mesh) samples.push_back(shapes::samplesOf(*t.mesh, s.samples));
+  }
+  const shapes::HarmonicAnnulus annulus = annulusFor(s, targets, samples);
+  shapes::requireUsable(annulus);
+
+  std::vector<shapes::HarmonicShape> fitted;
+  std::string table = "target\titeration\tsymmetric_difference\tdistance_mean\tdistance_max\n";
+  Termination termination = Termination::NotRun;
+  {
+    auto step = context.step("fit");
+    std::size_t next = 0;
+    for (std::size_t k = 0; k < targets.size(); ++k) {
+      if (targets[k].shape) {
+        fitted.push_back(*targets[k].shape);
+        continue;
+      }
+      const shapes::ShapeFit fit =
+          shapes::fitShape(annulus, samples[next++], s.fitting, context.monitor());
+      fitted.push_back(fit.shape);
+      if (termination == Termination::NotRun || !reachedGoal(fit.termination)) {
+        termination = fit.termination;
+      }
+      for (std::size_t i = 0; i < fit.history.size(); ++i) {
+        char line[160];
+        std::snprintf(line, sizeof line, "%zu\t%zu\t%.9g\t%.9g\t%.9g\n", k, i,
+                      fit.history[i].symmetricDifference, fit.history[i].distanceMean,
+                      fit.history[i].distanceMax);
+        table += line;
+      }
+      if (k > 0 || s.frames == 0) continue;
+      const std::size_t last = fit.path.size() - 1;
+      const std::size_t count = std::min<std::size_t>(s.frames, last + 1);
+      for (std::size_t f = 0; f < count; ++f) {
+        char name[48];
+        std::snprintf(name, sizeof name, "frames/frame-%04zu", f);
+        // Early iterations move most: their frames lie closer together.
+        const double share =
+            count > 1 ? static_cast<double>(f) / static_cast<double>(count - 1) : 1;
+        const auto at =
+            static_cast<std::size_t>(std::lround(share * share * static_cast<double>(last)));
+        writeShape(context, name, fit.path[std::max(at, std::min(f, last))], s.grid);
+      }
+      context.result("symmetric_difference_initial", fit.history.front().symmetricDifference);
+      context.result("symmetric_difference_final", fit.history.back().symmetricDifference);
+    }
+    step.termination(termination);
+  }
+  auto step = context.step("combine");
+  const std::vector<double> weights =
+      s.weights.empty() ? std::vector<double>(fitted.size(), 1.0) : s.weights;
+  const shapes::HarmonicShape shape = shapes::combine(fitted, weights);
+  writeTextFile(context.output("coefficients.json"), jsonOf(shape).dump(1) + "\n");
+  writeTextFile(context.output("fit.tsv"), table);
+  writeShape(context, "shape", shape, s.grid);
+  if (annulus.dimension == 3) {
+    io::writeVolume(context.output("field.nii.gz"), shapes::fieldOf(shape, s.grid));
+  }
+  context.result("dimension", annulus.dimension);
+  context.result("targets", targets.size());
+  context.result("coefficients", 2 * annulus.perBoundary());
+  context.result("inner_radius", annulus.innerRadius);
+  context.result("outer_radius", annulus.outerRadius);
+  context.result("voxel", 2 * annulus.outerRadius / (s.grid - 1));
+  context.result("boundary_margin", shapes::boundaryMargin(shape));
+  if (targets.size() == 1) reportDistance(context, shape, targets.front(), s.grid);
+  return termination;
+}
+
+}  // namespace
+
+Command embedCommand() {
+  return makeCommand<Settings>("embed", declare, run);
+}
+
+}  // namespace explica::app

@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Core/Describe.h"
+#include "Explica/Core/Monitor.h"
+#include "Explica/Core/Termination.h"
+#include "Explica/Shapes/HarmonicAnnulus.h"
+
+#include <vector>
+
+namespace explica::shapes {
+
+/// A target's boundary as points, each for a piece of it.
+struct TargetSamples {
+  Positions points;         ///< P x 3, mm; z = 0 in the plane
+  Eigen::VectorXd weights;  ///< length (mm) or area (mm^2) of each piece
+};
+
+struct ShapeFitOptions {
+  int maxIterations = 30;
+  double step = 0.5;         ///< share of the way to each iteration's optimum; 1 is the full step
+  double smoothness = 1e-9;  ///< pull to the concentric shape, against the fit's mean weight
+};
+
+template <class Visitor>
+void describe(ShapeFitOptions& options, Visitor&& visit) {
+  visit(Field{"max-iterations", "", "iterations of the fit"}, options.maxIterations);
+  visit(Field{"fit-step", "", "share of the way to each iteration's optimum"}, options.step);
+  visit(Field{"smoothness", "", "pull of the amplitudes towards the concentric shape"},
+        options.smoothness);
+}
+
+struct ShapeFitIteration {
+  double symmetricDifference = 0;  ///< area (mm^2) or volume (mm^3) between shape and target
+  double distanceMean = 0;         ///< of the target's points from the shape, mm
+  double distanceMax = 0;          ///< mm
+};
+
+struct ShapeFit {
+  HarmonicShape shape;
+  std::vector<ShapeFitIteration> history;  ///< first entry is the initial estimate
+  std::vector<HarmonicShape> path;         ///< the shape at every entry
+  Termination termination = Termination::NotRun;
+};
+
+/// Finds the coefficients whose 1/2 level has the smallest set-symmetric difference to a target,
+/// starting from the concentric shape.
+///
+/// To first order the set between the level and the target is the integral over the target of the
+/// distance |u - 1/2| / |grad u|; its minimum is found by re-weighted least squares.  Unknowns are
+/// the positive amplitudes of bumps of boundary values, below 1/2 on the inner and above 1/2 on the
+/// outer boundary, so that the result and all its convex combinations are one closed component.
+/// The annulus should not be much wider than the target: details fade with the distance from a
+/// boundary.
+/// @throws InvalidInput  a target point outside the annulus, or an option out of range
+[[nodiscard]] ShapeFit fitShape(const HarmonicAnnulus& annulus, const TargetSamples& target,
+                                const ShapeFitOptions& options = {}, const Monitor& monitor = {});
+
+/// Weighted mean of shapes of one annulus: weights are divided by their sum.
+/// @throws InvalidInput  no shape, another number of weights, a negative weight, weights that are
+///                       all zero, or different annuli
+[[nodiscard]] HarmonicShape combine(const std::vector<HarmonicShape>& shapes,
+                                    const std::vector<double>& weights);
+
+}  // namespace explica::shapes

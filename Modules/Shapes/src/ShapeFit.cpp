@@ -1,0 +1,246 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Shapes/ShapeFit.h"
+
+#include "AngularBasis.h"
+#include "Explica/Core/Errors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace explica::shapes {
+namespace {
+
+constexpr double kDifference = 1e-4;  // of the annulus' width: step of the differences for grad u
+constexpr double kRounding = 1e-3;    // of the width: distances below count as equal in the L1 sum
+constexpr double kLeastShare = 0.1;   // of the mean amplitude: keeps boundary values off 1/2
+constexpr double kScaleWeight = 1e2;  // of the amplitudes' sum, against the fit's weights
+constexpr double kConverged = 1e-3;   // relative change of the symmetric difference
+constexpr int kMostSweeps = 400;      // of coordinate descent per iteration; the next one goes on
+constexpr double kSweepTolerance = 1e-7;  // largest change of an amplitude, against their mean
+
+/// Coefficients by Y_j of non-negative bumps ((1 + cos g)/2)^order, g the angle from one of many
+/// directions spread evenly; mean 1 each.  perBoundary() x directions.
+Eigen::MatrixXd bumps(const HarmonicAnnulus& annulus) {
+  const int order = std::max(annulus.order, 1);
+  const int count = annulus.dimension == 2 ? std::max(order, 8) : std::max(order * order, 32);
+  const double golden = kPi * (3 - std::sqrt(5.0));
+  Eigen::MatrixXd coefficients(annulus.perBoundary(), count);
+  for (int b = 0; b < count; ++b) {
+    Vector direction;
+    if (annulus.dimension == 2) {
+      const double angle = 2 * kPi * b / count;
+      direction = {std::cos(angle), std::sin(angle), 0};
+    } else {  // Fibonacci's lattice
+      const double z = 1 - (2.0 * b + 1) / count;
+      const double s = std::sqrt(1 - z * z);
+      direction = {s * std::cos(golden * b), s * std::sin(golden * b), z};
+    }
+    angularBasis(annulus.dimension, annulus.order, direction, coefficients.col(b).data());
+  }
+  const int shift = annulus.dimension == 2 ? 0 : 1;
+  double factor = 1;
+  int degree = 0;
+  for (Eigen::Index k = 0; k < coefficients.rows(); ++k) {
+    for (; degree < degreeOf(annulus.dimension, static_cast<int>(k)); ++degree) {
+      factor *= static_cast<double>(order - degree) / (order + degree + 1 + shift);
+    }
+    coefficients.row(k) *= annulus.dimension == 2 && degree > 0 ? 2 * factor : factor;
+  }
+  return coefficients;
+}
+
+/// Least 1/2 x' G x - r' x with every x at least `least`, by coordinate descent from x.
+void descend(const Eigen::MatrixXd& gram, const Eigen::VectorXd& right, double least,
+             Eigen::VectorXd& x) {
+  Eigen::VectorXd residual = gram * x - right;
+  const double mean = x.mean();
+  for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+    double largest = 0;
+    for (Eigen::Index k = 0; k < x.size(); ++k) {
+      const double moved = std::max(least, x[k] - residual[k] / gram(k, k));
+      const double change = moved - x[k];
+      if (change == 0) continue;
+      residual += change * gram.col(k);
+      x[k] = moved;
+      largest = std::max(largest, std::abs(change));
+    }
+    if (largest < kSweepTolerance * mean) break;
+  }
+}
+
+/// u = 1/2 - (sum of bumps on the inner) + (sum of bumps on the outer boundary), with positive
+/// amplitudes x, inner ones first: boundary values are on their sides of 1/2 by construction.
+class Fit {
+ public:
+  Fit(const HarmonicAnnulus& annulus, const TargetSamples& target, const ShapeFitOptions& options)
+      : annulus_(annulus),
+        options_(options),
+        weights_(target.weights / target.weights.sum()),
+        total_(target.weights.sum()),
+        width_(annulus.outerRadius - annulus.innerRadius),
+        bumps_(bumps(annulus)),
+        response_(responseAt(target.points)) {
+    const double h = kDifference * width_;
+    for (int axis = 0; axis < annulus.dimension; ++axis) {
+      Positions ahead = target.points;
+      Positions behind = target.points;
+      ahead.col(axis).array() += h;
+      behind.col(axis).array() -= h;
+      slopes_.push_back((responseAt(ahead) - responseAt(behind)) / (2 * h));
+    }
+  }
+
+  /// Amplitudes of the concentric shape: 1/2 in all on either boundary.
+  [[nodiscard]] Eigen::VectorXd initial() const {
+    return Eigen::VectorXd::Constant(2 * bumps_.cols(), 0.5 / static_cast<double>(bumps_.cols()));
+  }
+
+  [[nodiscard]] HarmonicShape shapeOf(const Eigen::VectorXd& x) const {
+    HarmonicShape shape{annulus_, -bumps_ * x.head(bumps_.cols()), bumps_ * x.tail(bumps_.cols())};
+    shape.inner[0] += 0.5;
+    shape.outer[0] += 0.5;
+    return shape;
+  }
+
+  [[nodiscard]] ShapeFitIteration account(const Eigen::VectorXd& x) const {
+    const Eigen::VectorXd d = (response_ * x).cwiseQuotient(slope(x)).cwiseAbs();
+    return {total_ * weights_.dot(d), weights_.dot(d), d.maxCoeff()};
+  }
+
+  /// Minimum of the present weighting.
+  [[nodiscard]] Eigen::VectorXd optimum(const Eigen::VectorXd& x) const {
+    const Eigen::VectorXd slopes = slope(x);
+    const Eigen::VectorXd d = (response_ * x).cwiseQuotient(slopes).cwiseAbs();
+    // |d| = d^2 / |d|, with d = (u - 1/2) / |grad u|, all in units of the annulus' width.
+    Eigen::VectorXd root(d.size());
+    for (Eigen::Index p = 0; p < d.size(); ++p) {
+      const double floor = kRounding * width_;
+      root[p] = std::sqrt(weights_[p] / (std::max(d[p], floor) * width_)) / slopes[p];
+    }
+    Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(x.size(), x.size());
+    gram.selfadjointView<Eigen::Lower>().rankUpdate((root.asDiagonal() * response_).transpose());
+    gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
+    // Scaling u - 1/2 leaves the level where it is: the sum of all amplitudes is held at 1.
+    gram.array() += kScaleWeight;
+    Eigen::VectorXd right = Eigen::VectorXd::Constant(x.size(), kScaleWeight);
+    const double ridge = options_.smoothness * gram.trace() / static_cast<double>(x.size());
+    gram.diagonal().array() += ridge;
+    right += ridge * initial();
+    Eigen::VectorXd best = x;
+    descend(gram, right, kLeastShare * initial()[0], best);
+    return best;
+  }
+
+ private:
+  /// u - 1/2 at points for unit amplitudes.
+  [[nodiscard]] Eigen::MatrixXd responseAt(const Positions& points) const {
+    const Eigen::MatrixXd basis = basisAt(annulus_, points);
+    const Eigen::Index n = annulus_.perBoundary();
+    Eigen::MatrixXd response(points.rows(), 2 * bumps_.cols());
+    response << -basis.leftCols(n) * bumps_, basis.rightCols(n) * bumps_;
+    return response;
+  }
+
+  [[nodiscard]] Eigen::VectorXd slope(const Eigen::VectorXd& x) const {
+    Eigen::VectorXd squares = Eigen::VectorXd::Zero(response_.rows());
+    for (const Eigen::MatrixXd& s : slopes_) squares += (s * x).cwiseAbs2();
+    // A flat spot would count as infinitely far: at least a tenth of the concentric shape's slope.
+    return squares.cwiseSqrt().cwiseMax(0.1 / width_);
+  }
+
+  HarmonicAnnulus annulus_;
+  ShapeFitOptions options_;
+  Eigen::VectorXd weights_;  ///< sum to 1
+  double total_;
+  double width_;
+  Eigen::MatrixXd bumps_;
+  Eigen::MatrixXd response_;             ///< P x amplitudes
+  std::vector<Eigen::MatrixXd> slopes_;  ///< its derivatives along the axes
+};
+
+}  // namespace
+
+ShapeFit fitShape(const HarmonicAnnulus& annulus, const TargetSamples& target,
+                  const ShapeFitOptions& options, const Monitor& monitor) {
+  requireUsable(annulus);
+  if (target.points.rows() == 0 || target.points.rows() != target.weights.size() ||
+      !(target.weights.minCoeff() >= 0 && target.weights.sum() > 0)) {
+    throw InvalidInput("fit: the target needs points with one weight each");
+  }
+  if (!(options.step > 0 && options.step <= 1) || options.maxIterations < 0 ||
+      !(options.smoothness > 0)) {
+    throw InvalidInput("fit: step in (0, 1], iterations >= 0 and smoothness > 0 are needed");
+  }
+  for (Eigen::Index p = 0; p < target.points.rows(); ++p) {
+    Vector d = target.points.row(p).transpose() - annulus.centre;
+    if (annulus.dimension == 2) d.z() = 0;
+    const double r = d.norm();
+    if (!(r > annulus.innerRadius && r < annulus.outerRadius)) {
+      throw InvalidInput("fit: a point of the target is " + std::to_string(r) +
+                         " mm from the centre, outside the annulus from " +
+                         std::to_string(annulus.innerRadius) + " to " +
+                         std::to_string(annulus.outerRadius) + " mm");
+    }
+  }
+  const Fit fit(annulus, target, options);
+  Eigen::VectorXd x = fit.initial();
+  ShapeFit result;
+  const auto record = [&] {
+    result.shape = fit.shapeOf(x);
+    result.history.push_back(fit.account(x));
+    result.path.push_back(result.shape);
+  };
+  record();
+  result.termination = Termination::MaxIterations;
+  for (int k = 0; k < options.maxIterations; ++k) {
+    if (monitor.shouldStop()) {
+      result.termination = Termination::Interrupted;
+      break;
+    }
+    x += options.step * (fit.optimum(x) - x);
+    record();
+    monitor.progress(static_cast<double>(k + 1) / options.maxIterations, "fitting");
+    const double before = result.history[result.history.size() - 2].symmetricDifference;
+    const double now = result.history.back().symmetricDifference;
+    if (k > 3 && std::abs(before - now) < kConverged * now) {
+      result.termination = Termination::Converged;
+      break;
+    }
+  }
+  return result;
+}
+
+HarmonicShape combine(const std::vector<HarmonicShape>& shapes,
+                      const std::vector<double>& weights) {
+  if (shapes.empty() || shapes.size() != weights.size()) {
+    throw InvalidInput("combine: " + std::to_string(shapes.size()) + " shapes and " +
+                       std::to_string(weights.size()) + " weights found, one each is needed");
+  }
+  double sum = 0;
+  for (double w : weights) {
+    if (!(w >= 0)) throw InvalidInput("combine: weights must not be negative");
+    sum += w;
+  }
+  if (!(sum > 0)) throw InvalidInput("combine: all weights are zero");
+  HarmonicShape result = shapes.front();
+  result.inner.setZero();
+  result.outer.setZero();
+  for (std::size_t s = 0; s < shapes.size(); ++s) {
+    const HarmonicAnnulus& a = shapes[s].annulus;
+    const HarmonicAnnulus& b = result.annulus;
+    if (a.dimension != b.dimension || a.order != b.order || a.innerRadius != b.innerRadius ||
+        a.outerRadius != b.outerRadius || a.centre != b.centre) {
+      throw InvalidInput("combine: shape " + std::to_string(s) +
+                         " lies in another annulus than the first");
+    }
+    result.inner += weights[s] / sum * shapes[s].inner;
+    result.outer += weights[s] / sum * shapes[s].outer;
+  }
+  return result;
+}
+
+}  // namespace explica::shapes

@@ -1,0 +1,154 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Shapes/ShapeLevel.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/Parallel.h"
+#include "Explica/Geometry/FaceTree.h"
+#include "Explica/Planar/Contour.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+
+namespace explica::shapes {
+namespace {
+
+/// Newton steps along the gradient onto u = 1/2, at most a voxel in all.
+void moveOntoLevel(const HarmonicShape& shape, double voxel, Positions& points) {
+  const int axes = shape.annulus.dimension;
+  const Positions start = points;
+  const double h = 1e-3 * voxel;
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::VectorXd excess = (valuesAt(shape, points).array() - 0.5).matrix();
+    Positions gradient = Positions::Zero(points.rows(), 3);
+    for (int axis = 0; axis < axes; ++axis) {
+      Positions moved = points;
+      moved.col(axis).array() += h;
+      gradient.col(axis) = valuesAt(shape, moved);
+      moved.col(axis).array() -= 2 * h;
+      gradient.col(axis) = (gradient.col(axis) - valuesAt(shape, moved)) / (2 * h);
+    }
+    for (Eigen::Index p = 0; p < points.rows(); ++p) {
+      const double slope = gradient.row(p).squaredNorm();
+      if (!(slope > 0)) continue;
+      const Eigen::RowVector3d step = -excess[p] / slope * gradient.row(p);
+      const Eigen::RowVector3d target = points.row(p) + step;
+      if ((target - start.row(p)).norm() < 0.5 * voxel) points.row(p) = target;
+    }
+  }
+}
+
+Grid gridOf(const HarmonicAnnulus& annulus, int voxels) {
+  if (voxels < 8) throw InvalidInput("grid: at least 8 voxels per side are needed");
+  Grid grid;
+  grid.size = {voxels, voxels, annulus.dimension == 2 ? 1 : voxels};
+  const double side = 2 * annulus.outerRadius / (voxels - 1);
+  grid.spacing = Vector::Constant(side);
+  grid.origin = annulus.centre - Vector::Constant(annulus.outerRadius);
+  if (annulus.dimension == 2) grid.origin.z() = 0;
+  return grid;
+}
+
+}  // namespace
+
+Volume<float> fieldOf(const HarmonicShape& shape, int voxels) {
+  requireUsable(shape.annulus);
+  Volume<float> field(gridOf(shape.annulus, voxels));
+  const Grid& grid = field.grid;
+  const std::size_t row = static_cast<std::size_t>(grid.size[0]);
+  for (std::size_t first = 0; first < field.size(); first += 64 * row) {
+    const std::size_t count = std::min(field.size() - first, 64 * row);
+    Positions points(static_cast<Eigen::Index>(count), 3);
+    for (std::size_t v = 0; v < count; ++v) {
+      const auto [i, j, k] = grid.subscripts(first + v);
+      points.row(static_cast<Eigen::Index>(v)) =
+          grid.toWorld({double(i), double(j), double(k)}).transpose();
+    }
+    const Eigen::VectorXd values = valuesAt(shape, points);
+    for (std::size_t v = 0; v < count; ++v) {
+      field[first + v] = static_cast<float>(values[static_cast<Eigen::Index>(v)]);
+    }
+  }
+  return field;
+}
+
+std::vector<planar::Curve> levelCurves(const HarmonicShape& shape, int voxels) {
+  if (shape.annulus.dimension != 2) throw InvalidInput("level curves: the shape is in space");
+  Volume<float> field = fieldOf(shape, voxels);
+  for (float& value : field.data) value = 1 - value;  // contours run around high values
+  std::vector<planar::Curve> curves = planar::contoursOfSlice(field, 0, 0.5);
+  for (planar::Curve& curve : curves) {
+    Positions points = Positions::Zero(curve.vertexCount(), 3);
+    points.leftCols(2) = curve.positions;
+    moveOntoLevel(shape, field.grid.spacing.x(), points);
+    curve.positions = points.leftCols(2);
+  }
+  return curves;
+}
+
+TriangleMesh levelSurface(const HarmonicShape& shape, int voxels) {
+  if (shape.annulus.dimension != 3) throw InvalidInput("level surface: the shape is in the plane");
+  const Volume<float> field = fieldOf(shape, voxels);
+  TriangleMesh mesh = levelSurfaceOf(field, 0.5);
+  moveOntoLevel(shape, field.grid.spacing.x(), mesh.positions);
+  return mesh;
+}
+
+TargetSamples samplesOf(const planar::Curve& target, int count) {
+  const planar::Curve fine = planar::resampled(target, count);
+  TargetSamples samples{Positions::Zero(count, 3), planar::edgeLengths(fine)};
+  samples.points.leftCols(2) = fine.positions;
+  return samples;
+}
+
+TargetSamples samplesOf(const TriangleMesh& target, int count) {
+  const Eigen::Index stride = std::max<Eigen::Index>(1, target.faceCount() / std::max(1, count));
+  const Eigen::Index taken = (target.faceCount() + stride - 1) / stride;
+  TargetSamples samples{Positions(taken, 3), Eigen::VectorXd(taken)};
+  for (Eigen::Index s = 0; s < taken; ++s) {
+    const Eigen::Index f = s * stride;
+    const Point a = target.corner(f, 0);
+    const Point b = target.corner(f, 1);
+    const Point c = target.corner(f, 2);
+    samples.points.row(s) = ((a + b + c) / 3).transpose();
+    samples.weights[s] = static_cast<double>(stride) * (b - a).cross(c - a).norm() / 2;
+  }
+  return samples;
+}
+
+LevelDistance distanceBetween(const planar::Curve& shape, const planar::Curve& target) {
+  LevelDistance result;
+  for (int v = 0; v < shape.vertexCount(); ++v) {
+    const planar::Point2 q = shape.point(v);
+    double least = kInfinity;
+    for (int e = 0; e < target.edgeCount(); ++e) {
+      const planar::Point2 a = target.point(e);
+      const planar::Point2 t = target.point(target.next(e)) - a;
+      const double s = std::clamp((q - a).dot(t) / t.squaredNorm(), 0.0, 1.0);
+      least = std::min(least, (q - a - s * t).norm());
+    }
+    result.max = std::max(result.max, least);
+    result.mean += least / shape.vertexCount();
+  }
+  return result;
+}
+
+LevelDistance distanceBetween(const TriangleMesh& shape, const TriangleMesh& target) {
+  const geometry::FaceTree tree(target);
+  std::vector<double> distances(static_cast<std::size_t>(shape.vertexCount()));
+  parallelFor(distances.size(), 256, [&](std::size_t v) {
+    const Point q = shape.positions.row(static_cast<Eigen::Index>(v)).transpose();
+    distances[v] = std::sqrt(tree.closestPoint(q).squaredDistance);
+  });
+  LevelDistance result;
+  for (double d : distances) {
+    result.max = std::max(result.max, d);
+    result.mean += d / static_cast<double>(distances.size());
+  }
+  return result;
+}
+
+}  // namespace explica::shapes

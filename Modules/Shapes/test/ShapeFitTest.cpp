@@ -1,0 +1,155 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Shapes/ShapeFit.h"
+
+#include "Explica/Geometry/Fixtures.h"
+#include "Explica/Planar/PolygonPhantoms.h"
+#include "Explica/Shapes/ShapeLevel.h"
+
+#include <gtest/gtest.h>
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <random>
+
+namespace explica::shapes {
+namespace {
+
+/// A closed curve with lobes: radius 20 (1 + depth cos(lobes t + phase)).
+planar::Curve lobed(int lobes, double depth, double phase) {
+  planar::Curve curve = planar::makeCircle(400, 1);
+  for (int v = 0; v < curve.vertexCount(); ++v) {
+    const double t = 2 * kPi * v / curve.vertexCount();
+    curve.positions.row(v) *= 20 * (1 + depth * std::cos(lobes * t + phase));
+  }
+  return curve;
+}
+
+/// A smooth closed surface with lobes about the coordinate axes.
+TriangleMesh lobedSurface(double depth, double twist) {
+  TriangleMesh mesh = geometry::makeIcosphere(4);
+  for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
+    const Vector d = mesh.positions.row(v).transpose().normalized();
+    const double x = std::cos(twist) * d.x() + std::sin(twist) * d.y();
+    const double y = -std::sin(twist) * d.x() + std::cos(twist) * d.y();
+    const double r = 30 * (1 + depth * (x * x * x * x + y * y * y * y + std::pow(d.z(), 4) - 0.6));
+    mesh.positions.row(v) = r * d.transpose();
+  }
+  return mesh;
+}
+
+HarmonicAnnulus planeAnnulus() {
+  return {2, Point::Zero(), 12.5, 29, 64};
+}
+
+int componentsOf(const TriangleMesh& mesh) {
+  std::vector<std::int32_t> parent(static_cast<std::size_t>(mesh.vertexCount()));
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](std::int32_t v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
+    parent[root(mesh.faces(f, 0))] = root(mesh.faces(f, 1));
+    parent[root(mesh.faces(f, 1))] = root(mesh.faces(f, 2));
+  }
+  int count = 0;
+  for (std::size_t v = 0; v < parent.size(); ++v) {
+    count += parent[v] == static_cast<std::int32_t>(v);
+  }
+  return count;
+}
+
+TEST(ShapeFit, OfACurveIsWithinHalfAVoxel) {
+  for (const planar::Curve& target : {lobed(3, 0.2, 0.4), lobed(5, 0.08, 1), lobed(2, 0.25, 0)}) {
+    const ShapeFit fit = fitShape(planeAnnulus(), samplesOf(target, 600));
+    const std::vector<planar::Curve> curves = levelCurves(fit.shape, 200);
+    ASSERT_EQ(curves.size(), 1U);
+    const double voxel = 58.0 / 199;
+    EXPECT_LT(distanceBetween(curves[0], target).max, 0.5 * voxel);
+    EXPECT_LT(distanceBetween(target, curves[0]).max, 0.5 * voxel);
+    EXPECT_GT(boundaryMargin(fit.shape), 0);
+    EXPECT_LT(fit.history.back().symmetricDifference,
+              0.02 * fit.history.front().symmetricDifference);
+  }
+}
+
+TEST(ShapeFit, SymmetricDifferenceNeverRisesMuch) {
+  const ShapeFit fit = fitShape(planeAnnulus(), samplesOf(lobed(3, 0.2, 0.4), 600));
+  for (std::size_t k = 1; k < fit.history.size(); ++k) {
+    EXPECT_LT(fit.history[k].symmetricDifference,
+              1.05 * fit.history[k - 1].symmetricDifference + 0.05);
+  }
+}
+
+TEST(ShapeFit, OfASurfaceIsWithinHalfAVoxelOfA96Grid) {
+  const TriangleMesh target = lobedSurface(0.3, 0);
+  const HarmonicAnnulus annulus{3, Point::Zero(), 23.5, 38.5, 14};
+  const ShapeFit fit = fitShape(annulus, samplesOf(target, 2000));
+  const TriangleMesh mesh = levelSurface(fit.shape, 96);
+  EXPECT_EQ(componentsOf(mesh), 1);
+  EXPECT_EQ(mesh.vertexCount() - mesh.faceCount() / 2, 2);
+  const double voxel = 77.0 / 95;
+  EXPECT_LT(distanceBetween(mesh, target).max, 0.5 * voxel);
+  EXPECT_LT(distanceBetween(target, mesh).max, 0.5 * voxel);
+}
+
+TEST(ShapeFit, EveryConvexCombinationOfCurvesIsOneClosedCurve) {
+  std::vector<HarmonicShape> shapes;
+  for (const planar::Curve& target :
+       {lobed(3, 0.2, 0.4), lobed(5, 0.08, 1), lobed(2, 0.25, 0), lobed(4, 0.15, 2)}) {
+    shapes.push_back(fitShape(planeAnnulus(), samplesOf(target, 500)).shape);
+  }
+  std::mt19937 random(5);
+  std::exponential_distribution<double> weight(1);
+  for (int trial = 0; trial < 30; ++trial) {
+    std::vector<double> weights(shapes.size());
+    for (double& w : weights) w = weight(random);
+    const HarmonicShape mixed = combine(shapes, weights);
+    EXPECT_GT(boundaryMargin(mixed), 0) << "seed 5, trial " << trial;
+    const std::vector<planar::Curve> curves = levelCurves(mixed, 80);
+    ASSERT_EQ(curves.size(), 1U) << "seed 5, trial " << trial;
+    EXPECT_TRUE(planar::intersectingEdges(curves[0]).empty());
+  }
+}
+
+TEST(ShapeFit, EveryConvexCombinationOfSurfacesIsOneClosedSurface) {
+  const HarmonicAnnulus annulus{3, Point::Zero(), 21, 41, 10};
+  std::vector<HarmonicShape> shapes;
+  for (const auto& [depth, twist] : {std::pair{0.3, 0.0}, {0.3, 0.7}, {-0.2, 0.3}}) {
+    shapes.push_back(fitShape(annulus, samplesOf(lobedSurface(depth, twist), 1500)).shape);
+  }
+  std::mt19937 random(9);
+  std::exponential_distribution<double> weight(1);
+  for (int trial = 0; trial < 6; ++trial) {
+    std::vector<double> weights(shapes.size());
+    for (double& w : weights) w = weight(random);
+    const HarmonicShape mixed = combine(shapes, weights);
+    EXPECT_GT(boundaryMargin(mixed), 0);
+    const TriangleMesh mesh = levelSurface(mixed, 28);
+    EXPECT_EQ(componentsOf(mesh), 1) << "seed 9, trial " << trial;
+    // Closed: every directed edge has its opposite, once.
+    std::map<std::pair<int, int>, int> edges;
+    for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
+      for (int k = 0; k < 3; ++k) ++edges[{mesh.faces(f, k), mesh.faces(f, (k + 1) % 3)}];
+    }
+    for (const auto& [edge, count] : edges) {
+      ASSERT_EQ(count, 1);
+      ASSERT_EQ((edges.count({edge.second, edge.first})), 1U);
+    }
+  }
+}
+
+TEST(ShapeFit, CombinationAtACornerIsThatShape) {
+  const HarmonicShape a = fitShape(planeAnnulus(), samplesOf(lobed(3, 0.2, 0), 300)).shape;
+  const HarmonicShape b = fitShape(planeAnnulus(), samplesOf(lobed(4, 0.15, 0), 300)).shape;
+  EXPECT_LT((combine({a, b}, {2, 0}).inner - a.inner).norm(), 1e-12);
+  const HarmonicShape average = combine({a, b}, {1, 1});
+  EXPECT_LT((average.outer - 0.5 * (a.outer + b.outer)).norm(), 1e-12);
+}
+
+}  // namespace
+}  // namespace explica::shapes
