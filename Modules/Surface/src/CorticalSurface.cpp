@@ -55,15 +55,13 @@ class Advance {
   void goTo(double share) {
     constexpr int kSweeps = 3;
     for (int sweep = 0; sweep < kSweeps; ++sweep) {
-      bool waiting = false;
-      for (std::size_t v = 0; v < paths_.size(); ++v) {
+      const auto waiting = mesh_.sweep([&](std::int32_t v, GuardedMesh::Scratch& scratch) {
         const double target = share * paths_[v].length();
-        if (reached_[v] >= target) continue;
-        if (tryReach(v, target)) continue;
-        waiting = true;
-        tryReach(v, 0.5 * (reached_[v] + target));
-      }
-      if (!waiting) return;
+        if (reached_[v] >= target || tryReach(v, target, scratch)) return true;
+        tryReach(v, 0.5 * (reached_[v] + target), scratch);
+        return false;
+      });
+      if (waiting == 0) return;
     }
   }
 
@@ -71,8 +69,8 @@ class Advance {
   [[nodiscard]] double reached(std::size_t v) const { return reached_[v]; }
 
  private:
-  bool tryReach(std::size_t v, double arc) {
-    if (!mesh_.move(static_cast<std::int32_t>(v), paths_[v].at(arc))) return false;
+  bool tryReach(std::int32_t v, double arc, GuardedMesh::Scratch& scratch) {
+    if (!mesh_.move(v, paths_[v].at(arc), scratch)) return false;
     reached_[v] = arc;
     return true;
   }

@@ -274,6 +274,24 @@ CorticalTissue assemble(const Mask& white, const Mask& tissue, const Mask& insul
   return result;
 }
 
+/// One label for the whole brain is legal, and seldom what was meant: says what was found.
+void warnOfTwoHemispheres(const Mask& white, const Monitor& monitor) {
+  constexpr double kBrain = 150000;  // mm^3 of white matter: more than one hemisphere's least
+  if (static_cast<double>(countIn(white)) * white.grid.voxelVolume() < kBrain) return;
+  std::int64_t left = 0, right = 0;
+  try {
+    const Mask sides = splitHemispheres(white);
+    left = std::count(sides.data.begin(), sides.data.end(), 1);
+    right = std::count(sides.data.begin(), sides.data.end(), 2);
+  } catch (const InvalidInput&) {
+    return;  // not two hemispheres: nothing to say
+  }
+  if (std::min(left, right) * 3 < std::max(left, right) * 2) return;
+  monitor.warn("white matter may hold two hemispheres (" + std::to_string(left) + " voxels left, " +
+               std::to_string(right) +
+               " right of the plane with least white matter); --hemisphere L or R takes one");
+}
+
 }  // namespace
 
 Volume<float> sharesOf(const Volume<float>& scalars, std::optional<double> level,
@@ -483,19 +501,7 @@ CorticalTissue tissueFromLabels(const Volume<Label>& labels, const TissueOptions
       if (ribbon[v] && all[v] != own) ribbon[v] = 0;
     }
   } else if (!sided && !options.hemisphere) {
-    // One label for the whole brain is legal, and seldom what was meant: say what was found.
-    try {
-      const Mask sides = splitHemispheres(inner, {});
-      const auto left = std::count(sides.data.begin(), sides.data.end(), 1);
-      const auto right = std::count(sides.data.begin(), sides.data.end(), 2);
-      if (std::min(left, right) * 3 > std::max(left, right) && left + right > 200000) {
-        monitor.warn("white matter may hold two hemispheres (" + std::to_string(left) +
-                     " voxels left, " + std::to_string(right) +
-                     " right of the plane with least white matter); --hemisphere L or R takes one");
-      }
-    } catch (const InvalidInput&) {
-      // Not two hemispheres: nothing to say.
-    }
+    warnOfTwoHemispheres(inner, monitor);
   }
 
   if (countIn(inner) == 0) {
@@ -569,6 +575,7 @@ CorticalTissue tissueFromShares(const Volume<float>& white, const Volume<float>&
       }
     }
   }
+  if (!options.hemisphere) warnOfTwoHemispheres(inner, monitor);
   requireInside(inner, options.closeEdges, monitor);
   constexpr int kMargin = 3;
   const VoxelBox box = boundingBox(all, kMargin);

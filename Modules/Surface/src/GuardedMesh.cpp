@@ -3,6 +3,8 @@
 
 #include "GuardedMesh.h"
 
+#include "Explica/Core/Parallel.h"
+#include "Explica/Geometry/Predicates.h"
 #include "Explica/Geometry/TriangleIntersection.h"
 
 #include <Eigen/Geometry>
@@ -58,9 +60,13 @@ bool facesMeet(const GuardedMesh::Corners& fc, const std::array<Point, 3>& fp,
   switch (shared) {
     case 0:
       return trianglesIntersect(fp, gp);
-    case 1:
-      return trianglesSharingVertexIntersect(fp[ofF[0]], fp[ofF[1]], fp[ofF[2]], gp[ofG[1]],
-                                             gp[ofG[2]]);
+    case 1: {
+      // Strictly on one side of the other's plane but for the common vertex: nothing else meets.
+      const Point &p = fp[ofF[0]], &a = fp[ofF[1]], &b = fp[ofF[2]];
+      const Point &c = gp[ofG[1]], &d = gp[ofG[2]];
+      if (orientation(p, a, b, c) * orientation(p, a, b, d) > 0) return false;
+      return trianglesSharingVertexIntersect(p, a, b, c, d);
+    }
     case 2:
       return trianglesSharingEdgeIntersect(fp[ofF[0]], fp[ofF[1]], fp[ofF[2]], gp[ofG[2]]);
     default:
@@ -222,10 +228,14 @@ bool GuardedMesh::admissible(std::span<const Placed> made, std::span<const std::
       if (facesMeet(made[m].corners, made[m].points, made[n].corners, made[n].points)) return false;
     }
   }
+  const CellRange r = cellsOf(all);
+  if (r[scratch.axis] < scratch.lowCell || r[scratch.axis + 3] > scratch.highCell) {
+    scratch.leftZone = true;
+    return false;
+  }
   if (scratch.stamp.size() < faces_.size()) scratch.stamp.resize(faces_.size(), 0);
   const std::uint32_t query = ++scratch.query;
   for (const std::int32_t f : removed) scratch.stamp[f] = query;
-  const CellRange r = cellsOf(all);
   for (int k = r[2]; k <= r[5]; ++k) {
     for (int j = r[1]; j <= r[4]; ++j) {
       for (int i = r[0]; i <= r[3]; ++i) {
@@ -380,6 +390,56 @@ std::int32_t GuardedMesh::split(std::int32_t a, std::int32_t b) {
   for (const std::int32_t f : removed) removeFace(f);
   for (const Placed& p : made) addFace(p.corners);
   return m;
+}
+
+bool GuardedMesh::inZone(std::int32_t v, const Scratch& scratch) const {
+  for (const std::int32_t f : vertexFaces_[v]) {
+    const CellRange r = cellsOf(boxes_[f]);
+    if (r[scratch.axis] < scratch.lowCell || r[scratch.axis + 3] > scratch.highCell) return false;
+  }
+  return true;
+}
+
+std::int64_t GuardedMesh::sweep(const std::function<bool(std::int32_t, Scratch&)>& step) {
+  constexpr double kSlab = 8;  // mm: several faces, so that few vertices must wait for the end
+  const int axis =
+      static_cast<int>(std::max_element(cellSize_.begin(), cellSize_.end()) - cellSize_.begin());
+  const int half = std::max(4, static_cast<int>(std::ceil(0.5 * kSlab * cellsPerMm_)));
+  const int width = 2 * half;
+  const int slabs = (cellSize_[axis] + width - 1) / width;
+  std::vector<std::vector<std::int32_t>> members(slabs), late(slabs);
+  for (std::int32_t v = 0; v < vertexSlots(); ++v) {
+    if (!hasVertex(v)) continue;
+    const double cell = std::floor((positions_[v][axis] - cellOrigin_[axis]) * cellsPerMm_);
+    members[static_cast<int>(std::clamp(cell, 0.0, cellSize_[axis] - 1.0)) / width].push_back(v);
+  }
+  std::vector<std::int64_t> refused(slabs, 0);
+  slabScratch_.resize(slabs);
+  for (const int parity : {0, 1}) {
+    parallelFor((slabs + 1 - parity) / 2, 1, [&](std::size_t pair) {
+      const int slab = static_cast<int>(2 * pair) + parity;
+      Scratch& scratch = slabScratch_[slab];
+      scratch.axis = axis;
+      // Zones of slabs worked on together touch, but do not overlap.
+      scratch.lowCell = slab * width - half;
+      scratch.highCell = (slab + 1) * width + half - 1;
+      for (const std::int32_t v : members[slab]) {
+        scratch.leftZone = !inZone(v, scratch);
+        if (!scratch.leftZone && step(v, scratch)) continue;
+        if (scratch.leftZone) {
+          late[slab].push_back(v);
+        } else {
+          ++refused[slab];
+        }
+      }
+    });
+  }
+  std::int64_t sum = 0;
+  for (int slab = 0; slab < slabs; ++slab) {
+    for (const std::int32_t v : late[slab]) sum += !step(v, scratch_);
+    sum += refused[slab];
+  }
+  return sum;
 }
 
 TriangleMesh GuardedMesh::toMesh() const {

@@ -6,6 +6,8 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -47,13 +49,24 @@ class GuardedMesh {
 
   /// Moves a vertex.
   bool move(std::int32_t v, const Point& to);
-  /// As move(), for several threads at once: `scratch` is the caller's own, and no two threads may
-  /// work within `kReach` faces of each other.
+  /// One thread's notes while it works on its own slab of space.
   struct Scratch {
     std::vector<std::uint32_t> stamp;  ///< per face: query that met it last
     std::uint32_t query = 0;
+    int axis = 0;     ///< across the slabs
+    int lowCell = 0;  ///< cells that it may touch
+    int highCell = std::numeric_limits<int>::max();
+    bool leftZone = false;  ///< a move was refused because it would touch others
   };
+  /// As move(), within the zone of `scratch`.
   bool move(std::int32_t v, const Point& to, Scratch& scratch);
+
+  /// Calls step(v, scratch) once for each vertex; the step may read the faces at v and move v, and
+  /// returns false if it was refused.  Space is cut into slabs that are worked on by several
+  /// threads, every other one at a time; vertices whose faces reach too far follow at the end.  The
+  /// outcome does not depend on the number of threads.
+  /// @return how many steps were refused
+  std::int64_t sweep(const std::function<bool(std::int32_t v, Scratch& scratch)>& step);
 
   /// What a collapse must keep.
   struct CollapseLimits {
@@ -85,6 +98,8 @@ class GuardedMesh {
   bool admissible(std::span<const Placed> made, std::span<const std::int32_t> removed,
                   Scratch& scratch) const;
   [[nodiscard]] CellRange cellsOf(const std::array<float, 6>& box) const;
+  /// True if every face at v lies within the zone.
+  [[nodiscard]] bool inZone(std::int32_t v, const Scratch& scratch) const;
   void enter(std::int32_t f);
   void leave(std::int32_t f);
   std::int32_t addFace(const Corners& corners);
@@ -101,6 +116,7 @@ class GuardedMesh {
   std::array<int, 3> cellSize_ = {1, 1, 1};
   std::vector<std::vector<std::int32_t>> cells_;
   Scratch scratch_;
+  std::vector<Scratch> slabScratch_;
 };
 
 }  // namespace explica::surface

@@ -59,13 +59,12 @@ class Remesher {
   }
 
   void smooth() {
-    for (std::int32_t v = 0; v < mesh_.vertexSlots(); ++v) {
-      if (!mesh_.hasVertex(v)) continue;
+    refused_ += mesh_.sweep([&](std::int32_t v, GuardedMesh::Scratch& scratch) {
       const Point target = centred(v);
-      if (mesh_.move(v, onLevel(v, target))) continue;
       // Half way is often free where the whole way is not.
-      if (!mesh_.move(v, 0.5 * (mesh_.at(v) + target))) ++refused_;
-    }
+      return mesh_.move(v, onLevel(v, target), scratch) ||
+             mesh_.move(v, 0.5 * (mesh_.at(v) + target), scratch);
+    });
   }
 
   /// Collapses the shortest or splits the longest edges until the count is met.

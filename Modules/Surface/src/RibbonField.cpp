@@ -21,8 +21,8 @@ constexpr float kAlongLink = 0.25F;
 constexpr double kMiddleGap = 0.1;
 /// Steps a voxel of a trajectory.
 constexpr double kStepsPerVoxel = 4;
-/// A path is looked at again if it is longer than this many times its end's distance to white matter
-/// and this many mm; it is cut where that distance grows at less than this rate along it.
+/// A path is looked at again if it is longer than this many times its end's distance to white
+/// matter and this many mm; it is cut where that distance grows at less than this rate along it.
 constexpr double kStallRatio = 1.3;
 constexpr double kStallSlack = 0.25;
 constexpr double kStallRate = 0.3;

@@ -17,7 +17,7 @@ namespace explica::surface {
 struct SurfaceOptions {
   GenusRule genus = GenusRule::Zero;
   int faces = 150000;  ///< of each surface
-  int steps = 16;      ///< in which the outer surface grows out of the white one, even
+  int steps = 12;      ///< in which the outer surface grows out of the white one, even
 };
 
 /// Wall-clock time of each part, s.

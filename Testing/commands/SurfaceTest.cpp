@@ -1,0 +1,96 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+// explica surface: what users type and what they get.
+
+#include "Explica/Geometry/MeshTopology.h"
+#include "Explica/Geometry/SelfIntersection.h"
+#include "Explica/IO/SurfaceFile.h"
+#include "Explica/IO/VertexDataFile.h"
+#include "Explica/IO/VolumeFile.h"
+#include "Explica/Testing/Command.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+namespace explica::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Labels of a torus (white 3) in a ribbon (grey 2), oblique and away from the origin.
+void writeTorus(const std::string& path, double tube) {
+  Grid grid;
+  grid.size = {56, 56, 40};
+  grid.direction << std::cos(0.3), -std::sin(0.3), 0, std::sin(0.3), std::cos(0.3), 0, 0, 0, 1;
+  const Point centre(12, -7, 30);
+  grid.origin = centre - grid.direction * Vector(27.5, 27.5, 19.5);
+  Volume<Label> labels(grid);
+  for (std::size_t v = 0; v < labels.size(); ++v) {
+    const auto s = grid.subscripts(v);
+    const Vector p = grid.toWorld(Vector(s[0], s[1], s[2])) - centre;
+    const double d = std::hypot(std::hypot(p.x(), p.y()) - 14, p.z());
+    labels[v] = d < tube ? 3 : (d < tube + 3 ? 2 : 0);
+  }
+  io::writeVolume(path, labels);
+}
+
+TEST(SurfaceCommand, MakesATorusASphereAndSaysWhere) {
+  TemporaryFolder folder;
+  writeTorus(folder / "torus.nii.gz", 4);
+  const auto made = explica({"surface", folder / "torus.nii.gz", "--faces", "4000", "--freesurfer",
+                             "surf", "--out", folder / "out"});
+  ASSERT_EQ(made.exitCode, 0) << made;
+  for (const std::string name : {"white", "mid", "pial"}) {
+    const auto mesh = io::readSurface(folder / ("out/" + name + ".surf.gii")).mesh;
+    const auto condition = geometry::inspectMesh(mesh);
+    EXPECT_TRUE(condition.closedManifold());
+    EXPECT_EQ(condition.eulerCharacteristic, 2);
+    EXPECT_EQ(condition.faces, 4000);
+    EXPECT_TRUE(geometry::findSelfIntersections(mesh).empty());
+  }
+  const auto summary = readJson(folder / "out/summary.json");
+  EXPECT_EQ(summary["euler_characteristic"], 2);
+  EXPECT_EQ(summary["self_intersections"], 0);
+  EXPECT_EQ(summary["defects_corrected"], 1);
+  EXPECT_NEAR(summary["thickness_mean"].get<double>(), 3, 0.15);
+
+  std::ifstream table(folder / "out/topology.tsv");
+  std::string header, kind;
+  double x = 0, y = 0, z = 0;
+  std::getline(table, header);
+  table >> kind >> x >> y >> z;
+  EXPECT_EQ(kind, "handle");
+  EXPECT_NEAR(std::hypot(x - 12, y + 7), 14, 1.5);
+  EXPECT_NEAR(z, 30, 1);
+  EXPECT_TRUE(fs::exists(folder / "out/surf/lh.white"));
+  EXPECT_EQ(io::readVertexMaps(folder / "out/surf/lh.thickness").front().values.size(), 2002);
+}
+
+TEST(SurfaceCommand, LeavesTheTorusAloneIfAsked) {
+  TemporaryFolder folder;
+  writeTorus(folder / "torus.nii.gz", 4);
+  const auto made = explica({"surface", folder / "torus.nii.gz", "--faces", "4000", "--genus",
+                             "keep", "--out", folder / "out"});
+  ASSERT_EQ(made.exitCode, 0) << made;
+  EXPECT_EQ(readJson(folder / "out/summary.json")["euler_characteristic"], 0);
+}
+
+TEST(SurfaceCommand, SaysWhatIsWrongWithTheNumbersFound) {
+  TemporaryFolder folder;
+  writeTorus(folder / "torus.nii.gz", 4);
+  const auto absent =
+      explica({"surface", folder / "torus.nii.gz", "--white", "9", "--out", folder / "out"});
+  EXPECT_EQ(absent.exitCode, 2);
+  EXPECT_NE(absent.err.find("label 9 absent (found 0, 2, 3)"), std::string::npos) << absent;
+  const auto edge = explica(
+      {"surface", folder / "torus.nii.gz", "--white", "0", "--grey", "2", "--out", folder / "out"});
+  EXPECT_EQ(edge.exitCode, 2);
+  EXPECT_NE(edge.err.find("touches the edge of the field of view"), std::string::npos) << edge;
+  EXPECT_FALSE(fs::exists(folder / "out"));
+}
+
+}  // namespace
+}  // namespace explica::testing
