@@ -72,7 +72,7 @@ void declare(Declaration& d, Settings& s) {
       .defaultOut(s.out)
       .reuseOutputIf(s.reuse)
       .inPlace()
-      .output("dataset_description.json", FileKind::Json, "what this derivative is")
+      .output("dataset_description.json", FileKind::JsonFile, "what this derivative is")
       .output("descriptions.tsv", FileKind::Table, "what each desc- means")
       .output(".bidsignore", FileKind::Any, "files that BIDS does not know yet")
       .output("sub-*", FileKind::Folder, "results by BIDS names")
