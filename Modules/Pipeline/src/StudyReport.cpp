@@ -485,14 +485,27 @@ void showEvolution(const Study& study, const StepFolder& step, report::ReportCon
                                 ? towards.cross(Vector(0, 0, 1)).normalized()
                                 : Vector(1, 0, 0);
     oblique.towards = (towards + 1.7 * sideways).normalized();
+    // Sulci painted on the surface show on the unfolded patch what was folded.
     report::SurfacePaint paint;
-    paint.labels.setZero(before.vertexCount());
-    for (const std::int32_t v : evolution.moved) paint.labels[v] = 1;
+    paint.region.setZero(before.vertexCount());
+    for (const std::int32_t v : evolution.moved) paint.region[v] = 1;
+    const StepFolder* surface = study.step("surface");
+    if (const auto curvature =
+            surface != nullptr
+                ? mapNamed(surface->folder / "curvature.shape.gii", before.vertexCount(), "")
+                : std::nullopt) {
+      paint.values = curvature->values;
+      paint.scale = report::scaleFor(paint.values, curvature->name, curvature->unit,
+                                     report::ColourMap::Diverging);
+    } else {
+      paint.labels = paint.region;
+    }
     for (const bool folded : {true, false}) {
       content.pictures.push_back(
           {folded ? "Before" : "After",
-           folded ? "The region (orange) as it lies, from the viewpoint and from the side."
-                  : "The region unfolded for the viewpoint, from the same two sides.",
+           folded ? "The region as it lies, from the viewpoint and from the side."
+                  : "The region unfolded for the viewpoint, from the same two sides, with the same "
+                    "colours.",
            report::surfaceFigure(folded ? before : after, paint, {front, oblique}, 2,
                                  pictureSize(520, 400))});
     }
