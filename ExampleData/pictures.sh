@@ -11,7 +11,7 @@ mkdir -p "$to"
 
 $view /usr/share/mricron/templates/ch2bet.nii.gz "$out/surface/white.surf.gii" "$out/surface/pial.surf.gii" \
   --slices 2 --height 660 --screenshot "$to/slices.png"
-$view "$out/surface/pial.surf.gii" --map "$out/surface/thickness.shape.gii" --width 420 --height 330 \
+$view "$out/surface/pial.surf.gii" --map "$out/surface/thickness.shape.gii" --width 380 --height 300 \
   --screenshot "$to/thickness.png"
 frames=$(find "$out/unfold/frames" -name 'frame-*.surf.gii' | sort)
 first=$(echo "$frames" | head -n 1)
