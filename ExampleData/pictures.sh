@@ -14,10 +14,10 @@ $view /usr/share/mricron/templates/ch2bet.nii.gz "$out/surface/white.surf.gii" "
 $view "$out/surface/pial.surf.gii" --map "$out/surface/thickness.shape.gii" --width 380 --height 300 \
   --screenshot "$to/thickness.png"
 frames=$(find "$out/unfold/frames" -name 'frame-*.surf.gii' | sort)
-first=$(echo "$frames" | head -n 1)
 last=$(echo "$frames" | tail -n 1)
-$view "$first" "$last" --labels "$out/unfold/region.label.gii" --region "$out/unfold/region.label.gii" \
-  --direction -1,0,0 --focus --width 420 --height 330 --screenshot "$to/unfolding.png"
-$view "$out/unfold" --labels "$out/unfold/region.label.gii" --region "$out/unfold/region.label.gii" \
-  --direction -1,0,0 --focus --width 280 --height 220 --film "$to/unfolding.gif"
+$view "$out/surface/mid.surf.gii" "$last" --map "$out/surface/curvature.shape.gii" --colours diverging \
+  --range -0.4,0.4 --region "$out/unfold/region.label.gii" --direction -1,0,0 --focus --width 420 --height 330 \
+  --screenshot "$to/unfolding.png"
+$view "$out/unfold" --map "$out/surface/curvature.shape.gii" --colours diverging --range -0.4,0.4 --region "$out/unfold/region.label.gii" \
+  --direction -1,0,0 --focus --width 190 --height 150 --film "$to/unfolding.gif"
 echo "Look at $to"
