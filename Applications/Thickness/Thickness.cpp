@@ -4,12 +4,16 @@
 #include "Explica/Application/Command.h"
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/WholeFile.h"
+#include "Explica/Correspondence/AnatomicalGrid.h"
 #include "Explica/Correspondence/Correspondence.h"
 #include "Explica/Correspondence/Layers.h"
 #include "Explica/Correspondence/Sulci.h"
+#include "Explica/Correspondence/Ventricle.h"
 #include "Explica/Harmonic/Annulus.h"
 #include "Explica/Harmonic/Interpolant.h"
 #include "Explica/IO/VolumeFile.h"
+#include "Explica/IO/VtkFile.h"
 
 #include <algorithm>
 #include <chrono>
@@ -46,6 +50,9 @@ struct Settings {
   correspondence::SulcusOptions sulcus;
   correspondence::CorrespondenceOptions correspondence;
   correspondence::LayerOptions layers;
+  std::optional<int> grid;
+  bool aha = false;
+  std::optional<Eigen::Vector3d> rvInsertion;
 };
 
 void declare(Declaration& d, Settings& s) {
@@ -80,6 +87,13 @@ void declare(Declaration& d, Settings& s) {
       .options("Boundary", s.sulcus)
       .options("Correspondences", s.correspondence)
       .options("Layers", s.layers)
+      .option("Layers", Field{"grid", "", "write an anatomical grid with this many cells across"},
+              s.grid)
+      .option("Heart", Field{"aha", "", "table and picture of the left ventricle's 17 segments"},
+              s.aha)
+      .option("Heart",
+              Field{"rv-insertion", "mm", "anterior insertion of the right ventricle, RAS"},
+              s.rvInsertion)
       .output("harmonic.nii.gz", FileKind::Volume,
               "u: 0 at the inner boundary to 1 at the outer one")
       .output("thickness.nii.gz", FileKind::Volume,
@@ -92,6 +106,11 @@ void declare(Declaration& d, Settings& s) {
       .output("outer_point.nii.gz", FileKind::PointVolume,
               "phi1: corresponding point of the outer boundary, RAS mm")
       .output("layers.nii.gz", FileKind::LabelVolume, "layer, 1 at the inner boundary")
+      .output("grid.vtu", FileKind::Grid,
+              "with --grid: points at equal depths along trajectories, with depth and thickness")
+      .output("segments.tsv", FileKind::Table, "with --aha: thickness of the 17 segments")
+      .output("segments.nii.gz", FileKind::LabelVolume, "with --aha: segment of each voxel")
+      .output("bullseye.svg", FileKind::Picture, "with --aha: the segments' mean thickness, mm")
       .output("sulci.nii.gz", FileKind::LabelVolume,
               "with --sulci recover: 1 where a boundary was put beside a voxel");
 }
@@ -107,6 +126,7 @@ harmonic::Annulus readAnnulus(Context& context, const Settings& s) {
   if (!s.labels && !s.innerLevel) {
     throw UsageError("give a label volume, or --inner-level and --outer-level");
   }
+  if (s.aha && !s.rvInsertion) throw UsageError("--aha needs --rv-insertion X,Y,Z");
   Volume<Label> labels;
   if (s.labels) labels = readLabels(context, "SEG", *s.labels, s.reading);
   Volume<float> inner, outer;
@@ -192,6 +212,16 @@ Termination run(Context& context, const Settings& s) {
                                  s.layers.layers);
   }
 
+  correspondence::AnatomicalGrid grid;
+  if (s.grid) {
+    auto step = context.step("grid");
+    grid = correspondence::anatomicalGrid(annulus, interpolant, *s.grid);
+    context.result("grid_trajectories", grid.trajectories);
+    context.result("grid_cells", static_cast<std::size_t>(grid.cells.rows()));
+  }
+  correspondence::WallSegments segments;
+  if (s.aha) segments = correspondence::wallSegments(annulus, found, *s.rvInsertion);
+
   auto step = context.step("write");
   const auto write = [&](const char* name, const std::vector<double>& values) {
     io::writeVolume(context.output(name), harmonic::spread(annulus, values));
@@ -207,6 +237,17 @@ Termination run(Context& context, const Settings& s) {
   io::writeVolume(context.output("outer_point.nii.gz"),
                   correspondence::spreadPoints(annulus, found.outerPoint));
   io::writeVolume(context.output("layers.nii.gz"), harmonic::spreadLabels(annulus, layers));
+  if (s.grid) {
+    const auto kind = grid.cells.cols() == 8 ? io::CellKind::Hexahedron : io::CellKind::Quad;
+    io::writeVtu(context.output("grid.vtu"), grid.points, {{kind, grid.cells}},
+                 {{"depth", "", grid.depth}, {"thickness", "mm", grid.thickness}});
+  }
+  if (s.aha) {
+    writeTextFile(context.output("segments.tsv"), correspondence::tableOf(segments));
+    writeTextFile(context.output("bullseye.svg"), correspondence::bullseyeOf(segments));
+    io::writeVolume(context.output("segments.nii.gz"),
+                    harmonic::spreadLabels(annulus, segments.segmentOf));
+  }
   if (sulci.size() > 0) io::writeVolume(context.output("sulci.nii.gz"), sulci);
   return interpolant.termination;
 }

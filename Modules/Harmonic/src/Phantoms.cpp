@@ -221,4 +221,27 @@ Phantom makePhantom(PhantomKind kind, const PhantomOptions& options) {
   return phantom;
 }
 
+PhantomAnswers answersOf(const Phantom& phantom) {
+  const Grid& grid = phantom.labels.grid;
+  PhantomAnswers answers;
+  answers.u = answers.thickness = answers.innerDistance = answers.outerDistance =
+      Volume<float>(grid, 0);
+  answers.innerPoint = answers.outerPoint = Volume<Eigen::Vector3f>(grid, Eigen::Vector3f::Zero());
+  parallelFor(grid.voxelCount(), 1 << 12, [&](std::size_t v) {
+    if (phantom.labels[v] != 2) {
+      answers.u[v] = phantom.innerLevel[v] <= 0 ? 0.0F : 1.0F;
+      return;
+    }
+    const auto s = grid.subscripts(v);
+    const ExactAnswer exact = phantom.exact.answer(grid.toWorld(Vector(s[0], s[1], s[2])));
+    answers.u[v] = static_cast<float>(exact.u);
+    answers.thickness[v] = static_cast<float>(exact.thickness());
+    answers.innerDistance[v] = static_cast<float>(exact.innerDistance);
+    answers.outerDistance[v] = static_cast<float>(exact.outerDistance);
+    answers.innerPoint[v] = exact.innerPoint.cast<float>();
+    answers.outerPoint[v] = exact.outerPoint.cast<float>();
+  });
+  return answers;
+}
+
 }  // namespace explica::harmonic

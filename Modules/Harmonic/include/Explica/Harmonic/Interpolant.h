@@ -26,8 +26,6 @@ struct Interpolant {
   double relativeResidual = kNaN;
   std::size_t corrected =
       0;  ///< values that round-off had carried out of [0, 1] before the last sweep
-  int embeddingIterations = 0;    ///< BoundaryModel::Embedding: outer conjugate-gradient iterations
-  double embeddingMisfit = kNaN;  ///< and the root mean square of u - 0 or 1 on the level sets
 };
 
 /// Harmonic interpolant across an annular tissue such as cortex or myocardium.

@@ -78,6 +78,13 @@ struct Phantom {
 /// @throws InvalidInput  the phantom does not fit into size * spacing
 [[nodiscard]] Phantom makePhantom(PhantomKind kind, const PhantomOptions& options = {});
 
+/// A phantom's answers on its grid; 0 off the tissue (u: 0 inside, 1 outside).
+struct PhantomAnswers {
+  Volume<float> u, thickness, innerDistance, outerDistance;
+  Volume<Eigen::Vector3f> innerPoint, outerPoint;  ///< RAS mm
+};
+[[nodiscard]] PhantomAnswers answersOf(const Phantom& phantom);
+
 /// Grid of that size with its centre (between voxels if the size is even) at the origin.
 [[nodiscard]] Grid centredGrid(const std::array<int, 3>& size, const Vector& spacing);
 

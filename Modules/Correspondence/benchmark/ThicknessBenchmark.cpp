@@ -1,0 +1,225 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+// Error beside time: methods and lambda on the spheroids, size, bandwidth, and a plain solver.
+#include "Explica/Core/Parallel.h"
+#include "Explica/Correspondence/Correspondence.h"
+#include "Explica/Correspondence/Sulci.h"
+#include "Explica/Harmonic/Phantoms.h"
+#include "Explica/IO/VolumeFile.h"
+
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <filesystem>
+
+using namespace explica;
+using namespace explica::correspondence;
+
+namespace {
+
+struct Solved {
+  harmonic::ExactAnnulus exact;
+  harmonic::Annulus annulus;
+  harmonic::Interpolant interpolant;
+};
+
+/// Confocal spheroids of 128^3 at 1 mm, from level sets.
+const Solved& spheroids() {
+  static const Solved solved = [] {
+    const auto phantom = harmonic::makePhantom(harmonic::PhantomKind::Spheroid, {128, 1});
+    Solved s;
+    s.exact = phantom.exact;
+    s.annulus = harmonic::annulusFromLevels(phantom.innerLevel, phantom.outerLevel,
+                                            {0, harmonic::LevelInside::Below});
+    s.interpolant = harmonic::solveInterpolant(s.annulus);
+    return s;
+  }();
+  return solved;
+}
+
+void measure(benchmark::State& state, const CorrespondenceOptions& options) {
+  const Solved& s = spheroids();
+  Correspondence found;
+  for (auto _ : state) found = findCorrespondences(s.annulus, s.interpolant, options);
+  double point = 0, worst = 0, thickness = 0;
+  for (std::int32_t n = 0; n < static_cast<std::int32_t>(s.annulus.count()); ++n) {
+    const Point x = s.annulus.world(n);
+    const auto answer = s.exact.answer(x);
+    const double inner = (x + found.innerPoint[n].cast<double>() - answer.innerPoint).norm();
+    const double outer = (x + found.outerPoint[n].cast<double>() - answer.outerPoint).norm();
+    point += 0.5 * (inner + outer);
+    worst = std::max({worst, inner, outer});
+    thickness += std::abs(found.thickness(n) - answer.thickness());
+  }
+  const auto count = static_cast<double>(s.annulus.count());
+  state.counters["point_mean"] = point / count;
+  state.counters["point_max"] = worst;
+  state.counters["thickness_mean"] = thickness / count;
+}
+
+void Lagrangian(benchmark::State& state) {
+  CorrespondenceOptions options;
+  options.method = Method::Lagrangian;
+  measure(state, options);
+}
+void Eulerian(benchmark::State& state) {
+  CorrespondenceOptions options;
+  options.method = Method::Eulerian;
+  measure(state, options);
+}
+/// Argument: lambda in hundredths of a millimetre; negative is infinity.
+void Hybrid(benchmark::State& state) {
+  CorrespondenceOptions options;
+  options.lambda = state.range(0) < 0 ? kInfinity : 0.01 * static_cast<double>(state.range(0));
+  measure(state, options);
+}
+BENCHMARK(Lagrangian)->Unit(benchmark::kMillisecond);
+BENCHMARK(Eulerian)->Unit(benchmark::kMillisecond);
+BENCHMARK(Hybrid)->Arg(0)->Arg(1)->Arg(10)->Arg(50)->Arg(100)->Arg(200)->Arg(-1)->Unit(
+    benchmark::kMillisecond);
+
+/// All fields of a shell (radii 2/9 and 1/3 of the size) from labels; argument: voxels a side.
+void Shell(benchmark::State& state) {
+  const int size = static_cast<int>(state.range(0));
+  const auto exact = harmonic::exactShell(size * 2.0 / 9, size / 3.0);
+  const Grid grid = harmonic::centredGrid({size, size, size}, Vector::Ones());
+  Volume<Label> labels(grid, 0);
+  parallelFor(grid.voxelCount(), 1 << 14, [&](std::size_t v) {
+    const auto s = grid.subscripts(v);
+    const Point x = grid.toWorld(Vector(s[0], s[1], s[2]));
+    labels[v] = exact.innerLevel(x) <= 0 ? 1 : exact.outerLevel(x) < 0 ? 2 : 0;
+  });
+  std::size_t voxels = 0;
+  for (auto _ : state) {
+    const auto annulus = harmonic::annulusFromLabels(labels, {{1}, {2}, {}, {}});
+    const auto interpolant = harmonic::solveInterpolant(annulus);
+    const auto found = findCorrespondences(annulus, interpolant);
+    benchmark::DoNotOptimize(found.innerDistance.data());
+    voxels = annulus.count();
+  }
+  state.counters["voxels"] = static_cast<double>(voxels);
+  state.counters["voxels_per_s"] = benchmark::Counter(
+      static_cast<double>(voxels), benchmark::Counter::kIsIterationInvariantRate);
+}
+BENCHMARK(Shell)->Arg(132)->Arg(256)->Arg(480)->Unit(benchmark::kMillisecond)->Iterations(1);
+
+/// The left ribbon of a real brain, all fields with buried sulci.
+void Ribbon(benchmark::State& state) {
+  const auto path = std::filesystem::path(EXPLICA_REAL_DATA) / "bert_freesurfer/mri/ribbon.mgz";
+  if (!std::filesystem::exists(path)) {
+    state.SkipWithError("skipped: no real data");
+    return;
+  }
+  const auto labels = io::readLabels(path).volume;
+  for (auto _ : state) {
+    const auto annulus =
+        recoverSulci(harmonic::annulusFromLabels(labels, {{2}, {3}, {}, {}})).annulus;
+    const auto found = findCorrespondences(annulus, harmonic::solveInterpolant(annulus));
+    benchmark::DoNotOptimize(found.innerDistance.data());
+  }
+}
+BENCHMARK(Ribbon)->Unit(benchmark::kMillisecond);
+
+/// a = b + 3 c over 3 x 80 MB: the machine's bandwidth.
+void Triad(benchmark::State& state) {
+  const std::size_t n = 10'000'000;
+  std::vector<double> a(n, 0), b(n, 1), c(n, 2);
+  for (auto _ : state) {
+    parallelForBlocks(n, 1 << 16, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) a[k] = b[k] + 3 * c[k];
+    });
+    benchmark::ClobberMemory();
+  }
+  state.counters["bytes_per_s"] = benchmark::Counter(24.0 * static_cast<double>(n),
+                                                     benchmark::Counter::kIsIterationInvariantRate);
+}
+BENCHMARK(Triad)->UseRealTime()->Unit(benchmark::kMillisecond);
+
+/// One V-cycle on a shell of 1.8 million tissue voxels.
+void Cycle(benchmark::State& state) {
+  const auto exact = harmonic::exactShell(57, 85);
+  const Grid grid = harmonic::centredGrid({176, 176, 176}, Vector::Ones());
+  const auto annulus = harmonic::annulusFromLevels(harmonic::sampled(grid, exact.innerLevel),
+                                                   harmonic::sampled(grid, exact.outerLevel),
+                                                   {0, harmonic::LevelInside::Below});
+  harmonic::Multigrid multigrid(annulus);
+  std::vector<float> r(annulus.count(), 1), e;
+  for (auto _ : state) multigrid.cycle(r, e);
+  state.counters["bytes_per_s"] =
+      benchmark::Counter(multigrid.bytesPerCycle(), benchmark::Counter::kIsIterationInvariantRate);
+}
+BENCHMARK(Cycle)->UseRealTime()->Unit(benchmark::kMillisecond);
+
+/// What a plain tool does: Jacobi-preconditioned conjugate gradients to the same residual on the
+/// staircase boundary, then Yezzi-Prince sweeps in storage order until nothing changes.
+void PlainSolver(benchmark::State& state) {
+  const auto phantom = harmonic::makePhantom(harmonic::PhantomKind::Spheroid, {128, 1});
+  harmonic::AnnulusOptions options;
+  options.boundary = harmonic::BoundaryModel::Staircase;
+  const auto annulus = harmonic::annulusFromLabels(phantom.labels, {{1}, {2}, {}, {}}, options);
+  const std::size_t n = annulus.count();
+  std::vector<double> u;
+  for (auto _ : state) {
+    std::vector<double> r(n, 0), p, q(n);
+    u.assign(n, 0);
+    for (std::size_t k = 0; k < n; ++k) {
+      for (const auto link : annulus.links[k]) r[k] += link == harmonic::kOuter;
+    }
+    p = r;
+    double rr = 0;
+    for (const double value : r) rr += value * value;
+    const double stop = 1e-18 * rr;  // isotropic: the diagonal is constant
+    while (rr > stop) {
+      parallelFor(n, 1 << 13, [&](std::size_t k) {
+        q[k] = 6 * p[k];
+        for (const auto link : annulus.links[k]) q[k] -= link >= 0 ? p[link] : 0;
+      });
+      double pq = 0;
+      for (std::size_t k = 0; k < n; ++k) pq += p[k] * q[k];
+      const double alpha = rr / pq;
+      double next = 0;
+      for (std::size_t k = 0; k < n; ++k) {
+        u[k] += alpha * p[k];
+        r[k] -= alpha * q[k];
+        next += r[k] * r[k];
+      }
+      for (std::size_t k = 0; k < n; ++k) p[k] = r[k] + next / rr * p[k];
+      rr = next;
+    }
+    const auto gradient = harmonic::gradientOf(annulus, u);
+    for (const bool inner : {true, false}) {
+      std::vector<double> length(n, 0);
+      for (double change = 1; change > 1e-6;) {
+        change = 0;
+        for (std::size_t k = 0; k < n; ++k) {
+          const double norm = gradient[k].norm();
+          double sum = 0, value = 1;
+          for (int a = 0; a < 3; ++a) {
+            const double slope = gradient[k][a] / norm;
+            const auto link = annulus.links[k][2 * a + ((slope > 0) == inner ? 0 : 1)];
+            sum += std::abs(slope);
+            if (link >= 0) value += std::abs(slope) * length[link];
+          }
+          value /= sum;
+          change = std::max(change, std::abs(value - length[k]));
+          length[k] = value;
+        }
+      }
+      benchmark::DoNotOptimize(length.data());
+    }
+  }
+}
+BENCHMARK(PlainSolver)->Unit(benchmark::kMillisecond);
+
+/// Ours on the same labels, all fields.
+void OurSolver(benchmark::State& state) {
+  const auto phantom = harmonic::makePhantom(harmonic::PhantomKind::Spheroid, {128, 1});
+  for (auto _ : state) {
+    const auto annulus = harmonic::annulusFromLabels(phantom.labels, {{1}, {2}, {}, {}});
+    const auto found = findCorrespondences(annulus, harmonic::solveInterpolant(annulus));
+    benchmark::DoNotOptimize(found.innerDistance.data());
+  }
+}
+BENCHMARK(OurSolver)->Unit(benchmark::kMillisecond);
+
+}  // namespace

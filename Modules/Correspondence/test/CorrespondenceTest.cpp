@@ -1,0 +1,241 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Explica/Correspondence/Correspondence.h"
+
+#include "Explica/Core/Parallel.h"
+#include "Explica/Correspondence/AnatomicalGrid.h"
+#include "Explica/Correspondence/Layers.h"
+#include "Explica/Correspondence/Sulci.h"
+#include "Explica/Harmonic/Phantoms.h"
+
+#include <Eigen/Geometry>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace explica;
+using namespace explica::correspondence;
+using harmonic::Annulus;
+using harmonic::ExactAnnulus;
+using harmonic::Interpolant;
+
+namespace {
+
+struct Solved {
+  ExactAnnulus exact;
+  Annulus annulus;
+  Interpolant interpolant;
+};
+
+Solved solve(const ExactAnnulus& exact, const Grid& grid) {
+  Solved s;
+  s.exact = exact;
+  s.annulus = harmonic::annulusFromLevels(harmonic::sampled(grid, exact.innerLevel),
+                                          harmonic::sampled(grid, exact.outerLevel),
+                                          {0, harmonic::LevelInside::Below});
+  s.interpolant = harmonic::solveInterpolant(s.annulus);
+  return s;
+}
+
+/// Mean and greatest error in units of the finest spacing.
+struct Errors {
+  double meanPoint = 0, maxPoint = 0, meanThickness = 0, maxThickness = 0;
+};
+
+Errors errorsOf(const Solved& s, const Correspondence& found, double unit) {
+  Errors e;
+  EXPECT_EQ(found.missing, 0U);
+  for (std::int32_t n = 0; n < static_cast<std::int32_t>(s.annulus.count()); ++n) {
+    const Point x = s.annulus.world(n);
+    const auto answer = s.exact.answer(x);
+    const double inner = (x + found.innerPoint[n].cast<double>() - answer.innerPoint).norm() / unit;
+    const double outer = (x + found.outerPoint[n].cast<double>() - answer.outerPoint).norm() / unit;
+    const double thickness = std::abs(found.thickness(n) - answer.thickness()) / unit;
+    e.meanPoint += 0.5 * (inner + outer);
+    e.maxPoint = std::max({e.maxPoint, inner, outer});
+    e.meanThickness += thickness;
+    e.maxThickness = std::max(e.maxThickness, thickness);
+  }
+  e.meanPoint /= static_cast<double>(s.annulus.count());
+  e.meanThickness /= static_cast<double>(s.annulus.count());
+  return e;
+}
+
+CorrespondenceOptions with(Method method, std::optional<double> lambda = {}) {
+  CorrespondenceOptions options;
+  options.method = method;
+  options.lambda = lambda;
+  return options;
+}
+
+Solved eccentric() {
+  return solve(harmonic::exactEccentric(10, 25, 5),
+               harmonic::centredGrid({72, 72, 1}, {0.75, 0.75, 1}));
+}
+
+Solved spheroids() {
+  return solve(harmonic::exactSpheroids(30, 0.5, 1),
+               harmonic::centredGrid({64, 64, 88}, Vector::Constant(1)));
+}
+
+}  // namespace
+
+TEST(Correspondence, LagrangianIsExactToAFewHundredthsOfAVoxel) {
+  for (const Solved& s : {eccentric(), spheroids()}) {
+    const Errors e =
+        errorsOf(s, findCorrespondences(s.annulus, s.interpolant, with(Method::Lagrangian)),
+                 s.annulus.grid.spacing[0]);
+    EXPECT_LE(e.meanPoint, 0.02);
+    EXPECT_LE(e.maxPoint, 0.1);
+    EXPECT_LE(e.meanThickness, 0.01);
+  }
+}
+
+TEST(Correspondence, HybridAtLambdaZeroIsLagrangian) {
+  const Solved s = eccentric();
+  const auto a = findCorrespondences(s.annulus, s.interpolant, with(Method::Lagrangian));
+  const auto b = findCorrespondences(s.annulus, s.interpolant, with(Method::Hybrid, 0.0));
+  for (std::size_t n = 0; n < s.annulus.count(); ++n) {
+    EXPECT_NEAR(a.thickness(n), b.thickness(n), 1e-6);
+    EXPECT_LE((a.innerPoint[n] - b.innerPoint[n]).norm(), 1e-6F);
+  }
+}
+
+TEST(Correspondence, HybridIsNearlyAsGoodAndEulerianVisiblyWorse) {
+  const Solved s = spheroids();
+  const auto error = [&](const CorrespondenceOptions& options) {
+    return errorsOf(s, findCorrespondences(s.annulus, s.interpolant, options), 1).meanPoint;
+  };
+  const double lagrangian = error(with(Method::Lagrangian));
+  EXPECT_LE(error(with(Method::Hybrid)), 1.5 * lagrangian);
+  EXPECT_GE(error(with(Method::Hybrid, kInfinity)), 5 * lagrangian);
+  EXPECT_GE(error(with(Method::Eulerian)), 20 * lagrangian);
+}
+
+TEST(Correspondence, HoldsForAnisotropicVoxelsAndObliqueAxes) {
+  Grid grid = harmonic::centredGrid({64, 48, 30}, {0.5, 0.7, 1.1});
+  const ExactAnnulus exact = harmonic::exactShell(7, 13);
+  Solved straight = solve(exact, grid);
+  const Errors e = errorsOf(
+      straight, findCorrespondences(straight.annulus, straight.interpolant, with(Method::Hybrid)),
+      0.5);
+  EXPECT_LE(e.meanThickness, 0.02);
+  EXPECT_LE(e.maxPoint, 0.25);
+
+  // The same tissue seen by a turned grid: a shell does not notice.
+  grid.direction = Eigen::AngleAxisd(0.5, Vector(1, 2, 3).normalized()).toRotationMatrix();
+  grid.origin = grid.direction * grid.origin;
+  const Solved turned = solve(exact, grid);
+  const Errors f = errorsOf(
+      turned, findCorrespondences(turned.annulus, turned.interpolant, with(Method::Hybrid)), 0.5);
+  EXPECT_NEAR(e.meanThickness, f.meanThickness, 1e-4);
+  EXPECT_NEAR(e.meanPoint, f.meanPoint, 1e-3);
+}
+
+TEST(Correspondence, DoesNotDependOnTheNumberOfThreads) {
+  const Solved s = eccentric();
+  setThreadCount(1);
+  const auto one = findCorrespondences(s.annulus, s.interpolant);
+  setThreadCount(4);
+  const auto four = findCorrespondences(s.annulus, s.interpolant);
+  setThreadCount(0);
+  EXPECT_EQ(one.innerDistance, four.innerDistance);
+  EXPECT_EQ(one.outerDistance, four.outerDistance);
+}
+
+TEST(Correspondence, LabelsAloneGiveATenthOfAVoxel) {
+  for (const auto kind : {harmonic::PhantomKind::Shell, harmonic::PhantomKind::Spheroid}) {
+    const auto phantom = harmonic::makePhantom(kind, {96, 1});
+    Solved s;
+    s.exact = phantom.exact;
+    s.annulus = harmonic::annulusFromLabels(phantom.labels, {{1}, {2}, {}, {}});
+    s.interpolant = harmonic::solveInterpolant(s.annulus);
+    const Errors e = errorsOf(s, findCorrespondences(s.annulus, s.interpolant), 1);
+    std::printf("labels: mean %.4f max %.4f voxel\n", e.meanThickness, e.maxThickness);
+    EXPECT_LE(e.meanThickness, 0.1);
+    EXPECT_LE(e.maxThickness, 0.6);  // at the poles of the spheroids
+  }
+}
+
+TEST(Trajectory, ReachesAnyLevelFromAnyPoint) {
+  const Solved s = spheroids();
+  const TrajectoryTracer tracer(s.annulus, s.interpolant);
+  const Point start(14.2, 3.1, 12.7);
+  ASSERT_LT(s.exact.innerLevel(start) * s.exact.outerLevel(start), 0);
+  const auto answer = s.exact.answer(start);
+  const Trace out = tracer.trace(start, 1), in = tracer.trace(start, 0);
+  ASSERT_TRUE(out.reached && in.reached);
+  EXPECT_NEAR((out.point - answer.outerPoint).norm(), 0, 0.05);
+  EXPECT_NEAR((in.point - answer.innerPoint).norm(), 0, 0.05);
+  EXPECT_NEAR(out.length + in.length, answer.thickness(), 0.02);
+  const Trace half = tracer.trace(in.point, 0.5);
+  ASSERT_TRUE(half.reached);
+  EXPECT_NEAR(s.exact.answer(half.point).u, 0.5, 0.003);
+  EXPECT_FALSE(tracer.trace(Point(200, 0, 0), 1).reached);
+}
+
+TEST(Sulci, TwoBanksThatTouchAreParted) {
+  // Two slabs of white matter 12 voxels apart, grey matter all between: each bank is half of it.
+  Volume<Label> labels(harmonic::centredGrid({24, 20, 40}, {1, 1, 0.9}), 0);
+  for (int k = 0; k < 40; ++k) {
+    for (int j = 0; j < 20; ++j) {
+      for (int i = 0; i < 24; ++i) {
+        const bool bank = i < 6 || i >= 17;  // 11 voxels between
+        labels(i, j, k) = k < 6 ? 1 : k < 34 ? (bank ? 1 : 2) : 0;
+      }
+    }
+  }
+  const Annulus annulus = harmonic::annulusFromLabels(labels, {{1}, {2}, {}, {}});
+  const auto recovered = recoverSulci(annulus);
+  EXPECT_GT(recovered.voxels.size(), 500U);
+  const auto interpolant = harmonic::solveInterpolant(recovered.annulus);
+  const auto found = findCorrespondences(recovered.annulus, interpolant);
+  double deepest = 0;
+  int seen = 0;
+  for (std::int32_t n = 0; n < static_cast<std::int32_t>(recovered.annulus.count()); ++n) {
+    const Vector index = recovered.annulus.index(n);
+    if (index[2] < 16 || index[2] > 28) continue;
+    ++seen;
+    EXPECT_NEAR(found.thickness(n), 5.5, 0.25);
+    deepest = std::max(deepest, found.thickness(n));
+  }
+  EXPECT_GT(seen, 500);
+}
+
+TEST(Sulci, AConvexTissueHasNone) {
+  const Solved s = spheroids();
+  EXPECT_EQ(recoverSulci(s.annulus).voxels.size(), 0U);
+}
+
+TEST(Layers, EqualVolumeFollowsTheColumn) {
+  // In a shell the column's volume below radius r is (r^3 - a^3) / (b^3 - a^3).
+  const Solved s = solve(harmonic::exactShell(6, 12),
+                         harmonic::centredGrid({40, 40, 40}, Vector::Constant(0.7)));
+  const auto found = findCorrespondences(s.annulus, s.interpolant);
+  const auto depth = depthOf(found);
+  const auto share = volumeDepthOf(s.annulus, s.interpolant, found);
+  for (std::int32_t n = 0; n < static_cast<std::int32_t>(s.annulus.count()); ++n) {
+    const double r = s.annulus.world(n).norm();
+    EXPECT_NEAR(depth[n], (r - 6) / 6, 0.01);
+    EXPECT_NEAR(share[n], (r * r * r - 216) / (1728 - 216), 0.01);
+  }
+  const auto layers = layersOf(depth, 4);
+  EXPECT_EQ(*std::min_element(layers.begin(), layers.end()), 1);
+  EXPECT_EQ(*std::max_element(layers.begin(), layers.end()), 4);
+}
+
+TEST(AnatomicalGrid, FollowsTheExactTrajectories) {
+  for (const Solved& s : {eccentric(), spheroids()}) {
+    const auto grid = anatomicalGrid(s.annulus, s.interpolant, 4);
+    EXPECT_EQ(grid.lost, 0U);
+    EXPECT_EQ(grid.cells.cols(), s.annulus.planar ? 4 : 8);
+    for (Eigen::Index p = 0; p < grid.points.rows(); p += 5) {
+      const Point middle = grid.points.row(p + 2).transpose();
+      const auto answer = s.exact.answer(middle);
+      EXPECT_NEAR(answer.innerDistance / answer.thickness(), 0.5, 0.01);
+      EXPECT_NEAR((grid.points.row(p).transpose() - answer.innerPoint).norm(), 0, 0.1);
+      EXPECT_NEAR((grid.points.row(p + 4).transpose() - answer.outerPoint).norm(), 0, 0.1);
+    }
+  }
+}
