@@ -13,7 +13,7 @@
 namespace explica::unfolding {
 namespace {
 
-constexpr char kMagic[] = "ExplicaUnfold1\n";
+constexpr char kMagic[] = "ExplicaUnfold2\n";
 static_assert(sizeof(std::int64_t) == 8 && sizeof(double) == 8);
 
 /// FNV-1a: tells a damaged file, not a forged one.
@@ -91,6 +91,7 @@ void writeCheckpoint(const std::filesystem::path& path, const Checkpoint& checkp
   w.raw(s.multipliers.data(), static_cast<std::size_t>(s.multipliers.size()) * sizeof(double));
   w.number(s.damping);
   w.number(s.areaStiffness);
+  w.number(s.contactStiffness);
   w.count(s.iteration);
   w.count(s.separating);
   w.count(s.stalled);
@@ -131,6 +132,7 @@ Checkpoint readCheckpoint(const std::filesystem::path& path) {
         static_cast<std::size_t>(c.state.multipliers.size()) * sizeof(double));
   c.state.damping = r.number();
   c.state.areaStiffness = r.number();
+  c.state.contactStiffness = r.number();
   c.state.iteration = static_cast<int>(r.count());
   c.state.separating = r.count() != 0;
   c.state.stalled = r.count() != 0;

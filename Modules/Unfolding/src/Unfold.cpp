@@ -39,6 +39,14 @@ bool isSettled(const std::vector<IterationRecord>& history) {
   return best - bestBefore < kGain;
 }
 
+/// True if lengths no longer recover: the strain fell by less than a hundredth over the last steps.
+bool isRelaxed(const std::vector<IterationRecord>& history) {
+  constexpr std::size_t kWindow = 5;
+  if (history.size() <= kWindow) return false;
+  const double before = history[history.size() - 1 - kWindow].edgeStrainMean;
+  return history.back().edgeStrainMean > 0.99 * before;
+}
+
 Positions movingOnly(const Unfolder& unfolder) {
   const auto& moving = unfolder.movingVertices();
   Positions rows(static_cast<Eigen::Index>(moving.size()), 3);
@@ -123,19 +131,21 @@ UnfoldResult unfold(const TriangleMesh& mesh, const Region& region,
 
   const double earlier = result.history.back().seconds;
   const double goal = options.targetVisibility.value_or(1.0);
+  const bool thesis = options.unfolder.method == Method::Thesis;
   int sinceGoal = 0;
   for (const IterationRecord& row : result.history) sinceGoal += row.visibility >= goal;
   for (result.termination = Termination::NotRun; result.termination == Termination::NotRun;) {
     const IterationRecord& last = result.history.back();
     constexpr int kPolish = 100;  // iterations for the areas once the visibility is reached
     const bool kept = last.areaErrorMean <= options.areaTolerance;
-    if (options.targetVisibility && last.visibility >= goal && (kept || sinceGoal > kPolish)) {
+    if (options.targetVisibility && last.visibility >= goal &&
+        ((kept && (thesis || isRelaxed(result.history))) || sinceGoal > kPolish)) {
       if (!kept) {
         monitor.warn("the visibility is reached, but the mean area error stays at " +
                      std::to_string(last.areaErrorMean));
       }
       result.termination = Termination::TargetReached;
-    } else if (isSettled(result.history) && kept) {
+    } else if (isSettled(result.history) && (kept || thesis)) {
       result.termination = options.targetVisibility ? Termination::Stalled : Termination::Converged;
     } else if (static_cast<int>(result.history.size()) > options.maxIterations) {
       result.termination = Termination::MaxIterations;

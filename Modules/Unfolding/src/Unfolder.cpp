@@ -3,6 +3,7 @@
 
 #include "Explica/Unfolding/Unfolder.h"
 
+#include "AreaProjection.h"
 #include "BlockSystem.h"
 #include "PatchEnergy.h"
 
@@ -31,6 +32,8 @@ constexpr double kMultiplierRate = 0.3;    // of the full update: the inner prob
 constexpr double kLargestMultiplier = 20;  // times the pull of the visibility term
 constexpr double kLeastDamping = 0.1;      // below it steps overshoot the quadratic model
 constexpr double kSoftBelow = 0.1;         // of a contact's range: below it force is bounded
+constexpr double kPressed = 0.03;          // of a contact's range: below it contacts stiffen ...
+constexpr double kStiffestContact = 1e3;   // ... up to this factor
 constexpr double kBlocked = 0.3;        // share of a step below which the pairs that stop it lock
 constexpr double kLockStiffness = 1e5;  // against about 1 of the other terms
 constexpr double kSlowGain = 0.003;     // visibility per iteration below which areas tighten ...
@@ -62,6 +65,7 @@ struct Unfolder::Implementation {
   std::map<Pair, double> rangeOfPair;  ///< of pairs nearer at the start than the barrier's range
   Couplings meshCouplings;
   BlockSystem system;
+  std::unique_ptr<repulsion::KnotEnergy> knot;
   std::vector<Pair> near;  ///< pairs that may be within range at state.positions
   bool nearKnown = false;
 
@@ -73,7 +77,9 @@ struct Unfolder::Implementation {
   PatchStrengths strengths() const {
     return {state.separating ? 0.0 : 1.0, state.areaStiffness, options.weights.spring};
   }
-  double contactScale() const { return options.weights.contact * edge * edge; }
+  double contactScale() const {
+    return state.contactStiffness * options.weights.contact * edge * edge;
+  }
   void couple(const std::array<std::int32_t, 4>& vertices, Couplings& couplings) const;
   void addLock(const Pair& pair, const Positions& x);
   std::vector<Pair> blockingPairs(const std::vector<Pair>& pairs, const Positions& x,
@@ -81,11 +87,16 @@ struct Unfolder::Implementation {
   void measure(IterationRecord& account) const;
   void updateMultipliers();
   bool step();
+  bool implicitStep();
+  bool thesisStep();
 };
 
 void Unfolder::Implementation::build() {
   if (!(options.contactRange > 0)) throw InvalidInput("contactRange: must be positive");
   if (!(options.largestMove > 0)) throw InvalidInput("largestMove: must be positive");
+  if (options.timeStep && !(*options.timeStep > 0)) {
+    throw InvalidInput("time-step: must be positive");
+  }
   if (options.collarRings <= 0) throw InvalidInput("collarRings: must be positive");
   if (region.faces.empty()) throw InvalidInput("region: has no face");
   const auto vertexCount = static_cast<std::size_t>(mesh.vertexCount());
@@ -170,6 +181,7 @@ void Unfolder::Implementation::build() {
   std::sort(meshCouplings.begin(), meshCouplings.end());
 
   scene = std::make_unique<collision::CollisionScene>(mesh, moves);
+  knot = repulsion::makeKnotEnergy(options.knot, mesh, moves);
   state.positions = mesh.positions;
   state.multipliers = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(patch.faces().size()));
   state.areaStiffness = options.weights.area;
@@ -239,13 +251,15 @@ double Unfolder::Implementation::objective(const Positions& x, const std::vector
                                            IterationRecord* account) const {
   const PatchValue value = patch.value(x, viewpoints, strengths(), state.multipliers);
   const double contact = contactScale() * collision::contactEnergy(contacts, x);
+  const double knotted = knot ? options.weights.knot * knot->value(x) : 0;
   if (account != nullptr) {
     account->energyVisibility = value.visibility;
     account->energyArea = value.area;
     account->energySpring = value.spring;
     account->energyContact = contact;
+    account->energyKnot = knotted;
   }
-  return value.total() + contact;
+  return value.total() + contact + knotted;
 }
 
 void Unfolder::Implementation::couple(const std::array<std::int32_t, 4>& vertices,
@@ -332,7 +346,7 @@ void Unfolder::Implementation::updateMultipliers() {
   }
 }
 
-bool Unfolder::Implementation::step() {
+bool Unfolder::Implementation::implicitStep() {
   const Positions& x = state.positions;
   if (!nearKnown) {
     near = scene->findPairs(x, Positions::Zero(x.rows(), 3), contactRange);
@@ -361,6 +375,7 @@ bool Unfolder::Implementation::step() {
 
   Positions gradient = Positions::Zero(x.rows(), 3);
   patch.addGradient(x, viewpoints, strengths(), state.multipliers, gradient);
+  if (knot) gradient += options.weights.knot * knot->evaluate(x).gradient;
   const auto forces = collision::contactForces(contacts, x);
   const double scale = contactScale();
   for (std::size_t n = 0; n < contacts.size(); ++n) {
@@ -447,7 +462,7 @@ bool Unfolder::Implementation::step() {
       trial = x + taken * motion;
       now.objectiveAfter = objective(trial, onTheWay, &now);
       constexpr double kArmijo = 1e-4;
-      if (now.objectiveAfter <= now.objectiveBefore + kArmijo * taken * slope) {
+      if (now.objectiveAfter <= now.objectiveBefore + std::min(0.0, kArmijo * taken * slope)) {
         accepted = true;
         break;
       }
@@ -458,11 +473,16 @@ bool Unfolder::Implementation::step() {
     now.largestMove = taken * largest;
     now.damping = state.damping;
     now.contacts = static_cast<int>(contacts.size());
-    double nearest = kInfinity;
+    double nearest = kInfinity, pressed = 1;
     for (const Contact& c : contacts) {
       collision::FourPoints p;
-      for (int i = 0; i < 4; ++i) p[i] = x.row(c.vertices[i]).transpose();
-      nearest = std::min(nearest, collision::squaredDistance(c.kind, p));
+      for (int i = 0; i < 4; ++i) p[i] = trial.row(c.vertices[i]).transpose();
+      const double squared = collision::squaredDistance(c.kind, p);
+      nearest = std::min(nearest, squared);
+      pressed = std::min(pressed, std::sqrt(squared) / c.range);
+    }
+    if (!state.separating && pressed < kPressed) {
+      state.contactStiffness = std::min(kStiffestContact, 2 * state.contactStiffness);
     }
     now.nearestContact = contacts.empty() ? kNaN : std::sqrt(nearest);
     state.positions = trial;
@@ -484,6 +504,48 @@ bool Unfolder::Implementation::step() {
   }
   state.stalled = true;
   return false;
+}
+
+/// [Thesis, Eq. 5.46] with the sign that lets the knot energy fall, and [Thesis, Eq. 5.48].
+bool Unfolder::Implementation::thesisStep() {
+  const Positions& x = state.positions;
+  IterationRecord now;
+  now.iteration = state.iteration + 1;
+  const auto average =
+      visibility::AverageVisibility(mesh.faces, region.faces, viewpoints).evaluate(x);
+  Positions velocity = average.area * average.gradient;
+  if (knot) {
+    const repulsion::KnotValue value = knot->evaluate(x);
+    velocity -= options.weights.knot * value.gradient;
+    now.energyKnot = options.weights.knot * value.value;
+  }
+  for (Eigen::Index v = 0; v < velocity.rows(); ++v) {
+    if (unknown[v] < 0) velocity.row(v).setZero();
+  }
+  if (options.keepAreas) now.solves = keepAreas(patch, x, unknown, velocity).iterations;
+  const double fastest = std::sqrt(velocity.rowwise().squaredNorm().maxCoeff());
+  if (!(fastest > 0)) {
+    state.stalled = true;
+    return false;
+  }
+  constexpr double kAdaptiveMove = 0.05;  // mean edge lengths: about as far as areas stay linear
+  const double timeStep = options.timeStep.value_or(kAdaptiveMove * edge / fastest);
+  now.step = timeStep;
+  now.largestMove = timeStep * fastest;
+  now.energyVisibility = average.area * (1 - average.value);
+  now.objectiveBefore = now.energyVisibility + now.energyKnot;
+  state.positions += timeStep * velocity;
+  state.iteration = now.iteration;
+  nearKnown = false;
+  measure(now);
+  now.objectiveAfter = kNaN;  // a flow: no search along the line
+  record = now;
+  if (!state.positions.allFinite()) throw InvalidInput("time-step: too large, the flow diverged");
+  return true;
+}
+
+bool Unfolder::Implementation::step() {
+  return options.method == Method::Thesis ? thesisStep() : implicitStep();
 }
 
 Unfolder::Unfolder(TriangleMesh mesh, Region region, visibility::Viewpoints viewpoints,

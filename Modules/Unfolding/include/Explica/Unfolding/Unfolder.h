@@ -4,10 +4,12 @@
 
 #include "Explica/Core/Describe.h"
 #include "Explica/Core/TriangleMesh.h"
+#include "Explica/Repulsion/KnotEnergy.h"
 #include "Explica/Unfolding/Region.h"
 #include "Explica/Visibility/Viewpoints.h"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,19 +23,30 @@ enum class Surround {
   None      ///< the region alone
 };
 
+/// How a region is unfolded.
+enum class Method {
+  Implicit,  ///< implicit steps on an incremental potential, guarded by collision detection
+  Thesis     ///< explicit gradient flow with areas projected [Thesis, Eq. 5.46, 5.48]: the baseline
+};
+
 /// Strengths of the terms of the objective, all without unit; may be changed between steps.
 struct UnfoldWeights {
   double area = 20;      ///< stiffness of areas; multipliers make them exact whatever it is
-  double spring = 2;     ///< stiffness of edge lengths
+  double spring = 2.3;    ///< stiffness of edge lengths
   double contact = 0.2;  ///< strength of the contact barrier
+  double knot = 3e-4;   ///< strength of the knot energy
   double collar = 0.02;  ///< stiffness of the collar's areas and lengths beside the region's
 };
 
 struct UnfolderOptions {
+  Method method = Method::Implicit;
   Surround surround = Surround::Fixed;
   int collarRings = 6;         ///< rings of faces of an elastic collar, > 0
   double contactRange = 0.25;  ///< of the mean edge length: the barrier acts below it, > 0
   double largestMove = 3;      ///< mean edge lengths that a vertex goes per iteration at most, > 0
+  repulsion::KnotMethod knot = repulsion::KnotMethod::Off;
+  bool keepAreas = true;           ///< thesis method: project; without it the region shrinks
+  std::optional<double> timeStep;  ///< thesis method: fixed step, mm per mm; else adaptive
   UnfoldWeights weights;
 };
 
@@ -41,6 +54,7 @@ template <class Visitor>
 void describe(UnfoldWeights& weights, Visitor&& visit) {
   visit(Field{"area-weight", "", "stiffness of face areas before it is tightened"}, weights.area);
   visit(Field{"spring-weight", "", "stiffness of edge lengths"}, weights.spring);
+  visit(Field{"knot-weight", "", "strength of the knot energy"}, weights.knot);
   visit(Field{"contact-weight", "", "strength of the contact barrier"}, weights.contact);
   visit(Field{"collar-weight", "", "stiffness of an elastic collar beside the region's"},
         weights.collar);
@@ -57,6 +71,12 @@ void describe(UnfolderOptions& options, Visitor&& visit) {
         options.contactRange);
   visit(Field{"largest-move", "", "mean edge lengths that a vertex goes per iteration at most"},
         options.largestMove);
+  visit(Field{"method", "", "implicit steps, or the thesis's gradient flow as the baseline"},
+        options.method);
+  visit(Field{"knot", "", "who evaluates the knot energy"}, options.knot);
+  visit(Field{"keep-areas", "", "thesis method: project onto kept areas"}, options.keepAreas);
+  visit(Field{"time-step", "", "thesis method: fixed step instead of an adaptive one"},
+        options.timeStep);
   describe(options.weights, visit);
 }
 
@@ -90,6 +110,7 @@ struct UnfoldState {
   Eigen::VectorXd multipliers;  ///< one per kept face
   double damping = 1;
   double areaStiffness = 0;  ///< current, >= weights.area
+  double contactStiffness = 1;  ///< factor of weights.contact, raised where pairs are pressed close
   int iteration = 0;
   bool separating = true;  ///< pairs that start almost in contact are parted first
   bool stalled = false;    ///< no step lowered the objective
@@ -103,7 +124,11 @@ struct UnfoldState {
 /// with a moving vertex, and backtracks until the objective does not rise.  So no state has an
 /// intersection that the start did not have, and crossings of the start stay as they are.
 ///
-/// Results are the same for any number of threads.
+/// Results are the same for any number of threads; with a knot energy, on the same kind of
+/// processor.
+///
+/// The thesis's method has none of this: it follows the flow of visibility and knot energy with its
+/// areas kept to first order, and may intersect.
 class Unfolder {
  public:
   /// @throws InvalidInput  ill-formed mesh, viewpoint or option; a region face of zero area
@@ -141,6 +166,12 @@ class Unfolder {
 };
 
 }  // namespace explica::unfolding
+
+template <>
+struct explica::EnumNames<explica::unfolding::Method> {
+  static constexpr std::array table = {std::pair{explica::unfolding::Method::Implicit, "implicit"},
+                                       std::pair{explica::unfolding::Method::Thesis, "thesis"}};
+};
 
 template <>
 struct explica::EnumNames<explica::unfolding::Surround> {

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "AreaProjection.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/IterativeLinearSolvers>
+#include <Eigen/SparseCore>
+
+namespace explica::unfolding {
+
+ProjectionAccount keepAreas(const PatchEnergy& patch, const Positions& x,
+                            const std::vector<std::int32_t>& unknown, Positions& velocity) {
+  std::vector<Eigen::Triplet<double>> entries;
+  Eigen::Index row = 0;
+  for (const PatchFace& face : patch.faces()) {
+    if (!face.looked) continue;
+    const Point a = x.row(face.vertices[0]).transpose(), b = x.row(face.vertices[1]).transpose(),
+                c = x.row(face.vertices[2]).transpose();
+    const Vector normal = (b - a).cross(c - a).normalized();
+    const std::array<Vector, 3> slopes = {0.5 * normal.cross(c - b), 0.5 * normal.cross(a - c),
+                                          0.5 * normal.cross(b - a)};
+    for (int k = 0; k < 3; ++k) {
+      const std::int32_t u = unknown[face.vertices[k]];
+      if (u < 0) continue;
+      for (int axis = 0; axis < 3; ++axis) entries.emplace_back(row, 3 * u + axis, slopes[k][axis]);
+    }
+    ++row;
+  }
+  Eigen::Index unknowns = 0;
+  for (const std::int32_t u : unknown) unknowns = std::max<Eigen::Index>(unknowns, u + 1);
+  Eigen::SparseMatrix<double> jacobian(row, 3 * unknowns);
+  jacobian.setFromTriplets(entries.begin(), entries.end());
+  Eigen::VectorXd flat = Eigen::VectorXd::Zero(3 * unknowns);
+  for (std::size_t v = 0; v < unknown.size(); ++v) {
+    if (unknown[v] >= 0) {
+      flat.segment<3>(3 * unknown[v]) = velocity.row(static_cast<Eigen::Index>(v)).transpose();
+    }
+  }
+  const Eigen::SparseMatrix<double> normalMatrix = jacobian * jacobian.transpose();
+  Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower | Eigen::Upper> solver;
+  solver.setTolerance(1e-8);
+  solver.setMaxIterations(2000);
+  solver.compute(normalMatrix);
+  const Eigen::VectorXd rates = jacobian * flat;
+  const Eigen::VectorXd multipliers = solver.solve(rates);
+  flat -= jacobian.transpose() * multipliers;
+  for (std::size_t v = 0; v < unknown.size(); ++v) {
+    if (unknown[v] >= 0) {
+      velocity.row(static_cast<Eigen::Index>(v)) = flat.segment<3>(3 * unknown[v]).transpose();
+    }
+  }
+  return {static_cast<int>(solver.iterations()), solver.error()};
+}
+
+}  // namespace explica::unfolding
