@@ -91,6 +91,8 @@ void writeCheckpoint(const std::filesystem::path& path, const Checkpoint& checkp
   w.raw(s.multipliers.data(), static_cast<std::size_t>(s.multipliers.size()) * sizeof(double));
   w.number(s.damping);
   w.number(s.areaStiffness);
+  w.number(s.drive);
+  w.count(s.driveIteration);
   w.number(s.contactStiffness);
   w.count(s.iteration);
   w.count(s.separating);
@@ -132,6 +134,8 @@ Checkpoint readCheckpoint(const std::filesystem::path& path) {
         static_cast<std::size_t>(c.state.multipliers.size()) * sizeof(double));
   c.state.damping = r.number();
   c.state.areaStiffness = r.number();
+  c.state.drive = r.number();
+  c.state.driveIteration = static_cast<int>(r.count());
   c.state.contactStiffness = r.number();
   c.state.iteration = static_cast<int>(r.count());
   c.state.separating = r.count() != 0;

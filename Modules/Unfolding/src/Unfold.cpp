@@ -26,10 +26,10 @@ void requireUsable(const UnfoldOptions& options) {
 }
 
 /// True if the last iterations brought the visibility no further and the areas are kept.
-bool isSettled(const std::vector<IterationRecord>& history) {
+bool isSettled(const std::vector<IterationRecord>& history, int since) {
   constexpr std::size_t kWindow = 12;
   constexpr double kGain = 0.002;  // of visibility over the window
-  if (history.size() <= kWindow) return false;
+  if (history.back().iteration - since < static_cast<int>(kWindow)) return false;
   double best = -1, bestBefore = -1;
   for (std::size_t n = 0; n < history.size(); ++n) {
     const double v = history[n].visibility;
@@ -39,12 +39,12 @@ bool isSettled(const std::vector<IterationRecord>& history) {
   return best - bestBefore < kGain;
 }
 
-/// True if lengths no longer recover: the strain fell by less than a hundredth over the last steps.
+/// True if lengths no longer recover: the strain fell by less than 0.4 % over the last steps.
 bool isRelaxed(const std::vector<IterationRecord>& history) {
   constexpr std::size_t kWindow = 5;
   if (history.size() <= kWindow) return false;
   const double before = history[history.size() - 1 - kWindow].edgeStrainMean;
-  return history.back().edgeStrainMean > 0.99 * before;
+  return history.back().edgeStrainMean > 0.996 * before;
 }
 
 Positions movingOnly(const Unfolder& unfolder) {
@@ -145,8 +145,17 @@ UnfoldResult unfold(const TriangleMesh& mesh, const Region& region,
                      std::to_string(last.areaErrorMean));
       }
       result.termination = Termination::TargetReached;
-    } else if (isSettled(result.history) && (kept || thesis)) {
-      result.termination = options.targetVisibility ? Termination::Stalled : Termination::Converged;
+    } else if (!(options.targetVisibility && last.visibility >= goal) && (kept || thesis) &&
+               isSettled(result.history, unfolder.state().driveIteration)) {
+      // Lengths and contacts balance the visibility: outweigh them as far as the target needs it.
+      constexpr double kLargestDrive = 4;
+      if (!options.targetVisibility) {
+        result.termination = Termination::Converged;
+      } else if (!thesis && unfolder.state().drive < kLargestDrive) {
+        unfolder.raiseDrive(std::clamp(1 + 10 * (goal - last.visibility), 1.01, 1.3));
+      } else {
+        result.termination = Termination::Stalled;
+      }
     } else if (static_cast<int>(result.history.size()) > options.maxIterations) {
       result.termination = Termination::MaxIterations;
     } else if (monitor.shouldStop()) {

@@ -75,7 +75,7 @@ struct Unfolder::Implementation {
   double objective(const Positions& x, const std::vector<Contact>& contacts,
                    IterationRecord* account) const;
   PatchStrengths strengths() const {
-    return {state.separating ? 0.0 : 1.0, state.areaStiffness, options.weights.spring};
+    return {state.separating ? 0.0 : state.drive, state.areaStiffness, options.weights.spring};
   }
   double contactScale() const {
     return state.contactStiffness * options.weights.contact * edge * edge;
@@ -563,6 +563,10 @@ Unfolder& Unfolder::operator=(Unfolder&&) noexcept = default;
 
 bool Unfolder::step() {
   return self_->step();
+}
+void Unfolder::raiseDrive(double factor) {
+  self_->state.drive *= factor;
+  self_->state.driveIteration = self_->state.iteration;
 }
 const UnfoldState& Unfolder::state() const {
   return self_->state;

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
+#include "../src/AreaProjection.h"
 #include "../src/PatchEnergy.h"
 
 #include "Meander.h"
@@ -150,6 +151,33 @@ TEST(PatchEnergy, VisibilityTermIsAreaTimesOneLessTheAverageVisibility) {
       PatchEnergy(faces, {}).value(mesh.positions, view, {1, 1, 1}, none).visibility;
   const double average = visibility::AverageVisibility(mesh.faces, all, view).value(mesh.positions);
   EXPECT_NEAR(term, areas.sum() * (1 - average), 1e-6 * areas.sum());
+}
+
+TEST(AreaProjection, LeavesNoFirstOrderChangeOfArea) {
+  const TriangleMesh mesh = makeMeander(12, 8, 1.2, 1);
+  const Eigen::VectorXd areas = geometry::faceAreas(mesh);
+  std::vector<PatchFace> faces;
+  for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
+    faces.push_back(
+        {{mesh.faces(f, 0), mesh.faces(f, 1), mesh.faces(f, 2)}, areas[f], areas[f], true});
+  }
+  std::vector<std::int32_t> unknown(static_cast<std::size_t>(mesh.vertexCount()));
+  std::iota(unknown.begin(), unknown.end(), 0);
+  const Positions wanted = randomDirection(mesh.vertexCount(), 4);
+  Positions velocity = wanted;
+  keepAreas(PatchEnergy(faces, {}), mesh.positions, unknown, velocity);
+  constexpr double h = 1e-6;
+  const auto rates = [&](const Positions& v) {
+    TriangleMesh moved = mesh;
+    moved.positions += h * v;
+    return Eigen::VectorXd((geometry::faceAreas(moved) - areas) / h);
+  };
+  EXPECT_GT(rates(wanted).norm(), 1);
+  EXPECT_LT(rates(velocity).norm(), 1e-3);
+  EXPECT_GT(velocity.norm(), 0.1 * wanted.norm());
+  // A projection: what it took is orthogonal to what it left.
+  EXPECT_NEAR((velocity.array() * (wanted - velocity).array()).sum(), 0,
+              1e-5 * wanted.squaredNorm());
 }
 
 TEST(BlockSystem, SolvesWhatADenseSolverSolves) {

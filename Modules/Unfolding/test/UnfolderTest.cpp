@@ -103,6 +103,39 @@ TEST(Unfolder, ThreadsDoNotChangeAnyBit) {
   EXPECT_EQ(ends[0], ends[2]);
 }
 
+TEST(ThesisMethod, LosesAreasWithoutTheirProjectionAndIntersectsWithoutRepulsion) {
+  const TriangleMesh mesh = makeMeander(kColumns, kRows, 2.1);
+  const Region region = regionOfMarked(mesh, interiorOf(kColumns, kRows, 3));
+  const auto view = visibility::viewpoint(Point(8, 8, 1000));
+  const auto areaErrorAfter = [&](bool keepAreas, bool* intersects) {
+    UnfolderOptions options = with(Surround::Fixed);
+    options.method = Method::Thesis;
+    options.keepAreas = keepAreas;
+    Unfolder unfolder(mesh, region, view, options);
+    const double before = unfolder.record().visibility;
+    for (int n = 0; n < 120; ++n) unfolder.step();
+    EXPECT_GT(unfolder.record().visibility, before + 0.1);
+    if (intersects) *intersects = !geometry::findSelfIntersections(unfolder.current()).empty();
+    return measureDistortion(mesh, unfolder.state().positions, region.faces).areaErrorMean;
+  };
+  bool intersects = false;
+  EXPECT_LT(areaErrorAfter(true, &intersects), 0.05);
+  EXPECT_TRUE(intersects);                          // [Thesis, Fig. 4.20] in three dimensions
+  EXPECT_GT(areaErrorAfter(false, nullptr), 0.15);  // [Thesis, Fig. 4.19]
+}
+
+TEST(Unfolder, KnotEnergyMayTakePart) {
+  const Case c;
+  UnfolderOptions options = with(Surround::None);
+  options.knot = repulsion::KnotMethod::AllPairs;
+  Unfolder unfolder(c.mesh, c.region, c.view, options);
+  for (int n = 0; n < 2; ++n) {
+    ASSERT_TRUE(unfolder.step());
+    EXPECT_LE(unfolder.record().objectiveAfter, unfolder.record().objectiveBefore);
+  }
+  EXPECT_GT(unfolder.record().energyKnot, 0);
+}
+
 TEST(Unfold, ResumedRunsEqualUninterruptedOnesToTheLastBit) {
   const Case c;
   UnfoldOptions options;

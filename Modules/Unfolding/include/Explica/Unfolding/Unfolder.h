@@ -32,9 +32,9 @@ enum class Method {
 /// Strengths of the terms of the objective, all without unit; may be changed between steps.
 struct UnfoldWeights {
   double area = 20;      ///< stiffness of areas; multipliers make them exact whatever it is
-  double spring = 2.3;    ///< stiffness of edge lengths
+  double spring = 2.4;   ///< stiffness of edge lengths
   double contact = 0.2;  ///< strength of the contact barrier
-  double knot = 3e-4;   ///< strength of the knot energy
+  double knot = 3e-4;    ///< strength of the knot energy
   double collar = 0.02;  ///< stiffness of the collar's areas and lengths beside the region's
 };
 
@@ -109,7 +109,9 @@ struct UnfoldState {
   Positions positions;          ///< V x 3, all vertices of the surface
   Eigen::VectorXd multipliers;  ///< one per kept face
   double damping = 1;
-  double areaStiffness = 0;  ///< current, >= weights.area
+  double areaStiffness = 0;     ///< current, >= weights.area
+  double drive = 1;             ///< strength of the visibility term against the others
+  int driveIteration = 0;       ///< when it was raised last
   double contactStiffness = 1;  ///< factor of weights.contact, raised where pairs are pressed close
   int iteration = 0;
   bool separating = true;  ///< pairs that start almost in contact are parted first
@@ -141,6 +143,9 @@ class Unfolder {
   /// One iteration; false if none that lowers the objective was found (the state is then marked
   /// stalled and unchanged).
   bool step();
+
+  /// Strengthens the visibility term, for a target that the present balance does not reach.
+  void raiseDrive(double factor);
 
   [[nodiscard]] const UnfoldState& state() const;
   /// Continues from a state of the same inputs: bit-identical to never having stopped.
