@@ -74,7 +74,8 @@ struct CorticalTissue {
 /// Boundaries from shares of each voxel in [0, 1]; 0.5 is the boundary.
 /// @param white      share of (filled) white matter
 /// @param tissue     share of white and grey matter together; empty grid: white only
-/// @param insulated  labels or mask, not 0 where neither side is; empty grid: nowhere.  If given, the
+/// @param insulated  labels or mask, not 0 where neither side is; empty grid: nowhere.  If given,
+/// the
 ///                   shares hold one hemisphere and `hemisphere` only names it
 /// @throws InvalidInput  grids differ, or as tissueFromLabels
 [[nodiscard]] CorticalTissue tissueFromShares(const Volume<float>& white,
