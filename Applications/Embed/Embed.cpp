@@ -214,7 +214,8 @@ Termination run(Context& context, const Settings& s) {
             count > 1 ? static_cast<double>(f) / static_cast<double>(count - 1) : 1;
         const auto at =
             static_cast<std::size_t>(std::lround(share * share * static_cast<double>(last)));
-        writeShape(context, name, fit.path[std::max(at, std::min(f, last))], s.grid);
+        writeShape(context, name, fit.path[std::max(at, std::min(f, last))],
+                   annulus.dimension == 2 ? s.grid : std::max(16, s.grid / 2));
       }
       context.result("symmetric_difference_initial", fit.history.front().symmetricDifference);
       context.result("symmetric_difference_final", fit.history.back().symmetricDifference);

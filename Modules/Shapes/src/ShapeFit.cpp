@@ -18,7 +18,8 @@ constexpr double kDifference = 1e-4;  // of the annulus' width: step of the diff
 constexpr double kRounding = 1e-3;    // of the width: distances below count as equal in the L1 sum
 constexpr double kLeastShare = 0.1;   // of the mean amplitude: keeps boundary values off 1/2
 constexpr double kScaleWeight = 1e2;  // of the amplitudes' sum, against the fit's weights
-constexpr double kConverged = 1e-3;   // relative change of the symmetric difference
+constexpr double kConverged = 1e-2;   // relative change of the symmetric difference
+constexpr double kNear = 1e-3;        // mean distance, of the annulus' width: near enough
 constexpr int kMostSweeps = 400;      // of coordinate descent per iteration; the next one goes on
 constexpr double kSweepTolerance = 1e-7;  // largest change of an amplitude, against their mean
 
@@ -206,7 +207,9 @@ ShapeFit fitShape(const HarmonicAnnulus& annulus, const TargetSamples& target,
     monitor.progress(static_cast<double>(k + 1) / options.maxIterations, "fitting");
     const double before = result.history[result.history.size() - 2].symmetricDifference;
     const double now = result.history.back().symmetricDifference;
-    if (k > 3 && std::abs(before - now) < kConverged * now) {
+    const bool near =
+        result.history.back().distanceMean < kNear * (annulus.outerRadius - annulus.innerRadius);
+    if (k > 3 && (near || std::abs(before - now) < kConverged * now)) {
       result.termination = Termination::Converged;
       break;
     }

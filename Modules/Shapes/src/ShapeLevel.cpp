@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace explica::shapes {
 namespace {
@@ -21,7 +22,7 @@ void moveOntoLevel(const HarmonicShape& shape, double voxel, Positions& points) 
   const int axes = shape.annulus.dimension;
   const Positions start = points;
   const double h = 1e-3 * voxel;
-  for (int k = 0; k < 3; ++k) {
+  for (int k = 0; k < 2; ++k) {
     const Eigen::VectorXd excess = (valuesAt(shape, points).array() - 0.5).matrix();
     Positions gradient = Positions::Zero(points.rows(), 3);
     for (int axis = 0; axis < axes; ++axis) {
@@ -60,16 +61,29 @@ Volume<float> fieldOf(const HarmonicShape& shape, int voxels) {
   const Grid& grid = field.grid;
   const std::size_t row = static_cast<std::size_t>(grid.size[0]);
   for (std::size_t first = 0; first < field.size(); first += 64 * row) {
-    const std::size_t count = std::min(field.size() - first, 64 * row);
-    Positions points(static_cast<Eigen::Index>(count), 3);
-    for (std::size_t v = 0; v < count; ++v) {
-      const auto [i, j, k] = grid.subscripts(first + v);
-      points.row(static_cast<Eigen::Index>(v)) =
-          grid.toWorld({double(i), double(j), double(k)}).transpose();
+    const std::size_t end = std::min(field.size(), first + 64 * row);
+    std::vector<std::size_t> within;
+    std::vector<Point> places;
+    for (std::size_t v = first; v < end; ++v) {
+      const auto [i, j, k] = grid.subscripts(v);
+      const Point place = grid.toWorld({double(i), double(j), double(k)});
+      Vector d = place - shape.annulus.centre;
+      if (shape.annulus.dimension == 2) d.z() = 0;
+      const double r = d.norm();
+      if (r > shape.annulus.innerRadius && r < shape.annulus.outerRadius) {
+        within.push_back(v);
+        places.push_back(place);
+      } else {
+        field[v] = r <= shape.annulus.innerRadius ? 0.0F : 1.0F;
+      }
+    }
+    Positions points(static_cast<Eigen::Index>(places.size()), 3);
+    for (std::size_t p = 0; p < places.size(); ++p) {
+      points.row(static_cast<Eigen::Index>(p)) = places[p].transpose();
     }
     const Eigen::VectorXd values = valuesAt(shape, points);
-    for (std::size_t v = 0; v < count; ++v) {
-      field[first + v] = static_cast<float>(values[static_cast<Eigen::Index>(v)]);
+    for (std::size_t p = 0; p < within.size(); ++p) {
+      field[within[p]] = static_cast<float>(values[static_cast<Eigen::Index>(p)]);
     }
   }
   return field;

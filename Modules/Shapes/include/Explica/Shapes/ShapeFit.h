@@ -18,7 +18,7 @@ struct TargetSamples {
 };
 
 struct ShapeFitOptions {
-  int maxIterations = 30;
+  int maxIterations = 60;
   double step = 0.5;         ///< share of the way to each iteration's optimum; 1 is the full step
   double smoothness = 1e-9;  ///< pull to the concentric shape, against the fit's mean weight
 };

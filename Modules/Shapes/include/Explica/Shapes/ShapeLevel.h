@@ -12,7 +12,8 @@
 
 namespace explica::shapes {
 
-/// u on a grid of `voxels` per side (and axis) that just holds the annulus.
+/// u on a grid of `voxels` per side (and axis) that just holds the annulus; 0 within
+/// its inner and 1 beyond its outer boundary.
 [[nodiscard]] Volume<float> fieldOf(const HarmonicShape& shape, int voxels);
 
 /// The closed curves where u = 1/2, vertices moved onto the level; one for every valid shape.
