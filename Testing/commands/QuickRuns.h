@@ -41,6 +41,10 @@ inline const std::vector<QuickRun>& quickRuns() {
   static const std::vector<QuickRun> runs = {
       {"PhantomPolygon19", {}, {"phantom", "polygon19"}},
       {"PhantomPolygon34", {}, {"phantom", "polygon34"}},
+      {"PhantomCortex", {}, {"phantom", "cortex", "--size", "32", "--spacing", "2"}},
+      {"PhantomEccentric", {}, {"phantom", "eccentric", "--size", "64"}},
+      {"PhantomSpheroid", {}, {"phantom", "spheroid", "--size", "48", "--spacing", "2.7"}},
+      {"PhantomVentricle", {}, {"phantom", "ventricle", "--size", "48", "--spacing", "2.7"}},
       {"PhantomShell", {}, {"phantom", "shell", "--size", "24"}},
       {"Embed",
        {{"phantom", "polygon19", "--out", "{folder}/p19"},
