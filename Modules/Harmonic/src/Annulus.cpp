@@ -226,6 +226,7 @@ void countContacts(Annulus& annulus, const std::vector<Code>& sites, const Monit
   const std::size_t sliceSize = strides[2];
   struct Found {
     std::size_t count = 0;
+    std::size_t inPlane = 0;  ///< of them within the slice: the ring is open there
     std::size_t at = 0;
     Found& operator+=(const Found& other) {
       if (count == 0) at = other.at;
@@ -244,6 +245,7 @@ void countContacts(Annulus& annulus, const std::vector<Code>& sites, const Monit
           if ((s == codeOf(Site::Inner) && t == codeOf(Site::Outer)) ||
               (s == codeOf(Site::Outer) && t == codeOf(Site::Inner))) {
             if (bySlice[k].count++ == 0) bySlice[k].at = p;
+            bySlice[k].inPlane += a < 2;
           }
         }
       }
@@ -254,7 +256,7 @@ void countContacts(Annulus& annulus, const std::vector<Code>& sites, const Monit
   for (std::size_t k = 0; k < bySlice.size(); ++k) {
     if (bySlice[k].count == 0) continue;
     all += bySlice[k];
-    slices.push_back(static_cast<int>(k) + annulus.first[2]);
+    if (bySlice[k].inPlane > 0) slices.push_back(static_cast<int>(k) + annulus.first[2]);
   }
   annulus.directContacts = all.count;
   if (all.count == 0) return;
@@ -266,7 +268,9 @@ void countContacts(Annulus& annulus, const std::vector<Code>& sites, const Monit
   text << "the inner region touches the outer one without tissue between them at " << all.count
        << " voxel faces, first at voxel (" << (*annulus.firstContact)[0] << ", "
        << (*annulus.firstContact)[1] << ", " << (*annulus.firstContact)[2] << ")";
-  if (slices.size() <= 12) {
+  if (slices.empty()) {
+    text << ", between slices";
+  } else if (slices.size() <= 12) {
     text << ": the ring is open in slice";
     if (slices.size() > 1) text << "s";
     for (std::size_t k = 0; k < slices.size(); ++k) text << (k ? ", " : " ") << slices[k];

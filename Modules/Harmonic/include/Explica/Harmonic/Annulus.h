@@ -128,6 +128,8 @@ void describe(AnnulusOptions& options, Visitor&& visit) {
   visit(Field{"boundary", "", "where the boundary lies between voxel centres"}, options.boundary);
   visit(Field{"open-ends", "", "insulate the planes beyond the tissue's first and last slice"},
         options.openEnds);
+  visit(Field{"per-slice", "", "measure every slice (along k) on its own, in two dimensions"},
+        options.perSlice);
 }
 
 /// On which side of a level set the enclosed region is.
