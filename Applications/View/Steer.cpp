@@ -3,6 +3,8 @@
 
 #include "Steer.h"
 
+#include "Explica/Report/ColourMap.h"
+#include "Explica/Report/Picture.h"
 #include "Explica/Viewer/Window.h"
 
 #include <spawn.h>
@@ -30,10 +32,25 @@ int runSelf(std::vector<std::string> words) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
+/// Colours as in the pictures of `explica view --screenshot`.
+std::vector<viewer::Rgb> paintOf(const std::string& name, const Eigen::VectorXd& values) {
+  std::vector<viewer::Rgb> bytes;
+  for (const report::Colour& colour :
+       report::coloursOf(values, report::scaleFor(values, name, ""))) {
+    viewer::Rgb rgb;
+    for (int c = 0; c < 3; ++c) {
+      rgb[c] = report::encodeSrgb(colour[c]);
+    }
+    bytes.push_back(rgb);
+  }
+  return bytes;
+}
+
 }  // namespace
 
 void steer(Context& context, const std::string& path, const TriangleMesh& surface,
-           const Vector& direction, const SteerOptions& options) {
+           const Vector& direction, const std::vector<io::VertexMap>& maps,
+           const SteerOptions& options) {
   viewer::Session session(surface);
   viewer::Choice choice;
   choice.centre = options.vertex.value_or(-1);
@@ -66,7 +83,10 @@ void steer(Context& context, const std::string& path, const TriangleMesh& surfac
   viewer::WindowOptions window;
   window.title = "Explica: " + path;
   window.script = options.script;
-  viewer::showWindow(session, save, window);
+  for (const io::VertexMap& map : maps) {
+    window.maps.push_back({map.unit.empty() ? map.name : map.name + ", " + map.unit, map.values});
+  }
+  viewer::showWindow(session, paintOf, save, window);
 }
 
 }  // namespace explica::app

@@ -5,10 +5,12 @@
 #include "Explica/Application/Context.h"
 #include "Explica/Core/Describe.h"
 #include "Explica/Core/TriangleMesh.h"
+#include "Explica/IO/VertexDataFile.h"
 #include "Explica/Unfolding/Unfolder.h"
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace explica::app {
 
@@ -36,7 +38,9 @@ void describe(SteerOptions& o, Visitor&& visit) {
 /// the same choices, in a process of its own: same outputs, same record.
 /// @param path       of the surface's file
 /// @param direction  from the surface to the viewer
+/// @param maps       further maps to show
 void steer(Context& context, const std::string& path, const TriangleMesh& surface,
-           const Vector& direction, const SteerOptions& options);
+           const Vector& direction, const std::vector<io::VertexMap>& maps,
+           const SteerOptions& options);
 
 }  // namespace explica::app

@@ -239,7 +239,10 @@ Termination run(Context& context, const Settings& s) {
           "film with --film FILE.gif");
     }
     const TriangleMesh surface = io::readSurface(s.files.front(), s.reading).mesh;
-    steer(context, s.files.front(), surface, s.direction.value_or(Vector(-1, 0, 0)), s.window);
+    std::vector<io::VertexMap> maps;
+    if (s.map) maps = io::readVertexMaps(*s.map, surface.vertexCount());
+    steer(context, s.files.front(), surface, s.direction.value_or(Vector(-1, 0, 0)), maps,
+          s.window);
     return Termination::NotRun;
   }
   if (s.screenshot && std::filesystem::path(*s.screenshot).extension() != ".png") {

@@ -73,13 +73,15 @@ class Window(unittest.TestCase):
             "key space 0 0\nwait 8\nkey space 0 0\npicture unfolded.png\n"
             "drag 700 500 900 480\npicture turned.png\n"
             "key m 0 0\npicture flux.png\n"
+            "key m 0 0\npicture seen.png\n"
+            "key m 0 0\npicture area.png\n"
             "key Home 0 0\npicture first.png\n"
             "key Right 0 0\nkey Right 0 0\nkey w 0 0\nsaved\npicture saved.png\n"
             "key r 0 0\npicture reset.png\n",
             "--save", "kept",
         )  # fmt: skip
         self.assertEqual(result.returncode, 0, result.stderr)
-        names = "start chosen unfolded turned flux first saved reset".split()
+        names = "start chosen unfolded turned flux seen area first saved reset".split()
         pictures = [(self.folder / f"{name}.png").read_bytes() for name in names]
         for picture in pictures:
             self.assertEqual(picture[1:4], b"PNG")

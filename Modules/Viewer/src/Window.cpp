@@ -4,7 +4,9 @@
 #include "Explica/Viewer/Window.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Visibility/AverageVisibility.h"
+#include "Explica/Visibility/VisibleFraction.h"
 
 #include <X11/Xlib.h>
 #include <vtkActor.h>
@@ -50,26 +52,11 @@ namespace {
 
 constexpr int kFrameMilliseconds = 40;  // the picture follows iterations 25 times a second
 
-enum class Map { Region, Flux, Count };
+/// The window's own maps; those of the options follow.
+enum OwnMap : std::size_t { kRegion, kFlux, kSeen, kAreaRatio, kOwnMaps };
 
-const char* mapName(Map map) {
-  return map == Map::Region ? "region" : "flux (1 faces the viewer)";
-}
-
-using Rgb = std::array<unsigned char, 3>;
-
-/// Blue through light grey to brown: readable by colour-blind people, t in [-1, 1].
-Rgb divergingColour(double t) {
-  constexpr std::array<double, 3> low = {33, 102, 172}, middle = {236, 236, 232},
-                                  high = {166, 97, 26};
-  const auto& end = t < 0 ? low : high;
-  const double share = std::min(std::abs(t), 1.0);
-  Rgb colour;
-  for (int c = 0; c < 3; ++c) {
-    colour[c] = static_cast<unsigned char>(middle[c] + share * (end[c] - middle[c]));
-  }
-  return colour;
-}
+constexpr std::array kOwnMapNames = {"region", "flux (1 faces the viewer)", "seen share",
+                                     "area now / area at the start"};
 
 void requireDisplay() {
   const char* name = std::getenv("DISPLAY");
@@ -87,8 +74,8 @@ void requireDisplay() {
 /// The window's objects and what the user's events do to them.
 class Stage {
  public:
-  Stage(Session& session, const Save& save, const WindowOptions& options)
-      : session_(session), save_(save), options_(options) {
+  Stage(Session& session, const Paint& paint, const Save& save, const WindowOptions& options)
+      : session_(session), paint_(paint), save_(save), options_(options) {
     buildSurface();
     buildOverlays();
     renderer_->SetBackground(1, 1, 1);
@@ -261,22 +248,38 @@ class Stage {
     window_->Render();
   }
 
-  void paint(const TriangleMesh& mesh) {
-    const Preview& preview = session_.preview();
-    std::vector<bool> inRegion(static_cast<std::size_t>(mesh.vertexCount()), false);
-    for (const std::int32_t v : preview.region.vertices) inRegion[v] = true;
-    Eigen::VectorXd flux;
-    if (map_ == Map::Flux) {
-      const Choice choice = session_.choice();
-      const Point far = mesh.positions.colwise().mean().transpose() +
-                        choice.distance * choice.direction.normalized();
-      flux = visibility::vertexFlux(mesh, visibility::viewpoint(far));
+  [[nodiscard]] std::string mapName() const {
+    return map_ < kOwnMaps ? kOwnMapNames[map_] : options_.maps[map_ - kOwnMaps].name;
+  }
+
+  /// Values of the map that is shown, of the state that is shown.
+  [[nodiscard]] Eigen::VectorXd mapValues(const TriangleMesh& mesh) const {
+    const Choice choice = session_.choice();
+    const auto viewpoint = visibility::viewpoint(mesh.positions.colwise().mean().transpose() +
+                                                 choice.distance * choice.direction.normalized());
+    switch (map_) {
+      case kFlux:
+        return visibility::vertexFlux(mesh, viewpoint);
+      case kSeen:
+        return visibility::visibleFraction(mesh, viewpoint).vertex;
+      case kAreaRatio:
+        return geometry::vertexAreas(mesh).cwiseQuotient(
+            geometry::vertexAreas(session_.surface()).cwiseMax(1e-12));
+      default:
+        return options_.maps[map_ - kOwnMaps].values;
     }
-    for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
-      Rgb colour = {205, 198, 190};
-      if (map_ == Map::Flux) colour = divergingColour(flux[v]);
-      if (map_ == Map::Region && inRegion[v]) colour = {88, 150, 214};
-      colours_->SetTypedTuple(v, colour.data());
+  }
+
+  void paint(const TriangleMesh& mesh) {
+    std::vector<Rgb> colours;
+    if (map_ == kRegion) {
+      colours.assign(static_cast<std::size_t>(mesh.vertexCount()), {205, 198, 190});
+      for (const std::int32_t v : session_.preview().region.vertices) colours[v] = {88, 150, 214};
+    } else {
+      colours = paint_(mapName(), mapValues(mesh));
+    }
+    for (std::size_t v = 0; v < colours.size(); ++v) {
+      colours_->SetTypedTuple(static_cast<vtkIdType>(v), colours[v].data());
     }
     colours_->Modified();
   }
@@ -296,7 +299,7 @@ class Stage {
                     "edge strain %.1f %%\nmap: %s",
                     shown_, count - 1, kWords[static_cast<int>(session_.activity())],
                     record.visibility, 100 * record.areaErrorMean, 100 * record.edgeStrainMean,
-                    mapName(map_));
+                    mapName().c_str());
     }
     status_->SetInput((std::string(text) + (message_.empty() ? "" : "\n" + message_)).c_str());
   }
@@ -379,8 +382,7 @@ class Stage {
     if (key == "Right") step(shown_ + 1);
     if (key == "Home") step(0);
     if (key == "End") step(session_.momentCount());
-    if (key == "m")
-      map_ = static_cast<Map>((static_cast<int>(map_) + 1) % static_cast<int>(Map::Count));
+    if (key == "m") map_ = (map_ + 1) % (kOwnMaps + options_.maps.size());
     if (key == "r") session_.reset(), shown_ = seen_ = 0;
     if (key == "w") saveState();
     if (key == "h") help_->SetVisibility(!help_->GetVisibility());
@@ -476,12 +478,13 @@ class Stage {
   }
 
   Session& session_;
+  const Paint& paint_;
   const Save& save_;
   const WindowOptions& options_;
   std::size_t shown_ = 0;  ///< state in the picture
   std::size_t seen_ = 0;   ///< states that the picture knows of
   bool follow_ = true;     ///< the picture goes with the newest state
-  Map map_ = Map::Region;
+  std::size_t map_ = kRegion;
   std::string message_;
   std::future<std::string> saving_;
 
@@ -504,9 +507,10 @@ class Stage {
 
 }  // namespace
 
-void showWindow(Session& session, const Save& save, const WindowOptions& options) {
+void showWindow(Session& session, const Paint& paint, const Save& save,
+                const WindowOptions& options) {
   requireDisplay();
-  Stage(session, save, options).run();
+  Stage(session, paint, save, options).run();
 }
 
 }  // namespace explica::viewer
