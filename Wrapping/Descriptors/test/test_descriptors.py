@@ -134,7 +134,7 @@ class Nipype(unittest.TestCase):
             name = "".join(w.capitalize() for w in command["command"].split())
             interface = getattr(module, name)
             required = {
-                p["name"].lower()
+                p["name"].lower().replace("_", "-")
                 for p in command["parameters"]
                 if p["required"] or p["name"] == "out"
             }
