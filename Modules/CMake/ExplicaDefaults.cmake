@@ -21,6 +21,11 @@ if(EXPLICA_CCACHE)
   set(CMAKE_CXX_COMPILER_LAUNCHER "${EXPLICA_CCACHE}")
 endif()
 
+# For targets whose time is spent compiling them rather than running them: tests, JSON, commands.
+function(explica_compile_quickly target)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+endfunction()
+
 # Flags live on targets: call this for every library and executable of the project.
 function(explica_set_flags target)
   target_compile_options(${target} PRIVATE

@@ -5,6 +5,7 @@
 
 # explica_add_module(<Name>
 #   PURPOSE "one sentence"
+#   COMPILE_QUICKLY             nothing in it is worth the compiler's full effort
 #   HEADERS include/...         public headers, installed, each compiled alone by `check_headers`
 #   SOURCES src/...             compiled into the static library Explica::<Name>
 #   PUBLIC  target...           links that a public header needs
@@ -16,7 +17,7 @@
 #   BENCHMARKS benchmark/...    Google Benchmark sources, one executable each
 #   TEST_LINKS target...)       extra links of tests and benchmarks
 function(explica_add_module name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "PURPOSE"
+  cmake_parse_arguments(PARSE_ARGV 1 arg "COMPILE_QUICKLY" "PURPOSE"
     "HEADERS;SOURCES;PUBLIC;PRIVATE;FIND;UNIT_TESTS;PROPERTY_TESTS;SLOW_TESTS;BENCHMARKS;TEST_LINKS")
   if(arg_UNPARSED_ARGUMENTS OR NOT arg_PURPOSE OR NOT arg_SOURCES)
     message(FATAL_ERROR "explica_add_module(${name}): PURPOSE and SOURCES are needed; "
@@ -31,6 +32,9 @@ function(explica_add_module name)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_link_libraries(${target} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE})
   explica_set_flags(${target})
+  if(arg_COMPILE_QUICKLY)
+    explica_compile_quickly(${target})
+  endif()
 
   install(TARGETS ${target} EXPORT Explica${name}Targets FILE_SET HEADERS
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
@@ -97,6 +101,7 @@ function(explica_add_test_executable target)
   target_compile_definitions(${target} PRIVATE EXPLICA_REAL_DATA="${EXPLICA_REAL_DATA}")
   target_include_directories(${target} PRIVATE "${PROJECT_SOURCE_DIR}/Testing/include")
   explica_set_flags(${target})
+  explica_compile_quickly(${target})
   set(timeout 120)
   if(arg_LABEL STREQUAL "slow")
     set(timeout 600)
