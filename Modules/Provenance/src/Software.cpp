@@ -73,6 +73,9 @@ Json describeLibraries() {
                                std::to_string(NLOHMANN_JSON_VERSION_MINOR) + "." +
                                std::to_string(NLOHMANN_JSON_VERSION_PATCH);
   libraries["TBB"] = TBB_VERSION_STRING;
+  libraries["ITK"] = EXPLICA_ITK_VERSION;
+  libraries["VTK"] = EXPLICA_VTK_VERSION;
+  libraries["Embree"] = EXPLICA_EMBREE_VERSION;
   return libraries;
 }
 
