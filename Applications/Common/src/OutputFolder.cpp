@@ -56,6 +56,37 @@ std::string ownLock(const std::string& command) {
          "\n";
 }
 
+/// What came of an attempt to make a lock file.
+struct LockAttempt {
+  bool created = false;
+  int fault = 0;  ///< errno; EEXIST if there is one already
+};
+
+bool writeAll(int descriptor, const std::string& text) {
+  return write(descriptor, text.data(), text.size()) == static_cast<ssize_t>(text.size());
+}
+
+/// Makes the lock with its text in one stroke, so that a kill leaves it whole or not at all: a file
+/// without a name is written, then named.  File systems without such files (some network ones) get
+/// it by exclusive creation; a kill between that and the text leaves an empty lock, which ages out.
+LockAttempt makeLock(const fs::path& lock, const std::string& text) {
+  const int nameless = open(lock.parent_path().c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+  if (nameless >= 0) {
+    LockAttempt attempt;
+    const std::string source = "/proc/self/fd/" + std::to_string(nameless);
+    attempt.created = writeAll(nameless, text) && linkat(AT_FDCWD, source.c_str(), AT_FDCWD,
+                                                         lock.c_str(), AT_SYMLINK_FOLLOW) == 0;
+    if (!attempt.created) attempt.fault = errno;
+    close(nameless);
+    if (attempt.created || attempt.fault == EEXIST || attempt.fault == ENOSPC) return attempt;
+  }
+  const int descriptor = open(lock.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
+  if (descriptor < 0) return {false, errno};
+  const LockAttempt attempt{true, writeAll(descriptor, text) ? 0 : errno};
+  close(descriptor);
+  return attempt;
+}
+
 /// Empty if the lock's owner is gone; else a sentence on who holds it.
 std::string holderOf(const fs::path& lock) {
   std::ifstream file(lock);
@@ -162,15 +193,12 @@ OutputFolder::OutputFolder(fs::path folder, const OutputRules& rules,
 void OutputFolder::acquireLock(const OutputRules& rules,
                                const std::function<void(const std::string&)>& warn) {
   for (int attempt = 0; attempt < 3; ++attempt) {
-    const int descriptor = open(lock_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
-    if (descriptor >= 0) {
-      const std::string text = ownLock(rules.command);
-      const bool written =
-          write(descriptor, text.data(), text.size()) == static_cast<ssize_t>(text.size());
-      const std::string cause = std::strerror(errno);
-      close(descriptor);
-      locked_ = true;
-      if (!written) cannot("the output folder cannot be written", folder_, cause);
+    const LockAttempt made = makeLock(lock_, ownLock(rules.command));
+    locked_ = made.created;
+    if (made.created) {
+      if (made.fault != 0) {
+        cannot("the output folder cannot be written", folder_, std::strerror(made.fault));
+      }
       heartbeat_ = std::thread([this] {
         std::unique_lock<std::mutex> guard(mutex_);
         while (!wake_.wait_for(guard, kHeartbeat, [this] { return stopping_; })) {
@@ -180,8 +208,9 @@ void OutputFolder::acquireLock(const OutputRules& rules,
       });
       return;
     }
-    if (errno != EEXIST)
-      cannot("the output folder cannot be written", folder_, std::strerror(errno));
+    if (made.fault != EEXIST) {
+      cannot("the output folder cannot be written", folder_, std::strerror(made.fault));
+    }
     const std::string holder = holderOf(lock_);
     if (!holder.empty()) {
       throw EnvironmentError(folder_.string() + ": in use by " + holder +
