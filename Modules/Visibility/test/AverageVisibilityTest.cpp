@@ -6,7 +6,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Geometry/Fixtures.h"
-#include "TaylorRemainder.h"
+#include "Explica/Testing/TaylorRemainder.h"
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>

@@ -3,7 +3,7 @@
 
 #include "Explica/Visibility/FaceFlux.h"
 
-#include "TaylorRemainder.h"
+#include "Explica/Testing/TaylorRemainder.h"
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
