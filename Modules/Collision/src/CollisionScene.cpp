@@ -3,6 +3,8 @@
 
 #include "Explica/Collision/CollisionScene.h"
 
+#include "MotionTree.h"
+
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
 
@@ -13,36 +15,6 @@ namespace explica::collision {
 namespace {
 
 using geometry::Box;
-using geometry::BoxTree;
-
-bool overlap(const Box& a, const Box& b) {
-  return a.min()[0] <= b.max()[0] && b.min()[0] <= a.max()[0] && a.min()[1] <= b.max()[1] &&
-         b.min()[1] <= a.max()[1] && a.min()[2] <= b.max()[2] && b.min()[2] <= a.max()[2];
-}
-
-/// BoxTree::forOverlaps with the visitor inlined; this is the innermost loop of a step.
-template <class Visit>
-void visitOverlaps(const BoxTree& tree, const Box& box, const Visit& visit) {
-  constexpr int kStackDepth = 64;  // two per level of a balanced tree of 2^31 items
-  const auto& nodes = tree.nodes();
-  if (nodes.empty()) return;
-  std::array<std::int32_t, kStackDepth> stack;
-  int depth = 0;
-  stack[depth++] = 0;
-  while (depth > 0) {
-    const BoxTree::Node& node = nodes[stack[--depth]];
-    if (!overlap(node.box, box)) continue;
-    if (node.count > 0) {
-      for (std::int32_t n = node.first; n < node.first + node.count; ++n) {
-        const std::int32_t item = tree.items()[n];
-        if (overlap(tree.boxes()[item], box)) visit(item);
-      }
-    } else {
-      stack[depth++] = node.left + 1;
-      stack[depth++] = node.left;
-    }
-  }
-}
 
 Edges edgesOf(const Faces& faces) {
   std::vector<std::array<std::int32_t, 2>> all;
@@ -60,20 +32,6 @@ Edges edgesOf(const Faces& faces) {
   return edges;
 }
 
-/// Box of the places that the listed vertices pass.
-template <class Row>
-Box sweptBox(const Row& vertices, const Positions& start, const Positions& motion, double margin) {
-  Box box;
-  for (Eigen::Index k = 0; k < vertices.size(); ++k) {
-    const Point p = start.row(vertices[k]).transpose();
-    box.extend(p);
-    box.extend(Point(p + motion.row(vertices[k]).transpose()));
-  }
-  box.min().array() -= margin;
-  box.max().array() += margin;
-  return box;
-}
-
 struct VertexRow {
   std::int32_t vertex;
   static constexpr Eigen::Index size() { return 1; }
@@ -82,41 +40,43 @@ struct VertexRow {
 
 }  // namespace
 
+struct CollisionScene::Surroundings {
+  std::vector<std::int32_t> vertices, edges, faces;
+  MotionTree vertexTree, edgeTree, faceTree;
+};
+
 CollisionScene::CollisionScene(const TriangleMesh& mesh, const std::vector<bool>& vertexMoves)
     : faces_(mesh.faces), edges_(edgesOf(mesh.faces)) {
   if (static_cast<Eigen::Index>(vertexMoves.size()) != mesh.vertexCount()) {
     throw InvalidInput("vertexMoves: " + std::to_string(vertexMoves.size()) + " flags for " +
                        std::to_string(mesh.vertexCount()) + " vertices");
   }
+  Surroundings fixed;
   std::vector<bool> used(vertexMoves.size(), false);
   for (Eigen::Index n = 0; n < faces_.size(); ++n) used[faces_.data()[n]] = true;
   for (std::int32_t v = 0; v < static_cast<std::int32_t>(used.size()); ++v) {
-    if (used[v]) (vertexMoves[v] ? moving_ : fixed_).vertices.push_back(v);
+    if (used[v]) (vertexMoves[v] ? moving_.vertices : fixed.vertices).push_back(v);
   }
   for (std::int32_t e = 0; e < edges_.rows(); ++e) {
     const bool moves = vertexMoves[edges_(e, 0)] || vertexMoves[edges_(e, 1)];
-    (moves ? moving_ : fixed_).edges.push_back(e);
+    (moves ? moving_.edges : fixed.edges).push_back(e);
   }
   for (std::int32_t f = 0; f < faces_.rows(); ++f) {
     const bool moves =
         vertexMoves[faces_(f, 0)] || vertexMoves[faces_(f, 1)] || vertexMoves[faces_(f, 2)];
-    (moves ? moving_ : fixed_).faces.push_back(f);
+    (moves ? moving_.faces : fixed.faces).push_back(f);
   }
-  const Positions& still = mesh.positions;
-  const auto boxOf = [&](const auto& row) {
-    Box box;
-    for (Eigen::Index k = 0; k < row.size(); ++k) box.extend(Point(still.row(row[k]).transpose()));
-    return box;
+  const Positions still = Positions::Zero(mesh.vertexCount(), 3);
+  const auto treeOf = [&](const std::vector<std::int32_t>& items, const auto& rowOf) {
+    std::vector<MovingBox> boxes;
+    boxes.reserve(items.size());
+    for (const std::int32_t i : items) boxes.push_back(movingBox(rowOf(i), mesh.positions, still));
+    return MotionTree(std::move(boxes));
   };
-  std::vector<Box> boxes;
-  for (const std::int32_t v : fixed_.vertices) boxes.push_back(boxOf(VertexRow{v}));
-  fixedVertexTree_ = BoxTree(boxes);
-  boxes.clear();
-  for (const std::int32_t e : fixed_.edges) boxes.push_back(boxOf(edges_.row(e)));
-  fixedEdgeTree_ = BoxTree(boxes);
-  boxes.clear();
-  for (const std::int32_t f : fixed_.faces) boxes.push_back(boxOf(faces_.row(f)));
-  fixedFaceTree_ = BoxTree(boxes);
+  fixed.vertexTree = treeOf(fixed.vertices, [](std::int32_t v) { return VertexRow{v}; });
+  fixed.edgeTree = treeOf(fixed.edges, [this](std::int32_t e) { return edges_.row(e); });
+  fixed.faceTree = treeOf(fixed.faces, [this](std::int32_t f) { return faces_.row(f); });
+  fixed_ = std::make_shared<const Surroundings>(std::move(fixed));
 }
 
 std::array<std::int32_t, 4> CollisionScene::vertices(const Pair& pair) const {
@@ -137,24 +97,24 @@ FourPoints CollisionScene::points(const Pair& pair, const Positions& positions) 
 std::vector<Pair> CollisionScene::findPairs(const Positions& start, const Positions& motion,
                                             double reach) const {
   constexpr std::size_t kGrain = 256;
-  const auto boxesOf = [&](const std::vector<std::int32_t>& items, const auto& rowOf,
-                           double margin) {
-    std::vector<Box> boxes(items.size());
-    parallelFor(items.size(), kGrain, [&](std::size_t n) {
-      boxes[n] = sweptBox(rowOf(items[n]), start, motion, margin);
-    });
+  const auto boxesOf = [&](const std::vector<std::int32_t>& items, const auto& rowOf) {
+    std::vector<MovingBox> boxes(items.size());
+    parallelFor(items.size(), kGrain,
+                [&](std::size_t n) { boxes[n] = movingBox(rowOf(items[n]), start, motion); });
     return boxes;
   };
-  const auto vertexRow = [](std::int32_t v) { return VertexRow{v}; };
   const auto edgeRow = [this](std::int32_t e) { return edges_.row(e); };
   const auto faceRow = [this](std::int32_t f) { return faces_.row(f); };
-  const std::vector<Box> vertexBoxes = boxesOf(moving_.vertices, vertexRow, reach);
-  const std::vector<Box> edgeBoxes = boxesOf(moving_.edges, edgeRow, reach);
-  const std::vector<Box> faceBoxes = boxesOf(moving_.faces, faceRow, reach);
-  const BoxTree movingEdgeTree(edgeBoxes), movingFaceTree(faceBoxes);
+  const auto vertexBoxes = boxesOf(moving_.vertices, [](std::int32_t v) { return VertexRow{v}; });
+  const auto edgeBoxes = boxesOf(moving_.edges, edgeRow);
+  const auto faceBoxes = boxesOf(moving_.faces, faceRow);
+  std::array<MotionTree, 2> movingTrees;
+  parallelFor(2, 1,
+              [&](std::size_t n) { movingTrees[n] = MotionTree(n == 0 ? edgeBoxes : faceBoxes); });
+  const MotionTree &movingEdgeTree = movingTrees[0], &movingFaceTree = movingTrees[1];
 
-  // Boxes overlap far more often than pairs come near: neighbours move together.  Distance at the
-  // start less the bound of their approach decides.
+  // Boxes come near more often than what is in them: the distance at the start less the bound of
+  // their approach decides.
   const auto keepIfNear = [&](std::vector<Pair>& pairs, const Pair& pair) {
     const auto v = vertices(pair);
     for (int i = 0; i < (pair.kind == PairKind::VertexFace ? 1 : 2); ++i) {
@@ -175,7 +135,6 @@ std::vector<Pair> CollisionScene::findPairs(const Positions& start, const Positi
     std::size_t count;
     std::function<void(std::size_t, std::vector<Pair>&)> run;
   };
-  // Fixed trees hold bare boxes, so the moving boxes carry the whole reach.
   const std::array<Query, 3> queries = {
       Query{moving_.vertices.size(),
             [&](std::size_t n, std::vector<Pair>& pairs) {
@@ -183,30 +142,26 @@ std::vector<Pair> CollisionScene::findPairs(const Positions& start, const Positi
               const auto visit = [&](std::int32_t f) {
                 keepIfNear(pairs, {PairKind::VertexFace, v, f});
               };
-              Box bare = vertexBoxes[n];
-              bare.min().array() += reach;
-              bare.max().array() -= reach;
-              visitOverlaps(movingFaceTree, bare, [&](std::int32_t i) { visit(moving_.faces[i]); });
-              visitOverlaps(fixedFaceTree_, vertexBoxes[n],
-                            [&](std::int32_t i) { visit(fixed_.faces[i]); });
+              movingFaceTree.visitMeetings(vertexBoxes[n], reach,
+                                           [&](std::int32_t i) { visit(moving_.faces[i]); });
+              fixed_->faceTree.visitMeetings(vertexBoxes[n], reach,
+                                             [&](std::int32_t i) { visit(fixed_->faces[i]); });
             }},
       Query{moving_.faces.size(),
             [&](std::size_t n, std::vector<Pair>& pairs) {
-              visitOverlaps(fixedVertexTree_, faceBoxes[n], [&](std::int32_t i) {
-                keepIfNear(pairs, {PairKind::VertexFace, fixed_.vertices[i], moving_.faces[n]});
+              fixed_->vertexTree.visitMeetings(faceBoxes[n], reach, [&](std::int32_t i) {
+                keepIfNear(pairs, {PairKind::VertexFace, fixed_->vertices[i], moving_.faces[n]});
               });
             }},
       Query{moving_.edges.size(), [&](std::size_t n, std::vector<Pair>& pairs) {
               const std::int32_t e = moving_.edges[n];
-              Box bare = edgeBoxes[n];
-              bare.min().array() += reach;
-              bare.max().array() -= reach;
-              visitOverlaps(movingEdgeTree, bare, [&](std::int32_t i) {
-                if (moving_.edges[i] > e)
+              movingEdgeTree.visitMeetings(edgeBoxes[n], reach, [&](std::int32_t i) {
+                if (moving_.edges[i] > e) {
                   keepIfNear(pairs, {PairKind::EdgeEdge, e, moving_.edges[i]});
+                }
               });
-              visitOverlaps(fixedEdgeTree_, edgeBoxes[n], [&](std::int32_t i) {
-                const std::int32_t other = fixed_.edges[i];
+              fixed_->edgeTree.visitMeetings(edgeBoxes[n], reach, [&](std::int32_t i) {
+                const std::int32_t other = fixed_->edges[i];
                 keepIfNear(pairs, {PairKind::EdgeEdge, std::min(e, other), std::max(e, other)});
               });
             }}};

@@ -77,6 +77,19 @@ TEST(CollisionScene, FindsAllPairsOfBruteForceIncludingTheRingToTheSurroundings)
   for (const Pair& pair : expected) EXPECT_TRUE(found.count(pair));
 }
 
+TEST(CollisionScene, FindsAllPairsOfWhatMovesTogetherOverFar) {
+  Setting s = foldedCap(0.2);
+  for (Eigen::Index v = 0; v < s.mesh.vertexCount(); ++v) {
+    if (s.moves[v]) s.motion(v, 2) += 6;
+  }
+  const CollisionScene scene(s.mesh, s.moves);
+  const auto pairs = scene.findPairs(s.mesh.positions, s.motion, 1.0);
+  const std::set<Pair> found(pairs.begin(), pairs.end());
+  const auto expected = pairsByBruteForce(s, scene, 1.0);
+  EXPECT_GT(expected.size(), 500u);
+  for (const Pair& pair : expected) EXPECT_TRUE(found.count(pair));
+}
+
 TEST(CollisionScene, RingFacesMoveThoughSomeOfTheirVerticesDoNot) {
   TriangleMesh mesh = geometry::makeRectangle(4, 4, 4, 4);
   std::vector<bool> moves(static_cast<std::size_t>(mesh.vertexCount()), false);

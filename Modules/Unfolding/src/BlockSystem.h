@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "Explica/Core/Types.h"
+#include "BlockCholesky.h"
 
-#include <Eigen/SparseCholesky>
-#include <Eigen/SparseCore>
+#include "Explica/Core/Types.h"
 
 #include <utility>
 #include <vector>
@@ -34,21 +33,18 @@ class BlockSystem {
   /// @return false if the matrix is not positive definite to working precision
   [[nodiscard]] bool solve(const Positions& rightSide, Positions& solution);
 
-  [[nodiscard]] Eigen::Index nonZerosOfFactor() const { return factorNonZeros_; }
+  [[nodiscard]] const BlockCholesky& factor() const { return factor_; }
 
  private:
   void layOut();
 
   std::int32_t count_ = 0;
   Couplings couplings_;
-  std::vector<std::int32_t> place_;     ///< position of each point in the elimination order
-  std::vector<std::int32_t> begin_;     ///< of each block column's rows
-  std::vector<std::int32_t> rows_;      ///< block rows >= column, ascending, in elimination order
-  Eigen::SparseMatrix<double> matrix_;  ///< lower triangle
-  Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>>
-      factor_;
-  bool analysed_ = false;
-  Eigen::Index factorNonZeros_ = 0;
+  std::vector<std::int32_t> place_;      ///< position of each point in the elimination order
+  BlockPattern pattern_;                 ///< in elimination order
+  std::vector<Eigen::Matrix3d> blocks_;  ///< of the pattern's entries; of diagonal ones the lower
+                                         ///< triangle counts
+  BlockCholesky factor_;
 };
 
 }  // namespace explica::unfolding

@@ -15,6 +15,8 @@
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Visibility/AverageVisibility.h"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 #include <map>

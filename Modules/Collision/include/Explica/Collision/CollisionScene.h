@@ -4,8 +4,8 @@
 
 #include "Explica/Collision/ContinuousCollision.h"
 #include "Explica/Core/TriangleMesh.h"
-#include "Explica/Geometry/FaceTree.h"
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -45,13 +45,14 @@ class CollisionScene {
   [[nodiscard]] const std::vector<std::int32_t>& movingFaces() const { return moving_.faces; }
 
  private:
-  struct Elements {
+  struct Moving {
     std::vector<std::int32_t> vertices, edges, faces;
   };
+  struct Surroundings;
   Faces faces_;
   Edges edges_;  ///< those of any face, in lexicographic order
-  Elements moving_, fixed_;
-  geometry::BoxTree fixedVertexTree_, fixedEdgeTree_, fixedFaceTree_;
+  Moving moving_;
+  std::shared_ptr<const Surroundings> fixed_;  ///< what does not move, with its search trees
 };
 
 /// Largest step t in [0, limit] that brings no pair to contact; see safeTime().  Threaded.

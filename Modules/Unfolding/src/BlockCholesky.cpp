@@ -1,0 +1,425 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "BlockCholesky.h"
+
+#include "Explica/Core/Parallel.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/OrderingMethods>
+#include <Eigen/SparseCore>
+
+#include <algorithm>
+#include <atomic>
+#include <numeric>
+
+namespace explica::unfolding {
+namespace {
+
+using Panel = Eigen::Map<Eigen::MatrixXd>;
+
+/// Parent of each column in the elimination tree, -1 of roots [Liu1990]; `upper` lists the columns
+/// below i of each row i.
+std::vector<std::int32_t> eliminationTree(const BlockPattern& upper) {
+  const std::int32_t n = upper.count();
+  std::vector<std::int32_t> parent(n, -1), ancestor(n, -1);
+  for (std::int32_t i = 0; i < n; ++i) {
+    for (std::int32_t e = upper.begin[i]; e < upper.begin[i + 1]; ++e) {
+      for (std::int32_t j = upper.rows[e]; j != -1 && j < i;) {
+        const std::int32_t next = ancestor[j];
+        ancestor[j] = i;
+        if (next == -1) parent[j] = i;
+        j = next;
+      }
+    }
+  }
+  return parent;
+}
+
+/// Columns left of the diagonal for each row, ascending.
+BlockPattern transposed(const BlockPattern& lower) {
+  const std::int32_t n = lower.count();
+  BlockPattern upper;
+  upper.begin.assign(static_cast<std::size_t>(n) + 1, 0);
+  for (std::int32_t j = 0; j < n; ++j) {
+    for (std::int32_t e = lower.begin[j] + 1; e < lower.begin[j + 1]; ++e) {
+      ++upper.begin[lower.rows[e] + 1];
+    }
+  }
+  std::partial_sum(upper.begin.begin(), upper.begin.end(), upper.begin.begin());
+  upper.rows.resize(static_cast<std::size_t>(upper.begin[n]));
+  std::vector<std::int32_t> at(upper.begin.begin(), upper.begin.end() - 1);
+  for (std::int32_t j = 0; j < n; ++j) {
+    for (std::int32_t e = lower.begin[j] + 1; e < lower.begin[j + 1]; ++e) {
+      upper.rows[at[lower.rows[e]]++] = j;
+    }
+  }
+  return upper;
+}
+
+/// Children before parents, subtrees together.
+std::vector<std::int32_t> postorderPlaces(const std::vector<std::int32_t>& parent) {
+  const auto n = static_cast<std::int32_t>(parent.size());
+  std::vector<std::int32_t> firstChild(n, -1), sibling(n, -1);
+  for (std::int32_t j = n - 1; j >= 0; --j) {
+    if (parent[j] < 0) continue;
+    sibling[j] = firstChild[parent[j]];
+    firstChild[parent[j]] = j;
+  }
+  std::vector<std::int32_t> place(n, -1), stack;
+  std::int32_t next = 0;
+  for (std::int32_t root = 0; root < n; ++root) {
+    if (parent[root] >= 0) continue;
+    stack.push_back(root);
+    while (!stack.empty()) {
+      const std::int32_t j = stack.back();
+      if (firstChild[j] >= 0) {
+        stack.push_back(firstChild[j]);
+        firstChild[j] = sibling[firstChild[j]];
+      } else {
+        stack.pop_back();
+        place[j] = next++;
+      }
+    }
+  }
+  return place;
+}
+
+/// Adds the lower triangle of a child's remainder, in 3 x 3 blocks, into its parent's front.
+void extendAdd(const Eigen::MatrixXd& update, std::span<const std::int32_t> parentRow,
+               Eigen::Index width, Panel& panel, Eigen::MatrixXd& rest) {
+  const auto count = static_cast<Eigen::Index>(parentRow.size());
+  for (Eigen::Index j = 0; j < count; ++j) {
+    const Eigen::Index column = 3 * static_cast<Eigen::Index>(parentRow[j]);
+    for (int k = 0; k < 3; ++k) {
+      const double* from = &update(0, 3 * j + k);
+      double* to = column < width ? &panel(0, column + k) : &rest(0, column - width + k) - width;
+      for (Eigen::Index i = j; i < count; ++i) {
+        double* at = to + 3 * static_cast<Eigen::Index>(parentRow[i]);
+        at[0] += from[3 * i];
+        at[1] += from[3 * i + 1];
+        at[2] += from[3 * i + 2];
+      }
+    }
+  }
+}
+
+constexpr Eigen::Index kPanel = 96;  // columns eliminated at a time: a panel of them stays in cache
+constexpr Eigen::Index kTile = 192;  // columns of the trailing matrix updated by one task
+
+/// Lower triangle of `trailing` -= below * below^T, by columns of tiles.
+template <class Trailing, class Below>
+void updateTrailing(Trailing trailing, const Below& below, bool tiled) {
+  const Eigen::Index size = trailing.rows();
+  const auto tile = [&](std::size_t n) {
+    const Eigen::Index begin = static_cast<Eigen::Index>(n) * kTile;
+    const Eigen::Index count = std::min(kTile, trailing.cols() - begin);
+    trailing.block(begin, begin, size - begin, count).noalias() -=
+        below.bottomRows(size - begin) * below.middleRows(begin, count).transpose();
+  };
+  const auto tiles = static_cast<std::size_t>((trailing.cols() + kTile - 1) / kTile);
+  if (tiled) {
+    parallelFor(tiles, 1, tile);
+  } else {
+    for (std::size_t n = 0; n < tiles; ++n) tile(n);
+  }
+}
+
+/// Eliminates the columns of `panel` (height x width); `rest` becomes what remains for the parent.
+bool eliminateDense(Panel& panel, Eigen::MatrixXd& rest, bool tiled) {
+  const Eigen::Index width = panel.cols(), height = panel.rows();
+  for (Eigen::Index begin = 0; begin < width; begin += kPanel) {
+    const Eigen::Index count = std::min(kPanel, width - begin), below = height - begin - count;
+    auto corner = panel.block(begin, begin, count, count);
+    Eigen::Ref<Eigen::MatrixXd> inPlace(corner);
+    if (Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>, Eigen::Lower>(inPlace).info() != Eigen::Success) {
+      return false;
+    }
+    if (below == 0) continue;
+    auto under = panel.block(begin + count, begin, below, count);
+    const auto solveRows = [&](std::size_t n) {
+      const Eigen::Index row = static_cast<Eigen::Index>(n) * kTile;
+      auto part = under.middleRows(row, std::min(kTile, below - row));
+      corner.template triangularView<Eigen::Lower>()
+          .transpose()
+          .template solveInPlace<Eigen::OnTheRight>(part);
+    };
+    const auto parts = static_cast<std::size_t>((below + kTile - 1) / kTile);
+    if (tiled) {
+      parallelFor(parts, 1, solveRows);
+    } else {
+      for (std::size_t n = 0; n < parts; ++n) solveRows(n);
+    }
+    const Eigen::Index left = width - begin - count;
+    if (left > 0)
+      updateTrailing(panel.block(begin + count, begin + count, below, left), under, tiled);
+    if (rest.rows() > 0) {
+      updateTrailing(Eigen::Ref<Eigen::MatrixXd>(rest), under.bottomRows(rest.rows()), tiled);
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+std::vector<std::int32_t> eliminationPlaces(
+    std::int32_t count, std::span<const std::pair<std::int32_t, std::int32_t>> edges) {
+  std::vector<Eigen::Triplet<double, std::int32_t>> entries;
+  entries.reserve(2 * edges.size() + static_cast<std::size_t>(count));
+  for (std::int32_t i = 0; i < count; ++i) entries.emplace_back(i, i, 1.0);
+  for (const auto& [i, j] : edges) {
+    entries.emplace_back(i, j, 1.0);
+    entries.emplace_back(j, i, 1.0);
+  }
+  Eigen::SparseMatrix<double> graph(count, count);
+  graph.setFromTriplets(entries.begin(), entries.end());
+  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
+  Eigen::AMDOrdering<int>()(graph, order);
+  std::vector<std::int32_t> place(static_cast<std::size_t>(count));
+  for (std::int32_t n = 0; n < count; ++n) place[order.indices()[n]] = n;
+
+  BlockPattern upper;
+  upper.begin.assign(static_cast<std::size_t>(count) + 1, 0);
+  for (const auto& [i, j] : edges) ++upper.begin[std::max(place[i], place[j]) + 1];
+  std::partial_sum(upper.begin.begin(), upper.begin.end(), upper.begin.begin());
+  upper.rows.resize(edges.size());
+  std::vector<std::int32_t> at(upper.begin.begin(), upper.begin.end() - 1);
+  for (const auto& [i, j] : edges) {
+    upper.rows[at[std::max(place[i], place[j])]++] = std::min(place[i], place[j]);
+  }
+  const std::vector<std::int32_t> post = postorderPlaces(eliminationTree(upper));
+  for (std::int32_t& p : place) p = post[p];
+  return place;
+}
+
+void BlockCholesky::analyse(const BlockPattern& pattern) {
+  findFronts(pattern);
+  findRows(pattern);
+  schedule();
+}
+
+/// Supernodes: runs of columns with like rows, and then, where few zeros are taken in, a run with
+/// the run of its parent.
+void BlockCholesky::findFronts(const BlockPattern& pattern) {
+  const std::int32_t n = pattern.count();
+  const BlockPattern upper = transposed(pattern);
+  const std::vector<std::int32_t> parent = eliminationTree(upper);
+  std::vector<std::int32_t> below(n, 0), seen(n, -1);  // block rows below the diagonal
+  for (std::int32_t i = 0; i < n; ++i) {
+    seen[i] = i;
+    for (std::int32_t e = upper.begin[i]; e < upper.begin[i + 1]; ++e) {
+      for (std::int32_t j = upper.rows[e]; seen[j] != i; j = parent[j]) {
+        seen[j] = i;
+        ++below[j];
+      }
+    }
+  }
+  struct Run {
+    std::int32_t first, columns, below;
+    double zeros;
+  };
+  std::vector<Run> runs;
+  const auto joins = [&](const Run& child, const Run& next) {
+    if (parent[next.first - 1] != next.first) return false;  // next is not the child's parent
+    // Shares of zeros that are cheaper than a front of its own, by columns.
+    constexpr std::array<std::pair<std::int32_t, double>, 3> kAllowed = {
+        {{4, 1.0}, {16, 0.4}, {48, 0.1}}};
+    constexpr double kAlways = 0.05;
+    const double columns = child.columns + next.columns;
+    const double taken = child.columns * (next.columns + next.below - child.below);
+    const double zeros = child.zeros + next.zeros + taken;
+    const double all = columns * (columns + 1) / 2 + columns * next.below;
+    double allowed = kAlways;
+    for (const auto& [limit, share] : kAllowed) {
+      if (columns <= limit) {
+        allowed = share;
+        break;
+      }
+    }
+    return zeros <= allowed * all;
+  };
+  for (std::int32_t j = 0; j < n; ++j) {
+    if (!runs.empty() && parent[j - 1] == j && runs.back().below == below[j] + 1) {
+      ++runs.back().columns;
+      runs.back().below = below[j];
+    } else {
+      // The run before is complete: join it, and those before it, to what they hang on.
+      runs.push_back({j, 1, below[j], 0});
+    }
+  }
+  std::vector<Run> joined;
+  for (Run run : runs) {
+    while (!joined.empty() && joins(joined.back(), run)) {
+      const Run child = joined.back();
+      joined.pop_back();
+      run.zeros += child.zeros +
+                   static_cast<double>(child.columns) * (run.columns + run.below - child.below);
+      run.first = child.first;
+      run.columns += child.columns;
+    }
+    joined.push_back(run);
+  }
+  fronts_.clear();
+  std::vector<std::int32_t> frontOf(n);
+  for (const Run& run : joined) {
+    for (std::int32_t j = run.first; j < run.first + run.columns; ++j) {
+      frontOf[j] = static_cast<std::int32_t>(fronts_.size());
+    }
+    Front front;
+    front.first = run.first;
+    front.columns = run.columns;
+    fronts_.push_back(front);
+  }
+  children_.assign(fronts_.size(), {});
+  for (std::size_t f = 0; f < fronts_.size(); ++f) {
+    const std::int32_t above = parent[fronts_[f].first + fronts_[f].columns - 1];
+    if (above < 0) continue;
+    fronts_[f].parent = frontOf[above];
+    children_[fronts_[f].parent].push_back(static_cast<std::int32_t>(f));
+  }
+}
+
+void BlockCholesky::findRows(const BlockPattern& pattern) {
+  rows_.clear();
+  std::vector<std::int32_t> seen(static_cast<std::size_t>(pattern.count()), -1);
+  for (std::size_t f = 0; f < fronts_.size(); ++f) {
+    Front& front = fronts_[f];
+    const std::int32_t end = front.first + front.columns;
+    front.rowsBegin = static_cast<std::int32_t>(rows_.size());
+    const auto take = [&](std::int32_t row) {
+      if (row < end || seen[row] == static_cast<std::int32_t>(f)) return;
+      seen[row] = static_cast<std::int32_t>(f);
+      rows_.push_back(row);
+    };
+    for (std::int32_t j = front.first; j < end; ++j) {
+      for (std::int32_t e = pattern.begin[j]; e < pattern.begin[j + 1]; ++e) take(pattern.rows[e]);
+    }
+    for (const std::int32_t child : children_[f]) {
+      for (std::int32_t n = fronts_[child].rowsBegin; n < fronts_[child].rowsEnd; ++n)
+        take(rows_[n]);
+    }
+    front.rowsEnd = static_cast<std::int32_t>(rows_.size());
+    std::sort(rows_.begin() + front.rowsBegin, rows_.end());
+  }
+  parentRow_.resize(rows_.size());
+  for (const Front& front : fronts_) {
+    if (front.parent < 0) continue;
+    const Front& parent = fronts_[front.parent];
+    std::int32_t at = parent.rowsBegin;
+    for (std::int32_t n = front.rowsBegin; n < front.rowsEnd; ++n) {
+      if (rows_[n] < parent.first + parent.columns) {
+        parentRow_[n] = rows_[n] - parent.first;
+        continue;
+      }
+      while (rows_[at] < rows_[n]) ++at;
+      parentRow_[n] = parent.columns + at - parent.rowsBegin;
+    }
+  }
+}
+
+void BlockCholesky::schedule() {
+  factorSize_ = 0;
+  operations_ = 0;
+  firstOfSubtree_.resize(fronts_.size());
+  for (std::size_t f = 0; f < fronts_.size(); ++f) {
+    Front& front = fronts_[f];
+    front.factorBegin = factorSize_;
+    factorSize_ += front.height() * front.width();
+    const auto rows = static_cast<double>(front.height()),
+               width = static_cast<double>(front.width());
+    front.work = width * (rows * rows - rows * width + width * width / 3) / 2;
+    operations_ += front.work;
+    firstOfSubtree_[f] = static_cast<std::int32_t>(f);
+    for (const std::int32_t child : children_[f]) {
+      front.work += fronts_[child].work;
+      firstOfSubtree_[f] = std::min(firstOfSubtree_[f], firstOfSubtree_[child]);
+    }
+  }
+  // Subtrees small enough to share out evenly; what lies above them runs front by front.
+  constexpr double kSubtreeShare = 1.0 / 24;
+  subtrees_.clear();
+  top_.clear();
+  for (std::size_t f = 0; f < fronts_.size(); ++f) {
+    if (fronts_[f].work > kSubtreeShare * operations_) {
+      top_.push_back(static_cast<std::int32_t>(f));
+    } else if (fronts_[f].parent < 0 ||
+               fronts_[fronts_[f].parent].work > kSubtreeShare * operations_) {
+      subtrees_.push_back(static_cast<std::int32_t>(f));
+    }
+  }
+}
+
+bool BlockCholesky::eliminate(std::int32_t f, const BlockPattern& pattern,
+                              std::span<const Eigen::Matrix3d> blocks, bool tiled) {
+  const Front& front = fronts_[f];
+  Panel panel(factor_.data() + front.factorBegin, front.height(), front.width());
+  panel.setZero();
+  Eigen::MatrixXd& rest = updates_[f];
+  rest.setZero(3 * front.below(), 3 * front.below());
+  for (std::int32_t j = 0; j < front.columns; ++j) {
+    std::int32_t at = front.rowsBegin;
+    for (std::int32_t e = pattern.begin[front.first + j]; e < pattern.begin[front.first + j + 1];
+         ++e) {
+      const std::int32_t row = pattern.rows[e];
+      std::int32_t place = row - front.first;
+      if (place >= front.columns) {
+        while (rows_[at] < row) ++at;
+        place = front.columns + at - front.rowsBegin;
+      }
+      panel.block<3, 3>(3 * place, 3 * j) = blocks[e];
+    }
+  }
+  for (const std::int32_t child : children_[f]) {
+    const std::span<const std::int32_t> parentRow(parentRow_.data() + fronts_[child].rowsBegin,
+                                                  static_cast<std::size_t>(fronts_[child].below()));
+    extendAdd(updates_[child], parentRow, front.width(), panel, rest);
+    updates_[child].resize(0, 0);
+  }
+  return eliminateDense(panel, rest, tiled);
+}
+
+bool BlockCholesky::factorise(const BlockPattern& pattern,
+                              std::span<const Eigen::Matrix3d> blocks) {
+  factor_.resize(static_cast<std::size_t>(factorSize_));
+  updates_.assign(fronts_.size(), Eigen::MatrixXd());
+  std::atomic<bool> positive = true;
+  parallelFor(subtrees_.size(), 1, [&](std::size_t n) {
+    for (std::int32_t f = firstOfSubtree_[subtrees_[n]]; f <= subtrees_[n] && positive; ++f) {
+      if (!eliminate(f, pattern, blocks, false)) positive = false;
+    }
+  });
+  for (std::size_t n = 0; n < top_.size() && positive; ++n) {
+    if (!eliminate(top_[n], pattern, blocks, true)) positive = false;
+  }
+  updates_.clear();
+  return positive;
+}
+
+void BlockCholesky::solve(Eigen::VectorXd& x) const {
+  Eigen::VectorXd below;
+  const auto columnsOf = [&](const Front& front) {
+    return Eigen::Map<const Eigen::MatrixXd>(factor_.data() + front.factorBegin, front.height(),
+                                             front.width());
+  };
+  for (const Front& front : fronts_) {
+    const auto columns = columnsOf(front);
+    auto own = x.segment(3 * front.first, front.width());
+    columns.topRows(front.width()).triangularView<Eigen::Lower>().solveInPlace(own);
+    below.noalias() = columns.bottomRows(3 * front.below()) * own;
+    for (std::int32_t n = 0; n < front.below(); ++n) {
+      x.segment<3>(3 * rows_[front.rowsBegin + n]) -= below.segment<3>(3 * n);
+    }
+  }
+  for (auto front = fronts_.rbegin(); front != fronts_.rend(); ++front) {
+    const auto columns = columnsOf(*front);
+    below.resize(3 * front->below());
+    for (std::int32_t n = 0; n < front->below(); ++n) {
+      below.segment<3>(3 * n) = x.segment<3>(3 * rows_[front->rowsBegin + n]);
+    }
+    auto own = x.segment(3 * front->first, front->width());
+    own.noalias() -= columns.bottomRows(3 * front->below()).transpose() * below;
+    columns.topRows(front->width()).triangularView<Eigen::Lower>().transpose().solveInPlace(own);
+  }
+}
+
+}  // namespace explica::unfolding

@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Core/Types.h"
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace explica::unfolding {
+
+/// Pattern of a symmetric matrix of 3 x 3 blocks: block rows >= column of each column, ascending
+/// and the diagonal first.
+struct BlockPattern {
+  std::vector<std::int32_t> begin;  ///< N + 1
+  std::vector<std::int32_t> rows;
+  [[nodiscard]] std::int32_t count() const { return static_cast<std::int32_t>(begin.size()) - 1; }
+};
+
+/// Elimination order of few fill-ins for a graph of `count` points, in a postorder of the
+/// elimination tree, so that columns with the same rows stand together.
+/// @param edges  pairs of points, first > second, none twice
+/// @return place of each point in the order
+[[nodiscard]] std::vector<std::int32_t> eliminationPlaces(
+    std::int32_t count, std::span<const std::pair<std::int32_t, std::int32_t>> edges);
+
+/// Cholesky factorisation of a sparse symmetric positive definite matrix of 3 x 3 blocks by the
+/// multifrontal method with supernodes [Duff1983, Liu1992]: columns with like rows are eliminated
+/// together in one dense front, and what remains of it is added to the front of their parent.
+///
+/// Disjoint subtrees of fronts run on several threads, large fronts above them are cut into tiles.
+/// Which number is added to which and when depends on the pattern only, so that results do not
+/// depend on the number of threads.
+class BlockCholesky {
+ public:
+  /// Finds the fronts; the pattern should come from an order of eliminationPlaces.
+  void analyse(const BlockPattern& pattern);
+
+  /// @param blocks  one 3 x 3 block per entry of the pattern
+  /// @return false if the matrix is not positive definite to working precision
+  [[nodiscard]] bool factorise(const BlockPattern& pattern,
+                               std::span<const Eigen::Matrix3d> blocks);
+
+  /// Replaces the right side (3 N) by the solution.
+  void solve(Eigen::VectorXd& x) const;
+
+  /// Numbers in the factor, zeros of joined supernodes included.
+  [[nodiscard]] std::int64_t factorSize() const { return factorSize_; }
+  /// Multiplications with additions of one factorisation.
+  [[nodiscard]] double operations() const { return operations_; }
+
+ private:
+  struct Front {
+    std::int32_t first = 0;  ///< block columns first ... first + columns - 1 are eliminated
+    std::int32_t columns = 0;
+    std::int32_t rowsBegin = 0;  ///< its block rows below, in rows_ and their places in parentRow_
+    std::int32_t rowsEnd = 0;
+    std::int32_t parent = -1;
+    std::int64_t factorBegin = 0;  ///< of its height x width columns in factor_
+    double work = 0;               ///< of the subtree
+    [[nodiscard]] std::int32_t below() const { return rowsEnd - rowsBegin; }
+    [[nodiscard]] Eigen::Index width() const { return 3 * static_cast<Eigen::Index>(columns); }
+    [[nodiscard]] Eigen::Index height() const {
+      return width() + 3 * static_cast<Eigen::Index>(below());
+    }
+  };
+
+  void findFronts(const BlockPattern& pattern);
+  void findRows(const BlockPattern& pattern);
+  void schedule();
+  bool eliminate(std::int32_t f, const BlockPattern& pattern,
+                 std::span<const Eigen::Matrix3d> blocks, bool tiled);
+
+  std::vector<Front> fronts_;
+  std::vector<std::int32_t> rows_;
+  std::vector<std::int32_t> parentRow_;  ///< place of each of rows_ in the parent's front
+  std::vector<std::vector<std::int32_t>> children_;
+  std::vector<std::int32_t> subtrees_;        ///< roots of those that run each on one thread
+  std::vector<std::int32_t> firstOfSubtree_;  ///< of each front: its first descendant
+  std::vector<std::int32_t> top_;             ///< the fronts above them, children first
+  std::vector<double> factor_;
+  std::vector<Eigen::MatrixXd> updates_;  ///< of fronts whose parent is still to come
+  std::int64_t factorSize_ = 0;
+  double operations_ = 0;
+};
+
+}  // namespace explica::unfolding
