@@ -4,6 +4,7 @@
 #include "Explica/Unfolding/Unfold.h"
 #include "Explica/Application/Command.h"
 #include "Explica/Application/ReadInputs.h"
+#include "Explica/Collision/Untangling.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Geometry/MeshMeasures.h"
@@ -56,6 +57,7 @@ struct Settings {
   std::optional<std::string> label;
   std::optional<int> labelKey;
   bool adjustRegion = false;
+  bool repair = false;
   unfolding::UnfoldOptions unfold;
   bool resume = false;
 };
@@ -92,6 +94,11 @@ void declare(Declaration& d, Settings& s) {
           "Region",
           Field{"adjust-region", "", "grow or shrink the region until its visibility is positive"},
           s.adjustRegion)
+      .option("Unfolding",
+              Field{"repair", "",
+                    "part faces that intersect at the start, by small moves where that goes; the "
+                    "result is compared with the surface so repaired"},
+              s.repair)
       .options("Unfolding", s.unfold)
       .option("Unfolding", Field{"resume", "", "continue the run whose outputs are in --out"},
               s.resume)
@@ -104,6 +111,8 @@ void declare(Declaration& d, Settings& s) {
       .output("distortion.shape.gii", FileKind::VertexData,
               "area ratio, angle change in degrees, edge strain")
       .varyingOutput("evolution.tsv", FileKind::Table, "one row per iteration")
+      .output("intersections.tsv", FileKind::Table,
+              "pairs of faces that intersect at the start, where, and whether --repair parted them")
       .output("frames/frame-*.surf.gii", FileKind::Surface, "--frames states on the way")
       .varyingOutput(kStateFile, FileKind::Any, "what --resume needs");
 }
@@ -148,10 +157,59 @@ unfolding::Region regionOf(const TriangleMesh& mesh, const Settings& s,
   return unfolding::regionOfMarked(mesh, marked);
 }
 
+/// Lists the start's intersections and parts them in `mesh` if that is asked for.
+void checkStart(Context& context, const Settings& s, const unfolding::Region& region,
+                TriangleMesh& mesh) {
+  collision::Untangling repair;
+  if (s.repair) {
+    auto step = context.step("repair");
+    repair = collision::untangle(mesh);
+  } else {
+    auto step = context.step("check");
+    repair.before = repair.after = geometry::findSelfIntersections(mesh);
+  }
+  const auto list = unfolding::listCrossings(mesh, repair.before, repair.after, region);
+  writeTextFile(context.output("intersections.tsv"), unfolding::crossingTable(mesh, list));
+  std::size_t inRegion = 0;
+  for (const unfolding::Crossing& c : list) inRegion += c.facesInRegion > 0;
+
+  context.result("self_intersections_initial", list.size());
+  context.result("self_intersections_initial_region", inRegion);
+  context.result("self_intersections_file", "intersections.tsv");
+  if (s.repair) {
+    context.result("self_intersections_repaired", repair.before.size() - repair.after.size());
+    context.result("repair_vertices_moved", repair.moved.size());
+    context.result("repair_move_max", repair.moveMax);
+    context.result("repair_move_mean", repair.moveMean);
+  }
+  if (list.empty()) return;
+  const unfolding::Crossing& first = list.front();
+  char text[320];
+  std::snprintf(
+      text, sizeof text,
+      "%zu pairs of faces intersect at the start, %zu of them in the region (faces %d and "
+      "%d near %.2f, %.2f, %.2f, ...; all in intersections.tsv)",
+      list.size(), inRegion, first.faces[0], first.faces[1], first.place[0], first.place[1],
+      first.place[2]);
+  std::string message = text;
+  if (!s.repair) {
+    message += "; they stay as they are, or are parted first by --repair";
+  } else {
+    std::snprintf(text, sizeof text,
+                  "; %zu were parted by moving %zu vertices by %.3f mm on average and %.3f mm at "
+                  "most%s",
+                  repair.before.size() - repair.after.size(), repair.moved.size(), repair.moveMean,
+                  repair.moveMax, repair.after.empty() ? "" : ", the others stay as they are");
+    message += text;
+    mesh.positions = repair.positions;
+  }
+  context.warn(message);
+}
+
 Termination run(Context& context, const Settings& s) {
   const auto begin = std::chrono::steady_clock::now();
   const io::LoadedSurface loaded = readSurface(context, "SURFACE", s.surface, s.reading);
-  const TriangleMesh& mesh = loaded.mesh;
+  TriangleMesh mesh = loaded.mesh;
   geometry::requireManifold(mesh, s.surface);
   const auto condition = geometry::inspectMesh(mesh);
   if (condition.coincidentVertices > 0) {
@@ -193,21 +251,7 @@ Termination run(Context& context, const Settings& s) {
 
   sayHowRead(context, loaded.origin);
 
-  std::vector<geometry::FacePair> crossings;
-  {
-    auto step = context.step("check");
-    crossings = geometry::findSelfIntersections(mesh);
-    if (!crossings.empty()) {
-      const auto [f, g] = crossings.front();
-      const Point place = (mesh.corner(f, 0) + mesh.corner(f, 1) + mesh.corner(f, 2)) / 3;
-      char where[160];
-      std::snprintf(where, sizeof where,
-                    "%zu pairs of faces intersect at the start (faces %d and %d near %.2f, %.2f, "
-                    "%.2f, ...); they stay as they are",
-                    crossings.size(), f, g, place[0], place[1], place[2]);
-      context.warn(where);
-    }
-  }
+  checkStart(context, s, region, mesh);
 
   unfolding::UnfoldResult result;
   {
@@ -299,7 +343,6 @@ Termination run(Context& context, const Settings& s) {
   context.result("edge_strain_mean", distortion.edgeStrainMean);
   context.result("edge_strain_p95", distortion.edgeStrainP95);
   context.result("geodesic_error_mean", distortion.geodesicErrorMean);
-  context.result("self_intersections_initial", crossings.size());
   context.result("self_intersections_final", crossingsAfter.size());
   if (!result.frames.empty()) {
     context.result("frame_visibilities", frameVisibilities);

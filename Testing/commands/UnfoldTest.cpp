@@ -8,8 +8,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <sstream>
 
 namespace explica::testing {
 namespace {
@@ -93,6 +95,25 @@ TEST_F(RealSurfaces, AnIndividualAtFullResolutionWithItsNearContacts) {
   EXPECT_LE(summary["area_error_mean"], 0.005);
   EXPECT_EQ(summary["self_intersections_final"], 0);
   EXPECT_FALSE(summary["warnings"].empty());  // the start intersects elsewhere, and is reported
+  EXPECT_EQ(summary["self_intersections_initial"], 103);  // as an independent exact checker finds
+  EXPECT_EQ(summary["self_intersections_initial_region"], 0);
+  const std::string places = readText(folder / "out/intersections.tsv");
+  EXPECT_EQ(std::count(places.begin(), places.end(), '\n'), 1 + 103);
+}
+
+TEST_F(RealSurfaces, AnIndividualWhoseSurfaceIntersectsIsRepaired) {
+  const TemporaryFolder folder;
+  auto words = unfoldAbout(kData / "s1_pycortex_lh/pia_lh.gii", Vector(-1, 0.2, 0.2), 20, "fixed",
+                           folder / "out");
+  words.insert(words.end(), {"--max-iterations", "2", "--repair"});
+  ASSERT_EQ(explica(words).exitCode, 3);
+  const auto summary = readJson(folder / "out/summary.json");
+  EXPECT_EQ(summary["self_intersections_initial"], 103);
+  EXPECT_EQ(summary["self_intersections_repaired"], 103);
+  EXPECT_EQ(summary["self_intersections_final"], 0);
+  EXPECT_LE(summary["repair_move_max"], 1.0);  // mm; edges are 0.9 mm long
+  EXPECT_LE(summary["repair_move_mean"], 0.1);
+  EXPECT_LE(summary["repair_vertices_moved"], 2000);
 }
 
 std::vector<std::string> onFoldedSphere(const TemporaryFolder& folder) {
@@ -117,6 +138,66 @@ TEST(UnfoldCommand, ResumedRunsWriteTheBytesOfUninterruptedOnes) {
     EXPECT_EQ(readText(folder / ("whole/" + std::string(name))),
               readText(folder / ("part/" + std::string(name))))
         << name;
+  }
+}
+
+/// A folded sphere with one vertex pushed through its neighbours, inside the region or away from
+/// it.
+std::string writePierced(const TemporaryFolder& folder, const Point& about) {
+  TriangleMesh mesh = geometry::makeFoldedSphere(4, 30.0);
+  Eigen::Index nearest = 0;
+  (void)(mesh.positions.rowwise() - about.transpose()).rowwise().squaredNorm().minCoeff(&nearest);
+  mesh.positions.row(nearest) += Eigen::RowVector3d(8, 5, about.z() > 0 ? -4 : 4);
+  io::writeSurface(folder / "pierced.surf.gii", mesh);
+  return folder / "pierced.surf.gii";
+}
+
+TEST(UnfoldCommand, IntersectionsOfTheStartAreListedAndNeverMadeWorse) {
+  for (const Point& about : {Point(0, 0, 30), Point(0, 0, -30)}) {
+    const TemporaryFolder folder;
+    const std::string surface = writePierced(folder, about);
+    const auto before = geometry::findSelfIntersections(io::readSurface(surface).mesh);
+    ASSERT_FALSE(before.empty());
+    const auto result =
+        explica({"unfold", surface, "--center", "0,0,30", "--radius", "15", "--direction", "0,0,1",
+                 "--max-iterations", "12", "--out", folder / "out"});
+    ASSERT_EQ(result.exitCode, 3) << result;
+    const auto summary = readJson(folder / "out/summary.json");
+    EXPECT_EQ(summary["self_intersections_initial"], before.size());
+    EXPECT_EQ(summary["self_intersections_initial_region"] > 0, about.z() > 0);
+    const auto after =
+        geometry::findSelfIntersections(io::readSurface(folder / "out/unfolded.surf.gii").mesh);
+    EXPECT_TRUE(std::includes(before.begin(), before.end(), after.begin(), after.end()));
+    std::istringstream table(readText(folder / "out/intersections.tsv"));
+    std::string line;
+    std::getline(table, line);
+    for (const geometry::FacePair& pair : before) {
+      std::int32_t f = -1, g = -1;
+      table >> f >> g;
+      std::getline(table, line);
+      EXPECT_EQ((geometry::FacePair{f, g}), pair);
+      EXPECT_EQ(line.substr(line.size() - 2), "no");
+    }
+  }
+}
+
+TEST(UnfoldCommand, RepairPartsThemAndSaysHowFarVerticesMoved) {
+  for (const Point& about : {Point(0, 0, 30), Point(0, 0, -30)}) {
+    const TemporaryFolder folder;
+    const std::string surface = writePierced(folder, about);
+    const auto result =
+        explica({"unfold", surface, "--center", "0,0,30", "--radius", "15", "--direction", "0,0,1",
+                 "--max-iterations", "12", "--repair", "--out", folder / "out"});
+    ASSERT_EQ(result.exitCode, 3) << result;
+    const auto summary = readJson(folder / "out/summary.json");
+    EXPECT_EQ(summary["self_intersections_repaired"], summary["self_intersections_initial"]);
+    EXPECT_EQ(summary["self_intersections_final"], 0);
+    EXPECT_GT(summary["repair_move_max"], 0);
+    EXPECT_LT(summary["repair_move_max"], 12);  // the vertex was thrown 10 mm
+    EXPECT_NE(result.err.find("parted by moving"), std::string::npos);
+    const auto record = readText(folder / "out/provenance.json");
+    EXPECT_NE(record.find("\"repair\": true"), std::string::npos);
+    EXPECT_NE(record.find("parted by moving"), std::string::npos);
   }
 }
 

@@ -3,8 +3,11 @@
 
 #include "Explica/Unfolding/Account.h"
 
+#include "Explica/Geometry/FaceCrossing.h"
+
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <set>
@@ -72,6 +75,37 @@ std::string evolutionTable(const std::vector<IterationRecord>& history) {
         r.energyVisibility, r.energyArea, r.energySpring, r.energyContact, r.energyKnot,
         r.objectiveBefore, r.objectiveAfter, r.contacts, r.nearestContact, r.safeStep, r.step,
         r.largestMove, r.damping, r.solves, r.seconds);
+    table += line;
+  }
+  return table;
+}
+
+std::vector<Crossing> listCrossings(const TriangleMesh& mesh,
+                                    std::span<const geometry::FacePair> pairs,
+                                    std::span<const geometry::FacePair> left,
+                                    const Region& region) {
+  std::vector<Crossing> list;
+  for (const geometry::FacePair& pair : pairs) {
+    Crossing crossing;
+    crossing.faces = pair;
+    crossing.place = geometry::placeOfCrossing(mesh, pair);
+    for (const std::int32_t f : pair) {
+      crossing.facesInRegion += std::binary_search(region.faces.begin(), region.faces.end(), f);
+    }
+    crossing.parted = !std::binary_search(left.begin(), left.end(), pair);
+    list.push_back(crossing);
+  }
+  return list;
+}
+
+std::string crossingTable(const TriangleMesh& mesh, std::span<const Crossing> crossings) {
+  std::string table = "face_1\tface_2\tvertices_1\tvertices_2\tx\ty\tz\tfaces_in_region\tparted\n";
+  for (const Crossing& c : crossings) {
+    const auto f = mesh.faces.row(c.faces[0]), g = mesh.faces.row(c.faces[1]);
+    char line[320];
+    std::snprintf(line, sizeof line, "%d\t%d\t%d,%d,%d\t%d,%d,%d\t%.4f\t%.4f\t%.4f\t%d\t%s\n",
+                  c.faces[0], c.faces[1], f[0], f[1], f[2], g[0], g[1], g[2], c.place[0],
+                  c.place[1], c.place[2], c.facesInRegion, c.parted ? "yes" : "no");
     table += line;
   }
   return table;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "Explica/Core/TriangleMesh.h"
+#include "Explica/Geometry/SelfIntersection.h"
 #include "Explica/Unfolding/Unfolder.h"
 
 #include <span>
@@ -23,6 +24,24 @@ namespace explica::unfolding {
 
 /// The history as tab-separated text with a header line.
 [[nodiscard]] std::string evolutionTable(const std::vector<IterationRecord>& history);
+
+/// A pair of faces that intersects at the start.
+struct Crossing {
+  geometry::FacePair faces = {-1, -1};
+  Point place = Point::Constant(kNaN);  ///< RAS mm, on both faces
+  int facesInRegion = 0;                ///< 0 to 2
+  bool parted = false;                  ///< by a repair
+};
+
+/// The pairs of a surface, those of `left` (sorted) still intersecting after a repair.
+[[nodiscard]] std::vector<Crossing> listCrossings(const TriangleMesh& mesh,
+                                                  std::span<const geometry::FacePair> pairs,
+                                                  std::span<const geometry::FacePair> left,
+                                                  const Region& region);
+
+/// Crossings as tab-separated text with a header line.
+[[nodiscard]] std::string crossingTable(const TriangleMesh& mesh,
+                                        std::span<const Crossing> crossings);
 
 /// Positions as a file with single precision will hold them.
 [[nodiscard]] Positions roundedToSingle(const Positions& positions);

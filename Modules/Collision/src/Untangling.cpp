@@ -1,0 +1,366 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Collision/Untangling.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Geometry/FaceCrossing.h"
+#include "Explica/Geometry/FaceTree.h"
+#include "Explica/Geometry/MeshTopology.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/SparseCholesky>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <optional>
+
+namespace explica::collision {
+namespace {
+
+using geometry::FacePair;
+using Matrix = Eigen::SparseMatrix<double>;
+using Triplets = std::vector<Eigen::Triplet<double>>;
+
+/// Crossing pairs that are mended together, and the vertices that may move for it.
+struct Group {
+  std::vector<FacePair> pairs;
+  std::vector<std::int32_t> free;
+};
+
+std::vector<std::int32_t> withRings(const geometry::MeshTopology& topology,
+                                    std::vector<std::int32_t> vertices, int rings) {
+  for (int ring = 0; ring <= rings; ++ring) {
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    if (ring == rings) break;
+    for (std::size_t n = 0, count = vertices.size(); n < count; ++n) {
+      const auto around = topology.vertexVertices[vertices[n]];
+      vertices.insert(vertices.end(), around.begin(), around.end());
+    }
+  }
+  return vertices;
+}
+
+/// Pairs whose free vertices overlap belong together, so that no crossing is half in a group.
+std::vector<Group> groupsOf(const TriangleMesh& mesh, const geometry::MeshTopology& topology,
+                            const std::vector<FacePair>& pairs, int rings) {
+  std::vector<std::vector<std::int32_t>> free;
+  std::vector<std::size_t> parent(pairs.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](std::size_t n) {
+    while (parent[n] != n) n = parent[n] = parent[parent[n]];
+    return n;
+  };
+  std::map<std::int32_t, std::size_t> owner;
+  for (std::size_t n = 0; n < pairs.size(); ++n) {
+    std::vector<std::int32_t> corners;
+    for (const std::int32_t f : pairs[n]) {
+      for (int k = 0; k < 3; ++k) corners.push_back(mesh.faces(f, k));
+    }
+    free.push_back(withRings(topology, corners, rings));
+    for (const std::int32_t v : free.back()) {
+      const std::size_t a = root(owner.try_emplace(v, n).first->second), b = root(n);
+      parent[std::max(a, b)] = std::min(a, b);
+    }
+  }
+  std::map<std::size_t, Group> groups;
+  for (std::size_t n = 0; n < pairs.size(); ++n) {
+    Group& group = groups[root(n)];
+    group.pairs.push_back(pairs[n]);
+    group.free.insert(group.free.end(), free[n].begin(), free[n].end());
+  }
+  std::vector<Group> result;
+  for (auto& [first, group] : groups) {
+    group.free = withRings(topology, std::move(group.free), 0);
+    result.push_back(std::move(group));
+  }
+  return result;
+}
+
+/// The place of one group: every face that the moving ones can reach, on vertices of its own.
+class Place {
+ public:
+  Place(const TriangleMesh& mesh, const geometry::MeshTopology& topology,
+        const geometry::BoxTree& tree, const Group& group, double largestMove)
+      : group_(group) {
+    std::vector<std::int32_t> moving;
+    for (const std::int32_t v : group.free) {
+      const auto around = topology.vertexFaces[v];
+      moving.insert(moving.end(), around.begin(), around.end());
+    }
+    std::sort(moving.begin(), moving.end());
+    moving.erase(std::unique(moving.begin(), moving.end()), moving.end());
+    double sum = 0;
+    for (const std::int32_t f : moving) {
+      for (int k = 0; k < 3; ++k) sum += (mesh.corner(f, k) - mesh.corner(f, (k + 1) % 3)).norm();
+    }
+    edge_ = sum / (3 * static_cast<double>(moving.size()));
+    cap_ = largestMove * edge_;
+    std::vector<std::int32_t> reachable = moving;
+    for (const std::int32_t f : moving) {
+      geometry::Box box = tree.boxes()[f];
+      box.min().array() -= cap_;
+      box.max().array() += cap_;
+      tree.forOverlaps(box, [&](std::int32_t g) { reachable.push_back(g); });
+    }
+    std::sort(reachable.begin(), reachable.end());
+    reachable.erase(std::unique(reachable.begin(), reachable.end()), reachable.end());
+    part_ = geometry::extractFaces(mesh, reachable);
+
+    unknown_.assign(part_.vertexOrigin.size(), -1);
+    for (std::size_t v = 0; v < unknown_.size(); ++v) {
+      if (!std::binary_search(group.free.begin(), group.free.end(), part_.vertexOrigin[v]))
+        continue;
+      unknown_[v] = static_cast<std::int32_t>(free_.size());
+      free_.push_back(static_cast<std::int32_t>(v));
+    }
+    marked_.resize(part_.faceOrigin.size());
+    for (std::size_t f = 0; f < marked_.size(); ++f) {
+      marked_[f] = std::binary_search(moving.begin(), moving.end(), part_.faceOrigin[f]);
+    }
+    topology_ = geometry::buildTopology(part_.mesh.faces, part_.mesh.vertexCount());
+  }
+
+  [[nodiscard]] const TriangleMesh& start() const { return part_.mesh; }
+  [[nodiscard]] const std::vector<std::int32_t>& free() const { return free_; }
+  [[nodiscard]] std::int32_t origin(std::int32_t vertex) const {
+    return part_.vertexOrigin[vertex];
+  }
+  [[nodiscard]] double edge() const { return edge_; }
+
+  /// Intersecting pairs of the part with a face that moves.
+  [[nodiscard]] std::vector<FacePair> crossings(const Positions& x) const {
+    return geometry::findSelfIntersections({x, part_.mesh.faces}, marked_);
+  }
+
+  /// True if all of the part's pairs are among the group's.
+  [[nodiscard]] bool onlyOld(const std::vector<FacePair>& pairs) const {
+    return std::all_of(pairs.begin(), pairs.end(), [&](const FacePair& pair) {
+      const FacePair whole = {part_.faceOrigin[pair[0]], part_.faceOrigin[pair[1]]};
+      return std::binary_search(group_.pairs.begin(), group_.pairs.end(), whole);
+    });
+  }
+
+  /// No vertex farther from its start than allowed, and in single precision.
+  [[nodiscard]] Positions withinReach(Positions x) const {
+    for (const std::int32_t v : free_) {
+      Vector move = (x.row(v) - part_.mesh.positions.row(v)).transpose();
+      if (move.norm() > 0.99 * cap_) move *= 0.99 * cap_ / move.norm();
+      if (move.norm() == 0) continue;
+      x.row(v) =
+          (part_.mesh.positions.row(v) + move.transpose()).cast<float>().cast<double>().eval();
+    }
+    return x;
+  }
+
+  /// Laplacian sum of (x_v - x_w) over neighbours, rows of free vertices only, all columns.
+  [[nodiscard]] const geometry::MeshTopology& topology() const { return topology_; }
+  [[nodiscard]] const std::vector<std::int32_t>& unknown() const { return unknown_; }
+
+ private:
+  const Group& group_;
+  geometry::SubMesh part_;
+  geometry::MeshTopology topology_;
+  std::vector<std::int32_t> unknown_;  ///< of the part's vertices: row, or -1
+  std::vector<std::int32_t> free_;
+  std::vector<bool> marked_;
+  double edge_ = 0;  ///< mm
+  double cap_ = 0;   ///< mm
+};
+
+/// A state of the place and what is left in it.
+struct Attempt {
+  Positions positions;
+  std::size_t left = 0;
+  double moveMax = 0;
+};
+
+class Best {
+ public:
+  explicit Best(const Place& place, std::size_t crossings) : place_(place), fewest_(crossings) {}
+
+  /// Takes note of a state if it is allowed and better; says if nothing crosses in it.
+  bool consider(const Positions& x, const std::vector<FacePair>& pairs) {
+    if (pairs.size() > fewest_ || !place_.onlyOld(pairs)) return false;
+    const double move =
+        std::sqrt((x - place_.start().positions).rowwise().squaredNorm().maxCoeff());
+    const bool better =
+        best_ ? pairs.size() < best_->left || (pairs.size() == best_->left && move < best_->moveMax)
+              : pairs.size() < fewest_;
+    if (better) best_ = {x, pairs.size(), move};
+    return pairs.empty();
+  }
+  [[nodiscard]] const std::optional<Attempt>& get() const { return best_; }
+
+ private:
+  const Place& place_;
+  std::size_t fewest_;
+  std::optional<Attempt> best_;
+};
+
+/// Gradient of the length of all segments in which the pairs cross [Volino2006].
+///
+/// The piercing point p of an edge (direction d) and a face (unit normal n) moves with the velocity
+/// u of the edge's point and w of the face's point there as  p' = u - d (n.(u - w)) / (n.d).
+Positions crossingGradient(const TriangleMesh& mesh, const std::vector<FacePair>& pairs) {
+  Positions gradient = Positions::Zero(mesh.vertexCount(), 3);
+  for (const FacePair& pair : pairs) {
+    const auto segment = geometry::crossingSegment(mesh, pair);
+    if (!segment) continue;
+    const Vector along = ((*segment)[1].point - (*segment)[0].point).normalized();
+    for (int side = 0; side < 2; ++side) {
+      const geometry::CrossingEnd& end = (*segment)[side];
+      const Vector pull = side == 0 ? Vector(-along) : along;  // d length / d p
+      if (end.edge[0] == end.edge[1]) {
+        gradient.row(end.edge[0]) += pull.transpose();
+        continue;
+      }
+      const auto point = [&](std::int32_t v) { return Point(mesh.positions.row(v).transpose()); };
+      const Vector d = (point(end.edge[1]) - point(end.edge[0])).normalized();
+      const Vector n = (point(end.face[1]) - point(end.face[0]))
+                           .cross(point(end.face[2]) - point(end.face[0]))
+                           .normalized();
+      constexpr double kGrazing = 0.1;  // sine below which the rate is bounded
+      double sine = n.dot(d);
+      if (std::abs(sine) < kGrazing) sine = sine < 0 ? -kGrazing : kGrazing;
+      const Vector throughFace = (pull.dot(d) / sine) * n;
+      for (int k = 0; k < 2; ++k) {
+        gradient.row(end.edge[k]) += end.edgeWeights[k] * (pull - throughFace).transpose();
+      }
+      for (int k = 0; k < 3; ++k) {
+        gradient.row(end.face[k]) += end.faceWeights[k] * throughFace.transpose();
+      }
+    }
+  }
+  return gradient;
+}
+
+void descend(const Place& place, const UntangleOptions& options, Best& best) {
+  const auto& unknown = place.unknown();
+  const auto count = static_cast<Eigen::Index>(place.free().size());
+  constexpr double kMass = 0.1;  // against the graph Laplacian: neighbours within 3 edges follow
+  Triplets entries;
+  for (const std::int32_t v : place.free()) {
+    const auto around = place.topology().vertexVertices[v];
+    entries.emplace_back(unknown[v], unknown[v], kMass + static_cast<double>(around.size()));
+    for (const std::int32_t w : around) {
+      if (unknown[w] >= 0) entries.emplace_back(unknown[v], unknown[w], -1);
+    }
+  }
+  Matrix metric(count, count);
+  metric.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::SimplicialLDLT<Matrix> solver(metric);
+
+  Positions x = place.start().positions;
+  std::vector<FacePair> pairs = place.crossings(x);
+  for (int n = 0; n < options.descentSteps; ++n) {
+    const Positions gradient = crossingGradient({x, place.start().faces}, pairs);
+    Eigen::MatrixXd right(count, 3);
+    for (Eigen::Index i = 0; i < count; ++i) right.row(i) = -gradient.row(place.free()[i]);
+    const Eigen::MatrixXd move = solver.solve(right);
+    const double largest = std::sqrt(move.rowwise().squaredNorm().maxCoeff());
+    if (!(largest > 0) || !std::isfinite(largest)) return;
+    constexpr double kStep = 0.05;  // mean edge lengths
+    for (Eigen::Index i = 0; i < count; ++i) {
+      x.row(place.free()[i]) += kStep * place.edge() / largest * move.row(i);
+    }
+    x = place.withinReach(std::move(x));
+    pairs = place.crossings(x);
+    if (best.consider(x, pairs) || pairs.empty()) return;
+  }
+}
+
+/// Minimises  sum |mean of neighbours - x_v|^2 + w sum |x_v - start_v|^2  over the free vertices,
+/// the first sum over them and their fixed neighbours.
+void smooth(const Place& place, Best& best) {
+  const auto& unknown = place.unknown();
+  const auto& topology = place.topology();
+  const auto count = static_cast<Eigen::Index>(place.free().size());
+  const Positions& start = place.start().positions;
+  std::vector<std::int32_t> centres = place.free();
+  for (const std::int32_t v : place.free()) {
+    for (const std::int32_t w : topology.vertexVertices[v]) {
+      if (unknown[w] < 0) centres.push_back(w);
+    }
+  }
+  std::sort(centres.begin(), centres.end());
+  centres.erase(std::unique(centres.begin(), centres.end()), centres.end());
+  Triplets entries;
+  Eigen::MatrixXd known = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(centres.size()), 3);
+  for (std::size_t n = 0; n < centres.size(); ++n) {
+    const auto row = static_cast<Eigen::Index>(n);
+    const auto around = topology.vertexVertices[centres[n]];
+    const auto put = [&](std::int32_t v, double weight) {
+      if (unknown[v] >= 0) {
+        entries.emplace_back(row, unknown[v], weight);
+      } else {
+        known.row(row) += weight * start.row(v);
+      }
+    };
+    put(centres[n], 1);
+    for (const std::int32_t w : around) put(w, -1.0 / static_cast<double>(around.size()));
+  }
+  Matrix laplacian(static_cast<Eigen::Index>(centres.size()), count);
+  laplacian.setFromTriplets(entries.begin(), entries.end());
+  Eigen::MatrixXd old(count, 3);
+  for (Eigen::Index i = 0; i < count; ++i) old.row(i) = start.row(place.free()[i]);
+  Matrix identity(count, count);
+  identity.setIdentity();
+  for (const double hold : {3.0, 1.0, 0.3, 0.1, 0.03, 0.01, 0.003, 0.001, 1e-6}) {
+    const Eigen::SimplicialLDLT<Matrix> solver(
+        Matrix(laplacian.transpose() * laplacian + hold * identity));
+    const Eigen::MatrixXd solved = solver.solve(hold * old - laplacian.transpose() * known);
+    if (solver.info() != Eigen::Success || !solved.allFinite()) continue;
+    Positions x = start;
+    for (Eigen::Index i = 0; i < count; ++i) x.row(place.free()[i]) = solved.row(i);
+    x = place.withinReach(std::move(x));
+    if (best.consider(x, place.crossings(x))) return;
+  }
+}
+
+}  // namespace
+
+Untangling untangle(const TriangleMesh& mesh, const UntangleOptions& options) {
+  if (options.largestRings < 1 || options.largestRings > 20) {
+    throw InvalidInput("largestRings: must be from 1 to 20");
+  }
+  if (!(options.largestMove > 0)) throw InvalidInput("largestMove: must be positive");
+  if (options.descentSteps < 0) throw InvalidInput("descentSteps: must not be negative");
+  Untangling result;
+  result.positions = mesh.positions;
+  result.before = result.after = geometry::findSelfIntersections(mesh);
+  if (result.before.empty()) return result;
+  const auto topology = geometry::buildTopology(mesh.faces, mesh.vertexCount());
+  TriangleMesh now = mesh;
+  geometry::BoxTree tree(geometry::faceBoxes(now));
+  for (int rings = 1; rings <= options.largestRings && !result.after.empty(); ++rings) {
+    for (const Group& group : groupsOf(now, topology, result.after, rings)) {
+      const Place place(now, topology, tree, group, options.largestMove);
+      Best best(place, group.pairs.size());
+      descend(place, options, best);
+      smooth(place, best);
+      if (!best.get()) continue;
+      for (const std::int32_t v : place.free()) {
+        now.positions.row(place.origin(v)) = best.get()->positions.row(v);
+      }
+      tree.refit(geometry::faceBoxes(now));
+    }
+    result.after = geometry::findSelfIntersections(now);
+  }
+  double sum = 0;
+  for (std::int32_t v = 0; v < mesh.vertexCount(); ++v) {
+    const double move = (now.positions.row(v) - mesh.positions.row(v)).norm();
+    if (move == 0) continue;
+    result.moved.push_back(v);
+    result.moveMax = std::max(result.moveMax, move);
+    sum += move;
+  }
+  if (!result.moved.empty()) result.moveMean = sum / static_cast<double>(result.moved.size());
+  result.positions = std::move(now.positions);
+  return result;
+}
+
+}  // namespace explica::collision
