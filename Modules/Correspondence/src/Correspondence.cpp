@@ -7,13 +7,12 @@
 #include "Field.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
+#include <utility>
 
 namespace explica::correspondence {
 
 using harmonic::Annulus;
-using harmonic::axisOf;
 using harmonic::Interpolant;
 using harmonic::kInner;
 using harmonic::kOuter;
@@ -23,17 +22,89 @@ namespace {
 
 using Tracer = TrajectoryTracer::Field;
 constexpr int kMaxSteps = 4000;
+constexpr std::size_t kBlock = 1 << 13;
+constexpr double kBeyondPlane = 1e-3;  // so that the plane lies within the step, whatever it bends
 // Default lambda in voxels.  Corners of a grid face are up to sqrt(2) voxels apart, and so are
 // their boundary points where trajectories run in parallel: beyond this they diverge.
 constexpr double kLambda = 2;
 
-/// Tissue voxels by ascending u (radix sort of 32-bit fixed point; equal values by number).
-std::vector<std::int32_t> orderByValue(const std::vector<double>& u) {
+/// What one side has found at a voxel: boundary point minus the voxel's centre along the grid's
+/// axes, then the length, mm; NaN where the trajectory did not arrive.
+using Arrival = Eigen::Array4f;
+
+/// Tissue in steps of u: those of one step do not depend on each other.  Ranks, each step's in
+/// storage order.
+struct Steps {
+  std::vector<std::uint16_t> of;    ///< per rank
+  std::vector<std::int32_t> rank;   ///< step after step
+  std::vector<std::int32_t> start;  ///< of each step in `rank`, and the end
+
+  [[nodiscard]] std::size_t count() const { return start.size() - 1; }
+};
+
+/// Steps so small that nearly everywhere the first grid face upwind lies in an earlier one: its
+/// corners differ from the voxel by 1/sqrt(3) voxel of the slope or more.
+Steps stepsOf(const Tracer& tracer) {
+  constexpr std::size_t kSamples = 4096;
+  constexpr double kSmallSlopes = 0.05;  // share of voxels that may have smaller slopes
+  constexpr double kStepsPerVoxel = 4;
+  constexpr double kFewest = 64, kMost = 2048;
+  const std::size_t n = tracer.node.size();
+  std::vector<double> slope;
+  for (std::size_t r = 0; r < n; r += 1 + n / kSamples) {
+    slope.push_back(tracer.node[r]
+                        .head<3>()
+                        .matrix()
+                        .cast<double>()
+                        .cwiseProduct(tracer.inverseSpacing)
+                        .norm() *
+                    tracer.finest);
+  }
+  const auto small =
+      slope.begin() + static_cast<std::ptrdiff_t>(kSmallSlopes * static_cast<double>(slope.size()));
+  std::nth_element(slope.begin(), small, slope.end());
+  const auto count = static_cast<int>(
+      *small > 0 ? std::clamp(std::ceil(kStepsPerVoxel / *small), kFewest, kMost) : kMost);
+
+  Steps steps;
+  steps.of.resize(n);
+  const std::size_t blocks = (n + kBlock - 1) / kBlock;
+  std::vector<std::int32_t> cursor(blocks * count, 0);
+  parallelForBlocks(n, kBlock, [&](std::size_t begin, std::size_t end) {
+    std::int32_t* own = cursor.data() + begin / kBlock * count;
+    for (std::size_t r = begin; r < end; ++r) {
+      const float u = std::clamp(tracer.node[r][3], 0.0F, 1.0F);
+      const int step = std::min(static_cast<int>(u * static_cast<float>(count)), count - 1);
+      steps.of[r] = static_cast<std::uint16_t>(step);
+      ++own[step];
+    }
+  });
+  std::int32_t next = 0;
+  for (int step = 0; step < count; ++step) {
+    steps.start.push_back(next);
+    for (std::size_t block = 0; block < blocks; ++block) {
+      next += std::exchange(cursor[block * count + step], next);
+    }
+  }
+  steps.start.push_back(next);
+  steps.rank.resize(n);
+  parallelForBlocks(n, kBlock, [&](std::size_t begin, std::size_t end) {
+    std::int32_t* own = cursor.data() + begin / kBlock * count;
+    for (std::size_t r = begin; r < end; ++r) {
+      steps.rank[own[steps.of[r]]++] = static_cast<std::int32_t>(r);
+    }
+  });
+  return steps;
+}
+
+/// Ranks by ascending u (radix sort of 32-bit fixed point; equal values by rank).
+std::vector<std::int32_t> orderByValue(const Tracer& tracer, const std::vector<double>& u) {
   const std::size_t n = u.size();
   std::vector<std::uint32_t> key(n), otherKey(n);
   std::vector<std::int32_t> order(n), other(n);
   for (std::size_t k = 0; k < n; ++k) {
-    key[k] = static_cast<std::uint32_t>(std::clamp(u[k], 0.0, 1.0) * 4294967295.0);
+    const double value = u[tracer.annulus.numberAt[tracer.placeOf[k]]];
+    key[k] = static_cast<std::uint32_t>(std::clamp(value, 0.0, 1.0) * 4294967295.0);
     order[k] = static_cast<std::int32_t>(k);
   }
   for (int shift = 0; shift < 33; shift += 11) {
@@ -51,295 +122,321 @@ std::vector<std::int32_t> orderByValue(const std::vector<double>& u) {
   return order;
 }
 
-/// One side's values while they are found: boundary points as box indices relative to the voxel,
-/// in mm along the grid's axes.
-struct SideValues {
-  std::vector<double> length;
-  std::vector<Eigen::Vector3f> offset;  ///< mm along the axes, from the voxel's centre
-  std::size_t traced = 0;
-};
-
+/// Finds one side's arrivals.
 class Sweep {
  public:
-  Sweep(const Annulus& annulus, const Interpolant& interpolant, const Tracer& tracer,
-        const CorrespondenceOptions& options, bool inner)
-      : annulus_(annulus),
-        interpolant_(interpolant),
-        tracer_(tracer),
-        options_(options),
+  Sweep(const Tracer& tracer, const CorrespondenceOptions& options, bool inner)
+      : tracer_(tracer),
+        annulus_(tracer.annulus),
+        hybrid_(options.method == Method::Hybrid),
         inner_(inner),
         uphill_(inner ? -1 : 1),
         target_(inner ? 0.0 : 1.0),
         wall_(inner ? kInner : kOuter),
-        lambda_(options.lambda.value_or(kLambda * tracer.finest)) {
-    values_.length.assign(annulus.count(), kNaN);
-    values_.offset.assign(annulus.count(), Eigen::Vector3f::Zero());
-  }
+        lambda_(static_cast<float>(options.lambda.value_or(kLambda * tracer.finest))),
+        spacing_(annulus_.grid.spacing.cast<float>()),
+        arrivals_(annulus_.count(), Arrival::Constant(static_cast<float>(kNaN))) {}
 
+  /// Follows every trajectory to the boundary.
   void traceAll(const Monitor& monitor) {
-    parallelForBlocks(annulus_.count(), 1024, [&](std::size_t begin, std::size_t end) {
+    parallelForBlocks(arrivals_.size(), 1024, [&](std::size_t begin, std::size_t end) {
       if (monitor.shouldStop()) return;
-      for (std::size_t n = begin; n < end; ++n) traceToWall(static_cast<std::int32_t>(n));
+      for (std::size_t r = begin; r < end; ++r) traceToWall(static_cast<std::int32_t>(r));
     });
-    values_.traced = annulus_.count();
+    traced_ = arrivals_.size();
   }
 
+  /// (3.1) and (3.2), voxel by voxel in the order of u.
   void sweep(const std::vector<std::int32_t>& order, const Monitor& monitor) {
-    const bool hybrid = options_.method == Method::Hybrid;
-    solved_.assign(annulus_.count(), 0);
-    if (hybrid) {
-      std::vector<std::int32_t> beside;
-      for (std::size_t n = 0; n < annulus_.count(); ++n) {
-        for (int d = 0; d < 6; ++d) {
-          if (annulus_.links[n][d] == wall_) {
-            beside.push_back(static_cast<std::int32_t>(n));
-            break;
-          }
-        }
-      }
-      parallelFor(beside.size(), 256, [&](std::size_t k) { traceToWall(beside[k]); });
-      for (const std::int32_t n : beside) solved_[n] = !std::isnan(values_.length[n]);
-      values_.traced += beside.size();
-    }
+    turn_.assign(arrivals_.size(), kNever);
+    if (hybrid_) traceBesideWall();
     for (std::size_t k = 0; k < order.size(); ++k) {
-      const std::int32_t n = order[inner_ ? k : order.size() - 1 - k];
-      if (!solved_[n]) {
-        // A finite lambda takes the value at the face that the trajectory pierces, which is (3.1)
-        // without its numerical diffusion; an infinite one is (3.1) itself.
-        const bool upwind = !hybrid || lambda_ == kInfinity;
-        if (!upwind || !fromNeighbours(n, hybrid)) {
-          if (hybrid) {
-            traceToFace(n);
-          } else {
-            traceToWall(n);
-            ++values_.traced;
-          }
+      const std::int32_t r = order[inner_ ? k : order.size() - 1 - k];
+      if (!found(r) && !fromNeighbours(r)) {
+        if (hybrid_) {
+          traced_ += traceToFace(r, 1);
+        } else {
+          traceToWall(r);
+          ++traced_;
         }
-        solved_[n] = !std::isnan(values_.length[n]);
       }
+      if (found(r) && !onCut(r)) turn_[r] = 0;
       if ((k & 0xffff) == 0 && monitor.shouldStop()) return;
     }
   }
 
-  SideValues take() { return std::move(values_); }
-
- private:
-  void store(std::int32_t n, const Vector& x, double length) {
-    const auto s = annulus_.boxSubscripts(n);
-    values_.offset[n] =
-        (x - Vector(s[0], s[1], s[2])).cwiseProduct(annulus_.grid.spacing).cast<float>();
-    values_.length[n] = length;
+  /// Appendix A: follows each trajectory to the first grid face whose corners belong to earlier
+  /// steps and agree.
+  void sweep(const Steps& steps, const Monitor& monitor) {
+    const std::size_t count = steps.count();
+    turn_.resize(arrivals_.size());
+    parallelFor(arrivals_.size(), kBlock, [&](std::size_t r) {
+      const std::size_t step = steps.of[r];
+      const auto turn = static_cast<std::uint16_t>(1 + (inner_ ? step : count - 1 - step));
+      turn_[r] = onCut(static_cast<std::int32_t>(r)) ? kNever : turn;
+    });
+    traceBesideWall();
+    for (std::size_t k = 0; k < count && !monitor.shouldStop(); ++k) {
+      const std::size_t step = inner_ ? k : count - 1 - k;
+      const std::int32_t* ranks = steps.rank.data() + steps.start[step];
+      traced_ += parallelSum(steps.start[step + 1] - steps.start[step], 256, std::size_t{0},
+                             [&](std::size_t begin, std::size_t end) {
+                               std::size_t sum = 0;
+                               for (std::size_t v = begin; v < end; ++v) {
+                                 if (!found(ranks[v]))
+                                   sum += traceToFace(ranks[v], static_cast<std::uint16_t>(k + 1));
+                               }
+                               return sum;
+                             });
+    }
   }
 
-  void traceToWall(std::int32_t n) {
-    auto walk = tracer_.begin(n, uphill_);
+  [[nodiscard]] const Arrival& at(std::size_t rank) const { return arrivals_[rank]; }
+  [[nodiscard]] std::size_t traced() const { return traced_; }
+
+ private:
+  static constexpr std::uint16_t kNever = 0xffff;
+
+  [[nodiscard]] bool found(std::int32_t r) const { return !std::isnan(arrivals_[r][3]); }
+  [[nodiscard]] bool onCut(std::int32_t r) const {
+    return !tracer_.onCut.empty() && tracer_.onCut[annulus_.numberAt[tracer_.placeOf[r]]] != 0;
+  }
+  [[nodiscard]] std::array<int, 3> subscripts(std::int32_t place) const {
+    const std::int32_t row = place / annulus_.size[0];
+    return {place % annulus_.size[0], row % annulus_.size[1], row / annulus_.size[1]};
+  }
+
+  void traceBesideWall() {
+    traced_ += parallelSum(arrivals_.size(), 1 << 12, std::size_t{0},
+                           [&](std::size_t begin, std::size_t end) {
+                             std::size_t sum = 0;
+                             for (std::size_t r = begin; r < end; ++r) {
+                               const std::int32_t n = annulus_.numberAt[tracer_.placeOf[r]];
+                               if (annulus_.irregular(n) < 0) continue;
+                               const auto& links = annulus_.links[n];
+                               if (std::find(links.begin(), links.end(), wall_) == links.end())
+                                 continue;
+                               traceToWall(static_cast<std::int32_t>(r));
+                               ++sum;
+                               if (!onCut(static_cast<std::int32_t>(r))) turn_[r] = 0;
+                             }
+                             return sum;
+                           });
+  }
+
+  void traceToWall(std::int32_t r) {
+    const std::int32_t place = tracer_.placeOf[r];
+    auto walk = tracer_.begin(place, uphill_);
     bool done = uphill_ * (walk.u - target_) >= 0;
     for (int k = 0; !done && !walk.stuck && k < kMaxSteps; ++k) {
       done = tracer_.advance(walk, target_, uphill_);
     }
-    if (done) store(n, walk.x, walk.length);
+    if (done) store(r, place, walk);
   }
 
-  /// Boundary point of a solved voxel, mm along the axes from the box's origin.
-  [[nodiscard]] Vector wallPoint(std::int32_t n) const {
-    const auto s = annulus_.boxSubscripts(n);
-    return Vector(s[0], s[1], s[2]).cwiseProduct(annulus_.grid.spacing) +
-           values_.offset[n].cast<double>();
+  void store(std::int32_t r, std::int32_t place, const Tracer::Walk& walk) {
+    const auto s = subscripts(place);
+    const Vector way = (walk.x - Vector(s[0], s[1], s[2])).cwiseProduct(annulus_.grid.spacing);
+    arrivals_[r] << way.cast<float>(), static_cast<float>(walk.length);
   }
 
   /// (3.1), (3.2) with weights |T_a| / h_a.  False if there is nothing upwind, or if the hybrid
   /// finds its points further apart than lambda.
-  bool fromNeighbours(std::int32_t n, bool hybrid) {
-    const Vector g = interpolant_.gradient[n].cast<double>();
+  bool fromNeighbours(std::int32_t r) {
+    const Vector g =
+        tracer_.node[r].head<3>().matrix().cast<double>().cwiseProduct(tracer_.inverseSpacing);
     const double norm = g.norm();
     if (!(norm > 0)) return false;
     const Vector& h = annulus_.grid.spacing;
-    const auto s = annulus_.boxSubscripts(n);
-    double sum = 0, length = 0;
-    Vector point = Vector::Zero();
-    Vector points[3];
+    const std::int32_t place = tracer_.placeOf[r];
+    const auto strides = annulus_.strides();
+    const auto& links = annulus_.links[annulus_.numberAt[place]];
+    double sum = 0;
+    Eigen::Array4d value = Eigen::Array4d::Zero();
+    Eigen::Array4d points[3];  // relative to this voxel, and length
     int count = 0;
     for (int a = 0; a < 3; ++a) {
       const double slope = g[a] / norm;
       if (slope == 0) continue;
       // Upwind is where u comes from: smaller for the inner side, larger for the outer one.
       const int d = 2 * a + ((slope > 0) == inner_ ? 0 : 1);
-      const std::int32_t m = annulus_.links[n][d];
       const double weight = std::abs(slope) / h[a];
-      if (m >= 0) {
-        if (!solved_[m]) continue;
-        points[count] = wallPoint(m);
-        length += weight * values_.length[m];
-      } else if (m == wall_ && !hybrid) {
-        Vector x(s[0], s[1], s[2]);
-        x[a] += signOf(d);
-        points[count] = x.cwiseProduct(h);
-      } else {
+      Eigen::Array4d there = Eigen::Array4d::Zero();
+      if (links[d] >= 0) {
+        const std::int32_t m = tracer_.rankAt[place + signOf(d) * strides[a]];
+        if (!found(m)) continue;
+        there = arrivals_[m].cast<double>();
+      } else if (links[d] != wall_ || hybrid_) {
         continue;
       }
-      point += weight * points[count];
+      there[a] += signOf(d) * h[a];
+      points[count++] = there;
+      value += weight * there;
       sum += weight;
-      ++count;
     }
     if (count == 0) return false;
-    if (hybrid) {
+    if (hybrid_) {
       for (int p = 0; p < count; ++p) {
         for (int q = p + 1; q < count; ++q) {
-          if ((points[p] - points[q]).norm() >= lambda_) return false;
+          if ((points[p] - points[q]).head<3>().matrix().norm() >= lambda_) return false;
         }
       }
     }
-    const Vector x = point / sum;
-    values_.offset[n] = (x - Vector(s[0], s[1], s[2]).cwiseProduct(h)).cast<float>();
-    values_.length[n] = (1 + length) / sum;
+    value[3] += 1;
+    arrivals_[r] = (value / sum).cast<float>();
     return true;
   }
 
-  /// Follows the trajectory to the boundary, or to the first grid face whose corners are solved and
-  /// agree within lambda.
-  void traceToFace(std::int32_t n) {
-    disagreed_ = false;
-    auto walk = tracer_.begin(n, uphill_);
+  /// Follows the trajectory to the first grid face whose corners have earlier turns and agree
+  /// within lambda, else to the boundary.
+  /// @return  whether it went past a face whose corners disagree, or to the boundary
+  bool traceToFace(std::int32_t r, std::uint16_t turn) {
+    const std::int32_t place = tracer_.placeOf[r];
+    const auto s = subscripts(place);
+    auto walk = tracer_.begin(place, uphill_);
+    // The first step ends just beyond the first grid plane, where the face most likely is usable.
+    const double plane = (1 + kBeyondPlane) / walk.velocity.cwiseAbs().maxCoeff();
+    walk.step = walk.longest = std::min(plane, 2 * walk.longest);
+    bool disagreed = false;
     bool done = uphill_ * (walk.u - target_) >= 0;
     for (int k = 0; !done && !walk.stuck && k < kMaxSteps; ++k) {
       const Vector before = walk.x;
       const double lengthBefore = walk.length;
       done = tracer_.advance(walk, target_, uphill_);
-      if (done) break;
-      if (faceBetween(n, before, walk.x, lengthBefore, walk.length)) {
-        values_.traced += disagreed_;
-        return;
-      }
-    }
-    ++values_.traced;
-    if (done) store(n, walk.x, walk.length);
-  }
-
-  /// Adds the second-order term of interpolation along one axis of a face: -f (1 - f) / 2 times the
-  /// second difference, from whichever voxels in line with the corners are solved.
-  /// @param corner  pairs (0, 1) and (2, 3) lie along the axis
-  void bendAlong(const std::int32_t* corner, std::int32_t stride, double f, int corners,
-                 double across, Vector& point, double& length) const {
-    const double factor = 0.5 * f * (1 - f);
-    if (factor == 0) return;
-    for (int pair = 0; pair < corners; pair += 2) {
-      const double weight = corners == 2 ? 1 : pair == 0 ? 1 - across : across;
-      const std::int32_t low = corner[pair], high = corner[pair + 1];
-      Vector second = Vector::Zero();
-      double secondLength = 0;
-      int found = 0;
-      const auto use = [&](std::int32_t middle, std::int32_t other, std::int32_t step) {
-        const std::int32_t m = annulus_.numberAt[annulus_.place[middle] + step];
-        if (m < 0 || !solved_[m] || (!tracer_.onCut.empty() && tracer_.onCut[m])) return;
-        const Vector difference = wallPoint(m) - 2 * wallPoint(middle) + wallPoint(other);
-        if (difference.norm() >= 2 * lambda_) return;
-        second += difference;
-        secondLength += values_.length[m] - 2 * values_.length[middle] + values_.length[other];
-        ++found;
+      if (done || walk.stuck) break;
+      const Vector step = walk.x - before;
+      const int axes = annulus_.planar ? 2 : 3;
+      // Steps are at most a voxel, the first one to the next plane: at most one plane of each axis
+      // lies between.
+      struct Pierced {
+        double t;
+        int axis;
+        int plane;
       };
-      use(low, high, -stride);
-      use(high, low, stride);
-      if (found == 0) continue;
-      point -= weight * factor / found * second;
-      length -= weight * factor / found * secondLength;
-    }
-  }
-
-  bool faceBetween(std::int32_t n, const Vector& from, const Vector& to, double lengthFrom,
-                   double lengthTo) {
-    const int axes = annulus_.planar ? 2 : 3;
-    // Steps are at most a voxel: at most one plane of each axis lies between.
-    struct Pierced {
-      double t;
-      int axis;
-      int plane;
-    };
-    Pierced pierced[3];
-    int count = 0;
-    for (int a = 0; a < axes; ++a) {
-      const double low = std::min(from[a], to[a]), high = std::max(from[a], to[a]);
-      const double plane = std::ceil(low + 1e-12);
-      if (plane > high || high - low < 1e-12) continue;
-      pierced[count++] = {(plane - from[a]) / (to[a] - from[a]), a, static_cast<int>(plane)};
-    }
-    for (int k = 1; k < count; ++k) {
-      for (int m = k; m > 0 && pierced[m].t < pierced[m - 1].t; --m) {
-        std::swap(pierced[m], pierced[m - 1]);
+      Pierced pierced[3];
+      int count = 0;
+      for (int a = 0; a < axes; ++a) {
+        const double way = step[a];
+        if (std::abs(way) < 1e-12) continue;
+        // The next plane strictly ahead.
+        const int below = static_cast<int>(before[a]);
+        const int ahead = way > 0 ? below + 1 : below - (before[a] == below ? 1 : 0);
+        const double t = (ahead - before[a]) / way;
+        if (t > 1) continue;
+        int at = count++;
+        for (; at > 0 && pierced[at - 1].t > t; --at) pierced[at] = pierced[at - 1];
+        pierced[at] = {t, a, ahead};
+      }
+      for (int c = 0; c < count; ++c) {
+        const double t = pierced[c].t;
+        const double length = lengthBefore + t * (walk.length - lengthBefore);
+        if (fromFace(r, s, turn, pierced[c].axis, pierced[c].plane, before + t * step, length,
+                     disagreed)) {
+          return disagreed;
+        }
       }
     }
+    if (done) store(r, place, walk);
+    return true;
+  }
+
+  /// Interpolates on the grid face that contains x, if its corners have earlier turns and agree.
+  bool fromFace(std::int32_t r, const std::array<int, 3>& s, std::uint16_t turn, int axis,
+                int plane, const Vector& x, double length, bool& disagreed) {
+    int b = axis == 0 ? 1 : 0, c = axis == 2 ? 1 : 2;  // ascending, so pairs lie in memory's order
+    std::array<int, 3> base{};
+    base[axis] = plane;
+    base[b] = static_cast<int>(x[b]);
+    base[c] = annulus_.planar ? static_cast<int>(std::lround(x[2])) : static_cast<int>(x[c]);
+    const auto fb = static_cast<float>(x[b] - base[b]);
+    const auto fc = annulus_.planar ? 0.0F : static_cast<float>(x[c] - base[c]);
     const auto strides = annulus_.strides();
-    for (int k = 0; k < count; ++k) {
-      const Vector x = from + pierced[k].t * (to - from);
-      const int a = pierced[k].axis;
-      int b = (a + 1) % 3, c = (a + 2) % 3;
-      if (axes == 2) {
-        b = 1 - a;
-        c = 2;
-      }
-      std::array<int, 3> base{};
-      base[a] = pierced[k].plane;
-      base[b] = static_cast<int>(std::floor(x[b]));
-      base[c] =
-          axes == 2 ? static_cast<int>(std::lround(x[2])) : static_cast<int>(std::floor(x[c]));
-      const double fb = x[b] - base[b], fc = axes == 2 ? 0 : x[c] - base[c];
-      const std::int32_t p = base[0] + base[1] * strides[1] + base[2] * strides[2];
-      const int corners = axes == 2 ? 2 : 4;
-      std::int32_t corner[4];
-      bool usable = true;
-      for (int e = 0; usable && e < corners; ++e) {
-        const std::int32_t q = p + (e & 1) * strides[b] + (e >> 1) * strides[c];
-        corner[e] = annulus_.numberAt[q];
-        usable = corner[e] >= 0 && corner[e] != n && solved_[corner[e]] &&
-                 (tracer_.onCut.empty() || !tracer_.onCut[corner[e]]);
-      }
-      if (!usable) continue;
-      Vector points[4];
-      for (int e = 0; e < corners; ++e) points[e] = wallPoint(corner[e]);
-      for (int e = 0; usable && e < corners; ++e) {
-        for (int f = e + 1; f < corners; ++f) {
-          if ((points[e] - points[f]).norm() >= lambda_) {
-            usable = false;
-            disagreed_ = true;
-            break;
-          }
-        }
-      }
-      if (!usable) continue;
-      Vector point = Vector::Zero();
-      double length = 0;
-      for (int e = 0; e < corners; ++e) {
-        const double weight = ((e & 1) ? fb : 1 - fb) * (corners == 2 ? 1 : (e >> 1) ? fc : 1 - fc);
-        point += weight * points[e];
-        length += weight * values_.length[corner[e]];
-      }
-      if (lambda_ < kInfinity) {
-        bendAlong(corner, strides[b], fb, corners, fc, point, length);
-        if (corners == 4) {
-          const std::int32_t swapped[4] = {corner[0], corner[2], corner[1], corner[3]};
-          bendAlong(swapped, strides[c], fc, corners, fb, point, length);
-        }
-      }
-      const auto s = annulus_.boxSubscripts(n);
-      values_.offset[n] =
-          (point - Vector(s[0], s[1], s[2]).cwiseProduct(annulus_.grid.spacing)).cast<float>();
-      values_.length[n] = length + lengthFrom + pierced[k].t * (lengthTo - lengthFrom);
-      return true;
+    const std::int32_t p = base[0] + base[1] * strides[1] + base[2] * strides[2];
+    const int corners = annulus_.planar ? 2 : 4;
+    std::int32_t place[4];
+    const Arrival* arrival[4];
+    for (int e = 0; e < corners; ++e) {
+      place[e] = p + (e & 1) * strides[b] + (e >> 1) * strides[c];
+      arrival[e] = earlier(place[e], turn);
+      if (arrival[e] == nullptr) return false;
     }
-    return false;
+    // Boundary points relative to the first corner's centre.
+    Arrival value[4];
+    for (int e = 0; e < corners; ++e) {
+      value[e] = *arrival[e];
+      if (e & 1) value[e][b] += spacing_[b];
+      if (e & 2) value[e][c] += spacing_[c];
+    }
+    for (int e = 0; e < corners; ++e) {
+      for (int f = e + 1; f < corners; ++f) {
+        if (!(apart(value[e] - value[f]) < lambda_ * lambda_)) {
+          disagreed = true;
+          return false;
+        }
+      }
+    }
+    Arrival sum = value[0] + fb * (value[1] - value[0]);
+    if (corners == 4) sum += fc * (value[2] + fb * (value[3] - value[2]) - sum);
+    if (lambda_ < static_cast<float>(kInfinity)) {
+      // Second order: -f (1 - f) / 2 times the second difference along each axis.
+      for (int e = 0; e < corners; e += 2) {
+        const float across = corners == 2 ? 1 : e == 0 ? 1 - fc : fc;
+        sum -= across * bend(place[e], place[e + 1], strides[b], fb, turn);
+      }
+      if (corners == 4) {
+        for (int e = 0; e < 2; ++e) {
+          sum -= (e == 0 ? 1 - fb : fb) * bend(place[e], place[e + 2], strides[c], fc, turn);
+        }
+      }
+    }
+    for (int a = 0; a < 3; ++a) sum[a] += static_cast<float>(base[a] - s[a]) * spacing_[a];
+    sum[3] += static_cast<float>(length);
+    arrivals_[r] = sum;
+    return true;
   }
 
-  const Annulus& annulus_;
-  const Interpolant& interpolant_;
+  /// Arrival at a box voxel that has had its turn; null otherwise.
+  [[nodiscard]] const Arrival* earlier(std::int32_t place, std::uint16_t turn) const {
+    const std::int32_t m = tracer_.rankAt[place];
+    return m >= 0 && turn_[m] < turn && found(m) ? &arrivals_[m] : nullptr;
+  }
+
+  static float apart(const Arrival& difference) {
+    return difference[0] * difference[0] + difference[1] * difference[1] +
+           difference[2] * difference[2];
+  }
+
+  /// f (1 - f) / 2 times the second difference along `low` to `high`, from whichever voxels in line
+  /// with them have had their turn.
+  [[nodiscard]] Arrival bend(std::int32_t low, std::int32_t high, std::int32_t stride, float f,
+                             std::uint16_t turn) const {
+    Arrival second = Arrival::Zero();
+    int found = 0;
+    const Arrival* inside[2] = {&arrivals_[tracer_.rankAt[low]], &arrivals_[tracer_.rankAt[high]]};
+    for (int side = 0; side < 2; ++side) {
+      const Arrival* outside = earlier(side == 0 ? low - stride : high + stride, turn);
+      if (outside == nullptr) continue;
+      // The centres' own second difference is zero.
+      const Arrival difference = *outside - 2 * *inside[side] + *inside[1 - side];
+      if (apart(difference) >= 4 * lambda_ * lambda_) continue;
+      second += difference;
+      ++found;
+    }
+    if (found == 0) return second;
+    return (0.5F * f * (1 - f) / static_cast<float>(found)) * second;
+  }
+
   const Tracer& tracer_;
-  const CorrespondenceOptions& options_;
-  bool inner_;
+  const Annulus& annulus_;
+  bool hybrid_, inner_;
   int uphill_;
   double target_;
   std::int32_t wall_;
-  double lambda_;
-  bool disagreed_ = false;  ///< the walk passed a solved face whose corners differ by lambda
-  SideValues values_;
-  std::vector<std::uint8_t> solved_;
+  float lambda_;
+  Eigen::Array3f spacing_;
+  std::size_t traced_ = 0;
+  std::vector<Arrival> arrivals_;    ///< per rank
+  std::vector<std::uint16_t> turn_;  ///< per rank: only arrivals with smaller turns are read
 };
 
 }  // namespace
@@ -349,35 +446,38 @@ Correspondence findCorrespondences(const Annulus& annulus, const Interpolant& in
   if (options.lambda && !(*options.lambda >= 0))
     throw InvalidInput("lambda must be 0 or more millimetres");
   const TrajectoryTracer tracer(annulus, interpolant, options.trace);
-  Sweep inner(annulus, interpolant, tracer.field(), options, true);
-  Sweep outer(annulus, interpolant, tracer.field(), options, false);
-  const bool all = options.method == Method::Lagrangian ||
-                   (options.method == Method::Hybrid && options.lambda == 0.0);
-  if (all) {
+  const Tracer& field = tracer.field();
+  Sweep inner(field, options, true);
+  Sweep outer(field, options, false);
+  const bool hybrid = options.method == Method::Hybrid;
+  if (options.method == Method::Lagrangian || (hybrid && options.lambda == 0.0)) {
     inner.traceAll(monitor);
     monitor.progress(0.5, "correspondences");
     outer.traceAll(monitor);
+  } else if (hybrid && options.lambda != kInfinity) {
+    const Steps steps = stepsOf(field);
+    parallelFor(2, 1, [&](std::size_t side) { (side == 0 ? inner : outer).sweep(steps, monitor); });
   } else {
-    const auto order = orderByValue(interpolant.u);
+    const auto order = orderByValue(field, interpolant.u);
     parallelFor(2, 1, [&](std::size_t side) { (side == 0 ? inner : outer).sweep(order, monitor); });
   }
   monitor.progress(1, "correspondences");
-  SideValues in = inner.take(), out = outer.take();
+
   Correspondence result;
-  result.traced = in.traced + out.traced;
-  result.innerDistance = std::move(in.length);
-  result.outerDistance = std::move(out.length);
-  result.innerPoint = std::move(in.offset);
-  result.outerPoint = std::move(out.offset);
+  result.traced = inner.traced() + outer.traced();
+  result.innerDistance.resize(annulus.count());
+  result.outerDistance.resize(annulus.count());
+  result.innerPoint.resize(annulus.count());
+  result.outerPoint.resize(annulus.count());
   const Eigen::Matrix3f toWorld = annulus.grid.direction.cast<float>();
-  const auto nan = static_cast<float>(kNaN);
-  parallelFor(annulus.count(), 1 << 13, [&](std::size_t n) {
-    result.innerPoint[n] = std::isnan(result.innerDistance[n])
-                               ? Eigen::Vector3f::Constant(nan)
-                               : Eigen::Vector3f(toWorld * result.innerPoint[n]);
-    result.outerPoint[n] = std::isnan(result.outerDistance[n])
-                               ? Eigen::Vector3f::Constant(nan)
-                               : Eigen::Vector3f(toWorld * result.outerPoint[n]);
+  parallelFor(annulus.count(), kBlock, [&](std::size_t r) {
+    const std::int32_t n = annulus.numberAt[field.placeOf[r]];
+    const auto take = [&](const Arrival& arrival, double& distance, Eigen::Vector3f& point) {
+      distance = arrival[3];
+      point = toWorld * arrival.head<3>().matrix();
+    };
+    take(inner.at(r), result.innerDistance[n], result.innerPoint[n]);
+    take(outer.at(r), result.outerDistance[n], result.outerPoint[n]);
   });
   result.missing = parallelSum(annulus.count(), 1 << 13, std::size_t{0},
                                [&](std::size_t begin, std::size_t end) {

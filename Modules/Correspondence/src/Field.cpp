@@ -51,6 +51,7 @@ TrajectoryTracer::Field::Field(const harmonic::Annulus& a, const harmonic::Inter
     anyCut = anyCut || cut[n];
   }
   if (anyCut) onCut = std::move(cut);
+  rankTissue();
   prepareCells();
 }
 
@@ -63,13 +64,35 @@ Point TrajectoryTracer::Field::toWorld(const Vector& x) const {
   return annulus.grid.toWorld(x + Vector(annulus.first[0], annulus.first[1], annulus.first[2]));
 }
 
-void TrajectoryTracer::Field::prepareCells() {
-  const Eigen::Vector3f h = annulus.grid.spacing.cast<float>();
-  node_.resize(annulus.count());
-  parallelFor(annulus.count(), 1 << 13, [&](std::size_t n) {
-    node_[n].head<3>() = interpolant.gradient[n].array() * h.array();
-    node_[n][3] = static_cast<float>(interpolant.u[n]);
+void TrajectoryTracer::Field::rankTissue() {
+  const std::size_t sliceSize = annulus.strides()[2];
+  const std::size_t slices = annulus.size[2];
+  std::vector<std::int32_t> start(slices + 1, 0);
+  parallelFor(slices, 1, [&](std::size_t k) {
+    for (std::size_t p = k * sliceSize; p < (k + 1) * sliceSize; ++p) {
+      start[k + 1] += annulus.numberAt[p] >= 0;
+    }
   });
+  for (std::size_t k = 0; k < slices; ++k) start[k + 1] += start[k];
+  rankAt.resize(annulus.numberAt.size());
+  placeOf.resize(annulus.count());
+  node.resize(annulus.count());
+  const Eigen::Array3f h = annulus.grid.spacing.cast<float>();
+  parallelFor(slices, 1, [&](std::size_t k) {
+    std::int32_t rank = start[k];
+    for (std::size_t p = k * sliceSize; p < (k + 1) * sliceSize; ++p) {
+      const std::int32_t n = annulus.numberAt[p];
+      rankAt[p] = n >= 0 ? rank : -1;
+      if (n < 0) continue;
+      placeOf[rank] = static_cast<std::int32_t>(p);
+      node[rank].head<3>() = interpolant.gradient[n].array() * h;
+      node[rank][3] = static_cast<float>(interpolant.u[n]);
+      ++rank;
+    }
+  });
+}
+
+void TrajectoryTracer::Field::prepareCells() {
   const auto strides = annulus.strides();
   const int corners = flat ? 4 : 8;
   const std::size_t sliceSize = strides[2];
@@ -155,9 +178,8 @@ TrajectoryTracer::Field::Sample TrajectoryTracer::Field::sample(const Vector& x,
   std::array<int, 3> base{};
   float f[3];
   for (int a = 0; a < 3; ++a) {
-    const double low = std::clamp(std::floor(x[a]), 0.0, annulus.size[a] - 2.0);
-    base[a] = static_cast<int>(low);
-    f[a] = static_cast<float>(x[a] - low);
+    base[a] = std::clamp(static_cast<int>(x[a]), 0, annulus.size[a] - 2);
+    f[a] = static_cast<float>(x[a] - base[a]);
   }
   const auto strides = annulus.strides();
   std::int32_t upper = strides[2];
@@ -176,7 +198,10 @@ TrajectoryTracer::Field::Sample TrajectoryTracer::Field::sample(const Vector& x,
   Corner own[8];
   const int nearest = (f[0] > 0.5F ? 1 : 0) + (f[1] > 0.5F ? 2 : 0) + (f[2] > 0.5F ? 4 : 0);
   if (cell == kWhole) {
-    for (int c = 0; c < 8; ++c) corner[c] = &node_[annulus.numberAt[p + offset(c)]];
+    for (int c = 0; c < 8; c += 2) {
+      corner[c] = &node[rankAt[p + offset(c)]];
+      corner[c + 1] = corner[c] + 1;  // ranks follow each other along a row
+    }
     result.home = annulus.numberAt[p + offset(nearest)];
   } else if (cell >= 0) {
     for (int c = 0; c < 8; ++c) corner[c] = &cells_[cell].corner[flat ? c & 3 : c];
@@ -390,30 +415,31 @@ TrajectoryTracer::Field::Walk TrajectoryTracer::Field::begin(const Vector& x, st
   walk.u = here.u;
   walk.velocity = velocityOf(here, uphill, &walk.slope);
   walk.divided = here.divided;
-  walk.step = options.maxStep * finest;
+  walk.step = walk.longest = options.maxStep * finest;
   walk.stuck = here.home < 0 || walk.velocity.isZero(0);
   return walk;
 }
 
-TrajectoryTracer::Field::Walk TrajectoryTracer::Field::begin(std::int32_t number,
-                                                             int uphill) const {
-  const auto s = annulus.boxSubscripts(number);
+TrajectoryTracer::Field::Walk TrajectoryTracer::Field::begin(std::int32_t place, int uphill) const {
+  const std::int32_t row = place / annulus.size[0];
   Walk walk;
-  walk.x = Vector(s[0], s[1], s[2]);
-  walk.home = number;
-  walk.u = interpolant.u[number];
-  Sample here;
-  here.gradient = interpolant.gradient[number].cast<double>().cwiseProduct(annulus.grid.spacing);
-  walk.velocity = velocityOf(here, uphill, &walk.slope);
-  walk.step = options.maxStep * finest;
+  walk.x = Vector(place % annulus.size[0], row % annulus.size[1], row / annulus.size[1]);
+  walk.home = annulus.numberAt[place];
+  const Corner& here = node[rankAt[place]];
+  walk.u = here[3];
+  Sample sample;
+  sample.gradient = here.head<3>().matrix().cast<double>();
+  walk.velocity = velocityOf(sample, uphill, &walk.slope);
+  walk.step = walk.longest = options.maxStep * finest;
   walk.stuck = walk.velocity.isZero(0);
   return walk;
 }
 
 bool TrajectoryTracer::Field::advance(Walk& walk, double target, int uphill) const {
   // Half a voxel at most where the side must be known: a step then never leaves its neighbourhood.
-  const double longest = (walk.divided ? std::min(0.5, options.maxStep) : options.maxStep) * finest;
+  const double longest = walk.divided ? std::min(0.5, options.maxStep) * finest : walk.longest;
   walk.step = std::min(walk.step, longest);
+  walk.longest = options.maxStep * finest;
   for (;;) {
     const double s = walk.step;
     const Vector& k1 = walk.velocity;
@@ -552,7 +578,7 @@ const harmonic::Annulus& TrajectoryTracer::annulus() const {
 
 Trace TrajectoryTracer::trace(std::int32_t number, double target) const {
   const int uphill = field_->interpolant.u[number] < target ? 1 : -1;
-  return field_->run(field_->begin(number, uphill), target, uphill);
+  return field_->run(field_->begin(annulus().place[number], uphill), target, uphill);
 }
 
 Trace TrajectoryTracer::trace(const Point& start, double target) const {

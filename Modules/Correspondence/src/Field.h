@@ -28,6 +28,7 @@ struct TrajectoryTracer::Field {
     double u = kNaN;
     double length = 0;     ///< mm so far
     double step = 0;       ///< next step to try, mm
+    double longest = 0;    ///< limit of the next step, mm
     double slope = 0;      ///< |grad u| here, 1/mm
     bool divided = false;  ///< the last cell has more than one side
     int strikes = 0;       ///< steps along which u did not change as its gradient says
@@ -40,7 +41,8 @@ struct TrajectoryTracer::Field {
   [[nodiscard]] Sample sample(const Vector& x, std::int32_t home) const;
 
   [[nodiscard]] Walk begin(const Vector& x, std::int32_t home, int uphill) const;
-  [[nodiscard]] Walk begin(std::int32_t number, int uphill) const;
+  /// @param place  tissue voxel's place in the box
+  [[nodiscard]] Walk begin(std::int32_t place, int uphill) const;
 
   /// One accepted step towards the target; true when it was reached (the walk then ends on it).
   bool advance(Walk& walk, double target, int uphill) const;
@@ -61,21 +63,26 @@ struct TrajectoryTracer::Field {
   bool flat = false;                ///< two-dimensional
   std::vector<std::uint8_t> onCut;  ///< per tissue voxel: a link to tissue is cut; empty if none is
 
- private:
-  /// Gradient per voxel and u, of a cell's corner.
+  /// Gradient per voxel and u.
   using Corner = Eigen::Array4f;
+  // Neighbours in space are neighbours in memory when tissue is ranked in the box's storage order.
+  std::vector<std::int32_t> rankAt;   ///< per box voxel; -1: no tissue
+  std::vector<std::int32_t> placeOf;  ///< per rank, the box voxel
+  std::vector<Corner> node;           ///< per rank
+
+ private:
   /// The corners of a cell next to a boundary, extended from the only side it has.
   struct Cell {
     std::array<Corner, 8> corner;
   };
   enum : std::int32_t { kWhole = -1, kDivided = -2, kEmpty = -3 };
 
+  void rankTissue();
   void prepareCells();
   /// Corners from the side of `seed`; a bit per corner that belongs to it.
   std::uint8_t extend(const std::int32_t* number, int seed, Corner* corner) const;
   [[nodiscard]] Vector velocityOf(const Sample& sample, int uphill, double* slope = nullptr) const;
 
-  std::vector<Corner> node_;          ///< per tissue voxel
   std::vector<std::int32_t> cellAt_;  ///< per box voxel, the cell with it as lowest corner: row of
                                       ///< cells_, or what else
   std::vector<Cell> cells_;

@@ -28,7 +28,7 @@ std::vector<double> volumeDepthOf(const harmonic::Annulus& annulus,
   std::vector<double> share(annulus.count());
   // Volume from a voxel to one boundary, relative to the bundle's flux.
   const auto volumeTo = [&](std::int32_t n, double target, int uphill) {
-    auto walk = field.begin(n, uphill);
+    auto walk = field.begin(annulus.place[n], uphill);
     const auto inverseSlope = [](const Vector& gradient, const Vector& inverseSpacing) {
       const double slope = gradient.cwiseProduct(inverseSpacing).norm();
       return slope > 0 ? 1 / slope : 0.0;
