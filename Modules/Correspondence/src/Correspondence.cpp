@@ -23,7 +23,6 @@ namespace {
 using Tracer = TrajectoryTracer::Field;
 constexpr int kMaxSteps = 4000;
 constexpr std::size_t kBlock = 1 << 13;
-constexpr double kBeyondPlane = 1e-3;  // so that the plane lies within the step, whatever it bends
 // Default lambda in voxels.  Corners of a grid face are up to sqrt(2) voxels apart, and so are
 // their boundary points where trajectories run in parallel: beyond this they diverge.
 constexpr double kLambda = 2;
@@ -293,51 +292,59 @@ class Sweep {
   bool traceToFace(std::int32_t r, std::uint16_t turn) {
     const std::int32_t place = tracer_.placeOf[r];
     const auto s = subscripts(place);
-    auto walk = tracer_.begin(place, uphill_);
-    // The first step ends just beyond the first grid plane, where the face most likely is usable.
-    const double plane = (1 + kBeyondPlane) / walk.velocity.cwiseAbs().maxCoeff();
-    walk.step = walk.longest = std::min(plane, 2 * walk.longest);
     bool disagreed = false;
+    Vector end;
+    double way = 0;
+    if (tracer_.toPlane(r, s, uphill_, end, way) &&
+        fromFaceBetween(r, s, turn, Vector(s[0], s[1], s[2]), end, 0, way, disagreed)) {
+      return false;
+    }
+    auto walk = tracer_.begin(place, uphill_);
     bool done = uphill_ * (walk.u - target_) >= 0;
     for (int k = 0; !done && !walk.stuck && k < kMaxSteps; ++k) {
       const Vector before = walk.x;
       const double lengthBefore = walk.length;
       done = tracer_.advance(walk, target_, uphill_);
       if (done || walk.stuck) break;
-      const Vector step = walk.x - before;
-      const int axes = annulus_.planar ? 2 : 3;
-      // Steps are at most a voxel, the first one to the next plane: at most one plane of each axis
-      // lies between.
-      struct Pierced {
-        double t;
-        int axis;
-        int plane;
-      };
-      Pierced pierced[3];
-      int count = 0;
-      for (int a = 0; a < axes; ++a) {
-        const double way = step[a];
-        if (std::abs(way) < 1e-12) continue;
-        // The next plane strictly ahead.
-        const int below = static_cast<int>(before[a]);
-        const int ahead = way > 0 ? below + 1 : below - (before[a] == below ? 1 : 0);
-        const double t = (ahead - before[a]) / way;
-        if (t > 1) continue;
-        int at = count++;
-        for (; at > 0 && pierced[at - 1].t > t; --at) pierced[at] = pierced[at - 1];
-        pierced[at] = {t, a, ahead};
-      }
-      for (int c = 0; c < count; ++c) {
-        const double t = pierced[c].t;
-        const double length = lengthBefore + t * (walk.length - lengthBefore);
-        if (fromFace(r, s, turn, pierced[c].axis, pierced[c].plane, before + t * step, length,
-                     disagreed)) {
-          return disagreed;
-        }
+      if (fromFaceBetween(r, s, turn, before, walk.x, lengthBefore, walk.length, disagreed)) {
+        return disagreed;
       }
     }
     if (done) store(r, place, walk);
     return true;
+  }
+
+  /// Interpolates on the first usable grid face between two points at most a voxel apart.
+  bool fromFaceBetween(std::int32_t r, const std::array<int, 3>& s, std::uint16_t turn,
+                       const Vector& from, const Vector& to, double lengthFrom, double lengthTo,
+                       bool& disagreed) {
+    const Vector step = to - from;
+    struct Pierced {
+      double t;
+      int axis;
+      int plane;
+    };
+    Pierced pierced[3];
+    int count = 0;
+    for (int a = 0; a < (annulus_.planar ? 2 : 3); ++a) {
+      if (std::abs(step[a]) < 1e-12) continue;
+      // The next plane strictly ahead.
+      const int below = static_cast<int>(from[a]);
+      const int ahead = step[a] > 0 ? below + 1 : below - (from[a] == below ? 1 : 0);
+      const double t = (ahead - from[a]) / step[a];
+      if (t > 1) continue;
+      int at = count++;
+      for (; at > 0 && pierced[at - 1].t > t; --at) pierced[at] = pierced[at - 1];
+      pierced[at] = {t, a, ahead};
+    }
+    for (int k = 0; k < count; ++k) {
+      const double t = pierced[k].t;
+      if (fromFace(r, s, turn, pierced[k].axis, pierced[k].plane, from + t * step,
+                   lengthFrom + t * (lengthTo - lengthFrom), disagreed)) {
+        return true;
+      }
+    }
+    return false;
   }
 
   /// Interpolates on the grid face that contains x, if its corners have earlier turns and agree.

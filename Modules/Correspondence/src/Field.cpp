@@ -16,6 +16,7 @@ using harmonic::kOuter;
 namespace {
 
 constexpr int kMaxSteps = 4000;
+constexpr double kBeyondPlane = 1e-3;  // so that the plane lies within the step, whatever it bends
 // Slope (change of u per voxel) below which a trajectory's direction is round-off.
 constexpr double kFlat = 1e-9;
 // A walk may not be longer than this many voxels per step taken on average: it circles.
@@ -173,8 +174,25 @@ void TrajectoryTracer::Field::prepareCells() {
   });
 }
 
+inline Vector TrajectoryTracer::Field::velocityOf(const Sample& sample, int uphill,
+                                                  double* slope) const {
+  // G per voxel is (per mm) * spacing; T = grad / |grad| in mm, then per voxel again.
+  Vector perMm = sample.gradient.cwiseProduct(inverseSpacing);
+  if (flat) perMm[2] = 0;
+  const double norm = perMm.norm();
+  if (slope != nullptr) *slope = norm;
+  if (!(norm * finest > kFlat)) return Vector::Zero();
+  return (uphill / norm) * perMm.cwiseProduct(inverseSpacing);
+}
+
 TrajectoryTracer::Field::Sample TrajectoryTracer::Field::sample(const Vector& x,
                                                                 std::int32_t home) const {
+  return sampleOf<true>(x, home);
+}
+
+template <bool kWithU>
+inline TrajectoryTracer::Field::Sample TrajectoryTracer::Field::sampleOf(const Vector& x,
+                                                                         std::int32_t home) const {
   std::array<int, 3> base{};
   float f[3];
   for (int a = 0; a < 3; ++a) {
@@ -202,10 +220,10 @@ TrajectoryTracer::Field::Sample TrajectoryTracer::Field::sample(const Vector& x,
       corner[c] = &node[rankAt[p + offset(c)]];
       corner[c + 1] = corner[c] + 1;  // ranks follow each other along a row
     }
-    result.home = annulus.numberAt[p + offset(nearest)];
+    result.home = kWithU ? annulus.numberAt[p + offset(nearest)] : 0;
   } else if (cell >= 0) {
     for (int c = 0; c < 8; ++c) corner[c] = &cells_[cell].corner[flat ? c & 3 : c];
-    result.home = annulus.numberAt[p + offset(nearest)];
+    result.home = kWithU ? annulus.numberAt[p + offset(nearest)] : 0;
     for (int c = 0; result.home < 0; ++c) result.home = annulus.numberAt[p + offset(c)];
   } else {
     std::int32_t number[8];
@@ -240,27 +258,24 @@ TrajectoryTracer::Field::Sample TrajectoryTracer::Field::sample(const Vector& x,
 
   // Trilinear in gradient and u; then u's half-Taylor term, which turns each axis' linear error
   // f (1 - f) / 2 times the difference of slopes into one of third order.
-  Corner edge[4], face[2];
-  float bendX[4], bendY[2];
+  Corner edge[4], bendX[4];
   for (int j = 0; j < 4; ++j) {
-    const Corner difference = *corner[2 * j + 1] - *corner[2 * j];
-    edge[j] = *corner[2 * j] + f[0] * difference;
-    bendX[j] = difference[0];
+    bendX[j] = *corner[2 * j + 1] - *corner[2 * j];
+    edge[j] = *corner[2 * j] + f[0] * bendX[j];
   }
-  for (int k = 0; k < 2; ++k) {
-    const Corner difference = edge[2 * k + 1] - edge[2 * k];
-    face[k] = edge[2 * k] + f[1] * difference;
-    bendY[k] = difference[1];
-  }
-  const Corner difference = face[1] - face[0];
-  const Corner value = face[0] + f[2] * difference;
-  const float lowX = bendX[0] + f[1] * (bendX[1] - bendX[0]);
-  const float highX = bendX[2] + f[1] * (bendX[3] - bendX[2]);
-  const float bend = f[0] * (1 - f[0]) * (lowX + f[2] * (highX - lowX)) +
-                     f[1] * (1 - f[1]) * (bendY[0] + f[2] * (bendY[1] - bendY[0])) +
-                     f[2] * (1 - f[2]) * difference[2];
-  result.u = static_cast<double>(value[3]) - 0.5 * static_cast<double>(bend);
+  const Corner bendY[2] = {edge[1] - edge[0], edge[3] - edge[2]};
+  const Corner face[2] = {edge[0] + f[1] * bendY[0], edge[2] + f[1] * bendY[1]};
+  const Corner bendZ = face[1] - face[0];
+  const Corner value = face[0] + f[2] * bendZ;
   result.gradient = value.head<3>().matrix().cast<double>();
+  if constexpr (kWithU) {
+    const float lowX = bendX[0][0] + f[1] * (bendX[1][0] - bendX[0][0]);
+    const float highX = bendX[2][0] + f[1] * (bendX[3][0] - bendX[2][0]);
+    const float bend = f[0] * (1 - f[0]) * (lowX + f[2] * (highX - lowX)) +
+                       f[1] * (1 - f[1]) * (bendY[0][1] + f[2] * (bendY[1][1] - bendY[0][1])) +
+                       f[2] * (1 - f[2]) * bendZ[2];
+    result.u = static_cast<double>(value[3]) - 0.5 * static_cast<double>(bend);
+  }
   return result;
 }
 
@@ -396,16 +411,6 @@ std::uint8_t TrajectoryTracer::Field::extend(const std::int32_t* number, int see
   return side;
 }
 
-Vector TrajectoryTracer::Field::velocityOf(const Sample& sample, int uphill, double* slope) const {
-  // G per voxel is (per mm) * spacing; T = grad / |grad| in mm, then per voxel again.
-  Vector perMm = sample.gradient.cwiseProduct(inverseSpacing);
-  if (flat) perMm[2] = 0;
-  const double norm = perMm.norm();
-  if (slope != nullptr) *slope = norm;
-  if (!(norm * finest > kFlat)) return Vector::Zero();
-  return (uphill / norm) * perMm.cwiseProduct(inverseSpacing);
-}
-
 TrajectoryTracer::Field::Walk TrajectoryTracer::Field::begin(const Vector& x, std::int32_t home,
                                                              int uphill) const {
   Walk walk;
@@ -415,7 +420,7 @@ TrajectoryTracer::Field::Walk TrajectoryTracer::Field::begin(const Vector& x, st
   walk.u = here.u;
   walk.velocity = velocityOf(here, uphill, &walk.slope);
   walk.divided = here.divided;
-  walk.step = walk.longest = options.maxStep * finest;
+  walk.step = options.maxStep * finest;
   walk.stuck = here.home < 0 || walk.velocity.isZero(0);
   return walk;
 }
@@ -430,22 +435,47 @@ TrajectoryTracer::Field::Walk TrajectoryTracer::Field::begin(std::int32_t place,
   Sample sample;
   sample.gradient = here.head<3>().matrix().cast<double>();
   walk.velocity = velocityOf(sample, uphill, &walk.slope);
-  walk.step = walk.longest = options.maxStep * finest;
+  walk.step = options.maxStep * finest;
   walk.stuck = walk.velocity.isZero(0);
   return walk;
 }
 
+bool TrajectoryTracer::Field::toPlane(std::int32_t rank, const std::array<int, 3>& centre,
+                                      int uphill, Vector& end, double& length) const {
+  const Vector x(centre[0], centre[1], centre[2]);
+  Sample one;
+  one.gradient = node[rank].head<3>().matrix().cast<double>();
+  const Vector k1 = velocityOf(one, uphill);
+  const double s = (1 + kBeyondPlane) / k1.cwiseAbs().maxCoeff();
+  if (!(s <= 2 * options.maxStep * finest)) return false;
+  const auto strides = annulus.strides();
+  std::int32_t ahead = placeOf[rank];
+  for (int a = 0; a < 3; ++a) ahead -= k1[a] < 0 ? strides[a] : 0;
+  if (cellAt_[ahead] == kDivided) return false;
+  const Sample two = sampleOf<false>(x + 0.5 * s * k1, -1);
+  if (two.home < 0 || two.divided) return false;
+  const Vector k2 = velocityOf(two, uphill);
+  const Sample three = sampleOf<false>(x + 0.75 * s * k2, -1);
+  if (three.home < 0 || three.divided) return false;
+  const Vector k3 = velocityOf(three, uphill);
+  // The third-order step of advance(); its difference from the midpoint rule's bounds the error.
+  const Vector way = s * (2.0 / 9 * k1 + 1.0 / 3 * k2 + 4.0 / 9 * k3);
+  if (!((way - s * k2).norm() <= options.tolerance)) return false;
+  end = x + way;
+  length = s;
+  return true;
+}
+
 bool TrajectoryTracer::Field::advance(Walk& walk, double target, int uphill) const {
   // Half a voxel at most where the side must be known: a step then never leaves its neighbourhood.
-  const double longest = walk.divided ? std::min(0.5, options.maxStep) * finest : walk.longest;
+  const double longest = (walk.divided ? std::min(0.5, options.maxStep) : options.maxStep) * finest;
   walk.step = std::min(walk.step, longest);
-  walk.longest = options.maxStep * finest;
   for (;;) {
     const double s = walk.step;
     const Vector& k1 = walk.velocity;
-    const Sample two = sample(walk.x + 0.5 * s * k1, walk.home);
+    const Sample two = sampleOf<false>(walk.x + 0.5 * s * k1, walk.home);
     const Vector k2 = velocityOf(two, uphill);
-    const Sample three = sample(walk.x + 0.75 * s * k2, walk.home);
+    const Sample three = sampleOf<false>(walk.x + 0.75 * s * k2, walk.home);
     const Vector k3 = velocityOf(three, uphill);
     const Vector next = walk.x + s * (2.0 / 9 * k1 + 1.0 / 3 * k2 + 4.0 / 9 * k3);
     const Sample four = sample(next, walk.home);

@@ -28,7 +28,6 @@ struct TrajectoryTracer::Field {
     double u = kNaN;
     double length = 0;     ///< mm so far
     double step = 0;       ///< next step to try, mm
-    double longest = 0;    ///< limit of the next step, mm
     double slope = 0;      ///< |grad u| here, 1/mm
     bool divided = false;  ///< the last cell has more than one side
     int strikes = 0;       ///< steps along which u did not change as its gradient says
@@ -46,6 +45,13 @@ struct TrajectoryTracer::Field {
 
   /// One accepted step towards the target; true when it was reached (the walk then ends on it).
   bool advance(Walk& walk, double target, int uphill) const;
+
+  /// One step of third order from a tissue voxel's centre to just beyond the first grid plane.
+  /// False, and nothing done, if it leaves the tissue, or more than one side or a greater error
+  /// than the tolerance is in the way.
+  /// @param length  mm of the step
+  bool toPlane(std::int32_t rank, const std::array<int, 3>& centre, int uphill, Vector& end,
+               double& length) const;
 
   [[nodiscard]] Trace run(Walk walk, double target, int uphill) const;
 
@@ -77,6 +83,8 @@ struct TrajectoryTracer::Field {
   };
   enum : std::int32_t { kWhole = -1, kDivided = -2, kEmpty = -3 };
 
+  template <bool kWithU>
+  [[nodiscard]] Sample sampleOf(const Vector& x, std::int32_t home) const;
   void rankTissue();
   void prepareCells();
   /// Corners from the side of `seed`; a bit per corner that belongs to it.
