@@ -388,11 +388,13 @@ class Sweep {
       // Second order: -f (1 - f) / 2 times the second difference along each axis.
       for (int e = 0; e < corners; e += 2) {
         const float across = corners == 2 ? 1 : e == 0 ? 1 - fc : fc;
-        sum -= across * bend(place[e], place[e + 1], strides[b], fb, turn);
+        sum -= across * bend(place[e] - strides[b], *arrival[e], *arrival[e + 1],
+                             place[e + 1] + strides[b], fb, turn);
       }
       if (corners == 4) {
         for (int e = 0; e < 2; ++e) {
-          sum -= (e == 0 ? 1 - fb : fb) * bend(place[e], place[e + 2], strides[c], fc, turn);
+          sum -= (e == 0 ? 1 - fb : fb) * bend(place[e] - strides[c], *arrival[e], *arrival[e + 2],
+                                               place[e + 2] + strides[c], fc, turn);
         }
       }
     }
@@ -413,22 +415,22 @@ class Sweep {
            difference[2] * difference[2];
   }
 
-  /// f (1 - f) / 2 times the second difference along `low` to `high`, from whichever voxels in line
-  /// with them have had their turn.
-  [[nodiscard]] Arrival bend(std::int32_t low, std::int32_t high, std::int32_t stride, float f,
-                             std::uint16_t turn) const {
+  /// f (1 - f) / 2 times the second difference along four voxels in line: `low` and `high` at the
+  /// face, and beyond them whichever have had their turn.
+  [[nodiscard]] Arrival bend(std::int32_t beyondLow, const Arrival& low, const Arrival& high,
+                             std::int32_t beyondHigh, float f, std::uint16_t turn) const {
     Arrival second = Arrival::Zero();
     int found = 0;
-    const Arrival* inside[2] = {&arrivals_[tracer_.rankAt[low]], &arrivals_[tracer_.rankAt[high]]};
-    for (int side = 0; side < 2; ++side) {
-      const Arrival* outside = earlier(side == 0 ? low - stride : high + stride, turn);
-      if (outside == nullptr) continue;
+    const auto add = [&](const Arrival* outside, const Arrival& middle, const Arrival& other) {
+      if (outside == nullptr) return;
       // The centres' own second difference is zero.
-      const Arrival difference = *outside - 2 * *inside[side] + *inside[1 - side];
-      if (apart(difference) >= 4 * lambda_ * lambda_) continue;
+      const Arrival difference = *outside - 2 * middle + other;
+      if (apart(difference) >= 4 * lambda_ * lambda_) return;
       second += difference;
       ++found;
-    }
+    };
+    add(earlier(beyondLow, turn), low, high);
+    add(earlier(beyondHigh, turn), high, low);
     if (found == 0) return second;
     return (0.5F * f * (1 - f) / static_cast<float>(found)) * second;
   }
