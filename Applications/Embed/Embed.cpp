@@ -23,11 +23,7 @@ struct Settings {
   bool fit = false;
   bool average = false;
   std::vector<double> weights;
-  std::optional<Eigen::Vector3d> centre;
-  std::optional<double> innerRadius;
-  std::optional<double> outerRadius;
-  std::optional<int> order;
-  int samples = 2000;
+  shapes::AnnulusOptions annulus;
   int grid = 96;
   int frames = 6;
   shapes::ShapeFitOptions fitting;
@@ -50,15 +46,7 @@ void declare(Declaration& d, Settings& s) {
       .option("Shape", Field{"fit", "", "fit a single target (default for one target)"}, s.fit)
       .option("Shape", Field{"average", "", "mean of the targets (default for several)"}, s.average)
       .option("Shape", Field{"combine", "", "weights of the targets, one each"}, s.weights)
-      .option("Annulus", Field{"centre", "mm", "default: mean of the targets' points"}, s.centre)
-      .option("Annulus", Field{"inner-radius", "mm", "default: 0.85 of the nearest target point"},
-              s.innerRadius)
-      .option("Annulus", Field{"outer-radius", "mm", "default: 1.15 of the farthest target point"},
-              s.outerRadius)
-      .option("Annulus",
-              Field{"order", "", "highest angular frequency; default 64 in 2D, 14 in 3D"}, s.order)
-      .option("Fit", Field{"samples", "", "points of each target's boundary that are fitted"},
-              s.samples)
+      .options("Annulus", s.annulus)
       .options("Fit", s.fitting)
       .option("Output", Field{"grid", "", "voxels per side, for drawing the shape"}, s.grid)
       .option("Output", Field{"frames", "", "states of the first target's fit"}, s.frames)
@@ -108,27 +96,7 @@ shapes::HarmonicAnnulus annulusFor(const Settings& s, const std::vector<Target>&
   for (const Target& t : targets) {
     if (t.shape) return t.shape->annulus;  // coefficients fix the annulus for all
   }
-  shapes::HarmonicAnnulus annulus;
-  annulus.dimension = targets.front().dimension();
-  annulus.order = s.order.value_or(annulus.dimension == 2 ? 64 : 14);
-  Point sum = Point::Zero();
-  double weight = 0;
-  for (const auto& set : samples) {
-    sum += set.points.transpose() * set.weights / set.weights.sum();
-    ++weight;
-  }
-  annulus.centre = s.centre.value_or(sum / weight);
-  if (annulus.dimension == 2) annulus.centre.z() = 0;
-  double nearest = kInfinity;
-  double farthest = 0;
-  for (const auto& set : samples) {
-    const auto r = (set.points.rowwise() - annulus.centre.transpose()).rowwise().norm().eval();
-    nearest = std::min(nearest, r.minCoeff());
-    farthest = std::max(farthest, r.maxCoeff());
-  }
-  annulus.innerRadius = s.innerRadius.value_or(0.85 * nearest);
-  annulus.outerRadius = s.outerRadius.value_or(1.15 * farthest);
-  return annulus;
+  return shapes::annulusAround(samples, targets.front().dimension(), s.annulus);
 }
 
 void writeShape(Context& context, const std::string& stem, const shapes::HarmonicShape& shape,
@@ -165,7 +133,7 @@ Termination run(Context& context, const Settings& s) {
   const int asked = int{s.fit} + int{s.average} + int{!s.weights.empty()};
   if (asked > 1) throw UsageError("give one of --fit, --average and --combine");
   if (s.fit && s.targets.size() != 1) throw UsageError("--fit takes one target");
-  if (s.grid < 16 || s.samples < 16 || s.frames < 0) {
+  if (s.grid < 16 || s.fitting.samples < 16 || s.frames < 0) {
     throw UsageError("--grid and --samples need at least 16, --frames at least 0");
   }
   std::vector<Target> targets;
@@ -173,8 +141,8 @@ Termination run(Context& context, const Settings& s) {
   for (const std::string& path : s.targets) {
     targets.push_back(readTarget(path));
     const Target& t = targets.back();
-    if (t.curve) samples.push_back(shapes::samplesOf(*t.curve, s.samples));
-    if (t.mesh) samples.push_back(shapes::samplesOf(*t.mesh, s.samples));
+    if (t.curve) samples.push_back(shapes::samplesOf(*t.curve, s.fitting.samples));
+    if (t.mesh) samples.push_back(shapes::samplesOf(*t.mesh, s.fitting.samples));
   }
   const shapes::HarmonicAnnulus annulus = annulusFor(s, targets, samples);
   shapes::requireUsable(annulus);

@@ -217,6 +217,32 @@ ShapeFit fitShape(const HarmonicAnnulus& annulus, const TargetSamples& target,
   return result;
 }
 
+HarmonicAnnulus annulusAround(const std::vector<TargetSamples>& targets, int dimension,
+                              const AnnulusOptions& options) {
+  if (targets.empty()) throw InvalidInput("targets: none; the annulus is taken from them");
+  HarmonicAnnulus annulus;
+  annulus.dimension = dimension;
+  annulus.order = options.order.value_or(dimension == 2 ? 64 : 14);
+  Point sum = Point::Zero();
+  for (const TargetSamples& target : targets) {
+    sum += target.points.transpose() * target.weights / target.weights.sum();
+  }
+  annulus.centre = options.centre.value_or(sum / static_cast<double>(targets.size()));
+  if (dimension == 2) annulus.centre.z() = 0;
+  double nearest = kInfinity;
+  double farthest = 0;
+  for (const TargetSamples& target : targets) {
+    const Eigen::VectorXd r =
+        (target.points.rowwise() - annulus.centre.transpose()).rowwise().norm();
+    nearest = std::min(nearest, r.minCoeff());
+    farthest = std::max(farthest, r.maxCoeff());
+  }
+  annulus.innerRadius = options.innerRadius.value_or(0.85 * nearest);
+  annulus.outerRadius = options.outerRadius.value_or(1.15 * farthest);
+  requireUsable(annulus);
+  return annulus;
+}
+
 HarmonicShape combine(const std::vector<HarmonicShape>& shapes,
                       const std::vector<double>& weights) {
   if (shapes.empty() || shapes.size() != weights.size()) {

@@ -11,41 +11,79 @@ Options are keyword arguments with the names and defaults of the command line: `
 is `max_iterations=100`.
 """
 
+from . import phantoms, planar, provenance, report, shapes, study, types
 from ._explica import (
     Error,
     FileError,
     InvalidInput,
     MachineError,
     UsageError,
+    Viewpoints,
+    contact_barrier,
+    folded_sphere,
+    icosphere,
+    read_labels,
+    read_scalars,
+    read_surface,
+    read_vertex_labels,
+    read_vertex_maps,
+    rectangle,
     set_threads,
     threads,
-)
-from .images import read_labels, read_scalars, write_volume
-from .surfaces import (
-    closest_points,
-    enclosed_volume,
-    face_areas,
-    folded_sphere,
-    geodesic_distances,
-    icosphere,
-    inspect_mesh,
-    read_surface,
-    read_vertex_maps,
-    self_intersections,
-    vertex_areas,
-    vertex_normals,
+    torus,
+    view_line,
+    write_curv,
+    write_label,
     write_shape,
-    write_surface,
 )
-from .tissue import segment, surfaces_of, thickness, thickness_of_levels
-from .unfolding import (
+from ._commands import command, executable
+from ._images import (
+    correct_topology,
+    iso_surface,
+    segment,
+    segment_hemisphere,
+    surfaces_of,
+    surfaces_of_shares,
+    thickness,
+    thickness_of_levels,
+    write_volume,
+)
+from ._surfaces import (
+    KnotEnergy,
     Unfolder,
     average_visibility,
+    backfacing_share,
+    closest_points,
+    cotangent_laplacian,
     distortion,
+    enclosed_volume,
+    extract_faces,
+    face_areas,
+    face_components,
+    face_normals,
+    geodesic_distances,
+    hidden_viewing_area,
+    inspect_mesh,
     knot_energy,
+    largest_safe_step,
+    mean_curvature,
+    mean_edge_length,
+    mesh_edges,
+    near_pairs,
     select_region,
+    self_intersections,
+    self_occlusion,
+    smallest_angles,
+    subdivide,
     unfold,
+    vertex_areas,
+    vertex_flux,
+    vertex_normals,
+    view_surface,
     visible_fraction,
+    winding_number,
+    write_surface,
 )
 
+__version__ = provenance.software()["version"]
 __all__ = [name for name in dir() if not name.startswith("_")]

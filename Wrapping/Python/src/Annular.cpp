@@ -34,6 +34,17 @@ void describe(ThicknessOptions& o, Visitor&& visit) {
   describe(o.layers, visit);
 }
 
+/// The same for boundaries that scalar volumes give: labels play no part.
+struct LevelThicknessOptions : ThicknessOptions {};
+
+template <class Visitor>
+void describe(LevelThicknessOptions& o, Visitor&& visit) {
+  describe(o.annulus, visit);
+  describe(o.sulcus, visit);
+  describe(o.correspondence, visit);
+  describe(o.layers, visit);
+}
+
 struct Measured {
   harmonic::Annulus annulus;
   harmonic::Interpolant interpolant;
@@ -114,7 +125,7 @@ void bindAnnular(py::module_& m) {
       "thickness_of_levels",
       [](const py::array& inner, const py::array& outer, const Eigen::Matrix4d& affine,
          double level, bool sulci, const py::object& progress, const py::kwargs& keywords) {
-        const auto options = optionsOf<ThicknessOptions>(keywords);
+        const auto options = optionsOf<LevelThicknessOptions>(keywords);
         const Volume<float> in = scalarVolume(inner, affine);
         const Volume<float> out = scalarVolume(outer, affine);
         harmonic::LevelOptions levels;
@@ -127,8 +138,10 @@ void bindAnnular(py::module_& m) {
       "inner"_a, "outer"_a, "affine"_a, "level"_a = 0.0, "recover_sulci"_a = true,
       "progress"_a = py::none(),
       ("As thickness(), between the surfaces where two scalar volumes cross `level`." +
-       std::string(kReturns) + keywordHelp<ThicknessOptions>())
+       std::string(kReturns) + keywordHelp<LevelThicknessOptions>())
           .c_str());
+  noteKeywords<ThicknessOptions>(m, "thickness");
+  noteKeywords<LevelThicknessOptions>(m, "thickness_of_levels");
 }
 
 }  // namespace explica::python

@@ -58,4 +58,14 @@ TriangleMesh meshOf(const Eigen::Ref<const Positions>& positions,
   return {positions, faces};
 }
 
+void requireFaces(const TriangleMesh& mesh, const std::vector<std::int32_t>& faces,
+                  const char* argument) {
+  for (const std::int32_t f : faces) {
+    if (f < 0 || f >= mesh.faceCount()) {
+      throw InvalidInput(std::string(argument) + ": face " + std::to_string(f) +
+                         " is not one of 0.." + std::to_string(mesh.faceCount() - 1));
+    }
+  }
+}
+
 }  // namespace explica::python

@@ -9,7 +9,9 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 
+#include <array>
 #include <utility>
 #include <vector>
 
@@ -50,9 +52,32 @@ template <class Scalar>
                              kept->front().data(), owner);
 }
 
+/// Array (rows.size(), N) of rows.
+template <class T, std::size_t N>
+[[nodiscard]] Eigen::Matrix<T, Eigen::Dynamic, static_cast<int>(N), Eigen::RowMajor> rowsOf(
+    const std::vector<std::array<T, N>>& rows) {
+  Eigen::Matrix<T, Eigen::Dynamic, static_cast<int>(N), Eigen::RowMajor> matrix(
+      static_cast<Eigen::Index>(rows.size()), static_cast<int>(N));
+  for (Eigen::Index n = 0; n < matrix.rows(); ++n) {
+    matrix.row(n) = Eigen::Map<const Eigen::Matrix<T, 1, static_cast<int>(N)>>(rows[n].data());
+  }
+  return matrix;
+}
+
+/// The numbers of a list as an array (N,).
+template <class T>
+[[nodiscard]] Eigen::Matrix<T, Eigen::Dynamic, 1> columnOf(const std::vector<T>& values) {
+  return Eigen::Map<const Eigen::Matrix<T, Eigen::Dynamic, 1>>(
+      values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
 /// A mesh of vertex positions (V, 3), RAS mm, and faces (F, 3).
 /// @throws InvalidInput  a face names a vertex that does not exist
 [[nodiscard]] TriangleMesh meshOf(const Eigen::Ref<const Positions>& positions,
                                   const Eigen::Ref<const Faces>& faces);
+
+/// @throws InvalidInput  an index that names no face: names the argument
+void requireFaces(const TriangleMesh& mesh, const std::vector<std::int32_t>& faces,
+                  const char* argument);
 
 }  // namespace explica::python

@@ -3,7 +3,7 @@
 
 #include "Options.h"
 
-#include "Explica/Provenance/Json.h"
+#include <pybind11/stl.h>
 
 #include <algorithm>
 
@@ -36,18 +36,23 @@ provenance::Json jsonOf(const py::handle& value) {
                        py::str(py::type::handle_of(value)).cast<std::string>() + " as an option");
 }
 
+}  // namespace
+
 py::object pythonOf(const provenance::Json& value) {
   if (value.is_null()) return py::none();
   if (value.is_boolean()) return py::bool_(value.get<bool>());
   if (value.is_number_integer()) return py::int_(value.get<long long>());
   if (value.is_number()) return py::float_(value.get<double>());
   if (value.is_string()) return py::str(value.get<std::string>());
+  if (value.is_object()) {
+    py::dict dict;
+    for (const auto& [key, item] : value.items()) dict[py::str(key)] = pythonOf(item);
+    return dict;
+  }
   py::list list;
   for (const auto& item : value) list.append(pythonOf(item));
   return list;
 }
-
-}  // namespace
 
 void setFromKeywords(std::vector<provenance::Option> options, const py::kwargs& keywords,
                      const std::vector<std::string>& alsoAllowed) {
@@ -86,12 +91,18 @@ std::string keywordHelp(const std::vector<provenance::Option>& options) {
   return text;
 }
 
-py::dict defaultsOf(const std::vector<provenance::Option>& options) {
-  py::dict defaults;
+void noteKeywords(py::module_& m, const std::string& function,
+                  const std::vector<provenance::Option>& options) {
+  using namespace py::literals;
+  if (!py::hasattr(m, "keywords")) m.attr("keywords") = py::dict();
+  py::list list;
   for (const auto& option : options) {
-    defaults[py::str(pythonName(option.name))] = pythonOf(provenance::valueOf(option));
+    list.append(py::dict("name"_a = pythonName(option.name), "type"_a = option.type(),
+                         "choices"_a = option.choices(), "optional"_a = option.isOptional(),
+                         "list"_a = option.isList(),
+                         "default"_a = pythonOf(provenance::valueOf(option))));
   }
-  return defaults;
+  m.attr("keywords")[py::str(function)] = list;
 }
 
 }  // namespace explica::python

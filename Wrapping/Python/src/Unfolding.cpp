@@ -8,6 +8,7 @@
 #include "Watch.h"
 
 #include "Explica/Geometry/MeshTopology.h"
+#include "Explica/Unfolding/Account.h"
 #include "Explica/Unfolding/Distortion.h"
 #include "Explica/Unfolding/Unfold.h"
 
@@ -19,6 +20,7 @@ using PositionsIn = Eigen::Ref<const Positions>;
 using FacesIn = Eigen::Ref<const Faces>;
 using unfolding::IterationRecord;
 using unfolding::Unfolder;
+using visibility::Viewpoints;
 
 py::dict recordOf(const IterationRecord& r) {
   return py::dict("iteration"_a = r.iteration, "visibility"_a = r.visibility,
@@ -46,7 +48,7 @@ unfolding::Region regionOf(const TriangleMesh& mesh, const std::vector<std::int3
 }
 
 py::dict regionDict(const unfolding::Region& region) {
-  return py::dict("vertices"_a = region.vertices, "faces"_a = region.faces,
+  return py::dict("vertices"_a = columnOf(region.vertices), "faces"_a = columnOf(region.faces),
                   "centre"_a = region.centre, "radius"_a = region.radius,
                   "pieces"_a = region.pieces, "holes"_a = region.holes);
 }
@@ -67,8 +69,8 @@ py::dict resultDict(unfolding::UnfoldResult result) {
 /// An unfolder that can be given another region on the way; Python's face of unfolding::Unfolder.
 class Stepper {
  public:
-  Stepper(TriangleMesh mesh, const std::vector<std::int32_t>& region,
-          visibility::Viewpoints viewpoints, unfolding::UnfolderOptions options)
+  Stepper(TriangleMesh mesh, const std::vector<std::int32_t>& region, Viewpoints viewpoints,
+          unfolding::UnfolderOptions options)
       : mesh_(std::move(mesh)),
         viewpoints_(std::move(viewpoints)),
         options_(options),
@@ -77,8 +79,7 @@ class Stepper {
   bool step(int count) {
     for (int n = 0; n < count; ++n) {
       if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-      const py::gil_scoped_release unlocked;
-      if (!unfolder_.step()) return false;
+      if (!unlocked([&] { return unfolder_.step(); })) return false;
     }
     return true;
   }
@@ -93,7 +94,7 @@ class Stepper {
     unfolder_ = std::move(next);
   }
 
-  void setViewpoints(visibility::Viewpoints viewpoints) {
+  void setViewpoints(Viewpoints viewpoints) {
     viewpoints_ = viewpoints;
     unfolder_.setViewpoints(std::move(viewpoints));
   }
@@ -107,7 +108,7 @@ class Stepper {
 
  private:
   TriangleMesh mesh_;
-  visibility::Viewpoints viewpoints_;
+  Viewpoints viewpoints_;
   unfolding::UnfolderOptions options_;
   Unfolder unfolder_;
 };
@@ -115,42 +116,44 @@ class Stepper {
 }  // namespace
 
 void bindUnfolding(py::module_& m) {
-  m.def(
-      "select_region",
-      [](const PositionsIn& positions, const FacesIn& faces, const py::kwargs& keywords) {
-        return regionDict(unfolding::selectRegion(meshOf(positions, faces),
-                                                  optionsOf<unfolding::RegionOptions>(keywords)));
-      },
-      "positions"_a, "faces"_a,
-      ("Vertices and faces of a region of a surface." + keywordHelp<unfolding::RegionOptions>())
-          .c_str());
-  m.def(
-      "unfold",
+  defWithOptions<unfolding::RegionOptions>(
+      m, "select_region",
       [](const PositionsIn& positions, const FacesIn& faces,
-         const std::vector<std::int32_t>& region, const PositionsIn& viewpoints,
+         const std::optional<Viewpoints>& viewpoints, const py::kwargs& keywords) {
+        const auto options = optionsOf<unfolding::RegionOptions>(keywords);
+        const TriangleMesh mesh = meshOf(positions, faces);
+        return regionDict(
+            unfolding::selectRegion(mesh, options, viewpoints ? &*viewpoints : nullptr));
+      },
+      "A region of a surface: vertices and faces (ascending), centre, radius in mm, pieces, "
+      "holes.\n"
+      "`viewpoints` are needed for a cone only.",
+      "positions"_a, "faces"_a, "viewpoints"_a = py::none());
+  defWithOptions<unfolding::UnfoldOptions>(
+      m, "unfold",
+      [](const PositionsIn& positions, const FacesIn& faces,
+         const std::vector<std::int32_t>& region, const Viewpoints& viewpoints,
          const py::object& progress, const py::kwargs& keywords) {
         const auto options = optionsOf<unfolding::UnfoldOptions>(keywords);
         const TriangleMesh mesh = meshOf(positions, faces);
         geometry::requireManifold(mesh, "surface");
         const unfolding::Region chosen = regionOf(mesh, region);
-        const visibility::Viewpoints from = viewpointsOf(viewpoints);
         return resultDict(Watch(progress).run([&](const Monitor& monitor) {
-          return unfolding::unfold(mesh, chosen, from, options, monitor);
+          return unfolding::unfold(mesh, chosen, viewpoints, options, monitor);
         }));
       },
-      "positions"_a, "faces"_a, "region"_a, "viewpoints"_a, "progress"_a = py::none(),
-      ("Unfold the region (its vertices) for viewpoints (N, 3), RAS mm.  Returns positions, "
-       "faces,\n"
-       "termination, history (one dict an iteration) and frames [(visibility, positions)].\n"
-       "`progress(fraction, activity)` may return False to stop." +
-       keywordHelp<unfolding::UnfoldOptions>())
-          .c_str());
+      "Unfold the region (its vertices) of a surface for viewpoints, RAS mm.  Returns positions\n"
+      "(V, 3), faces, termination, history (one dict an iteration) and frames\n"
+      "[(visibility, positions)].  `progress(fraction, activity)` may return False to stop.",
+      "positions"_a, "faces"_a, "region"_a, "viewpoints"_a, "progress"_a = py::none());
   m.def(
       "distortion",
       [](const PositionsIn& positions, const FacesIn& faces, const PositionsIn& deformed,
          const std::vector<std::int32_t>& region) {
         const TriangleMesh mesh = meshOf(positions, faces);
-        auto d = unfolding::measureDistortion(mesh, deformed, region);
+        requireFaces(mesh, region, "region");
+        const Positions now = deformed;
+        auto d = unlocked([&] { return unfolding::measureDistortion(mesh, now, region); });
         return py::dict(
             "area_ratio"_a = std::move(d.areaRatio),
             "angle_error_rad"_a = std::move(d.angleErrorRad),
@@ -160,17 +163,31 @@ void bindUnfolding(py::module_& m) {
             "geodesic_error_mean"_a = d.geodesicErrorMean);
       },
       "positions"_a, "faces"_a, "deformed"_a, "region"_a,
-      "How the listed faces differ between two embeddings of the same mesh.");
+      "How the listed faces differ between two embeddings of the same mesh, the surface and\n"
+      "`deformed` (V, 3), mm: area_ratio and angle_error_rad of each face, edge_strain of each "
+      "edge,\n"
+      "their means and maxima, and the mean relative change of distances along the surface.");
+  m.def(
+      "backfacing_share",
+      [](const PositionsIn& positions, const FacesIn& faces,
+         const std::vector<std::int32_t>& region, const Viewpoints& viewpoints) {
+        const TriangleMesh mesh = meshOf(positions, faces);
+        requireFaces(mesh, region, "region");
+        return unfolding::backfacingShare(mesh, region, viewpoints);
+      },
+      "positions"_a, "faces"_a, "region"_a, "viewpoints"_a,
+      "Share of the area of the listed faces that looks away from the viewpoints, in [0, 1].");
 
+  noteKeywords<unfolding::UnfolderOptions>(m, "Unfolder");
+  noteKeywords<unfolding::UnfoldWeights>(m, "set_weights");
   py::class_<Stepper>(m, "Unfolder",
                       ("An unfolding advanced one iteration at a time, to be watched and steered." +
                        keywordHelp<unfolding::UnfolderOptions>())
                           .c_str())
       .def(py::init([](const PositionsIn& positions, const FacesIn& faces,
-                       const std::vector<std::int32_t>& region, const PositionsIn& viewpoints,
+                       const std::vector<std::int32_t>& region, const Viewpoints& viewpoints,
                        const py::kwargs& keywords) {
-             return std::make_unique<Stepper>(meshOf(positions, faces), region,
-                                              viewpointsOf(viewpoints),
+             return std::make_unique<Stepper>(meshOf(positions, faces), region, viewpoints,
                                               optionsOf<unfolding::UnfolderOptions>(keywords));
            }),
            "positions"_a, "faces"_a, "region"_a, "viewpoints"_a)
@@ -185,10 +202,8 @@ void bindUnfolding(py::module_& m) {
       .def_property_readonly(
           "region", [](const Stepper& s) { return regionDict(s.unfolder().region()); },
           "Vertices and faces of the region.")
-      .def(
-          "set_viewpoints",
-          [](Stepper& s, const PositionsIn& v) { s.setViewpoints(viewpointsOf(v)); },
-          "viewpoints"_a, "Look from elsewhere from the next step on.")
+      .def("set_viewpoints", &Stepper::setViewpoints, "viewpoints"_a,
+           "Look from elsewhere, one point or several, RAS mm, from the next step on.")
       .def("set_region", &Stepper::setRegion, "vertices"_a,
            "Unfold another region from the next step on; what moved so far stays where it is, and\n"
            "areas and lengths to keep are those of the first surface.")

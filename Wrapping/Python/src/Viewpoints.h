@@ -4,9 +4,12 @@
 
 #include "Explica/Visibility/Viewpoints.h"
 
+#include <pybind11/pybind11.h>
+
 namespace explica::python {
 
-/// Viewpoints (N, 3), RAS mm, of equal weight.
-[[nodiscard]] visibility::Viewpoints viewpointsOf(const Eigen::Ref<const Positions>& points);
+/// Binds visibility::Viewpoints, to which a point (3,) or points (N, 3) of equal weight convert, so
+/// that a function that takes viewpoints takes all three.
+void bindViewpoints(pybind11::module_& m);
 
 }  // namespace explica::python

@@ -4,28 +4,21 @@
 #include "Arrays.h"
 #include "Bindings.h"
 #include "Viewpoints.h"
+#include "Watch.h"
 
-#include "Explica/Repulsion/KnotEnergy.h"
 #include "Explica/Visibility/AverageVisibility.h"
+#include "Explica/Visibility/GlobalMeasures.h"
 #include "Explica/Visibility/VisibleFraction.h"
 
 #include <numeric>
 
 namespace explica::python {
+namespace {
 
+using namespace py::literals;
 using PositionsIn = Eigen::Ref<const Positions>;
 using FacesIn = Eigen::Ref<const Faces>;
-
-visibility::Viewpoints viewpointsOf(const Eigen::Ref<const Positions>& points) {
-  visibility::Viewpoints viewpoints;
-  for (Eigen::Index n = 0; n < points.rows(); ++n) {
-    viewpoints.points.emplace_back(points.row(n).transpose());
-    viewpoints.weights.push_back(1.0 / static_cast<double>(points.rows()));
-  }
-  return viewpoints;
-}
-
-namespace {
+using visibility::Viewpoints;
 
 std::vector<std::int32_t> everyFace(const TriangleMesh& mesh) {
   std::vector<std::int32_t> all(static_cast<std::size_t>(mesh.faceCount()));
@@ -36,49 +29,74 @@ std::vector<std::int32_t> everyFace(const TriangleMesh& mesh) {
 }  // namespace
 
 void bindVisibility(py::module_& m) {
-  using namespace py::literals;
+  bindViewpoints(m);
   m.def(
       "average_visibility",
-      [](const PositionsIn& positions, const FacesIn& faces, const PositionsIn& viewpoints,
+      [](const PositionsIn& positions, const FacesIn& faces, const Viewpoints& viewpoints,
          std::optional<std::vector<std::int32_t>> region) {
         const TriangleMesh mesh = meshOf(positions, faces);
-        const visibility::AverageVisibility energy(mesh.faces, region ? *region : everyFace(mesh),
-                                                   viewpointsOf(viewpoints));
-        auto value = energy.evaluate(mesh.positions);
+        auto value = unlocked([&] {
+          return visibility::AverageVisibility(mesh.faces, region ? *region : everyFace(mesh),
+                                               viewpoints)
+              .evaluate(mesh.positions);
+        });
         return py::dict("value"_a = value.value, "area"_a = value.area,
                         "gradient"_a = std::move(value.gradient),
                         "face_flux"_a = std::move(value.faceFlux));
       },
       "positions"_a, "faces"_a, "viewpoints"_a, "region"_a = py::none(),
-      "Average visibility of a region from viewpoints (N, 3), RAS mm: value in [-1, 1], area in "
-      "mm^2,\n"
-      "gradient (V, 3) in 1/mm, and flux density of each region face.  Without region: all faces.");
+      "Average visibility of a region's faces (without region: all) from viewpoints, RAS mm:\n"
+      "value in [-1, 1], area in mm^2, gradient (V, 3) in 1/mm, which ascends, and face_flux, the\n"
+      "flux density of each region face in [-1, 1].");
+  m.def(
+      "vertex_flux",
+      [](const PositionsIn& positions, const FacesIn& faces, const Viewpoints& viewpoints) {
+        const TriangleMesh mesh = meshOf(positions, faces);
+        return unlocked([&] { return visibility::vertexFlux(mesh, viewpoints); });
+      },
+      "positions"_a, "faces"_a, "viewpoints"_a,
+      "Mean flux density of the faces at each vertex, (V,), in [-1, 1].");
   m.def(
       "visible_fraction",
-      [](const PositionsIn& positions, const FacesIn& faces, const PositionsIn& viewpoints) {
-        auto seen = visibility::visibleFraction(meshOf(positions, faces), viewpointsOf(viewpoints));
+      [](const PositionsIn& positions, const FacesIn& faces, const Viewpoints& viewpoints,
+         int subdivision) {
+        const TriangleMesh mesh = meshOf(positions, faces);
+        auto seen =
+            unlocked([&] { return visibility::visibleFraction(mesh, viewpoints, {subdivision}); });
         return py::dict("face"_a = std::move(seen.face), "vertex"_a = std::move(seen.vertex),
                         "total"_a = seen.total);
       },
       "positions"_a, "faces"_a, "viewpoints"_a,
-      "What is truly seen from viewpoints (N, 3), by ray casting: share of each face (F,), of the "
-      "area\n"
-      "around each vertex (V,), and of the whole.");
+      "subdivision"_a = visibility::VisibleFractionOptions{}.subdivision,
+      "What is truly seen from viewpoints, RAS mm, by casting subdivision^2 rays a face: share of\n"
+      "each face (F,), of the area around each vertex (V,), and of the whole (total).");
   m.def(
-      "knot_energy",
-      [](const PositionsIn& positions, const FacesIn& faces, std::optional<std::vector<bool>> moves,
-         const std::string& method) {
+      "hidden_viewing_area",
+      [](const PositionsIn& positions, const FacesIn& faces, const Point& centre, double radius) {
         const TriangleMesh mesh = meshOf(positions, faces);
-        const std::vector<bool> free(static_cast<std::size_t>(mesh.vertexCount()), true);
-        const auto energy = repulsion::makeKnotEnergy(valueOf<repulsion::KnotMethod>(method), mesh,
-                                                      moves ? *moves : free);
-        if (!energy) throw py::value_error("method: 'off' has no energy");
-        auto value = energy->evaluate(mesh.positions);
-        return py::make_tuple(value.value, py::cast(std::move(value.gradient)));
+        return unlocked([&] { return visibility::hiddenViewingArea(mesh, centre, radius); });
       },
-      "positions"_a, "faces"_a, "moves"_a = py::none(), "method"_a = "tree",
-      "Knot energy, mm^2, and its gradient (V, 3), mm; `moves` (V,) marks the vertices that may "
-      "move.");
+      "positions"_a, "faces"_a, "centre"_a, "radius"_a,
+      "Area of the viewing sphere that a closed surface hides from its own points, integrated "
+      "over\n"
+      "them, mm^4.  Takes time quadratic in the number of faces.");
+  m.def(
+      "self_occlusion",
+      [](const PositionsIn& positions, const FacesIn& faces) {
+        const TriangleMesh mesh = meshOf(positions, faces);
+        return unlocked([&] { return visibility::selfOcclusion(mesh); });
+      },
+      "positions"_a, "faces"_a,
+      "Area of the pairs of points that hide from each other, mm^4; 0 for a convex surface.  "
+      "Takes\n"
+      "time quadratic in the number of faces.");
+  m.def(
+      "winding_number",
+      [](const PositionsIn& positions, const FacesIn& faces, const Point& point) {
+        return visibility::windingNumber(meshOf(positions, faces), point);
+      },
+      "positions"_a, "faces"_a, "point"_a,
+      "Times that a closed surface winds around a point (3,), RAS mm: 1 inside, 0 outside.");
 }
 
 }  // namespace explica::python

@@ -17,6 +17,13 @@ namespace explica::python {
 
 namespace py = pybind11;
 
+/// Runs work() without Python's lock; for work that has no monitor.
+template <class Work>
+auto unlocked(const Work& work) {
+  const py::gil_scoped_release released;
+  return work();
+}
+
 /// Lets long work run without Python's lock while Python stays in charge: progress goes to a
 /// callback (fraction, activity), which may return False to stop; Ctrl-C stops at the next
 /// consistent state and is raised afterwards; warnings become Python warnings.
@@ -30,10 +37,7 @@ class Watch {
   template <class Work>
   auto run(const Work& work) {
     const Monitor monitor = makeMonitor();
-    auto result = [&] {
-      const py::gil_scoped_release unlocked;
-      return work(monitor);
-    }();
+    auto result = unlocked([&] { return work(monitor); });
     raisePending();
     return result;
   }

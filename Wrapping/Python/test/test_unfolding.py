@@ -47,19 +47,81 @@ class Unfolding(unittest.TestCase):
         self.assertGreater(once["history"][-1]["visibility"], once["history"][0]["visibility"])
         self.assertEqual(once["termination"], "max-iterations")
 
-    def test_viewpoint_region_and_weights_change_on_the_way(self):
+    def test_viewpoint_changes_on_the_way(self):
+        """The visibility climbs for the new viewpoint, as counted from it."""
+        elsewhere = np.array([-800.0, 600.0, 0.0])
+        faces, region = self.surface[1], self.region
+        stepper = explica.Unfolder(self.surface, region["vertices"], self.view)
+        stepper.step(3)
+
+        def seen():
+            mesh = (stepper.positions, faces)
+            return explica.average_visibility(mesh, elsewhere, region["faces"])["value"]
+
+        before = stepper.positions
+        start = seen()
+        stepper.set_viewpoints(elsewhere)
+        np.testing.assert_array_equal(stepper.positions, before)
+        self.assertTrue(stepper.step(4))
+        self.assertGreater(seen(), start)
+        self.assertAlmostEqual(stepper.record["visibility"], seen(), places=12)
+
+    def test_several_viewpoints_are_one_with_weights(self):
+        view = explica.view_line([-900.0, -300.0, 0.0], [-900.0, 300.0, 0.0], 4)
+        self.assertAlmostEqual(view.weights.sum(), 1)
+        stepper = explica.Unfolder(self.surface, self.region["vertices"], view)
+        stepper.step(2)
+        each = [
+            explica.average_visibility(
+                (stepper.positions, self.surface[1]), point, self.region["faces"]
+            )["value"]
+            for point in view.points
+        ]
+        self.assertAlmostEqual(stepper.record["visibility"], np.dot(each, view.weights), places=10)
+
+    def test_weights_change_on_the_way(self):
+        """Stiffer springs stretch the edges less from there on."""
+        strains = []
+        for weight in (0.1, 50.0):
+            stepper = explica.Unfolder(self.surface, self.region["vertices"], self.view)
+            stepper.step(2)
+            stepper.set_weights(spring_weight=weight)
+            stepper.step(12)
+            strains.append(stepper.record["edge_strain_mean"])
+        self.assertLess(strains[1], 0.8 * strains[0])
+        with self.assertRaisesRegex(TypeError, "known: .*spring_weight"):
+            stepper.set_weights(springs=1)
+
+    def test_region_grows_on_the_way(self):
         stepper = explica.Unfolder(self.surface, self.region["vertices"], self.view)
         stepper.step(3)
         before = stepper.positions
-        stepper.set_viewpoints([-800.0, 600.0, 0.0])
-        stepper.set_weights(spring_weight=0.1)
         larger = explica.select_region(self.surface, vertex=self.centre, radius=15)
         stepper.set_region(larger["vertices"])
         np.testing.assert_array_equal(stepper.positions, before)
-        self.assertEqual(stepper.region["faces"], larger["faces"])
+        np.testing.assert_array_equal(stepper.region["faces"], larger["faces"])
         stepper.step(2)
         self.assertFalse(np.array_equal(stepper.positions, before))
         self.assertEqual(len(explica.self_intersections((stepper.positions, self.surface[1]))), 0)
+
+    def test_region_moves_on_the_way(self):
+        """What the first region became stays, and stands in the way of the second."""
+        positions, faces = self.surface
+        stepper = explica.Unfolder(self.surface, self.region["vertices"], self.view)
+        stepper.step(25)
+        first = stepper.positions
+        beside = int(np.argmin(np.linalg.norm(positions - positions[self.centre] - [4, 14, 0], axis=1)))
+        second = explica.select_region(self.surface, vertex=beside, radius=12)
+        stepper.set_region(second["vertices"])
+        stepper.set_viewpoints([-1000.0, 600.0, 0.0])
+        for _ in range(30):
+            if not stepper.step():
+                break
+        still = np.setdiff1d(np.arange(len(positions)), second["vertices"])
+        np.testing.assert_array_equal(stepper.positions[still], first[still])
+        self.assertEqual(len(explica.self_intersections((stepper.positions, faces))), 0)
+        # And no feature came nearer than collision detection lets it.
+        self.assertGreater(stepper.record["nearest_contact"], 0)
 
     def test_progress_may_stop_the_work(self):
         calls = []
@@ -94,6 +156,30 @@ class Unfolding(unittest.TestCase):
         thread.join()
         self.assertGreater(len(ticks), 0)
 
+    def test_global_measures_of_a_ball(self):
+        """Convex: nothing hides, and the hidden sphere has its formula."""
+        p, f = ball = explica.icosphere(3, 10.0)
+        self.assertLess(abs(explica.self_occlusion(ball)), 1e-9)
+        area, volume = explica.face_areas(ball).sum(), explica.enclosed_volume(ball)
+        r = 200.0
+        expected = 2 * np.pi * r**2 * area + 6 * np.pi * r * volume
+        self.assertAlmostEqual(explica.hidden_viewing_area(ball, [0, 0, 0], r) / expected, 1, delta=0.05)
+        self.assertAlmostEqual(explica.winding_number(ball, [1, 2, 3]), 1)
+        self.assertAlmostEqual(explica.winding_number(ball, [11, 2, 3]), 0)
+        flux = explica.vertex_flux(ball, [1000.0, 0, 0])
+        self.assertGreater(np.corrcoef(flux, p[:, 0])[0, 1], 0.999)
+        self.assertAlmostEqual(explica.backfacing_share(ball, np.arange(len(f)), [1e6, 0, 0]), 0.5, delta=0.02)
+
+    def test_viewpoints_are_checked(self):
+        with self.assertRaisesRegex(ValueError, "viewpoints"):
+            explica.Viewpoints(np.zeros((2, 2)))
+        with self.assertRaisesRegex(TypeError, "viewpoints"):
+            explica.average_visibility(self.surface, np.zeros((2, 2)))
+        with self.assertRaisesRegex(ValueError, "weights"):
+            explica.Viewpoints([[1.0, 2, 3]], weights=[-1])
+        with self.assertRaisesRegex(ValueError, "region: face 99999"):
+            explica.distortion(self.surface, self.surface[0], [99999])
+
     def test_distortion_of_nothing_is_none(self):
         p, _ = self.surface
         d = explica.distortion(self.surface, p, self.region["faces"])
@@ -109,6 +195,50 @@ class Unfolding(unittest.TestCase):
         radial = p / np.linalg.norm(p, axis=1, keepdims=True)
         along = np.sum(gradient * radial, axis=1, keepdims=True) * radial
         self.assertLess(np.linalg.norm(gradient - along), 0.1 * np.linalg.norm(gradient))
+
+    def test_knot_energies_by_evaluator_agree(self):
+        p, f = explica.icosphere(2, 3.0)
+        moves = p[:, 0] > 0
+        exact, slope = explica.knot_energy((p, f), moves, method="all-pairs")
+        for method, bound in (("tree", 3e-3), ("thesis-tree", 0.2)):
+            energy = explica.KnotEnergy((p, f), moves, method=method)
+            value, gradient = energy.evaluate(p)
+            self.assertAlmostEqual(value / exact, 1, delta=bound)
+            self.assertLess(np.linalg.norm(gradient - slope), bound * np.linalg.norm(slope))
+            self.assertTrue(np.all(gradient[~moves] == 0))
+            once, _ = explica.knot_energy((p, f), moves, method=method)
+            self.assertEqual(once, value)
+        with self.assertRaisesRegex(ValueError, "162 vertices"):
+            energy.evaluate(p[:5])
+        with self.assertRaisesRegex(ValueError, "'off' has no energy"):
+            explica.KnotEnergy((p, f), method="off")
+
+    def test_steps_are_safe_until_contact(self):
+        """Two squares 1 mm apart that approach by 2 mm touch after half of the way."""
+        p, f = explica.rectangle(2, 2, 1.0, 1.0)
+        n = len(p)
+        mesh = (np.vstack([p, p + [0, 0, 1]]), np.vstack([f, f + n]))
+        motion = np.zeros_like(mesh[0])
+        motion[n:, 2] = -2
+        step = explica.largest_safe_step(mesh, motion)
+        self.assertLessEqual(step, 0.5)
+        self.assertGreater(step, 0.4)
+        self.assertEqual(explica.largest_safe_step(mesh, -motion), 1)
+        self.assertEqual(explica.largest_safe_step(mesh, motion, moves=np.arange(2 * n) < n), 1)
+        with self.assertRaisesRegex(ValueError, "motion"):
+            explica.largest_safe_step(mesh, motion[:3])
+        vertex_face, edge_edge = explica.near_pairs(mesh, 1.01)
+        self.assertGreater(len(vertex_face), 0)
+        self.assertEqual(edge_edge.shape[1], 4)
+        self.assertTrue(np.all(mesh[1][vertex_face[:, 1]] != vertex_face[:, :1]))
+
+    def test_barrier_has_its_derivatives(self):
+        h = 1e-6
+        value, slope, curvature = explica.contact_barrier(0.3, 1.0)
+        above, below = (explica.contact_barrier(0.3 + s * h, 1.0) for s in (1, -1))
+        self.assertAlmostEqual((above[0] - below[0]) / (2 * h), slope, delta=1e-8)
+        self.assertAlmostEqual((above[1] - below[1]) / (2 * h), curvature, delta=1e-6)
+        self.assertEqual(explica.contact_barrier(1.0, 1.0)[0], 0)
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@
 #include "Explica/Core/Termination.h"
 #include "Explica/Shapes/HarmonicAnnulus.h"
 
+#include <optional>
 #include <vector>
 
 namespace explica::shapes {
@@ -17,7 +18,31 @@ struct TargetSamples {
   Eigen::VectorXd weights;  ///< length (mm) or area (mm^2) of each piece
 };
 
+/// What is known of an annulus that targets are to lie in; the rest is taken from them.
+struct AnnulusOptions {
+  std::optional<Eigen::Vector3d> centre;  ///< mm; unset: mean of the targets' centres
+  std::optional<double> innerRadius;      ///< mm; unset: 0.85 of the nearest target point's
+  std::optional<double> outerRadius;      ///< mm; unset: 1.15 of the farthest target point's
+  std::optional<int> order;               ///< unset: 64 in the plane, 14 in space
+};
+
+template <class Visitor>
+void describe(AnnulusOptions& options, Visitor&& visit) {
+  visit(Field{"centre", "mm", "default: mean of the targets' points"}, options.centre);
+  visit(Field{"inner-radius", "mm", "default: 0.85 of the nearest target point"},
+        options.innerRadius);
+  visit(Field{"outer-radius", "mm", "default: 1.15 of the farthest target point"},
+        options.outerRadius);
+  visit(Field{"order", "", "highest angular frequency; default 64 in 2D, 14 in 3D"}, options.order);
+}
+
+/// The annulus about targets of a dimension, 2 or 3, that leaves some room on both sides of them.
+/// @throws InvalidInput  no target, or options that make no annulus
+[[nodiscard]] HarmonicAnnulus annulusAround(const std::vector<TargetSamples>& targets,
+                                            int dimension, const AnnulusOptions& options = {});
+
 struct ShapeFitOptions {
+  int samples = 2000;  ///< points of the target's boundary that are fitted; taken by the caller
   int maxIterations = 60;
   double step = 0.5;         ///< share of the way to each iteration's optimum; 1 is the full step
   double smoothness = 1e-9;  ///< pull to the concentric shape, against the fit's mean weight
@@ -25,6 +50,7 @@ struct ShapeFitOptions {
 
 template <class Visitor>
 void describe(ShapeFitOptions& options, Visitor&& visit) {
+  visit(Field{"samples", "", "points of each target's boundary that are fitted"}, options.samples);
   visit(Field{"max-iterations", "", "iterations of the fit"}, options.maxIterations);
   visit(Field{"fit-step", "", "share of the way to each iteration's optimum"}, options.step);
   visit(Field{"smoothness", "", "pull of the amplitudes towards the concentric shape"},

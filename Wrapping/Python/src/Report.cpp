@@ -1,0 +1,171 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Arrays.h"
+#include "Bindings.h"
+#include "Options.h"
+#include "Watch.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Pipeline/StudyReport.h"
+#include "Explica/Report/Figure.h"
+#include "Explica/Report/Page.h"
+
+namespace explica::python {
+namespace {
+
+using namespace py::literals;
+using PositionsIn = Eigen::Ref<const Positions>;
+using FacesIn = Eigen::Ref<const Faces>;
+using report::Picture;
+
+/// Array (height, width, 3) over the picture's own memory.
+py::array arrayOfPicture(Picture&& picture) {
+  auto* kept = new std::vector<std::uint8_t>(std::move(picture.rgb));
+  const py::capsule owner(kept, [](void* p) { delete static_cast<std::vector<std::uint8_t>*>(p); });
+  return py::array_t<std::uint8_t>({picture.height, picture.width, 3}, kept->data(), owner);
+}
+
+Picture pictureOf(const py::array_t<std::uint8_t, py::array::c_style>& pixels) {
+  if (pixels.ndim() != 3 || pixels.shape(2) != 3) {
+    throw InvalidInput("pixels: an array (height, width, 3) of uint8 is needed");
+  }
+  Picture picture(static_cast<int>(pixels.shape(1)), static_cast<int>(pixels.shape(0)));
+  picture.rgb.assign(pixels.data(), pixels.data() + pixels.size());
+  return picture;
+}
+
+report::ColourScale scaleOf(const Eigen::VectorXd& values, const std::string& title,
+                            const std::string& unit,
+                            const std::optional<std::pair<double, double>>& range,
+                            const std::optional<std::string>& colours) {
+  std::optional<report::ColourMap> map;
+  if (colours) map = valueOf<report::ColourMap>(*colours);
+  report::ColourScale scale = report::scaleFor(values, title, unit, map);
+  if (range) std::tie(scale.low, scale.high) = *range;
+  return scale;
+}
+
+std::vector<report::FigureView> viewsOf(const std::vector<std::string>& names,
+                                        const std::optional<Vector>& towards, const Vector& up,
+                                        const std::vector<std::int32_t>& focus) {
+  std::vector<report::FigureView> views;
+  if (towards) {
+    report::FigureView view;
+    view.towards = *towards;
+    view.up = up;
+    view.focus = focus;
+    views.push_back(view);
+    return views;
+  }
+  for (const std::string& name : names) {
+    report::FigureView view;
+    view.name = valueOf<report::ViewName>(name);
+    view.focus = focus;
+    views.push_back(view);
+  }
+  return views;
+}
+
+void bindPictures(py::module_& m) {
+  defWithOptions<report::SurfacePictureOptions>(
+      m, "picture",
+      [](const PositionsIn& positions, const FacesIn& faces,
+         const std::optional<Eigen::VectorXd>& values, const std::vector<std::string>& views,
+         const std::optional<Vector>& towards, const Vector& up,
+         const std::vector<std::int32_t>& focus, const std::string& title, const std::string& unit,
+         const std::optional<std::pair<double, double>>& range,
+         const std::optional<std::string>& colours, const py::kwargs& keywords) {
+        const auto options = optionsOf<report::SurfacePictureOptions>(keywords);
+        const TriangleMesh mesh = meshOf(positions, faces);
+        report::SurfacePaint paint;
+        if (values) {
+          if (values->size() != mesh.vertexCount()) {
+            throw InvalidInput("values: one a vertex, " + std::to_string(mesh.vertexCount()) +
+                               ", are needed, not " + std::to_string(values->size()));
+          }
+          paint.values = *values;
+          paint.scale = scaleOf(*values, title, unit, range, colours);
+        }
+        for (const std::int32_t v : focus) {
+          if (v < 0 || v >= mesh.vertexCount()) throw InvalidInput("focus: no such vertex");
+        }
+        const auto chosen = viewsOf(views, towards, up, focus);
+        return arrayOfPicture(unlocked([&] {
+          return report::surfaceFigure(mesh, paint, chosen, static_cast<int>(chosen.size()),
+                                       options);
+        }));
+      },
+      "Views of a surface side by side as pixels (height, width, 3), uint8 sRGB, drawn on the CPU\n"
+      "without a display.  `values` (V,) colour it, with a bar; `views` of left, right, front, "
+      "back,\n"
+      "top, bottom, or one view along the direction `towards` (3,) with `up` (3,) upwards, RAS;\n"
+      "`focus`: vertices to fill the picture with; range: values of the first and last colour;\n"
+      "colours: sequential, heat, diverging or grey.",
+      "positions"_a, "faces"_a, "values"_a = py::none(),
+      "views"_a = std::vector<std::string>{"left"}, "towards"_a = py::none(),
+      "up"_a = Vector(0, 0, 1), "focus"_a = std::vector<std::int32_t>{}, "title"_a = "",
+      "unit"_a = "", "range"_a = py::none(), "colours"_a = py::none());
+  m.def(
+      "slices",
+      [](const py::array& image, const Eigen::Matrix4d& affine,
+         const std::vector<std::pair<Positions, Faces>>& surfaces, int count, int height) {
+        if (count < 1 || height < 16) {
+          throw InvalidInput("count and height: at least 1 slice of 16 pixels is needed");
+        }
+        const Volume<float> volume = scalarVolume(image, affine);
+        std::vector<TriangleMesh> meshes;
+        for (const auto& [positions, faces] : surfaces) meshes.push_back(meshOf(positions, faces));
+        constexpr std::array<report::Colour, 3> kColours = {
+            {{1, 0.2F, 0}, {0.1F, 0.8F, 0.2F}, {0.2F, 0.5F, 1}}};
+        std::vector<report::Contour> contours;
+        for (std::size_t n = 0; n < meshes.size(); ++n) {
+          contours.push_back({&meshes[n], kColours[n % kColours.size()]});
+        }
+        return arrayOfPicture(
+            unlocked([&] { return report::sliceFigure(volume, contours, count, height); }));
+      },
+      "image"_a, "affine"_a, "surfaces"_a = std::vector<std::pair<Positions, Faces>>{},
+      "count"_a = 3, "height"_a = 300,
+      "Sagittal, coronal and axial slices, `count` of each and `height` pixels high, with the cut\n"
+      "lines of surfaces [(positions (V, 3) RAS mm, faces (F, 3))]: pixels (height, width, 3), "
+      "uint8.");
+  m.def(
+      "write_png",
+      [](const std::filesystem::path& path,
+         const py::array_t<std::uint8_t, py::array::c_style>& pixels) {
+        report::writePng(path, pictureOf(pixels));
+      },
+      "path"_a, "pixels"_a,
+      "Write pixels (height, width, 3), uint8 sRGB, as PNG, whole or not at all.");
+  m.def(
+      "encode_gif",
+      [](const std::vector<py::array_t<std::uint8_t, py::array::c_style>>& frames,
+         double framesPerSecond) {
+        std::vector<Picture> pictures;
+        for (const auto& frame : frames) pictures.push_back(pictureOf(frame));
+        return py::bytes(unlocked([&] { return report::encodeGif(pictures, framesPerSecond); }));
+      },
+      "frames"_a, "frames_per_second"_a = 10.0,
+      "An endless animated GIF, as bytes, of frames (height, width, 3), uint8 sRGB, of one size.");
+}
+
+}  // namespace
+
+void bindReport(py::module_& parent) {
+  py::module_ m = parent.def_submodule("report");
+  bindPictures(m);
+  m.def(
+      "page",
+      [](const std::filesystem::path& folder, const py::object& progress) {
+        return Watch(progress).run([&](const Monitor& monitor) {
+          return report::reportPage(pipeline::collectReport(folder, monitor));
+        });
+      },
+      "folder"_a, "progress"_a = py::none(),
+      "The report on an output folder of a command or of a whole run: one self-contained HTML "
+      "page,\n"
+      "as text.");
+}
+
+}  // namespace explica::python
