@@ -38,6 +38,7 @@ from ._explica import (
 )
 from ._commands import command, executable
 from ._images import (
+    anatomical_grid,
     correct_topology,
     iso_surface,
     segment,
@@ -46,6 +47,7 @@ from ._images import (
     surfaces_of_shares,
     thickness,
     thickness_of_levels,
+    wall_segments,
     write_volume,
 )
 from ._surfaces import (

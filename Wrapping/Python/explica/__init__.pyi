@@ -17,6 +17,26 @@ from .types import Image, Path, Progress, Surface
 
 __version__: str
 
+def anatomical_grid(
+    labels: Image,
+    levels: int,
+    affine: Optional[ArrayLike] = None,
+    recover_sulci: bool = True,
+    progress: Optional[Progress] = None,
+    *,
+    inner: Sequence[int] = ...,
+    tissue: Sequence[int] = ...,
+    outer: Sequence[int] = ...,
+    insulated: Sequence[int] = ...,
+    boundary: Literal["subvoxel", "staircase", "embedding"] = 'subvoxel',
+    open_ends: bool = False,
+    per_slice: bool = False,
+    facing: float = 90.0,
+    method: Literal["hybrid", "eulerian", "lagrangian"] = 'hybrid',
+    lambda_: Optional[float] = None,
+    layers: int = 3,
+    layer_kind: Literal["depth", "volume"] = 'depth',
+) -> Dict[str, Any]: ...
 def average_visibility(
     surface: Surface,
     viewpoints: Union[Viewpoints, ArrayLike],
@@ -332,6 +352,25 @@ def visible_fraction(
     surface: Surface,
     viewpoints: Union[Viewpoints, ArrayLike],
     subdivision: int = 3,
+) -> Dict[str, Any]: ...
+def wall_segments(
+    labels: Image,
+    insertion: ArrayLike,
+    affine: Optional[ArrayLike] = None,
+    progress: Optional[Progress] = None,
+    *,
+    inner: Sequence[int] = ...,
+    tissue: Sequence[int] = ...,
+    outer: Sequence[int] = ...,
+    insulated: Sequence[int] = ...,
+    boundary: Literal["subvoxel", "staircase", "embedding"] = 'subvoxel',
+    open_ends: bool = False,
+    per_slice: bool = False,
+    facing: float = 90.0,
+    method: Literal["hybrid", "eulerian", "lagrangian"] = 'hybrid',
+    lambda_: Optional[float] = None,
+    layers: int = 3,
+    layer_kind: Literal["depth", "volume"] = 'depth',
 ) -> Dict[str, Any]: ...
 def winding_number(surface: Surface, point: ArrayLike) -> float: ...
 def write_curv(path: Path, values: ArrayLike, face_count: int) -> None: ...

@@ -103,6 +103,8 @@ def of_image(*images, module=_explica):
 
 thickness = of_image("labels")(_explica.thickness)
 thickness_of_levels = of_image("inner", "outer")(_explica.thickness_of_levels)
+wall_segments = of_image("labels")(_explica.wall_segments)
+anatomical_grid = of_image("labels")(_explica.anatomical_grid)
 surfaces_of = of_image("labels")(_explica.surfaces_of)
 surfaces_of_shares = of_image("white_share", "tissue_share")(_explica.surfaces_of_shares)
 segment = of_image("intensity", "mask")(_explica.segment)

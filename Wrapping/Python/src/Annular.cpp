@@ -6,8 +6,10 @@
 #include "Options.h"
 #include "Watch.h"
 
+#include "Explica/Correspondence/AnatomicalGrid.h"
 #include "Explica/Correspondence/Layers.h"
 #include "Explica/Correspondence/Sulci.h"
+#include "Explica/Correspondence/Ventricle.h"
 #include "Explica/Harmonic/Annulus.h"
 #include "Explica/Harmonic/Interpolant.h"
 
@@ -96,6 +98,19 @@ py::dict arraysOf(const Measured& m) {
                    "voxels_without_thickness"_a = m.found.missing));
 }
 
+py::dict segmentsDict(std::pair<correspondence::WallSegments, Volume<Label>> made) {
+  const correspondence::WallSegments& walls = made.first;
+  py::list rows;
+  for (const auto& r : walls.rows) {
+    rows.append(py::dict("segment"_a = r.segment, "name"_a = r.name, "voxels"_a = r.voxels,
+                         "mean"_a = r.mean, "deviation"_a = r.deviation, "minimum"_a = r.minimum,
+                         "maximum"_a = r.maximum));
+  }
+  return py::dict("rows"_a = rows, "table"_a = correspondence::tableOf(walls),
+                  "bullseye"_a = correspondence::bullseyeOf(walls),
+                  "segments"_a = arrayOf(std::move(made.second)));
+}
+
 constexpr const char* kReturns =
     "\n\nReturns a dict of arrays (I, J, K): harmonic (u), thickness, inner_distance and\n"
     "outer_distance (L0, L1, mm), depth, layers; inner_point and outer_point (I, J, K, 3), RAS "
@@ -140,6 +155,49 @@ void bindAnnular(py::module_& m) {
       ("As thickness(), between the surfaces where two scalar volumes cross `level`." +
        std::string(kReturns) + keywordHelp<LevelThicknessOptions>())
           .c_str());
+  defWithOptions<ThicknessOptions>(
+      m, "wall_segments",
+      [](const py::array& labels, const Point& insertion, const Eigen::Matrix4d& affine,
+         const py::object& progress, const py::kwargs& keywords) {
+        const auto options = optionsOf<ThicknessOptions>(keywords);
+        const Volume<Label> volume = labelVolume(labels, affine);
+        return segmentsDict(Watch(progress).run([&](const Monitor& monitor) {
+          const Measured made =
+              measure(harmonic::annulusFromLabels(volume, options.roles, options.annulus, monitor),
+                      options, false, monitor);
+          const auto walls = correspondence::wallSegments(made.annulus, made.found, insertion);
+          return std::make_pair(walls, harmonic::spreadLabels(made.annulus, walls.segmentOf));
+        }));
+      },
+      "Wall thickness of the left ventricle's 17 segments, of labels in short-axis slices along "
+      "the\n"
+      "third axis; insertion (3,), RAS mm: where the right ventricle's anterior wall joins.  "
+      "Returns\n"
+      "segments (I, J, K), 1 to 17, 0 off the wall; rows (segment, name, voxels, and mean, "
+      "deviation,\n"
+      "minimum, maximum in mm); table, tab-separated; and bullseye, a picture as SVG.",
+      "labels"_a, "insertion"_a, "affine"_a, "progress"_a = py::none());
+  defWithOptions<ThicknessOptions>(
+      m, "anatomical_grid",
+      [](const py::array& labels, int levels, const Eigen::Matrix4d& affine, bool sulci,
+         const py::object& progress, const py::kwargs& keywords) {
+        const auto options = optionsOf<ThicknessOptions>(keywords);
+        const Volume<Label> volume = labelVolume(labels, affine);
+        auto grid = Watch(progress).run([&](const Monitor& monitor) {
+          const Measured made =
+              measure(harmonic::annulusFromLabels(volume, options.roles, options.annulus, monitor),
+                      options, sulci, monitor);
+          return correspondence::anatomicalGrid(made.annulus, made.interpolant, levels);
+        });
+        return py::dict("points"_a = std::move(grid.points), "cells"_a = std::move(grid.cells),
+                        "depth"_a = std::move(grid.depth),
+                        "thickness"_a = std::move(grid.thickness),
+                        "trajectories"_a = grid.trajectories, "lost"_a = grid.lost);
+      },
+      "A grid that follows the tissue: points (P, 3), RAS mm, at equal depths along trajectories,\n"
+      "cells (C, 8), hexahedra in VTK's order ((C, 4) of a planar tissue), depth (P,) in [0, 1],\n"
+      "thickness (P,) of the trajectory, mm, trajectories and how many were lost.",
+      "labels"_a, "levels"_a, "affine"_a, "recover_sulci"_a = true, "progress"_a = py::none());
   noteKeywords<ThicknessOptions>(m, "thickness");
   noteKeywords<LevelThicknessOptions>(m, "thickness_of_levels");
 }

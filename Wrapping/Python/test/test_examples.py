@@ -1,0 +1,92 @@
+# SPDX-FileCopyrightText: The Explica developers
+# SPDX-License-Identifier: Apache-2.0
+"""The examples run as a reader would run them, and what they print is right."""
+
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import matplotlib.image
+import nibabel
+import numpy as np
+
+EXAMPLES = pathlib.Path(__file__).resolve().parents[1] / "examples"
+REAL = pathlib.Path(os.environ.get("EXPLICA_REAL_DATA", "absent"))
+
+
+class Examples(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.out = pathlib.Path(folder.name) / "out"
+
+    def run_example(self, name, *words):
+        words = [sys.executable, EXAMPLES / name, *words, "--out", self.out]
+        return subprocess.check_output([str(word) for word in words], text=True)
+
+    def assert_picture(self, name):
+        """A picture that is not blank."""
+        pixels = matplotlib.image.imread(self.out / name)[..., :3]
+        self.assertGreater(pixels.shape[1], 300)
+        self.assertGreater(pixels.std(), 0.05)
+
+    def test_bullseye_of_the_phantom_is_exact(self):
+        said = self.run_example("ventricle_bullseye.py", "--size", 64)
+        rows = re.findall(r"^ ?\d+ [a-z ]+ ([\d.]+) mm   exact +([\d.]+) mm$", said, re.M)
+        self.assertEqual(len(rows), 17)
+        for measured, exact in rows:
+            self.assertAlmostEqual(float(measured) / float(exact), 1, delta=0.04)
+        self.assert_picture("bullseye.png")
+        self.assertEqual(len((self.out / "segments.tsv").read_text().splitlines()), 18)
+
+    def test_patch_unfolds_and_turns(self):
+        said = self.run_example("unfold_patch.py", "--levels", 3, "--steps", 25)
+        start, first, second = map(float, re.findall(r"visibility (\S+) -> (\S+) -> (\S+)", said)[0])
+        self.assertLess(start, 0.9)
+        self.assertGreater(min(first, second), 0.98)
+        self.assertIn("0 pairs of faces intersect", said)
+        self.assert_picture("evolution.png")
+        self.assert_picture("patch.png")
+        nibabel.load(self.out / "unfolded.surf.gii")
+
+    def test_average_shape_is_one_curve(self):
+        said = self.run_example("average_shape.py", "--order", 16)
+        self.assertIn("one closed curve for certain: True", said)
+        self.assertLess(float(re.findall(r"fits are (\S+) mm", said)[0]), 0.5)
+        self.assert_picture("average.png")
+        self.assertEqual(np.loadtxt(self.out / "average.csv", delimiter=",", skiprows=1).shape[1], 2)
+
+    def test_subject_without_data_says_so(self):
+        self.assertEqual(
+            self.run_example("thickness_of_subject.py", self.out), "skipped: no real data\n"
+        )
+
+    @unittest.skipUnless(REAL.is_dir(), "skipped: no real data")
+    def test_real_subject_lies_near_freesurfer(self):
+        """Along the trajectories through every voxel, not the vertices' distances: a little more."""
+        said = self.run_example("thickness_of_subject.py", REAL / "bert_freesurfer")
+        mean = float(re.findall(r"^mean (\S+) mm", said, re.M)[0])
+        reference = float(re.findall(r"FreeSurfer: mean (\S+) mm", said)[0])
+        self.assertAlmostEqual(mean, reference, delta=0.8)
+        self.assert_picture("thickness.png")
+        self.assertEqual(nibabel.load(self.out / "thickness.nii.gz").shape, (256, 256, 256))
+
+    @unittest.skipUnless(REAL.is_dir(), "skipped: no real data")
+    def test_real_ventricle_thins_to_the_apex(self):
+        labels = REAL / "lv_sunnybrook_SCD0000101" / "ED_label.nii.gz"
+        said = self.run_example("ventricle_bullseye.py", labels, "--insertion=-35.2,90.4,-46.4")
+        means = [float(m) for m in re.findall(r"([\d.]+) mm$", said, re.M)]
+        basal, mid, apical = means[:6], means[6:12], means[12:16]
+        self.assertGreater(np.mean(basal), np.mean(mid))
+        self.assertGreater(np.mean(mid), np.mean(apical))
+        # The data's own note: 8.4 mm in slice 1, 4.35 mm in slice 8, by areas.
+        self.assertTrue(all(3.5 < m < 10 for m in means))
+        self.assert_picture("bullseye.png")
+
+
+if __name__ == "__main__":
+    unittest.main()
