@@ -123,14 +123,15 @@ SulcalRecovery recoverSulci(const Annulus& annulus, const SulcusOptions& options
         continue;
       const Vector y = x + h[a] * Vector::Unit(a);
       const Vector from = x - fronts.source[n], to = y - fronts.source[m];
-      // Both fronts run towards the link's other end, and against each other.
-      if (from[a] <= 0 || to[a] >= 0) continue;
+      // The fronts run against each other, and not away from the link between them.  Along a
+      // sheet that is in the grid's planes they run across the link: where one voxel of the middle
+      // was reached from one bank and the next from the other, the sheet passes between them.
+      if (from[a] < 0 && to[a] > 0) continue;
       if (from.dot(to) > facing * from.norm() * to.norm()) continue;
       // Where |x + t h e - p| = |x + t h e - q|.
       const Vector p = fronts.source[n], q = fronts.source[m];
       const double slope = 2 * h[a] * (q[a] - p[a]);
-      if (!(slope > 0)) continue;
-      const double t = ((x - q).squaredNorm() - (x - p).squaredNorm()) / slope;
+      const double t = slope > 0 ? ((x - q).squaredNorm() - (x - p).squaredNorm()) / slope : 0.5;
       cuts.push_back({n, a, std::clamp(t, 0.02, 0.98)});
     }
   }

@@ -4,13 +4,18 @@
 #include "Explica/Correspondence/Layers.h"
 #include "Explica/Correspondence/Sulci.h"
 #include "Explica/Correspondence/Ventricle.h"
+#include "Explica/Harmonic/Phantoms.h"
 #include "Explica/IO/VolumeFile.h"
 
 #include <gtest/gtest.h>
+#include <zlib.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <map>
+#include <sstream>
 
 using namespace explica;
 using namespace explica::correspondence;
@@ -32,7 +37,147 @@ double correlation(const std::vector<double>& a, const std::vector<double>& b) {
   return (n * sab - sa * sb) / std::sqrt((n * saa - sa * sa) * (n * sbb - sb * sb));
 }
 
+/// A vertex of FreeSurfer's white surface whose place is known.
+struct KnownVertex {
+  Vector index;          ///< in mri/ribbon.mgz
+  double thickness = 0;  ///< FreeSurfer's, mm
+  double area = 0;       ///< of the white surface, mm^2
+  std::string region;
+};
+
+/// Cortical vertices of `?h.thickness_at_known_vertices.csv.gz` (the folder's SOURCE.md).
+std::vector<KnownVertex> knownVertices(const std::filesystem::path& path) {
+  std::vector<KnownVertex> vertices;
+  gzFile file = gzopen(path.c_str(), "rb");
+  char line[512];
+  bool header = true;
+  while (file != nullptr && gzgets(file, line, sizeof line) != nullptr) {
+    if (std::exchange(header, false)) continue;
+    std::array<std::string, 15> cell;
+    std::istringstream text(line);
+    for (auto& c : cell) std::getline(text, c, ',');
+    KnownVertex v;
+    v.index = Vector(std::stod(cell[7]), std::stod(cell[8]), std::stod(cell[9]));
+    v.thickness = std::stod(cell[10]);
+    v.area = std::stod(cell[11]);
+    v.region = cell[14].substr(0, cell[14].find_last_not_of("\r\n") + 1);
+    if (v.thickness > 0) vertices.push_back(v);  // 0 outside the cortex
+  }
+  if (file != nullptr) gzclose(file);
+  return vertices;
+}
+
+/// A row of `?h.aparc.stats`.
+struct Region {
+  double area = 0;       ///< SurfArea, mm^2
+  double thickness = 0;  ///< ThickAvg, mm
+};
+std::map<std::string, Region> regionsOf(const std::filesystem::path& path) {
+  std::map<std::string, Region> regions;
+  std::ifstream file(path);
+  for (std::string line; std::getline(file, line);) {
+    std::istringstream text(line);
+    std::string name;
+    double vertices = 0, area = 0, volume = 0, thickness = 0;
+    if (line.starts_with('#')) continue;
+    if (text >> name >> vertices >> area >> volume >> thickness) regions[name] = {area, thickness};
+  }
+  return regions;
+}
+
 }  // namespace
+
+TEST(LabelBoundary, HoldsAtTheSizesOfTheTables) {
+  for (const auto kind : {harmonic::PhantomKind::Shell, harmonic::PhantomKind::Spheroid}) {
+    for (const harmonic::PhantomOptions& size :
+         {harmonic::PhantomOptions{128, 1}, harmonic::PhantomOptions{256, 0.5}}) {
+      const auto phantom = harmonic::makePhantom(kind, size);
+      const auto annulus = harmonic::annulusFromLabels(phantom.labels, {{1}, {2}, {}, {}});
+      const auto found = findCorrespondences(annulus, harmonic::solveInterpolant(annulus));
+      double mean = 0, worst = 0;
+      for (std::int32_t n = 0; n < static_cast<std::int32_t>(annulus.count()); ++n) {
+        const double error =
+            std::abs(found.thickness(n) - phantom.exact.answer(annulus.world(n)).thickness()) /
+            size.spacing;
+        mean += error / static_cast<double>(annulus.count());
+        worst = std::max(worst, error);
+      }
+      std::printf("%d at %g mm: mean %.4f greatest %.4f voxel\n", static_cast<int>(kind),
+                  size.spacing, mean, worst);
+      EXPECT_EQ(found.missing, 0U);
+      EXPECT_LE(mean, 0.06);
+      EXPECT_LE(worst, 0.5);
+    }
+  }
+}
+
+TEST(RealTissue, CortexIsAsThickAsFreeSurferSays) {
+  const auto folder = kData / "bert_freesurfer";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "skipped: no real data";
+  const auto labels = io::readLabels(folder / "mri/ribbon.mgz").volume;
+  struct Hemisphere {
+    const char* name;
+    Label white, grey;
+  };
+  for (const auto& [name, white, grey] : {Hemisphere{"lh", 2, 3}, Hemisphere{"rh", 41, 42}}) {
+    const auto annulus =
+        recoverSulci(harmonic::annulusFromLabels(labels, {{white}, {grey}, {}, {}})).annulus;
+    const auto found = findCorrespondences(annulus, harmonic::solveInterpolant(annulus));
+    Volume<float> thickness = harmonic::spread(annulus, thicknessOf(found));
+    std::vector<double> ours, theirs;
+    std::map<std::string, std::pair<double, double>> byRegion;  // thickness times area, area
+    const auto vertices =
+        knownVertices(folder / (std::string(name) + ".thickness_at_known_vertices.csv.gz"));
+    EXPECT_GT(vertices.size(), 40000U);
+    for (const KnownVertex& v : vertices) {
+      // The nearest tissue voxel, at most two voxels away.
+      const std::array<int, 3> at = {static_cast<int>(std::lround(v.index[0])),
+                                     static_cast<int>(std::lround(v.index[1])),
+                                     static_cast<int>(std::lround(v.index[2]))};
+      double nearest = 4, value = 0;
+      for (int k = at[2] - 2; k <= at[2] + 2; ++k) {
+        for (int j = at[1] - 2; j <= at[1] + 2; ++j) {
+          for (int i = at[0] - 2; i <= at[0] + 2; ++i) {
+            if (!thickness.grid.contains(i, j, k) || thickness(i, j, k) <= 0) continue;
+            const double squared = (Vector(i, j, k) - v.index).squaredNorm();
+            if (squared >= nearest) continue;
+            nearest = squared;
+            value = thickness(i, j, k);
+          }
+        }
+      }
+      if (value == 0) continue;
+      ours.push_back(value);
+      theirs.push_back(v.thickness);
+      byRegion[v.region].first += v.area * value;
+      byRegion[v.region].second += v.area;
+    }
+    EXPECT_GT(ours.size(), 0.999 * static_cast<double>(vertices.size()));
+    double difference = 0, mean = 0, theirMean = 0;
+    for (std::size_t k = 0; k < ours.size(); ++k) {
+      difference += std::abs(ours[k] - theirs[k]) / static_cast<double>(ours.size());
+      mean += ours[k] / static_cast<double>(ours.size());
+      theirMean += theirs[k] / static_cast<double>(ours.size());
+    }
+    std::vector<double> ourRegions, theirRegions;
+    for (const auto& [region, expected] :
+         regionsOf(folder / "stats" / (std::string(name) + ".aparc.stats"))) {
+      // A part of a region need not be as thick as the whole.
+      if (byRegion[region].second < 0.5 * expected.area) continue;
+      ourRegions.push_back(byRegion[region].first / byRegion[region].second);
+      theirRegions.push_back(expected.thickness);
+    }
+    std::printf(
+        "%s: %zu vertices, %.3f mm against %.3f mm, r %.3f, difference %.3f mm, "
+        "%zu regions r %.3f, %zu voxels without thickness\n",
+        name, ours.size(), mean, theirMean, correlation(ours, theirs), difference,
+        ourRegions.size(), correlation(ourRegions, theirRegions), found.missing);
+    EXPECT_GE(correlation(ours, theirs), 0.80);
+    EXPECT_LE(difference, 0.33);
+    EXPECT_GE(ourRegions.size(), 10U);
+    EXPECT_GE(correlation(ourRegions, theirRegions), 0.9);
+  }
+}
 
 TEST(RealTissue, OpenSlabOfCortexHasDepthNearTheEquidistantLayers) {
   const auto folder = kData / "laynii_sc";

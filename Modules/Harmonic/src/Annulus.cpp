@@ -4,6 +4,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
+#include "LabelBoundary.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,7 +25,7 @@ constexpr Code kTissueCode = codeOf(Site::Tissue);
 // Closest that a boundary may come to a voxel's centre, in voxels: moves it by no more than that
 // and keeps 1 / fraction well inside single precision.
 constexpr double kSmallestFraction = 1e-4;
-// Room around the tissue within which level sets are made from labels: the blur's reach.
+// Room around the tissue within which boundaries are made from labels.
 constexpr int kLabelMargin = 4;
 
 /// Part of a volume's index space: voxel (0, 0, 0) of the box is voxel `first` of the grid.
@@ -280,10 +281,15 @@ void countContacts(Annulus& annulus, const std::vector<Code>& sites, const Monit
   monitor.warn(text.str());
 }
 
-/// Sites of the box and the levels on it, to the annulus.
+/// Where a boundary lies on the link from box voxel p, s its subscripts, in direction d: fraction
+/// of the spacing.
+using PlaceOnLink =
+    std::function<double(std::int32_t p, const std::array<int, 3>& s, int d, bool inner)>;
+
+/// Sites of the box to the annulus.
 Annulus assemble(const Grid& grid, const Box& box, std::vector<Code> sites,
-                 const std::vector<float>& innerLevel, const std::vector<float>& outerLevel,
-                 const AnnulusOptions& options, const Monitor& monitor) {
+                 const PlaceOnLink& placeOnLink, const AnnulusOptions& options,
+                 const Monitor& monitor) {
   Annulus annulus;
   annulus.grid = grid;
   annulus.first = box.first;
@@ -312,29 +318,15 @@ Annulus assemble(const Grid& grid, const Box& box, std::vector<Code> sites,
   number(annulus, sites, {});
   if (options.boundary == BoundaryModel::Staircase) return annulus;
 
-  const auto strides = annulus.strides();
   parallelFor(annulus.count(), 1 << 12, [&](std::size_t index) {
     const auto n = static_cast<std::int32_t>(index);
     const std::int32_t row = annulus.irregular(n);
     if (row < 0) return;
-    const std::int32_t p = annulus.place[n];
     const auto s = annulus.boxSubscripts(n);
     for (int d = 0; d < 6; ++d) {
       const std::int32_t link = annulus.links[n][d];
       if (link != kInner && link != kOuter) continue;
-      const std::vector<float>& level = link == kInner ? innerLevel : outerLevel;
-      const float outward = link == kInner ? 1.0F : -1.0F;  // makes the tissue's side positive
-      const int a = axisOf(d), step = signOf(d) * strides[a];
-      const double here = outward * level[p], there = outward * level[p + step];
-      double fraction = 0.5;
-      if (here > 0 && there <= 0) {
-        const int twoOn = s[a] + 2 * signOf(d), oneBack = s[a] - signOf(d);
-        const double linearBack = 2 * here - there, linearOn = 2 * there - here;
-        const bool on = twoOn >= 0 && twoOn < box.size[a];
-        const bool back = oneBack >= 0 && oneBack < box.size[a];
-        fraction = crossing(back ? outward * level[p - step] : linearBack, here, there,
-                            on ? outward * level[p + 2 * step] : linearOn);
-      }
+      const double fraction = placeOnLink(annulus.place[n], s, d, link == kInner);
       annulus.fractions[row][d] = static_cast<float>(std::clamp(fraction, kSmallestFraction, 1.0));
     }
   });
@@ -458,35 +450,29 @@ Annulus annulusFromLabels(const Volume<Label>& labels, const LabelRoles& roles,
     }
   });
 
-  std::vector<float> innerLevel, outerLevel;
+  std::optional<LabelBoundary> innerBoundary, outerBoundary;
   if (options.boundary != BoundaryModel::Staircase) {
-    Volume<std::uint8_t> side;
-    side.grid = grid;
-    side.grid.size = box.size;
-    // The box of a 2D image has insulated layers above and below: blur in the plane only.
-    if (grid.dimension() == 2) side.grid.size[2] = 1;
-    const std::size_t offset = grid.dimension() == 2 ? box.linear(0, 0, 1) : 0;
-    const auto levelOf = [&](bool outer) {
-      side.data.resize(side.grid.voxelCount());
-      parallelFor(side.size(), 1 << 16, [&](std::size_t v) {
-        const auto site = static_cast<Site>(sites[v + offset]);
+    const int axes = options.perSlice ? 2 : grid.dimension();
+    std::vector<std::uint8_t> side(sites.size());
+    for (const bool outer : {false, true}) {
+      parallelFor(side.size(), 1 << 16, [&](std::size_t p) {
+        const auto site = static_cast<Site>(sites[p]);
         if (site == Site::Insulated) {
-          side[v] = 255;
+          side[p] = 255;
         } else {
-          side[v] = site == Site::Inner || (outer && site == Site::Tissue) ? 1 : 0;
+          side[p] = site == Site::Inner || (outer && site == Site::Tissue) ? 1 : 0;
         }
       });
-      const Volume<float> level = antialiasedLevel(side, options.perSlice);
-      if (offset == 0) return level.data;
-      std::vector<float> all(box.count(), 0);
-      std::copy(level.data.begin(), level.data.end(),
-                all.begin() + static_cast<std::ptrdiff_t>(offset));
-      return all;
-    };
-    innerLevel = levelOf(false);
-    outerLevel = levelOf(true);
+      (outer ? outerBoundary : innerBoundary).emplace(side, box.size, axes);
+    }
   }
-  return assemble(grid, box, std::move(sites), innerLevel, outerLevel, options, monitor);
+  const std::array<int, 3> strides = {1, box.size[0], box.size[0] * box.size[1]};
+  const auto placeOnLink = [&](std::int32_t p, const std::array<int, 3>&, int d, bool inner) {
+    const LabelBoundary& boundary = inner ? *innerBoundary : *outerBoundary;
+    const int a = axisOf(d);
+    return signOf(d) > 0 ? boundary.place(p, a) : 1 - boundary.place(p - strides[a], a);
+  };
+  return assemble(grid, box, std::move(sites), placeOnLink, options, monitor);
 }
 
 Annulus annulusFromSites(const Volume<Site>& sites, const Volume<float>& innerLevel,
@@ -531,7 +517,21 @@ Annulus annulusFromSites(const Volume<Site>& sites, const Volume<float>& innerLe
       }
     }
   });
-  return assemble(grid, box, std::move(codes), inner, outer, options, monitor);
+  const std::array<int, 3> strides = {1, box.size[0], box.size[0] * box.size[1]};
+  const auto placeOnLink = [&](std::int32_t p, const std::array<int, 3>& s, int d, bool isInner) {
+    const std::vector<float>& level = isInner ? inner : outer;
+    const float outward = isInner ? 1.0F : -1.0F;  // makes the tissue's side positive
+    const int a = axisOf(d), step = signOf(d) * strides[a];
+    const double here = outward * level[p], there = outward * level[p + step];
+    if (!(here > 0 && there <= 0)) return 0.5;
+    const int twoOn = s[a] + 2 * signOf(d), oneBack = s[a] - signOf(d);
+    const double linearBack = 2 * here - there, linearOn = 2 * there - here;
+    const bool on = twoOn >= 0 && twoOn < box.size[a];
+    const bool back = oneBack >= 0 && oneBack < box.size[a];
+    return crossing(back ? outward * level[p - step] : linearBack, here, there,
+                    on ? outward * level[p + 2 * step] : linearOn);
+  };
+  return assemble(grid, box, std::move(codes), placeOnLink, options, monitor);
 }
 
 Annulus annulusFromLevels(const Volume<float>& inner, const Volume<float>& outer,

@@ -11,8 +11,9 @@ namespace explica::correspondence {
 
 /// When two fronts that meet in grey matter are taken for the banks of a sulcus.
 struct SulcusOptions {
-  double facingDeg = 90;  ///< smallest angle between the fronts' directions: from here on they run
-                          ///< against each other rather than side by side
+  double facingDeg = 100;  ///< smallest angle between the fronts' directions: more than a right
+                           ///< angle, at which they meet in a right-angled corner of one bank, by
+                           ///< the ten degrees to which directions are known a voxel or two away
 };
 
 template <class Visitor>

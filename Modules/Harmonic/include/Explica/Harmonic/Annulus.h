@@ -145,16 +145,9 @@ struct LevelOptions {
   LevelInside inside = LevelInside::Automatic;
 };
 
-/// Level set of a mask, in mm, negative inside, made free of the voxels' steps: Gaussian-blurred
-/// (standard deviation 0.8 voxel along each axis, at most 1.6 of the finest spacing), turned into
-/// the distance that a plane would have, and held to each voxel's own side.  Voxels of unknown side
-/// count for nothing.
-/// @param side      1 inside, 0 outside, 255 unknown
-/// @param perSlice  blur within slices only
-[[nodiscard]] Volume<float> antialiasedLevel(const Volume<std::uint8_t>& side,
-                                             bool perSlice = false);
-
-/// Annulus of a label volume; boundaries from antialiasedLevel().
+/// Annulus of a label volume.  The boundaries are the smoothest surfaces that leave every voxel
+/// centre on its own side: of all places between the centres of two neighbouring voxels of
+/// different label, those that bend the surface least.
 /// @throws InvalidInput  a named label is absent (the message lists those present), no tissue, no
 ///                       inner or outer region, roles that overlap, or no piece of tissue touches
 ///                       both sides
