@@ -1,8 +1,13 @@
 #!/bin/sh
 # SPDX-FileCopyrightText: The Explica developers
 # SPDX-License-Identifier: Apache-2.0
-# Writes Applications/<Name>/README.md anew from the declarations of the commands in build/.
+# Writes what follows from the commands' declarations anew, by the commands in build/: the pages
+# Applications/<Name>/README.md and the descriptions for other tools in Wrapping/Descriptors.
 set -eu
 cd "$(dirname "$0")/.."
-cmake --build build --target explica ExplicaReferencePagesCommandTests
+cmake --build build --target explica descriptors ExplicaReferencePagesCommandTests
 EXPLICA_UPDATE_PAGES=1 build/bin/ExplicaReferencePagesCommandTests
+for kind in boutiques completion man nipype slicer; do
+  rm -rf "Wrapping/Descriptors/$kind"
+  cp -r "build/descriptors/$kind" Wrapping/Descriptors/
+done

@@ -6,10 +6,20 @@
 #include "Parse.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <map>
+#include <utility>
 
 namespace explica::app {
 namespace {
+
+constexpr std::array<std::pair<int, const char*>, 5> kExitCodes = {
+    {{0, "done"},
+     {1, "usage"},
+     {2, "bad input"},
+     {3, "stopped before its goal (outputs written and marked)"},
+     {4, "environment"}}};
 
 /// Letters and digits of a name, words joined by one `joint`: "frames/frame-*.gii" becomes
 /// "frames_frame_gii".
@@ -70,10 +80,27 @@ std::string word(const Json& value) {
   return value.get<std::string>();
 }
 
+std::string valueText(const Json& value) {
+  if (value.is_null()) return "";
+  if (value.is_string()) return word(value);
+  if (value.is_array()) {
+    std::string joined;
+    for (const Json& item : value) joined += (joined.empty() ? "" : ",") + valueText(item);
+    return joined;
+  }
+  return value.dump();
+}
+
 /// Help with unit, as one sentence.
 std::string helpOf(const Json& p) {
   const std::string unit = word(p["unit"]);
   return word(p["help"]) + (unit.empty() ? "" : " [" + unit + "]");
+}
+
+/// The same with the default.
+std::string helpWithDefault(const Json& p) {
+  const std::string value = isFlag(p) ? "" : valueText(p["default"]);
+  return helpOf(p) + (value.empty() ? "" : " (default " + value + ")");
 }
 
 bool needed(const Json& p) {
@@ -87,7 +114,9 @@ Json boutiquesInput(const Json& p) {
   const std::string id = identifier(word(p["name"]));
   input["id"] = id;
   input["name"] = word(p["name"]);
-  input["description"] = helpOf(p);
+  // Not as "default-value": platforms would then pass every default as if the user had asked for
+  // it.
+  input["description"] = helpWithDefault(p);
   input["type"] = isFlag(p) ? "Flag" : isFile(p) ? "File" : isNumber(p) ? "Number" : "String";
   input["optional"] = isFlag(p) || !needed(p);
   std::string key;
@@ -101,11 +130,6 @@ Json boutiquesInput(const Json& p) {
     if (isJoined(p)) input["list-separator"] = ",";
     if (!isJoined(p) && !p["positional"]) input["command-line-flag-separator"] = " ";
   }
-  const Json& value = p["default"];
-  if (!isFlag(p) && !p["list"] && (value.is_number() || value.is_string()) &&
-      !(value.is_string() && word(value).empty())) {
-    input["default-value"] = value;
-  }
   return input;
 }
 
@@ -116,12 +140,22 @@ std::string escapedXml(const std::string& text) {
                   "&quot;");
 }
 
+/// What Slicer must not pass unless the user sets it: it passes every number and choice, but a text
+/// only if there is one.  Numbers without default, and options of a step, which would win over what
+/// the run itself settles.
+bool passedOnlyIfSet(const Json& p) {
+  const bool ofStep = word(p["name"]).find('.') != std::string::npos;
+  return !isFlag(p) && p["file"].is_null() && p["name"] != "out" &&
+         (ofStep || p["default"].is_null() || valueText(p["default"]).empty());
+}
+
 std::string slicerTag(const Json& p) {
   const std::string kind = p["file"].is_null() ? "" : word(p["file"]);
   if (kind == "volume" || kind == "label volume" || kind == "point volume") return "image";
   if (kind == "surface") return "geometry";
   if (kind == "folder" || p["name"] == "out") return "directory";
   if (!kind.empty()) return "file";
+  if (passedOnlyIfSet(p) && !p["positional"]) return "string";
   const std::string type = word(p["type"]);
   if (type == "flag") return "boolean";
   if (type == "integer") return p["list"] ? "integer-vector" : "integer";
@@ -129,17 +163,6 @@ std::string slicerTag(const Json& p) {
   if (isPoint(p)) return "double-vector";
   if (type == "choice") return p["list"] ? "string-vector" : "string-enumeration";
   return p["list"] ? "string-vector" : "string";
-}
-
-std::string valueText(const Json& value) {
-  if (value.is_null()) return "";
-  if (value.is_string()) return word(value);
-  if (value.is_array()) {
-    std::string joined;
-    for (const Json& item : value) joined += (joined.empty() ? "" : ",") + valueText(item);
-    return joined;
-  }
-  return value.dump();
 }
 
 std::string slicerParameter(const Json& p, int index) {
@@ -150,7 +173,8 @@ std::string slicerParameter(const Json& p, int index) {
   std::string xml = open + ">\n";
   xml += "      <name>" + identifier(word(p["name"])) + "</name>\n";
   xml += "      <label>" + escapedXml(word(p["name"])) + "</label>\n";
-  xml += "      <description>" + escapedXml(helpOf(p)) + "</description>\n";
+  const std::string help = tag == "string" ? helpWithDefault(p) : helpOf(p);
+  xml += "      <description>" + escapedXml(help) + "</description>\n";
   if (p["positional"]) {
     xml += "      <index>" + std::to_string(index) + "</index>\n";
   } else {
@@ -158,7 +182,9 @@ std::string slicerParameter(const Json& p, int index) {
   }
   if (isFile(p) || isFolder(p)) xml += "      <channel>input</channel>\n";
   if (p["name"] == "out") xml += "      <channel>output</channel>\n";
-  if (const std::string value = valueText(p["default"]); !value.empty()) {
+  std::string value = valueText(p["default"]);
+  if (value.empty() && tag == "string-enumeration") value = word(p["choices"].front());
+  if (!value.empty() && tag != "string") {
     xml += "      <default>" + escapedXml(value) + "</default>\n";
   }
   if (tag == "string-enumeration") {
@@ -282,7 +308,7 @@ Json boutiquesOf(const Json& command, const std::string& version) {
     }
   }
   descriptor["command-line"] = line;
-  if (command["writes_folder"]) {
+  if (command["writes_folder"] && !command["outputs"].empty()) {
     descriptor["output-files"] = Json::array();
     for (const Json& slot : command["outputs"]) {
       const std::string pattern = word(slot["pattern"]);
@@ -292,6 +318,10 @@ Json boutiquesOf(const Json& command, const std::string& version) {
                                             {"path-template", "[OUT]/" + pattern},
                                             {"optional", true}});
     }
+  }
+  descriptor["error-codes"] = Json::array();
+  for (const auto& [code, meaning] : kExitCodes) {
+    if (code != 0) descriptor["error-codes"].push_back({{"code", code}, {"description", meaning}});
   }
   descriptor["tags"] = {{"domain", {"neuroinformatics", "mri"}}};
   return descriptor;
@@ -306,7 +336,8 @@ std::string slicerXmlOf(const Json& command, const std::string& version) {
          escapedXml(description.empty() ? word(command["synopsis"]) : description) +
          "</description>\n";
   xml += "  <version>" + escapedXml(version) + "</version>\n";
-  xml += "  <license>Apache-2.0</license>\n";
+  xml += "  <documentation-url></documentation-url>\n  <license>Apache-2.0</license>\n";
+  xml += "  <contributor>The Explica developers</contributor>\n";
   for (const std::string& category : categoriesOf(command)) {
     xml += "  <parameters" + std::string(category == "Common" ? " advanced=\"true\"" : "") + ">\n";
     xml += "    <label>" + escapedXml(category) + "</label>\n";
@@ -428,21 +459,33 @@ std::string bashCompletionOf(const Json& commands) {
 }
 
 std::string zshCompletionOf(const Json& commands) {
-  std::string text =
-      "#compdef explica\n# zsh completion, generated from the commands' own declarations.\n"
-      "local -a commands\ncommands=(\n";
   std::vector<std::string> verbs;
+  std::map<std::string, std::string> kindsOf;  // of a verb of two words: entries for _describe
+  std::string described;
   for (const Json& command : commands) {
     const std::string name = word(command["command"]);
-    const std::string verb = name.substr(0, name.find(' '));
+    const std::size_t space = name.find(' ');
+    const std::string verb = name.substr(0, space);
+    const std::string synopsis = replaced(word(command["synopsis"]), ":", "\\:");
+    if (space != std::string::npos) {
+      kindsOf[verb] += " " + quotedShell(name.substr(space + 1) + ":" + synopsis);
+    }
     if (std::find(verbs.begin(), verbs.end(), verb) != verbs.end()) continue;
     verbs.push_back(verb);
-    text += "  " + quotedShell(verb + ":" + replaced(word(command["synopsis"]), ":", "\\:")) + "\n";
+    described += "  " + quotedShell(verb + ":" + synopsis) + "\n";
   }
-  text +=
+  std::string text =
+      "#compdef explica\n# zsh completion, generated from the commands' own declarations.\n"
+      "local -a commands kinds\ncommands=(\n" +
+      described +
       ")\nif (( CURRENT == 2 )); then\n  _describe command commands\n  return\nfi\n"
-      "local name=${words[2]}\n[[ $name == phantom ]] && name=\"$name ${words[3]}\"\n"
-      "case $name in\n";
+      "local name=${words[2]}\n";
+  for (const auto& [verb, kinds] : kindsOf) {
+    text += "if [[ $name == " + verb + " ]]; then\n  kinds=(" + kinds.substr(1) +
+            ")\n  if (( CURRENT == 3 )); then\n    _describe kind kinds\n    return\n  fi\n"
+            "  name=\"$name ${words[3]}\"\nfi\n";
+  }
+  text += "case $name in\n";
   for (const Json& command : commands) {
     text += "  " + quotedShell(word(command["command"])) + ")\n    _arguments \\\n";
     for (const Json& p : command["parameters"]) {
@@ -493,11 +536,7 @@ std::string manPageOf(const Json& command, const std::string& version) {
           p["positional"]
               ? word(p["name"])
               : "--" + word(p["name"]) + (isFlag(p) ? "" : " " + word(p["placeholder"]));
-      std::string right = helpOf(p);
-      if (const std::string value = valueText(p["default"]); !value.empty() && !isFlag(p)) {
-        right += " (default " + value + ")";
-      }
-      text += ".TP\n.B " + roff(left) + "\n" + roff(right) + "\n";
+      text += ".TP\n.B " + roff(left) + "\n" + roff(helpWithDefault(p)) + "\n";
     }
   }
   if (command["writes_folder"]) {
@@ -506,9 +545,10 @@ std::string manPageOf(const Json& command, const std::string& version) {
       text += ".TP\n.I " + roff(word(slot["pattern"])) + "\n" + roff(word(slot["help"])) + "\n";
     }
   }
-  text +=
-      ".SH \"EXIT STATUS\"\n0 done, 1 usage, 2 bad input, 3 stopped before its goal (outputs "
-      "written and marked), 4 environment.\n";
+  text += ".SH \"EXIT STATUS\"\n";
+  for (const auto& [code, meaning] : kExitCodes) {
+    text += ".TP\n.B " + std::to_string(code) + "\n" + roff(meaning) + "\n";
+  }
   if (!command["examples"].empty()) {
     text += ".SH EXAMPLES\n";
     for (const Json& e : command["examples"]) {
@@ -517,7 +557,11 @@ std::string manPageOf(const Json& command, const std::string& version) {
   }
   if (!command["references"].empty()) {
     text += ".SH REFERENCES\n";
-    for (const Json& reference : command["references"]) text += roff(word(reference)) + "\n.PP\n";
+    std::string between;
+    for (const Json& reference : command["references"]) {
+      text += between + roff(word(reference)) + "\n";
+      between = ".PP\n";
+    }
   }
   return text;
 }

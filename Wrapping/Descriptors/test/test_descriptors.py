@@ -6,14 +6,23 @@ import importlib.util
 import json
 import os
 import pathlib
+import pty
 import re
+import select
+import shlex
+import shutil
 import subprocess
 import tempfile
+import time
 import unittest
 import xml.etree.ElementTree
 
+import jsonschema
+
+HERE = pathlib.Path(__file__).resolve().parent
 FOLDER = pathlib.Path(os.environ["EXPLICA_DESCRIPTORS"])
 EXECUTABLE = pathlib.Path(os.environ["EXPLICA_EXECUTABLE"])
+KINDS = ("boutiques", "completion", "man", "nipype", "slicer")
 
 
 def declarations():
@@ -24,79 +33,271 @@ def file_name(command):
     return "explica-" + command["command"].replace(" ", "-")
 
 
-class Boutiques(unittest.TestCase):
-    # What the schema 0.5 of Boutiques demands of the parts that we write.
-    KEYS = {
-        "id", "name", "description", "type", "optional", "value-key", "command-line-flag", "integer",
-        "value-choices", "list", "list-separator", "command-line-flag-separator", "default-value",
-    }  # fmt: skip
+def boutiques():
+    """(declaration, descriptor) of every command."""
+    for command in declarations():
+        file = FOLDER / "boutiques" / (file_name(command) + ".json")
+        yield command, json.loads(file.read_text())
 
+
+class Kept(unittest.TestCase):
+    def test_kept_descriptions_are_those_of_the_commands(self):
+        """If this fails, run Testing/update-pages.sh and look at the difference."""
+
+        def files(folder):
+            return {
+                str(file.relative_to(folder)): file.read_text()
+                for kind in KINDS
+                for file in (folder / kind).iterdir()
+            }
+
+        kept, made = files(HERE.parent), files(FOLDER)
+        self.assertEqual(kept.keys(), made.keys())
+        for name, text in made.items():
+            self.assertEqual(kept[name].splitlines(), text.splitlines(), name)
+
+
+class Boutiques(unittest.TestCase):
     def test_descriptors_obey_the_schema(self):
-        for command in declarations():
-            d = json.loads((FOLDER / "boutiques" / (file_name(command) + ".json")).read_text())
+        schema = json.loads((HERE / "boutiques.schema.json").read_text())
+        jsonschema.Draft7Validator.check_schema(schema)
+        for command, descriptor in boutiques():
             with self.subTest(command=command["command"]):
-                for key in ("name", "description", "tool-version", "schema-version", "command-line"):
-                    self.assertTrue(d[key])
-                self.assertEqual(d["schema-version"], "0.5")
-                self.assertGreater(len(d["inputs"]), 0)
-                ids = [i["id"] for i in d["inputs"]]
+                jsonschema.validate(descriptor, schema)
+
+    def test_schema_refuses_mistakes(self):
+        schema = json.loads((HERE / "boutiques.schema.json").read_text())
+        _, right = next(boutiques())
+        for change in (
+            lambda d: d.pop("command-line"),
+            lambda d: d.update(colour="red"),
+            lambda d: d["inputs"][0].update(type="Integer"),
+            lambda d: d["inputs"].append(d["inputs"][0]),
+            lambda d: d["inputs"][0].update({"type": "File", "value-choices": ["a"]}),
+            lambda d: d["output-files"][0].pop("path-template"),
+        ):
+            wrong = json.loads(json.dumps(right))
+            change(wrong)
+            with self.assertRaises(jsonschema.ValidationError):
+                jsonschema.validate(wrong, schema)
+
+    @unittest.skipUnless(importlib.util.find_spec("boutiques"), "skipped: boutiques is not installed")
+    def test_descriptors_obey_the_schema_proper(self):
+        from boutiques.validator import validate_descriptor
+
+        for command in declarations():
+            validate_descriptor(str(FOLDER / "boutiques" / (file_name(command) + ".json")))
+
+    def test_rules_beyond_the_schema(self):
+        for command, d in boutiques():
+            with self.subTest(command=command["command"]):
+                for key in ("id", "value-key"):
+                    values = [i[key] for i in d["inputs"]]
+                    self.assertEqual(len(values), len(set(values)), "unique " + key)
+                ids = [o["id"] for o in d.get("output-files", [])]
                 self.assertEqual(len(ids), len(set(ids)))
-                for i in d["inputs"]:
-                    self.assertLessEqual(set(i), self.KEYS)
-                    self.assertRegex(i["id"], r"^[0-9_a-zA-Z]+$")
-                    self.assertIn(i["type"], ("String", "File", "Flag", "Number"))
-                    self.assertIn(i["value-key"], d["command-line"])
-                    if i["type"] == "Flag":
-                        self.assertTrue(i["optional"])
-                        self.assertIn("command-line-flag", i)
-                    if "value-choices" in i and "default-value" in i:
-                        self.assertIn(i["default-value"], i["value-choices"])
+                keys = re.findall(r"\[[^\]]*\]", d["command-line"])
+                self.assertEqual(keys, [i["value-key"] for i in d["inputs"]])
                 for o in d.get("output-files", []):
-                    self.assertRegex(o["id"], r"^[0-9_a-zA-Z]+$")
                     self.assertTrue(o["path-template"].startswith("[OUT]/"))
+                self.assertEqual([e["code"] for e in d["error-codes"]], [1, 2, 3, 4])
 
     def test_every_option_of_the_command_is_there(self):
-        for command in declarations():
-            d = json.loads((FOLDER / "boutiques" / (file_name(command) + ".json")).read_text())
+        for command, d in boutiques():
             self.assertEqual(
                 {i["name"] for i in d["inputs"]}, {p["name"] for p in command["parameters"]}
             )
 
+    @staticmethod
+    def line(descriptor, values):
+        """The command line that Boutiques makes of a descriptor and an invocation."""
+        line = descriptor["command-line"]
+        for i in descriptor["inputs"]:
+            text = ""
+            if i["id"] in values:
+                value = values[i["id"]]
+                if i["type"] == "Flag":
+                    text = i["command-line-flag"] if value else ""
+                else:
+                    separator = i.get("list-separator", " ")
+                    given = separator.join(map(str, value)) if i.get("list") else str(value)
+                    flag = i.get("command-line-flag")
+                    text = flag + i.get("command-line-flag-separator", " ") + given if flag else given
+            elif not i["optional"]:
+                raise KeyError(i["id"])
+            line = line.replace(i["value-key"], text)
+        return line
+
+    def run_line(self, name, **values):
+        descriptor = dict((c["command"], d) for c, d in boutiques())[name]
+        words = shlex.split(self.line(descriptor, values))
+        self.assertEqual(words[0], "explica")
+        done = subprocess.run([EXECUTABLE, *words[1:]])
+        self.assertIn(done.returncode, (0, 3))
+
+    def test_invocations_run(self):
+        with tempfile.TemporaryDirectory() as folder:
+            shell, thick, both = (f"{folder}/{name}" for name in ("shell", "thick", "both"))
+            self.run_line("phantom shell", size=16, aspect="1,1,2", out=shell, quiet=True)
+            self.run_line("thickness", SEG=f"{shell}/labels.nii.gz", inner=[1], tissue=[2],
+                          layers=2, method="eulerian", out=thick, quiet=True)  # fmt: skip
+            record = json.loads(pathlib.Path(thick, "provenance.json").read_text())
+            self.assertEqual(record["options"]["method"], "eulerian")
+            for name in ("p19", "p34"):
+                self.run_line(f"phantom polygon{name[1:]}", out=f"{folder}/{name}", quiet=True)
+            self.run_line("embed", TARGET=[f"{folder}/{n}/polygon.csv" for n in ("p19", "p34")],
+                          combine=[0.3, 0.7], order=8, max_iterations=2, out=both, quiet=True)  # fmt: skip
+
 
 class Slicer(unittest.TestCase):
-    def test_xml_is_well_formed_complete_and_printed_by_the_command(self):
+    # The grammar of https://slicer.readthedocs.io, "Slicer execution model".
+    HEAD = ["category", "title", "description", "version", "documentation-url", "license", "contributor"]
+    SCALARS = {"integer": int, "double": float}
+    VECTORS = {"integer-vector": int, "double-vector": float}
+    FILES = {"file", "directory", "image", "geometry"}
+    OTHERS = {"boolean", "string", "string-vector", "string-enumeration"}
+    INSIDE = ["name", "label", "description", "index", "longflag", "channel", "default", "element"]
+
+    def roots(self):
         for command in declarations():
             text = (FOLDER / "slicer" / (file_name(command) + ".xml")).read_text()
-            printed = subprocess.check_output(
-                [EXECUTABLE, *command["command"].split(), "--xml"], text=True
-            )
-            self.assertEqual(text, printed)
-            root = xml.etree.ElementTree.fromstring(text.encode())
-            self.assertEqual(root.tag, "executable")
-            labels = {n.text for n in root.iter("label")}
-            for p in command["parameters"]:
-                self.assertIn(p["name"], labels)
-            for choice in root.iter("string-enumeration"):
-                self.assertIn(choice.findtext("default"), [e.text for e in choice.iter("element")] + [None])
+            yield command, text, xml.etree.ElementTree.fromstring(text.encode())
+
+    def test_command_prints_its_description(self):
+        for command, text, _ in self.roots():
+            words = [EXECUTABLE, *command["command"].split(), "--xml"]
+            self.assertEqual(text, subprocess.check_output(words, text=True))
+
+    def check_parameter(self, node):
+        tags = [child.tag for child in node]
+        self.assertEqual(tags, sorted(tags, key=self.INSIDE.index), "order")
+        for tag in set(tags) - {"element"}:
+            self.assertEqual(tags.count(tag), 1, tag)
+        self.assertLessEqual({"name", "label", "description"}, set(tags))
+        self.assertRegex(node.findtext("name"), r"^[A-Za-z_][A-Za-z0-9_]*$")
+        self.assertEqual(("index" in tags) + ("longflag" in tags), 1)
+        self.assertEqual("element" in tags, node.tag == "string-enumeration")
+        self.assertEqual("channel" in tags, node.tag in self.FILES)
+        if "channel" in tags:
+            self.assertIn(node.findtext("channel"), ("input", "output"))
+        default = node.findtext("default")
+        if node.tag in self.SCALARS:
+            self.SCALARS[node.tag](default)  # Slicer passes every number: it must have one
+        elif node.tag in self.VECTORS and default:
+            [self.VECTORS[node.tag](part) for part in default.split(",")]
+        elif node.tag == "boolean":
+            self.assertIn(default, (None, "true", "false"))
+        elif node.tag == "string-enumeration":
+            self.assertIn(default, [e.text for e in node.iter("element")])
+        elif node.tag == "string":
+            self.assertIsNone(default)  # what is empty is not passed
+
+    def test_descriptions_obey_the_grammar(self):
+        for command, _, root in self.roots():
+            with self.subTest(command=command["command"]):
+                self.assertEqual(root.tag, "executable")
+                tags = [child.tag for child in root]
+                self.assertEqual(tags[: len(self.HEAD)], self.HEAD)
+                self.assertEqual(set(tags[len(self.HEAD) :]), {"parameters"})
+                names, indices, flags = [], [], []
+                for group in root.iter("parameters"):
+                    self.assertEqual([c.tag for c in group][:2], ["label", "description"])
+                    for node in list(group)[2:]:
+                        known = set(self.SCALARS) | set(self.VECTORS) | self.FILES | self.OTHERS
+                        self.assertIn(node.tag, known)
+                        self.check_parameter(node)
+                        names.append(node.findtext("name"))
+                        flags.append(node.findtext("longflag"))
+                        indices.append(node.findtext("index"))
+                self.assertEqual(len(names), len(set(names)))
+                flags = [f for f in flags if f]
+                indices = [int(i) for i in indices if i]
+                self.assertEqual(len(flags), len(set(flags)))
+                self.assertEqual(indices, list(range(len(indices))))
+                labels = {n.text for n in root.iter("label")}
+                self.assertLessEqual({p["name"] for p in command["parameters"]}, labels)
+
+    def test_what_slicer_would_run_runs(self):
+        """Slicer passes every number, vector and choice, set by the user or not."""
+        for command, _, root in self.roots():
+            if command["command"] != "phantom shell":
+                continue
+            words = []
+            for node in root.iter():
+                flag, default = node.findtext("longflag"), node.findtext("default")
+                if flag and default is not None and node.tag != "boolean":
+                    words += [flag, "16" if flag == "--size" else default]
+            with tempfile.TemporaryDirectory() as folder:
+                subprocess.run([EXECUTABLE, "phantom", "shell", *words, "--quiet",
+                                "--out", f"{folder}/out"], check=True)  # fmt: skip
 
 
-class Shells(unittest.TestCase):
-    def complete(self, *words):
+class Shell:
+    """An interactive shell in a terminal, with `explica` replaced by what prints its arguments."""
+
+    def __init__(self, words, setup):
+        self.pid, self.terminal = pty.fork()
+        if self.pid == 0:
+            os.environ.update(TERM="dumb", PS1="> ", HOME="/nonexistent", INPUTRC="/dev/null")
+            os.execvp(words[0], words)
+        self.say(setup + "; echo rea''dy\n")
+        self.hear("ready")
+
+    def say(self, text):
+        os.write(self.terminal, text.encode())
+
+    def hear(self, pattern, seconds=20):
+        """What the shell has said, once it matches."""
+        heard, end = "", time.monotonic() + seconds
+        while time.monotonic() < end:
+            if select.select([self.terminal], [], [], 0.1)[0]:
+                heard += os.read(self.terminal, 65536).decode(errors="replace")
+            found = re.search(pattern, heard)
+            if found:
+                return found
+        raise AssertionError(f"waited for {pattern!r}, heard {heard!r}")
+
+    def complete(self, typed):
+        """The arguments that `explica` gets when the last word is completed with the tabulator."""
+        self.say(f"explica {typed}\t\n")
+        return self.hear(r"GOT<(.*?)>")[1].split()
+
+    def close(self):
+        self.say("\x15exit\n")
+        os.close(self.terminal)
+        os.waitpid(self.pid, 0)
+
+
+class Completion(unittest.TestCase):
+    ECHO = 'explica() { printf "GO%s<%s>\\n" T "$*"; }'
+
+    def check(self, shell):
+        try:
+            self.assertEqual(shell.complete("thick"), ["thickness"])
+            self.assertEqual(shell.complete("phantom ecc"), ["phantom", "eccentric"])
+            self.assertEqual(shell.complete("phantom shell --asp")[-1], "--aspect")
+            self.assertEqual(shell.complete("thickness --method lagr")[-1], "lagrangian")
+            self.assertEqual(shell.complete("surface --gen")[-1], "--genus")
+        finally:
+            shell.close()
+
+    def test_bash(self):
+        script = FOLDER / "completion" / "explica.bash"
+        self.check(Shell(["bash", "--norc", "--noprofile", "-i"], f"source {script}; {self.ECHO}"))
+
+    @unittest.skipUnless(shutil.which("zsh"), "skipped: zsh is not installed")
+    def test_zsh(self):
+        folder = FOLDER / "completion"
+        setup = f"fpath=({folder} $fpath); autoload -Uz compinit; compinit -D -u; {self.ECHO}"
+        self.check(Shell(["zsh", "-f", "-i"], setup))
+
+    def test_every_verb_is_offered(self):
         script = (
-            f"source {FOLDER}/completion/explica.bash; COMP_WORDS=({' '.join(words)} '');"
-            f"COMP_CWORD={len(words)}; _explica; echo ${{COMPREPLY[@]}}"
+            f"source {FOLDER}/completion/explica.bash; COMP_WORDS=(explica ''); COMP_CWORD=1;"
+            "_explica; echo ${COMPREPLY[@]}"
         )
-        return subprocess.check_output(["bash", "-c", script], text=True).split()
-
-    def test_bash_completes_verbs_kinds_and_options(self):
-        verbs = {c["command"].split()[0] for c in declarations()}
-        self.assertEqual(set(self.complete("explica")), verbs)
-        self.assertIn("shell", self.complete("explica", "phantom"))
-        script = (
-            f"source {FOLDER}/completion/explica.bash; COMP_WORDS=(explica phantom shell --si);"
-            "COMP_CWORD=3; _explica; echo ${COMPREPLY[@]}"
-        )
-        self.assertEqual(subprocess.check_output(["bash", "-c", script], text=True).split(), ["--size"])
+        offered = subprocess.check_output(["bash", "-c", script], text=True).split()
+        self.assertEqual(set(offered), {c["command"].split()[0] for c in declarations()})
 
 
 class ManualPages(unittest.TestCase):
@@ -106,6 +307,27 @@ class ManualPages(unittest.TestCase):
             for p in command["parameters"]:
                 self.assertIn(p["name"], page)
             self.assertTrue(re.match(r"\.TH EXPLICA", page))
+
+    @unittest.skipUnless(shutil.which("mandoc"), "skipped: mandoc is not installed")
+    def test_mandoc_finds_no_fault(self):
+        pages = sorted(str(page) for page in (FOLDER / "man").glob("*.1"))
+        done = subprocess.run(
+            ["mandoc", "-T", "lint", "-W", "warning", *pages], stdout=subprocess.PIPE, text=True
+        )
+        # Pages have no date: the same sources give the same bytes on every day.
+        faults = [line for line in done.stdout.splitlines() if "missing date" not in line]
+        self.assertEqual(faults, [])
+
+    @unittest.skipUnless(shutil.which("man"), "skipped: man is not installed")
+    def test_man_formats_every_page_without_warning(self):
+        for page in (FOLDER / "man").glob("*.1"):
+            done = subprocess.run(
+                ["man", "--warnings", "-E", "UTF-8", "-l", str(page)], stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE, text=True,
+                env=dict(os.environ, LC_ALL="C.UTF-8", MANPAGER="cat", MANWIDTH="80"),
+            )  # fmt: skip
+            self.assertEqual((done.returncode, done.stderr), (0, ""), page.name)
+            self.assertIn("SYNOPSIS", done.stdout)
 
 
 @unittest.skipUnless(importlib.util.find_spec("nipype"), "skipped: python3-nipype is not installed")
