@@ -5,6 +5,8 @@
 #include "Explica/Geometry/SelfIntersection.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/Testing/Command.h"
+#include "Explica/Testing/DepthBuffer.h"
+#include "Explica/Unfolding/Region.h"
 
 #include <gtest/gtest.h>
 
@@ -65,6 +67,19 @@ TEST_F(RealSurfaces, FixedSurroundingsOnTheAverageCortex) {
   const TriangleMesh after = io::readSurface(folder / "out/unfolded.surf.gii").mesh;
   EXPECT_EQ(after.vertexCount(), 10242);
   EXPECT_TRUE(geometry::findSelfIntersections(after).empty());
+  // A rasteriser with a depth buffer sees what the ray caster saw, before and after.
+  const TriangleMesh before = io::readSurface(kData / "fsaverage5/pial_left.gii.gz").mesh;
+  unfolding::RegionOptions where;
+  where.vertex = std::stoi(words[3]);
+  const auto region = unfolding::selectRegion(before, where);
+  Point eye = Point::Zero();
+  for (const std::int32_t v : region.vertices) eye += before.positions.row(v).transpose();
+  eye =
+      eye / static_cast<double>(region.vertices.size()) + 1000 * Vector(-1, 0.2, 0.2).normalized();
+  for (const auto& [mesh, key] : {std::pair{before, "seen_initial"}, {after, "seen_final"}}) {
+    const double share = seenShare(mesh, region.faces, renderFaces(mesh, eye, 3000));
+    EXPECT_NEAR(summary[key].get<double>(), share, 0.005) << key;
+  }
   for (int n = 0; n < 6; ++n) {
     EXPECT_TRUE(fs::exists(folder / ("out/frames/frame-000" + std::to_string(n) + ".surf.gii")));
   }

@@ -6,8 +6,11 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Geometry/Fixtures.h"
+#include "Explica/Testing/DepthBuffer.h"
 
 #include <gtest/gtest.h>
+
+#include <numeric>
 
 namespace explica::visibility {
 namespace {
@@ -60,6 +63,33 @@ TEST(VisibleFraction, BehindASmallerPlateIsItsShadow) {
   }
   EXPECT_NEAR(seen.of(both, floorFaces), 0.75, 1e-2);
   EXPECT_NEAR(visibleFraction(floor, viewpoint(Point(2, 2, 2))).total, 1, 1e-12);
+}
+
+TEST(VisibleFraction, IsWhatADepthBufferShows) {
+  // Pixels of 1/30 edge and 16 rays a face: both count the same thing to a few parts in a thousand.
+  const std::vector<std::pair<std::string, TriangleMesh>> zoo = {
+      {"sphere", geometry::makeIcosphere(4)},
+      {"folded sphere", geometry::makeFoldedSphere(5, 1.0, 0.3, 8)},
+      {"torus", geometry::makeTorus(80, 40, 1.0, 0.4)}};
+  for (const auto& [name, mesh] : zoo) {
+    std::vector<std::int32_t> faces(static_cast<std::size_t>(mesh.faceCount()));
+    std::iota(faces.begin(), faces.end(), 0);
+    for (const Point& eye : {Point(0.3, 0.4, 3), Point(-2, 1.5, 1), Point(400, -700, 300)}) {
+      const VisibleFraction rays = visibleFraction(mesh, viewpoint(eye), {4});
+      const testing::FacePixels pixels = testing::renderFaces(mesh, eye, 2000);
+      // Faces that the picture resolves; those edge-on to the viewpoint have too few pixels.
+      EXPECT_NEAR(rays.of(mesh, faces), testing::seenShare(mesh, faces, pixels), 4e-3)
+          << name << " from " << eye.transpose();
+      double differing = 0, resolved = 0;
+      for (const std::int32_t f : faces) {
+        if (pixels.covered[f] < 50) continue;
+        resolved += 1;
+        differing += std::abs(rays.face[f] - pixels.seen[f] / pixels.covered[f]) > 0.15;
+      }
+      EXPECT_GT(resolved, 0.7 * static_cast<double>(faces.size())) << name;
+      EXPECT_LT(differing, 0.01 * resolved) << name << " from " << eye.transpose();
+    }
+  }
 }
 
 TEST(VisibleFraction, RemovingAnOccluderHidesNothing) {

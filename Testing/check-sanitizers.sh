@@ -1,0 +1,21 @@
+#!/bin/sh
+# SPDX-FileCopyrightText: The Explica developers
+# SPDX-License-Identifier: Apache-2.0
+# Unit tests under the address and undefined-behaviour sanitizers, in build-sanitize/:
+#   Testing/check-sanitizers.sh [MODULE...]      default: every module whose unit tests are fast
+# Any finding ends a test with a failure and the place.  EXPLICA_JOBS bounds the compilers at once.
+set -eu
+cd "$(dirname "$0")/.."
+[ $# -gt 0 ] || set -- Core Geometry Collision Visibility Repulsion Unfolding Planar Shapes Harmonic \
+  Correspondence Surface Segmentation Report Study
+targets=$(printf 'Explica%sUnitTests ' "$@")
+[ -f build-sanitize/build.ninja ] || cmake --preset sanitize
+# shellcheck disable=SC2086  # a list of words
+cmake --build build-sanitize ${EXPLICA_JOBS:+-j "$EXPLICA_JOBS"} --target $targets
+export ASAN_OPTIONS=detect_stack_use_after_return=1:strict_init_order=1
+export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
+failed=""
+for target in $targets; do
+  build-sanitize/bin/"$target" --gtest_brief=1 || failed="$failed $target"
+done
+[ -z "$failed" ] || { echo "sanitizers: failures in$failed"; exit 1; }
