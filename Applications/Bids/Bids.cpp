@@ -66,6 +66,7 @@ void declare(Declaration& d, Settings& s) {
       .argument(Field{"LEVEL", "", "participant or group"}, s.level)
       .option("Study", Field{"participant-label", "", "participants to do, with or without sub-"},
               s.participants)
+      .severalWords("participant-label")
       .option("Study", Field{"hemispheres", "", "hemispheres to do"}, s.hemispheres)
       .option("Study", Field{"skip-bids-validator", "", "accepted; no validator is run"},
               s.skipValidator)

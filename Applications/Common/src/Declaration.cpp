@@ -57,6 +57,15 @@ Declaration& Declaration::inputOption(const std::string& optionName, FileKind ki
   return add(makeOption(Field{optionName, "", help}, paths), category, false, false, kind);
 }
 
+Declaration& Declaration::severalWords(std::string_view wanted) {
+  Parameter* parameter = find(wanted);
+  if (!parameter || !parameter->option.isList()) {
+    throw std::logic_error("severalWords: no list option " + std::string(wanted));
+  }
+  parameter->severalWords = true;
+  return *this;
+}
+
 Declaration& Declaration::require(std::string_view wanted) {
   Parameter* parameter = find(wanted);
   if (!parameter) throw std::logic_error("require: no option " + std::string(wanted));

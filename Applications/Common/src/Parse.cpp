@@ -134,7 +134,7 @@ std::set<std::string> parseWords(Declaration& declaration, CommonOptions& common
       continue;
     }
     binding.handle = parser.add_option(dashed(*all[i]), binding.values);
-    if (all[i]->positional && option.isList()) {
+    if (option.isList() && (all[i]->positional || all[i]->severalWords)) {
       binding.handle->expected(1, 1 << 20);
     } else {
       binding.handle->expected(1)->allow_extra_args(false);

@@ -246,6 +246,13 @@ Outcome Context::runCommand(const Command& command, const std::string& name, con
   return outcome;
 }
 
+Outcome Context::runApart(const Command& command, const fs::path& out, const Json& options) {
+  Run nested = nestedRun(command, options, state_->run, state_->monitor);
+  nested.common.out = out.string();
+  nested.prefix = state_->run.prefix + out.filename().string() + ": ";
+  return execute(nested, state_->console);
+}
+
 std::optional<Outcome> Context::reuseCommand(const Command& command, const std::string& name,
                                              const Json& options) {
   if (state_->run.common.dryRun) throw DryRunEnds{};
@@ -257,8 +264,10 @@ std::optional<Outcome> Context::reuseCommand(const Command& command, const std::
     const Json record = provenance::readRecord(path);
     const auto& here = provenance::software();
     const Json& made = record["software"];
-    if (record["command"] != command.name() || record["exit_code"] != 0 ||
-        made["version"] != here.version || made["commit"] != here.commit) {
+    const auto ended = valueOf<Termination>(record["termination"].get<std::string>());
+    if (record["command"] != command.name() || ended == Termination::Interrupted ||
+        ended == Termination::MaxTime || made["version"] != here.version ||
+        made["commit"] != here.commit) {
       return {};
     }
     std::multiset<std::string> wanted, found;
@@ -284,7 +293,8 @@ std::optional<Outcome> Context::reuseCommand(const Command& command, const std::
     }
     if (wanted != found || !provenance::verifyRecord(path).allSame()) return {};
     Outcome outcome;
-    outcome.termination = valueOf<Termination>(record["termination"].get<std::string>());
+    outcome.termination = ended;
+    outcome.exitCode = record["exit_code"];
     outcome.record = path;
     state_->nestedRecords.emplace_back(name + "/" + provenance::kRecordName, path);
     return outcome;

@@ -61,9 +61,11 @@ void addState(StudyRow& row, const fs::path& run) {
   row.state = "failed: it did not begin";
   if (!fs::exists(run / "run.json")) return;
   row.state = "done";
-  for (const Json& step : provenance::readJson(run / "run.json")["steps"]) {
-    const std::string state = textOf(step["state"]);
+  const Json account = provenance::readJson(run / "run.json");
+  for (const Json& step : account["steps"]) {
+    std::string state = textOf(step["state"]);
     if (state == "done") continue;
+    if (state == "stopped") state = "stopped early";
     const std::string message = step.contains("message") ? textOf(step["message"]) : "";
     row.state = state + " (" + textOf(step["name"]) + ")" + (message.empty() ? "" : ": " + message);
     if (state == "failed") return;  // the first fault explains the rest

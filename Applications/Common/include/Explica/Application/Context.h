@@ -90,9 +90,15 @@ class Context {
   Outcome runCommand(const Command& command, const std::string& name,
                      const nlohmann::ordered_json& options);
 
+  /// Runs another command into a folder of its own, which has its own lock, summary and record: for
+  /// commands that write nothing themselves and may run beside each other.
+  Outcome runApart(const Command& command, const std::filesystem::path& out,
+                   const nlohmann::ordered_json& options);
+
   /// The outcome of a step that an earlier run left in the folder `name`, if doing it again could
   /// only give the same: same version and commit, same options, same bytes of every input and
-  /// output, and it reached its goal.  Its record then counts as this run's.
+  /// output, and it ended by itself, not by a signal or clock.  Its record then counts as this
+  /// run's.
   std::optional<Outcome> reuseCommand(const Command& command, const std::string& name,
                                       const nlohmann::ordered_json& options);
 

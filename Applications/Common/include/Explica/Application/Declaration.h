@@ -60,7 +60,8 @@ struct Parameter {
   std::optional<FileKind> file;  ///< the value is a path that is read (hashed and recorded)
   bool positional = false;
   bool required = false;
-  std::string defaultText;  ///< the default as a user would write it; empty if none
+  bool severalWords = false;  ///< a list option that takes all words up to the next option
+  std::string defaultText;    ///< the default as a user would write it; empty if none
 };
 
 /// A file that a command writes into its output directory.
@@ -125,6 +126,9 @@ class Declaration {
     return *this;
   }
 
+  /// Says that a list option takes every word up to the next option: --participant-label 01 02.
+  /// Only for commands whose positionals users put first.
+  Declaration& severalWords(std::string_view name);
   /// Says that an option or positional declared before must be given.
   Declaration& require(std::string_view name);
   /// Leaves out options declared before, e.g. one of a struct that makes no sense here.

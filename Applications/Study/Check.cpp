@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Application/Command.h"
+#include "Explica/Core/Errors.h"
+#include "StudyInput.h"
+
+namespace explica::app {
+namespace {
+
+struct Settings {
+  std::string study;
+};
+
+void declare(Declaration& d, Settings& s) {
+  d.synopsis("whether a study file can be run")
+      .description(
+          "Checks the file against the schema and each subject's input, matrix and regions, and "
+          "says in one sentence what is wrong, where, and what helps. Writes nothing.")
+      .example("explica study check study.yaml", "Before anything is run")
+      .input("STUDY", FileKind::Any, "study file, YAML or JSON", s.study)
+      .withoutOutput();
+}
+
+Termination run(Context& context, const Settings& s) {
+  const study::StudyFile file = readCheckedStudy(s.study);
+  const study::Study study = study::planStudy(file, studyPathOptions());
+  std::size_t runs = 0, problems = 0;
+  for (const study::PlannedSubject& subject : study.subjects) {
+    runs += subject.runs.size();
+    if (subject.participant.problem.empty()) continue;
+    ++problems;
+    context.warn(subject.participant.problem);
+  }
+  if (problems > 0) {
+    throw InvalidInput(s.study + ": " + std::to_string(problems) + " of " +
+                       std::to_string(study.subjects.size()) +
+                       " subjects have no usable input; see above (the others can be run)");
+  }
+  context.info(s.study + ": " + std::to_string(study.subjects.size()) + " subjects, " +
+               std::to_string(runs) + " runs");
+  return Termination::NotRun;
+}
+
+}  // namespace
+
+Command studyCheckCommand() {
+  return makeCommand<Settings>("study check", declare, run);
+}
+
+}  // namespace explica::app

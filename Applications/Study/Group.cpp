@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Application/Command.h"
+#include "Explica/Core/WholeFile.h"
+#include "Explica/Study/StudyTable.h"
+#include "StudyInput.h"
+
+#include <filesystem>
+#include <map>
+
+namespace explica::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Settings {
+  std::string study;
+  std::string out;
+  bool reuse = true;
+};
+
+void declare(Declaration& d, Settings& s) {
+  d.synopsis("the table of a study and its page")
+      .description(
+          "Writes a row for every run that the study file asks for, whatever became of it: done, "
+          "stopped early, failed and why, not begun.")
+      .example("explica study group study.yaml results", "results/study.tsv, results/index.html")
+      .input("STUDY", FileKind::Any, "study file, YAML or JSON", s.study)
+      .argument(Field{"OUT_DIR", "", "folder of the results"}, s.out)
+      .defaultOut(s.out)
+      .reuseOutputIf(s.reuse)
+      .inPlace()
+      .varyingOutput("study.tsv", FileKind::Table, "one row a subject, hemisphere and region")
+      .varyingOutput("index.html", FileKind::Report, "the same, to sort and click");
+}
+
+/// A row a planned run, in the order of the study file.
+std::vector<study::StudyRow> rowsOf(const study::Study& study, const fs::path& out) {
+  std::map<std::string, study::StudyRow> made;
+  if (fs::is_directory(out / "runs")) {
+    for (study::StudyRow& row : study::collectRows(out)) {
+      std::string folder = row.participant + "_hemi-" + row.hemisphere;
+      made.emplace(std::move(folder), std::move(row));
+    }
+  }
+  std::vector<study::StudyRow> rows;
+  for (const study::PlannedSubject& subject : study.subjects) {
+    for (const study::PlannedRun& run : subject.runs) {
+      const auto found = made.find(run.folder);
+      study::StudyRow row;
+      if (found != made.end()) {
+        row = found->second;
+      } else {
+        row.participant = subject.participant.name();
+        row.hemisphere = run.folder.substr(row.participant.size() + 6);
+        row.state = "not begun";
+      }
+      rows.push_back(std::move(row));
+    }
+  }
+  return rows;
+}
+
+Termination run(Context& context, const Settings& s) {
+  const study::StudyFile file = readCheckedStudy(s.study);
+  const study::Study study = study::planStudy(file, studyPathOptions());
+  const std::vector<study::StudyRow> rows = rowsOf(study, s.out);
+  writeTextFile(context.output("study.tsv"), study::tableText(rows));
+  writeTextFile(context.output("index.html"), study::indexPage(rows, study.name));
+  std::map<std::string, int> states;
+  for (const study::StudyRow& row : rows)
+    ++states[row.state.substr(0, row.state.find_first_of(" :("))];
+  std::string account;
+  for (const auto& [state, count] : states) {
+    account += (account.empty() ? "" : ", ") + std::to_string(count) + " " + state;
+  }
+  context.info(account);
+  context.result("rows", rows.size());
+  for (const auto& [state, count] : states) context.result("runs_" + state, count);
+  return Termination::NotRun;
+}
+
+}  // namespace
+
+Command studyGroupCommand() {
+  return makeCommand<Settings>("study group", declare, run);
+}
+
+}  // namespace explica::app

@@ -1,0 +1,144 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Application/Command.h"
+#include "Explica/Application/Execute.h"
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/WholeFile.h"
+#include "Explica/Study/StudyState.h"
+#include "StudyInput.h"
+
+#include <filesystem>
+#include <new>
+
+namespace explica::app {
+namespace {
+
+namespace fs = std::filesystem;
+using provenance::Json;
+
+struct Settings {
+  std::string study;
+  std::string out;
+  std::vector<std::string> participants;
+};
+
+void declare(Declaration& d, Settings& s) {
+  d.synopsis("the runs of a study's subjects")
+      .description(
+          "Takes each subject's hemispheres and regions through `explica run` into "
+          "OUT_DIR/runs/sub-..., and writes OUT_DIR/state/sub-...-KEY.json once all of a subject's "
+          "runs have ended by themselves. Steps whose inputs and options have not changed, by "
+          "content, are kept. A run that fails does not stop the others; its problem.txt says why. "
+          "Several of these commands may work on one OUT_DIR at a time, on different subjects. "
+          "SIGUSR1 or SIGTERM ends it with what was reached: exit code 3, and to be done again.")
+      .example("explica study participant study.yaml results --participant-label 01 02",
+               "Two subjects")
+      .input("STUDY", FileKind::Any, "study file, YAML or JSON", s.study)
+      .argument(Field{"OUT_DIR", "", "folder of the results"}, s.out)
+      .option("Study", Field{"participant-label", "", "subjects to do, with or without sub-"},
+              s.participants)
+      .severalWords("participant-label")
+      .withoutOutput();
+}
+
+/// How the runs so far ended.
+struct Account {
+  int runs = 0, failed = 0;
+  std::string environmentFault;  ///< the machine's fault, which the next run would meet too
+  Termination worst = Termination::NotRun;
+};
+
+/// A termination that says nothing about the work: the same command would go on.
+bool endedFromOutside(Termination termination) {
+  return termination == Termination::Interrupted || termination == Termination::MaxTime;
+}
+
+/// The steps before unfolding are the same for all regions of a hemisphere: those that another
+/// region's run has made are linked, and found true by their content.
+void shareSteps(const fs::path& made, const fs::path& run) {
+  std::error_code fault;
+  for (const char* step : {"segment", "thickness", "surface"}) {
+    if (!fs::exists(made / step / "provenance.json") || fs::exists(run / step)) continue;
+    fs::create_directories(run, fault);
+    fs::copy(made / step, run / step,
+             fs::copy_options::recursive | fs::copy_options::create_hard_links, fault);
+    if (fault) fs::remove_all(run / step, fault);  // no such links here: the run makes its own
+  }
+}
+
+/// @return true if the run ended by itself
+bool doRun(Context& context, const fs::path& folder, const study::Participant& participant,
+           const study::PlannedRun& run, Account& account) {
+  const fs::path problem = folder / "problem.txt";
+  const auto fail = [&](const std::string& why) {
+    context.warn(run.folder + ": " + why);
+    ++account.failed;
+    writeTextFile(problem, why + "\n");
+    return false;
+  };
+  ++account.runs;
+  fs::create_directories(folder);
+  // What a killed process leaves: it cannot say so itself.
+  writeTextFile(problem, "ended from outside (killed, out of memory or time), or still running\n");
+  try {
+    if (!participant.problem.empty()) throw InvalidInput(participant.problem);
+    Json values = run.values;
+    values["INPUT"] = participant.input.string();
+    if (participant.atlas) values["atlas"] = participant.atlas->string();
+    values["hemisphere"] = run.hemisphere;
+    values["resume"] = true;
+    const Outcome outcome = context.runApart(*findCommand("run"), folder, values);
+    fs::remove(problem);
+    if (!reachedGoal(outcome.termination)) account.worst = outcome.termination;
+    return !endedFromOutside(outcome.termination);
+  } catch (const EnvironmentError& fault) {
+    account.environmentFault = fault.what();
+    return fail(fault.what());
+  } catch (const Error& fault) {
+    return fail(fault.what());
+  } catch (const std::bad_alloc&) {
+    account.environmentFault = "out of memory";
+    return fail("out of memory");
+  }
+}
+
+Termination run(Context& context, const Settings& s) {
+  const study::StudyFile file = readCheckedStudy(s.study);
+  const study::PathOptions paths = studyPathOptions();
+  const study::Study study = study::planStudy(file, paths, s.participants);
+  Account account;
+  for (const study::PlannedSubject& subject : study.subjects) {
+    const std::string key = study::keyOf(subject, paths);
+    study::unsettle(s.out, subject);
+    bool settled = true;
+    std::map<std::string, fs::path> first;  // a hemisphere's first run, whose steps others share
+    for (const study::PlannedRun& run : subject.runs) {
+      if (context.monitor().shouldStop()) {
+        account.worst = Termination::Interrupted;
+        settled = false;
+        break;
+      }
+      const fs::path folder = fs::path(s.out) / "runs" / run.folder;
+      if (first.count(run.hemisphere)) shareSteps(first[run.hemisphere], folder);
+      settled = doRun(context, folder, subject.participant, run, account) && settled;
+      first.emplace(run.hemisphere, folder);
+    }
+    if (settled) study::settle(s.out, subject, key);
+  }
+  if (!account.environmentFault.empty()) throw EnvironmentError(account.environmentFault);
+  if (account.failed > 0) {
+    throw InvalidInput(s.study + ": " + std::to_string(account.failed) + " of " +
+                       std::to_string(account.runs) + " runs failed, as said above and in each " +
+                       s.out + "/runs/sub-*/problem.txt");
+  }
+  return account.worst;
+}
+
+}  // namespace
+
+Command studyParticipantCommand() {
+  return makeCommand<Settings>("study participant", declare, run);
+}
+
+}  // namespace explica::app

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Application/Command.h"
+#include "StudyInput.h"
+
+#include <iostream>
+
+namespace explica::app {
+namespace {
+
+struct Settings {};
+
+void declare(Declaration& d, Settings&) {
+  d.synopsis("the JSON schema of study files, for editors and other programs")
+      .description(
+          "Generated from the declarations of `explica run`, so that a study file may hold exactly "
+          "the options that the command takes.")
+      .example("explica study schema", "Prints the schema")
+      .withoutOutput();
+}
+
+Termination run(Context&, const Settings&) {
+  std::cout << studyFileSchema().dump(2) << "\n";
+  return Termination::NotRun;
+}
+
+}  // namespace
+
+Command studySchemaCommand() {
+  return makeCommand<Settings>("study schema", declare, run);
+}
+
+}  // namespace explica::app

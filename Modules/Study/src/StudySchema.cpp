@@ -1,0 +1,296 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Provenance/Json.h"
+#include "Explica/Study/StudyFile.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <regex>
+
+namespace explica::study {
+namespace {
+
+using provenance::Json;
+using Place = std::vector<std::string>;
+
+Json text(const char* description) {
+  return Json{{"type", "string"}, {"minLength", 1}, {"description", description}};
+}
+
+/// {"surface.faces": S} also as {"surface": {"faces": S}}.
+Json nestedToo(const Json& flat, const char* description) {
+  Json properties = flat;
+  for (const auto& [name, schema] : flat.items()) {
+    const std::size_t dot = name.find('.');
+    if (dot == std::string::npos) continue;
+    Json& step = properties[name.substr(0, dot)];
+    step["type"] = "object";
+    step["additionalProperties"] = false;
+    step["properties"][name.substr(dot + 1)] = schema;
+  }
+  return Json{{"type", "object"},
+              {"description", description},
+              {"additionalProperties", false},
+              {"properties", properties}};
+}
+
+Json regionsOf(const Json& region, const char* description) {
+  return Json{{"type", "object"},
+              {"description", description},
+              {"additionalProperties", false},
+              {"patternProperties", {{"^[A-Za-z0-9]+$", region}}}};
+}
+
+// ---- from a fault to a sentence ----
+
+std::string shown(const Json& value) {
+  const std::string dumped = value.dump();
+  return dumped.size() > 60 ? dumped.substr(0, 57) + "..." : dumped;
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string all;
+  for (const auto& word : words) all += (all.empty() ? "" : ", ") + word;
+  return all;
+}
+
+/// Smallest number of letters to insert, drop or change.
+std::size_t lettersBetween(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), 0);
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t changed = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, changed});
+    }
+  }
+  return row.back();
+}
+
+/// "; did you mean 'faces'?", or which words there are.
+std::string hint(const std::string& word, const std::vector<std::string>& known) {
+  const auto nearest = std::min_element(known.begin(), known.end(), [&](auto& a, auto& b) {
+    return lettersBetween(word, a) < lettersBetween(word, b);
+  });
+  if (nearest != known.end() && lettersBetween(word, *nearest) <= word.size() / 3 + 1) {
+    return "; did you mean '" + *nearest + "'?";
+  }
+  constexpr std::size_t kListed = 12;
+  return known.size() > kListed || known.empty() ? "" : "; known are " + joined(known);
+}
+
+/// The schema that an object's key falls under, or nullptr.
+const Json* schemaOfKey(const Json& schema, const std::string& key) {
+  if (schema.contains("properties") && schema["properties"].contains(key)) {
+    return &schema["properties"][key];
+  }
+  if (schema.contains("patternProperties")) {
+    for (const auto& [pattern, below] : schema["patternProperties"].items()) {
+      if (std::regex_search(key, std::regex(pattern))) return &below;
+    }
+  }
+  return nullptr;
+}
+
+std::string typesOf(const Json& schema) {
+  static const std::map<std::string, std::string> words = {
+      {"string", "text"},           {"number", "a number"}, {"integer", "a whole number"},
+      {"boolean", "true or false"}, {"array", "a list"},    {"object", "keys with values"},
+      {"null", "nothing"}};
+  const Json& type = schema["type"];
+  std::string all;
+  for (const auto& one : type.is_array() ? type : Json::array({type})) {
+    all += (all.empty() ? "" : " or ") + words.at(one.get<std::string>());
+  }
+  return all;
+}
+
+bool hasType(const Json& value, const Json& schema) {
+  const Json& type = schema["type"];
+  for (const auto& one : type.is_array() ? type : Json::array({type})) {
+    if ((one == "string" && value.is_string()) || (one == "number" && value.is_number()) ||
+        (one == "integer" && value.is_number_integer()) ||
+        (one == "boolean" && value.is_boolean()) || (one == "array" && value.is_array()) ||
+        (one == "object" && value.is_object()) || (one == "null" && value.is_null())) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// What is wrong with a value itself, and the remedy; empty if only a part of it is wrong.
+std::string faultOf(const Json& value, const Json& schema, Place& place) {
+  const std::string meaning =
+      schema.contains("description") ? " (" + schema["description"].get<std::string>() + ")" : "";
+  if (schema.contains("enum") &&
+      std::find(schema["enum"].begin(), schema["enum"].end(), value) == schema["enum"].end()) {
+    std::vector<std::string> words;
+    for (const auto& word : schema["enum"]) words.push_back(word.get<std::string>());
+    return shown(value) + " is not one of " + joined(words) + meaning;
+  }
+  if (schema.contains("type") && !hasType(value, schema)) {
+    return shown(value) + " is not " + typesOf(schema) + meaning;
+  }
+  if (value.is_string() && schema.contains("minLength") && value.get<std::string>().empty()) {
+    return "is empty" + meaning;
+  }
+  if (value.is_string() && schema.contains("pattern") &&
+      !std::regex_search(value.get<std::string>(),
+                         std::regex(schema["pattern"].get<std::string>()))) {
+    return shown(value) + ": a label may hold only letters and digits, then _ses- and the same";
+  }
+  if (value.is_object() && schema.contains("additionalProperties")) {
+    for (const auto& [key, below] : value.items()) {
+      if (schemaOfKey(schema, key)) continue;
+      place.push_back(key);
+      std::vector<std::string> known;
+      if (schema.contains("properties")) {
+        for (const auto& [name, s] : schema["properties"].items()) known.push_back(name);
+      }
+      if (known.empty() || schema.contains("patternProperties")) {
+        return "this name may hold only letters and digits" + meaning;
+      }
+      return "unknown key" + hint(key, known);
+    }
+  }
+  if (value.is_object() && schema.contains("minProperties") && value.empty()) {
+    return "is empty; name at least one";
+  }
+  if (value.is_array()) {
+    const auto bound = [&](const char* name) { return schema[name].get<std::size_t>(); };
+    if ((schema.contains("minItems") && value.size() < bound("minItems")) ||
+        (schema.contains("maxItems") && value.size() > bound("maxItems"))) {
+      const bool exact = schema.contains("maxItems") && bound("minItems") == bound("maxItems");
+      return "has " + std::to_string(value.size()) + " elements; " + (exact ? "" : "at least ") +
+             std::to_string(bound("minItems")) + " are needed" + meaning;
+    }
+  }
+  return "";
+}
+
+/// valijson's place "<root>[subjects][01]: ..." as keys, followed through the value.
+Place placeOf(const std::string& fault, const Json& root) {
+  Place place;
+  const Json* at = &root;
+  std::string rest = fault.substr(std::min(fault.size(), std::string("<root>").size()));
+  while (rest.rfind('[', 0) == 0) {
+    const std::size_t close = rest.find(']');
+    if (close == std::string::npos) break;
+    const std::string key = rest.substr(1, close - 1);
+    if (at->is_object() && at->contains(key)) {
+      at = &(*at)[key];
+    } else if (at->is_array() && !key.empty() && key.size() < 9 &&
+               std::all_of(key.begin(), key.end(), [](char c) { return c >= '0' && c <= '9'; }) &&
+               std::stoul(key) < at->size()) {
+      at = &(*at)[std::stoul(key)];
+    } else {
+      break;
+    }
+    place.push_back(key);
+    rest = rest.substr(close + 1);
+  }
+  return place;
+}
+
+}  // namespace
+
+Json studySchema(const Json& parameters, const Json& region) {
+  const Json hemispheres = {{"type", "array"},
+                            {"minItems", 1},
+                            {"description", "L, R or both"},
+                            {"items", {{"enum", {"L", "R"}}}}};
+  const Json row = {{"type", "array"},
+                    {"minItems", 4},
+                    {"maxItems", 4},
+                    {"description", "a row of the matrix"},
+                    {"items", {{"type", "number"}}}};
+  const Json affine = {
+      {"type", {"array", "string"}},
+      {"minItems", 3},
+      {"maxItems", 4},
+      {"description", "matrix from the subject's to the common coordinates, RAS mm, or its file"},
+      {"items", row}};
+  const Json options = nestedToo(parameters, "options of explica run");
+  const Json ofSubject = {
+      {"type", "object"}, {"additionalProperties", false}, {"properties", region}};
+  Json ofGroup = ofSubject;
+  ofGroup["properties"]["space"] = {
+      {"enum", {"subject", "common"}},
+      {"description", "whose coordinates these are; common needs each subject's to-common"}};
+  ofGroup["properties"]["hemispheres"] = hemispheres;
+  const Json subject = {{"type", {"object", "null"}},
+                        {"description", "what is particular to a subject"},
+                        {"additionalProperties", false},
+                        {"properties",
+                         {{"input", text("T1, label volume, or FreeSurfer subject directory")},
+                          {"atlas", text("for a T1: labels in its space")},
+                          {"hemispheres", hemispheres},
+                          {"to-common", affine},
+                          {"parameters", options},
+                          {"regions", regionsOf(ofSubject, "in the subject's own coordinates")}}}};
+  const char* const label = "^(sub-)?[A-Za-z0-9]+(_ses-[A-Za-z0-9]+)?$";
+  return Json{{"$schema", "http://json-schema.org/draft-07/schema#"},
+              {"title", "Explica study file"},
+              {"type", "object"},
+              {"description", "keys of a study file"},
+              {"additionalProperties", false},
+              {"properties",
+               {{"name", text("heads the table's page")},
+                {"dataset", text("BIDS data set that inputs are found in")},
+                {"input", text("each subject's input, {subject} standing for the label")},
+                {"atlas", text("each subject's atlas, likewise")},
+                {"to-common", text("each subject's matrix to the common coordinates, likewise")},
+                {"hemispheres", hemispheres},
+                {"parameters", options},
+                {"regions", regionsOf(ofGroup, "patches to unfold, by name")},
+                {"subjects",
+                 {{"type", {"array", "object"}},
+                  {"description", "labels, or labels with what is particular to each"},
+                  {"minItems", 1},
+                  {"minProperties", 1},
+                  {"items", {{"type", {"string", "integer"}}, {"pattern", label}}},
+                  {"additionalProperties", false},
+                  {"patternProperties", {{label, subject}}}}}}}};
+}
+
+void checkStudyFile(const StudyFile& file, const Json& schema) {
+  const std::vector<std::string> faults = provenance::schemaFaults(file.values, schema.dump());
+  if (faults.empty()) return;
+  // The innermost fault is told; those around it only follow from it.
+  Place place;
+  std::string said = faults.front();
+  for (const std::string& fault : faults) {
+    Place candidate = placeOf(fault, file.values);
+    if (candidate.size() > place.size()) {
+      place = std::move(candidate);
+      said = fault;
+    }
+  }
+  const Json* value = &file.values;
+  const Json* below = &schema;
+  Place at;
+  std::string sentence = faultOf(*value, *below, at);
+  for (const std::string& key : place) {
+    if (!sentence.empty()) break;
+    at.push_back(key);
+    if (value->is_array()) {
+      value = &(*value)[std::stoul(key)];
+      below = below->contains("items") ? &(*below)["items"] : nullptr;
+    } else {
+      value = &(*value)[key];
+      below = schemaOfKey(*below, key);
+    }
+    if (!below) break;
+    sentence = faultOf(*value, *below, at);
+  }
+  if (sentence.empty()) sentence = said.substr(said.find(": ") + 2) + " See the schema";
+  throw InvalidInput(placeIn(file, at) + sentence);
+}
+
+}  // namespace explica::study
