@@ -132,7 +132,7 @@ TEST_F(StudyFiles, EveryHemisphereAndRegionIsARun) {
 TEST_F(StudyFiles, WhatASubjectSaysWins) {
   const Study study = plan(
       "input: no-{subject}\nhemispheres: [L]\n"
-      "parameters: {surface: {faces: 5, fs-volume: x/{subject}}, unfold.vertex: 4}\n"
+      "parameters: {surface: {faces: 5, fs-volume: 'x/{subject}'}, unfold.vertex: 4}\n"
       "subjects:\n  01:\n  02: {input: labels.nii, parameters: {surface.faces: 6, unfold: {center: "
       "[1, 2, 3]}}}");
   const PlannedSubject &first = study.subjects.at(0), &second = study.subjects.at(1);
