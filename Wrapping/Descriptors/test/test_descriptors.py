@@ -368,5 +368,28 @@ class Nipype(unittest.TestCase):
             self.assertEqual(mandatory, required)
 
 
+class StudySchema(unittest.TestCase):
+    def test_it_takes_the_example_and_refuses_what_the_command_refuses(self):
+        import jsonschema
+        import yaml
+
+        schema = json.loads((FOLDER / "study.schema.json").read_text())
+        jsonschema.Draft7Validator.check_schema(schema)
+        example = pathlib.Path(__file__).parents[3] / "ExampleData/study/study.yaml"
+        study = yaml.safe_load(example.read_text())
+        jsonschema.validate(study, schema, cls=jsonschema.Draft7Validator)
+        study["parameters"]["unfold"]["max-iteration"] = 2
+        with self.assertRaises(jsonschema.ValidationError):
+            jsonschema.validate(study, schema, cls=jsonschema.Draft7Validator)
+
+    def test_it_holds_every_option_of_run_that_a_study_may_set(self):
+        schema = json.loads((FOLDER / "study.schema.json").read_text())
+        known = set(schema["properties"]["parameters"]["properties"])
+        run = next(c for c in declarations() if c["command"] == "run")
+        common = {"out", "force", "config", "threads", "dry-run", "quiet", "verbose", "log", "private"}
+        options = {p["name"] for p in run["parameters"] if not p["positional"]} - common
+        self.assertEqual(options - known, {"atlas", "hemisphere", "resume"})
+
+
 if __name__ == "__main__":
     unittest.main()
