@@ -167,13 +167,39 @@ PartitionName=main Nodes=node Default=YES MaxTime=INFINITE State=UP
         self._end_steps()
         shutil.rmtree(self.folder, ignore_errors=True)
 
-    def _end_steps(self):
-        """Kills the node's remaining step daemons: those whose environment names our configuration."""
+    def _processes(self):
+        """Processes that run under this node, with their environment: (pid, command line, variables)."""
         ours = f"SLURM_CONF={self.folder}/slurm.conf".encode()
-        for entry in pathlib.Path("/proc").iterdir():
+        for entry in pathlib.Path("/proc").glob("[0-9]*"):
             try:
-                if entry.name.isdigit() and ours in (entry / "environ").read_bytes().split(b"\0"):
-                    if int(entry.name) != os.getpid():
-                        os.kill(int(entry.name), signal.SIGKILL)
+                environment = (entry / "environ").read_bytes().split(b"\0")
+                words = (entry / "cmdline").read_bytes().split(b"\0")
             except OSError:
-                pass
+                continue
+            if ours in environment and int(entry.name) != os.getpid():
+                yield int(entry.name), words, dict(x.split(b"=", 1) for x in environment if b"=" in x)
+
+    def kill_job_with(self, word):
+        """SIGKILL, as when memory has run out, to every process of the job in which `word` stands on
+        a command line.  (scancel --signal=KILL would first ask politely.)"""
+        for _, words, variables in self._processes():
+            job = variables.get(b"SLURM_JOB_ID")
+            if job and word.encode() in words:
+                for pid, _, others in list(self._processes()):
+                    if others.get(b"SLURM_JOB_ID") == job:
+                        _kill(pid)
+                return
+        raise AssertionError(f"no job does {word}")
+
+    def _end_steps(self):
+        """Kills the node's remaining step daemons and what they run."""
+        for pid, _, variables in list(self._processes()):
+            if b"SLURM_JOB_ID" in variables or b"SLURMSTEPD" in variables:
+                _kill(pid)
+
+
+def _kill(pid):
+    try:
+        os.kill(pid, signal.SIGKILL)
+    except ProcessLookupError:
+        pass

@@ -44,12 +44,12 @@ class Slurm(unittest.TestCase):
     def test_every_fate_of_a_subject_ends_in_a_row_and_a_resume_does_what_is_missing(self):
         study = small_study.make(self.folder, broken=["04"])
         array, table = self.submit(study, "--cpus-per-task=1")
-        waiting = {"02": ("KILL", f"{array}_1"), "03": ("USR1", f"{array}_2")}
+        waiting = {"02": lambda: self.node.kill_job_with("02"),
+                   "03": lambda: self.node.run("scancel", "--signal=USR1", "--full", f"{array}_2")}
 
         def signalled():
             for label in [x for x in waiting if small_study.unfolding_has_begun(self.out, x)]:
-                name, task = waiting.pop(label)
-                self.node.run("scancel", f"--signal={name}", "--full", task)
+                waiting.pop(label)()
             return not waiting
 
         small_study.wait("unfolding of 02 and 03", signalled, self.logs)

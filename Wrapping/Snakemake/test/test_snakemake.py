@@ -29,7 +29,8 @@ class Snakemake(unittest.TestCase):
 
     def words(self, study, *options):
         return [SNAKEMAKE, "-s", HERE / "Snakefile", *options,
-                "--config", f"study={study}", f"out={self.out}", f"explica={small_study.EXECUTABLE}", "threads=1"]
+                "--config", f"study={study}", f"out={self.out}", f"explica={small_study.EXECUTABLE}", "threads=1",
+                "mem_mb=500"]
 
     def snakemake(self, study, *options, check=True):
         done = subprocess.run(self.words(study, *options), cwd=self.folder, env=self.environment,
@@ -89,7 +90,8 @@ class Snakemake(unittest.TestCase):
                     small_study.wait("unfolding of 02",
                                      lambda: small_study.unfolding_has_begun(self.out, "02")
                                      or main.poll() is not None, node.logs)
-                    self.kill_job_of(node, "02")
+                    self.assertIsNone(main.poll(), main.poll() is not None and main.stdout.read())
+                    node.kill_job_with("02")
                     output, _ = main.communicate(timeout=small_study.PATIENCE)
                 finally:
                     main.kill()
@@ -103,20 +105,6 @@ class Snakemake(unittest.TestCase):
             self.assertEqual({name for name in after if after[name] != before.get(name)},
                              {"runs/sub-02_hemi-L/unfold/provenance.json"})
             self.assertEqual(small_study.todo(study, self.out), [])
-
-    def kill_job_of(self, node, label):
-        """SIGKILL to all of the job in which a subject is being done."""
-        for environ in pathlib.Path("/proc").glob("[0-9]*/environ"):
-            try:
-                words = (environ.parent / "cmdline").read_bytes().split(b"\0")
-                values = dict(pair.split(b"=", 1) for pair in environ.read_bytes().split(b"\0") if b"=" in pair)
-            except OSError:
-                continue
-            ours = values.get(b"SLURM_CONF", b"").decode() == node.environment["SLURM_CONF"]
-            if ours and small_study.EXECUTABLE.encode() == words[0] and label.encode() in words:
-                node.run("scancel", "--signal=KILL", "--full", values[b"SLURM_JOB_ID"].decode())
-                return
-        raise AssertionError(f"no process does subject {label}")
 
 
 if __name__ == "__main__":
