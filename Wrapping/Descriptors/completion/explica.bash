@@ -3,7 +3,7 @@ _explica() {
   local word=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD-1]}
   local command=${COMP_WORDS[1]} options= choices=
   if [[ $COMP_CWORD == 1 ]]; then
-    COMPREPLY=($(compgen -W 'bids descriptors embed history phantom polygon replay report run segment surface thickness unfold verify view' -- "$word"))
+    COMPREPLY=($(compgen -W 'bids descriptors embed history phantom polygon replay report run segment study surface thickness unfold verify view' -- "$word"))
     return
   fi
   if [[ $COMP_CWORD == 2 ]]; then
@@ -15,6 +15,11 @@ _explica() {
     phantom) choices+=' shell' ;;&
     phantom) choices+=' spheroid' ;;&
     phantom) choices+=' ventricle' ;;&
+    study) choices+=' check' ;;&
+    study) choices+=' group' ;;&
+    study) choices+=' list' ;;&
+    study) choices+=' participant' ;;&
+    study) choices+=' schema' ;;&
     *) ;;
     esac
     if [[ -n $choices ]]; then
@@ -128,6 +133,21 @@ _explica() {
         --xform) COMPREPLY=($(compgen -W 'agreed qform sform none' -- "$word")); return ;;
         --hemisphere) COMPREPLY=($(compgen -W 'both L R' -- "$word")); return ;;
       esac
+      ;;
+    'study check')
+      options=' --config --threads --quiet --verbose --log --help --version'
+      ;;
+    'study group')
+      options=' --out --force --config --threads --dry-run --quiet --verbose --log --private --help --version'
+      ;;
+    'study list')
+      options=' --todo --keys --config --threads --quiet --verbose --log --help --version'
+      ;;
+    'study participant')
+      options=' --participant-label --config --threads --quiet --verbose --log --help --version'
+      ;;
+    'study schema')
+      options=' --config --threads --quiet --verbose --log --help --version'
       ;;
     'surface')
       options=' --inner-level --outer-level --grey-share --insulated-mask --level --xform --frame --preset --white --grey --fill --insulated --hemisphere --no-fill --close-edges --blur --genus --faces --steps --freesurfer --fs-volume --out --force --config --threads --dry-run --quiet --verbose --log --private --help --version'

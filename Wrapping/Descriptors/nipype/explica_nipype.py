@@ -1026,6 +1026,139 @@ class Segment(CommandLine):
         return outputs
 
 
+class StudyCheckInputSpec(CommandLineInputSpec):
+    study = File(exists=True, desc="study file, YAML or JSON", argstr="%s", position=0, mandatory=True)
+    config = traits.Str(desc="JSON file with option values; the command line wins", argstr="--config %s")
+    threads = traits.Int(desc="processors to use (default: all that this process may)", argstr="--threads %s")
+    quiet = traits.Bool(desc="say nothing but warnings and errors", argstr="--quiet")
+    verbose = traits.Bool(desc="say more", argstr="--verbose")
+    log = traits.Str(desc="file to which every message goes, with times", argstr="--log %s")
+
+
+class StudyCheckOutputSpec(TraitedSpec):
+    pass
+
+
+class StudyCheck(CommandLine):
+    """whether a study file can be run."""
+
+    _cmd = "explica study check"
+    input_spec = StudyCheckInputSpec
+    output_spec = StudyCheckOutputSpec
+
+
+class StudyGroupInputSpec(CommandLineInputSpec):
+    study = File(exists=True, desc="study file, YAML or JSON", argstr="%s", position=0, mandatory=True)
+    out_dir = traits.Str(desc="folder of the results", argstr="%s", position=1, mandatory=True)
+    out = traits.Str(desc="folder for the results; made if absent, refused if not empty", argstr="--out %s", mandatory=True)
+    force = traits.Bool(desc="write into a folder that is not empty, replacing earlier results", argstr="--force")
+    config = traits.Str(desc="JSON file with option values; the command line wins", argstr="--config %s")
+    threads = traits.Int(desc="processors to use (default: all that this process may)", argstr="--threads %s")
+    dry_run = traits.Bool(desc="resolve and check everything, print the options, write nothing", argstr="--dry-run")
+    quiet = traits.Bool(desc="say nothing but warnings and errors", argstr="--quiet")
+    verbose = traits.Bool(desc="say more", argstr="--verbose")
+    log = traits.Str(desc="file to which every message goes, with times", argstr="--log %s")
+    private = traits.Bool(desc="leave host, user and absolute paths out of the record", argstr="--private")
+
+
+class StudyGroupOutputSpec(TraitedSpec):
+    out = Directory(desc="folder of the results")
+    study_tsv = File(desc="one row a subject, hemisphere and region")
+    index_html = File(desc="the same, to sort and click")
+    summary_json = File(desc="the numbers")
+    provenance_json = File(desc="what ran on what, with hashes")
+
+
+class StudyGroup(CommandLine):
+    """the table of a study and its page."""
+
+    _cmd = "explica study group"
+    input_spec = StudyGroupInputSpec
+    output_spec = StudyGroupOutputSpec
+
+    def _list_outputs(self):
+        outputs = self.output_spec().get()
+        out = os.path.abspath(self.inputs.out)
+        outputs["out"] = out
+        for name, pattern in {
+            "study_tsv": "study.tsv",
+            "index_html": "index.html",
+            "summary_json": "summary.json",
+            "provenance_json": "provenance.json",
+        }.items():
+            found = sorted(glob.glob(os.path.join(out, pattern)))
+            if found:
+                outputs[name] = found if "*" in pattern else found[0]
+        return outputs
+
+
+class StudyListInputSpec(CommandLineInputSpec):
+    study = File(exists=True, desc="study file, YAML or JSON", argstr="%s", position=0, mandatory=True)
+    out_dir = traits.Str(desc="folder of the results; only for --todo", argstr="%s", position=1)
+    todo = traits.Bool(desc="only subjects whose work is not settled", argstr="--todo")
+    keys = traits.Bool(desc="the key of each subject, too", argstr="--keys")
+    config = traits.Str(desc="JSON file with option values; the command line wins", argstr="--config %s")
+    threads = traits.Int(desc="processors to use (default: all that this process may)", argstr="--threads %s")
+    quiet = traits.Bool(desc="say nothing but warnings and errors", argstr="--quiet")
+    verbose = traits.Bool(desc="say more", argstr="--verbose")
+    log = traits.Str(desc="file to which every message goes, with times", argstr="--log %s")
+
+
+class StudyListOutputSpec(TraitedSpec):
+    pass
+
+
+class StudyList(CommandLine):
+    """the subjects of a study, one a line, for schedulers."""
+
+    _cmd = "explica study list"
+    input_spec = StudyListInputSpec
+    output_spec = StudyListOutputSpec
+
+
+class StudyParticipantInputSpec(CommandLineInputSpec):
+    study = File(exists=True, desc="study file, YAML or JSON", argstr="%s", position=0, mandatory=True)
+    out_dir = traits.Str(desc="folder of the results", argstr="%s", position=1, mandatory=True)
+    participant_label = traits.List(traits.Str(), desc="subjects to do, with or without sub-", argstr="--participant-label %s...")
+    config = traits.Str(desc="JSON file with option values; the command line wins", argstr="--config %s")
+    threads = traits.Int(desc="processors to use (default: all that this process may)", argstr="--threads %s")
+    quiet = traits.Bool(desc="say nothing but warnings and errors", argstr="--quiet")
+    verbose = traits.Bool(desc="say more", argstr="--verbose")
+    log = traits.Str(desc="file to which every message goes, with times", argstr="--log %s")
+
+
+class StudyParticipantOutputSpec(TraitedSpec):
+    pass
+
+
+class StudyParticipant(CommandLine):
+    """the runs of a study's subjects."""
+
+    _cmd = "explica study participant"
+    input_spec = StudyParticipantInputSpec
+    output_spec = StudyParticipantOutputSpec
+
+
+class StudySchemaInputSpec(CommandLineInputSpec):
+    config = traits.Str(desc="JSON file with option values; the command line wins", argstr="--config %s")
+    threads = traits.Int(desc="processors to use (default: all that this process may)", argstr="--threads %s")
+    quiet = traits.Bool(desc="say nothing but warnings and errors", argstr="--quiet")
+    verbose = traits.Bool(desc="say more", argstr="--verbose")
+    log = traits.Str(desc="file to which every message goes, with times", argstr="--log %s")
+
+
+class StudySchemaOutputSpec(TraitedSpec):
+    pass
+
+
+class StudySchema(CommandLine):
+    """the JSON schema of study files, for editors and other programs."""
+
+    _cmd = "explica study schema"
+    input_spec = StudySchemaInputSpec
+    output_spec = StudySchemaOutputSpec
+
+
 class SurfaceInputSpec(CommandLineInputSpec):
     seg = File(exists=True, desc="labels; may be left out if --inner-level is given", argstr="%s", position=0)
     inner_level = File(exists=True, desc="scalars that cross a level at the white surface: a probability or a distance", argstr="--inner-level %s")
