@@ -11,6 +11,17 @@ if [ $# -gt 0 ]; then
 else
   files=$(git ls-files '*.cpp')
 fi
+# What this build does not compile (benchmarks, the consumer project) has no flags to check it with.
+files=$(for file in $files; do grep -q -F "/$file\"" build/compile_commands.json && echo "$file"; done || true)
 [ -n "$files" ] || exit 0
-echo "$files" | grep -v -e '^Testing/consumer/' |
-  xargs -P "$(nproc)" -n 4 clang-tidy -p build --quiet --warnings-as-errors='*'
+
+check() {
+  xargs -r -P "$(nproc)" -n 4 clang-tidy -p build --quiet --warnings-as-errors='*' \
+    --extra-arg=-Wno-unknown-warning-option "$@"
+}
+failed=0
+echo "$files" | grep -v '^Modules/IO/' | check || failed=1
+# Debian's ITK headers know no compiler but GCC.
+echo "$files" | grep '^Modules/IO/' | check --extra-arg=-U__clang__ --extra-arg=-fgnuc-version=10.2.0 ||
+  failed=1
+exit "$failed"

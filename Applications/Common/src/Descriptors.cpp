@@ -246,7 +246,7 @@ std::string nipypeTrait(const Json& p) {
 
 /// Where the value goes on the command line: "--radius %s".
 std::string nipypeArgument(const Json& p) {
-  const std::string name = p["positional"] ? "" : "--" + word(p["name"]);
+  std::string name = p["positional"] ? "" : "--" + word(p["name"]);
   if (isFlag(p)) return name;
   // A tuple fills one place a coordinate.
   const std::string format = p["type"] == "point2"   ? "%s,%s"

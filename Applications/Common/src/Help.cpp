@@ -153,7 +153,7 @@ std::vector<OutputSlot> allOutputs(const Declaration& d) {
   return outputs;
 }
 
-std::string escapeCell(std::string text) {
+std::string escapeCell(const std::string& text) {
   std::string escaped;
   for (const char c : text) {
     if (c == '|') escaped += '\\';

@@ -23,7 +23,7 @@ std::string overview() {
       "Explica measures folded annular tissue and unfolds it for a chosen viewpoint.\n\n"
       "Usage: explica COMMAND [arguments] [options]\n\nCommands:\n";
   for (const Command& command : allCommands()) {
-    const std::string name = command.name();
+    const std::string& name = command.name();
     text += "  " + name + std::string(name.size() < 20 ? 20 - name.size() : 1, ' ') +
             command.begin().declaration.synopsisText + "\n";
   }

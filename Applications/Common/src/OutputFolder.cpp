@@ -255,7 +255,7 @@ OutputFolder::~OutputFolder() {
 }
 
 fs::path OutputFolder::place(const std::string& name) {
-  const fs::path path = stage_ / name;
+  fs::path path = stage_ / name;
   std::error_code fault;
   fs::create_directories(path.parent_path(), fault);
   if (fault) cannot("cannot be made", path.parent_path(), fault.message());

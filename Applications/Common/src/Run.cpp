@@ -238,7 +238,7 @@ Outcome Context::runCommand(const Command& command, const std::string& name, con
   nested.common.force = true;
   nested.prefix = state_->run.prefix + name + ": ";
   Step timing = step(name);
-  const Outcome outcome = execute(nested, state_->console);
+  Outcome outcome = execute(nested, state_->console);
   timing.termination(outcome.termination);
   if (!outcome.record.empty()) {
     state_->nestedRecords.emplace_back(name + "/" + provenance::kRecordName, outcome.record);

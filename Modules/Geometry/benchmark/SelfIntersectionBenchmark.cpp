@@ -12,14 +12,14 @@ namespace {
 
 void selfIntersection(benchmark::State& state) {
   const TriangleMesh mesh = makeFoldedSphere(static_cast<int>(state.range(0)), 1.0, 0.5, 9);
-  for (auto _ : state) benchmark::DoNotOptimize(findSelfIntersections(mesh));
+  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(findSelfIntersections(mesh));
   state.counters["faces"] = static_cast<double>(mesh.faceCount());
 }
 BENCHMARK(selfIntersection)->DenseRange(4, 7)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void treeBuild(benchmark::State& state) {
   const auto boxes = faceBoxes(makeFoldedSphere(static_cast<int>(state.range(0))));
-  for (auto _ : state) benchmark::DoNotOptimize(BoxTree(boxes));
+  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(BoxTree(boxes));
   state.counters["boxes"] = static_cast<double>(boxes.size());
 }
 BENCHMARK(treeBuild)->DenseRange(4, 7)->Unit(benchmark::kMillisecond)->UseRealTime();
