@@ -339,10 +339,7 @@ std::string listed(const std::vector<Label>& labels) {
   return text.str();
 }
 
-void checkGrid(const Grid& grid, const AnnulusOptions& options) {
-  if (options.boundary == BoundaryModel::Embedding) {
-    throw InvalidInput("--boundary embedding is not available yet; use subvoxel or staircase");
-  }
+void checkGrid(const Grid& grid) {
   for (int a = 0; a < 3; ++a) {
     if (!(grid.spacing[a] > 0) || !std::isfinite(grid.spacing[a])) {
       throw InvalidInput("the voxel size along axis " + std::to_string(a) + " is " +
@@ -356,7 +353,7 @@ void checkGrid(const Grid& grid, const AnnulusOptions& options) {
 
 Annulus annulusFromLabels(const Volume<Label>& labels, const LabelRoles& roles,
                           const AnnulusOptions& options, const Monitor& monitor) {
-  checkGrid(labels.grid, options);
+  checkGrid(labels.grid);
   if (roles.tissue.empty()) throw InvalidInput("no tissue label was given (--tissue)");
   if (roles.inner.empty()) throw InvalidInput("no inner label was given (--inner)");
 
@@ -478,7 +475,7 @@ Annulus annulusFromLabels(const Volume<Label>& labels, const LabelRoles& roles,
 Annulus annulusFromSites(const Volume<Site>& sites, const Volume<float>& innerLevel,
                          const Volume<float>& outerLevel, const AnnulusOptions& options,
                          const Monitor& monitor) {
-  checkGrid(sites.grid, options);
+  checkGrid(sites.grid);
   if (!sameGrid(sites.grid, innerLevel.grid) || !sameGrid(sites.grid, outerLevel.grid)) {
     throw InvalidInput("the sites and the two level sets lie on different grids");
   }
@@ -537,7 +534,7 @@ Annulus annulusFromSites(const Volume<Site>& sites, const Volume<float>& innerLe
 Annulus annulusFromLevels(const Volume<float>& inner, const Volume<float>& outer,
                           const LevelOptions& levels, const AnnulusOptions& options,
                           const Volume<std::uint8_t>& insulated, const Monitor& monitor) {
-  checkGrid(inner.grid, options);
+  checkGrid(inner.grid);
   if (!sameGrid(inner.grid, outer.grid)) {
     throw InvalidInput("the inner and the outer level set lie on different grids");
   }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Harmonic/Interpolant.h"
 
+#include "Embedding.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
 #include "LinearSolve.h"
@@ -87,6 +88,9 @@ Interpolant solveInterpolant(const Annulus& annulus, const InterpolantOptions& o
                              const Monitor& monitor) {
   if (!(options.relativeTolerance > 0) || options.maxIterations < 1) {
     throw InvalidInput("the tolerance and the number of iterations must be positive");
+  }
+  if (annulus.model == BoundaryModel::Embedding) {
+    return solveByEmbedding(annulus, options, monitor);
   }
   Interpolant result;
   const Stencil stencil(annulus);

@@ -25,8 +25,8 @@ Annulus annulusOf(const ExactAnnulus& exact, const Grid& grid, const AnnulusOpti
                            {0, LevelInside::Below}, options);
 }
 
-Errors errorsOf(const ExactAnnulus& exact, const Grid& grid) {
-  const Annulus annulus = annulusOf(exact, grid);
+Errors errorsOf(const ExactAnnulus& exact, const Grid& grid, const AnnulusOptions& options = {}) {
+  const Annulus annulus = annulusOf(exact, grid, options);
   const Interpolant solved = solveInterpolant(annulus);
   EXPECT_EQ(solved.termination, Termination::Converged);
   Errors errors;
@@ -62,14 +62,14 @@ double order(const std::vector<double>& spacing, const std::vector<double>& erro
 }
 
 void expectSecondOrder(const ExactAnnulus& exact, double extent, const std::vector<int>& sizes,
-                       const Vector& ratio = Vector::Ones()) {
+                       const Vector& ratio = Vector::Ones(), const AnnulusOptions& options = {}) {
   std::vector<double> spacings, u, gradient;
   for (const int size : sizes) {
     const double h = extent / size;
     std::array<int, 3> n{};
     for (int a = 0; a < 3; ++a) n[a] = static_cast<int>(std::ceil(extent / (h * ratio[a])));
     if (exact.dimension == 2) n[2] = 1;
-    const Errors errors = errorsOf(exact, centredGrid(n, h * ratio));
+    const Errors errors = errorsOf(exact, centredGrid(n, h * ratio), options);
     spacings.push_back(h);
     u.push_back(errors.u);
     gradient.push_back(errors.boundaryGradient);
@@ -117,6 +117,13 @@ TEST(HarmonicInterpolant, IsOfSecondOrderOnEccentricCircles) {
 
 TEST(HarmonicInterpolant, IsOfSecondOrderOnConfocalSpheroids) {
   expectSecondOrder(exactSpheroids(6, 0.9, 1.4), 22, {64, 96, 144});
+}
+
+TEST(HarmonicEmbedding, IsOfSecondOrderInThePlaneAndInSpace) {
+  AnnulusOptions options;
+  options.boundary = BoundaryModel::Embedding;
+  expectSecondOrder(exactEccentric(4, 10, 3), 22, {40, 80, 160}, Vector::Ones(), options);
+  expectSecondOrder(exactShell(4.1, 9.3), 21, {24, 40, 64}, Vector::Ones(), options);
 }
 
 TEST(HarmonicInterpolant, ObeysTheMaximumPrincipleExactly) {

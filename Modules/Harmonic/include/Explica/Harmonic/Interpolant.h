@@ -24,6 +24,8 @@ struct Interpolant {
   Termination termination = Termination::NotRun;
   int iterations = 0;
   double relativeResidual = kNaN;
+  double misfit = kNaN;  ///< BoundaryModel::Embedding: root mean square of u minus 0 or 1 on the
+                         ///< boundary; iterations then count those of the fit
   std::size_t corrected =
       0;  ///< values that round-off had carried out of [0, 1] before the last sweep
 };
@@ -35,6 +37,10 @@ struct Interpolant {
 /// fraction theta, the one-sided distance enters as in [ShortleyWeller1938]: second order in the
 /// maximum norm. A is an M-matrix, so u stays in [0, 1]: the last step is a Gauss-Seidel sweep,
 /// whose values are convex combinations.
+///
+/// With BoundaryModel::Embedding u = sum alpha_j u_j [thesis 3.2]: the values alpha_j at the grid's
+/// vertices beside the tissue are those for which u is nearest to 0 and 1 where the boundaries
+/// cross the grid's links.  Least squares, some tens of Laplace solves; the same order of accuracy.
 ///
 /// The result does not depend on the number of threads.  Time O(n) for n tissue voxels.
 /// @throws InvalidInput  an option out of range
