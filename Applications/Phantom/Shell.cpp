@@ -30,8 +30,14 @@ void declare(Declaration& d, Settings& s) {
       .output("labels.nii.gz", FileKind::LabelVolume, "1 inside, 2 tissue, 0 outside")
       .output("level.nii.gz", FileKind::Volume,
               "distance from the inner sphere, mm, negative inside")
-      .output("harmonic.nii.gz", FileKind::Volume,
-              "exact harmonic function, 0 inside to 1 outside");
+      .output("outer_level.nii.gz", FileKind::Volume,
+              "distance from the outer sphere, mm, negative inside")
+      .output("harmonic.nii.gz", FileKind::Volume, "exact harmonic function, 0 inside to 1 outside")
+      .output("thickness.nii.gz", FileKind::Volume, "exact thickness, mm")
+      .output("inner_distance.nii.gz", FileKind::Volume, "exact L0, mm")
+      .output("outer_distance.nii.gz", FileKind::Volume, "exact L1, mm")
+      .output("inner_point.nii.gz", FileKind::PointVolume, "exact phi0, RAS mm")
+      .output("outer_point.nii.gz", FileKind::PointVolume, "exact phi1, RAS mm");
 }
 
 /// Read, call, write, report.  Loops over voxels belong in modules.
@@ -45,13 +51,26 @@ Termination run(Context& context, const Settings& s) {
   auto step = context.step("write");
   io::writeVolume(context.output("labels.nii.gz"), shell.labels);
   io::writeVolume(context.output("level.nii.gz"), shell.level);
+  io::writeVolume(context.output("outer_level.nii.gz"), shell.outerLevel);
   io::writeVolume(context.output("harmonic.nii.gz"), shell.harmonic);
+  io::writeVolume(context.output("thickness.nii.gz"), shell.thicknessMap);
+  io::writeVolume(context.output("inner_distance.nii.gz"), shell.innerDistance);
+  io::writeVolume(context.output("outer_distance.nii.gz"), shell.outerDistance);
+  io::writeVolume(context.output("inner_point.nii.gz"), shell.innerPoint);
+  io::writeVolume(context.output("outer_point.nii.gz"), shell.outerPoint);
 
   using Names = nlohmann::ordered_json;
   context.result("labels", Names{{"outside", phantom::Shell::kOuter},
                                  {"inner", phantom::Shell::kInner},
                                  {"tissue", phantom::Shell::kTissue}});
-  context.result("answers", Names{{"level", "level.nii.gz"}, {"harmonic", "harmonic.nii.gz"}});
+  context.result("answers", Names{{"level", "level.nii.gz"},
+                                  {"outer_level", "outer_level.nii.gz"},
+                                  {"harmonic", "harmonic.nii.gz"},
+                                  {"thickness", "thickness.nii.gz"},
+                                  {"inner_distance", "inner_distance.nii.gz"},
+                                  {"outer_distance", "outer_distance.nii.gz"},
+                                  {"inner_point", "inner_point.nii.gz"},
+                                  {"outer_point", "outer_point.nii.gz"}});
   context.result("thickness", shell.thickness);
   context.result("inner_radius", shell.innerRadius);
   context.result("outer_radius", shell.outerRadius);

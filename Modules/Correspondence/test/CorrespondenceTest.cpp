@@ -144,6 +144,30 @@ TEST(Correspondence, DoesNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(one.outerDistance, four.outerDistance);
 }
 
+TEST(Correspondence, EmbeddingServesAsWellAsSubvoxelBoundaries) {
+  harmonic::AnnulusOptions options;
+  options.boundary = harmonic::BoundaryModel::Embedding;
+  for (const Solved& direct : {eccentric(), spheroids()}) {
+    Solved s;
+    s.exact = direct.exact;
+    const Grid& grid = direct.annulus.grid;
+    s.annulus = harmonic::annulusFromLevels(harmonic::sampled(grid, s.exact.innerLevel),
+                                            harmonic::sampled(grid, s.exact.outerLevel),
+                                            {0, harmonic::LevelInside::Below}, options);
+    s.interpolant = harmonic::solveInterpolant(s.annulus);
+    EXPECT_LE(s.interpolant.misfit, 1e-3);
+    for (const Method method : {Method::Lagrangian, Method::Hybrid}) {
+      const auto found = findCorrespondences(s.annulus, s.interpolant, with(method));
+      const Errors e = errorsOf(s, found, grid.spacing[0]);
+      std::printf("embedding: points %.4f / %.4f, thickness %.4f / %.4f voxel, misfit %.1e\n",
+                  e.meanPoint, e.maxPoint, e.meanThickness, e.maxThickness, s.interpolant.misfit);
+      EXPECT_EQ(found.missing, 0U);
+      EXPECT_LE(e.meanPoint, 0.02);
+      EXPECT_LE(e.meanThickness, 0.01);
+    }
+  }
+}
+
 TEST(Correspondence, LabelsAloneGiveATwentiethOfAVoxel) {
   // The second size puts the poles, equators and axes elsewhere between the voxels.
   for (const auto kind : {harmonic::PhantomKind::Shell, harmonic::PhantomKind::Spheroid}) {

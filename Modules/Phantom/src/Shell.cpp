@@ -38,18 +38,27 @@ Shell makeShell(const ShellOptions& options) {
   shell.outerRadius = options.outerRadius * halfWidth;
   shell.thickness = shell.outerRadius - shell.innerRadius;
   shell.labels = Volume<Label>(grid);
-  shell.level = Volume<float>(grid);
-  shell.harmonic = Volume<float>(grid);
+  shell.level = shell.outerLevel = shell.harmonic = Volume<float>(grid);
+  shell.innerDistance = shell.outerDistance = shell.thicknessMap = Volume<float>(grid, 0);
+  shell.innerPoint = shell.outerPoint = Volume<Eigen::Vector3f>(grid, Eigen::Vector3f::Zero());
   const double a = shell.innerRadius, b = shell.outerRadius;
   constexpr std::size_t kGrain = 16384;
   parallelFor(grid.voxelCount(), kGrain, [&](std::size_t v) {
     const auto [i, j, k] = grid.subscripts(v);
-    const double r = grid.toWorld({double(i), double(j), double(k)}).norm();
+    const Point x = grid.toWorld({double(i), double(j), double(k)});
+    const double r = x.norm();
     shell.labels[v] = r < a ? Shell::kInner : r < b ? Shell::kTissue : Shell::kOuter;
     shell.level[v] = static_cast<float>(r - a);
+    shell.outerLevel[v] = static_cast<float>(r - b);
     shell.harmonic[v] = r <= a   ? 0.f
                         : r >= b ? 1.f
                                  : static_cast<float>((1 / a - 1 / r) / (1 / a - 1 / b));
+    if (shell.labels[v] != Shell::kTissue) return;
+    shell.innerDistance[v] = static_cast<float>(r - a);
+    shell.outerDistance[v] = static_cast<float>(b - r);
+    shell.thicknessMap[v] = static_cast<float>(b - a);
+    shell.innerPoint[v] = (a / r * x).cast<float>();
+    shell.outerPoint[v] = (b / r * x).cast<float>();
   });
   return shell;
 }

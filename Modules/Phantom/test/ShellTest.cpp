@@ -40,6 +40,15 @@ TEST(ShellPhantom, HarmonicMeetsItsBoundaries) {
     if (shell.labels[v] == Shell::kTissue) {
       ASSERT_GE(shell.harmonic[v], 0.f);
       ASSERT_LE(shell.harmonic[v], 1.f);
+      // From one boundary point to the other through the voxel is the whole thickness.
+      const Point x = grid.toWorld({double(i), double(j), double(k)});
+      const Point inner = shell.innerPoint[v].cast<double>();
+      const Point outer = shell.outerPoint[v].cast<double>();
+      ASSERT_NEAR(inner.norm(), shell.innerRadius, 1e-5);
+      ASSERT_NEAR(outer.norm(), shell.outerRadius, 1e-5);
+      ASSERT_NEAR((x - inner).norm(), shell.innerDistance[v], 1e-5);
+      ASSERT_NEAR((outer - x).norm(), shell.outerDistance[v], 1e-5);
+      ASSERT_NEAR(shell.thicknessMap[v], shell.thickness, 1e-5);
     }
     ASSERT_NEAR(shell.level[v], r - shell.innerRadius, 1e-4);
   }

@@ -30,6 +30,11 @@ struct Shell {
   static constexpr Label kOuter = 0, kInner = 1, kTissue = 2;
   Volume<Label> labels;  ///< by the voxel centre's distance from the centre
   Volume<float> level;   ///< distance from the centre minus the inner radius, mm: subvoxel boundary
+  Volume<float> outerLevel;                    ///< distance from the centre minus the outer radius
+  Volume<float> innerDistance, outerDistance;  ///< L0, L1 in the tissue, mm; 0 elsewhere
+  Volume<float> thicknessMap;                  ///< L0 + L1 in the tissue, mm; 0 elsewhere
+  Volume<Eigen::Vector3f> innerPoint,
+      outerPoint;          ///< phi0, phi1 in the tissue, RAS mm; 0 elsewhere
   Volume<float> harmonic;  ///< u = (1/a - 1/r) / (1/a - 1/b) in the tissue, 0 inside, 1 outside
   double thickness = 0;    ///< mm, everywhere
   double innerRadius = 0;  ///< a, mm
