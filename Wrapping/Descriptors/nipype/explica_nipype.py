@@ -523,7 +523,13 @@ class PhantomShellOutputSpec(TraitedSpec):
     out = Directory(desc="folder of the results")
     labels_nii_gz = File(desc="1 inside, 2 tissue, 0 outside")
     level_nii_gz = File(desc="distance from the inner sphere, mm, negative inside")
+    outer_level_nii_gz = File(desc="distance from the outer sphere, mm, negative inside")
     harmonic_nii_gz = File(desc="exact harmonic function, 0 inside to 1 outside")
+    thickness_nii_gz = File(desc="exact thickness, mm")
+    inner_distance_nii_gz = File(desc="exact L0, mm")
+    outer_distance_nii_gz = File(desc="exact L1, mm")
+    inner_point_nii_gz = File(desc="exact phi0, RAS mm")
+    outer_point_nii_gz = File(desc="exact phi1, RAS mm")
     summary_json = File(desc="the numbers")
     provenance_json = File(desc="what ran on what, with hashes")
 
@@ -542,7 +548,13 @@ class PhantomShell(CommandLine):
         for name, pattern in {
             "labels_nii_gz": "labels.nii.gz",
             "level_nii_gz": "level.nii.gz",
+            "outer_level_nii_gz": "outer_level.nii.gz",
             "harmonic_nii_gz": "harmonic.nii.gz",
+            "thickness_nii_gz": "thickness.nii.gz",
+            "inner_distance_nii_gz": "inner_distance.nii.gz",
+            "outer_distance_nii_gz": "outer_distance.nii.gz",
+            "inner_point_nii_gz": "inner_point.nii.gz",
+            "outer_point_nii_gz": "outer_point.nii.gz",
             "summary_json": "summary.json",
             "provenance_json": "provenance.json",
         }.items():
