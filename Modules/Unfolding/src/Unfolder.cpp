@@ -72,6 +72,7 @@ struct Unfolder::Implementation {
   bool nearKnown = false;
 
   void build();
+  void standAt(const Positions& positions);
   Contact contactOf(const Pair& pair) const;
   std::vector<Contact> contactsOf(const std::vector<Pair>& pairs) const;
   double objective(const Positions& x, const std::vector<Contact>& contacts,
@@ -182,8 +183,7 @@ void Unfolder::Implementation::build() {
   patch = PatchEnergy(std::move(faces), std::move(springs));
   std::sort(meshCouplings.begin(), meshCouplings.end());
 
-  scene = std::make_unique<collision::CollisionScene>(mesh, moves);
-  knot = repulsion::makeKnotEnergy(options.knot, mesh, moves);
+  standAt(mesh.positions);
   state.positions = mesh.positions;
   state.multipliers = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(patch.faces().size()));
   state.areaStiffness = options.weights.area;
@@ -226,6 +226,14 @@ void Unfolder::Implementation::build() {
         neighbours ? std::max(0.5 * distance, std::min(wanted, kNeedle * thin)) : wanted;
   }
   measure(record);
+}
+
+/// Fixed vertices stand at these positions from now on: as obstacles, and for the knot energy.
+void Unfolder::Implementation::standAt(const Positions& positions) {
+  const TriangleMesh standing{positions, mesh.faces};
+  const std::vector<bool> moves = flags(static_cast<std::size_t>(positions.rows()), moving);
+  scene = std::make_unique<collision::CollisionScene>(standing, moves);
+  knot = repulsion::makeKnotEnergy(options.knot, standing, moves);
 }
 
 Contact Unfolder::Implementation::contactOf(const Pair& pair) const {
@@ -579,6 +587,12 @@ void Unfolder::restore(UnfoldState state) {
     throw InvalidInput("state: it belongs to another surface or region");
   }
   self_->state = std::move(state);
+  const Positions& positions = self_->state.positions;
+  bool standing = true;  // unless another region of the surface was unfolded before
+  for (Eigen::Index v = 0; v < positions.rows() && standing; ++v) {
+    standing = self_->unknown[v] >= 0 || positions.row(v) == self_->mesh.positions.row(v);
+  }
+  if (!standing) self_->standAt(positions);
   self_->nearKnown = false;
   self_->measure(self_->record);
 }

@@ -16,7 +16,7 @@ struct Pair {
   PairKind kind = PairKind::VertexFace;
   std::int32_t first = -1;
   std::int32_t second = -1;
-  friend auto operator<=>(const Pair&, const Pair&) = default;
+  friend auto operator<=>(const Pair&, const Pair&) = default;  // NOLINT(modernize-use-nullptr)
 };
 
 /// A surface of which some vertices move, and who can meet whom in it.
