@@ -93,6 +93,17 @@ class Slurm(unittest.TestCase):
         numbers = self.node.run(SCRIPT, study, self.out).split()
         self.assertEqual(len(numbers), 1)
 
+    def test_the_line_on_the_page_works(self):
+        page = (SCRIPT.parents[2] / "ExampleData/study/README.md").read_text()
+        line = next(x.strip() for x in page.splitlines() if "/explica-study-slurm " in x)
+        study = small_study.make(self.folder)
+        study.write_text(study.read_text().replace("[surface, unfold]", "[surface]").replace("60000", "3000"))
+        self.node.environment["EXPLICA_SOURCE"] = str(SCRIPT.parents[2])
+        numbers = self.node.run("sh", "-c", line, cwd=self.folder).split()
+        self.assertEqual(set(self.wait_for(numbers[0]).values()), {"COMPLETED"}, self.logs())
+        self.assertEqual(self.wait_for(numbers[-1]), {-1: "COMPLETED"}, self.logs())
+        self.assertEqual(set(small_study.table(self.out).values()), {"done"})
+
     def test_one_task_may_take_several_subjects(self):
         study = small_study.make(self.folder)
         study.write_text(study.read_text().replace("[surface, unfold]", "[surface]")
