@@ -154,6 +154,12 @@ unfolding::Region regionOf(const TriangleMesh& mesh, const Settings& s,
   for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
     marked[v] = s.labelKey ? labels.keys[v] == *s.labelKey : labels.keys[v] != 0;
   }
+  if (std::find(marked.begin(), marked.end(), true) == marked.end()) {
+    throw InvalidInput(s.labelKey ? "label: no vertex has key " + std::to_string(*s.labelKey) +
+                                        ", keys go from " + std::to_string(labels.keys.minCoeff()) +
+                                        " to " + std::to_string(labels.keys.maxCoeff())
+                                  : "label: it is 0 everywhere, so the region is empty");
+  }
   return unfolding::regionOfMarked(mesh, marked);
 }
 
@@ -214,7 +220,7 @@ Termination run(Context& context, const Settings& s) {
   const auto condition = geometry::inspectMesh(mesh);
   if (condition.coincidentVertices > 0) {
     context.warn(std::to_string(condition.coincidentVertices) +
-                 " vertices lie exactly on others; they touch and cannot be parted");
+                 " vertices lie exactly on others: the surface touches itself there");
   }
 
   visibility::Viewpoints view;

@@ -4,6 +4,7 @@
 #include "Explica/Geometry/Fixtures.h"
 #include "Explica/Geometry/SelfIntersection.h"
 #include "Explica/IO/SurfaceFile.h"
+#include "Explica/IO/VertexDataFile.h"
 #include "Explica/Testing/Command.h"
 #include "Explica/Testing/DepthBuffer.h"
 #include "Explica/Unfolding/Region.h"
@@ -11,8 +12,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <sstream>
 
 namespace explica::testing {
@@ -238,6 +241,258 @@ TEST(UnfoldCommand, RefusesWhatCannotBeUnfoldedAndSaysWhy) {
     EXPECT_EQ(result.exitCode, 2) << result;
     EXPECT_NE(result.err.find(reason), std::string::npos) << reason << "\n" << result.err;
   }
+}
+
+// ---- inputs that are readable and wrong; each row is one thing that happens to a sound sheet ----
+
+/// A corrugated sheet of 20 x 20 mm, vertex (i, j) at row 21 j + i.
+TriangleMesh makeCorrugated() {
+  TriangleMesh mesh = geometry::makeRectangle(20, 20, 20, 20);
+  for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
+    mesh.positions(v, 2) = 3 * std::sin(0.6 * mesh.positions(v, 0));
+  }
+  return mesh;
+}
+Eigen::Index vertexAt(const TriangleMesh& mesh, double x, double y) {
+  Eigen::Index nearest = 0;
+  (void)(mesh.positions.leftCols<2>().rowwise() - Eigen::RowVector2d(x, y))
+      .rowwise()
+      .squaredNorm()
+      .minCoeff(&nearest);
+  return nearest;
+}
+
+struct WrongInput {
+  std::string name;
+  std::function<void(TriangleMesh&)> damage;
+  std::vector<std::string> options;
+  std::string reason;              ///< part of the sentence
+  std::string file = "sheet.off";  ///< that it names
+};
+void PrintTo(const WrongInput& row, std::ostream* stream) {
+  *stream << row.name;
+}
+
+const std::vector<std::string> kDisc = {"--center", "10,10,0", "--radius", "7"};
+std::vector<std::string> onDisc(std::vector<std::string> more) {
+  more.insert(more.begin(), kDisc.begin(), kDisc.end());
+  return more;
+}
+void nothing(TriangleMesh&) {}
+
+const WrongInput kWrongInputs[] = {
+    {"RadiusNegative",
+     nothing,
+     {"--center", "10,10,0", "--radius", "-3", "--direction", "0,0,1"},
+     "not a positive length"},
+    {"RegionEmpty",
+     nothing,
+     {"--center", "10,10,0", "--radius", "0.1", "--direction", "0,0,1"},
+     "no face has all three vertices"},
+    {"VertexUnknown", nothing, {"--vertex", "441", "--direction", "0,0,1"}, "0 to 440"},
+    {"VertexOfNoFace",
+     [](TriangleMesh& mesh) {
+       mesh.positions.conservativeResize(442, 3);
+       mesh.positions.row(441) << 50, 50, 50;
+     },
+     {"--vertex", "441", "--direction", "0,0,1"},
+     "belongs to no face"},
+    {"NoView", nothing, kDisc, "exactly one of --viewpoint"},
+    {"TwoViews", nothing, onDisc({"--direction", "0,0,1", "--viewpoint", "0,0,99"}), "exactly one"},
+    {"DirectionZero", nothing, onDisc({"--direction", "0,0,0"}), "direction"},
+    {"DistanceNegative", nothing, onDisc({"--direction", "0,0,1", "--distance", "-5"}), "distance"},
+    {"ViewpointOnTheSurface", nothing, onDisc({"--viewpoint", "0,0,0"}), "on the surface"},
+    {"ViewedFromBehind", nothing, onDisc({"--direction", "0,0,-1"}), "average visibility"},
+    {"NotAdjustable", nothing, onDisc({"--direction", "0,0,-1", "--adjust-region"}),
+     "look from another side"},
+    {"ConeTooWide", nothing, onDisc({"--cone", "120", "--direction", "0,0,1"}), "cone"},
+    {"TargetAboveOne", nothing, onDisc({"--direction", "0,0,1", "--target-visibility", "1.5"}),
+     "target-visibility"},
+    {"FramesNegative", nothing, onDisc({"--direction", "0,0,1", "--frames", "-1"}), "frames"},
+    {"IterationsZero", nothing, onDisc({"--direction", "0,0,1", "--max-iterations", "0"}),
+     "max-iterations"},
+    {"TimeNegative", nothing, onDisc({"--direction", "0,0,1", "--max-time", "-1"}), "max-time"},
+    {"FaceWithoutArea",
+     [](TriangleMesh& mesh) {  // a face whose corners lie on one line
+       mesh.positions.row(vertexAt(mesh, 9, 9)) << 9, 9, 0;
+       mesh.positions.row(vertexAt(mesh, 10, 9)) << 10, 9, 0;
+       mesh.positions.row(vertexAt(mesh, 10, 10)) << 11, 9, 0;
+     },
+     onDisc({"--direction", "0,0,1"}), "zero area"},
+    {"VerticesCoincide",
+     [](TriangleMesh& mesh) {
+       const Eigen::Index from = vertexAt(mesh, 12, 12);
+       mesh.positions.row(from) = mesh.positions.row(vertexAt(mesh, 3, 10)).eval();
+     },
+     onDisc({"--direction", "0,0,1"}), "weld coincident vertices"},
+    {"EdgeOfThreeFaces",
+     [](TriangleMesh& mesh) {
+       mesh.faces.conservativeResize(mesh.faceCount() + 1, 3);
+       mesh.faces.bottomRows<1>() << mesh.faces(0, 0), mesh.faces(0, 1), 400;
+     },
+     onDisc({"--direction", "0,0,1"}), "manifold"},
+    {"FaceTurned", [](TriangleMesh& mesh) { std::swap(mesh.faces(300, 0), mesh.faces(300, 1)); },
+     onDisc({"--direction", "0,0,1"}), "oriented against each other"},
+    {"LabelOfAnotherSurface",
+     nothing,
+     {"--label", "{folder}/short.label.gii", "--direction", "0,0,1"},
+     "440 values, but the surface has 441 vertices",
+     "short.label.gii"},
+    {"FreeSurferLabelOfAnotherSurface",
+     nothing,
+     {"--label", "{folder}/far.label", "--direction", "0,0,1"},
+     "another surface's label",
+     "far.label"},
+    {"LabelEmpty",
+     nothing,
+     {"--label", "{folder}/none.label.gii", "--direction", "0,0,1"},
+     "0 everywhere"},
+    {"LabelKeyAbsent",
+     nothing,
+     {"--label", "{folder}/two.label.gii", "--label-key", "7", "--direction", "0,0,1"},
+     "no vertex has key 7"},
+    {"ValuesThatAreNoLabels",
+     nothing,
+     {"--label", "{folder}/values.shape.gii", "--direction", "0,0,1"},
+     "labels are needed",
+     "values.shape.gii"},
+};
+
+io::LabelMap labelsOf(Eigen::Index count, const std::function<bool(int, int)>& inside) {
+  io::LabelMap label{"region", {}, {{0, "out", {1, 1, 1, 1}}, {1, "in", {1, 0, 0, 1}}}};
+  label.keys.setZero(count);
+  for (int v = 0; v < count; ++v) label.keys[v] = inside(v % 21, v / 21);
+  return label;
+}
+
+/// Two rectangles apart from each other; their left one is a FreeSurfer label too.
+void writeLabels(const TemporaryFolder& folder) {
+  const auto two = [](int i, int j) {
+    return j >= 3 && j <= 16 && ((i >= 2 && i <= 8) || (i >= 12 && i <= 18));
+  };
+  io::writeGiftiLabel(folder / "two.label.gii", labelsOf(441, two), "");
+  io::writeGiftiLabel(folder / "short.label.gii", labelsOf(440, two), "");
+  io::writeGiftiLabel(folder / "none.label.gii", labelsOf(441, [](int, int) { return false; }), "");
+  io::writeGiftiLabel(folder / "ring.label.gii",
+                      labelsOf(441,
+                               [](int i, int j) {
+                                 const double r = std::hypot(i - 10, j - 10);
+                                 return r >= 3 && r <= 8;
+                               }),
+                      "");
+  io::writeGiftiShape(
+      folder / "values.shape.gii",
+      std::vector<io::VertexMap>{{"values", "", Eigen::VectorXd::Constant(441, 0.5)}}, "");
+  std::string left = "#!ascii label\n98\n";
+  for (int v = 0; v < 441; ++v) {
+    if (two(v % 21, v / 21) && v % 21 <= 8) left += std::to_string(v) + " 0 0 0 1\n";
+  }
+  writeText(folder / "left.label", left);
+  writeText(folder / "far.label", "#!ascii label\n1\n9999 0 0 0 1\n");
+}
+
+class WrongUnfoldInput : public ::testing::TestWithParam<WrongInput> {};
+
+TEST_P(WrongUnfoldInput, IsRefusedWithItsReasonAndWritesNothing) {
+  const TemporaryFolder folder;
+  TriangleMesh mesh = makeCorrugated();
+  GetParam().damage(mesh);
+  io::writeSurface(folder / "sheet.off", mesh);
+  writeLabels(folder);
+  std::vector<std::string> words = {"unfold", folder / "sheet.off", "--quiet", "--out",
+                                    folder / "out"};
+  for (std::string word : GetParam().options) {
+    if (word.rfind("{folder}", 0) == 0) word = folder / word.substr(9);
+    words.push_back(word);
+  }
+  const auto result = explica(words);
+  EXPECT_EQ(result.exitCode, 2) << result;
+  EXPECT_NE(result.err.find(GetParam().reason), std::string::npos) << result;
+  EXPECT_NE(result.err.find(GetParam().file), std::string::npos) << result;
+  EXPECT_FALSE(fs::exists(folder / "out"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Table, WrongUnfoldInput, ::testing::ValuesIn(kWrongInputs),
+                         [](const auto& row) { return row.param.name; });
+
+/// Regions of every kind on the sound sheet: what is selected, and that it unfolds untorn.
+struct RegionKind {
+  std::string name;
+  std::vector<std::string> options;
+  int pieces;
+  int holes;
+};
+void PrintTo(const RegionKind& row, std::ostream* stream) {
+  *stream << row.name;
+}
+
+const RegionKind kRegionKinds[] = {
+    {"Euclidean", {"--center", "10,10,0", "--radius", "7"}, 1, 0},
+    {"Geodesic", {"--center", "10,10,0", "--radius", "7", "--metric", "geodesic"}, 1, 0},
+    {"Cone", {"--center", "10,10,0", "--radius", "20", "--cone", "0.4"}, 1, 0},
+    {"GiftiLabelOfTwoPieces", {"--label", "{folder}/two.label.gii"}, 2, 0},
+    {"GiftiLabelWithAHole", {"--label", "{folder}/ring.label.gii", "--label-key", "1"}, 1, 1},
+    {"FreeSurferLabel", {"--label", "{folder}/left.label"}, 1, 0},
+};
+
+class UnfoldRegion : public ::testing::TestWithParam<RegionKind> {};
+
+TEST_P(UnfoldRegion, IsSelectedReportedAndUnfolded) {
+  const TemporaryFolder folder;
+  io::writeSurface(folder / "sheet.off", makeCorrugated());
+  writeLabels(folder);
+  for (const std::string surround : {"fixed", "elastic", "none"}) {
+    std::vector<std::string> words = {
+        "unfold", folder / "sheet.off", "--direction", "0,0,1", "--surround",
+        surround, "--max-iterations",   "6",           "--out", folder / surround};
+    for (std::string word : GetParam().options) {
+      if (word.rfind("{folder}", 0) == 0) word = folder / word.substr(9);
+      words.push_back(word);
+    }
+    const auto result = explica(words);
+    ASSERT_TRUE(result.exitCode == 0 || result.exitCode == 3) << result;
+    const auto summary = readJson(folder / (surround + "/summary.json"));
+    EXPECT_EQ(summary["region_pieces"], GetParam().pieces);
+    EXPECT_EQ(summary["region_holes"], GetParam().holes);
+    EXPECT_GT(summary["visibility_final"], summary["visibility_initial"]) << surround;
+    EXPECT_EQ(summary["self_intersections_final"], 0) << surround;
+    EXPECT_EQ(result.err.find("pieces") != std::string::npos, GetParam().pieces > 1);
+    EXPECT_EQ(result.err.find("holes") != std::string::npos, GetParam().holes > 0);
+    const auto before = io::readVertexLabels(folder / (surround + "/region.label.gii"), 441);
+    EXPECT_EQ((before.keys.array() == 1).count(), summary["region_vertices"]);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, UnfoldRegion, ::testing::ValuesIn(kRegionKinds),
+                         [](const auto& row) { return row.param.name; });
+
+TEST(UnfoldCommand, TouchingPartsUnfoldOnceTheyAreRepaired) {
+  const TemporaryFolder folder;
+  TriangleMesh mesh = makeCorrugated();
+  mesh.positions.row(vertexAt(mesh, 12, 12)) = mesh.positions.row(vertexAt(mesh, 3, 10)).eval();
+  io::writeSurface(folder / "sheet.off", mesh);
+  const auto result = explica({"unfold", folder / "sheet.off", "--center", "10,10,0", "--radius",
+                               "7", "--direction", "0,0,1", "--max-iterations", "8", "--repair",
+                               "--out", folder / "out"});
+  ASSERT_EQ(result.exitCode, 3) << result;
+  const auto summary = readJson(folder / "out/summary.json");
+  EXPECT_EQ(summary["self_intersections_final"], 0);
+  EXPECT_GT(summary["visibility_final"], summary["visibility_initial"].get<double>() + 0.1);
+}
+
+TEST(UnfoldCommand, AdjustsTheRegionUntilItIsSeen) {
+  // The middle of a slope that looks away; a whole wave, up and down, is seen.
+  const TemporaryFolder folder;
+  io::writeSurface(folder / "sheet.off", makeCorrugated());
+  std::vector<std::string> words = {
+      "unfold",  folder / "sheet.off", "--center", "10.47,10,0", "--radius",    "3", "--direction",
+      "1,0,0.5", "--max-iterations",   "2",        "--out",      folder / "out"};
+  EXPECT_EQ(explica(words).exitCode, 2);
+  words.push_back("--adjust-region");
+  const auto result = explica(words);
+  EXPECT_EQ(result.exitCode, 3) << result;
+  EXPECT_NE(result.err.find("the region was adjusted from"), std::string::npos) << result;
+  EXPECT_GT(readJson(folder / "out/summary.json")["visibility_initial"], 0);
 }
 
 }  // namespace

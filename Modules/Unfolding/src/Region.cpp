@@ -6,6 +6,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Geometry/FaceTree.h"
 #include "Explica/Geometry/Geodesic.h"
+#include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Visibility/AverageVisibility.h"
 
@@ -91,10 +92,16 @@ Region regionOfMarked(const TriangleMesh& mesh, const std::vector<bool>& marked)
   if (region.faces.empty()) {
     throw InvalidInput("region: no face has all three vertices in it; enlarge it");
   }
+  const geometry::SubMesh part = geometry::extractFaces(mesh, region.faces);
+  const Eigen::VectorXd areas = geometry::faceAreas(part.mesh);
+  for (Eigen::Index f = 0; f < areas.size(); ++f) {
+    if (areas[f] > 0) continue;
+    throw InvalidInput("region: face " + std::to_string(part.faceOrigin[f]) +
+                       " has zero area, so its area cannot be kept; remesh the surface there");
+  }
   for (std::int32_t v = 0; v < mesh.vertexCount(); ++v) {
     if (used[v]) region.vertices.push_back(v);
   }
-  const geometry::SubMesh part = geometry::extractFaces(mesh, region.faces);
   const auto components = geometry::faceComponents(part.mesh.faces, part.mesh.vertexCount());
   region.pieces = 1 + *std::max_element(components.begin(), components.end());
   const int loops = boundaryLoops(mesh, region.faces);
@@ -126,12 +133,18 @@ Region selectRegion(const TriangleMesh& mesh, const RegionOptions& options,
     }
   } else {
     if (!options.center->allFinite()) throw InvalidInput("center: not a finite point");
-    (void)(mesh.positions.rowwise() - options.center->transpose())
-        .rowwise()
-        .squaredNorm()
-        .minCoeff(&centre);
   }
   const geometry::MeshTopology topology = geometry::buildTopology(mesh.faces, mesh.vertexCount());
+  if (options.vertex && topology.vertexFaces[centre].empty()) {
+    throw InvalidInput("vertex: " + std::to_string(centre) + " belongs to no face");
+  }
+  for (std::int32_t v = 0; !options.vertex && v < mesh.vertexCount(); ++v) {
+    if (topology.vertexFaces[v].empty()) continue;
+    const auto squared = [&](std::int32_t w) {
+      return (mesh.positions.row(w) - options.center->transpose()).squaredNorm();
+    };
+    if (centre < 0 || squared(v) < squared(centre)) centre = v;
+  }
   const Point middle = mesh.positions.row(centre).transpose();
   std::vector<bool> within(static_cast<std::size_t>(mesh.vertexCount()), false);
   if (options.cone) {

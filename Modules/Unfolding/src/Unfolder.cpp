@@ -212,6 +212,12 @@ void Unfolder::Implementation::build() {
     const double distance =
         std::sqrt(collision::squaredDistance(pair.kind, scene->points(pair, mesh.positions)));
     const auto v = scene->vertices(pair);
+    if (distance == 0 && options.method == Method::Implicit) {
+      throw InvalidInput("region: the surface touches itself at vertices " + std::to_string(v[0]) +
+                         " and " + std::to_string(v[3]) +
+                         ", so that nothing there can move; weld coincident vertices, or part them "
+                         "first (--repair)");
+    }
     const int split = pair.kind == PairKind::VertexFace ? 1 : 2;
     bool neighbours = false;
     double thin = kInfinity;

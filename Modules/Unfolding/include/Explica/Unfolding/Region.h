@@ -54,12 +54,13 @@ struct Region {
 };
 
 /// Faces whose three vertices lie within the radius of the centre vertex, or within the cone.
-/// @throws InvalidInput  no centre, radius or cone out of range, nothing or everything in reach
+/// @throws InvalidInput  no centre, radius or cone out of range, or as regionOfMarked()
 [[nodiscard]] Region selectRegion(const TriangleMesh& mesh, const RegionOptions& options,
                                   const visibility::Viewpoints* viewpoints = nullptr);
 
 /// Faces whose three vertices are marked.
-/// @throws InvalidInput  `marked` is not as long as the mesh has vertices; no or every face
+/// @throws InvalidInput  `marked` is not as long as the mesh has vertices; no face, a whole closed
+///                       surface, or a face of zero area
 [[nodiscard]] Region regionOfMarked(const TriangleMesh& mesh, const std::vector<bool>& marked);
 
 /// The condition of the method ([Thesis, section 5.1]): average visibility above zero at the start.

@@ -133,7 +133,8 @@ struct UnfoldState {
 /// areas kept to first order, and may intersect.
 class Unfolder {
  public:
-  /// @throws InvalidInput  ill-formed mesh, viewpoint or option; a region face of zero area
+  /// @throws InvalidInput  ill-formed mesh, viewpoint or option; a region face of zero area; with
+  ///                       the implicit method, a moving part that touches another at the start
   Unfolder(TriangleMesh mesh, Region region, visibility::Viewpoints viewpoints,
            const UnfolderOptions& options = {});
   ~Unfolder();
