@@ -5,36 +5,18 @@
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/WholeFile.h"
-#include "Explica/Correspondence/AnatomicalGrid.h"
-#include "Explica/Correspondence/Correspondence.h"
-#include "Explica/Correspondence/Layers.h"
-#include "Explica/Correspondence/Sulci.h"
-#include "Explica/Correspondence/Ventricle.h"
+#include "Explica/Correspondence/Measurement.h"
 #include "Explica/Harmonic/Annulus.h"
-#include "Explica/Harmonic/Interpolant.h"
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/IO/VtkFile.h"
 
-#include <algorithm>
 #include <chrono>
-#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
 
 namespace explica::app {
 
-enum class SulciMode {
-  Recover,  ///< put the outer boundary between banks that touch
-  Ignore    ///< take the labels as they are
-};
-
-}  // namespace explica::app
-
-template <>
-struct explica::EnumNames<explica::app::SulciMode> {
-  static constexpr std::array table{std::pair{explica::app::SulciMode::Recover, "recover"},
-                                    std::pair{explica::app::SulciMode::Ignore, "ignore"}};
-};
-
-namespace explica::app {
 namespace {
 
 struct Settings {
@@ -44,15 +26,8 @@ struct Settings {
   harmonic::LevelOptions level;
   io::VolumeReadOptions reading;
   harmonic::LabelRoles roles;
-  harmonic::AnnulusOptions annulus;
-  harmonic::InterpolantOptions interpolant;
-  SulciMode sulci = SulciMode::Recover;
-  correspondence::SulcusOptions sulcus;
-  correspondence::CorrespondenceOptions correspondence;
-  correspondence::LayerOptions layers;
-  std::optional<int> grid;
+  correspondence::MeasurementOptions measurement;
   bool aha = false;
-  std::optional<Eigen::Vector3d> rvInsertion;
 };
 
 void declare(Declaration& d, Settings& s) {
@@ -81,19 +56,22 @@ void declare(Declaration& d, Settings& s) {
               s.level.inside)
       .options("Reading", s.reading)
       .options("Labels", s.roles)
-      .options("Boundary", s.annulus)
-      .option("Boundary", Field{"sulci", "", "what to do where the banks of a sulcus touch"},
-              s.sulci)
-      .options("Boundary", s.sulcus)
-      .options("Correspondences", s.correspondence)
-      .options("Layers", s.layers)
+      .options("Boundary", s.measurement.annulus)
+      .option("Boundary",
+              Field{"sulci", "",
+                    "what to do where the banks of a sulcus touch (default: recover; ignore with "
+                    "--per-slice, --open-ends or --aha, which are for hearts)"},
+              s.measurement.sulci)
+      .options("Boundary", s.measurement.sulcus)
+      .options("Correspondences", s.measurement.correspondence)
+      .options("Layers", s.measurement.layers)
       .option("Layers", Field{"grid", "", "write an anatomical grid with this many cells across"},
-              s.grid)
+              s.measurement.grid)
       .option("Heart", Field{"aha", "", "table and picture of the left ventricle's 17 segments"},
               s.aha)
       .option("Heart",
               Field{"rv-insertion", "mm", "anterior insertion of the right ventricle, RAS"},
-              s.rvInsertion)
+              s.measurement.rvInsertion)
       .output("harmonic.nii.gz", FileKind::Volume,
               "u: 0 at the inner boundary to 1 at the outer one")
       .output("thickness.nii.gz", FileKind::Volume,
@@ -112,7 +90,7 @@ void declare(Declaration& d, Settings& s) {
       .output("segments.nii.gz", FileKind::LabelVolume, "with --aha: segment of each voxel")
       .output("bullseye.svg", FileKind::Picture, "with --aha: the segments' mean thickness, mm")
       .output("sulci.nii.gz", FileKind::LabelVolume,
-              "with --sulci recover: 1 where a boundary was put beside a voxel");
+              "where sulci are recovered: 1 beside a boundary that was put between banks");
 }
 
 double seconds() {
@@ -126,7 +104,8 @@ harmonic::Annulus readAnnulus(Context& context, const Settings& s) {
   if (!s.labels && !s.innerLevel) {
     throw UsageError("give a label volume, or --inner-level and --outer-level");
   }
-  if (s.aha && !s.rvInsertion) throw UsageError("--aha needs --rv-insertion X,Y,Z");
+  if (s.aha && !s.measurement.rvInsertion) throw UsageError("--aha needs --rv-insertion X,Y,Z");
+  if (s.measurement.rvInsertion && !s.aha) throw UsageError("--rv-insertion is for --aha");
   Volume<Label> labels;
   if (s.labels) labels = readLabels(context, "SEG", *s.labels, s.reading);
   Volume<float> inner, outer;
@@ -136,21 +115,90 @@ harmonic::Annulus readAnnulus(Context& context, const Settings& s) {
   }
   auto step = context.step("boundary");
   if (!s.innerLevel) {
-    return harmonic::annulusFromLabels(labels, s.roles, s.annulus, context.monitor());
+    return harmonic::annulusFromLabels(labels, s.roles, s.measurement.annulus, context.monitor());
   }
   Volume<std::uint8_t> insulated;
   if (s.labels) insulated = harmonic::maskOf(labels, s.roles.insulated);
-  return harmonic::annulusFromLevels(inner, outer, s.level, s.annulus, insulated,
+  return harmonic::annulusFromLevels(inner, outer, s.level, s.measurement.annulus, insulated,
                                      context.monitor());
 }
 
-/// Mean and percentiles of the finite values.
-void reportThickness(Context& context, const correspondence::Correspondence& found) {
+/// The measurement, each part a step of the record.
+correspondence::Measurement measure(Context& context, harmonic::Annulus annulus,
+                                    const correspondence::MeasurementOptions& options) {
+  std::optional<Context::Step> step;
+  double begin = 0;
+  std::string current;
+  const auto onPart = [&](const std::string& part, const correspondence::Measurement& sofar) {
+    if (current == "harmonic") {
+      step->iterations(sofar.interpolant.iterations);
+      step->termination(sofar.interpolant.termination);
+    }
+    if (current == "harmonic" || current == "correspondence") {
+      context.result("seconds_" + current, seconds() - begin);
+    }
+    step.reset();
+    step.emplace(context, part);
+    begin = seconds();
+    current = part;
+  };
+  return correspondence::measure(std::move(annulus), options, context.monitor(), onPart);
+}
+
+void report(Context& context, const correspondence::Measurement& m) {
+  const correspondence::Correspondence& found = m.correspondence;
+  context.result("sulcal_voxels_recovered", m.sulcalVoxels.size());
+  context.result("residual", m.interpolant.relativeResidual);
+  context.result("iterations", m.interpolant.iterations);
+  context.result("traced_fraction", static_cast<double>(found.traced) /
+                                        (2.0 * static_cast<double>(m.annulus.count())));
+  context.result("voxels_without_thickness", found.missing);
+  if (found.missing > 0) {
+    context.warn(std::to_string(found.missing) +
+                 " voxels have no thickness: their trajectory does not reach both boundaries");
+  }
   const correspondence::ThicknessSummary t = correspondence::summaryOf(found);
   context.result("thickness_mean", t.mean);
   context.result("thickness_median", t.median);
   context.result("thickness_p05", t.p05);
   context.result("thickness_p95", t.p95);
+  if (m.grid) {
+    context.result("grid_trajectories", m.grid->trajectories);
+    context.result("grid_cells", static_cast<std::size_t>(m.grid->cells.rows()));
+  }
+}
+
+void writeOutputs(Context& context, const correspondence::Measurement& m, bool sulci) {
+  auto step = context.step("write");
+  const correspondence::Correspondence& found = m.correspondence;
+  const auto write = [&](const char* name, const std::vector<double>& values) {
+    io::writeVolume(context.output(name), harmonic::spread(m.annulus, values));
+  };
+  io::writeVolume(context.output("harmonic.nii.gz"),
+                  harmonic::spread(m.annulus, m.interpolant.u, 0, 0, 1));
+  write("thickness.nii.gz", correspondence::thicknessOf(found));
+  write("inner_distance.nii.gz", found.innerDistance);
+  write("outer_distance.nii.gz", found.outerDistance);
+  write("depth.nii.gz", m.depth);
+  io::writeVolume(context.output("inner_point.nii.gz"),
+                  correspondence::spreadPoints(m.annulus, found.innerPoint));
+  io::writeVolume(context.output("outer_point.nii.gz"),
+                  correspondence::spreadPoints(m.annulus, found.outerPoint));
+  io::writeVolume(context.output("layers.nii.gz"), harmonic::spreadLabels(m.annulus, m.layers));
+  if (sulci) {
+    io::writeVolume(context.output("sulci.nii.gz"), harmonic::maskOf(m.annulus, m.sulcalVoxels));
+  }
+  if (m.grid) {
+    const auto kind = m.grid->cells.cols() == 8 ? io::CellKind::Hexahedron : io::CellKind::Quad;
+    io::writeVtu(context.output("grid.vtu"), m.grid->points, {{kind, m.grid->cells}},
+                 {{"depth", "", m.grid->depth}, {"thickness", "mm", m.grid->thickness}});
+  }
+  if (m.segments) {
+    writeTextFile(context.output("segments.tsv"), correspondence::tableOf(*m.segments));
+    writeTextFile(context.output("bullseye.svg"), correspondence::bullseyeOf(*m.segments));
+    io::writeVolume(context.output("segments.nii.gz"),
+                    harmonic::spreadLabels(m.annulus, m.segments->segmentOf));
+  }
 }
 
 Termination run(Context& context, const Settings& s) {
@@ -159,97 +207,10 @@ Termination run(Context& context, const Settings& s) {
   context.result("components", annulus.components);
   context.result("direct_contacts", annulus.directContacts);
   context.result("voxels_left_out", annulus.droppedVoxels);
-
-  Volume<Label> sulci;
-  if (s.sulci == SulciMode::Recover) {
-    auto step = context.step("sulci");
-    auto recovered = correspondence::recoverSulci(annulus, s.sulcus, context.monitor());
-    annulus = std::move(recovered.annulus);
-    context.result("sulcal_voxels_recovered", recovered.voxels.size());
-    sulci = harmonic::maskOf(annulus, recovered.voxels);
-  } else {
-    context.result("sulcal_voxels_recovered", 0);
-  }
-
-  double begin = seconds();
-  harmonic::Interpolant interpolant;
-  {
-    auto step = context.step("harmonic");
-    interpolant = harmonic::solveInterpolant(annulus, s.interpolant, context.monitor());
-    step.iterations(interpolant.iterations);
-    step.termination(interpolant.termination);
-  }
-  context.result("seconds_harmonic", seconds() - begin);
-  context.result("residual", interpolant.relativeResidual);
-  context.result("iterations", interpolant.iterations);
-
-  begin = seconds();
-  correspondence::Correspondence found;
-  {
-    auto step = context.step("correspondence");
-    found = correspondence::findCorrespondences(annulus, interpolant, s.correspondence,
-                                                context.monitor());
-  }
-  context.result("seconds_correspondence", seconds() - begin);
-  context.result("traced_fraction",
-                 static_cast<double>(found.traced) / (2.0 * static_cast<double>(annulus.count())));
-  context.result("voxels_without_thickness", found.missing);
-  if (found.missing > 0) {
-    context.warn(std::to_string(found.missing) +
-                 " voxels have no thickness: their trajectory does not reach both boundaries");
-  }
-  reportThickness(context, found);
-
-  std::vector<double> depth;
-  std::vector<int> layers;
-  {
-    auto step = context.step("layers");
-    depth = correspondence::depthOf(found);
-    layers =
-        correspondence::layersOf(s.layers.layerKind == correspondence::LayerKind::Depth
-                                     ? depth
-                                     : correspondence::volumeDepthOf(annulus, interpolant, found),
-                                 s.layers.layers);
-  }
-
-  correspondence::AnatomicalGrid grid;
-  if (s.grid) {
-    auto step = context.step("grid");
-    grid = correspondence::anatomicalGrid(annulus, interpolant, *s.grid);
-    context.result("grid_trajectories", grid.trajectories);
-    context.result("grid_cells", static_cast<std::size_t>(grid.cells.rows()));
-  }
-  correspondence::WallSegments segments;
-  if (s.aha) segments = correspondence::wallSegments(annulus, found, *s.rvInsertion);
-
-  auto step = context.step("write");
-  const auto write = [&](const char* name, const std::vector<double>& values) {
-    io::writeVolume(context.output(name), harmonic::spread(annulus, values));
-  };
-  io::writeVolume(context.output("harmonic.nii.gz"),
-                  harmonic::spread(annulus, interpolant.u, 0, 0, 1));
-  write("thickness.nii.gz", correspondence::thicknessOf(found));
-  write("inner_distance.nii.gz", found.innerDistance);
-  write("outer_distance.nii.gz", found.outerDistance);
-  write("depth.nii.gz", depth);
-  io::writeVolume(context.output("inner_point.nii.gz"),
-                  correspondence::spreadPoints(annulus, found.innerPoint));
-  io::writeVolume(context.output("outer_point.nii.gz"),
-                  correspondence::spreadPoints(annulus, found.outerPoint));
-  io::writeVolume(context.output("layers.nii.gz"), harmonic::spreadLabels(annulus, layers));
-  if (s.grid) {
-    const auto kind = grid.cells.cols() == 8 ? io::CellKind::Hexahedron : io::CellKind::Quad;
-    io::writeVtu(context.output("grid.vtu"), grid.points, {{kind, grid.cells}},
-                 {{"depth", "", grid.depth}, {"thickness", "mm", grid.thickness}});
-  }
-  if (s.aha) {
-    writeTextFile(context.output("segments.tsv"), correspondence::tableOf(segments));
-    writeTextFile(context.output("bullseye.svg"), correspondence::bullseyeOf(segments));
-    io::writeVolume(context.output("segments.nii.gz"),
-                    harmonic::spreadLabels(annulus, segments.segmentOf));
-  }
-  if (sulci.size() > 0) io::writeVolume(context.output("sulci.nii.gz"), sulci);
-  return interpolant.termination;
+  const correspondence::Measurement m = measure(context, std::move(annulus), s.measurement);
+  report(context, m);
+  writeOutputs(context, m, s.measurement.sulciMode() == correspondence::SulciMode::Recover);
+  return m.interpolant.termination;
 }
 
 }  // namespace

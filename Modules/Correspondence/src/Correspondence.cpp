@@ -531,6 +531,7 @@ Volume<Eigen::Vector3f> spreadPoints(const Annulus& annulus,
   Volume<Eigen::Vector3f> volume(annulus.grid, Eigen::Vector3f::Zero());
   parallelFor(annulus.count(), 1 << 13, [&](std::size_t n) {
     const auto number = static_cast<std::int32_t>(n);
+    if (!offsets[n].allFinite()) return;
     volume[annulus.linear(number)] =
         (annulus.world(number) + offsets[n].cast<double>()).cast<float>();
   });

@@ -466,6 +466,16 @@ bool TrajectoryTracer::Field::toPlane(std::int32_t rank, const std::array<int, 3
   return true;
 }
 
+bool TrajectoryTracer::Field::goStraight(Walk& walk, double target, int uphill) const {
+  const double rest = uphill * (target - walk.u) / walk.slope;
+  walk.stuck = !(rest < kNearEnd * finest);
+  if (walk.stuck) return false;
+  walk.x += rest * walk.velocity;
+  walk.length += rest;
+  walk.u = target;
+  return true;
+}
+
 bool TrajectoryTracer::Field::advance(Walk& walk, double target, int uphill) const {
   // Half a voxel at most where the side must be known: a step then never leaves its neighbourhood.
   const double longest = (walk.divided ? std::min(0.5, options.maxStep) : options.maxStep) * finest;
@@ -485,8 +495,9 @@ bool TrajectoryTracer::Field::advance(Walk& walk, double target, int uphill) con
     const double error = s * (-5.0 / 72 * k1 + 1.0 / 12 * k2 + 1.0 / 9 * k3 - 1.0 / 8 * k4).norm();
     if (lost || error > options.tolerance) {
       if (s < kTinyStep * finest) {
-        walk.stuck = true;
-        return false;
+        // At the end of the cells that know the tissue: the boundary is there, or as near as the
+        // extension beyond it is good.
+        return goStraight(walk, target, uphill);
       }
       walk.step = lost ? 0.25 * s : s * std::max(0.2, 0.9 * std::cbrt(options.tolerance / error));
       continue;
@@ -496,17 +507,9 @@ bool TrajectoryTracer::Field::advance(Walk& walk, double target, int uphill) con
       // bend a trajectory along it.  Then u does not gain what its slope promises: if the boundary
       // is near, go straight to it.
       if (uphill * (four.u - walk.u) < kPoorGain * walk.slope * s) {
-        const double rest = uphill * (target - walk.u) / walk.slope;
-        if (rest < kNearEnd * finest) {
-          walk.x += rest * k1;
-          walk.length += rest;
-          walk.u = target;
-          return true;
-        }
-        if (++walk.strikes > kStrikes) {
-          walk.stuck = true;
-          return false;
-        }
+        if (goStraight(walk, target, uphill)) return true;
+        walk.stuck = ++walk.strikes > kStrikes;
+        if (walk.stuck) return false;
       }
       walk.x = next;
       walk.velocity = k4;

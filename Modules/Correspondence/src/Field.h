@@ -89,6 +89,8 @@ struct TrajectoryTracer::Field {
   void prepareCells();
   /// Corners from the side of `seed`; a bit per corner that belongs to it.
   std::uint8_t extend(const std::int32_t* number, int seed, Corner* corner) const;
+  /// Ends a walk on a straight line if the target is near; else it is stuck.
+  bool goStraight(Walk& walk, double target, int uphill) const;
   [[nodiscard]] Vector velocityOf(const Sample& sample, int uphill, double* slope = nullptr) const;
 
   std::vector<std::int32_t> cellAt_;  ///< per box voxel, the cell with it as lowest corner: row of

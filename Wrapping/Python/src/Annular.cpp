@@ -6,12 +6,8 @@
 #include "Options.h"
 #include "Watch.h"
 
-#include "Explica/Correspondence/AnatomicalGrid.h"
-#include "Explica/Correspondence/Layers.h"
-#include "Explica/Correspondence/Sulci.h"
-#include "Explica/Correspondence/Ventricle.h"
+#include "Explica/Correspondence/Measurement.h"
 #include "Explica/Harmonic/Annulus.h"
-#include "Explica/Harmonic/Interpolant.h"
 
 namespace explica::python {
 namespace {
@@ -21,19 +17,21 @@ using namespace py::literals;
 /// Every option of `explica thickness` that is not a file.
 struct ThicknessOptions {
   harmonic::LabelRoles roles;
-  harmonic::AnnulusOptions annulus;
-  correspondence::SulcusOptions sulcus;
-  correspondence::CorrespondenceOptions correspondence;
-  correspondence::LayerOptions layers;
+  correspondence::MeasurementOptions measurement;
 };
 
 template <class Visitor>
-void describe(ThicknessOptions& o, Visitor&& visit) {
-  describe(o.roles, visit);
+void describe(correspondence::MeasurementOptions& o, Visitor&& visit) {
   describe(o.annulus, visit);
   describe(o.sulcus, visit);
   describe(o.correspondence, visit);
   describe(o.layers, visit);
+}
+
+template <class Visitor>
+void describe(ThicknessOptions& o, Visitor&& visit) {
+  describe(o.roles, visit);
+  describe(o.measurement, visit);
 }
 
 /// The same for boundaries that scalar volumes give: labels play no part.
@@ -41,61 +39,39 @@ struct LevelThicknessOptions : ThicknessOptions {};
 
 template <class Visitor>
 void describe(LevelThicknessOptions& o, Visitor&& visit) {
-  describe(o.annulus, visit);
-  describe(o.sulcus, visit);
-  describe(o.correspondence, visit);
-  describe(o.layers, visit);
+  describe(o.measurement, visit);
 }
 
-struct Measured {
-  harmonic::Annulus annulus;
-  harmonic::Interpolant interpolant;
-  correspondence::Correspondence found;
-  std::vector<int> layers;
-  std::size_t sulcalVoxels = 0;
-};
-
-Measured measure(harmonic::Annulus annulus, const ThicknessOptions& options, bool recoverSulci,
-                 const Monitor& monitor) {
-  Measured m;
-  if (recoverSulci) {
-    auto recovered = correspondence::recoverSulci(annulus, options.sulcus, monitor);
-    annulus = std::move(recovered.annulus);
-    m.sulcalVoxels = recovered.voxels.size();
-  }
-  m.interpolant = harmonic::solveInterpolant(annulus, {}, monitor);
-  m.found =
-      correspondence::findCorrespondences(annulus, m.interpolant, options.correspondence, monitor);
-  const bool byDepth = options.layers.layerKind == correspondence::LayerKind::Depth;
-  m.layers = correspondence::layersOf(
-      byDepth ? correspondence::depthOf(m.found)
-              : correspondence::volumeDepthOf(annulus, m.interpolant, m.found),
-      options.layers.layers);
-  m.annulus = std::move(annulus);
-  return m;
+/// @param recoverSulci  false: never; true: unless the options speak of a heart
+correspondence::Measurement measure(harmonic::Annulus annulus, const ThicknessOptions& options,
+                                    bool recoverSulci, const Monitor& monitor) {
+  correspondence::MeasurementOptions chosen = options.measurement;
+  if (!recoverSulci) chosen.sulci = correspondence::SulciMode::Ignore;
+  return correspondence::measure(std::move(annulus), chosen, monitor);
 }
 
-py::dict arraysOf(const Measured& m) {
+py::dict arraysOf(const correspondence::Measurement& m) {
   const auto field = [&](const std::vector<double>& values) {
     return arrayOf(harmonic::spread(m.annulus, values));
   };
-  const correspondence::ThicknessSummary summary = correspondence::summaryOf(m.found);
+  const correspondence::ThicknessSummary summary = correspondence::summaryOf(m.correspondence);
   return py::dict(
       "harmonic"_a = arrayOf(harmonic::spread(m.annulus, m.interpolant.u, 0, 0, 1)),
-      "thickness"_a = field(correspondence::thicknessOf(m.found)),
-      "inner_distance"_a = field(m.found.innerDistance),
-      "outer_distance"_a = field(m.found.outerDistance),
-      "depth"_a = field(correspondence::depthOf(m.found)),
-      "inner_point"_a = arrayOf(correspondence::spreadPoints(m.annulus, m.found.innerPoint)),
-      "outer_point"_a = arrayOf(correspondence::spreadPoints(m.annulus, m.found.outerPoint)),
+      "thickness"_a = field(correspondence::thicknessOf(m.correspondence)),
+      "inner_distance"_a = field(m.correspondence.innerDistance),
+      "outer_distance"_a = field(m.correspondence.outerDistance), "depth"_a = field(m.depth),
+      "inner_point"_a =
+          arrayOf(correspondence::spreadPoints(m.annulus, m.correspondence.innerPoint)),
+      "outer_point"_a =
+          arrayOf(correspondence::spreadPoints(m.annulus, m.correspondence.outerPoint)),
       "layers"_a = arrayOf(harmonic::spreadLabels(m.annulus, m.layers)),
       "affine"_a = m.annulus.grid.affine(),
       "summary"_a =
           py::dict("voxels"_a = m.annulus.count(), "thickness_mean"_a = summary.mean,
                    "thickness_median"_a = summary.median, "thickness_p05"_a = summary.p05,
                    "thickness_p95"_a = summary.p95, "residual"_a = m.interpolant.relativeResidual,
-                   "sulcal_voxels_recovered"_a = m.sulcalVoxels,
-                   "voxels_without_thickness"_a = m.found.missing));
+                   "sulcal_voxels_recovered"_a = m.sulcalVoxels.size(),
+                   "voxels_without_thickness"_a = m.correspondence.missing));
 }
 
 py::dict segmentsDict(std::pair<correspondence::WallSegments, Volume<Label>> made) {
@@ -127,9 +103,9 @@ void bindAnnular(py::module_& m) {
         const auto options = optionsOf<ThicknessOptions>(keywords);
         const Volume<Label> volume = labelVolume(labels, affine);
         return arraysOf(Watch(progress).run([&](const Monitor& monitor) {
-          return measure(
-              harmonic::annulusFromLabels(volume, options.roles, options.annulus, monitor), options,
-              sulci, monitor);
+          return measure(harmonic::annulusFromLabels(volume, options.roles,
+                                                     options.measurement.annulus, monitor),
+                         options, sulci, monitor);
         }));
       },
       "labels"_a, "affine"_a, "recover_sulci"_a = true, "progress"_a = py::none(),
@@ -146,7 +122,8 @@ void bindAnnular(py::module_& m) {
         harmonic::LevelOptions levels;
         levels.level = level;
         return arraysOf(Watch(progress).run([&](const Monitor& monitor) {
-          return measure(harmonic::annulusFromLevels(in, out, levels, options.annulus, {}, monitor),
+          return measure(harmonic::annulusFromLevels(in, out, levels, options.measurement.annulus,
+                                                     {}, monitor),
                          options, sulci, monitor);
         }));
       },
@@ -162,10 +139,12 @@ void bindAnnular(py::module_& m) {
         const auto options = optionsOf<ThicknessOptions>(keywords);
         const Volume<Label> volume = labelVolume(labels, affine);
         return segmentsDict(Watch(progress).run([&](const Monitor& monitor) {
-          const Measured made =
-              measure(harmonic::annulusFromLabels(volume, options.roles, options.annulus, monitor),
+          const correspondence::Measurement made =
+              measure(harmonic::annulusFromLabels(volume, options.roles,
+                                                  options.measurement.annulus, monitor),
                       options, false, monitor);
-          const auto walls = correspondence::wallSegments(made.annulus, made.found, insertion);
+          const auto walls =
+              correspondence::wallSegments(made.annulus, made.correspondence, insertion);
           return std::make_pair(walls, harmonic::spreadLabels(made.annulus, walls.segmentOf));
         }));
       },
@@ -184,8 +163,9 @@ void bindAnnular(py::module_& m) {
         const auto options = optionsOf<ThicknessOptions>(keywords);
         const Volume<Label> volume = labelVolume(labels, affine);
         auto grid = Watch(progress).run([&](const Monitor& monitor) {
-          const Measured made =
-              measure(harmonic::annulusFromLabels(volume, options.roles, options.annulus, monitor),
+          const correspondence::Measurement made =
+              measure(harmonic::annulusFromLabels(volume, options.roles,
+                                                  options.measurement.annulus, monitor),
                       options, sulci, monitor);
           return correspondence::anatomicalGrid(made.annulus, made.interpolant, levels);
         });

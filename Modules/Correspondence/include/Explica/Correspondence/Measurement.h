@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Correspondence/AnatomicalGrid.h"
+#include "Explica/Correspondence/Correspondence.h"
+#include "Explica/Correspondence/Layers.h"
+#include "Explica/Correspondence/Sulci.h"
+#include "Explica/Correspondence/Ventricle.h"
+#include "Explica/Harmonic/Interpolant.h"
+
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace explica::correspondence {
+
+/// What to do where the banks of a sulcus touch.
+enum class SulciMode {
+  Recover,  ///< put the outer boundary between them
+  Ignore    ///< take the labels as they are
+};
+
+/// Everything that is chosen between the labels and the measures.
+struct MeasurementOptions {
+  harmonic::AnnulusOptions annulus;
+  harmonic::InterpolantOptions interpolant;
+  std::optional<SulciMode> sulci;  ///< unset: recover, but ignore with perSlice, openEnds or
+                                   ///< rvInsertion: those are of hearts, and the folds of a cavity
+                                   ///< (papillary muscles) are no sulci
+  SulcusOptions sulcus;
+  CorrespondenceOptions correspondence;
+  LayerOptions layers;
+  std::optional<int> grid;           ///< cells across of an anatomical grid; unset: none
+  std::optional<Point> rvInsertion;  ///< RAS mm; unset: no table of the ventricle's segments
+
+  [[nodiscard]] SulciMode sulciMode() const {
+    const bool heart = annulus.perSlice || annulus.openEnds || rvInsertion;
+    return sulci.value_or(heart ? SulciMode::Ignore : SulciMode::Recover);
+  }
+};
+
+/// Tissue and everything that is measured on it, per tissue number of `annulus`.
+struct Measurement {
+  harmonic::Annulus annulus;  ///< with the sheets of buried sulci as boundary
+  harmonic::Interpolant interpolant;
+  Correspondence correspondence;
+  std::vector<double> depth;               ///< L0 / thickness
+  std::vector<int> layers;                 ///< from 1 at the inner boundary; 0: unknown
+  std::vector<std::int32_t> sulcalVoxels;  ///< beside a recovered boundary
+  std::optional<AnatomicalGrid> grid;
+  std::optional<WallSegments> segments;
+};
+
+/// Called as each part of the work begins: "sulci", "harmonic", "correspondence", "layers", "grid",
+/// "segments"; with what is known by then.
+using OnPart = std::function<void(const std::string& part, const Measurement& sofar)>;
+
+/// From tissue between two boundaries to thickness, depth, layers and what else is asked for: the
+/// parts of this module in their order, as `explica thickness` and the Python module run them.
+/// @throws InvalidInput  an option out of range
+[[nodiscard]] Measurement measure(harmonic::Annulus annulus, const MeasurementOptions& options = {},
+                                  const Monitor& monitor = {}, const OnPart& onPart = {});
+
+}  // namespace explica::correspondence
+
+namespace explica {
+
+template <>
+struct EnumNames<correspondence::SulciMode> {
+  static constexpr std::array table{std::pair{correspondence::SulciMode::Recover, "recover"},
+                                    std::pair{correspondence::SulciMode::Ignore, "ignore"}};
+};
+
+}  // namespace explica
