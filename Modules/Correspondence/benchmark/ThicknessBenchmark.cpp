@@ -8,6 +8,7 @@
 #include "Explica/IO/VolumeFile.h"
 
 #include <benchmark/benchmark.h>
+#include <sys/resource.h>
 
 #include <cmath>
 #include <ctime>
@@ -131,8 +132,9 @@ void Shell(benchmark::State& state) {
   std::size_t voxels = 0;
   for (auto _ : state) voxels = measureAll(state, labels, {{1}, {2}, {}, {}}, false);
   state.counters["voxels"] = static_cast<double>(voxels);
-  state.counters["voxels_per_s"] = benchmark::Counter(
-      static_cast<double>(voxels), benchmark::Counter::kIsIterationInvariantRate);
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);  // of the process so far: sizes ascend
+  state.counters["peak_MB"] = static_cast<double>(usage.ru_maxrss) / 1024;
 }
 BENCHMARK(Shell)
     ->Arg(124)
@@ -189,76 +191,132 @@ void Cycle(benchmark::State& state) {
 }
 BENCHMARK(Cycle)->UseRealTime()->Unit(benchmark::kMillisecond);
 
-/// What a plain tool does: Jacobi-preconditioned conjugate gradients to the same residual on the
-/// staircase boundary, then Yezzi-Prince sweeps in storage order until nothing changes.
-void PlainSolver(benchmark::State& state) {
-  const auto phantom = harmonic::makePhantom(harmonic::PhantomKind::Spheroid, {128, 1});
+/// Confocal spheroids 128 mm wide; argument: voxels a side.
+Volume<Label> spheroidLabels(benchmark::State& state) {
+  const int size = static_cast<int>(state.range(0));
+  return harmonic::makePhantom(harmonic::PhantomKind::Spheroid, {size, 128.0 / size}).labels;
+}
+
+/// Reference: staircase boundary, Jacobi-preconditioned conjugate gradients to our residual, then
+/// Yezzi-Prince sweeps for both lengths in storage order until nothing changes.
+/// @param links  per unknown its neighbours' numbers or what lies there
+void solvePlainly(const std::vector<std::array<std::int32_t, 6>>& links,
+                  const std::vector<std::uint8_t>& isTissue) {
+  const std::size_t n = links.size();
+  constexpr std::size_t kGrain = 1 << 13;
+  std::vector<double> u(n, 0), r(n, 0), p, q(n, 0);
+  parallelFor(n, kGrain, [&](std::size_t k) {
+    if (!isTissue[k]) return;
+    for (const auto link : links[k]) r[k] += link == harmonic::kOuter;
+  });
+  p = r;
+  const auto dot = [&](const std::vector<double>& a, const std::vector<double>& b) {
+    return parallelSum(n, kGrain, 0.0, [&](std::size_t begin, std::size_t end) {
+      double sum = 0;
+      for (std::size_t k = begin; k < end; ++k) sum += a[k] * b[k];
+      return sum;
+    });
+  };
+  double rr = dot(r, r);
+  const double stop = 1e-18 * rr;  // isotropic: the diagonal is constant
+  while (rr > stop) {
+    parallelFor(n, kGrain, [&](std::size_t k) {
+      if (!isTissue[k]) return;
+      q[k] = 6 * p[k];
+      for (const auto link : links[k]) q[k] -= link >= 0 ? p[link] : 0;
+    });
+    const double alpha = rr / dot(p, q);
+    parallelFor(n, kGrain, [&](std::size_t k) {
+      u[k] += alpha * p[k];
+      r[k] -= alpha * q[k];
+    });
+    const double next = dot(r, r);
+    parallelFor(n, kGrain, [&](std::size_t k) { p[k] = r[k] + next / rr * p[k]; });
+    rr = next;
+  }
+  const auto value = [&](std::int32_t link) {
+    return link >= 0 ? u[link] : link == harmonic::kOuter ? 1.0 : 0.0;
+  };
+  for (const bool inner : {true, false}) {
+    std::vector<double> length(n, 0);
+    for (double change = 1; change > 1e-6;) {
+      change = 0;
+      for (std::size_t k = 0; k < n; ++k) {
+        if (!isTissue[k]) continue;
+        double sum = 0, weighted = 0, squared = 0;
+        for (int a = 0; a < 3; ++a) {
+          const double slope = value(links[k][2 * a + 1]) - value(links[k][2 * a]);
+          const auto link = links[k][2 * a + ((slope > 0) == inner ? 0 : 1)];
+          squared += slope * slope;
+          sum += std::abs(slope);
+          if (link >= 0) weighted += std::abs(slope) * length[link];
+        }
+        const double found = (std::sqrt(squared) + weighted) / sum;
+        change = std::max(change, std::abs(found - length[k]));
+        length[k] = found;
+      }
+    }
+    benchmark::DoNotOptimize(length.data());
+  }
+}
+
+/// The reference on our compact tissue.
+void PlainCompact(benchmark::State& state) {
   harmonic::AnnulusOptions options;
   options.boundary = harmonic::BoundaryModel::Staircase;
-  const auto annulus = harmonic::annulusFromLabels(phantom.labels, {{1}, {2}, {}, {}}, options);
-  const std::size_t n = annulus.count();
-  std::vector<double> u;
+  const auto labels = spheroidLabels(state);
   for (auto _ : state) {
-    std::vector<double> r(n, 0), p, q(n);
-    u.assign(n, 0);
-    for (std::size_t k = 0; k < n; ++k) {
-      for (const auto link : annulus.links[k]) r[k] += link == harmonic::kOuter;
-    }
-    p = r;
-    double rr = 0;
-    for (const double value : r) rr += value * value;
-    const double stop = 1e-18 * rr;  // isotropic: the diagonal is constant
-    while (rr > stop) {
-      parallelFor(n, 1 << 13, [&](std::size_t k) {
-        q[k] = 6 * p[k];
-        for (const auto link : annulus.links[k]) q[k] -= link >= 0 ? p[link] : 0;
-      });
-      double pq = 0;
-      for (std::size_t k = 0; k < n; ++k) pq += p[k] * q[k];
-      const double alpha = rr / pq;
-      double next = 0;
-      for (std::size_t k = 0; k < n; ++k) {
-        u[k] += alpha * p[k];
-        r[k] -= alpha * q[k];
-        next += r[k] * r[k];
-      }
-      for (std::size_t k = 0; k < n; ++k) p[k] = r[k] + next / rr * p[k];
-      rr = next;
-    }
-    const auto gradient = harmonic::gradientOf(annulus, u);
-    for (const bool inner : {true, false}) {
-      std::vector<double> length(n, 0);
-      for (double change = 1; change > 1e-6;) {
-        change = 0;
-        for (std::size_t k = 0; k < n; ++k) {
-          const double norm = gradient[k].norm();
-          double sum = 0, value = 1;
-          for (int a = 0; a < 3; ++a) {
-            const double slope = gradient[k][a] / norm;
-            const auto link = annulus.links[k][2 * a + ((slope > 0) == inner ? 0 : 1)];
-            sum += std::abs(slope);
-            if (link >= 0) value += std::abs(slope) * length[link];
-          }
-          value /= sum;
-          change = std::max(change, std::abs(value - length[k]));
-          length[k] = value;
-        }
-      }
-      benchmark::DoNotOptimize(length.data());
-    }
+    const auto annulus = harmonic::annulusFromLabels(labels, {{1}, {2}, {}, {}}, options);
+    solvePlainly(annulus.links, std::vector<std::uint8_t>(annulus.count(), 1));
   }
 }
-BENCHMARK(PlainSolver)->Unit(benchmark::kMillisecond);
 
-/// Ours on the same labels, all fields.
-void OurSolver(benchmark::State& state) {
-  const auto phantom = harmonic::makePhantom(harmonic::PhantomKind::Spheroid, {128, 1});
+/// The reference on arrays of the whole grid, as plain tools have them.
+void PlainGrid(benchmark::State& state) {
+  const auto labels = spheroidLabels(state);
   for (auto _ : state) {
-    const auto annulus = harmonic::annulusFromLabels(phantom.labels, {{1}, {2}, {}, {}});
-    const auto found = findCorrespondences(annulus, harmonic::solveInterpolant(annulus));
-    benchmark::DoNotOptimize(found.innerDistance.data());
+    const int size = labels.grid.size[0];
+    std::vector<std::array<std::int32_t, 6>> links(labels.size());
+    std::vector<std::uint8_t> isTissue(labels.size());
+    const std::array<std::int32_t, 3> strides = {1, size, size * size};
+    parallelFor(labels.size(), 1 << 13, [&](std::size_t v) {
+      isTissue[v] = labels[v] == 2;
+      if (!isTissue[v]) return;
+      for (int d = 0; d < 6; ++d) {
+        const auto w =
+            static_cast<std::int32_t>(v) + harmonic::signOf(d) * strides[harmonic::axisOf(d)];
+        links[v][d] = labels[w] == 2 ? w : labels[w] == 1 ? harmonic::kInner : harmonic::kOuter;
+      }
+    });
+    solvePlainly(links, isTissue);
   }
 }
-BENCHMARK(OurSolver)->Unit(benchmark::kMillisecond);
+
+/// Ours on the same labels: sub-voxel boundary, boundary points and lengths.
+void Ours(benchmark::State& state) {
+  const auto labels = spheroidLabels(state);
+  for (auto _ : state) measureAll(state, labels, {{1}, {2}, {}, {}}, false);
+}
+BENCHMARK(Ours)
+    ->Arg(128)
+    ->Arg(256)
+    ->UseRealTime()
+    ->MeasureProcessCPUTime()
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(1);
+BENCHMARK(PlainCompact)
+    ->Arg(128)
+    ->Arg(256)
+    ->UseRealTime()
+    ->MeasureProcessCPUTime()
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(1);
+BENCHMARK(PlainGrid)
+    ->Arg(128)
+    ->Arg(256)
+    ->UseRealTime()
+    ->MeasureProcessCPUTime()
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(1);
 
 }  // namespace
