@@ -11,6 +11,7 @@
 #include <charconv>
 #include <fstream>
 #include <sstream>
+#include <unordered_set>
 
 namespace explica::study {
 namespace {
@@ -75,17 +76,21 @@ class Reader {
     }
     if (node.IsMap()) {
       Json object = Json::object();
+      auto& entries = object.get_ref<Json::object_t&>();
+      std::unordered_set<std::string> keys;
       for (const auto& entry : node) {
         const int at = entry.first.Mark().line + 1;
         if (!entry.first.IsScalar()) refuse(at, "has a key that is not a word");
         const std::string& key = entry.first.Scalar();
         const std::string below = place + "/" + key;
-        if (object.contains(key)) {
+        if (!keys.insert(key).second) {
           refuse(at, "'" + key + "' is given twice, first in line " +
                          std::to_string(file_.lines[below]) + "; remove one");
         }
         file_.lines[below] = at;
-        object[key] = read(entry.second, below, depth + 1);
+        // Appended as it is: to look a key up among others takes time in proportion to their
+        // number.
+        entries.emplace_back(key, read(entry.second, below, depth + 1));
       }
       return object;
     }

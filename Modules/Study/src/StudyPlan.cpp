@@ -71,6 +71,9 @@ class Planner {
         inDataset_.emplace(name, std::move(found));
       }
     }
+    if (root_.contains("subjects") && root_["subjects"].is_object()) {
+      for (const auto& [key, entry] : root_["subjects"].items()) entries_[key] = &entry;
+    }
     if (root_.contains("parameters")) parameters_ = provenance::flattenKeys(root_["parameters"]);
   }
 
@@ -121,15 +124,12 @@ class Planner {
 
   /// The subject's key as written: with or without "sub-".
   [[nodiscard]] std::string keyOf(const std::string& label) const {
-    const bool prefixed = root_.contains("subjects") && root_["subjects"].is_object() &&
-                          root_["subjects"].contains("sub-" + label);
-    return prefixed ? "sub-" + label : label;
+    return entries_.count("sub-" + label) ? "sub-" + label : label;
   }
 
   [[nodiscard]] Json entryOf(const std::string& label) const {
-    if (!root_.contains("subjects") || !root_["subjects"].is_object()) return Json::object();
-    const Json& entry = root_["subjects"][keyOf(label)];
-    return entry.is_null() ? Json::object() : entry;
+    const auto found = entries_.find(keyOf(label));
+    return found == entries_.end() || found->second->is_null() ? Json::object() : *found->second;
   }
 
   /// A path of the file: placeholders filled in, starting at the file's folder.
@@ -270,6 +270,7 @@ class Planner {
   const Json& root_;
   const PathOptions& paths_;
   Json parameters_ = Json::object();
+  std::map<std::string, const Json*> entries_;    ///< what is particular to subjects, by key
   std::map<std::string, Participant> inDataset_;  ///< by name
 };
 
