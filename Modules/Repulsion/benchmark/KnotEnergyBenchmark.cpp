@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Error beside time of the knot energy's evaluators.  Errors are relative L2, against all pairs, on
-// at most 200 moving vertices (the gradient at a vertex does not depend on what else moves).
-//   patches of a pial surface:  --benchmark_filter=Patch
-//   whole closed surfaces:      --benchmark_filter=Closed
+// 200 moving vertices, 50 in surfaces of 327,680 faces (the gradient at a vertex does not depend on
+// what else moves).
+//   patches of a pial surface:        --benchmark_filter=Patch
+//   whole closed surfaces:            --benchmark_filter=Closed
+//   ratios of times, within one run:  --benchmark_filter=Ratio
 
 #include "../src/Kernels.h"
 #include "Explica/Core/Parallel.h"
@@ -18,9 +20,12 @@
 
 #include <array>
 #include <bit>
+#include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <string>
 
@@ -29,7 +34,10 @@ namespace {
 using namespace explica;
 using namespace explica::repulsion;
 
-constexpr int kSamples = 200;  // vertices at which the error is measured
+/// Vertices at which the error is measured.
+std::size_t sampleCount(Eigen::Index faces) {
+  return faces > 100000 ? 50 : 200;
+}
 
 /// FreeSurfer's binary triangles: three bytes of magic, two lines of comment, big-endian numbers.
 TriangleMesh readPial() {
@@ -77,13 +85,13 @@ void finish(Scene& scene, bool withTruth) {
     scene.movingFaces += scene.moves[f(i, 0)] || scene.moves[f(i, 1)] || scene.moves[f(i, 2)];
   }
   scene.sampled.assign(scene.moves.size(), false);
-  const std::size_t step = std::max<std::size_t>(1, moving.size() / kSamples);
+  const std::size_t step = std::max<std::size_t>(1, moving.size() / sampleCount(f.rows()));
   for (std::size_t i = 0; i < moving.size(); i += step) scene.sampled[moving[i]] = true;
   if (withTruth) scene.exact = AllPairs(scene.mesh, scene.sampled).evaluate(scene.mesh.positions);
 }
 
-/// About 1,500 moving faces of fsaverage5's left pial surface, after `levels` subdivisions; the
-/// patch of the unfolding's first example, a little larger.
+/// Patch of fsaverage5's left pial surface after `levels` subdivisions: within 27.5 mm, about 1,500
+/// faces of the original, that of the unfolding's first example, a little larger.
 const Scene& patch(int levels, double radius) {
   static std::map<std::pair<int, double>, Scene> scenes;
   const std::pair key(levels, radius);
@@ -161,38 +169,126 @@ void ClosedTree(benchmark::State& state) {
   state.SetLabel(MultipoleTree::instructionSet());
 }
 
-/// What a plain vectorised sum over all pairs of centroids takes.
+/// A plain vectorised sum over all pairs of centroids.
+template <class T>
+class CentroidPairs {
+ public:
+  explicit CentroidPairs(const TriangleMesh& mesh)
+      : count_(static_cast<std::size_t>(mesh.faceCount()) / kernels::kLanes * kernels::kLanes) {
+    for (auto& c : column_) c.resize(count_);
+    for (std::size_t i = 0; i < count_; ++i) {
+      const auto f = static_cast<Eigen::Index>(i);
+      const Point c = (mesh.corner(f, 0) + mesh.corner(f, 1) + mesh.corner(f, 2)) / 3;
+      for (int a = 0; a < 3; ++a) column_[a][i] = static_cast<T>(c[a]);
+      const Vector cross =
+          (mesh.corner(f, 1) - mesh.corner(f, 0)).cross(mesh.corner(f, 2) - mesh.corner(f, 0));
+      column_[3][i] = static_cast<T>(cross.norm() / 2);
+    }
+  }
+
+  void sum() {
+    const kernels::CentroidSum<T> columns = {
+        column_[0].data(), column_[1].data(), column_[2].data(), column_[3].data(), count_,
+        column_[4].data(), column_[5].data(), column_[6].data(), column_[7].data()};
+    parallelForBlocks(count_, 256, [&](std::size_t begin, std::size_t end) {
+      kernels::sumCentroids(columns, begin, end);
+    });
+    benchmark::DoNotOptimize(columns.phi);
+  }
+
+ private:
+  std::size_t count_;
+  std::array<std::vector<T>, 8> column_;
+};
+
 template <class T>
 void ClosedCentroidPairs(benchmark::State& state) {
   const TriangleMesh mesh = geometry::makeIcosphere(static_cast<int>(state.range(0)));
-  const auto count = static_cast<std::size_t>(mesh.faceCount()) / 16 * 16;
-  std::array<std::vector<T>, 8> column;
-  for (auto& c : column) c.resize(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto f = static_cast<Eigen::Index>(i);
-    const Point c = (mesh.corner(f, 0) + mesh.corner(f, 1) + mesh.corner(f, 2)) / 3;
-    for (int a = 0; a < 3; ++a) column[a][i] = static_cast<T>(c[a]);
-    const Vector cross =
-        (mesh.corner(f, 1) - mesh.corner(f, 0)).cross(mesh.corner(f, 2) - mesh.corner(f, 0));
-    column[3][i] = static_cast<T>(cross.norm() / 2);
-  }
-  const kernels::CentroidSum<T> sum = {
-      column[0].data(), column[1].data(), column[2].data(), column[3].data(), count,
-      column[4].data(), column[5].data(), column[6].data(), column[7].data()};
-  for (auto _ : state) {
-    parallelForBlocks(count, 256, [&](std::size_t begin, std::size_t end) {
-      kernels::sumCentroids(sum, begin, end);
-    });
-    benchmark::DoNotOptimize(sum.phi);
-  }
+  CentroidPairs<T> pairs(mesh);
+  for (auto _ : state) pairs.sum();
   state.counters["faces"] = static_cast<double>(mesh.faceCount());
+}
+
+/// Least of `runs` times in ms.
+template <class Work>
+double leastTime(int runs, const Work& work) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int run = 0; run < runs; ++run) {
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    const std::chrono::duration<double, std::milli> passed =
+        std::chrono::steady_clock::now() - start;
+    least = std::min(least, passed.count());
+  }
+  return least;
+}
+
+double treeTime(int runs, const TriangleMesh& mesh, const std::vector<bool>& moves) {
+  const MultipoleTree tree(mesh, moves);
+  return leastTime(runs, [&] { benchmark::DoNotOptimize(tree.evaluate(mesh.positions).value); });
+}
+
+double closedTreeTime(int runs, const TriangleMesh& mesh) {
+  return treeTime(runs, mesh,
+                  std::vector<bool>(static_cast<std::size_t>(mesh.vertexCount()), true));
+}
+
+/// The multipole tree against plain sums over all pairs, whole closed surfaces of 81,920 faces.
+void RatioToCentroidPairs(benchmark::State& state) {
+  const TriangleMesh sphere = geometry::makeIcosphere(6);
+  for (auto _ : state) {
+    const double tree = closedTreeTime(7, sphere);
+    const double folded = closedTreeTime(7, geometry::makeFoldedSphere(6));
+    CentroidPairs<float> singles(sphere);
+    CentroidPairs<double> doubles(sphere);
+    const double single = leastTime(3, [&] { singles.sum(); });
+    const double twice = leastTime(2, [&] { doubles.sum(); });
+    state.counters["tree_ms"] = tree;
+    state.counters["folded_tree_ms"] = folded;
+    state.counters["single_ms"] = single;
+    state.counters["double_ms"] = twice;
+    state.counters["single_over_tree"] = single / tree;
+    state.counters["double_over_tree"] = twice / tree;
+  }
+}
+
+/// Time of 327,680 faces over that of 20,480.
+void RatioOfGrowth(benchmark::State& state) {
+  for (auto _ : state) {
+    state.counters["icosphere"] = closedTreeTime(5, geometry::makeIcosphere(7)) /
+                                  closedTreeTime(20, geometry::makeIcosphere(5));
+    state.counters["folded"] = closedTreeTime(5, geometry::makeFoldedSphere(7)) /
+                               closedTreeTime(20, geometry::makeFoldedSphere(5));
+  }
+}
+
+/// The thesis's tree, at the options whose error is nearest to ours from above, over ours.
+void RatioToThesisTree(benchmark::State& state) {
+  const Scene& scene = patch(0, 27.5);
+  if (scene.mesh.faceCount() == 0) {
+    state.SkipWithError("skipped: no real data");
+    return;
+  }
+  for (auto _ : state) {
+    const double tree = treeTime(20, scene.mesh, scene.moves);
+    state.counters["tree_ms"] = tree;
+    for (const ThesisTreeOptions& options :
+         {ThesisTreeOptions{2, 0.02}, ThesisTreeOptions{}, ThesisTreeOptions{6, 0.002}}) {
+      const ThesisTree thesis(scene.mesh, scene.moves, options);
+      const double time = leastTime(
+          3, [&] { benchmark::DoNotOptimize(thesis.evaluate(scene.mesh.positions).value); });
+      const auto name = "thesis_" + std::to_string(static_cast<int>(options.nearDistance)) + "_" +
+                        std::to_string(std::lround(1000 * options.relativeError)) + "_over_tree";
+      state.counters[name] = time / tree;
+    }
+  }
 }
 
 BENCHMARK(PatchTree)
     ->Args({0, 55})
     ->Args({1, 55})
     ->Args({2, 55})
-    ->Args({2, 124})
+    ->Args({2, 100})
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 BENCHMARK(PatchThesisTree)
@@ -207,14 +303,15 @@ BENCHMARK(ClosedTree)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 BENCHMARK(ClosedCentroidPairs<float>)
-    ->Arg(6)
-    ->Iterations(1)
+    ->DenseRange(3, 6)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 BENCHMARK(ClosedCentroidPairs<double>)
-    ->Arg(6)
-    ->Iterations(1)
+    ->DenseRange(3, 6)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
+BENCHMARK(RatioToCentroidPairs)->Iterations(1)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(RatioOfGrowth)->Iterations(1)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(RatioToThesisTree)->Iterations(1)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace

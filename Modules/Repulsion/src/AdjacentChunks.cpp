@@ -57,13 +57,19 @@ struct AdjacentChunks::VertexKind {
   }
 };
 
-AdjacentChunks::AdjacentChunks(const MovingSet& set, const std::vector<std::int32_t>& rank)
-    : edgeChunks_(cut(set, set.edgePairs, rank, true)),
-      vertexChunks_(cut(set, set.vertexPairs, rank, false)) {}
+AdjacentChunks::AdjacentChunks(const MovingSet& set, const std::vector<std::int32_t>& rank) {
+  std::vector<std::int32_t> involved(static_cast<std::size_t>(set.faces.rows()), -1);
+  for (std::size_t i = 0; i < set.involved.size(); ++i) {
+    involved[set.involved[i]] = static_cast<std::int32_t>(i);
+  }
+  edgeChunks_ = cut(set, set.edgePairs, rank, involved, true);
+  vertexChunks_ = cut(set, set.vertexPairs, rank, involved, false);
+}
 
 std::vector<AdjacentChunks::Chunk> AdjacentChunks::cut(const MovingSet& set,
                                                        const std::vector<AdjacentPair>& pairs,
                                                        const std::vector<std::int32_t>& rank,
+                                                       const std::vector<std::int32_t>& involved,
                                                        bool edges) {
   std::vector<std::int32_t> sorted(pairs.size());
   std::iota(sorted.begin(), sorted.end(), 0);
@@ -85,6 +91,7 @@ std::vector<AdjacentChunks::Chunk> AdjacentChunks::cut(const MovingSet& set,
     sortUnique(faces);
     sortUnique(chunk.vertices);
     for (const std::int32_t f : faces) {
+      chunk.areas.push_back(involved[f]);
       chunk.faces.push_back({indexIn(chunk.vertices, set.faces(f, 0)),
                              indexIn(chunk.vertices, set.faces(f, 1)),
                              indexIn(chunk.vertices, set.faces(f, 2))});
@@ -109,16 +116,14 @@ std::vector<AdjacentChunks::Chunk> AdjacentChunks::cut(const MovingSet& set,
 
 template <class Kind>
 AdjacentChunks::Sum AdjacentChunks::sumOf(const Chunk& chunk, const Positions& positions,
-                                          double unit) {
+                                          const std::vector<FaceArea>& allAreas, double unit) {
   constexpr int kArms = Kind::kArms;
   constexpr int kLanes = kernels::kLanes;
   std::vector<Point> x(chunk.vertices.size());
   for (std::size_t v = 0; v < x.size(); ++v) x[v] = positions.row(chunk.vertices[v]).transpose();
-  std::vector<AreaGradient> areas(chunk.faces.size());
-  for (std::size_t f = 0; f < areas.size(); ++f) {
-    const auto& v = chunk.faces[f];
-    areas[f] = areaGradient({x[v[0]], x[v[1]], x[v[2]]});
-  }
+  const auto areaOf = [&](std::int32_t face) -> const FaceArea& {
+    return allAreas[chunk.areas[face]];
+  };
   Sum sum;
   sum.gradient.assign(x.size(), Vector::Zero());
   std::vector<double> byArea(chunk.faces.size(), 0.0);  // derivative by each face's area
@@ -138,8 +143,8 @@ AdjacentChunks::Sum AdjacentChunks::sumOf(const Chunk& chunk, const Positions& p
     for (int lane = 0; lane < w.filled; ++lane) {
       const Pair& pair = *w.pair[lane];
       const double mean = 2 * w.batch.value[lane] / (unit * unit);
-      const double areaS = areas[pair.s].area;
-      const double areaT = areas[pair.t].area;
+      const double areaS = areaOf(pair.s).area;
+      const double areaT = areaOf(pair.t).area;
       sum.value += areaS * areaT * mean;
       byArea[pair.s] += areaT * mean;
       byArea[pair.t] += areaS * mean;
@@ -196,21 +201,22 @@ AdjacentChunks::Sum AdjacentChunks::sumOf(const Chunk& chunk, const Positions& p
   }
   for (int rule = 0; rule < kernels::kRules; ++rule) flush(rule);
 
-  for (std::size_t f = 0; f < areas.size(); ++f) {
-    for (int k = 0; k < 3; ++k) {
-      sum.gradient[chunk.faces[f][k]] += byArea[f] * areas[f].byCorner[k];
-    }
+  for (std::size_t f = 0; f < chunk.faces.size(); ++f) {
+    const auto& v = chunk.faces[f];
+    const Corners corners = {x[v[0]], x[v[1]], x[v[2]]};
+    const Vector scaled = byArea[f] * areaOf(static_cast<std::int32_t>(f)).normal;
+    for (int k = 0; k < 3; ++k) sum.gradient[v[k]] += areaByCorner(scaled, corners, k);
   }
   return sum;
 }
 
-void AdjacentChunks::add(const Positions& positions, double unit, double& value,
-                         Positions& gradient) const {
+void AdjacentChunks::add(const Positions& positions, const std::vector<FaceArea>& areas,
+                         double unit, double& value, Positions& gradient) const {
   const std::size_t edges = edgeChunks_.size();
   std::vector<Sum> sums(edges + vertexChunks_.size());
   parallelFor(sums.size(), 1, [&](std::size_t c) {
-    sums[c] = c < edges ? sumOf<EdgeKind>(edgeChunks_[c], positions, unit)
-                        : sumOf<VertexKind>(vertexChunks_[c - edges], positions, unit);
+    sums[c] = c < edges ? sumOf<EdgeKind>(edgeChunks_[c], positions, areas, unit)
+                        : sumOf<VertexKind>(vertexChunks_[c - edges], positions, areas, unit);
   });
   for (std::size_t c = 0; c < sums.size(); ++c) {
     const Chunk& chunk = c < edges ? edgeChunks_[c] : vertexChunks_[c - edges];

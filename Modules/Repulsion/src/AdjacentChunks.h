@@ -20,7 +20,9 @@ class AdjacentChunks {
 
   /// Adds the energy of both orders of every pair to `value`, its derivatives to `gradient` (V x
   /// 3).
-  void add(const Positions& positions, double unit, double& value, Positions& gradient) const;
+  /// @param areas  of the set's involved faces
+  void add(const Positions& positions, const std::vector<FaceArea>& areas, double unit,
+           double& value, Positions& gradient) const;
 
  private:
   /// A pair within its chunk: the common corners come first, then those of S, then those of T.
@@ -32,6 +34,7 @@ class AdjacentChunks {
   struct Chunk {
     std::vector<std::int32_t> vertices;              // of the mesh
     std::vector<std::array<std::int32_t, 3>> faces;  // on the chunk's vertices
+    std::vector<std::int32_t> areas;                 // of the faces, among the involved ones
     std::vector<Pair> pairs;
   };
   struct Sum {
@@ -42,9 +45,11 @@ class AdjacentChunks {
   struct VertexKind;
 
   static std::vector<Chunk> cut(const MovingSet& set, const std::vector<AdjacentPair>& pairs,
-                                const std::vector<std::int32_t>& rank, bool edges);
+                                const std::vector<std::int32_t>& rank,
+                                const std::vector<std::int32_t>& involved, bool edges);
   template <class Kind>
-  static Sum sumOf(const Chunk& chunk, const Positions& positions, double unit);
+  static Sum sumOf(const Chunk& chunk, const Positions& positions,
+                   const std::vector<FaceArea>& areas, double unit);
 
   std::vector<Chunk> edgeChunks_;
   std::vector<Chunk> vertexChunks_;

@@ -46,8 +46,8 @@ struct ArmPoint {
 
 // Distance of the domain's centre from the singularity, in its radii, from which each rule errs by
 // less than about 1e-3 of a pair's gradient (measured on a pial surface).
-constexpr float kEdgeRatio[kRules] = {1.0F, 0.5F, 0.25F};
-constexpr float kVertexRatio[kRules] = {1.0F, 0.7F, 0.35F};
+constexpr float kEdgeRatio[kRules] = {1.0F, 0.5F, 0.25F, 0.125F};
+constexpr float kVertexRatio[kRules] = {1.0F, 0.7F, 0.35F, 0.175F};
 
 using Corner = std::array<double, 3>;
 
@@ -140,7 +140,7 @@ inline std::vector<ArmPoint<4>> vertexPoints(Rule segment, Rule triangle, int ha
 
 inline const std::vector<ArmPoint<3>>& edgeRule(int rule) {
   static const std::array<std::vector<ArmPoint<3>>, kRules> rules = {edgePoints(0), edgePoints(1),
-                                                                     edgePoints(2)};
+                                                                     edgePoints(2), edgePoints(3)};
   return rules[rule];
 }
 
@@ -148,7 +148,8 @@ inline const std::vector<ArmPoint<4>>& vertexRule(int rule) {
   static const std::array<std::vector<ArmPoint<4>>, kRules> rules = {
       vertexPoints(segmentRule3(), triangleRule7(), 0),
       vertexPoints(segmentRule4(), triangleRule12(), 0),
-      vertexPoints(segmentRule4(), triangleRule12(), 1)};
+      vertexPoints(segmentRule4(), triangleRule12(), 1),
+      vertexPoints(segmentRule4(), triangleRule12(), 2)};
   return rules[rule];
 }
 
@@ -176,6 +177,41 @@ HWY_INLINE Vec squaredNorm(Tag d, Vec x, Vec y, Vec z) {
   return hn::MulAdd(x, x, hn::MulAdd(y, y, hn::MulAdd(z, z, hn::Set(d, kTiny))));
 }
 
+/// What a node contributes at r: phi, its gradient = radial r + turn Q r, and s = 1/r^2.
+struct NodeTerm {
+  Vec s, phi, radial, gx, gy, gz;
+};
+
+HWY_INLINE NodeTerm TermOf(Tag d, const FarNode& n, Vec rx, Vec ry, Vec rz) {
+  NodeTerm t;
+  t.s = reciprocal(d, squaredNorm(d, rx, ry, rz));
+  const Vec xy = hn::Set(d, n.xy);
+  const Vec xz = hn::Set(d, n.xz);
+  const Vec yz = hn::Set(d, n.yz);
+  const Vec ux = hn::MulAdd(hn::Set(d, n.xx), rx, hn::MulAdd(xy, ry, hn::Mul(xz, rz)));
+  const Vec uy = hn::MulAdd(xy, rx, hn::MulAdd(hn::Set(d, n.yy), ry, hn::Mul(yz, rz)));
+  const Vec uz = hn::MulAdd(xz, rx, hn::MulAdd(yz, ry, hn::Mul(hn::Set(d, n.zz), rz)));
+  const Vec qs = hn::Mul(t.s, hn::MulAdd(ux, rx, hn::MulAdd(uy, ry, hn::Mul(uz, rz))));
+  const Vec mass = hn::Set(d, n.mass);
+  const Vec trace = hn::Set(d, n.trace);
+  const Vec four = hn::Set(d, 4.0F);
+  // phi = s (m + s (4 q s - trace)), q = r . Q r
+  t.phi = hn::Mul(t.s, hn::MulAdd(t.s, hn::MulSub(four, qs, trace), mass));
+  // grad phi = s^2 ((-2 m + s (4 trace - 24 q s)) r + 8 s Q r)
+  const Vec s2 = hn::Mul(t.s, t.s);
+  const Vec bend = hn::Mul(t.s, hn::MulAdd(four, trace, hn::Mul(hn::Set(d, -24.0F), qs)));
+  t.radial = hn::Mul(s2, hn::MulAdd(hn::Set(d, -2.0F), mass, bend));
+  const Vec turn = hn::Mul(hn::Mul(s2, t.s), hn::Set(d, 8.0F));
+  t.gx = hn::MulAdd(t.radial, rx, hn::Mul(turn, ux));
+  t.gy = hn::MulAdd(t.radial, ry, hn::Mul(turn, uy));
+  t.gz = hn::MulAdd(t.radial, rz, hn::Mul(turn, uz));
+  return t;
+}
+
+HWY_INLINE void AddTo(Tag d, Vec value, float* to) {
+  hn::Store(hn::Add(value, hn::Load(d, to)), d, to);
+}
+
 void FarNodes(TargetLeaf& target, int set, const FarNode* HWY_RESTRICT nodes, std::size_t count) {
   const Tag d;
   const int lanes = static_cast<int>(hn::Lanes(d));
@@ -184,128 +220,169 @@ void FarNodes(TargetLeaf& target, int set, const FarNode* HWY_RESTRICT nodes, st
       const Vec x = hn::Load(d, target.point[q][0] + lane);
       const Vec y = hn::Load(d, target.point[q][1] + lane);
       const Vec z = hn::Load(d, target.point[q][2] + lane);
-      Vec phi = hn::Load(d, target.phi[set][q] + lane);
-      Vec gx = hn::Load(d, target.g[q][0] + lane);
-      Vec gy = hn::Load(d, target.g[q][1] + lane);
-      Vec gz = hn::Load(d, target.g[q][2] + lane);
+      Vec phi = hn::Zero(d), gx = hn::Zero(d), gy = hn::Zero(d), gz = hn::Zero(d);
       for (std::size_t i = 0; i < count; ++i) {
         const FarNode& n = nodes[i];
-        const Vec rx = hn::Sub(x, hn::Set(d, n.centre[0]));
-        const Vec ry = hn::Sub(y, hn::Set(d, n.centre[1]));
-        const Vec rz = hn::Sub(z, hn::Set(d, n.centre[2]));
-        const Vec s = reciprocal(d, squaredNorm(d, rx, ry, rz));
-        const Vec xy = hn::Set(d, n.xy);
-        const Vec xz = hn::Set(d, n.xz);
-        const Vec yz = hn::Set(d, n.yz);
-        const Vec ux = hn::MulAdd(hn::Set(d, n.xx), rx, hn::MulAdd(xy, ry, hn::Mul(xz, rz)));
-        const Vec uy = hn::MulAdd(xy, rx, hn::MulAdd(hn::Set(d, n.yy), ry, hn::Mul(yz, rz)));
-        const Vec uz = hn::MulAdd(xz, rx, hn::MulAdd(yz, ry, hn::Mul(hn::Set(d, n.zz), rz)));
-        const Vec qs = hn::Mul(s, hn::MulAdd(ux, rx, hn::MulAdd(uy, ry, hn::Mul(uz, rz))));
-        const Vec mass = hn::Set(d, n.mass);
-        const Vec trace = hn::Set(d, n.trace);
-        const Vec four = hn::Set(d, 4.0F);
-        // phi = s (m + s (4 q s - trace)), s = 1/r^2, q = r . Q r
-        phi = hn::MulAdd(s, hn::MulAdd(s, hn::MulSub(four, qs, trace), mass), phi);
-        // grad phi = s^2 ((-2 m + s (4 trace - 24 q s)) r + 8 s Q r)
-        const Vec s2 = hn::Mul(s, s);
-        const Vec bend = hn::Mul(s, hn::MulAdd(four, trace, hn::Mul(hn::Set(d, -24.0F), qs)));
-        const Vec radial = hn::Mul(s2, hn::MulAdd(hn::Set(d, -2.0F), mass, bend));
-        const Vec turn = hn::Mul(hn::Mul(s2, s), hn::Set(d, 8.0F));
-        gx = hn::MulAdd(radial, rx, hn::MulAdd(turn, ux, gx));
-        gy = hn::MulAdd(radial, ry, hn::MulAdd(turn, uy, gy));
-        gz = hn::MulAdd(radial, rz, hn::MulAdd(turn, uz, gz));
+        const NodeTerm t =
+            TermOf(d, n, hn::Sub(x, hn::Set(d, n.centre[0])), hn::Sub(y, hn::Set(d, n.centre[1])),
+                   hn::Sub(z, hn::Set(d, n.centre[2])));
+        phi = hn::Add(phi, t.phi);
+        gx = hn::Add(gx, t.gx);
+        gy = hn::Add(gy, t.gy);
+        gz = hn::Add(gz, t.gz);
       }
-      hn::Store(phi, d, target.phi[set][q] + lane);
-      hn::Store(gx, d, target.g[q][0] + lane);
-      hn::Store(gy, d, target.g[q][1] + lane);
-      hn::Store(gz, d, target.g[q][2] + lane);
+      AddTo(d, phi, target.phi[set][q] + lane);
+      AddTo(d, gx, target.g[q][0] + lane);
+      AddTo(d, gy, target.g[q][1] + lane);
+      AddTo(d, gz, target.g[q][2] + lane);
     }
   }
 }
 
-std::size_t CloseLeaves(TargetLeaf& target, int set, const CloseLeaf* HWY_RESTRICT leaves,
-                        std::size_t count, float nearRatio, NearHit* HWY_RESTRICT hits) {
+void FarthestNodes(TargetLeaf& target, int set, const FarNode* HWY_RESTRICT nodes,
+                   std::size_t count) {
   const Tag d;
   const int lanes = static_cast<int>(hn::Lanes(d));
-  std::size_t hitCount = 0;
+  const Vec half = hn::Set(d, 0.5F);
   for (int lane = 0; lane < kLanes; lane += lanes) {
-    const Vec radius = hn::Load(d, target.radius + lane);
-    Vec phi0 = hn::Load(d, target.phi[set][0] + lane);
-    Vec phi1 = hn::Load(d, target.phi[set][1] + lane);
-    Vec phi2 = hn::Load(d, target.phi[set][2] + lane);
-    // Sums of +r/r^4; the factor -2 comes last.
-    Vec gx0 = hn::Zero(d), gy0 = hn::Zero(d), gz0 = hn::Zero(d);
-    Vec gx1 = hn::Zero(d), gy1 = hn::Zero(d), gz1 = hn::Zero(d);
-    Vec gx2 = hn::Zero(d), gy2 = hn::Zero(d), gz2 = hn::Zero(d);
-    for (std::size_t l = 0; l < count; ++l) {
-      const CloseLeaf& leaf = leaves[l];
-      const Vec ox = hn::Set(d, leaf.offset[0]);
-      const Vec oy = hn::Set(d, leaf.offset[1]);
-      const Vec oz = hn::Set(d, leaf.offset[2]);
-      const Vec cx = hn::Sub(hn::Load(d, target.centroid[0] + lane), ox);
-      const Vec cy = hn::Sub(hn::Load(d, target.centroid[1] + lane), oy);
-      const Vec cz = hn::Sub(hn::Load(d, target.centroid[2] + lane), oz);
-      const Vec x0 = hn::Sub(hn::Load(d, target.point[0][0] + lane), ox);
-      const Vec y0 = hn::Sub(hn::Load(d, target.point[0][1] + lane), oy);
-      const Vec z0 = hn::Sub(hn::Load(d, target.point[0][2] + lane), oz);
-      const Vec x1 = hn::Sub(hn::Load(d, target.point[1][0] + lane), ox);
-      const Vec y1 = hn::Sub(hn::Load(d, target.point[1][1] + lane), oy);
-      const Vec z1 = hn::Sub(hn::Load(d, target.point[1][2] + lane), oz);
-      const Vec x2 = hn::Sub(hn::Load(d, target.point[2][0] + lane), ox);
-      const Vec y2 = hn::Sub(hn::Load(d, target.point[2][1] + lane), oy);
-      const Vec z2 = hn::Sub(hn::Load(d, target.point[2][2] + lane), oz);
-      for (std::int32_t f = 0; f < leaf.count; ++f) {
-        const SourceFace& source = leaf.faces[f];
-        const Vec dx = hn::Sub(cx, hn::Set(d, source.centroid[0]));
-        const Vec dy = hn::Sub(cy, hn::Set(d, source.centroid[1]));
-        const Vec dz = hn::Sub(cz, hn::Set(d, source.centroid[2]));
-        const Vec reach =
-            hn::Mul(hn::Set(d, nearRatio), hn::Add(radius, hn::Set(d, source.radius)));
-        const auto isNear = hn::Lt(squaredNorm(d, dx, dy, dz), hn::Mul(reach, reach));
-        Vec weight = hn::Set(d, source.weight);
-        if (HWY_UNLIKELY(!hn::AllFalse(d, isNear))) {
-          weight = hn::IfThenZeroElse(isNear, weight);
-          std::uint8_t bits[8] = {0, 0, 0, 0, 0, 0, 0, 0};
-          hn::StoreMaskBits(d, isNear, bits);
-          const std::uint32_t flags =
-              static_cast<std::uint32_t>(bits[0]) | (static_cast<std::uint32_t>(bits[1]) << 8);
-          hits[hitCount++] = {leaf.first + f, flags << lane};
-        }
-        for (int p = 0; p < 3; ++p) {
-          const Vec sx = hn::Set(d, source.point[p][0]);
-          const Vec sy = hn::Set(d, source.point[p][1]);
-          const Vec sz = hn::Set(d, source.point[p][2]);
-          const auto add = [&](Vec tx, Vec ty, Vec tz, Vec& phi, Vec& gx, Vec& gy, Vec& gz)
-                               HWY_ATTR {
-                                 const Vec rx = hn::Sub(tx, sx);
-                                 const Vec ry = hn::Sub(ty, sy);
-                                 const Vec rz = hn::Sub(tz, sz);
-                                 const Vec s = reciprocal(d, squaredNorm(d, rx, ry, rz));
-                                 const Vec term = hn::Mul(weight, s);
-                                 phi = hn::Add(phi, term);
-                                 const Vec pull = hn::Mul(term, s);
-                                 gx = hn::MulAdd(pull, rx, gx);
-                                 gy = hn::MulAdd(pull, ry, gy);
-                                 gz = hn::MulAdd(pull, rz, gz);
-                               };
-          add(x0, y0, z0, phi0, gx0, gy0, gz0);
-          add(x1, y1, z1, phi1, gx1, gy1, gz1);
-          add(x2, y2, z2, phi2, gx2, gy2, gz2);
+    const Vec x = hn::Load(d, target.centroid[0] + lane);
+    const Vec y = hn::Load(d, target.centroid[1] + lane);
+    const Vec z = hn::Load(d, target.centroid[2] + lane);
+    Vec phi = hn::Zero(d), gx = hn::Zero(d), gy = hn::Zero(d), gz = hn::Zero(d);
+    // Second derivatives: diagonal I + the rest.
+    Vec diagonal = hn::Zero(d), xx = hn::Zero(d), yy = hn::Zero(d), zz = hn::Zero(d);
+    Vec xy = hn::Zero(d), xz = hn::Zero(d), yz = hn::Zero(d);
+    for (std::size_t i = 0; i < count; ++i) {
+      const FarNode& n = nodes[i];
+      const Vec rx = hn::Sub(x, hn::Set(d, n.centre[0]));
+      const Vec ry = hn::Sub(y, hn::Set(d, n.centre[1]));
+      const Vec rz = hn::Sub(z, hn::Set(d, n.centre[2]));
+      const NodeTerm t = TermOf(d, n, rx, ry, rz);
+      phi = hn::Add(phi, t.phi);
+      gx = hn::Add(gx, t.gx);
+      gy = hn::Add(gy, t.gy);
+      gz = hn::Add(gz, t.gz);
+      // d2 (m s) = -2 m s^2 I + 8 m s^3 r r^T, with the nodes' own radial part in place of -2 m s^2
+      diagonal = hn::Add(diagonal, t.radial);
+      const Vec c = hn::Mul(hn::Mul(hn::Set(d, -4.0F), t.s), t.radial);
+      const Vec cx = hn::Mul(c, rx);
+      const Vec cy = hn::Mul(c, ry);
+      xx = hn::MulAdd(cx, rx, xx);
+      xy = hn::MulAdd(cx, ry, xy);
+      xz = hn::MulAdd(cx, rz, xz);
+      yy = hn::MulAdd(cy, ry, yy);
+      yz = hn::MulAdd(cy, rz, yz);
+      zz = hn::MulAdd(hn::Mul(c, rz), rz, zz);
+    }
+    xx = hn::Add(xx, diagonal);
+    yy = hn::Add(yy, diagonal);
+    zz = hn::Add(zz, diagonal);
+    for (int q = 0; q < 3; ++q) {
+      const Vec dx = hn::Sub(hn::Load(d, target.point[q][0] + lane), x);
+      const Vec dy = hn::Sub(hn::Load(d, target.point[q][1] + lane), y);
+      const Vec dz = hn::Sub(hn::Load(d, target.point[q][2] + lane), z);
+      const Vec hx = hn::MulAdd(xx, dx, hn::MulAdd(xy, dy, hn::Mul(xz, dz)));
+      const Vec hy = hn::MulAdd(xy, dx, hn::MulAdd(yy, dy, hn::Mul(yz, dz)));
+      const Vec hz = hn::MulAdd(xz, dx, hn::MulAdd(yz, dy, hn::Mul(zz, dz)));
+      const auto dot = [&](Vec ax, Vec ay, Vec az) HWY_ATTR {
+        return hn::MulAdd(ax, dx, hn::MulAdd(ay, dy, hn::Mul(az, dz)));
+      };
+      AddTo(d, hn::Add(phi, hn::MulAdd(half, dot(hx, hy, hz), dot(gx, gy, gz))),
+            target.phi[set][q] + lane);
+      AddTo(d, hn::Add(gx, hx), target.g[q][0] + lane);
+      AddTo(d, hn::Add(gy, hy), target.g[q][1] + lane);
+      AddTo(d, hn::Add(gz, hz), target.g[q][2] + lane);
+    }
+  }
+}
+
+/// Targets, one bit each, to which a face is nearer than `nearRatio` sums of radii; the weights
+/// that the others take are written if there are any.
+HWY_INLINE std::uint32_t NearTargets(const TargetLeaf& target, const float* centroid, float radius,
+                                     float nearRatio, float weight, float* weights) {
+  const Tag d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  std::uint32_t flags = 0;
+  for (int lane = 0; lane < kLanes; lane += lanes) {
+    const Vec dx = hn::Sub(hn::Load(d, target.centroid[0] + lane), hn::Set(d, centroid[0]));
+    const Vec dy = hn::Sub(hn::Load(d, target.centroid[1] + lane), hn::Set(d, centroid[1]));
+    const Vec dz = hn::Sub(hn::Load(d, target.centroid[2] + lane), hn::Set(d, centroid[2]));
+    const Vec reach = hn::Mul(hn::Set(d, nearRatio),
+                              hn::Add(hn::Load(d, target.radius + lane), hn::Set(d, radius)));
+    const auto isNear = hn::Lt(squaredNorm(d, dx, dy, dz), hn::Mul(reach, reach));
+    hn::Store(hn::IfThenZeroElse(isNear, hn::Set(d, weight)), d, weights + lane);
+    std::uint8_t bits[8] = {0, 0, 0, 0, 0, 0, 0, 0};
+    hn::StoreMaskBits(d, isNear, bits);
+    flags |= (static_cast<std::uint32_t>(bits[0]) | (static_cast<std::uint32_t>(bits[1]) << 8))
+             << lane;
+  }
+  return flags;
+}
+
+std::size_t CloseLeaves(TargetLeaf& target, int set, const CloseLeaf* HWY_RESTRICT leaves,
+                        std::size_t count, float nearRatio, const CloseRoom& room) {
+  std::size_t hitCount = 0;
+  std::size_t clearCount = 0;
+  for (std::size_t l = 0; l < count; ++l) {
+    const CloseLeaf& leaf = leaves[l];
+    const float offset[4] = {leaf.offset[0], leaf.offset[1], leaf.offset[2], 0};
+    for (std::int32_t f = 0; f < leaf.count; ++f) {
+      const SourceFace& source = leaf.faces[f];
+      float(*to)[4] = room.clear[clearCount].point;
+      bool clear = true;
+      if (leaf.mayTouch) {
+        const float centroid[3] = {source.centroid[0] + offset[0], source.centroid[1] + offset[1],
+                                   source.centroid[2] + offset[2]};
+        MaskedFace& masked = room.masked[hitCount];
+        const std::uint32_t flags = NearTargets(target, centroid, source.radius, nearRatio,
+                                                source.point[0][3], masked.weight);
+        if (flags != 0) {
+          room.hits[hitCount++] = {leaf.first + f, flags};
+          to = masked.point;
+          clear = false;
         }
       }
+      for (int p = 0; p < 3; ++p) {
+        for (int a = 0; a < 4; ++a) to[p][a] = source.point[p][a] + offset[a];
+      }
+      if (clear) ++clearCount;
     }
-    const auto keep = [&](int q, Vec phi, Vec gx, Vec gy, Vec gz) HWY_ATTR {
-      const Vec factor = hn::Set(d, -2.0F);
-      hn::Store(phi, d, target.phi[set][q] + lane);
-      const auto addTo = [&](Vec g, float* to)
-                             HWY_ATTR { hn::Store(hn::MulAdd(factor, g, hn::Load(d, to)), d, to); };
-      addTo(gx, target.g[q][0] + lane);
-      addTo(gy, target.g[q][1] + lane);
-      addTo(gz, target.g[q][2] + lane);
-    };
-    keep(0, phi0, gx0, gy0, gz0);
-    keep(1, phi1, gx1, gy1, gz1);
-    keep(2, phi2, gx2, gy2, gz2);
+  }
+
+  const Tag d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  const Vec minusTwo = hn::Set(d, -2.0F);
+  for (int lane = 0; lane < kLanes; lane += lanes) {
+    for (int q = 0; q < 3; ++q) {
+      const Vec x = hn::Load(d, target.point[q][0] + lane);
+      const Vec y = hn::Load(d, target.point[q][1] + lane);
+      const Vec z = hn::Load(d, target.point[q][2] + lane);
+      Vec phi = hn::Zero(d);
+      Vec gx = hn::Zero(d), gy = hn::Zero(d), gz = hn::Zero(d);  // of +r/r^4
+      const auto add = [&](const float* point, Vec weight) HWY_ATTR {
+        const Vec rx = hn::Sub(x, hn::Set(d, point[0]));
+        const Vec ry = hn::Sub(y, hn::Set(d, point[1]));
+        const Vec rz = hn::Sub(z, hn::Set(d, point[2]));
+        const Vec s = reciprocal(d, squaredNorm(d, rx, ry, rz));
+        const Vec term = hn::Mul(weight, s);
+        phi = hn::Add(phi, term);
+        const Vec pull = hn::Mul(term, s);
+        gx = hn::MulAdd(pull, rx, gx);
+        gy = hn::MulAdd(pull, ry, gy);
+        gz = hn::MulAdd(pull, rz, gz);
+      };
+      for (std::size_t i = 0; i < clearCount; ++i) {
+        for (const auto& point : room.clear[i].point) add(point, hn::Set(d, point[3]));
+      }
+      for (std::size_t i = 0; i < hitCount; ++i) {
+        const Vec weight = hn::Load(d, room.masked[i].weight + lane);
+        for (int p = 0; p < 3; ++p) add(room.masked[i].point[p], weight);
+      }
+      AddTo(d, phi, target.phi[set][q] + lane);
+      AddTo(d, hn::Mul(minusTwo, gx), target.g[q][0] + lane);
+      AddTo(d, hn::Mul(minusTwo, gy), target.g[q][1] + lane);
+      AddTo(d, hn::Mul(minusTwo, gz), target.g[q][2] + lane);
+    }
   }
   return hitCount;
 }
@@ -561,6 +638,7 @@ HWY_AFTER_NAMESPACE();
 namespace explica::repulsion::kernels {
 
 HWY_EXPORT(FarNodes);
+HWY_EXPORT(FarthestNodes);
 HWY_EXPORT(CloseLeaves);
 HWY_EXPORT(IntegrateApart);
 HWY_EXPORT(IntegrateEdge);
@@ -575,9 +653,13 @@ void addFarNodes(TargetLeaf& target, int set, const FarNode* nodes, std::size_t 
   HWY_DYNAMIC_DISPATCH(FarNodes)(target, set, nodes, count);
 }
 
+void addFarthestNodes(TargetLeaf& target, int set, const FarNode* nodes, std::size_t count) {
+  HWY_DYNAMIC_DISPATCH(FarthestNodes)(target, set, nodes, count);
+}
+
 std::size_t addCloseLeaves(TargetLeaf& target, int set, const CloseLeaf* leaves, std::size_t count,
-                           float nearRatio, NearHit* hits) {
-  return HWY_DYNAMIC_DISPATCH(CloseLeaves)(target, set, leaves, count, nearRatio, hits);
+                           float nearRatio, const CloseRoom& room) {
+  return HWY_DYNAMIC_DISPATCH(CloseLeaves)(target, set, leaves, count, nearRatio, room);
 }
 
 void integrateApart(ApartBatch& batch, bool fine) {

@@ -23,21 +23,20 @@ struct alignas(64) TargetLeaf {
   float g[3][3][kLanes];    ///< [quadrature point][axis][face]
 };
 
-/// A source face with its quadrature points, relative to its leaf's centre.
+/// A source face with its quadrature points, relative to its group's centre.
 struct alignas(64) SourceFace {
-  float point[3][3];
+  float point[3][4];  ///< x, y, z, a third of the area
   float centroid[3];
-  float weight;  ///< a third of the area
   float radius;
-  float unused[2];
 };
 
-/// A leaf of sources too near for its moments; `offset` is its centre seen from the target's.
+/// Sources too near for their moments; `offset` is their group's centre seen from the target's.
 struct CloseLeaf {
   const SourceFace* faces;
   std::int32_t count;
   std::int32_t first;  ///< number of its first face
   float offset[3];
+  bool mayTouch;  ///< some face may be within `nearRatio` of a target
 };
 
 /// Sources seen as one: mass, centre seen from the target's, second moments.
@@ -54,13 +53,36 @@ struct NearHit {
   std::uint32_t targets;
 };
 
-/// Adds what far nodes contribute: monopole and quadrupole.
+/// The points of a source face whose weight every target takes: x, y, z, weight.
+struct alignas(16) ClearFace {
+  float point[3][4];
+};
+
+/// The points of a source face whose weight some targets do not take.
+struct alignas(64) MaskedFace {
+  float weight[kLanes];
+  float point[3][4];
+};
+
+/// Room for what addCloseLeaves() sorts its faces into, and one more, each.
+struct CloseRoom {
+  ClearFace* clear;
+  MaskedFace* masked;
+  NearHit* hits;
+};
+
+/// Adds what far nodes contribute, by monopole and quadrupole, at every quadrature point.
 void addFarNodes(TargetLeaf& target, int set, const FarNode* nodes, std::size_t count);
 
+/// The same for nodes many face sizes away: evaluated at the centroids and carried to the
+/// quadrature points by the monopoles' second derivatives.
+void addFarthestNodes(TargetLeaf& target, int set, const FarNode* nodes, std::size_t count);
+
 /// Adds three by three quadrature points of every pair of faces whose centroids are at least
-/// `nearRatio` sums of radii apart; lists the other pairs.  `hits` has room for two per face.
+/// `nearRatio` sums of radii apart; lists the other pairs.
+/// @return number of hits
 std::size_t addCloseLeaves(TargetLeaf& target, int set, const CloseLeaf* leaves, std::size_t count,
-                           float nearRatio, NearHit* hits);
+                           float nearRatio, const CloseRoom& room);
 
 /// Means of 1/|x - y|^2 over pairs of triangles and derivatives by the first one's corners.
 struct alignas(64) ApartBatch {
@@ -74,7 +96,7 @@ void integrateApart(ApartBatch& batch, bool fine);
 
 /// Rules of the reduced integrals over pairs with common corners, by how near the domain comes to
 /// the singularity; beyond the last, use PairIntegral.h.
-inline constexpr int kRules = 3;
+inline constexpr int kRules = 4;
 
 /// Means over pairs with a common edge: 1/|z|^2 over the six triangles of PairIntegral.h, summed.
 struct alignas(64) EdgeBatch {

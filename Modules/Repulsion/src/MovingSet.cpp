@@ -65,6 +65,8 @@ MovingSet::MovingSet(const TriangleMesh& mesh, const std::vector<bool>& moves)
     (faceMoves[f] ? moving : fixed).push_back(f);
   }
 
+  involved = moving;
+  std::vector<bool> listed = faceMoves;
   touchingBegin_.push_back(0);
   std::vector<std::int32_t> found;
   for (const std::int32_t s : moving) {
@@ -79,6 +81,8 @@ MovingSet::MovingSet(const TriangleMesh& mesh, const std::vector<bool>& moves)
     touchingBegin_.push_back(touching_.size());
 
     for (const std::int32_t t : found) {
+      if (!listed[t]) involved.push_back(t);
+      listed[t] = true;
       if (t == s || (faceMoves[t] && t < s)) continue;
       AdjacentPair pair{s, t, rowOf(faces, s), rowOf(faces, t)};
       const auto cornersS = pair.cornersS;
@@ -114,15 +118,20 @@ void MovingSet::requireVertexCount(const Positions& positions) const {
   }
 }
 
-AreaGradient areaGradient(const Corners& c) {
+FaceArea faceArea(const Corners& c) {
   const Vector cross = (c[1] - c[0]).cross(c[2] - c[0]);
   const double length = cross.norm();
-  AreaGradient result;
+  FaceArea result;
   result.area = length / 2;
-  const Vector n = length > 0 ? Vector(cross / length) : Vector(Vector::Zero());
-  for (int k = 0; k < 3; ++k) {
-    result.byCorner[k] = n.cross(c[(k + 2) % 3] - c[(k + 1) % 3]) / 2;
-  }
+  if (length > 0) result.normal = cross / length;
+  return result;
+}
+
+AreaGradient areaGradient(const Corners& c) {
+  const FaceArea face = faceArea(c);
+  AreaGradient result;
+  result.area = face.area;
+  for (int k = 0; k < 3; ++k) result.byCorner[k] = areaByCorner(face.normal, c, k);
   return result;
 }
 

@@ -5,6 +5,8 @@
 #include "Explica/Core/TriangleMesh.h"
 #include "Explica/Repulsion/PairIntegral.h"
 
+#include <Eigen/Geometry>
+
 #include <array>
 #include <span>
 #include <vector>
@@ -33,6 +35,8 @@ class MovingSet {
   std::vector<AdjacentPair> edgePairs;  ///< each unordered pair once, at least one face moving
   std::vector<AdjacentPair> vertexPairs;
 
+  std::vector<std::int32_t> involved;  ///< the moving faces, then the fixed ones that touch them
+
   /// Faces that share a corner with the k-th moving face, ascending; itself included.
   [[nodiscard]] std::span<const std::int32_t> touching(std::size_t k) const {
     return {touching_.data() + touchingBegin_[k], touching_.data() + touchingBegin_[k + 1]};
@@ -55,6 +59,18 @@ class MovingSet {
                                        const std::array<std::int32_t, 3>& v) {
   return {positions.row(v[0]).transpose(), positions.row(v[1]).transpose(),
           positions.row(v[2]).transpose()};
+}
+
+/// Area of a face and its unit normal by the right-hand rule; zero normal for zero area.
+struct FaceArea {
+  double area = 0;
+  Vector normal = Vector::Zero();
+};
+[[nodiscard]] FaceArea faceArea(const Corners& corners);
+
+/// Derivative of the area by corner k.
+[[nodiscard]] inline Vector areaByCorner(const Vector& normal, const Corners& c, int k) {
+  return normal.cross(c[(k + 2) % 3] - c[(k + 1) % 3]) / 2;
 }
 
 /// Area of a face and its derivatives by the corners; zero derivatives for zero area.

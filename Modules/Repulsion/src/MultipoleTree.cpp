@@ -27,6 +27,9 @@ constexpr int kLanes = kernels::kLanes;
 // faces nearer than the last are halved.
 constexpr float kSevenRatio = 0.9F;
 constexpr float kTwelveRatio = 0.5F;
+// Distance, in sizes of the largest target face, from which a node acts on the centroid of each
+// face rather than on its quadrature points.
+constexpr double kFarthest = 6;
 constexpr int kHalvings = 8;  // at most: then the faces touch
 
 /// A face or a part of it, single precision, relative to the target leaf's centre.
@@ -199,9 +202,14 @@ class NearPairs {
 /// Scratch of one thread's block of leaves.
 struct Lists {
   std::vector<kernels::FarNode> far;
+  std::vector<kernels::FarNode> farthest;
   std::vector<kernels::CloseLeaf> close;
+  std::vector<kernels::ClearFace> clear;
+  std::vector<kernels::MaskedFace> masked;
   std::vector<kernels::NearHit> hits;
-  std::vector<std::int32_t> stack;
+  std::vector<std::int32_t> candidates;
+  std::vector<std::int32_t> farNumbers;
+  std::vector<std::int32_t> opened;
 };
 
 }  // namespace
@@ -218,9 +226,13 @@ struct MultipoleTree::State {
   void addNear(const kernels::TargetLeaf& target, const ClusterTree::Node& leaf,
                const ClusterTree& movingTree, const kernels::NearHit& hit, int which,
                const ClusterTree& tree, NearPairs& nearPairs) const;
+  [[nodiscard]] kernels::CloseLeaf closeLeaf(const ClusterTree::Node& target,
+                                             const ClusterTree::Node& leaf,
+                                             const ClusterTree& tree) const;
   void gather(const ClusterTree::Node& target, const ClusterTree& tree, Lists& lists) const;
-  void sumLeaf(const Positions& positions, const ClusterTree& movingTree, std::size_t leaf,
-               Lists& lists, std::vector<FaceForce>& forces) const;
+  void sumLeaf(const Positions& positions, const std::vector<FaceArea>& areas,
+               const ClusterTree& movingTree, std::size_t leaf, Lists& lists,
+               std::vector<FaceForce>& forces) const;
 };
 
 MultipoleTree::MultipoleTree(const TriangleMesh& mesh, const std::vector<bool>& vertexMoves,
@@ -262,46 +274,85 @@ const char* MultipoleTree::instructionSet() {
 void MultipoleTree::State::gather(const ClusterTree::Node& target, const ClusterTree& tree,
                                   Lists& lists) const {
   lists.far.clear();
+  lists.farthest.clear();
   lists.close.clear();
   if (tree.empty()) return;
-  const double inverseOpening = 1 / options.opening;
   const double inverseUnit = 1 / unit;
-  lists.stack.assign(1, 0);
-  while (!lists.stack.empty()) {
-    const ClusterTree::Node& node = tree.nodes()[lists.stack.back()];
-    lists.stack.pop_back();
-    const Vector offset = node.centre - target.centre;
-    const double squared = offset.squaredNorm();
-    const double clear =
-        target.radius +
-        std::max(node.radius * inverseOpening,
-                 node.radius + (options.nearRatio - 1) * (target.largestFace + node.largestFace));
-    if (squared > clear * clear) {
-      kernels::FarNode far;
-      for (int a = 0; a < 3; ++a) far.centre[a] = static_cast<float>(offset[a] * inverseUnit);
-      const double area = inverseUnit * inverseUnit;
-      const double second = area * area;
-      far.mass = static_cast<float>(node.mass * area);
-      far.xx = static_cast<float>(node.second[0] * second);
-      far.yy = static_cast<float>(node.second[1] * second);
-      far.zz = static_cast<float>(node.second[2] * second);
-      far.xy = static_cast<float>(node.second[3] * second);
-      far.xz = static_cast<float>(node.second[4] * second);
-      far.yz = static_cast<float>(node.second[5] * second);
-      far.trace = far.xx + far.yy + far.zz;
-      lists.far.push_back(far);
-    } else if (node.isLeaf()) {
-      kernels::CloseLeaf close;
-      close.faces = tree.sources().data() + node.first;
-      close.count = node.count;
-      close.first = node.first;
-      for (int a = 0; a < 3; ++a) close.offset[a] = static_cast<float>(offset[a] * inverseUnit);
-      lists.close.push_back(close);
-    } else {
-      lists.stack.push_back(node.left + 1);
-      lists.stack.push_back(node.left);
+  const Eigen::Vector3f centre =
+      ((target.centre - tree.nodes()[0].centre) * inverseUnit).cast<float>();
+  const auto radius = static_cast<float>(target.radius * inverseUnit);
+  const auto largestFace = static_cast<float>(target.largestFace * inverseUnit);
+  const auto inverseOpening = static_cast<float>(1 / options.opening);
+  const auto margin = static_cast<float>(options.nearRatio - 1);
+
+  // Level by level, without branches: whether a node is far is hard to predict.
+  lists.candidates.assign(1, 0);
+  lists.farNumbers.clear();
+  while (!lists.candidates.empty()) {
+    const std::size_t before = lists.farNumbers.size();
+    lists.farNumbers.resize(before + lists.candidates.size());
+    lists.opened.resize(lists.candidates.size());
+    std::int32_t* far = lists.farNumbers.data() + before;
+    std::int32_t* open = lists.opened.data();
+    for (const std::int32_t number : lists.candidates) {
+      const ClusterTree::Ball& ball = tree.balls()[number];
+      const float dx = ball.x - centre[0];
+      const float dy = ball.y - centre[1];
+      const float dz = ball.z - centre[2];
+      const float clear =
+          radius + std::max(ball.radius * inverseOpening,
+                            ball.radius + margin * (largestFace + ball.largestFace));
+      const bool isFar = dx * dx + dy * dy + dz * dz > clear * clear;
+      *far = number;
+      *open = number;
+      far += isFar;
+      open += !isFar;
+    }
+    lists.farNumbers.resize(static_cast<std::size_t>(far - lists.farNumbers.data()));
+    const auto openCount = static_cast<std::size_t>(open - lists.opened.data());
+    lists.candidates.clear();
+    for (std::size_t i = 0; i < openCount; ++i) {
+      const std::int32_t left = tree.balls()[lists.opened[i]].left;
+      if (left < 0) {
+        lists.close.push_back(closeLeaf(target, tree.nodes()[lists.opened[i]], tree));
+      } else {
+        lists.candidates.push_back(left);
+        lists.candidates.push_back(left + 1);
+      }
     }
   }
+
+  const double carried = target.radius + kFarthest * target.largestFace;
+  lists.far.resize(lists.farNumbers.size());
+  lists.farthest.resize(lists.farNumbers.size());
+  kernels::FarNode* far = lists.far.data();
+  kernels::FarNode* farthest = lists.farthest.data();
+  for (const std::int32_t number : lists.farNumbers) {
+    const Vector offset = tree.nodes()[number].centre - target.centre;
+    const bool isFarthest = offset.squaredNorm() > carried * carried;
+    kernels::FarNode& node = *(isFarthest ? farthest : far);
+    node = tree.moments()[number];
+    for (int a = 0; a < 3; ++a) node.centre[a] = static_cast<float>(offset[a] * inverseUnit);
+    farthest += isFarthest;
+    far += !isFarthest;
+  }
+  lists.far.resize(static_cast<std::size_t>(far - lists.far.data()));
+  lists.farthest.resize(static_cast<std::size_t>(farthest - lists.farthest.data()));
+}
+
+kernels::CloseLeaf MultipoleTree::State::closeLeaf(const ClusterTree::Node& target,
+                                                   const ClusterTree::Node& leaf,
+                                                   const ClusterTree& tree) const {
+  const Vector group = (tree.groupOf(leaf.first).centre - target.centre) / unit;
+  kernels::CloseLeaf close;
+  close.faces = tree.sources().data() + leaf.first;
+  close.count = leaf.count;
+  close.first = leaf.first;
+  for (int a = 0; a < 3; ++a) close.offset[a] = static_cast<float>(group[a]);
+  const double apart = target.radius + leaf.radius +
+                       (options.nearRatio - 1) * (target.largestFace + leaf.largestFace);
+  close.mayTouch = (leaf.centre - target.centre).squaredNorm() <= apart * apart;
+  return close;
 }
 
 void MultipoleTree::State::addNear(const kernels::TargetLeaf& target, const ClusterTree::Node& leaf,
@@ -309,7 +360,7 @@ void MultipoleTree::State::addNear(const kernels::TargetLeaf& target, const Clus
                                    int which, const ClusterTree& tree, NearPairs& nearPairs) const {
   const kernels::SourceFace& source = tree.sources()[hit.face];
   const auto& vertices = tree.vertices()[hit.face];
-  const Vector offset = (tree.leafOf(hit.face).centre - leaf.centre) / unit;
+  const Vector offset = (tree.groupOf(hit.face).centre - leaf.centre) / unit;
   const std::array<float, 3> shift = {static_cast<float>(offset[0]), static_cast<float>(offset[1]),
                                       static_cast<float>(offset[2])};
   std::array<float, 9> corners;
@@ -329,14 +380,14 @@ void MultipoleTree::State::addNear(const kernels::TargetLeaf& target, const Clus
       squared += d * d;
     }
     const float ratio = std::sqrt(squared) / (target.radius[lane] + source.radius);
-    nearPairs.add(lane, ratio, corners, which, 3 * source.weight);
+    nearPairs.add(lane, ratio, corners, which, 3 * source.point[0][3]);
   }
 }
 
-void MultipoleTree::State::sumLeaf(const Positions& positions, const ClusterTree& movingTree,
-                                   std::size_t leafNumber, Lists& lists,
-                                   std::vector<FaceForce>& forces) const {
-  const ClusterTree::Node& leaf = movingTree.nodes()[movingTree.leaves()[leafNumber]];
+void MultipoleTree::State::sumLeaf(const Positions& positions, const std::vector<FaceArea>& areas,
+                                   const ClusterTree& movingTree, std::size_t leafNumber,
+                                   Lists& lists, std::vector<FaceForce>& forces) const {
+  const ClusterTree::Node& leaf = movingTree.nodes()[movingTree.groups()[leafNumber]];
   kernels::TargetLeaf target{};
   for (int lane = 0; lane < kLanes; ++lane) {
     const kernels::SourceFace& face =
@@ -358,13 +409,18 @@ void MultipoleTree::State::sumLeaf(const Positions& positions, const ClusterTree
     const ClusterTree& tree = which == 0 ? movingTree : fixedTree;
     gather(leaf, tree, lists);
     kernels::addFarNodes(target, which, lists.far.data(), lists.far.size());
+    kernels::addFarthestNodes(target, which, lists.farthest.data(), lists.farthest.size());
     std::size_t room = 0;
     for (const auto& c : lists.close) room += static_cast<std::size_t>(c.count);
-    // A face may be listed once for each part of the lanes that one vector holds.
-    if (lists.hits.size() < kLanes * room) lists.hits.resize(kLanes * room);
+    if (lists.hits.size() < room + 1) {
+      lists.clear.resize(room + 1);
+      lists.masked.resize(room + 1);
+      lists.hits.resize(room + 1);
+    }
     const std::size_t hitCount =
         kernels::addCloseLeaves(target, which, lists.close.data(), lists.close.size(),
-                                static_cast<float>(options.nearRatio), lists.hits.data());
+                                static_cast<float>(options.nearRatio),
+                                {lists.clear.data(), lists.masked.data(), lists.hits.data()});
     for (std::size_t h = 0; h < hitCount; ++h) {
       addNear(target, leaf, movingTree, lists.hits[h], which, tree, nearPairs);
     }
@@ -373,7 +429,8 @@ void MultipoleTree::State::sumLeaf(const Positions& positions, const ClusterTree
 
   for (int lane = 0; lane < leaf.count; ++lane) {
     const std::int32_t slot = movingTree.order()[leaf.first + lane];
-    const AreaGradient area = areaGradient(cornersOf(positions, set.faces, set.moving[slot]));
+    const FaceArea& area = areas[slot];
+    const Corners own = cornersOf(positions, set.faces, set.moving[slot]);
     std::array<double, 2> phi = {nearPairs.phi(0, lane), nearPairs.phi(1, lane)};
     Vector total = Vector::Zero();
     std::array<Vector, 3> g;
@@ -388,7 +445,8 @@ void MultipoleTree::State::sumLeaf(const Positions& positions, const ClusterTree
     force.value = area.area * (phi[0] + 2 * phi[1]);
     for (int k = 0; k < 3; ++k) {
       const Vector by = (total / 6 + g[k] / 2 + nearPairs.by(lane, k)) / unit;
-      force.byCorner[k] = 2 * (area.area * by + (phi[0] + phi[1]) * area.byCorner[k]);
+      force.byCorner[k] =
+          2 * (area.area * by + (phi[0] + phi[1]) * areaByCorner(area.normal, own, k));
     }
   }
 }
@@ -397,17 +455,21 @@ KnotValue MultipoleTree::evaluate(const Positions& positions) const {
   const State& state = *state_;
   state.set.requireVertexCount(positions);
   const ClusterTree movingTree(positions, state.set.faces, state.set.moving, state.unit);
+  std::vector<FaceArea> areas(state.set.involved.size());
+  parallelFor(areas.size(), 1024, [&](std::size_t i) {
+    areas[i] = faceArea(cornersOf(positions, state.set.faces, state.set.involved[i]));
+  });
   std::vector<FaceForce> forces(state.set.moving.size());
-  parallelForBlocks(movingTree.leaves().size(), 4, [&](std::size_t begin, std::size_t end) {
+  parallelForBlocks(movingTree.groups().size(), 4, [&](std::size_t begin, std::size_t end) {
     Lists lists;
     for (std::size_t leaf = begin; leaf < end; ++leaf) {
-      state.sumLeaf(positions, movingTree, leaf, lists, forces);
+      state.sumLeaf(positions, areas, movingTree, leaf, lists, forces);
     }
   });
 
   KnotValue result;
   result.gradient.setZero(positions.rows(), 3);
-  state.adjacent.add(positions, state.unit, result.value, result.gradient);
+  state.adjacent.add(positions, areas, state.unit, result.value, result.gradient);
   for (std::size_t k = 0; k < forces.size(); ++k) {
     result.value += forces[k].value;
     for (int c = 0; c < 3; ++c) {

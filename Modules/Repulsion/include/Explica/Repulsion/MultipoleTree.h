@@ -9,8 +9,8 @@ namespace explica::repulsion {
 /// How far the multipole tree goes for its accuracy.
 struct MultipoleTreeOptions {
   /// A cluster of sources counts by its moments once its radius is below this share of its distance
-  /// from the targets; the relative error grows as its cube.
-  double opening = 0.4;
+  /// from the targets; the relative error grows as its third to fifth power.
+  double opening = 0.45;
   /// Pairs of faces whose centroids are at least this many sums of radii apart are integrated by
   /// three points each; nearer ones by seven or more.
   double nearRatio = 1.3;
