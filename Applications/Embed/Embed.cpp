@@ -8,6 +8,7 @@
 #include "Explica/IO/PolygonFile.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VolumeFile.h"
+#include "Explica/Shapes/FitFigure.h"
 #include "Explica/Shapes/ShapeFit.h"
 #include "Explica/Shapes/ShapeLevel.h"
 
@@ -55,6 +56,9 @@ void declare(Declaration& d, Settings& s) {
       .output("shape.csv", FileKind::Polygon, "in 2D: the shape")
       .output("shape.surf.gii", FileKind::Surface, "in 3D: the shape")
       .output("fit.tsv", FileKind::Table, "one row a target and iteration")
+      .output("evolution.svg", FileKind::Picture,
+              "the same states in one figure with the target; in 3D: the section through the "
+              "annulus' centre")
       .output("frames/frame-*.csv", FileKind::Polygon,
               "in 2D: from the initial estimate to the fit")
       .output("frames/frame-*.surf.gii", FileKind::Surface, "in 3D: the same");
@@ -99,14 +103,43 @@ shapes::HarmonicAnnulus annulusFor(const Settings& s, const std::vector<Target>&
   return shapes::annulusAround(samples, targets.front().dimension(), s.annulus);
 }
 
-void writeShape(Context& context, const std::string& stem, const shapes::HarmonicShape& shape,
-                int grid) {
+/// Writes the shape and returns its outline, in 3D where it meets the plane through the centre.
+shapes::Outline writeShape(Context& context, const std::string& stem,
+                           const shapes::HarmonicShape& shape, int grid) {
   if (shape.annulus.dimension == 2) {
-    io::writePolygonCsv(context.output(stem + ".csv"),
-                        shapes::levelCurves(shape, grid).front().positions);
-  } else {
-    io::writeGiftiSurface(context.output(stem + ".surf.gii"), shapes::levelSurface(shape, grid));
+    const planar::Curve curve = shapes::levelCurves(shape, grid).front();
+    io::writePolygonCsv(context.output(stem + ".csv"), curve.positions);
+    return shapes::outlineOf(curve);
   }
+  const TriangleMesh mesh = shapes::levelSurface(shape, grid);
+  io::writeGiftiSurface(context.output(stem + ".surf.gii"), mesh);
+  return shapes::sectionOf(mesh, shape.annulus.centre.z());
+}
+
+/// Writes `frames` states of a fit, from the initial estimate on, and the figure of them.
+void writeEvolution(Context& context, const Settings& s, const shapes::ShapeFit& fit,
+                    const Target& target) {
+  const shapes::HarmonicAnnulus& annulus = fit.shape.annulus;
+  const double z = annulus.centre.z();
+  const std::size_t last = fit.path.size() - 1;
+  const std::size_t count = std::min<std::size_t>(static_cast<std::size_t>(s.frames), last + 1);
+  std::vector<shapes::FitStage> stages;
+  for (std::size_t f = 0; f < count; ++f) {
+    char name[48];
+    std::snprintf(name, sizeof name, "frames/frame-%04zu", f);
+    // Early iterations move most: their frames lie closer together.
+    const double share = count > 1 ? static_cast<double>(f) / static_cast<double>(count - 1) : 1;
+    const auto even =
+        static_cast<std::size_t>(std::lround(share * share * static_cast<double>(last)));
+    const std::size_t at = std::max(even, std::min(f, last));
+    const int grid = annulus.dimension == 2 ? s.grid : std::max(16, s.grid / 2);
+    stages.push_back({at == 0 ? "start" : "iteration " + std::to_string(at),
+                      writeShape(context, name, fit.path[at], grid),
+                      fit.history[at].symmetricDifference, fit.history[at].distanceMax});
+  }
+  const shapes::Outline outline =
+      target.curve ? shapes::outlineOf(*target.curve) : shapes::sectionOf(*target.mesh, z);
+  writeTextFile(context.output("evolution.svg"), shapes::drawFit(annulus, z, outline, stages));
 }
 
 /// Distances both ways between the fitted shape and its target.
@@ -171,20 +204,8 @@ Termination run(Context& context, const Settings& s) {
                       fit.history[i].distanceMax);
         table += line;
       }
-      if (k > 0 || s.frames == 0) continue;
-      const std::size_t last = fit.path.size() - 1;
-      const std::size_t count = std::min<std::size_t>(s.frames, last + 1);
-      for (std::size_t f = 0; f < count; ++f) {
-        char name[48];
-        std::snprintf(name, sizeof name, "frames/frame-%04zu", f);
-        // Early iterations move most: their frames lie closer together.
-        const double share =
-            count > 1 ? static_cast<double>(f) / static_cast<double>(count - 1) : 1;
-        const auto at =
-            static_cast<std::size_t>(std::lround(share * share * static_cast<double>(last)));
-        writeShape(context, name, fit.path[std::max(at, std::min(f, last))],
-                   annulus.dimension == 2 ? s.grid : std::max(16, s.grid / 2));
-      }
+      if (k > 0) continue;
+      if (s.frames > 0) writeEvolution(context, s, fit, targets[k]);
       context.result("symmetric_difference_initial", fit.history.front().symmetricDifference);
       context.result("symmetric_difference_final", fit.history.back().symmetricDifference);
     }
