@@ -18,9 +18,12 @@ constexpr double kDifference = 1e-4;  // of the annulus' width: step of the diff
 constexpr double kRounding = 1e-3;    // of the width: distances below count as equal in the L1 sum
 constexpr double kLeastShare = 0.1;   // of the mean amplitude: keeps boundary values off 1/2
 constexpr double kScaleWeight = 1e2;  // of the amplitudes' sum, against the fit's weights
-constexpr double kConverged = 2e-3;   // relative change of the symmetric difference
-constexpr double kNear = 1e-3;        // mean distance, of the annulus' width: near enough
-constexpr int kMostSweeps = 400;      // of coordinate descent per iteration; the next one goes on
+// Relative change of the symmetric difference at which a fit ends; in the plane iterations are
+// cheap.
+constexpr double kConvergedInPlane = 2e-3;
+constexpr double kConvergedInSpace = 1e-2;
+constexpr double kNear = 1e-3;    // mean distance, of the annulus' width: near enough
+constexpr int kMostSweeps = 400;  // of coordinate descent per iteration; the next one goes on
 constexpr double kSweepTolerance = 1e-7;  // largest change of an amplitude, against their mean
 
 /// Coefficients by Y_j of non-negative bumps ((1 + cos g)/2)^order, g the angle from one of many
@@ -197,6 +200,7 @@ ShapeFit fitShape(const HarmonicAnnulus& annulus, const TargetSamples& target,
   };
   record();
   result.termination = Termination::MaxIterations;
+  const double converged = annulus.dimension == 2 ? kConvergedInPlane : kConvergedInSpace;
   for (int k = 0; k < options.maxIterations; ++k) {
     if (monitor.shouldStop()) {
       result.termination = Termination::Interrupted;
@@ -209,7 +213,7 @@ ShapeFit fitShape(const HarmonicAnnulus& annulus, const TargetSamples& target,
     const double now = result.history.back().symmetricDifference;
     const bool near =
         result.history.back().distanceMean < kNear * (annulus.outerRadius - annulus.innerRadius);
-    if (k > 3 && (near || std::abs(before - now) < kConverged * now)) {
+    if (k > 3 && (near || std::abs(before - now) < converged * now)) {
       result.termination = Termination::Converged;
       break;
     }

@@ -249,6 +249,7 @@ class EmbedOutputSpec(TraitedSpec):
     shape_csv = File(desc="in 2D: the shape")
     shape_surf_gii = File(desc="in 3D: the shape")
     fit_tsv = File(desc="one row a target and iteration")
+    evolution_svg = File(desc="the same states in one figure with the target; in 3D: the section through the annulus' centre")
     frames_frame_csv = traits.List(File(), desc="in 2D: from the initial estimate to the fit")
     frames_frame_surf_gii = traits.List(File(), desc="in 3D: the same")
     summary_json = File(desc="the numbers")
@@ -272,6 +273,7 @@ class Embed(CommandLine):
             "shape_csv": "shape.csv",
             "shape_surf_gii": "shape.surf.gii",
             "fit_tsv": "fit.tsv",
+            "evolution_svg": "evolution.svg",
             "frames_frame_csv": "frames/frame-*.csv",
             "frames_frame_surf_gii": "frames/frame-*.surf.gii",
             "summary_json": "summary.json",
