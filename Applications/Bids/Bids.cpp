@@ -6,12 +6,16 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Pipeline/Plan.h"
+#include "Explica/Provenance/Export.h"
 #include "Explica/Provenance/Json.h"
+#include "Explica/Provenance/Record.h"
 #include "Explica/Provenance/Software.h"
 #include "Explica/Study/BidsDataset.h"
 #include "Explica/Study/Derivatives.h"
 #include "Explica/Study/StudyTable.h"
+#include "Explica/Study/SubjectFiles.h"
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 
@@ -54,9 +58,9 @@ void declare(Declaration& d, Settings& s) {
           "results "
           "to BIDS names with sidecars. Steps whose inputs and options have not changed, by "
           "content, "
-          "are kept. A participant that fails does not stop the others. group: writes study.tsv "
-          "and "
-          "index.html from all runs, failed ones too.")
+          "are kept. A participant that fails does not stop the others. group: writes from all "
+          "runs, failed ones too, study.tsv and index.html, and exports their records as BIDS-Prov "
+          "and RO-Crate.")
       .example("explica bids data derivatives/explica participant --participant-label 01 02",
                "Two participants")
       .example("explica bids data derivatives/explica group", "The table of all")
@@ -79,7 +83,10 @@ void declare(Declaration& d, Settings& s) {
       .output("sub-*", FileKind::Folder, "results by BIDS names")
       .output("runs", FileKind::Folder, "the runs themselves, with records and reports")
       .varyingOutput("study.tsv", FileKind::Table, "one row a participant and hemisphere")
-      .varyingOutput("index.html", FileKind::Report, "the same, to sort and click");
+      .varyingOutput("index.html", FileKind::Report, "the same, to sort and click")
+      .varyingOutput("prov/prov-explica_*.json", FileKind::JsonFile,
+                     "how everything came about, as BIDS-Prov")
+      .varyingOutput("ro-crate-metadata.json", FileKind::JsonFile, "the same as an RO-Crate");
   if (const Command* command = findCommand("run")) {
     s.run = command->begin();
     d.include(s.run.declaration, "");
@@ -98,6 +105,26 @@ Json givenOptions(const Context& context, const Settings& s) {
   return values;
 }
 
+/// Both hemispheres of labels without sides would be the same volume, twice.
+void requireSides(const Settings& s, const study::Participant& participant) {
+  if (s.hemispheres.size() < 2) return;
+  const study::SubjectFiles files = study::findSubjectFiles(participant.input);
+  if (!files.labels || files.layout == study::SubjectLayout::FreeSurfer) return;
+  if (files.left.white && files.right.white) return;
+  if (pipeline::labelsHaveSides(*files.labels)) return;
+  throw InvalidInput(files.labels->string() +
+                     ": its labels do not tell left from right; name the hemisphere that it holds "
+                     "(--hemispheres L), or give a segmentation with FreeSurfer's labels "
+                     "(*_desc-aseg_dseg.nii.gz)");
+}
+
+/// What an earlier run made of an input that is there no more.
+void dropSteps(Context& context, const std::string& run) {
+  for (const char* step : {"segment", "thickness", "surface", "unfold"}) {
+    context.dropCommand(run + "/" + step);
+  }
+}
+
 /// Takes one hemisphere through the run and names its results.
 /// @return false if it failed: the reason is then in problem.txt beside the run
 bool doHemisphere(Context& context, const Settings& s, const study::Participant& participant,
@@ -109,6 +136,7 @@ bool doHemisphere(Context& context, const Settings& s, const study::Participant&
   bool good = false;
   try {
     if (!participant.problem.empty()) throw InvalidInput(participant.problem);
+    requireSides(s, participant);
     Json values = givenOptions(context, s);
     values["INPUT"] = participant.input.string();
     if (participant.atlas) values["atlas"] = participant.atlas->string();
@@ -118,18 +146,26 @@ bool doHemisphere(Context& context, const Settings& s, const study::Participant&
     if (!reachedGoal(outcome.termination)) worst = outcome.termination;
     fs::remove(problem);
     good = true;
+  } catch (const EnvironmentError&) {
+    throw;  // a full disk, or another run at work here: no fault of the participant
   } catch (const Error& fault) {
+    if (!participant.problem.empty()) dropSteps(context, "runs/" + name);
+    context.dropCommand("runs/" + name);  // an earlier run's account of itself
     context.warn(name + ": " + fault.what());
     fs::create_directories(folder);
-    writeTextFile(problem, std::string(fault.what()) + "\n");
+    const std::string why = fault.what();
+    writeTextFile(problem,
+                  (context.isPrivate() ? provenance::textWithoutFolders(why) : why) + "\n");
   }
-  study::exportRun(folder, context.outputFolder(), participant, hemisphere);
+  const study::DerivativeOrigin origin{s.dataset, !context.isPrivate()};
+  study::exportRun(folder, context.outputFolder(), participant, hemisphere, origin);
   return good;
 }
 
 Termination doParticipants(Context& context, const Settings& s) {
   const auto participants = study::findParticipants(s.dataset, s.participants);
-  study::describeDerivatives(context.outputFolder(), s.dataset, provenance::software().version);
+  study::describeDerivatives(context.outputFolder(), {s.dataset, !context.isPrivate()},
+                             provenance::software().version);
   Termination worst = Termination::NotRun;
   int done = 0, failed = 0;
   for (const study::Participant& participant : participants) {
@@ -150,17 +186,48 @@ Termination doParticipants(Context& context, const Settings& s) {
   return worst;
 }
 
-Termination doGroup(Context& context) {
+/// How the study came about, in the words of BIDS-Prov and RO-Crate.
+void writeExports(Context& context, const Settings& s, const std::vector<study::StudyRow>& rows) {
+  const fs::path out = context.outputFolder();
+  auto records = provenance::recordsBelow(out / "runs");
+  for (const auto& [name, content] : provenance::toBidsProv(records, out)) {
+    writeTextFile(context.output("prov/" + name), content.dump(1) + "\n");
+  }
+  provenance::CrateDescription crate;
+  crate.name = "Explica study";
+  crate.description = "Cortical surfaces, thickness and unfolded patches of " +
+                      std::to_string(rows.size()) + " hemispheres";
+  const fs::path source = fs::path(s.dataset) / "dataset_description.json";
+  crate.license = "not stated by the source data set";
+  if (fs::exists(source)) {
+    const Json described = provenance::readJson(source);
+    if (described.contains("License")) crate.license = described["License"].get<std::string>();
+  }
+  for (const char* name :
+       {"dataset_description.json", "descriptions.tsv", "study.tsv", "index.html"}) {
+    if (fs::exists(out / name)) crate.files.emplace_back(name);
+  }
+  for (const auto& entry : fs::recursive_directory_iterator(out)) {
+    const std::string name = entry.path().lexically_relative(out).generic_string();
+    if (entry.is_regular_file() && name.rfind("sub-", 0) == 0) crate.files.push_back(name);
+  }
+  std::sort(crate.files.begin(), crate.files.end());
+  writeTextFile(context.output("ro-crate-metadata.json"),
+                provenance::toRoCrate(records, out, crate).dump(1) + "\n");
+}
+
+Termination doGroup(Context& context, const Settings& s) {
   const fs::path out = context.outputFolder();
   const auto rows = study::collectRows(out);
-  writeTextFile(out / "study.tsv", study::tableText(rows));
-  writeTextFile(out / "index.html", study::indexPage(rows, "Explica study"));
+  writeTextFile(context.output("study.tsv"), study::tableText(rows));
+  writeTextFile(context.output("index.html"), study::indexPage(rows, "Explica study"));
+  writeExports(context, s, rows);
   context.result("rows", rows.size());
   return Termination::NotRun;
 }
 
 Termination run(Context& context, const Settings& s) {
-  return s.level == BidsLevel::Participant ? doParticipants(context, s) : doGroup(context);
+  return s.level == BidsLevel::Participant ? doParticipants(context, s) : doGroup(context, s);
 }
 
 }  // namespace

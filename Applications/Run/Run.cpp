@@ -9,6 +9,7 @@
 #include "Explica/Pipeline/Plan.h"
 #include "Explica/Pipeline/StudyReport.h"
 #include "Explica/Provenance/Json.h"
+#include "Explica/Provenance/Record.h"
 #include "Explica/Report/Page.h"
 
 #include <nlohmann/json.hpp>
@@ -37,20 +38,32 @@ void declare(Declaration& d, Settings& s) {
   d.synopsis(
        "from a T1, label volume or FreeSurfer subject to an unfolded patch of cortex and a report")
       .description(
-          "Runs segment, thickness, surface and unfold in order, each into its own folder with its "
+          "Finds what there is to start from and says so: a FreeSurfer subject's ribbon or aseg, "
+          "its white and pial surfaces and its regions; the same of fMRIPrep's and sMRIPrep's "
+          "anat folders; a T1 or a label volume. Surfaces that are there are taken over (unless "
+          "--given-surfaces remake), others are made. Runs segment, thickness, surface and unfold "
+          "in order, each into its own folder with its "
           "own "
-          "summary and record, and writes a report on all of them. Every option of a step can be "
+          "summary and record, and writes a report on all of them. A run that fails leaves "
+          "nothing; "
+          "with --resume the steps that were done stay, and so does the account of the failure. "
+          "Every option of a step can be "
           "given with "
           "the step's name before it: --unfold.radius 30. With --resume, steps whose inputs, "
           "options and "
           "outputs are what their records say are not done again.")
       .example("explica run ch2bet.nii.gz --atlas aal.nii.gz --out colin",
                "Left hemisphere of a skull-stripped T1, all the way")
+      .example("explica run derivatives/sub-01/anat --hemisphere L --out sub-01-left",
+               "What fMRIPrep has left of a subject")
       .example("explica run bert --hemisphere R --out bert-right",
                "A FreeSurfer subject's right hemisphere")
       .input("INPUT", FileKind::Any,
-             "skull-stripped T1, label volume, or FreeSurfer subject directory", s.input)
-      .inputOption("atlas", FileKind::LabelVolume, "for a T1: labels in its space, as AAL's",
+             "skull-stripped T1, label volume, FreeSurfer subject directory, or BIDS anat folder",
+             s.input)
+      .inputOption("atlas", FileKind::LabelVolume,
+                   "labels in the input's space, as AAL's: tell a T1's hemispheres apart, and are "
+                   "the regions of regions.tsv",
                    s.atlas)
       .options("Run", s.plan)
       .option("Run",
@@ -132,6 +145,11 @@ void runStep(Context& context, const Settings& s, const pipeline::PlannedStep& s
   if (!reachedGoal(outcome->termination)) worst = outcome->termination;
 }
 
+/// A run that fails leaves nothing, unless it is one that can be resumed.
+void takeBack(Context& context, const std::vector<pipeline::PlannedStep>& plan, std::size_t count) {
+  for (std::size_t n = 0; n < count; ++n) context.dropCommand(plan[n].name);
+}
+
 /// The report must not be lost to a fault of its own.
 void writeReport(Context& context, const fs::path& out) {
   try {
@@ -142,22 +160,44 @@ void writeReport(Context& context, const fs::path& out) {
   }
 }
 
-Termination run(Context& context, const Settings& s) {
-  pipeline::PlanOptions options = s.plan;
-  if (options.kind == pipeline::InputKind::Auto) {
-    options.kind = s.atlas ? pipeline::InputKind::T1 : pipeline::detectKind(s.input);
-    context.info(s.input + ": taken as " + std::string(nameOf(options.kind)));
+/// The plan.  If the input does not allow one, what an earlier run made of another input goes.
+pipeline::Plan planOrTakeBack(Context& context, const Settings& s) {
+  try {
+    return pipeline::planRun(s.input, context.outputFolder(), s.atlas, s.plan);
+  } catch (const Error&) {
+    if (s.resume) {
+      for (const char* step : kStepCommands) context.dropCommand(step);
+    }
+    throw;
   }
-  context.note("INPUT", Json{{"kind", nameOf(options.kind)}});
+}
+
+/// What was found in the input and what it is taken for: to the user and into the record.
+void sayWhatIsUsed(Context& context, const Settings& s, const pipeline::Plan& plan) {
+  context.info(s.input + ": taken as " + std::string(nameOf(plan.kind)));
+  Json used = Json::object();
+  for (const pipeline::SourceFile& source : plan.sources) {
+    const std::string meaning = source.meaning.empty() ? "" : " (" + source.meaning + ")";
+    context.info(source.role + ": " + context.input(source.path, source.role).string() + meaning);
+    used[source.role] = source.path.filename().string() + meaning;
+  }
+  for (const std::string& remark : plan.remarks) context.info(remark);
+  context.note("INPUT",
+               Json{{"kind", nameOf(plan.kind)}, {"used", used}, {"remarks", plan.remarks}});
+}
+
+Termination run(Context& context, const Settings& s) {
   const fs::path out = context.outputFolder();
-  const std::vector<pipeline::PlannedStep> plan = pipeline::planRun(s.input, out, s.atlas, options);
+  const pipeline::Plan whole = planOrTakeBack(context, s);
+  const std::vector<pipeline::PlannedStep>& plan = whole.steps;
+  sayWhatIsUsed(context, s, whole);
 
   std::vector<pipeline::StepNote> notes;
   for (const auto& step : plan)
     notes.push_back({step.name, step.command, report::StepState::Missing, ""});
   const bool withReport =
-      options.steps.empty() || std::find(options.steps.begin(), options.steps.end(),
-                                         pipeline::RunStep::Report) != options.steps.end();
+      s.plan.steps.empty() || std::find(s.plan.steps.begin(), s.plan.steps.end(),
+                                        pipeline::RunStep::Report) != s.plan.steps.end();
   const std::string state = context.output(pipeline::kRunStateName).string();
   Termination worst = Termination::NotRun;
   std::exception_ptr failure;
@@ -174,13 +214,20 @@ Termination run(Context& context, const Settings& s) {
     try {
       runStep(context, s, plan[n], notes[n], worst);
     } catch (const Error& fault) {
+      // An earlier run's results of this step are of other inputs or options.
+      context.dropCommand(plan[n].name);
+      if (!s.resume) {
+        takeBack(context, plan, n);
+        throw;
+      }
       // What does not depend on it goes on; the report says what failed, and so does the end.
       notes[n].state = report::StepState::Failed;
-      notes[n].message = fault.what();
+      notes[n].message = context.isPrivate() ? provenance::textWithoutFolders(fault.what())
+                                             : std::string(fault.what());
       context.warn(plan[n].name + ": " + fault.what());
       if (!failure) failure = std::current_exception();
     }
-    pipeline::writeRunState(state, notes);
+    if (s.resume) pipeline::writeRunState(state, notes);
   }
   pipeline::writeRunState(state, notes);
   for (const auto& note : notes) {

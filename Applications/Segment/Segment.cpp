@@ -4,6 +4,7 @@
 #include "Explica/Application/Command.h"
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/IO/LabelNames.h"
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Segmentation/Hemisphere.h"
 #include "Explica/Segmentation/Tissue.h"
@@ -52,8 +53,8 @@ void declare(Declaration& d, Settings& s) {
                    s.atlas)
       .inputOption(
           "atlas-legend", FileKind::Any,
-          "what the atlas's labels mean, one 'value name' a line (default: the atlas's name "
-          "with .txt for .gz)",
+          "what the atlas's labels mean, one 'value name' a line (default: the .tsv or .nii.txt "
+          "beside it)",
           s.legend)
       .options("Reading", s.reading)
       .options("Tissues", s.tissue)
@@ -72,9 +73,9 @@ void declare(Declaration& d, Settings& s) {
 }
 
 std::filesystem::path legendBeside(const std::filesystem::path& atlas) {
-  std::filesystem::path legend = atlas;
-  if (legend.extension() == ".gz") legend.replace_extension();
-  return legend += ".txt";
+  if (const auto legend = io::findLegend(atlas)) return *legend;
+  throw InvalidInput(atlas.string() +
+                     ": no legend (.tsv or .nii.txt) beside it; name one with --atlas-legend");
 }
 
 segmentation::AtlasLegend readLegend(const std::filesystem::path& path) {

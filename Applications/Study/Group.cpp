@@ -41,6 +41,7 @@ std::vector<study::StudyRow> rowsOf(const study::Study& study, const fs::path& o
   if (fs::is_directory(out / "runs")) {
     for (study::StudyRow& row : study::collectRows(out)) {
       std::string folder = row.participant + "_hemi-" + row.hemisphere;
+      if (!row.region.empty()) folder += "_region-" + row.region;
       made.emplace(std::move(folder), std::move(row));
     }
   }
@@ -53,7 +54,8 @@ std::vector<study::StudyRow> rowsOf(const study::Study& study, const fs::path& o
         row = found->second;
       } else {
         row.participant = subject.participant.name();
-        row.hemisphere = run.folder.substr(row.participant.size() + 6);
+        row.hemisphere = run.hemisphere;
+        row.region = run.region;
         row.state = "not begun";
       }
       rows.push_back(std::move(row));

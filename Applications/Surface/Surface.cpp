@@ -8,17 +8,22 @@
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Geometry/SelfIntersection.h"
+#include "Explica/IO/LabelNames.h"
 #include "Explica/IO/SpecFile.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/IO/VolumeFile.h"
+#include "Explica/Segmentation/Atlas.h"
 #include "Explica/Surface/CorticalSurface.h"
 #include "Explica/Surface/CorticalTissue.h"
+#include "Explica/Surface/GivenSurfaces.h"
 #include "Explica/Surface/Measures.h"
+#include "Explica/Surface/Regions.h"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <sstream>
 
@@ -32,6 +37,9 @@ struct Settings {
   std::optional<std::string> greyShare;
   std::optional<std::string> insulatedMask;
   std::optional<double> level;
+  std::optional<std::string> whiteSurface, pialSurface, midSurface;
+  io::SurfaceSpace surfaceSpace = io::SurfaceSpace::Stated;
+  std::optional<std::string> atlas, atlasLegend, parcellation;
   std::optional<std::string> freeSurfer;
   std::optional<std::string> fsVolume;
   io::VolumeReadOptions reading;
@@ -47,9 +55,11 @@ void declare(Declaration& d, Settings& s) {
           "and is meshed with even triangles. Outer vertices lie on the trajectories of the "
           "harmonic interpolant that start at the white ones, middle ones half way; the hidden "
           "boundary of buried sulci is recovered. None of the surfaces intersects itself, by an "
-          "exact test.")
+          "exact test. Surfaces that another program has made are taken over as they are with "
+          "--white-surface and --pial-surface, and measured and checked in the same way.")
       .reference("Jones, Buchbinder, Aharon 2000, Human Brain Mapping 11:12-32")
       .reference("Han, Pham, Tosun, Rettmann, Xu, Prince 2004, NeuroImage 23:997-1012")
+      .reference("Fischl, Dale 2000, Proc. Natl. Acad. Sci. USA 97:11050-11055")
       .reference("Botsch, Kobbelt 2004, Symposium on Geometry Processing, 185-192")
       .example("explica surface aseg.mgz --hemisphere L --out left",
                "Left hemisphere of a FreeSurfer, FastSurfer or SynthSeg segmentation")
@@ -57,8 +67,12 @@ void declare(Declaration& d, Settings& s) {
                "Labels by name")
       .example("explica surface --inner-level wm.nii.gz --grey-share gm.nii.gz --out brain",
                "From tissue probabilities, with sub-voxel boundaries")
-      .input("SEG", FileKind::LabelVolume, "labels; may be left out if --inner-level is given",
-             s.segmentation)
+      .example(
+          "explica surface --white-surface lh.white --pial-surface lh.pial --fs-volume "
+          "orig.mgz --surface-space tkr --out left",
+          "FreeSurfer's surfaces, checked and measured")
+      .input("SEG", FileKind::LabelVolume,
+             "labels; may be left out if --inner-level or --white-surface is given", s.segmentation)
       .inputOption("inner-level", FileKind::Volume,
                    "scalars that cross a level at the white surface: a probability or a distance",
                    s.innerLevel)
@@ -75,6 +89,26 @@ void declare(Declaration& d, Settings& s) {
                     "value on the boundaries of level volumes (default: half the "
                     "largest value of shares, 0 of distances)"},
               s.level)
+      .inputOption("white-surface", FileKind::Surface, "white surface that is there already",
+                   s.whiteSurface, "Given surfaces")
+      .inputOption("pial-surface", FileKind::Surface, "its pial surface, same faces", s.pialSurface,
+                   "Given surfaces")
+      .inputOption("mid-surface", FileKind::Surface,
+                   "its middle surface, same faces (default: half way)", s.midSurface,
+                   "Given surfaces")
+      .option("Given surfaces",
+              Field{"surface-space", "", "frame of their coordinates, if the files do not say"},
+              s.surfaceSpace)
+      .inputOption("atlas", FileKind::LabelVolume,
+                   "labels of cortical regions in the same space: writes regions.tsv", s.atlas,
+                   "Regions")
+      .inputOption("atlas-legend", FileKind::Table,
+                   "what its labels are called (default: the .tsv or .nii.txt beside it; "
+                   "FreeSurfer's names are known)",
+                   s.atlasLegend, "Regions")
+      .inputOption("parcellation", FileKind::VertexLabel,
+                   "regions of given surfaces, vertex by vertex, instead of --atlas",
+                   s.parcellation, "Regions")
       .options("Reading", s.reading)
       .options("Tissue", s.tissue)
       .options("Surface", s.surface)
@@ -84,14 +118,15 @@ void declare(Declaration& d, Settings& s) {
                     "this folder (within --out if relative)"},
               s.freeSurfer)
       .inputOption("fs-volume", FileKind::Volume,
-                   "volume (orig.mgz) whose surface RAS FreeSurfer files use (default: the labels, "
-                   "if FreeSurfer's)",
+                   "volume (orig.mgz) whose surface RAS FreeSurfer files use, read or written "
+                   "(default: the labels, if FreeSurfer's)",
                    s.fsVolume, "Output")
       .output("white.surf.gii", FileKind::Surface, "white surface")
       .output("mid.surf.gii", FileKind::Surface, "surface at half depth, same faces")
       .output("pial.surf.gii", FileKind::Surface, "outer surface, same faces")
       .output("thickness.shape.gii", FileKind::VertexData,
               "length of each vertex's trajectory, mm; 0 where there is no grey matter")
+      .output("valid.shape.gii", FileKind::VertexData, "1 where the thickness is defined, else 0")
       .output("curvature.shape.gii", FileKind::VertexData,
               "mean curvature of the white surface, 1/mm, positive in sulci")
       .output("sulc.shape.gii", FileKind::VertexData,
@@ -99,6 +134,8 @@ void declare(Declaration& d, Settings& s) {
       .output("area.shape.gii", FileKind::VertexData,
               "area at each vertex of the white, middle and outer surface, mm^2")
       .output("topology.tsv", FileKind::Table, "one row for each corrected defect")
+      .output("regions.tsv", FileKind::Table, "with --atlas: area and thickness of each region")
+      .output("regions.label.gii", FileKind::VertexLabel, "with --atlas: region of each vertex")
       .output("surface.spec", FileKind::Any, "opens everything in Workbench")
       .output("*lh.*", FileKind::Any, "with --freesurfer: FreeSurfer files, left")
       .output("*rh.*", FileKind::Any, "with --freesurfer: FreeSurfer files, right");
@@ -131,10 +168,148 @@ struct Inputs {
   Grid grid;
 };
 
-Inputs readTissue(Context& context, const Settings& s) {
-  if (s.segmentation.has_value() == s.innerLevel.has_value()) {
-    throw UsageError("surface: give either SEG or --inner-level");
+bool surfacesGiven(const Settings& s) {
+  return s.whiteSurface || s.pialSurface || s.midSurface;
+}
+
+void checkChoice(const Settings& s) {
+  const int sources = s.segmentation.has_value() + s.innerLevel.has_value() + surfacesGiven(s);
+  if (sources != 1) {
+    throw UsageError("surface: give one of SEG, --inner-level and --white-surface");
   }
+  if (surfacesGiven(s) && !(s.whiteSurface && s.pialSurface)) {
+    throw UsageError("surface: --white-surface and --pial-surface go together");
+  }
+  if (s.parcellation && !surfacesGiven(s)) {
+    throw UsageError("surface: --parcellation belongs to the vertices of --white-surface");
+  }
+}
+
+/// Surfaces of another program, as they are; they must bound a volume, whatever their topology.
+surface::CorticalSurfaces readGivenSurfaces(Context& context, const Settings& s,
+                                            std::string& structure) {
+  io::SurfaceReadOptions reading;
+  reading.space = s.surfaceSpace;
+  reading.fsVolume = s.fsVolume;
+  const auto read = [&](const char* name, const std::string& path) {
+    io::LoadedSurface loaded = readSurface(context, name, path, reading);
+    geometry::requireClosedManifold(loaded.mesh, path);
+    if (structure == "Cortex" && loaded.metadata.structure != "Other") {
+      structure = loaded.metadata.structure;
+    }
+    sayHowRead(context, loaded.origin);
+    return std::move(loaded.mesh);
+  };
+  structure = "Cortex";
+  TriangleMesh white = read("white-surface", *s.whiteSurface);
+  TriangleMesh pial = read("pial-surface", *s.pialSurface);
+  std::optional<TriangleMesh> mid;
+  if (s.midSurface) mid = read("mid-surface", *s.midSurface);
+  if (s.tissue.hemisphere) {
+    structure = *s.tissue.hemisphere == surface::Side::Left ? "CortexLeft" : "CortexRight";
+  }
+  return surface::adoptSurfaces(std::move(white), std::move(pial), std::move(mid));
+}
+
+/// Labels of regions, on an atlas's voxels or on the vertices of given surfaces.
+struct Regions {
+  std::optional<Volume<Label>> atlas;
+  std::optional<io::LabelMap> parcellation;
+  io::LabelNames names;
+};
+
+Regions readRegions(Context& context, const Settings& s, const surface::CorticalSurfaces& made) {
+  Regions regions;
+  if (s.parcellation) {
+    const Eigen::Index vertices = made.white.mesh.vertexCount();
+    regions.parcellation = io::readVertexLabels(*s.parcellation, vertices);
+    for (const auto& entry : regions.parcellation->table) regions.names[entry.key] = entry.name;
+  } else if (s.atlas) {
+    io::VolumeReadOptions reading = s.reading;
+    reading.dimension = 3;
+    regions.atlas = readLabels(context, "atlas", *s.atlas, reading);
+    const auto legend = s.atlasLegend ? std::optional<std::filesystem::path>(*s.atlasLegend)
+                                      : io::findLegend(*s.atlas);
+    if (legend) {
+      regions.names =
+          io::readLabelNames(s.atlasLegend ? *legend : context.input(*legend, "atlas-legend"));
+    }
+  }
+  return regions;
+}
+
+std::string regionName(const Regions& regions, Label key) {
+  const auto named = regions.names.find(key);
+  if (named != regions.names.end()) return named->second;
+  const std::string freeSurfer = io::freeSurferRegion(key);
+  return freeSurfer.empty() ? "label" + std::to_string(key) : freeSurfer;
+}
+
+/// What is no region of this side's cortex: FreeSurfer's words for that, and by AAL's names what
+/// lies below or on the other side.
+bool noRegion(const std::string& name, const std::string& structure) {
+  using segmentation::Side;
+  for (const char* word :
+       {"unknown", "Unknown", "corpuscallosum", "medialwall", "Medial_wall", "???"}) {
+    if (name == word) return true;
+  }
+  const auto named = segmentation::structureNamed(name);
+  const Side other = structure == "CortexRight" ? Side::Left : Side::Right;
+  return named.kind != segmentation::StructureKind::Cortex || named.side == other;
+}
+
+/// Region of each vertex; 0 where there is none.
+surface::VertexKeys regionKeys(const Regions& regions, const surface::CorticalSurfaces& made,
+                               const std::string& structure) {
+  if (!regions.atlas) {
+    surface::VertexKeys keys = regions.parcellation->keys;
+    for (Label& key : keys) key = noRegion(regionName(regions, key), structure) ? 0 : key;
+    return keys;
+  }
+  // Where an atlas holds FreeSurfer's cortical labels, only these are regions, and only our side's.
+  const auto& voxels = regions.atlas->data;
+  const bool freeSurfer = std::any_of(voxels.begin(), voxels.end(), [](Label label) {
+    return !io::freeSurferRegion(label).empty();
+  });
+  const Label thousand = structure == "CortexRight" ? 2 : 1;
+  return surface::labelsWithin(
+      *regions.atlas, made.white.mesh.positions, made.pial.positions, [&](Label label) {
+        if (!freeSurfer) return !noRegion(regionName(regions, label), structure);
+        const std::string name = io::freeSurferRegion(label);
+        return !name.empty() && !noRegion(name, structure) && label / 1000 == thousand;
+      });
+}
+
+void writeRegions(Context& context, const Regions& regions, const surface::CorticalSurfaces& made,
+                  const std::string& structure, std::vector<io::SpecEntry>& spec) {
+  const surface::VertexKeys keys = regionKeys(regions, made, structure);
+  const auto measured =
+      surface::measureRegions(keys, made.thickness, geometry::vertexAreas(made.white.mesh));
+  std::ostringstream table;
+  table << "index\tname\tvertices\tarea_white_mm2\tthickness_mean_mm\tthickness_sd_mm\n";
+  io::LabelMap labels{"regions", keys, {{0, "???", {0, 0, 0, 0}}}};
+  for (const surface::RegionMeasure& region : measured) {
+    const std::string name = regionName(regions, region.key);
+    table << region.key << '\t' << name << '\t' << region.vertices << '\t' << region.area;
+    if (std::isfinite(region.thicknessMean)) {
+      table << '\t' << region.thicknessMean << '\t' << region.thicknessDeviation << '\n';
+    } else {
+      table << "\tn/a\tn/a\n";
+    }
+    // Colours that tell neighbours apart and are the same everywhere: golden-angle hues.
+    const double hue = std::fmod(region.key * 0.61803398875, 1.0) * 2 * kPi;
+    const auto channel = [&](double turn) {
+      return static_cast<float>(0.6 + 0.35 * std::cos(hue - turn * 2 * kPi / 3));
+    };
+    labels.table.push_back({region.key, name, {channel(0), channel(1), channel(2), 1}});
+  }
+  writeTextFile(context.output("regions.tsv"), table.str());
+  io::writeGiftiLabel(context.output("regions.label.gii"), labels, structure);
+  spec.push_back({structure, "regions.label.gii"});
+  context.result("regions", measured.size());
+}
+
+Inputs readTissue(Context& context, const Settings& s) {
   io::VolumeReadOptions reading = s.reading;
   reading.dimension = 3;
   Inputs inputs;
@@ -188,7 +363,13 @@ io::SurfaceMetadata metadataOf(const std::string& structure, const std::string& 
 }
 
 Termination run(Context& context, const Settings& s) {
-  const Inputs inputs = readTissue(context, s);
+  checkChoice(s);
+  const bool given = surfacesGiven(s);
+  Inputs inputs;
+  surface::CorticalSurfaces made;
+  if (given) made = readGivenSurfaces(context, s, inputs.tissue.structure);
+  const Regions regions = readRegions(context, s, made);
+  if (!given) inputs = readTissue(context, s);
   const surface::CorticalTissue& tissue = inputs.tissue;
   std::optional<Grid> fsGrid;
   if (s.fsVolume) {
@@ -199,8 +380,7 @@ Termination run(Context& context, const Settings& s) {
     fsGrid = inputs.grid;
   }
 
-  surface::CorticalSurfaces made;
-  {
+  if (!given) {
     auto step = context.step("surfaces");
     if (tissue.hasGrey) {
       made = surface::buildSurfaces(tissue, s.surface, context.monitor());
@@ -264,7 +444,12 @@ Termination run(Context& context, const Settings& s) {
   writeShape("area.shape.gii", areas);
   if (tissue.hasGrey) {
     writeShape("thickness.shape.gii", {{"thickness", "mm", made.thickness}});
-    writeShape("sulc.shape.gii", {{"sulc", "mm", made.sulcalDepth}});
+    writeShape("valid.shape.gii",
+               {{"valid", "", (made.thickness.array() > 0).cast<double>().matrix()}});
+    if (!given) writeShape("sulc.shape.gii", {{"sulc", "mm", made.sulcalDepth}});
+    if (regions.atlas || regions.parcellation) {
+      writeRegions(context, regions, made, tissue.structure, spec);
+    }
   }
   io::writeSpec(context.output("surface.spec"), spec);
   writeTextFile(context.output("topology.tsv"), defectTable(made.white.defects));
@@ -285,20 +470,25 @@ Termination run(Context& context, const Settings& s) {
     io::writeFreeSurferCurv(place("area"), areas.front().values, faces);
     if (tissue.hasGrey) {
       io::writeFreeSurferCurv(place("thickness"), made.thickness, faces);
-      io::writeFreeSurferCurv(place("sulc"), made.sulcalDepth, faces);
+      if (!given) io::writeFreeSurferCurv(place("sulc"), made.sulcalDepth, faces);
       io::writeFreeSurferCurv(place("area.pial"), areas.back().values, faces);
     }
   }
 
   context.result("structure", tissue.structure);
-  context.result("preset", std::string(nameOf(tissue.preset)));
-  context.result("white_voxels", tissue.whiteVoxels);
-  context.result("filled_voxels", tissue.filledVoxels);
-  context.result("grey_voxels", tissue.greyVoxels);
+  context.result("surfaces", given ? "given" : "made");
+  if (!given) {
+    context.result("preset", std::string(nameOf(tissue.preset)));
+    context.result("white_voxels", tissue.whiteVoxels);
+    context.result("filled_voxels", tissue.filledVoxels);
+    context.result("grey_voxels", tissue.greyVoxels);
+  }
   context.result("defects_corrected", made.white.defects.size());
   context.result("voxels_changed", made.white.voxelsChanged);
-  context.result("genus", made.white.genus);
-  context.result("edge_length", made.white.edgeLength);
+  if (!given) {
+    context.result("genus", made.white.genus);
+    context.result("edge_length", made.white.edgeLength);
+  }
   const Eigen::VectorXd angles = geometry::smallestAnglesRad(made.white.mesh);
   std::vector<double> sorted(angles.begin(), angles.end());
   std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 20, sorted.end());
@@ -306,6 +496,8 @@ Termination run(Context& context, const Settings& s) {
   if (tissue.hasGrey) {
     context.result("thickness_mean", surface::meanThickness(made));
     context.result("vertices_without_grey", made.noRibbon);
+  }
+  if (tissue.hasGrey && !given) {
     context.result("vertices_ended_at_bank", made.endedAtBank);
     context.result("sulcal_links_recovered", made.cutLinks);
     context.result("vertices_held_back_mid", made.heldBackMid);
@@ -313,6 +505,7 @@ Termination run(Context& context, const Settings& s) {
     context.result("held_back_mean", made.heldBackMean);
     context.result("held_back_most", made.heldBackMost);
   }
+  if (given) return Termination::NotRun;
   context.result("seconds_topology", made.seconds.topology);
   context.result("seconds_extraction", made.seconds.extraction);
   context.result("seconds_remeshing", made.seconds.remeshing);

@@ -4,6 +4,7 @@
 #include "Explica/Provenance/Verify.h"
 #include "Explica/Application/Command.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Provenance/Export.h"
 
 #include <filesystem>
 #include <iostream>
@@ -29,7 +30,9 @@ void declare(Declaration& d, Settings& s) {
       .option("Verification",
               Field{"deep", "", "follow the records of the inputs, back to the first"}, s.deep)
       .option("Verification",
-              Field{"prov-json", "", "print the record as W3C PROV-JSON instead of verifying"},
+              Field{"prov-json", "",
+                    "print the record as W3C PROV-JSON instead of verifying; with --deep "
+                    "those of its inputs too"},
               s.provJson)
       .withoutOutput();
 }
@@ -51,7 +54,11 @@ Termination run(Context& context, const Settings& s) {
   std::filesystem::path record = s.record;
   if (std::filesystem::is_directory(record)) record /= provenance::kRecordName;
   if (s.provJson) {
-    std::cout << provenance::toProvJson(provenance::readRecord(record)).dump(2) << "\n";
+    using provenance::LocatedRecord;
+    const auto records = s.deep
+                             ? provenance::recordsBehind(record)
+                             : std::vector<LocatedRecord>{{record, provenance::readRecord(record)}};
+    std::cout << provenance::toProvJson(records).dump(2) << "\n";
     return Termination::NotRun;
   }
   const auto verification = provenance::verifyRecord(record, s.deep);

@@ -42,6 +42,8 @@ const VolumeCommand kVolumeCommands[] = {
     {"Surface", {"surface", "{file}"}},
     {"SurfaceLevel", {"surface", "--inner-level", "{file}"}},
     {"Thickness", {"thickness", "{file}", "--inner", "1", "--tissue", "2"}, "TwoDimensional"},
+    {"Run", {"run", "{file}", "--quiet"}},
+    {"RunLabels", {"run", "{file}", "--kind", "labels", "--quiet"}},
 };
 
 class BadVolumeInput : public ::testing::TestWithParam<std::tuple<VolumeCommand, BadVolume>> {};
@@ -66,6 +68,39 @@ INSTANTIATE_TEST_SUITE_P(Table, BadVolumeInput,
                          [](const auto& row) {
                            return std::get<0>(row.param).name + std::get<1>(row.param).name;
                          });
+
+// ---- a study keeps the refusal as a row ----
+
+class BadVolumeInStudy : public ::testing::TestWithParam<BadVolume> {};
+
+TEST_P(BadVolumeInStudy, IsAProblemInOneSentence) {
+  const BadVolume& volume = GetParam();
+  TemporaryFolder folder;
+  writeText(folder / "dataset_description.json", R"({"Name": "a", "BIDSVersion": "1.8.0"})");
+  const std::filesystem::path anat = folder / "sub-01/anat";
+  std::filesystem::create_directories(anat);
+  const bool packed = volume.file.ends_with(".gz");
+  const std::string file = anat / (packed ? "sub-01_dseg.nii.gz" : "sub-01_dseg.nii");
+  volume.make(file);
+  const auto result = explica({"bids", folder.path().string(), folder / "out", "participant",
+                               "--hemispheres", "L", "--quiet"});
+  EXPECT_EQ(result.exitCode, 2) << result;
+  const std::string problem = readText(folder / "out/runs/sub-01_hemi-L/problem.txt");
+  EXPECT_EQ(std::count(problem.begin(), problem.end(), '\n'), 1) << problem;
+  EXPECT_NE(problem.find(volume.name == "Missing" ? anat.string() : file), std::string::npos)
+      << problem;
+  if (volume.name != "Missing") {
+    for (const auto& part : volume.message) {
+      EXPECT_NE(problem.find(part), std::string::npos) << problem;
+    }
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "out/sub-01"));
+  ASSERT_EQ(explica({"bids", folder.path().string(), folder / "out", "group"}).exitCode, 0);
+  EXPECT_NE(readText(folder / "out/study.tsv").find("sub-01\tL\tfailed: "), std::string::npos);
+}
+
+INSTANTIATE_TEST_SUITE_P(Table, BadVolumeInStudy, ::testing::ValuesIn(badVolumes()),
+                         [](const auto& row) { return row.param.name; });
 
 // ---- commands that read a surface; {file} is the bad one ----
 
@@ -156,6 +191,7 @@ struct Unsuitable {
   std::vector<std::string> words;
   std::string file;  ///< that the sentence must name
   std::vector<std::string> message;
+  std::function<void(const TemporaryFolder&)> prepare = {};
 };
 void PrintTo(const Unsuitable& row, std::ostream* stream) {
   *stream << row.name;
@@ -191,12 +227,73 @@ const Unsuitable kUnsuitable[] = {
      {"thickness", "{folder}/shell/harmonic.nii.gz", "--inner", "1", "--tissue", "2"},
      "{folder}/shell/harmonic.nii.gz",
      {"whole"}},
+    {"FolderOfNoSubject",
+     {kShell},
+     {"run", "{folder}/shell"},
+     "{folder}/shell",
+     {"mri/ribbon.mgz", "anat"}},
+    {"FreeSurferSubjectHalfDone",
+     {},
+     {"run", "{folder}/bert"},
+     "{folder}/bert",
+     {"recon-all"},
+     [](const TemporaryFolder& folder) {
+       std::filesystem::create_directories(folder / "bert/mri");
+       writeText(folder / "bert/mri/nu.mgz", "not yet");
+     }},
+    {"OpenSurfaceWhereClosedIsNeeded",
+     {},
+     {"surface", "--white-surface", "{folder}/open.off", "--pial-surface", "{folder}/open.off"},
+     "{folder}/open.off",
+     {"boundary"},
+     [](const TemporaryFolder& folder) {
+       writeText(folder / "open.off", "OFF\n4 3 0\n" + kVertices + "3 0 2 1\n3 0 1 3\n3 0 3 2\n");
+     }},
+    {"PialOfOtherFaces",
+     {},
+     {"surface", "--white-surface", "{folder}/sphere.surf.gii", "--pial-surface",
+      "{folder}/four.off"},
+     "{folder}/four.off",
+     {"same faces", "642", "(4, 4)"},
+     [](const TemporaryFolder& folder) {
+       writeFoldedSphere(folder);
+       writeText(folder / "four.off", "OFF\n4 4 0\n" + kVertices + kFaces);
+     }},
+    {"ParcellationOfAnotherSurface",
+     {},
+     {"surface", "--white-surface", "{folder}/sphere.surf.gii", "--pial-surface",
+      "{folder}/sphere.surf.gii", "--parcellation", "{folder}/lh.label"},
+     "{folder}/lh.label",
+     {"642"},
+     [](const TemporaryFolder& folder) {
+       writeFoldedSphere(folder);
+       writeText(folder / "lh.label", "#!ascii label\n2\n0 0 0 0 0\n9999 1 1 1 0\n");
+     }},
+    {"LabelOfAnotherSurface",
+     {},
+     {"unfold", "{folder}/sphere.surf.gii", "--label", "{folder}/lh.label", "--direction", "0,0,1"},
+     "{folder}/lh.label",
+     {"642"},
+     [](const TemporaryFolder& folder) {
+       writeFoldedSphere(folder);
+       writeText(folder / "lh.label", "#!ascii label\n2\n0 0 0 0 0\n9999 1 1 1 0\n");
+     }},
+    {"LegendWithoutNames",
+     {kShell},
+     {"surface", kLabels, "--white", "1", "--grey", "2", "--faces", "1000", "--atlas", kLabels,
+      "--atlas-legend", "{folder}/legend.txt"},
+     "{folder}/legend.txt",
+     {"line 2"},
+     [](const TemporaryFolder& folder) {
+       writeText(folder / "legend.txt", "1 inside\ntwo tissue\n");
+     }},
 };
 
 class UnsuitableInput : public ::testing::TestWithParam<Unsuitable> {};
 
 TEST_P(UnsuitableInput, IsRefusedInOneSentence) {
   TemporaryFolder folder;
+  if (GetParam().prepare) GetParam().prepare(folder);
   for (const auto& line : GetParam().before) {
     const auto made = explica(filled(line, folder));
     ASSERT_EQ(made.exitCode, 0) << made;

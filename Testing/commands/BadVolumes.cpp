@@ -111,7 +111,7 @@ const std::vector<BadVolume>& badVolumes() {
          zero.value = [](std::size_t) { return 0.f; };
          zero.write(path);
        },
-       {"zero"}},
+       {"every voxel"}},
       {"NotANumber",
        "nan.nii",
        [](const std::string& path) {

@@ -70,7 +70,6 @@ TEST_P(EveryCommand, LeavesNothingOnAFullDisk) {
   const auto result = explica(words_ + std::vector<std::string>{"--out", folder_ / "a"}, setting);
   EXPECT_EQ(result.exitCode, 4) << result;
   auto after = folder_.entries();
-  for (const auto& name : GetParam().account) std::erase(after, name);
   EXPECT_EQ(after, before);
 }
 

@@ -21,8 +21,6 @@ struct QuickRun {
   std::vector<std::string> words;
   /// Writes inputs that no command makes.
   std::function<void(const TemporaryFolder&)> prepare = {};
-  /// What may stay in {folder} after a failure: the account of a command made of steps.
-  std::vector<std::string> account = {};
 };
 
 /// A folded sphere of 30 mm, 1280 faces.
@@ -72,8 +70,7 @@ inline const std::vector<QuickRun>& quickRuns() {
        {kShell},
        {"run", "{folder}/shell/labels.nii.gz", "--kind", "labels", "--steps", "thickness,report",
         "--thickness.inner", "1", "--thickness.tissue", "2"},
-       {},
-       {"a", "a/run.json"}},
+       {}},
   };
   return runs;
 }

@@ -2,11 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whole runs, on a small phantom.
 
-#include "Explica/Testing/Command.h"
+#include "Explica/IO/VolumeFile.h"
+#include "QuickRuns.h"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <sstream>
 
 namespace explica::testing {
 namespace {
@@ -91,10 +95,23 @@ TEST(Run, ResumesWhatIsStillTrueAndRedoesWhatIsNot) {
   EXPECT_NE(run.err.find("surface: kept"), std::string::npos) << run;
 }
 
-TEST(Run, AFailedStepIsNamedAndTheOthersStay) {
+TEST(Run, AFailedRunLeavesNothing) {
   TemporaryFolder folder;
   makePhantom(folder);
-  const auto run = explica(smallRun(folder, "out", {"--unfold.vertex", "99999999"}));
+  fs::create_directories(folder / "there");
+  const auto before = folder.entries();
+  for (const char* out : {"fresh", "there"}) {
+    const auto run =
+        explica(smallRun(folder, out, {"--unfold.vertex", "99999999", "--force", "--quiet"}));
+    EXPECT_EQ(run.exitCode, 2) << run;
+    EXPECT_EQ(folder.entries(), before);
+  }
+}
+
+TEST(Run, AFailedStepOfARunToResumeIsNamedAndTheOthersStay) {
+  TemporaryFolder folder;
+  makePhantom(folder);
+  const auto run = explica(smallRun(folder, "out", {"--resume", "--unfold.vertex", "99999999"}));
   EXPECT_EQ(run.exitCode, 2) << run;
   const auto states = statesOf(folder / "out");
   EXPECT_EQ(states.at("surface"), "done");
@@ -102,6 +119,133 @@ TEST(Run, AFailedStepIsNamedAndTheOthersStay) {
   EXPECT_TRUE(fs::exists(folder / "out/surface/pial.surf.gii"));
   const std::string page = readText(folder / "out/report.html");
   EXPECT_NE(page.find("badge bad'>failed"), std::string::npos);
+}
+
+/// Numbers of a run's surface step.
+nlohmann::ordered_json surfaceOf(const fs::path& out) {
+  return readJson(out / "surface/summary.json");
+}
+
+TEST(Run, SurfacesOfAFreeSurferSubjectAreTakenOver) {
+  TemporaryFolder folder;
+  makePhantom(folder);
+  ASSERT_EQ(explica({"surface", folder / "phantom/labels.nii.gz", "--faces", "3000", "--out",
+                     folder / "made", "--freesurfer", folder / "subject/surf"})
+                .exitCode,
+            0);
+  ASSERT_TRUE(fs::exists(folder / "subject/surf/lh.pial"));
+  const auto run = explica(
+      {"run", folder / "subject", "--out", folder / "out", "--steps", "thickness,surface,report"});
+  ASSERT_EQ(run.exitCode, 0) << run;
+  EXPECT_NE(run.err.find("white surface: " + (folder / "subject/surf/lh.white")), std::string::npos)
+      << run;
+  EXPECT_NE(run.err.find("there are no labels"), std::string::npos) << run;
+  const auto taken = surfaceOf(folder / "out");
+  const auto made = readJson(folder / "made/summary.json");
+  EXPECT_EQ(taken["surfaces"], "given");
+  EXPECT_EQ(taken["vertices"], made["vertices"]);
+  EXPECT_EQ(taken["euler_characteristic"], 2);
+  EXPECT_NEAR(taken["area_white"].get<double>(), made["area_white"].get<double>(), 1e-2);
+  // The shortest way both ways is shorter than a trajectory, but not by much.
+  const double distance = taken["thickness_mean"], length = made["thickness_mean"];
+  EXPECT_LT(distance, length);
+  EXPECT_GT(distance, 0.8 * length);
+  EXPECT_FALSE(fs::exists(folder / "out/thickness"));
+
+  const auto right = explica(
+      {"run", folder / "subject", "--hemisphere", "R", "--out", folder / "right", "--quiet"});
+  EXPECT_EQ(right.exitCode, 2) << right;
+  EXPECT_FALSE(fs::exists(folder / "right"));
+}
+
+TEST(Run, ClassesInTheOrderOfBidsAreTold) {
+  TemporaryFolder folder;
+  makePhantom(folder);
+  auto labels = io::readLabels(folder / "phantom/labels.nii.gz").volume;
+  for (Label& label : labels.data) label = label == 0 ? 0 : (label + 1) % 3 + 1;  // 2 3 1 -> 1 2 3
+  const fs::path anat = folder / "sub-01/anat";
+  fs::create_directories(anat);
+  io::writeVolume(anat / "sub-01_dseg.nii.gz", labels);
+  const std::vector<std::string> steps = {"--steps", "thickness,surface", "--surface.faces",
+                                          "3000"};
+  const auto bids =
+      explica(std::vector<std::string>{"run", folder / "sub-01", "--out", folder / "bids"} + steps);
+  ASSERT_EQ(bids.exitCode, 0) << bids;
+  EXPECT_NE(bids.err.find("(1 grey, 2 white, 3 fluid)"), std::string::npos) << bids;
+  const auto ours = explica(
+      std::vector<std::string>{"run", folder / "phantom/labels.nii.gz", "--out", folder / "ours"} +
+      steps);
+  ASSERT_EQ(ours.exitCode, 0) << ours;
+  for (const char* file : {"thickness/thickness.nii.gz", "surface/pial.surf.gii"}) {
+    EXPECT_EQ(readText(folder / "bids" + ("/" + std::string(file))),
+              readText(folder / "ours" + ("/" + std::string(file))))
+        << file;
+  }
+}
+
+TEST(Run, FreeSurfersSampleSubjectHasItsRegionsThickness) {
+  const fs::path bert = fs::path(EXPLICA_REAL_DATA) / "bert_freesurfer";
+  if (!fs::exists(bert)) GTEST_SKIP() << "skipped: no real data";
+  TemporaryFolder folder;
+  const auto run = explica({"run", bert.string(), "--hemisphere", "R", "--steps", "surface",
+                            "--surface.faces", "20000", "--out", folder / "out"});
+  ASSERT_EQ(run.exitCode, 0) << run;
+  EXPECT_NE(run.err.find("ribbon.mgz (FreeSurfer's ribbon)"), std::string::npos) << run;
+  EXPECT_EQ(surfaceOf(folder / "out")["euler_characteristic"], 2);
+
+  std::map<std::string, double> theirs;  // ThickAvg of rh.aparc.stats
+  std::ifstream stats(bert / "stats/rh.aparc.stats");
+  for (std::string line; std::getline(stats, line);) {
+    if (line.empty() || line[0] == '#') continue;
+    std::istringstream words(line);
+    std::string name, vertices, area, volume;
+    words >> name >> vertices >> area >> volume >> theirs[name];
+  }
+  ASSERT_EQ(theirs.size(), 34u);
+  std::ifstream table(folder / "out/surface/regions.tsv");
+  std::string line;
+  std::getline(table, line);
+  int regions = 0;
+  double sum = 0, sumX = 0, sumY = 0, sumXX = 0, sumYY = 0, sumXY = 0;
+  while (std::getline(table, line)) {
+    std::istringstream words(line);
+    std::string index, name, vertices, area;
+    double mean = 0;
+    words >> index >> name >> vertices >> area >> mean;
+    ASSERT_TRUE(theirs.count(name)) << name;
+    const double x = theirs[name];
+    sum += mean - x;
+    sumX += x, sumY += mean, sumXX += x * x, sumYY += mean * mean, sumXY += x * mean;
+    ++regions;
+  }
+  ASSERT_EQ(regions, 34);
+  const double n = regions;
+  const double correlation =
+      (n * sumXY - sumX * sumY) / std::sqrt((n * sumXX - sumX * sumX) * (n * sumYY - sumY * sumY));
+  EXPECT_GT(correlation, 0.95);
+  EXPECT_LT(std::abs(sum / n), 0.25);  // a trajectory is longer than the shortest way
+}
+
+TEST(Run, SurfacesOfTheAverageSubjectKeepTheirMeasures) {
+  const fs::path data = fs::path(EXPLICA_REAL_DATA) / "fsaverage5/fs_binary";
+  if (!fs::exists(data)) GTEST_SKIP() << "skipped: no real data";
+  TemporaryFolder folder;
+  fs::create_directories(folder / "subject/surf");
+  for (const char* name : {"lh.white", "lh.pial", "rh.white", "rh.pial"}) {
+    fs::copy_file(data / name, folder / ("subject/surf/" + std::string(name)));
+  }
+  const std::map<std::string, double> area = {{"L", 66662}, {"R", 66619}};  // mm^2, SOURCE.md
+  for (const char* side : {"L", "R"}) {
+    const std::string out = folder / side;
+    const auto run = explica(
+        {"run", folder / "subject", "--hemisphere", side, "--steps", "surface", "--out", out});
+    ASSERT_EQ(run.exitCode, 0) << run;
+    const auto summary = surfaceOf(out);
+    EXPECT_EQ(summary["vertices"], 10242);
+    EXPECT_EQ(summary["structure"], side == std::string("L") ? "CortexLeft" : "CortexRight");
+    EXPECT_NEAR(summary["area_white"].get<double>(), area.at(side), 1);
+    EXPECT_NEAR(summary["vertices_without_grey"].get<double>(), 294, 20);  // 276 and 312
+  }
 }
 
 TEST(Run, AT1NeedsAnAtlas) {

@@ -17,6 +17,7 @@
 #include <chrono>
 #include <cstring>
 #include <fstream>
+#include <set>
 #include <sstream>
 
 namespace explica::app {
@@ -115,6 +116,34 @@ std::string holderOf(const fs::path& lock) {
 }
 
 }  // namespace
+
+void removeRecorded(const fs::path& folder, const std::vector<std::string>& keep) {
+  const fs::path record = folder / provenance::kRecordName;
+  std::error_code ignored;
+  if (!fs::exists(record, ignored)) return;
+  std::set<fs::path> emptied;
+  try {
+    const Json earlier = provenance::readRecord(record);
+    fs::remove(record);
+    const Json& varying = earlier["execution"]["varying_outputs"];
+    for (const Json* outputs : {&earlier["outputs"], &varying}) {
+      for (const Json& output : *outputs) {
+        const std::string name = output["path"];
+        const fs::path path = folder / name;
+        if (path != record && path.filename() == provenance::kRecordName) continue;  // a step's own
+        const bool ours = output.contains("sha256") && fs::is_regular_file(path, ignored) &&
+                          provenance::digestOf(path).sha256 == output["sha256"];
+        if (!ours || std::find(keep.begin(), keep.end(), name) != keep.end()) continue;
+        fs::remove(path);
+        emptied.insert(path.parent_path());
+      }
+    }
+  } catch (const IOError&) {
+    fs::remove(record, ignored);  // damaged: it must not describe the new files
+  }
+  for (const fs::path& place : emptied) fs::remove(place, ignored);  // only if empty
+  fs::remove(folder, ignored);
+}
 
 OutputFolder::OutputFolder(fs::path folder, const OutputRules& rules,
                            const std::function<void(const std::string&)>& warn)
@@ -273,25 +302,6 @@ std::vector<std::string> OutputFolder::files() const {
   return names;
 }
 
-void OutputFolder::removeEarlier(const std::vector<std::string>& keep) const {
-  const fs::path record = folder_ / provenance::kRecordName;
-  std::error_code ignored;
-  if (!fs::exists(record, ignored)) return;
-  try {
-    const Json earlier = provenance::readRecord(record);
-    fs::remove(record);
-    for (const Json& output : earlier["outputs"]) {
-      const std::string name = output["path"];
-      const fs::path path = folder_ / name;
-      const bool ours = output.contains("sha256") && fs::is_regular_file(path, ignored) &&
-                        provenance::digestOf(path).sha256 == output["sha256"];
-      if (ours && std::find(keep.begin(), keep.end(), name) == keep.end()) fs::remove(path);
-    }
-  } catch (const IOError&) {
-    fs::remove(record, ignored);  // damaged: it must not describe the new files
-  }
-}
-
 void OutputFolder::publish(const std::string& last) {
   const auto names = files();
   try {
@@ -302,7 +312,7 @@ void OutputFolder::publish(const std::string& last) {
       fs::rename(stage_, folder_);
     } else {
       if (replaceEarlier_) {
-        removeEarlier(names);
+        removeRecorded(folder_, names);
       } else {
         fs::remove(folder_ / last);
       }

@@ -22,6 +22,10 @@ struct OutputRules {
   std::string command;          ///< for the lock
 };
 
+/// Removes the outputs that the record in `folder` lists and that are still as it lists them, the
+/// record, and the folder if nothing else is in it.  Names in `keep` stay.
+void removeRecorded(const std::filesystem::path& folder, const std::vector<std::string>& keep = {});
+
 /// The results of one run, which appear together or not at all.
 ///
 /// Files are written into a hidden staging folder: beside the output folder if that does not exist
@@ -52,7 +56,6 @@ class OutputFolder {
  private:
   void acquireLock(const OutputRules& rules, const std::function<void(const std::string&)>& warn);
   void releaseLock();
-  void removeEarlier(const std::vector<std::string>& keep) const;
 
   std::filesystem::path folder_, stage_, lock_;
   std::vector<std::filesystem::path> madeFolders_;  ///< in order of creation

@@ -208,6 +208,9 @@ bool Context::given(std::string_view name) const {
 int Context::threads() const {
   return state_->record.threads;
 }
+bool Context::isPrivate() const {
+  return state_->run.common.privateRecord;
+}
 
 namespace {
 
@@ -236,7 +239,8 @@ Outcome Context::runCommand(const Command& command, const std::string& name, con
   Run nested = nestedRun(command, options, state_->run, state_->monitor);
   nested.common.out = (outputFolder() / name).string();
   nested.common.force = true;
-  nested.prefix = state_->run.prefix + name + ": ";
+  nested.name = name + ": ";
+  nested.prefix = state_->run.prefix + nested.name;
   Step timing = step(name);
   Outcome outcome = execute(nested, state_->console);
   timing.termination(outcome.termination);
@@ -303,6 +307,14 @@ std::optional<Outcome> Context::reuseCommand(const Command& command, const std::
   }
 }
 
+void Context::dropCommand(const std::string& name) {
+  removeRecorded(outputFolder() / name);
+  auto& records = state_->nestedRecords;
+  std::erase_if(records, [&](const auto& entry) {
+    return entry.first == name + "/" + provenance::kRecordName;
+  });
+}
+
 Outcome Context::runThrough(const Command& command, const Json& options) {
   if (!state_->declaration().handsOutputOn) {
     throw std::logic_error("runThrough: the command must be declared writesThrough()");
@@ -354,7 +366,10 @@ void recordValues(const Declaration& declaration, provenance::Record& record) {
     if (parameter.file || parameter.positional) {
       if (!value.is_null()) record.arguments[parameter.option.name] = value;
     }
-    if (!parameter.file) record.options[parameter.option.name] = value;
+    // The folder for the results, by position, is a path like --out.
+    const bool isOut =
+        parameter.positional && declaration.fallbackOut && value == *declaration.fallbackOut;
+    if (!parameter.file && !isOut) record.options[parameter.option.name] = value;
   }
 }
 
@@ -396,7 +411,7 @@ Outcome execute(Run& run, Console& console) {
     const std::lock_guard<std::mutex> lock(warningsMutex);
     record.warnings.push_back(message);
     if (run.parent) {
-      run.parent->warn(run.prefix + message);
+      run.parent->warn(run.name + message);  // it puts its own name before
     } else {
       console.warning(message);
     }
@@ -456,6 +471,7 @@ Outcome execute(Run& run, Console& console) {
   if (!summary.contains("seconds")) summary["seconds"] = record.seconds;
   summary["peak_memory_bytes"] = record.peakMemoryBytes;
   summary["warnings"] = record.warnings;
+  if (!record.withNames) summary = provenance::withoutFolders(summary);
   provenance::writeJson(state.folder->place(provenance::kSummaryName), summary);
   state.varying.push_back(provenance::kSummaryName);
 

@@ -18,7 +18,8 @@ struct Run {
   std::set<std::string> given;      ///< names that the user set
   std::vector<std::string> argv;    ///< for the record
   const Monitor* parent = nullptr;  ///< of the command that this one is a step of
-  std::string prefix;               ///< starts its messages: "unfold: "
+  std::string name;                 ///< as a step of the parent: "unfold: "
+  std::string prefix;               ///< starts its messages: the names of all above and its own
 };
 
 /// Checks inputs and output folder, runs, writes summary and record, and makes the results appear.

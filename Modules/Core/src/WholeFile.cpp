@@ -48,20 +48,28 @@ std::filesystem::path temporaryFor(const std::filesystem::path& path) {
 
 }  // namespace
 
-WholeFile::WholeFile(std::filesystem::path path)
-    : path_(std::move(path)), temporary_(temporaryFor(path_)) {
+WholeFile::WholeFile(std::filesystem::path path) : path_(std::move(path)) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path_, ignored)) {
     throw EnvironmentError("cannot write '" + path_.string() + "': it is a folder");
   }
-  descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  // A file without a name leaves no trace if the process is killed.  Not every file system has
+  // them, and naming them later needs /proc.
+  const std::filesystem::path folder = path_.has_parent_path() ? path_.parent_path() : ".";
+  if (::access("/proc/self/fd", X_OK) == 0) {
+    descriptor_ = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+  }
+  if (descriptor_ < 0) {
+    temporary_ = temporaryFor(path_);  // stays empty for a file without a name
+    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  }
   if (descriptor_ < 0) fail("create", errno);
 }
 
 WholeFile::~WholeFile() {
   if (descriptor_ < 0) return;
   ::close(descriptor_);
-  ::unlink(temporary_.c_str());
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
 }
 
 void WholeFile::write(const void* bytes, std::size_t count) {
@@ -80,8 +88,24 @@ void WholeFile::write(const void* bytes, std::size_t count) {
 void WholeFile::commit() {
   // EINVAL: a file system that cannot flush a single file, which is no fault of the data.
   if (::fsync(descriptor_) != 0 && errno != EINVAL) fail("write", errno);
+  int cause = 0;
+  if (temporary_.empty()) {
+    // Straight to the final name if it is free; else by way of the temporary one, as rename() alone
+    // replaces.
+    const std::string source = "/proc/self/fd/" + std::to_string(descriptor_);
+    const auto link = [&](const std::filesystem::path& name) {
+      return ::linkat(AT_FDCWD, source.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0;
+    };
+    if (link(path_)) {
+      if (::close(std::exchange(descriptor_, -1)) != 0) fail("write", errno);
+      return;
+    }
+    cause = errno;
+    temporary_ = temporaryFor(path_);
+    if (cause == EEXIST) cause = link(temporary_) ? 0 : errno;
+  }
   const int closed = ::close(std::exchange(descriptor_, -1));
-  int cause = closed == 0 ? 0 : errno;
+  if (cause == 0 && closed != 0) cause = errno;
   if (cause == 0 && ::rename(temporary_.c_str(), path_.c_str()) != 0) cause = errno;
   if (cause != 0) {
     ::unlink(temporary_.c_str());

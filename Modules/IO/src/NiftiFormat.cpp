@@ -129,6 +129,46 @@ Vector spacingOf(const std::filesystem::path& path, const Header& header,
   return spacing;
 }
 
+/// The rotation that a qform's b, c, d stand for.  Its real part is the root of a difference that
+/// float32 rounding leaves uncertain by 1e-7: below that it is 0, as NIfTI's own library has it.
+Eigen::Quaterniond rotationOf(const Vector& bcd) {
+  constexpr double kRounding = 1e-7;
+  const double rest = 1 - bcd.squaredNorm();
+  Eigen::Quaterniond rotation(rest < kRounding ? 0 : std::sqrt(rest), bcd[0], bcd[1], bcd[2]);
+  rotation.normalize();
+  return rotation;
+}
+
+/// The b, c, d in float32 from which readers get the rotation back best: of the neighbours of the
+/// rounded ones, since the real part follows from them and amplifies their rounding near half
+/// turns (FreeSurfer's axes are one).  Readers that do not know NIfTI's rule for a real part near 0
+/// are served too.
+Vector storedQuaternion(const Eigen::Quaterniond& rotation) {
+  constexpr int kReach = 2;  // units in the last place
+  const auto neighbour = [](double value, int steps) {
+    auto number = static_cast<float>(value);
+    for (int step = 0; step < std::abs(steps); ++step) {
+      number = std::nextafter(number, steps > 0 ? 2.0F : -2.0F);
+    }
+    return static_cast<double>(number);
+  };
+  const Vector wanted = rotation.vec();
+  Vector best = wanted;
+  double least = std::numeric_limits<double>::infinity();
+  for (int code = 0; code < 125; ++code) {
+    Vector bcd;
+    for (int axis = 0, rest = code; axis < 3; ++axis, rest /= 5) {
+      bcd[axis] = wanted[axis] == 0 ? 0 : neighbour(wanted[axis], rest % 5 - kReach);
+    }
+    const double real = std::sqrt(std::max(0.0, 1 - bcd.squaredNorm()));
+    const double error = std::abs(real - rotation.w()) + (bcd - wanted).norm();
+    if (error >= least) continue;
+    least = error;
+    best = bcd;
+  }
+  return best;
+}
+
 Eigen::Matrix4d qformOf(const std::filesystem::path& path, const Header& header,
                         const Vector& spacing, double unit) {
   const Vector bcd(header.quaternion[0], header.quaternion[1], header.quaternion[2]);
@@ -138,8 +178,7 @@ Eigen::Matrix4d qformOf(const std::filesystem::path& path, const Header& header,
     refuse(path,
            "the quaternion of its qform is no rotation; correct the header or use --xform sform");
   }
-  Eigen::Quaterniond rotation(std::sqrt(std::max(0.0, 1 - square)), bcd[0], bcd[1], bcd[2]);
-  rotation.normalize();
+  const Eigen::Quaterniond rotation = rotationOf(bcd);
   Eigen::Matrix4d affine = Eigen::Matrix4d::Identity();
   affine.topLeftCorner<3, 3>() = rotation.toRotationMatrix() * spacing.asDiagonal();
   if (header.pixdim[0] < 0) affine.col(2) *= -1;
@@ -356,10 +395,15 @@ Bytes niftiHeader(const VolumeToWrite& volume) {
       handedness, grid.spacing[0], grid.spacing[1], grid.spacing[2], 1, 1, 1, 1};
   for (std::size_t i = 0; i < 8; ++i) real(76 + 4 * i, 104 + 8 * i, pixdim[i]);
   real(112, 176, 1);  // slope
-  const std::array<double, 6> quaternion = {rotation.x(),   rotation.y(),   rotation.z(),
+  const Vector bcd = one ? storedQuaternion(rotation) : Vector(rotation.vec());
+  const std::array<double, 6> quaternion = {bcd[0],         bcd[1],         bcd[2],
                                             grid.origin[0], grid.origin[1], grid.origin[2]};
   for (std::size_t i = 0; i < 6; ++i) real(256 + 4 * i, 352 + 8 * i, quaternion[i]);
   const Eigen::Matrix4d affine = grid.affine();
+  Eigen::Matrix4d qform = affine;
+  qform.topLeftCorner<3, 3>() = rotationOf(bcd).toRotationMatrix() * grid.spacing.asDiagonal();
+  qform.col(2) *= handedness;
+  const bool qformHolds = disagreement(qform, affine, grid.size) < 0.5 * kAgreement;
   for (int i = 0; i < 12; ++i) real(280 + 4 * i, 400 + 8 * i, affine(i / 4, i % 4));
 
   constexpr int kMillimetres = 2;
@@ -368,7 +412,7 @@ Bytes niftiHeader(const VolumeToWrite& volume) {
   if (one) {
     bytes[123] = kMillimetres;
     put(108, static_cast<float>(bytes.size()));
-    put(252, static_cast<std::int16_t>(kScanner));
+    put(252, static_cast<std::int16_t>(qformHolds ? kScanner : 0));
     put(254, static_cast<std::int16_t>(kScanner));
     std::memcpy(bytes.data() + 148, kDescription, sizeof(kDescription));
   } else {

@@ -369,6 +369,26 @@ TEST(VolumeFile, AnUnknownEndingIsRefusedAndNothingIsWritten) {
   EXPECT_EQ(folder.entryCount(), 0);
 }
 
+TEST(VolumeFile, OwnFilesAreReadBackForEveryOrderOfAxesAndNearHalfTurns) {
+  const TemporaryFolder folder;
+  for (const double tiltRad : {0.0, 1e-4, 1e-3, 0.02}) {  // of FreeSurfer's half turns, from exact
+    for (int order = 0; order < 48; ++order) {
+      constexpr int kOrders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2},
+                                     {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
+      Grid grid;
+      grid.size = {400, 2, 2};
+      Eigen::Matrix3d axes = Eigen::Matrix3d::Zero();
+      for (int a = 0; a < 3; ++a) axes(kOrders[order / 8][a], a) = (order >> a) & 1 ? -1 : 1;
+      grid.direction =
+          Eigen::AngleAxisd(tiltRad, Vector(1, 2, 3).normalized()).toRotationMatrix() * axes;
+      io::writeVolume(folder / "a.nii", Volume<std::uint8_t>(grid, 1));
+      Grid read;
+      ASSERT_NO_THROW(read = io::readGrid(folder / "a.nii")) << order << ", tilt " << tiltRad;
+      EXPECT_LT(placementError(read, grid), 1e-3) << order << ", tilt " << tiltRad;
+    }
+  }
+}
+
 TEST(VolumeFile, MghWithoutGeometryIsCoronalAsInFreeSurfer) {
   const TemporaryFolder folder;
   Grid grid;

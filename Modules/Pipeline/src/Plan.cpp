@@ -4,10 +4,12 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/IO/VolumeFile.h"
+#include "Explica/Study/SubjectFiles.h"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 
@@ -18,6 +20,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMostLabels = 64;  // a T1 has more grey values
+constexpr int kFewestParcels = 20;       // of the 70 or 150 of a parcellation
 constexpr double kPatchReach = 15;       // mm
 constexpr int kFrames = 40;              // of the evolution that the report plays
 
@@ -26,19 +29,108 @@ constexpr int kFrames = 40;              // of the evolution that the report pla
 // hippocampus, amygdala, hypointensities, callosum).
 const std::vector<int> kLeftInside = {2, 4, 5, 9, 10, 11, 12, 13, 17, 18, 26, 28, 30, 31, 77, 78};
 const std::vector<int> kRightInside = {41, 43, 44, 48, 49, 50, 51, 52, 53, 54, 58, 60, 62, 63, 79};
-const std::vector<int> kBetween = {14, 15, 16, 24, 72, 80, 85, 192, 251, 252, 253, 254, 255};
+// Not 24: it is fluid, which SynthSeg puts all around the cortex.
+const std::vector<int> kBetween = {14, 15, 16, 72, 80, 85, 192, 251, 252, 253, 254, 255};
 constexpr int kLeftCortex = 3;
 constexpr int kRightCortex = 42;
 
-enum class Naming { FreeSurfer, Ribbon, ThreeClass, Unknown };
+/// Of aparc+aseg (1001 to 1035, 2001 to 2035) and aparc.a2009s+aseg (11101 to 11175, ...).
+bool isParcel(Label label, bool left) {
+  const Label thousand = label / 1000, within = label % 1000;
+  const bool desikan = thousand == (left ? 1 : 2) && within >= 1 && within <= 35;
+  const bool destrieux = thousand == (left ? 11 : 12) && within >= 101 && within <= 175;
+  return desikan || destrieux;
+}
 
-Naming namingOf(const std::set<Label>& found) {
-  const auto has = [&](Label label) { return found.count(label) != 0; };
-  if (has(kLeftCortex) && has(kRightCortex) && has(2) && has(41)) {
-    return *found.rbegin() > 42 || has(10) ? Naming::FreeSurfer : Naming::Ribbon;
+enum class Naming {
+  FreeSurfer,   ///< aseg, aparc+aseg, SynthSeg, FastSurfer
+  Ribbon,       ///< 2, 3, 41, 42
+  ThreeClass,   ///< 1 fluid, 2 grey, 3 white, 4 cut
+  BidsClasses,  ///< 1 grey, 2 white, 3 fluid
+  Unknown
+};
+
+const char* meaningOf(Naming naming) {
+  switch (naming) {
+    case Naming::FreeSurfer:
+      return "FreeSurfer's labels";
+    case Naming::Ribbon:
+      return "FreeSurfer's ribbon";
+    case Naming::ThreeClass:
+      return "1 fluid, 2 grey, 3 white";
+    case Naming::BidsClasses:
+      return "1 grey, 2 white, 3 fluid";
+    case Naming::Unknown:
+      return "names not known";
   }
-  if (has(2) && has(3) && *found.rbegin() <= 4) return Naming::ThreeClass;
-  return Naming::Unknown;
+  return "";
+}
+
+/// The class of 1, 2, 3 that touches both others most: grey matter lies between the two.
+int middleClass(const Volume<Label>& labels) {
+  std::array<std::array<std::int64_t, 4>, 4> contacts{};
+  const auto& n = labels.grid.size;
+  const auto touch = [&](Label a, Label b) {
+    if (a == b || a < 1 || b < 1 || a > 3 || b > 3) return;
+    ++contacts[std::min(a, b)][std::max(a, b)];
+  };
+  for (int k = 0; k < n[2]; ++k) {
+    for (int j = 0; j < n[1]; ++j) {
+      for (int i = 0; i + 1 < n[0]; ++i) {
+        touch(labels(i, j, k), labels(i + 1, j, k));
+        if (j + 1 < n[1]) touch(labels(i, j, k), labels(i, j + 1, k));
+        if (k + 1 < n[2]) touch(labels(i, j, k), labels(i, j, k + 1));
+      }
+    }
+  }
+  // The pair that touches least leaves the class between.
+  const auto least = std::min({contacts[1][2], contacts[1][3], contacts[2][3]});
+  if (least == contacts[1][3]) return 2;
+  return least == contacts[2][3] ? 1 : 3;
+}
+
+struct NamedLabels {
+  std::set<Label> found;
+  Naming naming = Naming::Unknown;
+};
+
+/// @param dimension  demanded, if given
+NamedLabels nameLabels(const fs::path& file, std::optional<int> dimension = std::nullopt) {
+  io::VolumeReadOptions reading;
+  reading.dimension = dimension;
+  const Volume<Label> labels = io::readLabels(file, reading).volume;
+  NamedLabels named;
+  named.found = {labels.data.begin(), labels.data.end()};
+  const auto& found = named.found;
+  const auto has = [&](Label label) { return found.count(label) != 0; };
+  const auto hasCortex = [&](bool left) {
+    return has(left ? kLeftCortex : kRightCortex) ||
+           std::any_of(found.begin(), found.end(),
+                       [&](Label label) { return isParcel(label, left); });
+  };
+  if (has(2) && has(41) && hasCortex(true) && hasCortex(false)) {
+    named.naming = *found.rbegin() > 42 || has(10) ? Naming::FreeSurfer : Naming::Ribbon;
+  } else if (has(2) && *found.rbegin() <= 4) {
+    if (has(1) && has(3)) {
+      named.naming = middleClass(labels) == 1 ? Naming::BidsClasses : Naming::ThreeClass;
+    } else if (has(3)) {
+      named.naming = Naming::ThreeClass;
+    } else if (has(1)) {
+      named.naming = Naming::BidsClasses;
+    }
+  }
+  return named;
+}
+
+/// Labels of the cortex of one side, as the volume has them.
+std::vector<int> cortexOf(const NamedLabels& labels, bool left) {
+  std::vector<int> cortex;
+  for (const Label label : labels.found) {
+    if (label == (left ? kLeftCortex : kRightCortex) || isParcel(label, left)) {
+      cortex.push_back(label);
+    }
+  }
+  return cortex;
 }
 
 bool wanted(const PlanOptions& options, RunStep step) {
@@ -50,17 +142,19 @@ std::shared_ptr<Json> values(Json json) {
   return std::make_shared<Json>(std::move(json));
 }
 
-/// @param found  labels that the volume holds; empty if it is yet to be made and will hold all
-Json thicknessValues(const fs::path& labels, Naming naming, bool left,
-                     const std::set<Label>& found) {
-  Json json = {{"SEG", labels.string()}};
+Json thicknessValues(const fs::path& file, const NamedLabels& labels, bool left) {
+  Json json = {{"SEG", file.string()}};
   std::vector<int> inside;
   std::vector<int> insulated;
-  switch (naming) {
+  switch (labels.naming) {
     case Naming::ThreeClass:
       inside = {3};
       insulated = {4};
       json["tissue"] = {2};
+      break;
+    case Naming::BidsClasses:
+      inside = {2};
+      json["tissue"] = {1};
       break;
     case Naming::Ribbon:
       inside = {left ? 2 : 41};
@@ -72,12 +166,14 @@ Json thicknessValues(const fs::path& labels, Naming naming, bool left,
       inside = left ? kLeftInside : kRightInside;
       insulated = left ? kRightInside : kLeftInside;
       insulated.insert(insulated.end(), kBetween.begin(), kBetween.end());
-      json["tissue"] = {left ? kLeftCortex : kRightCortex};
+      json["tissue"] = cortexOf(labels, left);
       break;
     case Naming::Unknown:
       return json;
   }
-  const auto absent = [&](int label) { return !found.empty() && found.count(label) == 0; };
+  const auto absent = [&](int label) {  // a volume yet to be made will hold all
+    return !labels.found.empty() && labels.found.count(label) == 0;
+  };
   inside.erase(std::remove_if(inside.begin(), inside.end(), absent), inside.end());
   insulated.erase(std::remove_if(insulated.begin(), insulated.end(), absent), insulated.end());
   json["inner"] = inside;
@@ -85,19 +181,190 @@ Json thicknessValues(const fs::path& labels, Naming naming, bool left,
   return json;
 }
 
-std::set<Label> labelsIn(const fs::path& file) {
-  const Volume<Label> labels = io::readLabels(file).volume;
-  return {labels.data.begin(), labels.data.end()};
+Json surfaceValues(const fs::path& file, const NamedLabels& labels, bool left) {
+  Json json = {{"SEG", file.string()}};
+  switch (labels.naming) {
+    case Naming::ThreeClass:
+      break;
+    case Naming::BidsClasses:
+      json["white"] = {2};
+      json["grey"] = {1};
+      break;
+    case Naming::FreeSurfer:
+      if (labels.found.count(left ? kLeftCortex : kRightCortex) == 0 ||
+          cortexOf(labels, left).size() > 1) {
+        json["preset"] = "aseg";
+        json["grey"] = cortexOf(labels, left);
+      }
+      [[fallthrough]];
+    default:
+      json["hemisphere"] = left ? "L" : "R";
+  }
+  return json;
 }
+
+Json givenSurfaceValues(const study::SubjectFiles& files, bool left) {
+  const study::HemisphereFiles& given = left ? files.left : files.right;
+  Json json = {{"white-surface", given.white->string()},
+               {"pial-surface", given.pial->string()},
+               {"hemisphere", left ? "L" : "R"}};
+  if (given.mid) json["mid-surface"] = given.mid->string();
+  if (files.layout == study::SubjectLayout::FreeSurfer && files.surfaceVolume) {
+    json["surface-space"] = "tkr";
+    json["fs-volume"] = files.surfaceVolume->string();
+  }
+  return json;
+}
+
+/// Where the files are: a folder is looked through, a file stands for itself.
+study::SubjectFiles filesOf(const fs::path& input, const PlanOptions& options, InputKind kind) {
+  study::SubjectFiles files;
+  switch (kind) {
+    case InputKind::FreeSurfer:
+    case InputKind::Bids:
+      files = study::findSubjectFiles(input);
+      break;
+    case InputKind::T1:
+      files.t1 = input;
+      break;
+    default:
+      files.labels = input;
+  }
+  if (options.given == GivenSurfaces::Remake) files.left = files.right = {};
+  return files;
+}
+
+/// Puts the steps of one hemisphere together.
+class Planner {
+ public:
+  Planner(study::SubjectFiles files, fs::path out, const PlanOptions& options)
+      : files_(std::move(files)),
+        out_(std::move(out)),
+        options_(options),
+        left_(options.hemisphere == RunHemisphere::Left) {}
+
+  Plan make(InputKind kind) {
+    plan_.kind = kind;
+    plan_.remarks = files_.remarks;
+    if (files_.t1) planSegment();
+    if (files_.labels) {
+      // One slice has a thickness, but no surfaces.
+      const bool solid = wanted(options_, RunStep::Surface) || wanted(options_, RunStep::Unfold);
+      labels_ = nameLabels(*files_.labels, solid ? std::optional(3) : std::nullopt);
+      use("labels", *files_.labels, meaningOf(labels_.naming));
+    }
+    const bool given = surfaces().white.has_value();
+    if (!given && !files_.labels && !files_.t1) {
+      throw InvalidInput(other().white->string() +
+                         ": is all there is; this hemisphere has neither surfaces nor labels");
+    }
+    if (wanted(options_, RunStep::Thickness)) planThickness();
+    if (wanted(options_, RunStep::Surface)) planSurface(given);
+    if (wanted(options_, RunStep::Unfold)) planUnfold();
+    return std::move(plan_);
+  }
+
+ private:
+  [[nodiscard]] const study::HemisphereFiles& surfaces() const {
+    return left_ ? files_.left : files_.right;
+  }
+  [[nodiscard]] const study::HemisphereFiles& other() const {
+    return left_ ? files_.right : files_.left;
+  }
+
+  void use(const std::string& role, const fs::path& path, const std::string& meaning = "") {
+    plan_.sources.push_back({role, path, meaning});
+  }
+
+  void planSegment() {
+    const bool more = wanted(options_, RunStep::Thickness) || wanted(options_, RunStep::Surface) ||
+                      wanted(options_, RunStep::Unfold);
+    if (!files_.atlas && more) {
+      throw InvalidInput(
+          files_.t1->string() +
+          ": is taken for a T1, whose hemispheres an atlas must tell apart; give --atlas FILE in "
+          "its space, or --kind labels, or --steps segment,report");
+    }
+    use("T1", *files_.t1);
+    Json json = {{"T1", files_.t1->string()}};
+    if (files_.mask) {
+      use("brain mask", *files_.mask);
+      json["mask"] = files_.mask->string();
+    }
+    if (files_.atlas) {
+      use("atlas", *files_.atlas);
+      json["atlas"] = files_.atlas->string();
+      json["hemisphere"] = left_ ? "L" : "R";
+    }
+    plan_.steps.push_back({"segment", "segment", {}, values(json)});
+    labels_.naming = Naming::ThreeClass;
+    needs_ = {"segment"};
+  }
+
+  void planThickness() {
+    if (!files_.labels && !files_.t1) {
+      plan_.remarks.emplace_back(
+          "there are no labels: the thickness of voxels and layers are left out");
+      return;
+    }
+    const fs::path labels = files_.labels ? *files_.labels : out_ / "segment" / "hemisphere.nii.gz";
+    plan_.steps.push_back(
+        {"thickness", "thickness", needs_, values(thicknessValues(labels, labels_, left_))});
+  }
+
+  void planSurface(bool given) {
+    Json json;
+    std::vector<std::string> needs;
+    if (given) {
+      use("white surface", *surfaces().white);
+      use("pial surface", *surfaces().pial);
+      if (surfaces().mid) use("middle surface", *surfaces().mid);
+      json = givenSurfaceValues(files_, left_);
+    } else if (files_.t1) {
+      const fs::path segment = out_ / "segment";
+      json = {{"inner-level", (segment / "white_share.nii.gz").string()},
+              {"outer-level", (segment / "tissue_share.nii.gz").string()},
+              {"insulated-mask", (segment / "cut.nii.gz").string()},
+              {"hemisphere", left_ ? "L" : "R"}};
+      needs = needs_;
+    } else {
+      json = surfaceValues(*files_.labels, labels_, left_);
+    }
+    if (given && surfaces().parcellation) {
+      use("regions", *surfaces().parcellation);
+      json["parcellation"] = surfaces().parcellation->string();
+    } else if (files_.atlas) {
+      if (!files_.t1) use("regions", *files_.atlas);
+      json["atlas"] = files_.atlas->string();
+    }
+    plan_.steps.push_back({"surface", "surface", needs, values(json)});
+  }
+
+  void planUnfold() {
+    const std::string file = std::string(nameOf(options_.unfolded)) + ".surf.gii";
+    const Json json = {{"SURFACE", (out_ / "surface" / file).string()},
+                       {"direction", {left_ ? -1 : 1, 0, 0}},
+                       {"surround", "none"},  // a patch alone opens all the way
+                       {"frames", kFrames}};
+    plan_.steps.push_back({"unfold", "unfold", {"surface"}, values(json)});
+  }
+
+  study::SubjectFiles files_;
+  fs::path out_;
+  const PlanOptions& options_;
+  bool left_;
+  Plan plan_;
+  NamedLabels labels_;
+  std::vector<std::string> needs_;  ///< of steps that read what `segment` makes
+};
 
 }  // namespace
 
 InputKind detectKind(const fs::path& input) {
   if (fs::is_directory(input)) {
-    if (fs::exists(input / "mri" / "ribbon.mgz")) return InputKind::FreeSurfer;
-    throw InvalidInput(
-        input.string() +
-        ": holds no mri/ribbon.mgz; give a T1, a label volume or a FreeSurfer subject directory");
+    return study::findSubjectFiles(input).layout == study::SubjectLayout::FreeSurfer
+               ? InputKind::FreeSurfer
+               : InputKind::Bids;
   }
   const Volume<float> image = io::readScalars(input).volume;
   std::set<float> distinct;
@@ -105,86 +372,27 @@ InputKind detectKind(const fs::path& input) {
     if (value != std::floor(value)) return InputKind::T1;
     if (distinct.size() <= 4 * kMostLabels) distinct.insert(value);
   }
-  const bool freeSurfer =
-      distinct.count(2) + distinct.count(3) + distinct.count(41) + distinct.count(42) == 4 &&
-      distinct.size() <= 4 * kMostLabels;
-  const bool consecutive = distinct.size() > kMostLabels;
-  return (freeSurfer && !consecutive) || distinct.size() <= kMostLabels ? InputKind::Labels
-                                                                        : InputKind::T1;
+  if (distinct.size() <= kMostLabels) return InputKind::Labels;
+  // aparc+aseg has more labels than others, but fewer than an image has grey values.
+  const auto parcels = std::count_if(distinct.begin(), distinct.end(), [](float value) {
+    const auto label = static_cast<Label>(value);
+    return isParcel(label, true) || isParcel(label, false);
+  });
+  return distinct.size() <= 4 * kMostLabels && parcels >= kFewestParcels ? InputKind::Labels
+                                                                         : InputKind::T1;
 }
 
-std::vector<PlannedStep> planRun(const fs::path& input, const fs::path& out,
-                                 const std::optional<std::string>& atlas,
-                                 const PlanOptions& options) {
-  const bool left = options.hemisphere == RunHemisphere::Left;
-  const std::string side = left ? "L" : "R";
-  std::vector<PlannedStep> plan;
-  fs::path labels;
-  std::set<Label> found;
-  Naming naming = Naming::ThreeClass;
-  std::vector<std::string> needs;
-  switch (options.kind) {
-    case InputKind::Auto:
-      throw InvalidInput("kind: found 'auto', expected the kind that detectKind finds");
-    case InputKind::T1: {
-      const bool more = wanted(options, RunStep::Thickness) || wanted(options, RunStep::Surface) ||
-                        wanted(options, RunStep::Unfold);
-      if (!atlas && more) {
-        throw InvalidInput(
-            input.string() +
-            ": is taken for a T1, whose hemispheres an atlas must tell apart; give --atlas FILE in "
-            "its space, or --kind labels, or --steps segment,report");
-      }
-      Json json = {{"T1", input.string()}};
-      if (atlas) {
-        json["atlas"] = *atlas;
-        json["hemisphere"] = side;
-      }
-      plan.push_back({"segment", "segment", {}, values(json)});
-      labels = out / "segment" / "hemisphere.nii.gz";
-      needs = {"segment"};
-      break;
-    }
-    case InputKind::Labels:
-      labels = input;
-      found = labelsIn(labels);
-      naming = namingOf(found);
-      break;
-    case InputKind::FreeSurfer:
-      labels = input / "mri" / "ribbon.mgz";
-      found = labelsIn(labels);
-      naming = Naming::Ribbon;
-      break;
-  }
+bool labelsHaveSides(const fs::path& labels) {
+  const Naming naming = nameLabels(labels).naming;
+  return naming == Naming::FreeSurfer || naming == Naming::Ribbon;
+}
 
-  if (wanted(options, RunStep::Thickness)) {
-    plan.push_back(
-        {"thickness", "thickness", needs, values(thicknessValues(labels, naming, left, found))});
-  }
-  if (wanted(options, RunStep::Surface)) {
-    Json json;
-    if (options.kind == InputKind::T1) {
-      const fs::path segment = out / "segment";
-      json = {{"inner-level", (segment / "white_share.nii.gz").string()},
-              {"outer-level", (segment / "tissue_share.nii.gz").string()},
-              {"insulated-mask", (segment / "cut.nii.gz").string()},
-              {"hemisphere", side}};
-    } else {
-      json = {{"SEG", labels.string()}};
-      if (naming != Naming::ThreeClass) json["hemisphere"] = side;
-    }
-    plan.push_back({"surface", "surface", needs, values(json)});
-  }
-  if (wanted(options, RunStep::Unfold)) {
-    const Json json = {
-        {"SURFACE",
-         (out / "surface" / (std::string(nameOf(options.unfolded)) + ".surf.gii")).string()},
-        {"direction", {left ? -1 : 1, 0, 0}},
-        {"surround", "none"},  // a patch alone opens all the way
-        {"frames", kFrames}};
-    plan.push_back({"unfold", "unfold", {"surface"}, values(json)});
-  }
-  return plan;
+Plan planRun(const fs::path& input, const fs::path& out, const std::optional<std::string>& atlas,
+             const PlanOptions& options) {
+  const InputKind kind = options.kind == InputKind::Auto ? detectKind(input) : options.kind;
+  study::SubjectFiles files = filesOf(input, options, kind);
+  if (atlas) files.atlas = *atlas;
+  return Planner(std::move(files), out, options).make(kind);
 }
 
 Point outermostPoint(const TriangleMesh& mesh, const Vector& direction) {

@@ -4,6 +4,7 @@
 #include "Explica/Provenance/Json.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/WholeFile.h"
 
 #include <cmath>
 #include <cstring>
@@ -167,12 +168,7 @@ Json readJson(const std::filesystem::path& path) {
 }
 
 void writeJson(const std::filesystem::path& path, const Json& value) {
-  std::ofstream file(path, std::ios::binary);
-  file << value.dump(2) << '\n';
-  file.close();
-  if (!file) {
-    throw EnvironmentError(path.string() + ": cannot be written (" + std::strerror(errno) + ")");
-  }
+  writeTextFile(path, value.dump(2) + "\n");
 }
 
 }  // namespace explica::provenance

@@ -6,27 +6,13 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Provenance/Software.h"
 
+#include <algorithm>
+
 namespace explica::provenance {
 namespace {
 
 Json digestJson(const Digest& digest) {
   return {{"size", digest.size}, {"sha256", digest.sha256}};
-}
-
-/// Names of files without their folders, in any value: for records that shall not tell folders.
-Json withoutFolders(const Json& value) {
-  if (value.is_string()) {
-    const auto text = value.get<std::string>();
-    const auto equals = text.rfind("--", 0) == 0 ? text.find('=') : std::string::npos;
-    const auto slash = text.rfind('/');
-    if (slash == std::string::npos) return value;
-    const std::string option = equals == std::string::npos ? "" : text.substr(0, equals + 1);
-    return option + text.substr(slash + 1);
-  }
-  if (!value.is_array() && !value.is_object()) return value;
-  Json all = value;
-  for (auto& element : all) element = withoutFolders(element);
-  return all;
 }
 
 Json wordList(const std::vector<std::string>& words) {
@@ -35,7 +21,104 @@ Json wordList(const std::vector<std::string>& words) {
   return array;
 }
 
+/// Ends a path that is not quoted.
+bool endsPath(char c) {
+  return std::string_view(" \t\n\r\"'<>|;,()[]{}=").find(c) != std::string_view::npos;
+}
+
+std::string nameOfPath(const std::string& word) {
+  const auto slash = word.find_last_of('/');
+  if (slash == std::string::npos) return word;
+  const std::string name = word.substr(slash + 1);
+  const bool rooted = word[0] == '/' || word[0] == '~' || word.rfind("../", 0) == 0;
+  return rooted || name.find('.') != std::string::npos ? name : word;
+}
+
+/// The record, if it lists `name` or, without a name, a file of this content.
+std::optional<FoundRecord> listedIn(const std::filesystem::path& candidate,
+                                    const std::optional<std::string>& name, const Digest& digest) {
+  std::error_code fault;
+  if (!std::filesystem::is_regular_file(candidate, fault)) return std::nullopt;
+  try {
+    Json record = readRecord(candidate);
+    for (const Json* outputs : {&record["outputs"], &record["execution"]["varying_outputs"]}) {
+      for (const Json& output : *outputs) {
+        if (!output.contains("sha256")) continue;
+        const bool same = output["sha256"] == digest.sha256;
+        if (name ? output["path"] == *name : same) {
+          return FoundRecord{candidate, std::move(record), same};
+        }
+      }
+    }
+  } catch (const Error&) {
+    // Another program's provenance.json, or a damaged one: not a record of this file.
+  }
+  return std::nullopt;
+}
+
+/// A derivative's sub-01/.../sub-01_hemi-L_white.surf.gii is a copy of what a step of
+/// runs/sub-01_hemi-L* has written.
+std::optional<FoundRecord> recordInRuns(const std::filesystem::path& study, const std::string& name,
+                                        const Digest& digest) {
+  const auto hemi = name.find("_hemi-");
+  std::error_code fault;
+  const std::filesystem::path runs = study / "runs";
+  if (hemi == std::string::npos || !std::filesystem::is_directory(runs, fault)) return std::nullopt;
+  const std::string beginning = name.substr(0, name.find('_', hemi + 1));
+  std::vector<std::filesystem::path> candidates;
+  for (const auto& run : std::filesystem::directory_iterator(runs, fault)) {
+    if (run.path().filename().string().rfind(beginning, 0) != 0) continue;
+    for (const auto& step : std::filesystem::directory_iterator(run.path(), fault)) {
+      candidates.push_back(step.path() / kRecordName);
+    }
+  }
+  std::sort(candidates.begin(), candidates.end());
+  for (const auto& candidate : candidates) {
+    if (auto found = listedIn(candidate, std::nullopt, digest)) return found;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
+
+std::string textWithoutFolders(std::string_view text) {
+  std::string result;
+  for (std::size_t at = 0; at < text.size();) {
+    if (endsPath(text[at])) {
+      result += text[at++];
+      continue;
+    }
+    // Within quotes a path may hold spaces and the like.
+    const char before = at > 0 ? text[at - 1] : ' ';
+    std::size_t end = at;
+    const auto closing = text.find(before, at);
+    const bool quoted = (before == '\'' || before == '"') && closing != std::string_view::npos &&
+                        (text[at] == '/' || text[at] == '~' || text[at] == '.');
+    if (quoted) {
+      end = closing;
+    } else {
+      while (end < text.size() && !endsPath(text[end])) ++end;
+    }
+    std::string word(text.substr(at, end - at));
+    // A sentence's own colon or full stop after a path.
+    std::string tail;
+    while (word.size() > 1 && (word.back() == ':' || word.back() == '.')) {
+      tail.insert(tail.begin(), word.back());
+      word.pop_back();
+    }
+    result += nameOfPath(word) + tail;
+    at = end;
+  }
+  return result;
+}
+
+Json withoutFolders(const Json& value) {
+  if (value.is_string()) return textWithoutFolders(value.get_ref<const std::string&>());
+  if (!value.is_array() && !value.is_object()) return value;
+  Json all = value;
+  for (auto& element : all) element = withoutFolders(element);
+  return all;
+}
 
 std::string Record::id() const {
   Json identity = Json::object();
@@ -59,7 +142,8 @@ Json toJson(const Record& r) {
                       {"commit", made.commit},
                       {"dirty", made.dirty}};
   json["command"] = r.command;
-  json["options"] = r.options;
+  const auto told = [&](const Json& value) { return r.withNames ? value : withoutFolders(value); };
+  json["options"] = told(r.options);
 
   json["inputs"] = Json::array();
   for (const auto& input : r.inputs) {
@@ -91,11 +175,11 @@ Json toJson(const Record& r) {
     json["steps"].push_back(entry);
     stepTimes.push_back({{"name", step.name}, {"seconds", step.seconds}});
   }
-  json["warnings"] = wordList(r.warnings);
+  json["warnings"] = told(wordList(r.warnings));
   json["termination"] = nameOf(r.termination);
   json["exit_code"] = r.exitCode;
-  json["results"] = r.results;
-  json["notes"] = r.notes;
+  json["results"] = told(r.results);
+  json["notes"] = told(r.notes);
 
   Json execution = Json::object();
   execution["started"] = r.started;
@@ -109,8 +193,8 @@ Json toJson(const Record& r) {
   execution["libraries"] = describeLibraries();
   execution["machine"] = describeMachine(r.withNames);
   execution["private"] = !r.withNames;
-  execution["arguments"] = r.withNames ? r.arguments : withoutFolders(r.arguments);
-  execution["argv"] = r.withNames ? wordList(r.argv) : withoutFolders(wordList(r.argv));
+  execution["arguments"] = told(r.arguments);
+  execution["argv"] = told(wordList(r.argv));
   if (r.withNames) {
     execution["directory"] = r.directory.string();
     execution["out"] = r.out.string();
@@ -148,24 +232,11 @@ std::optional<FoundRecord> findRecordOf(const std::filesystem::path& file, const
   auto folder = absolute.parent_path();
   for (int level = 0; level <= kFoldersAbove && !folder.empty(); ++level) {
     const auto candidate = folder / kRecordName;
-    if (candidate != absolute && std::filesystem::is_regular_file(candidate, fault)) {
-      try {
-        Json record = readRecord(candidate);
-        const auto name = absolute.lexically_relative(folder).generic_string();
-        for (const char* list : {"outputs", "varying"}) {
-          const Json& outputs = std::string_view(list) == "outputs"
-                                    ? record["outputs"]
-                                    : record["execution"]["varying_outputs"];
-          for (const auto& output : outputs) {
-            if (output["path"] != name || !output.contains("sha256")) continue;
-            const bool same = output["sha256"] == digest.sha256;
-            return FoundRecord{candidate, record, same};
-          }
-        }
-      } catch (const Error&) {
-        // Another program's provenance.json, or a damaged one: not a record of this file.
-      }
+    if (candidate != absolute) {
+      const auto name = absolute.lexically_relative(folder).generic_string();
+      if (auto found = listedIn(candidate, name, digest)) return found;
     }
+    if (auto found = recordInRuns(folder, absolute.filename().string(), digest)) return found;
     if (folder == folder.root_path()) break;
     folder = folder.parent_path();
   }

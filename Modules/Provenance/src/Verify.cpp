@@ -169,46 +169,15 @@ std::string historyOf(const fs::path& file) {
   return text.str();
 }
 
-Json toProvJson(const Json& record) {
-  const std::string activity = "explica:run-" + record["id"].get<std::string>();
-  const Json& execution = record["execution"];
-  Json prov = Json::object();
-  prov["prefix"] = {{"explica", "https://explica.invalid/ns#"},
-                    {"sha256", "urn:sha256:"},
-                    {"prov", "http://www.w3.org/ns/prov#"}};
-  prov["activity"][activity] = {{"prov:startTime", execution["started"]},
-                                {"prov:endTime", execution["ended"]},
-                                {"prov:label", "explica " + record["command"].get<std::string>()},
-                                {"explica:options", record["options"].dump()},
-                                {"explica:termination", record["termination"]}};
-  const std::string agent = "explica:software-" + record["software"]["version"].get<std::string>();
-  prov["agent"][agent] = {{"prov:type", "prov:SoftwareAgent"},
-                          {"explica:commit", record["software"]["commit"]}};
-  prov["wasAssociatedWith"]["_:association"] = {{"prov:activity", activity}, {"prov:agent", agent}};
-  prov["entity"] = Json::object();
-  std::size_t link = 0;
-  for (const Json& input : record["inputs"]) {
-    const std::string entity = "sha256:" + input["sha256"].get<std::string>();
-    prov["entity"][entity] = {{"prov:label", input["name"]}, {"explica:size", input["size"]}};
-    prov["used"]["_:used" + std::to_string(link++)] = {
-        {"prov:activity", activity}, {"prov:entity", entity}, {"prov:role", input["role"]}};
-    if (input.contains("parent")) {
-      prov["wasGeneratedBy"]["_:parent" + std::to_string(link)] = {
-          {"prov:entity", entity},
-          {"prov:activity", "explica:run-" + input["parent"].get<std::string>()}};
-      prov["activity"]["explica:run-" + input["parent"].get<std::string>()] = Json::object();
+std::vector<fs::path> parentRecords(const fs::path& recordPath) {
+  const Json record = readRecord(recordPath);
+  std::vector<fs::path> parents;
+  for (std::size_t i = 0; i < record["inputs"].size(); ++i) {
+    if (const auto parent = locateParent(record, i, locateInput(record, i, recordPath))) {
+      parents.push_back(*parent);
     }
   }
-  const auto addOutput = [&](const Json& output) {
-    if (!output.contains("sha256")) return;
-    const std::string entity = "sha256:" + output["sha256"].get<std::string>();
-    prov["entity"][entity] = {{"prov:label", output["path"]}, {"explica:size", output["size"]}};
-    prov["wasGeneratedBy"]["_:generated" + std::to_string(link++)] = {{"prov:entity", entity},
-                                                                      {"prov:activity", activity}};
-  };
-  for (const Json& output : record["outputs"]) addOutput(output);
-  for (const Json& output : execution["varying_outputs"]) addOutput(output);
-  return prov;
+  return parents;
 }
 
 }  // namespace explica::provenance

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Provenance/Export.h"
 #include "Explica/Provenance/Verify.h"
 
 #include <gtest/gtest.h>
@@ -134,10 +135,34 @@ TEST_F(RecordChain, PrivateRecordHoldsNoHostUserOrFolder) {
 }
 
 TEST_F(RecordChain, ProvJsonLinksInputActivityOutput) {
-  const Json prov = toProvJson(readRecord(folder_ / "step2" / kRecordName));
+  const fs::path last = folder_ / "step2" / kRecordName;
+  const Json prov = toProvJson({{last, readRecord(last)}});
   EXPECT_EQ(prov["entity"].size(), 2u);
   EXPECT_EQ(prov["used"].size(), 1u);
   EXPECT_EQ(prov["wasGeneratedBy"].size(), 2u);  // the output, and the input by its own record
+}
+
+TEST_F(RecordChain, ExportsGoBackToTheFirstInput) {
+  const auto records = recordsBehind(folder_ / "step2" / kRecordName);
+  ASSERT_EQ(records.size(), 2u);
+  const Json prov = toProvJson(records);
+  EXPECT_EQ(prov["entity"].size(), 3u);  // raw, a, b
+  EXPECT_EQ(prov["activity"].size(), 2u);
+  EXPECT_EQ(prov["used"].size(), 2u);
+  EXPECT_EQ(prov["wasGeneratedBy"].size(), 2u);
+  EXPECT_EQ(recordsBelow(folder_).size(), 2u);
+}
+
+TEST(Privacy, FoldersAreTakenOutOfSentences) {
+  EXPECT_EQ(textWithoutFolders("/home/jane/a.nii.gz: label 2 absent (found 0, 1)"),
+            "a.nii.gz: label 2 absent (found 0, 1)");
+  EXPECT_EQ(textWithoutFolders("'/home/jane doe/my data/a.nii': truncated"), "'a.nii': truncated");
+  EXPECT_EQ(textWithoutFolders("--log=/home/jane/log.txt"), "--log=log.txt");
+  EXPECT_EQ(textWithoutFolders("see ../jane/x/b.json."), "see b.json.");
+  EXPECT_EQ(textWithoutFolders(R"({"SEG":"/home/jane/a.mgz","lambda":2})"),
+            R"({"SEG":"a.mgz","lambda":2})");
+  EXPECT_EQ(textWithoutFolders("n/a 1/mm 3 of 4"), "n/a 1/mm 3 of 4");
+  EXPECT_EQ(textWithoutFolders("study/sub-01/a.nii is missing"), "a.nii is missing");
 }
 
 TEST(Digest, EqualsKnownSha256) {

@@ -16,6 +16,8 @@ bool startsWithAny(std::string_view name, std::initializer_list<std::string_view
                      [&](std::string_view b) { return name.substr(0, b.size()) == b; });
 }
 
+}  // namespace
+
 AtlasStructure structureNamed(const std::string& name) {
   AtlasStructure structure{name, Side::Both, StructureKind::Cortex};
   const std::string_view ending =
@@ -30,8 +32,6 @@ AtlasStructure structureNamed(const std::string& name) {
   return structure;
 }
 
-}  // namespace
-
 AtlasLegend parseAtlasLegend(std::string_view text, std::string_view name) {
   AtlasLegend legend;
   std::istringstream lines{std::string(text)};
@@ -41,6 +41,7 @@ AtlasLegend parseAtlasLegend(std::string_view text, std::string_view name) {
     std::istringstream words(line);
     std::string first;
     if (!(words >> first) || first[0] == '#') continue;
+    if (legend.empty() && first == "index") continue;
     Label value = 0;
     std::string structure;
     std::istringstream digits(first);

@@ -4,19 +4,14 @@
 #include "Explica/Study/BidsDataset.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Study/SubjectFiles.h"
 
 #include <algorithm>
-#include <map>
 
 namespace explica::study {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool endsWith(const std::string& text, std::string_view ending) {
-  return text.size() >= ending.size() &&
-         text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
-}
 
 /// Folders whose names start with `prefix`, by name.
 std::vector<fs::path> foldersOf(const fs::path& parent, std::string_view prefix) {
@@ -30,63 +25,37 @@ std::vector<fs::path> foldersOf(const fs::path& parent, std::string_view prefix)
   return folders;
 }
 
-/// The first file, by name, that ends so; files in a standard space are left aside.
-std::optional<fs::path> firstEndingIn(const fs::path& folder, std::string_view ending) {
-  if (!fs::is_directory(folder)) return std::nullopt;
-  std::vector<fs::path> found;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
-    if (endsWith(name, ending) && name.find("_space-") == std::string::npos) {
-      found.push_back(entry.path());
-    }
+/// What a folder offers; empty if nothing, and then `problem` says why.
+std::optional<SubjectFiles> lookInto(const fs::path& folder, std::string& problem) {
+  try {
+    return findSubjectFiles(folder);
+  } catch (const Error& fault) {
+    problem = fault.what();
+    return std::nullopt;
   }
-  if (found.empty()) return std::nullopt;
-  return *std::min_element(found.begin(), found.end());
 }
 
-/// Labels in the space of a T1: `*_atlas-NAME_dseg.nii.gz`.
-std::optional<fs::path> atlasIn(const fs::path& folder) {
-  std::optional<fs::path> best;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
-    if (name.find("_atlas-") == std::string::npos || !endsWith(name, "_dseg.nii.gz")) continue;
-    if (!best || entry.path() < *best) best = entry.path();
-  }
-  return best;
+/// FreeSurfer's work, in BIDS's names.
+bool isFreeSurfers(const SubjectFiles& files) {
+  return files.left.white || files.right.white ||
+         (files.labels && files.labels->filename().string().find("_desc-a") != std::string::npos);
 }
 
 Participant participantIn(const fs::path& dataset, const fs::path& folder,
                           Participant participant) {
-  const fs::path anat = folder / "anat";
-  for (const char* ending : {"_desc-aparcaseg_dseg.nii.gz", "_desc-aseg_dseg.nii.gz"}) {
-    if (const auto labels = firstEndingIn(anat, ending)) {
-      participant.input = *labels;
-      return participant;
-    }
-  }
   const fs::path freeSurfer = dataset / "sourcedata" / "freesurfer" / ("sub-" + participant.label);
-  if (fs::exists(freeSurfer / "mri" / "ribbon.mgz")) {
+  std::string whyNotFreeSurfer;
+  std::optional<SubjectFiles> made;
+  if (fs::exists(freeSurfer)) made = lookInto(freeSurfer, whyNotFreeSurfer);
+  const auto anat = lookInto(folder / "anat", participant.problem);
+  if (anat && (!made || isFreeSurfers(*anat))) {
+    participant.input = folder / "anat";
+  } else if (made) {
     participant.input = freeSurfer;
-    return participant;
+    participant.problem.clear();
+  } else if (!whyNotFreeSurfer.empty()) {
+    participant.problem = whyNotFreeSurfer;
   }
-  if (const auto brain = firstEndingIn(anat, "_desc-brain_T1w.nii.gz")) {
-    participant.input = *brain;
-    participant.atlas = atlasIn(anat);
-    if (!participant.atlas) {
-      participant.problem = brain->string() + ": needs labels in its space beside it, as " +
-                            participant.name() + "_atlas-AAL_dseg.nii.gz";
-    }
-    return participant;
-  }
-  if (const auto labels = firstEndingIn(anat, "_dseg.nii.gz")) {
-    participant.input = *labels;
-    return participant;
-  }
-  participant.problem =
-      folder.string() +
-      ": holds no segmentation (anat/*_dseg.nii.gz), no sourcedata/freesurfer subject and no "
-      "skull-stripped T1 (anat/*_desc-brain_T1w.nii.gz); run fMRIPrep, sMRIPrep or FreeSurfer "
-      "first";
   return participant;
 }
 

@@ -3,10 +3,17 @@
 
 #include "Explica/Study/Derivatives.h"
 
+#include "Explica/Core/Errors.h"
 #include "Explica/Core/WholeFile.h"
-#include "Explica/Provenance/Json.h"
+#include "Explica/Provenance/Export.h"
+#include "Explica/Provenance/Record.h"
+#include "Explica/Study/SubjectFiles.h"
 
+#include <algorithm>
 #include <fstream>
+#include <map>
+#include <optional>
+#include <set>
 #include <sstream>
 
 namespace explica::study {
@@ -17,24 +24,42 @@ using provenance::Json;
 
 /// An output of a run, and what it is called in BIDS.
 struct Export {
-  const char* from;    ///< below the run's folder
+  const char* step;
+  const char* file;
   const char* suffix;  ///< after "sub-01_hemi-L"
   const char* units;   ///< empty if none
+  const char* description;
 };
 
 constexpr Export kExports[] = {
-    {"surface/white.surf.gii", "_white.surf.gii", "mm"},
-    {"surface/mid.surf.gii", "_midthickness.surf.gii", "mm"},
-    {"surface/pial.surf.gii", "_pial.surf.gii", "mm"},
-    {"surface/thickness.shape.gii", "_thickness.shape.gii", "mm"},
-    {"surface/curvature.shape.gii", "_curv.shape.gii", "mm^-1"},
-    {"surface/sulc.shape.gii", "_sulc.shape.gii", "mm"},
-    {"unfold/unfolded.surf.gii", "_desc-unfold_midthickness.surf.gii", "mm"},
-    {"unfold/region.label.gii", "_desc-unfold_roi.label.gii", ""},
-    {"unfold/visibility.shape.gii", "_desc-visibility_dist.shape.gii", ""},
-    {"unfold/distortion.shape.gii", "_desc-distortion_dist.shape.gii", ""},
-    {"thickness/thickness.nii.gz", "_desc-harmonic_thickness.nii.gz", "mm"},
-    {"thickness/layers.nii.gz", "_desc-layers_dseg.nii.gz", ""},
+    {"surface", "white.surf.gii", "_white.surf.gii", "mm", "white surface"},
+    {"surface", "mid.surf.gii", "_midthickness.surf.gii", "mm", "surface at half depth"},
+    {"surface", "pial.surf.gii", "_pial.surf.gii", "mm", "outer surface"},
+    {"surface", "thickness.shape.gii", "_thickness.shape.gii", "mm",
+     "cortical thickness; 0 where there is no grey matter"},
+    {"surface", "curvature.shape.gii", "_curv.shape.gii", "mm^-1",
+     "mean curvature of the white surface, positive in sulci"},
+    {"surface", "sulc.shape.gii", "_sulc.shape.gii", "mm",
+     "depth of the middle surface below the hull"},
+    {"surface", "area.shape.gii", "_area.shape.gii", "mm^2",
+     "area at each vertex of the white, middle and outer surface"},
+    {"surface", "valid.shape.gii", "_desc-valid_mask.shape.gii", "",
+     "1 where the thickness is defined"},
+    {"surface", "regions.label.gii", "_desc-regions_dseg.label.gii", "", "cortical regions"},
+    {"surface", "regions.tsv", "_desc-regions_morph.tsv", "",
+     "area and thickness of each cortical region"},
+    {"surface", "topology.tsv", "_defects.tsv", "", "one row for each corrected defect"},
+    {"unfold", "unfolded.surf.gii", "_desc-unfold_midthickness.surf.gii", "mm",
+     "patch unfolded for a viewpoint"},
+    {"unfold", "region.label.gii", "_desc-unfold_roi.label.gii", "", "1 in the unfolded patch"},
+    {"unfold", "visibility.shape.gii", "_desc-visibility_measure.shape.gii", "",
+     "flux and visible share of each vertex, before and after"},
+    {"unfold", "distortion.shape.gii", "_desc-distortion_measure.shape.gii", "",
+     "area ratio, angle change in degrees, edge strain"},
+    {"thickness", "thickness.nii.gz", "_desc-harmonic_thickness.nii.gz", "mm",
+     "length of the trajectory through each voxel"},
+    {"thickness", "layers.nii.gz", "_desc-layers_dseg.nii.gz", "",
+     "layers, counted from the white matter"},
 };
 
 std::string readText(const fs::path& path) {
@@ -55,56 +80,218 @@ std::string withoutExtensions(const std::string& name) {
   return name.substr(0, name.find('.', last == std::string::npos ? 0 : last));
 }
 
+fs::path anatOf(const Participant& participant) {
+  fs::path folder = "sub-" + participant.label;
+  if (participant.session) folder /= "ses-" + *participant.session;
+  return folder / "anat";
+}
+
+/// Everything in a subject's folder that a step may have read.
+std::vector<fs::path> filesOf(const fs::path& input) {
+  std::vector<fs::path> all;
+  if (!fs::is_directory(input)) return {input};
+  const SubjectFiles files = findSubjectFiles(input);
+  for (const auto& file : {files.labels, files.t1, files.mask, files.atlas, files.surfaceVolume}) {
+    if (file) all.push_back(*file);
+  }
+  for (const HemisphereFiles& side : {files.left, files.right}) {
+    for (const auto& file : {side.white, side.pial, side.mid, side.parcellation}) {
+      if (file) all.push_back(*file);
+    }
+  }
+  return all;
+}
+
+/// Finds what the outputs of one run were made from.
+class Sources {
+ public:
+  Sources(const fs::path& run, const Participant& participant, const fs::path& stem,
+          const DerivativeOrigin& origin)
+      : run_(run), origin_(origin), inputs_(filesOf(participant.input)) {
+    for (const Export& item : kExports) {
+      exported_[item.file] = "bids::" + stem.generic_string() + item.suffix;
+    }
+    for (const char* step : {"segment", "thickness", "surface", "unfold"}) {
+      const fs::path record = run_ / step / provenance::kRecordName;
+      if (fs::exists(record)) records_[step] = provenance::readRecord(record);
+    }
+  }
+
+  /// URIs of what a step read: other exports, and files of the data set.
+  [[nodiscard]] Json of(const std::string& step) const {
+    std::set<std::string> uris;
+    collect(step, uris);
+    return Json(uris);
+  }
+
+  /// The file whose space the step's outputs are in.
+  [[nodiscard]] std::string space() const {
+    for (const char* step : {"segment", "thickness", "surface"}) {
+      const auto record = records_.find(step);
+      if (record == records_.end()) continue;
+      for (const char* role : {"T1", "SEG", "fs-volume"}) {
+        for (const Json& input : record->second["inputs"]) {
+          if (input["role"] != role) continue;
+          if (const auto uri = uriOf(input["name"])) return *uri;
+        }
+      }
+    }
+    return "orig";
+  }
+
+  /// The activity that a step's record tells of, as prov/ names it; empty without a record.
+  [[nodiscard]] std::string activity(const std::string& step) const {
+    const auto record = records_.find(step);
+    if (record == records_.end()) return "";
+    return provenance::activityName(record->second);
+  }
+
+ private:
+  void collect(const std::string& step, std::set<std::string>& uris) const {
+    const auto record = records_.find(step);
+    if (record == records_.end()) return;
+    for (const Json& input : record->second["inputs"]) {
+      const std::string name = input["name"];
+      if (const auto uri = uriOf(name)) {
+        uris.insert(*uri);
+        continue;
+      }
+      for (const auto& [other, made] : records_) {
+        if (other == step || !fs::exists(run_ / other / name)) continue;
+        const auto exported = exported_.find(name);
+        if (exported != exported_.end()) {
+          uris.insert(exported->second);
+        } else {
+          collect(other, uris);
+        }
+      }
+    }
+  }
+
+  /// A file of the subject, by its name.
+  [[nodiscard]] std::optional<std::string> uriOf(const std::string& name) const {
+    for (const fs::path& file : inputs_) {
+      if (file.filename() != name) continue;
+      const fs::path inside = file.lexically_relative(origin_.dataset);
+      if (!inside.empty() && *inside.begin() != "..") return "bids:raw:" + inside.generic_string();
+      return (origin_.withNames ? "file://" + fs::absolute(file).string() : name);
+    }
+    return std::nullopt;
+  }
+
+  fs::path run_;
+  const DerivativeOrigin& origin_;
+  std::vector<fs::path> inputs_;
+  std::map<std::string, std::string> exported_;  ///< file of a step to its URI
+  std::map<std::string, Json> records_;          ///< by step
+};
+
+/// What the columns of a table mean, as BIDS wants it beside the table.
+void describeColumns(Json& sidecar, const std::string& file) {
+  if (file == "regions.tsv") {
+    sidecar["index"] = {{"Description", "label of the region"}};
+    sidecar["name"] = {{"Description", "its name"}};
+    sidecar["vertices"] = {{"Description", "vertices in it"}};
+    sidecar["area_white_mm2"] = {{"Description", "area of the white surface"}, {"Units", "mm^2"}};
+    sidecar["thickness_mean_mm"] = {
+        {"Description", "mean thickness, weighted by area, where there is grey matter"},
+        {"Units", "mm"}};
+    sidecar["thickness_sd_mm"] = {{"Description", "its standard deviation"}, {"Units", "mm"}};
+  } else if (file == "topology.tsv") {
+    sidecar["kind"] = {{"Description", "island, cavity, handle or tunnel"}};
+    for (const char* axis : {"x_mm", "y_mm", "z_mm"}) {
+      sidecar[axis] = {{"Description", "place of the defect, RAS"}, {"Units", "mm"}};
+    }
+    sidecar["voxels"] = {{"Description", "voxels changed"}};
+    sidecar["cost"] = {{"Description", "evidence overruled by the correction"}};
+    sidecar["alternative_cost"] = {{"Description", "evidence that the other way would overrule"}};
+    sidecar["side"] = {{"Description", "filled or removed"}};
+    sidecar["why"] = {{"Description", "reason for the choice"}};
+  }
+}
+
 }  // namespace
 
-void describeDerivatives(const fs::path& out, const fs::path& source, const std::string& version) {
+void describeDerivatives(const fs::path& out, const DerivativeOrigin& origin,
+                         const std::string& version) {
   fs::create_directories(out);
+  // A link that moves with the two folders; without names only the last folder's.
+  const fs::path source = fs::weakly_canonical(origin.dataset);
+  const std::string link = origin.withNames
+                               ? source.lexically_relative(fs::weakly_canonical(out)).string()
+                               : source.filename().string();
   Json description = Json::object();
   description["Name"] = "Explica: cortical surfaces, thickness and unfolded patches";
   description["BIDSVersion"] = "1.8.0";
   description["DatasetType"] = "derivative";
-  description["GeneratedBy"] = Json::array({Json{{"Name", "Explica"}, {"Version", version}}});
-  description["SourceDatasets"] = Json::array({Json{{"URL", fs::absolute(source).string()}}});
-  description["DatasetLinks"] = Json{{"raw", fs::absolute(source).string()}};
+  description["GeneratedBy"] = Json::array({Json{
+      {"Name", "Explica"},
+      {"Version", version},
+      {"Description", "explica bids: thickness, surfaces and unfolding of each hemisphere"}}});
+  description["SourceDatasets"] = Json::array({Json{{"URL", link}}});
+  description["DatasetLinks"] = Json{{"raw", link}};
   writeIfDifferent(out / "dataset_description.json", description.dump(2) + "\n");
   writeIfDifferent(out / "descriptions.tsv",
                    "desc_id\tdescription\n"
                    "unfold\tpatch unfolded for a viewpoint\n"
                    "visibility\tflux and visible share per vertex, before and after unfolding\n"
                    "distortion\tarea, angle and length changes of the unfolded patch\n"
+                   "valid\twhere a measure is defined\n"
+                   "regions\tcortical regions of the atlas that came with the input\n"
                    "harmonic\talong trajectories of the harmonic interpolant\n"
                    "layers\tlayers of the cortex, counted from the white matter\n");
   writeIfDifferent(out / ".bidsignore",
-                   "*.surf.gii\n*.shape.gii\n*.label.gii\n*.json\nruns/\n*.html\n");
+                   "*_hemi-*\ndescriptions.tsv\nruns/\nprov/\nstudy.tsv\nindex.html\n"
+                   "summary.json\nprovenance.json\nro-crate-metadata.json\n");
 }
 
 std::vector<fs::path> exportRun(const fs::path& run, const fs::path& out,
-                                const Participant& participant, const std::string& hemisphere) {
-  fs::path folder = fs::path("sub-" + participant.label);
-  if (participant.session) folder /= "ses-" + *participant.session;
-  folder /= "anat";
-  fs::create_directories(out / folder);
-  Json surface = Json::object();
-  if (fs::exists(run / "surface" / "summary.json")) {
-    surface = provenance::readJson(run / "surface" / "summary.json");
-  }
+                                const Participant& participant, const std::string& hemisphere,
+                                const DerivativeOrigin& origin, const std::string& region) {
   std::vector<fs::path> written;
+  const fs::path stem = anatOf(participant) / (participant.name() + "_hemi-" + hemisphere);
+  const auto nameOf = [&](const Export& item) {
+    const bool ofPatch = std::string_view(item.step) == "unfold" && !region.empty();
+    return stem.generic_string() + (ofPatch ? "_label-" + region : "") + item.suffix;
+  };
+  const auto sidecarOf = [](const std::string& name) { return withoutExtensions(name) + ".json"; };
+  std::vector<const Export*> items;
   for (const Export& item : kExports) {
-    const fs::path from = run / item.from;
-    if (!fs::exists(from)) continue;
-    const std::string name = participant.name() + "_hemi-" + hemisphere + item.suffix;
-    writeIfDifferent(out / folder / name, readText(from));
+    if (fs::exists(run / item.step / item.file)) {
+      items.push_back(&item);
+    } else {
+      fs::remove(out / sidecarOf(nameOf(item)));
+      fs::remove(out / nameOf(item));
+    }
+  }
+  if (items.empty()) return written;
+  const Sources sources(run, participant, stem, origin);
+  fs::create_directories(out / stem.parent_path());
+  Json surface = Json::object();
+  if (fs::exists(run / "surface" / provenance::kSummaryName)) {
+    surface = provenance::readJson(run / "surface" / provenance::kSummaryName);
+  }
+  for (const Export* listed : items) {
+    const Export& item = *listed;
+    const std::string name = nameOf(item);
+    const std::string content = readText(run / item.step / item.file);
     Json sidecar = Json::object();
-    sidecar["Sources"] = Json::array({fs::absolute(participant.input).string(),
-                                      "bids::" + fs::relative(from, out).generic_string()});
-    sidecar["SpatialReference"] = "orig";
+    sidecar["Description"] = item.description;
+    sidecar["Sources"] = sources.of(item.step);
+    sidecar["SpatialReference"] = sources.space();
     if (*item.units) sidecar["Units"] = item.units;
     if (surface.contains("euler_characteristic")) {
       sidecar["EulerNumber"] = surface["euler_characteristic"];
       sidecar["NumberOfDefects"] = surface["defects_corrected"];
     }
-    writeIfDifferent(out / folder / (withoutExtensions(name) + ".json"), sidecar.dump(2) + "\n");
-    written.push_back(folder / name);
+    describeColumns(sidecar, item.file);
+    sidecar["Digest"] = {{"sha256", provenance::sha256Of(content)}};
+    const std::string activity = sources.activity(item.step);
+    if (!activity.empty()) sidecar["GeneratedBy"] = "bids::prov#" + activity;
+    // The sidecar last: a file that has one is whole.
+    writeIfDifferent(out / name, content);
+    writeIfDifferent(out / sidecarOf(name), sidecar.dump(2) + "\n");
+    written.emplace_back(name);
   }
   return written;
 }

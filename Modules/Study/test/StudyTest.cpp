@@ -6,6 +6,7 @@
 #include "Explica/Study/BidsDataset.h"
 #include "Explica/Study/Derivatives.h"
 #include "Explica/Study/StudyTable.h"
+#include "Explica/Study/SubjectFiles.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -55,12 +56,72 @@ TEST_F(Study, FindsWhatEachParticipantOffers) {
   fs::create_directories(folder_ / "sub-03");
   const auto found = findParticipants(folder_);
   ASSERT_EQ(found.size(), 4u);
-  EXPECT_EQ(found[0].input.filename(), "sub-01_desc-aseg_dseg.nii.gz");
+  EXPECT_EQ(found[0].input, folder_ / "sub-01/anat");
   EXPECT_EQ(found[1].name(), "sub-02_ses-a");
-  ASSERT_TRUE(found[1].atlas.has_value());
-  EXPECT_EQ(found[1].atlas->filename(), "sub-02_ses-a_atlas-AAL_dseg.nii.gz");
+  EXPECT_EQ(found[1].input, folder_ / "sub-02/ses-a/anat");
   EXPECT_NE(found[2].problem.find("skull-stripped"), std::string::npos);
   EXPECT_EQ(found[3].input, folder_ / "sourcedata" / "freesurfer" / "sub-03");
+}
+
+TEST_F(Study, FindsTheFilesOfAFreeSurferSubject) {
+  put("bert/mri/ribbon.mgz");
+  put("bert/mri/aparc+aseg.mgz");
+  put("bert/surf/lh.white");
+  put("bert/surf/lh.pial");
+  put("bert/label/lh.aparc.annot");
+  put("bert/surf/rh.white");
+  const SubjectFiles files = findSubjectFiles(folder_ / "bert");
+  EXPECT_EQ(files.layout, SubjectLayout::FreeSurfer);
+  EXPECT_EQ(files.labels, folder_ / "bert/mri/ribbon.mgz");
+  EXPECT_EQ(files.atlas, folder_ / "bert/mri/aparc+aseg.mgz");
+  EXPECT_EQ(files.left.pial, folder_ / "bert/surf/lh.pial");
+  EXPECT_EQ(files.left.parcellation, folder_ / "bert/label/lh.aparc.annot");
+  EXPECT_FALSE(files.right.white);  // alone it is of no use
+  ASSERT_EQ(files.remarks.size(), 1u);
+  EXPECT_EQ(files.remarks[0], "surf/rh.pial is not there: surf/rh.white alone is not used");
+  fs::remove(folder_ / "bert/mri/ribbon.mgz");
+  put("bert/mri/aseg.mgz");
+  EXPECT_EQ(findSubjectFiles(folder_ / "bert").labels, folder_ / "bert/mri/aseg.mgz");
+}
+
+TEST_F(Study, FindsTheFilesOfFmriPrep) {
+  for (const char* file :
+       {"desc-preproc_T1w.nii.gz", "desc-brain_mask.nii.gz", "dseg.nii.gz",
+        "label-GM_probseg.nii.gz", "desc-aseg_dseg.nii.gz", "desc-aparcaseg_dseg.nii.gz",
+        "hemi-L_white.surf.gii", "hemi-L_pial.surf.gii", "hemi-L_midthickness.surf.gii",
+        "hemi-R_smoothwm.surf.gii", "hemi-R_pial.surf.gii",
+        "space-MNI152NLin2009cAsym_dseg.nii.gz"}) {
+    put("sub-01/anat/sub-01_" + std::string(file));
+  }
+  for (const char* place : {"sub-01", "sub-01/anat"}) {
+    const SubjectFiles files = findSubjectFiles(folder_ / place);
+    EXPECT_EQ(files.layout, SubjectLayout::Bids);
+    EXPECT_EQ(files.labels, folder_ / "sub-01/anat/sub-01_desc-aseg_dseg.nii.gz");
+    EXPECT_EQ(files.atlas, folder_ / "sub-01/anat/sub-01_desc-aparcaseg_dseg.nii.gz");
+    EXPECT_EQ(files.left.mid, folder_ / "sub-01/anat/sub-01_hemi-L_midthickness.surf.gii");
+    EXPECT_EQ(files.right.white, folder_ / "sub-01/anat/sub-01_hemi-R_smoothwm.surf.gii");
+  }
+  // Without FreeSurfer: three classes, of one hemisphere or refused by who uses them.
+  for (const char* file : {"desc-aseg_dseg.nii.gz", "desc-aparcaseg_dseg.nii.gz"}) {
+    fs::remove(folder_ / "sub-01/anat" / ("sub-01_" + std::string(file)));
+  }
+  EXPECT_EQ(findSubjectFiles(folder_ / "sub-01").labels,
+            folder_ / "sub-01/anat/sub-01_dseg.nii.gz");
+}
+
+TEST_F(Study, AFolderWithNothingInItIsRefused) {
+  for (const char* place : {"bert/mri/nu.mgz", "sub-01/anat/sub-01_T1w.nii.gz", "letters/a.txt",
+                            "sub-02/ses-a/anat/sub-02_ses-a_dseg.nii.gz"}) {
+    put(place);
+    const fs::path folder = folder_ / *fs::path(place).begin();
+    try {
+      (void)findSubjectFiles(folder);
+      ADD_FAILURE() << place;
+    } catch (const InvalidInput& fault) {
+      EXPECT_NE(std::string(fault.what()).find(folder.string()), std::string::npos) << fault.what();
+    }
+  }
+  EXPECT_NO_THROW((void)findSubjectFiles(folder_ / "sub-02/ses-a"));
 }
 
 TEST_F(Study, WantedParticipantsMustExist) {
@@ -81,9 +142,11 @@ TEST_F(Study, ExportsCarryBidsNamesAndSidecars) {
   Participant participant;
   participant.label = "01";
   participant.session = "a";
+  put("labels.nii.gz");
   participant.input = folder_ / "labels.nii.gz";
-  describeDerivatives(folder_ / "out", folder_, "1.2.3");
-  const auto written = exportRun(folder_ / "run", folder_ / "out", participant, "L");
+  const DerivativeOrigin origin{folder_, true};
+  describeDerivatives(folder_ / "out", origin, "1.2.3");
+  const auto written = exportRun(folder_ / "run", folder_ / "out", participant, "L", origin);
   EXPECT_EQ(written.size(), 2u);
   EXPECT_EQ(get("out/sub-01/ses-a/anat/sub-01_ses-a_hemi-L_pial.surf.gii"), "surface");
   const std::string sidecar = get("out/sub-01/ses-a/anat/sub-01_ses-a_hemi-L_pial.json");
@@ -95,6 +158,15 @@ TEST_F(Study, ExportsCarryBidsNamesAndSidecars) {
                          "sub-01_ses-a_hemi-L_desc-unfold_midthickness.surf.gii"));
   EXPECT_NE(get("out/dataset_description.json").find("\"DatasetType\": \"derivative\""),
             std::string::npos);
+  EXPECT_NE(get("out/dataset_description.json").find("\"raw\": \"..\""), std::string::npos);
+
+  // What a run no longer has goes, with its sidecar; patches of a study carry their region.
+  fs::remove(folder_ / "run/surface/pial.surf.gii");
+  exportRun(folder_ / "run", folder_ / "out", participant, "L", origin, "hand");
+  EXPECT_FALSE(fs::exists(folder_ / "out/sub-01/ses-a/anat/sub-01_ses-a_hemi-L_pial.surf.gii"));
+  EXPECT_FALSE(fs::exists(folder_ / "out/sub-01/ses-a/anat/sub-01_ses-a_hemi-L_pial.json"));
+  EXPECT_TRUE(fs::exists(folder_ / "out/sub-01/ses-a/anat" /
+                         "sub-01_ses-a_hemi-L_label-hand_desc-unfold_midthickness.surf.gii"));
 }
 
 TEST_F(Study, FailedRunsAreRowsToo) {
@@ -112,23 +184,61 @@ TEST_F(Study, FailedRunsAreRowsToo) {
 
   const std::string table = tableText(rows);
   EXPECT_EQ(table.substr(0, table.find('\n')),
-            "participant_id\themisphere\tstate\tsurface.euler_characteristic");
-  EXPECT_NE(table.find("sub-01\tL\tdone\t2\n"), std::string::npos);
-  EXPECT_NE(table.find("label 2 absent\tn/a\n"), std::string::npos);
+            "participant_id\themisphere\tstate\tflags\tsurface.euler_characteristic");
+  EXPECT_NE(table.find("sub-01\tL\tdone\tn/a\t2\n"), std::string::npos);
+  EXPECT_NE(table.find("label 2 absent\tstate: failed\tn/a\n"), std::string::npos);
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 4);
+}
+
+TEST_F(Study, RegionsBecomeColumnsAndPatchesRows) {
+  put("runs/sub-01_hemi-L_region-hand/run.json",
+      R"({"steps": [{"name": "surface", "state": "done"}]})");
+  put("runs/sub-01_hemi-L_region-hand/surface/regions.tsv",
+      "index\tname\tvertices\tarea_white_mm2\tthickness_mean_mm\tthickness_sd_mm\n"
+      "1025\tprecuneus\t90\t88.5\t2.25\t0.5\n");
+  const auto rows = collectRows(folder_);
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_EQ(rows[0].hemisphere, "L");
+  EXPECT_EQ(rows[0].region, "hand");
+  EXPECT_EQ(rows[0].values.at("region.precuneus"), "2.25");
+  EXPECT_EQ(tableText(rows),
+            "participant_id\themisphere\tregion\tstate\tflags\tregion.precuneus\n"
+            "sub-01\tL\thand\tdone\tn/a\t2.25\n");
+}
+
+TEST_F(Study, OutliersAndBadSurfacesAreFlagged) {
+  std::vector<StudyRow> rows(10);
+  for (std::size_t n = 0; n < rows.size(); ++n) {
+    rows[n].state = "done";
+    rows[n].values["surface.thickness_mean"] = std::to_string(2.5 + 0.01 * static_cast<double>(n));
+    rows[n].values["surface.euler_characteristic"] = n == 3 ? "0" : "2";
+  }
+  rows[7].values["surface.thickness_mean"] = "4.5";
+  rows[9].state = "stopped early (unfold)";
+  const auto flags = flagsOf(rows);
+  for (std::size_t n = 0; n < rows.size(); ++n) {
+    ASSERT_EQ(flags[n].size(), n == 3 || n == 7 || n == 9 ? 1u : 0u) << n;
+  }
+  EXPECT_EQ(flags[3][0].column, "surface.euler_characteristic");
+  EXPECT_EQ(flags[7][0].reason.rfind("robust z ", 0), 0u);
+  EXPECT_EQ(flags[9][0].column, "state");
+  rows.resize(7);  // too few to call one of them far
+  rows[6].values["surface.thickness_mean"] = "4.5";
+  EXPECT_TRUE(flagsOf(rows)[6].empty());
 }
 
 TEST_F(Study, PageEscapesAndMarks) {
   StudyRow row;
-  row.participant = "sub-<x>";
+  row.participant = "sub-</script>";
   row.hemisphere = "L";
   row.state = "failed: a & b";
   row.report = "runs/a/report.html";
-  const std::string page = indexPage({row}, "Title");
-  EXPECT_NE(page.find("sub-&lt;x&gt;"), std::string::npos);
-  EXPECT_NE(page.find("a &amp; b"), std::string::npos);
-  EXPECT_NE(page.find("class=\"flag\""), std::string::npos);
-  EXPECT_NE(page.find("href=\"runs/a/report.html\""), std::string::npos);
+  const std::string page = indexPage({row}, "T<i>");
+  EXPECT_NE(page.find("T&lt;i&gt;"), std::string::npos);
+  EXPECT_NE(page.find("sub-\\u003c/script>"), std::string::npos);
+  EXPECT_NE(page.find(R"("flags":{"2":"failed"})"), std::string::npos);
+  EXPECT_NE(page.find(R"("report":"runs/a/report.html")"), std::string::npos);
+  EXPECT_NE(page.find("0 of 1 hemispheres are done; 1 need a look"), std::string::npos);
 }
 
 }  // namespace

@@ -11,9 +11,10 @@ def plan(
     out: Path,
     atlas: Optional[str] = None,
     *,
-    kind: Literal["auto", "t1", "labels", "freesurfer"] = 'auto',
+    kind: Literal["auto", "t1", "labels", "freesurfer", "bids"] = 'auto',
     hemisphere: Literal["L", "R"] = 'L',
     unfold_surface: Literal["white", "mid", "pial"] = 'mid',
+    given_surfaces: Literal["use", "remake"] = 'use',
     steps: Sequence[Literal["segment", "thickness", "surface", "unfold", "report"]] = ...,
 ) -> List[Dict[str, Any]]: ...
 def table(out: Path) -> List[Dict[str, Any]]: ...

@@ -6,6 +6,7 @@
 #include "Options.h"
 #include "Watch.h"
 
+#include "Explica/Provenance/Export.h"
 #include "Explica/Provenance/Json.h"
 #include "Explica/Provenance/Software.h"
 #include "Explica/Provenance/Verify.h"
@@ -61,7 +62,7 @@ void bindProvenance(py::module_& parent) {
   m.def(
       "prov_json",
       [](const std::filesystem::path& path) {
-        return pythonOf(provenance::toProvJson(provenance::readRecord(path)));
+        return pythonOf(provenance::toProvJson({{path, provenance::readRecord(path)}}));
       },
       "path"_a,
       "A provenance.json as W3C PROV-JSON: a dictionary of entities, activity and agent.");

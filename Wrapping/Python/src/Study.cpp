@@ -39,24 +39,21 @@ void bindStudy(py::module_& parent) {
         py::list list;
         for (const auto& row : study::collectRows(out)) {
           list.append(py::dict("participant"_a = row.participant, "hemisphere"_a = row.hemisphere,
-                               "state"_a = row.state, "report"_a = row.report.string(),
-                               "values"_a = row.values));
+                               "region"_a = row.region, "state"_a = row.state,
+                               "report"_a = row.report.string(), "values"_a = row.values));
         }
         return list;
       },
       "out"_a,
       "Rows of a study's output folder, one a participant's hemisphere: participant, hemisphere,\n"
-      "state, report and values, a dictionary of text by column.");
+      "region, state, report and values, a dictionary of text by column.");
   defWithOptions<pipeline::PlanOptions>(
       m, "plan",
       [](const std::filesystem::path& input, const std::filesystem::path& out,
          const std::optional<std::string>& atlas, const py::kwargs& keywords) {
-        auto options = optionsOf<pipeline::PlanOptions>(keywords);
-        if (options.kind == pipeline::InputKind::Auto) {
-          options.kind = atlas ? pipeline::InputKind::T1 : pipeline::detectKind(input);
-        }
+        const auto options = optionsOf<pipeline::PlanOptions>(keywords);
         py::list steps;
-        for (const auto& step : pipeline::planRun(input, out, atlas, options)) {
+        for (const auto& step : pipeline::planRun(input, out, atlas, options).steps) {
           steps.append(py::dict("name"_a = step.name, "command"_a = step.command,
                                 "needs"_a = step.needs, "values"_a = pythonOf(*step.values)));
         }

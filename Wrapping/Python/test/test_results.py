@@ -100,7 +100,7 @@ class Commands(unittest.TestCase):
         labels.write_bytes(self.labels.read_bytes())
         (found,) = study.find_participants(dataset)
         self.assertEqual(found["name"], "sub-01")
-        self.assertEqual(pathlib.Path(found["input"]).resolve(), labels.resolve())
+        self.assertEqual(pathlib.Path(found["input"]).resolve(), anat.resolve())
         self.assertEqual(found["problem"], "")
         with self.assertRaisesRegex(ValueError, "07"):
             study.find_participants(dataset, ["07"])

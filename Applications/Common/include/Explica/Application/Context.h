@@ -84,6 +84,8 @@ class Context {
   /// True if the user set this option, on the command line or in the configuration file.
   [[nodiscard]] bool given(std::string_view name) const;
   [[nodiscard]] int threads() const;
+  /// True if --private was given: hosts, users and folders shall not be told.
+  [[nodiscard]] bool isPrivate() const;
 
   /// Runs another command as a step, into the folder `name` of this command's output, with the
   /// given option values (JSON as in --config).  Only for commands declared inPlace().
@@ -101,6 +103,10 @@ class Context {
   /// run's.
   std::optional<Outcome> reuseCommand(const Command& command, const std::string& name,
                                       const nlohmann::ordered_json& options);
+
+  /// Takes back what a step, of this run or an earlier one, left in the folder `name`: the outputs
+  /// that its record lists.
+  void dropCommand(const std::string& name);
 
   /// Runs another command into this command's --out.  Only for commands declared writesThrough().
   Outcome runThrough(const Command& command, const nlohmann::ordered_json& options);

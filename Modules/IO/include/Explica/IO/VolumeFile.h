@@ -98,9 +98,10 @@ struct VolumeWriteOptions {
 };
 
 /// Writes a volume whole or not at all; the format follows the name: .nii, .nii.gz, .mgh, .mgz,
-/// .nrrd, .mha.  NIfTI files carry equal qform and sform, both with code 1 (scanner).  Scalars are
-/// stored as float32, labels in the smallest of uint8, int16, int32 that holds them all.  The bytes
-/// depend on the values only, not on the number of threads nor on the time of day.
+/// .nrrd, .mha.  NIfTI files carry equal qform and sform, both with code 1 (scanner); the sform
+/// alone where float32 cannot hold the qform's rotation (tilts of 1e-5 to 1e-3 from a half turn).
+/// Scalars are stored as float32, labels in the smallest of uint8, int16, int32 that holds them
+/// all.  The bytes depend on the values only, not on the number of threads nor on the time of day.
 ///
 /// @throws InvalidInput      unknown extension, empty grid
 /// @throws EnvironmentError  the file cannot be written

@@ -19,10 +19,17 @@ namespace explica::pipeline {
 
 /// What a run starts from.
 enum class InputKind {
-  Auto,       ///< told by the input itself, see detectKind
-  T1,         ///< skull-stripped T1-weighted volume
-  Labels,     ///< label volume of white and grey matter
-  FreeSurfer  ///< subject directory with mri/ribbon.mgz
+  Auto,        ///< told by the input itself, see detectKind
+  T1,          ///< skull-stripped T1-weighted volume
+  Labels,      ///< label volume of white and grey matter
+  FreeSurfer,  ///< subject directory of recon-all: mri, surf, label
+  Bids         ///< anat folder of fMRIPrep, sMRIPrep or of segmentations
+};
+
+/// What to do with white and pial surfaces that are there already.
+enum class GivenSurfaces {
+  Use,    ///< take them over as they are
+  Remake  ///< make our own from the labels
 };
 
 enum class RunHemisphere { Left, Right };
@@ -38,6 +45,7 @@ struct PlanOptions {
   InputKind kind = InputKind::Auto;
   RunHemisphere hemisphere = RunHemisphere::Left;
   UnfoldedSurface unfolded = UnfoldedSurface::Mid;
+  GivenSurfaces given = GivenSurfaces::Use;
   std::vector<RunStep> steps;  ///< those to do; empty for all that the input allows
 };
 
@@ -46,6 +54,8 @@ void describe(PlanOptions& options, Visitor&& visit) {
   visit(Field{"kind", "", "what the input is"}, options.kind);
   visit(Field{"hemisphere", "", "which hemisphere to work on"}, options.hemisphere);
   visit(Field{"unfold-surface", "", "which surface to unfold a patch of"}, options.unfolded);
+  visit(Field{"given-surfaces", "", "what to do with white and pial surfaces found in the input"},
+        options.given);
   visit(Field{"steps", "", "steps to do (default: all that the input allows)"}, options.steps);
 }
 
@@ -57,21 +67,44 @@ struct PlannedStep {
   std::shared_ptr<nlohmann::ordered_json> values;  ///< options and positionals, as in --config
 };
 
-/// What kind of input a path is: a folder with mri/ribbon.mgz is a FreeSurfer subject; a volume of
-/// whole numbers with at most 64 different values, or with FreeSurfer's cortex labels, holds
-/// labels; any other volume is a T1.
-/// @throws IOError, InvalidInput  as readScalars; a folder without ribbon
+/// A file that a run reads, and what for.
+struct SourceFile {
+  std::string role;  ///< "labels", "white surface", ...
+  std::filesystem::path path;
+  std::string meaning;  ///< "FreeSurfer's ribbon", "1 grey, 2 white, 3 fluid"; may be empty
+};
+
+/// A run before it begins: what it reads, what it does, and what it does without.
+struct Plan {
+  InputKind kind = InputKind::Auto;  ///< never Auto
+  std::vector<SourceFile> sources;
+  std::vector<std::string> remarks;  ///< sentences for the user: what was missing, and so on
+  std::vector<PlannedStep> steps;
+};
+
+/// What kind of input a path is.  A folder is a FreeSurfer subject or a BIDS anat folder (see
+/// study::findSubjectFiles).  A volume of whole numbers with at most 64 different values, or with
+/// FreeSurfer's cortex labels, holds labels; any other volume is a T1.
+/// @throws IOError, InvalidInput  as readScalars and findSubjectFiles
 [[nodiscard]] InputKind detectKind(const std::filesystem::path& input);
 
+/// True if the labels tell the left hemisphere from the right one.
+/// @throws as io::readLabels
+[[nodiscard]] bool labelsHaveSides(const std::filesystem::path& labels);
+
 /// The commands that lead from an input to a report, with the values that tie them together.
+///
+/// Three classes without names are told apart by their contacts: grey matter is the class that
+/// touches both others most, so that fMRIPrep's order (1 grey, 2 white, 3 fluid) and ours
+/// (1 fluid, 2 grey, 3 white) are both understood.
+///
 /// @param out    where the steps' folders will be
-/// @param atlas  for a T1: labels in its space; without it only the whole brain's tissues can be
-/// had
-/// @throws InvalidInput  kind Auto, or a T1 without atlas where more than segmentation is asked for
-[[nodiscard]] std::vector<PlannedStep> planRun(const std::filesystem::path& input,
-                                               const std::filesystem::path& out,
-                                               const std::optional<std::string>& atlas,
-                                               const PlanOptions& options);
+/// @param atlas  for a T1: labels in its space, without which only the whole brain's tissues can be
+///               had; otherwise regions to report, instead of those found with the input
+/// @throws InvalidInput  a T1 without atlas where more than segmentation is asked for, a step that
+///                       the input does not allow
+[[nodiscard]] Plan planRun(const std::filesystem::path& input, const std::filesystem::path& out,
+                           const std::optional<std::string>& atlas, const PlanOptions& options);
 
 /// The point of a surface where a patch is taken if none is named: of the vertices within 15 mm of
 /// the line through the centroid along `direction`, the farthest out.
@@ -86,7 +119,13 @@ struct EnumNames<pipeline::InputKind> {
   static constexpr std::array table = {std::pair{pipeline::InputKind::Auto, "auto"},
                                        std::pair{pipeline::InputKind::T1, "t1"},
                                        std::pair{pipeline::InputKind::Labels, "labels"},
-                                       std::pair{pipeline::InputKind::FreeSurfer, "freesurfer"}};
+                                       std::pair{pipeline::InputKind::FreeSurfer, "freesurfer"},
+                                       std::pair{pipeline::InputKind::Bids, "bids"}};
+};
+template <>
+struct EnumNames<pipeline::GivenSurfaces> {
+  static constexpr std::array table = {std::pair{pipeline::GivenSurfaces::Use, "use"},
+                                       std::pair{pipeline::GivenSurfaces::Remake, "remake"}};
 };
 template <>
 struct EnumNames<pipeline::RunHemisphere> {

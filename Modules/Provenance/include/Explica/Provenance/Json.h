@@ -47,7 +47,7 @@ void optionsFromJson(const Json& object, Options& options) {
 /// @throws IOError  names the file and, for a syntax error, the place
 [[nodiscard]] Json readJson(const std::filesystem::path& path);
 
-/// Writes a JSON file, indented, ending in a newline; NaN becomes null.
+/// Writes a JSON file, whole or not at all, indented, ending in a newline; NaN becomes null.
 /// @throws EnvironmentError  the file cannot be written
 void writeJson(const std::filesystem::path& path, const Json& value);
 

@@ -81,6 +81,12 @@ struct Record {
 
 [[nodiscard]] Json toJson(const Record& record);
 
+/// Names of files without their folders, wherever paths stand in a text: for what shall not tell of
+/// the machine.  A path begins with '/', '~' or "../", or holds '/' and ends in a name with a dot.
+[[nodiscard]] std::string textWithoutFolders(std::string_view text);
+/// The same for every text in a value.
+[[nodiscard]] Json withoutFolders(const Json& value);
+
 /// The JSON schema that every record obeys.
 [[nodiscard]] std::string_view recordSchema();
 
@@ -88,7 +94,8 @@ struct Record {
 /// @throws IOError  absent, not JSON, or not a record: names the file and the first fault
 [[nodiscard]] Json readRecord(const std::filesystem::path& path);
 
-/// Looks beside `file`, and in the folders above within three steps, for a record that lists it.
+/// Looks beside `file`, and in the folders above within three steps, for a record that lists it;
+/// for a copy by BIDS's name, for a record below the study's `runs` that lists its content.
 struct FoundRecord {
   std::filesystem::path path;
   Json record;

@@ -41,7 +41,7 @@ struct Verification {
 /// @throws InvalidInput  no record names the file
 [[nodiscard]] std::string historyOf(const std::filesystem::path& file);
 
-/// W3C PROV-JSON of a record: entities, one activity, the software agent, and who used what.
-[[nodiscard]] Json toProvJson(const Json& record);
+/// Where the records of the steps that made a record's inputs are now; they may be gone.
+[[nodiscard]] std::vector<std::filesystem::path> parentRecords(const std::filesystem::path& record);
 
 }  // namespace explica::provenance

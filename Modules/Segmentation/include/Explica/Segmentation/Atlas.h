@@ -30,9 +30,14 @@ struct AtlasStructure {
 /// What the labels of an atlas mean.
 using AtlasLegend = std::map<Label, AtlasStructure>;
 
-/// Reads a legend: one structure a line, "value name", anything after the name ignored; empty lines
-/// and lines that start with '#' are skipped.  Side comes from the name's end (_L, _R) and the kind
-/// from its beginning, as the AAL atlas names them [TzourioMazoyer2002].
+/// A structure by its name: side from the name's end (_L, _R), kind from its beginning, as the AAL
+/// atlas names them [TzourioMazoyer2002].
+[[nodiscard]] AtlasStructure structureNamed(const std::string& name);
+
+/// Reads a legend: one structure a line, "value name", anything after the name ignored; empty
+/// lines, lines that start with '#' and BIDS's heading "index name" are skipped.  Side comes from
+/// the name's end (_L, _R) and the kind from its beginning, as the AAL atlas names them
+/// [TzourioMazoyer2002].
 /// @param name  the legend's file, for messages
 /// @throws InvalidInput  a line without value and name, a value named twice, or no cortical
 /// structure

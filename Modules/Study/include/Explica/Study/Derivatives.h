@@ -9,20 +9,31 @@
 
 namespace explica::study {
 
+/// Where a derivative's files came from.
+struct DerivativeOrigin {
+  std::filesystem::path dataset;  ///< the BIDS data set; "bids:raw:" stands for it
+  bool withNames = true;          ///< false: folders of this machine are not told
+};
+
 /// Writes what makes a folder a BIDS derivative: dataset_description.json, descriptions.tsv and
 /// .bidsignore (surfaces are not yet part of BIDS).  Existing equal files stay as they are.
-void describeDerivatives(const std::filesystem::path& out, const std::filesystem::path& source,
+void describeDerivatives(const std::filesystem::path& out, const DerivativeOrigin& origin,
                          const std::string& version);
 
 /// Copies the outputs of one run of a participant's hemisphere to BIDS names below
-/// `out/sub-XX[/ses-YY]/anat`, each with a sidecar: Sources, SpatialReference, Units, Euler number,
-/// defects.  What the run did not write is left out.
+/// `out/sub-XX[/ses-YY]/anat`, each with a sidecar: Sources (BIDS URIs, found by the steps'
+/// records), SpatialReference, Units, Euler number, defects, the file's hash and the activity that
+/// made it (as in prov/).  What the run did not write is left out, and taken away if it is there
+/// from an earlier run.
 /// @param run         folder of `explica run`
 /// @param hemisphere  "L" or "R"
-/// @return files written, relative to `out`
+/// @param region      of the patch, where a study names several: "hand"; may be empty
+/// @return files written, relative to `out`, without sidecars
 std::vector<std::filesystem::path> exportRun(const std::filesystem::path& run,
                                              const std::filesystem::path& out,
                                              const Participant& participant,
-                                             const std::string& hemisphere);
+                                             const std::string& hemisphere,
+                                             const DerivativeOrigin& origin,
+                                             const std::string& region = "");
 
 }  // namespace explica::study

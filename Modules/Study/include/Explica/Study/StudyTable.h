@@ -13,19 +13,35 @@ namespace explica::study {
 struct StudyRow {
   std::string participant;                    ///< "sub-01" or "sub-01_ses-02"
   std::string hemisphere;                     ///< "L" or "R"
+  std::string region;                         ///< of a study with several patches; may be empty
   std::string state;                          ///< "done", "stopped early", "failed: ..."
   std::filesystem::path report;               ///< report.html, relative to the study; may be absent
-  std::map<std::string, std::string> values;  ///< "surface.euler_characteristic" and so on
+  std::map<std::string, std::string> values;  ///< "surface.euler_characteristic" and so on;
+                                              ///< "region.precuneus": mean thickness, mm
+};
+
+/// Something in a row that a person should look at.
+struct StudyFlag {
+  std::string column;  ///< "state" or a column of values
+  std::string reason;  ///< "Euler characteristic is not 2", "robust z 4.2"
 };
 
 /// Rows of all runs below `out/runs`, in the order of their names, whatever became of them.
 [[nodiscard]] std::vector<StudyRow> collectRows(const std::filesystem::path& out);
 
+/// What is wrong or unusual in each row: a run that failed or stopped early, a surface that is no
+/// sphere or meets itself, and numbers far from the other rows'.
+///
+/// Far is a robust z of more than 3.5 [IglewiczHoaglin1993]: z = 0.6745 (x - median) / MAD over the
+/// rows of the same region, of which there must be 8 with the number.
+[[nodiscard]] std::vector<std::vector<StudyFlag>> flagsOf(const std::vector<StudyRow>& rows);
+
 /// Tab-separated, "n/a" where a row has no value (as BIDS wants it); columns in a fixed order.
 [[nodiscard]] std::string tableText(const std::vector<StudyRow>& rows);
 
-/// A page with the same table: columns sort on a click, failures and unmet goals are marked, rows
-/// lead to their reports.  One file, no request.
+/// A page with the same table: columns sort on a click, rows can be filtered, failures and outliers
+/// are marked, rows lead to their reports.  One file, no request; 200 rows are shown at a time, so
+/// that it stays quick with 100,000.
 [[nodiscard]] std::string indexPage(const std::vector<StudyRow>& rows, const std::string& title);
 
 }  // namespace explica::study

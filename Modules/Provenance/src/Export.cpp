@@ -1,0 +1,341 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Provenance/Export.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Provenance/Verify.h"
+
+#include <algorithm>
+#include <optional>
+#include <set>
+
+namespace explica::provenance {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A file by its content, with the name it had.
+struct FileFact {
+  std::string sha256;
+  std::uintmax_t size = 0;
+  std::string label;  ///< path below the study, or the name alone
+  std::string role;   ///< of an input
+  bool inside = false;
+};
+
+/// What a record read and wrote, the study's files named by their path below `root`.
+struct Account {
+  std::string activity;
+  std::vector<FileFact> used, generated;
+};
+
+std::string below(const fs::path& root, const fs::path& path) {
+  std::error_code ignored;
+  const fs::path relative =
+      fs::weakly_canonical(path, ignored).lexically_relative(fs::weakly_canonical(root, ignored));
+  if (relative.empty() || *relative.begin() == "..") return "";
+  return relative.generic_string();
+}
+
+/// The path below the study at which each file that a record wrote lies, by content.
+std::map<std::string, std::string> placesOf(const std::vector<LocatedRecord>& records,
+                                            const fs::path& root) {
+  std::map<std::string, std::string> places;
+  for (const LocatedRecord& located : records) {
+    const std::string folder = below(root, located.path.parent_path());
+    for (const Json* outputs :
+         {&located.record["outputs"], &located.record["execution"]["varying_outputs"]}) {
+      for (const Json& output : *outputs) {
+        if (!output.contains("sha256")) continue;
+        const std::string name = output["path"];
+        places.emplace(output["sha256"],
+                       folder.empty() || folder == "." ? name : folder + "/" + name);
+      }
+    }
+  }
+  return places;
+}
+
+std::vector<Account> accountsOf(const std::vector<LocatedRecord>& records, const fs::path& root) {
+  const auto places = placesOf(records, root);
+  const auto fact = [&](const Json& entry, const std::string& name) {
+    FileFact file;
+    file.sha256 = entry["sha256"];
+    file.size = entry["size"];
+    const auto place = places.find(file.sha256);
+    file.inside = place != places.end();
+    file.label = file.inside ? place->second : fs::path(name).filename().string();
+    return file;
+  };
+  std::vector<Account> accounts;
+  for (const LocatedRecord& located : records) {
+    Account account;
+    account.activity = activityName(located.record);
+    for (const Json& input : located.record["inputs"]) {
+      account.used.push_back(fact(input, input["name"]));
+      account.used.back().role = input["role"];
+    }
+    for (const Json* outputs :
+         {&located.record["outputs"], &located.record["execution"]["varying_outputs"]}) {
+      for (const Json& output : *outputs) {
+        if (output.contains("sha256")) account.generated.push_back(fact(output, output["path"]));
+      }
+    }
+    accounts.push_back(std::move(account));
+  }
+  return accounts;
+}
+
+std::string softwareName(const Json& record) {
+  return "explica-" + record["software"]["version"].get<std::string>();
+}
+
+/// Adds to an array unless an element has the same @id or Id.
+class Unique {
+ public:
+  explicit Unique(std::string key) : key_(std::move(key)) {}
+  void add(Json element) {
+    if (seen_.insert(element[key_].get<std::string>()).second) all_.push_back(std::move(element));
+  }
+  [[nodiscard]] const Json& all() const { return all_; }
+
+ private:
+  std::string key_;
+  std::set<std::string> seen_;
+  Json all_ = Json::array();
+};
+
+/// The command without its paths: options as they were resolved.
+std::string commandText(const Json& record) {
+  return "explica " + record["command"].get<std::string>();
+}
+
+}  // namespace
+
+std::string activityName(const Json& record) {
+  return "run-" + record["id"].get<std::string>();
+}
+
+std::vector<LocatedRecord> recordsBelow(const fs::path& folder) {
+  std::vector<fs::path> paths;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.path().filename() == kRecordName) paths.push_back(entry.path());
+  }
+  std::sort(paths.begin(), paths.end());
+  std::vector<LocatedRecord> records;
+  for (const fs::path& path : paths) {
+    try {
+      records.push_back({path, readRecord(path)});
+    } catch (const IOError&) {
+      continue;  // damaged: `verify` tells
+    }
+  }
+  return records;
+}
+
+std::vector<LocatedRecord> recordsBehind(const fs::path& first) {
+  std::vector<LocatedRecord> records;
+  std::set<fs::path> seen;
+  std::vector<fs::path> waiting = {first};
+  while (!waiting.empty()) {
+    const fs::path path = waiting.back();
+    waiting.pop_back();
+    std::error_code ignored;
+    if (!seen.insert(fs::weakly_canonical(path, ignored)).second) continue;
+    if (!records.empty() && !fs::exists(path, ignored)) continue;
+    records.push_back({path, readRecord(path)});
+    for (const fs::path& parent : parentRecords(path)) waiting.push_back(parent);
+  }
+  return records;
+}
+
+Json toProvJson(const std::vector<LocatedRecord>& records) {
+  Json prov = Json::object();
+  prov["prefix"] = {{"explica", "https://explica.invalid/ns#"},
+                    {"sha256", "urn:sha256:"},
+                    {"prov", "http://www.w3.org/ns/prov#"}};
+  for (const char* part :
+       {"entity", "activity", "agent", "used", "wasGeneratedBy", "wasAssociatedWith"}) {
+    prov[part] = Json::object();
+  }
+  const auto relate = [&](const char* relation, Json value) {
+    const std::string name = std::string("_:") + relation + std::to_string(prov[relation].size());
+    prov[relation][name] = std::move(value);
+  };
+  const auto entity = [&](const FileFact& file) {
+    const std::string name = "sha256:" + file.sha256;
+    prov["entity"].emplace(name, Json{{"prov:label", file.label}, {"explica:size", file.size}});
+    return name;
+  };
+  const fs::path root = records.empty() ? fs::path() : records.front().path.parent_path();
+  const auto accounts = accountsOf(records, root);
+  std::set<std::string> made;
+  for (std::size_t n = 0; n < records.size(); ++n) {
+    const Json& record = records[n].record;
+    const std::string activity = "explica:" + accounts[n].activity;
+    prov["activity"][activity] = {{"prov:startTime", record["execution"]["started"]},
+                                  {"prov:endTime", record["execution"]["ended"]},
+                                  {"prov:label", commandText(record)},
+                                  {"explica:options", record["options"].dump()},
+                                  {"explica:termination", record["termination"]}};
+    const std::string agent = "explica:" + softwareName(record);
+    prov["agent"][agent] = {{"prov:type", "prov:SoftwareAgent"},
+                            {"explica:commit", record["software"]["commit"]}};
+    relate("wasAssociatedWith", {{"prov:activity", activity}, {"prov:agent", agent}});
+    for (const FileFact& file : accounts[n].used) {
+      relate(
+          "used",
+          {{"prov:activity", activity}, {"prov:entity", entity(file)}, {"prov:role", file.role}});
+    }
+    for (const FileFact& file : accounts[n].generated) {
+      if (!made.insert(file.sha256 + activity).second) continue;
+      relate("wasGeneratedBy", {{"prov:entity", entity(file)}, {"prov:activity", activity}});
+    }
+  }
+  // Of inputs whose makers are not among the records, at least the makers' names.
+  for (const LocatedRecord& located : records) {
+    for (const Json& input : located.record["inputs"]) {
+      if (!input.contains("parent")) continue;
+      const std::string maker = "explica:run-" + input["parent"].get<std::string>();
+      if (prov["activity"].contains(maker)) continue;
+      prov["activity"][maker] = Json::object();
+      relate("wasGeneratedBy", {{"prov:entity", "sha256:" + input["sha256"].get<std::string>()},
+                                {"prov:activity", maker}});
+    }
+  }
+  return prov;
+}
+
+std::map<std::string, Json> toBidsProv(const std::vector<LocatedRecord>& records,
+                                       const fs::path& root) {
+  const std::string base = "bids::prov#";
+  Unique activities("Id"), entities("Id"), environments("Id"), software("Id");
+  const auto accounts = accountsOf(records, root);
+  const auto nameOfFile = [&](const FileFact& file) {
+    return file.inside ? "bids::" + file.label : base + "entity-" + file.sha256.substr(0, 16);
+  };
+  for (std::size_t n = 0; n < records.size(); ++n) {
+    const Json& record = records[n].record;
+    const Json& execution = record["execution"];
+    const std::string id = base + accounts[n].activity;
+    const std::string program = base + softwareName(record);
+    const Json& machine = execution["machine"];
+    const Json facts = {{"OperatingSystem", machine.value("os", "")},
+                        {"Libraries", execution["libraries"]}};
+    const std::string environment = base + "env-" + sha256Of(facts.dump()).substr(0, 12);
+    software.add({{"Id", program},
+                  {"Label", "Explica"},
+                  {"Version", record["software"]["version"]},
+                  {"AltIdentifier", "commit:" + record["software"]["commit"].get<std::string>()}});
+    Json described = {{"Id", environment}, {"Label", "software environment"}};
+    described.update(facts);
+    environments.add(described);
+    Json used = Json::array({environment});
+    for (const FileFact& file : accounts[n].used) {
+      used.push_back(nameOfFile(file));
+      entities.add({{"Id", nameOfFile(file)},
+                    {"Label", fs::path(file.label).filename().string()},
+                    {"AtLocation", file.label},
+                    {"Digest", {{"sha256", file.sha256}}}});
+    }
+    for (const FileFact& file : accounts[n].generated) {
+      entities.add({{"Id", nameOfFile(file)},
+                    {"Label", fs::path(file.label).filename().string()},
+                    {"AtLocation", file.label},
+                    {"GeneratedBy", id},
+                    {"Digest", {{"sha256", file.sha256}}}});
+    }
+    activities.add({{"Id", id},
+                    {"Label", commandText(record)},
+                    {"Command", commandText(record) + " --config " + record["options"].dump()},
+                    {"AssociatedWith", program},
+                    {"Used", used},
+                    {"StartedAtTime", execution["started"]},
+                    {"EndedAtTime", execution["ended"]}});
+  }
+  return {{"prov-explica_act.json", Json{{"Activities", activities.all()}}},
+          {"prov-explica_ent.json", Json{{"Entities", entities.all()}}},
+          {"prov-explica_env.json", Json{{"Environments", environments.all()}}},
+          {"prov-explica_soft.json", Json{{"Software", software.all()}}}};
+}
+
+Json toRoCrate(const std::vector<LocatedRecord>& records, const fs::path& root,
+               const CrateDescription& description) {
+  const auto reference = [](const std::string& id) { return Json{{"@id", id}}; };
+  const std::string processRun = "https://w3id.org/ro/wfrun/process/0.5";
+  const auto accounts = accountsOf(records, root);
+  Unique files("@id"), actions("@id"), programs("@id");
+  const auto add = [&](const FileFact& file) {
+    const std::string id = file.inside ? file.label : "urn:sha256:" + file.sha256;
+    files.add({{"@id", id},
+               {"@type", "File"},
+               {"name", fs::path(file.label).filename().string()},
+               {"contentSize", std::to_string(file.size)},
+               {"sha256", file.sha256}});
+    return reference(id);
+  };
+  std::string latest = "1970-01-01T00:00:00Z";
+  for (std::size_t n = 0; n < records.size(); ++n) {
+    const Json& record = records[n].record;
+    const std::string program = "#" + softwareName(record);
+    programs.add({{"@id", program},
+                  {"@type", "SoftwareApplication"},
+                  {"name", "Explica"},
+                  {"url", "https://explica.invalid/"},
+                  {"softwareVersion", record["software"]["version"].get<std::string>() + " (" +
+                                          record["software"]["commit"].get<std::string>() + ")"}});
+    Json objects = Json::array(), results = Json::array();
+    for (const FileFact& file : accounts[n].used) objects.push_back(add(file));
+    for (const FileFact& file : accounts[n].generated) results.push_back(add(file));
+    const std::string ended = record["execution"]["ended"];
+    latest = std::max(latest, ended);
+    actions.add({{"@id", "#" + accounts[n].activity},
+                 {"@type", "CreateAction"},
+                 {"name", commandText(record)},
+                 {"description", "options: " + record["options"].dump()},
+                 {"instrument", reference(program)},
+                 {"object", objects},
+                 {"result", results},
+                 {"startTime", record["execution"]["started"]},
+                 {"endTime", ended},
+                 {"actionStatus", reference("http://schema.org/CompletedActionStatus")}});
+  }
+  for (const std::string& name : description.files) {
+    const fs::path path = root / name;
+    const Digest digest = digestOf(path);
+    files.add({{"@id", name},
+               {"@type", "File"},
+               {"name", path.filename().string()},
+               {"contentSize", std::to_string(digest.size)},
+               {"sha256", digest.sha256}});
+  }
+
+  Json parts = Json::array(), mentions = Json::array();
+  for (const Json& file : files.all()) parts.push_back(reference(file["@id"]));
+  for (const Json& action : actions.all()) mentions.push_back(reference(action["@id"]));
+  Json graph = Json::array();
+  graph.push_back({{"@id", "ro-crate-metadata.json"},
+                   {"@type", "CreativeWork"},
+                   {"conformsTo", reference("https://w3id.org/ro/crate/1.1")},
+                   {"about", reference("./")}});
+  graph.push_back({{"@id", "./"},
+                   {"@type", "Dataset"},
+                   {"name", description.name},
+                   {"description", description.description},
+                   {"datePublished", latest},
+                   {"license", description.license},
+                   {"conformsTo", reference(processRun)},
+                   {"hasPart", parts},
+                   {"mentions", mentions}});
+  graph.push_back({{"@id", processRun},
+                   {"@type", "CreativeWork"},
+                   {"name", "Process Run Crate"},
+                   {"version", "0.5"}});
+  for (const Unique* part : {&programs, &actions, &files}) {
+    for (const Json& element : part->all()) graph.push_back(element);
+  }
+  return {{"@context", "https://w3id.org/ro/crate/1.1/context"}, {"@graph", graph}};
+}
+
+}  // namespace explica::provenance

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Surface/GivenSurfaces.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/Parallel.h"
+#include "Explica/Geometry/FaceTree.h"
+#include "Explica/Surface/Measures.h"
+
+#include <cmath>
+#include <string>
+
+namespace explica::surface {
+namespace {
+
+void requireSameFaces(const TriangleMesh& white, const TriangleMesh& other, const char* name) {
+  if (other.vertexCount() == white.vertexCount() && other.faces.rows() == white.faces.rows() &&
+      other.faces == white.faces) {
+    return;
+  }
+  throw InvalidInput(
+      std::string("surfaces: the white surface (") + std::to_string(white.vertexCount()) +
+      " vertices, " + std::to_string(white.faceCount()) + " faces) and the " + name + " one (" +
+      std::to_string(other.vertexCount()) + ", " + std::to_string(other.faceCount()) +
+      ") must have the same faces, vertex for vertex");
+}
+
+}  // namespace
+
+Eigen::VectorXd distanceThickness(const TriangleMesh& white, const TriangleMesh& pial) {
+  const geometry::FaceTree whiteTree(white), pialTree(pial);
+  Eigen::VectorXd thickness(white.vertexCount());
+  parallelFor(white.vertexCount(), 1024, [&](std::size_t v) {
+    const Point inner = white.positions.row(v).transpose();
+    const Point outer = pial.positions.row(v).transpose();
+    thickness[v] = inner == outer
+                       ? 0.0
+                       : 0.5 * (std::sqrt(pialTree.closestPoint(inner).squaredDistance) +
+                                std::sqrt(whiteTree.closestPoint(outer).squaredDistance));
+  });
+  return thickness;
+}
+
+CorticalSurfaces adoptSurfaces(TriangleMesh white, TriangleMesh pial,
+                               std::optional<TriangleMesh> mid) {
+  requireSameFaces(white, pial, "pial");
+  if (mid) requireSameFaces(white, *mid, "middle");
+  CorticalSurfaces surfaces;
+  surfaces.thickness = distanceThickness(white, pial);
+  surfaces.noRibbon = (surfaces.thickness.array() == 0).count();
+  surfaces.curvature = meanCurvature(white);
+  surfaces.mid =
+      mid ? std::move(*mid) : TriangleMesh{0.5 * (white.positions + pial.positions), white.faces};
+  surfaces.white.mesh = std::move(white);
+  surfaces.pial = std::move(pial);
+  return surfaces;
+}
+
+}  // namespace explica::surface

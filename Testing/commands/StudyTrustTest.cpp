@@ -1,0 +1,209 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+// What a study leaves when it is killed, when the disk is full, when inputs are bad or when two
+// runs want the same folder.
+
+#include "Explica/Provenance/Digest.h"
+#include "SmallStudy.h"
+
+#include <gtest/gtest.h>
+#include <sys/mount.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <random>
+#include <thread>
+
+namespace explica::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using Hashes = std::map<std::string, std::string>;
+
+/// Names of files that one has and the other has not, or with other content.
+std::vector<std::string> differences(const Hashes& a, const Hashes& b) {
+  std::vector<std::string> names;
+  for (const auto& [name, hash] : a) {
+    const auto other = b.find(name);
+    if (other == b.end() || other->second != hash) names.push_back(name);
+  }
+  for (const auto& [name, hash] : b) {
+    if (!a.count(name)) names.push_back(name);
+  }
+  return names;
+}
+
+/// Final files that are not what an undisturbed run writes; remains of the interruption (hidden
+/// names) are no final files.
+std::vector<std::string> damagedFiles(const fs::path& out, const Hashes& undisturbed) {
+  std::vector<std::string> damaged;
+  if (!fs::exists(out)) return damaged;
+  for (const auto& entry : fs::recursive_directory_iterator(out)) {
+    const fs::path name = entry.path().lexically_relative(out);
+    const auto hidden = [](const fs::path& part) { return part.string().rfind('.', 0) == 0; };
+    if (!entry.is_regular_file() || std::any_of(name.begin(), name.end(), hidden)) continue;
+    const auto whole = undisturbed.find(name.string());
+    if (whole != undisturbed.end()) {
+      if (provenance::digestOf(entry.path()).sha256 != whole->second) damaged.push_back(name);
+    } else if (name.extension() == ".json") {
+      try {
+        (void)readJson(entry.path());
+      } catch (const std::exception&) {
+        damaged.push_back(name);
+      }
+    } else if (name.filename() == "report.html") {
+      if (readText(entry.path()).find("</html>") == std::string::npos) damaged.push_back(name);
+    }
+  }
+  return damaged;
+}
+
+TEST(StudyTrust, AKillAtAnyMomentLeavesWholeFilesAndTheRerunGivesTheSameBytes) {
+  const TemporaryFolder folder;
+  const SmallStudy study(folder.path(), {"01"});
+  const auto begin = std::chrono::steady_clock::now();
+  ASSERT_EQ(explica(study.participants(folder / "undisturbed")).exitCode, 0);
+  const std::chrono::duration<double> whole = std::chrono::steady_clock::now() - begin;
+  const Hashes expected = stableHashes(folder / "undisturbed");
+  ASSERT_GT(expected.size(), 20u);
+
+  constexpr unsigned kSeed = 20261121;
+  constexpr int kKills = 50;
+  std::mt19937 random(kSeed);
+  std::uniform_real_distribution<double> moment(0, whole.count());
+  int killed = 0;
+  for (int i = 0; i < kKills; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(kSeed) + ", kill " + std::to_string(i));
+    const std::string out = folder / "out";
+    CommandSetting setting;
+    setting.signal = SIGKILL;
+    setting.signalAfter = moment(random);
+    killed += explica(study.participants(out), setting).exitCode == 128 + SIGKILL;
+    ASSERT_EQ(damagedFiles(out, expected), std::vector<std::string>());
+    const CommandResult again = explica(study.participants(out));
+    ASSERT_EQ(again.exitCode, 0) << again;
+    ASSERT_EQ(differences(stableHashes(out), expected), std::vector<std::string>());
+    fs::remove_all(out);
+  }
+  EXPECT_GT(killed, kKills / 4);
+}
+
+/// A small file system of its own, while this object lives.
+class SmallDisk {
+ public:
+  SmallDisk(fs::path place, const std::string& size) : place_(std::move(place)) {
+    fs::create_directories(place_);
+    mounted_ = mount("tmpfs", place_.c_str(), "tmpfs", 0, ("size=" + size).c_str()) == 0;
+  }
+  ~SmallDisk() {
+    if (mounted_) umount2(place_.c_str(), MNT_DETACH);
+  }
+  SmallDisk(const SmallDisk&) = delete;
+  SmallDisk& operator=(const SmallDisk&) = delete;
+  [[nodiscard]] bool mounted() const { return mounted_; }
+  void resize(const std::string& size) const {
+    ASSERT_EQ(mount("tmpfs", place_.c_str(), "tmpfs", MS_REMOUNT, ("size=" + size).c_str()), 0);
+  }
+
+ private:
+  fs::path place_;
+  bool mounted_ = false;
+};
+
+TEST(StudyTrust, AFullDiskLeavesWholeFilesAndMoreRoomGivesTheSameBytes) {
+  const TemporaryFolder folder;
+  const SmallStudy study(folder.path(), {"01"});
+  fs::create_directories(folder / "wide");  // as deep as the small disk: links are relative
+  ASSERT_EQ(explica(study.participants(folder / "wide/out")).exitCode, 0);
+  const Hashes expected = stableHashes(folder / "wide/out");
+  for (const char* size : {"16k", "64k", "128k", "256k"}) {
+    SCOPED_TRACE(size);
+    const SmallDisk disk(folder / "disk", size);
+    if (!disk.mounted()) GTEST_SKIP() << "skipped: this user may not mount a small file system";
+    const std::string out = folder / "disk/out";
+    const CommandResult full = explica(study.participants(out));
+    EXPECT_EQ(full.exitCode, 4) << full;
+    EXPECT_NE(full.err.find("no space left"), std::string::npos) << full;
+    EXPECT_EQ(damagedFiles(out, expected), std::vector<std::string>());
+    disk.resize("100m");
+    const CommandResult again = explica(study.participants(out));
+    ASSERT_EQ(again.exitCode, 0) << again;
+    EXPECT_EQ(differences(stableHashes(out), expected), std::vector<std::string>());
+  }
+}
+
+TEST(StudyTrust, AnUnreadableInputInTheMiddleIsARowAndStopsNobody) {
+  const TemporaryFolder folder;
+  const SmallStudy study(folder.path(), {"01", "02", "03", "04"});
+  fs::resize_file(study.labels("02"), fs::file_size(study.labels("02")) / 2);
+  fs::remove(study.labels("03"));
+  fs::create_symlink("/nowhere/labels.nii.gz", study.labels("03"));
+  const CommandResult run = explica(study.participants(study.out()));
+  ASSERT_EQ(run.exitCode, 0) << run;
+  const CommandResult group = explica(study.group(study.out()));
+  ASSERT_EQ(group.exitCode, 0) << group;
+  const std::string table = readText(study.out() + "/study.tsv");
+  EXPECT_NE(table.find("sub-01\tL\tdone\t"), std::string::npos) << table;
+  EXPECT_NE(table.find("sub-02\tL\tfailed: "), std::string::npos) << table;
+  EXPECT_NE(table.find("sub-03\tL\tfailed: "), std::string::npos) << table;
+  EXPECT_NE(table.find("sub-04\tL\tdone\t"), std::string::npos) << table;
+  EXPECT_FALSE(fs::exists(study.out() + "/sub-02"));
+  EXPECT_FALSE(fs::exists(study.out() + "/runs/sub-02_hemi-L/surface"));
+}
+
+TEST(StudyTrust, AnInputThatTurnsBadTakesItsOldResultsAway) {
+  const TemporaryFolder folder;
+  const SmallStudy study(folder.path(), {"01", "02"});
+  ASSERT_EQ(explica(study.participants(study.out())).exitCode, 0);
+  ASSERT_TRUE(fs::exists(study.out() + "/sub-02/anat/sub-02_hemi-L_pial.surf.gii"));
+  fs::resize_file(study.labels("02"), 100);
+  ASSERT_EQ(explica(study.participants(study.out())).exitCode, 0);
+  EXPECT_FALSE(fs::exists(study.out() + "/sub-02/anat/sub-02_hemi-L_pial.surf.gii"));
+  EXPECT_TRUE(fs::exists(study.out() + "/sub-01/anat/sub-01_hemi-L_pial.surf.gii"));
+}
+
+std::string thisHost() {
+  char host[256] = {};
+  gethostname(host, sizeof host - 1);
+  return host;
+}
+
+TEST(StudyTrust, ASecondRunIntoTheSameFolderNamesTheFirst) {
+  const TemporaryFolder folder;
+  const SmallStudy study(folder.path(), {"01", "02", "03", "04", "05", "06"});
+  CommandResult first;
+  std::thread running([&] { first = explica(study.participants(study.out())); });
+  const fs::path lock = study.out() + "/.explica-lock";
+  for (int wait = 0; wait < 2000 && !fs::exists(lock); ++wait) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  const CommandResult second = explica(study.participants(study.out()));
+  running.join();
+  EXPECT_EQ(first.exitCode, 0) << first;
+  EXPECT_EQ(second.exitCode, 4) << second;
+  for (const std::string& part :
+       {std::string("in use by process "), "on " + thisHost(), std::string("since 20")}) {
+    EXPECT_NE(second.err.find(part), std::string::npos) << second;
+  }
+}
+
+TEST(StudyTrust, ALockOfAnotherHostCountsUntilItIsSilent) {
+  const TemporaryFolder folder;
+  const SmallStudy study(folder.path(), {"01"});
+  fs::create_directories(study.out());
+  const fs::path lock = study.out() + "/.explica-lock";
+  writeText(lock, R"({"host": "elsewhere", "pid": 1, "process_start": "1", )"
+                  R"("started": "2026-01-01T00:00:00Z", "command": "bids"})");
+  const CommandResult refused = explica(study.participants(study.out()));
+  EXPECT_EQ(refused.exitCode, 4) << refused;
+  EXPECT_NE(refused.err.find("process 1 on elsewhere"), std::string::npos) << refused;
+  fs::last_write_time(lock, fs::file_time_type::clock::now() - std::chrono::minutes(11));
+  const CommandResult taken = explica(study.participants(study.out()));
+  EXPECT_EQ(taken.exitCode, 0) << taken;
+  EXPECT_NE(taken.err.find("an earlier run was killed here"), std::string::npos) << taken;
+}
+
+}  // namespace
+}  // namespace explica::testing

@@ -1,0 +1,155 @@
+# SPDX-FileCopyrightText: The Explica developers
+# SPDX-License-Identifier: Apache-2.0
+"""Checks the exports of a study without any code of ours: RO-Crate 1.1 with Process Run Crate,
+BIDS-Prov, PROV-JSON, and the sidecars of a BIDS derivative.  Usage: check_study.py OUT PROV_JSON"""
+
+import hashlib
+import json
+import pathlib
+import re
+import sys
+
+out = pathlib.Path(sys.argv[1])
+faults = []
+
+
+def check(holds, message):
+    if not holds:
+        faults.append(message)
+
+
+def load(path):
+    return json.loads(path.read_text(encoding="utf-8"))
+
+
+def sha256(path):
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def references(value):
+    return [entry["@id"] for entry in (value if isinstance(value, list) else [value])]
+
+
+# ---- RO-Crate: https://www.researchobject.org/ro-crate/specification/1.1 ----
+crate = load(out / "ro-crate-metadata.json")
+check(crate["@context"] == "https://w3id.org/ro/crate/1.1/context", "crate: context")
+entities = {entity["@id"]: entity for entity in crate["@graph"]}
+check(len(entities) == len(crate["@graph"]), "crate: an @id stands twice")
+for entity in crate["@graph"]:
+    check("@type" in entity, f"crate: {entity['@id']} has no type")
+descriptor = entities["ro-crate-metadata.json"]
+check(descriptor["@type"] == "CreativeWork", "crate: descriptor's type")
+check(descriptor["about"] == {"@id": "./"}, "crate: descriptor's about")
+check(descriptor["conformsTo"]["@id"].startswith("https://w3id.org/ro/crate/1."), "crate: version")
+root = entities["./"]
+check(root["@type"] == "Dataset", "crate: root's type")
+for key in ("name", "description", "datePublished", "license"):
+    check(root.get(key), f"crate: root has no {key}")
+check(re.match(r"\d{4}-\d\d-\d\d", root["datePublished"]), "crate: datePublished is no ISO date")
+parts = set(references(root["hasPart"]))
+files = [entity for entity in crate["@graph"] if entity["@type"] == "File"]
+check(parts == {entity["@id"] for entity in files}, "crate: hasPart and files differ")
+inside = 0
+for entity in files:
+    name = entity["@id"]
+    if name.startswith("urn:"):
+        check(name == "urn:sha256:" + entity["sha256"], f"crate: {name}")
+        continue
+    check((out / name).is_file(), f"crate: {name} is not there")
+    if (out / name).is_file():
+        check(sha256(out / name) == entity["sha256"], f"crate: {name} has another hash")
+        check((out / name).stat().st_size == int(entity["contentSize"]), f"crate: {name}: size")
+        inside += 1
+check(inside > 20, "crate: hardly a file")
+actions = [entity for entity in crate["@graph"] if entity["@type"] == "CreateAction"]
+check(len(actions) >= 3, "crate: actions are missing")
+check(set(references(root["mentions"])) == {a["@id"] for a in actions}, "crate: mentions")
+for action in actions:
+    for key in ("instrument", "object", "result"):
+        for reference in references(action[key]):
+            check(reference in entities, f"crate: {action['@id']} refers to {reference}")
+    check(entities[action["instrument"]["@id"]]["@type"] == "SoftwareApplication", "crate: tool")
+    check(action["result"], f"crate: {action['@id']} made nothing")
+    check(action["startTime"] <= action["endTime"], "crate: times")
+
+# ---- BIDS-Prov (BEP028) ----
+parts = {}
+for part, key in (("act", "Activities"), ("ent", "Entities"), ("env", "Environments"),
+                  ("soft", "Software")):
+    listed = load(out / "prov" / f"prov-explica_{part}.json")[key]
+    parts[part] = {entry["Id"]: entry for entry in listed}
+    check(len(parts[part]) == len(listed), f"prov: an Id stands twice in {part}")
+    check(listed, f"prov: {part} is empty")
+everything = {**parts["act"], **parts["ent"], **parts["env"], **parts["soft"]}
+for identifier, activity in parts["act"].items():
+    check(activity["AssociatedWith"] in parts["soft"], f"prov: software of {identifier}")
+    for used in activity["Used"]:
+        check(used in everything, f"prov: {identifier} used {used}")
+for identifier, entity in parts["ent"].items():
+    check(len(entity["Digest"]["sha256"]) == 64, f"prov: digest of {identifier}")
+    if "GeneratedBy" in entity:
+        check(entity["GeneratedBy"] in parts["act"], f"prov: maker of {identifier}")
+    if identifier.startswith("bids::") and "#" not in identifier:
+        check((out / identifier[6:]).is_file(), f"prov: {identifier} is not there")
+
+# ---- derivative: description and sidecars ----
+description = load(out / "dataset_description.json")
+for key in ("Name", "BIDSVersion", "GeneratedBy", "SourceDatasets", "DatasetLinks"):
+    check(key in description, f"dataset_description.json: {key}")
+check(description["DatasetType"] == "derivative", "dataset_description.json: type")
+check(all("Name" in tool and "Version" in tool for tool in description["GeneratedBy"]), "tools")
+links = {name: (out / target).resolve() for name, target in description["DatasetLinks"].items()}
+with (out / "descriptions.tsv").open(encoding="utf-8") as table:
+    described = {line.split("\t")[0] for line in table}
+
+
+def resolves(uri):
+    match = re.fullmatch(r"bids:([^:]*):(.+)", uri)
+    if not match:
+        return uri.startswith("file://")
+    base = out if match[1] == "" else links.get(match[1])
+    return base is not None and (base / match[2]).is_file()
+
+
+sidecars = 0
+for path in sorted(out.glob("sub-*/**/anat/*")):
+    if path.suffix == ".json":
+        check(any(other != path and other.name.startswith(path.stem + ".")
+                  for other in path.parent.iterdir()), f"{path.name}: belongs to no file")
+        continue
+    sidecar = load(path.parent / (path.name.split(".")[0] + ".json"))
+    sidecars += 1
+    check(re.fullmatch(r"sub-[A-Za-z0-9]+(_ses-[A-Za-z0-9]+)?_hemi-[LR](_label-[A-Za-z0-9]+)?"
+                       r"(_desc-[A-Za-z0-9]+)?_[A-Za-z]+(\.[a-z]+)+", path.name),
+          f"{path.name}: is no BIDS name")
+    desc = re.search(r"_desc-([A-Za-z0-9]+)", path.name)
+    check(not desc or desc[1] in described, f"{path.name}: desc is not in descriptions.tsv")
+    check(sidecar["Sources"], f"{path.name}: no Sources")
+    for source in sidecar["Sources"]:
+        check(resolves(source), f"{path.name}: source {source} is not there")
+    space = sidecar["SpatialReference"]
+    check(space == "orig" or resolves(space), f"{path.name}: SpatialReference {space}")
+    for key in ("EulerNumber", "NumberOfDefects"):
+        check(key in sidecar, f"{path.name}: {key}")
+    if path.name.endswith((".surf.gii", "_thickness.shape.gii", "_thickness.nii.gz")):
+        check(sidecar["Units"] == "mm", f"{path.name}: Units")
+    check(sidecar["Digest"]["sha256"] == sha256(path), f"{path.name}: digest")
+    check(sidecar["GeneratedBy"] in parts["act"], f"{path.name}: {sidecar['GeneratedBy']}")
+check(sidecars >= 8, "hardly a sidecar")
+
+# ---- PROV-JSON: https://www.w3.org/submissions/prov-json ----
+prov = load(pathlib.Path(sys.argv[2]))
+prefixes = set(prov["prefix"]) | {"_"}
+for kind in ("entity", "activity", "agent"):
+    for name in prov[kind]:
+        check(name.split(":")[0] in prefixes, f"PROV-JSON: prefix of {name}")
+for relation, ends in (("used", ("activity", "entity")), ("wasGeneratedBy", ("entity", "activity")),
+                       ("wasAssociatedWith", ("activity", "agent"))):
+    check(prov[relation], f"PROV-JSON: no {relation}")
+    for link in prov[relation].values():
+        for end in ends:
+            check(link["prov:" + end] in prov[end], f"PROV-JSON: {relation} of {link}")
+
+for fault in faults[:40]:
+    print(fault)
+sys.exit(1 if faults else 0)
