@@ -253,7 +253,8 @@ Outcome Context::runCommand(const Command& command, const std::string& name, con
 Outcome Context::runApart(const Command& command, const fs::path& out, const Json& options) {
   Run nested = nestedRun(command, options, state_->run, state_->monitor);
   nested.common.out = out.string();
-  nested.prefix = state_->run.prefix + out.filename().string() + ": ";
+  nested.name = out.filename().string() + ": ";
+  nested.prefix = state_->run.prefix + nested.name;
   return execute(nested, state_->console);
 }
 

@@ -23,10 +23,11 @@ class BidsInputSpec(CommandLineInputSpec):
     hemispheres = traits.List(traits.Enum("L", "R"), desc="hemispheres to do", argstr="--hemispheres %s", sep=",")
     skip_bids_validator = traits.Bool(desc="accepted; no validator is run", argstr="--skip-bids-validator")
     unfold_surface = traits.Enum("white", "mid", "pial", desc="which surface to unfold a patch of", argstr="--unfold-surface %s")
+    given_surfaces = traits.Enum("use", "remake", desc="what to do with white and pial surfaces found in the input", argstr="--given-surfaces %s")
     steps = traits.List(traits.Enum("segment", "thickness", "surface", "unfold", "report"), desc="steps to do (default: all that the input allows)", argstr="--steps %s", sep=",")
     segment_mask = File(exists=True, desc="the brain is where this is not 0", argstr="--segment.mask %s")
     segment_atlas = File(exists=True, desc="labels in the space of the T1, as AAL's", argstr="--segment.atlas %s")
-    segment_atlas_legend = File(exists=True, desc="what the atlas's labels mean, one 'value name' a line (default: the atlas's name with .txt for .gz)", argstr="--segment.atlas-legend %s")
+    segment_atlas_legend = File(exists=True, desc="what the atlas's labels mean, one 'value name' a line (default: the .tsv or .nii.txt beside it)", argstr="--segment.atlas-legend %s")
     segment_xform = traits.Enum("agreed", "qform", "sform", "none", desc="which placement of a NIfTI header to believe where the two differ", argstr="--segment.xform %s")
     segment_frame = traits.Int(desc="which volume of a file that holds several, counted from 0", argstr="--segment.frame %s")
     segment_smooth = traits.Float(desc="weight of the Markov prior that smooths the classes; 0 for none", argstr="--segment.smooth %s")
@@ -62,6 +63,13 @@ class BidsInputSpec(CommandLineInputSpec):
     surface_grey_share = File(exists=True, desc="probability of grey matter: with --inner-level the outer surface is where both together reach one half", argstr="--surface.grey-share %s")
     surface_insulated_mask = File(exists=True, desc="with --inner-level: not 0 where neither side is (a cut)", argstr="--surface.insulated-mask %s")
     surface_level = traits.Float(desc="value on the boundaries of level volumes (default: half the largest value of shares, 0 of distances)", argstr="--surface.level %s")
+    surface_white_surface = File(exists=True, desc="white surface that is there already", argstr="--surface.white-surface %s")
+    surface_pial_surface = File(exists=True, desc="its pial surface, same faces", argstr="--surface.pial-surface %s")
+    surface_mid_surface = File(exists=True, desc="its middle surface, same faces (default: half way)", argstr="--surface.mid-surface %s")
+    surface_surface_space = traits.Enum("stated", "scanner", "tkr", desc="frame of their coordinates, if the files do not say", argstr="--surface.surface-space %s")
+    surface_atlas = File(exists=True, desc="labels of cortical regions in the same space: writes regions.tsv", argstr="--surface.atlas %s")
+    surface_atlas_legend = File(exists=True, desc="what its labels are called (default: the .tsv or .nii.txt beside it; FreeSurfer's names are known)", argstr="--surface.atlas-legend %s")
+    surface_parcellation = File(exists=True, desc="regions of given surfaces, vertex by vertex, instead of --atlas", argstr="--surface.parcellation %s")
     surface_xform = traits.Enum("agreed", "qform", "sform", "none", desc="which placement of a NIfTI header to believe where the two differ", argstr="--surface.xform %s")
     surface_frame = traits.Int(desc="which volume of a file that holds several, counted from 0", argstr="--surface.frame %s")
     surface_preset = traits.Enum("auto", "aseg", "ribbon", "three-class", "wm", "none", desc="what the labels mean", argstr="--surface.preset %s")
@@ -77,7 +85,7 @@ class BidsInputSpec(CommandLineInputSpec):
     surface_faces = traits.Int(desc="faces of each surface", argstr="--surface.faces %s")
     surface_steps = traits.Int(desc="in which the outer surface grows out of the white one", argstr="--surface.steps %s")
     surface_freesurfer = traits.Str(desc="write lh.white, lh.pial, lh.thickness and so on, too, into this folder (within --out if relative)", argstr="--surface.freesurfer %s")
-    surface_fs_volume = File(exists=True, desc="volume (orig.mgz) whose surface RAS FreeSurfer files use (default: the labels, if FreeSurfer's)", argstr="--surface.fs-volume %s")
+    surface_fs_volume = File(exists=True, desc="volume (orig.mgz) whose surface RAS FreeSurfer files use, read or written (default: the labels, if FreeSurfer's)", argstr="--surface.fs-volume %s")
     unfold_surface_space = traits.Enum("stated", "scanner", "tkr", desc="frame of the surface's coordinates, if its file does not say", argstr="--unfold.surface-space %s")
     unfold_fs_volume = traits.Str(desc="FreeSurfer volume (orig.mgz) whose geometry places the surface", argstr="--unfold.fs-volume %s")
     unfold_viewpoint = traits.Tuple(traits.Float(), traits.Float(), traits.Float(), desc="point to look from [mm]", argstr="--unfold.viewpoint %s,%s,%s")
@@ -133,6 +141,8 @@ class BidsOutputSpec(TraitedSpec):
     runs = File(desc="the runs themselves, with records and reports")
     study_tsv = File(desc="one row a participant and hemisphere")
     index_html = File(desc="the same, to sort and click")
+    prov_prov_explica_json = traits.List(File(), desc="how everything came about, as BIDS-Prov")
+    ro_crate_metadata_json = File(desc="the same as an RO-Crate")
     summary_json = File(desc="the numbers")
     provenance_json = File(desc="what ran on what, with hashes")
 
@@ -156,6 +166,8 @@ class Bids(CommandLine):
             "runs": "runs",
             "study_tsv": "study.tsv",
             "index_html": "index.html",
+            "prov_prov_explica_json": "prov/prov-explica_*.json",
+            "ro_crate_metadata_json": "ro-crate-metadata.json",
             "summary_json": "summary.json",
             "provenance_json": "provenance.json",
         }.items():
@@ -825,16 +837,17 @@ class Report(CommandLine):
 
 
 class RunInputSpec(CommandLineInputSpec):
-    input = File(exists=True, desc="skull-stripped T1, label volume, or FreeSurfer subject directory", argstr="%s", position=0, mandatory=True)
-    atlas = File(exists=True, desc="for a T1: labels in its space, as AAL's", argstr="--atlas %s")
-    kind = traits.Enum("auto", "t1", "labels", "freesurfer", desc="what the input is", argstr="--kind %s")
+    input = File(exists=True, desc="skull-stripped T1, label volume, FreeSurfer subject directory, or BIDS anat folder", argstr="%s", position=0, mandatory=True)
+    atlas = File(exists=True, desc="labels in the input's space, as AAL's: tell a T1's hemispheres apart, and are the regions of regions.tsv", argstr="--atlas %s")
+    kind = traits.Enum("auto", "t1", "labels", "freesurfer", "bids", desc="what the input is", argstr="--kind %s")
     hemisphere = traits.Enum("L", "R", desc="which hemisphere to work on", argstr="--hemisphere %s")
     unfold_surface = traits.Enum("white", "mid", "pial", desc="which surface to unfold a patch of", argstr="--unfold-surface %s")
+    given_surfaces = traits.Enum("use", "remake", desc="what to do with white and pial surfaces found in the input", argstr="--given-surfaces %s")
     steps = traits.List(traits.Enum("segment", "thickness", "surface", "unfold", "report"), desc="steps to do (default: all that the input allows)", argstr="--steps %s", sep=",")
     resume = traits.Bool(desc="keep steps of an earlier run into --out that are still true", argstr="--resume")
     segment_mask = File(exists=True, desc="the brain is where this is not 0", argstr="--segment.mask %s")
     segment_atlas = File(exists=True, desc="labels in the space of the T1, as AAL's", argstr="--segment.atlas %s")
-    segment_atlas_legend = File(exists=True, desc="what the atlas's labels mean, one 'value name' a line (default: the atlas's name with .txt for .gz)", argstr="--segment.atlas-legend %s")
+    segment_atlas_legend = File(exists=True, desc="what the atlas's labels mean, one 'value name' a line (default: the .tsv or .nii.txt beside it)", argstr="--segment.atlas-legend %s")
     segment_xform = traits.Enum("agreed", "qform", "sform", "none", desc="which placement of a NIfTI header to believe where the two differ", argstr="--segment.xform %s")
     segment_frame = traits.Int(desc="which volume of a file that holds several, counted from 0", argstr="--segment.frame %s")
     segment_smooth = traits.Float(desc="weight of the Markov prior that smooths the classes; 0 for none", argstr="--segment.smooth %s")
@@ -870,6 +883,13 @@ class RunInputSpec(CommandLineInputSpec):
     surface_grey_share = File(exists=True, desc="probability of grey matter: with --inner-level the outer surface is where both together reach one half", argstr="--surface.grey-share %s")
     surface_insulated_mask = File(exists=True, desc="with --inner-level: not 0 where neither side is (a cut)", argstr="--surface.insulated-mask %s")
     surface_level = traits.Float(desc="value on the boundaries of level volumes (default: half the largest value of shares, 0 of distances)", argstr="--surface.level %s")
+    surface_white_surface = File(exists=True, desc="white surface that is there already", argstr="--surface.white-surface %s")
+    surface_pial_surface = File(exists=True, desc="its pial surface, same faces", argstr="--surface.pial-surface %s")
+    surface_mid_surface = File(exists=True, desc="its middle surface, same faces (default: half way)", argstr="--surface.mid-surface %s")
+    surface_surface_space = traits.Enum("stated", "scanner", "tkr", desc="frame of their coordinates, if the files do not say", argstr="--surface.surface-space %s")
+    surface_atlas = File(exists=True, desc="labels of cortical regions in the same space: writes regions.tsv", argstr="--surface.atlas %s")
+    surface_atlas_legend = File(exists=True, desc="what its labels are called (default: the .tsv or .nii.txt beside it; FreeSurfer's names are known)", argstr="--surface.atlas-legend %s")
+    surface_parcellation = File(exists=True, desc="regions of given surfaces, vertex by vertex, instead of --atlas", argstr="--surface.parcellation %s")
     surface_xform = traits.Enum("agreed", "qform", "sform", "none", desc="which placement of a NIfTI header to believe where the two differ", argstr="--surface.xform %s")
     surface_frame = traits.Int(desc="which volume of a file that holds several, counted from 0", argstr="--surface.frame %s")
     surface_preset = traits.Enum("auto", "aseg", "ribbon", "three-class", "wm", "none", desc="what the labels mean", argstr="--surface.preset %s")
@@ -885,7 +905,7 @@ class RunInputSpec(CommandLineInputSpec):
     surface_faces = traits.Int(desc="faces of each surface", argstr="--surface.faces %s")
     surface_steps = traits.Int(desc="in which the outer surface grows out of the white one", argstr="--surface.steps %s")
     surface_freesurfer = traits.Str(desc="write lh.white, lh.pial, lh.thickness and so on, too, into this folder (within --out if relative)", argstr="--surface.freesurfer %s")
-    surface_fs_volume = File(exists=True, desc="volume (orig.mgz) whose surface RAS FreeSurfer files use (default: the labels, if FreeSurfer's)", argstr="--surface.fs-volume %s")
+    surface_fs_volume = File(exists=True, desc="volume (orig.mgz) whose surface RAS FreeSurfer files use, read or written (default: the labels, if FreeSurfer's)", argstr="--surface.fs-volume %s")
     unfold_surface_space = traits.Enum("stated", "scanner", "tkr", desc="frame of the surface's coordinates, if its file does not say", argstr="--unfold.surface-space %s")
     unfold_fs_volume = traits.Str(desc="FreeSurfer volume (orig.mgz) whose geometry places the surface", argstr="--unfold.fs-volume %s")
     unfold_viewpoint = traits.Tuple(traits.Float(), traits.Float(), traits.Float(), desc="point to look from [mm]", argstr="--unfold.viewpoint %s,%s,%s")
@@ -975,7 +995,7 @@ class SegmentInputSpec(CommandLineInputSpec):
     t1 = File(exists=True, desc="skull-stripped T1-weighted image: the brain is where it is above 0", argstr="%s", position=0, mandatory=True)
     mask = File(exists=True, desc="the brain is where this is not 0", argstr="--mask %s")
     atlas = File(exists=True, desc="labels in the space of the T1, as AAL's", argstr="--atlas %s")
-    atlas_legend = File(exists=True, desc="what the atlas's labels mean, one 'value name' a line (default: the atlas's name with .txt for .gz)", argstr="--atlas-legend %s")
+    atlas_legend = File(exists=True, desc="what the atlas's labels mean, one 'value name' a line (default: the .tsv or .nii.txt beside it)", argstr="--atlas-legend %s")
     xform = traits.Enum("agreed", "qform", "sform", "none", desc="which placement of a NIfTI header to believe where the two differ", argstr="--xform %s")
     frame = traits.Int(desc="which volume of a file that holds several, counted from 0", argstr="--frame %s")
     smooth = traits.Float(desc="weight of the Markov prior that smooths the classes; 0 for none", argstr="--smooth %s")
@@ -1174,12 +1194,19 @@ class StudySchema(CommandLine):
 
 
 class SurfaceInputSpec(CommandLineInputSpec):
-    seg = File(exists=True, desc="labels; may be left out if --inner-level is given", argstr="%s", position=0)
+    seg = File(exists=True, desc="labels; may be left out if --inner-level or --white-surface is given", argstr="%s", position=0)
     inner_level = File(exists=True, desc="scalars that cross a level at the white surface: a probability or a distance", argstr="--inner-level %s")
     outer_level = File(exists=True, desc="scalars that cross a level at the outer surface", argstr="--outer-level %s")
     grey_share = File(exists=True, desc="probability of grey matter: with --inner-level the outer surface is where both together reach one half", argstr="--grey-share %s")
     insulated_mask = File(exists=True, desc="with --inner-level: not 0 where neither side is (a cut)", argstr="--insulated-mask %s")
     level = traits.Float(desc="value on the boundaries of level volumes (default: half the largest value of shares, 0 of distances)", argstr="--level %s")
+    white_surface = File(exists=True, desc="white surface that is there already", argstr="--white-surface %s")
+    pial_surface = File(exists=True, desc="its pial surface, same faces", argstr="--pial-surface %s")
+    mid_surface = File(exists=True, desc="its middle surface, same faces (default: half way)", argstr="--mid-surface %s")
+    surface_space = traits.Enum("stated", "scanner", "tkr", desc="frame of their coordinates, if the files do not say", argstr="--surface-space %s")
+    atlas = File(exists=True, desc="labels of cortical regions in the same space: writes regions.tsv", argstr="--atlas %s")
+    atlas_legend = File(exists=True, desc="what its labels are called (default: the .tsv or .nii.txt beside it; FreeSurfer's names are known)", argstr="--atlas-legend %s")
+    parcellation = File(exists=True, desc="regions of given surfaces, vertex by vertex, instead of --atlas", argstr="--parcellation %s")
     xform = traits.Enum("agreed", "qform", "sform", "none", desc="which placement of a NIfTI header to believe where the two differ", argstr="--xform %s")
     frame = traits.Int(desc="which volume of a file that holds several, counted from 0", argstr="--frame %s")
     preset = traits.Enum("auto", "aseg", "ribbon", "three-class", "wm", "none", desc="what the labels mean", argstr="--preset %s")
@@ -1195,7 +1222,7 @@ class SurfaceInputSpec(CommandLineInputSpec):
     faces = traits.Int(desc="faces of each surface", argstr="--faces %s")
     steps = traits.Int(desc="in which the outer surface grows out of the white one", argstr="--steps %s")
     freesurfer = traits.Str(desc="write lh.white, lh.pial, lh.thickness and so on, too, into this folder (within --out if relative)", argstr="--freesurfer %s")
-    fs_volume = File(exists=True, desc="volume (orig.mgz) whose surface RAS FreeSurfer files use (default: the labels, if FreeSurfer's)", argstr="--fs-volume %s")
+    fs_volume = File(exists=True, desc="volume (orig.mgz) whose surface RAS FreeSurfer files use, read or written (default: the labels, if FreeSurfer's)", argstr="--fs-volume %s")
     out = traits.Str(desc="folder for the results; made if absent, refused if not empty", argstr="--out %s", mandatory=True)
     force = traits.Bool(desc="write into a folder that is not empty, replacing earlier results", argstr="--force")
     config = traits.Str(desc="JSON file with option values; the command line wins", argstr="--config %s")
@@ -1213,10 +1240,13 @@ class SurfaceOutputSpec(TraitedSpec):
     mid_surf_gii = File(desc="surface at half depth, same faces")
     pial_surf_gii = File(desc="outer surface, same faces")
     thickness_shape_gii = File(desc="length of each vertex's trajectory, mm; 0 where there is no grey matter")
+    valid_shape_gii = File(desc="1 where the thickness is defined, else 0")
     curvature_shape_gii = File(desc="mean curvature of the white surface, 1/mm, positive in sulci")
     sulc_shape_gii = File(desc="depth of the middle surface below the hull, mm")
     area_shape_gii = File(desc="area at each vertex of the white, middle and outer surface, mm^2")
     topology_tsv = File(desc="one row for each corrected defect")
+    regions_tsv = File(desc="with --atlas: area and thickness of each region")
+    regions_label_gii = File(desc="with --atlas: region of each vertex")
     surface_spec = File(desc="opens everything in Workbench")
     lh_ = traits.List(File(), desc="with --freesurfer: FreeSurfer files, left")
     rh_ = traits.List(File(), desc="with --freesurfer: FreeSurfer files, right")
@@ -1240,10 +1270,13 @@ class Surface(CommandLine):
             "mid_surf_gii": "mid.surf.gii",
             "pial_surf_gii": "pial.surf.gii",
             "thickness_shape_gii": "thickness.shape.gii",
+            "valid_shape_gii": "valid.shape.gii",
             "curvature_shape_gii": "curvature.shape.gii",
             "sulc_shape_gii": "sulc.shape.gii",
             "area_shape_gii": "area.shape.gii",
             "topology_tsv": "topology.tsv",
+            "regions_tsv": "regions.tsv",
+            "regions_label_gii": "regions.label.gii",
             "surface_spec": "surface.spec",
             "lh_": "*lh.*",
             "rh_": "*rh.*",
@@ -1440,7 +1473,7 @@ class Unfold(CommandLine):
 class VerifyInputSpec(CommandLineInputSpec):
     provenance = File(exists=True, desc="a provenance.json, or the folder that holds it", argstr="%s", position=0, mandatory=True)
     deep = traits.Bool(desc="follow the records of the inputs, back to the first", argstr="--deep")
-    prov_json = traits.Bool(desc="print the record as W3C PROV-JSON instead of verifying", argstr="--prov-json")
+    prov_json = traits.Bool(desc="print the record as W3C PROV-JSON instead of verifying; with --deep those of its inputs too", argstr="--prov-json")
     config = traits.Str(desc="JSON file with option values; the command line wins", argstr="--config %s")
     threads = traits.Int(desc="processors to use (default: all that this process may)", argstr="--threads %s")
     quiet = traits.Bool(desc="say nothing but warnings and errors", argstr="--quiet")
