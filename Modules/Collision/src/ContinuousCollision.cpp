@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace explica::collision {
 namespace {
@@ -13,6 +14,9 @@ constexpr double kRoundUp = 1 + 1e-12;  // covers the few roundings in sums and 
 
 /// Share of the provably free time that one advance uses, as in [Li2021].
 constexpr double kAdvanceShare = 0.9;
+
+/// Of the limit: below it further advances of a pair that closes do not matter.
+constexpr double kSmallAdvance = 1e-6;
 
 }  // namespace
 
@@ -31,6 +35,8 @@ double approachBound(PairKind kind, const FourPoints& motion) {
 
 double safeTime(PairKind kind, const FourPoints& x, const FourPoints& motion, double limit,
                 const AdvanceOptions& options) {
+  // What moves as one keeps its distances, even where floating point cannot tell them from zero.
+  if (motion[0] == motion[1] && motion[0] == motion[2] && motion[0] == motion[3]) return limit;
   const double speed = approachBound(kind, motion);
   const double start = distanceBound(kind, x);
   if (!(start > 0)) return 0;
@@ -41,13 +47,14 @@ double safeTime(PairKind kind, const FourPoints& x, const FourPoints& motion, do
   for (int n = 0; n < options.maxAdvances; ++n) {
     const double next = time + kAdvanceShare * (distance - gap) / speed;
     if (next >= limit) return limit;
-    // No advance left that floating point can tell, or too small to matter.
-    if (next <= time || next - time < 1e-6 * limit) return time;
+    if (next <= time) return time;  // no advance left that floating point can tell
+    const bool small = next - time < kSmallAdvance * limit;
     FourPoints now = x;
     for (int i = 0; i < 4; ++i) now[i] += next * motion[i];
     time = next;
-    distance = distanceBound(kind, now);
-    if (distance <= gap) return time;
+    const double before = std::exchange(distance, distanceBound(kind, now));
+    // Pairs almost in contact that open start with small advances, which grow.
+    if (distance <= gap || (small && distance <= before)) return time;
   }
   return time;
 }

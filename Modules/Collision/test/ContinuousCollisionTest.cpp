@@ -116,5 +116,19 @@ TEST(ContinuousCollision, AdversarialNearDegeneratePairsNeverPassThroughEachOthe
   EXPECT_EQ(stopped, 4000);
 }
 
+TEST(ContinuousCollision, PairsAlmostInContactThatOpenAreNotHeldUp) {
+  // The gap is a millionth of the motion, and opens at a tenth of its speed.
+  const FourPoints x = {Point(0.2, 0.2, 1e-7), Point(-1, -1, 0), Point(2, -1, 0), Point(-1, 2, 0)};
+  const FourPoints motion = {Vector(0.5, 0.3, 0.1), Vector::Zero(), Vector::Zero(), Vector::Zero()};
+  EXPECT_EQ(safeTime(PairKind::VertexFace, x, motion), 1);
+}
+
+TEST(ContinuousCollision, WhatMovesAsOneIsSafeThoughItTouches) {
+  const FourPoints x = {Point(0, 0, 0), Point(-1, -1, 0), Point(2, -1, 0), Point(-1, 2, 0)};
+  const Vector along(0.3, 0.1, 0.7);
+  EXPECT_EQ(safeTime(PairKind::VertexFace, x, {along, along, along, along}), 1);
+  EXPECT_EQ(safeTime(PairKind::VertexFace, x, {Vector(0.3, 0.1, 0.8), along, along, along}), 0);
+}
+
 }  // namespace
 }  // namespace explica::collision

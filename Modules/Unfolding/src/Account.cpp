@@ -63,18 +63,19 @@ std::string evolutionTable(const std::vector<IterationRecord>& history) {
   std::string table =
       "iteration\tvisibility\tarea_error_mean\tarea_error_max\tedge_strain_mean\tenergy_"
       "visibility\t"
-      "energy_area\tenergy_spring\tenergy_contact\tenergy_knot\tobjective_before\tobjective_after\t"
+      "energy_area\tenergy_spring\tenergy_lift\tenergy_contact\tenergy_knot\tobjective_"
+      "before\tobjective_after\t"
       "contacts\tnearest_contact\tsafe_step\tstep\tlargest_move\tdamping\tsolves\tseconds\n";
   for (const IterationRecord& r : history) {
     char line[512];
-    std::snprintf(
-        line, sizeof line,
-        "%d\t%.6f\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.9g\t%.9g\t%d\t%.6g\t%.6g\t"
-        "%.6g\t%.6g\t%.6g\t%d\t%.3f\n",
-        r.iteration, r.visibility, r.areaErrorMean, r.areaErrorMax, r.edgeStrainMean,
-        r.energyVisibility, r.energyArea, r.energySpring, r.energyContact, r.energyKnot,
-        r.objectiveBefore, r.objectiveAfter, r.contacts, r.nearestContact, r.safeStep, r.step,
-        r.largestMove, r.damping, r.solves, r.seconds);
+    std::snprintf(line, sizeof line,
+                  "%d\t%.6f\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.9g\t%.9g\t%"
+                  "d\t%.6g\t%.6g\t"
+                  "%.6g\t%.6g\t%.6g\t%d\t%.3f\n",
+                  r.iteration, r.visibility, r.areaErrorMean, r.areaErrorMax, r.edgeStrainMean,
+                  r.energyVisibility, r.energyArea, r.energySpring, r.energyLift, r.energyContact,
+                  r.energyKnot, r.objectiveBefore, r.objectiveAfter, r.contacts, r.nearestContact,
+                  r.safeStep, r.step, r.largestMove, r.damping, r.solves, r.seconds);
     table += line;
   }
   return table;

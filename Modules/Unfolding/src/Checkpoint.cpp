@@ -13,7 +13,7 @@
 namespace explica::unfolding {
 namespace {
 
-constexpr char kMagic[] = "ExplicaUnfold2\n";
+constexpr char kMagic[] = "ExplicaUnfold3\n";
 static_assert(sizeof(std::int64_t) == 8 && sizeof(double) == 8);
 
 /// FNV-1a: tells a damaged file, not a forged one.
@@ -73,10 +73,11 @@ class Reader {
 /// The members of a record, one list for writing and reading.
 template <class Record, class Visit>
 void visitNumbers(Record& r, const Visit& visit) {
-  for (auto* member : {&r.visibility, &r.areaErrorMean, &r.areaErrorMax, &r.edgeStrainMean,
-                       &r.energyVisibility, &r.energyArea, &r.energySpring, &r.energyContact,
-                       &r.energyKnot, &r.objectiveBefore, &r.objectiveAfter, &r.nearestContact,
-                       &r.safeStep, &r.step, &r.largestMove, &r.damping, &r.seconds}) {
+  for (auto* member :
+       {&r.visibility, &r.areaErrorMean, &r.areaErrorMax, &r.edgeStrainMean, &r.energyVisibility,
+        &r.energyArea, &r.energySpring, &r.energyLift, &r.energyContact, &r.energyKnot,
+        &r.objectiveBefore, &r.objectiveAfter, &r.nearestContact, &r.safeStep, &r.step,
+        &r.largestMove, &r.damping, &r.seconds}) {
     visit(*member);
   }
 }
@@ -96,6 +97,7 @@ void writeCheckpoint(const std::filesystem::path& path, const Checkpoint& checkp
   w.number(s.contactStiffness);
   w.count(s.iteration);
   w.count(s.separating);
+  w.number(s.separatingEnergy);
   w.count(s.stalled);
   w.count(static_cast<std::int64_t>(checkpoint.history.size()));
   for (const IterationRecord& r : checkpoint.history) {
@@ -139,6 +141,7 @@ Checkpoint readCheckpoint(const std::filesystem::path& path) {
   c.state.contactStiffness = r.number();
   c.state.iteration = static_cast<int>(r.count());
   c.state.separating = r.count() != 0;
+  c.state.separatingEnergy = r.number();
   c.state.stalled = r.count() != 0;
   c.history.resize(static_cast<std::size_t>(r.count()));
   for (IterationRecord& row : c.history) {

@@ -59,6 +59,11 @@ Point centroidOf(const PatchFace& face, const Positions& x) {
          3;
 }
 
+/// How far below the room for the flat patch a point is, mm.
+double deficit(const PatchRoom& room, const Point& place) {
+  return std::max(0.0, room.height - room.axis.dot(place));
+}
+
 }  // namespace
 
 PatchValue PatchEnergy::value(const Positions& x, const visibility::Viewpoints& viewpoints,
@@ -93,6 +98,17 @@ PatchValue PatchEnergy::value(const Positions& x, const visibility::Viewpoints& 
     }
     return block;
   });
+  if (strengths.lift > 0) {
+    sum.lift = parallelSum(faces_.size(), kGrain, 0.0, [&](std::size_t begin, std::size_t end) {
+      double block = 0;
+      for (std::size_t f = begin; f < end; ++f) {
+        if (!faces_[f].looked) continue;
+        const double share = deficit(room_, centroidOf(faces_[f], x)) / room_.radius;
+        block += 0.5 * strengths.lift * faces_[f].weight * share * share;
+      }
+      return block;
+    });
+  }
   return sum;
 }
 
@@ -110,7 +126,9 @@ void PatchEnergy::addGradient(const Positions& x, const visibility::Viewpoints& 
     if (!face.looked) return;
     const MeanDirection look = directionFrom(centroidOf(face, x), viewpoints);
     const double strength = strengths.visibility * face.weight;
-    const Vector shift = strength / 3 * (look.derivative * shape.normal);
+    const double pull = strengths.lift * face.weight / (room_.radius * room_.radius) *
+                        deficit(room_, centroidOf(face, x));
+    const Vector shift = strength / 3 * (look.derivative * shape.normal) + pull / 3 * room_.axis;
     for (int k = 0; k < 3; ++k) {
       byCorner[f][k] += strength * shape.hat[k].dot(look.direction) * shape.normal - shift;
     }
@@ -144,10 +162,16 @@ void PatchEnergy::addStiffness(const Positions& x, const PatchStrengths& strengt
     const double across =
         std::max(0.0, tension) + (face.looked ? strengths.visibility * face.weight : 0);
     const Eigen::Matrix3d normal = across * shape.normal * shape.normal.transpose();
+    const bool lifted =
+        face.looked && strengths.lift > 0 && deficit(room_, centroidOf(face, x)) > 0;
+    const Eigen::Matrix3d lift =
+        lifted ? Eigen::Matrix3d(strengths.lift * face.weight / (9 * room_.radius * room_.radius) *
+                                 room_.axis * room_.axis.transpose())
+               : Eigen::Matrix3d(Eigen::Matrix3d::Zero());
     int n = 0;
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j <= i; ++j) {
-        blocks[f][n++] = inPlane * shape.hat[i] * shape.hat[j].transpose() +
+        blocks[f][n++] = lift + inPlane * shape.hat[i] * shape.hat[j].transpose() +
                          shape.hat[i].dot(shape.hat[j]) * normal;
       }
     }

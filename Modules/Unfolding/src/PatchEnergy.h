@@ -24,7 +24,15 @@ struct PatchFace {
 struct PatchSpring {
   std::array<std::int32_t, 2> vertices;
   double restLength = 0;  ///< mm
-  double weight = 0;      ///< mm^2: a third of the area of its faces
+  double weight = 0;      ///< mm^2: two thirds of the mean face, less for the shortest edges
+};
+
+/// Room for the patch laid flat: the height along `axis` above which no surroundings stand within
+/// its radius.
+struct PatchRoom {
+  Vector axis = Vector::UnitZ();  ///< unit, towards the viewpoints
+  double height = -kInfinity;     ///< mm, of x . axis
+  double radius = 1;              ///< mm, of a disc of the patch's area
 };
 
 /// Strengths of the terms; the visibility term has strength 1.
@@ -32,6 +40,7 @@ struct PatchStrengths {
   double visibility = 1;
   double area = 1;
   double spring = 1;
+  double lift = 0;
 };
 
 /// Terms of the objective, mm^2.
@@ -39,7 +48,8 @@ struct PatchValue {
   double visibility = 0;  ///< sum of w (1 - n . d), d the mean direction to the viewpoints
   double area = 0;        ///< sum of w (multiplier c + area/2 c^2), c = A / A0 - 1
   double spring = 0;      ///< sum of w spring (l / l0 - 1)^2
-  [[nodiscard]] double total() const { return visibility + area + spring; }
+  double lift = 0;  ///< sum of w lift/2 (deficit / radius)^2, deficit = max(0, height - x . axis)
+  [[nodiscard]] double total() const { return visibility + area + spring + lift; }
 };
 
 /// What the patch wants regardless of contacts: to be seen, to keep areas, to keep lengths.
@@ -69,12 +79,15 @@ class PatchEnergy {
                     const Eigen::VectorXd& multipliers, const std::vector<std::int32_t>& unknown,
                     BlockSystem& system) const;
 
+  void setRoom(const PatchRoom& room) { room_ = room; }
+
   [[nodiscard]] const std::vector<PatchFace>& faces() const { return faces_; }
   [[nodiscard]] const std::vector<PatchSpring>& springs() const { return springs_; }
 
  private:
   std::vector<PatchFace> faces_;
   std::vector<PatchSpring> springs_;
+  PatchRoom room_;
 };
 
 }  // namespace explica::unfolding

@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 namespace explica::unfolding {
 namespace {
@@ -29,18 +30,20 @@ using collision::Pair;
 using collision::PairKind;
 
 constexpr double kSeparated = 0.25;  // of their range: pairs that start nearer are parted first
-constexpr int kSeparatingIterations = 60;  // then the rest goes on beside the unfolding
+constexpr double kStillSeparating = 0.9;   // of the contact energy before: above it the rest ...
+constexpr int kSeparatingIterations = 60;  // ... or after these goes on beside the unfolding
 constexpr double kMultiplierRate = 0.3;    // of the full update: the inner problem is not solved
 constexpr double kLargestMultiplier = 20;  // times the pull of the visibility term
 constexpr double kLeastDamping = 0.1;      // below it steps overshoot the quadratic model
 constexpr double kSoftBelow = 0.1;         // of a contact's range: below it force is bounded
 constexpr double kPressed = 0.03;          // of a contact's range: below it contacts stiffen ...
-constexpr double kStiffestContact = 1e3;   // ... up to this factor
-constexpr double kBlocked = 0.3;        // share of a step below which the pairs that stop it lock
-constexpr double kLockStiffness = 1e5;  // against about 1 of the other terms
-constexpr double kSlowGain = 0.003;     // visibility per iteration below which areas tighten ...
-constexpr double kTightening = 1.2;     // ... by this factor ...
-constexpr double kTightest = 20;        // ... up to this one
+constexpr double kClosing = 0.99;  // of the squared distance: those that come no nearer do not
+constexpr double kStiffestContact = 1e3;  // ... up to this factor
+constexpr double kBlocked = 0.3;          // share of a step below which the pairs that stop it lock
+constexpr double kLockStiffness = 1e5;    // against about 1 of the other terms
+constexpr double kSlowGain = 0.003;       // visibility per iteration below which areas tighten ...
+constexpr double kTightening = 1.2;       // ... by this factor ...
+constexpr double kTightest = 20;          // ... up to this one
 
 std::vector<bool> flags(std::size_t count, const std::vector<std::int32_t>& marked) {
   std::vector<bool> result(count, false);
@@ -73,18 +76,22 @@ struct Unfolder::Implementation {
 
   void build();
   void standAt(const Positions& positions);
+  void findRoom();
   Contact contactOf(const Pair& pair) const;
   std::vector<Contact> contactsOf(const std::vector<Pair>& pairs) const;
   double objective(const Positions& x, const std::vector<Contact>& contacts,
                    IterationRecord* account) const;
   PatchStrengths strengths() const {
-    return {state.separating ? 0.0 : state.drive, state.areaStiffness, options.weights.spring};
+    return {state.separating ? 0.0 : state.drive, state.areaStiffness, options.weights.spring,
+            state.separating || options.surround == Surround::None ? 0.0 : options.weights.lift};
   }
   double contactScale() const {
     return state.contactStiffness * options.weights.contact * edge * edge;
   }
   void couple(const std::array<std::int32_t, 4>& vertices, Couplings& couplings) const;
   void addLock(const Pair& pair, const Positions& x);
+  void weld(const std::vector<Pair>& pairs, std::vector<std::int32_t>& weldedTo) const;
+  void moveWeldedAsOne(const std::vector<std::int32_t>& weldedTo, Positions& motion) const;
   std::vector<Pair> blockingPairs(const std::vector<Pair>& pairs, const Positions& x,
                                   const Positions& motion) const;
   void measure(IterationRecord& account) const;
@@ -164,16 +171,22 @@ void Unfolder::Implementation::build() {
                      faceWeight[f],
                      static_cast<bool>(inRegion[f])});
   }
+  // All edges count alike, as in the mean strain: by area, small faces would pay for large ones.
+  const double springWeight = 2 * regionArea / (3 * static_cast<double>(region.faces.size()));
   std::vector<PatchSpring> springs;
   for (Eigen::Index e = 0; e < topology.edges.rows(); ++e) {
-    double weight = 0;
+    double share = 0;  // the region's own count in full, on its rim too
     for (int side = 0; side < 2; ++side) {
       const std::int32_t f = topology.edgeFaces(e, side);
-      if (f >= 0 && inPatch[f]) weight += faceWeight[f] / 3;
+      if (f < 0 || !inPatch[f]) continue;
+      share = std::max(share, inRegion[f] ? 1 : options.weights.collar);
     }
-    if (weight == 0) continue;
+    if (share == 0) continue;
     const std::int32_t a = topology.edges(e, 0), b = topology.edges(e, 1);
     const double length = (mesh.positions.row(a) - mesh.positions.row(b)).norm();
+    constexpr double kShort = 0.1;  // of the mean edge: what is far shorter must not rule the rest
+    const double squared = length * length, tooShort = kShort * kShort * edge * edge;
+    const double weight = share * springWeight * squared / (squared + tooShort);
     springs.push_back({{a, b}, length, weight});
     if (unknown[a] >= 0 && unknown[b] >= 0) {
       meshCouplings.emplace_back(std::max(unknown[a], unknown[b]),
@@ -181,6 +194,7 @@ void Unfolder::Implementation::build() {
     }
   }
   patch = PatchEnergy(std::move(faces), std::move(springs));
+  findRoom();
   std::sort(meshCouplings.begin(), meshCouplings.end());
 
   standAt(mesh.positions);
@@ -242,6 +256,33 @@ void Unfolder::Implementation::standAt(const Positions& positions) {
   knot = repulsion::makeKnotEnergy(options.knot, standing, moves);
 }
 
+/// Laid flat, the patch needs a disc of its area, which is wider than the hole that it came from;
+/// so it has to rise until nothing stands within that disc.
+void Unfolder::Implementation::findRoom() {
+  PatchRoom room;
+  Point middle = Point::Zero();
+  for (const std::int32_t v : region.vertices) middle += mesh.positions.row(v).transpose();
+  middle /= static_cast<double>(region.vertices.size());
+  Vector towards = Vector::Zero();
+  for (std::size_t k = 0; k < viewpoints.points.size(); ++k) {
+    towards += viewpoints.weights[k] * (viewpoints.points[k] - middle).normalized();
+  }
+  double area = 0;
+  for (const PatchFace& face : patch.faces()) area += face.looked ? face.restArea : 0;
+  room.radius = std::sqrt(area / kPi);
+  if (towards.norm() > 0.1) {  // else they look from all sides, and no way leads towards them
+    room.axis = towards.normalized();
+    for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
+      const Vector from = mesh.positions.row(v).transpose() - middle;
+      const double height = room.axis.dot(from);
+      if ((from - height * room.axis).norm() < room.radius) {
+        room.height = std::max(room.height, room.axis.dot(mesh.positions.row(v).transpose()));
+      }
+    }
+  }
+  patch.setRoom(room);
+}
+
 Contact Unfolder::Implementation::contactOf(const Pair& pair) const {
   Contact contact;
   contact.vertices = scene->vertices(pair);
@@ -272,6 +313,7 @@ double Unfolder::Implementation::objective(const Positions& x, const std::vector
     account->energyVisibility = value.visibility;
     account->energyArea = value.area;
     account->energySpring = value.spring;
+    account->energyLift = value.lift;
     account->energyContact = contact;
     account->energyKnot = knotted;
   }
@@ -320,6 +362,54 @@ std::vector<Pair> Unfolder::Implementation::blockingPairs(const std::vector<Pair
     if (blocks[n]) blocking.push_back(pairs[n]);
   }
   return blocking;
+}
+
+/// Joins the vertices of the pairs: `weldedTo` leads from each vertex to the root of its group.
+void Unfolder::Implementation::weld(const std::vector<Pair>& pairs,
+                                    std::vector<std::int32_t>& weldedTo) const {
+  const auto root = [&](std::int32_t v) {
+    while (weldedTo[v] != v) v = weldedTo[v] = weldedTo[weldedTo[v]];
+    return v;
+  };
+  for (const Pair& pair : pairs) {
+    const auto v = scene->vertices(pair);
+    for (int i = 1; i < 4; ++i) {
+      const std::int32_t a = root(v[0]), b = root(v[i]);
+      weldedTo[std::max(a, b)] = std::min(a, b);
+    }
+  }
+}
+
+/// Each group takes the mean of its motions; none with a vertex that stays.
+void Unfolder::Implementation::moveWeldedAsOne(const std::vector<std::int32_t>& weldedTo,
+                                               Positions& motion) const {
+  std::map<std::int32_t, std::pair<Vector, double>> groups;
+  const auto rootOf = [&](std::int32_t v) {
+    while (weldedTo[v] != v) v = weldedTo[v];
+    return v;
+  };
+  for (std::int32_t v = 0; v < static_cast<std::int32_t>(weldedTo.size()); ++v) {
+    const std::int32_t root = rootOf(v);
+    if (root != v) groups.try_emplace(root, Vector::Zero(), 0.0);
+  }
+  const auto groupOf = [&](std::int32_t v) { return groups.find(rootOf(v)); };
+  for (std::int32_t v = 0; v < static_cast<std::int32_t>(weldedTo.size()); ++v) {
+    const auto group = groupOf(v);
+    if (group == groups.end()) continue;
+    auto& [sum, count] = group->second;
+    if (unknown[v] < 0) {
+      count = kInfinity;
+    } else {
+      sum += motion.row(v).transpose();
+      count += 1;
+    }
+  }
+  for (std::int32_t v = 0; v < static_cast<std::int32_t>(weldedTo.size()); ++v) {
+    const auto group = groupOf(v);
+    if (group != groups.end()) {
+      motion.row(v) = (group->second.first / group->second.second).transpose();
+    }
+  }
 }
 
 void Unfolder::Implementation::measure(IterationRecord& account) const {
@@ -383,7 +473,13 @@ bool Unfolder::Implementation::implicitStep() {
       for (int i = 0; i < 4; ++i) p[i] = x.row(c.vertices[i]).transpose();
       least = std::min(least, std::sqrt(collision::squaredDistance(c.kind, p)) / c.range);
     }
-    if (least > kSeparated || state.iteration >= kSeparatingIterations) state.separating = false;
+    const double energy = collision::contactEnergy(contacts, x);
+    if (least > kSeparated || energy > kStillSeparating * state.separatingEnergy ||
+        state.iteration >= kSeparatingIterations) {
+      state.separating = false;
+      state.driveIteration = state.iteration;
+    }
+    state.separatingEnergy = energy;
   }
   IterationRecord now;
   now.iteration = state.iteration + 1;
@@ -408,9 +504,7 @@ bool Unfolder::Implementation::implicitStep() {
   for (const Contact& contact : contacts) couple(contact.vertices, couplings);
 
   constexpr int kMaxAttempts = 12;
-  constexpr int kMaxLockings = 6;
   std::vector<Pair> locked;
-  int lockings = 0;
   Positions direction;
   for (int attempt = 0; attempt < kMaxAttempts; ++attempt, state.damping *= 4) {
     system.reset(unknownCount, couplings);
@@ -454,21 +548,34 @@ bool Unfolder::Implementation::implicitStep() {
 
     std::vector<Pair> pairs = scene->findPairs(x, motion, contactRange);
     now.safeStep = collision::largestSafeStep(*scene, pairs, x, motion);
-    if (now.safeStep < kBlocked && lockings < kMaxLockings) {
-      // Few pairs, almost in contact, would stop all the rest: let each of them move as one.
-      const std::size_t before = locked.size();
-      for (const Pair& pair : blockingPairs(pairs, x, motion)) {
-        if (std::find(locked.begin(), locked.end(), pair) == locked.end()) locked.push_back(pair);
-      }
-      for (std::size_t n = before; n < locked.size(); ++n)
-        couple(scene->vertices(locked[n]), couplings);
-      if (locked.size() > before) {
-        ++lockings;
+    if (now.safeStep < kBlocked && locked.empty()) {
+      // Few pairs, almost in contact, would stop all the rest: solve again with each of them rigid.
+      locked = blockingPairs(pairs, x, motion);
+      for (const Pair& pair : locked) couple(scene->vertices(pair), couplings);
+      if (!locked.empty()) {
         --attempt;
         state.damping /= 4;  // of the loop: this is no failure of the model
         continue;
       }
     }
+    // Those that still stop it go along without turning, or stay where something holds them.
+    constexpr int kMaxWeldings = 8;
+    std::vector<std::int32_t> weldedTo;
+    double descent = slope;
+    for (int welding = 0; welding < kMaxWeldings && now.safeStep < kBlocked; ++welding) {
+      const std::vector<Pair> blocking = blockingPairs(pairs, x, motion);
+      if (blocking.empty()) break;
+      if (weldedTo.empty()) {
+        weldedTo.resize(static_cast<std::size_t>(x.rows()));
+        std::iota(weldedTo.begin(), weldedTo.end(), 0);
+      }
+      weld(blocking, weldedTo);
+      moveWeldedAsOne(weldedTo, motion);
+      pairs = scene->findPairs(x, motion, contactRange);
+      now.safeStep = collision::largestSafeStep(*scene, pairs, x, motion);
+      descent = (gradient.array() * motion.array()).sum();
+    }
+    if (!(descent < 0)) continue;
     const std::vector<Contact> onTheWay = contactsOf(pairs);
     double taken = now.safeStep;
     constexpr int kMaxHalvings = 8;
@@ -478,7 +585,7 @@ bool Unfolder::Implementation::implicitStep() {
       trial = x + taken * motion;
       now.objectiveAfter = objective(trial, onTheWay, &now);
       constexpr double kArmijo = 1e-4;
-      if (now.objectiveAfter <= now.objectiveBefore + std::min(0.0, kArmijo * taken * slope)) {
+      if (now.objectiveAfter <= now.objectiveBefore + std::min(0.0, kArmijo * taken * descent)) {
         accepted = true;
         break;
       }
@@ -495,7 +602,10 @@ bool Unfolder::Implementation::implicitStep() {
       for (int i = 0; i < 4; ++i) p[i] = trial.row(c.vertices[i]).transpose();
       const double squared = collision::squaredDistance(c.kind, p);
       nearest = std::min(nearest, squared);
-      pressed = std::min(pressed, std::sqrt(squared) / c.range);
+      for (int i = 0; i < 4; ++i) p[i] = x.row(c.vertices[i]).transpose();
+      if (squared < kClosing * collision::squaredDistance(c.kind, p)) {
+        pressed = std::min(pressed, std::sqrt(squared) / c.range);
+      }
     }
     if (!state.separating && pressed < kPressed) {
       state.contactStiffness = std::min(kStiffestContact, 2 * state.contactStiffness);
@@ -619,6 +729,7 @@ const std::vector<std::int32_t>& Unfolder::movingVertices() const {
 }
 void Unfolder::setViewpoints(visibility::Viewpoints viewpoints) {
   self_->viewpoints = std::move(viewpoints);
+  self_->findRoom();
 }
 void Unfolder::setWeights(const UnfoldWeights& weights) {
   self_->options.weights = weights;

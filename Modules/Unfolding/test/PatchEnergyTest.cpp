@@ -41,6 +41,7 @@ struct Sample {
       springs.push_back({{edges(e, 0), edges(e, 1)}, 1.1, 0.5});
     }
     energy = PatchEnergy(faces, springs);
+    energy.setRoom({Vector(0.6, 0, 0.8), 40, 5});  // above all of it
     multipliers = Eigen::VectorXd::LinSpaced(mesh.faceCount(), -1, 2);
     unknown.resize(static_cast<std::size_t>(mesh.vertexCount()));
     std::iota(unknown.begin(), unknown.end(), 0);
@@ -82,10 +83,10 @@ Positions randomDirection(Eigen::Index count, unsigned seed) {
 TEST(PatchEnergy, GradientOfEveryTermPassesTheTaylorTest) {
   const Sample s;
   const Positions d = randomDirection(s.mesh.vertexCount(), 3);
-  for (int term = 0; term < 4; ++term) {
-    const bool all = term == 3;
+  for (int term = 0; term < 5; ++term) {
+    const bool all = term == 4;
     const PatchStrengths strengths{term == 0 || all ? 1.3 : 0, term == 1 || all ? 4.0 : 0,
-                                   term == 2 || all ? 0.7 : 0};
+                                   term == 2 || all ? 0.7 : 0, term == 3 || all ? 2.0 : 0};
     const Eigen::VectorXd multipliers = (term == 1 || all ? 1.0 : 0.0) * s.multipliers;
     Positions gradient = Positions::Zero(s.mesh.vertexCount(), 3);
     s.energy.addGradient(s.mesh.positions, s.view, strengths, multipliers, gradient);
@@ -132,6 +133,24 @@ TEST(PatchEnergy, StiffnessIsTheHessianWhereAreasAndLengthsAreAtRest) {
                             s.energy.value(x - h * d, s.view, strengths, none).total()) /
                            (h * h);
   EXPECT_NEAR(flat.dot(hessian * flat), curvature, 1e-4 * curvature);
+}
+
+TEST(PatchEnergy, LiftPullsAlongItsAxisUpToItsHeightOnly) {
+  Sample s;
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(s.multipliers.size());
+  const PatchStrengths lift{0, 0, 0, 2};
+  const auto pull = [&](double height) {
+    s.energy.setRoom({Vector::UnitZ(), height, 5});
+    Positions gradient = Positions::Zero(s.mesh.vertexCount(), 3);
+    s.energy.addGradient(s.mesh.positions, s.view, lift, none, gradient);
+    return gradient;
+  };
+  const double top = s.mesh.positions.col(2).maxCoeff();
+  EXPECT_EQ(pull(s.mesh.positions.col(2).minCoeff()).norm(), 0);
+  const Positions all = pull(top + 1);
+  EXPECT_EQ(all.leftCols(2).norm(), 0);
+  EXPECT_LE(all.col(2).maxCoeff(), 0);  // downhill is up
+  EXPECT_LT(all.col(2).sum(), 0);
 }
 
 TEST(PatchEnergy, VisibilityTermIsAreaTimesOneLessTheAverageVisibility) {

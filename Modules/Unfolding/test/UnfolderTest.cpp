@@ -11,6 +11,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <array>
 #include <filesystem>
 
 namespace explica::unfolding {
@@ -77,6 +79,53 @@ TEST(Unfolder, SurroundingsMoveOnlyWhereTheyMay) {
       }
     }
   }
+}
+
+TEST(Unfolder, ALiftOpensAPitThatFixedWallsKeepShut) {
+  // Half a meander's sheet moves; folds of its rim stand in fixed walls as high as themselves.
+  const TriangleMesh mesh = makeMeander(kColumns, kRows, 2.1, 3);
+  const Region region = regionOfMarked(mesh, interiorOf(kColumns, kRows, 4));
+  const auto view = visibility::viewpoint(Point(8, 8, 1000));
+  std::array<double, 2> reached{};
+  for (const int lifted : {0, 1}) {
+    UnfolderOptions options = with(Surround::Fixed);
+    if (!lifted) options.weights.lift = 0;
+    Unfolder unfolder(mesh, region, view, options);
+    for (int n = 0; n < 40 && unfolder.step(); ++n) {
+      ASSERT_LE(unfolder.record().objectiveAfter, unfolder.record().objectiveBefore);
+    }
+    ASSERT_TRUE(geometry::findSelfIntersections(unfolder.current()).empty());
+    reached[lifted] = unfolder.record().visibility;
+  }
+  EXPECT_GT(reached[1], reached[0] + 0.01);
+}
+
+TEST(Unfolder, APairThatStartsInContactHoldsUpNoStep) {
+  // A vertex of the fixed surroundings 3e-8 mm off a moving face, as pial surfaces have them.
+  Case c;
+  const TriangleMesh& sheet = c.mesh;
+  const std::int32_t face = c.region.faces[c.region.faces.size() / 2];
+  const Point middle = (sheet.corner(face, 0) + sheet.corner(face, 1) + sheet.corner(face, 2)) / 3;
+  const Vector up = (sheet.corner(face, 1) - sheet.corner(face, 0))
+                        .cross(sheet.corner(face, 2) - sheet.corner(face, 0))
+                        .normalized();
+  TriangleMesh both;
+  both.positions.resize(sheet.vertexCount() + 3, 3);
+  both.positions.topRows(sheet.vertexCount()) = sheet.positions;
+  both.positions.row(sheet.vertexCount()) = (middle + 3e-8 * up).transpose();
+  both.positions.row(sheet.vertexCount() + 1) =
+      (middle + 0.05 * up + Vector(0.02, 0, 0)).transpose();
+  both.positions.row(sheet.vertexCount() + 2) =
+      (middle + 0.05 * up + Vector(0, 0.02, 0)).transpose();
+  both.faces.resize(sheet.faceCount() + 1, 3);
+  both.faces.topRows(sheet.faceCount()) = sheet.faces;
+  const auto first = static_cast<std::int32_t>(sheet.vertexCount());
+  both.faces.bottomRows(1) << first, first + 1, first + 2;
+  Unfolder unfolder(both, c.region, c.view, with(Surround::Fixed));
+  const double start = unfolder.record().visibility;
+  for (int n = 0; n < 25; ++n) ASSERT_TRUE(unfolder.step()) << n;
+  EXPECT_GT(unfolder.record().visibility, start + 0.2);
+  EXPECT_TRUE(geometry::findSelfIntersections(unfolder.current()).empty());
 }
 
 TEST(Unfolder, AFlatDiscStaysPut) {

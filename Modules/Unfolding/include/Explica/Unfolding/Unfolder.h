@@ -35,6 +35,8 @@ struct UnfoldWeights {
   double spring = 2.4;   ///< stiffness of edge lengths
   double contact = 0.2;  ///< strength of the contact barrier
   double knot = 3e-4;    ///< strength of the knot energy
+  double lift =
+      6;  ///< pull out of fixed or elastic surroundings, to where the flat region has room
   double collar = 0.02;  ///< stiffness of the collar's areas and lengths beside the region's
 };
 
@@ -56,6 +58,9 @@ void describe(UnfoldWeights& weights, Visitor&& visit) {
   visit(Field{"spring-weight", "", "stiffness of edge lengths"}, weights.spring);
   visit(Field{"knot-weight", "", "strength of the knot energy"}, weights.knot);
   visit(Field{"contact-weight", "", "strength of the contact barrier"}, weights.contact);
+  visit(Field{"lift-weight", "",
+              "pull out of fixed or elastic surroundings, up to where the flat region has room"},
+        weights.lift);
   visit(Field{"collar-weight", "", "stiffness of an elastic collar beside the region's"},
         weights.collar);
 }
@@ -90,6 +95,7 @@ struct IterationRecord {
   double energyVisibility = 0;   ///< terms of the objective after the step, mm^2
   double energyArea = 0;
   double energySpring = 0;
+  double energyLift = 0;
   double energyContact = 0;
   double energyKnot = 0;
   double objectiveBefore = 0;    ///< sum of the terms before the step ...
@@ -114,14 +120,16 @@ struct UnfoldState {
   int driveIteration = 0;       ///< when it was raised last
   double contactStiffness = 1;  ///< factor of weights.contact, raised where pairs are pressed close
   int iteration = 0;
-  bool separating = true;  ///< pairs that start almost in contact are parted first
-  bool stalled = false;    ///< no step lowered the objective
+  bool separating = true;               ///< pairs that start almost in contact are parted first
+  double separatingEnergy = kInfinity;  ///< of their contacts before the last such step
+  bool stalled = false;                 ///< no step lowered the objective
 };
 
 /// Unfolds a region one iteration at a time, so that a viewer or a script can watch and steer.
 ///
 /// Each iteration minimises a quadratic model of
 ///   sum A0 (1 - n . d)  +  areas kept, with multipliers  +  edge springs  +  contact barrier
+/// (beside surroundings also a pull up to the height where the region laid flat has room)
 /// plus damping in a Sobolev metric, caps the step by continuous collision detection over all pairs
 /// with a moving vertex, and backtracks until the objective does not rise.  So no state has an
 /// intersection that the start did not have, and crossings of the start stay as they are.
