@@ -23,7 +23,7 @@ TEST_P(Interrupt, WritesAndMarksWhatWasReachedAndResumes) {
                                           "--out",       folder / "a"};
   CommandSetting setting;
   setting.signal = GetParam();
-  setting.signalAfter = 0.3;
+  setting.signalWhen = "iteration 2";
   const auto stopped = explica(words, setting);
   ASSERT_EQ(stopped.exitCode, 3) << stopped;
   EXPECT_NE(stopped.err.find("interrupted"), std::string::npos) << stopped;

@@ -80,7 +80,10 @@ TEST_F(Replay, ProvJsonHasAnActivityAndItsOutputs) {
   ASSERT_EQ(result.exitCode, 0) << result;
   const auto prov = nlohmann::json::parse(result.out);
   EXPECT_EQ(prov["activity"].size(), 1u);
-  EXPECT_EQ(prov["entity"].size(), 4u);
+  const auto record = readJson(folder_ / "a/provenance.json");
+  const auto outputs = record["outputs"].size();
+  EXPECT_GE(outputs, 3u);
+  EXPECT_EQ(prov["entity"].size(), outputs);
 }
 
 TEST_F(Replay, HistoryTellsTheCommandLine) {

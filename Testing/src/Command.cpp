@@ -84,7 +84,8 @@ CommandResult runProgram(const std::vector<std::string>& words, const CommandSet
         --open;
       }
     }
-    if (!signalSent && seconds() > setting.signalAfter) {
+    if (!signalSent && seconds() > setting.signalAfter &&
+        result.err.find(setting.signalWhen) != std::string::npos) {
       kill(child, *setting.signal);
       signalSent = true;
     }

@@ -27,8 +27,9 @@ struct CommandSetting {
   std::filesystem::path directory;                 ///< working directory; empty: this process's
   std::map<std::string, std::string> environment;  ///< set in addition; an empty value unsets
   std::optional<std::uint64_t> fileSizeLimit;      ///< bytes: a disk that is full after so many
-  std::optional<int> signal;                       ///< sent after `signalAfter` seconds
-  double signalAfter = 0.5;
+  std::optional<int> signal;                       ///< sent once, when both of the next hold
+  double signalAfter = 0;                          ///< seconds
+  std::string signalWhen;                          ///< standard error holds this
   double timeout = 100;  ///< s; the program is killed then
 };
 
