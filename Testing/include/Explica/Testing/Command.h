@@ -30,7 +30,7 @@ struct CommandSetting {
   std::optional<int> signal;                       ///< sent once, when both of the next hold
   double signalAfter = 0;                          ///< seconds
   std::string signalWhen;                          ///< standard error holds this
-  double timeout = 100;  ///< s; the program is killed then
+  double timeout = 100;                            ///< s; the program is killed then
 };
 
 /// Runs a program and waits.
