@@ -228,7 +228,9 @@ void describeDerivatives(const fs::path& out, const DerivativeOrigin& origin,
       {"Name", "Explica"},
       {"Version", version},
       {"Description", "explica bids: thickness, surfaces and unfolding of each hemisphere"}}});
-  description["SourceDatasets"] = Json::array({Json{{"URL", link}}});
+  // BIDS wants a URI here; without names the link stands for the place.
+  const std::string uri = origin.withNames ? "file://" + source.string() : "bids:raw:.";
+  description["SourceDatasets"] = Json::array({Json{{"URL", uri}}});
   description["DatasetLinks"] = Json{{"raw", link}};
   writeIfDifferent(out / "dataset_description.json", description.dump(2) + "\n");
   writeIfDifferent(out / "descriptions.tsv",
