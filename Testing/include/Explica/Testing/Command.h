@@ -29,7 +29,7 @@ struct CommandSetting {
   std::optional<std::uint64_t> fileSizeLimit;      ///< bytes: a disk that is full after so many
   std::optional<int> signal;                       ///< sent once, when both of the next hold
   double signalAfter = 0;                          ///< seconds
-  std::string signalWhen;                          ///< standard error holds this
+  std::string signalWhen = {};                     ///< standard error holds this
   double timeout = 100;                            ///< s; the program is killed then
 };
 
