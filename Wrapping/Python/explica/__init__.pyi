@@ -286,6 +286,7 @@ def unfold(
     spring_weight: float = 2.4,
     knot_weight: float = 0.0003,
     contact_weight: float = 0.2,
+    lift_weight: float = 6.0,
     collar_weight: float = 0.02,
     target_visibility: Optional[float] = None,
     area_tolerance: float = 0.002,
@@ -312,6 +313,7 @@ class Unfolder:
         spring_weight: float = 2.4,
         knot_weight: float = 0.0003,
         contact_weight: float = 0.2,
+        lift_weight: float = 6.0,
         collar_weight: float = 0.02,
     ) -> None: ...
     def step(self, count: int = 1) -> bool: ...
@@ -330,6 +332,7 @@ class Unfolder:
         spring_weight: float = 2.4,
         knot_weight: float = 0.0003,
         contact_weight: float = 0.2,
+        lift_weight: float = 6.0,
         collar_weight: float = 0.02,
     ) -> None: ...
 class UsageError(ValueError): ...
