@@ -15,19 +15,10 @@
 namespace explica::collision {
 namespace {
 
-TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b) {
-  TriangleMesh both;
-  both.positions.resize(a.vertexCount() + b.vertexCount(), 3);
-  both.positions << a.positions, b.positions;
-  both.faces.resize(a.faceCount() + b.faceCount(), 3);
-  both.faces << a.faces, (b.faces.array() + static_cast<std::int32_t>(a.vertexCount())).matrix();
-  return both;
-}
-
 /// Two spheres of radius 10 that overlap by `depth`: banks that passed through each other.
 TriangleMesh makeOverlappingSpheres(double depth) {
-  return joined(geometry::makeIcosphere(4, 10.0),
-                geometry::makeIcosphere(4, 10.0, Point(20 - depth, 0.3, 0.2)));
+  return geometry::joined(geometry::makeIcosphere(4, 10.0),
+                          geometry::makeIcosphere(4, 10.0, Point(20 - depth, 0.3, 0.2)));
 }
 
 /// A sphere some of whose vertices are thrown out of place: folds.
@@ -86,7 +77,7 @@ TEST(Untangling, LeavesASoundSurfaceAlone) {
 
 TEST(Untangling, DoesNotTearLinkedRingsApart) {
   // A tube through a wall for good: no small move can part them, and none is claimed.
-  const TriangleMesh mesh = joined(geometry::makeRectangle(20, 20, 20, 20), [] {
+  const TriangleMesh mesh = geometry::joined(geometry::makeRectangle(20, 20, 20, 20), [] {
     TriangleMesh ring = geometry::makeTorus(60, 12, 8, 1.5);
     ring.positions.col(0).swap(ring.positions.col(2));
     ring.positions.rowwise() += Eigen::RowVector3d(10, 10, 0);

@@ -109,4 +109,13 @@ TriangleMesh makeFoldedSphere(int levels, double radius, double depth, int waves
   return mesh;
 }
 
+TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b) {
+  TriangleMesh both;
+  both.positions.resize(a.vertexCount() + b.vertexCount(), 3);
+  both.positions << a.positions, b.positions;
+  both.faces.resize(a.faceCount() + b.faceCount(), 3);
+  both.faces << a.faces, (b.faces.array() + static_cast<std::int32_t>(a.vertexCount())).matrix();
+  return both;
+}
+
 }  // namespace explica::geometry

@@ -16,15 +16,6 @@
 namespace explica::repulsion {
 namespace {
 
-TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b) {
-  TriangleMesh both;
-  both.positions.resize(a.vertexCount() + b.vertexCount(), 3);
-  both.positions << a.positions, b.positions;
-  both.faces.resize(a.faceCount() + b.faceCount(), 3);
-  both.faces << a.faces, (b.faces.array() + static_cast<std::int32_t>(a.vertexCount())).matrix();
-  return both;
-}
-
 std::vector<bool> all(const TriangleMesh& mesh) {
   return std::vector<bool>(static_cast<std::size_t>(mesh.vertexCount()), true);
 }
@@ -42,7 +33,8 @@ TEST(AllPairs, OfConcentricSpheresIsTheKnownIntegral) {
   for (int level = 1; level <= 2; ++level) {
     const TriangleMesh inner = geometry::makeIcosphere(level, a);
     const TriangleMesh outer = geometry::makeIcosphere(level, b);
-    const double between = energyOf(joined(inner, outer)) - energyOf(inner) - energyOf(outer);
+    const double between =
+        energyOf(geometry::joined(inner, outer)) - energyOf(inner) - energyOf(outer);
     error[static_cast<std::size_t>(level - 1)] = std::abs(between / exact - 1);
   }
   EXPECT_LT(error[1], 0.05);
@@ -105,7 +97,7 @@ TEST(AllPairs, DescentOnTheEnergyNeedsTheMinusSign) {
   TriangleMesh lower = geometry::makeRectangle(3, 3, 1, 1);
   TriangleMesh upper = lower;
   upper.positions.col(2).array() += 0.2;
-  const TriangleMesh sheets = joined(lower, upper);
+  const TriangleMesh sheets = geometry::joined(lower, upper);
   const AllPairs knot(sheets, all(sheets));
   const KnotValue v = knot.evaluate(sheets.positions);
   const double step = 1e-3 / v.gradient.norm();

@@ -15,15 +15,6 @@
 namespace explica::visibility {
 namespace {
 
-TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b) {
-  TriangleMesh both;
-  both.positions.resize(a.vertexCount() + b.vertexCount(), 3);
-  both.positions << a.positions, b.positions;
-  both.faces.resize(a.faceCount() + b.faceCount(), 3);
-  both.faces << a.faces, (b.faces.array() + static_cast<std::int32_t>(a.vertexCount())).matrix();
-  return both;
-}
-
 TEST(VisibleFraction, OfASphereIsTheCapTowardsTheViewpoint) {
   // The cap of points x with x . P > R^2 has the share (1 - R/D)/2 of the area.
   for (const double distance : {1.5, 4.0, 1000.0}) {
@@ -55,7 +46,7 @@ TEST(VisibleFraction, BehindASmallerPlateIsItsShadow) {
   lid.positions.col(0).array() += 1.5;
   lid.positions.col(1).array() += 1.5;
   lid.positions.col(2).array() += 1;
-  const TriangleMesh both = joined(floor, lid);
+  const TriangleMesh both = geometry::joined(floor, lid);
   const VisibleFraction seen = visibleFraction(both, viewpoint(Point(2, 2, 2)), {4});
   std::vector<std::int32_t> floorFaces;
   for (Eigen::Index f = 0; f < floor.faceCount(); ++f) {

@@ -26,4 +26,7 @@ namespace explica::geometry {
 /// Each face into four; new vertices at edge midpoints, old ones keep their numbers.
 [[nodiscard]] TriangleMesh subdivide(const TriangleMesh& mesh);
 
+/// Both as one mesh, without a common vertex; vertices and faces of `a` first.
+[[nodiscard]] TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b);
+
 }  // namespace explica::geometry
