@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // What every command has from Applications/Common, tried on the quickest of them.
 
-#include "Explica/Testing/Command.h"
+#include "Explica/Testing/KillMoments.h"
 
 #include <gtest/gtest.h>
 
 #include <signal.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <cstdlib>
 #include <sstream>
 
@@ -244,26 +243,23 @@ TEST(Framework, ASecondRunIntoTheSameFolderRefuses) {
 TEST(Framework, AKilledRunLeavesWholeFilesAndTheNextGivesTheSameBytes) {
   TemporaryFolder folder;
   const std::vector<std::string> line = {"phantom", "shell", "--size", "64", "--threads", "1"};
-  const auto run = [&](const std::string& out, const CommandSetting& setting = {}) {
-    auto words = line;
-    words.insert(words.end(), {"--force", "--out", out});
-    return explica(words, setting);
+  const auto words = [&](const std::string& out) {
+    auto all = line;
+    all.insert(all.end(), {"--force", "--out", out});
+    return all;
   };
-  const auto begin = std::chrono::steady_clock::now();
-  ASSERT_EQ(run(folder / "undisturbed").exitCode, 0);
-  const std::chrono::duration<double> whole = std::chrono::steady_clock::now() - begin;
+  ASSERT_EQ(explica(words(folder / "undisturbed")).exitCode, 0);
   const auto expected = stableHashes(folder / "undisturbed");
 
   constexpr int kKills = 50;
+  KillMoments moments(20261121);
   int killed = 0;
-  for (int i = 0; i < kKills; ++i) {
+  for (int run = 0; killed < kKills; ++run) {
+    ASSERT_LT(run, 10 * kKills) << "only " << killed << " runs were killed before their end";
     // A fresh folder, and one that is there: results appear in two different ways.
-    const std::string out = folder / (i % 2 ? "fresh" : "there");
-    if (i % 2 == 0) fs::create_directories(out);
-    CommandSetting setting;
-    setting.signal = SIGKILL;
-    setting.signalAfter = whole.count() * (i + 0.5) / kKills;
-    killed += run(out, setting).exitCode == 128 + SIGKILL;
+    const std::string out = folder / (run % 2 ? "fresh" : "there");
+    if (run % 2 == 0) fs::create_directories(out);
+    killed += moments.kill(words(out));
     if (fs::exists(out)) {
       for (const auto& entry : fs::directory_iterator(out)) {
         const std::string name = entry.path().filename().string();
@@ -275,12 +271,11 @@ TEST(Framework, AKilledRunLeavesWholeFilesAndTheNextGivesTheSameBytes) {
         }
       }
     }
-    const auto again = run(out);
+    const auto again = explica(words(out));
     ASSERT_EQ(again.exitCode, 0) << again;
-    ASSERT_EQ(stableHashes(out), expected) << "after kill " << i;
+    ASSERT_EQ(stableHashes(out), expected) << "after run " << run;
     fs::remove_all(out);
   }
-  EXPECT_GT(killed, kKills / 4);
   EXPECT_EQ(folder.entries().size(), expected.size() + 3);  // the undisturbed run's, no remains
 }
 
