@@ -214,6 +214,9 @@ void checkStart(Context& context, const Settings& s, const unfolding::Region& re
 
 Termination run(Context& context, const Settings& s) {
   const auto begin = std::chrono::steady_clock::now();
+  const auto elapsed = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
   const io::LoadedSurface loaded = readSurface(context, "SURFACE", s.surface, s.reading);
   TriangleMesh mesh = loaded.mesh;
   geometry::requireManifold(mesh, s.surface);
@@ -258,6 +261,7 @@ Termination run(Context& context, const Settings& s) {
   sayHowRead(context, loaded.origin);
 
   checkStart(context, s, region, mesh);
+  const double started = elapsed();
 
   unfolding::UnfoldResult result;
   {
@@ -268,6 +272,7 @@ Termination run(Context& context, const Settings& s) {
     step.termination(result.termination);
   }
 
+  const double unfolded = elapsed();
   auto step = context.step("measure and write");
   TriangleMesh& after = result.mesh;
   after.positions = unfolding::roundedToSingle(after.positions);
@@ -355,8 +360,15 @@ Termination run(Context& context, const Settings& s) {
     context.result("self_intersections_frames_max", worstFrame);
   }
   context.result("iterations", last.iteration);
-  context.result("seconds",
-                 std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  unfolding::PhaseSeconds phases;
+  for (const unfolding::IterationRecord& row : result.history) phases += row.phases;
+  context.result("seconds", elapsed());
+  context.result("seconds_start", started);
+  context.result("seconds_visibility", phases.visibility);
+  context.result("seconds_repulsion", phases.repulsion);
+  context.result("seconds_collision", phases.collision);
+  context.result("seconds_solve", phases.solve);
+  context.result("seconds_output", elapsed() - unfolded);
   context.result("seconds_per_iteration", last.iteration > 0 ? last.seconds / last.iteration : 0);
   context.result("stop_reason", std::string(nameOf(result.termination)));
   return result.termination;

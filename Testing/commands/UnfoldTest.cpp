@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
+#include "RealSurfaces.h"
+
 #include "Explica/Geometry/Fixtures.h"
 #include "Explica/Geometry/SelfIntersection.h"
 #include "Explica/IO/SurfaceFile.h"
@@ -23,37 +25,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kData = EXPLICA_REAL_DATA;
-
-/// Words that unfold about the vertex farthest along (x, y, z) from the centroid.
-std::vector<std::string> unfoldAbout(const fs::path& surface, const Vector& along, double radius,
-                                     const std::string& surround, const std::string& out) {
-  const TriangleMesh mesh = io::readSurface(surface).mesh;
-  const Point centroid = mesh.positions.colwise().mean().transpose();
-  Eigen::Index farthest = 0;
-  (void)((mesh.positions.rowwise() - centroid.transpose()) * along).maxCoeff(&farthest);
-  char direction[80];
-  std::snprintf(direction, sizeof direction, "--direction=%g,%g,%g", along[0], along[1], along[2]);
-  return {"unfold",   surface.string(),
-          "--vertex", std::to_string(farthest),
-          "--radius", std::to_string(radius),
-          direction,  "--surround",
-          surround,   "--out",
-          out};
-}
-
-class RealSurfaces : public ::testing::Test {
- protected:
-  void SetUp() override {
-    if (!fs::exists(kData)) GTEST_SKIP() << "skipped: no real data";
-  }
-};
-
 TEST_F(RealSurfaces, FixedSurroundingsOnTheAverageCortex) {
   const TemporaryFolder folder;
-  auto words = unfoldAbout(kData / "fsaverage5/pial_left.gii.gz", Vector(-1, 0.2, 0.2), 25, "fixed",
-                           folder / "out");
-  words.insert(words.end(), {"--target-visibility", "0.97", "--frames", "6"});
+  auto words = unfoldAbout(average(), Vector(-1, 0.2, 0.2), 25, "fixed");
+  words.insert(words.end(),
+               {"--target-visibility", "0.97", "--frames", "6", "--out", folder / "out"});
   const auto result = explica(words);
   ASSERT_EQ(result.exitCode, 0) << result;
   const auto summary = readJson(folder / "out/summary.json");
@@ -71,7 +47,7 @@ TEST_F(RealSurfaces, FixedSurroundingsOnTheAverageCortex) {
   EXPECT_EQ(after.vertexCount(), 10242);
   EXPECT_TRUE(geometry::findSelfIntersections(after).empty());
   // A rasteriser with a depth buffer sees what the ray caster saw, before and after.
-  const TriangleMesh before = io::readSurface(kData / "fsaverage5/pial_left.gii.gz").mesh;
+  const TriangleMesh before = io::readSurface(average()).mesh;
   unfolding::RegionOptions where;
   where.vertex = std::stoi(words[3]);
   const auto region = unfolding::selectRegion(before, where);
@@ -90,9 +66,8 @@ TEST_F(RealSurfaces, FixedSurroundingsOnTheAverageCortex) {
 
 TEST_F(RealSurfaces, ADetachedPatchOfTheAverageCortexOpensFurther) {
   const TemporaryFolder folder;
-  auto words = unfoldAbout(kData / "fsaverage5/pial_left.gii.gz", Vector(-1, 0, 0), 40, "none",
-                           folder / "out");
-  words.insert(words.end(), {"--target-visibility", "0.99"});
+  auto words = unfoldAbout(average(), Vector(-1, 0, 0), 40, "none");
+  words.insert(words.end(), {"--target-visibility", "0.99", "--out", folder / "out"});
   ASSERT_EQ(explica(words).exitCode, 0);
   const auto summary = readJson(folder / "out/summary.json");
   EXPECT_EQ(summary["region_faces"], 2254);
@@ -100,38 +75,6 @@ TEST_F(RealSurfaces, ADetachedPatchOfTheAverageCortexOpensFurther) {
   EXPECT_LE(summary["area_error_mean"], 0.003);
   EXPECT_LE(summary["edge_strain_mean"], 0.08);
   EXPECT_EQ(summary["self_intersections_final"], 0);
-}
-
-TEST_F(RealSurfaces, AnIndividualAtFullResolutionWithItsNearContacts) {
-  const TemporaryFolder folder;
-  auto words = unfoldAbout(kData / "s1_pycortex_lh/pia_lh.gii", Vector(-1, 0.2, 0.2), 20, "none",
-                           folder / "out");
-  words.insert(words.end(), {"--target-visibility", "0.97"});
-  ASSERT_EQ(explica(words).exitCode, 0);
-  const auto summary = readJson(folder / "out/summary.json");
-  EXPECT_GE(summary["visibility_final"], 0.97);
-  EXPECT_LE(summary["area_error_mean"], 0.005);
-  EXPECT_EQ(summary["self_intersections_final"], 0);
-  EXPECT_FALSE(summary["warnings"].empty());  // the start intersects elsewhere, and is reported
-  EXPECT_EQ(summary["self_intersections_initial"], 103);  // as an independent exact checker finds
-  EXPECT_EQ(summary["self_intersections_initial_region"], 0);
-  const std::string places = readText(folder / "out/intersections.tsv");
-  EXPECT_EQ(std::count(places.begin(), places.end(), '\n'), 1 + 103);
-}
-
-TEST_F(RealSurfaces, AnIndividualWhoseSurfaceIntersectsIsRepaired) {
-  const TemporaryFolder folder;
-  auto words = unfoldAbout(kData / "s1_pycortex_lh/pia_lh.gii", Vector(-1, 0.2, 0.2), 20, "fixed",
-                           folder / "out");
-  words.insert(words.end(), {"--max-iterations", "2", "--repair"});
-  ASSERT_EQ(explica(words).exitCode, 3);
-  const auto summary = readJson(folder / "out/summary.json");
-  EXPECT_EQ(summary["self_intersections_initial"], 103);
-  EXPECT_EQ(summary["self_intersections_repaired"], 103);
-  EXPECT_EQ(summary["self_intersections_final"], 0);
-  EXPECT_LE(summary["repair_move_max"], 1.0);  // mm; edges are 0.9 mm long
-  EXPECT_LE(summary["repair_move_mean"], 0.1);
-  EXPECT_LE(summary["repair_vertices_moved"], 2000);
 }
 
 std::vector<std::string> onFoldedSphere(const TemporaryFolder& folder) {

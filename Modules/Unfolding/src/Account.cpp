@@ -65,17 +65,19 @@ std::string evolutionTable(const std::vector<IterationRecord>& history) {
       "visibility\t"
       "energy_area\tenergy_spring\tenergy_lift\tenergy_contact\tenergy_knot\tobjective_"
       "before\tobjective_after\t"
-      "contacts\tnearest_contact\tsafe_step\tstep\tlargest_move\tdamping\tsolves\tseconds\n";
+      "contacts\tnearest_contact\tsafe_step\tstep\tlargest_move\tdamping\tsolves\t"
+      "seconds_visibility\tseconds_repulsion\tseconds_collision\tseconds_solve\tseconds\n";
   for (const IterationRecord& r : history) {
-    char line[512];
+    char line[640];
     std::snprintf(line, sizeof line,
                   "%d\t%.6f\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.9g\t%.9g\t%"
                   "d\t%.6g\t%.6g\t"
-                  "%.6g\t%.6g\t%.6g\t%d\t%.3f\n",
+                  "%.6g\t%.6g\t%.6g\t%d\t%.4f\t%.4f\t%.4f\t%.4f\t%.3f\n",
                   r.iteration, r.visibility, r.areaErrorMean, r.areaErrorMax, r.edgeStrainMean,
                   r.energyVisibility, r.energyArea, r.energySpring, r.energyLift, r.energyContact,
                   r.energyKnot, r.objectiveBefore, r.objectiveAfter, r.contacts, r.nearestContact,
-                  r.safeStep, r.step, r.largestMove, r.damping, r.solves, r.seconds);
+                  r.safeStep, r.step, r.largestMove, r.damping, r.solves, r.phases.visibility,
+                  r.phases.repulsion, r.phases.collision, r.phases.solve, r.seconds);
     table += line;
   }
   return table;

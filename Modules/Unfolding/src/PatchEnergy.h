@@ -25,6 +25,7 @@ struct PatchSpring {
   std::array<std::int32_t, 2> vertices;
   double restLength = 0;  ///< mm
   double weight = 0;      ///< mm^2: two thirds of the mean face, less for the shortest edges
+  bool looked = true;     ///< of a face in the region, not of its collar alone
 };
 
 /// Room for the patch laid flat: the height along `axis` above which no surroundings stand within

@@ -47,6 +47,13 @@ bool isRelaxed(const std::vector<IterationRecord>& history) {
   return history.back().edgeStrainMean > 0.996 * before;
 }
 
+/// How much stronger the visibility term has to be for a goal.  Against springs the deficit 1 - v
+/// falls with its square: a quarter of the way at a time, since lengths are better spared.
+double driveFactor(double visibility, double goal) {
+  const double share = goal < 1 ? std::sqrt((1 - visibility) / (1 - goal)) : kInfinity;
+  return std::clamp(std::max(1 + 10 * (goal - visibility), 1 + 0.25 * (share - 1)), 1.01, 1.3);
+}
+
 Positions movingOnly(const Unfolder& unfolder) {
   const auto& moving = unfolder.movingVertices();
   Positions rows(static_cast<Eigen::Index>(moving.size()), 3);
@@ -152,7 +159,7 @@ UnfoldResult unfold(const TriangleMesh& mesh, const Region& region,
       if (!options.targetVisibility) {
         result.termination = Termination::Converged;
       } else if (!thesis && unfolder.state().drive < kLargestDrive) {
-        unfolder.raiseDrive(std::clamp(1 + 10 * (goal - last.visibility), 1.01, 1.3));
+        unfolder.raiseDrive(driveFactor(last.visibility, goal));
       } else {
         result.termination = Termination::Stalled;
       }

@@ -6,6 +6,7 @@
 #include "AreaProjection.h"
 #include "BlockSystem.h"
 #include "PatchEnergy.h"
+#include "PhaseClock.h"
 
 #include "Explica/Collision/CollisionScene.h"
 #include "Explica/Collision/ContactPotential.h"
@@ -51,6 +52,14 @@ std::vector<bool> flags(std::size_t count, const std::vector<std::int32_t>& mark
   return result;
 }
 
+/// A step that has been proposed, and what stands in its way.
+struct Motion {
+  Positions by = {};             ///< V x 3, mm
+  double descent = 0;            ///< gradient . by
+  double safe = 0;               ///< share of it that collision detection allows
+  std::vector<Pair> pairs = {};  ///< that may meet on the way, or come within the barrier's range
+};
+
 }  // namespace
 
 struct Unfolder::Implementation {
@@ -80,7 +89,7 @@ struct Unfolder::Implementation {
   Contact contactOf(const Pair& pair) const;
   std::vector<Contact> contactsOf(const std::vector<Pair>& pairs) const;
   double objective(const Positions& x, const std::vector<Contact>& contacts,
-                   IterationRecord* account) const;
+                   IterationRecord& account) const;
   PatchStrengths strengths() const {
     return {state.separating ? 0.0 : state.drive, state.areaStiffness, options.weights.spring,
             state.separating || options.surround == Surround::None ? 0.0 : options.weights.lift};
@@ -88,12 +97,24 @@ struct Unfolder::Implementation {
   double contactScale() const {
     return state.contactStiffness * options.weights.contact * edge * edge;
   }
+  std::vector<Contact> contactsNow(IterationRecord& account);
+  void endSeparationIfDone(const std::vector<Contact>& contacts);
+  Positions gradientNow(const std::vector<Contact>& contacts,
+                        const std::vector<collision::ContactForce>& forces,
+                        IterationRecord& account) const;
+  void assemble(const Couplings& couplings, const std::vector<Pair>& locked,
+                const std::vector<Contact>& contacts,
+                const std::vector<collision::ContactForce>& forces);
   void couple(const std::array<std::int32_t, 4>& vertices, Couplings& couplings) const;
   void addLock(const Pair& pair, const Positions& x);
   void weld(const std::vector<Pair>& pairs, std::vector<std::int32_t>& weldedTo) const;
   void moveWeldedAsOne(const std::vector<std::int32_t>& weldedTo, Positions& motion) const;
-  std::vector<Pair> blockingPairs(const std::vector<Pair>& pairs, const Positions& x,
-                                  const Positions& motion) const;
+  Positions cappedMotion(const Positions& direction) const;
+  void findSafeStep(Motion& motion) const;
+  std::vector<Pair> blockingPairs(const Motion& motion) const;
+  void weldBlocking(Motion& motion, const Positions& gradient) const;
+  void accountForContacts(const std::vector<Contact>& contacts, const Positions& trial,
+                          IterationRecord& now);
   void measure(IterationRecord& account) const;
   void updateMultipliers();
   bool step();
@@ -176,10 +197,12 @@ void Unfolder::Implementation::build() {
   std::vector<PatchSpring> springs;
   for (Eigen::Index e = 0; e < topology.edges.rows(); ++e) {
     double share = 0;  // the region's own count in full, on its rim too
+    bool looked = false;
     for (int side = 0; side < 2; ++side) {
       const std::int32_t f = topology.edgeFaces(e, side);
       if (f < 0 || !inPatch[f]) continue;
       share = std::max(share, inRegion[f] ? 1 : options.weights.collar);
+      looked = looked || inRegion[f];
     }
     if (share == 0) continue;
     const std::int32_t a = topology.edges(e, 0), b = topology.edges(e, 1);
@@ -187,7 +210,7 @@ void Unfolder::Implementation::build() {
     constexpr double kShort = 0.1;  // of the mean edge: what is far shorter must not rule the rest
     const double squared = length * length, tooShort = kShort * kShort * edge * edge;
     const double weight = share * springWeight * squared / (squared + tooShort);
-    springs.push_back({{a, b}, length, weight});
+    springs.push_back({{a, b}, length, weight, looked});
     if (unknown[a] >= 0 && unknown[b] >= 0) {
       meshCouplings.emplace_back(std::max(unknown[a], unknown[b]),
                                  std::min(unknown[a], unknown[b]));
@@ -305,19 +328,25 @@ std::vector<Contact> Unfolder::Implementation::contactsOf(const std::vector<Pair
 }
 
 double Unfolder::Implementation::objective(const Positions& x, const std::vector<Contact>& contacts,
-                                           IterationRecord* account) const {
-  const PatchValue value = patch.value(x, viewpoints, strengths(), state.multipliers);
-  const double contact = contactScale() * collision::contactEnergy(contacts, x);
-  const double knotted = knot ? options.weights.knot * knot->value(x) : 0;
-  if (account != nullptr) {
-    account->energyVisibility = value.visibility;
-    account->energyArea = value.area;
-    account->energySpring = value.spring;
-    account->energyLift = value.lift;
-    account->energyContact = contact;
-    account->energyKnot = knotted;
+                                           IterationRecord& account) const {
+  PatchValue value;
+  {
+    const PhaseClock clock(account.phases.visibility);
+    value = patch.value(x, viewpoints, strengths(), state.multipliers);
   }
-  return value.total() + contact + knotted;
+  account.energyVisibility = value.visibility;
+  account.energyArea = value.area;
+  account.energySpring = value.spring;
+  account.energyLift = value.lift;
+  {
+    const PhaseClock clock(account.phases.collision);
+    account.energyContact = contactScale() * collision::contactEnergy(contacts, x);
+  }
+  if (knot) {
+    const PhaseClock clock(account.phases.repulsion);
+    account.energyKnot = options.weights.knot * knot->value(x);
+  }
+  return value.total() + account.energyContact + account.energyKnot;
 }
 
 void Unfolder::Implementation::couple(const std::array<std::int32_t, 4>& vertices,
@@ -348,14 +377,30 @@ void Unfolder::Implementation::addLock(const Pair& pair, const Positions& x) {
   }
 }
 
+/// The direction (one row per unknown) on all vertices (V x 3), none farther than it may go.
+Positions Unfolder::Implementation::cappedMotion(const Positions& direction) const {
+  const double largest = std::sqrt(direction.rowwise().squaredNorm().maxCoeff());
+  const double cap = options.largestMove * edge;
+  const double share = largest > cap ? cap / largest : 1;
+  Positions motion = Positions::Zero(mesh.vertexCount(), 3);
+  for (std::size_t i = 0; i < moving.size(); ++i) {
+    motion.row(moving[i]) = share * direction.row(static_cast<Eigen::Index>(i));
+  }
+  return motion;
+}
+
+void Unfolder::Implementation::findSafeStep(Motion& motion) const {
+  motion.pairs = scene->findPairs(state.positions, motion.by, contactRange);
+  motion.safe = collision::largestSafeStep(*scene, motion.pairs, state.positions, motion.by);
+}
+
 /// Pairs that alone would stop the motion before kBlocked of it.
-std::vector<Pair> Unfolder::Implementation::blockingPairs(const std::vector<Pair>& pairs,
-                                                          const Positions& x,
-                                                          const Positions& motion) const {
+std::vector<Pair> Unfolder::Implementation::blockingPairs(const Motion& motion) const {
+  const std::vector<Pair>& pairs = motion.pairs;
   std::vector<char> blocks(pairs.size(), 0);
   parallelFor(pairs.size(), 512, [&](std::size_t n) {
-    blocks[n] = collision::safeTime(pairs[n].kind, scene->points(pairs[n], x),
-                                    scene->points(pairs[n], motion), kBlocked) < kBlocked;
+    blocks[n] = collision::safeTime(pairs[n].kind, scene->points(pairs[n], state.positions),
+                                    scene->points(pairs[n], motion.by), kBlocked) < kBlocked;
   });
   std::vector<Pair> blocking;
   for (std::size_t n = 0; n < pairs.size(); ++n) {
@@ -412,7 +457,47 @@ void Unfolder::Implementation::moveWeldedAsOne(const std::vector<std::int32_t>& 
   }
 }
 
+/// Pairs that still stop the motion go along without turning, or stay where something holds them.
+void Unfolder::Implementation::weldBlocking(Motion& motion, const Positions& gradient) const {
+  if (motion.safe >= kBlocked) return;
+  constexpr int kMaxWeldings = 8;
+  std::vector<std::int32_t> weldedTo(static_cast<std::size_t>(mesh.vertexCount()));
+  std::iota(weldedTo.begin(), weldedTo.end(), 0);
+  for (int welding = 0; welding < kMaxWeldings && motion.safe < kBlocked; ++welding) {
+    const std::vector<Pair> blocking = blockingPairs(motion);
+    if (blocking.empty()) return;
+    weld(blocking, weldedTo);
+    moveWeldedAsOne(weldedTo, motion.by);
+    findSafeStep(motion);
+    motion.descent = (gradient.array() * motion.by.array()).sum();
+  }
+}
+
+/// How near contacts are at the new positions; those pressed close stiffen from the next step on.
+void Unfolder::Implementation::accountForContacts(const std::vector<Contact>& contacts,
+                                                  const Positions& trial, IterationRecord& now) {
+  const auto squaredDistanceAt = [](const Contact& c, const Positions& x) {
+    collision::FourPoints p;
+    for (int i = 0; i < 4; ++i) p[i] = x.row(c.vertices[i]).transpose();
+    return collision::squaredDistance(c.kind, p);
+  };
+  double nearest = kInfinity, pressed = 1;
+  for (const Contact& c : contacts) {
+    const double squared = squaredDistanceAt(c, trial);
+    nearest = std::min(nearest, squared);
+    if (squared < kClosing * squaredDistanceAt(c, state.positions)) {
+      pressed = std::min(pressed, std::sqrt(squared) / c.range);
+    }
+  }
+  now.contacts = static_cast<int>(contacts.size());
+  now.nearestContact = contacts.empty() ? kNaN : std::sqrt(nearest);
+  if (!state.separating && pressed < kPressed) {
+    state.contactStiffness = std::min(kStiffestContact, 2 * state.contactStiffness);
+  }
+}
+
 void Unfolder::Implementation::measure(IterationRecord& account) const {
+  const PhaseClock clock(account.phases.visibility);
   account.visibility =
       visibility::AverageVisibility(mesh.faces, region.faces, viewpoints).value(state.positions);
   double sum = 0, largest = 0, count = 0;
@@ -430,6 +515,7 @@ void Unfolder::Implementation::measure(IterationRecord& account) const {
   account.areaErrorMax = largest;
   sum = count = 0;
   for (const PatchSpring& spring : patch.springs()) {
+    if (!spring.looked) continue;
     const double length =
         (state.positions.row(spring.vertices[0]) - state.positions.row(spring.vertices[1])).norm();
     sum += std::abs(length / spring.restLength - 1);
@@ -452,50 +538,109 @@ void Unfolder::Implementation::updateMultipliers() {
   }
 }
 
-bool Unfolder::Implementation::implicitStep() {
+/// The pairs within the barrier's range, in an order that does not depend on how they were found.
+std::vector<Contact> Unfolder::Implementation::contactsNow(IterationRecord& account) {
+  const PhaseClock clock(account.phases.collision);
   const Positions& x = state.positions;
   if (!nearKnown) {
     near = scene->findPairs(x, Positions::Zero(x.rows(), 3), contactRange);
     nearKnown = true;
   }
-  std::sort(near.begin(), near.end());  // sums must not depend on how the pairs were found
+  std::sort(near.begin(), near.end());
   std::vector<Contact> contacts = contactsOf(near);
   std::erase_if(contacts, [&](const Contact& c) {
     collision::FourPoints p;
     for (int i = 0; i < 4; ++i) p[i] = x.row(c.vertices[i]).transpose();
     return collision::squaredDistance(c.kind, p) >= c.range * c.range;
   });
+  return contacts;
+}
 
-  if (state.separating) {
-    double least = 1;
-    for (const Contact& c : contacts) {
-      collision::FourPoints p;
-      for (int i = 0; i < 4; ++i) p[i] = x.row(c.vertices[i]).transpose();
-      least = std::min(least, std::sqrt(collision::squaredDistance(c.kind, p)) / c.range);
-    }
-    const double energy = collision::contactEnergy(contacts, x);
-    if (least > kSeparated || energy > kStillSeparating * state.separatingEnergy ||
-        state.iteration >= kSeparatingIterations) {
-      state.separating = false;
-      state.driveIteration = state.iteration;
-    }
-    state.separatingEnergy = energy;
+void Unfolder::Implementation::endSeparationIfDone(const std::vector<Contact>& contacts) {
+  double least = 1;
+  for (const Contact& c : contacts) {
+    collision::FourPoints p;
+    for (int i = 0; i < 4; ++i) p[i] = state.positions.row(c.vertices[i]).transpose();
+    least = std::min(least, std::sqrt(collision::squaredDistance(c.kind, p)) / c.range);
   }
-  IterationRecord now;
-  now.iteration = state.iteration + 1;
-  now.objectiveBefore = objective(x, contacts, nullptr);
+  const double energy = collision::contactEnergy(contacts, state.positions);
+  if (least > kSeparated || energy > kStillSeparating * state.separatingEnergy ||
+      state.iteration >= kSeparatingIterations) {
+    state.separating = false;
+    state.driveIteration = state.iteration;
+  }
+  state.separatingEnergy = energy;
+}
 
+/// V x 3, of the objective.
+Positions Unfolder::Implementation::gradientNow(const std::vector<Contact>& contacts,
+                                                const std::vector<collision::ContactForce>& forces,
+                                                IterationRecord& account) const {
+  const Positions& x = state.positions;
   Positions gradient = Positions::Zero(x.rows(), 3);
-  patch.addGradient(x, viewpoints, strengths(), state.multipliers, gradient);
-  if (knot) gradient += options.weights.knot * knot->evaluate(x).gradient;
-  const auto forces = collision::contactForces(contacts, x);
-  const double scale = contactScale();
+  {
+    const PhaseClock clock(account.phases.visibility);
+    patch.addGradient(x, viewpoints, strengths(), state.multipliers, gradient);
+  }
+  if (knot) {
+    const PhaseClock clock(account.phases.repulsion);
+    gradient += options.weights.knot * knot->evaluate(x).gradient;
+  }
+  const PhaseClock clock(account.phases.collision);
   for (std::size_t n = 0; n < contacts.size(); ++n) {
     for (int i = 0; i < 4; ++i) {
       gradient.row(contacts[n].vertices[i]) +=
-          scale * forces[n].gradient.segment<3>(3 * i).transpose();
+          contactScale() * forces[n].gradient.segment<3>(3 * i).transpose();
     }
   }
+  return gradient;
+}
+
+/// The matrix of the step: Gauss-Newton, contacts, locked pairs and the damping's metric.
+void Unfolder::Implementation::assemble(const Couplings& couplings, const std::vector<Pair>& locked,
+                                        const std::vector<Contact>& contacts,
+                                        const std::vector<collision::ContactForce>& forces) {
+  const Positions& x = state.positions;
+  system.reset(static_cast<std::int32_t>(moving.size()), couplings);
+  for (const Pair& pair : locked) addLock(pair, x);
+  patch.addStiffness(x, strengths(), state.multipliers, unknown, system);
+  for (std::size_t n = 0; n < contacts.size(); ++n) {
+    if (forces[n].curvature == 0) continue;
+    for (int i = 0; i < 4; ++i) {
+      const std::int32_t a = unknown[contacts[n].vertices[i]];
+      if (a < 0) continue;
+      for (int j = 0; j <= i; ++j) {
+        const std::int32_t b = unknown[contacts[n].vertices[j]];
+        if (b < 0) continue;
+        system.add(a, b,
+                   contactScale() * forces[n].curvature * forces[n].direction.segment<3>(3 * i) *
+                       forces[n].direction.segment<3>(3 * j).transpose());
+      }
+    }
+  }
+  constexpr double kMassShare = 0.01;  // of the damping: the rest is the graph Laplacian
+  const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
+  for (const auto& [i, j] : meshCouplings) {
+    system.add(i, i, state.damping * identity);
+    system.add(j, j, state.damping * identity);
+    system.add(i, j, -state.damping * identity);
+  }
+  system.addDiagonal(kMassShare * state.damping + 1e-9);
+}
+
+bool Unfolder::Implementation::implicitStep() {
+  const Positions& x = state.positions;
+  IterationRecord now;
+  now.iteration = state.iteration + 1;
+  const std::vector<Contact> contacts = contactsNow(now);
+  if (state.separating) endSeparationIfDone(contacts);
+  now.objectiveBefore = objective(x, contacts, now);
+  std::vector<collision::ContactForce> forces;
+  {
+    const PhaseClock clock(now.phases.collision);
+    forces = collision::contactForces(contacts, x);
+  }
+  const Positions gradient = gradientNow(contacts, forces, now);
   const auto unknownCount = static_cast<std::int32_t>(moving.size());
   Positions rightSide(unknownCount, 3);
   for (std::int32_t i = 0; i < unknownCount; ++i) rightSide.row(i) = -gradient.row(moving[i]);
@@ -507,113 +652,57 @@ bool Unfolder::Implementation::implicitStep() {
   std::vector<Pair> locked;
   Positions direction;
   for (int attempt = 0; attempt < kMaxAttempts; ++attempt, state.damping *= 4) {
-    system.reset(unknownCount, couplings);
-    for (const Pair& pair : locked) addLock(pair, x);
-    patch.addStiffness(x, strengths(), state.multipliers, unknown, system);
-    for (std::size_t n = 0; n < contacts.size(); ++n) {
-      if (forces[n].curvature == 0) continue;
-      for (int i = 0; i < 4; ++i) {
-        const std::int32_t a = unknown[contacts[n].vertices[i]];
-        if (a < 0) continue;
-        for (int j = 0; j <= i; ++j) {
-          const std::int32_t b = unknown[contacts[n].vertices[j]];
-          if (b < 0) continue;
-          system.add(a, b,
-                     scale * forces[n].curvature * forces[n].direction.segment<3>(3 * i) *
-                         forces[n].direction.segment<3>(3 * j).transpose());
+    {
+      const PhaseClock clock(now.phases.solve);
+      assemble(couplings, locked, contacts, forces);
+      ++now.solves;
+      if (!system.solve(rightSide, direction)) continue;
+    }
+    Motion motion{cappedMotion(direction)};
+    motion.descent = (gradient.array() * motion.by.array()).sum();
+    if (!(motion.descent < 0)) continue;
+    std::vector<Contact> onTheWay;
+    {
+      const PhaseClock clock(now.phases.collision);
+      findSafeStep(motion);
+      if (motion.safe < kBlocked && locked.empty()) {
+        // Few pairs, almost in contact, would stop all the rest: solve again, each of them rigid.
+        locked = blockingPairs(motion);
+        for (const Pair& pair : locked) couple(scene->vertices(pair), couplings);
+        if (!locked.empty()) {
+          --attempt;
+          state.damping /= 4;  // of the loop: this is no failure of the model
+          continue;
         }
       }
+      weldBlocking(motion, gradient);
+      onTheWay = contactsOf(motion.pairs);
     }
-    constexpr double kMassShare = 0.01;  // of the damping: the rest is the graph Laplacian
-    const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
-    for (const auto& [i, j] : meshCouplings) {
-      system.add(i, i, state.damping * identity);
-      system.add(j, j, state.damping * identity);
-      system.add(i, j, -state.damping * identity);
-    }
-    system.addDiagonal(kMassShare * state.damping + 1e-9);
-    ++now.solves;
-    if (!system.solve(rightSide, direction)) continue;
-
-    double largest = std::sqrt(direction.rowwise().squaredNorm().maxCoeff());
-    const double cap = options.largestMove * edge;
-    if (largest > cap) {
-      direction *= cap / largest;
-      largest = cap;
-    }
-    const double slope = -(rightSide.array() * direction.array()).sum();
-    if (!(slope < 0)) continue;
-    Positions motion = Positions::Zero(x.rows(), 3);
-    for (std::int32_t i = 0; i < unknownCount; ++i) motion.row(moving[i]) = direction.row(i);
-
-    std::vector<Pair> pairs = scene->findPairs(x, motion, contactRange);
-    now.safeStep = collision::largestSafeStep(*scene, pairs, x, motion);
-    if (now.safeStep < kBlocked && locked.empty()) {
-      // Few pairs, almost in contact, would stop all the rest: solve again with each of them rigid.
-      locked = blockingPairs(pairs, x, motion);
-      for (const Pair& pair : locked) couple(scene->vertices(pair), couplings);
-      if (!locked.empty()) {
-        --attempt;
-        state.damping /= 4;  // of the loop: this is no failure of the model
-        continue;
-      }
-    }
-    // Those that still stop it go along without turning, or stay where something holds them.
-    constexpr int kMaxWeldings = 8;
-    std::vector<std::int32_t> weldedTo;
-    double descent = slope;
-    for (int welding = 0; welding < kMaxWeldings && now.safeStep < kBlocked; ++welding) {
-      const std::vector<Pair> blocking = blockingPairs(pairs, x, motion);
-      if (blocking.empty()) break;
-      if (weldedTo.empty()) {
-        weldedTo.resize(static_cast<std::size_t>(x.rows()));
-        std::iota(weldedTo.begin(), weldedTo.end(), 0);
-      }
-      weld(blocking, weldedTo);
-      moveWeldedAsOne(weldedTo, motion);
-      pairs = scene->findPairs(x, motion, contactRange);
-      now.safeStep = collision::largestSafeStep(*scene, pairs, x, motion);
-      descent = (gradient.array() * motion.array()).sum();
-    }
-    if (!(descent < 0)) continue;
-    const std::vector<Contact> onTheWay = contactsOf(pairs);
-    double taken = now.safeStep;
+    if (!(motion.descent < 0)) continue;
+    double taken = motion.safe;
     constexpr int kMaxHalvings = 8;
     bool accepted = false;
     Positions trial;
     for (int halving = 0; halving < kMaxHalvings && taken > 0; ++halving, taken *= 0.5) {
-      trial = x + taken * motion;
-      now.objectiveAfter = objective(trial, onTheWay, &now);
+      trial = x + taken * motion.by;
+      now.objectiveAfter = objective(trial, onTheWay, now);
       constexpr double kArmijo = 1e-4;
-      if (now.objectiveAfter <= now.objectiveBefore + std::min(0.0, kArmijo * taken * descent)) {
+      if (now.objectiveAfter <=
+          now.objectiveBefore + std::min(0.0, kArmijo * taken * motion.descent)) {
         accepted = true;
         break;
       }
     }
     if (!accepted) continue;
 
+    now.safeStep = motion.safe;
     now.step = taken;
-    now.largestMove = taken * largest;
+    now.largestMove = taken * std::sqrt(motion.by.rowwise().squaredNorm().maxCoeff());
     now.damping = state.damping;
-    now.contacts = static_cast<int>(contacts.size());
-    double nearest = kInfinity, pressed = 1;
-    for (const Contact& c : contacts) {
-      collision::FourPoints p;
-      for (int i = 0; i < 4; ++i) p[i] = trial.row(c.vertices[i]).transpose();
-      const double squared = collision::squaredDistance(c.kind, p);
-      nearest = std::min(nearest, squared);
-      for (int i = 0; i < 4; ++i) p[i] = x.row(c.vertices[i]).transpose();
-      if (squared < kClosing * collision::squaredDistance(c.kind, p)) {
-        pressed = std::min(pressed, std::sqrt(squared) / c.range);
-      }
-    }
-    if (!state.separating && pressed < kPressed) {
-      state.contactStiffness = std::min(kStiffestContact, 2 * state.contactStiffness);
-    }
-    now.nearestContact = contacts.empty() ? kNaN : std::sqrt(nearest);
+    accountForContacts(contacts, trial, now);
     state.positions = trial;
     state.iteration = now.iteration;
-    near = std::move(pairs);
+    near = std::move(motion.pairs);
     if (taken == 1) {
       state.damping = std::max(kLeastDamping, state.damping / 4);
     } else if (taken < 0.25 * now.safeStep) {
@@ -637,10 +726,14 @@ bool Unfolder::Implementation::thesisStep() {
   const Positions& x = state.positions;
   IterationRecord now;
   now.iteration = state.iteration + 1;
-  const auto average =
-      visibility::AverageVisibility(mesh.faces, region.faces, viewpoints).evaluate(x);
+  visibility::VisibilityValue average;
+  {
+    const PhaseClock clock(now.phases.visibility);
+    average = visibility::AverageVisibility(mesh.faces, region.faces, viewpoints).evaluate(x);
+  }
   Positions velocity = average.area * average.gradient;
   if (knot) {
+    const PhaseClock clock(now.phases.repulsion);
     const repulsion::KnotValue value = knot->evaluate(x);
     velocity -= options.weights.knot * value.gradient;
     now.energyKnot = options.weights.knot * value.value;
@@ -648,7 +741,10 @@ bool Unfolder::Implementation::thesisStep() {
   for (Eigen::Index v = 0; v < velocity.rows(); ++v) {
     if (unknown[v] < 0) velocity.row(v).setZero();
   }
-  if (options.keepAreas) now.solves = keepAreas(patch, x, unknown, velocity).iterations;
+  if (options.keepAreas) {
+    const PhaseClock clock(now.phases.solve);
+    now.solves = keepAreas(patch, x, unknown, velocity).iterations;
+  }
   const double fastest = std::sqrt(velocity.rowwise().squaredNorm().maxCoeff());
   if (!(fastest > 0)) {
     state.stalled = true;

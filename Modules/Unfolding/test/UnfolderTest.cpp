@@ -100,6 +100,36 @@ TEST(Unfolder, ALiftOpensAPitThatFixedWallsKeepShut) {
   EXPECT_GT(reached[1], reached[0] + 0.01);
 }
 
+TEST(Unfolder, ACollarThatFollowsLetsARegionGoFurtherThanFixedWalls) {
+  const TriangleMesh mesh = makeMeander(kColumns, kRows, 2.1, 3);
+  const Region region = regionOfMarked(mesh, interiorOf(kColumns, kRows, 4));
+  const auto view = visibility::viewpoint(Point(8, 8, 1000));
+  std::array<UnfoldResult, 2> ends;
+  for (const int follows : {0, 1}) {
+    UnfoldOptions options;
+    options.unfolder.surround = follows ? Surround::Elastic : Surround::Fixed;
+    options.unfolder.collarRings = 3;
+    ends[follows] = unfold(mesh, region, view, options);
+    // The account is of the region, whatever the collar does.
+    const Distortion d = measureDistortion(mesh, ends[follows].mesh.positions, region.faces);
+    EXPECT_NEAR(ends[follows].history.back().edgeStrainMean, d.edgeStrainMean, 1e-12);
+    EXPECT_NEAR(ends[follows].history.back().areaErrorMean, d.areaErrorMean, 1e-12);
+    EXPECT_TRUE(geometry::findSelfIntersections(ends[follows].mesh).empty());
+  }
+  EXPECT_GT(ends[1].history.back().visibility, ends[0].history.back().visibility);
+  EXPECT_LT(ends[1].history.back().edgeStrainMean, ends[0].history.back().edgeStrainMean);
+}
+
+TEST(Unfold, AGoalOutOfReachEndsSoonAndSaysSo) {
+  const Case c;
+  UnfoldOptions options;
+  options.targetVisibility = 1;
+  const UnfoldResult result = unfold(c.mesh, c.region, c.view, options);
+  EXPECT_EQ(result.termination, Termination::Stalled);
+  EXPECT_LT(result.history.size(), 200u);
+  EXPECT_GT(result.history.back().visibility, 0.97);
+}
+
 TEST(Unfolder, APairThatStartsInContactHoldsUpNoStep) {
   // A vertex of the fixed surroundings 3e-8 mm off a moving face, as pial surfaces have them.
   Case c;

@@ -37,7 +37,7 @@ struct UnfoldWeights {
   double knot = 3e-4;    ///< strength of the knot energy
   double lift =
       6;  ///< pull out of fixed or elastic surroundings, to where the flat region has room
-  double collar = 0.02;  ///< stiffness of the collar's areas and lengths beside the region's
+  double collar = 2e-4;  ///< stiffness of the collar's areas and lengths beside the region's
 };
 
 struct UnfolderOptions {
@@ -85,6 +85,22 @@ void describe(UnfolderOptions& options, Visitor&& visit) {
   describe(options.weights, visit);
 }
 
+/// Wall time of an iteration by phase, s.
+struct PhaseSeconds {
+  double visibility = 0;  ///< the patch's terms (visibility, areas, lengths, lift) and its measures
+  double repulsion = 0;   ///< knot energy
+  double collision = 0;   ///< pairs that may meet, the safe step, contacts
+  double solve = 0;       ///< linear systems: assembly, factorisation, solution
+
+  PhaseSeconds& operator+=(const PhaseSeconds& other) {
+    visibility += other.visibility;
+    repulsion += other.repulsion;
+    collision += other.collision;
+    solve += other.solve;
+    return *this;
+  }
+};
+
 /// One iteration's account: a row of evolution.tsv.
 struct IterationRecord {
   int iteration = 0;
@@ -106,7 +122,8 @@ struct IterationRecord {
   double step = 1;               ///< share that was taken
   double largestMove = 0;        ///< mm, of any vertex
   double damping = 0;
-  int solves = 0;      ///< linear systems solved for this step
+  int solves = 0;  ///< linear systems solved for this step
+  PhaseSeconds phases;
   double seconds = 0;  ///< wall time since the run began, set by unfold()
 };
 
