@@ -649,6 +649,7 @@ bool Unfolder::Implementation::implicitStep() {
   for (const Contact& contact : contacts) couple(contact.vertices, couplings);
 
   constexpr int kMaxAttempts = 12;
+  const double dampingBefore = state.damping;
   std::vector<Pair> locked;
   Positions direction;
   for (int attempt = 0; attempt < kMaxAttempts; ++attempt, state.damping *= 4) {
@@ -716,6 +717,13 @@ bool Unfolder::Implementation::implicitStep() {
     }
     record = now;
     return true;
+  }
+  if (state.separating) {
+    // What is held from both sides cannot be parted: the rest unfolds beside it.
+    state.separating = false;
+    state.driveIteration = state.iteration;
+    state.damping = dampingBefore;
+    return implicitStep();
   }
   state.stalled = true;
   return false;

@@ -130,32 +130,40 @@ TEST(Unfold, AGoalOutOfReachEndsSoonAndSaysSo) {
   EXPECT_GT(result.history.back().visibility, 0.97);
 }
 
-TEST(Unfolder, APairThatStartsInContactHoldsUpNoStep) {
-  // A vertex of the fixed surroundings 3e-8 mm off a moving face, as pial surfaces have them.
-  Case c;
+/// The case's sheet and, at the middle of one of the region's faces, the tip of a small fixed face
+/// on each side asked for, 3e-8 mm off, as pial surfaces have them.
+TriangleMesh touched(const Case& c, const std::vector<double>& sides) {
   const TriangleMesh& sheet = c.mesh;
   const std::int32_t face = c.region.faces[c.region.faces.size() / 2];
   const Point middle = (sheet.corner(face, 0) + sheet.corner(face, 1) + sheet.corner(face, 2)) / 3;
   const Vector up = (sheet.corner(face, 1) - sheet.corner(face, 0))
                         .cross(sheet.corner(face, 2) - sheet.corner(face, 0))
                         .normalized();
-  TriangleMesh both;
-  both.positions.resize(sheet.vertexCount() + 3, 3);
-  both.positions.topRows(sheet.vertexCount()) = sheet.positions;
-  both.positions.row(sheet.vertexCount()) = (middle + 3e-8 * up).transpose();
-  both.positions.row(sheet.vertexCount() + 1) =
-      (middle + 0.05 * up + Vector(0.02, 0, 0)).transpose();
-  both.positions.row(sheet.vertexCount() + 2) =
-      (middle + 0.05 * up + Vector(0, 0.02, 0)).transpose();
-  both.faces.resize(sheet.faceCount() + 1, 3);
-  both.faces.topRows(sheet.faceCount()) = sheet.faces;
-  const auto first = static_cast<std::int32_t>(sheet.vertexCount());
-  both.faces.bottomRows(1) << first, first + 1, first + 2;
-  Unfolder unfolder(both, c.region, c.view, with(Surround::Fixed));
-  const double start = unfolder.record().visibility;
-  for (int n = 0; n < 25; ++n) ASSERT_TRUE(unfolder.step()) << n;
-  EXPECT_GT(unfolder.record().visibility, start + 0.2);
-  EXPECT_TRUE(geometry::findSelfIntersections(unfolder.current()).empty());
+  TriangleMesh mesh = sheet;
+  for (const double side : sides) {
+    const Eigen::Index first = mesh.vertexCount(), last = mesh.faceCount();
+    mesh.positions.conservativeResize(first + 3, 3);
+    mesh.faces.conservativeResize(last + 1, 3);
+    mesh.positions.row(first) = (middle + side * 3e-8 * up).transpose();
+    mesh.positions.row(first + 1) = (middle + side * 0.05 * up + Vector(0.02, 0, 0)).transpose();
+    mesh.positions.row(first + 2) = (middle + side * 0.05 * up + Vector(0, 0.02, 0)).transpose();
+    for (int k = 0; k < 3; ++k) mesh.faces(last, k) = static_cast<std::int32_t>(first + k);
+  }
+  return mesh;
+}
+
+TEST(Unfolder, APairThatStartsInContactHoldsUpNoStep) {
+  const Case c;
+  // One that can open, and a face held from both sides, which cannot.
+  for (const std::vector<double>& sides : {std::vector<double>{1}, std::vector<double>{1, -1}}) {
+    const TriangleMesh mesh = touched(c, sides);
+    ASSERT_TRUE(geometry::findSelfIntersections(mesh).empty());
+    Unfolder unfolder(mesh, c.region, c.view, with(Surround::Fixed));
+    const double start = unfolder.record().visibility;
+    for (int n = 0; n < 25; ++n) ASSERT_TRUE(unfolder.step()) << n;
+    EXPECT_GT(unfolder.record().visibility, start + 0.2) << sides.size();
+    EXPECT_TRUE(geometry::findSelfIntersections(unfolder.current()).empty());
+  }
 }
 
 TEST(Unfolder, AFlatDiscStaysPut) {
