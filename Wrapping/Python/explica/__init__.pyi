@@ -287,7 +287,7 @@ def unfold(
     knot_weight: float = 0.0003,
     contact_weight: float = 0.2,
     lift_weight: float = 6.0,
-    collar_weight: float = 0.02,
+    collar_weight: float = 0.0002,
     target_visibility: Optional[float] = None,
     area_tolerance: float = 0.002,
     max_iterations: int = 500,
@@ -314,7 +314,7 @@ class Unfolder:
         knot_weight: float = 0.0003,
         contact_weight: float = 0.2,
         lift_weight: float = 6.0,
-        collar_weight: float = 0.02,
+        collar_weight: float = 0.0002,
     ) -> None: ...
     def step(self, count: int = 1) -> bool: ...
     @property
@@ -333,7 +333,7 @@ class Unfolder:
         knot_weight: float = 0.0003,
         contact_weight: float = 0.2,
         lift_weight: float = 6.0,
-        collar_weight: float = 0.02,
+        collar_weight: float = 0.0002,
     ) -> None: ...
 class UsageError(ValueError): ...
 def vertex_areas(surface: Surface) -> NDArray[np.float64]: ...
