@@ -2,16 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "Explica/Application/Command.h"
+#include "Explica/Application/ReadPolygon.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/IO/PolygonFile.h"
-#include "Explica/IO/VolumeFile.h"
 #include "Explica/Planar/AngularSweep.h"
-#include "Explica/Planar/Contour.h"
 #include "Explica/Planar/EvolutionFigure.h"
 #include "Explica/Planar/PolygonMeasures.h"
 #include "Explica/Planar/PolygonUnfolding.h"
 #include "Explica/Planar/PolygonVisibility.h"
+#include "Explica/Visibility/Viewpoints.h"
+#include "State.h"
 
 #include <nlohmann/json.hpp>
 
@@ -22,21 +23,20 @@
 namespace explica::app {
 namespace {
 
+constexpr char kStateFile[] = "polygon.state";
+
 struct Settings {
   std::string file;
-  io::VolumeReadOptions reading;
-  std::optional<int> label;
-  std::optional<int> slice;
-  int contour = 0;
-  std::optional<int> edges;
-  planar::ContourOptions contours;
+  PolygonReading reading;
   std::optional<std::string> region;
   std::optional<Eigen::Vector2d> viewpoint;
   std::optional<Eigen::Vector2d> direction;
   double distance = 1000;
+  std::vector<double> line;
   planar::PolygonUnfoldingOptions unfolding;
   int frames = 0;
   int stages = 6;
+  bool resume = false;
 };
 
 void declare(Declaration& d, Settings& s) {
@@ -45,7 +45,8 @@ void declare(Declaration& d, Settings& s) {
           "Moves the region's vertices until every edge faces the viewpoint. Edges of the region "
           "keep their lengths and never cross. The polygon comes from a file, or is the sub-pixel "
           "contour of a label in a slice of an image; without a viewpoint it is only measured and "
-          "written.")
+          "written. A run can be stopped at any time and continued with --resume into the same "
+          "--out.")
       .reference("Rocha, Yezzi, Tannenbaum 2007, IEEE Int. Conf. Image Processing")
       .example("explica phantom polygon34 --out p34",
                "A folded polygon; its summary names region and viewpoint")
@@ -53,20 +54,10 @@ void declare(Declaration& d, Settings& s) {
                "Unfold it; evolution.svg shows the stages")
       .example("explica polygon ED_label.nii.gz --label 2 --slice 4 --out contour",
                "Outer contour of a label, RAS mm")
-      .input("FILE", FileKind::Any, "polygon (CSV, VTK polydata), or label image", s.file)
-      .options("Reading", s.reading)
-      .option("Contour", Field{"label", "", "take the contour of this label of an image"}, s.label)
-      .option("Contour",
-              Field{"slice", "", "slice along the third axis; default: where the label is largest"},
-              s.slice)
-      .option("Contour", Field{"contour", "", "which contour, by area, 0 the largest"}, s.contour)
-      .option("Contour", Field{"edges", "", "resample the contour to this many equal edges"},
-              s.edges)
-      .option("Contour", Field{"smooth", "voxels", "Gaussian that anti-aliases the label's mask"},
-              s.contours.smoothing)
-      .option("Region",
-              Field{"region", "", "first and last vertex, I:J; default: the whole polygon"},
-              s.region)
+      .input("FILE", FileKind::Any, "polygon (CSV, VTK polydata), or label image", s.file);
+  declarePolygonReading(d, s.reading);
+  d.option("Region", Field{"region", "", "first and last vertex, I:J; default: the whole polygon"},
+           s.region)
       .option("Viewpoint", Field{"viewpoint", "mm", "point to look from"}, s.viewpoint)
       .option("Viewpoint",
               Field{"direction", "", "look from the region's centroid plus --distance along this"},
@@ -74,7 +65,13 @@ void declare(Declaration& d, Settings& s) {
       .option("Viewpoint",
               Field{"distance", "mm", "how far off a viewpoint given by --direction is"},
               s.distance)
+      .option("Viewpoint",
+              Field{"view-line", "mm", "look from all points of the line X,Y,X,Y between two"},
+              s.line)
       .options("Unfolding", s.unfolding)
+      .option("Unfolding", Field{"resume", "", "continue the run whose outputs are in --out"},
+              s.resume)
+      .reuseOutputIf(s.resume)
       .option("Output", Field{"frames", "", "write this many states on the way"}, s.frames)
       .option("Output", Field{"stages", "", "panels of evolution.svg"}, s.stages)
       .output("polygon.csv", FileKind::Polygon, "the polygon as it was understood")
@@ -83,41 +80,8 @@ void declare(Declaration& d, Settings& s) {
       .varyingOutput("evolution.tsv", FileKind::Table, "one row an iteration")
       .output("evolution.svg", FileKind::Picture,
               "start, stages and end, with the direction of view")
-      .output("frames/frame-*.csv", FileKind::Polygon, "states on the way");
-}
-
-planar::Curve readCurve(Context& context, const Settings& s) {
-  planar::Curve curve;
-  if (!s.label) {
-    curve.positions = io::readPolygon(s.file);
-    return curve;
-  }
-  const Volume<Label> labels = io::readLabels(s.file, s.reading).volume;
-  const int slice = s.slice.value_or(planar::largestSlice(labels, *s.label));
-  if (slice < 0) {
-    throw InvalidInput(s.file + ": label " + std::to_string(*s.label) + " is absent");
-  }
-  const auto contours = planar::contoursOfLabel(labels, *s.label, slice, s.contours);
-  if (s.contour < 0 || s.contour >= static_cast<int>(contours.size())) {
-    throw InvalidInput("contour " + std::to_string(s.contour) + " is not among the " +
-                       std::to_string(contours.size()) + " contours of slice " +
-                       std::to_string(slice));
-  }
-  curve = contours[s.contour];
-  if (planar::signedArea(curve.positions) < 0) {  // a hole's rim: taken as a polygon of its own
-    curve.positions = curve.positions.colwise().reverse().eval();
-  }
-  if (s.edges) curve = planar::resampled(curve, *s.edges);
-  const planar::PlaneFrame frame = planar::frameOfSlice(labels.grid, slice);
-  const auto array = [](const Eigen::Vector3d& v) {
-    return std::vector<double>{v.x(), v.y(), v.z()};
-  };
-  context.result("slice", slice);
-  context.result("contours", contours.size());
-  context.result("plane_origin", array(frame.origin));
-  context.result("plane_x", array(frame.axisX));
-  context.result("plane_y", array(frame.axisY));
-  return curve;
+      .output("frames/frame-*.csv", FileKind::Polygon, "states on the way")
+      .varyingOutput(kStateFile, FileKind::Any, "what --resume needs");
 }
 
 planar::Region regionOf(const planar::Curve& curve, const std::optional<std::string>& text) {
@@ -132,15 +96,24 @@ planar::Region regionOf(const planar::Curve& curve, const std::optional<std::str
   return planar::regionBetween(curve, first, last);
 }
 
-std::optional<planar::Point2> viewpointOf(const Settings& s, const planar::Curve& curve,
-                                          const planar::Region& region) {
-  if (s.viewpoint && s.direction) {
-    throw UsageError("give --viewpoint or --direction, not both");
-  }
+/// From where to look, if anything was said of it.
+std::optional<planar::Viewpoints> viewOf(const Settings& s, const planar::Curve& curve,
+                                         const planar::Region& region) {
+  const int given =
+      int{s.viewpoint.has_value()} + int{s.direction.has_value()} + int{!s.line.empty()};
+  if (given == 0) return std::nullopt;
+  if (given > 1) throw UsageError("give one of --viewpoint, --direction and --view-line");
   if (s.viewpoint) return *s.viewpoint;
-  if (!s.direction) return std::nullopt;
+  if (!s.line.empty()) {
+    if (s.line.size() != 4) throw UsageError("--view-line needs four numbers X,Y,X,Y");
+    const auto rule =
+        visibility::viewLine(Point(s.line[0], s.line[1], 0), Point(s.line[2], s.line[3], 0));
+    planar::Viewpoints view{{}, rule.weights};
+    for (const Point& point : rule.points) view.points.emplace_back(point.head<2>());
+    return view;
+  }
   if (!(s.direction->norm() > 0)) throw UsageError("--direction has no length");
-  return planar::centroidOf(curve, region) + s.distance * s.direction->normalized();
+  return planar::Point2(planar::centroidOf(curve, region) + s.distance * s.direction->normalized());
 }
 
 std::string tableOf(const std::vector<planar::PolygonIteration>& history) {
@@ -169,17 +142,18 @@ io::VertexMap edgeMap(const planar::Curve& curve, const planar::Region& region, 
 }
 
 void writeUnfolding(Context& context, const Settings& s, const planar::PolygonUnfolding& result,
-                    const planar::Point2& viewpoint) {
+                    const planar::Viewpoints& view) {
   io::writePolygonCsv(context.output("unfolded.csv"), result.curve.positions);
   std::vector<io::VertexMap> edgeMaps;
   if (result.curve.closed) {
     edgeMaps = {edgeMap(result.curve, result.region, "flux",
-                        planar::polygonVisibility(result.curve, result.region, viewpoint).edgeFlux),
+                        planar::polygonVisibility(result.curve, result.region, view).edgeFlux),
                 edgeMap(result.curve, result.region, "seen",
-                        planar::visiblePart(result.curve, result.region, viewpoint).edgeSeen)};
+                        planar::visiblePart(result.curve, result.region, view).edgeSeen)};
   }
   io::writePolygonVtp(context.output("unfolded.vtp"), result.curve.positions, {}, edgeMaps);
   writeTextFile(context.output("evolution.tsv"), tableOf(result.history));
+  writeTextFile(context.output(kStateFile), textOf(result.checkpoint));
 
   std::vector<double> visibilities;
   for (const auto& row : result.history) visibilities.push_back(row.visibility);
@@ -192,21 +166,23 @@ void writeUnfolding(Context& context, const Settings& s, const planar::PolygonUn
                       row.variance, row.length});
   }
   writeTextFile(context.output("evolution.svg"),
-                planar::drawEvolution(result.curve.closed, viewpoint, stages));
-  int number = 0;
+                planar::drawEvolution(result.curve.closed, view, stages));
+  std::size_t number = 0;
   for (std::size_t k : planar::evenStages(visibilities, static_cast<std::size_t>(s.frames))) {
-    char name[40];
-    std::snprintf(name, sizeof name, "frames/frame-%04d.csv", number++);
-    io::writePolygonCsv(context.output(name), result.path[k].positions);
+    io::writePolygonCsv(context.output(frameName(number++, ".csv")), result.path[k].positions);
   }
 }
 
 Termination run(Context& context, const Settings& s) {
   if (s.frames < 0 || s.stages < 1) throw UsageError("--frames and --stages count states");
-  const planar::Curve curve = readCurve(context, s);
-  planar::requireUsable(curve);
+  const planar::Curve curve = readCurve(context, "FILE", s.file, s.reading).curve;
   const planar::Region region = regionOf(curve, s.region);
-  const std::optional<planar::Point2> viewpoint = viewpointOf(s, curve, region);
+  const std::optional<planar::Viewpoints> view = viewOf(s, curve, region);
+  std::optional<planar::PolygonCheckpoint> state;
+  if (s.resume) {
+    if (!view) throw UsageError("--resume needs the viewpoint of the first run");
+    state = readState(context.outputFolder() / kStateFile);
+  }
 
   context.result("region_edges", region.edgeCount);
   context.result("length_initial", planar::lengthOf(curve, region));
@@ -217,17 +193,20 @@ Termination run(Context& context, const Settings& s) {
     auto step = context.step("polygon");
     io::writePolygonCsv(context.output("polygon.csv"), curve.positions);
   }
-  if (!viewpoint) return Termination::NotRun;
+  if (!view) return Termination::NotRun;
 
   auto step = context.step("unfold");
-  context.result("viewpoint", std::vector<double>{viewpoint->x(), viewpoint->y()});
-  const planar::PolygonUnfolding result =
-      planar::unfoldPolygon(curve, region, *viewpoint, s.unfolding, context.monitor());
+  if (view->points.size() == 1) {
+    const planar::Point2& point = view->points.front();
+    context.result("viewpoint", std::vector<double>{point.x(), point.y()});
+  }
+  const planar::PolygonUnfolding result = planar::unfoldPolygon(
+      curve, region, *view, s.unfolding, context.monitor(), state ? &*state : nullptr);
   const planar::PolygonIteration& start = result.history.front();
   const planar::PolygonIteration& end = result.history.back();
   step.iterations(end.iteration);
   step.termination(result.termination);
-  writeUnfolding(context, s, result, *viewpoint);
+  writeUnfolding(context, s, result, *view);
 
   context.result("length_final", end.length);
   context.result("length_error_max", s.unfolding.noLength ? kNaN : end.lengthError);
@@ -235,9 +214,8 @@ Termination run(Context& context, const Settings& s) {
   context.result("visibility_final", end.visibility);
   context.result("flux_variance_initial", start.variance);
   context.result("flux_variance_final", end.variance);
-  context.result("seen_initial", planar::visiblePart(curve, region, *viewpoint).fraction);
-  context.result("seen_final",
-                 planar::visiblePart(result.curve, result.region, *viewpoint).fraction);
+  context.result("seen_initial", planar::visiblePart(curve, region, *view).fraction);
+  context.result("seen_final", planar::visiblePart(result.curve, result.region, *view).fraction);
   context.result("self_intersections_final", result.intersectionsFinal.size());
   context.result("first_crossing", result.firstCrossing);
   context.result("vertices_merged", result.verticesMerged);

@@ -40,10 +40,8 @@ Point2 unit(double angle) {
   return {std::cos(angle), std::sin(angle)};
 }
 
-}  // namespace
-
-VisiblePart visiblePart(const Curve& curve, const Region& region, const Point2& viewpoint) {
-  if (region.edgeCount < 1) throw InvalidInput("visible part: the region has no edge");
+/// Seen length of each edge of the curve, mm.
+Eigen::VectorXd seenLengths(const Curve& curve, const Point2& viewpoint) {
   // Angles are taken from the direction of the curve's middle, where far viewpoints keep all
   // digits.
   const Point2 middle =
@@ -121,6 +119,17 @@ VisiblePart visiblePart(const Curve& curve, const Region& region, const Point2& 
     seen[span.edge] += share * span.length;
   }
 
+  return seen;
+}
+
+}  // namespace
+
+VisiblePart visiblePart(const Curve& curve, const Region& region, const Viewpoints& view) {
+  if (region.edgeCount < 1) throw InvalidInput("visible part: the region has no edge");
+  Eigen::VectorXd seen = Eigen::VectorXd::Zero(curve.edgeCount());
+  for (std::size_t p = 0; p < view.points.size(); ++p) {
+    seen += view.weights[p] * seenLengths(curve, view.points[p]);
+  }
   VisiblePart result;
   result.edgeSeen.resize(region.edgeCount);
   double seenLength = 0;

@@ -5,6 +5,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Geometry/Predicates.h"
+#include "Segment.h"
 
 #include <algorithm>
 #include <numeric>
@@ -17,16 +18,6 @@ namespace {
 bool between(const Point2& p, const Point2& q, const Point2& r) {
   return r.x() >= std::min(p.x(), q.x()) && r.x() <= std::max(p.x(), q.x()) &&
          r.y() >= std::min(p.y(), q.y()) && r.y() <= std::max(p.y(), q.y());
-}
-
-bool segmentsMeet(const Point2& a, const Point2& b, const Point2& c, const Point2& d) {
-  const int abc = geometry::orientation(a, b, c);
-  const int abd = geometry::orientation(a, b, d);
-  const int cda = geometry::orientation(c, d, a);
-  const int cdb = geometry::orientation(c, d, b);
-  if (abc * abd < 0 && cda * cdb < 0) return true;
-  return (abc == 0 && between(a, b, c)) || (abd == 0 && between(a, b, d)) ||
-         (cda == 0 && between(c, d, a)) || (cdb == 0 && between(c, d, b));
 }
 
 /// True if two edges that leave a common vertex run over each other.
@@ -44,6 +35,37 @@ bool edgesMeet(const Curve& curve, int i, int j) {
 }
 
 }  // namespace
+
+bool segmentsMeet(const Point2& a, const Point2& b, const Point2& c, const Point2& d) {
+  const int abc = geometry::orientation(a, b, c);
+  const int abd = geometry::orientation(a, b, d);
+  const int cda = geometry::orientation(c, d, a);
+  const int cdb = geometry::orientation(c, d, b);
+  if (abc * abd < 0 && cda * cdb < 0) return true;
+  return (abc == 0 && between(a, b, c)) || (abd == 0 && between(a, b, d)) ||
+         (cda == 0 && between(c, d, a)) || (cdb == 0 && between(c, d, b));
+}
+
+bool encloses(const Curve& curve, const Point2& q) {
+  bool within = false;  // a ray to the right crosses an odd number of edges
+  for (int e = 0; e < curve.edgeCount(); ++e) {
+    const Point2 a = curve.point(e);
+    const Point2 b = curve.point(curve.next(e));
+    if ((a.y() > q.y()) != (b.y() > q.y()) &&
+        q.x() < a.x() + (q.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x())) {
+      within = !within;
+    }
+  }
+  return within;
+}
+
+double distanceTo(const Curve& curve, const Point2& q) {
+  double least = kInfinity;
+  for (int e = 0; e < curve.edgeCount(); ++e) {
+    least = std::min(least, distanceToSegment(q, curve.point(e), curve.point(curve.next(e))));
+  }
+  return least;
+}
 
 Region regionBetween(const Curve& curve, int first, int last) {
   const int n = curve.vertexCount();

@@ -7,6 +7,7 @@
 #include "Explica/Planar/PolygonVisibility.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 
@@ -18,6 +19,8 @@ constexpr double kMargin = 18;
 constexpr double kTitleHeight = 46;
 constexpr double kArrowRoom = 64;  // on the viewpoint's side
 constexpr int kMostColumns = 3;
+constexpr double kLegendHeight = 44;
+constexpr double kBarLength = 100;  // of the legend's colour bar, and the most of its scale bar
 
 std::string format(const char* pattern, double value) {
   char text[64];
@@ -57,32 +60,92 @@ struct Panel {
   }
 };
 
-void drawArrow(std::string& svg, const Panel& panel, const Point2& target,
-               const Point2& viewpoint) {
-  // Outside the panel's box, pointing along the rays that reach its middle.
-  const Point2 direction = (target - viewpoint).normalized();
+constexpr const char* kRing = " fill=\"none\" stroke=\"#c2185b\" stroke-width=\"1.8\"";
+
+/// An arrow of 46 units from a point along a unit direction of the page.
+std::string arrow(const Point2& start, const Point2& along) {
+  const Point2 across(-along.y(), along.x());
+  const Point2 end = start + 46 * along;
+  const Point2 neck = end - 11 * along;
+  return "<path d=\"M" + pair(start.x(), start.y()) + " L" + pair(neck.x(), neck.y()) +
+         "\" stroke=\"#c08a00\" stroke-width=\"3\"/>\n<polygon fill=\"#c08a00\" points=\"" +
+         pair(end.x(), end.y()) + " " + pair(neck.x() + 6 * across.x(), neck.y() + 6 * across.y()) +
+         " " + pair(neck.x() - 6 * across.x(), neck.y() - 6 * across.y()) + "\"/>\n";
+}
+
+/// Outside the panel's box, pointing along the rays that reach its middle.
+void drawArrow(std::string& svg, const Panel& panel, const Point2& viewpoint) {
+  const Point2 middle = (panel.high + panel.low) / 2;
+  const Point2 direction = (middle - viewpoint).normalized();
   const Point2 half = (panel.high - panel.low) / 2;
   const double reach = std::min(half.x() / std::max(1e-12, std::abs(direction.x())),
                                 half.y() / std::max(1e-12, std::abs(direction.y())));
-  const Point2 middle = (panel.high + panel.low) / 2;
-  const Point2 tip = panel.place(middle - reach * direction);
   const Point2 along(direction.x(), -direction.y());
-  const Point2 across(-along.y(), along.x());
-  const Point2 end = tip - 8 * along;
-  const Point2 start = end - 38 * along;
-  const Point2 neck = end - 11 * along;
-  svg += "<path d=\"M" + pair(start.x(), start.y()) + " L" + pair(neck.x(), neck.y()) +
-         "\" stroke=\"#c08a00\" stroke-width=\"3\"/>\n";
-  svg += "<polygon fill=\"#c08a00\" points=\"" + pair(end.x(), end.y()) + " " +
-         pair(neck.x() + 6 * across.x(), neck.y() + 6 * across.y()) + " " +
-         pair(neck.x() - 6 * across.x(), neck.y() - 6 * across.y()) + "\"/>\n";
+  svg += arrow(panel.place(middle - reach * direction) - 54 * along, along);
 }
 
-void drawStage(std::string& svg, const Panel& panel, bool closed, const Point2& viewpoint,
-               const EvolutionStage& stage) {
+/// Where two edges cross; of edges along one line the middle of their ends.
+Point2 crossingOf(const Curve& curve, const std::array<int, 2>& pair) {
+  const Point2 a = curve.point(pair[0]);
+  const Point2 t = curve.point(curve.next(pair[0])) - a;
+  const Point2 c = curve.point(pair[1]);
+  const Point2 u = curve.point(curve.next(pair[1])) - c;
+  const double cross = t.x() * u.y() - t.y() * u.x();
+  if (cross == 0) return (2 * a + t + 2 * c + u) / 4;
+  const Point2 d = c - a;
+  return a + (d.x() * u.y() - d.y() * u.x()) / cross * t;
+}
+
+std::string text(double x, double y, const std::string& words, const char* style = "") {
+  return "<text x=\"" + format("%.1f", x) + "\" y=\"" + format("%.1f", y) + "\" " + style + ">" +
+         words + "</text>\n";
+}
+
+/// The largest of 1, 2, 5 times a power of ten that is not above a length.
+double roundLength(double most) {
+  const double decade = std::pow(10, std::floor(std::log10(most)));
+  for (const double step : {5.0, 2.0}) {
+    if (step * decade <= most) return step * decade;
+  }
+  return decade;
+}
+
+/// What colours, arrows and rings mean, and a scale bar.
+void drawLegend(std::string& svg, double top, double scale, bool anyCrossing) {
+  const double y = top + 20;
+  double x = kMargin;
+  svg += text(x, y + 5, "flux &#8722;1");
+  x += 62;
+  constexpr int kShades = 40;
+  for (int k = 0; k < kShades; ++k) {
+    const double width = kBarLength / kShades;
+    svg += "<rect x=\"" + format("%.2f", x + k * width) + "\" y=\"" + format("%.1f", y - 5) +
+           "\" width=\"" + format("%.2f", width + 0.3) + "\" height=\"10\" fill=\"" +
+           fluxColour(-1 + (2 * k + 1.0) / kShades) + "\"/>\n";
+  }
+  x += kBarLength + 6;
+  svg += text(x, y + 5, "1");
+  x += 46;
+  svg += arrow({x, y}, {1, 0});
+  svg += text(x + 58, y + 5, "direction of view");
+  x += 210;
+  const double length = roundLength(kBarLength / scale);
+  svg += "<path d=\"M" + pair(x, y) + " h" + format("%.2f", scale * length) +
+         "\" stroke=\"#222\" stroke-width=\"2.5\"/>\n";
+  svg += text(x + scale * length + 8, y + 5, format("%g", length) + " units of length");
+  if (!anyCrossing) return;
+  x += scale * length + 180;
+  svg += "<circle cx=\"" + format("%.1f", x) + "\" cy=\"" + format("%.1f", y) + "\" r=\"7\"" +
+         kRing + "/>\n";
+  svg += text(x + 14, y + 5, "edges cross");
+}
+
+/// Returns the number of pairs of edges that cross.
+std::size_t drawStage(std::string& svg, const Panel& panel, bool closed, const Viewpoints& view,
+                      const EvolutionStage& stage) {
   const Curve curve{stage.positions, closed};
   const Region& region = stage.region;
-  const PolygonVisibility visibility = polygonVisibility(curve, region, viewpoint);
+  const PolygonVisibility visibility = polygonVisibility(curve, region, view);
   std::string points;
   for (int v = 0; v < curve.vertexCount(); ++v) {
     const Point2 p = panel.place(curve.point(v));
@@ -106,11 +169,18 @@ void drawStage(std::string& svg, const Panel& panel, bool closed, const Point2& 
     svg += "<circle cx=\"" + format("%.2f", p.x()) + "\" cy=\"" + format("%.2f", p.y()) +
            "\" r=\"" + format("%.2f", 0.75 * width) + "\" fill=\"#222\"/>\n";
   }
+  const auto crossings = intersectingEdges(curve);
+  for (const auto& crossing : crossings) {
+    const Point2 p = panel.place(crossingOf(curve, crossing));
+    svg += "<circle cx=\"" + format("%.2f", p.x()) + "\" cy=\"" + format("%.2f", p.y()) +
+           "\" r=\"7\"" + kRing + "/>\n";
+  }
+  return crossings.size();
 }
 
 }  // namespace
 
-std::string drawEvolution(bool closed, const Point2& viewpoint,
+std::string drawEvolution(bool closed, const Viewpoints& view,
                           const std::vector<EvolutionStage>& stages) {
   if (stages.empty()) throw InvalidInput("figure: no stage to draw");
   Point2 low = stages.front().positions.colwise().minCoeff().transpose();
@@ -128,12 +198,16 @@ std::string drawEvolution(bool closed, const Point2& viewpoint,
   const double cell = (kPageWidth - kMargin) / columns - kMargin;
   const double scale = std::min(cell / extent.x(), 420 / extent.y());
   const double drawn = scale * extent.y();
-  const bool fromAbove = viewpoint.y() > high.y();
-  const bool fromBelow = viewpoint.y() < low.y();
+  bool fromAbove = false;
+  bool fromBelow = false;
+  for (const Point2& point : view.points) {
+    fromAbove = fromAbove || point.y() > high.y();
+    fromBelow = fromBelow || point.y() < low.y();
+  }
   const double roomAbove = fromAbove ? kArrowRoom : kMargin;
   const double roomBelow = fromBelow ? kArrowRoom : kMargin;
   const double rowHeight = kTitleHeight + roomAbove + drawn + roomBelow + kMargin;
-  const double pageHeight = rows * rowHeight + kMargin;
+  const double pageHeight = rows * rowHeight + kLegendHeight;
 
   std::string svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" +
                     format("%.0f", kPageWidth) + "\" height=\"" + format("%.0f", pageHeight) +
@@ -141,6 +215,7 @@ std::string drawEvolution(bool closed, const Point2& viewpoint,
                     format("%.0f", pageHeight) +
                     "\" font-family=\"sans-serif\" font-size=\"14\">\n"
                     "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n";
+  bool anyCrossing = false;
   for (int s = 0; s < count; ++s) {
     Panel panel;
     panel.left = kMargin + (s % columns) * (cell + kMargin) + (cell - scale * extent.x()) / 2;
@@ -151,15 +226,21 @@ std::string drawEvolution(bool closed, const Point2& viewpoint,
     const EvolutionStage& stage = stages[s];
     const double textX = kMargin + (s % columns) * (cell + kMargin);
     const double textY = kMargin + (s / columns) * rowHeight + 16;
-    svg += "<text x=\"" + format("%.1f", textX) + "\" y=\"" + format("%.1f", textY) +
-           "\" font-weight=\"bold\">" + stage.title + "</text>\n";
-    svg += "<text x=\"" + format("%.1f", textX) + "\" y=\"" + format("%.1f", textY + 19) +
-           "\" fill=\"#444\">visibility " + format("%.3f", stage.visibility) + ", flux variance " +
-           format("%.3f", stage.variance) + ", length " + format("%.2f", stage.length) +
-           "</text>\n";
-    drawArrow(svg, panel, (low + high) / 2, viewpoint);
-    drawStage(svg, panel, closed, viewpoint, stage);
+    svg +=
+        text(textX, textY, std::string("(") + static_cast<char>('a' + s % 26) + ") " + stage.title,
+             "font-weight=\"bold\"");
+    // Of several viewpoints the first and the last.
+    drawArrow(svg, panel, view.points.front());
+    if (view.points.size() > 1) drawArrow(svg, panel, view.points.back());
+    const std::size_t crossings = drawStage(svg, panel, closed, view, stage);
+    anyCrossing = anyCrossing || crossings > 0;
+    std::string numbers = "visibility " + format("%.3f", stage.visibility) + ", flux variance " +
+                          format("%.3f", stage.variance) + ", length " +
+                          format("%.2f", stage.length);
+    if (crossings > 0) numbers += ", crossings " + std::to_string(crossings);
+    svg += text(textX, textY + 19, numbers, "fill=\"#444\"");
   }
+  drawLegend(svg, rows * rowHeight, scale, anyCrossing);
   svg += "</svg>\n";
   return svg;
 }

@@ -24,7 +24,7 @@ class ExplicitMethod final : public UnfoldingMethod {
     const PolygonUnfoldingOptions& options = problem_.options();
     const Curve& curve = problem_.curve();
     Positions2 flow = options.visibilityGain *
-                      polygonVisibility(curve, problem_.region(), problem_.viewpoint()).gradient;
+                      polygonVisibility(curve, problem_.region(), problem_.view()).gradient;
     flow -= options.repulsionGain * problem_.knot(curve).second;
     for (int v = 0; v < curve.vertexCount(); ++v) {
       if (!problem_.moving()[v]) flow.row(v).setZero();

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
+#include "Explica/Core/Errors.h"
 #include "Explica/Planar/PolygonVisibility.h"
 #include "UnfoldingProblem.h"
 
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 namespace explica::planar {
 namespace {
@@ -46,8 +48,7 @@ class ImplicitMethod final : public UnfoldingMethod {
     const std::vector<VertexEdgePair> pairs =
         problem_.pairsWithin(problem_.barrierRange() + 4 * longest);
     // Repulsion shapes the motion but not its end: it fades as the region comes into view.
-    const double hidden =
-        1 - polygonVisibility(start, problem_.region(), problem_.viewpoint()).average;
+    const double hidden = 1 - polygonVisibility(start, problem_.region(), problem_.view()).average;
     knotWeight_ = problem_.options().knotWeight * std::min(1.0, hidden);
     Eigen::VectorXd gradient;
     const double energy = evaluate(start, pairs, &gradient);
@@ -95,6 +96,16 @@ class ImplicitMethod final : public UnfoldingMethod {
     return 0;
   }
 
+  [[nodiscard]] PolygonMethodState state() const override { return {damping_, tension_}; }
+  void restore(const PolygonMethodState& state) override {
+    if (state.tension.size() != constraints_) {
+      throw InvalidInput("resume: the state has " + std::to_string(state.tension.size()) +
+                         " edges that keep their length, this run " + std::to_string(constraints_));
+    }
+    damping_ = state.damping;
+    tension_ = state.tension;
+  }
+
  private:
   void adaptDamping(int trial, double share) {
     if (share < 0.25) {
@@ -110,7 +121,7 @@ class ImplicitMethod final : public UnfoldingMethod {
     const double unit = problem_.meanEdge();
     const double gain = problem_.initialLength() / unit;
     const PolygonVisibility visibility =
-        polygonVisibility(curve, problem_.region(), problem_.viewpoint());
+        polygonVisibility(curve, problem_.region(), problem_.view());
     const auto [knot, knotGradient] = problem_.knot(curve);
     const double knotWeight = knotWeight_ / unit;
     double energy = -gain * visibility.average + knotWeight * knot;

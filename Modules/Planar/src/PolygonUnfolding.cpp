@@ -44,6 +44,23 @@ void checkOptions(const PolygonUnfoldingOptions& options) {
          "visibility-gain must be positive and repulsion-gain not negative");
 }
 
+void requireStateOf(const PolygonCheckpoint& state, const Curve& curve, const Region& region,
+                    const Viewpoints& view, const PolygonUnfoldingOptions& options) {
+  const auto refuse = [](bool bad, const char* what) {
+    if (bad) {
+      throw InvalidInput(std::string("resume: the state is of another ") + what +
+                         "; give that of the first run, or start anew");
+    }
+  };
+  refuse(state.input.rows() != curve.vertexCount() || state.input != curve.positions, "polygon");
+  refuse(state.inputRegion != region, "region");
+  refuse(state.view != view, "viewpoint");
+  refuse(state.method != options.method, "method");
+  refuse(state.history.empty() || state.history.size() != state.path.size() ||
+             state.posed.positions.rows() != state.path.back().positions.rows(),
+         "kind");
+}
+
 /// The region as an open chain of its own.
 void isolate(Curve& curve, Region& region) {
   const std::vector<int> vertices = verticesOf(curve, region);
@@ -60,8 +77,8 @@ void isolate(Curve& curve, Region& region) {
 }  // namespace
 
 PolygonUnfolding unfoldPolygon(const Curve& input, const Region& inputRegion,
-                               const Point2& viewpoint, const PolygonUnfoldingOptions& options,
-                               const Monitor& monitor) {
+                               const Viewpoints& view, const PolygonUnfoldingOptions& options,
+                               const Monitor& monitor, const PolygonCheckpoint* resume) {
   requireUsable(input);
   checkOptions(options);
   if (input.closed && signedArea(input.positions) <= 0) {
@@ -79,35 +96,54 @@ PolygonUnfolding unfoldPolygon(const Curve& input, const Region& inputRegion,
                        " pairs of edges cross at the start, first " + std::to_string(pair[0]) +
                        " and " + std::to_string(pair[1]) + "; mend it or use --no-topology");
   }
-  const double initial = polygonVisibility(result.curve, result.region, viewpoint).average;
+  const double initial = polygonVisibility(result.curve, result.region, view).average;
   if (!(initial > 0)) {
     throw InvalidInput("the region's average visibility is " + std::to_string(initial) +
                        ", not positive: grow or shrink the region or move the viewpoint");
   }
 
+  if (resume) requireStateOf(*resume, input, inputRegion, view, options);
+  PolygonCheckpoint& checkpoint = result.checkpoint;
+  checkpoint.input = input.positions;
+  checkpoint.inputRegion = inputRegion;
+  checkpoint.view = view;
+  checkpoint.method = options.method;
+
   const auto start = Clock::now();
+  const double secondsBefore = resume ? resume->history.back().seconds : 0;
   const double length = lengthOf(result.curve, result.region);
   const StartSizes sizes{length / result.region.edgeCount, length};
   std::optional<UnfoldingProblem> problem;
   std::unique_ptr<UnfoldingMethod> method;
   const auto pose = [&](const Curve& curve, const Region& region) {
     if (problem) result.secondsTopology += problem->secondsTopology();
-    problem.emplace(curve, region, viewpoint, options, sizes);
+    problem.emplace(curve, region, view, options, sizes);
+    checkpoint.posed = {curve.positions, region};
     method = options.method == PolygonMethod::Implicit ? makeImplicitMethod(*problem)
                                                        : makeExplicitMethod(*problem);
   };
-  pose(result.curve, result.region);
   const auto record = [&](int iteration, double step) {
     PolygonIteration row = problem->account();
     row.iteration = iteration;
     row.step = step;
-    row.seconds = secondsSince(start);
+    row.seconds = secondsBefore + secondsSince(start);
     result.history.push_back(row);
     result.path.push_back({problem->curve().positions, problem->region()});
   };
-  record(0, 0);
+  if (resume) {
+    pose({resume->posed.positions, result.curve.closed}, resume->posed.region);
+    problem->moveTo(resume->path.back().positions);
+    method->restore(resume->methodState);
+    result.history = resume->history;
+    result.path = resume->path;
+    result.verticesMerged = resume->verticesMerged;
+    result.firstCrossing = resume->firstCrossing;
+  } else {
+    pose(result.curve, result.region);
+    record(0, 0);
+  }
   result.termination = Termination::MaxIterations;
-  for (int iteration = 1;; ++iteration) {
+  for (int iteration = result.history.back().iteration + 1;; ++iteration) {
     const std::size_t last = result.history.size() - 1;
     const double visibility = result.history[last].visibility;
     if (visibility >= options.targetVisibility) {
@@ -148,9 +184,14 @@ PolygonUnfolding unfoldPolygon(const Curve& input, const Region& inputRegion,
   }
   result.curve = problem->curve();
   result.region = problem->region();
-  result.seconds = secondsSince(start);
+  result.seconds = secondsBefore + secondsSince(start);
   result.secondsTopology += problem->secondsTopology();
   result.intersectionsFinal = intersectingEdges(result.curve);
+  checkpoint.methodState = method->state();
+  checkpoint.history = result.history;
+  checkpoint.path = result.path;
+  checkpoint.verticesMerged = result.verticesMerged;
+  checkpoint.firstCrossing = result.firstCrossing;
   return result;
 }
 

@@ -41,31 +41,41 @@ EdgeFlux edgeFlux(const Point2& a, const Point2& b, const Point2& viewpoint) {
 }
 
 PolygonVisibility polygonVisibility(const Curve& curve, const Region& region,
-                                    const Point2& viewpoint) {
+                                    const Viewpoints& view) {
   if (region.edgeCount < 1) throw InvalidInput("visibility: the region has no edge");
+  if (view.points.empty() || view.points.size() != view.weights.size()) {
+    throw InvalidInput("visibility: viewpoints with one weight each are needed");
+  }
+  const auto edges = static_cast<Eigen::Index>(region.edgeCount);
   PolygonVisibility result;
-  result.edgeFlux.resize(region.edgeCount);
+  result.edgeFlux = Eigen::VectorXd::Zero(edges);
   result.gradient = Positions2::Zero(curve.vertexCount(), 2);
   Positions2 lengthGradient = Positions2::Zero(curve.vertexCount(), 2);
-  double flux = 0;
-  double squareFlux = 0;
+  std::vector<double> flux(view.points.size());
+  std::vector<double> squareFlux(view.points.size());
   for (int k = 0; k < region.edgeCount; ++k) {
     const int e = (region.firstEdge + k) % curve.edgeCount();
     const int f = curve.next(e);
-    const EdgeFlux edge = edgeFlux(curve.point(e), curve.point(f), viewpoint);
     const Eigen::RowVector2d t = curve.positions.row(f) - curve.positions.row(e);
     const double length = t.norm();
-    result.edgeFlux[k] = edge.flux / length;
-    flux += edge.flux;
-    squareFlux += edge.squareFlux;
+    for (std::size_t p = 0; p < view.points.size(); ++p) {
+      const double weight = view.weights[p];
+      const EdgeFlux edge = edgeFlux(curve.point(e), curve.point(f), view.points[p]);
+      flux[p] += edge.flux;
+      squareFlux[p] += edge.squareFlux;
+      result.edgeFlux[k] += weight * edge.flux / length;
+      result.gradient.row(e) += weight * edge.byStart.transpose();
+      result.gradient.row(f) += weight * edge.byEnd.transpose();
+    }
     result.length += length;
-    result.gradient.row(e) += edge.byStart.transpose();
-    result.gradient.row(f) += edge.byEnd.transpose();
     lengthGradient.row(e) -= t / length;
     lengthGradient.row(f) += t / length;
   }
-  result.average = flux / result.length;
-  result.variance = squareFlux / result.length - result.average * result.average;
+  for (std::size_t p = 0; p < view.points.size(); ++p) {
+    const double average = flux[p] / result.length;
+    result.average += view.weights[p] * average;
+    result.variance += view.weights[p] * (squareFlux[p] / result.length - average * average);
+  }
   result.gradient = (result.gradient - result.average * lengthGradient) / result.length;
   return result;
 }

@@ -33,12 +33,11 @@ class Stopwatch {
 
 }  // namespace
 
-UnfoldingProblem::UnfoldingProblem(const Curve& curve, const Region& region,
-                                   const Point2& viewpoint, const PolygonUnfoldingOptions& options,
-                                   const StartSizes& start)
+UnfoldingProblem::UnfoldingProblem(const Curve& curve, const Region& region, const Viewpoints& view,
+                                   const PolygonUnfoldingOptions& options, const StartSizes& start)
     : curve_(curve),
       region_(region),
-      viewpoint_(viewpoint),
+      view_(view),
       options_(options),
       moving_(curve.vertexCount(), false),
       slots_(curve.vertexCount(), -1),
@@ -133,7 +132,7 @@ std::optional<std::pair<Curve, Region>> UnfoldingProblem::merged() {
 }
 
 PolygonIteration UnfoldingProblem::account() {
-  const PolygonVisibility visibility = polygonVisibility(curve_, region_, viewpoint_);
+  const PolygonVisibility visibility = polygonVisibility(curve_, region_, view_);
   PolygonIteration row;
   row.visibility = visibility.average;
   row.variance = visibility.variance;

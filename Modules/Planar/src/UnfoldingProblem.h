@@ -23,12 +23,12 @@ struct StartSizes {
 /// What both methods share: who moves, which lengths are kept, and the energies.
 class UnfoldingProblem {
  public:
-  UnfoldingProblem(const Curve& curve, const Region& region, const Point2& viewpoint,
+  UnfoldingProblem(const Curve& curve, const Region& region, const Viewpoints& view,
                    const PolygonUnfoldingOptions& options, const StartSizes& start);
 
   [[nodiscard]] const Curve& curve() const { return curve_; }
   [[nodiscard]] const Region& region() const { return region_; }
-  [[nodiscard]] const Point2& viewpoint() const { return viewpoint_; }
+  [[nodiscard]] const Viewpoints& view() const { return view_; }
   [[nodiscard]] const PolygonUnfoldingOptions& options() const { return options_; }
   [[nodiscard]] const std::vector<int>& movers() const { return movers_; }
   [[nodiscard]] int slot(int vertex) const { return slots_[vertex]; }  ///< among movers, or -1
@@ -58,7 +58,7 @@ class UnfoldingProblem {
  private:
   Curve curve_;
   Region region_;
-  Point2 viewpoint_;
+  Viewpoints view_;
   PolygonUnfoldingOptions options_;
   std::vector<bool> moving_;
   std::vector<int> movers_;
@@ -79,6 +79,9 @@ class UnfoldingMethod {
   virtual ~UnfoldingMethod() = default;
   /// Moves the problem's curve; returns the largest motion of a vertex, mm, 0 if none was found.
   virtual double advance() = 0;
+  /// What the next iteration takes from those before, besides the curve.
+  [[nodiscard]] virtual PolygonMethodState state() const { return {}; }
+  virtual void restore(const PolygonMethodState&) {}
 };
 
 [[nodiscard]] std::unique_ptr<UnfoldingMethod> makeImplicitMethod(UnfoldingProblem& problem);

@@ -13,6 +13,8 @@
 
 #include <cmath>
 #include <random>
+#include <string>
+#include <utility>
 
 namespace explica::planar {
 namespace {
@@ -200,6 +202,92 @@ TEST(PolygonUnfolding, RandomFoldedChainsNeverCross) {
     unfolded += result.history.back().visibility >= 0.99;
   }
   EXPECT_EQ(unfolded, 12);
+}
+
+void expectSame(const PolygonUnfolding& a, const PolygonUnfolding& b, const std::string& what) {
+  ASSERT_EQ(a.history.size(), b.history.size()) << what;
+  EXPECT_EQ(a.curve.positions, b.curve.positions) << what;
+  EXPECT_EQ(a.termination, b.termination) << what;
+  EXPECT_EQ(a.verticesMerged, b.verticesMerged) << what;
+  EXPECT_EQ(a.firstCrossing, b.firstCrossing) << what;
+  for (std::size_t k = 0; k < a.history.size(); ++k) {
+    EXPECT_EQ(a.path[k].positions, b.path[k].positions) << what << ", iteration " << k;
+    EXPECT_EQ(a.history[k].visibility, b.history[k].visibility) << what;
+    EXPECT_EQ(a.history[k].lengthError, b.history[k].lengthError) << what;
+  }
+}
+
+TEST(PolygonUnfolding, ResumedIsBitByBitTheUninterruptedRun) {
+  const PolygonPhantom phantom = makePolygon34();
+  std::vector<std::pair<std::string, PolygonUnfoldingOptions>> runs(5);
+  runs[0].first = "implicit";
+  runs[1].first = "no length: vertices are merged on the way";
+  runs[1].second.noLength = true;
+  runs[2].first = "no topology";
+  runs[2].second.noTopology = true;
+  runs[3].first = "elastic";
+  runs[3].second.surround = PolygonSurround::Elastic;
+  runs[4].first = "thesis";
+  runs[4].second.method = PolygonMethod::Thesis;
+  runs[4].second.maxIterations = 120;
+  for (const auto& [what, options] : runs) {
+    const PolygonUnfolding whole = unfold(phantom, options);
+    for (const int stop : {0, 1, 17}) {
+      PolygonUnfoldingOptions first = options;
+      first.maxIterations = stop;
+      const PolygonUnfolding part = unfold(phantom, first);
+      ASSERT_EQ(part.termination, Termination::MaxIterations) << what;
+      expectSame(unfoldPolygon(phantom.curve, regionOf(phantom), phantom.viewpoint, options, {},
+                               &part.checkpoint),
+                 whole, what + ", stopped after " + std::to_string(stop));
+    }
+  }
+}
+
+TEST(PolygonUnfolding, StateOfAnotherRunIsRefused) {
+  const PolygonPhantom phantom = makePolygon19();
+  PolygonUnfoldingOptions options;
+  options.maxIterations = 2;
+  const PolygonCheckpoint state = unfold(phantom, options).checkpoint;
+  const Region region = regionOf(phantom);
+  const auto resumed = [&](const Curve& curve, const Region& where, const Point2& viewpoint) {
+    (void)unfoldPolygon(curve, where, viewpoint, options, {}, &state);
+  };
+  EXPECT_NO_THROW(resumed(phantom.curve, region, phantom.viewpoint));
+  EXPECT_THROW(resumed(phantom.curve, region, phantom.viewpoint + Point2(1, 0)), InvalidInput);
+  EXPECT_THROW(resumed(phantom.curve, {0, 18}, phantom.viewpoint), InvalidInput);
+  Curve other = phantom.curve;
+  other.positions(0, 0) += 1e-9;
+  EXPECT_THROW(resumed(other, region, phantom.viewpoint), InvalidInput);
+  options.method = PolygonMethod::Thesis;
+  EXPECT_THROW(resumed(phantom.curve, region, phantom.viewpoint), InvalidInput);
+}
+
+TEST(PolygonUnfolding, ALineOfViewpointsIsItsQuadrature) {
+  const PolygonPhantom phantom = makePolygon19();
+  const Region region = regionOf(phantom);
+  const Point2 a = phantom.viewpoint - Point2(3000, 0);
+  const Point2 b = phantom.viewpoint + Point2(3000, 0);
+  const Viewpoints view({a, b}, {0.25, 0.75});
+  const PolygonVisibility both = polygonVisibility(phantom.curve, region, view);
+  const PolygonVisibility fromA = polygonVisibility(phantom.curve, region, a);
+  const PolygonVisibility fromB = polygonVisibility(phantom.curve, region, b);
+  EXPECT_NEAR(both.average, 0.25 * fromA.average + 0.75 * fromB.average, 1e-15);
+  EXPECT_NEAR(both.variance, 0.25 * fromA.variance + 0.75 * fromB.variance, 1e-15);
+  EXPECT_LT((both.gradient - 0.25 * fromA.gradient - 0.75 * fromB.gradient).cwiseAbs().maxCoeff(),
+            1e-15);
+  EXPECT_NEAR(visiblePart(phantom.curve, region, view).fraction,
+              0.25 * visiblePart(phantom.curve, region, a).fraction +
+                  0.75 * visiblePart(phantom.curve, region, b).fraction,
+              1e-15);
+  // From a short line the region opens as from its middle; from a wide one it cannot face all.
+  PolygonUnfoldingOptions options;
+  options.targetVisibility = 0.99;
+  const Viewpoints line({phantom.viewpoint - Point2(200, 0), phantom.viewpoint + Point2(200, 0)},
+                        {0.5, 0.5});
+  const PolygonUnfolding opened = unfoldPolygon(phantom.curve, region, line, options);
+  EXPECT_EQ(opened.termination, Termination::TargetReached);
+  EXPECT_TRUE(opened.intersectionsFinal.empty());
 }
 
 TEST(PolygonUnfolding, WrongInputIsRefused) {

@@ -36,17 +36,36 @@ struct Panel {
   }
 };
 
-/// Radius of the circle in which a sphere about the centre meets the plane; 0 if it does not.
-double radiusAt(const HarmonicAnnulus& annulus, double radius, double z) {
+constexpr const char* kRim = "\" stroke=\"#9a9a9a\" stroke-dasharray=\"4 3\"/>\n";
+
+/// Where a sphere about the centre meets the plane at z, or a circle.
+void drawCircle(std::string& svg, const Panel& panel, const HarmonicAnnulus& annulus, double radius,
+                double z, const char* fill) {
   const double height = annulus.dimension == 2 ? 0 : z - annulus.centre.z();
-  return std::sqrt(std::max(0.0, radius * radius - height * height));
+  if (std::abs(height) >= radius) return;
+  svg += "<circle cx=\"" + format("%.2f", panel.left + kPanel / 2) + "\" cy=\"" +
+         format("%.2f", panel.top + kPanel / 2) + "\" r=\"" +
+         format("%.2f", panel.scale * std::sqrt(radius * radius - height * height)) + "\" fill=\"" +
+         fill + kRim;
 }
 
-void drawCircle(std::string& svg, const Panel& panel, double radius, const char* fill) {
-  if (radius == 0) return;
-  svg += "<circle cx=\"" + format("%.2f", panel.left + kPanel / 2) + "\" cy=\"" +
-         format("%.2f", panel.top + kPanel / 2) + "\" r=\"" + format("%.2f", panel.scale * radius) +
-         "\" fill=\"" + fill + "\" stroke=\"#9a9a9a\" stroke-dasharray=\"4 3\"/>\n";
+void drawPolygon(std::string& svg, const Panel& panel, const planar::Curve& curve,
+                 const char* fill) {
+  svg += "<polygon points=\"";
+  for (int v = 0; v < curve.vertexCount(); ++v) svg += panel.place(curve.point(v)) + " ";
+  svg += std::string("\" fill=\"") + fill + kRim;
+}
+
+void drawAnnulus(std::string& svg, const Panel& panel, const HarmonicAnnulus& annulus, double z) {
+  constexpr const char* kTissue = "#f1f3f5";
+  constexpr const char* kPaper = "#ffffff";
+  if (annulus.map) {
+    drawPolygon(svg, panel, annulus.map->outer(), kTissue);
+    drawPolygon(svg, panel, annulus.map->inner(), kPaper);
+  } else {
+    drawCircle(svg, panel, annulus, annulus.outerRadius, z, kTissue);
+    drawCircle(svg, panel, annulus, annulus.innerRadius, z, kPaper);
+  }
 }
 
 void drawOutline(std::string& svg, const Panel& panel, const Outline& outline, const char* style) {
@@ -89,6 +108,7 @@ std::string drawFit(const HarmonicAnnulus& annulus, double z, const Outline& tar
                     const std::vector<FitStage>& stages) {
   if (stages.empty()) throw InvalidInput("figure: no stage to draw");
   requireUsable(annulus);
+  const AnnulusBox box = boxOf(annulus);
   const int count = static_cast<int>(stages.size());
   const int columns = std::min(count, kMostColumns);
   const int rows = (count + columns - 1) / columns;
@@ -105,8 +125,8 @@ std::string drawFit(const HarmonicAnnulus& annulus, double z, const Outline& tar
     Panel panel;
     panel.left = kMargin + (s % columns) * (kPanel + kMargin);
     panel.top = kMargin + (s / columns) * rowHeight + kTitleHeight;
-    panel.scale = (kPanel / 2 - 2) / annulus.outerRadius;
-    panel.centre = annulus.centre;
+    panel.scale = (kPanel / 2 - 2) / box.halfSide;
+    panel.centre = box.centre;
     svg += "<text x=\"" + format("%.1f", panel.left) + "\" y=\"" +
            format("%.1f", panel.top - kTitleHeight + 16) + "\" font-weight=\"bold\">" +
            stage.title + "</text>\n";
@@ -117,8 +137,7 @@ std::string drawFit(const HarmonicAnnulus& annulus, double z, const Outline& tar
     svg += "<text x=\"" + format("%.1f", panel.left) + "\" y=\"" +
            format("%.1f", panel.top - kTitleHeight + 53) + "\" fill=\"#444\">largest distance " +
            format("%.2f", stage.distanceMax) + " mm</text>\n";
-    drawCircle(svg, panel, radiusAt(annulus, annulus.outerRadius, z), "#f4f4f4");
-    drawCircle(svg, panel, radiusAt(annulus, annulus.innerRadius, z), "#ffffff");
+    drawAnnulus(svg, panel, annulus, z);
     drawOutline(svg, panel, target,
                 "stroke=\"#d6540a\" stroke-width=\"4\" stroke-opacity=\"0.55\"");
     drawOutline(svg, panel, stage.outline, "stroke=\"#145ab4\" stroke-width=\"1.8\"");

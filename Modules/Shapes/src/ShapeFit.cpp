@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -20,17 +21,45 @@ constexpr double kLeastShare = 0.1;   // of the mean amplitude: keeps boundary v
 constexpr double kScaleWeight = 1e2;  // of the amplitudes' sum, against the fit's weights
 // Relative change of the symmetric difference at which a fit ends; in the plane iterations are
 // cheap.
-constexpr double kConvergedInPlane = 2e-3;
+constexpr double kConvergedInPlane = 1e-3;
 constexpr double kConvergedInSpace = 1e-2;
 constexpr double kNear = 1e-3;    // mean distance, of the annulus' width: near enough
 constexpr int kMostSweeps = 400;  // of coordinate descent per iteration; the next one goes on
 constexpr double kSweepTolerance = 1e-7;  // largest change of an amplitude, against their mean
 
-/// Coefficients by Y_j of non-negative bumps ((1 + cos g)/2)^order, g the angle from one of many
-/// directions spread evenly; mean 1 each.  perBoundary() x directions.
+/// Of a non-negative kernel of the angle g, by degree, mean 1: how much of Y_l a convolution with
+/// it leaves.  In the plane Fejer's, |sum of n + 1 exponentials|^2; in space its like, the square
+/// of the sum of (2 l + 1) P_l(cos g) up to n/2.  Each is as narrow as 1/n; powers of 1 + cos g,
+/// the simplest such kernels, are only as narrow as 1/sqrt(n).
+std::vector<double> kernelFactors(int dimension, int order) {
+  std::vector<double> factors(static_cast<std::size_t>(order) + 1);
+  if (dimension == 2) {
+    for (int l = 0; l <= order; ++l) factors[l] = 1 - l / (order + 1.0);
+    return factors;
+  }
+  // The midpoint rule in g is exact enough: the integrands are smooth and periodic in g.
+  const int samples = 64 * (order + 1);
+  std::vector<double> legendre(static_cast<std::size_t>(order) + 1);
+  for (int k = 0; k < samples; ++k) {
+    const double g = kPi * (k + 0.5) / samples;
+    const double c = std::cos(g);
+    double root = 0;
+    for (int l = 0; l <= order; ++l) {
+      legendre[l] = l == 0   ? 1
+                    : l == 1 ? c
+                             : ((2 * l - 1) * c * legendre[l - 1] - (l - 1) * legendre[l - 2]) / l;
+      if (l <= order / 2) root += (2 * l + 1) * legendre[l];
+    }
+    for (int l = 0; l <= order; ++l) factors[l] += std::sin(g) * root * root * legendre[l];
+  }
+  for (int l = order; l >= 0; --l) factors[l] /= factors[0];
+  return factors;
+}
+
+/// Coefficients by Y_j of kernels about many directions spread evenly; perBoundary() x directions.
 Eigen::MatrixXd bumps(const HarmonicAnnulus& annulus) {
   const int order = std::max(annulus.order, 1);
-  const int count = annulus.dimension == 2 ? std::max(order, 8) : std::max(order * order, 32);
+  const int count = annulus.dimension == 2 ? std::max(2 * order, 8) : std::max(order * order, 32);
   const double golden = kPi * (3 - std::sqrt(5.0));
   Eigen::MatrixXd coefficients(annulus.perBoundary(), count);
   for (int b = 0; b < count; ++b) {
@@ -45,14 +74,11 @@ Eigen::MatrixXd bumps(const HarmonicAnnulus& annulus) {
     }
     angularBasis(annulus.dimension, annulus.order, direction, coefficients.col(b).data());
   }
-  const int shift = annulus.dimension == 2 ? 0 : 1;
-  double factor = 1;
-  int degree = 0;
+  const std::vector<double> factors = kernelFactors(annulus.dimension, annulus.order);
   for (Eigen::Index k = 0; k < coefficients.rows(); ++k) {
-    for (; degree < degreeOf(annulus.dimension, static_cast<int>(k)); ++degree) {
-      factor *= static_cast<double>(order - degree) / (order + degree + 1 + shift);
-    }
-    coefficients.row(k) *= annulus.dimension == 2 && degree > 0 ? 2 * factor : factor;
+    const int degree = degreeOf(annulus.dimension, static_cast<int>(k));
+    // cos and sin have the mean square 1/2.
+    coefficients.row(k) *= (annulus.dimension == 2 && degree > 0 ? 2 : 1) * factors[degree];
   }
   return coefficients;
 }
@@ -85,7 +111,7 @@ class Fit {
         options_(options),
         weights_(target.weights / target.weights.sum()),
         total_(target.weights.sum()),
-        width_(annulus.outerRadius - annulus.innerRadius),
+        width_(widthOf(annulus)),
         bumps_(bumps(annulus)),
         response_(responseAt(target.points)) {
     const double h = kDifference * width_;
@@ -180,15 +206,21 @@ ShapeFit fitShape(const HarmonicAnnulus& annulus, const TargetSamples& target,
     throw InvalidInput("fit: step in (0, 1], iterations >= 0 and smoothness > 0 are needed");
   }
   for (Eigen::Index p = 0; p < target.points.rows(); ++p) {
-    Vector d = target.points.row(p).transpose() - annulus.centre;
-    if (annulus.dimension == 2) d.z() = 0;
-    const double r = d.norm();
-    if (!(r > annulus.innerRadius && r < annulus.outerRadius)) {
-      throw InvalidInput("fit: a point of the target is " + std::to_string(r) +
-                         " mm from the centre, outside the annulus from " +
-                         std::to_string(annulus.innerRadius) + " to " +
-                         std::to_string(annulus.outerRadius) + " mm");
+    const Point point = target.points.row(p).transpose();
+    if (sideOf(annulus, point) == AnnulusSide::Inside) continue;
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "fit: the target's point (%.6g, %.6g, %.6g) mm lies outside the annulus",
+                  point.x(), point.y(), point.z());
+    std::string message = text;
+    if (!annulus.map) {
+      Vector d = point - annulus.centre;
+      if (annulus.dimension == 2) d.z() = 0;
+      std::snprintf(text, sizeof text, ": %.6g mm from its centre, with radii from %.6g to %.6g mm",
+                    d.norm(), annulus.innerRadius, annulus.outerRadius);
+      message += text;
     }
+    throw InvalidInput(message);
   }
   const Fit fit(annulus, target, options);
   Eigen::VectorXd x = fit.initial();
@@ -211,8 +243,7 @@ ShapeFit fitShape(const HarmonicAnnulus& annulus, const TargetSamples& target,
     monitor.progress(static_cast<double>(k + 1) / options.maxIterations, "fitting");
     const double before = result.history[result.history.size() - 2].symmetricDifference;
     const double now = result.history.back().symmetricDifference;
-    const bool near =
-        result.history.back().distanceMean < kNear * (annulus.outerRadius - annulus.innerRadius);
+    const bool near = result.history.back().distanceMean < kNear * widthOf(annulus);
     if (k > 3 && (near || std::abs(before - now) < converged * now)) {
       result.termination = Termination::Converged;
       break;
@@ -263,10 +294,7 @@ HarmonicShape combine(const std::vector<HarmonicShape>& shapes,
   result.inner.setZero();
   result.outer.setZero();
   for (std::size_t s = 0; s < shapes.size(); ++s) {
-    const HarmonicAnnulus& a = shapes[s].annulus;
-    const HarmonicAnnulus& b = result.annulus;
-    if (a.dimension != b.dimension || a.order != b.order || a.innerRadius != b.innerRadius ||
-        a.outerRadius != b.outerRadius || a.centre != b.centre) {
+    if (!sameAnnulus(shapes[s].annulus, result.annulus)) {
       throw InvalidInput("combine: shape " + std::to_string(s) +
                          " lies in another annulus than the first");
     }

@@ -46,9 +46,9 @@ Grid gridOf(const HarmonicAnnulus& annulus, int voxels) {
   if (voxels < 8) throw InvalidInput("grid: at least 8 voxels per side are needed");
   Grid grid;
   grid.size = {voxels, voxels, annulus.dimension == 2 ? 1 : voxels};
-  const double side = 2 * annulus.outerRadius / (voxels - 1);
-  grid.spacing = Vector::Constant(side);
-  grid.origin = annulus.centre - Vector::Constant(annulus.outerRadius);
+  const AnnulusBox box = boxOf(annulus);
+  grid.spacing = Vector::Constant(2 * box.halfSide / (voxels - 1));
+  grid.origin = box.centre - Vector::Constant(box.halfSide);
   if (annulus.dimension == 2) grid.origin.z() = 0;
   return grid;
 }
@@ -67,14 +67,12 @@ Volume<float> fieldOf(const HarmonicShape& shape, int voxels) {
     for (std::size_t v = first; v < end; ++v) {
       const auto [i, j, k] = grid.subscripts(v);
       const Point place = grid.toWorld({double(i), double(j), double(k)});
-      Vector d = place - shape.annulus.centre;
-      if (shape.annulus.dimension == 2) d.z() = 0;
-      const double r = d.norm();
-      if (r > shape.annulus.innerRadius && r < shape.annulus.outerRadius) {
+      const AnnulusSide side = sideOf(shape.annulus, place);
+      if (side == AnnulusSide::Inside) {
         within.push_back(v);
         places.push_back(place);
       } else {
-        field[v] = r <= shape.annulus.innerRadius ? 0.0F : 1.0F;
+        field[v] = side == AnnulusSide::Enclosed ? 0.0F : 1.0F;
       }
     }
     Positions points(static_cast<Eigen::Index>(places.size()), 3);
@@ -136,14 +134,7 @@ TargetSamples samplesOf(const TriangleMesh& target, int count) {
 LevelDistance distanceBetween(const planar::Curve& shape, const planar::Curve& target) {
   LevelDistance result;
   for (int v = 0; v < shape.vertexCount(); ++v) {
-    const planar::Point2 q = shape.point(v);
-    double least = kInfinity;
-    for (int e = 0; e < target.edgeCount(); ++e) {
-      const planar::Point2 a = target.point(e);
-      const planar::Point2 t = target.point(target.next(e)) - a;
-      const double s = std::clamp((q - a).dot(t) / t.squaredNorm(), 0.0, 1.0);
-      least = std::min(least, (q - a - s * t).norm());
-    }
+    const double least = planar::distanceTo(target, shape.point(v));
     result.max = std::max(result.max, least);
     result.mean += least / shape.vertexCount();
   }

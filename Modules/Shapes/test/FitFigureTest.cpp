@@ -57,5 +57,14 @@ TEST(FitFigure, DrawsTargetAndShapeInEveryPanel) {
   EXPECT_THROW((void)drawFit(annulus, 0, circle, {}), InvalidInput);
 }
 
+TEST(FitFigure, DrawsAGivenAnnulusByItsBoundaries) {
+  const HarmonicAnnulus annulus =
+      givenAnnulus(planar::makeEllipse(20, 2, 1), planar::makeEllipse(30, 5, 4), 4);
+  const Outline circle = outlineOf(planar::makeCircle(30, 3));
+  const std::string svg = drawFit(annulus, 0, circle, {{"start", circle, 3, 1}});
+  EXPECT_EQ(countOf(svg, "<polygon"), 2U);
+  EXPECT_EQ(countOf(svg, "<circle"), 0U);
+}
+
 }  // namespace
 }  // namespace explica::shapes

@@ -62,7 +62,10 @@ _explica() {
       options=' --out --force --config --threads --dry-run --quiet --verbose --log --private --help --version'
       ;;
     'embed')
-      options=' --fit --average --combine --centre --inner-radius --outer-radius --order --samples --max-iterations --fit-step --smoothness --grid --frames --out --force --config --threads --dry-run --quiet --verbose --log --private --help --version'
+      options=' --fit --average --combine --xform --frame --label --slice --contour --edges --smooth --centre --inner-radius --outer-radius --order --band --annulus --inner --tissue --samples --max-iterations --fit-step --smoothness --grid --frames --out --force --config --threads --dry-run --quiet --verbose --log --private --help --version'
+      case $previous in
+        --xform) COMPREPLY=($(compgen -W 'agreed qform sform none' -- "$word")); return ;;
+      esac
       ;;
     'history')
       options=' --config --threads --quiet --verbose --log --help --version'

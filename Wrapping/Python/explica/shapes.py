@@ -6,7 +6,7 @@ shapes in one annulus is again one closed curve or surface."""
 import os
 
 from ._explica import shapes as _compiled
-from ._explica.shapes import Shape, combine, concentric
+from ._explica.shapes import Shape, band, between, combine, concentric
 from ._signature import prose, signature_of
 from ._surfaces import as_mesh as _as_mesh
 
@@ -54,4 +54,14 @@ def average(shapes: "Iterable[Shape]") -> "Shape":
     return combine(shapes, [1.0] * len(shapes))
 
 
-__all__ = ["Shape", "around", "average", "combine", "concentric", "distance", "fit"]
+__all__ = [
+    "Shape",
+    "around",
+    "average",
+    "band",
+    "between",
+    "combine",
+    "concentric",
+    "distance",
+    "fit",
+]

@@ -7,6 +7,7 @@
 #include "Watch.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Shapes/AnnulusBoundaries.h"
 #include "Explica/Shapes/ShapeFit.h"
 #include "Explica/Shapes/ShapeLevel.h"
 
@@ -17,14 +18,18 @@ using namespace py::literals;
 using shapes::HarmonicAnnulus;
 using shapes::HarmonicShape;
 
+void requireCoefficients(const HarmonicAnnulus& annulus, const Eigen::VectorXd& inner,
+                         const Eigen::VectorXd& outer) {
+  if (inner.size() == annulus.perBoundary() && outer.size() == inner.size()) return;
+  throw InvalidInput("inner and outer: " + std::to_string(annulus.perBoundary()) +
+                     " coefficients each are needed for order " + std::to_string(annulus.order));
+}
+
 HarmonicShape shapeOf(int dimension, const Point& centre, double innerRadius, double outerRadius,
                       const Eigen::VectorXd& inner, const Eigen::VectorXd& outer, int order) {
   HarmonicShape shape{{dimension, centre, innerRadius, outerRadius, order}, inner, outer};
   shapes::requireUsable(shape.annulus);
-  if (inner.size() != shape.annulus.perBoundary() || outer.size() != inner.size()) {
-    throw InvalidInput("inner and outer: " + std::to_string(shape.annulus.perBoundary()) +
-                       " coefficients each are needed for order " + std::to_string(order));
-  }
+  requireCoefficients(shape.annulus, inner, outer);
   return shape;
 }
 
@@ -90,7 +95,7 @@ void bindShape(py::module_& m) {
   py::class_<HarmonicShape>(
       m, "Shape",
       "A closed curve or surface as the 1/2 level of a harmonic function u between two concentric\n"
-      "circles or spheres, by the coefficients of u on both.")
+      "circles or spheres, or between two polygons, by the coefficients of u on both.")
       .def(
           py::init(&shapeOf), "dimension"_a, "centre"_a, "inner_radius"_a, "outer_radius"_a,
           "inner"_a, "outer"_a, "order"_a,
@@ -113,6 +118,25 @@ void bindShape(py::module_& m) {
       .def_property_readonly(
           "outer", [](const HarmonicShape& s) { return s.outer; },
           "Coefficients of u on the outer boundary.")
+      .def_property_readonly(
+          "inner_boundary",
+          [](const HarmonicShape& s) {
+            return s.annulus.map ? std::optional(s.annulus.map->inner().positions) : std::nullopt;
+          },
+          "Polygon (V, 2), mm, of an annulus given by its boundaries; None of a circular one.")
+      .def_property_readonly(
+          "outer_boundary",
+          [](const HarmonicShape& s) {
+            return s.annulus.map ? std::optional(s.annulus.map->outer().positions) : std::nullopt;
+          },
+          "As inner_boundary.")
+      .def(
+          "with_coefficients",
+          [](const HarmonicShape& s, const Eigen::VectorXd& inner, const Eigen::VectorXd& outer) {
+            requireCoefficients(s.annulus, inner, outer);
+            return HarmonicShape{s.annulus, inner, outer};
+          },
+          "inner"_a, "outer"_a, "The shape of other coefficients in the same annulus.")
       .def_property_readonly("margin", &shapes::boundaryMargin,
                              "Above 0: the 1/2 level is one closed curve or surface.")
       .def(
@@ -166,6 +190,34 @@ void bindShapes(py::module_& parent) {
       },
       "dimension"_a, "centre"_a, "inner_radius"_a, "outer_radius"_a, "order"_a,
       "The circle or sphere between two others: u is 0 on the inner and 1 on the outer one.");
+  m.def(
+      "between",
+      [](const Positions2& inner, const Positions2& outer, std::optional<int> order) {
+        return shapes::concentricShape(unlocked([&] {
+          return shapes::givenAnnulus(planar::Curve{inner, true}, planar::Curve{outer, true},
+                                      order);
+        }));
+      },
+      "inner_boundary"_a, "outer_boundary"_a, "order"_a = py::none(),
+      "The curve half way between two polygons (V, 2), mm, of which one encloses the other: u is\n"
+      "0 on the inner and 1 on the outer one.  Order None: as fine as curves in the middle can "
+      "be.");
+  m.def(
+      "band",
+      [](const std::vector<Positions2>& targets, double width, std::optional<int> order) {
+        std::vector<planar::Curve> curves;
+        for (const Positions2& target : targets) {
+          curves.push_back({target, true});
+          planar::requireUsable(curves.back());
+        }
+        return shapes::concentricShape(unlocked([&] {
+          const shapes::AnnulusBoundaries boundaries = shapes::bandAround(curves, width);
+          return shapes::givenAnnulus(boundaries.inner, boundaries.outer, order);
+        }));
+      },
+      "targets"_a, "width"_a, "order"_a = py::none(),
+      "As between(), in the band of all points within `width`, mm, of the region between the\n"
+      "targets, polygons (V, 2): where shapes can follow them closely.");
   defWithOptions<AroundOptions>(
       m, "around",
       [](const std::vector<py::object>& targets, const py::kwargs& keywords) {

@@ -62,6 +62,28 @@ class Shapes(unittest.TestCase):
         third = shapes.combine(fits, [1, 0])
         np.testing.assert_array_equal(third.inner, fits[0].inner)
 
+    def test_a_given_annulus_is_taken_as_a_circular_one(self):
+        round_one = shapes.concentric(2, [0, 0, 0], 12.0, 30.0, 16)
+        given = shapes.between(planar.circle(400, 12.0), planar.circle(400, 30.0), order=16)
+        self.assertIsNone(round_one.inner_boundary)
+        self.assertEqual(given.outer_boundary.shape, (400, 2))
+        target = planar.ellipse(200, 22.0, 18.0)
+        a, b = (shapes.fit(target, start)["shape"] for start in (round_one, given))
+        np.testing.assert_allclose(a.inner, b.inner, atol=2e-3)
+        again = given.with_coefficients(b.inner, b.outer)
+        np.testing.assert_array_equal(again.values([[20.0, 3.0]]), b.values([[20.0, 3.0]]))
+        mixed = shapes.combine([given, b], [1, 3])
+        self.assertGreater(mixed.margin, 0)
+
+    def test_a_band_follows_what_a_circle_cannot(self):
+        angle = 2 * np.pi * np.arange(300) / 300
+        radius = 20 * (1 + 0.3 * np.cos(5 * angle))
+        lobed = np.column_stack([radius * np.cos(angle), radius * np.sin(angle)])
+        near = shapes.fit(lobed, shapes.band([lobed], 3.0))["shape"]
+        self.assertLess(shapes.distance(near.polygon(), lobed)[1], 0.3)
+        far = shapes.fit(lobed)["shape"]
+        self.assertGreater(shapes.distance(far.polygon(), lobed)[1], 1.0)
+
     def test_surfaces_are_taken_as_every_surface_is(self):
         ball = explica.icosphere(3, 10.0)
         fit = shapes.fit(ball, samples=300, max_iterations=5)
@@ -78,6 +100,10 @@ class Shapes(unittest.TestCase):
             shapes.combine([ring], [])
         with self.assertRaisesRegex(ValueError, "in the plane"):
             ring.surface()
+        with self.assertRaisesRegex(ValueError, "lie within"):
+            shapes.between(planar.circle(20, 9.0), planar.circle(20, 5.0))
+        with self.assertRaisesRegex(ValueError, "coefficients each"):
+            ring.with_coefficients(np.zeros(2), np.zeros(2))
 
 
 if __name__ == "__main__":

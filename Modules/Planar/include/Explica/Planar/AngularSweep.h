@@ -3,6 +3,7 @@
 #pragma once
 
 #include "Explica/Planar/Curve.h"
+#include "Explica/Planar/PolygonVisibility.h"
 
 namespace explica::planar {
 
@@ -18,9 +19,10 @@ struct VisiblePart {
 /// direction) faces the viewpoint.
 ///
 /// Edges must not cross (intersectingEdges); where they do, the middle of each interval decides.
-/// O(n log n + n k), k edges over one another at most.
+/// Of several viewpoints the weighted mean.
+/// O(n log n + n k) a viewpoint, k edges over one another at most.
 /// @throws InvalidInput  empty region, or a viewpoint on the curve
 [[nodiscard]] VisiblePart visiblePart(const Curve& curve, const Region& region,
-                                      const Point2& viewpoint);
+                                      const Viewpoints& view);
 
 }  // namespace explica::planar

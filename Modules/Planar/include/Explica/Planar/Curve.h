@@ -29,6 +29,8 @@ struct Curve {
 struct Region {
   int firstEdge = 0;
   int edgeCount = 0;
+
+  [[nodiscard]] bool operator==(const Region&) const = default;
 };
 
 /// Region from vertex `first` to vertex `last` along the curve's order.
@@ -55,6 +57,15 @@ struct Region {
 
 /// Area with sign, mm^2: positive if the closed curve runs counter-clockwise.
 [[nodiscard]] double signedArea(const Positions2& polygon);
+
+/// True if a closed curve winds around a point an odd number of times.
+[[nodiscard]] bool encloses(const Curve& curve, const Point2& point);
+
+/// Least distance of a point from a curve's edges, mm.
+[[nodiscard]] double distanceTo(const Curve& curve, const Point2& point);
+
+/// True if the segments (a, b) and (c, d) share a point, by exact predicates.
+[[nodiscard]] bool segmentsMeet(const Point2& a, const Point2& b, const Point2& c, const Point2& d);
 
 /// Pairs of edges i < j that share a point other than the vertex that joins them, by exact
 /// predicates: an empty list says that the curve is simple.  O(n log n) for edges of like size.

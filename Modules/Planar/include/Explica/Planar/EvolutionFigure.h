@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "Explica/Planar/Curve.h"
+#include "Explica/Planar/PolygonVisibility.h"
 
 #include <string>
 #include <vector>
@@ -20,11 +20,12 @@ struct EvolutionStage {
 };
 
 /// Draws stages side by side as SVG: the tissue filled, the region heavy, its edges shaded by their
-/// flux, an arrow from the viewpoint's side in each panel.  All panels have one scale.
+/// flux, rings where edges cross, an arrow from the viewpoint's side in each panel (of several
+/// viewpoints from the first and the last).  All panels have one scale; a legend says it.
 ///
 /// @param stages  at least one, all of polygons or all of open chains
 /// @return the whole SVG document
-[[nodiscard]] std::string drawEvolution(bool closed, const Point2& viewpoint,
+[[nodiscard]] std::string drawEvolution(bool closed, const Viewpoints& view,
                                         const std::vector<EvolutionStage>& stages);
 
 /// Indices of `count` entries, first and last among them, whose values are most evenly spread.

@@ -7,6 +7,7 @@
 #include "Explica/Core/Termination.h"
 #include "Explica/Planar/Curve.h"
 #include "Explica/Planar/PolygonKnotEnergy.h"
+#include "Explica/Planar/PolygonVisibility.h"
 
 #include <array>
 #include <utility>
@@ -84,6 +85,26 @@ struct PolygonState {
   Region region;
 };
 
+/// What the implicit method takes from one iteration to the next.
+struct PolygonMethodState {
+  double damping = 1;
+  Eigen::VectorXd tension = {};  ///< one a kept edge, 1/mm; empty of the thesis's method
+};
+
+/// All that a run needs to go on, and of what it is a state.
+struct PolygonCheckpoint {
+  Positions2 input;  ///< the polygon, region and view that the run was given
+  Region inputRegion;
+  Viewpoints view;
+  PolygonMethod method = PolygonMethod::Implicit;
+  PolygonState posed;  ///< since the last merge of vertices; lengths are kept against it
+  PolygonMethodState methodState;
+  std::vector<PolygonIteration> history;
+  std::vector<PolygonState> path;
+  int verticesMerged = 0;
+  int firstCrossing = -1;
+};
+
 /// The unfolded polygon and how it came about.
 struct PolygonUnfolding {
   Curve curve;    ///< all vertices in their order; with PolygonSurround::None the region alone
@@ -96,7 +117,8 @@ struct PolygonUnfolding {
   double secondsTopology = 0;  ///< of these for knot energy, barrier and collision detection
   std::vector<std::array<int, 2>> intersectionsInitial;  ///< edge pairs, exact
   std::vector<std::array<int, 2>> intersectionsFinal;
-  int firstCrossing = -1;  ///< iteration after which edges crossed first; -1 never
+  int firstCrossing = -1;        ///< iteration after which edges crossed first; -1 never
+  PolygonCheckpoint checkpoint;  ///< from which the run goes on
 };
 
 /// Moves the region's vertices until its average visibility from a viewpoint reaches the target.
@@ -106,14 +128,19 @@ struct PolygonUnfolding {
 /// lets edges meet: it ends before the first contact of any vertex with any edge.  With `noLength`,
 /// edges that have shrunk to a quarter of the mean are merged into a vertex, as in the thesis.
 ///
-/// @param viewpoint  mm, outside the polygon
+/// @param view    mm, outside the polygon
+/// @param resume  where an earlier run on the same polygon, region and view stood: the result is
+/// bit
+///                by bit that of one run, as long as the options but for the limits are the same
 /// @throws InvalidInput  unusable curve, a clockwise polygon, a region that already crosses itself
 ///                       (unless noTopology), an initial average visibility that is not positive
-///                       (the flow would be a backward diffusion), or an option out of range
+///                       (the flow would be a backward diffusion), an option out of range, or a
+///                       state of another run
 [[nodiscard]] PolygonUnfolding unfoldPolygon(const Curve& curve, const Region& region,
-                                             const Point2& viewpoint,
+                                             const Viewpoints& view,
                                              const PolygonUnfoldingOptions& options = {},
-                                             const Monitor& monitor = {});
+                                             const Monitor& monitor = {},
+                                             const PolygonCheckpoint* resume = nullptr);
 
 }  // namespace explica::planar
 

@@ -4,7 +4,28 @@
 
 #include "Explica/Planar/Curve.h"
 
+#include <utility>
+#include <vector>
+
 namespace explica::planar {
+
+/// From where a curve is looked at: points with weights that sum to 1.
+///
+/// One point is the thesis's viewpoint; a line of viewpoints (thesis chapter 6) is its quadrature.
+/// The plane's twin of visibility::Viewpoints.
+struct Viewpoints {
+  std::vector<Point2> points;   ///< mm
+  std::vector<double> weights;  ///< > 0, sum 1
+
+  Viewpoints() = default;
+  template <class Derived>
+  Viewpoints(const Eigen::MatrixBase<Derived>& point) : points{Point2(point)}, weights{1.0} {}
+  Viewpoints(double x, double y) : Viewpoints(Point2(x, y)) {}
+  Viewpoints(std::vector<Point2> p, std::vector<double> w)
+      : points(std::move(p)), weights(std::move(w)) {}
+
+  [[nodiscard]] bool operator==(const Viewpoints& other) const = default;
+};
 
 /// Average flux of a region and how it changes with the vertices.
 struct PolygonVisibility {
@@ -35,8 +56,10 @@ struct EdgeFlux {
 ///
 /// The gradient ascends.  [Thesis, Eq. 53] prints gamma/|C|^2 where gamma/|C| is right; derivatives
 /// here are of the form above and agree with the corrected equation.
-/// @throws InvalidInput  empty region
+/// Of several viewpoints all members are the weighted means of theirs; the variance is that within
+/// the views, not between them.
+/// @throws InvalidInput  empty region, or no viewpoint
 [[nodiscard]] PolygonVisibility polygonVisibility(const Curve& curve, const Region& region,
-                                                  const Point2& viewpoint);
+                                                  const Viewpoints& view);
 
 }  // namespace explica::planar

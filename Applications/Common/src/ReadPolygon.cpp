@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Application/ReadPolygon.h"
+
+#include "Explica/Application/ReadInputs.h"
+#include "Explica/Core/Errors.h"
+#include "Explica/IO/PolygonFile.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cstdio>
+
+namespace explica::app {
+
+void declarePolygonReading(Declaration& d, PolygonReading& r) {
+  d.options("Reading", r.volume)
+      .option("Contour", Field{"label", "", "take the contour of this label of an image"}, r.label)
+      .option("Contour",
+              Field{"slice", "", "slice along the third axis; default: where the label is largest"},
+              r.slice)
+      .option("Contour", Field{"contour", "", "which contour, by area, 0 the largest"}, r.contour)
+      .option("Contour", Field{"edges", "", "resample the contour to this many equal edges"},
+              r.edges)
+      .option("Contour", Field{"smooth", "voxels", "Gaussian that anti-aliases the label's mask"},
+              r.contours.smoothing);
+}
+
+ReadCurve readCurve(Context& context, const std::string& name, const std::string& path,
+                    const PolygonReading& reading) {
+  ReadCurve read;
+  if (!reading.label) {
+    read.curve.positions = io::readPolygon(path);
+    planar::requireUsable(read.curve);
+    return read;
+  }
+  const Volume<Label> labels = readLabels(context, name, path, reading.volume);
+  const int slice = reading.slice.value_or(planar::largestSlice(labels, *reading.label));
+  if (slice < 0) {
+    throw InvalidInput(path + ": label " + std::to_string(*reading.label) + " is absent");
+  }
+  const auto contours = planar::contoursOfLabel(labels, *reading.label, slice, reading.contours);
+  if (reading.contour < 0 || reading.contour >= static_cast<int>(contours.size())) {
+    throw InvalidInput("contour " + std::to_string(reading.contour) + " is not among the " +
+                       std::to_string(contours.size()) + " contours of slice " +
+                       std::to_string(slice));
+  }
+  read.curve = contours[reading.contour];
+  read.slice = slice;
+  if (planar::signedArea(read.curve.positions) < 0) {  // a hole's rim: a polygon of its own
+    read.curve.positions = read.curve.positions.colwise().reverse().eval();
+  }
+  if (reading.edges) read.curve = planar::resampled(read.curve, *reading.edges);
+  const planar::PlaneFrame frame = planar::frameOfSlice(labels.grid, slice);
+  const auto array = [](const Eigen::Vector3d& v) {
+    return std::vector<double>{v.x(), v.y(), v.z()};
+  };
+  context.result("slice", slice);
+  context.result("contours", contours.size());
+  context.result("plane_origin", array(frame.origin));
+  context.result("plane_x", array(frame.axisX));
+  context.result("plane_y", array(frame.axisY));
+  return read;
+}
+
+bool isPolygonTable(const std::string& path) {
+  return path.ends_with(".csv") || path.ends_with(".txt") || path.ends_with(".tsv");
+}
+
+std::string frameName(std::size_t number, const std::string& extension) {
+  char name[40];
+  std::snprintf(name, sizeof name, "frames/frame-%04zu", number);
+  return name + extension;
+}
+
+}  // namespace explica::app

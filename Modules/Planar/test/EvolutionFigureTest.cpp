@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Planar/EvolutionFigure.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Planar/PolygonPhantoms.h"
+
+#include <gtest/gtest.h>
+
+namespace explica::planar {
+namespace {
+
+std::size_t countOf(const std::string& text, const std::string& part) {
+  std::size_t count = 0;
+  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+EvolutionStage stageOf(const Curve& curve) {
+  return {"start", curve.positions, {0, 2}, 0.5, 0.1, 3};
+}
+
+TEST(EvolutionFigure, HasAPanelAStageAndNoRingWithoutCrossings) {
+  const Curve square = makeCircle(4, 10);
+  const std::string svg = drawEvolution(true, Point2(0, 100), {stageOf(square), stageOf(square)});
+  EXPECT_EQ(countOf(svg, "visibility 0.500"), 2U);
+  EXPECT_EQ(countOf(svg, "(b) start"), 1U);
+  EXPECT_EQ(countOf(svg, "edges cross"), 0U);
+  EXPECT_EQ(countOf(svg, "direction of view"), 1U);
+  EXPECT_EQ(countOf(svg, "units of length"), 1U);
+  EXPECT_THROW((void)drawEvolution(true, Point2(0, 100), {}), InvalidInput);
+}
+
+TEST(EvolutionFigure, RingsEveryCrossing) {
+  Curve bow;
+  bow.positions.resize(4, 2);
+  bow.positions << 0, 0, 2, 2, 2, 0, 0, 2;
+  const std::string svg = drawEvolution(true, Point2(0, 100), {stageOf(bow)});
+  EXPECT_EQ(countOf(svg, "crossings 1"), 1U);
+  EXPECT_EQ(countOf(svg, "r=\"7\""), 2U) << "one in the panel, one in the legend";
+}
+
+TEST(EvolutionFigure, ALineOfViewpointsHasTwoArrows) {
+  const Curve square = makeCircle(4, 10);
+  const Viewpoints line({Point2(-50, 100), Point2(0, 110), Point2(50, 100)}, {0.3, 0.4, 0.3});
+  const auto arrows = [](const std::string& svg) { return countOf(svg, "#c08a00\" points"); };
+  const std::size_t one = arrows(drawEvolution(true, Point2(0, 100), {stageOf(square)}));
+  EXPECT_EQ(arrows(drawEvolution(true, line, {stageOf(square)})), one + 1);
+}
+
+TEST(EvolutionFigure, EvenStagesSpreadAValueEvenly) {
+  const std::vector<double> values = {0, 0.1, 0.2, 0.5, 0.55, 0.6, 0.9, 1};
+  EXPECT_EQ(evenStages(values, 3), (std::vector<std::size_t>{0, 3, 7}));
+  EXPECT_EQ(evenStages(values, 20).size(), values.size());
+  EXPECT_TRUE(evenStages({}, 3).empty());
+}
+
+}  // namespace
+}  // namespace explica::planar
