@@ -9,6 +9,7 @@
 #include "Explica/Planar/AngularSweep.h"
 #include "Explica/Planar/EvolutionFigure.h"
 #include "Explica/Planar/PolygonMeasures.h"
+#include "Explica/Planar/PolygonPhantoms.h"
 #include "Explica/Planar/PolygonUnfolding.h"
 #include "Explica/Planar/PolygonVisibility.h"
 #include "Explica/Visibility/Viewpoints.h"
@@ -17,8 +18,23 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
+
+namespace explica::app {
+
+/// A polygon that brings its region and viewpoint along.
+enum class PhantomPolygon { Polygon19, Polygon34 };
+
+}  // namespace explica::app
+
+template <>
+struct explica::EnumNames<explica::app::PhantomPolygon> {
+  using Kind = explica::app::PhantomPolygon;
+  static constexpr std::array table = {std::pair{Kind::Polygon19, "polygon19"},
+                                       std::pair{Kind::Polygon34, "polygon34"}};
+};
 
 namespace explica::app {
 namespace {
@@ -26,7 +42,8 @@ namespace {
 constexpr char kStateFile[] = "polygon.state";
 
 struct Settings {
-  std::string file;
+  std::optional<std::string> file;
+  std::optional<PhantomPolygon> phantom;
   PolygonReading reading;
   std::optional<std::string> region;
   std::optional<Eigen::Vector2d> viewpoint;
@@ -48,13 +65,16 @@ void declare(Declaration& d, Settings& s) {
           "written. A run can be stopped at any time and continued with --resume into the same "
           "--out.")
       .reference("Rocha, Yezzi, Tannenbaum 2007, IEEE Int. Conf. Image Processing")
-      .example("explica phantom polygon34 --out p34",
-               "A folded polygon; its summary names region and viewpoint")
-      .example("explica polygon p34/polygon.csv --region 0:34 --viewpoint 80.9,4000 --out flat",
-               "Unfold it; evolution.svg shows the stages")
+      .example("explica polygon --phantom polygon34 --out flat",
+               "Unfold a polygon of 34 edges from its viewpoint; evolution.svg shows the stages")
+      .example("explica polygon contour.csv --region 10:60 --direction 0,1 --resume --out open",
+               "Go on with a run on edges 10 to 60 that was stopped")
       .example("explica polygon ED_label.nii.gz --label 2 --slice 4 --out contour",
                "Outer contour of a label, RAS mm")
-      .input("FILE", FileKind::Any, "polygon (CSV, VTK polydata), or label image", s.file);
+      .input("FILE", FileKind::Any, "polygon (CSV, VTK polydata), or label image", s.file)
+      .option("Contour",
+              Field{"phantom", "", "instead of FILE: a phantom with its region and viewpoint"},
+              s.phantom);
   declarePolygonReading(d, s.reading);
   d.option("Region", Field{"region", "", "first and last vertex, I:J; default: the whole polygon"},
            s.region)
@@ -83,6 +103,13 @@ void declare(Declaration& d, Settings& s) {
       .output("frames/frame-*.csv", FileKind::Polygon, "states on the way")
       .varyingOutput(kStateFile, FileKind::Any, "what --resume needs");
 }
+
+/// What is asked for: from FILE and options, or from a phantom where options do not say otherwise.
+struct Task {
+  planar::Curve curve;
+  planar::Region region;
+  std::optional<planar::Viewpoints> view;
+};
 
 planar::Region regionOf(const planar::Curve& curve, const std::optional<std::string>& text) {
   if (!text) return planar::wholeRegion(curve);
@@ -114,6 +141,27 @@ std::optional<planar::Viewpoints> viewOf(const Settings& s, const planar::Curve&
   }
   if (!(s.direction->norm() > 0)) throw UsageError("--direction has no length");
   return planar::Point2(planar::centroidOf(curve, region) + s.distance * s.direction->normalized());
+}
+
+Task taskOf(Context& context, const Settings& s) {
+  if (s.file.has_value() == s.phantom.has_value()) {
+    throw UsageError("give FILE or --phantom, one of them");
+  }
+  Task task;
+  if (s.file) {
+    task.curve = readCurve(context, "FILE", *s.file, s.reading).curve;
+    task.region = regionOf(task.curve, s.region);
+    task.view = viewOf(s, task.curve, task.region);
+    return task;
+  }
+  const planar::PolygonPhantom phantom =
+      *s.phantom == PhantomPolygon::Polygon19 ? planar::makePolygon19() : planar::makePolygon34();
+  task.curve = phantom.curve;
+  task.region = s.region ? regionOf(task.curve, s.region)
+                         : planar::regionBetween(task.curve, phantom.first, phantom.last);
+  task.view = viewOf(s, task.curve, task.region);
+  if (!task.view) task.view = phantom.viewpoint;
+  return task;
 }
 
 std::string tableOf(const std::vector<planar::PolygonIteration>& history) {
@@ -175,9 +223,7 @@ void writeUnfolding(Context& context, const Settings& s, const planar::PolygonUn
 
 Termination run(Context& context, const Settings& s) {
   if (s.frames < 0 || s.stages < 1) throw UsageError("--frames and --stages count states");
-  const planar::Curve curve = readCurve(context, "FILE", s.file, s.reading).curve;
-  const planar::Region region = regionOf(curve, s.region);
-  const std::optional<planar::Viewpoints> view = viewOf(s, curve, region);
+  const auto& [curve, region, view] = taskOf(context, s);
   std::optional<planar::PolygonCheckpoint> state;
   if (s.resume) {
     if (!view) throw UsageError("--resume needs the viewpoint of the first run");

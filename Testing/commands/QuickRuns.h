@@ -3,9 +3,11 @@
 #pragma once
 
 #include "Explica/Geometry/Fixtures.h"
+#include "Explica/IO/PolygonFile.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/Testing/Command.h"
 
+#include <cmath>
 #include <functional>
 #include <ostream>
 #include <string>
@@ -26,6 +28,16 @@ struct QuickRun {
 /// A folded sphere of 30 mm, 1280 faces.
 inline void writeFoldedSphere(const TemporaryFolder& folder) {
   io::writeSurface(folder / "sphere.surf.gii", geometry::makeFoldedSphere(3, 30.0));
+}
+
+/// An ellipse about the origin, mm.
+inline void writeEllipse(const std::string& file, double a, double b) {
+  Positions2 polygon(120, 2);
+  for (Eigen::Index v = 0; v < polygon.rows(); ++v) {
+    const double t = 2 * kPi * static_cast<double>(v) / static_cast<double>(polygon.rows());
+    polygon.row(v) << a * std::cos(t), b * std::sin(t);
+  }
+  io::writePolygonCsv(file, polygon);
 }
 
 inline void PrintTo(const QuickRun& run, std::ostream* stream) {
@@ -49,6 +61,11 @@ inline const std::vector<QuickRun>& quickRuns() {
         {"polygon", "{folder}/p19/polygon.csv", "--out", "{folder}/c"}},
        {"embed", "{folder}/c/polygon.csv", "--centre", "50,20,0", "--inner-radius", "2", "--order",
         "16", "--max-iterations", "4"}},
+      {"EmbedBand",
+       {},
+       {"embed", "{folder}/ellipse.csv", "--band", "3", "--order", "16", "--max-iterations", "4"},
+       [](const TemporaryFolder& folder) { writeEllipse(folder / "ellipse.csv", 20, 15); }},
+      {"PolygonPhantom", {}, {"polygon", "--phantom", "polygon34", "--frames", "3"}},
       {"Polygon",
        {{"phantom", "polygon19", "--out", "{folder}/p19"}},
        {"polygon", "{folder}/p19/polygon.csv", "--region", "0:19", "--viewpoint", "50.5,4000"}},

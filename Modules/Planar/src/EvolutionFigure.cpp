@@ -116,13 +116,13 @@ void drawLegend(std::string& svg, double top, double scale, bool anyCrossing) {
   double x = kMargin;
   svg += text(x, y + 5, "flux &#8722;1");
   x += 62;
-  constexpr int kShades = 40;
-  for (int k = 0; k < kShades; ++k) {
-    const double width = kBarLength / kShades;
-    svg += "<rect x=\"" + format("%.2f", x + k * width) + "\" y=\"" + format("%.1f", y - 5) +
-           "\" width=\"" + format("%.2f", width + 0.3) + "\" height=\"10\" fill=\"" +
-           fluxColour(-1 + (2 * k + 1.0) / kShades) + "\"/>\n";
+  svg += "<linearGradient id=\"flux\">";
+  for (const double flux : {-1.0, 0.0, 1.0}) {
+    svg += "<stop offset=\"" + format("%g", (flux + 1) / 2) + "\" stop-color=\"" +
+           fluxColour(flux) + "\"/>";
   }
+  svg += "</linearGradient>\n<rect x=\"" + format("%.1f", x) + "\" y=\"" + format("%.1f", y - 5) +
+         "\" width=\"" + format("%.0f", kBarLength) + "\" height=\"10\" fill=\"url(#flux)\"/>\n";
   x += kBarLength + 6;
   svg += text(x, y + 5, "1");
   x += 46;

@@ -1,0 +1,173 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+// explica polygon and explica embed: stop and resume, given annuli, label images.
+
+#include "Explica/IO/VolumeFile.h"
+#include "QuickRuns.h"
+
+#include <gtest/gtest.h>
+
+#include <signal.h>
+
+namespace explica::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(Polygon, ResumedWritesTheBytesOfAnUninterruptedRun) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> words = {"polygon", "--phantom", "polygon34", "--frames", "5"};
+  const auto whole = explica(words + std::vector<std::string>{"--out", folder / "whole"});
+  ASSERT_EQ(whole.exitCode, 0) << whole;
+  const auto part =
+      explica(words + std::vector<std::string>{"--max-iterations", "20", "--out", folder / "part"});
+  ASSERT_EQ(part.exitCode, 3) << part;
+  EXPECT_NE(stableHashes(folder / "part"), stableHashes(folder / "whole"));
+  const auto resumed =
+      explica(words + std::vector<std::string>{"--resume", "--out", folder / "part"});
+  ASSERT_EQ(resumed.exitCode, 0) << resumed;
+  EXPECT_EQ(stableHashes(folder / "part"), stableHashes(folder / "whole"));
+  EXPECT_EQ(readJson(folder / "part/summary.json")["iterations"],
+            readJson(folder / "whole/summary.json")["iterations"]);
+  EXPECT_EQ(explica({"verify", folder / "part"}).exitCode, 0);
+}
+
+TEST(Polygon, SignalLeavesAMarkedStateThatResumes) {
+  const TemporaryFolder folder;
+  // Steps so short that the signal comes long before the goal.
+  const std::vector<std::string> words = {"polygon", "--phantom",       "polygon34", "--method",
+                                          "thesis",  "--explicit-step", "1e-5",      "--stages",
+                                          "2",       "--out",           folder / "a"};
+  CommandSetting setting;
+  setting.signal = SIGINT;
+  setting.signalWhen = "unfolding";
+  const auto stopped = explica(words, setting);
+  ASSERT_EQ(stopped.exitCode, 3) << stopped;
+  EXPECT_EQ(readJson(folder / "a/provenance.json")["termination"], "interrupted");
+  const auto summary = readJson(folder / "a/summary.json");
+  EXPECT_EQ(summary["stop_reason"], "interrupted");
+  EXPECT_EQ(summary["self_intersections_final"], 0);
+  const int reached = summary["iterations"];
+  EXPECT_EQ(explica({"verify", folder / "a"}).exitCode, 0);
+
+  const auto further = explica(words + std::vector<std::string>{"--resume", "--max-iterations",
+                                                                std::to_string(reached + 25)});
+  ASSERT_EQ(further.exitCode, 3) << further;
+  EXPECT_EQ(readJson(folder / "a/summary.json")["iterations"], reached + 25);
+  EXPECT_EQ(readJson(folder / "a/summary.json")["stop_reason"], "max-iterations");
+}
+
+TEST(Polygon, WrongStatesAreRefusedInOneSentence) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> words = {"polygon", "--phantom", "polygon19", "--out",
+                                          folder / "a"};
+  ASSERT_EQ(explica(words + std::vector<std::string>{"--max-iterations", "3"}).exitCode, 3);
+  const auto other = explica(words + std::vector<std::string>{"--resume", "--region", "0:18"});
+  EXPECT_EQ(other.exitCode, 2) << other;
+  EXPECT_NE(other.err.find("another region"), std::string::npos) << other;
+  writeText(folder / "a/polygon.state", "{\"kind\": \"letter\"}");
+  const auto damaged = explica(words + std::vector<std::string>{"--resume"});
+  EXPECT_EQ(damaged.exitCode, 2) << damaged;
+  EXPECT_NE(damaged.err.find("not a complete state"), std::string::npos) << damaged;
+  fs::remove(folder / "a/polygon.state");
+  EXPECT_EQ(explica(words + std::vector<std::string>{"--resume"}).exitCode, 2);
+}
+
+TEST(Polygon, LooksFromALine) {
+  const TemporaryFolder folder;
+  const auto made = explica({"polygon", "--phantom", "polygon19", "--view-line",
+                             "-400,4000,500,4000", "--out", folder / "a"});
+  ASSERT_EQ(made.exitCode, 0) << made;
+  EXPECT_GE(readJson(folder / "a/summary.json")["visibility_final"], 0.995);
+  EXPECT_EQ(
+      explica({"polygon", "--phantom", "polygon19", "--view-line", "1,2,3", "--out", folder / "b"})
+          .exitCode,
+      1);
+  EXPECT_EQ(explica({"polygon", "--out", folder / "c"}).exitCode, 1) << "neither file nor phantom";
+}
+
+/// A label image: 1 within an ellipse, 2 from there to a larger one with another centre.
+void writeEccentricLabels(const std::string& file) {
+  Grid grid;
+  grid.size = {120, 120, 1};
+  grid.spacing = {0.5, 0.5, 4};
+  grid.origin = {-30, -30, 0};
+  Volume<Label> labels(grid);
+  for (int j = 0; j < 120; ++j) {
+    for (int i = 0; i < 120; ++i) {
+      const Point p = grid.toWorld({double(i), double(j), 0.0});
+      const double inner = std::hypot((p.x() - 3) / 8, (p.y() - 1) / 6);
+      const double outer = std::hypot(p.x() / 25, p.y() / 22);
+      labels(i, j, 0) = inner < 1 ? 1 : (outer < 1 ? 2 : 0);
+    }
+  }
+  io::writeVolume(file, labels);
+}
+
+TEST(Embed, FitsInAnAnnulusGivenAsAnImageAndReadsItsCoefficientsBack) {
+  const TemporaryFolder folder;
+  writeEccentricLabels(folder / "labels.nii.gz");
+  writeEllipse(folder / "a.csv", 18, 13);
+  writeEllipse(folder / "b.csv", 14, 17);
+  const std::vector<std::string> annulus = {
+      "--annulus", folder / "labels.nii.gz", "--inner", "1", "--tissue", "2"};
+  for (const std::string name : {"a", "b"}) {
+    const auto made = explica(
+        std::vector<std::string>{"embed", folder / (name + ".csv"), "--out", folder / name} +
+        annulus);
+    ASSERT_EQ(made.exitCode, 0) << made;
+    const auto summary = readJson(folder / (name + "/summary.json"));
+    EXPECT_LT(summary["distance_max"].get<double>(), 0.5 * summary["voxel"].get<double>());
+    EXPECT_GT(summary["boundary_margin"], 0);
+  }
+  const auto json = readJson(folder / "a/coefficients.json");
+  EXPECT_EQ(json["kind"], "given annulus");
+  EXPECT_EQ(json["inner"].size(), 2 * json["order"].get<std::size_t>() + 1);
+  EXPECT_GT(json["outer_polygon"].size(), 50U);
+  const auto mean =
+      explica({"embed", folder / "a/coefficients.json", folder / "b/coefficients.json", "--average",
+               "--out", folder / "mean"});
+  ASSERT_EQ(mean.exitCode, 0) << mean;
+  const auto averaged = readJson(folder / "mean/coefficients.json");
+  EXPECT_NEAR(averaged["inner"][0].get<double>(),
+              0.5 * (json["inner"][0].get<double>() +
+                     readJson(folder / "b/coefficients.json")["inner"][0].get<double>()),
+              1e-14);
+}
+
+TEST(Embed, BoundariesMayBePolygonsAndATargetALabelsContour) {
+  const TemporaryFolder folder;
+  writeEccentricLabels(folder / "labels.nii.gz");
+  writeEllipse(folder / "in.csv", 20, 17);
+  writeEllipse(folder / "out.csv", 29, 27);
+  const auto made =
+      explica({"embed", folder / "labels.nii.gz", "--label", "2", "--annulus", folder / "out.csv",
+               "--annulus", folder / "in.csv", "--out", folder / "a"});
+  ASSERT_EQ(made.exitCode, 0) << made;
+  const auto summary = readJson(folder / "a/summary.json");
+  EXPECT_EQ(summary["slice"], 0);
+  EXPECT_LT(summary["distance_max"].get<double>(), 0.5 * summary["voxel"].get<double>());
+}
+
+TEST(Embed, AnnuliThatCannotBeAreRefused) {
+  const TemporaryFolder folder;
+  writeEllipse(folder / "a.csv", 18, 13);
+  writeEllipse(folder / "small.csv", 5, 4);
+  writeEllipse(folder / "large.csv", 16, 22);
+  const auto code = [&](std::vector<std::string> more) {
+    const auto result =
+        explica(std::vector<std::string>{"embed", folder / "a.csv", "--out", folder / "x"} + more);
+    EXPECT_FALSE(fs::exists(folder / "x")) << result;
+    return result.exitCode;
+  };
+  EXPECT_EQ(code({"--annulus", folder / "small.csv"}), 1);
+  EXPECT_EQ(code({"--band", "2", "--centre", "0,0,0"}), 1);
+  EXPECT_EQ(code({"--band", "2", "--annulus", folder / "small.csv"}), 1);
+  EXPECT_EQ(code({"--band", "40"}), 2);
+  EXPECT_EQ(code({"--annulus", folder / "small.csv", "--annulus", folder / "large.csv"}), 2)
+      << "the target leaves the annulus";
+  EXPECT_EQ(code({"--annulus", folder / "small.csv", "--annulus", folder / "small.csv"}), 2);
+}
+
+}  // namespace
+}  // namespace explica::testing
