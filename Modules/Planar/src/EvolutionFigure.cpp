@@ -5,6 +5,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Planar/PolygonVisibility.h"
+#include "Explica/Planar/SvgParts.h"
 
 #include <algorithm>
 #include <array>
@@ -14,23 +15,17 @@
 namespace explica::planar {
 namespace {
 
+using svg::format;
+using svg::pair;
+using svg::text;
+
 constexpr double kPageWidth = 1180;  // SVG units
 constexpr double kMargin = 18;
 constexpr double kTitleHeight = 46;
 constexpr double kArrowRoom = 64;  // on the viewpoint's side
 constexpr int kMostColumns = 3;
 constexpr double kLegendHeight = 44;
-constexpr double kBarLength = 100;  // of the legend's colour bar, and the most of its scale bar
-
-std::string format(const char* pattern, double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, pattern, value);
-  return text;
-}
-
-std::string pair(double x, double y) {
-  return format("%.2f", x) + "," + format("%.2f", y);
-}
+constexpr double kBarLength = 100;  // of the legend's colours
 
 /// Blue where an edge faces the viewpoint, grey across, orange where it faces away.
 std::string fluxColour(double flux) {
@@ -67,21 +62,20 @@ std::string arrow(const Point2& start, const Point2& along) {
   const Point2 across(-along.y(), along.x());
   const Point2 end = start + 46 * along;
   const Point2 neck = end - 11 * along;
-  return "<path d=\"M" + pair(start.x(), start.y()) + " L" + pair(neck.x(), neck.y()) +
+  return "<path d=\"M" + pair(start) + " L" + pair(neck) +
          "\" stroke=\"#c08a00\" stroke-width=\"3\"/>\n<polygon fill=\"#c08a00\" points=\"" +
-         pair(end.x(), end.y()) + " " + pair(neck.x() + 6 * across.x(), neck.y() + 6 * across.y()) +
-         " " + pair(neck.x() - 6 * across.x(), neck.y() - 6 * across.y()) + "\"/>\n";
+         pair(end) + " " + pair(neck + 6 * across) + " " + pair(neck - 6 * across) + "\"/>\n";
 }
 
 /// Outside the panel's box, pointing along the rays that reach its middle.
-void drawArrow(std::string& svg, const Panel& panel, const Point2& viewpoint) {
+void drawArrow(std::string& page, const Panel& panel, const Point2& viewpoint) {
   const Point2 middle = (panel.high + panel.low) / 2;
   const Point2 direction = (middle - viewpoint).normalized();
   const Point2 half = (panel.high - panel.low) / 2;
   const double reach = std::min(half.x() / std::max(1e-12, std::abs(direction.x())),
                                 half.y() / std::max(1e-12, std::abs(direction.y())));
   const Point2 along(direction.x(), -direction.y());
-  svg += arrow(panel.place(middle - reach * direction) - 54 * along, along);
+  page += arrow(panel.place(middle - reach * direction) - 54 * along, along);
 }
 
 /// Where two edges cross; of edges along one line the middle of their ends.
@@ -96,52 +90,36 @@ Point2 crossingOf(const Curve& curve, const std::array<int, 2>& pair) {
   return a + (d.x() * u.y() - d.y() * u.x()) / cross * t;
 }
 
-std::string text(double x, double y, const std::string& words, const char* style = "") {
-  return "<text x=\"" + format("%.1f", x) + "\" y=\"" + format("%.1f", y) + "\" " + style + ">" +
-         words + "</text>\n";
-}
-
-/// The largest of 1, 2, 5 times a power of ten that is not above a length.
-double roundLength(double most) {
-  const double decade = std::pow(10, std::floor(std::log10(most)));
-  for (const double step : {5.0, 2.0}) {
-    if (step * decade <= most) return step * decade;
-  }
-  return decade;
-}
-
 /// What colours, arrows and rings mean, and a scale bar.
-void drawLegend(std::string& svg, double top, double scale, bool anyCrossing) {
+void drawLegend(std::string& page, double top, double scale, bool anyCrossing) {
   const double y = top + 20;
   double x = kMargin;
-  svg += text(x, y + 5, "flux &#8722;1");
+  page += text(x, y + 5, "flux &#8722;1");
   x += 62;
-  svg += "<linearGradient id=\"flux\">";
+  page += "<linearGradient id=\"flux\">";
   for (const double flux : {-1.0, 0.0, 1.0}) {
-    svg += "<stop offset=\"" + format("%g", (flux + 1) / 2) + "\" stop-color=\"" +
-           fluxColour(flux) + "\"/>";
+    page += "<stop offset=\"" + format("%g", (flux + 1) / 2) + "\" stop-color=\"" +
+            fluxColour(flux) + "\"/>";
   }
-  svg += "</linearGradient>\n<rect x=\"" + format("%.1f", x) + "\" y=\"" + format("%.1f", y - 5) +
-         "\" width=\"" + format("%.0f", kBarLength) + "\" height=\"10\" fill=\"url(#flux)\"/>\n";
+  page += "</linearGradient>\n<rect x=\"" + format("%.1f", x) + "\" y=\"" + format("%.1f", y - 5) +
+          "\" width=\"" + format("%.0f", kBarLength) + "\" height=\"10\" fill=\"url(#flux)\"/>\n";
   x += kBarLength + 6;
-  svg += text(x, y + 5, "1");
+  page += text(x, y + 5, "1");
   x += 46;
-  svg += arrow({x, y}, {1, 0});
-  svg += text(x + 58, y + 5, "direction of view");
+  page += arrow({x, y}, {1, 0});
+  page += text(x + 58, y + 5, "direction of view");
   x += 210;
-  const double length = roundLength(kBarLength / scale);
-  svg += "<path d=\"M" + pair(x, y) + " h" + format("%.2f", scale * length) +
-         "\" stroke=\"#222\" stroke-width=\"2.5\"/>\n";
-  svg += text(x + scale * length + 8, y + 5, format("%g", length) + " units of length");
+  const svg::ScaleBar bar = svg::scaleBar(x, y, scale, "units of length");
+  page += bar.drawn;
   if (!anyCrossing) return;
-  x += scale * length + 180;
-  svg += "<circle cx=\"" + format("%.1f", x) + "\" cy=\"" + format("%.1f", y) + "\" r=\"7\"" +
-         kRing + "/>\n";
-  svg += text(x + 14, y + 5, "edges cross");
+  x += bar.width + 30;
+  page += "<circle cx=\"" + format("%.1f", x) + "\" cy=\"" + format("%.1f", y) + "\" r=\"7\"" +
+          kRing + "/>\n";
+  page += text(x + 14, y + 5, "edges cross");
 }
 
 /// Returns the number of pairs of edges that cross.
-std::size_t drawStage(std::string& svg, const Panel& panel, bool closed, const Viewpoints& view,
+std::size_t drawStage(std::string& page, const Panel& panel, bool closed, const Viewpoints& view,
                       const EvolutionStage& stage) {
   const Curve curve{stage.positions, closed};
   const Region& region = stage.region;
@@ -149,31 +127,31 @@ std::size_t drawStage(std::string& svg, const Panel& panel, bool closed, const V
   std::string points;
   for (int v = 0; v < curve.vertexCount(); ++v) {
     const Point2 p = panel.place(curve.point(v));
-    points += pair(p.x(), p.y()) + " ";
+    points += pair(p) + " ";
   }
-  svg +=
+  page +=
       curve.closed ? "<polygon fill=\"#f3e3dc\" fill-rule=\"evenodd\"" : "<polyline fill=\"none\"";
-  svg += " stroke=\"#8a7f7a\" stroke-width=\"1\" points=\"" + points + "\"/>\n";
+  page += " stroke=\"#8a7f7a\" stroke-width=\"1\" points=\"" + points + "\"/>\n";
   const double width =
       std::clamp(0.12 * panel.scale * visibility.length / region.edgeCount, 1.4, 3.2);
   for (int k = 0; k < region.edgeCount; ++k) {
     const int e = (region.firstEdge + k) % curve.edgeCount();
     const Point2 a = panel.place(curve.point(e));
     const Point2 b = panel.place(curve.point(curve.next(e)));
-    svg += "<path d=\"M" + pair(a.x(), a.y()) + " L" + pair(b.x(), b.y()) + "\" stroke=\"" +
-           fluxColour(visibility.edgeFlux[k]) + "\" stroke-width=\"" + format("%.2f", width) +
-           "\" stroke-linecap=\"round\"/>\n";
+    page += "<path d=\"M" + pair(a) + " L" + pair(b) + "\" stroke=\"" +
+            fluxColour(visibility.edgeFlux[k]) + "\" stroke-width=\"" + format("%.2f", width) +
+            "\" stroke-linecap=\"round\"/>\n";
   }
   for (int v : verticesOf(curve, region)) {
     const Point2 p = panel.place(curve.point(v));
-    svg += "<circle cx=\"" + format("%.2f", p.x()) + "\" cy=\"" + format("%.2f", p.y()) +
-           "\" r=\"" + format("%.2f", 0.75 * width) + "\" fill=\"#222\"/>\n";
+    page += "<circle cx=\"" + format("%.2f", p.x()) + "\" cy=\"" + format("%.2f", p.y()) +
+            "\" r=\"" + format("%.2f", 0.75 * width) + "\" fill=\"#222\"/>\n";
   }
   const auto crossings = intersectingEdges(curve);
   for (const auto& crossing : crossings) {
     const Point2 p = panel.place(crossingOf(curve, crossing));
-    svg += "<circle cx=\"" + format("%.2f", p.x()) + "\" cy=\"" + format("%.2f", p.y()) +
-           "\" r=\"7\"" + kRing + "/>\n";
+    page += "<circle cx=\"" + format("%.2f", p.x()) + "\" cy=\"" + format("%.2f", p.y()) +
+            "\" r=\"7\"" + kRing + "/>\n";
   }
   return crossings.size();
 }
@@ -209,12 +187,7 @@ std::string drawEvolution(bool closed, const Viewpoints& view,
   const double rowHeight = kTitleHeight + roomAbove + drawn + roomBelow + kMargin;
   const double pageHeight = rows * rowHeight + kLegendHeight;
 
-  std::string svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" +
-                    format("%.0f", kPageWidth) + "\" height=\"" + format("%.0f", pageHeight) +
-                    "\" viewBox=\"0 0 " + format("%.0f", kPageWidth) + " " +
-                    format("%.0f", pageHeight) +
-                    "\" font-family=\"sans-serif\" font-size=\"14\">\n"
-                    "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n";
+  std::string page = svg::pageBegin(kPageWidth, pageHeight);
   bool anyCrossing = false;
   for (int s = 0; s < count; ++s) {
     Panel panel;
@@ -226,23 +199,21 @@ std::string drawEvolution(bool closed, const Viewpoints& view,
     const EvolutionStage& stage = stages[s];
     const double textX = kMargin + (s % columns) * (cell + kMargin);
     const double textY = kMargin + (s / columns) * rowHeight + 16;
-    svg +=
-        text(textX, textY, std::string("(") + static_cast<char>('a' + s % 26) + ") " + stage.title,
-             "font-weight=\"bold\"");
+    page += svg::panelTitle(textX, textY, s, stage.title);
     // Of several viewpoints the first and the last.
-    drawArrow(svg, panel, view.points.front());
-    if (view.points.size() > 1) drawArrow(svg, panel, view.points.back());
-    const std::size_t crossings = drawStage(svg, panel, closed, view, stage);
+    drawArrow(page, panel, view.points.front());
+    if (view.points.size() > 1) drawArrow(page, panel, view.points.back());
+    const std::size_t crossings = drawStage(page, panel, closed, view, stage);
     anyCrossing = anyCrossing || crossings > 0;
     std::string numbers = "visibility " + format("%.3f", stage.visibility) + ", flux variance " +
                           format("%.3f", stage.variance) + ", length " +
                           format("%.2f", stage.length);
     if (crossings > 0) numbers += ", crossings " + std::to_string(crossings);
-    svg += text(textX, textY + 19, numbers, "fill=\"#444\"");
+    page += text(textX, textY + 19, numbers, "fill=\"#444\"");
   }
-  drawLegend(svg, rows * rowHeight, scale, anyCrossing);
-  svg += "</svg>\n";
-  return svg;
+  drawLegend(page, rows * rowHeight, scale, anyCrossing);
+  page += "</svg>\n";
+  return page;
 }
 
 std::vector<std::size_t> evenStages(const std::vector<double>& values, std::size_t count) {

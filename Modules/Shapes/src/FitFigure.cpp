@@ -4,6 +4,7 @@
 #include "Explica/Shapes/FitFigure.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Planar/SvgParts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,16 +13,18 @@
 namespace explica::shapes {
 namespace {
 
+using planar::svg::format;
+using planar::svg::text;
+
 constexpr double kPanel = 340;  // SVG units
 constexpr double kMargin = 18;
 constexpr double kTitleHeight = 64;
 constexpr int kMostColumns = 3;
-
-std::string format(const char* pattern, double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, pattern, value);
-  return text;
-}
+constexpr double kLegendHeight = 64;
+constexpr const char* kTargetStyle =
+    "stroke=\"#d6540a\" stroke-width=\"4\" stroke-opacity=\"0.55\"";
+constexpr const char* kShapeStyle = "stroke=\"#145ab4\" stroke-width=\"1.8\"";
+constexpr const char* kRimStyle = "stroke=\"#9a9a9a\" stroke-dasharray=\"4 3\"";
 
 /// From the plane to one panel, y downward; the outer boundary just fits.
 struct Panel {
@@ -36,46 +39,67 @@ struct Panel {
   }
 };
 
-constexpr const char* kRim = "\" stroke=\"#9a9a9a\" stroke-dasharray=\"4 3\"/>\n";
-
 /// Where a sphere about the centre meets the plane at z, or a circle.
-void drawCircle(std::string& svg, const Panel& panel, const HarmonicAnnulus& annulus, double radius,
-                double z, const char* fill) {
+void drawCircle(std::string& page, const Panel& panel, const HarmonicAnnulus& annulus,
+                double radius, double z, const char* fill) {
   const double height = annulus.dimension == 2 ? 0 : z - annulus.centre.z();
   if (std::abs(height) >= radius) return;
-  svg += "<circle cx=\"" + format("%.2f", panel.left + kPanel / 2) + "\" cy=\"" +
-         format("%.2f", panel.top + kPanel / 2) + "\" r=\"" +
-         format("%.2f", panel.scale * std::sqrt(radius * radius - height * height)) + "\" fill=\"" +
-         fill + kRim;
+  page += "<circle cx=\"" + format("%.2f", panel.left + kPanel / 2) + "\" cy=\"" +
+          format("%.2f", panel.top + kPanel / 2) + "\" r=\"" +
+          format("%.2f", panel.scale * std::sqrt(radius * radius - height * height)) +
+          "\" fill=\"" + fill + "\" " + kRimStyle + "/>\n";
 }
 
-void drawPolygon(std::string& svg, const Panel& panel, const planar::Curve& curve,
+void drawPolygon(std::string& page, const Panel& panel, const planar::Curve& curve,
                  const char* fill) {
-  svg += "<polygon points=\"";
-  for (int v = 0; v < curve.vertexCount(); ++v) svg += panel.place(curve.point(v)) + " ";
-  svg += std::string("\" fill=\"") + fill + kRim;
+  page += "<polygon points=\"";
+  for (int v = 0; v < curve.vertexCount(); ++v) page += panel.place(curve.point(v)) + " ";
+  page += std::string("\" fill=\"") + fill + "\" " + kRimStyle + "/>\n";
 }
 
-void drawAnnulus(std::string& svg, const Panel& panel, const HarmonicAnnulus& annulus, double z) {
+void drawAnnulus(std::string& page, const Panel& panel, const HarmonicAnnulus& annulus, double z) {
   constexpr const char* kTissue = "#f1f3f5";
   constexpr const char* kPaper = "#ffffff";
   if (annulus.map) {
-    drawPolygon(svg, panel, annulus.map->outer(), kTissue);
-    drawPolygon(svg, panel, annulus.map->inner(), kPaper);
+    drawPolygon(page, panel, annulus.map->outer(), kTissue);
+    drawPolygon(page, panel, annulus.map->inner(), kPaper);
   } else {
-    drawCircle(svg, panel, annulus, annulus.outerRadius, z, kTissue);
-    drawCircle(svg, panel, annulus, annulus.innerRadius, z, kPaper);
+    drawCircle(page, panel, annulus, annulus.outerRadius, z, kTissue);
+    drawCircle(page, panel, annulus, annulus.innerRadius, z, kPaper);
   }
 }
 
-void drawOutline(std::string& svg, const Panel& panel, const Outline& outline, const char* style) {
-  svg += "<path fill=\"none\" stroke-linecap=\"round\" ";
-  svg += style;
-  svg += " d=\"";
+/// What the lines are, and a scale bar; in narrow figures on as many lines as it takes.
+void drawLegend(std::string& page, double top, double width, double scale) {
+  double x = kMargin;
+  double y = top + 20;
+  const auto room = [&](double needed) {
+    if (x > kMargin && x + needed > width) {
+      x = kMargin;
+      y += 20;
+    }
+  };
+  const auto entry = [&](const char* style, const char* words, double length) {
+    room(length);
+    page += std::string("<path ") + style + " d=\"M" + planar::svg::pair({x, y}) + " h30\"/>\n";
+    page += text(x + 38, y + 5, words);
+    x += length;
+  };
+  entry(kTargetStyle, "target", 110);
+  entry(kShapeStyle, "shape", 110);
+  entry(kRimStyle, "annulus", 125);
+  room(170);
+  page += planar::svg::scaleBar(x, y, scale, "mm").drawn;
+}
+
+void drawOutline(std::string& page, const Panel& panel, const Outline& outline, const char* style) {
+  page += "<path fill=\"none\" stroke-linecap=\"round\" ";
+  page += style;
+  page += " d=\"";
   for (const auto& segment : outline) {
-    svg += "M" + panel.place(segment[0]) + " L" + panel.place(segment[1]) + " ";
+    page += "M" + panel.place(segment[0]) + " L" + panel.place(segment[1]) + " ";
   }
-  svg += "\"/>\n";
+  page += "\"/>\n";
 }
 
 }  // namespace
@@ -114,12 +138,8 @@ std::string drawFit(const HarmonicAnnulus& annulus, double z, const Outline& tar
   const int rows = (count + columns - 1) / columns;
   const double rowHeight = kTitleHeight + kPanel + kMargin;
   const double width = columns * (kPanel + kMargin) + kMargin;
-  const double height = rows * rowHeight + kMargin;
-  std::string svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + format("%.0f", width) +
-                    "\" height=\"" + format("%.0f", height) + "\" viewBox=\"0 0 " +
-                    format("%.0f", width) + " " + format("%.0f", height) +
-                    "\" font-family=\"sans-serif\" font-size=\"14\">\n"
-                    "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n";
+  const double height = rows * rowHeight + kLegendHeight;
+  std::string page = planar::svg::pageBegin(width, height);
   for (int s = 0; s < count; ++s) {
     const FitStage& stage = stages[static_cast<std::size_t>(s)];
     Panel panel;
@@ -127,23 +147,23 @@ std::string drawFit(const HarmonicAnnulus& annulus, double z, const Outline& tar
     panel.top = kMargin + (s / columns) * rowHeight + kTitleHeight;
     panel.scale = (kPanel / 2 - 2) / box.halfSide;
     panel.centre = box.centre;
-    svg += "<text x=\"" + format("%.1f", panel.left) + "\" y=\"" +
-           format("%.1f", panel.top - kTitleHeight + 16) + "\" font-weight=\"bold\">" +
-           stage.title + "</text>\n";
-    svg += "<text x=\"" + format("%.1f", panel.left) + "\" y=\"" +
-           format("%.1f", panel.top - kTitleHeight + 35) +
-           "\" fill=\"#444\">symmetric difference " + format("%.4g", stage.symmetricDifference) +
-           (annulus.dimension == 2 ? " mm²" : " mm³") + "</text>\n";
-    svg += "<text x=\"" + format("%.1f", panel.left) + "\" y=\"" +
-           format("%.1f", panel.top - kTitleHeight + 53) + "\" fill=\"#444\">largest distance " +
-           format("%.2f", stage.distanceMax) + " mm</text>\n";
-    drawAnnulus(svg, panel, annulus, z);
-    drawOutline(svg, panel, target,
-                "stroke=\"#d6540a\" stroke-width=\"4\" stroke-opacity=\"0.55\"");
-    drawOutline(svg, panel, stage.outline, "stroke=\"#145ab4\" stroke-width=\"1.8\"");
+    const double top = panel.top - kTitleHeight;
+    page += planar::svg::panelTitle(panel.left, top + 16, s, stage.title);
+    const bool large = stage.symmetricDifference >= 1000;
+    page +=
+        text(panel.left, top + 35,
+             "symmetric difference " + format(large ? "%.0f" : "%.3g", stage.symmetricDifference) +
+                 (annulus.dimension == 2 ? " mm²" : " mm³"),
+             "fill=\"#444\"");
+    page += text(panel.left, top + 53,
+                 "largest distance " + format("%.2f", stage.distanceMax) + " mm", "fill=\"#444\"");
+    drawAnnulus(page, panel, annulus, z);
+    drawOutline(page, panel, target, kTargetStyle);
+    drawOutline(page, panel, stage.outline, kShapeStyle);
   }
-  svg += "</svg>\n";
-  return svg;
+  drawLegend(page, rows * rowHeight, width, (kPanel / 2 - 2) / box.halfSide);
+  page += "</svg>\n";
+  return page;
 }
 
 }  // namespace explica::shapes

@@ -51,7 +51,7 @@ TEST(FitFigure, DrawsTargetAndShapeInEveryPanel) {
   const Outline circle = outlineOf(planar::makeCircle(30, 2));
   const std::string svg =
       drawFit(annulus, 0, circle, {{"start", circle, 3, 1}, {"iteration 4", circle, 0.1, 0.02}});
-  EXPECT_EQ(countOf(svg, "<path"), 4U);
+  EXPECT_EQ(countOf(svg, "<path"), 4U + 4U) << "two a panel, and the legend's";
   EXPECT_EQ(countOf(svg, "<circle"), 4U);
   EXPECT_EQ(countOf(svg, "iteration 4"), 1U);
   EXPECT_THROW((void)drawFit(annulus, 0, circle, {}), InvalidInput);

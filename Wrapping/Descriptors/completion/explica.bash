@@ -92,8 +92,9 @@ _explica() {
       options=' --size --spacing --out --force --config --threads --dry-run --quiet --verbose --log --private --help --version'
       ;;
     'polygon')
-      options=' --xform --frame --label --slice --contour --edges --smooth --region --viewpoint --direction --distance --method --surround --collar --no-length --no-topology --knot --knot-weight --target-visibility --max-iterations --max-time --visibility-gain --repulsion-gain --explicit-step --frames --stages --out --force --config --threads --dry-run --quiet --verbose --log --private --help --version'
+      options=' --phantom --xform --frame --label --slice --contour --edges --smooth --region --viewpoint --direction --distance --view-line --method --surround --collar --no-length --no-topology --knot --knot-weight --target-visibility --max-iterations --max-time --visibility-gain --repulsion-gain --explicit-step --resume --frames --stages --out --force --config --threads --dry-run --quiet --verbose --log --private --help --version'
       case $previous in
+        --phantom) COMPREPLY=($(compgen -W 'polygon19 polygon34' -- "$word")); return ;;
         --xform) COMPREPLY=($(compgen -W 'agreed qform sform none' -- "$word")); return ;;
         --method) COMPREPLY=($(compgen -W 'implicit thesis' -- "$word")); return ;;
         --surround) COMPREPLY=($(compgen -W 'fixed elastic none' -- "$word")); return ;;

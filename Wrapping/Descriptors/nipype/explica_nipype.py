@@ -709,7 +709,8 @@ class PhantomVentricle(CommandLine):
 
 
 class PolygonInputSpec(CommandLineInputSpec):
-    file = File(exists=True, desc="polygon (CSV, VTK polydata), or label image", argstr="%s", position=0, mandatory=True)
+    file = File(exists=True, desc="polygon (CSV, VTK polydata), or label image", argstr="%s", position=0)
+    phantom = traits.Enum("polygon19", "polygon34", desc="instead of FILE: a phantom with its region and viewpoint", argstr="--phantom %s")
     xform = traits.Enum("agreed", "qform", "sform", "none", desc="which placement of a NIfTI header to believe where the two differ", argstr="--xform %s")
     frame = traits.Int(desc="which volume of a file that holds several, counted from 0", argstr="--frame %s")
     label = traits.Int(desc="take the contour of this label of an image", argstr="--label %s")
@@ -721,6 +722,7 @@ class PolygonInputSpec(CommandLineInputSpec):
     viewpoint = traits.Tuple(traits.Float(), traits.Float(), desc="point to look from [mm]", argstr="--viewpoint %s,%s")
     direction = traits.Tuple(traits.Float(), traits.Float(), desc="look from the region's centroid plus --distance along this", argstr="--direction %s,%s")
     distance = traits.Float(desc="how far off a viewpoint given by --direction is [mm]", argstr="--distance %s")
+    view_line = traits.List(traits.Float(), desc="look from all points of the line X,Y,X,Y between two [mm]", argstr="--view-line %s", sep=",")
     method = traits.Enum("implicit", "thesis", desc="implicit steps, or the thesis's explicit flow", argstr="--method %s")
     surround = traits.Enum("fixed", "elastic", "none", desc="what happens to the polygon outside the region", argstr="--surround %s")
     collar = traits.Int(desc="edges on each side that follow an elastic surround", argstr="--collar %s")
@@ -734,6 +736,7 @@ class PolygonInputSpec(CommandLineInputSpec):
     visibility_gain = traits.Float(desc="thesis method: mu, the weight of the visibility", argstr="--visibility-gain %s")
     repulsion_gain = traits.Float(desc="thesis method: mu_R, the weight of the knot energy", argstr="--repulsion-gain %s")
     explicit_step = traits.Float(desc="thesis method: largest motion per iteration, in mean edges", argstr="--explicit-step %s")
+    resume = traits.Bool(desc="continue the run whose outputs are in --out", argstr="--resume")
     frames = traits.Int(desc="write this many states on the way", argstr="--frames %s")
     stages = traits.Int(desc="panels of evolution.svg", argstr="--stages %s")
     out = traits.Str(desc="folder for the results; made if absent, refused if not empty", argstr="--out %s", mandatory=True)
@@ -755,6 +758,7 @@ class PolygonOutputSpec(TraitedSpec):
     evolution_tsv = File(desc="one row an iteration")
     evolution_svg = File(desc="start, stages and end, with the direction of view")
     frames_frame_csv = traits.List(File(), desc="states on the way")
+    polygon_state = File(desc="what --resume needs")
     summary_json = File(desc="the numbers")
     provenance_json = File(desc="what ran on what, with hashes")
 
@@ -777,6 +781,7 @@ class Polygon(CommandLine):
             "evolution_tsv": "evolution.tsv",
             "evolution_svg": "evolution.svg",
             "frames_frame_csv": "frames/frame-*.csv",
+            "polygon_state": "polygon.state",
             "summary_json": "summary.json",
             "provenance_json": "provenance.json",
         }.items():

@@ -39,7 +39,7 @@ def fit(
     progress: Optional[Progress] = None,
     *,
     samples: int = 2000,
-    max_iterations: int = 60,
+    max_iterations: int = 200,
     fit_step: float = 0.5,
     smoothness: float = 1e-09,
 ) -> Dict[str, Any]: ...
