@@ -4,6 +4,7 @@
 #include "Explica/Application/Command.h"
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Parallel.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Correspondence/Measurement.h"
 #include "Explica/Harmonic/Annulus.h"
@@ -11,9 +12,11 @@
 #include "Explica/IO/VtkFile.h"
 
 #include <chrono>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace explica::app {
 
@@ -171,23 +174,25 @@ void report(Context& context, const correspondence::Measurement& m) {
 void writeOutputs(Context& context, const correspondence::Measurement& m, bool sulci) {
   auto step = context.step("write");
   const correspondence::Correspondence& found = m.correspondence;
-  const auto write = [&](const char* name, const std::vector<double>& values) {
-    io::writeVolume(context.output(name), harmonic::spread(m.annulus, values));
+  std::vector<std::function<void()>> files;
+  const auto write = [&](const char* name, auto volume) {
+    files.push_back([path = context.output(name), volume = std::move(volume)] {
+      io::writeVolume(path, volume);
+    });
   };
-  io::writeVolume(context.output("harmonic.nii.gz"),
-                  harmonic::spread(m.annulus, m.interpolant.u, 0, 0, 1));
-  write("thickness.nii.gz", correspondence::thicknessOf(found));
-  write("inner_distance.nii.gz", found.innerDistance);
-  write("outer_distance.nii.gz", found.outerDistance);
-  write("depth.nii.gz", m.depth);
-  io::writeVolume(context.output("inner_point.nii.gz"),
-                  correspondence::spreadPoints(m.annulus, found.innerPoint));
-  io::writeVolume(context.output("outer_point.nii.gz"),
-                  correspondence::spreadPoints(m.annulus, found.outerPoint));
-  io::writeVolume(context.output("layers.nii.gz"), harmonic::spreadLabels(m.annulus, m.layers));
-  if (sulci) {
-    io::writeVolume(context.output("sulci.nii.gz"), harmonic::maskOf(m.annulus, m.sulcalVoxels));
+  write("harmonic.nii.gz", harmonic::spread(m.annulus, m.interpolant.u, 0, 0, 1));
+  write("thickness.nii.gz", harmonic::spread(m.annulus, correspondence::thicknessOf(found)));
+  write("inner_distance.nii.gz", harmonic::spread(m.annulus, found.innerDistance));
+  write("outer_distance.nii.gz", harmonic::spread(m.annulus, found.outerDistance));
+  write("depth.nii.gz", harmonic::spread(m.annulus, m.depth));
+  write("inner_point.nii.gz", harmonic::spreadPoints(m.annulus, found.innerPoint));
+  write("outer_point.nii.gz", harmonic::spreadPoints(m.annulus, found.outerPoint));
+  write("layers.nii.gz", harmonic::spreadLabels(m.annulus, m.layers));
+  if (sulci) write("sulci.nii.gz", harmonic::maskOf(m.annulus, m.sulcalVoxels));
+  if (m.segments) {
+    write("segments.nii.gz", harmonic::spreadLabels(m.annulus, m.segments->segmentOf));
   }
+  parallelFor(files.size(), 1, [&](std::size_t f) { files[f](); });
   if (m.grid) {
     const auto kind = m.grid->cells.cols() == 8 ? io::CellKind::Hexahedron : io::CellKind::Quad;
     io::writeVtu(context.output("grid.vtu"), m.grid->points, {{kind, m.grid->cells}},
@@ -196,8 +201,6 @@ void writeOutputs(Context& context, const correspondence::Measurement& m, bool s
   if (m.segments) {
     writeTextFile(context.output("segments.tsv"), correspondence::tableOf(*m.segments));
     writeTextFile(context.output("bullseye.svg"), correspondence::bullseyeOf(*m.segments));
-    io::writeVolume(context.output("segments.nii.gz"),
-                    harmonic::spreadLabels(m.annulus, m.segments->segmentOf));
   }
 }
 

@@ -128,5 +128,6 @@ function(explica_install_package)
   write_basic_package_version_file("${PROJECT_BINARY_DIR}/ExplicaConfigVersion.cmake"
     COMPATIBILITY SameMinorVersion)
   install(FILES "${PROJECT_BINARY_DIR}/ExplicaConfig.cmake"
-    "${PROJECT_BINARY_DIR}/ExplicaConfigVersion.cmake" DESTINATION ${destination})
+    "${PROJECT_BINARY_DIR}/ExplicaConfigVersion.cmake"
+    "${PROJECT_SOURCE_DIR}/Modules/CMake/FindISAL.cmake" DESTINATION ${destination})
 endfunction()

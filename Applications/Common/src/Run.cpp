@@ -476,10 +476,16 @@ Outcome execute(Run& run, Console& console) {
   provenance::writeJson(state.folder->place(provenance::kSummaryName), summary);
   state.varying.push_back(provenance::kSummaryName);
 
-  for (const auto& name : state.folder->files()) {
+  const std::vector<std::string> files = state.folder->files();
+  std::vector<fs::path> places;
+  for (const auto& name : files) places.push_back(state.folder->place(name));
+  std::vector<provenance::Digest> digests(files.size());
+  parallelFor(files.size(), 1,
+              [&](std::size_t f) { digests[f] = provenance::digestOf(places[f]); });
+  for (std::size_t f = 0; f < files.size(); ++f) {
     const bool varies =
-        std::find(state.varying.begin(), state.varying.end(), name) != state.varying.end();
-    record.outputs.push_back({name, provenance::digestOf(state.folder->place(name)), varies});
+        std::find(state.varying.begin(), state.varying.end(), files[f]) != state.varying.end();
+    record.outputs.push_back({files[f], digests[f], varies});
   }
   for (const auto& [name, path] : state.nestedRecords) {
     record.outputs.push_back({name, provenance::digestOf(path), true});

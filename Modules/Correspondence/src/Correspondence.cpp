@@ -182,6 +182,7 @@ class Sweep {
                              [&](std::size_t begin, std::size_t end) {
                                std::size_t sum = 0;
                                for (std::size_t v = begin; v < end; ++v) {
+                                 fetch(ranks, v, end);
                                  if (!found(ranks[v]))
                                    sum += traceToFace(ranks[v], static_cast<std::uint16_t>(k + 1));
                                }
@@ -221,6 +222,65 @@ class Sweep {
                              }
                              return sum;
                            });
+  }
+
+  /// Voxels of a step lie apart in memory: brings what following those next in turn will read
+  /// towards the caches, each address once what it depends on has arrived.
+  void fetch(const std::int32_t* ranks, std::size_t v, std::size_t end) const {
+    constexpr std::size_t kAhead = 4;
+    if (v + 3 * kAhead < end) {
+      const std::int32_t r = ranks[v + 3 * kAhead];
+      __builtin_prefetch(&tracer_.placeOf[r]);
+      __builtin_prefetch(&tracer_.node[r]);
+    }
+    if (v + 2 * kAhead < end) {
+      const std::int32_t r = ranks[v + 2 * kAhead];
+      tracer_.fetchCell(tracer_.cellAhead(r, uphill_));
+      forFaceAhead(r, [&](std::int32_t place) { __builtin_prefetch(&tracer_.rankAt[place]); });
+    }
+    if (v + kAhead < end) {
+      const std::int32_t r = ranks[v + kAhead];
+      tracer_.fetchCorners(tracer_.cellAhead(r, uphill_));
+      forFaceAhead(r, [&](std::int32_t place) {
+        const std::int32_t m = tracer_.rankAt[place];
+        if (m < 0) return;
+        __builtin_prefetch(&arrivals_[m]);
+        __builtin_prefetch(&turn_[m]);
+      });
+    }
+  }
+
+  /// Box voxels that fromFace() reads at the first face in a voxel's way: the corners, and those
+  /// before and after them.
+  template <class Visit>
+  void forFaceAhead(std::int32_t r, const Visit& visit) const {
+    const auto& node = tracer_.node[r];
+    const int axes = annulus_.planar ? 2 : 3;
+    int axis = 0;
+    float fastest = -1;
+    for (int a = 0; a < axes; ++a) {
+      const float speed = std::abs(node[a]) / (spacing_[a] * spacing_[a]);
+      if (speed > fastest) {
+        fastest = speed;
+        axis = a;
+      }
+    }
+    const auto strides = annulus_.strides();
+    const std::int32_t b = strides[axis == 0 ? 1 : 0];
+    const std::int32_t c = annulus_.planar ? 0 : strides[axis == 2 ? 1 : 2];
+    const bool up = static_cast<float>(uphill_) * node[axis] > 0;
+    const std::int32_t p = tracer_.cellAhead(r, uphill_) + (up ? strides[axis] : 0);
+    const auto visitInBox = [&](std::int32_t place) {
+      if (static_cast<std::size_t>(place) < tracer_.rankAt.size()) visit(place);
+    };
+    for (int e = -1; e < 3; ++e) {
+      visitInBox(p + e * b);
+      if (c == 0) continue;
+      visitInBox(p + c + e * b);
+      if (e == 0 || e == 1) continue;
+      visitInBox(p + e * c);
+      visitInBox(p + e * c + b);
+    }
   }
 
   void traceToWall(std::int32_t r) {
@@ -524,18 +584,6 @@ ThicknessSummary summaryOf(const Correspondence& correspondence) {
   summary.p05 = quantile(0.05);
   summary.p95 = quantile(0.95);
   return summary;
-}
-
-Volume<Eigen::Vector3f> spreadPoints(const Annulus& annulus,
-                                     const std::vector<Eigen::Vector3f>& offsets) {
-  Volume<Eigen::Vector3f> volume(annulus.grid, Eigen::Vector3f::Zero());
-  parallelFor(annulus.count(), 1 << 13, [&](std::size_t n) {
-    const auto number = static_cast<std::int32_t>(n);
-    if (!offsets[n].allFinite()) return;
-    volume[annulus.linear(number)] =
-        (annulus.world(number) + offsets[n].cast<double>()).cast<float>();
-  });
-  return volume;
 }
 
 }  // namespace explica::correspondence

@@ -440,6 +440,31 @@ TrajectoryTracer::Field::Walk TrajectoryTracer::Field::begin(std::int32_t place,
   return walk;
 }
 
+std::int32_t TrajectoryTracer::Field::cellAhead(std::int32_t rank, int uphill) const {
+  const auto strides = annulus.strides();
+  std::int32_t cell = placeOf[rank];
+  for (int a = 0; a < (flat ? 2 : 3); ++a) {
+    cell -= static_cast<float>(uphill) * node[rank][a] < 0 ? strides[a] : 0;
+  }
+  return cell;
+}
+
+void TrajectoryTracer::Field::fetchCell(std::int32_t cell) const {
+  const auto strides = annulus.strides();
+  __builtin_prefetch(&cellAt_[cell]);
+  for (int row = 0; row < (flat ? 2 : 4); ++row) {
+    __builtin_prefetch(&rankAt[cell + (row & 1) * strides[1] + (row >> 1) * strides[2]]);
+  }
+}
+
+void TrajectoryTracer::Field::fetchCorners(std::int32_t cell) const {
+  const auto strides = annulus.strides();
+  for (int row = 0; row < (flat ? 2 : 4); ++row) {
+    const std::int32_t m = rankAt[cell + (row & 1) * strides[1] + (row >> 1) * strides[2]];
+    if (m >= 0) __builtin_prefetch(&node[m]);
+  }
+}
+
 bool TrajectoryTracer::Field::toPlane(std::int32_t rank, const std::array<int, 3>& centre,
                                       int uphill, Vector& end, double& length) const {
   const Vector x(centre[0], centre[1], centre[2]);
@@ -448,10 +473,7 @@ bool TrajectoryTracer::Field::toPlane(std::int32_t rank, const std::array<int, 3
   const Vector k1 = velocityOf(one, uphill);
   const double s = (1 + kBeyondPlane) / k1.cwiseAbs().maxCoeff();
   if (!(s <= 2 * options.maxStep * finest)) return false;
-  const auto strides = annulus.strides();
-  std::int32_t ahead = placeOf[rank];
-  for (int a = 0; a < 3; ++a) ahead -= k1[a] < 0 ? strides[a] : 0;
-  if (cellAt_[ahead] == kDivided) return false;
+  if (cellAt_[cellAhead(rank, uphill)] == kDivided) return false;
   const Sample two = sampleOf<false>(x + 0.5 * s * k1, -1);
   if (two.home < 0 || two.divided) return false;
   const Vector k2 = velocityOf(two, uphill);

@@ -123,7 +123,7 @@ TEST(RealTissue, CortexIsAsThickAsFreeSurferSays) {
     const auto annulus =
         recoverSulci(harmonic::annulusFromLabels(labels, {{white}, {grey}, {}, {}})).annulus;
     const auto found = findCorrespondences(annulus, harmonic::solveInterpolant(annulus));
-    Volume<float> thickness = harmonic::spread(annulus, thicknessOf(found));
+    Volume<float> thickness = volumeOf(harmonic::spread(annulus, thicknessOf(found)));
     std::vector<double> ours, theirs;
     std::map<std::string, std::pair<double, double>> byRegion;  // thickness times area, area
     const auto vertices =

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <set>
 #include <sstream>
 
@@ -349,6 +350,44 @@ void checkGrid(const Grid& grid) {
   }
 }
 
+/// A volume made of the box's voxels: `valueAt(box place, voxel of the grid)`, `outside` beyond it.
+template <class T, class ValueAt>
+VolumeOnDemand<T> onGrid(const Annulus& annulus, T outside, const ValueAt& valueAt) {
+  VolumeOnDemand<T> values;
+  values.grid = annulus.grid;
+  values.elsewhere = outside;
+  const std::array<int, 3>& first = annulus.first;
+  const std::array<int, 3> last = {std::min(first[0] + annulus.size[0], annulus.grid.size[0]),
+                                   std::min(first[1] + annulus.size[1], annulus.grid.size[1]),
+                                   std::min(first[2] + annulus.size[2], annulus.grid.size[2])};
+  values.begin = annulus.grid.linear(0, 0, std::max(first[2], 0));
+  values.end = annulus.grid.linear(0, 0, last[2]);
+  values.fill = [=, &annulus](std::size_t voxel, std::size_t count, T* to) {
+    const std::size_t end = voxel + count;
+    while (voxel < end) {
+      std::array<int, 3> at = annulus.grid.subscripts(voxel);
+      const int rowEnd =
+          static_cast<int>(std::min<std::size_t>(annulus.grid.size[0], at[0] + (end - voxel)));
+      const int length = rowEnd - at[0];
+      std::fill_n(to, length, outside);
+      if (at[1] >= first[1] && at[1] < last[1] && at[2] >= first[2] && at[2] < last[2]) {
+        const int rowBegin = at[0];
+        at[0] = std::max(rowBegin, first[0]);
+        std::size_t p =
+            at[0] - first[0] +
+            static_cast<std::size_t>(annulus.size[0]) *
+                (at[1] - first[1] + static_cast<std::size_t>(annulus.size[1]) * (at[2] - first[2]));
+        for (; at[0] < std::min(rowEnd, last[0]); ++at[0], ++p) {
+          to[at[0] - rowBegin] = valueAt(p, at);
+        }
+      }
+      voxel += length;
+      to += length;
+    }
+  };
+  return values;
+}
+
 }  // namespace
 
 Annulus annulusFromLabels(const Volume<Label>& labels, const LabelRoles& roles,
@@ -642,47 +681,49 @@ Annulus withCuts(const Annulus& annulus, const std::vector<Cut>& cuts) {
   return result;
 }
 
-Volume<float> spread(const Annulus& annulus, const std::vector<double>& values, float elsewhere,
-                     std::optional<float> innerValue, std::optional<float> outerValue) {
-  Volume<float> volume(annulus.grid, elsewhere);
-  if (outerValue) std::fill(volume.data.begin(), volume.data.end(), *outerValue);
-  const Grid& grid = annulus.grid;
-  parallelFor(annulus.size[2], 1, [&](std::size_t kk) {
-    const int k = static_cast<int>(kk) + annulus.first[2];
-    if (k < 0 || k >= grid.size[2]) return;
-    std::size_t p = kk * annulus.strides()[2];
-    for (int j = annulus.first[1]; j < annulus.first[1] + annulus.size[1]; ++j) {
-      for (int i = annulus.first[0]; i < annulus.first[0] + annulus.size[0]; ++i, ++p) {
-        if (!grid.contains(i, j, k)) continue;
-        float& target = volume(i, j, k);
-        const std::int32_t n = annulus.numberAt[p];
-        if (n >= 0) {
-          target = std::isnan(values[n]) ? elsewhere : static_cast<float>(values[n]);
-        } else if (n == kInner) {
-          target = innerValue.value_or(elsewhere);
-        } else if (n == kOuter) {
-          target = outerValue.value_or(elsewhere);
-        } else {
-          target = elsewhere;
-        }
-      }
-    }
+VolumeOnDemand<float> spread(const Annulus& annulus, std::vector<double> values, float elsewhere,
+                             std::optional<float> innerValue, std::optional<float> outerValue) {
+  const auto kept = std::make_shared<const std::vector<double>>(std::move(values));
+  const float inner = innerValue.value_or(elsewhere), outer = outerValue.value_or(elsewhere);
+  return onGrid(annulus, outer, [=, &annulus](std::size_t p, const std::array<int, 3>&) {
+    const std::int32_t n = annulus.numberAt[p];
+    if (n == kInner) return inner;
+    if (n == kOuter) return outer;
+    const double value = n < 0 ? kNaN : (*kept)[n];
+    return std::isnan(value) ? elsewhere : static_cast<float>(value);
   });
-  return volume;
 }
 
-Volume<Label> spreadLabels(const Annulus& annulus, const std::vector<int>& values) {
-  Volume<Label> volume(annulus.grid, 0);
-  parallelFor(annulus.count(), 1 << 14, [&](std::size_t n) {
-    volume[annulus.linear(static_cast<std::int32_t>(n))] = values[n];
+VolumeOnDemand<Label> spreadLabels(const Annulus& annulus, std::vector<int> values) {
+  const auto kept = std::make_shared<const std::vector<int>>(std::move(values));
+  return onGrid(annulus, Label{0}, [=, &annulus](std::size_t p, const std::array<int, 3>&) {
+    const std::int32_t n = annulus.numberAt[p];
+    return n < 0 ? Label{0} : static_cast<Label>((*kept)[n]);
   });
-  return volume;
 }
 
-Volume<Label> maskOf(const Annulus& annulus, const std::vector<std::int32_t>& voxels) {
-  Volume<Label> volume(annulus.grid, 0);
-  for (const std::int32_t n : voxels) volume[annulus.linear(n)] = 1;
-  return volume;
+VectorsOnDemand spreadPoints(const Annulus& annulus, std::vector<Eigen::Vector3f> offsets) {
+  const auto kept = std::make_shared<const std::vector<Eigen::Vector3f>>(std::move(offsets));
+  VectorsOnDemand components;
+  for (int c = 0; c < 3; ++c) {
+    const double origin = annulus.grid.origin[c];
+    const Vector step =
+        annulus.grid.direction.row(c).transpose().cwiseProduct(annulus.grid.spacing);
+    components[c] =
+        onGrid(annulus, 0.0F, [=, &annulus](std::size_t p, const std::array<int, 3>& at) {
+          const std::int32_t n = annulus.numberAt[p];
+          if (n < 0 || !(*kept)[n].allFinite()) return 0.0F;
+          const double centre = origin + step[0] * at[0] + step[1] * at[1] + step[2] * at[2];
+          return static_cast<float>(centre + static_cast<double>((*kept)[n][c]));
+        });
+  }
+  return components;
+}
+
+VolumeOnDemand<Label> maskOf(const Annulus& annulus, const std::vector<std::int32_t>& voxels) {
+  std::vector<int> marked(annulus.count(), 0);
+  for (const std::int32_t n : voxels) marked[n] = 1;
+  return spreadLabels(annulus, std::move(marked));
 }
 
 Volume<std::uint8_t> maskOf(const Volume<Label>& labels, const std::vector<Label>& wanted) {

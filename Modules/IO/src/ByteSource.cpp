@@ -4,9 +4,9 @@
 #include "ByteSource.h"
 
 #include <fcntl.h>
+#include <isa-l/igzip_lib.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#include <zlib.h>
 
 #include <array>
 #include <cerrno>
@@ -17,12 +17,47 @@ namespace explica::io {
 namespace {
 
 constexpr std::uint64_t kLargestInflation = 1032;  // deflate packs at most 258 bytes into 2 bits
-constexpr uInt kLongestStep = 1U << 30;            // zlib counts in 32 bits
-constexpr int kAnyWrapper = 15 + 32;               // zlib or gzip, told by its header
+constexpr std::size_t kLongestStep = std::size_t{1} << 30;  // ISA-L counts in 32 bits
 
 bool isGzip(ByteView bytes) {
   return bytes.size() > 2 && bytes[0] == 0x1f && bytes[1] == 0x8b;
 }
+
+/// Unpacks one gzip member or zlib stream piece by piece; checksums are verified.
+class Inflater {
+ public:
+  enum class Progress { Some, None, Done, Damaged };
+
+  explicit Inflater(bool gzip) : gzip_(gzip) { begin(); }
+
+  /// Gets ready for another member.
+  void begin() {
+    isal_inflate_init(&state_);
+    state_.crc_flag = gzip_ ? ISAL_GZIP : ISAL_ZLIB;
+  }
+
+  /// Unpacks from `in` on to `out`, and moves both on.
+  Progress step(ByteView& in, std::span<std::uint8_t>& out) {
+    const auto input = static_cast<std::uint32_t>(std::min(in.size(), kLongestStep));
+    const auto room = static_cast<std::uint32_t>(std::min(out.size(), kLongestStep));
+    std::uint8_t none = 0;  // an address even for no room
+    state_.next_in = const_cast<std::uint8_t*>(in.data());
+    state_.avail_in = input;
+    state_.next_out = room > 0 ? out.data() : &none;
+    state_.avail_out = room;
+    const int status = isal_inflate(&state_);
+    const std::uint32_t taken = input - state_.avail_in, made = room - state_.avail_out;
+    in = in.subspan(taken);
+    out = out.subspan(made);
+    if (status < 0 || status == ISAL_NEED_DICT) return Progress::Damaged;
+    if (state_.block_state == ISAL_BLOCK_FINISH) return Progress::Done;
+    return taken > 0 || made > 0 ? Progress::Some : Progress::None;
+  }
+
+ private:
+  bool gzip_;
+  inflate_state state_;
+};
 
 }  // namespace
 
@@ -57,23 +92,17 @@ Bytes readFile(const std::filesystem::path& path) {
   return bytes;
 }
 
-struct ByteSource::Inflater {
-  z_stream stream{};
+struct ByteSource::Members {
+  Inflater inflater{true};
   bool memberDone = false;
   bool done = false;
 };
 
 ByteSource::ByteSource(const std::filesystem::path& path) : path_(path), bytes_(readFile(path)) {
-  if (!isGzip(bytes_)) return;
-  inflater_ = std::make_unique<Inflater>();
-  if (inflateInit2(&inflater_->stream, kAnyWrapper) != Z_OK) {
-    throw EnvironmentError(quoted(path_) + ": no memory to unpack it");
-  }
+  if (isGzip(bytes_)) members_ = std::make_unique<Members>();
 }
 
-ByteSource::~ByteSource() {
-  if (inflater_) inflateEnd(&inflater_->stream);
-}
+ByteSource::~ByteSource() = default;
 
 ByteView ByteSource::peek(std::size_t count) {
   peeked_.erase(peeked_.begin(), peeked_.begin() + static_cast<std::ptrdiff_t>(peekedAt_));
@@ -94,43 +123,33 @@ std::size_t ByteSource::read(std::uint8_t* to, std::size_t count) {
 }
 
 std::size_t ByteSource::readOn(std::uint8_t* to, std::size_t count) {
-  if (!inflater_) {
+  if (!members_) {
     const std::size_t taken = std::min(count, bytes_.size() - at_);
     if (taken > 0) std::memcpy(to, bytes_.data() + at_, taken);
     at_ += taken;
     return taken;
   }
-  z_stream& stream = inflater_->stream;
-  std::size_t filled = 0;
-  while (!inflater_->done) {
-    if (inflater_->memberDone) {
-      if (!isGzip(ByteView(bytes_).subspan(at_))) {  // padding after the last member is allowed
-        inflater_->done = true;
+  std::span<std::uint8_t> room(to, count);
+  while (!members_->done) {
+    ByteView left = ByteView(bytes_).subspan(at_);
+    if (members_->memberDone) {
+      if (!isGzip(left)) {  // padding after the last member is allowed
+        members_->done = true;
         break;
       }
-      inflateReset(&stream);
-      inflater_->memberDone = false;
+      members_->inflater.begin();
+      members_->memberDone = false;
     }
-    const uInt input = static_cast<uInt>(std::min<std::size_t>(bytes_.size() - at_, kLongestStep));
-    const uInt room = static_cast<uInt>(std::min<std::size_t>(count - filled, kLongestStep));
-    stream.next_in = bytes_.data() + at_;
-    stream.avail_in = input;
-    stream.next_out = to + filled;
-    stream.avail_out = room;
-    const int status = inflate(&stream, Z_NO_FLUSH);
-    at_ += input - stream.avail_in;
-    filled += room - stream.avail_out;
-    if (status == Z_STREAM_END) {
-      inflater_->memberDone = true;
-    } else if (status == Z_BUF_ERROR || (status == Z_OK && stream.avail_out > 0)) {
-      if (filled == count && at_ < bytes_.size()) break;  // no room given, nothing wrong
-      if (at_ == bytes_.size()) failToRead(path_, "the gzip data end too early; it is truncated");
-    } else if (status != Z_OK) {
-      failToRead(path_, "the gzip data are damaged");
+    const auto progress = members_->inflater.step(left, room);
+    at_ = bytes_.size() - left.size();
+    if (progress == Inflater::Progress::Damaged) failToRead(path_, "the gzip data are damaged");
+    members_->memberDone = progress == Inflater::Progress::Done;
+    if (room.empty() && !members_->memberDone) break;
+    if (progress == Inflater::Progress::None) {
+      failToRead(path_, "the gzip data end too early; it is truncated");
     }
-    if (filled == count && !inflater_->memberDone) break;
   }
-  return filled;
+  return count - room.size();
 }
 
 Bytes ByteSource::take(std::uint64_t count) {
@@ -158,14 +177,14 @@ void ByteSource::skip(std::uint64_t count) {
 }
 
 void ByteSource::finish() {
-  if (!inflater_) return;
+  if (!members_) return;
   std::array<std::uint8_t, 1 << 14> scratch;
   while (read(scratch.data(), scratch.size()) > 0) {
   }
 }
 
 Bytes ByteSource::rest() {
-  if (!inflater_ && at_ - (peeked_.size() - peekedAt_) == 0) {
+  if (!members_ && at_ - (peeked_.size() - peekedAt_) == 0) {
     peeked_.clear();
     peekedAt_ = 0;
     at_ = 0;
@@ -188,8 +207,8 @@ Bytes ByteSource::rest() {
 std::uint64_t ByteSource::leftAtMost() const {
   const std::uint64_t left = bytes_.size() - at_;
   const std::uint64_t held = peeked_.size() - peekedAt_;
-  // What zlib has taken in but not yet given out is bounded by two windows.
-  return held + (inflater_ ? left * kLargestInflation + (1U << 16) : left);
+  // What is taken in but not yet given out is bounded by two windows and a match.
+  return held + (members_ ? left * kLargestInflation + (1U << 17) : left);
 }
 
 Bytes inflateExactly(const std::filesystem::path& path, ByteView packed, std::uint64_t size) {
@@ -197,28 +216,11 @@ Bytes inflateExactly(const std::filesystem::path& path, ByteView packed, std::ui
     failToRead(path, "a packed block is too short for the values it should hold");
   }
   Bytes unpacked(size);
-  z_stream stream{};
-  if (inflateInit2(&stream, kAnyWrapper) != Z_OK) {
-    throw EnvironmentError(quoted(path) + ": no memory to unpack it");
-  }
-  std::size_t in = 0;
-  std::size_t out = 0;
-  std::uint8_t none = 0;  // zlib wants an address even for no room
-  int status = Z_OK;
-  while (status == Z_OK) {
-    const uInt input = static_cast<uInt>(std::min<std::size_t>(packed.size() - in, kLongestStep));
-    const uInt room = static_cast<uInt>(std::min<std::size_t>(size - out, kLongestStep));
-    stream.next_in = const_cast<std::uint8_t*>(packed.data()) + in;
-    stream.avail_in = input;
-    stream.next_out = room > 0 ? unpacked.data() + out : &none;
-    stream.avail_out = room;
-    status = inflate(&stream, Z_NO_FLUSH);
-    in += input - stream.avail_in;
-    out += room - stream.avail_out;
-    if (status == Z_OK && input == stream.avail_in && room == stream.avail_out) break;
-  }
-  inflateEnd(&stream);
-  if (status != Z_STREAM_END || out != size) {
+  Inflater inflater(isGzip(packed));
+  std::span<std::uint8_t> room(unpacked);
+  auto progress = Inflater::Progress::Some;
+  while (progress == Inflater::Progress::Some) progress = inflater.step(packed, room);
+  if (progress != Inflater::Progress::Done || !room.empty()) {
     failToRead(path, "a packed block is damaged, or holds another number of values than stated");
   }
   return unpacked;

@@ -36,11 +36,11 @@ class ByteSource {
   [[nodiscard]] Bytes rest();
   /// How many bytes can be left at most: a compressed byte gives at most 1032.
   [[nodiscard]] std::uint64_t leftAtMost() const;
-  [[nodiscard]] bool compressed() const { return inflater_ != nullptr; }
+  [[nodiscard]] bool compressed() const { return members_ != nullptr; }
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
  private:
-  struct Inflater;
+  struct Members;
 
   std::size_t readOn(std::uint8_t* to, std::size_t count);
 
@@ -49,7 +49,7 @@ class ByteSource {
   std::size_t at_ = 0;
   Bytes peeked_;
   std::size_t peekedAt_ = 0;
-  std::unique_ptr<Inflater> inflater_;
+  std::unique_ptr<Members> members_;
 };
 
 /// Unpacks zlib or gzip data of a known unpacked size.

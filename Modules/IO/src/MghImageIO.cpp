@@ -141,7 +141,7 @@ void MghImageIO::Write(const void* buffer) {
   if (name.ends_with(".mgh")) {
     writePlain(file, content);
   } else {
-    writeGzip(file, content, 1);
+    writeGzip(file, content);
   }
   file.commit();
 }

@@ -5,70 +5,90 @@
 
 #include "Explica/Core/Parallel.h"
 
-#include <zlib.h>
+#include <isa-l/crc.h>
+#include <isa-l/igzip_lib.h>
 
 #include <algorithm>
-#include <memory>
 
 namespace explica::io {
 namespace {
 
-constexpr std::size_t kBlock = std::size_t{1} << 17;  // 4 windows: costs 1 % of size, feeds threads
+constexpr std::size_t kBlock = std::size_t{1} << 18;  // 8 windows: costs 1 % of size, feeds threads
 constexpr std::size_t kBlocksAtOnce = 128;            // bounds the memory of a batch
-constexpr int kRawDeflate = -15;
+// Level 1 of ISA-L is as small as zlib's level 1 on maps and labels, six times as fast.  Its bytes
+// are the same on all x86-64 processors with SSE4.2; without, they are others.
+constexpr int kLevel = 1;
+constexpr std::size_t kWorkspace = ISAL_DEF_LVL1_DEFAULT;
+constexpr std::uint32_t kCrcPolynomial = 0xedb88320;  // of gzip, x^31 in the lowest bit
 
 struct Packed {
   Bytes bytes;
-  uLong checksum = 0;  ///< CRC-32 of the unpacked block
+  std::uint32_t checksum = 0;  ///< CRC-32 of the unpacked block
   std::size_t size = 0;
 };
 
-/// zlib's state and room for the result, kept by each thread: they are larger than a block.
-class Deflater {
- public:
-  explicit Deflater(int level) : level_(level) {
-    if (deflateInit2(&stream_, level, Z_DEFLATED, kRawDeflate, 8, Z_DEFAULT_STRATEGY) != Z_OK) {
-      throw EnvironmentError("no memory to compress a file");
-    }
-  }
-  ~Deflater() { deflateEnd(&stream_); }
-  Deflater(const Deflater&) = delete;
-  Deflater& operator=(const Deflater&) = delete;
-
-  [[nodiscard]] int level() const { return level_; }
-
-  /// Raw deflate data of one block, ended at a byte border and not marked as last.
-  [[nodiscard]] Packed pack(ByteView block) {
-    deflateReset(&stream_);
-    room_.resize(std::max(room_.size(), deflateBound(&stream_, block.size()) + 16));
-    stream_.next_in = const_cast<std::uint8_t*>(block.data());
-    stream_.avail_in = static_cast<uInt>(block.size());
-    stream_.next_out = room_.data();
-    stream_.avail_out = static_cast<uInt>(room_.size());
-    if (deflate(&stream_, Z_SYNC_FLUSH) != Z_OK || stream_.avail_in != 0) {
-      throw EnvironmentError("zlib could not compress a block");
-    }
-    Packed packed;
-    packed.size = block.size();
-    packed.checksum = crc32(0, block.data(), static_cast<uInt>(block.size()));
-    packed.bytes.assign(room_.data(), room_.data() + (room_.size() - stream_.avail_out));
-    return packed;
-  }
-
- private:
-  int level_;
-  z_stream stream_{};
-  Bytes room_;
+/// Room of each thread: larger than a block.
+struct Workspace {
+  isal_zstream stream;
+  Bytes state = Bytes(kWorkspace);
+  Bytes packed;
 };
 
-Packed packBlock(ByteView block, int level) {
-  static thread_local std::unique_ptr<Deflater> deflater;
-  if (!deflater || deflater->level() != level) deflater = std::make_unique<Deflater>(level);
-  return deflater->pack(block);
+/// Deflate data of a block with zlib's wrapper, or raw, ended at a byte border and not marked as
+/// last.
+Bytes deflated(ByteView block, bool zlib) {
+  static thread_local Workspace workspace;
+  isal_zstream& stream = workspace.stream;
+  isal_deflate_init(&stream);
+  stream.level = kLevel;
+  stream.level_buf = workspace.state.data();
+  stream.level_buf_size = kWorkspace;
+  stream.gzip_flag = zlib ? IGZIP_ZLIB : IGZIP_DEFLATE;
+  stream.flush = zlib ? NO_FLUSH : SYNC_FLUSH;
+  constexpr std::size_t kLongestStep = std::size_t{1} << 30;  // the library counts in 32 bits
+  Bytes& packed = workspace.packed;
+  std::size_t taken = 0, made = 0;
+  do {
+    const std::size_t step = std::min(block.size() - taken, kLongestStep);
+    packed.resize(std::max(packed.size(), made + step + step / 8 + 1024));
+    stream.next_in = const_cast<std::uint8_t*>(block.data()) + taken;
+    stream.avail_in = static_cast<std::uint32_t>(step);
+    stream.end_of_stream = zlib && taken + step == block.size() ? 1 : 0;
+    do {
+      if (made == packed.size()) packed.resize(2 * made);
+      const auto room = static_cast<std::uint32_t>(std::min(packed.size() - made, kLongestStep));
+      stream.next_out = packed.data() + made;
+      stream.avail_out = room;
+      if (isal_deflate(&stream) != COMP_OK) throw EnvironmentError("a block cannot be packed");
+      made += room - stream.avail_out;
+    } while (stream.avail_out == 0);
+    taken += step;
+  } while (taken < block.size());
+  return Bytes(packed.data(), packed.data() + made);
 }
 
-bool allZero(ByteView bytes) {
-  return bytes[0] == 0 && std::memcmp(bytes.data(), bytes.data() + 1, bytes.size() - 1) == 0;
+Packed packBlock(ByteView block) {
+  return {deflated(block, false), crc32_gzip_refl(0, block.data(), block.size()), block.size()};
+}
+
+/// Product of two polynomials over GF(2) modulo the checksum's.
+std::uint32_t product(std::uint32_t a, std::uint32_t b) {
+  std::uint32_t sum = 0;
+  for (std::uint32_t bit = 1U << 31; bit != 0; bit >>= 1) {
+    if (a & bit) sum ^= b;
+    b = b & 1 ? b >> 1 ^ kCrcPolynomial : b >> 1;
+  }
+  return sum;
+}
+
+/// CRC-32 of two sequences in a row: the first one's times x^8 for each byte of the second, plus
+/// the second one's.
+std::uint32_t joinedChecksum(std::uint32_t first, std::uint32_t second, std::size_t secondSize) {
+  std::uint32_t power = 1U << (31 - 8);
+  for (; secondSize != 0; secondSize >>= 1, power = product(power, power)) {
+    if (secondSize & 1) first = product(power, first);
+  }
+  return first ^ second;
 }
 
 class GzipMember {
@@ -80,19 +100,19 @@ class GzipMember {
   }
   void add(const Packed& packed) {
     file_.write(packed.bytes.data(), packed.bytes.size());
-    checksum_ = crc32_combine(checksum_, packed.checksum, static_cast<z_off_t>(packed.size));
+    checksum_ = joinedChecksum(checksum_, packed.checksum, packed.size);
     size_ += packed.size;
   }
   void finish() {
     Bytes end = {0x03, 0x00};  // an empty last block
-    append(end, static_cast<std::uint32_t>(checksum_), false);
+    append(end, checksum_, false);
     append(end, static_cast<std::uint32_t>(size_), false);
     file_.write(end.data(), end.size());
   }
 
  private:
   WholeFile& file_;
-  uLong checksum_ = crc32(0, nullptr, 0);
+  std::uint32_t checksum_ = 0;
   std::uint64_t size_ = 0;
 };
 
@@ -109,37 +129,38 @@ void writePlain(WholeFile& file, const Content& content) {
   file.write(content.tail.data(), content.tail.size());
 }
 
-void writeGzip(WholeFile& file, const Content& content, int level) {
+void writeGzip(WholeFile& file, const Content& content) {
   GzipMember member(file);
-  if (!content.head.empty()) member.add(packBlock(content.head, level));
+  if (!content.head.empty()) member.add(packBlock(content.head));
   const std::size_t blocks = (content.bodySize + kBlock - 1) / kBlock;
   // Most of a medical volume is empty: such blocks are packed once.
-  const Packed emptyBlock = packBlock(Bytes(kBlock), level);
+  Bytes blank(kBlock);
+  for (std::size_t at = 0; at < kBlock; at += content.blank.size()) {
+    std::copy(content.blank.begin(), content.blank.end(),
+              blank.begin() + static_cast<std::ptrdiff_t>(at));
+  }
+  const Packed packedBlank = packBlock(blank);
   std::vector<Packed> batch(std::min(blocks, kBlocksAtOnce));
   for (std::size_t first = 0; first < blocks; first += kBlocksAtOnce) {
     const std::size_t count = std::min(kBlocksAtOnce, blocks - first);
     parallelFor(count, 1, [&](std::size_t b) {
       const std::size_t begin = (first + b) * kBlock;
+      const std::size_t size = std::min(kBlock, content.bodySize - begin);
+      batch[b].size = 0;  // stands for a blank block
+      if (size == kBlock && content.isBlank && content.isBlank(begin, size)) return;
       static thread_local Bytes block;
-      block.resize(std::min(kBlock, content.bodySize - begin));
-      content.body(begin, block.data(), block.size());
-      const bool empty = block.size() == kBlock && allZero(block);
-      batch[b] = empty ? emptyBlock : packBlock(block, level);
+      block.resize(size);
+      content.body(begin, block.data(), size);
+      if (block != blank) batch[b] = packBlock(block);
     });
-    for (std::size_t b = 0; b < count; ++b) member.add(batch[b]);
+    for (std::size_t b = 0; b < count; ++b) member.add(batch[b].size > 0 ? batch[b] : packedBlank);
   }
-  if (!content.tail.empty()) member.add(packBlock(content.tail, level));
+  if (!content.tail.empty()) member.add(packBlock(content.tail));
   member.finish();
 }
 
-Bytes packZlib(ByteView bytes, int level) {
-  uLongf size = compressBound(bytes.size());
-  Bytes packed(size);
-  if (compress2(packed.data(), &size, bytes.data(), bytes.size(), level) != Z_OK) {
-    throw EnvironmentError("no memory to compress a file");
-  }
-  packed.resize(size);
-  return packed;
+Bytes packZlib(ByteView bytes) {
+  return deflated(bytes, true);
 }
 
 void appendBase64(std::string& text, ByteView bytes) {

@@ -20,6 +20,9 @@ struct Content {
   Bytes head;
   std::size_t bodySize = 0;
   FillBytes body;
+  Bytes blank = {0};  ///< what most of the body repeats: as long as a power of two
+  /// True only where the body surely repeats `blank`; these bytes need not be made.
+  std::function<bool(std::size_t begin, std::size_t count)> isBlank;
   Bytes tail;
 };
 
@@ -27,12 +30,12 @@ struct Content {
 void writePlain(WholeFile& file, const Content& content);
 
 /// Appends the content as one gzip member, packed in blocks by several threads.  Blocks are cut by
-/// position only and joined by zlib's sync flush, so that the bytes do not depend on the number of
+/// position only and joined by sync flushes, so that the bytes do not depend on the number of
 /// threads and every gzip reader understands them.  No name and no time is stored.
-void writeGzip(WholeFile& file, const Content& content, int level);
+void writeGzip(WholeFile& file, const Content& content);
 
 /// zlib data (RFC 1950) of a block in memory.
-[[nodiscard]] Bytes packZlib(ByteView bytes, int level);
+[[nodiscard]] Bytes packZlib(ByteView bytes);
 
 void appendBase64(std::string& text, ByteView bytes);
 

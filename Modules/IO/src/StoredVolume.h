@@ -56,14 +56,15 @@ enum class Extent { Header, Everything };
 [[nodiscard]] std::int64_t checkedProduct(const std::filesystem::path& path,
                                           const std::vector<std::int64_t>& sizes);
 
-/// Values to be written: planar (frame by frame) or interleaved, as `body` produces them.
+/// Values to be written, made on demand, component by component.
 struct VolumeToWrite {
   Grid grid;
   StoredType type = StoredType::Float32;
   int valuesPerVoxel = 1;
-  /// Puts native values [begin, begin + count) of the sequence, frame by frame or interleaved.
-  std::function<void(std::size_t begin, std::size_t count, bool interleaved, std::uint8_t* to)>
-      fill;
+  Bytes elsewhere;                 ///< value of every voxel before `begin` and from `end` on
+  std::size_t begin = 0, end = 0;  ///< places in the storage order
+  /// Puts one component of voxels [first, first + count), in native byte order.
+  std::function<void(int component, std::size_t first, std::size_t count, std::uint8_t* to)> fill;
 };
 
 }  // namespace explica::io

@@ -16,6 +16,7 @@
 
 #include <cmath>
 #include <limits>
+#include <span>
 #include <type_traits>
 
 namespace explica::io {
@@ -273,26 +274,67 @@ Bytes metaHeader(const VolumeToWrite& volume) {
   return bytesOf(text);
 }
 
-void writeValues(const std::filesystem::path& path, VolumeToWrite volume,
-                 const VolumeWriteOptions& options) {
+/// Puts bytes [begin, begin + count) of the values component by component.
+void fillPlanar(const VolumeToWrite& volume, std::size_t begin, std::uint8_t* to,
+                std::size_t count) {
+  const std::size_t width = volume.elsewhere.size(), voxels = volume.grid.voxelCount();
+  for (std::size_t value = begin / width, end = (begin + count) / width; value < end;) {
+    const std::size_t voxel = value % voxels, run = std::min(end - value, voxels - voxel);
+    volume.fill(static_cast<int>(value / voxels), voxel, run, to);
+    value += run;
+    to += run * width;
+  }
+}
+
+/// Puts bytes [begin, begin + count) of the values voxel by voxel.
+void fillInterleaved(const VolumeToWrite& volume, std::size_t begin, std::uint8_t* to,
+                     std::size_t count) {
+  const std::size_t width = volume.elsewhere.size();
+  const auto perVoxel = static_cast<std::size_t>(volume.valuesPerVoxel);
+  const std::size_t value = begin / width, end = (begin + count) / width;
+  const std::size_t voxel = value / perVoxel, voxels = (end + perVoxel - 1) / perVoxel - voxel;
+  Bytes component(voxels * width);
+  for (std::size_t c = 0; c < perVoxel; ++c) {
+    volume.fill(static_cast<int>(c), voxel, voxels, component.data());
+    for (std::size_t v = 0; v < voxels; ++v) {
+      const std::size_t at = (voxel + v) * perVoxel + c;
+      if (at >= value && at < end) {
+        std::memcpy(to + (at - value) * width, component.data() + v * width, width);
+      }
+    }
+  }
+}
+
+void writeValues(const std::filesystem::path& path, const VolumeToWrite& volume) {
   const NamedFormat format = formatOf(path);
   if (volume.grid.voxelCount() == 0) {
     throw InvalidInput("volume for " + quoted(path) + ": it has no voxels");
   }
-  if (options.compression < 1 || options.compression > 9) {
-    throw InvalidInput("compression: " + std::to_string(options.compression) +
-                       " is not between 1 and 9");
-  }
   using Kind = NamedFormat::Kind;
-  const bool interleaved = format.kind == Kind::Nrrd || format.kind == Kind::MetaImage;
+  const bool interleaved =
+      volume.valuesPerVoxel > 1 && (format.kind == Kind::Nrrd || format.kind == Kind::MetaImage);
   const bool bigEndian = format.kind == Kind::Mgh;
-  const std::size_t width = widthOf(volume.type);
+  const std::size_t width = volume.elsewhere.size(), voxels = volume.grid.voxelCount();
   Content content;
-  content.bodySize = volume.grid.voxelCount() * volume.valuesPerVoxel * width;
+  content.bodySize = voxels * volume.valuesPerVoxel * width;
   content.body = [&, interleaved, bigEndian, width](std::size_t begin, std::uint8_t* to,
                                                     std::size_t count) {
-    volume.fill(begin / width, count / width, interleaved, to);
+    (interleaved ? fillInterleaved : fillPlanar)(volume, begin, to, count);
     if (bigEndian) swapBytes(to, count / width, width);
+  };
+  content.blank = volume.elsewhere;
+  if (bigEndian) swapBytes(content.blank.data(), 1, width);
+  content.isBlank = [&, interleaved, width, voxels](std::size_t begin, std::size_t count) {
+    std::size_t first = begin / width, last = (begin + count) / width - 1;
+    if (interleaved) {
+      first /= volume.valuesPerVoxel;
+      last /= volume.valuesPerVoxel;
+    } else {
+      if (first / voxels != last / voxels) return false;
+      first %= voxels;
+      last %= voxels;
+    }
+    return last < volume.begin || first >= volume.end;
   };
   WholeFile file(path);
   switch (format.kind) {
@@ -313,32 +355,72 @@ void writeValues(const std::filesystem::path& path, VolumeToWrite volume,
       break;
   }
   if (format.packed) {
-    writeGzip(file, content, options.compression);
+    writeGzip(file, content);
   } else {
     writePlain(file, content);
   }
   file.commit();
 }
 
-/// Writes scalars of type In, stored as Out.
+/// Components of type In, stored as Out.
 template <class Out, class In>
-void writeScalars(const std::filesystem::path& path, const Volume<In>& volume, StoredType type,
-                  const VolumeWriteOptions& options) {
+VolumeToWrite stored(std::span<const VolumeOnDemand<In>> components, StoredType type) {
   VolumeToWrite values;
-  values.grid = volume.grid;
+  values.grid = components[0].grid;
   values.type = type;
-  values.fill = [&volume](std::size_t begin, std::size_t count, bool, std::uint8_t* to) {
-    const In* from = volume.data.data() + begin;
+  values.valuesPerVoxel = static_cast<int>(components.size());
+  append(values.elsewhere, static_cast<Out>(components[0].elsewhere), false);
+  values.begin = values.grid.voxelCount();
+  for (const VolumeOnDemand<In>& component : components) {
+    values.begin = std::min(values.begin, component.begin);
+    values.end = std::max(values.end, component.end);
+  }
+  values.fill = [components](int component, std::size_t first, std::size_t count,
+                             std::uint8_t* to) {
     if constexpr (std::is_same_v<In, Out>) {
-      std::memcpy(to, from, count * sizeof(Out));
+      components[component].fill(first, count, reinterpret_cast<In*>(to));
     } else {
-      for (std::size_t i = 0; i < count; ++i) {
-        const auto value = static_cast<Out>(from[i]);
-        std::memcpy(to + i * sizeof(Out), &value, sizeof(Out));
+      std::vector<In> made(count);
+      components[component].fill(first, count, made.data());
+      for (std::size_t v = 0; v < count; ++v) {
+        store(to + v * sizeof(Out), static_cast<Out>(made[v]), false);
       }
     }
   };
-  writeValues(path, std::move(values), options);
+  return values;
+}
+
+/// The values that an array holds.
+template <class Out, class In>
+VolumeOnDemand<Out> viewOf(const Volume<In>& volume) {
+  VolumeOnDemand<Out> view;
+  view.grid = volume.grid;
+  view.end = volume.size();
+  view.fill = [&volume](std::size_t first, std::size_t count, Out* to) {
+    const In* from = volume.data.data() + first;
+    for (std::size_t v = 0; v < count; ++v) to[v] = static_cast<Out>(from[v]);
+  };
+  return view;
+}
+
+struct LabelRange {
+  Label lowest = 0, highest = 0;
+  LabelRange& operator+=(const LabelRange& other) {
+    lowest = std::min(lowest, other.lowest);
+    highest = std::max(highest, other.highest);
+    return *this;
+  }
+};
+
+LabelRange rangeOf(const VolumeOnDemand<Label>& volume) {
+  const LabelRange outside{std::min(volume.elsewhere, 0), std::max(volume.elsewhere, 0)};
+  return parallelSum(volume.end - volume.begin, kGrain, outside,
+                     [&](std::size_t begin, std::size_t end) {
+                       std::vector<Label> labels(end - begin);
+                       volume.fill(volume.begin + begin, labels.size(), labels.data());
+                       const auto [low, high] = std::minmax_element(labels.begin(), labels.end());
+                       return LabelRange{*low, *high};
+                     });
 }
 
 }  // namespace
@@ -479,65 +561,56 @@ Grid readGrid(const std::filesystem::path& path, const VolumeReadOptions& option
   return readStored(path, options, Extent::Header).grid;
 }
 
-void writeVolume(const std::filesystem::path& path, const Volume<float>& volume,
-                 const VolumeWriteOptions& options) {
-  writeScalars<float>(path, volume, StoredType::Float32, options);
+void writeVolume(const std::filesystem::path& path, const Volume<float>& volume) {
+  writeVolume(path, viewOf<float>(volume));
 }
 
-void writeVolume(const std::filesystem::path& path, const Volume<double>& volume,
-                 const VolumeWriteOptions& options) {
-  writeScalars<float>(path, volume, StoredType::Float32, options);
+void writeVolume(const std::filesystem::path& path, const Volume<double>& volume) {
+  writeVolume(path, viewOf<float>(volume));
 }
 
-void writeVolume(const std::filesystem::path& path, const Volume<std::uint8_t>& volume,
-                 const VolumeWriteOptions& options) {
-  writeScalars<std::uint8_t>(path, volume, StoredType::UInt8, options);
+void writeVolume(const std::filesystem::path& path, const Volume<std::uint8_t>& volume) {
+  const VolumeOnDemand<std::uint8_t> view = viewOf<std::uint8_t>(volume);
+  writeValues(path, stored<std::uint8_t>(std::span(&view, 1), StoredType::UInt8));
 }
 
-void writeVolume(const std::filesystem::path& path, const Volume<Label>& volume,
-                 const VolumeWriteOptions& options) {
-  Label lowest = 0;
-  Label highest = 0;
-  for (const Label label : volume.data) {
-    lowest = std::min(lowest, label);
-    highest = std::max(highest, label);
-  }
-  if (lowest >= 0 && highest <= std::numeric_limits<std::uint8_t>::max()) {
-    writeScalars<std::uint8_t>(path, volume, StoredType::UInt8, options);
-  } else if (lowest >= std::numeric_limits<std::int16_t>::lowest() &&
-             highest <= std::numeric_limits<std::int16_t>::max()) {
-    writeScalars<std::int16_t>(path, volume, StoredType::Int16, options);
+void writeVolume(const std::filesystem::path& path, const Volume<Label>& volume) {
+  writeVolume(path, viewOf<Label>(volume));
+}
+
+void writeVolume(const std::filesystem::path& path, const VolumeOnDemand<float>& volume) {
+  writeValues(path, stored<float>(std::span(&volume, 1), StoredType::Float32));
+}
+
+void writeVolume(const std::filesystem::path& path, const VolumeOnDemand<Label>& volume) {
+  const LabelRange range = rangeOf(volume);
+  const std::span values(&volume, 1);
+  if (range.lowest >= 0 && range.highest <= std::numeric_limits<std::uint8_t>::max()) {
+    writeValues(path, stored<std::uint8_t>(values, StoredType::UInt8));
+  } else if (range.lowest >= std::numeric_limits<std::int16_t>::lowest() &&
+             range.highest <= std::numeric_limits<std::int16_t>::max()) {
+    writeValues(path, stored<std::int16_t>(values, StoredType::Int16));
   } else {
-    writeScalars<Label>(path, volume, StoredType::Int32, options);
+    writeValues(path, stored<Label>(values, StoredType::Int32));
   }
 }
 
-void writeVolume(const std::filesystem::path& path, const Volume<Eigen::Vector3f>& volume,
-                 const VolumeWriteOptions& options) {
-  VolumeToWrite values;
-  values.grid = volume.grid;
-  values.type = StoredType::Float32;
-  values.valuesPerVoxel = 3;
-  values.fill = [&volume](std::size_t begin, std::size_t count, bool interleaved,
-                          std::uint8_t* to) {
-    const float* from = volume.data.data()->data();
-    if (interleaved) {
-      std::memcpy(to, from + begin, count * sizeof(float));
-      return;
-    }
-    const std::size_t voxels = volume.data.size();
-    for (std::size_t done = 0; done < count;) {  // one run for each component that is touched
-      const std::size_t component = (begin + done) / voxels;
-      const std::size_t voxel = (begin + done) % voxels;
-      const std::size_t run = std::min(count - done, voxels - voxel);
-      for (std::size_t i = 0; i < run; ++i) {
-        std::memcpy(to + (done + i) * sizeof(float), from + 3 * (voxel + i) + component,
-                    sizeof(float));
-      }
-      done += run;
-    }
-  };
-  writeValues(path, std::move(values), options);
+void writeVolume(const std::filesystem::path& path, const Volume<Eigen::Vector3f>& volume) {
+  VectorsOnDemand components;
+  for (int c = 0; c < 3; ++c) {
+    components[c].grid = volume.grid;
+    components[c].end = volume.size();
+    components[c].fill = [&volume, c](std::size_t first, std::size_t count, float* to) {
+      const Eigen::Vector3f* from = volume.data.data() + first;
+      for (std::size_t v = 0; v < count; ++v) to[v] = from[v][c];
+    };
+  }
+  writeVolume(path, components);
+}
+
+void writeVolume(const std::filesystem::path& path, const VectorsOnDemand& volume) {
+  writeValues(path,
+              stored<float>(std::span<const VolumeOnDemand<float>>(volume), StoredType::Float32));
 }
 
 }  // namespace explica::io

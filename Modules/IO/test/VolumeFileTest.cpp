@@ -158,6 +158,40 @@ TEST_P(VolumeContract, BytesDoNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(io::readScalars(file("threads")).volume.data, volume.data);
 }
 
+TEST_P(VolumeContract, ValuesMadeOnDemandGiveTheSameFile) {
+  Grid large = grid();
+  large.size = {64, 64, 100};  // whole blocks of the compressor before, between and after
+  const std::size_t slice = 64 * 64;
+  Volume<float> scalars(large, -1.5F);
+  Volume<Label> labels(large, 7);
+  Volume<Eigen::Vector3f> vectors(large, Eigen::Vector3f::Zero());
+  for (std::size_t v = 40 * slice + 5; v < 60 * slice - 7; ++v) {
+    scalars[v] = static_cast<float>(std::sin(static_cast<double>(v)));
+    labels[v] = static_cast<Label>(v % 5) - 2;
+    vectors[v] = Eigen::Vector3f(scalars[v], static_cast<float>(labels[v]), 2);
+  }
+  const auto onDemand = [&]<class T>(T elsewhere, const auto& valueOf) {
+    VolumeOnDemand<T> made{large, elsewhere, 40 * slice, 60 * slice, {}};
+    made.fill = [valueOf](std::size_t first, std::size_t count, T* to) {
+      for (std::size_t v = 0; v < count; ++v) to[v] = valueOf(first + v);
+    };
+    return made;
+  };
+  const auto same = [&](const auto& held, const auto& made) {
+    io::writeVolume(file("held"), held);
+    io::writeVolume(file("made"), made);
+    EXPECT_EQ(volumeOf(made).data, held.data);
+    return contentOf(file("made")) == contentOf(file("held"));
+  };
+  EXPECT_TRUE(same(scalars, onDemand(-1.5F, [&](std::size_t v) { return scalars[v]; })));
+  EXPECT_TRUE(same(labels, onDemand(Label{7}, [&](std::size_t v) { return labels[v]; })));
+  VectorsOnDemand components;
+  for (int c = 0; c < 3; ++c) {
+    components[c] = onDemand(0.0F, [&vectors, c](std::size_t v) { return vectors[v][c]; });
+  }
+  EXPECT_TRUE(same(vectors, components));
+}
+
 TEST_P(VolumeContract, ASliceIsTwoDimensional) {
   Grid flat = grid();
   flat.size = {6, 9, 1};
@@ -340,6 +374,30 @@ TEST_F(NiftiHeader, HeaderAndImageInTwoFilesAreUnderstood) {
   EXPECT_EQ(io::readScalars(folder_ / "pair.img").volume[7], 8.0F);
   fs::remove(folder_ / "pair.img");
   EXPECT_THROW(static_cast<void>(io::readScalars(folder_ / "pair.hdr")), IOError);
+}
+
+TEST(VolumeFile, SeveralGzipMembersInARowAreOneFile) {
+  const TemporaryFolder folder;
+  const Volume<float> written = numbered(obliqueGrid());
+  io::writeVolume(folder / "plain.nii", written);
+  const std::string whole = contentOf(folder / "plain.nii");
+  std::string members;
+  for (const auto& [begin, count] : {std::pair<std::size_t, std::size_t>{0, 100},
+                                     {100, 0},
+                                     {100, 300},
+                                     {400, whole.size() - 400}}) {
+    putContent(folder / "part", whole.substr(begin, count));
+    ASSERT_EQ(std::system(("gzip -9 -c '" + (folder / "part").string() + "' > '" +
+                           (folder / "part.gz").string() + "'")
+                              .c_str()),
+              0);
+    members += contentOf(folder / "part.gz");
+  }
+  putContent(folder / "members.nii.gz", members + std::string(12, '\0'));  // and padding
+  EXPECT_EQ(io::readScalars(folder / "members.nii.gz").volume.data, written.data);
+  members[members.size() - 6] ^= 1;  // the last member's checksum
+  putContent(folder / "damaged.nii.gz", members);
+  EXPECT_THROW(static_cast<void>(io::readScalars(folder / "damaged.nii.gz")), IOError);
 }
 
 TEST(VolumeFile, WhatIsNoImageIsNamed) {

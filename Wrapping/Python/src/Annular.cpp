@@ -52,19 +52,19 @@ correspondence::Measurement measure(harmonic::Annulus annulus, const ThicknessOp
 
 py::dict arraysOf(const correspondence::Measurement& m) {
   const auto field = [&](const std::vector<double>& values) {
-    return arrayOf(harmonic::spread(m.annulus, values));
+    return arrayOf(volumeOf(harmonic::spread(m.annulus, values)));
   };
   const correspondence::ThicknessSummary summary = correspondence::summaryOf(m.correspondence);
   return py::dict(
-      "harmonic"_a = arrayOf(harmonic::spread(m.annulus, m.interpolant.u, 0, 0, 1)),
+      "harmonic"_a = arrayOf(volumeOf(harmonic::spread(m.annulus, m.interpolant.u, 0, 0, 1))),
       "thickness"_a = field(correspondence::thicknessOf(m.correspondence)),
       "inner_distance"_a = field(m.correspondence.innerDistance),
       "outer_distance"_a = field(m.correspondence.outerDistance), "depth"_a = field(m.depth),
       "inner_point"_a =
-          arrayOf(correspondence::spreadPoints(m.annulus, m.correspondence.innerPoint)),
+          arrayOf(volumeOf(harmonic::spreadPoints(m.annulus, m.correspondence.innerPoint))),
       "outer_point"_a =
-          arrayOf(correspondence::spreadPoints(m.annulus, m.correspondence.outerPoint)),
-      "layers"_a = arrayOf(harmonic::spreadLabels(m.annulus, m.layers)),
+          arrayOf(volumeOf(harmonic::spreadPoints(m.annulus, m.correspondence.outerPoint))),
+      "layers"_a = arrayOf(volumeOf(harmonic::spreadLabels(m.annulus, m.layers))),
       "affine"_a = m.annulus.grid.affine(),
       "summary"_a =
           py::dict("voxels"_a = m.annulus.count(), "thickness_mean"_a = summary.mean,
@@ -145,7 +145,8 @@ void bindAnnular(py::module_& m) {
                       options, false, monitor);
           const auto walls =
               correspondence::wallSegments(made.annulus, made.correspondence, insertion);
-          return std::make_pair(walls, harmonic::spreadLabels(made.annulus, walls.segmentOf));
+          return std::make_pair(walls,
+                                volumeOf(harmonic::spreadLabels(made.annulus, walls.segmentOf)));
         }));
       },
       "Wall thickness of the left ventricle's 17 segments, of labels in short-axis slices along "

@@ -71,11 +71,6 @@ struct ThicknessSummary {
 };
 [[nodiscard]] ThicknessSummary summaryOf(const Correspondence& correspondence);
 
-/// Boundary points as a map on the whole grid: RAS mm in the tissue, 0 elsewhere and
-/// where the trajectory did not arrive.
-[[nodiscard]] Volume<Eigen::Vector3f> spreadPoints(const harmonic::Annulus& annulus,
-                                                   const std::vector<Eigen::Vector3f>& offsets);
-
 }  // namespace explica::correspondence
 
 namespace explica {

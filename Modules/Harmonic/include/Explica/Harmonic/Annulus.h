@@ -4,7 +4,7 @@
 
 #include "Explica/Core/Describe.h"
 #include "Explica/Core/Monitor.h"
-#include "Explica/Core/Volume.h"
+#include "Explica/Core/VolumeOnDemand.h"
 
 #include <array>
 #include <cstdint>
@@ -181,16 +181,24 @@ struct Cut {
 /// The same tissue with more boundary; the numbering changes.
 [[nodiscard]] Annulus withCuts(const Annulus& annulus, const std::vector<Cut>& cuts);
 
-/// A field of tissue voxels on the whole volume's grid; `elsewhere` also where it is NaN.
-[[nodiscard]] Volume<float> spread(const Annulus& annulus, const std::vector<double>& values,
-                                   float elsewhere = 0, std::optional<float> innerValue = {},
-                                   std::optional<float> outerValue = {});
+/// A field of tissue voxels on the whole volume's grid; `elsewhere` also where it is NaN.  The
+/// annulus must outlive what is returned, here and in the next functions.
+[[nodiscard]] VolumeOnDemand<float> spread(const Annulus& annulus, std::vector<double> values,
+                                           float elsewhere = 0,
+                                           std::optional<float> innerValue = {},
+                                           std::optional<float> outerValue = {});
 
 /// Labels of tissue voxels on the whole volume's grid; 0 elsewhere.
-[[nodiscard]] Volume<Label> spreadLabels(const Annulus& annulus, const std::vector<int>& values);
+[[nodiscard]] VolumeOnDemand<Label> spreadLabels(const Annulus& annulus, std::vector<int> values);
+
+/// Points given as offsets from the tissue's voxel centres, RAS mm, on the whole volume's grid; 0
+/// elsewhere and where an offset is not finite.
+[[nodiscard]] VectorsOnDemand spreadPoints(const Annulus& annulus,
+                                           std::vector<Eigen::Vector3f> offsets);
 
 /// 1 at the listed tissue voxels, 0 elsewhere.
-[[nodiscard]] Volume<Label> maskOf(const Annulus& annulus, const std::vector<std::int32_t>& voxels);
+[[nodiscard]] VolumeOnDemand<Label> maskOf(const Annulus& annulus,
+                                           const std::vector<std::int32_t>& voxels);
 
 /// 1 where a voxel has one of the labels.
 [[nodiscard]] Volume<std::uint8_t> maskOf(const Volume<Label>& labels,

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "Explica/Core/Describe.h"
-#include "Explica/Core/Volume.h"
+#include "Explica/Core/VolumeOnDemand.h"
 
 #include <Eigen/Core>
 
@@ -92,11 +92,6 @@ struct LoadedVolume {
 [[nodiscard]] Grid readGrid(const std::filesystem::path& path,
                             const VolumeReadOptions& options = {});
 
-/// How tightly compressed files are packed.
-struct VolumeWriteOptions {
-  int compression = 1;  ///< zlib level, 1 (fast) to 9 (small)
-};
-
 /// Writes a volume whole or not at all; the format follows the name: .nii, .nii.gz, .mgh, .mgz,
 /// .nrrd, .mha.  NIfTI files carry equal qform and sform, both with code 1 (scanner); the sform
 /// alone where float32 cannot hold the qform's rotation (tilts of 1e-5 to 1e-3 from a half turn).
@@ -105,18 +100,16 @@ struct VolumeWriteOptions {
 ///
 /// @throws InvalidInput      unknown extension, empty grid
 /// @throws EnvironmentError  the file cannot be written
-void writeVolume(const std::filesystem::path& path, const Volume<float>& volume,
-                 const VolumeWriteOptions& options = {});
-void writeVolume(const std::filesystem::path& path, const Volume<double>& volume,
-                 const VolumeWriteOptions& options = {});
-void writeVolume(const std::filesystem::path& path, const Volume<Label>& volume,
-                 const VolumeWriteOptions& options = {});
-void writeVolume(const std::filesystem::path& path, const Volume<std::uint8_t>& volume,
-                 const VolumeWriteOptions& options = {});
+void writeVolume(const std::filesystem::path& path, const Volume<float>& volume);
+void writeVolume(const std::filesystem::path& path, const Volume<double>& volume);
+void writeVolume(const std::filesystem::path& path, const Volume<Label>& volume);
+void writeVolume(const std::filesystem::path& path, const Volume<std::uint8_t>& volume);
+void writeVolume(const std::filesystem::path& path, const VolumeOnDemand<float>& volume);
+void writeVolume(const std::filesystem::path& path, const VolumeOnDemand<Label>& volume);
 /// Three values a voxel.  NIfTI and MGH: I x J x K x 3, so that nibabel's `data[i, j, k]` is the
 /// vector and viewers show three volumes; NRRD and MetaImage: three components.
-void writeVolume(const std::filesystem::path& path, const Volume<Eigen::Vector3f>& volume,
-                 const VolumeWriteOptions& options = {});
+void writeVolume(const std::filesystem::path& path, const Volume<Eigen::Vector3f>& volume);
+void writeVolume(const std::filesystem::path& path, const VectorsOnDemand& volume);
 
 }  // namespace explica::io
 
