@@ -15,7 +15,7 @@ Measurement measure(harmonic::Annulus annulus, const MeasurementOptions& options
   };
   if (options.sulciMode() == SulciMode::Recover) {
     begin("sulci");
-    SulcalRecovery recovered = recoverSulci(m.annulus, options.sulcus, monitor);
+    SulcalRecovery recovered = recoverSulci(std::move(m.annulus), options.sulcus, monitor);
     m.annulus = std::move(recovered.annulus);
     m.sulcalVoxels = std::move(recovered.voxels);
   }

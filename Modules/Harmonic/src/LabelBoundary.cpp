@@ -294,29 +294,37 @@ void LabelBoundary::relax(Energy energy, int iterations) {
   std::vector<std::array<float, 2>> curvature(count), bending(count);
   std::vector<float> bound(count), pull(count);
   // Derivative of half the energy by the curvatures, or with sign 1 a bound on its row sums.
-  const auto bend = [&](std::size_t link, float sign) {
-    for (int chain = 0; chain < chains; ++chain) {
-      if (energy == Energy::Curvature) {
-        bending[link][chain] = length_[link][chain] * curvature[link][chain];
-        continue;
-      }
-      float sum = 0;
-      for (int slot = 2 * chain; slot < 2 * chain + 2; ++slot) {
-        const std::int32_t code = back_[link][slot];
-        if (code < 0) continue;
-        sum += stiffness_[link][slot] *
-               (curvature[link][chain] + sign * curvature[code >> 2][code >> 1 & 1]);
-      }
-      bending[link][chain] = sum;
+  const auto bend = [&](float sign, const auto& curvatureAt) {
+    if (energy == Energy::Curvature) {
+      parallelFor(count, kGrain, [&](std::size_t link) {
+        for (int chain = 0; chain < chains; ++chain) {
+          bending[link][chain] = length_[link][chain] * curvatureAt(link, chain);
+        }
+      });
+      return;
     }
+    parallelFor(count, kGrain, [&](std::size_t link) {
+      for (int chain = 0; chain < chains; ++chain) {
+        curvature[link][chain] = curvatureAt(link, chain);
+      }
+    });
+    parallelFor(count, kGrain, [&](std::size_t link) {
+      for (int chain = 0; chain < chains; ++chain) {
+        float sum = 0;
+        for (int slot = 2 * chain; slot < 2 * chain + 2; ++slot) {
+          const std::int32_t code = back_[link][slot];
+          if (code < 0) continue;
+          sum += stiffness_[link][slot] *
+                 (curvature[link][chain] + sign * curvature[code >> 2][code >> 1 & 1]);
+        }
+        bending[link][chain] = sum;
+      }
+    });
   };
-  parallelFor(count, kGrain, [&](std::size_t link) {
-    for (int chain = 0; chain < chains; ++chain) {
-      curvature[link][chain] = std::abs(own_[link][chain]) + std::abs(beside_[link][2 * chain]) +
-                               std::abs(beside_[link][2 * chain + 1]);
-    }
+  bend(1, [&](std::size_t link, int chain) {
+    return std::abs(own_[link][chain]) + std::abs(beside_[link][2 * chain]) +
+           std::abs(beside_[link][2 * chain + 1]);
   });
-  parallelFor(count, kGrain, [&](std::size_t link) { bend(link, 1); });
   parallelFor(count, kGrain, [&](std::size_t link) {
     const float across = normal_[link][axis_[link]];
     pull[link] = pull_[link] * std::max(across * across, 0.01F);
@@ -333,12 +341,7 @@ void LabelBoundary::relax(Energy energy, int iterations) {
   std::vector<float> ahead = theta_, next(count);
   double momentum = 1;
   for (int iteration = 0; iteration < iterations; ++iteration) {
-    parallelFor(count, kGrain, [&](std::size_t link) {
-      for (int chain = 0; chain < chains; ++chain) {
-        curvature[link][chain] = curvatureOf(link, chain, ahead);
-      }
-    });
-    parallelFor(count, kGrain, [&](std::size_t link) { bend(link, -1); });
+    bend(-1, [&](std::size_t link, int chain) { return curvatureOf(link, chain, ahead); });
     const double uphill = parallelSum(count, kGrain, 0.0, [&](std::size_t begin, std::size_t end) {
       double sum = 0;
       for (std::size_t link = begin; link < end; ++link) {

@@ -20,7 +20,6 @@
 namespace explica::io {
 namespace {
 
-
 Metadata metadataOf(const XmlElement& element) {
   Metadata metadata;
   const XmlElement* list = element.child("MetaData");

@@ -9,6 +9,8 @@
 #include <isa-l/igzip_lib.h>
 
 #include <algorithm>
+#include <cstring>
+#include <limits>
 
 namespace explica::io {
 namespace {
@@ -37,34 +39,32 @@ struct Workspace {
 /// Deflate data of a block with zlib's wrapper, or raw, ended at a byte border and not marked as
 /// last.
 Bytes deflated(ByteView block, bool zlib) {
+  if (block.size() > std::numeric_limits<std::uint32_t>::max()) {
+    throw EnvironmentError("a block of more than 4 GB cannot be packed");
+  }
   static thread_local Workspace workspace;
   isal_zstream& stream = workspace.stream;
-  isal_deflate_init(&stream);
+  // Packing in one call, from zeros: what the library keeps from earlier blocks, and where its
+  // buffer for several calls lies, would show in a few bytes now and then.
+  std::memset(static_cast<void*>(&stream), 0, sizeof(stream));
+  isal_deflate_stateless_init(&stream);
   stream.level = kLevel;
   stream.level_buf = workspace.state.data();
   stream.level_buf_size = kWorkspace;
   stream.gzip_flag = zlib ? IGZIP_ZLIB : IGZIP_DEFLATE;
-  stream.flush = zlib ? NO_FLUSH : SYNC_FLUSH;
-  constexpr std::size_t kLongestStep = std::size_t{1} << 30;  // the library counts in 32 bits
+  stream.flush = zlib ? NO_FLUSH : FULL_FLUSH;
+  stream.end_of_stream = zlib ? 1 : 0;
   Bytes& packed = workspace.packed;
-  std::size_t taken = 0, made = 0;
-  do {
-    const std::size_t step = std::min(block.size() - taken, kLongestStep);
-    packed.resize(std::max(packed.size(), made + step + step / 8 + 1024));
-    stream.next_in = const_cast<std::uint8_t*>(block.data()) + taken;
-    stream.avail_in = static_cast<std::uint32_t>(step);
-    stream.end_of_stream = zlib && taken + step == block.size() ? 1 : 0;
-    do {
-      if (made == packed.size()) packed.resize(2 * made);
-      const auto room = static_cast<std::uint32_t>(std::min(packed.size() - made, kLongestStep));
-      stream.next_out = packed.data() + made;
-      stream.avail_out = room;
-      if (isal_deflate(&stream) != COMP_OK) throw EnvironmentError("a block cannot be packed");
-      made += room - stream.avail_out;
-    } while (stream.avail_out == 0);
-    taken += step;
-  } while (taken < block.size());
-  return Bytes(packed.data(), packed.data() + made);
+  packed.resize(std::max(packed.size(), block.size() + block.size() / 8 + 1024));
+  stream.next_in = const_cast<std::uint8_t*>(block.data());
+  stream.avail_in = static_cast<std::uint32_t>(block.size());
+  stream.next_out = packed.data();
+  stream.avail_out = static_cast<std::uint32_t>(
+      std::min<std::size_t>(packed.size(), std::numeric_limits<std::uint32_t>::max()));
+  if (isal_deflate_stateless(&stream) != COMP_OK) {
+    throw EnvironmentError("a block cannot be packed");
+  }
+  return Bytes(packed.data(), stream.next_out);
 }
 
 Packed packBlock(ByteView block) {

@@ -30,7 +30,7 @@ struct Content {
 void writePlain(WholeFile& file, const Content& content);
 
 /// Appends the content as one gzip member, packed in blocks by several threads.  Blocks are cut by
-/// position only and joined by sync flushes, so that the bytes do not depend on the number of
+/// position only and joined by flushes, so that the bytes do not depend on the number of
 /// threads and every gzip reader understands them.  No name and no time is stored.
 void writeGzip(WholeFile& file, const Content& content);
 

@@ -38,7 +38,7 @@ struct SulcalRecovery {
 /// face each other, the outer boundary is put between them where both are equally far: a sheet
 /// without thickness, placed between the voxels, that takes no voxel away.  Cf. [Han2004,
 /// section 3.3], where whole voxels are removed.
-[[nodiscard]] SulcalRecovery recoverSulci(const harmonic::Annulus& annulus,
+[[nodiscard]] SulcalRecovery recoverSulci(harmonic::Annulus annulus,
                                           const SulcusOptions& options = {},
                                           const Monitor& monitor = {});
 
