@@ -64,6 +64,24 @@ AdjacentChunks::AdjacentChunks(const MovingSet& set, const std::vector<std::int3
   }
   edgeChunks_ = cut(set, set.edgePairs, rank, involved, true);
   vertexChunks_ = cut(set, set.vertexPairs, rank, involved, false);
+
+  placesBegin_.assign(set.vertexMoves.size() + 1, 0);
+  const auto forEachPlace = [this](const auto& body) {
+    std::int32_t number = 0;
+    for (const auto* chunks : {&edgeChunks_, &vertexChunks_}) {
+      for (const Chunk& chunk : *chunks) {
+        for (std::size_t v = 0; v < chunk.vertices.size(); ++v) {
+          body(chunk.vertices[v], Place{number, static_cast<std::int32_t>(v)});
+        }
+        ++number;
+      }
+    }
+  };
+  forEachPlace([this](std::int32_t v, Place) { ++placesBegin_[v + 1]; });
+  for (std::size_t v = 1; v < placesBegin_.size(); ++v) placesBegin_[v] += placesBegin_[v - 1];
+  places_.resize(placesBegin_.back());
+  std::vector<std::size_t> next(placesBegin_.begin(), placesBegin_.end() - 1);
+  forEachPlace([&](std::int32_t v, Place place) { places_[next[v]++] = place; });
 }
 
 std::vector<AdjacentChunks::Chunk> AdjacentChunks::cut(const MovingSet& set,
@@ -128,6 +146,25 @@ AdjacentChunks::Sum AdjacentChunks::sumOf(const Chunk& chunk, const Positions& p
   sum.gradient.assign(x.size(), Vector::Zero());
   std::vector<double> byArea(chunk.faces.size(), 0.0);  // derivative by each face's area
 
+  const auto addTo = [&](const typename Kind::Batch& batch, int lane, const Pair& pair) {
+    const double mean = 2 / (unit * unit) * batch.value[lane];
+    const double areaS = areaOf(pair.s).area;
+    const double areaT = areaOf(pair.t).area;
+    sum.value += areaS * areaT * mean;
+    byArea[pair.s] += areaT * mean;
+    byArea[pair.t] += areaS * mean;
+    const double factor = 2 / (unit * unit * unit) * areaS * areaT;
+    Vector rest = Vector::Zero();
+    for (int arm = 0; arm < kArms; ++arm) {
+      const Vector by = factor * Vector(batch.byArm[3 * arm][lane], batch.byArm[3 * arm + 1][lane],
+                                        batch.byArm[3 * arm + 2][lane]);
+      sum.gradient[pair.vertex[arm + 1]] += by;
+      rest -= by;
+    }
+    sum.gradient[pair.vertex[0]] += rest;
+  };
+
+  // Pairs that wait until sixteen need the same rule.
   struct Waiting {
     typename Kind::Batch batch;
     std::array<const Pair*, kLanes> pair;
@@ -140,25 +177,7 @@ AdjacentChunks::Sum AdjacentChunks::sumOf(const Chunk& chunk, const Positions& p
     if (w.filled == 0) return;
     for (auto& row : w.batch.arm) std::fill(row + w.filled, row + kLanes, row[0]);
     Kind::integrate(w.batch, rule);
-    for (int lane = 0; lane < w.filled; ++lane) {
-      const Pair& pair = *w.pair[lane];
-      const double mean = 2 * w.batch.value[lane] / (unit * unit);
-      const double areaS = areaOf(pair.s).area;
-      const double areaT = areaOf(pair.t).area;
-      sum.value += areaS * areaT * mean;
-      byArea[pair.s] += areaT * mean;
-      byArea[pair.t] += areaS * mean;
-      const double factor = 2 * areaS * areaT / (unit * unit * unit);
-      Vector rest = Vector::Zero();
-      for (int arm = 0; arm < kArms; ++arm) {
-        const Vector by =
-            factor * Vector(w.batch.byArm[3 * arm][lane], w.batch.byArm[3 * arm + 1][lane],
-                            w.batch.byArm[3 * arm + 2][lane]);
-        sum.gradient[pair.vertex[arm + 1]] += by;
-        rest -= by;
-      }
-      sum.gradient[pair.vertex[0]] += rest;
-    }
+    for (int lane = 0; lane < w.filled; ++lane) addTo(w.batch, lane, *w.pair[lane]);
     w.filled = 0;
   };
 
@@ -178,6 +197,14 @@ AdjacentChunks::Sum AdjacentChunks::sumOf(const Chunk& chunk, const Positions& p
     }
     std::array<std::int32_t, kLanes> rules;
     Kind::choose(batch, rules.data());
+    if (rules[0] < kernels::kRules &&
+        std::all_of(rules.begin(), rules.end(), [&](std::int32_t r) { return r == rules[0]; })) {
+      Kind::integrate(batch, rules[0]);
+      for (int lane = 0; lane < count; ++lane) {
+        addTo(batch, lane, chunk.pairs[begin + static_cast<std::size_t>(lane)]);
+      }
+      continue;
+    }
     for (int lane = 0; lane < count; ++lane) {
       const Pair& pair = chunk.pairs[begin + static_cast<std::size_t>(lane)];
       const int rule = rules[lane];
@@ -218,13 +245,13 @@ void AdjacentChunks::add(const Positions& positions, const std::vector<FaceArea>
     sums[c] = c < edges ? sumOf<EdgeKind>(edgeChunks_[c], positions, areas, unit)
                         : sumOf<VertexKind>(vertexChunks_[c - edges], positions, areas, unit);
   });
-  for (std::size_t c = 0; c < sums.size(); ++c) {
-    const Chunk& chunk = c < edges ? edgeChunks_[c] : vertexChunks_[c - edges];
-    value += sums[c].value;
-    for (std::size_t v = 0; v < chunk.vertices.size(); ++v) {
-      gradient.row(chunk.vertices[v]) += sums[c].gradient[v].transpose();
+  for (const Sum& sum : sums) value += sum.value;
+  parallelFor(placesBegin_.size() - 1, 4096, [&](std::size_t v) {
+    for (std::size_t i = placesBegin_[v]; i < placesBegin_[v + 1]; ++i) {
+      gradient.row(static_cast<Eigen::Index>(v)) +=
+          sums[places_[i].chunk].gradient[places_[i].vertex].transpose();
     }
-  }
+  });
 }
 
 }  // namespace explica::repulsion

@@ -51,8 +51,16 @@ class AdjacentChunks {
   static Sum sumOf(const Chunk& chunk, const Positions& positions,
                    const std::vector<FaceArea>& areas, double unit);
 
+  /// A vertex of a chunk: edge chunks count first.
+  struct Place {
+    std::int32_t chunk;
+    std::int32_t vertex;
+  };
+
   std::vector<Chunk> edgeChunks_;
   std::vector<Chunk> vertexChunks_;
+  std::vector<std::size_t> placesBegin_;  // by vertex of the mesh
+  std::vector<Place> places_;
 };
 
 }  // namespace explica::repulsion

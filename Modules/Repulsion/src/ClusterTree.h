@@ -12,7 +12,7 @@ namespace explica::repulsion {
 
 /// Binary tree over faces with the moments of their area.  Each cut runs across the longest side of
 /// the centroids' box, next to the median: at a multiple of sixteen faces, so that all groups but
-/// the last are full, and within a group at a multiple of four.
+/// the last are full, and within a group at a multiple of two.
 class ClusterTree {
  public:
   struct Node {
@@ -26,25 +26,41 @@ class ClusterTree {
     [[nodiscard]] bool isLeaf() const { return left < 0; }
   };
 
-  ClusterTree() = default;
-  /// @param unit  lengths of SourceFace are in multiples of it, mm
-  ClusterTree(const Positions& positions, const Faces& faces,
-              const std::vector<std::int32_t>& members, double unit);
-
-  [[nodiscard]] bool empty() const { return order_.empty(); }
-  [[nodiscard]] const std::vector<Node>& nodes() const { return nodes_; }
-  /// Mass and second moments of each node, in units; the centre is left to the reader.
-  [[nodiscard]] const std::vector<kernels::FarNode>& moments() const { return moments_; }
+  /// What a node acts by from afar: centre about the origin, everything in units.
+  struct Moments {
+    std::array<double, 3> centre;
+    float mass;
+    std::array<float, 6> second;  ///< xx, yy, zz, xy, xz, yz of the area about the centre
+  };
   /// What decides whether a node is far, single precision: centre about the root's, in units.
   struct Ball {
     float x, y, z;
-    float radius;
-    float largestFace;
-    std::int32_t left;
+    float reach;        ///< distance from the targets from which its moments are enough
+    float margin;       ///< its radius and what `nearRatio` adds to its largest face's
+    std::int32_t left;  ///< -1 for groups
   };
+
+  ClusterTree() = default;
+  /// @param unit       lengths are in multiples of it unless said otherwise, mm
+  /// @param opening    share of the distance up to which a node's radius may be for it to act as
+  /// one
+  /// @param nearRatio  faces are near whose centroids are nearer than this many sums of radii
+  ClusterTree(const Positions& positions, const Faces& faces,
+              const std::vector<std::int32_t>& members, double unit, double opening,
+              double nearRatio);
+
+  [[nodiscard]] bool empty() const { return order_.empty(); }
+  [[nodiscard]] const std::vector<Node>& nodes() const { return nodes_; }
+  [[nodiscard]] const std::vector<Moments>& moments() const { return moments_; }
   [[nodiscard]] const std::vector<Ball>& balls() const { return balls_; }
+  /// Each group with its parts of at least about four faces.
+  [[nodiscard]] const std::vector<kernels::SourcePack>& groupPacks() const { return groupPacks_; }
+  /// The quarters of the k-th group at 4 k, with their parts.
+  [[nodiscard]] const std::vector<kernels::SourcePack>& leafPacks() const { return leafPacks_; }
   /// Nodes of up to sixteen faces, in the order of their faces.
   [[nodiscard]] const std::vector<std::int32_t>& groups() const { return groups_; }
+  /// Nodes of up to four groups, in the order of their faces.
+  [[nodiscard]] const std::vector<std::int32_t>& blocks() const { return blocks_; }
   /// Position in `members` of the k-th face of the tree.
   [[nodiscard]] const std::vector<std::int32_t>& order() const { return order_; }
   [[nodiscard]] const std::vector<kernels::SourceFace>& sources() const { return sources_; }
@@ -61,13 +77,20 @@ class ClusterTree {
 
  private:
   std::vector<Node> nodes_;  // parents before children, level by level
-  std::vector<kernels::FarNode> moments_;
+  std::vector<Moments> moments_;
   std::vector<Ball> balls_;
+  std::vector<kernels::SourcePack> groupPacks_;
+  std::vector<kernels::SourcePack> leafPacks_;
   std::vector<std::int32_t> groups_;
+  std::vector<std::int32_t> blocks_;
   std::vector<std::int32_t> order_;
   std::vector<kernels::SourceFace> sources_;
   std::vector<std::array<float, 9>> corners_;
   std::vector<std::array<std::int32_t, 3>> vertices_;
 };
+
+/// A node as seen from `origin`, in units.
+[[nodiscard]] kernels::FarNode farNode(const ClusterTree::Moments& moments,
+                                       const std::array<double, 3>& origin);
 
 }  // namespace explica::repulsion

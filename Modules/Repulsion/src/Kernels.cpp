@@ -5,7 +5,10 @@
 
 #include "Quadrature.h"
 
+#include <algorithm>
 #include <array>
+#include <bit>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -106,7 +109,8 @@ inline std::vector<ArmPoint<3>> edgePoints(int halvings) {
       {{0, 0, -1}, {-1, 1, 0}, {0, 1, -1}}, {{0, 1, 0}, {-1, 1, 0}, {0, 1, -1}}};
   std::vector<ArmPoint<3>> result;
   for (const auto& triangle : kCorners) {
-    for (const RulePoint& p : composite(triangleRule16(), partsOfTriangle(halvings))) {
+    const Rule rule = halvings == 0 ? triangleRule12() : triangleRule16();
+    for (const RulePoint& p : composite(rule, partsOfTriangle(halvings))) {
       ArmPoint<3> point{};
       point.weight = static_cast<float>(p.weight);
       for (int arm = 0; arm < 3; ++arm) {
@@ -120,20 +124,29 @@ inline std::vector<ArmPoint<3>> edgePoints(int halvings) {
   return result;
 }
 
-inline std::vector<ArmPoint<4>> vertexPoints(Rule segment, Rule triangle, int halvings) {
-  std::vector<ArmPoint<4>> result;
-  for (const bool edgeOfS : {true, false}) {
-    for (const RulePoint& e : composite(segment, partsOfSegment(halvings))) {
-      for (const RulePoint& f : composite(triangle, partsOfTriangle(halvings))) {
-        const double edge[2] = {e.lambda[0], e.lambda[1]};
-        const double face[2] = {f.lambda[1], f.lambda[2]};
-        const double* s = edgeOfS ? edge : face;
-        const double* t = edgeOfS ? face : edge;
-        result.push_back({static_cast<float>(e.weight * f.weight),
-                          {static_cast<float>(s[0]), static_cast<float>(s[1]),
-                           static_cast<float>(-t[0]), static_cast<float>(-t[1])}});
-      }
-    }
+/// A product rule: each point of an edge with each point of a triangle, in coordinates of the
+/// corners that are not common.
+struct ProductRule {
+  struct EdgePoint {
+    float weight;
+    float first;  // coordinate of the first corner; that of the second is the rest
+  };
+  struct FacePoint {
+    float weight;
+    float lambda[2];
+  };
+  std::vector<EdgePoint> edge;
+  std::vector<FacePoint> face;
+};
+
+inline ProductRule productRule(Rule segment, Rule triangle, int halvings) {
+  ProductRule result;
+  for (const RulePoint& p : composite(segment, partsOfSegment(halvings))) {
+    result.edge.push_back({static_cast<float>(p.weight), static_cast<float>(p.lambda[0])});
+  }
+  for (const RulePoint& p : composite(triangle, partsOfTriangle(halvings))) {
+    result.face.push_back({static_cast<float>(p.weight),
+                           {static_cast<float>(p.lambda[1]), static_cast<float>(p.lambda[2])}});
   }
   return result;
 }
@@ -144,13 +157,47 @@ inline const std::vector<ArmPoint<3>>& edgeRule(int rule) {
   return rules[rule];
 }
 
-inline const std::vector<ArmPoint<4>>& vertexRule(int rule) {
-  static const std::array<std::vector<ArmPoint<4>>, kRules> rules = {
-      vertexPoints(segmentRule3(), triangleRule7(), 0),
-      vertexPoints(segmentRule4(), triangleRule12(), 0),
-      vertexPoints(segmentRule4(), triangleRule12(), 1),
-      vertexPoints(segmentRule4(), triangleRule12(), 2)};
+inline const ProductRule& vertexRule(int rule) {
+  static const std::array<ProductRule, kRules> rules = {
+      productRule(segmentRule3(), triangleRule7(), 0),
+      productRule(segmentRule4(), triangleRule12(), 0),
+      productRule(segmentRule4(), triangleRule12(), 1),
+      productRule(segmentRule4(), triangleRule12(), 2)};
   return rules[rule];
+}
+
+/// Entries of a pack that act as one, and quarters that do not.
+struct Choice {
+  std::uint32_t nodes;
+  std::uint32_t opened;
+};
+
+/// The choice for each set of entries that may act as one, all being present.
+inline constexpr std::array<Choice, 128> kChoices = [] {
+  std::array<Choice, 128> choices{};
+  for (std::uint32_t clear = 0; clear < choices.size(); ++clear) {
+    Choice& choice = choices[clear];
+    if ((clear & 1) != 0) {
+      choice = {1, 0};
+      continue;
+    }
+    for (std::uint32_t half = 0; half < 2; ++half) {
+      const std::uint32_t itself = 2U << half;
+      const std::uint32_t quarters = 0x18U << (2 * half);
+      if ((clear & itself) != 0) {
+        choice.nodes |= itself;
+      } else {
+        choice.nodes |= clear & quarters;
+        choice.opened |= ~clear & quarters;
+      }
+    }
+  }
+  return choices;
+}();
+
+inline Choice choose(std::uint32_t clear, std::uint32_t present) {
+  const Choice choice = kChoices[(clear | ~present) & 0x7F];
+  return {choice.nodes & present, choice.opened & present};
 }
 
 }  // namespace explica::repulsion::kernels
@@ -163,9 +210,10 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Tag = hn::CappedTag<float, kLanes>;
 using Vec = hn::Vec<Tag>;
 
-HWY_INLINE Vec reciprocal(Tag d, Vec x) {
-  const Vec two = hn::Set(d, 2.0F);
-  Vec r = hn::ApproximateReciprocal(x);
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V reciprocal(D d, V x) {
+  const V two = hn::Set(d, 2.0F);
+  V r = hn::ApproximateReciprocal(x);
   r = hn::Mul(r, hn::NegMulAdd(x, r, two));
 #if !HWY_ARCH_X86
   r = hn::Mul(r, hn::NegMulAdd(x, r, two));
@@ -173,185 +221,352 @@ HWY_INLINE Vec reciprocal(Tag d, Vec x) {
   return r;
 }
 
-HWY_INLINE Vec squaredNorm(Tag d, Vec x, Vec y, Vec z) {
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V squaredNorm(D d, V x, V y, V z) {
   return hn::MulAdd(x, x, hn::MulAdd(y, y, hn::MulAdd(z, z, hn::Set(d, kTiny))));
-}
-
-/// What a node contributes at r: phi, its gradient = radial r + turn Q r, and s = 1/r^2.
-struct NodeTerm {
-  Vec s, phi, radial, gx, gy, gz;
-};
-
-HWY_INLINE NodeTerm TermOf(Tag d, const FarNode& n, Vec rx, Vec ry, Vec rz) {
-  NodeTerm t;
-  t.s = reciprocal(d, squaredNorm(d, rx, ry, rz));
-  const Vec xy = hn::Set(d, n.xy);
-  const Vec xz = hn::Set(d, n.xz);
-  const Vec yz = hn::Set(d, n.yz);
-  const Vec ux = hn::MulAdd(hn::Set(d, n.xx), rx, hn::MulAdd(xy, ry, hn::Mul(xz, rz)));
-  const Vec uy = hn::MulAdd(xy, rx, hn::MulAdd(hn::Set(d, n.yy), ry, hn::Mul(yz, rz)));
-  const Vec uz = hn::MulAdd(xz, rx, hn::MulAdd(yz, ry, hn::Mul(hn::Set(d, n.zz), rz)));
-  const Vec qs = hn::Mul(t.s, hn::MulAdd(ux, rx, hn::MulAdd(uy, ry, hn::Mul(uz, rz))));
-  const Vec mass = hn::Set(d, n.mass);
-  const Vec trace = hn::Set(d, n.trace);
-  const Vec four = hn::Set(d, 4.0F);
-  // phi = s (m + s (4 q s - trace)), q = r . Q r
-  t.phi = hn::Mul(t.s, hn::MulAdd(t.s, hn::MulSub(four, qs, trace), mass));
-  // grad phi = s^2 ((-2 m + s (4 trace - 24 q s)) r + 8 s Q r)
-  const Vec s2 = hn::Mul(t.s, t.s);
-  const Vec bend = hn::Mul(t.s, hn::MulAdd(four, trace, hn::Mul(hn::Set(d, -24.0F), qs)));
-  t.radial = hn::Mul(s2, hn::MulAdd(hn::Set(d, -2.0F), mass, bend));
-  const Vec turn = hn::Mul(hn::Mul(s2, t.s), hn::Set(d, 8.0F));
-  t.gx = hn::MulAdd(t.radial, rx, hn::Mul(turn, ux));
-  t.gy = hn::MulAdd(t.radial, ry, hn::Mul(turn, uy));
-  t.gz = hn::MulAdd(t.radial, rz, hn::Mul(turn, uz));
-  return t;
 }
 
 HWY_INLINE void AddTo(Tag d, Vec value, float* to) {
   hn::Store(hn::Add(value, hn::Load(d, to)), d, to);
 }
 
-void FarNodes(TargetLeaf& target, int set, const FarNode* HWY_RESTRICT nodes, std::size_t count) {
-  const Tag d;
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  for (int lane = 0; lane < kLanes; lane += lanes) {
-    for (int q = 0; q < 3; ++q) {
-      const Vec x = hn::Load(d, target.point[q][0] + lane);
-      const Vec y = hn::Load(d, target.point[q][1] + lane);
-      const Vec z = hn::Load(d, target.point[q][2] + lane);
-      Vec phi = hn::Zero(d), gx = hn::Zero(d), gy = hn::Zero(d), gz = hn::Zero(d);
-      for (std::size_t i = 0; i < count; ++i) {
-        const FarNode& n = nodes[i];
-        const NodeTerm t =
-            TermOf(d, n, hn::Sub(x, hn::Set(d, n.centre[0])), hn::Sub(y, hn::Set(d, n.centre[1])),
-                   hn::Sub(z, hn::Set(d, n.centre[2])));
-        phi = hn::Add(phi, t.phi);
-        gx = hn::Add(gx, t.gx);
-        gy = hn::Add(gy, t.gy);
-        gz = hn::Add(gz, t.gz);
-      }
-      AddTo(d, phi, target.phi[set][q] + lane);
-      AddTo(d, gx, target.g[q][0] + lane);
-      AddTo(d, gy, target.g[q][1] + lane);
-      AddTo(d, gz, target.g[q][2] + lane);
+/// Adds the field at the centroids, carried to the quadrature points by its second derivatives xx,
+/// yy, zz, xy, xz, yz; phi is the mean over the face already.
+HWY_INLINE void Carry(Tag d, TargetLeaf& target, int set, int lane, Vec phi, const Vec (&g)[3],
+                      const Vec (&h)[6]) {
+  for (int q = 0; q < 3; ++q) {
+    Vec by[3];
+    for (int a = 0; a < 3; ++a) {
+      by[a] =
+          hn::Sub(hn::Load(d, target.point[q][a] + lane), hn::Load(d, target.centroid[a] + lane));
     }
+    const Vec change[3] = {hn::MulAdd(h[0], by[0], hn::MulAdd(h[3], by[1], hn::Mul(h[4], by[2]))),
+                           hn::MulAdd(h[3], by[0], hn::MulAdd(h[1], by[1], hn::Mul(h[5], by[2]))),
+                           hn::MulAdd(h[4], by[0], hn::MulAdd(h[5], by[1], hn::Mul(h[2], by[2])))};
+    AddTo(d, phi, target.phi[set][q] + lane);
+    for (int a = 0; a < 3; ++a) AddTo(d, hn::Add(g[a], change[a]), target.g[q][a] + lane);
   }
 }
 
-void FarthestNodes(TargetLeaf& target, int set, const FarNode* HWY_RESTRICT nodes,
-                   std::size_t count) {
+void FarNodes(TargetLeaf& target, int set, const FarNode* HWY_RESTRICT nodes, std::size_t count,
+              const float* shift) {
   const Tag d;
   const int lanes = static_cast<int>(hn::Lanes(d));
-  const Vec half = hn::Set(d, 0.5F);
   for (int lane = 0; lane < kLanes; lane += lanes) {
-    const Vec x = hn::Load(d, target.centroid[0] + lane);
-    const Vec y = hn::Load(d, target.centroid[1] + lane);
-    const Vec z = hn::Load(d, target.centroid[2] + lane);
+    const Vec x = hn::Add(hn::Load(d, target.centroid[0] + lane), hn::Set(d, shift[0]));
+    const Vec y = hn::Add(hn::Load(d, target.centroid[1] + lane), hn::Set(d, shift[1]));
+    const Vec z = hn::Add(hn::Load(d, target.centroid[2] + lane), hn::Set(d, shift[2]));
+    const Vec four = hn::Set(d, 4.0F);
     Vec phi = hn::Zero(d), gx = hn::Zero(d), gy = hn::Zero(d), gz = hn::Zero(d);
     // Second derivatives: diagonal I + the rest.
-    Vec diagonal = hn::Zero(d), xx = hn::Zero(d), yy = hn::Zero(d), zz = hn::Zero(d);
-    Vec xy = hn::Zero(d), xz = hn::Zero(d), yz = hn::Zero(d);
+    Vec diagonal = hn::Zero(d), hxx = hn::Zero(d), hyy = hn::Zero(d), hzz = hn::Zero(d);
+    Vec hxy = hn::Zero(d), hxz = hn::Zero(d), hyz = hn::Zero(d);
     for (std::size_t i = 0; i < count; ++i) {
       const FarNode& n = nodes[i];
       const Vec rx = hn::Sub(x, hn::Set(d, n.centre[0]));
       const Vec ry = hn::Sub(y, hn::Set(d, n.centre[1]));
       const Vec rz = hn::Sub(z, hn::Set(d, n.centre[2]));
-      const NodeTerm t = TermOf(d, n, rx, ry, rz);
-      phi = hn::Add(phi, t.phi);
-      gx = hn::Add(gx, t.gx);
-      gy = hn::Add(gy, t.gy);
-      gz = hn::Add(gz, t.gz);
+      const Vec s = reciprocal(d, squaredNorm(d, rx, ry, rz));
+      const Vec mass = hn::Set(d, n.mass);
+      // Q: the node's second moments and those that its mass has by the target's extent.
+      const Vec xx = hn::MulAdd(mass, hn::Load(d, target.second[0] + lane), hn::Set(d, n.xx));
+      const Vec yy = hn::MulAdd(mass, hn::Load(d, target.second[1] + lane), hn::Set(d, n.yy));
+      const Vec zz = hn::MulAdd(mass, hn::Load(d, target.second[2] + lane), hn::Set(d, n.zz));
+      const Vec xy = hn::MulAdd(mass, hn::Load(d, target.second[3] + lane), hn::Set(d, n.xy));
+      const Vec xz = hn::MulAdd(mass, hn::Load(d, target.second[4] + lane), hn::Set(d, n.xz));
+      const Vec yz = hn::MulAdd(mass, hn::Load(d, target.second[5] + lane), hn::Set(d, n.yz));
+      const Vec trace = hn::Add(xx, hn::Add(yy, zz));
+      const Vec ux = hn::MulAdd(xx, rx, hn::MulAdd(xy, ry, hn::Mul(xz, rz)));
+      const Vec uy = hn::MulAdd(xy, rx, hn::MulAdd(yy, ry, hn::Mul(yz, rz)));
+      const Vec uz = hn::MulAdd(xz, rx, hn::MulAdd(yz, ry, hn::Mul(zz, rz)));
+      const Vec qs = hn::Mul(s, hn::MulAdd(ux, rx, hn::MulAdd(uy, ry, hn::Mul(uz, rz))));
+      // phi = s (m + s (4 q s - trace)), q = r . Q r
+      phi = hn::MulAdd(s, hn::MulAdd(s, hn::MulSub(four, qs, trace), mass), phi);
+      // grad phi = s^2 ((-2 m + s (4 trace - 24 q s)) r + 8 s Q r)
+      const Vec s2 = hn::Mul(s, s);
+      const Vec bend = hn::Mul(s, hn::MulAdd(four, trace, hn::Mul(hn::Set(d, -24.0F), qs)));
+      const Vec radial = hn::Mul(s2, hn::MulAdd(hn::Set(d, -2.0F), mass, bend));
+      const Vec turn = hn::Mul(hn::Mul(s2, s), hn::Set(d, 8.0F));
+      gx = hn::MulAdd(radial, rx, hn::MulAdd(turn, ux, gx));
+      gy = hn::MulAdd(radial, ry, hn::MulAdd(turn, uy, gy));
+      gz = hn::MulAdd(radial, rz, hn::MulAdd(turn, uz, gz));
       // d2 (m s) = -2 m s^2 I + 8 m s^3 r r^T, with the nodes' own radial part in place of -2 m s^2
-      diagonal = hn::Add(diagonal, t.radial);
-      const Vec c = hn::Mul(hn::Mul(hn::Set(d, -4.0F), t.s), t.radial);
+      diagonal = hn::Add(diagonal, radial);
+      const Vec c = hn::Mul(hn::Mul(hn::Set(d, -4.0F), s), radial);
       const Vec cx = hn::Mul(c, rx);
       const Vec cy = hn::Mul(c, ry);
-      xx = hn::MulAdd(cx, rx, xx);
-      xy = hn::MulAdd(cx, ry, xy);
-      xz = hn::MulAdd(cx, rz, xz);
-      yy = hn::MulAdd(cy, ry, yy);
-      yz = hn::MulAdd(cy, rz, yz);
-      zz = hn::MulAdd(hn::Mul(c, rz), rz, zz);
+      hxx = hn::MulAdd(cx, rx, hxx);
+      hxy = hn::MulAdd(cx, ry, hxy);
+      hxz = hn::MulAdd(cx, rz, hxz);
+      hyy = hn::MulAdd(cy, ry, hyy);
+      hyz = hn::MulAdd(cy, rz, hyz);
+      hzz = hn::MulAdd(hn::Mul(c, rz), rz, hzz);
     }
-    xx = hn::Add(xx, diagonal);
-    yy = hn::Add(yy, diagonal);
-    zz = hn::Add(zz, diagonal);
-    for (int q = 0; q < 3; ++q) {
-      const Vec dx = hn::Sub(hn::Load(d, target.point[q][0] + lane), x);
-      const Vec dy = hn::Sub(hn::Load(d, target.point[q][1] + lane), y);
-      const Vec dz = hn::Sub(hn::Load(d, target.point[q][2] + lane), z);
-      const Vec hx = hn::MulAdd(xx, dx, hn::MulAdd(xy, dy, hn::Mul(xz, dz)));
-      const Vec hy = hn::MulAdd(xy, dx, hn::MulAdd(yy, dy, hn::Mul(yz, dz)));
-      const Vec hz = hn::MulAdd(xz, dx, hn::MulAdd(yz, dy, hn::Mul(zz, dz)));
-      const auto dot = [&](Vec ax, Vec ay, Vec az) HWY_ATTR {
-        return hn::MulAdd(ax, dx, hn::MulAdd(ay, dy, hn::Mul(az, dz)));
-      };
-      AddTo(d, hn::Add(phi, hn::MulAdd(half, dot(hx, hy, hz), dot(gx, gy, gz))),
-            target.phi[set][q] + lane);
-      AddTo(d, hn::Add(gx, hx), target.g[q][0] + lane);
-      AddTo(d, hn::Add(gy, hy), target.g[q][1] + lane);
-      AddTo(d, hn::Add(gz, hz), target.g[q][2] + lane);
+    hxx = hn::Add(hxx, diagonal);
+    hyy = hn::Add(hyy, diagonal);
+    hzz = hn::Add(hzz, diagonal);
+    Carry(d, target, set, lane, phi, {gx, gy, gz}, {hxx, hyy, hzz, hxy, hxz, hyz});
+  }
+}
+
+/// Derivatives of 1/r^2 fields, summed over sources: value, gradient, second and third ones.
+void LocalExpansion(TargetLeaf& target, int set, const FarColumns& nodes, const float* shift) {
+  const Tag d;
+  const std::size_t lanes = hn::Lanes(d);
+  constexpr int kTerms = 20;
+  Vec sum[kTerms];
+  for (Vec& v : sum) v = hn::Zero(d);
+  for (std::size_t i = 0; i < nodes.count; i += lanes) {
+    const auto load = [&](int k) HWY_ATTR { return hn::LoadU(d, nodes.column[k] + i); };
+    const auto set1 = [&](float v) HWY_ATTR { return hn::Set(d, v); };
+    const Vec rx = hn::Sub(set1(shift[0]), load(0));
+    const Vec ry = hn::Sub(set1(shift[1]), load(1));
+    const Vec rz = hn::Sub(set1(shift[2]), load(2));
+    const Vec mass = load(3);
+    const Vec xx = load(4), yy = load(5), zz = load(6), xy = load(7), xz = load(8), yz = load(9);
+    const Vec s = reciprocal(d, squaredNorm(d, rx, ry, rz));
+    const Vec trace = hn::Add(xx, hn::Add(yy, zz));
+    const Vec ux = hn::MulAdd(xx, rx, hn::MulAdd(xy, ry, hn::Mul(xz, rz)));
+    const Vec uy = hn::MulAdd(xy, rx, hn::MulAdd(yy, ry, hn::Mul(yz, rz)));
+    const Vec uz = hn::MulAdd(xz, rx, hn::MulAdd(yz, ry, hn::Mul(zz, rz)));
+    const Vec qs = hn::Mul(s, hn::MulAdd(ux, rx, hn::MulAdd(uy, ry, hn::Mul(uz, rz))));
+    const Vec four = set1(4.0F);
+    sum[0] = hn::MulAdd(s, hn::MulAdd(s, hn::MulSub(four, qs, trace), mass), sum[0]);
+    const Vec s2 = hn::Mul(s, s);
+    const Vec s3 = hn::Mul(s2, s);
+    // radial = -2 m s^2 + 4 trace s^3 - 24 q s^4: the gradient along r, and the second derivative's
+    // multiple of I
+    const Vec radial = hn::Mul(s2, hn::MulAdd(s, hn::MulAdd(four, trace, hn::Mul(set1(-24.0F), qs)),
+                                              hn::Mul(set1(-2.0F), mass)));
+    const Vec turn = hn::Mul(s3, set1(8.0F));
+    sum[1] = hn::MulAdd(radial, rx, hn::MulAdd(turn, ux, sum[1]));
+    sum[2] = hn::MulAdd(radial, ry, hn::MulAdd(turn, uy, sum[2]));
+    sum[3] = hn::MulAdd(radial, rz, hn::MulAdd(turn, uz, sum[3]));
+    // second derivatives = radial I + 8 s^3 Q + outer r r^T + mixed (u r^T + r u^T)
+    const Vec outer =
+        hn::Mul(s3, hn::MulAdd(s, hn::MulAdd(set1(192.0F), qs, hn::Mul(set1(-24.0F), trace)),
+                               hn::Mul(set1(8.0F), mass)));
+    const Vec mixed = hn::Mul(hn::Mul(s2, s2), set1(-48.0F));
+    const Vec px = hn::MulAdd(outer, rx, hn::Mul(mixed, ux));
+    const Vec py = hn::MulAdd(outer, ry, hn::Mul(mixed, uy));
+    const Vec pz = hn::MulAdd(outer, rz, hn::Mul(mixed, uz));
+    const Vec mx = hn::Mul(mixed, rx);
+    const Vec my = hn::Mul(mixed, ry);
+    const Vec mz = hn::Mul(mixed, rz);
+    const auto second = [&](Vec q, Vec p, Vec r, Vec m, Vec u, Vec to) HWY_ATTR {
+      return hn::MulAdd(turn, q, hn::MulAdd(p, r, hn::MulAdd(m, u, to)));
+    };
+    sum[4] = second(xx, px, rx, mx, ux, hn::Add(sum[4], radial));
+    sum[5] = second(yy, py, ry, my, uy, hn::Add(sum[5], radial));
+    sum[6] = second(zz, pz, rz, mz, uz, hn::Add(sum[6], radial));
+    sum[7] = second(xy, px, ry, mx, uy, sum[7]);
+    sum[8] = second(xz, px, rz, mx, uz, sum[8]);
+    sum[9] = second(yz, py, rz, my, uz, sum[9]);
+    // third derivatives of the monopole = 8 m s^3 (delta r, three of them) - 48 m s^4 r r r
+    const Vec delta = hn::Mul(turn, mass);
+    const Vec cube = hn::Mul(mixed, mass);
+    const Vec cxx = hn::Mul(hn::Mul(cube, rx), rx);
+    const Vec cyy = hn::Mul(hn::Mul(cube, ry), ry);
+    const Vec czz = hn::Mul(hn::Mul(cube, rz), rz);
+    const Vec three = hn::Mul(set1(3.0F), delta);
+    sum[10] = hn::MulAdd(hn::Add(cxx, three), rx, sum[10]);             // xxx
+    sum[11] = hn::MulAdd(hn::Add(cyy, three), ry, sum[11]);             // yyy
+    sum[12] = hn::MulAdd(hn::Add(czz, three), rz, sum[12]);             // zzz
+    sum[13] = hn::MulAdd(hn::Add(cxx, delta), ry, sum[13]);             // xxy
+    sum[14] = hn::MulAdd(hn::Add(cxx, delta), rz, sum[14]);             // xxz
+    sum[15] = hn::MulAdd(hn::Add(cyy, delta), rx, sum[15]);             // yyx
+    sum[16] = hn::MulAdd(hn::Add(cyy, delta), rz, sum[16]);             // yyz
+    sum[17] = hn::MulAdd(hn::Add(czz, delta), rx, sum[17]);             // zzx
+    sum[18] = hn::MulAdd(hn::Add(czz, delta), ry, sum[18]);             // zzy
+    sum[19] = hn::MulAdd(hn::Mul(hn::Mul(cube, rx), ry), rz, sum[19]);  // xyz
+  }
+  float at[kTerms];
+  for (int k = 0; k < kTerms; ++k) at[k] = hn::GetLane(hn::SumOfLanes(d, sum[k]));
+
+  const auto term = [&](int k) HWY_ATTR { return hn::Set(d, at[k]); };
+  const Vec half = hn::Set(d, 0.5F);
+  const Vec third = hn::Set(d, 1.0F / 3);
+  for (int lane = 0; lane < kLanes; lane += static_cast<int>(lanes)) {
+    const Vec x = hn::Load(d, target.centroid[0] + lane);
+    const Vec y = hn::Load(d, target.centroid[1] + lane);
+    const Vec z = hn::Load(d, target.centroid[2] + lane);
+    const auto dot = [&](Vec ax, Vec ay, Vec az)
+                         HWY_ATTR { return hn::MulAdd(ax, x, hn::MulAdd(ay, y, hn::Mul(az, z))); };
+    // t = third derivatives along the offset, h = second derivatives there
+    const Vec t[6] = {dot(term(10), term(13), term(14)), dot(term(15), term(11), term(16)),
+                      dot(term(17), term(18), term(12)), dot(term(13), term(15), term(19)),
+                      dot(term(14), term(19), term(17)), dot(term(19), term(16), term(18))};
+    const auto along = [&](Vec xx, Vec yy, Vec zz, Vec xy, Vec xz, Vec yz, Vec* to) HWY_ATTR {
+      to[0] = dot(xx, xy, xz);
+      to[1] = dot(xy, yy, yz);
+      to[2] = dot(xz, yz, zz);
+    };
+    Vec h1[3], t1[3];
+    along(term(4), term(5), term(6), term(7), term(8), term(9), h1);
+    along(t[0], t[1], t[2], t[3], t[4], t[5], t1);
+    const Vec phi = hn::Add(
+        hn::Add(term(0), dot(term(1), term(2), term(3))),
+        hn::Mul(half, hn::MulAdd(third, dot(t1[0], t1[1], t1[2]), dot(h1[0], h1[1], h1[2]))));
+    Vec g[3];
+    for (int a = 0; a < 3; ++a) {
+      g[a] = hn::Add(term(1 + a), hn::MulAdd(half, t1[a], h1[a]));
     }
+    Carry(d, target, set, lane, phi, {g[0], g[1], g[2]},
+          {hn::Add(term(4), t[0]), hn::Add(term(5), t[1]), hn::Add(term(6), t[2]),
+           hn::Add(term(7), t[3]), hn::Add(term(8), t[4]), hn::Add(term(9), t[5])});
+  }
+}
+
+/// Lanes of a mask, one bit each.
+template <class D, class M>
+HWY_INLINE std::uint32_t bitsOf(D d, M mask) {
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(d, mask, bytes);
+  return static_cast<std::uint32_t>(bytes[0]) | (static_cast<std::uint32_t>(bytes[1]) << 8);
+}
+
+using PackTag = hn::CappedTag<float, 8>;
+
+/// Box and ball of the targets' centroids about one middle, and the largest of their radii.
+struct TargetBox {
+  float middle[3];
+  float extent[3];
+  float reach;  ///< of the ball
+  float radius;
+};
+
+TargetBox BoxOf(const TargetLeaf& target) {
+  TargetBox box{};
+  for (int a = 0; a < 3; ++a) {
+    const float* c = target.centroid[a];
+    const auto [low, high] = std::minmax_element(c, c + kLanes);
+    box.middle[a] = (*low + *high) / 2;
+    box.extent[a] = (*high - *low) / 2;
+  }
+  float farthest = 0;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    float squared = 0;
+    for (int a = 0; a < 3; ++a) {
+      const float away = target.centroid[a][lane] - box.middle[a];
+      squared += away * away;
+    }
+    farthest = std::max(farthest, squared);
+  }
+  box.reach = std::sqrt(farthest);
+  box.radius = *std::max_element(target.radius, target.radius + kLanes);
+  return box;
+}
+
+/// The entries of a pack that may act as one, one bit each.
+HWY_INLINE std::uint32_t Examine(const TargetBox& box, const SourcePack& pack, const float* offset,
+                                 float nearRatio) {
+  const PackTag d;
+  std::uint32_t clear = 0;
+  for (int k = 0; k < 8; k += static_cast<int>(hn::Lanes(d))) {
+    const auto away = [&](const float* centre, int a) HWY_ATTR {
+      return hn::Abs(hn::Add(hn::Load(d, centre + k), hn::Set(d, offset[a] - box.middle[a])));
+    };
+    const auto outside = [&](auto distance, int a) HWY_ATTR {
+      return hn::Max(hn::Sub(distance, hn::Set(d, box.extent[a])), hn::Zero(d));
+    };
+    const auto x = away(pack.x, 0);
+    const auto y = away(pack.y, 1);
+    const auto z = away(pack.z, 2);
+    const auto reach = hn::Add(hn::Load(d, pack.reach + k), hn::Set(d, nearRatio * box.radius));
+    const auto fromMiddle = hn::Add(reach, hn::Set(d, box.reach));
+    const auto beyondBall = hn::Gt(squaredNorm(d, x, y, z), hn::Mul(fromMiddle, fromMiddle));
+    const auto beyondBox =
+        hn::Gt(squaredNorm(d, outside(x, 0), outside(y, 1), outside(z, 2)), hn::Mul(reach, reach));
+    clear |= bitsOf(d, hn::Or(beyondBall, beyondBox)) << k;
+  }
+  return clear;
+}
+
+/// Adds the entries of a pack that act as one to a list.
+HWY_INLINE void Append(const SourcePack& pack, std::uint32_t entries, const float* offset,
+                       FarNode* nodes, std::size_t& count) {
+  for (; entries != 0; entries &= entries - 1) {
+    const int entry = std::countr_zero(entries);
+    const PartMoments& part = pack.part[entry];
+    nodes[count++] = {
+        {pack.x[entry] + offset[0], pack.y[entry] + offset[1], pack.z[entry] + offset[2]},
+        part.mass,
+        part.xx,
+        part.yy,
+        part.zz,
+        part.xy,
+        part.xz,
+        part.yz};
   }
 }
 
 /// Targets, one bit each, to which a face is nearer than `nearRatio` sums of radii; the weights
-/// that the others take are written if there are any.
-HWY_INLINE std::uint32_t NearTargets(const TargetLeaf& target, const float* centroid, float radius,
-                                     float nearRatio, float weight, float* weights) {
-  const Tag d;
+/// that the others take are written.
+HWY_INLINE std::uint32_t NearTargets(Tag d, const TargetLeaf& target, const float* centroid,
+                                     float radius, float nearRatio, float weight, float* weights) {
   const int lanes = static_cast<int>(hn::Lanes(d));
-  std::uint32_t flags = 0;
+  std::uint32_t found = 0;
   for (int lane = 0; lane < kLanes; lane += lanes) {
-    const Vec dx = hn::Sub(hn::Load(d, target.centroid[0] + lane), hn::Set(d, centroid[0]));
-    const Vec dy = hn::Sub(hn::Load(d, target.centroid[1] + lane), hn::Set(d, centroid[1]));
-    const Vec dz = hn::Sub(hn::Load(d, target.centroid[2] + lane), hn::Set(d, centroid[2]));
-    const Vec reach = hn::Mul(hn::Set(d, nearRatio),
-                              hn::Add(hn::Load(d, target.radius + lane), hn::Set(d, radius)));
+    const auto dx = hn::Sub(hn::Load(d, target.centroid[0] + lane), hn::Set(d, centroid[0]));
+    const auto dy = hn::Sub(hn::Load(d, target.centroid[1] + lane), hn::Set(d, centroid[1]));
+    const auto dz = hn::Sub(hn::Load(d, target.centroid[2] + lane), hn::Set(d, centroid[2]));
+    const auto reach = hn::Mul(hn::Set(d, nearRatio),
+                               hn::Add(hn::Load(d, target.radius + lane), hn::Set(d, radius)));
     const auto isNear = hn::Lt(squaredNorm(d, dx, dy, dz), hn::Mul(reach, reach));
     hn::Store(hn::IfThenZeroElse(isNear, hn::Set(d, weight)), d, weights + lane);
-    std::uint8_t bits[8] = {0, 0, 0, 0, 0, 0, 0, 0};
-    hn::StoreMaskBits(d, isNear, bits);
-    flags |= (static_cast<std::uint32_t>(bits[0]) | (static_cast<std::uint32_t>(bits[1]) << 8))
-             << lane;
+    found |= bitsOf(d, isNear) << lane;
   }
-  return flags;
+  return found;
 }
 
-std::size_t CloseLeaves(TargetLeaf& target, int set, const CloseLeaf* HWY_RESTRICT leaves,
-                        std::size_t count, float nearRatio, const CloseRoom& room) {
-  std::size_t hitCount = 0;
-  std::size_t clearCount = 0;
-  for (std::size_t l = 0; l < count; ++l) {
-    const CloseLeaf& leaf = leaves[l];
-    const float offset[4] = {leaf.offset[0], leaf.offset[1], leaf.offset[2], 0};
-    for (std::int32_t f = 0; f < leaf.count; ++f) {
-      const SourceFace& source = leaf.faces[f];
-      float(*to)[4] = room.clear[clearCount].point;
-      bool clear = true;
-      if (leaf.mayTouch) {
-        const float centroid[3] = {source.centroid[0] + offset[0], source.centroid[1] + offset[1],
-                                   source.centroid[2] + offset[2]};
-        MaskedFace& masked = room.masked[hitCount];
-        const std::uint32_t flags = NearTargets(target, centroid, source.radius, nearRatio,
-                                                source.point[0][3], masked.weight);
-        if (flags != 0) {
-          room.hits[hitCount++] = {leaf.first + f, flags};
-          to = masked.point;
-          clear = false;
-        }
-      }
-      for (int p = 0; p < 3; ++p) {
-        for (int a = 0; a < 4; ++a) to[p][a] = source.point[p][a] + offset[a];
-      }
-      if (clear) ++clearCount;
-    }
-  }
-
+std::size_t CloseGroups(TargetLeaf& target, int set, const CloseGroup* HWY_RESTRICT groups,
+                        std::size_t count, const CloseSources& sources, float nearRatio,
+                        const CloseRoom& room) {
   const Tag d;
   const int lanes = static_cast<int>(hn::Lanes(d));
   const Vec minusTwo = hn::Set(d, -2.0F);
+  const TargetBox box = BoxOf(target);
+  std::size_t nodeCount = 0;
+  std::size_t leafCount = 0;
+  for (std::size_t g = 0; g < count; ++g) {
+    const SourcePack& pack = *groups[g].pack;
+    const float* offset = groups[g].offset;
+    const Choice choice = choose(Examine(box, pack, offset, nearRatio), pack.present);
+    Append(pack, choice.nodes, offset, room.nodes, nodeCount);
+    for (std::uint32_t left = choice.opened; left != 0; left &= left - 1) {
+      room.leaves[leafCount++] = {sources.leaves + pack.first[std::countr_zero(left) - 3], offset};
+    }
+  }
+  std::size_t hitCount = 0;
+  std::size_t maskedCount = 0;
+  for (std::size_t l = 0; l < leafCount; ++l) {
+    const SourcePack& pack = *room.leaves[l].pack;
+    const float* offset = room.leaves[l].offset;
+    const Choice choice = choose(Examine(box, pack, offset, nearRatio), pack.present);
+    Append(pack, choice.nodes, offset, room.nodes, nodeCount);
+    for (std::uint32_t left = choice.opened; left != 0; left &= left - 1) {
+      const std::int32_t f = pack.first[std::countr_zero(left) - 3];
+      const SourceFace& source = sources.faces[f];
+      const float centroid[3] = {source.centroid[0] + offset[0], source.centroid[1] + offset[1],
+                                 source.centroid[2] + offset[2]};
+      MaskedFace& masked = room.faces[maskedCount];
+      const std::uint32_t found = NearTargets(d, target, centroid, source.radius, nearRatio,
+                                              source.point[0][3], masked.weight);
+      for (int p = 0; p < 3; ++p) {
+        for (int a = 0; a < 4; ++a) masked.point[p][a] = source.point[p][a] + offset[a];
+      }
+      ++maskedCount;
+      const auto& v = sources.vertices[f];
+      const std::uint32_t apart =
+          found & ~static_cast<std::uint32_t>(sources.targetsAt[v[0]] | sources.targetsAt[v[1]] |
+                                              sources.targetsAt[v[2]]);
+      room.hits[hitCount] = {f, apart};
+      hitCount += apart != 0 ? 1 : 0;
+    }
+  }
+
+  const float still[3] = {0, 0, 0};
+  FarNodes(target, set, room.nodes, nodeCount, still);
   for (int lane = 0; lane < kLanes; lane += lanes) {
     for (int q = 0; q < 3; ++q) {
       const Vec x = hn::Load(d, target.point[q][0] + lane);
@@ -371,12 +586,9 @@ std::size_t CloseLeaves(TargetLeaf& target, int set, const CloseLeaf* HWY_RESTRI
         gy = hn::MulAdd(pull, ry, gy);
         gz = hn::MulAdd(pull, rz, gz);
       };
-      for (std::size_t i = 0; i < clearCount; ++i) {
-        for (const auto& point : room.clear[i].point) add(point, hn::Set(d, point[3]));
-      }
-      for (std::size_t i = 0; i < hitCount; ++i) {
-        const Vec weight = hn::Load(d, room.masked[i].weight + lane);
-        for (int p = 0; p < 3; ++p) add(room.masked[i].point[p], weight);
+      for (std::size_t i = 0; i < maskedCount; ++i) {
+        const Vec weight = hn::Load(d, room.faces[i].weight + lane);
+        for (int p = 0; p < 3; ++p) add(room.faces[i].point[p], weight);
       }
       AddTo(d, phi, target.phi[set][q] + lane);
       AddTo(d, hn::Mul(minusTwo, gx), target.g[q][0] + lane);
@@ -493,8 +705,113 @@ HWY_INLINE void Reduced(Batch& batch, const std::vector<ArmPoint<kArms>>& points
 void IntegrateEdge(EdgeBatch& batch, int rule) {
   Reduced<3>(batch, edgeRule(rule));
 }
-void IntegrateVertex(VertexBatch& batch, int rule) {
-  Reduced<4>(batch, vertexRule(rule));
+/// Adds the mean of 1/|z|^2, z from a triangle to an edge that has no point with it in common, and
+/// its derivatives: `edge` and `face` number the arms to the corners of each.
+/// @tparam kCount  points of the edge
+template <int kCount>
+HWY_INLINE void EdgeByFace(Tag d, VertexBatch& batch, const ProductRule& rule, int lane, int edge,
+                           int face) {
+  const auto arm = [&](int k, int axis)
+                       HWY_ATTR { return hn::Load(d, batch.arm[3 * k + axis] + lane); };
+  HWY_ALIGN float points[3 * kCount * kLanes];
+  for (int i = 0; i < kCount; ++i) {
+    const Vec first = hn::Set(d, rule.edge[i].first);
+    for (int a = 0; a < 3; ++a) {
+      const Vec last = arm(edge + 1, a);
+      hn::Store(hn::MulAdd(first, hn::Sub(arm(edge, a), last), last), d,
+                points + (3 * i + a) * kLanes);
+    }
+  }
+  const Vec ux = arm(face, 0), uy = arm(face, 1), uz = arm(face, 2);
+  const Vec vx = arm(face + 1, 0), vy = arm(face + 1, 1), vz = arm(face + 1, 2);
+  Vec value = hn::Zero(d);
+  // Sums of z/|z|^4: weighted by the edge's first coordinate, all, and by those of the triangle.
+  Vec ex = hn::Zero(d), ey = hn::Zero(d), ez = hn::Zero(d);
+  Vec tx = hn::Zero(d), ty = hn::Zero(d), tz = hn::Zero(d);
+  Vec px = hn::Zero(d), py = hn::Zero(d), pz = hn::Zero(d);
+  Vec qx = hn::Zero(d), qy = hn::Zero(d), qz = hn::Zero(d);
+  for (const ProductRule::FacePoint& f : rule.face) {
+    const Vec l0 = hn::Set(d, f.lambda[0]);
+    const Vec l1 = hn::Set(d, f.lambda[1]);
+    const Vec fx = hn::MulAdd(l0, ux, hn::Mul(l1, vx));
+    const Vec fy = hn::MulAdd(l0, uy, hn::Mul(l1, vy));
+    const Vec fz = hn::MulAdd(l0, uz, hn::Mul(l1, vz));
+    Vec phi = hn::Zero(d);
+    Vec gx = hn::Zero(d), gy = hn::Zero(d), gz = hn::Zero(d);
+    Vec hx = hn::Zero(d), hy = hn::Zero(d), hz = hn::Zero(d);
+    for (int i = 0; i < kCount; ++i) {
+      const Vec x = hn::Sub(hn::Load(d, points + (3 * i) * kLanes), fx);
+      const Vec y = hn::Sub(hn::Load(d, points + (3 * i + 1) * kLanes), fy);
+      const Vec z = hn::Sub(hn::Load(d, points + (3 * i + 2) * kLanes), fz);
+      const Vec s = reciprocal(d, squaredNorm(d, x, y, z));
+      const Vec term = hn::Mul(hn::Set(d, rule.edge[i].weight), s);
+      phi = hn::Add(phi, term);
+      const Vec pull = hn::Mul(term, s);
+      gx = hn::MulAdd(pull, x, gx);
+      gy = hn::MulAdd(pull, y, gy);
+      gz = hn::MulAdd(pull, z, gz);
+      const Vec first = hn::Mul(pull, hn::Set(d, rule.edge[i].first));
+      hx = hn::MulAdd(first, x, hx);
+      hy = hn::MulAdd(first, y, hy);
+      hz = hn::MulAdd(first, z, hz);
+    }
+    const Vec weight = hn::Set(d, f.weight);
+    value = hn::MulAdd(weight, phi, value);
+    ex = hn::MulAdd(weight, hx, ex);
+    ey = hn::MulAdd(weight, hy, ey);
+    ez = hn::MulAdd(weight, hz, ez);
+    gx = hn::Mul(weight, gx);
+    gy = hn::Mul(weight, gy);
+    gz = hn::Mul(weight, gz);
+    tx = hn::Add(tx, gx);
+    ty = hn::Add(ty, gy);
+    tz = hn::Add(tz, gz);
+    px = hn::MulAdd(l0, gx, px);
+    py = hn::MulAdd(l0, gy, py);
+    pz = hn::MulAdd(l0, gz, pz);
+    qx = hn::MulAdd(l1, gx, qx);
+    qy = hn::MulAdd(l1, gy, qy);
+    qz = hn::MulAdd(l1, gz, qz);
+  }
+  const auto add = [&](int k, int axis, float factor, Vec v) HWY_ATTR {
+    AddTo(d, hn::Mul(hn::Set(d, factor), v), batch.byArm[3 * k + axis] + lane);
+  };
+  AddTo(d, value, batch.value + lane);
+  const Vec e[3] = {ex, ey, ez};
+  const Vec t[3] = {tx, ty, tz};
+  const Vec p[3] = {px, py, pz};
+  const Vec q[3] = {qx, qy, qz};
+  for (int a = 0; a < 3; ++a) {
+    add(edge, a, -2.0F, e[a]);
+    add(edge + 1, a, -2.0F, hn::Sub(t[a], e[a]));
+    add(face, a, 2.0F, p[a]);
+    add(face + 1, a, 2.0F, q[a]);
+  }
+}
+
+template <int kCount>
+HWY_INLINE void BothEdgesByFace(VertexBatch& batch, const ProductRule& rule) {
+  const Tag d;
+  for (int lane = 0; lane < kLanes; lane += static_cast<int>(hn::Lanes(d))) {
+    hn::Store(hn::Zero(d), d, batch.value + lane);
+    for (auto& row : batch.byArm) hn::Store(hn::Zero(d), d, row + lane);
+    EdgeByFace<kCount>(d, batch, rule, lane, 0, 2);
+    EdgeByFace<kCount>(d, batch, rule, lane, 2, 0);
+  }
+}
+
+void IntegrateVertex(VertexBatch& batch, int number) {
+  const ProductRule& rule = vertexRule(number);
+  switch (rule.edge.size()) {
+    case 3:
+      return BothEdgesByFace<3>(batch, rule);
+    case 4:
+      return BothEdgesByFace<4>(batch, rule);
+    case 8:
+      return BothEdgesByFace<8>(batch, rule);
+    default:
+      return BothEdgesByFace<16>(batch, rule);
+  }
 }
 
 struct Vec3 {
@@ -638,8 +955,8 @@ HWY_AFTER_NAMESPACE();
 namespace explica::repulsion::kernels {
 
 HWY_EXPORT(FarNodes);
-HWY_EXPORT(FarthestNodes);
-HWY_EXPORT(CloseLeaves);
+HWY_EXPORT(LocalExpansion);
+HWY_EXPORT(CloseGroups);
 HWY_EXPORT(IntegrateApart);
 HWY_EXPORT(IntegrateEdge);
 HWY_EXPORT(IntegrateVertex);
@@ -649,17 +966,18 @@ HWY_EXPORT(CentroidsSingle);
 HWY_EXPORT(CentroidsDouble);
 HWY_EXPORT(InstructionSet);
 
-void addFarNodes(TargetLeaf& target, int set, const FarNode* nodes, std::size_t count) {
-  HWY_DYNAMIC_DISPATCH(FarNodes)(target, set, nodes, count);
+void addFarNodes(TargetLeaf& target, int set, const FarNode* nodes, std::size_t count,
+                 const float* shift) {
+  HWY_DYNAMIC_DISPATCH(FarNodes)(target, set, nodes, count, shift);
 }
 
-void addFarthestNodes(TargetLeaf& target, int set, const FarNode* nodes, std::size_t count) {
-  HWY_DYNAMIC_DISPATCH(FarthestNodes)(target, set, nodes, count);
+void addLocalExpansion(TargetLeaf& target, int set, const FarColumns& nodes, const float* shift) {
+  HWY_DYNAMIC_DISPATCH(LocalExpansion)(target, set, nodes, shift);
 }
 
-std::size_t addCloseLeaves(TargetLeaf& target, int set, const CloseLeaf* leaves, std::size_t count,
-                           float nearRatio, const CloseRoom& room) {
-  return HWY_DYNAMIC_DISPATCH(CloseLeaves)(target, set, leaves, count, nearRatio, room);
+std::size_t addCloseGroups(TargetLeaf& target, int set, const CloseGroup* groups, std::size_t count,
+                           const CloseSources& sources, float nearRatio, const CloseRoom& room) {
+  return HWY_DYNAMIC_DISPATCH(CloseGroups)(target, set, groups, count, sources, nearRatio, room);
 }
 
 void integrateApart(ApartBatch& batch, bool fine) {

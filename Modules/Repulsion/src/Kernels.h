@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -18,7 +19,10 @@ inline constexpr int kLanes = 16;  ///< faces of a leaf and pairs of a batch
 struct alignas(64) TargetLeaf {
   float point[3][3][kLanes];  ///< [quadrature point][axis][face]
   float centroid[3][kLanes];
-  float radius[kLanes];     ///< farthest corner from the centroid
+  float second[6]
+              [kLanes];  ///< xx, yy, zz, xy, xz, yz of the area about the centroid, over the area
+  float radius[kLanes];  ///< farthest corner from the centroid
+  std::int32_t vertex[3][kLanes];
   float phi[2][3][kLanes];  ///< [source set][quadrature point][face]
   float g[3][3][kLanes];    ///< [quadrature point][axis][face]
 };
@@ -30,59 +34,97 @@ struct alignas(64) SourceFace {
   float radius;
 };
 
-/// Sources too near for their moments; `offset` is their group's centre seen from the target's.
-struct CloseLeaf {
-  const SourceFace* faces;
-  std::int32_t count;
-  std::int32_t first;  ///< number of its first face
-  float offset[3];
-  bool mayTouch;  ///< some face may be within `nearRatio` of a target
-};
-
 /// Sources seen as one: mass, centre seen from the target's, second moments.
 struct FarNode {
   float centre[3];
   float mass;
   float xx, yy, zz, xy, xz, yz;
-  float trace;
 };
 
-/// A source face too near for the quadrature of some targets, one bit each.
+/// Mass and second moments of a source.
+struct PartMoments {
+  float mass;
+  float xx, yy, zz, xy, xz, yz;
+};
+
+/// A node of at most sixteen faces with the nodes two levels below it, or one of four faces with
+/// its parts and its faces: whole, halves, quarters.
+struct alignas(32) SourcePack {
+  static constexpr int kEntries = 7;
+  float x[8], y[8], z[8];  ///< centres, relative to the group's
+  /// Distance beyond `nearRatio` radii of the targets from which an entry may act as one: its
+  /// moments are enough and none of its faces is near.
+  float reach[8];
+  PartMoments part[kEntries];
+  std::int32_t first[4];  ///< quarters: the pack below, or the face
+  std::uint32_t present;  ///< which entries exist, one bit each
+};
+
+/// Groups of sources near the targets.
+struct CloseGroup {
+  const SourcePack* pack;
+  float offset[4];  ///< its centre seen from the target's, and zero
+};
+
+/// What the quarters of close groups stand for.
+struct CloseSources {
+  const SourcePack* leaves;
+  const SourceFace* faces;
+  const std::array<std::int32_t, 3>* vertices;
+  const std::uint16_t* targetsAt;  ///< of each vertex: the targets that have it, one bit each
+};
+
+/// A source face too near for the quadrature of some targets, one bit each; those that have no
+/// vertex in common with it.
 struct NearHit {
   std::int32_t face;
   std::uint32_t targets;
 };
 
-/// The points of a source face whose weight every target takes: x, y, z, weight.
-struct alignas(16) ClearFace {
-  float point[3][4];
-};
-
-/// The points of a source face whose weight some targets do not take.
+/// A source face that acts by its quadrature points, on the targets that it is not near: the others
+/// take no weight.
 struct alignas(64) MaskedFace {
   float weight[kLanes];
   float point[3][4];
 };
 
-/// Room for what addCloseLeaves() sorts its faces into, and one more, each.
+/// A leaf to be opened: its pack and its group's centre seen from the target's.
+struct OpenLeaf {
+  const SourcePack* pack;
+  const float* offset;
+};
+
+/// Room for what addCloseGroups() sorts its sources into: sixteen a group, and one more, each; hits
+/// twice that.
 struct CloseRoom {
-  ClearFace* clear;
-  MaskedFace* masked;
+  FarNode* nodes;
+  OpenLeaf* leaves;
+  MaskedFace* faces;
   NearHit* hits;
 };
 
-/// Adds what far nodes contribute, by monopole and quadrupole, at every quadrature point.
-void addFarNodes(TargetLeaf& target, int set, const FarNode* nodes, std::size_t count);
+/// Adds what far nodes contribute.  Both sides count by their second moments: the mean of 1/r^2
+/// over a node and a face is that of their centres and half its second derivative contracted with
+/// the sum of their second moments; across the face, the field varies by its second derivatives.
+/// @param shift  centre of the target as the nodes see it
+void addFarNodes(TargetLeaf& target, int set, const FarNode* nodes, std::size_t count,
+                 const float* shift);
 
-/// The same for nodes many face sizes away: evaluated at the centroids and carried to the
-/// quadrature points by the monopoles' second derivatives.
-void addFarthestNodes(TargetLeaf& target, int set, const FarNode* nodes, std::size_t count);
+/// Nodes so far that one expansion serves all targets: columns, padded with weightless ones.
+struct FarColumns {
+  const float* column[10];  ///< centre x, y, z, mass, xx, yy, zz, xy, xz, yz
+  std::size_t count;        ///< a multiple of 16
+};
 
-/// Adds three by three quadrature points of every pair of faces whose centroids are at least
-/// `nearRatio` sums of radii apart; lists the other pairs.
+/// Adds what distant nodes contribute by a third-order expansion about the target's centre.
+void addLocalExpansion(TargetLeaf& target, int set, const FarColumns& nodes, const float* shift);
+
+/// Adds near sources: nodes and single faces by their moments where they are enough for all
+/// targets, three by three quadrature points for faces nearer than that whose centroids are at
+/// least `nearRatio` sums of radii apart; lists the other pairs.
 /// @return number of hits
-std::size_t addCloseLeaves(TargetLeaf& target, int set, const CloseLeaf* leaves, std::size_t count,
-                           float nearRatio, const CloseRoom& room);
+std::size_t addCloseGroups(TargetLeaf& target, int set, const CloseGroup* groups, std::size_t count,
+                           const CloseSources& sources, float nearRatio, const CloseRoom& room);
 
 /// Means of 1/|x - y|^2 over pairs of triangles and derivatives by the first one's corners.
 struct alignas(64) ApartBatch {

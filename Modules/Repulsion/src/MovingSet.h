@@ -21,6 +21,12 @@ struct AdjacentPair {
   std::array<std::int32_t, 3> cornersT{};
 };
 
+/// A corner of the k-th moving face.
+struct FaceCorner {
+  std::int32_t face = 0;
+  std::int32_t corner = 0;
+};
+
 /// Which faces move, and who touches whom: all that the evaluators need besides positions.
 class MovingSet {
  public:
@@ -42,11 +48,19 @@ class MovingSet {
     return {touching_.data() + touchingBegin_[k], touching_.data() + touchingBegin_[k + 1]};
   }
 
+  /// Where moving faces have vertex `v`, in their order.
+  [[nodiscard]] std::span<const FaceCorner> movingAround(std::size_t v) const {
+    return {movingAround_.data() + movingAroundBegin_[v],
+            movingAround_.data() + movingAroundBegin_[v + 1]};
+  }
+
   void requireVertexCount(const Positions& positions) const;
 
  private:
   std::vector<std::size_t> touchingBegin_;
   std::vector<std::int32_t> touching_;
+  std::vector<std::size_t> movingAroundBegin_;
+  std::vector<FaceCorner> movingAround_;
 };
 
 [[nodiscard]] inline Corners cornersOf(const Positions& positions, const Faces& faces,

@@ -14,9 +14,14 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
-#include <numeric>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <utility>
+#include <vector>
 
 namespace explica::repulsion {
 namespace {
@@ -27,9 +32,9 @@ constexpr int kLanes = kernels::kLanes;
 // faces nearer than the last are halved.
 constexpr float kSevenRatio = 0.9F;
 constexpr float kTwelveRatio = 0.5F;
-// Distance, in sizes of the largest target face, from which a node acts on the centroid of each
-// face rather than on its quadrature points.
-constexpr double kFarthest = 6;
+// Distance beyond a node's own reach, in radii of a target group, from which one expansion serves
+// all faces of the group.
+constexpr float kLocal = 0.5F;
 constexpr int kHalvings = 8;  // at most: then the faces touch
 
 /// A face or a part of it, single precision, relative to the target leaf's centre.
@@ -72,6 +77,23 @@ struct Part {
 struct LeafCorners {
   float at[9][kLanes];
 };
+
+/// Second moments of each face about its centroid, over its area.
+void setSecondMoments(const LeafCorners& corners, kernels::TargetLeaf& target) {
+  constexpr std::array<std::pair<int, int>, 6> kAxes = {
+      {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}};
+  for (std::size_t m = 0; m < kAxes.size(); ++m) {
+    const auto [a, b] = kAxes[m];
+    for (int lane = 0; lane < kLanes; ++lane) {
+      float sum = 0;
+      for (int k = 0; k < 3; ++k) {
+        sum += (corners.at[3 * k + a][lane] - target.centroid[a][lane]) *
+               (corners.at[3 * k + b][lane] - target.centroid[b][lane]);
+      }
+      target.second[m][lane] = sum / 12;
+    }
+  }
+}
 
 Part wholePart(const std::array<float, 9>& corners) {
   Part part;
@@ -199,18 +221,84 @@ class NearPairs {
   Batch fine_;
 };
 
-/// Scratch of one thread's block of leaves.
+/// Far nodes as columns, for an expansion that serves a whole group.
+class Columns {
+ public:
+  void clear() {
+    for (auto& column : columns_) column.clear();
+  }
+  void add(const kernels::FarNode& n) {
+    const std::array<float, 10> row = {n.centre[0], n.centre[1], n.centre[2], n.mass, n.xx,
+                                       n.yy,        n.zz,        n.xy,        n.xz,   n.yz};
+    for (std::size_t k = 0; k < row.size(); ++k) columns_[k].push_back(row[k]);
+  }
+  /// Adds weightless nodes up to a full vector.
+  void pad() {
+    constexpr kernels::FarNode kNothing = {{1e4F, 1e4F, 1e4F}, 0, 0, 0, 0, 0, 0, 0};
+    while (columns_[0].size() % kLanes != 0) add(kNothing);
+  }
+  [[nodiscard]] kernels::FarColumns view() const {
+    kernels::FarColumns view{};
+    for (std::size_t k = 0; k < columns_.size(); ++k) view.column[k] = columns_[k].data();
+    view.count = columns_[0].size();
+    return view;
+  }
+
+ private:
+  std::array<std::vector<float>, 10> columns_;
+};
+
+/// What a block of four target groups shares of one tree of sources.
+struct Shared {
+  std::vector<kernels::FarNode> far;  // seen from the block's centre
+  Columns distant;                    // far from all groups: serve expansions
+  std::vector<std::int32_t> close;    // groups
+  std::vector<std::int32_t> candidates;
+  std::vector<std::int32_t> next;
+};
+
+/// Scratch of one thread's blocks.
 struct Lists {
-  std::vector<kernels::FarNode> far;
-  std::vector<kernels::FarNode> farthest;
-  std::vector<kernels::CloseLeaf> close;
-  std::vector<kernels::ClearFace> clear;
+  std::array<Shared, 2> shared;  // moving sources, fixed sources
+  std::vector<kernels::CloseGroup> close;
+  std::vector<kernels::FarNode> nodes;
+  std::vector<kernels::OpenLeaf> leaves;
   std::vector<kernels::MaskedFace> masked;
   std::vector<kernels::NearHit> hits;
-  std::vector<std::int32_t> candidates;
-  std::vector<std::int32_t> farNumbers;
-  std::vector<std::int32_t> opened;
+  std::vector<std::uint16_t> targetsAt;  // of each vertex: the group's faces that have it
 };
+
+/// Lists that tasks take in turns.
+class ListsPool {
+ public:
+  explicit ListsPool(std::size_t vertexCount) : vertexCount_(vertexCount) {}
+
+  [[nodiscard]] std::unique_ptr<Lists> take() {
+    const std::scoped_lock lock(mutex_);
+    if (free_.empty()) {
+      auto lists = std::make_unique<Lists>();
+      lists->targetsAt.assign(vertexCount_, 0);
+      return lists;
+    }
+    std::unique_ptr<Lists> lists = std::move(free_.back());
+    free_.pop_back();
+    return lists;
+  }
+  void giveBack(std::unique_ptr<Lists> lists) {
+    const std::scoped_lock lock(mutex_);
+    free_.push_back(std::move(lists));
+  }
+
+ private:
+  std::size_t vertexCount_;
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Lists>> free_;
+};
+
+std::array<float, 3> difference(const std::array<double, 3>& a, const std::array<double, 3>& b) {
+  return {static_cast<float>(a[0] - b[0]), static_cast<float>(a[1] - b[1]),
+          static_cast<float>(a[2] - b[2])};
+}
 
 }  // namespace
 
@@ -223,15 +311,21 @@ struct MultipoleTree::State {
   ClusterTree fixedTree;
   AdjacentChunks adjacent;
 
+  /// What `nearRatio` adds to the radius of the largest of some targets, in units.
+  [[nodiscard]] float marginOf(const ClusterTree::Node& targets) const {
+    return static_cast<float>((options.nearRatio - 1) * targets.largestFace / unit);
+  }
+
   void addNear(const kernels::TargetLeaf& target, const ClusterTree::Node& leaf,
-               const ClusterTree& movingTree, const kernels::NearHit& hit, int which,
-               const ClusterTree& tree, NearPairs& nearPairs) const;
-  [[nodiscard]] kernels::CloseLeaf closeLeaf(const ClusterTree::Node& target,
-                                             const ClusterTree::Node& leaf,
-                                             const ClusterTree& tree) const;
-  void gather(const ClusterTree::Node& target, const ClusterTree& tree, Lists& lists) const;
+               const kernels::NearHit& hit, int which, const ClusterTree& tree,
+               NearPairs& nearPairs) const;
+  void gatherShared(const ClusterTree& targets, std::int32_t block, const ClusterTree& tree,
+                    Shared& shared) const;
+  void sumBlock(const Positions& positions, const std::vector<FaceArea>& areas,
+                const ClusterTree& movingTree, std::int32_t block, Lists& lists,
+                std::vector<FaceForce>& forces) const;
   void sumLeaf(const Positions& positions, const std::vector<FaceArea>& areas,
-               const ClusterTree& movingTree, std::size_t leaf, Lists& lists,
+               const ClusterTree& movingTree, std::int32_t group, std::int32_t block, Lists& lists,
                std::vector<FaceForce>& forces) const;
 };
 
@@ -255,8 +349,10 @@ MultipoleTree::MultipoleTree(const TriangleMesh& mesh, const std::vector<bool>& 
     const double size = std::sqrt(area / static_cast<double>(state->set.moving.size()));
     state->unit = std::exp2(std::round(std::log2(size)));
   }
-  state->fixedTree = ClusterTree(mesh.positions, mesh.faces, state->set.fixed, state->unit);
-  const ClusterTree movingTree(mesh.positions, mesh.faces, state->set.moving, state->unit);
+  state->fixedTree = ClusterTree(mesh.positions, mesh.faces, state->set.fixed, state->unit,
+                                 options.opening, options.nearRatio);
+  const ClusterTree movingTree(mesh.positions, mesh.faces, state->set.moving, state->unit,
+                               options.opening, options.nearRatio);
   std::vector<std::int32_t> rank(static_cast<std::size_t>(mesh.faceCount()), 0);
   for (std::size_t i = 0; i < movingTree.order().size(); ++i) {
     rank[state->set.moving[movingTree.order()[i]]] = static_cast<std::int32_t>(i);
@@ -271,95 +367,61 @@ const char* MultipoleTree::instructionSet() {
   return kernels::instructionSet();
 }
 
-void MultipoleTree::State::gather(const ClusterTree::Node& target, const ClusterTree& tree,
-                                  Lists& lists) const {
-  lists.far.clear();
-  lists.farthest.clear();
-  lists.close.clear();
+void MultipoleTree::State::gatherShared(const ClusterTree& targets, std::int32_t block,
+                                        const ClusterTree& tree, Shared& shared) const {
+  shared.far.clear();
+  shared.distant.clear();
+  shared.close.clear();
   if (tree.empty()) return;
-  const double inverseUnit = 1 / unit;
-  const Eigen::Vector3f centre =
-      ((target.centre - tree.nodes()[0].centre) * inverseUnit).cast<float>();
-  const auto radius = static_cast<float>(target.radius * inverseUnit);
-  const auto largestFace = static_cast<float>(target.largestFace * inverseUnit);
-  const auto inverseOpening = static_cast<float>(1 / options.opening);
-  const auto margin = static_cast<float>(options.nearRatio - 1);
+  const auto& origin = targets.moments()[block].centre;
+  const std::array<float, 3> centre = difference(origin, tree.moments()[0].centre);
+  // Its groups: how far from its centre, and how large.
+  const ClusterTree::Node& node = targets.nodes()[block];
+  float away = 0;
+  float radius = 0;
+  for (std::int32_t first = node.first; first < node.first + node.count; first += kLanes) {
+    const std::int32_t group = targets.groups()[first / kLanes];
+    const std::array<float, 3> d = difference(targets.moments()[group].centre, origin);
+    away = std::max(away, std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]));
+    radius = std::max(radius, static_cast<float>(targets.nodes()[group].radius / unit));
+  }
+  const auto spread = static_cast<float>(node.radius / unit);
+  const float distant = away + (1 + kLocal) * radius;
+  const auto margin = static_cast<float>((options.nearRatio - 1) * node.largestFace / unit);
 
-  // Level by level, without branches: whether a node is far is hard to predict.
-  lists.candidates.assign(1, 0);
-  lists.farNumbers.clear();
-  while (!lists.candidates.empty()) {
-    const std::size_t before = lists.farNumbers.size();
-    lists.farNumbers.resize(before + lists.candidates.size());
-    lists.opened.resize(lists.candidates.size());
-    std::int32_t* far = lists.farNumbers.data() + before;
-    std::int32_t* open = lists.opened.data();
-    for (const std::int32_t number : lists.candidates) {
-      const ClusterTree::Ball& ball = tree.balls()[number];
-      const float dx = ball.x - centre[0];
-      const float dy = ball.y - centre[1];
-      const float dz = ball.z - centre[2];
-      const float clear =
-          radius + std::max(ball.radius * inverseOpening,
-                            ball.radius + margin * (largestFace + ball.largestFace));
-      const bool isFar = dx * dx + dy * dy + dz * dz > clear * clear;
-      *far = number;
-      *open = number;
-      far += isFar;
-      open += !isFar;
-    }
-    lists.farNumbers.resize(static_cast<std::size_t>(far - lists.farNumbers.data()));
-    const auto openCount = static_cast<std::size_t>(open - lists.opened.data());
-    lists.candidates.clear();
-    for (std::size_t i = 0; i < openCount; ++i) {
-      const std::int32_t left = tree.balls()[lists.opened[i]].left;
-      if (left < 0) {
-        lists.close.push_back(closeLeaf(target, tree.nodes()[lists.opened[i]], tree));
+  shared.candidates.assign(1, 0);
+  while (!shared.candidates.empty()) {
+    shared.next.clear();
+    for (const std::int32_t number : shared.candidates) {
+      const ClusterTree::Ball& source = tree.balls()[number];
+      const float dx = source.x - centre[0];
+      const float dy = source.y - centre[1];
+      const float dz = source.z - centre[2];
+      const float squared = dx * dx + dy * dy + dz * dz;
+      const float clear = std::max(source.reach, source.margin + margin);
+      if (squared > (spread + clear) * (spread + clear)) {
+        const kernels::FarNode far = farNode(tree.moments()[number], origin);
+        if (squared > (distant + clear) * (distant + clear)) {
+          shared.distant.add(far);
+        } else {
+          shared.far.push_back(far);
+        }
+      } else if (source.left >= 0) {
+        shared.next.push_back(source.left);
+        shared.next.push_back(source.left + 1);
       } else {
-        lists.candidates.push_back(left);
-        lists.candidates.push_back(left + 1);
+        shared.close.push_back(tree.nodes()[number].first / kLanes);
       }
     }
+    shared.candidates.swap(shared.next);
   }
-
-  const double carried = target.radius + kFarthest * target.largestFace;
-  lists.far.resize(lists.farNumbers.size());
-  lists.farthest.resize(lists.farNumbers.size());
-  kernels::FarNode* far = lists.far.data();
-  kernels::FarNode* farthest = lists.farthest.data();
-  for (const std::int32_t number : lists.farNumbers) {
-    const Vector offset = tree.nodes()[number].centre - target.centre;
-    const bool isFarthest = offset.squaredNorm() > carried * carried;
-    kernels::FarNode& node = *(isFarthest ? farthest : far);
-    node = tree.moments()[number];
-    for (int a = 0; a < 3; ++a) node.centre[a] = static_cast<float>(offset[a] * inverseUnit);
-    farthest += isFarthest;
-    far += !isFarthest;
-  }
-  lists.far.resize(static_cast<std::size_t>(far - lists.far.data()));
-  lists.farthest.resize(static_cast<std::size_t>(farthest - lists.farthest.data()));
-}
-
-kernels::CloseLeaf MultipoleTree::State::closeLeaf(const ClusterTree::Node& target,
-                                                   const ClusterTree::Node& leaf,
-                                                   const ClusterTree& tree) const {
-  const Vector group = (tree.groupOf(leaf.first).centre - target.centre) / unit;
-  kernels::CloseLeaf close;
-  close.faces = tree.sources().data() + leaf.first;
-  close.count = leaf.count;
-  close.first = leaf.first;
-  for (int a = 0; a < 3; ++a) close.offset[a] = static_cast<float>(group[a]);
-  const double apart = target.radius + leaf.radius +
-                       (options.nearRatio - 1) * (target.largestFace + leaf.largestFace);
-  close.mayTouch = (leaf.centre - target.centre).squaredNorm() <= apart * apart;
-  return close;
+  shared.distant.pad();
 }
 
 void MultipoleTree::State::addNear(const kernels::TargetLeaf& target, const ClusterTree::Node& leaf,
-                                   const ClusterTree& movingTree, const kernels::NearHit& hit,
-                                   int which, const ClusterTree& tree, NearPairs& nearPairs) const {
+                                   const kernels::NearHit& hit, int which, const ClusterTree& tree,
+                                   NearPairs& nearPairs) const {
   const kernels::SourceFace& source = tree.sources()[hit.face];
-  const auto& vertices = tree.vertices()[hit.face];
   const Vector offset = (tree.groupOf(hit.face).centre - leaf.centre) / unit;
   const std::array<float, 3> shift = {static_cast<float>(offset[0]), static_cast<float>(offset[1]),
                                       static_cast<float>(offset[2])};
@@ -368,12 +430,6 @@ void MultipoleTree::State::addNear(const kernels::TargetLeaf& target, const Clus
   const std::uint32_t present = (1U << leaf.count) - 1;
   for (std::uint32_t left = hit.targets & present; left != 0; left &= left - 1) {
     const int lane = std::countr_zero(left);
-    const auto& own = movingTree.vertices()[leaf.first + lane];
-    bool touching = false;
-    for (const std::int32_t v : own) {
-      touching |= (v == vertices[0]) | (v == vertices[1]) | (v == vertices[2]);
-    }
-    if (touching) continue;
     float squared = 0;
     for (int a = 0; a < 3; ++a) {
       const float d = target.centroid[a][lane] - source.centroid[a] - shift[a];
@@ -384,69 +440,104 @@ void MultipoleTree::State::addNear(const kernels::TargetLeaf& target, const Clus
   }
 }
 
+void MultipoleTree::State::sumBlock(const Positions& positions, const std::vector<FaceArea>& areas,
+                                    const ClusterTree& movingTree, std::int32_t block, Lists& lists,
+                                    std::vector<FaceForce>& forces) const {
+  gatherShared(movingTree, block, movingTree, lists.shared[0]);
+  gatherShared(movingTree, block, fixedTree, lists.shared[1]);
+  const ClusterTree::Node& node = movingTree.nodes()[block];
+  for (std::int32_t first = node.first; first < node.first + node.count; first += kLanes) {
+    sumLeaf(positions, areas, movingTree, movingTree.groups()[first / kLanes], block, lists,
+            forces);
+  }
+}
+
 void MultipoleTree::State::sumLeaf(const Positions& positions, const std::vector<FaceArea>& areas,
-                                   const ClusterTree& movingTree, std::size_t leafNumber,
-                                   Lists& lists, std::vector<FaceForce>& forces) const {
-  const ClusterTree::Node& leaf = movingTree.nodes()[movingTree.groups()[leafNumber]];
+                                   const ClusterTree& movingTree, std::int32_t group,
+                                   std::int32_t block, Lists& lists,
+                                   std::vector<FaceForce>& forces) const {
+  const ClusterTree::Node& leaf = movingTree.nodes()[group];
+  const std::array<float, 3> shift =
+      difference(movingTree.moments()[group].centre, movingTree.moments()[block].centre);
   kernels::TargetLeaf target{};
+  LeafCorners corners;
   for (int lane = 0; lane < kLanes; ++lane) {
-    const kernels::SourceFace& face =
-        movingTree.sources()[leaf.first + std::min(lane, leaf.count - 1)];
+    const std::int32_t k = leaf.first + std::min(lane, leaf.count - 1);
+    const kernels::SourceFace& face = movingTree.sources()[k];
+    const auto& own = movingTree.corners()[k];
     for (int a = 0; a < 3; ++a) {
       target.centroid[a][lane] = face.centroid[a];
       for (int q = 0; q < 3; ++q) target.point[q][a][lane] = face.point[q][a];
     }
     target.radius[lane] = face.radius;
-  }
-
-  LeafCorners corners;
-  for (int lane = 0; lane < leaf.count; ++lane) {
-    const auto& own = movingTree.corners()[leaf.first + lane];
     for (int row = 0; row < 9; ++row) corners.at[row][lane] = own[row];
   }
+  setSecondMoments(corners, target);
+
+  // The faces' vertices, marked while the group is summed.
+  const auto* vertices = movingTree.vertices().data() + leaf.first;
+  for (int lane = 0; lane < leaf.count; ++lane) {
+    for (const std::int32_t v : vertices[lane]) {
+      lists.targetsAt[v] = static_cast<std::uint16_t>(lists.targetsAt[v] | (1U << lane));
+    }
+  }
+
   NearPairs nearPairs(corners);
   for (int which = 0; which < 2; ++which) {
     const ClusterTree& tree = which == 0 ? movingTree : fixedTree;
-    gather(leaf, tree, lists);
-    kernels::addFarNodes(target, which, lists.far.data(), lists.far.size());
-    kernels::addFarthestNodes(target, which, lists.farthest.data(), lists.farthest.size());
-    std::size_t room = 0;
-    for (const auto& c : lists.close) room += static_cast<std::size_t>(c.count);
-    if (lists.hits.size() < room + 1) {
-      lists.clear.resize(room + 1);
-      lists.masked.resize(room + 1);
-      lists.hits.resize(room + 1);
+    const Shared& shared = lists.shared[which];
+    kernels::addLocalExpansion(target, which, shared.distant.view(), shift.data());
+    kernels::addFarNodes(target, which, shared.far.data(), shared.far.size(), shift.data());
+    lists.close.clear();
+    for (const std::int32_t g : shared.close) {
+      const std::array<float, 3> offset =
+          difference(tree.moments()[tree.groups()[g]].centre, movingTree.moments()[group].centre);
+      lists.close.push_back({&tree.groupPacks()[g], {offset[0], offset[1], offset[2], 0}});
     }
-    const std::size_t hitCount =
-        kernels::addCloseLeaves(target, which, lists.close.data(), lists.close.size(),
-                                static_cast<float>(options.nearRatio),
-                                {lists.clear.data(), lists.masked.data(), lists.hits.data()});
+    const std::size_t room = lists.close.size() * kLanes + 1;
+    if (lists.nodes.size() < room) {
+      lists.nodes.resize(room);
+      lists.leaves.resize(room);
+      lists.masked.resize(room);
+      lists.hits.resize(2 * room);
+    }
+    const std::size_t hitCount = kernels::addCloseGroups(
+        target, which, lists.close.data(), lists.close.size(),
+        {tree.leafPacks().data(), tree.sources().data(), tree.vertices().data(),
+         lists.targetsAt.data()},
+        static_cast<float>(options.nearRatio),
+        {lists.nodes.data(), lists.leaves.data(), lists.masked.data(), lists.hits.data()});
     for (std::size_t h = 0; h < hitCount; ++h) {
-      addNear(target, leaf, movingTree, lists.hits[h], which, tree, nearPairs);
+      addNear(target, leaf, lists.hits[h], which, tree, nearPairs);
     }
   }
   nearPairs.flush();
+  for (int lane = 0; lane < leaf.count; ++lane) {
+    for (const std::int32_t v : vertices[lane]) lists.targetsAt[v] = 0;
+  }
 
   for (int lane = 0; lane < leaf.count; ++lane) {
     const std::int32_t slot = movingTree.order()[leaf.first + lane];
     const FaceArea& area = areas[slot];
     const Corners own = cornersOf(positions, set.faces, set.moving[slot]);
+    constexpr double kThird = 1.0 / 3;
     std::array<double, 2> phi = {nearPairs.phi(0, lane), nearPairs.phi(1, lane)};
     Vector total = Vector::Zero();
     std::array<Vector, 3> g;
     for (int q = 0; q < 3; ++q) {
       for (int which = 0; which < 2; ++which) {
-        phi[which] += static_cast<double>(target.phi[which][q][lane]) / 3;
+        phi[which] += kThird * static_cast<double>(target.phi[which][q][lane]);
       }
-      g[q] = Vector(target.g[q][0][lane], target.g[q][1][lane], target.g[q][2][lane]) / 3;
+      g[q] = kThird * Vector(target.g[q][0][lane], target.g[q][1][lane], target.g[q][2][lane]);
       total += g[q];
     }
     FaceForce& force = forces[slot];
     force.value = area.area * (phi[0] + 2 * phi[1]);
+    const double byShape = 2 * area.area / unit;
+    const double byArea = 2 * (phi[0] + phi[1]);
     for (int k = 0; k < 3; ++k) {
-      const Vector by = (total / 6 + g[k] / 2 + nearPairs.by(lane, k)) / unit;
-      force.byCorner[k] =
-          2 * (area.area * by + (phi[0] + phi[1]) * areaByCorner(area.normal, own, k));
+      force.byCorner[k] = byShape * (total / 6 + g[k] / 2 + nearPairs.by(lane, k)) +
+                          byArea * areaByCorner(area.normal, own, k);
     }
   }
 }
@@ -454,32 +545,38 @@ void MultipoleTree::State::sumLeaf(const Positions& positions, const std::vector
 KnotValue MultipoleTree::evaluate(const Positions& positions) const {
   const State& state = *state_;
   state.set.requireVertexCount(positions);
-  const ClusterTree movingTree(positions, state.set.faces, state.set.moving, state.unit);
+  const ClusterTree movingTree(positions, state.set.faces, state.set.moving, state.unit,
+                               state.options.opening, state.options.nearRatio);
   std::vector<FaceArea> areas(state.set.involved.size());
   parallelFor(areas.size(), 1024, [&](std::size_t i) {
     areas[i] = faceArea(cornersOf(positions, state.set.faces, state.set.involved[i]));
   });
   std::vector<FaceForce> forces(state.set.moving.size());
-  parallelForBlocks(movingTree.groups().size(), 4, [&](std::size_t begin, std::size_t end) {
-    Lists lists;
-    for (std::size_t leaf = begin; leaf < end; ++leaf) {
-      state.sumLeaf(positions, areas, movingTree, leaf, lists, forces);
-    }
-  });
+  const std::vector<std::int32_t>& blocks = movingTree.blocks();
+  ListsPool pool(state.set.vertexMoves.size());
+  parallelForBlocks(blocks.size(), std::clamp<std::size_t>(blocks.size() / 64, 1, 8),
+                    [&](std::size_t begin, std::size_t end) {
+                      std::unique_ptr<Lists> lists = pool.take();
+                      for (std::size_t b = begin; b < end; ++b) {
+                        state.sumBlock(positions, areas, movingTree, blocks[b], *lists, forces);
+                      }
+                      pool.giveBack(std::move(lists));
+                    });
 
   KnotValue result;
   result.gradient.setZero(positions.rows(), 3);
   state.adjacent.add(positions, areas, state.unit, result.value, result.gradient);
-  for (std::size_t k = 0; k < forces.size(); ++k) {
-    result.value += forces[k].value;
-    for (int c = 0; c < 3; ++c) {
-      result.gradient.row(state.set.faces(state.set.moving[k], c)) +=
-          forces[k].byCorner[c].transpose();
+  for (const FaceForce& force : forces) result.value += force.value;
+  parallelFor(state.set.vertexMoves.size(), 4096, [&](std::size_t v) {
+    auto row = result.gradient.row(static_cast<Eigen::Index>(v));
+    if (!state.set.vertexMoves[v]) {
+      row.setZero();
+      return;
     }
-  }
-  for (Eigen::Index v = 0; v < positions.rows(); ++v) {
-    if (!state.set.vertexMoves[static_cast<std::size_t>(v)]) result.gradient.row(v).setZero();
-  }
+    for (const FaceCorner& at : state.set.movingAround(v)) {
+      row += forces[at.face].byCorner[at.corner].transpose();
+    }
+  });
   return result;
 }
 

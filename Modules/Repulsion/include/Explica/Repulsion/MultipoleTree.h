@@ -10,10 +10,10 @@ namespace explica::repulsion {
 struct MultipoleTreeOptions {
   /// A cluster of sources counts by its moments once its radius is below this share of its distance
   /// from the targets; the relative error grows as its third to fifth power.
-  double opening = 0.45;
+  double opening = 0.48;
   /// Pairs of faces whose centroids are at least this many sums of radii apart are integrated by
   /// three points each; nearer ones by seven or more.
-  double nearRatio = 1.3;
+  double nearRatio = 1.2;
 };
 
 /// Knot energy by a tree code; time O(n log N) for n moving faces among N.
