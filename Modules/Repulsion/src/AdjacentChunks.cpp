@@ -142,32 +142,52 @@ AdjacentChunks::Sum AdjacentChunks::sumOf(const Chunk& chunk, const Positions& p
   const auto areaOf = [&](std::int32_t face) -> const FaceArea& {
     return allAreas[chunk.areas[face]];
   };
+  const double inverseUnit = 1 / unit;
   Sum sum;
   sum.gradient.assign(x.size(), Vector::Zero());
   std::vector<double> byArea(chunk.faces.size(), 0.0);  // derivative by each face's area
 
-  const auto addTo = [&](const typename Kind::Batch& batch, int lane, const Pair& pair) {
-    const double mean = 2 / (unit * unit) * batch.value[lane];
-    const double areaS = areaOf(pair.s).area;
-    const double areaT = areaOf(pair.t).area;
-    sum.value += areaS * areaT * mean;
-    byArea[pair.s] += areaT * mean;
-    byArea[pair.t] += areaS * mean;
-    const double factor = 2 / (unit * unit * unit) * areaS * areaT;
-    Vector rest = Vector::Zero();
-    for (int arm = 0; arm < kArms; ++arm) {
-      const Vector by = factor * Vector(batch.byArm[3 * arm][lane], batch.byArm[3 * arm + 1][lane],
-                                        batch.byArm[3 * arm + 2][lane]);
-      sum.gradient[pair.vertex[arm + 1]] += by;
-      rest -= by;
+  // Adds what a batch of means contributes; its derivatives are used up.
+  const auto add = [&](typename Kind::Batch& batch, const std::array<const Pair*, kLanes>& pairs,
+                       int count) {
+    constexpr int kRows = 3 * kArms;
+    std::array<float, kLanes> factor{};
+    for (int lane = 0; lane < count; ++lane) {
+      const Pair& pair = *pairs[lane];
+      const double mean = 2 * inverseUnit * inverseUnit * batch.value[lane];
+      const double areaS = areaOf(pair.s).area;
+      const double areaT = areaOf(pair.t).area;
+      sum.value += areaS * areaT * mean;
+      byArea[pair.s] += areaT * mean;
+      byArea[pair.t] += areaS * mean;
+      factor[lane] =
+          static_cast<float>(2 * areaS * areaT * (inverseUnit * inverseUnit * inverseUnit));
     }
-    sum.gradient[pair.vertex[0]] += rest;
+    for (int row = 0; row < kRows; ++row) {
+      for (int lane = 0; lane < kLanes; ++lane) batch.byArm[row][lane] *= factor[lane];
+    }
+    float common[3][kLanes];  // by the corner from which the arms are seen
+    for (int a = 0; a < 3; ++a) {
+      for (int lane = 0; lane < kLanes; ++lane) common[a][lane] = -batch.byArm[a][lane];
+      for (int row = 3 + a; row < kRows; row += 3) {
+        for (int lane = 0; lane < kLanes; ++lane) common[a][lane] -= batch.byArm[row][lane];
+      }
+    }
+    for (int lane = 0; lane < count; ++lane) {
+      const auto& vertex = pairs[lane]->vertex;
+      Vector& first = sum.gradient[vertex[0]];
+      for (int a = 0; a < 3; ++a) first[a] += common[a][lane];
+      for (int arm = 0; arm < kArms; ++arm) {
+        Vector& by = sum.gradient[vertex[arm + 1]];
+        for (int a = 0; a < 3; ++a) by[a] += batch.byArm[3 * arm + a][lane];
+      }
+    }
   };
 
   // Pairs that wait until sixteen need the same rule.
   struct Waiting {
     typename Kind::Batch batch;
-    std::array<const Pair*, kLanes> pair;
+    std::array<const Pair*, kLanes> pair{};
     int filled = 0;
   };
   std::array<Waiting, kernels::kRules> waiting;
@@ -177,11 +197,10 @@ AdjacentChunks::Sum AdjacentChunks::sumOf(const Chunk& chunk, const Positions& p
     if (w.filled == 0) return;
     for (auto& row : w.batch.arm) std::fill(row + w.filled, row + kLanes, row[0]);
     Kind::integrate(w.batch, rule);
-    for (int lane = 0; lane < w.filled; ++lane) addTo(w.batch, lane, *w.pair[lane]);
+    add(w.batch, w.pair, w.filled);
     w.filled = 0;
   };
 
-  const double inverseUnit = 1 / unit;
   for (std::size_t begin = 0; begin < chunk.pairs.size(); begin += kLanes) {
     const int count = static_cast<int>(std::min<std::size_t>(kLanes, chunk.pairs.size() - begin));
     typename Kind::Batch batch;
@@ -200,9 +219,11 @@ AdjacentChunks::Sum AdjacentChunks::sumOf(const Chunk& chunk, const Positions& p
     if (rules[0] < kernels::kRules &&
         std::all_of(rules.begin(), rules.end(), [&](std::int32_t r) { return r == rules[0]; })) {
       Kind::integrate(batch, rules[0]);
+      std::array<const Pair*, kLanes> batchPairs{};
       for (int lane = 0; lane < count; ++lane) {
-        addTo(batch, lane, chunk.pairs[begin + static_cast<std::size_t>(lane)]);
+        batchPairs[lane] = &chunk.pairs[begin + static_cast<std::size_t>(lane)];
       }
+      add(batch, batchPairs, count);
       continue;
     }
     for (int lane = 0; lane < count; ++lane) {

@@ -130,6 +130,159 @@ void partitionBelow(Key* keys, std::int32_t count) {
 // for the extent of both.
 constexpr double kCarry = 2.5;
 
+/// Faces seen as one.
+struct Part {
+  Point centre = Point::Zero();    // centroid of the area, mm
+  double area = 0;                 // mm^2
+  std::array<double, 6> second{};  // xx, yy, zz, xy, xz, yz of the area about the centre, mm^4
+  double radius = 0;               // of the ball about the centre that holds the faces, mm
+  double largestFace = 0;          // largest distance of a face's corner from its centroid, mm
+};
+
+Part partOf(const FaceMoments* faces, std::int32_t count) {
+  Part part;
+  Point mean = Point::Zero();
+  for (std::int32_t i = 0; i < count; ++i) {
+    part.area += faces[i].area;
+    part.centre += faces[i].area * faces[i].centroid;
+    mean += faces[i].centroid;
+    part.largestFace = std::max(part.largestFace, faces[i].radius);
+  }
+  part.centre = part.area > 0 ? Point(part.centre / part.area) : Point(mean / count);
+  for (std::int32_t i = 0; i < count; ++i) {
+    const Vector offset = faces[i].centroid - part.centre;
+    const auto square = outer(offset);
+    for (int k = 0; k < 6; ++k) {
+      part.second[k] += faces[i].second[k] + faces[i].area * square[k];
+    }
+    part.radius = std::max(part.radius, offset.norm() + faces[i].radius);
+  }
+  return part;
+}
+
+/// Both parts, but for the radius.
+Part merged(const Part& a, const Part& b) {
+  Part part;
+  part.area = a.area + b.area;
+  part.centre = part.area > 0 ? Point((a.area * a.centre + b.area * b.centre) / part.area)
+                              : Point((a.centre + b.centre) / 2);
+  part.largestFace = std::max(a.largestFace, b.largestFace);
+  for (const Part* child : {&a, &b}) {
+    const auto square = outer(child->centre - part.centre);
+    for (int k = 0; k < 6; ++k) part.second[k] += child->second[k] + child->area * square[k];
+  }
+  return part;
+}
+
+/// Writes groups of faces as the kernels read them.
+class Packer {
+ public:
+  Packer(double unit, double opening, double nearRatio)
+      : inverseUnit_(1 / unit),
+        inverseOpening_(1 / opening),
+        nearRatio_(nearRatio),
+        inverseArea_(inverseUnit_ * inverseUnit_) {}
+
+  /// Distance from the targets from which the moments of a part are enough, in units.
+  [[nodiscard]] double reach(const Part& part) const {
+    return std::max(part.radius * inverseOpening_, kCarry * part.largestFace) * inverseUnit_;
+  }
+  /// Its radius and what `nearRatio` adds to its largest face's, in units.
+  [[nodiscard]] double margin(const Part& part) const {
+    return (part.radius + (nearRatio_ - 1) * part.largestFace) * inverseUnit_;
+  }
+
+  /// Quadrature points of a face; also writes its corners.
+  [[nodiscard]] kernels::SourceFace source(const Corners& c, const FaceMoments& moments,
+                                           const Point& centre,
+                                           std::array<float, 9>& corners) const {
+    kernels::SourceFace source{};
+    const Vector middle = moments.centroid - centre;
+    for (int a = 0; a < 3; ++a) {
+      source.centroid[a] = static_cast<float>(middle[a] * inverseUnit_);
+      for (int k = 0; k < 3; ++k) {
+        const double corner = c[k][a] - centre[a];
+        corners[3 * k + a] = static_cast<float>(corner * inverseUnit_);
+        source.point[k][a] = static_cast<float>((middle[a] + corner) * (inverseUnit_ / 2));
+      }
+    }
+    for (auto& point : source.point) point[3] = static_cast<float>(moments.area * inverseArea_ / 3);
+    source.radius = static_cast<float>(moments.radius * inverseUnit_);
+    return source;
+  }
+
+  /// @param first   number of the first face
+  /// @param leaves  number of the first of the four packs at `quarters`
+  void pack(const FaceMoments* moments, std::int32_t first, std::int32_t count, const Part& whole,
+            std::int32_t leaves, kernels::SourcePack& pack, kernels::SourcePack* quarters) const {
+    set(pack, 0, whole, whole.centre);
+    const auto halves = partsOf({0, count});
+    for (int h = 0; h < 2 && halves[h].count > 0; ++h) {
+      set(pack, 1 + h, partOf(moments + halves[h].first, halves[h].count), whole.centre);
+      const auto parts = partsOf(halves[h]);
+      for (int q = 0; q < 2 && parts[q].count > 0; ++q) {
+        const int number = 2 * h + q;
+        const Part quarter = partOf(moments + parts[q].first, parts[q].count);
+        set(pack, 3 + number, quarter, whole.centre);
+        pack.first[number] = leaves + number;
+        packLeaf(moments, first, parts[q], quarter, whole.centre, quarters[number]);
+      }
+    }
+  }
+
+ private:
+  struct Range {
+    std::int32_t first = 0;
+    std::int32_t count = 0;
+  };
+
+  /// Both halves; the second is empty if the range is not cut.
+  static std::array<Range, 2> partsOf(Range range) {
+    const std::int32_t cut = cutOf(range.count);
+    if (cut == 0) return {range, Range{}};
+    return {Range{range.first, cut}, Range{range.first + cut, range.count - cut}};
+  }
+
+  void packLeaf(const FaceMoments* moments, std::int32_t first, Range range, const Part& quarter,
+                const Point& centre, kernels::SourcePack& leaf) const {
+    set(leaf, 0, quarter, centre);
+    const auto pairs = partsOf(range);
+    for (int p = 0; p < 2 && pairs[p].count > 0; ++p) {
+      set(leaf, 1 + p, partOf(moments + pairs[p].first, pairs[p].count), centre);
+      for (std::int32_t i = 0; i < pairs[p].count; ++i) {
+        const std::int32_t face = pairs[p].first + i;
+        const FaceMoments& m = moments[face];
+        set(leaf, 3 + 2 * p + i, {m.centroid, m.area, m.second, m.radius, m.radius}, centre);
+        leaf.first[2 * p + i] = first + face;
+      }
+    }
+  }
+
+  void set(kernels::SourcePack& pack, int entry, const Part& part, const Point& centre) const {
+    const Vector offset = (part.centre - centre) * inverseUnit_;
+    pack.x[entry] = static_cast<float>(offset[0]);
+    pack.y[entry] = static_cast<float>(offset[1]);
+    pack.z[entry] = static_cast<float>(offset[2]);
+    pack.reach[entry] = static_cast<float>(reach(part));
+    pack.margin[entry] = static_cast<float>(margin(part));
+    const double square = inverseArea_ * inverseArea_;
+    const auto second = [&](int k) { return static_cast<float>(part.second[k] * square); };
+    pack.part[entry] = {static_cast<float>(part.area * inverseArea_),
+                        second(0),
+                        second(1),
+                        second(2),
+                        second(3),
+                        second(4),
+                        second(5)};
+    pack.present |= 1U << entry;
+  }
+
+  double inverseUnit_;
+  double inverseOpening_;
+  double nearRatio_;
+  double inverseArea_;
+};
+
 }  // namespace
 
 kernels::FarNode farNode(const ClusterTree::Moments& m, const std::array<double, 3>& origin) {
@@ -158,17 +311,16 @@ ClusterTree::ClusterTree(const Positions& positions, const Faces& faces,
     keys[i].member = static_cast<std::int32_t>(i);
   });
 
-  nodes_.reserve(static_cast<std::size_t>(count) / kLeafFaces * 3 + 2);
+  nodes_.reserve(static_cast<std::size_t>(count) / kernels::kLanes * 2 + 2);
   Node root;
   root.count = count;
   nodes_.push_back(root);
   std::vector<std::size_t> levels = {0};
-  std::vector<std::int32_t> tasks;
   for (std::size_t begin = 0; begin < nodes_.size();) {
     const std::size_t end = nodes_.size();
     for (std::size_t n = begin; n < end; ++n) {
+      if (nodes_[n].count <= kernels::kLanes) continue;
       const std::int32_t cut = cutOf(nodes_[n].count);
-      if (cut == 0) continue;
       nodes_[n].left = static_cast<std::int32_t>(nodes_.size());
       Node left;
       left.first = nodes_[n].first;
@@ -182,6 +334,22 @@ ClusterTree::ClusterTree(const Positions& positions, const Faces& faces,
     begin = end;
     levels.push_back(end);
   }
+  const auto listParts = [this](std::int32_t largest) {
+    std::vector<std::int32_t> parts;
+    const auto descend = [&](const auto& self, std::int32_t n) -> void {
+      if (nodes_[n].count <= largest) {
+        parts.push_back(n);
+      } else {
+        self(self, nodes_[n].left);
+        self(self, nodes_[n].left + 1);
+      }
+    };
+    descend(descend, 0);
+    return parts;
+  };
+  blocks_ = listParts(kBlockFaces);
+  groups_ = listParts(kernels::kLanes);
+
   for (std::size_t level = 0; level + 1 < levels.size(); ++level) {
     std::vector<std::int32_t> large;
     for (std::size_t n = levels[level]; n < levels[level + 1]; ++n) {
@@ -193,191 +361,80 @@ ClusterTree::ClusterTree(const Positions& positions, const Faces& faces,
       partitionAt(keys.data() + node.first, node.count, cutOf(node.count));
     });
   }
-  const auto listParts = [this](std::int32_t largest, std::vector<std::int32_t>& parts) {
-    const auto descend = [&](const auto& self, std::int32_t n) -> void {
-      if (nodes_[n].count <= largest) {
-        parts.push_back(n);
-      } else {
-        self(self, nodes_[n].left);
-        self(self, nodes_[n].left + 1);
-      }
-    };
-    descend(descend, 0);
-  };
-  listParts(kTaskFaces, tasks);
-  listParts(kBlockFaces, blocks_);
-  listParts(kernels::kLanes, groups_);
+  const std::vector<std::int32_t> tasks = listParts(kTaskFaces);
   parallelFor(tasks.size(), 1, [&](std::size_t i) {
     const Node& node = nodes_[tasks[i]];
     partitionBelow(keys.data() + node.first, node.count);
   });
 
   order_.resize(members.size());
-  std::vector<FaceMoments> sorted(members.size());
-  parallelFor(members.size(), 1024, [&](std::size_t i) {
-    order_[i] = keys[i].member;
-    sorted[i] = momentsOf(cornersOf(positions, faces, members[order_[i]]));
-  });
-
-  struct Sums {
-    double mass = 0;                 // area, mm^2
-    std::array<double, 6> second{};  // of the area about the centre, mm^4
-  };
-  std::vector<Sums> sums(nodes_.size());
-  moments_.resize(nodes_.size());
-  const double inverseUnit = 1 / unit;
-  const double area = inverseUnit * inverseUnit;
-  const auto measure = [&](std::size_t n) {
-    Node& node = nodes_[n];
-    Sums& m = sums[n];
-    const FaceMoments* face = sorted.data() + node.first;
-    if (node.isLeaf()) {
-      Point mean = Point::Zero();
-      for (std::int32_t i = 0; i < node.count; ++i) {
-        m.mass += face[i].area;
-        node.centre += face[i].area * face[i].centroid;
-        mean += face[i].centroid;
-      }
-      node.centre = m.mass > 0 ? Point(node.centre / m.mass) : Point(mean / node.count);
-      for (std::int32_t i = 0; i < node.count; ++i) {
-        const auto square = outer(face[i].centroid - node.centre);
-        for (int k = 0; k < 6; ++k) m.second[k] += face[i].second[k] + face[i].area * square[k];
-        node.largestFace = std::max(node.largestFace, face[i].radius);
-      }
-    } else {
-      const Node* child = nodes_.data() + node.left;
-      const Sums* part = sums.data() + node.left;
-      m.mass = part[0].mass + part[1].mass;
-      node.centre =
-          m.mass > 0
-              ? Point((part[0].mass * child[0].centre + part[1].mass * child[1].centre) / m.mass)
-              : Point((child[0].centre + child[1].centre) / 2);
-      for (int c = 0; c < 2; ++c) {
-        const auto square = outer(child[c].centre - node.centre);
-        for (int k = 0; k < 6; ++k) m.second[k] += part[c].second[k] + part[c].mass * square[k];
-        node.largestFace = std::max(node.largestFace, child[c].largestFace);
-      }
-    }
-    if (node.count <= 2 * kernels::kLanes) {
-      for (std::int32_t i = 0; i < node.count; ++i) {
-        node.radius =
-            std::max(node.radius, (face[i].centroid - node.centre).norm() + face[i].radius);
-      }
-    } else {  // the ball of its groups' balls
-      const std::int32_t end = (node.first + node.count - 1) / kernels::kLanes;
-      for (std::int32_t g = node.first / kernels::kLanes; g <= end; ++g) {
-        const Node& group = nodes_[groups_[g]];
-        node.radius = std::max(node.radius, (group.centre - node.centre).norm() + group.radius);
-      }
-    }
-    Moments& moments = moments_[n];
-    for (int a = 0; a < 3; ++a) moments.centre[a] = node.centre[a] * inverseUnit;
-    moments.mass = static_cast<float>(m.mass * area);
-    for (int k = 0; k < 6; ++k) moments.second[k] = static_cast<float>(m.second[k] * area * area);
-  };
-  for (std::size_t level = levels.size() - 1; level-- > 0;) {
-    const std::size_t size = levels[level + 1] - levels[level];
-    parallelFor(size, std::max<std::size_t>(64, size / 64),
-                [&](std::size_t i) { measure(levels[level] + i); });
-  }
-
-  const auto reachOf = [&](double radius, double largest) {
-    return static_cast<float>(std::max(radius / opening, kCarry * largest));
-  };
-  balls_.resize(nodes_.size());
-  parallelFor(nodes_.size(), 4096, [&](std::size_t n) {
-    const Node& node = nodes_[n];
-    const Vector offset = (node.centre - nodes_[0].centre) * inverseUnit;
-    const double radius = node.radius * inverseUnit;
-    const double largest = node.largestFace * inverseUnit;
-    Ball& ball = balls_[n];
-    ball = {static_cast<float>(offset[0]),
-            static_cast<float>(offset[1]),
-            static_cast<float>(offset[2]),
-            reachOf(radius, largest),
-            static_cast<float>(radius + (nearRatio - 1) * largest),
-            node.count > kernels::kLanes ? node.left : -1};
-  });
-
   sources_.resize(members.size());
   corners_.resize(members.size());
   vertices_.resize(members.size());
   groupPacks_.resize(groups_.size());
   leafPacks_.resize(4 * groups_.size());
+  std::vector<Part> parts(nodes_.size());
+  const Packer packer(unit, opening, nearRatio);
   parallelFor(groups_.size(), 32, [&](std::size_t g) {
-    const Node& node = nodes_[groups_[g]];
-    for (std::int32_t i = node.first; i < node.first + node.count; ++i) {
-      const std::int32_t face = members[order_[i]];
-      const Corners c = cornersOf(positions, faces, face);
-      for (int k = 0; k < 3; ++k) {
-        vertices_[i][k] = faces(face, k);
-        for (int a = 0; a < 3; ++a) {
-          corners_[i][3 * k + a] = static_cast<float>((c[k][a] - node.centre[a]) / unit);
-        }
-      }
-      kernels::SourceFace& source = sources_[i];
-      const Vector middle = (sorted[i].centroid - node.centre) / unit;
-      for (int a = 0; a < 3; ++a) {
-        source.centroid[a] = static_cast<float>(middle[a]);
-        for (int q = 0; q < 3; ++q) {
-          const double x = (sorted[i].centroid[a] + c[q][a]) / 2 - node.centre[a];
-          source.point[q][a] = static_cast<float>(x / unit);
-        }
-      }
-      for (auto& point : source.point) {
-        point[3] = static_cast<float>(sorted[i].area / 3 / (unit * unit));
-      }
-      source.radius = static_cast<float>(sorted[i].radius / unit);
+    const std::int32_t first = nodes_[groups_[g]].first;
+    const std::int32_t faceCount = nodes_[groups_[g]].count;
+    std::array<Corners, kernels::kLanes> corners;
+    std::array<FaceMoments, kernels::kLanes> moments;
+    for (std::int32_t i = 0; i < faceCount; ++i) {
+      const std::int32_t member = keys[first + i].member;
+      const std::int32_t face = members[member];
+      order_[first + i] = member;
+      for (int k = 0; k < 3; ++k) vertices_[first + i][k] = faces(face, k);
+      corners[i] = cornersOf(positions, faces, face);
+      moments[i] = momentsOf(corners[i]);
     }
-    const auto set = [&](kernels::SourcePack& pack, int entry, const Point& centre, float mass,
-                         const std::array<float, 6>& second, double reach) {
-      pack.x[entry] = static_cast<float>((centre[0] - node.centre[0]) * inverseUnit);
-      pack.y[entry] = static_cast<float>((centre[1] - node.centre[1]) * inverseUnit);
-      pack.z[entry] = static_cast<float>((centre[2] - node.centre[2]) * inverseUnit);
-      pack.reach[entry] = static_cast<float>(reach);
-      pack.part[entry] = {mass, second[0], second[1], second[2], second[3], second[4], second[5]};
-      pack.present |= 1U << entry;
-    };
-    const auto setNode = [&](kernels::SourcePack& pack, int entry, std::int32_t n) {
-      set(pack, entry, nodes_[n].centre, moments_[n].mass, moments_[n].second,
-          std::max(balls_[n].reach, balls_[n].margin));
-    };
-    const auto setFace = [&](kernels::SourcePack& pack, int entry, std::int32_t i) {
-      std::array<float, 6> second;
-      for (int k = 0; k < 6; ++k) {
-        second[k] = static_cast<float>(sorted[i].second[k] * area * area);
-      }
-      const double radius = sorted[i].radius * inverseUnit;
-      set(pack, entry, sorted[i].centroid, static_cast<float>(sorted[i].area * area), second,
-          std::max<double>(reachOf(radius, radius), nearRatio * radius));
-      pack.first[entry - 3] = i;
-    };
-    const auto partsOf = [&](std::int32_t n) {
-      const std::int32_t left = nodes_[n].left;
-      return left < 0 ? std::array{n, -1} : std::array{left, left + 1};
-    };
-    kernels::SourcePack& pack = groupPacks_[g];
-    setNode(pack, 0, groups_[g]);
-    const auto halves = partsOf(groups_[g]);
-    for (int h = 0; h < 2 && halves[h] >= 0; ++h) {
-      setNode(pack, 1 + h, halves[h]);
-      const auto quarters = partsOf(halves[h]);
-      for (int q = 0; q < 2 && quarters[q] >= 0; ++q) {
-        const int quarter = 2 * h + q;
-        setNode(pack, 3 + quarter, quarters[q]);
-        pack.first[quarter] = static_cast<std::int32_t>(4 * g) + quarter;
-        kernels::SourcePack& leaf = leafPacks_[4 * g + static_cast<std::size_t>(quarter)];
-        setNode(leaf, 0, quarters[q]);
-        const auto pairs = partsOf(quarters[q]);
-        for (int p = 0; p < 2 && pairs[p] >= 0; ++p) {
-          setNode(leaf, 1 + p, pairs[p]);
-          const Node& pair = nodes_[pairs[p]];
-          for (std::int32_t i = 0; i < pair.count; ++i) {
-            setFace(leaf, 3 + 2 * p + i, pair.first + i);
-          }
-        }
-      }
+    const Part whole = partOf(moments.data(), faceCount);
+    parts[groups_[g]] = whole;
+    for (std::int32_t i = 0; i < faceCount; ++i) {
+      sources_[first + i] =
+          packer.source(corners[i], moments[i], whole.centre, corners_[first + i]);
     }
+    packer.pack(moments.data(), first, faceCount, whole, static_cast<std::int32_t>(4 * g),
+                groupPacks_[g], leafPacks_.data() + 4 * g);
+  });
+
+  for (std::size_t level = levels.size() - 1; level-- > 0;) {
+    const std::size_t size = levels[level + 1] - levels[level];
+    parallelFor(size, std::max<std::size_t>(64, size / 64), [&](std::size_t i) {
+      const std::size_t n = levels[level] + i;
+      const Node& node = nodes_[n];
+      if (node.isGroup()) return;
+      parts[n] = merged(parts[node.left], parts[node.left + 1]);
+      // The ball of its groups' balls.
+      const std::int32_t end = (node.first + node.count - 1) / kernels::kLanes;
+      for (std::int32_t g = node.first / kernels::kLanes; g <= end; ++g) {
+        const Part& group = parts[groups_[g]];
+        parts[n].radius =
+            std::max(parts[n].radius, (group.centre - parts[n].centre).norm() + group.radius);
+      }
+    });
+  }
+
+  const double inverseUnit = 1 / unit;
+  const double area = inverseUnit * inverseUnit;
+  moments_.resize(nodes_.size());
+  balls_.resize(nodes_.size());
+  parallelFor(nodes_.size(), 1024, [&](std::size_t n) {
+    const Part& part = parts[n];
+    Node& node = nodes_[n];
+    node.centre = part.centre;
+    node.radius = part.radius;
+    node.largestFace = part.largestFace;
+    Moments& moments = moments_[n];
+    for (int a = 0; a < 3; ++a) moments.centre[a] = part.centre[a] * inverseUnit;
+    moments.mass = static_cast<float>(part.area * area);
+    for (int k = 0; k < 6; ++k) {
+      moments.second[k] = static_cast<float>(part.second[k] * area * area);
+    }
+    const Vector offset = (part.centre - parts[0].centre) * inverseUnit;
+    balls_[n] = {static_cast<float>(offset[0]),           static_cast<float>(offset[1]),
+                 static_cast<float>(offset[2]),           static_cast<float>(packer.reach(part)),
+                 static_cast<float>(packer.margin(part)), node.left};
   });
 }
 

@@ -10,9 +10,9 @@
 
 namespace explica::repulsion {
 
-/// Binary tree over faces with the moments of their area.  Each cut runs across the longest side of
-/// the centroids' box, next to the median: at a multiple of sixteen faces, so that all groups but
-/// the last are full, and within a group at a multiple of two.
+/// Binary tree over faces, down to groups of sixteen, with the moments of their area.  Each cut
+/// runs across the longest side of the centroids' box, next to the median: at a multiple of sixteen
+/// faces, so that all groups but the last are full, and within a group at a multiple of two.
 class ClusterTree {
  public:
   struct Node {
@@ -21,9 +21,9 @@ class ClusterTree {
     double largestFace = 0;        ///< largest distance of a face's corner from its centroid, mm
     std::int32_t first = 0;        ///< its faces are first .. first + count of the tree's order
     std::int32_t count = 0;
-    std::int32_t left = -1;  ///< children are left and left + 1; -1 for a leaf
+    std::int32_t left = -1;  ///< children are left and left + 1; -1 for a group
 
-    [[nodiscard]] bool isLeaf() const { return left < 0; }
+    [[nodiscard]] bool isGroup() const { return left < 0; }
   };
 
   /// What a node acts by from afar: centre about the origin, everything in units.

@@ -472,7 +472,9 @@ HWY_INLINE std::uint32_t Examine(const TargetBox& box, const SourcePack& pack, c
     const auto x = away(pack.x, 0);
     const auto y = away(pack.y, 1);
     const auto z = away(pack.z, 2);
-    const auto reach = hn::Add(hn::Load(d, pack.reach + k), hn::Set(d, nearRatio * box.radius));
+    const auto reach =
+        hn::Max(hn::Add(hn::Load(d, pack.reach + k), hn::Set(d, box.radius)),
+                hn::Add(hn::Load(d, pack.margin + k), hn::Set(d, nearRatio * box.radius)));
     const auto fromMiddle = hn::Add(reach, hn::Set(d, box.reach));
     const auto beyondBall = hn::Gt(squaredNorm(d, x, y, z), hn::Mul(fromMiddle, fromMiddle));
     const auto beyondBox =

@@ -52,9 +52,8 @@ struct PartMoments {
 struct alignas(32) SourcePack {
   static constexpr int kEntries = 7;
   float x[8], y[8], z[8];  ///< centres, relative to the group's
-  /// Distance beyond `nearRatio` radii of the targets from which an entry may act as one: its
-  /// moments are enough and none of its faces is near.
-  float reach[8];
+  float reach[8];          ///< distance from a target face from which an entry's moments are enough
+  float margin[8];  ///< distance beyond `nearRatio` radii of a target from which no face is near
   PartMoments part[kEntries];
   std::int32_t first[4];  ///< quarters: the pack below, or the face
   std::uint32_t present;  ///< which entries exist, one bit each
