@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Error beside time of the knot energy's evaluators.  Errors are relative L2, against all pairs, on
-// 200 moving vertices, 50 in surfaces of 327,680 faces (the gradient at a vertex does not depend on
-// what else moves).
+// 200 moving vertices, 25 in surfaces of 327,680 faces (the gradient at a vertex does not depend on
+// what else moves), in the same run.
 //   patches of a pial surface:        --benchmark_filter=Patch
 //   whole closed surfaces:            --benchmark_filter=Closed
 //   ratios of times, within one run:  --benchmark_filter=Ratio
@@ -23,6 +23,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -36,7 +37,7 @@ using namespace explica::repulsion;
 
 /// Vertices at which the error is measured.
 std::size_t sampleCount(Eigen::Index faces) {
-  return faces > 100000 ? 50 : 200;
+  return faces > 100000 ? 25 : 200;
 }
 
 /// FreeSurfer's binary triangles: three bytes of magic, two lines of comment, big-endian numbers.
@@ -75,7 +76,7 @@ struct Scene {
   KnotValue exact;  // of the sampled vertices
 };
 
-void finish(Scene& scene, bool withTruth) {
+void finish(Scene& scene) {
   const auto& f = scene.mesh.faces;
   std::vector<std::size_t> moving;
   for (std::size_t v = 0; v < scene.moves.size(); ++v) {
@@ -87,7 +88,7 @@ void finish(Scene& scene, bool withTruth) {
   scene.sampled.assign(scene.moves.size(), false);
   const std::size_t step = std::max<std::size_t>(1, moving.size() / sampleCount(f.rows()));
   for (std::size_t i = 0; i < moving.size(); i += step) scene.sampled[moving[i]] = true;
-  if (withTruth) scene.exact = AllPairs(scene.mesh, scene.sampled).evaluate(scene.mesh.positions);
+  scene.exact = AllPairs(scene.mesh, scene.sampled).evaluate(scene.mesh.positions);
 }
 
 /// Patch of fsaverage5's left pial surface after `levels` subdivisions: within 27.5 mm, about 1,500
@@ -109,7 +110,7 @@ const Scene& patch(int levels, double radius) {
     scene.moves[static_cast<std::size_t>(v)] =
         (scene.mesh.positions.row(v) - scene.mesh.positions.row(centre)).norm() < radius;
   }
-  finish(scene, true);
+  finish(scene);
   return scene;
 }
 
@@ -120,11 +121,12 @@ const Scene& closed(int levels, bool folded) {
   Scene& scene = scenes[key];
   scene.mesh = folded ? geometry::makeFoldedSphere(levels) : geometry::makeIcosphere(levels);
   scene.moves.assign(static_cast<std::size_t>(scene.mesh.vertexCount()), true);
-  finish(scene, true);
+  finish(scene);
   return scene;
 }
 
-void report(benchmark::State& state, const Scene& scene, const KnotValue& found) {
+/// Relative L2 error of the gradient at the sampled vertices.
+double gradientError(const Scene& scene, const KnotValue& found) {
   double difference = 0;
   double size = 0;
   for (std::size_t v = 0; v < scene.sampled.size(); ++v) {
@@ -133,9 +135,14 @@ void report(benchmark::State& state, const Scene& scene, const KnotValue& found)
     difference += (found.gradient.row(row) - scene.exact.gradient.row(row)).squaredNorm();
     size += scene.exact.gradient.row(row).squaredNorm();
   }
-  state.counters["faces"] = static_cast<double>(scene.mesh.faceCount());
-  state.counters["moving"] = static_cast<double>(scene.movingFaces);
-  state.counters["gradient_error"] = std::sqrt(difference / size);
+  return std::sqrt(difference / size);
+}
+
+template <class Evaluator, class... Options>
+double valueError(const Scene& scene, const Options&... options) {
+  const KnotValue found =
+      Evaluator(scene.mesh, scene.sampled, options...).evaluate(scene.mesh.positions);
+  return std::abs(found.value / scene.exact.value - 1);
 }
 
 template <class Evaluator, class... Options>
@@ -147,10 +154,13 @@ void run(benchmark::State& state, const Scene& scene, const Options&... options)
   const Evaluator evaluator(scene.mesh, scene.moves, options...);
   KnotValue found;
   for (auto _ : state) found = evaluator.evaluate(scene.mesh.positions);
-  report(state, scene, found);
-  const double value =
-      Evaluator(scene.mesh, scene.sampled, options...).evaluate(scene.mesh.positions).value;
-  state.counters["value_error"] = std::abs(value / scene.exact.value - 1);
+  state.counters["faces"] = static_cast<double>(scene.mesh.faceCount());
+  state.counters["moving"] = static_cast<double>(scene.movingFaces);
+  state.counters["s_per_moving"] = benchmark::Counter(
+      static_cast<double>(scene.movingFaces),
+      benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  state.counters["gradient_error"] = gradientError(scene, found);
+  state.counters["value_error"] = valueError<Evaluator>(scene, options...);
 }
 
 void PatchTree(benchmark::State& state) {
@@ -209,60 +219,85 @@ void ClosedCentroidPairs(benchmark::State& state) {
   state.counters["faces"] = static_cast<double>(mesh.faceCount());
 }
 
-/// Least of `runs` times in ms.
+/// Least of some runs' times in ms.
+struct Times {
+  double wall = std::numeric_limits<double>::infinity();
+  double processor = std::numeric_limits<double>::infinity();  ///< of all threads
+};
+
 template <class Work>
-double leastTime(int runs, const Work& work) {
-  double least = std::numeric_limits<double>::infinity();
+Times leastTimes(int runs, const Work& work) {
+  Times least;
   for (int run = 0; run < runs; ++run) {
     const auto start = std::chrono::steady_clock::now();
+    const std::clock_t used = std::clock();
     work();
+    const double processor = 1e3 * static_cast<double>(std::clock() - used) / CLOCKS_PER_SEC;
     const std::chrono::duration<double, std::milli> passed =
         std::chrono::steady_clock::now() - start;
-    least = std::min(least, passed.count());
+    least.wall = std::min(least.wall, passed.count());
+    least.processor = std::min(least.processor, processor);
   }
   return least;
 }
 
-double treeTime(int runs, const TriangleMesh& mesh, const std::vector<bool>& moves) {
-  const MultipoleTree tree(mesh, moves);
-  return leastTime(runs, [&] { benchmark::DoNotOptimize(tree.evaluate(mesh.positions).value); });
+Times treeTimes(int runs, const Scene& scene) {
+  const MultipoleTree tree(scene.mesh, scene.moves);
+  return leastTimes(runs,
+                    [&] { benchmark::DoNotOptimize(tree.evaluate(scene.mesh.positions).value); });
 }
 
-double closedTreeTime(int runs, const TriangleMesh& mesh) {
-  return treeTime(runs, mesh,
-                  std::vector<bool>(static_cast<std::size_t>(mesh.vertexCount()), true));
+void reportTimes(benchmark::State& state, const std::string& name, const Times& times) {
+  state.counters[name + "_ms"] = times.wall;
+  state.counters[name + "_processor_ms"] = times.processor;
+}
+
+void reportRatio(benchmark::State& state, const std::string& name, const Times& over,
+                 const Times& under) {
+  state.counters[name] = over.wall / under.wall;
+  state.counters[name + "_processor"] = over.processor / under.processor;
+}
+
+Scene closedWithoutTruth(int levels, bool folded) {
+  Scene scene;
+  scene.mesh = folded ? geometry::makeFoldedSphere(levels) : geometry::makeIcosphere(levels);
+  scene.moves.assign(static_cast<std::size_t>(scene.mesh.vertexCount()), true);
+  return scene;
 }
 
 /// The multipole tree against plain sums over all pairs, whole closed surfaces of 81,920 faces.
 void RatioToCentroidPairs(benchmark::State& state) {
-  const TriangleMesh sphere = geometry::makeIcosphere(6);
+  const Scene sphere = closedWithoutTruth(6, false);
   for (auto _ : state) {
-    const double tree = closedTreeTime(7, sphere);
-    const double folded = closedTreeTime(7, geometry::makeFoldedSphere(6));
-    CentroidPairs<float> singles(sphere);
-    CentroidPairs<double> doubles(sphere);
-    const double single = leastTime(3, [&] { singles.sum(); });
-    const double twice = leastTime(2, [&] { doubles.sum(); });
-    state.counters["tree_ms"] = tree;
-    state.counters["folded_tree_ms"] = folded;
-    state.counters["single_ms"] = single;
-    state.counters["double_ms"] = twice;
-    state.counters["single_over_tree"] = single / tree;
-    state.counters["double_over_tree"] = twice / tree;
+    const Times tree = treeTimes(10, sphere);
+    const Times folded = treeTimes(10, closedWithoutTruth(6, true));
+    CentroidPairs<float> singles(sphere.mesh);
+    CentroidPairs<double> doubles(sphere.mesh);
+    const Times single = leastTimes(4, [&] { singles.sum(); });
+    const Times twice = leastTimes(2, [&] { doubles.sum(); });
+    reportTimes(state, "tree", tree);
+    reportTimes(state, "folded", folded);
+    reportTimes(state, "single", single);
+    reportTimes(state, "double", twice);
+    reportRatio(state, "single_over_tree", single, tree);
+    reportRatio(state, "single_over_folded", single, folded);
+    reportRatio(state, "double_over_tree", twice, tree);
+    reportRatio(state, "double_over_folded", twice, folded);
   }
 }
 
 /// Time of 327,680 faces over that of 20,480.
 void RatioOfGrowth(benchmark::State& state) {
   for (auto _ : state) {
-    state.counters["icosphere"] = closedTreeTime(5, geometry::makeIcosphere(7)) /
-                                  closedTreeTime(20, geometry::makeIcosphere(5));
-    state.counters["folded"] = closedTreeTime(5, geometry::makeFoldedSphere(7)) /
-                               closedTreeTime(20, geometry::makeFoldedSphere(5));
+    for (const bool folded : {false, true}) {
+      const Times coarse = treeTimes(20, closedWithoutTruth(5, folded));
+      const Times fine = treeTimes(6, closedWithoutTruth(7, folded));
+      reportRatio(state, folded ? "folded" : "icosphere", fine, coarse);
+    }
   }
 }
 
-/// The thesis's tree, at the options whose error is nearest to ours from above, over ours.
+/// The thesis's tree at three options over ours, with the errors of all.
 void RatioToThesisTree(benchmark::State& state) {
   const Scene& scene = patch(0, 27.5);
   if (scene.mesh.faceCount() == 0) {
@@ -270,16 +305,22 @@ void RatioToThesisTree(benchmark::State& state) {
     return;
   }
   for (auto _ : state) {
-    const double tree = treeTime(20, scene.mesh, scene.moves);
-    state.counters["tree_ms"] = tree;
+    const Times tree = treeTimes(50, scene);
+    reportTimes(state, "tree", tree);
+    state.counters["tree_gradient_error"] =
+        gradientError(scene, MultipoleTree(scene.mesh, scene.moves).evaluate(scene.mesh.positions));
+    state.counters["tree_value_error"] = valueError<MultipoleTree>(scene);
     for (const ThesisTreeOptions& options :
          {ThesisTreeOptions{2, 0.02}, ThesisTreeOptions{}, ThesisTreeOptions{6, 0.002}}) {
       const ThesisTree thesis(scene.mesh, scene.moves, options);
-      const double time = leastTime(
-          3, [&] { benchmark::DoNotOptimize(thesis.evaluate(scene.mesh.positions).value); });
+      KnotValue found;
+      const Times times = leastTimes(5, [&] { found = thesis.evaluate(scene.mesh.positions); });
       const auto name = "thesis_" + std::to_string(static_cast<int>(options.nearDistance)) + "_" +
-                        std::to_string(std::lround(1000 * options.relativeError)) + "_over_tree";
-      state.counters[name] = time / tree;
+                        std::to_string(std::lround(1000 * options.relativeError));
+      reportTimes(state, name, times);
+      reportRatio(state, name + "_over_tree", times, tree);
+      state.counters[name + "_gradient_error"] = gradientError(scene, found);
+      state.counters[name + "_value_error"] = valueError<ThesisTree>(scene, options);
     }
   }
 }
@@ -290,6 +331,7 @@ BENCHMARK(PatchTree)
     ->Args({2, 55})
     ->Args({2, 100})
     ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
     ->UseRealTime();
 BENCHMARK(PatchThesisTree)
     ->Args({2, 20})
@@ -297,21 +339,37 @@ BENCHMARK(PatchThesisTree)
     ->Args({6, 2})
     ->Iterations(1)
     ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
     ->UseRealTime();
 BENCHMARK(ClosedTree)
     ->ArgsProduct({{3, 4, 5, 6, 7}, {0, 1}})
     ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
     ->UseRealTime();
 BENCHMARK(ClosedCentroidPairs<float>)
     ->DenseRange(3, 6)
     ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
     ->UseRealTime();
 BENCHMARK(ClosedCentroidPairs<double>)
     ->DenseRange(3, 6)
     ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
     ->UseRealTime();
-BENCHMARK(RatioToCentroidPairs)->Iterations(1)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(RatioOfGrowth)->Iterations(1)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(RatioToThesisTree)->Iterations(1)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(RatioToCentroidPairs)
+    ->Iterations(1)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
+BENCHMARK(RatioOfGrowth)
+    ->Iterations(1)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
+BENCHMARK(RatioToThesisTree)
+    ->Iterations(1)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
 
 }  // namespace

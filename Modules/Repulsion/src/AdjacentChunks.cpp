@@ -133,19 +133,21 @@ std::vector<AdjacentChunks::Chunk> AdjacentChunks::cut(const MovingSet& set,
 }
 
 template <class Kind>
-AdjacentChunks::Sum AdjacentChunks::sumOf(const Chunk& chunk, const Positions& positions,
-                                          const std::vector<FaceArea>& allAreas, double unit) {
+void AdjacentChunks::sumUp(const Chunk& chunk, const Positions& positions,
+                           const std::vector<FaceArea>& allAreas, double unit, Sum& sum) {
   constexpr int kArms = Kind::kArms;
   constexpr int kLanes = kernels::kLanes;
-  std::vector<Point> x(chunk.vertices.size());
+  std::vector<Point>& x = sum.positions;
+  x.resize(chunk.vertices.size());
   for (std::size_t v = 0; v < x.size(); ++v) x[v] = positions.row(chunk.vertices[v]).transpose();
   const auto areaOf = [&](std::int32_t face) -> const FaceArea& {
     return allAreas[chunk.areas[face]];
   };
   const double inverseUnit = 1 / unit;
-  Sum sum;
+  sum.value = 0;
   sum.gradient.assign(x.size(), Vector::Zero());
-  std::vector<double> byArea(chunk.faces.size(), 0.0);  // derivative by each face's area
+  std::vector<double>& byArea = sum.byArea;
+  byArea.assign(chunk.faces.size(), 0.0);
 
   // Adds what a batch of means contributes; its derivatives are used up.
   const auto add = [&](typename Kind::Batch& batch, const std::array<const Pair*, kLanes>& pairs,
@@ -255,16 +257,19 @@ AdjacentChunks::Sum AdjacentChunks::sumOf(const Chunk& chunk, const Positions& p
     const Vector scaled = byArea[f] * areaOf(static_cast<std::int32_t>(f)).normal;
     for (int k = 0; k < 3; ++k) sum.gradient[v[k]] += areaByCorner(scaled, corners, k);
   }
-  return sum;
 }
 
 void AdjacentChunks::add(const Positions& positions, const std::vector<FaceArea>& areas,
-                         double unit, double& value, Positions& gradient) const {
+                         double unit, std::vector<Sum>& sums, double& value,
+                         Positions& gradient) const {
   const std::size_t edges = edgeChunks_.size();
-  std::vector<Sum> sums(edges + vertexChunks_.size());
+  sums.resize(edges + vertexChunks_.size());
   parallelFor(sums.size(), 1, [&](std::size_t c) {
-    sums[c] = c < edges ? sumOf<EdgeKind>(edgeChunks_[c], positions, areas, unit)
-                        : sumOf<VertexKind>(vertexChunks_[c - edges], positions, areas, unit);
+    if (c < edges) {
+      sumUp<EdgeKind>(edgeChunks_[c], positions, areas, unit, sums[c]);
+    } else {
+      sumUp<VertexKind>(vertexChunks_[c - edges], positions, areas, unit, sums[c]);
+    }
   });
   for (const Sum& sum : sums) value += sum.value;
   parallelFor(placesBegin_.size() - 1, 4096, [&](std::size_t v) {

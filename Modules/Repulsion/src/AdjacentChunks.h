@@ -18,11 +18,20 @@ class AdjacentChunks {
   /// @param rank  of each face: pairs are sorted by that of their first face
   AdjacentChunks(const MovingSet& set, const std::vector<std::int32_t>& rank);
 
+  /// What a chunk contributes; kept between calls for its memory.
+  struct Sum {
+    double value = 0;
+    std::vector<Vector> gradient;  // by the chunk's vertices
+    std::vector<double> byArea;    // derivative by each face's area
+    std::vector<Point> positions;
+  };
+
   /// Adds the energy of both orders of every pair to `value`, its derivatives to `gradient` (V x
   /// 3).
   /// @param areas  of the set's involved faces
+  /// @param sums   scratch
   void add(const Positions& positions, const std::vector<FaceArea>& areas, double unit,
-           double& value, Positions& gradient) const;
+           std::vector<Sum>& sums, double& value, Positions& gradient) const;
 
  private:
   /// A pair within its chunk: the common corners come first, then those of S, then those of T.
@@ -37,10 +46,6 @@ class AdjacentChunks {
     std::vector<std::int32_t> areas;                 // of the faces, among the involved ones
     std::vector<Pair> pairs;
   };
-  struct Sum {
-    double value = 0;
-    std::vector<Vector> gradient;
-  };
   struct EdgeKind;
   struct VertexKind;
 
@@ -48,8 +53,8 @@ class AdjacentChunks {
                                 const std::vector<std::int32_t>& rank,
                                 const std::vector<std::int32_t>& involved, bool edges);
   template <class Kind>
-  static Sum sumOf(const Chunk& chunk, const Positions& positions,
-                   const std::vector<FaceArea>& areas, double unit);
+  static void sumUp(const Chunk& chunk, const Positions& positions,
+                    const std::vector<FaceArea>& areas, double unit, Sum& sum);
 
   /// A vertex of a chunk: edge chunks count first.
   struct Place {

@@ -15,10 +15,8 @@
 namespace explica::repulsion {
 namespace {
 
-struct Key {
-  std::array<float, 3> centroid;
-  std::int32_t member;
-};
+using Key = FaceKey;
+using Part = ClusterSum;
 
 struct FaceMoments {
   Point centroid;
@@ -130,15 +128,6 @@ void partitionBelow(Key* keys, std::int32_t count) {
 // for the extent of both.
 constexpr double kCarry = 2.5;
 
-/// Faces seen as one.
-struct Part {
-  Point centre = Point::Zero();    // centroid of the area, mm
-  double area = 0;                 // mm^2
-  std::array<double, 6> second{};  // xx, yy, zz, xy, xz, yz of the area about the centre, mm^4
-  double radius = 0;               // of the ball about the centre that holds the faces, mm
-  double largestFace = 0;          // largest distance of a face's corner from its centroid, mm
-};
-
 Part partOf(const FaceMoments* faces, std::int32_t count) {
   Part part;
   Point mean = Point::Zero();
@@ -215,6 +204,8 @@ class Packer {
   /// @param leaves  number of the first of the four packs at `quarters`
   void pack(const FaceMoments* moments, std::int32_t first, std::int32_t count, const Part& whole,
             std::int32_t leaves, kernels::SourcePack& pack, kernels::SourcePack* quarters) const {
+    pack.present = 0;
+    for (int q = 0; q < 4; ++q) quarters[q].present = 0;
     set(pack, 0, whole, whole.centre);
     const auto halves = partsOf({0, count});
     for (int h = 0; h < 2 && halves[h].count > 0; ++h) {
@@ -298,12 +289,17 @@ kernels::FarNode farNode(const ClusterTree::Moments& m, const std::array<double,
   return node;
 }
 
-ClusterTree::ClusterTree(const Positions& positions, const Faces& faces,
-                         const std::vector<std::int32_t>& members, double unit, double opening,
-                         double nearRatio) {
+void ClusterTree::build(const Positions& positions, const Faces& faces,
+                        const std::vector<std::int32_t>& members, double unit, double opening,
+                        double nearRatio) {
   const auto count = static_cast<std::int32_t>(members.size());
+  order_.resize(members.size());
+  nodes_.clear();
+  blocks_.clear();
+  groups_.clear();
   if (count == 0) return;
-  std::vector<Key> keys(members.size());
+  keys_.resize(members.size());
+  std::vector<Key>& keys = keys_;
   parallelFor(members.size(), 4096, [&](std::size_t i) {
     const Corners c = cornersOf(positions, faces, members[i]);
     const Point centroid = (c[0] + c[1] + c[2]) / 3;
@@ -367,13 +363,13 @@ ClusterTree::ClusterTree(const Positions& positions, const Faces& faces,
     partitionBelow(keys.data() + node.first, node.count);
   });
 
-  order_.resize(members.size());
   sources_.resize(members.size());
   corners_.resize(members.size());
   vertices_.resize(members.size());
   groupPacks_.resize(groups_.size());
   leafPacks_.resize(4 * groups_.size());
-  std::vector<Part> parts(nodes_.size());
+  std::vector<Part>& parts = sums_;
+  parts.assign(nodes_.size(), Part());
   const Packer packer(unit, opening, nearRatio);
   parallelFor(groups_.size(), 32, [&](std::size_t g) {
     const std::int32_t first = nodes_[groups_[g]].first;

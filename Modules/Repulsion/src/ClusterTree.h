@@ -10,6 +10,21 @@
 
 namespace explica::repulsion {
 
+/// What a face is sorted by.
+struct FaceKey {
+  std::array<float, 3> centroid;
+  std::int32_t member;
+};
+
+/// Faces seen as one.
+struct ClusterSum {
+  Point centre = Point::Zero();    ///< centroid of the area, mm
+  double area = 0;                 ///< mm^2
+  std::array<double, 6> second{};  ///< xx, yy, zz, xy, xz, yz of the area about the centre, mm^4
+  double radius = 0;               ///< of the ball about the centre that holds the faces, mm
+  double largestFace = 0;          ///< largest distance of a face's corner from its centroid, mm
+};
+
 /// Binary tree over faces, down to groups of sixteen, with the moments of their area.  Each cut
 /// runs across the longest side of the centroids' box, next to the median: at a multiple of sixteen
 /// faces, so that all groups but the last are full, and within a group at a multiple of two.
@@ -40,14 +55,16 @@ class ClusterTree {
     std::int32_t left;  ///< -1 for groups
   };
 
+  /// A tree over no faces.
   ClusterTree() = default;
+  /// Builds the tree, in the memory of the one before.
   /// @param unit       lengths are in multiples of it unless said otherwise, mm
   /// @param opening    share of the distance up to which a node's radius may be for it to act as
   /// one
   /// @param nearRatio  faces are near whose centroids are nearer than this many sums of radii
-  ClusterTree(const Positions& positions, const Faces& faces,
-              const std::vector<std::int32_t>& members, double unit, double opening,
-              double nearRatio);
+  void build(const Positions& positions, const Faces& faces,
+             const std::vector<std::int32_t>& members, double unit, double opening,
+             double nearRatio);
 
   [[nodiscard]] bool empty() const { return order_.empty(); }
   [[nodiscard]] const std::vector<Node>& nodes() const { return nodes_; }
@@ -76,7 +93,9 @@ class ClusterTree {
   }
 
  private:
-  std::vector<Node> nodes_;  // parents before children, level by level
+  std::vector<FaceKey> keys_;
+  std::vector<ClusterSum> sums_;  // of each node
+  std::vector<Node> nodes_;       // parents before children, level by level
   std::vector<Moments> moments_;
   std::vector<Ball> balls_;
   std::vector<kernels::SourcePack> groupPacks_;

@@ -268,31 +268,34 @@ struct Lists {
   std::vector<std::uint16_t> targetsAt;  // of each vertex: the group's faces that have it
 };
 
-/// Lists that tasks take in turns.
-class ListsPool {
+/// Things that tasks take in turns, for their memory.
+template <class T>
+class Pool {
  public:
-  explicit ListsPool(std::size_t vertexCount) : vertexCount_(vertexCount) {}
-
-  [[nodiscard]] std::unique_ptr<Lists> take() {
+  [[nodiscard]] std::unique_ptr<T> take() {
     const std::scoped_lock lock(mutex_);
-    if (free_.empty()) {
-      auto lists = std::make_unique<Lists>();
-      lists->targetsAt.assign(vertexCount_, 0);
-      return lists;
-    }
-    std::unique_ptr<Lists> lists = std::move(free_.back());
-    free_.pop_back();
-    return lists;
+    if (idle_.empty()) return std::make_unique<T>();
+    std::unique_ptr<T> thing = std::move(idle_.back());
+    idle_.pop_back();
+    return thing;
   }
-  void giveBack(std::unique_ptr<Lists> lists) {
+  void giveBack(std::unique_ptr<T> thing) {
     const std::scoped_lock lock(mutex_);
-    free_.push_back(std::move(lists));
+    idle_.push_back(std::move(thing));
   }
 
  private:
-  std::size_t vertexCount_;
   std::mutex mutex_;
-  std::vector<std::unique_ptr<Lists>> free_;
+  std::vector<std::unique_ptr<T>> idle_;
+};
+
+/// What an evaluation writes besides its result.
+struct Workspace {
+  ClusterTree movingTree;
+  std::vector<FaceArea> areas;
+  std::vector<FaceForce> forces;
+  std::vector<AdjacentChunks::Sum> adjacent;
+  Pool<Lists> lists;
 };
 
 std::array<float, 3> difference(const std::array<double, 3>& a, const std::array<double, 3>& b) {
@@ -310,6 +313,7 @@ struct MultipoleTree::State {
   double unit = 1;  // mm, a power of two next to the mean face size
   ClusterTree fixedTree;
   AdjacentChunks adjacent;
+  mutable Pool<Workspace> workspaces;
 
   /// What `nearRatio` adds to the radius of the largest of some targets, in units.
   [[nodiscard]] float marginOf(const ClusterTree::Node& targets) const {
@@ -349,10 +353,11 @@ MultipoleTree::MultipoleTree(const TriangleMesh& mesh, const std::vector<bool>& 
     const double size = std::sqrt(area / static_cast<double>(state->set.moving.size()));
     state->unit = std::exp2(std::round(std::log2(size)));
   }
-  state->fixedTree = ClusterTree(mesh.positions, mesh.faces, state->set.fixed, state->unit,
-                                 options.opening, options.nearRatio);
-  const ClusterTree movingTree(mesh.positions, mesh.faces, state->set.moving, state->unit,
-                               options.opening, options.nearRatio);
+  state->fixedTree.build(mesh.positions, mesh.faces, state->set.fixed, state->unit, options.opening,
+                         options.nearRatio);
+  ClusterTree movingTree;
+  movingTree.build(mesh.positions, mesh.faces, state->set.moving, state->unit, options.opening,
+                   options.nearRatio);
   std::vector<std::int32_t> rank(static_cast<std::size_t>(mesh.faceCount()), 0);
   for (std::size_t i = 0; i < movingTree.order().size(); ++i) {
     rank[state->set.moving[movingTree.order()[i]]] = static_cast<std::int32_t>(i);
@@ -545,28 +550,31 @@ void MultipoleTree::State::sumLeaf(const Positions& positions, const std::vector
 KnotValue MultipoleTree::evaluate(const Positions& positions) const {
   const State& state = *state_;
   state.set.requireVertexCount(positions);
-  const ClusterTree movingTree(positions, state.set.faces, state.set.moving, state.unit,
-                               state.options.opening, state.options.nearRatio);
-  std::vector<FaceArea> areas(state.set.involved.size());
-  parallelFor(areas.size(), 1024, [&](std::size_t i) {
-    areas[i] = faceArea(cornersOf(positions, state.set.faces, state.set.involved[i]));
+  std::unique_ptr<Workspace> work = state.workspaces.take();
+  work->movingTree.build(positions, state.set.faces, state.set.moving, state.unit,
+                         state.options.opening, state.options.nearRatio);
+  work->areas.resize(state.set.involved.size());
+  parallelFor(work->areas.size(), 1024, [&](std::size_t i) {
+    work->areas[i] = faceArea(cornersOf(positions, state.set.faces, state.set.involved[i]));
   });
-  std::vector<FaceForce> forces(state.set.moving.size());
-  const std::vector<std::int32_t>& blocks = movingTree.blocks();
-  ListsPool pool(state.set.vertexMoves.size());
+  work->forces.resize(state.set.moving.size());
+  const std::vector<std::int32_t>& blocks = work->movingTree.blocks();
   parallelForBlocks(blocks.size(), std::clamp<std::size_t>(blocks.size() / 64, 1, 8),
                     [&](std::size_t begin, std::size_t end) {
-                      std::unique_ptr<Lists> lists = pool.take();
+                      std::unique_ptr<Lists> lists = work->lists.take();
+                      lists->targetsAt.resize(state.set.vertexMoves.size(), 0);
                       for (std::size_t b = begin; b < end; ++b) {
-                        state.sumBlock(positions, areas, movingTree, blocks[b], *lists, forces);
+                        state.sumBlock(positions, work->areas, work->movingTree, blocks[b], *lists,
+                                       work->forces);
                       }
-                      pool.giveBack(std::move(lists));
+                      work->lists.giveBack(std::move(lists));
                     });
 
   KnotValue result;
   result.gradient.setZero(positions.rows(), 3);
-  state.adjacent.add(positions, areas, state.unit, result.value, result.gradient);
-  for (const FaceForce& force : forces) result.value += force.value;
+  state.adjacent.add(positions, work->areas, state.unit, work->adjacent, result.value,
+                     result.gradient);
+  for (const FaceForce& force : work->forces) result.value += force.value;
   parallelFor(state.set.vertexMoves.size(), 4096, [&](std::size_t v) {
     auto row = result.gradient.row(static_cast<Eigen::Index>(v));
     if (!state.set.vertexMoves[v]) {
@@ -574,9 +582,10 @@ KnotValue MultipoleTree::evaluate(const Positions& positions) const {
       return;
     }
     for (const FaceCorner& at : state.set.movingAround(v)) {
-      row += forces[at.face].byCorner[at.corner].transpose();
+      row += work->forces[at.face].byCorner[at.corner].transpose();
     }
   });
+  state.workspaces.giveBack(std::move(work));
   return result;
 }
 

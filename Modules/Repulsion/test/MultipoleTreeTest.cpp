@@ -69,12 +69,39 @@ TEST(MultipoleTree, ErrorFallsWithTheOpening) {
   const auto error = [&](double opening) {
     MultipoleTreeOptions options;
     options.opening = opening;
+    options.nearRatio = 1.3;  // so that near pairs do not hide it
     const KnotValue v = MultipoleTree(sphere, moves, options).evaluate(sphere.positions);
     return (v.gradient - exact.gradient).norm() / exact.gradient.norm();
   };
   const double coarse = error(0.8);
   EXPECT_LT(error(0.3), 0.5 * coarse);
   EXPECT_LT(error(0.3), 1e-3);
+}
+
+TEST(MultipoleTree, ErrorFallsWithTheNearRatio) {
+  const TriangleMesh sphere = geometry::makeIcosphere(3);
+  const KnotValue exact = AllPairs(sphere, all(sphere)).evaluate(sphere.positions);
+  const auto error = [&](double nearRatio) {
+    const KnotValue v =
+        MultipoleTree(sphere, all(sphere), {0.25, nearRatio}).evaluate(sphere.positions);
+    return (v.gradient - exact.gradient).norm() / exact.gradient.norm();
+  };
+  EXPECT_LT(error(2), 0.6 * error(1));
+  EXPECT_LT(error(MultipoleTreeOptions().nearRatio), 2e-3);
+}
+
+TEST(MultipoleTree, GivesTheSameWhenItsMemoryIsUsedAgain) {
+  const TriangleMesh folded = geometry::makeFoldedSphere(3);
+  const MultipoleTree tree(folded, cap(folded, 0.3));
+  const KnotValue first = tree.evaluate(folded.positions);
+  Positions moved = folded.positions;
+  for (Eigen::Index v = 0; v < moved.rows(); ++v) {
+    if (moved(v, 2) > 0.3) moved(v, 0) *= 1.2;
+  }
+  EXPECT_NE(tree.evaluate(moved).value, first.value);
+  const KnotValue again = tree.evaluate(folded.positions);
+  EXPECT_EQ(again.value, first.value);
+  EXPECT_EQ(again.gradient, first.gradient);
 }
 
 TEST(MultipoleTree, FollowsPositionsAwayFromThoseOfItsConstruction) {
