@@ -13,11 +13,15 @@
 namespace explica::planar {
 namespace {
 
-void unfold(benchmark::State& state, const PolygonPhantom& phantom, PolygonMethod method) {
+enum class Without { Nothing, Length, Topology };
+
+void unfold(benchmark::State& state, const PolygonPhantom& phantom, PolygonMethod method,
+            Without without) {
   const Region region = regionBetween(phantom.curve, phantom.first, phantom.last);
   PolygonUnfoldingOptions options;
   options.method = method;
-  if (method == PolygonMethod::Thesis) options.targetVisibility = 0.99;
+  options.noLength = without == Without::Length;
+  options.noTopology = without == Without::Topology;
   PolygonUnfolding result;
   for (auto _ : state) {
     result = unfoldPolygon(phantom.curve, region, phantom.viewpoint, options);
@@ -27,8 +31,9 @@ void unfold(benchmark::State& state, const PolygonPhantom& phantom, PolygonMetho
   state.counters["iterations"] = end.iteration;
   state.counters["visibility"] = end.visibility;
   state.counters["variance"] = end.variance;
+  state.counters["length"] = end.length;
   state.counters["length_change"] = end.length / result.history.front().length - 1;
-  state.counters["crossings"] = static_cast<double>(result.intersectionsFinal.size());
+  state.counters["first_crossing"] = result.firstCrossing;
   state.counters["topology_share"] = result.secondsTopology / result.seconds;
 }
 
@@ -54,13 +59,26 @@ void knot(benchmark::State& state, PolygonKnot method) {
       (value.gradient - exact.gradient).norm() / exact.gradient.norm();
 }
 
-BENCHMARK_CAPTURE(unfold, polygon19_implicit, makePolygon19(), PolygonMethod::Implicit)
+BENCHMARK_CAPTURE(unfold, polygon19_implicit, makePolygon19(), PolygonMethod::Implicit,
+                  Without::Nothing)
     ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(unfold, polygon19_thesis, makePolygon19(), PolygonMethod::Thesis)
+BENCHMARK_CAPTURE(unfold, polygon34_implicit, makePolygon34(), PolygonMethod::Implicit,
+                  Without::Nothing)
     ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(unfold, polygon34_implicit, makePolygon34(), PolygonMethod::Implicit)
+BENCHMARK_CAPTURE(unfold, polygon34_no_length, makePolygon34(), PolygonMethod::Implicit,
+                  Without::Length)
     ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(unfold, polygon34_thesis, makePolygon34(), PolygonMethod::Thesis)
+BENCHMARK_CAPTURE(unfold, polygon34_no_topology, makePolygon34(), PolygonMethod::Implicit,
+                  Without::Topology)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(unfold, polygon19_thesis, makePolygon19(), PolygonMethod::Thesis,
+                  Without::Nothing)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(unfold, polygon34_thesis, makePolygon34(), PolygonMethod::Thesis,
+                  Without::Nothing)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(unfold, polygon34_no_length_thesis, makePolygon34(), PolygonMethod::Thesis,
+                  Without::Length)
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(knot, all_pairs, PolygonKnot::AllPairs)->RangeMultiplier(4)->Range(128, 2048);
 BENCHMARK_CAPTURE(knot, tree, PolygonKnot::Tree)->RangeMultiplier(4)->Range(128, 2048);

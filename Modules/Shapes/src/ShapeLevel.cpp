@@ -17,26 +17,26 @@
 namespace explica::shapes {
 namespace {
 
-/// Newton steps along the gradient onto u = 1/2, at most a voxel in all.
+/// Steps along the gradient onto u = 1/2, at most half a voxel in all.  The gradient is that of the
+/// start: three such steps end nearer to the level than two of Newton's, for less.
 void moveOntoLevel(const HarmonicShape& shape, double voxel, Positions& points) {
   const int axes = shape.annulus.dimension;
   const Positions start = points;
   const double h = 1e-3 * voxel;
-  for (int k = 0; k < 2; ++k) {
+  Positions gradient = Positions::Zero(points.rows(), 3);
+  for (int axis = 0; axis < axes; ++axis) {
+    Positions moved = points;
+    moved.col(axis).array() += h;
+    gradient.col(axis) = valuesAt(shape, moved);
+    moved.col(axis).array() -= 2 * h;
+    gradient.col(axis) = (gradient.col(axis) - valuesAt(shape, moved)) / (2 * h);
+  }
+  for (int k = 0; k < 3; ++k) {
     const Eigen::VectorXd excess = (valuesAt(shape, points).array() - 0.5).matrix();
-    Positions gradient = Positions::Zero(points.rows(), 3);
-    for (int axis = 0; axis < axes; ++axis) {
-      Positions moved = points;
-      moved.col(axis).array() += h;
-      gradient.col(axis) = valuesAt(shape, moved);
-      moved.col(axis).array() -= 2 * h;
-      gradient.col(axis) = (gradient.col(axis) - valuesAt(shape, moved)) / (2 * h);
-    }
     for (Eigen::Index p = 0; p < points.rows(); ++p) {
       const double slope = gradient.row(p).squaredNorm();
       if (!(slope > 0)) continue;
-      const Eigen::RowVector3d step = -excess[p] / slope * gradient.row(p);
-      const Eigen::RowVector3d target = points.row(p) + step;
+      const Eigen::RowVector3d target = points.row(p) - excess[p] / slope * gradient.row(p);
       if ((target - start.row(p)).norm() < 0.5 * voxel) points.row(p) = target;
     }
   }
