@@ -113,6 +113,11 @@ std::size_t measureAll(benchmark::State& state, const Volume<Label>& labels,
   return annulus.count();
 }
 
+/// Settings of what takes seconds.
+void once(benchmark::internal::Benchmark* settings) {
+  settings->UseRealTime()->MeasureProcessCPUTime()->Unit(benchmark::kMillisecond)->Iterations(1);
+}
+
 /// A shell whose radii are these shares of the size.
 Volume<Label> shellLabels(int size, double inner, double outer) {
   const auto exact = harmonic::exactShell(size * inner, size * outer);
@@ -136,14 +141,7 @@ void Shell(benchmark::State& state) {
   getrusage(RUSAGE_SELF, &usage);  // of the process so far: sizes ascend
   state.counters["peak_MB"] = static_cast<double>(usage.ru_maxrss) / 1024;
 }
-BENCHMARK(Shell)
-    ->Arg(124)
-    ->Arg(240)
-    ->Arg(480)
-    ->UseRealTime()
-    ->MeasureProcessCPUTime()
-    ->Unit(benchmark::kMillisecond)
-    ->Iterations(1);
+BENCHMARK(Shell)->Arg(124)->Arg(240)->Arg(480)->Apply(once);
 
 /// The left ribbon of a real brain, all fields with buried sulci.
 void Ribbon(benchmark::State& state) {
@@ -155,11 +153,7 @@ void Ribbon(benchmark::State& state) {
   const auto labels = io::readLabels(path).volume;
   for (auto _ : state) measureAll(state, labels, {{2}, {3}, {}, {}}, true);
 }
-BENCHMARK(Ribbon)
-    ->UseRealTime()
-    ->MeasureProcessCPUTime()
-    ->Unit(benchmark::kMillisecond)
-    ->Iterations(1);
+BENCHMARK(Ribbon)->Apply(once);
 
 /// a = b + 3 c over 3 x 80 MB: the machine's bandwidth.
 void Triad(benchmark::State& state) {
@@ -297,26 +291,8 @@ void Ours(benchmark::State& state) {
   const auto labels = spheroidLabels(state);
   for (auto _ : state) measureAll(state, labels, {{1}, {2}, {}, {}}, false);
 }
-BENCHMARK(Ours)
-    ->Arg(128)
-    ->Arg(256)
-    ->UseRealTime()
-    ->MeasureProcessCPUTime()
-    ->Unit(benchmark::kMillisecond)
-    ->Iterations(1);
-BENCHMARK(PlainCompact)
-    ->Arg(128)
-    ->Arg(256)
-    ->UseRealTime()
-    ->MeasureProcessCPUTime()
-    ->Unit(benchmark::kMillisecond)
-    ->Iterations(1);
-BENCHMARK(PlainGrid)
-    ->Arg(128)
-    ->Arg(256)
-    ->UseRealTime()
-    ->MeasureProcessCPUTime()
-    ->Unit(benchmark::kMillisecond)
-    ->Iterations(1);
+BENCHMARK(Ours)->Arg(128)->Arg(256)->Apply(once);
+BENCHMARK(PlainCompact)->Arg(128)->Arg(256)->Apply(once);
+BENCHMARK(PlainGrid)->Arg(128)->Arg(256)->Apply(once);
 
 }  // namespace
