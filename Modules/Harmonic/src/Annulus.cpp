@@ -153,7 +153,10 @@ void number(Annulus& annulus, const std::vector<Code>& sites,
     const std::int32_t p = annulus.place[n];
     for (int d = 0; d < 6; ++d) {
       const bool cut = !cutBits.empty() && (cutBits[p] >> d & 1);
-      annulus.links[n][d] = cut ? kOuter : annulus.numberAt[p + signOf(d) * strides[axisOf(d)]];
+      const bool leavesSlice = annulus.planar && axisOf(d) == 2;
+      annulus.links[n][d] = leavesSlice ? kInsulated
+                            : cut       ? kOuter
+                                        : annulus.numberAt[p + signOf(d) * strides[axisOf(d)]];
     }
   });
   const std::int32_t irregulars =

@@ -166,10 +166,40 @@ TEST(HarmonicInterpolant, KeepsFluxOutOfInsulatedVoxels) {
       for (int i = 0; i < 56; ++i) insulated(i, j, k) = 1;
     }
   }
-  const Annulus annulus = annulusFromLevels(inner, outer, {0, LevelInside::Below}, {}, insulated);
-  const Interpolant solved = solveInterpolant(annulus);
-  for (std::int32_t n = 0; n < static_cast<std::int32_t>(annulus.count()); ++n) {
-    EXPECT_NEAR(solved.u[n], exact.answer(annulus.world(n)).u, 0.004);
+  for (const auto model : {BoundaryModel::Subvoxel, BoundaryModel::Embedding}) {
+    const Annulus annulus =
+        annulusFromLevels(inner, outer, {0, LevelInside::Below}, {.boundary = model}, insulated);
+    const Interpolant solved = solveInterpolant(annulus);
+    for (std::int32_t n = 0; n < static_cast<std::int32_t>(annulus.count()); ++n) {
+      EXPECT_NEAR(solved.u[n], exact.answer(annulus.world(n)).u, 0.004) << nameOf(model);
+    }
+  }
+}
+
+TEST(HarmonicInterpolant, SolvesEverySliceOnItsOwn) {
+  // Circles that move from slice to slice; together the slices would have another interpolant.
+  const Grid grid = centredGrid({96, 96, 3}, {0.25, 0.25, 2});
+  const ExactAnnulus exact[] = {exactEccentric(4, 10, 0.5), exactEccentric(4, 10, 3),
+                                exactEccentric(5, 9, 1)};
+  Volume<float> inner(grid), outer(grid);
+  for (std::size_t v = 0; v < inner.size(); ++v) {
+    const auto s = grid.subscripts(v);
+    Point x = grid.toWorld(Vector(s[0], s[1], s[2]));
+    x[2] = 0;
+    inner[v] = static_cast<float>(exact[s[2]].innerLevel(x));
+    outer[v] = static_cast<float>(exact[s[2]].outerLevel(x));
+  }
+  for (const auto model : {BoundaryModel::Subvoxel, BoundaryModel::Embedding}) {
+    const Annulus annulus = annulusFromLevels(inner, outer, {0, LevelInside::Below},
+                                              {.boundary = model, .perSlice = true});
+    const Interpolant solved = solveInterpolant(annulus);
+    for (std::int32_t n = 0; n < static_cast<std::int32_t>(annulus.count()); ++n) {
+      const auto slice = static_cast<std::size_t>(std::lround(annulus.index(n)[2]));
+      Point x = annulus.world(n);
+      x[2] = 0;
+      EXPECT_NEAR(solved.u[n], exact[slice].answer(x).u, 1e-3)
+          << nameOf(model) << ", slice " << slice;
+    }
   }
 }
 
