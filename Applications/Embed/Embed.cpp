@@ -55,7 +55,7 @@ void declare(Declaration& d, Settings& s) {
                "Between two surfaces")
       .example("explica embed ED_label.nii.gz --label 2 --band 3 --out band",
                "The outer contour of the heart muscle, in a band of 3 mm about it")
-      .example("explica embed mid.csv --annulus ED_label.nii.gz --inner 3 --tissue 2 --out muscle",
+      .example("explica embed mid.csv --annulus ED_label.nii.gz --inner 1 --tissue 2 --out muscle",
                "A curve between the contours of the muscle's inside and outside")
       .input("TARGET", FileKind::Any, "polygons, label images, surfaces or coefficients.json",
              s.targets)
