@@ -314,12 +314,22 @@ Termination run(Context& context, const Settings& s) {
   allVertexMaps.push_back({"region", "", label.keys.cast<double>()});
   Eigen::VectorXd areaRatio = Eigen::VectorXd::Ones(after.faceCount());
   Eigen::VectorXd angleChange = Eigen::VectorXd::Zero(after.faceCount());
+  Eigen::VectorXd faceSeenBefore = seenBefore.face;
+  if (after.faceCount() != mesh.faceCount()) {  // the region alone
+    faceSeenBefore.resize(after.faceCount());
+    for (std::size_t n = 0; n < faces.size(); ++n) {
+      faceSeenBefore[faces[n]] = seenBefore.face[region.faces[n]];
+    }
+  }
   for (std::size_t n = 0; n < faces.size(); ++n) {
     areaRatio[faces[n]] = distortion.areaRatio[static_cast<Eigen::Index>(n)];
     angleChange[faces[n]] = angleDeg[static_cast<Eigen::Index>(n)];
   }
   io::writeVtp(context.output("unfolded.vtp"), after, allVertexMaps,
-               {{"area ratio", "", areaRatio}, {"angle change", "degrees", angleChange}});
+               {{"area ratio", "", areaRatio},
+                {"angle change", "degrees", angleChange},
+                {"seen before", "", faceSeenBefore},
+                {"seen after", "", seenAfter.face}});
   writeTextFile(context.output("evolution.tsv"), unfolding::evolutionTable(result.history));
   unfolding::writeCheckpoint(context.output(kStateFile), result.checkpoint);
 

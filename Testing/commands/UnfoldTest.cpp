@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
+#include "QuickRuns.h"
 #include "RealSurfaces.h"
 
 #include "Explica/Geometry/Fixtures.h"
@@ -99,6 +100,111 @@ TEST(UnfoldCommand, ResumedRunsWriteTheBytesOfUninterruptedOnes) {
     EXPECT_EQ(readText(folder / ("whole/" + std::string(name))),
               readText(folder / ("part/" + std::string(name))))
         << name;
+  }
+}
+
+TEST(UnfoldCommand, WritesEveryFileArrayAndKeyThatOthersRelyOn) {
+  const TemporaryFolder folder;
+  for (const std::string surround : {"fixed", "none"}) {
+    const fs::path out = folder / surround;
+    const auto result = explica(onFoldedSphere(folder) +
+                                std::vector<std::string>{"--surround", surround, "--frames", "2",
+                                                         "--max-iterations", "3", "--out", out});
+    ASSERT_EQ(result.exitCode, 3) << result;
+    const auto summary = readJson(out / "summary.json");
+    for (const char* key : {"region_faces",
+                            "region_vertices",
+                            "region_area",
+                            "visibility_initial",
+                            "visibility_final",
+                            "seen_initial",
+                            "seen_final",
+                            "backfacing_initial",
+                            "backfacing_final",
+                            "area_error_mean",
+                            "area_error_max",
+                            "edge_strain_mean",
+                            "edge_strain_p95",
+                            "angle_error_mean_deg",
+                            "self_intersections_initial",
+                            "self_intersections_final",
+                            "iterations",
+                            "seconds",
+                            "seconds_per_iteration",
+                            "seconds_start",
+                            "seconds_visibility",
+                            "seconds_repulsion",
+                            "seconds_collision",
+                            "seconds_solve",
+                            "seconds_output",
+                            "stop_reason"}) {
+      EXPECT_TRUE(summary.contains(key)) << key;
+    }
+    const std::string table = readText(out / "evolution.tsv");
+    const std::string header = table.substr(0, table.find('\n'));
+    for (const char* column : {"iteration",
+                               "visibility",
+                               "area_error_mean",
+                               "area_error_max",
+                               "edge_strain_mean",
+                               "energy_visibility",
+                               "energy_area",
+                               "energy_spring",
+                               "energy_lift",
+                               "energy_contact",
+                               "energy_knot",
+                               "objective_before",
+                               "objective_after",
+                               "contacts",
+                               "nearest_contact",
+                               "safe_step",
+                               "step",
+                               "largest_move",
+                               "damping",
+                               "solves",
+                               "seconds_visibility",
+                               "seconds_repulsion",
+                               "seconds_collision",
+                               "seconds_solve",
+                               "seconds"}) {
+      EXPECT_NE(("\t" + header + "\t").find("\t" + std::string(column) + "\t"), std::string::npos)
+          << column;
+    }
+    // The start and three iterations, each with a value in every column.
+    EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 1 + 1 + 3);
+    EXPECT_EQ(std::count(table.begin(), table.end(), '\t'),
+              5 * std::count(header.begin(), header.end(), '\t'));
+
+    const auto namesOf = [&](const std::string& file) {
+      std::vector<std::string> names;
+      for (const auto& map : io::readVertexMaps(out / file)) names.push_back(map.name);
+      return names;
+    };
+    using Names = std::vector<std::string>;
+    const Names flux = {"flux before", "flux after", "seen before", "seen after"};
+    const Names change = {"area ratio", "angle change", "edge strain"};
+    EXPECT_EQ(namesOf("visibility.shape.gii"), flux);
+    EXPECT_EQ(namesOf("distortion.shape.gii"), change);
+    const auto all = io::readSurface(out / "unfolded.vtp");
+    Names names;
+    for (const auto& map : all.maps) names.push_back(map.name);
+    EXPECT_EQ(names, flux + change + Names{"region"});
+    const std::string vtp = readText(out / "unfolded.vtp");
+    const std::string ofFaces =
+        vtp.substr(vtp.find("<CellData"), vtp.find("</CellData>") - vtp.find("<CellData"));
+    for (const char* name : {"area ratio", "angle change", "seen before", "seen after"}) {
+      EXPECT_NE(ofFaces.find("\"" + std::string(name) + "\""), std::string::npos) << name;
+    }
+    const auto whole = io::readSurface(folder / "sphere.surf.gii").mesh;
+    const auto unfolded = io::readSurface(out / "unfolded.surf.gii").mesh;
+    EXPECT_EQ(unfolded.vertexCount(), whole.vertexCount());
+    EXPECT_EQ(unfolded.faceCount(),
+              surround == "none" ? summary["region_faces"].get<int>() : whole.faceCount());
+    EXPECT_EQ(all.mesh.faceCount(), unfolded.faceCount());
+    for (const char* name : {"region.label.gii", "intersections.tsv", "provenance.json",
+                             "frames/frame-0000.surf.gii", "frames/frame-0001.surf.gii"}) {
+      EXPECT_TRUE(fs::exists(out / name)) << name;
+    }
   }
 }
 

@@ -3,8 +3,9 @@
 
 #include "Explica/Collision/Untangling.h"
 
+#include "CrossingLength.h"
+
 #include "Explica/Core/Errors.h"
-#include "Explica/Geometry/FaceCrossing.h"
 #include "Explica/Geometry/FaceTree.h"
 #include "Explica/Geometry/MeshTopology.h"
 
@@ -201,43 +202,6 @@ class Best {
   std::optional<Attempt> best_;
 };
 
-/// Gradient of the length of all segments in which the pairs cross [Volino2006].
-///
-/// The piercing point p of an edge (direction d) and a face (unit normal n) moves with the velocity
-/// u of the edge's point and w of the face's point there as  p' = u - d (n.(u - w)) / (n.d).
-Positions crossingGradient(const TriangleMesh& mesh, const std::vector<FacePair>& pairs) {
-  Positions gradient = Positions::Zero(mesh.vertexCount(), 3);
-  for (const FacePair& pair : pairs) {
-    const auto segment = geometry::crossingSegment(mesh, pair);
-    if (!segment) continue;
-    const Vector along = ((*segment)[1].point - (*segment)[0].point).normalized();
-    for (int side = 0; side < 2; ++side) {
-      const geometry::CrossingEnd& end = (*segment)[side];
-      const Vector pull = side == 0 ? Vector(-along) : along;  // d length / d p
-      if (end.edge[0] == end.edge[1]) {
-        gradient.row(end.edge[0]) += pull.transpose();
-        continue;
-      }
-      const auto point = [&](std::int32_t v) { return Point(mesh.positions.row(v).transpose()); };
-      const Vector d = (point(end.edge[1]) - point(end.edge[0])).normalized();
-      const Vector n = (point(end.face[1]) - point(end.face[0]))
-                           .cross(point(end.face[2]) - point(end.face[0]))
-                           .normalized();
-      constexpr double kGrazing = 0.1;  // sine below which the rate is bounded
-      double sine = n.dot(d);
-      if (std::abs(sine) < kGrazing) sine = sine < 0 ? -kGrazing : kGrazing;
-      const Vector throughFace = (pull.dot(d) / sine) * n;
-      for (int k = 0; k < 2; ++k) {
-        gradient.row(end.edge[k]) += end.edgeWeights[k] * (pull - throughFace).transpose();
-      }
-      for (int k = 0; k < 3; ++k) {
-        gradient.row(end.face[k]) += end.faceWeights[k] * throughFace.transpose();
-      }
-    }
-  }
-  return gradient;
-}
-
 void descend(const Place& place, const UntangleOptions& options, Best& best) {
   const auto& unknown = place.unknown();
   const auto count = static_cast<Eigen::Index>(place.free().size());
@@ -257,7 +221,7 @@ void descend(const Place& place, const UntangleOptions& options, Best& best) {
   Positions x = place.start().positions;
   std::vector<FacePair> pairs = place.crossings(x);
   for (int n = 0; n < options.descentSteps; ++n) {
-    const Positions gradient = crossingGradient({x, place.start().faces}, pairs);
+    const Positions gradient = crossingLength({x, place.start().faces}, pairs).gradient;
     Eigen::MatrixXd right(count, 3);
     for (Eigen::Index i = 0; i < count; ++i) right.row(i) = -gradient.row(place.free()[i]);
     const Eigen::MatrixXd move = solver.solve(right);

@@ -54,6 +54,19 @@ double driveFactor(double visibility, double goal) {
   return std::clamp(std::max(1 + 10 * (goal - visibility), 1 + 0.25 * (share - 1)), 1.01, 1.3);
 }
 
+/// A single ring of straight faces joins the region to fixed surroundings; it cannot bend about the
+/// walls that it stands between, and holds the rim.
+void warnIfHeld(double visibility, const Monitor& monitor) {
+  constexpr double kHeld = 0.95;  // regions with room reach more
+  if (visibility >= kHeld) return;
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "fixed surroundings hold the region at a visibility of %.3f; with --surround "
+                "elastic a collar follows, and it opens further",
+                visibility);
+  monitor.warn(text);
+}
+
 Positions movingOnly(const Unfolder& unfolder) {
   const auto& moving = unfolder.movingVertices();
   Positions rows(static_cast<Eigen::Index>(moving.size()), 3);
@@ -183,6 +196,11 @@ UnfoldResult unfold(const TriangleMesh& mesh, const Region& region,
       monitor.progress(
           std::clamp((unfolder.record().visibility - initial) / (goal - initial), 0.0, 1.0), line);
     }
+  }
+  const bool byItself =
+      result.termination == Termination::Converged || result.termination == Termination::Stalled;
+  if (byItself && !thesis && options.unfolder.surround == Surround::Fixed) {
+    warnIfHeld(result.history.back().visibility, monitor);
   }
   result.frames = framesAlong(unfolder, viewpoints, path, options.frames);
   result.mesh = unfolder.current();

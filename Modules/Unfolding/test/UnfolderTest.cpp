@@ -109,7 +109,14 @@ TEST(Unfolder, ACollarThatFollowsLetsARegionGoFurtherThanFixedWalls) {
     UnfoldOptions options;
     options.unfolder.surround = follows ? Surround::Elastic : Surround::Fixed;
     options.unfolder.collarRings = 3;
-    ends[follows] = unfold(mesh, region, view, options);
+    int warnings = 0;
+    Monitor monitor;
+    monitor.onWarning = [&](const std::string& text) {
+      warnings += text.find("fixed surroundings hold") != std::string::npos;
+    };
+    ends[follows] = unfold(mesh, region, view, options, monitor);
+    const bool held = !follows && ends[follows].history.back().visibility < 0.95;
+    EXPECT_EQ(warnings, held ? 1 : 0);
     // The account is of the region, whatever the collar does.
     const Distortion d = measureDistortion(mesh, ends[follows].mesh.positions, region.faces);
     EXPECT_NEAR(ends[follows].history.back().edgeStrainMean, d.edgeStrainMean, 1e-12);
@@ -209,6 +216,24 @@ TEST(ThesisMethod, LosesAreasWithoutTheirProjectionAndIntersectsWithoutRepulsion
   EXPECT_LT(areaErrorAfter(true, &intersects), 0.05);
   EXPECT_TRUE(intersects);                          // [Thesis, Fig. 4.20] in three dimensions
   EXPECT_GT(areaErrorAfter(false, nullptr), 0.15);  // [Thesis, Fig. 4.19]
+}
+
+TEST(ThesisMethod, TheKnotEnergyPushesApart) {
+  // Erratum 3 of Eq. 5.46: its sign as printed would pull the folds together.
+  const TriangleMesh mesh = makeMeander(24, 6, 2.1, 1);
+  const Region region = regionOfMarked(mesh, interiorOf(24, 6, 1));
+  std::array<double, 3> ends{};
+  for (const int sign : {-1, 0, 1}) {  // as printed, hardly there, as it has to be
+    UnfolderOptions options = with(Surround::None);
+    options.method = Method::Thesis;
+    options.knot = repulsion::KnotMethod::Tree;
+    options.weights.knot = sign == 0 ? 1e-12 : 0.05 * sign;
+    Unfolder unfolder(mesh, region, visibility::viewpoint(Point(8, 3, 1000)), options);
+    for (int n = 0; n < 5; ++n) ASSERT_TRUE(unfolder.step());
+    ends[sign + 1] = unfolder.record().energyKnot / options.weights.knot;
+  }
+  EXPECT_LT(ends[2], ends[1]);
+  EXPECT_LT(ends[1], ends[0]);
 }
 
 TEST(Unfolder, KnotEnergyMayTakePart) {
