@@ -13,6 +13,9 @@ ctest --test-dir build --parallel "$(nproc)" --output-on-failure "$@" || failed=
 if [ "$failed" = 0 ]; then
   echo "All tests passed. Look at build/Testing/Temporary/LastTest.log for each one's output."
 else
+  # What failed stands at the end too, where one looks first.
+  awk '/^[0-9]+\/[0-9]+ Testing: / { block = ""; } { block = block $0 "\n" }
+       /^Test Failed\.$/ { printf "%s", block }' build/Testing/Temporary/LastTest.log
   echo "Tests failed. Look above, and at build/Testing/Temporary/LastTestsFailed.log."
 fi
 exit "$failed"

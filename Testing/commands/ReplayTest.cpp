@@ -90,6 +90,7 @@ TEST_F(Replay, HistoryTellsTheCommandLine) {
   const auto result = explica({"history", folder_ / "a/labels.nii.gz"});
   ASSERT_EQ(result.exitCode, 0) << result;
   EXPECT_TRUE(contains(result.out, "phantom shell --size 12")) << result;
+  EXPECT_TRUE(contains(result.out, " s; done)")) << result;
 }
 
 }  // namespace

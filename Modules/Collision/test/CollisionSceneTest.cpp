@@ -41,8 +41,18 @@ Setting foldedCap(double speed) {
 /// within reach.
 std::set<Pair> pairsByBruteForce(const Setting& s, const CollisionScene& scene, double reach) {
   std::set<Pair> near;
+  // Whose first and last vertex are farther apart than this never meet.
+  double far = reach + 2 * s.motion.rowwise().norm().maxCoeff();
+  double longest = 0;
+  for (Eigen::Index e = 0; e < scene.edges().rows(); ++e) {
+    const auto ends = scene.edges().row(e);
+    longest =
+        std::max(longest, (s.mesh.positions.row(ends[0]) - s.mesh.positions.row(ends[1])).norm());
+  }
+  far += 2 * longest;
   const auto consider = [&](const Pair& pair) {
     const auto v = scene.vertices(pair);
+    if ((s.mesh.positions.row(v[0]) - s.mesh.positions.row(v[3])).squaredNorm() > far * far) return;
     if (std::none_of(v.begin(), v.end(), [&](std::int32_t i) { return s.moves[i]; })) return;
     std::set<std::int32_t> distinct(v.begin(), v.end());
     if (distinct.size() < 4) return;

@@ -575,8 +575,7 @@ ThicknessSummary summaryOf(const Correspondence& correspondence) {
   for (const double t : known) sum += t;
   summary.mean = sum / static_cast<double>(known.size());
   const auto quantile = [&](double q) {
-    const auto at = known.begin() +
-                    static_cast<std::ptrdiff_t>(q * static_cast<double>(known.size() - 1) + 0.5);
+    const auto at = known.begin() + std::lround(q * static_cast<double>(known.size() - 1));
     std::nth_element(known.begin(), at, known.end());
     return *at;
   };

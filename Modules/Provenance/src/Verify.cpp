@@ -4,6 +4,7 @@
 #include "Explica/Provenance/Verify.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Termination.h"
 
 #include <algorithm>
 #include <set>
@@ -87,12 +88,17 @@ void historyInto(const fs::path& recordPath, int depth, std::ostringstream& text
   const Json record = readRecord(recordPath);
   const Json& software = record["software"];
   const Json& execution = record["execution"];
+  auto ended = record["termination"].get<std::string>();
+  if (ended == nameOf(Termination::NotRun)) {  // a command that iterates nothing
+    const int code = record["exit_code"].get<int>();
+    ended = code == 0 ? "done" : "failed with exit code " + std::to_string(code);
+  }
   text << indent << "explica " << record["command"].get<std::string>() << "  ("
        << software["version"].get<std::string>() << ", commit "
        << software["commit"].get<std::string>().substr(0, 10)
        << (software["dirty"].get<bool>() ? ", changed" : "") << "; "
        << execution["started"].get<std::string>() << ", " << execution["seconds"].get<double>()
-       << " s; " << record["termination"].get<std::string>() << ")\n";
+       << " s; " << ended << ")\n";
   text << indent << "  record: " << recordPath.string() << '\n';
   std::string argv;
   for (const auto& word : execution["argv"]) argv += " " + word.get<std::string>();
