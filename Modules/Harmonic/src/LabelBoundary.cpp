@@ -71,13 +71,13 @@ void LabelBoundary::collect(const std::vector<std::uint8_t>& side) {
   const int rows = size_[1] * size_[2];
   const auto forLinks = [&](int row, const auto& body) {
     const int j = row % size_[1], k = row / size_[1];
-    const bool more[3] = {true, j + 1 < size_[1], axes_ == 3 && k + 1 < size_[2]};
+    bool more[3] = {true, j + 1 < size_[1], axes_ == 3 && k + 1 < size_[2]};
     std::int32_t p = row * size_[0];
     for (int i = 0; i < size_[0]; ++i, ++p) {
       if (side[p] > 1) continue;
-      for (int a = 0; a < axes_; ++a) {
-        if (a == 0 ? i + 1 == size_[0] : !more[a]) continue;
-        if (side[p] + side[p + strides_[a]] == 1) body(p, a);
+      more[0] = i + 1 < size_[0];
+      for (int a = 0; a < 3; ++a) {
+        if (more[a] && side[p] + side[p + strides_[a]] == 1) body(p, a);
       }
     }
   };
