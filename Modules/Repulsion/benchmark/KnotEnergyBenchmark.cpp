@@ -241,8 +241,8 @@ Times leastTimes(int runs, const Work& work) {
   return least;
 }
 
-Times treeTimes(int runs, const Scene& scene) {
-  const MultipoleTree tree(scene.mesh, scene.moves);
+Times treeTimes(int runs, const Scene& scene, const MultipoleTreeOptions& options = {}) {
+  const MultipoleTree tree(scene.mesh, scene.moves, options);
   return leastTimes(runs,
                     [&] { benchmark::DoNotOptimize(tree.evaluate(scene.mesh.positions).value); });
 }
@@ -267,10 +267,19 @@ Scene closedWithoutTruth(int levels, bool folded) {
 
 /// The multipole tree against plain sums over all pairs, whole closed surfaces of 81,920 faces.
 void RatioToCentroidPairs(benchmark::State& state) {
-  const Scene sphere = closedWithoutTruth(6, false);
+  const Scene sphere = closed(6, false), foldedSphere = closed(6, true);
+  MultipoleTreeOptions options;
+  options.opening = 0.55;  // as wide as gradients within 1e-2 allow
+  options.nearRatio = 1;
+  const auto error = [&](const Scene& scene) {
+    const MultipoleTree tree(scene.mesh, scene.moves, options);
+    return gradientError(scene, tree.evaluate(scene.mesh.positions));
+  };
   for (auto _ : state) {
-    const Times tree = treeTimes(10, sphere);
-    const Times folded = treeTimes(10, closedWithoutTruth(6, true));
+    const Times tree = treeTimes(10, sphere, options);
+    const Times folded = treeTimes(10, foldedSphere, options);
+    state.counters["tree_gradient_error"] = error(sphere);
+    state.counters["folded_gradient_error"] = error(foldedSphere);
     CentroidPairs<float> singles(sphere.mesh);
     CentroidPairs<double> doubles(sphere.mesh);
     const Times single = leastTimes(4, [&] { singles.sum(); });
