@@ -67,6 +67,13 @@ std::int32_t LabelBoundary::find(std::int32_t p, int axis) const {
   return -1;
 }
 
+Eigen::Vector3f LabelBoundary::offset(std::int32_t p, std::int32_t q) const {
+  const std::int32_t i = q % size_[0] - p % size_[0];
+  const std::int32_t j = q / size_[0] % size_[1] - p / size_[0] % size_[1];
+  const std::int32_t k = q / strides_[2] - p / strides_[2];
+  return {static_cast<float>(i), static_cast<float>(j), static_cast<float>(k)};
+}
+
 void LabelBoundary::collect(const std::vector<std::uint8_t>& side) {
   const int rows = size_[1] * size_[2];
   const auto forLinks = [&](int row, const auto& body) {
@@ -154,9 +161,7 @@ void LabelBoundary::findNormals(const std::vector<std::uint8_t>& side, int smoot
   const auto towards = [&](std::size_t link, std::int32_t code) {
     const std::int32_t m = code >> 2;
     const std::int32_t p = low_[link], q = low_[m];
-    Eigen::Vector3f d(static_cast<float>(q % size_[0] - p % size_[0]),
-                      static_cast<float>(q / size_[0] % size_[1] - p / size_[0] % size_[1]),
-                      static_cast<float>(q / strides_[2] - p / strides_[2]));
+    Eigen::Vector3f d = offset(p, q);
     d[axis_[m]] += theta_[m];
     d[axis_[link]] -= theta_[link];
     return d;
@@ -208,10 +213,7 @@ void LabelBoundary::findCurvatures() {
       for (int s = 0; s < 2; ++s) {
         const std::int32_t m = back_[link][2 * chain + s] >> 2;
         const std::int32_t q = low_[m];
-        std::array<float, 3> d = {
-            static_cast<float>(q % size_[0] - p % size_[0]),
-            static_cast<float>(q / size_[0] % size_[1] - p / size_[0] % size_[1]),
-            static_cast<float>(q / strides_[2] - p / strides_[2])};
+        Eigen::Vector3f d = offset(p, q);
         fixed[s] = d[0] * n[0] + d[1] * n[1] + d[2] * n[2];
         along[s] = n[axis_[m]];
         d[axis_[m]] += theta_[m];

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Core>
+
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -33,6 +35,8 @@ class LabelBoundary {
 
  private:
   [[nodiscard]] std::int32_t find(std::int32_t p, int axis) const;
+  /// From voxel p to voxel q, in voxels.
+  [[nodiscard]] Eigen::Vector3f offset(std::int32_t p, std::int32_t q) const;
   void collect(const std::vector<std::uint8_t>& side);
   void join(const std::vector<std::uint8_t>& side);
   void findNormals(const std::vector<std::uint8_t>& side, int smoothings);

@@ -522,7 +522,7 @@ LoadedVolume<Label> readLabels(const std::filesystem::path& path,
     constexpr double kLowest = std::numeric_limits<Label>::lowest();
     constexpr double kHighest = std::numeric_limits<Label>::max();
     if constexpr (std::is_integral_v<Value> && sizeof(Value) < sizeof(Label)) {
-      to[v] = static_cast<Label>(value);
+      to[v] = static_cast<Label>(value);  // NOLINT(bugprone-signed-char-misuse): a number
     } else {
       const auto real = static_cast<double>(value);
       if (!(real >= kLowest && real <= kHighest && std::trunc(real) == real)) {
