@@ -190,15 +190,16 @@ std::string drawEvolution(bool closed, const Viewpoints& view,
   std::string page = svg::pageBegin(kPageWidth, pageHeight);
   bool anyCrossing = false;
   for (int s = 0; s < count; ++s) {
+    const int row = s / columns;
     Panel panel;
     panel.left = kMargin + (s % columns) * (cell + kMargin) + (cell - scale * extent.x()) / 2;
-    panel.top = kMargin + (s / columns) * rowHeight + kTitleHeight + roomAbove;
+    panel.top = kMargin + row * rowHeight + kTitleHeight + roomAbove;
     panel.scale = scale;
     panel.low = low;
     panel.high = high;
     const EvolutionStage& stage = stages[s];
     const double textX = kMargin + (s % columns) * (cell + kMargin);
-    const double textY = kMargin + (s / columns) * rowHeight + 16;
+    const double textY = kMargin + row * rowHeight + 16;
     page += svg::panelTitle(textX, textY, s, stage.title);
     // Of several viewpoints the first and the last.
     drawArrow(page, panel, view.points.front());

@@ -164,7 +164,7 @@ Json toProvJson(const std::vector<LocatedRecord>& records) {
     prov[relation][name] = std::move(value);
   };
   const auto entity = [&](const FileFact& file) {
-    const std::string name = "sha256:" + file.sha256;
+    std::string name = "sha256:" + file.sha256;
     prov["entity"].emplace(name, Json{{"prov:label", file.label}, {"explica:size", file.size}});
     return name;
   };
