@@ -3,11 +3,11 @@
 
 #include "UnfoldingProblem.h"
 
+#include "Explica/Core/PhaseClock.h"
 #include "Explica/Planar/PolygonKnotEnergy.h"
 #include "Explica/Planar/PolygonVisibility.h"
 
 #include <algorithm>
-#include <chrono>
 
 namespace explica::planar {
 namespace {
@@ -15,21 +15,6 @@ namespace {
 constexpr double kBarrierShare = 0.25;  // of the mean edge: the barrier's range
 constexpr double kMergeShare = 0.25;    // of the mean edge: a shorter one is merged, if it may be
 constexpr int kLeastEdges = 3;          // of a region whose edges are merged
-
-/// Adds the time of its life to a sum.
-class Stopwatch {
- public:
-  explicit Stopwatch(double& sum) : sum_(sum) {}
-  ~Stopwatch() {
-    sum_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-  Stopwatch(const Stopwatch&) = delete;
-  Stopwatch& operator=(const Stopwatch&) = delete;
-
- private:
-  double& sum_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 }  // namespace
 
@@ -73,7 +58,7 @@ UnfoldingProblem::UnfoldingProblem(const Curve& curve, const Region& region, con
 
 std::pair<double, Positions2> UnfoldingProblem::knot(const Curve& curve) {
   if (!knot_) return {0.0, Positions2::Zero(curve.vertexCount(), 2)};
-  const Stopwatch watch(secondsTopology_);
+  const PhaseClock watch(secondsTopology_);
   PolygonKnotValue value = knot_->evaluate(curve.positions);
   lastKnot_ = value.value;
   return {value.value, std::move(value.gradient)};
@@ -81,7 +66,7 @@ std::pair<double, Positions2> UnfoldingProblem::knot(const Curve& curve) {
 
 std::vector<VertexEdgePair> UnfoldingProblem::pairsWithin(double reach) {
   if (options_.noTopology) return {};
-  const Stopwatch watch(secondsTopology_);
+  const PhaseClock watch(secondsTopology_);
   std::vector<VertexEdgePair> pairs =
       nearbyPairs(curve_, moving_, restLengths_, barrierRange(), reach);
   lastLeastDistance_ = leastDistance(curve_, pairs);
@@ -90,7 +75,7 @@ std::vector<VertexEdgePair> UnfoldingProblem::pairsWithin(double reach) {
 
 double UnfoldingProblem::safeStep(const Positions2& target,
                                   const std::vector<VertexEdgePair>& pairs) {
-  const Stopwatch watch(secondsTopology_);
+  const PhaseClock watch(secondsTopology_);
   return largestSafeStep(curve_, target, pairs);
 }
 

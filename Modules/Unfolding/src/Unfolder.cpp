@@ -6,12 +6,12 @@
 #include "AreaProjection.h"
 #include "BlockSystem.h"
 #include "PatchEnergy.h"
-#include "PhaseClock.h"
 
 #include "Explica/Collision/CollisionScene.h"
 #include "Explica/Collision/ContactPotential.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
+#include "Explica/Core/PhaseClock.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Visibility/AverageVisibility.h"

@@ -4,7 +4,7 @@
 
 #include <chrono>
 
-namespace explica::unfolding {
+namespace explica {
 
 /// Adds the wall time of its scope to a phase's seconds.
 class PhaseClock {
@@ -21,4 +21,4 @@ class PhaseClock {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
-}  // namespace explica::unfolding
+}  // namespace explica
