@@ -129,7 +129,7 @@ TEST(Framework, ThreadsFollowThePrecedence) {
       {"NSLOTS", ""},           {"PBS_NCPUS", ""},
       {"OMP_NUM_THREADS", ""},  {"ITK_GLOBAL_DEFAULT_NUMBER_OF_THREADS", ""}};
   int run = 0;
-  const auto threads = [&](std::map<std::string, std::string> extra,
+  const auto threads = [&](const std::map<std::string, std::string>& extra,
                            std::vector<std::string> words = {}) {
     CommandSetting setting;
     setting.environment = none;

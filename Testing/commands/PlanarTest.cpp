@@ -154,7 +154,7 @@ TEST(Embed, AnnuliThatCannotBeAreRefused) {
   writeEllipse(folder / "a.csv", 18, 13);
   writeEllipse(folder / "small.csv", 5, 4);
   writeEllipse(folder / "large.csv", 16, 22);
-  const auto code = [&](std::vector<std::string> more) {
+  const auto code = [&](const std::vector<std::string>& more) {
     const auto result =
         explica(std::vector<std::string>{"embed", folder / "a.csv", "--out", folder / "x"} + more);
     EXPECT_FALSE(fs::exists(folder / "x")) << result;

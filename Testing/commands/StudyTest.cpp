@@ -72,8 +72,10 @@ TEST_F(Study, TheExampleGoesFromFileToTable) {
   const auto optionsOf = [&](const std::string& run) {
     return readJson(runs / run / "unfold/provenance.json")["options"];
   };
-  EXPECT_EQ(optionsOf("sub-01_hemi-L_region-crown")["viewpoint"], nlohmann::json({0, 0, 1000}));
-  EXPECT_EQ(optionsOf("sub-03_hemi-L_region-crown")["viewpoint"], nlohmann::json({100, 0, 900}));
+  EXPECT_EQ(optionsOf("sub-01_hemi-L_region-crown")["viewpoint"],
+            nlohmann::ordered_json({0, 0, 1000}));
+  EXPECT_EQ(optionsOf("sub-03_hemi-L_region-crown")["viewpoint"],
+            nlohmann::ordered_json({100, 0, 900}));
 }
 
 TEST_F(Study, OnlyWhatHasChangedByContentIsDoneAgain) {

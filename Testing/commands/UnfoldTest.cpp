@@ -271,7 +271,7 @@ TEST(UnfoldCommand, RepairPartsThemAndSaysHowFarVerticesMoved) {
 TEST(UnfoldCommand, RefusesWhatCannotBeUnfoldedAndSaysWhy) {
   const TemporaryFolder folder;
   const auto words = onFoldedSphere(folder);
-  const std::string surface = words[1];
+  const std::string& surface = words[1];
   const auto run = [&](std::vector<std::string> more) {
     more.insert(more.begin(), {"unfold", surface});
     more.insert(more.end(), {"--out", folder / "out"});

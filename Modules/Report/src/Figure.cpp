@@ -69,7 +69,7 @@ Picture surfaceFigure(const TriangleMesh& mesh, const SurfacePaint& paint,
     pictures.push_back(scene.render(cameraOf(mesh, view, options.width, options.height), colours,
                                     discrete ? Filling::Discrete : Filling::Smooth, options));
   }
-  const Picture tiled = tilePictures(pictures, columns);
+  Picture tiled = tilePictures(pictures, columns);
   if (paint.values.size() == 0) return tiled;
   const int barHeight = std::min(std::max(tiled.height * 3 / 5, 120), tiled.height);
   const int barWidth = std::max(110, std::min(150, tiled.height / 5));

@@ -78,7 +78,7 @@ std::string stepHtml(const ReportStep& step) {
 }
 
 /// JSON as it may stand in a script element.
-std::string scriptSafe(std::string json) {
+std::string scriptSafe(const std::string& json) {
   std::string safe;
   for (const char c : json) {
     if (c == '<') {

@@ -228,8 +228,9 @@ Picture SurfaceScene::render(const Camera& camera, const std::vector<Colour>& co
       for (int x = x0; x < std::min(x0 + kTile, options.width); ++x) {
         Colour sum = {0, 0, 0};
         for (int s = 0; s < options.samples * options.samples; ++s) {
-          const float px = static_cast<float>(x * options.samples + s % options.samples) + 0.5f;
-          const float py = static_cast<float>(y * options.samples + s / options.samples) + 0.5f;
+          const int column = s % options.samples, row = s / options.samples;
+          const float px = static_cast<float>(x * options.samples + column) + 0.5f;
+          const float py = static_cast<float>(y * options.samples + row) + 0.5f;
           RTCRayHit query =
               rayFrom(corner + px * step * right - py * step * up, towards, 0, 2 * back);
           rtcIntersect1(self.scene.get(), &context, &query);

@@ -45,7 +45,7 @@ Picture decode(const std::string& png) {
                        reinterpret_cast<const Bytef*>(png.data() + at + 8), length),
             Z_OK);
   for (int y = 0; y < p.height; ++y) {
-    const int filter = rows[y * (stride + 1)];
+    const int filter = static_cast<std::uint8_t>(rows[y * (stride + 1)]);
     for (std::size_t b = 0; b < stride; ++b) {
       int value = static_cast<std::uint8_t>(rows[y * (stride + 1) + 1 + b]);
       if (filter == 1 && b >= 3) value += p.rgb[y * stride + b - 3];
@@ -76,7 +76,7 @@ std::vector<int> firstGifFrame(const std::string& gif, std::size_t pixels) {
   std::size_t at = gif.find('\x2c') + 10;
   while (gif.compare(at - 10, 5, std::string("\x2c\x00\x00\x00\x00", 5)) != 0)
     at = gif.find('\x2c', at - 9) + 10;
-  const int codeSize = gif[at++];
+  const int codeSize = static_cast<std::uint8_t>(gif[at++]);
   std::string data;
   while (gif[at] != 0) {
     const auto length = static_cast<std::uint8_t>(gif[at]);

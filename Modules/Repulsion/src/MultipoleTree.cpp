@@ -39,8 +39,8 @@ constexpr int kHalvings = 8;  // at most: then the faces touch
 
 /// A face or a part of it, single precision, relative to the target leaf's centre.
 struct Part {
-  Eigen::Vector3f corner[3];
-  Eigen::Vector3f lambda[3];  // of the corners, in the whole face
+  std::array<Eigen::Vector3f, 3> corner;
+  std::array<Eigen::Vector3f, 3> lambda;  // of the corners, in the whole face
   Eigen::Vector3f centre;
   float radius = 0;
   float share = 1;
@@ -175,7 +175,7 @@ class NearPairs {
         batch.data.t[3 * k + a][slot] = t.corner[k][a];
       }
     }
-    finish(batch, slot, lane, set, areaT * s.share * t.share, s.whole ? nullptr : s.lambda);
+    finish(batch, slot, lane, set, areaT * s.share * t.share, s.whole ? nullptr : s.lambda.data());
   }
 
   void finish(Batch& batch, int slot, int lane, int set, float weight,

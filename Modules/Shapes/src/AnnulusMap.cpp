@@ -65,7 +65,7 @@ planar::Point2 pointWithin(const planar::Curve& curve) {
       }
     }
   }
-  const planar::Point2 centroid = planar::centroidOf(curve, planar::wholeRegion(curve));
+  planar::Point2 centroid = planar::centroidOf(curve, planar::wholeRegion(curve));
   if (depth(centroid) > kCentreShare * most) return centroid;
   if (most < 0) throw InvalidInput("inner boundary of the annulus: it encloses next to nothing");
   return best;

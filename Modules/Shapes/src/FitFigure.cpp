@@ -143,8 +143,9 @@ std::string drawFit(const HarmonicAnnulus& annulus, double z, const Outline& tar
   for (int s = 0; s < count; ++s) {
     const FitStage& stage = stages[static_cast<std::size_t>(s)];
     Panel panel;
-    panel.left = kMargin + (s % columns) * (kPanel + kMargin);
-    panel.top = kMargin + (s / columns) * rowHeight + kTitleHeight;
+    const int column = s % columns, row = s / columns;
+    panel.left = kMargin + column * (kPanel + kMargin);
+    panel.top = kMargin + row * rowHeight + kTitleHeight;
     panel.scale = (kPanel / 2 - 2) / box.halfSide;
     panel.centre = box.centre;
     const double top = panel.top - kTitleHeight;

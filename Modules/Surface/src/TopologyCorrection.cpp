@@ -188,21 +188,15 @@ Defect describeChange(const LevelSet& level, const std::vector<std::size_t>& vox
 
 /// Turns islands and cavities over; records them.
 void cleanPieces(const LevelSet& level, Mask& inside, std::vector<Defect>& defects) {
-  const auto turnAllBut = [&](Mask side, std::uint8_t becomes, DefectKind kind, auto keep) {
-    auto parts = pieces(side, level.grid);
-    const auto kept = keep(parts);
-    for (std::size_t p = 0; p < parts.size(); ++p) {
-      if (static_cast<std::ptrdiff_t>(p) == kept) continue;
-      for (const std::size_t v : parts[p]) inside[v] = becomes;
-      defects.push_back(describeChange(level, parts[p], kind));
-    }
-  };
-  turnAllBut(inside, 0, DefectKind::Island, [](const auto& parts) {
-    const auto largest =
-        std::max_element(parts.begin(), parts.end(),
-                         [](const auto& a, const auto& b) { return a.size() < b.size(); });
-    return largest - parts.begin();
-  });
+  const auto islands = pieces(inside, level.grid);
+  const auto largest =
+      std::max_element(islands.begin(), islands.end(),
+                       [](const auto& a, const auto& b) { return a.size() < b.size(); });
+  for (auto island = islands.begin(); island != islands.end(); ++island) {
+    if (island == largest) continue;
+    for (const std::size_t v : *island) inside[v] = 0;
+    defects.push_back(describeChange(level, *island, DefectKind::Island));
+  }
   // The background that reaches the border: the box's border voxels are joined through voxel 0.
   Mask outside(inside.size());
   for (std::size_t v = 0; v < inside.size(); ++v)

@@ -405,6 +405,7 @@ void BlockCholesky::solve(Eigen::VectorXd& x) const {
     const auto columns = columnsOf(front);
     auto own = x.segment(3 * front.first, front.width());
     columns.topRows(front.width()).triangularView<Eigen::Lower>().solveInPlace(own);
+    if (front.below() == 0) continue;
     below.noalias() = columns.bottomRows(3 * front.below()) * own;
     for (std::int32_t n = 0; n < front.below(); ++n) {
       x.segment<3>(3 * rows_[front.rowsBegin + n]) -= below.segment<3>(3 * n);
@@ -412,12 +413,14 @@ void BlockCholesky::solve(Eigen::VectorXd& x) const {
   }
   for (auto front = fronts_.rbegin(); front != fronts_.rend(); ++front) {
     const auto columns = columnsOf(*front);
-    below.resize(3 * front->below());
-    for (std::int32_t n = 0; n < front->below(); ++n) {
-      below.segment<3>(3 * n) = x.segment<3>(3 * rows_[front->rowsBegin + n]);
-    }
     auto own = x.segment(3 * front->first, front->width());
-    own.noalias() -= columns.bottomRows(3 * front->below()).transpose() * below;
+    if (front->below() > 0) {
+      below.resize(3 * front->below());
+      for (std::int32_t n = 0; n < front->below(); ++n) {
+        below.segment<3>(3 * n) = x.segment<3>(3 * rows_[front->rowsBegin + n]);
+      }
+      own.noalias() -= columns.bottomRows(3 * front->below()).transpose() * below;
+    }
     columns.topRows(front->width()).triangularView<Eigen::Lower>().transpose().solveInPlace(own);
   }
 }

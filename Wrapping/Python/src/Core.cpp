@@ -17,6 +17,8 @@ void bindCore(py::module_& m) {
   static const py::exception<UsageError> usage(m, "UsageError", PyExc_ValueError);
   static const py::exception<IOError> io(m, "FileError", PyExc_OSError);
   static const py::exception<EnvironmentError> machine(m, "MachineError", PyExc_OSError);
+  // The signature is pybind11's.
+  // NOLINTNEXTLINE(performance-unnecessary-value-param)
   py::register_exception_translator([](std::exception_ptr thrown) {
     if (!thrown) return;
     try {
