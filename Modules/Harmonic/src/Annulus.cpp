@@ -4,7 +4,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
-#include "LabelBoundary.h"
+#include "Explica/Harmonic/LabelBoundary.h"
 
 #include <algorithm>
 #include <cmath>

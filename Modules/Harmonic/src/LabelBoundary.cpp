@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
-#include "LabelBoundary.h"
+#include "Explica/Harmonic/LabelBoundary.h"
 
 #include "Explica/Core/Parallel.h"
 #include "Explica/Core/Volume.h"
@@ -17,14 +17,9 @@ namespace {
 constexpr std::size_t kGrain = 1 << 12;
 // Nearest that the surface may come to a voxel's centre, in voxels.
 constexpr float kNearest = 0.01F;
-// Pull to the middle of a link, against squared curvature and squared change of curvature in
-// voxels. The weak one only decides where no step is near: alone it would flatten waves longer than
-// 2 pi / kWeakPull^(1/4), 35 voxels.  The strong one flattens waves shorter than five voxels.
-constexpr float kWeakPull = 1e-3F, kStrongPull = 3;
-// Mean squared change of curvature per voxel: up to kSmooth the steps of a surface with slowly
-// varying curvature leave in the net; at kRough the curvature changes by 0.1 per voxel, from a
-// radius of ten voxels to flat, within a voxel: the steps are shape.
-constexpr float kSmooth = 0.002F, kRough = 0.01F;
+// Pull to the middle of a link where the net is smooth.  It only decides where no step is near:
+// alone it would flatten waves longer than 2 pi / kWeakPull^(1/4), 35 voxels.
+constexpr float kWeakPull = 1e-3F;
 constexpr int kRoughnessSmoothings = 8;  // averages it over about three voxels
 // Crossings of neighbouring links may coincide; their distance is not taken for less than this.
 constexpr float kShortest = 0.5F;
@@ -36,7 +31,7 @@ constexpr int kSecondSmoothings = 1, kSecondIterations = 60, kLastIterations = 3
 }  // namespace
 
 LabelBoundary::LabelBoundary(const std::vector<std::uint8_t>& side, const std::array<int, 3>& size,
-                             int axes)
+                             int axes, const LabelTrust& trust)
     : size_(size), strides_{1, size[0], size[0] * size[1]}, axes_(axes) {
   collect(side);
   join(side);
@@ -49,13 +44,19 @@ LabelBoundary::LabelBoundary(const std::vector<std::uint8_t>& side, const std::a
   relax(Energy::Curvature, kSecondIterations);
   findNormals(side, kSecondSmoothings);
   findCurvatures();
-  findPull();
+  findPull(trust);
   relax(Energy::Variation, kLastIterations);
 }
 
 double LabelBoundary::place(std::int32_t p, int axis) const {
   const std::int32_t link = find(p, axis);
   return link < 0 ? 0.5 : theta_[link];
+}
+
+Eigen::Vector3f LabelBoundary::normal(std::int32_t p, int axis) const {
+  const std::int32_t link = find(p, axis);
+  if (link < 0) return Eigen::Vector3f::Zero();
+  return Eigen::Map<const Eigen::Vector3f>(normal_[link].data());
 }
 
 std::int32_t LabelBoundary::find(std::int32_t p, int axis) const {
@@ -239,7 +240,7 @@ void LabelBoundary::findCurvatures() {
   });
 }
 
-void LabelBoundary::findPull() {
+void LabelBoundary::findPull(const LabelTrust& trust) {
   std::vector<std::array<float, 2>> curvature(low_.size());
   parallelFor(low_.size(), kGrain, [&](std::size_t link) {
     for (int chain = 0; chain < axes_ - 1; ++chain) {
@@ -273,8 +274,8 @@ void LabelBoundary::findPull() {
     });
   }
   parallelFor(low_.size(), kGrain, [&](std::size_t link) {
-    const float rough = (roughness[link] - kSmooth) / (kRough - kSmooth);
-    pull_[link] = std::clamp(kStrongPull * rough, kWeakPull, kStrongPull);
+    const float rough = (roughness[link] - trust.smooth) / (trust.rough - trust.smooth);
+    pull_[link] = std::clamp(trust.pull * rough, kWeakPull, trust.pull);
   });
 }
 

@@ -263,13 +263,13 @@ std::int64_t addNearer(const Mask& unsided, Mask& own, const Mask& other) {
 }
 
 /// The box, and everything of it, that later steps need.
-CorticalTissue assemble(const Mask& white, const Mask& tissue, const Mask& insulated, double blur) {
-  // Room for the blur and for one layer of background.
+CorticalTissue assemble(const Mask& white, const Mask& tissue, const Mask& insulated) {
+  // Room for the boundary's normals and for one layer of background.
   constexpr int kMargin = 5;
   const VoxelBox box = boundingBox(tissue, kMargin);
   CorticalTissue result;
-  result.white = levelSetOf(crop(white, box), blur);
-  result.tissue = levelSetOf(crop(tissue, box), blur);
+  result.white = levelSetOf(crop(white, box));
+  result.tissue = levelSetOf(crop(tissue, box));
   result.insulated = crop(insulated, box);
   return result;
 }
@@ -517,7 +517,7 @@ CorticalTissue tissueFromLabels(const Volume<Label>& labels, const TissueOptions
   }
 
   monitor.progress(0.7, "level sets");
-  CorticalTissue levels = assemble(inner, tissue, neither, options.blur);
+  CorticalTissue levels = assemble(inner, tissue, neither);
   result.white = std::move(levels.white);
   result.tissue = std::move(levels.tissue);
   result.insulated = std::move(levels.insulated);

@@ -4,6 +4,7 @@
 #include "Explica/Surface/LevelSet.h"
 
 #include "Explica/Core/Parallel.h"
+#include "Explica/Harmonic/LabelBoundary.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,42 +12,45 @@
 namespace explica::surface {
 namespace {
 
-/// Normalised weights of a Gaussian at -radius .. radius.
-std::vector<float> gaussianWeights(double deviation) {
-  const int radius = static_cast<int>(std::ceil(3.5 * deviation));
-  std::vector<float> weights(2 * radius + 1);
-  double sum = 0;
-  for (int i = -radius; i <= radius; ++i) sum += std::exp(-0.5 * i * i / (deviation * deviation));
-  for (int i = -radius; i <= radius; ++i) {
-    weights[i + radius] =
-        static_cast<float>(std::exp(-0.5 * i * i / (deviation * deviation)) / sum);
-  }
-  return weights;
-}
+/// The level's means over neighbouring links smooth by themselves, so that steps are believed
+/// sooner than where single links are measured: known points of a cortex are nearest with a strong
+/// pull, spheres want it only where curvature changes, noisy masks want little of it.
+constexpr harmonic::LabelTrust kTrust{30, 0.004F, 0.02F};
+/// Distance at which a label's level reaches 1, in voxels of the coarsest axis.
+constexpr float kReach = 2;
 
-/// One pass of a separable filter along `axis`; borders repeat.
-Volume<float> filterAlong(const Volume<float>& in, int axis, const std::vector<float>& weights) {
-  Volume<float> out(in.grid);
-  const auto& n = in.grid.size;
-  const int radius = static_cast<int>(weights.size() / 2);
-  parallelFor(n[2], 1, [&](std::size_t slice) {
-    const int k = static_cast<int>(slice);
-    for (int j = 0; j < n[1]; ++j) {
-      float* row = &out(0, j, k);
-      for (int s = -radius; s <= radius; ++s) {
-        const float weight = weights[s + radius];
-        if (axis == 0) {
-          const float* from = &in(0, j, k);
-          for (int i = 0; i < n[0]; ++i) row[i] += weight * from[std::clamp(i + s, 0, n[0] - 1)];
-          continue;
-        }
-        const float* from = axis == 1 ? &in(0, std::clamp(j + s, 0, n[1] - 1), k)
-                                      : &in(0, j, std::clamp(k + s, 0, n[2] - 1));
-        for (int i = 0; i < n[0]; ++i) row[i] += weight * from[i];
-      }
+/// A mask's boundary as a voxel beside it sees it.
+struct Seen {
+  float level = 0;                                   ///< signed distance, mm, positive inside
+  Eigen::Vector3f inward = Eigen::Vector3f::Zero();  ///< its gradient along the grid's axes
+  int crossings = 0;                                 ///< of the voxel's links; 0: not beside it
+};
+
+/// Means over a voxel's crossed links of the distance to the tangent plane there, and of its
+/// normal.
+Seen seenFrom(const std::array<int, 3>& at, const Volume<std::uint8_t>& mask,
+              const harmonic::LabelBoundary& boundary) {
+  const auto& n = mask.grid.size;
+  const std::array<std::int32_t, 3> strides = {1, n[0], n[0] * n[1]};
+  const auto p = static_cast<std::int32_t>(mask.grid.linear(at[0], at[1], at[2]));
+  Seen seen;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const int step : {-1, 1}) {
+      const int to = at[axis] + step;
+      if (to < 0 || to >= n[axis] || mask[p + step * strides[axis]] == mask[p]) continue;
+      const std::int32_t low = step > 0 ? p : p - strides[axis];
+      const auto place = static_cast<float>(boundary.place(low, axis));
+      const Eigen::Vector3f inIndex = boundary.normal(low, axis);
+      const Eigen::Vector3f outward = inIndex.cwiseQuotient(mask.grid.spacing.cast<float>());
+      seen.level += (step > 0 ? place : 1 - place) * std::abs(inIndex[axis]) / outward.norm();
+      seen.inward -= outward.normalized();
+      ++seen.crossings;
     }
-  });
-  return out;
+  }
+  if (seen.crossings == 0) return seen;
+  seen.level *= (mask[p] ? 1.0F : -1.0F) / static_cast<float>(seen.crossings);
+  seen.inward /= static_cast<float>(seen.crossings);
+  return seen;
 }
 
 template <class T>
@@ -105,15 +109,62 @@ Volume<float> crop(const Volume<float>& volume, const VoxelBox& box, float outsi
   return cropped(volume, box, outside);
 }
 
-LevelSet levelSetOf(const Volume<std::uint8_t>& mask, double blur) {
-  LevelSet level(mask.grid);
-  parallelFor(level.size(), 1 << 16, [&](std::size_t v) { level[v] = mask[v] ? 1.0F : -1.0F; });
-  if (blur > 0) {
-    const auto weights = gaussianWeights(blur);
-    for (int axis = 0; axis < 3; ++axis) level = filterAlong(level, axis, weights);
-  }
-  parallelFor(level.size(), 1 << 16, [&](std::size_t v) {
-    level[v] = mask[v] ? std::max(level[v], kLeastLevel) : std::min(level[v], -kLeastLevel);
+LevelSet levelSetOf(const Volume<std::uint8_t>& mask) {
+  const Grid& grid = mask.grid;
+  const auto& n = grid.size;
+  Volume<std::uint8_t> side(grid);
+  parallelFor(side.size(), 1 << 16, [&](std::size_t v) { side[v] = mask[v] ? 1 : 0; });
+  const harmonic::LabelBoundary boundary(side.data, n, 3, kTrust);
+
+  std::vector<std::vector<Seen>> seenIn(n[2]);
+  std::vector<std::int32_t> numberOf(side.size(), -1);  // within the slice
+  parallelFor(n[2], 1, [&](std::size_t slice) {
+    const int k = static_cast<int>(slice);
+    for (int j = 0; j < n[1]; ++j) {
+      for (int i = 0; i < n[0]; ++i) {
+        const Seen seen = seenFrom({i, j, k}, side, boundary);
+        if (seen.crossings == 0) continue;
+        numberOf[grid.linear(i, j, k)] = static_cast<std::int32_t>(seenIn[k].size());
+        seenIn[k].push_back(seen);
+      }
+    }
+  });
+
+  const Eigen::Vector3f spacing = grid.spacing.cast<float>();
+  const float scale = 1 / (kReach * spacing.maxCoeff());
+  const float least = kLeastLevel * spacing.minCoeff() / spacing.maxCoeff();
+  LevelSet level(grid);
+  parallelFor(n[2], 1, [&](std::size_t slice) {
+    const int k = static_cast<int>(slice);
+    for (int j = 0; j < n[1]; ++j) {
+      for (int i = 0; i < n[0]; ++i) {
+        const std::size_t v = grid.linear(i, j, k);
+        float distance = 0, weightSum = 0;
+        const auto add = [&](int x, int y, int z) {
+          if (!grid.contains(x, y, z)) return;
+          const std::size_t w = grid.linear(x, y, z);
+          if (numberOf[w] < 0 || side[w] != side[v]) return;
+          const Seen& seen = seenIn[z][numberOf[w]];
+          const Eigen::Vector3f way(i - x, j - y, k - z);
+          const float weight = w == v ? 1 : 1 / way.squaredNorm();
+          distance += weight * (seen.level + seen.inward.dot(way.cwiseProduct(spacing)));
+          weightSum += weight;
+        };
+        if (numberOf[v] >= 0) {
+          add(i, j, k);
+        } else {
+          // Cells that the surface crosses have corners that no crossed link ends at.
+          for (int z = k - 1; z <= k + 1; ++z) {
+            for (int y = j - 1; y <= j + 1; ++y) {
+              for (int x = i - 1; x <= i + 1; ++x) add(x, y, z);
+            }
+          }
+        }
+        const float magnitude =
+            weightSum > 0 ? (side[v] ? 1.0F : -1.0F) * scale * distance / weightSum : 1.0F;
+        level[v] = (side[v] ? 1.0F : -1.0F) * std::clamp(magnitude, least, 1.0F);
+      }
+    }
   });
   return level;
 }

@@ -4,6 +4,7 @@
 #include "RibbonField.h"
 
 #include "Explica/Core/Parallel.h"
+#include "Explica/Harmonic/Interpolant.h"
 
 #include <Eigen/Geometry>
 
@@ -17,6 +18,8 @@ namespace {
 constexpr float kHeadOn = -0.5F;
 /// Each front must also run along the link between the voxels.
 constexpr float kAlongLink = 0.25F;
+/// Of the harmonic solve: directions, not thickness, are read off it.
+constexpr double kTolerance = 1e-6;
 /// The surface keeps this share of a voxel from the middle between two banks.
 constexpr double kMiddleGap = 0.1;
 /// Steps a voxel of a trajectory.
@@ -47,190 +50,107 @@ RibbonField::RibbonField(const CorticalTissue& tissue, const TriangleMesh& white
       white_(white),
       grid_(tissue.white.grid),
       step_(grid_.spacing.minCoeff() / kStepsPerVoxel) {
-  nodeAt_.assign(grid_.voxelCount(), -1);
-  for (const int parity : {0, 1}) {
-    for (std::size_t v = 0; v < grid_.voxelCount(); ++v) {
-      const auto at = grid_.subscripts(v);
-      if (((at[0] + at[1] + at[2]) & 1) != parity) continue;
-      if (tissue.white[v] > 0 || tissue.tissue[v] <= 0 || tissue.insulated[v]) continue;
-      nodeAt_[v] = static_cast<std::int32_t>(voxelOf_.size());
-      voxelOf_.push_back(static_cast<std::uint32_t>(v));
-    }
-    if (parity == 0) evenCount_ = voxelOf_.size();
-  }
   monitor.progress(0.0, "buried sulci");
-  findBanks();
-  buildNodes();
+  const harmonic::Annulus open = ribbon();
+  const std::vector<harmonic::Cut> cuts = betweenBanks(open);
+  cutLinks_ = static_cast<std::int64_t>(cuts.size());
+  markMiddles(open, cuts);
+  annulus_ = harmonic::withCuts(open, cuts);
   monitor.progress(0.4, "harmonic interpolant");
-  solve();
-  differentiate();
+  harmonic::InterpolantOptions options;
+  options.relativeTolerance = kTolerance;
+  Monitor stoppable = monitor;
+  stoppable.onProgress = nullptr;
+  slope_ = harmonic::solveInterpolant(annulus_, options, stoppable).gradient;
+  parallelFor(slope_.size(), 8192, [&](std::size_t n) {
+    const float length = slope_[n].norm();
+    slope_[n] = length > 1e-6F ? Eigen::Vector3f(slope_[n] / length) : Eigen::Vector3f::Zero();
+  });
 }
 
-void RibbonField::findBanks() {
-  bankNormal_.resize(voxelOf_.size());
-  bankDistance_.resize(voxelOf_.size());
-  parallelFor(voxelOf_.size(), 512, [&](std::size_t n) {
-    const auto at = grid_.subscripts(voxelOf_[n]);
-    const Point p = grid_.toWorld(Vector(at[0], at[1], at[2]));
+harmonic::Annulus RibbonField::ribbon() const {
+  Volume<harmonic::Site> sites(grid_, harmonic::Site::Outer);
+  Volume<float> innerLevel(grid_), outerLevel(grid_);
+  parallelFor(sites.size(), 1 << 16, [&](std::size_t v) {
+    innerLevel[v] = -tissue_.white[v];
+    outerLevel[v] = -tissue_.tissue[v];
+    if (tissue_.white[v] > 0) {
+      sites[v] = harmonic::Site::Inner;
+    } else if (tissue_.insulated[v]) {
+      sites[v] = harmonic::Site::Insulated;
+    } else if (tissue_.tissue[v] > 0) {
+      sites[v] = harmonic::Site::Tissue;
+    }
+  });
+  return harmonic::annulusFromSites(sites, innerLevel, outerLevel);
+}
+
+std::vector<harmonic::Cut> RibbonField::betweenBanks(const harmonic::Annulus& ribbon) const {
+  struct Bank {
+    Eigen::Vector3f normal;  ///< of the nearest white surface, along the axes
+    float distance;          ///< to it, mm
+  };
+  std::vector<Bank> banks(ribbon.count());
+  parallelFor(banks.size(), 512, [&](std::size_t n) {
+    const Point p = ribbon.world(static_cast<std::int32_t>(n));
     const auto nearest = white_.closestPoint(p);
-    bankDistance_[n] = static_cast<float>(std::sqrt(nearest.squaredDistance));
+    banks[n].distance = static_cast<float>(std::sqrt(nearest.squaredDistance));
     const auto& mesh = white_.mesh();
     Vector normal = (mesh.corner(nearest.face, 1) - mesh.corner(nearest.face, 0))
                         .cross(mesh.corner(nearest.face, 2) - mesh.corner(nearest.face, 0));
     // The way from the bank is a better normal than the face's, once there is a way.
-    if (bankDistance_[n] > 0.5 * step_ && normal.dot(p - nearest.point) > 0) {
+    if (banks[n].distance > 0.5 * step_ && normal.dot(p - nearest.point) > 0) {
       normal = p - nearest.point;
     }
-    bankNormal_[n] = (grid_.direction.transpose() * normal.normalized()).cast<float>();
+    banks[n].normal = (grid_.direction.transpose() * normal.normalized()).cast<float>();
   });
+  std::vector<harmonic::Cut> cuts;
+  for (std::size_t n = 0; n < banks.size(); ++n) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::int32_t m = ribbon.links[n][2 * axis + 1];
+      if (m < 0) continue;
+      const Bank &here = banks[n], &there = banks[m];
+      const float cn = here.normal[axis], cm = -there.normal[axis];
+      if (here.normal.dot(there.normal) >= kHeadOn || cn <= kAlongLink || cm <= kAlongLink) {
+        continue;
+      }
+      // Distances grow at the rate of the normals' share of the link: they are equal at
+      //   dn + f h cn = dm + (1 - f) h cm.
+      const auto h = static_cast<float>(grid_.spacing[axis]);
+      const float f = (there.distance - here.distance + h * cm) / (h * (cn + cm));
+      cuts.push_back({static_cast<std::int32_t>(n), axis, std::clamp(f, 0.05F, 0.95F)});
+    }
+  }
+  return cuts;
 }
 
-void RibbonField::buildNodes() {
-  nodes_.resize(voxelOf_.size());
-  nearMiddle_.assign(grid_.voxelCount(), 0);
+void RibbonField::markMiddles(const harmonic::Annulus& ribbon,
+                              const std::vector<harmonic::Cut>& cuts) {
   const std::array<std::ptrdiff_t, 3> strides = {
       1, grid_.size[0], static_cast<std::ptrdiff_t>(grid_.size[0]) * grid_.size[1]};
-  for (std::size_t n = 0; n < nodes_.size(); ++n) {
-    const std::size_t v = voxelOf_[n];
-    Node& node = nodes_[n];
-    for (int d = 0; d < 6; ++d) {
-      const int axis = d / 2;
-      const std::ptrdiff_t w = static_cast<std::ptrdiff_t>(v) + (d % 2 ? 1 : -1) * strides[axis];
-      const float h = static_cast<float>(grid_.spacing[axis]);
-      node.neighbour[d] = -1;
-      node.value[d] = 0;
-      node.reach[d] = h;
-      if (nodeAt_[w] >= 0) {
-        const std::int32_t m = nodeAt_[w];
-        const float sign = d % 2 ? 1.0F : -1.0F;
-        const bool meet = bankNormal_[n].dot(bankNormal_[m]) < kHeadOn &&
-                          sign * bankNormal_[n][axis] > kAlongLink &&
-                          sign * bankNormal_[m][axis] < -kAlongLink;
-        if (!meet) {
-          node.neighbour[d] = m;
-          continue;
+  nearMiddle_.assign(grid_.voxelCount(), 0);
+  // The voxels at both ends of a cut link, and their neighbours, must look out for the middle.
+  for (const harmonic::Cut& cut : cuts) {
+    const auto v = static_cast<std::ptrdiff_t>(ribbon.linear(cut.number));
+    for (const std::ptrdiff_t end : {v, v + strides[cut.axis]}) {
+      for (int k = -1; k <= 1; ++k) {
+        for (int j = -1; j <= 1; ++j) {
+          for (int i = -1; i <= 1; ++i) nearMiddle_[end + i + j * strides[1] + k * strides[2]] = 1;
         }
-        // Distances grow at the rate of the normals' share of the link: they are equal at
-        //   dn + f h cn = dm + (1 - f) h cm.
-        const float cn = sign * bankNormal_[n][axis], cm = -sign * bankNormal_[m][axis];
-        const float f = (bankDistance_[m] - bankDistance_[n] + h * cm) / (h * (cn + cm));
-        node.value[d] = 1;
-        node.reach[d] = h * std::clamp(f, 0.05F, 0.95F);
-        nearMiddle_[v] = 1;
-        if (d % 2) ++cutLinks_;
-      } else if (tissue_.white[w] > 0) {
-        const float a = -tissue_.white[v], b = tissue_.white[w];
-        node.reach[d] = h * std::clamp(a / (a + b), 0.05F, 1.0F);
-      } else if (tissue_.insulated[w]) {
-        node.reach[d] = 0;
-      } else {
-        const float a = tissue_.tissue[v], b = -tissue_.tissue[w];
-        node.value[d] = 1;
-        node.reach[d] = h * std::clamp(a / (a + b), 0.05F, 1.0F);
       }
     }
-  }
-  // A voxel's own neighbours must look out for the middle, too.
-  std::vector<std::uint8_t> wide = nearMiddle_;
-  for (std::size_t n = 0; n < nodes_.size(); ++n) {
-    const std::size_t v = voxelOf_[n];
-    if (!nearMiddle_[v]) continue;
-    for (int k = -1; k <= 1; ++k) {
-      for (int j = -1; j <= 1; ++j) {
-        for (int i = -1; i <= 1; ++i) wide[v + i + j * strides[1] + k * strides[2]] = 1;
-      }
-    }
-  }
-  nearMiddle_ = std::move(wide);
-}
-
-void RibbonField::solve() {
-  // Shortley-Weller stencil with over-relaxation, even and odd voxels in turn.  The ribbon is a few
-  // voxels thick, so that a small number of sweeps is enough.
-  constexpr float kRelaxation = 1.5F;
-  constexpr int kMostSweeps = 400;
-  constexpr double kStill = 1e-5;
-  constexpr std::size_t kGrain = 8192;
-  struct Stencil {
-    std::array<float, 6> weight;
-    float constant;
-  };
-  std::vector<Stencil> stencils(nodes_.size());
-  parallelFor(nodes_.size(), kGrain, [&](std::size_t n) {
-    const Node& node = nodes_[n];
-    Stencil& s = stencils[n];
-    float sum = 0;
-    s.constant = 0;
-    for (int d = 0; d < 6; ++d) {
-      const float h = static_cast<float>(grid_.spacing[d / 2]);
-      const float other = node.reach[d ^ 1] > 0 ? node.reach[d ^ 1] : h;
-      s.weight[d] = node.reach[d] > 0 ? 2 / (node.reach[d] * (node.reach[d] + other)) : 0;
-      sum += s.weight[d];
-    }
-    if (sum == 0) return;
-    for (int d = 0; d < 6; ++d) {
-      s.weight[d] /= sum;
-      if (node.neighbour[d] < 0) {
-        s.constant += s.weight[d] * node.value[d];
-        s.weight[d] = 0;
-      }
-    }
-  });
-  u_.assign(nodes_.size(), 0.5F);
-  struct Largest {
-    double value = 0;
-    Largest& operator+=(const Largest& other) {
-      value = std::max(value, other.value);
-      return *this;
-    }
-  };
-  for (iterations_ = 0; iterations_ < kMostSweeps;) {
-    Largest change;
-    for (const int parity : {0, 1}) {
-      const std::size_t first = parity ? evenCount_ : 0;
-      const std::size_t count = parity ? nodes_.size() - evenCount_ : evenCount_;
-      change += parallelSum(count, kGrain, Largest{}, [&](std::size_t begin, std::size_t end) {
-        Largest mine;
-        for (std::size_t n = first + begin; n < first + end; ++n) {
-          const Stencil& s = stencils[n];
-          float next = s.constant;
-          for (int d = 0; d < 6; ++d) {
-            if (nodes_[n].neighbour[d] >= 0) next += s.weight[d] * u_[nodes_[n].neighbour[d]];
-          }
-          const float step = kRelaxation * (next - u_[n]);
-          u_[n] += step;
-          mine.value = std::max(mine.value, static_cast<double>(std::abs(step)));
-        }
-        return mine;
-      });
-    }
-    ++iterations_;
-    lastChange_ = change.value;
-    if (lastChange_ < kStill) break;
   }
 }
 
-void RibbonField::differentiate() {
-  slope_.resize(nodes_.size());
-  parallelFor(nodes_.size(), 8192, [&](std::size_t n) {
-    const Node& node = nodes_[n];
-    Eigen::Vector3f g;
-    for (int axis = 0; axis < 3; ++axis) {
-      float value[2], reach[2];
-      for (int side = 0; side < 2; ++side) {
-        const int d = 2 * axis + side;
-        reach[side] = node.reach[d] > 0 ? node.reach[d] : static_cast<float>(grid_.spacing[axis]);
-        value[side] = node.neighbour[d] >= 0 ? u_[node.neighbour[d]]
-                      : node.reach[d] > 0    ? node.value[d]
-                                             : u_[n];
-      }
-      const float below = reach[0], above = reach[1];
-      g[axis] = (below * below * (value[1] - u_[n]) + above * above * (u_[n] - value[0])) /
-                (below * above * (below + above));
-    }
-    const float length = g.norm();
-    slope_[n] = length > 1e-6F ? Eigen::Vector3f(g / length) : Eigen::Vector3f::Zero();
-  });
+Eigen::Vector3f RibbonField::slopeAt(int i, int j, int k) const {
+  const std::array<int, 3> at = {i - annulus_.first[0], j - annulus_.first[1],
+                                 k - annulus_.first[2]};
+  for (int a = 0; a < 3; ++a) {
+    if (at[a] < 0 || at[a] >= annulus_.size[a]) return Eigen::Vector3f::Zero();
+  }
+  const auto strides = annulus_.strides();
+  const std::int32_t n = annulus_.numberAt[at[0] + at[1] * strides[1] + at[2] * strides[2]];
+  return n < 0 ? Eigen::Vector3f(Eigen::Vector3f::Zero()) : slope_[n];
 }
 
 Vector RibbonField::direction(const Vector& index, const Vector& previous) const {
@@ -246,9 +166,7 @@ Vector RibbonField::direction(const Vector& index, const Vector& previous) const
   double weightSum = 0;
   for (int c = 0; c < 8; ++c) {
     const int i = c & 1, j = c >> 1 & 1, k = c >> 2;
-    const std::int32_t n = nodeAt_[grid_.linear(base[0] + i, base[1] + j, base[2] + k)];
-    if (n < 0) continue;
-    const Vector slope = slope_[n].cast<double>();
+    const Vector slope = slopeAt(base[0] + i, base[1] + j, base[2] + k).cast<double>();
     if (slope.dot(previous) <= 0) continue;
     const double weight = (i ? t[0] : 1 - t[0]) * (j ? t[1] : 1 - t[1]) * (k ? t[2] : 1 - t[2]);
     sum += weight * slope;

@@ -4,6 +4,7 @@
 
 #include "Explica/Core/Monitor.h"
 #include "Explica/Geometry/FaceTree.h"
+#include "Explica/Harmonic/Annulus.h"
 #include "Explica/Surface/CorticalTissue.h"
 
 #include <array>
@@ -44,20 +45,14 @@ class RibbonField {
   [[nodiscard]] Trajectory trace(const Point& start, const Vector& normal) const;
 
   [[nodiscard]] std::int64_t cutLinks() const { return cutLinks_; }
-  [[nodiscard]] int iterations() const { return iterations_; }
-  [[nodiscard]] double lastChange() const { return lastChange_; }
 
  private:
-  struct Node {
-    std::array<std::int32_t, 6> neighbour;  ///< node, or -1
-    std::array<float, 6> value;             ///< u beyond a link that ends at a boundary
-    std::array<float, 6> reach;             ///< length of the link, mm; 0 if insulated
-  };
-
-  void findBanks();
-  void buildNodes();
-  void solve();
-  void differentiate();
+  [[nodiscard]] harmonic::Annulus ribbon() const;
+  /// Links between voxels where fronts from two banks meet head-on.
+  [[nodiscard]] std::vector<harmonic::Cut> betweenBanks(const harmonic::Annulus& ribbon) const;
+  void markMiddles(const harmonic::Annulus& ribbon, const std::vector<harmonic::Cut>& cuts);
+  /// Direction of the interpolant's gradient at a voxel, along the axes; zero off the ribbon.
+  [[nodiscard]] Eigen::Vector3f slopeAt(int i, int j, int k) const;
   [[nodiscard]] Vector direction(const Vector& index, const Vector& previous) const;
   /// True if the nearest white matter lies ahead: the middle between two banks was passed.
   [[nodiscard]] bool pastMiddle(const Point& p, const Vector& direction) const;
@@ -69,18 +64,10 @@ class RibbonField {
   geometry::FaceTree white_;
   const Grid& grid_;
   double step_;
-  std::vector<std::int32_t> nodeAt_;    ///< per voxel; -1 off the ribbon
-  std::vector<std::uint32_t> voxelOf_;  ///< per node, even ones first
-  std::size_t evenCount_ = 0;
-  std::vector<Node> nodes_;
-  std::vector<float> u_;
-  std::vector<Eigen::Vector3f> slope_;       ///< per node: unit vector, along the axes
-  std::vector<std::uint8_t> nearMiddle_;     ///< per voxel
-  std::vector<Eigen::Vector3f> bankNormal_;  ///< per node: of the nearest white surface
-  std::vector<float> bankDistance_;          ///< per node, mm
+  harmonic::Annulus annulus_;             ///< with cuts in buried sulci
+  std::vector<Eigen::Vector3f> slope_;    ///< per tissue number: unit vector, along the axes
+  std::vector<std::uint8_t> nearMiddle_;  ///< per voxel
   std::int64_t cutLinks_ = 0;
-  int iterations_ = 0;
-  double lastChange_ = 0;
 };
 
 }  // namespace explica::surface

@@ -76,6 +76,68 @@ void expectSound(const TriangleMesh& mesh) {
   EXPECT_GT(geometry::enclosedVolume(mesh), 0);
 }
 
+/// Distances of a surface's vertices from a sphere about the origin.
+Eigen::VectorXd offSphere(const TriangleMesh& mesh, double radius) {
+  return mesh.positions.rowwise().norm().array() - radius;
+}
+
+TEST(LevelSet, OfABallsMaskIsASphere) {
+  struct Case {
+    Vector spacing;
+    double meanSquared, most;  // in voxels of the coarsest axis
+  };
+  for (const auto& [spacing, meanSquared, most] :
+       {Case{{1, 1, 1}, 0.08, 0.25}, Case{{0.6, 0.6, 1.2}, 0.06, 0.25}}) {
+    const double radius = 14.3;
+    const auto ball = volumeOf(lattice(64, spacing), [&](const Point& p) -> std::uint8_t {
+      return p.norm() < radius ? 1 : 0;
+    });
+    const auto level = levelSetOf(ball);
+    const Eigen::VectorXd off = offSphere(extractIsoSurface(level), radius) / spacing.maxCoeff();
+    EXPECT_LE(std::sqrt(off.squaredNorm() / static_cast<double>(off.size())), meanSquared);
+    EXPECT_LE(off.cwiseAbs().maxCoeff(), most);
+    for (std::size_t v = 0; v < ball.size(); ++v) {
+      ASSERT_EQ(level[v] > 0, ball[v] != 0);
+      ASSERT_LE(std::abs(level[v]), 1);
+    }
+  }
+}
+
+TEST(LevelSet, OfATiltedHalfSpacesMaskIsThePlane) {
+  const Grid grid = lattice(48, Vector(1, 0.8, 1.4));
+  const Vector normal = Vector(0.55, 0.3, 0.8).normalized();
+  const double offset = 1.37;
+  const auto level = levelSetOf(volumeOf(
+      grid, [&](const Point& p) -> std::uint8_t { return normal.dot(p) < offset ? 1 : 0; }));
+  const Vector along = normal.cross(Vector::UnitX()).normalized(), across = normal.cross(along);
+  double squared = 0;
+  int count = 0;
+  for (double a = -8; a <= 8; a += 0.7) {
+    for (double b = -8; b <= 8; b += 0.7) {
+      const auto here = sample(level, offset * normal + a * along + b * across);
+      const double distance = here.value / here.gradient.norm();
+      squared += distance * distance;
+      ++count;
+      EXPECT_LE(std::abs(distance), 0.15);
+      EXPECT_GE(-here.gradient.normalized().dot(normal), std::cos(0.2));
+    }
+  }
+  EXPECT_LE(std::sqrt(squared / count), 0.05);
+}
+
+TEST(LevelSet, KeepsASheetOfOneVoxelAsThickAsAVoxel) {
+  Grid grid;
+  grid.size = {16, 16, 11};
+  Volume<std::uint8_t> sheet(grid, 0);
+  for (int j = 0; j < 16; ++j) {
+    for (int i = 0; i < 16; ++i) sheet(i, j, 5) = 1;
+  }
+  const auto level = levelSetOf(sheet);
+  EXPECT_NEAR(level(8, 8, 5), 0.25, 1e-3);
+  EXPECT_NEAR(level(8, 8, 4), -0.25, 1e-3);
+  EXPECT_NEAR(level(8, 8, 6), -0.25, 1e-3);
+}
+
 TEST(Remesh, MakesEvenTrianglesAndMeetsTheCount) {
   const auto tissue = shell(12, 15, 1);
   const auto iso = extractIsoSurface(tissue.white);
@@ -231,12 +293,9 @@ TEST(CorticalTissue, CutsTwoHemispheresAtTheirBridge) {
 
 TEST(DepthBelowHull, IsTheDepthOfAGroove) {
   const Grid grid = lattice(50, Vector::Constant(1));
-  const auto level =
-      levelSetOf(volumeOf(grid,
-                          [](const Point& p) -> std::uint8_t {
-                            return p.norm() < 18 && !(std::abs(p.x()) < 2 && p.z() > 5) ? 1 : 0;
-                          }),
-                 0.0);
+  const auto level = levelSetOf(volumeOf(grid, [](const Point& p) -> std::uint8_t {
+    return p.norm() < 18 && !(std::abs(p.x()) < 2 && p.z() > 5) ? 1 : 0;
+  }));
   Positions points(2, 3);
   points << 0, 0, 8, -12, 0, 0;
   const auto depth = depthBelowHull(level, points);

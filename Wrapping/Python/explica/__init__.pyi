@@ -62,7 +62,6 @@ def correct_topology(
     mask: Image,
     affine: Optional[ArrayLike] = None,
     genus: str = 'zero',
-    blur: float = 0.55,
     progress: Optional[Progress] = None,
 ) -> Dict[str, Any]: ...
 def cotangent_laplacian(
@@ -208,7 +207,6 @@ def surfaces_of(
     hemisphere: Optional[Literal["L", "R"]] = None,
     no_fill: bool = False,
     close_edges: bool = False,
-    blur: float = 0.55,
     genus: Literal["zero", "keep"] = 'zero',
     faces: int = 150000,
     steps: int = 12,

@@ -70,11 +70,11 @@ void bindParts(py::module_& m) {
   m.def(
       "correct_topology",
       [](const py::array& mask, const Eigen::Matrix4d& affine, const std::string& genus,
-         double blur, const py::object& progress) {
+         const py::object& progress) {
         const auto rule = valueOf<surface::GenusRule>(genus);
         const Volume<std::uint8_t> volume = maskOf(mask, affine);
         auto made = Watch(progress).run([&](const Monitor& monitor) {
-          return surface::correctTopology(surface::levelSetOf(volume, blur), rule, monitor);
+          return surface::correctTopology(surface::levelSetOf(volume), rule, monitor);
         });
         py::list defects = defectsOf(made.defects);
         Volume<std::uint8_t> corrected(made.level.grid, 0);
@@ -84,8 +84,7 @@ void bindParts(py::module_& m) {
                         "voxels_changed"_a = made.voxelsChanged,
                         "handles_left"_a = made.handlesLeft);
       },
-      "mask"_a, "affine"_a, "genus"_a = "zero", "blur"_a = surface::TissueOptions{}.blur,
-      "progress"_a = py::none(),
+      "mask"_a, "affine"_a, "genus"_a = "zero", "progress"_a = py::none(),
       "Make a mask (I, J, K) one ball: no handle, tunnel, island or cavity (genus: zero or keep).\n"
       "Returns mask (uint8), level (its smooth level set, positive inside), the defects "
       "corrected,\n"

@@ -39,7 +39,6 @@ struct TissueOptions {
   std::optional<Side> hemisphere;
   bool noFill = false;      ///< leave the preset's deep structures and ventricles out
   bool closeEdges = false;  ///< tissue may end at the edge of the field of view
-  double blur = 0.55;       ///< of label boundaries, standard deviation in voxels
 };
 
 /// Boundaries of one cortical ribbon on a box around it.
@@ -145,8 +144,6 @@ void describe(TissueOptions& options, Visitor&& visit) {
               "close the surface where tissue meets the edge of the field of "
               "view, instead of refusing"},
         options.closeEdges);
-  visit(Field{"blur", "voxels", "standard deviation that takes the staircase off label boundaries"},
-        options.blur);
 }
 
 }  // namespace surface

@@ -11,7 +11,7 @@ namespace explica::surface {
 
 /// A boundary with sub-voxel position: the zero of a scalar that is positive inside.
 ///
-/// Values are without unit, in [-1, 1]: twice a share of the voxel, less one.
+/// Values are without unit, in [-1, 1]: twice a share of the voxel, less one, or a distance.
 using LevelSet = Volume<float>;
 
 /// A sign's least magnitude: a lattice point is never nearer to the surface than this share of
@@ -36,10 +36,11 @@ struct VoxelBox {
 
 /// Level set of a mask without its staircase.
 ///
-/// The mask is blurred by a Gaussian of `blur` voxels, and its sign is then enforced at every voxel
-/// with at least kLeastLevel: so the surface is smooth where the mask allows it, and thin sheets
-/// and strands of one voxel survive.  Threaded; deterministic.
-[[nodiscard]] LevelSet levelSetOf(const Volume<std::uint8_t>& mask, double blur);
+/// The boundary is the smoothest surface that leaves every voxel's centre on its own side
+/// (harmonic::LabelBoundary); the level is the distance to it, 1 at two voxels of the coarsest axis
+/// and beyond, and nowhere less than kLeastLevel times the ratio of the finest spacing to the
+/// coarsest: so thin sheets and strands of one voxel survive.  Threaded; deterministic.
+[[nodiscard]] LevelSet levelSetOf(const Volume<std::uint8_t>& mask);
 
 /// Level set of shares in [0, 1] whose 0.5 is the boundary: 2 p - 1, kept off zero.
 [[nodiscard]] LevelSet levelSetOf(const Volume<float>& share);

@@ -10,6 +10,16 @@
 
 namespace explica::harmonic {
 
+/// How far the steps of a mask are believed to be shape.
+struct LabelTrust {
+  float pull = 3;         ///< to the middle of a link where the boundary is rough, against squared
+                          ///< change of curvature in voxels; 3 flattens waves under five voxels
+  float smooth = 0.002F;  ///< mean squared change of curvature per voxel from which the pull grows:
+                          ///< the steps of a surface with slowly varying curvature leave so much
+  float rough = 0.01F;    ///< and at which it is full: from a radius of ten voxels to flat within a
+                          ///< voxel
+};
+
 /// The smoothest surface between two sides of a voxel mask: where it crosses the grid's links.
 ///
 /// A link whose ends lie on different sides is crossed somewhere between its ends; that is all the
@@ -27,11 +37,16 @@ class LabelBoundary {
  public:
   /// @param side  1 inside, 0 outside, 255 unknown (ends the surface); first axis fastest
   /// @param axes  3, or 2: every slice on its own
-  LabelBoundary(const std::vector<std::uint8_t>& side, const std::array<int, 3>& size, int axes);
+  LabelBoundary(const std::vector<std::uint8_t>& side, const std::array<int, 3>& size, int axes,
+                const LabelTrust& trust = {});
 
   /// Place on the link between voxel p and its neighbour along +axis, which lie on different sides:
   /// distance from p in voxels, in (0, 1).
   [[nodiscard]] double place(std::int32_t p, int axis) const;
+
+  /// The surface's normal there, outward, of unit length in index space; zero where the link is not
+  /// crossed.
+  [[nodiscard]] Eigen::Vector3f normal(std::int32_t p, int axis) const;
 
  private:
   [[nodiscard]] std::int32_t find(std::int32_t p, int axis) const;
@@ -41,7 +56,7 @@ class LabelBoundary {
   void join(const std::vector<std::uint8_t>& side);
   void findNormals(const std::vector<std::uint8_t>& side, int smoothings);
   void findCurvatures();
-  void findPull();
+  void findPull(const LabelTrust& trust);
   [[nodiscard]] float curvatureOf(std::size_t link, int chain,
                                   const std::vector<float>& theta) const;
   enum class Energy { Curvature, Variation };
