@@ -6,84 +6,22 @@
 #include "Explica/Correspondence/Ventricle.h"
 #include "Explica/Harmonic/Phantoms.h"
 #include "Explica/IO/VolumeFile.h"
+#include "Explica/Testing/FreeSurferSubject.h"
 
 #include <gtest/gtest.h>
-#include <zlib.h>
 
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <map>
-#include <sstream>
 
 using namespace explica;
 using namespace explica::correspondence;
+using namespace explica::testing;
 
 namespace {
 
 const std::filesystem::path kData = EXPLICA_REAL_DATA;
-
-double correlation(const std::vector<double>& a, const std::vector<double>& b) {
-  double sa = 0, sb = 0, saa = 0, sbb = 0, sab = 0;
-  const auto n = static_cast<double>(a.size());
-  for (std::size_t k = 0; k < a.size(); ++k) {
-    sa += a[k];
-    sb += b[k];
-    saa += a[k] * a[k];
-    sbb += b[k] * b[k];
-    sab += a[k] * b[k];
-  }
-  return (n * sab - sa * sb) / std::sqrt((n * saa - sa * sa) * (n * sbb - sb * sb));
-}
-
-/// A vertex of FreeSurfer's white surface whose place is known.
-struct KnownVertex {
-  Vector index;          ///< in mri/ribbon.mgz
-  double thickness = 0;  ///< FreeSurfer's, mm
-  double area = 0;       ///< of the white surface, mm^2
-  std::string region;
-};
-
-/// Cortical vertices of `?h.thickness_at_known_vertices.csv.gz` (the folder's SOURCE.md).
-std::vector<KnownVertex> knownVertices(const std::filesystem::path& path) {
-  std::vector<KnownVertex> vertices;
-  gzFile file = gzopen(path.c_str(), "rb");
-  char line[512];
-  bool header = true;
-  while (file != nullptr && gzgets(file, line, sizeof line) != nullptr) {
-    if (std::exchange(header, false)) continue;
-    std::array<std::string, 15> cell;
-    std::istringstream text(line);
-    for (auto& c : cell) std::getline(text, c, ',');
-    KnownVertex v;
-    v.index = Vector(std::stod(cell[7]), std::stod(cell[8]), std::stod(cell[9]));
-    v.thickness = std::stod(cell[10]);
-    v.area = std::stod(cell[11]);
-    v.region = cell[14].substr(0, cell[14].find_last_not_of("\r\n") + 1);
-    if (v.thickness > 0) vertices.push_back(v);  // 0 outside the cortex
-  }
-  if (file != nullptr) gzclose(file);
-  return vertices;
-}
-
-/// A row of `?h.aparc.stats`.
-struct Region {
-  double area = 0;       ///< SurfArea, mm^2
-  double thickness = 0;  ///< ThickAvg, mm
-};
-std::map<std::string, Region> regionsOf(const std::filesystem::path& path) {
-  std::map<std::string, Region> regions;
-  std::ifstream file(path);
-  for (std::string line; std::getline(file, line);) {
-    std::istringstream text(line);
-    std::string name;
-    double vertices = 0, area = 0, volume = 0, thickness = 0;
-    if (line.starts_with('#')) continue;
-    if (text >> name >> vertices >> area >> volume >> thickness) regions[name] = {area, thickness};
-  }
-  return regions;
-}
 
 }  // namespace
 
@@ -161,7 +99,7 @@ TEST(RealTissue, CortexIsAsThickAsFreeSurferSays) {
     }
     std::vector<double> ourRegions, theirRegions;
     for (const auto& [region, expected] :
-         regionsOf(folder / "stats" / (std::string(name) + ".aparc.stats"))) {
+         regionStats(folder / "stats" / (std::string(name) + ".aparc.stats"))) {
       // A part of a region need not be as thick as the whole.
       if (byRegion[region].second < 0.5 * expected.area) continue;
       ourRegions.push_back(byRegion[region].first / byRegion[region].second);
