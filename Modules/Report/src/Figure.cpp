@@ -71,26 +71,23 @@ Picture surfaceFigure(const TriangleMesh& mesh, const SurfacePaint& paint,
   }
   Picture tiled = tilePictures(pictures, columns);
   if (paint.values.size() == 0) return tiled;
+  constexpr int kGap = 10;
   const int barHeight = std::min(std::max(tiled.height * 3 / 5, 120), tiled.height);
-  const int barWidth = std::max(110, std::min(150, tiled.height / 5));
-  Picture whole(tiled.width + barWidth, tiled.height);
-  pastePicture(whole, tiled, 0, 0);
+  const double letters = std::clamp(barHeight / 24.0, 8.0, 14.0);
   const std::string title = paint.scale.unit.empty()
                                 ? paint.scale.title
                                 : paint.scale.title + " [" + paint.scale.unit + "]";
-  // A long title starts further left, over the picture's white margin.
-  const int shift =
-      std::max(0, static_cast<int>(textWidth(title, std::clamp(barHeight / 24.0, 8.0, 14.0))) -
-                      barWidth + 20);
+  const int width = std::max({90, std::min(130, tiled.height / 5 - 2 * kGap),
+                              static_cast<int>(std::ceil(textWidth(title, letters)))});
+  Picture whole(tiled.width + width + 2 * kGap, tiled.height);
+  pastePicture(whole, tiled, 0, 0);
   ColourScale untitled = paint.scale;
   untitled.title.clear();
   untitled.unit.clear();
-  const int top = (tiled.height - barHeight) / 2;
-  drawColourBar(whole, untitled, tiled.width + 10, top, barWidth - 20, barHeight);
-  drawText(whole, title,
-           Eigen::Vector2d(tiled.width + 10 - shift,
-                           top + 1.5 * std::clamp(barHeight / 24.0, 8.0, 14.0)),
-           std::clamp(barHeight / 24.0, 8.0, 14.0), {0.02f, 0.02f, 0.02f});
+  const int left = tiled.width + kGap, top = (tiled.height - barHeight) / 2;
+  drawColourBar(whole, untitled, left, top, width, barHeight);
+  drawText(whole, title, Eigen::Vector2d(left, top + 1.5 * letters), letters,
+           {0.02f, 0.02f, 0.02f});
   return whole;
 }
 
