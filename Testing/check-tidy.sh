@@ -12,8 +12,9 @@ if [ $# -gt 0 ]; then
 else
   files=$(git ls-files '*.cpp')
 fi
-cmake --preset ci -B build-tidy -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >/dev/null
-# What this build does not compile (benchmarks, the consumer project) has no flags to check it with.
+cmake --preset ci -B build-tidy -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON \
+  -DEXPLICA_BUILD_BENCHMARKS=ON >/dev/null
+# What this build does not compile (the consumer project) has no flags to check it with.
 files=$(for file in $files; do grep -q -F "/$file\"" build-tidy/compile_commands.json && echo "$file"; done || true)
 [ -n "$files" ] || exit 0
 

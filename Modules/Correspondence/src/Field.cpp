@@ -167,7 +167,7 @@ void TrajectoryTracer::Field::prepareCells() {
     forCells(static_cast<int>(k), [&](std::size_t p) {
       if (cellAt_[p] < 0) return;
       cellAt_[p] += start[k];
-      std::int32_t number[8];
+      std::int32_t number[8] = {};
       numbersOf(p, number);
       extend(number, firstOf(number), cells_[cellAt_[p]].corner.data());
     });
@@ -426,9 +426,9 @@ TrajectoryTracer::Field::Walk TrajectoryTracer::Field::begin(const Vector& x, st
 }
 
 TrajectoryTracer::Field::Walk TrajectoryTracer::Field::begin(std::int32_t place, int uphill) const {
-  const std::int32_t row = place / annulus.size[0];
+  const std::int32_t row = place / annulus.size[0], slice = row / annulus.size[1];
   Walk walk;
-  walk.x = Vector(place % annulus.size[0], row % annulus.size[1], row / annulus.size[1]);
+  walk.x = Vector(place % annulus.size[0], row % annulus.size[1], slice);
   walk.home = annulus.numberAt[place];
   const Corner& here = node[rankAt[place]];
   walk.u = here[3];

@@ -119,7 +119,7 @@ TEST(Itk, WritesVolumesThatWeRead) {
 }
 
 vtkSmartPointer<vtkPolyData> polyDataOf(const TriangleMesh& mesh, const Eigen::VectorXd& values) {
-  const auto data = vtkSmartPointer<vtkPolyData>::New();
+  auto data = vtkSmartPointer<vtkPolyData>::New();
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
   for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {

@@ -405,7 +405,6 @@ void BlockCholesky::solve(Eigen::VectorXd& x) const {
     const auto columns = columnsOf(front);
     auto own = x.segment(3 * front.first, front.width());
     columns.topRows(front.width()).triangularView<Eigen::Lower>().solveInPlace(own);
-    if (front.below() == 0) continue;
     below.noalias() = columns.bottomRows(3 * front.below()) * own;
     for (std::int32_t n = 0; n < front.below(); ++n) {
       x.segment<3>(3 * rows_[front.rowsBegin + n]) -= below.segment<3>(3 * n);
@@ -413,14 +412,13 @@ void BlockCholesky::solve(Eigen::VectorXd& x) const {
   }
   for (auto front = fronts_.rbegin(); front != fronts_.rend(); ++front) {
     const auto columns = columnsOf(*front);
-    auto own = x.segment(3 * front->first, front->width());
-    if (front->below() > 0) {
-      below.resize(3 * front->below());
-      for (std::int32_t n = 0; n < front->below(); ++n) {
-        below.segment<3>(3 * n) = x.segment<3>(3 * rows_[front->rowsBegin + n]);
-      }
-      own.noalias() -= columns.bottomRows(3 * front->below()).transpose() * below;
+    below.resize(3 * front->below());
+    for (std::int32_t n = 0; n < front->below(); ++n) {
+      below.segment<3>(3 * n) = x.segment<3>(3 * rows_[front->rowsBegin + n]);
     }
+    auto own = x.segment(3 * front->first, front->width());
+    for (Eigen::Index c = 0; c < own.size(); ++c)
+      own[c] -= columns.col(c).tail(below.size()).dot(below);
     columns.topRows(front->width()).triangularView<Eigen::Lower>().transpose().solveInPlace(own);
   }
 }
