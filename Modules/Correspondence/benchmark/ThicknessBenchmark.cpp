@@ -42,7 +42,8 @@ const Solved& spheroids() {
 void measure(benchmark::State& state, const CorrespondenceOptions& options) {
   const Solved& s = spheroids();
   Correspondence found;
-  for (auto _ : state) found = findCorrespondences(s.annulus, s.interpolant, options);
+  for ([[maybe_unused]] auto _ : state)
+    found = findCorrespondences(s.annulus, s.interpolant, options);
   double point = 0, worst = 0, thickness = 0;
   for (std::int32_t n = 0; n < static_cast<std::int32_t>(s.annulus.count()); ++n) {
     const Point x = s.annulus.world(n);
@@ -135,7 +136,8 @@ Volume<Label> shellLabels(int size, double inner, double outer) {
 void Shell(benchmark::State& state) {
   const Volume<Label> labels = shellLabels(static_cast<int>(state.range(0)), 2.0 / 9, 1.0 / 3);
   std::size_t voxels = 0;
-  for (auto _ : state) voxels = measureAll(state, labels, {{1}, {2}, {}, {}}, false);
+  for ([[maybe_unused]] auto _ : state)
+    voxels = measureAll(state, labels, {{1}, {2}, {}, {}}, false);
   state.counters["voxels"] = static_cast<double>(voxels);
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);  // of the process so far: sizes ascend
@@ -151,7 +153,7 @@ void Ribbon(benchmark::State& state) {
     return;
   }
   const auto labels = io::readLabels(path).volume;
-  for (auto _ : state) measureAll(state, labels, {{2}, {3}, {}, {}}, true);
+  for ([[maybe_unused]] auto _ : state) measureAll(state, labels, {{2}, {3}, {}, {}}, true);
 }
 BENCHMARK(Ribbon)->Apply(once);
 
@@ -159,7 +161,7 @@ BENCHMARK(Ribbon)->Apply(once);
 void Triad(benchmark::State& state) {
   const std::size_t n = 10'000'000;
   std::vector<double> a(n, 0), b(n, 1), c(n, 2);
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     parallelForBlocks(n, 1 << 16, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) a[k] = b[k] + 3 * c[k];
     });
@@ -179,7 +181,7 @@ void Cycle(benchmark::State& state) {
                                                    {0, harmonic::LevelInside::Below});
   harmonic::Multigrid multigrid(annulus);
   std::vector<float> r(annulus.count(), 1), e;
-  for (auto _ : state) multigrid.cycle(r, e);
+  for ([[maybe_unused]] auto _ : state) multigrid.cycle(r, e);
   state.counters["bytes_per_s"] =
       benchmark::Counter(multigrid.bytesPerCycle(), benchmark::Counter::kIsIterationInvariantRate);
 }
@@ -259,7 +261,7 @@ void PlainCompact(benchmark::State& state) {
   harmonic::AnnulusOptions options;
   options.boundary = harmonic::BoundaryModel::Staircase;
   const auto labels = spheroidLabels(state);
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     const auto annulus = harmonic::annulusFromLabels(labels, {{1}, {2}, {}, {}}, options);
     solvePlainly(annulus.links, std::vector<std::uint8_t>(annulus.count(), 1));
   }
@@ -268,7 +270,7 @@ void PlainCompact(benchmark::State& state) {
 /// The reference on arrays of the whole grid, as plain tools have them.
 void PlainGrid(benchmark::State& state) {
   const auto labels = spheroidLabels(state);
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     const int size = labels.grid.size[0];
     std::vector<std::array<std::int32_t, 6>> links(labels.size());
     std::vector<std::uint8_t> isTissue(labels.size());
@@ -289,7 +291,7 @@ void PlainGrid(benchmark::State& state) {
 /// Ours on the same labels: sub-voxel boundary, boundary points and lengths.
 void Ours(benchmark::State& state) {
   const auto labels = spheroidLabels(state);
-  for (auto _ : state) measureAll(state, labels, {{1}, {2}, {}, {}}, false);
+  for ([[maybe_unused]] auto _ : state) measureAll(state, labels, {{1}, {2}, {}, {}}, false);
 }
 BENCHMARK(Ours)->Arg(128)->Arg(256)->Apply(once);
 BENCHMARK(PlainCompact)->Arg(128)->Arg(256)->Apply(once);

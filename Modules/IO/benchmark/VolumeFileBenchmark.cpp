@@ -85,7 +85,7 @@ class Files {
 template <class T>
 void writing(benchmark::State& state, const Volume<T>& volume, const char* name) {
   const Files files;
-  for (auto _ : state) io::writeVolume(files / name, volume);
+  for ([[maybe_unused]] auto _ : state) io::writeVolume(files / name, volume);
   state.counters["MB"] = static_cast<double>(fs::file_size(files / name)) / 1e6;
   state.SetBytesProcessed(
       static_cast<std::int64_t>(state.iterations() * volume.size() * sizeof(T)));
@@ -104,7 +104,7 @@ void writePoints(benchmark::State& state) {
 void readLabels(benchmark::State& state, const char* name) {
   const Files files;
   io::writeVolume(files / name, labels(static_cast<int>(state.range(0))));
-  for (auto _ : state) benchmark::DoNotOptimize(io::readLabels(files / name));
+  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(io::readLabels(files / name));
 }
 
 void readRealLabels(benchmark::State& state, const char* name) {
@@ -113,13 +113,14 @@ void readRealLabels(benchmark::State& state, const char* name) {
     state.SkipWithError("no real data");
     return;
   }
-  for (auto _ : state) benchmark::DoNotOptimize(io::readLabels(path));
+  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(io::readLabels(path));
 }
 
 void readThickness(benchmark::State& state) {
   const Files files;
   io::writeVolume(files / "a.nii.gz", thickness(static_cast<int>(state.range(0))));
-  for (auto _ : state) benchmark::DoNotOptimize(io::readScalars(files / "a.nii.gz"));
+  for ([[maybe_unused]] auto _ : state)
+    benchmark::DoNotOptimize(io::readScalars(files / "a.nii.gz"));
 }
 
 BENCHMARK(writeLabels)->ArgName("n")->Arg(256)->Unit(benchmark::kMillisecond)->UseRealTime();

@@ -23,7 +23,7 @@ void unfold(benchmark::State& state, const PolygonPhantom& phantom, PolygonMetho
   options.noLength = without == Without::Length;
   options.noTopology = without == Without::Topology;
   PolygonUnfolding result;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     result = unfoldPolygon(phantom.curve, region, phantom.viewpoint, options);
     benchmark::DoNotOptimize(result.seconds);
   }
@@ -51,7 +51,7 @@ void knot(benchmark::State& state, PolygonKnot method) {
       makePolygonKnotEnergy(PolygonKnot::AllPairs, ring, moving)->evaluate(ring.positions);
   const auto energy = makePolygonKnotEnergy(method, ring, moving);
   PolygonKnotValue value;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     value = energy->evaluate(ring.positions);
     benchmark::DoNotOptimize(value.value);
   }

@@ -153,7 +153,7 @@ void run(benchmark::State& state, const Scene& scene, const Options&... options)
   }
   const Evaluator evaluator(scene.mesh, scene.moves, options...);
   KnotValue found;
-  for (auto _ : state) found = evaluator.evaluate(scene.mesh.positions);
+  for ([[maybe_unused]] auto _ : state) found = evaluator.evaluate(scene.mesh.positions);
   state.counters["faces"] = static_cast<double>(scene.mesh.faceCount());
   state.counters["moving"] = static_cast<double>(scene.movingFaces);
   state.counters["s_per_moving"] = benchmark::Counter(
@@ -215,7 +215,7 @@ template <class T>
 void ClosedCentroidPairs(benchmark::State& state) {
   const TriangleMesh mesh = geometry::makeIcosphere(static_cast<int>(state.range(0)));
   CentroidPairs<T> pairs(mesh);
-  for (auto _ : state) pairs.sum();
+  for ([[maybe_unused]] auto _ : state) pairs.sum();
   state.counters["faces"] = static_cast<double>(mesh.faceCount());
 }
 
@@ -275,7 +275,7 @@ void RatioToCentroidPairs(benchmark::State& state) {
     const MultipoleTree tree(scene.mesh, scene.moves, options);
     return gradientError(scene, tree.evaluate(scene.mesh.positions));
   };
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     const Times tree = treeTimes(10, sphere, options);
     const Times folded = treeTimes(10, foldedSphere, options);
     state.counters["tree_gradient_error"] = error(sphere);
@@ -297,7 +297,7 @@ void RatioToCentroidPairs(benchmark::State& state) {
 
 /// Time of 327,680 faces over that of 20,480.
 void RatioOfGrowth(benchmark::State& state) {
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     for (const bool folded : {false, true}) {
       const Times coarse = treeTimes(20, closedWithoutTruth(5, folded));
       const Times fine = treeTimes(6, closedWithoutTruth(7, folded));
@@ -313,7 +313,7 @@ void RatioToThesisTree(benchmark::State& state) {
     state.SkipWithError("skipped: no real data");
     return;
   }
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     const Times tree = treeTimes(50, scene);
     reportTimes(state, "tree", tree);
     state.counters["tree_gradient_error"] =

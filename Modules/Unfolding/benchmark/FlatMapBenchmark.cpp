@@ -83,7 +83,7 @@ void flatten(benchmark::State& state, const Map& map) {
   const Case& c = caseOf(static_cast<int>(state.range(0)));
   const TriangleMesh patch = geometry::extractFaces(c.mesh, c.region.faces).mesh;
   Positions flat;
-  for (auto _ : state) flat = map(patch);
+  for ([[maybe_unused]] auto _ : state) flat = map(patch);
   report(state, patch, flat);
   state.counters["flipped"] = static_cast<double>(flippedFaces(flat, patch.faces));
 }
@@ -102,7 +102,7 @@ void unfolded(benchmark::State& state, Surround surround) {
   options.unfolder.surround = surround;
   options.targetVisibility = c.target;
   UnfoldResult result;
-  for (auto _ : state) result = unfold(c.mesh, c.region, c.view, options);
+  for ([[maybe_unused]] auto _ : state) result = unfold(c.mesh, c.region, c.view, options);
   const auto after = geometry::extractFaces(result.mesh, result.region.faces);
   report(state, geometry::extractFaces(c.mesh, c.region.faces).mesh, after.mesh.positions);
   state.counters["visibility"] = result.history.back().visibility;
