@@ -6,6 +6,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Pipeline/Plan.h"
+#include "Explica/Provenance/Digest.h"
 #include "Explica/Provenance/Export.h"
 #include "Explica/Provenance/Json.h"
 #include "Explica/Provenance/Record.h"
@@ -18,6 +19,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <set>
 
 namespace explica::app {
 
@@ -49,6 +51,19 @@ struct Settings {
   Invocation run;  ///< whose options are taken over
 };
 
+/// A name for the part of the work that the options ask for; empty for all of it.
+std::string shareOf(const Settings& s) {
+  if (s.level != BidsLevel::Participant || s.participants.empty()) return {};
+  std::set<std::string> labels;
+  for (const std::string& label : s.participants) {
+    labels.insert(label.starts_with("sub-") ? label.substr(4) : label);
+  }
+  std::string name;
+  for (const std::string& label : labels) name += label + "_";
+  for (const auto side : s.hemispheres) name += std::string(nameOf(side)) + "_";
+  return provenance::sha256Of(name).substr(0, 16);
+}
+
 void declare(Declaration& d, Settings& s) {
   d.synopsis("a BIDS data set, participant by participant, to a derivative and a study table")
       .description(
@@ -60,7 +75,8 @@ void declare(Declaration& d, Settings& s) {
           "content, "
           "are kept. A participant that fails does not stop the others. group: writes from all "
           "runs, failed ones too, study.tsv and index.html, and exports their records as BIDS-Prov "
-          "and RO-Crate.")
+          "and RO-Crate. Several of these commands may work on one OUT_DIR at a time, as in a job "
+          "array, on different participants.")
       .example("explica bids data derivatives/explica participant --participant-label 01 02",
                "Two participants")
       .example("explica bids data derivatives/explica group", "The table of all")
@@ -77,6 +93,7 @@ void declare(Declaration& d, Settings& s) {
       .defaultOut(s.out)
       .reuseOutputIf(s.reuse)
       .inPlace()
+      .shareOfWork([&s] { return shareOf(s); })
       .output("dataset_description.json", FileKind::JsonFile, "what this derivative is")
       .output("descriptions.tsv", FileKind::Table, "what each desc- means")
       .output(".bidsignore", FileKind::Any, "files that BIDS does not know yet")

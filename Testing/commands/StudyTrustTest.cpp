@@ -197,6 +197,48 @@ TEST(StudyTrust, ASecondRunIntoTheSameFolderNamesTheFirst) {
   }
 }
 
+/// The lock of the one run that is at work on a share of a folder, as soon as there is one.
+fs::path lockOfShare(const fs::path& folder) {
+  for (int look = 0; look < 20000; ++look) {
+    std::error_code fault;
+    for (const auto& entry : fs::directory_iterator(folder, fault)) {
+      if (entry.path().filename().string().starts_with(".explica-lock-")) return entry.path();
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return {};
+}
+
+TEST(StudyTrust, DifferentParticipantsAreDoneSideBySide) {
+  const TemporaryFolder folder;
+  const SmallStudy study(folder.path(), {"01", "02"});
+  const auto only = [&](const std::string& out, const std::string& label) {
+    return explica(study.participants(out, {"--participant-label", label}));
+  };
+  CommandResult first;
+  std::thread running([&] { first = only(study.out(), "01"); });
+  const pid_t holder = holderOfLock(lockOfShare(study.out()));
+  const bool held = holder > 0 && kill(holder, SIGSTOP) == 0;
+  const CommandResult other = only(study.out(), "sub-02");
+  const CommandResult same = only(study.out(), "sub-01");
+  if (held) kill(holder, SIGCONT);
+  running.join();
+  ASSERT_TRUE(held);
+  EXPECT_EQ(first.exitCode, 0) << first;
+  EXPECT_EQ(other.exitCode, 0) << other;
+  EXPECT_EQ(same.exitCode, 4) << same;
+  EXPECT_NE(same.err.find("in use by process"), std::string::npos) << same;
+
+  const std::string alone = folder / "alone";
+  for (const char* label : {"01", "02"}) ASSERT_EQ(only(alone, label).exitCode, 0);
+  for (const auto& out : {alone, study.out()}) {
+    const CommandResult group = explica(study.group(out));
+    ASSERT_EQ(group.exitCode, 0) << group;
+  }
+  EXPECT_EQ(differences(stableHashes(study.out()), stableHashes(alone)),
+            std::vector<std::string>());
+}
+
 TEST(StudyTrust, ALockOfAnotherHostCountsUntilItIsSilent) {
   const TemporaryFolder folder;
   const SmallStudy study(folder.path(), {"01"});

@@ -121,6 +121,11 @@ Declaration& Declaration::reuseOutputIf(const bool& flag) {
   return *this;
 }
 
+Declaration& Declaration::shareOfWork(std::function<std::string()> shareName) {
+  share = std::move(shareName);
+  return *this;
+}
+
 Declaration& Declaration::defaultOut(const std::string& folder) {
   fallbackOut = &folder;
   return *this;

@@ -26,6 +26,7 @@ namespace {
 namespace fs = std::filesystem;
 using provenance::Json;
 
+constexpr const char* kLockName = ".explica-lock";
 constexpr auto kHeartbeat = std::chrono::seconds(30);
 constexpr auto kSilence = std::chrono::minutes(10);  // a host silent for so long is taken for dead
 
@@ -196,8 +197,8 @@ OutputFolder::OutputFolder(fs::path folder, const OutputRules& rules,
     madeFolders_.push_back(*it);
   }
   const std::string name = absolute.filename().string();
-  lock_ =
-      inside ? absolute / ".explica-lock" : absolute.parent_path() / ("." + name + ".explica-lock");
+  const std::string ownLock = rules.share.empty() ? kLockName : kLockName + ("-" + rules.share);
+  lock_ = inside ? absolute / ownLock : absolute.parent_path() / ("." + name + kLockName);
   stage_ = inPlace_ ? absolute
            : inside ? absolute / ".explica-stage"
                     : absolute.parent_path() / ("." + name + ".explica-stage");

@@ -20,6 +20,7 @@ struct OutputRules {
   bool inPlace = false;         ///< no staging: files go straight into the folder
   bool checkOnly = false;       ///< dry run: look, touch nothing
   std::string command;          ///< for the lock
+  std::string share;            ///< of the folder's work that this run does alone; empty: all
 };
 
 /// Removes the outputs that the record in `folder` lists and that are still as it lists them, the
@@ -31,7 +32,7 @@ void removeRecorded(const std::filesystem::path& folder, const std::vector<std::
 /// Files are written into a hidden staging folder: beside the output folder if that does not exist
 /// (and then one rename makes it appear whole), inside it otherwise (and then files are renamed one
 /// by one, the record last).  A lock file names the process, so that a second run into the same
-/// folder refuses; a lock whose process is gone, or whose other host has been silent for long, is
+/// folder, or on the same share of its work, refuses; a lock whose process is gone, or whose other host has been silent for long, is
 /// taken over.
 class OutputFolder {
  public:

@@ -433,8 +433,10 @@ Outcome execute(Run& run, Console& console) {
   }
   if (declaration.writesOutput && !declaration.handsOutputOn) {
     const bool reuse = declaration.reuse && *declaration.reuse;
-    const OutputRules rules{run.common.force || reuse, run.common.force && !reuse,
-                            declaration.writesInPlace, run.common.dryRun, declaration.name};
+    const OutputRules rules{
+        run.common.force || reuse, run.common.force && !reuse,
+        declaration.writesInPlace, run.common.dryRun,
+        declaration.name,          declaration.share ? declaration.share() : std::string()};
     state.folder.emplace(*run.common.out, rules,
                          [&](const std::string& message) { state.monitor.warn(message); });
     std::error_code ignored;

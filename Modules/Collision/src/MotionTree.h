@@ -71,10 +71,9 @@ class MotionTree {
   /// Calls visit(item) for every item that may meet `box` within `reach`, in tree order.
   template <class Visit>
   void visitMeetings(const MovingBox& box, double reach, const Visit& visit) const {
-    constexpr int kStackDepth = 64;  // two per level of a balanced tree of 2^31 items
     const auto& nodes = tree_.nodes();
     if (nodes.empty()) return;
-    std::array<std::int32_t, kStackDepth> stack;
+    std::array<std::int32_t, geometry::BoxTree::kStackDepth> stack;
     int depth = 0;
     stack[depth++] = 0;
     while (depth > 0) {

@@ -313,6 +313,15 @@ std::uint8_t TrajectoryTracer::Field::extend(const std::int32_t* number, int see
   // behind.
   int extended[8];
   int extensions = 0;
+  const auto take = [&](int c, double sumU, const Vector& sumG, int found) {
+    if (found == 0) return;
+    u[c] = sumU / found;
+    g[c] = sumG / found;
+    extended[extensions++] = c;
+  };
+  const auto settle = [&] {
+    while (extensions > 0) state[extended[--extensions]] = kExtended;
+  };
   for (int c = 0; c < corners; ++c) {
     if (state[c] == kReached) continue;
     double sumU = 0;
@@ -354,16 +363,12 @@ std::uint8_t TrajectoryTracer::Field::extend(const std::int32_t* number, int see
       sumG += slope;
       ++found;
     }
-    if (found == 0) continue;
-    u[c] = sumU / found;
-    g[c] = sumG / found;
-    extended[extensions++] = c;
+    take(c, sumU, sumG, found);
   }
-  for (int k = 0; k < extensions; ++k) state[extended[k]] = kExtended;
+  settle();
 
   // Then across faces and the cube: gradients add up as in a parallelogram.
   for (int pass = 0; pass < 2; ++pass) {
-    extensions = 0;
     for (int c = 0; c < corners; ++c) {
       if (state[c] != kUnknown) continue;
       double sumU = 0;
@@ -381,12 +386,9 @@ std::uint8_t TrajectoryTracer::Field::extend(const std::int32_t* number, int see
           ++found;
         }
       }
-      if (found == 0) continue;
-      u[c] = sumU / found;
-      g[c] = sumG / found;
-      extended[extensions++] = c;
+      take(c, sumU, sumG, found);
     }
-    for (int k = 0; k < extensions; ++k) state[extended[k]] = kExtended;
+    settle();
   }
   for (int pass = 0; pass < 3; ++pass) {
     for (int c = 0; c < corners; ++c) {

@@ -13,8 +13,6 @@ namespace explica::geometry {
 namespace {
 
 constexpr std::int32_t kLeafSize = 4;
-constexpr std::size_t kStackDepth =
-    64;  // halving 2^31 items needs 31 levels, one pending child each
 
 bool overlap(const Box& a, const Box& b) {
   return (a.min().array() <= b.max().array()).all() && (b.min().array() <= a.max().array()).all();
@@ -25,7 +23,7 @@ template <class Visit>
 void visitOverlaps(const BoxTree& tree, const Box& box, const Visit& visit) {
   const auto& nodes = tree.nodes();
   if (nodes.empty()) return;
-  std::array<std::int32_t, kStackDepth> stack;
+  std::array<std::int32_t, BoxTree::kStackDepth> stack;
   std::size_t depth = 0;
   stack[depth++] = 0;
   while (depth > 0) {
@@ -162,7 +160,7 @@ ClosestPoint FaceTree::closestPoint(const Point& query) const {
     double squaredDistance;
     std::int32_t node;
   };
-  std::array<Pending, kStackDepth> stack;
+  std::array<Pending, BoxTree::kStackDepth> stack;
   std::size_t depth = 0;
   stack[depth++] = {nodes[0].box.squaredExteriorDistance(query), 0};
   while (depth > 0) {

@@ -5,6 +5,7 @@
 
 #include "Explica/Geometry/Predicates.h"
 #include "Explica/Planar/PolygonPhantoms.h"
+#include "Polygon.h"
 
 #include <gtest/gtest.h>
 
@@ -12,14 +13,6 @@
 
 namespace explica::planar {
 namespace {
-
-Curve polygon(std::initializer_list<Point2> points) {
-  Curve curve;
-  curve.positions.resize(static_cast<Eigen::Index>(points.size()), 2);
-  Eigen::Index row = 0;
-  for (const Point2& p : points) curve.positions.row(row++) = p.transpose();
-  return curve;
-}
 
 /// Samples each edge and follows the ray to the viewpoint.
 double sampledFraction(const Curve& curve, const Region& region, const Point2& viewpoint,

@@ -5,19 +5,12 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Planar/PolygonPhantoms.h"
+#include "Polygon.h"
 
 #include <gtest/gtest.h>
 
 namespace explica::planar {
 namespace {
-
-Curve polygon(std::initializer_list<Point2> points) {
-  Curve curve;
-  curve.positions.resize(static_cast<Eigen::Index>(points.size()), 2);
-  Eigen::Index row = 0;
-  for (const Point2& p : points) curve.positions.row(row++) = p.transpose();
-  return curve;
-}
 
 TEST(Curve, RegionMayRunPastTheLastVertex) {
   const Curve square = polygon({{0, 0}, {1, 0}, {1, 1}, {0, 1}});

@@ -7,6 +7,7 @@
 #include "Explica/Planar/AngularSweep.h"
 #include "Explica/Planar/PolygonPhantoms.h"
 #include "FiniteDifference.h"
+#include "Polygon.h"
 
 #include <gtest/gtest.h>
 
@@ -14,14 +15,6 @@
 
 namespace explica::planar {
 namespace {
-
-Curve polygon(std::initializer_list<Point2> points) {
-  Curve curve;
-  curve.positions.resize(static_cast<Eigen::Index>(points.size()), 2);
-  Eigen::Index row = 0;
-  for (const Point2& p : points) curve.positions.row(row++) = p.transpose();
-  return curve;
-}
 
 /// A square with a notch in its upper side.
 Curve notched() {

@@ -4,6 +4,7 @@
 
 #include "Explica/Provenance/Options.h"
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -149,6 +150,9 @@ class Declaration {
   Declaration& writesThrough();
   /// While `*reuse` is true, --out may hold files already (as with --resume).
   Declaration& reuseOutputIf(const bool& reuse);
+  /// Which share of an inPlace() folder's work the options ask for: runs on different shares may be
+  /// at work at the same time.  The name is part of a file's; empty: all of it.
+  Declaration& shareOfWork(std::function<std::string()> shareName);
   /// Where to write if --out is not given.
   Declaration& defaultOut(const std::string& folder);
 
@@ -169,6 +173,7 @@ class Declaration {
   bool writesInPlace = false;
   bool handsOutputOn = false;
   const bool* reuse = nullptr;
+  std::function<std::string()> share;
   const std::string* fallbackOut = nullptr;
 
  private:

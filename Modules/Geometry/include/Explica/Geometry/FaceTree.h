@@ -23,6 +23,9 @@ struct ClosestPoint {
 /// Bounding-volume hierarchy over boxes, built once; for faces, edges or anything that has a box.
 class BoxTree {
  public:
+  /// Nodes that wait while a walk from the root goes down: one a level, and 2^31 items need 31.
+  static constexpr int kStackDepth = 64;
+
   BoxTree() = default;
   /// Builds over `boxes`; item i is boxes[i].  O(n log n).
   explicit BoxTree(const std::vector<Box>& boxes);
