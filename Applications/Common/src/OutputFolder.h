@@ -32,8 +32,8 @@ void removeRecorded(const std::filesystem::path& folder, const std::vector<std::
 /// Files are written into a hidden staging folder: beside the output folder if that does not exist
 /// (and then one rename makes it appear whole), inside it otherwise (and then files are renamed one
 /// by one, the record last).  A lock file names the process, so that a second run into the same
-/// folder, or on the same share of its work, refuses; a lock whose process is gone, or whose other host has been silent for long, is
-/// taken over.
+/// folder, or on the same share of its work, refuses; a lock whose process is gone, or whose other
+/// host has been silent for long, is taken over.
 class OutputFolder {
  public:
   /// @throws UsageError        not empty, or a file
