@@ -146,7 +146,7 @@ std::size_t ByteSource::readOn(std::uint8_t* to, std::size_t count) {
     members_->memberDone = progress == Inflater::Progress::Done;
     if (room.empty() && !members_->memberDone) break;
     if (progress == Inflater::Progress::None) {
-      failToRead(path_, "the gzip data end too early; it is truncated");
+      failTruncated(path_, "the gzip data end too early");
     }
   }
   return count - room.size();
@@ -154,14 +154,14 @@ std::size_t ByteSource::readOn(std::uint8_t* to, std::size_t count) {
 
 Bytes ByteSource::take(std::uint64_t count) {
   if (count > leftAtMost()) {
-    failToRead(path_, "the file is too short for the " + std::to_string(count) +
-                          " bytes that its header announces; it is truncated or damaged");
+    failTruncated(path_, "the file is too short for the " + std::to_string(count) +
+                             " bytes that its header announces");
   }
   Bytes taken(count);
   const std::size_t got = read(taken.data(), taken.size());
   if (got < count) {
-    failToRead(path_, "the file ends " + std::to_string(count - got) + " bytes too early (" +
-                          std::to_string(count) + " needed here); it is truncated");
+    failTruncated(path_, "the file ends " + std::to_string(count - got) + " bytes too early (" +
+                             std::to_string(count) + " needed here)");
   }
   return taken;
 }
@@ -171,7 +171,7 @@ void ByteSource::skip(std::uint64_t count) {
   while (count > 0) {
     const std::size_t step = std::min<std::uint64_t>(count, scratch.size());
     const std::size_t got = read(scratch.data(), step);
-    if (got < step) failToRead(path_, "the file ends before its data; it is truncated");
+    if (got < step) failTruncated(path_, "the file ends before its data");
     count -= got;
   }
 }

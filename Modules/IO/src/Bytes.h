@@ -32,6 +32,12 @@ inline std::string quoted(const std::filesystem::path& path) {
   throw IOError(quoted(path) + ": " + cause);
 }
 
+/// For a file that holds less than it announces.
+[[noreturn]] inline void failTruncated(const std::filesystem::path& path,
+                                       const std::string& cause) {
+  failToRead(path, cause + "; it is truncated or damaged: copy or make it again");
+}
+
 /// The file is whole, but cannot be used as asked.
 [[noreturn]] inline void refuse(const std::filesystem::path& path, const std::string& cause) {
   throw InvalidInput(quoted(path) + ": " + cause);
@@ -79,7 +85,7 @@ class ByteCursor {
     return load<T>(view(sizeof(T)).data(), bigEndian_);
   }
   [[nodiscard]] ByteView view(std::size_t count) {
-    if (count > left()) failToRead(path_, "the file ends too early; it is truncated");
+    if (count > left()) failTruncated(path_, "the file ends too early");
     const ByteView taken = bytes_.subspan(at_, count);
     at_ += count;
     return taken;

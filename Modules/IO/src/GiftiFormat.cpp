@@ -142,7 +142,7 @@ GiftiArray parseArray(const std::filesystem::path& path, const XmlElement& eleme
   const std::string encoding = element["Encoding"];
   if (encoding == "ASCII" || encoding == "GIFTI_ENCODING_ASCII") {
     if (static_cast<std::uint64_t>(count) > text.size() / 2 + 1) {
-      failToRead(path, "has a GIFTI array with fewer numbers than announced; it is truncated");
+      failTruncated(path, "has a GIFTI array with fewer numbers than announced");
     }
     array.values.reserve(static_cast<std::size_t>(count));
     ByteCursor cursor(

@@ -210,8 +210,7 @@ void checkNrrd(const std::filesystem::path& path, ByteView bytes) {
   }
   const std::uint64_t needed = checkedProduct(path, sizes) * (text ? 2 : widthOf(*type)) - text;
   if (needed > dataLimit(path, header, dataFile, bytes.size(), packed)) {
-    failToRead(path,
-               "the data end too early for the sizes of the header; it is truncated or damaged");
+    failTruncated(path, "the data end too early for the sizes of the header");
   }
 }
 
@@ -269,22 +268,21 @@ void checkMetaImage(const std::filesystem::path& path, ByteView bytes) {
     const auto size = parseNumber<std::int64_t>(path, header["CompressedDataSize"]);
     const auto room = static_cast<std::int64_t>(bytes.size() - header.size);
     if (size < 1 || (local && size > room)) {
-      failToRead(path, "the packed data end too early; it is truncated");
+      failTruncated(path, "the packed data end too early");
     }
   }
   std::vector<std::int64_t> all = sizes;
   all.push_back(channels);
   const std::uint64_t needed = checkedProduct(path, all) * (text ? 2 : widthOf(*type)) - text;
   if (needed > dataLimit(path, header, dataFile, bytes.size(), packed)) {
-    failToRead(path,
-               "the data end too early for the sizes of the header; it is truncated or damaged");
+    failTruncated(path, "the data end too early for the sizes of the header");
   }
 }
 
 void checkPng(const std::filesystem::path& path, ByteView bytes) {
   // Signature 8, then the IHDR chunk: length, type, width, height, bits, colour, ...
   constexpr std::int64_t kWidestPixel = 8;
-  if (bytes.size() < 33) failToRead(path, "the file ends too early; it is truncated");
+  if (bytes.size() < 33) failTruncated(path, "the file ends too early");
   const std::int64_t width = load<std::uint32_t>(bytes.data() + 16, true);
   const std::int64_t height = load<std::uint32_t>(bytes.data() + 20, true);
   const std::int64_t pixels = checkedProduct(path, {width, height});

@@ -50,8 +50,8 @@ TriangleMesh MeshBuilder::finish(const std::filesystem::path& path,
 std::size_t checkedCount(const std::filesystem::path& path, std::int64_t count,
                          std::size_t bytesLeft, std::size_t bytesEach, const char* what) {
   if (count < 0 || static_cast<std::uint64_t>(count) > bytesLeft / bytesEach) {
-    failToRead(path, "announces " + std::to_string(count) + " " + what +
-                         ", more than it can hold; it is truncated or damaged");
+    failTruncated(path,
+                  "announces " + std::to_string(count) + " " + what + ", more than it can hold");
   }
   return static_cast<std::size_t>(count);
 }

@@ -110,7 +110,7 @@ PlyHeader plyHeaderOf(const std::filesystem::path& path, ByteView bytes) {
   static_cast<void>(cursor.line());
   bool formatGiven = false;
   while (true) {
-    if (cursor.left() == 0) failToRead(path, "its PLY header does not end; it is truncated");
+    if (cursor.left() == 0) failTruncated(path, "its PLY header does not end");
     const std::string_view line = cursor.line();
     ByteCursor words(
         path, ByteView(reinterpret_cast<const std::uint8_t*>(line.data()), line.size()), false);
@@ -294,7 +294,7 @@ LoadedSurface readOff(const std::filesystem::path& path, ByteView bytes) {
       line = line.substr(0, line.find('#'));
       if (line.find_first_not_of(" \t") != std::string_view::npos) return line;
     }
-    failToRead(path, "the file ends too early; it is truncated");
+    failTruncated(path, "the file ends too early");
   };
   const auto wordsOf = [&path](std::string_view line) {
     return ByteCursor(
@@ -408,7 +408,7 @@ LoadedSurface readStl(const std::filesystem::path& path, ByteView bytes) {
     }
   } else {
     if (!textOf(bytes).starts_with("solid")) {
-      failToRead(path, "its length does not fit the facets that it announces; it is truncated");
+      failTruncated(path, "its length does not fit the facets that it announces");
     }
     bool ended = false;
     while (cursor.left() > 0) {
@@ -422,8 +422,7 @@ LoadedSurface readStl(const std::filesystem::path& path, ByteView bytes) {
       for (double& c : corner) c = parseNumber<double>(path, words.word());
       corners.push_back(corner);
     }
-    if (!ended || corners.size() % 3 != 0)
-      failToRead(path, "the file ends too early; it is truncated");
+    if (!ended || corners.size() % 3 != 0) failTruncated(path, "the file ends too early");
   }
   for (Corner& corner : corners) {
     for (double& c : corner) {

@@ -72,7 +72,7 @@ std::vector<VertexMap> readVertexMaps(const std::filesystem::path& path,
     } else if (freeSurferKindOf(bytes) == FreeSurferKind::Surface && bytes[2] == 0xff &&
                load<std::int32_t>(bytes.data() + 11, true) == 1) {
       // A curv file by its header, whose length does not fit.
-      failToRead(path, "the file ends too early for its number of values; it is truncated");
+      failTruncated(path, "the file ends too early for its number of values");
     } else {
       failToRead(path,
                  "holds no per-vertex values of a known format (GIFTI, FreeSurfer curv, MGH, VTK)");

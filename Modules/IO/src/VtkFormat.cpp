@@ -254,7 +254,7 @@ class LegacyReader {
         skipMetadata();
         name = cursor_.word();
       }
-      if (name.empty()) failToRead(path_, "the file ends too early; it is truncated");
+      if (name.empty()) failTruncated(path_, "the file ends too early");
       const std::int64_t components = whole();
       const std::int64_t rows = whole();
       const std::string_view type = cursor_.word();
@@ -306,8 +306,7 @@ class XmlReader {
     }
     const std::size_t end = text.find('>', tag);
     const std::size_t start = end == std::string_view::npos ? end : text.find('_', end);
-    if (start == std::string_view::npos)
-      failToRead(path, "the file ends too early; it is truncated");
+    if (start == std::string_view::npos) failTruncated(path, "the file ends too early");
     appended_ = bytes.subspan(start + 1);
     const std::string_view opening = text.substr(tag, end - tag);
     appendedRaw_ = opening.find("\"raw\"") != std::string_view::npos;
@@ -405,7 +404,7 @@ class XmlReader {
     if (format == "appended") {
       const auto offset = parseNumber<std::int64_t>(path_, array["offset"]);
       if (offset < 0 || static_cast<std::size_t>(offset) >= appended_.size()) {
-        failToRead(path_, "the appended data end too early; it is truncated");
+        failTruncated(path_, "the appended data end too early");
       }
       const ByteView from = appended_.subspan(static_cast<std::size_t>(offset));
       raw = appendedRaw_ ? rawBlock(from) : base64Block(textOf(from));
@@ -448,10 +447,10 @@ class XmlReader {
       const Bytes header = decodeBase64(path_, start);
       ByteCursor cursor(path_, header, bigEndian_);
       const std::uint64_t size = headerNumber(cursor);
-      if (size > text.size()) failToRead(path_, "an array ends too early; it is truncated");
+      if (size > text.size()) failTruncated(path_, "an array ends too early");
       if (start.find('=') != std::string_view::npos) {
         Bytes body = decodeBase64(path_, text.substr(start.size(), charactersFor(size)));
-        if (body.size() < size) failToRead(path_, "an array ends too early; it is truncated");
+        if (body.size() < size) failTruncated(path_, "an array ends too early");
         body.resize(size);
         return body;
       }
@@ -462,7 +461,7 @@ class XmlReader {
     Bytes header = decodeBase64(path_, text.substr(0, three));
     ByteCursor first(path_, header, bigEndian_);
     const std::uint64_t blocks = headerNumber(first);
-    if (blocks > text.size()) failToRead(path_, "an array ends too early; it is truncated");
+    if (blocks > text.size()) failTruncated(path_, "an array ends too early");
     const std::size_t whole = charactersFor((3 + blocks) * headerWidth());
     header = decodeBase64(path_, text.substr(0, whole));
     ByteCursor cursor(path_, header, bigEndian_);
