@@ -7,7 +7,7 @@
 set -eu
 cd "$(dirname "$0")/.."
 [ $# -gt 0 ] || set -- Core Geometry Collision Visibility Repulsion Unfolding Planar Shapes Harmonic \
-  Correspondence Surface Segmentation Report Study IO Provenance Phantom
+  Correspondence Surface Segmentation Report Study IO Provenance Phantom Viewer
 targets=$(printf 'Explica%sUnitTests ' "$@")
 [ -f build-sanitize/build.ninja ] || cmake --preset sanitize
 # shellcheck disable=SC2086  # a list of words
