@@ -75,14 +75,14 @@ const std::vector<BadVolume>& badVolumes() {
          io::writeVolume(path, volume);
          std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
        },
-       {"truncated"}},
+       {"truncated", "copy or make it again"}},
       {"TruncatedPlain",
        "truncated.nii",
        [](const std::string& path) {
          RawNifti{}.write(path);
          std::filesystem::resize_file(path, 500);
        },
-       {"truncated"}},
+       {"truncated", "copy or make it again"}},
       {"NotAnImage",
        "letter.nii.gz",
        [](const std::string& path) { writeText(path, "Dear reader, this is a letter.\n"); },

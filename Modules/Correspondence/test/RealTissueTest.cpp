@@ -13,7 +13,6 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <map>
 
 using namespace explica;
 using namespace explica::correspondence;
@@ -62,8 +61,7 @@ TEST(RealTissue, CortexIsAsThickAsFreeSurferSays) {
         recoverSulci(harmonic::annulusFromLabels(labels, {{white}, {grey}, {}, {}})).annulus;
     const auto found = findCorrespondences(annulus, harmonic::solveInterpolant(annulus));
     Volume<float> thickness = volumeOf(harmonic::spread(annulus, thicknessOf(found)));
-    std::vector<double> ours, theirs;
-    std::map<std::string, std::pair<double, double>> byRegion;  // thickness times area, area
+    ThicknessComparison comparison;
     const auto vertices =
         knownVertices(folder / (std::string(name) + ".thickness_at_known_vertices.csv.gz"));
     EXPECT_GT(vertices.size(), 40000U);
@@ -85,35 +83,20 @@ TEST(RealTissue, CortexIsAsThickAsFreeSurferSays) {
         }
       }
       if (value == 0) continue;
-      ours.push_back(value);
-      theirs.push_back(v.thickness);
-      byRegion[v.region].first += v.area * value;
-      byRegion[v.region].second += v.area;
+      comparison.add(v, value);
     }
-    EXPECT_GT(ours.size(), 0.999 * static_cast<double>(vertices.size()));
-    double difference = 0, mean = 0, theirMean = 0;
-    for (std::size_t k = 0; k < ours.size(); ++k) {
-      difference += std::abs(ours[k] - theirs[k]) / static_cast<double>(ours.size());
-      mean += ours[k] / static_cast<double>(ours.size());
-      theirMean += theirs[k] / static_cast<double>(ours.size());
-    }
-    std::vector<double> ourRegions, theirRegions;
-    for (const auto& [region, expected] :
-         regionStats(folder / "stats" / (std::string(name) + ".aparc.stats"))) {
-      // A part of a region need not be as thick as the whole.
-      if (byRegion[region].second < 0.5 * expected.area) continue;
-      ourRegions.push_back(byRegion[region].first / byRegion[region].second);
-      theirRegions.push_back(expected.thickness);
-    }
+    const auto regions =
+        comparison.regions(folder / "stats" / (std::string(name) + ".aparc.stats"));
     std::printf(
-        "%s: %zu vertices, %.3f mm against %.3f mm, r %.3f, difference %.3f mm, "
-        "%zu regions r %.3f, %zu voxels without thickness\n",
-        name, ours.size(), mean, theirMean, correlation(ours, theirs), difference,
-        ourRegions.size(), correlation(ourRegions, theirRegions), found.missing);
-    EXPECT_GE(correlation(ours, theirs), 0.80);
-    EXPECT_LE(difference, 0.33);
-    EXPECT_GE(ourRegions.size(), 10U);
-    EXPECT_GE(correlation(ourRegions, theirRegions), 0.9);
+        "%s: %zu vertices, r %.3f, difference %.3f mm, %zu regions r %.3f, %zu voxels without "
+        "thickness\n",
+        name, comparison.vertices(), comparison.vertexCorrelation(), comparison.difference(),
+        regions.count, regions.correlation, found.missing);
+    EXPECT_GT(comparison.vertices(), 0.999 * static_cast<double>(vertices.size()));
+    EXPECT_GE(comparison.vertexCorrelation(), 0.80);
+    EXPECT_LE(comparison.difference(), 0.33);
+    EXPECT_GE(regions.count, 10U);
+    EXPECT_GE(regions.correlation, 0.9);
   }
 }
 

@@ -85,4 +85,45 @@ inline double correlation(const std::vector<double>& a, const std::vector<double
   return (n * sab - sa * sb) / std::sqrt((n * saa - sa * sa) * (n * sbb - sb * sb));
 }
 
+/// Our thickness beside FreeSurfer's, vertex by vertex and region by region.
+class ThicknessComparison {
+ public:
+  void add(const KnownVertex& vertex, double thickness) {
+    ours_.push_back(thickness);
+    theirs_.push_back(vertex.thickness);
+    auto& [sum, area] = byRegion_[vertex.region];
+    sum += vertex.area * thickness;
+    area += vertex.area;
+  }
+  [[nodiscard]] std::size_t vertices() const { return ours_.size(); }
+  [[nodiscard]] double vertexCorrelation() const { return correlation(ours_, theirs_); }
+  /// Mean of the absolute differences at vertices, mm.
+  [[nodiscard]] double difference() const {
+    double sum = 0;
+    for (std::size_t k = 0; k < ours_.size(); ++k) sum += std::abs(ours_[k] - theirs_[k]);
+    return sum / static_cast<double>(ours_.size());
+  }
+
+  struct Regions {
+    std::size_t count = 0;
+    double correlation = 0;
+  };
+  /// Regional means against `?h.aparc.stats`; a part of a region need not be as thick as the whole,
+  /// so that only regions count of which half the area is known.
+  [[nodiscard]] Regions regions(const std::filesystem::path& stats) const {
+    std::vector<double> ours, theirs;
+    for (const auto& [region, expected] : regionStats(stats)) {
+      const auto found = byRegion_.find(region);
+      if (found == byRegion_.end() || found->second.second < 0.5 * expected.area) continue;
+      ours.push_back(found->second.first / found->second.second);
+      theirs.push_back(expected.thickness);
+    }
+    return {ours.size(), correlation(ours, theirs)};
+  }
+
+ private:
+  std::vector<double> ours_, theirs_;
+  std::map<std::string, std::pair<double, double>> byRegion_;  ///< thickness times area, area
+};
+
 }  // namespace explica::testing
