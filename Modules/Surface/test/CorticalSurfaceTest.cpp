@@ -110,6 +110,13 @@ TEST(LevelSet, OfATiltedHalfSpacesMaskIsThePlane) {
   const auto level = levelSetOf(volumeOf(
       grid, [&](const Point& p) -> std::uint8_t { return normal.dot(p) < offset ? 1 : 0; }));
   const Vector along = normal.cross(Vector::UnitX()).normalized(), across = normal.cross(along);
+  // The level is the distance, in two of the coarsest voxels.
+  for (const double distance : {-0.7, -0.4, 0.4, 0.7}) {
+    for (double a = -8; a <= 8; a += 1.3) {
+      const auto near = sample(level, (offset - distance) * normal + a * along);
+      EXPECT_NEAR(2 * 1.4 * near.value, distance, 0.12);
+    }
+  }
   double squared = 0;
   int count = 0;
   for (double a = -8; a <= 8; a += 0.7) {
@@ -170,6 +177,30 @@ TEST(Remesh, ConvergesToTheSphereAtSecondOrder) {
     error[s] = std::abs(geometry::enclosedVolume(mesh) / (4.0 / 3 * kPi * std::pow(12.13, 3)) - 1);
   }
   EXPECT_NEAR(0.5 * std::log2(error[0] / error[2]), 2, 0.4);
+}
+
+TEST(CorticalSurface, TrajectoriesBendToMeetTheOuterBoundaryAtRightAngles) {
+  // Between eccentric spheres the normals of the inner one miss those of the outer one.  Arcs of
+  // circles that meet both at right angles leave the normal by half the angle between the two.
+  const Point centre(0, 0, 4);
+  const Grid grid = lattice(48, Vector(1, 1, 1));
+  const auto tissue =
+      tissueFromShares(volumeOf(grid, [&](const Point& p) { return shareOf(p, 8, 4); }),
+                       volumeOf(grid, [&](const Point& p) { return shareOf(p - centre, 16, 4); }));
+  SurfaceOptions options;
+  options.faces = 4000;
+  const auto made = buildSurfaces(tissue, options);
+  double bent = 0, expected = 0;
+  for (int v = 0; v < made.white.mesh.vertexCount(); ++v) {
+    const Point w = made.white.mesh.positions.row(v), p = made.pial.positions.row(v);
+    const Vector inner = w.normalized(), outer = (p - centre).normalized();
+    const Vector away = -(Vector::UnitZ() - inner.z() * inner);  // from the thick side
+    if (away.norm() < 0.5) continue;
+    bent += (p - w).dot(away.normalized());
+    expected += (p - w).norm() * std::sin(0.5 * std::acos(std::clamp(inner.dot(outer), -1.0, 1.0)));
+  }
+  EXPECT_GT(expected / made.white.mesh.vertexCount(), 0.3);
+  EXPECT_NEAR(bent / expected, 1, 0.2);
 }
 
 TEST(CorticalSurface, FindsTheThicknessOfAShell) {
