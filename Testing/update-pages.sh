@@ -1,15 +1,18 @@
 #!/bin/sh
 # SPDX-FileCopyrightText: The Explica developers
 # SPDX-License-Identifier: Apache-2.0
-# Writes what follows from the commands' declarations anew, by the commands in build/: the pages
-# Applications/<Name>/README.md, the descriptions for other tools in Wrapping/Descriptors, and the type
-# stubs of the Python module.
+# Writes what is kept of all that follows from the commands' declarations anew, by what build/ makes:
+# the pages Applications/<Name>/README.md, and one small sample of each format in
+# Wrapping/*/test/golden.  Look at the difference before it is committed.
+#   Testing/update-pages.sh          pages and samples of the descriptions
+#   Testing/update-pages.sh python   the sample of the Python module's stubs, too
 set -eu
 cd "$(dirname "$0")/.."
-cmake --build build --target explica descriptors _explica ExplicaReferencePagesCommandTests
-EXPLICA_UPDATE_PAGES=1 build/bin/ExplicaReferencePagesCommandTests
-for kind in boutiques completion man nipype slicer; do
-  rm -rf "Wrapping/Descriptors/$kind"
-  cp -r "build/descriptors/$kind" Wrapping/Descriptors/
-done
-PYTHONPATH=build/python PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 Wrapping/Python/tools/make_stubs.py
+export EXPLICA_UPDATE_PAGES=1
+cmake --build build ${EXPLICA_JOBS:+-j "$EXPLICA_JOBS"} --target descriptors ExplicaReferencePagesCommandTests
+build/bin/ExplicaReferencePagesCommandTests --gtest_brief=1
+ctest --test-dir build -R '^Descriptors$' --output-on-failure
+if [ "${1:-}" = python ]; then
+  cmake --build build ${EXPLICA_JOBS:+-j "$EXPLICA_JOBS"} --target _explica
+  ctest --test-dir build -R '^Python.test_types$' --output-on-failure
+fi

@@ -84,6 +84,8 @@ Declaration& Declaration::include(const Declaration& other, std::string_view pre
     Parameter copy = parameter;
     copy.option.name = std::string(prefix) + copy.option.name;
     copy.option.category = other.name + ": " + copy.option.category;
+    if (copy.stepCommand.empty()) copy.stepCommand = other.name;
+    copy.stepPrefix = std::string(prefix) + copy.stepPrefix;
     copy.required = false;
     if (find(copy.option.name)) throw std::logic_error("declared twice: " + copy.option.name);
     parameters.push_back(std::move(copy));

@@ -252,6 +252,29 @@ Json describeJson(const Declaration& d) {
   return json;
 }
 
+namespace {
+
+/// The page of a command, seen from the page of another one.
+std::string pageOf(const std::string& command) {
+  std::string folder = command.substr(0, command.find(' '));
+  folder[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(folder[0])));
+  return "../" + folder + "/README.md";
+}
+
+/// The steps' options by their prefixes: each step's own page lists them.
+void stepTable(std::ostringstream& out, const std::vector<Parameter>& parameters) {
+  std::string last = "none yet";
+  for (const Parameter& p : parameters) {
+    if (p.stepCommand.empty() || p.stepCommand == last) continue;
+    if (last == "none yet") out << "\n| Options of the steps | |\n|---|---|\n";
+    last = p.stepCommand;
+    out << "| `--" << p.stepPrefix << "NAME` | those of [explica " << last << "](" << pageOf(last)
+        << ") |\n";
+  }
+}
+
+}  // namespace
+
 std::string referencePage(const Declaration& d) {
   std::ostringstream out;
   out << "## explica " << d.name << "\n\n" << d.synopsisText << ".\n\n    " << usageLine(d) << "\n";
@@ -271,9 +294,11 @@ std::string referencePage(const Declaration& d) {
   };
   table("Argument", d.parameters, [](const Parameter& p) { return p.positional; });
   for (const auto& category : categoriesOf(d.parameters)) {
-    table(category, d.parameters,
-          [&](const Parameter& p) { return !p.positional && p.option.category == category; });
+    table(category, d.parameters, [&](const Parameter& p) {
+      return !p.positional && p.stepCommand.empty() && p.option.category == category;
+    });
   }
+  stepTable(out, d.parameters);
   if (d.writesOutput) {
     out << "\n| Writes | |\n|---|---|\n";
     for (const auto& slot : allOutputs(d)) {

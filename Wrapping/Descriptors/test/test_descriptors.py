@@ -22,7 +22,6 @@ import jsonschema
 HERE = pathlib.Path(__file__).resolve().parent
 FOLDER = pathlib.Path(os.environ["EXPLICA_DESCRIPTORS"])
 EXECUTABLE = pathlib.Path(os.environ["EXPLICA_EXECUTABLE"])
-KINDS = ("boutiques", "completion", "man", "nipype", "slicer")
 
 
 def declarations():
@@ -40,21 +39,39 @@ def boutiques():
         yield command, json.loads(file.read_text())
 
 
-class Kept(unittest.TestCase):
-    def test_kept_descriptions_are_those_of_the_commands(self):
-        """If this fails, run Testing/update-pages.sh and look at the difference."""
+def samples():
+    """What each format says of one small command, by file name."""
 
-        def files(folder):
-            return {
-                str(file.relative_to(folder)): file.read_text()
-                for kind in KINDS
-                for file in (folder / kind).iterdir()
-            }
+    def part(file, begin, end):
+        text = (FOLDER / file).read_text()
+        start = text.index(begin)
+        return text[start : text.index(end, start) + len(end)]
 
-        kept, made = files(HERE.parent), files(FOLDER)
-        self.assertEqual(kept.keys(), made.keys())
+    name = "explica-phantom-shell"
+    return {
+        f"{name}.json": (FOLDER / "boutiques" / f"{name}.json").read_text(),
+        f"{name}.xml": (FOLDER / "slicer" / f"{name}.xml").read_text(),
+        f"{name}.1": (FOLDER / "man" / f"{name}.1").read_text(),
+        f"{name}.py": part(
+            "nipype/explica_nipype.py", "class PhantomShellInputSpec", "        return outputs\n"
+        ),
+        f"{name}.bash": part("completion/explica.bash", "    'phantom shell')\n", "\n      ;;\n"),
+        f"{name}.zsh": part("completion/_explica", "  'phantom shell')\n", "\n    ;;\n"),
+    }
+
+
+class Golden(unittest.TestCase):
+    def test_formats_are_what_they_were(self):
+        """If a difference is meant: Testing/update-pages.sh keeps the new samples."""
+        folder = HERE / "golden"
+        made = samples()
+        if "EXPLICA_UPDATE_PAGES" in os.environ:
+            for name, text in made.items():
+                (folder / name).write_text(text)
+        self.assertEqual({f.name for f in folder.iterdir()}, set(made))
         for name, text in made.items():
-            self.assertEqual(kept[name].splitlines(), text.splitlines(), name)
+            kept = (folder / name).read_text()
+            self.assertEqual(kept.splitlines(), text.splitlines(), f"{name}: Testing/update-pages.sh")
 
 
 class Boutiques(unittest.TestCase):

@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: The Explica developers
 # SPDX-License-Identifier: Apache-2.0
-"""Type stubs of the module as it is: `PYTHONPATH=build/python python3 tools/make_stubs.py [FOLDER]`.
+"""Type stubs of the module as it is: `PYTHONPATH=build/python python3 tools/make_stubs.py FOLDER`.
 
-Writes one .pyi a public module, into ../explica or into FOLDER.
+Writes one .pyi a public module into FOLDER.  The build does so.
 """
 
 import inspect
@@ -121,8 +121,7 @@ def stub(module, keywords, is_package=False):
 
 
 def main():
-    here = pathlib.Path(__file__).resolve().parents[1]
-    folder = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else here / "explica"
+    folder = pathlib.Path(sys.argv[1])
     (folder / "__init__.pyi").write_text(stub(explica, _explica.keywords, is_package=True))
     for name in SUBMODULES:
         keywords = getattr(getattr(_explica, name), "keywords", {})

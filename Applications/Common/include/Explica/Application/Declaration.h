@@ -63,6 +63,8 @@ struct Parameter {
   bool required = false;
   bool severalWords = false;  ///< a list option that takes all words up to the next option
   std::string defaultText;    ///< the default as a user would write it; empty if none
+  std::string stepCommand;    ///< the command that include() took it over from; empty: its own
+  std::string stepPrefix;     ///< what stands before that command's name of it: "unfold."
 };
 
 /// A file that a command writes into its output directory.

@@ -1,0 +1,18 @@
+  'phantom shell')
+    _arguments \
+      '--size[voxels along the first axis]:size: ' \
+      '--spacing[voxel size along the first axis (mm)]:spacing: ' \
+      '--inner-radius[inner radius over half the grid'\''s width]:inner-radius: ' \
+      '--outer-radius[outer radius over half the grid'\''s width]:outer-radius: ' \
+      '--aspect[voxel size along each axis over --spacing]:aspect: ' \
+      '--out[folder for the results; made if absent, refused if not empty]:out:_files' \
+      '--force[write into a folder that is not empty, replacing earlier results]' \
+      '--config[JSON file with option values; the command line wins]:config:_files' \
+      '--threads[processors to use (default\: all that this process may)]:threads: ' \
+      '--dry-run[resolve and check everything, print the options, write nothing]' \
+      '--quiet[say nothing but warnings and errors]' \
+      '--verbose[say more]' \
+      '--log[file to which every message goes, with times]:log:_files' \
+      '--private[leave host, user and absolute paths out of the record]' \
+      '*:file:_files'
+    ;;
