@@ -168,6 +168,8 @@ void report(Context& context, const correspondence::Measurement& m) {
   if (m.grid) {
     context.result("grid_trajectories", m.grid->trajectories);
     context.result("grid_cells", static_cast<std::size_t>(m.grid->cells.rows()));
+    context.result("grid_trajectories_lost", m.grid->lost);
+    context.result("grid_cells_degenerate", m.grid->degenerate);
   }
 }
 

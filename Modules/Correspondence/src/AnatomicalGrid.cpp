@@ -5,9 +5,11 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
 #include "Field.h"
+#include "HalfwaySurface.h"
+
+#include <Eigen/Geometry>
 
 #include <algorithm>
-#include <map>
 #include <vector>
 
 namespace explica::correspondence {
@@ -16,25 +18,156 @@ namespace {
 
 constexpr int kMaxSteps = 4000;
 
-struct Seed {
-  Vector x;           ///< box index
-  std::int32_t home;  ///< tissue voxel of its side
+/// A corner's Jacobian over the product of its three edges' lengths (its two edges' in the plane),
+/// at and below which a cell is flat: well above the round-off of coordinates in single precision.
+constexpr double kFlat = 1e-4;
+
+/// A polyline in box indices with arc lengths, mm.
+struct Path {
+  std::vector<Vector> points;
+  std::vector<double> lengths;
 };
 
-/// Points of a trajectory from its seed to a boundary.
-bool follow(const TrajectoryTracer::Field& field, const Seed& seed, int uphill,
-            std::vector<Vector>& points, std::vector<double>& lengths) {
-  auto walk = field.begin(seed.x, seed.home, uphill);
-  points.assign(1, walk.x);
-  lengths.assign(1, 0.0);
+/// Points of a trajectory from a vertex to a boundary; false if it does not get there.
+bool follow(const TrajectoryTracer::Field& field, const HalfwaySurface::Vertex& start, int uphill,
+            Path& path) {
+  auto walk = field.begin(start.x, start.home, uphill);
+  path.points.assign(1, walk.x);
+  path.lengths.assign(1, 0.0);
   const double target = uphill > 0 ? 1 : 0;
   bool done = uphill * (walk.u - target) >= 0;
   for (int k = 0; !done && !walk.stuck && k < kMaxSteps; ++k) {
     done = field.advance(walk, target, uphill);
-    points.push_back(walk.x);
-    lengths.push_back(walk.length);
+    path.points.push_back(walk.x);
+    path.lengths.push_back(walk.length);
   }
   return done;
+}
+
+/// The two halves as one path from the inner to the outer boundary.
+Path joined(const Path& down, const Path& up) {
+  Path whole;
+  for (std::size_t q = down.points.size(); q-- > 0;) {
+    whole.points.push_back(down.points[q]);
+    whole.lengths.push_back(down.lengths.back() - down.lengths[q]);
+  }
+  for (std::size_t q = 1; q < up.points.size(); ++q) {
+    whole.points.push_back(up.points[q]);
+    whole.lengths.push_back(down.lengths.back() + up.lengths[q]);
+  }
+  return whole;
+}
+
+/// The point at an arc length; `segment` is where the search begins and ends.
+Vector pointAt(const Path& path, double length, std::size_t& segment) {
+  if (path.points.size() == 1) return path.points[0];
+  while (segment + 2 < path.lengths.size() && path.lengths[segment + 1] < length) ++segment;
+  const double span = path.lengths[segment + 1] - path.lengths[segment];
+  const double t = span > 0 ? std::clamp((length - path.lengths[segment]) / span, 0.0, 1.0) : 0;
+  return path.points[segment] + t * (path.points[segment + 1] - path.points[segment]);
+}
+
+/// Fills the points of all trajectories; 1 for those that reach both boundaries.
+std::vector<std::uint8_t> followAll(const TrajectoryTracer::Field& field,
+                                    const HalfwaySurface& surface, int levels,
+                                    AnatomicalGrid& grid) {
+  const int rows = levels + 1;
+  grid.trajectories = surface.vertices.size();
+  grid.points.resize(static_cast<Eigen::Index>(grid.trajectories) * rows, 3);
+  grid.depth.resize(grid.points.rows());
+  grid.thickness.resize(grid.points.rows());
+  std::vector<std::uint8_t> whole(grid.trajectories, 0);
+  parallelForBlocks(grid.trajectories, 256, [&](std::size_t begin, std::size_t end) {
+    Path down, up;
+    for (std::size_t k = begin; k < end; ++k) {
+      const bool inner = follow(field, surface.vertices[k], -1, down);
+      const bool outer = follow(field, surface.vertices[k], 1, up);
+      whole[k] = inner && outer;
+      const Path path = joined(down, up);
+      std::size_t segment = 0;
+      for (int row = 0; row < rows; ++row) {
+        const auto at = static_cast<Eigen::Index>(k) * rows + row;
+        const Vector x = pointAt(path, path.lengths.back() * row / levels, segment);
+        grid.points.row(at) = field.toWorld(x).transpose();
+        grid.depth[at] = static_cast<double>(row) / levels;
+        grid.thickness[at] = path.lengths.back();
+      }
+    }
+  });
+  return whole;
+}
+
+/// True where cells made of faces and rows, in this order, have a positive volume in RAS.
+bool rightHanded(const harmonic::Annulus& annulus) {
+  const Eigen::Matrix3d& axes = annulus.grid.direction;
+  if (!annulus.planar) return axes.determinant() > 0;
+  const Vector normal = axes.col(0).cross(axes.col(1));
+  Eigen::Index greatest = 0;
+  normal.cwiseAbs().maxCoeff(&greatest);
+  return normal[greatest] > 0;
+}
+
+/// Cells of all columns whose trajectories are whole.
+void stackCells(const std::vector<std::array<std::int32_t, 4>>& faces, int corners, int levels,
+                bool swap, AnatomicalGrid& grid) {
+  grid.cells.resize(static_cast<Eigen::Index>(faces.size()) * levels, 2 * corners);
+  const int rows = levels + 1;
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    auto face = faces[f];
+    if (swap) std::swap(face[0], face[corners == 4 ? 2 : 1]);
+    for (int row = 0; row < levels; ++row) {
+      const auto at = static_cast<Eigen::Index>(f) * levels + row;
+      for (int c = 0; c < corners; ++c) {
+        // A quadrilateral runs around, a hexahedron lists the upper face in the lower one's order.
+        const int above = corners == 2 ? 3 - c : corners + c;
+        grid.cells(at, c) = face[c] * rows + row;
+        grid.cells(at, above) = face[c] * rows + row + 1;
+      }
+    }
+  }
+}
+
+/// The lowest share of a right corner's volume over the corners of a cell and its middle.
+double lowestCorner(const AnatomicalGrid& grid, Eigen::Index cell) {
+  const auto at = [&](int c) -> Vector { return grid.points.row(grid.cells(cell, c)).transpose(); };
+  double lowest = kInfinity;
+  const auto add = [&](double volume, double lengths) {
+    lowest = std::min(lowest, lengths > 0 ? volume / lengths : 0.0);
+  };
+  if (grid.cells.cols() == 4) {
+    for (int c = 0; c < 4; ++c) {
+      const Vector a = at((c + 1) % 4) - at(c), b = at((c + 3) % 4) - at(c);
+      add(a.cross(b).dot(grid.normal), a.norm() * b.norm());
+    }
+    return lowest;
+  }
+  for (int c = 0; c < 8; ++c) {
+    const int base = c & 4, k = c & 3;
+    const Vector a = at(base + (k + 1) % 4) - at(c), b = at(base + (k + 3) % 4) - at(c);
+    const Vector along = base == 0 ? Vector(at(c + 4) - at(c)) : Vector(at(c) - at(c - 4));
+    add(a.cross(b).dot(along), a.norm() * b.norm() * along.norm());
+  }
+  // Right at its corners, a twisted cell may still be turned over in the middle.
+  const Vector r = at(1) + at(2) + at(5) + at(6) - at(0) - at(3) - at(4) - at(7);
+  const Vector s = at(2) + at(3) + at(6) + at(7) - at(0) - at(1) - at(4) - at(5);
+  const Vector t = at(4) + at(5) + at(6) + at(7) - at(0) - at(1) - at(2) - at(3);
+  add(r.cross(s).dot(t), r.norm() * s.norm() * t.norm());
+  return lowest;
+}
+
+/// Takes out the cells that are turned over or flat at a corner.
+void leaveOutDegenerate(AnatomicalGrid& grid) {
+  std::vector<std::uint8_t> good(static_cast<std::size_t>(grid.cells.rows()));
+  parallelFor(good.size(), 1024, [&](std::size_t c) {
+    good[c] = lowestCorner(grid, static_cast<Eigen::Index>(c)) > kFlat;
+  });
+  Eigen::Index kept = 0;
+  for (std::size_t c = 0; c < good.size(); ++c) {
+    if (!good[c]) continue;
+    grid.cells.row(kept++) = grid.cells.row(static_cast<Eigen::Index>(c));
+  }
+  grid.degenerate = good.size() - static_cast<std::size_t>(kept);
+  grid.cells.conservativeResize(kept, Eigen::NoChange);
 }
 
 }  // namespace
@@ -43,100 +176,22 @@ AnatomicalGrid anatomicalGrid(const harmonic::Annulus& annulus,
                               const harmonic::Interpolant& interpolant, int levels) {
   if (levels < 1) throw InvalidInput("the anatomical grid needs at least one layer of cells");
   const TrajectoryTracer tracer(annulus, interpolant);
-  const auto& field = tracer.field();
-  const bool planar = annulus.planar;
-  std::map<std::array<std::int32_t, 4>, std::int32_t> seedAt;  // corner (doubled index), in order
-  std::vector<Seed> seeds;
-  std::vector<std::array<std::int32_t, 4>> faces;
-  const auto seedOf = [&](const std::array<std::int32_t, 3>& doubled, std::int32_t home) {
-    const auto [at, isNew] = seedAt.try_emplace({doubled[0], doubled[1], doubled[2], 0},
-                                                static_cast<std::int32_t>(seeds.size()));
-    if (isNew) seeds.push_back({0.5 * Vector(doubled[0], doubled[1], doubled[2]), home});
-    return at->second;
-  };
-  for (std::int32_t n = 0; n < static_cast<std::int32_t>(annulus.count()); ++n) {
-    if (interpolant.u[n] >= 0.5) continue;
-    const auto s = annulus.boxSubscripts(n);
-    for (int d = 0; d < (planar ? 4 : 6); ++d) {
-      const std::int32_t m = annulus.links[n][d];
-      if (m < 0 || interpolant.u[m] < 0.5) continue;
-      const int a = harmonic::axisOf(d), b = planar ? 1 - a : (a + 1) % 3, c = (a + 2) % 3;
-      std::array<std::int32_t, 3> centre = {2 * s[0], 2 * s[1], 2 * s[2]};
-      centre[a] += harmonic::signOf(d);
-      std::array<std::int32_t, 4> face = {-1, -1, -1, -1};
-      for (int corner = 0; corner < (planar ? 2 : 4); ++corner) {
-        auto at = centre;
-        at[b] += (corner == 1 || corner == 2) ? 1 : -1;
-        if (!planar) at[c] += corner >= 2 ? 1 : -1;
-        face[corner] = seedOf(at, n);
-      }
-      // Counter-clockwise seen from the outer side, as VTK wants the lower face of a cell.
-      if (harmonic::signOf(d) < 0) std::swap(face[0], face[planar ? 1 : 2]);
-      faces.push_back(face);
-    }
-  }
-
+  HalfwaySurface surface = halfwaySurface(annulus, interpolant.u);
   AnatomicalGrid grid;
-  const int rows = levels + 1;
-  grid.trajectories = seeds.size();
-  grid.points.resize(static_cast<Eigen::Index>(seeds.size()) * rows, 3);
-  grid.depth.resize(grid.points.rows());
-  grid.thickness.resize(grid.points.rows());
-  std::vector<std::uint8_t> whole(seeds.size(), 0);
-  parallelForBlocks(seeds.size(), 256, [&](std::size_t begin, std::size_t end) {
-    std::vector<Vector> down, up;
-    std::vector<double> downLength, upLength;
-    for (std::size_t k = begin; k < end; ++k) {
-      const bool inner = follow(field, seeds[k], -1, down, downLength);
-      const bool outer = follow(field, seeds[k], 1, up, upLength);
-      whole[k] = inner && outer;
-      const double thickness = downLength.back() + upLength.back();
-      std::reverse(down.begin(), down.end());
-      std::vector<double> length;
-      for (auto it = downLength.rbegin(); it != downLength.rend(); ++it) {
-        length.push_back(downLength.back() - *it);
-      }
-      for (std::size_t q = 1; q < up.size(); ++q) {
-        down.push_back(up[q]);
-        length.push_back(downLength.back() + upLength[q]);
-      }
-      std::size_t segment = 0;
-      for (int row = 0; row < rows; ++row) {
-        const double wanted = thickness * row / levels;
-        while (segment + 2 < length.size() && length[segment + 1] < wanted) ++segment;
-        Vector x = down[segment];
-        if (length.size() > 1) {
-          const double span = length[segment + 1] - length[segment];
-          const double t = span > 0 ? std::clamp((wanted - length[segment]) / span, 0.0, 1.0) : 0;
-          x += t * (down[segment + 1] - down[segment]);
-        }
-        const auto at = static_cast<Eigen::Index>(k) * rows + row;
-        grid.points.row(at) = field.toWorld(x).transpose();
-        grid.depth[at] = static_cast<double>(row) / levels;
-        grid.thickness[at] = thickness;
-      }
-    }
-  });
+  const std::vector<std::uint8_t> whole = followAll(tracer.field(), surface, levels, grid);
   for (const std::uint8_t w : whole) grid.lost += w == 0;
-  const int corners = planar ? 2 : 4;
-  std::erase_if(faces, [&](const std::array<std::int32_t, 4>& face) {
-    for (int c = 0; c < corners; ++c) {
-      if (!whole[face[c]]) return true;
-    }
-    return false;
+  const int corners = annulus.planar ? 2 : 4;
+  std::erase_if(surface.faces, [&](const std::array<std::int32_t, 4>& face) {
+    return !std::all_of(face.begin(), face.begin() + corners,
+                        [&](std::int32_t v) { return whole[v] != 0; });
   });
-  grid.cells.resize(static_cast<Eigen::Index>(faces.size()) * levels, 2 * corners);
-  for (std::size_t f = 0; f < faces.size(); ++f) {
-    for (int row = 0; row < levels; ++row) {
-      const auto at = static_cast<Eigen::Index>(f) * levels + row;
-      for (int c = 0; c < corners; ++c) {
-        grid.cells(at, c) = faces[f][c] * rows + row;
-        // A quadrilateral runs around, a hexahedron lists the upper face in the lower one's order.
-        const int above = planar ? 2 * corners - 1 - c : corners + c;
-        grid.cells(at, above) = faces[f][c] * rows + row + 1;
-      }
-    }
+  const bool right = rightHanded(annulus);
+  if (annulus.planar) {
+    grid.normal = annulus.grid.direction.col(0).cross(annulus.grid.direction.col(1));
+    if (!right) grid.normal = -grid.normal;
   }
+  stackCells(surface.faces, corners, levels, !right, grid);
+  leaveOutDegenerate(grid);
   return grid;
 }
 

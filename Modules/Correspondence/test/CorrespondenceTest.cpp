@@ -3,7 +3,6 @@
 #include "Explica/Correspondence/Correspondence.h"
 
 #include "Explica/Core/Parallel.h"
-#include "Explica/Correspondence/AnatomicalGrid.h"
 #include "Explica/Correspondence/Layers.h"
 #include "Explica/Correspondence/Sulci.h"
 #include "Explica/Harmonic/Phantoms.h"
@@ -252,19 +251,4 @@ TEST(Layers, EqualVolumeFollowsTheColumn) {
   const auto layers = layersOf(depth, 4);
   EXPECT_EQ(*std::min_element(layers.begin(), layers.end()), 1);
   EXPECT_EQ(*std::max_element(layers.begin(), layers.end()), 4);
-}
-
-TEST(AnatomicalGrid, FollowsTheExactTrajectories) {
-  for (const Solved& s : {eccentric(), spheroids()}) {
-    const auto grid = anatomicalGrid(s.annulus, s.interpolant, 4);
-    EXPECT_EQ(grid.lost, 0U);
-    EXPECT_EQ(grid.cells.cols(), s.annulus.planar ? 4 : 8);
-    for (Eigen::Index p = 0; p < grid.points.rows(); p += 5) {
-      const Point middle = grid.points.row(p + 2).transpose();
-      const auto answer = s.exact.answer(middle);
-      EXPECT_NEAR(answer.innerDistance / answer.thickness(), 0.5, 0.01);
-      EXPECT_NEAR((grid.points.row(p).transpose() - answer.innerPoint).norm(), 0, 0.1);
-      EXPECT_NEAR((grid.points.row(p + 4).transpose() - answer.outerPoint).norm(), 0, 0.1);
-    }
-  }
 }

@@ -173,11 +173,13 @@ void bindAnnular(py::module_& m) {
         return py::dict("points"_a = std::move(grid.points), "cells"_a = std::move(grid.cells),
                         "depth"_a = std::move(grid.depth),
                         "thickness"_a = std::move(grid.thickness),
-                        "trajectories"_a = grid.trajectories, "lost"_a = grid.lost);
+                        "trajectories"_a = grid.trajectories, "lost"_a = grid.lost,
+                        "degenerate"_a = grid.degenerate);
       },
       "A grid that follows the tissue: points (P, 3), RAS mm, at equal depths along trajectories,\n"
       "cells (C, 8), hexahedra in VTK's order ((C, 4) of a planar tissue), depth (P,) in [0, 1],\n"
-      "thickness (P,) of the trajectory, mm, trajectories and how many were lost.",
+      "thickness (P,) of the trajectory, mm, trajectories, how many were lost, and how many cells\n"
+      "were left out because they are degenerate.",
       "labels"_a, "levels"_a, "affine"_a, "recover_sulci"_a = true, "progress"_a = py::none());
   noteKeywords<ThicknessOptions>(m, "thickness");
   noteKeywords<LevelThicknessOptions>(m, "thickness_of_levels");
