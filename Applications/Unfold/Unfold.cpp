@@ -286,6 +286,7 @@ Termination run(Context& context, const Settings& s) {
   const std::string structure = loaded.metadata.structure;
   io::SurfaceMetadata metadata = loaded.metadata;
   metadata.topologicalType.clear();
+  metadata.geometricType = "Inflated";  // Workbench's nearest word: no place in the head any more
   io::writeGiftiSurface(context.output("unfolded.surf.gii"), after, metadata);
 
   const std::vector<io::VertexMap> visibilityMaps = {

@@ -131,6 +131,7 @@ LoadedSurface readFreeSurferSurface(const std::filesystem::path& path, ByteView 
   surface.origin.path = path;
   surface.origin.format = "FreeSurfer";
   surface.metadata.structure = structureFromName(path);
+  setTypesFromName(path, surface.metadata);
   ByteCursor cursor(path, bytes, true);
   MeshBuilder builder;
   FrameInFile frame;

@@ -376,8 +376,14 @@ LoadedSurface readGiftiSurface(const std::filesystem::path& path, ByteView bytes
   surface.metadata.structure =
       valueOr(points.metadata, "AnatomicalStructurePrimary",
               valueOr(file.metadata, "AnatomicalStructurePrimary", structureFromName(path)));
-  surface.metadata.secondary = valueOr(points.metadata, "AnatomicalStructureSecondary");
-  surface.metadata.geometricType = valueOr(points.metadata, "GeometricType", "Anatomical");
+  setTypesFromName(path, surface.metadata);
+  surface.metadata.secondary =
+      valueOr(points.metadata, "AnatomicalStructureSecondary", surface.metadata.secondary);
+  surface.metadata.geometricType =
+      valueOr(points.metadata, "GeometricType", surface.metadata.geometricType);
+  if (surface.metadata.geometricType == "Sphere") {  // FreeSurfer's word
+    surface.metadata.geometricType = "Spherical";
+  }
   surface.metadata.topologicalType = valueOr(faces.metadata, "TopologicalType");
   surface.metadata.name = valueOr(points.metadata, "Name");
   surface.metadata.extra = file.metadata;

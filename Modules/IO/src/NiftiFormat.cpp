@@ -369,9 +369,13 @@ Bytes niftiHeader(const VolumeToWrite& volume) {
   put(0, static_cast<std::int32_t>(one ? kHeader1 : kHeader2));
   std::memcpy(bytes.data() + (one ? 344 : 4), one ? "n+1\0" : "n+2\0\r\n\032\n", one ? 4 : 8);
 
-  const int dimensions = volume.valuesPerVoxel > 1 ? 4 : 3;
+  // Vectors stand along the fifth dimension, frames along the fourth.
+  const bool vectors = volume.vectors && volume.valuesPerVoxel > 1;
+  const int dimensions = vectors ? 5 : volume.valuesPerVoxel > 1 ? 4 : 3;
+  const int frames = vectors ? 1 : volume.valuesPerVoxel;
+  const int components = vectors ? volume.valuesPerVoxel : 1;
   const std::array<std::int64_t, 8> dim = {
-      dimensions, grid.size[0], grid.size[1], grid.size[2], volume.valuesPerVoxel, 1, 1, 1};
+      dimensions, grid.size[0], grid.size[1], grid.size[2], frames, components, 1, 1};
   for (std::size_t i = 0; i < 8; ++i) {
     if (one) {
       put(40 + 2 * i, static_cast<std::int16_t>(dim[i]));
@@ -408,15 +412,18 @@ Bytes niftiHeader(const VolumeToWrite& volume) {
 
   constexpr int kMillimetres = 2;
   constexpr int kScanner = 1;
+  constexpr int kVectorIntent = 1007;
   static constexpr char kDescription[] = "Explica";
   if (one) {
     bytes[123] = kMillimetres;
+    put(68, static_cast<std::int16_t>(vectors ? kVectorIntent : 0));
     put(108, static_cast<float>(bytes.size()));
     put(252, static_cast<std::int16_t>(qformHolds ? kScanner : 0));
     put(254, static_cast<std::int16_t>(kScanner));
     std::memcpy(bytes.data() + 148, kDescription, sizeof(kDescription));
   } else {
     put(500, static_cast<std::int32_t>(kMillimetres));
+    put(504, static_cast<std::int32_t>(vectors ? kVectorIntent : 0));
     put(168, static_cast<std::int64_t>(bytes.size()));
     put(344, static_cast<std::int32_t>(kScanner));
     put(348, static_cast<std::int32_t>(kScanner));

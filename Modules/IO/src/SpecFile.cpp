@@ -8,23 +8,10 @@
 
 #include "Explica/Core/WholeFile.h"
 
-#include <cctype>
 #include <utility>
 
 namespace explica::io {
 namespace {
-
-/// "CortexLeft" as spec files write it: "CORTEX_LEFT".
-std::string specNameOf(const std::string& structure) {
-  std::string name;
-  for (const char c : structure) {
-    if (std::isupper(static_cast<unsigned char>(c)) && !name.empty() && name.back() != '_') {
-      name += '_';
-    }
-    name += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-  }
-  return name;
-}
 
 const char* kindOf(const std::filesystem::path& file) {
   static constexpr std::pair<const char*, const char*> kKinds[] = {
@@ -49,9 +36,9 @@ void writeSpec(const std::filesystem::path& path, const std::vector<SpecEntry>& 
             : entry.file;
     const std::string kind = kindOf(entry.file);
     text += "<DataFile Structure=\"" +
-            (kind == "VOLUME" ? std::string("INVALID") : specNameOf(entry.structure)) +
-            "\" DataFileType=\"" + kind + "\" Selected=\"true\">" +
-            escapedXml(relative.generic_string()) + "</DataFile>\n";
+            (kind == "VOLUME" ? std::string("Invalid") : entry.structure) + "\" DataFileType=\"" +
+            kind + "\" Selected=\"true\">" + escapedXml(relative.generic_string()) +
+            "</DataFile>\n";
   }
   writeTextFile(path, text + "</CaretSpecFile>\n");
 }

@@ -61,6 +61,7 @@ struct VolumeToWrite {
   Grid grid;
   StoredType type = StoredType::Float32;
   int valuesPerVoxel = 1;
+  bool vectors = false;            ///< the values are components of a vector, not frames
   Bytes elsewhere;                 ///< value of every voxel before `begin` and from `end` on
   std::size_t begin = 0, end = 0;  ///< places in the storage order
   /// Puts one component of voxels [first, first + count), in native byte order.

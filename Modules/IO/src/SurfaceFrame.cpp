@@ -10,6 +10,7 @@
 
 #include <Eigen/LU>
 
+#include <cctype>
 #include <cmath>
 
 namespace explica::io {
@@ -24,6 +25,31 @@ std::string structureFromName(const std::filesystem::path& path) {
     return "CortexRight";
   }
   return "Other";
+}
+
+void setTypesFromName(const std::filesystem::path& path, SurfaceMetadata& metadata) {
+  std::string name = path.filename().string();
+  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  struct Row {
+    const char *word, *type, *secondary;
+  };
+  static constexpr Row kRows[] = {{"veryinflated", "VeryInflated", ""},
+                                  {"very_inflated", "VeryInflated", ""},
+                                  {"inflated", "Inflated", ""},
+                                  {"infl_", "Inflated", ""},
+                                  {"sphere", "Spherical", ""},
+                                  {"flat", "Flat", ""},
+                                  {"midthickness", "", "MidThickness"},
+                                  {"graymid", "", "MidThickness"},
+                                  {"white", "", "GrayWhite"},
+                                  {"smoothwm", "", "GrayWhite"},
+                                  {"pial", "", "Pial"}};
+  for (const Row& row : kRows) {
+    if (name.find(row.word) == std::string::npos) continue;
+    if (*row.type != 0) metadata.geometricType = row.type;
+    metadata.secondary = row.secondary;
+    return;
+  }
 }
 
 Eigen::Matrix4d scannerFromTkr(const Grid& volume) {

@@ -30,4 +30,8 @@ struct FrameInFile {
 void moveToScanner(LoadedSurface& surface, const FrameInFile& frame,
                    const SurfaceReadOptions& options);
 
+/// Geometric type and secondary structure from names such as lh.inflated,
+/// sub-01_hemi-L_pial.surf.gii; what the name does not tell stays.
+void setTypesFromName(const std::filesystem::path& path, SurfaceMetadata& metadata);
+
 }  // namespace explica::io

@@ -311,8 +311,12 @@ void writeValues(const std::filesystem::path& path, const VolumeToWrite& volume)
     throw InvalidInput("volume for " + quoted(path) + ": it has no voxels");
   }
   using Kind = NamedFormat::Kind;
-  const bool interleaved =
-      volume.valuesPerVoxel > 1 && (format.kind == Kind::Nrrd || format.kind == Kind::MetaImage);
+  const bool packsComponents = format.kind == Kind::Nrrd || format.kind == Kind::MetaImage;
+  if (volume.valuesPerVoxel > 1 && !volume.vectors && packsComponents) {
+    throw InvalidInput("volume for " + quoted(path) +
+                       ": several frames are written as .nii.gz, .nii, .mgz or .mgh only");
+  }
+  const bool interleaved = volume.valuesPerVoxel > 1 && packsComponents;
   const bool bigEndian = format.kind == Kind::Mgh;
   const std::size_t width = volume.elsewhere.size(), voxels = volume.grid.voxelCount();
   Content content;
@@ -609,8 +613,21 @@ void writeVolume(const std::filesystem::path& path, const Volume<Eigen::Vector3f
 }
 
 void writeVolume(const std::filesystem::path& path, const VectorsOnDemand& volume) {
-  writeValues(path,
-              stored<float>(std::span<const VolumeOnDemand<float>>(volume), StoredType::Float32));
+  VolumeToWrite values =
+      stored<float>(std::span<const VolumeOnDemand<float>>(volume), StoredType::Float32);
+  values.vectors = true;
+  writeValues(path, values);
+}
+
+void writeFrames(const std::filesystem::path& path,
+                 const std::vector<VolumeOnDemand<float>>& frames) {
+  if (frames.empty()) throw InvalidInput("volume for " + quoted(path) + ": it has no frames");
+  for (const VolumeOnDemand<float>& frame : frames) {
+    if (frame.grid.size != frames.front().grid.size) {
+      throw InvalidInput("volume for " + quoted(path) + ": its frames differ in size");
+    }
+  }
+  writeValues(path, stored<float>(std::span(frames), StoredType::Float32));
 }
 
 }  // namespace explica::io

@@ -92,7 +92,7 @@ TEST(Spec, NamesEachFileOnce) {
                                     {"CortexLeft", folder / "thickness.shape.gii"},
                                     {"Other", "u.nii.gz"}});
   const std::string text = contentOf(folder / "a.spec");
-  EXPECT_NE(text.find("Structure=\"CORTEX_LEFT\" DataFileType=\"METRIC\" "
+  EXPECT_NE(text.find("Structure=\"CortexLeft\" DataFileType=\"METRIC\" "
                       "Selected=\"true\">thickness.shape.gii<"),
             std::string::npos)
       << text;

@@ -364,4 +364,20 @@ TEST(SurfaceFile, StructureFollowsUsualNames) {
   EXPECT_EQ(io::structureFromName("ventricle.stl"), "Other");
 }
 
+TEST(SurfaceTypes, FollowTheNameWhereTheFileIsSilent) {
+  const TemporaryFolder folder;
+  const TriangleMesh mesh = geometry::makeIcosphere(1, 10.0);
+  struct Row {
+    const char *name, *type, *secondary;
+  };
+  for (const Row& row : {Row{"lh.white", "Anatomical", "GrayWhite"},
+                         Row{"lh.pial", "Anatomical", "Pial"}, Row{"rh.inflated", "Inflated", ""},
+                         Row{"lh.sphere", "Spherical", ""}, Row{"lh.orig", "Anatomical", ""}}) {
+    io::writeFreeSurferSurface(folder / row.name, mesh);
+    const io::SurfaceMetadata read = io::readSurface(folder / row.name).metadata;
+    EXPECT_EQ(read.geometricType, row.type) << row.name;
+    EXPECT_EQ(read.secondary, row.secondary) << row.name;
+  }
+}
+
 }  // namespace

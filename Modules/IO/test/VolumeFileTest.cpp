@@ -475,4 +475,26 @@ TEST(VolumeFile, ManySlicesNeedNiftiTwo) {
   EXPECT_LT(placementError(read.volume.grid, grid), 1e-9);
 }
 
+TEST(Frames, StandInOneFile) {
+  const TemporaryFolder folder;
+  Grid grid;
+  grid.size = {5, 4, 3};
+  std::vector<VolumeOnDemand<float>> frames;
+  for (int frame = 0; frame < 4; ++frame) {
+    frames.push_back(
+        {grid, 0, 0, grid.voxelCount(), [frame](std::size_t first, std::size_t count, float* to) {
+           for (std::size_t v = 0; v < count; ++v) {
+             to[v] = static_cast<float>(100 * frame + static_cast<int>(first + v));
+           }
+         }});
+  }
+  for (const char* name : {"a.nii.gz", "a.mgz"}) {
+    io::writeFrames(folder / name, frames);
+    const io::LoadedVolume<float> third = io::readScalars(folder / name, {.frame = 2});
+    EXPECT_EQ(third.origin.storedSize, (std::vector<int>{5, 4, 3, 4}));
+    EXPECT_EQ(third.volume[59], 259.0F);
+  }
+  EXPECT_THROW(io::writeFrames(folder / "a.nrrd", frames), InvalidInput);
+}
+
 }  // namespace

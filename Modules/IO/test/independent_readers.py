@@ -53,6 +53,8 @@ def our_volumes(folder):
             assert (int(qcode), int(scode)) == (1, 1), path
             assert np.abs(qform - sform).max() < 2e-5, (path, qform - sform)
             assert header.get_xyzt_units()[0] == "mm", path
+            intent = "vector" if path.name.startswith("vectors.") else "none"
+            assert header.get_intent()[0] == intent, (path, header.get_intent())
         if path.name.startswith("labels."):
             assert image.get_data_dtype().kind in "iu", (path, image.get_data_dtype())
 
@@ -144,6 +146,14 @@ def our_surfaces(folder):
     assert names == [b"outside", b"in & out"], names
     listed = nib.freesurfer.read_label(folder / "lh.part.label")
     assert np.array_equal(np.sort(listed), np.flatnonzero(keys))
+
+    patch = (folder / "lh.part.patch.3d").read_bytes()
+    mark, count = np.frombuffer(patch[:8], ">i4")
+    entries = np.frombuffer(patch[8:], [("vertex", ">i4"), ("place", ">f4", 3)])
+    assert mark == -1 and count == len(entries) == np.count_nonzero(keys), (mark, count)
+    vertices = np.abs(entries["vertex"]) - 1
+    assert np.array_equal(vertices, np.flatnonzero(keys))
+    assert np.array_equal(entries["place"], exact[vertices])
 
 
 def their_surfaces(folder):

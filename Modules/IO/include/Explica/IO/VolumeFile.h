@@ -106,10 +106,16 @@ void writeVolume(const std::filesystem::path& path, const Volume<Label>& volume)
 void writeVolume(const std::filesystem::path& path, const Volume<std::uint8_t>& volume);
 void writeVolume(const std::filesystem::path& path, const VolumeOnDemand<float>& volume);
 void writeVolume(const std::filesystem::path& path, const VolumeOnDemand<Label>& volume);
-/// Three values a voxel.  NIfTI and MGH: I x J x K x 3, so that nibabel's `data[i, j, k]` is the
-/// vector and viewers show three volumes; NRRD and MetaImage: three components.
+/// Three values a voxel.  NIfTI: I x J x K x 1 x 3 with the intent code of vectors (1007), so that
+/// nibabel's `data[i, j, k, 0]` is the vector and viewers show three volumes; MGH: I x J x K x 3;
+/// NRRD and MetaImage: three components.
 void writeVolume(const std::filesystem::path& path, const Volume<Eigen::Vector3f>& volume);
 void writeVolume(const std::filesystem::path& path, const VectorsOnDemand& volume);
+
+/// Writes volumes of equal grids as the frames of one file, I x J x K x T: NIfTI or MGH.
+/// @throws InvalidInput  no frame, sizes that differ, another format, and as writeVolume()
+void writeFrames(const std::filesystem::path& path,
+                 const std::vector<VolumeOnDemand<float>>& frames);
 
 }  // namespace explica::io
 
