@@ -94,7 +94,9 @@ std::string valueText(const Json& value) {
 /// Help with unit, as one sentence.
 std::string helpOf(const Json& p) {
   const std::string unit = word(p["unit"]);
-  return word(p["help"]) + (unit.empty() ? "" : " [" + unit + "]");
+  const std::string range = word(p["range"]);
+  const std::string aside = unit + (unit.empty() || range.empty() ? "" : "; ") + range;
+  return word(p["help"]) + (aside.empty() ? "" : " [" + aside + "]");
 }
 
 /// The same with the default.
@@ -124,6 +126,12 @@ Json boutiquesInput(const Json& p) {
   input["value-key"] = "[" + key + "]";
   if (!p["positional"]) input["command-line-flag"] = "--" + word(p["name"]);
   if (p["type"] == "integer") input["integer"] = true;
+  if (!p["least"].is_null()) input["minimum"] = p["least"];
+  if (!p["above"].is_null()) {
+    input["minimum"] = p["above"];
+    input["exclusive-minimum"] = true;
+  }
+  if (!p["most"].is_null()) input["maximum"] = p["most"];
   if (!p["choices"].empty()) input["value-choices"] = p["choices"];
   if (p["list"]) {
     input["list"] = true;

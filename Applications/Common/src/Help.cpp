@@ -4,6 +4,7 @@
 #include "Parse.h"
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 namespace explica::app {
@@ -64,6 +65,7 @@ std::string rightColumn(const Parameter& parameter) {
   };
   if (parameter.file) append(std::string(nameOf(*parameter.file)));
   if (!option.unit.empty()) append(option.unit);
+  if (const std::string range = option.range(); !range.empty()) append(range);
   if (parameter.required && !parameter.positional) append("required");
   if (!parameter.required && parameter.positional) append("may be left out");
   if (parameter.positional && option.isList()) append("one or more");
@@ -233,6 +235,11 @@ Json describeJson(const Declaration& d) {
     entry["list"] = p.option.isList();
     entry["optional"] = p.option.isOptional();
     entry["unit"] = p.option.unit;
+    const bool above = p.option.least == kAboveZero;
+    entry["above"] = above ? Json(0) : Json(nullptr);
+    entry["least"] = above || std::isinf(p.option.least) ? Json(nullptr) : Json(p.option.least);
+    entry["range"] = p.option.range();
+    entry["most"] = std::isinf(p.option.most) ? Json(nullptr) : Json(p.option.most);
     entry["category"] = p.option.category;
     entry["help"] = p.option.help;
     entry["file"] = p.file ? Json(nameOf(*p.file)) : Json(nullptr);

@@ -455,6 +455,7 @@ Outcome execute(Run& run, Console& console) {
   if (run.common.dryRun) return {};
 
   Outcome outcome;
+  if (termination == Termination::NotRun) termination = Termination::Finished;
   outcome.termination = termination;
   outcome.exitCode = reachedGoal(termination) ? kDone : kStoppedEarly;
   if (!state.folder) return outcome;

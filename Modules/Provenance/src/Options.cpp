@@ -85,6 +85,13 @@ std::vector<std::string> splitCommas(std::string_view text) {
 
 struct Parser {
   std::string optionName;
+  double least, most;
+  std::string range;
+
+  /// What is expected, with the range if there is one: "a whole number, 1 to 1000".
+  [[nodiscard]] std::string inRange(const std::string& expected) const {
+    return expected + (range.empty() ? "" : ", " + range);
+  }
 
   [[noreturn]] void refuse(std::string_view text, std::string_view expected) const {
     throw UsageError(optionName + ": '" + std::string(text) + "' is not " + std::string(expected));
@@ -118,9 +125,13 @@ struct Parser {
     }
   }
   void element(std::string_view text, int& value) const {
-    value = number<int>(text, "a whole number");
+    value = number<int>(text, inRange("a whole number"));
+    if (value < least || value > most) refuse(text, inRange("a whole number"));
   }
-  void element(std::string_view text, double& value) const { value = real(text, "a number"); }
+  void element(std::string_view text, double& value) const {
+    value = real(text, inRange("a number"));
+    if (value < least || value > most) refuse(text, inRange("a number"));
+  }
   void element(std::string_view text, std::string& value) const { value = text; }
   template <int N>
   void element(std::string_view text, Eigen::Matrix<double, N, 1>& value) const {
@@ -178,6 +189,14 @@ std::vector<std::string> Option::choices() const {
   return choice ? choice->choices : std::vector<std::string>{};
 }
 
+std::string Option::range() const {
+  const std::string from = least == kAboveZero ? "above 0" : "at least " + numberText(least);
+  if (std::isinf(most)) return std::isinf(least) ? "" : from;
+  const std::string to = numberText(most);
+  if (std::isinf(least)) return "at most " + to;
+  return least == kAboveZero ? from + ", at most " + to : numberText(least) + " to " + to;
+}
+
 std::string Option::text() const {
   return std::visit(
       [](const auto& where) -> std::string {
@@ -207,7 +226,7 @@ std::string Option::text() const {
 }
 
 void Option::setText(const std::vector<std::string>& words) {
-  const Parser parse{name};
+  const Parser parse{name, least, most, range()};
   if (words.empty()) throw UsageError(name + ": a value is missing");
   std::visit(
       [&](auto& where) {

@@ -50,7 +50,7 @@ std::string_view recordSchema() {
                      "termination": {"type": "string"}}
     }},
     "warnings": {"type": "array", "items": {"type": "string"}},
-    "termination": {"enum": ["not-run", "converged", "target-reached", "max-iterations",
+    "termination": {"enum": ["not-run", "finished", "converged", "target-reached", "max-iterations",
                              "max-time", "interrupted", "stalled"]},
     "exit_code": {"enum": [0, 3]},
     "results": {"type": "object"},

@@ -89,7 +89,7 @@ void historyInto(const fs::path& recordPath, int depth, std::ostringstream& text
   const Json& software = record["software"];
   const Json& execution = record["execution"];
   auto ended = record["termination"].get<std::string>();
-  if (ended == nameOf(Termination::NotRun)) {  // a command that iterates nothing
+  if (ended == nameOf(Termination::NotRun) || ended == nameOf(Termination::Finished)) {
     const int code = record["exit_code"].get<int>();
     ended = code == 0 ? "done" : "failed with exit code " + std::to_string(code);
   }

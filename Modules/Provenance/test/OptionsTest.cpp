@@ -67,6 +67,44 @@ TEST(Options, JsonRoundTripKeepsEveryValue) {
   EXPECT_EQ(*back.centre, Eigen::Vector3d(-1, 0.5, 1e-7));
 }
 
+struct Bounded {
+  int count = 3;
+  double length = 1;
+  std::optional<double> share;
+  std::vector<int> numbers;
+};
+
+template <class Visitor>
+void describe(Bounded& b, Visitor&& visit) {
+  visit(Field{"count", "", "a count", 1, 1000}, b.count);
+  visit(Field{"length", "mm", "a length", kAboveZero}, b.length);
+  visit(Field{"share", "", "a share", 0, 1}, b.share);
+  visit(Field{"numbers", "", "a list", 0}, b.numbers);
+}
+
+TEST(Options, NumbersOutOfRangeAreRefusedWhereTheyAreSet) {
+  Bounded bounded;
+  auto options = listOptions(bounded);
+  const auto refusal = [&](const std::string& name, const std::string& text) -> std::string {
+    try {
+      optionNamed(options, name).setText({text});
+    } catch (const UsageError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(refusal("count", "0"), "count: '0' is not a whole number, 1 to 1000");
+  EXPECT_EQ(refusal("count", "1001"), "count: '1001' is not a whole number, 1 to 1000");
+  EXPECT_EQ(refusal("length", "0"), "length: '0' is not a number, above 0");
+  EXPECT_EQ(refusal("length", "1e-300"), "accepted");
+  EXPECT_EQ(refusal("length", "inf"), "accepted");
+  EXPECT_EQ(refusal("share", "1.5"), "share: '1.5' is not a number, 0 to 1");
+  EXPECT_EQ(refusal("numbers", "3,-1"), "numbers: '-1' is not a whole number, at least 0");
+  EXPECT_THROW(setValue(options[0], 2000), UsageError);
+  EXPECT_EQ(bounded.count, 3);
+  EXPECT_TRUE(bounded.numbers.empty());
+}
+
 TEST(Options, TextSetsEachType) {
   Sample sample;
   auto options = listOptions(sample);

@@ -4,16 +4,22 @@
 
 #include "Explica/Core/Errors.h"
 
+#include <limits>
 #include <string>
 #include <string_view>
 
 namespace explica {
+
+/// As a Field's `least`: any number above 0, but not 0 itself.
+inline constexpr double kAboveZero = std::numeric_limits<double>::denorm_min();
 
 /// One option's name and meaning.  Its type and default come from the option struct itself.
 struct Field {
   std::string_view name;       ///< as on the command line and in JSON: "target-visibility"
   std::string_view unit = {};  ///< "mm", "s", "degrees"; empty if none
   std::string_view help = {};  ///< one sentence
+  double least = -std::numeric_limits<double>::infinity();  ///< of a number, or each of a list
+  double most = std::numeric_limits<double>::infinity();    ///< checked where users set values
 };
 
 /// How an option struct is listed once, for parser, JSON, help, descriptors and Python.
@@ -22,7 +28,7 @@ struct Field {
 ///
 ///     template <class Visitor>
 ///     void describe(InterpolantOptions& options, Visitor&& visit) {
-///       visit(Field{"max-iterations", "", "conjugate-gradient iterations at most"},
+///       visit(Field{"max-iterations", "", "conjugate-gradient iterations at most", 1, 1e6},
 ///             options.maxIterations);
 ///     }
 ///

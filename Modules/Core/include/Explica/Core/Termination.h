@@ -11,7 +11,8 @@ namespace explica {
 
 /// Why an iterative method stopped.  Only bad input is an exception; these are results.
 enum class Termination {
-  NotRun,         ///< nothing was iterated
+  NotRun,         ///< nothing was done yet
+  Finished,       ///< all was done, and nothing in it is iterated until a criterion holds
   Converged,      ///< the method's own criterion holds
   TargetReached,  ///< the value that the user asked for was reached
   MaxIterations,  ///< stopped at the iteration limit
@@ -23,6 +24,7 @@ enum class Termination {
 template <>
 struct EnumNames<Termination> {
   static constexpr std::array table = {std::pair{Termination::NotRun, "not-run"},
+                                       std::pair{Termination::Finished, "finished"},
                                        std::pair{Termination::Converged, "converged"},
                                        std::pair{Termination::TargetReached, "target-reached"},
                                        std::pair{Termination::MaxIterations, "max-iterations"},
@@ -33,7 +35,8 @@ struct EnumNames<Termination> {
 
 /// True if the method did what it was asked to do.
 [[nodiscard]] constexpr bool reachedGoal(Termination t) {
-  return t == Termination::NotRun || t == Termination::Converged || t == Termination::TargetReached;
+  return t == Termination::NotRun || t == Termination::Finished || t == Termination::Converged ||
+         t == Termination::TargetReached;
 }
 
 }  // namespace explica

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -40,6 +41,8 @@ struct Option {
   std::string help;
   std::string category;  ///< heading in help and descriptors; set by whoever presents the option
   OptionTarget target;
+  double least = -std::numeric_limits<double>::infinity();  ///< smallest number accepted
+  double most = std::numeric_limits<double>::infinity();    ///< largest number accepted
 
   /// "flag", "integer", "number", "text", "choice", "point2" or "point3".
   [[nodiscard]] std::string type() const;
@@ -50,6 +53,9 @@ struct Option {
   [[nodiscard]] bool isList() const;
   /// Words that a choice may take; empty for other types.
   [[nodiscard]] std::vector<std::string> choices() const;
+  /// The range of its numbers in words: "1 to 1000", "at least 1", "above 0"; empty if there is
+  /// none.
+  [[nodiscard]] std::string range() const;
   /// The value now, as a user would write it: "1,2,3"; empty if unset.
   [[nodiscard]] std::string text() const;
   /// Sets the value from a user's words: one, or several for a list.  Points and lists of numbers
@@ -123,7 +129,9 @@ template <class T>
                 std::string(field.unit),
                 std::string(field.help),
                 {},
-                detail::Target<T>::of(value)};
+                detail::Target<T>::of(value),
+                field.least,
+                field.most};
 }
 
 /// Every option of a struct that has a `describe` function (Core/Describe.h), in its order, names
