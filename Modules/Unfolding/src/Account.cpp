@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <set>
 #include <utility>
 
@@ -21,7 +22,52 @@ Vector areaVector(const TriangleMesh& mesh, std::int32_t face) {
                    .cross(mesh.corner(face, 2) - mesh.corner(face, 0));
 }
 
+/// A column made of a member.
+template <class Member>
+EvolutionColumn column(const char* name, const char* format, Member member) {
+  return {name, format, [member](const IterationRecord& row) {
+            return static_cast<double>(std::invoke(member, row));
+          }};
+}
+
+EvolutionColumn phaseColumn(const char* name, double PhaseSeconds::*member) {
+  return {name, "%.4f", [member](const IterationRecord& row) { return row.phases.*member; }};
+}
+
+std::vector<EvolutionColumn> listColumns() {
+  using R = IterationRecord;
+  std::vector<EvolutionColumn> list = {column("visibility", "%.6f", &R::visibility),
+                                       column("area_error_mean", "%.6g", &R::areaErrorMean),
+                                       column("area_error_max", "%.6g", &R::areaErrorMax),
+                                       column("edge_strain_mean", "%.6g", &R::edgeStrainMean)};
+  for (const TermInfo& info : kTerms) {
+    list.push_back({"energy_" + std::string(info.name), "%.6g",
+                    [term = info.term](const R& row) { return row.energies[term]; }});
+  }
+  for (EvolutionColumn c :
+       {column("objective_before", "%.9g", &R::objectiveBefore),
+        column("objective_after", "%.9g", &R::objectiveAfter),
+        column("contacts", "%.0f", &R::contacts),
+        column("nearest_contact", "%.6g", &R::nearestContact),
+        column("safe_step", "%.6g", &R::safeStep), column("step", "%.6g", &R::step),
+        column("largest_move", "%.6g", &R::largestMove), column("damping", "%.6g", &R::damping),
+        column("solves", "%.0f", &R::solves),
+        phaseColumn("seconds_visibility", &PhaseSeconds::visibility),
+        phaseColumn("seconds_repulsion", &PhaseSeconds::repulsion),
+        phaseColumn("seconds_collision", &PhaseSeconds::collision),
+        phaseColumn("seconds_solve", &PhaseSeconds::solve),
+        column("seconds", "%.3f", &R::seconds)}) {
+    list.push_back(std::move(c));
+  }
+  return list;
+}
+
 }  // namespace
+
+const std::vector<EvolutionColumn>& evolutionColumns() {
+  static const std::vector<EvolutionColumn> columns = listColumns();
+  return columns;
+}
 
 Eigen::VectorXd vertexMeans(const TriangleMesh& mesh, std::span<const std::int32_t> faces,
                             const Eigen::VectorXd& faceValues, double elsewhere) {
@@ -60,25 +106,17 @@ Eigen::VectorXd vertexStrains(const TriangleMesh& reference, const Positions& de
 }
 
 std::string evolutionTable(const std::vector<IterationRecord>& history) {
-  std::string table =
-      "iteration\tvisibility\tarea_error_mean\tarea_error_max\tedge_strain_mean\tenergy_"
-      "visibility\t"
-      "energy_area\tenergy_spring\tenergy_lift\tenergy_contact\tenergy_knot\tobjective_"
-      "before\tobjective_after\t"
-      "contacts\tnearest_contact\tsafe_step\tstep\tlargest_move\tdamping\tsolves\t"
-      "seconds_visibility\tseconds_repulsion\tseconds_collision\tseconds_solve\tseconds\n";
-  for (const IterationRecord& r : history) {
-    char line[640];
-    std::snprintf(line, sizeof line,
-                  "%d\t%.6f\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.9g\t%.9g\t%"
-                  "d\t%.6g\t%.6g\t"
-                  "%.6g\t%.6g\t%.6g\t%d\t%.4f\t%.4f\t%.4f\t%.4f\t%.3f\n",
-                  r.iteration, r.visibility, r.areaErrorMean, r.areaErrorMax, r.edgeStrainMean,
-                  r.energyVisibility, r.energyArea, r.energySpring, r.energyLift, r.energyContact,
-                  r.energyKnot, r.objectiveBefore, r.objectiveAfter, r.contacts, r.nearestContact,
-                  r.safeStep, r.step, r.largestMove, r.damping, r.solves, r.phases.visibility,
-                  r.phases.repulsion, r.phases.collision, r.phases.solve, r.seconds);
-    table += line;
+  std::string table = "iteration";
+  for (const EvolutionColumn& column : evolutionColumns()) table += "\t" + column.name;
+  table += "\n";
+  for (const IterationRecord& row : history) {
+    table += std::to_string(row.iteration);
+    for (const EvolutionColumn& column : evolutionColumns()) {
+      char text[40];
+      std::snprintf(text, sizeof text, column.format, column.of(row));
+      table += "\t" + std::string(text);
+    }
+    table += "\n";
   }
   return table;
 }

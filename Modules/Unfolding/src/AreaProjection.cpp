@@ -9,12 +9,11 @@
 
 namespace explica::unfolding {
 
-ProjectionAccount keepAreas(const PatchEnergy& patch, const Positions& x,
+ProjectionAccount keepAreas(const Patch& patch, const Positions& x,
                             const std::vector<std::int32_t>& unknown, Positions& velocity) {
   std::vector<Eigen::Triplet<double>> entries;
   Eigen::Index row = 0;
-  for (const PatchFace& face : patch.faces()) {
-    if (!face.looked) continue;
+  for (const PatchFace& face : patch.ofRegion()) {
     const Point a = x.row(face.vertices[0]).transpose(), b = x.row(face.vertices[1]).transpose(),
                 c = x.row(face.vertices[2]).transpose();
     const Vector normal = (b - a).cross(c - a).normalized();

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "PatchEnergy.h"
+#include "Patch.h"
 
 namespace explica::unfolding {
 
@@ -18,7 +18,7 @@ struct ProjectionAccount {
 /// J holds the derivatives of the areas; those of the squared areas of [Thesis, Eq. 5.47] are
 /// multiples of them, row by row, and span the same space.
 /// @param velocity  V x 3; only rows of moving vertices may differ from zero, and stay the others
-ProjectionAccount keepAreas(const PatchEnergy& patch, const Positions& x,
+ProjectionAccount keepAreas(const Patch& patch, const Positions& x,
                             const std::vector<std::int32_t>& unknown, Positions& velocity);
 
 }  // namespace explica::unfolding

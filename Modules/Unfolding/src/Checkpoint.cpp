@@ -13,7 +13,7 @@
 namespace explica::unfolding {
 namespace {
 
-constexpr char kMagic[] = "ExplicaUnfold4\n";
+constexpr char kMagic[] = "ExplicaUnfold5\n";
 static_assert(sizeof(std::int64_t) == 8 && sizeof(double) == 8);
 
 /// FNV-1a: tells a damaged file, not a forged one.
@@ -73,16 +73,13 @@ class Reader {
 /// The members of a record, one list for writing and reading.
 template <class Record, class Visit>
 void visitNumbers(Record& r, const Visit& visit) {
-  for (auto* member : {&r.visibility,       &r.areaErrorMean,    &r.areaErrorMax,
-                       &r.edgeStrainMean,   &r.energyVisibility, &r.energyArea,
-                       &r.energySpring,     &r.energyLift,       &r.energyContact,
-                       &r.energyKnot,       &r.objectiveBefore,  &r.objectiveAfter,
-                       &r.nearestContact,   &r.safeStep,         &r.step,
-                       &r.largestMove,      &r.damping,          &r.phases.visibility,
-                       &r.phases.repulsion, &r.phases.collision, &r.phases.solve,
-                       &r.seconds}) {
+  for (auto* member : {&r.visibility, &r.areaErrorMean, &r.areaErrorMax, &r.edgeStrainMean,
+                       &r.objectiveBefore, &r.objectiveAfter, &r.nearestContact, &r.safeStep,
+                       &r.step, &r.largestMove, &r.damping, &r.phases.visibility,
+                       &r.phases.repulsion, &r.phases.collision, &r.phases.solve, &r.seconds}) {
     visit(*member);
   }
+  for (auto& energy : r.energies.values) visit(energy);
 }
 
 }  // namespace

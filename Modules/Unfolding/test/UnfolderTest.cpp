@@ -89,7 +89,7 @@ TEST(Unfolder, ALiftOpensAPitThatFixedWallsKeepShut) {
   std::array<double, 2> reached{};
   for (const int lifted : {0, 1}) {
     UnfolderOptions options = with(Surround::Fixed);
-    if (!lifted) options.weights.lift = 0;
+    if (!lifted) options.weights[Term::Lift] = 0;
     Unfolder unfolder(mesh, region, view, options);
     for (int n = 0; n < 40 && unfolder.step(); ++n) {
       ASSERT_LE(unfolder.record().objectiveAfter, unfolder.record().objectiveBefore);
@@ -227,10 +227,10 @@ TEST(ThesisMethod, TheKnotEnergyPushesApart) {
     UnfolderOptions options = with(Surround::None);
     options.method = Method::Thesis;
     options.knot = repulsion::KnotMethod::Tree;
-    options.weights.knot = sign == 0 ? 1e-12 : 0.05 * sign;
+    options.weights[Term::Knot] = sign == 0 ? 1e-12 : 0.05 * sign;
     Unfolder unfolder(mesh, region, visibility::viewpoint(Point(8, 3, 1000)), options);
     for (int n = 0; n < 5; ++n) ASSERT_TRUE(unfolder.step());
-    ends[sign + 1] = unfolder.record().energyKnot / options.weights.knot;
+    ends[sign + 1] = unfolder.record().energies[Term::Knot] / options.weights[Term::Knot];
   }
   EXPECT_LT(ends[2], ends[1]);
   EXPECT_LT(ends[1], ends[0]);
@@ -245,7 +245,7 @@ TEST(Unfolder, KnotEnergyMayTakePart) {
     ASSERT_TRUE(unfolder.step());
     EXPECT_LE(unfolder.record().objectiveAfter, unfolder.record().objectiveBefore);
   }
-  EXPECT_GT(unfolder.record().energyKnot, 0);
+  EXPECT_GT(unfolder.record().energies[Term::Knot], 0);
 }
 
 TEST(Unfold, ResumedRunsEqualUninterruptedOnesToTheLastBit) {

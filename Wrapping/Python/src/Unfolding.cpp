@@ -23,19 +23,12 @@ using unfolding::Unfolder;
 using visibility::Viewpoints;
 
 py::dict recordOf(const IterationRecord& r) {
-  return py::dict(
-      "iteration"_a = r.iteration, "visibility"_a = r.visibility,
-      "area_error_mean"_a = r.areaErrorMean, "area_error_max"_a = r.areaErrorMax,
-      "edge_strain_mean"_a = r.edgeStrainMean, "energy_visibility"_a = r.energyVisibility,
-      "energy_area"_a = r.energyArea, "energy_spring"_a = r.energySpring,
-      "energy_lift"_a = r.energyLift, "energy_contact"_a = r.energyContact,
-      "energy_knot"_a = r.energyKnot, "objective_before"_a = r.objectiveBefore,
-      "objective_after"_a = r.objectiveAfter, "contacts"_a = r.contacts,
-      "nearest_contact"_a = r.nearestContact, "safe_step"_a = r.safeStep, "step"_a = r.step,
-      "largest_move"_a = r.largestMove, "damping"_a = r.damping, "solves"_a = r.solves,
-      "seconds_visibility"_a = r.phases.visibility, "seconds_repulsion"_a = r.phases.repulsion,
-      "seconds_collision"_a = r.phases.collision, "seconds_solve"_a = r.phases.solve,
-      "seconds"_a = r.seconds);
+  py::dict record("iteration"_a = r.iteration);
+  for (const unfolding::EvolutionColumn& column : unfolding::evolutionColumns()) {
+    record[column.name.c_str()] = column.of(r);
+  }
+  for (const char* count : {"contacts", "solves"}) record[count] = record[count].cast<int>();
+  return record;
 }
 
 unfolding::Region regionOf(const TriangleMesh& mesh, const std::vector<std::int32_t>& vertices) {

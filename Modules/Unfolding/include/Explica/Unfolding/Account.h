@@ -6,6 +6,7 @@
 #include "Explica/Geometry/SelfIntersection.h"
 #include "Explica/Unfolding/Unfolder.h"
 
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,6 +22,16 @@ namespace explica::unfolding {
 [[nodiscard]] Eigen::VectorXd vertexStrains(const TriangleMesh& reference,
                                             const Positions& deformed,
                                             std::span<const std::int32_t> faces);
+
+/// A number of an iteration's account.
+struct EvolutionColumn {
+  std::string name;    ///< of the table's header and of Python's records
+  const char* format;  ///< of printf, for a double
+  std::function<double(const IterationRecord&)> of;
+};
+
+/// All of them but the iteration's number, in the order of the table.
+[[nodiscard]] const std::vector<EvolutionColumn>& evolutionColumns();
 
 /// The history as tab-separated text with a header line.
 [[nodiscard]] std::string evolutionTable(const std::vector<IterationRecord>& history);

@@ -6,6 +6,7 @@
 #include "Explica/Core/TriangleMesh.h"
 #include "Explica/Repulsion/KnotEnergy.h"
 #include "Explica/Unfolding/Region.h"
+#include "Explica/Unfolding/Terms.h"
 #include "Explica/Visibility/Viewpoints.h"
 
 #include <memory>
@@ -29,17 +30,6 @@ enum class Method {
   Thesis     ///< explicit gradient flow with areas projected [Thesis, Eq. 5.46, 5.48]: the baseline
 };
 
-/// Strengths of the terms of the objective, all without unit; may be changed between steps.
-struct UnfoldWeights {
-  double area = 20;      ///< stiffness of areas; multipliers make them exact whatever it is
-  double spring = 2.4;   ///< stiffness of edge lengths
-  double contact = 0.2;  ///< strength of the contact barrier
-  double knot = 3e-4;    ///< strength of the knot energy
-  double lift =
-      6;  ///< pull out of fixed or elastic surroundings, to where the flat region has room
-  double collar = 2e-4;  ///< stiffness of the collar's areas and lengths beside the region's
-};
-
 struct UnfolderOptions {
   Method method = Method::Implicit;
   Surround surround = Surround::Fixed;
@@ -51,19 +41,6 @@ struct UnfolderOptions {
   std::optional<double> timeStep;  ///< thesis method: fixed step, mm per mm; else adaptive
   UnfoldWeights weights;
 };
-
-template <class Visitor>
-void describe(UnfoldWeights& weights, Visitor&& visit) {
-  visit(Field{"area-weight", "", "stiffness of face areas before it is tightened"}, weights.area);
-  visit(Field{"spring-weight", "", "stiffness of edge lengths"}, weights.spring);
-  visit(Field{"knot-weight", "", "strength of the knot energy"}, weights.knot);
-  visit(Field{"contact-weight", "", "strength of the contact barrier"}, weights.contact);
-  visit(Field{"lift-weight", "",
-              "pull out of fixed or elastic surroundings, up to where the flat region has room"},
-        weights.lift);
-  visit(Field{"collar-weight", "", "stiffness of an elastic collar beside the region's"},
-        weights.collar);
-}
 
 template <class Visitor>
 void describe(UnfolderOptions& options, Visitor&& visit) {
@@ -108,12 +85,7 @@ struct IterationRecord {
   double areaErrorMean = kNaN;  ///< mean |A / A0 - 1| over the region's faces
   double areaErrorMax = kNaN;
   double edgeStrainMean = kNaN;  ///< mean |l / l0 - 1| over the region's edges
-  double energyVisibility = 0;   ///< terms of the objective after the step, mm^2
-  double energyArea = 0;
-  double energySpring = 0;
-  double energyLift = 0;
-  double energyContact = 0;
-  double energyKnot = 0;
+  TermValues energies;           ///< terms of the objective after the step, mm^2
   double objectiveBefore = 0;    ///< sum of the terms before the step ...
   double objectiveAfter = 0;     ///< ... and after it, with the same multipliers: never larger
   int contacts = 0;              ///< pairs within the barrier's range
@@ -191,8 +163,9 @@ class Unfolder {
   void setWeights(const UnfoldWeights& weights);
   [[nodiscard]] const UnfoldWeights& weights() const;
 
+  struct Implementation;  ///< internal
+
  private:
-  struct Implementation;
   std::unique_ptr<Implementation> self_;
 };
 

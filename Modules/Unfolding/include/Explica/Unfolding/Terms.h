@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Core/Describe.h"
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+
+namespace explica::unfolding {
+
+/// The terms of the objective that an unfolding lowers, mm^2.
+///
+/// A0 is a face's area at the start, w(A0) the same but less for needles, c = A / A0 - 1 its area
+/// error, n its normal, d the mean direction to the viewpoints, s = l / l0 - 1 an edge's strain.
+enum class Term {
+  Visibility,  ///< sum over the region's faces of w (1 - n . d)
+  Area,        ///< sum over the region's faces of w (lambda c + weight/2 c^2), lambda a multiplier
+  Spring,      ///< weight times the sum over the region's edges of e s^2, e the same for all edges
+  Lift,        ///< weight/2 times the sum of w (deficit / radius)^2, deficit = max(0, height - x.a)
+  Collar,      ///< weight times the sum over faces that move outside the region, see CollarEnergy
+  Contact,     ///< weight times the sum over near pairs of barrier(distance), see ContactPotential
+  Knot         ///< weight times the double integral of 1 / |x - y|^2, see KnotEnergy
+};
+
+/// What the program tells about a term.  Columns of evolution.tsv, options, checkpoints and
+/// Python's records follow from these rows.
+struct TermInfo {
+  Term term;
+  std::string_view name;    ///< the account's: energy_NAME
+  double weight;            ///< default of its strength, no unit
+  std::string_view option;  ///< of the strength; empty for a term whose strength is the measure
+  std::string_view help;    ///< one sentence
+};
+
+inline constexpr std::array kTerms = {
+    TermInfo{Term::Visibility, "visibility", 1, "", ""},
+    TermInfo{Term::Area, "area", 20, "area-weight",
+             "stiffness of face areas before it is tightened"},
+    TermInfo{Term::Spring, "spring", 2.4, "spring-weight", "stiffness of edge lengths"},
+    TermInfo{Term::Lift, "lift", 6, "lift-weight",
+             "pull out of fixed or elastic surroundings, up to where the flat region has room"},
+    TermInfo{Term::Collar, "collar", 2e-4, "collar-weight",
+             "stiffness of an elastic collar beside the region's"},
+    TermInfo{Term::Contact, "contact", 0.2, "contact-weight", "strength of the contact barrier"},
+    TermInfo{Term::Knot, "knot", 3e-4, "knot-weight", "strength of the knot energy"},
+};
+inline constexpr std::size_t kTermCount = kTerms.size();
+static_assert(
+    [] {
+      for (std::size_t n = 0; n < kTermCount; ++n) {
+        if (static_cast<std::size_t>(kTerms[n].term) != n) return false;
+      }
+      return true;
+    }(),
+    "rows stand in the order of Term");
+
+/// One number per term.
+struct TermValues {
+  std::array<double, kTermCount> values = {};
+
+  [[nodiscard]] constexpr double& operator[](Term term) {
+    return values[static_cast<std::size_t>(term)];
+  }
+  [[nodiscard]] constexpr const double& operator[](Term term) const {
+    return values[static_cast<std::size_t>(term)];
+  }
+  [[nodiscard]] constexpr double sum() const {
+    double total = 0;
+    for (const double value : values) total += value;
+    return total;
+  }
+};
+
+/// Strengths of the terms; may be changed between steps.
+struct UnfoldWeights : TermValues {
+  constexpr UnfoldWeights() {
+    for (const TermInfo& info : kTerms) (*this)[info.term] = info.weight;
+  }
+};
+
+template <class Visitor>
+void describe(UnfoldWeights& weights, Visitor&& visit) {
+  for (const TermInfo& info : kTerms) {
+    if (!info.option.empty()) visit(Field{info.option, "", info.help}, weights[info.term]);
+  }
+}
+
+}  // namespace explica::unfolding

@@ -1,0 +1,135 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Contacts.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/Parallel.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace explica::unfolding {
+namespace {
+
+using collision::Contact;
+using collision::Pair;
+using collision::PairKind;
+
+constexpr double kSoftBelow = 0.1;  // of a contact's range: below it force is bounded
+constexpr double kParallel = 1e-3;  // of |u|^2 |v|^2, as in incremental potential contact
+constexpr double kParted = 0.2;     // of the range: pairs that start nearer are parted up to there,
+constexpr double kNeedle = 0.25;    // neighbours up to this share of the thinnest face's height ...
+constexpr double kAsNear = 0.5;     // ... or to this one of their distance
+
+std::vector<bool> flags(Eigen::Index count, const std::vector<std::int32_t>& marked) {
+  std::vector<bool> result(static_cast<std::size_t>(count), false);
+  for (const std::int32_t i : marked) result[i] = true;
+  return result;
+}
+
+/// Height of the thinnest face at each vertex, mm.
+Eigen::VectorXd thinnestFaces(const TriangleMesh& mesh) {
+  Eigen::VectorXd thinnest = Eigen::VectorXd::Constant(mesh.vertexCount(), kInfinity);
+  for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
+    double longest = 0;
+    for (int k = 0; k < 3; ++k) {
+      longest = std::max(longest, (mesh.corner(f, k) - mesh.corner(f, (k + 1) % 3)).norm());
+    }
+    if (!(longest > 0)) continue;
+    const Vector u = mesh.corner(f, 1) - mesh.corner(f, 0);
+    const Vector v = mesh.corner(f, 2) - mesh.corner(f, 0);
+    const double height = u.cross(v).norm() / longest;
+    for (int k = 0; k < 3; ++k) {
+      double& thin = thinnest[mesh.faces(f, k)];
+      thin = std::min(thin, height);
+    }
+  }
+  return thinnest;
+}
+
+}  // namespace
+
+double squaredDistance(const Contact& contact, const Positions& x) {
+  collision::FourPoints p;
+  for (int i = 0; i < 4; ++i) p[i] = x.row(contact.vertices[i]).transpose();
+  return collision::squaredDistance(contact.kind, p);
+}
+
+Contacts::Contacts(const PatchSetup& setup, const UnfolderOptions& options)
+    : start_(setup.mesh.positions), range_(options.contactRange * setup.edge) {
+  standAt(setup, start_);
+  near_ = scene_->findPairs(start_, Positions::Zero(start_.rows(), 3), range_);
+  nearKnown_ = true;
+  findRanges(setup, options.method != Method::Implicit);
+}
+
+void Contacts::standAt(const PatchSetup& setup, const Positions& positions) {
+  scene_ = std::make_unique<collision::CollisionScene>(TriangleMesh{positions, setup.mesh.faces},
+                                                       flags(positions.rows(), setup.moving));
+}
+
+void Contacts::findRanges(const PatchSetup& setup, bool mayTouch) {
+  const Eigen::VectorXd thinnest = thinnestFaces(setup.mesh);
+  const auto adjacent = [&](std::int32_t a, std::int32_t b) {
+    const auto list = setup.topology.vertexVertices[a];
+    return std::binary_search(list.begin(), list.end(), b);
+  };
+  for (const Pair& pair : near_) {
+    const double distance =
+        std::sqrt(collision::squaredDistance(pair.kind, scene_->points(pair, start_)));
+    const auto v = scene_->vertices(pair);
+    if (distance == 0 && !mayTouch) {
+      throw InvalidInput("region: the surface touches itself at vertices " + std::to_string(v[0]) +
+                         " and " + std::to_string(v[3]) +
+                         ", so that nothing there can move; weld coincident vertices, or part them "
+                         "first (--repair)");
+    }
+    const int split = pair.kind == PairKind::VertexFace ? 1 : 2;
+    bool neighbours = false;
+    double thin = kInfinity;
+    for (int i = 0; i < split; ++i) {
+      for (int k = split; k < 4; ++k) neighbours = neighbours || adjacent(v[i], v[k]);
+    }
+    for (const std::int32_t vertex : v) thin = std::min(thin, thinnest[vertex]);
+    const double wanted = std::max(distance, kParted * range_);
+    rangeOfPair_[pair] =
+        neighbours ? std::max(kAsNear * distance, std::min(wanted, kNeedle * thin)) : wanted;
+  }
+}
+
+Contact Contacts::contactOf(const Pair& pair) const {
+  Contact contact;
+  contact.vertices = scene_->vertices(pair);
+  contact.kind = pair.kind;
+  contact.softBelow = kSoftBelow;
+  const auto found = rangeOfPair_.find(pair);
+  contact.range = found == rangeOfPair_.end() ? range_ : found->second;
+  if (pair.kind == PairKind::EdgeEdge) {
+    const auto x = scene_->points(pair, start_);
+    contact.parallelArea = kParallel * (x[1] - x[0]).squaredNorm() * (x[3] - x[2]).squaredNorm();
+  }
+  return contact;
+}
+
+std::vector<Contact> Contacts::contactsOf(const std::vector<Pair>& pairs) const {
+  std::vector<Contact> contacts(pairs.size());
+  parallelFor(pairs.size(), 1024, [&](std::size_t n) { contacts[n] = contactOf(pairs[n]); });
+  return contacts;
+}
+
+std::vector<Contact> Contacts::within(const Positions& x) {
+  if (!nearKnown_) remember(scene_->findPairs(x, Positions::Zero(x.rows(), 3), range_));
+  std::sort(near_.begin(), near_.end());
+  std::vector<Contact> contacts = contactsOf(near_);
+  std::erase_if(contacts,
+                [&](const Contact& c) { return squaredDistance(c, x) >= c.range * c.range; });
+  return contacts;
+}
+
+void Contacts::remember(std::vector<Pair> pairs) {
+  near_ = std::move(pairs);
+  nearKnown_ = true;
+}
+
+}  // namespace explica::unfolding

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "PatchSetup.h"
+
+#include "Explica/Collision/CollisionScene.h"
+#include "Explica/Collision/ContactPotential.h"
+
+#include <map>
+#include <memory>
+#include <vector>
+
+namespace explica::unfolding {
+
+/// Who may meet whom, and from which distance on a pair is pushed apart.
+class Contacts {
+ public:
+  /// A pair that starts within the barrier's range keeps its distance as range, so that the start
+  /// is free of forces; but very near pairs are parted a little.  Neighbours in the surface may
+  /// stay as near as the needles among their faces make them.
+  /// @throws InvalidInput  with the implicit method, a moving part that touches another
+  Contacts(const PatchSetup& setup, const UnfolderOptions& options);
+
+  /// Fixed vertices stand at these positions from now on.
+  void standAt(const PatchSetup& setup, const Positions& positions);
+
+  [[nodiscard]] const collision::CollisionScene& scene() const { return *scene_; }
+  [[nodiscard]] double range() const { return range_; }
+
+  /// The pairs' barriers, in their order.
+  [[nodiscard]] std::vector<collision::Contact> contactsOf(
+      const std::vector<collision::Pair>& pairs) const;
+
+  /// The pairs within range, in an order that does not depend on how they were found.
+  [[nodiscard]] std::vector<collision::Contact> within(const Positions& x);
+
+  /// Tells all pairs that may be within range at the positions of the next call of within().
+  void remember(std::vector<collision::Pair> pairs);
+  /// Makes the next call of within() search.
+  void forget() { nearKnown_ = false; }
+
+ private:
+  void findRanges(const PatchSetup& setup, bool mayTouch);
+  [[nodiscard]] collision::Contact contactOf(const collision::Pair& pair) const;
+
+  Positions start_;
+  double range_;
+  std::unique_ptr<collision::CollisionScene> scene_;
+  std::map<collision::Pair, double> rangeOfPair_;  ///< of pairs nearer at the start than range_
+  std::vector<collision::Pair> near_;
+  bool nearKnown_ = false;
+};
+
+/// Squared distance of a contact's features, mm^2.
+[[nodiscard]] double squaredDistance(const collision::Contact& contact, const Positions& x);
+
+}  // namespace explica::unfolding

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Contacts.h"
+
+namespace explica::unfolding {
+
+/// Share of a step below which the pairs that stop it are dealt with.
+inline constexpr double kBlocked = 0.3;
+
+/// A step that has been proposed, and what stands in its way.
+struct Motion {
+  Positions by = {};                        ///< V x 3, mm
+  double descent = 0;                       ///< gradient . by
+  double safe = 0;                          ///< share of it that collision detection allows
+  std::vector<collision::Pair> pairs = {};  ///< that may meet on the way, or come within range
+};
+
+/// Finds `pairs` and `safe` of a motion from `x`.
+void findSafeStep(const Contacts& contacts, const Positions& x, Motion& motion);
+
+/// Pairs that alone would stop the motion before kBlocked of it.
+[[nodiscard]] std::vector<collision::Pair> blockingPairs(const Contacts& contacts,
+                                                         const Positions& x, const Motion& motion);
+
+/// Pairs that still stop the motion go along without turning, or stay where something holds them.
+/// @param unknown   V: -1 for vertices that stay
+/// @param gradient  V x 3, of the objective
+void weldBlocking(const Contacts& contacts, const Positions& x,
+                  const std::vector<std::int32_t>& unknown, const Positions& gradient,
+                  Motion& motion);
+
+}  // namespace explica::unfolding

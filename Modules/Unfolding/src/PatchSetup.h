@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Patch.h"
+
+#include "Explica/Geometry/MeshTopology.h"
+#include "Explica/Unfolding/Unfolder.h"
+
+namespace explica::unfolding {
+
+/// What an unfolding works on, as it stands before anything moves.
+struct PatchSetup {
+  TriangleMesh mesh;                  ///< reference positions; faces that move or stand in the way
+  Region region;                      ///< faces are rows of mesh.faces
+  geometry::MeshTopology topology;    ///< of mesh
+  std::vector<std::int32_t> moving;   ///< vertices that move, ascending
+  std::vector<std::int32_t> unknown;  ///< V: row of the system, or -1
+  double edge = 0;                    ///< mean edge length of the region, mm
+  Patch patch;
+  Couplings couplings;  ///< of the unknowns that share an edge
+};
+
+/// Lists what moves and what it keeps.
+/// @throws InvalidInput  an option out of range, no face, or a face of zero area in the region
+[[nodiscard]] PatchSetup setUpPatch(TriangleMesh mesh, Region region,
+                                    const visibility::Viewpoints& viewpoints,
+                                    const UnfolderOptions& options);
+
+/// Laid flat, the region needs a disc of its area, which is wider than the hole that it came from;
+/// so it has to rise until nothing stands within that disc.
+[[nodiscard]] PatchRoom findRoom(const PatchSetup& setup, const visibility::Viewpoints& viewpoints);
+
+}  // namespace explica::unfolding

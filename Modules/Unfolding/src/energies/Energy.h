@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "../Patch.h"
+
+#include "Explica/Collision/ContactPotential.h"
+#include "Explica/Repulsion/KnotEnergy.h"
+#include "Explica/Unfolding/Unfolder.h"
+#include "Explica/Visibility/Viewpoints.h"
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace explica::unfolding {
+
+/// A state of the surface and what terms need to know of it, found once for all of them.
+class Configuration {
+ public:
+  /// Keeps references to all arguments.
+  Configuration(const Patch& whose, const Positions& where, const visibility::Viewpoints& seenFrom,
+                const Eigen::VectorXd& areaMultipliers, std::span<const collision::Contact> near,
+                const repulsion::KnotEnergy* repulsion);
+
+  const Patch& patch;
+  const Positions& x;  ///< V x 3
+  const visibility::Viewpoints& viewpoints;
+  const Eigen::VectorXd& multipliers;            ///< one per face of the region
+  std::span<const collision::Contact> contacts;  ///< a superset of the pairs within range
+  const repulsion::KnotEnergy* knot;             ///< null without one
+  std::vector<FaceShape> shapes;                 ///< of the patch's faces
+
+  /// Derivatives of the contact barrier, found at the first call.
+  [[nodiscard]] const std::vector<collision::ContactForce>& contactForces() const;
+
+ private:
+  mutable std::optional<std::vector<collision::ContactForce>> forces_;
+};
+
+/// One term of the objective: the formula stands in its file.  `strength` is the term's weight
+/// times what the iterations make of it (see Objective).
+class Energy {
+ public:
+  virtual ~Energy() = default;
+
+  [[nodiscard]] virtual double value(const Configuration& now, double strength) const = 0;
+
+  /// Adds the gradient by each vertex into `gradient` (V x 3).
+  virtual void addGradient(const Configuration& now, double strength,
+                           Positions& gradient) const = 0;
+
+  /// Adds a positive semi-definite part of the Hessian; nothing for a term that steps take as
+  /// linear.
+  /// @param unknown  V: row in the system, -1 for vertices that stay
+  virtual void addStiffness(const Configuration& now, double strength,
+                            const std::vector<std::int32_t>& unknown, BlockSystem& system) const;
+
+  /// Which time of the account is spent here.
+  [[nodiscard]] virtual double PhaseSeconds::*phase() const { return &PhaseSeconds::visibility; }
+};
+
+// The terms, each made in the file of its name.
+[[nodiscard]] std::unique_ptr<Energy> makeVisibilityEnergy();
+[[nodiscard]] std::unique_ptr<Energy> makeAreaEnergy();
+[[nodiscard]] std::unique_ptr<Energy> makeSpringEnergy();
+[[nodiscard]] std::unique_ptr<Energy> makeLiftEnergy();
+[[nodiscard]] std::unique_ptr<Energy> makeCollarEnergy();
+[[nodiscard]] std::unique_ptr<Energy> makeContactEnergy();
+[[nodiscard]] std::unique_ptr<Energy> makeKnotTerm();
+
+// What springs contribute: a part of two terms, strength * sum of e (l / l0 - 1)^2.
+[[nodiscard]] double springValue(std::span<const PatchSpring> springs, const Positions& x,
+                                 double strength);
+void addSpringGradient(std::span<const PatchSpring> springs, const Positions& x, double strength,
+                       Positions& gradient);
+void addSpringStiffness(std::span<const PatchSpring> springs, const Positions& x, double strength,
+                        const std::vector<std::int32_t>& unknown, BlockSystem& system);
+
+}  // namespace explica::unfolding

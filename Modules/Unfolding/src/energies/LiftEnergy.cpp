@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Energy.h"
+
+#include "Explica/Core/Parallel.h"
+
+#include <algorithm>
+
+namespace explica::unfolding {
+namespace {
+
+constexpr std::size_t kGrain = 256;
+
+/// How far below the room for the flat region a face is, mm.
+double deficit(const PatchRoom& room, const Point& place) {
+  return std::max(0.0, room.height - room.axis.dot(place));
+}
+
+/// strength/2 * sum over the region's faces of w (deficit / radius)^2.
+class LiftEnergy final : public Energy {
+ public:
+  [[nodiscard]] double value(const Configuration& now, double strength) const override {
+    if (!(strength > 0)) return 0;
+    const auto faces = now.patch.ofRegion();
+    const PatchRoom& room = now.patch.room;
+    return parallelSum(faces.size(), kGrain, 0.0, [&](std::size_t begin, std::size_t end) {
+      double block = 0;
+      for (std::size_t f = begin; f < end; ++f) {
+        const double share = deficit(room, centroidOf(faces[f], now.x)) / room.radius;
+        block += 0.5 * strength * faces[f].weight * share * share;
+      }
+      return block;
+    });
+  }
+
+  void addGradient(const Configuration& now, double strength, Positions& gradient) const override {
+    if (!(strength > 0)) return;
+    const PatchRoom& room = now.patch.room;
+    for (const PatchFace& face : now.patch.ofRegion()) {
+      const double pull = strength * face.weight / (room.radius * room.radius) *
+                          deficit(room, centroidOf(face, now.x));
+      for (const std::int32_t v : face.vertices)
+        gradient.row(v) -= pull / 3 * room.axis.transpose();
+    }
+  }
+
+  void addStiffness(const Configuration& now, double strength,
+                    const std::vector<std::int32_t>& unknown, BlockSystem& system) const override {
+    if (!(strength > 0)) return;
+    const auto faces = now.patch.ofRegion();
+    const PatchRoom& room = now.patch.room;
+    const Eigen::Matrix3d along = room.axis * room.axis.transpose();
+    std::vector<CornerBlocks> blocks(faces.size());
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      const bool lifted = deficit(room, centroidOf(faces[f], now.x)) > 0;
+      const double scale =
+          lifted ? strength * faces[f].weight / (9 * room.radius * room.radius) : 0;
+      blocks[f].fill(scale * along);
+    }
+    addBlocks(faces, blocks, unknown, system);
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Energy> makeLiftEnergy() {
+  return std::make_unique<LiftEnergy>();
+}
+
+}  // namespace explica::unfolding

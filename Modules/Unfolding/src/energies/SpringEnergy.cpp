@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Energy.h"
+
+#include "Explica/Core/Parallel.h"
+
+#include <algorithm>
+
+namespace explica::unfolding {
+namespace {
+
+/// strength * sum over the region's edges of e (l / l0 - 1)^2.
+class SpringEnergy final : public Energy {
+ public:
+  [[nodiscard]] double value(const Configuration& now, double strength) const override {
+    return springValue(now.patch.regionEdges(), now.x, strength);
+  }
+  void addGradient(const Configuration& now, double strength, Positions& gradient) const override {
+    addSpringGradient(now.patch.regionEdges(), now.x, strength, gradient);
+  }
+  void addStiffness(const Configuration& now, double strength,
+                    const std::vector<std::int32_t>& unknown, BlockSystem& system) const override {
+    addSpringStiffness(now.patch.regionEdges(), now.x, strength, unknown, system);
+  }
+};
+
+}  // namespace
+
+double springValue(std::span<const PatchSpring> springs, const Positions& x, double strength) {
+  constexpr std::size_t kGrain = 256;
+  return parallelSum(springs.size(), kGrain, 0.0, [&](std::size_t begin, std::size_t end) {
+    double block = 0;
+    for (std::size_t s = begin; s < end; ++s) {
+      const double strain = lengthOf(springs[s], x) / springs[s].restLength - 1;
+      block += strength * springs[s].weight * strain * strain;
+    }
+    return block;
+  });
+}
+
+void addSpringGradient(std::span<const PatchSpring> springs, const Positions& x, double strength,
+                       Positions& gradient) {
+  for (const PatchSpring& spring : springs) {
+    const Eigen::RowVector3d along = x.row(spring.vertices[1]) - x.row(spring.vertices[0]);
+    const double length = along.norm();
+    const Eigen::RowVector3d pull = 2 * strength * spring.weight *
+                                    (length / spring.restLength - 1) / spring.restLength / length *
+                                    along;
+    gradient.row(spring.vertices[0]) -= pull;
+    gradient.row(spring.vertices[1]) += pull;
+  }
+}
+
+void addSpringStiffness(std::span<const PatchSpring> springs, const Positions& x, double strength,
+                        const std::vector<std::int32_t>& unknown, BlockSystem& system) {
+  for (const PatchSpring& spring : springs) {
+    const Vector along = (x.row(spring.vertices[1]) - x.row(spring.vertices[0])).transpose();
+    const double length = along.norm();
+    const Vector unit = along / length;
+    const double stiffness = 2 * strength * spring.weight / (spring.restLength * spring.restLength);
+    const double lateral = stiffness * std::max(0.0, 1 - spring.restLength / length);
+    const Eigen::Matrix3d block =
+        (stiffness - lateral) * unit * unit.transpose() + lateral * Eigen::Matrix3d::Identity();
+    const std::int32_t i = unknown[spring.vertices[0]], j = unknown[spring.vertices[1]];
+    if (i >= 0) system.add(i, i, block);
+    if (j >= 0) system.add(j, j, block);
+    if (i >= 0 && j >= 0) system.add(i, j, -block);
+  }
+}
+
+std::unique_ptr<Energy> makeSpringEnergy() {
+  return std::make_unique<SpringEnergy>();
+}
+
+}  // namespace explica::unfolding

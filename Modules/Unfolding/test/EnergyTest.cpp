@@ -1,0 +1,247 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "../src/AreaProjection.h"
+#include "../src/Objective.h"
+
+#include "Meander.h"
+
+#include "Explica/Geometry/MeshMeasures.h"
+#include "Explica/Geometry/MeshTopology.h"
+#include "Explica/Visibility/AverageVisibility.h"
+
+#include <gtest/gtest.h>
+#include <Eigen/Dense>
+
+#include <numeric>
+#include <random>
+
+namespace explica::unfolding {
+namespace {
+
+struct Sample {
+  TriangleMesh mesh = makeMeander(6, 4, 1.2, 1);
+  visibility::Viewpoints view{{Point(3, 2, 9), Point(-4, 1, 12)}, {0.25, 0.75}};
+  Patch patch;
+  Objective objective;
+  Eigen::VectorXd multipliers;
+  std::vector<std::int32_t> unknown;
+  std::vector<collision::Contact> contacts;
+  std::unique_ptr<repulsion::KnotEnergy> knot = repulsion::makeKnotEnergy(
+      repulsion::KnotMethod::AllPairs, mesh,
+      std::vector<bool>(static_cast<std::size_t>(mesh.vertexCount()), true));
+
+  Sample() {
+    const Eigen::VectorXd areas = geometry::faceAreas(mesh);
+    for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
+      patch.faces.push_back(
+          {{mesh.faces(f, 0), mesh.faces(f, 1), mesh.faces(f, 2)}, 0.9 * areas[f], areas[f]});
+    }
+    patch.regionFaces = patch.faces.size() * 3 / 4;
+    const Edges edges = geometry::buildTopology(mesh.faces, mesh.vertexCount()).edges;
+    for (Eigen::Index e = 0; e < edges.rows(); ++e) {
+      patch.springs.push_back({{edges(e, 0), edges(e, 1)}, 1.1, 0.5});
+    }
+    patch.regionSprings = patch.springs.size() * 3 / 4;
+    patch.room = {Vector(0.6, 0, 0.8), 40, 5};  // above all of it
+    multipliers = Eigen::VectorXd::LinSpaced(static_cast<Eigen::Index>(patch.regionFaces), -1, 2);
+    unknown.resize(static_cast<std::size_t>(mesh.vertexCount()));
+    std::iota(unknown.begin(), unknown.end(), 0);
+    const auto last = static_cast<std::int32_t>(mesh.vertexCount()) - 1;
+    contacts.push_back({{last, mesh.faces(0, 0), mesh.faces(0, 1), mesh.faces(0, 2)},
+                        collision::PairKind::VertexFace,
+                        50});
+  }
+
+  [[nodiscard]] Configuration at(const Positions& x) const {
+    return {patch, x, view, multipliers, contacts, knot.get()};
+  }
+  [[nodiscard]] double value(const Positions& x, const TermValues& strengths) const {
+    IterationRecord account;
+    return objective.value(at(x), strengths, account);
+  }
+  [[nodiscard]] Positions gradient(const TermValues& strengths) const {
+    IterationRecord account;
+    return objective.gradient(at(mesh.positions), strengths, account);
+  }
+
+  /// The stiffness as a dense matrix, from solutions with a shifted diagonal.
+  [[nodiscard]] Eigen::MatrixXd stiffness(const TermValues& strengths) const {
+    constexpr double kShift = 10;
+    BlockSystem system;
+    Couplings couplings;
+    const auto count = static_cast<std::int32_t>(mesh.vertexCount());
+    for (std::int32_t i = 0; i < count; ++i) {
+      for (std::int32_t j = 0; j < i; ++j) couplings.emplace_back(i, j);
+    }
+    system.reset(count, couplings);
+    objective.addStiffness(at(mesh.positions), strengths, unknown, system);
+    system.addDiagonal(kShift);
+    Eigen::MatrixXd inverse(3 * count, 3 * count);
+    for (std::int32_t column = 0; column < 3 * count; ++column) {
+      Positions unit = Positions::Zero(count, 3), solution;
+      unit.data()[column] = 1;
+      EXPECT_TRUE(system.solve(unit, solution));
+      inverse.col(column) = Eigen::Map<const Eigen::VectorXd>(solution.data(), 3 * count);
+    }
+    return inverse.inverse() - kShift * Eigen::MatrixXd::Identity(3 * count, 3 * count);
+  }
+};
+
+/// One term alone; the multipliers belong to the areas and are there with any strength.
+TermValues only(Term term, double strength) {
+  TermValues strengths;
+  strengths[term] = strength;
+  return strengths;
+}
+
+Positions randomDirection(Eigen::Index count, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  Positions d(count, 3);
+  for (Eigen::Index i = 0; i < d.size(); ++i) d.data()[i] = uniform(random);
+  return d;
+}
+
+/// Each row of the table: E(x + h d) - E(x) - h g.d must fall as h^2.
+TEST(Energy, GradientOfEveryTermPassesTheTaylorTest) {
+  for (const TermInfo& info : kTerms) {
+    Sample s;
+    if (info.term != Term::Area) s.multipliers.setZero();
+    const Positions d = randomDirection(s.mesh.vertexCount(), 3);
+    const TermValues strengths = only(info.term, 1.3);
+    const double slope = (s.gradient(strengths).array() * d.array()).sum();
+    const auto valueAt = [&](double h) { return s.value(s.mesh.positions + h * d, strengths); };
+    EXPECT_GT(std::abs(valueAt(0)), 0) << info.name;
+    const auto remainder = [&](double h) { return std::abs(valueAt(h) - valueAt(0) - h * slope); };
+    const double rate = std::log10(remainder(1e-3) / remainder(1e-4));
+    EXPECT_GT(rate, 1.85) << info.name;
+    EXPECT_LT(rate, 2.15) << info.name;
+  }
+}
+
+TEST(Energy, StiffnessOfEveryTermIsSymmetricPositiveSemiDefinite) {
+  for (const TermInfo& info : kTerms) {
+    Sample s;
+    if (info.term != Term::Area) s.multipliers.setZero();
+    const Eigen::MatrixXd all = s.stiffness(only(info.term, 1.3));
+    EXPECT_NEAR((all - all.transpose()).norm(), 0, 1e-7 * (1 + all.norm())) << info.name;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * (all + all.transpose()));
+    EXPECT_GT(eigen.eigenvalues().minCoeff(), -1e-7 * (1 + all.norm())) << info.name;
+  }
+}
+
+TEST(Energy, StiffnessIsTheHessianWhereAreasAndLengthsAreAtRest) {
+  for (const Term term : {Term::Area, Term::Spring, Term::Collar}) {
+    Sample s;
+    const Positions& x = s.mesh.positions;
+    for (PatchFace& face : s.patch.faces) face.restArea = shapeOf(face, x).area;
+    for (PatchSpring& spring : s.patch.springs) spring.restLength = lengthOf(spring, x);
+    s.multipliers.setZero();
+    const TermValues strengths = only(term, 4);
+    const Eigen::MatrixXd hessian = s.stiffness(strengths);
+    const Positions d = randomDirection(s.mesh.vertexCount(), 5);
+    const Eigen::Map<const Eigen::VectorXd> flat(d.data(), d.size());
+    constexpr double h = 1e-4;
+    const double curvature =
+        (s.value(x + h * d, strengths) + s.value(x - h * d, strengths)) / (h * h);
+    EXPECT_NEAR(flat.dot(hessian * flat), curvature, 1e-4 * curvature)
+        << kTerms[static_cast<std::size_t>(term)].name;
+  }
+}
+
+TEST(Energy, LiftPullsAlongItsAxisUpToItsHeightOnly) {
+  Sample s;
+  s.multipliers.setZero();
+  const auto pull = [&](double height) {
+    s.patch.room = {Vector::UnitZ(), height, 5};
+    return s.gradient(only(Term::Lift, 2));
+  };
+  const double top = s.mesh.positions.col(2).maxCoeff();
+  EXPECT_EQ(pull(s.mesh.positions.col(2).minCoeff()).norm(), 0);
+  const Positions all = pull(top + 1);
+  EXPECT_EQ(all.leftCols(2).norm(), 0);
+  EXPECT_LE(all.col(2).maxCoeff(), 0);  // downhill is up
+  EXPECT_LT(all.col(2).sum(), 0);
+}
+
+TEST(Energy, VisibilityTermIsAreaTimesOneLessTheAverageVisibility) {
+  // The two agree where areas are at rest, up to the centroid rule for the flux.
+  Sample s;
+  s.mesh = makeMeander(20, 6);
+  s.view = visibility::viewpoint(Point(5, 3, 1000));
+  s.patch = {};
+  s.contacts.clear();
+  s.knot.reset();
+  std::vector<std::int32_t> all;
+  const Eigen::VectorXd areas = geometry::faceAreas(s.mesh);
+  for (std::int32_t f = 0; f < s.mesh.faceCount(); ++f) {
+    s.patch.faces.push_back(
+        {{s.mesh.faces(f, 0), s.mesh.faces(f, 1), s.mesh.faces(f, 2)}, areas[f], areas[f]});
+    all.push_back(f);
+  }
+  s.patch.regionFaces = all.size();
+  s.multipliers = Eigen::VectorXd::Zero(s.mesh.faceCount());
+  const double term = s.value(s.mesh.positions, only(Term::Visibility, 1));
+  const double average =
+      visibility::AverageVisibility(s.mesh.faces, all, s.view).value(s.mesh.positions);
+  EXPECT_NEAR(term, areas.sum() * (1 - average), 1e-6 * areas.sum());
+}
+
+TEST(AreaProjection, LeavesNoFirstOrderChangeOfArea) {
+  const TriangleMesh mesh = makeMeander(12, 8, 1.2, 1);
+  const Eigen::VectorXd areas = geometry::faceAreas(mesh);
+  Patch patch;
+  for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
+    patch.faces.push_back(
+        {{mesh.faces(f, 0), mesh.faces(f, 1), mesh.faces(f, 2)}, areas[f], areas[f]});
+  }
+  patch.regionFaces = patch.faces.size();
+  std::vector<std::int32_t> unknown(static_cast<std::size_t>(mesh.vertexCount()));
+  std::iota(unknown.begin(), unknown.end(), 0);
+  const Positions wanted = randomDirection(mesh.vertexCount(), 4);
+  Positions velocity = wanted;
+  keepAreas(patch, mesh.positions, unknown, velocity);
+  constexpr double h = 1e-6;
+  const auto rates = [&](const Positions& v) {
+    TriangleMesh moved = mesh;
+    moved.positions += h * v;
+    return Eigen::VectorXd((geometry::faceAreas(moved) - areas) / h);
+  };
+  EXPECT_GT(rates(wanted).norm(), 1);
+  EXPECT_LT(rates(velocity).norm(), 1e-3);
+  EXPECT_GT(velocity.norm(), 0.1 * wanted.norm());
+  // A projection: what it took is orthogonal to what it left.
+  EXPECT_NEAR((velocity.array() * (wanted - velocity).array()).sum(), 0,
+              1e-5 * wanted.squaredNorm());
+}
+
+TEST(BlockSystem, SolvesWhatADenseSolverSolves) {
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  constexpr std::int32_t count = 12;
+  const Couplings couplings = {{3, 1}, {5, 0}, {11, 2}, {7, 3}, {10, 9}};
+  BlockSystem system;
+  system.reset(count, couplings);
+  Eigen::MatrixXd dense = 20 * Eigen::MatrixXd::Identity(3 * count, 3 * count);
+  system.addDiagonal(20);
+  for (const auto& [i, j] : couplings) {
+    Eigen::Matrix3d block;
+    for (int n = 0; n < 9; ++n) block.data()[n] = uniform(random);
+    system.add(i, j, block);
+    dense.block<3, 3>(3 * i, 3 * j) += block;
+    dense.block<3, 3>(3 * j, 3 * i) += block.transpose();
+  }
+  const Positions right = randomDirection(count, 9);
+  Positions solution;
+  ASSERT_TRUE(system.solve(right, solution));
+  const Eigen::VectorXd expected =
+      dense.ldlt().solve(Eigen::Map<const Eigen::VectorXd>(right.data(), right.size()));
+  const Eigen::Map<const Eigen::VectorXd> found(solution.data(), solution.size());
+  EXPECT_NEAR((found - expected).norm(), 0, 1e-12);
+  system.reset(count, couplings);
+  EXPECT_FALSE(system.solve(right, solution));  // all zero: not positive definite
+}
+
+}  // namespace
+}  // namespace explica::unfolding
