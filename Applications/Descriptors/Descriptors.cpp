@@ -26,7 +26,7 @@ void declare(Declaration& d, Settings&) {
       .output("nipype/explica_nipype.py", FileKind::Any, "nipype interfaces, one a command")
       .output("completion/explica.bash", FileKind::Any, "completion for bash")
       .output("completion/_explica", FileKind::Any, "completion for zsh")
-      .output("man/explica-*.1", FileKind::Any, "manual pages");
+      .output("man/explica*.1", FileKind::Any, "manual pages");
 }
 
 Termination run(Context& context, const Settings&) {
@@ -40,6 +40,7 @@ Termination run(Context& context, const Settings&) {
     writeTextFile(context.output("slicer/" + name + ".xml"), slicerXmlOf(command, version));
     writeTextFile(context.output("man/" + name + ".1"), manPageOf(command, version));
   }
+  writeTextFile(context.output("man/explica.1"), overviewManPageOf(commands, version));
   writeTextFile(context.output("nipype/explica_nipype.py"), nipypeOf(commands, version));
   writeTextFile(context.output("completion/explica.bash"), bashCompletionOf(commands));
   writeTextFile(context.output("completion/_explica"), zshCompletionOf(commands));

@@ -49,6 +49,7 @@ TEST_P(EveryCommand, GivesTheSameBytesWithAnyNumberOfThreads) {
 TEST_P(EveryCommand, IsRecordedVerifiedAndReplayed) {
   const auto made = explica(words_ + std::vector<std::string>{"--out", folder_ / "a"});
   ASSERT_TRUE(made.exitCode == 0 || made.exitCode == 3) << made;
+  EXPECT_NE(readJson(folder_ / "a/summary.json")["termination"], "not-run");
   const auto verified = explica({"verify", "--deep", folder_ / "a"});
   EXPECT_EQ(verified.exitCode, 0) << verified;
   const auto replayed = explica({"replay", folder_ / "a", "--out", folder_ / "b"});

@@ -42,7 +42,7 @@ TEST(Framework, EveryCommandHelpsFromItsDeclaration) {
     } else {
       words = {name};
     }
-    words.push_back("--help");
+    words.push_back("--help-all");
     const auto help = explica(words);
     EXPECT_EQ(help.exitCode, 0);
     EXPECT_TRUE(help.err.empty()) << help.err;
@@ -77,6 +77,10 @@ TEST(Framework, WrongUseIsExitCodeOneWithAHint) {
       {shell(folder / "a", {"--size", "9"}), "--size"},
       {shell(folder / "a", {"--spacing", "wide"}), "spacing: 'wide' is not a number"},
       {shell(folder / "a", {"--aspect", "1,2"}), "three numbers"},
+      {shell(folder / "a", {"--aspect", "1", "1", "2"}),
+       "--aspect: separate its numbers by commas, without spaces: --aspect 1,1,2"},
+      {shell(folder / "a", {"--aspect", "1,", "1,", "-2"}), "without spaces: --aspect 1,1,-2"},
+      {{"thickness", "x.nii", "--tissue", "2", "3", "--out", folder / "a"}, "--tissue 2,3"},
       {shell(folder / "a", {"surplus"}), "'surplus' was not expected"},
       {shell(folder / "a", {"--threads", "0"}), "threads: '0' is not a positive whole number"},
       {shell(folder / "a", {"--spacing"}), "--spacing"},

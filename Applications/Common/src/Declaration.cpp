@@ -139,6 +139,10 @@ Parameter* Declaration::find(std::string_view wanted) {
   return found == parameters.end() ? nullptr : &*found;
 }
 
+const Parameter* Declaration::find(std::string_view wanted) const {
+  return const_cast<Declaration*>(this)->find(wanted);
+}
+
 Declaration& Declaration::add(provenance::Option option, const std::string& category,
                               bool positional, bool required, std::optional<FileKind> file) {
   if (find(option.name)) throw std::logic_error("declared twice: " + option.name);

@@ -57,7 +57,7 @@ int runCommandLine(std::vector<std::string> words, const std::vector<std::string
     return kDone;
   }
   if (words[0] == "help") words.erase(words.begin()), words.push_back("--help");
-  if (words[0] == "--help" || words[0] == "-h") {
+  if (words[0] == "--help" || words[0] == "--help-all" || words[0] == "-h") {
     std::cout << overview();
     return kDone;
   }
@@ -77,7 +77,7 @@ int runCommandLine(std::vector<std::string> words, const std::vector<std::string
       for (const Command* kind : kinds) {
         text += "  " + kind->name() + ": " + kind->begin().declaration.synopsisText + "\n";
       }
-      if (has(words, "--help")) {
+      if (has(words, "--help") || has(words, "--help-all")) {
         std::cout << text;
         return kDone;
       }
@@ -95,8 +95,12 @@ int runCommandLine(std::vector<std::string> words, const std::vector<std::string
   Run run;
   run.invocation = command->begin();
   Declaration& declaration = run.invocation.declaration;
-  if (has(words, "--help") || has(words, "-h")) {
+  if (has(words, "--help-all")) {
     std::cout << helpText(declaration);
+    return kDone;
+  }
+  if (has(words, "--help") || has(words, "-h")) {
+    std::cout << firstHelpText(declaration);
     return kDone;
   }
   if (has(words, "--version")) {

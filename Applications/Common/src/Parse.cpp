@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <charconv>
 #include <numeric>
 
 namespace explica::app {
@@ -45,6 +46,41 @@ std::vector<std::string> bindNegativeNumbers(const std::vector<std::string>& wor
     }
   }
   return bound;
+}
+
+/// A number, perhaps with a comma after it: what people type between spaces for a point.
+bool looksLikeNumber(std::string word) {
+  if (!word.empty() && word.back() == ',') word.pop_back();
+  double value = 0;
+  const char* end = word.data() + word.size();
+  const auto parsed = std::from_chars(word.data(), end, value);
+  return !word.empty() && parsed.ec == std::errc() && parsed.ptr == end;
+}
+
+/// `--center 0 0 19` for `--center 0,0,19`.
+void refuseNumbersBetweenSpaces(const std::vector<Parameter*>& parameters,
+                                const std::vector<std::string>& words) {
+  for (std::size_t w = 0; w < words.size(); ++w) {
+    const auto found = std::find_if(parameters.begin(), parameters.end(), [&](const Parameter* p) {
+      return !p->positional && words[w] == "--" + p->option.name;
+    });
+    if (found == parameters.end() || (*found)->severalWords) continue;
+    const std::string type = (*found)->option.type();
+    const bool point = type == "point2" || type == "point3";
+    const bool numbers = type == "integer" || type == "number";
+    if (!point && !((*found)->option.isList() && numbers)) continue;
+    std::string joined;
+    std::size_t count = 0;
+    for (std::size_t n = w + 1; n < words.size() && looksLikeNumber(words[n]); ++n, ++count) {
+      std::string number = words[n];
+      if (number.back() == ',') number.pop_back();
+      joined += (joined.empty() ? "" : ",") + number;
+    }
+    if (count > 1) {
+      throw UsageError(words[w] + ": separate its numbers by commas, without spaces: " + words[w] +
+                       " " + joined);
+    }
+  }
 }
 
 }  // namespace
@@ -119,6 +155,8 @@ std::set<std::string> parseWords(Declaration& declaration, CommonOptions& common
   std::vector<Parameter*> all;
   for (Parameter& parameter : declaration.parameters) all.push_back(&parameter);
   for (Parameter& parameter : shared) all.push_back(&parameter);
+
+  refuseNumbersBetweenSpaces(all, words);
 
   CLI::App parser;
   parser.set_help_flag();

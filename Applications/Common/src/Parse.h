@@ -31,8 +31,12 @@ std::set<std::string> applyJson(std::vector<Parameter*> parameters, const proven
 /// @throws UsageError  names it
 void requireGiven(const Declaration& declaration, const std::set<std::string>& given);
 
-/// The text of --help.
+/// The text of --help: what goes in and out, the options that most people need, an example.
+[[nodiscard]] std::string firstHelpText(const Declaration& declaration);
+/// The text of --help-all.
 [[nodiscard]] std::string helpText(const Declaration& declaration);
+/// True for a parameter of the declaration, or a common one, that --help shows.
+[[nodiscard]] bool shownAtFirst(const Declaration& declaration, const Parameter& parameter);
 
 /// The whole declaration as JSON, from which reference pages and descriptors are made.
 [[nodiscard]] provenance::Json describeJson(const Declaration& declaration);

@@ -295,6 +295,8 @@ class Completion(unittest.TestCase):
             self.assertEqual(shell.complete("phantom shell --asp")[-1], "--aspect")
             self.assertEqual(shell.complete("thickness --method lagr")[-1], "lagrangian")
             self.assertEqual(shell.complete("surface --gen")[-1], "--genus")
+            self.assertEqual(shell.complete("study part"), ["study", "participant"])
+            self.assertEqual(shell.complete("study participant --participant")[-1], "--participant-label")
         finally:
             shell.close()
 
@@ -315,6 +317,32 @@ class Completion(unittest.TestCase):
         )
         offered = subprocess.check_output(["bash", "-c", script], text=True).split()
         self.assertEqual(set(offered), {c["command"].split()[0] for c in declarations()})
+
+
+    def offered(self, *words, folder="."):
+        """What bash would offer for the last word, in its order."""
+        script = (
+            f"source {FOLDER}/completion/explica.bash; COMP_WORDS=({shlex.join(words)});"
+            f"COMP_CWORD={len(words) - 1}; _explica; printf '%s\\n' \"${{COMPREPLY[@]}}\""
+        )
+        return subprocess.check_output(["bash", "-c", script], text=True, cwd=folder).split("\n")[:-1]
+
+    def test_commands_and_options_come_before_folders(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for name in ("thickness", "a folder"):
+                (pathlib.Path(folder) / name).mkdir()
+            verbs = self.offered("explica", "", folder=folder)
+            self.assertNotIn("a folder", verbs)
+            first = self.offered("explica", "unfold", "", folder=folder)
+            self.assertEqual(set(first[-2:]), {"a folder", "thickness"})
+            shown = [p for c in declarations() if c["command"] == "unfold" for p in c["parameters"]]
+            shown = {"--" + p["name"] for p in shown if p["first"] and not p["positional"]}
+            self.assertEqual(set(first[:-2]), shown)
+            self.assertIn("a folder", self.offered("explica", "unfold", "x", "--label", "", folder=folder))
+            self.assertEqual(self.offered("explica", "unfold", "x", "--radius", "", folder=folder), [""])
+            self.assertEqual(
+                self.offered("explica", "unfold", "x", "--out", "a", folder=folder), ["a folder"]
+            )
 
 
 class ManualPages(unittest.TestCase):

@@ -1,3 +1,10 @@
     'phantom shell')
-      options=' --size --spacing --inner-radius --outer-radius --aspect --out --force --config --threads --dry-run --quiet --verbose --log --private --help --version'
+      files=''
+      first='--size --spacing --inner-radius --outer-radius --aspect --out'
+      options='--size --spacing --inner-radius --outer-radius --aspect --out --force --config --threads --dry-run --quiet --verbose --log --private --help --help-all --version'
+      case $previous in
+        --size|--spacing|--inner-radius|--outer-radius|--aspect|--threads) values='-W' ;;
+        --out) values='-d' ;;
+        --config|--log) values='-f' ;;
+      esac
       ;;

@@ -160,6 +160,7 @@ class Declaration {
 
   /// The option or positional of that name, or nullptr.
   [[nodiscard]] Parameter* find(std::string_view name);
+  [[nodiscard]] const Parameter* find(std::string_view name) const;
 
   std::string name;  ///< as typed: "thickness", "phantom shell"
   std::string synopsisText;

@@ -29,6 +29,9 @@ using provenance::Json;
 /// Manual page, section 1, in roff.
 [[nodiscard]] std::string manPageOf(const Json& command, const std::string& version);
 
+/// The manual page of `explica` itself: its commands.
+[[nodiscard]] std::string overviewManPageOf(const Json& commands, const std::string& version);
+
 /// All declarations, in the order of their names.
 [[nodiscard]] Json describeAllCommands();
 

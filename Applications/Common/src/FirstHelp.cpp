@@ -1,0 +1,195 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+// The one table of what each command shows at first.  A new command adds its row; a new option is
+// named here only if most people need it, and then takes another one's place.
+
+#include "FirstHelp.h"
+
+#include <algorithm>
+
+namespace explica::app {
+
+const std::vector<FirstHelp>& allFirstHelp() {
+  static const std::vector<FirstHelp> all = {
+      {"bids",
+       "a BIDS data set: segmentations, FreeSurfer subjects or T1 images",
+       "a derivative with surfaces, thickness and unfolded patches, and a table of the study",
+       {"participant-label", "hemispheres", "steps", "unfold-surface", "given-surfaces"},
+       R"(explica phantom cortex --size 32 --spacing 2 --out phantom
+mkdir -p data/sub-01/anat
+cp phantom/labels.nii.gz data/sub-01/anat/sub-01_dseg.nii.gz
+echo '{"Name": "phantoms", "BIDSVersion": "1.8.0"}' > data/dataset_description.json
+explica bids data derived participant --hemispheres L --steps thickness,surface --surface.faces 2000
+explica bids data derived group)"},
+      {"descriptors",
+       "the commands' own declarations",
+       "descriptions for Boutiques, nipype, Slicer, bash, zsh and man",
+       {},
+       "explica descriptors --out descriptors"},
+      {"embed",
+       "closed contours (CSV, label images) or surfaces",
+       "amplitudes in a common annulus, and the fitted, mean or combined shape",
+       {"fit", "average", "combine", "label", "slice", "order", "annulus", "band", "max-iterations",
+        "frames"},
+       R"(explica phantom shell --size 32 --out shell
+explica embed shell/labels.nii.gz --label 1 --order 8 --out fit)"},
+      {"history",
+       "any result, or a record",
+       "the commands and files that it came from, back to the first",
+       {},
+       R"(explica phantom shell --size 24 --out shell
+explica history shell/labels.nii.gz)"},
+      {"phantom cortex",
+       "sizes",
+       "a folded ribbon: labels, T1-like image and exact white surface",
+       {"size", "spacing", "thickness", "depth", "waves", "noise"},
+       "explica phantom cortex --size 48 --out cortex"},
+      {"phantom eccentric",
+       "sizes",
+       "a tissue between two spheres that share no centre, and its exact thickness",
+       {},
+       "explica phantom eccentric --size 64 --spacing 2 --out eccentric"},
+      {"phantom polygon19",
+       "a pixel's size",
+       "a folded polygon with region and viewpoint",
+       {},
+       R"(explica phantom polygon19 --out p19
+explica polygon p19/polygon.csv --region 0:19 --viewpoint 50.5,4000 --out open)"},
+      {"phantom polygon34",
+       "a pixel's size",
+       "a folded polygon with region and viewpoint",
+       {},
+       R"(explica phantom polygon34 --out p34
+explica polygon p34/polygon.csv --region 0:34 --viewpoint 80.9,4000 --out open)"},
+      {"phantom shell",
+       "sizes",
+       "a tissue between two spheres: labels, levels, exact thickness and correspondences",
+       {},
+       R"(explica phantom shell --size 48 --out shell
+explica thickness shell/labels.nii.gz --inner 1 --tissue 2 --out thickness)"},
+      {"phantom spheroid",
+       "sizes",
+       "a tissue between two spheroids of one focus, and its exact thickness",
+       {},
+       "explica phantom spheroid --size 64 --spacing 2 --out spheroid"},
+      {"phantom ventricle",
+       "sizes",
+       "half a spheroidal shell, open at the base, as a heart's left ventricle",
+       {},
+       "explica phantom ventricle --size 64 --spacing 2 --out ventricle"},
+      {"polygon",
+       "a closed polygon, or the contour of a label in a slice",
+       "the polygon with its region unfolded, its stages as a picture, a table of the way",
+       {"region", "viewpoint", "direction", "label", "slice", "phantom", "surround", "method",
+        "target-visibility", "max-iterations", "frames", "resume"},
+       R"(explica phantom polygon34 --out p34
+explica polygon p34/polygon.csv --region 0:34 --viewpoint 80.9,4000 --out flat)"},
+      {"replay",
+       "the record of a run",
+       "the same command run again, and which of its outputs are identical",
+       {},
+       R"(explica phantom shell --size 24 --out shell
+explica replay shell/provenance.json --out again)"},
+      {"report",
+       "an output folder of a command or of explica run",
+       "one page for a browser, report.html in that folder",
+       {},
+       R"(explica phantom shell --size 32 --out shell
+explica thickness shell/labels.nii.gz --inner 1 --tissue 2 --out thickness
+explica report thickness)"},
+      {"run",
+       "a T1, a label volume, a FreeSurfer subject or an anat folder of fMRIPrep",
+       "tissues, thickness, surfaces, an unfolded patch, and a report on all of them",
+       {"atlas", "kind", "hemisphere", "unfold-surface", "given-surfaces", "steps", "resume"},
+       R"(explica phantom cortex --size 32 --spacing 2 --out cortex
+explica run cortex/labels.nii.gz --surface.faces 2000 --unfold.max-iterations 5 --out result \
+  || [ $? -eq 3 ])"},
+      {"segment",
+       "a T1-weighted image without skull; an atlas in its space tells hemispheres apart",
+       "labels (1 CSF, 2 grey, 3 white), probabilities of each, one hemisphere",
+       {"mask", "atlas", "hemisphere", "smooth", "bias-width", "max-iterations"},
+       R"(explica phantom cortex --size 48 --out cortex
+explica segment cortex/t1.nii.gz --out tissue)"},
+      {"study check",
+       "a study file",
+       "what each run would do, or the first fault with its line and remedy",
+       {},
+       R"(explica phantom cortex --size 32 --spacing 2 --out cortex
+echo '{"hemispheres": ["L"], "input": "cortex/labels.nii.gz", "subjects": ["01"]}' > study.json
+explica study check study.json)"},
+      {"study group",
+       "a study file, and the folder of its results",
+       "a table and a page with a row for every run",
+       {},
+       R"(explica phantom cortex --size 32 --spacing 2 --out cortex
+echo '{"hemispheres": ["L"], "input": "cortex/labels.nii.gz", "subjects": ["01"],
+  "parameters": {"steps": ["thickness"]}}' > study.json
+explica study participant study.json results
+explica study group study.json results)"},
+      {"study list",
+       "a study file",
+       "the labels of its subjects, or of those that are not done",
+       {},
+       R"(explica phantom cortex --size 32 --spacing 2 --out cortex
+echo '{"hemispheres": ["L"], "input": "cortex/labels.nii.gz", "subjects": ["01"]}' > study.json
+explica study list study.json)"},
+      {"study participant",
+       "a study file",
+       "the results of its subjects, a folder for each hemisphere and region",
+       {},
+       R"(explica phantom cortex --size 32 --spacing 2 --out cortex
+echo '{"hemispheres": ["L"], "input": "cortex/labels.nii.gz", "subjects": ["01"],
+  "parameters": {"steps": ["thickness"]}}' > study.json
+explica study participant study.json results)"},
+      {"study schema",
+       "the declarations of explica run",
+       "the JSON schema of study files",
+       {},
+       "explica study schema > study.schema.json"},
+      {"surface",
+       "labels of white and grey matter, or volumes that cross a level at their borders",
+       "white, middle and pial surface with the same faces; thickness, curvature, depth of sulci",
+       {"preset", "white", "grey", "fill", "hemisphere", "genus", "faces", "inner-level",
+        "outer-level", "atlas", "white-surface", "pial-surface", "freesurfer"},
+       R"(explica phantom shell --size 48 --out shell
+explica surface shell/labels.nii.gz --white 1 --grey 2 --faces 4000 --out surfaces)"},
+      {"thickness",
+       "a label volume, or two volumes that cross a level at the boundaries",
+       "thickness in every voxel of the tissue, depth, layers, points that correspond",
+       {"inner", "tissue", "outer", "insulated", "inner-level", "outer-level", "boundary", "method",
+        "layers", "layer-kind", "sulci", "per-slice"},
+       R"(explica phantom shell --size 48 --out shell
+explica thickness shell/labels.nii.gz --inner 1 --tissue 2 --layers 3 --out thickness)"},
+      {"unfold",
+       "a triangulated surface (GIFTI, FreeSurfer, VTK, PLY, OBJ, STL, OFF)",
+       "the surface with a patch opened towards a viewpoint; what is seen, what it cost",
+       {"center", "vertex", "radius", "label", "metric", "viewpoint", "direction", "surround",
+        "target-visibility", "max-iterations", "max-time", "frames", "resume"},
+       R"(explica phantom shell --size 32 --out shell
+explica surface shell/labels.nii.gz --white 1 --grey 2 --faces 2000 --out surfaces
+explica unfold surfaces/pial.surf.gii --center 0,0,12 --radius 8 --direction 0,0,1 --out unfolded)"},
+      {"verify",
+       "the record of a run",
+       "which of its inputs and outputs are still what they were",
+       {},
+       R"(explica phantom shell --size 24 --out shell
+explica verify shell/provenance.json)"},
+      {"view",
+       "surfaces, a volume with surfaces, or a folder of explica unfold",
+       "a window, or a picture or film without a display",
+       {"screenshot", "film", "map", "labels", "region", "views", "colours", "range", "slices",
+        "width", "height"},
+       R"(explica phantom cortex --size 32 --spacing 2 --out cortex
+explica view cortex/white.surf.gii --views left --screenshot left.png)"},
+  };
+  return all;
+}
+
+const FirstHelp* firstHelpOf(std::string_view command) {
+  const auto& all = allFirstHelp();
+  const auto found = std::find_if(all.begin(), all.end(),
+                                  [&](const FirstHelp& row) { return row.command == command; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+}  // namespace explica::app

@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Wording.h"
+
+#include "Parse.h"
+
+#include <algorithm>
+
+namespace explica::app {
+
+std::string placeholder(const Parameter& parameter) {
+  const auto& option = parameter.option;
+  if (option.isFlag()) return "";
+  std::string word;
+  if (parameter.file) {
+    word = *parameter.file == FileKind::Folder ? "DIR" : "FILE";
+  } else if (option.type() == "choice") {
+    for (const auto& choice : option.choices()) word += (word.empty() ? "" : "|") + choice;
+  } else if (option.type() == "point2") {
+    word = "X,Y";
+  } else if (option.type() == "point3") {
+    word = "X,Y,Z";
+  } else if (option.unit == "mm") {
+    word = "MM";
+  } else if (option.unit == "s") {
+    word = "S";
+  } else if (option.type() == "integer") {
+    word = "N";
+  } else if (option.type() == "number") {
+    word = "V";
+  } else if (option.name == "out") {
+    word = "DIR";
+  } else if (option.name == "config" || option.name == "log") {
+    word = "FILE";
+  } else {
+    word = "TEXT";
+  }
+  const bool commas = option.isList() && !parameter.file && option.type() != "text";
+  return word + (commas ? "[," + word + "...]" : "");
+}
+
+std::string leftColumn(const Parameter& parameter) {
+  if (parameter.positional) return parameter.option.name;
+  const std::string value = placeholder(parameter);
+  return "--" + parameter.option.name + (value.empty() ? "" : " " + value);
+}
+
+std::string rightColumn(const Parameter& parameter) {
+  const auto& option = parameter.option;
+  std::string text = option.help;
+  std::string aside;
+  const auto append = [&aside](const std::string& part) {
+    aside += (aside.empty() ? "" : "; ") + part;
+  };
+  if (parameter.file) append(std::string(nameOf(*parameter.file)));
+  if (!option.unit.empty()) append(option.unit);
+  if (const std::string range = option.range(); !range.empty()) append(range);
+  if (parameter.required && !parameter.positional) append("required");
+  if (!parameter.required && parameter.positional) append("may be left out");
+  if (parameter.positional && option.isList()) append("one or more");
+  if (!parameter.positional && option.isList() && parameter.file) append("may be repeated");
+  if (option.isFlag()) {
+    if (parameter.defaultText == "true")
+      append("default on; --no-" + option.name + " to switch off");
+  } else if (!parameter.defaultText.empty()) {
+    append("default " + parameter.defaultText);
+  }
+  return text + (aside.empty() ? "" : " (" + aside + ")");
+}
+
+void wrap(std::ostringstream& out, const std::string& text, std::size_t indent,
+          std::size_t column) {
+  constexpr std::size_t kWidth = 96;
+  std::istringstream words(text);
+  std::string word;
+  std::size_t at = column;
+  bool first = true;
+  while (words >> word) {
+    if (!first && at + 1 + word.size() > kWidth) {
+      out << '\n' << std::string(indent, ' ');
+      at = indent;
+    } else if (!first) {
+      out << ' ';
+      ++at;
+    }
+    out << word;
+    at += word.size();
+    first = false;
+  }
+  out << '\n';
+}
+
+void row(std::ostringstream& out, const std::string& left, const std::string& right) {
+  constexpr std::size_t kIndent = 30;
+  out << "  " << left;
+  std::size_t at = left.size() + 2;
+  if (at + 2 > kIndent) {
+    out << '\n';
+    at = 0;
+  }
+  out << std::string(kIndent - at, ' ');
+  wrap(out, right, kIndent, kIndent);
+}
+
+std::string usageLine(const Declaration& d) {
+  std::string line = "explica " + d.name;
+  for (const Parameter& p : d.parameters) {
+    if (!p.positional) continue;
+    std::string word = p.option.name;
+    if (p.option.isList()) word += "...";
+    line += " " + (p.required ? word : "[" + word + "]");
+  }
+  for (const Parameter& p : d.parameters) {
+    if (!p.positional && p.required) line += " " + leftColumn(p);
+  }
+  if (d.writesOutput) line += " --out DIR";
+  return line + " [options]";
+}
+
+std::vector<std::string> categoriesOf(const std::vector<Parameter>& parameters) {
+  std::vector<std::string> categories;
+  for (const Parameter& p : parameters) {
+    if (!p.positional &&
+        std::find(categories.begin(), categories.end(), p.option.category) == categories.end()) {
+      categories.push_back(p.option.category);
+    }
+  }
+  return categories;
+}
+
+std::vector<Parameter> allParameters(const Declaration& declaration, CommonOptions& common) {
+  std::vector<Parameter> all = declaration.parameters;
+  for (auto& p : commonParameters(declaration, common)) all.push_back(std::move(p));
+  return all;
+}
+
+std::vector<OutputSlot> allOutputs(const Declaration& d) {
+  std::vector<OutputSlot> outputs = d.outputs;
+  if (d.writesOutput) {
+    outputs.push_back({"summary.json", FileKind::JsonFile, "the numbers", true});
+    outputs.push_back({"provenance.json", FileKind::Record, "what ran on what, with hashes", true});
+  }
+  return outputs;
+}
+
+std::vector<StepOptions> stepsOf(const Declaration& d) {
+  std::vector<StepOptions> steps;
+  for (const Parameter& p : d.parameters) {
+    if (p.stepCommand.empty()) continue;
+    if (steps.empty() || steps.back().command != p.stepCommand) {
+      steps.push_back({p.stepCommand, p.stepPrefix});
+    }
+  }
+  return steps;
+}
+
+}  // namespace explica::app
