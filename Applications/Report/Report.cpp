@@ -4,7 +4,7 @@
 #include "Explica/Application/Command.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/WholeFile.h"
-#include "Explica/Pipeline/StudyReport.h"
+#include "Explica/Pipeline/FolderReport.h"
 #include "Explica/Report/Page.h"
 
 #include <filesystem>
@@ -15,6 +15,7 @@ namespace {
 struct Settings {
   std::string folder;
   std::optional<std::string> page;
+  pipeline::FolderReportOptions show;
 };
 
 void declare(Declaration& d, Settings& s) {
@@ -30,13 +31,14 @@ void declare(Declaration& d, Settings& s) {
       .input("DIR", FileKind::Folder, "output folder of a command or of explica run", s.folder)
       .option("Page", Field{"page", "", "file to write (default: report.html in the folder)"},
               s.page)
+      .options("Page", s.show)
       .withoutOutput();
 }
 
 Termination run(Context& context, const Settings& s) {
   const std::filesystem::path page =
       s.page ? std::filesystem::path(*s.page) : std::filesystem::path(s.folder) / "report.html";
-  writeTextFile(page, report::reportPage(pipeline::collectReport(s.folder, context.monitor())));
+  writeTextFile(page, report::reportPage(pipeline::collectReport(s.folder, s.show, context.monitor())));
   context.info("wrote " + page.string());
   return Termination::NotRun;
 }

@@ -7,7 +7,8 @@
 #include "Explica/Core/WholeFile.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/Pipeline/Plan.h"
-#include "Explica/Pipeline/StudyReport.h"
+#include "Explica/Pipeline/FolderReport.h"
+#include "Explica/Pipeline/RunState.h"
 #include "Explica/Provenance/Json.h"
 #include "Explica/Provenance/Record.h"
 #include "Explica/Report/Page.h"
@@ -154,7 +155,7 @@ void takeBack(Context& context, const std::vector<pipeline::PlannedStep>& plan, 
 void writeReport(Context& context, const fs::path& out) {
   try {
     writeTextFile(context.output("report.html"),
-                  report::reportPage(pipeline::collectReport(out, context.monitor())));
+                  report::reportPage(pipeline::collectReport(out, {}, context.monitor())));
   } catch (const Error& fault) {
     context.warn(std::string("report: ") + fault.what());
   }

@@ -58,6 +58,20 @@ try:
     driver.execute_script("const c = document.getElementById('canvas');"
                           "c.dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowRight'}));")
     check("arrow key turns the surface", picture() != facing)
+    driver.execute_script("""const m = document.getElementById('map'); m.value = '0';
+        m.dispatchEvent(new Event('change'));
+        const c = document.getElementById('canvas'), box = c.getBoundingClientRect();
+        document.getElementById('reset').click();
+        c.dispatchEvent(new PointerEvent('pointermove',
+            {clientX: box.left + box.width / 2, clientY: box.top + box.height / 2}));""")
+    time.sleep(1)
+    reading = driver.execute_script("return document.getElementById('under-pointer').textContent")
+    check("value under the pointer: " + reading, "vertex" in reading and ":" in reading)
+    driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
+                           {"width": 390, "height": 800, "deviceScaleFactor": 1, "mobile": True})
+    time.sleep(0.5)
+    width = driver.execute_script("return document.documentElement.scrollWidth")
+    check("a phone's width holds the page (%d pixels)" % width, width <= 390)
     for entry in driver.get_log("browser"):
         check("console: " + entry["message"][:200], entry["level"] != "SEVERE")
     for entry in driver.get_log("performance"):

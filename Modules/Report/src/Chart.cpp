@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
 namespace explica::report {
 namespace {
@@ -43,9 +44,11 @@ double tickStep(double range) {
   return power * (lead < 1.5 ? 1 : (lead < 3.5 ? 2 : (lead < 7.5 ? 5 : 10)));
 }
 
-/// Axes and the map from values to the drawing.
+/// Axes and the map from values to the drawing; y is in powers of ten where it is logarithmic.
 struct Axes {
   double x0, x1, y0, y1;
+  bool logarithmic = false;
+  [[nodiscard]] double scaled(double y) const { return logarithmic ? std::log10(y) : y; }
   [[nodiscard]] double px(double x) const {
     return kLeft + (x - x0) / (x1 - x0) * (kWidth - kLeft - kRight);
   }
@@ -60,9 +63,40 @@ std::string text(double x, double y, std::string_view anchor, std::string_view c
          "' " + std::string(extra) + ">" + escapeHtml(content) + "</text>";
 }
 
-std::string head(const Axes& axes, const ChartText& titles, bool yTicks) {
-  std::string svg = "<svg class='chart' viewBox='0 0 460 260' role='img' aria-label='" +
-                    escapeHtml(titles.title) + "'>";
+/// Where ticks stand on the y axis: on a logarithmic one at powers of ten, or at 1, 2 and 5 times
+/// these where it spans few of them.
+std::vector<double> yTicksOf(const Axes& axes) {
+  std::vector<double> ticks;
+  if (!axes.logarithmic) {
+    const double step = tickStep(axes.y1 - axes.y0);
+    for (double y = std::ceil(axes.y0 / step - 1e-9) * step; y <= axes.y1 + 1e-9 * step; y += step)
+      ticks.push_back(y);
+    return ticks;
+  }
+  constexpr double kFewDecades = 2, kManyDecades = 7;
+  const double decades = axes.y1 - axes.y0;
+  const int every = decades > kManyDecades ? static_cast<int>(std::ceil(decades / 5)) : 1;
+  for (int power = static_cast<int>(std::floor(axes.y0)); power <= axes.y1; power += every) {
+    for (const double lead : {1.0, 2.0, 5.0}) {
+      const double y = power + std::log10(lead);
+      const bool wanted = lead == 1 || decades < kFewDecades;
+      if (wanted && y >= axes.y0 && y <= axes.y1) ticks.push_back(y);
+    }
+  }
+  return ticks;
+}
+
+/// What a tick on the y axis says.
+std::string yTickText(const Axes& axes, double y) {
+  if (!axes.logarithmic) return tickText(y, axes.y1 - axes.y0);
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g", std::pow(10, y));
+  return text.data();
+}
+
+std::string head(const Axes& axes, const ChartText& titles, bool yTicks, double below = 0) {
+  std::string svg = "<svg class='chart' viewBox='0 0 460 " + number(kHeight + below) +
+                    "' role='img' aria-label='" + escapeHtml(titles.title) + "'>";
   svg += text(kWidth / 2, 18, "middle", titles.title, "class='chart-title'");
   svg += text((kLeft + kWidth - kRight) / 2, kHeight - 8, "middle", titles.xTitle);
   svg +=
@@ -73,13 +107,11 @@ std::string head(const Axes& axes, const ChartText& titles, bool yTicks) {
            number(kHeight - kBottom) + "'/>";
     svg += text(axes.px(x), kHeight - kBottom + 15, "middle", tickText(x, axes.x1 - axes.x0));
   }
-  if (yTicks) {
-    const double dy = tickStep(axes.y1 - axes.y0);
-    for (double y = std::ceil(axes.y0 / dy - 1e-9) * dy; y <= axes.y1 + 1e-9 * dy; y += dy) {
-      svg += "<path class='grid' d='M" + number(kLeft) + " " + number(axes.py(y)) + "H" +
-             number(kWidth - kRight) + "'/>";
-      svg += text(kLeft - 6, axes.py(y) + 4, "end", tickText(y, axes.y1 - axes.y0));
-    }
+  if (!yTicks) return svg;
+  for (const double y : yTicksOf(axes)) {
+    svg += "<path class='grid' d='M" + number(kLeft) + " " + number(axes.py(y)) + "H" +
+           number(kWidth - kRight) + "'/>";
+    svg += text(kLeft - 6, axes.py(y) + 4, "end", yTickText(axes, y));
   }
   return svg;
 }
@@ -150,46 +182,103 @@ std::string histogramSvg(const Eigen::VectorXd& values, const ChartText& titles)
   const double median = sorted[n / 2];
   svg += "<path class='median' d='M" + number(axes.px(median)) + " " + number(kTop) + "V" +
          number(kHeight - kBottom) + "'/>";
-  svg += text(axes.px(median) + 4, kTop + 10, "start", "median " + tickText(median, high - low));
+  const bool late = axes.px(median) > 0.75 * kWidth;
+  svg += text(axes.px(median) + (late ? -4 : 4), kTop + 10, late ? "end" : "start",
+              "median " + tickText(median, high - low));
   return svg + "</svg>";
 }
 
-std::string curvesSvg(const std::vector<Series>& series, const ChartText& titles) {
-  Axes axes{kInfinity, -kInfinity, kInfinity, -kInfinity};
+namespace {
+
+/// The box of the curves' finite values, a little larger; all of it NaN-free.
+std::optional<Axes> axesAround(const std::vector<Series>& series, bool logarithmic) {
+  Axes axes{kInfinity, -kInfinity, kInfinity, -kInfinity, logarithmic};
   for (const Series& s : series) {
     for (std::size_t i = 0; i < std::min(s.x.size(), s.y.size()); ++i) {
-      if (!std::isfinite(s.x[i]) || !std::isfinite(s.y[i])) continue;
+      const double y = axes.scaled(s.y[i]);
+      if (!std::isfinite(s.x[i]) || !std::isfinite(y)) continue;
       axes.x0 = std::min(axes.x0, s.x[i]);
       axes.x1 = std::max(axes.x1, s.x[i]);
-      axes.y0 = std::min(axes.y0, s.y[i]);
-      axes.y1 = std::max(axes.y1, s.y[i]);
+      axes.y0 = std::min(axes.y0, y);
+      axes.y1 = std::max(axes.y1, y);
     }
   }
-  if (!(axes.x1 >= axes.x0)) return nothing(titles);
+  if (!(axes.x1 >= axes.x0)) return {};
   if (axes.x1 == axes.x0) axes.x1 = axes.x0 + 1;
   const double pad =
       axes.y1 > axes.y0 ? 0.06 * (axes.y1 - axes.y0) : std::max(0.5, 0.1 * std::abs(axes.y0));
   axes.y0 -= pad;
   axes.y1 += pad;
-  std::string svg = head(axes, titles, true);
-  const std::array<Label, 5> hues = {5, 6, 3, 7, 1};
-  for (std::size_t s = 0; s < series.size(); ++s) {
-    const std::string colour = hex(colourOfLabel(hues[s % hues.size()]));
-    std::string path;
-    for (std::size_t i = 0; i < std::min(series[s].x.size(), series[s].y.size()); ++i) {
-      if (!std::isfinite(series[s].y[i])) continue;
-      path += (path.empty() ? "M" : "L") + number(axes.px(series[s].x[i])) + " " +
-              number(axes.py(series[s].y[i]));
-    }
-    svg += "<path class='line' stroke='" + colour + "' d='" + path + "'/>";
-    if (series.size() > 1) {
-      const double y = kTop + 14 + 15 * static_cast<double>(s);
-      svg += "<path class='line' stroke='" + colour + "' d='M" + number(kLeft + 10) + " " +
-             number(y - 4) + "h18'/>";
-      svg += text(kLeft + 34, y, "start", series[s].name);
-    }
+  return axes;
+}
+
+/// How a curve is drawn: hues that colour-blind readers can tell apart, then dashes.
+std::string strokeOf(std::size_t curve) {
+  constexpr std::array<Label, 5> kHues = {5, 6, 3, 7, 1};
+  return " stroke='" + hex(colourOfLabel(kHues[curve % kHues.size()])) + "'" +
+         (curve < kHues.size() ? "" : " stroke-dasharray='6 3'");
+}
+
+std::string pathOf(const Series& series, const Axes& axes) {
+  std::string path;
+  for (std::size_t i = 0; i < std::min(series.x.size(), series.y.size()); ++i) {
+    const double y = axes.scaled(series.y[i]);
+    if (!std::isfinite(y)) continue;
+    path += (path.empty() ? "M" : "L") + number(axes.px(series.x[i])) + " " + number(axes.py(y));
   }
-  return svg + "</svg>";
+  return path;
+}
+
+/// Rows of names below the plot; the rows' number with it.
+struct Legend {
+  std::string svg;
+  int rows = 0;
+};
+constexpr double kLegendRow = 16;
+
+Legend legendOf(const std::vector<Series>& series) {
+  constexpr double kLetter = 6.2, kLine = 18, kGap = 24;
+  Legend legend;
+  if (series.size() < 2) return legend;
+  legend.rows = 1;
+  double x = kLeft;
+  for (std::size_t s = 0; s < series.size(); ++s) {
+    const double width = kLine + kGap + kLetter * static_cast<double>(series[s].name.size());
+    if (x > kLeft && x + width > kWidth) {
+      x = kLeft;
+      ++legend.rows;
+    }
+    const double y = kHeight + kLegendRow * legend.rows - 4;
+    legend.svg += "<path class='line'" + strokeOf(s) + " d='M" + number(x) + " " + number(y - 4) +
+                  "h" + number(kLine) + "'/>";
+    legend.svg += text(x + kLine + 5, y, "start", series[s].name);
+    x += width;
+  }
+  return legend;
+}
+
+}  // namespace
+
+std::string curvesSvg(const std::vector<Series>& series, const ChartText& titles) {
+  bool positive = true;
+  for (const Series& s : series) {
+    for (const double y : s.y) positive = positive && !(y < 0);
+  }
+  const std::optional<Axes> axes = axesAround(series, titles.logarithmic && positive);
+  if (!axes) return nothing(titles);
+  const Legend legend = legendOf(series);
+  std::string svg = head(*axes, titles, true, kLegendRow * legend.rows);
+  for (const ChartMark& mark : titles.marks) {
+    if (!(mark.x >= axes->x0 && mark.x <= axes->x1)) continue;
+    const bool late = axes->px(mark.x) > 0.6 * kWidth;
+    svg += "<path class='median' d='M" + number(axes->px(mark.x)) + " " + number(kTop) + "V" +
+           number(kHeight - kBottom) + "'/>";
+    svg += text(axes->px(mark.x) + (late ? -4 : 4), kTop + 10, late ? "end" : "start", mark.name);
+  }
+  for (std::size_t s = 0; s < series.size(); ++s) {
+    svg += "<path class='line'" + strokeOf(s) + " d='" + pathOf(series[s], *axes) + "'/>";
+  }
+  return svg + legend.svg + "</svg>";
 }
 
 }  // namespace explica::report

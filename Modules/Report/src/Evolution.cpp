@@ -20,6 +20,59 @@ std::string number(double value) {
   return nlohmann::json(value).dump();
 }
 
+/// The colours of a legend or scale, three bytes each.
+std::string packColours(const std::vector<Colour>& colours) {
+  std::string bytes;
+  for (const Colour& colour : colours) {
+    for (const float c : colour) bytes.push_back(static_cast<char>(encodeSrgb(c)));
+  }
+  return base64(bytes);
+}
+
+/// Values to 1/65534 of their own range, so that the one under the pointer can be read; 65535 is
+/// not-a-number.
+std::string mapJson(const EvolutionMap& map) {
+  constexpr int kLevels = 65534;
+  double least = kInfinity, most = -kInfinity;
+  for (const double v : map.values) {
+    if (!std::isfinite(v)) continue;
+    least = std::min(least, v);
+    most = std::max(most, v);
+  }
+  if (!(most > least)) {
+    if (!std::isfinite(least)) least = 0;
+    most = least + 1;
+  }
+  std::vector<std::int32_t> values;
+  for (const double v : map.values) {
+    values.push_back(std::isfinite(v) ? static_cast<std::int32_t>(
+                                            std::lround(kLevels * (v - least) / (most - least)))
+                                      : kLevels + 1);
+  }
+  std::vector<Colour> colours;
+  for (int e = 0; e < 256; ++e) {
+    colours.push_back(colourAt(map.scale.map, e == 255 ? kNaN : e / 254.0));
+  }
+  return "{\"name\":" + nlohmann::json(map.scale.title).dump() +
+         ",\"unit\":" + nlohmann::json(map.scale.unit).dump() +
+         ",\"low\":" + number(map.scale.low) + ",\"high\":" + number(map.scale.high) +
+         ",\"least\":" + number(least) + ",\"step\":" + number((most - least) / kLevels) +
+         ",\"colours\":\"" + packColours(colours) + "\",\"values\":" + packIntegers(values, 1) +
+         "}";
+}
+
+std::string labelsJson(const EvolutionLabels& labels) {
+  std::vector<std::string> names;
+  std::vector<Colour> colours;
+  for (const LegendEntry& entry : labels.legend) {
+    names.push_back(entry.name);
+    colours.push_back(entry.colour);
+  }
+  return "{\"name\":" + nlohmann::json(labels.title).dump() +
+         ",\"names\":" + nlohmann::json(names).dump() + ",\"colours\":\"" + packColours(colours) +
+         "\",\"entries\":" + packIntegers(labels.entries, 1) + "}";
+}
+
 }  // namespace
 
 Evolution evolutionOf(const std::vector<TriangleMesh>& frames) {
@@ -98,26 +151,16 @@ std::string evolutionJson(const Evolution& evolution) {
     json += (f == 0 ? "" : ",") + packIntegers(change, 0);
   }
   json += "],\"titles\":" + nlohmann::json(evolution.frameTitles).dump();
+  json += ",\"region\":" +
+          packIntegers(evolution.region.empty() ? evolution.moved : evolution.region, 1);
+  json += std::string(",\"detached\":") + (evolution.detached ? "true" : "false");
   json += ",\"maps\":[";
   for (std::size_t m = 0; m < evolution.maps.size(); ++m) {
-    const EvolutionMap& map = evolution.maps[m];
-    std::vector<std::int32_t> values;
-    for (const double v : map.values) {
-      const double t = (v - map.scale.low) / (map.scale.high - map.scale.low);
-      values.push_back(std::isfinite(t)
-                           ? static_cast<std::int32_t>(std::lround(254 * std::clamp(t, 0.0, 1.0)))
-                           : 255);
-    }
-    std::string colours;
-    for (int e = 0; e < 256; ++e) {
-      const Colour colour = colourAt(map.scale.map, e == 255 ? kNaN : e / 254.0);
-      for (const float c : colour) colours.push_back(static_cast<char>(encodeSrgb(c)));
-    }
-    json += (m == 0 ? "" : ",");
-    json += "{\"name\":" + nlohmann::json(map.scale.title).dump() +
-            ",\"unit\":" + nlohmann::json(map.scale.unit).dump() +
-            ",\"low\":" + number(map.scale.low) + ",\"high\":" + number(map.scale.high) +
-            ",\"colours\":\"" + base64(colours) + "\",\"values\":" + packIntegers(values, 1) + "}";
+    json += (m == 0 ? "" : ",") + mapJson(evolution.maps[m]);
+  }
+  json += "],\"labels\":[";
+  for (std::size_t m = 0; m < evolution.labels.size(); ++m) {
+    json += (m == 0 ? "" : ",") + labelsJson(evolution.labels[m]);
   }
   json += "]";
   if (evolution.viewpoint) {

@@ -4,6 +4,7 @@
 
 #include "Encoding.h"
 #include "Explica/Report/Chart.h"
+#include "Explica/Report/Drawing.h"
 #include "PageParts.h"
 
 #include <array>
@@ -70,8 +71,9 @@ std::string stepHtml(const ReportStep& step) {
   html += "<div class='columns'>";
   if (!step.numbers.empty())
     html += "<section><h3>Results</h3>" + table(step.numbers) + "</section>";
-  if (!step.options.empty())
+  if (!step.options.empty()) {
     html += "<section><h3>Options</h3>" + table(step.options) + "</section>";
+  }
   html += "</div>";
   if (!step.version.empty()) html += "<p class='quiet'>" + escapeHtml(step.version) + "</p>";
   return html + "</details>";
@@ -90,17 +92,181 @@ std::string scriptSafe(const std::string& json) {
   return safe;
 }
 
-constexpr const char* kViewHtml = R"(<section id="view3d"><h2>Evolution in three dimensions</h2>
-<div id="stage"><canvas id="canvas" tabindex="0" aria-label="Surface in three dimensions. Arrow keys rotate, plus and minus zoom, space plays, comma and full stop step, B switches between first and last frame, R resets."></canvas><p id="stage-message">Preparing the surface ...</p><div id="bar" aria-hidden="true"><canvas id="bar-colours" width="14" height="128"></canvas><span id="bar-high"></span><span id="bar-title"></span><span id="bar-low"></span></div></div>
+constexpr const char* kViewHtml = R"(<section id="view3d"><h3>In three dimensions</h3>
+<div id="stage"><canvas id="canvas" tabindex="0" aria-label="Surface in three dimensions. Arrow keys rotate, plus and minus zoom, space plays, comma and full stop step, B switches between first and last frame, R resets."></canvas><p id="stage-message">Preparing the surface ...</p><p id="under-pointer" aria-live="polite"></p><div id="bar" aria-hidden="true"><span id="bar-title"></span><span id="bar-high"></span><canvas id="bar-colours" width="14" height="128"></canvas><span id="bar-low"></span></div></div>
 <div id="controls"><button id="play" type="button" aria-label="Play or pause">&#9654;</button>
 <input id="frame" type="range" min="0" max="0" value="0" step="1" aria-label="Frame">
 <output id="frame-title"></output>
 <label>Map <select id="map"></select></label>
 <button id="before-after" type="button">Before / after</button>
-<label><input id="alone" type="checkbox"> region alone</label>
-<button id="reset" type="button">Reset view</button></div>
-<p class="quiet">Drag to rotate, wheel or two fingers to zoom, right drag to move. Keys: arrows rotate, + and - zoom, space plays, comma and full stop step, B before/after, R resets.</p></section>
+<label><input id="alone" type="checkbox"> patch alone</label>
+<button id="whole" type="button">Whole surface</button>
+<button id="reset" type="button">Back to the patch</button></div>
+<p class="quiet">Drag to rotate, wheel or two fingers to zoom, right drag to move; the value under the pointer is shown. Keys: arrows rotate, + and - zoom, space plays, comma and full stop step, B before/after, R back to the patch. The dark line is the rim of the region.</p></section>
 )";
+
+std::string hex(const Colour& colour) {
+  std::array<char, 8> text{};
+  std::snprintf(text.data(), text.size(), "#%02x%02x%02x", encodeSrgb(colour[0]),
+                encodeSrgb(colour[1]), encodeSrgb(colour[2]));
+  return text.data();
+}
+
+std::string imageHtml(const Picture& picture, const std::string& words) {
+  return "<img alt='" + escapeHtml(words) + "' width='" + std::to_string(picture.width) +
+         "' height='" + std::to_string(picture.height) + "' src='data:image/png;base64," +
+         base64(encodePng(picture)) + "'>";
+}
+
+std::string captionHtml(const std::string& title, const std::string& caption) {
+  return "<figcaption><b>" + escapeHtml(title) + ".</b> " + escapeHtml(caption) + "</figcaption>";
+}
+
+std::string figureOpen(const std::string& id) {
+  return "<figure" + (id.empty() ? "" : " id='" + escapeHtml(id) + "'") + ">";
+}
+
+std::string flagsHtml(const std::vector<ReportFlag>& flags) {
+  std::string html = "<section><h2>Is it right?</h2><ul class='flags'>";
+  for (const ReportFlag& flag : flags) {
+    html += "<li>" + badge(wordFor(flag.level)) + " <b>" + escapeHtml(flag.what) + "</b> " +
+            escapeHtml(flag.why);
+    if (!flag.see.empty()) html += " <a href='#" + escapeHtml(flag.see) + "'>see</a>";
+    html += "</li>";
+  }
+  if (flags.empty()) html += "<li>Nothing was found that could be judged.</li>";
+  return html + "</ul></section>\n";
+}
+
+std::string findingsHtml(const ReportFindings& findings) {
+  if (findings.rows.empty()) return {};
+  std::string html = "<section><h2>What was found</h2><div class='wide'><table class='findings'>";
+  if (findings.columns.size() > 1) {
+    html += "<thead><tr><td></td>";
+    for (const std::string& column : findings.columns) {
+      html += "<th scope='col'>" + escapeHtml(column) + "</th>";
+    }
+    html += "<td></td></tr></thead>";
+  }
+  html += "<tbody>";
+  for (const ReportFindings::Row& row : findings.rows) {
+    html += "<tr><th scope='row'>" + escapeHtml(row.what);
+    if (!row.unit.empty()) html += " <span class='quiet'>" + escapeHtml(row.unit) + "</span>";
+    html += "</th>";
+    for (const std::string& value : row.values) html += "<td>" + escapeHtml(value) + "</td>";
+    html += "<td class='meaning'>" + escapeHtml(row.meaning) + "</td></tr>";
+  }
+  return html + "</tbody></table></div></section>\n";
+}
+
+/// Five values along the bar, as text.
+std::string barHtml(const ColourScale& scale) {
+  constexpr int kStops = 16;
+  std::string gradient;
+  for (int s = 0; s <= kStops; ++s) {
+    gradient += (s == 0 ? "" : ",") + hex(colourAt(scale.map, static_cast<double>(s) / kStops));
+  }
+  std::string html = "<div class='scale'><span class='scale-title'>" + escapeHtml(scale.title) +
+                     (scale.unit.empty() ? "" : " [" + escapeHtml(scale.unit) + "]") +
+                     "</span><div class='scale-bar' style='background:linear-gradient(to right," +
+                     gradient + ")'></div><div class='scale-ticks'>";
+  constexpr int kTicks = 4;
+  for (int t = 0; t <= kTicks; ++t) {
+    const double value = scale.low + (scale.high - scale.low) * t / kTicks;
+    html += "<span>" + tickText(value, scale.high - scale.low) + "</span>";
+  }
+  return html + "</div></div>";
+}
+
+std::string legendHtml(const std::vector<LegendEntry>& legend) {
+  constexpr std::size_t kFew = 12;
+  std::string html = legend.size() > kFew ? "<details><summary>" + std::to_string(legend.size()) +
+                                                " names and colours</summary>"
+                                          : "";
+  html += "<ul class='legend'>";
+  for (const LegendEntry& entry : legend) {
+    html += "<li><span class='swatch' style='background:" + hex(entry.colour) + "'></span>" +
+            escapeHtml(entry.name) + "</li>";
+  }
+  return html + "</ul>" + (legend.size() > kFew ? "</details>" : "");
+}
+
+std::string viewsHtml(const ReportViews& views) {
+  std::string html = figureOpen(views.id) + "<div class='views'>";
+  for (const ReportViews::View& view : views.views) {
+    html += "<div class='view'>" + imageHtml(view.picture, views.title + ", " + view.title) +
+            "<span>" + escapeHtml(view.title) + "</span></div>";
+  }
+  html += "</div>";
+  if (views.scale) html += barHtml(*views.scale);
+  if (!views.legend.empty()) html += legendHtml(views.legend);
+  return html + captionHtml(views.title, views.caption) + "</figure>\n";
+}
+
+std::string tileHtml(const MosaicTile& tile, const SliceMosaic& mosaic) {
+  std::string html = "<div class='tile'>" + imageHtml(tile.picture, "slice at " + tile.place);
+  html += "<svg viewBox='0 0 " + std::to_string(tile.picture.width) + " " +
+          std::to_string(tile.picture.height) + "' aria-hidden='true'>";
+  for (std::size_t n = 0; n < tile.paths.size(); ++n) {
+    html += "<path stroke='" + mosaic.outlines[n].second + "' d='" + tile.paths[n] + "'/>";
+  }
+  html += "</svg>";
+  constexpr std::array kSides = {"left", "right", "top", "bottom"};
+  for (std::size_t s = 0; s < kSides.size(); ++s) {
+    html += std::string("<span class='letter ") + kSides[s] + "'>" + tile.letters[s] + "</span>";
+  }
+  return html + "<span class='place'>" + escapeHtml(tile.place) + "</span></div>";
+}
+
+std::string mosaicHtml(const ReportMosaic& mosaic) {
+  std::string html = figureOpen(mosaic.id) + "<p class='quiet'>";
+  for (const auto& [name, colour] : mosaic.slices.outlines) {
+    html += "<span class='swatch' style='background:" + colour + "'></span>" + escapeHtml(name) +
+            " &nbsp; ";
+  }
+  if (!mosaic.slices.outlines.empty()) {
+    html += "<label><input type='checkbox' class='outlines' checked> outlines</label> &nbsp; ";
+  }
+  html += mosaic.slices.convention == SideConvention::Neurological
+              ? "Neurological convention: the person's left is on the left."
+              : "Radiological convention: the person's left is on the right.";
+  html += "</p>";
+  for (const auto& row : mosaic.slices.rows) {
+    html += "<div class='tiles' style='--tiles:" + std::to_string(row.size()) + "'>";
+    for (const MosaicTile& tile : row) html += tileHtml(tile, mosaic.slices);
+    html += "</div>";
+  }
+  return html + captionHtml(mosaic.title, mosaic.caption) + "</figure>\n";
+}
+
+std::string chartsHtml(const std::vector<ReportChart>& charts) {
+  if (charts.empty()) return {};
+  std::string html = "<div class='charts'>";
+  for (const ReportChart& chart : charts) {
+    html += "<div" + (chart.id.empty() ? "" : " id='" + escapeHtml(chart.id) + "'") + ">" +
+            chart.svg + "</div>\n";
+  }
+  return html + "</div>";
+}
+
+std::string lookHtml(const ReportContent& content) {
+  std::string html;
+  if (content.evolution) html += kViewHtml;
+  for (const ReportMosaic& mosaic : content.mosaics) html += mosaicHtml(mosaic);
+  for (const ReportViews& views : content.views) html += viewsHtml(views);
+  for (const ReportPicture& picture : content.pictures) {
+    html += figureOpen(picture.id) + imageHtml(picture.picture, picture.title) +
+            captionHtml(picture.title, picture.caption) + "</figure>\n";
+  }
+  for (const ReportDrawing& drawing : content.drawings) {
+    html += figureOpen(drawing.id) + "<img alt='" + escapeHtml(drawing.title) +
+            "' class='drawing' src='data:" + drawing.mediaType + ";base64," +
+            base64(drawing.bytes) + "'>" + captionHtml(drawing.title, drawing.caption) +
+            "</figure>\n";
+  }
+  html += chartsHtml(content.charts);
+  return html.empty() ? html : "<section><h2>See for yourself</h2>" + html + "</section>\n";
+}
 
 }  // namespace
 
@@ -113,39 +279,16 @@ std::string reportPage(const ReportContent& content) {
       escapeHtml(content.title) + "</title>\n<style>\n" + kPageStyle + "</style></head><body>\n";
   html += "<header><h1>" + escapeHtml(content.title) + "</h1></header><main>\n";
 
-  html += "<section><h2>Is it good?</h2><ul class='flags'>";
-  for (const ReportFlag& flag : content.flags) {
-    html += "<li>" + badge(wordFor(flag.level)) + " <b>" + escapeHtml(flag.what) + "</b> " +
-            escapeHtml(flag.why) + "</li>";
-  }
-  if (content.flags.empty()) html += "<li>Nothing was found that could be judged.</li>";
-  html += "</ul></section>\n";
-
-  if (content.evolution) html += kViewHtml;
-
-  if (!content.pictures.empty()) {
-    html += "<section><h2>Pictures</h2>";
-    for (const ReportPicture& picture : content.pictures) {
-      html += "<figure><img alt='" + escapeHtml(picture.title) + "' src='data:image/png;base64," +
-              base64(encodePng(picture.picture)) + "'><figcaption><b>" + escapeHtml(picture.title) +
-              ".</b> " + escapeHtml(picture.caption) + "</figcaption></figure>\n";
-    }
-    html += "</section>\n";
-  }
-  if (!content.charts.empty()) {
-    html += "<section><h2>Distributions and curves</h2><div class='charts'>";
-    for (const std::string& chart : content.charts) html += "<div>" + chart + "</div>\n";
-    html += "</div></section>\n";
-  }
-  html += "<section><h2>What was done</h2>";
+  html += flagsHtml(content.flags) + findingsHtml(content.findings) + lookHtml(content);
+  html += "<section><h2>How it was made</h2>";
   for (const ReportStep& step : content.steps) html += stepHtml(step);
   html += "</section></main>\n";
   if (content.evolution) {
     html += "<script type=\"application/json\" id=\"evolution\">" +
             scriptSafe(evolutionJson(*content.evolution)) + "</script>\n";
-    html += "<script>\n" + std::string(kThreeScript) + "\n</script>\n<script>\n" + kPageScript +
-            "</script>\n";
+    html += "<script>\n" + std::string(kThreeScript) + "\n</script>\n";
   }
+  html += std::string("<script>\n") + kPageScript + "</script>\n";
   return html + "</body></html>\n";
 }
 

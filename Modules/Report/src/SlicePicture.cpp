@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 namespace explica::report {
 namespace {
@@ -19,15 +21,19 @@ struct PlaneAxes {
   int up;
 };
 
-PlaneAxes axesOf(SliceAxis axis) {
+PlaneAxes axesOf(SliceAxis axis, bool leftOnRight = false) {
+  const double sideways = leftOnRight ? -1 : 1;
   switch (axis) {
     case SliceAxis::Sagittal:
       return {0, 1, -1, 2};
     case SliceAxis::Coronal:
-      return {1, 0, 1, 2};
+      return {1, 0, sideways, 2};
     default:
-      return {2, 0, 1, 1};
+      return {2, 0, sideways, 1};
   }
+}
+PlaneAxes axesOf(const SliceFrame& frame) {
+  return axesOf(frame.axis, frame.leftOnRight);
 }
 
 /// World point of a pixel position.
@@ -69,28 +75,42 @@ double sample(const Volume<float>& image, const Vector& index) {
   return sum;
 }
 
-/// Cut lines of a mesh with the slice's plane.  A vertex exactly on the plane counts as above it.
-std::vector<Segment2> cutLines(const TriangleMesh& mesh, const SliceFrame& frame,
-                               const PlaneAxes& axes) {
-  std::vector<Segment2> lines;
+/// Where a mesh meets the slice's plane: a face's piece runs from one of its edges to another, and
+/// an edge has one point.  A vertex exactly on the plane counts as above it.
+struct Cut {
+  using Edge = std::pair<std::int32_t, std::int32_t>;
+  std::map<Edge, Eigen::Vector2d> points;
+  std::vector<std::array<Edge, 2>> pieces;
+};
+
+Cut cutOf(const TriangleMesh& mesh, const SliceFrame& frame, const PlaneAxes& axes) {
+  Cut cut;
   for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
-    std::array<Point, 3> corner;
-    std::array<bool, 3> above;
-    for (int k = 0; k < 3; ++k) {
-      corner[k] = mesh.corner(f, k);
-      above[k] = corner[k][axes.normal] >= frame.position;
-    }
-    if (above[0] == above[1] && above[1] == above[2]) continue;
-    std::array<Eigen::Vector2d, 2> ends;
+    std::array<double, 3> height;
+    for (int k = 0; k < 3; ++k) height[k] = mesh.corner(f, k)[axes.normal] - frame.position;
+    if ((height[0] >= 0) == (height[1] >= 0) && (height[1] >= 0) == (height[2] >= 0)) continue;
+    std::array<Cut::Edge, 2> ends;
     int count = 0;
     for (int k = 0; k < 3; ++k) {
       const int n = (k + 1) % 3;
-      if (above[k] == above[n]) continue;
-      const double a = corner[k][axes.normal] - frame.position;
-      const double b = corner[n][axes.normal] - frame.position;
-      ends[count++] = pixelOf(frame, axes, corner[k] + a / (a - b) * (corner[n] - corner[k]));
+      if ((height[k] >= 0) == (height[n] >= 0)) continue;
+      const Cut::Edge edge = std::minmax(mesh.faces(f, k), mesh.faces(f, n));
+      const Point from = mesh.corner(f, k), to = mesh.corner(f, n);
+      cut.points.try_emplace(
+          edge, pixelOf(frame, axes, from + height[k] / (height[k] - height[n]) * (to - from)));
+      ends[count++] = edge;
     }
-    lines.push_back({ends[0], ends[1]});
+    cut.pieces.push_back(ends);
+  }
+  return cut;
+}
+
+std::vector<Segment2> cutLines(const TriangleMesh& mesh, const SliceFrame& frame,
+                               const PlaneAxes& axes) {
+  const Cut cut = cutOf(mesh, frame, axes);
+  std::vector<Segment2> lines;
+  for (const auto& [from, to] : cut.pieces) {
+    lines.push_back({cut.points.at(from), cut.points.at(to)});
   }
   return lines;
 }
@@ -114,7 +134,7 @@ SliceFrame frameAround(SliceAxis axis, double position, const Point& low, const 
 
 Picture renderSlice(const Volume<float>& image, const SliceFrame& frame, const ColourScale& scale,
                     const std::vector<Contour>& contours) {
-  const PlaneAxes axes = axesOf(frame.axis);
+  const PlaneAxes axes = axesOf(frame);
   Picture picture(frame.width, frame.height, {0, 0, 0});
   parallelFor(static_cast<std::size_t>(frame.height), 16, [&](std::size_t y) {
     for (int x = 0; x < frame.width; ++x) {
@@ -131,8 +151,53 @@ Picture renderSlice(const Volume<float>& image, const SliceFrame& frame, const C
   return picture;
 }
 
+std::vector<std::vector<Eigen::Vector2d>> cutPolylines(const TriangleMesh& mesh,
+                                                       const SliceFrame& frame) {
+  const Cut cut = cutOf(mesh, frame, axesOf(frame));
+  std::map<Cut::Edge, std::vector<std::size_t>> piecesAt;
+  for (std::size_t p = 0; p < cut.pieces.size(); ++p) {
+    for (const Cut::Edge& end : cut.pieces[p]) piecesAt[end].push_back(p);
+  }
+  std::vector<bool> used(cut.pieces.size(), false);
+  const auto follow = [&](std::size_t piece, Cut::Edge from) {
+    std::vector<Eigen::Vector2d> line = {cut.points.at(from)};
+    for (bool more = true; more;) {
+      used[piece] = true;
+      from = cut.pieces[piece][0] == from ? cut.pieces[piece][1] : cut.pieces[piece][0];
+      line.push_back(cut.points.at(from));
+      more = false;
+      for (const std::size_t next : piecesAt[from]) {
+        if (used[next]) continue;
+        piece = next;
+        more = true;
+        break;
+      }
+    }
+    return line;
+  };
+  std::vector<std::vector<Eigen::Vector2d>> lines;
+  // Open lines from their ends first; what is left are rings.
+  for (const bool ends : {true, false}) {
+    for (std::size_t p = 0; p < cut.pieces.size(); ++p) {
+      for (const Cut::Edge& end : cut.pieces[p]) {
+        if (!used[p] && (!ends || piecesAt[end].size() == 1)) lines.push_back(follow(p, end));
+      }
+    }
+  }
+  return lines;
+}
+
+std::array<char, 4> directionLetters(const SliceFrame& frame) {
+  constexpr std::array<std::array<char, 2>, 3> kLetters = {{{'L', 'R'}, {'P', 'A'}, {'I', 'S'}}};
+  const PlaneAxes axes = axesOf(frame);
+  const auto& across = kLetters[axes.right];
+  const auto& along = kLetters[axes.up];
+  const bool rising = axes.rightSign > 0;
+  return {across[rising ? 0 : 1], across[rising ? 1 : 0], along[1], along[0]};
+}
+
 Picture renderLabelSlice(const Volume<Label>& labels, const SliceFrame& frame) {
-  const PlaneAxes axes = axesOf(frame.axis);
+  const PlaneAxes axes = axesOf(frame);
   Picture picture(frame.width, frame.height, {0, 0, 0});
   parallelFor(static_cast<std::size_t>(frame.height), 16, [&](std::size_t y) {
     for (int x = 0; x < frame.width; ++x) {

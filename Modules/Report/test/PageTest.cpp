@@ -11,6 +11,8 @@
 #include <zlib.h>
 #include <nlohmann/json.hpp>
 
+#include <set>
+
 namespace explica::report {
 namespace {
 
@@ -120,7 +122,7 @@ TEST(ReportPage, NamesNothingToFetch) {
   ReportContent content;
   content.title = "page";
   content.evolution = movingSphere();
-  content.pictures.push_back({"White", "white square", Picture(8, 8)});
+  content.pictures.push_back({"white", "White", "white square", Picture(8, 8)});
   const std::string page = reportPage(content);
   for (const char* fetching :
        {" src='http", " src=\"http", "<link rel=\"stylesheet", "import(", "@import", "url(http"}) {
@@ -133,6 +135,55 @@ TEST(Charts, SayWhenThereIsNothingToShow) {
   EXPECT_NE(histogramSvg(Eigen::VectorXd(), {"Thickness", "mm", ""}).find("no values"),
             std::string::npos);
   EXPECT_NE(curvesSvg({}, {"Visibility", "", ""}).find("no values"), std::string::npos);
+}
+
+TEST(Charts, KeepTheLegendOffTheCurvesAndTellThemApart) {
+  std::vector<Series> series;
+  for (int s = 0; s < 7; ++s)
+    series.push_back({"curve " + std::to_string(s), {0, 1}, {1, 2.0 + s}});
+  const std::string svg = curvesSvg(series, {"t", "", ""});
+  std::set<std::string> strokes;
+  for (std::size_t at = svg.find("<path class='line'"); at != std::string::npos;
+       at = svg.find("<path class='line'", at + 1)) {
+    strokes.insert(svg.substr(at, svg.find(" d=", at) - at));
+  }
+  EXPECT_EQ(strokes.size(), series.size());
+  EXPECT_NE(svg.find("viewBox='0 0 460 292"), std::string::npos) << "two rows below the plot";
+}
+
+TEST(Charts, LogarithmicAxesLeaveOutZeroAndMarkPowersOfTen) {
+  ChartText words{"t", "", "", true, {{2, "converged"}}};
+  const std::string svg = curvesSvg({{"a", {0, 1, 2}, {0, 10, 1000}}}, words);
+  for (const char* tick : {">10<", ">100<", ">1e+03<", ">converged<"}) {
+    EXPECT_NE(svg.find(tick), std::string::npos) << tick;
+  }
+  EXPECT_EQ(svg.find("inf"), std::string::npos);
+  words.logarithmic = true;
+  EXPECT_EQ(curvesSvg({{"a", {0, 1}, {-1, 10}}}, words).find(">100<"), std::string::npos);
+}
+
+TEST(Evolution, KeepsValuesThatCanBeReadUnderThePointer) {
+  Evolution evolution = movingSphere();
+  Eigen::VectorXd values = evolution.mesh.positions.col(0);
+  values[3] = kNaN;
+  evolution.maps.push_back({values, scaleFor(values, "x", "mm")});
+  evolution.labels.push_back({"halves", {}, {{"lower", {1, 0, 0}}, {"upper", {0, 0, 1}}}});
+  for (Eigen::Index v = 0; v < values.size(); ++v) {
+    evolution.labels[0].entries.push_back(evolution.mesh.positions(v, 2) > 0 ? 1 : -1);
+  }
+  const auto json = nlohmann::json::parse(evolutionJson(evolution));
+  const auto& map = json["maps"][0];
+  const auto packed = unpack(map["values"]);
+  for (Eigen::Index v = 0; v < values.size(); ++v) {
+    if (v == 3) {
+      EXPECT_EQ(packed[v], 65535);
+    } else {
+      EXPECT_NEAR(map["least"].get<double>() + map["step"].get<double>() * packed[v], values[v],
+                  1e-3);
+    }
+  }
+  EXPECT_EQ(unpack(json["labels"][0]["entries"]), evolution.labels[0].entries);
+  EXPECT_EQ(unpack(json["region"]), evolution.moved);
 }
 
 TEST(Charts, DrawConstantsAndGaps) {

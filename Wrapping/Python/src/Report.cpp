@@ -7,7 +7,7 @@
 #include "Watch.h"
 
 #include "Explica/Core/Errors.h"
-#include "Explica/Pipeline/StudyReport.h"
+#include "Explica/Pipeline/FolderReport.h"
 #include "Explica/Report/Figure.h"
 #include "Explica/Report/Page.h"
 
@@ -159,7 +159,7 @@ void bindReport(py::module_& parent) {
       "page",
       [](const std::filesystem::path& folder, const py::object& progress) {
         return Watch(progress).run([&](const Monitor& monitor) {
-          return report::reportPage(pipeline::collectReport(folder, monitor));
+          return report::reportPage(pipeline::collectReport(folder, {}, monitor));
         });
       },
       "folder"_a, "progress"_a = py::none(),

@@ -1,9 +1,16 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 // Plays the evolution in the report page.  Needs THREE, inlined before it.
+(function () {
+  'use strict';
+  for (const box of document.querySelectorAll('input.outlines')) {
+    box.addEventListener('change', () => box.closest('figure').classList.toggle('no-outlines', !box.checked));
+  }
+})();
 (async function () {
   'use strict';
   const byId = (id) => document.getElementById(id);
+  if (!byId('evolution')) return;
   const message = byId('stage-message');
   const canvas = byId('canvas');
 
@@ -56,17 +63,26 @@
       before = now;
     }
   }
+  const bytesOf = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
   const maps = [];
   for (const map of data.maps) {
-    maps.push({ name: map.name, unit: map.unit, low: map.low, high: map.high, values: await unpack(map.values),
-                colours: Uint8Array.from(atob(map.colours), (c) => c.charCodeAt(0)) });
+    maps.push({ name: map.name, unit: map.unit, low: map.low, high: map.high, least: map.least, step: map.step,
+                values: await unpack(map.values), colours: bytesOf(map.colours) });
   }
+  const labelMaps = [];
+  for (const map of data.labels) {
+    labelMaps.push({ name: map.name, names: map.names, entries: await unpack(map.entries), colours: bytesOf(map.colours) });
+  }
+  const region = await unpack(data.region);
 
   // Geometry in millimetres about the middle of what moves, or of everything.
   const positions = new Float32Array(vertexCount * 3);
   for (let i = 0; i < positions.length; ++i) positions[i] = data.low[i % 3] + data.unit * start[i];
   const isMoved = new Uint8Array(vertexCount);
   for (const v of moved) isMoved[v] = 1;
+  const inRegion = new Uint8Array(vertexCount);
+  for (const v of region) inRegion[v] = 1;
+  const faceInRegion = (f) => inRegion[faces[f]] && inRegion[faces[f + 1]] && inRegion[faces[f + 2]];
   function boxOf(filter) {
     const low = [Infinity, Infinity, Infinity];
     const high = [-Infinity, -Infinity, -Infinity];
@@ -107,12 +123,12 @@
   const allFaces = new THREE.BufferAttribute(Uint32Array.from(faces), 1);
   const partFaces = [];
   for (let f = 0; f < faces.length; f += 3) {
-    if (isMoved[faces[f]] && isMoved[faces[f + 1]] && isMoved[faces[f + 2]]) partFaces.push(faces[f], faces[f + 1], faces[f + 2]);
+    if (faceInRegion(f)) partFaces.push(faces[f], faces[f + 1], faces[f + 2]);
   }
   const someFaces = new THREE.BufferAttribute(Uint32Array.from(partFaces), 1);
   geometry.setIndex(allFaces);
   const material = new THREE.ShaderMaterial({
-    side: THREE.DoubleSide,
+    side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
     vertexShader: 'attribute vec3 tone; attribute float open; varying vec3 vTone; varying float vOpen; varying vec3 vNormal;' +
       'void main() { vTone = tone; vOpen = open; vNormal = normalMatrix * normal;' +
       'gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }',
@@ -129,19 +145,94 @@
   mesh.frustumCulled = false;
   scene.add(mesh);
 
+  // Labels fill whole faces, so that no colour lies between two of them: corners of its own for each face.
+  const corners = faces.length;
+  const flatGeometry = new THREE.BufferGeometry();
+  const flat = { position: new Float32Array(3 * corners), normal: new Float32Array(3 * corners),
+                 tone: new Float32Array(3 * corners), open: new Float32Array(corners) };
+  flatGeometry.setAttribute('position', new THREE.BufferAttribute(flat.position, 3));
+  flatGeometry.setAttribute('normal', new THREE.BufferAttribute(flat.normal, 3));
+  flatGeometry.setAttribute('tone', new THREE.BufferAttribute(flat.tone, 3));
+  flatGeometry.setAttribute('open', new THREE.BufferAttribute(flat.open, 1));
+  const flatWhole = new THREE.BufferAttribute(Uint32Array.from({ length: corners }, (_, i) => i), 1);
+  const flatPart = [];
+  for (let f = 0; f < faces.length; f += 3) if (faceInRegion(f)) flatPart.push(f, f + 1, f + 2);
+  const flatSome = new THREE.BufferAttribute(Uint32Array.from(flatPart), 1);
+  flatGeometry.setIndex(flatWhole);
+  const flatMesh = new THREE.Mesh(flatGeometry, material);
+  flatMesh.frustumCulled = false;
+  flatMesh.visible = false;
+  scene.add(flatMesh);
+  function followFlat() {
+    for (let i = 0; i < corners; ++i) {
+      const v = faces[i];
+      for (let c = 0; c < 3; ++c) {
+        flat.position[3 * i + c] = positions[3 * v + c];
+        flat.normal[3 * i + c] = normals[3 * v + c];
+      }
+      flat.open[i] = open[v];
+    }
+    for (const name of ['position', 'normal', 'open']) flatGeometry.attributes[name].needsUpdate = true;
+  }
+  // The colour of a face is that of two of its corners, else of the first.
+  function paintFaces(entryOf, colourOf) {
+    for (let f = 0; f < faces.length; f += 3) {
+      const a = entryOf(faces[f]), b = entryOf(faces[f + 1]), c = entryOf(faces[f + 2]);
+      const colour = colourOf(b === c ? b : a);
+      for (let k = 0; k < 3; ++k) for (let i = 0; i < 3; ++i) flat.tone[3 * (f + k) + i] = colour[i];
+    }
+    flatGeometry.attributes.tone.needsUpdate = true;
+  }
+
+  // The region's rim: edges of its faces that no other face of it has.
+  const rimEnds = [];
+  {
+    const edges = new Map();
+    for (let f = 0; f < faces.length; f += 3) {
+      if (!faceInRegion(f)) continue;
+      for (let k = 0; k < 3; ++k) {
+        const a = faces[f + k], b = faces[f + (k + 1) % 3];
+        const key = Math.min(a, b) * vertexCount + Math.max(a, b);
+        edges.set(key, (edges.get(key) || 0) + 1);
+      }
+    }
+    for (const [key, count] of edges) if (count === 1) rimEnds.push(Math.floor(key / vertexCount), key % vertexCount);
+  }
+  const rimPositions = new Float32Array(3 * rimEnds.length);
+  const rimGeometry = new THREE.BufferGeometry();
+  rimGeometry.setAttribute('position', new THREE.BufferAttribute(rimPositions, 3));
+  const rim = new THREE.LineSegments(rimGeometry, new THREE.LineBasicMaterial({ color: 0x101418 }));
+  rim.frustumCulled = false;
+  scene.add(rim);
+  function followRim() {
+    rimEnds.forEach((v, i) => { for (let c = 0; c < 3; ++c) rimPositions[3 * i + c] = positions[3 * v + c]; });
+    rimGeometry.attributes.position.needsUpdate = true;
+  }
+
   // The eye turns about `target`: parallel projection, a quaternion for the turn.
   const camera = new THREE.OrthographicCamera(-1, 1, 1, -1, 0.1, 10000);
   const eye = { target: new THREE.Vector3(), turn: new THREE.Quaternion(), half: 100 };
-  function resetView() {
-    const focus = alone.checked && moved.length > 0 ? boxOf((v) => isMoved[v] === 1) : whole;
+  // The box of the region in the first and the last frame.
+  function regionBox() {
+    const now = boxOf((v) => inRegion[v] === 1);
+    if (frames.length < 2) return now;
+    const shown = frame;
+    show(shown === 0 ? frames.length - 1 : 0);
+    const other = boxOf((v) => inRegion[v] === 1);
+    show(shown);
+    return { middle: now.middle.map((x, c) => 0.5 * (x + other.middle[c])), size: Math.max(now.size, other.size) };
+  }
+  function lookAt(focus, share) {
     eye.target.set(...focus.middle);
-    eye.half = 0.36 * focus.size;
+    eye.half = share * focus.size;
     const from = data.viewpoint ? new THREE.Vector3(...data.viewpoint).sub(eye.target) : new THREE.Vector3(-1, 0, 0);
     const up = Math.abs(from.clone().normalize().z) > 0.9 ? new THREE.Vector3(0, 1, 0) : new THREE.Vector3(0, 0, 1);
     const matrix = new THREE.Matrix4().lookAt(from, new THREE.Vector3(), up);
     eye.turn.setFromRotationMatrix(matrix);
     draw();
   }
+  const resetView = () => lookAt(region.length > 0 ? regionBox() : whole, region.length > 0 ? 0.4 : 0.36);
+  const wholeView = () => lookAt(whole, 0.36);
   let pending = false;
   function draw() {
     if (pending) return;
@@ -161,6 +252,7 @@
       camera.position.set(0, 0, 5 * whole.size).applyQuaternion(eye.turn).add(eye.target);
       camera.far = 10 * whole.size;
       camera.updateProjectionMatrix();
+      camera.updateMatrixWorld();
       renderer.render(scene, camera);
     });
   }
@@ -202,18 +294,24 @@
         for (let c = 0; c < 3; ++c) colours[3 * v + c] = linear(ramp[entry + c]);
       }
     } else if (choice === 'none') {
-      for (let v = 0; v < vertexCount; ++v) {
-        const shade = isMoved[v] ? [0.80, 0.50, 0.28] : [0.60, 0.58, 0.56];
-        colours.set(shade, 3 * v);
-      }
+      paintFaces((v) => inRegion[v], (inside) => (inside ? [0.80, 0.50, 0.28] : [0.60, 0.58, 0.56]));
+    } else if (choice.startsWith('label')) {
+      const map = labelMaps[Number(choice.slice(5))];
+      paintFaces((v) => map.entries[v], (entry) => (entry < 0 ? [0.60, 0.58, 0.56]
+        : [0, 1, 2].map((c) => linear(map.colours[3 * entry + c]))));
     } else {
       const map = maps[Number(choice)];
       for (let v = 0; v < vertexCount; ++v) {
-        const entry = 3 * map.values[v];
+        const value = map.values[v] > 65534 ? NaN : map.least + map.step * map.values[v];
+        const share = Math.max(0, Math.min(1, (value - map.low) / (map.high - map.low)));
+        const entry = Number.isNaN(value) ? 3 * 255 : 3 * Math.round(254 * share);
         for (let c = 0; c < 3; ++c) colours[3 * v + c] = linear(map.colours[entry + c]);
       }
     }
-    const shown = choice === 'none' ? null : (choice === 'facing' ? facingMap : maps[Number(choice)]);
+    const byFace = choice === 'none' || choice.startsWith('label');
+    mesh.visible = !byFace;
+    flatMesh.visible = byFace;
+    const shown = byFace ? null : (choice === 'facing' ? facingMap : maps[Number(choice)]);
     bar.style.display = shown ? 'block' : 'none';
     if (shown) {
       byId('bar-title').textContent = shown.name + (shown.unit ? ' [' + shown.unit + ']' : '');
@@ -239,6 +337,7 @@
       }
     }
     computeNormals();
+    followRim();
     // What unfolds comes out of the shade.
     const share = frames.length > 1 ? frame / (frames.length - 1) : 0;
     for (let v = 0; v < vertexCount; ++v) {
@@ -246,6 +345,7 @@
       open[v] = isMoved[v] ? shade + share * (1 - shade) : shade;
     }
     for (const name of ['position', 'normal', 'open']) geometry.attributes[name].needsUpdate = true;
+    followFlat();
     slider.value = String(frame);
     title.textContent = data.titles[frame] || '';
     if (chooser.value === 'facing') paint(); else draw();
@@ -280,6 +380,7 @@
   addChoice('none', moved.length > 0 ? 'region' : 'plain');
   addChoice('facing', 'faces the viewpoint');
   maps.forEach((map, m) => addChoice(String(m), map.name));
+  labelMaps.forEach((map, m) => addChoice('label' + m, map.name));
   slider.max = String(Math.max(0, frames.length - 1));
   if (frames.length < 2) {
     for (const id of ['play', 'frame', 'before-after']) byId(id).disabled = true;
@@ -290,7 +391,51 @@
   chooser.addEventListener('change', paint);
   byId('before-after').addEventListener('click', () => { pause(); show(frame === 0 ? frames.length - 1 : 0); });
   byId('reset').addEventListener('click', resetView);
-  alone.addEventListener('change', () => { geometry.setIndex(alone.checked ? someFaces : allFaces); resetView(); });
+  byId('whole').addEventListener('click', wholeView);
+  function partOrAll() {
+    geometry.setIndex(alone.checked ? someFaces : allFaces);
+    flatGeometry.setIndex(alone.checked ? flatSome : flatWhole);
+  }
+  alone.addEventListener('change', () => { partOrAll(); resetView(); });
+
+  // The value under the pointer: of the nearest corner of the face that it points at.
+  const reading = byId('under-pointer');
+  const caster = new THREE.Raycaster();
+  const readable = (x) => String(Number(x.toPrecision(3)));
+  function valueAt(v) {
+    const choice = chooser.value;
+    if (choice === 'none') return inRegion[v] ? 'in the region' : 'outside the region';
+    if (choice.startsWith('label')) {
+      const map = labelMaps[Number(choice.slice(5))];
+      return map.name + ': ' + (map.entries[v] < 0 ? 'none' : map.names[map.entries[v]]);
+    }
+    if (choice === 'facing') return '';
+    const map = maps[Number(choice)];
+    const known = map.values[v] <= 65534;
+    return map.name + ': ' + (known ? readable(map.least + map.step * map.values[v]) + (map.unit ? ' ' + map.unit : '') : 'not known');
+  }
+  let asked = false;
+  function readUnder(x, y) {
+    if (asked) return;
+    asked = true;
+    requestAnimationFrame(() => {
+      asked = false;
+      const box = canvas.getBoundingClientRect();
+      caster.setFromCamera({ x: 2 * (x - box.left) / box.width - 1, y: 1 - 2 * (y - box.top) / box.height }, camera);
+      geometry.boundingSphere = new THREE.Sphere(new THREE.Vector3(...whole.middle), 2 * whole.size);
+      const wasVisible = mesh.visible;
+      mesh.visible = true;
+      const hit = caster.intersectObject(mesh)[0];
+      mesh.visible = wasVisible;
+      if (!hit) { reading.textContent = ''; return; }
+      let nearest = hit.face.a, least = Infinity;
+      for (const v of [hit.face.a, hit.face.b, hit.face.c]) {
+        const far = Math.hypot(...[0, 1, 2].map((c) => positions[3 * v + c] - hit.point.getComponent(c)));
+        if (far < least) { least = far; nearest = v; }
+      }
+      reading.textContent = valueAt(nearest) + ' (vertex ' + nearest + ')';
+    });
+  }
   const pointers = new Map();
   canvas.addEventListener('pointerdown', (event) => {
     canvas.setPointerCapture(event.pointerId);
@@ -298,7 +443,7 @@
   });
   canvas.addEventListener('pointermove', (event) => {
     const before = pointers.get(event.pointerId);
-    if (!before) return;
+    if (!before) { readUnder(event.clientX, event.clientY); return; }
     const dx = event.clientX - before.x, dy = event.clientY - before.y;
     if (pointers.size === 2) {
       const other = [...pointers.entries()].find(([id]) => id !== event.pointerId)[1];
@@ -331,8 +476,9 @@
   window.addEventListener('resize', draw);
 
   message.textContent = '';
-  resetView();
+  if (data.detached) { alone.checked = true; partOrAll(); }
   show(0);
   paint();
+  resetView();
   canvas.dataset.ready = 'true';
 })();

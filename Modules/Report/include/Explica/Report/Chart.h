@@ -17,18 +17,27 @@ struct Series {
   std::vector<double> y;  ///< as long as x; what is not finite is left out
 };
 
+/// A moment worth marking on the x axis.
+struct ChartMark {
+  double x = 0;
+  std::string name;
+};
+
 /// What stands around a chart.
 struct ChartText {
   std::string title;
   std::string xTitle;  ///< with unit
   std::string yTitle;
+  bool logarithmic = false;           ///< the y axis, where all values are positive
+  std::vector<ChartMark> marks = {};  ///< of curves
 };
 
 /// How often values occur, as a self-contained SVG element; from the 0.5th to the 99.5th
 /// percentile, with the median marked.  A sentence says so where there is nothing to show.
 [[nodiscard]] std::string histogramSvg(const Eigen::VectorXd& values, const ChartText& text);
 
-/// Lines over a common axis, as a self-contained SVG element, with a legend if there are several.
+/// Lines over a common axis, as a self-contained SVG element, with a legend below if there are
+/// several.
 [[nodiscard]] std::string curvesSvg(const std::vector<Series>& series, const ChartText& text);
 
 /// Text as it may stand in HTML and SVG: &, <, >, quotes replaced.

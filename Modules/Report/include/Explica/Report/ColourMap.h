@@ -32,6 +32,12 @@ enum class ColourMap {
 /// other lightnesses; label 0 is light grey.
 [[nodiscard]] Colour colourOfLabel(Label label);
 
+/// A name and its colour.
+struct LegendEntry {
+  std::string name;
+  Colour colour;
+};
+
 /// How values become colours.
 struct ColourScale {
   ColourMap map = ColourMap::Sequential;

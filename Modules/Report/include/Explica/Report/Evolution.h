@@ -17,6 +17,13 @@ struct EvolutionMap {
   ColourScale scale;
 };
 
+/// Names on the vertices of an evolving surface.
+struct EvolutionLabels {
+  std::string title;
+  std::vector<std::int32_t> entries;  ///< V: the entry of each vertex, -1 for none
+  std::vector<LegendEntry> legend;
+};
+
 /// A surface of which some vertices move from frame to frame: what the interactive view plays.
 struct Evolution {
   TriangleMesh mesh;                     ///< as it is at the start
@@ -24,7 +31,10 @@ struct Evolution {
   std::vector<Positions> frames;         ///< positions of `moved`; the first frame is the start
   std::vector<std::string> frameTitles;  ///< "iteration 12", one a frame
   std::vector<EvolutionMap> maps;
-  std::optional<Point> viewpoint;  ///< RAS mm; the first view looks from there
+  std::vector<EvolutionLabels> labels;
+  std::vector<std::int32_t> region;  ///< vertices of the region, ascending; empty: all that moved
+  bool detached = false;  ///< the region was unfolded alone: it is shown apart from the surface
+  std::optional<Point> viewpoint;  ///< RAS mm; the first view looks from there, at the region
 };
 
 /// The surface of several meshes with equal faces: finds what moved.

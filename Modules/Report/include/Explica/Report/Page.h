@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "Explica/Report/ColourMap.h"
 #include "Explica/Report/Evolution.h"
+#include "Explica/Report/Mosaic.h"
 #include "Explica/Report/Picture.h"
 
 #include <optional>
@@ -23,7 +25,7 @@ struct ReportStep {
   std::string commandLine;
   std::string version;  ///< of the software
   double seconds = 0;
-  std::vector<std::pair<std::string, std::string>> numbers;  ///< from the summary: name, value
+  std::vector<std::pair<std::string, std::string>> numbers;  ///< name in words, value
   std::vector<std::pair<std::string, std::string>> options;  ///< resolved, defaults included
   std::vector<std::string> warnings;
 };
@@ -34,27 +36,83 @@ struct ReportFlag {
   FlagLevel level = FlagLevel::Good;
   std::string what;
   std::string why;
+  std::string see = {};  ///< id of the picture, mosaic or chart that shows it; may be empty
+};
+
+/// What was measured: a table of few numbers, a column for each hemisphere or for the one result.
+struct ReportFindings {
+  struct Row {
+    std::string what;                 ///< "Mean thickness", without unit
+    std::string unit;                 ///< "mm"; may be empty
+    std::vector<std::string> values;  ///< one a column, as they are to be read
+    std::string meaning = {};         ///< one sentence of definition; may be empty
+  };
+  std::vector<std::string> columns;
+  std::vector<Row> rows;
 };
 
 /// A picture and what it shows.
 struct ReportPicture {
+  std::string id;  ///< of the place on the page
   std::string title;
   std::string caption;
   Picture picture;
 };
 
-/// Everything that a page shows.
+/// A picture that lies in a file already.
+struct ReportDrawing {
+  std::string id;
+  std::string title;
+  std::string caption;
+  std::string mediaType;  ///< "image/svg+xml", "image/png"
+  std::string bytes;
+};
+
+/// Views of surfaces beside each other, all to one scale, with one bar or legend in text.
+struct ReportViews {
+  std::string id;
+  std::string title;
+  std::string caption;
+  struct View {
+    std::string title;  ///< "left, lateral"
+    Picture picture;
+  };
+  std::vector<View> views;
+  std::optional<ColourScale> scale;
+  std::vector<LegendEntry> legend;
+};
+
+/// Slices of a volume with outlines that can be switched off.
+struct ReportMosaic {
+  std::string id;
+  std::string title;
+  std::string caption;
+  SliceMosaic slices;
+};
+
+/// An SVG element of Chart.h.
+struct ReportChart {
+  std::string id;
+  std::string svg;
+};
+
+/// Everything that a page shows, in the order in which it is shown.
 struct ReportContent {
   std::string title;
   std::vector<ReportFlag> flags;
-  std::vector<ReportStep> steps;
-  std::vector<ReportPicture> pictures;
-  std::vector<std::string> charts;  ///< SVG elements of Chart.h
+  ReportFindings findings;
   std::optional<Evolution> evolution;
+  std::vector<ReportMosaic> mosaics;
+  std::vector<ReportViews> views;
+  std::vector<ReportPicture> pictures;
+  std::vector<ReportDrawing> drawings;
+  std::vector<ReportChart> charts;
+  std::vector<ReportStep> steps;
 };
 
 /// One self-contained HTML page: styles, script, pictures and 3D data inside; opens from the file
-/// system without any network request.  Contains neither the time of day nor random numbers.
+/// system without any network request.  It answers in this order: is it right, what was found, see
+/// for yourself, how it was made.  Contains neither the time of day nor random numbers.
 [[nodiscard]] std::string reportPage(const ReportContent& content);
 
 }  // namespace explica::report

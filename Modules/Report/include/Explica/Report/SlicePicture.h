@@ -36,6 +36,7 @@ struct SliceFrame {
   double pixel = 0.5;                                ///< mm
   int width = 400;
   int height = 400;
+  bool leftOnRight = false;  ///< mirrored: the patient's left on the right (coronal and axial)
 };
 
 /// A frame that holds a box of the world, RAS mm, with a margin.
@@ -47,6 +48,14 @@ struct SliceFrame {
 [[nodiscard]] Picture renderSlice(const Volume<float>& image, const SliceFrame& frame,
                                   const ColourScale& scale,
                                   const std::vector<Contour>& contours = {});
+
+/// The lines in which a surface meets the slice, in pixels of the picture, each as far as it can be
+/// followed; a closed one ends where it begins.
+[[nodiscard]] std::vector<std::vector<Eigen::Vector2d>> cutPolylines(const TriangleMesh& mesh,
+                                                                     const SliceFrame& frame);
+
+/// The letters of the head's directions at a slice's left, right, top and bottom edge.
+[[nodiscard]] std::array<char, 4> directionLetters(const SliceFrame& frame);
 
 /// A slice of labels, each in its colour; 0 is black.
 [[nodiscard]] Picture renderLabelSlice(const Volume<Label>& labels, const SliceFrame& frame);

@@ -2,37 +2,35 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "Explica/Core/Describe.h"
 #include "Explica/Core/Monitor.h"
 #include "Explica/Report/Page.h"
 
 #include <filesystem>
-#include <string>
-#include <vector>
 
 namespace explica::pipeline {
 
-/// Name of the file in which a run keeps how its steps went, beside the steps' folders.
-inline constexpr const char* kRunStateName = "run.json";
-
-/// How one step of a run went, as kept in run.json: what no step's own record can say.
-struct StepNote {
-  std::string name;  ///< folder of the step
-  std::string command;
-  report::StepState state = report::StepState::Missing;
-  std::string message;  ///< of the error that ended it
+struct FolderReportOptions {
+  report::SideConvention convention = report::SideConvention::Neurological;
+  int slices = 7;  ///< in each direction, in [1, 30]
 };
 
-void writeRunState(const std::filesystem::path& file, const std::vector<StepNote>& steps);
-/// @return empty if the file is absent
-[[nodiscard]] std::vector<StepNote> readRunState(const std::filesystem::path& file);
+template <class Visitor>
+void describe(FolderReportOptions& options, Visitor&& visit) {
+  visit(Field{"convention", "",
+              "slices with the person's left on the left (neurological) or on the right"},
+        options.convention);
+  visit(Field{"slices", "", "slices in each direction"}, options.slices);
+}
 
 /// What a report on an output folder shows: of a whole run, or of one command.
 ///
 /// Reads the records and summaries of the folder and of its step folders, and of the files that it
 /// recognises what pictures, curves and the evolution need.  A file that is missing or cannot be
 /// read leaves its picture out, with a warning and a flag; it never stops the report.
-/// @throws InvalidInput  no record in the folder nor in a folder of it
+/// @throws InvalidInput  no record in the folder nor in a folder of it, or an option out of range
 [[nodiscard]] report::ReportContent collectReport(const std::filesystem::path& folder,
+                                                  const FolderReportOptions& options = {},
                                                   const Monitor& monitor = {});
 
 }  // namespace explica::pipeline

@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "../Table.h"
+#include "Explica/IO/VolumeFile.h"
+#include "Explica/Report/Chart.h"
+#include "ReportParts.h"
+
+#include <cmath>
+
+namespace explica::pipeline {
+namespace {
+
+Eigen::VectorXd asVector(const std::vector<double>& values) {
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+/// The end of the run, with its reason.
+std::vector<report::ChartMark> endOf(const StepFolder& step, const std::vector<double>& iteration) {
+  const std::string reason = step.text("stop_reason");
+  if (iteration.empty() || reason.empty()) return {};
+  return {{iteration.back(), reason}};
+}
+
+void chartHistory(ResultFolder& results, const StepFolder& step) {
+  const Table table = readTable(step.folder / "evolution.tsv");
+  const std::vector<double>* iteration = table.column("iteration");
+  if (iteration == nullptr) return;
+  const auto chart = [&](const std::string& title, const std::string& unit,
+                         const std::vector<std::string>& names, bool logarithmic) {
+    std::vector<report::Series> series;
+    for (const std::string& name : names) {
+      if (const std::vector<double>* values = table.column(name))
+        series.push_back({inWords(name), *iteration, *values});
+    }
+    if (series.empty()) return;
+    results.content().charts.push_back(
+        {"", report::curvesSvg(series,
+                               {title, "iteration", unit, logarithmic, endOf(step, *iteration)})});
+  };
+  chart("Visibility", "average flux", {"visibility", "seen"}, false);
+  chart("Distortion", "share", {"area_error_mean", "edge_strain_mean"}, true);
+  for (const std::string& name : table.names) {
+    if (name.rfind("energy", 0) != 0) continue;
+    const std::vector<double>& values = *table.column(name);
+    bool any = false;
+    for (const double v : values) any = any || v != 0;
+    // The start has no energies yet: its zeros would hide the curve.
+    if (any) chart(inWords(name), "mm\u00b2", {name}, true);
+  }
+}
+
+void chartMaps(ResultFolder& results, const StepFolder& step, const char* file, const char* id) {
+  if (!step.has(file)) return;
+  std::vector<bool> inRegion;
+  if (step.has("region.label.gii")) {
+    for (const Label key : io::readVertexLabels(step.folder / "region.label.gii").keys)
+      inRegion.push_back(key != 0);
+  }
+  bool first = true;
+  for (const io::VertexMap& map : io::readVertexMaps(step.folder / file)) {
+    std::vector<double> values;
+    for (Eigen::Index v = 0; v < map.values.size(); ++v) {
+      if (inRegion.empty() || (static_cast<std::size_t>(v) < inRegion.size() && inRegion[v]))
+        values.push_back(map.values[v]);
+    }
+    const std::string axis = map.unit.empty() ? map.name : map.name + " [" + map.unit + "]";
+    results.content().charts.push_back(
+        {first ? id : "",
+         report::histogramSvg(asVector(values), {inWords(map.name), axis, "share of vertices"})});
+    first = false;
+  }
+}
+
+}  // namespace
+
+void chartThickness(ResultFolder& results, const StepFolder& step) {
+  io::VolumeReadOptions reading;
+  reading.allowNonFinite = true;
+  reading.allowAllZero = true;
+  const Volume<float> thickness = io::readScalars(step.folder / "thickness.nii.gz", reading).volume;
+  std::vector<double> values;
+  for (const float t : thickness.data) {
+    if (t > 0 && std::isfinite(t)) values.push_back(t);
+  }
+  results.content().charts.push_back(
+      {"", report::histogramSvg(asVector(values), {"Thickness in the tissue's voxels",
+                                                   "thickness [mm]", "share of voxels"})});
+}
+
+void chartUnfolding(ResultFolder& results, const StepFolder& step) {
+  if (step.has("evolution.tsv")) {
+    results.attempt("Curves", [&] { chartHistory(results, step); });
+  }
+  results.attempt("Visibility maps", [&] { chartMaps(results, step, "visibility.shape.gii", ""); });
+  results.attempt("Distortion maps",
+                  [&] { chartMaps(results, step, "distortion.shape.gii", kDistortionPlace); });
+}
+
+}  // namespace explica::pipeline

@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "ReportParts.h"
+
+#include <algorithm>
+#include <array>
+
+namespace explica::pipeline {
+namespace {
+
+/// How a number of a summary is shown.
+enum class Shown { Plain, Percent, SquareCentimetres };
+
+/// A row of the table: where its number is found, and what it means.
+struct Finding {
+  const char* command;
+  const char* key;
+  const char* start;  ///< key of the value at the start, shown before it; or empty
+  const char* what;
+  const char* unit;
+  Shown shown;
+  const char* meaning;
+};
+
+constexpr std::array kFindings = {
+    Finding{"segment", "brain_volume_ml", "", "Brain volume", "ml", Shown::Plain,
+            "Everything inside the brain mask."},
+    Finding{"surface", "thickness_mean", "", "Cortical thickness, mean", "mm", Shown::Plain,
+            "Length of the paths from the white to the pial surface that follow the gradient of "
+            "the harmonic function between them, averaged over the surface's area."},
+    Finding{"surface", "thickness_sd", "", "Cortical thickness, standard deviation", "mm",
+            Shown::Plain, ""},
+    Finding{"thickness", "thickness_mean_columns", "", "Thickness, mean over columns", "mm",
+            Shown::Plain,
+            "n / sum(1/t) over the tissue's voxels: each column counts once, however thick."},
+    Finding{"surface", "area_white", "", "Area of the white surface", "cm\u00b2",
+            Shown::SquareCentimetres, ""},
+    Finding{"surface", "area_pial", "", "Area of the pial surface", "cm\u00b2",
+            Shown::SquareCentimetres, ""},
+    Finding{"surface", "defects_corrected", "", "Topological defects corrected", "", Shown::Plain,
+            "Handles that were cut and tunnels that were filled before the surface was made."},
+    Finding{"unfold", "region_area", "", "Area of the patch", "cm\u00b2", Shown::SquareCentimetres,
+            ""},
+    Finding{"unfold", "visibility_final", "visibility_initial", "Average visibility", "",
+            Shown::Plain,
+            "Mean cosine under which the patch's faces look at the viewpoint, before and after."},
+    Finding{"unfold", "seen_final", "seen_initial", "Seen from the viewpoint", "", Shown::Percent,
+            "Share of the patch's area that nothing hides, before and after."},
+    Finding{"unfold", "area_error_mean", "", "Error of areas, mean", "", Shown::Percent,
+            "Of the patch's faces."},
+    Finding{"unfold", "edge_strain_mean", "", "Change of lengths, mean", "", Shown::Percent,
+            "Of the patch's edges."},
+};
+
+std::string shownAs(Shown shown, double value) {
+  switch (shown) {
+    case Shown::Percent:
+      return percent(value);
+    case Shown::SquareCentimetres:
+      return readable(value / 100);
+    default:
+      return readable(value);
+  }
+}
+
+std::string valueIn(const StepFolder& step, const Finding& finding) {
+  const auto value = step.number(finding.key);
+  if (!value) return "";
+  const auto start = *finding.start != '\0' ? step.number(finding.start) : std::nullopt;
+  return (start ? shownAs(finding.shown, *start) + " \u2192 " : "") +
+         shownAs(finding.shown, *value);
+}
+
+/// Numbers of a command that has no rows of its own in the table.
+void listOwnNumbers(const StepFolder& step, report::ReportFindings& findings) {
+  constexpr std::size_t kMost = 12;
+  for (const auto& [key, value] : step.summary.items()) {
+    if (findings.rows.size() >= kMost) return;
+    if (!value.is_number() || key.rfind("seconds", 0) == 0 || key == "peak_memory_bytes") continue;
+    findings.rows.push_back({inWords(key), "", {readable(value)}});
+  }
+}
+
+}  // namespace
+
+void findNumbers(ResultFolder& results) {
+  report::ReportFindings& findings = results.content().findings;
+  std::vector<std::string> sides;
+  for (const StepFolder& step : results.steps()) {
+    if (!step.side().empty() && std::find(sides.begin(), sides.end(), step.side()) == sides.end()) {
+      sides.push_back(step.side());
+    }
+  }
+  std::sort(sides.begin(), sides.end());
+  if (sides.size() < 2) sides = {""};
+  findings.columns = sides;
+  for (const Finding& finding : kFindings) {
+    report::ReportFindings::Row row{finding.what, finding.unit, {}, finding.meaning};
+    for (const std::string& side : sides) {
+      std::string value;
+      for (const StepFolder* step : results.stepsOf(finding.command)) {
+        if (side.empty() || step->side() == side || step->side().empty()) {
+          value = valueIn(*step, finding);
+        }
+      }
+      row.values.push_back(value);
+    }
+    const bool known =
+        std::any_of(row.values.begin(), row.values.end(), [](const auto& v) { return !v.empty(); });
+    if (known) findings.rows.push_back(std::move(row));
+  }
+  if (findings.rows.empty() && results.steps().size() == 1) {
+    listOwnNumbers(results.steps().front(), findings);
+  }
+}
+
+}  // namespace explica::pipeline

@@ -1,0 +1,180 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "ReportParts.h"
+
+#include <algorithm>
+
+namespace explica::pipeline {
+namespace {
+
+using report::FlagLevel;
+using report::ReportFlag;
+
+constexpr double kAreaErrorGood = 0.02;  // mean: areas on a printed map are trusted to a few %
+constexpr double kAreaErrorBad = 0.10;
+constexpr double kOpened = 0.95;    // average visibility and seen share of what counts as open
+constexpr double kStretchGood = 2;  // mean area ratio of what joins a patch to its surroundings
+
+/// "left: " where there are two sides to tell apart.
+std::string sideWord(const StepFolder& step) {
+  return step.side().empty() ? "" : " (" + step.side() + ")";
+}
+
+std::vector<ReportFlag> surfaceFlags(const StepFolder& step) {
+  std::vector<ReportFlag> flags;
+  const std::string side = sideWord(step);
+  if (const auto chi = step.number("euler_characteristic");
+      chi && step.summary.value("closed_manifold", true)) {
+    flags.push_back({*chi == 2 ? FlagLevel::Good : FlagLevel::Bad, "Topology" + side + ":",
+                     "Euler characteristic " + readable(*chi) +
+                         (*chi == 2 ? ", a sphere's" : ", not a sphere's 2"),
+                     kOutlinePlace});
+  }
+  if (const auto defects = step.number("defects_corrected"); defects && *defects > 0) {
+    flags.push_back({FlagLevel::Notice, "Topology corrected" + side + ":",
+                     readable(*defects) + " defects, " +
+                         readable(step.number("voxels_changed").value_or(0)) +
+                         " voxels changed (topology.tsv lists them)",
+                     kOutlinePlace});
+  }
+  if (const auto pairs = step.number("self_intersections")) {
+    flags.push_back(
+        {*pairs == 0 ? FlagLevel::Good : FlagLevel::Bad, "Surface meets itself" + side + ":",
+         *pairs == 0 ? "nowhere, by an exact test" : "at " + readable(*pairs) + " pairs of faces",
+         kThicknessPlace});
+  }
+  return flags;
+}
+
+std::vector<ReportFlag> thicknessFlags(const StepFolder& step) {
+  std::vector<ReportFlag> flags;
+  if (const auto recovered = step.number("sulcal_voxels_recovered"); recovered && *recovered > 0) {
+    flags.push_back({FlagLevel::Notice, "Hidden sulci recovered" + sideWord(step) + ":",
+                     readable(*recovered) + " voxels changed", kOutlinePlace});
+  }
+  return flags;
+}
+
+ReportFlag crossingFlag(const StepFolder& step, double pairs) {
+  const double before = step.number("self_intersections_initial").value_or(0);
+  const FlagLevel level =
+      pairs == 0 ? FlagLevel::Good : (pairs <= before ? FlagLevel::Notice : FlagLevel::Bad);
+  return {level, "Unfolded surface meets itself" + sideWord(step) + ":",
+          pairs == 0
+              ? "nowhere, by an exact test"
+              : "at " + readable(pairs) + " pairs of faces, " + readable(before) + " at the start",
+          kPatchPlace};
+}
+
+/// How the patch lies beside the surface that it came from.
+std::vector<ReportFlag> surroundingFlags(const StepFolder& step) {
+  std::vector<ReportFlag> flags;
+  const bool detached = step.text("surround") == "none";
+  if (const auto pairs = step.number("crossings_with_rest"); pairs && !detached) {
+    flags.push_back({*pairs == 0 ? FlagLevel::Good : FlagLevel::Bad,
+                     "Patch and its surroundings" + sideWord(step) + ":",
+                     *pairs == 0 ? "cross nowhere, by an exact test"
+                                 : "cross at " + readable(*pairs) + " pairs of faces",
+                     kPatchPlace});
+  }
+  if (detached) {
+    flags.push_back({FlagLevel::Notice, "Unfolded alone" + sideWord(step) + ":",
+                     "the patch was cut out, and is drawn apart from the surface; laid back it "
+                     "would cross the rest at " +
+                         readable(step.number("crossings_with_rest").value_or(kNaN)) +
+                         " pairs of faces",
+                     kPatchPlace});
+  }
+  if (const auto stretch = step.number("collar_stretch_mean"); stretch && !detached) {
+    flags.push_back({*stretch <= kStretchGood ? FlagLevel::Good : FlagLevel::Notice,
+                     "What joins patch and surroundings" + sideWord(step) + ":",
+                     "its faces are stretched to " + readable(*stretch) + " times their area, " +
+                         readable(step.number("collar_stretch_max").value_or(kNaN)) + " at most",
+                     kPatchPlace});
+  }
+  return flags;
+}
+
+std::vector<ReportFlag> unfoldFlags(const StepFolder& step) {
+  std::vector<ReportFlag> flags;
+  const std::string side = sideWord(step);
+  if (const auto pairs = step.number("self_intersections_final")) {
+    flags.push_back(crossingFlag(step, *pairs));
+  }
+  for (ReportFlag& flag : surroundingFlags(step)) flags.push_back(std::move(flag));
+  const std::string held = step.text("flag");
+  if (!held.empty()) {
+    flags.push_back({FlagLevel::Bad, "Unfolding " + held + side + ":",
+                     "the result is not what was asked for; the warnings below say why",
+                     kPatchPlace});
+  }
+  if (const auto area = step.number("area_error_mean")) {
+    flags.push_back({*area < kAreaErrorGood
+                         ? FlagLevel::Good
+                         : (*area < kAreaErrorBad ? FlagLevel::Notice : FlagLevel::Bad),
+                     "Areas kept" + side + ":",
+                     "mean error " + percent(*area) + ", largest " +
+                         percent(step.number("area_error_max").value_or(kNaN)),
+                     kDistortionPlace});
+  }
+  if (const auto visibility = step.number("visibility_final")) {
+    const double seen = step.number("seen_final").value_or(kNaN);
+    flags.push_back(
+        {*visibility > kOpened && !(seen <= kOpened) ? FlagLevel::Good : FlagLevel::Notice,
+         "Seen from the viewpoint" + side + ":",
+         percent(seen) + " of the area, at average visibility " + readable(*visibility),
+         kPatchPlace});
+  }
+  return flags;
+}
+
+/// What the program itself could not vouch for: the list "flags" of a summary.
+std::vector<ReportFlag> ownFlags(const StepFolder& step) {
+  std::vector<ReportFlag> flags;
+  const Json listed = step.summary.value("flags", Json::array());
+  if (!listed.is_array()) return flags;
+  for (const Json& flag : listed) {
+    if (!flag.is_object()) continue;
+    std::string why = flag.value("message", "");
+    if (why.empty() && flag.contains("value")) why = readable(flag["value"]);
+    const bool accepted = flag.value("accepted", false);
+    flags.push_back({accepted ? FlagLevel::Notice : FlagLevel::Bad,
+                     inWords(flag.value("name", "implausible")) + sideWord(step) + ":",
+                     why + (accepted ? " (accepted)" : ""), kTissuePlace});
+  }
+  return flags;
+}
+
+std::vector<ReportFlag> flagsOf(const StepFolder& step) {
+  if (step.command == "surface") return surfaceFlags(step);
+  if (step.command == "thickness") return thicknessFlags(step);
+  if (step.command == "unfold") return unfoldFlags(step);
+  return {};
+}
+
+}  // namespace
+
+void flagSteps(ResultFolder& results) {
+  report::ReportContent& content = results.content();
+  for (const report::ReportStep& step : content.steps) {
+    if (step.state == report::StepState::Failed)
+      content.flags.push_back({FlagLevel::Bad, step.name + " failed:", step.message});
+    if (step.state == report::StepState::StoppedEarly)
+      content.flags.push_back({FlagLevel::Notice, step.name + " stopped early:", step.message});
+    if (step.state == report::StepState::Missing)
+      content.flags.push_back({FlagLevel::Notice, step.name + " was not run:", step.message});
+    for (const std::string& warning : step.warnings)
+      content.flags.push_back({FlagLevel::Notice, step.name + ":", warning});
+  }
+  for (const StepFolder& step : results.steps()) {
+    results.attempt("Flags of " + step.name, [&] {
+      for (ReportFlag& flag : ownFlags(step)) content.flags.push_back(std::move(flag));
+      for (ReportFlag& flag : flagsOf(step)) content.flags.push_back(std::move(flag));
+    });
+  }
+  std::stable_sort(content.flags.begin(), content.flags.end(), [](const auto& a, const auto& b) {
+    return static_cast<int>(a.level) > static_cast<int>(b.level);
+  });
+}
+
+}  // namespace explica::pipeline

@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Explica/Pipeline/FolderReport.h"
+
+#include "Explica/Core/Errors.h"
+#include "ReportParts.h"
+
+#include <algorithm>
+
+namespace explica::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kMostSlices = 30;
+
+report::ReportStep reportStep(const StepFolder& step) {
+  report::ReportStep out;
+  out.name = step.name;
+  const Json execution = step.record.value("execution", Json::object());
+  out.seconds = execution.value("seconds", 0.0);
+  if (execution.contains("argv")) {
+    for (const Json& word : execution["argv"])
+      out.commandLine += (out.commandLine.empty() ? "" : " ") +
+                         (word.is_string() ? word.get<std::string>() : word.dump());
+  }
+  if (step.record.contains("software")) {
+    const Json& software = step.record["software"];
+    out.version =
+        "explica " + software.value("version", "") + ", commit " + software.value("commit", "");
+  }
+  if (step.record.value("exit_code", 0) != 0) {
+    out.state = report::StepState::StoppedEarly;
+    out.message = "stopped: " + step.record.value("termination", "");
+  }
+  for (const auto& [key, value] : step.summary.items()) {
+    const bool number = value.is_number() || value.is_boolean();
+    if (number || (value.is_string() && key != "command"))
+      out.numbers.emplace_back(inWords(key), readable(value));
+  }
+  const Json options = step.record.value("options", Json::object());
+  for (const auto& [key, value] : options.items()) out.options.emplace_back(key, readable(value));
+  const Json warnings = step.record.value("warnings", Json::array());
+  for (const Json& warning : warnings) out.warnings.push_back(readable(warning));
+  return out;
+}
+
+/// The step as its record tells it, or as the run noted where there is no record of its success.
+report::ReportStep reportStep(const StepNote& note, const std::vector<StepFolder>& steps) {
+  const auto found = std::find_if(steps.begin(), steps.end(),
+                                  [&](const StepFolder& s) { return s.name == note.name; });
+  if (found != steps.end() && note.state != report::StepState::Failed) return reportStep(*found);
+  // Without a record a step that ended well is missing.
+  const bool lost = note.state == report::StepState::Done;
+  report::ReportStep step;
+  step.name = note.name;
+  step.message = note.message;
+  step.state = lost ? report::StepState::Missing : note.state;
+  return step;
+}
+
+void listSteps(ResultFolder& results) {
+  auto& steps = results.content().steps;
+  for (const StepNote& note : results.notes()) steps.push_back(reportStep(note, results.steps()));
+  if (!results.notes().empty()) return;
+  for (const StepFolder& step : results.steps()) steps.push_back(reportStep(step));
+}
+
+/// What a step has of its own to show, beside what the parts above show of all steps together.
+void showStep(ResultFolder& results, const StepFolder& step) {
+  if (step.command == "thickness" && step.has("thickness.nii.gz")) {
+    results.attempt("Thickness", [&] { chartThickness(results, step); });
+  }
+  if (step.command == "unfold") {
+    results.attempt("Evolution", [&] { showUnfolding(results, step); });
+    chartUnfolding(results, step);
+  }
+  results.attempt("Pictures of " + step.name, [&] { showOwnPictures(results, step); });
+}
+
+}  // namespace
+
+report::ReportContent collectReport(const fs::path& folder, const FolderReportOptions& options,
+                                    const Monitor& monitor) {
+  if (options.slices < 1 || options.slices > kMostSlices) {
+    throw InvalidInput("slices: must be between 1 and " + std::to_string(kMostSlices));
+  }
+  if (!fs::is_directory(folder)) throw InvalidInput(folder.string() + ": no such folder");
+  report::ReportContent content;
+  content.title = "Explica: " + fs::weakly_canonical(folder).filename().string();
+  ResultFolder results(folder, monitor, content);
+  listSteps(results);
+  results.attempt("Tissues", [&] { showTissues(results, options); });
+  monitor.progress(0.2, "report");
+  results.attempt("Surfaces", [&] { showSurfaces(results, options); });
+  monitor.progress(0.5, "report");
+  for (const StepFolder& step : results.steps()) showStep(results, step);
+  results.attempt("Numbers", [&] { findNumbers(results); });
+  flagSteps(results);
+  monitor.progress(1, "report");
+  return content;
+}
+
+}  // namespace explica::pipeline

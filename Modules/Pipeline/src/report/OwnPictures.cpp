@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Explica/Core/Errors.h"
+#include "ReportParts.h"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+
+namespace explica::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostPictures = 12;
+constexpr std::uintmax_t kLargest = 3u << 20;  // bytes: the page stays below 10 MB
+
+/// What a browser calls the picture in a file; empty for other files.
+std::string mediaTypeOf(const fs::path& file) {
+  if (file.extension() == ".svg") return "image/svg+xml";
+  if (file.extension() == ".png") return "image/png";
+  return "";
+}
+
+std::string bytesOf(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw IOError(file.string() + ": cannot be read");
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+}  // namespace
+
+void showOwnPictures(ResultFolder& results, const StepFolder& step) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(step.folder)) {
+    const fs::path& file = entry.path();
+    if (mediaTypeOf(file).empty() || !entry.is_regular_file()) continue;
+    // Of a picture in both forms the drawing is sharper.
+    if (file.extension() == ".png" && fs::exists(fs::path(file).replace_extension(".svg")))
+      continue;
+    if (entry.file_size() <= kLargest) files.push_back(file);
+  }
+  std::sort(files.begin(), files.end());
+  if (files.size() > kMostPictures) files.resize(kMostPictures);
+  for (const fs::path& file : files) {
+    results.content().drawings.push_back({"", inWords(file.stem().string()),
+                                          step.name + "/" + file.filename().string(),
+                                          mediaTypeOf(file), bytesOf(file)});
+  }
+}
+
+}  // namespace explica::pipeline

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Pipeline/FolderReport.h"
+#include "ResultFolder.h"
+
+namespace explica::pipeline {
+
+/// Places on the page that flags lead to.
+inline constexpr const char* kTissuePlace = "tissues";
+inline constexpr const char* kOutlinePlace = "surfaces-on-image";
+inline constexpr const char* kThicknessPlace = "thickness-maps";
+inline constexpr const char* kPatchPlace = "view3d";
+inline constexpr const char* kDistortionPlace = "distortion";
+
+/// What a reader must know before trusting the results, the worst first.
+void flagSteps(ResultFolder& results);
+
+/// The table of a dozen numbers.
+void findNumbers(ResultFolder& results);
+
+/// Slices of tissue classes, or of the labels that a surface was made from.
+void showTissues(ResultFolder& results, const FolderReportOptions& options);
+
+/// White and pial outlines on the image, and maps on the surfaces from all sides.
+void showSurfaces(ResultFolder& results, const FolderReportOptions& options);
+
+/// The unfolding: what the interactive view plays, before and after, curves and histograms.
+void showUnfolding(ResultFolder& results, const StepFolder& step);
+
+/// Histogram of the thickness in voxels.
+void chartThickness(ResultFolder& results, const StepFolder& step);
+
+/// Curves over an unfolding's iterations, and histograms of its maps.
+void chartUnfolding(ResultFolder& results, const StepFolder& step);
+
+/// Pictures that a command has drawn itself: SVG and PNG files of its folder.
+void showOwnPictures(ResultFolder& results, const StepFolder& step);
+
+}  // namespace explica::pipeline

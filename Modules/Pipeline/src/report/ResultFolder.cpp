@@ -1,0 +1,166 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "ResultFolder.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Provenance/Record.h"
+#include "Explica/Provenance/Verify.h"
+
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+#include <set>
+
+namespace explica::pipeline {
+
+namespace fs = std::filesystem;
+
+std::optional<double> StepFolder::number(std::string_view key) const {
+  const auto found = summary.find(std::string(key));
+  if (found == summary.end() || !found->is_number()) return {};
+  return found->get<double>();
+}
+
+std::string StepFolder::text(std::string_view key) const {
+  const auto found = summary.find(std::string(key));
+  return found != summary.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
+std::string StepFolder::side() const {
+  const Json options = record.value("options", Json::object());
+  std::string said = text("structure") + text("hemisphere");
+  if (said.empty() && options.contains("hemisphere") && options["hemisphere"].is_string()) {
+    said = options["hemisphere"].get<std::string>();
+  }
+  const bool left = said.rfind("CortexLeft", 0) == 0 || said == "L" || said == "left";
+  const bool right = said.rfind("CortexRight", 0) == 0 || said == "R" || said == "right";
+  if (left != right) return left ? "left" : "right";
+  // A run on both sides names the folders of its steps by side.
+  const std::string ending = name.size() > 2 ? name.substr(name.size() - 2) : "";
+  if (ending == "-L" || ending == "_L") return "left";
+  if (ending == "-R" || ending == "_R") return "right";
+  return "";
+}
+
+ResultFolder::ResultFolder(const fs::path& folder, const Monitor& monitor,
+                           report::ReportContent& content)
+    : monitor_(monitor), content_(content) {
+  notes_ = readRunState(folder / kRunStateName);
+  if (notes_.empty() && fs::exists(folder / provenance::kRecordName)) {
+    add(folder, fs::weakly_canonical(folder).filename().string());
+  }
+  for (const StepNote& note : notes_) {
+    if (fs::exists(folder / note.name / provenance::kRecordName)) {
+      add(folder / note.name, note.name);
+    }
+  }
+  if (notes_.empty() && steps_.empty()) {
+    std::set<fs::path> folders;
+    for (const auto& entry : fs::directory_iterator(folder)) {
+      if (fs::exists(entry.path() / provenance::kRecordName)) folders.insert(entry.path());
+    }
+    for (const fs::path& f : folders) add(f, f.filename().string());
+  }
+  if (steps_.empty() && notes_.empty()) {
+    throw InvalidInput(folder.string() +
+                       ": holds no provenance.json; give the --out folder of a command or run");
+  }
+}
+
+std::vector<const StepFolder*> ResultFolder::stepsOf(std::string_view command) const {
+  std::vector<const StepFolder*> found;
+  for (const StepFolder& s : steps_) {
+    if (s.command == command) found.push_back(&s);
+  }
+  return found;
+}
+
+const StepFolder* ResultFolder::beside(const StepFolder& step, std::string_view command) const {
+  const auto all = stepsOf(command);
+  for (const StepFolder* s : all) {
+    if (s->side() == step.side()) return s;
+  }
+  return all.size() == 1 ? all.front() : nullptr;
+}
+
+void ResultFolder::attempt(const std::string& what, const std::function<void()>& part) {
+  try {
+    part();
+  } catch (const Error& fault) {
+    monitor_.warn("report: " + what + " left out: " + fault.what());
+    content_.flags.push_back({report::FlagLevel::Notice, what + " left out:", fault.what()});
+  } catch (const Json::exception& fault) {
+    monitor_.warn("report: " + what + " left out: a record is not as this program writes it");
+    content_.flags.push_back({report::FlagLevel::Notice,
+                              what + " left out:", "a record is not as this program writes it"});
+  }
+}
+
+void ResultFolder::add(const fs::path& folder, const std::string& name) {
+  StepFolder step;
+  step.name = name;
+  step.folder = folder;
+  attempt("Record of " + name, [&] {
+    step.record = provenance::readRecord(folder / provenance::kRecordName);
+    step.command = step.record.value("command", "");
+    if (fs::exists(folder / provenance::kSummaryName)) {
+      step.summary = provenance::readJson(folder / provenance::kSummaryName);
+    }
+    steps_.push_back(std::move(step));
+  });
+}
+
+std::optional<fs::path> inputOf(const StepFolder& step, std::string_view role) {
+  const Json inputs = step.record.value("inputs", Json::array());
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    if (inputs[i].value("role", "") == role) {
+      return provenance::locateInput(step.record, i, step.folder / provenance::kRecordName);
+    }
+  }
+  return {};
+}
+
+std::optional<io::VertexMap> mapNamed(const fs::path& file, Eigen::Index vertexCount,
+                                      std::string_view name) {
+  if (!fs::exists(file)) return {};
+  for (io::VertexMap& map : io::readVertexMaps(file, vertexCount)) {
+    if (map.name == name || name.empty()) return std::move(map);
+  }
+  return {};
+}
+
+std::string readable(double value) {
+  std::array<char, 40> text{};
+  const bool whole = value == std::round(value) && std::abs(value) < 1e12;
+  std::snprintf(text.data(), text.size(), whole || std::abs(value) >= 1000 ? "%.0f" : "%.3g",
+                value);
+  return std::isfinite(value) ? text.data() : "not known";
+}
+
+std::string percent(double share) {
+  return readable(100 * share) + " %";
+}
+
+std::string readable(const Json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
+  if (value.is_number()) return readable(value.get<double>());
+  if (value.is_null()) return "not set";
+  if (!value.is_array()) return value.dump();
+  std::string list;
+  for (const Json& entry : value) list += (list.empty() ? "" : ", ") + readable(entry);
+  return list;
+}
+
+std::string inWords(std::string_view key) {
+  std::string words(key);
+  for (char& c : words) {
+    if (c == '_') c = ' ';
+  }
+  if (!words.empty())
+    words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
+  return words;
+}
+
+}  // namespace explica::pipeline

@@ -1,0 +1,259 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Explica/IO/SurfaceFile.h"
+#include "Explica/IO/VolumeFile.h"
+#include "Explica/Report/Chart.h"
+#include "Explica/Report/Figure.h"
+#include "ReportParts.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+namespace explica::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+using report::ViewName;
+
+constexpr int kViewWidth = 300, kViewHeight = 230;  // pixels
+
+/// One hemisphere's surfaces, and the scenes in which they are drawn.
+struct Hemisphere {
+  const StepFolder* step = nullptr;
+  std::string side;
+  TriangleMesh white;
+  TriangleMesh pial;
+  std::optional<report::SurfaceScene> pialScene, whiteScene;
+};
+
+/// Which of a hemisphere's surfaces carries a map: the white one shows what lies in the sulci.
+enum class Drawn { Pial, White };
+
+/// A scan that shows the anatomy of a label volume: beside it in the folder of a FreeSurfer subject
+/// or of fMRIPrep.
+std::optional<fs::path> scanBeside(const fs::path& labels) {
+  for (const char* name : {"brain.mgz", "T1.mgz", "norm.mgz", "orig.mgz"}) {
+    if (labels.parent_path().filename() == "mri" && fs::exists(labels.parent_path() / name)) {
+      return labels.parent_path() / name;
+    }
+  }
+  const std::string name = labels.filename().string();
+  const std::size_t at = name.rfind("_dseg");
+  if (at == std::string::npos) return {};
+  const fs::path scan =
+      labels.parent_path() / (name.substr(0, at) + "_desc-preproc_T1w" + name.substr(at + 5));
+  return fs::exists(scan) ? std::optional(scan) : std::nullopt;
+}
+
+/// The image on which a surface is judged: the T1, or what lies beside the labels, or the labels.
+std::optional<fs::path> imageOf(const ResultFolder& results, const StepFolder& step) {
+  for (const char* role : {"image", "T1"}) {
+    if (const auto image = inputOf(step, role); image && fs::exists(*image)) return image;
+  }
+  for (const StepFolder* segment : results.stepsOf("segment")) {
+    if (const auto image = inputOf(*segment, "T1"); image && fs::exists(*image)) return image;
+  }
+  const auto labels = inputOf(step, "SEG");
+  if (!labels || !fs::exists(*labels)) return {};
+  return scanBeside(*labels).value_or(*labels);
+}
+
+std::vector<std::pair<std::string, ViewName>> viewsOf(const std::string& side) {
+  const bool right = side == "right";
+  return {{"lateral", right ? ViewName::Right : ViewName::Left},
+          {"medial", right ? ViewName::Left : ViewName::Right},
+          {"dorsal", ViewName::Top},
+          {"ventral", ViewName::Bottom},
+          {"frontal", ViewName::Front},
+          {"occipital", ViewName::Back}};
+}
+
+report::SurfacePictureOptions viewSize() {
+  report::SurfacePictureOptions options;
+  options.width = kViewWidth;
+  options.height = kViewHeight;
+  return options;
+}
+
+/// Half the height of a picture that holds every hemisphere from any of the sides.
+double commonHalfHeight(const std::vector<Hemisphere>& all) {
+  double half = 0;
+  for (const Hemisphere& h : all) {
+    for (const auto& [title, view] : viewsOf(h.side)) {
+      half = std::max(half, report::cameraFor(h.pial, view, kViewWidth, kViewHeight).halfHeight);
+    }
+  }
+  return half;
+}
+
+/// Values where they are known: on the medial wall, where a surface has no grey matter, a map holds
+/// 0 in place of "not known".
+Eigen::VectorXd known(Eigen::VectorXd values, const Eigen::VectorXd& thickness) {
+  for (Eigen::Index v = 0; v < values.size() && v < thickness.size(); ++v) {
+    if (!(thickness[v] > 0)) values[v] = kNaN;
+  }
+  return values;
+}
+
+/// One colour a vertex, `count` of the standard views of every hemisphere.
+report::ReportViews drawViews(std::vector<Hemisphere>& all,
+                              const std::vector<std::vector<report::Colour>>& colours,
+                              report::Filling filling, std::size_t count,
+                              Drawn drawn = Drawn::Pial) {
+  report::ReportViews views;
+  const double half = commonHalfHeight(all);
+  for (std::size_t h = 0; h < all.size(); ++h) {
+    const auto standard = viewsOf(all[h].side);
+    const report::SurfaceScene& scene =
+        drawn == Drawn::Pial ? *all[h].pialScene : *all[h].whiteScene;
+    for (std::size_t n = 0; n < std::min(count, standard.size()); ++n) {
+      report::Camera camera =
+          report::cameraFor(all[h].pial, standard[n].second, kViewWidth, kViewHeight);
+      camera.halfHeight = half;
+      views.views.push_back({(all[h].side.empty() ? "" : all[h].side + ", ") + standard[n].first,
+                             scene.render(camera, colours[h], filling, viewSize())});
+    }
+  }
+  return views;
+}
+
+/// A map of every hemisphere on one scale.
+void showMap(ResultFolder& results, std::vector<Hemisphere>& all, const char* file,
+             const std::string& title, const std::string& caption, const char* id,
+             std::size_t count, Drawn drawn) {
+  std::vector<Eigen::VectorXd> values;
+  std::vector<double> pooled;
+  std::string name, unit;
+  for (const Hemisphere& h : all) {
+    const Eigen::Index n = h.pial.vertexCount();
+    const auto map = mapNamed(h.step->folder / file, n);
+    if (!map) return;
+    const auto thickness = mapNamed(h.step->folder / "thickness.shape.gii", n);
+    values.push_back(thickness ? known(map->values, thickness->values) : map->values);
+    for (const double v : values.back()) {
+      if (std::isfinite(v)) pooled.push_back(v);
+    }
+    name = map->name;
+    unit = map->unit;
+  }
+  const Eigen::VectorXd pool =
+      Eigen::Map<const Eigen::VectorXd>(pooled.data(), static_cast<Eigen::Index>(pooled.size()));
+  const report::ColourScale scale = report::scaleFor(pool, name, unit);
+  std::vector<std::vector<report::Colour>> colours;
+  for (const auto& v : values) colours.push_back(report::coloursOf(v, scale));
+  report::ReportViews views = drawViews(all, colours, report::Filling::Smooth, count, drawn);
+  views.id = id;
+  views.title = title;
+  views.caption = caption;
+  views.scale = scale;
+  results.content().views.push_back(std::move(views));
+}
+
+report::Colour colourOf(const io::LabelEntry& entry) {
+  const auto& c = entry.colour;
+  if (c[0] + c[1] + c[2] == 0) return report::colourOfLabel(entry.key);
+  const auto linear = [](float x) {
+    return report::decodeSrgb(static_cast<std::uint8_t>(std::lround(255 * x)));
+  };
+  return {linear(c[0]), linear(c[1]), linear(c[2])};
+}
+
+void showRegions(ResultFolder& results, std::vector<Hemisphere>& all) {
+  std::vector<std::vector<report::Colour>> colours;
+  std::map<Label, report::LegendEntry> legend;
+  for (const Hemisphere& h : all) {
+    if (!h.step->has("regions.label.gii")) return;
+    const io::LabelMap labels =
+        io::readVertexLabels(h.step->folder / "regions.label.gii", h.pial.vertexCount());
+    std::map<Label, report::LegendEntry> entries;
+    for (const io::LabelEntry& entry : labels.table) {
+      entries[entry.key] = {entry.name, colourOf(entry)};
+    }
+    colours.emplace_back();
+    for (const Label key : labels.keys) {
+      const auto found = entries.find(key);
+      const bool named = key != 0 && found != entries.end();
+      colours.back().push_back(named ? found->second.colour : report::colourOfLabel(0));
+      if (named) legend[key] = found->second;
+    }
+  }
+  report::ReportViews views = drawViews(all, colours, report::Filling::Discrete, 2);
+  views.id = "regions";
+  views.title = "Regions";
+  views.caption = "Each vertex in the colour of its region.";
+  for (const auto& [key, entry] : legend) views.legend.push_back(entry);
+  results.content().views.push_back(std::move(views));
+}
+
+void showOutlines(ResultFolder& results, const std::vector<Hemisphere>& all,
+                  const FolderReportOptions& options) {
+  const auto image = imageOf(results, *all.front().step);
+  if (!image) return;
+  io::VolumeReadOptions reading;
+  reading.allowNonFinite = true;
+  const Volume<float> volume = io::readScalars(*image, reading).volume;
+  std::vector<report::MosaicOutline> outlines;
+  for (const Hemisphere& h : all) {
+    const std::string side = h.side.empty() ? "" : ", " + h.side;
+    outlines.push_back({&h.white, "white surface" + side, "#ff453a"});
+    outlines.push_back({&h.pial, "pial surface" + side, "#ffd60a"});
+  }
+  report::MosaicOptions mosaic;
+  mosaic.perRow = options.slices;
+  mosaic.convention = options.convention;
+  results.content().mosaics.push_back({kOutlinePlace,
+                                       "White and pial surface on " + image->filename().string(),
+                                       "The outlines must follow the borders of the grey ribbon.",
+                                       report::makeMosaic(volume, outlines, mosaic)});
+}
+
+void chartSurfaceThickness(ResultFolder& results, const std::vector<Hemisphere>& all) {
+  for (const Hemisphere& h : all) {
+    const auto map = mapNamed(h.step->folder / "thickness.shape.gii", h.pial.vertexCount());
+    if (!map) continue;
+    std::vector<double> ribbon;
+    for (const double t : map->values) {
+      if (t > 0) ribbon.push_back(t);
+    }
+    results.content().charts.push_back(
+        {"", report::histogramSvg(Eigen::Map<const Eigen::VectorXd>(
+                                      ribbon.data(), static_cast<Eigen::Index>(ribbon.size())),
+                                  {"Cortical thickness" + (h.side.empty() ? "" : ", " + h.side),
+                                   "thickness [mm]", "share of vertices"})});
+  }
+}
+
+}  // namespace
+
+void showSurfaces(ResultFolder& results, const FolderReportOptions& options) {
+  std::vector<Hemisphere> all;
+  for (const StepFolder* step : results.stepsOf("surface")) {
+    all.push_back({step,
+                   step->side(),
+                   io::readSurface(step->folder / "white.surf.gii").mesh,
+                   io::readSurface(step->folder / "pial.surf.gii").mesh,
+                   {}});
+  }
+  if (all.empty()) return;
+  std::sort(all.begin(), all.end(),
+            [](const Hemisphere& a, const Hemisphere& b) { return a.side < b.side; });
+  for (Hemisphere& h : all) {
+    h.pialScene.emplace(h.pial);
+    h.whiteScene.emplace(h.white);
+  }
+  results.attempt("Outlines on the image", [&] { showOutlines(results, all, options); });
+  results.attempt("Thickness map", [&] {
+    showMap(results, all, "thickness.shape.gii", "Thickness on the pial surface",
+            "Grey: not measured, as on the medial wall.", kThicknessPlace, 6, Drawn::Pial);
+  });
+  results.attempt("Depth map", [&] {
+    showMap(results, all, "sulc.shape.gii", "Depth on the white surface",
+            "How far the middle surface lies below its hull.", "depth-maps", 2, Drawn::White);
+  });
+  results.attempt("Regions", [&] { showRegions(results, all); });
+  results.attempt("Thickness histogram", [&] { chartSurfaceThickness(results, all); });
+}
+
+}  // namespace explica::pipeline

@@ -1,0 +1,267 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Explica/Core/Errors.h"
+#include "Explica/IO/SurfaceFile.h"
+#include "Explica/Report/Figure.h"
+#include "ReportParts.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <set>
+
+namespace explica::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostFrames = 60;  // in the interactive view
+
+/// An unfolding's surfaces: where it began, the states on the way, and the region.
+struct Unfolded {
+  std::optional<TriangleMesh> whole;  ///< the surface that the region is of, if it is still there
+  std::vector<TriangleMesh> frames;   ///< from the start to the end
+  std::vector<std::string> titles;    ///< of the frames
+  std::vector<std::int32_t> region;   ///< vertices
+  bool detached = false;              ///< the region was unfolded alone
+  std::optional<Point> viewpoint;
+};
+
+/// Frames of an unfolding in their order, evenly thinned to `most`, the first and last kept.
+std::vector<fs::path> frameFiles(const fs::path& folder, std::size_t most) {
+  std::set<fs::path> found;
+  if (fs::is_directory(folder)) {
+    for (const auto& entry : fs::directory_iterator(folder)) {
+      const std::string name = entry.path().filename().string();
+      if (name.rfind("frame-", 0) == 0 && name.find(".surf.gii") != std::string::npos)
+        found.insert(entry.path());
+    }
+  }
+  std::vector<fs::path> all(found.begin(), found.end());
+  if (all.size() <= most) return all;
+  std::vector<fs::path> some;
+  for (std::size_t f = 0; f < most; ++f) some.push_back(all[f * (all.size() - 1) / (most - 1)]);
+  return some;
+}
+
+/// "frame 12, visibility 0.834".
+std::string titleOf(const fs::path& frame, const Json& visibilities) {
+  const std::string stem = frame.filename().string();
+  std::size_t number = 0;
+  try {
+    number = std::stoul(stem.substr(6));
+  } catch (const std::exception&) {
+    return stem;
+  }
+  std::string title = "frame " + std::to_string(number);
+  if (number < visibilities.size() && visibilities[number].is_number()) {
+    std::array<char, 40> text{};
+    std::snprintf(text.data(), text.size(), ", visibility %.3f",
+                  visibilities[number].get<double>());
+    title += text.data();
+  }
+  return title;
+}
+
+std::optional<Point> pointIn(const Json& json, const char* key) {
+  const auto found = json.find(key);
+  if (found == json.end() || !found->is_array() || found->size() != 3) return {};
+  for (const Json& x : *found) {
+    if (!x.is_number()) return {};
+  }
+  return Point((*found)[0], (*found)[1], (*found)[2]);
+}
+
+Point centreOf(const TriangleMesh& mesh, const std::vector<std::int32_t>& vertices) {
+  Point middle = Point::Zero();
+  for (const std::int32_t v : vertices) middle += mesh.positions.row(v).transpose();
+  return middle / std::max<double>(1, static_cast<double>(vertices.size()));
+}
+
+/// As the run says; records of older versions give the direction alone.
+std::optional<Point> viewpointOf(const StepFolder& step, const Unfolded& unfolded) {
+  const Json options = step.record.value("options", Json::object());
+  if (const auto used = pointIn(step.summary, "viewpoint")) return used;
+  if (const auto given = pointIn(options, "viewpoint")) return given;
+  const auto direction = pointIn(options, "direction");
+  if (!direction || !(direction->norm() > 0) || unfolded.frames.empty()) return {};
+  return centreOf(unfolded.frames.front(), unfolded.region) +
+         options.value("distance", 1000.0) * direction->normalized();
+}
+
+std::vector<std::int32_t> regionOf(const StepFolder& step) {
+  std::vector<std::int32_t> region;
+  if (!step.has("region.label.gii")) return region;
+  const io::LabelMap labels = io::readVertexLabels(step.folder / "region.label.gii");
+  for (Eigen::Index v = 0; v < labels.keys.size(); ++v) {
+    if (labels.keys[v] != 0) region.push_back(static_cast<std::int32_t>(v));
+  }
+  return region;
+}
+
+Unfolded readUnfolded(const StepFolder& step) {
+  Unfolded unfolded;
+  const auto source = inputOf(step, "SURFACE");
+  if (source && fs::exists(*source)) unfolded.whole = io::readSurface(*source).mesh;
+  const Json visibilities = step.summary.value("frame_visibilities", Json::array());
+  for (const fs::path& file : frameFiles(step.folder / "frames", kMostFrames)) {
+    unfolded.frames.push_back(io::readSurface(file).mesh);
+    unfolded.titles.push_back(titleOf(file, visibilities));
+  }
+  const TriangleMesh after = io::readSurface(step.folder / "unfolded.surf.gii").mesh;
+  if (unfolded.frames.empty()) {
+    if (unfolded.whole && unfolded.whole->vertexCount() == after.vertexCount()) {
+      unfolded.frames.push_back({unfolded.whole->positions, after.faces});
+      unfolded.titles.emplace_back("before");
+    }
+    unfolded.frames.push_back(after);
+    unfolded.titles.emplace_back("after");
+  }
+  if (unfolded.whole && unfolded.whole->vertexCount() != after.vertexCount())
+    unfolded.whole.reset();
+  unfolded.detached = unfolded.whole && unfolded.whole->faceCount() > after.faceCount();
+  unfolded.region = regionOf(step);
+  unfolded.viewpoint = viewpointOf(step, unfolded);
+  return unfolded;
+}
+
+/// The part's faces, and those of the whole that touch no vertex of the part.
+Faces withSurroundings(const Faces& part, const TriangleMesh& whole) {
+  std::vector<bool> inPart(static_cast<std::size_t>(whole.vertexCount()), false);
+  for (const std::int32_t v : part.reshaped()) inPart[v] = true;
+  Faces faces(part.rows() + whole.faceCount(), 3);
+  faces.topRows(part.rows()) = part;
+  Eigen::Index count = part.rows();
+  for (Eigen::Index f = 0; f < whole.faceCount(); ++f) {
+    if (inPart[whole.faces(f, 0)] || inPart[whole.faces(f, 1)] || inPart[whole.faces(f, 2)])
+      continue;
+    faces.row(count++) = whole.faces.row(f);
+  }
+  faces.conservativeResize(count, 3);
+  return faces;
+}
+
+/// Maps of the unfolding mean something in its region only.
+void addOwnMaps(const StepFolder& step, const Unfolded& unfolded, report::Evolution& evolution) {
+  std::vector<bool> inRegion(static_cast<std::size_t>(evolution.mesh.vertexCount()), false);
+  for (const std::int32_t v : unfolded.region) inRegion[v] = true;
+  for (const char* file : {"visibility.shape.gii", "distortion.shape.gii"}) {
+    if (!step.has(file)) continue;
+    for (io::VertexMap& map :
+         io::readVertexMaps(step.folder / file, evolution.mesh.vertexCount())) {
+      for (Eigen::Index v = 0; v < map.values.size(); ++v) {
+        if (!inRegion[v]) map.values[v] = kNaN;
+      }
+      evolution.maps.push_back({map.values, report::scaleFor(map.values, map.name, map.unit)});
+    }
+  }
+}
+
+void addSurfaceMaps(const StepFolder& surface, report::Evolution& evolution) {
+  const Eigen::Index n = evolution.mesh.vertexCount();
+  for (const char* file : {"thickness.shape.gii", "curvature.shape.gii", "sulc.shape.gii"}) {
+    if (!surface.has(file)) continue;
+    if (const auto map = mapNamed(surface.folder / file, n)) {
+      evolution.maps.push_back({map->values, report::scaleFor(map->values, map->name, map->unit)});
+    }
+  }
+  if (!surface.has("regions.label.gii")) return;
+  const io::LabelMap labels = io::readVertexLabels(surface.folder / "regions.label.gii", n);
+  report::EvolutionLabels named{"regions", {}, {}};
+  std::map<Label, std::int32_t> entryOf;
+  for (const io::LabelEntry& entry : labels.table) {
+    if (entry.key == 0) continue;
+    entryOf[entry.key] = static_cast<std::int32_t>(named.legend.size());
+    named.legend.push_back({entry.name, report::colourOfLabel(entry.key)});
+  }
+  for (const Label key : labels.keys) {
+    const auto found = entryOf.find(key);
+    named.entries.push_back(found == entryOf.end() ? -1 : found->second);
+  }
+  evolution.labels.push_back(std::move(named));
+}
+
+/// Before and after from the viewpoint and from the side, filled by the region; sulci painted on
+/// the surface show on the opened patch what was folded.
+void drawBeforeAndAfter(ResultFolder& results, const Unfolded& unfolded,
+                        const StepFolder* surface) {
+  const TriangleMesh& before = unfolded.whole ? *unfolded.whole : unfolded.frames.front();
+  const Vector towards = (centreOf(before, unfolded.region) - *unfolded.viewpoint).normalized();
+  report::FigureView front;
+  front.towards = towards;
+  front.focus = unfolded.region;
+  report::FigureView oblique = front;
+  const Vector across = towards.cross(Vector(0, 0, 1));
+  oblique.towards = towards + 1.7 * (across.norm() > 1e-3 ? across.normalized() : Vector(1, 0, 0));
+  report::SurfacePaint paint;
+  paint.region.setZero(before.vertexCount());
+  for (const std::int32_t v : unfolded.region) paint.region[v] = 1;
+  const auto curvature =
+      surface != nullptr ? mapNamed(surface->folder / "curvature.shape.gii", before.vertexCount())
+                         : std::nullopt;
+  if (curvature) {
+    paint.values = curvature->values;
+    paint.scale = report::scaleFor(paint.values, "", "", report::ColourMap::Diverging);
+  } else {
+    paint.labels = paint.region;
+  }
+  const std::vector<report::Colour> colours = report::coloursOf(paint, before.vertexCount());
+  report::SurfacePictureOptions size;
+  size.width = 520;
+  size.height = 400;
+  report::ReportViews views;
+  views.id = "before-after";
+  views.title = "The patch before and after";
+  views.caption =
+      std::string("From the viewpoint and from the side, with the same colours: ") +
+      (curvature ? "gyri blue, sulci brown." : "the patch coloured, its surroundings pale.") +
+      (unfolded.detached ? " It was unfolded alone, and is drawn apart from the surface." : "");
+  for (const bool folded : {true, false}) {
+    const TriangleMesh& shown = folded ? before : unfolded.frames.back();
+    const report::SurfaceScene scene(shown);
+    for (const report::FigureView& view : {front, oblique}) {
+      views.views.push_back(
+          {std::string(folded ? "before" : "after") +
+               (&view == &front || view.towards == front.towards ? ", from the viewpoint"
+                                                                 : ", from the side"),
+           scene.render(report::cameraOf(shown, view, size.width, size.height), colours,
+                        curvature ? report::Filling::Smooth : report::Filling::Discrete, size)});
+    }
+  }
+  if (curvature) {
+    views.scale = report::scaleFor(curvature->values, curvature->name, curvature->unit,
+                                   report::ColourMap::Diverging);
+  }
+  results.content().views.push_back(std::move(views));
+}
+
+}  // namespace
+
+void showUnfolding(ResultFolder& results, const StepFolder& step) {
+  const Unfolded unfolded = readUnfolded(step);
+  report::Evolution evolution = report::evolutionOf(unfolded.frames);
+  evolution.frameTitles = unfolded.titles;
+  evolution.region = unfolded.region;
+  evolution.detached = unfolded.detached;
+  evolution.viewpoint = unfolded.viewpoint;
+  if (unfolded.detached) {
+    evolution.mesh.faces = withSurroundings(evolution.mesh.faces, *unfolded.whole);
+    evolution.mesh.positions = unfolded.whole->positions;
+  }
+  const StepFolder* surface = results.beside(step, "surface");
+  results.attempt("Maps of the unfolding", [&] { addOwnMaps(step, unfolded, evolution); });
+  if (surface != nullptr) {
+    results.attempt("Maps of the surface", [&] { addSurfaceMaps(*surface, evolution); });
+  }
+  if (!unfolded.region.empty() && unfolded.viewpoint) {
+    results.attempt("Before and after", [&] { drawBeforeAndAfter(results, unfolded, surface); });
+  }
+  // One film a page: of several patches the first.
+  if (!results.content().evolution) results.content().evolution = std::move(evolution);
+}
+
+}  // namespace explica::pipeline

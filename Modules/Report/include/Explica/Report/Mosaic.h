@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Report/SlicePicture.h"
+
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace explica::report {
+
+/// On which side of a slice the person's left is shown.
+enum class SideConvention {
+  Neurological,  ///< left on the left, as seen from behind and above
+  Radiological   ///< left on the right, as seen from the feet and from the front
+};
+
+/// A surface whose cut line is drawn in every tile.
+struct MosaicOutline {
+  const TriangleMesh* mesh = nullptr;  ///< not owned
+  std::string name;                    ///< "white surface": outlines of one name share a switch
+  std::string colour;                  ///< "#ff3b30", for HTML
+};
+
+/// One slice, and the words and lines that lie on it.
+struct MosaicTile {
+  std::string place;                   ///< "x = -12 mm"
+  std::array<std::string, 4> letters;  ///< at left, right, top and bottom: "L", "R", "A", "P"
+  Picture picture;
+  std::vector<std::string> paths;  ///< SVG path data in pixels, one an outline; may be empty
+};
+
+/// Rows of slices.
+struct SliceMosaic {
+  SideConvention convention = SideConvention::Neurological;
+  std::vector<std::pair<std::string, std::string>> outlines;  ///< name and colour
+  std::vector<std::vector<MosaicTile>> rows;                  ///< axial, coronal, sagittal
+};
+
+struct MosaicOptions {
+  int perRow = 7;        ///< slices in each direction, > 0
+  int tileHeight = 220;  ///< pixels
+  SideConvention convention = SideConvention::Neurological;
+};
+
+/// Evenly spaced slices over the box of the outlines, or else of the voxels above 0, in three
+/// directions.
+/// @throws InvalidInput  nothing to show, or an option out of range
+[[nodiscard]] SliceMosaic makeMosaic(const Volume<float>& image,
+                                     const std::vector<MosaicOutline>& outlines,
+                                     const MosaicOptions& options = {});
+/// The same of labels, each in its colour.
+[[nodiscard]] SliceMosaic makeMosaic(const Volume<Label>& labels,
+                                     const MosaicOptions& options = {});
+
+}  // namespace explica::report
+
+namespace explica {
+
+template <>
+struct EnumNames<report::SideConvention> {
+  static constexpr std::array table = {
+      std::pair{report::SideConvention::Neurological, "neurological"},
+      std::pair{report::SideConvention::Radiological, "radiological"}};
+};
+
+}  // namespace explica
