@@ -118,6 +118,10 @@ TEST(Report, RefusesAFolderWithoutRecords) {
   const auto report = explica({"report", folder.path().string()});
   EXPECT_EQ(report.exitCode, 2);
   EXPECT_NE(report.err.find("provenance.json"), std::string::npos) << report;
+  // Nor one that merely holds such a folder.
+  ASSERT_EQ(explica({"phantom", "shell", "--size", "20", "--out", folder / "p"}).exitCode, 0);
+  EXPECT_EQ(explica({"report", folder.path().string()}).exitCode, 2);
+  EXPECT_FALSE(std::filesystem::exists(folder / "report.html"));
 }
 
 }  // namespace

@@ -10,7 +10,6 @@
 #include <cctype>
 #include <cmath>
 #include <cstdio>
-#include <set>
 
 namespace explica::pipeline {
 
@@ -55,16 +54,11 @@ ResultFolder::ResultFolder(const fs::path& folder, const Monitor& monitor,
       add(folder / note.name, note.name);
     }
   }
-  if (notes_.empty() && steps_.empty()) {
-    std::set<fs::path> folders;
-    for (const auto& entry : fs::directory_iterator(folder)) {
-      if (fs::exists(entry.path() / provenance::kRecordName)) folders.insert(entry.path());
-    }
-    for (const fs::path& f : folders) add(f, f.filename().string());
-  }
   if (steps_.empty() && notes_.empty()) {
-    throw InvalidInput(folder.string() +
-                       ": holds no provenance.json; give the --out folder of a command or run");
+    throw InvalidInput(
+        folder.string() +
+        ": no command has written it (it holds no provenance.json); give the --out folder of "
+        "a command or run");
   }
 }
 

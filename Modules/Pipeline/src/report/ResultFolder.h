@@ -39,7 +39,7 @@ struct StepFolder {
 /// A run's or command's folder, read once.
 class ResultFolder {
  public:
-  /// @throws InvalidInput  no record in the folder nor in a folder of it
+  /// @throws InvalidInput  no command has written the folder
   ResultFolder(const std::filesystem::path& folder, const Monitor& monitor,
                report::ReportContent& content);
 

@@ -234,6 +234,7 @@ void showSurfaces(ResultFolder& results, const FolderReportOptions& options) {
                    step->side(),
                    io::readSurface(step->folder / "white.surf.gii").mesh,
                    io::readSurface(step->folder / "pial.surf.gii").mesh,
+                   {},
                    {}});
   }
   if (all.empty()) return;

@@ -28,7 +28,7 @@ void describe(FolderReportOptions& options, Visitor&& visit) {
 /// Reads the records and summaries of the folder and of its step folders, and of the files that it
 /// recognises what pictures, curves and the evolution need.  A file that is missing or cannot be
 /// read leaves its picture out, with a warning and a flag; it never stops the report.
-/// @throws InvalidInput  no record in the folder nor in a folder of it, or an option out of range
+/// @throws InvalidInput  no command has written the folder, or an option is out of range
 [[nodiscard]] report::ReportContent collectReport(const std::filesystem::path& folder,
                                                   const FolderReportOptions& options = {},
                                                   const Monitor& monitor = {});
