@@ -3,18 +3,19 @@
 
 #include "Explica/Collision/CollisionScene.h"
 
-#include "MotionTree.h"
+#include "MeetingKernels.h"
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace explica::collision {
 namespace {
-
-using geometry::Box;
 
 Edges edgesOf(const Faces& faces) {
   std::vector<std::array<std::int32_t, 2>> all;
@@ -32,17 +33,215 @@ Edges edgesOf(const Faces& faces) {
   return edges;
 }
 
-struct VertexRow {
-  std::int32_t vertex;
-  static constexpr Eigen::Index size() { return 1; }
-  std::int32_t operator[](Eigen::Index) const { return vertex; }
+enum class FeatureKind : std::uint8_t { Vertex, Edge, Face };
+
+BoundsPyramid pyramidOf(const CollisionScene& scene, FeatureKind kind,
+                        std::span<const std::int32_t> items, const Positions& start,
+                        const Positions& motion, const Point& origin) {
+  const auto ofVertex = [&](std::int32_t v) {
+    return MotionBounds::ofPoint(start.row(v).transpose() - origin, motion.row(v).transpose());
+  };
+  const auto ofRow = [&](const auto& row) {
+    MotionBounds bounds = ofVertex(row[0]);
+    for (Eigen::Index k = 1; k < row.size(); ++k) bounds.extend(ofVertex(row[k]));
+    return bounds;
+  };
+  std::vector<MotionBounds> bounds(items.size());
+  parallelFor(items.size(), 1024, [&](std::size_t n) {
+    const std::int32_t i = items[n];
+    bounds[n] = kind == FeatureKind::Vertex ? ofVertex(i)
+                : kind == FeatureKind::Edge ? ofRow(scene.edges().row(i))
+                                            : ofRow(scene.faces().row(i));
+  });
+  return BoundsPyramid(bounds);
+}
+
+/// Two pyramids, or one with itself, and how near their items come to count.
+struct BoundsSearch {
+  const BoundsPyramid* first;
+  const BoundsPyramid* second;
+  float squaredReach;  ///< mm^2
+  [[nodiscard]] bool same() const { return first == second; }
 };
+
+/// A block of each whose contents may meet.
+struct BlockPair {
+  int firstLevel, secondLevel;
+  std::int32_t first, second;
+  [[nodiscard]] bool ofItems() const { return firstLevel == 0 && secondLevel == 0; }
+};
+
+/// Calls visit(lane of first, lane of second) for what may meet in a pair of blocks.
+template <class Visit>
+void visitLanes(const BoundsSearch& search, const BlockPair& pair, const Visit& visit) {
+  std::uint64_t near =
+      kernels::mayMeet(search.first->block(pair.firstLevel, pair.first),
+                       search.second->block(pair.secondLevel, pair.second), search.squaredReach);
+  if (search.same() && pair.firstLevel == pair.secondLevel && pair.first == pair.second) {
+    constexpr std::uint64_t kNotBelow = 0x80C0E0F0F8FCFEFFU;  // j >= i of bits 8 i + j
+    constexpr std::uint64_t kItself = 0x8040201008040201U;
+    near &= pair.ofItems() ? kNotBelow & ~kItself : kNotBelow;
+  }
+  for (; near != 0; near &= near - 1) {
+    const int bit = std::countr_zero(near);
+    visit(bit / BoundsBlock::kLanes, bit % BoundsBlock::kLanes);
+  }
+}
+
+/// Appends the pairs among the children of the higher block and the other one, or its children if
+/// they are of one level.
+void openBlocks(const BoundsSearch& search, const BlockPair& pair, std::vector<BlockPair>& opened) {
+  constexpr int kLanes = BoundsBlock::kLanes;
+  if (pair.firstLevel == pair.secondLevel) {
+    visitLanes(search, pair, [&](int i, int j) {
+      opened.push_back({pair.firstLevel - 1, pair.secondLevel - 1, kLanes * pair.first + i,
+                        kLanes * pair.second + j});
+    });
+    return;
+  }
+  const bool firstOpens = pair.firstLevel > pair.secondLevel;
+  unsigned seen = 0;
+  visitLanes(search, pair, [&](int i, int j) { seen |= 1U << (firstOpens ? i : j); });
+  for (; seen != 0; seen &= seen - 1) {
+    BlockPair child = pair;
+    (firstOpens ? child.firstLevel : child.secondLevel) -= 1;
+    std::int32_t& block = firstOpens ? child.first : child.second;
+    block = kLanes * block + std::countr_zero(seen);
+    opened.push_back(child);
+  }
+}
+
+/// Enough pairs of blocks to share out; how many does not depend on threads.
+std::vector<BlockPair> blocksToShareOut(const BoundsSearch& search) {
+  constexpr std::size_t kEnough = 256;
+  if (search.first->levelCount() == 0 || search.second->levelCount() == 0) return {};
+  std::vector<BlockPair> pairs = {
+      {search.first->levelCount() - 1, search.second->levelCount() - 1, 0, 0}};
+  while (pairs.size() < kEnough &&
+         std::any_of(pairs.begin(), pairs.end(), [](const auto& p) { return !p.ofItems(); })) {
+    std::vector<BlockPair> opened;
+    for (const BlockPair& pair : pairs) {
+      if (pair.ofItems()) {
+        opened.push_back(pair);
+      } else {
+        openBlocks(search, pair, opened);
+      }
+    }
+    pairs = std::move(opened);
+  }
+  return pairs;
+}
+
+/// Calls visit(item of first, item of second) for all below a pair of blocks that may meet.
+template <class Visit>
+void visitItems(const BoundsSearch& search, const BlockPair& from, const Visit& visit) {
+  constexpr int kLanes = BoundsBlock::kLanes;
+  std::vector<BlockPair> waiting = {from};
+  while (!waiting.empty()) {
+    const BlockPair pair = waiting.back();
+    waiting.pop_back();
+    if (!pair.ofItems()) {
+      openBlocks(search, pair, waiting);
+      continue;
+    }
+    visitLanes(search, pair, [&](int i, int j) {
+      visit(search.first->item(kLanes * pair.first + i),
+            search.second->item(kLanes * pair.second + j));
+    });
+  }
+}
+
+/// Collects pairs, tests eight at a time and keeps those that come within reach.
+class MeetingFilter {
+ public:
+  MeetingFilter(const CollisionScene& scene, PairKind kind, const Positions& start,
+                const Positions& motion, double reach)
+      : scene_(scene), kind_(kind), start_(start), motion_(motion), reach_(reach) {}
+
+  void add(std::int32_t first, std::int32_t second) {
+    const Pair pair{kind_, first, second};
+    const auto v = scene_.vertices(pair);
+    const bool apart = kind_ == PairKind::VertexFace
+                           ? v[0] != v[1] && v[0] != v[2] && v[0] != v[3]
+                           : v[0] != v[2] && v[0] != v[3] && v[1] != v[2] && v[1] != v[3];
+    if (!apart) return;
+    for (int i = 0; i < 3; ++i) {
+      for (int k = 0; k < 3; ++k) {
+        batch_.at[i][k][count_] = start_(v[i + 1], k) - start_(v[0], k);
+        batch_.motion[i][k][count_] = motion_(v[i + 1], k) - motion_(v[0], k);
+      }
+    }
+    pairs_[count_] = pair;
+    if (++count_ == kernels::PairBatch::kLanes) test();
+  }
+
+  [[nodiscard]] std::vector<Meeting> take() {
+    if (count_ > 0) test();
+    return std::move(kept_);
+  }
+
+ private:
+  void test() {
+    for (int n = count_; n < kernels::PairBatch::kLanes; ++n) {
+      for (int i = 0; i < 3; ++i) {
+        for (int k = 0; k < 3; ++k) batch_.at[i][k][n] = batch_.motion[i][k][n] = 0;
+      }
+    }
+    if (kind_ == PairKind::VertexFace) {
+      kernels::separateVertexFace(batch_);
+    } else {
+      kernels::separateEdgeEdge(batch_);
+    }
+    for (int n = 0; n < count_; ++n) {
+      const double separation = batch_.separation[n], closing = batch_.closing[n];
+      const bool far = separation - std::max(0.0, closing) > reach_;  // not so if not a number
+      if (!far) kept_.push_back({pairs_[n], separation, closing});
+    }
+    count_ = 0;
+  }
+
+  const CollisionScene& scene_;
+  PairKind kind_;
+  const Positions& start_;
+  const Positions& motion_;
+  double reach_;
+  kernels::PairBatch batch_ = {};
+  std::array<Pair, kernels::PairBatch::kLanes> pairs_;
+  int count_ = 0;
+  std::vector<Meeting> kept_;
+};
+
+/// By kind, first and second: a pass that counts, and what few have the same first.
+void sortMeetings(std::vector<Meeting>& meetings, std::size_t firstCount) {
+  std::vector<std::size_t> begin(2 * firstCount + 1, 0);
+  const auto bin = [&](const Meeting& m) {
+    return static_cast<std::size_t>(m.pair.first) +
+           (m.pair.kind == PairKind::VertexFace ? 0 : firstCount);
+  };
+  for (const Meeting& m : meetings) ++begin[bin(m) + 1];
+  for (std::size_t n = 1; n < begin.size(); ++n) begin[n] += begin[n - 1];
+  std::vector<Meeting> sorted(meetings.size());
+  std::vector<std::size_t> at(begin.begin(), begin.end() - 1);
+  for (const Meeting& m : meetings) sorted[at[bin(m)]++] = m;
+  for (std::size_t n = 0; n + 1 < begin.size(); ++n) {
+    if (begin[n + 1] - begin[n] < 2) continue;
+    std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(begin[n]),
+              sorted.begin() + static_cast<std::ptrdiff_t>(begin[n + 1]),
+              [](const Meeting& a, const Meeting& b) { return a.pair.second < b.pair.second; });
+  }
+  meetings = std::move(sorted);
+}
 
 }  // namespace
 
+/// Vertices, edges or faces with a search tree.
+struct CollisionScene::Features {
+  std::vector<std::int32_t> items;
+  BoundsPyramid pyramid;
+};
+
 struct CollisionScene::Surroundings {
-  std::vector<std::int32_t> vertices, edges, faces;
-  MotionTree vertexTree, edgeTree, faceTree;
+  Features vertices, edges, faces;
 };
 
 CollisionScene::CollisionScene(const TriangleMesh& mesh, const std::vector<bool>& vertexMoves)
@@ -54,28 +253,28 @@ CollisionScene::CollisionScene(const TriangleMesh& mesh, const std::vector<bool>
   Surroundings fixed;
   std::vector<bool> used(vertexMoves.size(), false);
   for (Eigen::Index n = 0; n < faces_.size(); ++n) used[faces_.data()[n]] = true;
+  Eigen::AlignedBox3d box;
   for (std::int32_t v = 0; v < static_cast<std::int32_t>(used.size()); ++v) {
-    if (used[v]) (vertexMoves[v] ? moving_.vertices : fixed.vertices).push_back(v);
+    if (!used[v]) continue;
+    (vertexMoves[v] ? movingVertices_ : fixed.vertices.items).push_back(v);
+    if (vertexMoves[v]) box.extend(Point(mesh.positions.row(v).transpose()));
   }
+  if (!box.isEmpty()) origin_ = box.center();
   for (std::int32_t e = 0; e < edges_.rows(); ++e) {
     const bool moves = vertexMoves[edges_(e, 0)] || vertexMoves[edges_(e, 1)];
-    (moves ? moving_.edges : fixed.edges).push_back(e);
+    (moves ? movingEdges_ : fixed.edges.items).push_back(e);
   }
   for (std::int32_t f = 0; f < faces_.rows(); ++f) {
     const bool moves =
         vertexMoves[faces_(f, 0)] || vertexMoves[faces_(f, 1)] || vertexMoves[faces_(f, 2)];
-    (moves ? moving_.faces : fixed.faces).push_back(f);
+    (moves ? movingFaces_ : fixed.faces.items).push_back(f);
   }
   const Positions still = Positions::Zero(mesh.vertexCount(), 3);
-  const auto treeOf = [&](const std::vector<std::int32_t>& items, const auto& rowOf) {
-    std::vector<MovingBox> boxes;
-    boxes.reserve(items.size());
-    for (const std::int32_t i : items) boxes.push_back(movingBox(rowOf(i), mesh.positions, still));
-    return MotionTree(std::move(boxes));
-  };
-  fixed.vertexTree = treeOf(fixed.vertices, [](std::int32_t v) { return VertexRow{v}; });
-  fixed.edgeTree = treeOf(fixed.edges, [this](std::int32_t e) { return edges_.row(e); });
-  fixed.faceTree = treeOf(fixed.faces, [this](std::int32_t f) { return faces_.row(f); });
+  const std::array<Features*, 3> features = {&fixed.vertices, &fixed.edges, &fixed.faces};
+  parallelFor(3, 1, [&](std::size_t n) {
+    features[n]->pyramid = pyramidOf(*this, static_cast<FeatureKind>(n), features[n]->items,
+                                     mesh.positions, still, origin_);
+  });
   fixed_ = std::make_shared<const Surroundings>(std::move(fixed));
 }
 
@@ -94,103 +293,121 @@ FourPoints CollisionScene::points(const Pair& pair, const Positions& positions) 
   return x;
 }
 
-std::vector<Pair> CollisionScene::findPairs(const Positions& start, const Positions& motion,
-                                            double reach) const {
-  constexpr std::size_t kGrain = 256;
-  const auto boxesOf = [&](const std::vector<std::int32_t>& items, const auto& rowOf) {
-    std::vector<MovingBox> boxes(items.size());
-    parallelFor(items.size(), kGrain,
-                [&](std::size_t n) { boxes[n] = movingBox(rowOf(items[n]), start, motion); });
-    return boxes;
-  };
-  const auto edgeRow = [this](std::int32_t e) { return edges_.row(e); };
-  const auto faceRow = [this](std::int32_t f) { return faces_.row(f); };
-  const auto vertexBoxes = boxesOf(moving_.vertices, [](std::int32_t v) { return VertexRow{v}; });
-  const auto edgeBoxes = boxesOf(moving_.edges, edgeRow);
-  const auto faceBoxes = boxesOf(moving_.faces, faceRow);
-  std::array<MotionTree, 2> movingTrees;
-  parallelFor(2, 1,
-              [&](std::size_t n) { movingTrees[n] = MotionTree(n == 0 ? edgeBoxes : faceBoxes); });
-  const MotionTree &movingEdgeTree = movingTrees[0], &movingFaceTree = movingTrees[1];
+std::array<CollisionScene::Features, 3> CollisionScene::movingFeatures(
+    const Positions& start, const Positions& motion) const {
+  std::array<Features, 3> features;
+  features[0].items = movingVertices_;
+  features[1].items = movingEdges_;
+  features[2].items = movingFaces_;
+  parallelFor(3, 1, [&](std::size_t n) {
+    features[n].pyramid =
+        pyramidOf(*this, static_cast<FeatureKind>(n), features[n].items, start, motion, origin_);
+  });
+  return features;
+}
 
-  // Boxes come near more often than what is in them: the distance at the start less the bound of
-  // their approach decides.
-  const auto keepIfNear = [&](std::vector<Pair>& pairs, const Pair& pair) {
-    const auto v = vertices(pair);
-    for (int i = 0; i < (pair.kind == PairKind::VertexFace ? 1 : 2); ++i) {
-      for (int j = pair.kind == PairKind::VertexFace ? 1 : 2; j < 4; ++j) {
-        if (v[i] == v[j]) return;
-      }
-    }
-    FourPoints x, along;
-    for (int i = 0; i < 4; ++i) {
-      x[i] = start.row(v[i]).transpose();
-      along[i] = motion.row(v[i]).transpose();
-    }
-    const double near = reach + approachBound(pair.kind, along);
-    if (squaredDistance(pair.kind, x) <= near * near * (1 + 1e-12)) pairs.push_back(pair);
-  };
+std::vector<Meeting> CollisionScene::findMeetings(const Positions& start, const Positions& motion,
+                                                  double reach) const {
+  const auto moving = movingFeatures(start, motion);
+  const Features &vertices = moving[0], &edges = moving[1], &faces = moving[2];
+  double size = 0;  // of the numbers that are rounded
+  for (const std::int32_t v : movingVertices_) {
+    size = std::max(size, (start.row(v).transpose() - origin_).lpNorm<Eigen::Infinity>() +
+                              motion.row(v).lpNorm<Eigen::Infinity>());
+  }
+  size += reach;
+  constexpr double kSingle = 2e-6, kDouble = 1e-13;  // some roundings of that size
+  const auto boundsReach = static_cast<float>(reach + kSingle * size);
+  const float squaredReach = boundsReach * boundsReach * (1 + 1e-6F);
 
   struct Query {
-    std::size_t count;
-    std::function<void(std::size_t, std::vector<Pair>&)> run;
+    PairKind kind;
+    const Features* first;
+    const Features* second;
   };
-  const std::array<Query, 3> queries = {
-      Query{moving_.vertices.size(),
-            [&](std::size_t n, std::vector<Pair>& pairs) {
-              const std::int32_t v = moving_.vertices[n];
-              const auto visit = [&](std::int32_t f) {
-                keepIfNear(pairs, {PairKind::VertexFace, v, f});
-              };
-              movingFaceTree.visitMeetings(vertexBoxes[n], reach,
-                                           [&](std::int32_t i) { visit(moving_.faces[i]); });
-              fixed_->faceTree.visitMeetings(vertexBoxes[n], reach,
-                                             [&](std::int32_t i) { visit(fixed_->faces[i]); });
-            }},
-      Query{moving_.faces.size(),
-            [&](std::size_t n, std::vector<Pair>& pairs) {
-              fixed_->vertexTree.visitMeetings(faceBoxes[n], reach, [&](std::int32_t i) {
-                keepIfNear(pairs, {PairKind::VertexFace, fixed_->vertices[i], moving_.faces[n]});
-              });
-            }},
-      Query{moving_.edges.size(), [&](std::size_t n, std::vector<Pair>& pairs) {
-              const std::int32_t e = moving_.edges[n];
-              movingEdgeTree.visitMeetings(edgeBoxes[n], reach, [&](std::int32_t i) {
-                if (moving_.edges[i] > e) {
-                  keepIfNear(pairs, {PairKind::EdgeEdge, e, moving_.edges[i]});
-                }
-              });
-              fixed_->edgeTree.visitMeetings(edgeBoxes[n], reach, [&](std::int32_t i) {
-                const std::int32_t other = fixed_->edges[i];
-                keepIfNear(pairs, {PairKind::EdgeEdge, std::min(e, other), std::max(e, other)});
-              });
-            }}};
-
-  std::vector<Pair> all;
+  const std::array<Query, 5> queries = {{{PairKind::VertexFace, &vertices, &faces},
+                                         {PairKind::VertexFace, &vertices, &fixed_->faces},
+                                         {PairKind::VertexFace, &fixed_->vertices, &faces},
+                                         {PairKind::EdgeEdge, &edges, &edges},
+                                         {PairKind::EdgeEdge, &edges, &fixed_->edges}}};
+  struct Task {
+    const Query* query;
+    BoundsSearch search;
+    BlockPair from;
+  };
+  std::vector<Task> tasks;
   for (const Query& query : queries) {
-    std::vector<std::vector<Pair>> found((query.count + kGrain - 1) / kGrain);
-    parallelForBlocks(query.count, kGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t n = begin; n < end; ++n) query.run(n, found[begin / kGrain]);
-    });
-    for (const auto& block : found) all.insert(all.end(), block.begin(), block.end());
+    const BoundsSearch search{&query.first->pyramid, &query.second->pyramid, squaredReach};
+    for (const BlockPair& pair : blocksToShareOut(search)) tasks.push_back({&query, search, pair});
   }
+  std::vector<std::vector<Meeting>> found(tasks.size());
+  parallelFor(tasks.size(), 4, [&](std::size_t n) {
+    const Query& query = *tasks[n].query;
+    MeetingFilter filter(*this, query.kind, start, motion, reach + kDouble * size);
+    visitItems(tasks[n].search, tasks[n].from, [&](std::int32_t i, std::int32_t j) {
+      const std::int32_t first = query.first->items[i], second = query.second->items[j];
+      if (query.kind == PairKind::VertexFace) {
+        filter.add(first, second);
+      } else {
+        filter.add(std::min(first, second), std::max(first, second));
+      }
+    });
+    found[n] = filter.take();
+  });
+  std::vector<Meeting> all;
+  std::size_t count = 0;
+  for (const auto& part : found) count += part.size();
+  all.reserve(count);
+  for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
+  sortMeetings(all, static_cast<std::size_t>(std::max<Eigen::Index>(start.rows(), edges_.rows())));
   return all;
 }
+
+std::vector<Pair> CollisionScene::findPairs(const Positions& start, const Positions& motion,
+                                            double reach) const {
+  const std::vector<Meeting> meetings = findMeetings(start, motion, reach);
+  std::vector<Pair> pairs(meetings.size());
+  for (std::size_t n = 0; n < pairs.size(); ++n) pairs[n] = meetings[n].pair;
+  return pairs;
+}
+
+namespace {
+
+/// The least of the safe times of `count` pairs, those that timeOf(n, limit) gives.
+template <class TimeOf>
+double leastTime(std::size_t count, double limit, const TimeOf& timeOf) {
+  constexpr std::size_t kGrain = 512;
+  std::vector<double> safe((count + kGrain - 1) / kGrain, limit);
+  parallelForBlocks(count, kGrain, [&](std::size_t begin, std::size_t end) {
+    double& mine = safe[begin / kGrain];
+    for (std::size_t n = begin; n < end; ++n) mine = std::min(mine, timeOf(n, mine));
+  });
+  for (const double t : safe) limit = std::min(limit, t);
+  return limit;
+}
+
+}  // namespace
 
 double largestSafeStep(const CollisionScene& scene, std::span<const Pair> pairs,
                        const Positions& start, const Positions& motion, double limit,
                        const AdvanceOptions& options) {
-  constexpr std::size_t kGrain = 512;
-  std::vector<double> safe((pairs.size() + kGrain - 1) / kGrain, limit);
-  parallelForBlocks(pairs.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    double& mine = safe[begin / kGrain];
-    for (std::size_t n = begin; n < end; ++n) {
-      mine = std::min(mine, safeTime(pairs[n].kind, scene.points(pairs[n], start),
-                                     scene.points(pairs[n], motion), mine, options));
-    }
+  return leastTime(pairs.size(), limit, [&](std::size_t n, double atMost) {
+    return safeTime(pairs[n].kind, scene.points(pairs[n], start), scene.points(pairs[n], motion),
+                    atMost, options);
   });
-  for (const double t : safe) limit = std::min(limit, t);
-  return limit;
+}
+
+double largestSafeStep(const CollisionScene& scene, std::span<const Meeting> meetings,
+                       const Positions& start, const Positions& motion, double limit,
+                       const AdvanceOptions& options) {
+  constexpr double kRoundDown = 1 - 1e-9;
+  return leastTime(meetings.size(), limit, [&](std::size_t n, double atMost) {
+    const Meeting& m = meetings[n];
+    const double room = kRoundDown * (1 - options.keptShare) * m.separation;
+    if (room > 0 && atMost * m.closing <= room) return atMost;
+    return safeTime(m.pair.kind, scene.points(m.pair, start), scene.points(m.pair, motion), atMost,
+                    options);
+  });
 }
 
 }  // namespace explica::collision

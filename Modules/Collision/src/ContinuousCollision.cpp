@@ -18,19 +18,47 @@ constexpr double kAdvanceShare = 0.9;
 /// Of the limit: below it further advances of a pair that closes do not matter.
 constexpr double kSmallAdvance = 1e-6;
 
+/// Of a pair along the line that joins its nearest points: planes across that line keep the two
+/// features apart, and move with the fastest of their points.
+struct AlongLine {
+  double separation = 0;  ///< mm, that the distance is not below
+  double closing = 0;     ///< mm per unit time by which it falls at most, until any later time
+};
+
+AlongLine alongLine(PairKind kind, const FourPoints& x, const FourPoints& motion) {
+  const Vector line = findProximity(kind, x).difference;
+  const double length = line.norm();
+  if (!(length > 1e-140)) return {};
+  const Vector towardsFirst = line / length;
+  std::array<double, 4> place, speed;
+  double size = 0, fastest = 0;
+  for (int i = 0; i < 4; ++i) {
+    place[i] = towardsFirst.dot(x[i] - x[0]);
+    speed[i] = towardsFirst.dot(motion[i] - motion[0]);
+    size = std::max({size, x[i].lpNorm<Eigen::Infinity>(), std::abs(place[i])});
+    fastest = std::max(fastest, motion[i].lpNorm<Eigen::Infinity>());
+  }
+  const bool edges = kind == PairKind::EdgeEdge;
+  const auto split = [&](const std::array<double, 4>& of) {
+    const double first = edges ? std::min(of[0], of[1]) : of[0];
+    const double second = edges ? std::max(of[2], of[3]) : std::max({of[1], of[2], of[3]});
+    return first - second;
+  };
+  constexpr double kRound = 1e-14;  // of the size: some tens of roundings
+  return {split(place) - kRound * size, -split(speed) + kRound * fastest};
+}
+
 }  // namespace
 
 double approachBound(PairKind kind, const FourPoints& motion) {
-  // A common translation approaches nothing; without it the bound is tighter.
-  const Vector mean = 0.25 * (motion[0] + motion[1] + motion[2] + motion[3]);
-  std::array<double, 4> speed;
-  for (int i = 0; i < 4; ++i) speed[i] = (motion[i] - mean).norm();
-  const double bound = kind == PairKind::VertexFace
-                           ? speed[0] + std::max({speed[1], speed[2], speed[3]})
-                           : std::max(speed[0], speed[1]) + std::max(speed[2], speed[3]);
-  double size = 0;
+  // Any two points of the features part or approach no faster than the fastest two corners.
+  const int split = kind == PairKind::VertexFace ? 1 : 2;
+  double bound = 0, size = 0;
+  for (int i = 0; i < split; ++i) {
+    for (int j = split; j < 4; ++j) bound = std::max(bound, (motion[i] - motion[j]).squaredNorm());
+  }
   for (int i = 0; i < 4; ++i) size = std::max(size, motion[i].lpNorm<Eigen::Infinity>());
-  return kRoundUp * bound + 1e-15 * size;
+  return kRoundUp * std::sqrt(bound) + 1e-15 * size;
 }
 
 double safeTime(PairKind kind, const FourPoints& x, const FourPoints& motion, double limit,
@@ -43,14 +71,21 @@ double safeTime(PairKind kind, const FourPoints& x, const FourPoints& motion, do
   const double gap = options.keptShare * start;
   if (speed * limit <= start - gap) return limit;
 
+  // Time in which the distance cannot fall to the gap, whatever the features do in between.
+  const auto freeTime = [&](const FourPoints& now, double distance) {
+    const AlongLine line = alongLine(kind, now, motion);
+    const double all = (distance - gap) / speed;
+    if (!(line.separation > gap)) return all;
+    return line.closing > 0 ? std::max(all, (line.separation - gap) / line.closing) : kInfinity;
+  };
   double time = 0, distance = start;
+  FourPoints now = x;
   for (int n = 0; n < options.maxAdvances; ++n) {
-    const double next = time + kAdvanceShare * (distance - gap) / speed;
+    const double next = time + kAdvanceShare * freeTime(now, distance);
     if (next >= limit) return limit;
     if (next <= time) return time;  // no advance left that floating point can tell
     const bool small = next - time < kSmallAdvance * limit;
-    FourPoints now = x;
-    for (int i = 0; i < 4; ++i) now[i] += next * motion[i];
+    for (int i = 0; i < 4; ++i) now[i] = x[i] + next * motion[i];
     time = next;
     const double before = std::exchange(distance, distanceBound(kind, now));
     // Pairs almost in contact that open start with small advances, which grow.

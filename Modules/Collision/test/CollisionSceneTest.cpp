@@ -6,6 +6,7 @@
 #include "Explica/Core/Parallel.h"
 #include "Explica/Geometry/Fixtures.h"
 #include "Explica/Geometry/SelfIntersection.h"
+#include "Samples.h"
 
 #include <gtest/gtest.h>
 
@@ -98,6 +99,53 @@ TEST(CollisionScene, FindsAllPairsOfWhatMovesTogetherOverFar) {
   const auto expected = pairsByBruteForce(s, scene, 1.0);
   EXPECT_GT(expected.size(), 500u);
   for (const Pair& pair : expected) EXPECT_TRUE(found.count(pair));
+}
+
+TEST(CollisionScene, WhatMeetingsKnowHoldsAllTheWay) {
+  Setting s = foldedCap(0.05);
+  const CollisionScene scene(s.mesh, s.moves);
+  for (const std::int32_t v : scene.movingVertices())
+    s.motion.row(v) += 2 * s.mesh.positions.row(v);
+  const auto meetings = scene.findMeetings(s.mesh.positions, s.motion, 2);
+  ASSERT_GT(meetings.size(), 300u);
+  std::size_t opening = 0;
+  for (const Meeting& m : meetings) {
+    const FourPoints x = scene.points(m.pair, s.mesh.positions),
+                     by = scene.points(m.pair, s.motion);
+    EXPECT_NEAR(m.separation, std::sqrt(squaredDistance(m.pair.kind, x)), 1e-12);
+    EXPECT_LE(m.separation - std::max(0.0, m.closing), 2 + 1e-9);
+    opening += m.closing <= 0;
+    for (int k = 0; k <= 10; ++k) {
+      const double t = k / 10.0;
+      const double distance = std::sqrt(squaredDistance(m.pair.kind, moved(x, by, t)));
+      ASSERT_GE(distance, m.separation - std::max(0.0, t * m.closing) - 1e-12);
+    }
+  }
+  EXPECT_GT(opening, 100u);
+}
+
+TEST(CollisionScene, WhatIsFoundHangsOnNothingButTheArguments) {
+  // Another scene with the same moving part: other trees, as after a restart elsewhere on the way.
+  const Setting s = foldedCap(0.5);
+  const CollisionScene scene(s.mesh, s.moves);
+  TriangleMesh elsewhere = s.mesh;
+  for (const std::int32_t v : scene.movingVertices()) elsewhere.positions.row(v) *= 1.3;
+  const CollisionScene restarted(elsewhere, s.moves);
+  EXPECT_EQ(scene.findPairs(s.mesh.positions, s.motion, 0.5),
+            restarted.findPairs(s.mesh.positions, s.motion, 0.5));
+  const auto pairs = scene.findPairs(s.mesh.positions, s.motion, 0.5);
+  EXPECT_TRUE(std::is_sorted(pairs.begin(), pairs.end()));
+}
+
+TEST(CollisionScene, MeetingsGiveTheSafeStepOfTheirPairs) {
+  Setting s = foldedCap(2);
+  const CollisionScene scene(s.mesh, s.moves);
+  const auto meetings = scene.findMeetings(s.mesh.positions, s.motion, 0.1);
+  const auto pairs = scene.findPairs(s.mesh.positions, s.motion, 0.1);
+  const double byPairs = largestSafeStep(scene, pairs, s.mesh.positions, s.motion);
+  EXPECT_LT(byPairs, 1);
+  EXPECT_GT(byPairs, 0);
+  EXPECT_NEAR(largestSafeStep(scene, meetings, s.mesh.positions, s.motion), byPairs, 1e-12);
 }
 
 TEST(CollisionScene, RingFacesMoveThoughSomeOfTheirVerticesDoNot) {

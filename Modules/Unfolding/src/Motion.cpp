@@ -64,8 +64,10 @@ class Welds {
 }  // namespace
 
 void findSafeStep(const Contacts& contacts, const Positions& x, Motion& motion) {
-  motion.pairs = contacts.scene().findPairs(x, motion.by, contacts.range());
-  motion.safe = collision::largestSafeStep(contacts.scene(), motion.pairs, x, motion.by);
+  const auto meetings = contacts.scene().findMeetings(x, motion.by, contacts.range());
+  motion.safe = collision::largestSafeStep(contacts.scene(), meetings, x, motion.by);
+  motion.pairs.resize(meetings.size());
+  for (std::size_t n = 0; n < meetings.size(); ++n) motion.pairs[n] = meetings[n].pair;
 }
 
 std::vector<Pair> blockingPairs(const Contacts& contacts, const Positions& x,

@@ -19,6 +19,14 @@ struct Pair {
   friend auto operator<=>(const Pair&, const Pair&) = default;  // NOLINT(modernize-use-nullptr)
 };
 
+/// A pair that may meet while it moves, and how near it is to that.
+struct Meeting {
+  Pair pair;
+  double separation = 0;  ///< mm: at the start they are not nearer; NaN if they touch
+  /// mm: at any time t in [0, 1] they are not nearer than separation - max(0, t * closing).
+  double closing = 0;
+};
+
 /// A surface of which some vertices move, and who can meet whom in it.
 ///
 /// Every vertex-face and edge-edge pair with at least one moving vertex counts, except those that
@@ -29,8 +37,13 @@ class CollisionScene {
   CollisionScene(const TriangleMesh& mesh, const std::vector<bool>& vertexMoves);
 
   /// All pairs that come within `reach` mm of each other at some time in [0, 1] while every vertex
-  /// goes straight from `start` to `start + motion`; a superset by little.  Fixed vertices must
-  /// stand where they stood at construction.  Threaded; order and content do not depend on threads.
+  /// goes straight from `start` to `start + motion`; a superset by little.  Sorted; threaded. Which
+  /// pairs are in it hangs on nothing but the arguments.  Fixed vertices must stand where they
+  /// stood at construction.
+  [[nodiscard]] std::vector<Meeting> findMeetings(const Positions& start, const Positions& motion,
+                                                  double reach) const;
+
+  /// The pairs of findMeetings().
   [[nodiscard]] std::vector<Pair> findPairs(const Positions& start, const Positions& motion,
                                             double reach) const;
 
@@ -40,23 +53,29 @@ class CollisionScene {
 
   [[nodiscard]] const Edges& edges() const { return edges_; }
   [[nodiscard]] const Faces& faces() const { return faces_; }
-  [[nodiscard]] const std::vector<std::int32_t>& movingVertices() const { return moving_.vertices; }
-  [[nodiscard]] const std::vector<std::int32_t>& movingEdges() const { return moving_.edges; }
-  [[nodiscard]] const std::vector<std::int32_t>& movingFaces() const { return moving_.faces; }
+  [[nodiscard]] const std::vector<std::int32_t>& movingVertices() const { return movingVertices_; }
+  [[nodiscard]] const std::vector<std::int32_t>& movingEdges() const { return movingEdges_; }
+  [[nodiscard]] const std::vector<std::int32_t>& movingFaces() const { return movingFaces_; }
 
  private:
-  struct Moving {
-    std::vector<std::int32_t> vertices, edges, faces;
-  };
+  struct Features;
   struct Surroundings;
+  [[nodiscard]] std::array<Features, 3> movingFeatures(const Positions& start,
+                                                       const Positions& motion) const;
   Faces faces_;
   Edges edges_;  ///< those of any face, in lexicographic order
-  Moving moving_;
+  std::vector<std::int32_t> movingVertices_, movingEdges_, movingFaces_;
+  Point origin_ = Point::Zero();               ///< of single-precision bounds
   std::shared_ptr<const Surroundings> fixed_;  ///< what does not move, with its search trees
 };
 
 /// Largest step t in [0, limit] that brings no pair to contact; see safeTime().  Threaded.
 [[nodiscard]] double largestSafeStep(const CollisionScene& scene, std::span<const Pair> pairs,
+                                     const Positions& start, const Positions& motion,
+                                     double limit = 1, const AdvanceOptions& options = {});
+
+/// The same; meetings that hold of the same start and motion save what they know.
+[[nodiscard]] double largestSafeStep(const CollisionScene& scene, std::span<const Meeting> meetings,
                                      const Positions& start, const Positions& motion,
                                      double limit = 1, const AdvanceOptions& options = {});
 

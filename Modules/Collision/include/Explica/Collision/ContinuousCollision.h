@@ -14,11 +14,12 @@ struct AdvanceOptions {
 
 /// Largest t found in [0, limit] such that for every time in [0, t] the pair x + time * motion
 /// stays apart by `keptShare` of its distance at the start, by additive conservative advancement
-/// [Li2021].
+/// [Li2021] that also knows how fast the features close along the line between their nearest
+/// points.
 ///
-/// Conservative in floating point: each advance uses distanceBound() and a speed bound that is
-/// rounded up, so that no contact in [0, t] is missed.  The result may be
-/// smaller than the true time; it is 0 for a pair that already touches.
+/// Conservative in floating point: each advance uses distances that are rounded down and speeds
+/// that are rounded up, so that no contact in [0, t] is missed.  The result may be smaller than the
+/// true time; it is 0 for a pair that already touches.
 [[nodiscard]] double safeTime(PairKind kind, const FourPoints& x, const FourPoints& motion,
                               double limit = 1, const AdvanceOptions& options = {});
 
