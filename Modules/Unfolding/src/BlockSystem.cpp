@@ -20,7 +20,7 @@ void BlockSystem::reset(std::int32_t pointCount, Couplings couplings) {
 }
 
 void BlockSystem::layOut() {
-  place_ = eliminationPlaces(count_, couplings_);
+  place_ = geometry::eliminationPlaces(count_, couplings_);
   pattern_.begin.assign(static_cast<std::size_t>(count_) + 1, 0);
   for (std::int32_t n = 0; n < count_; ++n) pattern_.begin[n + 1] = 1;
   for (const auto& [i, j] : couplings_) ++pattern_.begin[std::min(place_[i], place_[j]) + 1];

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "BlockCholesky.h"
-
 #include "Explica/Core/Types.h"
+#include "Explica/Geometry/BlockCholesky.h"
 
 #include <utility>
 #include <vector>
@@ -33,7 +32,7 @@ class BlockSystem {
   /// @return false if the matrix is not positive definite to working precision
   [[nodiscard]] bool solve(const Positions& rightSide, Positions& solution);
 
-  [[nodiscard]] const BlockCholesky& factor() const { return factor_; }
+  [[nodiscard]] const geometry::BlockCholesky<3>& factor() const { return factor_; }
 
  private:
   void layOut();
@@ -41,10 +40,10 @@ class BlockSystem {
   std::int32_t count_ = 0;
   Couplings couplings_;
   std::vector<std::int32_t> place_;      ///< position of each point in the elimination order
-  BlockPattern pattern_;                 ///< in elimination order
+  geometry::BlockPattern pattern_;                 ///< in elimination order
   std::vector<Eigen::Matrix3d> blocks_;  ///< of the pattern's entries; of diagonal ones the lower
                                          ///< triangle counts
-  BlockCholesky factor_;
+  geometry::BlockCholesky<3> factor_;
 };
 
 }  // namespace explica::unfolding

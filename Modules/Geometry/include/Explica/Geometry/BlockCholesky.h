@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-namespace explica::unfolding {
+namespace explica::geometry {
 
-/// Pattern of a symmetric matrix of 3 x 3 blocks: block rows >= column of each column, ascending
+/// Pattern of a symmetric matrix of square blocks: block rows >= column of each column, ascending
 /// and the diagonal first.
 struct BlockPattern {
   std::vector<std::int32_t> begin;  ///< N + 1
@@ -26,24 +26,27 @@ struct BlockPattern {
 [[nodiscard]] std::vector<std::int32_t> eliminationPlaces(
     std::int32_t count, std::span<const std::pair<std::int32_t, std::int32_t>> edges);
 
-/// Cholesky factorisation of a sparse symmetric positive definite matrix of 3 x 3 blocks by the
+/// Cholesky factorisation of a sparse symmetric positive definite matrix of Size x Size blocks by the
 /// multifrontal method with supernodes [Duff1983, Liu1992]: columns with like rows are eliminated
 /// together in one dense front, and what remains of it is added to the front of their parent.
 ///
 /// Disjoint subtrees of fronts run on several threads, large fronts above them are cut into tiles.
 /// Which number is added to which and when depends on the pattern only, so that results do not
 /// depend on the number of threads.
+template <int Size>
 class BlockCholesky {
  public:
+  using Block = Eigen::Matrix<double, Size, Size>;
+
   /// Finds the fronts; the pattern should come from an order of eliminationPlaces.
   void analyse(const BlockPattern& pattern);
 
-  /// @param blocks  one 3 x 3 block per entry of the pattern
+  /// @param blocks  one block per entry of the pattern
   /// @return false if the matrix is not positive definite to working precision
   [[nodiscard]] bool factorise(const BlockPattern& pattern,
-                               std::span<const Eigen::Matrix3d> blocks);
+                               std::span<const Block> blocks);
 
-  /// Replaces the right side (3 N) by the solution.
+  /// Replaces the right side (Size * N) by the solution.
   void solve(Eigen::VectorXd& x) const;
 
   /// Numbers in the factor, zeros of joined supernodes included.
@@ -61,9 +64,9 @@ class BlockCholesky {
     std::int64_t factorBegin = 0;  ///< of its height x width columns in factor_
     double work = 0;               ///< of the subtree
     [[nodiscard]] std::int32_t below() const { return rowsEnd - rowsBegin; }
-    [[nodiscard]] Eigen::Index width() const { return 3 * static_cast<Eigen::Index>(columns); }
+    [[nodiscard]] Eigen::Index width() const { return Size * static_cast<Eigen::Index>(columns); }
     [[nodiscard]] Eigen::Index height() const {
-      return width() + 3 * static_cast<Eigen::Index>(below());
+      return width() + Size * static_cast<Eigen::Index>(below());
     }
   };
 
@@ -71,7 +74,7 @@ class BlockCholesky {
   void findRows(const BlockPattern& pattern);
   void schedule();
   bool eliminate(std::int32_t f, const BlockPattern& pattern,
-                 std::span<const Eigen::Matrix3d> blocks, bool tiled);
+                 std::span<const Block> blocks, bool tiled);
 
   std::vector<Front> fronts_;
   std::vector<std::int32_t> rows_;
@@ -86,4 +89,7 @@ class BlockCholesky {
   double operations_ = 0;
 };
 
-}  // namespace explica::unfolding
+extern template class BlockCholesky<2>;
+extern template class BlockCholesky<3>;
+
+}  // namespace explica::geometry

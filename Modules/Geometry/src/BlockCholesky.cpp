@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
-#include "BlockCholesky.h"
+#include "Explica/Geometry/BlockCholesky.h"
 
 #include "Explica/Core/Parallel.h"
 
@@ -13,7 +13,7 @@
 #include <atomic>
 #include <numeric>
 
-namespace explica::unfolding {
+namespace explica::geometry {
 namespace {
 
 using Panel = Eigen::Map<Eigen::MatrixXd>;
@@ -85,20 +85,19 @@ std::vector<std::int32_t> postorderPlaces(const std::vector<std::int32_t>& paren
   return place;
 }
 
-/// Adds the lower triangle of a child's remainder, in 3 x 3 blocks, into its parent's front.
+/// Adds the lower triangle of a child's remainder, block by block, into its parent's front.
+template <int Size>
 void extendAdd(const Eigen::MatrixXd& update, std::span<const std::int32_t> parentRow,
                Eigen::Index width, Panel& panel, Eigen::MatrixXd& rest) {
   const auto count = static_cast<Eigen::Index>(parentRow.size());
   for (Eigen::Index j = 0; j < count; ++j) {
-    const Eigen::Index column = 3 * static_cast<Eigen::Index>(parentRow[j]);
-    for (int k = 0; k < 3; ++k) {
-      const double* from = &update(0, 3 * j + k);
+    const Eigen::Index column = Size * static_cast<Eigen::Index>(parentRow[j]);
+    for (int k = 0; k < Size; ++k) {
+      const double* from = &update(0, Size * j + k);
       double* to = column < width ? &panel(0, column + k) : &rest(0, column - width + k) - width;
       for (Eigen::Index i = j; i < count; ++i) {
-        double* at = to + 3 * static_cast<Eigen::Index>(parentRow[i]);
-        at[0] += from[3 * i];
-        at[1] += from[3 * i + 1];
-        at[2] += from[3 * i + 2];
+        double* at = to + Size * static_cast<Eigen::Index>(parentRow[i]);
+        for (int l = 0; l < Size; ++l) at[l] += from[Size * i + l];
       }
     }
   }
@@ -192,7 +191,8 @@ std::vector<std::int32_t> eliminationPlaces(
   return place;
 }
 
-void BlockCholesky::analyse(const BlockPattern& pattern) {
+template <int Size>
+void BlockCholesky<Size>::analyse(const BlockPattern& pattern) {
   findFronts(pattern);
   findRows(pattern);
   schedule();
@@ -200,7 +200,8 @@ void BlockCholesky::analyse(const BlockPattern& pattern) {
 
 /// Supernodes: runs of columns with like rows, and then, where few zeros are taken in, a run with
 /// the run of its parent.
-void BlockCholesky::findFronts(const BlockPattern& pattern) {
+template <int Size>
+void BlockCholesky<Size>::findFronts(const BlockPattern& pattern) {
   const std::int32_t n = pattern.count();
   const BlockPattern upper = transposed(pattern);
   const std::vector<std::int32_t> parent = eliminationTree(upper);
@@ -279,7 +280,8 @@ void BlockCholesky::findFronts(const BlockPattern& pattern) {
   }
 }
 
-void BlockCholesky::findRows(const BlockPattern& pattern) {
+template <int Size>
+void BlockCholesky<Size>::findRows(const BlockPattern& pattern) {
   rows_.clear();
   std::vector<std::int32_t> seen(static_cast<std::size_t>(pattern.count()), -1);
   for (std::size_t f = 0; f < fronts_.size(); ++f) {
@@ -317,7 +319,8 @@ void BlockCholesky::findRows(const BlockPattern& pattern) {
   }
 }
 
-void BlockCholesky::schedule() {
+template <int Size>
+void BlockCholesky<Size>::schedule() {
   factorSize_ = 0;
   operations_ = 0;
   firstOfSubtree_.resize(fronts_.size());
@@ -349,13 +352,14 @@ void BlockCholesky::schedule() {
   }
 }
 
-bool BlockCholesky::eliminate(std::int32_t f, const BlockPattern& pattern,
-                              std::span<const Eigen::Matrix3d> blocks, bool tiled) {
+template <int Size>
+bool BlockCholesky<Size>::eliminate(std::int32_t f, const BlockPattern& pattern,
+                              std::span<const Block> blocks, bool tiled) {
   const Front& front = fronts_[f];
   Panel panel(factor_.data() + front.factorBegin, front.height(), front.width());
   panel.setZero();
   Eigen::MatrixXd& rest = updates_[f];
-  rest.setZero(3 * front.below(), 3 * front.below());
+  rest.setZero(Size * front.below(), Size * front.below());
   for (std::int32_t j = 0; j < front.columns; ++j) {
     std::int32_t at = front.rowsBegin;
     for (std::int32_t e = pattern.begin[front.first + j]; e < pattern.begin[front.first + j + 1];
@@ -366,20 +370,21 @@ bool BlockCholesky::eliminate(std::int32_t f, const BlockPattern& pattern,
         while (rows_[at] < row) ++at;
         place = front.columns + at - front.rowsBegin;
       }
-      panel.block<3, 3>(3 * place, 3 * j) = blocks[e];
+      panel.template block<Size, Size>(Size * place, Size * j) = blocks[e];
     }
   }
   for (const std::int32_t child : children_[f]) {
     const std::span<const std::int32_t> parentRow(parentRow_.data() + fronts_[child].rowsBegin,
                                                   static_cast<std::size_t>(fronts_[child].below()));
-    extendAdd(updates_[child], parentRow, front.width(), panel, rest);
+    extendAdd<Size>(updates_[child], parentRow, front.width(), panel, rest);
     updates_[child].resize(0, 0);
   }
   return eliminateDense(panel, rest, tiled);
 }
 
-bool BlockCholesky::factorise(const BlockPattern& pattern,
-                              std::span<const Eigen::Matrix3d> blocks) {
+template <int Size>
+bool BlockCholesky<Size>::factorise(const BlockPattern& pattern,
+                              std::span<const Block> blocks) {
   factor_.resize(static_cast<std::size_t>(factorSize_));
   updates_.assign(fronts_.size(), Eigen::MatrixXd());
   std::atomic<bool> positive = true;
@@ -395,7 +400,8 @@ bool BlockCholesky::factorise(const BlockPattern& pattern,
   return positive;
 }
 
-void BlockCholesky::solve(Eigen::VectorXd& x) const {
+template <int Size>
+void BlockCholesky<Size>::solve(Eigen::VectorXd& x) const {
   Eigen::VectorXd below;
   const auto columnsOf = [&](const Front& front) {
     return Eigen::Map<const Eigen::MatrixXd>(factor_.data() + front.factorBegin, front.height(),
@@ -403,24 +409,27 @@ void BlockCholesky::solve(Eigen::VectorXd& x) const {
   };
   for (const Front& front : fronts_) {
     const auto columns = columnsOf(front);
-    auto own = x.segment(3 * front.first, front.width());
-    columns.topRows(front.width()).triangularView<Eigen::Lower>().solveInPlace(own);
-    below.noalias() = columns.bottomRows(3 * front.below()) * own;
+    auto own = x.segment(Size * front.first, front.width());
+    columns.topRows(front.width()).template triangularView<Eigen::Lower>().solveInPlace(own);
+    below.noalias() = columns.bottomRows(Size * front.below()) * own;
     for (std::int32_t n = 0; n < front.below(); ++n) {
-      x.segment<3>(3 * rows_[front.rowsBegin + n]) -= below.segment<3>(3 * n);
+      x.template segment<Size>(Size * rows_[front.rowsBegin + n]) -= below.template segment<Size>(Size * n);
     }
   }
   for (auto front = fronts_.rbegin(); front != fronts_.rend(); ++front) {
     const auto columns = columnsOf(*front);
-    below.resize(3 * front->below());
+    below.resize(Size * front->below());
     for (std::int32_t n = 0; n < front->below(); ++n) {
-      below.segment<3>(3 * n) = x.segment<3>(3 * rows_[front->rowsBegin + n]);
+      below.template segment<Size>(Size * n) = x.template segment<Size>(Size * rows_[front->rowsBegin + n]);
     }
-    auto own = x.segment(3 * front->first, front->width());
+    auto own = x.segment(Size * front->first, front->width());
     for (Eigen::Index c = 0; c < own.size(); ++c)
       own[c] -= columns.col(c).tail(below.size()).dot(below);
-    columns.topRows(front->width()).triangularView<Eigen::Lower>().transpose().solveInPlace(own);
+    columns.topRows(front->width()).template triangularView<Eigen::Lower>().transpose().solveInPlace(own);
   }
 }
 
-}  // namespace explica::unfolding
+template class BlockCholesky<2>;
+template class BlockCholesky<3>;
+
+}  // namespace explica::geometry
