@@ -3,9 +3,10 @@
 
 #include "Explica/Geometry/BlockCholesky.h"
 
+#include "DenseKernels.h"
+
 #include "Explica/Core/Parallel.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
 
@@ -103,57 +104,76 @@ void extendAdd(const Eigen::MatrixXd& update, std::span<const std::int32_t> pare
   }
 }
 
-constexpr Eigen::Index kPanel = 96;  // columns eliminated at a time: a panel of them stays in cache
-constexpr Eigen::Index kTile = 192;  // columns of the trailing matrix updated by one task
+using kernels::DenseBlock;
 
-/// Lower triangle of `trailing` -= below * below^T, by columns of tiles.
-template <class Trailing, class Below>
-void updateTrailing(Trailing trailing, const Below& below, bool tiled) {
-  const Eigen::Index size = trailing.rows();
-  const auto tile = [&](std::size_t n) {
-    const Eigen::Index begin = static_cast<Eigen::Index>(n) * kTile;
-    const Eigen::Index count = std::min(kTile, trailing.cols() - begin);
-    trailing.block(begin, begin, size - begin, count).noalias() -=
-        below.bottomRows(size - begin) * below.middleRows(begin, count).transpose();
+constexpr std::ptrdiff_t kPanel = 96;  // columns eliminated before those to their right follow
+constexpr std::ptrdiff_t kTile = 192;  // rows or columns of what one task updates
+
+/// Calls part(begin, count) for tiles of [0, size), on several threads if `tiled`.
+template <class Part>
+void inTiles(std::ptrdiff_t size, bool tiled, const Part& part) {
+  const auto one = [&](std::size_t n) {
+    const std::ptrdiff_t begin = static_cast<std::ptrdiff_t>(n) * kTile;
+    part(begin, std::min(kTile, size - begin));
   };
-  const auto tiles = static_cast<std::size_t>((trailing.cols() + kTile - 1) / kTile);
+  const auto tiles = static_cast<std::size_t>((size + kTile - 1) / kTile);
   if (tiled) {
-    parallelFor(tiles, 1, tile);
+    parallelFor(tiles, 1, one);
   } else {
-    for (std::size_t n = 0; n < tiles; ++n) tile(n);
+    for (std::size_t n = 0; n < tiles; ++n) one(n);
   }
 }
 
+DenseBlock partOf(const DenseBlock& of, std::ptrdiff_t row, std::ptrdiff_t column,
+                  std::ptrdiff_t rows, std::ptrdiff_t columns) {
+  return {of.at(row, column), rows, columns, of.stride};
+}
+
+/// Eliminates columns first ... first + count - 1 of the panel, a few at a time.
+bool eliminateColumns(const DenseBlock& panel, std::ptrdiff_t first, std::ptrdiff_t count,
+                      bool tiled) {
+  const std::ptrdiff_t end = first + count;
+  for (std::ptrdiff_t c = first; c < end; c += kernels::kMostColumns) {
+    const std::ptrdiff_t own = std::min(kernels::kMostColumns, end - c), next = c + own;
+    const DenseBlock corner = partOf(panel, c, c, own, own);
+    if (!kernels::factoriseCorner(corner)) return false;
+    inTiles(panel.rows - next, tiled, [&](std::ptrdiff_t row, std::ptrdiff_t rows) {
+      kernels::solveBelow(corner, partOf(panel, next + row, c, rows, own));
+    });
+    if (next == end) continue;
+    const DenseBlock right = partOf(panel, next, c, end - next, own);
+    inTiles(panel.rows - next, tiled, [&](std::ptrdiff_t row, std::ptrdiff_t rows) {
+      kernels::subtractProduct(partOf(panel, next + row, c, rows, own), right,
+                               partOf(panel, next + row, next, rows, end - next), row);
+    });
+  }
+  return true;
+}
+
+/// Lower triangle of `trailing` -= under * under^T, as far as `trailing` has columns.
+void updateTrailing(const DenseBlock& trailing, const DenseBlock& under, bool tiled) {
+  inTiles(trailing.columns, tiled, [&](std::ptrdiff_t begin, std::ptrdiff_t count) {
+    const std::ptrdiff_t rows = trailing.rows - begin;
+    kernels::subtractProduct(partOf(under, begin, 0, rows, under.columns),
+                             partOf(under, begin, 0, count, under.columns),
+                             partOf(trailing, begin, begin, rows, count));
+  });
+}
+
 /// Eliminates the columns of `panel` (height x width); `rest` becomes what remains for the parent.
-bool eliminateDense(Panel& panel, Eigen::MatrixXd& rest, bool tiled) {
-  const Eigen::Index width = panel.cols(), height = panel.rows();
-  for (Eigen::Index begin = 0; begin < width; begin += kPanel) {
-    const Eigen::Index count = std::min(kPanel, width - begin), below = height - begin - count;
-    auto corner = panel.block(begin, begin, count, count);
-    Eigen::Ref<Eigen::MatrixXd> inPlace(corner);
-    if (Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>, Eigen::Lower>(inPlace).info() != Eigen::Success) {
-      return false;
+bool eliminateDense(Panel& columns, Eigen::MatrixXd& rest, bool tiled) {
+  const std::ptrdiff_t width = columns.cols(), height = columns.rows();
+  const DenseBlock panel = {columns.data(), height, width, height};
+  const DenseBlock remains = {rest.data(), rest.rows(), rest.cols(), rest.rows()};
+  for (std::ptrdiff_t begin = 0; begin < width; begin += kPanel) {
+    const std::ptrdiff_t count = std::min(kPanel, width - begin), end = begin + count;
+    if (!eliminateColumns(panel, begin, count, tiled)) return false;
+    if (end < width) {
+      updateTrailing(partOf(panel, end, end, height - end, width - end),
+                     partOf(panel, end, begin, height - end, count), tiled);
     }
-    if (below == 0) continue;
-    auto under = panel.block(begin + count, begin, below, count);
-    const auto solveRows = [&](std::size_t n) {
-      const Eigen::Index row = static_cast<Eigen::Index>(n) * kTile;
-      auto part = under.middleRows(row, std::min(kTile, below - row));
-      corner.template triangularView<Eigen::Lower>()
-          .transpose()
-          .template solveInPlace<Eigen::OnTheRight>(part);
-    };
-    const auto parts = static_cast<std::size_t>((below + kTile - 1) / kTile);
-    if (tiled) {
-      parallelFor(parts, 1, solveRows);
-    } else {
-      for (std::size_t n = 0; n < parts; ++n) solveRows(n);
-    }
-    const Eigen::Index left = width - begin - count;
-    if (left > 0)
-      updateTrailing(panel.block(begin + count, begin + count, below, left), under, tiled);
-    if (rest.rows() > 0) {
-      updateTrailing(Eigen::Ref<Eigen::MatrixXd>(rest), under.bottomRows(rest.rows()), tiled);
+    if (remains.rows > 0) {
+      updateTrailing(remains, partOf(panel, width, begin, height - width, count), tiled);
     }
   }
   return true;
