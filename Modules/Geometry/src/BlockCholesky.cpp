@@ -374,7 +374,7 @@ void BlockCholesky<Size>::schedule() {
 
 template <int Size>
 bool BlockCholesky<Size>::eliminate(std::int32_t f, const BlockPattern& pattern,
-                              std::span<const Block> blocks, bool tiled) {
+                                    std::span<const Block> blocks, bool tiled) {
   const Front& front = fronts_[f];
   Panel panel(factor_.data() + front.factorBegin, front.height(), front.width());
   panel.setZero();
@@ -403,8 +403,7 @@ bool BlockCholesky<Size>::eliminate(std::int32_t f, const BlockPattern& pattern,
 }
 
 template <int Size>
-bool BlockCholesky<Size>::factorise(const BlockPattern& pattern,
-                              std::span<const Block> blocks) {
+bool BlockCholesky<Size>::factorise(const BlockPattern& pattern, std::span<const Block> blocks) {
   factor_.resize(static_cast<std::size_t>(factorSize_));
   updates_.assign(fronts_.size(), Eigen::MatrixXd());
   std::atomic<bool> positive = true;
@@ -433,19 +432,24 @@ void BlockCholesky<Size>::solve(Eigen::VectorXd& x) const {
     columns.topRows(front.width()).template triangularView<Eigen::Lower>().solveInPlace(own);
     below.noalias() = columns.bottomRows(Size * front.below()) * own;
     for (std::int32_t n = 0; n < front.below(); ++n) {
-      x.template segment<Size>(Size * rows_[front.rowsBegin + n]) -= below.template segment<Size>(Size * n);
+      x.template segment<Size>(Size * rows_[front.rowsBegin + n]) -=
+          below.template segment<Size>(Size * n);
     }
   }
   for (auto front = fronts_.rbegin(); front != fronts_.rend(); ++front) {
     const auto columns = columnsOf(*front);
     below.resize(Size * front->below());
     for (std::int32_t n = 0; n < front->below(); ++n) {
-      below.template segment<Size>(Size * n) = x.template segment<Size>(Size * rows_[front->rowsBegin + n]);
+      below.template segment<Size>(Size * n) =
+          x.template segment<Size>(Size * rows_[front->rowsBegin + n]);
     }
     auto own = x.segment(Size * front->first, front->width());
     for (Eigen::Index c = 0; c < own.size(); ++c)
       own[c] -= columns.col(c).tail(below.size()).dot(below);
-    columns.topRows(front->width()).template triangularView<Eigen::Lower>().transpose().solveInPlace(own);
+    columns.topRows(front->width())
+        .template triangularView<Eigen::Lower>()
+        .transpose()
+        .solveInPlace(own);
   }
 }
 

@@ -13,7 +13,7 @@
 
 #include <vector>
 
-namespace explica::unfolding {
+namespace explica::geometry {
 namespace {
 
 using kernels::DenseBlock;
@@ -104,4 +104,4 @@ TEST(DenseKernels, EveryInstructionSetGivesTheSameBits) {
 }
 
 }  // namespace
-}  // namespace explica::unfolding
+}  // namespace explica::geometry

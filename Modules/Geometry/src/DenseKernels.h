@@ -8,7 +8,7 @@
 ///
 /// Matrices stand column by column. Every entry takes its products one after the other and without
 /// fused multiply-add, so that all instruction sets give the same bits.
-namespace explica::unfolding::kernels {
+namespace explica::geometry::kernels {
 
 inline constexpr std::ptrdiff_t kMostColumns = 24;  ///< that are eliminated at a time
 
@@ -37,4 +37,4 @@ void solveBelow(const DenseBlock& corner, const DenseBlock& below);
 void subtractProduct(const DenseBlock& left, const DenseBlock& right, const DenseBlock& target,
                      std::ptrdiff_t below = 0);
 
-}  // namespace explica::unfolding::kernels
+}  // namespace explica::geometry::kernels

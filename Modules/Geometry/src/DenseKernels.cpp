@@ -12,9 +12,9 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
-#ifndef EXPLICA_UNFOLDING_DENSE_SIZES
-#define EXPLICA_UNFOLDING_DENSE_SIZES
-namespace explica::unfolding::kernels {
+#ifndef EXPLICA_GEOMETRY_DENSE_SIZES
+#define EXPLICA_GEOMETRY_DENSE_SIZES
+namespace explica::geometry::kernels {
 
 constexpr std::ptrdiff_t kTileRows = 16;    // of a tile whose entries are summed in registers
 constexpr std::ptrdiff_t kTileColumns = 6;  // such that most instruction sets have enough of them
@@ -26,11 +26,11 @@ struct Slab {
   std::ptrdiff_t firstDepth, depth, firstColumn, columns;
 };
 
-}  // namespace explica::unfolding::kernels
+}  // namespace explica::geometry::kernels
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace explica::unfolding::kernels::HWY_NAMESPACE {
+namespace explica::geometry::kernels::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 using Tag = hn::CappedTag<double, 8>;
@@ -167,11 +167,11 @@ void SolveBelow(const DenseBlock& corner, const DenseBlock& below) {
   }
 }
 
-}  // namespace explica::unfolding::kernels::HWY_NAMESPACE
+}  // namespace explica::geometry::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace explica::unfolding::kernels {
+namespace explica::geometry::kernels {
 
 HWY_EXPORT(SubtractProduct);
 HWY_EXPORT(SolveBelow);
@@ -203,5 +203,5 @@ void subtractProduct(const DenseBlock& left, const DenseBlock& right, const Dens
   HWY_DYNAMIC_DISPATCH(SubtractProduct)(left, right, target, below, packedRight.data());
 }
 
-}  // namespace explica::unfolding::kernels
+}  // namespace explica::geometry::kernels
 #endif  // HWY_ONCE
