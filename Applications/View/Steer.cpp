@@ -3,15 +3,15 @@
 
 #include "Steer.h"
 
-#include "Explica/Report/ColourMap.h"
-#include "Explica/Report/Picture.h"
 #include "Explica/Viewer/Window.h"
+#include "OpenedFiles.h"
 
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cstring>
+#include <cerrno>
+#include <filesystem>
 #include <future>
 #include <vector>
 
@@ -32,24 +32,42 @@ int runSelf(std::vector<std::string> words) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-/// Colours as in the pictures of `explica view --screenshot`.
-std::vector<viewer::Rgb> paintOf(const std::string& name, const Eigen::VectorXd& values) {
-  std::vector<viewer::Rgb> bytes;
-  for (const report::Colour& colour :
-       report::coloursOf(values, report::scaleFor(values, name, ""))) {
-    viewer::Rgb rgb;
-    for (int c = 0; c < 3; ++c) {
-      rgb[c] = report::encodeSrgb(colour[c]);
-    }
-    bytes.push_back(rgb);
+/// Writes the state that is shown as `explica unfold` would, from where it stands: the command goes
+/// on from a checkpoint and finds nothing left to do.
+std::future<std::string> saveState(Context& context, const std::string& surface,
+                                   const std::string& folder, const viewer::Session& session,
+                                   std::size_t state) {
+  const auto checkpoint = session.checkpoint(state);
+  if (!checkpoint) {
+    std::promise<std::string> answer;
+    answer.set_value("this unfolding is saved already: it was opened from a folder");
+    return answer.get_future();
   }
-  return bytes;
+  const std::string out = folder + "/iteration-" + std::to_string(state);
+  std::vector<std::string> words = {"explica", "unfold", surface, "--out", out};
+  for (const auto& [name, value] : session.batchOptions(state)) {
+    words.push_back("--" + name);
+    words.push_back(value);
+  }
+  std::string command;
+  for (const std::string& word : words) command += (command.empty() ? "" : " ") + word;
+  context.info("saving, the same as: " + command);
+  std::filesystem::remove_all(out);
+  std::filesystem::create_directories(out);
+  unfolding::writeCheckpoint(std::filesystem::path(out) / "unfolding.state", *checkpoint);
+  words.insert(words.end(), {"--resume", "--quiet"});
+  return std::async(std::launch::async, [words, out] {
+    const int code = runSelf(words);
+    // 3 says that the limit of iterations was reached first, which is what is asked for.
+    return code == 0 || code == 3 ? "saved in " + out
+                                  : "not saved: explica unfold ended with " + std::to_string(code);
+  });
 }
 
 }  // namespace
 
 void steer(Context& context, const std::string& path, const TriangleMesh& surface,
-           const Vector& direction, const std::vector<io::VertexMap>& maps,
+           const Vector& direction, std::vector<viewer::Opened> opened,
            const SteerOptions& options) {
   viewer::Session session(surface);
   viewer::Choice choice;
@@ -57,36 +75,20 @@ void steer(Context& context, const std::string& path, const TriangleMesh& surfac
   choice.radius = options.radius;
   choice.direction = direction;
   choice.distance = options.distance;
-  choice.unfolder.surround = options.surround;
+  choice.unfold.unfolder.surround = options.surround;
+  choice.unfold.targetVisibility = options.targetVisibility;
   session.choose(choice);
 
-  const auto save = [&](const viewer::Session& shown, std::size_t moment) {
-    const std::string out = options.save + "/iteration-" + std::to_string(moment);
-    std::vector<std::string> words = {"explica", "unfold",  path,     "--out",
-                                      out,       "--force", "--quiet"};
-    for (const auto& [name, value] : shown.batchOptions(moment)) {
-      words.push_back("--" + name);
-      words.push_back(value);
-    }
-    std::string command;
-    for (const std::string& word : words) command += (command.empty() ? "" : " ") + word;
-    context.info("saving, the same as: " + command);
-    return std::async(std::launch::async, [words, out] {
-      const int code = runSelf(words);
-      // 3 says that the iteration limit was reached before full visibility, which is what is asked
-      // for.
-      return code == 0 || code == 3
-                 ? "saved in " + out
-                 : "not saved: explica unfold ended with " + std::to_string(code);
-    });
-  };
   viewer::WindowOptions window;
   window.title = "Explica: " + path;
+  window.surface = path;
   window.script = options.script;
-  for (const io::VertexMap& map : maps) {
-    window.maps.push_back({map.unit.empty() ? map.name : map.name + ", " + map.unit, map.values});
-  }
-  viewer::showWindow(session, paintOf, save, window);
+  window.opened = std::move(opened);
+  const auto open = [&](const std::string& file) { return openForWindow(file, surface); };
+  const auto save = [&](const viewer::Session& shown, std::size_t state) {
+    return saveState(context, path, options.save, shown, state);
+  };
+  viewer::showWindow(session, scaleOf, open, save, window);
 }
 
 }  // namespace explica::app

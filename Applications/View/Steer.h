@@ -5,8 +5,8 @@
 #include "Explica/Application/Context.h"
 #include "Explica/Core/Describe.h"
 #include "Explica/Core/TriangleMesh.h"
-#include "Explica/IO/VertexDataFile.h"
 #include "Explica/Unfolding/Unfolder.h"
+#include "Explica/Viewer/Window.h"
 
 #include <optional>
 #include <string>
@@ -19,7 +19,8 @@ struct SteerOptions {
   std::optional<int> vertex;
   double radius = 25;
   double distance = 1000;
-  unfolding::Surround surround = unfolding::Surround::Fixed;
+  unfolding::Surround surround = unfolding::UnfolderOptions{}.surround;
+  std::optional<double> targetVisibility;
   std::string save = "unfolded";
   std::optional<std::string> script;
 };
@@ -30,17 +31,19 @@ void describe(SteerOptions& o, Visitor&& visit) {
   visit(Field{"radius", "mm", "of the region to start with"}, o.radius);
   visit(Field{"distance", "mm", "of the viewpoint from the region"}, o.distance);
   visit(Field{"surround", "", "what becomes of the surface around the region"}, o.surround);
+  visit(Field{"target-visibility", "", "stop there; else where it no longer pays"},
+        o.targetVisibility);
   visit(Field{"save", "", "folder for saved states: each goes into iteration-N in it"}, o.save);
   visit(Field{"script", "", "file of events to play instead of waiting for the user's"}, o.script);
 }
 
 /// Opens the window on a surface.  A saved state is what `explica unfold` writes when it runs with
-/// the same choices, in a process of its own: same outputs, same record.
+/// the same choices: the same surfaces and maps, from a process of its own.
 /// @param path       of the surface's file
 /// @param direction  from the surface to the viewer
-/// @param maps       further maps to show
+/// @param opened     what else to show
 void steer(Context& context, const std::string& path, const TriangleMesh& surface,
-           const Vector& direction, const std::vector<io::VertexMap>& maps,
+           const Vector& direction, std::vector<viewer::Opened> opened,
            const SteerOptions& options);
 
 }  // namespace explica::app

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
+#include "OpenedFiles.h"
 #include "Steer.h"
 
 #include "Explica/Application/Command.h"
@@ -43,10 +44,10 @@ struct Settings {
 void declare(Declaration& d, Settings& s) {
   d.synopsis("choose and steer an unfolding in a window; pictures and films without one")
       .description(
-          "Without --screenshot or --film a window opens on one surface: pick a centre (c), take "
-          "the view "
-          "as viewpoint (v), drag the radius, run and pause (space), step back and forth, save "
-          "(w). "
+          "Without --screenshot or --film a window opens on a surface, or on a folder of `explica "
+          "unfold`: pick a centre (C), take the view as viewpoint (V), set the radius, run and "
+          "pause (Space), step back and forth, save (W); F1 shows every key. Maps, labels and "
+          "volumes named after the surface are shown with it. "
           "Surfaces are drawn with a map or labels on their vertices, from one or more sides; a "
           "volume is "
           "shown in slices with the cut lines of the surfaces named after it (the first red, the "
@@ -88,19 +89,6 @@ void declare(Declaration& d, Settings& s) {
       .options("Window", s.window)
       .options("Reading", s.reading)
       .withoutOutput();
-}
-
-bool isVolume(const std::filesystem::path& path) {
-  const std::string name = path.filename().string();
-  const auto endsWith = [&](std::string_view ending) {
-    return name.size() >= ending.size() &&
-           name.compare(name.size() - ending.size(), ending.size(), ending) == 0;
-  };
-  for (const char* ending :
-       {".nii", ".nii.gz", ".mgh", ".mgz", ".nrrd", ".nhdr", ".mha", ".mhd", ".hdr", ".img"}) {
-    if (endsWith(ending)) return true;
-  }
-  return false;
 }
 
 report::SurfacePaint readPaint(const Settings& s, Eigen::Index vertexCount) {
@@ -231,18 +219,31 @@ void writeFilm(const std::filesystem::path& path, const std::vector<report::Pict
   file.commit();
 }
 
+/// The first file is a surface or an unfolding; the others are opened on it.
+void openWindow(Context& context, const Settings& s) {
+  if (isVolume(s.files.front())) {
+    throw UsageError(
+        "the window shows a surface, and volumes beside it: name the surface first; or write a "
+        "picture with --screenshot FILE.png");
+  }
+  const bool finished = isUnfolding(s.files.front());
+  const StartingSurface start =
+      finished ? startOfUnfolding(s.files.front())
+               : StartingSurface{io::readSurface(s.files.front(), s.reading).mesh, s.files.front()};
+  std::vector<viewer::Opened> opened;
+  for (std::size_t n = finished ? 0 : 1; n < s.files.size(); ++n) {
+    opened.push_back(openForWindow(s.files[n], start.mesh));
+  }
+  for (const auto& file : {s.map, s.labels}) {
+    if (file) opened.push_back(openForWindow(*file, start.mesh));
+  }
+  steer(context, start.file, start.mesh, s.direction.value_or(Vector(-1, 0, 0)), std::move(opened),
+        s.window);
+}
+
 Termination run(Context& context, const Settings& s) {
   if (!s.screenshot && !s.film) {
-    if (s.files.size() != 1 || isVolume(s.files.front())) {
-      throw UsageError(
-          "the window shows one surface; write a picture with --screenshot FILE.png or a "
-          "film with --film FILE.gif");
-    }
-    const TriangleMesh surface = io::readSurface(s.files.front(), s.reading).mesh;
-    std::vector<io::VertexMap> maps;
-    if (s.map) maps = io::readVertexMaps(*s.map, surface.vertexCount());
-    steer(context, s.files.front(), surface, s.direction.value_or(Vector(-1, 0, 0)), maps,
-          s.window);
+    openWindow(context, s);
     return Termination::NotRun;
   }
   if (s.screenshot && std::filesystem::path(*s.screenshot).extension() != ".png") {

@@ -53,40 +53,46 @@ class Window(unittest.TestCase):
         self.folder = pathlib.Path(folder.name)
         folded_ball(self.folder / "ball.off")
 
-    def view(self, script, *options):
+    def view(self, script, *words):
         path = self.folder / "script"
         path.write_text(script)
         return subprocess.run(
-            ["xvfb-run", "-a", "-s", "-screen 0 1600x1000x24", EXECUTABLE, "view", "ball.off"]
-            + ["--radius", "14", "--script", str(path), *options],
+            ["xvfb-run", "-a", "-s", "-screen 0 1600x1000x24", EXECUTABLE, "view"]
+            + [*words, "--script", str(path)],
             cwd=self.folder,
             capture_output=True,
             text=True,
             timeout=250,
         )
 
-    @unittest.skipUnless(shutil.which("xvfb-run"), "skipped: xvfb is not installed")
-    def test_choose_run_turn_step_back_and_save(self):
-        result = self.view(
-            "picture start.png\n"
-            "key c 700 470\npicture chosen.png\n"
-            "key space 0 0\nwait 8\nkey space 0 0\npicture unfolded.png\n"
-            "drag 700 500 900 480\npicture turned.png\n"
-            "key m 0 0\npicture flux.png\n"
-            "key m 0 0\npicture seen.png\n"
-            "key m 0 0\npicture area.png\n"
-            "key Home 0 0\npicture first.png\n"
-            "key Right 0 0\nkey Right 0 0\nkey w 0 0\nsaved\npicture saved.png\n"
-            "key r 0 0\npicture reset.png\n",
-            "--save", "kept",
-        )  # fmt: skip
-        self.assertEqual(result.returncode, 0, result.stderr)
-        names = "start chosen unfolded turned flux seen area first saved reset".split()
-        pictures = [(self.folder / f"{name}.png").read_bytes() for name in names]
+    def pictures(self, names):
+        pictures = [(self.folder / f"{name}.png").read_bytes() for name in names.split()]
         for picture in pictures:
             self.assertEqual(picture[1:4], b"PNG")
             self.assertGreater(len(picture), 20000, "a blank window compresses to less")
         self.assertEqual(len(set(pictures)), len(pictures), "every event must show")
+
+    @unittest.skipUnless(shutil.which("xvfb-run"), "skipped: xvfb is not installed")
+    def test_choose_run_turn_step_back_and_save(self):
+        result = self.view(
+            "picture start.png\n"
+            "key c 540 420\npicture chosen.png\n"
+            "set radius 16\npicture larger.png\ndo undo\n"
+            "set target 1\nkey space 0 0\nwait 8\nkey space 0 0\npicture unfolded.png\n"
+            "drag 500 400 700 380\npicture turned.png\n"
+            "key m 0 0\npicture flux.png\n"
+            "key m 0 0\npicture seen.png\n"
+            "key m 0 0\npicture area.png\n"
+            "set low 0.5\npicture range.png\n"
+            "key Home 0 0\npicture first.png\n"
+            "key Right 0 0\nkey Right 0 0\nkey w 0 0\nsaved\npicture saved.png\n"
+            "key r 0 0\npicture reset.png\n",
+            "ball.off", "--radius", "14", "--save", "kept",
+        )  # fmt: skip
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.pictures(
+            "start chosen larger unfolded turned flux seen area range first saved reset"
+        )
 
         # The saved state is what the printed command writes.
         saved = self.folder / "kept" / "iteration-2"
@@ -99,6 +105,24 @@ class Window(unittest.TestCase):
             self.assertEqual(
                 (saved / name).read_bytes(), (self.folder / "again" / name).read_bytes()
             )
+
+    @unittest.skipUnless(shutil.which("xvfb-run"), "skipped: xvfb is not installed")
+    def test_it_stops_by_itself_and_opens_what_was_finished(self):
+        result = self.view(
+            "key c 540 420\nkey space 0 0\nwait 100000\npicture over.png\nkey w 0 0\nsaved\n",
+            "ball.off", "--radius", "14", "--save", "kept",
+        )  # fmt: skip
+        self.assertEqual(result.returncode, 0, result.stderr)
+        saved = next((self.folder / "kept").iterdir())
+        result = self.view(
+            f"picture opened.png\nkey Home 0 0\npicture before.png\n"
+            f"open {saved}/region.label.gii\nset map region.label.gii\npicture labels.png\n"
+            f"open {saved}/distortion.shape.gii\nkey m 0 0\npicture map.png\n"
+            "open ball.off\npicture refused.png\n",
+            str(saved),
+        )
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.pictures("over opened before labels refused")
 
     def test_without_a_display_it_says_so(self):
         environment = {k: v for k, v in os.environ.items() if k != "DISPLAY"}
@@ -115,7 +139,7 @@ class Window(unittest.TestCase):
 
     @unittest.skipUnless(shutil.which("xvfb-run"), "skipped: xvfb is not installed")
     def test_unknown_event_is_named(self):
-        result = self.view("jump 3\n")
+        result = self.view("jump 3\n", "ball.off")
         self.assertEqual(result.returncode, 2)
         self.assertIn("jump 3", result.stderr)
 

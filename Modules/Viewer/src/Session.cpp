@@ -6,6 +6,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Geometry/FaceTree.h"
 #include "Explica/Geometry/MeshTopology.h"
+#include "Explica/Unfolding/StopRule.h"
 #include "Explica/Visibility/AverageVisibility.h"
 
 #include <atomic>
@@ -26,6 +27,14 @@ std::string exactText(double value) {
 
 std::string exactText(const Vector& v) {
   return exactText(v.x()) + "," + exactText(v.y()) + "," + exactText(v.z());
+}
+
+unfolding::Region regionOf(const TriangleMesh& surface, const Choice& choice) {
+  if (!choice.marked.empty()) return unfolding::regionOfMarked(surface, choice.marked);
+  unfolding::RegionOptions options;
+  options.vertex = choice.centre;
+  options.radius = choice.radius;
+  return unfolding::selectRegion(surface, options);
 }
 
 /// Where the viewpoint lies: from the region's area centroid along the direction, as `explica
@@ -49,16 +58,26 @@ struct Kept {
   std::vector<std::int32_t> vertices;
   Positions positions;
   unfolding::IterationRecord record;
+  unfolding::UnfoldState state;  ///< without its positions
 };
 
-Kept keep(const Positions& start, const Positions& now, const unfolding::IterationRecord& record) {
+Kept keep(const Positions& start, unfolding::UnfoldState state,
+          const unfolding::IterationRecord& record) {
   Kept kept;
   kept.record = record;
-  for (std::int32_t v = 0; v < now.rows(); ++v) {
-    if (now.row(v) != start.row(v)) kept.vertices.push_back(v);
+  for (std::int32_t v = 0; v < state.positions.rows(); ++v) {
+    if (state.positions.row(v) != start.row(v)) kept.vertices.push_back(v);
   }
-  kept.positions = now(kept.vertices, Eigen::all);
+  kept.positions = state.positions(kept.vertices, Eigen::all);
+  state.positions.resize(0, 3);
+  kept.state = std::move(state);
   return kept;
+}
+
+Positions positionsOf(const Kept& kept, const Positions& start) {
+  Positions positions = start;
+  positions(kept.vertices, Eigen::all) = kept.positions;
+  return positions;
 }
 
 }  // namespace
@@ -75,6 +94,8 @@ struct Session::Implementation {
   mutable std::mutex mutex;
   std::vector<Kept> moments;
   Activity activity = Activity::Choosing;
+  Termination termination = Termination::NotRun;
+  bool opened = false;  ///< the states are those of an earlier run
 
   std::unique_ptr<unfolding::Unfolder>
       unfolder;  // touched by the iterations' thread only while it runs
@@ -85,16 +106,26 @@ struct Session::Implementation {
     return visibility::viewpoint(viewpointOf(surface, preview.region, choice));
   }
 
+  std::vector<unfolding::IterationRecord> history(std::size_t last) const {
+    std::vector<unfolding::IterationRecord> records;
+    for (std::size_t n = 0; n <= last; ++n) records.push_back(moments[n].record);
+    return records;
+  }
+
+  /// Only this thread adds moments while it runs, so that it may read them without the mutex.
   void iterate() {
+    const unfolding::StopRule rule(choice.unfold);
     while (!pauseWanted) {
-      const bool moved = unfolder->step();
-      Kept kept;
-      if (moved) kept = keep(surface.positions, unfolder->state().positions, unfolder->record());
-      const std::lock_guard<std::mutex> hold(mutex);
-      if (!moved) {
-        activity = Activity::Stalled;
+      Termination reason = rule.check(*unfolder, history(moments.size() - 1));
+      if (reason == Termination::NotRun && !unfolder->step()) reason = Termination::Stalled;
+      if (reason != Termination::NotRun) {
+        const std::lock_guard<std::mutex> hold(mutex);
+        activity = Activity::Over;
+        termination = reason;
         return;
       }
+      Kept kept = keep(surface.positions, unfolder->state(), unfolder->record());
+      const std::lock_guard<std::mutex> hold(mutex);
       moments.push_back(std::move(kept));
     }
     const std::lock_guard<std::mutex> hold(mutex);
@@ -137,19 +168,18 @@ const Preview& Session::choose(const Choice& choice) {
     const std::lock_guard<std::mutex> hold(s.mutex);
     s.moments.clear();
     s.activity = Activity::Choosing;
+    s.termination = Termination::NotRun;
+    s.opened = false;
   }
   s.unfolder.reset();
   s.choice = choice;
   s.preview = Preview{};
-  if (choice.centre < 0) {
+  if (choice.centre < 0 && choice.marked.empty()) {
     s.preview.problem = "no centre is chosen";
     return s.preview;
   }
   try {
-    unfolding::RegionOptions options;
-    options.vertex = choice.centre;
-    options.radius = choice.radius;
-    s.preview.region = unfolding::selectRegion(s.surface, options);
+    s.preview.region = regionOf(s.surface, choice);
     const visibility::AverageVisibility energy(s.surface.faces, s.preview.region.faces,
                                                s.viewpoints());
     s.preview.visibility = energy.value(s.surface.positions);
@@ -180,19 +210,19 @@ std::int32_t Session::nearestVertex(const Point& point) const {
 
 void Session::run() {
   Implementation& s = *self_;
-  if (activity() == Activity::Running || !s.preview.problem.empty()) return;
+  const Activity now = activity();
+  if (now == Activity::Running || now == Activity::Over || !s.preview.problem.empty()) return;
   s.join();
   if (!s.unfolder) {
     try {
       s.unfolder = std::make_unique<unfolding::Unfolder>(s.surface, s.preview.region,
-                                                         s.viewpoints(), s.choice.unfolder);
+                                                         s.viewpoints(), s.choice.unfold.unfolder);
     } catch (const InvalidInput& error) {
       s.preview.problem = error.what();
       return;
     }
     const std::lock_guard<std::mutex> hold(s.mutex);
-    s.moments.push_back(
-        keep(s.surface.positions, s.unfolder->state().positions, s.unfolder->record()));
+    s.moments.push_back(keep(s.surface.positions, s.unfolder->state(), s.unfolder->record()));
   }
   s.pauseWanted = false;
   {
@@ -229,20 +259,67 @@ std::size_t Session::momentCount() const {
 Moment Session::moment(std::size_t number) const {
   const std::lock_guard<std::mutex> hold(self_->mutex);
   const Kept& kept = self_->moments.at(number);
-  Moment moment{self_->surface.positions, kept.record};
-  moment.positions(kept.vertices, Eigen::all) = kept.positions;
-  return moment;
+  return {positionsOf(kept, self_->surface.positions), kept.record};
+}
+
+unfolding::IterationRecord Session::record(std::size_t number) const {
+  const std::lock_guard<std::mutex> hold(self_->mutex);
+  return self_->moments.at(number).record;
+}
+
+Termination Session::termination() const {
+  const std::lock_guard<std::mutex> hold(self_->mutex);
+  return self_->termination;
+}
+
+void Session::open(Finished finished) {
+  Implementation& s = *self_;
+  if (finished.moments.empty()) throw InvalidInput("unfolding: it holds no state");
+  for (const Moment& moment : finished.moments) {
+    if (moment.positions.rows() != s.surface.vertexCount()) {
+      throw InvalidInput("unfolding: its states have " + std::to_string(moment.positions.rows()) +
+                         " vertices, the surface " + std::to_string(s.surface.vertexCount()));
+    }
+  }
+  reset();
+  s.preview.region = std::move(finished.region);
+  s.preview.visibility = finished.moments.front().record.visibility;
+  s.preview.problem = "this unfolding is over; reset to choose anew";
+  const std::lock_guard<std::mutex> hold(s.mutex);
+  for (Moment& moment : finished.moments) {
+    unfolding::UnfoldState state;
+    state.positions = std::move(moment.positions);
+    s.moments.push_back(keep(s.surface.positions, std::move(state), moment.record));
+  }
+  s.activity = Activity::Over;
+  s.opened = true;
+}
+
+std::optional<unfolding::Checkpoint> Session::checkpoint(std::size_t number) const {
+  const std::lock_guard<std::mutex> hold(self_->mutex);
+  if (self_->opened || number >= self_->moments.size()) return {};
+  const Kept& kept = self_->moments[number];
+  unfolding::Checkpoint checkpoint;
+  checkpoint.state = kept.state;
+  checkpoint.state.positions = positionsOf(kept, self_->surface.positions);
+  checkpoint.history = self_->history(number);
+  return checkpoint;
 }
 
 std::vector<std::pair<std::string, std::string>> Session::batchOptions(std::size_t number) const {
   const Choice& c = self_->choice;
-  return {{"vertex", std::to_string(c.centre)},
-          {"radius", exactText(c.radius)},
-          {"direction", exactText(c.direction)},
-          {"distance", exactText(c.distance)},
-          {"surround", std::string(nameOf(c.unfolder.surround))},
-          {"target-visibility", "1"},  // never reached: the number of iterations decides
-          {"max-iterations", std::to_string(number)}};
+  std::vector<std::pair<std::string, std::string>> options = c.markedOptions;
+  if (c.marked.empty()) {
+    options = {{"vertex", std::to_string(c.centre)}, {"radius", exactText(c.radius)}};
+  }
+  options.emplace_back("direction", exactText(c.direction));
+  options.emplace_back("distance", exactText(c.distance));
+  options.emplace_back("surround", std::string(nameOf(c.unfold.unfolder.surround)));
+  if (c.unfold.targetVisibility) {
+    options.emplace_back("target-visibility", exactText(*c.unfold.targetVisibility));
+  }
+  options.emplace_back("max-iterations", std::to_string(number));
+  return options;
 }
 
 }  // namespace explica::viewer

@@ -3,6 +3,7 @@
 
 #include "Explica/Viewer/Session.h"
 
+#include "Explica/Core/Errors.h"
 #include "Explica/Geometry/Fixtures.h"
 
 #include <gtest/gtest.h>
@@ -18,6 +19,7 @@ Choice sideChoice(const Session& session) {
   Choice choice;
   choice.centre = session.nearestVertex(Point(-30, 0, 0));
   choice.radius = 12;
+  choice.unfold.targetVisibility = 1;  // out of reach: it does not end while it is watched
   return choice;
 }
 
@@ -92,6 +94,78 @@ TEST(Session, NewChoiceDropsTheStates) {
   session.reset();
   EXPECT_EQ(session.momentCount(), 0u);
   EXPECT_EQ(session.activity(), Activity::Choosing);
+}
+
+TEST(Session, StopsByItselfWhereABatchRunWould) {
+  Session session(geometry::makeFoldedSphere(3, 30));
+  Choice choice = sideChoice(session);
+  choice.unfold.maxIterations = 3;
+  session.choose(choice);
+  session.run();
+  waitFor(session, 100);
+  EXPECT_EQ(session.activity(), Activity::Over);
+  EXPECT_EQ(session.termination(), Termination::MaxIterations);
+  EXPECT_EQ(session.momentCount(), 4u);
+  session.run();
+  EXPECT_EQ(session.activity(), Activity::Over) << "what is over does not go on";
+}
+
+TEST(Session, ACheckpointContinuesToTheSameStates) {
+  const TriangleMesh ball = geometry::makeFoldedSphere(3, 30);
+  Session session(ball);
+  Choice choice = sideChoice(session);
+  choice.unfold.maxIterations = 6;
+  session.choose(choice);
+  session.run();
+  waitFor(session, 100);
+  ASSERT_EQ(session.momentCount(), 7u);
+  const auto checkpoint = session.checkpoint(3);
+  ASSERT_TRUE(checkpoint);
+  EXPECT_EQ(checkpoint->state.positions, session.moment(3).positions);
+  EXPECT_EQ(checkpoint->history.size(), 4u);
+  const auto& region = session.preview().region;
+  Point centre = Point::Zero();
+  double area = 0;
+  for (const std::int32_t f : region.faces) {
+    const Point a = ball.corner(f, 0), b = ball.corner(f, 1), c = ball.corner(f, 2);
+    const double face = 0.5 * Vector((b - a).cross(c - a)).norm();
+    centre += face * (a + b + c) / 3;
+    area += face;
+  }
+  const auto view = visibility::viewpoint(centre / area + 1000 * choice.direction.normalized());
+  const auto result = unfolding::unfold(ball, region, view, choice.unfold, {}, &*checkpoint);
+  EXPECT_EQ(result.mesh.positions, session.moment(6).positions);
+}
+
+TEST(Session, ShowsAnUnfoldingThatIsOver) {
+  Session session(geometry::makeFoldedSphere(3, 30));
+  Finished finished;
+  finished.region = session.choose(sideChoice(session)).region;
+  for (int n = 0; n < 3; ++n) {
+    Moment moment;
+    moment.positions = session.surface().positions * (1 + 0.1 * n);
+    moment.record.visibility = 0.3 * (n + 1);
+    finished.moments.push_back(std::move(moment));
+  }
+  session.open(finished);
+  EXPECT_EQ(session.activity(), Activity::Over);
+  ASSERT_EQ(session.momentCount(), 3u);
+  EXPECT_EQ(session.moment(2).positions, finished.moments[2].positions);
+  EXPECT_FALSE(session.checkpoint(2)) << "its solver's state is not known";
+  finished.moments[1].positions.resize(5, 3);
+  EXPECT_THROW(session.open(finished), InvalidInput);
+}
+
+TEST(Session, ARegionMayBeMarkedVertexByVertex) {
+  Session session(geometry::makeFoldedSphere(3, 30));
+  Choice choice;
+  for (Eigen::Index v = 0; v < session.surface().vertexCount(); ++v) {
+    choice.marked.push_back(session.surface().positions(v, 0) < -22);
+  }
+  choice.markedOptions = {{"label", "a.label.gii"}, {"label-key", "2"}};
+  EXPECT_TRUE(session.choose(choice).problem.empty()) << session.preview().problem;
+  EXPECT_GT(session.preview().region.faces.size(), 10u);
+  EXPECT_EQ(session.batchOptions(1).front().first, "label");
 }
 
 TEST(Session, BatchOptionsNameEveryChoice) {

@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "Explica/Core/Termination.h"
 #include "Explica/Core/TriangleMesh.h"
-#include "Explica/Unfolding/Unfolder.h"
+#include "Explica/Unfolding/Unfold.h"
 
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace explica::viewer {
@@ -16,9 +18,12 @@ namespace explica::viewer {
 struct Choice {
   std::int32_t centre = -1;       ///< vertex; -1 before one is picked
   double radius = 25;             ///< mm
-  Vector direction = {-1, 0, 0};  ///< from the surface to the viewer, any length > 0
-  double distance = 1000;         ///< of the viewpoint from the region's centroid, mm
-  unfolding::UnfolderOptions unfolder;
+  std::vector<bool> marked = {};  ///< V, or empty; where given, the region instead of a ball
+  /// Options of `explica unfold` that give `marked`: label, label-key.
+  std::vector<std::pair<std::string, std::string>> markedOptions = {};
+  Vector direction = {-1, 0, 0};    ///< from the surface to the viewer, any length > 0
+  double distance = 1000;           ///< of the viewpoint from the region's centroid, mm
+  unfolding::UnfoldOptions unfold;  ///< how, and when it is over
 };
 
 /// The region that a choice makes, before anything moves.
@@ -32,13 +37,19 @@ enum class Activity {
   Choosing,  ///< the choice may change
   Running,   ///< iterations go on in their own thread
   Paused,
-  Stalled  ///< no further step lowers the objective
+  Over  ///< it ended by itself (see Session::termination), or was over when it was opened
 };
 
 /// One state on the way; number 0 is the start.
 struct Moment {
   Positions positions;
   unfolding::IterationRecord record;
+};
+
+/// An unfolding that is over: the states that were kept of it.
+struct Finished {
+  unfolding::Region region;
+  std::vector<Moment> moments;  ///< at least one
 };
 
 /// An unfolding that is watched and steered: what an interactive window shows and changes, without
@@ -72,10 +83,21 @@ class Session {
   /// Back to choosing; keeps the choice.
   void reset();
   [[nodiscard]] Activity activity() const;
+  /// Why it is over: as `explica unfold` would say with the same options; NotRun before.
+  [[nodiscard]] Termination termination() const;
+
+  /// Shows an unfolding that was done before; it cannot go on.
+  /// @throws InvalidInput  no state, or states of another surface
+  void open(Finished finished);
 
   /// States so far; at least the start once it ran.
   [[nodiscard]] std::size_t momentCount() const;
   [[nodiscard]] Moment moment(std::size_t number) const;
+  [[nodiscard]] unfolding::IterationRecord record(std::size_t number) const;
+
+  /// What `explica unfold --resume` needs to write the state of `number` without computing it
+  /// again; none for an unfolding that was opened.
+  [[nodiscard]] std::optional<unfolding::Checkpoint> checkpoint(std::size_t number) const;
 
   /// Options of `explica unfold`, in the order of a command line, that give the state of `number`.
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> batchOptions(

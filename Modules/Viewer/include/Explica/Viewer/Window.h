@@ -9,51 +9,94 @@
 #include <future>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace explica::viewer {
 
+using Rgb = std::array<unsigned char, 3>;
+
 /// Values on the surface's vertices that the window can show beside its own maps (region, flux,
 /// seen share, area ratio).
 struct WindowMap {
-  std::string name;        ///< with its unit
-  Eigen::VectorXd values;  ///< V
+  std::string name;
+  std::string unit;        ///< may be empty
+  Eigen::VectorXd values;  ///< V; not-a-number where not known
 };
 
-using Rgb = std::array<unsigned char, 3>;
+/// Labels on the surface's vertices.
+struct WindowLabels {
+  std::string name;
+  std::string file;                                         ///< for `explica unfold --label`
+  std::vector<std::int32_t> keys;                           ///< V
+  std::vector<std::pair<std::int32_t, std::string>> names;  ///< of the keys
+  std::vector<std::pair<std::int32_t, Rgb>> colours;        ///< of the keys
+};
 
-/// Colours of a map's values, one a vertex.
-using Paint =
-    std::function<std::vector<Rgb>(const std::string& name, const Eigen::VectorXd& values)>;
+/// A map's colours, lowest value first.
+struct Scale {
+  double low = 0;
+  double high = 1;
+  std::vector<Rgb> colours;  ///< at least two
+  Rgb unknown = {150, 150, 150};
+};
+/// The scale that suits a map's values.
+using MakeScale = std::function<Scale(const Eigen::VectorXd& values)>;
+
+/// A picture of a slice, rows from the top.
+struct SlicePixels {
+  int width = 0;
+  int height = 0;
+  std::vector<unsigned char> rgb;  ///< width * height * 3
+  Point topLeft = Point::Zero();   ///< RAS mm of the first pixel's centre
+  Vector right = Vector::Zero();   ///< RAS mm from a pixel to the next in its row
+  Vector down = Vector::Zero();    ///< RAS mm from a row to the next
+};
+/// A slice of a volume through a point, perpendicular to x, y or z (0, 1, 2), with the cut line of
+/// the surface.
+using DrawSlice =
+    std::function<SlicePixels(int axis, const Point& through, const TriangleMesh& surface)>;
+
+/// What a file holds that the user opens.
+struct Opened {
+  std::string what;  ///< for the status line: "thickness.shape.gii: 1 map"
+  std::vector<WindowMap> maps;
+  std::vector<WindowLabels> labels;
+  std::optional<Finished> finished;
+  DrawSlice slices;  ///< of a volume; may be empty
+};
+/// Opens a file or folder for the window's surface; throws Error with a sentence for the user.
+using OpenFile = std::function<Opened(const std::string& path)>;
+
+/// Saves a state; the text, shown when it is there, says what came of it.
+using Save = std::function<std::future<std::string>(const Session& session, std::size_t moment)>;
 
 struct WindowOptions {
   int width = 1400;  ///< pixels
   int height = 900;  ///< pixels
   std::string title = "Explica";
-  std::vector<WindowMap> maps;        ///< shown in turn after the window's own
+  std::string surface;                ///< its file, for the command that reproduces a state
+  std::vector<Opened> opened;         ///< at the start
   std::optional<std::string> script;  ///< file of events to play; the window then closes
 };
 
-/// Saves a state; the text, shown when it is there, says what came of it.
-using Save = std::function<std::future<std::string>(const Session& session, std::size_t moment)>;
+/// True if this build has the window (it needs Qt and VTK's Qt widget).
+[[nodiscard]] bool hasWindow();
 
 /// Opens a window on a session and returns when it is closed.
 ///
-/// Left drag rotates, right drag zooms, middle drag pans.  Keys: c picks the region's centre under
-/// the pointer, v makes the present view the viewpoint, space runs and pauses, left and right step
-/// through the states, home and end go to the first and last, m goes to the next map, r resets, w
-/// saves, h shows the keys, q closes.  Sliders set the radius and the state.  While iterations run
-/// in the session's thread, the picture follows and can be turned.
+/// Left drag rotates, right drag zooms, middle drag pans.  Everything that can be done stands in
+/// the menus with its key, and F1 lists the keys.  While iterations run in the session's thread,
+/// the picture follows and can be turned; they stop where `explica unfold` would stop.
 ///
-/// A script has one event a line, for tests and demonstrations; positions are pixels from the lower
-/// left: `key KEY X Y` (space, Left, c, ...), `drag X0 Y0 X1 Y1`, `wait N` (until N states exist or
-/// nothing runs), `saved` (until saving is over), `picture FILE.png`.
+/// A script has one event a line, for tests and demonstrations; positions are pixels of the
+/// three-dimensional view from its lower left: `key KEY X Y` (space, Left, c, ...), `drag X0 Y0 X1
+/// Y1`, `do ACTION` (the name of a menu's action), `set PANEL_FIELD VALUE`, `open FILE`, `wait N`
+/// (until N states exist or nothing runs), `saved` (until saving is over), `picture FILE.png`.
 ///
-/// @param paint  colours of a map
-/// @param save   called on w with the state shown
 /// @throws InvalidInput      a line of the script that is none of these
-/// @throws EnvironmentError  no display, or none that answers
-void showWindow(Session& session, const Paint& paint, const Save& save,
+/// @throws EnvironmentError  no display, or none that answers; a build without the window
+void showWindow(Session& session, const MakeScale& scale, const OpenFile& open, const Save& save,
                 const WindowOptions& options = {});
 
 }  // namespace explica::viewer

@@ -1,0 +1,127 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Panels.h"
+#include "Stage.h"
+
+#include "Explica/Viewer/Session.h"
+#include "Explica/Viewer/Window.h"
+
+#include <QVTKOpenGLNativeWidget.h>
+#include <QMainWindow>
+#include <QTimer>
+
+#include <array>
+#include <functional>
+#include <future>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace explica::viewer {
+
+/// The window's own maps, in their order in the panel; those that were opened follow.
+enum OwnMap : int { kRegion, kFlux, kSeen, kAreaRatio, kOwnMaps };
+inline constexpr std::array kOwnMapNames = {"region", "faces the viewpoint", "share seen",
+                                            "area now / at the start"};
+
+/// The window: a session's picture, its panels and menus, and what the user's events do to them.
+class MainWindow : public QMainWindow {
+ public:
+  MainWindow(Session& session, MakeScale scale, OpenFile open, Save save, WindowOptions options);
+  ~MainWindow() override;
+
+  // What menus, keys and scripts do.
+  void open(const std::string& path);
+  void pickCentre(int x, int y);  ///< pixels of the view from its lower left
+  void measure(int x, int y);     ///< the first call begins, the second says the way between
+  void step(std::size_t state);
+  void savePicture(const QString& path);
+  /// @return false if there is no such action, or no such field
+  bool act(const QString& action);
+  bool set(const QString& field, const QString& value);
+  void press(const QString& key, int x, int y);
+  void drag(int x0, int y0, int x1, int y1);
+
+  [[nodiscard]] const Session& session() const { return session_; }
+  [[nodiscard]] bool isSaving() const { return saving_.valid(); }
+  /// True while colours are still being computed in another thread.
+  [[nodiscard]] bool isPainting() const { return seen_.valid(); }
+  /// Brings the picture up to date with the session.
+  void follow();
+
+ protected:
+  bool eventFilter(QObject* object, QEvent* event) override;
+
+ private:
+  void buildMenus();
+  QAction* addAction(QMenu* menu, const char* name, const QString& text, const QKeySequence& key,
+                     std::function<void()> work);
+  void connectPanels();
+  void take(Opened opened);
+
+  void choose(Choice choice);
+  void undo();
+  void takeRegion();  ///< of the label or of the ball that the panel names
+  void takeAbove();
+  void takeView();
+  void toggle();
+  void saveState();
+  void copyCommand();
+  void help();
+
+  void refresh();
+  void showState(const unfolding::IterationRecord& record, std::size_t count);
+  void showCurves(std::size_t count);
+  void showRegion();
+  void paint();
+  void paintLabels(const WindowLabels& labels);
+  void paintValues(const WindowMap& map);
+  /// Values of one of the window's own maps, of the state that is shown; empty while they are
+  /// computed in another thread.
+  std::optional<WindowMap> ownMap(int number);
+  void fillMaps();
+  void showSlices();
+  void readUnder(const QPoint& at);
+  [[nodiscard]] std::string valueAt(std::int32_t vertex) const;
+  [[nodiscard]] QPoint fromLowerLeft(const QPoint& at) const;
+
+  Session& session_;
+  MakeScale scale_;
+  OpenFile open_;
+  Save save_;
+  WindowOptions options_;
+
+  QVTKOpenGLNativeWidget* view_ = nullptr;
+  std::unique_ptr<Stage> stage_;
+  Panels panels_;
+  QTimer timer_;
+  std::vector<Choice> earlier_;  ///< for undo
+  std::vector<WindowMap> maps_;
+  std::vector<WindowLabels> labels_;
+  DrawSlice slices_;
+  TriangleMesh shownMesh_;
+  Eigen::VectorXd shownValues_;  ///< of the map in the picture; empty for labels
+  std::string shownUnit_;
+  std::size_t shown_ = 0;  ///< state in the picture
+  std::size_t known_ = 0;  ///< states that the picture knows of
+  Activity activity_ = Activity::Choosing;
+  bool newest_ = true;    ///< the picture goes with the newest state
+  bool filling_ = false;  ///< fields are being set by the program
+  Point crosshair_ = Point::Zero();
+  std::optional<std::int32_t> measureFrom_;
+  QPoint pointer_;
+  bool pointerMoved_ = false;
+  std::future<std::string> saving_;
+  std::future<Eigen::VectorXd> seen_;
+  std::size_t seenState_ = 0;
+  Eigen::VectorXd seenValues_;
+};
+
+/// Plays a file of events.
+/// @throws InvalidInput, IOError
+void playScript(MainWindow& window, const std::string& path);
+
+}  // namespace explica::viewer

@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Curves.h"
+#include "SlicePanel.h"
+
+#include <QCheckBox>
+#include <QComboBox>
+#include <QDoubleSpinBox>
+#include <QLabel>
+#include <QMainWindow>
+#include <QPushButton>
+#include <QSlider>
+
+namespace explica::viewer {
+
+/// The fields beside the picture; each has an object name, by which scripts set it.
+struct Panels {
+  // Region
+  QDoubleSpinBox* radius = nullptr;
+  QComboBox* regionLabels = nullptr;  ///< "ball about the centre", or a label of those opened
+  QComboBox* regionKey = nullptr;
+  QDoubleSpinBox* above = nullptr;  ///< threshold of the map shown
+  QPushButton* takeAbove = nullptr;
+  QLabel* regionSays = nullptr;
+  // Viewpoint and surroundings
+  QDoubleSpinBox* distance = nullptr;
+  QPushButton* takeView = nullptr;
+  QComboBox* surround = nullptr;
+  QDoubleSpinBox* target = nullptr;  ///< 0: none
+  // Run
+  QPushButton* run = nullptr;
+  QSlider* state = nullptr;
+  QLabel* stateSays = nullptr;
+  Curves* curves = nullptr;
+  // Maps
+  QComboBox* map = nullptr;
+  QDoubleSpinBox* low = nullptr;
+  QDoubleSpinBox* high = nullptr;
+  QCheckBox* automatic = nullptr;
+  // Slices
+  SlicePanel* slices = nullptr;
+  QDockWidget* slicesDock = nullptr;
+};
+
+/// Builds the panels into docks of the window.
+[[nodiscard]] Panels buildPanels(QMainWindow& window);
+
+}  // namespace explica::viewer

@@ -1,0 +1,271 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+// The part of the window that shows: states, colours, curves, values under the pointer.
+#include "MainWindow.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Geometry/MeshMeasures.h"
+#include "Explica/Visibility/AverageVisibility.h"
+#include "Explica/Visibility/VisibleFraction.h"
+
+#include <QDockWidget>
+#include <QMouseEvent>
+#include <QStatusBar>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+
+namespace explica::viewer {
+namespace {
+
+constexpr Rgb kOutside = {205, 198, 190};
+constexpr Rgb kInside = {224, 150, 84};
+
+visibility::Viewpoints viewpointOf(const TriangleMesh& mesh, const Choice& choice) {
+  const Point middle = mesh.positions.colwise().mean().transpose();
+  return visibility::viewpoint(middle + choice.distance * choice.direction.normalized());
+}
+
+std::string wordOf(const Session& session) {
+  switch (session.activity()) {
+    case Activity::Choosing:
+      return "choosing";
+    case Activity::Running:
+      return "running";
+    case Activity::Paused:
+      return "paused";
+    default:
+      return session.termination() == Termination::NotRun
+                 ? "finished earlier"
+                 : std::string(nameOf(session.termination()));
+  }
+}
+
+Rgb colourIn(const Scale& scale, double value) {
+  if (!std::isfinite(value)) return scale.unknown;
+  const double share = std::clamp((value - scale.low) / (scale.high - scale.low), 0.0, 1.0);
+  const double last = static_cast<double>(scale.colours.size() - 1);
+  return scale.colours[static_cast<std::size_t>(std::lround(share * last))];
+}
+
+}  // namespace
+
+void MainWindow::follow() {
+  if (saving_.valid() && saving_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+    statusBar()->showMessage(QString::fromStdString(saving_.get()));
+  }
+  bool stale = false;
+  if (seen_.valid() && seen_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+    seenValues_ = seen_.get();
+    stale = panels_.map->currentIndex() == kSeen;
+  }
+  const std::size_t count = session_.momentCount();
+  const Activity now = session_.activity();
+  if (count != known_ || now != activity_) {
+    known_ = count;
+    activity_ = now;
+    if (newest_) shown_ = count > 0 ? count - 1 : 0;
+    stale = true;
+  }
+  if (stale) refresh();
+  if (pointerMoved_) {
+    pointerMoved_ = false;
+    readUnder(pointer_);
+  }
+}
+
+void MainWindow::refresh() {
+  const std::size_t count = session_.momentCount();
+  shown_ = count == 0 ? 0 : std::min(shown_, count - 1);
+  unfolding::IterationRecord record;
+  shownMesh_.positions = session_.surface().positions;
+  if (count > 0) {
+    Moment moment = session_.moment(shown_);
+    shownMesh_.positions = std::move(moment.positions);
+    record = moment.record;
+  }
+  stage_->place(shownMesh_.positions);
+  showRegion();
+  paint();
+  showState(record, count);
+  showCurves(count);
+  showSlices();
+  stage_->render();
+}
+
+void MainWindow::showRegion() {
+  const Preview& preview = session_.preview();
+  stage_->showRim(preview.region.faces);
+  QString says = QString("%1 faces").arg(preview.region.faces.size());
+  if (std::isfinite(preview.visibility)) {
+    says += QString(", average visibility %1").arg(preview.visibility, 0, 'f', 3);
+  }
+  if (!preview.problem.empty()) says += "\n" + QString::fromStdString(preview.problem);
+  panels_.regionSays->setText(says);
+}
+
+void MainWindow::showState(const unfolding::IterationRecord& record, std::size_t count) {
+  filling_ = true;
+  panels_.state->setEnabled(count > 1);
+  panels_.state->setRange(0, count > 0 ? static_cast<int>(count) - 1 : 0);
+  panels_.state->setValue(static_cast<int>(shown_));
+  filling_ = false;
+  const Activity activity = session_.activity();
+  panels_.run->setText(activity == Activity::Running ? "Pause (Space)"
+                       : count > 0                   ? "Go on (Space)"
+                                                     : "Start (Space)");
+  panels_.run->setEnabled(activity != Activity::Over);
+  QString says = QString::fromStdString(wordOf(session_));
+  if (count > 0) {
+    says = QString("state %1 of %2 (%3)\nvisibility %4, area error %5 %, edge strain %6 %")
+               .arg(shown_)
+               .arg(count - 1)
+               .arg(says)
+               .arg(record.visibility, 0, 'f', 3)
+               .arg(100 * record.areaErrorMean, 0, 'f', 2)
+               .arg(100 * record.edgeStrainMean, 0, 'f', 1);
+  }
+  panels_.stateSays->setText(says);
+}
+
+void MainWindow::showCurves(std::size_t count) {
+  Curves::Curve visibility{"average visibility", {}, QColor(0, 114, 178), false};
+  Curves::Curve area{"area error", {}, QColor(213, 94, 0), true};
+  Curves::Curve strain{"edge strain", {}, QColor(0, 158, 115), true};
+  for (std::size_t n = 0; n < count; ++n) {
+    const unfolding::IterationRecord record = session_.record(n);
+    visibility.values.push_back(record.visibility);
+    area.values.push_back(record.areaErrorMean);
+    strain.values.push_back(record.edgeStrainMean);
+  }
+  panels_.curves->show({visibility, area, strain}, shown_);
+}
+
+std::optional<WindowMap> MainWindow::ownMap(int number) {
+  if (number == kFlux) {
+    return WindowMap{
+        "faces the viewpoint", "",
+        visibility::vertexFlux(shownMesh_, viewpointOf(shownMesh_, session_.choice()))};
+  }
+  if (number == kAreaRatio) {
+    return WindowMap{"area now / at the start", "",
+                     geometry::vertexAreas(shownMesh_)
+                         .cwiseQuotient(geometry::vertexAreas(session_.surface()).cwiseMax(1e-12))};
+  }
+  // Rays take long on a large surface: another thread casts them, and the picture waits.
+  const bool fresh = seenState_ == shown_ && seenValues_.size() == shownMesh_.vertexCount();
+  if (!fresh && !seen_.valid()) {
+    seenState_ = shown_;
+    seen_ = std::async(std::launch::async, [mesh = shownMesh_, choice = session_.choice()] {
+      return visibility::visibleFraction(mesh, viewpointOf(mesh, choice)).vertex;
+    });
+  }
+  if (seenValues_.size() != shownMesh_.vertexCount()) return {};
+  return WindowMap{"share seen", "", seenValues_};
+}
+
+void MainWindow::paint() {
+  const int chosen = panels_.map->currentIndex();
+  const auto mapCount = static_cast<int>(maps_.size());
+  shownValues_.resize(0);
+  if (chosen >= kOwnMaps + mapCount) {
+    paintLabels(labels_[static_cast<std::size_t>(chosen - kOwnMaps - mapCount)]);
+  } else if (chosen >= kOwnMaps) {
+    paintValues(maps_[static_cast<std::size_t>(chosen - kOwnMaps)]);
+  } else if (chosen > kRegion) {
+    if (const auto map = ownMap(chosen)) paintValues(*map);
+  } else {
+    std::vector<Rgb> faces(static_cast<std::size_t>(shownMesh_.faceCount()), kOutside);
+    for (const std::int32_t f : session_.preview().region.faces) faces[f] = kInside;
+    stage_->paintFaces(faces);
+    stage_->showScale({}, "");
+  }
+}
+
+void MainWindow::paintLabels(const WindowLabels& labels) {
+  const std::map<std::int32_t, Rgb> colours(labels.colours.begin(), labels.colours.end());
+  std::vector<Rgb> faces;
+  for (Eigen::Index f = 0; f < shownMesh_.faceCount(); ++f) {
+    const std::int32_t a = labels.keys[shownMesh_.faces(f, 0)],
+                       b = labels.keys[shownMesh_.faces(f, 1)],
+                       c = labels.keys[shownMesh_.faces(f, 2)];
+    const auto found = colours.find(b == c ? b : a);
+    faces.push_back(found == colours.end() ? kOutside : found->second);
+  }
+  stage_->paintFaces(faces);
+  stage_->showScale({}, "");
+}
+
+void MainWindow::paintValues(const WindowMap& map) {
+  Scale scale = scale_(map.values);
+  filling_ = true;
+  if (panels_.automatic->isChecked()) {
+    panels_.low->setValue(scale.low);
+    panels_.high->setValue(scale.high);
+  } else if (panels_.high->value() > panels_.low->value()) {
+    scale.low = panels_.low->value();
+    scale.high = panels_.high->value();
+  }
+  filling_ = false;
+  std::vector<Rgb> colours;
+  for (const double v : map.values) colours.push_back(colourIn(scale, v));
+  stage_->paint(colours);
+  stage_->showScale(scale, map.unit.empty() ? map.name : map.name + " [" + map.unit + "]");
+  shownValues_ = map.values;
+  shownUnit_ = map.unit;
+}
+
+void MainWindow::showSlices() {
+  if (slices_ && panels_.slicesDock->isVisible()) {
+    panels_.slices->show(slices_, crosshair_, session_.surface());
+  }
+}
+
+std::string MainWindow::valueAt(std::int32_t vertex) const {
+  const int chosen = panels_.map->currentIndex();
+  const int label = chosen - kOwnMaps - static_cast<int>(maps_.size());
+  if (label >= 0) {
+    const WindowLabels& labels = labels_[static_cast<std::size_t>(label)];
+    for (const auto& [key, name] : labels.names) {
+      if (key == labels.keys[vertex]) return name;
+    }
+    return "no label";
+  }
+  if (vertex >= shownValues_.size()) return "";
+  const double value = shownValues_[vertex];
+  if (!std::isfinite(value)) return "not known";
+  return QString("%1 %2").arg(value, 0, 'g', 4).arg(shownUnit_.c_str()).toStdString();
+}
+
+void MainWindow::readUnder(const QPoint& at) {
+  const QPoint pixel = fromLowerLeft(at);
+  const auto picked = stage_->pick(pixel.x(), pixel.y());
+  if (!picked) return;
+  const Point p = session_.surface().positions.row(picked->vertex).transpose();
+  statusBar()->showMessage(QString("%1: %2   vertex %3 at %4, %5, %6 mm on the folded surface")
+                               .arg(panels_.map->currentText())
+                               .arg(QString::fromStdString(valueAt(picked->vertex)))
+                               .arg(picked->vertex)
+                               .arg(p.x(), 0, 'f', 1)
+                               .arg(p.y(), 0, 'f', 1)
+                               .arg(p.z(), 0, 'f', 1));
+}
+
+QPoint MainWindow::fromLowerLeft(const QPoint& at) const {
+  const double ratio = view_->devicePixelRatioF();
+  return {static_cast<int>(at.x() * ratio),
+          static_cast<int>((view_->height() - 1 - at.y()) * ratio)};
+}
+
+bool MainWindow::eventFilter(QObject* object, QEvent* event) {
+  if (object == view_ && event->type() == QEvent::MouseMove) {
+    const auto* mouse = static_cast<QMouseEvent*>(event);
+    pointer_ = mouse->pos();
+    pointerMoved_ = mouse->buttons() == Qt::NoButton;
+  }
+  return QMainWindow::eventFilter(object, event);
+}
+
+}  // namespace explica::viewer

@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+// Events from a file, for tests and demonstrations.
+#include "MainWindow.h"
+
+#include "Explica/Core/Errors.h"
+
+#include <QAction>
+#include <QApplication>
+#include <QKeyEvent>
+#include <QMouseEvent>
+
+#include <chrono>
+#include <fstream>
+#include <sstream>
+#include <thread>
+
+namespace explica::viewer {
+namespace {
+
+/// A little time goes by, as between two pictures.
+void pass(MainWindow& window) {
+  constexpr int kMilliseconds = 20;
+  std::this_thread::sleep_for(std::chrono::milliseconds(kMilliseconds));
+  QApplication::processEvents();
+  window.follow();
+}
+
+void waitFor(MainWindow& window, std::size_t states) {
+  const Session& session = window.session();
+  while (session.activity() == Activity::Running && session.momentCount() < states) pass(window);
+  window.follow();
+}
+
+/// @return false if the words are no event
+bool playEvent(MainWindow& window, const std::string& verb, std::istringstream& words) {
+  std::string name, value;
+  int x = 0, y = 0, x1 = 0, y1 = 0;
+  std::size_t states = 0;
+  if (verb == "key" && words >> name >> x >> y) {
+    window.press(QString::fromStdString(name), x, y);
+  } else if (verb == "drag" && words >> x >> y >> x1 >> y1) {
+    window.drag(x, y, x1, y1);
+  } else if (verb == "do" && words >> name) {
+    return window.act(QString::fromStdString(name));
+  } else if (verb == "set" && words >> name && std::getline(words >> std::ws, value)) {
+    return window.set(QString::fromStdString(name), QString::fromStdString(value));
+  } else if (verb == "open" && words >> name) {
+    window.open(name);
+  } else if (verb == "wait" && words >> states) {
+    waitFor(window, states);
+  } else if (verb == "saved") {
+    while (window.isSaving()) pass(window);
+  } else if (verb == "picture" && words >> name) {
+    do pass(window);
+    while (window.isPainting());
+    window.savePicture(QString::fromStdString(name));
+  } else {
+    return false;
+  }
+  QApplication::processEvents();
+  return true;
+}
+
+}  // namespace
+
+void playScript(MainWindow& window, const std::string& path) {
+  std::ifstream script(path);
+  if (!script) throw IOError(path + ": cannot be read");
+  std::string line;
+  while (std::getline(script, line)) {
+    std::istringstream words(line);
+    std::string verb;
+    if (!(words >> verb) || verb[0] == '#') continue;
+    if (!playEvent(window, verb, words)) {
+      throw InvalidInput(path + ": '" + line +
+                         "' is no event (key, drag, do, set, open, wait, saved, picture)");
+    }
+  }
+}
+
+bool MainWindow::act(const QString& action) {
+  auto* found = findChild<QAction*>(action);
+  if (found != nullptr) found->trigger();
+  return found != nullptr;
+}
+
+bool MainWindow::set(const QString& field, const QString& value) {
+  if (auto* box = findChild<QDoubleSpinBox*>(field)) {
+    box->setValue(value.toDouble());
+  } else if (auto* choice = findChild<QComboBox*>(field)) {
+    const int at = choice->findText(value);
+    if (at < 0) return false;
+    choice->setCurrentIndex(at);
+  } else if (auto* check = findChild<QCheckBox*>(field)) {
+    check->setChecked(value == "on");
+  } else {
+    return false;
+  }
+  return true;
+}
+
+void MainWindow::press(const QString& key, int x, int y) {
+  const double ratio = view_->devicePixelRatioF();
+  pointer_ = QPoint(static_cast<int>(x / ratio), static_cast<int>(view_->height() - 1 - y / ratio));
+  const QKeySequence sequence(key.size() == 1  ? key.toUpper()
+                              : key == "space" ? QString("Space")
+                                               : key);
+  for (QAction* action : findChildren<QAction*>()) {
+    if (action->shortcut() == sequence) {
+      action->trigger();
+      return;
+    }
+  }
+}
+
+void MainWindow::drag(int x0, int y0, int x1, int y1) {
+  const auto at = [this](int x, int y) { return QPointF(x, view_->height() - 1 - y); };
+  const auto send = [this](QEvent::Type type, const QPointF& p, Qt::MouseButton button,
+                           Qt::MouseButtons held) {
+    QMouseEvent event(type, p, button, held, Qt::NoModifier);
+    QApplication::sendEvent(view_, &event);
+  };
+  send(QEvent::MouseButtonPress, at(x0, y0), Qt::LeftButton, Qt::LeftButton);
+  send(QEvent::MouseMove, at(x1, y1), Qt::NoButton, Qt::LeftButton);
+  send(QEvent::MouseButtonRelease, at(x1, y1), Qt::LeftButton, Qt::NoButton);
+}
+
+}  // namespace explica::viewer

@@ -1,0 +1,293 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Stage.h"
+
+#include <vtkActor.h>
+#include <vtkAnnotatedCubeActor.h>
+#include <vtkCallbackCommand.h>
+#include <vtkCamera.h>
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkCellPicker.h>
+#include <vtkLookupTable.h>
+#include <vtkOrientationMarkerWidget.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkPolyDataNormals.h>
+#include <vtkProperty.h>
+#include <vtkQuadricClustering.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderWindowInteractor.h>
+#include <vtkRenderer.h>
+#include <vtkScalarBarActor.h>
+#include <vtkTextProperty.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace explica::viewer {
+namespace {
+
+constexpr Eigen::Index kManyFaces = 60000;  // above it, turning shows a coarser surface
+constexpr int kCoarseCells = 70;            // of it, along each axis of the surface's box
+
+void fill(vtkUnsignedCharArray& array, const std::vector<Rgb>& colours) {
+  array.SetNumberOfTuples(static_cast<vtkIdType>(colours.size()));
+  for (std::size_t n = 0; n < colours.size(); ++n) {
+    array.SetTypedTuple(static_cast<vtkIdType>(n), colours[n].data());
+  }
+  array.Modified();
+}
+
+/// Ends of the edges that one of the faces has and no other of them, two by two.
+std::vector<std::int32_t> rimOf(const Faces& faces, const std::vector<std::int32_t>& chosen) {
+  std::map<std::pair<std::int32_t, std::int32_t>, int> count;
+  for (const std::int32_t f : chosen) {
+    for (int k = 0; k < 3; ++k) {
+      ++count[std::minmax(faces(f, k), faces(f, (k + 1) % 3))];
+    }
+  }
+  std::vector<std::int32_t> ends;
+  for (const auto& [edge, times] : count) {
+    if (times != 1) continue;
+    ends.push_back(edge.first);
+    ends.push_back(edge.second);
+  }
+  return ends;
+}
+
+}  // namespace
+
+Stage::Stage(const TriangleMesh& surface) : surface_(surface), positions_(surface.positions) {
+  buildSurface();
+  buildLines();
+  renderer_->SetBackground(0.97, 0.975, 0.98);
+  bar_->SetLookupTable(barColours_);
+  bar_->SetNumberOfLabels(5);
+  bar_->SetPosition(0.9, 0.25);
+  bar_->SetWidth(0.08);
+  bar_->SetHeight(0.5);
+  bar_->SetVisibility(0);
+  bar_->SetUnconstrainedFontSize(true);
+  for (vtkTextProperty* text : {bar_->GetLabelTextProperty(), bar_->GetTitleTextProperty()}) {
+    text->SetColor(0.1, 0.1, 0.1);
+    text->SetFontSize(15);
+    text->ShadowOff();
+    text->BoldOff();
+    text->ItalicOff();
+  }
+  renderer_->AddActor2D(bar_);
+}
+
+Stage::~Stage() = default;
+
+void Stage::buildSurface() {
+  points_->SetDataTypeToFloat();
+  points_->SetNumberOfPoints(surface_.vertexCount());
+  vtkNew<vtkCellArray> cells;
+  for (Eigen::Index f = 0; f < surface_.faceCount(); ++f) {
+    const vtkIdType corners[3] = {surface_.faces(f, 0), surface_.faces(f, 1), surface_.faces(f, 2)};
+    cells->InsertNextCell(3, corners);
+  }
+  mesh_->SetPoints(points_);
+  mesh_->SetPolys(cells);
+  for (vtkUnsignedCharArray* array : {colours_.Get(), faceColours_.Get()}) {
+    array->SetNumberOfComponents(3);
+  }
+  fill(*colours_, std::vector<Rgb>(static_cast<std::size_t>(surface_.vertexCount()), Rgb{}));
+  mesh_->GetPointData()->SetScalars(colours_);
+  normals_->SetInputData(mesh_);
+  normals_->SplittingOff();
+  normals_->ConsistencyOff();
+  mapper_->SetInputConnection(normals_->GetOutputPort());
+  actor_->SetMapper(mapper_);
+  actor_->GetProperty()->SetSpecular(0.1);
+  actor_->GetProperty()->SetAmbient(0.15);
+  actor_->GetProperty()->SetDiffuse(0.85);
+  renderer_->AddActor(actor_);
+  picker_->SetTolerance(1e-4);
+  picker_->AddPickList(actor_);
+  picker_->PickFromListOn();
+  place(surface_.positions);
+}
+
+void Stage::buildLines() {
+  for (const auto& [lines, width, red] :
+       {std::tuple{rimLines_.Get(), 3.0, 0.05}, std::tuple{pathLines_.Get(), 4.0, 0.85}}) {
+    vtkNew<vtkPolyDataMapper> mapper;
+    mapper->SetInputData(lines);
+    mapper->SetResolveCoincidentTopologyToPolygonOffset();
+    mapper->SetRelativeCoincidentTopologyLineOffsetParameters(0, -8);
+    vtkNew<vtkActor> actor;
+    actor->SetMapper(mapper);
+    actor->GetProperty()->SetColor(red, 0.06, 0.08);
+    actor->GetProperty()->SetLineWidth(static_cast<float>(width));
+    actor->GetProperty()->LightingOff();
+    actor->PickableOff();
+    renderer_->AddActor(actor);
+  }
+}
+
+void Stage::enter(vtkRenderWindow& window, vtkRenderWindowInteractor& interactor) {
+  window_ = &window;
+  window.AddRenderer(renderer_);
+  vtkNew<vtkAnnotatedCubeActor> cube;
+  cube->SetXPlusFaceText("R");
+  cube->SetXMinusFaceText("L");
+  cube->SetYPlusFaceText("A");
+  cube->SetYMinusFaceText("P");
+  cube->SetZPlusFaceText("S");
+  cube->SetZMinusFaceText("I");
+  cube->GetCubeProperty()->SetColor(0.82, 0.85, 0.88);
+  cube->GetTextEdgesProperty()->SetColor(0.1, 0.1, 0.1);
+  cube_->SetOrientationMarker(cube);
+  cube_->SetInteractor(&interactor);
+  cube_->SetViewport(0, 0, 0.12, 0.16);
+  cube_->SetEnabled(1);
+  cube_->InteractiveOff();
+  if (surface_.faceCount() > kManyFaces) coarsenWhileTurning(interactor);
+}
+
+void Stage::coarsenWhileTurning(vtkRenderWindowInteractor& interactor) {
+  vtkNew<vtkQuadricClustering> coarse;
+  coarse->SetInputConnection(normals_->GetOutputPort());
+  coarse->SetNumberOfDivisions(kCoarseCells, kCoarseCells, kCoarseCells);
+  coarse->CopyCellDataOff();
+  coarse->AutoAdjustNumberOfDivisionsOff();
+  coarse->UseInputPointsOn();
+  coarseMapper_->SetInputConnection(coarse->GetOutputPort());
+  const auto listen = [&](unsigned long event, bool turning) {
+    struct Bound {
+      Stage* stage;
+      bool turning;
+    };
+    vtkNew<vtkCallbackCommand> command;
+    command->SetClientData(new Bound{this, turning});
+    command->SetClientDataDeleteCallback([](void* data) { delete static_cast<Bound*>(data); });
+    command->SetCallback([](vtkObject*, unsigned long, void* data, void*) {
+      const auto* bound = static_cast<Bound*>(data);
+      bound->stage->actor_->SetMapper(bound->turning ? bound->stage->coarseMapper_
+                                                     : bound->stage->mapper_);
+    });
+    interactor.GetInteractorStyle()->AddObserver(event, command, 1.0f);
+  };
+  listen(vtkCommand::StartInteractionEvent, true);
+  listen(vtkCommand::EndInteractionEvent, false);
+}
+
+void Stage::render() {
+  renderer_->ResetCameraClippingRange();
+  if (window_ != nullptr) window_->Render();
+}
+
+void Stage::place(const Positions& positions) {
+  positions_ = positions;
+  for (Eigen::Index v = 0; v < positions.rows(); ++v) {
+    points_->SetPoint(v, positions(v, 0), positions(v, 1), positions(v, 2));
+  }
+  points_->Modified();
+  follow(*rimLines_, rim_);
+  follow(*pathLines_, path_);
+}
+
+void Stage::paint(const std::vector<Rgb>& colours) {
+  mesh_->GetCellData()->SetScalars(nullptr);
+  fill(*colours_, colours);
+  mesh_->GetPointData()->SetScalars(colours_);
+  mapper_->SetScalarModeToUsePointData();
+}
+
+void Stage::paintFaces(const std::vector<Rgb>& colours) {
+  mesh_->GetPointData()->SetScalars(nullptr);
+  fill(*faceColours_, colours);
+  mesh_->GetCellData()->SetScalars(faceColours_);
+  mapper_->SetScalarModeToUseCellData();
+}
+
+void Stage::showScale(const std::optional<Scale>& scale, const std::string& title) {
+  bar_->SetVisibility(scale.has_value());
+  if (!scale) return;
+  barColours_->SetNumberOfTableValues(static_cast<vtkIdType>(scale->colours.size()));
+  for (std::size_t n = 0; n < scale->colours.size(); ++n) {
+    const Rgb& c = scale->colours[n];
+    barColours_->SetTableValue(static_cast<vtkIdType>(n), c[0] / 255.0, c[1] / 255.0, c[2] / 255.0);
+  }
+  barColours_->SetRange(scale->low, scale->high);
+  bar_->SetTitle(title.c_str());
+  bar_->SetLabelFormat("%-#.3g");
+}
+
+void Stage::showRim(const std::vector<std::int32_t>& regionFaces) {
+  rim_ = rimOf(surface_.faces, regionFaces);
+  follow(*rimLines_, rim_);
+}
+
+void Stage::showPath(const std::vector<std::int32_t>& vertices) {
+  path_.clear();
+  for (std::size_t n = 1; n < vertices.size(); ++n) {
+    path_.push_back(vertices[n - 1]);
+    path_.push_back(vertices[n]);
+  }
+  follow(*pathLines_, path_);
+}
+
+void Stage::follow(vtkPolyData& lines, const std::vector<std::int32_t>& vertices) {
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkCellArray> cells;
+  for (std::size_t n = 0; n + 1 < vertices.size(); n += 2) {
+    vtkIdType ends[2];
+    for (int k = 0; k < 2; ++k) {
+      const auto p = positions_.row(vertices[n + k]);
+      ends[k] = points->InsertNextPoint(p.x(), p.y(), p.z());
+    }
+    cells->InsertNextCell(2, ends);
+  }
+  lines.SetPoints(points);
+  lines.SetLines(cells);
+}
+
+void Stage::look(const Vector& direction) {
+  const Point low = positions_.colwise().minCoeff().transpose();
+  const Point high = positions_.colwise().maxCoeff().transpose();
+  const Point middle = 0.5 * (low + high);
+  const Point eye = middle + 2 * (high - low).norm() * direction.normalized();
+  vtkCamera* camera = renderer_->GetActiveCamera();
+  camera->SetFocalPoint(middle.x(), middle.y(), middle.z());
+  camera->SetPosition(eye.x(), eye.y(), eye.z());
+  constexpr double kUpright = 0.95;  // nearer to the head's axis than this, anterior is up
+  const bool along = std::abs(direction.normalized().z()) > kUpright;
+  camera->SetViewUp(0, along ? 1 : 0, along ? 0 : 1);
+  renderer_->ResetCamera();
+}
+
+Vector Stage::direction() const {
+  double towards[3];
+  renderer_->GetActiveCamera()->GetDirectionOfProjection(towards);
+  return -Vector(towards[0], towards[1], towards[2]);
+}
+
+std::optional<Picked> Stage::pick(int x, int y) {
+  if (picker_->Pick(x, y, 0, renderer_) == 0) return {};
+  const double* at = picker_->GetPickPosition();
+  const vtkIdType face = picker_->GetCellId();
+  if (face < 0 || face >= surface_.faceCount()) return {};
+  Picked picked;
+  picked.place = Point(at[0], at[1], at[2]);
+  double nearest = kInfinity;
+  for (int k = 0; k < 3; ++k) {
+    const std::int32_t v = surface_.faces(face, k);
+    const double distance = (positions_.row(v).transpose() - picked.place).norm();
+    if (distance < nearest) {
+      nearest = distance;
+      picked.vertex = v;
+    }
+  }
+  return picked;
+}
+
+}  // namespace explica::viewer

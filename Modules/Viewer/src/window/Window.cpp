@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Explica/Viewer/Window.h"
+
+#include "Display.h"
+#include "MainWindow.h"
+
+#include <QVTKOpenGLNativeWidget.h>
+
+#include <QApplication>
+#include <QSurfaceFormat>
+#include <array>
+
+namespace explica::viewer {
+bool hasWindow() {
+  return true;
+}
+
+void showWindow(Session& session, const MakeScale& scale, const OpenFile& open, const Save& save,
+                const WindowOptions& options) {
+  requireDisplay();
+  QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());
+  std::string program = "explica";
+  std::array<char*, 2> words = {program.data(), nullptr};
+  int count = 1;
+  QApplication application(count, words.data());
+  MainWindow window(session, scale, open, save, options);
+  window.show();
+  if (!options.script) {
+    QApplication::exec();
+    return;
+  }
+  QApplication::processEvents();
+  playScript(window, *options.script);
+}
+
+}  // namespace explica::viewer
