@@ -140,12 +140,6 @@ visibility::Viewpoints viewOf(Context& context, const Settings& s, const Point& 
   return visibility::viewSurface(io::readSurface(*s.viewSurface, s.reading).mesh);
 }
 
-Point centroidOf(const TriangleMesh& mesh, const unfolding::Region& region) {
-  Point sum = Point::Zero();
-  for (const std::int32_t v : region.vertices) sum += mesh.positions.row(v).transpose();
-  return sum / static_cast<double>(region.vertices.size());
-}
-
 unfolding::Region regionOf(const TriangleMesh& mesh, const Settings& s,
                            const visibility::Viewpoints* view) {
   if (!s.label) return unfolding::selectRegion(mesh, s.region, view);
@@ -237,7 +231,7 @@ Termination run(Context& context, const Settings& s) {
     region = regionOf(mesh, s, &view);
   } else {
     region = regionOf(mesh, s, nullptr);
-    view = viewOf(context, s, centroidOf(mesh, region));
+    view = viewOf(context, s, unfolding::centroidOf(mesh, region));
   }
   unfolding::requireViewFromOutside(mesh, view);
   if (s.adjustRegion) {

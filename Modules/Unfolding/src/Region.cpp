@@ -259,4 +259,10 @@ void requireViewFromOutside(const TriangleMesh& mesh, const visibility::Viewpoin
   }
 }
 
+Point centroidOf(const TriangleMesh& mesh, const Region& region) {
+  Point sum = Point::Zero();
+  for (const std::int32_t v : region.vertices) sum += mesh.positions.row(v).transpose();
+  return sum / static_cast<double>(region.vertices.size());
+}
+
 }  // namespace explica::unfolding

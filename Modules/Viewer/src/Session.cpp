@@ -37,20 +37,11 @@ unfolding::Region regionOf(const TriangleMesh& surface, const Choice& choice) {
   return unfolding::selectRegion(surface, options);
 }
 
-/// Where the viewpoint lies: from the region's area centroid along the direction, as `explica
-/// unfold
-/// --direction --distance` places it.
+/// Where `explica unfold --direction --distance` puts it.
 Point viewpointOf(const TriangleMesh& surface, const unfolding::Region& region,
                   const Choice& choice) {
-  Vector weighted = Vector::Zero();
-  double area = 0;
-  for (const std::int32_t f : region.faces) {
-    const Point a = surface.corner(f, 0), b = surface.corner(f, 1), c = surface.corner(f, 2);
-    const double faceArea = 0.5 * Eigen::Vector3d((b - a).cross(c - a)).norm();
-    weighted += faceArea * (a + b + c) / 3;
-    area += faceArea;
-  }
-  return weighted / area + choice.distance * choice.direction.normalized();
+  return unfolding::centroidOf(surface, region) +
+         choice.distance / choice.direction.norm() * choice.direction;
 }
 
 /// A state, kept as what differs from the start: a region moves, the rest of a hemisphere does not.

@@ -124,15 +124,8 @@ TEST(Session, ACheckpointContinuesToTheSameStates) {
   EXPECT_EQ(checkpoint->state.positions, session.moment(3).positions);
   EXPECT_EQ(checkpoint->history.size(), 4u);
   const auto& region = session.preview().region;
-  Point centre = Point::Zero();
-  double area = 0;
-  for (const std::int32_t f : region.faces) {
-    const Point a = ball.corner(f, 0), b = ball.corner(f, 1), c = ball.corner(f, 2);
-    const double face = 0.5 * Vector((b - a).cross(c - a)).norm();
-    centre += face * (a + b + c) / 3;
-    area += face;
-  }
-  const auto view = visibility::viewpoint(centre / area + 1000 * choice.direction.normalized());
+  const auto view = visibility::viewpoint(unfolding::centroidOf(ball, region) +
+                                          1000 / choice.direction.norm() * choice.direction);
   const auto result = unfolding::unfold(ball, region, view, choice.unfold, {}, &*checkpoint);
   EXPECT_EQ(result.mesh.positions, session.moment(6).positions);
 }

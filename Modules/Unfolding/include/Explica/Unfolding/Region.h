@@ -63,6 +63,10 @@ struct Region {
 ///                       surface, or a face of zero area
 [[nodiscard]] Region regionOfMarked(const TriangleMesh& mesh, const std::vector<bool>& marked);
 
+/// The mean of a region's vertices, RAS mm: what a viewpoint that is given by its direction is
+/// counted from.
+[[nodiscard]] Point centroidOf(const TriangleMesh& mesh, const Region& region);
+
 /// The condition of the method ([Thesis, section 5.1]): average visibility above zero at the start.
 ///
 /// Grows or shrinks the radius, by a tenth at a time and the smaller change first, until the region
