@@ -213,8 +213,7 @@ Termination run(Context& context, const Settings& s) {
   };
   const io::LoadedSurface loaded = readSurface(context, "SURFACE", s.surface, s.reading);
   TriangleMesh mesh = loaded.mesh;
-  geometry::requireManifold(mesh, s.surface);
-  const auto condition = geometry::inspectMesh(mesh);
+  const auto condition = geometry::requireManifold(mesh, s.surface);
   if (condition.coincidentVertices > 0) {
     context.warn(std::to_string(condition.coincidentVertices) +
                  " vertices lie exactly on others: the surface touches itself there");

@@ -7,15 +7,20 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
+#include "Explica/Geometry/BoundsSearch.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 namespace explica::collision {
 namespace {
+
+using geometry::BlockPair;
+using geometry::BoundsPyramid;
+using geometry::BoundsSearch;
+using geometry::MotionBounds;
 
 Edges edgesOf(const Faces& faces) {
   std::vector<std::array<std::int32_t, 2>> all;
@@ -54,101 +59,6 @@ BoundsPyramid pyramidOf(const CollisionScene& scene, FeatureKind kind,
                                             : ofRow(scene.faces().row(i));
   });
   return BoundsPyramid(bounds);
-}
-
-/// Two pyramids, or one with itself, and how near their items come to count.
-struct BoundsSearch {
-  const BoundsPyramid* first;
-  const BoundsPyramid* second;
-  float squaredReach;  ///< mm^2
-  [[nodiscard]] bool same() const { return first == second; }
-};
-
-/// A block of each whose contents may meet.
-struct BlockPair {
-  int firstLevel, secondLevel;
-  std::int32_t first, second;
-  [[nodiscard]] bool ofItems() const { return firstLevel == 0 && secondLevel == 0; }
-};
-
-/// Calls visit(lane of first, lane of second) for what may meet in a pair of blocks.
-template <class Visit>
-void visitLanes(const BoundsSearch& search, const BlockPair& pair, const Visit& visit) {
-  std::uint64_t near =
-      kernels::mayMeet(search.first->block(pair.firstLevel, pair.first),
-                       search.second->block(pair.secondLevel, pair.second), search.squaredReach);
-  if (search.same() && pair.firstLevel == pair.secondLevel && pair.first == pair.second) {
-    constexpr std::uint64_t kNotBelow = 0x80C0E0F0F8FCFEFFU;  // j >= i of bits 8 i + j
-    constexpr std::uint64_t kItself = 0x8040201008040201U;
-    near &= pair.ofItems() ? kNotBelow & ~kItself : kNotBelow;
-  }
-  for (; near != 0; near &= near - 1) {
-    const int bit = std::countr_zero(near);
-    visit(bit / BoundsBlock::kLanes, bit % BoundsBlock::kLanes);
-  }
-}
-
-/// Appends the pairs among the children of the higher block and the other one, or its children if
-/// they are of one level.
-void openBlocks(const BoundsSearch& search, const BlockPair& pair, std::vector<BlockPair>& opened) {
-  constexpr int kLanes = BoundsBlock::kLanes;
-  if (pair.firstLevel == pair.secondLevel) {
-    visitLanes(search, pair, [&](int i, int j) {
-      opened.push_back({pair.firstLevel - 1, pair.secondLevel - 1, kLanes * pair.first + i,
-                        kLanes * pair.second + j});
-    });
-    return;
-  }
-  const bool firstOpens = pair.firstLevel > pair.secondLevel;
-  unsigned seen = 0;
-  visitLanes(search, pair, [&](int i, int j) { seen |= 1U << (firstOpens ? i : j); });
-  for (; seen != 0; seen &= seen - 1) {
-    BlockPair child = pair;
-    (firstOpens ? child.firstLevel : child.secondLevel) -= 1;
-    std::int32_t& block = firstOpens ? child.first : child.second;
-    block = kLanes * block + std::countr_zero(seen);
-    opened.push_back(child);
-  }
-}
-
-/// Enough pairs of blocks to share out; how many does not depend on threads.
-std::vector<BlockPair> blocksToShareOut(const BoundsSearch& search) {
-  constexpr std::size_t kEnough = 256;
-  if (search.first->levelCount() == 0 || search.second->levelCount() == 0) return {};
-  std::vector<BlockPair> pairs = {
-      {search.first->levelCount() - 1, search.second->levelCount() - 1, 0, 0}};
-  while (pairs.size() < kEnough &&
-         std::any_of(pairs.begin(), pairs.end(), [](const auto& p) { return !p.ofItems(); })) {
-    std::vector<BlockPair> opened;
-    for (const BlockPair& pair : pairs) {
-      if (pair.ofItems()) {
-        opened.push_back(pair);
-      } else {
-        openBlocks(search, pair, opened);
-      }
-    }
-    pairs = std::move(opened);
-  }
-  return pairs;
-}
-
-/// Calls visit(item of first, item of second) for all below a pair of blocks that may meet.
-template <class Visit>
-void visitItems(const BoundsSearch& search, const BlockPair& from, const Visit& visit) {
-  constexpr int kLanes = BoundsBlock::kLanes;
-  std::vector<BlockPair> waiting = {from};
-  while (!waiting.empty()) {
-    const BlockPair pair = waiting.back();
-    waiting.pop_back();
-    if (!pair.ofItems()) {
-      openBlocks(search, pair, waiting);
-      continue;
-    }
-    visitLanes(search, pair, [&](int i, int j) {
-      visit(search.first->item(kLanes * pair.first + i),
-            search.second->item(kLanes * pair.second + j));
-    });
-  }
 }
 
 /// Collects pairs, tests eight at a time and keeps those that come within reach.

@@ -12,39 +12,6 @@ HWY_BEFORE_NAMESPACE();
 namespace explica::collision::kernels::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-using BoundsTag = hn::CappedTag<float, BoundsBlock::kLanes>;
-
-template <class D, class M>
-HWY_INLINE std::uint64_t bitsOf(D d, M mask) {
-  std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(d, mask, bytes);
-  return bytes[0];
-}
-
-std::uint64_t MayMeet(const BoundsBlock& a, const BoundsBlock& b, float squaredReach) {
-  const BoundsTag d;
-  const int width = static_cast<int>(hn::Lanes(d));
-  const auto zero = hn::Zero(d);
-  std::uint64_t bits = 0;
-  for (int lane = 0; lane < BoundsBlock::kLanes; ++lane) {
-    for (int n = 0; n < BoundsBlock::kLanes; n += width) {
-      auto squared = zero;
-      for (int k = 0; k < 3; ++k) {
-        const auto above = hn::Sub(hn::Set(d, a.lower[k][lane]), hn::Load(d, b.upper[k] + n));
-        const auto falls = hn::Sub(hn::Load(d, b.most[k] + n), hn::Set(d, a.least[k][lane]));
-        const auto below = hn::Sub(hn::Load(d, b.lower[k] + n), hn::Set(d, a.upper[k][lane]));
-        const auto rises = hn::Sub(hn::Set(d, a.most[k][lane]), hn::Load(d, b.least[k] + n));
-        const auto gap = hn::Max(zero, hn::Max(hn::Sub(above, hn::Max(zero, falls)),
-                                               hn::Sub(below, hn::Max(zero, rises))));
-        squared = hn::Add(squared, hn::Mul(gap, gap));
-      }
-      bits |= bitsOf(d, hn::Le(squared, hn::Set(d, squaredReach)))
-              << (BoundsBlock::kLanes * lane + n);
-    }
-  }
-  return bits;
-}
-
 using PairTag = hn::CappedTag<double, PairBatch::kLanes>;
 using V = hn::Vec<PairTag>;
 
@@ -180,13 +147,8 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace explica::collision::kernels {
 
-HWY_EXPORT(MayMeet);
 HWY_EXPORT(SeparateVertexFace);
 HWY_EXPORT(SeparateEdgeEdge);
-
-std::uint64_t mayMeet(const BoundsBlock& a, const BoundsBlock& b, float squaredReach) {
-  return HWY_DYNAMIC_DISPATCH(MayMeet)(a, b, squaredReach);
-}
 
 void separateVertexFace(PairBatch& batch) {
   HWY_DYNAMIC_DISPATCH(SeparateVertexFace)(batch);

@@ -2,18 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "BoundsPyramid.h"
+#include "Explica/Core/Types.h"
 
-#include <cstdint>
-
-/// Vectorised tests of who may meet whom, for the machine's widest vectors, chosen at run time.
+/// Vectorised tests of how near pairs are, for the machine's widest vectors, chosen at run time.
 ///
 /// Without fused multiply-add, and each lane for itself: the same bits on every processor.
 namespace explica::collision::kernels {
-
-/// Which lanes of a come within reach of which lanes of b (bit 8 i + j): along each axis the gap at
-/// the start less what the motions may take of it, and the three together.
-[[nodiscard]] std::uint64_t mayMeet(const BoundsBlock& a, const BoundsBlock& b, float squaredReach);
 
 /// Eight pairs of features, relative to the first point of each and to its motion.
 struct alignas(64) PairBatch {

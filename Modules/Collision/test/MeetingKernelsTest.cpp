@@ -117,16 +117,6 @@ std::vector<double> everything() {
       all.insert(all.end(), batch.separation, batch.separation + PairBatch::kLanes);
       all.insert(all.end(), batch.closing, batch.closing + PairBatch::kLanes);
     }
-    std::vector<MotionBounds> bounds;
-    for (int n = 0; n < 2 * BoundsBlock::kLanes; ++n) {
-      const FourPoints p = randomPoints(random);
-      bounds.push_back(MotionBounds::ofPoint(p[0], p[1]));
-      bounds.back().extend(MotionBounds::ofPoint(p[2], p[3]));
-    }
-    const BoundsPyramid pyramid(bounds);
-    const std::uint64_t bits = kernels::mayMeet(pyramid.block(0, 0), pyramid.block(0, 1), 0.01F);
-    all.push_back(static_cast<double>(bits >> 32));
-    all.push_back(static_cast<double>(bits & 0xFFFFFFFFU));
   }
   return all;
 }
@@ -146,48 +136,6 @@ TEST(MeetingKernels, EveryInstructionSetGivesTheSameBits) {
     EXPECT_EQ(std::memcmp(narrow.data(), widest.data(), sizeof(double) * widest.size()), 0)
         << target;
   }
-}
-
-/// Oracle: the same test one by one in double precision.
-TEST(MeetingKernels, BlocksFindAllBoundsThatComeWithinReach) {
-  std::mt19937 random(6);
-  int found = 0;
-  for (int round = 0; round < 300; ++round) {
-    std::vector<MotionBounds> bounds;
-    for (int n = 0; n < 2 * BoundsBlock::kLanes - 3; ++n) {
-      const FourPoints p = randomPoints(random);
-      bounds.push_back(MotionBounds::ofPoint(p[0], 0.3 * p[1]));
-    }
-    const BoundsPyramid pyramid(bounds);
-    ASSERT_EQ(pyramid.levelCount(), 2);
-    const double reach = 0.5;
-    const auto bits = kernels::mayMeet(pyramid.block(0, 0), pyramid.block(0, 1),
-                                       static_cast<float>(reach * reach));
-    for (int i = 0; i < BoundsBlock::kLanes; ++i) {
-      for (int j = 0; j < BoundsBlock::kLanes; ++j) {
-        const bool bit = (bits >> (BoundsBlock::kLanes * i + j) & 1) != 0;
-        if (j + BoundsBlock::kLanes >= static_cast<int>(bounds.size())) {
-          EXPECT_FALSE(bit);
-          continue;
-        }
-        const MotionBounds &a = bounds[pyramid.item(i)],
-                           &b = bounds[pyramid.item(BoundsBlock::kLanes + j)];
-        double least = kInfinity;
-        for (int step = 0; step <= 20; ++step) {
-          double squared = 0;
-          for (int k = 0; k < 3; ++k) {
-            const double t = step / 20.0,
-                         x = a.lower[k] + t * a.least[k] - b.lower[k] - t * b.least[k];
-            squared += x * x;
-          }
-          least = std::min(least, squared);
-        }
-        EXPECT_TRUE(bit || least >= reach * reach * (1 - 1e-5));
-        found += bit;
-      }
-    }
-  }
-  EXPECT_GT(found, 300);
 }
 
 }  // namespace

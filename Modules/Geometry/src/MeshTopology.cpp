@@ -4,15 +4,19 @@
 #include "Explica/Geometry/MeshTopology.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Parallel.h"
 #include "Explica/Geometry/Predicates.h"
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <numeric>
 #include <string>
 
 namespace explica::geometry {
 namespace {
+
+constexpr std::size_t kGrain = 2048;
 
 /// A face's side: its two vertices in ascending order, and which side of which face it is.
 struct HalfEdge {
@@ -30,16 +34,24 @@ struct HalfEdge {
   }
 };
 
-std::vector<HalfEdge> sortedHalfEdges(const Faces& faces) {
-  std::vector<HalfEdge> sides;
-  sides.reserve(static_cast<std::size_t>(faces.rows()) * 3);
+/// By edge, then face: a pass that counts by the lower vertex, whose few sides are sorted then.
+std::vector<HalfEdge> sortedHalfEdges(const Faces& faces, Eigen::Index vertexCount) {
+  std::vector<std::int32_t> begin(static_cast<std::size_t>(vertexCount) + 1, 0);
+  for (Eigen::Index f = 0; f < faces.rows(); ++f) {
+    for (int k = 0; k < 3; ++k) ++begin[std::min(faces(f, k), faces(f, (k + 1) % 3)) + 1];
+  }
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<HalfEdge> sides(static_cast<std::size_t>(faces.rows()) * 3);
+  std::vector<std::int32_t> at(begin.begin(), begin.end() - 1);
   for (std::int32_t f = 0; f < faces.rows(); ++f) {
     for (std::int32_t k = 0; k < 3; ++k) {
       const std::int32_t a = faces(f, k), b = faces(f, (k + 1) % 3);
-      sides.push_back({std::min(a, b), std::max(a, b), f, k});
+      sides[at[std::min(a, b)]++] = {std::min(a, b), std::max(a, b), f, k};
     }
   }
-  std::sort(sides.begin(), sides.end());
+  parallelFor(static_cast<std::size_t>(vertexCount), kGrain, [&](std::size_t v) {
+    std::sort(sides.begin() + begin[v], sides.begin() + begin[v + 1]);
+  });
   return sides;
 }
 
@@ -83,19 +95,23 @@ IndexLists groupByKey(std::size_t keys, const std::vector<std::array<std::int32_
   std::partial_sum(lists.begin.begin(), lists.begin.end(), lists.begin.begin());
   std::vector<std::int32_t> next(lists.begin.begin(), lists.begin.end() - 1);
   for (const auto& [key, value] : pairs) lists.values[next[key]++] = value;
-  for (std::size_t key = 0; key < keys; ++key) {
+  parallelFor(keys, kGrain, [&](std::size_t key) {
     std::sort(lists.values.begin() + lists.begin[key], lists.values.begin() + lists.begin[key + 1]);
-  }
+  });
   return lists;
 }
 
 IndexLists facesOfVertices(const Faces& faces, Eigen::Index vertexCount) {
-  std::vector<std::array<std::int32_t, 2>> pairs;
-  pairs.reserve(static_cast<std::size_t>(faces.rows()) * 3);
+  IndexLists lists;
+  lists.begin.assign(static_cast<std::size_t>(vertexCount) + 1, 0);
+  lists.values.resize(static_cast<std::size_t>(faces.size()));
+  for (Eigen::Index n = 0; n < faces.size(); ++n) ++lists.begin[faces.data()[n] + 1];
+  std::partial_sum(lists.begin.begin(), lists.begin.end(), lists.begin.begin());
+  std::vector<std::int32_t> next(lists.begin.begin(), lists.begin.end() - 1);
   for (std::int32_t f = 0; f < faces.rows(); ++f) {
-    for (int k = 0; k < 3; ++k) pairs.push_back({faces(f, k), f});
+    for (int k = 0; k < 3; ++k) lists.values[next[faces(f, k)]++] = f;
   }
-  return groupByKey(static_cast<std::size_t>(vertexCount), pairs);
+  return lists;
 }
 
 bool inRange(const Faces& faces, std::int32_t f, Eigen::Index vertexCount) {
@@ -141,40 +157,89 @@ bool collinear(const Point& a, const Point& b, const Point& c) {
   return true;
 }
 
-std::int64_t countCoincident(const TriangleMesh& mesh, const std::vector<bool>& used) {
-  std::vector<std::int32_t> order;
-  for (std::int32_t v = 0; v < mesh.vertexCount(); ++v) {
-    if (used[v] && mesh.positions.row(v).allFinite()) order.push_back(v);
-  }
-  const auto before = [&](std::int32_t a, std::int32_t b) {
-    for (int k = 0; k < 3; ++k) {
-      if (mesh.positions(a, k) != mesh.positions(b, k)) {
-        return mesh.positions(a, k) < mesh.positions(b, k);
+/// Groups [0, count) by hash, so that equals stand together; each group is sorted by `before`.
+/// @return how many items equal the one before them
+template <class Hash, class Before>
+std::int64_t countRepeated(std::size_t count, const Hash& hash, const Before& before) {
+  constexpr std::size_t kPerBin = 4;
+  std::size_t bins = 1;
+  while (kPerBin * bins < count) bins *= 2;
+  std::vector<std::uint32_t> binOf(count);
+  parallelFor(count, kGrain, [&](std::size_t i) {
+    std::uint64_t mixed = hash(i);
+    mixed = (mixed ^ (mixed >> 29)) * 0xBF58476D1CE4E5B9U;
+    binOf[i] = static_cast<std::uint32_t>((mixed ^ (mixed >> 32)) & (bins - 1));
+  });
+  std::vector<std::uint32_t> begin(bins + 1, 0), order(count);
+  for (const std::uint32_t b : binOf) ++begin[b + 1];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<std::uint32_t> at(begin.begin(), begin.end() - 1);
+  for (std::size_t i = 0; i < count; ++i) order[at[binOf[i]]++] = static_cast<std::uint32_t>(i);
+  return parallelSum(bins, kGrain, std::int64_t{0}, [&](std::size_t first, std::size_t last) {
+    std::int64_t repeated = 0;
+    for (std::size_t b = first; b < last; ++b) {
+      std::sort(order.begin() + begin[b], order.begin() + begin[b + 1], before);
+      for (std::size_t n = begin[b] + 1; n < begin[b + 1]; ++n) {
+        repeated += !before(order[n - 1], order[n]);
       }
     }
-    return false;
-  };
-  std::sort(order.begin(), order.end(), before);
-  std::int64_t count = 0;
-  for (std::size_t i = 1; i < order.size(); ++i) count += !before(order[i - 1], order[i]);
-  return count;
+    return repeated;
+  });
+}
+
+std::int64_t countCoincident(const TriangleMesh& mesh, const std::vector<bool>& used) {
+  std::vector<std::int32_t> vertices;
+  for (std::int32_t v = 0; v < mesh.vertexCount(); ++v) {
+    if (used[v] && mesh.positions.row(v).allFinite()) vertices.push_back(v);
+  }
+  const auto at = [&](std::uint32_t i, int k) { return mesh.positions(vertices[i], k) + 0.0; };
+  return countRepeated(
+      vertices.size(),
+      [&](std::size_t i) {
+        std::uint64_t sum = 0;
+        for (int k = 0; k < 3; ++k) {
+          sum = sum * 0x9E3779B97F4A7C15U +
+                std::bit_cast<std::uint64_t>(at(static_cast<std::uint32_t>(i), k));
+        }
+        return sum;
+      },
+      [&](std::uint32_t a, std::uint32_t b) {
+        for (int k = 0; k < 3; ++k) {
+          if (at(a, k) != at(b, k)) return at(a, k) < at(b, k);
+        }
+        return false;
+      });
 }
 
 std::int64_t countDuplicateFaces(const Faces& faces, const std::vector<std::int32_t>& sound) {
-  std::vector<std::array<std::int32_t, 3>> keys;
-  keys.reserve(sound.size());
-  for (const std::int32_t f : sound) {
-    std::array<std::int32_t, 3> key = {faces(f, 0), faces(f, 1), faces(f, 2)};
-    std::sort(key.begin(), key.end());
-    keys.push_back(key);
-  }
-  std::sort(keys.begin(), keys.end());
-  std::int64_t count = 0;
-  for (std::size_t i = 1; i < keys.size(); ++i) count += keys[i] == keys[i - 1];
-  return count;
+  std::vector<std::array<std::int32_t, 3>> keys(sound.size());
+  parallelFor(sound.size(), kGrain, [&](std::size_t i) {
+    keys[i] = {faces(sound[i], 0), faces(sound[i], 1), faces(sound[i], 2)};
+    std::sort(keys[i].begin(), keys[i].end());
+  });
+  return countRepeated(
+      keys.size(),
+      [&](std::size_t i) {
+        std::uint64_t sum = 0;
+        for (const std::int32_t v : keys[i]) {
+          sum = sum * 0x9E3779B97F4A7C15U + static_cast<std::uint32_t>(v);
+        }
+        return sum;
+      },
+      [&](std::uint32_t a, std::uint32_t b) { return keys[a] < keys[b]; });
 }
 
-void require(const TriangleMesh& mesh, std::string_view name, bool closed) {
+/// How many of [0, count) have a property.
+template <class Has>
+std::int64_t countOf(std::size_t count, const Has& has) {
+  return parallelSum(count, kGrain, std::int64_t{0}, [&](std::size_t begin, std::size_t end) {
+    std::int64_t found = 0;
+    for (std::size_t i = begin; i < end; ++i) found += has(i);
+    return found;
+  });
+}
+
+MeshCondition require(const TriangleMesh& mesh, std::string_view name, bool closed) {
   const MeshCondition c = inspectMesh(mesh);
   std::string findings;
   const auto note = [&](std::int64_t count, const char* what) {
@@ -191,7 +256,7 @@ void require(const TriangleMesh& mesh, std::string_view name, bool closed) {
   note(c.nonManifoldVertices, "vertices where the surface touches itself");
   note(c.inconsistentEdges, "edges whose two faces are oriented against each other");
   if (closed) note(c.boundaryEdges, "boundary edges");
-  if (findings.empty()) return;
+  if (findings.empty()) return c;
   throw InvalidInput(std::string(name) + ": has " + findings + "; a" + (closed ? " closed," : "n") +
                      " oriented manifold surface is needed (repair the mesh, or extract it anew)");
 }
@@ -208,7 +273,7 @@ MeshTopology buildTopology(const Faces& faces, Eigen::Index vertexCount) {
       throw InvalidInput("faces: face " + std::to_string(f) + " names a vertex twice");
     }
   }
-  const std::vector<HalfEdge> sides = sortedHalfEdges(faces);
+  const std::vector<HalfEdge> sides = sortedHalfEdges(faces, vertexCount);
   std::size_t edgeCount = 0;
   forEachEdge(sides, [&](std::size_t begin, std::size_t end) {
     if (end - begin > 2) {
@@ -261,8 +326,11 @@ MeshCondition inspectMesh(const TriangleMesh& mesh) {
       continue;
     }
     sound.push_back(f);
-    condition.zeroAreaFaces += collinear(mesh.corner(f, 0), mesh.corner(f, 1), mesh.corner(f, 2));
   }
+  condition.zeroAreaFaces = countOf(sound.size(), [&](std::size_t i) {
+    const std::int32_t f = sound[i];
+    return collinear(mesh.corner(f, 0), mesh.corner(f, 1), mesh.corner(f, 2));
+  });
   Faces soundFaces(static_cast<Eigen::Index>(sound.size()), 3);
   for (std::size_t i = 0; i < sound.size(); ++i) {
     soundFaces.row(static_cast<Eigen::Index>(i)) = mesh.faces.row(sound[i]);
@@ -272,7 +340,7 @@ MeshCondition inspectMesh(const TriangleMesh& mesh) {
   condition.duplicateFaces = countDuplicateFaces(mesh.faces, sound);
   condition.coincidentVertices = countCoincident(mesh, used);
 
-  const std::vector<HalfEdge> sides = sortedHalfEdges(soundFaces);
+  const std::vector<HalfEdge> sides = sortedHalfEdges(soundFaces, mesh.vertexCount());
   forEachEdge(sides, [&](std::size_t begin, std::size_t end) {
     ++condition.edges;
     condition.boundaryEdges += end - begin == 1;
@@ -283,10 +351,9 @@ MeshCondition inspectMesh(const TriangleMesh& mesh) {
     }
   });
   const IndexLists around = facesOfVertices(soundFaces, mesh.vertexCount());
-  for (std::size_t v = 0; v < around.size(); ++v) {
-    condition.nonManifoldVertices +=
-        around[v].size() > 1 && fansAt(soundFaces, static_cast<std::int32_t>(v), around[v]) > 1;
-  }
+  condition.nonManifoldVertices = countOf(around.size(), [&](std::size_t v) {
+    return around[v].size() > 1 && fansAt(soundFaces, static_cast<std::int32_t>(v), around[v]) > 1;
+  });
   for (const std::int32_t component : faceComponents(soundFaces, mesh.vertexCount())) {
     condition.components = std::max<std::int64_t>(condition.components, component + 1);
   }
@@ -295,12 +362,12 @@ MeshCondition inspectMesh(const TriangleMesh& mesh) {
   return condition;
 }
 
-void requireManifold(const TriangleMesh& mesh, std::string_view name) {
-  require(mesh, name, false);
+MeshCondition requireManifold(const TriangleMesh& mesh, std::string_view name) {
+  return require(mesh, name, false);
 }
 
-void requireClosedManifold(const TriangleMesh& mesh, std::string_view name) {
-  require(mesh, name, true);
+MeshCondition requireClosedManifold(const TriangleMesh& mesh, std::string_view name) {
+  return require(mesh, name, true);
 }
 
 std::vector<std::int32_t> faceComponents(const Faces& faces, Eigen::Index vertexCount) {

@@ -4,10 +4,11 @@
 #include "Explica/Geometry/SelfIntersection.h"
 
 #include "Explica/Core/Parallel.h"
-#include "Explica/Geometry/FaceTree.h"
+#include "Explica/Geometry/BoundsSearch.h"
 #include "Explica/Geometry/TriangleIntersection.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace explica::geometry {
 namespace {
@@ -41,25 +42,48 @@ bool facesIntersect(const TriangleMesh& mesh, std::int32_t f, std::int32_t g) {
   }
 }
 
-template <class Wanted>
-std::vector<FacePair> intersectingPairs(const TriangleMesh& mesh, const Wanted& wanted) {
-  const BoxTree tree(faceBoxes(mesh));
-  constexpr std::size_t kGrain = 512;
-  const std::size_t count = static_cast<std::size_t>(mesh.faceCount());
-  std::vector<std::vector<FacePair>> found((count + kGrain - 1) / kGrain);
-  parallelForBlocks(count, kGrain, [&](std::size_t begin, std::size_t end) {
-    auto& mine = found[begin / kGrain];
-    for (std::size_t f = begin; f < end; ++f) {
-      const auto first = static_cast<std::int32_t>(f);
-      tree.forOverlaps(tree.boxes()[f], [&](std::int32_t second) {
-        if (second > first && wanted(first, second) && facesIntersect(mesh, first, second)) {
-          mine.push_back({first, second});
-        }
-      });
-    }
+/// Bounds that hold a face's corners, about an origin in the middle of the mesh.
+std::vector<MotionBounds> boundsOfFaces(const TriangleMesh& mesh,
+                                        const std::vector<std::int32_t>& faces,
+                                        const Point& origin) {
+  std::vector<MotionBounds> bounds(faces.size());
+  parallelFor(faces.size(), 1024, [&](std::size_t n) {
+    const auto corner = [&](int k) {
+      return MotionBounds::ofPoint(mesh.corner(faces[n], k) - origin, Vector::Zero());
+    };
+    bounds[n] = corner(0);
+    bounds[n].extend(corner(1));
+    bounds[n].extend(corner(2));
   });
+  return bounds;
+}
+
+/// Appends the intersecting pairs of faces of two lists, or of one with itself.
+void intersect(const TriangleMesh& mesh, const BoundsSearch& search,
+               const std::vector<std::int32_t>& first, const std::vector<std::int32_t>& second,
+               std::vector<FacePair>& pairs) {
+  const std::vector<BlockPair> blocks = blocksToShareOut(search);
+  std::vector<std::vector<FacePair>> found(blocks.size());
+  parallelFor(blocks.size(), 4, [&](std::size_t n) {
+    visitItems(search, blocks[n], [&](std::int32_t i, std::int32_t j) {
+      const std::int32_t f = std::min(first[i], second[j]), g = std::max(first[i], second[j]);
+      if (facesIntersect(mesh, f, g)) found[n].push_back({f, g});
+    });
+  });
+  for (const auto& part : found) pairs.insert(pairs.end(), part.begin(), part.end());
+}
+
+/// Pairs among the marked faces, and of these with the others.
+std::vector<FacePair> intersectingPairs(const TriangleMesh& mesh,
+                                        const std::vector<std::int32_t>& marked,
+                                        const std::vector<std::int32_t>& others) {
+  if (marked.empty()) return {};
+  const Point origin = mesh.corner(marked[0], 0);
+  const BoundsPyramid own(boundsOfFaces(mesh, marked, origin));
+  const BoundsPyramid rest(boundsOfFaces(mesh, others, origin));
   std::vector<FacePair> pairs;
-  for (const auto& block : found) pairs.insert(pairs.end(), block.begin(), block.end());
+  intersect(mesh, {&own, &own, 0}, marked, marked, pairs);
+  intersect(mesh, {&own, &rest, 0}, marked, others, pairs);
   std::sort(pairs.begin(), pairs.end());
   return pairs;
 }
@@ -67,13 +91,17 @@ std::vector<FacePair> intersectingPairs(const TriangleMesh& mesh, const Wanted& 
 }  // namespace
 
 std::vector<FacePair> findSelfIntersections(const TriangleMesh& mesh) {
-  return intersectingPairs(mesh, [](std::int32_t, std::int32_t) { return true; });
+  std::vector<std::int32_t> all(static_cast<std::size_t>(mesh.faceCount()));
+  std::iota(all.begin(), all.end(), 0);
+  return intersectingPairs(mesh, all, {});
 }
 
 std::vector<FacePair> findSelfIntersections(const TriangleMesh& mesh,
                                             const std::vector<bool>& faceMarked) {
-  return intersectingPairs(
-      mesh, [&](std::int32_t f, std::int32_t g) { return faceMarked[f] || faceMarked[g]; });
+  std::vector<std::int32_t> marked, others;
+  for (std::int32_t f = 0; f < mesh.faceCount(); ++f)
+    (faceMarked[f] ? marked : others).push_back(f);
+  return intersectingPairs(mesh, marked, others);
 }
 
 }  // namespace explica::geometry

@@ -65,11 +65,12 @@ struct MeshCondition {
 
 /// Demands an oriented manifold with finite positions; `name` (a file, an argument) starts the
 /// message.
+/// @return what inspectMesh() says of it
 /// @throws InvalidInput  says every count that is wrong and how to mend it
-void requireManifold(const TriangleMesh& mesh, std::string_view name);
+MeshCondition requireManifold(const TriangleMesh& mesh, std::string_view name);
 
 /// As requireManifold, and without boundary.
-void requireClosedManifold(const TriangleMesh& mesh, std::string_view name);
+MeshCondition requireClosedManifold(const TriangleMesh& mesh, std::string_view name);
 
 /// Component of each face, numbered from 0 in the order of their first faces; faces belong together
 /// if they share a vertex.

@@ -8,9 +8,10 @@
 #include <span>
 #include <vector>
 
-namespace explica::collision {
+namespace explica::geometry {
 
 /// Where a thing starts and how far it goes, axis by axis: mm, single precision, rounded outwards.
+/// What stands still has motions of zero.
 struct MotionBounds {
   float lower[3], upper[3];  ///< of its points at the start, from a common origin
   float least[3], most[3];   ///< of their motions
@@ -46,4 +47,9 @@ class BoundsPyramid {
   std::vector<std::int32_t> items_;
 };
 
-}  // namespace explica::collision
+/// Which lanes of a come within reach of which lanes of b (bit 8 i + j) at some time of their
+/// motion: along each axis the gap at the start less what the motions may take of it, and the three
+/// together. Vectorised, with the same bits on every processor.
+[[nodiscard]] std::uint64_t mayMeet(const BoundsBlock& a, const BoundsBlock& b, float squaredReach);
+
+}  // namespace explica::geometry

@@ -1,17 +1,21 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
-#include "BoundsPyramid.h"
+#include "Explica/Geometry/BoundsPyramid.h"
+
+#include "Explica/Core/Parallel.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
-namespace explica::collision {
+namespace explica::geometry {
 namespace {
 
 constexpr int kLanes = BoundsBlock::kLanes;
+constexpr std::size_t kGrain = 2048;
 constexpr float kFar = 1e30F;  // of lanes without an item: nothing is near them
 
 constexpr int kCodeBits = 10;  // per axis
@@ -31,13 +35,23 @@ struct Placed {
 
 /// Items along the Morton curve through their middles.
 std::vector<Placed> alongCurve(std::span<const MotionBounds> items) {
-  MotionBounds all = items[0];
-  for (const MotionBounds& item : items) all.extend(item);
+  struct Union {
+    MotionBounds bounds;
+    void operator+=(const Union& other) { bounds.extend(other.bounds); }
+  };
+  const MotionBounds all =
+      parallelSum(items.size(), kGrain, Union{items[0]}, [&](std::size_t begin, std::size_t end) {
+        Union part{items[begin]};
+        for (std::size_t n = begin; n < end; ++n) {
+          part.bounds.extend(items[n]);
+        }
+        return part;
+      }).bounds;
   float widest = 0;
   for (int k = 0; k < 3; ++k) widest = std::max(widest, all.upper[k] - all.lower[k]);
   const float scale = widest > 0 ? static_cast<float>((1 << kCodeBits) - 1) / widest : 0;
   std::vector<Placed> placed(items.size());
-  for (std::size_t n = 0; n < items.size(); ++n) {
+  parallelFor(items.size(), kGrain, [&](std::size_t n) {
     std::uint32_t code = 0;
     for (int k = 0; k < 3; ++k) {
       const float middle = 0.5F * (items[n].lower[k] + items[n].upper[k]) - all.lower[k];
@@ -45,7 +59,7 @@ std::vector<Placed> alongCurve(std::span<const MotionBounds> items) {
       code |= spread(static_cast<std::uint32_t>(cell)) << k;
     }
     placed[n] = {code, static_cast<std::int32_t>(n)};
-  }
+  });
   // Stable passes over ten bits each.
   std::vector<Placed> sorted(placed.size());
   for (int pass = 0; pass < 3; ++pass) {
@@ -89,8 +103,11 @@ MotionBounds boundsOf(const BoundsBlock& block) {
   return bounds;
 }
 
-/// Next single-precision number or two below (sign -1) or above (sign 1).
+/// Next single-precision number or two below (sign -1) or above (sign 1); what is too large for
+/// that, or no number, bounds nothing.
 float roundedOutwards(double value, float sign) {
+  constexpr double kLargest = 1e29;
+  if (!(std::abs(value) < kLargest)) return sign * std::numeric_limits<float>::max();
   const auto near = static_cast<float>(value);
   return near + sign * (1.2e-7F * std::abs(near) + 1e-30F);
 }
@@ -123,9 +140,12 @@ BoundsPyramid::BoundsPyramid(std::span<const MotionBounds> items) : items_(items
   const auto blocksFor = [](std::size_t count) { return (count + kLanes - 1) / kLanes; };
   const auto fill = [&](std::size_t count, const auto& boundsAt) {
     std::vector<BoundsBlock> level(blocksFor(count));
-    for (std::size_t n = 0; n < kLanes * level.size(); ++n) {
-      put(n < count ? boundsAt(n) : nothing(), level[n / kLanes], static_cast<int>(n % kLanes));
-    }
+    parallelFor(level.size(), kGrain / kLanes, [&](std::size_t b) {
+      for (int lane = 0; lane < kLanes; ++lane) {
+        const std::size_t n = kLanes * b + static_cast<std::size_t>(lane);
+        put(n < count ? boundsAt(n) : nothing(), level[b], lane);
+      }
+    });
     return level;
   };
   for (std::size_t n = 0; n < order.size(); ++n) items_[n] = order[n].item;
@@ -136,4 +156,4 @@ BoundsPyramid::BoundsPyramid(std::span<const MotionBounds> items) : items_(items
   }
 }
 
-}  // namespace explica::collision
+}  // namespace explica::geometry
