@@ -127,6 +127,16 @@ const std::string* missingNeed(const pipeline::PlannedStep& step,
   return nullptr;
 }
 
+/// What a step's numbers say against it counts against the run.
+void passFlagsOn(Context& context, const std::string& step) {
+  const Json summary =
+      provenance::readJson(context.outputFolder() / step / provenance::kSummaryName);
+  for (Json flag : summary.value("flags", Json::array())) {
+    flag["step"] = step;
+    context.flag(flag);
+  }
+}
+
 void runStep(Context& context, const Settings& s, const pipeline::PlannedStep& step,
              pipeline::StepNote& note, Termination& worst) {
   const Command* command = findCommand(step.command);
@@ -141,8 +151,10 @@ void runStep(Context& context, const Settings& s, const pipeline::PlannedStep& s
   } else {
     outcome = context.runCommand(*command, step.name, values);
   }
-  note.state =
-      outcome->exitCode == kDone ? report::StepState::Done : report::StepState::StoppedEarly;
+  note.state = outcome->exitCode == kDone || reachedGoal(outcome->termination)
+                   ? report::StepState::Done
+                   : report::StepState::StoppedEarly;
+  if (!outcome->plausible) passFlagsOn(context, step.name);
   if (!reachedGoal(outcome->termination)) worst = outcome->termination;
 }
 
@@ -191,6 +203,7 @@ Termination run(Context& context, const Settings& s) {
   const fs::path out = context.outputFolder();
   const pipeline::Plan whole = planOrTakeBack(context, s);
   const std::vector<pipeline::PlannedStep>& plan = whole.steps;
+  context.judged();
   sayWhatIsUsed(context, s, whole);
 
   std::vector<pipeline::StepNote> notes;

@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "Explica/Application/Command.h"
+#include "Explica/Application/Plausible.h"
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/IO/LabelNames.h"
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Segmentation/Hemisphere.h"
+#include "Explica/Segmentation/Plausibility.h"
 #include "Explica/Segmentation/Tissue.h"
 
 #include <nlohmann/json.hpp>
@@ -26,6 +28,7 @@ struct Settings {
   io::VolumeReadOptions reading;
   segmentation::TissueOptions tissue;
   segmentation::HemisphereOptions hemisphere;
+  std::vector<std::string> accept;
 };
 
 void declare(Declaration& d, Settings& s) {
@@ -54,12 +57,13 @@ void declare(Declaration& d, Settings& s) {
       .inputOption(
           "atlas-legend", FileKind::Any,
           "what the atlas's labels mean, one 'value name' a line (default: the .tsv or .nii.txt "
-          "beside it)",
+          "beside it; FreeSurfer's are known)",
           s.legend)
       .options("Reading", s.reading)
       .options("Tissues", s.tissue)
-      .options("Hemisphere", s.hemisphere)
-      .output("seg.nii.gz", FileKind::LabelVolume, "1 fluid, 2 grey, 3 white, 0 outside")
+      .options("Hemisphere", s.hemisphere);
+  declareAccept(d, s.accept);
+  d.output("seg.nii.gz", FileKind::LabelVolume, "1 fluid, 2 grey, 3 white, 0 outside")
       .output("csf.nii.gz", FileKind::Volume, "share of fluid in each voxel")
       .output("gm.nii.gz", FileKind::Volume, "share of grey matter in each voxel")
       .output("wm.nii.gz", FileKind::Volume, "share of white matter in each voxel")
@@ -87,24 +91,61 @@ segmentation::AtlasLegend readLegend(const std::filesystem::path& path) {
   return segmentation::parseAtlasLegend(text, path.string());
 }
 
+struct Atlas {
+  Volume<Label> labels;
+  segmentation::AtlasLegend legend;
+};
+
+Atlas readAtlas(Context& context, const Settings& s, const io::VolumeReadOptions& reading,
+                const Grid& grid) {
+  Atlas atlas;
+  atlas.labels = readLabels(context, "atlas", *s.atlas, reading);
+  if (s.legend) {
+    atlas.legend = readLegend(*s.legend);
+  } else if (segmentation::isFreeSurferAtlas(atlas.labels)) {
+    context.info("atlas: FreeSurfer's labels");
+    atlas.legend = segmentation::freeSurferLegend();
+    segmentation::keepNamed(atlas.labels, atlas.legend);
+  } else {
+    atlas.legend = readLegend(context.input(legendBeside(*s.atlas), "atlas-legend"));
+  }
+  if (!sameGrid(atlas.labels.grid, grid)) {
+    context.info("atlas: on another grid than the T1; each voxel takes the nearest label");
+    atlas.labels = segmentation::resampleLabels(atlas.labels, grid);
+  }
+  return atlas;
+}
+
+/// What can be no T1, before any work.
+void refuseOtherImages(Judge& judge, const Volume<float>& image) {
+  judge.require("hounsfield", segmentation::airInHounsfieldUnits(image));
+  judge.require("labels",
+                segmentation::looksLikeLabels(image) ? segmentation::equalNeighbours(image) : 0.0);
+}
+
+/// What a segmentation of a T1 cannot be.
+void judgeTissue(Context& context, Judge& judge, const segmentation::TissueSegmentation& tissue) {
+  const double contrast = segmentation::rimContrast(tissue.labels);
+  context.result("rim_contrast", contrast);
+  judge.require("contrast", contrast);
+  const double volume =
+      static_cast<double>(tissue.brainVoxels) * tissue.labels.grid.voxelVolume() / 1000;
+  context.result("brain_volume_ml", volume);
+  judge.flag("brain-volume", volume);
+  judge.flag("grey-share", tissue.classes[1].share);
+  judge.flag("white-share", tissue.classes[2].share);
+}
+
 Termination run(Context& context, const Settings& s) {
+  Judge judge(context, s.accept);
   io::VolumeReadOptions reading = s.reading;
   reading.dimension = 3;
   const Volume<float> image = readScalars(context, "T1", s.image, reading);
+  refuseOtherImages(judge, image);
   Volume<Label> mask;
   if (s.mask) mask = readLabels(context, "mask", *s.mask, reading);
-  Volume<Label> atlas;
-  segmentation::AtlasLegend legend;
-  if (s.atlas) {
-    atlas = readLabels(context, "atlas", *s.atlas, reading);
-    const std::filesystem::path path =
-        s.legend ? std::filesystem::path(*s.legend) : legendBeside(*s.atlas);
-    legend = readLegend(s.legend ? path : context.input(path, "atlas-legend"));
-    if (!sameGrid(atlas.grid, image.grid)) {
-      context.info("atlas: on another grid than the T1; each voxel takes the nearest label");
-      atlas = segmentation::resampleLabels(atlas, image.grid);
-    }
-  }
+  Atlas atlas;
+  if (s.atlas) atlas = readAtlas(context, s, reading, image.grid);
 
   segmentation::TissueSegmentation tissue;
   {
@@ -122,11 +163,13 @@ Termination run(Context& context, const Settings& s) {
     context.result(std::string(kNames[k]) + "_share", tissue.classes[k].share);
   }
 
+  judgeTissue(context, judge, tissue);
+
   segmentation::Hemisphere hemisphere;
   if (s.atlas) {
     auto step = context.step("hemisphere");
-    hemisphere =
-        segmentation::extractHemisphere(tissue, atlas, legend, s.hemisphere, context.monitor());
+    hemisphere = segmentation::extractHemisphere(tissue, atlas.labels, atlas.legend, s.hemisphere,
+                                                 context.monitor());
     context.result("hemisphere", std::string(nameOf(s.hemisphere.side)));
     context.result("white_voxels", hemisphere.whiteVoxels);
     context.result("grey_voxels", hemisphere.greyVoxels);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "Explica/Application/Command.h"
+#include "Explica/Application/Plausible.h"
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/WholeFile.h"
@@ -45,6 +46,7 @@ struct Settings {
   io::VolumeReadOptions reading;
   surface::TissueOptions tissue;
   surface::SurfaceOptions surface;
+  std::vector<std::string> accept;
 };
 
 void declare(Declaration& d, Settings& s) {
@@ -120,8 +122,9 @@ void declare(Declaration& d, Settings& s) {
       .inputOption("fs-volume", FileKind::Volume,
                    "volume (orig.mgz) whose surface RAS FreeSurfer files use, read or written "
                    "(default: the labels, if FreeSurfer's)",
-                   s.fsVolume, "Output")
-      .output("white.surf.gii", FileKind::Surface, "white surface")
+                   s.fsVolume, "Output");
+  declareAccept(d, s.accept);
+  d.output("white.surf.gii", FileKind::Surface, "white surface")
       .output("mid.surf.gii", FileKind::Surface, "surface at half depth, same faces")
       .output("pial.surf.gii", FileKind::Surface, "outer surface, same faces")
       .output("thickness.shape.gii", FileKind::VertexData,
@@ -314,7 +317,7 @@ Inputs readTissue(Context& context, const Settings& s) {
   reading.dimension = 3;
   Inputs inputs;
   if (s.segmentation) {
-    const Volume<Label> labels = readLabels(context, "SEG", *s.segmentation, reading);
+    const Volume<Label> labels = readTissueLabels(context, "SEG", *s.segmentation, reading);
     inputs.grid = labels.grid;
     auto step = context.step("tissue");
     inputs.tissue = surface::tissueFromLabels(labels, s.tissue, context.monitor());
@@ -364,6 +367,7 @@ io::SurfaceMetadata metadataOf(const std::string& structure, const std::string& 
 
 Termination run(Context& context, const Settings& s) {
   checkChoice(s);
+  Judge judge(context, s.accept);
   const bool given = surfacesGiven(s);
   Inputs inputs;
   surface::CorticalSurfaces made;
@@ -485,6 +489,7 @@ Termination run(Context& context, const Settings& s) {
   }
   context.result("defects_corrected", made.white.defects.size());
   context.result("voxels_changed", made.white.voxelsChanged);
+  judge.flag("defects", static_cast<double>(made.white.defects.size()));
   if (!given) {
     context.result("genus", made.white.genus);
     context.result("edge_length", made.white.edgeLength);
@@ -494,7 +499,10 @@ Termination run(Context& context, const Settings& s) {
   std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 20, sorted.end());
   context.result("smallest_angle_p05_deg", sorted[sorted.size() / 20] * 180 / kPi);
   if (tissue.hasGrey) {
-    context.result("thickness_mean", surface::meanThickness(made));
+    const double thickness = surface::meanThickness(made);
+    context.result("thickness_mean", thickness);
+    // Labels named by hand need not be a cortex's.
+    if (s.tissue.white.empty()) judge.flag("thickness-mean", thickness);
     context.result("vertices_without_grey", made.noRibbon);
   }
   if (tissue.hasGrey && !given) {

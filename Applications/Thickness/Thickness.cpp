@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "Explica/Application/Command.h"
+#include "Explica/Application/Plausible.h"
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
@@ -31,6 +32,7 @@ struct Settings {
   harmonic::LabelRoles roles;
   correspondence::MeasurementOptions measurement;
   bool aha = false;
+  std::vector<std::string> accept;
 };
 
 void declare(Declaration& d, Settings& s) {
@@ -74,9 +76,9 @@ void declare(Declaration& d, Settings& s) {
               s.aha)
       .option("Heart",
               Field{"rv-insertion", "mm", "anterior insertion of the right ventricle, RAS"},
-              s.measurement.rvInsertion)
-      .output("harmonic.nii.gz", FileKind::Volume,
-              "u: 0 at the inner boundary to 1 at the outer one")
+              s.measurement.rvInsertion);
+  declareAccept(d, s.accept);
+  d.output("harmonic.nii.gz", FileKind::Volume, "u: 0 at the inner boundary to 1 at the outer one")
       .output("thickness.nii.gz", FileKind::Volume,
               "length of the trajectory, mm; 0 off the tissue")
       .output("inner_distance.nii.gz", FileKind::Volume, "L0: length to the inner boundary, mm")
@@ -110,7 +112,7 @@ harmonic::Annulus readAnnulus(Context& context, const Settings& s) {
   if (s.aha && !s.measurement.rvInsertion) throw UsageError("--aha needs --rv-insertion X,Y,Z");
   if (s.measurement.rvInsertion && !s.aha) throw UsageError("--rv-insertion is for --aha");
   Volume<Label> labels;
-  if (s.labels) labels = readLabels(context, "SEG", *s.labels, s.reading);
+  if (s.labels) labels = readTissueLabels(context, "SEG", *s.labels, s.reading);
   Volume<float> inner, outer;
   if (s.innerLevel) {
     inner = readScalars(context, "inner-level", *s.innerLevel, s.reading);
@@ -148,7 +150,7 @@ correspondence::Measurement measure(Context& context, harmonic::Annulus annulus,
   return correspondence::measure(std::move(annulus), options, context.monitor(), onPart);
 }
 
-void report(Context& context, const correspondence::Measurement& m) {
+void report(Context& context, Judge& judge, const correspondence::Measurement& m) {
   const correspondence::Correspondence& found = m.correspondence;
   context.result("sulcal_voxels_recovered", m.sulcalVoxels.size());
   context.result("residual", m.interpolant.relativeResidual);
@@ -160,6 +162,8 @@ void report(Context& context, const correspondence::Measurement& m) {
     context.warn(std::to_string(found.missing) +
                  " voxels have no thickness: their trajectory does not reach both boundaries");
   }
+  judge.flag("without-thickness",
+             static_cast<double>(found.missing) / static_cast<double>(m.annulus.count()));
   const correspondence::ThicknessSummary t = correspondence::summaryOf(found);
   context.result("thickness_mean", t.mean);
   context.result("thickness_median", t.median);
@@ -207,13 +211,14 @@ void writeOutputs(Context& context, const correspondence::Measurement& m, bool s
 }
 
 Termination run(Context& context, const Settings& s) {
+  Judge judge(context, s.accept);
   harmonic::Annulus annulus = readAnnulus(context, s);
   context.result("voxels", annulus.count());
   context.result("components", annulus.components);
   context.result("direct_contacts", annulus.directContacts);
   context.result("voxels_left_out", annulus.droppedVoxels);
   const correspondence::Measurement m = measure(context, std::move(annulus), s.measurement);
-  report(context, m);
+  report(context, judge, m);
   writeOutputs(context, m, s.measurement.sulciMode() == correspondence::SulciMode::Recover);
   return m.interpolant.termination;
 }

@@ -136,7 +136,9 @@ int runCommandLine(std::vector<std::string> words, const std::vector<std::string
     console.info("dry run: inputs and options are usable; nothing was written");
   } else if (!outcome.record.empty()) {
     const std::string where = outcome.record.parent_path().string();
-    if (outcome.exitCode == kStoppedEarly) {
+    if (!outcome.plausible && reachedGoal(outcome.termination)) {
+      console.warning("done, but not to be believed as it is; results in " + where);
+    } else if (outcome.exitCode == kStoppedEarly) {
       console.warning("stopped before its goal (" + std::string(nameOf(outcome.termination)) +
                       "); what was reached is in " + where);
     } else {

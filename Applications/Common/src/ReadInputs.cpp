@@ -3,6 +3,9 @@
 
 #include "Explica/Application/ReadInputs.h"
 
+#include "Explica/Core/Errors.h"
+#include "Explica/Segmentation/Plausibility.h"
+
 #include <nlohmann/json.hpp>
 
 namespace explica::app {
@@ -50,6 +53,17 @@ Volume<Label> readLabels(Context& context, const std::string& name, const std::s
   io::LoadedVolume<Label> loaded = io::readLabels(path, options);
   record(context, name, path, loaded.origin);
   return std::move(loaded.volume);
+}
+
+Volume<Label> readTissueLabels(Context& context, const std::string& name, const std::string& path,
+                               const io::VolumeReadOptions& options) {
+  Volume<Label> labels = readLabels(context, name, path, options);
+  if (segmentation::looksLikeImage(labels)) {
+    throw InvalidInput(path +
+                       ": holds more than 64 values and most neighbours differ, as in an image; "
+                       "expected labels (explica segment makes them from a T1)");
+  }
+  return labels;
 }
 
 io::LoadedSurface readSurface(Context& context, const std::string& name, const std::string& path,

@@ -81,6 +81,8 @@ struct Context::State {
   std::optional<OutputFolder> folder;
   std::vector<std::string> varying;  ///< names of outputs whose bytes may differ
   std::vector<std::pair<std::string, fs::path>> nestedRecords;
+  std::optional<Json> flags;  ///< numbers outside of their limits; nothing if none was judged
+  bool plausible = true;
 
   [[nodiscard]] const Declaration& declaration() const { return run.invocation.declaration; }
   void setResult(const std::string& key, Json value) { summary[key] = std::move(value); }
@@ -186,6 +188,25 @@ void Context::result(const std::string& key, const Json& value) {
 
 void Context::note(const std::string& key, const Json& value) {
   state_->record.notes[key] = value;
+}
+
+void Context::judged() {
+  if (!state_->flags) state_->flags = Json::array();
+}
+
+void Context::flag(const Json& flag) {
+  judged();
+  for (const Json& known : *state_->flags) {
+    if (known == flag) return;
+  }
+  state_->flags->push_back(flag);
+  if (flag["accepted"].get<bool>()) {
+    info("accepted: " + flag["message"].get<std::string>());
+    return;
+  }
+  state_->plausible = false;
+  if (flag.contains("step")) return;  // the step has said it
+  warn(flag["message"].get<std::string>());
 }
 
 const Monitor& Context::monitor() const {
@@ -300,6 +321,7 @@ std::optional<Outcome> Context::reuseCommand(const Command& command, const std::
     Outcome outcome;
     outcome.termination = ended;
     outcome.exitCode = record["exit_code"];
+    outcome.plausible = record["results"].value("plausible", true);
     outcome.record = path;
     state_->nestedRecords.emplace_back(name + "/" + provenance::kRecordName, path);
     return outcome;
@@ -394,7 +416,7 @@ Outcome execute(Run& run, Console& console) {
   Eigen::setNbThreads(threads.count);
   io::setItkThreadCount(threads.count);  // Embree runs on TBB and follows it
 
-  Context::State state{run, console, {}, Json::object(), {}, {}, {}, {}};
+  Context::State state{run, console, {}, Json::object(), {}, {}, {}, {}, {}, true};
   Context context(state);
   provenance::Record& record = state.record;
   record.command = declaration.name;
@@ -457,7 +479,8 @@ Outcome execute(Run& run, Console& console) {
   Outcome outcome;
   if (termination == Termination::NotRun) termination = Termination::Finished;
   outcome.termination = termination;
-  outcome.exitCode = reachedGoal(termination) ? kDone : kStoppedEarly;
+  outcome.plausible = state.plausible;
+  outcome.exitCode = reachedGoal(termination) && state.plausible ? kDone : kStoppedEarly;
   if (!state.folder) return outcome;
 
   record.termination = termination;
@@ -469,6 +492,10 @@ Outcome execute(Run& run, Console& console) {
 
   Json summary = {{"command", declaration.name}, {"termination", nameOf(termination)}};
   summary.update(state.summary);
+  if (state.flags) {
+    summary["plausible"] = state.plausible;
+    summary["flags"] = *state.flags;
+  }
   for (const auto& [key, value] : summary.items()) {
     if (!isTime(key)) record.results[key] = value;
   }

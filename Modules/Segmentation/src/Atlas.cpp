@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 #include <sstream>
+#include <tuple>
 
 namespace explica::segmentation {
 namespace {
@@ -15,6 +17,12 @@ bool startsWithAny(std::string_view name, std::initializer_list<std::string_view
   return std::any_of(beginnings.begin(), beginnings.end(),
                      [&](std::string_view b) { return name.substr(0, b.size()) == b; });
 }
+
+/// FreeSurfer's numbers of one side's structures that the white surface encloses.
+constexpr std::array kFreeSurferDeepLeft = {4, 5, 9, 10, 11, 12, 13, 17, 18, 26, 28, 30, 31, 78};
+constexpr std::array kFreeSurferDeepRight = {43, 44, 48, 49, 50, 51, 52,
+                                             53, 54, 58, 60, 62, 63, 79};
+constexpr std::array kFreeSurferBelowTent = {7, 8, 16, 46, 47};  // cerebellum and brain stem
 
 }  // namespace
 
@@ -64,6 +72,45 @@ AtlasLegend parseAtlasLegend(std::string_view text, std::string_view name) {
     }
   }
   return legend;
+}
+
+bool isFreeSurferAtlas(const Volume<Label>& labels) {
+  const std::set<Label> found(labels.data.begin(), labels.data.end());
+  const auto has = [&](Label first, Label last) {
+    const auto at = found.lower_bound(first);
+    return at != found.end() && *at <= last;
+  };
+  const bool left = has(3, 3) || has(1001, 1035) || has(11101, 11175);
+  const bool right = has(42, 42) || has(2001, 2035) || has(12101, 12175);
+  return left && right && has(2, 2) && has(41, 41);
+}
+
+AtlasLegend freeSurferLegend() {
+  AtlasLegend legend;
+  const auto add = [&](Label label, const char* what, Side side, StructureKind kind) {
+    legend[label] = {std::string(what) + std::to_string(label), side, kind};
+  };
+  for (const auto& [side, white, cortex, thousand] :
+       {std::tuple{Side::Left, 2, 3, 1}, std::tuple{Side::Right, 41, 42, 2}}) {
+    add(white, "white", side, StructureKind::White);
+    add(cortex, "cortex", side, StructureKind::Cortex);
+    for (Label n = 0; n <= 35; ++n) {
+      add(1000 * thousand + n, "cortex", side, StructureKind::Cortex);
+    }
+    for (Label n = 100; n <= 175; ++n) {
+      add(10000 + 1000 * thousand + n, "cortex", side, StructureKind::Cortex);
+    }
+  }
+  for (const int n : kFreeSurferDeepLeft) add(n, "deep", Side::Left, StructureKind::Deep);
+  for (const int n : kFreeSurferDeepRight) add(n, "deep", Side::Right, StructureKind::Deep);
+  for (const int n : kFreeSurferBelowTent) add(n, "below", Side::Both, StructureKind::BelowTent);
+  return legend;
+}
+
+void keepNamed(Volume<Label>& atlas, const AtlasLegend& legend) {
+  for (Label& label : atlas.data) {
+    if (legend.count(label) == 0) label = 0;
+  }
 }
 
 }  // namespace explica::segmentation

@@ -108,6 +108,16 @@ void addState(StudyRow& row, const fs::path& run) {
   }
 }
 
+/// A step whose numbers cannot be believed fails the row; what failed before explains more.
+void addFlags(StudyRow& row, const std::string& step, const Json& summary) {
+  if (summary.value("plausible", true) || row.state != "done") return;
+  for (const Json& flag : summary.value("flags", Json::array())) {
+    if (flag.value("accepted", false)) continue;
+    row.state = "implausible (" + step + "): " + textOf(flag.value("message", Json("")));
+    return;
+  }
+}
+
 StudyRow rowOf(const fs::path& out, const fs::path& run) {
   StudyRow row;
   const std::string name = run.filename().string();
@@ -123,7 +133,10 @@ StudyRow rowOf(const fs::path& out, const fs::path& run) {
     addState(row, run);
     for (const char* step : {"segment", "thickness", "surface", "unfold"}) {
       const fs::path summary = run / step / "summary.json";
-      if (fs::exists(summary)) addSummary(row, step, provenance::readJson(summary));
+      if (!fs::exists(summary)) continue;
+      const Json numbers = provenance::readJson(summary);
+      addSummary(row, step, numbers);
+      addFlags(row, step, numbers);
     }
     addRegions(row, run / "surface" / "regions.tsv");
   } catch (const std::exception& fault) {  // a damaged file is a fact of the study, not its end

@@ -3,6 +3,7 @@
 #include "Explica/Pipeline/FolderReport.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Termination.h"
 #include "ReportParts.h"
 
 #include <algorithm>
@@ -29,9 +30,13 @@ report::ReportStep reportStep(const StepFolder& step) {
     out.version =
         "explica " + software.value("version", "") + ", commit " + software.value("commit", "");
   }
-  if (step.record.value("exit_code", 0) != 0) {
+  // An implausible result is complete: its flags say what is wrong.
+  const bool implausible = !step.summary.value("plausible", true);
+  const auto termination = step.record.value("termination", std::string("not-run"));
+  const bool ended = reachedGoal(valueOf<Termination>(termination));
+  if (step.record.value("exit_code", 0) != 0 && !(implausible && ended)) {
     out.state = report::StepState::StoppedEarly;
-    out.message = "stopped: " + step.record.value("termination", "");
+    out.message = "stopped: " + termination;
   }
   for (const auto& [key, value] : step.summary.items()) {
     const bool number = value.is_number() || value.is_boolean();

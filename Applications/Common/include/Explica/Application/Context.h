@@ -73,6 +73,14 @@ class Context {
   /// Something about how an input was understood, for the record: the affine used, its codes, ...
   void note(const std::string& key, const nlohmann::ordered_json& value);
 
+  /// Says that this command's numbers are compared with limits: summary.json gets `plausible` and
+  /// `flags`.
+  void judged();
+  /// A number outside of its limits: {name, value, low, high, accepted, message}.  One that is not
+  /// accepted is a warning and makes the exit code 3.  One that a step has found names it as
+  /// `step`.
+  void flag(const nlohmann::ordered_json& flag);
+
   /// Progress, warnings and stop requests, to hand to long work.
   [[nodiscard]] const Monitor& monitor() const;
 

@@ -47,6 +47,7 @@ void describe(CommonOptions& o, Visitor&& visit) {
 struct Outcome {
   int exitCode = kDone;
   Termination termination = Termination::NotRun;
+  bool plausible = true;         ///< false if a number lies outside of its limits
   std::filesystem::path record;  ///< its provenance.json; empty if it writes none
 };
 

@@ -19,6 +19,11 @@ namespace explica::app {
 [[nodiscard]] Volume<Label> readLabels(Context& context, const std::string& name,
                                        const std::string& path,
                                        const io::VolumeReadOptions& options);
+/// As readLabels, for labels of tissue.
+/// @throws InvalidInput  what was read looks like an image with grey values
+[[nodiscard]] Volume<Label> readTissueLabels(Context& context, const std::string& name,
+                                             const std::string& path,
+                                             const io::VolumeReadOptions& options);
 [[nodiscard]] io::LoadedSurface readSurface(Context& context, const std::string& name,
                                             const std::string& path,
                                             const io::SurfaceReadOptions& options);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "Explica/Core/Types.h"
+#include "Explica/Core/Volume.h"
 
 #include <map>
 #include <string>
@@ -15,9 +15,10 @@ enum class Side { Both, Left, Right };
 
 /// What a structure of an atlas is to the cortex.
 enum class StructureKind {
-  Cortex,    ///< part of the folded ribbon
-  Deep,      ///< enclosed by the white surface: basal ganglia, thalamus, hippocampus, amygdala
-  BelowTent  ///< cerebellum and vermis: left out
+  Cortex,     ///< part of the folded ribbon
+  Deep,       ///< enclosed by the white surface: basal ganglia, thalamus, hippocampus, amygdala
+  BelowTent,  ///< cerebellum, vermis, brain stem: left out
+  White       ///< white matter of a hemisphere: tells only the side
 };
 
 /// One label of an atlas.
@@ -43,5 +44,15 @@ using AtlasLegend = std::map<Label, AtlasStructure>;
 /// structure
 ///                       of one side
 [[nodiscard]] AtlasLegend parseAtlasLegend(std::string_view text, std::string_view name);
+
+/// True if the labels are FreeSurfer's: white matter and cortex of both sides, by aseg's numbers or
+/// aparc's.
+[[nodiscard]] bool isFreeSurferAtlas(const Volume<Label>& labels);
+
+/// What FreeSurfer's labels (aseg, aparc+aseg, aparc.a2009s+aseg) mean to a hemisphere.
+[[nodiscard]] AtlasLegend freeSurferLegend();
+
+/// The labels of an atlas that its legend does not name become 0.
+void keepNamed(Volume<Label>& atlas, const AtlasLegend& legend);
 
 }  // namespace explica::segmentation

@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Application/Plausible.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Segmentation/Plausibility.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+namespace explica::app {
+namespace {
+
+nlohmann::ordered_json numberOrNull(double value) {
+  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
+}
+
+}  // namespace
+
+void declareAccept(Declaration& d, std::vector<std::string>& accepted) {
+  static const std::string help = [] {
+    std::string names;
+    for (const auto& limit : segmentation::limits()) {
+      names += (names.empty() ? "" : ", ") + std::string(limit.name);
+    }
+    return "go on although this number is implausible; may be repeated: " + names;
+  }();
+  d.option("Plausibility", Field{"accept", "", help}, accepted);
+}
+
+Judge::Judge(Context& context, const std::vector<std::string>& accepted)
+    : context_(context), accepted_(accepted) {
+  try {
+    segmentation::checkAccepted(accepted);
+  } catch (const InvalidInput& fault) {
+    throw UsageError(fault.what());
+  }
+  context_.judged();
+}
+
+void Judge::require(std::string_view name, double value) {
+  const auto flag = segmentation::judge(name, value, accepted_);
+  if (!flag) return;
+  if (!flag->accepted) {
+    throw InvalidInput(flag->sentence + "; --accept " + flag->name + " goes on all the same");
+  }
+  this->flag(name, value);
+}
+
+void Judge::flag(std::string_view name, double value) {
+  const auto flag = segmentation::judge(name, value, accepted_);
+  if (!flag) return;
+  context_.flag({{"name", flag->name},
+                 {"value", numberOrNull(flag->value)},
+                 {"low", numberOrNull(flag->low)},
+                 {"high", numberOrNull(flag->high)},
+                 {"accepted", flag->accepted},
+                 {"message", flag->sentence}});
+}
+
+}  // namespace explica::app

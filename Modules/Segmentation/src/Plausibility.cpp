@@ -1,0 +1,181 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Explica/Segmentation/Plausibility.h"
+
+#include "VoxelSets.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <set>
+
+namespace explica::segmentation {
+namespace {
+
+constexpr Limit kLimits[] = {
+    {"hounsfield", "the share of voxels below -500", "", 0, 0.05,
+     "the image looks like a CT; give a T1-weighted one",
+     "air is -1000 in a CT and 0 or noise in a magnitude image"},
+    {"labels", "the share of neighbours of equal value in an image of whole numbers", "", 0, 0.5,
+     "the image looks like a map of labels; give the T1 itself",
+     "measured: T1s 0.00 to 0.24, anatomical label maps 0.85 to 0.95"},
+    {"contrast", "how much rather dark than bright tissue lies at the brain's rim", "", 1,
+     kInfinity,
+     "white matter should be bright and lie deep, fluid dark and outside; the contrast is inverted "
+     "or the image is not T1-weighted",
+     "measured: four T1s, one a macaque's, 7 to 150; three of them inverted 0.01 to 0.14"},
+    {"registration", "the agreement with the template", "", 0.4, 1,
+     "the template did not reach the head; look at the outlines in the report, or give --atlas and "
+     "--mask",
+     "measured: see Modules/Registration/README.md"},
+    {"brain-volume", "the brain's volume", "ml", 300, 2500,
+     "skull or neck may be left in the brain, or parts of it missing; another species needs "
+     "--template",
+     "adult brains with their fluid are 1000 to 2000 ml, newborn ones about 400 (Gilmore et al. "
+     "2007, J. Neurosci. 27:1255)"},
+    {"grey-share", "grey matter's share of the brain", "", 0.20, 0.65,
+     "the tissues may be confused; look at seg.nii.gz",
+     "38 to 55 % over adult life (Courchesne et al. 2000, Radiology 216:672), and a margin"},
+    {"white-share", "white matter's share of the brain", "", 0.20, 0.65,
+     "the tissues may be confused; look at seg.nii.gz",
+     "26 to 38 % over adult life (Courchesne et al. 2000, Radiology 216:672), and a margin"},
+    {"half-head", "the volume of the left half over that of the right one", "", 0.75, 1.33,
+     "a part of the head may lie outside of the image",
+     "hemispheres differ by a few per cent in the healthy (Giedd et al. 1996, Cereb. Cortex "
+     "6:551); beyond a quarter, tissue is missing"},
+    {"thickness-mean", "the mean thickness of the cortex", "mm", 1, 5,
+     "one of its borders may be in the wrong place",
+     "1 to 4.5 mm from place to place (Fischl, Dale 2000, Proc. Natl. Acad. Sci. USA 97:11050)"},
+    {"without-thickness", "the share of grey voxels without thickness", "", 0, 0.02,
+     "the tissue does not lie between its two borders there",
+     "measured: 0 to 0.3 % in whole hemispheres"},
+    {"defects", "the number of topological defects", "", 0, 300,
+     "the white matter is full of holes or bridges",
+     "measured: 15 to 120 in good segmentations of a hemisphere; FreeSurfer's 'surface holes' of "
+     "more than 200 are taken for failures (Rosen et al. 2018, NeuroImage 169:407)"},
+};
+
+std::string shortNumber(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g", value);
+  if (std::abs(value) >= 1000 && std::isfinite(value)) {
+    std::snprintf(text.data(), text.size(), "%.0f", value);
+  }
+  return text.data();
+}
+
+std::string rangeOf(const Limit& limit) {
+  const std::string unit = limit.unit.empty() ? "" : " " + std::string(limit.unit);
+  if (!std::isfinite(limit.high)) return "at least " + shortNumber(limit.low) + unit;
+  if (limit.low == 0) return "at most " + shortNumber(limit.high) + unit;
+  return shortNumber(limit.low) + " to " + shortNumber(limit.high) + unit;
+}
+
+std::string sentenceOf(const Limit& limit, double value) {
+  const std::string unit = limit.unit.empty() ? "" : " " + std::string(limit.unit);
+  return std::string(limit.what) + " is " + shortNumber(value) + unit + ", expected " +
+         rangeOf(limit) + ": " + std::string(limit.remedy);
+}
+
+template <class T>
+double shareOfEqualNeighbours(const Volume<T>& volume) {
+  const auto& n = volume.grid.size;
+  std::int64_t pairs = 0;
+  std::int64_t equal = 0;
+  const auto compare = [&](T a, T b) {
+    if (a == T{0} || b == T{0}) return;
+    ++pairs;
+    if (a == b) ++equal;
+  };
+  for (int k = 0; k < n[2]; ++k) {
+    for (int j = 0; j < n[1]; ++j) {
+      for (int i = 0; i < n[0]; ++i) {
+        const T here = volume(i, j, k);
+        if (i + 1 < n[0]) compare(here, volume(i + 1, j, k));
+        if (j + 1 < n[1]) compare(here, volume(i, j + 1, k));
+        if (k + 1 < n[2]) compare(here, volume(i, j, k + 1));
+      }
+    }
+  }
+  return pairs == 0 ? 0 : static_cast<double>(equal) / static_cast<double>(pairs);
+}
+
+constexpr std::size_t kFewestGreyValues = 64;  // a parcellation may have more, a T1 has
+constexpr double kMostEqualInImage = 0.3;      // above the T1s', below the parcellations' 0.8
+constexpr double kRimShare = 0.05;             // of the brain's radius: 3 to 4 mm in an adult
+
+}  // namespace
+
+std::span<const Limit> limits() {
+  return kLimits;
+}
+
+const Limit& limitNamed(std::string_view name) {
+  std::string names;
+  for (const Limit& limit : kLimits) {
+    if (limit.name == name) return limit;
+    names += (names.empty() ? "" : ", ") + std::string(limit.name);
+  }
+  throw InvalidInput("accept: '" + std::string(name) + "' is not one of " + names);
+}
+
+void checkAccepted(const std::vector<std::string>& accepted) {
+  for (const std::string& name : accepted) (void)limitNamed(name);
+}
+
+std::optional<Flag> judge(std::string_view name, double value,
+                          const std::vector<std::string>& accepted) {
+  const Limit& limit = limitNamed(name);
+  if (value >= limit.low && value <= limit.high) return {};
+  const bool known = std::find(accepted.begin(), accepted.end(), name) != accepted.end();
+  return Flag{std::string(name), value, limit.low, limit.high, known, sentenceOf(limit, value)};
+}
+
+double equalNeighbours(const Volume<float>& image) {
+  return shareOfEqualNeighbours(image);
+}
+
+double equalNeighbours(const Volume<Label>& labels) {
+  return shareOfEqualNeighbours(labels);
+}
+
+bool looksLikeImage(const Volume<Label>& labels) {
+  const std::set<Label> found(labels.data.begin(), labels.data.end());
+  return found.size() > kFewestGreyValues && equalNeighbours(labels) < kMostEqualInImage;
+}
+
+bool looksLikeLabels(const Volume<float>& image) {
+  const bool whole = std::all_of(image.data.begin(), image.data.end(),
+                                 [](float value) { return value == std::floor(value); });
+  return whole && equalNeighbours(image) > limitNamed("labels").high;
+}
+
+double airInHounsfieldUnits(const Volume<float>& image) {
+  const auto air =
+      std::count_if(image.data.begin(), image.data.end(), [](float value) { return value < -500; });
+  return static_cast<double>(air) / static_cast<double>(image.size());
+}
+
+double rimContrast(const Volume<Label>& tissues) {
+  VoxelSet outside(tissues.grid, 0);
+  std::array<double, 4> all{};
+  for (std::size_t v = 0; v < tissues.size(); ++v) {
+    outside[v] = tissues[v] == 0 ? 1 : 0;
+    if (tissues[v] >= kCsf && tissues[v] <= kWhite) ++all[tissues[v]];
+  }
+  const double brain = all[kCsf] + all[kGrey] + all[kWhite];
+  const double radius = std::cbrt(0.75 / kPi * brain * tissues.grid.voxelVolume());
+  const Volume<float> squared = squaredDistanceTo(outside);
+  const double most = std::max(kRimShare * radius, 1.01 * tissues.grid.spacing.minCoeff());
+  std::array<double, 4> rim{};
+  for (std::size_t v = 0; v < tissues.size(); ++v) {
+    if (tissues[v] < kCsf || tissues[v] > kWhite || squared[v] > most * most) continue;
+    ++rim[tissues[v]];
+  }
+  if (all[kCsf] == 0 || all[kWhite] == 0) return kNaN;
+  const double half = 0.5;  // of a voxel, for a class that the rim does not have at all
+  return ((rim[kCsf] + half) / all[kCsf]) / ((rim[kWhite] + half) / all[kWhite]);
+}
+
+}  // namespace explica::segmentation

@@ -1,0 +1,163 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+// What can be no head is refused; what hardly can be one is done, said and marked.
+
+#include "Explica/IO/VolumeFile.h"
+#include "QuickRuns.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <random>
+
+namespace explica::testing {
+namespace {
+
+constexpr double kFluid = 30, kGrey = 80, kWhite = 110;
+
+/// White, grey and fluid about each other, with noise; mixed voxels between; 0 outside.
+Volume<float> ballHead(double radius, double spacing, const std::array<double, 3>& brightness) {
+  Grid grid;
+  grid.spacing = Vector::Constant(spacing);
+  grid.size.fill(static_cast<int>(2 * radius / spacing) + 6);
+  grid.origin = Point::Constant(-0.5 * spacing * (grid.size[0] - 1));
+  Volume<float> image(grid, 0.0f);
+  std::mt19937 generator(11);
+  std::normal_distribution<double> noise(0, 3);
+  const auto within = [&](double border, double r) {
+    return std::clamp((border - r) / spacing + 0.5, 0.0, 1.0);
+  };
+  for (std::size_t v = 0; v < image.size(); ++v) {
+    const auto [i, j, k] = grid.subscripts(v);
+    const double r = grid.toWorld(Vector(i, j, k)).norm();
+    if (r > radius) continue;
+    const double white = within(0.7 * radius, r);
+    const double tissue = within(0.9 * radius, r);
+    image[v] = static_cast<float>(brightness[2] * white + brightness[1] * (tissue - white) +
+                                  brightness[0] * (1 - tissue) + noise(generator));
+  }
+  return image;
+}
+
+CommandResult segment(const TemporaryFolder& folder, const std::string& file,
+                      const std::vector<std::string>& more = {}) {
+  return explica(std::vector<std::string>{"segment", folder / file, "--out", folder / "out"} +
+                 more);
+}
+
+TEST(PlausibilityCommand, ABrainIsPlausible) {
+  TemporaryFolder folder;
+  io::writeVolume(folder / "t1.nii.gz", ballHead(70, 3, {kFluid, kGrey, kWhite}));
+  const auto result = segment(folder, "t1.nii.gz");
+  EXPECT_EQ(result.exitCode, 0) << result;
+  const auto summary = readJson(folder.path() / "out/summary.json");
+  EXPECT_TRUE(summary["plausible"].get<bool>());
+  EXPECT_TRUE(summary["flags"].empty());
+  EXPECT_NEAR(summary["brain_volume_ml"].get<double>(), 1437, 20);
+}
+
+TEST(PlausibilityCommand, ABrainTooLargeIsFlaggedUnlessAccepted) {
+  TemporaryFolder folder;
+  io::writeVolume(folder / "t1.nii.gz", ballHead(90, 4, {kFluid, kGrey, kWhite}));
+  const auto result = segment(folder, "t1.nii.gz");
+  EXPECT_EQ(result.exitCode, 3) << result;
+  EXPECT_NE(result.err.find("ml, expected 300 to 2500 ml"), std::string::npos) << result;
+  const auto summary = readJson(folder.path() / "out/summary.json");
+  EXPECT_FALSE(summary["plausible"].get<bool>());
+  ASSERT_EQ(summary["flags"].size(), 1u);
+  EXPECT_EQ(summary["flags"][0]["name"], "brain-volume");
+  EXPECT_EQ(summary["flags"][0]["high"], 2500);
+  EXPECT_EQ(summary["flags"][0]["value"], summary["brain_volume_ml"]);
+
+  const auto accepted = segment(folder, "t1.nii.gz", {"--force", "--accept", "brain-volume"});
+  EXPECT_EQ(accepted.exitCode, 0) << accepted;
+  const auto after = readJson(folder.path() / "out/summary.json");
+  EXPECT_TRUE(after["plausible"].get<bool>());
+  EXPECT_TRUE(after["flags"][0]["accepted"].get<bool>());
+}
+
+TEST(PlausibilityCommand, AnUnknownNameToAcceptIsAUsageError) {
+  TemporaryFolder folder;
+  io::writeVolume(folder / "t1.nii.gz", ballHead(20, 2, {kFluid, kGrey, kWhite}));
+  const auto result = segment(folder, "t1.nii.gz", {"--accept", "volume"});
+  EXPECT_EQ(result.exitCode, 1) << result;
+  EXPECT_NE(result.err.find("brain-volume"), std::string::npos) << result;
+}
+
+TEST(PlausibilityCommand, InvertedContrastIsRefused) {
+  TemporaryFolder folder;
+  io::writeVolume(folder / "t2.nii.gz", ballHead(70, 3, {kWhite, kGrey, kFluid}));
+  const auto result = segment(folder, "t2.nii.gz");
+  EXPECT_EQ(result.exitCode, 2) << result;
+  EXPECT_NE(result.err.find("T1"), std::string::npos) << result;
+  EXPECT_NE(result.err.find("--accept contrast"), std::string::npos) << result;
+  EXPECT_EQ(segment(folder, "t2.nii.gz", {"--accept", "contrast"}).exitCode, 0);
+}
+
+TEST(PlausibilityCommand, ACtIsRefused) {
+  TemporaryFolder folder;
+  Volume<float> image = ballHead(70, 4, {kFluid, kGrey, kWhite});
+  for (float& value : image.data) value = value == 0 ? -1000 : value;
+  io::writeVolume(folder / "ct.nii.gz", image);
+  const auto result = segment(folder, "ct.nii.gz");
+  EXPECT_EQ(result.exitCode, 2) << result;
+  EXPECT_NE(result.err.find("CT"), std::string::npos) << result;
+}
+
+TEST(PlausibilityCommand, LabelsAreNoT1AndAT1IsNoLabels) {
+  TemporaryFolder folder;
+  Volume<float> labels = ballHead(40, 2, {kFluid, kGrey, kWhite});
+  for (float& value : labels.data) value = value == 0 ? 0 : (value < 60 ? 1 : (value < 95 ? 2 : 3));
+  io::writeVolume(folder / "labels.nii.gz", labels);
+  const auto segmented = segment(folder, "labels.nii.gz");
+  EXPECT_EQ(segmented.exitCode, 2) << segmented;
+  EXPECT_NE(segmented.err.find("labels"), std::string::npos) << segmented;
+
+  Volume<float> image = ballHead(40, 2, {kFluid, kGrey, kWhite});
+  for (float& value : image.data) value = std::round(2 * value);
+  io::writeVolume(folder / "t1.nii.gz", image);
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"thickness", folder / "t1.nii.gz", "--inner", "220", "--tissue",
+                                 "160"},
+        std::vector<std::string>{"surface", folder / "t1.nii.gz", "--white", "220"}}) {
+    const auto result = explica(words + std::vector<std::string>{"--out", folder / "labels-out"});
+    EXPECT_EQ(result.exitCode, 2) << result;
+    EXPECT_NE(result.err.find("explica segment"), std::string::npos) << result;
+  }
+}
+
+TEST(PlausibilityCommand, ACortexTooThickIsRedInTheReportAndFailsItsRow) {
+  TemporaryFolder folder;
+  // Half of a head's thickness is grey: 18 mm.
+  Volume<float> labels = ballHead(60, 3, {1, 2, 3});
+  for (float& value : labels.data) value = std::clamp(std::round(value), 0.0f, 3.0f);
+  for (std::size_t v = 0; v < labels.size(); ++v) {
+    const auto [i, j, k] = labels.grid.subscripts(v);
+    const double r = labels.grid.toWorld(Vector(i, j, k)).norm();
+    labels[v] = r > 60 ? 0 : (r > 54 ? 1 : (r > 36 ? 2 : 3));
+  }
+  io::writeVolume(folder / "seg.nii.gz", labels);
+  const std::string run = folder / "study/runs/sub-01_hemi-L";
+  const auto result = explica({"run", folder / "seg.nii.gz", "--kind", "labels", "--steps",
+                               "surface,report", "--surface.faces", "2000", "--out", run});
+  EXPECT_EQ(result.exitCode, 3) << result;
+  const auto summary = readJson(std::filesystem::path(run) / "summary.json");
+  EXPECT_FALSE(summary["plausible"].get<bool>());
+  EXPECT_EQ(summary["flags"][0]["name"], "thickness-mean");
+  EXPECT_EQ(summary["flags"][0]["step"], "surface");
+  EXPECT_NE(readText(std::filesystem::path(run) / "report.html").find("Thickness-mean"),
+            std::string::npos);
+
+  std::filesystem::create_directories(folder / "data");
+  writeText(folder / "data/dataset_description.json", R"({"Name": "a", "BIDSVersion": "1.8.0"})");
+  const auto group = explica({"bids", folder / "data", folder / "study", "group"});
+  EXPECT_EQ(group.exitCode, 0) << group;
+  const std::string table = readText(folder.path() / "study/study.tsv");
+  EXPECT_NE(table.find("implausible (surface)"), std::string::npos) << table;
+}
+
+}  // namespace
+}  // namespace explica::testing
