@@ -3,6 +3,7 @@
 
 #include "Explica/Application/Command.h"
 #include "Explica/Core/WholeFile.h"
+#include "Explica/Study/StudyPage.h"
 #include "Explica/Study/StudyTable.h"
 #include "StudyInput.h"
 

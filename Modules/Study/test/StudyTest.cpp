@@ -5,6 +5,7 @@
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Study/BidsDataset.h"
 #include "Explica/Study/Derivatives.h"
+#include "Explica/Study/StudyPage.h"
 #include "Explica/Study/StudyTable.h"
 #include "Explica/Study/SubjectFiles.h"
 

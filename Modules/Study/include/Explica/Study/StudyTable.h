@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace explica::study {
@@ -16,6 +17,7 @@ struct StudyRow {
   std::string region;                         ///< of a study with several patches; may be empty
   std::string state;                          ///< "done", "stopped early", "failed: ...", "implausible ..."
   std::filesystem::path report;               ///< report.html, relative to the study; may be absent
+  std::filesystem::path thumbnail;            ///< a small picture of it, likewise
   std::map<std::string, std::string> values;  ///< "surface.euler_characteristic" and so on;
                                               ///< "region.precuneus": mean thickness, mm
 };
@@ -39,9 +41,15 @@ struct StudyFlag {
 /// Tab-separated, "n/a" where a row has no value (as BIDS wants it); columns in a fixed order.
 [[nodiscard]] std::string tableText(const std::vector<StudyRow>& rows);
 
-/// A page with the same table: columns sort on a click, rows can be filtered, failures and outliers
-/// are marked, rows lead to their reports.  One file, no request; 200 rows are shown at a time, so
-/// that it stays quick with 100,000.
-[[nodiscard]] std::string indexPage(const std::vector<StudyRow>& rows, const std::string& title);
+/// Begins the name of a column that holds a region's mean thickness.
+inline constexpr std::string_view kRegionPrefix = "region.";
+
+/// Columns of all rows: those that come first, others by name, regions last.
+[[nodiscard]] std::vector<std::string> columnsOf(const std::vector<StudyRow>& rows);
+[[nodiscard]] bool isRegion(const std::string& column);
+/// True of a number that should be alike in all rows, so that one far off is marked.
+[[nodiscard]] bool isCompared(const std::string& column);
+/// True of the columns that tell how good a run is.
+[[nodiscard]] bool isFirst(const std::string& column);
 
 }  // namespace explica::study

@@ -1,0 +1,177 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Explica/Study/StudyPage.h"
+
+#include "Explica/Provenance/Json.h"
+#include "PageParts.h"
+
+#include <algorithm>
+#include <array>
+
+namespace explica::study {
+namespace {
+
+using provenance::Json;
+
+/// A column as people call it.
+struct ColumnWords {
+  const char* column;
+  const char* words;
+  const char* unit;
+};
+
+constexpr std::array kWords = {
+    ColumnWords{"thickness.thickness_mean", "Thickness, mean over voxels", "mm"},
+    ColumnWords{"thickness.thickness_mean_columns", "Thickness, mean over columns", "mm"},
+    ColumnWords{"thickness.thickness_median", "Thickness, median of voxels", "mm"},
+    ColumnWords{"thickness.sulcal_voxels_recovered", "Sulcal voxels recovered", ""},
+    ColumnWords{"surface.thickness_mean", "Cortical thickness, mean", "mm"},
+    ColumnWords{"surface.euler_characteristic", "Euler characteristic", ""},
+    ColumnWords{"surface.defects_corrected", "Defects corrected", ""},
+    ColumnWords{"surface.voxels_changed", "Voxels changed", ""},
+    ColumnWords{"surface.self_intersections", "Surface crossings", ""},
+    ColumnWords{"surface.area_white", "White area", "mm\u00b2"},
+    ColumnWords{"surface.area_pial", "Pial area", "mm\u00b2"},
+    ColumnWords{"unfold.region_area", "Patch area", "mm\u00b2"},
+    ColumnWords{"unfold.visibility_initial", "Visibility before", ""},
+    ColumnWords{"unfold.visibility_final", "Visibility after", ""},
+    ColumnWords{"unfold.seen_initial", "Seen before", ""},
+    ColumnWords{"unfold.seen_final", "Seen after", ""},
+    ColumnWords{"unfold.area_error_mean", "Area error, mean", ""},
+    ColumnWords{"unfold.edge_strain_mean", "Edge strain, mean", ""},
+    ColumnWords{"unfold.self_intersections_final", "Patch crossings", ""},
+};
+
+struct Heading {
+  std::string words, unit;
+};
+
+/// The words of a column; one without its own is named by its step and key.
+Heading headingOf(const std::string& column) {
+  for (const ColumnWords& known : kWords) {
+    if (column == known.column) return {known.words, known.unit};
+  }
+  const std::size_t dot = column.find('.');
+  std::string words = column.substr(dot + 1);
+  if (isRegion(column)) return {words, "mm"};
+  std::replace(words.begin(), words.end(), '_', ' ');
+  return {column.substr(0, dot) + ": " + words, ""};
+}
+
+/// Text for HTML.
+std::string escaped(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      default:
+        result += c;
+    }
+  }
+  return result;
+}
+
+/// JSON that may stand in a script element.
+std::string scriptText(const Json& value) {
+  std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  for (auto at = text.find('<'); at != std::string::npos; at = text.find('<', at)) {
+    text.replace(at, 1, "\\u003c");
+  }
+  return text;
+}
+
+bool hasRegions(const std::vector<StudyRow>& rows) {
+  return std::any_of(rows.begin(), rows.end(),
+                     [](const StudyRow& row) { return !row.region.empty(); });
+}
+
+Json headingsOf(const std::vector<std::string>& fixed, const std::vector<std::string>& columns) {
+  Json headings = Json::array();
+  for (const std::string& name : fixed) headings.push_back({{"words", name}, {"kind", "fixed"}});
+  for (const std::string& column : columns) {
+    const Heading heading = headingOf(column);
+    headings.push_back(
+        {{"words", heading.words},
+         {"unit", heading.unit},
+         {"kind", isRegion(column) ? "region" : (isFirst(column) ? "first" : "other")},
+         {"compared", isCompared(column)}});
+  }
+  return headings;
+}
+
+Json rowJson(const StudyRow& row, const std::vector<StudyFlag>& flags, bool regions,
+             std::size_t fixed, const std::vector<std::string>& columns) {
+  Json cells = Json::array({row.participant, row.hemisphere});
+  if (regions) cells.push_back(row.region);
+  cells.push_back(row.state);
+  for (const auto& column : columns) {
+    const auto value = row.values.find(column);
+    cells.push_back(value == row.values.end() ? "n/a" : value->second);
+  }
+  Json marks = Json::object();
+  for (const StudyFlag& flag : flags) {
+    const auto at = std::find(columns.begin(), columns.end(), flag.column);
+    const auto index = at == columns.end() ? fixed - 1  // state
+                                           : fixed + static_cast<std::size_t>(at - columns.begin());
+    marks[std::to_string(index)] = flag.reason;
+  }
+  Json entry = {{"cells", cells}, {"flags", marks}};
+  if (!row.report.empty()) entry["report"] = row.report.generic_string();
+  if (!row.thumbnail.empty()) entry["thumbnail"] = row.thumbnail.generic_string();
+  return entry;
+}
+
+constexpr const char* kBody =
+    R"(<noscript><p>Sorting and plots need JavaScript; study.tsv holds the same table.</p></noscript>
+<section id="failures" aria-label="what failed"></section>
+<section><h2>How the numbers lie</h2><p>A dot is a row; its name appears under the pointer, a click finds it in the table. Yellow: far from the others, by a robust z above 3.5 (0.6745 (x - median) / MAD, over at least 8 rows).</p><div id="strips"></div></section>
+<section><h2>All rows</h2>
+<form><input type="search" id="search" placeholder="participant, side or state" aria-label="filter rows">
+<label><input type="checkbox" id="flagged"> only those that need a look</label>
+<label>columns <select id="set"><option value="quality">quality</option><option value="regions">thickness by region, mm</option><option value="all">all</option></select></label></form>
+<div class="wide" tabindex="0" role="region" aria-label="table of all rows"><table><thead><tr></tr></thead><tbody></tbody></table></div>
+<nav aria-label="pages of the table"><button id="before" type="button">previous</button><span id="shown" aria-live="polite"></span><button id="after" type="button">next</button></nav></section>
+<section id="regions"><h2>Thickness by region</h2><p>Mean and standard deviation over the rows of each side, mm.</p><div class="wide" tabindex="0" role="region" aria-label="thickness by region"></div></section>
+)";
+
+}  // namespace
+
+std::string indexPage(const std::vector<StudyRow>& rows, const std::string& title) {
+  const std::vector<std::string> columns = columnsOf(rows);
+  const auto flags = flagsOf(rows);
+  const bool regions = hasRegions(rows);
+  std::vector<std::string> fixed = {"participant", "hemisphere"};
+  if (regions) fixed.emplace_back("region");
+  fixed.emplace_back("state");
+  Json data = {
+      {"fixed", fixed.size()}, {"columns", headingsOf(fixed, columns)}, {"rows", Json::array()}};
+  for (std::size_t n = 0; n < rows.size(); ++n) {
+    data["rows"].push_back(rowJson(rows[n], flags[n], regions, fixed.size(), columns));
+  }
+  const auto done = std::count_if(rows.begin(), rows.end(),
+                                  [](const StudyRow& row) { return row.state == "done"; });
+  const auto marked =
+      std::count_if(flags.begin(), flags.end(), [](const auto& row) { return !row.empty(); });
+  return "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta "
+         "name=\"viewport\" content=\"width=device-width\"><link rel=\"icon\" "
+         "href=\"data:,\"><title>" +
+         escaped(title) + "</title><style>" + kStudyStyle + "</style></head><body>\n<main><h1>" +
+         escaped(title) + "</h1>\n<p>" + std::to_string(done) + " of " +
+         std::to_string(rows.size()) + " hemispheres are done; " + std::to_string(marked) +
+         " need a look. The numbers in full are in <a href=\"study.tsv\">study.tsv</a>.</p>\n" +
+         kBody + "</main><script type=\"application/json\" id=\"data\">" + scriptText(data) +
+         "</script>\n<script>" + kStudyScript + "</script>\n</body></html>\n";
+}
+
+}  // namespace explica::study

@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Explica/Study/StudyPage.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+namespace explica::study {
+namespace {
+
+/// `count` participants, both sides, with numbers that differ a little.
+std::vector<StudyRow> manyRows(int count) {
+  std::vector<StudyRow> rows;
+  for (int n = 0; n < count; ++n) {
+    for (const char* side : {"L", "R"}) {
+      StudyRow row;
+      row.participant = "sub-" + std::to_string(n);
+      row.hemisphere = side;
+      row.state = n % 100 == 7 ? "failed (surface): sub-" + std::to_string(n) +
+                                     "/T1.nii.gz: the file is truncated; copy or make it again"
+                               : "done";
+      row.report = "runs/" + row.participant + "/report.html";
+      row.thumbnail = "runs/" + row.participant + "/thumbnail.png";
+      for (const char* column :
+           {"surface.thickness_mean", "surface.area_white", "surface.area_pial",
+            "unfold.visibility_final", "unfold.edge_strain_mean"}) {
+        row.values[column] = std::to_string(2.5 + 0.001 * ((n * 37) % 101));
+      }
+      for (int r = 0; r < 68; ++r) {
+        row.values["region.area" + std::to_string(r)] =
+            std::to_string(2 + 0.01 * r + 0.002 * ((n * 13) % 53));
+      }
+      rows.push_back(std::move(row));
+    }
+  }
+  return rows;
+}
+
+nlohmann::json dataOf(const std::string& page) {
+  const std::string head = "id=\"data\">";
+  const std::size_t begin = page.find(head) + head.size();
+  return nlohmann::json::parse(page.substr(begin, page.find("</script>", begin) - begin));
+}
+
+TEST(StudyPage, AThousandPeopleFitTwentyMegabytes) {
+  const std::string page = indexPage(manyRows(1000), "Thousand");
+  EXPECT_LT(page.size(), 20u << 20);
+  EXPECT_EQ(dataOf(page)["rows"].size(), 2000u);
+}
+
+TEST(StudyPage, NamesColumnsInWordsWithUnits) {
+  for (const auto& column : dataOf(indexPage(manyRows(3), "Words"))["columns"]) {
+    EXPECT_EQ(column["words"].get<std::string>().find('_'), std::string::npos) << column;
+  }
+  const auto columns = dataOf(indexPage(manyRows(3), "Words"))["columns"];
+  EXPECT_EQ(columns[3]["words"], "White area");
+  EXPECT_EQ(columns[3]["unit"], "mm\u00b2");
+  EXPECT_EQ(columns[3]["kind"], "first");
+}
+
+TEST(StudyPage, KeepsTheWholeSentenceOfAFailure) {
+  const auto rows = dataOf(indexPage(manyRows(10), "Failures"))["rows"];
+  const std::string state = rows[14]["cells"][2];
+  EXPECT_NE(state.find("copy or make it again"), std::string::npos);
+  EXPECT_EQ(rows[14]["thumbnail"], "runs/sub-7/thumbnail.png");
+}
+
+TEST(StudyPage, AsksForNothingFromElsewhere) {
+  const std::string page = indexPage(manyRows(2), "Alone");
+  for (const char* fetching : {"src=\"http", "src='http", "@import", "url(", "<script src"}) {
+    EXPECT_EQ(page.find(fetching), std::string::npos) << fetching;
+  }
+}
+
+}  // namespace
+}  // namespace explica::study
