@@ -6,8 +6,8 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/IO/SurfaceFile.h"
-#include "Explica/Pipeline/Plan.h"
 #include "Explica/Pipeline/FolderReport.h"
+#include "Explica/Pipeline/Plan.h"
 #include "Explica/Pipeline/RunState.h"
 #include "Explica/Provenance/Json.h"
 #include "Explica/Provenance/Record.h"
@@ -73,6 +73,7 @@ void declare(Declaration& d, Settings& s) {
       .reuseOutputIf(s.resume)
       .inPlace()
       .varyingOutput("report.html", FileKind::Report, "everything to look at")
+      .output("thumbnail.png", FileKind::Picture, "a small picture, for tables of many runs")
       .varyingOutput(pipeline::kRunStateName, FileKind::Any, "how each step went")
       .output("segment", FileKind::Folder, "tissues and hemisphere")
       .output("thickness", FileKind::Folder, "harmonic interpolant, correspondences, thickness")
@@ -166,8 +167,11 @@ void takeBack(Context& context, const std::vector<pipeline::PlannedStep>& plan, 
 /// The report must not be lost to a fault of its own.
 void writeReport(Context& context, const fs::path& out) {
   try {
-    writeTextFile(context.output("report.html"),
-                  report::reportPage(pipeline::collectReport(out, {}, context.monitor())));
+    const report::ReportContent content = pipeline::collectReport(out, {}, context.monitor());
+    writeTextFile(context.output("report.html"), report::reportPage(content));
+    if (const auto small = pipeline::thumbnailOf(content)) {
+      report::writePng(context.output("thumbnail.png"), *small);
+    }
   } catch (const Error& fault) {
     context.warn(std::string("report: ") + fault.what());
   }

@@ -55,9 +55,9 @@ TEST(Run, GoesFromLabelsToAReport) {
   makePhantom(folder);
   const auto run = explica(smallRun(folder, "out"));
   EXPECT_TRUE(run.exitCode == 0 || run.exitCode == 3) << run;
-  for (const char* file :
-       {"thickness/thickness.nii.gz", "surface/white.surf.gii", "surface/pial.surf.gii",
-        "unfold/unfolded.surf.gii", "report.html", "summary.json", "provenance.json"}) {
+  for (const char* file : {"thickness/thickness.nii.gz", "surface/white.surf.gii",
+                           "surface/pial.surf.gii", "unfold/unfolded.surf.gii", "report.html",
+                           "thumbnail.png", "summary.json", "provenance.json"}) {
     EXPECT_TRUE(fs::exists(fs::path(folder / "out") / file)) << file;
   }
   for (const char* step : {"thickness", "surface", "unfold"}) {

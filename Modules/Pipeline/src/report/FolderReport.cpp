@@ -106,4 +106,25 @@ report::ReportContent collectReport(const fs::path& folder, const FolderReportOp
   return content;
 }
 
+std::optional<report::Picture> thumbnailOf(const report::ReportContent& content) {
+  const report::Picture* large = nullptr;
+  for (const report::ReportViews& views : content.views) {
+    if (views.views.empty()) continue;
+    if (views.id == kThicknessPlace && large == nullptr) large = &views.views.front().picture;
+    if (views.id == kPatchViewsPlace) large = &views.views.back().picture;
+  }
+  if (large == nullptr || large->width < 2 || large->height < 2) return {};
+  report::Picture small(large->width / 2, large->height / 2);
+  for (int y = 0; y < small.height; ++y) {
+    for (int x = 0; x < small.width; ++x) {
+      for (int c = 0; c < 3; ++c) {
+        int sum = 0;
+        for (int n = 0; n < 4; ++n) sum += large->pixel(2 * x + n % 2, 2 * y + n / 2)[c];
+        small.pixel(x, y)[c] = static_cast<std::uint8_t>((sum + 2) / 4);
+      }
+    }
+  }
+  return small;
+}
+
 }  // namespace explica::pipeline

@@ -12,6 +12,7 @@ inline constexpr const char* kTissuePlace = "tissues";
 inline constexpr const char* kOutlinePlace = "surfaces-on-image";
 inline constexpr const char* kThicknessPlace = "thickness-maps";
 inline constexpr const char* kPatchPlace = "view3d";
+inline constexpr const char* kPatchViewsPlace = "before-after";
 inline constexpr const char* kDistortionPlace = "distortion";
 
 /// What a reader must know before trusting the results, the worst first.

@@ -214,7 +214,7 @@ void drawBeforeAndAfter(ResultFolder& results, const Unfolded& unfolded,
   size.width = 520;
   size.height = 400;
   report::ReportViews views;
-  views.id = "before-after";
+  views.id = kPatchViewsPlace;
   views.title = "The patch before and after";
   views.caption =
       std::string("From the viewpoint and from the side, with the same colours: ") +

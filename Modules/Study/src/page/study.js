@@ -39,8 +39,11 @@ function showFailures() {
   const failed = data.rows.filter((r) => r.cells[state] !== 'done');
   if (failed.length === 0) return;
   make('h2', failed.length === 1 ? 'One row is not done' : failed.length + ' rows are not done', byId('failures'));
+  const list = make('div', undefined, byId('failures'));
+  list.className = 'list';
+  list.tabIndex = 0;
   for (const row of failed.slice(0, 50)) {
-    const box = make('div', undefined, byId('failures'));
+    const box = make('div', undefined, list);
     box.className = 'failure';
     make('b', nameOf(row) + ' ', box);
     box.append(row.cells[state] + ' ');

@@ -7,6 +7,7 @@
 #include "Explica/Report/Page.h"
 
 #include <filesystem>
+#include <optional>
 
 namespace explica::pipeline {
 
@@ -32,5 +33,9 @@ void describe(FolderReportOptions& options, Visitor&& visit) {
 [[nodiscard]] report::ReportContent collectReport(const std::filesystem::path& folder,
                                                   const FolderReportOptions& options = {},
                                                   const Monitor& monitor = {});
+
+/// A small picture that tells one result from another at a glance: the opened patch, else the
+/// thickness from the side; none where a report shows neither.
+[[nodiscard]] std::optional<report::Picture> thumbnailOf(const report::ReportContent& content);
 
 }  // namespace explica::pipeline
