@@ -69,8 +69,7 @@ class MeetingFilter {
       : scene_(scene), kind_(kind), start_(start), motion_(motion), reach_(reach) {}
 
   void add(std::int32_t first, std::int32_t second) {
-    const Pair pair{kind_, first, second};
-    const auto v = scene_.vertices(pair);
+    const std::array<std::int32_t, 4> v = verticesOf(first, second);
     const bool apart = kind_ == PairKind::VertexFace
                            ? v[0] != v[1] && v[0] != v[2] && v[0] != v[3]
                            : v[0] != v[2] && v[0] != v[3] && v[1] != v[2] && v[1] != v[3];
@@ -81,7 +80,7 @@ class MeetingFilter {
         batch_.motion[i][k][count_] = motion_(v[i + 1], k) - motion_(v[0], k);
       }
     }
-    pairs_[count_] = pair;
+    pairs_[count_] = {kind_, first, second};
     if (++count_ == kernels::PairBatch::kLanes) test();
   }
 
@@ -91,6 +90,19 @@ class MeetingFilter {
   }
 
  private:
+  [[nodiscard]] std::array<std::int32_t, 4> verticesOf(std::int32_t first,
+                                                       std::int32_t second) const {
+    if (kind_ == PairKind::VertexFace) {
+      const std::int32_t* const face = scene_.faces().data() + 3 * std::ptrdiff_t{second};
+      return {first, face[0], face[1], face[2]};
+    }
+    const std::int32_t* const edges = scene_.edges().data();
+    const std::int32_t *const a = edges + 2 * std::ptrdiff_t{first}, *const b =
+                                                                         edges +
+                                                                         2 * std::ptrdiff_t{second};
+    return {a[0], a[1], b[0], b[1]};
+  }
+
   void test() {
     for (int n = count_; n < kernels::PairBatch::kLanes; ++n) {
       for (int i = 0; i < 3; ++i) {

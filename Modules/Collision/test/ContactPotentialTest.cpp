@@ -56,5 +56,34 @@ TEST(ContactPotential, ContactIsInfinitelyHighAndFarPairsAreFree) {
   EXPECT_EQ(contactForces(contacts, x)[0].gradient.norm(), 0);
 }
 
+/// Oracle: one after the other.
+TEST(ContactPotential, ContactsWithinRangeAndTheirEnergyAreThoseOfOneByOne) {
+  std::mt19937 random(17);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  constexpr int kCount = 3000;
+  Positions x(4 * kCount, 3);
+  for (Eigen::Index i = 0; i < x.size(); ++i) x.data()[i] = uniform(random);
+  std::vector<Contact> contacts;
+  for (int n = 0; n < kCount; ++n) {
+    contacts.push_back({{4 * n, 4 * n + 1, 4 * n + 2, 4 * n + 3},
+                        n % 700 < 300 ? PairKind::VertexFace : PairKind::EdgeEdge,
+                        0.3 + 0.2 * uniform(random)});
+  }
+  std::vector<std::array<std::int32_t, 4>> near;
+  double energy = 0;
+  for (const Contact& c : contacts) {
+    FourPoints p;
+    for (int i = 0; i < 4; ++i) p[i] = x.row(c.vertices[i]).transpose();
+    if (squaredDistance(c.kind, p) < c.range * c.range) near.push_back(c.vertices);
+    energy += contactEnergy(std::vector<Contact>{c}, x);
+  }
+  EXPECT_GT(near.size(), 300u);
+  EXPECT_LT(near.size(), 2700u);
+  const auto found = contactsWithin(contacts, x);
+  ASSERT_EQ(found.size(), near.size());
+  for (std::size_t n = 0; n < near.size(); ++n) EXPECT_EQ(found[n].vertices, near[n]);
+  EXPECT_NEAR(contactEnergy(contacts, x), energy, 1e-9 * energy);
+}
+
 }  // namespace
 }  // namespace explica::collision

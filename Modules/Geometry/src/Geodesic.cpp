@@ -33,7 +33,7 @@ double unfoldedDistance(const Point& a, const Point& b, const Point& c, double d
   if (cy - sy <= 0) return around;
   const double crossing = sx + (cx - sx) * (-sy) / (cy - sy);
   if (crossing < 0 || crossing > length) return around;
-  return std::hypot(cx - sx, cy - sy);
+  return std::sqrt((cx - sx) * (cx - sx) + (cy - sy) * (cy - sy));
 }
 
 }  // namespace

@@ -93,18 +93,17 @@ void Contacts::findRanges(const PatchSetup& setup, bool mayTouch) {
     }
     for (const std::int32_t vertex : v) thin = std::min(thin, thinnest[vertex]);
     const double wanted = std::max(distance, kParted * range_);
-    rangeOfPair_[pair] =
-        neighbours ? std::max(kAsNear * distance, std::min(wanted, kNeedle * thin)) : wanted;
+    ranges_.emplace_back(
+        pair, neighbours ? std::max(kAsNear * distance, std::min(wanted, kNeedle * thin)) : wanted);
   }
 }
 
-Contact Contacts::contactOf(const Pair& pair) const {
+Contact Contacts::contactOf(const Pair& pair, double range) const {
   Contact contact;
   contact.vertices = scene_->vertices(pair);
   contact.kind = pair.kind;
   contact.softBelow = kSoftBelow;
-  const auto found = rangeOfPair_.find(pair);
-  contact.range = found == rangeOfPair_.end() ? range_ : found->second;
+  contact.range = range;
   if (pair.kind == PairKind::EdgeEdge) {
     const auto x = scene_->points(pair, start_);
     contact.parallelArea = kParallel * (x[1] - x[0]).squaredNorm() * (x[3] - x[2]).squaredNorm();
@@ -113,18 +112,23 @@ Contact Contacts::contactOf(const Pair& pair) const {
 }
 
 std::vector<Contact> Contacts::contactsOf(const std::vector<Pair>& pairs) const {
+  constexpr std::size_t kGrain = 1024;
   std::vector<Contact> contacts(pairs.size());
-  parallelFor(pairs.size(), 1024, [&](std::size_t n) { contacts[n] = contactOf(pairs[n]); });
+  const auto before = [](const auto& entry, const Pair& pair) { return entry.first < pair; };
+  parallelForBlocks(pairs.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    auto own = std::lower_bound(ranges_.begin(), ranges_.end(), pairs[begin], before);
+    for (std::size_t n = begin; n < end; ++n) {
+      while (own != ranges_.end() && own->first < pairs[n]) ++own;
+      const bool known = own != ranges_.end() && own->first == pairs[n];
+      contacts[n] = contactOf(pairs[n], known ? own->second : range_);
+    }
+  });
   return contacts;
 }
 
 std::vector<Contact> Contacts::within(const Positions& x) {
   if (!nearKnown_) remember(scene_->findPairs(x, Positions::Zero(x.rows(), 3), range_));
-  std::sort(near_.begin(), near_.end());
-  std::vector<Contact> contacts = contactsOf(near_);
-  std::erase_if(contacts,
-                [&](const Contact& c) { return squaredDistance(c, x) >= c.range * c.range; });
-  return contacts;
+  return collision::contactsWithin(contactsOf(near_), x);
 }
 
 void Contacts::remember(std::vector<Pair> pairs) {

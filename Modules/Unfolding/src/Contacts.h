@@ -7,8 +7,8 @@
 #include "Explica/Collision/CollisionScene.h"
 #include "Explica/Collision/ContactPotential.h"
 
-#include <map>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace explica::unfolding {
@@ -28,26 +28,28 @@ class Contacts {
   [[nodiscard]] const collision::CollisionScene& scene() const { return *scene_; }
   [[nodiscard]] double range() const { return range_; }
 
-  /// The pairs' barriers, in their order.
+  /// The pairs' barriers, in their order, which has to be ascending.
   [[nodiscard]] std::vector<collision::Contact> contactsOf(
       const std::vector<collision::Pair>& pairs) const;
 
   /// The pairs within range, in an order that does not depend on how they were found.
   [[nodiscard]] std::vector<collision::Contact> within(const Positions& x);
 
-  /// Tells all pairs that may be within range at the positions of the next call of within().
+  /// Tells all pairs that may be within range at the positions of the next call of within(),
+  /// ascending.
   void remember(std::vector<collision::Pair> pairs);
   /// Makes the next call of within() search.
   void forget() { nearKnown_ = false; }
 
  private:
   void findRanges(const PatchSetup& setup, bool mayTouch);
-  [[nodiscard]] collision::Contact contactOf(const collision::Pair& pair) const;
+  [[nodiscard]] collision::Contact contactOf(const collision::Pair& pair, double range) const;
 
   Positions start_;
   double range_;
   std::unique_ptr<collision::CollisionScene> scene_;
-  std::map<collision::Pair, double> rangeOfPair_;  ///< of pairs nearer at the start than range_
+  /// Of pairs nearer at the start than range_, ascending.
+  std::vector<std::pair<collision::Pair, double>> ranges_;
   std::vector<collision::Pair> near_;
   bool nearKnown_ = false;
 };

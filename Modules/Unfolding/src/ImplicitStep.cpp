@@ -4,6 +4,7 @@
 #include "Motion.h"
 #include "UnfolderImplementation.h"
 
+#include "Explica/Core/Parallel.h"
 #include "Explica/Core/PhaseClock.h"
 
 #include <algorithm>
@@ -230,17 +231,31 @@ void ImplicitStep::accept(Motion& motion) {
 
 /// How near contacts are at the new positions; those pressed close stiffen from the next step on.
 void ImplicitStep::accountForContacts() {
-  double nearest = kInfinity, pressed = 1;
-  for (const Contact& c : contacts_) {
-    const double squared = squaredDistance(c, trial_);
-    nearest = std::min(nearest, squared);
-    if (squared < kClosing * squaredDistance(c, state_.positions)) {
-      pressed = std::min(pressed, std::sqrt(squared) / c.range);
+  struct Nearness {
+    double nearest = kInfinity, pressed = 1;
+    void operator+=(const Nearness& other) {
+      nearest = std::min(nearest, other.nearest);
+      pressed = std::min(pressed, other.pressed);
     }
-  }
+  };
+  constexpr std::size_t kGrain = 256;
+  const Nearness all =
+      parallelSum(contacts_.size(), kGrain, Nearness{}, [&](std::size_t begin, std::size_t end) {
+        Nearness block;
+        for (std::size_t n = begin; n < end; ++n) {
+          const Contact& c = contacts_[n];
+          const double squared = squaredDistance(c, trial_);
+          block.nearest = std::min(block.nearest, squared);
+          const double share = std::sqrt(squared) / c.range;
+          if (share < block.pressed && squared < kClosing * squaredDistance(c, state_.positions)) {
+            block.pressed = share;
+          }
+        }
+        return block;
+      });
   now_.contacts = static_cast<int>(contacts_.size());
-  now_.nearestContact = contacts_.empty() ? kNaN : std::sqrt(nearest);
-  if (!state_.separating && pressed < kPressed) {
+  now_.nearestContact = contacts_.empty() ? kNaN : std::sqrt(all.nearest);
+  if (!state_.separating && all.pressed < kPressed) {
     state_.contactStiffness = std::min(kStiffestContact, 2 * state_.contactStiffness);
   }
 }

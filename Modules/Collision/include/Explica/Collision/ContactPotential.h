@@ -27,6 +27,10 @@ struct ContactForce {
   double curvature = 0;  ///< mm^-2, >= 0: stiffness direction * direction^T, positive semi-definite
 };
 
+/// Those of the contacts that are nearer than their range, in their order.  Threaded.
+[[nodiscard]] std::vector<Contact> contactsWithin(std::span<const Contact> contacts,
+                                                  const Positions& positions);
+
 /// Sum of barriers over contacts, no unit; infinite if a pair without softBelow touches.  Threaded,
 /// deterministic.
 [[nodiscard]] double contactEnergy(std::span<const Contact> contacts, const Positions& positions);
