@@ -9,12 +9,15 @@
 #include "Explica/Surface/IsoSurface.h"
 #include "Explica/Surface/Measures.h"
 #include "Explica/Surface/Remesh.h"
-#include "GuardedMesh.h"
+#include "Growth.h"
+#include "Relaxation.h"
 #include "RibbonField.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
+#include <string>
 
 namespace explica::surface {
 namespace {
@@ -45,57 +48,157 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-/// Vertices on their trajectories, advancing together and never through each other.
-class Advance {
- public:
-  Advance(const TriangleMesh& white, const std::vector<Trajectory>& paths, double edge)
-      : mesh_(white, edge), paths_(paths), reached_(paths.size(), 0.0) {}
+/// Less than this is no shortfall, voxels: what the border itself is uncertain by.
+constexpr double kNoShortfall = 0.02;
+/// Farthest that smoothing may take a vertex across its surface in one sweep, voxels.
+constexpr double kRoughness = 0.2;
+/// Farthest that a sliding vertex is brought back to the border of the tissue in one sweep, voxels.
+constexpr double kNearBorder = 0.5;
 
-  /// Takes every vertex as near to a share of its way as its faces allow.
-  void goTo(double share) {
-    constexpr int kSweeps = 3;
-    for (int sweep = 0; sweep < kSweeps; ++sweep) {
-      const auto waiting = mesh_.sweep([&](std::int32_t v, GuardedMesh::Scratch& scratch) {
-        const double target = share * paths_[v].length();
-        if (reached_[v] >= target || tryReach(v, target, scratch)) return true;
-        tryReach(v, 0.5 * (reached_[v] + target), scratch);
-        return false;
-      });
-      if (waiting == 0) return;
-    }
+Point stayThere(std::int32_t, const Point& point, const Vector&) {
+  return point;
+}
+
+/// From a point towards the zero of a level set along its gradient, as far as `most`, mm; nowhere
+/// if the level does not fall outward.
+Point towardsBorder(const LevelSet& level, const Point& from, const Vector& normal, double most) {
+  constexpr double kFlat = 1e-8;  // squared change of the level per voxel: nothing to follow
+  const double voxel = level.grid.spacing.minCoeff();
+  Point p = from;
+  for (int step = 0; step < 2; ++step) {
+    const LevelSample s = sample(level, p);
+    const double squared = s.gradient.squaredNorm();
+    if (squared * voxel * voxel < kFlat || s.gradient.dot(normal) > 0) return from;
+    p -= s.value / squared * s.gradient;
+    const double way = (p - from).norm();
+    if (way > most) return from + most / way * (p - from);
   }
+  return p;
+}
 
-  [[nodiscard]] TriangleMesh mesh() const { return mesh_.toMesh(); }
-  [[nodiscard]] double reached(std::size_t v) const { return reached_[v]; }
-
- private:
-  bool tryReach(std::int32_t v, double arc, GuardedMesh::Scratch& scratch) {
-    if (!mesh_.move(v, paths_[v].at(arc), scratch)) return false;
-    reached_[v] = arc;
-    return true;
+/// Refuses places where float32 numbers, which files hold, are too coarse for the voxels.
+void requirePrecision(const Grid& grid) {
+  constexpr double kShare = 1e-3;  // of a voxel
+  double farthest = 0;
+  for (int c = 0; c < 8; ++c) {
+    const Vector corner((c & 1) * grid.size[0], (c >> 1 & 1) * grid.size[1],
+                        (c >> 2) * grid.size[2]);
+    farthest = std::max(farthest, grid.toWorld(corner).cwiseAbs().maxCoeff());
   }
+  const double step = farthest * std::numeric_limits<float>::epsilon();
+  const double voxel = grid.spacing.minCoeff();
+  if (step <= kShare * voxel) return;
+  throw InvalidInput("volume: it lies " + std::to_string(farthest) +
+                     " mm from the origin, where the 32-bit numbers of surface files are " +
+                     std::to_string(step) + " mm apart, more than a thousandth of a voxel (" +
+                     std::to_string(voxel) + " mm); move its origin nearer");
+}
 
-  GuardedMesh mesh_;
-  const std::vector<Trajectory>& paths_;
-  std::vector<double> reached_;
+/// What is known of the ribbon once its white surface is.
+struct Ribbon {
+  CorticalTissue tissue;  ///< corrected
+  std::vector<Trajectory> paths;
 };
 
-/// Less than this is no shortfall, mm: rounding of arc lengths.
-constexpr double kNoShortfall = 1e-4;
-
-std::int64_t countShort(const Advance& advance, const std::vector<Trajectory>& paths,
-                        double share) {
-  std::int64_t count = 0;
-  for (std::size_t v = 0; v < paths.size(); ++v) {
-    count += share * paths[v].length() - advance.reached(v) > kNoShortfall;
+Ribbon traceRibbon(const CorticalTissue& tissue, CorticalSurfaces& result, const Monitor& monitor) {
+  Stopwatch watch;
+  Ribbon ribbon;
+  ribbon.tissue = tissue;
+  ribbon.tissue.white = result.white.level;
+  for (std::size_t v = 0; v < ribbon.tissue.white.size(); ++v) {
+    ribbon.tissue.tissue[v] = std::max(ribbon.tissue.tissue[v], ribbon.tissue.white[v]);
   }
-  return count;
+  const TriangleMesh& white = result.white.mesh;
+  const RibbonField field(ribbon.tissue, white, partOf(monitor, 0, 0.7));
+  result.cutLinks = field.cutLinks();
+  result.seconds.interpolant = watch.lap();
+
+  monitor.progress(0.7, "trajectories");
+  const Positions normals = geometry::vertexNormals(white);
+  ribbon.paths.resize(white.vertexCount());
+  parallelFor(ribbon.paths.size(), 256, [&](std::size_t v) {
+    ribbon.paths[v] = field.trace(white.positions.row(v), normals.row(v));
+  });
+  result.seconds.trajectories = watch.lap();
+  return ribbon;
+}
+
+void takeThickness(const std::vector<Trajectory>& paths, CorticalSurfaces& result) {
+  result.thickness.resize(static_cast<Eigen::Index>(paths.size()));
+  for (std::size_t v = 0; v < paths.size(); ++v) {
+    result.thickness[static_cast<Eigen::Index>(v)] = paths[v].length();
+    result.noRibbon += paths[v].end == TrajectoryEnd::NoRibbon;
+    result.endedAtBank += paths[v].end == TrajectoryEnd::Bank;
+  }
+}
+
+/// Vertices that waited on their trajectory and have not come to the outer border by sliding.
+void noteHeldBack(const Ribbon& ribbon, const Growth& growth, double least,
+                  CorticalSurfaces& result) {
+  double sum = 0;
+  for (std::size_t v = 0; v < ribbon.paths.size(); ++v) {
+    double missing = growth.missing(v);
+    if (missing <= least) continue;
+    const Point at = result.pial.positions.row(static_cast<Eigen::Index>(v));
+    const Trajectory& path = ribbon.paths[v];
+    if (path.end == TrajectoryEnd::Outer) {
+      const LevelSample border = sample(ribbon.tissue.tissue, at);
+      missing = std::min(missing, border.value / std::max(border.gradient.norm(), 1e-300));
+    } else {
+      const Vector way = path.points.back() - path.points[path.points.size() - 2];
+      missing = std::min(missing, (path.points.back() - at).dot(way.normalized()));
+    }
+    if (missing <= least) continue;
+    ++result.heldBackPial;
+    sum += missing;
+    result.heldBackMost = std::max(result.heldBackMost, missing);
+  }
+  if (result.heldBackPial > 0) {
+    result.heldBackMean = sum / static_cast<double>(result.heldBackPial);
+  }
+}
+
+/// Middle and outer surface out of the white one.
+void growSurfaces(const Ribbon& ribbon, const SurfaceOptions& options, CorticalSurfaces& result,
+                  const Monitor& monitor) {
+  const double voxel = ribbon.tissue.white.grid.spacing.minCoeff();
+  const double edge = result.white.edgeLength;
+  std::vector<std::uint8_t> moves(ribbon.paths.size());
+  for (std::size_t v = 0; v < moves.size(); ++v) moves[v] = ribbon.paths[v].length() > 0;
+  RelaxationOptions sliding;
+  sliding.bend = 0;
+  sliding.sweeps = 4;
+  RelaxationOptions relaxation;
+  relaxation.most = kRoughness * voxel;
+
+  Growth growth(result.white.mesh, ribbon.paths, edge);
+  for (int step = 1; step <= options.steps; ++step) {
+    monitor.progress(static_cast<double>(step) / (options.steps + 1), "growing the outer surface");
+    growth.goTo(static_cast<double>(step) / options.steps);
+    if (2 * step == options.steps) {
+      for (std::size_t v = 0; v < moves.size(); ++v) {
+        result.heldBackMid += growth.missing(v) > kNoShortfall * voxel;
+      }
+      result.mid = relaxed(growth.mesh(), edge, moves, stayThere, sliding);
+    }
+  }
+  const LevelSet& border = ribbon.tissue.tissue;
+  result.pial = relaxed(
+      growth.mesh(), edge, moves,
+      [&](std::int32_t v, const Point& point, const Vector& normal) {
+        return ribbon.paths[v].end == TrajectoryEnd::Outer
+                   ? towardsBorder(border, point, normal, kNearBorder * voxel)
+                   : point;
+      },
+      relaxation);
+  noteHeldBack(ribbon, growth, kNoShortfall * voxel, result);
 }
 
 }  // namespace
 
 WhiteSurface extractWhite(const CorticalTissue& tissue, const SurfaceOptions& options,
                           const Monitor& monitor) {
+  requirePrecision(tissue.white.grid);
   WhiteSurface white;
   Stopwatch watch;
   TopologyResult topology = correctTopology(tissue.white, options.genus, partOf(monitor, 0, 0.1));
@@ -136,56 +239,16 @@ CorticalSurfaces buildSurfaces(const CorticalTissue& tissue, const SurfaceOption
   }
   CorticalSurfaces result;
   result.white = extractWhite(tissue, options, partOf(monitor, 0, 0.5));
-  const TriangleMesh& white = result.white.mesh;
   result.seconds = result.white.seconds;
+  const Ribbon ribbon = traceRibbon(tissue, result, partOf(monitor, 0.5, 0.7));
+  takeThickness(ribbon.paths, result);
   Stopwatch watch;
-
-  CorticalTissue corrected = tissue;
-  corrected.white = result.white.level;
-  for (std::size_t v = 0; v < corrected.white.size(); ++v) {
-    corrected.tissue[v] = std::max(corrected.tissue[v], corrected.white[v]);
-  }
-  const RibbonField field(corrected, white, partOf(monitor, 0.5, 0.65));
-  result.cutLinks = field.cutLinks();
-  result.seconds.interpolant = watch.lap();
-
-  monitor.progress(0.65, "trajectories");
-  const Positions normals = geometry::vertexNormals(white);
-  std::vector<Trajectory> paths(white.vertexCount());
-  parallelFor(paths.size(), 256, [&](std::size_t v) {
-    paths[v] = field.trace(white.positions.row(v), normals.row(v));
-  });
-  result.thickness.resize(white.vertexCount());
-  for (std::size_t v = 0; v < paths.size(); ++v) {
-    result.thickness[v] = paths[v].length();
-    result.noRibbon += paths[v].end == TrajectoryEnd::NoRibbon;
-    result.endedAtBank += paths[v].end == TrajectoryEnd::Bank;
-  }
-  result.seconds.trajectories = watch.lap();
-
-  Advance advance(white, paths, result.white.edgeLength);
-  for (int step = 1; step <= options.steps; ++step) {
-    monitor.progress(0.7 + 0.25 * step / options.steps, "growing the outer surface");
-    const double share = static_cast<double>(step) / options.steps;
-    advance.goTo(share);
-    if (2 * step == options.steps) {
-      result.mid = advance.mesh();
-      result.heldBackMid = countShort(advance, paths, share);
-    }
-  }
-  result.pial = advance.mesh();
-  result.heldBackPial = countShort(advance, paths, 1);
-  for (std::size_t v = 0; v < paths.size(); ++v) {
-    const double shortfall = paths[v].length() - advance.reached(v);
-    if (shortfall <= kNoShortfall) continue;
-    result.heldBackMean += shortfall / static_cast<double>(result.heldBackPial);
-    result.heldBackMost = std::max(result.heldBackMost, shortfall);
-  }
+  growSurfaces(ribbon, options, result, partOf(monitor, 0.7, 0.96));
   result.seconds.growing = watch.lap();
 
   monitor.progress(0.96, "curvature and depth");
-  result.curvature = meanCurvature(white);
-  result.sulcalDepth = depthBelowHull(corrected.tissue, result.mid.positions);
+  result.curvature = meanCurvature(result.white.mesh);
+  result.sulcalDepth = depthBelowHull(ribbon.tissue.tissue, result.mid.positions);
   result.seconds.measures = watch.lap();
   monitor.progress(1.0, "surfaces");
   return result;

@@ -5,6 +5,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
+#include "Explica/Surface/Measures.h"
 
 #include <Eigen/Geometry>
 
@@ -197,7 +198,9 @@ struct Plane {
 };
 
 /// The near-sagittal plane through the middle of the mask that holds least of it.
-Plane leastWhitePlane(const std::vector<Point>& points, const Point& centre, double thickness) {
+/// @param unit  a millimetre in a human brain, mm
+Plane leastWhitePlane(const std::vector<Point>& points, const Point& centre, double thickness,
+                      double unit) {
   Plane best;
   double least = kInfinity;
   const auto search = [&](double yaw0, double roll0, double shift0, double angle, double shift,
@@ -220,7 +223,8 @@ Plane leastWhitePlane(const std::vector<Point>& points, const Point& centre, dou
         for (int s = 0; s < bins; ++s) {
           const double at = shift0 + (s - steps) * shift;
           // A plane far from the middle is not it, however empty.
-          const double cost = held[s] + 1e-3 * points.size() * (at * at) / 100.0;
+          const double cost =
+              held[s] + 1e-5 * static_cast<double>(points.size()) * (at * at) / (unit * unit);
           if (cost < least) {
             least = cost;
             bestYaw = yaw;
@@ -234,9 +238,9 @@ Plane leastWhitePlane(const std::vector<Point>& points, const Point& centre, dou
     }
     return std::array{bestYaw, bestRoll, bestShift};
   };
-  const auto coarse = search(0, 0, 0, 0.05, 2.0, 5);
+  const auto coarse = search(0, 0, 0, 0.05, 2.0 * unit, 5);
   least = kInfinity;
-  search(coarse[0], coarse[1], coarse[2], 0.015, 2.0 / 3, 3);
+  search(coarse[0], coarse[1], coarse[2], 0.015, 2.0 / 3 * unit, 3);
   return best;
 }
 
@@ -353,15 +357,19 @@ Volume<std::uint8_t> splitHemispheres(const Volume<std::uint8_t>& white, const M
   std::vector<Point> some;
   const std::size_t stride = std::max<std::size_t>(1, points.size() / 60000);
   for (std::size_t p = 0; p < points.size(); p += stride) some.push_back(points[p]);
-  const Plane plane = leastWhitePlane(some, centre, 0.5 * grid.spacing.maxCoeff());
+  // Lengths are those of a human brain, whose white matter has the volume of a ball of 48 mm.
+  constexpr double kHuman = 48;
+  const double unit =
+      radiusOfVoxels(static_cast<std::int64_t>(points.size()), grid) / kHuman;
+  const Plane plane = leastWhitePlane(some, centre, 0.5 * grid.spacing.maxCoeff(), unit);
 
   Volume<std::uint8_t> sides(grid);
-  constexpr double kSure = 10;  // mm from the plane: no gyrus bulges that far
+  const double sure = 10 * unit;  // from the plane: no gyrus bulges that far
   for (std::size_t v = 0; v < white.size(); ++v) {
     if (!white[v]) continue;
     const auto at = grid.subscripts(v);
     const double d = plane.normal.dot(grid.toWorld(Vector(at[0], at[1], at[2]))) - plane.offset;
-    if (std::abs(d) > kSure) sides[v] = d < 0 ? 1 : 2;
+    if (std::abs(d) > sure) sides[v] = d < 0 ? 1 : 2;
   }
   spreadLabels(white, sides);
   const auto left = std::count(sides.data.begin(), sides.data.end(), 1);

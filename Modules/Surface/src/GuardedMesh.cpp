@@ -17,61 +17,35 @@ namespace {
 
 constexpr std::size_t kMostFaces = 64;  ///< made by one step; a step that makes more is refused
 
-std::array<float, 6> boxOf(const std::array<Point, 3>& p) {
-  std::array<float, 6> box;
-  for (int a = 0; a < 3; ++a) {
-    const double low = std::min({p[0][a], p[1][a], p[2][a]});
-    const double high = std::max({p[0][a], p[1][a], p[2][a]});
-    // Outward by more than the rounding to float.
-    box[a] = static_cast<float>(low - 1e-6 * (1 + std::abs(low)));
-    box[a + 3] = static_cast<float>(high + 1e-6 * (1 + std::abs(high)));
-  }
-  return box;
-}
-
 bool overlap(const std::array<float, 6>& a, const std::array<float, 6>& b) {
   return a[0] <= b[3] && b[0] <= a[3] && a[1] <= b[4] && b[1] <= a[4] && a[2] <= b[5] &&
          b[2] <= a[5];
 }
 
-void erase(std::vector<std::int32_t>& list, std::int32_t value) {
-  const auto it = std::find(list.begin(), list.end(), value);
-  if (it == list.end()) return;
-  *it = list.back();
-  list.pop_back();
+/// Rounding of a projection, relative to the sizes of what is multiplied; with room to spare.
+constexpr double kClear = 1e-12;
+
+/// True if the plane across the line between their centroids parts two triangles beyond doubt.
+bool clearlyApart(const std::array<Point, 3>& f, const std::array<Point, 3>& g) {
+  const Vector axis = (g[0] - f[0]) + (g[1] - f[1]) + (g[2] - f[2]);
+  double highest = 0, lowest = kInfinity, size = 0;
+  for (int k = 0; k < 3; ++k) {
+    const Vector ofF = f[k] - f[0], ofG = g[k] - f[0];
+    highest = std::max(highest, axis.dot(ofF));
+    lowest = std::min(lowest, axis.dot(ofG));
+    size = std::max({size, ofF.lpNorm<1>(), ofG.lpNorm<1>()});
+  }
+  return lowest - highest > kClear * axis.lpNorm<1>() * size;
 }
 
-/// Faces f and g, given by corners and points, meet where they may not.
-bool facesMeet(const GuardedMesh::Corners& fc, const std::array<Point, 3>& fp,
-               const GuardedMesh::Corners& gc, const std::array<Point, 3>& gp) {
-  std::array<int, 3> ofF = {0, 1, 2}, ofG = {0, 1, 2};
-  int shared = 0;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = shared; j < 3; ++j) {
-      if (fc[i] == gc[ofG[j]]) {
-        std::swap(ofF[i], ofF[shared]);
-        std::swap(ofG[j], ofG[shared]);
-        ++shared;
-        break;
-      }
-    }
-  }
-  using namespace geometry;
-  switch (shared) {
-    case 0:
-      return trianglesIntersect(fp, gp);
-    case 1: {
-      // Strictly on one side of the other's plane but for the common vertex: nothing else meets.
-      const Point &p = fp[ofF[0]], &a = fp[ofF[1]], &b = fp[ofF[2]];
-      const Point &c = gp[ofG[1]], &d = gp[ofG[2]];
-      if (orientation(p, a, b, c) * orientation(p, a, b, d) > 0) return false;
-      return trianglesSharingVertexIntersect(p, a, b, c, d);
-    }
-    case 2:
-      return trianglesSharingEdgeIntersect(fp[ofF[0]], fp[ofF[1]], fp[ofF[2]], gp[ofG[2]]);
-    default:
-      return true;
-  }
+/// True if a plane through p parts the triangles (p, a, b) and (p, c, d) beyond doubt.
+bool clearlyParted(const Point& p, const Point& a, const Point& b, const Point& c, const Point& d) {
+  const Vector pa = a - p, pb = b - p, pc = c - p, pd = d - p;
+  const Vector axis = (pc + pd).normalized() - (pa + pb).normalized();
+  const auto clear = [&](const Vector& way) {
+    return axis.dot(way) > kClear * axis.lpNorm<1>() * way.lpNorm<1>();
+  };
+  return clear(pc) && clear(pd) && clear(-pa) && clear(-pb);
 }
 
 /// Files hold float32: what is checked must be what is written.
@@ -94,28 +68,71 @@ double qualityOf(const std::array<Point, 3>& p) {
 
 }  // namespace
 
+void FaceRing::add(std::int32_t face) {
+  if (many_.empty() && count_ < few_.size()) {
+    few_[count_++] = face;
+    return;
+  }
+  if (many_.empty()) many_.assign(few_.begin(), few_.end());
+  many_.push_back(face);
+  ++count_;
+}
+
+void FaceRing::remove(std::int32_t face) {
+  std::int32_t* const faces = many_.empty() ? few_.data() : many_.data();
+  std::int32_t* const at = std::find(faces, faces + count_, face);
+  if (at == faces + count_) return;
+  *at = faces[--count_];
+  if (many_.empty()) return;
+  many_.pop_back();
+  if (count_ > few_.size()) return;
+  std::copy(many_.begin(), many_.end(), few_.begin());
+  many_.clear();
+}
+
 GuardedMesh::GuardedMesh(const TriangleMesh& mesh, double cell)
-    : positions_(mesh.vertexCount()), vertexFaces_(mesh.vertexCount()), cellsPerMm_(1 / cell) {
+    : positions_(mesh.vertexCount()), vertexFaces_(mesh.vertexCount()) {
   Point low = Point::Constant(kInfinity), high = Point::Constant(-kInfinity);
   for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
     positions_[v] = asStored(mesh.positions.row(v));
     low = low.cwiseMin(positions_[v]);
     high = high.cwiseMax(positions_[v]);
   }
-  // Points beyond the cells fall to the outermost ones.
-  constexpr double kMargin = 4;  // mm
-  constexpr int kMostCells = 512;
-  cellOrigin_ = low - Point::Constant(kMargin);
-  for (int a = 0; a < 3; ++a) {
-    cellSize_[a] = std::clamp(static_cast<int>((high[a] - low[a] + 2 * kMargin) * cellsPerMm_) + 1,
-                              1, kMostCells);
-  }
-  cells_.resize(static_cast<std::size_t>(cellSize_[0]) * cellSize_[1] * cellSize_[2]);
+  placeCells(low, high, cell, mesh.faceCount());
   faces_.reserve(mesh.faceCount());
   boxes_.reserve(mesh.faceCount());
   for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
     addFace({mesh.faces(f, 0), mesh.faces(f, 1), mesh.faces(f, 2)});
   }
+}
+
+void GuardedMesh::placeCells(const Point& low, const Point& high, double cell, Eigen::Index faces) {
+  // Points beyond the cells fall to the outermost ones.
+  constexpr double kMargin = 4;             // cells around the mesh
+  constexpr double kMostCellsPerFace = 16;  // a folded surface fills one of ten
+  constexpr double kFewestCells = 4096;
+  const double most = kFewestCells + kMostCellsPerFace * static_cast<double>(faces);
+  const auto cellsAlong = [&](int a) {
+    return std::floor((high[a] - low[a]) / cell + 2 * kMargin) + 1;
+  };
+  while (cellsAlong(0) * cellsAlong(1) * cellsAlong(2) > most) cell *= 1.25;
+  for (int a = 0; a < 3; ++a) cellSize_[a] = static_cast<int>(cellsAlong(a));
+  cellOrigin_ = low - Point::Constant(kMargin * cell);
+  cellsPerMm_ = 1 / cell;
+  roomOfBoxes_ = 1e-6 * cell;
+  cells_.resize(static_cast<std::size_t>(cellSize_[0]) * cellSize_[1] * cellSize_[2]);
+}
+
+GuardedMesh::Box GuardedMesh::boxOf(const std::array<Point, 3>& p) const {
+  constexpr double kRounding = 1e-6;  // more than that of a float
+  Box box;
+  for (int a = 0; a < 3; ++a) {
+    const double low = std::min({p[0][a], p[1][a], p[2][a]});
+    const double high = std::max({p[0][a], p[1][a], p[2][a]});
+    box[a] = static_cast<float>(low - roomOfBoxes_ - kRounding * std::abs(low));
+    box[a + 3] = static_cast<float>(high + roomOfBoxes_ + kRounding * std::abs(high));
+  }
+  return box;
 }
 
 Vector GuardedMesh::normalOf(std::int32_t f) const {
@@ -147,44 +164,124 @@ GuardedMesh::Placed GuardedMesh::place(const Corners& corners, std::int32_t move
   placed.corners = corners;
   for (int k = 0; k < 3; ++k) placed.points[k] = corners[k] == moved ? to : positions_[corners[k]];
   placed.box = boxOf(placed.points);
+  const Vector u = placed.points[1] - placed.points[0], v = placed.points[2] - placed.points[0];
+  placed.normal = u.cross(v);
+  placed.magnitude = u.lpNorm<1>() * v.lpNorm<1>();
   return placed;
 }
 
-GuardedMesh::CellRange GuardedMesh::cellsOf(const std::array<float, 6>& box) const {
+int GuardedMesh::Placed::sideOf(const Point& p) const {
+  // Many times the rounding of three products, each of a difference and a component of the normal.
+  constexpr double kBound = 1e-14;
+  const Vector way = p - points[0];
+  const double height = normal.dot(way);
+  if (std::abs(height) <= kBound * magnitude * way.lpNorm<1>()) return 0;
+  return height > 0 ? 1 : -1;
+}
+
+bool GuardedMesh::facesMeet(const Placed& made, const Corners& gc, const std::array<Point, 3>& gp) {
+  const Corners& fc = made.corners;
+  const std::array<Point, 3>& fp = made.points;
+  // Clearly beside the face's plane but for what is common: nothing else meets.
+  int side = 0, beside = 0, own = 0;
+  for (int j = 0; j < 3; ++j) {
+    if (gc[j] == fc[0] || gc[j] == fc[1] || gc[j] == fc[2]) continue;
+    ++own;
+    const int here = made.sideOf(gp[j]);
+    if (here == 0 || (side != 0 && here != side)) break;
+    side = here;
+    ++beside;
+  }
+  if (own > 0 && beside == own) return false;
+
+  std::array<int, 3> ofF = {0, 1, 2}, ofG = {0, 1, 2};
+  int shared = 0;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = shared; j < 3; ++j) {
+      if (fc[i] == gc[ofG[j]]) {
+        std::swap(ofF[i], ofF[shared]);
+        std::swap(ofG[j], ofG[shared]);
+        ++shared;
+        break;
+      }
+    }
+  }
+  using namespace geometry;
+  switch (shared) {
+    case 0:
+      return !clearlyApart(fp, gp) && trianglesIntersect(fp, gp);
+    case 1:
+      if (clearlyParted(fp[ofF[0]], fp[ofF[1]], fp[ofF[2]], gp[ofG[1]], gp[ofG[2]])) return false;
+      return trianglesSharingVertexIntersect(fp[ofF[0]], fp[ofF[1]], fp[ofF[2]], gp[ofG[1]],
+                                             gp[ofG[2]]);
+    case 2:
+      return trianglesSharingEdgeIntersect(fp[ofF[0]], fp[ofF[1]], fp[ofF[2]], gp[ofG[2]]);
+    default:
+      return true;
+  }
+}
+
+int GuardedMesh::cellAt(double coordinate, int axis) const {
+  const double cell = (coordinate - cellOrigin_[axis]) * cellsPerMm_;
+  return static_cast<int>(std::clamp(cell, 0.0, cellSize_[axis] - 1.0));
+}
+
+GuardedMesh::CellRange GuardedMesh::cellsOf(const Box& box) const {
   CellRange range;
   for (int a = 0; a < 3; ++a) {
-    for (int end = 0; end < 2; ++end) {
-      const double cell = std::floor((box[a + 3 * end] - cellOrigin_[a]) * cellsPerMm_);
-      range[a + 3 * end] = static_cast<int>(std::clamp(cell, 0.0, cellSize_[a] - 1.0));
-    }
+    range[a] = cellAt(box[a], a);
+    range[a + 3] = cellAt(box[a + 3], a);
   }
   return range;
 }
 
-void GuardedMesh::enter(std::int32_t f) {
-  const CellRange r = cellsOf(boxes_[f]);
+/// Calls visit(cell) until it returns false.
+template <class Visit>
+void GuardedMesh::forCells(const CellRange& r, const Visit& visit) const {
   for (int k = r[2]; k <= r[5]; ++k) {
     for (int j = r[1]; j <= r[4]; ++j) {
+      const std::size_t row =
+          static_cast<std::size_t>(cellSize_[0]) * (j + static_cast<std::size_t>(cellSize_[1]) * k);
       for (int i = r[0]; i <= r[3]; ++i) {
-        cells_[i + static_cast<std::size_t>(cellSize_[0]) *
-                       (j + static_cast<std::size_t>(cellSize_[1]) * k)]
-            .push_back(f);
+        if (!visit(row + i)) return;
       }
     }
   }
 }
 
+void GuardedMesh::enter(std::int32_t f) {
+  forCells(cellsOf(boxes_[f]), [&](std::size_t cell) {
+    cells_[cell].push_back({boxes_[f], f});
+    return true;
+  });
+}
+
 void GuardedMesh::leave(std::int32_t f) {
-  const CellRange r = cellsOf(boxes_[f]);
-  for (int k = r[2]; k <= r[5]; ++k) {
-    for (int j = r[1]; j <= r[4]; ++j) {
-      for (int i = r[0]; i <= r[3]; ++i) {
-        erase(cells_[i + static_cast<std::size_t>(cellSize_[0]) *
-                             (j + static_cast<std::size_t>(cellSize_[1]) * k)],
-              f);
-      }
-    }
+  forCells(cellsOf(boxes_[f]), [&](std::size_t cell) {
+    auto& entries = cells_[cell];
+    const auto it = std::find_if(entries.begin(), entries.end(),
+                                 [f](const Entry& entry) { return entry.face == f; });
+    *it = entries.back();
+    entries.pop_back();
+    return true;
+  });
+}
+
+void GuardedMesh::rebox(std::int32_t f, const Box& box) {
+  const CellRange range = cellsOf(box);
+  if (range != cellsOf(boxes_[f])) {
+    leave(f);
+    boxes_[f] = box;
+    enter(f);
+    return;
   }
+  boxes_[f] = box;
+  forCells(range, [&](std::size_t cell) {
+    for (Entry& entry : cells_[cell]) {
+      if (entry.face == f) entry.box = box;
+    }
+    return true;
+  });
 }
 
 std::int32_t GuardedMesh::addFace(const Corners& corners) {
@@ -200,7 +297,7 @@ std::int32_t GuardedMesh::addFace(const Corners& corners) {
   }
   faces_[f] = corners;
   boxes_[f] = boxOf({positions_[corners[0]], positions_[corners[1]], positions_[corners[2]]});
-  for (const std::int32_t v : corners) vertexFaces_[v].push_back(f);
+  for (const std::int32_t v : corners) vertexFaces_[v].add(f);
   enter(f);
   ++faceCount_;
   return f;
@@ -208,7 +305,7 @@ std::int32_t GuardedMesh::addFace(const Corners& corners) {
 
 void GuardedMesh::removeFace(std::int32_t f) {
   leave(f);
-  for (const std::int32_t v : faces_[f]) erase(vertexFaces_[v], f);
+  for (const std::int32_t v : faces_[f]) vertexFaces_[v].remove(f);
   faces_[f] = {-1, -1, -1};
   freeFaces_.push_back(f);
   --faceCount_;
@@ -225,7 +322,7 @@ bool GuardedMesh::admissible(std::span<const Placed> made, std::span<const std::
   }
   for (std::size_t m = 0; m < made.size(); ++m) {
     for (std::size_t n = m + 1; n < made.size(); ++n) {
-      if (facesMeet(made[m].corners, made[m].points, made[n].corners, made[n].points)) return false;
+      if (facesMeet(made[m], made[n].corners, made[n].points)) return false;
     }
   }
   const CellRange r = cellsOf(all);
@@ -236,28 +333,24 @@ bool GuardedMesh::admissible(std::span<const Placed> made, std::span<const std::
   if (scratch.stamp.size() < faces_.size()) scratch.stamp.resize(faces_.size(), 0);
   const std::uint32_t query = ++scratch.query;
   for (const std::int32_t f : removed) scratch.stamp[f] = query;
-  for (int k = r[2]; k <= r[5]; ++k) {
-    for (int j = r[1]; j <= r[4]; ++j) {
-      for (int i = r[0]; i <= r[3]; ++i) {
-        for (const std::int32_t g :
-             cells_[i + static_cast<std::size_t>(cellSize_[0]) *
-                            (j + static_cast<std::size_t>(cellSize_[1]) * k)]) {
-          if (scratch.stamp[g] == query) continue;
-          scratch.stamp[g] = query;
-          if (!overlap(all, boxes_[g])) continue;
-          for (const Placed& m : made) {
-            if (!overlap(m.box, boxes_[g])) continue;
-            const Corners& c = faces_[g];
-            if (facesMeet(m.corners, m.points, c,
-                          {positions_[c[0]], positions_[c[1]], positions_[c[2]]})) {
-              return false;
-            }
-          }
+  bool free = true;
+  forCells(r, [&](std::size_t cell) {
+    for (const Entry& entry : cells_[cell]) {
+      if (!overlap(all, entry.box)) continue;
+      const std::int32_t g = entry.face;
+      if (scratch.stamp[g] == query) continue;
+      scratch.stamp[g] = query;
+      const Corners& c = faces_[g];
+      for (const Placed& m : made) {
+        if (overlap(m.box, entry.box) &&
+            facesMeet(m, c, {positions_[c[0]], positions_[c[1]], positions_[c[2]]})) {
+          return free = false;
         }
       }
     }
-  }
-  return true;
+    return true;
+  });
+  return free;
 }
 
 bool GuardedMesh::move(std::int32_t v, const Point& to) {
@@ -270,16 +363,10 @@ bool GuardedMesh::move(std::int32_t v, const Point& wanted, Scratch& scratch) {
   if (ring.size() > kMostFaces) return false;
   std::array<Placed, kMostFaces> made;
   for (std::size_t k = 0; k < ring.size(); ++k) made[k] = place(faces_[ring[k]], v, to);
-  if (!admissible({made.data(), ring.size()}, ring, scratch)) return false;
+  if (!admissible({made.data(), ring.size()}, {ring.begin(), ring.size()}, scratch)) return false;
   positions_[v] = to;
   for (std::size_t k = 0; k < ring.size(); ++k) {
-    if (cellsOf(made[k].box) == cellsOf(boxes_[ring[k]])) {
-      boxes_[ring[k]] = made[k].box;
-    } else {
-      leave(ring[k]);
-      boxes_[ring[k]] = made[k].box;
-      enter(ring[k]);
-    }
+    rebox(ring[k], made[k].box);
   }
   return true;
 }
@@ -394,24 +481,25 @@ std::int32_t GuardedMesh::split(std::int32_t a, std::int32_t b) {
 
 bool GuardedMesh::inZone(std::int32_t v, const Scratch& scratch) const {
   for (const std::int32_t f : vertexFaces_[v]) {
-    const CellRange r = cellsOf(boxes_[f]);
-    if (r[scratch.axis] < scratch.lowCell || r[scratch.axis + 3] > scratch.highCell) return false;
+    if (cellAt(boxes_[f][scratch.axis], scratch.axis) < scratch.lowCell ||
+        cellAt(boxes_[f][scratch.axis + 3], scratch.axis) > scratch.highCell) {
+      return false;
+    }
   }
   return true;
 }
 
 std::int64_t GuardedMesh::sweep(const std::function<bool(std::int32_t, Scratch&)>& step) {
-  constexpr double kSlab = 8;  // mm: several faces, so that few vertices must wait for the end
+  // Cells in half a slab: several faces, so that few vertices must wait for the end.
+  constexpr int kHalfSlab = 5;
   const int axis =
       static_cast<int>(std::max_element(cellSize_.begin(), cellSize_.end()) - cellSize_.begin());
-  const int half = std::max(4, static_cast<int>(std::ceil(0.5 * kSlab * cellsPerMm_)));
-  const int width = 2 * half;
+  const int width = 2 * kHalfSlab;
   const int slabs = (cellSize_[axis] + width - 1) / width;
   std::vector<std::vector<std::int32_t>> members(slabs), late(slabs);
   for (std::int32_t v = 0; v < vertexSlots(); ++v) {
     if (!hasVertex(v)) continue;
-    const double cell = std::floor((positions_[v][axis] - cellOrigin_[axis]) * cellsPerMm_);
-    members[static_cast<int>(std::clamp(cell, 0.0, cellSize_[axis] - 1.0)) / width].push_back(v);
+    members[cellAt(positions_[v][axis], axis) / width].push_back(v);
   }
   std::vector<std::int64_t> refused(slabs, 0);
   slabScratch_.resize(slabs);
@@ -421,8 +509,8 @@ std::int64_t GuardedMesh::sweep(const std::function<bool(std::int32_t, Scratch&)
       Scratch& scratch = slabScratch_[slab];
       scratch.axis = axis;
       // Zones of slabs worked on together touch, but do not overlap.
-      scratch.lowCell = slab * width - half;
-      scratch.highCell = (slab + 1) * width + half - 1;
+      scratch.lowCell = slab * width - kHalfSlab;
+      scratch.highCell = (slab + 1) * width + kHalfSlab - 1;
       for (const std::int32_t v : members[slab]) {
         scratch.leftZone = !inZone(v, scratch);
         if (!scratch.leftZone && step(v, scratch)) continue;

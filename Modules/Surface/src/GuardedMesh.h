@@ -13,6 +13,25 @@
 
 namespace explica::surface {
 
+/// The faces at a vertex: few, so that they lie beside their count and not elsewhere in memory.
+class FaceRing {
+ public:
+  [[nodiscard]] std::size_t size() const { return count_; }
+  [[nodiscard]] bool empty() const { return count_ == 0; }
+  [[nodiscard]] const std::int32_t* begin() const {
+    return many_.empty() ? few_.data() : many_.data();
+  }
+  [[nodiscard]] const std::int32_t* end() const { return begin() + count_; }
+  [[nodiscard]] std::int32_t operator[](std::size_t k) const { return begin()[k]; }
+  void add(std::int32_t face);
+  void remove(std::int32_t face);
+
+ private:
+  std::uint32_t count_ = 0;
+  std::array<std::int32_t, 9> few_ = {};  ///< all of them, unless `many_` holds them
+  std::vector<std::int32_t> many_;
+};
+
 /// A closed triangle mesh that changes by small steps and cannot intersect itself.
 ///
 /// Each step (moving a vertex, collapsing, flipping or splitting an edge) is refused if it would
@@ -25,7 +44,8 @@ class GuardedMesh {
   using Corners = std::array<std::int32_t, 3>;
 
   /// @param mesh  closed manifold without self-intersection (not checked)
-  /// @param cell  edge of the search cells, mm; about the length of an edge
+  /// @param cell  edge of the search cells, mm; about the length of an edge.  Made longer where
+  ///              that would give many more cells than faces
   GuardedMesh(const TriangleMesh& mesh, double cell);
 
   [[nodiscard]] std::int32_t vertexSlots() const {
@@ -37,9 +57,7 @@ class GuardedMesh {
   [[nodiscard]] bool hasFace(std::int32_t f) const { return faces_[f][0] >= 0; }
   [[nodiscard]] const Point& at(std::int32_t v) const { return positions_[v]; }
   [[nodiscard]] const Corners& face(std::int32_t f) const { return faces_[f]; }
-  [[nodiscard]] const std::vector<std::int32_t>& facesOf(std::int32_t v) const {
-    return vertexFaces_[v];
-  }
+  [[nodiscard]] const FaceRing& facesOf(std::int32_t v) const { return vertexFaces_[v]; }
   [[nodiscard]] std::size_t valence(std::int32_t v) const { return vertexFaces_[v].size(); }
   /// (b - a) x (c - a).
   [[nodiscard]] Vector normalOf(std::int32_t f) const;
@@ -86,35 +104,56 @@ class GuardedMesh {
   [[nodiscard]] TriangleMesh toMesh() const;
 
  private:
+  using Box = std::array<float, 6>;
   struct Placed {
     Corners corners;
     std::array<Point, 3> points;
-    std::array<float, 6> box;
+    Box box;
+    Vector normal = Vector::Zero();  ///< (b - a) x (c - a)
+    double magnitude = 0;            ///< that its rounding is relative to
+    /// 1 or -1 on the two sides of the face's plane, 0 where rounding leaves it open.
+    [[nodiscard]] int sideOf(const Point& p) const;
+  };
+  /// A face as its cells know it: most are told apart by boxes, without a look elsewhere.
+  struct Entry {
+    Box box;
+    std::int32_t face;
   };
   using CellRange = std::array<int, 6>;
+  /// True if a face made meets another one where it may not.
+  [[nodiscard]] static bool facesMeet(const Placed& made, const Corners& corners,
+                                      const std::array<Point, 3>& points);
 
   [[nodiscard]] Placed place(const Corners& corners, std::int32_t moved, const Point& to) const;
   /// True if the faces made meet nothing but what they may; `removed` are left out of account.
   bool admissible(std::span<const Placed> made, std::span<const std::int32_t> removed,
                   Scratch& scratch) const;
-  [[nodiscard]] CellRange cellsOf(const std::array<float, 6>& box) const;
+  /// The box of three points, wider than their rounding to float.
+  [[nodiscard]] Box boxOf(const std::array<Point, 3>& points) const;
+  [[nodiscard]] int cellAt(double coordinate, int axis) const;
+  [[nodiscard]] CellRange cellsOf(const Box& box) const;
+  template <class Visit>
+  void forCells(const CellRange& range, const Visit& visit) const;
   /// True if every face at v lies within the zone.
   [[nodiscard]] bool inZone(std::int32_t v, const Scratch& scratch) const;
+  void placeCells(const Point& low, const Point& high, double cell, Eigen::Index faces);
   void enter(std::int32_t f);
   void leave(std::int32_t f);
+  void rebox(std::int32_t f, const Box& box);
   std::int32_t addFace(const Corners& corners);
   void removeFace(std::int32_t f);
 
   std::vector<Point> positions_;
   std::vector<Corners> faces_;
-  std::vector<std::array<float, 6>> boxes_;
-  std::vector<std::vector<std::int32_t>> vertexFaces_;
+  std::vector<Box> boxes_;
+  std::vector<FaceRing> vertexFaces_;
   std::vector<std::int32_t> freeFaces_, freeVertices_;
   std::int64_t faceCount_ = 0;
   Point cellOrigin_ = Point::Zero();
   double cellsPerMm_ = 1;
+  double roomOfBoxes_ = 0;  ///< mm
   std::array<int, 3> cellSize_ = {1, 1, 1};
-  std::vector<std::vector<std::int32_t>> cells_;
+  std::vector<std::vector<Entry>> cells_;
   Scratch scratch_;
   std::vector<Scratch> slabScratch_;
 };

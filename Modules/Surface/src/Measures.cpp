@@ -8,10 +8,27 @@
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Surface/TopologyCorrection.h"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace explica::surface {
+namespace {
+
+/// The closing ball's radius in radii of the ball that has the tissue's volume: 10 mm for a human
+/// hemisphere.
+constexpr double kHullShare = 0.2;
+
+}  // namespace
+
+double radiusOfVoxels(std::int64_t count, const Grid& grid) {
+  // Counted in the finest spacing, so that the unit of length changes no bit.
+  const double unit = grid.spacing.minCoeff();
+  const double volume = static_cast<double>(count) * (grid.spacing / unit).prod();
+  return unit * std::cbrt(3 * volume / (4 * kPi));
+}
 
 Eigen::VectorXd meanCurvature(const TriangleMesh& mesh, int smoothing) {
   const Eigen::SparseMatrix<double> laplacian = geometry::cotangentLaplacian(mesh);
@@ -39,12 +56,51 @@ Eigen::VectorXd meanCurvature(const TriangleMesh& mesh, int smoothing) {
   return curvature;
 }
 
-Eigen::VectorXd depthBelowHull(const LevelSet& tissue, const Positions& points, double radius) {
+Evenness evennessOf(const TriangleMesh& mesh) {
+  const auto topology = geometry::buildTopology(mesh.faces, mesh.vertexCount());
+  const auto normalOf = [&](Eigen::Index f) -> Vector {
+    return (mesh.corner(f, 1) - mesh.corner(f, 0)).cross(mesh.corner(f, 2) - mesh.corner(f, 0));
+  };
+  Evenness found;
+  found.leastFace = kInfinity;
+  Eigen::Index edges = 0, sharp = 0;
+  for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
+    const Vector normal = normalOf(f);
+    found.leastFace = std::min(found.leastFace, 0.5 * normal.norm());
+    for (int c = 0; c < 3; ++c) {
+      const std::int32_t a = mesh.faces(f, c), b = mesh.faces(f, (c + 1) % 3);
+      if (a > b) continue;
+      found.longestEdge =
+          std::max(found.longestEdge, (mesh.positions.row(a) - mesh.positions.row(b)).norm());
+      ++edges;
+      for (const std::int32_t g : topology.vertexFaces[a]) {
+        if (g == f || (mesh.faces.row(g).array() != b).all()) continue;
+        const Vector other = normalOf(g);
+        sharp += normal.dot(other) < 0.5 * normal.norm() * other.norm();
+      }
+    }
+  }
+  found.dihedralAbove60 = edges > 0 ? static_cast<double>(sharp) / static_cast<double>(edges) : 0;
+  for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
+    const auto& ring = topology.vertexVertices[v];
+    Eigen::RowVector3d mean = Eigen::RowVector3d::Zero();
+    for (const std::int32_t w : ring) mean += mesh.positions.row(w);
+    mean /= static_cast<double>(std::max<std::size_t>(1, ring.size()));
+    found.highestSpike = std::max(found.highestSpike, (mesh.positions.row(v) - mean).norm());
+  }
+  return found;
+}
+
+Eigen::VectorXd depthBelowHull(const LevelSet& tissue, const Positions& points,
+                               std::optional<double> wanted) {
   // Closing by distances: what is farther than `radius` from all that is farther than `radius`
   // from the tissue.
   const Grid& grid = tissue.grid;
   Volume<std::uint8_t> mask(grid);
   for (std::size_t v = 0; v < mask.size(); ++v) mask[v] = tissue[v] > 0;
+  const auto voxels = std::count(mask.data.begin(), mask.data.end(), std::uint8_t{1});
+  const double radius =
+      wanted.value_or(kHullShare * radiusOfVoxels(voxels, grid));
   VoxelBox box;
   for (int a = 0; a < 3; ++a) {
     const int margin = static_cast<int>(std::ceil(radius / grid.spacing[a])) + 2;

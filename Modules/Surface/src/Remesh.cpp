@@ -7,6 +7,7 @@
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "GuardedMesh.h"
+#include "SpatialOrder.h"
 
 #include <Eigen/Geometry>
 
@@ -22,17 +23,28 @@ namespace {
 constexpr double kLong = 4.0 / 3;
 constexpr double kShort = 4.0 / 5;
 
+/// Edge of the blocks in which the mesh is stored, in edges.
+constexpr double kBlock = 4;
+/// Edges are worked on by length in classes of this share of the aim, each in the order of storage.
+constexpr double kLengthClass = 0.1;
+
 using Edge = std::array<std::int32_t, 2>;
 
 class Remesher {
  public:
   Remesher(const TriangleMesh& mesh, const LevelSet& level, double edge)
-      : mesh_(mesh, edge), level_(level), edge_(edge), voxel_(level.grid.spacing.minCoeff()) {}
+      : mesh_(inSpatialOrder(mesh, kBlock * edge), edge),
+        level_(level),
+        edge_(edge),
+        voxel_(level.grid.spacing.minCoeff()) {}
 
   void setEdge(double edge) { edge_ = edge; }
   [[nodiscard]] double edge() const { return edge_; }
   [[nodiscard]] GuardedMesh& mesh() { return mesh_; }
   [[nodiscard]] std::int64_t refused() const { return refused_; }
+
+  /// Stores the mesh in the order of space, which changes have spoilt.
+  void tidy() { mesh_ = GuardedMesh(inSpatialOrder(mesh_.toMesh(), kBlock * edge_), edge_); }
 
   void splitLong() {
     for (const Edge& e : edges([&](double length) { return length > kLong * edge_; }, true)) {
@@ -94,20 +106,23 @@ class Remesher {
   }
 
  private:
-  /// Edges whose length fulfils a condition, shortest first or longest first.
+  /// Edges whose length fulfils a condition, shortest first or longest first; those of nearly the
+  /// same length in the order of storage.
   template <class Condition>
   std::vector<Edge> edges(const Condition& wanted, bool longestFirst) const {
-    std::vector<std::pair<double, Edge>> found;
+    std::vector<std::pair<int, Edge>> found;
+    const double perClass = (longestFirst ? -1 : 1) / (kLengthClass * edge_);
     for (std::int32_t f = 0; f < mesh_.faceSlots(); ++f) {
       if (!mesh_.hasFace(f)) continue;
       for (int k = 0; k < 3; ++k) {
         const std::int32_t a = mesh_.face(f)[k], b = mesh_.face(f)[(k + 1) % 3];
         if (a > b) continue;
         const double length = (mesh_.at(a) - mesh_.at(b)).norm();
-        if (wanted(length)) found.push_back({longestFirst ? -length : length, {a, b}});
+        if (wanted(length)) found.push_back({static_cast<int>(length * perClass), {a, b}});
       }
     }
-    std::sort(found.begin(), found.end());
+    std::stable_sort(found.begin(), found.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
     std::vector<Edge> sorted;
     sorted.reserve(found.size());
     for (const auto& [length, e] : found) sorted.push_back(e);
@@ -173,11 +188,12 @@ class Remesher {
     Vector normal = Vector::Zero();
     for (const std::int32_t f : mesh_.facesOf(v)) normal += mesh_.normalOf(f);
     Point p = from;
+    constexpr double kFlat = 1e-8;  // squared change of the level per voxel: nothing to follow
     const double most = 0.5 * std::min(edge_, voxel_ * 2);
     for (int step = 0; step < 3; ++step) {
       const LevelSample s = sample(level_, p);
       const double squared = s.gradient.squaredNorm();
-      if (squared < 1e-8 || s.gradient.dot(normal) > 0) return from;
+      if (squared * voxel_ * voxel_ < kFlat || s.gradient.dot(normal) > 0) return from;
       p -= s.value / squared * s.gradient;
       if ((p - from).squaredNorm() > most * most) return from;
     }
@@ -215,6 +231,7 @@ RemeshResult remesh(const TriangleMesh& mesh, const LevelSet& level, const Remes
     if (round == 0) {
       for (const double share : {0.4, 0.6}) remesher.collapseShort(share);
       remesher.flipForValence();
+      remesher.tidy();
     }
     remesher.collapseShort(kShort);
     remesher.flipForValence();
@@ -223,6 +240,7 @@ RemeshResult remesh(const TriangleMesh& mesh, const LevelSet& level, const Remes
     remesher.setEdge(remesher.edge() * std::clamp(std::sqrt(ratio), 0.7, 1.4));
   }
   remesher.meetCount(wanted);
+  remesher.tidy();
   for (int pass = 0; pass < 3; ++pass) {
     remesher.flipForValence();
     remesher.smooth();

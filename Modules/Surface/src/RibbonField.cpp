@@ -25,12 +25,13 @@ constexpr double kMiddleGap = 0.1;
 /// Steps a voxel of a trajectory.
 constexpr double kStepsPerVoxel = 4;
 /// A path is looked at again if it is longer than this many times its end's distance to white
-/// matter and this many mm; it is cut where that distance grows at less than this rate along it.
+/// matter and this many voxels; it is cut where that distance grows at less than this rate along
+/// it.
 constexpr double kStallRatio = 1.3;
 constexpr double kStallSlack = 0.25;
 constexpr double kStallRate = 0.3;
-/// No cortex is thicker, mm; a longer trajectory has lost its way and is ended there.
-constexpr double kLongest = 12;
+/// Slope of the interpolant, per voxel, below which its direction is round-off.
+constexpr float kFlat = 1e-6F;
 
 }  // namespace
 
@@ -52,7 +53,8 @@ RibbonField::RibbonField(const CorticalTissue& tissue, const TriangleMesh& white
       step_(grid_.spacing.minCoeff() / kStepsPerVoxel) {
   monitor.progress(0.0, "buried sulci");
   const harmonic::Annulus open = ribbon();
-  const std::vector<harmonic::Cut> cuts = betweenBanks(open);
+  const std::vector<Bank> banks = banksOf(open);
+  const std::vector<harmonic::Cut> cuts = betweenBanks(open, banks);
   cutLinks_ = static_cast<std::int64_t>(cuts.size());
   markMiddles(open, cuts);
   annulus_ = harmonic::withCuts(open, cuts);
@@ -62,9 +64,10 @@ RibbonField::RibbonField(const CorticalTissue& tissue, const TriangleMesh& white
   Monitor stoppable = monitor;
   stoppable.onProgress = nullptr;
   slope_ = harmonic::solveInterpolant(annulus_, options, stoppable).gradient;
+  const float flat = kFlat / static_cast<float>(grid_.spacing.minCoeff());
   parallelFor(slope_.size(), 8192, [&](std::size_t n) {
     const float length = slope_[n].norm();
-    slope_[n] = length > 1e-6F ? Eigen::Vector3f(slope_[n] / length) : Eigen::Vector3f::Zero();
+    slope_[n] = length > flat ? Eigen::Vector3f(slope_[n] / length) : Eigen::Vector3f::Zero();
   });
 }
 
@@ -85,11 +88,7 @@ harmonic::Annulus RibbonField::ribbon() const {
   return harmonic::annulusFromSites(sites, innerLevel, outerLevel);
 }
 
-std::vector<harmonic::Cut> RibbonField::betweenBanks(const harmonic::Annulus& ribbon) const {
-  struct Bank {
-    Eigen::Vector3f normal;  ///< of the nearest white surface, along the axes
-    float distance;          ///< to it, mm
-  };
+std::vector<RibbonField::Bank> RibbonField::banksOf(const harmonic::Annulus& ribbon) {
   std::vector<Bank> banks(ribbon.count());
   parallelFor(banks.size(), 512, [&](std::size_t n) {
     const Point p = ribbon.world(static_cast<std::int32_t>(n));
@@ -104,6 +103,15 @@ std::vector<harmonic::Cut> RibbonField::betweenBanks(const harmonic::Annulus& ri
     }
     banks[n].normal = (grid_.direction.transpose() * normal.normalized()).cast<float>();
   });
+  // What leaves white matter at the least rate allowed is no longer than this where it is deepest.
+  float deepest = 0;
+  for (const Bank& bank : banks) deepest = std::max(deepest, bank.distance);
+  longest_ = (deepest + grid_.spacing.maxCoeff()) / kStallRate;
+  return banks;
+}
+
+std::vector<harmonic::Cut> RibbonField::betweenBanks(const harmonic::Annulus& ribbon,
+                                                     const std::vector<Bank>& banks) const {
   std::vector<harmonic::Cut> cuts;
   for (std::size_t n = 0; n < banks.size(); ++n) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -187,7 +195,10 @@ void RibbonField::cutWhereItStalls(Trajectory& path) const {
   const auto distanceAt = [&](const Point& p) {
     return std::sqrt(white_.closestPoint(p).squaredDistance);
   };
-  if (path.length() < kStallRatio * distanceAt(path.points.back()) + kStallSlack) return;
+  if (path.length() <
+      kStallRatio * distanceAt(path.points.back()) + kStallSlack * grid_.spacing.minCoeff()) {
+    return;
+  }
   constexpr std::size_t kWindow = 3;
   std::vector<double> distance;
   for (std::size_t k = 0; k < path.points.size(); ++k) {
@@ -224,7 +235,7 @@ Trajectory RibbonField::trace(const Point& start, const Vector& normal) const {
   Vector previous = toAxes(normal);
   double arc = 0;
   Point p = start;
-  while (arc < kLongest) {
+  while (arc < longest_) {
     // Midpoint rule.
     const Vector first = direction(grid_.toIndex(p), previous);
     const Point half = p + 0.5 * step_ * grid_.axesToWorld(first);

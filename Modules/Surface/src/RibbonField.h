@@ -47,9 +47,16 @@ class RibbonField {
   [[nodiscard]] std::int64_t cutLinks() const { return cutLinks_; }
 
  private:
+  /// The white matter nearest to a tissue voxel.
+  struct Bank {
+    Eigen::Vector3f normal;  ///< of its surface, along the axes
+    float distance;          ///< to it, mm
+  };
   [[nodiscard]] harmonic::Annulus ribbon() const;
+  [[nodiscard]] std::vector<Bank> banksOf(const harmonic::Annulus& ribbon);
   /// Links between voxels where fronts from two banks meet head-on.
-  [[nodiscard]] std::vector<harmonic::Cut> betweenBanks(const harmonic::Annulus& ribbon) const;
+  [[nodiscard]] std::vector<harmonic::Cut> betweenBanks(const harmonic::Annulus& ribbon,
+                                                        const std::vector<Bank>& banks) const;
   void markMiddles(const harmonic::Annulus& ribbon, const std::vector<harmonic::Cut>& cuts);
   /// Direction of the interpolant's gradient at a voxel, along the axes; zero off the ribbon.
   [[nodiscard]] Eigen::Vector3f slopeAt(int i, int j, int k) const;
@@ -64,8 +71,9 @@ class RibbonField {
   geometry::FaceTree white_;
   const Grid& grid_;
   double step_;
-  harmonic::Annulus annulus_;             ///< with cuts in buried sulci
-  std::vector<Eigen::Vector3f> slope_;    ///< per tissue number: unit vector, along the axes
+  double longest_ = 0;                  ///< of a trajectory, mm; none is longer but by going astray
+  harmonic::Annulus annulus_;           ///< with cuts in buried sulci
+  std::vector<Eigen::Vector3f> slope_;  ///< per tissue number: unit vector, along the axes
   std::vector<std::uint8_t> nearMiddle_;  ///< per voxel
   std::int64_t cutLinks_ = 0;
 };

@@ -304,7 +304,7 @@ TEST(CorticalTissue, CutsTwoHemispheresAtTheirBridge) {
   const auto white = volumeOf(grid, [](const Point& p) -> std::uint8_t {
     const bool left = (p - Point(-19, 0, 0)).norm() < 16, right = (p - Point(19, 0, 0)).norm() < 16;
     const bool bar = std::abs(p.x()) < 10 && std::hypot(p.y(), p.z()) < 3;
-    const bool bulge = p.x() > -12 && p.x() < 2.5 && std::hypot(p.y() - 9, p.z()) < 2.5;
+    const bool bulge = p.x() > -12 && p.x() < 1.5 && std::hypot(p.y() - 9, p.z()) < 2.5;
     return left || right || bar || bulge ? 1 : 0;
   });
   const auto sides = splitHemispheres(white);
@@ -312,7 +312,7 @@ TEST(CorticalTissue, CutsTwoHemispheresAtTheirBridge) {
     if (!white[v]) continue;
     const auto s = grid.subscripts(v);
     const Point p = grid.toWorld(Vector(s[0], s[1], s[2]));
-    const bool bulge = p.x() < 2.5 && p.y() > 6;
+    const bool bulge = p.x() < 1.5 && p.y() > 6;
     if (bulge || p.x() < -3) {
       EXPECT_EQ(sides[v], 1) << p.transpose();
     }

@@ -5,6 +5,9 @@
 #include "Explica/Core/TriangleMesh.h"
 #include "Explica/Surface/LevelSet.h"
 
+#include <cstdint>
+#include <optional>
+
 namespace explica::surface {
 
 /// Mean curvature at vertices, mm^-1: half the cotangent Laplacian's outward part, averaged over
@@ -12,9 +15,25 @@ namespace explica::surface {
 /// positive in sulci, as FreeSurfer has it.
 [[nodiscard]] Eigen::VectorXd meanCurvature(const TriangleMesh& mesh, int smoothing = 3);
 
+/// What tells an even surface from a crumpled one.
+struct Evenness {
+  double dihedralAbove60 = 0;  ///< share of the edges whose faces' normals are more than 60 degrees
+                               ///< apart
+  double longestEdge = 0;      ///< mm
+  double leastFace = 0;        ///< area, mm^2
+  double highestSpike = 0;     ///< farthest that a vertex is from the mean of its neighbours, mm
+};
+
+/// @param mesh  closed manifold
+[[nodiscard]] Evenness evennessOf(const TriangleMesh& mesh);
+
+/// Radius of the ball that has the volume of so many voxels, mm.
+[[nodiscard]] double radiusOfVoxels(std::int64_t count, const Grid& grid);
+
 /// Depth of points below the hull of a tissue, mm, >= 0: the hull is the tissue closed by a ball of
-/// `radius` mm.
+/// `radius` mm; unset: a fifth of the radius of the ball that has the tissue's volume, 10 mm for a
+/// human hemisphere.
 [[nodiscard]] Eigen::VectorXd depthBelowHull(const LevelSet& tissue, const Positions& points,
-                                             double radius = 10);
+                                             std::optional<double> radius = {});
 
 }  // namespace explica::surface

@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Core/Monitor.h"
+#include "Explica/Core/TriangleMesh.h"
+#include "GuardedMesh.h"
+#include "RibbonField.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace explica::surface {
+
+/// Vertices on their trajectories, advancing together and never through each other.
+class Growth {
+ public:
+  /// @param paths  one for each vertex of `white`, which must outlive this
+  /// @param edge   mean edge of `white`, mm
+  Growth(const TriangleMesh& white, const std::vector<Trajectory>& paths, double edge);
+
+  /// Takes every vertex as near to a share of its way as its faces allow.
+  void goTo(double share);
+
+  /// How far a vertex fell short of the share that was asked for last, mm.
+  [[nodiscard]] double missing(std::size_t v) const {
+    return share_ * paths_[v].length() - reached_[v];
+  }
+  [[nodiscard]] TriangleMesh mesh() const { return mesh_.toMesh(); }
+
+ private:
+  bool tryReach(std::int32_t v, double arc, GuardedMesh::Scratch& scratch);
+
+  GuardedMesh mesh_;
+  const std::vector<Trajectory>& paths_;
+  std::vector<double> reached_;
+  double share_ = 0;
+};
+
+}  // namespace explica::surface

@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Geometry/MeshMeasures.h"
+#include "Explica/Surface/CorticalSurface.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+namespace explica::surface {
+namespace {
+
+/// A ball with twelve waves, white matter 3 in a ribbon 2, some sulci of it buried; `unit` mm to a
+/// voxel.
+Volume<Label> wavyBall(double unit) {
+  constexpr int n = 62;
+  Grid grid;
+  grid.size = {n, n, n};
+  grid.spacing = Vector::Constant(unit);
+  grid.origin = Point::Constant(-0.5 * (n - 1) * unit);
+  Volume<Label> labels(grid);
+  for (std::size_t v = 0; v < labels.size(); ++v) {
+    const auto at = grid.subscripts(v);
+    const Vector p = Vector(at[0], at[1], at[2]) - Vector::Constant(0.5 * (n - 1));
+    const double r = p.norm(), flat = std::hypot(p.x(), p.y()) / r;
+    const double wave = 4 * std::sin(12 * std::atan2(p.y(), p.x())) * flat * flat;
+    labels[v] = r < 20 + wave ? 3 : r < 23 || r < 23 + wave ? 2 : 0;
+  }
+  return labels;
+}
+
+CorticalSurfaces surfacesAt(double unit) {
+  TissueOptions labels;
+  labels.preset = LabelPreset::ThreeClass;
+  labels.white = {3};
+  labels.grey = {2};
+  SurfaceOptions options;
+  options.faces = 6000;
+  return buildSurfaces(tissueFromLabels(wavyBall(unit), labels), options);
+}
+
+class Scale : public ::testing::TestWithParam<int> {};
+
+TEST_P(Scale, ByAPowerOfTwoChangesNoBitOfTheResult) {
+  const double unit = std::ldexp(1.0, GetParam());
+  const CorticalSurfaces here = surfacesAt(1), there = surfacesAt(unit);
+  EXPECT_EQ(there.white.mesh.faces, here.white.mesh.faces);
+  EXPECT_EQ(there.white.mesh.positions, unit * here.white.mesh.positions);
+  EXPECT_EQ(there.mid.positions, unit * here.mid.positions);
+  EXPECT_EQ(there.pial.positions, unit * here.pial.positions);
+  EXPECT_EQ(there.thickness, unit * here.thickness);
+  EXPECT_EQ(there.sulcalDepth, unit * here.sulcalDepth);
+  EXPECT_EQ(unit * there.curvature, here.curvature);
+  EXPECT_GT(here.endedAtBank, 0);
+  EXPECT_EQ(there.endedAtBank, here.endedAtBank);
+  EXPECT_EQ(there.heldBackPial, here.heldBackPial);
+}
+
+INSTANTIATE_TEST_SUITE_P(VoxelSizes, Scale, ::testing::Values(-20, -10, 10, 20));
+
+TEST(Scale, ByAThousandChangesTheResultByRounding) {
+  const CorticalSurfaces here = surfacesAt(1);
+  const double thickness = meanThickness(here), area = geometry::totalArea(here.pial);
+  for (const double unit : {1e-3, 1e3}) {
+    const CorticalSurfaces there = surfacesAt(unit);
+    EXPECT_NEAR(meanThickness(there) / unit, thickness, 0.01 * thickness);
+    EXPECT_NEAR(geometry::totalArea(there.pial) / (unit * unit), area, 0.01 * area);
+  }
+}
+
+TEST(Scale, TooFarFromTheOriginForTheFilesNumbersIsRefused) {
+  Volume<Label> labels = wavyBall(1);
+  labels.grid.origin += Vector(1e6, 0, 0);
+  TissueOptions tissue;
+  tissue.white = {3};
+  tissue.grey = {2};
+  SurfaceOptions options;
+  options.faces = 2000;
+  try {
+    static_cast<void>(buildSurfaces(tissueFromLabels(labels, tissue), options));
+    FAIL() << "accepted";
+  } catch (const InvalidInput& refused) {
+    EXPECT_NE(std::string(refused.what()).find("from the origin"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace explica::surface
