@@ -24,11 +24,30 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <sstream>
+#include <utility>
 
-namespace explica::app {
+namespace explica {
+namespace app {
+
+/// What `thickness.shape.gii`, the means and FreeSurfer's files hold.
+enum class ThicknessMeasure {
+  Trajectory,  ///< length of the trajectory that joins the two surfaces
+  Nearest      ///< FreeSurfer's: mean of the nearest distances, both ways
+};
+
+}  // namespace app
+
+template <>
+struct EnumNames<app::ThicknessMeasure> {
+  static constexpr std::array table = {std::pair{app::ThicknessMeasure::Trajectory, "trajectory"},
+                                       std::pair{app::ThicknessMeasure::Nearest, "nearest"}};
+};
+
+namespace app {
 namespace {
 
 struct Settings {
@@ -47,6 +66,7 @@ struct Settings {
   surface::TissueOptions tissue;
   surface::SurfaceOptions surface;
   std::vector<std::string> accept;
+  ThicknessMeasure thicknessMeasure = ThicknessMeasure::Trajectory;
 };
 
 void declare(Declaration& d, Settings& s) {
@@ -115,6 +135,12 @@ void declare(Declaration& d, Settings& s) {
       .options("Tissue", s.tissue)
       .options("Surface", s.surface)
       .option("Output",
+              Field{"thickness-measure", "",
+                    "what comes first in thickness.shape.gii, and its means: length of the "
+                    "trajectory, or the mean of the nearest distances both ways, as FreeSurfer "
+                    "has it"},
+              s.thicknessMeasure)
+      .option("Output",
               Field{"freesurfer", "",
                     "write lh.white, lh.pial, lh.thickness and so on, too, into "
                     "this folder (within --out if relative)"},
@@ -128,7 +154,8 @@ void declare(Declaration& d, Settings& s) {
       .output("mid.surf.gii", FileKind::Surface, "surface at half depth, same faces")
       .output("pial.surf.gii", FileKind::Surface, "outer surface, same faces")
       .output("thickness.shape.gii", FileKind::VertexData,
-              "length of each vertex's trajectory, mm; 0 where there is no grey matter")
+              "thickness by both measures, mm, the one asked for first; 0 where there is no grey "
+              "matter")
       .output("valid.shape.gii", FileKind::VertexData, "1 where the thickness is defined, else 0")
       .output("curvature.shape.gii", FileKind::VertexData,
               "mean curvature of the white surface, 1/mm, positive in sulci")
@@ -286,18 +313,22 @@ surface::VertexKeys regionKeys(const Regions& regions, const surface::CorticalSu
 void writeRegions(Context& context, const Regions& regions, const surface::CorticalSurfaces& made,
                   const std::string& structure, std::vector<io::SpecEntry>& spec) {
   const surface::VertexKeys keys = regionKeys(regions, made, structure);
-  const auto measured =
-      surface::measureRegions(keys, made.thickness, geometry::vertexAreas(made.white.mesh));
+  const Eigen::VectorXd areas = geometry::vertexAreas(made.white.mesh);
+  const auto measured = surface::measureRegions(keys, made.thickness, areas);
+  const auto nearest = surface::measureRegions(keys, made.nearestThickness, areas);
   std::ostringstream table;
-  table << "index\tname\tvertices\tarea_white_mm2\tthickness_mean_mm\tthickness_sd_mm\n";
+  table << "index\tname\tvertices\tarea_white_mm2\tthickness_mean_mm\tthickness_sd_mm\t"
+           "thickness_nearest_mean_mm\n";
   io::LabelMap labels{"regions", keys, {{0, "???", {0, 0, 0, 0}}}};
-  for (const surface::RegionMeasure& region : measured) {
+  for (std::size_t r = 0; r < measured.size(); ++r) {
+    const surface::RegionMeasure& region = measured[r];
     const std::string name = regionName(regions, region.key);
     table << region.key << '\t' << name << '\t' << region.vertices << '\t' << region.area;
     if (std::isfinite(region.thicknessMean)) {
-      table << '\t' << region.thicknessMean << '\t' << region.thicknessDeviation << '\n';
+      table << '\t' << region.thicknessMean << '\t' << region.thicknessDeviation << '\t'
+            << nearest[r].thicknessMean << '\n';
     } else {
-      table << "\tn/a\tn/a\n";
+      table << "\tn/a\tn/a\tn/a\n";
     }
     // Colours that tell neighbours apart and are the same everywhere: golden-angle hues.
     const double hue = std::fmod(region.key * 0.61803398875, 1.0) * 2 * kPi;
@@ -365,70 +396,79 @@ io::SurfaceMetadata metadataOf(const std::string& structure, const std::string& 
   return metadata;
 }
 
-Termination run(Context& context, const Settings& s) {
-  checkChoice(s);
-  Judge judge(context, s.accept);
-  const bool given = surfacesGiven(s);
-  Inputs inputs;
-  surface::CorticalSurfaces made;
-  if (given) made = readGivenSurfaces(context, s, inputs.tissue.structure);
-  const Regions regions = readRegions(context, s, made);
-  if (!given) inputs = readTissue(context, s);
-  const surface::CorticalTissue& tissue = inputs.tissue;
-  std::optional<Grid> fsGrid;
-  if (s.fsVolume) {
-    fsGrid = io::readGrid(*s.fsVolume);
-  } else if (tissue.preset == surface::LabelPreset::Aseg ||
-             tissue.preset == surface::LabelPreset::Ribbon ||
-             tissue.preset == surface::LabelPreset::Wm) {
-    fsGrid = inputs.grid;
-  }
+/// One of the surfaces that are written.
+struct Named {
+  const char* file;
+  const char* fsName;
+  const char* secondary;
+  const char* key;
+  const TriangleMesh* mesh;
+};
 
-  if (!given) {
-    auto step = context.step("surfaces");
-    if (tissue.hasGrey) {
-      made = surface::buildSurfaces(tissue, s.surface, context.monitor());
-    } else {
-      context.warn("no grey matter given: only the white surface is made");
-      made.white = surface::extractWhite(tissue, s.surface, context.monitor());
-      made.seconds = made.white.seconds;
-      made.curvature = surface::meanCurvature(made.white.mesh);
-    }
-  }
-  struct Named {
-    const char* file;
-    const char* fsName;
-    const char* secondary;
-    const char* key;
-    const TriangleMesh* mesh;
-  };
+std::vector<Named> namedSurfaces(const surface::CorticalSurfaces& made, bool hasGrey) {
   std::vector<Named> surfaces = {
       {"white.surf.gii", "white", "GrayWhite", "white", &made.white.mesh}};
-  if (tissue.hasGrey) {
+  if (hasGrey) {
     surfaces.push_back({"mid.surf.gii", "mid", "MidThickness", "mid", &made.mid});
     surfaces.push_back({"pial.surf.gii", "pial", "Pial", "pial", &made.pial});
   }
+  return surfaces;
+}
 
+void reportEvenness(Context& context, const std::string& key, const TriangleMesh& mesh) {
+  const surface::Evenness found = surface::evennessOf(mesh);
+  context.result("dihedral_above_60_" + key, found.dihedralAbove60);
+  if (key == "pial") context.result("dihedral_above_60", found.dihedralAbove60);
+  context.result("longest_edge_" + key, found.longestEdge);
+  context.result("least_face_area_" + key, found.leastFace);
+  context.result("highest_spike_" + key, found.highestSpike);
+}
+
+/// Topology, areas and intersections of the surfaces.
+/// @return pairs of faces that meet
+std::int64_t checkSurfaces(Context& context, const std::vector<Named>& surfaces) {
+  auto step = context.step("check");
   std::int64_t selfIntersections = 0;
-  {
-    auto step = context.step("check");
-    for (const Named& surface : surfaces) {
-      const Checked checked = check(*surface.mesh);
-      selfIntersections += checked.selfIntersections;
-      if (surface.mesh == &made.white.mesh) {
-        context.result("vertices", checked.condition.vertices);
-        context.result("faces", checked.condition.faces);
-        context.result("euler_characteristic", checked.condition.eulerCharacteristic);
-        context.result("components", checked.condition.components);
-        context.result("closed_manifold", checked.condition.closedManifold());
-      }
-      context.result("area_" + std::string(surface.key), geometry::totalArea(*surface.mesh));
-      context.result("volume_" + std::string(surface.key), geometry::enclosedVolume(*surface.mesh));
+  for (const Named& surface : surfaces) {
+    const Checked checked = check(*surface.mesh);
+    selfIntersections += checked.selfIntersections;
+    if (&surface == &surfaces.front()) {
+      context.result("vertices", checked.condition.vertices);
+      context.result("faces", checked.condition.faces);
+      context.result("euler_characteristic", checked.condition.eulerCharacteristic);
+      context.result("components", checked.condition.components);
+      context.result("closed_manifold", checked.condition.closedManifold());
     }
-    context.result("self_intersections", selfIntersections);
+    context.result("area_" + std::string(surface.key), geometry::totalArea(*surface.mesh));
+    context.result("volume_" + std::string(surface.key), geometry::enclosedVolume(*surface.mesh));
+    reportEvenness(context, surface.key, *surface.mesh);
   }
+  context.result("self_intersections", selfIntersections);
+  return selfIntersections;
+}
 
-  auto step = context.step("write");
+std::vector<io::VertexMap> areasOf(const std::vector<Named>& surfaces) {
+  std::vector<io::VertexMap> areas;
+  for (const Named& surface : surfaces) {
+    areas.push_back(
+        {std::string("area_") + surface.key, "mm^2", geometry::vertexAreas(*surface.mesh)});
+  }
+  return areas;
+}
+
+/// Both measures of thickness, the one that was asked for first.
+std::vector<io::VertexMap> thicknessMaps(const surface::CorticalSurfaces& made,
+                                         ThicknessMeasure first) {
+  std::vector<io::VertexMap> maps = {{"thickness", "mm", made.thickness},
+                                     {"thickness_nearest", "mm", made.nearestThickness}};
+  if (first == ThicknessMeasure::Nearest) std::swap(maps[0], maps[1]);
+  return maps;
+}
+
+std::vector<io::SpecEntry> writeMaps(Context& context, const Settings& s,
+                                     const surface::CorticalSurfaces& made,
+                                     const surface::CorticalTissue& tissue,
+                                     const std::vector<Named>& surfaces, const Regions& regions) {
   std::vector<io::SpecEntry> spec;
   for (const Named& surface : surfaces) {
     io::writeGiftiSurface(context.output(surface.file), *surface.mesh,
@@ -440,45 +480,78 @@ Termination run(Context& context, const Settings& s) {
     spec.push_back({tissue.structure, file});
   };
   writeShape("curvature.shape.gii", {{"curvature", "mm^-1", made.curvature}});
-  std::vector<io::VertexMap> areas;
+  writeShape("area.shape.gii", areasOf(surfaces));
+  if (!tissue.hasGrey) return spec;
+  writeShape("thickness.shape.gii", thicknessMaps(made, s.thicknessMeasure));
+  writeShape("valid.shape.gii",
+             {{"valid", "", (made.thickness.array() > 0).cast<double>().matrix()}});
+  if (!surfacesGiven(s)) writeShape("sulc.shape.gii", {{"sulc", "mm", made.sulcalDepth}});
+  if (regions.atlas || regions.parcellation) {
+    writeRegions(context, regions, made, tissue.structure, spec);
+  }
+  return spec;
+}
+
+void writeFreeSurfer(Context& context, const Settings& s, const surface::CorticalSurfaces& made,
+                     const surface::CorticalTissue& tissue, const std::vector<Named>& surfaces,
+                     const std::optional<Grid>& fsGrid) {
+  const std::string hemi = tissue.structure == "CortexRight" ? "rh." : "lh.";
+  const std::filesystem::path folder = *s.freeSurfer;
+  if (folder.is_absolute()) std::filesystem::create_directories(folder);
+  const auto place = [&](const std::string& name) {
+    return folder.is_absolute() ? folder / (hemi + name)
+                                : context.output((folder / (hemi + name)).string());
+  };
   for (const Named& surface : surfaces) {
-    areas.push_back(
-        {std::string("area_") + surface.key, "mm^2", geometry::vertexAreas(*surface.mesh)});
+    io::writeFreeSurferSurface(place(surface.fsName), *surface.mesh, fsGrid);
   }
-  writeShape("area.shape.gii", areas);
-  if (tissue.hasGrey) {
-    writeShape("thickness.shape.gii", {{"thickness", "mm", made.thickness}});
-    writeShape("valid.shape.gii",
-               {{"valid", "", (made.thickness.array() > 0).cast<double>().matrix()}});
-    if (!given) writeShape("sulc.shape.gii", {{"sulc", "mm", made.sulcalDepth}});
-    if (regions.atlas || regions.parcellation) {
-      writeRegions(context, regions, made, tissue.structure, spec);
-    }
-  }
-  io::writeSpec(context.output("surface.spec"), spec);
-  writeTextFile(context.output("topology.tsv"), defectTable(made.white.defects));
+  const Eigen::Index faces = made.white.mesh.faceCount();
+  const std::vector<io::VertexMap> areas = areasOf(surfaces);
+  io::writeFreeSurferCurv(place("curv"), made.curvature, faces);
+  io::writeFreeSurferCurv(place("area"), areas.front().values, faces);
+  if (!tissue.hasGrey) return;
+  io::writeFreeSurferCurv(place("thickness"), thicknessMaps(made, s.thicknessMeasure)[0].values,
+                          faces);
+  if (!surfacesGiven(s)) io::writeFreeSurferCurv(place("sulc"), made.sulcalDepth, faces);
+  io::writeFreeSurferCurv(place("area.pial"), areas.back().values, faces);
+}
 
-  if (s.freeSurfer) {
-    const std::string hemi = tissue.structure == "CortexRight" ? "rh." : "lh.";
-    const std::filesystem::path folder = *s.freeSurfer;
-    if (folder.is_absolute()) std::filesystem::create_directories(folder);
-    const auto place = [&](const std::string& name) {
-      return folder.is_absolute() ? folder / (hemi + name)
-                                  : context.output((folder / (hemi + name)).string());
-    };
-    for (const Named& surface : surfaces) {
-      io::writeFreeSurferSurface(place(surface.fsName), *surface.mesh, fsGrid);
-    }
-    const Eigen::Index faces = made.white.mesh.faceCount();
-    io::writeFreeSurferCurv(place("curv"), made.curvature, faces);
-    io::writeFreeSurferCurv(place("area"), areas.front().values, faces);
-    if (tissue.hasGrey) {
-      io::writeFreeSurferCurv(place("thickness"), made.thickness, faces);
-      if (!given) io::writeFreeSurferCurv(place("sulc"), made.sulcalDepth, faces);
-      io::writeFreeSurferCurv(place("area.pial"), areas.back().values, faces);
-    }
-  }
+void reportThickness(Context& context, const Settings& s, const surface::CorticalSurfaces& made) {
+  const double trajectory = surface::meanThickness(made.white.mesh, made.thickness);
+  const double nearest = surface::meanThickness(made.white.mesh, made.nearestThickness);
+  const bool asked = s.thicknessMeasure == ThicknessMeasure::Nearest;
+  context.result("thickness_mean", asked ? nearest : trajectory);
+  const Eigen::VectorXd& taken = asked ? made.nearestThickness : made.thickness;
+  context.result("thickness_sd", surface::thicknessDeviation(made.white.mesh, taken));
+  context.result("thickness_measure", std::string(nameOf(s.thicknessMeasure)));
+  context.result("thickness_mean_trajectory", trajectory);
+  context.result("thickness_mean_nearest", nearest);
+  context.result("vertices_without_grey", made.noRibbon);
+}
 
+void reportMaking(Context& context, const surface::CorticalSurfaces& made, bool hasGrey) {
+  context.result("genus", made.white.genus);
+  context.result("edge_length", made.white.edgeLength);
+  if (hasGrey) {
+    context.result("vertices_ended_at_bank", made.endedAtBank);
+    context.result("sulcal_links_recovered", made.cutLinks);
+    context.result("vertices_held_back_mid", made.heldBackMid);
+    context.result("vertices_held_back_pial", made.heldBackPial);
+    context.result("held_back_mean", made.heldBackMean);
+    context.result("held_back_most", made.heldBackMost);
+  }
+  context.result("seconds_topology", made.seconds.topology);
+  context.result("seconds_extraction", made.seconds.extraction);
+  context.result("seconds_remeshing", made.seconds.remeshing);
+  context.result("seconds_interpolant", made.seconds.interpolant);
+  context.result("seconds_trajectories", made.seconds.trajectories);
+  context.result("seconds_growing", made.seconds.growing);
+  context.result("seconds_measures", made.seconds.measures);
+}
+
+void report(Context& context, const Settings& s, const surface::CorticalTissue& tissue,
+            const surface::CorticalSurfaces& made) {
+  const bool given = surfacesGiven(s);
   context.result("structure", tissue.structure);
   context.result("surfaces", given ? "given" : "made");
   if (!given) {
@@ -489,39 +562,69 @@ Termination run(Context& context, const Settings& s) {
   }
   context.result("defects_corrected", made.white.defects.size());
   context.result("voxels_changed", made.white.voxelsChanged);
-  judge.flag("defects", static_cast<double>(made.white.defects.size()));
-  if (!given) {
-    context.result("genus", made.white.genus);
-    context.result("edge_length", made.white.edgeLength);
-  }
   const Eigen::VectorXd angles = geometry::smallestAnglesRad(made.white.mesh);
   std::vector<double> sorted(angles.begin(), angles.end());
   std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 20, sorted.end());
   context.result("smallest_angle_p05_deg", sorted[sorted.size() / 20] * 180 / kPi);
-  if (tissue.hasGrey) {
-    const double thickness = surface::meanThickness(made);
-    context.result("thickness_mean", thickness);
-    // Labels named by hand need not be a cortex's.
-    if (s.tissue.white.empty()) judge.flag("thickness-mean", thickness);
-    context.result("vertices_without_grey", made.noRibbon);
+  if (tissue.hasGrey) reportThickness(context, s, made);
+  if (!given) reportMaking(context, made, tissue.hasGrey);
+}
+
+surface::CorticalSurfaces makeSurfaces(Context& context, const Settings& s,
+                                       const surface::CorticalTissue& tissue) {
+  auto step = context.step("surfaces");
+  if (tissue.hasGrey) return surface::buildSurfaces(tissue, s.surface, context.monitor());
+  context.warn("no grey matter given: only the white surface is made");
+  surface::CorticalSurfaces made;
+  made.white = surface::extractWhite(tissue, s.surface, context.monitor());
+  made.seconds = made.white.seconds;
+  made.curvature = surface::meanCurvature(made.white.mesh);
+  return made;
+}
+
+/// The volume whose surface RAS FreeSurfer files use.
+std::optional<Grid> freeSurferGrid(const Settings& s, const Inputs& inputs) {
+  if (s.fsVolume) return io::readGrid(*s.fsVolume);
+  const surface::LabelPreset preset = inputs.tissue.preset;
+  if (preset == surface::LabelPreset::Aseg || preset == surface::LabelPreset::Ribbon ||
+      preset == surface::LabelPreset::Wm) {
+    return inputs.grid;
   }
-  if (tissue.hasGrey && !given) {
-    context.result("vertices_ended_at_bank", made.endedAtBank);
-    context.result("sulcal_links_recovered", made.cutLinks);
-    context.result("vertices_held_back_mid", made.heldBackMid);
-    context.result("vertices_held_back_pial", made.heldBackPial);
-    context.result("held_back_mean", made.heldBackMean);
-    context.result("held_back_most", made.heldBackMost);
+  return {};
+}
+
+Termination run(Context& context, const Settings& s) {
+  checkChoice(s);
+  Judge judge(context, s.accept);
+  const bool given = surfacesGiven(s);
+  Inputs inputs;
+  surface::CorticalSurfaces made;
+  if (given) made = readGivenSurfaces(context, s, inputs.tissue.structure);
+  const Regions regions = readRegions(context, s, made);
+  if (!given) inputs = readTissue(context, s);
+  const surface::CorticalTissue& tissue = inputs.tissue;
+  const std::optional<Grid> fsGrid = freeSurferGrid(s, inputs);
+  if (!given) made = makeSurfaces(context, s, tissue);
+  const std::vector<Named> surfaces = namedSurfaces(made, tissue.hasGrey);
+  const std::int64_t meetings = checkSurfaces(context, surfaces);
+  {
+    auto step = context.step("write");
+    const std::vector<io::SpecEntry> spec = writeMaps(context, s, made, tissue, surfaces, regions);
+    io::writeSpec(context.output("surface.spec"), spec);
+    writeTextFile(context.output("topology.tsv"), defectTable(made.white.defects));
+    if (s.freeSurfer) writeFreeSurfer(context, s, made, tissue, surfaces, fsGrid);
   }
-  if (given) return Termination::NotRun;
-  context.result("seconds_topology", made.seconds.topology);
-  context.result("seconds_extraction", made.seconds.extraction);
-  context.result("seconds_remeshing", made.seconds.remeshing);
-  context.result("seconds_interpolant", made.seconds.interpolant);
-  context.result("seconds_trajectories", made.seconds.trajectories);
-  context.result("seconds_growing", made.seconds.growing);
-  context.result("seconds_measures", made.seconds.measures);
-  return context.monitor().shouldStop() ? Termination::Interrupted : Termination::NotRun;
+  report(context, s, tissue, made);
+  judge.flag("defects", static_cast<double>(made.white.defects.size()));
+  // Labels named by hand need not be a cortex's.
+  if (tissue.hasGrey && s.tissue.white.empty()) {
+    judge.flag("thickness-mean", surface::meanThickness(made.white.mesh, made.thickness));
+  }
+  if (!given && meetings > 0) {
+    context.warn("the surfaces meet themselves at " + std::to_string(meetings) + " pairs of faces");
+    return Termination::Stalled;
+  }
+  return context.monitor().shouldStop() ? Termination::Interrupted : Termination::Finished;
 }
 
 }  // namespace
@@ -530,4 +633,5 @@ Command surfaceCommand() {
   return makeCommand<Settings>("surface", declare, run);
 }
 
-}  // namespace explica::app
+}  // namespace app
+}  // namespace explica

@@ -165,7 +165,9 @@ void report(Context& context, Judge& judge, const correspondence::Measurement& m
   judge.flag("without-thickness",
              static_cast<double>(found.missing) / static_cast<double>(m.annulus.count()));
   const correspondence::ThicknessSummary t = correspondence::summaryOf(found);
+  context.result("thickness_mean_columns", t.meanOfColumns);
   context.result("thickness_mean", t.mean);
+  context.result("thickness_mean_voxels", t.mean);
   context.result("thickness_median", t.median);
   context.result("thickness_p05", t.p05);
   context.result("thickness_p95", t.p95);

@@ -571,9 +571,13 @@ ThicknessSummary summaryOf(const Correspondence& correspondence) {
   std::erase_if(known, [](double t) { return std::isnan(t); });
   ThicknessSummary summary;
   if (known.empty()) return summary;
-  double sum = 0;
-  for (const double t : known) sum += t;
+  double sum = 0, inverse = 0;
+  for (const double t : known) {
+    sum += t;
+    inverse += 1 / t;
+  }
   summary.mean = sum / static_cast<double>(known.size());
+  summary.meanOfColumns = static_cast<double>(known.size()) / inverse;
   const auto quantile = [&](double q) {
     const auto at = known.begin() + std::lround(q * static_cast<double>(known.size() - 1));
     std::nth_element(known.begin(), at, known.end());

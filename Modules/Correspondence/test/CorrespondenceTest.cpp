@@ -78,6 +78,20 @@ Solved spheroids() {
                harmonic::centredGrid({64, 64, 88}, Vector::Constant(1)));
 }
 
+TEST(ThicknessSummary, AMeanOverColumnsCountsEachColumnOnce) {
+  // Columns of 2 and 6 voxels of 1 mm, as many of one kind as of the other.
+  Correspondence found;
+  for (const int t : {2, 6}) {
+    for (int voxel = 0; voxel < t; ++voxel) {
+      found.innerDistance.push_back(voxel + 0.5);
+      found.outerDistance.push_back(t - voxel - 0.5);
+    }
+  }
+  const ThicknessSummary summary = summaryOf(found);
+  EXPECT_NEAR(summary.meanOfColumns, 4, 1e-12);
+  EXPECT_NEAR(summary.mean, 5, 1e-12);
+}
+
 }  // namespace
 
 TEST(Correspondence, LagrangianIsExactToAFewHundredthsOfAVoxel) {

@@ -197,6 +197,9 @@ void describeColumns(Json& sidecar, const std::string& file) {
         {"Description", "mean thickness, weighted by area, where there is grey matter"},
         {"Units", "mm"}};
     sidecar["thickness_sd_mm"] = {{"Description", "its standard deviation"}, {"Units", "mm"}};
+    sidecar["thickness_nearest_mean_mm"] = {
+        {"Description", "mean of FreeSurfer's thickness: nearest distances, both ways"},
+        {"Units", "mm"}};
   } else if (file == "topology.tsv") {
     sidecar["kind"] = {{"Description", "island, cavity, handle or tunnel"}};
     for (const char* axis : {"x_mm", "y_mm", "z_mm"}) {

@@ -21,8 +21,8 @@ namespace fs = std::filesystem;
 using provenance::Json;
 
 /// Columns that come first, in this order; others follow by name.
-constexpr const char* kFirstColumns[] = {"thickness.thickness_mean",
-                                         "thickness.thickness_median",
+constexpr const char* kFirstColumns[] = {"surface.thickness_mean",
+                                         "thickness.thickness_mean_columns",
                                          "thickness.sulcal_voxels_recovered",
                                          "surface.faces",
                                          "surface.euler_characteristic",
@@ -31,7 +31,6 @@ constexpr const char* kFirstColumns[] = {"thickness.thickness_mean",
                                          "surface.self_intersections",
                                          "surface.area_white",
                                          "surface.area_pial",
-                                         "surface.thickness_mean",
                                          "unfold.region_area",
                                          "unfold.visibility_initial",
                                          "unfold.visibility_final",
@@ -44,11 +43,18 @@ constexpr const char* kFirstColumns[] = {"thickness.thickness_mean",
                                          "unfold.stop_reason"};
 
 /// Numbers that should be alike in all rows.
-constexpr const char* kComparedColumns[] = {
-    "thickness.thickness_mean", "surface.thickness_mean",    "surface.area_white",
-    "surface.area_pial",        "surface.defects_corrected", "surface.voxels_changed",
-    "unfold.area_error_mean",   "unfold.edge_strain_mean",   "unfold.visibility_final",
-    "unfold.seen_final",        "thickness.traced_fraction", "surface.volume_white"};
+constexpr const char* kComparedColumns[] = {"thickness.thickness_mean_columns",
+                                            "surface.thickness_mean",
+                                            "surface.area_white",
+                                            "surface.area_pial",
+                                            "surface.defects_corrected",
+                                            "surface.voxels_changed",
+                                            "unfold.area_error_mean",
+                                            "unfold.edge_strain_mean",
+                                            "unfold.visibility_final",
+                                            "unfold.seen_final",
+                                            "thickness.traced_fraction",
+                                            "surface.volume_white"};
 
 constexpr double kFar = 3.5;            // robust z [IglewiczHoaglin1993]
 constexpr std::size_t kFewestRows = 8;  // below, a median and its spread say little

@@ -6,6 +6,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Geometry/MeshMeasures.h"
+#include "Explica/Surface/GivenSurfaces.h"
 #include "Explica/Surface/IsoSurface.h"
 #include "Explica/Surface/Measures.h"
 #include "Explica/Surface/Remesh.h"
@@ -218,15 +219,19 @@ WhiteSurface extractWhite(const CorticalTissue& tissue, const SurfaceOptions& op
   return white;
 }
 
-double meanThickness(const CorticalSurfaces& surfaces) {
-  const Eigen::VectorXd areas = geometry::vertexAreas(surfaces.white.mesh);
-  double sum = 0, weight = 0;
-  for (Eigen::Index v = 0; v < areas.size(); ++v) {
-    if (surfaces.thickness[v] <= 0) continue;
-    sum += areas[v] * surfaces.thickness[v];
-    weight += areas[v];
-  }
-  return weight > 0 ? sum / weight : 0;
+double meanThickness(const TriangleMesh& white, const Eigen::VectorXd& thickness) {
+  const Eigen::VectorXd areas = geometry::vertexAreas(white);
+  const Eigen::VectorXd counted = (thickness.array() > 0).select(areas, 0.0);
+  const double weight = counted.sum();
+  return weight > 0 ? counted.dot(thickness) / weight : 0;
+}
+
+double thicknessDeviation(const TriangleMesh& white, const Eigen::VectorXd& thickness) {
+  const Eigen::VectorXd areas = geometry::vertexAreas(white);
+  const Eigen::VectorXd counted = (thickness.array() > 0).select(areas, 0.0);
+  const double weight = counted.sum(), mean = meanThickness(white, thickness);
+  const Eigen::ArrayXd off = thickness.array() - mean;
+  return weight > 0 ? std::sqrt(counted.dot((off * off).matrix()) / weight) : 0;
 }
 
 CorticalSurfaces buildSurfaces(const CorticalTissue& tissue, const SurfaceOptions& options,
@@ -248,6 +253,8 @@ CorticalSurfaces buildSurfaces(const CorticalTissue& tissue, const SurfaceOption
 
   monitor.progress(0.96, "curvature and depth");
   result.curvature = meanCurvature(result.white.mesh);
+  result.nearestThickness = distanceThickness(result.white.mesh, result.pial);
+  result.nearestThickness = (result.thickness.array() > 0).select(result.nearestThickness, 0.0);
   result.sulcalDepth = depthBelowHull(ribbon.tissue.tissue, result.mid.positions);
   result.seconds.measures = watch.lap();
   monitor.progress(1.0, "surfaces");

@@ -359,8 +359,7 @@ Volume<std::uint8_t> splitHemispheres(const Volume<std::uint8_t>& white, const M
   for (std::size_t p = 0; p < points.size(); p += stride) some.push_back(points[p]);
   // Lengths are those of a human brain, whose white matter has the volume of a ball of 48 mm.
   constexpr double kHuman = 48;
-  const double unit =
-      radiusOfVoxels(static_cast<std::int64_t>(points.size()), grid) / kHuman;
+  const double unit = radiusOfVoxels(static_cast<std::int64_t>(points.size()), grid) / kHuman;
   const Plane plane = leastWhitePlane(some, centre, 0.5 * grid.spacing.maxCoeff(), unit);
 
   Volume<std::uint8_t> sides(grid);

@@ -48,6 +48,7 @@ CorticalSurfaces adoptSurfaces(TriangleMesh white, TriangleMesh pial,
   if (mid) requireSameFaces(white, *mid, "middle");
   CorticalSurfaces surfaces;
   surfaces.thickness = distanceThickness(white, pial);
+  surfaces.nearestThickness = surfaces.thickness;
   surfaces.noRibbon = (surfaces.thickness.array() == 0).count();
   surfaces.curvature = meanCurvature(white);
   surfaces.mid =

@@ -99,8 +99,7 @@ Eigen::VectorXd depthBelowHull(const LevelSet& tissue, const Positions& points,
   Volume<std::uint8_t> mask(grid);
   for (std::size_t v = 0; v < mask.size(); ++v) mask[v] = tissue[v] > 0;
   const auto voxels = std::count(mask.data.begin(), mask.data.end(), std::uint8_t{1});
-  const double radius =
-      wanted.value_or(kHullShare * radiusOfVoxels(voxels, grid));
+  const double radius = wanted.value_or(kHullShare * radiusOfVoxels(voxels, grid));
   VoxelBox box;
   for (int a = 0; a < 3; ++a) {
     const int margin = static_cast<int>(std::ceil(radius / grid.spacing[a])) + 2;

@@ -18,6 +18,7 @@ namespace {
 /// A vertex among its neighbours.
 struct Ring {
   Point centre = Point::Zero();    ///< area-weighted mean of the faces' centroids
+  Point mean = Point::Zero();      ///< of the neighbours
   Vector normal = Vector::Zero();  ///< area-weighted, of unit length; zero if there is none
 };
 
@@ -28,10 +29,14 @@ Ring ringOf(const GuardedMesh& mesh, std::int32_t v) {
     const auto& c = mesh.face(f);
     const Vector normal = mesh.normalOf(f);
     const double area = normal.norm();
-    ring.centre += area / 3 * (mesh.at(c[0]) + mesh.at(c[1]) + mesh.at(c[2]));
+    const Point sum = mesh.at(c[0]) + mesh.at(c[1]) + mesh.at(c[2]);
+    ring.centre += area / 3 * sum;
+    ring.mean += sum - mesh.at(v);
     ring.normal += normal;
     weight += area;
   }
+  // Each neighbour is a corner of two faces.
+  ring.mean /= 2 * static_cast<double>(mesh.valence(v));
   ring.centre = weight > 0 ? Point(ring.centre / weight) : mesh.at(v);
   const double length = ring.normal.norm();
   ring.normal = length > 0 ? Vector(ring.normal / length) : Vector(Vector::Zero());
@@ -127,7 +132,7 @@ TriangleMesh relaxed(const TriangleMesh& mesh, double edge, const std::vector<st
   for (int sweep = 0; sweep < options.lastSweeps; ++sweep) {
     const std::vector<std::uint8_t> active = crumpled(guarded, moves, edge, kUnsound);
     guarded.sweep([&](std::int32_t v, GuardedMesh::Scratch& scratch) {
-      return !active[v] || tryWays(v, ringOf(guarded, v).centre, scratch);
+      return !active[v] || tryWays(v, ringOf(guarded, v).mean, scratch);
     });
   }
   return guarded.toMesh();

@@ -38,14 +38,8 @@ void printThickness(const CorticalSurfaces& made) {
     if (t > 5) above += areas[v];
   }
   const double mean = sum / weight;
-  for (double edge = 0; edge < 8; edge += 0.5) {
-    double share = 0;
-    for (Eigen::Index v = 0; v < areas.size(); ++v)
-      share += made.thickness[v] > edge && made.thickness[v] <= edge + 0.5 ? areas[v] : 0;
-    std::printf("%.1f:%.1f%% ", edge, 100 * share / weight);
-  }
   std::printf(
-      "\nthickness %.3f mm, SD %.3f, above 5 mm %.2f %%, greatest %.2f; held back %.2f %% by %.3f "
+      "thickness %.3f mm, SD %.3f, above 5 mm %.2f %%, greatest %.2f; held back %.2f %% by %.3f "
       "mm\n",
       mean, std::sqrt(squares / weight - mean * mean), 100 * above / weight,
       made.thickness.maxCoeff(),
@@ -105,11 +99,19 @@ TEST(RealCortex, LiesWhereFreeSurferPutsItAndIsAsThick) {
   EXPECT_LE(mean, 0.15);
   EXPECT_LE(high, 0.41);
   EXPECT_GT(thickness.vertices(), 0.99 * static_cast<double>(distances.size()));
-  EXPECT_GE(thickness.vertexCorrelation(), 0.90);
+  EXPECT_GE(thickness.vertexCorrelation(), 0.92);
   EXPECT_LE(thickness.difference(), 0.25);
   EXPECT_GE(regions.count, 10U);
   EXPECT_GE(regions.correlation, 0.95);
   EXPECT_TRUE(geometry::findSelfIntersections(made.pial).empty());
+  for (const TriangleMesh* mesh : {&made.white.mesh, &made.mid, &made.pial}) {
+    const Evenness even = evennessOf(*mesh);
+    EXPECT_LE(even.dihedralAbove60, mesh == &made.pial ? 0.04 : 0.025);
+    EXPECT_LE(even.longestEdge, 4);
+    EXPECT_GE(even.leastFace, 0.02);
+    EXPECT_LE(even.highestSpike, 1.5);
+  }
+  EXPECT_LE(made.heldBackPial, made.pial.vertexCount() / 50);
 }
 
 }  // namespace

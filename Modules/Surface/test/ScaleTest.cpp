@@ -63,10 +63,12 @@ INSTANTIATE_TEST_SUITE_P(VoxelSizes, Scale, ::testing::Values(-20, -10, 10, 20))
 
 TEST(Scale, ByAThousandChangesTheResultByRounding) {
   const CorticalSurfaces here = surfacesAt(1);
-  const double thickness = meanThickness(here), area = geometry::totalArea(here.pial);
+  const double thickness = meanThickness(here.white.mesh, here.thickness),
+               area = geometry::totalArea(here.pial);
   for (const double unit : {1e-3, 1e3}) {
     const CorticalSurfaces there = surfacesAt(unit);
-    EXPECT_NEAR(meanThickness(there) / unit, thickness, 0.01 * thickness);
+    EXPECT_NEAR(meanThickness(there.white.mesh, there.thickness) / unit, thickness,
+                0.01 * thickness);
     EXPECT_NEAR(geometry::totalArea(there.pial) / (unit * unit), area, 0.01 * area);
   }
 }

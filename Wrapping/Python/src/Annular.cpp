@@ -68,6 +68,7 @@ py::dict arraysOf(const correspondence::Measurement& m) {
       "affine"_a = m.annulus.grid.affine(),
       "summary"_a =
           py::dict("voxels"_a = m.annulus.count(), "thickness_mean"_a = summary.mean,
+                   "thickness_mean_columns"_a = summary.meanOfColumns,
                    "thickness_median"_a = summary.median, "thickness_p05"_a = summary.p05,
                    "thickness_p95"_a = summary.p95, "residual"_a = m.interpolant.relativeResidual,
                    "sulcal_voxels_recovered"_a = m.sulcalVoxels.size(),

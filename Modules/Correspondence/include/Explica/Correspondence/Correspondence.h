@@ -66,7 +66,11 @@ struct Correspondence {
 [[nodiscard]] std::vector<double> thicknessOf(const Correspondence& correspondence);
 
 /// Of the voxels whose thickness is known, mm.
+///
+/// A mean over voxels weighs each column of tissue by its thickness, for a thick column holds more
+/// voxels; the mean over columns, n / sum(1/t), weighs all columns alike, as a surface does.
 struct ThicknessSummary {
+  double meanOfColumns = kNaN;
   double mean = kNaN, median = kNaN, p05 = kNaN, p95 = kNaN;
 };
 [[nodiscard]] ThicknessSummary summaryOf(const Correspondence& correspondence);

@@ -48,12 +48,13 @@ struct CorticalSurfaces {
   WhiteSurface white;
   TriangleMesh mid;  ///< at half the way
   TriangleMesh pial;
-  Eigen::VectorXd thickness;      ///< arc length of the trajectory, mm; 0 where there is no ribbon
-  Eigen::VectorXd curvature;      ///< mean, of the white surface, mm^-1; positive in sulci
-  Eigen::VectorXd sulcalDepth;    ///< of the middle surface below the closed hull, mm
-  std::int64_t noRibbon = 0;      ///< vertices without grey matter: all three surfaces coincide
-  std::int64_t endedAtBank = 0;   ///< trajectories that end in the middle of a buried sulcus
-  std::int64_t cutLinks = 0;      ///< grid links that buried sulci cut
+  Eigen::VectorXd thickness;  ///< arc length of the trajectory, mm; 0 where there is no ribbon
+  Eigen::VectorXd nearestThickness;  ///< as distanceThickness(), mm; 0 where there is no ribbon
+  Eigen::VectorXd curvature;         ///< mean, of the white surface, mm^-1; positive in sulci
+  Eigen::VectorXd sulcalDepth;       ///< of the middle surface below the closed hull, mm
+  std::int64_t noRibbon = 0;         ///< vertices without grey matter: all three surfaces coincide
+  std::int64_t endedAtBank = 0;      ///< trajectories that end in the middle of a buried sulcus
+  std::int64_t cutLinks = 0;         ///< grid links that buried sulci cut
   std::int64_t heldBackMid = 0;   ///< vertices kept short of half their way, so that faces do not
   std::int64_t heldBackPial = 0;  ///< meet; or of their whole way
   double heldBackMean = 0;        ///< mean distance that pial ones among them fall short, mm
@@ -67,17 +68,24 @@ struct CorticalSurfaces {
                                         const SurfaceOptions& options = {},
                                         const Monitor& monitor = {});
 
-/// All three surfaces.  Pial vertices lie on the trajectories of the harmonic interpolant that
-/// start at the white vertices; mid ones at half the arc length.  Both grow out of the white
-/// surface by small moves, each checked exactly, so that neither intersects itself; a vertex
-/// whose faces would meet others waits on its trajectory.
+/// All three surfaces.  Vertices of the outer surface start at the ends of the trajectories of the
+/// harmonic interpolant that begin at the white vertices, those of the middle one at half the arc
+/// length.  Both grow out of the white surface by small moves, each checked exactly, so that
+/// neither intersects itself; a vertex whose faces would meet others waits on its trajectory. Where
+/// growth has left stretched, poor or folded triangles, vertices then slide along their surface;
+/// thickness stays that of the trajectory.
 /// @throws InvalidInput  no grey matter
 [[nodiscard]] CorticalSurfaces buildSurfaces(const CorticalTissue& tissue,
                                              const SurfaceOptions& options = {},
                                              const Monitor& monitor = {});
 
-/// Mean thickness over the white surface where there is grey matter, weighted by area, mm.
-[[nodiscard]] double meanThickness(const CorticalSurfaces& surfaces);
+/// Mean over the white surface where there is grey matter, weighted by area, mm.
+/// @param thickness  per vertex, mm; 0 where there is no grey matter
+[[nodiscard]] double meanThickness(const TriangleMesh& white, const Eigen::VectorXd& thickness);
+
+/// Its standard deviation over that surface, mm.
+[[nodiscard]] double thicknessDeviation(const TriangleMesh& white,
+                                        const Eigen::VectorXd& thickness);
 
 template <class Visitor>
 void describe(SurfaceOptions& options, Visitor&& visit) {
