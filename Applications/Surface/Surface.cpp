@@ -56,6 +56,7 @@ struct Settings {
   std::optional<std::string> outerLevel;
   std::optional<std::string> greyShare;
   std::optional<std::string> insulatedMask;
+  std::optional<std::string> image;
   std::optional<double> level;
   std::optional<std::string> whiteSurface, pialSurface, midSurface;
   io::SurfaceSpace surfaceSpace = io::SurfaceSpace::Stated;
@@ -85,6 +86,8 @@ void declare(Declaration& d, Settings& s) {
       .reference("Botsch, Kobbelt 2004, Symposium on Geometry Processing, 185-192")
       .example("explica surface aseg.mgz --hemisphere L --out left",
                "Left hemisphere of a FreeSurfer, FastSurfer or SynthSeg segmentation")
+      .example("explica surface aseg.mgz --hemisphere L --image brain.mgz --out left",
+               "Borders placed by the image, finer than labels do")
       .example("explica surface seg.nii.gz --white 3 --grey 2 --faces 80000 --out brain",
                "Labels by name")
       .example("explica surface --inner-level wm.nii.gz --grey-share gm.nii.gz --out brain",
@@ -106,6 +109,10 @@ void declare(Declaration& d, Settings& s) {
                    s.greyShare)
       .inputOption("insulated-mask", FileKind::LabelVolume,
                    "with --inner-level: not 0 where neither side is (a cut)", s.insulatedMask)
+      .inputOption("image", FileKind::Volume,
+                   "image whose labels these are, such as a T1: white and outer border are placed "
+                   "by it, within a voxel of the labels' border",
+                   s.image)
       .option("Inputs",
               Field{"level", "",
                     "value on the boundaries of level volumes (default: half the "
@@ -209,6 +216,9 @@ void checkChoice(const Settings& s) {
   }
   if (surfacesGiven(s) && !(s.whiteSurface && s.pialSurface)) {
     throw UsageError("surface: --white-surface and --pial-surface go together");
+  }
+  if (s.image && surfacesGiven(s)) {
+    throw UsageError("surface: --image places borders that are made, not those of --white-surface");
   }
   if (s.parcellation && !surfacesGiven(s)) {
     throw UsageError("surface: --parcellation belongs to the vertices of --white-surface");
@@ -545,8 +555,25 @@ void reportMaking(Context& context, const surface::CorticalSurfaces& made, bool 
   context.result("seconds_remeshing", made.seconds.remeshing);
   context.result("seconds_interpolant", made.seconds.interpolant);
   context.result("seconds_trajectories", made.seconds.trajectories);
+  context.result("seconds_image", made.seconds.image);
   context.result("seconds_growing", made.seconds.growing);
   context.result("seconds_measures", made.seconds.measures);
+}
+
+/// What the image has done, and a warning where it shows too little to be the labels' image.
+void reportImage(Context& context, const surface::CorticalSurfaces& made) {
+  const auto vertices = static_cast<double>(made.thickness.size() - made.noRibbon);
+  const surface::ImagePlacement& image = made.image;
+  context.result("vertices_without_white_edge", image.missingWhite);
+  context.result("vertices_without_outer_edge", image.missingOuter);
+  context.result("moved_by_image_white", image.movedWhite);
+  context.result("moved_by_image_outer", image.movedOuter);
+  constexpr double kFewest = 0.5;  // share of vertices with an edge
+  if (static_cast<double>(image.missingWhite - made.noRibbon) > (1 - kFewest) * vertices) {
+    context.warn("the image shows no edge of white matter at " +
+                 std::to_string(image.missingWhite - made.noRibbon) +
+                 " vertices: is it the image of these labels?");
+  }
 }
 
 void report(Context& context, const Settings& s, const surface::CorticalTissue& tissue,
@@ -567,12 +594,17 @@ void report(Context& context, const Settings& s, const surface::CorticalTissue& 
   std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 20, sorted.end());
   context.result("smallest_angle_p05_deg", sorted[sorted.size() / 20] * 180 / kPi);
   if (tissue.hasGrey) reportThickness(context, s, made);
+  if (s.image && tissue.hasGrey) reportImage(context, made);
   if (!given) reportMaking(context, made, tissue.hasGrey);
 }
 
 surface::CorticalSurfaces makeSurfaces(Context& context, const Settings& s,
-                                       const surface::CorticalTissue& tissue) {
+                                       const surface::CorticalTissue& tissue,
+                                       const std::optional<Volume<float>>& image) {
   auto step = context.step("surfaces");
+  if (tissue.hasGrey && image) {
+    return surface::buildSurfaces(tissue, *image, s.surface, context.monitor());
+  }
   if (tissue.hasGrey) return surface::buildSurfaces(tissue, s.surface, context.monitor());
   context.warn("no grey matter given: only the white surface is made");
   surface::CorticalSurfaces made;
@@ -580,6 +612,14 @@ surface::CorticalSurfaces makeSurfaces(Context& context, const Settings& s,
   made.seconds = made.white.seconds;
   made.curvature = surface::meanCurvature(made.white.mesh);
   return made;
+}
+
+std::optional<Volume<float>> readImage(Context& context, const Settings& s) {
+  if (!s.image) return {};
+  io::VolumeReadOptions reading = s.reading;
+  reading.dimension = 3;
+  reading.frame.reset();
+  return readScalars(context, "image", *s.image, reading);
 }
 
 /// The volume whose surface RAS FreeSurfer files use.
@@ -604,7 +644,7 @@ Termination run(Context& context, const Settings& s) {
   if (!given) inputs = readTissue(context, s);
   const surface::CorticalTissue& tissue = inputs.tissue;
   const std::optional<Grid> fsGrid = freeSurferGrid(s, inputs);
-  if (!given) made = makeSurfaces(context, s, tissue);
+  if (!given) made = makeSurfaces(context, s, tissue, readImage(context, s));
   const std::vector<Named> surfaces = namedSurfaces(made, tissue.hasGrey);
   const std::int64_t meetings = checkSurfaces(context, surfaces);
   {

@@ -11,6 +11,8 @@
 #include "Explica/Surface/Measures.h"
 #include "Explica/Surface/Remesh.h"
 #include "Growth.h"
+#include "GuardedMesh.h"
+#include "ImageBorder.h"
 #include "Relaxation.h"
 #include "RibbonField.h"
 
@@ -60,9 +62,10 @@ Point stayThere(std::int32_t, const Point& point, const Vector&) {
   return point;
 }
 
-/// From a point towards the zero of a level set along its gradient, as far as `most`, mm; nowhere
-/// if the level does not fall outward.
-Point towardsBorder(const LevelSet& level, const Point& from, const Vector& normal, double most) {
+/// From a point towards the surface so far outside the zero of a level set, along its gradient, as
+/// far as `most`, mm; nowhere if the level does not fall outward.
+Point towardsBorder(const LevelSet& level, double outside, const Point& from, const Vector& normal,
+                    double most) {
   constexpr double kFlat = 1e-8;  // squared change of the level per voxel: nothing to follow
   const double voxel = level.grid.spacing.minCoeff();
   Point p = from;
@@ -70,7 +73,7 @@ Point towardsBorder(const LevelSet& level, const Point& from, const Vector& norm
     const LevelSample s = sample(level, p);
     const double squared = s.gradient.squaredNorm();
     if (squared * voxel * voxel < kFlat || s.gradient.dot(normal) > 0) return from;
-    p -= s.value / squared * s.gradient;
+    p -= (s.value / squared + outside / std::sqrt(squared)) * s.gradient;
     const double way = (p - from).norm();
     if (way > most) return from + most / way * (p - from);
   }
@@ -99,6 +102,7 @@ void requirePrecision(const Grid& grid) {
 struct Ribbon {
   CorticalTissue tissue;  ///< corrected
   std::vector<Trajectory> paths;
+  Eigen::VectorXd outside;  ///< of the outer border beyond that of the labels, mm; 0 without image
 };
 
 Ribbon traceRibbon(const CorticalTissue& tissue, CorticalSurfaces& result, const Monitor& monitor) {
@@ -120,8 +124,49 @@ Ribbon traceRibbon(const CorticalTissue& tissue, CorticalSurfaces& result, const
   parallelFor(ribbon.paths.size(), 256, [&](std::size_t v) {
     ribbon.paths[v] = field.trace(white.positions.row(v), normals.row(v));
   });
+  ribbon.outside = Eigen::VectorXd::Zero(white.vertexCount());
   result.seconds.trajectories = watch.lap();
   return ribbon;
+}
+
+/// Moves the white surface and the trajectories' ends to where an image changes most steeply.
+void placeByImage(const Volume<float>& image, Ribbon& ribbon, CorticalSurfaces& result) {
+  Stopwatch watch;
+  const Grid& grid = ribbon.tissue.white.grid;
+  const double voxel = std::cbrt(grid.voxelVolume());
+  TriangleMesh& white = result.white.mesh;
+  const ImageBorders borders = findBorders(ribbon.paths, white, image, voxel);
+  result.image.missingWhite = borders.missingWhite;
+  result.image.missingOuter = borders.missingOuter;
+
+  GuardedMesh mesh(white, result.white.edgeLength);
+  Eigen::VectorXd moved = Eigen::VectorXd::Zero(white.vertexCount());
+  // In steps, so that neighbours make way for each other.
+  for (const double share : {0.25, 0.5, 0.75, 1.0, 1.0}) {
+    mesh.sweep([&](std::int32_t v, GuardedMesh::Scratch& scratch) {
+      const double wanted = share * borders.white[v];
+      if (moved[v] == wanted) return true;
+      if (!mesh.move(v, between(ribbon.paths[v], wanted, wanted + voxel).points[0], scratch)) {
+        return false;
+      }
+      moved[v] = wanted;
+      return true;
+    });
+  }
+  RelaxationOptions mending;
+  mending.sweeps = 0;
+  white = relaxed(mesh.toMesh(), result.white.edgeLength, {}, stayThere, mending);
+  for (std::size_t v = 0; v < ribbon.paths.size(); ++v) {
+    const auto row = static_cast<Eigen::Index>(v);
+    Trajectory& path = ribbon.paths[v];
+    if (path.end == TrajectoryEnd::NoRibbon) continue;
+    path = between(path, moved[row], path.length() + borders.outer[row]);
+    path.points.front() = white.positions.row(row);
+  }
+  ribbon.outside = borders.outer;
+  result.image.movedWhite = moved.cwiseAbs().mean();
+  result.image.movedOuter = borders.outer.cwiseAbs().mean();
+  result.seconds.image = watch.lap();
 }
 
 void takeThickness(const std::vector<Trajectory>& paths, CorticalSurfaces& result) {
@@ -144,7 +189,8 @@ void noteHeldBack(const Ribbon& ribbon, const Growth& growth, double least,
     const Trajectory& path = ribbon.paths[v];
     if (path.end == TrajectoryEnd::Outer) {
       const LevelSample border = sample(ribbon.tissue.tissue, at);
-      missing = std::min(missing, border.value / std::max(border.gradient.norm(), 1e-300));
+      missing = std::min(missing, border.value / std::max(border.gradient.norm(), 1e-300) +
+                                      ribbon.outside[static_cast<Eigen::Index>(v)]);
     } else {
       const Vector way = path.points.back() - path.points[path.points.size() - 2];
       missing = std::min(missing, (path.points.back() - at).dot(way.normalized()));
@@ -188,7 +234,7 @@ void growSurfaces(const Ribbon& ribbon, const SurfaceOptions& options, CorticalS
       growth.mesh(), edge, moves,
       [&](std::int32_t v, const Point& point, const Vector& normal) {
         return ribbon.paths[v].end == TrajectoryEnd::Outer
-                   ? towardsBorder(border, point, normal, kNearBorder * voxel)
+                   ? towardsBorder(border, ribbon.outside[v], point, normal, kNearBorder * voxel)
                    : point;
       },
       relaxation);
@@ -234,8 +280,10 @@ double thicknessDeviation(const TriangleMesh& white, const Eigen::VectorXd& thic
   return weight > 0 ? std::sqrt(counted.dot((off * off).matrix()) / weight) : 0;
 }
 
-CorticalSurfaces buildSurfaces(const CorticalTissue& tissue, const SurfaceOptions& options,
-                               const Monitor& monitor) {
+namespace {
+
+CorticalSurfaces build(const CorticalTissue& tissue, const Volume<float>* image,
+                       const SurfaceOptions& options, const Monitor& monitor) {
   if (!tissue.hasGrey) {
     throw InvalidInput("grey: no voxel found; middle and outer surface need grey matter");
   }
@@ -245,7 +293,8 @@ CorticalSurfaces buildSurfaces(const CorticalTissue& tissue, const SurfaceOption
   CorticalSurfaces result;
   result.white = extractWhite(tissue, options, partOf(monitor, 0, 0.5));
   result.seconds = result.white.seconds;
-  const Ribbon ribbon = traceRibbon(tissue, result, partOf(monitor, 0.5, 0.7));
+  Ribbon ribbon = traceRibbon(tissue, result, partOf(monitor, 0.5, 0.7));
+  if (image != nullptr) placeByImage(*image, ribbon, result);
   takeThickness(ribbon.paths, result);
   Stopwatch watch;
   growSurfaces(ribbon, options, result, partOf(monitor, 0.7, 0.96));
@@ -259,6 +308,18 @@ CorticalSurfaces buildSurfaces(const CorticalTissue& tissue, const SurfaceOption
   result.seconds.measures = watch.lap();
   monitor.progress(1.0, "surfaces");
   return result;
+}
+
+}  // namespace
+
+CorticalSurfaces buildSurfaces(const CorticalTissue& tissue, const SurfaceOptions& options,
+                               const Monitor& monitor) {
+  return build(tissue, nullptr, options, monitor);
+}
+
+CorticalSurfaces buildSurfaces(const CorticalTissue& tissue, const Volume<float>& image,
+                               const SurfaceOptions& options, const Monitor& monitor) {
+  return build(tissue, &image, options, monitor);
 }
 
 }  // namespace explica::surface

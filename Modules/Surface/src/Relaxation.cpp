@@ -53,7 +53,7 @@ struct Limits {
 };
 constexpr Limits kCrumpled{0.55, 2.7, 0.05, 1.2, 0.75};
 /// What must not be left: 4 mm, 0.02 mm^2 and 1.5 mm where edges are 1.16 mm.
-constexpr Limits kUnsound{0, 3.3, 0.02, 1.1, -1};
+constexpr Limits kUnsound{0, 3.3, 0.02, 0.9, -1};
 
 /// True if a face is too small, too long or too flat.
 bool isPoor(const GuardedMesh& mesh, std::int32_t f, double edge, const Limits& limits) {
@@ -112,7 +112,7 @@ TriangleMesh relaxed(const TriangleMesh& mesh, double edge, const std::vector<st
   GuardedMesh guarded(mesh, edge);
   const auto tryWays = [&](std::int32_t v, const Point& to, GuardedMesh::Scratch& scratch) {
     const Point from = guarded.at(v);
-    for (const double share : {1.0, 0.5, 0.2}) {
+    for (const double share : {1.0, 0.5, 0.2, 0.05}) {
       if (guarded.move(v, from + share * (to - from), scratch)) return true;
     }
     return false;
@@ -129,10 +129,14 @@ TriangleMesh relaxed(const TriangleMesh& mesh, double edge, const std::vector<st
       return tryWays(v, place(v, target, ring.normal), scratch);
     });
   }
+  // A vertex without way of its own among others that have grown is a pit: it may move, too.
+  const std::vector<std::uint8_t> all(mesh.vertexCount(), 1);
   for (int sweep = 0; sweep < options.lastSweeps; ++sweep) {
-    const std::vector<std::uint8_t> active = crumpled(guarded, moves, edge, kUnsound);
+    const std::vector<std::uint8_t> active = crumpled(guarded, all, edge, kUnsound);
     guarded.sweep([&](std::int32_t v, GuardedMesh::Scratch& scratch) {
-      return !active[v] || tryWays(v, ringOf(guarded, v).mean, scratch);
+      if (!active[v]) return true;
+      const Ring ring = ringOf(guarded, v);
+      return tryWays(v, sweep % 2 == 0 ? ring.mean : ring.centre, scratch);
     });
   }
   return guarded.toMesh();

@@ -222,6 +222,51 @@ TEST(CorticalSurface, FindsTheThicknessOfAShell) {
   EXPECT_NEAR(made.curvature.mean(), -1.0 / 14, 0.005);
 }
 
+/// Brightness of a shell seen through a point spread: white, grey, dark, and a bright vessel
+/// beyond.
+float brightness(const Point& p, double inner, double outer) {
+  const auto step = [](double x) { return 0.5 * (1 + std::erf(x / (0.6 * std::sqrt(2.0)))); };
+  const double r = p.norm();
+  const double vessel = 60 * std::exp(-0.5 * std::pow((p - Point(0, 0, outer + 3)).norm(), 2));
+  return static_cast<float>(20 + 60 * step(outer - r) + 30 * step(inner - r) + vessel);
+}
+
+TEST(CorticalSurface, AnImagePlacesTheBordersOfAShell) {
+  // Labels say 14 and 17 mm; the image, 14.4 and 16.7.
+  const double h = 1;
+  const auto tissue = shell(14, 17, h);
+  const auto image = volumeOf(lattice(56, Vector::Constant(0.8)),
+                              [](const Point& p) { return brightness(p, 14.4, 16.7); });
+  auto inverse = image;
+  for (float& value : inverse.data) value = 200 - value;
+  SurfaceOptions options;
+  options.faces = 6000;
+  for (const Volume<float>& seen : {image, inverse}) {
+    const auto made = buildSurfaces(tissue, seen, options);
+    for (const TriangleMesh* mesh : {&made.white.mesh, &made.mid, &made.pial}) expectSound(*mesh);
+    // The labels keep a say: a third of the way is enough.
+    EXPECT_GT(offSphere(made.white.mesh, 14).mean(), 0.13);
+    EXPECT_LT(offSphere(made.white.mesh, 14.4).mean(), 0.05);
+    EXPECT_LT(offSphere(made.pial, 17).mean(), -0.1);
+    EXPECT_GT(offSphere(made.pial, 16.7).mean(), -0.05);
+    EXPECT_EQ(made.image.missingWhite, 0);
+    EXPECT_EQ(made.image.missingOuter, 0);
+  }
+}
+
+TEST(CorticalSurface, AnImageWithoutEdgesLeavesTheLabelsBorders) {
+  const auto tissue = shell(14, 17, 1);
+  SurfaceOptions options;
+  options.faces = 3000;
+  const auto plain = buildSurfaces(tissue, options);
+  const auto made =
+      buildSurfaces(tissue, Volume<float>(lattice(50, Vector::Constant(1)), 100.0F), options);
+  EXPECT_EQ(made.image.missingWhite, made.thickness.size());
+  EXPECT_EQ(made.image.missingOuter, made.thickness.size());
+  EXPECT_EQ(made.white.mesh.positions, plain.white.mesh.positions);
+  EXPECT_LT((made.pial.positions - plain.pial.positions).cwiseAbs().maxCoeff(), 1e-4);
+}
+
 TEST(CorticalSurface, HoldsFoldsApart) {
   SurfaceOptions options;
   options.faces = 12000;

@@ -104,6 +104,20 @@ class ThicknessComparison {
     return sum / static_cast<double>(ours_.size());
   }
 
+  /// Standard deviations of ours and of theirs, mm.
+  [[nodiscard]] std::pair<double, double> deviations() const {
+    const auto of = [](const std::vector<double>& values) {
+      const auto n = static_cast<double>(values.size());
+      double sum = 0, squares = 0;
+      for (const double value : values) {
+        sum += value;
+        squares += value * value;
+      }
+      return std::sqrt(squares / n - sum * sum / (n * n));
+    };
+    return {of(ours_), of(theirs_)};
+  }
+
   struct Regions {
     std::size_t count = 0;
     double correlation = 0;

@@ -27,6 +27,7 @@ struct SurfaceTimes {
   double remeshing = 0;
   double interpolant = 0;  ///< with the recovery of buried sulci
   double trajectories = 0;
+  double image = 0;    ///< placing the borders by an image
   double growing = 0;  ///< middle and outer surface
   double measures = 0;
 };
@@ -40,6 +41,14 @@ struct WhiteSurface {
   std::int64_t genus = 0;
   double edgeLength = 0;  ///< aimed at by the remeshing, mm
   SurfaceTimes seconds;
+};
+
+/// What an image has changed.
+struct ImagePlacement {
+  std::int64_t missingWhite = 0;  ///< vertices where the image shows no edge of the usual sense, so
+  std::int64_t missingOuter = 0;  ///< that the labels' border holds
+  double movedWhite = 0;          ///< mean way of the vertices, mm
+  double movedOuter = 0;          ///< mean way of the trajectories' ends, mm
 };
 
 /// White, middle and outer surface with the same faces; vertex i of one corresponds to vertex i of
@@ -59,6 +68,7 @@ struct CorticalSurfaces {
   std::int64_t heldBackPial = 0;  ///< meet; or of their whole way
   double heldBackMean = 0;        ///< mean distance that pial ones among them fall short, mm
   double heldBackMost = 0;        ///< mm
+  ImagePlacement image;           ///< all 0 without one
   SurfaceTimes seconds;
 };
 
@@ -76,6 +86,17 @@ struct CorticalSurfaces {
 /// thickness stays that of the trajectory.
 /// @throws InvalidInput  no grey matter
 [[nodiscard]] CorticalSurfaces buildSurfaces(const CorticalTissue& tissue,
+                                             const SurfaceOptions& options = {},
+                                             const Monitor& monitor = {});
+
+/// As above, the borders placed by the image whose labels these are: white and outer border lie
+/// where it changes most steeply along each trajectory, within about a voxel of the labels' border,
+/// weighed against the neighbours' places.  Change of the usual sense only (most vertices' own)
+/// counts; where it is flat or missing, as in a sulcus without visible fluid or off the image, the
+/// labels' border stays, and is counted.  Topology is kept, and nothing meets, as before.
+/// @param image  any contrast between white and grey matter and fluid, such as a T1; on any grid
+[[nodiscard]] CorticalSurfaces buildSurfaces(const CorticalTissue& tissue,
+                                             const Volume<float>& image,
                                              const SurfaceOptions& options = {},
                                              const Monitor& monitor = {});
 

@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Core/TriangleMesh.h"
+#include "Explica/Core/Volume.h"
+#include "RibbonField.h"
+
+#include <Eigen/Core>
+
+#include <cstdint>
+#include <vector>
+
+namespace explica::surface {
+
+/// How one border is looked for; lengths in voxels of the labels.
+struct EdgeOptions {
+  double level = 0.5;       ///< brightness of the border, from 0, outside, to 1, inside of it
+  int spread = 5;           ///< times that brightness of tissue is averaged over neighbours
+  double centring = 0.5;    ///< cost of a voxel squared off the labels' border, beside the squared
+                            ///< share of the contrast by which brightness misses the level
+  double smoothness = 0.1;  ///< cost of a voxel squared off the neighbours' mean
+};
+
+struct ImageBorderOptions {
+  EdgeOptions white = {};
+  EdgeOptions outer = {0.45, 30, 0.5, 0.3};
+  double reach = 1;   ///< farthest that a border may lie from that of the labels
+  double flat = 0.3;  ///< share of the usual contrast below which an edge is missing
+  int rounds = 15;    ///< of weighing a vertex's edge against its neighbours
+};
+
+/// Where the image puts the borders, beside where the labels do.
+struct ImageBorders {
+  Eigen::VectorXd white;          ///< per vertex, mm outward along the trajectory
+  Eigen::VectorXd outer;          ///< per vertex, mm outward along the trajectory
+  std::int64_t missingWhite = 0;  ///< vertices that show no such edge, or off the image: they stay
+  std::int64_t missingOuter = 0;  ///< at the labels' border
+};
+
+/// Places on the trajectories where the image crosses from one tissue to the next.
+///
+/// The edge of two tissues seen through a point spread is steepest half way between their
+/// brightness; where it is steepest voxel by voxel, noise decides.  So brightness of white matter,
+/// grey matter and what is outside is taken along each trajectory, carried on straight beyond both
+/// ends, and averaged over neighbours; each vertex then looks for that level near the labels'
+/// border, and weighs how far it is missed against the distance from the labels' border and from
+/// its neighbours' choices.  Only a change of the usual sense counts, as most vertices have it
+/// between white and grey matter (in a T1 brightness falls outward at both borders): a vessel or
+/// meninges, where it rises, are no edge.  A trajectory that ends between two banks of a sulcus is
+/// not carried on: the other bank's edge is not its own.
+[[nodiscard]] ImageBorders findBorders(const std::vector<Trajectory>& paths,
+                                       const TriangleMesh& white, const Volume<float>& image,
+                                       double voxel, const ImageBorderOptions& options = {});
+
+/// The part of a trajectory between two borders; it is carried on straight where they lie beyond
+/// its ends.
+/// @param from  mm from the trajectory's start, may be negative
+/// @param to    mm from its start, > from
+[[nodiscard]] Trajectory between(const Trajectory& path, double from, double to);
+
+}  // namespace explica::surface
