@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
+#include "Film.h"
 #include "OpenedFiles.h"
 #include "Steer.h"
 
 #include "Explica/Application/Command.h"
 #include "Explica/Core/Errors.h"
-#include "Explica/Core/WholeFile.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/IO/VolumeFile.h"
@@ -15,7 +15,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <set>
 
 namespace explica::app {
 namespace {
@@ -65,7 +64,10 @@ void declare(Declaration& d, Settings& s) {
       .option("Picture", Field{"screenshot", "", "PNG file to write"}, s.screenshot)
       .option(
           "Picture",
-          Field{"film", "", "animated .gif or .png to write, from a folder of `explica unfold`"},
+          Field{
+              "film", "",
+              "film to write of a folder of `explica unfold`: .gif or .png, or .mp4 or .webm where "
+              "ffmpeg is installed"},
           s.film)
       .inputOption("map", FileKind::VertexData, "per-vertex values to colour the surface by", s.map)
       .option("Picture", Field{"map-name", "", "which of the map file's maps (default: the first)"},
@@ -168,57 +170,6 @@ report::Picture drawSurfaces(const Settings& s) {
   return report::tilePictures(figures, s.columns);
 }
 
-/// The frames of an unfolding, all from where the first one is seen best.
-std::vector<report::Picture> drawFrames(const Settings& s, const std::filesystem::path& folder) {
-  std::set<std::filesystem::path> files;
-  const std::filesystem::path frames =
-      std::filesystem::exists(folder / "frames") ? folder / "frames" : folder;
-  for (const auto& entry : std::filesystem::directory_iterator(frames)) {
-    const std::string name = entry.path().filename().string();
-    if (name.rfind("frame-", 0) == 0 && name.find(".gii") != std::string::npos)
-      files.insert(entry.path());
-  }
-  if (files.empty()) {
-    throw InvalidInput(folder.string() +
-                       ": holds no frames/frame-*.surf.gii; unfold with --frames");
-  }
-  std::vector<report::Picture> pictures;
-  std::vector<report::Camera> cameras;
-  for (const auto& file : files) {
-    const TriangleMesh mesh = io::readSurface(file, s.reading).mesh;
-    const report::SurfacePaint paint = readPaint(s, mesh.vertexCount());
-    if (cameras.empty()) {
-      for (const auto& view : viewsOf(s, paint)) {
-        cameras.push_back(report::cameraOf(mesh, view, s.picture.width, s.picture.height));
-      }
-    }
-    const report::SurfaceScene scene(mesh);
-    const std::vector<report::Colour> colours = coloursOf(paint, mesh.vertexCount());
-    std::vector<report::Picture> views;
-    for (const report::Camera& camera : cameras) {
-      views.push_back(scene.render(camera, colours,
-                                   paint.values.size() == 0 && paint.labels.size() != 0
-                                       ? report::Filling::Discrete
-                                       : report::Filling::Smooth,
-                                   s.picture));
-    }
-    pictures.push_back(report::tilePictures(views, s.columns));
-  }
-  return pictures;
-}
-
-void writeFilm(const std::filesystem::path& path, const std::vector<report::Picture>& frames,
-               double fps) {
-  const std::string ending = path.extension().string();
-  if (ending != ".gif" && ending != ".png" && ending != ".apng") {
-    throw UsageError("--film " + path.string() + ": expected a name ending in .gif, .png or .apng");
-  }
-  WholeFile file(path);
-  file.write(ending == ".gif" ? report::encodeGif(frames, fps)
-                              : report::encodeAnimatedPng(frames, fps));
-  file.commit();
-}
-
 /// The first file is a surface or an unfolding; the others are opened on it.
 void openWindow(Context& context, const Settings& s) {
   if (isVolume(s.files.front())) {
@@ -250,7 +201,14 @@ Termination run(Context& context, const Settings& s) {
     throw UsageError("--screenshot " + *s.screenshot + ": expected a name ending in .png");
   }
   if (s.film) {
-    writeFilm(*s.film, drawFrames(s, s.files.front()), s.framesPerSecond);
+    const std::filesystem::path folder = s.files.front();
+    std::optional<report::SurfacePaint> paint;
+    if (s.map || s.labels) paint = readPaint(s, firstFrame(folder).vertexCount());
+    std::vector<FilmView> views;
+    if (s.direction || !s.views.empty()) {
+      for (const report::FigureView& view : viewsOf(s, {})) views.push_back(filmView(view));
+    }
+    writeFilm(*s.film, drawFilm(folder, paint, views, s.columns, s.picture), s.framesPerSecond);
     context.info("wrote " + *s.film);
   }
   if (s.screenshot) {

@@ -65,6 +65,27 @@ TEST(View, MakesAFilmOfFrames) {
               kNoDisplay);
   ASSERT_EQ(film.exitCode, 0) << film;
   EXPECT_EQ(readText(folder / "u.gif").substr(0, 6), "GIF89a");
+
+  // Without options the region is coloured and seen from its viewpoint.
+  const auto plain = explica(
+      {"view", folder / "u", "--width", "160", "--height", "120", "--film", folder / "plain.gif"},
+      kNoDisplay);
+  ASSERT_EQ(plain.exitCode, 0) << plain;
+  EXPECT_NE(readText(folder / "plain.gif"), readText(folder / "u.gif"));
+
+  // A video where ffmpeg is installed, or a sentence that says so.
+  const auto video = explica(
+      {"view", folder / "u", "--width", "161", "--height", "120", "--film", folder / "u.mp4"},
+      kNoDisplay);
+  if (video.exitCode == 0) {
+    EXPECT_EQ(readText(folder / "u.mp4").substr(4, 4), "ftyp");
+  } else {
+    EXPECT_EQ(video.exitCode, 4) << video;
+    EXPECT_NE(video.err.find("ffmpeg is not installed"), std::string::npos) << video;
+  }
+  const auto other = explica({"view", folder / "u", "--film", folder / "u.avi"}, kNoDisplay);
+  EXPECT_EQ(other.exitCode, 1) << other;
+  EXPECT_NE(other.err.find(".webm"), std::string::npos) << other;
 }
 
 TEST(View, SaysWhichMapIsMissing) {

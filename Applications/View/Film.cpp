@@ -1,0 +1,224 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Film.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/WholeFile.h"
+#include "Explica/IO/SurfaceFile.h"
+#include "Explica/IO/VertexDataFile.h"
+#include "Explica/Provenance/Json.h"
+#include "Explica/Provenance/Record.h"
+#include "Explica/Report/Film.h"
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <csignal>
+#include <cstdio>
+#include <set>
+#include <string>
+
+namespace explica::app {
+namespace {
+
+namespace fs = std::filesystem;
+using provenance::Json;
+
+constexpr report::Colour kInside = {0.74F, 0.31F, 0.09F};
+constexpr report::Colour kOutside = {0.60F, 0.58F, 0.55F};
+
+std::vector<fs::path> frameFiles(const fs::path& folder) {
+  std::set<fs::path> files;
+  const fs::path frames = fs::exists(folder / "frames") ? folder / "frames" : folder;
+  if (fs::is_directory(frames)) {
+    for (const auto& entry : fs::directory_iterator(frames)) {
+      const std::string name = entry.path().filename().string();
+      if (name.rfind("frame-", 0) == 0 && name.find(".gii") != std::string::npos)
+        files.insert(entry.path());
+    }
+  }
+  if (files.empty()) {
+    throw InvalidInput(folder.string() +
+                       ": holds no frames/frame-*.surf.gii; unfold with --frames");
+  }
+  return {files.begin(), files.end()};
+}
+
+Json summaryOf(const fs::path& folder) {
+  const fs::path file = folder / provenance::kSummaryName;
+  return fs::exists(file) ? provenance::readJson(file) : Json::object();
+}
+
+std::string captionOf(const Json& summary, std::size_t frame, std::size_t count) {
+  std::array<char, 96> text{};
+  const Json visibilities = summary.value("frame_visibilities", Json::array());
+  if (frame >= visibilities.size() || !visibilities[frame].is_number()) return "";
+  std::snprintf(text.data(), text.size(), "average visibility %.2f",
+                visibilities[frame].get<double>());
+  std::string caption = text.data();
+  if (frame + 1 == count && summary.contains("area_error_mean")) {
+    std::snprintf(text.data(), text.size(), "   areas kept to %.2g %%",
+                  100 * summary.value("area_error_mean", kNaN));
+    caption += text.data();
+  }
+  return caption;
+}
+
+/// The region's vertices; all where the folder does not say.
+std::vector<std::int32_t> regionOf(const fs::path& folder, Eigen::Index vertexCount) {
+  std::vector<std::int32_t> region;
+  const fs::path file = folder / "region.label.gii";
+  if (!fs::exists(file)) return region;
+  const io::LabelMap labels = io::readVertexLabels(file, vertexCount);
+  for (Eigen::Index v = 0; v < vertexCount; ++v) {
+    if (labels.keys[v] != 0) region.push_back(static_cast<std::int32_t>(v));
+  }
+  return region;
+}
+
+/// From the unfolding's own viewpoint, where its summary tells it.
+FilmView fromViewpoint(const Json& summary, const TriangleMesh& mesh,
+                       const std::vector<std::int32_t>& region) {
+  FilmView view{Vector(1, 0, 0), Vector(0, 0, 1)};
+  const auto found = summary.find("viewpoint");
+  if (found == summary.end() || !found->is_array() || found->size() != 3) return view;
+  Point middle = Point::Zero();
+  for (const std::int32_t v : region) middle += mesh.positions.row(v).transpose();
+  middle /= std::max<double>(1, static_cast<double>(region.size()));
+  view.towards = middle - Point((*found)[0], (*found)[1], (*found)[2]);
+  return view;
+}
+
+/// Sends the pictures to ffmpeg's standard input.
+void encodeByFfmpeg(const fs::path& path, const std::vector<report::Picture>& frames, double fps) {
+  const report::Picture& first = frames.front();
+  const int width = first.width / 2 * 2, height = first.height / 2 * 2;  // as its codecs want
+  const std::string size = std::to_string(first.width) + "x" + std::to_string(first.height);
+  const std::string crop = "crop=" + std::to_string(width) + ":" + std::to_string(height) + ":0:0";
+  const std::string rate = std::to_string(fps);
+  const char* codec = path.extension() == ".webm" ? "libvpx-vp9" : "libx264";
+  std::array<int, 2> ends{};
+  if (pipe(ends.data()) != 0) throw EnvironmentError("film: no pipe could be made");
+  const pid_t child = fork();
+  if (child == 0) {
+    dup2(ends[0], STDIN_FILENO);
+    close(ends[0]);
+    close(ends[1]);
+    execlp("ffmpeg", "ffmpeg", "-loglevel", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgb24",
+           "-s", size.c_str(), "-r", rate.c_str(), "-i", "-", "-vf", crop.c_str(), "-c:v", codec,
+           "-pix_fmt", "yuv420p", path.c_str(), static_cast<char*>(nullptr));
+    _exit(127);
+  }
+  close(ends[0]);
+  const auto before = std::signal(SIGPIPE, SIG_IGN);  // NOLINT: its failure is seen by write()
+  for (const report::Picture& frame : frames) {
+    std::size_t sent = 0;
+    while (sent < frame.rgb.size()) {
+      const ssize_t now = write(ends[1], frame.rgb.data() + sent, frame.rgb.size() - sent);
+      if (now <= 0) break;
+      sent += static_cast<std::size_t>(now);
+    }
+  }
+  close(ends[1]);
+  std::signal(SIGPIPE, before);
+  int status = 0;
+  waitpid(child, &status, 0);
+  const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  if (code == 127) {
+    throw EnvironmentError(
+        "film: ffmpeg is not installed; write a .gif or .png, or install ffmpeg");
+  }
+  if (code != 0) throw EnvironmentError("film: ffmpeg could not write " + path.string());
+}
+
+}  // namespace
+
+FilmView filmView(const report::FigureView& view) {
+  if (!view.name) return {view.towards, view.up};
+  switch (*view.name) {
+    case report::ViewName::Left:
+      return {Vector(1, 0, 0), Vector(0, 0, 1)};
+    case report::ViewName::Right:
+      return {Vector(-1, 0, 0), Vector(0, 0, 1)};
+    case report::ViewName::Front:
+      return {Vector(0, -1, 0), Vector(0, 0, 1)};
+    case report::ViewName::Back:
+      return {Vector(0, 1, 0), Vector(0, 0, 1)};
+    case report::ViewName::Top:
+      return {Vector(0, 0, -1), Vector(0, 1, 0)};
+    default:
+      return {Vector(0, 0, 1), Vector(0, 1, 0)};
+  }
+}
+
+TriangleMesh firstFrame(const fs::path& folder) {
+  return io::readSurface(frameFiles(folder).front()).mesh;
+}
+
+std::vector<report::Picture> drawFilm(const fs::path& folder,
+                                      const std::optional<report::SurfacePaint>& paint,
+                                      const std::vector<FilmView>& views, int columns,
+                                      const report::SurfacePictureOptions& options) {
+  const Json summary = summaryOf(folder);
+  const std::vector<fs::path> files = frameFiles(folder);
+  std::vector<report::FilmFrame> frames;
+  for (std::size_t n = 0; n < files.size(); ++n) {
+    frames.push_back({io::readSurface(files[n]).mesh, captionOf(summary, n, files.size())});
+  }
+  const Eigen::Index vertices = frames.front().mesh.vertexCount();
+  report::FilmLook look;
+  look.focus = regionOf(folder, vertices);
+  if (paint) {
+    look.colours = report::coloursOf(*paint, vertices);
+    look.filling = paint->values.size() == 0 ? report::Filling::Discrete : report::Filling::Smooth;
+  } else if (!look.focus.empty()) {
+    look.colours.assign(static_cast<std::size_t>(vertices), kOutside);
+    for (const std::int32_t v : look.focus) look.colours[v] = kInside;
+    look.filling = report::Filling::Discrete;
+  }
+  std::vector<FilmView> chosen = views;
+  if (chosen.empty()) chosen = {fromViewpoint(summary, frames.front().mesh, look.focus)};
+  std::vector<std::vector<report::Picture>> bySide;
+  for (const FilmView& view : chosen) {
+    look.towards = view.towards;
+    look.up = view.up;
+    bySide.push_back(report::filmPictures(frames, look, options));
+  }
+  std::vector<report::Picture> pictures;
+  for (std::size_t n = 0; n < frames.size(); ++n) {
+    std::vector<report::Picture> beside;
+    for (auto& side : bySide) beside.push_back(std::move(side[n]));
+    pictures.push_back(beside.size() == 1 ? std::move(beside.front())
+                                          : report::tilePictures(beside, columns));
+  }
+  return pictures;
+}
+
+void writeFilm(const fs::path& path, const std::vector<report::Picture>& frames,
+               double framesPerSecond) {
+  const std::string ending = path.extension().string();
+  if (ending == ".mp4" || ending == ".webm") {
+    fs::path unfinished = path;
+    unfinished.replace_filename("." + path.stem().string() + ".unfinished" + ending);
+    try {
+      encodeByFfmpeg(unfinished, frames, framesPerSecond);
+      fs::rename(unfinished, path);
+    } catch (...) {
+      std::error_code ignored;
+      fs::remove(unfinished, ignored);
+      throw;
+    }
+    return;
+  }
+  if (ending != ".gif" && ending != ".png" && ending != ".apng") {
+    throw UsageError("--film " + path.string() +
+                     ": expected a name ending in .gif, .png, .apng, .mp4 or .webm");
+  }
+  WholeFile file(path);
+  file.write(ending == ".gif" ? report::encodeGif(frames, framesPerSecond)
+                              : report::encodeAnimatedPng(frames, framesPerSecond));
+  file.commit();
+}
+
+}  // namespace explica::app

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Core/TriangleMesh.h"
+#include "Explica/Report/Figure.h"
+#include "Explica/Report/Picture.h"
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+namespace explica::app {
+
+/// From where a film is taken.
+struct FilmView {
+  Vector towards;  ///< direction of sight
+  Vector up;
+};
+[[nodiscard]] FilmView filmView(const report::FigureView& view);
+
+/// The surface that an unfolding began with, as its first frame shows it.
+/// @throws InvalidInput  no frames
+[[nodiscard]] TriangleMesh firstFrame(const std::filesystem::path& folder);
+
+/// The frames of an unfolding: its region in colour and filling the picture, how far it is seen
+/// below.
+/// @param paint  in place of the region's colour
+/// @param views  side by side; empty: from the viewpoint of the unfolding
+/// @throws InvalidInput  no frames, or a map that does not fit
+[[nodiscard]] std::vector<report::Picture> drawFilm(
+    const std::filesystem::path& folder, const std::optional<report::SurfacePaint>& paint,
+    const std::vector<FilmView>& views, int columns, const report::SurfacePictureOptions& options);
+
+/// Writes .gif, .png, .apng; .mp4 and .webm by ffmpeg.  Whole or not at all.
+/// @throws UsageError        another ending
+/// @throws EnvironmentError  ffmpeg is not installed or failed
+void writeFilm(const std::filesystem::path& path, const std::vector<report::Picture>& frames,
+               double framesPerSecond);
+
+}  // namespace explica::app
