@@ -2,51 +2,28 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "Explica/Unfolding/Unfold.h"
+
+#include "Outputs.h"
+#include "View.h"
+
 #include "Explica/Application/Command.h"
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Collision/Untangling.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/WholeFile.h"
-#include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Geometry/SelfIntersection.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VertexDataFile.h"
-#include "Explica/IO/VtkFile.h"
 #include "Explica/Unfolding/Account.h"
-#include "Explica/Unfolding/Distortion.h"
 #include "Explica/Unfolding/Region.h"
-#include "Explica/Visibility/AverageVisibility.h"
-#include "Explica/Visibility/VisibleFraction.h"
-
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <fstream>
 
 namespace explica::app {
 namespace {
-
-constexpr char kStateFile[] = "unfolding.state";
-
-struct ViewSettings {
-  std::optional<Eigen::Vector3d> viewpoint;
-  std::optional<Eigen::Vector3d> direction;
-  double distance = 1000;
-  std::vector<double> line;
-};
-
-template <class Visitor>
-void describe(ViewSettings& view, Visitor&& visit) {
-  visit(Field{"viewpoint", "mm", "point to look from"}, view.viewpoint);
-  visit(Field{"direction", "", "look from the region's centroid plus --distance along this"},
-        view.direction);
-  visit(Field{"distance", "mm", "how far off a viewpoint given by --direction is"}, view.distance);
-  visit(Field{"view-line", "mm", "look from a segment: X,Y,Z of its start and of its end"},
-        view.line);
-}
 
 struct Settings {
   std::string surface;
@@ -57,7 +34,7 @@ struct Settings {
   std::optional<std::string> label;
   std::optional<int> labelKey;
   bool adjustRegion = false;
-  bool repair = false;
+  bool repair = true;
   unfolding::UnfoldOptions unfold;
   bool resume = false;
 };
@@ -66,13 +43,17 @@ void declare(Declaration& d, Settings& s) {
   d.synopsis("a region of a folded surface opened towards a viewpoint, areas kept")
       .description(
           "Maximises the average visibility of the region: the mean cosine under which its faces "
-          "look at "
-          "the viewpoint. Face areas are kept, edges keep their lengths as well as they can, and "
-          "no "
-          "step "
-          "lets the surface pass through itself. A run can be stopped at any time and continued "
-          "with "
-          "--resume into the same --out.")
+          "look at the viewpoint. Face areas are kept, edges keep their lengths as well as they "
+          "can, and a collar of the surface around the region follows. With the implicit method no "
+          "step lets the surface pass through itself, and faces that intersect at the start are "
+          "parted first where the region or its collar is concerned; the thesis's method promises "
+          "nothing of the kind. What is written is tested once more: faces that cross in it and "
+          "did "
+          "not at the start, a region that stays far from its goal, and a run that never got "
+          "better "
+          "than its start end with a warning, a 'flag' in the summary and exit code 3. A run can "
+          "be "
+          "stopped at any time and continued with --resume into the same --out.")
       .reference(
           "Lopez Perez 2010, Two- and three-dimensional annular tissues and unfolding, thesis")
       .example(
@@ -96,8 +77,9 @@ void declare(Declaration& d, Settings& s) {
           s.adjustRegion)
       .option("Unfolding",
               Field{"repair", "",
-                    "part faces that intersect at the start, by small moves where that goes; the "
-                    "result is compared with the surface so repaired"},
+                    "part faces that intersect at the start, by small moves where that goes: those "
+                    "of the region and its collar, if given explicitly those of all the surface; "
+                    "the result is compared with the surface so repaired"},
               s.repair)
       .options("Unfolding", s.unfold)
       .option("Unfolding", Field{"resume", "", "continue the run whose outputs are in --out"},
@@ -109,7 +91,7 @@ void declare(Declaration& d, Settings& s) {
       .output("visibility.shape.gii", FileKind::VertexData,
               "flux before, flux after, seen before, seen after")
       .output("distortion.shape.gii", FileKind::VertexData,
-              "area ratio, angle change in degrees, edge strain")
+              "area ratio (of all faces that move), angle change in degrees, edge strain")
       .varyingOutput("evolution.tsv", FileKind::Table, "one row per iteration")
       .output("intersections.tsv", FileKind::Table,
               "pairs of faces that intersect at the start, where, and whether --repair parted them")
@@ -117,27 +99,8 @@ void declare(Declaration& d, Settings& s) {
       .varyingOutput(kStateFile, FileKind::Any, "what --resume needs");
 }
 
-visibility::Viewpoints viewOf(Context& context, const Settings& s, const Point& about) {
-  const int given = s.view.viewpoint.has_value() + s.view.direction.has_value() +
-                    !s.view.line.empty() + s.viewSurface.has_value();
-  (void)context;
-  if (given != 1) {
-    throw InvalidInput(
-        "viewpoint: give exactly one of --viewpoint, --direction, --view-line and --view-surface");
-  }
-  if (s.view.viewpoint) return visibility::viewpoint(*s.view.viewpoint);
-  if (s.view.direction) {
-    const double length = s.view.direction->norm();
-    if (!(length > 0)) throw InvalidInput("direction: has no length");
-    if (!(s.view.distance > 0)) throw InvalidInput("distance: must be positive");
-    return visibility::viewpoint(about + s.view.distance / length * *s.view.direction);
-  }
-  if (!s.view.line.empty()) {
-    if (s.view.line.size() != 6) throw InvalidInput("view-line: needs six numbers X,Y,Z,X,Y,Z");
-    return visibility::viewLine(Point(s.view.line[0], s.view.line[1], s.view.line[2]),
-                                Point(s.view.line[3], s.view.line[4], s.view.line[5]));
-  }
-  return visibility::viewSurface(io::readSurface(*s.viewSurface, s.reading).mesh);
+visibility::Viewpoints viewOf(const Settings& s, const Point& about) {
+  return viewFrom(s.view, s.viewSurface, s.reading, about);
 }
 
 unfolding::Region regionOf(const TriangleMesh& mesh, const Settings& s,
@@ -157,32 +120,8 @@ unfolding::Region regionOf(const TriangleMesh& mesh, const Settings& s,
   return unfolding::regionOfMarked(mesh, marked);
 }
 
-/// Lists the start's intersections and parts them in `mesh` if that is asked for.
-void checkStart(Context& context, const Settings& s, const unfolding::Region& region,
-                TriangleMesh& mesh) {
-  collision::Untangling repair;
-  if (s.repair) {
-    auto step = context.step("repair");
-    repair = collision::untangle(mesh);
-  } else {
-    auto step = context.step("check");
-    repair.before = repair.after = geometry::findSelfIntersections(mesh);
-  }
-  const auto list = unfolding::listCrossings(mesh, repair.before, repair.after, region);
-  writeTextFile(context.output("intersections.tsv"), unfolding::crossingTable(mesh, list));
-  std::size_t inRegion = 0;
-  for (const unfolding::Crossing& c : list) inRegion += c.facesInRegion > 0;
-
-  context.result("self_intersections_initial", list.size());
-  context.result("self_intersections_initial_region", inRegion);
-  context.result("self_intersections_file", "intersections.tsv");
-  if (s.repair) {
-    context.result("self_intersections_repaired", repair.before.size() - repair.after.size());
-    context.result("repair_vertices_moved", repair.moved.size());
-    context.result("repair_move_max", repair.moveMax);
-    context.result("repair_move_mean", repair.moveMean);
-  }
-  if (list.empty()) return;
+std::string crossingsInWords(const std::vector<unfolding::Crossing>& list, std::size_t inRegion,
+                             const collision::Untangling& repair) {
   const unfolding::Crossing& first = list.front();
   char text[320];
   std::snprintf(
@@ -192,190 +131,138 @@ void checkStart(Context& context, const Settings& s, const unfolding::Region& re
       list.size(), inRegion, first.faces[0], first.faces[1], first.place[0], first.place[1],
       first.place[2]);
   std::string message = text;
-  if (!s.repair) {
-    message += "; they stay as they are, or are parted first by --repair";
-  } else {
-    std::snprintf(text, sizeof text,
-                  "; %zu were parted by moving %zu vertices by %.3f mm on average and %.3f mm at "
-                  "most%s",
-                  repair.before.size() - repair.after.size(), repair.moved.size(), repair.moveMean,
-                  repair.moveMax, repair.after.empty() ? "" : ", the others stay as they are");
-    message += text;
-    mesh.positions = repair.positions;
-  }
-  context.warn(message);
+  if (repair.moved.empty()) return message + "; they stay as they are";
+  std::snprintf(text, sizeof text,
+                "; %zu were parted by moving %zu vertices by %.3f mm on average and %.3f mm at "
+                "most%s",
+                repair.before.size() - repair.after.size(), repair.moved.size(), repair.moveMean,
+                repair.moveMax, repair.after.empty() ? "" : ", the others stay as they are");
+  return message + text;
 }
 
-Termination run(Context& context, const Settings& s) {
-  const auto begin = std::chrono::steady_clock::now();
-  const auto elapsed = [&] {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  };
+/// Seconds for the iterations within the limit of the whole command.  What comes after them tests,
+/// measures and writes what the start read, tested and measured: it takes as long, and each frame a
+/// share of it.
+double timeToIterate(double limit, double start, const unfolding::UnfoldOptions& options) {
+  constexpr double kFrameShare = 0.15;  // a frame is tested where it moved, and written
+  constexpr double kLeast = 1e-3;       // s: one look at the state, and it ends
+  return std::max(kLeast, limit - start * (2 + kFrameShare * options.frames));
+}
+
+/// Lists the start's intersections and parts in `mesh` those that stand in the way.
+/// @return the pairs that are left
+std::vector<geometry::FacePair> checkStart(Context& context, const Settings& s,
+                                           const unfolding::Region& region, TriangleMesh& mesh) {
+  collision::Untangling repair;
+  if (s.repair) {
+    auto step = context.step("repair");
+    collision::UntangleOptions options;
+    if (!context.given("repair")) {
+      options.concerned = unfolding::movingFaces(mesh, region, s.unfold.unfolder);
+    }
+    repair = collision::untangle(mesh, options);
+    mesh.positions = repair.positions;
+  } else {
+    auto step = context.step("check");
+    repair.before = repair.after = geometry::findSelfIntersections(mesh);
+  }
+  const auto list = unfolding::listCrossings(mesh, repair.before, repair.after, region);
+  writeTextFile(context.output("intersections.tsv"), unfolding::crossingTable(mesh, list));
+  std::size_t inRegion = 0;
+  for (const unfolding::Crossing& c : list) inRegion += c.facesInRegion > 0;
+  context.result("self_intersections_initial", list.size());
+  context.result("self_intersections_initial_region", inRegion);
+  context.result("self_intersections_file", "intersections.tsv");
+  context.result("self_intersections_repaired", repair.before.size() - repair.after.size());
+  context.result("repair_vertices_moved", repair.moved.size());
+  context.result("repair_move_max", repair.moveMax);
+  context.result("repair_move_mean", repair.moveMean);
+  if (!list.empty()) context.warn(crossingsInWords(list, inRegion, repair));
+  return repair.after;
+}
+
+/// Region and view hang on each other: a direction counts from the region's centroid, a cone needs
+/// the view.
+struct Aim {
+  visibility::Viewpoints view;
+  unfolding::Region region;
+};
+
+Aim chooseAim(Context& context, const TriangleMesh& mesh, const Settings& s) {
+  Aim aim;
+  if (s.region.cone) {
+    unfolding::RegionOptions centre = s.region;
+    centre.cone.reset();
+    const unfolding::Region ball = unfolding::selectRegion(mesh, centre);
+    aim.view = viewOf(s, mesh.positions.row(ball.centre).transpose());
+    aim.region = regionOf(mesh, s, &aim.view);
+  } else {
+    aim.region = regionOf(mesh, s, nullptr);
+    aim.view = viewOf(s, unfolding::centroidOf(mesh, aim.region));
+  }
+  unfolding::requireViewFromOutside(mesh, aim.view);
+  if (s.adjustRegion) {
+    const std::size_t before = aim.region.faces.size();
+    aim.region = unfolding::adjustRegion(mesh, aim.region, s.region, aim.view);
+    if (aim.region.faces.size() != before) {
+      context.warn("the region was adjusted from " + std::to_string(before) + " to " +
+                   std::to_string(aim.region.faces.size()) + " faces");
+    }
+  }
+  if (aim.region.pieces > 1) {
+    context.warn("the region has " + std::to_string(aim.region.pieces) +
+                 " pieces; each unfolds on its own");
+  }
+  if (aim.region.holes > 0) {
+    context.warn("the region has " + std::to_string(aim.region.holes) + " holes; they stay open");
+  }
+  return aim;
+}
+
+TriangleMesh readUsable(Context& context, const Settings& s, io::SurfaceMetadata& metadata) {
   const io::LoadedSurface loaded = readSurface(context, "SURFACE", s.surface, s.reading);
-  TriangleMesh mesh = loaded.mesh;
-  const auto condition = geometry::requireManifold(mesh, s.surface);
+  const auto condition = geometry::requireManifold(loaded.mesh, s.surface);
+  unfolding::requireFitsSingle(loaded.mesh, s.surface);
   if (condition.coincidentVertices > 0) {
     context.warn(std::to_string(condition.coincidentVertices) +
                  " vertices lie exactly on others: the surface touches itself there");
   }
+  sayHowRead(context, loaded.origin);
+  metadata = loaded.metadata;
+  return loaded.mesh;
+}
 
-  visibility::Viewpoints view;
-  unfolding::Region region;
-  if (s.region.cone) {
-    // A cone needs the view first: a direction then counts from the centre.
-    unfolding::RegionOptions centre = s.region;
-    centre.cone.reset();
-    const unfolding::Region ball = unfolding::selectRegion(mesh, centre);
-    view = viewOf(context, s, mesh.positions.row(ball.centre).transpose());
-    region = regionOf(mesh, s, &view);
-  } else {
-    region = regionOf(mesh, s, nullptr);
-    view = viewOf(context, s, unfolding::centroidOf(mesh, region));
-  }
-  unfolding::requireViewFromOutside(mesh, view);
-  if (s.adjustRegion) {
-    const std::size_t before = region.faces.size();
-    region = unfolding::adjustRegion(mesh, region, s.region, view);
-    if (region.faces.size() != before) {
-      context.warn("the region was adjusted from " + std::to_string(before) + " to " +
-                   std::to_string(region.faces.size()) + " faces");
-    }
-  }
-  if (region.pieces > 1) {
-    context.warn("the region has " + std::to_string(region.pieces) +
-                 " pieces; each unfolds on its own");
-  }
-  if (region.holes > 0) {
-    context.warn("the region has " + std::to_string(region.holes) + " holes; they stay open");
-  }
+Termination run(Context& context, const Settings& s) {
+  const auto begin = std::chrono::steady_clock::now();
+  const auto seconds = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
+  Unfolded u;
+  u.before = readUsable(context, s, u.metadata);
+  const Aim aim = chooseAim(context, u.before, s);
+  u.chosen = aim.region;
+  u.view = aim.view;
+  u.surround = s.unfold.unfolder.surround;
   std::optional<unfolding::Checkpoint> checkpoint;
   if (s.resume) checkpoint = unfolding::readCheckpoint(context.outputFolder() / kStateFile);
-
-  sayHowRead(context, loaded.origin);
-
-  checkStart(context, s, region, mesh);
-  const double started = elapsed();
-
-  unfolding::UnfoldResult result;
+  u.crossings = checkStart(context, s, u.chosen, u.before);
+  u.secondsStart = seconds();
   {
     auto step = context.step("unfold");
-    result = unfolding::unfold(mesh, region, view, s.unfold, context.monitor(),
-                               checkpoint ? &*checkpoint : nullptr);
-    step.iterations(result.history.back().iteration);
-    step.termination(result.termination);
+    unfolding::UnfoldOptions options = s.unfold;
+    if (options.maxTime) options.maxTime = timeToIterate(*options.maxTime, u.secondsStart, options);
+    u.result = unfolding::unfold(u.before, u.chosen, u.view, options, context.monitor(),
+                                 checkpoint ? &*checkpoint : nullptr);
+    step.iterations(u.result.history.back().iteration);
+    step.termination(u.result.termination);
   }
-
-  const double unfolded = elapsed();
+  const double unfolded = seconds();
   auto step = context.step("measure and write");
-  TriangleMesh& after = result.mesh;
-  after.positions = unfolding::roundedToSingle(after.positions);
-  const TriangleMesh before{mesh.positions, after.faces};
-  const auto& faces = result.region.faces;
-  const auto distortion = unfolding::measureDistortion(before, after.positions, faces);
-  const auto seenBefore = visibility::visibleFraction(mesh, view);
-  const auto seenAfter = visibility::visibleFraction(after, view);
-  const auto crossingsAfter = geometry::findSelfIntersections(after);
-
-  const std::string structure = loaded.metadata.structure;
-  io::SurfaceMetadata metadata = loaded.metadata;
-  metadata.topologicalType.clear();
-  metadata.geometricType = "Inflated";  // Workbench's nearest word: no place in the head any more
-  io::writeGiftiSurface(context.output("unfolded.surf.gii"), after, metadata);
-
-  const std::vector<io::VertexMap> visibilityMaps = {
-      {"flux before", "", visibility::vertexFlux(mesh, view)},
-      {"flux after", "", visibility::vertexFlux(after, view)},
-      {"seen before", "", seenBefore.vertex},
-      {"seen after", "", seenAfter.vertex}};
-  io::writeGiftiShape(context.output("visibility.shape.gii"), visibilityMaps, structure);
-  const Eigen::VectorXd angleDeg = distortion.angleErrorRad * (180 / kPi);
-  const std::vector<io::VertexMap> distortionMaps = {
-      {"area ratio", "", unfolding::vertexMeans(before, faces, distortion.areaRatio, 1)},
-      {"angle change", "degrees", unfolding::vertexMeans(before, faces, angleDeg, 0)},
-      {"edge strain", "", unfolding::vertexStrains(before, after.positions, faces)}};
-  io::writeGiftiShape(context.output("distortion.shape.gii"), distortionMaps, structure);
-
-  io::LabelMap label{
-      "region",
-      {},
-      {{0, "surroundings", {0.7F, 0.7F, 0.7F, 1}}, {1, "region", {0.3F, 0.5F, 0.9F, 1}}}};
-  label.keys.setZero(mesh.vertexCount());
-  for (const std::int32_t v : result.region.vertices) label.keys[v] = 1;
-  io::writeGiftiLabel(context.output("region.label.gii"), label, structure);
-
-  std::vector<io::VertexMap> allVertexMaps = visibilityMaps;
-  allVertexMaps.insert(allVertexMaps.end(), distortionMaps.begin(), distortionMaps.end());
-  allVertexMaps.push_back({"region", "", label.keys.cast<double>()});
-  Eigen::VectorXd areaRatio = Eigen::VectorXd::Ones(after.faceCount());
-  Eigen::VectorXd angleChange = Eigen::VectorXd::Zero(after.faceCount());
-  Eigen::VectorXd faceSeenBefore = seenBefore.face;
-  if (after.faceCount() != mesh.faceCount()) {  // the region alone
-    faceSeenBefore.resize(after.faceCount());
-    for (std::size_t n = 0; n < faces.size(); ++n) {
-      faceSeenBefore[faces[n]] = seenBefore.face[region.faces[n]];
-    }
-  }
-  for (std::size_t n = 0; n < faces.size(); ++n) {
-    areaRatio[faces[n]] = distortion.areaRatio[static_cast<Eigen::Index>(n)];
-    angleChange[faces[n]] = angleDeg[static_cast<Eigen::Index>(n)];
-  }
-  io::writeVtp(context.output("unfolded.vtp"), after, allVertexMaps,
-               {{"area ratio", "", areaRatio},
-                {"angle change", "degrees", angleChange},
-                {"seen before", "", faceSeenBefore},
-                {"seen after", "", seenAfter.face}});
-  writeTextFile(context.output("evolution.tsv"), unfolding::evolutionTable(result.history));
-  unfolding::writeCheckpoint(context.output(kStateFile), result.checkpoint);
-
-  std::size_t worstFrame = 0;
-  std::vector<double> frameVisibilities;
-  for (std::size_t n = 0; n < result.frames.size(); ++n) {
-    const TriangleMesh frame{unfolding::roundedToSingle(result.frames[n].positions), after.faces};
-    worstFrame = std::max(worstFrame, geometry::findSelfIntersections(frame).size());
-    frameVisibilities.push_back(result.frames[n].visibility);
-    char name[64];
-    std::snprintf(name, sizeof name, "frames/frame-%04zu.surf.gii", n);
-    io::writeGiftiSurface(context.output(name), frame, metadata);
-  }
-
-  const auto& first = result.history.front();
-  const auto& last = result.history.back();
-  context.result("region_faces", faces.size());
-  context.result("region_vertices", result.region.vertices.size());
-  context.result("region_pieces", result.region.pieces);
-  context.result("region_holes", result.region.holes);
-  context.result("region_area", geometry::totalArea(geometry::extractFaces(before, faces).mesh));
-  context.result("visibility_initial", first.visibility);
-  context.result("visibility_final",
-                 visibility::AverageVisibility(after.faces, faces, view).value(after.positions));
-  context.result("seen_initial", seenBefore.of(mesh, region.faces));
-  context.result("seen_final", seenAfter.of(after, faces));
-  context.result("backfacing_initial", unfolding::backfacingShare(before, faces, view));
-  context.result("backfacing_final", unfolding::backfacingShare(after, faces, view));
-  context.result("area_error_mean", distortion.areaErrorMean);
-  context.result("area_error_max", distortion.areaErrorMax);
-  context.result("angle_error_mean_deg", distortion.angleErrorMeanRad * 180 / kPi);
-  context.result("edge_strain_mean", distortion.edgeStrainMean);
-  context.result("edge_strain_p95", distortion.edgeStrainP95);
-  context.result("geodesic_error_mean", distortion.geodesicErrorMean);
-  context.result("self_intersections_final", crossingsAfter.size());
-  if (!result.frames.empty()) {
-    context.result("frame_visibilities", frameVisibilities);
-    context.result("self_intersections_frames_max", worstFrame);
-  }
-  context.result("iterations", last.iteration);
-  unfolding::PhaseSeconds phases;
-  for (const unfolding::IterationRecord& row : result.history) phases += row.phases;
-  context.result("seconds", elapsed());
-  context.result("seconds_start", started);
-  context.result("seconds_visibility", phases.visibility);
-  context.result("seconds_repulsion", phases.repulsion);
-  context.result("seconds_collision", phases.collision);
-  context.result("seconds_solve", phases.solve);
-  context.result("seconds_output", elapsed() - unfolded);
-  context.result("seconds_per_iteration", last.iteration > 0 ? last.seconds / last.iteration : 0);
-  context.result("stop_reason", std::string(nameOf(result.termination)));
-  return result.termination;
+  const Termination end = writeUnfolded(context, u);
+  context.result("seconds", seconds());
+  context.result("seconds_start", u.secondsStart);
+  context.result("seconds_output", seconds() - unfolded);
+  return end;
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "RealSurfaces.h"
 
 #include "Explica/Geometry/Fixtures.h"
+#include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/SelfIntersection.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VertexDataFile.h"
@@ -137,6 +138,11 @@ TEST(UnfoldCommand, WritesEveryFileArrayAndKeyThatOthersRelyOn) {
                             "seconds_collision",
                             "seconds_solve",
                             "seconds_output",
+                            "viewpoint",
+                            "surround",
+                            "crossings_with_rest",
+                            "collar_faces",
+                            "flag",
                             "stop_reason"}) {
       EXPECT_TRUE(summary.contains(key)) << key;
     }
@@ -151,6 +157,7 @@ TEST(UnfoldCommand, WritesEveryFileArrayAndKeyThatOthersRelyOn) {
                                "energy_area",
                                "energy_spring",
                                "energy_lift",
+                               "energy_collar",
                                "energy_contact",
                                "energy_knot",
                                "objective_before",
@@ -227,10 +234,11 @@ TEST(UnfoldCommand, IntersectionsOfTheStartAreListedAndNeverMadeWorse) {
     ASSERT_FALSE(before.empty());
     const auto result =
         explica({"unfold", surface, "--center", "0,0,30", "--radius", "15", "--direction", "0,0,1",
-                 "--max-iterations", "12", "--out", folder / "out"});
+                 "--max-iterations", "12", "--no-repair", "--out", folder / "out"});
     ASSERT_EQ(result.exitCode, 3) << result;
     const auto summary = readJson(folder / "out/summary.json");
     EXPECT_EQ(summary["self_intersections_initial"], before.size());
+    EXPECT_EQ(summary["self_intersections_new"], 0);
     EXPECT_EQ(summary["self_intersections_initial_region"] > 0, about.z() > 0);
     const auto after =
         geometry::findSelfIntersections(io::readSurface(folder / "out/unfolded.surf.gii").mesh);
@@ -268,6 +276,104 @@ TEST(UnfoldCommand, RepairPartsThemAndSaysHowFarVerticesMoved) {
   }
 }
 
+TEST(UnfoldCommand, ByDefaultOnlyCrossingsInTheWayAreParted) {
+  for (const Point& about : {Point(0, 0, 30), Point(0, 0, -30)}) {
+    const TemporaryFolder folder;
+    const std::string surface = writePierced(folder, about);
+    const auto result =
+        explica({"unfold", surface, "--center", "0,0,30", "--radius", "15", "--direction", "0,0,1",
+                 "--max-iterations", "3", "--out", folder / "out"});
+    ASSERT_EQ(result.exitCode, 3) << result;
+    const auto summary = readJson(folder / "out/summary.json");
+    const bool inTheWay = about.z() > 0;
+    EXPECT_EQ(summary["self_intersections_repaired"] > 0, inTheWay);
+    EXPECT_EQ(summary["self_intersections_final"] == 0, inTheWay);
+    EXPECT_EQ(summary["self_intersections_new"], 0);
+  }
+}
+
+TEST(UnfoldCommand, ByDefaultThePatchStaysInPlaceAndItsCollarIsAccountedFor) {
+  const TemporaryFolder folder;
+  const auto result =
+      explica(onFoldedSphere(folder) + std::vector<std::string>{"--out", folder / "out"});
+  ASSERT_EQ(result.exitCode, 0) << result;
+  const auto summary = readJson(folder / "out/summary.json");
+  EXPECT_EQ(summary["surround"], "elastic");
+  EXPECT_EQ(summary["flag"], "");
+  EXPECT_EQ(summary["crossings_with_rest"], 0);
+  EXPECT_EQ(summary["viewpoint"].size(), 3u);
+  EXPECT_GT(summary["viewpoint"][2], 1000);
+  // The numbers are those of the per-face map that is written.
+  const TriangleMesh before = io::readSurface(folder / "sphere.surf.gii").mesh;
+  const TriangleMesh after = io::readSurface(folder / "out/unfolded.surf.gii").mesh;
+  const Eigen::VectorXd areas0 = geometry::faceAreas(before), areas1 = geometry::faceAreas(after);
+  const auto label = io::readVertexLabels(folder / "out/region.label.gii", before.vertexCount());
+  double sum = 0, largest = 0, count = 0;
+  for (Eigen::Index f = 0; f < before.faceCount(); ++f) {
+    bool moves = false, inRegion = true;
+    for (int k = 0; k < 3; ++k) {
+      moves = moves || before.corner(f, k) != after.corner(f, k);
+      inRegion = inRegion && label.keys[before.faces(f, k)] == 1;
+    }
+    if (!moves || inRegion) continue;
+    sum += areas1[f] / areas0[f];
+    largest = std::max(largest, areas1[f] / areas0[f]);
+    count += 1;
+  }
+  EXPECT_EQ(summary["collar_faces"], count);
+  EXPECT_NEAR(summary["collar_stretch_mean"], sum / count, 1e-6);
+  EXPECT_NEAR(summary["collar_stretch_max"], largest, 1e-6);
+  EXPECT_LE(largest, 8);
+}
+
+TEST(UnfoldCommand, ADetachedPatchIsComparedWithTheSurfaceThatItCameFrom) {
+  const TemporaryFolder folder;
+  const auto result =
+      explica(onFoldedSphere(folder) +
+              std::vector<std::string>{"--surround", "none", "--out", folder / "out"});
+  ASSERT_EQ(result.exitCode, 0) << result;
+  const auto summary = readJson(folder / "out/summary.json");
+  EXPECT_EQ(summary["self_intersections_final"], 0);
+  EXPECT_GT(summary["crossings_with_rest"], 0);  // laid flat it is wider than its hole
+  EXPECT_FALSE(summary.contains("collar_stretch_mean"));
+}
+
+TEST(UnfoldCommand, FarFromTheOriginNothingIsLost) {
+  const TemporaryFolder folder;
+  const auto words = onFoldedSphere(folder);
+  TriangleMesh mesh = io::readSurface(words[1]).mesh;
+  mesh.positions.rowwise() += Eigen::RowVector3d(1e5, -1e5, 1e5);
+  io::writeSurface(folder / "far.surf.gii", mesh);
+  ASSERT_EQ(explica(words + std::vector<std::string>{"--out", folder / "near"}).exitCode, 0);
+  ASSERT_EQ(explica({"unfold", folder / "far.surf.gii", "--center", "100000,-100000,100030",
+                     "--radius", "15", "--direction", "0,0,1", "--out", folder / "far"})
+                .exitCode,
+            0);
+  const auto near = readJson(folder / "near/summary.json");
+  const auto far = readJson(folder / "far/summary.json");
+  EXPECT_EQ(far["region_faces"], near["region_faces"]);
+  EXPECT_EQ(far["self_intersections_new"], 0);
+  EXPECT_EQ(far["flag"], "");
+  EXPECT_NEAR(far["visibility_final"], near["visibility_final"].get<double>(), 0.005);
+}
+
+TEST(UnfoldCommand, WhatTheThesisMethodLetsCrossIsSaid) {
+  const TemporaryFolder folder;
+  const auto result =
+      explica(onFoldedSphere(folder) +
+              std::vector<std::string>{"--surround", "fixed", "--method", "thesis", "--time-step",
+                                       "0.5", "--max-iterations", "150", "--out", folder / "out"});
+  EXPECT_EQ(result.exitCode, 3) << result;
+  const auto summary = readJson(folder / "out/summary.json");
+  const auto pairs =
+      geometry::findSelfIntersections(io::readSurface(folder / "out/unfolded.surf.gii").mesh);
+  ASSERT_GT(pairs.size(), 0u);
+  EXPECT_EQ(summary["self_intersections_new"], pairs.size());
+  EXPECT_EQ(summary["flag"], "crossing");
+  EXPECT_NE(summary["stop_reason"], "converged");
+  EXPECT_NE(result.err.find("intersect in what is written"), std::string::npos);
+}
+
 TEST(UnfoldCommand, RefusesWhatCannotBeUnfoldedAndSaysWhy) {
   const TemporaryFolder folder;
   const auto words = onFoldedSphere(folder);
@@ -278,7 +384,6 @@ TEST(UnfoldCommand, RefusesWhatCannotBeUnfoldedAndSaysWhy) {
     return explica(more);
   };
   const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
-      {{"--center", "0,0,30", "--radius", "-3", "--direction", "0,0,1"}, "radius"},
       {{"--center", "0,0,30", "--radius", "500", "--direction", "0,0,1"}, "whole closed surface"},
       {{"--center", "0,0,30", "--radius", "0.001", "--direction", "0,0,1"}, "no face"},
       {{"--center", "0,0,30", "--radius", "15", "--viewpoint", "0,0,1"}, "inside the surface"},
@@ -316,7 +421,7 @@ struct WrongInput {
   std::function<void(TriangleMesh&)> damage;
   std::vector<std::string> options;
   std::string reason;              ///< part of the sentence
-  std::string file = "sheet.off";  ///< that it names
+  std::string file = "sheet.off";  ///< that it names; empty: the command line itself is wrong
 };
 void PrintTo(const WrongInput& row, std::ostream* stream) {
   *stream << row.name;
@@ -333,7 +438,8 @@ const WrongInput kWrongInputs[] = {
     {"RadiusNegative",
      nothing,
      {"--center", "10,10,0", "--radius", "-3", "--direction", "0,0,1"},
-     "not a positive length"},
+     "above 0",
+     ""},
     {"RegionEmpty",
      nothing,
      {"--center", "10,10,0", "--radius", "0.1", "--direction", "0,0,1"},
@@ -356,11 +462,24 @@ const WrongInput kWrongInputs[] = {
      "look from another side"},
     {"ConeTooWide", nothing, onDisc({"--cone", "120", "--direction", "0,0,1"}), "cone"},
     {"TargetAboveOne", nothing, onDisc({"--direction", "0,0,1", "--target-visibility", "1.5"}),
-     "target-visibility"},
-    {"FramesNegative", nothing, onDisc({"--direction", "0,0,1", "--frames", "-1"}), "frames"},
+     "above 0, at most 1", ""},
+    {"FramesNegative", nothing, onDisc({"--direction", "0,0,1", "--frames", "-1"}), "0 to 1000",
+     ""},
     {"IterationsZero", nothing, onDisc({"--direction", "0,0,1", "--max-iterations", "0"}),
-     "max-iterations"},
-    {"TimeNegative", nothing, onDisc({"--direction", "0,0,1", "--max-time", "-1"}), "max-time"},
+     "1 to 100000", ""},
+    {"TimeNegative", nothing, onDisc({"--direction", "0,0,1", "--max-time", "-1"}), "above 0", ""},
+    {"TooManyFrames", nothing, onDisc({"--direction", "0,0,1", "--frames", "1000000000"}),
+     "0 to 1000", ""},
+    {"CollarTooWide", nothing, onDisc({"--direction", "0,0,1", "--collar-width", "1e9"}),
+     "at most 1000", ""},
+    {"CentreFarFromTheSurface",
+     nothing,
+     {"--center", "10,10,480", "--radius", "7", "--direction", "0,0,1"},
+     "mm from the surface"},
+    {"BeyondSinglePrecision",
+     [](TriangleMesh& mesh) { mesh.positions.col(0).array() += 1e7; },
+     {"--vertex", "220", "--radius", "7", "--direction", "0,0,1"},
+     "single precision"},
     {"FaceWithoutArea",
      [](TriangleMesh& mesh) {  // a face whose corners lie on one line
        mesh.positions.row(vertexAt(mesh, 9, 9)) << 9, 9, 0;
@@ -455,7 +574,7 @@ TEST_P(WrongUnfoldInput, IsRefusedWithItsReasonAndWritesNothing) {
     words.push_back(word);
   }
   const auto result = explica(words);
-  EXPECT_EQ(result.exitCode, 2) << result;
+  EXPECT_EQ(result.exitCode, GetParam().file.empty() ? 1 : 2) << result;
   EXPECT_NE(result.err.find(GetParam().reason), std::string::npos) << result;
   EXPECT_NE(result.err.find(GetParam().file), std::string::npos) << result;
   EXPECT_FALSE(fs::exists(folder / "out"));

@@ -285,6 +285,12 @@ void smooth(const Place& place, Best& best) {
   }
 }
 
+bool isConcerned(const std::vector<geometry::FacePair>& pairs, const std::vector<bool>& concerned) {
+  return std::any_of(pairs.begin(), pairs.end(), [&](const geometry::FacePair& pair) {
+    return concerned.empty() || concerned[pair[0]] || concerned[pair[1]];
+  });
+}
+
 }  // namespace
 
 Untangling untangle(const TriangleMesh& mesh, const UntangleOptions& options) {
@@ -293,6 +299,10 @@ Untangling untangle(const TriangleMesh& mesh, const UntangleOptions& options) {
   }
   if (!(options.largestMove > 0)) throw InvalidInput("largestMove: must be positive");
   if (options.descentSteps < 0) throw InvalidInput("descentSteps: must not be negative");
+  if (!options.concerned.empty() &&
+      static_cast<Eigen::Index>(options.concerned.size()) != mesh.faceCount()) {
+    throw InvalidInput("concerned: needs one flag per face");
+  }
   Untangling result;
   result.positions = mesh.positions;
   result.before = result.after = geometry::findSelfIntersections(mesh);
@@ -300,8 +310,10 @@ Untangling untangle(const TriangleMesh& mesh, const UntangleOptions& options) {
   const auto topology = geometry::buildTopology(mesh.faces, mesh.vertexCount());
   TriangleMesh now = mesh;
   geometry::BoxTree tree(geometry::faceBoxes(now));
-  for (int rings = 1; rings <= options.largestRings && !result.after.empty(); ++rings) {
+  for (int rings = 1; rings <= options.largestRings && isConcerned(result.after, options.concerned);
+       ++rings) {
     for (const Group& group : groupsOf(now, topology, result.after, rings)) {
+      if (!isConcerned(group.pairs, options.concerned)) continue;
       const Place place(now, topology, tree, group, options.largestMove);
       Best best(place, group.pairs.size());
       descend(place, options, best);

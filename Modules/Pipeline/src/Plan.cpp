@@ -344,7 +344,6 @@ class Planner {
     const std::string file = std::string(nameOf(options_.unfolded)) + ".surf.gii";
     const Json json = {{"SURFACE", (out_ / "surface" / file).string()},
                        {"direction", {left_ ? -1 : 1, 0, 0}},
-                       {"surround", "none"},  // a patch alone opens all the way
                        {"frames", kFrames}};
     plan_.steps.push_back({"unfold", "unfold", {"surface"}, values(json)});
   }

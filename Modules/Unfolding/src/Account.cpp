@@ -3,7 +3,9 @@
 
 #include "Explica/Unfolding/Account.h"
 
+#include "Explica/Core/Errors.h"
 #include "Explica/Geometry/FaceCrossing.h"
+#include "Explica/Geometry/MeshMeasures.h"
 
 #include <Eigen/Geometry>
 
@@ -11,6 +13,7 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <limits>
 #include <set>
 #include <utility>
 
@@ -39,7 +42,9 @@ std::vector<EvolutionColumn> listColumns() {
   std::vector<EvolutionColumn> list = {column("visibility", "%.6f", &R::visibility),
                                        column("area_error_mean", "%.6g", &R::areaErrorMean),
                                        column("area_error_max", "%.6g", &R::areaErrorMax),
-                                       column("edge_strain_mean", "%.6g", &R::edgeStrainMean)};
+                                       column("edge_strain_mean", "%.6g", &R::edgeStrainMean),
+                                       column("collar_stretch_mean", "%.6g", &R::collarStretchMean),
+                                       column("collar_stretch_max", "%.6g", &R::collarStretchMax)};
   for (const TermInfo& info : kTerms) {
     list.push_back({"energy_" + std::string(info.name), "%.6g",
                     [term = info.term](const R& row) { return row.energies[term]; }});
@@ -154,6 +159,20 @@ std::string crossingTable(const TriangleMesh& mesh, std::span<const Crossing> cr
 
 Positions roundedToSingle(const Positions& positions) {
   return positions.cast<float>().cast<double>();
+}
+
+void requireFitsSingle(const TriangleMesh& mesh, std::string_view name) {
+  constexpr double kCoarsest = 0.02;  // of the mean edge: nearer features than this do not survive
+  const double farthest = mesh.positions.cwiseAbs().maxCoeff();
+  const double edge = geometry::meanEdgeLength(mesh);
+  const double step = farthest * std::numeric_limits<float>::epsilon();
+  if (step <= kCoarsest * edge) return;
+  char text[240];
+  std::snprintf(text, sizeof text,
+                ": coordinates reach %.3g mm, where single precision, in which files keep them, "
+                "steps by %.2g mm beside edges of %.2g mm; move the surface nearer to the origin",
+                farthest, step, edge);
+  throw InvalidInput(std::string(name) + text);
 }
 
 double backfacingShare(const TriangleMesh& mesh, std::span<const std::int32_t> faces,

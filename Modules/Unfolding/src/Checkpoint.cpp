@@ -99,6 +99,9 @@ void writeCheckpoint(const std::filesystem::path& path, const Checkpoint& checkp
   w.count(s.separating);
   w.number(s.separatingEnergy);
   w.count(s.stalled);
+  w.count(checkpoint.best.iteration);
+  w.number(checkpoint.best.visibility);
+  w.points(checkpoint.best.moving);
   w.count(static_cast<std::int64_t>(checkpoint.history.size()));
   for (const IterationRecord& r : checkpoint.history) {
     w.count(r.iteration);
@@ -143,6 +146,9 @@ Checkpoint readCheckpoint(const std::filesystem::path& path) {
   c.state.separating = r.count() != 0;
   c.state.separatingEnergy = r.number();
   c.state.stalled = r.count() != 0;
+  c.best.iteration = static_cast<int>(r.count());
+  c.best.visibility = r.number();
+  c.best.moving = r.points();
   c.history.resize(static_cast<std::size_t>(r.count()));
   for (IterationRecord& row : c.history) {
     row.iteration = static_cast<int>(r.count());

@@ -15,8 +15,9 @@ namespace explica::unfolding {
 /// A face with a vertex that moves.
 struct PatchFace {
   std::array<std::int32_t, 3> vertices;
-  double restArea = 0;  ///< A0, mm^2, > 0
-  double weight = 0;    ///< w, mm^2: the rest area, less for needles
+  double restArea = 0;    ///< A0, mm^2, > 0
+  double weight = 0;      ///< w, mm^2: the rest area, less for needles
+  double holdWeight = 0;  ///< h, mm^2: the rest area, more for needles, whose ratio is bounded too
 };
 
 /// An edge of such faces.

@@ -4,6 +4,7 @@
 #include "PatchSetup.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Geometry/Geodesic.h"
 #include "Explica/Geometry/MeshMeasures.h"
 
 #include <algorithm>
@@ -19,6 +20,8 @@ constexpr double kNeedleShare = 0.02;
 constexpr double kLeastArea = 1e-12;
 // Of the mean edge: edges far shorter must not rule the rest.
 constexpr double kShortShare = 0.1;
+// Of the radius of a disc of the region's area: how wide a collar is by default.
+constexpr double kCollarShare = 0.4;
 
 void requireUsable(const UnfolderOptions& options, const Region& region) {
   if (!(options.contactRange > 0)) throw InvalidInput("contactRange: must be positive");
@@ -26,7 +29,9 @@ void requireUsable(const UnfolderOptions& options, const Region& region) {
   if (options.timeStep && !(*options.timeStep > 0)) {
     throw InvalidInput("time-step: must be positive");
   }
-  if (options.collarRings <= 0) throw InvalidInput("collarRings: must be positive");
+  if (options.collarWidth && !(*options.collarWidth > 0)) {
+    throw InvalidInput("collar-width: must be positive");
+  }
   if (region.faces.empty()) throw InvalidInput("region: has no face");
 }
 
@@ -46,34 +51,31 @@ std::vector<bool> flags(Eigen::Index count, const std::vector<std::int32_t>& mar
   return result;
 }
 
-/// Vertices that move: the region's and, of an elastic collar, all but the outermost.
-std::vector<bool> movingVertices(const PatchSetup& s, const UnfolderOptions& options) {
-  std::vector<bool> moves = flags(s.mesh.vertexCount(), s.region.vertices);
-  if (options.surround != Surround::Elastic) return moves;
-  for (int ring = 0; ring + 1 < options.collarRings; ++ring) {
-    std::vector<bool> grown = moves;
-    for (std::size_t v = 0; v < moves.size(); ++v) {
-      if (!moves[v]) continue;
-      for (const std::int32_t w : s.topology.vertexVertices[v]) grown[w] = true;
-    }
-    moves = std::move(grown);
+/// Distance from the region along the surface, mm, of vertices that move: 0 in the region, below
+/// the collar's width in an elastic collar; infinity of those that stay.
+Eigen::VectorXd reachOf(const PatchSetup& s, const UnfolderOptions& options, double regionArea) {
+  Eigen::VectorXd reach = Eigen::VectorXd::Constant(s.mesh.vertexCount(), kInfinity);
+  if (options.surround == Surround::Elastic) {
+    const double width = options.collarWidth.value_or(kCollarShare * std::sqrt(regionArea / kPi));
+    reach = geometry::geodesicDistances(s.mesh, s.topology, s.region.vertices, width);
+    reach = (reach.array() < width).select(reach, kInfinity);
   }
-  return moves;
+  for (const std::int32_t v : s.region.vertices) reach[v] = 0;
+  return reach;
 }
 
-void numberUnknowns(PatchSetup& s, const std::vector<bool>& moves) {
-  s.unknown.assign(moves.size(), -1);
-  for (std::size_t v = 0; v < moves.size(); ++v) {
-    if (!moves[v]) continue;
+void numberUnknowns(PatchSetup& s, const Eigen::VectorXd& reach) {
+  s.unknown.assign(static_cast<std::size_t>(reach.size()), -1);
+  for (std::int32_t v = 0; v < reach.size(); ++v) {
+    if (!std::isfinite(reach[v])) continue;
     s.unknown[v] = static_cast<std::int32_t>(s.moving.size());
-    s.moving.push_back(static_cast<std::int32_t>(v));
+    s.moving.push_back(v);
   }
 }
 
-/// Faces outside the region that keep their areas elastically.
-std::vector<std::int32_t> collarFaces(const PatchSetup& s, const UnfolderOptions& options) {
+/// Faces outside the region that have a vertex that moves.
+std::vector<std::int32_t> collarFaces(const PatchSetup& s) {
   std::vector<std::int32_t> faces;
-  if (options.surround != Surround::Elastic) return faces;
   const std::vector<bool> inRegion = flags(s.mesh.faceCount(), s.region.faces);
   for (std::int32_t f = 0; f < s.mesh.faceCount(); ++f) {
     bool moves = false;
@@ -100,26 +102,28 @@ double measureRegion(PatchSetup& s, const Eigen::VectorXd& areas) {
   return regionArea;
 }
 
-void listFaces(PatchSetup& s, const std::vector<std::int32_t>& collar, const Eigen::VectorXd& areas,
-               double regionArea) {
+/// @param holds  whether faces beside the region hold back when they stretch far; a single ring
+///               beside fixed surroundings has no other way to follow
+void listFaces(PatchSetup& s, const Eigen::VectorXd& areas, double regionArea, bool holds) {
   const double needle = kNeedleShare * regionArea / static_cast<double>(s.region.faces.size());
   const auto list = [&](std::int32_t f) {
     const double area = std::max(areas[f], kLeastArea * regionArea);
     s.patch.faces.push_back({{s.mesh.faces(f, 0), s.mesh.faces(f, 1), s.mesh.faces(f, 2)},
                              area,
-                             area * area / (area + needle)});
+                             area * area / (area + needle),
+                             holds ? area + needle : 0});
   };
   for (const std::int32_t f : s.region.faces) list(f);
   s.patch.regionFaces = s.region.faces.size();
-  for (const std::int32_t f : collar) list(f);
+  for (const std::int32_t f : s.collar) list(f);
 }
 
 /// All edges count alike, as in the mean strain: by area, small faces would pay for large ones.
-void listSprings(PatchSetup& s, const std::vector<std::int32_t>& collar, double regionArea) {
+void listSprings(PatchSetup& s, double regionArea) {
   const double full = 2 * regionArea / (3 * static_cast<double>(s.region.faces.size()));
   const double tooShort = kShortShare * kShortShare * s.edge * s.edge;
   const std::vector<bool> inRegion = flags(s.mesh.faceCount(), s.region.faces);
-  const std::vector<bool> inCollar = flags(s.mesh.faceCount(), collar);
+  const std::vector<bool> inCollar = flags(s.mesh.faceCount(), s.collar);
   std::vector<PatchSpring> ofCollar;
   for (Eigen::Index e = 0; e < s.topology.edges.rows(); ++e) {
     bool region = false, beside = false;
@@ -149,6 +153,21 @@ void listCouplings(PatchSetup& s) {
 
 }  // namespace
 
+std::vector<bool> movingFaces(const TriangleMesh& mesh, const Region& region,
+                              const UnfolderOptions& options) {
+  requireUsable(options, region);
+  if (options.surround == Surround::None) return flags(mesh.faceCount(), region.faces);
+  PatchSetup s;
+  s.mesh = mesh;
+  s.region = region;
+  s.topology = geometry::buildTopology(s.mesh.faces, s.mesh.vertexCount());
+  const double regionArea = measureRegion(s, geometry::faceAreas(s.mesh));
+  numberUnknowns(s, reachOf(s, options, regionArea));
+  std::vector<bool> moves = flags(mesh.faceCount(), region.faces);
+  for (const std::int32_t f : collarFaces(s)) moves[f] = true;
+  return moves;
+}
+
 PatchSetup setUpPatch(TriangleMesh mesh, Region region, const visibility::Viewpoints& viewpoints,
                       const UnfolderOptions& options) {
   requireUsable(options, region);
@@ -157,12 +176,12 @@ PatchSetup setUpPatch(TriangleMesh mesh, Region region, const visibility::Viewpo
   s.region = std::move(region);
   if (options.surround == Surround::None) isolate(s.mesh, s.region);
   s.topology = geometry::buildTopology(s.mesh.faces, s.mesh.vertexCount());
-  numberUnknowns(s, movingVertices(s, options));
   const Eigen::VectorXd areas = geometry::faceAreas(s.mesh);
   const double regionArea = measureRegion(s, areas);
-  const std::vector<std::int32_t> collar = collarFaces(s, options);
-  listFaces(s, collar, areas, regionArea);
-  listSprings(s, collar, regionArea);
+  numberUnknowns(s, reachOf(s, options, regionArea));
+  s.collar = collarFaces(s);
+  listFaces(s, areas, regionArea, options.surround == Surround::Elastic);
+  listSprings(s, regionArea);
   listCouplings(s);
   s.patch.room = findRoom(s, viewpoints);
   return s;

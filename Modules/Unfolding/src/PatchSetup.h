@@ -17,6 +17,7 @@ struct PatchSetup {
   std::vector<std::int32_t> moving;   ///< vertices that move, ascending
   std::vector<std::int32_t> unknown;  ///< V: row of the system, or -1
   double edge = 0;                    ///< mean edge length of the region, mm
+  std::vector<std::int32_t> collar;   ///< faces outside the region with a vertex that moves
   Patch patch;
   Couplings couplings;  ///< of the unknowns that share an edge
 };

@@ -26,6 +26,18 @@ std::string text(double value) {
   return s;
 }
 
+/// A point farther off than this is a slip: another frame, a sign, a digit.
+constexpr double kFarthestCentre = 5;  // mm
+
+void requireNear(const Point& wanted, std::int32_t vertex, const Point& nearest) {
+  const double distance = (wanted - nearest).norm();
+  if (distance <= kFarthestCentre) return;
+  throw InvalidInput("center: it lies " + text(distance) + " mm from the surface, at most " +
+                     text(kFarthestCentre) + " mm make sense; the nearest vertex is " +
+                     std::to_string(vertex) + " at " + text(nearest[0]) + "," + text(nearest[1]) +
+                     "," + text(nearest[2]));
+}
+
 geometry::IndexLists neighboursOf(const TriangleMesh& mesh) {
   return geometry::buildTopology(mesh.faces, mesh.vertexCount()).vertexVertices;
 }
@@ -146,6 +158,7 @@ Region selectRegion(const TriangleMesh& mesh, const RegionOptions& options,
     if (centre < 0 || squared(v) < squared(centre)) centre = v;
   }
   const Point middle = mesh.positions.row(centre).transpose();
+  if (options.center) requireNear(*options.center, centre, middle);
   std::vector<bool> within(static_cast<std::size_t>(mesh.vertexCount()), false);
   if (options.cone) {
     if (!(*options.cone > 0 && *options.cone < 90)) {

@@ -76,7 +76,9 @@ Termination StopRule::check(Unfolder& unfolder, const std::vector<IterationRecor
   const bool atGoal = options_.targetVisibility && last.visibility >= goal;
   const bool kept = last.areaErrorMean <= options_.areaTolerance;
   if (atGoal && targetHolds(history)) return Termination::TargetReached;
-  if (!atGoal && (kept || thesis) && isSettled(history, unfolder.state().driveIteration)) {
+  const bool started = thesis || !unfolder.state().separating;
+  if (!atGoal && started && (kept || thesis) &&
+      isSettled(history, unfolder.state().driveIteration)) {
     if (!options_.targetVisibility) return Termination::Converged;
     if (thesis || unfolder.state().drive >= kLargestDrive) return Termination::Stalled;
     unfolder.raiseDrive(driveFactor(last.visibility, goal));

@@ -16,18 +16,8 @@
 namespace explica::unfolding {
 namespace {
 
-/// A single ring of straight faces joins the region to fixed surroundings; it cannot bend about the
-/// walls that it stands between, and holds the rim.
-void warnIfHeld(double visibility, const Monitor& monitor) {
-  constexpr double kHeld = 0.95;  // regions with room reach more
-  if (visibility >= kHeld) return;
-  char text[160];
-  std::snprintf(text, sizeof text,
-                "fixed surroundings hold the region at a visibility of %.3f; with --surround "
-                "elastic a collar follows, and it opens further",
-                visibility);
-  monitor.warn(text);
-}
+constexpr double kFar = 0.1;       // of visibility below the goal: a region that ends there is held
+constexpr double kNoWorse = 1e-3;  // of visibility: less than that is no reason to go back
 
 Positions movingOnly(const Unfolder& unfolder) {
   const auto& moving = unfolder.movingVertices();
@@ -52,27 +42,68 @@ void tellProgress(const Monitor& monitor, const IterationRecord& now, double ini
   monitor.progress(std::clamp((now.visibility - initial) / (goal - initial), 0.0, 1.0), line);
 }
 
-void warnOfShortcomings(const UnfoldResult& result, const UnfoldOptions& options,
-                        const Monitor& monitor) {
+/// Takes note of a state if it keeps areas and is better than all before.
+void consider(const Unfolder& unfolder, double areaTolerance, BestState& best) {
+  const IterationRecord& now = unfolder.record();
+  if (now.areaErrorMean > areaTolerance || now.visibility <= best.visibility) return;
+  best = {now.iteration, now.visibility, movingOnly(unfolder)};
+}
+
+/// The state to give back: the last, or the best seen if the last is worse.
+void chooseState(const Unfolder& unfolder, const BestState& best, UnfoldResult& result) {
+  result.mesh = unfolder.current();
+  result.iteration = unfolder.state().iteration;
+  if (unfolder.record().visibility >= best.visibility - kNoWorse) return;
+  const auto& moving = unfolder.movingVertices();
+  for (std::size_t i = 0; i < moving.size(); ++i) {
+    result.mesh.positions.row(moving[i]) = best.moving.row(static_cast<Eigen::Index>(i));
+  }
+  result.iteration = best.iteration;
+}
+
+/// Says what a user must know about the result, and does not call it what it is not.
+void judge(const UnfoldOptions& options, const Monitor& monitor, UnfoldResult& result) {
+  const IterationRecord& start = result.history.front();
+  const IterationRecord& kept = result.history[static_cast<std::size_t>(result.iteration)];
   const IterationRecord& last = result.history.back();
+  const double goal = options.targetVisibility.value_or(1.0);
+  char text[240];
   if (result.termination == Termination::TargetReached &&
       last.areaErrorMean > options.areaTolerance) {
     monitor.warn("the visibility is reached, but the mean area error stays at " +
                  std::to_string(last.areaErrorMean));
   }
+  if (result.iteration != last.iteration) {
+    std::snprintf(
+        text, sizeof text,
+        "the run ended at a visibility of %.3f, worse than the best state seen; that one, "
+        "of iteration %d at %.3f, is kept",
+        last.visibility, result.iteration, kept.visibility);
+    monitor.warn(text);
+  }
   const bool byItself =
       result.termination == Termination::Converged || result.termination == Termination::Stalled;
-  if (byItself && options.unfolder.method == Method::Implicit &&
-      options.unfolder.surround == Surround::Fixed) {
-    warnIfHeld(last.visibility, monitor);
+  if (last.iteration > start.iteration && kept.visibility <= start.visibility) {
+    result.flag = Flag::Worse;
+    monitor.warn("no state is better than the start, which is kept: nothing is unfolded");
+  } else if (byItself && kept.visibility < goal - kFar) {
+    result.flag = Flag::Held;
+    std::snprintf(text, sizeof text, "the region is held at a visibility of %.3f%s",
+                  kept.visibility,
+                  options.unfolder.surround == Surround::Fixed
+                      ? ": fixed surroundings leave it no room; with --surround elastic a collar "
+                        "follows, and it opens further"
+                      : "");
+    monitor.warn(text);
+  }
+  if (result.flag != Flag::None && result.termination == Termination::Converged) {
+    result.termination = Termination::Stalled;
   }
 }
 
-}  // namespace
-
-UnfoldResult unfold(const TriangleMesh& mesh, const Region& region,
-                    const visibility::Viewpoints& viewpoints, const UnfoldOptions& options,
-                    const Monitor& monitor, const Checkpoint* resume) {
+UnfoldResult unfoldHere(const TriangleMesh& mesh, const Region& region,
+                        const visibility::Viewpoints& viewpoints, const UnfoldOptions& options,
+                        const Monitor& monitor, const Checkpoint* resume) {
   const StopRule rule(options);
   const auto begin = std::chrono::steady_clock::now();
   const auto elapsed = [&] {
@@ -83,35 +114,73 @@ UnfoldResult unfold(const TriangleMesh& mesh, const Region& region,
   const double initial = unfolder.record().visibility;
   requirePositive(initial);
   std::vector<Positions> path;
+  BestState best;
   if (resume != nullptr) {
     unfolder.restore(resume->state);
     result.history = resume->history;
     path = resume->path;
+    best = resume->best;
   } else {
+    best = {0, initial, movingOnly(unfolder)};
     result.history.push_back(unfolder.record());
   }
   if (options.frames > 0 && path.empty()) path.push_back(movingOnly(unfolder));
 
   const double earlier = result.history.back().seconds;
   const double goal = options.targetVisibility.value_or(1.0);
+  double latest = 0;  // s, that the last step took: one more shall still fit
   const auto reason = [&] {
     const Termination byItself = rule.check(unfolder, result.history);
     if (byItself != Termination::NotRun) return byItself;
     if (monitor.shouldStop()) return Termination::Interrupted;
-    if (options.maxTime && elapsed() >= *options.maxTime) return Termination::MaxTime;
-    return unfolder.step() ? Termination::NotRun : Termination::Stalled;
+    if (options.maxTime && elapsed() + latest > *options.maxTime) return Termination::MaxTime;
+    const double before = elapsed();
+    const bool moved = unfolder.step();
+    latest = elapsed() - before;
+    return moved ? Termination::NotRun : Termination::Stalled;
   };
   while ((result.termination = reason()) == Termination::NotRun) {
     result.history.push_back(unfolder.record());
     result.history.back().seconds = earlier + elapsed();
     if (options.frames > 0) path.push_back(movingOnly(unfolder));
+    consider(unfolder, options.areaTolerance, best);
     tellProgress(monitor, unfolder.record(), initial, goal);
   }
-  warnOfShortcomings(result, options, monitor);
+  chooseState(unfolder, best, result);
+  judge(options, monitor, result);
+  std::vector<Positions> whole = path;
+  if (options.frames > 0) path.resize(static_cast<std::size_t>(result.iteration) + 1);
   result.frames = framesAlong(unfolder, viewpoints, path, options.frames);
-  result.mesh = unfolder.current();
   result.region = unfolder.region();
-  result.checkpoint = {unfolder.state(), result.history, std::move(path)};
+  result.collar = unfolder.collarFaces();
+  result.checkpoint = {unfolder.state(), std::move(best), result.history, std::move(whole)};
+  return result;
+}
+
+/// Where differences of positions lose digits, the run works on positions relative to the region.
+/// A whole number of mm, so that single-precision positions lose nothing on the way there and back.
+Point originFor(const TriangleMesh& mesh, const Region& region) {
+  constexpr double kNear = 1000;  // mm: nearer regions lose nothing that counts
+  Point middle = Point::Zero();
+  for (const std::int32_t v : region.vertices) middle += mesh.positions.row(v).transpose();
+  middle /= std::max<double>(1, static_cast<double>(region.vertices.size()));
+  return middle.norm() > kNear ? Point(middle.array().round()) : Point(Point::Zero());
+}
+
+}  // namespace
+
+UnfoldResult unfold(const TriangleMesh& mesh, const Region& region,
+                    const visibility::Viewpoints& viewpoints, const UnfoldOptions& options,
+                    const Monitor& monitor, const Checkpoint* resume) {
+  const Point origin = originFor(mesh, region);
+  if (origin.isZero()) return unfoldHere(mesh, region, viewpoints, options, monitor, resume);
+  TriangleMesh moved = mesh;
+  moved.positions.rowwise() -= origin.transpose();
+  visibility::Viewpoints eyes = viewpoints;
+  for (Point& eye : eyes.points) eye -= origin;
+  UnfoldResult result = unfoldHere(moved, region, eyes, options, monitor, resume);
+  result.mesh.positions.rowwise() += origin.transpose();
+  for (UnfoldFrame& frame : result.frames) frame.positions.rowwise() += origin.transpose();
   return result;
 }
 

@@ -69,6 +69,16 @@ void Unfolder::Implementation::measure(IterationRecord& account) const {
     sum += std::abs(lengthOf(spring, state.positions) / spring.restLength - 1);
   }
   account.edgeStrainMean = sum / static_cast<double>(setup.patch.regionSprings);
+  sum = 0;
+  largest = 1;
+  for (const PatchFace& face : setup.patch.ofCollar()) {
+    const double ratio = shapeOf(face, state.positions).area / face.restArea;
+    sum += ratio;
+    largest = std::max(largest, ratio);
+  }
+  account.collarStretchMean =
+      setup.collar.empty() ? kNaN : sum / static_cast<double>(setup.collar.size());
+  account.collarStretchMax = setup.collar.empty() ? kNaN : largest;
 }
 
 Unfolder::Unfolder(TriangleMesh mesh, Region region, visibility::Viewpoints viewpoints,
@@ -116,6 +126,9 @@ TriangleMesh Unfolder::current() const {
 }
 const Region& Unfolder::region() const {
   return self_->setup.region;
+}
+const std::vector<std::int32_t>& Unfolder::collarFaces() const {
+  return self_->setup.collar;
 }
 const std::vector<std::int32_t>& Unfolder::movingVertices() const {
   return self_->setup.moving;

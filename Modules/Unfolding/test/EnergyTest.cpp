@@ -34,8 +34,10 @@ struct Sample {
   Sample() {
     const Eigen::VectorXd areas = geometry::faceAreas(mesh);
     for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
-      patch.faces.push_back(
-          {{mesh.faces(f, 0), mesh.faces(f, 1), mesh.faces(f, 2)}, 0.9 * areas[f], areas[f]});
+      patch.faces.push_back({{mesh.faces(f, 0), mesh.faces(f, 1), mesh.faces(f, 2)},
+                             (f % 2 == 0 ? 0.9 : 0.2) * areas[f],
+                             areas[f],
+                             1.5 * areas[f]});
     }
     patch.regionFaces = patch.faces.size() * 3 / 4;
     const Edges edges = geometry::buildTopology(mesh.faces, mesh.vertexCount()).edges;
@@ -152,13 +154,14 @@ TEST(Energy, StiffnessIsTheHessianWhereAreasAndLengthsAreAtRest) {
 
 TEST(Energy, LiftPullsAlongItsAxisUpToItsHeightOnly) {
   Sample s;
+  for (PatchFace& face : s.patch.faces) face.holdWeight = 0;
   s.multipliers.setZero();
   const auto pull = [&](double height) {
     s.patch.room = {Vector::UnitZ(), height, 5};
     return s.gradient(only(Term::Lift, 2));
   };
   const double top = s.mesh.positions.col(2).maxCoeff();
-  EXPECT_EQ(pull(s.mesh.positions.col(2).minCoeff()).norm(), 0);
+  EXPECT_EQ(pull(s.mesh.positions.col(2).minCoeff() - 5).norm(), 0);
   const Positions all = pull(top + 1);
   EXPECT_EQ(all.leftCols(2).norm(), 0);
   EXPECT_LE(all.col(2).maxCoeff(), 0);  // downhill is up
@@ -176,8 +179,10 @@ TEST(Energy, VisibilityTermIsAreaTimesOneLessTheAverageVisibility) {
   std::vector<std::int32_t> all;
   const Eigen::VectorXd areas = geometry::faceAreas(s.mesh);
   for (std::int32_t f = 0; f < s.mesh.faceCount(); ++f) {
-    s.patch.faces.push_back(
-        {{s.mesh.faces(f, 0), s.mesh.faces(f, 1), s.mesh.faces(f, 2)}, areas[f], areas[f]});
+    s.patch.faces.push_back({{s.mesh.faces(f, 0), s.mesh.faces(f, 1), s.mesh.faces(f, 2)},
+                             areas[f],
+                             areas[f],
+                             areas[f]});
     all.push_back(f);
   }
   s.patch.regionFaces = all.size();
@@ -194,7 +199,7 @@ TEST(AreaProjection, LeavesNoFirstOrderChangeOfArea) {
   Patch patch;
   for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
     patch.faces.push_back(
-        {{mesh.faces(f, 0), mesh.faces(f, 1), mesh.faces(f, 2)}, areas[f], areas[f]});
+        {{mesh.faces(f, 0), mesh.faces(f, 1), mesh.faces(f, 2)}, areas[f], areas[f], areas[f]});
   }
   patch.regionFaces = patch.faces.size();
   std::vector<std::int32_t> unknown(static_cast<std::size_t>(mesh.vertexCount()));

@@ -13,9 +13,32 @@ namespace {
 constexpr std::size_t kGrain = 256;
 constexpr double kCollarArea = 20;     // as the region's terms are by default, so that the weight
 constexpr double kCollarSpring = 2.4;  // compares the collar with the region
+constexpr double kFree = 2;            // area ratio from which on stretching is held back ...
+constexpr double kFull = 8;            // ... and up to which it shall stay
+constexpr double kHold = 2;            // strength of that beside the visibility's, at kFull
+
+/// What a face's area ratio costs: m(r) = strength k/2 (r - 1)^2 for each mm^2 of its weight, and
+/// b(r) = kHold t^5, t = max(0, (r - kFree) / (kFull - kFree)), of its hold weight.
+struct Stretching {
+  double value = 0;      ///< mm^2
+  double slope = 0;      ///< by the ratio
+  double curvature = 0;  ///< by the ratio, >= 0
+};
+
+Stretching stretching(const PatchFace& face, double ratio, double strength) {
+  constexpr double kRate = 1 / (kFull - kFree);
+  const double membrane = strength * kCollarArea * face.weight;
+  const double hold = kHold * face.holdWeight;
+  const double t = std::max(0.0, (ratio - kFree) * kRate);
+  const double t3 = t * t * t;
+  return {0.5 * membrane * (ratio - 1) * (ratio - 1) + hold * t3 * t * t,
+          membrane * (ratio - 1) + 5 * hold * t3 * t * kRate,
+          membrane + 20 * hold * t3 * kRate * kRate};
+}
 
 /// strength * (sum over the collar's faces of w k/2 c^2 + s sum over its edges of e (l / l0 - 1)^2)
-/// with c = A / A0 - 1, k = kCollarArea, s = kCollarSpring.
+/// + sum over the collar's faces of h b(A / A0), with c = A / A0 - 1, k = kCollarArea,
+/// s = kCollarSpring, b of stretching().
 class CollarEnergy final : public Energy {
  public:
   [[nodiscard]] double value(const Configuration& now, double strength) const override {
@@ -24,8 +47,7 @@ class CollarEnergy final : public Energy {
         parallelSum(faces.size(), kGrain, 0.0, [&](std::size_t begin, std::size_t end) {
           double block = 0;
           for (std::size_t f = begin; f < end; ++f) {
-            const double c = shapeAt(now, f).area / faces[f].restArea - 1;
-            block += 0.5 * strength * kCollarArea * faces[f].weight * c * c;
+            block += stretching(faces[f], shapeAt(now, f).area / faces[f].restArea, strength).value;
           }
           return block;
         });
@@ -38,7 +60,7 @@ class CollarEnergy final : public Energy {
     parallelFor(faces.size(), kGrain, [&](std::size_t f) {
       const FaceShape& shape = shapeAt(now, f);
       const double ratio = shape.area / faces[f].restArea;
-      const double tension = strength * kCollarArea * faces[f].weight * (ratio - 1) * ratio;
+      const double tension = stretching(faces[f], ratio, strength).slope * ratio;
       for (int k = 0; k < 3; ++k) forces[f][k] = tension * shape.hat[k];
     });
     addForces(faces, forces, gradient);
@@ -52,13 +74,14 @@ class CollarEnergy final : public Energy {
     parallelFor(faces.size(), kGrain, [&](std::size_t f) {
       const FaceShape& shape = shapeAt(now, f);
       const double ratio = shape.area / faces[f].restArea;
-      const double stiffness = strength * kCollarArea * faces[f].weight * ratio;
+      const Stretching stretch = stretching(faces[f], ratio, strength);
+      const double inPlane = stretch.curvature * ratio * ratio;
       const Eigen::Matrix3d across =
-          stiffness * std::max(0.0, ratio - 1) * shape.normal * shape.normal.transpose();
+          std::max(0.0, stretch.slope * ratio) * shape.normal * shape.normal.transpose();
       int n = 0;
       for (int i = 0; i < 3; ++i) {
         for (int j = 0; j <= i; ++j) {
-          blocks[f][n++] = stiffness * ratio * shape.hat[i] * shape.hat[j].transpose() +
+          blocks[f][n++] = inPlane * shape.hat[i] * shape.hat[j].transpose() +
                            shape.hat[i].dot(shape.hat[j]) * across;
         }
       }

@@ -12,9 +12,13 @@ namespace {
 
 constexpr std::size_t kGrain = 256;
 
-/// How far below the room for the flat region a face is, mm.
+// Of the room's radius: so far above its height the region shall lie, clear of what lies in its
+// way.
+constexpr double kAbove = 0.1;
+
+/// How far below the room for the flat region a place is, mm.
 double deficit(const PatchRoom& room, const Point& place) {
-  return std::max(0.0, room.height - room.axis.dot(place));
+  return std::max(0.0, room.height + kAbove * room.radius - room.axis.dot(place));
 }
 
 /// strength/2 * sum over the region's faces of w (deficit / radius)^2.
@@ -40,8 +44,9 @@ class LiftEnergy final : public Energy {
     for (const PatchFace& face : now.patch.ofRegion()) {
       const double pull = strength * face.weight / (room.radius * room.radius) *
                           deficit(room, centroidOf(face, now.x));
-      for (const std::int32_t v : face.vertices)
+      for (const std::int32_t v : face.vertices) {
         gradient.row(v) -= pull / 3 * room.axis.transpose();
+      }
     }
   }
 

@@ -13,6 +13,8 @@ struct UntangleOptions {
   int largestRings = 5;    ///< rings of vertices about crossing faces that may move, in [1, 20]
   double largestMove = 3;  ///< mean edge lengths of the place that a vertex goes at most, > 0
   int descentSteps = 120;  ///< along the gradient of the crossings' length, >= 0
+  std::vector<bool> concerned =
+      {};  ///< F flags: crossings with none of these faces stay; empty: all
 };
 
 /// A surface with its self-intersections removed as far as that went.

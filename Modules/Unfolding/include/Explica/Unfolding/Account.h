@@ -9,6 +9,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace explica::unfolding {
@@ -56,6 +57,11 @@ struct Crossing {
 
 /// Positions as a file with single precision will hold them.
 [[nodiscard]] Positions roundedToSingle(const Positions& positions);
+
+/// Demands that single precision, in which files keep positions, holds this surface's edges.
+/// @throws InvalidInput  it steps by more than a fiftieth of the mean edge at the farthest vertex;
+///                       `name` (a file, an argument) starts the message
+void requireFitsSingle(const TriangleMesh& mesh, std::string_view name);
 
 /// Share of the area of the listed faces whose normal looks away from the viewpoints.
 [[nodiscard]] double backfacingShare(const TriangleMesh& mesh, std::span<const std::int32_t> faces,

@@ -35,7 +35,8 @@ void describe(RegionOptions& options, Visitor&& visit) {
   visit(Field{"center", "mm", "the vertex nearest to this point is the region's centre"},
         options.center);
   visit(Field{"vertex", "", "vertex that is the region's centre, from 0"}, options.vertex);
-  visit(Field{"radius", "mm", "how far the region reaches from its centre"}, options.radius);
+  visit(Field{"radius", "mm", "how far the region reaches from its centre", kAboveZero},
+        options.radius);
   visit(Field{"metric", "", "how the radius is measured"}, options.metric);
   visit(Field{"cone", "degrees",
               "region of what lies within this angle of the line from viewpoint to centre, on the "
@@ -54,7 +55,8 @@ struct Region {
 };
 
 /// Faces whose three vertices lie within the radius of the centre vertex, or within the cone.
-/// @throws InvalidInput  no centre, radius or cone out of range, or as regionOfMarked()
+/// @throws InvalidInput  no centre, one farther than 5 mm from the surface, radius or cone out of
+///                       range, or as regionOfMarked()
 [[nodiscard]] Region selectRegion(const TriangleMesh& mesh, const RegionOptions& options,
                                   const visibility::Viewpoints* viewpoints = nullptr);
 

@@ -18,7 +18,7 @@ enum class Term {
   Visibility,  ///< sum over the region's faces of w (1 - n . d)
   Area,        ///< sum over the region's faces of w (lambda c + weight/2 c^2), lambda a multiplier
   Spring,      ///< weight times the sum over the region's edges of e s^2, e the same for all edges
-  Lift,        ///< weight/2 times the sum of w (deficit / radius)^2, deficit = max(0, height - x.a)
+  Lift,        ///< weight/2 times the sum of w (deficit / radius)^2, deficit from where it has room
   Collar,      ///< weight times the sum over faces that move outside the region, see CollarEnergy
   Contact,     ///< weight times the sum over near pairs of barrier(distance), see ContactPotential
   Knot         ///< weight times the double integral of 1 / |x - y|^2, see KnotEnergy
@@ -39,7 +39,7 @@ inline constexpr std::array kTerms = {
     TermInfo{Term::Area, "area", 20, "area-weight",
              "stiffness of face areas before it is tightened"},
     TermInfo{Term::Spring, "spring", 2.4, "spring-weight", "stiffness of edge lengths"},
-    TermInfo{Term::Lift, "lift", 6, "lift-weight",
+    TermInfo{Term::Lift, "lift", 60, "lift-weight",
              "pull out of fixed or elastic surroundings, up to where the flat region has room"},
     TermInfo{Term::Collar, "collar", 2e-4, "collar-weight",
              "stiffness of an elastic collar beside the region's"},

@@ -6,11 +6,16 @@
 #include "Explica/Core/Termination.h"
 #include "Explica/Unfolding/Unfolder.h"
 
+#include <array>
 #include <filesystem>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace explica::unfolding {
+
+inline constexpr int kMostIterations = 100000;
+inline constexpr int kMostFrames = 1000;  ///< a whole surface each
 
 /// How to unfold and when to stop.
 struct UnfoldOptions {
@@ -26,13 +31,17 @@ template <class Visitor>
 void describe(UnfoldOptions& options, Visitor&& visit) {
   describe(options.unfolder, visit);
   visit(Field{"target-visibility", "",
-              "stop once the average visibility reaches this; without it, once it no longer rises"},
+              "stop once the average visibility reaches this; without it, once it no longer rises",
+              kAboveZero, 1},
         options.targetVisibility);
-  visit(Field{"area-tolerance", "", "mean relative area error of faces that a goal asks for"},
+  visit(Field{"area-tolerance", "", "mean relative area error of faces that a goal asks for",
+              kAboveZero},
         options.areaTolerance);
-  visit(Field{"max-iterations", "", "iterations at most"}, options.maxIterations);
-  visit(Field{"max-time", "s", "stop after this time"}, options.maxTime);
-  visit(Field{"frames", "", "states to write on the way, evenly spaced in visibility"},
+  visit(Field{"max-iterations", "", "iterations at most", 1, kMostIterations},
+        options.maxIterations);
+  visit(Field{"max-time", "s", "stop after this time", kAboveZero}, options.maxTime);
+  visit(Field{"frames", "", "states to write on the way, evenly spaced in visibility", 0,
+              kMostFrames},
         options.frames);
 }
 
@@ -42,17 +51,36 @@ struct UnfoldFrame {
   Positions positions;  ///< V x 3
 };
 
+/// The best state that a run has seen: the highest visibility among those that keep areas.
+struct BestState {
+  int iteration = 0;
+  double visibility = kNaN;
+  Positions moving;  ///< of the vertices that move
+};
+
 /// A run that can go on: state, account so far, and the way there if frames were asked for.
 struct Checkpoint {
   UnfoldState state;
+  BestState best;
   std::vector<IterationRecord> history;
   std::vector<Positions> path;  ///< moving vertices after each iteration, from the start on
 };
 
+/// What keeps a result from being what it seems.
+enum class Flag {
+  None,
+  Held,     ///< the region stays far from its goal
+  Worse,    ///< no state was better than the start
+  Crossing  ///< faces cross that did not at the start
+};
+
 struct UnfoldResult {
-  TriangleMesh mesh;  ///< all vertices; the region's faces only with Surround::None
-  Region region;      ///< faces are rows of mesh.faces
+  TriangleMesh mesh;                 ///< all vertices; the region's faces only with Surround::None
+  Region region;                     ///< faces are rows of mesh.faces
+  std::vector<std::int32_t> collar;  ///< faces outside it with a vertex that moves
   Termination termination = Termination::NotRun;
+  Flag flag = Flag::None;
+  int iteration = 0;  ///< whose state `mesh` is: the last, or the best seen if that was better
   std::vector<IterationRecord> history;  ///< the start and every iteration
   std::vector<UnfoldFrame> frames;
   Checkpoint checkpoint;
@@ -67,7 +95,9 @@ struct UnfoldResult {
 /// @throws InvalidInput  as Unfolder; average visibility of the start not above zero; option out of
 ///                       range
 ///
-/// A target that is out of reach ends as Stalled; without a target, no more progress is Converged.
+/// A run never ends worse than the best state it has seen that keeps its areas.  A target that is
+/// out of reach, and a region that is held far from full visibility, end as Stalled; Converged is
+/// said of nothing else than no more progress near the goal.
 [[nodiscard]] UnfoldResult unfold(const TriangleMesh& mesh, const Region& region,
                                   const visibility::Viewpoints& viewpoints,
                                   const UnfoldOptions& options = {}, const Monitor& monitor = {},
@@ -81,3 +111,11 @@ void writeCheckpoint(const std::filesystem::path& path, const Checkpoint& checkp
 [[nodiscard]] Checkpoint readCheckpoint(const std::filesystem::path& path);
 
 }  // namespace explica::unfolding
+
+template <>
+struct explica::EnumNames<explica::unfolding::Flag> {
+  static constexpr std::array table = {std::pair{explica::unfolding::Flag::None, ""},
+                                       std::pair{explica::unfolding::Flag::Held, "held"},
+                                       std::pair{explica::unfolding::Flag::Worse, "worse"},
+                                       std::pair{explica::unfolding::Flag::Crossing, "crossing"}};
+};

@@ -32,10 +32,11 @@ enum class Method {
 
 struct UnfolderOptions {
   Method method = Method::Implicit;
-  Surround surround = Surround::Fixed;
-  int collarRings = 6;         ///< rings of faces of an elastic collar, > 0
-  double contactRange = 0.25;  ///< of the mean edge length: the barrier acts below it, > 0
-  double largestMove = 3;      ///< mean edge lengths that a vertex goes per iteration at most, > 0
+  Surround surround = Surround::Elastic;
+  std::optional<double> collarWidth;  ///< of an elastic collar, mm along the surface, > 0; else in
+                                      ///< proportion to the region
+  double contactRange = 0.25;         ///< of the mean edge length: the barrier acts below it, > 0
+  double largestMove = 3;  ///< mean edge lengths that a vertex goes per iteration at most, > 0
   repulsion::KnotMethod knot = repulsion::KnotMethod::Off;
   bool keepAreas = true;           ///< thesis method: project; without it the region shrinks
   std::optional<double> timeStep;  ///< thesis method: fixed step, mm per mm; else adaptive
@@ -48,16 +49,22 @@ void describe(UnfolderOptions& options, Visitor&& visit) {
               "the surface around the region stays, follows with a collar, or is "
               "left out"},
         options.surround);
-  visit(Field{"collar-rings", "", "rings of faces of an elastic collar"}, options.collarRings);
-  visit(Field{"contact-range", "", "reach of the contact barrier in mean edge lengths"},
+  visit(Field{"collar-width", "mm",
+              "how far an elastic collar reaches from the region along the surface (default 0.4 of "
+              "the radius of a disc of the region's area; replaces --collar-rings)",
+              kAboveZero, 1000},
+        options.collarWidth);
+  visit(Field{"contact-range", "", "reach of the contact barrier in mean edge lengths", kAboveZero,
+              10},
         options.contactRange);
-  visit(Field{"largest-move", "", "mean edge lengths that a vertex goes per iteration at most"},
+  visit(Field{"largest-move", "", "mean edge lengths that a vertex goes per iteration at most",
+              kAboveZero, 1000},
         options.largestMove);
   visit(Field{"method", "", "implicit steps, or the thesis's gradient flow as the baseline"},
         options.method);
   visit(Field{"knot", "", "who evaluates the knot energy"}, options.knot);
   visit(Field{"keep-areas", "", "thesis method: project onto kept areas"}, options.keepAreas);
-  visit(Field{"time-step", "", "thesis method: fixed step instead of an adaptive one"},
+  visit(Field{"time-step", "", "thesis method: fixed step instead of an adaptive one", kAboveZero},
         options.timeStep);
   describe(options.weights, visit);
 }
@@ -84,7 +91,9 @@ struct IterationRecord {
   double visibility = kNaN;     ///< average flux density of the region, [-1, 1]
   double areaErrorMean = kNaN;  ///< mean |A / A0 - 1| over the region's faces
   double areaErrorMax = kNaN;
-  double edgeStrainMean = kNaN;  ///< mean |l / l0 - 1| over the region's edges
+  double edgeStrainMean = kNaN;     ///< mean |l / l0 - 1| over the region's edges
+  double collarStretchMean = kNaN;  ///< A / A0 of faces that move outside the region; NaN if none
+  double collarStretchMax = kNaN;
   TermValues energies;           ///< terms of the objective after the step, mm^2
   double objectiveBefore = 0;    ///< sum of the terms before the step ...
   double objectiveAfter = 0;     ///< ... and after it, with the same multipliers: never larger
@@ -158,6 +167,9 @@ class Unfolder {
   [[nodiscard]] TriangleMesh current() const;
   [[nodiscard]] const Region& region() const;
   [[nodiscard]] const std::vector<std::int32_t>& movingVertices() const;
+  /// Faces outside the region with a vertex that moves: its collar, or the ring that joins it to
+  /// fixed surroundings.
+  [[nodiscard]] const std::vector<std::int32_t>& collarFaces() const;
 
   void setViewpoints(visibility::Viewpoints viewpoints);
   void setWeights(const UnfoldWeights& weights);
@@ -168,6 +180,10 @@ class Unfolder {
  private:
   std::unique_ptr<Implementation> self_;
 };
+
+/// F flags: the faces with a vertex that will move, the region's and those of its surroundings.
+[[nodiscard]] std::vector<bool> movingFaces(const TriangleMesh& mesh, const Region& region,
+                                            const UnfolderOptions& options);
 
 }  // namespace explica::unfolding
 

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Core/Describe.h"
+#include "Explica/IO/SurfaceFile.h"
+#include "Explica/Visibility/Viewpoints.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace explica::app {
+
+/// Where to look from.
+struct ViewSettings {
+  std::optional<Eigen::Vector3d> viewpoint;
+  std::optional<Eigen::Vector3d> direction;
+  double distance = 1000;
+  std::vector<double> line;
+};
+
+template <class Visitor>
+void describe(ViewSettings& view, Visitor&& visit) {
+  visit(Field{"viewpoint", "mm", "point to look from"}, view.viewpoint);
+  visit(Field{"direction", "", "look from the region's centroid plus --distance along this"},
+        view.direction);
+  visit(Field{"distance", "mm", "how far off a viewpoint given by --direction is"}, view.distance);
+  visit(Field{"view-line", "mm", "look from a segment: X,Y,Z of its start and of its end"},
+        view.line);
+}
+
+/// The viewpoints that the options name.
+/// @param about  what --direction counts from
+/// @throws InvalidInput  none or several ways of naming them
+[[nodiscard]] visibility::Viewpoints viewFrom(const ViewSettings& view,
+                                              const std::optional<std::string>& surface,
+                                              const io::SurfaceReadOptions& reading,
+                                              const Point& about);
+
+}  // namespace explica::app
