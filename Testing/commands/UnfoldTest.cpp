@@ -466,7 +466,7 @@ const WrongInput kWrongInputs[] = {
     {"FramesNegative", nothing, onDisc({"--direction", "0,0,1", "--frames", "-1"}), "0 to 1000",
      ""},
     {"IterationsZero", nothing, onDisc({"--direction", "0,0,1", "--max-iterations", "0"}),
-     "1 to 100000", ""},
+     "not a whole number, 1 to", ""},
     {"TimeNegative", nothing, onDisc({"--direction", "0,0,1", "--max-time", "-1"}), "above 0", ""},
     {"TooManyFrames", nothing, onDisc({"--direction", "0,0,1", "--frames", "1000000000"}),
      "0 to 1000", ""},
@@ -492,7 +492,7 @@ const WrongInput kWrongInputs[] = {
        const Eigen::Index from = vertexAt(mesh, 12, 12);
        mesh.positions.row(from) = mesh.positions.row(vertexAt(mesh, 3, 10)).eval();
      },
-     onDisc({"--direction", "0,0,1"}), "weld coincident vertices"},
+     onDisc({"--direction", "0,0,1", "--no-repair"}), "weld coincident vertices"},
     {"EdgeOfThreeFaces",
      [](TriangleMesh& mesh) {
        mesh.faces.conservativeResize(mesh.faceCount() + 1, 3);

@@ -21,7 +21,26 @@ double deficit(const PatchRoom& room, const Point& place) {
   return std::max(0.0, room.height + kAbove * room.radius - room.axis.dot(place));
 }
 
-/// strength/2 * sum over the region's faces of w (deficit / radius)^2.
+// Of the room's radius: beyond this the pull grows no more, so that a deep region is not dragged
+// through a narrow opening before the folds above have made way.
+constexpr double kFirm = 0.1;
+
+/// How a deficit counts: its square over two, from kFirm of the radius on a straight line; in units
+/// of the radius.
+struct Shortfall {
+  double value = 0;
+  double slope = 0;
+  double curvature = 0;  ///< of the parabola that touches there from above
+};
+
+Shortfall shortfall(const PatchRoom& room, const Point& place) {
+  const double share = deficit(room, place) / room.radius;
+  if (!(share > 0)) return {};
+  if (share <= kFirm) return {0.5 * share * share, share, 1};
+  return {kFirm * (share - 0.5 * kFirm), kFirm, kFirm / share};
+}
+
+/// strength * sum over the region's faces of w h(deficit / radius), h of shortfall().
 class LiftEnergy final : public Energy {
  public:
   [[nodiscard]] double value(const Configuration& now, double strength) const override {
@@ -31,8 +50,7 @@ class LiftEnergy final : public Energy {
     return parallelSum(faces.size(), kGrain, 0.0, [&](std::size_t begin, std::size_t end) {
       double block = 0;
       for (std::size_t f = begin; f < end; ++f) {
-        const double share = deficit(room, centroidOf(faces[f], now.x)) / room.radius;
-        block += 0.5 * strength * faces[f].weight * share * share;
+        block += strength * faces[f].weight * shortfall(room, centroidOf(faces[f], now.x)).value;
       }
       return block;
     });
@@ -42,8 +60,8 @@ class LiftEnergy final : public Energy {
     if (!(strength > 0)) return;
     const PatchRoom& room = now.patch.room;
     for (const PatchFace& face : now.patch.ofRegion()) {
-      const double pull = strength * face.weight / (room.radius * room.radius) *
-                          deficit(room, centroidOf(face, now.x));
+      const double pull =
+          strength * face.weight / room.radius * shortfall(room, centroidOf(face, now.x)).slope;
       for (const std::int32_t v : face.vertices) {
         gradient.row(v) -= pull / 3 * room.axis.transpose();
       }
@@ -58,9 +76,8 @@ class LiftEnergy final : public Energy {
     const Eigen::Matrix3d along = room.axis * room.axis.transpose();
     std::vector<CornerBlocks> blocks(faces.size());
     for (std::size_t f = 0; f < faces.size(); ++f) {
-      const bool lifted = deficit(room, centroidOf(faces[f], now.x)) > 0;
-      const double scale =
-          lifted ? strength * faces[f].weight / (9 * room.radius * room.radius) : 0;
+      const double scale = strength * faces[f].weight / (9 * room.radius * room.radius) *
+                           shortfall(room, centroidOf(faces[f], now.x)).curvature;
       blocks[f].fill(scale * along);
     }
     addBlocks(faces, blocks, unknown, system);
