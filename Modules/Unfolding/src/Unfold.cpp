@@ -120,6 +120,9 @@ UnfoldResult unfoldHere(const TriangleMesh& mesh, const Region& region,
     result.history = resume->history;
     path = resume->path;
     best = resume->best;
+    if (best.moving.rows() == 0) {  // a state that no run of this function left
+      best = {unfolder.state().iteration, unfolder.record().visibility, movingOnly(unfolder)};
+    }
   } else {
     best = {0, initial, movingOnly(unfolder)};
     result.history.push_back(unfolder.record());
