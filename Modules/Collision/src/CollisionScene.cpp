@@ -13,6 +13,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 namespace explica::collision {
 namespace {
@@ -215,12 +217,11 @@ FourPoints CollisionScene::points(const Pair& pair, const Positions& positions) 
   return x;
 }
 
-std::array<CollisionScene::Features, 3> CollisionScene::movingFeatures(
-    const Positions& start, const Positions& motion) const {
+std::array<CollisionScene::Features, 3> CollisionScene::featuresOf(
+    std::array<std::vector<std::int32_t>, 3> items, const Positions& start,
+    const Positions& motion) const {
   std::array<Features, 3> features;
-  features[0].items = movingVertices_;
-  features[1].items = movingEdges_;
-  features[2].items = movingFaces_;
+  for (std::size_t n = 0; n < 3; ++n) features[n].items = std::move(items[n]);
   parallelFor(3, 1, [&](std::size_t n) {
     features[n].pyramid =
         pyramidOf(*this, static_cast<FeatureKind>(n), features[n].items, start, motion, origin_);
@@ -228,30 +229,27 @@ std::array<CollisionScene::Features, 3> CollisionScene::movingFeatures(
   return features;
 }
 
-std::vector<Meeting> CollisionScene::findMeetings(const Positions& start, const Positions& motion,
-                                                  double reach) const {
-  const auto moving = movingFeatures(start, motion);
-  const Features &vertices = moving[0], &edges = moving[1], &faces = moving[2];
+/// Features of two lists, and flags of those in the lists that another query finds.
+struct CollisionScene::Query {
+  PairKind kind;
+  const Features* first;
+  const Features* second;
+  const std::vector<char>* skipFirst = nullptr;
+  const std::vector<char>* skipSecond = nullptr;
+};
+
+std::vector<Meeting> CollisionScene::answer(std::span<const Query> queries, const Positions& start,
+                                            const Positions& motion, double reach) const {
   double size = 0;  // of the numbers that are rounded
   for (const std::int32_t v : movingVertices_) {
     size = std::max(size, (start.row(v).transpose() - origin_).lpNorm<Eigen::Infinity>() +
                               motion.row(v).lpNorm<Eigen::Infinity>());
   }
-  size += reach;
-  constexpr double kSingle = 2e-6, kDouble = 1e-13;  // some roundings of that size
+  size = std::exp2(std::ceil(std::log2(size + reach)));  // most motions of a start have the same
+  constexpr double kSingle = 2e-6, kDouble = 1e-13;      // some roundings of that size
   const auto boundsReach = static_cast<float>(reach + kSingle * size);
   const float squaredReach = boundsReach * boundsReach * (1 + 1e-6F);
 
-  struct Query {
-    PairKind kind;
-    const Features* first;
-    const Features* second;
-  };
-  const std::array<Query, 5> queries = {{{PairKind::VertexFace, &vertices, &faces},
-                                         {PairKind::VertexFace, &vertices, &fixed_->faces},
-                                         {PairKind::VertexFace, &fixed_->vertices, &faces},
-                                         {PairKind::EdgeEdge, &edges, &edges},
-                                         {PairKind::EdgeEdge, &edges, &fixed_->edges}}};
   struct Task {
     const Query* query;
     BoundsSearch search;
@@ -268,6 +266,8 @@ std::vector<Meeting> CollisionScene::findMeetings(const Positions& start, const 
     MeetingFilter filter(*this, query.kind, start, motion, reach + kDouble * size);
     visitItems(tasks[n].search, tasks[n].from, [&](std::int32_t i, std::int32_t j) {
       const std::int32_t first = query.first->items[i], second = query.second->items[j];
+      if (query.skipFirst != nullptr && (*query.skipFirst)[first] != 0) return;
+      if (query.skipSecond != nullptr && (*query.skipSecond)[second] != 0) return;
       if (query.kind == PairKind::VertexFace) {
         filter.add(first, second);
       } else {
@@ -282,6 +282,63 @@ std::vector<Meeting> CollisionScene::findMeetings(const Positions& start, const 
   all.reserve(count);
   for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
   sortMeetings(all, static_cast<std::size_t>(std::max<Eigen::Index>(start.rows(), edges_.rows())));
+  return all;
+}
+
+std::vector<Meeting> CollisionScene::findMeetings(const Positions& start, const Positions& motion,
+                                                  double reach) const {
+  const auto moving = featuresOf({movingVertices_, movingEdges_, movingFaces_}, start, motion);
+  const Features &vertices = moving[0], &edges = moving[1], &faces = moving[2];
+  const std::array<Query, 5> queries = {{{PairKind::VertexFace, &vertices, &faces},
+                                         {PairKind::VertexFace, &vertices, &fixed_->faces},
+                                         {PairKind::VertexFace, &fixed_->vertices, &faces},
+                                         {PairKind::EdgeEdge, &edges, &edges},
+                                         {PairKind::EdgeEdge, &edges, &fixed_->edges}}};
+  return answer(queries, start, motion, reach);
+}
+
+std::vector<Meeting> CollisionScene::updateMeetings(std::span<const Meeting> known,
+                                                    const Positions& start, const Positions& motion,
+                                                    double reach,
+                                                    std::span<const std::int32_t> changed) const {
+  std::vector<char> vertexChanged(static_cast<std::size_t>(start.rows()), 0);
+  for (const std::int32_t v : changed) vertexChanged[v] = 1;
+  std::vector<std::int32_t> changedEdges, changedFaces;
+  std::vector<char> edgeChanged(static_cast<std::size_t>(edges_.rows()), 0);
+  for (const std::int32_t e : movingEdges_) {
+    if (vertexChanged[edges_(e, 0)] == 0 && vertexChanged[edges_(e, 1)] == 0) continue;
+    edgeChanged[e] = 1;
+    changedEdges.push_back(e);
+  }
+  for (const std::int32_t f : movingFaces_) {
+    if (vertexChanged[faces_(f, 0)] + vertexChanged[faces_(f, 1)] + vertexChanged[faces_(f, 2)] > 0)
+      changedFaces.push_back(f);
+  }
+  const auto moving = featuresOf({movingVertices_, movingEdges_, movingFaces_}, start, motion);
+  std::array<std::vector<std::int32_t>, 3> items;
+  items[0].assign(changed.begin(), changed.end());
+  items[1] = std::move(changedEdges);
+  items[2] = std::move(changedFaces);
+  const auto own = featuresOf(std::move(items), start, motion);
+  const std::array<Query, 7> queries = {
+      {{PairKind::VertexFace, &own[0], &moving[2]},
+       {PairKind::VertexFace, &own[0], &fixed_->faces},
+       {PairKind::VertexFace, &moving[0], &own[2], &vertexChanged},
+       {PairKind::VertexFace, &fixed_->vertices, &own[2]},
+       {PairKind::EdgeEdge, &own[1], &own[1]},
+       {PairKind::EdgeEdge, &own[1], &moving[1], nullptr, &edgeChanged},
+       {PairKind::EdgeEdge, &own[1], &fixed_->edges}}};
+  const std::vector<Meeting> found = answer(queries, start, motion, reach);
+  std::vector<Meeting> kept;
+  kept.reserve(known.size());
+  std::copy_if(known.begin(), known.end(), std::back_inserter(kept), [&](const Meeting& m) {
+    const auto v = vertices(m.pair);
+    return vertexChanged[v[0]] + vertexChanged[v[1]] + vertexChanged[v[2]] + vertexChanged[v[3]] ==
+           0;
+  });
+  std::vector<Meeting> all(kept.size() + found.size());
+  std::merge(kept.begin(), kept.end(), found.begin(), found.end(), all.begin(),
+             [](const Meeting& a, const Meeting& b) { return a.pair < b.pair; });
   return all;
 }
 

@@ -137,6 +137,30 @@ TEST(CollisionScene, WhatIsFoundHangsOnNothingButTheArguments) {
   EXPECT_TRUE(std::is_sorted(pairs.begin(), pairs.end()));
 }
 
+TEST(CollisionScene, WhatIsUpdatedIsWhatANewSearchFinds) {
+  Setting s = foldedCap(0.5);
+  const CollisionScene scene(s.mesh, s.moves);
+  auto meetings = scene.findMeetings(s.mesh.positions, s.motion, 0.8);
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const auto& moving = scene.movingVertices();
+  for (const std::size_t every : {97, 13, 2}) {
+    std::vector<std::int32_t> changed;
+    for (std::size_t n = every / 2; n < moving.size(); n += every) {
+      changed.push_back(moving[n]);
+      s.motion.row(moving[n]) << uniform(random), uniform(random), uniform(random);
+    }
+    meetings = scene.updateMeetings(meetings, s.mesh.positions, s.motion, 0.8, changed);
+    const auto anew = scene.findMeetings(s.mesh.positions, s.motion, 0.8);
+    ASSERT_EQ(meetings.size(), anew.size());
+    for (std::size_t n = 0; n < anew.size(); ++n) {
+      EXPECT_EQ(meetings[n].pair, anew[n].pair);
+      EXPECT_EQ(meetings[n].separation, anew[n].separation);
+      EXPECT_EQ(meetings[n].closing, anew[n].closing);
+    }
+  }
+}
+
 TEST(CollisionScene, MeetingsGiveTheSafeStepOfTheirPairs) {
   Setting s = foldedCap(2);
   const CollisionScene scene(s.mesh, s.moves);

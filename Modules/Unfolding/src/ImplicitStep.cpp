@@ -113,7 +113,7 @@ bool ImplicitStep::attempt() {
   {
     const PhaseClock clock(now_.phases.collision);
     weldBlocking(u_.contacts, state_.positions, u_.setup.unknown, gradient_, motion);
-    onTheWay = u_.contacts.contactsOf(motion.pairs);
+    onTheWay = u_.contacts.contactsOf(motion.pairs());
   }
   if (!(motion.descent < 0) || !search(motion, onTheWay)) return false;
   accept(motion);
@@ -214,7 +214,7 @@ void ImplicitStep::accept(Motion& motion) {
   accountForContacts();
   state_.positions = trial_;
   state_.iteration = now_.iteration;
-  u_.contacts.remember(std::move(motion.pairs));
+  u_.contacts.remember(motion.pairs());
   if (now_.step == 1) {
     state_.damping = std::max(kLeastDamping, state_.damping / 4);
   } else if (now_.step < 0.25 * now_.safeStep) {

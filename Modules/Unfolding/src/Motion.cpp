@@ -5,8 +5,9 @@
 
 #include "Explica/Core/Parallel.h"
 
+#include <algorithm>
 #include <map>
-#include <numeric>
+#include <span>
 #include <utility>
 
 namespace explica::unfolding {
@@ -17,10 +18,6 @@ using collision::Pair;
 /// Groups of vertices that move as one.
 class Welds {
  public:
-  explicit Welds(Eigen::Index vertexCount) : parent_(static_cast<std::size_t>(vertexCount)) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-  }
-
   void join(std::int32_t a, std::int32_t b) {
     a = rootOf(a);
     b = rootOf(b);
@@ -28,16 +25,11 @@ class Welds {
   }
 
   /// Each group takes the mean of its motions; none with a vertex that stays.
-  void moveAsOne(const std::vector<std::int32_t>& unknown, Positions& motion) {
+  /// @return the vertices of all groups that move at all
+  std::vector<std::int32_t> moveAsOne(const std::vector<std::int32_t>& unknown, Positions& motion) {
     std::map<std::int32_t, std::pair<Vector, double>> groups;
-    const auto count = static_cast<std::int32_t>(parent_.size());
-    for (std::int32_t v = 0; v < count; ++v) {
-      if (rootOf(v) != v) groups.try_emplace(rootOf(v), Vector::Zero(), 0.0);
-    }
-    for (std::int32_t v = 0; v < count; ++v) {
-      const auto group = groups.find(rootOf(v));
-      if (group == groups.end()) continue;
-      auto& [sum, members] = group->second;
+    for (const auto& [v, parent] : parent_) {
+      auto& [sum, members] = groups.try_emplace(rootOf(v), Vector::Zero(), 0.0).first->second;
       if (unknown[v] < 0) {
         members = kInfinity;
       } else {
@@ -45,43 +37,52 @@ class Welds {
         members += 1;
       }
     }
-    for (std::int32_t v = 0; v < count; ++v) {
-      const auto group = groups.find(rootOf(v));
-      if (group == groups.end()) continue;
-      motion.row(v) = (group->second.first / group->second.second).transpose();
+    std::vector<std::int32_t> moved;
+    for (const auto& [v, parent] : parent_) {
+      const auto& [sum, members] = groups.at(rootOf(v));
+      motion.row(v) = (sum / members).transpose();
+      if (unknown[v] >= 0) moved.push_back(v);
     }
+    return moved;
   }
 
  private:
   std::int32_t rootOf(std::int32_t v) {
-    while (parent_[v] != v) v = parent_[v] = parent_[parent_[v]];
+    std::int32_t parent = parent_.try_emplace(v, v).first->second;
+    while (parent != v) {
+      v = parent;
+      parent = parent_.at(v);
+    }
     return v;
   }
 
-  std::vector<std::int32_t> parent_;
+  std::map<std::int32_t, std::int32_t> parent_;  ///< of each vertex that is in a group
 };
 
 }  // namespace
 
+std::vector<Pair> Motion::pairs() const {
+  std::vector<Pair> result(meetings.size());
+  for (std::size_t n = 0; n < result.size(); ++n) result[n] = meetings[n].pair;
+  return result;
+}
+
 void findSafeStep(const Contacts& contacts, const Positions& x, Motion& motion) {
-  const auto meetings = contacts.scene().findMeetings(x, motion.by, contacts.range());
-  motion.safe = collision::largestSafeStep(contacts.scene(), meetings, x, motion.by);
-  motion.pairs.resize(meetings.size());
-  for (std::size_t n = 0; n < meetings.size(); ++n) motion.pairs[n] = meetings[n].pair;
+  motion.meetings = contacts.scene().findMeetings(x, motion.by, contacts.range());
+  motion.safe = collision::largestSafeStep(contacts.scene(), motion.meetings, x, motion.by);
 }
 
 std::vector<Pair> blockingPairs(const Contacts& contacts, const Positions& x,
                                 const Motion& motion) {
-  const std::vector<Pair>& pairs = motion.pairs;
   const collision::CollisionScene& scene = contacts.scene();
-  std::vector<char> blocks(pairs.size(), 0);
-  parallelFor(pairs.size(), 512, [&](std::size_t n) {
-    blocks[n] = collision::safeTime(pairs[n].kind, scene.points(pairs[n], x),
-                                    scene.points(pairs[n], motion.by), kBlocked) < kBlocked;
+  std::vector<char> blocks(motion.meetings.size(), 0);
+  parallelFor(blocks.size(), 512, [&](std::size_t n) {
+    const std::span<const collision::Meeting> one(&motion.meetings[n], 1);
+    blocks[n] = collision::largestSafeStep(scene, one, x, motion.by, kBlocked) < kBlocked;
   });
   std::vector<Pair> blocking;
-  for (std::size_t n = 0; n < pairs.size(); ++n) {
-    if (blocks[n]) blocking.push_back(pairs[n]);
+  for (std::size_t n = 0; n < blocks.size(); ++n) {
+    if (blocks[n] != 0) blocking.push_back(motion.meetings[n].pair);
   }
   return blocking;
 }
@@ -91,16 +92,18 @@ void weldBlocking(const Contacts& contacts, const Positions& x,
                   Motion& motion) {
   if (motion.safe >= kBlocked) return;
   constexpr int kMaxWeldings = 8;
-  Welds welds(x.rows());
+  Welds welds;
+  const collision::CollisionScene& scene = contacts.scene();
   for (int welding = 0; welding < kMaxWeldings && motion.safe < kBlocked; ++welding) {
     const std::vector<Pair> blocking = blockingPairs(contacts, x, motion);
     if (blocking.empty()) return;
     for (const Pair& pair : blocking) {
-      const auto v = contacts.scene().vertices(pair);
+      const auto v = scene.vertices(pair);
       for (int i = 1; i < 4; ++i) welds.join(v[0], v[i]);
     }
-    welds.moveAsOne(unknown, motion.by);
-    findSafeStep(contacts, x, motion);
+    const std::vector<std::int32_t> moved = welds.moveAsOne(unknown, motion.by);
+    motion.meetings = scene.updateMeetings(motion.meetings, x, motion.by, contacts.range(), moved);
+    motion.safe = collision::largestSafeStep(scene, motion.meetings, x, motion.by);
     motion.descent = (gradient.array() * motion.by.array()).sum();
   }
 }

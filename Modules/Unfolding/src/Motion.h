@@ -11,13 +11,14 @@ inline constexpr double kBlocked = 0.3;
 
 /// A step that has been proposed, and what stands in its way.
 struct Motion {
-  Positions by = {};                        ///< V x 3, mm
-  double descent = 0;                       ///< gradient . by
-  double safe = 0;                          ///< share of it that collision detection allows
-  std::vector<collision::Pair> pairs = {};  ///< that may meet on the way, or come within range
+  Positions by = {};                              ///< V x 3, mm
+  double descent = 0;                             ///< gradient . by
+  double safe = 0;                                ///< share of it that collision detection allows
+  std::vector<collision::Meeting> meetings = {};  ///< on the way, or within range of it
+  [[nodiscard]] std::vector<collision::Pair> pairs() const;
 };
 
-/// Finds `pairs` and `safe` of a motion from `x`.
+/// Finds `meetings` and `safe` of a motion from `x`.
 void findSafeStep(const Contacts& contacts, const Positions& x, Motion& motion);
 
 /// Pairs that alone would stop the motion before kBlocked of it.

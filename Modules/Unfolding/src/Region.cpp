@@ -256,9 +256,14 @@ Region adjustRegion(const TriangleMesh& mesh, const Region& region, const Region
 
 void requireViewFromOutside(const TriangleMesh& mesh, const visibility::Viewpoints& viewpoints,
                             double clearance) {
+  const geometry::Box box(mesh.positions.colwise().minCoeff().transpose(),
+                          mesh.positions.colwise().maxCoeff().transpose());
+  const auto beyond = [&](const Point& eye) { return box.exteriorDistance(eye) > clearance; };
+  const auto& eyes = viewpoints.points;
+  if (!eyes.empty() && std::all_of(eyes.begin(), eyes.end(), beyond)) return;
   const bool closed = geometry::inspectMesh(mesh).closedManifold();
   const geometry::FaceTree tree(mesh);
-  for (const Point& eye : viewpoints.points) {
+  for (const Point& eye : eyes) {
     if (!eye.allFinite()) throw InvalidInput("viewpoint: not a finite point");
     const std::string name =
         "viewpoint: (" + text(eye[0]) + ", " + text(eye[1]) + ", " + text(eye[2]) + ") lies ";

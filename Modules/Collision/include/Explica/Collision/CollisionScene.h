@@ -43,6 +43,14 @@ class CollisionScene {
   [[nodiscard]] std::vector<Meeting> findMeetings(const Positions& start, const Positions& motion,
                                                   double reach) const;
 
+  /// findMeetings() where it is known for another motion.
+  /// @param known    of the same start and reach, for a motion that differs at `changed` alone
+  /// @param changed  vertices that move, none twice
+  [[nodiscard]] std::vector<Meeting> updateMeetings(std::span<const Meeting> known,
+                                                    const Positions& start, const Positions& motion,
+                                                    double reach,
+                                                    std::span<const std::int32_t> changed) const;
+
   /// The pairs of findMeetings().
   [[nodiscard]] std::vector<Pair> findPairs(const Positions& start, const Positions& motion,
                                             double reach) const;
@@ -60,8 +68,13 @@ class CollisionScene {
  private:
   struct Features;
   struct Surroundings;
-  [[nodiscard]] std::array<Features, 3> movingFeatures(const Positions& start,
-                                                       const Positions& motion) const;
+  struct Query;
+  /// @param items  vertices, edges, faces
+  [[nodiscard]] std::array<Features, 3> featuresOf(std::array<std::vector<std::int32_t>, 3> items,
+                                                   const Positions& start,
+                                                   const Positions& motion) const;
+  [[nodiscard]] std::vector<Meeting> answer(std::span<const Query> queries, const Positions& start,
+                                            const Positions& motion, double reach) const;
   Faces faces_;
   Edges edges_;  ///< those of any face, in lexicographic order
   std::vector<std::int32_t> movingVertices_, movingEdges_, movingFaces_;
