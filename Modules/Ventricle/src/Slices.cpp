@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Explica/Ventricle/Slices.h"
+
+#include "Explica/Core/Parallel.h"
+
+namespace explica::ventricle {
+
+namespace {
+
+SliceKind kindOf(const Slice& slice) {
+  if (slice.cavity == 0) return slice.wall == 0 ? SliceKind::Empty : SliceKind::Cap;
+  if (slice.wall == 0) return SliceKind::CavityOnly;
+  if (slice.openShare >= kValveShare) return SliceKind::Valve;
+  return slice.openShare > 0 ? SliceKind::OpenRing : SliceKind::Ring;
+}
+
+Slice sliceAt(const Volume<Label>& heart, int k) {
+  const auto& size = heart.grid.size;
+  const Eigen::Vector2d pixel = heart.grid.spacing.head<2>();
+  Slice slice;
+  Eigen::Vector2d cavitySum = Eigen::Vector2d::Zero(), wallSum = cavitySum;
+  std::size_t outline = 0;
+  const auto edge = [&](int i, int j, int di, int dj) {
+    const int p = i + di, q = j + dj;
+    const bool inside = p >= 0 && q >= 0 && p < size[0] && q < size[1];
+    const Label other = inside ? heart(p, q, k) : kOutside;
+    if (other == kCavity) return;
+    ++outline;
+    if (other == kWall) return;
+    slice.contacts.emplace_back(Eigen::Vector2d(i + 0.5 * di, j + 0.5 * dj).cwiseProduct(pixel));
+  };
+  for (int j = 0; j < size[1]; ++j) {
+    for (int i = 0; i < size[0]; ++i) {
+      const Label label = heart(i, j, k);
+      const Eigen::Vector2d at = Eigen::Vector2d(i, j).cwiseProduct(pixel);
+      if (label == kWall) {
+        ++slice.wall;
+        wallSum += at;
+      }
+      if (label != kCavity) continue;
+      ++slice.cavity;
+      cavitySum += at;
+      edge(i, j, -1, 0), edge(i, j, 1, 0), edge(i, j, 0, -1), edge(i, j, 0, 1);
+    }
+  }
+  if (slice.cavity > 0) {
+    slice.centre = cavitySum / static_cast<double>(slice.cavity);
+  } else if (slice.wall > 0) {
+    slice.centre = wallSum / static_cast<double>(slice.wall);
+  }
+  if (outline > 0) {
+    slice.openShare = static_cast<double>(slice.contacts.size()) / static_cast<double>(outline);
+  }
+  slice.kind = kindOf(slice);
+  return slice;
+}
+
+}  // namespace
+
+std::vector<Slice> slicesOf(const Volume<Label>& heart) {
+  std::vector<Slice> slices(static_cast<std::size_t>(heart.grid.size[2]));
+  parallelFor(slices.size(), 1,
+              [&](std::size_t k) { slices[k] = sliceAt(heart, static_cast<int>(k)); });
+  return slices;
+}
+
+}  // namespace explica::ventricle

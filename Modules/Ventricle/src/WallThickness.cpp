@@ -1,0 +1,319 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Explica/Ventricle/WallThickness.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/Parallel.h"
+#include "Explica/Harmonic/Interpolant.h"
+#include "Obliquity.h"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+
+namespace explica::ventricle {
+
+namespace {
+
+constexpr Label kBeyondBase = 9;  // beside this module's labels: what lies beyond the valve plane
+
+// Flatter than this the wall runs within the slice: the apical cap.
+constexpr double kSteepestDeg = 60;
+
+// A free end of the wall changes the harmonic function by exp(-pi d / t) at the distance d along a
+// wall of thickness t: by 4 % at one thickness.
+constexpr double kEndReach = 1;
+
+/// True beyond the basal end of the cavity and less than a quarter of a slice below it: whole
+/// slices of a stack across the axis end half a slice below.
+bool atBase(const Point& x, const Grid& grid, const LongAxis& axis) {
+  return axis.share(x) * axis.length() < 0.25 * grid.spacing[2];
+}
+
+double median(std::vector<double> values) {
+  std::erase_if(values, [](double v) { return std::isnan(v); });
+  if (values.empty()) return kNaN;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Faces between the cavity and what is neither cavity nor wall nor insulated, RAS mm.
+std::vector<Point> contactsOf(const Volume<Label>& heart) {
+  std::vector<Point> contacts;
+  const auto& size = heart.grid.size;
+  for (std::size_t v = 0; v < heart.size(); ++v) {
+    if (heart[v] != kCavity) continue;
+    const auto s = heart.grid.subscripts(v);
+    for (int d = 0; d < 6; ++d) {
+      auto q = s;
+      q[d / 2] += d % 2 ? 1 : -1;
+      const bool inside = q[d / 2] >= 0 && q[d / 2] < size[d / 2];
+      if (!inside) continue;  // the edge of the field of view is insulated
+      const Label other = heart(q[0], q[1], q[2]);
+      if (other == kCavity || other == kWall || other == kBeyondBase) continue;
+      contacts.push_back(heart.grid.toWorld(0.5 * Vector(s[0] + q[0], s[1] + q[1], s[2] + q[2])));
+    }
+  }
+  return contacts;
+}
+
+/// Marks what lies on the far side of the plane through the cavity's contacts on the basal half.
+void insulateBeyondBase(Volume<Label>& heart, const LongAxis& axis) {
+  std::vector<Point> contacts = contactsOf(heart);
+  std::erase_if(contacts, [&](const Point& p) { return axis.share(p) > 0.5; });
+  if (contacts.size() < 3) return;
+  Point centre = Point::Zero();
+  for (const Point& p : contacts) centre += p / static_cast<double>(contacts.size());
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const Point& p : contacts) spread += (p - centre) * (p - centre).transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread);
+  Vector normal = solver.eigenvectors().col(0);
+  if (normal.dot(axis.direction) > 0) normal = -normal;
+  // A valve plane lies across the axis; contacts along the side of the cavity are gaps in the wall.
+  if (std::abs(normal.dot(axis.direction)) < 0.5) return;
+  const double tolerance = 0.5 * heart.grid.spacing.maxCoeff();
+  parallelFor(heart.size(), 1 << 14, [&](std::size_t v) {
+    if (heart[v] == kCavity || heart[v] == kWall) return;
+    const auto s = heart.grid.subscripts(v);
+    const Point x = heart.grid.toWorld(Vector(s[0], s[1], s[2]));
+    if ((x - centre).dot(normal) > -tolerance) heart[v] = kBeyondBase;
+  });
+}
+
+/// In thick slices the base is the plane across the axis at the cavity's end.
+void insulateAtBase(Volume<Label>& heart, const LongAxis& axis) {
+  parallelFor(heart.size(), 1 << 14, [&](std::size_t v) {
+    if (heart[v] == kCavity || heart[v] == kWall) return;
+    const auto s = heart.grid.subscripts(v);
+    const Point x = heart.grid.toWorld(Vector(s[0], s[1], s[2]));
+    if (atBase(x, heart.grid, axis)) heart[v] = kBeyondBase;
+  });
+}
+
+bool has(const Volume<Label>& heart, Label label) {
+  return std::find(heart.data.begin(), heart.data.end(), label) != heart.data.end();
+}
+
+/// Solves on the tissue and keeps the lengths.
+void solve(WallThickness& wall, const Volume<Label>& heart, const Monitor& monitor) {
+  harmonic::LabelRoles roles{{kCavity}, {kWall}, {}, {}};
+  if (has(heart, kBeyondBase)) roles.insulated = {kBeyondBase};
+  Monitor silent = monitor;
+  silent.onWarning = nullptr;  // gaps are this module's subject: it finds and tells them itself
+  wall.annulus = harmonic::annulusFromLabels(heart, roles, {.perSlice = wall.bySlice}, silent);
+  const harmonic::Interpolant u = harmonic::solveInterpolant(wall.annulus, {}, silent);
+  wall.correspondence = correspondence::findCorrespondences(wall.annulus, u, {}, silent);
+  wall.plain = correspondence::thicknessOf(wall.correspondence);
+  wall.thickness = wall.plain;
+  wall.leftOut.assign(wall.plain.size(), LeftOut::None);
+}
+
+/// Place of a world offset from voxel n in mm along i and j.
+Eigen::Vector2d inSlice(const harmonic::Annulus& annulus, std::int32_t n,
+                        const Eigen::Vector3f& offset) {
+  const Grid& grid = annulus.grid;
+  const Vector at = grid.spacing.cwiseProduct(annulus.index(n)) +
+                    grid.direction.transpose() * offset.cast<double>();
+  return at.head<2>();
+}
+
+/// True for slices of which nothing lies at or beyond the base: their outlines are boundaries of
+/// the wall all around.
+std::vector<bool> intactSlices(const Volume<Label>& heart, const LongAxis& axis) {
+  std::vector<bool> intact(static_cast<std::size_t>(heart.grid.size[2]), true);
+  for (std::size_t v = 0; v < heart.size(); ++v) {
+    if (heart[v] != kCavity && heart[v] != kWall) continue;
+    const auto s = heart.grid.subscripts(v);
+    if (atBase(heart.grid.toWorld(Vector(s[0], s[1], s[2])), heart.grid, axis)) {
+      intact[static_cast<std::size_t>(s[2])] = false;
+    }
+  }
+  return intact;
+}
+
+/// Replaces lengths within the slice by the sum of the distances to the boundaries in the plane
+/// through the trajectory's ends and the slice's normal.
+void correctObliquity(WallThickness& wall, const Volume<Label>& heart, const LongAxis& axis) {
+  const std::vector<bool> intact = intactSlices(heart, axis);
+  std::vector<bool> inner, outer;
+  int rings = 0;
+  for (std::size_t k = 0; k < wall.slices.size(); ++k) {
+    const SliceKind kind = wall.slices[k].kind;
+    const bool ring = intact[k] && kind == SliceKind::Ring;
+    rings += ring;
+    inner.push_back(ring || (intact[k] && kind == SliceKind::CavityOnly));
+    outer.push_back(ring || (intact[k] && kind == SliceKind::Cap));
+  }
+  if (rings < 2) {  // what there is must do
+    for (std::size_t k = 0; k < wall.slices.size(); ++k) {
+      inner[k] = inner[k] || wall.slices[k].whole();
+      outer[k] = outer[k] || wall.slices[k].whole();
+    }
+  }
+  const BoundaryProfile innerProfile(heart, inner, [](Label l) { return l == kCavity; });
+  const BoundaryProfile outerProfile(heart, outer,
+                                     [](Label l) { return l == kCavity || l == kWall; });
+  parallelFor(wall.plain.size(), 256, [&](std::size_t n) {
+    const auto number = static_cast<std::int32_t>(n);
+    if (std::isnan(wall.plain[n])) return;
+    const int k = static_cast<int>(wall.annulus.index(number)[2]);
+    const Eigen::Vector2d from = inSlice(wall.annulus, number, wall.correspondence.innerPoint[n]);
+    const Eigen::Vector2d to = inSlice(wall.annulus, number, wall.correspondence.outerPoint[n]);
+    const Eigen::Vector2d normal = (to - from).normalized();
+    const double length =
+        innerProfile.distance(k, from, normal, -wall.correspondence.innerDistance[n]) +
+        outerProfile.distance(k, to, normal, wall.correspondence.outerDistance[n]);
+    wall.thickness[n] = length;
+    if (length < std::cos(kSteepestDeg * kPi / 180) * wall.plain[n]) wall.leftOut[n] = LeftOut::Cap;
+  });
+}
+
+/// Trajectories that come to the base.
+void leaveOutAtBase(WallThickness& wall, const LongAxis& axis) {
+  parallelFor(wall.plain.size(), 256, [&](std::size_t n) {
+    const Point x = wall.annulus.world(static_cast<std::int32_t>(n));
+    const Grid& grid = wall.annulus.grid;
+    const Point inner = x + wall.correspondence.innerPoint[n].cast<double>();
+    const Point outer = x + wall.correspondence.outerPoint[n].cast<double>();
+    if (atBase(x, grid, axis) || atBase(inner, grid, axis) || atBase(outer, grid, axis)) {
+      wall.leftOut[n] = LeftOut::Valve;
+    }
+  });
+}
+
+/// Voxels within a wall's thickness of places where the cavity touches the outside.
+void leaveOutNear(WallThickness& wall, const std::vector<std::vector<Point>>& contacts,
+                  const std::vector<double>& reach) {
+  parallelFor(wall.plain.size(), 256, [&](std::size_t n) {
+    const auto number = static_cast<std::int32_t>(n);
+    const std::size_t k =
+        wall.bySlice ? static_cast<std::size_t>(wall.annulus.index(number)[2]) : 0;
+    if (contacts[k].empty() || std::isnan(reach[k])) return;
+    const Point x = wall.annulus.world(number);
+    const Point inner = x + wall.correspondence.innerPoint[n].cast<double>();
+    for (const Point& c : contacts[k]) {
+      if (std::min((x - c).squaredNorm(), (inner - c).squaredNorm()) > reach[k] * reach[k])
+        continue;
+      wall.leftOut[n] = LeftOut::Opening;
+      return;
+    }
+  });
+}
+
+/// Where the ring of each slice ends: the cavity's contacts with the outside, and the wall's faces
+/// at the base.  RAS mm.
+std::vector<std::vector<Point>> ringEnds(const WallThickness& wall, const Volume<Label>& marked) {
+  const Grid& grid = marked.grid;
+  std::vector<std::vector<Point>> ends(wall.slices.size());
+  for (std::size_t k = 0; k < wall.slices.size(); ++k) {
+    for (const Eigen::Vector2d& c : wall.slices[k].contacts) {
+      const Eigen::Vector2d at = c.cwiseQuotient(grid.spacing.head<2>());
+      ends[k].push_back(grid.toWorld(Vector(at[0], at[1], static_cast<double>(k))));
+    }
+  }
+  for (std::size_t v = 0; v < marked.size(); ++v) {
+    if (marked[v] != kWall) continue;
+    const auto s = grid.subscripts(v);
+    for (int d = 0; d < 4; ++d) {
+      auto q = s;
+      q[d / 2] += d % 2 ? 1 : -1;
+      if (!grid.contains(q[0], q[1], q[2]) || marked(q[0], q[1], q[2]) != kBeyondBase) continue;
+      ends[static_cast<std::size_t>(s[2])].push_back(
+          grid.toWorld(0.5 * Vector(s[0] + q[0], s[1] + q[1], 2 * s[2])));
+    }
+  }
+  return ends;
+}
+
+void leaveOutBySlice(WallThickness& wall, const Volume<Label>& marked) {
+  std::vector<std::vector<double>> lengths(wall.slices.size());
+  for (std::size_t n = 0; n < wall.plain.size(); ++n) {
+    const auto k = static_cast<std::size_t>(wall.annulus.index(static_cast<std::int32_t>(n))[2]);
+    lengths[k].push_back(wall.plain[n]);
+  }
+  std::vector<double> reach;
+  for (const std::vector<double>& values : lengths) reach.push_back(kEndReach * median(values));
+  leaveOutNear(wall, ringEnds(wall, marked), reach);
+  for (std::size_t n = 0; n < wall.plain.size(); ++n) {
+    const auto k = static_cast<std::size_t>(wall.annulus.index(static_cast<std::int32_t>(n))[2]);
+    if (wall.slices[k].kind == SliceKind::Valve) wall.leftOut[n] = LeftOut::Valve;
+  }
+}
+
+void markUnreached(WallThickness& wall) {
+  for (std::size_t n = 0; n < wall.plain.size(); ++n) {
+    if (std::isnan(wall.plain[n])) wall.leftOut[n] = LeftOut::Unreached;
+  }
+}
+
+/// What has become of every voxel of the wall, those included that the solve did not take.
+Volume<std::uint8_t> reasonsOf(const WallThickness& wall, const Volume<Label>& heart) {
+  Volume<std::uint8_t> reasons(heart.grid, 255);
+  const std::size_t pixels = static_cast<std::size_t>(heart.grid.size[0]) * heart.grid.size[1];
+  for (std::size_t v = 0; v < heart.size(); ++v) {
+    if (heart[v] != kWall) continue;
+    const SliceKind kind = wall.slices[v / pixels].kind;
+    const LeftOut why = wall.bySlice && kind == SliceKind::Cap     ? LeftOut::Cap
+                        : wall.bySlice && kind == SliceKind::Valve ? LeftOut::Valve
+                                                                   : LeftOut::Unreached;
+    reasons[v] = static_cast<std::uint8_t>(why);
+  }
+  for (std::size_t n = 0; n < wall.leftOut.size(); ++n) {
+    reasons[wall.annulus.linear(static_cast<std::int32_t>(n))] =
+        static_cast<std::uint8_t>(wall.leftOut[n]);
+  }
+  return reasons;
+}
+
+}  // namespace
+
+WallThickness measureWall(const Volume<Label>& heart, const LongAxis& axis,
+                          const WallOptions& options, const Monitor& monitor) {
+  if (!has(heart, kWall)) throw InvalidInput("the frame has no wall");
+  WallThickness wall;
+  wall.slices = slicesOf(heart);
+  wall.bySlice = options.method == WallMethod::Slices ||
+                 (options.method == WallMethod::Automatic && hasThickSlices(heart.grid));
+  Volume<Label> marked = heart;
+  if (wall.bySlice) {
+    insulateAtBase(marked, axis);
+    solve(wall, marked, monitor);
+    correctObliquity(wall, heart, axis);
+    leaveOutBySlice(wall, marked);
+    leaveOutAtBase(wall, axis);
+  } else {
+    insulateBeyondBase(marked, axis);
+    solve(wall, marked, monitor);
+    leaveOutNear(wall, {contactsOf(marked)}, {kEndReach * median(wall.plain)});
+  }
+  markUnreached(wall);
+  wall.reasons = reasonsOf(wall, heart);
+  return wall;
+}
+
+void ColumnMean::add(double thickness, double plain) {
+  if (!(thickness > 0)) return;
+  ++count_;
+  columns_ += 1 / thickness;
+  sum_ += thickness;
+  plainColumns_ += 1 / plain;
+  lowest_ = std::min(lowest_, thickness);
+  highest_ = std::max(highest_, thickness);
+}
+
+double ColumnMean::mean() const {
+  return count_ > 0 ? static_cast<double>(count_) / columns_ : kNaN;
+}
+
+double ColumnMean::plain() const {
+  return count_ > 0 ? static_cast<double>(count_) / plainColumns_ : kNaN;
+}
+
+double ColumnMean::deviation() const {
+  // With weights 1 / t the mean square is sum(t) / sum(1 / t).
+  return count_ > 0 ? std::sqrt(std::max(0.0, sum_ / columns_ - mean() * mean())) : kNaN;
+}
+
+}  // namespace explica::ventricle

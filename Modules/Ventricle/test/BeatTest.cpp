@@ -1,0 +1,214 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Explica/Ventricle/Beat.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/Parallel.h"
+#include "Explica/IO/VolumeFile.h"
+#include "Explica/Phantom/BeatingVentricle.h"
+
+#include <Eigen/Geometry>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+using namespace explica;
+using namespace explica::ventricle;
+
+namespace {
+
+Beat beatOf(const phantom::BeatingVentricle& phantom, const HeartOptions& options = {}) {
+  std::vector<Volume<Label>> hearts;
+  std::vector<int> numbers;
+  for (const auto& frame : phantom.frames) {
+    hearts.push_back(frame.labels);
+    numbers.push_back(static_cast<int>(numbers.size()));
+  }
+  return measureBeat(hearts, numbers, options);
+}
+
+/// The exact means over the columns of a frame that count, by segment from 0.
+std::vector<double> exactMeans(const phantom::BeatingVentricle& phantom, const Beat& beat,
+                               std::size_t f) {
+  const Frame& frame = beat.frames[f];
+  const WallThickness& wall = *frame.measures;
+  std::vector<ColumnMean> means(kSegments + 1);
+  for (std::size_t n = 0; n < wall.thickness.size(); ++n) {
+    if (!wall.counts(n)) continue;
+    const auto number = static_cast<std::int32_t>(n);
+    const Point x = phantom.toHeart(wall.annulus.world(number));
+    const double t = phantom.frames[f].exact.answer(x).thickness();
+    means[frame.segments->segmentOf[wall.annulus.linear(number)]].add(t, t);
+  }
+  std::vector<double> values;
+  for (int s = 1; s <= kSegments; ++s) values.push_back(means[s].mean());
+  return values;
+}
+
+/// The expert's end-diastolic labels, or nothing.
+std::optional<Volume<Label>> realHeart(const char* name) {
+  const auto file = std::filesystem::path(EXPLICA_REAL_DATA) / "lv_sunnybrook_SCD0000101" / name;
+  if (!std::filesystem::exists(file)) return {};
+  return io::readLabels(file).volume;
+}
+
+/// The same heart seen by another grid: turned, mirrored or moved.
+Volume<Label> placed(Volume<Label> heart, const Eigen::Matrix3d& direction) {
+  heart.grid.origin = direction * heart.grid.origin + Point(30, -20, 10);
+  heart.grid.direction = direction * heart.grid.direction;
+  return heart;
+}
+
+}  // namespace
+
+class TiltedSlices : public ::testing::TestWithParam<double> {};
+
+TEST_P(TiltedSlices, GiveTheSegmentsTheirExactThickness) {
+  const auto phantom =
+      phantom::beatingVentricle({90, 1.4}, {.frames = 2, .slice = 8, .tiltDeg = GetParam()});
+  const Beat beat = beatOf(phantom);
+  EXPECT_NEAR(beat.atDiastole().axis.stackAngleDeg, GetParam(), 1);
+  for (std::size_t f = 0; f < 2; ++f) {
+    ASSERT_TRUE(beat.frames[f].measures->bySlice);
+    const auto exact = exactMeans(phantom, beat, f);
+    double worst = 0;
+    for (int s = 0; s < 16; ++s) {
+      const Segment& row = beat.frames[f].segments->rows[s];
+      EXPECT_GT(row.voxels, 100U) << row.number;
+      // At end-systole the wall is a quarter thicker and the cavity half as large.
+      EXPECT_NEAR(row.thickness, exact[s], f == 0 ? 0.3 : 0.4) << "segment " << row.number;
+      worst = std::max(worst, std::abs(row.thickness - exact[s]));
+    }
+    std::printf("tilt %g, frame %zu: greatest error of a segment's mean %.2f mm\n", GetParam(), f,
+                worst);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Degrees, TiltedSlices, ::testing::Values(0, 10, 20));
+
+TEST(Beat, VolumesAndThickeningOfAnIncompressibleWallAreExact) {
+  const auto phantom = phantom::beatingVentricle({90, 1.4}, {.frames = 6, .slice = 1.4});
+  const Beat beat = beatOf(phantom);
+  EXPECT_EQ(beat.diastole, 0U);
+  EXPECT_EQ(beat.systole, 3U);
+  EXPECT_NEAR(*beat.ejectionFraction, 50, 0.5);
+  for (std::size_t f = 0; f < 6; ++f) {
+    const Frame& frame = beat.frames[f];
+    const auto& truth = phantom.frames[f];
+    EXPECT_FALSE(frame.measures->bySlice);
+    EXPECT_NEAR(frame.cavity, 1e-3 * truth.cavity, 1e-5 * truth.cavity);
+    EXPECT_NEAR(frame.wall, 1e-3 * truth.wall, 1e-5 * truth.wall);
+    EXPECT_DOUBLE_EQ(frame.mass, 1.05 * frame.wall);
+    for (const Segment& row : frame.segments->rows) {
+      if (row.number == kSegments) continue;
+      const auto third = static_cast<std::size_t>((row.number - 1) / 6);
+      const double exact = 100 * (truth.thickness[third] / phantom.frames[0].thickness[third] - 1);
+      EXPECT_NEAR(row.thickening, exact, 3) << "frame " << f << " segment " << row.number;
+      EXPECT_NEAR(row.thickness, truth.thickness[third], 0.3);
+    }
+  }
+}
+
+TEST(Beat, ThickSlicesKeepVolumesAndThickening) {
+  const auto phantom = phantom::beatingVentricle({90, 1.4}, {.frames = 2, .slice = 8});
+  const Beat beat = beatOf(phantom);
+  for (std::size_t f = 0; f < 2; ++f) {
+    EXPECT_NEAR(beat.frames[f].cavity, 1e-3 * phantom.frames[f].cavity,
+                1e-5 * phantom.frames[f].cavity);
+    EXPECT_NEAR(beat.frames[f].wall, 1e-3 * phantom.frames[f].wall, 1e-5 * phantom.frames[f].wall);
+  }
+  EXPECT_NEAR(*beat.ejectionFraction, 50, 1);
+  for (const Segment& row : beat.frames[1].segments->rows) {
+    const auto third = static_cast<std::size_t>((row.number - 1) / 6);
+    if (third > 1) continue;  // at the apex other slices hold a ring at end-systole
+    const double exact =
+        100 * (phantom.frames[1].thickness[third] / phantom.frames[0].thickness[third] - 1);
+    EXPECT_NEAR(row.thickening, exact, 3) << row.number;
+  }
+}
+
+TEST(Beat, DoesNotDependOnWhereTheImageLiesNorOnThreads) {
+  const auto phantom =
+      phantom::beatingVentricle({90, 1.4}, {.frames = 1, .slice = 8, .tiltDeg = 10});
+  const Beat straight = beatOf(phantom);
+  const Eigen::Matrix3d turned =
+      Eigen::AngleAxisd(1.1, Vector(3, -1, 2).normalized()).toRotationMatrix();
+  setThreadCount(1);
+  const Beat moved = measureBeat({placed(phantom.frames[0].labels, turned)}, {0});
+  setThreadCount(0);
+  for (int s = 0; s < kSegments; ++s) {
+    const Segment& a = straight.atDiastole().segments->rows[s];
+    const Segment& b = moved.atDiastole().segments->rows[s];
+    EXPECT_EQ(a.voxels, b.voxels);
+    if (a.voxels == 0) continue;
+    EXPECT_NEAR(a.thickness, b.thickness, 1e-6);
+  }
+}
+
+TEST(Beat, AMirroredImageHasItsSegmentsMirrored) {
+  // A mirror image of a heart turns the other way round: the septum's halves change places, while
+  // thickness stays.
+  const auto phantom =
+      phantom::beatingVentricle({90, 1.4}, {.frames = 1, .slice = 8, .tiltDeg = 10});
+  const Beat straight = beatOf(phantom);
+  const Eigen::Matrix3d mirror = Vector(-1, 1, 1).asDiagonal().toDenseMatrix();
+  const Beat mirrored = measureBeat({placed(phantom.frames[0].labels, mirror)}, {0});
+  const auto at = [](const Beat& beat, int number) {
+    return beat.atDiastole().segments->rows[number - 1];
+  };
+  for (const auto& [a, b] : {std::pair{2, 3}, {1, 4}, {6, 5}, {8, 9}, {7, 10}, {12, 11}}) {
+    EXPECT_NEAR(at(straight, a).thickness, at(mirrored, b).thickness, 0.02);
+    EXPECT_NEAR(static_cast<double>(at(straight, a).voxels),
+                static_cast<double>(at(mirrored, b).voxels), 8);
+  }
+}
+
+TEST(Beat, RealSlicesAreAsThickAsTheirAreasSay) {
+  const auto raw = realHeart("ED_label.nii.gz");
+  if (!raw) GTEST_SKIP() << "skipped: no real data";
+  const Beat beat = measureBeat({relabelled(*raw, findRoles({*raw}))}, {0});
+  const std::vector<SliceRow> rows = sliceRows(beat.atDiastole());
+  ASSERT_EQ(rows.size(), 9U);
+  double sumA = 0, sumB = 0, sumAA = 0, sumBB = 0, sumAB = 0, apart = 0, corrected = 0, n = 0;
+  for (const SliceRow& row : rows) {
+    if (row.slice == 0) continue;
+    const double a = row.areaEquivalent, b = row.plain;
+    sumA += a, sumB += b, sumAA += a * a, sumBB += b * b, sumAB += a * b, apart += std::abs(a - b);
+    corrected += std::abs(a - row.thickness);
+    n += 1;
+  }
+  const double r =
+      (n * sumAB - sumA * sumB) / std::sqrt((n * sumAA - sumA * sumA) * (n * sumBB - sumB * sumB));
+  std::printf("apart %.3f mm, r %.4f; corrected %.3f mm\n", apart / n, r, corrected / n);
+  EXPECT_LE(apart / n, 0.25);
+  EXPECT_GE(r, 0.99);
+  // The ring that the outflow tract opens.
+  EXPECT_NE(rows[0].kind, SliceKind::Ring);
+  EXPECT_GT(rows[0].leftOut, 50U);
+  for (const Segment& row : beat.atDiastole().segments->rows) {
+    if (row.number > 6) continue;
+    EXPECT_GT(row.lowest, 2) << row.number;
+  }
+}
+
+TEST(Beat, AFrameWithoutWallCountsForVolumesOnly) {
+  const auto phantom = phantom::beatingVentricle({90, 1.4}, {.frames = 2, .slice = 8});
+  Volume<Label> bare = phantom.frames[1].labels;
+  for (Label& label : bare.data) label = label == kCavity ? kCavity : kOutside;
+  const Beat beat = measureBeat({phantom.frames[0].labels, bare}, {0, 7});
+  EXPECT_EQ(beat.systole, 1U);
+  EXPECT_NEAR(*beat.ejectionFraction, 50, 1);
+  EXPECT_FALSE(beat.frames[1].segments);
+  EXPECT_EQ(beat.frames[1].why, "it has no wall");
+  EXPECT_NE(frameTable(beat).find("7\tES\t"), std::string::npos);
+  EXPECT_EQ(segmentTable(beat).find("\t7\t"), std::string::npos);
+  EXPECT_THROW((void)measureBeat({bare}, {0}), InvalidInput);
+}
+
+TEST(Beat, RefusesFramesOfDifferentGrids) {
+  const auto a = phantom::beatingVentricle({90, 1.4}, {.frames = 1, .slice = 8});
+  const auto b = phantom::beatingVentricle({92, 1.4}, {.frames = 1, .slice = 8});
+  EXPECT_THROW((void)measureBeat({a.frames[0].labels, b.frames[0].labels}, {0, 1}), InvalidInput);
+}
