@@ -4,7 +4,6 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
-#include "Explica/Harmonic/Interpolant.h"
 #include "Obliquity.h"
 
 #include <Eigen/Eigenvalues>
@@ -103,8 +102,9 @@ void solve(WallThickness& wall, const Volume<Label>& heart, const Monitor& monit
   Monitor silent = monitor;
   silent.onWarning = nullptr;  // gaps are this module's subject: it finds and tells them itself
   wall.annulus = harmonic::annulusFromLabels(heart, roles, {.perSlice = wall.bySlice}, silent);
-  const harmonic::Interpolant u = harmonic::solveInterpolant(wall.annulus, {}, silent);
-  wall.correspondence = correspondence::findCorrespondences(wall.annulus, u, {}, silent);
+  wall.interpolant = harmonic::solveInterpolant(wall.annulus, {}, silent);
+  wall.correspondence =
+      correspondence::findCorrespondences(wall.annulus, wall.interpolant, {}, silent);
   wall.plain = correspondence::thicknessOf(wall.correspondence);
   wall.thickness = wall.plain;
   wall.leftOut.assign(wall.plain.size(), LeftOut::None);

@@ -4,6 +4,7 @@
 
 #include "Explica/Correspondence/Correspondence.h"
 #include "Explica/Harmonic/Annulus.h"
+#include "Explica/Harmonic/Interpolant.h"
 #include "Explica/Ventricle/LongAxis.h"
 
 #include <array>
@@ -45,6 +46,7 @@ void describe(WallOptions& options, Visitor&& visit) {
 /// Thickness of a frame's wall, per tissue number of `annulus`.
 struct WallThickness {
   harmonic::Annulus annulus;
+  harmonic::Interpolant interpolant;
   correspondence::Correspondence correspondence;
   bool bySlice = false;
   std::vector<double> plain;      ///< mm, length of the trajectory: within the slice if by slice

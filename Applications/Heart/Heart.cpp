@@ -1,0 +1,321 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Application/Command.h"
+#include "Explica/Application/ReadInputs.h"
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/WholeFile.h"
+#include "Explica/IO/VolumeFile.h"
+#include "Explica/Ventricle/Pictures.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+
+namespace explica::app {
+namespace {
+
+constexpr double kFarTiltDeg = 30;  // of the axis from the slices' normal: not short axis
+constexpr double kLowSeptum = 60, kHighSeptum = 200;  // degrees
+constexpr int kMostFrames = 1000;
+
+struct Settings {
+  std::vector<std::string> segmentations;
+  io::VolumeReadOptions reading;
+  ventricle::HeartLabelOptions labels;
+  ventricle::HeartOptions heart;
+  std::string frames = "all";
+};
+
+void declare(Declaration& d, Settings& s) {
+  d.synopsis("the left ventricle's wall over time: thickness, 17 segments, volumes, pictures")
+      .description(
+          "Reads short-axis label volumes, one file with all frames or a file a frame, and "
+          "measures "
+          "the wall of each. Where slices are much thicker than pixels, thickness is measured "
+          "slice "
+          "by slice and corrected for how obliquely each slice cuts the wall, by the neighbouring "
+          "slices; in isotropic volumes, in space. Places where the ring is open (outflow tract), "
+          "slices that the valve plane cuts and the apical cap are found, drawn and left out of "
+          "the "
+          "means, with a count. The right ventricle's label tells where the 17 segments begin. "
+          "Papillary muscles belong to whatever label they have.")
+      .reference("Cerqueira et al. 2002, Circulation 105(4):539-542 (17 segments)")
+      .reference("Kawel et al. 2012, Circ Cardiovasc Imaging 5(4):500-508 (normal thickness)")
+      .reference("Jones, Buchbinder, Aharon 2000, Human Brain Mapping 11:12-32")
+      .example("explica heart patient001_4d_gt.nii.gz --out heart",
+               "All frames of a file; which label is what is found from their values and places")
+      .example(
+          "explica heart ED_label.nii.gz ES_label.nii.gz --cavity 1 --wall 2 "
+          "--rv-insertion-image-axis i- --out heart",
+          "Two frames without a label of the right ventricle")
+      .input("SEG", FileKind::LabelVolume, "label volume, 3-D or 4-D; several are frames in order",
+             s.segmentations)
+      .options("Labels", s.labels)
+      .option("Frames",
+              Field{"frames", "",
+                    "all; ED,ES: only these two, found as greatest and smallest cavity; or two "
+                    "numbers counted from 0, as 0,9, which are taken for ED and ES"},
+              s.frames)
+      .options("Orientation", s.heart.orientation)
+      .options("Thickness", s.heart.wall)
+      .options("Reading", s.reading)
+      .without("frame")
+      .output("frames.tsv", FileKind::Table,
+              "per frame: volumes (ml), mass (g, 1.05 g/ml), mean thickness (mm), thickening (%)")
+      .output("segments.tsv", FileKind::Table,
+              "per segment and frame: thickness (mm), its spread, thickening (%)")
+      .output("slices.tsv", FileKind::Table,
+              "per slice and frame: areas, wall of circles of equal areas, thickness plain and "
+              "corrected")
+      .output("bullseye.svg", FileKind::Picture, "thickness at ED and ES, thickening")
+      .output("bullseye.png", FileKind::Picture, "the same in pixels")
+      .output("slices_ed.svg", FileKind::Picture, "slices with boundaries and trajectories")
+      .output("slices_ed.png", FileKind::Picture, "the same in pixels")
+      .output("slices_es.svg", FileKind::Picture, "slices at end-systole")
+      .output("slices_es.png", FileKind::Picture, "the same in pixels")
+      .output("curves.svg", FileKind::Picture, "with several frames: volume, thickness, mass")
+      .output("curves.png", FileKind::Picture, "the same in pixels")
+      .output("segments.nii.gz", FileKind::LabelVolume, "segment of each wall voxel at ED")
+      .output("left_out.nii.gz", FileKind::LabelVolume,
+              "wall voxels at ED that do not count: 1 opening, 2 valve plane, 3 apical cap, 4 "
+              "trajectory does not arrive")
+      .output("thickness_frame-*.nii.gz", FileKind::Volume,
+              "thickness per voxel and frame, mm; 0 off the wall and where it does not count");
+}
+
+/// Frames of all files in order.
+std::vector<Volume<Label>> readFrames(Context& context, const Settings& s) {
+  std::vector<Volume<Label>> frames;
+  for (std::size_t f = 0; f < s.segmentations.size(); ++f) {
+    const std::string& path = s.segmentations[f];
+    io::VolumeReadOptions options = s.reading;
+    options.allowAllZero = true;
+    options.frame = 0;
+    const io::LoadedVolume<Label> first = io::readLabels(path, options);
+    const auto& size = first.origin.storedSize;
+    const int count = size.size() > 3 ? size[3] : 1;
+    if (count > kMostFrames) {
+      throw InvalidInput("'" + path + "' holds " + std::to_string(count) + " frames; at most " +
+                         std::to_string(kMostFrames) + " are possible");
+    }
+    context.note("SEG " + std::to_string(f),
+                 nlohmann::ordered_json{{"format", first.origin.format},
+                                        {"stored_size", size},
+                                        {"placement", first.origin.placement},
+                                        {"notes", first.origin.notes}});
+    frames.push_back(first.volume);
+    for (int n = 1; n < count; ++n) {
+      options.frame = n;
+      frames.push_back(io::readLabels(path, options).volume);
+    }
+  }
+  return frames;
+}
+
+/// The numbers in "0,9"; nothing if the text is something else.
+std::optional<std::array<int, 2>> twoNumbers(const std::string& text) {
+  std::array<int, 2> numbers{};
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  for (std::size_t n = 0; n < 2; ++n) {
+    const auto [next, error] = std::from_chars(at, end, numbers[n]);
+    if (error != std::errc{} || (n == 0 ? next == end || *next != ',' : next != end)) return {};
+    at = next + 1;
+  }
+  return numbers;
+}
+
+/// Which frames are measured, and which of them are ED and ES.
+struct Chosen {
+  std::vector<int> numbers;
+  std::optional<ventricle::Phases> phases;
+};
+
+Chosen chooseFrames(const std::string& wanted, const std::vector<Volume<Label>>& hearts) {
+  const auto count = static_cast<int>(hearts.size());
+  Chosen chosen;
+  std::string lower = wanted;
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (lower == "all") {
+    for (int f = 0; f < count; ++f) chosen.numbers.push_back(f);
+    return chosen;
+  }
+  const ventricle::Phases found = ventricle::phasesOf(hearts);
+  std::array<int, 2> two = {static_cast<int>(found.diastole), static_cast<int>(found.systole)};
+  if (lower != "ed,es") {
+    const auto numbers = twoNumbers(lower);
+    if (!numbers) {
+      throw UsageError("--frames takes all, ED,ES or two numbers as 0,9; found '" + wanted + "'");
+    }
+    two = *numbers;
+    for (const int n : two) {
+      if (n < 0 || n >= count) {
+        throw UsageError("--frames " + wanted + ": there is no frame " + std::to_string(n) + "; " +
+                         std::to_string(count) + " were read, counted from 0");
+      }
+    }
+  }
+  chosen.numbers = {two[0]};
+  chosen.phases = ventricle::Phases{0, 0};
+  if (two[1] != two[0]) {
+    chosen.numbers.push_back(two[1]);
+    chosen.phases->systole = 1;
+  }
+  return chosen;
+}
+
+std::string degrees(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.0f degrees", value);
+  return text;
+}
+
+/// What a reader must know before trusting the numbers.
+void sayWhatIsOdd(Context& context, const ventricle::Beat& beat) {
+  for (const ventricle::Frame& frame : beat.frames) {
+    if (frame.segments) continue;
+    context.warn("frame " + std::to_string(frame.number) +
+                 " is left out of thickness and mass: " + frame.why);
+  }
+  const ventricle::LongAxis& axis = beat.atDiastole().axis;
+  if (axis.stackAngleDeg > kFarTiltDeg && ventricle::hasThickSlices(beat.atDiastole().heart.grid)) {
+    context.warn("the long axis is tilted by " + degrees(axis.stackAngleDeg) +
+                 " from the normal of the slices: these are no short-axis slices, or a label is "
+                 "wrong");
+  }
+  if (!beat.oriented()) {
+    context.warn(
+        "no label of the right ventricle, no --rv-insertion and no "
+        "--rv-insertion-image-axis: segments are counted from the front of the image and "
+        "have no anatomical names");
+  }
+  const double septum = beat.orientation.septumDeg;
+  if (septum < kLowSeptum || septum > kHighSeptum) {
+    context.warn("the right ventricle touches the wall over " + degrees(septum) +
+                 " around the axis; 90 to 150 are usual: check segments.nii.gz");
+  }
+}
+
+std::size_t countOf(const ventricle::WallThickness& wall, ventricle::LeftOut why) {
+  return static_cast<std::size_t>(std::count(wall.reasons.data.begin(), wall.reasons.data.end(),
+                                             static_cast<std::uint8_t>(why)));
+}
+
+/// A number, or null where it is not known.
+void result(Context& context, const std::string& key, double value) {
+  if (std::isfinite(value)) context.result(key, value);
+}
+
+void report(Context& context, const ventricle::HeartRoles& roles, const ventricle::Beat& beat) {
+  const ventricle::Frame &ed = beat.atDiastole(), &es = beat.atSystole();
+  context.result("labels", roles.how);
+  context.result("frames", beat.frames.size());
+  context.result("frames_with_wall",
+                 static_cast<std::size_t>(std::count_if(
+                     beat.frames.begin(), beat.frames.end(),
+                     [](const ventricle::Frame& f) { return f.segments.has_value(); })));
+  context.result("frame_ed", static_cast<long>(ed.number));
+  result(context, "cavity_volume_ed_ml", ed.cavity);
+  if (beat.frames.size() > 1) {
+    context.result("frame_es", static_cast<long>(es.number));
+    result(context, "cavity_volume_es_ml", es.cavity);
+    result(context, "stroke_volume_ml", ed.cavity - es.cavity);
+    result(context, "ejection_fraction_percent", *beat.ejectionFraction);
+    result(context, "thickness_mean_es", es.thickness);
+    result(context, "thickening_percent", es.thickening);
+  }
+  result(context, "wall_volume_ed_ml", ed.wall);
+  result(context, "mass_ed_g", ed.mass);
+  result(context, "thickness_mean_ed", ed.thickness);
+  result(context, "thickness_plain_ed", ed.plain);
+  result(context, "axis_angle_deg", ed.axis.stackAngleDeg);
+  result(context, "axis_spread_mm", ed.axis.spreadMm);
+  context.result("orientation", std::string(nameOf(beat.orientation.source)));
+  result(context, "septum_deg", beat.orientation.septumDeg);
+  context.result("measured", ed.measures->bySlice ? "by slice" : "in space");
+  context.result("papillary_muscles", "belong to whatever label they have");
+  for (const auto why :
+       {ventricle::LeftOut::None, ventricle::LeftOut::Opening, ventricle::LeftOut::Valve,
+        ventricle::LeftOut::Cap, ventricle::LeftOut::Unreached}) {
+    context.result(why == ventricle::LeftOut::None
+                       ? std::string("voxels_counted_ed")
+                       : "voxels_left_out_" + std::string(nameOf(why)) + "_ed",
+                   countOf(*ed.measures, why));
+  }
+}
+
+/// Both forms of a picture.
+void writePicture(Context& context, const std::string& name, const ventricle::Drawn& drawn) {
+  writeTextFile(context.output(name + ".svg"), drawn.svg);
+  report::writePng(context.output(name + ".png"), drawn.pixels);
+}
+
+std::string frameName(int number) {
+  char text[48];
+  std::snprintf(text, sizeof text, "thickness_frame-%04d.nii.gz", number);
+  return text;
+}
+
+void writeVolumes(Context& context, const ventricle::Beat& beat) {
+  for (const ventricle::Frame& frame : beat.frames) {
+    if (!frame.measures) continue;
+    const ventricle::WallThickness& wall = *frame.measures;
+    std::vector<double> shown = wall.thickness;
+    for (std::size_t n = 0; n < shown.size(); ++n) {
+      if (!wall.counts(n)) shown[n] = 0;
+    }
+    io::writeVolume(context.output(frameName(frame.number)), harmonic::spread(wall.annulus, shown));
+  }
+  io::writeVolume(context.output("segments.nii.gz"), beat.atDiastole().segments->segmentOf);
+  Volume<std::uint8_t> leftOut = beat.atDiastole().measures->reasons;
+  for (std::uint8_t& why : leftOut.data) why = why == 255 ? 0 : why;
+  io::writeVolume(context.output("left_out.nii.gz"), leftOut);
+}
+
+void writeOutputs(Context& context, const ventricle::Beat& beat) {
+  writeTextFile(context.output("frames.tsv"), ventricle::frameTable(beat));
+  writeTextFile(context.output("segments.tsv"), ventricle::segmentTable(beat));
+  writeTextFile(context.output("slices.tsv"), ventricle::sliceTable(beat));
+  writePicture(context, "bullseye", ventricle::bullseye(beat));
+  writePicture(context, "slices_ed", ventricle::slicePicture(beat, beat.diastole));
+  if (beat.systole != beat.diastole && beat.atSystole().measures) {
+    writePicture(context, "slices_es", ventricle::slicePicture(beat, beat.systole));
+  }
+  if (beat.frames.size() > 1) writePicture(context, "curves", ventricle::beatCurves(beat));
+  writeVolumes(context, beat);
+}
+
+Termination run(Context& context, const Settings& s) {
+  std::vector<Volume<Label>> frames = readFrames(context, s);
+  const ventricle::HeartRoles roles = ventricle::findRoles(frames, s.labels);
+  for (Volume<Label>& frame : frames) frame = ventricle::relabelled(frame, roles);
+  const Chosen chosen = chooseFrames(s.frames, frames);
+  std::vector<Volume<Label>> hearts;
+  for (const int n : chosen.numbers) {
+    hearts.push_back(std::move(frames[static_cast<std::size_t>(n)]));
+  }
+  ventricle::Beat beat;
+  {
+    auto step = context.step("measure");
+    beat = ventricle::measureBeat(std::move(hearts), chosen.numbers, s.heart, chosen.phases,
+                                  context.monitor());
+  }
+  sayWhatIsOdd(context, beat);
+  report(context, roles, beat);
+  auto step = context.step("write");
+  writeOutputs(context, beat);
+  return Termination::Finished;
+}
+
+}  // namespace
+
+Command heartCommand() {
+  return makeCommand<Settings>("heart", declare, run);
+}
+
+}  // namespace explica::app

@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Canvas.h"
+#include "Explica/Report/ColourMap.h"
+#include "Explica/Ventricle/Pictures.h"
+
+#include <cmath>
+#include <functional>
+
+namespace explica::ventricle {
+
+namespace {
+
+constexpr double kWidth = 430, kHeight = 320;
+constexpr double kLeft = 70, kRight = 24, kTop = 56, kBottom = 58;
+
+/// A quantity over the frames.
+struct Curve {
+  std::string title, unit;
+  std::function<double(const Frame&)> value;
+};
+
+/// A step of 1, 2 or 5 times a power of ten that gives about five ticks.
+double tickStep(double range) {
+  const double power = std::pow(10, std::floor(std::log10(range / 5)));
+  const double lead = range / 5 / power;
+  return power * (lead < 1.5 ? 1 : lead < 3.5 ? 2 : lead < 7.5 ? 5 : 10);
+}
+
+struct Axes {
+  double x0, x1, y0, y1;
+  Point2 corner;
+  [[nodiscard]] Point2 at(double x, double y) const {
+    return corner + Point2(kLeft + (x - x0) / (x1 - x0) * (kWidth - kLeft - kRight),
+                           kHeight - kBottom - (y - y0) / (y1 - y0) * (kHeight - kTop - kBottom));
+  }
+};
+
+Axes axesOf(const Beat& beat, const Curve& curve, const Point2& corner) {
+  double high = 0;
+  for (const Frame& frame : beat.frames) {
+    if (std::isfinite(curve.value(frame))) high = std::max(high, curve.value(frame));
+  }
+  if (high <= 0) high = 1;
+  const double step = tickStep(high), first = beat.frames.front().number;
+  const double last = std::max(first + 1, static_cast<double>(beat.frames.back().number));
+  return {first, last, 0, step * std::ceil(1.02 * high / step), corner};
+}
+
+void drawAxes(Canvas& canvas, const Axes& axes, const Curve& curve) {
+  const double step = tickStep(axes.y1);
+  for (double y = 0; y <= axes.y1 * 1.0001; y += step) {
+    canvas.stroke({axes.at(axes.x0, y), axes.at(axes.x1, y)}, kPale, 1);
+    canvas.text(axes.at(axes.x0, y) + Point2(-8, 3.5), report::tickText(y, axes.y1), 7.5, kInk,
+                report::TextAnchor::Right);
+  }
+  const double frames = std::max(1.0, std::ceil(tickStep(axes.x1 - axes.x0)));
+  for (double x = axes.x0; x <= axes.x1 + 0.01; x += frames) {
+    canvas.text(axes.at(x, 0) + Point2(0, 18), report::tickText(x, axes.x1 - axes.x0), 7.5, kInk);
+  }
+  canvas.stroke({axes.at(axes.x0, axes.y1), axes.at(axes.x0, 0), axes.at(axes.x1, 0)}, kInk, 1);
+  canvas.text(axes.corner + Point2(0.5 * kWidth, 26), curve.title, 10, kInk);
+  canvas.text(axes.corner + Point2(kLeft - 8, 44), curve.unit, 7.5, kGrey,
+              report::TextAnchor::Right);
+  canvas.text(axes.corner + Point2(0.5 * (kLeft + kWidth - kRight), kHeight - 18), "frame", 7.5,
+              kGrey);
+}
+
+void drawCurve(Canvas& canvas, const Beat& beat, const Curve& curve, const Point2& corner) {
+  const Axes axes = axesOf(beat, curve, corner);
+  drawAxes(canvas, axes, curve);
+  const report::Colour colour = report::colourAt(report::ColourMap::Sequential, 0.35);
+  std::vector<Point2> line;
+  for (std::size_t f = 0; f < beat.frames.size(); ++f) {
+    const double value = curve.value(beat.frames[f]);
+    if (!std::isfinite(value)) continue;
+    const Point2 at = axes.at(beat.frames[f].number, value);
+    line.push_back(at);
+    canvas.rectangle(at - Point2(2.5, 2.5), {5, 5}, colour);
+    if (f == beat.diastole) canvas.text(at + Point2(0, -9), "ED", 7.5, kInk);
+    if (f == beat.systole && f != beat.diastole) canvas.text(at + Point2(0, -9), "ES", 7.5, kInk);
+  }
+  if (line.size() > 1) canvas.stroke(line, colour, 2);
+}
+
+}  // namespace
+
+Drawn beatCurves(const Beat& beat) {
+  const std::vector<Curve> curves = {
+      {"Volume of the cavity", "ml", [](const Frame& f) { return f.cavity; }},
+      {"Mean thickness of the wall", "mm", [](const Frame& f) { return f.thickness; }},
+      {"Mass of the wall", "g", [](const Frame& f) { return f.mass; }}};
+  Canvas canvas(static_cast<int>(kWidth * static_cast<double>(curves.size())),
+                static_cast<int>(kHeight));
+  for (std::size_t c = 0; c < curves.size(); ++c) {
+    drawCurve(canvas, beat, curves[c], {kWidth * static_cast<double>(c), 0});
+  }
+  return {canvas.svg(), canvas.picture(2)};
+}
+
+}  // namespace explica::ventricle
