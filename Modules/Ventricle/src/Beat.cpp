@@ -145,7 +145,7 @@ std::vector<SliceRow> sliceRows(const Frame& frame) {
     const WallThickness& wall = *frame.measures;
     for (std::size_t n = 0; n < wall.thickness.size(); ++n) {
       const auto k = static_cast<std::size_t>(wall.annulus.index(static_cast<std::int32_t>(n))[2]);
-      means[k].add(wall.thickness[n], wall.plain[n]);
+      if (wall.counts(n)) means[k].add(wall.thickness[n], wall.plain[n]);
       counted[k] += wall.counts(n);
     }
   }

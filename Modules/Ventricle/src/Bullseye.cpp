@@ -199,7 +199,7 @@ std::vector<Panel> panelsOf(const Beat& beat) {
               scale,
               thickness,
               &diastole,
-              {leftOutNote(diastole), "rings from outside: basal, middle, apical; centre: apex",
+              {leftOutNote(diastole), "rings from outside: basal, middle, apical, and the apex",
                "* healthy adults, middle ring, mean and 2 SD: women 3.5 to 7.1 mm,",
                "men 4.1 to 8.5 mm (Kawel et al. 2012, Circ Cardiovasc Imaging 5:500)"},
               3.5,

@@ -37,10 +37,12 @@ std::string listOf(const std::set<Label>& values) {
   return text.empty() ? "none but 0" : text;
 }
 
-/// Share of a label's outline within the slices that touches the wall.
+/// Share of a label's outline within the slices that touches the wall, over the frames that have
+/// one.
 double enclosedShare(const std::vector<Volume<Label>>& frames, Label label, Label wall) {
   std::size_t outline = 0, touching = 0;
   for (const Volume<Label>& frame : frames) {
+    if (std::find(frame.data.begin(), frame.data.end(), wall) == frame.data.end()) continue;
     const auto& size = frame.grid.size;
     const auto visit = [&](Label a, Label b) {
       if (a == b || (a != label && b != label)) return;

@@ -17,6 +17,9 @@ constexpr std::array<const char*, 6> kSix = {"anterior", "anteroseptal",  "infer
                                              "inferior", "inferolateral", "anterolateral"};
 constexpr std::array<const char*, 4> kFour = {"anterior", "septal", "inferior", "lateral"};
 
+// Of a segment's voxels: fewer say nothing about the segment.
+constexpr double kLeastShare = 0.1;
+
 /// Middle of the cavity at the height of a voxel.
 Point middleAt(const WallThickness& wall, const LongAxis& axis, const Grid& grid, const Point& x,
                int k) {
@@ -72,6 +75,10 @@ Segments segmentsOf(const Volume<Label>& heart, const WallThickness& wall, const
     row.number = number;
     row.voxels = m.count();
     row.leftOut = all[number] - m.count();
+    if (static_cast<double>(m.count()) < kLeastShare * static_cast<double>(all[number])) {
+      result.rows.push_back(row);
+      continue;
+    }
     row.thickness = m.mean();
     row.deviation = m.deviation();
     row.lowest = m.lowest();

@@ -225,7 +225,7 @@ void drawHead(Canvas& canvas, const Beat& beat, std::size_t f) {
                    : f == beat.systole ? " (end-systole)"
                                        : ""),
               11, kInk);
-  canvas.text({middle, 44}, "seen from the apex; lines across the wall: trajectories", 7.5, kGrey);
+  canvas.text({middle, 44}, "seen from the apex, trajectories drawn across the wall", 7.5, kGrey);
   const std::array<std::pair<Colour, const char*>, 6> legend = {
       std::pair{kInnerLine, "inner boundary"},
       {kOuterLine, "outer boundary"},

@@ -81,16 +81,6 @@ void insulateBeyondBase(Volume<Label>& heart, const LongAxis& axis) {
   });
 }
 
-/// In thick slices the base is the plane across the axis at the cavity's end.
-void insulateAtBase(Volume<Label>& heart, const LongAxis& axis) {
-  parallelFor(heart.size(), 1 << 14, [&](std::size_t v) {
-    if (heart[v] == kCavity || heart[v] == kWall) return;
-    const auto s = heart.grid.subscripts(v);
-    const Point x = heart.grid.toWorld(Vector(s[0], s[1], s[2]));
-    if (atBase(x, heart.grid, axis)) heart[v] = kBeyondBase;
-  });
-}
-
 bool has(const Volume<Label>& heart, Label label) {
   return std::find(heart.data.begin(), heart.data.end(), label) != heart.data.end();
 }
@@ -119,15 +109,46 @@ Eigen::Vector2d inSlice(const harmonic::Annulus& annulus, std::int32_t n,
   return at.head<2>();
 }
 
+/// Slices that the base may cut: open ones, and those next to a slice towards the base that holds
+/// part of a ring only.  A stack that ends with a closed ring shows no cut.
+std::vector<bool> cutSlices(const WallThickness& wall, const Grid& grid, const LongAxis& axis) {
+  const int towardsBase = grid.direction.col(2).dot(axis.direction) > 0 ? -1 : 1;
+  const auto whole = [&](int k) {
+    if (k < 0 || k >= static_cast<int>(wall.slices.size())) return true;
+    const SliceKind kind = wall.slices[static_cast<std::size_t>(k)].kind;
+    return kind == SliceKind::Ring || kind == SliceKind::Empty;
+  };
+  std::vector<bool> cut;
+  for (int k = 0; k < static_cast<int>(wall.slices.size()); ++k) {
+    cut.push_back(!whole(k) || !whole(k + towardsBase));
+  }
+  return cut;
+}
+
+/// In thick slices the base is the plane across the axis at the cavity's end: what lies beyond it
+/// in slices that it may cut is insulated.
+void insulateAtBase(Volume<Label>& heart, const std::vector<bool>& cut, const LongAxis& axis) {
+  parallelFor(heart.size(), 1 << 14, [&](std::size_t v) {
+    if (heart[v] == kCavity || heart[v] == kWall) return;
+    const auto s = heart.grid.subscripts(v);
+    if (!cut[static_cast<std::size_t>(s[2])]) return;
+    const Point x = heart.grid.toWorld(Vector(s[0], s[1], s[2]));
+    if (atBase(x, heart.grid, axis)) heart[v] = kBeyondBase;
+  });
+}
+
 /// True for slices of which nothing lies at or beyond the base: their outlines are boundaries of
 /// the wall all around.
-std::vector<bool> intactSlices(const Volume<Label>& heart, const LongAxis& axis) {
+std::vector<bool> intactSlices(const WallThickness& wall, const Volume<Label>& heart,
+                               const LongAxis& axis) {
   std::vector<bool> intact(static_cast<std::size_t>(heart.grid.size[2]), true);
+  const std::vector<bool> cut = cutSlices(wall, heart.grid, axis);
   for (std::size_t v = 0; v < heart.size(); ++v) {
     if (heart[v] != kCavity && heart[v] != kWall) continue;
     const auto s = heart.grid.subscripts(v);
-    if (atBase(heart.grid.toWorld(Vector(s[0], s[1], s[2])), heart.grid, axis)) {
-      intact[static_cast<std::size_t>(s[2])] = false;
+    const auto k = static_cast<std::size_t>(s[2]);
+    if (cut[k] && atBase(heart.grid.toWorld(Vector(s[0], s[1], s[2])), heart.grid, axis)) {
+      intact[k] = false;
     }
   }
   return intact;
@@ -136,7 +157,7 @@ std::vector<bool> intactSlices(const Volume<Label>& heart, const LongAxis& axis)
 /// Replaces lengths within the slice by the sum of the distances to the boundaries in the plane
 /// through the trajectory's ends and the slice's normal.
 void correctObliquity(WallThickness& wall, const Volume<Label>& heart, const LongAxis& axis) {
-  const std::vector<bool> intact = intactSlices(heart, axis);
+  const std::vector<bool> intact = intactSlices(wall, heart, axis);
   std::vector<bool> inner, outer;
   int rings = 0;
   for (std::size_t k = 0; k < wall.slices.size(); ++k) {
@@ -172,9 +193,12 @@ void correctObliquity(WallThickness& wall, const Volume<Label>& heart, const Lon
 
 /// Trajectories that come to the base.
 void leaveOutAtBase(WallThickness& wall, const LongAxis& axis) {
+  const Grid& grid = wall.annulus.grid;
+  const std::vector<bool> cut = cutSlices(wall, grid, axis);
   parallelFor(wall.plain.size(), 256, [&](std::size_t n) {
-    const Point x = wall.annulus.world(static_cast<std::int32_t>(n));
-    const Grid& grid = wall.annulus.grid;
+    const auto number = static_cast<std::int32_t>(n);
+    if (!cut[static_cast<std::size_t>(wall.annulus.index(number)[2])]) return;
+    const Point x = wall.annulus.world(number);
     const Point inner = x + wall.correspondence.innerPoint[n].cast<double>();
     const Point outer = x + wall.correspondence.outerPoint[n].cast<double>();
     if (atBase(x, grid, axis) || atBase(inner, grid, axis) || atBase(outer, grid, axis)) {
@@ -227,7 +251,9 @@ std::vector<std::vector<Point>> ringEnds(const WallThickness& wall, const Volume
   return ends;
 }
 
-void leaveOutBySlice(WallThickness& wall, const Volume<Label>& marked) {
+/// Near the ends of rings, and all of a slice that is open where the base cuts it.
+void leaveOutBySlice(WallThickness& wall, const Volume<Label>& marked,
+                     const std::vector<bool>& intact) {
   std::vector<std::vector<double>> lengths(wall.slices.size());
   for (std::size_t n = 0; n < wall.plain.size(); ++n) {
     const auto k = static_cast<std::size_t>(wall.annulus.index(static_cast<std::int32_t>(n))[2]);
@@ -238,7 +264,10 @@ void leaveOutBySlice(WallThickness& wall, const Volume<Label>& marked) {
   leaveOutNear(wall, ringEnds(wall, marked), reach);
   for (std::size_t n = 0; n < wall.plain.size(); ++n) {
     const auto k = static_cast<std::size_t>(wall.annulus.index(static_cast<std::int32_t>(n))[2]);
-    if (wall.slices[k].kind == SliceKind::Valve) wall.leftOut[n] = LeftOut::Valve;
+    const SliceKind kind = wall.slices[k].kind;
+    if (kind == SliceKind::Valve || (kind == SliceKind::OpenRing && !intact[k])) {
+      wall.leftOut[n] = LeftOut::Valve;
+    }
   }
 }
 
@@ -278,10 +307,10 @@ WallThickness measureWall(const Volume<Label>& heart, const LongAxis& axis,
                  (options.method == WallMethod::Automatic && hasThickSlices(heart.grid));
   Volume<Label> marked = heart;
   if (wall.bySlice) {
-    insulateAtBase(marked, axis);
+    insulateAtBase(marked, cutSlices(wall, heart.grid, axis), axis);
     solve(wall, marked, monitor);
     correctObliquity(wall, heart, axis);
-    leaveOutBySlice(wall, marked);
+    leaveOutBySlice(wall, marked, intactSlices(wall, heart, axis));
     leaveOutAtBase(wall, axis);
   } else {
     insulateBeyondBase(marked, axis);

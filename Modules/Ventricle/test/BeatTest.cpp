@@ -74,13 +74,17 @@ TEST_P(TiltedSlices, GiveTheSegmentsTheirExactThickness) {
     ASSERT_TRUE(beat.frames[f].measures->bySlice);
     const auto exact = exactMeans(phantom, beat, f);
     double worst = 0;
+    int measured = 0;
     for (int s = 0; s < 16; ++s) {
       const Segment& row = beat.frames[f].segments->rows[s];
-      EXPECT_GT(row.voxels, 100U) << row.number;
-      // At end-systole the wall is a quarter thicker and the cavity half as large.
-      EXPECT_NEAR(row.thickness, exact[s], f == 0 ? 0.3 : 0.4) << "segment " << row.number;
+      // The base may cut all of a segment's slices where the stack is tilted most.
+      if (GetParam() >= 20 && std::isnan(row.thickness)) continue;
+      ++measured;
+      EXPECT_GT(row.voxels, 40U) << row.number;
+      EXPECT_NEAR(row.thickness, exact[s], 0.3) << "segment " << row.number;
       worst = std::max(worst, std::abs(row.thickness - exact[s]));
     }
+    EXPECT_GE(measured, 15);
     std::printf("tilt %g, frame %zu: greatest error of a segment's mean %.2f mm\n", GetParam(), f,
                 worst);
   }
@@ -186,7 +190,7 @@ TEST(Beat, RealSlicesAreAsThickAsTheirAreasSay) {
   EXPECT_GE(r, 0.99);
   // The ring that the outflow tract opens.
   EXPECT_NE(rows[0].kind, SliceKind::Ring);
-  EXPECT_GT(rows[0].leftOut, 50U);
+  EXPECT_EQ(rows[0].counted, 0U);
   for (const Segment& row : beat.atDiastole().segments->rows) {
     if (row.number > 6) continue;
     EXPECT_GT(row.lowest, 2) << row.number;

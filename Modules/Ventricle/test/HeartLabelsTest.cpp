@@ -30,6 +30,8 @@ TEST(HeartLabels, TheEnclosedLabelTellsTheConvention) {
   EXPECT_EQ(relabelled(acdc, findRoles({acdc})).data, mms.data);
   EXPECT_EQ(findRoles({renamed(mms, 3, 2, 0)}).cavity, 3);
   EXPECT_FALSE(findRoles({renamed(mms, 1, 2, 0)}).right.has_value());
+  // A frame in which nobody drew the wall says nothing about what encloses what.
+  EXPECT_EQ(findRoles({renamed(mms, 1, 2, 0), renamed(mms, 1, 0, 0)}).cavity, 1);
 }
 
 TEST(HeartLabels, PresetsAndNumbersOverrideIt) {

@@ -25,7 +25,7 @@ struct SliceRow {
   double cavityArea = 0, wallArea = 0;
   double openShare = 0;                  ///< of the cavity's outline
   double areaEquivalent = kNaN;          ///< wall of concentric circles of the same areas
-  double plain = kNaN;                   ///< mean over columns within the slice, all that arrive
+  double plain = kNaN;                   ///< mean over columns that count, within the slice
   double thickness = kNaN;               ///< the same, corrected for obliquity
   double obliquityDeg = kNaN;            ///< angle whose cosine is thickness / plain
   std::size_t counted = 0, leftOut = 0;  ///< voxels of the wall

@@ -18,7 +18,7 @@ struct Segment {
   int number = 0;           ///< 1 to 17
   std::size_t voxels = 0;   ///< that count
   std::size_t leftOut = 0;  ///< voxels of the wall that do not
-  double thickness = kNaN;  ///< mean over columns
+  double thickness = kNaN;  ///< mean over columns; NaN if less than a tenth of the voxels counts
   double deviation = kNaN, lowest = kNaN, highest = kNaN;
   double plain = kNaN;       ///< as thickness, within the slice without correction
   double thickening = kNaN;  ///< percent of the end-diastolic thickness
