@@ -11,6 +11,7 @@
 #include "Explica/Harmonic/Annulus.h"
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/IO/VtkFile.h"
+#include "Explica/Ventricle/Pictures.h"
 
 #include <chrono>
 #include <functional>
@@ -33,6 +34,7 @@ struct Settings {
   correspondence::MeasurementOptions measurement;
   bool aha = false;
   std::vector<std::string> accept;
+  ventricle::OrientationOptions orientation;
 };
 
 void declare(Declaration& d, Settings& s) {
@@ -72,11 +74,11 @@ void declare(Declaration& d, Settings& s) {
       .options("Layers", s.measurement.layers)
       .option("Layers", Field{"grid", "", "write an anatomical grid with this many cells across"},
               s.measurement.grid)
-      .option("Heart", Field{"aha", "", "table and picture of the left ventricle's 17 segments"},
-              s.aha)
-      .option("Heart",
-              Field{"rv-insertion", "mm", "anterior insertion of the right ventricle, RAS"},
-              s.measurement.rvInsertion);
+      .option(
+          "Heart",
+          Field{"aha", "", "the left ventricle's 17 segments, as 'explica heart' measures them"},
+          s.aha)
+      .options("Heart", s.orientation);
   declareAccept(d, s.accept);
   d.output("harmonic.nii.gz", FileKind::Volume, "u: 0 at the inner boundary to 1 at the outer one")
       .output("thickness.nii.gz", FileKind::Volume,
@@ -92,6 +94,7 @@ void declare(Declaration& d, Settings& s) {
       .output("grid.vtu", FileKind::Grid,
               "with --grid: points at equal depths along trajectories, with depth and thickness")
       .output("segments.tsv", FileKind::Table, "with --aha: thickness of the 17 segments")
+      .output("bullseye.png", FileKind::Picture, "with --aha: bullseye.svg in pixels")
       .output("segments.nii.gz", FileKind::LabelVolume, "with --aha: segment of each voxel")
       .output("bullseye.svg", FileKind::Picture, "with --aha: the segments' mean thickness, mm")
       .output("sulci.nii.gz", FileKind::LabelVolume,
@@ -109,8 +112,9 @@ harmonic::Annulus readAnnulus(Context& context, const Settings& s) {
   if (!s.labels && !s.innerLevel) {
     throw UsageError("give a label volume, or --inner-level and --outer-level");
   }
-  if (s.aha && !s.measurement.rvInsertion) throw UsageError("--aha needs --rv-insertion X,Y,Z");
-  if (s.measurement.rvInsertion && !s.aha) throw UsageError("--rv-insertion is for --aha");
+  if ((s.orientation.insertion || s.orientation.imageAxis) && !s.aha) {
+    throw UsageError("--rv-insertion and --rv-insertion-image-axis are for --aha");
+  }
   Volume<Label> labels;
   if (s.labels) labels = readTissueLabels(context, "SEG", *s.labels, s.reading);
   Volume<float> inner, outer;
@@ -197,19 +201,29 @@ void writeOutputs(Context& context, const correspondence::Measurement& m, bool s
   write("outer_point.nii.gz", harmonic::spreadPoints(m.annulus, found.outerPoint));
   write("layers.nii.gz", harmonic::spreadLabels(m.annulus, m.layers));
   if (sulci) write("sulci.nii.gz", harmonic::maskOf(m.annulus, m.sulcalVoxels));
-  if (m.segments) {
-    write("segments.nii.gz", harmonic::spreadLabels(m.annulus, m.segments->segmentOf));
-  }
   parallelFor(files.size(), 1, [&](std::size_t f) { files[f](); });
   if (m.grid) {
     const auto kind = m.grid->cells.cols() == 8 ? io::CellKind::Hexahedron : io::CellKind::Quad;
     io::writeVtu(context.output("grid.vtu"), m.grid->points, {{kind, m.grid->cells}},
                  {{"depth", "", m.grid->depth}, {"thickness", "mm", m.grid->thickness}});
   }
-  if (m.segments) {
-    writeTextFile(context.output("segments.tsv"), correspondence::tableOf(*m.segments));
-    writeTextFile(context.output("bullseye.svg"), correspondence::bullseyeOf(*m.segments));
+}
+
+/// Table, volume and picture of the 17 segments.
+void writeSegments(Context& context, const harmonic::Annulus& annulus, const Settings& s) {
+  auto step = context.step("segments");
+  ventricle::HeartOptions options;
+  options.orientation = s.orientation;
+  const ventricle::Beat beat =
+      ventricle::measureBeat({ventricle::heartOf(annulus)}, {0}, options, {}, context.monitor());
+  if (!beat.oriented()) {
+    context.warn("without --rv-insertion or --rv-insertion-image-axis segments have no names");
   }
+  writeTextFile(context.output("segments.tsv"), ventricle::segmentTable(beat));
+  const ventricle::Drawn picture = ventricle::bullseye(beat);
+  writeTextFile(context.output("bullseye.svg"), picture.svg);
+  report::writePng(context.output("bullseye.png"), picture.pixels);
+  io::writeVolume(context.output("segments.nii.gz"), beat.atDiastole().segments->segmentOf);
 }
 
 Termination run(Context& context, const Settings& s) {
@@ -219,9 +233,12 @@ Termination run(Context& context, const Settings& s) {
   context.result("components", annulus.components);
   context.result("direct_contacts", annulus.directContacts);
   context.result("voxels_left_out", annulus.droppedVoxels);
-  const correspondence::Measurement m = measure(context, std::move(annulus), s.measurement);
+  correspondence::MeasurementOptions options = s.measurement;
+  options.heart = s.aha;
+  const correspondence::Measurement m = measure(context, std::move(annulus), options);
   report(context, judge, m);
-  writeOutputs(context, m, s.measurement.sulciMode() == correspondence::SulciMode::Recover);
+  writeOutputs(context, m, options.sulciMode() == correspondence::SulciMode::Recover);
+  if (s.aha) writeSegments(context, m.annulus, s);
   return m.interpolant.termination;
 }
 

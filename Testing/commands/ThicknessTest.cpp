@@ -266,7 +266,10 @@ TEST(ThicknessCommand, TheHeartsSegmentsComeAsTableAndPicture) {
   const auto segments = io::readLabels(folder / "out/segments.nii.gz").volume;
   // A tube has no apex: segment 17 stays empty.
   EXPECT_EQ(*std::max_element(segments.data.begin(), segments.data.end()), 16);
-  EXPECT_EQ(explica(thickness(folder, "tube.nii.gz", {"--aha"})).exitCode, 1);
+  const auto far =
+      explica(thickness(folder, "tube.nii.gz", {"--aha", "--rv-insertion", "9999,0,0"}));
+  EXPECT_EQ(far.exitCode, 2);
+  EXPECT_NE(far.err.find("from the wall"), std::string::npos) << far;
   EXPECT_EQ(explica(thickness(folder, "tube.nii.gz", {"--rv-insertion", "15,0,0"})).exitCode, 1);
 }
 

@@ -33,10 +33,6 @@ Measurement measure(harmonic::Annulus annulus, const MeasurementOptions& options
     begin("grid");
     m.grid = anatomicalGrid(m.annulus, m.interpolant, *options.grid);
   }
-  if (options.rvInsertion) {
-    begin("segments");
-    m.segments = wallSegments(m.annulus, m.correspondence, *options.rvInsertion);
-  }
   return m;
 }
 

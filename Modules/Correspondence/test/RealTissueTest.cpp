@@ -3,7 +3,6 @@
 #include "Explica/Correspondence/Correspondence.h"
 #include "Explica/Correspondence/Layers.h"
 #include "Explica/Correspondence/Sulci.h"
-#include "Explica/Correspondence/Ventricle.h"
 #include "Explica/Harmonic/Phantoms.h"
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Testing/FreeSurferSubject.h"

@@ -16,9 +16,9 @@ namespace {
 using report::Colour;
 using report::TextAnchor;
 
-constexpr double kPanel = 470, kHeight = 600;  // of one bull's-eye
-constexpr double kRadius = 150, kMiddleX = 190, kMiddleY = 270;
-constexpr double kBarX = 395, kBarTop = 130, kBarHeight = 280, kBarWidth = 16;
+constexpr double kPanel = 500, kHeight = 600;  // of one bull's-eye
+constexpr double kRadius = 150, kMiddleX = 212, kMiddleY = 270;
+constexpr double kBarX = 425, kBarTop = 130, kBarHeight = 280, kBarWidth = 16;
 
 /// What a bull's-eye shows.
 struct Panel {
@@ -124,7 +124,7 @@ void drawBar(Canvas& canvas, const Point2& corner, const Panel& panel) {
                 report::tickText(value, high - low), 7.5, kInk, TextAnchor::Left);
   }
   canvas.text(corner + Point2(kBarX + kBarWidth / 2, kBarTop - 12), panel.unit, 8, kInk);
-  if (!std::isfinite(panel.normalLow)) return;
+  if (!(panel.normalLow < high && panel.normalHigh > low)) return;
   const double top = heightOf(std::min(high, panel.normalHigh));
   const double bottom = heightOf(std::max(low, panel.normalLow));
   const Point2 x = corner + Point2(kBarX - 7, 0);

@@ -77,8 +77,9 @@ void drawCurve(Canvas& canvas, const Beat& beat, const Curve& curve, const Point
     const Point2 at = axes.at(beat.frames[f].number, value);
     line.push_back(at);
     canvas.rectangle(at - Point2(2.5, 2.5), {5, 5}, colour);
-    if (f == beat.diastole) canvas.text(at + Point2(0, -9), "ED", 7.5, kInk);
-    if (f == beat.systole && f != beat.diastole) canvas.text(at + Point2(0, -9), "ES", 7.5, kInk);
+    const Point2 above = at + Point2(f == 0 ? 12 : 0, -9);  // clear of the axis
+    if (f == beat.diastole) canvas.text(above, "ED", 7.5, kInk);
+    if (f == beat.systole && f != beat.diastole) canvas.text(above, "ES", 7.5, kInk);
   }
   if (line.size() > 1) canvas.stroke(line, colour, 2);
 }

@@ -66,7 +66,7 @@ View viewOf(const Beat& beat, const Frame& frame) {
     const Point x = frame.heart.grid.toWorld(Vector(s[0], s[1], s[2]));
     reach = std::max(reach, (x - frame.axis.foot(x)).norm());
   }
-  view.scale = 0.47 * kTile / reach;
+  view.scale = 0.44 * kTile / reach;
   return view;
 }
 

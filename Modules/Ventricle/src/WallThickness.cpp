@@ -278,15 +278,21 @@ void markUnreached(WallThickness& wall) {
 }
 
 /// What has become of every voxel of the wall, those included that the solve did not take.
-Volume<std::uint8_t> reasonsOf(const WallThickness& wall, const Volume<Label>& heart) {
+Volume<std::uint8_t> reasonsOf(const WallThickness& wall, const Volume<Label>& heart,
+                               const LongAxis& axis) {
   Volume<std::uint8_t> reasons(heart.grid, 255);
   const std::size_t pixels = static_cast<std::size_t>(heart.grid.size[0]) * heart.grid.size[1];
   for (std::size_t v = 0; v < heart.size(); ++v) {
     if (heart[v] != kWall) continue;
     const SliceKind kind = wall.slices[v / pixels].kind;
-    const LeftOut why = wall.bySlice && kind == SliceKind::Cap     ? LeftOut::Cap
-                        : wall.bySlice && kind == SliceKind::Valve ? LeftOut::Valve
-                                                                   : LeftOut::Unreached;
+    LeftOut why = LeftOut::Unreached;
+    if (wall.bySlice && kind == SliceKind::Cap) {
+      // Wall without cavity is the apex, or what an oblique base leaves of a ring.
+      const auto s = heart.grid.subscripts(v);
+      const double share = axis.share(heart.grid.toWorld(Vector(s[0], s[1], s[2])));
+      why = share > 0.5 ? LeftOut::Cap : LeftOut::Valve;
+    }
+    if (wall.bySlice && kind == SliceKind::Valve) why = LeftOut::Valve;
     reasons[v] = static_cast<std::uint8_t>(why);
   }
   for (std::size_t n = 0; n < wall.leftOut.size(); ++n) {
@@ -318,7 +324,7 @@ WallThickness measureWall(const Volume<Label>& heart, const LongAxis& axis,
     leaveOutNear(wall, {contactsOf(marked)}, {kEndReach * median(wall.plain)});
   }
   markUnreached(wall);
-  wall.reasons = reasonsOf(wall, heart);
+  wall.reasons = reasonsOf(wall, heart, axis);
   return wall;
 }
 

@@ -5,8 +5,9 @@
     python3 ventricle_bullseye.py                    # of a generated ventricle, beside the truth
     python3 ventricle_bullseye.py ED_label.nii.gz --insertion=-35.2,90.4,-46.4
 
-Labels: 1 the cavity, 2 the wall; slices along the third axis.  The insertion is the point, RAS mm,
-where the right ventricle's anterior wall joins the left one.  Writes bullseye.png and segments.tsv.
+Short-axis slices along the third axis, 3-D or 4-D.  The insertion is the point, RAS mm, where the
+right ventricle's anterior wall joins the left one; where the right ventricle has a label it is not
+needed.  Writes bullseye.png and segments.tsv.
 """
 
 import argparse
@@ -31,21 +32,9 @@ RINGS = (
 )
 
 
-def insertion_of(labels, affine, right_ventricle):
-    """RAS mm: of the wall's voxels beside a right ventricle's label, the most anterior one."""
-    wall = np.argwhere(labels == 2)
-    right = np.argwhere(labels == right_ventricle)
-    middle = np.median(wall[:, 2]).astype(int)
-    wall, right = wall[wall[:, 2] == middle], right[right[:, 2] == middle]
-    world = [v @ affine[:3, :3].T + affine[:3, 3] for v in (wall, right)]
-    gap = np.linalg.norm(world[0][:, None] - world[1][None], axis=2).min(axis=1)
-    beside = world[0][gap < 1.5 * np.abs(np.diag(affine)[:3]).max()]
-    return beside[np.argmax(beside[:, 1])]
-
-
 def draw_bullseye(ax, rows, title):
     """The segments' mean thickness in colours, numbers in mm."""
-    means = {row["segment"]: row["mean"] for row in rows}
+    means = {row["segment"]: row["thickness"] for row in rows}
     known = [m for m in means.values() if np.isfinite(m)]
     colour = plt.Normalize(min(known), max(known))
     places = [
@@ -75,11 +64,12 @@ def main():
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("bullseye"))
     arguments = parser.parse_args()
 
+    options = {}
+    truth = None
     if arguments.labels is None:
         made = phantoms.annulus("ventricle", size=arguments.size, spacing=120 / arguments.size)
         labels, affine = made["labels"], made["affine"]
-        insertion = insertion_of(labels, affine, made["label_names"]["right-ventricle"])
-        roles = dict(inner=[1], tissue=[2], insulated=[made["label_names"]["insulated"]])
+        options = dict(cavity=1, wall=2, rv=made["label_names"]["right-ventricle"])
         truth = made["thickness"]
     elif not arguments.labels.is_file():
         print("skipped: no real data")
@@ -87,26 +77,24 @@ def main():
     else:
         image = nibabel.load(arguments.labels)
         labels, affine = np.asarray(image.dataobj), image.affine
-        if arguments.insertion is None:
-            parser.error("--insertion X,Y,Z is needed")
-        insertion = np.array([float(x) for x in arguments.insertion.split(",")])
-        # The image holds no tissue beyond its first and last slice: nothing flows out there.
-        roles = dict(inner=[1], tissue=[2], open_ends=True)
-        truth = None
+    if arguments.insertion is not None:
+        options["rv_insertion"] = [float(x) for x in arguments.insertion.split(",")]
 
-    result = explica.wall_segments(labels, insertion, affine, **roles)
+    result = explica.heart(labels, affine, **options)
+    rows = [row for row in result["segments"] if row["frame"] == result["frame_ed"]]
     arguments.out.mkdir(parents=True, exist_ok=True)
     (arguments.out / "segments.tsv").write_text(result["table"])
     fig, ax = plt.subplots(figsize=(6, 5.4), subplot_kw={"projection": "polar"}, layout="constrained")
-    colours = draw_bullseye(ax, result["rows"], "wall thickness (top: anterior)")
+    colours = draw_bullseye(ax, rows, "wall thickness (top: anterior)")
     fig.colorbar(colours, ax=ax, label="mm")
     fig.savefig(arguments.out / "bullseye.png", dpi=120)
 
-    for row in result["rows"]:
-        line = f"{row['segment']:2} {row['name']:22} {row['mean']:6.2f} mm"
+    counted = result["thickness"][result["frame_ed"]] > 0
+    for row in rows:
+        line = f"{row['segment']:2} {row['name']:22} {row['thickness']:6.2f} mm"
         if truth is not None and row["voxels"]:
-            exact = truth[result["segments"] == row["segment"]].mean()
-            line += f"   exact {exact:6.2f} mm"
+            here = truth[(result["segment_of"] == row["segment"]) & counted]
+            line += f"   exact {len(here) / (1 / here).sum():6.2f} mm"  # the mean over columns
         print(line)
 
 

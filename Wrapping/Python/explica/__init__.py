@@ -40,6 +40,7 @@ from ._commands import command, executable
 from ._images import (
     anatomical_grid,
     correct_topology,
+    heart,
     iso_surface,
     segment,
     segment_hemisphere,
@@ -47,7 +48,6 @@ from ._images import (
     surfaces_of_shares,
     thickness,
     thickness_of_levels,
-    wall_segments,
     write_volume,
 )
 from ._surfaces import (

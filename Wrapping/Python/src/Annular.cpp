@@ -75,19 +75,6 @@ py::dict arraysOf(const correspondence::Measurement& m) {
                    "voxels_without_thickness"_a = m.correspondence.missing));
 }
 
-py::dict segmentsDict(std::pair<correspondence::WallSegments, Volume<Label>> made) {
-  const correspondence::WallSegments& walls = made.first;
-  py::list rows;
-  for (const auto& r : walls.rows) {
-    rows.append(py::dict("segment"_a = r.segment, "name"_a = r.name, "voxels"_a = r.voxels,
-                         "mean"_a = r.mean, "deviation"_a = r.deviation, "minimum"_a = r.minimum,
-                         "maximum"_a = r.maximum));
-  }
-  return py::dict("rows"_a = rows, "table"_a = correspondence::tableOf(walls),
-                  "bullseye"_a = correspondence::bullseyeOf(walls),
-                  "segments"_a = arrayOf(std::move(made.second)));
-}
-
 constexpr const char* kReturns =
     "\n\nReturns a dict of arrays (I, J, K): harmonic (u), thickness, inner_distance and\n"
     "outer_distance (L0, L1, mm), depth, layers; inner_point and outer_point (I, J, K, 3), RAS "
@@ -133,31 +120,6 @@ void bindAnnular(py::module_& m) {
       ("As thickness(), between the surfaces where two scalar volumes cross `level`." +
        std::string(kReturns) + keywordHelp<LevelThicknessOptions>())
           .c_str());
-  defWithOptions<ThicknessOptions>(
-      m, "wall_segments",
-      [](const py::array& labels, const Point& insertion, const Eigen::Matrix4d& affine,
-         const py::object& progress, const py::kwargs& keywords) {
-        const auto options = optionsOf<ThicknessOptions>(keywords);
-        const Volume<Label> volume = labelVolume(labels, affine);
-        return segmentsDict(Watch(progress).run([&](const Monitor& monitor) {
-          const correspondence::Measurement made =
-              measure(harmonic::annulusFromLabels(volume, options.roles,
-                                                  options.measurement.annulus, monitor),
-                      options, false, monitor);
-          const auto walls =
-              correspondence::wallSegments(made.annulus, made.correspondence, insertion);
-          return std::make_pair(walls,
-                                volumeOf(harmonic::spreadLabels(made.annulus, walls.segmentOf)));
-        }));
-      },
-      "Wall thickness of the left ventricle's 17 segments, of labels in short-axis slices along "
-      "the\n"
-      "third axis; insertion (3,), RAS mm: where the right ventricle's anterior wall joins.  "
-      "Returns\n"
-      "segments (I, J, K), 1 to 17, 0 off the wall; rows (segment, name, voxels, and mean, "
-      "deviation,\n"
-      "minimum, maximum in mm); table, tab-separated; and bullseye, a picture as SVG.",
-      "labels"_a, "insertion"_a, "affine"_a, "progress"_a = py::none());
   defWithOptions<ThicknessOptions>(
       m, "anatomical_grid",
       [](const py::array& labels, int levels, const Eigen::Matrix4d& affine, bool sulci,

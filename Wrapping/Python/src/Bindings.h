@@ -11,6 +11,7 @@ void bindCore(pybind11::module_& m);
 void bindGeometry(pybind11::module_& m);
 void bindIO(pybind11::module_& m);
 void bindAnnular(pybind11::module_& m);
+void bindHeart(pybind11::module_& m);
 void bindCortex(pybind11::module_& m);
 void bindVisibility(pybind11::module_& m);
 void bindRepulsion(pybind11::module_& m);

@@ -9,6 +9,7 @@ PYBIND11_MODULE(_explica, m) {
   explica::python::bindGeometry(m);
   explica::python::bindIO(m);
   explica::python::bindAnnular(m);
+  explica::python::bindHeart(m);
   explica::python::bindCortex(m);
   explica::python::bindVisibility(m);
   explica::python::bindRepulsion(m);

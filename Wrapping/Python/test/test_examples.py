@@ -80,11 +80,12 @@ class Examples(unittest.TestCase):
         labels = REAL / "lv_sunnybrook_SCD0000101" / "ED_label.nii.gz"
         said = self.run_example("ventricle_bullseye.py", labels, "--insertion=-35.2,90.4,-46.4")
         means = [float(m) for m in re.findall(r"([\d.]+) mm$", said, re.M)]
+        self.assertEqual(len(means), 16)  # the apex beyond the cavity has no ring
         basal, mid, apical = means[:6], means[6:12], means[12:16]
         self.assertGreater(np.mean(basal), np.mean(mid))
         self.assertGreater(np.mean(mid), np.mean(apical))
         # The data's own note: 8.4 mm in slice 1, 4.35 mm in slice 8, by areas.
-        self.assertTrue(all(3.5 < m < 10 for m in means))
+        self.assertTrue(all(3 < m < 10 for m in means))
         self.assert_picture("bullseye.png")
 
 

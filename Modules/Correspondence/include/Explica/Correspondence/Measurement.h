@@ -6,7 +6,6 @@
 #include "Explica/Correspondence/Correspondence.h"
 #include "Explica/Correspondence/Layers.h"
 #include "Explica/Correspondence/Sulci.h"
-#include "Explica/Correspondence/Ventricle.h"
 #include "Explica/Harmonic/Interpolant.h"
 
 #include <functional>
@@ -25,18 +24,17 @@ enum class SulciMode {
 struct MeasurementOptions {
   harmonic::AnnulusOptions annulus;
   harmonic::InterpolantOptions interpolant;
-  std::optional<SulciMode> sulci;  ///< unset: recover, but ignore with perSlice, openEnds or
-                                   ///< rvInsertion: those are of hearts, and the folds of a cavity
-                                   ///< (papillary muscles) are no sulci
+  std::optional<SulciMode> sulci;  ///< unset: recover, but ignore with perSlice, openEnds or heart:
+                                   ///< the folds of a cavity (papillary muscles) are no sulci
   SulcusOptions sulcus;
   CorrespondenceOptions correspondence;
   LayerOptions layers;
-  std::optional<int> grid;           ///< cells across of an anatomical grid; unset: none
-  std::optional<Point> rvInsertion;  ///< RAS mm; unset: no table of the ventricle's segments
+  std::optional<int> grid;  ///< cells across of an anatomical grid; unset: none
+  bool heart = false;       ///< the tissue is a ventricle's wall
 
   [[nodiscard]] SulciMode sulciMode() const {
-    const bool heart = annulus.perSlice || annulus.openEnds || rvInsertion;
-    return sulci.value_or(heart ? SulciMode::Ignore : SulciMode::Recover);
+    const bool wall = heart || annulus.perSlice || annulus.openEnds;
+    return sulci.value_or(wall ? SulciMode::Ignore : SulciMode::Recover);
   }
 };
 
@@ -49,11 +47,10 @@ struct Measurement {
   std::vector<int> layers;                 ///< from 1 at the inner boundary; 0: unknown
   std::vector<std::int32_t> sulcalVoxels;  ///< beside a recovered boundary
   std::optional<AnatomicalGrid> grid;
-  std::optional<WallSegments> segments;
 };
 
-/// Called as each part of the work begins: "sulci", "harmonic", "correspondence", "layers", "grid",
-/// "segments"; with what is known by then.
+/// Called as each part of the work begins: "sulci", "harmonic", "correspondence", "layers", "grid";
+/// with what is known by then.
 using OnPart = std::function<void(const std::string& part, const Measurement& sofar)>;
 
 /// From tissue between two boundaries to thickness, depth, layers and what else is asked for: the

@@ -4,6 +4,7 @@
 
 #include "Explica/Core/Describe.h"
 #include "Explica/Core/Volume.h"
+#include "Explica/Harmonic/Annulus.h"
 
 #include <array>
 #include <optional>
@@ -55,6 +56,9 @@ struct HeartRoles {
 /// @throws InvalidInput  no wall or no cavity in any frame, or more than one convention fits
 [[nodiscard]] HeartRoles findRoles(const std::vector<Volume<Label>>& frames,
                                    const HeartLabelOptions& options = {});
+
+/// The tissue of an annulus as wall, what it encloses as cavity.
+[[nodiscard]] Volume<Label> heartOf(const harmonic::Annulus& annulus);
 
 /// A frame with this module's labels; what has no role is outside.
 [[nodiscard]] Volume<Label> relabelled(const Volume<Label>& frame, const HeartRoles& roles);

@@ -1,0 +1,179 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+// explica heart: what users type and what they get.
+
+#include "Explica/IO/VolumeFile.h"
+#include "Explica/Testing/Command.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <sstream>
+
+namespace explica::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Columns of a tab-separated table by name.
+std::map<std::string, std::vector<std::string>> tableOf(const fs::path& file) {
+  std::istringstream in(readText(file));
+  std::vector<std::string> names;
+  std::map<std::string, std::vector<std::string>> columns;
+  for (std::string line; std::getline(in, line);) {
+    std::istringstream cells(line);
+    std::size_t c = 0;
+    for (std::string cell; std::getline(cells, cell, '\t'); ++c) {
+      if (columns.size() < c + 1 && names.size() < c + 1) {
+        names.push_back(cell);
+      } else {
+        columns[names[c]].push_back(cell);
+      }
+    }
+  }
+  return columns;
+}
+
+/// A beat of thick slices in {folder}/beat.
+void makeBeat(const TemporaryFolder& folder, const std::vector<std::string>& more = {}) {
+  std::vector<std::string> words = {"phantom", "ventricle", "--size", "64",       "--spacing",
+                                    "2",       "--slice",   "8",      "--frames", "2"};
+  words.insert(words.end(), more.begin(), more.end());
+  words.insert(words.end(), {"--out", folder / "beat"});
+  const auto made = explica(words);
+  ASSERT_EQ(made.exitCode, 0) << made;
+}
+
+std::vector<std::string> heart(const TemporaryFolder& folder,
+                               const std::vector<std::string>& more) {
+  std::vector<std::string> words = {"heart", folder / "beat/frame-0000.nii.gz",
+                                    folder / "beat/frame-0001.nii.gz"};
+  words.insert(words.end(), more.begin(), more.end());
+  words.insert(words.end(), {"--out", folder / "out", "--force"});
+  return words;
+}
+
+}  // namespace
+
+TEST(HeartCommand, TellsVolumesThicknessAndThickeningOfABeat) {
+  TemporaryFolder folder;
+  makeBeat(folder, {"--ejection", "0.4"});
+  const auto made = explica(heart(folder, {}));
+  ASSERT_EQ(made.exitCode, 0) << made;
+  const auto summary = readJson(folder / "out/summary.json");
+  EXPECT_NEAR(summary["ejection_fraction_percent"].get<double>(), 40, 1);
+  EXPECT_EQ(summary["orientation"], "right ventricle");
+  EXPECT_EQ(summary["measured"], "by slice");
+  EXPECT_NEAR(summary["axis_angle_deg"].get<double>(), 0, 1);
+  EXPECT_EQ(summary["frame_es"], 1);
+  const auto frames = tableOf(folder / "out/frames.tsv");
+  const auto exact = tableOf(folder / "beat/frames_exact.tsv");
+  for (int f = 0; f < 2; ++f) {
+    const double cavity = std::stod(exact.at("cavity_volume_ml")[f]);
+    EXPECT_NEAR(std::stod(frames.at("cavity_volume_ml")[f]), cavity, 0.02 * cavity);
+    EXPECT_NEAR(std::stod(frames.at("mass_g")[f]) / std::stod(exact.at("mass_g")[f]), 1, 0.02);
+  }
+  const auto segments = tableOf(folder / "out/segments.tsv");
+  const auto truth = tableOf(folder / "beat/segments_exact.tsv");
+  ASSERT_EQ(segments.at("segment").size(), 34U);
+  EXPECT_EQ(segments.at("name")[1], "basal anteroseptal");
+  for (int row = 0; row < 12; ++row) {
+    EXPECT_NEAR(std::stod(segments.at("thickness")[row]), std::stod(truth.at("thickness")[row]),
+                0.3);
+    EXPECT_NEAR(std::stod(segments.at("thickening")[17 + row]),
+                std::stod(truth.at("thickening")[16 + row]), 3);
+  }
+  for (const char* file : {"bullseye.svg", "slices_ed.svg", "slices_es.svg", "curves.svg"}) {
+    EXPECT_EQ(readText(folder / "out" / file).find("<svg"), 0U) << file;
+  }
+  for (const char* file : {"bullseye.png", "thickness_frame-0001.nii.gz", "left_out.nii.gz"}) {
+    EXPECT_TRUE(fs::exists(folder / "out" / file)) << file;
+  }
+  const auto of = io::readLabels(folder / "out/segments.nii.gz").volume;
+  EXPECT_EQ(*std::max_element(of.data.begin(), of.data.end()), 17);
+}
+
+TEST(HeartCommand, FindsTheFramesOrTakesThem) {
+  TemporaryFolder folder;
+  makeBeat(folder);
+  // The other way round: the second file is end-diastole.
+  std::vector<std::string> words = {"heart",
+                                    folder / "beat/frame-0001.nii.gz",
+                                    folder / "beat/frame-0000.nii.gz",
+                                    "--frames",
+                                    "ED,ES",
+                                    "--out",
+                                    folder / "out"};
+  ASSERT_EQ(explica(words).exitCode, 0);
+  const auto frames = tableOf(folder / "out/frames.tsv");
+  EXPECT_EQ(frames.at("frame"), (std::vector<std::string>{"1", "0"}));
+  EXPECT_EQ(frames.at("phase"), (std::vector<std::string>{"ED", "ES"}));
+  EXPECT_EQ(explica(heart(folder, {"--frames", "0,5"})).exitCode, 1);
+  EXPECT_EQ(explica(heart(folder, {"--frames", "first"})).exitCode, 1);
+  EXPECT_EQ(explica(heart(folder, {"--frames", "1,1"})).exitCode, 0);
+}
+
+TEST(HeartCommand, WithoutRightVentricleItIsNotOrientedAndSaysSo) {
+  TemporaryFolder folder;
+  makeBeat(folder);
+  const std::vector<std::string> labels = {"--cavity", "1", "--wall", "2"};
+  const auto made = explica(heart(folder, labels));
+  ASSERT_EQ(made.exitCode, 0) << made;
+  EXPECT_NE(made.err.find("have no anatomical names"), std::string::npos) << made;
+  EXPECT_EQ(tableOf(folder / "out/segments.tsv").at("name")[1], "basal 2");
+  EXPECT_NE(readText(folder / "out/bullseye.svg").find("not oriented"), std::string::npos);
+  auto axis = labels;
+  axis.insert(axis.end(), {"--rv-insertion-image-axis", "i-"});
+  ASSERT_EQ(explica(heart(folder, axis)).exitCode, 0);
+  EXPECT_EQ(tableOf(folder / "out/segments.tsv").at("name")[1], "basal anteroseptal");
+}
+
+TEST(HeartCommand, RefusesAPointFarFromTheHeart) {
+  TemporaryFolder folder;
+  makeBeat(folder);
+  const auto made = explica(heart(folder, {"--rv-insertion", "9999,0,0"}));
+  EXPECT_EQ(made.exitCode, 2);
+  EXPECT_NE(made.err.find("from the wall"), std::string::npos) << made;
+  EXPECT_NE(made.err.find("ITK-SNAP"), std::string::npos) << made;
+}
+
+TEST(HeartCommand, AFrameWithoutWallIsSaidAndLeftOut) {
+  const fs::path data = fs::path(EXPLICA_REAL_DATA) / "lv_sunnybrook_SCD0000101";
+  if (!fs::exists(data)) GTEST_SKIP() << "skipped: no real data";
+  TemporaryFolder folder;
+  const auto made = explica({"heart", (data / "ED_label.nii.gz").string(),
+                             (data / "ES_label.nii.gz").string(), "--out", folder / "out"});
+  ASSERT_EQ(made.exitCode, 0) << made;
+  EXPECT_NE(made.err.find("frame 1 is left out of thickness and mass: it has no wall"),
+            std::string::npos)
+      << made;
+  const auto summary = readJson(folder / "out/summary.json");
+  EXPECT_NEAR(summary["ejection_fraction_percent"].get<double>(), 26.3, 0.1);
+  const auto slices = tableOf(folder / "out/slices.tsv");
+  EXPECT_EQ(slices.at("kind")[0], "open");
+  EXPECT_EQ(slices.at("voxels")[0], "0");
+}
+
+TEST(HeartCommand, ReadsAllFramesOfOneFile) {
+  TemporaryFolder folder;
+  makeBeat(folder);
+  std::vector<VolumeOnDemand<float>> frames;
+  for (const char* name : {"frame-0000.nii.gz", "frame-0001.nii.gz"}) {
+    auto loaded = io::readScalars(folder / "beat" / name).volume;
+    VolumeOnDemand<float> frame;
+    frame.grid = loaded.grid;
+    frame.end = loaded.size();
+    frame.fill = [loaded](std::size_t first, std::size_t count, float* to) {
+      std::copy_n(loaded.data.begin() + static_cast<std::ptrdiff_t>(first), count, to);
+    };
+    frames.push_back(frame);
+  }
+  io::writeFrames(folder / "beat.nii.gz", frames);
+  ASSERT_EQ(explica({"heart", folder / "beat.nii.gz", "--out", folder / "one"}).exitCode, 0);
+  ASSERT_EQ(explica(heart(folder, {})).exitCode, 0);
+  EXPECT_EQ(readText(folder / "one/segments.tsv"), readText(folder / "out/segments.tsv"));
+}
+
+}  // namespace explica::testing
