@@ -74,7 +74,8 @@ void declare(Declaration& d, Settings& s) {
           "results "
           "to BIDS names with sidecars. Steps whose inputs and options have not changed, by "
           "content, "
-          "are kept. A participant that fails does not stop the others. group: writes from all "
+          "are kept. A participant that fails does not stop the others: exit code 3, or 2 if all "
+          "failed. group: writes from all "
           "runs, failed ones too, study.tsv and index.html, and exports their records as BIDS-Prov "
           "and RO-Crate. Several of these commands may work on one OUT_DIR at a time, as in a job "
           "array, on different participants.")
@@ -180,28 +181,44 @@ bool doHemisphere(Context& context, const Settings& s, const study::Participant&
   return good;
 }
 
+std::string listed(const std::vector<std::string>& names) {
+  std::string all;
+  for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
+  return all;
+}
+
+/// All that can be done is done; exit code 3 if some failed, 2 if all did.
 Termination doParticipants(Context& context, const Settings& s) {
   const auto participants = study::findParticipants(s.dataset, s.participants);
   study::describeDerivatives(context.outputFolder(), {s.dataset, !context.isPrivate()},
                              provenance::software().version);
   Termination worst = Termination::NotRun;
-  int done = 0, failed = 0;
+  int done = 0;
+  std::vector<std::string> failed;
   for (const study::Participant& participant : participants) {
     for (const pipeline::RunHemisphere side : s.hemispheres) {
       if (context.monitor().shouldStop()) {
         worst = Termination::Interrupted;
         break;
       }
-      (doHemisphere(context, s, participant, side, worst) ? done : failed) += 1;
+      if (doHemisphere(context, s, participant, side, worst)) {
+        ++done;
+      } else {
+        failed.push_back(participant.name() + "_hemi-" + std::string(nameOf(side)));
+      }
     }
   }
   context.result("hemispheres_done", done);
-  context.result("hemispheres_failed", failed);
-  if (done == 0 && failed > 0) {
-    throw InvalidInput(s.dataset + ": all " + std::to_string(failed) +
+  context.result("hemispheres_failed", failed.size());
+  context.result("failed", Json(failed));
+  if (done == 0 && !failed.empty()) {
+    throw InvalidInput(s.dataset + ": all " + std::to_string(failed.size()) +
                        " hemispheres failed; each run's problem.txt says why");
   }
-  return worst;
+  if (failed.empty()) return worst;
+  context.warn(std::to_string(failed.size()) + " of " + std::to_string(failed.size() + done) +
+               " hemispheres failed: " + listed(failed));
+  return !reachedGoal(worst) ? worst : Termination::Stalled;
 }
 
 /// How the study came about, in the words of BIDS-Prov and RO-Crate.
@@ -209,7 +226,7 @@ void writeExports(Context& context, const Settings& s, const std::vector<study::
   const fs::path out = context.outputFolder();
   auto records = provenance::recordsBelow(out / "runs");
   for (const auto& [name, content] : provenance::toBidsProv(records, out)) {
-    writeTextFile(context.output("prov/" + name), content.dump(1) + "\n");
+    writeTextFile(context.output("prov/" + name), provenance::textOf(content, 1) + "\n");
   }
   provenance::CrateDescription crate;
   crate.name = "Explica study";
@@ -219,7 +236,10 @@ void writeExports(Context& context, const Settings& s, const std::vector<study::
   crate.license = "not stated by the source data set";
   if (fs::exists(source)) {
     const Json described = provenance::readJson(source);
-    if (described.contains("License")) crate.license = described["License"].get<std::string>();
+    if (described.is_object() && described.contains("License") &&
+        described["License"].is_string()) {
+      crate.license = described["License"].get<std::string>();
+    }
   }
   for (const char* name :
        {"dataset_description.json", "descriptions.tsv", "study.tsv", "index.html"}) {
@@ -231,7 +251,7 @@ void writeExports(Context& context, const Settings& s, const std::vector<study::
   }
   std::sort(crate.files.begin(), crate.files.end());
   writeTextFile(context.output("ro-crate-metadata.json"),
-                provenance::toRoCrate(records, out, crate).dump(1) + "\n");
+                provenance::textOf(provenance::toRoCrate(records, out, crate), 1) + "\n");
 }
 
 Termination doGroup(Context& context, const Settings& s) {

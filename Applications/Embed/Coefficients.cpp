@@ -4,8 +4,8 @@
 #include "Coefficients.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Provenance/Document.h"
 
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -69,8 +69,7 @@ nlohmann::ordered_json jsonOf(const shapes::HarmonicShape& shape) {
 
 shapes::HarmonicShape readCoefficients(const std::filesystem::path& path) {
   try {
-    std::ifstream stream(path);
-    const auto json = nlohmann::ordered_json::parse(stream);
+    const auto json = provenance::readJson(path);
     shapes::HarmonicShape shape;
     shapes::HarmonicAnnulus& a = shape.annulus;
     a.order = json.at("order");

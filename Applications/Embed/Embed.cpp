@@ -10,6 +10,7 @@
 #include "Explica/IO/PolygonFile.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VolumeFile.h"
+#include "Explica/Provenance/Document.h"
 #include "Explica/Shapes/AnnulusBoundaries.h"
 #include "Explica/Shapes/FitFigure.h"
 #include "Explica/Shapes/ShapeFit.h"
@@ -283,7 +284,7 @@ Termination run(Context& context, const Settings& s) {
   const std::vector<double> weights =
       s.weights.empty() ? std::vector<double>(fitted.size(), 1.0) : s.weights;
   const shapes::HarmonicShape shape = shapes::combine(fitted, weights);
-  writeTextFile(context.output("coefficients.json"), jsonOf(shape).dump(1) + "\n");
+  writeTextFile(context.output("coefficients.json"), provenance::textOf(jsonOf(shape), 1) + "\n");
   writeTextFile(context.output("fit.tsv"), table);
   writeShape(context, "shape", shape, s.grid);
   if (annulus.dimension == 3) {

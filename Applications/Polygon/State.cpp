@@ -5,9 +5,8 @@
 
 #include "Explica/Core/Errors.h"
 
-#include <nlohmann/json.hpp>
+#include "Explica/Provenance/Document.h"
 
-#include <fstream>
 #include <vector>
 
 namespace explica::app {
@@ -19,6 +18,8 @@ using planar::PolygonIteration;
 using planar::PolygonState;
 
 constexpr const char* kKind = "explica polygon state 1";
+/// A state holds all positions of every frame.
+constexpr provenance::DocumentLimits kStateLimits = {std::size_t{1} << 30, 16, 100'000'000};
 
 /// JSON has no infinity: null stands for it.
 Json numberOf(double value) {
@@ -106,14 +107,16 @@ std::string textOf(const PolygonCheckpoint& state) {
   }
   Json& path = json["path"] = Json::array();
   for (const PolygonState& at : state.path) path.push_back(jsonOf(at));
-  return json.dump() + "\n";
+  return provenance::textOf(json) + "\n";
 }
 
 PolygonCheckpoint readState(const std::filesystem::path& path) {
-  std::ifstream stream(path);
-  if (!stream) throw IOError(path.string() + " cannot be read; nothing was left to resume from");
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) {
+    throw IOError(path.string() + " cannot be read; nothing was left to resume from");
+  }
   try {
-    const Json json = Json::parse(stream);
+    const Json json = provenance::readJson(path, kStateLimits);
     if (json.at("kind") != kKind) throw std::out_of_range("kind");
     PolygonCheckpoint state;
     state.method = valueOf<planar::PolygonMethod>(json.at("method").get<std::string>());

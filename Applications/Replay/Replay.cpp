@@ -5,6 +5,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Provenance/Software.h"
 #include "Explica/Provenance/Verify.h"
+#include "StrangersRecord.h"
 
 #include <filesystem>
 #include <iostream>
@@ -25,53 +26,22 @@ void declare(Declaration& d, Settings& s) {
           "Takes command, options and inputs from the record. Prints one line per output: "
           "identical, "
           "DIFFERENT or MISSING. Ends with exit code 3 if any output is not identical. Files that "
-          "hold times are compared by their numbers.")
+          "hold times are compared by their numbers. The record may be a stranger's: what would "
+          "write outside --out, or read other files than the inputs that it names, is refused.")
       .example("explica replay shell/provenance.json --out again", "The same shell once more")
       .input("PROVENANCE", FileKind::Any, "a provenance.json, or the folder that holds it",
              s.record)
       .writesThrough();
 }
 
-/// The command's arguments with every path replaced by where its file is now.
-Json argumentsNow(const Json& record, const fs::path& recordPath, Context& context) {
-  Json arguments = record["execution"]["arguments"];
-  const Json& paths = record["execution"]["inputs"];
-  const auto now = [&](const Json& given) -> Json {
-    if (!given.is_string()) return given;
-    for (std::size_t i = 0; i < paths.size(); ++i) {
-      if (paths[i]["given"] != given) continue;
-      const fs::path found = provenance::locateInput(record, i, recordPath);
-      if (provenance::digestOf(found).sha256 != record["inputs"][i]["sha256"]) {
-        context.warn(found.string() + " is not the file that was read then");
-      }
-      return found.string();
-    }
-    const fs::path relative = given.get<std::string>();
-    const std::string directory = record["execution"].value("directory", "");
-    std::error_code ignored;
-    // A folder, or a file that was named but not read.
-    if (!directory.empty() && fs::exists(fs::path(directory) / relative, ignored)) {
-      return (fs::path(directory) / relative).string();
-    }
-    return given;
-  };
-  for (auto& [name, value] : arguments.items()) {
-    if (value.is_array()) {
-      for (auto& element : value) element = now(element);
-    } else {
-      value = now(value);
-    }
-  }
-  return arguments;
-}
-
 /// Prints how each output compares; @return how many are not identical
 int compare(const Json& before, const fs::path& beforeFolder, const fs::path& afterFolder,
-            const std::string& prefix) {
+            const std::string& prefix, int depth = 0) {
+  constexpr int kDeepest = 4;  // steps within steps
   int different = 0;
   const auto say = [&](const char* word, const std::string& name) {
     if (std::string_view(word) != "identical") ++different;
-    std::cout << word << "  " << prefix << name << "\n";
+    std::cout << word << "  " << provenance::printable(prefix + name) << "\n";
   };
   const Json after = provenance::readRecord(afterFolder / provenance::kRecordName);
   for (const Json& output : before["outputs"]) {
@@ -82,11 +52,12 @@ int compare(const Json& before, const fs::path& beforeFolder, const fs::path& af
       say("MISSING  ", name);
     } else if (name == provenance::kSummaryName) {
       say(before["results"] == after["results"] ? "identical" : "DIFFERENT", name);
-    } else if (path.filename() == provenance::kRecordName && fs::exists(beforeFolder / name)) {
+    } else if (path.filename() == provenance::kRecordName && name != provenance::kRecordName &&
+               depth < kDeepest && fs::exists(beforeFolder / name, ignored)) {
       // A step with a record of its own.
-      different +=
-          compare(provenance::readRecord(beforeFolder / name), (beforeFolder / name).parent_path(),
-                  path.parent_path(), prefix + fs::path(name).parent_path().string() + "/");
+      different += compare(provenance::readRecord(beforeFolder / name),
+                           (beforeFolder / name).parent_path(), path.parent_path(),
+                           prefix + fs::path(name).parent_path().string() + "/", depth + 1);
     } else if (output.contains("sha256")) {
       say(provenance::digestOf(path).sha256 == output["sha256"] ? "identical" : "DIFFERENT", name);
     }
@@ -95,8 +66,7 @@ int compare(const Json& before, const fs::path& beforeFolder, const fs::path& af
 }
 
 Termination run(Context& context, const Settings& s) {
-  fs::path recordPath = s.record;
-  if (fs::is_directory(recordPath)) recordPath /= provenance::kRecordName;
+  const fs::path recordPath = provenance::recordAt(s.record);
   const Json record = provenance::readRecord(recordPath);
   const std::string name = record["command"];
   const Command* command = findCommand(name);
@@ -110,8 +80,10 @@ Termination run(Context& context, const Settings& s) {
                  made["commit"].get<std::string>().substr(0, 10) + "; this is " +
                  provenance::softwareText());
   }
-  Json values = record["options"];
-  values.update(argumentsNow(record, recordPath, context));
+  Invocation described = command->begin();
+  requireConfined(described.declaration, recordPath);
+  const Json values =
+      confinedValues(context, described.declaration, record, recordPath, context.outputFolder());
   const Outcome outcome = context.runThrough(*command, values);
   if (outcome.record.empty()) return outcome.termination;
   const int different = compare(record, recordPath.parent_path(), outcome.record.parent_path(), "");

@@ -31,7 +31,9 @@ void declare(Declaration& d, Settings& s) {
           "runs have ended by themselves. Steps whose inputs and options have not changed, by "
           "content, are kept. A run that fails does not stop the others; its problem.txt says why. "
           "Several of these commands may work on one OUT_DIR at a time, on different subjects. "
-          "SIGUSR1 or SIGTERM ends it with what was reached: exit code 3, and to be done again.")
+          "SIGUSR1 or SIGTERM ends it with what was reached: exit code 3, and to be done again. "
+          "Exit "
+          "code 3, too, if some runs failed, and 2 if all did.")
       .example("explica study participant study.yaml results --participant-label 01 02",
                "Two subjects")
       .input("STUDY", FileKind::Any, "study file, YAML or JSON", s.study)
@@ -44,7 +46,8 @@ void declare(Declaration& d, Settings& s) {
 
 /// How the runs so far ended.
 struct Account {
-  int runs = 0, failed = 0;
+  int runs = 0;
+  std::vector<std::string> failed;
   std::string environmentFault;  ///< the machine's fault, which the next run would meet too
   Termination worst = Termination::NotRun;
 };
@@ -73,7 +76,7 @@ bool doRun(Context& context, const fs::path& folder, const study::Participant& p
   const fs::path problem = folder / "problem.txt";
   const auto fail = [&](const std::string& why) {
     context.warn(run.folder + ": " + why);
-    ++account.failed;
+    account.failed.push_back(run.folder);
     writeTextFile(problem, why + "\n");
     return false;
   };
@@ -127,12 +130,17 @@ Termination run(Context& context, const Settings& s) {
     if (settled) study::settle(s.out, subject, key);
   }
   if (!account.environmentFault.empty()) throw EnvironmentError(account.environmentFault);
-  if (account.failed > 0) {
-    throw InvalidInput(s.study + ": " + std::to_string(account.failed) + " of " +
-                       std::to_string(account.runs) + " runs failed, as said above and in each " +
-                       s.out + "/runs/sub-*/problem.txt");
+  if (account.failed.empty()) return account.worst;
+  std::string names;
+  for (const std::string& name : account.failed) names += (names.empty() ? "" : ", ") + name;
+  const std::string said = std::to_string(account.failed.size()) + " of " +
+                           std::to_string(account.runs) + " runs failed (" + names +
+                           "), as said above and in each " + s.out + "/runs/sub-*/problem.txt";
+  if (account.failed.size() == static_cast<std::size_t>(account.runs)) {
+    throw InvalidInput(s.study + ": " + said);
   }
-  return account.worst;
+  context.warn(said);
+  return !reachedGoal(account.worst) ? account.worst : Termination::Stalled;
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ void declare(Declaration& d, Settings&) {
 }
 
 Termination run(Context&, const Settings&) {
-  std::cout << studyFileSchema().dump(2) << "\n";
+  std::cout << provenance::textOf(studyFileSchema(), 2) << "\n";
   return Termination::NotRun;
 }
 

@@ -152,6 +152,7 @@ void declare(Declaration& d, Settings& s) {
                     "write lh.white, lh.pial, lh.thickness and so on, too, into "
                     "this folder (within --out if relative)"},
               s.freeSurfer)
+      .namesOutput("freesurfer")
       .inputOption("fs-volume", FileKind::Volume,
                    "volume (orig.mgz) whose surface RAS FreeSurfer files use, read or written "
                    "(default: the labels, if FreeSurfer's)",

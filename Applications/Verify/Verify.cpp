@@ -51,14 +51,13 @@ const char* wordFor(provenance::FileState state) {
 }
 
 Termination run(Context& context, const Settings& s) {
-  std::filesystem::path record = s.record;
-  if (std::filesystem::is_directory(record)) record /= provenance::kRecordName;
+  const std::filesystem::path record = provenance::recordAt(s.record);
   if (s.provJson) {
     using provenance::LocatedRecord;
     const auto records = s.deep
                              ? provenance::recordsBehind(record)
                              : std::vector<LocatedRecord>{{record, provenance::readRecord(record)}};
-    std::cout << provenance::toProvJson(records).dump(2) << "\n";
+    std::cout << provenance::textOf(provenance::toProvJson(records), 2) << "\n";
     return Termination::NotRun;
   }
   const auto verification = provenance::verifyRecord(record, s.deep);
@@ -67,7 +66,8 @@ Termination run(Context& context, const Settings& s) {
     const bool same =
         file.state == provenance::FileState::Same || file.state == provenance::FileState::Unhashed;
     wrong += same ? 0 : 1;
-    std::cout << wordFor(file.state) << "  " << file.what << "  " << file.path.string() << "\n";
+    std::cout << wordFor(file.state) << "  "
+              << provenance::printable(file.what + "  " + file.path.string()) << "\n";
   }
   std::cout.flush();
   if (wrong > 0) {

@@ -39,10 +39,11 @@ function(explica_add_module name)
     explica_use_precompiled_headers(${target} Library)
   endif()
 
-  install(TARGETS ${target} EXPORT Explica${name}Targets FILE_SET HEADERS
-    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(TARGETS ${target} EXPORT Explica${name}Targets
+    FILE_SET HEADERS COMPONENT development
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
   install(EXPORT Explica${name}Targets NAMESPACE Explica::
-    DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Explica)
+    DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Explica COMPONENT development)
   set(needed "")
   foreach(link IN LISTS arg_PUBLIC arg_PRIVATE)
     if(link MATCHES "^Explica::(.+)$")
@@ -133,5 +134,6 @@ function(explica_install_package)
     COMPATIBILITY SameMinorVersion)
   install(FILES "${PROJECT_BINARY_DIR}/ExplicaConfig.cmake"
     "${PROJECT_BINARY_DIR}/ExplicaConfigVersion.cmake"
-    "${PROJECT_SOURCE_DIR}/Modules/CMake/FindISAL.cmake" DESTINATION ${destination})
+    "${PROJECT_SOURCE_DIR}/Modules/CMake/FindISAL.cmake" DESTINATION ${destination}
+    COMPONENT development)
 endfunction()

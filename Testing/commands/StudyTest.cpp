@@ -128,7 +128,8 @@ TEST_F(Study, ABrokenInputIsARowAndStaysToDo) {
   EXPECT_EQ(checked.exitCode, 2) << checked;
   EXPECT_NE(checked.err.find("line 6, subjects.c: "), std::string::npos) << checked;
   const auto made = participant();
-  EXPECT_EQ(made.exitCode, 2) << made;
+  EXPECT_EQ(made.exitCode, 3) << made;
+  EXPECT_NE(made.err.find("2 of 3 runs failed (sub-a_hemi-L, sub-c_hemi-L)"), std::string::npos);
   EXPECT_NE(made.err.find("2 of 3 runs failed"), std::string::npos) << made;
   EXPECT_EQ(todo(), "a\nc\n");
   EXPECT_EQ(cell("sub-b", "state"), "done");

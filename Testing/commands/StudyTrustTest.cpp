@@ -137,7 +137,7 @@ TEST(StudyTrust, AnUnreadableInputInTheMiddleIsARowAndStopsNobody) {
   fs::remove(study.labels("03"));
   fs::create_symlink("/nowhere/labels.nii.gz", study.labels("03"));
   const CommandResult run = explica(study.participants(study.out()));
-  ASSERT_EQ(run.exitCode, 0) << run;
+  ASSERT_EQ(run.exitCode, 3) << run;
   const CommandResult group = explica(study.group(study.out()));
   ASSERT_EQ(group.exitCode, 0) << group;
   const std::string table = readText(study.out() + "/study.tsv");
@@ -155,7 +155,7 @@ TEST(StudyTrust, AnInputThatTurnsBadTakesItsOldResultsAway) {
   ASSERT_EQ(explica(study.participants(study.out())).exitCode, 0);
   ASSERT_TRUE(fs::exists(study.out() + "/sub-02/anat/sub-02_hemi-L_pial.surf.gii"));
   fs::resize_file(study.labels("02"), 100);
-  ASSERT_EQ(explica(study.participants(study.out())).exitCode, 0);
+  ASSERT_EQ(explica(study.participants(study.out())).exitCode, 3);
   EXPECT_FALSE(fs::exists(study.out() + "/sub-02/anat/sub-02_hemi-L_pial.surf.gii"));
   EXPECT_TRUE(fs::exists(study.out() + "/sub-01/anat/sub-01_hemi-L_pial.surf.gii"));
 }

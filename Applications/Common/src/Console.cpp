@@ -4,6 +4,7 @@
 #include "Console.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Provenance/Record.h"
 
 #include <unistd.h>
 
@@ -35,18 +36,34 @@ void Console::openLog(const std::string& path) {
   if (!log_) {
     throw EnvironmentError(path + ": the log cannot be written (" + std::strerror(errno) + ")");
   }
+  logPath_ = path;
+  line("", "log of explica, process " + std::to_string(getpid()), false);
+  if (!lost_.empty()) throw EnvironmentError(lost_);
 }
 
-void Console::line(std::string_view kind, const std::string& message, bool shown) {
+std::string Console::lost() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return lost_;
+}
+
+void Console::noteLoss(int written, const std::string& where) {
+  if (written >= 0 || errno == EBADF || !lost_.empty()) return;
+  lost_ = where + " (" + std::strerror(errno) + ")";
+}
+
+void Console::line(std::string_view kind, const std::string& said, bool shown) {
+  const std::string message = provenance::printable(said);
   const std::lock_guard<std::mutex> lock(mutex_);
   if (log_) {
-    std::fprintf(log_.get(), "%s %.*s%s\n", timeNow().c_str(), static_cast<int>(kind.size()),
-                 kind.data(), message.c_str());
-    std::fflush(log_.get());
+    const int written = std::fprintf(log_.get(), "%s %.*s%s\n", timeNow().c_str(),
+                                     static_cast<int>(kind.size()), kind.data(), message.c_str());
+    noteLoss(std::min(written, std::fflush(log_.get())), logPath_ + ": the log cannot be written");
   }
   if (!shown) return;
   clearBar();
-  std::fprintf(stderr, "%.*s%s\n", static_cast<int>(kind.size()), kind.data(), message.c_str());
+  noteLoss(
+      std::fprintf(stderr, "%.*s%s\n", static_cast<int>(kind.size()), kind.data(), message.c_str()),
+      "messages are lost: standard error cannot be written");
 }
 
 void Console::info(const std::string& message) {

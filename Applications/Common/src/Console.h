@@ -22,6 +22,9 @@ class Console {
   void setLevel(Level level) { level_ = level; }
   /// @throws EnvironmentError  the file cannot be written
   void openLog(const std::string& path);
+  /// Why messages to standard error or the log were lost; empty if none were.  A standard error
+  /// that was closed from the start is as wished.
+  [[nodiscard]] std::string lost() const;
 
   void info(const std::string& message);
   void detail(const std::string& message);
@@ -33,8 +36,11 @@ class Console {
  private:
   void line(std::string_view kind, const std::string& message, bool shown);
   void clearBar();
+  void noteLoss(int written, const std::string& where);
 
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
+  std::string lost_;
+  std::string logPath_;
   Level level_ = Level::Normal;
   bool terminal_ = false;
   bool barShown_ = false;

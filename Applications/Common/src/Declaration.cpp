@@ -66,6 +66,13 @@ Declaration& Declaration::severalWords(std::string_view wanted) {
   return *this;
 }
 
+Declaration& Declaration::namesOutput(std::string_view wanted) {
+  Parameter* parameter = find(wanted);
+  if (!parameter) throw std::logic_error("namesOutput: no option " + std::string(wanted));
+  parameter->namesOutput = true;
+  return *this;
+}
+
 Declaration& Declaration::require(std::string_view wanted) {
   Parameter* parameter = find(wanted);
   if (!parameter) throw std::logic_error("require: no option " + std::string(wanted));

@@ -6,12 +6,16 @@
 #include "Explica/Provenance/Software.h"
 #include "Parse.h"
 #include "Run.h"
+#include "Signals.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <iostream>
 #include <new>
+#include <optional>
+#include <system_error>
 
 namespace explica::app {
 namespace {
@@ -62,7 +66,7 @@ int runCommandLine(std::vector<std::string> words, const std::vector<std::string
     return kDone;
   }
   if (words[0] == "--describe") {
-    std::cout << describeAllCommands().dump(2) << "\n";
+    std::cout << provenance::textOf(describeAllCommands(), 2) << "\n";
     return kDone;
   }
 
@@ -108,7 +112,7 @@ int runCommandLine(std::vector<std::string> words, const std::vector<std::string
     return kDone;
   }
   if (has(words, "--describe")) {
-    std::cout << describeJson(declaration).dump(2) << "\n";
+    std::cout << provenance::textOf(describeJson(declaration), 2) << "\n";
     return kDone;
   }
   if (has(words, "--xml")) {
@@ -126,13 +130,16 @@ int runCommandLine(std::vector<std::string> words, const std::vector<std::string
   if (run.common.verbose) console.setLevel(Console::Level::Verbose);
   if (run.common.log) console.openLog(*run.common.log);
 
+  if (run.common.maxMemory) limitMemory(*run.common.maxMemory);
+  std::optional<TimeLimit> limit;
+  if (run.common.maxTime) run.limit = &limit.emplace(*run.common.maxTime);
   const Outcome outcome = execute(run, console);
   if (run.common.dryRun) {
     Json options = Json::object();
     for (const Parameter& parameter : declaration.parameters) {
       options[parameter.option.name] = provenance::valueOf(parameter.option);
     }
-    std::cout << options.dump(2) << "\n";
+    std::cout << provenance::textOf(options, 2) << "\n";
     console.info("dry run: inputs and options are usable; nothing was written");
   } else if (!outcome.record.empty()) {
     const std::string where = outcome.record.parent_path().string();
@@ -157,6 +164,19 @@ const Command* findCommand(std::string_view name) {
   return nullptr;
 }
 
+namespace {
+
+/// Why what was printed, or the log, did not arrive; empty if all did.
+std::string whatWasLost(const Console& console) {
+  std::cout.flush();
+  if (!std::cout || std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    return "what was printed is lost: standard output cannot be written";
+  }
+  return console.lost();
+}
+
+}  // namespace
+
 int runMain(int argc, char** argv) {
   const std::vector<std::string> all(argv, argv + argc);
   Console console;
@@ -168,7 +188,10 @@ int runMain(int argc, char** argv) {
   };
   catchSignals();
   try {
-    return runCommandLine({all.begin() + (all.empty() ? 0 : 1), all.end()}, all, console, command);
+    const int code =
+        runCommandLine({all.begin() + (all.empty() ? 0 : 1), all.end()}, all, console, command);
+    const std::string lost = whatWasLost(console);
+    return lost.empty() ? code : fail(kEnvironment, lost);
   } catch (const UsageError& error) {
     return fail(kUsage, error.what());
   } catch (const InvalidInput& error) {
@@ -178,9 +201,9 @@ int runMain(int argc, char** argv) {
   } catch (const EnvironmentError& error) {
     return fail(kEnvironment, error.what());
   } catch (const std::bad_alloc&) {
-    return fail(kEnvironment, "out of memory");
-  } catch (const std::filesystem::filesystem_error& error) {
-    return fail(kEnvironment, error.what());
+    return fail(kEnvironment, "out of memory (see --max-memory, ulimit -d, or the machine's)");
+  } catch (const std::system_error& error) {
+    return fail(kEnvironment, error.what());  // files, and threads that the system refuses
   } catch (const std::exception& error) {
     return fail(kEnvironment, std::string("internal error, please report it: ") + error.what());
   }

@@ -6,6 +6,7 @@
 #include "Console.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Provenance/Record.h"
+#include "Leavings.h"
 
 #include <fcntl.h>
 #include <signal.h>
@@ -49,12 +50,11 @@ std::string processStart(long pid) {
 }
 
 std::string ownLock(const std::string& command) {
-  return Json{{"host", hostName()},
-              {"pid", static_cast<long>(getpid())},
-              {"process_start", processStart(getpid())},
-              {"started", timeNow()},
-              {"command", command}}
-             .dump() +
+  return provenance::textOf({{"host", hostName()},
+                             {"pid", static_cast<long>(getpid())},
+                             {"process_start", processStart(getpid())},
+                             {"started", timeNow()},
+                             {"command", command}}) +
          "\n";
 }
 
@@ -91,25 +91,33 @@ LockAttempt makeLock(const fs::path& lock, const std::string& text) {
 
 /// Empty if the lock's owner is gone; else a sentence on who holds it.
 std::string holderOf(const fs::path& lock) {
-  std::ifstream file(lock);
-  const Json held = Json::parse(file, nullptr, false);
+  Json held;
+  try {
+    held = provenance::readJson(lock);
+  } catch (const IOError&) {
+    // One that is just being written, or is gone.
+  }
   std::error_code fault;
   const auto touched = fs::last_write_time(lock, fault);
   if (fault) return "";
   const bool silent = fs::file_time_type::clock::now() - touched > kSilence;
-  if (!held.is_object() || !held.contains("pid"))
+  const auto word = [&](const char* key) {
+    const auto found = held.find(key);
+    return found != held.end() && found->is_string() ? found->get<std::string>() : std::string();
+  };
+  if (!held.is_object() || !held.contains("pid") || !held["pid"].is_number_integer())
     return silent ? "" : "a run that is just starting";
-  const std::string host = held.value("host", "");
-  const long pid = held.value("pid", 0L);
+  const std::string host = word("host");
+  const long pid = held["pid"].get<long>();
   if (host == hostName()) {
     if (kill(static_cast<pid_t>(pid), 0) != 0 && errno == ESRCH) return "";
     const std::string start = processStart(pid);
-    if (!start.empty() && start != held.value("process_start", "")) return "";
+    if (!start.empty() && start != word("process_start")) return "";
   } else if (silent) {
     return "";
   }
-  return "process " + std::to_string(pid) + " on " + host + " (explica " +
-         held.value("command", "") + ", since " + held.value("started", "") + ")";
+  return "process " + std::to_string(pid) + " on " + host + " (explica " + word("command") +
+         ", since " + word("started") + ")";
 }
 
 [[noreturn]] void cannot(const std::string& what, const fs::path& path, const std::string& cause) {
@@ -130,7 +138,9 @@ void removeRecorded(const fs::path& folder, const std::vector<std::string>& keep
     for (const Json* outputs : {&earlier["outputs"], &varying}) {
       for (const Json& output : *outputs) {
         const std::string name = output["path"];
-        const fs::path path = folder / name;
+        const auto own = provenance::ownFile(folder, name);
+        if (!own) continue;
+        const fs::path& path = *own;
         if (path != record && path.filename() == provenance::kRecordName) continue;  // a step's own
         const bool ours = output.contains("sha256") && fs::is_regular_file(path, ignored) &&
                           provenance::digestOf(path).sha256 == output["sha256"];
@@ -205,6 +215,7 @@ OutputFolder::OutputFolder(fs::path folder, const OutputRules& rules,
   try {
     acquireLock(rules, warn);
     if (!inPlace_) {
+      noteLeaving(stage_);
       fs::remove_all(stage_);
       fs::create_directory(stage_);
     }
@@ -226,6 +237,7 @@ void OutputFolder::acquireLock(const OutputRules& rules,
     const LockAttempt made = makeLock(lock_, ownLock(rules.command));
     locked_ = made.created;
     if (made.created) {
+      noteLeaving(lock_);
       if (made.fault != 0) {
         cannot("the output folder cannot be written", folder_, std::strerror(made.fault));
       }
@@ -269,6 +281,7 @@ void OutputFolder::releaseLock() {
   if (locked_) {
     std::error_code ignored;
     fs::remove(lock_, ignored);
+    forgetLeaving(lock_);
     locked_ = false;
   }
 }
@@ -276,6 +289,7 @@ void OutputFolder::releaseLock() {
 OutputFolder::~OutputFolder() {
   std::error_code ignored;
   if (!published_ && !inPlace_ && !stage_.empty()) fs::remove_all(stage_, ignored);
+  forgetLeaving(stage_);
   releaseLock();
   if (!published_) {
     for (auto made = madeFolders_.rbegin(); made != madeFolders_.rend(); ++made) {
@@ -285,6 +299,9 @@ OutputFolder::~OutputFolder() {
 }
 
 fs::path OutputFolder::place(const std::string& name) {
+  if (!provenance::staysBelow(name)) {
+    throw UsageError("'" + name + "' would be written outside the output folder");
+  }
   fs::path path = stage_ / name;
   std::error_code fault;
   fs::create_directories(path.parent_path(), fault);
@@ -311,6 +328,7 @@ void OutputFolder::publish(const std::string& last) {
     } else if (!existed_) {
       releaseLock();
       fs::rename(stage_, folder_);
+      forgetLeaving(stage_);
     } else {
       if (replaceEarlier_) {
         removeRecorded(folder_, names);

@@ -114,6 +114,7 @@ std::vector<Parameter> commonParameters(const Declaration& declaration, CommonOp
     const bool concernsOutput = option.name == "out" || option.name == "force" ||
                                 option.name == "dry-run" || option.name == "private";
     if (concernsOutput && !declaration.writesOutput) continue;
+    if (declaration.find(option.name) != nullptr) continue;  // a command's own --max-time
     Parameter parameter;
     parameter.option = std::move(option);
     parameter.option.category = "Common";

@@ -68,6 +68,7 @@ Volume<Label> readTissueLabels(Context& context, const std::string& name, const 
 
 io::LoadedSurface readSurface(Context& context, const std::string& name, const std::string& path,
                               const io::SurfaceReadOptions& options) {
+  if (options.fsVolume) context.input(*options.fsVolume, "fs-volume");
   io::LoadedSurface loaded = io::readSurface(path, options);
   const io::SurfaceOrigin& origin = loaded.origin;
   context.note(name, Json{{"format", origin.format},

@@ -11,9 +11,9 @@
 #include "Explica/Provenance/Verify.h"
 #include "OutputFolder.h"
 #include "Parse.h"
+#include "Signals.h"
 
 #include <fnmatch.h>
-#include <signal.h>
 #include <sys/resource.h>
 
 #include <Eigen/Core>
@@ -42,35 +42,11 @@ bool isTime(const std::string& key) {
   return key.rfind("seconds", 0) == 0;
 }
 
-volatile sig_atomic_t signalCount = 0;
-
-void onSignal(int number) {
-  signalCount = signalCount + 1;
-  if (signalCount > 1) {
-    signal(number, SIG_DFL);
-    raise(number);
-  }
-}
-
 Json numberOrNull(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
 }  // namespace
-
-bool signalled() {
-  return signalCount > 0;
-}
-
-void catchSignals() {
-  struct sigaction action {};
-  action.sa_handler = onSignal;
-  sigemptyset(&action.sa_mask);
-  action.sa_flags = SA_RESTART;
-  for (const int number : {SIGINT, SIGTERM, SIGUSR1}) sigaction(number, &action, nullptr);
-  // A file size limit then shows as a failed write, with its cause, instead of ending the process.
-  signal(SIGXFSZ, SIG_IGN);
-}
 
 struct Context::State {
   Run& run;
@@ -245,8 +221,9 @@ Run nestedRun(const Command& command, const Json& options, const Run& outer,
   nested.given = applyJson(parameters, options, command.name());
   requireGiven(nested.invocation.declaration, nested.given);
   nested.common = outer.common;
-  nested.argv = {"explica", command.name(), options.dump()};
+  nested.argv = {"explica", command.name(), provenance::textOf(options)};
   nested.parent = &monitor;
+  nested.limit = outer.limit;
   return nested;
 }
 
@@ -443,7 +420,8 @@ Outcome execute(Run& run, Console& console) {
     console.progress(fraction, run.prefix + std::string(activity));
   };
   state.monitor.stopWanted = [&] {
-    return signalled() || (run.parent && run.parent->shouldStop());
+    return signalled() || (run.limit && run.limit->passed()) ||
+           (run.parent && run.parent->shouldStop());
   };
 
   noteDeclaredInputs(context, declaration);
@@ -478,6 +456,9 @@ Outcome execute(Run& run, Console& console) {
 
   Outcome outcome;
   if (termination == Termination::NotRun) termination = Termination::Finished;
+  if (termination == Termination::Interrupted && !signalled() && run.limit && run.limit->passed()) {
+    termination = Termination::MaxTime;
+  }
   outcome.termination = termination;
   outcome.plausible = state.plausible;
   outcome.exitCode = reachedGoal(termination) && state.plausible ? kDone : kStoppedEarly;

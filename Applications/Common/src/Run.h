@@ -4,6 +4,7 @@
 
 #include "Console.h"
 #include "Explica/Application/Execute.h"
+#include "Limits.h"
 
 #include <set>
 #include <string>
@@ -15,20 +16,16 @@ namespace explica::app {
 struct Run {
   Invocation invocation;
   CommonOptions common;
-  std::set<std::string> given;      ///< names that the user set
-  std::vector<std::string> argv;    ///< for the record
-  const Monitor* parent = nullptr;  ///< of the command that this one is a step of
-  std::string name;                 ///< as a step of the parent: "unfold: "
-  std::string prefix;               ///< starts its messages: the names of all above and its own
+  std::set<std::string> given;       ///< names that the user set
+  std::vector<std::string> argv;     ///< for the record
+  const Monitor* parent = nullptr;   ///< of the command that this one is a step of
+  std::string name;                  ///< as a step of the parent: "unfold: "
+  std::string prefix;                ///< starts its messages: the names of all above and its own
+  const TimeLimit* limit = nullptr;  ///< of the whole process
 };
 
 /// Checks inputs and output folder, runs, writes summary and record, and makes the results appear.
 /// Bad input and the like leave nothing behind and reach the caller as exceptions.
 Outcome execute(Run& run, Console& console);
-
-/// True once SIGINT, SIGTERM or SIGUSR1 has come.
-[[nodiscard]] bool signalled();
-/// From now on the first such signal asks work to stop and the second ends the process.
-void catchSignals();
 
 }  // namespace explica::app

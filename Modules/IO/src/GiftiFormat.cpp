@@ -13,6 +13,7 @@
 
 #include <Eigen/LU>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -59,6 +60,20 @@ const TypeRow& typeOf(const std::filesystem::path& path, const std::string& name
     if (name == row.name) return row;
   }
   failToRead(path, "has a GIFTI array of the unknown type '" + name + "'");
+}
+
+/// One of two words, in the spelling of the standard or of the programs that write it otherwise.
+bool isSecond(const std::filesystem::path& path, const std::string& attribute,
+              const std::string& word, std::initializer_list<const char*> first,
+              std::initializer_list<const char*> second) {
+  const auto among = [&](std::initializer_list<const char*> words) {
+    return std::any_of(words.begin(), words.end(), [&](const char* one) { return word == one; });
+  };
+  if (among(second)) return true;
+  if (!among(first)) {
+    failToRead(path, "has a GIFTI array with the unknown " + attribute + " '" + word + "'");
+  }
+  return false;
 }
 
 /// From column-major to row-major order.
@@ -136,6 +151,7 @@ GiftiArray parseArray(const std::filesystem::path& path, const XmlElement& eleme
       }
     }
   }
+  const TypeRow& type = typeOf(path, element["DataType"]);
   const XmlElement* data = element.child("Data");
   static const std::string kNone;
   const std::string& text = data == nullptr ? kNone : data->text;
@@ -151,19 +167,21 @@ GiftiArray parseArray(const std::filesystem::path& path, const XmlElement& eleme
       array.values.push_back(parseNumber<double>(path, cursor.word()));
     }
   } else {
-    const TypeRow& type = typeOf(path, element["DataType"]);
     const Bytes raw =
         rawValues(path, element, text, static_cast<std::uint64_t>(count) * type.width);
-    const std::string endian = element["Endian"];
     const bool bigEndian =
-        endian.find("Big") != std::string::npos || endian.find("BIG") != std::string::npos;
+        isSecond(path, "Endian", element["Endian"], {"LittleEndian", "GIFTI_ENDIAN_LITTLE"},
+                 {"BigEndian", "GIFTI_ENDIAN_BIG"});
     array.values.resize(static_cast<std::size_t>(count));
     for (std::size_t i = 0; i < array.values.size(); ++i) {
       array.values[i] = type.load(raw.data() + i * type.width, bigEndian);
     }
   }
-  if (element["ArrayIndexingOrder"].find("ol") == 1 && array.size.size() == 2 && count > 0) {
-    array.values = transposed(array.values, array.size[0]);  // "ColumnMajorOrder"
+  const bool columns = isSecond(path, "ArrayIndexingOrder", element["ArrayIndexingOrder"],
+                                {"RowMajorOrder", "GIFTI_IND_ORD_ROW_MAJOR", ""},
+                                {"ColumnMajorOrder", "GIFTI_IND_ORD_COL_MAJOR"});
+  if (columns && array.size.size() == 2 && count > 0) {
+    array.values = transposed(array.values, array.size[0]);
   }
   return array;
 }

@@ -7,6 +7,11 @@
 #include <limits>
 
 namespace explica::io {
+namespace {
+
+constexpr double kFarthest = 1e7;  // mm; beyond it differences of coordinates lose their digits
+
+}  // namespace
 
 void MeshBuilder::addPolygon(const std::filesystem::path& path, const std::int64_t* corners,
                              std::size_t count) {
@@ -30,6 +35,10 @@ TriangleMesh MeshBuilder::finish(const std::filesystem::path& path,
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
     if (!std::isfinite(coordinates[i])) {
       refuse(path, "vertex " + std::to_string(i / 3) + " has a coordinate that is not finite");
+    }
+    if (std::abs(coordinates[i]) > kFarthest) {
+      refuse(path, "vertex " + std::to_string(i / 3) +
+                       " lies farther than 10 km from the origin; coordinates are in mm");
     }
     mesh.positions.data()[i] = coordinates[i];
   }

@@ -320,9 +320,13 @@ StoredVolume readNifti(ByteSource& source, PlacementChoice placement, Extent ext
   volume.valuesPerVoxel = valueCount / (sizes[0] * sizes[1] * sizes[2]);
   volume.type = typeOf(path, header.datatype);
   volume.origin.storedType = nameOf(volume.type);
-  if (header.slope != 0 && std::isfinite(header.slope)) {
+  if (header.slope != 0) {  // 0: the values are as stored
+    if (!std::isfinite(header.slope) || !std::isfinite(header.intercept)) {
+      refuse(path, "its header scales values by " + std::to_string(header.slope) + " and adds " +
+                       std::to_string(header.intercept) + "; correct scl_slope and scl_inter");
+    }
     volume.slope = header.slope;
-    if (std::isfinite(header.intercept)) volume.intercept = header.intercept;
+    volume.intercept = header.intercept;
   }
   const Eigen::Matrix4d affine = place(header, size, placement, volume.origin);
   volume.grid = gridOf(path, size, affine);
@@ -340,12 +344,13 @@ StoredVolume readNifti(ByteSource& source, PlacementChoice placement, Extent ext
     readValues(image, static_cast<std::uint64_t>(std::max<std::int64_t>(header.offset, 0)));
   } else {
     const auto read = static_cast<std::int64_t>(first.size());
-    if (header.offset != 0 && header.offset < read) {
+    const std::int64_t least = read + 4;  // four bytes say whether extensions follow
+    if (header.offset != 0 && header.offset < least) {
       failToRead(path, "its header places the data inside the header (vox_offset " +
                            std::to_string(header.offset) + ")");
     }
     // Some writers leave the offset at 0 and mean the usual place.
-    const std::int64_t start = header.offset == 0 ? read + 4 : header.offset;
+    const std::int64_t start = header.offset == 0 ? least : header.offset;
     readValues(source, static_cast<std::uint64_t>(start - read));
   }
   if (header.bigEndian) swapBytes(volume.values.data(), valueCount, width);

@@ -18,6 +18,9 @@
 #include <sys/resource.h>
 
 #include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
 #include <random>
 #include <string>
 
@@ -202,6 +205,82 @@ TEST_P(DamagedFiles, PiecesRepeatedOrLeftOut) {
     putContent(path_, bytes);
     ASSERT_EQ(wrongAnswer(path_), "") << "seed " << kSeed + 1 << ", trial " << trial;
   }
+}
+
+/// What a reader says of a file.
+template <class Read>
+std::string complaint(const fs::path& path, const Read& read) {
+  try {
+    read(path);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(ImplausibleHeaders, OfNiftiAreRefused) {
+  const TemporaryFolder folder;
+  const fs::path path = folder / "volume.nii";
+  io::writeVolume(path, smallVolume());
+  const std::string whole = contentOf(path);
+  const auto said = [&](std::size_t at, float value) {
+    std::string bytes = whole;
+    std::memcpy(bytes.data() + at, &value, sizeof value);
+    putContent(path, bytes);
+    return complaint(path, [](const fs::path& p) { static_cast<void>(io::readScalars(p)); });
+  };
+  const float infinite = std::numeric_limits<float>::infinity();
+  constexpr std::size_t kOffset = 108, kSlope = 112, kIntercept = 116, kOrigin = 268;
+  EXPECT_NE(said(kSlope, infinite).find("correct scl_slope and scl_inter"), std::string::npos);
+  EXPECT_NE(said(kSlope, std::nanf("")).find("correct scl_slope"), std::string::npos);
+  EXPECT_NE(said(kIntercept, infinite).find("correct scl_slope"), std::string::npos);
+  EXPECT_NE(said(kOffset, 351).find("inside the header (vox_offset 351)"), std::string::npos);
+  EXPECT_NE(said(kOffset, 1e15F), "accepted");
+  EXPECT_NE(said(kOrigin, infinite), "accepted");
+  EXPECT_EQ(said(kSlope, 2), "accepted");
+  EXPECT_EQ(said(kOffset, 352), "accepted");
+}
+
+TEST(ImplausibleHeaders, OfGiftiAreRefused) {
+  const TemporaryFolder folder;
+  const fs::path path = folder / "a.surf.gii";
+  io::writeSurface(path, geometry::makeIcosphere(0));
+  const std::string whole = contentOf(path);
+  const auto said = [&](const std::string& from, const std::string& to) {
+    std::string text = whole;
+    const auto at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    putContent(path, text.replace(at, from.size(), to));
+    return complaint(path, [](const fs::path& p) { static_cast<void>(io::readSurface(p)); });
+  };
+  EXPECT_NE(said("NIFTI_TYPE_FLOAT32", "NIFTI_TYPE_FLOAT33").find("unknown type"),
+            std::string::npos);
+  EXPECT_NE(said("LittleEndian", "MiddleEndian").find("unknown Endian 'MiddleEndian'"),
+            std::string::npos);
+  EXPECT_NE(said("RowMajorOrder", "ColumnMinorOrder").find("unknown ArrayIndexingOrder"),
+            std::string::npos);
+  EXPECT_EQ(said("LittleEndian", "GIFTI_ENDIAN_LITTLE"), "accepted");
+}
+
+TEST(ImplausibleCoordinates, AreRefused) {
+  const TemporaryFolder folder;
+  const fs::path path = folder / "a.off";
+  const auto said = [&](const std::string& number) {
+    putContent(path, "OFF\n3 1 0\n0 0 0\n" + number + " 0 0\n0 1 0\n3 0 1 2\n");
+    return complaint(path, [](const fs::path& p) { static_cast<void>(io::readSurface(p)); });
+  };
+  EXPECT_NE(said("1e18").find("vertex 1 lies farther than 10 km"), std::string::npos);
+  EXPECT_NE(said("-2e7").find("vertex 1 lies farther than 10 km"), std::string::npos);
+  EXPECT_EQ(said("9e6"), "accepted");
+}
+
+/// With EXPLICA_SEEDS set to a folder, writes one file of each format as fuzzers' first inputs.
+TEST_P(DamagedFiles, WholeOnesAreSeeds) {
+  const char* seeds = std::getenv("EXPLICA_SEEDS");
+  const fs::path place = seeds != nullptr ? fs::path(seeds) / GetParam() : folder_ / "seeds";
+  fs::create_directories(place);
+  fs::copy_file(path_, place / "seed", fs::copy_options::overwrite_existing);
+  EXPECT_EQ(contentOf(place / "seed"), whole_);
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, DamagedFiles,

@@ -4,9 +4,12 @@
 #include "Explica/Planar/PolygonMeasures.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Parallel.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <vector>
 
 namespace explica::planar {
 namespace {
@@ -41,29 +44,58 @@ double hiddenViewingArc(const Curve& curve, const Point2& centre, double radius)
   return energy;
 }
 
-double selfOcclusion(const Curve& curve) {
-  requireClosed(curve);
-  const auto outward = [&](int edge, int vertex) {  // distance of a vertex from an edge's line
-    const Point2 t = curve.point(curve.next(edge)) - curve.point(edge);
-    const Point2 d = curve.point(vertex) - curve.point(edge);
-    return (t.y() * d.x() - t.x() * d.y()) / t.norm();
-  };
-  const Eigen::VectorXd lengths = edgeLengths(curve);
-  double energy = 0;
-  for (int i = 0; i < curve.edgeCount(); ++i) {
-    for (int j = 0; j < curve.edgeCount(); ++j) {
-      if (i == j) continue;
-      const int i1 = curve.next(i);
-      const int j1 = curve.next(j);
-      // An end that lies on the other edge is on its line, whatever rounding says.
-      const double yStart = j == i1 ? 0 : outward(i, j);
-      const double yEnd = j1 == i ? 0 : outward(i, j1);
-      const double xStart = i == j1 ? 0 : outward(j, i);
-      const double xEnd = i1 == j ? 0 : outward(j, i1);
-      energy += lengths[i] * positiveShare(xStart, xEnd) * lengths[j] * positiveShare(yStart, yEnd);
+namespace {
+
+/// The lines of a closed polygon's edges.
+struct EdgeLines {
+  explicit EdgeLines(const Curve& c)
+      : curve(c), lengths(edgeLengths(c)), normals(c.edgeCount(), 2) {
+    for (int e = 0; e < c.edgeCount(); ++e) {
+      const Point2 t = (c.point(c.next(e)) - c.point(e)) / lengths[e];
+      normals.row(e) << t.y(), -t.x();
     }
   }
-  return energy;
+  /// Distance of a vertex from an edge's line, outward positive.
+  [[nodiscard]] double outward(int edge, int vertex) const {
+    return normals.row(edge).dot(curve.positions.row(vertex) - curve.positions.row(edge));
+  }
+
+  const Curve& curve;
+  Eigen::VectorXd lengths;
+  Positions2 normals;
+};
+
+/// What edge i and the edges after it hide of each other, counted once.
+double occlusionAfter(const EdgeLines& lines, int i) {
+  const Curve& curve = lines.curve;
+  const int i1 = curve.next(i);
+  double sum = 0;
+  double atEnd = 0;  // of edge i's line: the start of j is the end of the edge before
+  for (int j = i + 1; j < curve.edgeCount(); ++j) {
+    const int j1 = curve.next(j);
+    // An end that lies on the other edge is on its line, whatever rounding says.
+    const double yStart = j == i1 ? 0 : atEnd;
+    atEnd = lines.outward(i, j1);
+    const double yEnd = j1 == i ? 0 : atEnd;
+    if (yStart <= 0 && yEnd <= 0) continue;
+    const double xStart = i == j1 ? 0 : lines.outward(j, i);
+    const double xEnd = i1 == j ? 0 : lines.outward(j, i1);
+    if (xStart <= 0 && xEnd <= 0) continue;
+    sum += lines.lengths[j] * positiveShare(xStart, xEnd) * positiveShare(yStart, yEnd);
+  }
+  return lines.lengths[i] * sum;
+}
+
+}  // namespace
+
+double selfOcclusion(const Curve& curve) {
+  requireClosed(curve);
+  const EdgeLines lines(curve);
+  std::vector<double> rows(static_cast<std::size_t>(curve.edgeCount()));
+  parallelFor(rows.size(), 64,
+              [&](std::size_t i) { rows[i] = occlusionAfter(lines, static_cast<int>(i)); });
+  // The condition is the same for (i, j) and (j, i).
+  return 2 * std::accumulate(rows.begin(), rows.end(), 0.0);
 }
 
 }  // namespace explica::planar

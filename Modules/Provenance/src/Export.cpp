@@ -177,7 +177,7 @@ Json toProvJson(const std::vector<LocatedRecord>& records) {
     prov["activity"][activity] = {{"prov:startTime", record["execution"]["started"]},
                                   {"prov:endTime", record["execution"]["ended"]},
                                   {"prov:label", commandText(record)},
-                                  {"explica:options", record["options"].dump()},
+                                  {"explica:options", textOf(record["options"])},
                                   {"explica:termination", record["termination"]}};
     const std::string agent = "explica:" + softwareName(record);
     prov["agent"][agent] = {{"prov:type", "prov:SoftwareAgent"},
@@ -223,7 +223,7 @@ std::map<std::string, Json> toBidsProv(const std::vector<LocatedRecord>& records
     const Json& machine = execution["machine"];
     const Json facts = {{"OperatingSystem", machine.value("os", "")},
                         {"Libraries", execution["libraries"]}};
-    const std::string environment = base + "env-" + sha256Of(facts.dump()).substr(0, 12);
+    const std::string environment = base + "env-" + sha256Of(textOf(facts)).substr(0, 12);
     software.add({{"Id", program},
                   {"Label", "Explica"},
                   {"Version", record["software"]["version"]},
@@ -248,7 +248,7 @@ std::map<std::string, Json> toBidsProv(const std::vector<LocatedRecord>& records
     }
     activities.add({{"Id", id},
                     {"Label", commandText(record)},
-                    {"Command", commandText(record) + " --config " + record["options"].dump()},
+                    {"Command", commandText(record) + " --config " + textOf(record["options"])},
                     {"AssociatedWith", program},
                     {"Used", used},
                     {"StartedAtTime", execution["started"]},
@@ -293,7 +293,7 @@ Json toRoCrate(const std::vector<LocatedRecord>& records, const fs::path& root,
     actions.add({{"@id", "#" + accounts[n].activity},
                  {"@type", "CreateAction"},
                  {"name", commandText(record)},
-                 {"description", "options: " + record["options"].dump()},
+                 {"description", "options: " + textOf(record["options"])},
                  {"instrument", reference(program)},
                  {"object", objects},
                  {"result", results},

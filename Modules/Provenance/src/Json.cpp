@@ -7,9 +7,6 @@
 #include "Explica/Core/WholeFile.h"
 
 #include <cmath>
-#include <cstring>
-#include <fstream>
-#include <sstream>
 
 namespace explica::provenance {
 namespace {
@@ -46,7 +43,7 @@ Json elementToJson(const std::vector<T>& values) {
 
 std::string wordOf(const Json& value) {
   if (value.is_string()) return value.get<std::string>();
-  return value.dump();
+  return textOf(value);
 }
 
 /// [1, 2, 3] as "1,2,3".
@@ -93,7 +90,7 @@ Json valueOf(const Option& option) {
 void setValue(Option& option, const Json& value) {
   const bool isPoint = option.type() == "point2" || option.type() == "point3";
   const auto refuse = [&](const std::string& expected) {
-    throw UsageError(option.name + ": " + value.dump() + " is not " + expected);
+    throw UsageError(option.name + ": " + textOf(value) + " is not " + expected);
   };
   if (value.is_null()) {
     if (!option.isOptional()) refuse("a value for this option");
@@ -151,24 +148,8 @@ Json flattenKeys(const Json& object) {
   return flat;
 }
 
-Json readJson(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  std::stringstream text;
-  if (!file || !(text << file.rdbuf())) {
-    std::error_code ignored;
-    const bool folder = std::filesystem::is_directory(path, ignored);
-    throw IOError(path.string() + ": cannot be read (" +
-                  (folder ? "it is a folder" : std::strerror(errno)) + ")");
-  }
-  try {
-    return Json::parse(text.str(), nullptr, true, true);
-  } catch (const Json::parse_error& error) {
-    throw IOError(path.string() + ": not JSON: " + error.what());
-  }
-}
-
 void writeJson(const std::filesystem::path& path, const Json& value) {
-  writeTextFile(path, value.dump(2) + "\n");
+  writeTextFile(path, textOf(value, 2) + "\n");
 }
 
 }  // namespace explica::provenance

@@ -128,7 +128,7 @@ std::string Record::id() const {
   Json files = Json::array();
   for (const auto& input : inputs) files.push_back({input.role, input.digest.sha256});
   identity["inputs"] = files;
-  return sha256Of(identity.dump()).substr(0, 32);
+  return sha256Of(textOf(identity)).substr(0, 32);
 }
 
 Json toJson(const Record& r) {
@@ -216,12 +216,52 @@ Json toJson(const Record& r) {
 }
 
 Json readRecord(const std::filesystem::path& path) {
-  Json record = readJson(path);
+  const Json record = readJson(path);
+  const auto refuse = [&](const std::string& fault) {
+    throw IOError(path.string() + ": not a provenance record of Explica: " + fault);
+  };
   const auto faults = schemaFaults(record, recordSchema());
-  if (!faults.empty()) {
-    throw IOError(path.string() + ": not a provenance record of Explica: " + faults.back());
+  if (!faults.empty()) refuse(faults.back());
+  const Json& execution = record["execution"];
+  if (execution["inputs"].size() != record["inputs"].size()) {
+    refuse("its execution names " + std::to_string(execution["inputs"].size()) + " of " +
+           std::to_string(record["inputs"].size()) + " inputs");
+  }
+  for (const Json* outputs : {&record["outputs"], &execution["varying_outputs"]}) {
+    for (const Json& output : *outputs) {
+      const auto name = output["path"].get<std::string>();
+      if (!staysBelow(name)) refuse("output '" + printable(name) + "' is no name in its folder");
+    }
   }
   return record;
+}
+
+bool staysBelow(const std::filesystem::path& name) {
+  const std::string text = name.string();
+  const bool controls =
+      std::any_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; });
+  if (text.empty() || name.is_absolute() || controls) return false;
+  return std::none_of(name.begin(), name.end(), [](const auto& part) { return part == ".."; });
+}
+
+std::optional<std::filesystem::path> ownFile(const std::filesystem::path& folder,
+                                             const std::filesystem::path& name) {
+  if (!staysBelow(name)) return std::nullopt;
+  std::error_code fault;
+  const auto root = std::filesystem::weakly_canonical(folder.empty() ? "." : folder, fault);
+  if (fault) return std::nullopt;
+  const auto place = std::filesystem::weakly_canonical(root / name, fault);
+  if (fault || !staysBelow(place.lexically_relative(root))) return std::nullopt;
+  return folder / name;
+}
+
+std::string printable(std::string_view text) {
+  std::string safe(text);
+  for (char& c : safe) {
+    const auto byte = static_cast<unsigned char>(c);
+    if ((byte < 0x20 && c != '\n' && c != '\t') || byte == 0x7f) c = '?';
+  }
+  return safe;
 }
 
 std::optional<FoundRecord> findRecordOf(const std::filesystem::path& file, const Digest& digest) {

@@ -62,14 +62,34 @@ std::string_view recordSchema() {
       "properties": {
         "started": {"type": "string"}, "ended": {"type": "string"},
         "seconds": {"type": "number", "minimum": 0},
+        "cpu_seconds": {"type": "number", "minimum": 0},
+        "steps": {"type": "array", "items": {
+          "type": "object", "required": ["name", "seconds"],
+          "properties": {"name": {"type": "string"}, "seconds": {"type": "number"}}}},
         "peak_memory_bytes": {"$ref": "#/definitions/size"},
-        "threads": {"type": "object", "required": ["count", "because"]},
+        "threads": {"type": "object", "required": ["count", "because"],
+                    "properties": {"count": {"type": "integer"}, "because": {"type": "string"}}},
+        "build": {"type": "object", "additionalProperties": {"type": "string"}},
+        "libraries": {"type": "object"},
+        "machine": {"type": "object", "properties": {"os": {"type": "string"}}},
+        "private": {"type": "boolean"},
+        "directory": {"type": "string"},
+        "out": {"type": "string"},
         "arguments": {"type": "object"},
         "argv": {"type": "array", "items": {"type": "string"}},
         "inputs": {"type": "array", "items": {
-          "type": "object", "required": ["role", "given"]}},
+          "type": "object", "required": ["role", "given"],
+          "properties": {
+            "role": {"type": "string"}, "given": {"type": "string"},
+            "absolute": {"type": "string"},
+            "parent_record": {
+              "type": "object", "required": ["sha256"],
+              "properties": {"sha256": {"$ref": "#/definitions/hash"},
+                             "path": {"type": "string"}}}}}},
         "varying_outputs": {"type": "array", "items": {
-          "type": "object", "required": ["path", "size", "sha256"]}}
+          "type": "object", "required": ["path", "size", "sha256"],
+          "properties": {"path": {"type": "string"}, "size": {"$ref": "#/definitions/size"},
+                         "sha256": {"$ref": "#/definitions/hash"}}}}
       }
     }
   }

@@ -17,7 +17,7 @@ std::vector<std::string> schemaFaults(const Json& value, std::string_view schema
   valijson::SchemaParser parser;
   parser.populateSchema(valijson::adapters::NlohmannJsonAdapter(schemaJson), schema);
 
-  const auto plain = nlohmann::json::parse(value.dump());
+  const auto plain = nlohmann::json::parse(textOf(value));
   valijson::Validator validator;
   valijson::ValidationResults results;
   std::vector<std::string> faults;

@@ -18,7 +18,8 @@ namespace fs = std::filesystem;
 FileState stateOf(const fs::path& path, const Json& entry) {
   try {
     const Digest found = digestOf(path);
-    return found.sha256 == entry.at("sha256") && found.size == entry.at("size")
+    if (!entry.contains("sha256")) return FileState::Unhashed;
+    return found.sha256 == entry["sha256"] && entry.value("size", found.size) == found.size
                ? FileState::Same
                : FileState::Changed;
   } catch (const IOError&) {
@@ -78,7 +79,10 @@ void verifyInto(const fs::path& recordPath, bool deep, Verification& all,
     for (const Json& entry : varying) {
       if (entry["path"] == name) hashed = &entry;
     }
-    all.files.push_back({"output " + name, path, stateOf(path, *hashed), recordPath});
+    // What a link from elsewhere puts in its place is not this run's file.
+    const bool own = ownFile(folder, name).has_value();
+    all.files.push_back(
+        {"output " + name, path, own ? stateOf(path, *hashed) : FileState::Changed, recordPath});
   }
 }
 
@@ -130,6 +134,11 @@ bool Verification::allSame() const {
   });
 }
 
+fs::path recordAt(const fs::path& place) {
+  std::error_code ignored;
+  return fs::is_directory(place, ignored) ? place / kRecordName : place;
+}
+
 fs::path locateInput(const Json& record, std::size_t input, const fs::path& recordPath) {
   const Json& execution = record["execution"];
   const Json& paths = execution["inputs"].at(input);
@@ -158,8 +167,9 @@ Verification verifyRecord(const fs::path& record, bool deep) {
 std::string historyOf(const fs::path& file) {
   std::ostringstream text;
   std::set<fs::path> seen;
-  if (file.filename() == kRecordName) {
-    historyInto(file, 0, text, seen);
+  const fs::path record = recordAt(file);
+  if (record.filename() == kRecordName) {
+    historyInto(record, 0, text, seen);
     return text.str();
   }
   const Digest digest = digestOf(file);

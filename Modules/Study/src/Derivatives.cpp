@@ -235,7 +235,7 @@ void describeDerivatives(const fs::path& out, const DerivativeOrigin& origin,
   const std::string uri = origin.withNames ? "file://" + source.string() : "bids:raw:.";
   description["SourceDatasets"] = Json::array({Json{{"URL", uri}}});
   description["DatasetLinks"] = Json{{"raw", link}};
-  writeIfDifferent(out / "dataset_description.json", description.dump(2) + "\n");
+  writeIfDifferent(out / "dataset_description.json", provenance::textOf(description, 2) + "\n");
   writeIfDifferent(out / "descriptions.tsv",
                    "desc_id\tdescription\n"
                    "unfold\tpatch unfolded for a viewpoint\n"
@@ -295,7 +295,7 @@ std::vector<fs::path> exportRun(const fs::path& run, const fs::path& out,
     if (!activity.empty()) sidecar["GeneratedBy"] = "bids::prov#" + activity;
     // The sidecar last: a file that has one is whole.
     writeIfDifferent(out / name, content);
-    writeIfDifferent(out / sidecarOf(name), sidecar.dump(2) + "\n");
+    writeIfDifferent(out / sidecarOf(name), provenance::textOf(sidecar, 2) + "\n");
     written.emplace_back(name);
   }
   return written;

@@ -302,7 +302,7 @@ std::vector<std::string> subjectsOf(const StudyFile& file) {
   const Json& subjects = root["subjects"];
   if (subjects.is_array()) {
     for (const Json& label : subjects) {
-      add(withoutPrefix(label.is_string() ? label.get<std::string>() : label.dump()),
+      add(withoutPrefix(label.is_string() ? label.get<std::string>() : provenance::textOf(label)),
           std::to_string(labels.size()));
     }
   } else {

@@ -47,7 +47,7 @@ Json regionsOf(const Json& region, const char* description) {
 // ---- from a fault to a sentence ----
 
 std::string shown(const Json& value) {
-  const std::string dumped = value.dump();
+  const std::string dumped = provenance::textOf(value);
   return dumped.size() > 60 ? dumped.substr(0, 57) + "..." : dumped;
 }
 
@@ -260,7 +260,8 @@ Json studySchema(const Json& parameters, const Json& region) {
 }
 
 void checkStudyFile(const StudyFile& file, const Json& schema) {
-  const std::vector<std::string> faults = provenance::schemaFaults(file.values, schema.dump());
+  const std::vector<std::string> faults =
+      provenance::schemaFaults(file.values, provenance::textOf(schema));
   if (faults.empty()) return;
   // The innermost fault is told; those around it only follow from it.
   Place place;

@@ -55,9 +55,9 @@ std::string keyOf(const PlannedSubject& subject, const PathOptions& paths) {
       for (Json& one : value) one = contentOf(one.get<std::string>());
     }
     // Keys in the order of their names: how the study file orders them does not matter.
-    all["runs"][run.folder] = nlohmann::json::parse(values.dump());
+    all["runs"][run.folder] = nlohmann::json::parse(provenance::textOf(values));
   }
-  return provenance::sha256Of(all.dump()).substr(0, kKeyDigits);
+  return provenance::sha256Of(provenance::textOf(all)).substr(0, kKeyDigits);
 }
 
 fs::path stateFile(const fs::path& out, const PlannedSubject& subject, const std::string& key) {
@@ -83,7 +83,7 @@ void settle(const fs::path& out, const PlannedSubject& subject, const std::strin
   state["runs"] = Json::array();
   for (const PlannedRun& run : subject.runs) state["runs"].push_back(run.folder);
   fs::create_directories(out / "state");
-  writeTextFile(stateFile(out, subject, key), state.dump(2) + "\n");
+  writeTextFile(stateFile(out, subject, key), provenance::textOf(state, 2) + "\n");
 }
 
 }  // namespace explica::study

@@ -61,7 +61,7 @@ constexpr std::size_t kFewestRows = 8;  // below, a median and its spread say li
 
 std::string textOf(const Json& value) {
   if (value.is_null()) return "n/a";
-  std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+  std::string text = value.is_string() ? value.get<std::string>() : provenance::textOf(value);
   std::replace_if(
       text.begin(), text.end(), [](char c) { return c == '\t' || c == '\n' || c == '\r'; }, ' ');
   return text;

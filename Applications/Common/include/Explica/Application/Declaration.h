@@ -61,6 +61,7 @@ struct Parameter {
   std::optional<FileKind> file;  ///< the value is a path that is read (hashed and recorded)
   bool positional = false;
   bool required = false;
+  bool namesOutput = false;   ///< the value says where something is written, beside --out
   bool severalWords = false;  ///< a list option that takes all words up to the next option
   std::string defaultText;    ///< the default as a user would write it; empty if none
   std::string stepCommand;    ///< the command that include() took it over from; empty: its own
@@ -132,6 +133,9 @@ class Declaration {
   /// Says that a list option takes every word up to the next option: --participant-label 01 02.
   /// Only for commands whose positionals users put first.
   Declaration& severalWords(std::string_view name);
+  /// Says that an option declared before names a place where something is written, so that a
+  /// stranger's record cannot set it to any file of this machine.
+  Declaration& namesOutput(std::string_view name);
   /// Says that an option or positional declared before must be given.
   Declaration& require(std::string_view name);
   /// Leaves out options declared before, e.g. one of a struct that makes no sense here.

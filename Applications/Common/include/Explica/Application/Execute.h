@@ -20,6 +20,8 @@ struct CommonOptions {
   bool force = false;
   std::optional<std::string> config;
   std::optional<int> threads;
+  std::optional<double> maxTime;
+  std::optional<int> maxMemory;
   bool dryRun = false;
   bool quiet = false;
   bool verbose = false;
@@ -34,6 +36,10 @@ void describe(CommonOptions& o, Visitor&& visit) {
         o.force);
   visit(Field{"config", "", "JSON file with option values; the command line wins"}, o.config);
   visit(Field{"threads", "", "processors to use (default: all that this process may)"}, o.threads);
+  visit(Field{"max-time", "s", "ask for an end after this time, with what was reached", kAboveZero,
+              1e9},
+        o.maxTime);
+  visit(Field{"max-memory", "MB", "memory at most", 1, 1 << 30}, o.maxMemory);
   visit(Field{"dry-run", "", "resolve and check everything, print the options, write nothing"},
         o.dryRun);
   visit(Field{"quiet", "", "say nothing but warnings and errors"}, o.quiet);

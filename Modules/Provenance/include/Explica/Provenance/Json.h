@@ -2,17 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "Explica/Provenance/Document.h"
 #include "Explica/Provenance/Options.h"
-
-#include <nlohmann/json.hpp>
 
 #include <filesystem>
 #include <string_view>
 
 namespace explica::provenance {
-
-/// JSON whose keys keep their order, so that records read well and equal records are equal bytes.
-using Json = nlohmann::ordered_json;
 
 /// An option's value: unset is null, points are arrays, infinities are "inf" and "-inf".
 [[nodiscard]] Json valueOf(const Option& option);
@@ -42,10 +38,6 @@ void optionsFromJson(const Json& object, Options& options) {
 
 /// {"unfold": {"radius": 30}} becomes {"unfold.radius": 30}.
 [[nodiscard]] Json flattenKeys(const Json& object);
-
-/// Reads a JSON file; comments are allowed.
-/// @throws IOError  names the file and, for a syntax error, the place
-[[nodiscard]] Json readJson(const std::filesystem::path& path);
 
 /// Writes a JSON file, whole or not at all, indented, ending in a newline; NaN becomes null.
 /// @throws EnvironmentError  the file cannot be written

@@ -90,9 +90,21 @@ struct Record {
 /// The JSON schema that every record obeys.
 [[nodiscard]] std::string_view recordSchema();
 
-/// Reads a record and checks it against the schema.
+/// Reads a record and checks it against the schema.  A record may come from a stranger: each output
+/// must have a name within the record's folder, without control characters.
 /// @throws IOError  absent, not JSON, or not a record: names the file and the first fault
 [[nodiscard]] Json readRecord(const std::filesystem::path& path);
+
+/// True for a relative path without ".." and control characters: it stays below where it starts.
+[[nodiscard]] bool staysBelow(const std::filesystem::path& name);
+
+/// Where a record's output lies, unless a link on the way leads out of the record's folder.
+[[nodiscard]] std::optional<std::filesystem::path> ownFile(const std::filesystem::path& folder,
+                                                           const std::filesystem::path& name);
+
+/// A text for a terminal: control characters, by which a stranger could write over what was said
+/// before, become '?'.
+[[nodiscard]] std::string printable(std::string_view text);
 
 /// Looks beside `file`, and in the folders above within three steps, for a record that lists it;
 /// for a copy by BIDS's name, for a record below the study's `runs` that lists its content.

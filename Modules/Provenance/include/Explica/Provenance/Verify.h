@@ -27,6 +27,9 @@ struct Verification {
   [[nodiscard]] bool allSame() const;
 };
 
+/// The record that a user names: the file itself, or the one in that folder.
+[[nodiscard]] std::filesystem::path recordAt(const std::filesystem::path& place);
+
 /// Where an input of a record is now: its absolute path, else as given from the working directory
 /// of then, else relative to the record, else beside the record.
 [[nodiscard]] std::filesystem::path locateInput(const Json& record, std::size_t input,

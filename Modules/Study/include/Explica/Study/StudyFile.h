@@ -5,18 +5,13 @@
 #include "Explica/Provenance/Json.h"
 
 #include <filesystem>
-#include <map>
 #include <string>
 #include <vector>
 
 namespace explica::study {
 
 /// A study file as it stands on the disk, in YAML or JSON.
-struct StudyFile {
-  std::filesystem::path path;
-  provenance::Json values;           ///< YAML's plain words typed as in JSON; "01" stays a text
-  std::map<std::string, int> lines;  ///< line of a place ("/subjects/01/input"), from 1
-};
+using StudyFile = provenance::Document;
 
 /// @throws IOError       it cannot be read
 /// @throws InvalidInput  a fault of syntax, or a key that is given twice: file, line and remedy

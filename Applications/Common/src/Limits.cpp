@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Limits.h"
+
+#include "Explica/Application/Execute.h"
+#include "Explica/Core/Errors.h"
+#include "Leavings.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <string>
+
+namespace explica::app {
+namespace {
+
+constexpr double kGraceShare = 0.25;  // of the limit, for work to come to a consistent state
+constexpr double kGraceSeconds = 10;
+
+std::chrono::steady_clock::duration duration(double seconds) {
+  return std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+      std::chrono::duration<double>(seconds));
+}
+
+}  // namespace
+
+TimeLimit::TimeLimit(double seconds) : end_(Clock::now() + duration(seconds)) {
+  const auto last = end_ + duration(kGraceShare * seconds + kGraceSeconds);
+  guard_ = std::thread([this, last] {
+    std::unique_lock<std::mutex> lock(mutex_);
+    if (wake_.wait_until(lock, last, [this] { return over_; })) return;
+    removeLeavings();
+    const std::string said =
+        "error: explica: did not come to a stop after --max-time; ended without results\n";
+    static_cast<void>(!write(STDERR_FILENO, said.data(), said.size()));
+    _exit(kEnvironment);
+  });
+}
+
+TimeLimit::~TimeLimit() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    over_ = true;
+  }
+  wake_.notify_all();
+  guard_.join();
+}
+
+bool TimeLimit::passed() const {
+  return Clock::now() >= end_;
+}
+
+void limitMemory(int megabytes) {
+  rlimit limit{};
+  getrlimit(RLIMIT_DATA, &limit);
+  limit.rlim_cur = static_cast<rlim_t>(megabytes) << 20;
+  if (limit.rlim_max != RLIM_INFINITY && limit.rlim_cur > limit.rlim_max) return;
+  if (setrlimit(RLIMIT_DATA, &limit) != 0) {
+    throw EnvironmentError(std::string("--max-memory cannot be set (") + std::strerror(errno) +
+                           ")");
+  }
+}
+
+}  // namespace explica::app

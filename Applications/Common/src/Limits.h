@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
+namespace explica::app {
+
+/// The limit of --max-time.  Once it has passed, work is asked to stop.  What has not stopped when
+/// a quarter of the time and ten seconds more are over, ends the process: exit code 4, no results,
+/// no stages or locks left.
+class TimeLimit {
+ public:
+  explicit TimeLimit(double seconds);
+  ~TimeLimit();
+  TimeLimit(const TimeLimit&) = delete;
+  TimeLimit& operator=(const TimeLimit&) = delete;
+
+  [[nodiscard]] bool passed() const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  Clock::time_point end_;
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  bool over_ = false;
+  std::thread guard_;
+};
+
+/// From now on this process gets no more than so many megabytes of its own.
+/// @throws EnvironmentError  the system refuses the limit
+void limitMemory(int megabytes);
+
+}  // namespace explica::app

@@ -1,0 +1,193 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Provenance/Document.h"
+
+#include "Explica/Core/Errors.h"
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <unordered_set>
+
+namespace explica::provenance {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Where the first byte stands that is not UTF-8, or is 0; npos if all is well.
+std::size_t firstFault(std::string_view text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const auto lead = static_cast<unsigned char>(text[at]);
+    if (lead == 0) return at;
+    const int more = lead < 0x80   ? 0
+                     : lead < 0xc2 ? -1
+                     : lead < 0xe0 ? 1
+                     : lead < 0xf0 ? 2
+                     : lead < 0xf5 ? 3
+                                   : -1;
+    if (more < 0 || at + static_cast<std::size_t>(more) >= text.size()) return at;
+    unsigned long code = more == 0 ? lead : lead & (0x3fU >> more);
+    for (int i = 1; i <= more; ++i) {
+      const auto next = static_cast<unsigned char>(text[at + static_cast<std::size_t>(i)]);
+      if ((next & 0xc0U) != 0x80U) return at;
+      code = code << 6 | (next & 0x3fU);
+    }
+    const bool tooShort = (more == 2 && code < 0x800) || (more == 3 && code < 0x10000);
+    if (tooShort || code > 0x10ffff || (code >= 0xd800 && code <= 0xdfff)) return at;
+    at += static_cast<std::size_t>(more) + 1;
+  }
+  return std::string_view::npos;
+}
+
+int lineAt(std::string_view text, std::size_t place) {
+  return 1 + static_cast<int>(
+                 std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(place), '\n'));
+}
+
+/// A word that YAML leaves untyped, as JSON: null, true, 12, 1.5; all else is text.  A number with
+/// a leading zero is a label ("01").  Nothing for a number that no double holds.
+std::optional<Json> typedWord(const std::string& word) {
+  if (word.empty() || word == "~" || word == "null") return Json(nullptr);
+  if (word == "true") return Json(true);
+  if (word == "false") return Json(false);
+  const std::size_t first = word[0] == '-' || word[0] == '+' ? 1 : 0;
+  const auto digit = [&](std::size_t at) {
+    return at < word.size() && std::isdigit(static_cast<unsigned char>(word[at]));
+  };
+  if (!digit(first) && !(first < word.size() && word[first] == '.' && digit(first + 1))) {
+    return Json(word);
+  }
+  if (word[first] == '0' && digit(first + 1)) return Json(word);
+  const char* const begin = word.data() + (word[0] == '+' ? 1 : 0);
+  const char* const end = word.data() + word.size();
+  long long whole = 0;
+  auto read = std::from_chars(begin, end, whole);
+  if (read.ec == std::errc() && read.ptr == end) return Json(whole);
+  double real = 0;
+  read = std::from_chars(begin, end, real);
+  if (read.ptr != end) return Json(word);
+  if (read.ec == std::errc::result_out_of_range) return std::nullopt;
+  return Json(real);
+}
+
+/// Turns YAML into JSON and keeps the line of each place.
+class YamlReader {
+ public:
+  YamlReader(Document& document, const DocumentLimits& limits)
+      : document_(document), limits_(limits) {}
+
+  Json read(const YAML::Node& node, const std::string& place, int depth = 0) {
+    const int line = node.Mark().line + 1;
+    if (!document_.lines.count(place) && line > 0) document_.lines[place] = line;
+    if (depth > limits_.depth) {
+      refuse(line, "is nested too deeply; an alias (*name) may hold itself");
+    }
+    if (++count_ > limits_.values) {
+      refuse(line, "holds more than " + std::to_string(limits_.values) +
+                       " values, where each use of an alias (*name) counts all that it holds");
+    }
+    if (node.IsSequence()) return readList(node, place, depth);
+    if (node.IsMap()) return readMap(node, place, depth);
+    if (!node.IsScalar()) return nullptr;
+    if (node.Tag() != "?") return node.Scalar();
+    const auto typed = typedWord(node.Scalar());
+    if (!typed) refuse(line, node.Scalar() + " is larger than any number of this machine");
+    return *typed;
+  }
+
+ private:
+  Json readList(const YAML::Node& node, const std::string& place, int depth) {
+    Json array = Json::array();
+    for (const YAML::Node& element : node) {
+      array.push_back(read(element, place + "/" + std::to_string(array.size()), depth + 1));
+    }
+    return array;
+  }
+  Json readMap(const YAML::Node& node, const std::string& place, int depth) {
+    Json object = Json::object();
+    auto& entries = object.get_ref<Json::object_t&>();
+    std::unordered_set<std::string> keys;
+    for (const auto& entry : node) {
+      const int at = entry.first.Mark().line + 1;
+      if (!entry.first.IsScalar()) refuse(at, "has a key that is not a word");
+      const std::string& key = entry.first.Scalar();
+      const std::string below = place + "/" + key;
+      if (!keys.insert(key).second) {
+        refuse(at, "'" + key + "' is given twice, first in line " +
+                       std::to_string(document_.lines[below]) + "; remove one");
+      }
+      document_.lines[below] = at;
+      // Appended as it is: to look a key up among others takes time in proportion to their number.
+      entries.emplace_back(key, read(entry.second, below, depth + 1));
+    }
+    return object;
+  }
+  [[noreturn]] void refuse(int line, const std::string& what) const {
+    throw InvalidInput(document_.path.string() + ", line " + std::to_string(line) + ": " + what);
+  }
+
+  Document& document_;
+  DocumentLimits limits_;
+  std::size_t count_ = 0;
+};
+
+}  // namespace
+
+std::string readText(const fs::path& path, const DocumentLimits& limits) {
+  const auto refuse = [&](const std::string& what) { throw IOError(path.string() + what); };
+  std::error_code fault;
+  const auto status = fs::status(path, fault);
+  if (fs::is_directory(status)) refuse(": cannot be read (it is a folder)");
+  if (fs::exists(status) && !fs::is_regular_file(status)) refuse(": is not a regular file");
+  std::ifstream file(path, std::ios::binary);
+  if (!file) refuse(std::string(": cannot be read (") + std::strerror(errno) + ")");
+  const auto size = fs::file_size(path, fault);
+  if (fault || size > limits.bytes) {
+    refuse(": has " + std::to_string(size) + " bytes; a text of this kind has " +
+           std::to_string(limits.bytes) + " at most");
+  }
+  std::string text(size, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(size));
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  if (const std::size_t place = firstFault(text); place != std::string::npos) {
+    refuse(", line " + std::to_string(lineAt(text, place)) +
+           ": is not text in UTF-8; save it so in your editor");
+  }
+  return text;
+}
+
+Json readJson(const fs::path& path, const DocumentLimits& limits) {
+  return parseJson(readText(path, limits), path.string(), limits);
+}
+
+Document readDocument(const fs::path& path, const DocumentLimits& limits) {
+  Document document;
+  document.path = path;
+  const std::string text = readText(path, limits);
+  if (path.extension() == ".json") {
+    document.values = parseJson(text, path.string(), limits, &document.lines);
+    return document;
+  }
+  try {
+    const std::vector<YAML::Node> all = YAML::LoadAll(text);
+    if (all.size() > 1) {
+      throw InvalidInput(path.string() + ", line " + std::to_string(all[1].Mark().line + 1) +
+                         ": a second document begins here (after ---); one is expected");
+    }
+    if (!all.empty()) document.values = YamlReader(document, limits).read(all.front(), "");
+  } catch (const YAML::Exception& fault) {
+    throw InvalidInput(path.string() + ", line " + std::to_string(fault.mark.line + 1) +
+                       ": is not YAML (" + fault.msg + "); mend the line or the one before");
+  }
+  return document;
+}
+
+}  // namespace explica::provenance

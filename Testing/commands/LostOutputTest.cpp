@@ -1,0 +1,118 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+// Output that does not arrive is an error, limits end a command, and whatever ends it leaves
+// neither stage nor lock.
+
+#include "Explica/Testing/Command.h"
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+
+namespace explica::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+class LostOutput : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto made = explica({"phantom", "shell", "--size", "8", "--out", folder_ / "a"});
+    ASSERT_EQ(made.exitCode, 0) << made;
+  }
+
+  /// Runs lines of bash in the folder; $EXPLICA is the program.
+  [[nodiscard]] CommandResult bash(const std::string& lines) const {
+    CommandSetting setting;
+    setting.directory = folder_.path();
+    setting.environment["EXPLICA"] = EXPLICA_EXECUTABLE;
+    return runProgram({"bash", "-c", lines}, setting);
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(LostOutput, OfStandardOutputIsExitCodeFour) {
+  writeText(folder_ / "study.json",
+            R"({"hemispheres": ["L"], "input": "a/labels.nii.gz", "subjects": ["01"]})");
+  for (const std::string words :
+       {"verify a", "verify a --prov-json", "history a", "replay a --out b", "study schema",
+        "study list study.json", "--help", "thickness --help-all", "--version",
+        "phantom shell --dry-run --out c"}) {
+    const auto result = bash("\"$EXPLICA\" " + words + " > /dev/full");
+    EXPECT_EQ(result.exitCode, 4) << words << "\n" << result;
+    EXPECT_NE(result.err.find("what was printed is lost"), std::string::npos) << result;
+  }
+}
+
+TEST_F(LostOutput, ToAPipeThatNobodyReadsIsExitCodeFour) {
+  // More text than a pipe holds: the program writes until the reader is gone.
+  const auto result = bash("{ \"$EXPLICA\" --describe; echo $? > code; } | true; cat code");
+  EXPECT_EQ(result.out, "4\n") << result;
+}
+
+TEST_F(LostOutput, OfTheLogIsToldBeforeAnyWork) {
+  const auto before = folder_.entries();
+  const auto result = bash("\"$EXPLICA\" phantom shell --size 8 --log /dev/full --out b");
+  EXPECT_EQ(result.exitCode, 4) << result;
+  EXPECT_NE(result.err.find("/dev/full: the log cannot be written"), std::string::npos) << result;
+  EXPECT_EQ(folder_.entries(), before);
+}
+
+TEST_F(LostOutput, OfMessagesIsExitCodeFour) {
+  EXPECT_EQ(bash("\"$EXPLICA\" phantom shell --size 8 --out b 2> /dev/full").exitCode, 4);
+  // Closed from the start is as wished.
+  EXPECT_EQ(bash("\"$EXPLICA\" phantom shell --size 8 --out c 2>&-").exitCode, 0);
+}
+
+class Ending : public ::testing::TestWithParam<std::pair<const char*, int>> {};
+
+TEST_P(Ending, ByASecondSignalLeavesNothing) {
+  const TemporaryFolder folder;
+  CommandSetting setting;
+  setting.directory = folder.path();
+  setting.environment["EXPLICA"] = EXPLICA_EXECUTABLE;
+  const std::string name = GetParam().first;
+  // Once the stage is there, one signal asks for an end and another one forces it.
+  const auto result = runProgram(
+      {"bash", "-c",
+       "env --default-signal \"$EXPLICA\" phantom shell --size 240 --out big & p=$!\n"
+       "while [ ! -e .big.explica-stage ] && kill -0 $p 2> /dev/null; do sleep 0.01; done\n"
+       "kill -s USR1 $p; kill -s " +
+           name + " $p; wait $p; echo $?"},
+      setting);
+  // Which of two signals at a time comes second is the system's choice.
+  const std::string ended = std::to_string(128 + GetParam().second) + "\n";
+  EXPECT_TRUE(result.out == ended || result.out == std::to_string(128 + SIGUSR1) + "\n") << result;
+  EXPECT_TRUE(folder.entries().empty()) << folder.entries().front();
+}
+
+INSTANTIATE_TEST_SUITE_P(Signals, Ending,
+                         ::testing::Values(std::pair{"HUP", SIGHUP}, std::pair{"QUIT", SIGQUIT},
+                                           std::pair{"TERM", SIGTERM}, std::pair{"INT", SIGINT}),
+                         [](const auto& row) { return std::string(row.param.first); });
+
+TEST(Limits, TimeEndsACommandWithWhatWasReached) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(explica({"phantom", "cortex", "--size", "64", "--out", folder / "c"}).exitCode, 0);
+  const auto result =
+      explica({"run", folder / "c/labels.nii.gz", "--max-time", "0.001", "--out", folder / "r"});
+  EXPECT_EQ(result.exitCode, 3) << result;
+  EXPECT_EQ(readJson(folder / "r/summary.json")["termination"], "max-time");
+}
+
+TEST(Limits, MemoryEndsACommandWithASentenceAndNothingElse) {
+  const TemporaryFolder folder;
+  const auto result = explica(
+      {"phantom", "shell", "--size", "300", "--max-memory", "300", "--out", folder / "big"});
+  EXPECT_EQ(result.exitCode, 4) << result;
+  EXPECT_NE(result.err.find("out of memory"), std::string::npos) << result;
+  EXPECT_TRUE(folder.entries().empty());
+  EXPECT_EQ(
+      explica({"phantom", "shell", "--size", "8", "--max-memory", "300", "--out", folder / "small"})
+          .exitCode,
+      0);
+}
+
+}  // namespace
+}  // namespace explica::testing
