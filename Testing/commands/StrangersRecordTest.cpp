@@ -244,5 +244,15 @@ TEST_F(StrangersRecord, WithWrongTypesAnywhereGetsASentence) {
   }
 }
 
+TEST_F(StrangersRecord, WithAWrongSummaryBesideItGetsASentence) {
+  for (const std::string text : {"[]", "7", "{\"plausible\": 3}", "{\"flags\": [7]}",
+                                 "{\"warnings\": {}}", "{\"frame_visibilities\": [\"x\"]}"}) {
+    writeText(folder_ / "a/summary.json", text);
+    const auto result = explica({"report", folder_ / "a"});
+    EXPECT_LE(result.exitCode, 3) << text << result;
+    EXPECT_EQ(result.err.find("internal error"), std::string::npos) << text << result;
+  }
+}
+
 }  // namespace
 }  // namespace explica::testing

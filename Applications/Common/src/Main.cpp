@@ -200,6 +200,11 @@ int runMain(int argc, char** argv) {
     return fail(kBadInput, error.what());
   } catch (const EnvironmentError& error) {
     return fail(kEnvironment, error.what());
+  } catch (const Json::exception& error) {
+    // Values of the wrong type in a summary, a sidecar or the like, which no schema describes.
+    return fail(kBadInput,
+                std::string("a JSON file of the input holds what is not expected there (") +
+                    error.what() + ")");
   } catch (const std::bad_alloc&) {
     return fail(kEnvironment, "out of memory (see --max-memory, ulimit -d, or the machine's)");
   } catch (const std::system_error& error) {

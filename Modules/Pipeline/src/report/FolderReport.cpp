@@ -23,7 +23,7 @@ report::ReportStep reportStep(const StepFolder& step) {
   if (execution.contains("argv")) {
     for (const Json& word : execution["argv"])
       out.commandLine += (out.commandLine.empty() ? "" : " ") +
-                         (word.is_string() ? word.get<std::string>() : word.dump());
+                         (word.is_string() ? word.get<std::string>() : provenance::textOf(word));
   }
   if (step.record.contains("software")) {
     const Json& software = step.record["software"];

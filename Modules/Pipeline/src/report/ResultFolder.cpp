@@ -141,7 +141,7 @@ std::string readable(const Json& value) {
   if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
   if (value.is_number()) return readable(value.get<double>());
   if (value.is_null()) return "not set";
-  if (!value.is_array()) return value.dump();
+  if (!value.is_array()) return provenance::textOf(value);
   std::string list;
   for (const Json& entry : value) list += (list.empty() ? "" : ", ") + readable(entry);
   return list;
