@@ -431,7 +431,8 @@ class StudySchema(unittest.TestCase):
         schema = json.loads((FOLDER / "study.schema.json").read_text())
         known = set(schema["properties"]["parameters"]["properties"])
         run = next(c for c in declarations() if c["command"] == "run")
-        common = {"out", "force", "config", "threads", "dry-run", "quiet", "verbose", "log", "private"}
+        common = {"out", "force", "config", "threads", "dry-run", "quiet", "verbose", "log", "private",
+                  "max-time", "max-memory"}
         options = {p["name"] for p in run["parameters"] if not p["positional"]} - common
         self.assertEqual(options - known, {"atlas", "hemisphere", "resume"})
 
