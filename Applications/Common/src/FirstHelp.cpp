@@ -33,6 +33,12 @@ explica bids data derived group)"},
         "frames"},
        R"(explica phantom shell --size 32 --out shell
 explica embed shell/labels.nii.gz --label 1 --order 8 --out fit)"},
+      {"heart",
+       "label volumes of the left ventricle: 4-D, or one a frame",
+       "segments, volumes and masses over time, thickness and thickening, a bullseye",
+       {"preset", "cavity", "wall", "rv", "frames", "rv-insertion"},
+       R"(explica phantom ventricle --size 64 --spacing 2 --slice 8 --frames 2 --out beat
+explica heart beat/frame-0000.nii.gz beat/frame-0001.nii.gz --out heart)"},
       {"history",
        "any result, or a record",
        "the commands and files that it came from, back to the first",
