@@ -69,6 +69,12 @@ void declare(Declaration& d, Settings& s) {
                     "what to do where the banks of a sulcus touch (default: recover; ignore with "
                     "--per-slice, --open-ends or --aha, which are for hearts)"},
               s.measurement.sulci)
+      .option("Boundary",
+              Field{"image-edge", "",
+                    "what tissue does at the edge of the image: runs on, so that voxels beside it "
+                    "are left out, or ends there (default: open; insulated with --per-slice, "
+                    "--open-ends or --aha)"},
+              s.measurement.imageEdge)
       .options("Boundary", s.measurement.sulcus)
       .options("Correspondences", s.measurement.correspondence)
       .options("Layers", s.measurement.layers)
@@ -168,6 +174,12 @@ void report(Context& context, Judge& judge, const correspondence::Measurement& m
   }
   judge.flag("without-thickness",
              static_cast<double>(found.missing) / static_cast<double>(m.annulus.count()));
+  context.result("voxels_cut_by_image", m.cutVoxels);
+  if (m.cutVoxels > 0) {
+    context.warn(std::to_string(m.cutVoxels) +
+                 " voxels lie where tissue runs out of the image: their thickness is not known "
+                 "(--image-edge insulated measures them as if it ended there)");
+  }
   const correspondence::ThicknessSummary t = correspondence::summaryOf(found);
   context.result("thickness_mean_columns", t.meanOfColumns);
   context.result("thickness_mean", t.mean);

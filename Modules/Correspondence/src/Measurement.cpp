@@ -23,6 +23,10 @@ Measurement measure(harmonic::Annulus annulus, const MeasurementOptions& options
   m.interpolant = harmonic::solveInterpolant(m.annulus, options.interpolant, monitor);
   begin("correspondence");
   m.correspondence = findCorrespondences(m.annulus, m.interpolant, options.correspondence, monitor);
+  if (options.imageEdgeMode() == ImageEdge::Open) {
+    const bool flat = m.annulus.planar || m.annulus.grid.dimension() == 2;
+    m.cutVoxels = leaveOutCut(m.annulus, {true, true, !flat}, m.correspondence);
+  }
   begin("layers");
   m.depth = depthOf(m.correspondence);
   m.layers = layersOf(options.layers.layerKind == LayerKind::Depth

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Correspondence/Correspondence.h"
+#include "Explica/Correspondence/Measurement.h"
 
 #include "Explica/Core/Parallel.h"
 #include "Explica/Correspondence/Layers.h"
@@ -90,6 +91,53 @@ TEST(ThicknessSummary, AMeanOverColumnsCountsEachColumnOnce) {
   const ThicknessSummary summary = summaryOf(found);
   EXPECT_NEAR(summary.meanOfColumns, 4, 1e-12);
   EXPECT_NEAR(summary.mean, 5, 1e-12);
+}
+
+/// A shell of 15 and 20 voxels whose centre is off the grid's middle, so that the image's faces cut
+/// it obliquely.
+Volume<Label> cutShell(const Vector& spacing) {
+  Grid grid;
+  grid.size = {48, 44, 30};
+  grid.spacing = spacing;
+  Volume<Label> labels(grid);
+  for (std::size_t v = 0; v < labels.size(); ++v) {
+    const auto at = grid.subscripts(v);
+    const double r = (Vector(at[0], at[1], at[2]).cwiseProduct(spacing) - Vector(23, 9, 7)).norm();
+    labels[v] = r < 15 ? 1 : r < 20 ? 2 : 0;
+  }
+  return labels;
+}
+
+TEST(ImageEdge, TissueThatRunsOutOfTheImageIsLeftOutWhereItsThicknessIsNotKnown) {
+  harmonic::LabelRoles roles;
+  roles.inner = {1};
+  roles.tissue = {2};
+  for (const Vector& spacing : {Vector(1, 1, 1), Vector(1, 1, 0.7)}) {
+    const auto labels = cutShell(spacing);
+    MeasurementOptions options;
+    const Measurement open = measure(harmonic::annulusFromLabels(labels, roles), options);
+    options.imageEdge = ImageEdge::Insulated;
+    const Measurement insulated = measure(harmonic::annulusFromLabels(labels, roles), options);
+    double sum = 0, worstKnown = 0, worstCut = 0;
+    std::size_t known = 0;
+    for (std::size_t n = 0; n < open.annulus.count(); ++n) {
+      const double t = open.correspondence.thickness(n);
+      if (std::isnan(t)) {
+        worstCut = std::max(worstCut, std::abs(insulated.correspondence.thickness(n) - 5));
+        continue;
+      }
+      sum += t;
+      worstKnown = std::max(worstKnown, std::abs(t - 5));
+      ++known;
+    }
+    EXPECT_EQ(known + open.cutVoxels, open.annulus.count());
+    EXPECT_GT(known, open.annulus.count() / 5);
+    EXPECT_NEAR(sum / static_cast<double>(known), 5, 0.05);
+    // What was left out is what was wrong.
+    EXPECT_LT(worstKnown, 0.5);
+    EXPECT_GT(worstCut, 2 * worstKnown);
+    EXPECT_EQ(insulated.cutVoxels, 0U);
+  }
 }
 
 }  // namespace

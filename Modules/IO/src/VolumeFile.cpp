@@ -17,6 +17,7 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <sstream>
 #include <type_traits>
 
 namespace explica::io {
@@ -461,15 +462,43 @@ const char* nameOf(StoredType type) {
   return "unknown";
 }
 
+namespace {
+
+/// Refuses sizes and places that no scanner or microscope gives: a header in other units, or torn.
+void requireUsualPlace(const std::filesystem::path& path, const Grid& grid) {
+  constexpr double kLeastSpacing = 1e-6, kMostSpacing = 1e6, kMostOffset = 1e7;  // mm
+  const auto number = [](double value) {
+    std::ostringstream text;
+    text << value;
+    return text.str();
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    const double spacing = grid.spacing[axis];
+    if (spacing < kLeastSpacing || spacing > kMostSpacing) {
+      refuse(path, "its header gives a voxel size of " + number(spacing) +
+                       " mm; sizes from 1e-6 to 1e6 mm are read");
+    }
+    if (std::abs(grid.origin[axis]) > kMostOffset) {
+      refuse(path, "its header places the first voxel " + number(std::abs(grid.origin[axis])) +
+                       " mm from the origin; up to 1e7 mm are read");
+    }
+  }
+}
+
+}  // namespace
+
 Grid gridOf(const std::filesystem::path& path, const std::array<int, 3>& size,
             const Eigen::Matrix4d& affine) {
   if (!affine.allFinite())
     refuse(path, "its header places the voxels at positions that are not finite");
+  Grid grid;
   try {
-    return gridFromAffine(size, affine);
+    grid = gridFromAffine(size, affine);
   } catch (const InvalidInput& error) {
     refuse(path, error.what());
   }
+  requireUsualPlace(path, grid);
+  return grid;
 }
 
 std::int64_t checkedProduct(const std::filesystem::path& path,

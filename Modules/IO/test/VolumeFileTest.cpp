@@ -52,6 +52,30 @@ Volume<float> numbered(const Grid& grid) {
   return volume;
 }
 
+TEST(VolumeFile, APlaceThatNoScannerGivesIsRefused) {
+  TemporaryFolder folder;
+  struct Case {
+    double spacing, offset;
+    const char* words;  ///< of the sentence; empty: read
+  };
+  for (const Case& c : {Case{2e-6, 9e6, ""}, Case{9e5, 0, ""}, Case{5e-7, 0, "voxel size"},
+                        Case{2e6, 0, "voxel size"}, Case{1, 2e7, "from the origin"}}) {
+    Volume<float> volume = numbered(obliqueGrid());
+    volume.grid.spacing.setConstant(c.spacing);
+    volume.grid.origin = Point(0, -c.offset, 0);
+    const fs::path path = folder / "far.nii.gz";
+    io::writeVolume(path, volume);
+    std::string said;
+    try {
+      static_cast<void>(io::readScalars(path));
+    } catch (const Error& error) {
+      said = error.what();
+    }
+    EXPECT_EQ(said.empty(), c.words[0] == 0) << said;
+    EXPECT_NE(said.find(c.words), std::string::npos) << said;
+  }
+}
+
 // One contract for every format.
 class VolumeContract : public testing::TestWithParam<std::tuple<std::string, bool>> {
  protected:

@@ -4,6 +4,7 @@
 
 #include "Explica/Correspondence/AnatomicalGrid.h"
 #include "Explica/Correspondence/Correspondence.h"
+#include "Explica/Correspondence/ImageEdge.h"
 #include "Explica/Correspondence/Layers.h"
 #include "Explica/Correspondence/Sulci.h"
 #include "Explica/Harmonic/Interpolant.h"
@@ -32,9 +33,15 @@ struct MeasurementOptions {
   std::optional<int> grid;  ///< cells across of an anatomical grid; unset: none
   bool heart = false;       ///< the tissue is a ventricle's wall
 
+  std::optional<ImageEdge> imageEdge;  ///< unset: open, but insulated in a wall: a stack cuts a
+                                       ///< heart across it
+
+  [[nodiscard]] bool isWall() const { return heart || annulus.perSlice || annulus.openEnds; }
   [[nodiscard]] SulciMode sulciMode() const {
-    const bool wall = heart || annulus.perSlice || annulus.openEnds;
-    return sulci.value_or(wall ? SulciMode::Ignore : SulciMode::Recover);
+    return sulci.value_or(isWall() ? SulciMode::Ignore : SulciMode::Recover);
+  }
+  [[nodiscard]] ImageEdge imageEdgeMode() const {
+    return imageEdge.value_or(isWall() ? ImageEdge::Insulated : ImageEdge::Open);
   }
 };
 
@@ -43,6 +50,7 @@ struct Measurement {
   harmonic::Annulus annulus;  ///< with the sheets of buried sulci as boundary
   harmonic::Interpolant interpolant;
   Correspondence correspondence;
+  std::size_t cutVoxels = 0;               ///< left out because tissue runs out of the image there
   std::vector<double> depth;               ///< L0 / thickness
   std::vector<int> layers;                 ///< from 1 at the inner boundary; 0: unknown
   std::vector<std::int32_t> sulcalVoxels;  ///< beside a recovered boundary

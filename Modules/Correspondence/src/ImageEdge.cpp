@@ -1,0 +1,96 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Explica/Correspondence/ImageEdge.h"
+
+#include "Explica/Core/Parallel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+namespace explica::correspondence {
+
+namespace {
+
+using harmonic::Annulus;
+
+/// Distance from the edge, in thicknesses, within which a voxel's measures are not believed.
+constexpr double kReach = 1.25;
+
+/// A voxel's centre, mm along the grid's axes.
+Vector placeOf(const Annulus& annulus, std::int32_t n) {
+  return annulus.index(n).cwiseProduct(annulus.grid.spacing);
+}
+
+bool onEdge(const Annulus& annulus, std::int32_t n, const std::array<bool, 3>& axes) {
+  const auto s = annulus.boxSubscripts(n);
+  for (int a = 0; a < 3; ++a) {
+    const int at = s[a] + annulus.first[a];
+    if (axes[a] && (at == 0 || at + 1 == annulus.grid.size[a])) return true;
+  }
+  return false;
+}
+
+/// For each tissue voxel the nearest one on the edge, carried from voxel to voxel; -1: none.
+std::vector<std::int32_t> nearestOnEdge(const Annulus& annulus, const std::array<bool, 3>& axes) {
+  const auto count = static_cast<std::int32_t>(annulus.count());
+  const auto strides = annulus.strides();
+  std::vector<std::int32_t> nearest(annulus.count(), -1);
+  std::vector<double> distance(annulus.count(), kInfinity);
+  std::deque<std::int32_t> waiting;
+  for (std::int32_t n = 0; n < count; ++n) {
+    if (!onEdge(annulus, n, axes)) continue;
+    nearest[n] = n;
+    distance[n] = 0;
+    waiting.push_back(n);
+  }
+  while (!waiting.empty()) {
+    const std::int32_t n = waiting.front();
+    waiting.pop_front();
+    const Vector source = placeOf(annulus, nearest[n]);
+    for (int d = 0; d < 6; ++d) {
+      const std::int32_t place =
+          annulus.place[n] + harmonic::signOf(d) * strides[harmonic::axisOf(d)];
+      const std::int32_t m = annulus.numberAt[place];
+      if (m < 0) continue;
+      const double offered = (placeOf(annulus, m) - source).norm();
+      if (!(offered < distance[m])) continue;
+      distance[m] = offered;
+      nearest[m] = nearest[n];
+      waiting.push_back(m);
+    }
+  }
+  return nearest;
+}
+
+}  // namespace
+
+std::size_t leaveOutCut(const Annulus& annulus, const std::array<bool, 3>& axes,
+                        Correspondence& correspondence) {
+  const std::vector<std::int32_t> nearest = nearestOnEdge(annulus, axes);
+  const Eigen::Matrix3d toAxes = annulus.grid.direction.transpose();
+  std::vector<std::uint8_t> cut(annulus.count(), 0);
+  parallelFor(annulus.count(), 1 << 12, [&](std::size_t index) {
+    const auto n = static_cast<std::int32_t>(index);
+    const double thickness = correspondence.thickness(n);
+    if (nearest[n] < 0 || std::isnan(thickness)) return;
+    const Vector way = placeOf(annulus, n) - placeOf(annulus, nearest[n]);
+    const auto from = [&](const Eigen::Vector3f& point) {
+      return (way + toAxes * point.cast<double>()).norm();
+    };
+    const double least = std::min(
+        {way.norm(), from(correspondence.innerPoint[n]), from(correspondence.outerPoint[n])});
+    cut[n] = least < kReach * thickness;
+  });
+  for (std::size_t n = 0; n < cut.size(); ++n) {
+    if (!cut[n]) continue;
+    correspondence.innerDistance[n] = correspondence.outerDistance[n] = kNaN;
+    correspondence.innerPoint[n].setConstant(static_cast<float>(kNaN));
+    correspondence.outerPoint[n].setConstant(static_cast<float>(kNaN));
+  }
+  return static_cast<std::size_t>(std::count(cut.begin(), cut.end(), std::uint8_t{1}));
+}
+
+}  // namespace explica::correspondence
