@@ -10,10 +10,12 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <span>
 #include <string>
 
 namespace explica::visibility {
@@ -77,29 +79,36 @@ class Occluders {
     rtcCommitScene(scene_.get());
   }
 
-  /// True if a face other than `face` meets the segment from `from` along `direction`, mm about
-  /// centre.
-  [[nodiscard]] bool hides(const Point& from, const Vector& direction, double length,
-                           std::uint32_t face) const {
+  /// Rays that are cast together.
+  static constexpr std::size_t kPacket = 16;
+
+  /// How many of at most kPacket segments no face other than `face` meets, mm about centre.
+  /// @param from  where they start
+  /// @param by    unit directions
+  [[nodiscard]] int countClear(std::span<const Point> from, std::span<const Vector> by,
+                               std::span<const double> lengths, std::uint32_t face) const {
     OwnFaceContext context;
     rtcInitIntersectContext(&context.base);
+    context.base.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     context.base.filter = ignoreOwnFace;
     context.face = face;
-    RTCRay ray;
-    ray.org_x = static_cast<float>(from.x());
-    ray.org_y = static_cast<float>(from.y());
-    ray.org_z = static_cast<float>(from.z());
-    ray.dir_x = static_cast<float>(direction.x());
-    ray.dir_y = static_cast<float>(direction.y());
-    ray.dir_z = static_cast<float>(direction.z());
-    ray.tnear = 0;
-    ray.tfar = static_cast<float>(length);
-    ray.time = 0;
-    ray.mask = 0xffffffffU;
-    ray.id = 0;
-    ray.flags = 0;
-    rtcOccluded1(scene_.get(), &context.base, &ray);
-    return ray.tfar < 0;
+    RTCRay16 rays = {};
+    alignas(64) std::array<int, kPacket> valid = {};
+    for (std::size_t n = 0; n < from.size(); ++n) {
+      valid[n] = -1;
+      rays.org_x[n] = static_cast<float>(from[n].x());
+      rays.org_y[n] = static_cast<float>(from[n].y());
+      rays.org_z[n] = static_cast<float>(from[n].z());
+      rays.dir_x[n] = static_cast<float>(by[n].x());
+      rays.dir_y[n] = static_cast<float>(by[n].y());
+      rays.dir_z[n] = static_cast<float>(by[n].z());
+      rays.tfar[n] = static_cast<float>(lengths[n]);
+      rays.mask[n] = 0xffffffffU;
+    }
+    rtcOccluded16(valid.data(), scene_.get(), &context.base, &rays);
+    int clear = 0;
+    for (std::size_t n = 0; n < from.size(); ++n) clear += !(rays.tfar[n] < 0);
+    return clear;
   }
 
  private:
@@ -180,14 +189,22 @@ VisibleFraction visibleFraction(const TriangleMesh& mesh, const Viewpoints& view
       const Point target = viewpoints.points[p] - centre;
       if (!(normal.dot(target - a) > 0)) continue;  // turned away
       int clear = 0;
-      for (const Vector& s : samples) {
-        const Point x = s[0] * a + s[1] * b + s[2] * c;
-        const Vector toTarget = target - x;
-        const double distance = toTarget.norm();
-        // Nothing lies beyond the mesh's ball: a far viewpoint costs no precision.
-        const double length = std::min(distance, x.norm() + 1.001 * radius);
-        if (!occluders.hides(x, toTarget / distance, length, static_cast<std::uint32_t>(i)))
-          ++clear;
+      std::array<Point, Occluders::kPacket> from;
+      std::array<Vector, Occluders::kPacket> by;
+      std::array<double, Occluders::kPacket> lengths;
+      for (std::size_t first = 0; first < samples.size(); first += Occluders::kPacket) {
+        const std::size_t count = std::min(Occluders::kPacket, samples.size() - first);
+        for (std::size_t n = 0; n < count; ++n) {
+          const Vector& s = samples[first + n];
+          from[n] = s[0] * a + s[1] * b + s[2] * c;
+          const Vector toTarget = target - from[n];
+          const double distance = toTarget.norm();
+          by[n] = toTarget / distance;
+          // Nothing lies beyond the mesh's ball: a far viewpoint costs no precision.
+          lengths[n] = std::min(distance, from[n].norm() + 1.001 * radius);
+        }
+        clear += occluders.countClear({from.data(), count}, {by.data(), count},
+                                      {lengths.data(), count}, static_cast<std::uint32_t>(i));
       }
       seen += viewpoints.weights[p] * clear / static_cast<double>(samples.size());
     }
