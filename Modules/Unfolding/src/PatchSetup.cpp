@@ -21,7 +21,7 @@ constexpr double kLeastArea = 1e-12;
 // Of the mean edge: edges far shorter must not rule the rest.
 constexpr double kShortShare = 0.1;
 // Of the radius of a disc of the region's area: how wide a collar is by default.
-constexpr double kCollarShare = 0.4;
+constexpr double kCollarShare = 0.5;
 
 void requireUsable(const UnfolderOptions& options, const Region& region) {
   if (!(options.contactRange > 0)) throw InvalidInput("contactRange: must be positive");

@@ -58,8 +58,9 @@ py::dict resultDict(unfolding::UnfoldResult result) {
   }
   return py::dict("positions"_a = std::move(result.mesh.positions),
                   "faces"_a = std::move(result.mesh.faces),
-                  "termination"_a = std::string(nameOf(result.termination)), "history"_a = history,
-                  "frames"_a = frames);
+                  "termination"_a = std::string(nameOf(result.termination)),
+                  "flag"_a = std::string(nameOf(result.flag)), "iteration"_a = result.iteration,
+                  "collar"_a = columnOf(result.collar), "history"_a = history, "frames"_a = frames);
 }
 
 /// An unfolder that can be given another region on the way; Python's face of unfolding::Unfolder.
@@ -139,7 +140,9 @@ void bindUnfolding(py::module_& m) {
         }));
       },
       "Unfold the region (its vertices) of a surface for viewpoints, RAS mm.  Returns positions\n"
-      "(V, 3), faces, termination, history (one dict an iteration) and frames\n"
+      "(V, 3), faces, termination, flag ('', 'held' or 'worse'), iteration (whose state it is), "
+      "collar\n"
+      "(faces that moved outside the region), history (one dict an iteration) and frames\n"
       "[(visibility, positions)].  `progress(fraction, activity)` may return False to stop.",
       "positions"_a, "faces"_a, "region"_a, "viewpoints"_a, "progress"_a = py::none());
   m.def(

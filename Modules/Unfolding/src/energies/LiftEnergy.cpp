@@ -23,7 +23,7 @@ double deficit(const PatchRoom& room, const Point& place) {
 
 // Of the room's radius: beyond this the pull grows no more, so that a deep region is not dragged
 // through a narrow opening before the folds above have made way.
-constexpr double kFirm = 0.1;
+constexpr double kFirm = 0.03;
 
 /// How a deficit counts: its square over two, from kFirm of the radius on a straight line; in units
 /// of the radius.

@@ -50,7 +50,7 @@ void describe(UnfolderOptions& options, Visitor&& visit) {
               "left out"},
         options.surround);
   visit(Field{"collar-width", "mm",
-              "how far an elastic collar reaches from the region along the surface (default 0.4 of "
+              "how far an elastic collar reaches from the region along the surface (default 0.5 of "
               "the radius of a disc of the region's area; replaces --collar-rings)",
               kAboveZero, 1000},
         options.collarWidth);
