@@ -141,12 +141,12 @@ std::string crossingsInWords(const std::vector<unfolding::Crossing>& list, std::
 }
 
 /// Seconds for the iterations within the limit of the whole command.  What comes after them tests,
-/// measures and writes what the start read, tested and measured: it takes as long, and each frame a
-/// share of it.
+/// measures and writes what the start read, tested and measured: it takes up to three times as
+/// long, and each frame a share of it.
 double timeToIterate(double limit, double start, const unfolding::UnfoldOptions& options) {
-  constexpr double kFrameShare = 0.15;  // a frame is tested where it moved, and written
+  constexpr double kFrameShare = 0.2;  // a frame is tested where it moved, and written
   constexpr double kLeast = 1e-3;       // s: one look at the state, and it ends
-  return std::max(kLeast, limit - start * (2 + kFrameShare * options.frames));
+  return std::max(kLeast, limit - start * (3 + kFrameShare * options.frames));
 }
 
 /// Lists the start's intersections and parts in `mesh` those that stand in the way.
