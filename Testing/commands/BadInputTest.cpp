@@ -147,6 +147,8 @@ const VolumeCommand kPolygonCommands[] = {
 
 const VolumeCommand kSurfaceCommands[] = {
     {"Unfold", {"unfold", "{file}", "--vertex", "0", "--radius", "5", "--direction", "0,0,1"}},
+    {"Flatten", {"flatten", "{file}"}},
+    {"Compare", {"compare", "{file}", "{file}"}},
 };
 
 const BadSurface kBadPolygons[] = {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "Explica/Geometry/Fixtures.h"
+#include "Explica/Geometry/MeshTopology.h"
 #include "Explica/IO/PolygonFile.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/Testing/Command.h"
@@ -28,6 +29,18 @@ struct QuickRun {
 /// A folded sphere of 30 mm, 1280 faces.
 inline void writeFoldedSphere(const TemporaryFolder& folder) {
   io::writeSurface(folder / "sphere.surf.gii", geometry::makeFoldedSphere(3, 30.0));
+}
+
+/// The upper part of it, with a rim.
+inline void writeFoldedCap(const TemporaryFolder& folder) {
+  const TriangleMesh sphere = geometry::makeFoldedSphere(3, 30.0);
+  std::vector<std::int32_t> faces;
+  for (Eigen::Index f = 0; f < sphere.faceCount(); ++f) {
+    if (sphere.corner(f, 0).z() > 5 && sphere.corner(f, 1).z() > 5 && sphere.corner(f, 2).z() > 5) {
+      faces.push_back(static_cast<std::int32_t>(f));
+    }
+  }
+  io::writeSurface(folder / "cap.surf.gii", geometry::extractFaces(sphere, faces).mesh);
 }
 
 /// An ellipse about the origin, mm.
@@ -89,6 +102,12 @@ inline const std::vector<QuickRun>& quickRuns() {
        {},
        {"unfold", "{folder}/sphere.surf.gii", "--center", "0,0,30", "--radius", "12", "--direction",
         "0,0,1", "--max-iterations", "3"},
+       writeFoldedSphere},
+      {"Flatten", {}, {"flatten", "{folder}/cap.surf.gii", "--grid", "1"}, writeFoldedCap},
+      {"Compare",
+       {},
+       {"compare", "{folder}/sphere.surf.gii", "{folder}/sphere.surf.gii", "--pairs", "400",
+        "--sources", "10"},
        writeFoldedSphere},
       {"Run",
        {kShell},

@@ -21,6 +21,13 @@ cp phantom/labels.nii.gz data/sub-01/anat/sub-01_dseg.nii.gz
 echo '{"Name": "phantoms", "BIDSVersion": "1.8.0"}' > data/dataset_description.json
 explica bids data derived participant --hemispheres L --steps thickness,surface --surface.faces 2000
 explica bids data derived group)"},
+      {"compare",
+       "a surface, and others with the same vertices: flat maps, inflated ones, spheres",
+       "what each of them keeps of areas, lengths, angles and distances, as a table and pictures",
+       {"label", "label-key", "pairs", "sources", "local-limit"},
+       R"(explica phantom shell --size 32 --out shell
+explica surface shell/labels.nii.gz --white 1 --grey 2 --faces 2000 --out surfaces
+explica compare surfaces/white.surf.gii surfaces/pial.surf.gii --out compared)"},
       {"descriptors",
        "the commands' own declarations",
        "descriptions for Boutiques, nipype, Slicer, bash, zsh and man",
@@ -33,6 +40,15 @@ explica bids data derived group)"},
         "frames"},
        R"(explica phantom shell --size 32 --out shell
 explica embed shell/labels.nii.gz --label 1 --order 8 --out fit)"},
+      {"flatten",
+       "an unfolded patch, a surface with a rim, or a hemisphere with cuts",
+       "a flat map that folds nowhere, as surface, table, picture and stack of depths",
+       {"reference", "cuts", "label", "area-tolerance", "grid", "depths", "surfaces", "volumes",
+        "map", "regions"},
+       R"(explica phantom shell --size 32 --out shell
+explica surface shell/labels.nii.gz --white 1 --grey 2 --faces 2000 --out surfaces
+explica unfold surfaces/pial.surf.gii --center 0,0,12 --radius 8 --direction 0,0,1 --surround none --out unfolded
+explica flatten unfolded/unfolded.surf.gii --surfaces surfaces --volumes shell/level.nii.gz --out flat)"},
       {"heart",
        "label volumes of the left ventricle: 4-D, or one a frame",
        "segments, volumes and masses over time, thickness and thickening, a bullseye",

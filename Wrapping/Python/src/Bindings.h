@@ -17,6 +17,7 @@ void bindVisibility(pybind11::module_& m);
 void bindRepulsion(pybind11::module_& m);
 void bindCollision(pybind11::module_& m);
 void bindUnfolding(pybind11::module_& m);
+void bindFlattening(pybind11::module_& m);
 void bindPlanar(pybind11::module_& m);
 void bindShapes(pybind11::module_& m);
 void bindReport(pybind11::module_& m);

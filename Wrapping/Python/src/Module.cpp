@@ -15,6 +15,7 @@ PYBIND11_MODULE(_explica, m) {
   explica::python::bindRepulsion(m);
   explica::python::bindCollision(m);
   explica::python::bindUnfolding(m);
+  explica::python::bindFlattening(m);
   explica::python::bindPlanar(m);
   explica::python::bindShapes(m);
   explica::python::bindReport(m);

@@ -26,9 +26,10 @@ struct BlockPattern {
 [[nodiscard]] std::vector<std::int32_t> eliminationPlaces(
     std::int32_t count, std::span<const std::pair<std::int32_t, std::int32_t>> edges);
 
-/// Cholesky factorisation of a sparse symmetric positive definite matrix of Size x Size blocks by the
-/// multifrontal method with supernodes [Duff1983, Liu1992]: columns with like rows are eliminated
-/// together in one dense front, and what remains of it is added to the front of their parent.
+/// Cholesky factorisation of a sparse symmetric positive definite matrix of Size x Size blocks by
+/// the multifrontal method with supernodes [Duff1983, Liu1992]: columns with like rows are
+/// eliminated together in one dense front, and what remains of it is added to the front of their
+/// parent.
 ///
 /// Disjoint subtrees of fronts run on several threads, large fronts above them are cut into tiles.
 /// Which number is added to which and when depends on the pattern only, so that results do not
@@ -43,8 +44,7 @@ class BlockCholesky {
 
   /// @param blocks  one block per entry of the pattern
   /// @return false if the matrix is not positive definite to working precision
-  [[nodiscard]] bool factorise(const BlockPattern& pattern,
-                               std::span<const Block> blocks);
+  [[nodiscard]] bool factorise(const BlockPattern& pattern, std::span<const Block> blocks);
 
   /// Replaces the right side (Size * N) by the solution.
   void solve(Eigen::VectorXd& x) const;
@@ -73,8 +73,8 @@ class BlockCholesky {
   void findFronts(const BlockPattern& pattern);
   void findRows(const BlockPattern& pattern);
   void schedule();
-  bool eliminate(std::int32_t f, const BlockPattern& pattern,
-                 std::span<const Block> blocks, bool tiled);
+  bool eliminate(std::int32_t f, const BlockPattern& pattern, std::span<const Block> blocks,
+                 bool tiled);
 
   std::vector<Front> fronts_;
   std::vector<std::int32_t> rows_;

@@ -1,0 +1,497 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Flattening/Flatten.h"
+#include "Explica/Application/Command.h"
+#include "Explica/Application/ReadInputs.h"
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/WholeFile.h"
+#include "Explica/Flattening/Comparison.h"
+#include "Explica/Flattening/Disc.h"
+#include "Explica/Flattening/FlatGrid.h"
+#include "Explica/Flattening/PatchTable.h"
+#include "Explica/Flattening/Selection.h"
+#include "Explica/Geometry/MeshMeasures.h"
+#include "Explica/Geometry/MeshTopology.h"
+#include "Explica/IO/PatchFile.h"
+#include "Explica/IO/SurfaceFile.h"
+#include "Explica/IO/VertexDataFile.h"
+#include "Explica/IO/VolumeFile.h"
+#include "Explica/Provenance/Digest.h"
+#include "Explica/Provenance/Record.h"
+#include "Explica/Report/FlatFigure.h"
+#include "Explica/Unfolding/Account.h"
+#include "Explica/Unfolding/Distortion.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <numeric>
+
+namespace explica::app {
+namespace {
+
+constexpr double kPatchTolerance = 0.01;  // mean area error of a patch ...
+constexpr double kCutTolerance = 0.05;    // ... and of a hemisphere with cuts: less costs lengths
+constexpr double kDistanceWork = 2e6;     // vertices visited for the distance errors, about
+
+struct Settings {
+  std::string surface;
+  io::SurfaceReadOptions reading;
+  std::optional<std::string> reference;
+  std::optional<std::string> cuts;
+  std::optional<std::string> label;
+  std::optional<int> labelKey;
+  std::optional<double> areaTolerance;
+  flattening::FlattenOptions flatten;
+  double grid = 0.5;
+  std::optional<int> depths;
+  std::optional<std::string> surfaces;
+  std::vector<std::string> volumes;
+  bool nearest = false;
+  std::vector<std::string> maps;
+  std::optional<std::string> regions;
+};
+
+void declare(Declaration& d, Settings& s) {
+  d.synopsis("a patch, or a hemisphere with cuts, as a flat map that folds nowhere")
+      .description(
+          R"(Lays a surface with a rim flat: exactly planar, no face turned over, nowhere one part on another, face areas kept closely and lengths as well as can be. Areas and lengths are those of --reference (same vertices); for an 'unfolded.surf.gii' of 'explica unfold' they are those of the surface that its record names, and the region is its own. Holes stay open; a part that hangs on the rest by a single vertex is left out.
+
+A closed surface needs --label (a patch) or --cuts (a hemisphere): a FreeSurfer patch or a label of the vertices that stay, or a flat map whose faces stay.
+
+With --surfaces the map becomes a stack of depths: grid.nii.gz gives each cell its place in the tissue (RAS mm), --volumes are resampled into it, and to_flat.nii.gz gives each voxel of the first volume its u and v (mm in the map) and depth (0 at the white surface, 1 at the pial).)")
+      .reference("Tutte 1963, Proceedings of the London Mathematical Society 13:743-767")
+      .reference("Shen, Jiang, Zorin, Panozzo 2019, ACM Transactions on Graphics 38(4):32")
+      .example(
+          "explica flatten unfolded/unfolded.surf.gii --surfaces surfaces --volumes T1.nii.gz "
+          "--out "
+          "flat",
+          "The flat map of an unfolded patch, and a volume as a stack of depths")
+      .example("explica flatten lh.pial --cuts lh.cortex.patch.3d --out flat",
+               "A hemisphere with given cuts")
+      .input("SURFACE", FileKind::Surface, "triangulated surface with a rim, or to be cut",
+             s.surface)
+      .options("Reading", s.reading)
+      .inputOption("reference", FileKind::Surface,
+                   "surface with the same vertices whose areas and lengths count", s.reference)
+      .inputOption("cuts", FileKind::Any,
+                   "what stays of a hemisphere: FreeSurfer patch, label (not 0), or flat map",
+                   s.cuts, "Region")
+      .inputOption("label", FileKind::VertexLabel, "lay flat only where this label is not 0",
+                   s.label, "Region")
+      .option("Region", Field{"label-key", "", "lay flat only where --label has this key"},
+              s.labelKey)
+      .option("Flattening",
+              Field{"area-tolerance", "",
+                    "mean relative area error to reach (default: 0.01; with --cuts 0.05)", 1e-6, 1},
+              s.areaTolerance)
+      .options("Flattening", s.flatten, "solver.")
+      .without("solver.area-tolerance")
+      .option("Grid", Field{"grid", "mm", "size of the grid's cells along u and v", 1e-3, 1e3},
+              s.grid)
+      .option("Grid",
+              Field{"depths", "", "layers from white to pial (default: 5 with --surfaces, else 1)",
+                    1, 1000},
+              s.depths)
+      .option("Grid",
+              Field{"surfaces", "", "folder with the white and pial surface of the same vertices"},
+              s.surfaces)
+      .inputOption("volumes", FileKind::Volume, "volumes to resample into the grid, 3-D or 4-D",
+                   s.volumes, "Grid")
+      .severalWords("volumes")
+      .option("Grid", Field{"nearest", "", "the nearest voxel's value, for label volumes"},
+              s.nearest)
+      .inputOption("map", FileKind::VertexData,
+                   "values on the vertices, for patch.tsv; the first colours flat.png", s.maps,
+                   "Patch")
+      .inputOption("regions", FileKind::VertexLabel,
+                   "regions for patch.tsv, their outlines for flat.png", s.regions, "Patch")
+      .output("flat.surf.gii", FileKind::Surface,
+              "the flat map, z = 0: all vertices in their order, the patch's faces")
+      .output("patch.surf.gii", FileKind::Surface,
+              "the reference, the patch's vertices only, in the order of vertex_of.shape.gii")
+      .output("patch_flat.surf.gii", FileKind::Surface, "the flat map of patch.surf.gii")
+      .output("vertex_of.shape.gii", FileKind::VertexData,
+              "for each vertex of patch.surf.gii its number in the whole surface")
+      .output("*.patch.flat", FileKind::Any, "the flat map as FreeSurfer writes it")
+      .output("distortion.shape.gii", FileKind::VertexData,
+              "area ratio, angle change in degrees, edge strain")
+      .output("patch.tsv", FileKind::Table, "area and means of maps, per region and in all")
+      .output("grid.nii.gz", FileKind::PointVolume, "place (RAS mm) of each cell (u, v, depth)")
+      .output("to_flat.nii.gz", FileKind::PointVolume,
+              "u, v (mm) and depth (0 to 1) of each voxel of the first volume")
+      .output("flat_*.nii.gz", FileKind::Volume, "each volume on the grid")
+      .output("flat.png", FileKind::Picture, "the map with outlines, scale bar and colour bar");
+}
+
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+std::vector<std::int32_t> everyFace(const Faces& faces) {
+  std::vector<std::int32_t> all(static_cast<std::size_t>(faces.rows()));
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+/// What is laid flat: the surface that counts, and which of its faces.
+struct Subject {
+  io::LoadedSurface reference;
+  std::vector<std::int32_t> faces;
+};
+
+/// The surface that an unfolding's record names, if it is still there unchanged.
+std::optional<std::filesystem::path> recordedOriginal(const std::filesystem::path& surface) {
+  const auto found = provenance::findRecordOf(surface, provenance::digestOf(surface));
+  if (!found || !found->sameContent || found->record.value("command", "") != "unfold") return {};
+  const auto& inputs = found->record["inputs"];
+  const auto& places = found->record["execution"]["inputs"];
+  for (std::size_t n = 0; n < inputs.size() && n < places.size(); ++n) {
+    if (inputs[n].value("role", "") != "SURFACE") continue;
+    const std::filesystem::path path = places[n].value("absolute", std::string());
+    if (path.empty() || !std::filesystem::exists(path)) continue;
+    if (provenance::digestOf(path).sha256 == inputs[n].value("sha256", "")) return path;
+  }
+  return {};
+}
+
+void requireSameVertices(const TriangleMesh& a, const TriangleMesh& b, const std::string& name) {
+  if (a.vertexCount() == b.vertexCount()) return;
+  throw InvalidInput("'" + name + "': has " + std::to_string(a.vertexCount()) +
+                     " vertices where the surface has " + std::to_string(b.vertexCount()));
+}
+
+std::vector<std::int32_t> facesOfCuts(Context& context, const Settings& s,
+                                      const TriangleMesh& mesh) {
+  const auto all = everyFace(mesh.faces);
+  if (io::isPatchFile(*s.cuts)) {
+    const io::Patch patch = io::readPatch(*s.cuts, mesh.vertexCount());
+    return flattening::facesAlsoIn(mesh.faces, all,
+                                   io::patchFaces(patch, mesh.faces, mesh.vertexCount()));
+  }
+  std::optional<TriangleMesh> flat;
+  try {
+    flat = readSurface(context, "cuts", *s.cuts, s.reading).mesh;
+  } catch (const Error&) {
+    // No surface: a label.
+  }
+  if (flat) {
+    requireSameVertices(*flat, mesh, *s.cuts);
+    return flattening::facesAlsoIn(mesh.faces, all, flat->faces);
+  }
+  const auto labels = io::readVertexLabels(*s.cuts, mesh.vertexCount());
+  return flattening::facesWithin(mesh.faces, all, labels.keys);
+}
+
+Subject subjectOf(Context& context, const Settings& s) {
+  Subject subject;
+  io::LoadedSurface loaded = readSurface(context, "SURFACE", s.surface, s.reading);
+  std::optional<std::filesystem::path> original;
+  if (s.reference) original = *s.reference;
+  const auto recorded = s.reference ? std::nullopt : recordedOriginal(s.surface);
+  if (recorded) original = context.input(*recorded, "reference");
+  TriangleMesh mesh = loaded.mesh;
+  if (original) {
+    const auto reference = readSurface(context, "reference", original->string(), s.reading);
+    requireSameVertices(reference.mesh, mesh, original->string());
+    mesh.positions = reference.mesh.positions;
+    context.info("areas and lengths are those of '" + original->string() + "'");
+  }
+  subject.faces = everyFace(mesh.faces);
+  if (s.cuts) subject.faces = facesOfCuts(context, s, mesh);
+  if (s.label) {
+    const auto labels = io::readVertexLabels(*s.label, mesh.vertexCount());
+    subject.faces = flattening::facesWithin(mesh.faces, subject.faces, labels.keys, s.labelKey);
+  }
+  const auto region = std::filesystem::path(s.surface).parent_path() / "region.label.gii";
+  if (recorded && !s.label && !s.cuts && std::filesystem::exists(region)) {
+    const auto labels = io::readVertexLabels(context.input(region, "region"), mesh.vertexCount());
+    subject.faces = flattening::facesWithin(mesh.faces, subject.faces, labels.keys);
+  }
+  loaded.mesh = std::move(mesh);
+  subject.reference = std::move(loaded);
+  return subject;
+}
+
+/// The map on all vertices of the whole, those off the patch at the origin.
+TriangleMesh wholeMap(const TriangleMesh& reference, const flattening::Disc& disc,
+                      const flattening::FlatMap& map) {
+  TriangleMesh flat{Positions::Zero(reference.vertexCount(), 3), Faces(disc.mesh.faceCount(), 3)};
+  for (std::size_t v = 0; v < disc.vertexOrigin.size(); ++v) {
+    flat.positions.row(disc.vertexOrigin[v]).head<2>() =
+        map.positions.row(static_cast<Eigen::Index>(v));
+  }
+  for (std::size_t f = 0; f < disc.faceOrigin.size(); ++f) {
+    flat.faces.row(static_cast<Eigen::Index>(f)) = reference.faces.row(disc.faceOrigin[f]);
+  }
+  return flat;
+}
+
+/// Values of the whole's vertices at the patch's.
+template <class Vector>
+auto atPatch(const Vector& whole, const flattening::Disc& disc) {
+  Vector part(static_cast<Eigen::Index>(disc.vertexOrigin.size()));
+  for (std::size_t v = 0; v < disc.vertexOrigin.size(); ++v) {
+    part[static_cast<Eigen::Index>(v)] = whole[disc.vertexOrigin[v]];
+  }
+  return part;
+}
+
+Positions patchPositions(const flattening::FlatMap& map) {
+  Positions flat = Positions::Zero(map.positions.rows(), 3);
+  flat.leftCols<2>() = map.positions;
+  return flat;
+}
+
+void writeSurfaces(Context& context, const Subject& subject, const flattening::Disc& disc,
+                   const flattening::FlatMap& map, const TriangleMesh& flat) {
+  io::SurfaceMetadata metadata = subject.reference.metadata;
+  metadata.topologicalType = "Open";
+  io::writeGiftiSurface(context.output("patch.surf.gii"), disc.mesh, metadata);
+  metadata.geometricType = "Flat";
+  metadata.secondary.clear();
+  io::writeGiftiSurface(context.output("flat.surf.gii"), flat, metadata);
+  const Positions positions = patchPositions(map);
+  io::writeGiftiSurface(context.output("patch_flat.surf.gii"), {positions, disc.mesh.faces},
+                        metadata);
+  Eigen::VectorXd numbers(disc.mesh.vertexCount());
+  std::copy(disc.vertexOrigin.begin(), disc.vertexOrigin.end(), numbers.begin());
+  io::writeGiftiShape(context.output("vertex_of.shape.gii"), {{"vertex", "", numbers}},
+                      metadata.structure);
+  std::vector<bool> inPatch(static_cast<std::size_t>(flat.vertexCount()), false);
+  for (const std::int32_t v : disc.vertexOrigin) inPatch[v] = true;
+  const bool right = metadata.structure == "CortexRight";
+  io::writePatch(context.output(right ? "rh.patch.flat" : "lh.patch.flat"),
+                 io::patchOf(flat, inPatch));
+}
+
+/// Distortion and distance errors, into the summary and distortion.shape.gii.
+Eigen::VectorXd measure(Context& context, const Subject& subject, const TriangleMesh& flat) {
+  const TriangleMesh before{subject.reference.mesh.positions, flat.faces};
+  const auto all = everyFace(flat.faces);
+  unfolding::DistortionOptions plain;
+  plain.geodesicSources = 0;
+  const auto distortion = unfolding::measureDistortion(before, flat.positions, all, plain);
+  const Eigen::VectorXd angleDeg = distortion.angleErrorRad * (180 / kPi);
+  const Eigen::VectorXd ratio = unfolding::vertexMeans(before, all, distortion.areaRatio, 1);
+  io::writeGiftiShape(
+      context.output("distortion.shape.gii"),
+      {{"area ratio", "", ratio},
+       {"angle change", "degrees", unfolding::vertexMeans(before, all, angleDeg, 0)},
+       {"edge strain", "", unfolding::vertexStrains(before, flat.positions, all)}},
+      subject.reference.metadata.structure);
+  flattening::DistanceOptions options;
+  options.farSources = static_cast<int>(
+      std::clamp(kDistanceWork / static_cast<double>(flat.faceCount() / 2 + 1), 20.0, 100.0));
+  const auto pairs = flattening::drawPairs(before, all, options);
+  const auto straight = flattening::DistanceKind::Straight;
+  context.result("area_error_mean", distortion.areaErrorMean);
+  context.result("area_error_max", distortion.areaErrorMax);
+  context.result("angle_error_mean_deg", distortion.angleErrorMeanRad * 180 / kPi);
+  context.result("edge_strain_mean", distortion.edgeStrainMean);
+  context.result("edge_strain_p95", distortion.edgeStrainP95);
+  context.result("geodesic_error_local",
+                 flattening::distanceError(pairs.local, flat, all, straight).error);
+  context.result("geodesic_error_all",
+                 flattening::distanceError(pairs.all, flat, all, straight).error);
+  return ratio;
+}
+
+void writePatchTable(Context& context, const Settings& s, const flattening::Disc& disc,
+                     const flattening::FlatMap& map, const Eigen::VectorXd& areaRatio) {
+  const auto whole = areaRatio.size();
+  std::vector<flattening::PatchMap> maps;
+  report::SurfacePaint paint;
+  for (const std::string& path : s.maps) {
+    for (const io::VertexMap& read : io::readVertexMaps(path, whole)) {
+      const std::string file = std::filesystem::path(path).stem().string();
+      maps.push_back({read.name.empty() ? file : read.name, atPatch(read.values, disc)});
+      if (maps.size() == 1) {
+        paint.values = maps[0].values;
+        paint.scale = report::scaleFor(paint.values, maps[0].name, read.unit);
+      }
+    }
+  }
+  if (maps.empty()) {
+    paint.values = atPatch(areaRatio, disc).cwiseMax(1e-6).array().log2();
+    paint.scale = {report::ColourMap::Diverging, -0.5, 0.5, "area, doublings", ""};
+  }
+  const TriangleMesh flat{patchPositions(map), disc.mesh.faces};
+  flattening::VertexKeys regions;
+  std::map<Label, std::string> names;
+  report::FlatMarks marks;
+  if (s.regions) {
+    const auto labels = io::readVertexLabels(*s.regions, whole);
+    regions = atPatch(labels.keys, disc);
+    for (const io::LabelEntry& entry : labels.table) names[entry.key] = entry.name;
+    for (const auto& piece : flattening::outlines(flat.faces, flat.positions, regions)) {
+      marks.lines.emplace_back(piece.from, piece.to);
+    }
+    for (const auto& [key, place] : flattening::regionPlaces(flat, regions)) {
+      if (key != 0)
+        marks.names.emplace_back(place, names.contains(key) ? names[key] : std::to_string(key));
+    }
+  }
+  writeTextFile(context.output("patch.tsv"),
+                flattening::patchTable(disc.mesh, flat.positions, regions, names, maps));
+  report::writePng(context.output("flat.png"), report::flatFigure(flat, paint, marks));
+}
+
+/// The white and pial surface in a folder, by the names of `explica surface` or FreeSurfer's.
+std::array<Positions, 2> sheetSurfaces(Context& context, const Settings& s,
+                                       const Subject& subject) {
+  std::array<Positions, 2> sheet;
+  const bool right = subject.reference.metadata.structure == "CortexRight";
+  const std::string side = right ? "rh." : "lh.";
+  for (int n = 0; n < 2; ++n) {
+    const std::string name = n == 0 ? "white" : "pial";
+    const std::filesystem::path folder = *s.surfaces;
+    std::filesystem::path found;
+    for (const std::string& candidate :
+         {name + ".surf.gii", side + name, side + name + ".surf.gii"}) {
+      if (found.empty() && std::filesystem::exists(folder / candidate)) found = folder / candidate;
+    }
+    if (found.empty()) {
+      throw InvalidInput("surfaces: '" + folder.string() + "' has neither " + name +
+                         ".surf.gii nor " + side + name);
+    }
+    const auto loaded = readSurface(context, name, context.input(found, name).string(), s.reading);
+    requireSameVertices(loaded.mesh, subject.reference.mesh, found.string());
+    sheet[static_cast<std::size_t>(n)] = loaded.mesh.positions;
+  }
+  return sheet;
+}
+
+std::string volumeName(const std::string& path) {
+  std::string name = std::filesystem::path(path).filename().string();
+  for (const std::string ending : {".gz", ".nii", ".mgz", ".mgh", ".nrrd", ".mha"}) {
+    if (name.size() > ending.size() && name.ends_with(ending))
+      name.resize(name.size() - ending.size());
+  }
+  return name;
+}
+
+/// Every frame of a volume on the grid's points.
+std::vector<VolumeOnDemand<float>> framesOnGrid(const Settings& s, const std::string& path,
+                                                const Volume<Eigen::Vector3f>& points) {
+  std::vector<VolumeOnDemand<float>> frames;
+  io::VolumeReadOptions options;
+  options.allowNonFinite = true;
+  options.allowAllZero = true;
+  int count = 1;
+  for (int n = 0; n < count; ++n) {
+    options.frame = n;
+    const auto loaded = io::readScalars(path, options);
+    if (n == 0 && loaded.origin.storedSize.size() > 3) count = loaded.origin.storedSize[3];
+    auto values =
+        std::make_shared<Volume<float>>(flattening::resampled(loaded.volume, points, s.nearest));
+    VolumeOnDemand<float> frame;
+    frame.grid = values->grid;
+    frame.end = values->size();
+    frame.fill = [values](std::size_t first, std::size_t many, float* to) {
+      std::copy_n(values->data.begin() + static_cast<std::ptrdiff_t>(first), many, to);
+    };
+    frames.push_back(std::move(frame));
+  }
+  return frames;
+}
+
+void writeGrid(Context& context, const Settings& s, const Subject& subject,
+               const TriangleMesh& flat) {
+  flattening::FlatSheet sheet{flat.faces, flat.positions, subject.reference.mesh.positions,
+                              subject.reference.mesh.positions};
+  if (s.surfaces) {
+    const auto surfaces = sheetSurfaces(context, s, subject);
+    sheet.inner = surfaces[0];
+    sheet.outer = surfaces[1];
+  }
+  flattening::FlatGridOptions options;
+  options.cell = s.grid;
+  options.depths = s.depths.value_or(s.surfaces ? 5 : 1);
+  const auto points = flattening::flatGrid(sheet, options);
+  io::writeVolume(context.output("grid.nii.gz"), points);
+  for (const std::string& path : s.volumes) {
+    const auto frames = framesOnGrid(s, path, points);
+    const auto out = context.output("flat_" + volumeName(path) + ".nii.gz");
+    if (frames.size() == 1) {
+      io::writeVolume(out, frames.front());
+    } else {
+      io::writeFrames(out, frames);
+    }
+  }
+  if (!s.surfaces || s.volumes.empty()) return;
+  io::VolumeReadOptions reading;
+  reading.frame = 0;
+  io::writeVolume(context.output("to_flat.nii.gz"),
+                  flattening::flatCoordinates(sheet, io::readGrid(s.volumes.front(), reading)));
+}
+
+void warnOf(Context& context, const flattening::Disc& disc, const flattening::FlatMap& map) {
+  if (disc.trimmedFaces > 0) {
+    context.warn(std::to_string(disc.trimmedFaces) +
+                 " faces hang on the rest by a single vertex and were left out");
+  }
+  if (!disc.holes.empty()) {
+    context.warn("the surface has " + std::to_string(disc.holes.size()) + " holes; they stay open");
+  }
+  if (map.turnedOver > 0 || map.rimCrossings > 0) {
+    context.warn(std::to_string(map.turnedOver) + " faces are turned over and " +
+                 std::to_string(map.rimCrossings) +
+                 " pairs of rim edges meet in single precision: the map is not one-to-one there");
+  }
+}
+
+Termination run(Context& context, const Settings& s) {
+  const auto begin = Clock::now();
+  const Subject subject = subjectOf(context, s);
+  const flattening::Disc disc = flattening::discOf(subject.reference.mesh, subject.faces);
+  sayHowRead(context, subject.reference.origin);
+  flattening::FlattenOptions options = s.flatten;
+  options.areaTolerance = s.areaTolerance.value_or(s.cuts ? kCutTolerance : kPatchTolerance);
+  const double read = secondsSince(begin);
+  flattening::FlatMap map;
+  {
+    auto step = context.step("flatten");
+    map = flattening::flatten(disc, options, context.monitor());
+    step.iterations(map.iterations);
+    step.termination(map.termination);
+  }
+  const double flattened = secondsSince(begin);
+  warnOf(context, disc, map);
+  auto step = context.step("measure and write");
+  const TriangleMesh flat = wholeMap(subject.reference.mesh, disc, map);
+  writeSurfaces(context, subject, disc, map, flat);
+  const Eigen::VectorXd areaRatio = measure(context, subject, flat);
+  writePatchTable(context, s, disc, map, areaRatio);
+  writeGrid(context, s, subject, flat);
+  context.result("faces", flat.faceCount());
+  context.result("vertices", disc.vertexOrigin.size());
+  context.result("faces_trimmed", disc.trimmedFaces);
+  context.result("faces_raised", map.raisedFaces);
+  context.result("holes", disc.holes.size());
+  context.result("area", geometry::totalArea(disc.mesh));
+  context.result("area_tolerance", options.areaTolerance);
+  context.result("turned_over", static_cast<long long>(map.turnedOver));
+  context.result("rim_crossings", static_cast<long long>(map.rimCrossings));
+  context.result("iterations", map.iterations);
+  context.result("stop_reason", std::string(nameOf(map.termination)));
+  context.result("seconds_start", read);
+  context.result("seconds_flatten", flattened - read);
+  context.result("seconds_output", secondsSince(begin) - flattened);
+  context.result("seconds", secondsSince(begin));
+  const bool folded = map.turnedOver > 0 || map.rimCrossings > 0;
+  return folded ? Termination::Stalled : map.termination;
+}
+
+}  // namespace
+
+Command flattenCommand() {
+  return makeCommand<Settings>("flatten", declare, run);
+}
+
+}  // namespace explica::app

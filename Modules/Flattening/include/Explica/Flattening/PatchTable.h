@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Core/TriangleMesh.h"
+#include "Explica/Flattening/Selection.h"
+
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace explica::flattening {
+
+/// Values on the vertices of a patch.
+struct PatchMap {
+  std::string name;
+  Eigen::VectorXd values;  ///< V; not a number: not known, and left out of means
+};
+
+/// One line for the whole patch and one for each region, as tab-separated text with a header:
+/// region, vertices, faces, area on the reference and in the map (mm^2), and for each map mean and
+/// standard deviation, weighted by the vertices' areas on the reference.
+///
+/// A face belongs to a region if its three vertices do.
+/// @param regions  V, or empty for none; key 0 is no region
+[[nodiscard]] std::string patchTable(const TriangleMesh& reference, const Positions& flat,
+                                     const VertexKeys& regions,
+                                     const std::map<Label, std::string>& names,
+                                     const std::vector<PatchMap>& maps);
+
+/// The line between regions: one piece in each face whose vertices differ.
+struct OutlinePiece {
+  Point from, to;
+  std::array<Label, 2> sides;
+};
+[[nodiscard]] std::vector<OutlinePiece> outlines(const Faces& faces, const Positions& positions,
+                                                 const VertexKeys& regions);
+
+/// Where to write each region's name: its vertex farthest from its outline, about, by rings.
+[[nodiscard]] std::map<Label, Point> regionPlaces(const TriangleMesh& mesh,
+                                                  const VertexKeys& regions);
+
+}  // namespace explica::flattening

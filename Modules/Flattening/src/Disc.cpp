@@ -1,0 +1,192 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Flattening/Disc.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Geometry/MeshTopology.h"
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+
+namespace explica::flattening {
+namespace {
+
+std::int32_t rootOf(std::vector<std::int32_t>& parent, std::int32_t i) {
+  while (parent[i] != i) i = parent[i] = parent[parent[i]];
+  return i;
+}
+
+/// Number of the edge-connected part of each face, and the size of each part.
+std::vector<std::int32_t> edgeParts(const geometry::MeshTopology& topology, Eigen::Index faceCount,
+                                    std::vector<std::size_t>& sizes) {
+  std::vector<std::int32_t> parent(static_cast<std::size_t>(faceCount));
+  std::iota(parent.begin(), parent.end(), 0);
+  for (Eigen::Index e = 0; e < topology.edgeFaces.rows(); ++e) {
+    if (topology.edgeFaces(e, 1) < 0) continue;
+    const std::int32_t a = rootOf(parent, topology.edgeFaces(e, 0));
+    const std::int32_t b = rootOf(parent, topology.edgeFaces(e, 1));
+    if (a != b) parent[std::max(a, b)] = std::min(a, b);
+  }
+  sizes.assign(parent.size(), 0);
+  for (std::size_t f = 0; f < parent.size(); ++f) {
+    parent[f] = rootOf(parent, static_cast<std::int32_t>(f));
+    ++sizes[parent[f]];
+  }
+  return parent;
+}
+
+/// Fans of faces about a vertex: groups joined by edges at it.
+std::vector<std::vector<std::int32_t>> fansAt(const geometry::MeshTopology& topology,
+                                              const Faces& faces, std::int32_t v) {
+  const auto around = topology.vertexFaces[v];
+  std::vector<std::vector<std::int32_t>> fans;
+  std::vector<bool> taken(around.size(), false);
+  const auto shareEdge = [&](std::int32_t f, std::int32_t g) {
+    int common = 0;
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) common += faces(f, i) == faces(g, j);
+    }
+    return common == 2;
+  };
+  for (std::size_t first = 0; first < around.size(); ++first) {
+    if (taken[first]) continue;
+    taken[first] = true;
+    std::vector<std::int32_t> fan = {around[first]};
+    for (std::size_t at = 0; at < fan.size(); ++at) {
+      for (std::size_t other = 0; other < around.size(); ++other) {
+        if (taken[other] || !shareEdge(fan[at], around[other])) continue;
+        taken[other] = true;
+        fan.push_back(around[other]);
+      }
+    }
+    fans.push_back(std::move(fan));
+  }
+  return fans;
+}
+
+/// One pass of trimming: faces to keep, without those of all but the largest fan at each vertex
+/// where several meet, and without the smaller parts that hang on by vertices alone.
+std::vector<std::int32_t> withoutPinches(const TriangleMesh& mesh) {
+  const auto topology = geometry::buildTopology(mesh.faces, mesh.vertexCount());
+  std::vector<std::size_t> sizes;
+  const auto part = edgeParts(topology, mesh.faceCount(), sizes);
+  std::vector<bool> drop(static_cast<std::size_t>(mesh.faceCount()), false);
+  for (std::int32_t v = 0; v < mesh.vertexCount(); ++v) {
+    auto fans = fansAt(topology, mesh.faces, v);
+    if (fans.size() < 2) continue;
+    // The fan on the larger part stays, then the larger fan, then the one of the first face.
+    std::stable_sort(fans.begin(), fans.end(), [&](const auto& a, const auto& b) {
+      const std::size_t sa = sizes[part[a.front()]], sb = sizes[part[b.front()]];
+      return sa != sb ? sa > sb : a.size() > b.size();
+    });
+    for (std::size_t n = 1; n < fans.size(); ++n) {
+      const bool apart = part[fans[n].front()] != part[fans.front().front()];
+      for (const std::int32_t f : fans[n]) drop[f] = true;
+      if (!apart) continue;
+      for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
+        if (part[f] == part[fans[n].front()]) drop[f] = true;
+      }
+    }
+  }
+  std::vector<std::int32_t> kept;
+  for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
+    if (!drop[f]) kept.push_back(static_cast<std::int32_t>(f));
+  }
+  return kept;
+}
+
+double lengthOf(const Loop& loop, const Positions& positions) {
+  double length = 0;
+  for (std::size_t n = 0; n < loop.size(); ++n) {
+    length += (positions.row(loop[(n + 1) % loop.size()]) - positions.row(loop[n])).norm();
+  }
+  return length;
+}
+
+/// Demands what no trimming can mend; vertices where several fans meet are mended.
+void requireOriented(const TriangleMesh& mesh) {
+  geometry::MeshCondition condition = geometry::inspectMesh(mesh);
+  condition.nonManifoldVertices = 0;
+  if (!condition.manifold() || condition.nonFiniteVertices > 0) {
+    geometry::requireManifold(mesh, "surface");
+  }
+}
+
+void requireDiscWithHoles(const Disc& disc) {
+  const auto topology = geometry::buildTopology(disc.mesh.faces, disc.mesh.vertexCount());
+  const auto parts = geometry::faceComponents(disc.mesh.faces, disc.mesh.vertexCount());
+  const auto pieces = *std::max_element(parts.begin(), parts.end()) + 1;
+  if (pieces > 1) {
+    throw InvalidInput("surface: the part to be laid flat has " + std::to_string(pieces) +
+                       " pieces; give one of them, by --label or --cuts");
+  }
+  const auto euler = disc.mesh.vertexCount() - topology.edges.rows() + disc.mesh.faceCount();
+  const auto handles = (2 - static_cast<std::int64_t>(disc.holes.size()) - 1 - euler) / 2;
+  if (handles > 0) {
+    throw InvalidInput("surface: it has " + std::to_string(handles) +
+                       " handles, which no plane can hold; mend its topology, or cut them");
+  }
+}
+
+}  // namespace
+
+std::vector<Loop> boundaryLoops(const Faces& faces, Eigen::Index vertexCount) {
+  const auto topology = geometry::buildTopology(faces, vertexCount);
+  std::vector<std::int32_t> next(static_cast<std::size_t>(vertexCount), -1);
+  for (Eigen::Index f = 0; f < faces.rows(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      if (topology.edgeFaces(topology.faceEdges(f, k), 1) >= 0) continue;
+      next[faces(f, k)] = faces(f, (k + 1) % 3);
+    }
+  }
+  std::vector<Loop> loops;
+  std::vector<bool> done(next.size(), false);
+  for (std::size_t v = 0; v < next.size(); ++v) {
+    if (next[v] < 0 || done[v]) continue;
+    Loop loop;
+    for (auto at = static_cast<std::int32_t>(v); !done[at]; at = next[at]) {
+      done[at] = true;
+      loop.push_back(at);
+    }
+    loops.push_back(std::move(loop));
+  }
+  return loops;
+}
+
+Disc discOf(const TriangleMesh& mesh, std::span<const std::int32_t> faces) {
+  if (faces.empty()) throw InvalidInput("surface: no face to lay flat");
+  requireOriented(geometry::extractFaces(mesh, faces).mesh);
+  std::vector<std::int32_t> kept(faces.begin(), faces.end());
+  geometry::SubMesh part;
+  for (;;) {
+    part = geometry::extractFaces(mesh, kept);
+    const auto good = withoutPinches(part.mesh);
+    if (good.size() == kept.size()) break;
+    std::vector<std::int32_t> fewer;
+    for (const std::int32_t f : good) fewer.push_back(part.faceOrigin[f]);
+    kept = std::move(fewer);
+  }
+  Disc disc;
+  disc.trimmedFaces = faces.size() - kept.size();
+  disc.mesh = std::move(part.mesh);
+  disc.vertexOrigin = std::move(part.vertexOrigin);
+  disc.faceOrigin = std::move(part.faceOrigin);
+  auto loops = boundaryLoops(disc.mesh.faces, disc.mesh.vertexCount());
+  if (loops.empty()) {
+    throw InvalidInput(
+        "surface: it is closed, so that no plane can hold it; cut it (--cuts), or give a part of "
+        "it (--label)");
+  }
+  std::stable_sort(loops.begin(), loops.end(), [&](const Loop& a, const Loop& b) {
+    return lengthOf(a, disc.mesh.positions) > lengthOf(b, disc.mesh.positions);
+  });
+  disc.rim = std::move(loops.front());
+  disc.holes.assign(std::make_move_iterator(loops.begin() + 1),
+                    std::make_move_iterator(loops.end()));
+  requireDiscWithHoles(disc);
+  return disc;
+}
+
+}  // namespace explica::flattening

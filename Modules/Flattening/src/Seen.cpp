@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Flattening/Seen.h"
+
+#include "Explica/Flattening/Comparison.h"
+#include "Explica/Geometry/MeshMeasures.h"
+#include "Explica/Visibility/VisibleFraction.h"
+
+#include <cmath>
+#include <numeric>
+
+namespace explica::flattening {
+namespace {
+
+constexpr double kDistance = 3;  // of a viewpoint, over the surface's size
+
+/// Points spread evenly over the unit sphere, along a spiral of the golden angle.
+Vector onSphere(int n, int count) {
+  const double golden = kPi * (3 - std::sqrt(5.0));
+  const double z = 1 - (2 * n + 1.0) / count, radius = std::sqrt(1 - z * z);
+  return {radius * std::cos(golden * n), radius * std::sin(golden * n), z};
+}
+
+}  // namespace
+
+double seenShare(const TriangleMesh& mesh, int viewpoints) {
+  std::vector<std::int32_t> all(static_cast<std::size_t>(mesh.faceCount()));
+  std::iota(all.begin(), all.end(), 0);
+  Point low = Point::Constant(kInfinity), high = -low;
+  for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      low = low.cwiseMin(mesh.corner(f, k));
+      high = high.cwiseMax(mesh.corner(f, k));
+    }
+  }
+  const Point centre = (low + high) / 2;
+  const double distance = kDistance * (high - low).norm();
+  if (isFlatMap(mesh, all)) {
+    const Point above = centre + 100 * distance * Vector(0, 0, 1);
+    return visibility::visibleFraction(mesh, visibility::viewpoint(above)).total;
+  }
+  Eigen::VectorXd seen = Eigen::VectorXd::Zero(mesh.faceCount());
+  visibility::VisibleFractionOptions one;
+  one.subdivision = 1;
+  for (int n = 0; n < viewpoints; ++n) {
+    const auto view = visibility::viewpoint(centre + distance * onSphere(n, viewpoints));
+    seen = seen.cwiseMax(visibility::visibleFraction(mesh, view, one).face);
+  }
+  const Eigen::VectorXd areas = geometry::faceAreas(mesh);
+  return seen.dot(areas) / areas.sum();
+}
+
+}  // namespace explica::flattening

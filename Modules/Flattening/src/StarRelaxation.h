@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Flattening/MapEnergy.h"
+
+#include <vector>
+
+namespace explica::flattening {
+
+/// A face about a vertex that may move while the two others stay.
+struct StarFace {
+  RestFace rest;                  ///< gradient[0] is of the vertex that may move
+  Eigen::Vector2d second, third;  ///< the others, counter-clockwise after it
+};
+
+/// Sum over the star of area times mapDensity().
+[[nodiscard]] double starEnergy(const std::vector<StarFace>& star, double areaWeight,
+                                const Eigen::Vector2d& place);
+
+/// Moves the vertex downhill by damped Newton steps that keep every face positive.
+/// @param place  from where every face is positive
+[[nodiscard]] Eigen::Vector2d relaxedPlace(const std::vector<StarFace>& star, double areaWeight,
+                                           Eigen::Vector2d place, int maxSteps = 10);
+
+/// Rest shape of one face from its edge lengths, the first from corner 0 to corner 1.
+[[nodiscard]] RestFace restFace(const std::array<double, 3>& lengths, double smallestHeight,
+                                bool* raised = nullptr);
+
+}  // namespace explica::flattening

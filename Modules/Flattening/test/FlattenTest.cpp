@@ -1,0 +1,274 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Flattening/Flatten.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/Parallel.h"
+#include "Explica/Flattening/Comparison.h"
+#include "Explica/Flattening/RimContact.h"
+#include "Explica/Geometry/Fixtures.h"
+#include "Explica/Geometry/MeshMeasures.h"
+#include "Explica/Geometry/SelfIntersection.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+#include <random>
+
+namespace explica::flattening {
+namespace {
+
+std::vector<std::int32_t> everyFace(const TriangleMesh& mesh) {
+  std::vector<std::int32_t> faces(static_cast<std::size_t>(mesh.faceCount()));
+  std::iota(faces.begin(), faces.end(), 0);
+  return faces;
+}
+
+Disc wholeDisc(const TriangleMesh& mesh) {
+  return discOf(mesh, everyFace(mesh));
+}
+
+/// The faces of a mesh whose corners all satisfy a condition.
+template <class Condition>
+Disc partOf(const TriangleMesh& mesh, const Condition& condition) {
+  std::vector<std::int32_t> faces;
+  for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
+    if (condition(mesh.corner(f, 0)) && condition(mesh.corner(f, 1)) &&
+        condition(mesh.corner(f, 2))) {
+      faces.push_back(static_cast<std::int32_t>(f));
+    }
+  }
+  return discOf(mesh, faces);
+}
+
+TriangleMesh mapOf(const Disc& disc, const FlatMap& map) {
+  TriangleMesh flat{Positions::Zero(disc.mesh.vertexCount(), 3), disc.mesh.faces};
+  flat.positions.leftCols<2>() = map.positions;
+  return flat;
+}
+
+double largestStrain(const TriangleMesh& before, const TriangleMesh& after) {
+  double largest = 0;
+  for (Eigen::Index f = 0; f < before.faceCount(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      const double l0 = (before.corner(f, (k + 1) % 3) - before.corner(f, k)).norm();
+      const double l1 = (after.corner(f, (k + 1) % 3) - after.corner(f, k)).norm();
+      largest = std::max(largest, std::abs(l1 / l0 - 1));
+    }
+  }
+  return largest;
+}
+
+double meanAreaError(const TriangleMesh& before, const TriangleMesh& after) {
+  return (geometry::faceAreas(after).cwiseQuotient(geometry::faceAreas(before)).array() - 1)
+      .abs()
+      .mean();
+}
+
+void expectOneToOne(const Disc& disc, const FlatMap& map) {
+  EXPECT_EQ(map.turnedOver, 0);
+  EXPECT_EQ(map.rimCrossings, 0);
+  EXPECT_TRUE(geometry::findSelfIntersections(mapOf(disc, map)).empty());
+}
+
+/// Rolls the plane up: x becomes the angle of a cylinder.
+TriangleMesh onCylinder(TriangleMesh mesh, double radius) {
+  for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
+    const double angle = mesh.positions(v, 0) / radius;
+    mesh.positions.row(v) << radius * std::sin(angle), mesh.positions(v, 1),
+        radius * std::cos(angle);
+  }
+  return mesh;
+}
+
+FlattenOptions sharp() {
+  FlattenOptions options;
+  options.tolerance = 1e-12;
+  return options;
+}
+
+TEST(Flatten, APlanarPatchKeepsEveryLength) {
+  TriangleMesh mesh = geometry::makeRectangle(17, 11, 34, 20);
+  const Eigen::AngleAxisd turn(0.7, Vector(1, 2, 3).normalized());
+  mesh.positions = (mesh.positions * turn.toRotationMatrix().transpose()).eval();
+  const Disc disc = wholeDisc(mesh);
+  const FlatMap map = flatten(disc, sharp());
+  expectOneToOne(disc, map);
+  // Coordinates below 32 mm are written to 2e-6 mm, edges are 2 mm long.
+  EXPECT_LT(largestStrain(disc.mesh, mapOf(disc, map)), 4e-6);
+}
+
+TEST(Flatten, FacetsAroundACylinderUnrollWithoutStrain) {
+  // Rows of facets along the axis are flat strips, so that the faceted cylinder itself unrolls.
+  const TriangleMesh mesh = onCylinder(geometry::makeRectangle(40, 6, 50, 12), 20);
+  const Disc disc = wholeDisc(mesh);
+  const FlatMap map = flatten(disc, sharp());
+  expectOneToOne(disc, map);
+  EXPECT_LT(largestStrain(disc.mesh, mapOf(disc, map)), 1e-5);
+}
+
+TEST(Flatten, AFacetedConeUnrollsWithoutStrain) {
+  TriangleMesh mesh = geometry::makeRectangle(30, 8, 1.5, 10);
+  for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
+    // Straight generators from the tip: x is the angle about the axis, y the way from the tip.
+    const double angle = mesh.positions(v, 0), way = mesh.positions(v, 1) + 5;
+    mesh.positions.row(v) << 0.6 * way * std::cos(angle), 0.6 * way * std::sin(angle), -0.8 * way;
+  }
+  const Disc disc = wholeDisc(mesh);
+  const FlatMap map = flatten(disc, sharp());
+  expectOneToOne(disc, map);
+  EXPECT_LT(largestStrain(disc.mesh, mapOf(disc, map)), 1e-5);
+}
+
+TEST(Flatten, AHalfSphereKeepsAreasAndLiesBetweenTheKnownMaps) {
+  const Disc disc =
+      partOf(geometry::makeIcosphere(4, 20), [](const Point& p) { return p.z() > -0.1; });
+  const FlatMap map = flatten(disc);
+  expectOneToOne(disc, map);
+  const TriangleMesh flat = mapOf(disc, map);
+  EXPECT_LT(meanAreaError(disc.mesh, flat), 0.0101);
+  // Archimedes: the map of a half sphere that keeps areas is a disc of radius sqrt(2) r.
+  double rim = 0;
+  for (const std::int32_t v : disc.rim) rim += flat.positions.row(v).norm();
+  rim /= static_cast<double>(disc.rim.size());
+  EXPECT_NEAR(rim, std::sqrt(2.0) * 20, 0.02 * rim);
+}
+
+TEST(Flatten, AreasAreKeptBetterTheMoreIsAsked) {
+  const Disc disc =
+      partOf(geometry::makeFoldedSphere(5, 30, 0.2, 5), [](const Point& p) { return p.z() > 5; });
+  double before = kInfinity;
+  for (const double tolerance : {0.1, 0.03, 0.01}) {
+    FlattenOptions options;
+    options.areaTolerance = tolerance;
+    const FlatMap map = flatten(disc, options);
+    expectOneToOne(disc, map);
+    const double error = meanAreaError(disc.mesh, mapOf(disc, map));
+    EXPECT_LT(error, tolerance * 1.02);
+    EXPECT_LE(error, before);
+    before = error;
+  }
+}
+
+TEST(Flatten, ASphereWithASmallOpeningNeitherFoldsNorOverlaps) {
+  // Nine tenths of a sphere: the rim is far too short for what it encloses.
+  const Disc disc =
+      partOf(geometry::makeIcosphere(4, 10), [](const Point& p) { return p.z() > -8; });
+  FlattenOptions options;
+  options.areaTolerance = 0.3;
+  expectOneToOne(disc, flatten(disc, options));
+}
+
+TEST(Flatten, HolesStayOpenAndNothingLiesInThem) {
+  const Disc disc = partOf(geometry::makeFoldedSphere(4, 20, 0.1, 4), [](const Point& p) {
+    return p.z() > 2 && (p - Point(0, 0, 20)).norm() > 6;
+  });
+  ASSERT_EQ(disc.holes.size(), 1U);
+  const FlatMap map = flatten(disc);
+  expectOneToOne(disc, map);
+  EXPECT_LT(meanAreaError(disc.mesh, mapOf(disc, map)), 0.0101);
+}
+
+TEST(Flatten, ACombWhoseTeethCouldLandOnEachOtherStaysOneToOne) {
+  // A strip with deep cuts over a sphere: its teeth spread, and may not meet.
+  const Disc disc = partOf(geometry::makeIcosphere(5, 20), [](const Point& p) {
+    const double angle = std::atan2(p.y(), p.x());
+    return p.z() > -17 && (p.z() > 12 || std::abs(std::sin(3 * angle)) > 0.15);
+  });
+  FlattenOptions options;
+  options.areaTolerance = 0.05;
+  expectOneToOne(disc, flatten(disc, options));
+}
+
+TEST(Flatten, TheMapDoesNotDependOnTheNumberOfThreads) {
+  const Disc disc =
+      partOf(geometry::makeFoldedSphere(4, 30, 0.2, 5), [](const Point& p) { return p.z() > 5; });
+  const int before = threadCount();
+  setThreadCount(1);
+  const FlatMap one = flatten(disc);
+  setThreadCount(3);
+  const FlatMap three = flatten(disc);
+  setThreadCount(before);
+  EXPECT_TRUE(one.positions == three.positions);
+}
+
+TEST(Flatten, ScalesWithTheSurface) {
+  const TriangleMesh mesh = geometry::makeFoldedSphere(4, 32, 0.2, 5);
+  TriangleMesh small = mesh;
+  small.positions /= 64;
+  const auto top = [](double limit) { return [limit](const Point& p) { return p.z() > limit; }; };
+  const Disc disc = partOf(mesh, top(5)), tiny = partOf(small, top(5.0 / 64));
+  ASSERT_EQ(disc.faceOrigin, tiny.faceOrigin);
+  const FlatMap map = flatten(disc), scaled = flatten(tiny);
+  EXPECT_LT((map.positions - 64 * scaled.positions).cwiseAbs().maxCoeff(), 1e-4);
+}
+
+TEST(Flatten, PointsUpWhereTheReferenceDoes) {
+  TriangleMesh mesh = geometry::makeRectangle(10, 10, 20, 20);
+  for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {  // a wall seen from -x: z goes up
+    const double x = mesh.positions(v, 0), y = mesh.positions(v, 1);
+    mesh.positions.row(v) << 0, -x, y;
+  }
+  const Disc disc = wholeDisc(mesh);
+  const FlatMap map = flatten(disc);
+  const Eigen::VectorXd z = disc.mesh.positions.col(2).array() - 10;
+  EXPECT_LT((map.positions.col(1) - z).cwiseAbs().maxCoeff(), 1e-3);
+}
+
+TEST(Disc, WhatHangsOnByOneVertexIsLeftOutAndCounted) {
+  TriangleMesh mesh = geometry::makeRectangle(6, 6, 6, 6);
+  std::vector<std::int32_t> faces;
+  for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
+    Point middle = (mesh.corner(f, 0) + mesh.corner(f, 1) + mesh.corner(f, 2)) / 3;
+    const bool large = middle.x() < 4 && middle.y()<4, corner = middle.x()> 4 && middle.y() > 4;
+    if (large || corner) faces.push_back(static_cast<std::int32_t>(f));
+  }
+  const Disc disc = discOf(mesh, faces);
+  EXPECT_EQ(disc.mesh.faceCount(), 32);
+  EXPECT_EQ(disc.trimmedFaces, 8U);
+}
+
+TEST(Disc, RefusesWhatNoPlaneCanHold) {
+  EXPECT_THROW((void)wholeDisc(geometry::makeIcosphere(2)), InvalidInput);
+  EXPECT_THROW((void)discOf(geometry::makeIcosphere(2), {}), InvalidInput);
+  const TriangleMesh a = geometry::makeRectangle(3, 3, 3, 3);
+  EXPECT_THROW((void)wholeDisc(geometry::joined(a, a)), InvalidInput);
+  TriangleMesh torus = geometry::makeTorus(24, 12, 10, 3);
+  torus.faces = torus.faces.topRows(torus.faceCount() - 1).eval();
+  EXPECT_THROW((void)wholeDisc(torus), InvalidInput);
+}
+
+TEST(Flatten, RefusesASurfaceWithoutAreaAndOptionsOutOfRange) {
+  TriangleMesh mesh = geometry::makeRectangle(4, 4, 4, 4);
+  FlattenOptions options;
+  options.areaTolerance = 0;
+  EXPECT_THROW((void)flatten(wholeDisc(mesh), options), InvalidInput);
+  mesh.positions.col(0).setZero();
+  EXPECT_THROW((void)flatten(wholeDisc(mesh)), InvalidInput);
+}
+
+TEST(Flatten, NeedlesAndFacesOfNoAreaDoNotHinderTheRest) {
+  TriangleMesh mesh = geometry::makeRectangle(8, 8, 8, 8);
+  mesh.positions.row(40) = mesh.positions.row(41);  // two faces vanish, others become needles
+  const Disc disc = wholeDisc(mesh);
+  const FlatMap map = flatten(disc);
+  EXPECT_GE(map.raisedFaces, 2U);
+  expectOneToOne(disc, map);
+}
+
+TEST(RimCrossings, FindsCrossingsTouchesAndEdgesThatRunBack) {
+  FlatPositions flat(5, 2);
+  flat << 0, 0, 4, 0, 4, 4, 2, -1, 0, 4;
+  EXPECT_EQ(rimCrossings({0, 1, 2, 3, 4}, flat).size(), 2U);
+  flat.row(3) << 2, 0;  // touches the first edge
+  EXPECT_FALSE(rimCrossings({0, 1, 2, 3, 4}, flat).empty());
+  flat.row(3) << 2, 3;
+  EXPECT_TRUE(rimCrossings({0, 1, 2, 3, 4}, flat).empty());
+  flat << 0, 0, 4, 0, 4, 4, 4, 2, 0, 4;  // from the third to the fourth back along the second
+  EXPECT_FALSE(rimCrossings({0, 1, 2, 3, 4}, flat).empty());
+}
+
+}  // namespace
+}  // namespace explica::flattening

@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+// explica flatten and explica compare on surfaces of real heads.
+
+#include "Explica/Geometry/MeshTopology.h"
+#include "Explica/Geometry/SelfIntersection.h"
+#include "Explica/IO/SurfaceFile.h"
+#include "Explica/IO/VolumeFile.h"
+#include "Explica/Testing/Command.h"
+#include "RealSurfaces.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <sstream>
+
+namespace explica::testing {
+namespace {
+
+class FlattenCommand : public RealSurfaces {
+ protected:
+  /// The surface half way between white and pial, written into a folder.
+  static std::string middle(const TemporaryFolder& folder, const std::string& side) {
+    const auto surface = [&](const std::string& name) {
+      return io::readSurface(data() / "fsaverage5" / (name + "_" + side + ".gii.gz"));
+    };
+    io::LoadedSurface white = surface("white");
+    white.mesh.positions = ((white.mesh.positions + surface("pial").mesh.positions) / 2).eval();
+    io::writeGiftiSurface(folder / "mid.surf.gii", white.mesh, white.metadata);
+    return folder / "mid.surf.gii";
+  }
+
+  static std::string shipped(const std::string& side) {
+    return (data() / "fsaverage5" / ("flat_" + side + ".gii.gz")).string();
+  }
+
+  /// Rows of comparison.tsv by surface, columns by name.
+  static std::map<std::string, std::map<std::string, double>> table(const std::string& file) {
+    std::map<std::string, std::map<std::string, double>> rows;
+    std::istringstream lines(readText(file));
+    std::string line, word;
+    std::vector<std::string> header;
+    while (std::getline(lines, line)) {
+      std::istringstream words(line);
+      std::vector<std::string> row;
+      while (std::getline(words, word, '\t')) row.push_back(word);
+      if (header.empty()) {
+        header = row;
+        continue;
+      }
+      for (std::size_t n = 1; n < row.size(); ++n) rows[row[0]][header[n]] = std::stod(row[n]);
+    }
+    return rows;
+  }
+};
+
+class WholeHemisphere : public FlattenCommand, public ::testing::WithParamInterface<std::string> {};
+
+TEST_P(WholeHemisphere, WithTheShippedCutsKeepsDistancesBetterThanTheShippedMap) {
+  TemporaryFolder folder;
+  const std::string side = GetParam(), mid = middle(folder, side);
+  const auto made = explica({"flatten", mid, "--cuts", shipped(side), "--out", folder / "flat"});
+  ASSERT_EQ(made.exitCode, 0) << made;
+  const auto summary = readJson(folder / "flat/summary.json");
+  EXPECT_EQ(summary["turned_over"], 0);
+  EXPECT_EQ(summary["rim_crossings"], 0);
+  EXPECT_LT(summary["area_error_mean"], 0.05);
+  const auto compared = explica(
+      {"compare", mid, shipped(side), folder / "flat/flat.surf.gii", "--out", folder / "compared"});
+  ASSERT_EQ(compared.exitCode, 0) << compared;
+  auto rows = table(folder / "compared/comparison.tsv");
+  auto &ours = rows["flat.surf.gii"], &theirs = rows["flat_" + side + ".gii.gz"];
+  EXPECT_LT(ours["geodesic_error_local"], theirs["geodesic_error_local"]);
+  EXPECT_LT(ours["geodesic_error_all"], theirs["geodesic_error_all"]);
+  EXPECT_LT(ours["area_error_mean"], theirs["area_error_mean"]);
+  EXPECT_EQ(ours["crossings"], 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Fsaverage5, WholeHemisphere, ::testing::Values("left", "right"),
+                         [](const auto& row) { return row.param; });
+
+TEST_F(FlattenCommand, AnUnfoldedPatchIsMeasuredAgainstTheSurfaceThatItsRecordNames) {
+  TemporaryFolder folder;
+  const std::string mid = middle(folder, "left");
+  auto words = unfoldAbout(mid, Vector(-1, 0.2, 0.2), 25, "elastic");
+  words.insert(words.end(), {"--max-iterations", "2", "--out", folder / "unfolded"});
+  const auto unfolded = explica(words);
+  ASSERT_TRUE(unfolded.exitCode == 0 || unfolded.exitCode == 3) << unfolded;
+  for (const std::string name : {"white", "pial"}) {
+    const auto surface = io::readSurface(data() / "fsaverage5" / (name + "_left.gii.gz"));
+    io::writeGiftiSurface(folder / (name + ".surf.gii"), surface.mesh, surface.metadata);
+  }
+  const auto made = explica({"flatten", folder / "unfolded/unfolded.surf.gii", "--surfaces",
+                             folder.path().string(), "--grid", "1", "--out", folder / "flat"});
+  ASSERT_EQ(made.exitCode, 0) << made;
+  const auto summary = readJson(folder / "flat/summary.json");
+  EXPECT_EQ(summary["faces"], readJson(folder / "unfolded/summary.json")["region_faces"]);
+  EXPECT_LE(summary["area_error_mean"], 0.0101);
+  EXPECT_LT(summary["geodesic_error_local"], 0.052);
+
+  const auto flat = io::readSurface(folder / "flat/flat.surf.gii");
+  EXPECT_EQ(flat.metadata.geometricType, "Flat");
+  EXPECT_EQ(flat.mesh.vertexCount(), 10242);
+  EXPECT_TRUE((flat.mesh.positions.col(2).array() == 0).all());
+  EXPECT_TRUE(geometry::findSelfIntersections(flat.mesh).empty());
+  const auto patch = io::readSurface(folder / "flat/patch.surf.gii").mesh;
+  EXPECT_EQ(geometry::inspectMesh(patch).unusedVertices, 0);
+  io::VolumeReadOptions withNaN;
+  withNaN.allowNonFinite = true;
+  const auto grid = io::readVectors(folder / "flat/grid.nii.gz", withNaN).volume;
+  EXPECT_NEAR(grid.grid.spacing[0], 1, 1e-6);
+  EXPECT_NEAR(grid.grid.spacing[1], 1, 1e-6);
+  EXPECT_EQ(grid.grid.size[2], 5);
+}
+
+TEST_F(FlattenCommand, ClosedSurfacesAndStrangersAreRefusedWithARemedy) {
+  TemporaryFolder folder;
+  const std::string mid = middle(folder, "left");
+  const auto closed = explica({"flatten", mid, "--out", folder / "flat"});
+  EXPECT_EQ(closed.exitCode, 2);
+  EXPECT_NE(closed.err.find("--cuts"), std::string::npos) << closed;
+  const auto stranger =
+      explica({"compare", mid, individual().string(), "--out", folder / "compared"});
+  EXPECT_EQ(stranger.exitCode, 2);
+  EXPECT_NE(stranger.err.find("same vertices"), std::string::npos) << stranger;
+}
+
+}  // namespace
+}  // namespace explica::testing
