@@ -309,8 +309,10 @@ void writePatchTable(Context& context, const Settings& s, const flattening::Disc
   report::SurfacePaint paint;
   for (const std::string& path : s.maps) {
     for (const io::VertexMap& read : io::readVertexMaps(path, whole)) {
-      const std::string file = std::filesystem::path(path).stem().string();
-      maps.push_back({read.name.empty() ? file : read.name, atPatch(read.values, disc)});
+      // FreeSurfer's files name their maps with the folder they came from.
+      const std::string name =
+          std::filesystem::path(read.name.empty() ? path : read.name).filename().string();
+      maps.push_back({name, atPatch(read.values, disc)});
       if (maps.size() == 1) {
         paint.values = maps[0].values;
         paint.scale = report::scaleFor(paint.values, maps[0].name, read.unit);
