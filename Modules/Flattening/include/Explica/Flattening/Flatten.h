@@ -18,10 +18,10 @@ namespace explica::flattening {
 struct FlattenOptions {
   double areaTolerance = 0.01;  ///< mean relative area error to reach: w of mapDensity() rises
                                 ///< until the map has it
-  double contactRange = 0.2;  ///< rim edges nearer than this share of the mean edge repel
-  double tolerance = 1e-4;    ///< stop once a Newton step promises to lower the energy by less than
-                              ///< this share of it
-  int maxIterations = 200;    ///< Newton iterations at full resolution, > 0
+  double contactRange = 0.2;    ///< rim edges nearer than this share of the mean edge repel
+  double tolerance = 1e-4;  ///< stop once a Newton step promises to lower the energy by less than
+                            ///< this share of it
+  int maxIterations = 200;  ///< Newton iterations at full resolution, > 0
 };
 
 template <class Visitor>
