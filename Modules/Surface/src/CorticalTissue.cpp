@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <queue>
@@ -45,6 +46,41 @@ const Labels& unsidedLabels() {
 }
 
 using Histogram = std::map<Label, std::int64_t>;
+
+/// Labels from `first` to `last` that a parcellation puts in the place of one tissue's label.
+struct Parcels {
+  Side side;
+  bool white;
+  Label first, last;
+};
+
+/// Regions of FreeSurfer's `aparc+aseg`, `aparc.a2009s+aseg` and `wmparc`, and what wmparc leaves
+/// over of white matter.
+constexpr std::array kParcels = {
+    Parcels{Side::Left, false, 1000, 1035},  Parcels{Side::Left, false, 11100, 11175},
+    Parcels{Side::Right, false, 2000, 2035}, Parcels{Side::Right, false, 12100, 12175},
+    Parcels{Side::Left, true, 3000, 3035},   Parcels{Side::Left, true, 13100, 13175},
+    Parcels{Side::Right, true, 4000, 4035},  Parcels{Side::Right, true, 14100, 14175},
+    Parcels{Side::Left, true, 5001, 5001},   Parcels{Side::Right, true, 5002, 5002}};
+
+/// One tissue's label of a hemisphere, and the parcels that are present beside it or for it.
+Labels withParcels(const Histogram& histogram, Side side, bool white) {
+  const SidedLabels& own = freeSurferLabels(side);
+  Labels labels = white ? own.white : own.grey;
+  const std::size_t plain = labels.size();
+  for (const Parcels& parcels : kParcels) {
+    if (parcels.side != side || parcels.white != white) continue;
+    const auto end = histogram.upper_bound(parcels.last);
+    for (auto it = histogram.lower_bound(parcels.first); it != end; ++it) {
+      labels.push_back(it->first);
+    }
+  }
+  // With parcels the plain label need not be there.
+  if (labels.size() > plain) {
+    std::erase_if(labels, [&](Label label) { return !histogram.contains(label); });
+  }
+  return labels;
+}
 
 Histogram histogramOf(const Volume<Label>& labels) {
   Histogram counts;
@@ -96,7 +132,14 @@ LabelPreset guessPreset(const Histogram& histogram) {
   const auto has = [&](Label label) { return histogram.contains(label); };
   // FreeSurfer gives label 1 to nothing.
   if (has(1) && has(2) && has(3) && histogram.rbegin()->first <= 4) return LabelPreset::ThreeClass;
-  const bool freeSurfer = (has(2) && has(3)) || (has(41) && has(42));
+  const auto hasBoth = [&](Side side) {
+    const auto hasSome = [&](bool white) {
+      const Labels labels = withParcels(histogram, side, white);
+      return std::any_of(labels.begin(), labels.end(), has);
+    };
+    return hasSome(true) && hasSome(false);
+  };
+  const bool freeSurfer = hasBoth(Side::Left) || hasBoth(Side::Right);
   if (freeSurfer && (has(41) || has(10) || has(4))) {
     return has(10) || has(49) || has(4) || has(43) ? LabelPreset::Aseg : LabelPreset::Ribbon;
   }
@@ -398,8 +441,8 @@ CorticalTissue tissueFromLabels(const Volume<Label>& labels, const TissueOptions
   Labels insulated = options.insulated, unsided, otherWhite;
   bool split = false;
   if (sided) {
-    const std::int64_t left = countOf(histogram, freeSurferLabels(Side::Left).white);
-    const std::int64_t right = countOf(histogram, freeSurferLabels(Side::Right).white);
+    const std::int64_t left = countOf(histogram, withParcels(histogram, Side::Left, true));
+    const std::int64_t right = countOf(histogram, withParcels(histogram, Side::Right, true));
     if (!options.hemisphere && left > 0 && right > 0 && options.white.empty()) {
       throw InvalidInput("labels: both hemispheres are present (white matter " +
                          std::to_string(left) + " voxels left, " + std::to_string(right) +
@@ -407,19 +450,21 @@ CorticalTissue tissueFromLabels(const Volume<Label>& labels, const TissueOptions
     }
     const Side side = options.hemisphere.value_or(left > 0 ? Side::Left : Side::Right);
     const SidedLabels& own = freeSurferLabels(side);
-    const SidedLabels& other = freeSurferLabels(side == Side::Left ? Side::Right : Side::Left);
-    if (white.empty()) white = own.white;
-    if (grey.empty()) grey = own.grey;
+    const Side otherSide = side == Side::Left ? Side::Right : Side::Left;
+    const SidedLabels& other = freeSurferLabels(otherSide);
+    const Labels beyond = withParcels(histogram, otherSide, true);
+    if (white.empty()) white = withParcels(histogram, side, true);
+    if (grey.empty()) grey = withParcels(histogram, side, false);
     if (fill.empty() && preset == LabelPreset::Aseg && !options.noFill) {
       fill = own.fill;
       unsided = unsidedLabels();
     }
     if (insulated.empty()) {
-      insulated = other.white;
+      insulated = beyond;
       insulated.insert(insulated.end(), other.fill.begin(), other.fill.end());
       insulated.push_back(16);  // brain stem
     }
-    otherWhite = other.white;
+    otherWhite = beyond;
     otherWhite.insert(otherWhite.end(), other.fill.begin(), other.fill.end());
   } else if (preset == LabelPreset::ThreeClass) {
     if (white.empty()) white = {3};
@@ -533,7 +578,9 @@ CorticalTissue tissueFromLabels(const Volume<Label>& labels, const TissueOptions
   if (options.hemisphere) {
     result.structure = *options.hemisphere == Side::Left ? "CortexLeft" : "CortexRight";
   } else if (sided) {
-    result.structure = white.front() == 2 ? "CortexLeft" : "CortexRight";
+    const Labels left = withParcels(histogram, Side::Left, true);
+    const bool isLeft = std::find(left.begin(), left.end(), white.front()) != left.end();
+    result.structure = isLeft ? "CortexLeft" : "CortexRight";
   } else {
     result.structure = "Cortex";
   }

@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace explica::surface {
 namespace {
@@ -341,6 +342,35 @@ TEST(CorticalTissue, NamesWhatIsWrong) {
   EXPECT_THROW((void)tissueFromLabels(cut, options), InvalidInput);
   options.closeEdges = true;
   EXPECT_GT(tissueFromLabels(cut, options).whiteVoxels, 0);
+}
+
+TEST(CorticalTissue, ParcelsOfFreeSurferAreTheirTissue) {
+  // A ball of white matter with a ventricle in cortex, plain and in parcels.
+  struct Case {
+    Label white, otherWhite, grey, otherGrey;
+    Side side;
+  };
+  const Grid grid = lattice(40, Vector::Constant(1));
+  std::optional<CorticalTissue> plain;
+  for (const Case& c :
+       {Case{2, 2, 3, 3, Side::Left}, Case{2, 2, 1005, 1022, Side::Left},
+        Case{3005, 5001, 1005, 1022, Side::Left}, Case{2, 2, 11101, 11175, Side::Left},
+        Case{41, 41, 2005, 2022, Side::Right}, Case{41, 4007, 12110, 42, Side::Right}}) {
+    const Label ventricle = c.side == Side::Left ? 4 : 43;
+    const auto labels = volumeOf(grid, [&](const Point& p) -> Label {
+      const double r = p.norm();
+      if (r < 4) return ventricle;
+      if (r < 12) return p.x() < 0 ? c.white : c.otherWhite;
+      return r < 15 ? (p.y() < 0 ? c.grey : c.otherGrey) : 0;
+    });
+    const CorticalTissue tissue = tissueFromLabels(labels);
+    EXPECT_EQ(tissue.preset, LabelPreset::Aseg);
+    EXPECT_EQ(tissue.structure, c.side == Side::Left ? "CortexLeft" : "CortexRight");
+    if (!plain) plain = tissue;
+    EXPECT_EQ(tissue.greyVoxels, plain->greyVoxels);
+    EXPECT_EQ(tissue.filledVoxels, plain->filledVoxels);
+    EXPECT_EQ(tissue.white.data, plain->white.data);
+  }
 }
 
 TEST(CorticalTissue, CutsTwoHemispheresAtTheirBridge) {

@@ -22,7 +22,7 @@ enum class Side { Left, Right };
 /// What the labels of a volume mean.
 enum class LabelPreset {
   Auto,        ///< told by the labels that are present
-  Aseg,        ///< FreeSurfer's aseg, aparc+aseg; SynthSeg, FastSurfer
+  Aseg,        ///< FreeSurfer's aseg, aparc+aseg, aparc.a2009s+aseg, wmparc; SynthSeg, FastSurfer
   Ribbon,      ///< FreeSurfer's ribbon: 2, 3, 41, 42
   ThreeClass,  ///< 1 fluid, 2 grey, 3 white, 4 neither (a cut), as `explica segment` writes
   Wm,          ///< FreeSurfer's wm (5 and more are white) or filled (127 right, 255 left)
