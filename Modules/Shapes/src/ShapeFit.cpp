@@ -17,15 +17,16 @@ namespace {
 
 constexpr double kDifference = 1e-4;  // of the annulus' width: step of the differences for grad u
 constexpr double kRounding = 1e-3;    // of the width: distances below count as equal in the L1 sum
-constexpr double kLeastShare = 0.1;   // of the mean amplitude: keeps boundary values off 1/2
+constexpr double kLeastShare = 0.1;   // of the concentric shape: keeps boundary values off 1/2
 constexpr double kScaleWeight = 1e2;  // of the amplitudes' sum, against the fit's weights
-// Relative change of the symmetric difference at which a fit ends; in the plane iterations are
-// cheap.
-constexpr double kConvergedInPlane = 1e-3;
-constexpr double kConvergedInSpace = 1e-2;
-constexpr double kNear = 1e-3;    // mean distance, of the annulus' width: near enough
-constexpr int kMostSweeps = 400;  // of coordinate descent per iteration; the next one goes on
-constexpr double kSweepTolerance = 1e-7;  // largest change of an amplitude, against their mean
+constexpr double kSettled = 1e-5;     // largest change of a coefficient at which a fit ends
+// In space a target is faces, whose corners are no shape.
+constexpr double kSmootherInSpace = 1e3;
+constexpr int kMostExchanges =
+    100;                          // rounds of exchange between amplitudes at and above their bound
+constexpr int kPatience = 5;      // rounds without fewer wrong ones
+constexpr int kMostSweeps = 400;  // of coordinate descent, where exchange does not end
+constexpr double kSweepTolerance = 1e-9;
 
 /// Of a non-negative kernel of the angle g, by degree, mean 1: how much of Y_l a convolution with
 /// it leaves.  In the plane Fejer's, |sum of n + 1 exponentials|^2; in space its like, the square
@@ -56,10 +57,14 @@ std::vector<double> kernelFactors(int dimension, int order) {
   return factors;
 }
 
-/// Coefficients by Y_j of kernels about many directions spread evenly; perBoundary() x directions.
+/// Coefficients by Y_j of the constant 1 and of kernels about many directions spread evenly, all of
+/// mean 1; perBoundary() x (1 + directions).
 Eigen::MatrixXd bumps(const HarmonicAnnulus& annulus) {
   const int order = std::max(annulus.order, 1);
-  const int count = annulus.dimension == 2 ? std::max(2 * order, 8) : std::max(order * order, 32);
+  // As many as coefficients, so that without bounds the kernels' places do not matter; an even
+  // number in the plane, so that they lie symmetrically.
+  const int count =
+      annulus.dimension == 2 ? std::max(2 * order + 2, 8) : std::max((order + 1) * (order + 1), 32);
   const double golden = kPi * (3 - std::sqrt(5.0));
   Eigen::MatrixXd coefficients(annulus.perBoundary(), count);
   for (int b = 0; b < count; ++b) {
@@ -80,26 +85,71 @@ Eigen::MatrixXd bumps(const HarmonicAnnulus& annulus) {
     // cos and sin have the mean square 1/2.
     coefficients.row(k) *= (annulus.dimension == 2 && degree > 0 ? 2 : 1) * factors[degree];
   }
-  return coefficients;
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(coefficients.rows(), count + 1);
+  all(0, 0) = 1;
+  all.rightCols(count) = coefficients;
+  return all;
 }
 
-/// Least 1/2 x' G x - r' x with every x at least `least`, by coordinate descent from x.
-void descend(const Eigen::MatrixXd& gram, const Eigen::VectorXd& right, double least,
-             Eigen::VectorXd& x) {
+/// Lowers 1/2 x' G x - r' x with x at least `least` by coordinate descent.
+void descend(const Eigen::MatrixXd& gram, const Eigen::VectorXd& right,
+             const Eigen::VectorXd& least, Eigen::VectorXd& x) {
   Eigen::VectorXd residual = gram * x - right;
-  const double mean = x.mean();
   for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
     double largest = 0;
     for (Eigen::Index k = 0; k < x.size(); ++k) {
-      const double moved = std::max(least, x[k] - residual[k] / gram(k, k));
-      const double change = moved - x[k];
+      const double change = std::max(least[k], x[k] - residual[k] / gram(k, k)) - x[k];
       if (change == 0) continue;
       residual += change * gram.col(k);
-      x[k] = moved;
+      x[k] += change;
       largest = std::max(largest, std::abs(change));
     }
-    if (largest < kSweepTolerance * mean) break;
+    if (largest < kSweepTolerance) break;
   }
+}
+
+/// Least 1/2 x' G x - r' x over the unknowns that are not at their bound.
+Eigen::VectorXd withOpen(const Eigen::MatrixXd& gram, const Eigen::VectorXd& right,
+                         const Eigen::VectorXd& least, const std::vector<bool>& atBound) {
+  std::vector<Eigen::Index> open;
+  for (Eigen::Index k = 0; k < right.size(); ++k) {
+    if (!atBound[static_cast<std::size_t>(k)]) open.push_back(k);
+  }
+  Eigen::VectorXd x = least;
+  const Eigen::VectorXd load = right - gram * x;
+  const Eigen::VectorXd step = gram(open, open).ldlt().solve(Eigen::VectorXd(load(open)));
+  for (std::size_t q = 0; q < open.size(); ++q) x[open[q]] += step[static_cast<Eigen::Index>(q)];
+  return x;
+}
+
+/// Least 1/2 x' G x - r' x with x at least `least`, G positive definite: the one solution, by
+/// exchange of all unknowns that lie on the wrong side at once, or, if their number does not fall,
+/// of the last one only [Portugal1994]; where round-off keeps that from ending, by descent.
+Eigen::VectorXd leastWithBound(const Eigen::MatrixXd& gram, const Eigen::VectorXd& right,
+                               const Eigen::VectorXd& least) {
+  const auto n = static_cast<std::size_t>(right.size());
+  const double noise = 1e-12 * (1 + right.cwiseAbs().maxCoeff());
+  std::vector<bool> atBound(n, false);
+  std::size_t fewest = n + 1;
+  int patience = kPatience;
+  Eigen::VectorXd x;
+  for (int round = 0; round < kMostExchanges; ++round) {
+    x = withOpen(gram, right, least, atBound);
+    const Eigen::VectorXd slope = gram * x - right;
+    std::vector<std::size_t> wrong;
+    for (std::size_t k = 0; k < n; ++k) {
+      const auto at = static_cast<Eigen::Index>(k);
+      if (atBound[k] ? slope[at] < -noise : x[at] < least[at]) wrong.push_back(k);
+    }
+    if (wrong.empty()) return x;
+    patience = wrong.size() < fewest ? kPatience : patience - 1;
+    fewest = std::min(fewest, wrong.size());
+    if (patience < 0) wrong = {wrong.back()};
+    for (const std::size_t k : wrong) atBound[k] = !atBound[k];
+  }
+  x = x.cwiseMax(least);
+  descend(gram, right, least, x);
+  return x;
 }
 
 /// u = 1/2 - (sum of bumps on the inner) + (sum of bumps on the outer boundary), with positive
@@ -113,6 +163,7 @@ class Fit {
         total_(target.weights.sum()),
         width_(widthOf(annulus)),
         bumps_(bumps(annulus)),
+        roughness_(roughnessOf(annulus)),
         response_(responseAt(target.points)) {
     const double h = kDifference * width_;
     for (int axis = 0; axis < annulus.dimension; ++axis) {
@@ -124,9 +175,11 @@ class Fit {
     }
   }
 
-  /// Amplitudes of the concentric shape: 1/2 in all on either boundary.
+  /// Amplitudes of the concentric shape: 1/2 of the constant on either boundary.
   [[nodiscard]] Eigen::VectorXd initial() const {
-    return Eigen::VectorXd::Constant(2 * bumps_.cols(), 0.5 / static_cast<double>(bumps_.cols()));
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(2 * bumps_.cols());
+    x[0] = x[bumps_.cols()] = 0.5;
+    return x;
   }
 
   [[nodiscard]] HarmonicShape shapeOf(const Eigen::VectorXd& x) const {
@@ -157,15 +210,37 @@ class Fit {
     // Scaling u - 1/2 leaves the level where it is: the sum of all amplitudes is held at 1.
     gram.array() += kScaleWeight;
     Eigen::VectorXd right = Eigen::VectorXd::Constant(x.size(), kScaleWeight);
-    const double ridge = options_.smoothness * gram.trace() / static_cast<double>(x.size());
-    gram.diagonal().array() += ridge;
-    right += ridge * initial();
-    Eigen::VectorXd best = x;
-    descend(gram, right, kLeastShare * initial()[0], best);
-    return best;
+    // Of all that fit equally well the smoothest boundary values.
+    const double weight = (annulus_.dimension == 2 ? 1 : kSmootherInSpace) * options_.smoothness *
+                          gram.trace() / static_cast<double>(x.size());
+    const Eigen::Index n = bumps_.cols();
+    gram.topLeftCorner(n, n) += weight * roughness_;
+    gram.bottomRightCorner(n, n) += weight * roughness_;
+    // A constant is the constant, not a sum of bumps.
+    for (Eigen::Index k = 0; k < gram.rows(); ++k) {
+      if (k != 0 && k != n) gram(k, k) += weight;
+    }
+    return leastWithBound(gram, right, kLeastShare * initial());
+  }
+
+  /// Largest difference of a coefficient of two sets of amplitudes.
+  [[nodiscard]] double apart(const Eigen::VectorXd& x, const Eigen::VectorXd& y) const {
+    const Eigen::Index n = bumps_.cols();
+    return std::max((bumps_ * (x - y).head(n)).cwiseAbs().maxCoeff(),
+                    (bumps_ * (x - y).tail(n)).cwiseAbs().maxCoeff());
   }
 
  private:
+  /// sum over degrees of l^2 c_l^2: the mean square of the boundary values' slope.
+  [[nodiscard]] Eigen::MatrixXd roughnessOf(const HarmonicAnnulus& annulus) const {
+    Eigen::VectorXd squares(bumps_.rows());
+    for (Eigen::Index k = 0; k < squares.size(); ++k) {
+      const double l = degreeOf(annulus.dimension, static_cast<int>(k));
+      squares[k] = annulus.dimension == 2 ? l * l : l * (l + 1);
+    }
+    return bumps_.transpose() * squares.asDiagonal() * bumps_;
+  }
+
   /// u - 1/2 at points for unit amplitudes.
   [[nodiscard]] Eigen::MatrixXd responseAt(const Positions& points) const {
     const Eigen::MatrixXd basis = basisAt(annulus_, points);
@@ -188,6 +263,7 @@ class Fit {
   double total_;
   double width_;
   Eigen::MatrixXd bumps_;
+  Eigen::MatrixXd roughness_;            ///< of one boundary's values, by amplitudes
   Eigen::MatrixXd response_;             ///< P x amplitudes
   std::vector<Eigen::MatrixXd> slopes_;  ///< its derivatives along the axes
 };
@@ -232,19 +308,18 @@ ShapeFit fitShape(const HarmonicAnnulus& annulus, const TargetSamples& target,
   };
   record();
   result.termination = Termination::MaxIterations;
-  const double converged = annulus.dimension == 2 ? kConvergedInPlane : kConvergedInSpace;
   for (int k = 0; k < options.maxIterations; ++k) {
     if (monitor.shouldStop()) {
       result.termination = Termination::Interrupted;
       break;
     }
-    x += options.step * (fit.optimum(x) - x);
+    const Eigen::VectorXd wanted = fit.optimum(x);
+    const double apart = fit.apart(wanted, x);
+    // What remains of a step that halves the distance each time is as long as the step itself.
+    x = apart < kSettled ? wanted : Eigen::VectorXd(x + options.step * (wanted - x));
     record();
     monitor.progress(static_cast<double>(k + 1) / options.maxIterations, "fitting");
-    const double before = result.history[result.history.size() - 2].symmetricDifference;
-    const double now = result.history.back().symmetricDifference;
-    const bool near = result.history.back().distanceMean < kNear * widthOf(annulus);
-    if (k > 3 && (near || std::abs(before - now) < converged * now)) {
+    if (apart < kSettled) {
       result.termination = Termination::Converged;
       break;
     }

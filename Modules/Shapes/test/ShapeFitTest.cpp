@@ -143,6 +143,80 @@ TEST(ShapeFit, EveryConvexCombinationOfSurfacesIsOneClosedSurface) {
   }
 }
 
+/// Distances of a curve's vertices from the origin.
+std::pair<double, double> radiiOf(const planar::Curve& curve) {
+  const Eigen::VectorXd r = curve.positions.rowwise().norm();
+  return {r.minCoeff(), r.maxCoeff()};
+}
+
+TEST(ShapeFit, TheAverageOfTwoCirclesIsTheCircleOfTheirGeometricMean) {
+  for (const auto& [a, b] : {std::pair{18.0, 22.0}, {15.0, 25.0}}) {
+    std::vector<HarmonicShape> shapes;
+    for (const double r : {a, b}) {
+      shapes.push_back(fitShape(planeAnnulus(), samplesOf(planar::makeCircle(400, r), 600)).shape);
+    }
+    const auto curves = levelCurves(combine(shapes, {1, 1}), 200);
+    ASSERT_EQ(curves.size(), 1U);
+    const auto [low, high] = radiiOf(curves[0]);
+    EXPECT_NEAR(low, std::sqrt(a * b), 0.02);
+    EXPECT_NEAR(high, std::sqrt(a * b), 0.02);
+  }
+}
+
+TEST(ShapeFit, TheAverageOfTwoSpheresIsTheSphereOfTheirHarmonicMean) {
+  const HarmonicAnnulus annulus{3, Point::Zero(), 12, 30, 10};
+  std::vector<HarmonicShape> shapes;
+  for (const double r : {18.0, 22.0}) {
+    TriangleMesh sphere = geometry::makeIcosphere(4);
+    sphere.positions *= r / sphere.positions.row(0).norm();
+    shapes.push_back(fitShape(annulus, samplesOf(sphere, 1500)).shape);
+  }
+  const TriangleMesh mesh = levelSurface(combine(shapes, {1, 1}), 40);
+  const Eigen::VectorXd r = mesh.positions.rowwise().norm();
+  // The icosphere's faces lie up to 0.03 mm within the sphere.
+  EXPECT_NEAR(r.minCoeff(), 2 / (1 / 18.0 + 1 / 22.0), 0.06);
+  EXPECT_NEAR(r.maxCoeff(), 2 / (1 / 18.0 + 1 / 22.0), 0.06);
+}
+
+TEST(ShapeFit, ACurveAndItsMirrorImageAverageToAMirrorSymmetricCurve) {
+  const planar::Curve target = lobed(3, 0.2, 0.4);
+  planar::Curve mirrored = target;
+  mirrored.positions.col(1) *= -1;
+  mirrored.positions = Positions2(mirrored.positions.colwise().reverse());
+  const HarmonicShape average = combine({fitShape(planeAnnulus(), samplesOf(target, 600)).shape,
+                                         fitShape(planeAnnulus(), samplesOf(mirrored, 600)).shape},
+                                        {1, 1});
+  // Coefficients of sines: 2, 4, ...
+  for (Eigen::Index k = 2; k < average.inner.size(); k += 2) {
+    EXPECT_NEAR(average.inner[k], 0, 1e-3) << k;
+    EXPECT_NEAR(average.outer[k], 0, 1e-3) << k;
+  }
+  for (const planar::Curve& curve : levelCurves(average, 200)) {
+    planar::Curve other = curve;
+    other.positions.col(1) *= -1;
+    EXPECT_LT(distanceBetween(other, curve).max, 0.02);
+  }
+}
+
+TEST(ShapeFit, ATurnedTargetHasTheTurnedShapeWhateverItsSampling) {
+  const double turn = 0.7123;
+  const HarmonicShape straight = fitShape(planeAnnulus(), samplesOf(lobed(3, 0.2, 0), 600)).shape;
+  // radius 20 (1 + depth cos(3 t + phase)): turned by -phase / 3.
+  for (const int samples : {450, 600, 1000}) {
+    const HarmonicShape turned =
+        fitShape(planeAnnulus(), samplesOf(lobed(3, 0.2, -3 * turn), samples)).shape;
+    for (int n = 1; n <= 12; ++n) {
+      const Eigen::Index c = 2 * n - 1;
+      const double cosine = std::cos(n * turn), sine = std::sin(n * turn);
+      for (const auto part : {&HarmonicShape::inner, &HarmonicShape::outer}) {
+        const Eigen::VectorXd &a = straight.*part, &b = turned.*part;
+        EXPECT_NEAR(b[c], cosine * a[c] - sine * a[c + 1], 4e-3) << n << ' ' << samples;
+        EXPECT_NEAR(b[c + 1], sine * a[c] + cosine * a[c + 1], 4e-3) << n << ' ' << samples;
+      }
+    }
+  }
+}
+
 TEST(ShapeFit, CombinationAtACornerIsThatShape) {
   const HarmonicShape a = fitShape(planeAnnulus(), samplesOf(lobed(3, 0.2, 0), 300)).shape;
   const HarmonicShape b = fitShape(planeAnnulus(), samplesOf(lobed(4, 0.15, 0), 300)).shape;

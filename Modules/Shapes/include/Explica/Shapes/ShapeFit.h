@@ -44,8 +44,9 @@ void describe(AnnulusOptions& options, Visitor&& visit) {
 struct ShapeFitOptions {
   int samples = 2000;  ///< points of the target's boundary that are fitted; taken by the caller
   int maxIterations = 200;
-  double step = 0.5;         ///< share of the way to each iteration's optimum; 1 is the full step
-  double smoothness = 1e-9;  ///< pull to the concentric shape, against the fit's mean weight
+  double step = 0.5;          ///< share of the way to each iteration's optimum; 1 is the full step
+  double smoothness = 1e-9;  ///< weight of the boundary values' mean square slope, against the
+                              ///< fit's mean weight
 };
 
 template <class Visitor>
@@ -53,7 +54,8 @@ void describe(ShapeFitOptions& options, Visitor&& visit) {
   visit(Field{"samples", "", "points of each target's boundary that are fitted"}, options.samples);
   visit(Field{"max-iterations", "", "iterations of the fit"}, options.maxIterations);
   visit(Field{"fit-step", "", "share of the way to each iteration's optimum"}, options.step);
-  visit(Field{"smoothness", "", "pull of the amplitudes towards the concentric shape"},
+  visit(Field{"smoothness", "",
+              "weight of smooth boundary values, which settles what the target leaves open"},
         options.smoothness);
 }
 
@@ -73,12 +75,19 @@ struct ShapeFit {
 /// Finds the coefficients whose 1/2 level has the smallest set-symmetric difference to a target,
 /// starting from the concentric shape.
 ///
+/// A target says what u is on it, not elsewhere: each frequency has two boundary values and one
+/// equation.  Of all u that fit equally well the one with the smoothest boundary values is taken,
+/// with their means 1 apart.  It is unique (for given weights the problem is strictly convex), so
+/// that averages mean something: turned and mirrored targets have turned and mirrored
+/// coefficients, and circles of radii a and b average to that of radius sqrt(a b), spheres to that
+/// of radius 2 / (1/a + 1/b).
+///
 /// To first order the set between the level and the target is the integral over the target of the
 /// distance |u - 1/2| / |grad u|; its minimum is found by re-weighted least squares.  Unknowns are
-/// the positive amplitudes of bumps of boundary values, below 1/2 on the inner and above 1/2 on the
-/// outer boundary, so that the result and all its convex combinations are one closed component.
-/// The annulus should not be much wider than the target: details fade with the distance from a
-/// boundary.
+/// the positive amplitudes of a constant and of bumps of boundary values, below 1/2 on the inner
+/// and above 1/2 on the outer boundary, so that the result and all its convex combinations are one
+/// closed component. The annulus should not be much wider than the target: details fade with the
+/// distance from a boundary.
 /// @throws InvalidInput  a target point outside the annulus, or an option out of range
 [[nodiscard]] ShapeFit fitShape(const HarmonicAnnulus& annulus, const TargetSamples& target,
                                 const ShapeFitOptions& options = {}, const Monitor& monitor = {});
