@@ -38,7 +38,8 @@ void declare(Declaration& d, Settings& s) {
 Termination run(Context& context, const Settings& s) {
   const std::filesystem::path page =
       s.page ? std::filesystem::path(*s.page) : std::filesystem::path(s.folder) / "report.html";
-  writeTextFile(page, report::reportPage(pipeline::collectReport(s.folder, s.show, context.monitor())));
+  writeTextFile(page,
+                report::reportPage(pipeline::collectReport(s.folder, s.show, context.monitor())));
   context.info("wrote " + page.string());
   return Termination::NotRun;
 }

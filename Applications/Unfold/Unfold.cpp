@@ -145,7 +145,7 @@ std::string crossingsInWords(const std::vector<unfolding::Crossing>& list, std::
 /// long, and each frame a share of it.
 double timeToIterate(double limit, double start, const unfolding::UnfoldOptions& options) {
   constexpr double kFrameShare = 0.2;  // a frame is tested where it moved, and written
-  constexpr double kLeast = 1e-3;       // s: one look at the state, and it ends
+  constexpr double kLeast = 1e-3;      // s: one look at the state, and it ends
   return std::max(kLeast, limit - start * (3 + kFrameShare * options.frames));
 }
 

@@ -12,12 +12,12 @@ namespace explica::study {
 
 /// One row of the study table: a participant's hemisphere and its numbers by column.
 struct StudyRow {
-  std::string participant;                    ///< "sub-01" or "sub-01_ses-02"
-  std::string hemisphere;                     ///< "L" or "R"
-  std::string region;                         ///< of a study with several patches; may be empty
-  std::string state;                          ///< "done", "stopped early", "failed: ...", "implausible ..."
-  std::filesystem::path report;               ///< report.html, relative to the study; may be absent
-  std::filesystem::path thumbnail;            ///< a small picture of it, likewise
+  std::string participant;          ///< "sub-01" or "sub-01_ses-02"
+  std::string hemisphere;           ///< "L" or "R"
+  std::string region;               ///< of a study with several patches; may be empty
+  std::string state;                ///< "done", "stopped early", "failed: ...", "implausible ..."
+  std::filesystem::path report;     ///< report.html, relative to the study; may be absent
+  std::filesystem::path thumbnail;  ///< a small picture of it, likewise
   std::map<std::string, std::string> values;  ///< "surface.euler_characteristic" and so on;
                                               ///< "region.precuneus": mean thickness, mm
 };
