@@ -52,6 +52,15 @@ struct Settings {
   Invocation run;  ///< whose options are taken over
 };
 
+/// The hemispheres to do, each once.
+std::vector<pipeline::RunHemisphere> sidesOf(const Settings& s) {
+  using pipeline::RunHemisphere;
+  for (const RunHemisphere side : s.hemispheres) {
+    if (side == RunHemisphere::Both) return {RunHemisphere::Left, RunHemisphere::Right};
+  }
+  return s.hemispheres;
+}
+
 /// A name for the part of the work that the options ask for; empty for all of it.
 std::string shareOf(const Settings& s) {
   if (s.level != BidsLevel::Participant || s.participants.empty()) return {};
@@ -61,7 +70,7 @@ std::string shareOf(const Settings& s) {
   }
   std::string name;
   for (const std::string& label : labels) name += label + "_";
-  for (const auto side : s.hemispheres) name += std::string(nameOf(side)) + "_";
+  for (const auto side : sidesOf(s)) name += std::string(nameOf(side)) + "_";
   return provenance::sha256Of(name).substr(0, 16);
 }
 
@@ -126,7 +135,7 @@ Json givenOptions(const Context& context, const Settings& s) {
 
 /// Both hemispheres of labels without sides would be the same volume, twice.
 void requireSides(const Settings& s, const study::Participant& participant) {
-  if (s.hemispheres.size() < 2) return;
+  if (sidesOf(s).size() < 2) return;
   const study::SubjectFiles files = study::findSubjectFiles(participant.input);
   if (!files.labels || files.layout == study::SubjectLayout::FreeSurfer) return;
   if (files.left.white && files.right.white) return;
@@ -196,7 +205,7 @@ Termination doParticipants(Context& context, const Settings& s) {
   int done = 0;
   std::vector<std::string> failed;
   for (const study::Participant& participant : participants) {
-    for (const pipeline::RunHemisphere side : s.hemispheres) {
+    for (const pipeline::RunHemisphere side : sidesOf(s)) {
       if (context.monitor().shouldStop()) {
         worst = Termination::Interrupted;
         break;

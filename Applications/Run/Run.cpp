@@ -6,6 +6,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/IO/SurfaceFile.h"
+#include "Explica/Pipeline/Asymmetry.h"
 #include "Explica/Pipeline/FolderReport.h"
 #include "Explica/Pipeline/Plan.h"
 #include "Explica/Pipeline/RunState.h"
@@ -32,6 +33,7 @@ struct Settings {
   std::optional<std::string> atlas;
   pipeline::PlanOptions plan;
   bool resume = false;
+  std::vector<std::string> accept;
   std::vector<Invocation> steps;  ///< whose options are included, prefixed
 };
 
@@ -39,9 +41,11 @@ void declare(Declaration& d, Settings& s) {
   d.synopsis(
        "from a T1, label volume or FreeSurfer subject to an unfolded patch of cortex and a report")
       .description(
-          "Finds what there is to start from and says so: a FreeSurfer subject's ribbon or aseg, "
+          "Both hemispheres, where the input tells them apart. Finds what there is to start from "
+          "and says so: a FreeSurfer subject's ribbon or aseg, "
           "its white and pial surfaces and its regions; the same of fMRIPrep's and sMRIPrep's "
-          "anat folders; a T1 or a label volume. Surfaces that are there are taken over (unless "
+          "anat folders; a T1, with or without skull, or a label volume. Surfaces that are there "
+          "are taken over (unless "
           "--given-surfaces remake), others are made. Runs segment, thickness, surface and unfold "
           "in order, each into its own folder with its "
           "own "
@@ -53,32 +57,42 @@ void declare(Declaration& d, Settings& s) {
           "the step's name before it: --unfold.radius 30. With --resume, steps whose inputs, "
           "options and "
           "outputs are what their records say are not done again.")
-      .example("explica run ch2bet.nii.gz --atlas aal.nii.gz --out colin",
-               "Left hemisphere of a skull-stripped T1, all the way")
+      .example("explica run T1.nii.gz --out subject",
+               "Both hemispheres of a head as it comes from the scanner, all the way")
+      .example("explica run ch2bet.nii.gz --atlas aal.nii.gz --hemisphere L --out colin",
+               "Left hemisphere of a skull-stripped T1 with an atlas in its space")
       .example("explica run derivatives/sub-01/anat --hemisphere L --out sub-01-left",
                "What fMRIPrep has left of a subject")
       .example("explica run bert --hemisphere R --out bert-right",
                "A FreeSurfer subject's right hemisphere")
       .input("INPUT", FileKind::Any,
-             "skull-stripped T1, label volume, FreeSurfer subject directory, or BIDS anat folder",
-             s.input)
-      .inputOption("atlas", FileKind::LabelVolume,
-                   "labels in the input's space, as AAL's: tell a T1's hemispheres apart, and are "
-                   "the regions of regions.tsv",
-                   s.atlas)
+             "T1, label volume, FreeSurfer subject directory, or BIDS anat folder", s.input)
+      .inputOption(
+          "atlas", FileKind::LabelVolume,
+          "labels in the input's space, as AAL's: tell a T1's hemispheres apart instead of "
+          "a template's, and are the regions of regions.tsv",
+          s.atlas)
       .options("Run", s.plan)
       .option("Run",
               Field{"resume", "", "keep steps of an earlier run into --out that are still true"},
               s.resume)
+      .option("Run",
+              Field{"accept", "",
+                    "go on although this number is implausible, in whichever step; see segment"},
+              s.accept)
       .reuseOutputIf(s.resume)
       .inPlace()
       .varyingOutput("report.html", FileKind::Report, "everything to look at")
       .output("thumbnail.png", FileKind::Picture, "a small picture, for tables of many runs")
       .varyingOutput(pipeline::kRunStateName, FileKind::Any, "how each step went")
       .output("segment", FileKind::Folder, "tissues and hemisphere")
-      .output("thickness", FileKind::Folder, "harmonic interpolant, correspondences, thickness")
-      .output("surface", FileKind::Folder, "white, middle and pial surface")
-      .output("unfold", FileKind::Folder, "the unfolded patch and its evolution");
+      .output("thickness*", FileKind::Folder,
+              "harmonic interpolant, correspondences, thickness; -L and -R where both hemispheres "
+              "are done, as in the next two")
+      .output("surface*", FileKind::Folder, "white, middle and pial surface")
+      .output("unfold*", FileKind::Folder, "the unfolded patch and its evolution")
+      .output("asymmetry.tsv", FileKind::Table,
+              "of both hemispheres: thickness and area of each region, left and right");
   for (const char* name : kStepCommands) {
     const Command* command = findCommand(name);
     if (command == nullptr) continue;
@@ -93,6 +107,7 @@ Json valuesOf(const Context& context, const Settings& s, const pipeline::Planned
   for (const Invocation& invocation : s.steps) {
     if (invocation.declaration.name != step.command) continue;
     for (const Parameter& parameter : invocation.declaration.parameters) {
+      if (parameter.option.name == "accept" && !s.accept.empty()) values["accept"] = s.accept;
       if (parameter.positional || !context.given(step.command + "." + parameter.option.name))
         continue;
       values[parameter.option.name] = provenance::valueOf(parameter.option);
@@ -164,6 +179,14 @@ void takeBack(Context& context, const std::vector<pipeline::PlannedStep>& plan, 
   for (std::size_t n = 0; n < count; ++n) context.dropCommand(plan[n].name);
 }
 
+/// Left and right beside each other, once both have regions.
+void writeAsymmetry(Context& context, const fs::path& out) {
+  const fs::path left = out / "surface-L" / "regions.tsv";
+  const fs::path right = out / "surface-R" / "regions.tsv";
+  if (!fs::exists(left) || !fs::exists(right)) return;
+  writeTextFile(context.output("asymmetry.tsv"), pipeline::asymmetryTable(left, right));
+}
+
 /// The report must not be lost to a fault of its own.
 void writeReport(Context& context, const fs::path& out) {
   try {
@@ -183,7 +206,9 @@ pipeline::Plan planOrTakeBack(Context& context, const Settings& s) {
     return pipeline::planRun(s.input, context.outputFolder(), s.atlas, s.plan);
   } catch (const Error&) {
     if (s.resume) {
-      for (const char* step : kStepCommands) context.dropCommand(step);
+      for (const std::string step : kStepCommands) {
+        for (const char* ending : {"", "-L", "-R"}) context.dropCommand(step + ending);
+      }
     }
     throw;
   }
@@ -251,6 +276,7 @@ Termination run(Context& context, const Settings& s) {
   for (const auto& note : notes) {
     context.result(note.name, note.state == report::StepState::Done ? "done" : "stopped early");
   }
+  writeAsymmetry(context, out);
   if (withReport) {
     auto step = context.step("report");
     writeReport(context, out);

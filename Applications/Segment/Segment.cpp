@@ -5,52 +5,98 @@
 #include "Explica/Application/Plausible.h"
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
-#include "Explica/IO/LabelNames.h"
+#include "Explica/Core/WholeFile.h"
+#include "Explica/IO/TransformFile.h"
 #include "Explica/IO/VolumeFile.h"
+#include "Explica/Registration/HeadRegistration.h"
+#include "Explica/Registration/SkullStripping.h"
 #include "Explica/Segmentation/Hemisphere.h"
 #include "Explica/Segmentation/Plausibility.h"
 #include "Explica/Segmentation/Tissue.h"
+#include "TemplateFiles.h"
 
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
+#include <sstream>
+
+namespace explica::app {
+
+/// Whether a T1 has its skull.
+enum class Stripped { Yes, No, Auto };
+
+}  // namespace explica::app
+
+template <>
+struct explica::EnumNames<explica::app::Stripped> {
+  static constexpr std::array table{std::pair{app::Stripped::Yes, "yes"},
+                                    std::pair{app::Stripped::No, "no"},
+                                    std::pair{app::Stripped::Auto, "auto"}};
+};
 
 namespace explica::app {
 namespace {
+
+using segmentation::Side;
 
 struct Settings {
   std::string image;
   std::optional<std::string> mask;
   std::optional<std::string> atlas;
   std::optional<std::string> legend;
+  std::optional<std::string> headTemplate;
+  Stripped stripped = Stripped::Auto;
   io::VolumeReadOptions reading;
   segmentation::TissueOptions tissue;
-  segmentation::HemisphereOptions hemisphere;
+  segmentation::HemisphereOptions hemisphere{.side = Side::Both};
   std::vector<std::string> accept;
 };
 
+constexpr const char* kDescription =
+    "Brings a template (Colin27) into the image's space: an affine map by mutual information, then "
+    "a deformation. Its brain mask, corrected by the image, takes a head out of its skull; its "
+    "atlas says which voxels make a hemisphere. Three tissues are found by "
+    "expectation-maximisation of a mixture of pure and mixed voxels with a Markov prior, while a "
+    "smooth bias field is estimated and divided out. Each hemisphere's white matter is filled with "
+    "deep structures and ventricles, without cerebellum and brain stem; label 4 marks tissue cut "
+    "off at the midline and the stem. No template is needed for a skull-stripped image with an "
+    "atlas in its space. What cannot be a T1 is refused; numbers beyond what heads have are "
+    "flagged, exit code 3.";
+
+void declareOutputs(Declaration& d) {
+  d.output("seg.nii.gz", FileKind::LabelVolume, "1 fluid, 2 grey, 3 white, 0 outside")
+      .output("csf.nii.gz", FileKind::Volume, "share of fluid in each voxel")
+      .output("gm.nii.gz", FileKind::Volume, "share of grey matter in each voxel")
+      .output("wm.nii.gz", FileKind::Volume, "share of white matter in each voxel")
+      .output("bias.nii.gz", FileKind::Volume, "multiplicative bias field")
+      .output("brain_mask.nii.gz", FileKind::LabelVolume, "1 in the brain")
+      .output("atlas.nii.gz", FileKind::LabelVolume,
+              "with a template: its labels in the image's space")
+      .output("atlas.tsv", FileKind::Table, "with a template: what they are called")
+      .varyingOutput("to_template.h5", FileKind::Any,
+                     "with a template: ITK transform from the image's points to the template's")
+      .output("hemisphere.nii.gz", FileKind::LabelVolume,
+              "3 white matter, filled; 2 grey ribbon; 1 fluid; 4 cut tissue; 0 outside; of both "
+              "sides: 2, 3 left white and grey, 41, 42 right, as FreeSurfer's ribbon")
+      .output("white_share.nii.gz", FileKind::Volume, "0.5 is the white surface")
+      .output("tissue_share.nii.gz", FileKind::Volume, "0.5 is the pial surface")
+      .output("cut.nii.gz", FileKind::LabelVolume, "1 in cut tissue")
+      .output("left/*.nii.gz", FileKind::Volume, "the same four of the left side, if of both")
+      .output("right/*.nii.gz", FileKind::Volume, "and of the right side");
+}
+
 void declare(Declaration& d, Settings& s) {
-  d.synopsis("fluid, grey and white matter of a skull-stripped T1, and one hemisphere by an atlas")
-      .description(
-          "Finds three tissues by expectation-maximisation of a mixture of pure and mixed voxels "
-          "with a "
-          "Markov prior, while a smooth bias field is estimated and divided out. With an atlas in "
-          "the "
-          "image's space, such as AAL, one hemisphere is taken out, too: its white matter filled "
-          "with deep "
-          "structures and ventricles, without cerebellum and brain stem, and its grey ribbon; "
-          "label 4 "
-          "marks tissue cut off at the midline and the stem.")
+  d.synopsis("fluid, grey and white matter of a T1, with or without skull, and its hemispheres")
+      .description(kDescription)
       .reference(
           "Van Leemput, Maes, Vandermeulen, Suetens 1999, IEEE Trans. Med. Imaging 18(10):897-908")
       .reference("Santago, Gage 1993, IEEE Trans. Med. Imaging 12(3):566-574")
-      .example("explica segment ch2bet.nii.gz --out tissue", "Tissues of a skull-stripped head")
+      .reference("Studholme, Hill, Hawkes 1999, Pattern Recognition 32(1):71-86")
+      .reference("Avants, Epstein, Grossman, Gee 2008, Med. Image Anal. 12(1):26-41")
+      .example("explica segment T1.nii.gz --out tissue", "A head as it comes from the scanner")
       .example("explica segment ch2bet.nii.gz --atlas aal.nii.gz --hemisphere L --out tissue",
-               "The same, and the left hemisphere")
-      .input("T1", FileKind::Volume,
-             "skull-stripped T1-weighted image: the brain is where it is above 0", s.image)
+               "Left hemisphere of a skull-stripped image, by an atlas in its space")
+      .input("T1", FileKind::Volume, "T1-weighted image of a head", s.image)
       .inputOption("mask", FileKind::LabelVolume, "the brain is where this is not 0", s.mask)
       .inputOption("atlas", FileKind::LabelVolume, "labels in the space of the T1, as AAL's",
                    s.atlas)
@@ -59,38 +105,20 @@ void declare(Declaration& d, Settings& s) {
           "what the atlas's labels mean, one 'value name' a line (default: the .tsv or .nii.txt "
           "beside it; FreeSurfer's are known)",
           s.legend)
+      .option("Head",
+              Field{"template", "",
+                    "colin27 (default, of the package mricron-data), a folder with T1.nii.gz, "
+                    "brain.nii.gz and atlas.nii.gz, or none"},
+              s.headTemplate)
+      .option("Head", Field{"stripped", "", "whether the skull is off already"}, s.stripped)
       .options("Reading", s.reading)
       .options("Tissues", s.tissue)
       .options("Hemisphere", s.hemisphere);
   declareAccept(d, s.accept);
-  d.output("seg.nii.gz", FileKind::LabelVolume, "1 fluid, 2 grey, 3 white, 0 outside")
-      .output("csf.nii.gz", FileKind::Volume, "share of fluid in each voxel")
-      .output("gm.nii.gz", FileKind::Volume, "share of grey matter in each voxel")
-      .output("wm.nii.gz", FileKind::Volume, "share of white matter in each voxel")
-      .output("bias.nii.gz", FileKind::Volume, "multiplicative bias field")
-      .output(
-          "hemisphere.nii.gz", FileKind::LabelVolume,
-          "with --atlas: 3 white matter, filled; 2 grey ribbon; 1 fluid; 4 cut tissue; 0 outside")
-      .output("white_share.nii.gz", FileKind::Volume, "with --atlas: 0.5 is the white surface")
-      .output("cut.nii.gz", FileKind::LabelVolume, "with --atlas: 1 in cut tissue")
-      .output("tissue_share.nii.gz", FileKind::Volume, "with --atlas: 0.5 is the pial surface");
+  declareOutputs(d);
 }
 
-std::filesystem::path legendBeside(const std::filesystem::path& atlas) {
-  if (const auto legend = io::findLegend(atlas)) return *legend;
-  throw InvalidInput(atlas.string() +
-                     ": no legend (.tsv or .nii.txt) beside it; name one with --atlas-legend");
-}
-
-segmentation::AtlasLegend readLegend(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file)
-    throw IOError(path.string() +
-                  ": cannot be opened; name the atlas's legend with --atlas-legend");
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
-  return segmentation::parseAtlasLegend(text, path.string());
-}
-
+/// Labels in the image's space, and what they mean.
 struct Atlas {
   Volume<Label> labels;
   segmentation::AtlasLegend legend;
@@ -100,14 +128,12 @@ Atlas readAtlas(Context& context, const Settings& s, const io::VolumeReadOptions
                 const Grid& grid) {
   Atlas atlas;
   atlas.labels = readLabels(context, "atlas", *s.atlas, reading);
-  if (s.legend) {
-    atlas.legend = readLegend(*s.legend);
-  } else if (segmentation::isFreeSurferAtlas(atlas.labels)) {
+  if (!s.legend && segmentation::isFreeSurferAtlas(atlas.labels)) {
     context.info("atlas: FreeSurfer's labels");
     atlas.legend = segmentation::freeSurferLegend();
     segmentation::keepNamed(atlas.labels, atlas.legend);
   } else {
-    atlas.legend = readLegend(context.input(legendBeside(*s.atlas), "atlas-legend"));
+    atlas.legend = readAtlasLegend(context, *s.atlas, s.legend);
   }
   if (!sameGrid(atlas.labels.grid, grid)) {
     context.info("atlas: on another grid than the T1; each voxel takes the nearest label");
@@ -123,37 +149,132 @@ void refuseOtherImages(Judge& judge, const Volume<float>& image) {
                 segmentation::looksLikeLabels(image) ? segmentation::equalNeighbours(image) : 0.0);
 }
 
+/// The image where the mask is not 0.
+Volume<float> within(Volume<float> image, const Volume<Label>& mask) {
+  if (!sameGrid(mask.grid, image.grid)) {
+    throw InvalidInput("mask: lies on another grid than the T1; resample it to the T1's grid");
+  }
+  for (std::size_t v = 0; v < image.size(); ++v) {
+    if (mask[v] == 0) image[v] = 0;
+  }
+  return image;
+}
+
+/// The brain and its structures in the image's space.
+struct Head {
+  Volume<Label> mask;          ///< empty: the brain is where the image is above 0
+  std::optional<Atlas> atlas;  ///< nothing: hemispheres cannot be told
+  double brainShare = 1;       ///< volume of the template's brain over that of a human one
+};
+
+/// Volume of the brain's left half over that of the right one, by the template's midplane.
+double halvesOf(const Volume<Label>& mask, const registration::HeadTransform& transform) {
+  double left = 0;
+  double right = 0;
+  for (std::size_t v = 0; v < mask.size(); ++v) {
+    if (mask[v] == 0) continue;
+    const auto [i, j, k] = mask.grid.subscripts(v);
+    const Point at = transform.affine * mask.grid.toWorld(Vector(i, j, k));
+    (at.x() < 0 ? left : right) += 1;
+  }
+  return right > 0 ? left / right : kInfinity;
+}
+
+void writeTemplate(Context& context, const Atlas& atlas, Label stem,
+                   const registration::HeadTransform& transform) {
+  Volume<Label> labels = atlas.labels;
+  std::ostringstream legend;
+  legend << "index\tname\n";
+  for (const auto& [label, structure] : atlas.legend) {
+    if (label != stem) legend << label << '\t' << structure.name << '\n';
+  }
+  for (Label& label : labels.data) label = label == stem ? 0 : label;
+  io::writeVolume(context.output("atlas.nii.gz"), labels);
+  writeTextFile(context.output("atlas.tsv"), legend.str());
+  io::writeTransform(context.output("to_template.h5"), transform.affine, transform.displacement);
+}
+
+/// The template in the image's space: mask, atlas, and how well it fits.
+Head fitTemplate(Context& context, Judge& judge, const Settings& s, const LoadedTemplate& loaded,
+                 const Volume<float>& image, Volume<Label> mask) {
+  const bool stripped =
+      s.stripped == Stripped::Yes || mask.size() != 0 ||
+      (s.stripped == Stripped::Auto && registration::looksStripped(image, loaded.volumes));
+  context.result("stripped", stripped);
+  context.info(stripped ? "T1: without skull" : "T1: with skull, which is taken off");
+  auto step = context.step("template");
+  const Volume<float> seen = mask.size() != 0 ? within(image, mask) : image;
+  const auto found =
+      registration::registerHead(seen, loaded.volumes, stripped, {}, context.monitor());
+  context.result("registration_information", found.information);
+  context.result("registration_correlation", found.agreement.correlation);
+  context.result("registration_least_jacobian", found.agreement.leastJacobian);
+  judge.flag("registration", found.agreement.correlation);
+  Head head;
+  head.mask = std::move(mask);
+  if (!stripped) head.mask = registration::stripSkull(image, found.brain);
+  if (head.mask.size() == 0) {
+    head.mask = Volume<Label>(image.grid, 0);
+    for (std::size_t v = 0; v < image.size(); ++v) head.mask[v] = image[v] > 0 ? 1 : 0;
+  }
+  const double halves = halvesOf(head.mask, found.transform);
+  context.result("left_over_right", halves);
+  judge.flag("half-head", halves);
+  head.atlas =
+      Atlas{registration::pulled(loaded.volumes.atlas, found.transform, image.grid), loaded.legend};
+  writeTemplate(context, *head.atlas, loaded.stem, found.transform);
+  return head;
+}
+
+/// Finds out what is needed to know brain and hemispheres, and gets it.
+Head readHead(Context& context, Judge& judge, const Settings& s,
+              const io::VolumeReadOptions& reading, const Volume<float>& image) {
+  Volume<Label> mask;
+  if (s.mask) mask = readLabels(context, "mask", *s.mask, reading);
+  std::optional<Atlas> atlas;
+  if (s.atlas) atlas = readAtlas(context, s, reading, image.grid);
+  const std::string name = s.headTemplate.value_or("colin27");
+  // With an atlas in its space, an image is taken to be stripped unless it is said not to be.
+  const bool known = s.atlas && s.stripped != Stripped::No && !s.headTemplate;
+  if (name == "none" || known) return {std::move(mask), std::move(atlas), 1};
+  const auto loaded = readTemplate(context, name);
+  if (!loaded) {
+    if (s.headTemplate || s.stripped == Stripped::No) {
+      throw InvalidInput(
+          "template: colin27 is not installed; install the package mricron-data, or give a folder");
+    }
+    context.warn(
+        "no template: the package mricron-data is not installed; the image is taken to be without "
+        "skull, and its hemispheres cannot be told");
+    return {std::move(mask), std::move(atlas), 1};
+  }
+  Head head = fitTemplate(context, judge, s, *loaded, image, std::move(mask));
+  if (atlas) head.atlas = std::move(atlas);
+  // A template of another species brings its own size.
+  if (s.headTemplate) head.brainShare = registration::brainVolumeOf(loaded->volumes) / 1.7e6;
+  return head;
+}
+
 /// What a segmentation of a T1 cannot be.
-void judgeTissue(Context& context, Judge& judge, const segmentation::TissueSegmentation& tissue) {
+void judgeTissue(Context& context, Judge& judge, const segmentation::TissueSegmentation& tissue,
+                 double brainShare) {
   const double contrast = segmentation::rimContrast(tissue.labels);
   context.result("rim_contrast", contrast);
   judge.require("contrast", contrast);
   const double volume =
       static_cast<double>(tissue.brainVoxels) * tissue.labels.grid.voxelVolume() / 1000;
   context.result("brain_volume_ml", volume);
-  judge.flag("brain-volume", volume);
+  judge.flag("brain-volume", volume / std::min(1.0, brainShare));
   judge.flag("grey-share", tissue.classes[1].share);
   judge.flag("white-share", tissue.classes[2].share);
 }
 
-Termination run(Context& context, const Settings& s) {
-  Judge judge(context, s.accept);
-  io::VolumeReadOptions reading = s.reading;
-  reading.dimension = 3;
-  const Volume<float> image = readScalars(context, "T1", s.image, reading);
-  refuseOtherImages(judge, image);
-  Volume<Label> mask;
-  if (s.mask) mask = readLabels(context, "mask", *s.mask, reading);
-  Atlas atlas;
-  if (s.atlas) atlas = readAtlas(context, s, reading, image.grid);
-
-  segmentation::TissueSegmentation tissue;
-  {
-    auto step = context.step("tissue");
-    tissue = segmentation::segmentTissue(image, mask, s.tissue, context.monitor());
-    step.iterations(tissue.iterations);
-    step.termination(tissue.termination);
-  }
+segmentation::TissueSegmentation findTissue(Context& context, const Settings& s,
+                                            const Volume<float>& image, const Volume<Label>& mask) {
+  auto step = context.step("tissue");
+  auto tissue = segmentation::segmentTissue(image, mask, s.tissue, context.monitor());
+  step.iterations(tissue.iterations);
+  step.termination(tissue.termination);
   context.result("brain_voxels", tissue.brainVoxels);
   context.result("iterations", tissue.iterations);
   constexpr std::array<const char*, 3> kNames = {"csf", "grey", "white"};
@@ -162,36 +283,79 @@ Termination run(Context& context, const Settings& s) {
     context.result(std::string(kNames[k]) + "_deviation", tissue.classes[k].deviation);
     context.result(std::string(kNames[k]) + "_share", tissue.classes[k].share);
   }
+  return tissue;
+}
 
-  judgeTissue(context, judge, tissue);
+void writeHemisphere(Context& context, const std::string& folder,
+                     const segmentation::Hemisphere& hemisphere) {
+  const auto place = [&](const char* name) { return context.output(folder + name); };
+  io::writeVolume(place("hemisphere.nii.gz"), hemisphere.labels);
+  io::writeVolume(place("white_share.nii.gz"), hemisphere.whiteShare);
+  io::writeVolume(place("tissue_share.nii.gz"), hemisphere.tissueShare);
+  io::writeVolume(place("cut.nii.gz"), segmentation::maskOf(hemisphere.labels, segmentation::kCut));
+}
 
-  segmentation::Hemisphere hemisphere;
-  if (s.atlas) {
-    auto step = context.step("hemisphere");
-    hemisphere = segmentation::extractHemisphere(tissue, atlas.labels, atlas.legend, s.hemisphere,
-                                                 context.monitor());
-    context.result("hemisphere", std::string(nameOf(s.hemisphere.side)));
-    context.result("white_voxels", hemisphere.whiteVoxels);
-    context.result("grey_voxels", hemisphere.greyVoxels);
-    context.result("deep_voxels_filled", hemisphere.deepVoxels);
-    context.result("ventricle_voxels_filled", hemisphere.ventricleVoxels);
-    context.result("cavity_voxels_filled", hemisphere.cavityVoxels);
-    context.result("stray_voxels_dropped", hemisphere.strayVoxels);
+void countHemisphere(Context& context, const std::string& side,
+                     const segmentation::Hemisphere& hemisphere) {
+  context.result("white_voxels" + side, hemisphere.whiteVoxels);
+  context.result("grey_voxels" + side, hemisphere.greyVoxels);
+  context.result("deep_voxels_filled" + side, hemisphere.deepVoxels);
+  context.result("ventricle_voxels_filled" + side, hemisphere.ventricleVoxels);
+  context.result("cavity_voxels_filled" + side, hemisphere.cavityVoxels);
+  context.result("stray_voxels_dropped" + side, hemisphere.strayVoxels);
+}
+
+/// Both sides in one volume, with the numbers of FreeSurfer's ribbon.
+void addSide(Volume<Label>& both, const segmentation::Hemisphere& hemisphere, Side side) {
+  const Label shift = side == Side::Left ? 0 : 39;
+  for (std::size_t v = 0; v < both.size(); ++v) {
+    if (hemisphere.labels[v] == segmentation::kWhite) both[v] = 2 + shift;
+    if (hemisphere.labels[v] == segmentation::kGrey) both[v] = 3 + shift;
   }
+}
 
-  auto step = context.step("write");
-  io::writeVolume(context.output("seg.nii.gz"), tissue.labels);
-  io::writeVolume(context.output("csf.nii.gz"), tissue.probability[0]);
-  io::writeVolume(context.output("gm.nii.gz"), tissue.probability[1]);
-  io::writeVolume(context.output("wm.nii.gz"), tissue.probability[2]);
-  io::writeVolume(context.output("bias.nii.gz"), tissue.bias);
-  if (s.atlas) {
-    io::writeVolume(context.output("hemisphere.nii.gz"), hemisphere.labels);
-    io::writeVolume(context.output("white_share.nii.gz"), hemisphere.whiteShare);
-    io::writeVolume(context.output("tissue_share.nii.gz"), hemisphere.tissueShare);
-    io::writeVolume(context.output("cut.nii.gz"),
-                    segmentation::maskOf(hemisphere.labels, segmentation::kCut));
+void makeHemispheres(Context& context, const Settings& s,
+                     const segmentation::TissueSegmentation& tissue, const Atlas& atlas) {
+  auto step = context.step("hemisphere");
+  const bool both = s.hemisphere.side == Side::Both;
+  context.result("hemisphere", std::string(nameOf(s.hemisphere.side)));
+  Volume<Label> merged;
+  if (both) merged = Volume<Label>(tissue.labels.grid, 0);
+  for (const Side side : {Side::Left, Side::Right}) {
+    if (!both && side != s.hemisphere.side) continue;
+    segmentation::HemisphereOptions options = s.hemisphere;
+    options.side = side;
+    const auto hemisphere = segmentation::extractHemisphere(tissue, atlas.labels, atlas.legend,
+                                                            options, context.monitor());
+    const std::string folder = side == Side::Left ? "left/" : "right/";
+    countHemisphere(context, both ? (side == Side::Left ? "_left" : "_right") : "", hemisphere);
+    writeHemisphere(context, both ? folder : "", hemisphere);
+    if (both) addSide(merged, hemisphere, side);
   }
+  if (both) io::writeVolume(context.output("hemisphere.nii.gz"), merged);
+}
+
+Termination run(Context& context, const Settings& s) {
+  Judge judge(context, s.accept);
+  io::VolumeReadOptions reading = s.reading;
+  reading.dimension = 3;
+  const Volume<float> image = readScalars(context, "T1", s.image, reading);
+  refuseOtherImages(judge, image);
+  const Head head = readHead(context, judge, s, reading, image);
+  const segmentation::TissueSegmentation tissue = findTissue(context, s, image, head.mask);
+  judgeTissue(context, judge, tissue, head.brainShare);
+  {
+    auto step = context.step("write");
+    io::writeVolume(context.output("seg.nii.gz"), tissue.labels);
+    io::writeVolume(context.output("csf.nii.gz"), tissue.probability[0]);
+    io::writeVolume(context.output("gm.nii.gz"), tissue.probability[1]);
+    io::writeVolume(context.output("wm.nii.gz"), tissue.probability[2]);
+    io::writeVolume(context.output("bias.nii.gz"), tissue.bias);
+    Volume<Label> mask(image.grid, 0);
+    for (std::size_t v = 0; v < mask.size(); ++v) mask[v] = tissue.labels[v] != 0 ? 1 : 0;
+    io::writeVolume(context.output("brain_mask.nii.gz"), mask);
+  }
+  if (head.atlas) makeHemispheres(context, s, tissue, *head.atlas);
   return tissue.termination;
 }
 

@@ -44,7 +44,8 @@ Volume<float> ballHead(double radius, double spacing, const std::array<double, 3
 
 CommandResult segment(const TemporaryFolder& folder, const std::string& file,
                       const std::vector<std::string>& more = {}) {
-  return explica(std::vector<std::string>{"segment", folder / file, "--out", folder / "out"} +
+  return explica(std::vector<std::string>{"segment", folder / file, "--template", "none", "--out",
+                                          folder / "out"} +
                  more);
 }
 

@@ -248,12 +248,13 @@ TEST(Run, SurfacesOfTheAverageSubjectKeepTheirMeasures) {
   }
 }
 
-TEST(Run, AT1NeedsAnAtlas) {
+TEST(Run, AT1WithoutTemplateAndAtlasHasNoHemispheres) {
   TemporaryFolder folder;
   makePhantom(folder);
-  const auto run = explica({"run", folder / "phantom/t1.nii.gz", "--out", folder / "out"});
+  const auto run = explica({"run", folder / "phantom/t1.nii.gz", "--segment.template", "none",
+                            "--accept", "brain-volume", "--out", folder / "out"});
   EXPECT_EQ(run.exitCode, 2);
-  EXPECT_NE(run.err.find("--atlas"), std::string::npos) << run;
+  EXPECT_NE(run.err.find("hemisphere.nii.gz"), std::string::npos) << run;
 }
 
 }  // namespace

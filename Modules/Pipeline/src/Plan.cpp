@@ -237,11 +237,14 @@ study::SubjectFiles filesOf(const fs::path& input, const PlanOptions& options, I
 /// Puts the steps of one hemisphere together.
 class Planner {
  public:
-  Planner(study::SubjectFiles files, fs::path out, const PlanOptions& options)
+  /// @param ending  of the steps' names, where both hemispheres have some
+  Planner(study::SubjectFiles files, fs::path out, const PlanOptions& options, bool left,
+          std::string ending)
       : files_(std::move(files)),
         out_(std::move(out)),
         options_(options),
-        left_(options.hemisphere == RunHemisphere::Left) {}
+        left_(left),
+        ending_(std::move(ending)) {}
 
   Plan make(InputKind kind) {
     plan_.kind = kind;
@@ -272,19 +275,14 @@ class Planner {
     return left_ ? files_.right : files_.left;
   }
 
+  /// Where `segment` leaves this side.
+  [[nodiscard]] fs::path segmented() const { return out_ / "segment" / (left_ ? "left" : "right"); }
+
   void use(const std::string& role, const fs::path& path, const std::string& meaning = "") {
     plan_.sources.push_back({role, path, meaning});
   }
 
   void planSegment() {
-    const bool more = wanted(options_, RunStep::Thickness) || wanted(options_, RunStep::Surface) ||
-                      wanted(options_, RunStep::Unfold);
-    if (!files_.atlas && more) {
-      throw InvalidInput(
-          files_.t1->string() +
-          ": is taken for a T1, whose hemispheres an atlas must tell apart; give --atlas FILE in "
-          "its space, or --kind labels, or --steps segment,report");
-    }
     use("T1", *files_.t1);
     Json json = {{"T1", files_.t1->string()}};
     if (files_.mask) {
@@ -294,8 +292,8 @@ class Planner {
     if (files_.atlas) {
       use("atlas", *files_.atlas);
       json["atlas"] = files_.atlas->string();
-      json["hemisphere"] = left_ ? "L" : "R";
     }
+    json["hemisphere"] = "both";  // one and the same step for either side
     plan_.steps.push_back({"segment", "segment", {}, values(json)});
     labels_.naming = Naming::ThreeClass;
     needs_ = {"segment"};
@@ -307,9 +305,9 @@ class Planner {
           "there are no labels: the thickness of voxels and layers are left out");
       return;
     }
-    const fs::path labels = files_.labels ? *files_.labels : out_ / "segment" / "hemisphere.nii.gz";
-    plan_.steps.push_back(
-        {"thickness", "thickness", needs_, values(thicknessValues(labels, labels_, left_))});
+    const fs::path labels = files_.labels ? *files_.labels : segmented() / "hemisphere.nii.gz";
+    plan_.steps.push_back({"thickness" + ending_, "thickness", needs_,
+                           values(thicknessValues(labels, labels_, left_))});
   }
 
   void planSurface(bool given) {
@@ -321,7 +319,7 @@ class Planner {
       if (surfaces().mid) use("middle surface", *surfaces().mid);
       json = givenSurfaceValues(files_, left_);
     } else if (files_.t1) {
-      const fs::path segment = out_ / "segment";
+      const fs::path segment = segmented();
       json = {{"inner-level", (segment / "white_share.nii.gz").string()},
               {"outer-level", (segment / "tissue_share.nii.gz").string()},
               {"insulated-mask", (segment / "cut.nii.gz").string()},
@@ -336,22 +334,25 @@ class Planner {
     } else if (files_.atlas) {
       if (!files_.t1) use("regions", *files_.atlas);
       json["atlas"] = files_.atlas->string();
+    } else if (files_.t1 && !given) {
+      json["atlas"] = (out_ / "segment" / "atlas.nii.gz").string();
     }
-    plan_.steps.push_back({"surface", "surface", needs, values(json)});
+    plan_.steps.push_back({"surface" + ending_, "surface", needs, values(json)});
   }
 
   void planUnfold() {
     const std::string file = std::string(nameOf(options_.unfolded)) + ".surf.gii";
-    const Json json = {{"SURFACE", (out_ / "surface" / file).string()},
+    const Json json = {{"SURFACE", (out_ / ("surface" + ending_) / file).string()},
                        {"direction", {left_ ? -1 : 1, 0, 0}},
                        {"frames", kFrames}};
-    plan_.steps.push_back({"unfold", "unfold", {"surface"}, values(json)});
+    plan_.steps.push_back({"unfold" + ending_, "unfold", {"surface" + ending_}, values(json)});
   }
 
   study::SubjectFiles files_;
   fs::path out_;
   const PlanOptions& options_;
   bool left_;
+  std::string ending_;
   Plan plan_;
   NamedLabels labels_;
   std::vector<std::string> needs_;  ///< of steps that read what `segment` makes
@@ -386,12 +387,49 @@ bool labelsHaveSides(const fs::path& labels) {
   return naming == Naming::FreeSurfer || naming == Naming::Ribbon;
 }
 
+namespace {
+
+/// True if both hemispheres can be told from each other.
+bool hasBothSides(const study::SubjectFiles& files) {
+  if (files.left.white && files.right.white) return true;
+  if (files.labels) return labelsHaveSides(*files.labels);
+  return files.t1.has_value();
+}
+
+/// Adds what the plan for the other hemisphere has and this one lacks.
+void join(Plan& plan, Plan other) {
+  for (SourceFile& source : other.sources) {
+    const bool known = std::any_of(
+        plan.sources.begin(), plan.sources.end(),
+        [&](const SourceFile& s) { return s.role == source.role && s.path == source.path; });
+    if (!known) plan.sources.push_back(std::move(source));
+  }
+  for (std::string& remark : other.remarks) {
+    if (std::find(plan.remarks.begin(), plan.remarks.end(), remark) == plan.remarks.end())
+      plan.remarks.push_back(std::move(remark));
+  }
+  for (PlannedStep& step : other.steps) {
+    if (step.name != "segment") plan.steps.push_back(std::move(step));
+  }
+}
+
+}  // namespace
+
 Plan planRun(const fs::path& input, const fs::path& out, const std::optional<std::string>& atlas,
              const PlanOptions& options) {
   const InputKind kind = options.kind == InputKind::Auto ? detectKind(input) : options.kind;
   study::SubjectFiles files = filesOf(input, options, kind);
   if (atlas) files.atlas = *atlas;
-  return Planner(std::move(files), out, options).make(kind);
+  if (options.hemisphere == RunHemisphere::Both && hasBothSides(files)) {
+    Plan plan = Planner(files, out, options, true, "-L").make(kind);
+    join(plan, Planner(std::move(files), out, options, false, "-R").make(kind));
+    return plan;
+  }
+  const bool onlyRight = !files.left.white && files.right.white && !files.labels && !files.t1;
+  const bool left = options.hemisphere == RunHemisphere::Both
+                        ? !onlyRight
+                        : options.hemisphere == RunHemisphere::Left;
+  return Planner(std::move(files), out, options, left, "").make(kind);
 }
 
 Point outermostPoint(const TriangleMesh& mesh, const Vector& direction) {

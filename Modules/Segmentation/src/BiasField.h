@@ -21,4 +21,14 @@ struct BiasSamples {
 [[nodiscard]] std::vector<float> fitBiasField(const Grid& grid, const BiasSamples& samples,
                                               double width);
 
+/// A first field, without any classes: the smooth one whose removal makes the histogram of the
+/// logarithms sharpest [Sled1998], residuals added up as in [Tustison2010], smoothed by Gaussian
+/// windows.
+/// @param intensity  at the voxels
+/// @return multiplicative, geometric mean 1, at the voxels
+[[nodiscard]] std::vector<float> sharpenHistogram(const Grid& grid,
+                                                  const std::vector<std::size_t>& voxel,
+                                                  const std::vector<float>& intensity,
+                                                  double width);
+
 }  // namespace explica::segmentation

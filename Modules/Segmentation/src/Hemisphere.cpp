@@ -80,6 +80,13 @@ NearestAxis axisAlong(const Grid& grid, int world) {
 /// The brain stem: see extractHemisphere.
 VoxelSet findStem(const AtlasMap& map, const AtlasLegend& legend, const Volume<Label>& atlas) {
   const Grid& grid = atlas.grid;
+  const bool labelled = std::any_of(legend.begin(), legend.end(), [](const auto& entry) {
+    return entry.second.kind == StructureKind::Stem;
+  });
+  if (labelled) {
+    return setWhere(grid,
+                    [&](std::size_t v) { return map.kind[v] == kindCode(StructureKind::Stem); });
+  }
   std::vector<double> heights;
   for (std::size_t v = 0; v < atlas.size(); ++v) {
     if (map.kind[v] != kindCode(StructureKind::Deep)) continue;
@@ -154,7 +161,8 @@ Hemisphere extractHemisphere(const TissueSegmentation& tissue, const Volume<Labe
 
   const AtlasMap map = mapAtlas(atlas, legend);
   const auto cerebral = [&](std::size_t v) {
-    return map.kind[v] != 0 && map.kind[v] != kindCode(StructureKind::BelowTent);
+    return map.kind[v] != 0 && map.kind[v] != kindCode(StructureKind::BelowTent) &&
+           map.kind[v] != kindCode(StructureKind::Stem);
   };
   monitor.progress(0.1, "nearest atlas labels");
   const Volume<float> toSide = squaredDistanceTo(
@@ -282,6 +290,20 @@ Hemisphere extractHemisphere(const TissueSegmentation& tissue, const Volume<Labe
   }
   monitor.progress(1, "hemisphere");
   return result;
+}
+
+Label labelStem(Volume<Label>& atlas, AtlasLegend& legend) {
+  const VoxelSet stem = findStem(mapAtlas(atlas, legend), legend, atlas);
+  const Label label = legend.empty() ? 1 : legend.rbegin()->first + 1;
+  bool any = false;
+  for (std::size_t v = 0; v < stem.size(); ++v) {
+    if (stem[v] == 0) continue;
+    atlas[v] = label;
+    any = true;
+  }
+  if (!any) return 0;
+  legend[label] = {"Brain_Stem", Side::Both, StructureKind::Stem};
+  return label;
 }
 
 Volume<std::uint8_t> maskOf(const Volume<Label>& labels, Label label) {

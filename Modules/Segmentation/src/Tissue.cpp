@@ -318,7 +318,7 @@ TissueSegmentation segmentTissue(const Volume<float>& intensity, const Volume<La
   if (mask.size() != 0 && !sameGrid(mask.grid, intensity.grid)) {
     throw InvalidInput("mask: lies on another grid than the T1; resample it to the T1's grid");
   }
-  const Brain brain = packBrain(intensity, mask);
+  Brain brain = packBrain(intensity, mask);
   if (brain.size() < 100) {
     throw InvalidInput("T1: found " + std::to_string(brain.size()) +
                        " brain voxels (intensity above 0, or in the mask), expected a "
@@ -328,6 +328,13 @@ TissueSegmentation segmentTissue(const Volume<float>& intensity, const Volume<La
   TissueSegmentation result;
   result.brainVoxels = static_cast<std::int64_t>(brain.size());
   result.termination = Termination::MaxIterations;
+  // Classes of a strongly shaded image would take the shading for tissue and keep it: so it is
+  // taken off first, as far as it can be without classes.
+  std::vector<float> shading(brain.size(), 1.0f);
+  if (options.biasWidth > 0) {
+    shading = sharpenHistogram(intensity.grid, brain.voxel, brain.intensity, options.biasWidth);
+    for (std::size_t b = 0; b < brain.size(); ++b) brain.intensity[b] /= shading[b];
+  }
   Mixture mixture = firstGuess(brain);
 
   std::array<float, 6> weights;
@@ -392,7 +399,7 @@ TissueSegmentation segmentTissue(const Volume<float>& intensity, const Volume<La
     result.labels[v] = static_cast<Label>(std::max_element(shares[b].begin(), shares[b].end()) -
                                           shares[b].begin()) +
                        kCsf;
-    result.bias[v] = field[b];
+    result.bias[v] = shading[b] * field[b];
   }
   monitor.progress(1, "tissue classes");
   return result;

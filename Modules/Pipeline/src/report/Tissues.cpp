@@ -10,7 +10,7 @@ void showTissues(ResultFolder& results, const FolderReportOptions& options) {
   mosaic.perRow = options.slices;
   mosaic.convention = options.convention;
   for (const StepFolder* step : results.stepsOf("segment")) {
-    const bool half = step->has("hemisphere.nii.gz");
+    const bool half = step->has("hemisphere.nii.gz") && !step->has("left");
     const auto labels =
         io::readLabels(step->folder / (half ? "hemisphere.nii.gz" : "seg.nii.gz")).volume;
     results.content().mosaics.push_back(

@@ -20,7 +20,7 @@ namespace explica::pipeline {
 /// What a run starts from.
 enum class InputKind {
   Auto,        ///< told by the input itself, see detectKind
-  T1,          ///< skull-stripped T1-weighted volume
+  T1,          ///< T1-weighted volume, with or without skull
   Labels,      ///< label volume of white and grey matter
   FreeSurfer,  ///< subject directory of recon-all: mri, surf, label
   Bids         ///< anat folder of fMRIPrep, sMRIPrep or of segmentations
@@ -32,7 +32,7 @@ enum class GivenSurfaces {
   Remake  ///< make our own from the labels
 };
 
-enum class RunHemisphere { Left, Right };
+enum class RunHemisphere { Left, Right, Both };
 
 /// Which of the three surfaces is unfolded.
 enum class UnfoldedSurface { White, Mid, Pial };
@@ -43,7 +43,7 @@ enum class RunStep { Segment, Thickness, Surface, Unfold, Report };
 /// How a run is put together; the steps' own options come on top.
 struct PlanOptions {
   InputKind kind = InputKind::Auto;
-  RunHemisphere hemisphere = RunHemisphere::Left;
+  RunHemisphere hemisphere = RunHemisphere::Both;
   UnfoldedSurface unfolded = UnfoldedSurface::Mid;
   GivenSurfaces given = GivenSurfaces::Use;
   std::vector<RunStep> steps;  ///< those to do; empty for all that the input allows
@@ -52,7 +52,9 @@ struct PlanOptions {
 template <class Visitor>
 void describe(PlanOptions& options, Visitor&& visit) {
   visit(Field{"kind", "", "what the input is"}, options.kind);
-  visit(Field{"hemisphere", "", "which hemisphere to work on"}, options.hemisphere);
+  visit(
+      Field{"hemisphere", "", "which hemisphere to work on; both where the input tells them apart"},
+      options.hemisphere);
   visit(Field{"unfold-surface", "", "which surface to unfold a patch of"}, options.unfolded);
   visit(Field{"given-surfaces", "", "what to do with white and pial surfaces found in the input"},
         options.given);
@@ -98,11 +100,13 @@ struct Plan {
 /// touches both others most, so that fMRIPrep's order (1 grey, 2 white, 3 fluid) and ours
 /// (1 fluid, 2 grey, 3 white) are both understood.
 ///
+/// With both hemispheres, the steps after `segment` come twice, their names ending in -L and -R; an
+/// input that does not tell the sides apart has one set of steps, without ending.
+///
 /// @param out    where the steps' folders will be
-/// @param atlas  for a T1: labels in its space, without which only the whole brain's tissues can be
-///               had; otherwise regions to report, instead of those found with the input
-/// @throws InvalidInput  a T1 without atlas where more than segmentation is asked for, a step that
-///                       the input does not allow
+/// @param atlas  for a T1: labels in its space, instead of a template's brought there; otherwise
+///               regions to report, instead of those found with the input
+/// @throws InvalidInput  a step that the input does not allow
 [[nodiscard]] Plan planRun(const std::filesystem::path& input, const std::filesystem::path& out,
                            const std::optional<std::string>& atlas, const PlanOptions& options);
 
@@ -130,7 +134,8 @@ struct EnumNames<pipeline::GivenSurfaces> {
 template <>
 struct EnumNames<pipeline::RunHemisphere> {
   static constexpr std::array table = {std::pair{pipeline::RunHemisphere::Left, "L"},
-                                       std::pair{pipeline::RunHemisphere::Right, "R"}};
+                                       std::pair{pipeline::RunHemisphere::Right, "R"},
+                                       std::pair{pipeline::RunHemisphere::Both, "both"}};
 };
 template <>
 struct EnumNames<pipeline::UnfoldedSurface> {

@@ -18,6 +18,7 @@ enum class StructureKind {
   Cortex,     ///< part of the folded ribbon
   Deep,       ///< enclosed by the white surface: basal ganglia, thalamus, hippocampus, amygdala
   BelowTent,  ///< cerebellum, vermis, brain stem: left out
+  Stem,       ///< brain stem: cut off
   White       ///< white matter of a hemisphere: tells only the side
 };
 

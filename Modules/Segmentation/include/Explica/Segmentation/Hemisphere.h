@@ -61,8 +61,9 @@ struct Hemisphere {
 /// brain stem, which AAL does not label, is what lies unlabelled below the thalamus and between the
 /// medial borders of the left and right hippocampus, amygdala, parahippocampal, lingual and
 /// fusiform labels in the same coronal plane; so the image's axes must be near the atlas's (RAS
-/// within about 20 degrees). Ventricles are unlabelled non-white voxels at least `coreDepth` from
-/// cortical labels whose component touches a deep structure and not the brain's outside.
+/// within about 20 degrees), unless it is labelled. Ventricles are unlabelled non-white voxels at
+/// least `coreDepth` from cortical labels whose component touches a deep structure and not the
+/// brain's outside.
 ///
 /// @param atlas  labels on the segmentation's grid; 0 is unlabelled
 /// @throws InvalidInput  atlas on another grid, side Both, no white or no grey voxel found
@@ -70,6 +71,11 @@ struct Hemisphere {
                                            const Volume<Label>& atlas, const AtlasLegend& legend,
                                            const HemisphereOptions& options = {},
                                            const Monitor& monitor = {});
+
+/// Gives the brain stem of an atlas that does not label it a label of its own (see
+/// extractHemisphere), so that it stays known where the atlas is turned or bent.
+/// @return the label; 0 if there is none, because the atlas has no thalamus
+Label labelStem(Volume<Label>& atlas, AtlasLegend& legend);
 
 /// 1 where a label is, 0 elsewhere.
 [[nodiscard]] Volume<std::uint8_t> maskOf(const Volume<Label>& labels, Label label);

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Core/Monitor.h"
+#include "Explica/Registration/Deformation.h"
+#include "Explica/Registration/HeadTransform.h"
+
+namespace explica::registration {
+
+/// A head of which brain and structures are known; all volumes on one grid.
+struct Template {
+  Volume<float> head;   ///< T1 with skull; empty if there is none
+  Volume<float> brain;  ///< T1 without skull: 0 outside the brain
+  Volume<Label> atlas;  ///< labels of structures
+};
+
+/// How a template lies in an image.
+struct HeadRegistration {
+  HeadTransform transform;
+  double information = 0;  ///< of the affine part, 1 to 2
+  Agreement agreement;     ///< of the whole
+  Volume<float> brain;     ///< the template's brain mask on the image's grid, 0 to 1
+};
+
+/// Volume of the template's brain, mm^3.
+[[nodiscard]] double brainVolumeOf(const Template& head);
+
+/// True if the image has no skull: what lies above 0 is not much more than the template's brain.
+[[nodiscard]] bool looksStripped(const Volume<float>& image, const Template& head);
+
+/// Brings a template into the image's space: affinely, then by a deformation.
+/// @param stripped  the image has no skull: it is compared with the template's brain alone
+/// @throws InvalidInput  a head with skull for a template without, an image without contrast
+[[nodiscard]] HeadRegistration registerHead(const Volume<float>& image, const Template& head,
+                                            bool stripped, const DeformationOptions& options = {},
+                                            const Monitor& monitor = {});
+
+}  // namespace explica::registration

@@ -1,0 +1,357 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Explica/Registration/AffineRegistration.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/Parallel.h"
+#include "Filters.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace explica::registration {
+namespace {
+
+constexpr int kBins = 32;
+constexpr std::size_t kGrain = 4096;
+constexpr int kParameters = 12;
+constexpr double kImageShare = 0.75;  // the image's voxels, of the template's points' distance
+
+/// Translation mm, rotation rad, logarithm of scale, shear, about the region's centre.
+using Parameters = Eigen::Matrix<double, kParameters, 1>;
+
+// A step along each parameter moves the brain's surface by a few millimetres.
+Parameters firstSteps() {
+  Parameters steps;
+  steps << 6, 6, 6, 0.08, 0.08, 0.08, 0.06, 0.06, 0.06, 0.04, 0.04, 0.04;
+  return steps;
+}
+
+Eigen::Affine3d mapOf(const Parameters& p, const Point& from, const Point& to) {
+  const Eigen::Matrix3d rotation =
+      (Eigen::AngleAxisd(p[3], Vector::UnitX()) * Eigen::AngleAxisd(p[4], Vector::UnitY()) *
+       Eigen::AngleAxisd(p[5], Vector::UnitZ()))
+          .toRotationMatrix();
+  Eigen::Matrix3d scale = Eigen::Matrix3d::Zero();
+  for (int a = 0; a < 3; ++a) scale(a, a) = std::exp(p[6 + a]);
+  Eigen::Matrix3d shear = Eigen::Matrix3d::Identity();
+  shear(0, 1) = p[9];
+  shear(0, 2) = p[10];
+  shear(1, 2) = p[11];
+  Eigen::Affine3d map = Eigen::Affine3d::Identity();
+  map.linear() = rotation * shear * scale;
+  map.translation() = to + p.head<3>() - map.linear() * from;
+  return map;
+}
+
+/// From low to high in kBins steps; what lies beyond counts as the last.
+struct Binning {
+  float low = 0;
+  float scale = 1;
+  [[nodiscard]] float operator()(float value) const {
+    return std::clamp((value - low) * scale, 0.0f, kBins - 1.001f);
+  }
+};
+
+Binning binningOf(std::vector<float> values) {
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(0.995 * (values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  const float high = *at;
+  const float low = *std::min_element(values.begin(), values.end());
+  return {low, high > low ? (kBins - 1) / (high - low) : 0.0f};
+}
+
+/// What one resolution needs: the image, and the template's points with their bins.
+struct Level {
+  Volume<float> image;
+  Binning binning;
+  std::vector<Eigen::Vector3d> point;
+  std::vector<std::uint8_t> bin;
+};
+
+struct Counts {
+  std::array<double, kBins * kBins> n{};
+  Counts& operator+=(const Counts& other) {
+    for (std::size_t b = 0; b < n.size(); ++b) n[b] += other.n[b];
+    return *this;
+  }
+};
+
+double entropy(const double* n, std::size_t count, double total) {
+  double sum = 0;
+  for (std::size_t b = 0; b < count; ++b) {
+    if (n[b] > 0) sum -= n[b] / total * std::log(n[b] / total);
+  }
+  return sum;
+}
+
+double information(const Level& level, const Eigen::Affine3d& map) {
+  // World point to index of the image, in one product.
+  const Grid& grid = level.image.grid;
+  Eigen::Affine3d toIndex = Eigen::Affine3d::Identity();
+  toIndex.linear() = grid.spacing.cwiseInverse().asDiagonal() * grid.direction.transpose();
+  toIndex.translation() = -(toIndex.linear() * grid.origin);
+  const Eigen::Affine3d whole = toIndex * map;
+  const Counts counts =
+      parallelSum(level.point.size(), kGrain, Counts{}, [&](std::size_t begin, std::size_t end) {
+        Counts part;
+        for (std::size_t s = begin; s < end; ++s) {
+          const float x = level.binning(valueAt(level.image, whole * level.point[s]));
+          const int cell = static_cast<int>(x);
+          const double share = x - static_cast<float>(cell);
+          double* row = part.n.data() + static_cast<std::size_t>(level.bin[s]) * kBins;
+          row[cell] += 1 - share;
+          row[cell + 1] += share;
+        }
+        return part;
+      });
+  std::array<double, kBins> ofTemplate{}, ofImage{};
+  double total = 0;
+  for (int t = 0; t < kBins; ++t) {
+    for (int i = 0; i < kBins; ++i) {
+      const double n = counts.n[t * kBins + i];
+      ofTemplate[t] += n;
+      ofImage[i] += n;
+      total += n;
+    }
+  }
+  const double joint = entropy(counts.n.data(), counts.n.size(), total);
+  if (!(joint > 0)) return 1;
+  return (entropy(ofTemplate.data(), kBins, total) + entropy(ofImage.data(), kBins, total)) / joint;
+}
+
+/// The whole volume in cubes of this size.
+Volume<float> inCubes(const Volume<float>& volume, double spacing) {
+  const auto& n = volume.grid.size;
+  const Vector last(n[0] - 1, n[1] - 1, n[2] - 1);
+  return resampled(volume, cubicGrid(volume.grid, Vector::Zero(), last, spacing));
+}
+
+Level makeLevel(const Volume<float>& image, const Volume<float>& inTemplate,
+                const Volume<float>& region, double spacing) {
+  Level level;
+  level.image = inCubes(image, kImageShare * spacing);
+  const Volume<float> coarse = inCubes(inTemplate, spacing);
+  std::vector<float> values;
+  for (std::size_t v = 0; v < coarse.size(); ++v) {
+    const auto [i, j, k] = coarse.grid.subscripts(v);
+    const Point at = coarse.grid.toWorld(Vector(i, j, k));
+    if (valueAt(region, region.grid.toIndex(at)) <= 0.5f) continue;
+    level.point.push_back(at);
+    values.push_back(coarse[v]);
+  }
+  if (level.point.size() < 100) throw InvalidInput("template: its brain mask is empty");
+  const Binning binning = binningOf(values);
+  for (const float value : values) {
+    level.bin.push_back(static_cast<std::uint8_t>(std::lround(binning(value))));
+  }
+  level.binning = binningOf(level.image.data);
+  if (level.binning.scale == 0) throw InvalidInput("T1: holds one value only");
+  return level;
+}
+
+/// The best step along a direction, by doubling and parabolas [Powell1964]; `best` becomes the
+/// value there.
+template <class Function>
+double searchLine(const Function& value, double step, double& best) {
+  double at = 0;
+  double ahead = value(step);
+  if (ahead <= best) {
+    step = -step;
+    ahead = value(step);
+  }
+  double behind = best;
+  double behindAt = 0;
+  if (ahead <= best) {  // the summit lies between -step and step
+    behindAt = -step;
+    behind = value(-step);
+  } else {
+    double aheadAt = step;
+    do {
+      behindAt = at;
+      behind = best;
+      at = aheadAt;
+      best = ahead;
+      step *= 1.6;
+      aheadAt = at + step;
+      ahead = value(aheadAt);
+    } while (ahead > best && std::abs(at) < 40 * std::abs(step));
+    step = aheadAt - at;
+  }
+  double aheadAt = at + step;
+  for (int n = 0; n < 2; ++n) {
+    const double p = (at - behindAt) * (best - ahead);
+    const double q = (at - aheadAt) * (best - behind);
+    if (std::abs(p - q) < 1e-15) break;
+    const double next = at - 0.5 * ((at - behindAt) * p - (at - aheadAt) * q) / (p - q);
+    if (!std::isfinite(next) || std::abs(next - at) < 1e-3 * std::abs(step)) break;
+    const double there = value(next);
+    const bool towardsAhead = (next - at) * (aheadAt - at) > 0;
+    if (there > best) {
+      (towardsAhead ? behindAt : aheadAt) = at;
+      (towardsAhead ? behind : ahead) = best;
+      at = next;
+      best = there;
+    } else {
+      (towardsAhead ? aheadAt : behindAt) = next;
+      (towardsAhead ? ahead : behind) = there;
+    }
+  }
+  return at;
+}
+
+struct Found {
+  Parameters parameters;
+  double value = 0;
+};
+
+/// Climbs along the columns of `directions`, which turn towards where it has gone.
+Found climb(const Level& level, const Point& from, const Point& to, Found found,
+            std::vector<Parameters> directions, int sweeps, double tolerance) {
+  const auto at = [&](const Parameters& p) { return information(level, mapOf(p, from, to)); };
+  found.value = at(found.parameters);
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    const Found before = found;
+    double most = 0;
+    std::size_t mostIn = 0;
+    for (std::size_t d = 0; d < directions.size(); ++d) {
+      const Parameters start = found.parameters;
+      const double earlier = found.value;
+      const double step =
+          searchLine([&](double t) { return at(start + t * directions[d]); }, 1.0, found.value);
+      found.parameters = start + step * directions[d];
+      if (found.value - earlier > most) {
+        most = found.value - earlier;
+        mostIn = d;
+      }
+      directions[d] *= std::clamp(std::abs(step), 0.35, 1.2);
+    }
+    if (found.value - before.value < tolerance) break;
+    const Parameters along = found.parameters - before.parameters;
+    const Parameters start = found.parameters;
+    const double step =
+        searchLine([&](double t) { return at(start + t * along); }, 0.5, found.value);
+    found.parameters = start + step * along;
+    directions[mostIn] = 0.5 * along;
+  }
+  return found;
+}
+
+std::vector<Parameters> rigidAndScale(double size) {
+  std::vector<Parameters> directions;
+  const Parameters steps = size * firstSteps();
+  for (int d = 0; d < 6; ++d) directions.push_back(steps[d] * Parameters::Unit(d));
+  Parameters scale = Parameters::Zero();
+  scale.segment<3>(6).setConstant(steps[6]);
+  directions.push_back(scale);
+  return directions;
+}
+
+std::vector<Parameters> allDirections(double size) {
+  std::vector<Parameters> directions;
+  const Parameters steps = size * firstSteps();
+  for (int d = 0; d < kParameters; ++d) directions.push_back(steps[d] * Parameters::Unit(d));
+  return directions;
+}
+
+/// Places where the brain's centre may lie: the centre of what is bright, and that of a head's
+/// upper part only, for images with a neck.
+std::vector<Point> centresOf(const Level& level, double reach) {
+  const Volume<float>& image = level.image;
+  double sum = 0;
+  for (const float value : image.data) sum += value;
+  const float least = static_cast<float>(sum / static_cast<double>(image.size()));
+  const auto centre = [&](double lowest) {
+    Point total = Point::Zero();
+    double count = 0;
+    for (std::size_t v = 0; v < image.size(); ++v) {
+      if (!(image[v] > least)) continue;
+      const auto [i, j, k] = image.grid.subscripts(v);
+      const Point at = image.grid.toWorld(Vector(i, j, k));
+      if (at.z() < lowest) continue;
+      total += at;
+      count += 1;
+    }
+    return count > 0 ? Point(total / count) : Point(Point::Zero());
+  };
+  std::vector<double> heights;
+  for (std::size_t v = 0; v < image.size(); ++v) {
+    if (!(image[v] > least)) continue;
+    const auto [i, j, k] = image.grid.subscripts(v);
+    heights.push_back(image.grid.toWorld(Vector(i, j, k)).z());
+  }
+  if (heights.empty()) throw InvalidInput("T1: holds one value only");
+  const auto high = heights.begin() + static_cast<std::ptrdiff_t>(0.995 * (heights.size() - 1));
+  std::nth_element(heights.begin(), high, heights.end());
+  return {centre(-kInfinity), centre(*high - reach)};
+}
+
+}  // namespace
+
+AffineRegistration registerAffine(const Volume<float>& image, const Volume<float>& inTemplate,
+                                  const Volume<float>& region, const Monitor& monitor) {
+  monitor.progress(0, "affine registration");
+  Point from = Point::Zero();
+  double count = 0;
+  for (std::size_t v = 0; v < region.size(); ++v) {
+    if (!(region[v] > 0.5f)) continue;
+    const auto [i, j, k] = region.grid.subscripts(v);
+    from += region.grid.toWorld(Vector(i, j, k));
+    count += 1;
+  }
+  if (count == 0) throw InvalidInput("template: its brain mask is empty");
+  from /= count;
+  // A ball of the region's volume says how large its steps are.
+  const double radius = std::cbrt(0.75 / kPi * count * region.grid.voxelVolume());
+  const double unit = radius / 80;  // of a human brain with its surroundings
+
+  // The finest that any level needs, so that the volumes are smoothed at full size once only.
+  const Volume<float> fine = inCubes(image, kImageShare * 4 * unit);
+  const Volume<float> fineTemplate = inCubes(inTemplate, 4 * unit);
+  Level level = makeLevel(fine, fineTemplate, region, 8 * unit);
+  std::vector<Found> starts;
+  std::vector<Point> to;
+  for (const Point& centre : centresOf(level, 2 * radius)) {
+    for (const double up : {-24.0, 0.0, 24.0}) {
+      for (const double front : {-16.0, 0.0, 16.0}) {
+        for (const double tilt : {-0.3, 0.0, 0.3}) {
+          Found start{Parameters::Zero(), 0};
+          start.parameters[1] = front * unit;
+          start.parameters[2] = up * unit;
+          start.parameters[3] = tilt;
+          start.value = information(level, mapOf(start.parameters, from, centre));
+          // Kept about one centre, so that all can be compared.
+          start.parameters.head<3>() += centre;
+          starts.push_back(start);
+        }
+      }
+    }
+  }
+  std::stable_sort(starts.begin(), starts.end(),
+                   [](const Found& a, const Found& b) { return a.value > b.value; });
+  constexpr std::size_t kTried = 6;
+  starts.resize(std::min(starts.size(), kTried));
+  Parameters scale = Parameters::Ones();
+  scale.head<3>().setConstant(unit);
+  const auto scaled = [&](std::vector<Parameters> directions) {
+    for (Parameters& d : directions) d = d.cwiseProduct(scale);
+    return directions;
+  };
+  for (Found& start : starts) {
+    start = climb(level, from, Point::Zero(), start, scaled(rigidAndScale(1)), 4, 1e-4);
+  }
+  monitor.progress(0.4, "affine registration");
+  Found best = *std::max_element(starts.begin(), starts.end(),
+                                 [](const Found& a, const Found& b) { return a.value < b.value; });
+  best = climb(level, from, Point::Zero(), best, scaled(allDirections(0.7)), 5, 1e-5);
+  for (const double spacing : {6.0, 4.0}) {
+    monitor.progress(spacing > 5 ? 0.6 : 0.8, "affine registration");
+    level = makeLevel(fine, fineTemplate, region, spacing * unit);
+    best = climb(level, from, Point::Zero(), best, scaled(allDirections(0.25)), 5, 1e-5);
+  }
+  return {mapOf(best.parameters, from, Point::Zero()), best.value};
+}
+
+}  // namespace explica::registration

@@ -1,0 +1,204 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/Parallel.h"
+#include "Explica/Registration/AffineRegistration.h"
+#include "Explica/Registration/Deformation.h"
+#include "Explica/Registration/HeadRegistration.h"
+#include "Explica/Registration/SkullStripping.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <functional>
+
+namespace explica::registration {
+namespace {
+
+Grid cube(int size, double spacing) {
+  Grid grid;
+  grid.size = {size, size, size};
+  grid.spacing = Vector::Constant(spacing);
+  grid.origin = Point::Constant(-0.5 * spacing * (size - 1));
+  return grid;
+}
+
+/// Brightness of a head without symmetry: fluid, white matter with bumps, a skull about it.
+double headAt(const Point& p) {
+  const double r = p.cwiseQuotient(Vector(62, 78, 58)).norm();
+  if (r > 1.25) return 0;
+  if (r > 1.12) return 150;
+  if (r > 1) return 15;
+  const double folds =
+      std::sin(p.x() / 7 + 0.4) * std::sin(p.y() / 8) * std::sin(p.z() / 6 + 1) + 0.004 * p.x();
+  if ((p - Point(18, 25, 5)).norm() < 13) return 30;
+  return r > 0.93 ? 40 : (folds > 0.1 ? 110 : 80);
+}
+
+Volume<float> drawn(const Grid& grid, const std::function<double(const Point&)>& value) {
+  Volume<float> volume(grid);
+  for (std::size_t v = 0; v < volume.size(); ++v) {
+    const auto [i, j, k] = grid.subscripts(v);
+    volume[v] = static_cast<float>(value(grid.toWorld(Vector(i, j, k))));
+  }
+  return volume;
+}
+
+bool inBrain(const Point& p) {
+  return p.cwiseQuotient(Vector(62, 78, 58)).norm() <= 1;
+}
+
+Template phantomTemplate(double spacing = 3) {
+  Template phantom;
+  phantom.head = drawn(cube(static_cast<int>(220 / spacing), spacing), headAt);
+  phantom.brain =
+      drawn(phantom.head.grid, [](const Point& p) { return inBrain(p) ? headAt(p) : 0; });
+  phantom.atlas = Volume<Label>(phantom.head.grid, 0);
+  return phantom;
+}
+
+/// Where the points of an image of the moved head lie in the template.
+Eigen::Affine3d movement() {
+  Eigen::Affine3d back = Eigen::Affine3d::Identity();
+  back.linear() =
+      (Eigen::AngleAxisd(0.26, Vector::UnitX()) * Eigen::AngleAxisd(-0.1, Vector::UnitY()) *
+       Eigen::AngleAxisd(0.12, Vector::UnitZ()))
+          .toRotationMatrix() *
+      Vector(1.06, 0.95, 1.03).asDiagonal();
+  back.translation() = Vector(9, -14, 11);
+  return back;
+}
+
+double meanDistance(const HeadTransform& found, const std::function<Point(const Point&)>& truth) {
+  double sum = 0;
+  int count = 0;
+  const Grid grid = cube(24, 8);
+  for (std::size_t v = 0; v < grid.voxelCount(); ++v) {
+    const auto [i, j, k] = grid.subscripts(v);
+    const Point at = grid.toWorld(Vector(i, j, k));
+    if (!inBrain(truth(at))) continue;
+    sum += (found(at) - truth(at)).norm();
+    ++count;
+  }
+  return sum / count;
+}
+
+TEST(AffineRegistration, FindsAHeadThatWasMovedTurnedAndScaled) {
+  const Template phantom = phantomTemplate();
+  const Eigen::Affine3d truth = movement();
+  // Another scanner: other brightness, other voxels, a bias field.
+  Grid grid = cube(64, 3.5);
+  grid.spacing = Vector(3, 3.5, 4.5);
+  const Volume<float> image = drawn(grid, [&](const Point& p) {
+    return 3 * headAt(truth * p) * (1 + 0.2 * std::sin(p.x() / 60));
+  });
+  Volume<float> region = phantom.brain;
+  for (float& value : region.data) value = value > 0 ? 1 : 0;
+  const AffineRegistration found = registerAffine(image, phantom.head, region);
+  HeadTransform transform;
+  transform.affine = found.templateToImage.inverse();
+  EXPECT_LT(meanDistance(transform, [&](const Point& p) { return truth * p; }), 1.0);
+  EXPECT_GT(found.information, 1.1);
+}
+
+TEST(AffineRegistration, RefusesWhatCannotBeRegistered) {
+  const Template phantom = phantomTemplate(5);
+  const Volume<float> empty(phantom.head.grid, 0.0f);
+  EXPECT_THROW((void)registerAffine(phantom.head, phantom.head, empty), InvalidInput);
+  EXPECT_THROW((void)registerAffine(empty, phantom.head, phantom.brain), InvalidInput);
+}
+
+Point bent(const Point& p) {
+  return p + Vector(4 * std::sin(p.y() / 30), 3 * std::cos(p.z() / 25), 4 * std::sin(p.x() / 28));
+}
+
+TEST(Deformation, StraightensWhatWasBentWithoutFolds) {
+  const Template phantom = phantomTemplate();
+  const Volume<float> image =
+      drawn(phantom.head.grid, [](const Point& p) { return headAt(bent(p)); });
+  Volume<float> region(phantom.head.grid, 0.0f);
+  for (std::size_t v = 0; v < region.size(); ++v) region[v] = phantom.brain[v] > 0 ? 1 : 0;
+  DeformationOptions options;
+  options.spacing = 3;
+  const DeformationResult found =
+      registerDeformation(image, phantom.head, region, Eigen::Affine3d::Identity(), options);
+  const double before = meanDistance(HeadTransform{}, bent);
+  EXPECT_GT(before, 3);
+  EXPECT_LT(meanDistance(found.transform, bent), 0.3 * before);
+  EXPECT_GT(found.agreement.leastJacobian, 0);
+  EXPECT_GT(found.agreement.correlation, 0.8);
+}
+
+TEST(Deformation, DoesNotDependOnThreads) {
+  const Template phantom = phantomTemplate(6);
+  const Volume<float> image =
+      drawn(phantom.head.grid, [](const Point& p) { return headAt(bent(p)); });
+  DeformationOptions options;
+  options.spacing = 6;
+  options.maxIterations = 5;
+  const auto with = [&](int threads) {
+    setThreadCount(threads);
+    auto found = registerHead(image, phantom, false, options).transform;
+    setThreadCount(0);
+    return found;
+  };
+  const HeadTransform one = with(1);
+  const HeadTransform four = with(4);
+  EXPECT_EQ(one.affine.matrix(), four.affine.matrix());
+  ASSERT_EQ(one.displacement.size(), four.displacement.size());
+  EXPECT_EQ(std::memcmp(one.displacement.data.data(), four.displacement.data.data(),
+                        one.displacement.size() * sizeof(Eigen::Vector3f)),
+            0);
+}
+
+TEST(HeadTransform, PullsLabelsFromWhereThePointsLie) {
+  Volume<Label> labels(cube(10, 2), 0);
+  labels(7, 4, 5) = 12;
+  HeadTransform transform;
+  transform.affine.translation() = Vector(4, 0, -2);
+  const Volume<Label> found = pulled(labels, transform, labels.grid);
+  EXPECT_EQ(found(5, 4, 6), 12);
+  transform.displacement = Volume<Eigen::Vector3f>(labels.grid, Eigen::Vector3f(-4, 0, 2));
+  EXPECT_EQ(pulled(labels, transform, labels.grid)(7, 4, 5), 12);
+}
+
+TEST(SkullStripping, TakesBrainBeyondTheMaskAndLeavesTheSkull) {
+  const Template phantom = phantomTemplate();
+  // The mask is too small on one side, by less than the reach.
+  Volume<float> mask(phantom.head.grid, 0.0f);
+  double brain = 0;
+  for (std::size_t v = 0; v < mask.size(); ++v) {
+    const auto [i, j, k] = mask.grid.subscripts(v);
+    const Point p = mask.grid.toWorld(Vector(i, j, k));
+    mask[v] = inBrain(p + Vector(3, 0, 0)) && inBrain(p) ? 1 : 0;
+    brain += inBrain(p) ? 1 : 0;
+  }
+  StrippingOptions options;
+  options.opening = 3;  // voxels are as large
+  options.dimmest = 0.4;
+  const Volume<Label> found = stripSkull(phantom.head, mask, options);
+  double extra = 0;
+  double missing = 0;
+  for (std::size_t v = 0; v < mask.size(); ++v) {
+    const auto [i, j, k] = mask.grid.subscripts(v);
+    const bool truth = inBrain(mask.grid.toWorld(Vector(i, j, k)));
+    extra += found[v] != 0 && !truth ? 1 : 0;
+    missing += found[v] == 0 && truth ? 1 : 0;
+  }
+  EXPECT_LT(extra / brain, 0.01);
+  EXPECT_LT(missing / brain, 0.01);
+  EXPECT_THROW((void)stripSkull(phantom.head, Volume<float>(mask.grid, 0.0f)), InvalidInput);
+}
+
+TEST(HeadRegistration, KnowsAHeadWithoutSkull) {
+  const Template phantom = phantomTemplate(5);
+  EXPECT_FALSE(looksStripped(phantom.head, phantom));
+  EXPECT_TRUE(looksStripped(phantom.brain, phantom));
+  Template withoutSkull = phantom;
+  withoutSkull.head = {};
+  EXPECT_THROW((void)registerHead(phantom.head, withoutSkull, false), InvalidInput);
+}
+
+}  // namespace
+}  // namespace explica::registration
