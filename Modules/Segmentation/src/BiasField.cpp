@@ -13,7 +13,7 @@ namespace {
 constexpr double kBlocksPerWidth = 4;
 constexpr std::size_t kGrain = 16384;
 constexpr float kDarkShare = 0.4f;            // of the median: fluid lies below
-constexpr std::size_t kMostSamples = 200000;  // enough for a smooth field
+constexpr std::size_t kMostSamples = 100000;  // enough for a smooth field
 constexpr std::size_t kFewestSamples = 100;
 constexpr int kSharpenings = 100;
 constexpr double kSettled = 5e-4;      // of the field's logarithm in one iteration
@@ -188,21 +188,27 @@ class Sharpening {
   /// Wiener's filter: a product of Fourier coefficients, here as sums, for 256 bins are few.
   static std::vector<double> deconvolved(const std::vector<double>& count,
                                          const std::vector<double>& blur) {
+    static const std::array<double, kPadded> cosine = [] {
+      std::array<double, kPadded> table{};
+      for (int b = 0; b < kPadded; ++b) table[b] = std::cos(2 * kPi * b / kPadded);
+      return table;
+    }();
+    const auto cosAt = [&](int turn) { return cosine[turn % kPadded]; };
+    const auto sinAt = [&](int turn) { return cosine[(turn + 3 * kPadded / 4) % kPadded]; };
     std::vector<double> sharp(kPadded, 0.0);
     for (int f = 0; f <= kPadded / 2; ++f) {
-      const double step = 2 * kPi * f / kPadded;
       double real = 0;
       double imaginary = 0;
       double response = blur[0];
       for (int b = 0; b < kPadded; ++b) {
-        real += count[b] * std::cos(step * b);
-        imaginary -= count[b] * std::sin(step * b);
-        if (b > 0 && b < kPadded / 2) response += 2 * blur[b] * std::cos(step * b);
+        real += count[b] * cosAt(f * b);
+        imaginary -= count[b] * sinAt(f * b);
+        if (b > 0 && b < kPadded / 2) response += 2 * blur[b] * cosAt(f * b);
       }
       const double gain = response / (response * response + kNoise) / kPadded *
                           (f == 0 || f == kPadded / 2 ? 1 : 2);
       for (int b = 0; b < kPadded; ++b) {
-        sharp[b] += gain * (real * std::cos(step * b) - imaginary * std::sin(step * b));
+        sharp[b] += gain * (real * cosAt(f * b) - imaginary * sinAt(f * b));
       }
     }
     for (double& value : sharp) value = std::max(0.0, value);

@@ -78,6 +78,47 @@ TEST(TissueSegmentation, ToleratesABiasField) {
   EXPECT_GT(agreement(found.labels, phantom.truth), flat + 0.01);
 }
 
+/// Smooth shapes from -1 to 1 over the phantom.
+double shapeAt(int shape, const Point& p) {
+  if (shape == 0) return p.x();
+  if (shape == 1) return std::sin(1.6 * p.y() + 0.4 * p.z());
+  return p.x() * p.y() + 0.5 * p.z();
+}
+
+class StrongField : public ::testing::TestWithParam<int> {};
+
+TEST_P(StrongField, IsFoundAndCostsLittle) {
+  const Phantom flat = makePhantom(3, 0);
+  TissueOptions options;
+  options.biasWidth = 15;  // the phantom is a third of a head across
+  const double before = agreement(segmentTissue(flat.image, {}, options).labels, flat.truth);
+  Phantom shaded = flat;
+  std::vector<double> truth(shaded.image.size(), 0.0);
+  for (std::size_t v = 0; v < truth.size(); ++v) {
+    if (flat.truth[v] == 0) continue;
+    const auto [i, j, k] = flat.image.grid.subscripts(v);
+    const Point p = (flat.image.grid.toWorld(Vector(i, j, k)) - Point::Constant(30)) / 28;
+    const double field = 1 + 0.4 * std::clamp(shapeAt(GetParam(), p), -1.0, 1.0);
+    truth[v] = std::log(field);
+    shaded.image[v] *= static_cast<float>(field);
+  }
+  const TissueSegmentation found = segmentTissue(shaded.image, {}, options);
+  double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+  for (std::size_t v = 0; v < truth.size(); ++v) {
+    if (flat.truth[v] == 0) continue;
+    const double log = std::log(found.bias[v]);
+    n += 1;
+    x += truth[v];
+    y += log;
+    xx += truth[v] * truth[v];
+    xy += truth[v] * log;
+  }
+  EXPECT_GT((n * xy - x * y) / (n * xx - x * x), 0.9);
+  EXPECT_GT(agreement(found.labels, flat.truth), before - 0.02);
+}
+
+INSTANTIATE_TEST_SUITE_P(TissueSegmentation, StrongField, ::testing::Range(0, 3));
+
 TEST(TissueSegmentation, WorksOnAnisotropicVoxels) {
   const Phantom phantom = makePhantom(4, 0, Vector(0.8, 1, 2.5));
   EXPECT_GT(agreement(segmentTissue(phantom.image).labels, phantom.truth), 0.97);
