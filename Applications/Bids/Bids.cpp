@@ -78,8 +78,8 @@ void declare(Declaration& d, Settings& s) {
   d.synopsis("a BIDS data set, participant by participant, to a derivative and a study table")
       .description(
           "participant: takes each participant's segmentation, FreeSurfer subject or "
-          "skull-stripped "
-          "T1 through `explica run`, a hemisphere at a time, into OUT_DIR/runs, and copies the "
+          "T1 (as the scanner gives it) "
+          "through `explica run`, a hemisphere at a time, into OUT_DIR/runs, and copies the "
           "results "
           "to BIDS names with sidecars. Steps whose inputs and options have not changed, by "
           "content, "
@@ -153,6 +153,17 @@ void dropSteps(Context& context, const std::string& run) {
   }
 }
 
+/// A T1's segmentation is the same for both hemispheres: what the other one's run has made is
+/// linked, and found true by its content.
+void shareSegment(const fs::path& made, const fs::path& run) {
+  std::error_code fault;
+  if (!fs::exists(made / "segment/provenance.json") || fs::exists(run / "segment")) return;
+  fs::create_directories(run, fault);
+  fs::copy(made / "segment", run / "segment",
+           fs::copy_options::recursive | fs::copy_options::create_hard_links, fault);
+  if (fault) fs::remove_all(run / "segment", fault);  // no such links here: the run makes its own
+}
+
 /// Takes one hemisphere through the run and names its results.
 /// @return false if it failed: the reason is then in problem.txt beside the run
 bool doHemisphere(Context& context, const Settings& s, const study::Participant& participant,
@@ -170,6 +181,8 @@ bool doHemisphere(Context& context, const Settings& s, const study::Participant&
     if (participant.atlas) values["atlas"] = participant.atlas->string();
     values["hemisphere"] = hemisphere;
     values["resume"] = true;
+    const std::string other = hemisphere == "L" ? "R" : "L";
+    shareSegment(folder.parent_path() / (participant.name() + "_hemi-" + other), folder);
     const Outcome outcome = context.runCommand(*findCommand("run"), "runs/" + name, values);
     if (!reachedGoal(outcome.termination)) worst = outcome.termination;
     fs::remove(problem);

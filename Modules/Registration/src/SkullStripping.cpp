@@ -12,6 +12,7 @@
 namespace explica::registration {
 namespace {
 
+constexpr double kCoreDepth = 4;       // mm below the mask's border: brain beyond doubt
 constexpr double kNeighbourhood = 20;  // mm: bias fields are smoother
 
 using Set = Volume<std::uint8_t>;
@@ -99,7 +100,7 @@ Volume<Label> stripSkull(const Volume<float>& image, const Volume<float>& brain,
   if (std::find(mask.data.begin(), mask.data.end(), 1) == mask.data.end()) {
     throw InvalidInput("T1: the template's brain lies outside of the image");
   }
-  const Set core = eroded(mask, 2 * options.opening);
+  const Set core = eroded(mask, kCoreDepth);
   const Volume<float> relative = relativeBrightness(image, core);
   const Set wide = dilated(mask, options.reach);
   Set tissue(image.grid, 0);
@@ -110,11 +111,17 @@ Volume<Label> stripSkull(const Volume<float>& image, const Volume<float>& brain,
   // Opened, so that dura and vessels do not lead out; then as far back as tissue goes.
   const Set solid = reached(eroded(tissue, 0.5 * options.opening), core);
   const Set grown = dilated(solid, 0.5 * options.opening);
+  Set beyond(image.grid, 0);
+  for (std::size_t v = 0; v < mask.size(); ++v) {
+    beyond[v] = mask[v] == 0 && grown[v] != 0 && tissue[v] != 0 ? 1 : 0;
+  }
+  // With the voxels about them that are partly tissue.
+  const Set rim = dilated(beyond, image.grid.spacing.mean());
   Volume<Label> result(image.grid, 0);
   for (std::size_t v = 0; v < mask.size(); ++v) {
-    const bool outside = mask[v] == 0 && grown[v] != 0 && tissue[v] != 0;
-    const bool inside = mask[v] != 0 && (core[v] != 0 || relative[v] <= options.brightest);
-    result[v] = inside || outside ? 1 : 0;
+    const bool outside = beyond[v] != 0 || (rim[v] != 0 && relative[v] < options.dimmest);
+    const bool inside = core[v] != 0 || relative[v] <= options.brightest;
+    result[v] = mask[v] != 0 ? (inside ? 1 : 0) : (outside ? 1 : 0);
   }
   return result;
 }

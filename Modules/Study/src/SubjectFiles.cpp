@@ -151,16 +151,15 @@ SubjectFiles inAnatFolder(const fs::path& folder) {
   if (files.labels && files.labels == atlas) files.labels.reset();
   if (files.labels || files.left.white || files.right.white) return files;
 
-  if (brain || whole) {
-    throw InvalidInput((brain ? *brain : *whole).string() +
-                       ": needs labels in its space beside it, as *_desc-aseg_dseg.nii.gz or " +
-                       "*_atlas-AAL_dseg.nii.gz" +
-                       (brain || mask ? "" : ", and *_desc-brain_mask.nii.gz"));
+  // A head as it is: a template says where the brain is, and which half is which.
+  files.t1 = brain ? brain : (whole ? whole : anat.volume("_T1w"));
+  if (files.t1) {
+    if (!brain && whole) files.mask = mask;
+    return files;
   }
   throw InvalidInput(folder.string() +
                      ": holds no segmentation (*_dseg.nii.gz), no surfaces "
-                     "(*_hemi-L_white.surf.gii) and no skull-stripped T1 "
-                     "(*_desc-brain_T1w.nii.gz); run fMRIPrep, sMRIPrep or FreeSurfer first");
+                     "(*_hemi-L_white.surf.gii) and no T1 (*_T1w.nii.gz)");
 }
 
 }  // namespace

@@ -60,7 +60,9 @@ TEST_F(Study, FindsWhatEachParticipantOffers) {
   EXPECT_EQ(found[0].input, folder_ / "sub-01/anat");
   EXPECT_EQ(found[1].name(), "sub-02_ses-a");
   EXPECT_EQ(found[1].input, folder_ / "sub-02/ses-a/anat");
-  EXPECT_NE(found[2].problem.find("skull-stripped"), std::string::npos);
+  EXPECT_EQ(found[2].problem, "") << "a T1 as it comes from the scanner will do";
+  EXPECT_EQ(findSubjectFiles(found[2].input).t1,
+            folder_ / "sub-02/ses-b/anat/sub-02_ses-b_T1w.nii.gz");
   EXPECT_EQ(found[3].input, folder_ / "sourcedata" / "freesurfer" / "sub-03");
 }
 
@@ -111,7 +113,7 @@ TEST_F(Study, FindsTheFilesOfFmriPrep) {
 }
 
 TEST_F(Study, AFolderWithNothingInItIsRefused) {
-  for (const char* place : {"bert/mri/nu.mgz", "sub-01/anat/sub-01_T1w.nii.gz", "letters/a.txt",
+  for (const char* place : {"bert/mri/nu.mgz", "sub-01/anat/sub-01_T2w.nii.gz", "letters/a.txt",
                             "sub-02/ses-a/anat/sub-02_ses-a_dseg.nii.gz"}) {
     put(place);
     const fs::path folder = folder_ / *fs::path(place).begin();

@@ -8,9 +8,9 @@ namespace explica::registration {
 
 /// How a brain is told from what surrounds it.
 struct StrippingOptions {
-  double reach = 4;      ///< mm beyond the template's mask that may be brain
-  double opening = 2;    ///< mm: what is connected by less is no brain
-  double dimmest = 0.6;  ///< tissue, of the mean brightness of the brain nearby
+  double reach = 4;       ///< mm beyond the template's mask that may be brain
+  double opening = 3;     ///< mm: what is connected by less is no brain
+  double dimmest = 0.75;  ///< tissue, of the mean brightness of the brain nearby
   double brightest = 1.5;
 };
 
