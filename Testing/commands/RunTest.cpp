@@ -248,6 +248,38 @@ TEST(Run, SurfacesOfTheAverageSubjectKeepTheirMeasures) {
   }
 }
 
+/// FreeSurfer's ribbon of two balls beside each other.
+void writeTwoBalls(const std::string& file) {
+  Grid grid;
+  grid.size = {64, 36, 36};
+  grid.origin = Point(-31.5, -17.5, -17.5);
+  Volume<Label> labels(grid, 0);
+  for (std::size_t v = 0; v < labels.size(); ++v) {
+    const auto [i, j, k] = grid.subscripts(v);
+    const Point at = grid.toWorld(Vector(i, j, k));
+    const bool left = at.x() < 0;
+    const double r = (at - Point(left ? -16 : 16, 0, 0)).norm();
+    if (r < 13) labels[v] = r < 10 ? (left ? 2 : 41) : (left ? 3 : 42);
+  }
+  io::writeVolume(file, labels);
+}
+
+TEST(Run, BothHemispheresAreDoneWhereLabelsTellThemApart) {
+  TemporaryFolder folder;
+  writeTwoBalls(folder / "ribbon.nii.gz");
+  const auto run = explica({"run", folder / "ribbon.nii.gz", "--steps", "thickness,surface,report",
+                            "--surface.faces", "1500", "--out", folder / "out"});
+  EXPECT_EQ(run.exitCode, 0) << run;
+  const fs::path out = folder.path() / "out";
+  for (const char* side : {"L", "R"}) {
+    const auto summary = readJson(out / ("surface-" + std::string(side)) / "summary.json");
+    EXPECT_EQ(summary["structure"], *side == 'L' ? "CortexLeft" : "CortexRight");
+    EXPECT_NEAR(summary["thickness_mean"].get<double>(), 3, 0.3);
+    EXPECT_TRUE(fs::exists(out / ("thickness-" + std::string(side)) / "thickness.nii.gz"));
+  }
+  EXPECT_NE(readText(out / "report.html").find("right"), std::string::npos);
+}
+
 TEST(Run, AT1WithoutTemplateAndAtlasHasNoHemispheres) {
   TemporaryFolder folder;
   makePhantom(folder);
