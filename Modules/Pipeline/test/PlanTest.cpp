@@ -87,7 +87,10 @@ TEST_F(PlanOfLabels, ARibbonTellsItsSides) {
   });
   EXPECT_TRUE(labelsHaveSides(ribbon));
   PlanOptions options;
-  const Json left = valuesOf(plan(ribbon, options), "thickness");
+  const Plan both = plan(ribbon, options);
+  EXPECT_EQ(both.steps.size(), 6u) << "each step for each side";
+  EXPECT_EQ(valuesOf(both, "surface-R")["hemisphere"], "R");
+  const Json left = valuesOf(both, "thickness-L");
   EXPECT_EQ(left["inner"], Json({2}));
   EXPECT_EQ(left["tissue"], Json({3}));
   EXPECT_EQ(left["insulated"], Json({41}));

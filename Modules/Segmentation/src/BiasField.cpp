@@ -15,8 +15,7 @@ constexpr std::size_t kGrain = 16384;
 constexpr float kDarkShare = 0.4f;           // of the median: fluid lies below
 constexpr std::size_t kMostSamples = 50000;  // enough for a smooth field
 constexpr std::size_t kFewestSamples = 100;
-constexpr double kNarrowShare = 0.625;  // of the width: 25 mm of 40, as N4's finer splines
-constexpr int kSharpenings = 150;       // of each width
+constexpr int kSharpenings = 150;
 constexpr double kOverstep = 1.8;  // the window's gain is below 1, so that this converges, faster
 constexpr double kSettled = 1e-4;  // of the field's logarithm in one iteration
 constexpr double kLeastWeight = 1e-3;  // samples under a window: else the field stays as it is
@@ -281,18 +280,9 @@ std::vector<float> sharpenHistogram(const Grid& grid, const std::vector<std::siz
     logarithm.push_back(std::log(intensity[s]));
   }
   if (chosen.size() < kFewestSamples) return std::vector<float>(voxel.size(), 1.0f);
-  // What is left of the logarithm, by ever narrower windows.
-  std::vector<float> whole(voxel.size(), 0.0f);
-  for (const double share : {1.0, kNarrowShare}) {
-    const double window = share * width;
-    const Blocks blocks = blocksOf(grid, window);
-    const std::vector<double> field = sharpenOnce(grid, blocks, chosen, logarithm, window);
-    const std::vector<float> atAll = atVoxels(grid, blocks, field, voxel);
-    for (std::size_t s = 0; s < whole.size(); ++s) whole[s] += atAll[s];
-    const std::vector<float> atChosen = atVoxels(grid, blocks, field, chosen);
-    for (std::size_t s = 0; s < logarithm.size(); ++s) logarithm[s] -= atChosen[s];
-  }
-  return fieldOf(std::move(whole));
+  const Blocks blocks = blocksOf(grid, width);
+  return fieldOf(
+      atVoxels(grid, blocks, sharpenOnce(grid, blocks, chosen, logarithm, width), voxel));
 }
 
 }  // namespace explica::segmentation
