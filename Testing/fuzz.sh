@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Fuzzes each reader with libFuzzer under the address and undefined-behaviour sanitizers:
 #   Testing/fuzz.sh [SECONDS [READER...]]      default: 60 seconds each of all
-# The first inputs are the files that the tests write (build/ must hold ExplicaIOUnitTests) and the
+# The first inputs are the files that the tests write (build/ must hold ExplicaIOPropertyTests) and the
 # regressions.  A file that crashes is kept in Testing/fuzz/regressions/READER, where every later
 # test run tries it: mend the reader, then commit both.  EXPLICA_JOBS bounds the compilers at once.
 set -eu
@@ -14,7 +14,7 @@ readers=$(sed -n 's/^ *{"\([a-z-]*\)", "\([^"]*\)", read.*/\1:\2/p' Testing/fuzz
 [ -f build-fuzz/build.ninja ] || cmake --preset fuzz
 cmake --build build-fuzz ${EXPLICA_JOBS:+-j "$EXPLICA_JOBS"} --target ExplicaFuzz
 seeds=build-fuzz/seeds
-EXPLICA_SEEDS=$seeds build/bin/ExplicaIOUnitTests --gtest_brief=1 --gtest_filter='*WholeOnesAreSeeds*' >/dev/null
+EXPLICA_SEEDS=$seeds build/bin/ExplicaIOPropertyTests --gtest_brief=1 --gtest_filter='*WholeOnesAreSeeds*' >/dev/null
 mkdir -p "$seeds/provenance.json" "$seeds/study.yaml" "$seeds/options.json"
 cp ExampleData/study/study.yaml "$seeds/study.yaml/seed"
 echo '{"unfold": {"radius": 30, "viewpoint": [1, 2.5, -3e2]}, "resume": true}' >"$seeds/options.json/seed"
