@@ -61,34 +61,67 @@ class Inflater {
 
 }  // namespace
 
+/// A regular file that is read once from its beginning on.
+class ByteSource::OpenFile {
+ public:
+  /// @throws IOError  missing, a folder, not permitted, empty
+  explicit OpenFile(const std::filesystem::path& path) : path_(path) {
+    descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    if (descriptor_ < 0) {
+      const int cause = errno;
+      failToRead(path, cause == ENOENT   ? "no such file"
+                       : cause == EACCES ? "permission to read it is denied"
+                                         : std::generic_category().message(cause));
+    }
+    struct stat status {};
+    std::string fault;
+    if (::fstat(descriptor_, &status) != 0) {
+      fault = std::generic_category().message(errno);
+    } else if (S_ISDIR(status.st_mode)) {
+      fault = "is a folder; a file is needed";
+    } else if (!S_ISREG(status.st_mode)) {
+      fault = "is not a regular file";
+    } else if (status.st_size == 0) {
+      fault = "is empty";
+    }
+    if (!fault.empty()) {
+      ::close(descriptor_);
+      failToRead(path, fault);
+    }
+    size_ = static_cast<std::uint64_t>(status.st_size);
+  }
+  ~OpenFile() { ::close(descriptor_); }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+
+  /// The next bytes, fewer only at the end.
+  std::size_t read(std::uint8_t* to, std::size_t count) {
+    std::size_t filled = 0;
+    while (filled < count) {
+      const ssize_t got =
+          ::read(descriptor_, to + filled, std::min<std::size_t>(count - filled, kLongestStep));
+      if (got < 0 && errno == EINTR) continue;
+      if (got < 0) failToRead(path_, std::generic_category().message(errno));
+      if (got == 0) break;
+      filled += static_cast<std::size_t>(got);
+    }
+    taken_ += filled;
+    return filled;
+  }
+  [[nodiscard]] std::uint64_t size() const { return size_; }
+  [[nodiscard]] std::uint64_t left() const { return taken_ < size_ ? size_ - taken_ : 0; }
+
+ private:
+  std::filesystem::path path_;
+  int descriptor_ = -1;
+  std::uint64_t size_ = 0;
+  std::uint64_t taken_ = 0;
+};
+
 Bytes readFile(const std::filesystem::path& path) {
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (descriptor < 0) {
-    const int cause = errno;
-    failToRead(path, cause == ENOENT   ? "no such file"
-                     : cause == EACCES ? "permission to read it is denied"
-                                       : std::generic_category().message(cause));
-  }
-  struct Closer {
-    int descriptor;
-    ~Closer() { ::close(descriptor); }
-  } const closer{descriptor};
-  struct stat status {};
-  if (::fstat(descriptor, &status) != 0) failToRead(path, std::generic_category().message(errno));
-  if (S_ISDIR(status.st_mode)) failToRead(path, "is a folder; a file is needed");
-  if (!S_ISREG(status.st_mode)) failToRead(path, "is not a regular file");
-  if (status.st_size == 0) failToRead(path, "is empty");
-  Bytes bytes(static_cast<std::size_t>(status.st_size));
-  std::size_t filled = 0;
-  while (filled < bytes.size()) {
-    const ssize_t got = ::read(descriptor, bytes.data() + filled,
-                               std::min<std::size_t>(bytes.size() - filled, kLongestStep));
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) failToRead(path, std::generic_category().message(errno));
-    if (got == 0) break;
-    filled += static_cast<std::size_t>(got);
-  }
-  bytes.resize(filled);
+  ByteSource::OpenFile file(path);
+  Bytes bytes(file.size());
+  bytes.resize(file.read(bytes.data(), bytes.size()));
   return bytes;
 }
 
@@ -98,11 +131,24 @@ struct ByteSource::Members {
   bool done = false;
 };
 
-ByteSource::ByteSource(const std::filesystem::path& path) : path_(path), bytes_(readFile(path)) {
-  if (isGzip(bytes_)) members_ = std::make_unique<Members>();
+ByteSource::ByteSource(const std::filesystem::path& path)
+    : path_(path), file_(std::make_unique<OpenFile>(path)) {
+  fetch();
+  if (isGzip(chunk_)) members_ = std::make_unique<Members>();
 }
 
 ByteSource::~ByteSource() = default;
+
+bool ByteSource::fetch() {
+  constexpr std::size_t kChunk = std::size_t{1} << 20;
+  chunk_.erase(chunk_.begin(), chunk_.begin() + static_cast<std::ptrdiff_t>(at_));
+  at_ = 0;
+  const std::size_t held = chunk_.size();
+  chunk_.resize(held + std::min<std::uint64_t>(kChunk, file_->left()));
+  const std::size_t got = file_->read(chunk_.data() + held, chunk_.size() - held);
+  chunk_.resize(held + got);
+  return got > 0;
+}
 
 ByteView ByteSource::peek(std::size_t count) {
   peeked_.erase(peeked_.begin(), peeked_.begin() + static_cast<std::ptrdiff_t>(peekedAt_));
@@ -123,15 +169,19 @@ std::size_t ByteSource::read(std::uint8_t* to, std::size_t count) {
 }
 
 std::size_t ByteSource::readOn(std::uint8_t* to, std::size_t count) {
-  if (!members_) {
-    const std::size_t taken = std::min(count, bytes_.size() - at_);
-    if (taken > 0) std::memcpy(to, bytes_.data() + at_, taken);
-    at_ += taken;
-    return taken;
-  }
+  if (members_) return unpack(to, count);
+  const std::size_t held = std::min(count, chunk_.size() - at_);
+  if (held > 0) std::memcpy(to, chunk_.data() + at_, held);
+  at_ += held;
+  return held + (held < count ? file_->read(to + held, count - held) : 0);
+}
+
+std::size_t ByteSource::unpack(std::uint8_t* to, std::size_t count) {
+  constexpr std::size_t kLongestHeader = 64;  // enough of a member to see that it is one
   std::span<std::uint8_t> room(to, count);
   while (!members_->done) {
-    ByteView left = ByteView(bytes_).subspan(at_);
+    if (chunk_.size() - at_ < kLongestHeader) fetch();
+    ByteView left = ByteView(chunk_).subspan(at_);
     if (members_->memberDone) {
       if (!isGzip(left)) {  // padding after the last member is allowed
         members_->done = true;
@@ -141,11 +191,11 @@ std::size_t ByteSource::readOn(std::uint8_t* to, std::size_t count) {
       members_->memberDone = false;
     }
     const auto progress = members_->inflater.step(left, room);
-    at_ = bytes_.size() - left.size();
+    at_ = chunk_.size() - left.size();
     if (progress == Inflater::Progress::Damaged) failToRead(path_, "the gzip data are damaged");
     members_->memberDone = progress == Inflater::Progress::Done;
     if (room.empty() && !members_->memberDone) break;
-    if (progress == Inflater::Progress::None) {
+    if (progress == Inflater::Progress::None && !fetch()) {
       failTruncated(path_, "the gzip data end too early");
     }
   }
@@ -184,20 +234,14 @@ void ByteSource::finish() {
 }
 
 Bytes ByteSource::rest() {
-  if (!members_ && at_ - (peeked_.size() - peekedAt_) == 0) {
-    peeked_.clear();
-    peekedAt_ = 0;
-    at_ = 0;
-    return std::exchange(bytes_, {});
-  }
   Bytes all;
   std::size_t filled = 0;
-  std::size_t room = 4 * bytes_.size() + 4096;
+  std::size_t room = members_ ? 4 * file_->size() + 4096 : leftAtMost();
   while (true) {
     all.resize(filled + room);
     const std::size_t got = read(all.data() + filled, room);
     filled += got;
-    if (got < room) break;
+    if (got < room || !members_) break;
     room = filled;
   }
   all.resize(filled);
@@ -205,7 +249,7 @@ Bytes ByteSource::rest() {
 }
 
 std::uint64_t ByteSource::leftAtMost() const {
-  const std::uint64_t left = bytes_.size() - at_;
+  const std::uint64_t left = chunk_.size() - at_ + file_->left();
   const std::uint64_t held = peeked_.size() - peekedAt_;
   // What is taken in but not yet given out is bounded by two windows and a match.
   return held + (members_ ? left * kLargestInflation + (1U << 17) : left);

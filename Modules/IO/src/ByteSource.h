@@ -13,9 +13,12 @@ namespace explica::io {
 /// @throws IOError  missing, a folder, not permitted, empty
 [[nodiscard]] Bytes readFile(const std::filesystem::path& path);
 
-/// A file's content as a stream, unpacked on the way if it is gzip (one or several members).
+/// A file's content as a stream, unpacked on the way if it is gzip (one or several members).  Holds
+/// a piece of the file at a time.
 class ByteSource {
  public:
+  class OpenFile;
+
   explicit ByteSource(const std::filesystem::path& path);
   ~ByteSource();
   ByteSource(const ByteSource&) = delete;
@@ -43,9 +46,13 @@ class ByteSource {
   struct Members;
 
   std::size_t readOn(std::uint8_t* to, std::size_t count);
+  std::size_t unpack(std::uint8_t* to, std::size_t count);
+  /// Takes more of the file in; false at its end.
+  bool fetch();
 
   std::filesystem::path path_;
-  Bytes bytes_;
+  std::unique_ptr<OpenFile> file_;
+  Bytes chunk_;  ///< of the file, taken in but from `at_` on not given out
   std::size_t at_ = 0;
   Bytes peeked_;
   std::size_t peekedAt_ = 0;

@@ -534,6 +534,51 @@ Eigen::Index writeGiftiShape(const std::filesystem::path& path, const std::vecto
   return replaced;
 }
 
+struct GiftiMapsWriter::State {
+  std::filesystem::path path;
+  WholeFile file;
+  std::size_t announced = 0, added = 0;
+  std::optional<double> secondsApart;
+};
+
+GiftiMapsWriter::GiftiMapsWriter(const std::filesystem::path& path, const std::string& structure,
+                                 std::size_t mapCount, std::optional<double> secondsApart)
+    : state_(new State{path, WholeFile(path), mapCount, 0, secondsApart}) {
+  Metadata metadata = {{"AnatomicalStructurePrimary", structure}};
+  if (secondsApart) {
+    std::string step;
+    appendNumber(step, 1000 * *secondsApart);
+    metadata["TimeStep"] = step;  // milliseconds, as HCP and fMRIPrep write it
+  }
+  state_->file.write(opening(mapCount, metadata, "<LabelTable/>\n"));
+}
+
+GiftiMapsWriter::~GiftiMapsWriter() = default;
+GiftiMapsWriter::GiftiMapsWriter(GiftiMapsWriter&&) noexcept = default;
+
+void GiftiMapsWriter::add(const std::string& name, const std::string& unit,
+                          std::span<const float> values) {
+  std::string text;
+  appendArray(text, {state_->secondsApart ? "NIFTI_INTENT_TIME_SERIES" : "NIFTI_INTENT_NONE",
+                     "NIFTI_TYPE_FLOAT32",
+                     {static_cast<std::int64_t>(values.size())},
+                     {{"Name", name}, {"Explica:Unit", unit}},
+                     false,
+                     ByteView(reinterpret_cast<const std::uint8_t*>(values.data()),
+                              values.size() * sizeof(float))});
+  state_->file.write(text);
+  ++state_->added;
+}
+
+void GiftiMapsWriter::finish() {
+  if (state_->added != state_->announced) {
+    throw InvalidInput("maps for " + quoted(state_->path) + ": " + std::to_string(state_->added) +
+                       " were written and " + std::to_string(state_->announced) + " announced");
+  }
+  state_->file.write("</GIFTI>\n");
+  state_->file.commit();
+}
+
 void writeGiftiLabel(const std::filesystem::path& path, const LabelMap& labels,
                      const std::string& structure) {
   std::set<Label> known;

@@ -97,7 +97,8 @@ StoredVolume readMgh(ByteSource& source, Extent extent) {
   affine.topRightCorner<3, 1>() = centre - affine.topLeftCorner<3, 3>() * middle;
   volume.origin.affine = affine;
   volume.grid = gridOf(path, size, affine);
-  if (extent == Extent::Header) return volume;
+  volume.bigEndian = true;
+  if (extent != Extent::Everything) return volume;
 
   const std::size_t width = widthOf(volume.type);
   volume.values = source.take(static_cast<std::uint64_t>(valueCount) * width);

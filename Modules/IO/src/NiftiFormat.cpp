@@ -277,6 +277,22 @@ Eigen::Matrix4d place(const Header& header, const std::array<int, 3>& size, Plac
   return sform;
 }
 
+/// Seconds from frame to frame, where the header gives a time and its unit.
+std::optional<double> frameSecondsOf(const Header& header) {
+  const double step = header.pixdim[4];
+  if (header.dim[0] < 4 || !(step > 0) || !std::isfinite(step)) return {};
+  switch (header.units & 0x38) {
+    case 8:
+      return step;
+    case 16:
+      return 1e-3 * step;
+    case 24:
+      return 1e-6 * step;
+    default:
+      return {};
+  }
+}
+
 std::filesystem::path imageOfPair(const std::filesystem::path& header) {
   std::string stem = header.string();
   for (const std::string_view ending : {".gz", ".hdr", ".img"}) {
@@ -331,6 +347,8 @@ StoredVolume readNifti(ByteSource& source, PlacementChoice placement, Extent ext
   const Eigen::Matrix4d affine = place(header, size, placement, volume.origin);
   volume.grid = gridOf(path, size, affine);
   volume.origin.affine = affine;
+  volume.bigEndian = header.bigEndian;
+  volume.frameSeconds = frameSecondsOf(header);
   if (extent == Extent::Header) return volume;
 
   const std::size_t width = widthOf(volume.type);
@@ -351,6 +369,10 @@ StoredVolume readNifti(ByteSource& source, PlacementChoice placement, Extent ext
     }
     // Some writers leave the offset at 0 and mean the usual place.
     const std::int64_t start = header.offset == 0 ? least : header.offset;
+    if (extent == Extent::Positioned) {
+      source.skip(static_cast<std::uint64_t>(start - read));
+      return volume;
+    }
     readValues(source, static_cast<std::uint64_t>(start - read));
   }
   if (header.bigEndian) swapBytes(volume.values.data(), valueCount, width);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "ByteSource.h"
 #include "Bytes.h"
 #include "PackedFile.h"
 
@@ -9,6 +10,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 namespace explica::io {
 
@@ -37,15 +39,32 @@ struct StoredVolume {
   StoredType type = StoredType::Float32;
   double slope = 1;
   double intercept = 0;
-  Bytes values;  ///< empty if only the header was asked for
+  bool bigEndian = false;              ///< of values that are still to be read from the source
+  std::optional<double> frameSeconds;  ///< time between frames, if the header says it
+  Bytes values;                        ///< empty if only the header was asked for
 };
 
 /// What a reader of one format is asked for.
-enum class Extent { Header, Everything };
+enum class Extent {
+  Header,
+  Positioned,  ///< the header, and the source stands at the first value; where the values are in
+               ///< another file, or are interleaved, everything
+  Everything
+};
 
 /// Tells the format by content and reads it.
 [[nodiscard]] StoredVolume readStored(const std::filesystem::path& path,
                                       const VolumeReadOptions& options, Extent extent);
+
+/// As above, from a source that stands at the file's beginning.
+[[nodiscard]] StoredVolume readStored(ByteSource& source, const std::filesystem::path& path,
+                                      const VolumeReadOptions& options, Extent extent);
+
+/// The file that is opened for a volume's name: `.hdr` for `.img`.
+[[nodiscard]] std::filesystem::path openedFor(const std::filesystem::path& path);
+
+/// Puts scaled values of one frame, as it stands in memory in native byte order.
+void scaledFloats(const StoredVolume& stored, const std::uint8_t* from, float* to);
 
 /// Grid of an index-to-RAS affine, its axes made exactly orthonormal; errors name the path.
 [[nodiscard]] Grid gridOf(const std::filesystem::path& path, const std::array<int, 3>& size,

@@ -518,10 +518,34 @@ std::int64_t checkedProduct(const std::filesystem::path& path,
 
 StoredVolume readStored(const std::filesystem::path& path, const VolumeReadOptions& options,
                         Extent extent) {
+  ByteSource source(openedFor(path));
+  return readStored(source, path, options, extent);
+}
+
+std::filesystem::path openedFor(const std::filesystem::path& path) {
   std::filesystem::path opened = path;
   if (path.extension() == ".img") opened.replace_extension(".hdr");
-  if (!std::filesystem::exists(opened)) opened = path;
-  ByteSource source(opened);
+  return std::filesystem::exists(opened) ? opened : path;
+}
+
+void scaledFloats(const StoredVolume& stored, const std::uint8_t* from, float* to) {
+  const bool scaled = stored.slope != 1 || stored.intercept != 0;
+  withType(stored.type, [&]<class In>(const In*) {
+    parallelForBlocks(stored.grid.voxelCount(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) {
+        In value;
+        std::memcpy(&value, from + v * sizeof(In), sizeof(In));
+        to[v] =
+            scaled
+                ? static_cast<float>(static_cast<double>(value) * stored.slope + stored.intercept)
+                : static_cast<float>(value);
+      }
+    });
+  });
+}
+
+StoredVolume readStored(ByteSource& source, const std::filesystem::path& path,
+                        const VolumeReadOptions& options, Extent extent) {
   const ByteView first = source.peek(348);
   const std::string_view text(reinterpret_cast<const char*>(first.data()), first.size());
   if (looksLikeNifti(first)) return readNifti(source, options.placement, extent);

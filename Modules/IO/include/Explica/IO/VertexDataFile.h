@@ -8,7 +8,9 @@
 
 #include <array>
 #include <filesystem>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -60,6 +62,28 @@ struct LabelMap {
 /// @throws EnvironmentError  the file cannot be written
 Eigen::Index writeGiftiShape(const std::filesystem::path& path, const std::vector<VertexMap>& maps,
                              const std::string& structure);
+
+/// Writes GIFTI metric data map by map, so that memory holds one at a time: FLOAT32, gzip-base64.
+/// Not-a-number stays, for maps of which some values are not known.
+class GiftiMapsWriter {
+ public:
+  /// @param mapCount      how many maps will be added
+  /// @param secondsApart  time from map to map of a series; they are then marked as one
+  GiftiMapsWriter(const std::filesystem::path& path, const std::string& structure,
+                  std::size_t mapCount, std::optional<double> secondsApart = {});
+  ~GiftiMapsWriter();
+  GiftiMapsWriter(GiftiMapsWriter&&) noexcept;
+
+  /// @throws EnvironmentError  the file cannot be written
+  void add(const std::string& name, const std::string& unit, std::span<const float> values);
+  /// Puts the file in place; without it there is none.
+  /// @throws InvalidInput  fewer or more maps than announced
+  void finish();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 /// Writes GIFTI labels: INT32 keys and the table; Workbench wants `.label.gii`.
 /// @throws InvalidInput      a key that the table lacks

@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Sampling/Statistics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace explica::sampling {
+namespace {
+
+constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+
+TEST(AcrossDepths, CountsWhatIsKnown) {
+  const std::vector<float> values = {1, kUnknown, kUnknown, 3, -4, kUnknown};  // 2 depths x 3
+  const std::vector<float> mean = acrossDepths(values, 2, Across::Mean);
+  EXPECT_EQ(mean[0], 2);
+  EXPECT_EQ(mean[1], -4);
+  EXPECT_TRUE(std::isnan(mean[2]));
+  EXPECT_EQ(acrossDepths(values, 2, Across::Max)[1], -4);
+}
+
+TEST(AcrossDepths, LabelsGoToTheMajorityAndTiesToTheMiddle) {
+  const std::vector<Label> labels = {3, 3, kNoLabel,   // white
+                                     5, 3, kNoLabel,   // middle
+                                     7, 5, kNoLabel};  // pial
+  EXPECT_EQ(majorityAcross(labels, 3), (std::vector<Label>{5, 3, kNoLabel}));
+}
+
+TEST(Regions, HaveTheMomentsOfTheirVertices) {
+  const std::vector<Label> keys = {2, 2, 2, 1, 0, 9};
+  const Regions regions(keys, {{1, "one"}, {2, "two"}, {3, "absent"}, {9, "nine"}});
+  EXPECT_EQ(regions.names(), (std::vector<std::string>{"one", "two", "nine", "all"}));
+  const std::vector<float> values = {1e6F, 1e6F + 2, kUnknown, 7, 100, kUnknown};
+  const std::vector<Moments> got = regions.momentsOf(values);
+  EXPECT_EQ(got[0].mean, 7);
+  EXPECT_TRUE(std::isnan(got[0].deviation));
+  EXPECT_EQ(got[1].mean, 1e6 + 1);
+  EXPECT_DOUBLE_EQ(got[1].deviation, std::sqrt(2.0));
+  EXPECT_EQ(got[2].count, 0U);
+  EXPECT_TRUE(std::isnan(got[2].mean));
+  EXPECT_EQ(got[3].count, 3U);
+  EXPECT_EQ(regions.nameAt(3), "one");
+  EXPECT_EQ(regions.nameAt(4), "");
+  EXPECT_EQ(Regions(2).momentsOf(std::vector<float>{1, 3})[0].mean, 2);
+}
+
+}  // namespace
+}  // namespace explica::sampling
