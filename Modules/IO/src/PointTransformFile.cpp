@@ -1,0 +1,279 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/IO/PointTransformFile.h"
+
+#include "ByteSource.h"
+#include "ItkTransform.h"
+#include "SurfaceFrame.h"
+
+#include "Explica/Core/Parallel.h"
+#include "Explica/IO/SurfaceFile.h"
+
+#include <Eigen/LU>
+
+#include <cmath>
+#include <map>
+
+namespace explica::io {
+namespace {
+
+constexpr std::size_t kLargestText = 1 << 20;  // bytes: matrices are small
+
+Eigen::Matrix4d checked(const std::filesystem::path& path, const Eigen::Matrix4d& matrix) {
+  const bool affine =
+      matrix.allFinite() && (matrix.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).norm() < 1e-6;
+  if (!affine) refuse(path, "its matrix is not affine: the last row must be 0 0 0 1");
+  const Eigen::Matrix3d linear = matrix.topLeftCorner<3, 3>();
+  if (!(std::abs(linear.determinant()) > 1e-9 * std::pow(linear.norm(), 3))) {
+    refuse(path, "its matrix cannot be inverted: it takes space to a plane");
+  }
+  return matrix;
+}
+
+PointTransform affine(std::string format, std::string sense, const Eigen::Matrix4d& matrix) {
+  PointTransform transform;
+  transform.format = std::move(format);
+  transform.sense = std::move(sense);
+  transform.matrix = matrix;
+  transform.map = [matrix](const Point& x) -> Point {
+    return matrix.topLeftCorner<3, 3>() * x + matrix.topRightCorner<3, 1>();
+  };
+  return transform;
+}
+
+std::string wordFor(bool inverse) {
+  return inverse ? "volume to surface, inverted" : "surface to volume, as it stands";
+}
+
+std::string_view withoutComment(std::string_view line) {
+  return line.substr(0, line.find('#'));
+}
+
+/// All numbers of a text; empty if there is anything else.
+std::vector<double> numbersOf(ByteView bytes) {
+  std::vector<double> numbers;
+  const std::filesystem::path none;
+  ByteCursor lines(none, bytes, false);
+  while (lines.left() > 0) {
+    std::string line(withoutComment(lines.line()));
+    for (char& c : line) {
+      if (c == ',' || c == ';') c = ' ';
+    }
+    ByteCursor words(none, {reinterpret_cast<const std::uint8_t*>(line.data()), line.size()},
+                     false);
+    for (std::string_view word = words.word(); !word.empty(); word = words.word()) {
+      double value = 0;
+      if (word.starts_with('+')) word.remove_prefix(1);
+      const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+      if (error != std::errc{} || end != word.data() + word.size()) return {};
+      numbers.push_back(value);
+    }
+  }
+  return numbers;
+}
+
+Eigen::Matrix4d matrixOf(const std::filesystem::path& path, const std::vector<double>& numbers) {
+  if (numbers.size() < 16) failTruncated(path, "it has fewer than the 16 numbers of a matrix");
+  Eigen::Matrix4d matrix;
+  for (int i = 0; i < 16; ++i) matrix(i / 4, i % 4) = numbers[i];
+  return checked(path, matrix);
+}
+
+PointTransform plainMatrix(const std::filesystem::path& path, const std::vector<double>& numbers,
+                           TransformSense sense) {
+  Eigen::Matrix4d matrix = matrixOf(path, numbers);
+  const bool inverse = sense == TransformSense::Inverse;
+  if (inverse) matrix = matrix.inverse().eval();
+  return affine("matrix", wordFor(inverse), matrix);
+}
+
+/// `"coord": [[16 numbers in 4 rows]]` of a JSON object.
+PointTransform pycortex(const std::filesystem::path& path, std::string_view text,
+                        const TransformSides& sides) {
+  const std::size_t key = text.find("\"coord\"");
+  if (key == std::string_view::npos) {
+    failToRead(path, "is JSON without \"coord\"; pycortex's matrices.xfm has it");
+  }
+  std::string rows;
+  int depth = 0;
+  for (const char c : text.substr(key + 7)) {
+    rows += c;
+    depth += c == '[' ? 1 : c == ']' ? -1 : 0;
+    if (c == ']' && depth == 0) break;
+  }
+  for (char& c : rows) {
+    if (c == '[' || c == ']' || c == ':' || c == ',') c = ' ';
+  }
+  const std::vector<double> numbers =
+      numbersOf({reinterpret_cast<const std::uint8_t*>(rows.data()), rows.size()});
+  if (numbers.size() != 16) failToRead(path, "its \"coord\" is not a matrix of 4 x 4 numbers");
+  const Eigen::Matrix4d toIndex = matrixOf(path, numbers);
+  if (sides.sense == TransformSense::Inverse) {
+    refuse(path, "pycortex's transforms map the surface to voxels; they are not inverted");
+  }
+  return affine("pycortex", "coordinates of the surface's file to voxels, as it stands",
+                sides.volume.affine() * toIndex * sides.scannerFromFile.inverse());
+}
+
+PointTransform registerDat(const std::filesystem::path& path, ByteView bytes,
+                           const TransformSides& sides) {
+  ByteCursor cursor(path, bytes, false);
+  for (int line = 0; line < 4; ++line)
+    static_cast<void>(cursor.line());  // subject, voxels, intensity
+  std::vector<double> numbers;
+  for (int i = 0; i < 16; ++i) numbers.push_back(parseNumber<double>(path, cursor.word()));
+  Eigen::Matrix4d tkr = matrixOf(path, numbers);
+  if (!sides.scannerFromTkr) {
+    refuse(path,
+           "maps FreeSurfer's surface RAS, and the surface's file does not tell the volume that "
+           "these belong to; name it with --fs-volume orig.mgz");
+  }
+  const bool inverse = sides.sense == TransformSense::Inverse;
+  if (inverse) tkr = tkr.inverse().eval();
+  return affine("register.dat",
+                inverse ? "surface RAS of the volume to that of the anatomy, inverted"
+                        : "surface RAS of the anatomy to that of the volume, as it stands",
+                scannerFromTkr(sides.volume) * tkr * sides.scannerFromTkr->inverse());
+}
+
+/// One side of an LTA: `key = value` lines after "src volume info" or "dst volume info".
+std::optional<Grid> sideOf(const std::filesystem::path& path, std::string_view text,
+                           std::string_view title) {
+  const std::size_t begin = text.find(title);
+  if (begin == std::string_view::npos) return {};
+  ByteCursor lines(
+      path, {reinterpret_cast<const std::uint8_t*>(text.data()) + begin, text.size() - begin},
+      false);
+  static_cast<void>(lines.line());
+  std::map<std::string, std::vector<double>> fields;
+  constexpr int kLines = 8;
+  for (int n = 0; n < kLines && lines.left() > 0; ++n) {
+    const std::string_view line = withoutComment(lines.line());
+    const std::size_t mark = line.find('=');
+    if (mark == std::string_view::npos) break;
+    std::string key(line.substr(0, mark));
+    key.erase(key.find_last_not_of(' ') + 1);
+    const std::string_view value = line.substr(mark + 1);
+    fields[key] = numbersOf({reinterpret_cast<const std::uint8_t*>(value.data()), value.size()});
+  }
+  const auto get = [&](const char* key, auto&& to) {
+    const std::vector<double>& numbers = fields[key];
+    if (numbers.size() != 3) return false;
+    for (int i = 0; i < 3; ++i) to[i] = numbers[i];
+    return true;
+  };
+  VolumeText volume;
+  Vector x, y, z;
+  const bool whole = fields["valid"] == std::vector<double>{1} && get("volume", volume.size) &&
+                     get("voxelsize", volume.spacing) && get("xras", x) && get("yras", y) &&
+                     get("zras", z) && get("cras", volume.centre);
+  if (!whole) return {};
+  volume.axes << x, y, z;
+  return gridOfVolumeText(path, volume);
+}
+
+PointTransform lta(const std::filesystem::path& path, std::string_view text,
+                   const TransformSides& sides) {
+  const auto after = [&](std::string_view key) {
+    const std::size_t at = text.find(key);
+    const std::size_t mark = at == std::string_view::npos ? at : text.find('=', at);
+    if (mark == std::string_view::npos)
+      failToRead(path, "is an LTA without '" + std::string(key) + "'");
+    ByteCursor cursor(
+        path,
+        {reinterpret_cast<const std::uint8_t*>(text.data()) + mark + 1, text.size() - mark - 1},
+        false);
+    return parseNumber<int>(path, cursor.word());
+  };
+  constexpr int kVoxelToVoxel = 0, kRasToRas = 1;
+  const int type = after("type");
+  if (type != kVoxelToVoxel && type != kRasToRas) {
+    refuse(path, "is an LTA of type " + std::to_string(type) +
+                     "; 0 (voxel to voxel) and 1 (RAS to RAS) are understood: convert it with "
+                     "lta_convert --ltavox2vox");
+  }
+  const std::size_t head = text.find("1 4 4");
+  if (head == std::string_view::npos) failToRead(path, "is an LTA without a 4 x 4 matrix");
+  ByteCursor cursor(
+      path, {reinterpret_cast<const std::uint8_t*>(text.data()) + head + 5, text.size() - head - 5},
+      false);
+  std::vector<double> numbers;
+  for (int i = 0; i < 16; ++i) numbers.push_back(parseNumber<double>(path, cursor.word()));
+  Eigen::Matrix4d matrix = matrixOf(path, numbers);
+  const std::optional<Grid> source = sideOf(path, text, "src volume info"),
+                            target = sideOf(path, text, "dst volume info");
+  if (!source || !target) refuse(path, "does not tell the geometry of both its volumes");
+  if (type == kVoxelToVoxel) matrix = target->affine() * matrix * source->affine().inverse();
+  const bool isSource = sameGrid(*source, sides.volume, 0.01),
+             isTarget = sameGrid(*target, sides.volume, 0.01);
+  bool inverse = sides.sense == TransformSense::Inverse;
+  if (sides.sense == TransformSense::Auto) {
+    if (isSource == isTarget) {
+      refuse(path, std::string("the volume lies on the grid of ") +
+                       (isSource ? "both its source and its target"
+                                 : "neither its source nor its target") +
+                       "; say with --to-volume-sense forward or inverse which way it goes");
+    }
+    inverse = isSource;
+  }
+  if (inverse) matrix = matrix.inverse().eval();
+  return affine(
+      "LTA",
+      inverse ? "the volume is its source, inverted" : "the volume is its target, as it stands",
+      matrix);
+}
+
+}  // namespace
+
+Positions PointTransform::operator()(const Positions& points) const {
+  constexpr std::size_t kGrain = 4096;
+  Positions moved(points.rows(), 3);
+  parallelFor(static_cast<std::size_t>(points.rows()), kGrain, [&](std::size_t p) {
+    const auto row = static_cast<Eigen::Index>(p);
+    moved.row(row) = map(points.row(row).transpose()).transpose();
+  });
+  return moved;
+}
+
+PointTransform readPointTransform(const std::filesystem::path& path, const TransformSides& sides) {
+  ByteSource source(path);
+  const ByteView first = source.peek(8);
+  const std::string_view magic(reinterpret_cast<const char*>(first.data()), first.size());
+  const bool inverse = sides.sense == TransformSense::Inverse;
+  const auto itk = [&] {
+    PointTransform transform;
+    transform.format = "ITK";
+    transform.sense = inverse ? "moving to fixed, inverted" : "fixed to moving, as it stands";
+    transform.map = readItkTransform(path, inverse);
+    return transform;
+  };
+  // Matlab's level 4 files, which ANTs writes, begin with the type and the size of a matrix.
+  const std::string extension = path.extension().string();
+  if (magic.starts_with("\x89HDF\r\n") || magic.starts_with("#Insight")) return itk();
+  if (source.leftAtMost() > kLargestText) {
+    failToRead(path, "is not a transform of a known format (it is too long for a matrix as text)");
+  }
+  const Bytes bytes = source.rest();
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  if (text.find('\0') != std::string_view::npos) {
+    if (extension == ".mat" || extension == ".h5" || extension == ".hdf5") return itk();
+    failToRead(path, "is not a transform of a known format");
+  }
+  const std::size_t start = text.find_first_not_of(" \t\r\n");
+  if (start != std::string_view::npos && text[start] == '{') return pycortex(path, text, sides);
+  if (text.find("src volume info") != std::string_view::npos) return lta(path, text, sides);
+  const std::vector<double> numbers = numbersOf(bytes);
+  if (numbers.size() == 16) return plainMatrix(path, numbers, sides.sense);
+  if (numbers.empty() &&
+      (text.find("round") != std::string_view::npos ||
+       text.find("tkregister") != std::string_view::npos ||
+       text.find("trunc") != std::string_view::npos || path.extension() == ".dat")) {
+    return registerDat(path, bytes, sides);
+  }
+  failToRead(path,
+             "is not a transform of a known format (4 x 4 matrix as text, ITK text, .mat or .h5, "
+             "FreeSurfer LTA or register.dat, pycortex xfm)");
+}
+
+}  // namespace explica::io
