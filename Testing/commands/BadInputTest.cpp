@@ -146,6 +146,7 @@ const VolumeCommand kPolygonCommands[] = {
 };
 
 const VolumeCommand kSurfaceCommands[] = {
+    {"Repair", {"repair", "{file}"}},
     {"Unfold", {"unfold", "{file}", "--vertex", "0", "--radius", "5", "--direction", "0,0,1"}},
     {"Flatten", {"flatten", "{file}"}},
     {"Compare", {"compare", "{file}", "{file}"}},

@@ -6,6 +6,7 @@
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/IO/PolygonFile.h"
 #include "Explica/IO/SurfaceFile.h"
+#include "Explica/IO/VolumeFile.h"
 #include "Explica/Testing/Command.h"
 
 #include <cmath>
@@ -41,6 +42,23 @@ inline void writeFoldedCap(const TemporaryFolder& folder) {
     }
   }
   io::writeSurface(folder / "cap.surf.gii", geometry::extractFaces(sphere, faces).mesh);
+}
+
+/// White and pial surface, a map and an electrode; two spheres that pass through each other.
+inline void writeCortexAndMap(const TemporaryFolder& folder) {
+  io::writeSurface(folder / "white.surf.gii", geometry::makeIcosphere(3, 10.0));
+  io::writeSurface(folder / "pial.surf.gii", geometry::makeIcosphere(3, 14.0));
+  io::writeSurface(folder / "crossed.surf.gii",
+                   geometry::joined(geometry::makeIcosphere(3, 10.0),
+                                    geometry::makeIcosphere(3, 10.0, Point(19.8, 0.3, 0.2))));
+  Grid grid;
+  grid.size = {24, 24, 24};
+  grid.spacing = {1.3, 1.3, 1.3};
+  grid.origin = {-15, -15, -15};
+  Volume<float> map(grid);
+  for (std::size_t v = 0; v < map.size(); ++v) map[v] = static_cast<float>(v % 101);
+  io::writeVolume(folder / "map.nii.gz", map);
+  writeText(folder / "points.tsv", "x\ty\tz\n0\t1\t12\n");
 }
 
 /// An ellipse about the origin, mm.
@@ -82,6 +100,12 @@ inline const std::vector<QuickRun>& quickRuns() {
       {"Polygon",
        {{"phantom", "polygon19", "--out", "{folder}/p19"}},
        {"polygon", "{folder}/p19/polygon.csv", "--region", "0:19", "--viewpoint", "50.5,4000"}},
+      {"Repair", {}, {"repair", "{folder}/crossed.surf.gii", "--max-move", "5"}, writeCortexAndMap},
+      {"Sample",
+       {},
+       {"sample", "{folder}/map.nii.gz", "--surfaces", "{folder}", "--depths", "5", "--points",
+        "{folder}/points.tsv"},
+       writeCortexAndMap},
       {"Segment",
        {kShell},
        {"segment", "{folder}/shell/level.nii.gz", "--template", "none", "--max-iterations", "4"}},

@@ -3,6 +3,7 @@
 
 #include "FreeSurferFormat.h"
 
+#include "ByteSource.h"
 #include "MeshBuilder.h"
 #include "SurfaceFrame.h"
 
@@ -352,6 +353,32 @@ void writeFreeSurferSurface(const std::filesystem::path& path, const TriangleMes
   line("zras  ", geometry.direction.col(2));
   line("cras  ",
        geometry.toWorld(0.5 * Vector(geometry.size[0], geometry.size[1], geometry.size[2])));
+  write(path, bytes);
+}
+
+void rewriteFreeSurferSurface(const std::filesystem::path& path,
+                              const std::filesystem::path& original, const Positions& positions,
+                              std::span<const std::int32_t> moved) {
+  Bytes bytes = ByteSource(original).rest();
+  ByteCursor cursor(original, bytes, true);
+  if (take24(cursor) != kTriangleSurface) {
+    refuse(original, "is no FreeSurfer surface of triangles, so that it cannot be written anew");
+  }
+  static_cast<void>(cursor.line());
+  if (cursor.left() > 0 && bytes[cursor.position()] == '\n') static_cast<void>(cursor.line());
+  const auto vertices = cursor.take<std::int32_t>();
+  static_cast<void>(cursor.take<std::int32_t>());
+  const std::size_t start = cursor.position();
+  if (vertices != positions.rows() || cursor.left() < 12 * static_cast<std::size_t>(vertices)) {
+    refuse(original, "has " + std::to_string(vertices) + " vertices where " +
+                         std::to_string(positions.rows()) + " are to be written");
+  }
+  for (const std::int32_t v : moved) {
+    for (int axis = 0; axis < 3; ++axis) {
+      store(bytes.data() + start + 12 * static_cast<std::size_t>(v) + 4 * axis,
+            static_cast<float>(positions(v, axis)), true);
+    }
+  }
   write(path, bytes);
 }
 

@@ -7,7 +7,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <fstream>
+#include <iterator>
+#include <set>
 #include <sstream>
 #include <vector>
 
@@ -72,46 +76,145 @@ LabelNames readLabelNames(const fs::path& legend) {
   return names;
 }
 
-std::string freeSurferRegion(Label label) {
-  static constexpr std::array kNames = {"bankssts",
-                                        "caudalanteriorcingulate",
-                                        "caudalmiddlefrontal",
-                                        "corpuscallosum",
-                                        "cuneus",
-                                        "entorhinal",
-                                        "fusiform",
-                                        "inferiorparietal",
-                                        "inferiortemporal",
-                                        "isthmuscingulate",
-                                        "lateraloccipital",
-                                        "lateralorbitofrontal",
-                                        "lingual",
-                                        "medialorbitofrontal",
-                                        "middletemporal",
-                                        "parahippocampal",
-                                        "paracentral",
-                                        "parsopercularis",
-                                        "parsorbitalis",
-                                        "parstriangularis",
-                                        "pericalcarine",
-                                        "postcentral",
-                                        "posteriorcingulate",
-                                        "precentral",
-                                        "precuneus",
-                                        "rostralanteriorcingulate",
-                                        "rostralmiddlefrontal",
-                                        "superiorfrontal",
-                                        "superiorparietal",
-                                        "superiortemporal",
-                                        "supramarginal",
-                                        "frontalpole",
-                                        "temporalpole",
-                                        "transversetemporal",
-                                        "insula"};
+namespace {
+
+using Rgb = std::array<std::uint8_t, 3>;
+
+struct RegionRow {
+  const char* name;
+  Rgb colour;
+};
+/// Labels 1 to 35 of each hemisphere's thousand.
+constexpr RegionRow kRegions[] = {{"bankssts", {25, 100, 40}},
+                                  {"caudalanteriorcingulate", {125, 100, 160}},
+                                  {"caudalmiddlefrontal", {100, 25, 0}},
+                                  {"corpuscallosum", {120, 70, 50}},
+                                  {"cuneus", {220, 20, 100}},
+                                  {"entorhinal", {220, 20, 10}},
+                                  {"fusiform", {180, 220, 140}},
+                                  {"inferiorparietal", {220, 60, 220}},
+                                  {"inferiortemporal", {180, 40, 120}},
+                                  {"isthmuscingulate", {140, 20, 140}},
+                                  {"lateraloccipital", {20, 30, 140}},
+                                  {"lateralorbitofrontal", {35, 75, 50}},
+                                  {"lingual", {225, 140, 140}},
+                                  {"medialorbitofrontal", {200, 35, 75}},
+                                  {"middletemporal", {160, 100, 50}},
+                                  {"parahippocampal", {20, 220, 60}},
+                                  {"paracentral", {60, 220, 60}},
+                                  {"parsopercularis", {220, 180, 140}},
+                                  {"parsorbitalis", {20, 100, 50}},
+                                  {"parstriangularis", {220, 60, 20}},
+                                  {"pericalcarine", {120, 100, 60}},
+                                  {"postcentral", {220, 20, 20}},
+                                  {"posteriorcingulate", {220, 180, 220}},
+                                  {"precentral", {60, 20, 220}},
+                                  {"precuneus", {160, 140, 180}},
+                                  {"rostralanteriorcingulate", {80, 20, 140}},
+                                  {"rostralmiddlefrontal", {75, 50, 125}},
+                                  {"superiorfrontal", {20, 220, 160}},
+                                  {"superiorparietal", {20, 180, 140}},
+                                  {"superiortemporal", {140, 220, 220}},
+                                  {"supramarginal", {80, 160, 20}},
+                                  {"frontalpole", {100, 0, 100}},
+                                  {"temporalpole", {70, 20, 170}},
+                                  {"transversetemporal", {150, 150, 200}},
+                                  {"insula", {255, 192, 32}}};
+
+struct StructureRow {
+  Label label;
+  const char* name;
+  Rgb colour;
+};
+constexpr StructureRow kStructures[] = {{2, "Left-Cerebral-White-Matter", {245, 245, 245}},
+                                        {3, "Left-Cerebral-Cortex", {205, 62, 78}},
+                                        {4, "Left-Lateral-Ventricle", {120, 18, 134}},
+                                        {5, "Left-Inf-Lat-Vent", {196, 58, 250}},
+                                        {7, "Left-Cerebellum-White-Matter", {220, 248, 164}},
+                                        {8, "Left-Cerebellum-Cortex", {230, 148, 34}},
+                                        {10, "Left-Thalamus", {0, 118, 14}},
+                                        {11, "Left-Caudate", {122, 186, 220}},
+                                        {12, "Left-Putamen", {236, 13, 176}},
+                                        {13, "Left-Pallidum", {12, 48, 255}},
+                                        {14, "3rd-Ventricle", {204, 182, 142}},
+                                        {15, "4th-Ventricle", {42, 204, 164}},
+                                        {16, "Brain-Stem", {119, 159, 176}},
+                                        {17, "Left-Hippocampus", {220, 216, 20}},
+                                        {18, "Left-Amygdala", {103, 255, 255}},
+                                        {24, "CSF", {60, 60, 60}},
+                                        {26, "Left-Accumbens-area", {255, 165, 0}},
+                                        {28, "Left-VentralDC", {165, 42, 42}},
+                                        {41, "Right-Cerebral-White-Matter", {245, 245, 245}},
+                                        {42, "Right-Cerebral-Cortex", {205, 62, 78}},
+                                        {43, "Right-Lateral-Ventricle", {120, 18, 134}},
+                                        {44, "Right-Inf-Lat-Vent", {196, 58, 250}},
+                                        {46, "Right-Cerebellum-White-Matter", {220, 248, 164}},
+                                        {47, "Right-Cerebellum-Cortex", {230, 148, 34}},
+                                        {49, "Right-Thalamus", {0, 118, 14}},
+                                        {50, "Right-Caudate", {122, 186, 220}},
+                                        {51, "Right-Putamen", {236, 13, 176}},
+                                        {52, "Right-Pallidum", {13, 48, 255}},
+                                        {53, "Right-Hippocampus", {220, 216, 20}},
+                                        {54, "Right-Amygdala", {103, 255, 255}},
+                                        {58, "Right-Accumbens-area", {255, 165, 0}},
+                                        {60, "Right-VentralDC", {165, 42, 42}}};
+
+const RegionRow* regionOf(Label label) {
   const Label within = label % 1000;
   const bool cortex = label / 1000 == 1 || label / 1000 == 2;
-  if (!cortex || within < 1 || within > static_cast<Label>(kNames.size())) return "";
-  return kNames[static_cast<std::size_t>(within - 1)];
+  if (!cortex || within < 1 || within > static_cast<Label>(std::size(kRegions))) return nullptr;
+  return &kRegions[within - 1];
+}
+
+LabelEntry entryOf(Label key, std::string name, const Rgb& colour) {
+  LabelEntry entry{key, std::move(name), {0, 0, 0, 1}};
+  for (int c = 0; c < 3; ++c) entry.colour[c] = static_cast<float>(colour[c]) / 255.0F;
+  return entry;
+}
+
+}  // namespace
+
+std::string freeSurferRegion(Label label) {
+  const RegionRow* region = regionOf(label);
+  return region == nullptr ? "" : region->name;
+}
+
+std::optional<LabelEntry> freeSurferEntry(Label label) {
+  if (const RegionRow* region = regionOf(label)) {
+    const char* side = label / 1000 == 1 ? "ctx-lh-" : "ctx-rh-";
+    return entryOf(label, std::string(side) + region->name, region->colour);
+  }
+  for (const StructureRow& row : kStructures) {
+    if (row.label == label) return entryOf(label, row.name, row.colour);
+  }
+  return {};
+}
+
+std::array<float, 4> distinctColour(Label label) {
+  // Hues apart by the golden ratio, so that neighbours in number differ most.
+  constexpr double kGolden = 0.61803398874989485;
+  const double hue = 6 * std::fmod(kGolden * (static_cast<double>(label) + 1), 1.0);
+  std::array<float, 4> colour = {0, 0, 0, 1};
+  for (int c = 0; c < 3; ++c) {
+    const double from = std::fmod(hue + 6 - 2 * c, 6.0);  // of this channel's own hue
+    const double level = std::clamp(std::abs(from - 3) - 1, 0.0, 1.0);
+    colour[c] = static_cast<float>(0.25 + 0.7 * level);
+  }
+  return colour;
+}
+
+std::vector<LabelEntry> tableFor(const std::vector<Label>& keys, const LabelNames& names,
+                                 bool freeSurfer) {
+  std::vector<LabelEntry> table;
+  std::set<Label> sorted(keys.begin(), keys.end());
+  for (const Label key : sorted) {
+    std::optional<LabelEntry> entry;
+    if (freeSurfer) entry = freeSurferEntry(key);
+    if (!entry) entry = LabelEntry{key, std::to_string(key), distinctColour(key)};
+    if (const auto named = names.find(key); named != names.end()) entry->name = named->second;
+    table.push_back(*entry);
+  }
+  return table;
 }
 
 }  // namespace explica::io

@@ -3,11 +3,14 @@
 #pragma once
 
 #include "Explica/Core/Types.h"
+#include "Explica/IO/VertexDataFile.h"
 
+#include <array>
 #include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace explica::io {
 
@@ -27,5 +30,17 @@ using LabelNames = std::map<Label, std::string>;
 /// FreeSurfer's name of a cortical region in aparc+aseg (1001 to 1035 left, 2001 to 2035 right),
 /// without side: "bankssts"; empty for any other label.
 [[nodiscard]] std::string freeSurferRegion(Label label);
+
+/// Name and colour of a label of aseg or aparc+aseg in FreeSurfer's table; nothing for a label that
+/// is not among the cortical regions and the usual structures.
+[[nodiscard]] std::optional<LabelEntry> freeSurferEntry(Label label);
+
+/// A colour for a label of no known table; labels near each other differ well.
+[[nodiscard]] std::array<float, 4> distinctColour(Label label);
+
+/// Table of the labels that occur: FreeSurfer's names and colours if `freeSurfer`, else distinct
+/// colours; `names` win.  Ascending keys.
+[[nodiscard]] std::vector<LabelEntry> tableFor(const std::vector<Label>& keys,
+                                               const LabelNames& names, bool freeSurfer);
 
 }  // namespace explica::io

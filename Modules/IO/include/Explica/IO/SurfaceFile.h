@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -90,6 +91,14 @@ void writeGiftiSurface(const std::filesystem::path& path, const TriangleMesh& me
 /// to that volume's surface RAS.
 void writeFreeSurferSurface(const std::filesystem::path& path, const TriangleMesh& mesh,
                             const std::optional<Grid>& volume = {});
+
+/// Writes a FreeSurfer triangle file anew with some vertices moved: every other byte is the
+/// original's, comment, footer and what follows included.
+/// @param positions  V x 3, in the coordinates of the original file
+/// @throws IOError, InvalidInput  the original is no triangle file of as many vertices
+void rewriteFreeSurferSurface(const std::filesystem::path& path,
+                              const std::filesystem::path& original, const Positions& positions,
+                              std::span<const std::int32_t> moved);
 
 /// Writes by the name's extension: .gii, .vtp, .ply (binary, double), .obj, .off (both text that
 /// gives back every double exactly), .stl (binary, float32); FreeSurfer for any other or no

@@ -1,0 +1,462 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "PointTable.h"
+#include "Settings.h"
+
+#include "Explica/Application/Command.h"
+#include "Explica/Application/ReadInputs.h"
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/Parallel.h"
+#include "Explica/Core/WholeFile.h"
+#include "Explica/IO/LabelNames.h"
+#include "Explica/IO/VertexDataFile.h"
+#include "Explica/IO/VolumeSeries.h"
+#include "Explica/Sampling/NearestColumn.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <set>
+#include <span>
+
+namespace explica::app {
+namespace {
+
+constexpr const char* kDefaultDepths = "0.5";
+
+void declare(Declaration& d, SampleSettings& s) {
+  d.synopsis("values of volumes on the cortex: at depths between surfaces, or layer by layer")
+      .description(
+          "Takes volumes (anatomy, maps, functional series, labels) at any depth between a white "
+          "and "
+          "a pial surface whose vertices correspond, or in the layers of explica thickness. "
+          "Outside "
+          "the field of view or the mask, and where a map holds NaN, a value is not known: it is "
+          "NaN, "
+          "valid.shape.gii says where, and no statistic counts it. A functional series is read "
+          "some "
+          "frames at a time. The volume's header says where it lies; if it lies elsewhere than the "
+          "surface, --to-volume brings places of the surface to places of the volume.")
+      .reference("Waehnert and others 2014, NeuroImage 93:210-220 (depths of equal volume)")
+      .example(
+          "explica sample bold.nii.gz --surfaces sub-01/anat --hemisphere L --depths 5 "
+          "--to-volume from-boldref_to-T1w.txt --labels lh.aparc.annot --out sampled",
+          "A functional series at five depths, and its profile in each region")
+      .example("explica sample t1map.nii.gz --thickness thickness --depths 20 --out layers",
+               "Twenty layers along the trajectories of explica thickness")
+      .input("VOLUME", FileKind::Volume, "volumes to sample, of one or several frames", s.volumes)
+      .inputOption("label-volume", FileKind::LabelVolume,
+                   "volume of labels, which go to the majority; may be repeated", s.labelVolumes)
+      .inputOption("surfaces", FileKind::Folder,
+                   "folder with the surfaces: of explica surface, FreeSurfer, fMRIPrep or the HCP",
+                   s.cortex.folder, "Surfaces")
+      .option("Surfaces", Field{"hemisphere", "", "L or R, where the folder holds both"},
+              s.cortex.hemisphere)
+      .inputOption("white", FileKind::Surface, "white surface", s.cortex.white, "Surfaces")
+      .inputOption("pial", FileKind::Surface, "its pial surface, same faces", s.cortex.pial,
+                   "Surfaces")
+      .options("Surfaces", s.cortex.reading)
+      .inputOption("thickness", FileKind::Folder,
+                   "output folder of explica thickness: sample its layers instead of surfaces",
+                   s.thickness, "Trajectories")
+      .option(
+          "Depths",
+          Field{"depths", "",
+                "number of depths from white to pial, or a list: 0 white to 1 pial (default 0.5); "
+                "with --thickness the number of layers (default: those of its layers.nii.gz)"},
+          s.depths)
+      .option("Depths",
+              Field{"depth-kind", "",
+                    "depths are shares of the distance or of the "
+                    "column's volume"},
+              s.depthKind)
+      .option("Depths",
+              Field{"across", "",
+                    "one map of all depths: their mean or maximum; of labels "
+                    "the most frequent"},
+              s.across)
+      .option("Values", Field{"interpolate", "", "how values between voxel centres are made"},
+              s.interpolate)
+      .inputOption("mask", FileKind::Volume,
+                   "where it is 0, on the volumes' grid, nothing is known", s.mask, "Values")
+      .options("Values", s.reading)
+      .inputOption("to-volume", FileKind::Any,
+                   "transform from the surface to the volumes: 4 x 4 matrix as text (RAS mm), ITK "
+                   "(text, .mat, .h5), FreeSurfer LTA or register.dat, pycortex xfm",
+                   s.toVolume, "Place")
+      .option("Place", Field{"to-volume-sense", "", "which way the transform is taken"}, s.sense)
+      .inputOption(
+          "labels", FileKind::VertexLabel,
+          "regions on the surface (GIFTI, annot, .label), or with --thickness a label volume: "
+          "writes a profile for each",
+          s.labels, "Regions")
+      .inputOption("points", FileKind::Table,
+                   "table with columns x, y, z (RAS mm): finds vertex, depth, distance, region",
+                   s.points, "Regions")
+      .output(
+          "*.func.gii", FileKind::VertexData,
+          "NAME.func.gii: a map a depth; of a series NAME_depth-D.func.gii: a map a frame; with "
+          "--across NAME.func.gii")
+      .output(
+          "*.label.gii", FileKind::VertexLabel,
+          "NAME.label.gii of a label volume; NAME_depth-D.label.gii if there are several depths")
+      .output("valid.shape.gii", FileKind::VertexData,
+              "1 where the value is known (of a series, in every frame), a map a volume and depth")
+      .output("profiles.tsv", FileKind::Table, "volume, region, depth, mean, sd, n")
+      .output("points.tsv", FileKind::Table,
+              "with --points: nearest vertex, depth, distance in mm, region")
+      .output(
+          "*_layers.tsv", FileKind::Table,
+          "with --thickness NAME_layers.tsv: mean, sd, voxels, volume in mm^3, mean of columns");
+  d.find("VOLUME")->required = false;
+}
+
+std::string depthText(double depth) {
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, depth).ptr;
+  return {text, end};
+}
+
+/// Vertices at all depths, depth after depth.
+Positions positionsAtDepths(const Cortex& cortex, const std::vector<double>& depths,
+                            sampling::DepthKind kind) {
+  const Eigen::Index count = cortex.white.vertexCount();
+  Positions points(static_cast<Eigen::Index>(depths.size()) * count, 3);
+  for (std::size_t d = 0; d < depths.size(); ++d) {
+    points.middleRows(static_cast<Eigen::Index>(d) * count, count) =
+        sampling::positionsAtDepth(cortex.white, cortex.pial, depths[d], kind);
+  }
+  return points;
+}
+
+sampling::Regions regionsOf(const SampleSettings& s, Eigen::Index vertexCount) {
+  if (!s.labels) return sampling::Regions(vertexCount);
+  const io::LabelMap labels = io::readVertexLabels(*s.labels, vertexCount);
+  std::vector<sampling::RegionName> names;
+  for (const io::LabelEntry& entry : labels.table) {
+    const bool none = entry.name.empty() || entry.name == "unknown" || entry.name == "???" ||
+                      entry.name == "outside" || entry.name == "none";
+    if (!none) names.push_back({entry.key, entry.name});
+  }
+  return {std::span<const Label>(labels.keys.data(), static_cast<std::size_t>(labels.keys.size())),
+          names};
+}
+
+/// What all volumes of a run have in common, and what they leave behind.
+class SurfaceSampling {
+ public:
+  SurfaceSampling(Context& context, const SampleSettings& s)
+      : context_(context),
+        s_(s),
+        cortex_(readCortex(context, s.cortex)),
+        depths_(sampling::depthsFromText(s.depths.value_or(kDefaultDepths))),
+        count_(static_cast<std::size_t>(cortex_.white.vertexCount())),
+        regions_(regionsOf(s, cortex_.white.vertexCount())) {
+    if (s.points) points_ = readPointTable(*s.points);
+    sayHowRead(context, cortex_.origin);
+  }
+
+  Termination run() {
+    // Headers are read, and what cannot be used is refused, before any work.
+    for (const std::string& path : s_.volumes) {
+      const io::VolumeSeries series(path, s_.reading);
+      if (s_.mask) static_cast<void>(maskFor(series.grid(), s_));
+    }
+    auto step = context_.step("sample");
+    at_ = positionsAtDepths(cortex_, depths_, s_.depthKind);
+    for (const std::string& path : s_.volumes) {
+      sampleSeries(path);
+      if (context_.monitor().shouldStop()) {
+        context_.warn("stopped before every volume was sampled; outputs are of those that were");
+        return finish(Termination::Interrupted);
+      }
+    }
+    for (const std::string& path : s_.labelVolumes) sampleLabels(path);
+    return finish(Termination::NotRun);
+  }
+
+ private:
+  sampling::Sampler samplerFor(const Grid& grid, sampling::Interpolation way) {
+    const auto mask = maskFor(grid, s_);
+    return {grid, placesIn(context_, grid, s_, &cortex_, at_), way, mask ? &*mask : nullptr};
+  }
+
+  /// Maps of a volume are written while it is read: one file, or one a depth.
+  std::vector<io::GiftiMapsWriter> writersFor(const std::string& name,
+                                              const io::VolumeSeries& series) {
+    std::vector<io::GiftiMapsWriter> writers;
+    const auto frames = static_cast<std::size_t>(series.frames());
+    const bool many = frames > 1;
+    const auto seconds = many ? series.frameSeconds() : std::nullopt;
+    if (s_.across != sampling::Across::None || !many) {
+      const std::size_t maps = s_.across == sampling::Across::None ? depths_.size() : frames;
+      writers.emplace_back(context_.output(name + ".func.gii"), cortex_.structure, maps, seconds);
+      return writers;
+    }
+    for (const double depth : depths_) {
+      writers.emplace_back(context_.output(name + "_depth-" + depthText(depth) + ".func.gii"),
+                           cortex_.structure, frames, seconds);
+    }
+    return writers;
+  }
+
+  void sampleSeries(const std::string& path) {
+    io::VolumeSeries series(path, s_.reading);
+    const std::string name = stemOf(path);
+    const sampling::Sampler sampler = samplerFor(series.grid(), s_.interpolate);
+    std::vector<io::GiftiMapsWriter> writers = writersFor(name, series);
+    std::vector<std::uint8_t> known(depths_.size() * count_, 1);
+    int frame = 0;
+    for (auto block = series.next(sampling::Sampler::kFramesAtOnce); !block.empty();
+         block = series.next(sampling::Sampler::kFramesAtOnce)) {
+      const std::vector<float> values = sampler.sample(block);
+      block.clear();
+      const std::size_t frames = values.size() / known.size();
+      noteKnown(values, known);
+      addProfiles(name, values, frame, series.frames());
+      writeMaps(writers, values, frame, series.frames());
+      frame += static_cast<int>(frames);
+      context_.monitor().progress(static_cast<double>(frame) / series.frames(), name);
+      if (context_.monitor().shouldStop() && frame < series.frames()) return;
+    }
+    for (io::GiftiMapsWriter& writer : writers) writer.finish();
+    addValid(path, name, known);
+  }
+
+  void noteKnown(const std::vector<float>& values, std::vector<std::uint8_t>& known) {
+    constexpr std::size_t kGrain = 1 << 14;
+    parallelFor(known.size(), kGrain, [&](std::size_t p) {
+      for (std::size_t at = p; at < values.size(); at += known.size()) {
+        if (std::isnan(values[at])) known[p] = 0;
+      }
+    });
+  }
+
+  /// Rows of the regions for each frame and depth.
+  void addProfiles(const std::string& name, const std::vector<float>& values, int firstFrame,
+                   int frames) {
+    const std::size_t rows = values.size() / count_;
+    std::vector<std::string> texts(rows);
+    parallelFor(rows, 1, [&](std::size_t row) {
+      const std::size_t depth = row % depths_.size();
+      const std::string frame = std::to_string(firstFrame + static_cast<int>(row / depths_.size()));
+      const auto moments = regions_.momentsOf(std::span(values).subspan(row * count_, count_));
+      for (std::size_t r = 0; r < moments.size(); ++r) {
+        texts[row] += name + "\t" + regions_.names()[r] + "\t" + depthText(depths_[depth]) + "\t" +
+                      (frames > 1 ? frame : "n/a") + "\t" + cell(moments[r].mean) + "\t" +
+                      cell(moments[r].deviation) + "\t" + std::to_string(moments[r].count) + "\n";
+      }
+    });
+    for (const std::string& text : texts) profiles_ += text;
+  }
+
+  void writeMaps(std::vector<io::GiftiMapsWriter>& writers, const std::vector<float>& values,
+                 int firstFrame, int frames) {
+    const std::size_t depths = depths_.size(), some = values.size() / (depths * count_);
+    const auto at = [&](std::size_t frame, std::size_t depth) {
+      return std::span(values).subspan((frame * depths + depth) * count_, count_);
+    };
+    const auto frameName = [&](std::size_t f) { return "frame " + std::to_string(firstFrame + f); };
+    if (s_.across != sampling::Across::None) {
+      for (std::size_t f = 0; f < some; ++f) {
+        const auto all = std::span(values).subspan(f * depths * count_, depths * count_);
+        writers[0].add(frames > 1 ? frameName(f) : std::string(nameOf(s_.across)), "",
+                       sampling::acrossDepths(all, depths, s_.across));
+      }
+    } else if (frames == 1) {
+      for (std::size_t d = 0; d < depths; ++d) {
+        writers[0].add("depth " + depthText(depths_[d]), "", at(0, d));
+      }
+    } else {
+      parallelFor(depths, 1, [&](std::size_t d) {
+        for (std::size_t f = 0; f < some; ++f) writers[d].add(frameName(f), "", at(f, d));
+      });
+    }
+  }
+
+  void addValid(const std::string& path, const std::string& name,
+                const std::vector<std::uint8_t>& known) {
+    const auto sum = std::count(known.begin(), known.end(), 1);
+    if (sum == 0) {
+      throw InvalidInput("'" + path +
+                         "': is known at no vertex of the surface; do both lie in the "
+                         "same space? (--to-volume, --surface-space and --fs-volume say how)");
+    }
+    const double share = static_cast<double>(sum) / static_cast<double>(known.size());
+    context_.result("known_fraction_" + name, share);
+    constexpr double kFew = 0.5;
+    if (share < kFew) {
+      char text[160];
+      std::snprintf(
+          text, sizeof text,
+          "'%s' is known at %.1f %% of the vertices only: the others lie outside the field "
+          "of view, the mask or the map",
+          name.c_str(), 100 * share);
+      context_.warn(text);
+    }
+    for (std::size_t d = 0; d < depths_.size(); ++d) {
+      io::VertexMap map{name + " depth " + depthText(depths_[d]), "", {}};
+      map.values.resize(static_cast<Eigen::Index>(count_));
+      for (std::size_t v = 0; v < count_; ++v) map.values[v] = known[d * count_ + v];
+      valid_.push_back(std::move(map));
+    }
+  }
+
+  void sampleLabels(const std::string& path) {
+    io::VolumeReadOptions reading = s_.reading;
+    const Volume<Label> volume = readLabels(context_, "label-volume", path, reading);
+    const std::string name = stemOf(path);
+    const std::vector<Label> labels =
+        samplerFor(volume.grid, s_.interpolate).sampleLabels(volume.data);
+    std::vector<std::uint8_t> known(labels.size());
+    for (std::size_t p = 0; p < labels.size(); ++p) known[p] = labels[p] != sampling::kNoLabel;
+    addValid(path, name, known);
+    io::LabelNames names;
+    if (const auto legend = io::findLegend(path)) names = io::readLabelNames(*legend);
+    const bool freeSurfer = path.find(".mgz") != std::string::npos ||
+                            path.find("aseg") != std::string::npos ||
+                            path.find("aparc") != std::string::npos;
+    const auto write = [&](const std::string& file, std::span<const Label> keys) {
+      constexpr Label kNotKnownKey = -1;
+      io::LabelMap map{name, {}, {}};
+      map.keys.resize(static_cast<Eigen::Index>(keys.size()));
+      std::vector<Label> used;
+      for (std::size_t v = 0; v < keys.size(); ++v) {
+        map.keys[v] = keys[v] == sampling::kNoLabel ? kNotKnownKey : keys[v];
+      }
+      used.assign(map.keys.begin(), map.keys.end());
+      std::sort(used.begin(), used.end());
+      used.erase(std::unique(used.begin(), used.end()), used.end());
+      map.table = io::tableFor(used, names, freeSurfer);
+      for (io::LabelEntry& entry : map.table) {
+        if (entry.key == kNotKnownKey) entry = {kNotKnownKey, "not known", {0, 0, 0, 0}};
+      }
+      io::writeGiftiLabel(context_.output(file), map, cortex_.structure);
+    };
+    if (s_.across != sampling::Across::None || depths_.size() == 1) {
+      write(name + ".label.gii", sampling::majorityAcross(labels, depths_.size()));
+      return;
+    }
+    for (std::size_t d = 0; d < depths_.size(); ++d) {
+      write(name + "_depth-" + depthText(depths_[d]) + ".label.gii",
+            std::span(labels).subspan(d * count_, count_));
+    }
+  }
+
+  Termination finish(Termination termination) {
+    context_.result("vertices", count_);
+    context_.result("depths", depths_);
+    if (!valid_.empty()) {
+      io::writeGiftiShape(context_.output("valid.shape.gii"), valid_, cortex_.structure);
+    }
+    if (!profiles_.empty()) {
+      writeTextFile(context_.output("profiles.tsv"),
+                    "volume\tregion\tdepth\tframe\tmean\tsd\tn\n" + profiles_);
+    }
+    if (points_) {
+      const auto places = sampling::nearestColumns(cortex_.white, cortex_.pial, points_->places);
+      double farthest = 0;
+      for (const sampling::ColumnPlace& place : places) {
+        farthest = std::max(farthest, place.distance);
+      }
+      context_.result("points", places.size());
+      context_.result("points_distance_max", farthest);
+      writeTextFile(context_.output("points.tsv"), textOf(*points_, places, regions_));
+    }
+    return termination;
+  }
+
+  Context& context_;
+  const SampleSettings& s_;
+  Cortex cortex_;
+  std::vector<double> depths_;
+  std::size_t count_;
+  sampling::Regions regions_;
+  std::optional<PointTable> points_;
+  Positions at_;  ///< depths x V
+  std::vector<io::VertexMap> valid_;
+  std::string profiles_;
+};
+
+void requireDistinctNames(const SampleSettings& s) {
+  std::set<std::string> names;
+  for (const auto* list : {&s.volumes, &s.labelVolumes}) {
+    for (const std::string& path : *list) {
+      if (!names.insert(stemOf(path)).second) {
+        throw UsageError(
+            "two volumes are called '" + stemOf(path) +
+            "', and outputs follow their names; sample them into folders of their own");
+      }
+    }
+  }
+}
+
+Termination run(Context& context, const SampleSettings& s) {
+  requireDistinctNames(s);
+  if (s.volumes.empty() && s.labelVolumes.empty() && !s.points) {
+    throw UsageError("there is nothing to sample: give volumes, --label-volume or --points");
+  }
+  if (s.sense != io::TransformSense::Auto && !s.toVolume) {
+    throw UsageError("--to-volume-sense is for --to-volume");
+  }
+  if (s.thickness) return sampleLayers(context, s);
+  return SurfaceSampling(context, s).run();
+}
+
+}  // namespace
+
+std::string stemOf(const std::string& path) {
+  std::string name = std::filesystem::path(path).filename().string();
+  for (const std::string_view ending : {".nii.gz", ".nii", ".mgz", ".mgh.gz", ".mgh", ".nrrd",
+                                        ".nhdr", ".mha", ".mhd", ".hdr", ".img"}) {
+    if (name.size() > ending.size() && name.ends_with(ending)) {
+      name.resize(name.size() - ending.size());
+      break;
+    }
+  }
+  return name;
+}
+
+Positions placesIn(Context& context, const Grid& volume, const SampleSettings& s,
+                   const Cortex* cortex, const Positions& points) {
+  if (!s.toVolume) return points;
+  io::TransformSides sides;
+  sides.volume = volume;
+  sides.sense = s.sense;
+  if (cortex != nullptr) {
+    sides.scannerFromFile = cortex->origin.applied;
+    sides.scannerFromTkr = cortex->scannerFromTkr;
+  }
+  const io::PointTransform transform = io::readPointTransform(*s.toVolume, sides);
+  context.note("to-volume",
+               nlohmann::ordered_json{{"format", transform.format}, {"sense", transform.sense}});
+  context.detail("'" + *s.toVolume + "': " + transform.format + ", " + transform.sense);
+  return transform(points);
+}
+
+std::optional<Volume<std::uint8_t>> maskFor(const Grid& volume, const SampleSettings& s) {
+  if (!s.mask) return {};
+  io::VolumeReadOptions reading;
+  reading.allowNonFinite = true;
+  const Volume<float> read = io::readScalars(*s.mask, reading).volume;
+  if (!sameGrid(read.grid, volume, 0.1)) {
+    throw InvalidInput("'" + *s.mask +
+                       "': its grid is not that of the volume it is to mask; resample "
+                       "it to that grid");
+  }
+  Volume<std::uint8_t> mask(read.grid);
+  for (std::size_t v = 0; v < mask.size(); ++v) {
+    mask[v] = read[v] != 0 && std::isfinite(read[v]);
+  }
+  return mask;
+}
+
+Command sampleCommand() {
+  return makeCommand<SampleSettings>("sample", declare, run);
+}
+
+}  // namespace explica::app

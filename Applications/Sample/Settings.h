@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Surfaces.h"
+
+#include "Explica/IO/PointTransformFile.h"
+#include "Explica/IO/VolumeFile.h"
+#include "Explica/Sampling/Depth.h"
+#include "Explica/Sampling/Sampler.h"
+#include "Explica/Sampling/Statistics.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace explica::app {
+
+/// What `explica sample` is asked for.
+struct SampleSettings {
+  std::vector<std::string> volumes;
+  std::vector<std::string> labelVolumes;
+  CortexFiles cortex;
+  std::optional<std::string> thickness;
+  std::optional<std::string> depths;
+  sampling::DepthKind depthKind = sampling::DepthKind::Depth;
+  sampling::Interpolation interpolate = sampling::Interpolation::Linear;
+  sampling::Across across = sampling::Across::None;
+  std::optional<std::string> toVolume;
+  io::TransformSense sense = io::TransformSense::Auto;
+  std::optional<std::string> mask;
+  std::optional<std::string> labels;
+  std::optional<std::string> points;
+  io::VolumeReadOptions reading;
+};
+
+/// Name of a volume's outputs: its file name without endings such as .nii.gz.
+[[nodiscard]] std::string stemOf(const std::string& path);
+
+/// Places of surface points in a volume's world: through --to-volume, or as they are.
+[[nodiscard]] Positions placesIn(Context& context, const Grid& volume, const SampleSettings& s,
+                                 const Cortex* cortex, const Positions& points);
+
+/// Voxels that count, if --mask is given.
+/// @throws InvalidInput  it is not on the volume's grid
+[[nodiscard]] std::optional<Volume<std::uint8_t>> maskFor(const Grid& volume,
+                                                          const SampleSettings& s);
+
+/// Samples along the trajectories of `explica thickness` into one table a volume.
+[[nodiscard]] Termination sampleLayers(Context& context, const SampleSettings& s);
+
+}  // namespace explica::app

@@ -1,0 +1,307 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Collision/Repair.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Geometry/FaceTree.h"
+#include "Explica/Geometry/MeshMeasures.h"
+#include "Explica/Geometry/MeshTopology.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+
+namespace explica::collision {
+namespace {
+
+using geometry::FacePair;
+
+/// Groups of moved vertices that are joined by edges: what was moved together.
+class MovedGroups {
+ public:
+  MovedGroups(const geometry::MeshTopology& topology, const Positions& before,
+              const Positions& after)
+      : groupOf_(static_cast<std::size_t>(before.rows()), -1) {
+    std::vector<std::int32_t> stack;
+    for (std::int32_t v = 0; v < before.rows(); ++v) {
+      if (groupOf_[v] >= 0 || before.row(v) == after.row(v)) continue;
+      members_.emplace_back();
+      stack = {v};
+      groupOf_[v] = static_cast<std::int32_t>(members_.size()) - 1;
+      while (!stack.empty()) {
+        const std::int32_t w = stack.back();
+        stack.pop_back();
+        members_.back().push_back(w);
+        for (const std::int32_t n : topology.vertexVertices[w]) {
+          if (groupOf_[n] >= 0 || before.row(n) == after.row(n)) continue;
+          groupOf_[n] = groupOf_[v];
+          stack.push_back(n);
+        }
+      }
+    }
+  }
+
+  [[nodiscard]] std::size_t count() const { return members_.size(); }
+  [[nodiscard]] const std::vector<std::int32_t>& members(std::size_t group) const {
+    return members_[group];
+  }
+  /// Groups of a face's corners.
+  void addOf(const Faces& faces, std::int32_t face, std::set<std::size_t>& groups) const {
+    for (int k = 0; k < 3; ++k) {
+      const std::int32_t group = groupOf_[faces(face, k)];
+      if (group >= 0) groups.insert(static_cast<std::size_t>(group));
+    }
+  }
+  void forget(std::size_t group) {
+    for (const std::int32_t v : members_[group]) groupOf_[v] = -1;
+    members_[group].clear();
+  }
+  [[nodiscard]] bool holds(std::int32_t vertex) const { return groupOf_[vertex] >= 0; }
+
+ private:
+  std::vector<std::int32_t> groupOf_;  ///< per vertex; -1: did not move
+  std::vector<std::vector<std::int32_t>> members_;
+};
+
+/// One surface on its way.
+struct Piece {
+  const TriangleMesh* input = nullptr;
+  TriangleMesh now;
+  MovedGroups groups;
+  std::size_t far = 0, other = 0;
+
+  void putBack(std::size_t group) {
+    for (const std::int32_t v : groups.members(group)) {
+      now.positions.row(v) = input->positions.row(v);
+    }
+    groups.forget(group);
+  }
+};
+
+std::vector<std::int32_t> movedFaces(const Piece& piece) {
+  std::vector<std::int32_t> faces;
+  for (std::int32_t f = 0; f < piece.now.faceCount(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      if (!piece.groups.holds(piece.now.faces(f, k))) continue;
+      faces.push_back(f);
+      break;
+    }
+  }
+  return faces;
+}
+
+geometry::Box boxOf(const TriangleMesh& mesh, std::int32_t face) {
+  geometry::Box box;
+  for (int k = 0; k < 3; ++k) box.extend(mesh.corner(face, k));
+  return box;
+}
+
+/// Pairs of a moved face of `a` and a face of `b` that meet, for given positions of both.
+std::vector<FacePair> meetings(const TriangleMesh& a, const std::vector<std::int32_t>& moved,
+                               const TriangleMesh& b) {
+  if (moved.empty()) return {};
+  std::vector<geometry::Box> boxes;
+  boxes.reserve(moved.size());
+  for (const std::int32_t f : moved) boxes.push_back(boxOf(a, f));
+  const geometry::BoxTree tree(boxes);
+  std::vector<std::int32_t> near;
+  for (std::int32_t f = 0; f < b.faceCount(); ++f) {
+    bool meets = false;
+    tree.forOverlaps(boxOf(b, f), [&meets](std::int32_t) { meets = true; });
+    if (meets) near.push_back(f);
+  }
+  if (near.empty()) return {};
+  const geometry::SubMesh partA = geometry::extractFaces(a, moved),
+                          partB = geometry::extractFaces(b, near);
+  TriangleMesh both;
+  both.positions.resize(partA.mesh.vertexCount() + partB.mesh.vertexCount(), 3);
+  both.positions << partA.mesh.positions, partB.mesh.positions;
+  both.faces.resize(partA.mesh.faceCount() + partB.mesh.faceCount(), 3);
+  both.faces << partA.mesh.faces,
+      (partB.mesh.faces.array() + static_cast<std::int32_t>(partA.mesh.vertexCount())).matrix();
+  const auto border = static_cast<std::int32_t>(partA.mesh.faceCount());
+  std::vector<FacePair> pairs;
+  for (const FacePair& pair : geometry::findSelfIntersections(both)) {
+    if (pair[0] >= border || pair[1] < border) continue;  // of one surface
+    pairs.push_back({partA.faceOrigin[pair[0]], partB.faceOrigin[pair[1] - border]});
+  }
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+/// Meetings of each group of `a` that has any, with `b`.
+std::map<std::size_t, std::size_t> meetingsByGroup(const Piece& a, const TriangleMesh& positionsOfA,
+                                                   const std::vector<std::int32_t>& moved,
+                                                   const TriangleMesh& b) {
+  std::map<std::size_t, std::size_t> count;
+  for (const FacePair& pair : meetings(positionsOfA, moved, b)) {
+    std::set<std::size_t> groups;
+    a.groups.addOf(a.now.faces, pair[0], groups);
+    for (const std::size_t group : groups) ++count[group];
+  }
+  return count;
+}
+
+/// Tells on which side of a closed surface a point lies, by the parity of a ray's crossings.
+class Inside {
+ public:
+  explicit Inside(const TriangleMesh& mesh) : mesh_(mesh), tree_(geometry::faceBoxes(mesh)) {}
+
+  [[nodiscard]] bool operator()(const Point& x) const {
+    geometry::Box ray(x, Point(kInfinity, x[1], x[2]));
+    int crossings = 0;
+    tree_.forOverlaps(ray, [&](std::int32_t face) { crossings += crosses(x, face); });
+    return crossings % 2 != 0;
+  }
+
+ private:
+  /// True if the ray from x along +x crosses the face.  Borders are given to one side, so that a
+  /// ray through an edge counts once.
+  [[nodiscard]] bool crosses(const Point& x, std::int32_t face) const {
+    bool inside = false;
+    Point corner[3];
+    for (int k = 0; k < 3; ++k) corner[k] = mesh_.corner(face, k) - x;
+    for (int k = 0; k < 3; ++k) {
+      const Point &a = corner[k], &b = corner[(k + 1) % 3];
+      if ((a[2] > 0) == (b[2] > 0)) continue;
+      inside ^= a[1] - a[2] * (b[1] - a[1]) / (b[2] - a[2]) > 0;
+    }
+    if (!inside) return false;
+    const Vector normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
+    return normal[0] != 0 && corner[0].dot(normal) / normal[0] > 0;
+  }
+
+  const TriangleMesh& mesh_;
+  geometry::BoxTree tree_;
+};
+
+/// Two surfaces of which the first encloses less; what is inside and what is not, before and after.
+class Order {
+ public:
+  Order(const Piece& a, const Piece& b)
+      : aIsInner_(geometry::enclosedVolume(*a.input) < geometry::enclosedVolume(*b.input)),
+        before_(*b.input),
+        after_(b.now) {}
+
+  /// How many of the vertices lie on the wrong side of the other surface.
+  [[nodiscard]] std::size_t wrongBefore(const Piece& a, const std::vector<std::int32_t>& v) const {
+    return wrong(before_, a.input->positions, v);
+  }
+  [[nodiscard]] std::size_t wrongAfter(const Piece& a, const std::vector<std::int32_t>& v) const {
+    return wrong(after_, a.now.positions, v);
+  }
+
+ private:
+  [[nodiscard]] std::size_t wrong(const Inside& other, const Positions& positions,
+                                  const std::vector<std::int32_t>& vertices) const {
+    return static_cast<std::size_t>(std::count_if(
+        vertices.begin(), vertices.end(),
+        [&](std::int32_t v) { return other(positions.row(v).transpose()) != aIsInner_; }));
+  }
+
+  bool aIsInner_;
+  Inside before_, after_;
+};
+
+/// Puts groups back whose faces meet another surface where they did not in the input, or that have
+/// more vertices on its wrong side.
+/// @return how many
+std::size_t putBackMeetings(std::vector<Piece>& pieces) {
+  std::size_t count = 0;
+  for (Piece& a : pieces) {
+    for (const Piece& b : pieces) {
+      if (&a == &b) continue;
+      const std::vector<std::int32_t> moved = movedFaces(a);
+      const auto after = meetingsByGroup(a, a.now, moved, b.now);
+      if (after.empty()) continue;
+      const auto before = meetingsByGroup(a, *a.input, moved, *b.input);
+      const Order order(a, b);
+      for (const auto& [group, meetingCount] : after) {
+        const auto& members = a.groups.members(group);
+        if (before.contains(group) &&
+            order.wrongAfter(a, members) <= order.wrongBefore(a, members)) {
+          continue;
+        }
+        a.putBack(group);
+        ++a.other;
+        ++count;
+      }
+    }
+  }
+  return count;
+}
+
+void putBackFar(Piece& piece, double maxMove) {
+  for (std::size_t group = 0; group < piece.groups.count(); ++group) {
+    const auto& members = piece.groups.members(group);
+    const bool tooFar = std::any_of(members.begin(), members.end(), [&](std::int32_t v) {
+      return (piece.now.positions.row(v) - piece.input->positions.row(v)).norm() > maxMove;
+    });
+    if (!tooFar) continue;
+    piece.putBack(group);
+    ++piece.far;
+  }
+}
+
+RepairedSurface accountOf(const Piece& piece, std::vector<FacePair> before,
+                          std::vector<FacePair> after) {
+  RepairedSurface result;
+  result.before = std::move(before);
+  const bool putBack = piece.far + piece.other > 0;
+  result.after = putBack ? geometry::findSelfIntersections(piece.now) : std::move(after);
+  result.putBackFar = piece.far;
+  result.putBackOther = piece.other;
+  double sum = 0;
+  for (std::int32_t v = 0; v < piece.now.vertexCount(); ++v) {
+    const double move = (piece.now.positions.row(v) - piece.input->positions.row(v)).norm();
+    if (move == 0) continue;
+    result.moved.push_back(v);
+    result.moveMax = std::max(result.moveMax, move);
+    sum += move;
+  }
+  if (!result.moved.empty()) result.moveMean = sum / static_cast<double>(result.moved.size());
+  result.positions = piece.now.positions;
+  return result;
+}
+
+}  // namespace
+
+std::vector<RepairedSurface> repairSurfaces(std::span<const TriangleMesh> surfaces,
+                                            const RepairOptions& options, const Monitor& monitor) {
+  if (surfaces.empty()) throw InvalidInput("surfaces: there are none");
+  if (!(options.maxMove > 0)) throw InvalidInput("max-move: must be positive");
+  for (const TriangleMesh& surface : surfaces) {
+    const bool same = surface.vertexCount() == surfaces[0].vertexCount() &&
+                      surface.faceCount() == surfaces[0].faceCount() &&
+                      surface.faces == surfaces[0].faces;
+    if (!same) {
+      throw InvalidInput(
+          "surfaces: their faces differ; several surfaces are repaired together if "
+          "their vertices correspond");
+    }
+  }
+  const auto topology = geometry::buildTopology(surfaces[0].faces, surfaces[0].vertexCount());
+  std::vector<Piece> pieces;
+  std::vector<Untangling> untangled;
+  for (std::size_t n = 0; n < surfaces.size(); ++n) {
+    untangled.push_back(untangle(surfaces[n], options.untangle));
+    TriangleMesh now{untangled.back().positions, surfaces[n].faces};
+    MovedGroups groups(topology, surfaces[n].positions, now.positions);
+    pieces.push_back({&surfaces[n], std::move(now), std::move(groups)});
+    putBackFar(pieces.back(), options.maxMove);
+    monitor.progress(static_cast<double>(n + 1) / static_cast<double>(surfaces.size()), "repair");
+  }
+  while (putBackMeetings(pieces) > 0) {
+  }
+  std::vector<RepairedSurface> results;
+  for (std::size_t n = 0; n < surfaces.size(); ++n) {
+    results.push_back(
+        accountOf(pieces[n], std::move(untangled[n].before), std::move(untangled[n].after)));
+  }
+  return results;
+}
+
+}  // namespace explica::collision

@@ -1,0 +1,509 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+// explica sample: what users type and what they get; Workbench and LayNii as witnesses.
+
+#include "Explica/Geometry/Fixtures.h"
+#include "Explica/IO/SurfaceFile.h"
+#include "Explica/IO/VertexDataFile.h"
+#include "Explica/IO/VolumeFile.h"
+#include "Explica/Testing/Command.h"
+#include "Explica/Testing/FreeSurferSubject.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <sstream>
+
+namespace explica::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Words = std::vector<std::string>;
+using Row = std::map<std::string, std::string>;
+
+std::vector<Row> readTable(const fs::path& path) {
+  std::istringstream text(readText(path));
+  std::vector<Row> rows;
+  Words names;
+  for (std::string line; std::getline(text, line);) {
+    std::istringstream cells(line);
+    Row row;
+    std::size_t n = 0;
+    for (std::string cell; std::getline(cells, cell, '\t'); ++n) {
+      if (rows.empty() && names.size() <= n) {
+        names.push_back(cell);
+      } else {
+        row[names.at(n)] = cell;
+      }
+    }
+    if (!row.empty()) rows.push_back(row);
+  }
+  return rows;
+}
+
+Grid gridAbout0() {
+  Grid grid;
+  grid.size = {40, 44, 36};
+  grid.spacing = {1.2, 1.0, 1.3};
+  grid.direction.col(0) *= -1;  // as FreeSurfer and most scanners have it
+  grid.origin = -grid.direction * grid.spacing.cwiseProduct(Vector(19.5, 21.5, 17.5));
+  return grid;
+}
+
+template <class Function>
+Volume<float> volumeOf(const Grid& grid, const Function& f) {
+  Volume<float> volume(grid);
+  for (std::size_t v = 0; v < volume.size(); ++v) {
+    const auto [i, j, k] = grid.subscripts(v);
+    volume[v] = static_cast<float>(f(grid.toWorld(Vector(i, j, k))));
+  }
+  return volume;
+}
+
+/// White and pial spheres of 10 and 14 mm, and volumes of coordinates.
+class Sample : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    io::writeSurface(folder_ / "white.surf.gii", geometry::makeIcosphere(3, 10.0));
+    io::writeSurface(folder_ / "pial.surf.gii", geometry::makeIcosphere(3, 14.0));
+  }
+  void writeX(const std::string& name) {
+    io::writeVolume(folder_ / name, volumeOf(gridAbout0(), [](const Point& x) { return x[0]; }));
+  }
+  CommandResult sample(Words words) {
+    words.insert(words.begin(), "sample");
+    words.insert(words.end(), {"--surfaces", folder_.path().string(), "--out", folder_ / "out"});
+    return explica(words);
+  }
+  [[nodiscard]] std::vector<io::VertexMap> maps(const std::string& name) const {
+    return io::readVertexMaps(folder_ / ("out/" + name), 642);
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(Sample, WritesAMapADepth) {
+  writeX("x.nii.gz");
+  const CommandResult result = sample({folder_ / "x.nii.gz", "--depths", "3"});
+  ASSERT_EQ(result.exitCode, 0) << result;
+  const auto got = maps("x.func.gii");
+  ASSERT_EQ(got.size(), 3U);
+  EXPECT_EQ(got[1].name, "depth 0.5");
+  const double radius[] = {10, 12, 14};
+  const TriangleMesh white = io::readSurface(folder_ / "white.surf.gii").mesh;
+  for (int d = 0; d < 3; ++d) {
+    const Eigen::VectorXd x = radius[d] / 10 * white.positions.col(0);
+    EXPECT_LT((got[d].values - x).cwiseAbs().maxCoeff(), 1e-4);
+  }
+  const auto valid = maps("valid.shape.gii");
+  ASSERT_EQ(valid.size(), 3U);
+  EXPECT_EQ(valid[2].values.minCoeff(), 1);
+  const auto rows = readTable(folder_ / "out/profiles.tsv");
+  ASSERT_EQ(rows.size(), 3U);
+  EXPECT_EQ(rows[2].at("depth"), "1");
+  EXPECT_EQ(rows[2].at("n"), "642");
+  EXPECT_NEAR(std::stod(rows[2].at("sd")), 14 / std::sqrt(3), 0.05);
+}
+
+TEST_F(Sample, AcceptsNaNAndWhatLiesOutside) {
+  // Not a number where x < 0, as programs write it outside the brain; and no field of view above.
+  Volume<float> map = volumeOf(gridAbout0(), [](const Point& x) { return x[0] < 0 ? kNaN : 3; });
+  Grid low = map.grid;
+  low.size[2] = 18;  // up to the middle
+  Volume<float> cut(low);
+  std::copy_n(map.data.begin(), cut.size(), cut.data.begin());
+  io::writeVolume(folder_ / "map.nii.gz", cut);
+  const CommandResult result = sample({folder_ / "map.nii.gz", "--depths", "0.5"});
+  ASSERT_EQ(result.exitCode, 0) << result;
+  const Eigen::VectorXd values = maps("map.func.gii")[0].values,
+                        valid = maps("valid.shape.gii")[0].values;
+  const TriangleMesh white = io::readSurface(folder_ / "white.surf.gii").mesh;
+  int known = 0;
+  for (Eigen::Index v = 0; v < 642; ++v) {
+    const Point at = 1.2 * white.positions.row(v).transpose();
+    EXPECT_EQ(valid[v] == 1, !std::isnan(values[v]));
+    if (at[0] < -0.65 || at[2] > 0.01) {
+      EXPECT_TRUE(std::isnan(values[v])) << at.transpose();
+    }
+    if (at[0] > 0.65 && at[2] < -0.01) {
+      EXPECT_EQ(values[v], 3) << at.transpose();
+    }
+    known += valid[v] == 1;
+  }
+  EXPECT_GT(known, 100);
+  const auto rows = readTable(folder_ / "out/profiles.tsv");
+  EXPECT_EQ(rows[0].at("mean"), "3");
+  EXPECT_EQ(rows[0].at("n"), std::to_string(known));
+  EXPECT_NE(result.err.find("known at"), std::string::npos) << result;  // less than half
+}
+
+TEST_F(Sample, RefusesAVolumeThatLiesElsewhere) {
+  Volume<float> map(gridAbout0(), 1.0F);
+  map.grid.origin += Vector(500, 0, 0);
+  io::writeVolume(folder_ / "far.nii.gz", map);
+  const CommandResult result = sample({folder_ / "far.nii.gz"});
+  EXPECT_EQ(result.exitCode, 2);
+  EXPECT_NE(result.err.find("same space"), std::string::npos) << result;
+}
+
+TEST_F(Sample, SeriesKeepFramesAndMaskAndAcross) {
+  std::vector<VolumeOnDemand<float>> frames;
+  const Grid grid = gridAbout0();
+  for (int frame = 0; frame < 20; ++frame) {
+    frames.push_back({grid, 0, 0, grid.voxelCount(),
+                      [frame, grid](std::size_t first, std::size_t count, float* to) {
+                        for (std::size_t v = 0; v < count; ++v) {
+                          const auto [i, j, k] = grid.subscripts(first + v);
+                          to[v] = static_cast<float>(frame +
+                                                     0.1 * grid.toWorld(Vector(i, j, k)).norm());
+                        }
+                      }});
+  }
+  io::writeFrames(folder_ / "bold.nii.gz", frames);
+  const std::string bold = folder_ / "bold.nii.gz";
+  ASSERT_EQ(sample({bold, "--depths", "0,1.0"}).exitCode, 0);
+  ASSERT_EQ(maps("bold_depth-1.func.gii").size(), 20U);
+  const auto white = maps("bold_depth-0.func.gii");
+  EXPECT_EQ(white[17].name, "frame 17");
+  EXPECT_NEAR(white[17].values.mean(), 18, 0.02);
+  EXPECT_EQ(readTable(folder_ / "out/profiles.tsv").size(), 40U);
+
+  Volume<Label> mask(grid);
+  for (std::size_t v = 0; v < mask.size(); ++v) mask[v] = grid.subscripts(v)[0] < 20;
+  io::writeVolume(folder_ / "mask.nii.gz", mask);
+  ASSERT_EQ(sample({bold, "--depths", "5", "--across", "mean", "--mask", folder_ / "mask.nii.gz",
+                    "--force"})
+                .exitCode,
+            0);
+  const auto mean = maps("bold.func.gii");
+  ASSERT_EQ(mean.size(), 20U);
+  const TriangleMesh mesh = io::readSurface(folder_ / "white.surf.gii").mesh;
+  for (Eigen::Index v = 0; v < 642; ++v) {
+    if (mesh.positions(v, 0) < -1) {
+      EXPECT_TRUE(std::isnan(mean[3].values[v]));
+    }
+    if (mesh.positions(v, 0) > 1) {
+      EXPECT_NEAR(mean[3].values[v], 4.2, 0.02);
+    }
+  }
+  const CommandResult wrong = sample({bold, "--mask", folder_ / "other.nii.gz", "--force"});
+  EXPECT_EQ(wrong.exitCode, 2) << wrong;
+}
+
+TEST_F(Sample, LabelsByMajorityWithFreeSurfersColours) {
+  Volume<Label> atlas(gridAbout0());
+  for (std::size_t v = 0; v < atlas.size(); ++v) {
+    const auto [i, j, k] = atlas.grid.subscripts(v);
+    const Point x = atlas.grid.toWorld(Vector(i, j, k));
+    atlas[v] = x.norm() < 10.5 ? 2 : x[2] > 0 ? 1024 : 1022;  // white matter, pre- and postcentral
+  }
+  io::writeVolume(folder_ / "aparc+aseg.mgz", atlas);
+  ASSERT_EQ(
+      sample({"--label-volume", folder_ / "aparc+aseg.mgz", "--depths", "5", "--across", "mean"})
+          .exitCode,
+      0);
+  const io::LabelMap labels = io::readVertexLabels(folder_ / "out/aparc+aseg.label.gii", 642);
+  const TriangleMesh mesh = io::readSurface(folder_ / "white.surf.gii").mesh;
+  for (Eigen::Index v = 0; v < 642; ++v) {
+    if (std::abs(mesh.positions(v, 2)) < 1) continue;
+    EXPECT_EQ(labels.keys[v], mesh.positions(v, 2) > 0 ? 1024 : 1022);
+  }
+  ASSERT_EQ(labels.table.back().name, "ctx-lh-precentral");
+  EXPECT_NEAR(labels.table.back().colour[2], 220 / 255.0, 1e-6);
+}
+
+TEST_F(Sample, PointsAndRegions) {
+  io::LabelMap regions{"parts", {}, {{0, "unknown", {0, 0, 0, 0}}, {1, "upper", {1, 0, 0, 1}}}};
+  const TriangleMesh mesh = io::readSurface(folder_ / "white.surf.gii").mesh;
+  regions.keys = (mesh.positions.col(2).array() > 0).cast<Label>();
+  io::writeGiftiLabel(folder_ / "parts.label.gii", regions, "CortexLeft");
+  writeText(folder_ / "electrodes.tsv", "name\tx\ty\tz\nA1\t0\t0\t13\nB2\t0\t0\t-20\n");
+  writeX("x.nii.gz");
+  const CommandResult result =
+      sample({folder_ / "x.nii.gz", "--labels", folder_ / "parts.label.gii", "--points",
+              folder_ / "electrodes.tsv"});
+  ASSERT_EQ(result.exitCode, 0) << result;
+  const auto points = readTable(folder_ / "out/points.tsv");
+  ASSERT_EQ(points.size(), 2U);
+  EXPECT_EQ(points[0].at("name"), "A1");
+  EXPECT_EQ(points[0].at("region"), "upper");
+  EXPECT_NEAR(std::stod(points[0].at("depth")), 0.75, 0.02);
+  EXPECT_LT(std::stod(points[0].at("distance")), 1.0);
+  EXPECT_EQ(points[1].at("region"), "n/a");
+  EXPECT_NEAR(std::stod(points[1].at("distance")), 6, 0.1);
+  const auto rows = readTable(folder_ / "out/profiles.tsv");
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_EQ(rows[0].at("region"), "upper");
+  EXPECT_EQ(rows[1].at("region"), "all");
+  EXPECT_EQ(rows[0].at("n"), rows[1].at("n"));  // "all" are vertices with a region
+  writeText(folder_ / "bad.tsv", "x\ty\n1\t2\n");
+  const CommandResult bad = sample({"--points", folder_ / "bad.tsv", "--force"});
+  EXPECT_EQ(bad.exitCode, 2);
+  EXPECT_NE(bad.err.find("'z'"), std::string::npos) << bad;
+}
+
+TEST_F(Sample, SaysWhatCannotBeMeant) {
+  writeX("x.nii.gz");
+  const std::string x = folder_ / "x.nii.gz";
+  const auto fault = [&](const Words& words, int code, const std::string& sentence) {
+    const CommandResult result = explica(words);
+    EXPECT_EQ(result.exitCode, code) << result;
+    EXPECT_NE(result.err.find(sentence), std::string::npos) << result;
+  };
+  const std::string out = folder_ / "no", surfaces = folder_.path().string();
+  fault({"sample", x, "--out", out}, 1, "--surfaces");
+  fault({"sample", "--surfaces", surfaces, "--out", out}, 1, "nothing to sample");
+  fault({"sample", x, x, "--surfaces", surfaces, "--out", out}, 1, "two volumes");
+  fault({"sample", x, "--white", folder_ / "white.surf.gii", "--out", out}, 1, "belong together");
+  fault({"sample", x, "--surfaces", surfaces, "--depths", "0.5,2", "--out", out}, 2, "depths: '2'");
+  fault({"sample", x, "--surfaces", surfaces, "--to-volume-sense", "inverse", "--out", out}, 1,
+        "--to-volume");
+  fs::create_directory(folder_ / "empty");
+  fault({"sample", x, "--surfaces", folder_ / "empty", "--hemisphere", "L", "--out", out}, 2,
+        "_hemi-L_white.surf.gii");
+  fault({"sample", x, "--thickness", folder_ / "empty", "--out", out}, 2, "thickness.nii.gz");
+}
+
+TEST_F(Sample, FindsTheSurfacesOfOtherPrograms) {
+  writeX("x.nii.gz");
+  const TriangleMesh white = geometry::makeIcosphere(3, 10.0),
+                     pial = geometry::makeIcosphere(3, 14.0);
+  for (const char* name : {"fs/surf", "fs/mri", "prep/anat", "hcp"}) {
+    fs::create_directories(folder_ / name);
+  }
+  const auto both = [&](const std::string& whiteName, const std::string& pialName) {
+    io::writeSurface(folder_ / whiteName, white);
+    io::writeSurface(folder_ / pialName, pial);
+  };
+  both("fs/surf/rh.white", "fs/surf/rh.pial");
+  both("prep/anat/sub-01_hemi-R_white.surf.gii", "prep/anat/sub-01_hemi-R_pial.surf.gii");
+  both("hcp/100307.R.white.32k_fs_LR.surf.gii", "hcp/100307.R.pial.32k_fs_LR.surf.gii");
+  for (const std::string place : {"fs/surf", "prep/anat", "hcp"}) {
+    const CommandResult result =
+        explica({"sample", folder_ / "x.nii.gz", "--surfaces", folder_ / place, "--hemisphere", "R",
+                 "--out", folder_ / "out", "--force"});
+    ASSERT_EQ(result.exitCode, 0) << result;
+    EXPECT_LT((maps("x.func.gii")[0].values - 1.2 * white.positions.col(0)).cwiseAbs().maxCoeff(),
+              1e-4)
+        << place;
+  }
+}
+
+TEST(SampleLayers, OfAShellFollowDepthAndKeepTheIntegral) {
+  TemporaryFolder folder;
+  ASSERT_EQ(explica({"phantom", "shell", "--size", "40", "--out", folder / "shell"}).exitCode, 0);
+  ASSERT_EQ(explica({"thickness", folder / "shell/labels.nii.gz", "--inner", "1", "--tissue", "2",
+                     "--layers", "4", "--out", folder / "thickness"})
+                .exitCode,
+            0);
+  const Volume<float> depth = io::readScalars(folder / "thickness/depth.nii.gz").volume,
+                      thickness = io::readScalars(folder / "thickness/thickness.nii.gz").volume;
+  Volume<float> map(depth.grid);
+  double integral = 0;
+  for (std::size_t v = 0; v < map.size(); ++v) {
+    map[v] = 1 + 3 * depth[v];
+    if (thickness[v] > 0) integral += map[v] * map.grid.voxelVolume();
+  }
+  io::writeVolume(folder / "map.nii.gz", map);
+  for (const std::string layers : {"", "4", "12"}) {
+    Words words = {"sample", folder / "map.nii.gz", "--thickness", folder / "thickness",
+                   "--out",  folder / "out",        "--force"};
+    if (!layers.empty()) words.insert(words.end(), {"--depths", layers});
+    const CommandResult result = explica(words);
+    ASSERT_EQ(result.exitCode, 0) << result;
+    const auto rows = readTable(folder / "out/map_layers.tsv");
+    ASSERT_EQ(rows.size(), layers == "12" ? 12U : 4U);
+    double sum = 0;
+    for (const Row& row : rows) {
+      sum += std::stod(row.at("mean")) * std::stod(row.at("volume"));
+      EXPECT_NEAR(std::stod(row.at("mean")), 1 + 3 * std::stod(row.at("depth")), 0.15);
+    }
+    EXPECT_NEAR(sum, integral, 1e-5 * integral);  // six digits a cell
+  }
+}
+
+// ---- other programs on real data ----
+
+std::string run(const Words& words) {
+  const CommandResult result = runProgram(words);
+  EXPECT_EQ(result.exitCode, 0) << result;
+  return result.out;
+}
+
+/// Ours beside Workbench's mapping of the same volume on the same surface.
+struct Beside {
+  double worst = 0;        ///< difference over the range, where both know the value
+  double correlation = 0;  ///< with the ribbon mapping, ours the mean of depths
+};
+
+class BesideWorkbench : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!fs::exists(EXPLICA_REAL_DATA)) GTEST_SKIP() << "skipped: no real data";
+  }
+
+  /// Volume and surfaces must lie in one space.
+  Beside compare(const std::string& volume, const TriangleMesh& white, const TriangleMesh& pial) {
+    const std::string w = folder_ / "w.surf.gii", p = folder_ / "p.surf.gii",
+                      m = folder_ / "m.surf.gii";
+    TriangleMesh mid = white;
+    mid.positions = 0.5 * (white.positions + pial.positions);
+    io::writeSurface(w, white);
+    io::writeSurface(p, pial);
+    io::writeSurface(m, mid);
+    const std::string nifti = folder_ / "volume.nii.gz";
+    run({"/usr/bin/python3", "-c",
+         "import nibabel,sys\ni=nibabel.load(sys.argv[1])\n"
+         "nibabel.save(nibabel.Nifti1Image(i.get_fdata().astype('f4'),i.affine),sys.argv[2])",
+         volume, nifti});
+    run({"wb_command", "-volume-to-surface-mapping", nifti, m, folder_ / "wb.shape.gii",
+         "-trilinear"});
+    run({"wb_command", "-volume-to-surface-mapping", nifti, m, folder_ / "ribbon.shape.gii",
+         "-ribbon-constrained", w, p});
+    EXPECT_EQ(
+        explica({"sample", nifti, "--white", w, "--pial", p, "--out", folder_ / "one"}).exitCode,
+        0);
+    EXPECT_EQ(explica({"sample", nifti, "--white", w, "--pial", p, "--depths",
+                       "0.1,0.3,0.5,0.7,0.9", "--across", "mean", "--out", folder_ / "mean"})
+                  .exitCode,
+              0);
+    const auto map = [&](const std::string& file) {
+      return io::readVertexMaps(folder_ / file, white.vertexCount())[0].values;
+    };
+    const Eigen::VectorXd wb = map("wb.shape.gii"), ribbon = map("ribbon.shape.gii"),
+                          one = map("one/volume.func.gii"), mean = map("mean/volume.func.gii");
+    Beside beside;
+    const double range = wb.maxCoeff() - wb.minCoeff();
+    std::vector<double> a, b;
+    for (Eigen::Index v = 0; v < wb.size(); ++v) {
+      if (!std::isnan(one[v]))
+        beside.worst = std::max(beside.worst, std::abs(one[v] - wb[v]) / range);
+      if (std::isnan(mean[v])) continue;
+      a.push_back(mean[v]);
+      b.push_back(ribbon[v]);
+    }
+    beside.correlation = correlation(a, b);
+    return beside;
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(BesideWorkbench, EchoPlanarImageOfS1) {
+  const fs::path data = fs::path(EXPLICA_REAL_DATA) / "s1_pycortex_lh";
+  const fs::path volume = data / "transforms/fullhead_reference.nii.gz";
+  // Workbench knows no transform: the surfaces are moved into the volume's world.
+  const auto json = readJson(data / "transforms/fullhead_matrices.xfm");
+  Eigen::Matrix4d coord;
+  for (int i = 0; i < 16; ++i) coord(i / 4, i % 4) = json["coord"][i / 4][i % 4];
+  const Eigen::Matrix4d matrix = io::readGrid(volume).affine() * coord;
+  const auto moved = [&](const char* name) {
+    TriangleMesh mesh = io::readSurface(data / name).mesh;
+    mesh.positions = ((mesh.positions * matrix.topLeftCorner<3, 3>().transpose()).rowwise() +
+                      matrix.topRightCorner<3, 1>().transpose())
+                         .eval();
+    return mesh;
+  };
+  const TriangleMesh white = moved("wm_lh.gii"), pial = moved("pia_lh.gii");
+  const Beside beside = compare(volume, white, pial);
+  EXPECT_LT(beside.worst, 1e-4);
+  EXPECT_GT(beside.correlation, 0.99);
+
+  // The same through pycortex's own file.
+  ASSERT_EQ(
+      explica({"sample", volume, "--white", data / "wm_lh.gii", "--pial", data / "pia_lh.gii",
+               "--to-volume", data / "transforms/fullhead_matrices.xfm", "--out", folder_ / "x"})
+          .exitCode,
+      0);
+  const Eigen::VectorXd a = io::readVertexMaps(folder_ / "x/fullhead_reference.func.gii")[0].values,
+                        b = io::readVertexMaps(folder_ / "one/volume.func.gii")[0].values;
+  EXPECT_LT((a - b).cwiseAbs().maxCoeff(), 1e-4 * (b.maxCoeff() - b.minCoeff()));
+}
+
+TEST_F(BesideWorkbench, OccipitalSlabOfS1IsKnownWhereItLies) {
+  const fs::path data = fs::path(EXPLICA_REAL_DATA) / "s1_pycortex_lh";
+  const CommandResult result =
+      explica({"sample", data / "transforms/retinotopy_reference.nii.gz", "--white",
+               data / "wm_lh.gii", "--pial", data / "pia_lh.gii", "--to-volume",
+               data / "transforms/retinotopy_matrices.xfm", "--out", folder_ / "out"});
+  ASSERT_EQ(result.exitCode, 0) << result;
+  const double known =
+      readJson(folder_ / "out/summary.json")["known_fraction_retinotopy_reference"];
+  EXPECT_GT(known, 0.1);
+  EXPECT_LT(known, 0.5);
+  const Eigen::VectorXd map =
+      io::readVertexMaps(folder_ / "out/retinotopy_reference.func.gii")[0].values;
+  EXPECT_NEAR(static_cast<double>(map.array().isNaN().count()) / static_cast<double>(map.size()),
+              1 - known, 1e-9);
+}
+
+TEST_F(BesideWorkbench, BrainOfBert) {
+  const fs::path data = fs::path(EXPLICA_REAL_DATA) / "bert_freesurfer/mri";
+  ASSERT_EQ(explica({"surface", data / "ribbon.mgz", "--preset", "ribbon", "--hemisphere", "L",
+                     "--faces", "60000", "--out", folder_ / "surface"})
+                .exitCode,
+            0);
+  const Beside beside =
+      compare(data / "brain.mgz", io::readSurface(folder_ / "surface/white.surf.gii").mesh,
+              io::readSurface(folder_ / "surface/pial.surf.gii").mesh);
+  EXPECT_LT(beside.worst, 1e-4);
+  EXPECT_GT(beside.correlation, 0.99);
+}
+
+/// Profiles of real activation over LayNii's layers and over ours of the same tissue.
+TEST(SampleLayers, AgreeWithLayNiisOnRealActivation) {
+  const fs::path data = fs::path(EXPLICA_REAL_DATA) / "laynii_lo";
+  if (!fs::exists(data)) GTEST_SKIP() << "skipped: no real data";
+  TemporaryFolder folder;
+  const Volume<Label> theirs = io::readLabels(data / "lo_layers.nii.gz").volume;
+  // Tissue: their layers; beside the first one lies the inner side, beside the last one the outer.
+  Volume<Label> rim(theirs.grid);
+  constexpr Label kInner = 1, kTissue = 2, kOuter = 3;
+  const Label last = *std::max_element(theirs.data.begin(), theirs.data.end());
+  for (std::size_t v = 0; v < rim.size(); ++v) {
+    if (theirs[v] > 0) {
+      rim[v] = kTissue;
+      continue;
+    }
+    const auto [i, j, k] = theirs.grid.subscripts(v);
+    int inner = 0, outer = 0;
+    for (int n = 0; n < 8; ++n) {
+      const int a = i + (n < 3   ? -1
+                         : n < 5 ? 0
+                                 : 1),
+                b = j + std::array{-1, 0, 1, -1, 1, -1, 0, 1}[n];
+      if (!theirs.grid.contains(a, b, k)) continue;
+      inner += theirs(a, b, k) == 1 || theirs(a, b, k) == 2;
+      outer += theirs(a, b, k) >= last - 1;
+    }
+    rim[v] = inner > outer ? kInner : outer > inner ? kOuter : 0;
+  }
+  io::writeVolume(folder / "rim.nii.gz", rim);
+  const CommandResult made =
+      explica({"thickness", folder / "rim.nii.gz", "--inner", "1", "--tissue", "2", "--outer", "3",
+               "--insulated", "0", "--sulci", "ignore", "--out", folder / "thickness"});
+  ASSERT_EQ(made.exitCode, 0) << made;
+  const Volume<float> thickness = io::readScalars(folder / "thickness/thickness.nii.gz").volume;
+  for (const std::string name : {"lo_VASO_act", "lo_BOLD_act"}) {
+    const CommandResult result =
+        explica({"sample", (data / (name + ".nii.gz")).string(), "--thickness",
+                 folder / "thickness", "--depths", std::to_string(last), "--out", folder / name});
+    ASSERT_EQ(result.exitCode, 0) << result;
+    std::vector<double> ours, layNii;
+    for (const Row& row : readTable(folder / (name + "/" + name + "_layers.tsv"))) {
+      ours.push_back(std::stod(row.at("mean")));
+    }
+    const Volume<float> map = io::readScalars(data / (name + ".nii.gz")).volume;
+    std::vector<double> sum(last), count(last);
+    for (std::size_t v = 0; v < map.size(); ++v) {
+      if (theirs[v] == 0 || !(thickness[v] > 0)) continue;  // both know the layer
+      sum[theirs[v] - 1] += map[v];
+      count[theirs[v] - 1] += 1;
+    }
+    for (Label n = 0; n < last; ++n) layNii.push_back(sum[n] / count[n]);
+    ASSERT_EQ(ours.size(), layNii.size());
+    EXPECT_GT(correlation(ours, layNii), 0.95) << name;
+  }
+}
+
+}  // namespace
+}  // namespace explica::testing
