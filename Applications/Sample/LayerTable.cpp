@@ -80,8 +80,9 @@ Tissue readTissue(Context& context, const SampleSettings& s) {
     return io::readVectors(fileIn(context, folder, name), reading).volume;
   };
   Tissue tissue;
-  tissue.voxels = sampling::tissueOf(scalars("thickness.nii.gz"), scalars("depth.nii.gz"),
-                                     vectors("inner_point.nii.gz"), vectors("outer_point.nii.gz"));
+  const Volume<float> thickness = scalars("thickness.nii.gz"), depth = scalars("depth.nii.gz");
+  tissue.voxels = sampling::tissueOf(thickness, depth, vectors("inner_point.nii.gz"),
+                                     vectors("outer_point.nii.gz"));
   if (s.depths) {
     const std::vector<double> depths = sampling::depthsFromText(*s.depths);
     if (s.depths->find_first_not_of("0123456789") != std::string::npos || depths.empty()) {

@@ -178,36 +178,40 @@ class Inside {
   geometry::BoxTree tree_;
 };
 
-/// Two surfaces of which the first encloses less; what is inside and what is not, before and after.
+/// Two surfaces of which one encloses more: whether its vertices are outside of the other one.
 class Order {
  public:
-  Order(const Piece& a, const Piece& b)
-      : aIsInner_(geometry::enclosedVolume(*a.input) < geometry::enclosedVolume(*b.input)),
-        before_(*b.input),
-        after_(b.now) {}
+  Order(const Piece& a, const Piece& b) : Order(a, b, volumeOf(a) < volumeOf(b)) {}
 
-  /// How many of the vertices lie on the wrong side of the other surface.
-  [[nodiscard]] std::size_t wrongBefore(const Piece& a, const std::vector<std::int32_t>& v) const {
-    return wrong(before_, a.input->positions, v);
+  /// How many of the outer surface's vertices lie inside the inner one, before and after.
+  [[nodiscard]] std::size_t wrongBefore(const std::vector<std::int32_t>& vertices) const {
+    return wrong(before_, outer_.input->positions, vertices);
   }
-  [[nodiscard]] std::size_t wrongAfter(const Piece& a, const std::vector<std::int32_t>& v) const {
-    return wrong(after_, a.now.positions, v);
+  [[nodiscard]] std::size_t wrongAfter(const std::vector<std::int32_t>& vertices) const {
+    return wrong(after_, outer_.now.positions, vertices);
   }
 
  private:
-  [[nodiscard]] std::size_t wrong(const Inside& other, const Positions& positions,
-                                  const std::vector<std::int32_t>& vertices) const {
-    return static_cast<std::size_t>(std::count_if(
-        vertices.begin(), vertices.end(),
-        [&](std::int32_t v) { return other(positions.row(v).transpose()) != aIsInner_; }));
+  Order(const Piece& a, const Piece& b, bool aIsInner)
+      : outer_(aIsInner ? b : a),
+        before_(*(aIsInner ? a : b).input),
+        after_((aIsInner ? a : b).now) {}
+
+  static double volumeOf(const Piece& piece) { return geometry::enclosedVolume(*piece.input); }
+
+  static std::size_t wrong(const Inside& inner, const Positions& positions,
+                           const std::vector<std::int32_t>& vertices) {
+    return static_cast<std::size_t>(
+        std::count_if(vertices.begin(), vertices.end(),
+                      [&](std::int32_t v) { return inner(positions.row(v).transpose()); }));
   }
 
-  bool aIsInner_;
+  const Piece& outer_;
   Inside before_, after_;
 };
 
-/// Puts groups back whose faces meet another surface where they did not in the input, or that have
-/// more vertices on its wrong side.
+/// Puts groups back whose faces meet another surface where they did not in the input, or at whose
+/// vertices more of the outer surface's lie inside the inner one.
 /// @return how many
 std::size_t putBackMeetings(std::vector<Piece>& pieces) {
   std::size_t count = 0;
@@ -221,8 +225,7 @@ std::size_t putBackMeetings(std::vector<Piece>& pieces) {
       const Order order(a, b);
       for (const auto& [group, meetingCount] : after) {
         const auto& members = a.groups.members(group);
-        if (before.contains(group) &&
-            order.wrongAfter(a, members) <= order.wrongBefore(a, members)) {
+        if (before.contains(group) && order.wrongAfter(members) <= order.wrongBefore(members)) {
           continue;
         }
         a.putBack(group);

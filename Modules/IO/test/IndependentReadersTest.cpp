@@ -7,6 +7,8 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Geometry/Fixtures.h"
 #include "Explica/Geometry/MeshMeasures.h"
+#include "Explica/IO/CiftiFile.h"
+#include "Explica/IO/LabelNames.h"
 #include "Explica/IO/PatchFile.h"
 #include "Explica/IO/SpecFile.h"
 #include "Explica/IO/SurfaceFile.h"
@@ -270,6 +272,50 @@ TEST(Nibabel, AgreesOnRealData) {
   EXPECT_TRUE(std::equal(faces.begin(), faces.end(), mesh.faces.data()));
 }
 
+/// Both hemispheres of a sphere, without a cap each.
+std::array<io::CiftiStructure, 2> hemispheres(const TriangleMesh& mesh) {
+  return {io::ciftiStructure("CortexLeft", (mesh.positions.col(0).array() < 0.5).cast<double>()),
+          io::ciftiStructure("CortexRight", (mesh.positions.col(0).array() > -0.5).cast<double>())};
+}
+
+void writeCifti(const TemporaryFolder& folder) {
+  const TriangleMesh mesh = geometry::makeIcosphere(3, 1.0);
+  const auto where = hemispheres(mesh);
+  putRaw(folder / "left.raw", where[0].vertices.data(),
+         static_cast<Eigen::Index>(where[0].vertices.size()));
+  putRaw(folder / "right.raw", where[1].vertices.data(),
+         static_cast<Eigen::Index>(where[1].vertices.size()));
+  std::vector<io::CiftiPart> scalars, series;
+  std::vector<io::CiftiLabels> labels;
+  for (int side = 0; side < 2; ++side) {
+    const Eigen::VectorXd number =
+        1000.0 * (side + 1) + Eigen::VectorXd::LinSpaced(642, 0, 641).array();
+    Eigen::VectorXd second = -number;
+    if (side == 0) second[where[0].vertices.front()] = kNaN;
+    scalars.push_back({where[side], {{"first", "", number}, {"in & out", "", second}}});
+    series.push_back({where[side], {}});
+    for (int frame = 0; frame < 5; ++frame) {
+      series.back().maps.push_back({"", "", (number.array() + 0.25 * frame).matrix()});
+    }
+    const Label key = side == 0 ? 1024 : 2022;
+    io::LabelMap map{"parts", {}, {*io::freeSurferEntry(key)}};
+    map.keys.setConstant(642, key);
+    labels.push_back({where[side], map});
+  }
+  io::writeCiftiScalars(folder / "a.dscalar.nii", scalars);
+  io::writeCiftiSeries(folder / "a.dtseries.nii", series, 1.5);
+  io::writeCiftiLabels(folder / "a.dlabel.nii", labels);
+  EXPECT_THROW(io::writeCiftiScalars(folder / "b.nii", scalars), InvalidInput);
+  scalars[1].where.structure = "CortexLeft";
+  EXPECT_THROW(io::writeCiftiScalars(folder / "b.dscalar.nii", scalars), InvalidInput);
+}
+
+TEST(Nibabel, ReadsOurCifti) {
+  const TemporaryFolder folder;
+  writeCifti(folder);
+  nibabelAgrees("our_cifti", folder);
+}
+
 void expectSays(const std::string& text, const std::string& words) {
   EXPECT_NE(text.find(words), std::string::npos) << "'" << words << "' not in\n" << text;
 }
@@ -345,6 +391,27 @@ TEST(Workbench, FindsEachVertexAtTheRasThatOurVolumesTell) {
       RecordProperty("worst", std::to_string(worst));
     }
   }
+}
+
+TEST(Workbench, ReadsOurCiftiByHemispheres) {
+  const TemporaryFolder folder;
+  writeCifti(folder);
+  const auto file = [&folder](const char* name) { return (folder / name).string(); };
+  workbench("-cifti-separate " + file("a.dscalar.nii") + " COLUMN -metric CORTEX_LEFT " +
+            file("l.func.gii") + " -roi " + file("roi.func.gii"));
+  const auto maps = io::readVertexMaps(file("l.func.gii"), 642);
+  const Eigen::VectorXd in = io::readVertexMaps(file("roi.func.gii"), 642)[0].values;
+  ASSERT_EQ(maps.size(), 2U);
+  EXPECT_EQ(maps[1].name, "in & out");
+  const auto where = hemispheres(geometry::makeIcosphere(3, 1.0));
+  EXPECT_EQ(in.sum(), static_cast<double>(where[0].vertices.size()));
+  for (const std::int32_t v : where[0].vertices) EXPECT_EQ(maps[0].values[v], 1000 + v);
+  workbench("-cifti-separate " + file("a.dlabel.nii") + " COLUMN -label CORTEX_RIGHT " +
+            file("r.label.gii"));
+  expectSays(contentOf(file("r.label.gii")), "ctx-rh-postcentral");
+  const std::string series = workbench("-file-information " + file("a.dtseries.nii"));
+  expectSays(series, "1.500");
+  expectSays(series, "CortexRight");
 }
 
 TEST(Workbench, ShowsVectorsAsThreeMaps) {

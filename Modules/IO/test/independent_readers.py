@@ -156,6 +156,45 @@ def our_surfaces(folder):
     assert np.array_equal(entries["place"], exact[vertices])
 
 
+def our_cifti(folder):
+    """Values, axes and tables as nibabel's cifti2 reads them."""
+    left = np.fromfile(folder / "left.raw", dtype="<i4")
+    right = np.fromfile(folder / "right.raw", dtype="<i4")
+
+    def models(image):
+        axis = image.header.get_axis(1)
+        for name, indices, part in axis.iter_structures():
+            side = left if name == "CIFTI_STRUCTURE_CORTEX_LEFT" else right
+            assert np.array_equal(part.vertex, side), name
+            assert part.nvertices[name] == 642, part.nvertices
+        assert len(axis) == len(left) + len(right)
+
+    def whole(side, vertices):
+        return 1000 * side + vertices
+
+    both = np.concatenate([whole(1, left), whole(2, right)])
+    scalars = nib.load(folder / "a.dscalar.nii")
+    models(scalars)
+    assert list(scalars.header.get_axis(0).name) == ["first", "in & out"]
+    values = scalars.get_fdata()
+    assert np.array_equal(values[0], both)
+    assert np.isnan(values[1][0]) and np.array_equal(values[1][1:], -both[1:])
+
+    series = nib.load(folder / "a.dtseries.nii")
+    models(series)
+    axis = series.header.get_axis(0)
+    assert (axis.size, axis.start, axis.step, axis.unit) == (5, 0, 1.5, "SECOND")
+    assert np.array_equal(series.get_fdata(), both + 0.25 * np.arange(5)[:, None])
+
+    labels = nib.load(folder / "a.dlabel.nii")
+    models(labels)
+    table = labels.header.get_axis(0).label[0]
+    assert table[1024][0] == "ctx-lh-precentral", table
+    assert np.allclose(table[1024][1], (60 / 255, 20 / 255, 220 / 255, 1)), table
+    assert 0 in table
+    assert np.array_equal(labels.get_fdata()[0], np.repeat([1024, 2022], [len(left), len(right)]))
+
+
 def their_surfaces(folder):
     rng = np.random.default_rng(11)
     points = rng.normal(size=(50, 3)).astype("f4") * 30

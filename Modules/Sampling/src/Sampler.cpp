@@ -137,15 +137,16 @@ void Sampler::cubic(const Corner& corner, const float* values, float* to) const 
 
 void Sampler::linearOfKnown(const Corner& corner, const float* values, int frameCount,
                             float* to) const {
-  std::array<float, kFramesAtOnce> sum{}, weights{};
+  std::array<double, kFramesAtOnce> sum{}, weights{};  // a constant map comes back exactly
   const int stride = frameCount == 1 ? 1 : kFramesAtOnce;
   for (int n = 0; n < 8; ++n) {
-    float weight = 1;
+    double weight = 1;
     std::array<int, 3> voxel;
     for (int axis = 0; axis < 3; ++axis) {
       const bool upper = (n >> axis & 1) != 0;
+      const double t = corner.fraction[axis];
       voxel[axis] = corner.voxel[axis] + upper;
-      weight *= upper ? corner.fraction[axis] : 1 - corner.fraction[axis];
+      weight *= upper ? t : 1 - t;
     }
     if (weight == 0 || !grid_.contains(voxel[0], voxel[1], voxel[2])) continue;
     const std::size_t at = grid_.linear(voxel[0], voxel[1], voxel[2]);
@@ -158,7 +159,7 @@ void Sampler::linearOfKnown(const Corner& corner, const float* values, int frame
     }
   }
   for (int f = 0; f < frameCount; ++f) {
-    to[f] = weights[f] >= kEnoughWeight ? sum[f] / weights[f] : kNotKnown;
+    to[f] = weights[f] >= kEnoughWeight ? static_cast<float>(sum[f] / weights[f]) : kNotKnown;
   }
 }
 

@@ -50,6 +50,7 @@ from ._images import (
     thickness_of_levels,
     write_volume,
 )
+from ._sampling import nearest_columns, positions_at_depth, sample
 from ._surfaces import (
     KnotEnergy,
     Unfolder,
@@ -75,6 +76,7 @@ from ._surfaces import (
     mean_edge_length,
     mesh_edges,
     near_pairs,
+    repair_surface,
     select_region,
     self_intersections,
     self_occlusion,

@@ -16,6 +16,7 @@ void bindCortex(pybind11::module_& m);
 void bindVisibility(pybind11::module_& m);
 void bindRepulsion(pybind11::module_& m);
 void bindCollision(pybind11::module_& m);
+void bindSampling(pybind11::module_& m);
 void bindUnfolding(pybind11::module_& m);
 void bindFlattening(pybind11::module_& m);
 void bindPlanar(pybind11::module_& m);

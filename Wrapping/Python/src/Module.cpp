@@ -14,6 +14,7 @@ PYBIND11_MODULE(_explica, m) {
   explica::python::bindVisibility(m);
   explica::python::bindRepulsion(m);
   explica::python::bindCollision(m);
+  explica::python::bindSampling(m);
   explica::python::bindUnfolding(m);
   explica::python::bindFlattening(m);
   explica::python::bindPlanar(m);

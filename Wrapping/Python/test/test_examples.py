@@ -60,6 +60,13 @@ class Examples(unittest.TestCase):
         self.assert_picture("average.png")
         self.assertEqual(np.loadtxt(self.out / "average.csv", delimiter=",", skiprows=1).shape[1], 2)
 
+    def test_layer_profile_of_the_phantom_is_exact(self):
+        said = self.run_example("layer_profile.py")
+        self.assertLess(float(re.findall(r"profile: (\S+)", said)[0]), 0.01)
+        self.assertIn("100.0 % of the values known", said)
+        self.assert_picture("profile.png")
+        self.assertEqual(np.loadtxt(self.out / "profile.tsv", skiprows=1).shape, (21, 4))
+
     def test_subject_without_data_says_so(self):
         self.assertEqual(
             self.run_example("thickness_of_subject.py", self.out), "skipped: no real data\n"
