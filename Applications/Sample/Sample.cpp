@@ -13,6 +13,7 @@
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/IO/VolumeSeries.h"
 #include "Explica/Sampling/NearestColumn.h"
+#include "Explica/Sampling/Transfer.h"
 
 #include <nlohmann/json.hpp>
 
@@ -106,6 +107,9 @@ void declare(Declaration& d, SampleSettings& s) {
           "NAME.label.gii of a label volume; NAME_depth-D.label.gii if there are several depths")
       .output("valid.shape.gii", FileKind::VertexData,
               "1 where the value is known (of a series, in every frame), a map a volume and depth")
+      .output(
+          "*.shape.gii", FileKind::VertexData,
+          "NAME.shape.gii of --vertex-map: its values, and the distance in mm between the surfaces")
       .output("profiles.tsv", FileKind::Table, "volume, region, depth, mean, sd, n")
       .output("points.tsv", FileKind::Table,
               "with --points: nearest vertex, depth, distance in mm, region")
@@ -113,6 +117,15 @@ void declare(Declaration& d, SampleSettings& s) {
           "*_layers.tsv", FileKind::Table,
           "with --thickness NAME_layers.tsv: mean, sd, voxels, volume in mm^3, mean of columns");
   d.find("VOLUME")->required = false;
+}
+
+std::string stemOfMap(std::string name) {
+  for (const std::string_view ending : {".gz", ".shape.gii", ".func.gii", ".gii", ".mgh", ".mgz"}) {
+    if (name.size() > ending.size() && name.ends_with(ending)) {
+      name.resize(name.size() - ending.size());
+    }
+  }
+  return name == "valid" ? "valid_map" : name;
 }
 
 std::string depthText(double depth) {
@@ -176,6 +189,7 @@ class SurfaceSampling {
       }
     }
     for (const std::string& path : s_.labelVolumes) sampleLabels(path);
+    carryOver();
     return finish(Termination::NotRun);
   }
 
@@ -347,6 +361,37 @@ class SurfaceSampling {
     }
   }
 
+  /// Vertex data of another surface of the same subject, and how far off that surface is.
+  void carryOver() {
+    if (s_.vertexMaps.empty()) return;
+    io::SurfaceReadOptions reading = s_.cortex.reading;
+    const TriangleMesh theirs =
+        readSurface(context_, "vertex-surface", *s_.vertexSurface, reading).mesh;
+    const sampling::NearestOnSurface nearest = sampling::nearestOn(theirs, cortex_.white.positions);
+    const double mean = nearest.distance.mean();
+    context_.result("vertex_surface_distance_mean", mean);
+    context_.result("vertex_surface_distance_max", nearest.distance.maxCoeff());
+    constexpr double kNear = 2;  // mm: white surfaces of one subject by two programs
+    if (mean > kNear) {
+      context_.warn(
+          "the surface of --vertex-map is " + cell(mean) +
+          " mm off in the mean: do both lie in the same space and belong to one subject?");
+    }
+    for (const std::string& path : s_.vertexMaps) {
+      const std::string name = std::filesystem::path(path).filename().string();
+      std::vector<io::VertexMap> maps = io::readVertexMaps(path, theirs.vertexCount());
+      for (io::VertexMap& map : maps) map.values = sampling::carryOver(nearest, map.values);
+      maps.push_back({"distance", "mm", nearest.distance});
+      io::GiftiMapsWriter writer(context_.output(stemOfMap(name) + ".shape.gii"), cortex_.structure,
+                                 maps.size());
+      for (const io::VertexMap& map : maps) {
+        const Eigen::VectorXf values = map.values.cast<float>();
+        writer.add(map.name, map.unit, {values.data(), static_cast<std::size_t>(values.size())});
+      }
+      writer.finish();
+    }
+  }
+
   Termination finish(Termination termination) {
     context_.result("vertices", count_);
     context_.result("depths", depths_);
@@ -397,8 +442,12 @@ void requireDistinctNames(const SampleSettings& s) {
 
 Termination run(Context& context, const SampleSettings& s) {
   requireDistinctNames(s);
-  if (s.volumes.empty() && s.labelVolumes.empty() && !s.points) {
-    throw UsageError("there is nothing to sample: give volumes, --label-volume or --points");
+  if (s.volumes.empty() && s.labelVolumes.empty() && !s.points && s.vertexMaps.empty()) {
+    throw UsageError(
+        "there is nothing to sample: give volumes, --label-volume, --points or --vertex-map");
+  }
+  if (s.vertexMaps.empty() == s.vertexSurface.has_value()) {
+    throw UsageError("--vertex-map and --vertex-surface belong together; one of them is missing");
   }
   if (s.sense != io::TransformSense::Auto && !s.toVolume) {
     throw UsageError("--to-volume-sense is for --to-volume");

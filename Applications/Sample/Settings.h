@@ -31,6 +31,8 @@ struct SampleSettings {
   std::optional<std::string> mask;
   std::optional<std::string> labels;
   std::optional<std::string> points;
+  std::vector<std::string> vertexMaps;
+  std::optional<std::string> vertexSurface;
   io::VolumeReadOptions reading;
 };
 

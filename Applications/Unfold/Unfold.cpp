@@ -32,7 +32,9 @@ struct Settings {
   std::optional<std::string> viewSurface;
   unfolding::RegionOptions region;
   std::optional<std::string> label;
-  std::optional<int> labelKey;
+  std::vector<int> labelKeys;
+  std::optional<std::string> map;
+  std::optional<double> above;
   bool adjustRegion = false;
   bool repair = true;
   unfolding::UnfoldOptions unfold;
@@ -69,8 +71,12 @@ void declare(Declaration& d, Settings& s) {
       .options("Region", s.region)
       .inputOption("label", FileKind::VertexLabel, "the region is where this label is not 0",
                    s.label, "Region")
-      .option("Region", Field{"label-key", "", "the region is where --label has this key"},
-              s.labelKey)
+      .option("Region", Field{"label-key", "", "the region is where --label has one of these keys"},
+              s.labelKeys)
+      .inputOption("map", FileKind::VertexData, "the region is where this map is above --above",
+                   s.map, "Region")
+      .option("Region", Field{"above", "", "value of --map beyond which a vertex is in the region"},
+              s.above)
       .option(
           "Region",
           Field{"adjust-region", "", "grow or shrink the region until its visibility is positive"},
@@ -103,21 +109,54 @@ visibility::Viewpoints viewOf(const Settings& s, const Point& about) {
   return viewFrom(s.view, s.viewSurface, s.reading, about);
 }
 
-unfolding::Region regionOf(const TriangleMesh& mesh, const Settings& s,
-                           const visibility::Viewpoints* view) {
-  if (!s.label) return unfolding::selectRegion(mesh, s.region, view);
+/// Vertices with one of the keys wanted, or with any key but 0.
+std::vector<bool> markedByLabel(const TriangleMesh& mesh, const Settings& s) {
   const auto labels = io::readVertexLabels(*s.label, mesh.vertexCount());
   std::vector<bool> marked(static_cast<std::size_t>(mesh.vertexCount()));
   for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
-    marked[v] = s.labelKey ? labels.keys[v] == *s.labelKey : labels.keys[v] != 0;
+    marked[v] = s.labelKeys.empty() ? labels.keys[v] != 0
+                                    : std::find(s.labelKeys.begin(), s.labelKeys.end(),
+                                                labels.keys[v]) != s.labelKeys.end();
   }
   if (std::find(marked.begin(), marked.end(), true) == marked.end()) {
-    throw InvalidInput(s.labelKey ? "label: no vertex has key " + std::to_string(*s.labelKey) +
-                                        ", keys go from " + std::to_string(labels.keys.minCoeff()) +
-                                        " to " + std::to_string(labels.keys.maxCoeff())
-                                  : "label: it is 0 everywhere, so the region is empty");
+    std::string wanted;
+    for (const int key : s.labelKeys)
+      wanted += (wanted.empty() ? "" : " or ") + std::to_string(key);
+    throw InvalidInput(!wanted.empty() ? "label: no vertex has key " + wanted + ", keys go from " +
+                                             std::to_string(labels.keys.minCoeff()) + " to " +
+                                             std::to_string(labels.keys.maxCoeff())
+                                       : "label: it is 0 everywhere, so the region is empty");
   }
-  return unfolding::regionOfMarked(mesh, marked);
+  return marked;
+}
+
+/// Vertices at which the map is above the value.
+std::vector<bool> markedByMap(const TriangleMesh& mesh, const Settings& s) {
+  const Eigen::VectorXd values = io::readVertexMaps(*s.map, mesh.vertexCount()).front().values;
+  std::vector<bool> marked(static_cast<std::size_t>(mesh.vertexCount()));
+  double largest = -kInfinity;
+  for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
+    marked[v] = values[v] > *s.above;
+    if (values[v] > largest) largest = values[v];
+  }
+  if (!(largest > *s.above)) {
+    char text[120];
+    std::snprintf(text, sizeof text, "map: no vertex is above %g; its largest value is %g",
+                  *s.above, largest);
+    throw InvalidInput(text);
+  }
+  return marked;
+}
+
+unfolding::Region regionOf(const TriangleMesh& mesh, const Settings& s,
+                           const visibility::Viewpoints* view) {
+  if (s.map.has_value() != s.above.has_value()) {
+    throw UsageError("--map and --above belong together; one of them is missing");
+  }
+  if (s.map && s.label) throw UsageError("the region is given by --label or by --map, not by both");
+  if (s.map) return unfolding::regionOfMarked(mesh, markedByMap(mesh, s));
+  if (s.label) return unfolding::regionOfMarked(mesh, markedByLabel(mesh, s));
+  return unfolding::selectRegion(mesh, s.region, view);
 }
 
 std::string crossingsInWords(const std::vector<unfolding::Crossing>& list, std::size_t inRegion,
@@ -228,6 +267,11 @@ TriangleMesh readUsable(Context& context, const Settings& s, io::SurfaceMetadata
                  " vertices lie exactly on others: the surface touches itself there");
   }
   sayHowRead(context, loaded.origin);
+  if (s.region.center) {
+    const std::string mixUp =
+        io::frameMixUp(*s.region.center, loaded.mesh.positions, loaded.origin.applied);
+    if (!mixUp.empty()) throw InvalidInput("center: " + mixUp);
+  }
   metadata = loaded.metadata;
   return loaded.mesh;
 }

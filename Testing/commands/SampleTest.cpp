@@ -242,6 +242,45 @@ TEST_F(Sample, PointsAndRegions) {
   EXPECT_NE(bad.err.find("'z'"), std::string::npos) << bad;
 }
 
+TEST_F(Sample, CarriesVertexDataOfAnotherProgramOver) {
+  const TriangleMesh theirs = geometry::makeIcosphere(4, 10.2);
+  io::writeFreeSurferSurface(folder_ / "lh.white", theirs);
+  io::writeFreeSurferCurv(folder_ / "lh.thickness", theirs.positions.col(2), theirs.faceCount());
+  const CommandResult result =
+      sample({"--vertex-map", folder_ / "lh.thickness", "--vertex-surface", folder_ / "lh.white"});
+  ASSERT_EQ(result.exitCode, 0) << result;
+  const auto got = maps("lh.thickness.shape.gii");
+  ASSERT_EQ(got.size(), 2U);
+  const TriangleMesh white = io::readSurface(folder_ / "white.surf.gii").mesh;
+  EXPECT_LT((got[0].values - 1.02 * white.positions.col(2)).cwiseAbs().maxCoeff(), 0.03);
+  EXPECT_EQ(got[1].name, "distance");
+  EXPECT_NEAR(got[1].values.mean(), 0.2, 0.02);
+}
+
+TEST_F(Sample, GoesIntoACiftiFileOfBothHemispheres) {
+  writeX("x.nii.gz");
+  ASSERT_EQ(sample({folder_ / "x.nii.gz", "--depths", "2"}).exitCode, 0);
+  io::LabelMap cortex{"cortex", {}, {{0, "wall", {0, 0, 0, 0}}, {1, "cortex", {1, 0, 0, 1}}}};
+  cortex.keys.setOnes(642);
+  cortex.keys.head(42).setZero();
+  io::writeGiftiLabel(folder_ / "cortex.label.gii", cortex, "CortexLeft");
+  const std::string map = folder_ / "out/x.func.gii";
+  const CommandResult result =
+      explica({"cifti", "--left", map, "--right", map, "--left-cortex",
+               folder_ / "cortex.label.gii", "--name", "x", "--out", folder_ / "cifti"});
+  ASSERT_EQ(result.exitCode, 0) << result;
+  const CommandResult seen =
+      runProgram({"/usr/bin/python3", "-c",
+                  "import nibabel,sys\ni=nibabel.load(sys.argv[1])\n"
+                  "print(i.shape, i.header.get_axis(0).name, i.get_fdata()[1].max())",
+                  folder_ / "cifti/x.dscalar.nii"});
+  EXPECT_EQ(seen.exitCode, 0) << seen;
+  EXPECT_EQ(seen.out.substr(0, 9), "(2, 1242)") << seen;
+  EXPECT_NE(seen.out.find("depth 1"), std::string::npos) << seen;
+  const CommandResult none = explica({"cifti", "--out", folder_ / "none"});
+  EXPECT_EQ(none.exitCode, 1) << none;
+}
+
 TEST_F(Sample, SaysWhatCannotBeMeant) {
   writeX("x.nii.gz");
   const std::string x = folder_ / "x.nii.gz";

@@ -524,6 +524,10 @@ const WrongInput kWrongInputs[] = {
      {"--label", "{folder}/values.shape.gii", "--direction", "0,0,1"},
      "labels are needed",
      "values.shape.gii"},
+    {"MapNowhereAbove",
+     nothing,
+     {"--map", "{folder}/values.shape.gii", "--above", "1", "--direction", "0,0,1"},
+     "its largest value is 0.5"},
 };
 
 io::LabelMap labelsOf(Eigen::Index count, const std::function<bool(int, int)>& inside) {
@@ -551,6 +555,9 @@ void writeLabels(const TemporaryFolder& folder) {
   io::writeGiftiShape(
       folder / "values.shape.gii",
       std::vector<io::VertexMap>{{"values", "", Eigen::VectorXd::Constant(441, 0.5)}}, "");
+  io::writeGiftiShape(
+      folder / "active.shape.gii",
+      std::vector<io::VertexMap>{{"z", "", 3 * labelsOf(441, two).keys.cast<double>()}}, "");
   std::string left = "#!ascii label\n98\n";
   for (int v = 0; v < 441; ++v) {
     if (two(v % 21, v / 21) && v % 21 <= 8) left += std::to_string(v) + " 0 0 0 1\n";
@@ -601,6 +608,8 @@ const RegionKind kRegionKinds[] = {
     {"GiftiLabelOfTwoPieces", {"--label", "{folder}/two.label.gii"}, 2, 0},
     {"GiftiLabelWithAHole", {"--label", "{folder}/ring.label.gii", "--label-key", "1"}, 1, 1},
     {"FreeSurferLabel", {"--label", "{folder}/left.label"}, 1, 0},
+    {"SeveralKeys", {"--label", "{folder}/two.label.gii", "--label-key", "9,1"}, 2, 0},
+    {"MapAboveAValue", {"--map", "{folder}/active.shape.gii", "--above", "2.5"}, 2, 0},
 };
 
 class UnfoldRegion : public ::testing::TestWithParam<RegionKind> {};

@@ -21,6 +21,14 @@ cp phantom/labels.nii.gz data/sub-01/anat/sub-01_dseg.nii.gz
 echo '{"Name": "phantoms", "BIDSVersion": "1.8.0"}' > data/dataset_description.json
 explica bids data derived participant --hemispheres L --steps thickness,surface --surface.faces 2000
 explica bids data derived group)"},
+      {"cifti",
+       "vertex data of the left and the right hemisphere",
+       "one CIFTI file: maps, a series or labels, the medial wall left out",
+       {"left", "right", "left-cortex", "right-cortex", "name", "seconds"},
+       R"(explica phantom shell --size 32 --out shell
+explica surface shell/labels.nii.gz --white 1 --grey 2 --faces 2000 --out surfaces
+explica cifti --left surfaces/thickness.shape.gii --right surfaces/thickness.shape.gii \
+  --name thickness --out cifti)"},
       {"compare",
        "a surface, and others with the same vertices: flat maps, inflated ones, spheres",
        "what each of them keeps of areas, lengths, angles and distances, as a table and pictures",
@@ -106,6 +114,13 @@ explica thickness shell/labels.nii.gz --inner 1 --tissue 2 --out thickness)"},
         "target-visibility", "max-iterations", "frames", "resume"},
        R"(explica phantom polygon34 --out p34
 explica polygon p34/polygon.csv --region 0:34 --viewpoint 80.9,4000 --out flat)"},
+      {"repair",
+       "a triangulated surface, or several with the same faces",
+       "the surface with crossing faces parted, the same vertices and faces",
+       {"max-move"},
+       R"(explica phantom shell --size 32 --out shell
+explica surface shell/labels.nii.gz --white 1 --grey 2 --faces 2000 --out surfaces
+explica repair surfaces/white.surf.gii surfaces/pial.surf.gii --out repaired)"},
       {"replay",
        "the record of a run",
        "the same command run again, and which of its outputs are identical",
@@ -126,6 +141,14 @@ explica report thickness)"},
        R"(explica phantom cortex --size 32 --spacing 2 --out cortex
 explica run cortex/labels.nii.gz --surface.faces 2000 --unfold.max-iterations 5 --out result \
   || [ $? -eq 3 ])"},
+      {"sample",
+       "volumes, and a white and a pial surface or a folder of explica thickness",
+       "maps of the values at each depth, where they are known, profiles of regions",
+       {"surfaces", "hemisphere", "white", "pial", "thickness", "depths", "depth-kind", "across",
+        "interpolate", "to-volume", "mask", "labels", "points"},
+       R"(explica phantom shell --size 32 --out shell
+explica surface shell/labels.nii.gz --white 1 --grey 2 --faces 2000 --out surfaces
+explica sample shell/harmonic.nii.gz --surfaces surfaces --depths 5 --out sampled)"},
       {"segment",
        "a T1-weighted image without skull; an atlas in its space tells hemispheres apart",
        "labels (1 CSF, 2 grey, 3 white), probabilities of each, one hemisphere",

@@ -12,6 +12,7 @@
 
 #include <cctype>
 #include <cmath>
+#include <cstdio>
 
 namespace explica::io {
 
@@ -61,6 +62,31 @@ Eigen::Matrix4d scannerFromTkr(const Grid& volume) {
   torig.row(2) << 0, -h[1], 0, 0.5 * h[1] * volume.size[1];
   torig(3, 3) = 1;
   return volume.affine() * torig.inverse();
+}
+
+std::string frameMixUp(const Point& point, const Positions& positions,
+                       const Eigen::Matrix4d& scannerFromTkr, double far) {
+  const auto distance = [&positions](const Point& x) {
+    return std::sqrt((positions.rowwise() - x.transpose()).rowwise().squaredNorm().minCoeff());
+  };
+  const double asGiven = distance(point);
+  if (!(asGiven > far) || scannerFromTkr.isIdentity(1e-6)) return {};
+  const auto moved = [&point](const Eigen::Matrix4d& matrix) -> Point {
+    return matrix.topLeftCorner<3, 3>() * point + matrix.topRightCorner<3, 1>();
+  };
+  const Point scanner = moved(scannerFromTkr), tkr = moved(scannerFromTkr.inverse());
+  const bool wasTkr = distance(scanner) <= distance(tkr);
+  const Point& meant = wasTkr ? scanner : tkr;
+  if (!(distance(meant) <= far)) return {};
+  char text[400];
+  std::snprintf(
+      text, sizeof text,
+      "(%.2f, %.2f, %.2f) lies %.1f mm from the surface, but %.1f mm if it is %s: the surface "
+      "is in the other frame, in which the point is %.2f,%.2f,%.2f",
+      point[0], point[1], point[2], asGiven, distance(meant),
+      wasTkr ? "FreeSurfer's surface RAS (tkregister)" : "scanner RAS", meant[0], meant[1],
+      meant[2]);
+  return text;
 }
 
 Grid gridOfVolumeText(const std::filesystem::path& path, const VolumeText& text) {

@@ -380,4 +380,18 @@ TEST(SurfaceTypes, FollowTheNameWhereTheFileIsSilent) {
   }
 }
 
+TEST(FrameMixUp, IsNamedWhenItExplainsTheDistance) {
+  const TriangleMesh mesh = geometry::makeIcosphere(3, 30.0, Point(10, 20, 30));
+  Eigen::Matrix4d shift = Eigen::Matrix4d::Identity();
+  shift.topRightCorner<3, 1>() << 0, -25, 18;  // surface RAS to scanner RAS
+  const Point onSurface = mesh.positions.row(7).transpose();
+  EXPECT_EQ(io::frameMixUp(onSurface, mesh.positions, shift), "");
+  const std::string tkr = io::frameMixUp(onSurface - Vector(0, -25, 18), mesh.positions, shift);
+  EXPECT_NE(tkr.find("tkregister"), std::string::npos) << tkr;
+  const std::string scanner = io::frameMixUp(onSurface + Vector(0, -25, 18), mesh.positions, shift);
+  EXPECT_NE(scanner.find("scanner RAS"), std::string::npos) << scanner;
+  EXPECT_EQ(io::frameMixUp(Point(500, 0, 0), mesh.positions, shift), "");
+  EXPECT_EQ(io::frameMixUp(Point(500, 0, 0), mesh.positions, Eigen::Matrix4d::Identity()), "");
+}
+
 }  // namespace

@@ -1,0 +1,139 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/IO/CiftiFile.h"
+
+#include "Explica/Application/Command.h"
+#include "Explica/Core/Errors.h"
+#include "Explica/IO/VertexDataFile.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace explica::app {
+namespace {
+
+struct Settings {
+  std::optional<std::string> left, right, leftCortex, rightCortex;
+  std::string name = "both";
+  std::optional<double> seconds;
+};
+
+void declare(Declaration& d, Settings& s) {
+  d.synopsis("maps or labels of both hemispheres in one CIFTI file")
+      .description(
+          "Joins the vertex data of the left and the right hemisphere, the medial wall left out, "
+          "into "
+          "a file for Workbench and what else reads CIFTI-2: .dscalar.nii of maps, .dtseries.nii "
+          "of a "
+          "series if --seconds says how far apart its frames are, .dlabel.nii of labels (GIFTI "
+          "labels "
+          "and FreeSurfer's annot). The cortex is where --left-cortex and --right-cortex are not "
+          "0: "
+          "FreeSurfer's cortex.label, valid.shape.gii of explica sample, or any map; without them "
+          "all "
+          "vertices are in.")
+      .example(
+          "explica cifti --left L/bold.func.gii --right R/bold.func.gii --left-cortex "
+          "lh.cortex.label --right-cortex rh.cortex.label --seconds 2 --name bold --out cifti",
+          "A sampled functional series of both hemispheres")
+      .inputOption("left", FileKind::VertexData, "maps or labels of the left hemisphere", s.left)
+      .inputOption("right", FileKind::VertexData, "maps or labels of the right hemisphere", s.right)
+      .inputOption("left-cortex", FileKind::VertexData, "not 0 where the left cortex is",
+                   s.leftCortex)
+      .inputOption("right-cortex", FileKind::VertexData, "not 0 where the right cortex is",
+                   s.rightCortex)
+      .option("Output", Field{"name", "", "name of the file, without its ending"}, s.name)
+      .option("Output", Field{"seconds", "s", "time between maps that are a series"}, s.seconds)
+      .output("*.dscalar.nii", FileKind::Any, "maps of both hemispheres")
+      .output("*.dtseries.nii", FileKind::Any, "with --seconds: a series of both hemispheres")
+      .output("*.dlabel.nii", FileKind::Any, "labels of both hemispheres with names and colours");
+}
+
+struct Side {
+  const char* structure;
+  std::optional<std::string> data, cortex;
+};
+
+bool isLabelFile(const std::string& path) {
+  return path.ends_with(".label.gii") || path.ends_with(".annot") ||
+         path.ends_with(".label.gii.gz");
+}
+
+io::CiftiStructure cortexOf(const Side& side, Eigen::Index vertexCount) {
+  if (!side.cortex) {
+    return io::ciftiStructure(side.structure, Eigen::VectorXd::Ones(vertexCount));
+  }
+  if (isLabelFile(*side.cortex) || side.cortex->ends_with(".label")) {
+    return io::ciftiStructure(side.structure,
+                              io::readVertexLabels(*side.cortex, vertexCount).keys.cast<double>());
+  }
+  return io::ciftiStructure(side.structure,
+                            io::readVertexMaps(*side.cortex, vertexCount).front().values);
+}
+
+/// Labels of the side; FreeSurfer's annots number both hemispheres alike, which is right where the
+/// names agree.
+io::CiftiLabels labelsOf(const Side& side) {
+  io::CiftiLabels part{{}, io::readVertexLabels(*side.data)};
+  part.where = cortexOf(side, part.labels.keys.size());
+  return part;
+}
+
+io::CiftiPart mapsOf(const Side& side) {
+  io::CiftiPart part{{}, io::readVertexMaps(*side.data)};
+  part.where = cortexOf(side, part.maps.front().values.size());
+  return part;
+}
+
+Termination run(Context& context, const Settings& s) {
+  std::vector<Side> sides;
+  if (s.left) sides.push_back({"CortexLeft", s.left, s.leftCortex});
+  if (s.right) sides.push_back({"CortexRight", s.right, s.rightCortex});
+  if (sides.empty()) throw UsageError("give --left, --right, or both");
+  if (s.name.empty() || s.name.find('/') != std::string::npos) {
+    throw UsageError("--name must be the name of a file, without folders");
+  }
+  if (s.seconds && !(*s.seconds > 0)) throw UsageError("--seconds must be positive");
+  const bool labels = isLabelFile(*sides.front().data);
+  for (const Side& side : sides) {
+    if (isLabelFile(*side.data) != labels) {
+      throw UsageError(
+          "one hemisphere has labels and the other one maps; two of a kind are needed");
+    }
+  }
+  std::vector<io::CiftiLabels> labelParts;
+  std::vector<io::CiftiPart> parts;
+  std::size_t vertices = 0;
+  for (const Side& side : sides) {
+    if (labels) {
+      labelParts.push_back(labelsOf(side));
+      vertices += labelParts.back().where.vertices.size();
+    } else {
+      parts.push_back(mapsOf(side));
+      vertices += parts.back().where.vertices.size();
+    }
+  }
+  auto step = context.step("write");
+  context.result("vertices", vertices);
+  if (labels) {
+    io::writeCiftiLabels(context.output(s.name + ".dlabel.nii"), labelParts);
+    return Termination::NotRun;
+  }
+  context.result("maps", parts.front().maps.size());
+  if (s.seconds) {
+    io::writeCiftiSeries(context.output(s.name + ".dtseries.nii"), parts, *s.seconds);
+  } else {
+    io::writeCiftiScalars(context.output(s.name + ".dscalar.nii"), parts);
+  }
+  return Termination::NotRun;
+}
+
+}  // namespace
+
+Command ciftiCommand() {
+  return makeCommand<Settings>("cifti", declare, run);
+}
+
+}  // namespace explica::app
