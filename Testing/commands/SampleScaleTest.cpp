@@ -1,0 +1,151 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+// explica sample beside Workbench, on real images of full size.
+
+#include "Explica/IO/SurfaceFile.h"
+#include "Explica/IO/VertexDataFile.h"
+#include "Explica/IO/VolumeFile.h"
+#include "Explica/Testing/Command.h"
+#include "Explica/Testing/FreeSurferSubject.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace explica::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Words = std::vector<std::string>;
+
+std::string run(const Words& words) {
+  CommandSetting patient;
+  patient.timeout = 500;
+  const CommandResult result = runProgram(words, patient);
+  EXPECT_EQ(result.exitCode, 0) << result;
+  return result.out;
+}
+
+/// Ours beside Workbench's mapping of the same volume on the same surface.
+struct Beside {
+  double worst = 0;        ///< difference over the range, where both know the value
+  double correlation = 0;  ///< with the ribbon mapping, ours the mean of depths
+};
+
+class BesideWorkbench : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!fs::exists(EXPLICA_REAL_DATA)) GTEST_SKIP() << "skipped: no real data";
+  }
+
+  /// Volume and surfaces must lie in one space.
+  Beside compare(const std::string& volume, const TriangleMesh& white, const TriangleMesh& pial) {
+    const std::string w = folder_ / "w.surf.gii", p = folder_ / "p.surf.gii",
+                      m = folder_ / "m.surf.gii";
+    TriangleMesh mid = white;
+    mid.positions = 0.5 * (white.positions + pial.positions);
+    io::writeSurface(w, white);
+    io::writeSurface(p, pial);
+    io::writeSurface(m, mid);
+    const std::string nifti = folder_ / "volume.nii.gz";
+    run({"/usr/bin/python3", "-c",
+         "import nibabel,sys\ni=nibabel.load(sys.argv[1])\n"
+         "nibabel.save(nibabel.Nifti1Image(i.get_fdata().astype('f4'),i.affine),sys.argv[2])",
+         volume, nifti});
+    run({"wb_command", "-volume-to-surface-mapping", nifti, m, folder_ / "wb.shape.gii",
+         "-trilinear"});
+    run({"wb_command", "-volume-to-surface-mapping", nifti, m, folder_ / "ribbon.shape.gii",
+         "-ribbon-constrained", w, p});
+    EXPECT_EQ(
+        explica({"sample", nifti, "--white", w, "--pial", p, "--out", folder_ / "one"}).exitCode,
+        0);
+    EXPECT_EQ(explica({"sample", nifti, "--white", w, "--pial", p, "--depths",
+                       "0.1,0.3,0.5,0.7,0.9", "--across", "mean", "--out", folder_ / "mean"})
+                  .exitCode,
+              0);
+    const auto map = [&](const std::string& file) {
+      return io::readVertexMaps(folder_ / file, white.vertexCount())[0].values;
+    };
+    const Eigen::VectorXd wb = map("wb.shape.gii"), ribbon = map("ribbon.shape.gii"),
+                          one = map("one/volume.func.gii"), mean = map("mean/volume.func.gii");
+    Beside beside;
+    const double range = wb.maxCoeff() - wb.minCoeff();
+    std::vector<double> a, b;
+    for (Eigen::Index v = 0; v < wb.size(); ++v) {
+      if (!std::isnan(one[v]))
+        beside.worst = std::max(beside.worst, std::abs(one[v] - wb[v]) / range);
+      // Workbench writes 0 where it finds no voxel in the ribbon about a vertex.
+      if (std::isnan(mean[v]) || ribbon[v] == 0) continue;
+      a.push_back(mean[v]);
+      b.push_back(ribbon[v]);
+    }
+    beside.correlation = correlation(a, b);
+    return beside;
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(BesideWorkbench, EchoPlanarImageOfS1) {
+  const fs::path data = fs::path(EXPLICA_REAL_DATA) / "s1_pycortex_lh";
+  const fs::path volume = data / "transforms/fullhead_reference.nii.gz";
+  // Workbench knows no transform: the surfaces are moved into the volume's world.
+  const auto json = readJson(data / "transforms/fullhead_matrices.xfm");
+  Eigen::Matrix4d coord;
+  for (int i = 0; i < 16; ++i) coord(i / 4, i % 4) = json["coord"][i / 4][i % 4];
+  const Eigen::Matrix4d matrix = io::readGrid(volume).affine() * coord;
+  const auto moved = [&](const char* name) {
+    TriangleMesh mesh = io::readSurface(data / name).mesh;
+    mesh.positions = ((mesh.positions * matrix.topLeftCorner<3, 3>().transpose()).rowwise() +
+                      matrix.topRightCorner<3, 1>().transpose())
+                         .eval();
+    return mesh;
+  };
+  const TriangleMesh white = moved("wm_lh.gii"), pial = moved("pia_lh.gii");
+  const Beside beside = compare(volume, white, pial);
+  EXPECT_LT(beside.worst, 1e-4);
+  EXPECT_GT(beside.correlation, 0.99);
+
+  // The same through pycortex's own file.
+  ASSERT_EQ(
+      explica({"sample", volume, "--white", data / "wm_lh.gii", "--pial", data / "pia_lh.gii",
+               "--to-volume", data / "transforms/fullhead_matrices.xfm", "--out", folder_ / "x"})
+          .exitCode,
+      0);
+  const Eigen::VectorXd a = io::readVertexMaps(folder_ / "x/fullhead_reference.func.gii")[0].values,
+                        b = io::readVertexMaps(folder_ / "one/volume.func.gii")[0].values;
+  EXPECT_LT((a - b).cwiseAbs().maxCoeff(), 1e-4 * (b.maxCoeff() - b.minCoeff()));
+}
+
+TEST_F(BesideWorkbench, OccipitalSlabOfS1IsKnownWhereItLies) {
+  const fs::path data = fs::path(EXPLICA_REAL_DATA) / "s1_pycortex_lh";
+  const CommandResult result =
+      explica({"sample", data / "transforms/retinotopy_reference.nii.gz", "--white",
+               data / "wm_lh.gii", "--pial", data / "pia_lh.gii", "--to-volume",
+               data / "transforms/retinotopy_matrices.xfm", "--out", folder_ / "out"});
+  ASSERT_EQ(result.exitCode, 0) << result;
+  const double known =
+      readJson(folder_ / "out/summary.json")["known_fraction_retinotopy_reference"];
+  EXPECT_GT(known, 0.1);
+  EXPECT_LT(known, 0.5);
+  const Eigen::VectorXd map =
+      io::readVertexMaps(folder_ / "out/retinotopy_reference.func.gii")[0].values;
+  EXPECT_NEAR(static_cast<double>(map.array().isNaN().count()) / static_cast<double>(map.size()),
+              1 - known, 1e-9);
+}
+
+TEST_F(BesideWorkbench, BrainOfBert) {
+  const fs::path data = fs::path(EXPLICA_REAL_DATA) / "bert_freesurfer/mri";
+  ASSERT_EQ(explica({"surface", data / "ribbon.mgz", "--preset", "ribbon", "--hemisphere", "L",
+                     "--faces", "60000", "--out", folder_ / "surface"})
+                .exitCode,
+            0);
+  const Beside beside =
+      compare(data / "brain.mgz", io::readSurface(folder_ / "surface/white.surf.gii").mesh,
+              io::readSurface(folder_ / "surface/pial.surf.gii").mesh);
+  EXPECT_LT(beside.worst, 1e-4);
+  EXPECT_GT(beside.correlation, 0.99);
+}
+
+}  // namespace
+}  // namespace explica::testing
