@@ -93,7 +93,7 @@ TEST(Repair, PartsEveryCrossingOfRealSurfaces) {
   const std::string s1 = (data / "s1_pycortex_lh").string() + "/",
                     fs5 = (data / "fsaverage5/fs_binary").string() + "/";
   for (const Case& c : {Case{{s1 + "wm_lh.gii", s1 + "pia_lh.gii"}, 112},
-                        Case{{fs5 + "rh.white", fs5 + "rh.pial"}, 3}}) {
+                        Case{{fs5 + "rh.white", fs5 + "rh.pial"}, 6}}) {
     std::vector<std::string> words = {"repair"};
     words.insert(words.end(), c.files.begin(), c.files.end());
     words.insert(words.end(), {"--out", folder / "out", "--force"});

@@ -126,7 +126,7 @@ TEST_F(Sample, AcceptsNaNAndWhatLiesOutside) {
       EXPECT_TRUE(std::isnan(values[v])) << at.transpose();
     }
     if (at[0] > 0.65 && at[2] < -0.01) {
-      EXPECT_EQ(values[v], 3) << at.transpose();
+      EXPECT_NEAR(values[v], 3, 1e-6) << at.transpose();
     }
     known += valid[v] == 1;
   }
@@ -383,9 +383,9 @@ TEST(SampleLayers, AgreeWithLayNiisOnRealActivation) {
   ASSERT_EQ(made.exitCode, 0) << made;
   const Volume<float> thickness = io::readScalars(folder / "thickness/thickness.nii.gz").volume;
   for (const std::string name : {"lo_VASO_act", "lo_BOLD_act"}) {
-    const CommandResult result =
-        explica({"sample", (data / (name + ".nii.gz")).string(), "--thickness",
-                 folder / "thickness", "--depths", std::to_string(last), "--out", folder / name});
+    const CommandResult result = explica({"sample", (data / (name + ".nii.gz")).string(),
+                                          "--thickness", folder / "thickness", "--depths",
+                                          std::to_string(last - 2), "--out", folder / name});
     ASSERT_EQ(result.exitCode, 0) << result;
     std::vector<double> ours, layNii;
     for (const Row& row : readTable(folder / (name + "/" + name + "_layers.tsv"))) {
