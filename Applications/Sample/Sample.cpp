@@ -98,6 +98,14 @@ void declare(Declaration& d, SampleSettings& s) {
       .inputOption("points", FileKind::Table,
                    "table with columns x, y, z (RAS mm): finds vertex, depth, distance, region",
                    s.points, "Regions")
+      .inputOption(
+          "vertex-map", FileKind::VertexData,
+          "vertex data of another surface of the same subject (lh.thickness), carried over "
+          "by nearest points; may be repeated",
+          s.vertexMaps, "Other surfaces")
+      .inputOption("vertex-surface", FileKind::Surface,
+                   "the surface that --vertex-map belongs to (lh.white), beside our white one",
+                   s.vertexSurface, "Other surfaces")
       .output(
           "*.func.gii", FileKind::VertexData,
           "NAME.func.gii: a map a depth; of a series NAME_depth-D.func.gii: a map a frame; with "
