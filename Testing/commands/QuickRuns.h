@@ -92,7 +92,7 @@ inline const std::vector<QuickRun>& quickRuns() {
         {"surface", "{folder}/shell/labels.nii.gz", "--white", "1", "--grey", "2", "--faces",
          "2000", "--out", "{folder}/surfaces"}},
        {"cifti", "--left", "{folder}/surfaces/thickness.shape.gii", "--right",
-        "{folder}/surfaces/sulc.shape.gii"}},
+        "{folder}/surfaces/thickness.shape.gii"}},
       {"Embed",
        {{"phantom", "polygon19", "--out", "{folder}/p19"},
         {"polygon", "{folder}/p19/polygon.csv", "--out", "{folder}/c"}},

@@ -47,7 +47,8 @@ def main():
 
     depths = np.linspace(0, 1, 21)
     values = explica.sample(image, white, pial, depths, interpolate="cubic")
-    mean, low, high = np.nanmean(values, 1), *np.nanpercentile(values, (25, 75), axis=1)
+    mean = np.nanmean(values, 1)
+    low, high = (np.nanpercentile(values, share, axis=1) for share in (25, 75))
 
     arguments.out.mkdir(parents=True, exist_ok=True)
     fig, axes = plt.subplots(figsize=(5, 4), layout="constrained")
