@@ -90,10 +90,12 @@ Termination runBeat(Context& context, const Settings& s) {
 
 Termination run(Context& context, const Settings& s) {
   if (s.beat.frames) return runBeat(context, s);
-  for (const char* name : {"slice", "tilt", "ejection"}) {
-    if (context.given(name)) {
-      throw UsageError("--" + std::string(name) + " is for a beating ventricle: give --frames N");
-    }
+  // A record that is replayed gives every option, at its default too.
+  const phantom::BeatOptions none;
+  const bool beats = s.beat.slice != none.slice || s.beat.tiltDeg != none.tiltDeg ||
+                     s.beat.ejectionFraction != none.ejectionFraction;
+  if (beats) {
+    throw UsageError("--slice, --tilt and --ejection are for a beating ventricle: give --frames N");
   }
   return runAnnulusKind<harmonic::PhantomKind::Ventricle>(context, s);
 }

@@ -336,7 +336,8 @@ StoredVolume readNifti(ByteSource& source, PlacementChoice placement, Extent ext
   volume.valuesPerVoxel = valueCount / (sizes[0] * sizes[1] * sizes[2]);
   volume.type = typeOf(path, header.datatype);
   volume.origin.storedType = nameOf(volume.type);
-  if (header.slope != 0) {  // 0: the values are as stored
+  // 0, and as in the library of NIfTI not-a-number: the values are as stored.
+  if (header.slope != 0 && !std::isnan(header.slope)) {
     if (!std::isfinite(header.slope) || !std::isfinite(header.intercept)) {
       refuse(path, "its header scales values by " + std::to_string(header.slope) + " and adds " +
                        std::to_string(header.intercept) + "; correct scl_slope and scl_inter");

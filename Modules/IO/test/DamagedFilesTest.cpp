@@ -232,7 +232,7 @@ TEST(ImplausibleHeaders, OfNiftiAreRefused) {
   const float infinite = std::numeric_limits<float>::infinity();
   constexpr std::size_t kOffset = 108, kSlope = 112, kIntercept = 116, kOrigin = 268;
   EXPECT_NE(said(kSlope, infinite).find("correct scl_slope and scl_inter"), std::string::npos);
-  EXPECT_NE(said(kSlope, std::nanf("")).find("correct scl_slope"), std::string::npos);
+  EXPECT_EQ(said(kSlope, std::nanf("")), "accepted") << "no scaling, as NIfTI's library reads it";
   EXPECT_NE(said(kIntercept, infinite).find("correct scl_slope"), std::string::npos);
   EXPECT_NE(said(kOffset, 351).find("inside the header (vox_offset 351)"), std::string::npos);
   EXPECT_NE(said(kOffset, 1e15F), "accepted");

@@ -22,10 +22,10 @@ import explica
 
 def phantom():
     """A shell whose values peak in the middle layer, its surfaces, and the exact profile."""
-    shape, radii = (64, 64, 64), (20.0, 28.0)
-    affine = np.diag([1.0, 1.0, 1.0, 1.0])
-    affine[:3, 3] = -31.5
-    r = np.linalg.norm(np.indices(shape) - 31.5, axis=0)
+    count, voxel, radii = 80, 0.8, (20.0, 28.0)
+    affine = np.diag([voxel, voxel, voxel, 1.0])
+    affine[:3, 3] = -0.5 * (count - 1) * voxel
+    r = np.linalg.norm(voxel * (np.indices((count,) * 3) - 0.5 * (count - 1)), axis=0)
     depth = (r - radii[0]) / (radii[1] - radii[0])
     profile = lambda d: 1 + np.exp(-(((d - 0.5) / 0.2) ** 2))  # noqa: E731
     image = nibabel.Nifti1Image(profile(depth).astype("f4"), affine)
@@ -47,8 +47,8 @@ def main():
 
     depths = np.linspace(0, 1, 21)
     values = explica.sample(image, white, pial, depths, interpolate="cubic")
-    mean = np.nanmean(values, 1)
-    low, high = (np.nanpercentile(values, share, axis=1) for share in (25, 75))
+    mean = np.nanmean(values, axis=1)
+    low, high = np.nanpercentile(values, 25, axis=1), np.nanpercentile(values, 75, axis=1)
 
     arguments.out.mkdir(parents=True, exist_ok=True)
     fig, axes = plt.subplots(figsize=(5, 4), layout="constrained")

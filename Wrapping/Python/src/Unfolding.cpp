@@ -27,7 +27,9 @@ py::dict recordOf(const IterationRecord& r) {
   for (const unfolding::EvolutionColumn& column : unfolding::evolutionColumns()) {
     record[column.name.c_str()] = column.of(r);
   }
-  for (const char* count : {"contacts", "solves"}) record[count] = record[count].cast<int>();
+  for (const char* count : {"contacts", "solves"}) {
+    record[count] = static_cast<int>(record[count].cast<double>());
+  }
   return record;
 }
 

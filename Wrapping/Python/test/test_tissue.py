@@ -61,6 +61,9 @@ class Tissue(unittest.TestCase):
         for name in ("harmonic", "thickness", "inner_distance", "depth", "inner_point", "layers"):
             written = np.asarray(nibabel.load(self.folder / "out" / f"{name}.nii.gz").dataobj)
             ours = np.asarray(result[name].dataobj)
+            # NIfTI keeps the components of a vector in the fifth dimension.
+            if written.ndim == 5:
+                written = written[:, :, :, 0, :]
             self.assertEqual(ours.shape, written.shape)
             np.testing.assert_array_equal(ours, written, err_msg=name)
 

@@ -44,9 +44,9 @@ void describe(AnnulusOptions& options, Visitor&& visit) {
 struct ShapeFitOptions {
   int samples = 2000;  ///< points of the target's boundary that are fitted; taken by the caller
   int maxIterations = 200;
-  double step = 0.5;          ///< share of the way to each iteration's optimum; 1 is the full step
+  double step = 0.5;         ///< share of the way to each iteration's optimum; 1 is the full step
   double smoothness = 1e-9;  ///< weight of the boundary values' mean square slope, against the
-                              ///< fit's mean weight
+                             ///< fit's mean weight
 };
 
 template <class Visitor>
