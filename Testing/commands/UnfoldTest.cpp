@@ -477,7 +477,7 @@ const WrongInput kWrongInputs[] = {
      {"--center", "10,10,480", "--radius", "7", "--direction", "0,0,1"},
      "mm from the surface"},
     {"BeyondSinglePrecision",
-     [](TriangleMesh& mesh) { mesh.positions.col(0).array() += 1e7; },
+     [](TriangleMesh& mesh) { mesh.positions.col(0).array() += 3e6; },
      {"--vertex", "220", "--radius", "7", "--direction", "0,0,1"},
      "single precision"},
     {"FaceWithoutArea",

@@ -20,6 +20,8 @@ constexpr double kRounding = 1e-3;    // of the width: distances below count as 
 constexpr double kLeastShare = 0.1;   // of the concentric shape: keeps boundary values off 1/2
 constexpr double kScaleWeight = 1e2;  // of the amplitudes' sum, against the fit's weights
 constexpr double kSettled = 1e-5;     // largest change of a coefficient at which a fit ends
+constexpr double kLeastGain = 1e-3;   // of the symmetric difference ...
+constexpr std::size_t kStill = 60;  // ... within so many iterations: else the fit ends at its best
 // In space a target is faces, whose corners are no shape.
 constexpr double kSmootherInSpace = 1e3;
 constexpr int kMostExchanges =
@@ -301,13 +303,16 @@ ShapeFit fitShape(const HarmonicAnnulus& annulus, const TargetSamples& target,
   const Fit fit(annulus, target, options);
   Eigen::VectorXd x = fit.initial();
   ShapeFit result;
+  std::vector<Eigen::VectorXd> states;
   const auto record = [&] {
+    states.push_back(x);
     result.shape = fit.shapeOf(x);
     result.history.push_back(fit.account(x));
     result.path.push_back(result.shape);
   };
   record();
   result.termination = Termination::MaxIterations;
+  std::size_t best = 0;  // of the history
   for (int k = 0; k < options.maxIterations; ++k) {
     if (monitor.shouldStop()) {
       result.termination = Termination::Interrupted;
@@ -320,6 +325,16 @@ ShapeFit fitShape(const HarmonicAnnulus& annulus, const TargetSamples& target,
     record();
     monitor.progress(static_cast<double>(k + 1) / options.maxIterations, "fitting");
     if (apart < kSettled) {
+      result.termination = Termination::Converged;
+      break;
+    }
+    const double least = result.history[best].symmetricDifference;
+    if (result.history.back().symmetricDifference < (1 - kLeastGain) * least) {
+      best = result.history.size() - 1;
+    } else if (result.history.size() > best + kStill) {
+      // Amplitudes at their bounds change places for ever; the shape no longer gains by it.
+      x = states[best];
+      record();
       result.termination = Termination::Converged;
       break;
     }

@@ -105,11 +105,13 @@ class Unfolding(unittest.TestCase):
         self.assertEqual(len(explica.self_intersections((stepper.positions, self.surface[1]))), 0)
 
     def test_region_moves_on_the_way(self):
-        """What the first region became stays, and stands in the way of the second."""
+        """Beside fixed surroundings what the first region became stays, and stands in the way."""
         positions, faces = explica.folded_sphere(4, 30.0, 0.35, 8)
         first = explica.select_region((positions, faces), vertex=634, radius=13.9)
         second = explica.select_region((positions, faces), vertex=2177, radius=10.7)
-        stepper = explica.Unfolder((positions, faces), first["vertices"], [320.0, 50.0, 950.0])
+        stepper = explica.Unfolder(
+            (positions, faces), first["vertices"], [320.0, 50.0, 950.0], surround="fixed"
+        )
         stepper.step(40)
         before = stepper.positions
         stepper.set_region(second["vertices"])
