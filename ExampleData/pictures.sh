@@ -9,15 +9,15 @@ to=ExampleData/pictures
 view="build/bin/explica view"
 mkdir -p "$to"
 
-$view /usr/share/mricron/templates/ch2bet.nii.gz "$out/surface/white.surf.gii" "$out/surface/pial.surf.gii" \
+$view /usr/share/mricron/templates/ch2bet.nii.gz "$out/surface-L/white.surf.gii" "$out/surface-L/pial.surf.gii" \
   --slices 2 --height 660 --screenshot "$to/slices.png"
-$view "$out/surface/pial.surf.gii" --map "$out/surface/thickness.shape.gii" --width 380 --height 300 \
+$view "$out/surface-L/pial.surf.gii" --map "$out/surface-L/thickness.shape.gii" --width 380 --height 300 \
   --screenshot "$to/thickness.png"
-frames=$(find "$out/unfold/frames" -name 'frame-*.surf.gii' | sort)
+frames=$(find "$out/unfold-L/frames" -name 'frame-*.surf.gii' | sort)
 last=$(echo "$frames" | tail -n 1)
-$view "$out/surface/mid.surf.gii" "$last" --map "$out/surface/curvature.shape.gii" --colours diverging \
-  --range -0.4,0.4 --region "$out/unfold/region.label.gii" --direction -1,0,0 --focus --width 420 --height 330 \
+$view "$out/surface-L/mid.surf.gii" "$last" --map "$out/surface-L/curvature.shape.gii" --colours diverging \
+  --range -0.4,0.4 --region "$out/unfold-L/region.label.gii" --direction -1,0,0 --focus --width 420 --height 330 \
   --screenshot "$to/unfolding.png"
-$view "$out/unfold" --map "$out/surface/curvature.shape.gii" --colours diverging --range -0.4,0.4 --region "$out/unfold/region.label.gii" \
-  --direction -1,0,0 --focus --width 190 --height 150 --film "$to/unfolding.gif"
+$view "$out/unfold-L" --map "$out/surface-L/curvature.shape.gii" --colours diverging --range -0.4,0.4 \
+  --direction -1,0,0 --width 260 --height 220 --film "$to/unfolding.gif"
 echo "Look at $to"

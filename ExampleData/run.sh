@@ -2,8 +2,8 @@
 # SPDX-FileCopyrightText: The Explica developers
 # SPDX-License-Identifier: Apache-2.0
 # The worked example: installs what is needed, builds, and takes Colin27 (a real 1 mm T1 of Debian's
-# mricron-data, skull-stripped, with the AAL atlas in its space) from T1 to an unfolded patch of its left
-# hemisphere.  Safe to run again: steps that are still true are kept.
+# mricron-data, skull-stripped, with the AAL atlas in its space) from T1 to unfolded patches of both
+# hemispheres.  Safe to run again: steps that are still true are kept.
 #   ExampleData/run.sh [options of explica run]
 set -eu
 cd "$(dirname "$0")/.."
