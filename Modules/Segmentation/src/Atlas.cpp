@@ -9,6 +9,7 @@
 #include <set>
 #include <sstream>
 #include <tuple>
+#include <utility>
 
 namespace explica::segmentation {
 namespace {
@@ -22,6 +23,9 @@ bool startsWithAny(std::string_view name, std::initializer_list<std::string_view
 constexpr std::array kFreeSurferDeepLeft = {4, 5, 9, 10, 11, 12, 13, 17, 18, 26, 28, 30, 31, 78};
 constexpr std::array kFreeSurferDeepRight = {43, 44, 48, 49, 50, 51, 52,
                                              53, 54, 58, 60, 62, 63, 79};
+/// Ranges of numbers that no segmentation of FreeSurfer holds.
+constexpr std::array kNotFreeSurfers = {std::pair{1, 1}, std::pair{19, 23}, std::pair{64, 71},
+                                        std::pair{86, 116}};
 constexpr std::array kFreeSurferBelowTent = {7, 8, 16, 46, 47};  // cerebellum and brain stem
 
 }  // namespace
@@ -80,6 +84,10 @@ bool isFreeSurferAtlas(const Volume<Label>& labels) {
     const auto at = found.lower_bound(first);
     return at != found.end() && *at <= last;
   };
+  // Atlases that count their regions from 1 on, as AAL does, have FreeSurfer's numbers too.
+  for (const auto& [first, last] : kNotFreeSurfers) {
+    if (has(first, last)) return false;
+  }
   const bool left = has(3, 3) || has(1001, 1035) || has(11101, 11175);
   const bool right = has(42, 42) || has(2001, 2035) || has(12101, 12175);
   return left && right && has(2, 2) && has(41, 41);

@@ -124,6 +124,12 @@ TEST(Plausibility, FluidLiesAtTheRimUnlessTheContrastIsInverted) {
   EXPECT_TRUE(std::isnan(rimContrast(tissues)));
 }
 
+TEST(FreeSurferAtlas, IsNotAnAtlasThatCountsFromOne) {
+  Volume<Label> aal(cube(5), 0);
+  for (Label n = 1; n <= 116; ++n) aal[static_cast<std::size_t>(n)] = n;
+  EXPECT_FALSE(isFreeSurferAtlas(aal)) << "AAL has 2, 3, 41 and 42 too";
+}
+
 TEST(FreeSurferAtlas, IsKnownByItsLabels) {
   Volume<Label> atlas(cube(4), 0);
   EXPECT_FALSE(isFreeSurferAtlas(atlas));
