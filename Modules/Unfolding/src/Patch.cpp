@@ -25,6 +25,19 @@ Point centroidOf(const PatchFace& face, const Positions& x) {
          3;
 }
 
+CornerBlocks faceBlocks(const FaceShape& shape, double inPlane, double across) {
+  const Eigen::Matrix3d normal = across * shape.normal * shape.normal.transpose();
+  CornerBlocks blocks;
+  int n = 0;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      blocks[n++] = inPlane * shape.hat[i] * shape.hat[j].transpose() +
+                    shape.hat[i].dot(shape.hat[j]) * normal;
+    }
+  }
+  return blocks;
+}
+
 void addForces(std::span<const PatchFace> faces, std::span<const CornerForces> forces,
                Positions& gradient) {
   for (std::size_t f = 0; f < faces.size(); ++f) {

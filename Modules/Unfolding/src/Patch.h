@@ -74,6 +74,10 @@ struct FaceShape {
 using CornerForces = std::array<Vector, 3>;
 using CornerBlocks = std::array<Eigen::Matrix3d, 6>;
 
+/// The stiffness of a face: inPlane * hat_i hat_j^T, and across * (hat_i . hat_j) n n^T for what
+/// its tension does against moves out of its plane.
+[[nodiscard]] CornerBlocks faceBlocks(const FaceShape& shape, double inPlane, double across);
+
 /// Adds what faces contribute, in their order, to the gradient (V x 3).
 void addForces(std::span<const PatchFace> faces, std::span<const CornerForces> forces,
                Positions& gradient);

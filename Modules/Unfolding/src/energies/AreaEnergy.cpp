@@ -46,15 +46,7 @@ class AreaEnergy final : public Energy {
       const FaceShape& shape = now.shapes[f];
       const double ratio = shape.area / faces[f].restArea;
       const double inPlane = faces[f].weight * strength * ratio * ratio;
-      const Eigen::Matrix3d across =
-          std::max(0.0, tensionOf(now, f, strength)) * shape.normal * shape.normal.transpose();
-      int n = 0;
-      for (int i = 0; i < 3; ++i) {
-        for (int j = 0; j <= i; ++j) {
-          blocks[f][n++] = inPlane * shape.hat[i] * shape.hat[j].transpose() +
-                           shape.hat[i].dot(shape.hat[j]) * across;
-        }
-      }
+      blocks[f] = faceBlocks(shape, inPlane, std::max(0.0, tensionOf(now, f, strength)));
     });
     addBlocks(faces, blocks, unknown, system);
   }

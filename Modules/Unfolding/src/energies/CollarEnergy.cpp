@@ -76,15 +76,7 @@ class CollarEnergy final : public Energy {
       const double ratio = shape.area / faces[f].restArea;
       const Stretching stretch = stretching(faces[f], ratio, strength);
       const double inPlane = stretch.curvature * ratio * ratio;
-      const Eigen::Matrix3d across =
-          std::max(0.0, stretch.slope * ratio) * shape.normal * shape.normal.transpose();
-      int n = 0;
-      for (int i = 0; i < 3; ++i) {
-        for (int j = 0; j <= i; ++j) {
-          blocks[f][n++] = inPlane * shape.hat[i] * shape.hat[j].transpose() +
-                           shape.hat[i].dot(shape.hat[j]) * across;
-        }
-      }
+      blocks[f] = faceBlocks(shape, inPlane, std::max(0.0, stretch.slope * ratio));
     });
     addBlocks(faces, blocks, unknown, system);
     addSpringStiffness(now.patch.collarEdges(), now.x, strength * kCollarSpring, unknown, system);

@@ -68,13 +68,7 @@ class VisibilityEnergy final : public Energy {
     const auto faces = now.patch.ofRegion();
     std::vector<CornerBlocks> blocks(faces.size());
     parallelFor(faces.size(), kGrain, [&](std::size_t f) {
-      const FaceShape& shape = now.shapes[f];
-      const Eigen::Matrix3d across =
-          strength * faces[f].weight * shape.normal * shape.normal.transpose();
-      int n = 0;
-      for (int i = 0; i < 3; ++i) {
-        for (int j = 0; j <= i; ++j) blocks[f][n++] = shape.hat[i].dot(shape.hat[j]) * across;
-      }
+      blocks[f] = faceBlocks(now.shapes[f], 0, strength * faces[f].weight);
     });
     addBlocks(faces, blocks, unknown, system);
   }
