@@ -5,7 +5,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/IO/SurfaceFile.h"
-#include "Explica/IO/VertexDataFile.h"
+#include "Explica/Pipeline/UnfoldingFolder.h"
 #include "Explica/Provenance/Json.h"
 #include "Explica/Provenance/Record.h"
 #include "Explica/Report/Film.h"
@@ -14,9 +14,9 @@
 #include <unistd.h>
 
 #include <array>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
-#include <set>
 #include <string>
 
 namespace explica::app {
@@ -28,21 +28,13 @@ using provenance::Json;
 constexpr report::Colour kInside = {0.74F, 0.31F, 0.09F};
 constexpr report::Colour kOutside = {0.60F, 0.58F, 0.55F};
 
-std::vector<fs::path> frameFiles(const fs::path& folder) {
-  std::set<fs::path> files;
-  const fs::path frames = fs::exists(folder / "frames") ? folder / "frames" : folder;
-  if (fs::is_directory(frames)) {
-    for (const auto& entry : fs::directory_iterator(frames)) {
-      const std::string name = entry.path().filename().string();
-      if (name.rfind("frame-", 0) == 0 && name.find(".gii") != std::string::npos)
-        files.insert(entry.path());
-    }
-  }
+std::vector<fs::path> framesOf(const fs::path& folder) {
+  std::vector<fs::path> files = pipeline::frameFiles(folder);
   if (files.empty()) {
     throw InvalidInput(folder.string() +
                        ": holds no frames/frame-*.surf.gii; unfold with --frames");
   }
-  return {files.begin(), files.end()};
+  return files;
 }
 
 Json summaryOf(const fs::path& folder) {
@@ -52,10 +44,9 @@ Json summaryOf(const fs::path& folder) {
 
 std::string captionOf(const Json& summary, std::size_t frame, std::size_t count) {
   std::array<char, 96> text{};
-  const Json visibilities = summary.value("frame_visibilities", Json::array());
-  if (frame >= visibilities.size() || !visibilities[frame].is_number()) return "";
-  std::snprintf(text.data(), text.size(), "average visibility %.2f",
-                visibilities[frame].get<double>());
+  const double visibility = pipeline::frameVisibility(summary, frame);
+  if (!std::isfinite(visibility)) return "";
+  std::snprintf(text.data(), text.size(), "average visibility %.2f", visibility);
   std::string caption = text.data();
   if (frame + 1 == count && summary.contains("area_error_mean")) {
     std::snprintf(text.data(), text.size(), "   areas kept to %.2g %%",
@@ -65,28 +56,16 @@ std::string captionOf(const Json& summary, std::size_t frame, std::size_t count)
   return caption;
 }
 
-/// The region's vertices; all where the folder does not say.
-std::vector<std::int32_t> regionOf(const fs::path& folder, Eigen::Index vertexCount) {
-  std::vector<std::int32_t> region;
-  const fs::path file = folder / "region.label.gii";
-  if (!fs::exists(file)) return region;
-  const io::LabelMap labels = io::readVertexLabels(file, vertexCount);
-  for (Eigen::Index v = 0; v < vertexCount; ++v) {
-    if (labels.keys[v] != 0) region.push_back(static_cast<std::int32_t>(v));
-  }
-  return region;
-}
-
 /// From the unfolding's own viewpoint, where its summary tells it.
 FilmView fromViewpoint(const Json& summary, const TriangleMesh& mesh,
                        const std::vector<std::int32_t>& region) {
   FilmView view{Vector(1, 0, 0), Vector(0, 0, 1)};
-  const auto found = summary.find("viewpoint");
-  if (found == summary.end() || !found->is_array() || found->size() != 3) return view;
+  const auto viewpoint = pipeline::pointIn(summary, "viewpoint");
+  if (!viewpoint) return view;
   Point middle = Point::Zero();
   for (const std::int32_t v : region) middle += mesh.positions.row(v).transpose();
   middle /= std::max<double>(1, static_cast<double>(region.size()));
-  view.towards = middle - Point((*found)[0], (*found)[1], (*found)[2]);
+  view.towards = middle - *viewpoint;
   return view;
 }
 
@@ -153,7 +132,7 @@ FilmView filmView(const report::FigureView& view) {
 }
 
 TriangleMesh firstFrame(const fs::path& folder) {
-  return io::readSurface(frameFiles(folder).front()).mesh;
+  return io::readSurface(framesOf(folder).front()).mesh;
 }
 
 std::vector<report::Picture> drawFilm(const fs::path& folder,
@@ -161,14 +140,14 @@ std::vector<report::Picture> drawFilm(const fs::path& folder,
                                       const std::vector<FilmView>& views, int columns,
                                       const report::SurfacePictureOptions& options) {
   const Json summary = summaryOf(folder);
-  const std::vector<fs::path> files = frameFiles(folder);
+  const std::vector<fs::path> files = framesOf(folder);
   std::vector<report::FilmFrame> frames;
   for (std::size_t n = 0; n < files.size(); ++n) {
     frames.push_back({io::readSurface(files[n]).mesh, captionOf(summary, n, files.size())});
   }
   const Eigen::Index vertices = frames.front().mesh.vertexCount();
   report::FilmLook look;
-  look.focus = regionOf(folder, vertices);
+  look.focus = pipeline::unfoldedRegion(folder, vertices);
   if (paint) {
     look.colours = report::coloursOf(*paint, vertices);
     look.filling = paint->values.size() == 0 ? report::Filling::Discrete : report::Filling::Smooth;

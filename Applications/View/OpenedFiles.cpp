@@ -6,6 +6,7 @@
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/IO/VolumeFile.h"
+#include "Explica/Pipeline/UnfoldingFolder.h"
 #include "Explica/Provenance/Json.h"
 #include "Explica/Provenance/Record.h"
 #include "Explica/Provenance/Verify.h"
@@ -16,7 +17,6 @@
 #include <array>
 #include <cmath>
 #include <memory>
-#include <set>
 
 namespace explica::app {
 namespace {
@@ -34,21 +34,11 @@ viewer::Rgb bytesOf(const report::Colour& colour) {
   return rgb;
 }
 
-std::vector<fs::path> framesOf(const fs::path& folder) {
-  std::set<fs::path> files;
-  if (fs::is_directory(folder / "frames")) {
-    for (const auto& entry : fs::directory_iterator(folder / "frames")) {
-      const std::string name = entry.path().filename().string();
-      if (name.rfind("frame-", 0) == 0 && endsWith(name, ".surf.gii")) files.insert(entry.path());
-    }
-  }
-  return {files.begin(), files.end()};
-}
-
 unfolding::Region regionOf(const fs::path& folder, const TriangleMesh& surface) {
-  const auto labels = io::readVertexLabels(folder / "region.label.gii", surface.vertexCount());
-  std::vector<bool> marked;
-  for (const Label key : labels.keys) marked.push_back(key != 0);
+  std::vector<bool> marked(static_cast<std::size_t>(surface.vertexCount()), false);
+  for (const std::int32_t v : pipeline::unfoldedRegion(folder, surface.vertexCount())) {
+    marked[v] = true;
+  }
   return unfolding::regionOfMarked(surface, marked);
 }
 
@@ -56,8 +46,7 @@ viewer::Finished readFinished(const fs::path& folder, const TriangleMesh& surfac
   viewer::Finished finished;
   finished.region = regionOf(folder, surface);
   const auto summary = provenance::readJson(folder / provenance::kSummaryName);
-  const auto visibilities = summary.value("frame_visibilities", provenance::Json::array());
-  std::vector<fs::path> files = framesOf(folder);
+  std::vector<fs::path> files = pipeline::frameFiles(folder);
   if (files.empty()) {
     viewer::Moment start;
     start.positions = surface.positions;
@@ -67,9 +56,7 @@ viewer::Finished readFinished(const fs::path& folder, const TriangleMesh& surfac
   for (std::size_t n = 0; n < files.size(); ++n) {
     viewer::Moment moment;
     moment.positions = io::readSurface(files[n]).mesh.positions;
-    if (n < visibilities.size() && visibilities[n].is_number()) {
-      moment.record.visibility = visibilities[n].get<double>();
-    }
+    moment.record.visibility = pipeline::frameVisibility(summary, n);
     finished.moments.push_back(std::move(moment));
   }
   viewer::Moment last;
@@ -192,7 +179,7 @@ StartingSurface startOfUnfolding(const fs::path& folder) {
       if (fs::exists(file)) return {io::readSurface(file).mesh, file.string()};
     }
   }
-  const auto frames = framesOf(folder);
+  const auto frames = pipeline::frameFiles(folder);
   if (frames.empty()) {
     throw InvalidInput(folder.string() +
                        ": the surface that it began with is gone, and no frames were kept; name "

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Core/Errors.h"
 #include "Explica/IO/SurfaceFile.h"
+#include "Explica/Pipeline/UnfoldingFolder.h"
 #include "Explica/Report/Figure.h"
 #include "ReportParts.h"
 
@@ -12,7 +13,6 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
-#include <set>
 
 namespace explica::pipeline {
 namespace {
@@ -31,17 +31,9 @@ struct Unfolded {
   std::optional<Point> viewpoint;
 };
 
-/// Frames of an unfolding in their order, evenly thinned to `most`, the first and last kept.
-std::vector<fs::path> frameFiles(const fs::path& folder, std::size_t most) {
-  std::set<fs::path> found;
-  if (fs::is_directory(folder)) {
-    for (const auto& entry : fs::directory_iterator(folder)) {
-      const std::string name = entry.path().filename().string();
-      if (name.rfind("frame-", 0) == 0 && name.find(".surf.gii") != std::string::npos)
-        found.insert(entry.path());
-    }
-  }
-  std::vector<fs::path> all(found.begin(), found.end());
+/// Frames of an unfolding, evenly thinned to `most`, the first and last kept.
+std::vector<fs::path> fewFrames(const fs::path& folder, std::size_t most) {
+  const std::vector<fs::path> all = frameFiles(folder);
   if (all.size() <= most) return all;
   std::vector<fs::path> some;
   for (std::size_t f = 0; f < most; ++f) some.push_back(all[f * (all.size() - 1) / (most - 1)]);
@@ -49,7 +41,7 @@ std::vector<fs::path> frameFiles(const fs::path& folder, std::size_t most) {
 }
 
 /// "frame 12, visibility 0.834".
-std::string titleOf(const fs::path& frame, const Json& visibilities) {
+std::string titleOf(const fs::path& frame, const Json& summary) {
   const std::string stem = frame.filename().string();
   std::size_t number = 0;
   try {
@@ -58,22 +50,12 @@ std::string titleOf(const fs::path& frame, const Json& visibilities) {
     return stem;
   }
   std::string title = "frame " + std::to_string(number);
-  if (number < visibilities.size() && visibilities[number].is_number()) {
+  if (const double visibility = frameVisibility(summary, number); std::isfinite(visibility)) {
     std::array<char, 40> text{};
-    std::snprintf(text.data(), text.size(), ", visibility %.3f",
-                  visibilities[number].get<double>());
+    std::snprintf(text.data(), text.size(), ", visibility %.3f", visibility);
     title += text.data();
   }
   return title;
-}
-
-std::optional<Point> pointIn(const Json& json, const char* key) {
-  const auto found = json.find(key);
-  if (found == json.end() || !found->is_array() || found->size() != 3) return {};
-  for (const Json& x : *found) {
-    if (!x.is_number()) return {};
-  }
-  return Point((*found)[0], (*found)[1], (*found)[2]);
 }
 
 Point centreOf(const TriangleMesh& mesh, const std::vector<std::int32_t>& vertices) {
@@ -93,24 +75,13 @@ std::optional<Point> viewpointOf(const StepFolder& step, const Unfolded& unfolde
          options.value("distance", 1000.0) * direction->normalized();
 }
 
-std::vector<std::int32_t> regionOf(const StepFolder& step) {
-  std::vector<std::int32_t> region;
-  if (!step.has("region.label.gii")) return region;
-  const io::LabelMap labels = io::readVertexLabels(step.folder / "region.label.gii");
-  for (Eigen::Index v = 0; v < labels.keys.size(); ++v) {
-    if (labels.keys[v] != 0) region.push_back(static_cast<std::int32_t>(v));
-  }
-  return region;
-}
-
 Unfolded readUnfolded(const StepFolder& step) {
   Unfolded unfolded;
   const auto source = inputOf(step, "SURFACE");
   if (source && fs::exists(*source)) unfolded.whole = io::readSurface(*source).mesh;
-  const Json visibilities = step.summary.value("frame_visibilities", Json::array());
-  for (const fs::path& file : frameFiles(step.folder / "frames", kMostFrames)) {
+  for (const fs::path& file : fewFrames(step.folder, kMostFrames)) {
     unfolded.frames.push_back(io::readSurface(file).mesh);
-    unfolded.titles.push_back(titleOf(file, visibilities));
+    unfolded.titles.push_back(titleOf(file, step.summary));
   }
   const TriangleMesh after = io::readSurface(step.folder / "unfolded.surf.gii").mesh;
   if (unfolded.frames.empty()) {
@@ -124,7 +95,7 @@ Unfolded readUnfolded(const StepFolder& step) {
   if (unfolded.whole && unfolded.whole->vertexCount() != after.vertexCount())
     unfolded.whole.reset();
   unfolded.detached = unfolded.whole && unfolded.whole->faceCount() > after.faceCount();
-  unfolded.region = regionOf(step);
+  unfolded.region = unfoldedRegion(step.folder);
   unfolded.viewpoint = viewpointOf(step, unfolded);
   return unfolded;
 }
