@@ -279,138 +279,202 @@ inline TrajectoryTracer::Field::Sample TrajectoryTracer::Field::sampleOf(const V
   return result;
 }
 
-std::uint8_t TrajectoryTracer::Field::extend(const std::int32_t* number, int seed,
-                                             Corner* corner) const {
-  const int axes = flat ? 2 : 3;
-  const int corners = flat ? 4 : 8;
-  enum : std::uint8_t { kUnknown, kReached, kExtended };
-  std::uint8_t state[8] = {};
-  double u[8];
-  Vector g[8];
-  const Vector& h = annulus.grid.spacing;
-  int stack[8];
+namespace {
+
+/// Corners of a cell while they are extended from the ones that one side of it has: u, and its
+/// gradient per voxel.
+class CornerExtension {
+ public:
+  CornerExtension(const harmonic::Annulus& annulus, const harmonic::Interpolant& interpolant,
+                  const std::int32_t* number, bool flat)
+      : annulus_(annulus),
+        interpolant_(interpolant),
+        number_(number),
+        axes_(flat ? 2 : 3),
+        corners_(flat ? 4 : 8) {}
+
+  void reachFrom(int seed);
+  void extendAlongAxes();
+  void extendAcrossFaces();
+  void extendLinearly();
+  /// u and gradient of each corner; the corners that the seed reaches, one bit each.
+  std::uint8_t write(Eigen::Array4f* corner) const;
+
+ private:
+  enum State : std::uint8_t { kUnknown, kReached, kExtended };
+  /// Estimates of one corner, added up.
+  struct Estimates {
+    double u = 0;
+    Vector slope = Vector::Zero();
+    int count = 0;
+  };
+
+  /// +1 if the corner lies at the upper end of the axis, else -1.
+  static int sideOf(int corner, int axis) { return (corner >> axis & 1) != 0 ? 1 : -1; }
+  /// The direction along an axis that leads from a corner to the one opposite.
+  static int directionFrom(int corner, int axis) {
+    return 2 * axis + (sideOf(corner, axis) > 0 ? 0 : 1);
+  }
+  [[nodiscard]] Vector gradientAt(std::int32_t voxel) const {
+    return interpolant_.gradient[voxel].cast<double>().cwiseProduct(annulus_.grid.spacing);
+  }
+  void addAlong(int from, int axis, Estimates& sum) const;
+  void addAcross(int corner, int a, int b, Estimates& sum) const;
+  void take(int corner, const Estimates& sum);
+  void settle();
+
+  const harmonic::Annulus& annulus_;
+  const harmonic::Interpolant& interpolant_;
+  const std::int32_t* number_;
+  int axes_, corners_;
+  std::array<State, 8> state_{};
+  std::array<double, 8> u_;
+  std::array<Vector, 8> g_;
+  std::array<int, 8> extended_;
+  int extensions_ = 0;
+};
+
+void CornerExtension::reachFrom(int seed) {
+  std::array<int, 8> stack;
   int depth = 0;
   const auto reach = [&](int c) {
-    state[c] = kReached;
-    u[c] = interpolant.u[number[c]];
-    g[c] = interpolant.gradient[number[c]].cast<double>().cwiseProduct(h);
+    state_[c] = kReached;
+    u_[c] = interpolant_.u[number_[c]];
+    g_[c] = gradientAt(number_[c]);
     stack[depth++] = c;
   };
   reach(seed);
   while (depth > 0) {
     const int c = stack[--depth];
-    for (int a = 0; a < axes; ++a) {
+    for (int a = 0; a < axes_; ++a) {
       const int other = c ^ (1 << a);
-      const int d = 2 * a + ((c >> a & 1) ? 0 : 1);
-      if (state[other] == kUnknown && number[other] >= 0 &&
-          annulus.links[number[c]][d] == number[other]) {
+      if (state_[other] == kUnknown && number_[other] >= 0 &&
+          annulus_.links[number_[c]][directionFrom(c, a)] == number_[other]) {
         reach(other);
       }
     }
   }
+}
 
-  // Extend along axes: the parabola through the voxel, the boundary on this link and what is
-  // behind.
-  int extended[8];
-  int extensions = 0;
-  const auto take = [&](int c, double sumU, const Vector& sumG, int found) {
-    if (found == 0) return;
-    u[c] = sumU / found;
-    g[c] = sumG / found;
-    extended[extensions++] = c;
-  };
-  const auto settle = [&] {
-    while (extensions > 0) state[extended[--extensions]] = kExtended;
-  };
-  for (int c = 0; c < corners; ++c) {
-    if (state[c] == kReached) continue;
-    double sumU = 0;
-    Vector sumG = Vector::Zero();
-    int found = 0;
-    for (int a = 0; a < axes; ++a) {
-      const int from = c ^ (1 << a);
-      if (state[from] != kReached) continue;
-      const std::int32_t n = number[from];
-      const int d = 2 * a + ((from >> a & 1) ? 0 : 1);
-      const int back = harmonic::opposite(d);
-      const std::int32_t row = annulus.irregular(n);
-      const auto& links = annulus.links[n];
-      const double sign = harmonic::signOf(d);
-      Vector slope = g[from];
-      if (links[d] == kInsulated) {
-        slope[a] = -slope[a];
-        sumU += u[from];
-      } else {
-        const double wall = links[d] == kInner ? 0.0 : 1.0;
-        const double theta = annulus.fractions[row][d], behind = annulus.fractions[row][back];
-        const double outward = sign * g[from][a];
-        double backSlope = 0;  // an insulated voxel behind mirrors this one
-        if (links[back] >= 0) {
-          backSlope = u[from] - interpolant.u[links[back]];
-        } else if (links[back] != kInsulated) {
-          backSlope = (u[from] - (links[back] == kInner ? 0.0 : 1.0)) / behind;
-        }
-        const double second = theta < kTooClose
-                                  ? 2 * (outward - backSlope) / behind
-                                  : 2 * ((wall - u[from]) / theta - backSlope) / (theta + behind);
-        sumU += u[from] + outward + 0.5 * second;
-        if (links[back] >= 0) {
-          const Vector gBack = interpolant.gradient[links[back]].cast<double>().cwiseProduct(h);
-          slope += g[from] - gBack;
-        }
-        slope[a] = sign * (outward + second);
-      }
-      sumG += slope;
-      ++found;
+void CornerExtension::take(int corner, const Estimates& sum) {
+  if (sum.count == 0) return;
+  u_[corner] = sum.u / sum.count;
+  g_[corner] = sum.slope / sum.count;
+  extended_[extensions_++] = corner;
+}
+
+/// What one pass has extended counts from the next pass on.
+void CornerExtension::settle() {
+  while (extensions_ > 0) state_[extended_[--extensions_]] = kExtended;
+}
+
+/// The parabola through the voxel, the boundary on this link and what is behind.
+void CornerExtension::addAlong(int from, int axis, Estimates& sum) const {
+  const std::int32_t n = number_[from];
+  const int d = directionFrom(from, axis);
+  const int back = harmonic::opposite(d);
+  const auto& links = annulus_.links[n];
+  Vector slope = g_[from];
+  ++sum.count;
+  if (links[d] == kInsulated) {
+    slope[axis] = -slope[axis];
+    sum.u += u_[from];
+    sum.slope += slope;
+    return;
+  }
+  const auto& fractions = annulus_.fractions[annulus_.irregular(n)];
+  const double sign = harmonic::signOf(d);
+  const double wall = links[d] == kInner ? 0.0 : 1.0;
+  const double theta = fractions[d], behind = fractions[back];
+  const double outward = sign * g_[from][axis];
+  double backSlope = 0;  // an insulated voxel behind mirrors this one
+  if (links[back] >= 0) {
+    backSlope = u_[from] - interpolant_.u[links[back]];
+  } else if (links[back] != kInsulated) {
+    backSlope = (u_[from] - (links[back] == kInner ? 0.0 : 1.0)) / behind;
+  }
+  const double second = theta < kTooClose
+                            ? 2 * (outward - backSlope) / behind
+                            : 2 * ((wall - u_[from]) / theta - backSlope) / (theta + behind);
+  sum.u += u_[from] + outward + 0.5 * second;
+  if (links[back] >= 0) slope += g_[from] - gradientAt(links[back]);
+  slope[axis] = sign * (outward + second);
+  sum.slope += slope;
+}
+
+void CornerExtension::extendAlongAxes() {
+  for (int c = 0; c < corners_; ++c) {
+    if (state_[c] == kReached) continue;
+    Estimates sum;
+    for (int a = 0; a < axes_; ++a) {
+      if (state_[c ^ (1 << a)] == kReached) addAlong(c ^ (1 << a), a, sum);
     }
-    take(c, sumU, sumG, found);
+    take(c, sum);
   }
   settle();
+}
 
-  // Then across faces and the cube: gradients add up as in a parallelogram.
+/// Gradients add up as in a parallelogram.
+void CornerExtension::addAcross(int corner, int a, int b, Estimates& sum) const {
+  const int p = corner ^ (1 << a), q = corner ^ (1 << b), r = p ^ (1 << b);
+  if (state_[p] == kUnknown || state_[q] == kUnknown || state_[r] == kUnknown) return;
+  const Vector slope = g_[p] + g_[q] - g_[r];
+  const double sideA = sideOf(corner, a), sideB = sideOf(corner, b);
+  sum.u += 0.5 * (u_[p] + sideA * 0.5 * (g_[p][a] + slope[a]) + u_[q] +
+                  sideB * 0.5 * (g_[q][b] + slope[b]));
+  sum.slope += slope;
+  ++sum.count;
+}
+
+/// Across the cell's faces, then across the cell.
+void CornerExtension::extendAcrossFaces() {
   for (int pass = 0; pass < 2; ++pass) {
-    for (int c = 0; c < corners; ++c) {
-      if (state[c] != kUnknown) continue;
-      double sumU = 0;
-      Vector sumG = Vector::Zero();
-      int found = 0;
-      for (int a = 0; a < axes; ++a) {
-        for (int b = a + 1; b < axes; ++b) {
-          const int p = c ^ (1 << a), q = c ^ (1 << b), r = c ^ (1 << a) ^ (1 << b);
-          if (state[p] == kUnknown || state[q] == kUnknown || state[r] == kUnknown) continue;
-          const Vector slope = g[p] + g[q] - g[r];
-          const double signA = (c >> a & 1) ? 1 : -1, signB = (c >> b & 1) ? 1 : -1;
-          sumU += 0.5 * (u[p] + signA * 0.5 * (g[p][a] + slope[a]) + u[q] +
-                         signB * 0.5 * (g[q][b] + slope[b]));
-          sumG += slope;
-          ++found;
-        }
+    for (int c = 0; c < corners_; ++c) {
+      if (state_[c] != kUnknown) continue;
+      Estimates sum;
+      for (int a = 0; a < axes_; ++a) {
+        for (int b = a + 1; b < axes_; ++b) addAcross(c, a, b, sum);
       }
-      take(c, sumU, sumG, found);
+      take(c, sum);
     }
     settle();
   }
+}
+
+void CornerExtension::extendLinearly() {
   for (int pass = 0; pass < 3; ++pass) {
-    for (int c = 0; c < corners; ++c) {
-      if (state[c] != kUnknown) continue;
-      for (int a = 0; a < axes; ++a) {
+    for (int c = 0; c < corners_; ++c) {
+      for (int a = 0; a < axes_ && state_[c] == kUnknown; ++a) {
         const int p = c ^ (1 << a);
-        if (state[p] == kUnknown) continue;
-        g[c] = g[p];
-        u[c] = u[p] + ((c >> a & 1) ? 1 : -1) * g[p][a];
-        state[c] = kExtended;
-        break;
+        if (state_[p] == kUnknown) continue;
+        g_[c] = g_[p];
+        u_[c] = u_[p] + sideOf(c, a) * g_[p][a];
+        state_[c] = kExtended;
       }
     }
   }
+}
 
-  std::uint8_t side = 0;
-  for (int c = 0; c < corners; ++c) {
-    corner[c].head<3>() = g[c].cast<float>().array();
-    corner[c][3] = static_cast<float>(u[c]);
-    if (state[c] == kReached) side |= static_cast<std::uint8_t>(1U << c);
+std::uint8_t CornerExtension::write(Eigen::Array4f* corner) const {
+  std::uint8_t reached = 0;
+  for (int c = 0; c < corners_; ++c) {
+    corner[c].head<3>() = g_[c].cast<float>().array();
+    corner[c][3] = static_cast<float>(u_[c]);
+    if (state_[c] == kReached) reached |= static_cast<std::uint8_t>(1U << c);
   }
-  return side;
+  return reached;
+}
+
+}  // namespace
+
+std::uint8_t TrajectoryTracer::Field::extend(const std::int32_t* number, int seed,
+                                             Corner* corner) const {
+  CornerExtension extension(annulus, interpolant, number, flat);
+  extension.reachFrom(seed);
+  extension.extendAlongAxes();
+  extension.extendAcrossFaces();
+  extension.extendLinearly();
+  return extension.write(corner);
 }
 
 TrajectoryTracer::Field::Walk TrajectoryTracer::Field::begin(const Vector& x, std::int32_t home,

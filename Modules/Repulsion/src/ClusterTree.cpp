@@ -163,10 +163,12 @@ Part merged(const Part& a, const Part& b) {
   return part;
 }
 
+}  // namespace
+
 /// Writes groups of faces as the kernels read them.
-class Packer {
+class SourcePacker {
  public:
-  Packer(double unit, double opening, double nearRatio)
+  SourcePacker(double unit, double opening, double nearRatio)
       : inverseUnit_(1 / unit),
         inverseOpening_(1 / opening),
         nearRatio_(nearRatio),
@@ -274,8 +276,6 @@ class Packer {
   double inverseArea_;
 };
 
-}  // namespace
-
 kernels::FarNode farNode(const ClusterTree::Moments& m, const std::array<double, 3>& origin) {
   kernels::FarNode node{};
   for (int a = 0; a < 3; ++a) node.centre[a] = static_cast<float>(m.centre[a] - origin[a]);
@@ -289,24 +289,8 @@ kernels::FarNode farNode(const ClusterTree::Moments& m, const std::array<double,
   return node;
 }
 
-void ClusterTree::build(const Positions& positions, const Faces& faces,
-                        const std::vector<std::int32_t>& members, double unit, double opening,
-                        double nearRatio) {
-  const auto count = static_cast<std::int32_t>(members.size());
-  order_.resize(members.size());
+std::vector<std::size_t> ClusterTree::cutNodes(std::int32_t count) {
   nodes_.clear();
-  blocks_.clear();
-  groups_.clear();
-  if (count == 0) return;
-  keys_.resize(members.size());
-  std::vector<Key>& keys = keys_;
-  parallelFor(members.size(), 4096, [&](std::size_t i) {
-    const Corners c = cornersOf(positions, faces, members[i]);
-    const Point centroid = (c[0] + c[1] + c[2]) / 3;
-    for (int a = 0; a < 3; ++a) keys[i].centroid[a] = static_cast<float>(centroid[a]);
-    keys[i].member = static_cast<std::int32_t>(i);
-  });
-
   nodes_.reserve(static_cast<std::size_t>(count) / kernels::kLanes * 2 + 2);
   Node root;
   root.count = count;
@@ -330,22 +314,24 @@ void ClusterTree::build(const Positions& positions, const Faces& faces,
     begin = end;
     levels.push_back(end);
   }
-  const auto listParts = [this](std::int32_t largest) {
-    std::vector<std::int32_t> parts;
-    const auto descend = [&](const auto& self, std::int32_t n) -> void {
-      if (nodes_[n].count <= largest) {
-        parts.push_back(n);
-      } else {
-        self(self, nodes_[n].left);
-        self(self, nodes_[n].left + 1);
-      }
-    };
-    descend(descend, 0);
-    return parts;
-  };
-  blocks_ = listParts(kBlockFaces);
-  groups_ = listParts(kernels::kLanes);
+  return levels;
+}
 
+std::vector<std::int32_t> ClusterTree::partsOf(std::int32_t largest) const {
+  std::vector<std::int32_t> parts;
+  const auto descend = [&](const auto& self, std::int32_t n) -> void {
+    if (nodes_[n].count <= largest) {
+      parts.push_back(n);
+    } else {
+      self(self, nodes_[n].left);
+      self(self, nodes_[n].left + 1);
+    }
+  };
+  descend(descend, 0);
+  return parts;
+}
+
+void ClusterTree::sortKeys(const std::vector<std::size_t>& levels) {
   for (std::size_t level = 0; level + 1 < levels.size(); ++level) {
     std::vector<std::int32_t> large;
     for (std::size_t n = levels[level]; n < levels[level + 1]; ++n) {
@@ -354,69 +340,65 @@ void ClusterTree::build(const Positions& positions, const Faces& faces,
     if (large.empty()) break;
     parallelFor(large.size(), 1, [&](std::size_t i) {
       const Node& node = nodes_[large[i]];
-      partitionAt(keys.data() + node.first, node.count, cutOf(node.count));
+      partitionAt(keys_.data() + node.first, node.count, cutOf(node.count));
     });
   }
-  const std::vector<std::int32_t> tasks = listParts(kTaskFaces);
+  const std::vector<std::int32_t> tasks = partsOf(kTaskFaces);
   parallelFor(tasks.size(), 1, [&](std::size_t i) {
     const Node& node = nodes_[tasks[i]];
-    partitionBelow(keys.data() + node.first, node.count);
+    partitionBelow(keys_.data() + node.first, node.count);
   });
+}
 
-  sources_.resize(members.size());
-  corners_.resize(members.size());
-  vertices_.resize(members.size());
-  groupPacks_.resize(groups_.size());
-  leafPacks_.resize(4 * groups_.size());
-  std::vector<Part>& parts = sums_;
-  parts.assign(nodes_.size(), Part());
-  const Packer packer(unit, opening, nearRatio);
-  parallelFor(groups_.size(), 32, [&](std::size_t g) {
-    const std::int32_t first = nodes_[groups_[g]].first;
-    const std::int32_t faceCount = nodes_[groups_[g]].count;
-    std::array<Corners, kernels::kLanes> corners;
-    std::array<FaceMoments, kernels::kLanes> moments;
-    for (std::int32_t i = 0; i < faceCount; ++i) {
-      const std::int32_t member = keys[first + i].member;
-      const std::int32_t face = members[member];
-      order_[first + i] = member;
-      for (int k = 0; k < 3; ++k) vertices_[first + i][k] = faces(face, k);
-      corners[i] = cornersOf(positions, faces, face);
-      moments[i] = momentsOf(corners[i]);
-    }
-    const Part whole = partOf(moments.data(), faceCount);
-    parts[groups_[g]] = whole;
-    for (std::int32_t i = 0; i < faceCount; ++i) {
-      sources_[first + i] =
-          packer.source(corners[i], moments[i], whole.centre, corners_[first + i]);
-    }
-    packer.pack(moments.data(), first, faceCount, whole, static_cast<std::int32_t>(4 * g),
-                groupPacks_[g], leafPacks_.data() + 4 * g);
-  });
+void ClusterTree::packGroup(std::size_t group, const Positions& positions, const Faces& faces,
+                            const std::vector<std::int32_t>& members, const SourcePacker& packer) {
+  const std::int32_t first = nodes_[groups_[group]].first;
+  const std::int32_t count = nodes_[groups_[group]].count;
+  std::array<Corners, kernels::kLanes> corners;
+  std::array<FaceMoments, kernels::kLanes> moments;
+  for (std::int32_t i = 0; i < count; ++i) {
+    const std::int32_t member = keys_[first + i].member;
+    const std::int32_t face = members[member];
+    order_[first + i] = member;
+    for (int k = 0; k < 3; ++k) vertices_[first + i][k] = faces(face, k);
+    corners[i] = cornersOf(positions, faces, face);
+    moments[i] = momentsOf(corners[i]);
+  }
+  const Part whole = partOf(moments.data(), count);
+  sums_[groups_[group]] = whole;
+  for (std::int32_t i = 0; i < count; ++i) {
+    sources_[first + i] = packer.source(corners[i], moments[i], whole.centre, corners_[first + i]);
+  }
+  packer.pack(moments.data(), first, count, whole, static_cast<std::int32_t>(4 * group),
+              groupPacks_[group], leafPacks_.data() + 4 * group);
+}
 
+void ClusterTree::mergeSums(const std::vector<std::size_t>& levels) {
   for (std::size_t level = levels.size() - 1; level-- > 0;) {
     const std::size_t size = levels[level + 1] - levels[level];
     parallelFor(size, std::max<std::size_t>(64, size / 64), [&](std::size_t i) {
       const std::size_t n = levels[level] + i;
       const Node& node = nodes_[n];
       if (node.isGroup()) return;
-      parts[n] = merged(parts[node.left], parts[node.left + 1]);
+      Part& sum = sums_[n];
+      sum = merged(sums_[node.left], sums_[node.left + 1]);
       // The ball of its groups' balls.
       const std::int32_t end = (node.first + node.count - 1) / kernels::kLanes;
       for (std::int32_t g = node.first / kernels::kLanes; g <= end; ++g) {
-        const Part& group = parts[groups_[g]];
-        parts[n].radius =
-            std::max(parts[n].radius, (group.centre - parts[n].centre).norm() + group.radius);
+        const Part& group = sums_[groups_[g]];
+        sum.radius = std::max(sum.radius, (group.centre - sum.centre).norm() + group.radius);
       }
     });
   }
+}
 
+void ClusterTree::writeMoments(const SourcePacker& packer, double unit) {
   const double inverseUnit = 1 / unit;
   const double area = inverseUnit * inverseUnit;
   moments_.resize(nodes_.size());
   balls_.resize(nodes_.size());
   parallelFor(nodes_.size(), 1024, [&](std::size_t n) {
-    const Part& part = parts[n];
+    const Part& part = sums_[n];
     Node& node = nodes_[n];
     node.centre = part.centre;
     node.radius = part.radius;
@@ -427,11 +409,44 @@ void ClusterTree::build(const Positions& positions, const Faces& faces,
     for (int k = 0; k < 6; ++k) {
       moments.second[k] = static_cast<float>(part.second[k] * area * area);
     }
-    const Vector offset = (part.centre - parts[0].centre) * inverseUnit;
+    const Vector offset = (part.centre - sums_[0].centre) * inverseUnit;
     balls_[n] = {static_cast<float>(offset[0]),           static_cast<float>(offset[1]),
                  static_cast<float>(offset[2]),           static_cast<float>(packer.reach(part)),
                  static_cast<float>(packer.margin(part)), node.left};
   });
+}
+
+void ClusterTree::build(const Positions& positions, const Faces& faces,
+                        const std::vector<std::int32_t>& members, double unit, double opening,
+                        double nearRatio) {
+  order_.resize(members.size());
+  nodes_.clear();
+  blocks_.clear();
+  groups_.clear();
+  if (members.empty()) return;
+  keys_.resize(members.size());
+  parallelFor(members.size(), 4096, [&](std::size_t i) {
+    const Corners c = cornersOf(positions, faces, members[i]);
+    const Point centroid = (c[0] + c[1] + c[2]) / 3;
+    for (int a = 0; a < 3; ++a) keys_[i].centroid[a] = static_cast<float>(centroid[a]);
+    keys_[i].member = static_cast<std::int32_t>(i);
+  });
+  const std::vector<std::size_t> levels = cutNodes(static_cast<std::int32_t>(members.size()));
+  blocks_ = partsOf(kBlockFaces);
+  groups_ = partsOf(kernels::kLanes);
+  sortKeys(levels);
+
+  sources_.resize(members.size());
+  corners_.resize(members.size());
+  vertices_.resize(members.size());
+  groupPacks_.resize(groups_.size());
+  leafPacks_.resize(4 * groups_.size());
+  sums_.assign(nodes_.size(), Part());
+  const SourcePacker packer(unit, opening, nearRatio);
+  parallelFor(groups_.size(), 32,
+              [&](std::size_t g) { packGroup(g, positions, faces, members, packer); });
+  mergeSums(levels);
+  writeMoments(packer, unit);
 }
 
 }  // namespace explica::repulsion

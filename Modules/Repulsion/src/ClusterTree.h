@@ -25,6 +25,8 @@ struct ClusterSum {
   double largestFace = 0;          ///< largest distance of a face's corner from its centroid, mm
 };
 
+class SourcePacker;
+
 /// Binary tree over faces, down to groups of sixteen, with the moments of their area.  Each cut
 /// runs across the longest side of the centroids' box, next to the median: at a multiple of sixteen
 /// faces, so that all groups but the last are full, and within a group at a multiple of two.
@@ -93,6 +95,18 @@ class ClusterTree {
   }
 
  private:
+  /// Cuts the faces into nodes by count alone; the first node of each level, and one more.
+  [[nodiscard]] std::vector<std::size_t> cutNodes(std::int32_t count);
+  /// Nodes of at most `largest` faces whose parents are larger, in the order of their faces.
+  [[nodiscard]] std::vector<std::int32_t> partsOf(std::int32_t largest) const;
+  /// Sorts the keys until each lies in its node.
+  void sortKeys(const std::vector<std::size_t>& levels);
+  void packGroup(std::size_t group, const Positions& positions, const Faces& faces,
+                 const std::vector<std::int32_t>& members, const SourcePacker& packer);
+  /// Sums of the nodes above the groups, from those of the groups.
+  void mergeSums(const std::vector<std::size_t>& levels);
+  void writeMoments(const SourcePacker& packer, double unit);
+
   std::vector<FaceKey> keys_;
   std::vector<ClusterSum> sums_;  // of each node
   std::vector<Node> nodes_;       // parents before children, level by level

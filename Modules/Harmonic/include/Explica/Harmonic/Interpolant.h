@@ -54,6 +54,8 @@ struct Interpolant {
 [[nodiscard]] std::vector<Eigen::Vector3f> gradientOf(const Annulus& annulus,
                                                       const std::vector<double>& u);
 
+struct MultigridHierarchy;
+
 /// Multigrid V(1,1) cycle for the tissue's Laplacian with homogeneous boundary values:
 /// cell-centred, aggregates of 2 x 2 x 2 voxels that are connected through uncut links, red-black
 /// Gauss-Seidel, sum restriction, linear prolongation [Wesseling1992, section 5.3].  Single
@@ -72,8 +74,7 @@ class Multigrid {
   [[nodiscard]] double bytesPerCycle() const;
 
  private:
-  struct Hierarchy;
-  std::unique_ptr<Hierarchy> hierarchy_;
+  std::unique_ptr<MultigridHierarchy> hierarchy_;
 };
 
 }  // namespace explica::harmonic
