@@ -239,14 +239,40 @@ std::string mosaicHtml(const ReportMosaic& mosaic) {
   return html + captionHtml(mosaic.title, mosaic.caption) + "</figure>\n";
 }
 
-std::string chartsHtml(const std::vector<ReportChart>& charts) {
-  if (charts.empty()) return {};
+using Charts = std::vector<const ReportChart*>;
+
+std::string chartGridHtml(const Charts& charts) {
   std::string html = "<div class='charts'>";
-  for (const ReportChart& chart : charts) {
-    html += "<div" + (chart.id.empty() ? "" : " id='" + escapeHtml(chart.id) + "'") + ">" +
-            chart.svg + "</div>\n";
+  for (const ReportChart* chart : charts) {
+    html += "<div" + (chart->id.empty() ? "" : " id='" + escapeHtml(chart->id) + "'") + ">" +
+            chart->svg + "</div>\n";
   }
   return html + "</div>";
+}
+
+/// The charts of one group, its details folded away.
+std::string chartGroupHtml(const Charts& group) {
+  Charts shown, details;
+  for (const ReportChart* chart : group) (chart->detail ? details : shown).push_back(chart);
+  std::string html;
+  if (!group.front()->group.empty()) html += "<h3>" + escapeHtml(group.front()->group) + "</h3>";
+  if (!shown.empty()) html += chartGridHtml(shown);
+  if (details.empty()) return html;
+  return html + "<details><summary>" + std::to_string(details.size()) + " more</summary>" +
+         chartGridHtml(details) + "</details>";
+}
+
+std::string chartsHtml(const std::vector<ReportChart>& charts) {
+  std::string html;
+  Charts group;
+  for (const ReportChart& chart : charts) {
+    if (!group.empty() && group.front()->group != chart.group) {
+      html += chartGroupHtml(group);
+      group.clear();
+    }
+    group.push_back(&chart);
+  }
+  return group.empty() ? html : html + chartGroupHtml(group);
 }
 
 std::string lookHtml(const ReportContent& content) {

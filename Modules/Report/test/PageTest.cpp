@@ -131,6 +131,23 @@ TEST(ReportPage, NamesNothingToFetch) {
   EXPECT_EQ(page, reportPage(content));
 }
 
+TEST(ReportPage, GathersChartsUnderHeadingsAndFoldsDetailsAway) {
+  ReportContent content;
+  content.charts = {{"", "<svg>1</svg>", "Left", false},
+                    {"", "<svg>2</svg>", "Left", true},
+                    {"", "<svg>3</svg>", "Right", false}};
+  const std::string page = reportPage(content);
+  const std::size_t left = page.find("<h3>Left</h3>"), right = page.find("<h3>Right</h3>");
+  const std::size_t folded = page.find("<summary>1 more</summary>");
+  ASSERT_NE(right, std::string::npos);
+  EXPECT_LT(left, page.find("<svg>1</svg>"));
+  EXPECT_LT(page.find("<svg>1</svg>"), folded);
+  EXPECT_LT(folded, page.find("<svg>2</svg>"));
+  EXPECT_LT(page.find("<svg>2</svg>"), right);
+  EXPECT_LT(right, page.find("<svg>3</svg>"));
+  EXPECT_EQ(page.find("<h3>Left</h3>", left + 1), std::string::npos);
+}
+
 TEST(Charts, SayWhenThereIsNothingToShow) {
   EXPECT_NE(histogramSvg(Eigen::VectorXd(), {"Thickness", "mm", ""}).find("no values"),
             std::string::npos);

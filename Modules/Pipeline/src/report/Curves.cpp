@@ -26,7 +26,7 @@ void chartHistory(ResultFolder& results, const StepFolder& step) {
   const std::vector<double>* iteration = table.column("iteration");
   if (iteration == nullptr) return;
   const auto chart = [&](const std::string& title, const std::string& unit,
-                         const std::vector<std::string>& names, bool logarithmic) {
+                         const std::vector<std::string>& names, bool logarithmic, bool detail) {
     std::vector<report::Series> series;
     for (const std::string& name : names) {
       if (const std::vector<double>* values = table.column(name))
@@ -34,18 +34,20 @@ void chartHistory(ResultFolder& results, const StepFolder& step) {
     }
     if (series.empty()) return;
     results.content().charts.push_back(
-        {"", report::curvesSvg(series,
-                               {title, "iteration", unit, logarithmic, endOf(step, *iteration)})});
+        {"",
+         report::curvesSvg(series,
+                           {title, "iteration", unit, logarithmic, endOf(step, *iteration)}),
+         titleOf(step.name), detail});
   };
-  chart("Visibility", "average flux", {"visibility", "seen"}, false);
-  chart("Distortion", "share", {"area_error_mean", "edge_strain_mean"}, true);
+  chart("Visibility", "average flux", {"visibility", "seen"}, false, false);
+  chart("Distortion", "share", {"area_error_mean", "edge_strain_mean"}, true, false);
   for (const std::string& name : table.names) {
     if (name.rfind("energy", 0) != 0) continue;
     const std::vector<double>& values = *table.column(name);
     bool any = false;
     for (const double v : values) any = any || v != 0;
     // The start has no energies yet: its zeros would hide the curve.
-    if (any) chart(inWords(name), "mm\u00b2", {name}, true);
+    if (any) chart(inWords(name), "mm\u00b2", {name}, true, true);
   }
 }
 
@@ -66,7 +68,8 @@ void chartMaps(ResultFolder& results, const StepFolder& step, const char* file, 
     const std::string axis = map.unit.empty() ? map.name : map.name + " [" + map.unit + "]";
     results.content().charts.push_back(
         {first ? id : "",
-         report::histogramSvg(asVector(values), {inWords(map.name), axis, "share of vertices"})});
+         report::histogramSvg(asVector(values), {inWords(map.name), axis, "share of vertices"}),
+         titleOf(step.name), map.name.find("before") != std::string::npos});
     first = false;
   }
 }
@@ -82,9 +85,12 @@ void chartThickness(ResultFolder& results, const StepFolder& step) {
   for (const float t : thickness.data) {
     if (t > 0 && std::isfinite(t)) values.push_back(t);
   }
+  const std::string side = step.side().empty() ? "" : ", " + step.side();
   results.content().charts.push_back(
-      {"", report::histogramSvg(asVector(values), {"Thickness in the tissue's voxels",
-                                                   "thickness [mm]", "share of voxels"})});
+      {"",
+       report::histogramSvg(asVector(values), {"Thickness in the tissue's voxels" + side,
+                                               "thickness [mm]", "share of voxels"}),
+       kThicknessCharts});
 }
 
 void chartUnfolding(ResultFolder& results, const StepFolder& step) {

@@ -167,7 +167,7 @@ void flagSteps(ResultFolder& results) {
       content.flags.push_back({FlagLevel::Notice, step.name + ":", warning});
   }
   for (const StepFolder& step : results.steps()) {
-    results.attempt("Flags of " + step.name, [&] {
+    results.attempt("Flags of " + titleOf(step.name), [&] {
       for (ReportFlag& flag : ownFlags(step)) content.flags.push_back(std::move(flag));
       for (ReportFlag& flag : flagsOf(step)) content.flags.push_back(std::move(flag));
     });

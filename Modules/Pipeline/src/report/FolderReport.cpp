@@ -17,7 +17,7 @@ constexpr int kMostSlices = 30;
 
 report::ReportStep reportStep(const StepFolder& step) {
   report::ReportStep out;
-  out.name = step.name;
+  out.name = titleOf(step.name);
   const Json execution = step.record.value("execution", Json::object());
   out.seconds = execution.value("seconds", 0.0);
   if (execution.contains("argv")) {
@@ -58,7 +58,7 @@ report::ReportStep reportStep(const StepNote& note, const std::vector<StepFolder
   // Without a record a step that ended well is missing.
   const bool lost = note.state == report::StepState::Done;
   report::ReportStep step;
-  step.name = note.name;
+  step.name = titleOf(note.name);
   step.message = note.message;
   step.state = lost ? report::StepState::Missing : note.state;
   return step;
@@ -73,14 +73,11 @@ void listSteps(ResultFolder& results) {
 
 /// What a step has of its own to show, beside what the parts above show of all steps together.
 void showStep(ResultFolder& results, const StepFolder& step) {
-  if (step.command == "thickness" && step.has("thickness.nii.gz")) {
-    results.attempt("Thickness", [&] { chartThickness(results, step); });
-  }
   if (step.command == "unfold") {
     results.attempt("Evolution", [&] { showUnfolding(results, step); });
     chartUnfolding(results, step);
   }
-  results.attempt("Pictures of " + step.name, [&] { showOwnPictures(results, step); });
+  results.attempt("Pictures of " + titleOf(step.name), [&] { showOwnPictures(results, step); });
 }
 
 }  // namespace
@@ -99,6 +96,10 @@ report::ReportContent collectReport(const fs::path& folder, const FolderReportOp
   monitor.progress(0.2, "report");
   results.attempt("Surfaces", [&] { showSurfaces(results, options); });
   monitor.progress(0.5, "report");
+  for (const StepFolder* step : results.stepsOf("thickness")) {
+    if (!step->has("thickness.nii.gz")) continue;
+    results.attempt("Thickness", [&] { chartThickness(results, *step); });
+  }
   for (const StepFolder& step : results.steps()) showStep(results, step);
   results.attempt("Numbers", [&] { findNumbers(results); });
   flagSteps(results);

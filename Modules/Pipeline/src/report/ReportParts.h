@@ -15,6 +15,9 @@ inline constexpr const char* kPatchPlace = "view3d";
 inline constexpr const char* kPatchViewsPlace = "before-after";
 inline constexpr const char* kDistortionPlace = "distortion";
 
+/// Heading of the histograms of thickness, on surfaces and in voxels.
+inline constexpr const char* kThicknessCharts = "Thickness";
+
 /// What a reader must know before trusting the results, the worst first.
 void flagSteps(ResultFolder& results);
 

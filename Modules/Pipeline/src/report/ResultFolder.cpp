@@ -10,6 +10,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 namespace explica::pipeline {
 
@@ -145,6 +146,16 @@ std::string readable(const Json& value) {
   std::string list;
   for (const Json& entry : value) list += (list.empty() ? "" : ", ") + readable(entry);
   return list;
+}
+
+std::string titleOf(std::string_view step) {
+  constexpr std::array kSides = {std::pair{"-L", " (left)"}, std::pair{"-R", " (right)"}};
+  for (const auto& [ending, side] : kSides) {
+    if (step.size() > 2 && step.substr(step.size() - 2) == ending) {
+      return inWords(step.substr(0, step.size() - 2)) + side;
+    }
+  }
+  return inWords(step);
 }
 
 std::string inWords(std::string_view key) {

@@ -77,6 +77,8 @@ class ResultFolder {
 [[nodiscard]] std::string percent(double share);
 /// A value of a summary or of the options, as people read it.
 [[nodiscard]] std::string readable(const Json& value);
+/// Name of a step as people read it: "thickness-L" as "Thickness (left)".
+[[nodiscard]] std::string titleOf(std::string_view step);
 /// "area_error_mean" as "Area error mean".
 [[nodiscard]] std::string inWords(std::string_view key);
 

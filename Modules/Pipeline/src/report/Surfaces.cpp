@@ -218,10 +218,12 @@ void chartSurfaceThickness(ResultFolder& results, const std::vector<Hemisphere>&
       if (t > 0) ribbon.push_back(t);
     }
     results.content().charts.push_back(
-        {"", report::histogramSvg(Eigen::Map<const Eigen::VectorXd>(
-                                      ribbon.data(), static_cast<Eigen::Index>(ribbon.size())),
-                                  {"Cortical thickness" + (h.side.empty() ? "" : ", " + h.side),
-                                   "thickness [mm]", "share of vertices"})});
+        {"",
+         report::histogramSvg(Eigen::Map<const Eigen::VectorXd>(
+                                  ribbon.data(), static_cast<Eigen::Index>(ribbon.size())),
+                              {"Cortical thickness" + (h.side.empty() ? "" : ", " + h.side),
+                               "thickness [mm]", "share of vertices"}),
+         kThicknessCharts});
   }
 }
 

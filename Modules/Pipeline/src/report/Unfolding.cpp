@@ -158,8 +158,8 @@ void addSurfaceMaps(const StepFolder& surface, report::Evolution& evolution) {
 
 /// Before and after from the viewpoint and from the side, filled by the region; sulci painted on
 /// the surface show on the opened patch what was folded.
-void drawBeforeAndAfter(ResultFolder& results, const Unfolded& unfolded,
-                        const StepFolder* surface) {
+void drawBeforeAndAfter(ResultFolder& results, const Unfolded& unfolded, const StepFolder* surface,
+                        const std::string& side) {
   const TriangleMesh& before = unfolded.whole ? *unfolded.whole : unfolded.frames.front();
   const Vector towards = (centreOf(before, unfolded.region) - *unfolded.viewpoint).normalized();
   report::FigureView front;
@@ -186,7 +186,7 @@ void drawBeforeAndAfter(ResultFolder& results, const Unfolded& unfolded,
   size.height = 400;
   report::ReportViews views;
   views.id = kPatchViewsPlace;
-  views.title = "The patch before and after";
+  views.title = "The patch" + (side.empty() ? "" : " on the " + side) + " before and after";
   views.caption =
       std::string("From the viewpoint and from the side, with the same colours: ") +
       (curvature ? "gyri blue, sulci brown." : "the patch coloured, its surroundings pale.") +
@@ -229,7 +229,8 @@ void showUnfolding(ResultFolder& results, const StepFolder& step) {
     results.attempt("Maps of the surface", [&] { addSurfaceMaps(*surface, evolution); });
   }
   if (!unfolded.region.empty() && unfolded.viewpoint) {
-    results.attempt("Before and after", [&] { drawBeforeAndAfter(results, unfolded, surface); });
+    results.attempt("Before and after",
+                    [&] { drawBeforeAndAfter(results, unfolded, surface, step.side()); });
   }
   // One film a page: of several patches the first.
   if (!results.content().evolution) results.content().evolution = std::move(evolution);

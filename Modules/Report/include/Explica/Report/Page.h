@@ -94,6 +94,8 @@ struct ReportMosaic {
 struct ReportChart {
   std::string id;
   std::string svg;
+  std::string group = {};  ///< heading over the charts of a group, which follow each other
+  bool detail = false;     ///< folded away until somebody asks for it
 };
 
 /// Everything that a page shows, in the order in which it is shown.
