@@ -20,6 +20,7 @@
 #include "Explica/Surface/GivenSurfaces.h"
 #include "Explica/Surface/Measures.h"
 #include "Explica/Surface/Regions.h"
+#include "Explica/Surface/TissueSheet.h"
 
 #include <nlohmann/json.hpp>
 
@@ -39,7 +40,21 @@ enum class ThicknessMeasure {
   Nearest      ///< FreeSurfer's: mean of the nearest distances, both ways
 };
 
+/// Whether the surfaces are a sheet that may end in rims.
+enum class Sheet {
+  Automatic,  ///< where grey matter runs out of the image, and in LayNii's rims
+  Always,
+  Never  ///< a closed surface, or a refusal
+};
+
 }  // namespace app
+
+template <>
+struct EnumNames<app::Sheet> {
+  static constexpr std::array table = {std::pair{app::Sheet::Automatic, "auto"},
+                                       std::pair{app::Sheet::Always, "always"},
+                                       std::pair{app::Sheet::Never, "never"}};
+};
 
 template <>
 struct EnumNames<app::ThicknessMeasure> {
@@ -67,6 +82,7 @@ struct Settings {
   surface::TissueOptions tissue;
   surface::SurfaceOptions surface;
   std::vector<std::string> accept;
+  Sheet sheet = Sheet::Automatic;
   ThicknessMeasure thicknessMeasure = ThicknessMeasure::Trajectory;
 };
 
@@ -78,8 +94,10 @@ void declare(Declaration& d, Settings& s) {
           "and is meshed with even triangles. Outer vertices lie on the trajectories of the "
           "harmonic interpolant that start at the white ones, middle ones half way; the hidden "
           "boundary of buried sulci is recovered. None of the surfaces intersects itself, by an "
-          "exact test. Surfaces that another program has made are taken over as they are with "
-          "--white-surface and --pial-surface, and measured and checked in the same way.")
+          "exact test. Tissue that runs out of the image, such as a block or a slab, gives sheets "
+          "with a rim, of the tissue's own topology. Surfaces that another program has made are "
+          "taken over as they are with --white-surface and --pial-surface, and measured and "
+          "checked in the same way.")
       .reference("Jones, Buchbinder, Aharon 2000, Human Brain Mapping 11:12-32")
       .reference("Han, Pham, Tosun, Rettmann, Xu, Prince 2004, NeuroImage 23:997-1012")
       .reference("Fischl, Dale 2000, Proc. Natl. Acad. Sci. USA 97:11050-11055")
@@ -90,6 +108,8 @@ void declare(Declaration& d, Settings& s) {
                "Borders placed by the image, finer than labels do")
       .example("explica surface seg.nii.gz --white 3 --grey 2 --faces 80000 --out brain",
                "Labels by name")
+      .example("explica surface rim.nii.gz --preset laynii --out block",
+               "A slab of cortex as LayNii has it, as sheets with a rim")
       .example("explica surface --inner-level wm.nii.gz --grey-share gm.nii.gz --out brain",
                "From tissue probabilities, with sub-voxel boundaries")
       .example(
@@ -141,6 +161,12 @@ void declare(Declaration& d, Settings& s) {
       .options("Reading", s.reading)
       .options("Tissue", s.tissue)
       .options("Surface", s.surface)
+      .option(
+          "Surface",
+          Field{"sheet", "",
+                "whether the surfaces may end in rims, with the topology of the tissue, instead "
+                "of being closed: where grey matter runs out of the image (auto), always, never"},
+          s.sheet)
       .option("Output",
               Field{"thickness-measure", "",
                     "what comes first in thickness.shape.gii, and its means: length of the "
@@ -202,7 +228,8 @@ std::string defectTable(const std::vector<surface::Defect>& defects) {
 }
 
 struct Inputs {
-  surface::CorticalTissue tissue;
+  surface::CorticalTissue tissue;             ///< boundaries empty for a sheet
+  std::optional<surface::TissueMasks> block;  ///< of a sheet
   Grid grid;
 };
 
@@ -354,6 +381,18 @@ void writeRegions(Context& context, const Regions& regions, const surface::Corti
   context.result("regions", measured.size());
 }
 
+/// Whether the tissue is a sheet; says so where nobody asked.
+bool isSheet(Context& context, const Settings& s, const surface::TissueMasks& masks) {
+  if (s.sheet == Sheet::Never || s.tissue.closeEdges) return false;
+  if (s.sheet == Sheet::Always) return true;
+  if (!surface::isBlock(masks)) return false;
+  context.info(surface::runsOutOfImage(masks)
+                   ? "grey matter runs out of the image: the surfaces are sheets with a rim "
+                     "(--sheet never refuses)"
+                   : "a rim of tissue: the surfaces are sheets with a rim");
+  return true;
+}
+
 Inputs readTissue(Context& context, const Settings& s) {
   io::VolumeReadOptions reading = s.reading;
   reading.dimension = 3;
@@ -362,7 +401,13 @@ Inputs readTissue(Context& context, const Settings& s) {
     const Volume<Label> labels = readTissueLabels(context, "SEG", *s.segmentation, reading);
     inputs.grid = labels.grid;
     auto step = context.step("tissue");
-    inputs.tissue = surface::tissueFromLabels(labels, s.tissue, context.monitor());
+    surface::TissueMasks masks = surface::masksFromLabels(labels, s.tissue, context.monitor());
+    if (isSheet(context, s, masks)) {
+      static_cast<surface::TissueFacts&>(inputs.tissue) = masks;
+      inputs.block = std::move(masks);
+    } else {
+      inputs.tissue = surface::tissueFromMasks(masks, s.tissue.closeEdges, context.monitor());
+    }
     return inputs;
   }
   const Volume<float> inner = readScalars(context, "inner-level", *s.innerLevel, reading);
@@ -449,9 +494,13 @@ std::int64_t checkSurfaces(Context& context, const std::vector<Named>& surfaces)
       context.result("euler_characteristic", checked.condition.eulerCharacteristic);
       context.result("components", checked.condition.components);
       context.result("closed_manifold", checked.condition.closedManifold());
+      context.result("manifold", checked.condition.manifold());
+      context.result("rim_edges", checked.condition.boundaryEdges);
     }
     context.result("area_" + std::string(surface.key), geometry::totalArea(*surface.mesh));
-    context.result("volume_" + std::string(surface.key), geometry::enclosedVolume(*surface.mesh));
+    if (checked.condition.boundaryEdges == 0) {
+      context.result("volume_" + std::string(surface.key), geometry::enclosedVolume(*surface.mesh));
+    }
     reportEvenness(context, surface.key, *surface.mesh);
   }
   context.result("self_intersections", selfIntersections);
@@ -476,6 +525,19 @@ std::vector<io::VertexMap> thicknessMaps(const surface::CorticalSurfaces& made,
   return maps;
 }
 
+/// 1 where the thickness is defined and known.
+Eigen::VectorXd validOf(const surface::CorticalSurfaces& made) {
+  Eigen::VectorXd valid = (made.thickness.array() > 0).cast<double>().matrix();
+  for (std::size_t v = 0; v < made.sheet.known.size(); ++v) {
+    if (!made.sheet.known[v]) valid[static_cast<Eigen::Index>(v)] = 0;
+  }
+  return valid;
+}
+
+bool hasSulcalDepth(const Settings& s, const surface::CorticalSurfaces& made) {
+  return !surfacesGiven(s) && !made.sheet.open;
+}
+
 std::vector<io::SpecEntry> writeMaps(Context& context, const Settings& s,
                                      const surface::CorticalSurfaces& made,
                                      const surface::CorticalTissue& tissue,
@@ -494,9 +556,8 @@ std::vector<io::SpecEntry> writeMaps(Context& context, const Settings& s,
   writeShape("area.shape.gii", areasOf(surfaces));
   if (!tissue.hasGrey) return spec;
   writeShape("thickness.shape.gii", thicknessMaps(made, s.thicknessMeasure));
-  writeShape("valid.shape.gii",
-             {{"valid", "", (made.thickness.array() > 0).cast<double>().matrix()}});
-  if (!surfacesGiven(s)) writeShape("sulc.shape.gii", {{"sulc", "mm", made.sulcalDepth}});
+  writeShape("valid.shape.gii", {{"valid", "", validOf(made)}});
+  if (hasSulcalDepth(s, made)) writeShape("sulc.shape.gii", {{"sulc", "mm", made.sulcalDepth}});
   if (regions.atlas || regions.parcellation) {
     writeRegions(context, regions, made, tissue.structure, spec);
   }
@@ -523,7 +584,7 @@ void writeFreeSurfer(Context& context, const Settings& s, const surface::Cortica
   if (!tissue.hasGrey) return;
   io::writeFreeSurferCurv(place("thickness"), thicknessMaps(made, s.thicknessMeasure)[0].values,
                           faces);
-  if (!surfacesGiven(s)) io::writeFreeSurferCurv(place("sulc"), made.sulcalDepth, faces);
+  if (hasSulcalDepth(s, made)) io::writeFreeSurferCurv(place("sulc"), made.sulcalDepth, faces);
   io::writeFreeSurferCurv(place("area.pial"), areas.back().values, faces);
 }
 
@@ -559,6 +620,26 @@ void reportMaking(Context& context, const surface::CorticalSurfaces& made, bool 
   context.result("seconds_image", made.seconds.image);
   context.result("seconds_growing", made.seconds.growing);
   context.result("seconds_measures", made.seconds.measures);
+}
+
+/// What a sheet is, and a warning where its thickness hangs on how the image cuts it.
+void reportSheet(Context& context, const surface::CorticalSurfaces& made) {
+  const surface::SheetFacts& sheet = made.sheet;
+  context.result("sheet", sheet.open);
+  if (!sheet.open) return;
+  context.result("rims", sheet.rims);
+  context.result("pockets_filled", sheet.pocketsFilled);
+  context.result("holes_closed", sheet.holesClosed);
+  context.result("pieces_left_out", sheet.piecesLeftOut);
+  context.result("vertices_interpolated", sheet.interpolated);
+  context.result("vertices_cut_by_image", sheet.cutByImage);
+  const Eigen::VectorXd known = validOf(made).array() * made.thickness.array();
+  context.result("thickness_mean_known", surface::meanThickness(made.white.mesh, known));
+  if (sheet.cutByImage > 0) {
+    context.warn(std::to_string(sheet.cutByImage) + " of " + std::to_string(made.thickness.size()) +
+                 " vertices lie so near to the image's edge that their thickness holds only if it "
+                 "cuts the tissue at right angles (0 in valid.shape.gii)");
+  }
 }
 
 /// What the image has done, and a warning where it shows too little to be the labels' image.
@@ -597,12 +678,16 @@ void report(Context& context, const Settings& s, const surface::CorticalTissue& 
   if (tissue.hasGrey) reportThickness(context, s, made);
   if (s.image && tissue.hasGrey) reportImage(context, made);
   if (!given) reportMaking(context, made, tissue.hasGrey);
+  reportSheet(context, made);
 }
 
-surface::CorticalSurfaces makeSurfaces(Context& context, const Settings& s,
-                                       const surface::CorticalTissue& tissue,
+surface::CorticalSurfaces makeSurfaces(Context& context, const Settings& s, const Inputs& inputs,
                                        const std::optional<Volume<float>>& image) {
   auto step = context.step("surfaces");
+  if (inputs.block) {
+    return surface::buildSheets(*inputs.block, s.surface, context.monitor());
+  }
+  const surface::CorticalTissue& tissue = inputs.tissue;
   if (tissue.hasGrey && image) {
     return surface::buildSurfaces(tissue, *image, s.surface, context.monitor());
   }
@@ -644,8 +729,11 @@ Termination run(Context& context, const Settings& s) {
   const Regions regions = readRegions(context, s, made);
   if (!given) inputs = readTissue(context, s);
   const surface::CorticalTissue& tissue = inputs.tissue;
+  if (inputs.block && s.image) {
+    throw UsageError("surface: --image places the borders of closed surfaces, not of sheets");
+  }
   const std::optional<Grid> fsGrid = freeSurferGrid(s, inputs);
-  if (!given) made = makeSurfaces(context, s, tissue, readImage(context, s));
+  if (!given) made = makeSurfaces(context, s, inputs, readImage(context, s));
   const std::vector<Named> surfaces = namedSurfaces(made, tissue.hasGrey);
   const std::int64_t meetings = checkSurfaces(context, surfaces);
   {

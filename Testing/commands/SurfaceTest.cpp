@@ -92,5 +92,43 @@ TEST(SurfaceCommand, SaysWhatIsWrongWithTheNumbersFound) {
   EXPECT_FALSE(fs::exists(folder / "out"));
 }
 
+TEST(SurfaceCommand, MakesSheetsOfABlockAndSaysSo) {
+  TemporaryFolder folder;
+  Grid grid;
+  grid.size = {32, 32, 32};
+  Volume<Label> labels(grid);
+  for (std::size_t v = 0; v < labels.size(); ++v) {
+    const auto s = grid.subscripts(v);
+    const double r = (Vector(s[0], s[1], s[2]) - Vector(15.5, 15.5, 3)).norm();
+    labels[v] = r < 8 ? 3 : (r < 13 ? 2 : 0);
+  }
+  io::writeVolume(folder / "block.nii.gz", labels);
+  const auto made = explica({"surface", folder / "block.nii.gz", "--white", "3", "--grey", "2",
+                             "--faces", "2000", "--freesurfer", "surf", "--out", folder / "out"});
+  ASSERT_EQ(made.exitCode, 0) << made;
+  EXPECT_NE(made.err.find("runs out of the image"), std::string::npos) << made;
+  const auto summary = readJson(folder / "out/summary.json");
+  EXPECT_TRUE(summary["sheet"]);
+  EXPECT_EQ(summary["euler_characteristic"], 1);
+  EXPECT_EQ(summary["rims"], 1);
+  EXPECT_EQ(summary["self_intersections"], 0);
+  EXPECT_NEAR(summary["thickness_mean_known"].get<double>(), 5, 0.1);
+  const auto valid = io::readVertexMaps(folder / "out/valid.shape.gii").front().values;
+  EXPECT_EQ((valid.array() == 0).count(), summary["vertices_cut_by_image"].get<Eigen::Index>());
+  EXPECT_FALSE(fs::exists(folder / "out/sulc.shape.gii"));
+
+  const auto refused =
+      explica({"surface", folder / "block.nii.gz", "--sheet", "never", "--out", folder / "closed"});
+  EXPECT_EQ(refused.exitCode, 2);
+  EXPECT_NE(refused.err.find("--sheet"), std::string::npos) << refused;
+
+  const auto unfolded = explica({"unfold", folder / "out/mid.surf.gii", "--surround", "none",
+                                 "--center", "15.5,15.5,13.5", "--radius", "6", "--direction",
+                                 "0,0,1", "--max-iterations", "3", "--out", folder / "unfolded"});
+  EXPECT_EQ(unfolded.exitCode, 3) << unfolded;  // stopped early
+  const auto flat = explica({"flatten", folder / "out/mid.surf.gii", "--out", folder / "flat"});
+  EXPECT_EQ(flat.exitCode, 0) << flat;
+}
+
 }  // namespace
 }  // namespace explica::testing

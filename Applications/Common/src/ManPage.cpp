@@ -41,7 +41,9 @@ std::string manPageOf(const Json& command, const std::string& version) {
           p["positional"]
               ? word(p["name"])
               : "--" + word(p["name"]) + (isFlag(p) ? "" : " " + word(p["placeholder"]));
-      text += ".TP\n.B " + roff(left) + "\n" + roff(helpWithDefault(p)) + "\n";
+      // A list of choices may break after each of them.
+      text +=
+          ".TP\n.B " + replaced(roff(left), "|", "|\\:") + "\n" + roff(helpWithDefault(p)) + "\n";
     }
   }
   if (command["writes_folder"]) {

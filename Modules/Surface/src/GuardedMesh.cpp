@@ -104,6 +104,7 @@ GuardedMesh::GuardedMesh(const TriangleMesh& mesh, double cell)
   for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
     addFace({mesh.faces(f, 0), mesh.faces(f, 1), mesh.faces(f, 2)});
   }
+  for (std::int32_t v = 0; v < vertexSlots() && !open_; ++v) open_ = rimNeighbours(v)[1] >= 0;
 }
 
 void GuardedMesh::placeCells(const Point& low, const Point& high, double cell, Eigen::Index faces) {
@@ -156,6 +157,18 @@ bool GuardedMesh::areJoined(std::int32_t a, std::int32_t b) const {
     if (c[0] == b || c[1] == b || c[2] == b) return true;
   }
   return false;
+}
+
+std::array<std::int32_t, 2> GuardedMesh::rimNeighbours(std::int32_t v) const {
+  std::array<std::int32_t, 2> found = {-1, -1};
+  for (const std::int32_t f : vertexFaces_[v]) {
+    const Corners& c = faces_[f];
+    const int k = c[0] == v ? 0 : (c[1] == v ? 1 : 2);
+    const std::int32_t next = c[(k + 1) % 3], before = c[(k + 2) % 3];
+    if (opposite(next, v) < 0) found[1] = next;
+    if (opposite(v, before) < 0) found[0] = before;
+  }
+  return found;
 }
 
 GuardedMesh::Placed GuardedMesh::place(const Corners& corners, std::int32_t moved,
@@ -371,15 +384,13 @@ bool GuardedMesh::move(std::int32_t v, const Point& wanted, Scratch& scratch) {
   return true;
 }
 
-bool GuardedMesh::collapse(std::int32_t u, std::int32_t v, const Point& wanted,
-                           const CollapseLimits& limits) {
-  const Point to = asStored(wanted);
-  std::array<std::int32_t, 2 * kMostFaces> removed;
-  std::array<Placed, kMostFaces> made;
-  std::size_t removedCount = 0, madeCount = 0;
+bool GuardedMesh::keepsTopology(std::int32_t u, std::int32_t v) const {
   if (vertexFaces_[u].size() + vertexFaces_[v].size() > kMostFaces) return false;
-  // Link condition: the ends have exactly two neighbours in common.
-  std::array<std::int32_t, kMostFaces> around;
+  const bool rimEdge = open_ && (opposite(u, v) < 0 || opposite(v, u) < 0);
+  const bool rimU = onRim(u), rimV = onRim(v);
+  if (rimU && rimV && !rimEdge) return false;
+  // Link condition: the ends have exactly the corners that face the edge in common.
+  std::array<std::int32_t, kMostFaces + 1> around;
   std::size_t aroundCount = 0;
   for (const std::int32_t f : vertexFaces_[u]) {
     for (const std::int32_t w : faces_[f]) {
@@ -391,8 +402,23 @@ bool GuardedMesh::collapse(std::int32_t u, std::int32_t v, const Point& wanted,
     }
   }
   int common = 0;
-  for (std::size_t n = 0; n < aroundCount; ++n) common += areJoined(v, around[n]);
-  if (common != 2 || vertexFaces_[u].size() + vertexFaces_[v].size() < 8) return false;
+  for (std::size_t n = 0; n < aroundCount; ++n) {
+    if (!areJoined(v, around[n])) continue;
+    ++common;
+    if (rimEdge && valence(around[n]) < 2) return false;
+  }
+  const std::size_t fewest = rimEdge ? 4 : (rimU || rimV ? 6 : 8);
+  return common == (rimEdge ? 1 : 2) && valence(u) + valence(v) >= fewest;
+}
+
+bool GuardedMesh::collapse(std::int32_t u, std::int32_t v, const Point& wanted,
+                           const CollapseLimits& limits) {
+  if (!keepsTopology(u, v)) return false;
+  Point to = asStored(wanted);
+  if (onRim(u) != onRim(v)) to = positions_[onRim(u) ? u : v];
+  std::array<std::int32_t, 2 * kMostFaces> removed;
+  std::array<Placed, kMostFaces> made;
+  std::size_t removedCount = 0, madeCount = 0;
 
   const auto take = [&](std::int32_t f, std::int32_t from) {
     Corners c = faces_[f];
@@ -451,7 +477,7 @@ bool GuardedMesh::flip(std::int32_t a, std::int32_t b) {
 
 std::int32_t GuardedMesh::split(std::int32_t a, std::int32_t b) {
   const std::int32_t c = opposite(a, b), d = opposite(b, a);
-  if (c < 0 || d < 0) return -1;
+  if ((c < 0 || d < 0) && !(open_ && (c >= 0 || d >= 0))) return -1;
   std::int32_t m;
   if (freeVertices_.empty()) {
     m = vertexSlots();
@@ -463,19 +489,26 @@ std::int32_t GuardedMesh::split(std::int32_t a, std::int32_t b) {
   }
   positions_[m] = asStored(0.5 * (positions_[a] + positions_[b]));
   std::array<std::int32_t, 2> removed = {-1, -1};
-  int found = 0;
+  std::size_t removedCount = 0, madeCount = 0;
   for (const std::int32_t f : vertexFaces_[a]) {
     const Corners& corners = faces_[f];
-    if (corners[0] == b || corners[1] == b || corners[2] == b) removed[found++] = f;
+    if (corners[0] == b || corners[1] == b || corners[2] == b) removed[removedCount++] = f;
   }
-  const std::array<Placed, 4> made = {place({a, m, c}, -1, {}), place({m, b, c}, -1, {}),
-                                      place({b, m, d}, -1, {}), place({m, a, d}, -1, {})};
-  if (!admissible(made, removed, scratch_)) {
+  std::array<Placed, 4> made;
+  if (c >= 0) {
+    made[madeCount++] = place({a, m, c}, -1, {});
+    made[madeCount++] = place({m, b, c}, -1, {});
+  }
+  if (d >= 0) {
+    made[madeCount++] = place({b, m, d}, -1, {});
+    made[madeCount++] = place({m, a, d}, -1, {});
+  }
+  if (!admissible({made.data(), madeCount}, {removed.data(), removedCount}, scratch_)) {
     freeVertices_.push_back(m);
     return -1;
   }
-  for (const std::int32_t f : removed) removeFace(f);
-  for (const Placed& p : made) addFace(p.corners);
+  for (std::size_t k = 0; k < removedCount; ++k) removeFace(removed[k]);
+  for (std::size_t k = 0; k < madeCount; ++k) addFace(made[k].corners);
   return m;
 }
 

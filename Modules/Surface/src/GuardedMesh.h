@@ -32,7 +32,8 @@ class FaceRing {
   std::vector<std::int32_t> many_;
 };
 
-/// A closed triangle mesh that changes by small steps and cannot intersect itself.
+/// A triangle mesh that changes by small steps and cannot intersect itself.  It is closed, or has
+/// rims, which then stay where they are but for what is said at each step.
 ///
 /// Each step (moving a vertex, collapsing, flipping or splitting an edge) is refused if it would
 /// change the topology, or if one of the faces that it makes would meet another face apart from a
@@ -43,7 +44,7 @@ class GuardedMesh {
  public:
   using Corners = std::array<std::int32_t, 3>;
 
-  /// @param mesh  closed manifold without self-intersection (not checked)
+  /// @param mesh  manifold without self-intersection (not checked)
   /// @param cell  edge of the search cells, mm; about the length of an edge.  Made longer where
   ///              that would give many more cells than faces
   GuardedMesh(const TriangleMesh& mesh, double cell);
@@ -64,6 +65,12 @@ class GuardedMesh {
   /// The corner that faces the directed edge (a, b) from its left side, or -1.
   [[nodiscard]] std::int32_t opposite(std::int32_t a, std::int32_t b) const;
   [[nodiscard]] bool areJoined(std::int32_t a, std::int32_t b) const;
+  /// True if the mesh has a rim.
+  [[nodiscard]] bool isOpen() const { return open_; }
+  /// True if a face ends at v and there is none beyond.
+  [[nodiscard]] bool onRim(std::int32_t v) const { return open_ && rimNeighbours(v)[1] >= 0; }
+  /// The vertices before and after v on the rim; -1 if it does not lie there.
+  [[nodiscard]] std::array<std::int32_t, 2> rimNeighbours(std::int32_t v) const;
 
   /// Moves a vertex.
   bool move(std::int32_t v, const Point& to);
@@ -92,11 +99,11 @@ class GuardedMesh {
     double leastCosine = 0.2;    ///< between a face's normals before and after
     double leastQuality = 0.15;  ///< 4 sqrt(3) area / sum of squared edges of new faces
   };
-  /// Joins u to v, which goes to `to`.
+  /// Joins u to v, which goes to `to`; to the rim's vertex if one of the two lies on it.
   bool collapse(std::int32_t u, std::int32_t v, const Point& to, const CollapseLimits& limits);
   /// Replaces edge (a, b) by the one between the corners that face it.
   bool flip(std::int32_t a, std::int32_t b);
-  /// Puts a vertex at the middle of edge (a, b).
+  /// Puts a vertex at the middle of edge (a, b), which may be one of the rim.
   /// @return the vertex, or -1 if refused
   std::int32_t split(std::int32_t a, std::int32_t b);
 
@@ -128,6 +135,8 @@ class GuardedMesh {
   /// True if the faces made meet nothing but what they may; `removed` are left out of account.
   bool admissible(std::span<const Placed> made, std::span<const std::int32_t> removed,
                   Scratch& scratch) const;
+  /// True if joining two vertices leaves a manifold of the same topology.
+  [[nodiscard]] bool keepsTopology(std::int32_t u, std::int32_t v) const;
   /// The box of three points, wider than their rounding to float.
   [[nodiscard]] Box boxOf(const std::array<Point, 3>& points) const;
   [[nodiscard]] int cellAt(double coordinate, int axis) const;
@@ -149,6 +158,7 @@ class GuardedMesh {
   std::vector<FaceRing> vertexFaces_;
   std::vector<std::int32_t> freeFaces_, freeVertices_;
   std::int64_t faceCount_ = 0;
+  bool open_ = false;
   Point cellOrigin_ = Point::Zero();
   double cellsPerMm_ = 1;
   double roomOfBoxes_ = 0;  ///< mm

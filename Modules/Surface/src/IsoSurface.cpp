@@ -24,7 +24,9 @@ constexpr std::array<int, 8> kStepOfBits = {-1, 0, 1, 3, 2, 4, 5, 6};
 /// Walks cells slice by slice and remembers the vertices on the edges of two slices.
 class Marcher {
  public:
-  explicit Marcher(const LevelSet& level) : level_(level), size_(level.grid.size) {
+  /// @param known  1 where the level is known; empty: everywhere
+  Marcher(const LevelSet& level, const Volume<std::uint8_t>& known)
+      : level_(level), known_(known), size_(level.grid.size) {
     for (auto& slice : vertexOnEdge_) slice.assign(7ul * size_[0] * size_[1], -1);
     turned_ = level.grid.direction.determinant() < 0;
   }
@@ -54,9 +56,16 @@ class Marcher {
       value_[c] = level_(i + (c & 1), j + (c >> 1 & 1), k + (c >> 2));
       if (value_[c] > 0) inside |= 1u << c;
     }
-    if (inside == 0 || inside == 0xff) return;
+    if (inside == 0 || inside == 0xff || !isKnown(i, j, k)) return;
     corner_ = {i, j, k};
     for (const auto& tetrahedron : kTetrahedra) visitTetrahedron(tetrahedron, inside);
+  }
+
+  [[nodiscard]] bool isKnown(int i, int j, int k) const {
+    if (known_.size() == 0) return true;
+    bool all = true;
+    for (int c = 0; c < 8; ++c) all = all && known_(i + (c & 1), j + (c >> 1 & 1), k + (c >> 2));
+    return all;
   }
 
   void visitTetrahedron(std::array<int, 4> t, unsigned inside) {
@@ -109,6 +118,7 @@ class Marcher {
   }
 
   const LevelSet& level_;
+  const Volume<std::uint8_t>& known_;
   std::array<int, 3> size_;
   bool turned_ = false;
   std::array<int, 3> corner_ = {0, 0, 0};
@@ -137,7 +147,12 @@ void requireNegativeBorder(const LevelSet& level) {
 
 TriangleMesh extractIsoSurface(const LevelSet& level) {
   requireNegativeBorder(level);
-  return Marcher(level).run();
+  const Volume<std::uint8_t> everywhere;
+  return Marcher(level, everywhere).run();
+}
+
+TriangleMesh extractIsoSurface(const LevelSet& level, const Volume<std::uint8_t>& known) {
+  return Marcher(level, known).run();
 }
 
 }  // namespace explica::surface

@@ -72,6 +72,7 @@ bool isPoor(const GuardedMesh& mesh, std::int32_t f, double edge, const Limits& 
 
 /// True if the triangles at a vertex are stretched, crowded, flat or folded, or it stands out.
 bool isCrumpled(const GuardedMesh& mesh, std::int32_t v, double edge, const Limits& limits) {
+  if (mesh.onRim(v)) return false;
   Vector sum = Vector::Zero();
   Point ring = Point::Zero();
   for (const std::int32_t f : mesh.facesOf(v)) {
@@ -120,7 +121,7 @@ TriangleMesh relaxed(const TriangleMesh& mesh, double edge, const std::vector<st
   for (int sweep = 0; sweep < options.sweeps; ++sweep) {
     const std::vector<std::uint8_t> active = crumpled(guarded, moves, edge, kCrumpled);
     guarded.sweep([&](std::int32_t v, GuardedMesh::Scratch& scratch) {
-      if (!active[v]) return true;
+      if (!active[v] || guarded.onRim(v)) return true;
       const Ring ring = ringOf(guarded, v);
       const Vector step = ring.centre - guarded.at(v);
       const double across = ring.normal.dot(step);
@@ -134,7 +135,7 @@ TriangleMesh relaxed(const TriangleMesh& mesh, double edge, const std::vector<st
   for (int sweep = 0; sweep < options.lastSweeps; ++sweep) {
     const std::vector<std::uint8_t> active = crumpled(guarded, all, edge, kUnsound);
     guarded.sweep([&](std::int32_t v, GuardedMesh::Scratch& scratch) {
-      if (!active[v]) return true;
+      if (!active[v] || guarded.onRim(v)) return true;
       const Ring ring = ringOf(guarded, v);
       return tryWays(v, sweep % 2 == 0 ? ring.mean : ring.centre, scratch);
     });

@@ -145,7 +145,7 @@ class Remesher {
     const std::int32_t c = mesh_.opposite(a, b), d = mesh_.opposite(b, a);
     if (c < 0 || d < 0) return false;
     const auto excess = [&](std::int32_t v, int change) {
-      const int e = static_cast<int>(mesh_.valence(v)) + change - 6;
+      const int e = static_cast<int>(mesh_.valence(v)) + change - (mesh_.onRim(v) ? 3 : 6);
       return e * e;
     };
     const int before = excess(a, 0) + excess(b, 0) + excess(c, 0) + excess(d, 0);
@@ -162,8 +162,15 @@ class Remesher {
     return flat(m1, m2) && flat(n1 + n2, m1) && flat(n1 + n2, m2);
   }
 
+  /// Half way from a vertex of the rim to the middle of its neighbours there.
+  [[nodiscard]] Point alongRim(std::int32_t v) const {
+    const auto [before, after] = mesh_.rimNeighbours(v);
+    return 0.5 * mesh_.at(v) + 0.25 * (mesh_.at(before) + mesh_.at(after));
+  }
+
   /// Area-weighted mean of the ring's centroids, moved in the tangent plane only.
   [[nodiscard]] Point centred(std::int32_t v) const {
+    if (mesh_.onRim(v)) return alongRim(v);
     Vector sum = Vector::Zero(), normal = Vector::Zero();
     double weight = 0;
     for (const std::int32_t f : mesh_.facesOf(v)) {
@@ -220,7 +227,11 @@ RemeshResult remesh(const TriangleMesh& mesh, const LevelSet& level, const Remes
     throw InvalidInput("faces: " + std::to_string(options.faces) + " asked; at least " +
                        std::to_string(kFewestFaces) + " are needed");
   }
-  geometry::requireClosedManifold(mesh, "mesh");
+  if (options.open) {
+    geometry::requireManifold(mesh, "mesh");
+  } else {
+    geometry::requireClosedManifold(mesh, "mesh");
+  }
   // An equilateral mesh of edge a has edges from 4/5 to 4/3 of it; their mean area is a little less
   // than that of the aim, which the rounds correct.
   Remesher remesher(mesh, level, edgeFor(geometry::totalArea(mesh), options.faces));

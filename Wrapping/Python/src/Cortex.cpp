@@ -11,6 +11,7 @@
 #include "Explica/Surface/CorticalSurface.h"
 #include "Explica/Surface/IsoSurface.h"
 #include "Explica/Surface/Measures.h"
+#include "Explica/Surface/TissueSheet.h"
 
 namespace explica::python {
 namespace {
@@ -204,21 +205,31 @@ void bindSegmentation(py::module_& m) {
 void bindCortex(py::module_& m) {
   defWithOptions<CortexOptions>(
       m, "surfaces_of",
-      [](const py::array& labels, const Eigen::Matrix4d& affine, const py::object& progress,
+      [](const py::array& labels, const Eigen::Matrix4d& affine,
+         const std::optional<py::array>& image, const py::object& progress,
          const py::kwargs& keywords) {
         const auto options = optionsOf<CortexOptions>(keywords);
         const Volume<Label> volume = labelVolume(labels, affine);
+        const Volume<float> brightness = image ? scalarVolume(*image, affine) : Volume<float>{};
         return surfacesDict(Watch(progress).run([&](const Monitor& monitor) {
-          return surface::buildSurfaces(surface::tissueFromLabels(volume, options.tissue, monitor),
-                                        options.surface, monitor);
+          const auto masks = surface::masksFromLabels(volume, options.tissue, monitor);
+          if (surface::isBlock(masks) && !options.tissue.closeEdges && !image) {
+            return surface::buildSheets(masks, options.surface, monitor);
+          }
+          const auto tissue = surface::tissueFromMasks(masks, options.tissue.closeEdges, monitor);
+          return image ? surface::buildSurfaces(tissue, brightness, options.surface, monitor)
+                       : surface::buildSurfaces(tissue, options.surface, monitor);
         }));
       },
       "White, middle and outer surface of the cortical ribbon: white, mid and pial, vertices (V, "
       "3),\n"
       "RAS mm, that correspond by their number, common faces (F, 3), thickness and sulcal_depth "
       "in\n"
-      "mm and curvature in mm^-1, (V,), and the topological defects that were corrected.",
-      "labels"_a, "affine"_a, "progress"_a = py::none());
+      "mm and curvature in mm^-1, (V,), and the topological defects that were corrected.  Tissue\n"
+      "that runs out of the image gives sheets with a rim.  With an `image` on the labels' grid, "
+      "such\n"
+      "as a T1, both borders are placed by it.",
+      "labels"_a, "affine"_a, "image"_a = py::none(), "progress"_a = py::none());
   bindParts(m);
   bindSegmentation(m);
 }

@@ -86,6 +86,25 @@ class Tissue(unittest.TestCase):
             explica.inspect_mesh((result["white"], result["faces"]))["euler_characteristic"], 2
         )
 
+    def test_an_image_places_the_borders(self):
+        labels, affine = shell()
+        # Inner bright, tissue grey, outside dark, and the outer border a little farther in.
+        image = np.choose(labels, [10.0, 110.0, 70.0])
+        plain = explica.surfaces_of(labels, affine, white=[1], grey=[2], faces=2000)
+        placed = explica.surfaces_of(labels, affine, image, white=[1], grey=[2], faces=2000)
+        self.assertEqual(plain["faces"].shape, placed["faces"].shape)
+        self.assertFalse(np.array_equal(plain["white"], placed["white"]))
+        self.assertLess(np.abs(placed["thickness"] - 6).mean(), 0.3)
+
+    def test_a_block_of_tissue_gives_sheets(self):
+        labels = np.zeros((24, 20, 20), np.int32)
+        labels[:8], labels[8:14] = 1, 2
+        made = explica.surfaces_of(labels, white=[1], grey=[2], faces=800)
+        condition = explica.inspect_mesh((made["mid"], made["faces"]))
+        self.assertEqual(condition["euler_characteristic"], 1)
+        self.assertGreater(condition["boundary_edges"], 0)
+        np.testing.assert_allclose(made["thickness"], 6, atol=0.1)
+
     def test_mistakes_are_value_errors_in_words(self):
         labels, affine = shell()
         with self.assertRaisesRegex(ValueError, "7"):

@@ -51,6 +51,19 @@ struct ImagePlacement {
   double movedOuter = 0;          ///< mean way of the trajectories' ends, mm
 };
 
+/// What is to be known of a sheet whose tissue runs out of the image.
+struct SheetFacts {
+  bool open = false;               ///< the surfaces are such a sheet, and may have rims
+  std::int64_t rims = 0;           ///< of each surface
+  std::int64_t pocketsFilled = 0;  ///< pieces of other labels within the tissue
+  std::int64_t holesClosed = 0;
+  std::int64_t piecesLeftOut = 0;   ///< of the sheet, small beside its thickness
+  std::int64_t interpolated = 0;    ///< vertices whose trajectory does not reach both boundaries:
+                                    ///< their ends are the mean of their neighbours'
+  std::int64_t cutByImage = 0;      ///< vertices whose thickness the image's edge may change
+  std::vector<std::uint8_t> known;  ///< V, 0 for both of these
+};
+
 /// White, middle and outer surface with the same faces; vertex i of one corresponds to vertex i of
 /// the others.
 struct CorticalSurfaces {
@@ -69,6 +82,7 @@ struct CorticalSurfaces {
   double heldBackMean = 0;        ///< mean distance that pial ones among them fall short, mm
   double heldBackMost = 0;        ///< mm
   ImagePlacement image;           ///< all 0 without one
+  SheetFacts sheet;               ///< not open unless buildSheets() made it
   SurfaceTimes seconds;
 };
 

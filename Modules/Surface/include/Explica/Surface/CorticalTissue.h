@@ -23,8 +23,13 @@ enum class Side { Left, Right };
 enum class LabelPreset {
   Auto,        ///< told by the labels that are present
   Aseg,        ///< FreeSurfer's aseg, aparc+aseg, aparc.a2009s+aseg, wmparc; SynthSeg, FastSurfer
-  Ribbon,      ///< FreeSurfer's ribbon: 2, 3, 41, 42
+  Ribbon,      ///< FreeSurfer's and the Human Connectome Project's ribbon: 2, 3, 41, 42
   ThreeClass,  ///< 1 fluid, 2 grey, 3 white, 4 neither (a cut), as `explica segment` writes
+  Ants,        ///< six classes of antsCorticalThickness
+  Dhcp,        ///< nine classes of the developing Human Connectome Project
+  Dhcp87,      ///< its 87 structures
+  Nmt,         ///< five classes of the NIMH Macaque Template, version 2; never guessed
+  LayNii,      ///< LayNii's rim: border lines 1 and 2, grey matter 3
   Wm,          ///< FreeSurfer's wm (5 and more are white) or filled (127 right, 255 left)
   None         ///< white and grey are named
 };
@@ -41,21 +46,32 @@ struct TissueOptions {
   bool closeEdges = false;  ///< tissue may end at the edge of the field of view
 };
 
-/// Boundaries of one cortical ribbon on a box around it.
-struct CorticalTissue {
-  LevelSet white;                          ///< positive in white matter
-  LevelSet tissue;                         ///< positive in white and grey matter
-  Volume<std::uint8_t> insulated;          ///< 1 where neither side is; same box
+/// What a ribbon's tissue is, and was made of.
+struct TissueFacts {
   std::string structure;                   ///< "CortexLeft", "CortexRight", "Cortex"
   LabelPreset preset = LabelPreset::None;  ///< as used
-  bool hasGrey = true;
-  std::int64_t whiteVoxels = 0;   ///< labelled white
-  std::int64_t filledVoxels = 0;  ///< joined to it
+  std::int64_t whiteVoxels = 0;            ///< labelled white
+  std::int64_t filledVoxels = 0;           ///< joined to it
   std::int64_t greyVoxels = 0;
   std::int64_t cutContact = 0;  ///< voxel faces between the hemispheres where white was cut
 };
 
-/// Boundaries from labels.
+/// Voxels of one cortical ribbon; what is none of the three lies outside.
+struct TissueMasks : TissueFacts {
+  Volume<std::uint8_t> white;      ///< with what is joined to it
+  Volume<std::uint8_t> grey;       ///< between white matter and what lies outside
+  Volume<std::uint8_t> insulated;  ///< neither inside nor outside
+};
+
+/// Boundaries of one cortical ribbon on a box around it.
+struct CorticalTissue : TissueFacts {
+  LevelSet white;                  ///< positive in white matter
+  LevelSet tissue;                 ///< positive in white and grey matter
+  Volume<std::uint8_t> insulated;  ///< 1 where neither side is; same box
+  bool hasGrey = true;
+};
+
+/// Voxels of a ribbon from labels.
 ///
 /// A preset's hemisphere is taken by its labels; labels without side (callosum, white-matter
 /// hypointensities) go to the nearer hemisphere's.  Where both hemispheres share one label, white
@@ -63,9 +79,27 @@ struct CorticalTissue {
 /// least white matter, meet within white matter: so the cut crosses the callosum near its middle,
 /// and gyri that bulge over the plane stay whole.
 ///
-/// @throws InvalidInput  a label absent, white matter at the edge of the field of view, both
-///                       hemispheres present and none chosen, nothing left after separation: with
-///                       the numbers found
+/// @throws InvalidInput  a label absent, both hemispheres present and none chosen, nothing left
+///                       after separation: with the numbers found
+[[nodiscard]] TissueMasks masksFromLabels(const Volume<Label>& labels,
+                                          const TissueOptions& options = {},
+                                          const Monitor& monitor = {});
+
+/// True if grey matter runs out of the image, as in a block of tissue or a slab: more than one in a
+/// hundred of its voxels lie on the image's edge.
+[[nodiscard]] bool runsOutOfImage(const TissueMasks& masks);
+
+/// True if the tissue wants sheets with a rim (TissueSheet.h) instead of closed surfaces: it runs
+/// out of the image, or it is one of LayNii's rims, which end where somebody stopped drawing.
+[[nodiscard]] bool isBlock(const TissueMasks& masks);
+
+/// Boundaries of voxels.
+/// @param closeEdges  white matter may end at the edge of the field of view
+/// @throws InvalidInput  white matter at the edge of the field of view, with how many voxels
+[[nodiscard]] CorticalTissue tissueFromMasks(const TissueMasks& masks, bool closeEdges = false,
+                                             const Monitor& monitor = {});
+
+/// Both in one.
 [[nodiscard]] CorticalTissue tissueFromLabels(const Volume<Label>& labels,
                                               const TissueOptions& options = {},
                                               const Monitor& monitor = {});
@@ -115,12 +149,19 @@ struct EnumNames<surface::Side> {
 
 template <>
 struct EnumNames<surface::LabelPreset> {
-  static constexpr std::array table = {std::pair{surface::LabelPreset::Auto, "auto"},
-                                       std::pair{surface::LabelPreset::Aseg, "aseg"},
-                                       std::pair{surface::LabelPreset::Ribbon, "ribbon"},
-                                       std::pair{surface::LabelPreset::ThreeClass, "three-class"},
-                                       std::pair{surface::LabelPreset::Wm, "wm"},
-                                       std::pair{surface::LabelPreset::None, "none"}};
+  static constexpr std::array table = {
+      std::pair{surface::LabelPreset::Auto, "auto"}, std::pair{surface::LabelPreset::Aseg, "aseg"},
+      std::pair{surface::LabelPreset::Ribbon, "ribbon"},
+      std::pair{surface::LabelPreset::ThreeClass, "three-class"},
+      std::pair{surface::LabelPreset::Ants, "ants"}, std::pair{surface::LabelPreset::Dhcp, "dhcp"},
+      std::pair{surface::LabelPreset::Dhcp87, "dhcp-87"},
+      std::pair{surface::LabelPreset::Nmt, "nmt"},
+      std::pair{surface::LabelPreset::LayNii, "laynii"}, std::pair{surface::LabelPreset::Wm, "wm"},
+      std::pair{surface::LabelPreset::None, "none"},
+      // What people look for by the program's name.
+      std::pair{surface::LabelPreset::Aseg, "synthseg"},
+      std::pair{surface::LabelPreset::Aseg, "fastsurfer"},
+      std::pair{surface::LabelPreset::Ribbon, "hcp"}};
 };
 
 namespace surface {

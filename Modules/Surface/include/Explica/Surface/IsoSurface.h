@@ -5,6 +5,8 @@
 #include "Explica/Core/TriangleMesh.h"
 #include "Explica/Surface/LevelSet.h"
 
+#include <cstdint>
+
 namespace explica::surface {
 
 /// The zero of a level set by marching the Freudenthal tetrahedra.
@@ -17,6 +19,12 @@ namespace explica::surface {
 /// @param level  negative on the border of the box, nowhere 0
 /// @throws InvalidInput  a positive voxel on the border
 [[nodiscard]] TriangleMesh extractIsoSurface(const LevelSet& level);
+
+/// The zero within the cells whose eight corners are known: a surface with rims where these end.
+/// Its edges have one or two faces; at a vertex of the rim several fans of faces may meet.
+/// @param known  1 where the level is known; on the level's grid
+[[nodiscard]] TriangleMesh extractIsoSurface(const LevelSet& level,
+                                             const Volume<std::uint8_t>& known);
 
 /// Share of a lattice edge that vertices keep from its ends.
 inline constexpr double kLeastFraction = 0.02;

@@ -10,10 +10,11 @@
 
 namespace explica::surface {
 
-/// How a closed surface gets triangles of nearly equal shape and size.
+/// How a surface gets triangles of nearly equal shape and size.
 struct RemeshOptions {
   std::int64_t faces = 150000;  ///< wanted; met exactly (to the next even number) where possible
   int rounds = 5;               ///< of splitting, collapsing, flipping and smoothing
+  bool open = false;            ///< the surface may have rims, which stay but for being smoothed
 };
 
 /// What a remeshing did.
@@ -31,7 +32,8 @@ struct RemeshResult {
 /// judged by exact predicates: so the result has the topology of the input and, as the input,
 /// no self-intersection.
 ///
-/// @param mesh   closed manifold without self-intersection, near the zero of `level`
+/// @param mesh   closed (unless `open`) manifold without self-intersection, near the zero of
+/// `level`
 /// @throws InvalidInput  mesh not closed, or fewer than 100 faces wanted
 /// Deterministic.
 [[nodiscard]] RemeshResult remesh(const TriangleMesh& mesh, const LevelSet& level,

@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Masks.h"
+
+#include "Explica/Core/Parallel.h"
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <queue>
+#include <utility>
+
+namespace explica::surface {
+
+Mask maskOf(const Volume<Label>& volume, const std::vector<Label>& labels) {
+  Mask mask(volume.grid);
+  if (labels.empty()) return mask;
+  const Label low = *std::min_element(labels.begin(), labels.end());
+  const Label high = *std::max_element(labels.begin(), labels.end());
+  std::vector<std::uint8_t> wanted(static_cast<std::size_t>(high - low) + 1, 0);
+  for (const Label label : labels) wanted[label - low] = 1;
+  parallelFor(volume.size(), 1 << 18, [&](std::size_t v) {
+    const Label value = volume[v];
+    if (value >= low && value <= high) mask[v] = wanted[value - low];
+  });
+  return mask;
+}
+
+std::int64_t countIn(const Mask& mask) {
+  return std::count_if(mask.data.begin(), mask.data.end(), [](std::uint8_t m) { return m != 0; });
+}
+
+std::int64_t countOnEdge(const Mask& mask) {
+  const auto& n = mask.grid.size;
+  std::int64_t count = 0;
+  for (int k = 0; k < n[2]; ++k) {
+    for (int j = 0; j < n[1]; ++j) {
+      const bool wholeRow = k == 0 || j == 0 || k == n[2] - 1 || j == n[1] - 1;
+      for (int i = 0; i < n[0]; i += wholeRow ? 1 : std::max(1, n[0] - 1)) {
+        count += mask(i, j, k) != 0;
+      }
+    }
+  }
+  return count;
+}
+
+void spreadLabels(const Mask& through, Mask& labels) {
+  const Grid& grid = through.grid;
+  const auto& n = grid.size;
+  std::vector<float> arrival(through.size(), std::numeric_limits<float>::infinity());
+  using Entry = std::pair<float, std::uint32_t>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
+  for (std::size_t v = 0; v < through.size(); ++v) {
+    if (labels[v]) {
+      arrival[v] = 0;
+      front.emplace(0.0F, static_cast<std::uint32_t>(v));
+    }
+  }
+  while (!front.empty()) {
+    const auto [time, v] = front.top();
+    front.pop();
+    if (time > arrival[v]) continue;
+    const auto at = grid.subscripts(v);
+    for (int dk = -1; dk <= 1; ++dk) {
+      for (int dj = -1; dj <= 1; ++dj) {
+        for (int di = -1; di <= 1; ++di) {
+          const int i = at[0] + di, j = at[1] + dj, k = at[2] + dk;
+          if (i < 0 || j < 0 || k < 0 || i >= n[0] || j >= n[1] || k >= n[2]) continue;
+          const std::size_t w = grid.linear(i, j, k);
+          if (!through[w]) continue;
+          const float step =
+              static_cast<float>(Vector(di, dj, dk).cwiseProduct(grid.spacing).norm());
+          if (time + step < arrival[w]) {
+            arrival[w] = time + step;
+            labels[w] = labels[v];
+            front.emplace(arrival[w], static_cast<std::uint32_t>(w));
+          }
+        }
+      }
+    }
+  }
+}
+
+std::int64_t addNearer(const Mask& unsided, Mask& own, const Mask& other) {
+  if (countIn(unsided) == 0) return 0;
+  Mask sides(own.grid);
+  for (std::size_t v = 0; v < own.size(); ++v) sides[v] = own[v] ? 1 : (other[v] ? 2 : 0);
+  // Only the voxels without side are walked through; waves start at the sides' rims.
+  spreadLabels(unsided, sides);
+  std::int64_t added = 0;
+  for (std::size_t v = 0; v < own.size(); ++v) {
+    if (unsided[v] && sides[v] == 1 && !own[v]) {
+      own[v] = 1;
+      ++added;
+    }
+  }
+  return added;
+}
+
+}  // namespace explica::surface

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Core/Volume.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace explica::surface {
+
+using Mask = Volume<std::uint8_t>;
+
+/// 1 where a voxel has one of the labels.
+[[nodiscard]] Mask maskOf(const Volume<Label>& volume, const std::vector<Label>& labels);
+
+/// Voxels that are not 0.
+[[nodiscard]] std::int64_t countIn(const Mask& mask);
+
+/// Those of them that lie on the edge of the image.
+[[nodiscard]] std::int64_t countOnEdge(const Mask& mask);
+
+/// Waves from labelled voxels through a mask, one label each, nearest first; distances in mm along
+/// the steps to the 26 neighbours.
+void spreadLabels(const Mask& through, Mask& labels);
+
+/// Adds the voxels without side that are nearer to `own` than to `other`.
+/// @return how many
+std::int64_t addNearer(const Mask& unsided, Mask& own, const Mask& other);
+
+}  // namespace explica::surface

@@ -1,0 +1,217 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "SheetMesh.h"
+
+#include "Explica/Geometry/MeshMeasures.h"
+#include "Explica/Geometry/MeshTopology.h"
+#include "Explica/Geometry/SelfIntersection.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace explica::surface {
+namespace {
+
+using geometry::MeshTopology;
+
+/// Pieces of faces joined by edges, numbered from 0, of faces that `counts` allows; -1 for others.
+std::vector<std::int32_t> edgePieces(const MeshTopology& topology,
+                                     const std::vector<std::uint8_t>& counts) {
+  std::vector<std::int32_t> piece(counts.size(), -1);
+  std::vector<std::int32_t> stack;
+  std::int32_t number = 0;
+  for (std::size_t start = 0; start < piece.size(); ++start) {
+    if (!counts[start] || piece[start] >= 0) continue;
+    piece[start] = number;
+    stack.push_back(static_cast<std::int32_t>(start));
+    while (!stack.empty()) {
+      const std::int32_t f = stack.back();
+      stack.pop_back();
+      for (int k = 0; k < 3; ++k) {
+        for (const std::int32_t g : topology.edgeFaces.row(topology.faceEdges(f, k))) {
+          if (g < 0 || !counts[g] || piece[g] >= 0) continue;
+          piece[g] = number;
+          stack.push_back(g);
+        }
+      }
+    }
+    ++number;
+  }
+  return piece;
+}
+
+std::vector<double> areasOf(const TriangleMesh& mesh, const std::vector<std::int32_t>& piece) {
+  std::vector<double> areas;
+  for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
+    if (piece[f] < 0) continue;
+    if (piece[f] >= static_cast<std::int32_t>(areas.size())) areas.resize(piece[f] + 1, 0.0);
+    const Vector normal =
+        (mesh.corner(f, 1) - mesh.corner(f, 0)).cross(mesh.corner(f, 2) - mesh.corner(f, 0));
+    areas[piece[f]] += 0.5 * normal.norm();
+  }
+  return areas;
+}
+
+/// Marks all fans at a vertex but the largest one.
+bool markSmallFans(const MeshTopology& topology, std::int32_t v,
+                   std::vector<std::uint8_t>& marked) {
+  const auto faces = topology.vertexFaces[v];
+  std::vector<std::int32_t> fan(faces.size());
+  std::iota(fan.begin(), fan.end(), 0);
+  const auto rootOf = [&](std::int32_t k) {
+    while (fan[k] != k) k = fan[k];
+    return k;
+  };
+  for (std::size_t a = 0; a < faces.size(); ++a) {
+    for (int k = 0; k < 3; ++k) {
+      const std::int32_t edge = topology.faceEdges(faces[a], k);
+      if (topology.edges(edge, 0) != v && topology.edges(edge, 1) != v) continue;
+      for (std::size_t b = 0; b < a; ++b) {
+        if ((topology.edgeFaces.row(edge).array() == faces[b]).any()) {
+          fan[rootOf(static_cast<std::int32_t>(a))] = rootOf(static_cast<std::int32_t>(b));
+        }
+      }
+    }
+  }
+  std::vector<int> sizes(faces.size(), 0);
+  for (std::size_t a = 0; a < faces.size(); ++a) ++sizes[rootOf(static_cast<std::int32_t>(a))];
+  const auto largest =
+      static_cast<std::int32_t>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
+  bool any = false;
+  for (std::size_t a = 0; a < faces.size(); ++a) {
+    if (rootOf(static_cast<std::int32_t>(a)) == largest) continue;
+    marked[faces[a]] = 1;
+    any = true;
+  }
+  return any;
+}
+
+}  // namespace
+
+std::vector<std::vector<std::int32_t>> rimsOf(const TriangleMesh& mesh) {
+  const MeshTopology topology = geometry::buildTopology(mesh.faces, mesh.vertexCount());
+  std::vector<std::int32_t> next(mesh.vertexCount(), -1);
+  for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      if (topology.edgeFaces(topology.faceEdges(f, k), 1) < 0) {
+        next[mesh.faces(f, k)] = mesh.faces(f, (k + 1) % 3);
+      }
+    }
+  }
+  std::vector<std::vector<std::int32_t>> rims;
+  std::vector<std::uint8_t> seen(next.size(), 0);
+  for (std::size_t v = 0; v < next.size(); ++v) {
+    if (next[v] < 0 || seen[v]) continue;
+    std::vector<std::int32_t> rim;
+    for (auto w = static_cast<std::int32_t>(v); w >= 0 && !seen[w]; w = next[w]) {
+      seen[w] = 1;
+      rim.push_back(w);
+    }
+    rims.push_back(std::move(rim));
+  }
+  return rims;
+}
+
+TriangleMesh withoutFaces(const TriangleMesh& mesh, const std::vector<std::uint8_t>& marked) {
+  std::vector<std::int32_t> kept;
+  for (std::size_t f = 0; f < marked.size(); ++f) {
+    if (!marked[f]) kept.push_back(static_cast<std::int32_t>(f));
+  }
+  return geometry::extractFaces(mesh, kept).mesh;
+}
+
+TriangleMesh withoutPinches(const TriangleMesh& given) {
+  constexpr int kMostPasses = 50;
+  TriangleMesh mesh = given;
+  for (int pass = 0; pass < kMostPasses; ++pass) {
+    const MeshTopology topology = geometry::buildTopology(mesh.faces, mesh.vertexCount());
+    std::vector<std::uint8_t> onRim(mesh.vertexCount(), 0), marked(mesh.faceCount(), 0);
+    bool any = false;
+    for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
+      int rimEdges = 0;
+      for (int k = 0; k < 3; ++k) {
+        if (topology.edgeFaces(topology.faceEdges(f, k), 1) >= 0) continue;
+        ++rimEdges;
+        onRim[mesh.faces(f, k)] = onRim[mesh.faces(f, (k + 1) % 3)] = 1;
+      }
+      if (rimEdges < 2) continue;
+      marked[f] = 1;
+      any = true;
+    }
+    for (std::int32_t v = 0; v < mesh.vertexCount(); ++v) {
+      if (onRim[v] && markSmallFans(topology, v, marked)) any = true;
+    }
+    if (!any) break;
+    mesh = withoutFaces(mesh, marked);
+  }
+  return mesh;
+}
+
+Pieces largePieces(const TriangleMesh& mesh, double least) {
+  const MeshTopology topology = geometry::buildTopology(mesh.faces, mesh.vertexCount());
+  const std::vector<std::int32_t> piece =
+      edgePieces(topology, std::vector<std::uint8_t>(mesh.faceCount(), 1));
+  const std::vector<double> areas = areasOf(mesh, piece);
+  if (!areas.empty()) least = std::min(least, *std::max_element(areas.begin(), areas.end()));
+  std::vector<std::uint8_t> marked(mesh.faceCount());
+  for (std::size_t f = 0; f < marked.size(); ++f) marked[f] = areas[piece[f]] < least;
+  return {withoutFaces(mesh, marked),
+          std::count_if(areas.begin(), areas.end(), [&](double area) { return area < least; })};
+}
+
+std::vector<std::uint8_t> largePatches(const TriangleMesh& mesh, std::vector<std::uint8_t> marked,
+                                       double least) {
+  const MeshTopology topology = geometry::buildTopology(mesh.faces, mesh.vertexCount());
+  const std::vector<std::int32_t> piece = edgePieces(topology, marked);
+  const std::vector<double> areas = areasOf(mesh, piece);
+  for (std::size_t f = 0; f < marked.size(); ++f) {
+    if (marked[f]) marked[f] = areas[piece[f]] >= least;
+  }
+  return marked;
+}
+
+Closed withHolesClosed(const TriangleMesh& mesh, double longest,
+                       const std::function<bool(const std::vector<std::int32_t>&)>& keep) {
+  std::vector<std::vector<std::int32_t>> holes;
+  for (auto& rim : rimsOf(mesh)) {
+    double length = 0;
+    for (std::size_t k = 0; k < rim.size(); ++k) {
+      length += (mesh.positions.row(rim[k]) - mesh.positions.row(rim[(k + 1) % rim.size()])).norm();
+    }
+    if (length < longest && !keep(rim)) holes.push_back(std::move(rim));
+  }
+  Eigen::Index vertices = mesh.vertexCount(), faces = mesh.faceCount();
+  Closed closed{mesh, static_cast<std::int64_t>(holes.size())};
+  if (holes.empty()) return closed;
+  for (const auto& hole : holes) faces += static_cast<Eigen::Index>(hole.size());
+  closed.mesh.positions.conservativeResize(vertices + closed.holes, 3);
+  closed.mesh.faces.conservativeResize(faces, 3);
+  std::vector<std::int32_t> holeOf(faces, -1);
+  Eigen::Index f = mesh.faceCount();
+  for (std::size_t h = 0; h < holes.size(); ++h, ++vertices) {
+    const auto& hole = holes[h];
+    Eigen::RowVector3d middle = Eigen::RowVector3d::Zero();
+    for (const std::int32_t v : hole) middle += mesh.positions.row(v);
+    closed.mesh.positions.row(vertices) = middle / static_cast<double>(hole.size());
+    for (std::size_t k = 0; k < hole.size(); ++k, ++f) {
+      closed.mesh.faces.row(f) << hole[(k + 1) % hole.size()], hole[k],
+          static_cast<std::int32_t>(vertices);
+      holeOf[f] = static_cast<std::int32_t>(h);
+    }
+  }
+  std::vector<bool> added(faces);
+  for (Eigen::Index g = 0; g < faces; ++g) added[g] = holeOf[g] >= 0;
+  std::vector<std::uint8_t> meets(holes.size(), 0), marked(faces, 0);
+  for (const auto& pair : geometry::findSelfIntersections(closed.mesh, added)) {
+    for (const std::int32_t g : pair) {
+      if (holeOf[g] >= 0) meets[holeOf[g]] = 1;
+    }
+  }
+  for (Eigen::Index g = 0; g < faces; ++g) marked[g] = holeOf[g] >= 0 && meets[holeOf[g]];
+  closed.holes -= std::count(meets.begin(), meets.end(), std::uint8_t{1});
+  closed.mesh = withoutFaces(closed.mesh, marked);
+  return closed;
+}
+
+}  // namespace explica::surface

@@ -1,0 +1,518 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Surface/TissueSheet.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/Parallel.h"
+#include "Explica/Correspondence/Sulci.h"
+#include "Explica/Correspondence/Trajectory.h"
+#include "Explica/Geometry/MeshMeasures.h"
+#include "Explica/Geometry/MeshTopology.h"
+#include "Explica/Harmonic/Interpolant.h"
+#include "Explica/Surface/GivenSurfaces.h"
+#include "Explica/Surface/IsoSurface.h"
+#include "Explica/Surface/Measures.h"
+#include "Explica/Surface/Remesh.h"
+#include "Growth.h"
+#include "Masks.h"
+#include "Relaxation.h"
+#include "SheetMesh.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <deque>
+#include <utility>
+
+namespace explica::surface {
+namespace {
+
+using correspondence::TrajectoryTracer;
+using harmonic::Annulus;
+
+/// What a voxel is, as labels for Harmonic.
+enum : Label { kOuterRole = 0, kInnerRole = 1, kTissueRole = 2, kInsulatedRole = 3 };
+
+/// Lengths beside the tissue's thickness t: patches without tissue and pieces of the sheet with
+/// less area than that of a disc of this radius are small, and so are holes whose rim is shorter
+/// than that of such a disc.
+constexpr double kSmallPatch = 1, kSmallPiece = 2, kSmallHole = 0.75;
+/// Largest pocket in the tissue, as a share of it, that is filled.
+constexpr double kPocket = 0.02;
+/// Levels on the way from the sheet to a boundary at which a trajectory is remembered.
+constexpr int kLegs = 5;
+/// The image's edge counts so many thicknesses far (Correspondence's ImageEdge.h gives the reason).
+constexpr double kReach = 1.25;
+/// Farthest that a sliding vertex is brought back to the border of the tissue in one sweep, voxels.
+constexpr double kNearBorder = 0.5;
+/// Less than this is no shortfall, voxels.
+constexpr double kNoShortfall = 0.02;
+
+double secondsSince(std::chrono::steady_clock::time_point& last) {
+  const auto now = std::chrono::steady_clock::now();
+  return std::chrono::duration<double>(now - std::exchange(last, now)).count();
+}
+
+/// Pieces of one role that only tissue surrounds become tissue: vessels, specks, lost voxels.
+std::int64_t fillPockets(Volume<Label>& roles) {
+  const Grid& grid = roles.grid;
+  const std::array<std::ptrdiff_t, 3> strides = {
+      1, grid.size[0], static_cast<std::ptrdiff_t>(grid.size[0]) * grid.size[1]};
+  const auto tissue = std::count(roles.data.begin(), roles.data.end(), kTissueRole);
+  const auto most = static_cast<std::size_t>(kPocket * static_cast<double>(tissue));
+  std::vector<std::uint8_t> seen(roles.size(), 0);
+  std::vector<std::size_t> piece;
+  std::int64_t filled = 0;
+  for (std::size_t start = 0; start < roles.size(); ++start) {
+    if (seen[start] || roles[start] == kTissueRole) continue;
+    const Label role = roles[start];
+    bool enclosed = true;
+    piece.assign(1, start);
+    seen[start] = 1;
+    for (std::size_t head = 0; head < piece.size(); ++head) {
+      const auto at = grid.subscripts(piece[head]);
+      for (int d = 0; d < 6; ++d) {
+        const int a = d / 2, to = at[a] + (d % 2 == 0 ? -1 : 1);
+        if (to < 0 || to >= grid.size[a]) {
+          enclosed = false;
+          continue;
+        }
+        const std::size_t w = piece[head] + (d % 2 == 0 ? -strides[a] : strides[a]);
+        if (roles[w] == role && !seen[w]) {
+          seen[w] = 1;
+          piece.push_back(w);
+        }
+        enclosed = enclosed && (roles[w] == role || roles[w] == kTissueRole);
+      }
+    }
+    if (!enclosed || piece.size() > most) continue;
+    for (const std::size_t v : piece) roles[v] = kTissueRole;
+    ++filled;
+  }
+  return filled;
+}
+
+Volume<Label> rolesOf(const TissueMasks& masks) {
+  Volume<Label> roles(masks.white.grid, kOuterRole);
+  for (std::size_t v = 0; v < roles.size(); ++v) {
+    roles[v] = masks.white[v]       ? kInnerRole
+               : masks.grey[v]      ? kTissueRole
+               : masks.insulated[v] ? kInsulatedRole
+                                    : kOuterRole;
+  }
+  return roles;
+}
+
+/// The tissue with the hidden boundary of buried sulci, and its interpolant.
+struct Field {
+  Annulus annulus;
+  harmonic::Interpolant interpolant;
+  std::int64_t sulcalVoxels = 0;
+};
+
+Field solve(const Volume<Label>& roles, const Monitor& monitor) {
+  const auto has = [&](Label role) {
+    return std::find(roles.data.begin(), roles.data.end(), role) != roles.data.end();
+  };
+  if (!has(kOuterRole)) throw InvalidInput("labels: nothing lies outside of the tissue");
+  harmonic::LabelRoles named{{kInnerRole}, {kTissueRole}, {kOuterRole}, {}};
+  if (has(kInsulatedRole)) named.insulated = {kInsulatedRole};
+  Monitor stoppable = monitor;
+  stoppable.onProgress = nullptr;
+  Field field;
+  correspondence::SulcalRecovery recovered = correspondence::recoverSulci(
+      harmonic::annulusFromLabels(roles, named, {}, stoppable), {}, stoppable);
+  field.annulus = std::move(recovered.annulus);
+  field.sulcalVoxels = static_cast<std::int64_t>(recovered.voxels.size());
+  field.interpolant = harmonic::solveInterpolant(field.annulus, {}, stoppable);
+  return field;
+}
+
+/// The interpolant on a box, as a level set whose zero is the sheet; positive inside of it.
+struct SheetLevel {
+  LevelSet level;
+  Volume<std::uint8_t> known;   ///< 0 where tissue ends without boundary
+  Volume<std::uint8_t> tissue;  ///< 1 in tissue
+};
+
+SheetLevel levelOf(const Field& field) {
+  constexpr float kOffZero = 1e-3F;
+  const Annulus& annulus = field.annulus;
+  const Grid grid = gridOf(annulus.grid, {annulus.first, annulus.size});
+  SheetLevel sheet{LevelSet(grid), Volume<std::uint8_t>(grid, 1), Volume<std::uint8_t>(grid, 0)};
+  parallelFor(sheet.level.size(), 1 << 15, [&](std::size_t p) {
+    const std::int32_t n = annulus.numberAt[p];
+    float value = 0;
+    if (n >= 0) {
+      value = static_cast<float>(1 - 2 * field.interpolant.u[n]);
+      sheet.tissue[p] = 1;
+    } else if (n == harmonic::kInsulated) {
+      sheet.known[p] = 0;
+    } else {
+      value = n == harmonic::kInner ? 1.0F : -1.0F;
+    }
+    sheet.level[p] = value >= 0 ? std::max(value, kOffZero) : std::min(value, -kOffZero);
+  });
+  return sheet;
+}
+
+/// Where the level is not known it goes on as its neighbours have it, so that it can be sampled
+/// beside rims.
+void carryOn(SheetLevel& sheet) {
+  constexpr int kRounds = 2;
+  const Grid& grid = sheet.level.grid;
+  Volume<std::uint8_t> has = sheet.known;
+  for (int round = 0; round < kRounds; ++round) {
+    const Volume<std::uint8_t> before = has;
+    parallelFor(grid.size[2], 1, [&](std::size_t slice) {
+      const int k = static_cast<int>(slice);
+      for (int j = 0; j < grid.size[1]; ++j) {
+        for (int i = 0; i < grid.size[0]; ++i) {
+          if (before(i, j, k)) continue;
+          float sum = 0;
+          int count = 0;
+          for (int n = 0; n < 27; ++n) {
+            const int x = i + n % 3 - 1, y = j + n / 3 % 3 - 1, z = k + n / 9 - 1;
+            if (!grid.contains(x, y, z) || !before(x, y, z)) continue;
+            sum += sheet.level(x, y, z);
+            ++count;
+          }
+          if (count == 0) continue;
+          sheet.level(i, j, k) = sum / static_cast<float>(count);
+          has(i, j, k) = 1;
+        }
+      }
+    });
+  }
+}
+
+/// Faces of cells without tissue: there the inner and the outer region touch.
+std::vector<std::uint8_t> bareFaces(const TriangleMesh& mesh, const SheetLevel& sheet) {
+  const Grid& grid = sheet.tissue.grid;
+  std::vector<std::uint8_t> bare(mesh.faceCount());
+  parallelFor(bare.size(), 1 << 12, [&](std::size_t f) {
+    const auto face = static_cast<Eigen::Index>(f);
+    const Point middle = (mesh.corner(face, 0) + mesh.corner(face, 1) + mesh.corner(face, 2)) / 3;
+    const Vector index = grid.toIndex(middle);
+    bool tissue = false;
+    for (int c = 0; c < 8; ++c) {
+      const int i = static_cast<int>(std::floor(index[0])) + (c & 1);
+      const int j = static_cast<int>(std::floor(index[1])) + (c >> 1 & 1);
+      const int k = static_cast<int>(std::floor(index[2])) + (c >> 2);
+      tissue = tissue || (grid.contains(i, j, k) && sheet.tissue(i, j, k));
+    }
+    bare[f] = !tissue;
+  });
+  return bare;
+}
+
+/// True if a point lies on the edge of the image: among the centres of its outermost voxels.
+bool onImageEdge(const Grid& image, const Point& point) {
+  constexpr double kNear = 0.3;  // voxels, as far as remeshing may have rounded a rim
+  const Vector index = image.toIndex(point);
+  for (int a = 0; a < 3; ++a) {
+    if (index[a] < kNear || index[a] > image.size[a] - 1 - kNear) return true;
+  }
+  return false;
+}
+
+/// The sheet before it is remeshed.
+TriangleMesh extractSheet(const Field& field, const SheetLevel& sheet, SheetFacts& facts) {
+  TriangleMesh mesh = extractIsoSurface(sheet.level, sheet.known);
+  const double thickness = static_cast<double>(field.annulus.count()) *
+                           field.annulus.grid.voxelVolume() / geometry::totalArea(mesh);
+  const auto disc = [&](double radii) { return kPi * std::pow(radii * thickness, 2); };
+  mesh = withoutFaces(mesh, largePatches(mesh, bareFaces(mesh, sheet), disc(kSmallPatch)));
+  mesh = withoutPinches(mesh);
+  if (mesh.faceCount() == 0) throw InvalidInput("labels: the tissue holds no sheet");
+  Pieces pieces = largePieces(mesh, disc(kSmallPiece));
+  facts.piecesLeftOut = pieces.leftOut;
+  const Grid& image = field.annulus.grid;
+  const auto reachesEdge = [&](const std::vector<std::int32_t>& rim) {
+    return std::any_of(rim.begin(), rim.end(), [&](std::int32_t v) {
+      return onImageEdge(image, pieces.mesh.positions.row(v));
+    });
+  };
+  Closed closed = withHolesClosed(pieces.mesh, 2 * kPi * kSmallHole * thickness, reachesEdge);
+  facts.holesClosed = closed.holes;
+  return std::move(closed.mesh);
+}
+
+/// From the sheet to one of the boundaries; one point only if the way does not get there.
+Trajectory pathTo(const TrajectoryTracer& tracer, const Point& start, double target) {
+  Trajectory path;
+  path.points = {start};
+  path.along = {0};
+  Point at = start;
+  for (int leg = 1; leg <= kLegs; ++leg) {
+    const double level = 0.5 + (target - 0.5) * leg / kLegs;
+    const correspondence::Trace trace = tracer.trace(at, level);
+    if (!trace.reached) {
+      path.points.resize(1);
+      path.along.resize(1);
+      return path;
+    }
+    at = trace.point;
+    path.points.push_back(at);
+    path.along.push_back(path.along.back() + static_cast<float>(trace.length));
+  }
+  path.end = TrajectoryEnd::Outer;
+  return path;
+}
+
+/// The ways from each vertex of the sheet to both boundaries.
+struct Ways {
+  std::vector<Trajectory> inward, outward;
+};
+
+Ways traceWays(const TrajectoryTracer& tracer, const TriangleMesh& sheet) {
+  Ways ways;
+  ways.inward.resize(sheet.vertexCount());
+  ways.outward.resize(sheet.vertexCount());
+  parallelFor(ways.inward.size(), 256, [&](std::size_t v) {
+    const Point start = sheet.positions.row(static_cast<Eigen::Index>(v));
+    ways.inward[v] = pathTo(tracer, start, 0);
+    ways.outward[v] = pathTo(tracer, start, 1);
+    if (ways.inward[v].end == TrajectoryEnd::NoRibbon) ways.outward[v] = ways.inward[v];
+    if (ways.outward[v].end == TrajectoryEnd::NoRibbon) ways.inward[v] = ways.outward[v];
+  });
+  return ways;
+}
+
+/// Straight ways, the mean of the neighbours', for vertices that have none.
+std::int64_t interpolateWays(const TriangleMesh& sheet, Ways& ways,
+                             std::vector<std::uint8_t>& own) {
+  const auto topology = geometry::buildTopology(sheet.faces, sheet.vertexCount());
+  own.assign(ways.inward.size(), 1);
+  std::vector<std::int32_t> missing;
+  for (std::size_t v = 0; v < own.size(); ++v) {
+    if (ways.inward[v].end != TrajectoryEnd::NoRibbon) continue;
+    own[v] = 0;
+    missing.push_back(static_cast<std::int32_t>(v));
+  }
+  const auto count = static_cast<std::int64_t>(missing.size());
+  std::vector<std::uint8_t> has = own;
+  for (bool any = true; any && !missing.empty();) {
+    any = false;
+    const std::vector<std::uint8_t> before = has;
+    for (const std::int32_t v : missing) {
+      Vector in = Vector::Zero(), out = Vector::Zero();
+      int neighbours = 0;
+      for (const std::int32_t w : topology.vertexVertices[v]) {
+        if (!before[w]) continue;
+        in += ways.inward[w].points.back() - ways.inward[w].points.front();
+        out += ways.outward[w].points.back() - ways.outward[w].points.front();
+        ++neighbours;
+      }
+      if (neighbours == 0) continue;
+      has[v] = 1;
+      any = true;
+      const auto straight = [&](Trajectory& path, const Vector& way) {
+        path.points.push_back(path.points.front() + way / neighbours);
+        path.along.push_back(static_cast<float>(way.norm() / neighbours));
+        path.end = TrajectoryEnd::Outer;
+      };
+      straight(ways.inward[v], in);
+      straight(ways.outward[v], out);
+    }
+    std::erase_if(missing, [&](std::int32_t v) { return has[v] != 0; });
+  }
+  return count;
+}
+
+/// The way to half depth.
+std::vector<Trajectory> waysToMiddle(const Ways& ways) {
+  std::vector<Trajectory> middle(ways.inward.size());
+  for (std::size_t v = 0; v < middle.size(); ++v) {
+    const double off = 0.5 * (ways.outward[v].length() - ways.inward[v].length());
+    const Trajectory& along = off > 0 ? ways.outward[v] : ways.inward[v];
+    middle[v].points = {along.points.front(), along.at(std::abs(off))};
+    middle[v].along = {0, static_cast<float>(std::abs(off))};
+    middle[v].end = TrajectoryEnd::Outer;
+  }
+  return middle;
+}
+
+struct Grown {
+  TriangleMesh mesh;
+  std::int64_t heldBack = 0;
+  double missing = 0;  ///< mm, summed over those
+  double most = 0;     ///< mm
+};
+
+Grown grow(const TriangleMesh& sheet, const std::vector<Trajectory>& paths, double edge, int steps,
+           double least, const Placement& place, const RelaxationOptions& relaxation) {
+  std::vector<std::uint8_t> moves(paths.size());
+  for (std::size_t v = 0; v < moves.size(); ++v) moves[v] = paths[v].length() > 0;
+  Growth growth(sheet, paths, edge);
+  for (int step = 1; step <= steps; ++step) growth.goTo(static_cast<double>(step) / steps);
+  Grown grown;
+  for (std::size_t v = 0; v < paths.size(); ++v) {
+    const double missing = growth.missing(v);
+    if (missing <= least) continue;
+    ++grown.heldBack;
+    grown.missing += missing;
+    grown.most = std::max(grown.most, missing);
+  }
+  grown.mesh = relaxed(growth.mesh(), edge, moves, place, relaxation);
+  return grown;
+}
+
+/// Marks vertices whose thickness the image's edge may have changed: nearest vertex of a rim on
+/// that edge, carried from neighbour to neighbour.
+void markCut(const Grid& image, const TriangleMesh& sheet, const Eigen::VectorXd& thickness,
+             CorticalSurfaces& made) {
+  SheetFacts& facts = made.sheet;
+  const auto topology = geometry::buildTopology(sheet.faces, sheet.vertexCount());
+  std::vector<std::int32_t> nearest(sheet.vertexCount(), -1);
+  std::deque<std::int32_t> waiting;
+  const auto rims = rimsOf(sheet);
+  facts.rims = static_cast<std::int64_t>(rims.size());
+  for (const auto& rim : rims) {
+    for (const std::int32_t v : rim) {
+      if (!onImageEdge(image, sheet.positions.row(v))) continue;
+      nearest[v] = v;
+      waiting.push_back(v);
+    }
+  }
+  const auto distance = [&](std::int32_t v, std::int32_t source) {
+    return (sheet.positions.row(v) - sheet.positions.row(source)).norm();
+  };
+  while (!waiting.empty()) {
+    const std::int32_t v = waiting.front();
+    waiting.pop_front();
+    for (const std::int32_t w : topology.vertexVertices[v]) {
+      if (nearest[w] >= 0 && distance(w, nearest[w]) <= distance(w, nearest[v])) continue;
+      nearest[w] = nearest[v];
+      waiting.push_back(w);
+    }
+  }
+  for (std::size_t v = 0; v < nearest.size(); ++v) {
+    if (nearest[v] < 0) continue;
+    const auto row = static_cast<Eigen::Index>(v);
+    double least = kInfinity;
+    for (const TriangleMesh* mesh : {&made.white.mesh, &made.mid, &made.pial}) {
+      least = std::min(least, (mesh->positions.row(row) - sheet.positions.row(nearest[v])).norm());
+    }
+    if (least >= kReach * thickness[row]) continue;
+    facts.known[v] = 0;
+    ++facts.cutByImage;
+  }
+}
+
+/// The cotangent formula fails on rims: their vertices take the mean of their inner neighbours.
+Eigen::VectorXd curvatureOfSheet(const TriangleMesh& mesh) {
+  Eigen::VectorXd curvature = meanCurvature(mesh);
+  const auto topology = geometry::buildTopology(mesh.faces, mesh.vertexCount());
+  std::vector<std::uint8_t> rim(mesh.vertexCount(), 0);
+  for (const auto& line : rimsOf(mesh)) {
+    for (const std::int32_t v : line) rim[v] = 1;
+  }
+  for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
+    if (!rim[v]) continue;
+    double sum = 0;
+    int count = 0;
+    for (const std::int32_t w : topology.vertexVertices[v]) {
+      if (rim[w]) continue;
+      sum += curvature[w];
+      ++count;
+    }
+    curvature[v] = count > 0 ? sum / count : 0;
+  }
+  return curvature;
+}
+
+/// Inner, middle and outer surface out of the sheet.
+void growSheets(const TriangleMesh& sheet, const Ways& ways, const TrajectoryTracer& tracer,
+                const SurfaceOptions& options, CorticalSurfaces& made) {
+  const double edge = made.white.edgeLength;
+  const double voxel = tracer.annulus().grid.spacing.minCoeff();
+  const auto backTo = [&](double target) {
+    return [&tracer, target, voxel](std::int32_t, const Point& point, const Vector&) {
+      const correspondence::Trace trace = tracer.trace(point, target);
+      const bool near = trace.reached && (trace.point - point).norm() <= kNearBorder * voxel;
+      return near ? trace.point : point;
+    };
+  };
+  const auto stay = [](std::int32_t, const Point& point, const Vector&) { return point; };
+  RelaxationOptions relaxation;
+  relaxation.most *= voxel;
+  RelaxationOptions sliding = relaxation;
+  sliding.bend = 0;
+  sliding.sweeps = 4;
+  const double least = kNoShortfall * voxel;
+  const int steps = std::max(2, options.steps / 2);
+  Grown inner = grow(sheet, ways.inward, edge, steps, least, backTo(0), relaxation);
+  Grown outer = grow(sheet, ways.outward, edge, steps, least, backTo(1), relaxation);
+  Grown middle = grow(sheet, waysToMiddle(ways), edge, 2, least, stay, sliding);
+  made.white.mesh = std::move(inner.mesh);
+  made.pial = std::move(outer.mesh);
+  made.mid = std::move(middle.mesh);
+  made.heldBackMid = middle.heldBack;
+  made.heldBackPial = outer.heldBack + inner.heldBack;
+  if (made.heldBackPial > 0) {
+    made.heldBackMean = (outer.missing + inner.missing) / static_cast<double>(made.heldBackPial);
+  }
+  made.heldBackMost = std::max(outer.most, inner.most);
+}
+
+}  // namespace
+
+CorticalSurfaces buildSheets(const TissueMasks& masks, const SurfaceOptions& options,
+                             const Monitor& monitor) {
+  if (masks.greyVoxels == 0) throw InvalidInput("grey: no voxel found; a sheet needs grey matter");
+  CorticalSurfaces made;
+  SheetFacts& facts = made.sheet;
+  facts.open = true;
+  auto last = std::chrono::steady_clock::now();
+  monitor.progress(0, "pockets in the tissue");
+  Volume<Label> roles = rolesOf(masks);
+  facts.pocketsFilled = fillPockets(roles);
+  made.seconds.topology = secondsSince(last);
+  monitor.progress(0.05, "harmonic interpolant");
+  const Field field = solve(roles, monitor);
+  made.cutLinks = field.sulcalVoxels;
+  made.seconds.interpolant = secondsSince(last);
+
+  monitor.progress(0.25, "extracting the sheet");
+  SheetLevel level = levelOf(field);
+  const TriangleMesh raw = extractSheet(field, level, facts);
+  carryOn(level);
+  made.seconds.extraction = secondsSince(last);
+  monitor.progress(0.3, "remeshing");
+  RemeshOptions remeshing;
+  remeshing.faces = options.faces;
+  remeshing.open = true;
+  RemeshResult remeshed = remesh(raw, level.level, remeshing);
+  const TriangleMesh sheet = std::move(remeshed.mesh);
+  made.white.edgeLength = remeshed.edgeLength;
+  made.seconds.remeshing = secondsSince(last);
+
+  monitor.progress(0.6, "trajectories");
+  const TrajectoryTracer tracer(field.annulus, field.interpolant);
+  Ways ways = traceWays(tracer, sheet);
+  facts.interpolated = interpolateWays(sheet, ways, facts.known);
+  made.thickness.resize(sheet.vertexCount());
+  for (std::size_t v = 0; v < ways.inward.size(); ++v) {
+    made.thickness[static_cast<Eigen::Index>(v)] =
+        ways.inward[v].length() + ways.outward[v].length();
+  }
+  made.seconds.trajectories = secondsSince(last);
+  monitor.progress(0.7, "growing the surfaces");
+  growSheets(sheet, ways, tracer, options, made);
+  made.seconds.growing = secondsSince(last);
+
+  monitor.progress(0.95, "curvature");
+  made.curvature = curvatureOfSheet(made.white.mesh);
+  made.nearestThickness = distanceThickness(made.white.mesh, made.pial);
+  made.sulcalDepth = Eigen::VectorXd::Zero(sheet.vertexCount());
+  markCut(masks.white.grid, sheet, made.thickness, made);
+  made.noRibbon = (made.thickness.array() == 0).count();
+  made.seconds.measures = secondsSince(last);
+  monitor.progress(1, "surfaces");
+  return made;
+}
+
+}  // namespace explica::surface
