@@ -150,6 +150,7 @@ const VolumeCommand kSurfaceCommands[] = {
     {"Unfold", {"unfold", "{file}", "--vertex", "0", "--radius", "5", "--direction", "0,0,1"}},
     {"Flatten", {"flatten", "{file}"}},
     {"Compare", {"compare", "{file}", "{file}"}},
+    {"Inflate", {"inflate", "{file}"}},
 };
 
 const BadSurface kBadPolygons[] = {

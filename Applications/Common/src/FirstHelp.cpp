@@ -69,6 +69,13 @@ explica heart beat/frame-0000.nii.gz beat/frame-0001.nii.gz --out heart)"},
        {},
        R"(explica phantom shell --size 24 --out shell
 explica history shell/labels.nii.gz)"},
+      {"inflate",
+       "a closed surface, such as a hemisphere",
+       "the surface opened as a whole until its folds are seen, areas kept, nowhere through itself",
+       {"target-seen", "area-tolerance", "frames", "max-time", "resume", "repair"},
+       R"(explica phantom cortex --size 32 --spacing 2 --out cortex
+explica surface cortex/labels.nii.gz --white 3 --grey 2 --faces 2000 --out surfaces
+explica inflate surfaces/white.surf.gii --out inflated)"},
       {"phantom cortex",
        "sizes",
        "a folded ribbon: labels, T1-like image and exact white surface",

@@ -31,6 +31,10 @@ class Writer {
     count(p.rows());
     raw(p.data(), static_cast<std::size_t>(p.size()) * sizeof(double));
   }
+  void numbers(const std::vector<double>& list) {
+    count(static_cast<std::int64_t>(list.size()));
+    raw(list.data(), list.size() * sizeof(double));
+  }
   void raw(const void* data, std::size_t size) {
     bytes.append(static_cast<const char*>(data), size);
   }
@@ -56,11 +60,17 @@ class Reader {
     raw(p.data(), static_cast<std::size_t>(p.size()) * sizeof(double));
     return p;
   }
+  std::vector<double> numbers() {
+    std::vector<double> list(static_cast<std::size_t>(count()));
+    raw(list.data(), list.size() * sizeof(double));
+    return list;
+  }
   void raw(void* data, std::size_t size) {
     if (at_ + size > bytes_.size()) fail("is truncated");
     std::memcpy(data, bytes_.data() + at_, size);
     at_ += size;
   }
+  [[nodiscard]] bool atEnd() const { return at_ == bytes_.size(); }
   [[noreturn]] void fail(const std::string& cause) const {
     throw IOError(name_ + " " + cause + "; it is not a complete state of an unfolding");
   }
@@ -111,6 +121,10 @@ void writeCheckpoint(const std::filesystem::path& path, const Checkpoint& checkp
   }
   w.count(static_cast<std::int64_t>(checkpoint.path.size()));
   for (const Positions& p : checkpoint.path) w.points(p);
+  if (s.directions.rows() > 0) {  // of an unfolding towards viewpoints there is no more to say
+    w.points(s.directions);
+    w.numbers(checkpoint.notes);
+  }
   const std::uint64_t sum = checkSum(w.bytes);
 
   WholeFile file(path);
@@ -158,6 +172,10 @@ Checkpoint readCheckpoint(const std::filesystem::path& path) {
   }
   c.path.resize(static_cast<std::size_t>(r.count()));
   for (Positions& p : c.path) p = r.points();
+  if (!r.atEnd()) {
+    c.state.directions = r.points();
+    c.notes = r.numbers();
+  }
   return c;
 }
 

@@ -48,14 +48,29 @@ TermValues Unfolder::Implementation::strengths() const {
 
 Configuration Unfolder::Implementation::configurationAt(
     const Positions& x, std::span<const collision::Contact> near) const {
-  return {setup.patch, x, viewpoints, state.multipliers, near, knot.get()};
+  Configuration now(setup.patch, x, viewpoints, state.multipliers, near, knot.get());
+  if (state.directions.rows() > 0) now.directions = &state.directions;
+  return now;
+}
+
+double Unfolder::Implementation::meanFlux() const {
+  const auto faces = setup.patch.ofRegion();
+  double flux = 0, area = 0;
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    const FaceShape shape = shapeOf(faces[f], state.positions);
+    flux += shape.area * state.directions.row(static_cast<Eigen::Index>(f)).dot(shape.normal);
+    area += shape.area;
+  }
+  return flux / area;
 }
 
 void Unfolder::Implementation::measure(IterationRecord& account) const {
   const PhaseClock clock(account.phases.visibility);
   account.visibility =
-      visibility::AverageVisibility(setup.mesh.faces, setup.region.faces, viewpoints)
-          .value(state.positions);
+      state.directions.rows() > 0
+          ? meanFlux()
+          : visibility::AverageVisibility(setup.mesh.faces, setup.region.faces, viewpoints)
+                .value(state.positions);
   double sum = 0, largest = 0;
   for (const PatchFace& face : setup.patch.ofRegion()) {
     const double error = std::abs(shapeOf(face, state.positions).area / face.restArea - 1);
@@ -136,6 +151,15 @@ const std::vector<std::int32_t>& Unfolder::movingVertices() const {
 void Unfolder::setViewpoints(visibility::Viewpoints viewpoints) {
   self_->viewpoints = std::move(viewpoints);
   self_->setup.patch.room = findRoom(self_->setup, self_->viewpoints);
+}
+void Unfolder::setDirections(Positions directions) {
+  if (directions.rows() != 0 &&
+      directions.rows() != static_cast<Eigen::Index>(self_->setup.region.faces.size())) {
+    throw InvalidInput("directions: " + std::to_string(directions.rows()) + " for " +
+                       std::to_string(self_->setup.region.faces.size()) + " faces");
+  }
+  self_->state.directions = std::move(directions);
+  self_->measure(self_->record);
 }
 void Unfolder::setWeights(const UnfoldWeights& weights) {
   self_->options.weights = weights;

@@ -36,6 +36,8 @@ struct Unfolder::Implementation {
   [[nodiscard]] Configuration configurationAt(const Positions& x,
                                               std::span<const collision::Contact> near) const;
   void measure(IterationRecord& account) const;
+  /// Mean of n . d by area, where faces have directions of their own.
+  [[nodiscard]] double meanFlux() const;
 
   bool step() { return options.method == Method::Thesis ? thesisStep() : implicitStep(); }
   bool implicitStep();

@@ -24,6 +24,7 @@ struct Sample {
   visibility::Viewpoints view{{Point(3, 2, 9), Point(-4, 1, 12)}, {0.25, 0.75}};
   Patch patch;
   Objective objective;
+  Positions directions;  ///< of the faces of the region; no rows: towards the view
   Eigen::VectorXd multipliers;
   std::vector<std::int32_t> unknown;
   std::vector<collision::Contact> contacts;
@@ -56,7 +57,9 @@ struct Sample {
   }
 
   [[nodiscard]] Configuration at(const Positions& x) const {
-    return {patch, x, view, multipliers, contacts, knot.get()};
+    Configuration now(patch, x, view, multipliers, contacts, knot.get());
+    if (directions.rows() > 0) now.directions = &directions;
+    return now;
   }
   [[nodiscard]] double value(const Positions& x, const TermValues& strengths) const {
     IterationRecord account;
@@ -120,6 +123,31 @@ TEST(Energy, GradientOfEveryTermPassesTheTaylorTest) {
     EXPECT_GT(rate, 1.85) << info.name;
     EXPECT_LT(rate, 2.15) << info.name;
   }
+}
+
+TEST(Energy, GradientTowardsDirectionsOfTheFacesOwnPassesTheTaylorTest) {
+  Sample s;
+  s.multipliers.setZero();
+  s.directions = randomDirection(static_cast<Eigen::Index>(s.patch.regionFaces), 5);
+  s.directions.rowwise().normalize();
+  for (PatchFace& face : s.patch.faces) face.holdWeight = 0;
+  const Positions d = randomDirection(s.mesh.vertexCount(), 3);
+  const TermValues strengths = only(Term::Visibility, 1.3);
+  const double slope = (s.gradient(strengths).array() * d.array()).sum();
+  const auto valueAt = [&](double h) { return s.value(s.mesh.positions + h * d, strengths); };
+  const auto remainder = [&](double h) { return std::abs(valueAt(h) - valueAt(0) - h * slope); };
+  const double rate = std::log10(remainder(1e-3) / remainder(1e-4));
+  EXPECT_GT(rate, 1.85);
+  EXPECT_LT(rate, 2.15);
+  // The term is the weight times one less the cosine.
+  double expected = 0;
+  for (std::size_t f = 0; f < s.patch.regionFaces; ++f) {
+    const auto row = static_cast<Eigen::Index>(f);
+    const double cosine =
+        s.directions.row(row).dot(shapeOf(s.patch.faces[f], s.mesh.positions).normal);
+    expected += 1.3 * s.patch.faces[f].weight * (1 - cosine);
+  }
+  EXPECT_NEAR(valueAt(0), expected, 1e-9 * expected);
 }
 
 TEST(Energy, StiffnessOfEveryTermIsSymmetricPositiveSemiDefinite) {

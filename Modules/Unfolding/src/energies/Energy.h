@@ -30,7 +30,9 @@ class Configuration {
   const Eigen::VectorXd& multipliers;            ///< one per face of the region
   std::span<const collision::Contact> contacts;  ///< a superset of the pairs within range
   const repulsion::KnotEnergy* knot;             ///< null without one
-  std::vector<FaceShape> shapes;                 ///< of the patch's faces
+  /// Where faces of the region are to look, R x 3; null: towards the viewpoints.
+  const Positions* directions = nullptr;
+  std::vector<FaceShape> shapes;  ///< of the patch's faces
 
   /// Derivatives of the contact barrier, found at the first call.
   [[nodiscard]] const std::vector<collision::ContactForce>& contactForces() const;

@@ -28,6 +28,15 @@ MeanDirection directionFrom(const Point& place, const visibility::Viewpoints& vi
   return mean;
 }
 
+/// Where a face of the region is to look: along a direction of its own, or towards the viewpoints.
+MeanDirection directionOf(const Configuration& now, std::size_t face) {
+  if (now.directions != nullptr) {
+    return {now.directions->row(static_cast<Eigen::Index>(face)).transpose(),
+            Eigen::Matrix3d::Zero()};
+  }
+  return directionFrom(centroidOf(now.patch.faces[face], now.x), now.viewpoints);
+}
+
 /// strength * sum over the region's faces of w (1 - n . d).
 ///
 /// With areas kept this is the area times one less the average visibility [Thesis, Eq. 5.26]; off
@@ -40,7 +49,7 @@ class VisibilityEnergy final : public Energy {
     return parallelSum(faces.size(), kGrain, 0.0, [&](std::size_t begin, std::size_t end) {
       double block = 0;
       for (std::size_t f = begin; f < end; ++f) {
-        const Vector d = directionFrom(centroidOf(faces[f], now.x), now.viewpoints).direction;
+        const Vector d = directionOf(now, f).direction;
         block += faces[f].weight * (1 - now.shapes[f].normal.dot(d));
       }
       return strength * block;
@@ -52,7 +61,7 @@ class VisibilityEnergy final : public Energy {
     std::vector<CornerForces> forces(faces.size());
     parallelFor(faces.size(), kGrain, [&](std::size_t f) {
       const FaceShape& shape = now.shapes[f];
-      const MeanDirection look = directionFrom(centroidOf(faces[f], now.x), now.viewpoints);
+      const MeanDirection look = directionOf(now, f);
       const double scale = strength * faces[f].weight;
       const Vector shift = scale / 3 * (look.derivative * shape.normal);
       for (int k = 0; k < 3; ++k) {

@@ -63,7 +63,8 @@ struct Checkpoint {
   UnfoldState state;
   BestState best;
   std::vector<IterationRecord> history;
-  std::vector<Positions> path;  ///< moving vertices after each iteration, from the start on
+  std::vector<Positions> path;     ///< moving vertices after each iteration, from the start on
+  std::vector<double> notes = {};  ///< of whoever drives an Unfolder in another way than unfold()
 };
 
 /// What keeps a result from being what it seems.

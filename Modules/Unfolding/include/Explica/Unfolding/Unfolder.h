@@ -112,6 +112,7 @@ struct IterationRecord {
 struct UnfoldState {
   Positions positions;          ///< V x 3, all vertices of the surface
   Eigen::VectorXd multipliers;  ///< one per kept face
+  Positions directions;  ///< R x 3, see Unfolder::setDirections(); no rows: towards the viewpoints
   double damping = 1;
   double areaStiffness = 0;     ///< current, >= weights.area
   double drive = 1;             ///< strength of the visibility term against the others
@@ -172,6 +173,12 @@ class Unfolder {
   [[nodiscard]] const std::vector<std::int32_t>& collarFaces() const;
 
   void setViewpoints(visibility::Viewpoints viewpoints);
+  /// Lets each face of the region look along a direction of its own, held until the next call, in
+  /// place of towards the viewpoints; `visibility` of the account is then the mean of n . d by
+  /// area.
+  /// @param directions  R x 3, at most unit length; no rows: towards the viewpoints
+  /// @throws InvalidInput  another number of rows
+  void setDirections(Positions directions);
   void setWeights(const UnfoldWeights& weights);
   [[nodiscard]] const UnfoldWeights& weights() const;
 
