@@ -1,13 +1,16 @@
 # SPDX-FileCopyrightText: The Explica developers
 # SPDX-License-Identifier: Apache-2.0
 """Checks the exports of a study without any code of ours: RO-Crate 1.1 with Process Run Crate,
-BIDS-Prov, PROV-JSON, and the sidecars of a BIDS derivative.  Usage: check_study.py OUT PROV_JSON"""
+BIDS-Prov, PROV-JSON (also as python's prov reads it), and the sidecars of a BIDS derivative.  Usage: check_study.py OUT PROV_JSON"""
 
 import hashlib
 import json
 import pathlib
 import re
 import sys
+
+from prov.model import (ProvActivity, ProvAgent, ProvAssociation, ProvDocument, ProvEntity,
+                        ProvGeneration, ProvUsage)
 
 out = pathlib.Path(sys.argv[1])
 faults = []
@@ -149,6 +152,21 @@ for relation, ends in (("used", ("activity", "entity")), ("wasGeneratedBy", ("en
     for link in prov[relation].values():
         for end in ends:
             check(link["prov:" + end] in prov[end], f"PROV-JSON: {relation} of {link}")
+
+# Another program's reading of the same file: what it understands must be all that was written, and
+# what it writes back must be the same document.
+document = ProvDocument.deserialize(source=sys.argv[2], format="json")
+for kind, record in (("entity", ProvEntity), ("activity", ProvActivity), ("agent", ProvAgent),
+                     ("used", ProvUsage), ("wasGeneratedBy", ProvGeneration),
+                     ("wasAssociatedWith", ProvAssociation)):
+    understood = len(list(document.get_records(record)))
+    check(understood == len(prov[kind]),
+          f"PROV-JSON: python's prov reads {understood} of {len(prov[kind])} under {kind}")
+for activity in document.get_records(ProvActivity):
+    start, end = activity.get_startTime(), activity.get_endTime()
+    check(start is None or end is None or start <= end, f"PROV-JSON: {activity} ends before it starts")
+again = ProvDocument.deserialize(content=document.serialize(format="json"), format="json")
+check(again == document, "PROV-JSON: changed by python's prov")
 
 for fault in faults[:40]:
     print(fault)
