@@ -31,9 +31,18 @@ std::set<Label> valuesOf(const std::vector<Volume<Label>>& frames) {
   return values;
 }
 
+/// The first dozen; an image taken for labels has hundreds.
 std::string listOf(const std::set<Label>& values) {
+  constexpr std::size_t kShown = 12;
   std::string text;
-  for (const Label v : values) text += (text.empty() ? "" : ", ") + std::to_string(v);
+  std::size_t shown = 0;
+  for (const Label v : values) {
+    if (++shown > kShown) break;
+    text += (text.empty() ? "" : ", ") + std::to_string(v);
+  }
+  if (values.size() > kShown) {
+    text += " and " + std::to_string(values.size() - kShown) + " more (is this an image?)";
+  }
   return text.empty() ? "none but 0" : text;
 }
 

@@ -56,6 +56,11 @@ TEST(HeartLabels, WhatIsNotClearIsRefusedWithTheRemedy) {
     return std::string("accepted");
   };
   EXPECT_NE(sentence(renamed(mms, 10, 20, 30), {}).find("--preset"), std::string::npos);
+  Volume<Label> image = mms;
+  for (std::size_t n = 0; n < image.data.size(); ++n) image.data[n] = static_cast<Label>(n % 900);
+  const std::string taken = sentence(image, {});
+  EXPECT_NE(taken.find("887 more (is this an image?)"), std::string::npos) << taken;
+  EXPECT_LT(taken.size(), 250U);
   EXPECT_NE(sentence(renamed(mms, 1, 0, 0), {}).find("no frame has a wall"), std::string::npos);
   EXPECT_NE(sentence(mms, {.preset = Preset::None}).find("--cavity"), std::string::npos);
   HeartLabelOptions same;

@@ -1,0 +1,138 @@
+# SPDX-FileCopyrightText: The Explica developers
+# SPDX-License-Identifier: Apache-2.0
+"""Breaks the code in twenty places, one at a time, and asks whether a test notices.
+
+    mutations.py [--only WORD]      needs a configured build/; leaves the sources as they were
+
+Each mutation is a small wrong step of the kind that people make: a sign, a factor, a bound, an index.  A
+mutation that survives names a test that is missing."""
+
+import argparse
+import pathlib
+import subprocess
+import sys
+from dataclasses import dataclass
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+
+
+@dataclass
+class Mutation:
+    file: str
+    right: str
+    wrong: str
+    program: str  # test program that must notice
+    tests: str = "*"
+
+
+ALL = [
+    Mutation("Modules/Harmonic/src/MultigridCoarsening.cpp",
+             "conductance += own * h_.unit[axis] / (distance + shift);",
+             "conductance += own * h_.unit[axis] / distance;", "ExplicaHarmonicUnitTests"),
+    Mutation("Modules/Correspondence/src/Layers.cpp",
+             "share[n] = below / (below + above);", "share[n] = above / (below + above);",
+             "ExplicaCorrespondenceUnitTests"),
+    Mutation("Modules/Correspondence/src/Field.cpp",
+             "sum.u += u_[from] + outward + 0.5 * second;", "sum.u += u_[from] + outward;",
+             "ExplicaCorrespondenceUnitTests"),
+    Mutation("Modules/Geometry/src/MeshMeasures.cpp",
+             "return 0.5 * faceNormalVectors(mesh).rowwise().norm();",
+             "return faceNormalVectors(mesh).rowwise().norm();", "ExplicaGeometryUnitTests"),
+    Mutation("Modules/Visibility/src/FaceFlux.cpp",
+             "moment += outward * 0.5 * (squaredLineDistance * logarithm + lq * r[next] - lp * r[k]);",
+             "moment += outward * 0.5 * (squaredLineDistance * logarithm + lq * r[next] + lp * r[k]);",
+             "ExplicaVisibilityUnitTests"),
+    Mutation("Modules/Unfolding/src/energies/AreaEnergy.cpp",
+             "return face.weight * (now.multipliers[f] + strength * (ratio - 1)) * ratio;",
+             "return face.weight * (now.multipliers[f] + strength * (ratio - 1));",
+             "ExplicaUnfoldingUnitTests", "*Energ*:*Term*"),
+    Mutation("Modules/Planar/src/PolygonVisibility.cpp",
+             "result.variance += view.weights[p] * (squareFlux[p] / result.length - average * average);",
+             "result.variance += view.weights[p] * (squareFlux[p] / result.length - average);",
+             "ExplicaPlanarUnitTests"),
+    Mutation("Modules/Repulsion/src/ClusterTree.cpp",
+             "std::max(sum.radius, (group.centre - sum.centre).norm() + group.radius);",
+             "std::max(sum.radius, (group.centre - sum.centre).norm());",
+             "ExplicaRepulsionUnitTests"),
+    Mutation("Modules/Ventricle/src/Segments.cpp",
+             "std::fmod(angleDeg - 15 + 360, 360)", "std::fmod(angleDeg + 360, 360)",
+             "ExplicaVentricleUnitTests"),
+    Mutation("Modules/Ventricle/include/Explica/Ventricle/Beat.h",
+             "kMuscleDensity = 1.05", "kMuscleDensity = 1.5", "ExplicaVentricleUnitTests"),
+    Mutation("Modules/Study/src/StudyTable.cpp",
+             "0.6745 * (*number - median) / spread", "(*number - median) / spread",
+             "ExplicaStudyUnitTests"),
+    Mutation("Modules/Sampling/src/Depth.cpp",
+             "static_cast<double>(i) / (*count - 1)", "static_cast<double>(i) / *count",
+             "ExplicaSamplingUnitTests"),
+    Mutation("Modules/Sampling/src/Sampler.cpp",
+             "0.5F * (3 * t3 - 5 * t2 + 2)", "0.5F * (3 * t3 - 5 * t2 + 2 * t)",
+             "ExplicaSamplingUnitTests"),
+    Mutation("Modules/IO/src/NiftiFormat.cpp",
+             "affine(axis, 3) = header.quaternion[axis + 3] * unit;",
+             "affine(axis, 3) = header.quaternion[axis + 3];", "ExplicaIOUnitTests"),
+    Mutation("Modules/Flattening/src/MapEnergy.cpp",
+             "density.dP = 4 * (p - 1) + 2 * p * slope;", "density.dP = 4 * (p - 1) + p * slope;",
+             "ExplicaFlatteningUnitTests"),
+    Mutation("Modules/Surface/src/Measures.cpp",
+             "-0.5 * product.row(v).dot(normals.row(v)) / areas[v]",
+             "-product.row(v).dot(normals.row(v)) / areas[v]", "ExplicaSurfaceUnitTests"),
+    Mutation("Modules/Collision/src/ContinuousCollision.cpp",
+             "const double all = (distance - gap) / speed;",
+             "const double all = 2 * (distance - gap) / speed;", "ExplicaCollisionUnitTests"),
+    Mutation("Modules/Pipeline/src/Asymmetry.cpp",
+             "(left - right) / (0.5 * (left + right))", "(left - right) / (left + right)",
+             "ExplicaPipelineUnitTests"),
+    Mutation("Modules/Segmentation/src/Plausibility.cpp",
+             """"ml", 300, 2500""", """"ml", 300, 25000""", "ExplicaSegmentationUnitTests"),
+    Mutation("Modules/Provenance/src/Verify.cpp",
+             """found.sha256 == entry["sha256"] &&""", """true &&""",
+             "ExplicaProvenanceUnitTests"),
+]
+
+
+def build(program):
+    """Whether the program could be built."""
+    return subprocess.run(["ninja", "-C", str(ROOT / "build"), program], check=False,
+                          stdout=subprocess.DEVNULL, stderr=subprocess.STDOUT).returncode == 0
+
+
+def survives(mutation):
+    """Whether the tests pass with the mutation; the file is put back in any case."""
+    path = ROOT / mutation.file
+    before = path.read_text(encoding="utf-8")
+    if before.count(mutation.right) != 1:
+        raise SystemExit(f"{mutation.file}: '{mutation.right}' stands {before.count(mutation.right)} "
+                         "times: follow the code with the mutation")
+    try:
+        path.write_text(before.replace(mutation.right, mutation.wrong), encoding="utf-8")
+        if not build(mutation.program):
+            raise SystemExit(f"{mutation.file}: '{mutation.wrong}' does not compile")
+        tests = subprocess.run([str(ROOT / "build/bin" / mutation.program), "--gtest_brief=1",
+                                "--gtest_fail_fast", f"--gtest_filter={mutation.tests}"],
+                               check=False, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                               timeout=900)
+        return tests.returncode == 0
+    finally:
+        path.write_text(before, encoding="utf-8")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--only", default="", help="mutations of files whose path holds the word")
+    words = parser.parse_args()
+    chosen = [m for m in ALL if words.only in m.file]
+    survivors = []
+    for mutation in chosen:
+        alive = survives(mutation)
+        print(f"{'SURVIVES' if alive else 'caught'}: {mutation.file}: {mutation.wrong}", flush=True)
+        if alive:
+            survivors.append(mutation)
+    for program in sorted({m.program for m in chosen}):
+        build(program)
+    print(f"{len(chosen) - len(survivors)} of {len(chosen)} caught")
+    return 1 if survivors else 0
+
+
+sys.exit(main())

@@ -1,0 +1,301 @@
+# SPDX-FileCopyrightText: The Explica developers
+# SPDX-License-Identifier: Apache-2.0
+"""The measurements: each returns its numbers, and draws its figure beside the page if it has one."""
+
+import pathlib
+
+import nibabel as nib
+import numpy as np
+from scipy.spatial import cKDTree
+
+import figures
+from harness import Measured, real
+
+BERT_FACES = 150000
+
+
+# ---- thickness of shapes whose thickness is known ----
+
+def shell_errors(explica, spacing, levels):
+    """Mean absolute error of a shell's thickness, mm; the shell is 9.6 mm thick at any voxel size."""
+    size = round(64 / spacing)
+    phantom = explica("phantom", "shell", "--size", size, "--spacing", spacing, out=f"shell-{size}")
+    where = ["--inner-level", phantom / "level.nii.gz", "--outer-level",
+             phantom / "outer_level.nii.gz"] if levels else [
+                 phantom / "labels.nii.gz", "--inner", 1, "--tissue", 2]
+    made = explica("thickness", *where, out=f"shell-{size}-{'levels' if levels else 'labels'}")
+    found = nib.load(made / "thickness.nii.gz").get_fdata()
+    exact = nib.load(phantom / "thickness.nii.gz").get_fdata()
+    at = found > 0
+    return float(np.abs(found - exact)[at].mean()), made.command
+
+
+def shells(explica, page):
+    spacings = [4, 2, 1, 0.5]
+    errors = {}
+    rows = []
+    for levels, name in ((False, "labels"), (True, "level sets")):
+        errors[name] = []
+        for spacing in spacings:
+            error, command = shell_errors(explica, spacing, levels)
+            errors[name].append(error)
+            if spacing == 1:
+                rows.append(Measured(f"thickness from {name}, mean absolute error",
+                                     "shell of 9.6 mm, 1 mm voxels", error, "mm",
+                                     0.1 * error + 1e-4, command))
+        order = float(-np.polyfit(np.log(1 / np.array(spacings)), np.log(errors[name]), 1)[0])
+        rows.append(Measured(f"thickness from {name}, order of convergence",
+                             "shells of 4 to 0.5 mm voxels", order, "", 0.15, "as above"))
+    figures.errors_over_spacing(page / "shells.svg", spacings, errors)
+    return rows
+
+
+# ---- cortical thickness beside FreeSurfer's ----
+
+def freesurfer_regions(side):
+    """Mean thickness of each region as FreeSurfer's own statistics state it, mm."""
+    lines = real("bert_freesurfer", "stats", f"{side}h.aparc.stats").read_text().splitlines()
+    cells = [line.split() for line in lines if line and not line.startswith("#")]
+    return {c[0]: float(c[4]) for c in cells}
+
+
+def known_points(side):
+    """Position (RAS mm) and FreeSurfer's thickness of points of its white surface."""
+    table = np.genfromtxt(real("bert_freesurfer", f"{side}h.thickness_at_known_vertices.csv.gz"),
+                          delimiter=",", names=True, dtype=None, encoding="utf-8")
+    points = np.stack([table["ras_x"], table["ras_y"], table["ras_z"]], axis=1)
+    inside = table["thickness_mm"] > 0
+    return points[inside], table["thickness_mm"][inside]
+
+
+def distance_to_surface(points, positions, faces, count=12):
+    """Distance of points from a triangulated surface, mm: nearest of the faces about the nearest
+    vertices."""
+    centres = positions[faces].mean(axis=1)
+    _, near = cKDTree(centres).query(points, k=count, workers=-1)
+    best = np.full(len(points), np.inf)
+    for k in range(count):
+        best = np.minimum(best, distance_to_triangles(points, positions[faces[near[:, k]]]))
+    return best
+
+
+def distance_to_triangles(p, t):
+    """Distance of each point from its own triangle (n x 3 x 3): inside the face's plane region the
+    plane's, else the nearest side's."""
+    a, b, c = t[:, 0], t[:, 1], t[:, 2]
+    normal = np.cross(b - a, c - a)
+    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
+    height = np.einsum("ij,ij->i", p - a, normal)
+    foot = p - height[:, None] * normal
+    inside = np.ones(len(p), dtype=bool)
+    sides = np.full(len(p), np.inf)
+    for start, end in ((a, b), (b, c), (c, a)):
+        along = end - start
+        inside &= np.einsum("ij,ij->i", np.cross(along, foot - start), normal) >= 0
+        share = np.einsum("ij,ij->i", p - start, along) / np.maximum(
+            np.einsum("ij,ij->i", along, along), 1e-12)
+        at = start + np.clip(share, 0, 1)[:, None] * along
+        sides = np.minimum(sides, np.linalg.norm(p - at, axis=1))
+    return np.where(inside, np.abs(height), sides)
+
+
+def beside_freesurfer(explica, page, made, side, kind):
+    """Numbers of one hemisphere of bert against FreeSurfer's, vertex by vertex and by region."""
+    on = f"bert, {'left' if side == 'l' else 'right'}, from {kind}"
+    white = nib.load(made / "white.surf.gii")
+    positions, faces = white.agg_data("pointset").astype(float), white.agg_data("triangle")
+    thickness = nib.load(made / "thickness.shape.gii").darrays[0].data.astype(float)
+    points, reference = known_points(side)
+    _, vertex = cKDTree(positions).query(points, workers=-1)
+    at, known = thickness[vertex], thickness[vertex] > 0
+    apart = distance_to_surface(points, positions, faces)
+    theirs = freesurfer_regions(side)
+    pairs = [(row["name"], theirs[row["name"]], float(row["thickness_mean_mm"]))
+             for row in made.table("regions.tsv") if row["name"] in theirs]
+    names, a, b = zip(*pairs)
+    a, b = np.array(a), np.array(b)
+    figures.scatter_and_bland_altman(page / f"bert-{side}h-{kind.replace(' ', '-')}.svg", names, a,
+                                     b, on)
+    command = made.command
+    return [
+        Measured("known points to white surface, mean distance", on, float(apart.mean()), "mm",
+                 0.02, command),
+        Measured("thickness at known points, correlation", on,
+                 float(np.corrcoef(at[known], reference[known])[0, 1]), "", 0.01, command),
+        Measured("thickness at known points, mean absolute difference", on,
+                 float(np.abs(at - reference)[known].mean()), "mm", 0.02, command),
+        Measured("thickness at known points, mean difference", on,
+                 float((at - reference)[known].mean()), "mm", 0.03, command),
+        Measured("regional mean thickness, correlation", on, float(np.corrcoef(a, b)[0, 1]), "",
+                 0.01, command),
+        Measured("regional mean thickness, mean difference", on, float((b - a).mean()), "mm", 0.03,
+                 command),
+        Measured("regional mean thickness, largest difference", on, float(np.abs(b - a).max()),
+                 "mm", 0.08, command),
+        Measured("pairs of faces that cross, white and pial", on,
+                 made.summary["self_intersections"], "", 0, command),
+    ]
+
+
+def freesurfer_labels(explica, page):
+    atlas = real("bert_freesurfer", "mri", "aparc+aseg.mgz")
+    ribbon = real("bert_freesurfer", "mri", "ribbon.mgz")
+    rows = []
+    for side in "lr":
+        made = explica("surface", ribbon, "--hemisphere", side.upper(), "--atlas", atlas,
+                       out=f"bert-{side}")
+        rows += beside_freesurfer(explica, page, made, side, "labels")
+        rows.append(Measured("seconds of the whole command",
+                             f"bert, {'left' if side == 'l' else 'right'}, {BERT_FACES} faces",
+                             made.seconds, "s", 2 * made.seconds, made.command))
+    return rows
+
+
+def freesurfer_image(explica, page):
+    """From the T1 alone; the parcellation is used for regions and sides only."""
+    made = explica("run", real("bert_freesurfer", "mri", "brain.mgz"), "--atlas",
+                   real("bert_freesurfer", "mri", "aparc+aseg.mgz"), "--steps",
+                   "segment,thickness,surface", out="bert-t1", done=(0, 3))
+    rows = []
+    for side in "lr":
+        rows += beside_freesurfer(explica, page, made.step(f"surface-{side.upper()}"), side, "T1")
+    rows.append(Measured("seconds of the whole command", "bert, both hemispheres, from T1",
+                         made.seconds, "s", 2 * made.seconds, made.command))
+    return rows
+
+
+# ---- unfolding in place ----
+
+UNFOLDED = [
+    ("fsaverage5 left pial, 25 mm", ("fsaverage5", "pial_left.gii.gz"),
+     ["--radius", 25, "--direction=-1,0.2,0.2"]),
+    ("fsaverage5 right white, 25 mm", ("fsaverage5", "white_right.gii.gz"),
+     ["--radius", 25, "--direction=1,0.2,0.2"]),
+    ("S1 left pial, 20 mm", ("s1_pycortex_lh", "pia_lh.gii"),
+     ["--radius", 20, "--direction=-1,0.2,0.2"]),
+    ("S1 left white, 20 mm", ("s1_pycortex_lh", "wm_lh.gii"),
+     ["--radius", 20, "--direction=-1,0.2,0.2"]),
+]
+
+
+def unfolding(explica, page):
+    del page
+    rows = []
+    for on, path, options in UNFOLDED:
+        name = on.replace(",", "").replace(" ", "-")
+        made = explica("unfold", real(*path), *options, out=name, done=(0, 3))
+        s = made.summary
+        new = s["self_intersections_final"] - s["self_intersections_initial"]
+        rows += [
+            Measured("average visibility", on, s["visibility_final"], "", 0.01, made.command),
+            Measured("share of area seen", on, s["seen_final"], "", 0.01, made.command),
+            Measured("mean area error", on, 100 * s["area_error_mean"], "%", 0.1, made.command),
+            Measured("mean edge strain", on, 100 * s["edge_strain_mean"], "%", 0.7, made.command),
+            Measured("mean stretch of the surroundings that move", on, s["collar_stretch_mean"],
+                     "", 0.2, made.command),
+            Measured("pairs of faces that cross, more than before", on, max(0, new), "", 0,
+                     made.command),
+            Measured("seconds of the whole command", on, made.seconds, "s", 2 * made.seconds + 1,
+                     made.command),
+        ]
+    return rows
+
+
+# ---- flat maps ----
+
+def flat_maps(explica, page):
+    rows, bars = [], {}
+    for side in ("left", "right"):
+        white = real("fsaverage5", f"white_{side}.gii.gz")
+        shipped = real("fsaverage5", f"flat_{side}.gii.gz")
+        on = f"fsaverage5 {side}, whole hemisphere"
+        made = explica("flatten", white, "--cuts", shipped, out=f"flat-{side}", done=(0, 3))
+        compared = explica("compare", white, made / "flat.surf.gii", shipped,
+                           out=f"flat-{side}-compared")
+        ours, theirs = compared.table("comparison.tsv")[:2]
+        bars[on] = (ours, theirs)
+        for key, what, tolerance in (("distance_error_local", "local distance error", 0.3),
+                                     ("distance_error_all", "distance error over all pairs", 0.5)):
+            for row, whose in ((ours, "ours"), (theirs, "FreeSurfer's")):
+                rows.append(Measured(f"{what}, {whose}", on, 100 * float(row[key]), "%", tolerance,
+                                     compared.command))
+        for row, whose in ((ours, "ours"), (theirs, "FreeSurfer's")):
+            rows.append(Measured(f"faces turned over, {whose}", on, float(row["faces_flipped"]), "",
+                                 0, compared.command))
+        rows.append(Measured("seconds of the whole command", on, made.seconds, "s",
+                             2 * made.seconds + 1, made.command))
+    figures.map_errors(page / "maps.svg", bars)
+    return rows
+
+
+# ---- volumes on surfaces ----
+
+def sampled(explica, page):
+    del page
+    scan = real("bert_freesurfer", "mri", "brain.mgz")
+    surfaces = explica("surface", real("bert_freesurfer", "mri", "ribbon.mgz"), "--hemisphere", "L",
+                       "--atlas", real("bert_freesurfer", "mri", "aparc+aseg.mgz"), out="bert-l")
+    image = nib.load(scan)
+    ijk = np.stack(np.meshgrid(*map(np.arange, image.shape), indexing="ij"), axis=-1)
+    place = nib.affines.apply_affine(image.affine, ijk).astype(np.float32)
+    mid = nib.load(surfaces / "mid.surf.gii").agg_data("pointset")
+    worst, command = 0.0, ""
+    for axis in range(3):
+        volume = explica.folder / f"coordinate-{axis}.nii.gz"
+        if not volume.exists():
+            nib.save(nib.Nifti1Image(place[..., axis], image.affine), volume)
+        made = explica("sample", volume, "--surfaces", surfaces.folder, "--depths", "0.5",
+                       out=f"coordinate-{axis}-sampled")
+        found = nib.load(next(pathlib.Path(made.folder).glob("*.func.gii"))).darrays[0].data
+        worst = max(worst, float(np.abs(found - mid[:, axis]).max()))
+        command = made.command
+    return [Measured("coordinates sampled half way, largest error", "bert, left", worst, "mm",
+                     1e-4, command)]
+
+
+# ---- the heart ----
+
+def heart(explica, page):
+    del page
+    phantom = explica("phantom", "ventricle", "--frames", 2, "--slice", 8, "--spacing", 1.4,
+                      "--size", 96, "--tilt", 10, out="ventricle")
+    frames = sorted(phantom.folder.glob("frame-*.nii.gz"))
+    beat = explica("heart", *frames, out="ventricle-measured")
+    exact = {(r["segment"], r["frame"]): float(r["thickness"])
+             for r in phantom.table("segments_exact.tsv")}
+    off = [abs(float(r["thickness"]) - exact[r["segment"], r["frame"]])
+           for r in beat.table("segments.tsv")
+           if r["frame"] == "0" and (r["segment"], r["frame"]) in exact
+           and r["thickness"] != "n/a" and int(r["segment"]) < 17]
+    volumes = [abs(float(a["cavity_volume_ml"]) / float(b["cavity_volume_ml"]) - 1)
+               for a, b in zip(beat.table("frames.tsv"), phantom.table("frames_exact.tsv"))]
+    on = "ventricle tilted by 10 degrees, 1.4 x 1.4 x 8 mm"
+    rows = [
+        Measured("thickness of segments 1 to 16, mean absolute error", on, float(np.mean(off)),
+                 "mm", 0.05, beat.command),
+        Measured("thickness of segments 1 to 16, largest error", on, float(np.max(off)), "mm", 0.1,
+                 beat.command),
+        Measured("cavity volume, largest error", on, 100 * max(volumes), "%", 0.3, beat.command),
+    ]
+    real_heart = explica("heart", real("lv_sunnybrook_SCD0000101", "ED_label.nii.gz"), out="heart")
+    rings = [r for r in real_heart.table("slices.tsv") if r["thickness_plain"] != "n/a"]
+    plain = np.array([float(r["thickness_plain"]) for r in rings])
+    circles = np.array([float(r["area_equivalent"]) for r in rings])
+    on = "SCD0000101, end diastole"
+    return rows + [
+        Measured("wall per slice beside circles of equal area, correlation", on,
+                 float(np.corrcoef(plain, circles)[0, 1]), "", 0.01, real_heart.command),
+        Measured("wall per slice beside circles of equal area, mean difference", on,
+                 float(np.abs(plain - circles).mean()), "mm", 0.05, real_heart.command),
+    ]
+
+
+ALL = [
+    ("Thickness where it is known", shells),
+    ("Cortex from labels, beside FreeSurfer", freesurfer_labels),
+    ("Cortex from a T1 alone, beside FreeSurfer", freesurfer_image),
+    ("Unfolding in place, default options", unfolding),
+    ("Flat maps beside FreeSurfer's", flat_maps),
+    ("Volumes on surfaces", sampled),
+    ("The heart", heart),
+]
