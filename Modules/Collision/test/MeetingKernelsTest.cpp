@@ -4,9 +4,8 @@
 #include "../src/MeetingKernels.h"
 
 #include "Explica/Collision/ContinuousCollision.h"
+#include "Explica/Testing/InstructionSets.h"
 #include "Samples.h"
-
-#include <hwy/highway.h>
 
 #include <gtest/gtest.h>
 
@@ -123,19 +122,12 @@ std::vector<double> everything() {
 
 TEST(MeetingKernels, EveryInstructionSetGivesTheSameBits) {
   const std::vector<double> widest = everything();
-  for (const std::int64_t target :
-       {static_cast<std::int64_t>(HWY_SSSE3), static_cast<std::int64_t>(HWY_SSE4),
-        static_cast<std::int64_t>(HWY_AVX2)}) {
-    if ((hwy::SupportedTargets() & target) == 0) continue;
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(target);
+  testing::forEachNarrowerInstructionSet([&](std::int64_t target) {
     const std::vector<double> narrow = everything();
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
     ASSERT_EQ(narrow.size(), widest.size());
     EXPECT_EQ(std::memcmp(narrow.data(), widest.data(), sizeof(double) * widest.size()), 0)
         << target;
-  }
+  });
 }
 
 }  // namespace

@@ -3,8 +3,7 @@
 
 #include "Explica/Core/Parallel.h"
 #include "Explica/Geometry/BoundsSearch.h"
-
-#include <hwy/highway.h>
+#include "Explica/Testing/InstructionSets.h"
 
 #include <gtest/gtest.h>
 
@@ -118,16 +117,8 @@ TEST(BoundsPyramid, EveryInstructionSetAndThreadCountFindsTheSame) {
   setThreadCount(1);
   EXPECT_EQ(search(), widest);
   setThreadCount(0);
-  for (const std::int64_t target :
-       {std::int64_t{HWY_SSSE3}, std::int64_t{HWY_SSE4}, std::int64_t{HWY_AVX2}}) {
-    if ((hwy::SupportedTargets() & target) == 0) continue;
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(target);
-    const auto narrow = search();
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    EXPECT_EQ(narrow, widest) << target;
-  }
+  testing::forEachNarrowerInstructionSet(
+      [&](std::int64_t target) { EXPECT_EQ(search(), widest) << target; });
 }
 
 }  // namespace

@@ -4,8 +4,8 @@
 #include "../src/DenseKernels.h"
 
 #include "Explica/Core/Types.h"
+#include "Explica/Testing/InstructionSets.h"
 
-#include <hwy/highway.h>
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
@@ -91,16 +91,8 @@ std::vector<Eigen::MatrixXd> everything() {
 
 TEST(DenseKernels, EveryInstructionSetGivesTheSameBits) {
   const auto widest = everything();
-  for (const std::int64_t target :
-       {std::int64_t{HWY_SSSE3}, std::int64_t{HWY_SSE4}, std::int64_t{HWY_AVX2}}) {
-    if ((hwy::SupportedTargets() & target) == 0) continue;
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(target);
-    const auto narrow = everything();
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    EXPECT_TRUE(narrow == widest) << target;
-  }
+  testing::forEachNarrowerInstructionSet(
+      [&](std::int64_t target) { EXPECT_TRUE(everything() == widest) << target; });
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "Explica/Core/Parallel.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/SelfIntersection.h"
+#include "Explica/Testing/InstructionSets.h"
 #include "Explica/Unfolding/Distortion.h"
 #include "Explica/Unfolding/Unfold.h"
 
@@ -255,6 +256,18 @@ TEST(Unfolder, ThreadsDoNotChangeAnyBit) {
   setThreadCount(0);
   EXPECT_EQ(ends[0], ends[1]);
   EXPECT_EQ(ends[0], ends[2]);
+}
+
+TEST(Unfolder, InstructionSetsDoNotChangeAnyBit) {
+  const Case c;
+  const auto after = [&] {
+    Unfolder unfolder(c.mesh, c.region, c.view, with(Surround::Elastic));
+    for (int n = 0; n < 15; ++n) unfolder.step();
+    return unfolder.state().positions;
+  };
+  const Positions widest = after();
+  testing::forEachNarrowerInstructionSet(
+      [&](std::int64_t target) { EXPECT_EQ(after(), widest) << target; });
 }
 
 TEST(ThesisMethod, LosesAreasWithoutTheirProjectionAndIntersectsWithoutRepulsion) {
