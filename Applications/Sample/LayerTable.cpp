@@ -41,13 +41,14 @@ fs::path fileIn(Context& context, const fs::path& folder, const char* name) {
 void setRegions(Context& context, const SampleSettings& s, Tissue& tissue) {
   tissue.regionOf.assign(tissue.voxels.voxels.size(), 0);
   tissue.regions = {"all"};
-  if (!s.labels) return;
-  const Volume<Label> labels = readLabels(context, "labels", *s.labels, s.reading);
+  if (s.labels.empty()) return;
+  if (s.labels.size() > 1) throw UsageError("--labels with --thickness takes one label volume");
+  const Volume<Label> labels = readLabels(context, "labels", s.labels.front(), s.reading);
   const std::vector<Label> keys =
       sampling::Sampler(labels.grid, tissue.centres, sampling::Interpolation::Nearest)
           .sampleLabels(labels.data);
   io::LabelNames names;
-  if (const auto legend = io::findLegend(*s.labels)) names = io::readLabelNames(*legend);
+  if (const auto legend = io::findLegend(s.labels.front())) names = io::readLabelNames(*legend);
   std::map<Label, std::int32_t> number;
   tissue.regions.clear();
   for (const Label key : keys) {

@@ -10,6 +10,7 @@
 #include "Explica/Core/Parallel.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/IO/LabelNames.h"
+#include "Explica/IO/RegionFiles.h"
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/IO/VolumeSeries.h"
 #include "Explica/Sampling/NearestColumn.h"
@@ -92,8 +93,8 @@ void declare(Declaration& d, SampleSettings& s) {
       .option("Place", Field{"to-volume-sense", "", "which way the transform is taken"}, s.sense)
       .inputOption(
           "labels", FileKind::VertexLabel,
-          "regions on the surface (GIFTI, annot, .label), or with --thickness a label volume: "
-          "writes a profile for each",
+          "regions on the surface (GIFTI, annot, .label; several files may overlap), or with "
+          "--thickness one label volume: writes a profile for each",
           s.labels, "Regions")
       .inputOption("points", FileKind::Table,
                    "table with columns x, y, z (RAS mm): finds vertex, depth, distance, region",
@@ -155,16 +156,15 @@ Positions positionsAtDepths(const Cortex& cortex, const std::vector<double>& dep
 }
 
 sampling::Regions regionsOf(const SampleSettings& s, Eigen::Index vertexCount) {
-  if (!s.labels) return sampling::Regions(vertexCount);
-  const io::LabelMap labels = io::readVertexLabels(*s.labels, vertexCount);
-  std::vector<sampling::RegionName> names;
-  for (const io::LabelEntry& entry : labels.table) {
-    const bool none = entry.name.empty() || entry.name == "unknown" || entry.name == "???" ||
-                      entry.name == "outside" || entry.name == "none";
-    if (!none) names.push_back({entry.key, entry.name});
+  if (s.labels.empty()) return sampling::Regions(vertexCount);
+  const auto files = io::readRegions({s.labels.begin(), s.labels.end()}, vertexCount);
+  std::vector<sampling::RegionTable> tables;
+  for (const io::LabelMap& labels : files) {
+    sampling::RegionTable& table = tables.emplace_back();
+    table.keys = {labels.keys.data(), static_cast<std::size_t>(labels.keys.size())};
+    for (const io::LabelEntry& entry : labels.table) table.table.push_back({entry.key, entry.name});
   }
-  return {std::span<const Label>(labels.keys.data(), static_cast<std::size_t>(labels.keys.size())),
-          names};
+  return sampling::Regions(tables);
 }
 
 /// What all volumes of a run have in common, and what they leave behind.
@@ -339,6 +339,8 @@ class SurfaceSampling {
     addValid(path, name, known);
     io::LabelNames names;
     if (const auto legend = io::findLegend(path)) names = io::readLabelNames(*legend);
+    io::LabelColours colours;
+    if (const auto file = io::findColours(path)) colours = io::readLabelColours(*file);
     const bool freeSurfer = path.find(".mgz") != std::string::npos ||
                             path.find("aseg") != std::string::npos ||
                             path.find("aparc") != std::string::npos;
@@ -355,6 +357,9 @@ class SurfaceSampling {
       used.erase(std::unique(used.begin(), used.end()), used.end());
       map.table = io::tableFor(used, names, freeSurfer);
       for (io::LabelEntry& entry : map.table) {
+        if (const auto own = colours.find(entry.key); own != colours.end()) {
+          entry.colour = own->second;
+        }
         if (entry.key == kNotKnownKey) entry = {kNotKnownKey, "not known", {0, 0, 0, 0}};
       }
       io::writeGiftiLabel(context_.output(file), map, cortex_.structure);

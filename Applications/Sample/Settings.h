@@ -29,7 +29,7 @@ struct SampleSettings {
   std::optional<std::string> toVolume;
   io::TransformSense sense = io::TransformSense::Auto;
   std::optional<std::string> mask;
-  std::optional<std::string> labels;
+  std::vector<std::string> labels;
   std::optional<std::string> points;
   std::vector<std::string> vertexMaps;
   std::optional<std::string> vertexSurface;

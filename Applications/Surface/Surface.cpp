@@ -284,6 +284,7 @@ struct Regions {
   std::optional<Volume<Label>> atlas;
   std::optional<io::LabelMap> parcellation;
   io::LabelNames names;
+  io::LabelColours colours;
 };
 
 Regions readRegions(Context& context, const Settings& s, const surface::CorticalSurfaces& made) {
@@ -291,7 +292,10 @@ Regions readRegions(Context& context, const Settings& s, const surface::Cortical
   if (s.parcellation) {
     const Eigen::Index vertices = made.white.mesh.vertexCount();
     regions.parcellation = io::readVertexLabels(*s.parcellation, vertices);
-    for (const auto& entry : regions.parcellation->table) regions.names[entry.key] = entry.name;
+    for (const auto& entry : regions.parcellation->table) {
+      regions.names[entry.key] = entry.name;
+      if (entry.colour[3] > 0) regions.colours[entry.key] = entry.colour;
+    }
   } else if (s.atlas) {
     io::VolumeReadOptions reading = s.reading;
     reading.dimension = 3;
@@ -302,6 +306,9 @@ Regions readRegions(Context& context, const Settings& s, const surface::Cortical
       regions.names =
           io::readLabelNames(s.atlasLegend ? *legend : context.input(*legend, "atlas-legend"));
     }
+    if (const auto colours = io::findColours(*s.atlas)) {
+      regions.colours = io::readLabelColours(context.input(*colours, "atlas-colours"));
+    }
   }
   return regions;
 }
@@ -311,6 +318,15 @@ std::string regionName(const Regions& regions, Label key) {
   if (named != regions.names.end()) return named->second;
   const std::string freeSurfer = io::freeSurferRegion(key);
   return freeSurfer.empty() ? "label" + std::to_string(key) : freeSurfer;
+}
+
+/// The colour in which its atlas shows a region; else one that tells neighbours apart.
+std::array<float, 4> regionColour(const Regions& regions, Label key) {
+  const auto given = regions.colours.find(key);
+  if (given != regions.colours.end()) return given->second;
+  const auto freeSurfer = io::freeSurferEntry(key);
+  return freeSurfer && !io::freeSurferRegion(key).empty() ? freeSurfer->colour
+                                                          : io::distinctColour(key);
 }
 
 /// What is no region of this side's cortex: FreeSurfer's words for that, and by AAL's names what
@@ -368,12 +384,7 @@ void writeRegions(Context& context, const Regions& regions, const surface::Corti
     } else {
       table << "\tn/a\tn/a\tn/a\n";
     }
-    // Colours that tell neighbours apart and are the same everywhere: golden-angle hues.
-    const double hue = std::fmod(region.key * 0.61803398875, 1.0) * 2 * kPi;
-    const auto channel = [&](double turn) {
-      return static_cast<float>(0.6 + 0.35 * std::cos(hue - turn * 2 * kPi / 3));
-    };
-    labels.table.push_back({region.key, name, {channel(0), channel(1), channel(2), 1}});
+    labels.table.push_back({region.key, name, regionColour(regions, region.key)});
   }
   writeTextFile(context.output("regions.tsv"), table.str());
   io::writeGiftiLabel(context.output("regions.label.gii"), labels, structure);

@@ -242,6 +242,29 @@ TEST_F(Sample, PointsAndRegions) {
   EXPECT_NE(bad.err.find("'z'"), std::string::npos) << bad;
 }
 
+TEST_F(Sample, RegionsOfSeveralFilesMayOverlap) {
+  const TriangleMesh mesh = io::readSurface(folder_ / "white.surf.gii").mesh;
+  io::LabelMap upper{"parts", {}, {{0, "unknown", {0, 0, 0, 0}}, {1, "upper", {1, 0, 0, 1}}}};
+  upper.keys = (mesh.positions.col(2).array() > 0).cast<Label>();
+  io::writeGiftiLabel(folder_ / "parts.label.gii", upper, "CortexLeft");
+  io::LabelMap right = upper;
+  right.keys = (mesh.positions.col(0).array() > 0).cast<Label>();
+  io::writeFreeSurferLabel(folder_ / "lh.right.label", right, mesh.positions);
+  writeX("x.nii.gz");
+  const CommandResult result =
+      sample({folder_ / "x.nii.gz", "--labels", folder_ / "parts.label.gii", "--labels",
+              folder_ / "lh.right.label", "--depths", "3"});
+  ASSERT_EQ(result.exitCode, 0) << result;
+  std::map<std::string, int> count;
+  for (const Row& row : readTable(folder_ / "out/profiles.tsv")) {
+    count[row.at("region")] = std::stoi(row.at("n"));
+  }
+  ASSERT_EQ(count.size(), 3U);
+  EXPECT_EQ(count["upper"], upper.keys.sum());
+  EXPECT_EQ(count["lh.right"], right.keys.sum());
+  EXPECT_EQ(count["all"], (upper.keys.array() + right.keys.array() > 0).count());
+}
+
 TEST_F(Sample, CarriesVertexDataOfAnotherProgramOver) {
   const TriangleMesh theirs = geometry::makeIcosphere(4, 10.2);
   io::writeFreeSurferSurface(folder_ / "lh.white", theirs);

@@ -47,6 +47,31 @@ std::optional<fs::path> findLegend(const fs::path& volume) {
   return std::nullopt;
 }
 
+std::optional<fs::path> findColours(const fs::path& volume) {
+  fs::path file = volume;
+  if (file.extension() == ".gz") file.replace_extension();
+  file += ".lut";
+  std::error_code ignored;
+  return fs::is_regular_file(file, ignored) ? std::optional(file) : std::nullopt;
+}
+
+LabelColours readLabelColours(const fs::path& file) {
+  constexpr std::size_t kColours = 256;
+  std::ifstream in(file, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  if (bytes.size() != 3 * kColours) {
+    throw IOError(file.string() + ": is no colour table of 768 bytes, as MRIcron writes them");
+  }
+  LabelColours colours;
+  for (std::size_t key = 1; key < kColours; ++key) {
+    const auto channel = [&](std::size_t c) {
+      return static_cast<float>(static_cast<std::uint8_t>(bytes[c * kColours + key])) / 255;
+    };
+    colours[static_cast<Label>(key)] = {channel(0), channel(1), channel(2), 1};
+  }
+  return colours;
+}
+
 LabelNames readLabelNames(const fs::path& legend) {
   std::ifstream file(legend);
   if (!file) throw IOError(legend.string() + ": cannot be opened");

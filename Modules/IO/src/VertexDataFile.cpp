@@ -9,6 +9,7 @@
 #include "MghFormat.h"
 #include "PlainMeshFormats.h"
 #include "StoredVolume.h"
+#include "SurfaceFrame.h"
 #include "VtkFormat.h"
 
 #include "Explica/IO/VolumeFile.h"
@@ -81,6 +82,18 @@ std::vector<VertexMap> readVertexMaps(const std::filesystem::path& path,
   if (maps.empty()) refuse(path, "holds no per-vertex values");
   for (const VertexMap& map : maps) checkCount(path, map.values.size(), vertexCount);
   return maps;
+}
+
+std::string vertexDataStructure(const std::filesystem::path& path) {
+  std::string structure;
+  const Bytes bytes = ByteSource(path).rest();
+  if (looksLikeGifti(bytes)) {
+    const Metadata metadata = parseGifti(path, bytes).metadata;
+    const auto said = metadata.find("AnatomicalStructurePrimary");
+    if (said != metadata.end()) structure = said->second;
+  }
+  if (structure.empty()) structure = structureFromName(path);
+  return structure == "CortexLeft" || structure == "CortexRight" ? structure : "";
 }
 
 LabelMap readVertexLabels(const std::filesystem::path& path,

@@ -3,11 +3,13 @@
 
 #include "Explica/Sampling/Statistics.h"
 
+#include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <string>
 
 namespace explica::sampling {
 namespace {
@@ -83,35 +85,51 @@ std::vector<Label> majorityAcross(std::span<const Label> labels, std::size_t dep
 }
 
 Regions::Regions(Eigen::Index vertexCount)
-    : names_{"all"}, regionOf_(static_cast<std::size_t>(vertexCount), 0) {}
+    : names_{"all"}, inAny_(static_cast<std::size_t>(vertexCount), 1) {}
 
-Regions::Regions(std::span<const Label> keys, const std::vector<RegionName>& table)
-    : regionOf_(keys.size(), -1) {
-  std::map<Label, std::int32_t> number;
-  for (const RegionName& entry : table) {
-    if (std::find(keys.begin(), keys.end(), entry.key) == keys.end()) continue;
-    if (!number.emplace(entry.key, static_cast<std::int32_t>(names_.size())).second) continue;
-    names_.push_back(entry.name);
+Regions::Regions(const std::vector<RegionTable>& parcellations) {
+  if (parcellations.empty()) throw InvalidInput("regions: none are given");
+  inAny_.assign(parcellations.front().keys.size(), 0);
+  for (const RegionTable& one : parcellations) {
+    if (one.keys.size() != inAny_.size()) {
+      throw InvalidInput("regions: they are given for " + std::to_string(one.keys.size()) +
+                         " and for " + std::to_string(inAny_.size()) + " vertices");
+    }
+    std::map<Label, std::int32_t> number;
+    for (const RegionName& entry : one.table) {
+      if (std::find(one.keys.begin(), one.keys.end(), entry.key) == one.keys.end()) continue;
+      if (!number.emplace(entry.key, static_cast<std::int32_t>(names_.size())).second) continue;
+      names_.push_back(entry.name);
+    }
+    std::vector<std::int32_t>& regionOf = regionOf_.emplace_back(one.keys.size(), -1);
+    for (std::size_t v = 0; v < one.keys.size(); ++v) {
+      const auto found = number.find(one.keys[v]);
+      if (found == number.end()) continue;
+      regionOf[v] = found->second;
+      inAny_[v] = 1;
+    }
   }
   names_.emplace_back("all");
-  for (std::size_t v = 0; v < keys.size(); ++v) {
-    const auto found = number.find(keys[v]);
-    if (found != number.end()) regionOf_[v] = found->second;
-  }
 }
 
-const std::string& Regions::nameAt(std::size_t vertex) const {
-  static const std::string kNone;
-  const std::int32_t region = regionOf_.at(vertex);
-  return region < 0 || names_.size() == 1 ? kNone : names_[region];
+std::string Regions::nameAt(std::size_t vertex) const {
+  std::string names;
+  for (const auto& regionOf : regionOf_) {
+    const std::int32_t region = regionOf.at(vertex);
+    if (region >= 0) names += (names.empty() ? "" : "; ") + names_[region];
+  }
+  return names;
 }
 
 std::vector<Moments> Regions::momentsOf(std::span<const float> values) const {
   std::vector<Sums> sums(names_.size());
-  for (std::size_t v = 0; v < regionOf_.size(); ++v) {
-    if (regionOf_[v] < 0 || std::isnan(values[v])) continue;
-    sums.back().add(values[v]);
-    if (names_.size() > 1) sums[regionOf_[v]].add(values[v]);
+  for (std::size_t v = 0; v < inAny_.size(); ++v) {
+    if (inAny_[v] && !std::isnan(values[v])) sums.back().add(values[v]);
+  }
+  for (const auto& regionOf : regionOf_) {
+    for (std::size_t v = 0; v < regionOf.size(); ++v) {
+      if (regionOf[v] >= 0 && !std::isnan(values[v])) sums[regionOf[v]].add(values[v]);
+    }
   }
   std::vector<Moments> result;
   result.reserve(sums.size());

@@ -3,6 +3,8 @@
 
 #include "Explica/Sampling/Statistics.h"
 
+#include "Explica/Core/Errors.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -30,7 +32,7 @@ TEST(AcrossDepths, LabelsGoToTheMajorityAndTiesToTheMiddle) {
 
 TEST(Regions, HaveTheMomentsOfTheirVertices) {
   const std::vector<Label> keys = {2, 2, 2, 1, 0, 9};
-  const Regions regions(keys, {{1, "one"}, {2, "two"}, {3, "absent"}, {9, "nine"}});
+  const Regions regions({{keys, {{1, "one"}, {2, "two"}, {3, "absent"}, {9, "nine"}}}});
   EXPECT_EQ(regions.names(), (std::vector<std::string>{"one", "two", "nine", "all"}));
   const std::vector<float> values = {1e6F, 1e6F + 2, kUnknown, 7, 100, kUnknown};
   const std::vector<Moments> got = regions.momentsOf(values);
@@ -44,6 +46,19 @@ TEST(Regions, HaveTheMomentsOfTheirVertices) {
   EXPECT_EQ(regions.nameAt(3), "one");
   EXPECT_EQ(regions.nameAt(4), "");
   EXPECT_EQ(Regions(2).momentsOf(std::vector<float>{1, 3})[0].mean, 2);
+  EXPECT_EQ(Regions(2).nameAt(1), "");
+}
+
+TEST(Regions, OfSeveralParcellationsMayOverlap) {
+  const std::vector<Label> areas = {1, 1, 2, 0}, spot = {0, 5, 5, 0}, shorter = {1};
+  const Regions regions({{areas, {{1, "V1"}, {2, "V2"}}}, {spot, {{5, "spot"}}}});
+  EXPECT_EQ(regions.names(), (std::vector<std::string>{"V1", "V2", "spot", "all"}));
+  const std::vector<Moments> got = regions.momentsOf(std::vector<float>{1, 2, 4, 100});
+  EXPECT_EQ(got[0].mean, 1.5);
+  EXPECT_EQ(got[2].mean, 3);
+  EXPECT_EQ(got[3].count, 3U);
+  EXPECT_EQ(regions.nameAt(1), "V1; spot");
+  EXPECT_THROW(Regions({{areas, {{1, "V1"}}}, {shorter, {{1, "x"}}}}), InvalidInput);
 }
 
 }  // namespace

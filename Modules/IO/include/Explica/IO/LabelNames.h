@@ -27,6 +27,16 @@ using LabelNames = std::map<Label, std::string>;
 /// @throws InvalidInput  a line without number and name: names file and line
 [[nodiscard]] LabelNames readLabelNames(const std::filesystem::path& legend);
 
+/// What labels look like, by their number: red, green, blue, opacity in [0, 1].
+using LabelColours = std::map<Label, std::array<float, 4>>;
+
+/// The file that colours a label volume's labels, if one lies beside it: MRIcron's `aal.nii.lut`.
+[[nodiscard]] std::optional<std::filesystem::path> findColours(const std::filesystem::path& volume);
+
+/// Reads it: 256 bytes each of red, green and blue; the first, of label 0, is left out.
+/// @throws IOError  absent or of another form
+[[nodiscard]] LabelColours readLabelColours(const std::filesystem::path& file);
+
 /// FreeSurfer's name of a cortical region in aparc+aseg (1001 to 1035 left, 2001 to 2035 right),
 /// without side: "bankssts"; empty for any other label.
 [[nodiscard]] std::string freeSurferRegion(Label label);

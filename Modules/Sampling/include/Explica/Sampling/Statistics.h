@@ -45,23 +45,33 @@ struct RegionName {
   std::string name;
 };
 
-/// Regions of vertices, in the order of a table.
+/// One parcellation of a surface's vertices; keys that the table lacks are no region.
+struct RegionTable {
+  std::span<const Label> keys;  ///< V
+  std::vector<RegionName> table;
+};
+
+/// Regions of vertices, in the order of their tables.  Those of one parcellation are disjoint,
+/// those of different ones may overlap.
 class Regions {
  public:
   /// One region of all vertices, named "all".
   explicit Regions(Eigen::Index vertexCount);
-  /// The regions of the table that have vertices, and last "all" vertices with a region.
-  Regions(std::span<const Label> keys, const std::vector<RegionName>& table);
+  /// The regions that have vertices, parcellation after parcellation, and last "all" vertices with
+  /// a region.
+  /// @throws InvalidInput  none, or parcellations of different length
+  explicit Regions(const std::vector<RegionTable>& parcellations);
 
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
-  /// Name of a vertex's region; empty if it has none.
-  [[nodiscard]] const std::string& nameAt(std::size_t vertex) const;
+  /// Names of a vertex's regions, separated by "; "; empty if it has none.
+  [[nodiscard]] std::string nameAt(std::size_t vertex) const;
   /// Moments of one value a vertex by region.
   [[nodiscard]] std::vector<Moments> momentsOf(std::span<const float> values) const;
 
  private:
   std::vector<std::string> names_;
-  std::vector<std::int32_t> regionOf_;  ///< per vertex; -1: none
+  std::vector<std::vector<std::int32_t>> regionOf_;  ///< a parcellation, per vertex; -1: none
+  std::vector<std::uint8_t> inAny_;                  ///< per vertex
 };
 
 }  // namespace explica::sampling

@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/IO/RegionFiles.h"
+
+#include "Explica/Core/Errors.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+
+namespace explica::io {
+namespace {
+
+/// "lh.aparc" of "lh.aparc.annot", "V1" of "V1.label.gii".
+std::string stemOf(const std::filesystem::path& file) {
+  std::string name = file.filename().string();
+  for (const std::string_view ending : {".gz", ".gii", ".label", ".annot"}) {
+    if (name.size() > ending.size() && name.ends_with(ending)) {
+      name.resize(name.size() - ending.size());
+    }
+  }
+  return name;
+}
+
+LabelMap regionsOf(const std::filesystem::path& file, Eigen::Index vertexCount) {
+  LabelMap labels = readVertexLabels(file, vertexCount);
+  labels.name = stemOf(file);
+  std::map<Label, LabelEntry> entries;
+  for (LabelEntry& entry : labels.table) entries[entry.key] = std::move(entry);
+  const auto isRegion = [&](Label key) {
+    const auto found = entries.find(key);
+    if (found == entries.end() || found->second.name.empty()) return key != 0;
+    return !meansNoRegion(found->second.name);
+  };
+  std::set<Label> used;
+  for (Label& key : labels.keys) {
+    if (used.contains(key)) continue;
+    if (isRegion(key)) {
+      used.insert(key);
+    } else {
+      key = kNoRegion;
+    }
+  }
+  if (used.empty()) throw InvalidInput("'" + file.string() + "': holds no region");
+  labels.table.clear();
+  for (const Label key : used) {
+    LabelEntry entry = entries.contains(key) ? entries[key] : LabelEntry{};
+    entry.key = key;
+    if (entry.name.empty()) entry.name = std::to_string(key);
+    labels.table.push_back(std::move(entry));
+  }
+  return labels;
+}
+
+/// Puts the file's name before those that occur more than once.
+void tellApart(std::vector<LabelMap>& all) {
+  std::map<std::string, int> times;
+  for (const LabelMap& labels : all) {
+    for (const LabelEntry& entry : labels.table) ++times[entry.name];
+  }
+  std::set<std::string> taken;
+  for (LabelMap& labels : all) {
+    for (LabelEntry& entry : labels.table) {
+      if (times[entry.name] > 1) entry.name = labels.name + " " + entry.name;
+      // Two keys of one name in one file, or two files of one name.
+      const std::string name = entry.name;
+      for (int n = 2; !taken.insert(entry.name).second; ++n) {
+        entry.name = name + " " + std::to_string(n);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+bool meansNoRegion(std::string_view name) {
+  constexpr std::array<std::string_view, 8> kWords = {
+      "unknown", "Unknown", "???", "outside", "none", "medialwall", "Medial_wall", "Medial_Wall"};
+  return name.empty() || std::find(kWords.begin(), kWords.end(), name) != kWords.end();
+}
+
+std::vector<LabelMap> readRegions(const std::vector<std::filesystem::path>& files,
+                                  Eigen::Index vertexCount) {
+  std::vector<LabelMap> all;
+  for (const std::filesystem::path& file : files) all.push_back(regionsOf(file, vertexCount));
+  tellApart(all);
+  return all;
+}
+
+}  // namespace explica::io
