@@ -14,6 +14,7 @@
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/IO/PatchFile.h"
+#include "Explica/IO/RegionFiles.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/IO/VolumeFile.h"
@@ -52,7 +53,7 @@ struct Settings {
   std::vector<std::string> volumes;
   bool nearest = false;
   std::vector<std::string> maps;
-  std::optional<std::string> regions;
+  std::vector<std::string> regions;
 };
 
 void declare(Declaration& d, Settings& s) {
@@ -108,7 +109,8 @@ With --surfaces the map becomes a stack of depths: grid.nii.gz gives each cell i
                    "values on the vertices, for patch.tsv; the first colours flat.png", s.maps,
                    "Patch")
       .inputOption("regions", FileKind::VertexLabel,
-                   "regions for patch.tsv, their outlines for flat.png", s.regions, "Patch")
+                   "regions for patch.tsv, their outlines in their own colours for flat.png",
+                   s.regions, "Patch")
       .output("flat.surf.gii", FileKind::Surface,
               "the flat map, z = 0: all vertices in their order, the patch's faces")
       .output("patch.surf.gii", FileKind::Surface,
@@ -119,6 +121,8 @@ With --surfaces the map becomes a stack of depths: grid.nii.gz gives each cell i
       .output("*.patch.flat", FileKind::Any, "the flat map as FreeSurfer writes it")
       .output("distortion.shape.gii", FileKind::VertexData,
               "area ratio, angle change in degrees, edge strain")
+      .output("patch_*.label.gii", FileKind::VertexLabel,
+              "each file of --regions on the vertices of patch.surf.gii, names and colours kept")
       .output("patch.tsv", FileKind::Table, "area and means of maps, per region and in all")
       .output("grid.nii.gz", FileKind::PointVolume, "place (RAS mm) of each cell (u, v, depth)")
       .output("to_flat.nii.gz", FileKind::PointVolume,
@@ -302,45 +306,101 @@ Eigen::VectorXd measure(Context& context, const Subject& subject, const Triangle
   return ratio;
 }
 
-void writePatchTable(Context& context, const Settings& s, const flattening::Disc& disc,
-                     const flattening::FlatMap& map, const Eigen::VectorXd& areaRatio) {
-  const auto whole = areaRatio.size();
+/// FreeSurfer's files name their maps with the folder they came from; those of `explica sample` by
+/// depth alone.
+std::string mapName(const std::string& file, const std::string& name) {
+  const std::string own = std::filesystem::path(name.empty() ? file : name).filename().string();
+  std::string stem = std::filesystem::path(file).filename().string();
+  constexpr std::string_view kSampled = ".func.gii";
+  if (name.empty() || !stem.ends_with(kSampled)) return own;
+  stem.resize(stem.size() - kSampled.size());
+  return stem + " " + own;
+}
+
+/// Maps on the patch's vertices, and how the first colours the picture.
+std::vector<flattening::PatchMap> mapsOnPatch(const Settings& s, const flattening::Disc& disc,
+                                              Eigen::Index whole, report::SurfacePaint& paint) {
   std::vector<flattening::PatchMap> maps;
-  report::SurfacePaint paint;
   for (const std::string& path : s.maps) {
     for (const io::VertexMap& read : io::readVertexMaps(path, whole)) {
-      // FreeSurfer's files name their maps with the folder they came from.
-      const std::string name =
-          std::filesystem::path(read.name.empty() ? path : read.name).filename().string();
-      maps.push_back({name, atPatch(read.values, disc)});
+      maps.push_back({mapName(path, read.name), atPatch(read.values, disc)});
       if (maps.size() == 1) {
         paint.values = maps[0].values;
         paint.scale = report::scaleFor(paint.values, maps[0].name, read.unit);
       }
     }
   }
+  return maps;
+}
+
+/// Regions on the patch's vertices: only those that it has are left.
+std::vector<io::LabelMap> regionsOnPatch(const Settings& s, const flattening::Disc& disc,
+                                         Eigen::Index whole) {
+  std::vector<io::LabelMap> regions = io::readRegions({s.regions.begin(), s.regions.end()}, whole);
+  for (io::LabelMap& one : regions) {
+    one.keys = atPatch(one.keys, disc);
+    std::erase_if(one.table, [&](const io::LabelEntry& entry) {
+      return std::find(one.keys.begin(), one.keys.end(), entry.key) == one.keys.end();
+    });
+  }
+  return regions;
+}
+
+void markRegions(const io::LabelMap& regions, const TriangleMesh& flat, report::FlatMarks& marks) {
+  std::map<Label, report::Colour> colours;
+  for (const io::LabelEntry& entry : regions.table) {
+    colours[entry.key] = report::colourOfLabel(entry.key, entry.colour);
+  }
+  const auto colourOf = [&](Label key) {
+    const auto found = colours.find(key);
+    return found == colours.end() ? std::nullopt : std::optional(found->second);
+  };
+  for (const auto& piece : flattening::outlines(flat.faces, flat.positions, regions.keys)) {
+    marks.lines.push_back(
+        {piece.from, piece.to, colourOf(piece.sides[0]), colourOf(piece.sides[1])});
+  }
+  const auto places = flattening::regionPlaces(flat, regions.keys);
+  std::vector<std::pair<std::ptrdiff_t, const io::LabelEntry*>> bySize;
+  for (const io::LabelEntry& entry : regions.table) {
+    bySize.emplace_back(-std::count(regions.keys.begin(), regions.keys.end(), entry.key), &entry);
+  }
+  std::stable_sort(bySize.begin(), bySize.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (const auto& [size, entry] : bySize) {
+    if (places.contains(entry->key)) marks.names.emplace_back(places.at(entry->key), entry->name);
+  }
+}
+
+void writeRegions(Context& context, io::LabelMap regions, const std::string& structure) {
+  const bool zeroIsRegion = std::any_of(regions.table.begin(), regions.table.end(),
+                                        [](const io::LabelEntry& e) { return e.key == 0; });
+  const Label none = zeroIsRegion ? -1 : 0;
+  for (Label& key : regions.keys) key = key == io::kNoRegion ? none : key;
+  regions.table.insert(regions.table.begin(), {none, "???", {0, 0, 0, 0}});
+  io::writeGiftiLabel(context.output("patch_" + regions.name + ".label.gii"), regions, structure);
+}
+
+void writePatchTable(Context& context, const Settings& s, const std::string& structure,
+                     const flattening::Disc& disc, const flattening::FlatMap& map,
+                     const Eigen::VectorXd& areaRatio) {
+  report::SurfacePaint paint;
+  const auto maps = mapsOnPatch(s, disc, areaRatio.size(), paint);
   if (maps.empty()) {
     paint.values = atPatch(areaRatio, disc).cwiseMax(1e-6).array().log2();
     paint.scale = {report::ColourMap::Diverging, -0.5, 0.5, "area, doublings", ""};
   }
   const TriangleMesh flat{patchPositions(map), disc.mesh.faces};
-  flattening::VertexKeys regions;
-  std::map<Label, std::string> names;
+  std::vector<flattening::PatchRegions> rows;
   report::FlatMarks marks;
-  if (s.regions) {
-    const auto labels = io::readVertexLabels(*s.regions, whole);
-    regions = atPatch(labels.keys, disc);
-    for (const io::LabelEntry& entry : labels.table) names[entry.key] = entry.name;
-    for (const auto& piece : flattening::outlines(flat.faces, flat.positions, regions)) {
-      marks.lines.emplace_back(piece.from, piece.to);
-    }
-    for (const auto& [key, place] : flattening::regionPlaces(flat, regions)) {
-      if (key != 0)
-        marks.names.emplace_back(place, names.contains(key) ? names[key] : std::to_string(key));
-    }
+  for (const io::LabelMap& regions : regionsOnPatch(s, disc, areaRatio.size())) {
+    flattening::PatchRegions& row = rows.emplace_back();
+    row.keys = regions.keys;
+    for (const io::LabelEntry& entry : regions.table) row.names[entry.key] = entry.name;
+    markRegions(regions, flat, marks);
+    writeRegions(context, regions, structure);
   }
   writeTextFile(context.output("patch.tsv"),
-                flattening::patchTable(disc.mesh, flat.positions, regions, names, maps));
+                flattening::patchTable(disc.mesh, flat.positions, rows, maps));
   report::writePng(context.output("flat.png"), report::flatFigure(flat, paint, marks));
 }
 
@@ -469,7 +529,7 @@ Termination run(Context& context, const Settings& s) {
   const TriangleMesh flat = wholeMap(subject.reference.mesh, disc, map);
   writeSurfaces(context, subject, disc, map, flat);
   const Eigen::VectorXd areaRatio = measure(context, subject, flat);
-  writePatchTable(context, s, disc, map, areaRatio);
+  writePatchTable(context, s, subject.reference.metadata.structure, disc, map, areaRatio);
   writeGrid(context, s, subject, flat);
   context.result("faces", flat.faceCount());
   context.result("vertices", disc.vertexOrigin.size());

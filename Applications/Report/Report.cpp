@@ -28,10 +28,16 @@ void declare(Declaration& d, Settings& s) {
           "page needs no network and no other file. Steps that failed or stopped are shown as "
           "such.")
       .example("explica report colin", "Writes colin/report.html")
+      .example("explica report colin --map sampled/bold.func.gii",
+               "The same with a sampled map on the surfaces and on the opened patch")
       .input("DIR", FileKind::Folder, "output folder of a command or of explica run", s.folder)
       .option("Page", Field{"page", "", "file to write (default: report.html in the folder)"},
               s.page)
       .options("Page", s.show)
+      .inputOption("map", FileKind::VertexData,
+                   "vertex data (of explica sample, say) to show on the surfaces, on the unfolding "
+                   "and flat, wherever it fits",
+                   s.show.maps, "Page")
       .withoutOutput();
 }
 

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // explica flatten and explica compare on surfaces of real heads.
 
+#include "Explica/Geometry/Fixtures.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Geometry/SelfIntersection.h"
 #include "Explica/IO/SurfaceFile.h"
+#include "Explica/IO/VertexDataFile.h"
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Testing/Command.h"
 #include "RealSurfaces.h"
@@ -123,6 +125,49 @@ TEST_F(FlattenCommand, ClosedSurfacesAndStrangersAreRefusedWithARemedy) {
       explica({"compare", mid, individual().string(), "--out", folder / "compared"});
   EXPECT_EQ(stranger.exitCode, 2);
   EXPECT_NE(stranger.err.find("same vertices"), std::string::npos) << stranger;
+}
+
+/// A cap of a sphere with regions of two files.
+TEST(FlattenRegions, KeepNamesAndColoursOfEachFile) {
+  TemporaryFolder folder;
+  const TriangleMesh sphere = geometry::makeIcosphere(4, 30);
+  io::writeGiftiSurface(folder / "mid.surf.gii", sphere);
+  const auto above = [&](double height) {
+    return (sphere.positions.col(2).array() > height).cast<Label>().matrix().eval();
+  };
+  const std::vector<io::LabelEntry> none = {{0, "???", {0, 0, 0, 0}}};
+  io::writeGiftiLabel(folder / "cap.label.gii",
+                      {"cap", above(10), {none[0], {1, "cap", {1, 1, 1, 1}}}}, "CortexLeft");
+  io::LabelMap areas{"areas", above(20), none};
+  areas.keys += 4 * above(10);
+  areas.table.push_back({4, "V2", {0, 0, 1, 1}});
+  areas.table.push_back({5, "V1", {1, 0, 0, 1}});
+  areas.table.push_back({6, "elsewhere", {0, 1, 0, 1}});
+  io::writeGiftiLabel(folder / "areas.label.gii", areas, "CortexLeft");
+  io::LabelMap spot{"spot", (sphere.positions.col(0).array() > 15).cast<Label>(), none};
+  spot.table.push_back({1, "spot", {0, 1, 1, 1}});
+  io::writeGiftiLabel(folder / "spot.label.gii", spot, "CortexLeft");
+  const auto made =
+      explica({"flatten", folder / "mid.surf.gii", "--label", folder / "cap.label.gii", "--regions",
+               folder / "areas.label.gii", "--regions", folder / "spot.label.gii",
+               "--area-tolerance", "0.05", "--out", folder / "flat"});
+  ASSERT_EQ(made.exitCode, 0) << made;
+  const Eigen::VectorXd origin =
+      io::readVertexMaps(folder / "flat/vertex_of.shape.gii").front().values;
+  const io::LabelMap kept = io::readVertexLabels(folder / "flat/patch_areas.label.gii");
+  ASSERT_EQ(kept.table.size(), 3u);  // what the patch has, and what is none
+  EXPECT_EQ(kept.table[1].name, "V2");
+  EXPECT_EQ(kept.table[2].colour, (std::array<float, 4>{1, 0, 0, 1}));
+  for (Eigen::Index v = 0; v < origin.size(); ++v) {
+    EXPECT_EQ(kept.keys[v], areas.keys[static_cast<Eigen::Index>(origin[v])]);
+  }
+  const io::LabelMap second = io::readVertexLabels(folder / "flat/patch_spot.label.gii");
+  EXPECT_GT(second.keys.sum(), 10);
+  const std::string table = readText(folder / "flat/patch.tsv");
+  for (const char* row : {"\nV1\t5\t", "\nV2\t4\t", "\nspot\t1\t"}) {
+    EXPECT_NE(table.find(row), std::string::npos) << table;
+  }
+  EXPECT_EQ(table.find("elsewhere"), std::string::npos);
 }
 
 }  // namespace

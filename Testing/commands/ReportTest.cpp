@@ -3,6 +3,8 @@
 
 #include "Explica/Geometry/Fixtures.h"
 #include "Explica/IO/SurfaceFile.h"
+#include "Explica/IO/VertexDataFile.h"
+#include "Explica/IO/VolumeFile.h"
 #include "Explica/Testing/Command.h"
 
 #include <gtest/gtest.h>
@@ -111,6 +113,90 @@ TEST(Report, LeavesOutWhatItCannotReadAndSaysSo) {
   const auto report = explica({"report", folder / "u"});
   EXPECT_EQ(report.exitCode, 0) << report;
   EXPECT_NE(readText(folder / "u/report.html").find("left out"), std::string::npos);
+}
+
+/// Spheres as white and pial surface, an image that falls outwards, and regions.
+void makeCortex(const TemporaryFolder& folder) {
+  const TriangleMesh white = geometry::makeIcosphere(4, 10.0);
+  io::writeGiftiSurface(folder / "white.surf.gii", white);
+  io::writeGiftiSurface(folder / "pial.surf.gii", geometry::makeIcosphere(4, 14.0));
+  Grid grid;
+  grid.size = {32, 32, 32};
+  grid.origin = Vector::Constant(-15.5);
+  Volume<float> image(grid);
+  for (std::size_t v = 0; v < image.size(); ++v) {
+    const auto [i, j, k] = grid.subscripts(v);
+    image[v] = static_cast<float>(100 - 4 * grid.toWorld(Vector(i, j, k)).norm());
+  }
+  io::writeVolume(folder / "t1.nii.gz", image);
+  io::LabelMap regions{"areas", {}, {{0, "???", {0, 0, 0, 0}}, {1, "upper", {1, 0, 0, 1}}}};
+  regions.keys = (white.positions.col(2).array() > 3).cast<Label>();
+  io::writeGiftiLabel(folder / "areas.label.gii", regions, "CortexLeft");
+}
+
+std::size_t countOf(const std::string& text, const std::string& what) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) {
+    ++count;
+  }
+  return count;
+}
+
+TEST(Report, OfSamplesShowsMapsAndProfiles) {
+  TemporaryFolder folder;
+  makeCortex(folder);
+  writeText(folder / "electrodes.tsv", "name\tx\ty\tz\nA1\t0\t0\t13\n");
+  const auto made = explica({"sample", folder / "t1.nii.gz", "--surfaces", folder.path().string(),
+                             "--depths", "5", "--labels", folder / "areas.label.gii", "--points",
+                             folder / "electrodes.tsv", "--out", folder / "s"});
+  ASSERT_EQ(made.exitCode, 0) << made;
+  ASSERT_EQ(explica({"report", folder / "s"}).exitCode, 0);
+  const std::string words = wordsOf(readText(folder / "s/report.html"));
+  EXPECT_NE(words.find("t1 is known"), std::string::npos);
+  EXPECT_EQ(countOf(words, "class='view'"), 6u);  // three depths from two sides
+  EXPECT_EQ(countOf(words, "<svg class='chart'"), 2u) << "all, and one region";
+  EXPECT_EQ(countOf(words, "fill-opacity"), 2u) << "each with its spread";
+  EXPECT_NE(words.find(">A1<"), std::string::npos);
+  EXPECT_EQ(words.find("left out"), std::string::npos);
+}
+
+TEST(Report, OfAFlatMapShowsItFoldedAndLayerByLayer) {
+  TemporaryFolder folder;
+  makeCortex(folder);
+  ASSERT_EQ(explica({"sample", folder / "t1.nii.gz", "--surfaces", folder.path().string(), "--out",
+                     folder / "s"})
+                .exitCode,
+            0);
+  const auto made =
+      explica({"flatten", folder / "white.surf.gii", "--label", folder / "areas.label.gii",
+               "--surfaces", folder.path().string(), "--volumes", folder / "t1.nii.gz", "--depths",
+               "4", "--map", folder / "s/t1.func.gii", "--regions", folder / "areas.label.gii",
+               "--area-tolerance", "0.05", "--out", folder / "f"});
+  ASSERT_EQ(made.exitCode, 0) << made;
+  ASSERT_EQ(explica({"report", folder / "f"}).exitCode, 0);
+  const std::string words = wordsOf(readText(folder / "f/report.html"));
+  EXPECT_NE(words.find("One-to-one"), std::string::npos);
+  EXPECT_NE(words.find("t1, depth 0.5 on the surface and flat"), std::string::npos);
+  EXPECT_NE(words.find("t1, layer by layer"), std::string::npos);
+  EXPECT_EQ(countOf(words, "class='view'"), 2u + 4u);
+  EXPECT_NE(words.find(">upper<"), std::string::npos);
+  EXPECT_EQ(words.find("left out"), std::string::npos);
+}
+
+TEST(Report, ShowsGivenMapsOnTheUnfolding) {
+  TemporaryFolder folder;
+  unfoldSphere(folder);
+  const TriangleMesh mesh = io::readSurface(folder / "a.surf.gii").mesh;
+  io::writeGiftiShape(folder / "height.shape.gii", {{"height", "mm", mesh.positions.col(2)}},
+                      "CortexLeft");
+  io::writeGiftiShape(folder / "short.shape.gii", {{"short", "", Eigen::VectorXd::Ones(7)}},
+                      "CortexLeft");
+  const auto report = explica({"report", folder / "u", "--map", folder / "height.shape.gii",
+                               "--map", folder / "short.shape.gii"});
+  ASSERT_EQ(report.exitCode, 0) << report;
+  const std::string words = wordsOf(readText(folder / "u/report.html"));
+  EXPECT_NE(words.find("height on the patch before and after"), std::string::npos);
+  EXPECT_EQ(words.find("short on the patch"), std::string::npos);
 }
 
 TEST(Report, RefusesAFolderWithoutRecords) {

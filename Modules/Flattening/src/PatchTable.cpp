@@ -8,9 +8,9 @@
 #include "Explica/Geometry/MeshTopology.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
-#include <optional>
 #include <set>
 
 namespace explica::flattening {
@@ -46,10 +46,50 @@ Moments momentsOf(const Eigen::VectorXd& values, const Eigen::VectorXd& weights,
   return {mean, std::sqrt(squares / weight)};
 }
 
+/// A patch's measures, for a row each.
+class Rows {
+ public:
+  Rows(const TriangleMesh& reference, const Positions& flat, const std::vector<PatchMap>& maps)
+      : reference_(reference),
+        maps_(maps),
+        weights_(geometry::vertexAreas(reference)),
+        areas_(geometry::faceAreas(reference)),
+        flatAreas_(geometry::faceAreas({flat, reference.faces})) {}
+
+  /// The row of the vertices that `take` accepts.
+  template <class Take>
+  [[nodiscard]] std::string row(const std::string& name, const std::string& key,
+                                const Take& take) const {
+    std::int64_t vertices = 0, faces = 0;
+    double area = 0, flatArea = 0;
+    for (Eigen::Index v = 0; v < reference_.vertexCount(); ++v) vertices += take(v);
+    for (Eigen::Index f = 0; f < reference_.faceCount(); ++f) {
+      const auto& face = reference_.faces.row(f);
+      if (!take(face[0]) || !take(face[1]) || !take(face[2])) continue;
+      ++faces;
+      area += areas_[f];
+      flatArea += flatAreas_[f];
+    }
+    std::string text = name + "\t" + key + "\t" + std::to_string(vertices) + "\t" +
+                       std::to_string(faces) + "\t" + numberText(area) + "\t" +
+                       numberText(flatArea);
+    for (const PatchMap& map : maps_) {
+      const Moments moments = momentsOf(map.values, weights_, take);
+      text += "\t" + numberText(moments.mean) + "\t" + numberText(moments.deviation);
+    }
+    return text + "\n";
+  }
+
+ private:
+  const TriangleMesh& reference_;
+  const std::vector<PatchMap>& maps_;
+  Eigen::VectorXd weights_, areas_, flatAreas_;
+};
+
 }  // namespace
 
 std::string patchTable(const TriangleMesh& reference, const Positions& flat,
-                       const VertexKeys& regions, const std::map<Label, std::string>& names,
+                       const std::vector<PatchRegions>& regions,
                        const std::vector<PatchMap>& maps) {
   std::string text = "region\tkey\tvertices\tfaces\tarea_mm2\tarea_flat_mm2";
   for (const PatchMap& map : maps) {
@@ -60,38 +100,16 @@ std::string patchTable(const TriangleMesh& reference, const Positions& flat,
     text += "\t" + map.name + "_mean\t" + map.name + "_sd";
   }
   text += "\n";
-  const Eigen::VectorXd weights = geometry::vertexAreas(reference);
-  const Eigen::VectorXd areas = geometry::faceAreas(reference);
-  const Eigen::VectorXd flatAreas = geometry::faceAreas({flat, reference.faces});
-  std::vector<std::optional<Label>> rows = {std::nullopt};
-  const std::set<Label> keys(regions.begin(), regions.end());
-  for (const Label key : keys) {
-    if (key != 0) rows.emplace_back(key);
-  }
-  for (const auto& key : rows) {
-    const auto take = [&](Eigen::Index v) { return !key || regions[v] == *key; };
-    std::int64_t vertices = 0, faces = 0;
-    double area = 0, flatArea = 0;
-    for (Eigen::Index v = 0; v < reference.vertexCount(); ++v) vertices += take(v);
-    for (Eigen::Index f = 0; f < reference.faceCount(); ++f) {
-      if (!take(reference.faces(f, 0)) || !take(reference.faces(f, 1)) ||
-          !take(reference.faces(f, 2))) {
-        continue;
-      }
-      ++faces;
-      area += areas[f];
-      flatArea += flatAreas[f];
+  const Rows rows(reference, flat, maps);
+  text += rows.row("all", "n/a", [](Eigen::Index) { return true; });
+  for (const PatchRegions& one : regions) {
+    const std::set<Label> keys(one.keys.begin(), one.keys.end());
+    for (const Label key : keys) {
+      const auto name = one.names.find(key);
+      if (name == one.names.end()) continue;
+      text += rows.row(name->second, std::to_string(key),
+                       [&](Eigen::Index v) { return one.keys[v] == key; });
     }
-    const auto name = key ? names.find(*key) : names.end();
-    text += !key ? "all" : name == names.end() ? std::to_string(*key) : name->second;
-    text += "\t" + (key ? std::to_string(*key) : std::string("n/a")) + "\t" +
-            std::to_string(vertices) + "\t" + std::to_string(faces) + "\t" + numberText(area) +
-            "\t" + numberText(flatArea);
-    for (const PatchMap& map : maps) {
-      const Moments moments = momentsOf(map.values, weights, take);
-      text += "\t" + numberText(moments.mean) + "\t" + numberText(moments.deviation);
-    }
-    text += "\n";
   }
   return text;
 }
@@ -124,18 +142,23 @@ std::vector<OutlinePiece> outlines(const Faces& faces, const Positions& position
   std::vector<OutlinePiece> pieces;
   const auto at = [&](std::int32_t v) -> Point { return positions.row(v).transpose(); };
   for (Eigen::Index f = 0; f < faces.rows(); ++f) {
-    std::vector<std::pair<Point, std::array<Label, 2>>> crossings;
-    for (int k = 0; k < 3; ++k) {
-      const std::int32_t a = faces(f, k), b = faces(f, (k + 1) % 3);
-      if (regions[a] == regions[b]) continue;
-      crossings.push_back({(at(a) + at(b)) / 2,
-                           {std::min(regions[a], regions[b]), std::max(regions[a], regions[b])}});
+    const std::array<Label, 3> keys = {regions[faces(f, 0)], regions[faces(f, 1)],
+                                       regions[faces(f, 2)]};
+    const std::array<Point, 3> corners = {at(faces(f, 0)), at(faces(f, 1)), at(faces(f, 2))};
+    if (keys[0] != keys[1] && keys[1] != keys[2] && keys[2] != keys[0]) {
+      const Point middle = (corners[0] + corners[1] + corners[2]) / 3;
+      for (int k = 0; k < 3; ++k) {  // from the middle out, the edge's first corner lies right
+        const int next = (k + 1) % 3;
+        pieces.push_back({middle, (corners[k] + corners[next]) / 2, {keys[next], keys[k]}});
+      }
+      continue;
     }
-    if (crossings.size() == 2) {
-      pieces.push_back({crossings[0].first, crossings[1].first, crossings[0].second});
-    } else if (crossings.size() == 3) {
-      const Point middle = (at(faces(f, 0)) + at(faces(f, 1)) + at(faces(f, 2))) / 3;
-      for (const auto& [point, sides] : crossings) pieces.push_back({point, middle, sides});
+    for (int k = 0; k < 3; ++k) {  // the corner that is alone, if there is one
+      const int next = (k + 1) % 3, last = (k + 2) % 3;
+      if (keys[k] == keys[next] || keys[k] == keys[last]) continue;
+      pieces.push_back({(corners[k] + corners[next]) / 2,
+                        (corners[k] + corners[last]) / 2,
+                        {keys[k], keys[next]}});
     }
   }
   return pieces;

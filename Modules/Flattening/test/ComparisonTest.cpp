@@ -103,7 +103,7 @@ TEST(PatchTable, HasAreasAndWeightedMeansByRegion) {
   for (Eigen::Index v = 0; v < plane.vertexCount(); ++v) regions[v] = x[v] > 4.5 ? 7 : 0;
   x[0] = kNaN;
   const std::string table =
-      patchTable(plane, 2 * plane.positions, regions, {{7, "right"}}, {{"x", x}});
+      patchTable(plane, 2 * plane.positions, {{regions, {{7, "right"}}}}, {{"x", x}});
   EXPECT_NE(table.find("all\tn/a\t121\t200\t100\t400\t"), std::string::npos) << table;
   // From 5 to 10, rim vertices half as heavy: mean 7.5 but for the first column's half faces.
   EXPECT_NE(table.find("right\t7\t66\t100\t50\t200\t"), std::string::npos) << table;
@@ -119,13 +119,29 @@ TEST(Outlines, RunHalfWayBetweenRegions) {
   double length = 0;
   for (const auto& piece : outlines(plane.faces, plane.positions, regions)) {
     EXPECT_NEAR(piece.from.x(), 4.5, 1e-12);
-    EXPECT_EQ(piece.sides, (std::array<Label, 2>{1, 2}));
+    // Seen from above, what lies left of the line is named first.
+    const bool upwards = piece.to.y() > piece.from.y();
+    EXPECT_EQ(piece.sides, (upwards ? std::array<Label, 2>{1, 2} : std::array<Label, 2>{2, 1}));
     length += (piece.to - piece.from).norm();
   }
   EXPECT_NEAR(length, 10, 1e-12);
   const auto places = regionPlaces(plane, regions);
   EXPECT_LT(places.at(1).x(), 4);
   EXPECT_GT(places.at(2).x(), 5);
+}
+
+TEST(Outlines, MeetWhereThreeRegionsDo) {
+  const TriangleMesh face{Positions{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, Faces{{0, 1, 2}}};
+  const VertexKeys regions = VertexKeys{{4, 5, 6}};
+  const auto pieces = outlines(face.faces, face.positions, regions);
+  ASSERT_EQ(pieces.size(), 3u);
+  for (const auto& piece : pieces) {
+    EXPECT_NEAR((piece.from - Point(1, 1, 0) / 3).norm(), 0, 1e-12);
+    const Vector along = piece.to - piece.from, left(-along.y(), along.x(), 0);
+    const auto cornerOf = [&](Label key) -> Point { return face.positions.row(key - 4); };
+    EXPECT_GT(left.dot(cornerOf(piece.sides[0]) - piece.from), 0);
+    EXPECT_LT(left.dot(cornerOf(piece.sides[1]) - piece.from), 0);
+  }
 }
 
 }  // namespace

@@ -28,6 +28,13 @@ const std::vector<double>* Table::column(std::string_view name) const {
   return nullptr;
 }
 
+const std::vector<std::string>* Table::text(std::string_view name) const {
+  for (std::size_t c = 0; c < names.size(); ++c) {
+    if (names[c] == name) return &texts[c];
+  }
+  return nullptr;
+}
+
 Table readTable(const std::filesystem::path& file) {
   std::ifstream stream(file);
   std::string line;
@@ -36,6 +43,7 @@ Table readTable(const std::filesystem::path& file) {
   Table table;
   table.names = cells(line);
   table.columns.resize(table.names.size());
+  table.texts.resize(table.names.size());
   while (std::getline(stream, line)) {
     const std::vector<std::string> row = cells(line);
     if (row.size() != table.names.size()) continue;
@@ -45,6 +53,7 @@ Table readTable(const std::filesystem::path& file) {
       double value = kNaN;
       if (!(digits >> value)) value = kNaN;
       table.columns[c].push_back(value);
+      table.texts[c].push_back(row[c]);
     }
   }
   return table;

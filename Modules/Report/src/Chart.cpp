@@ -190,17 +190,25 @@ std::string histogramSvg(const Eigen::VectorXd& values, const ChartText& titles)
 
 namespace {
 
+/// Lower and upper edge of a curve's band at a point; both its value where it has none.
+std::array<double, 2> bandAt(const Series& series, std::size_t i) {
+  const double half = i < series.spread.size() ? series.spread[i] : 0;
+  if (!std::isfinite(half)) return {series.y[i], series.y[i]};
+  return {series.y[i] - half, series.y[i] + half};
+}
+
 /// The box of the curves' finite values, a little larger; all of it NaN-free.
 std::optional<Axes> axesAround(const std::vector<Series>& series, bool logarithmic) {
   Axes axes{kInfinity, -kInfinity, kInfinity, -kInfinity, logarithmic};
   for (const Series& s : series) {
     for (std::size_t i = 0; i < std::min(s.x.size(), s.y.size()); ++i) {
-      const double y = axes.scaled(s.y[i]);
-      if (!std::isfinite(s.x[i]) || !std::isfinite(y)) continue;
+      const auto [below, above] = bandAt(s, i);
+      const double low = axes.scaled(below), high = axes.scaled(above);
+      if (!std::isfinite(s.x[i]) || !std::isfinite(low) || !std::isfinite(high)) continue;
       axes.x0 = std::min(axes.x0, s.x[i]);
       axes.x1 = std::max(axes.x1, s.x[i]);
-      axes.y0 = std::min(axes.y0, y);
-      axes.y1 = std::max(axes.y1, y);
+      axes.y0 = std::min(axes.y0, low);
+      axes.y1 = std::max(axes.y1, high);
     }
   }
   if (!(axes.x1 >= axes.x0)) return {};
@@ -212,11 +220,15 @@ std::optional<Axes> axesAround(const std::vector<Series>& series, bool logarithm
   return axes;
 }
 
-/// How a curve is drawn: hues that colour-blind readers can tell apart, then dashes.
+constexpr std::array<Label, 5> kHues = {5, 6, 3, 7, 1};  // colour-blind readers can tell them
+
+std::string hueOf(std::size_t curve) {
+  return hex(colourOfLabel(kHues[curve % kHues.size()]));
+}
+
+/// How a curve is drawn: hues, then dashes.
 std::string strokeOf(std::size_t curve) {
-  constexpr std::array<Label, 5> kHues = {5, 6, 3, 7, 1};
-  return " stroke='" + hex(colourOfLabel(kHues[curve % kHues.size()])) + "'" +
-         (curve < kHues.size() ? "" : " stroke-dasharray='6 3'");
+  return " stroke='" + hueOf(curve) + "'" + (curve < kHues.size() ? "" : " stroke-dasharray='6 3'");
 }
 
 std::string pathOf(const Series& series, const Axes& axes) {
@@ -227,6 +239,19 @@ std::string pathOf(const Series& series, const Axes& axes) {
     path += (path.empty() ? "M" : "L") + number(axes.px(series.x[i])) + " " + number(axes.py(y));
   }
   return path;
+}
+
+/// The outline of a curve's band; empty if it has none.
+std::string bandOf(const Series& series, const Axes& axes) {
+  std::string there, back;
+  for (std::size_t i = 0; i < std::min(series.x.size(), series.spread.size()); ++i) {
+    const auto [low, high] = bandAt(series, i);
+    if (!std::isfinite(low) || !std::isfinite(high)) continue;
+    const std::string x = number(axes.px(series.x[i])) + " ";
+    there += (there.empty() ? "M" : "L") + x + number(axes.py(axes.scaled(high)));
+    back = "L" + x + number(axes.py(axes.scaled(low))) + back;
+  }
+  return there.empty() ? "" : there + back + "Z";
 }
 
 /// Rows of names below the plot; the rows' number with it.
@@ -259,13 +284,23 @@ Legend legendOf(const std::vector<Series>& series) {
 
 }  // namespace
 
+std::optional<std::array<double, 2>> rangeOf(const std::vector<Series>& series) {
+  const std::optional<Axes> axes = axesAround(series, false);
+  if (!axes) return {};
+  return std::array{axes->y0, axes->y1};
+}
+
 std::string curvesSvg(const std::vector<Series>& series, const ChartText& titles) {
   bool positive = true;
   for (const Series& s : series) {
     for (const double y : s.y) positive = positive && !(y < 0);
   }
-  const std::optional<Axes> axes = axesAround(series, titles.logarithmic && positive);
+  std::optional<Axes> axes = axesAround(series, titles.logarithmic && positive);
   if (!axes) return nothing(titles);
+  if (titles.yRange && !axes->logarithmic) {
+    axes->y0 = (*titles.yRange)[0];
+    axes->y1 = (*titles.yRange)[1];
+  }
   const Legend legend = legendOf(series);
   std::string svg = head(*axes, titles, true, kLegendRow * legend.rows);
   for (const ChartMark& mark : titles.marks) {
@@ -274,6 +309,12 @@ std::string curvesSvg(const std::vector<Series>& series, const ChartText& titles
     svg += "<path class='median' d='M" + number(axes->px(mark.x)) + " " + number(kTop) + "V" +
            number(kHeight - kBottom) + "'/>";
     svg += text(axes->px(mark.x) + (late ? -4 : 4), kTop + 10, late ? "end" : "start", mark.name);
+  }
+  for (std::size_t s = 0; s < series.size(); ++s) {
+    const std::string band = bandOf(series[s], *axes);
+    if (!band.empty()) {
+      svg += "<path fill-opacity='0.18' fill='" + hueOf(s) + "' d='" + band + "'/>";
+    }
   }
   for (std::size_t s = 0; s < series.size(); ++s) {
     svg += "<path class='line'" + strokeOf(s) + " d='" + pathOf(series[s], *axes) + "'/>";

@@ -127,6 +127,14 @@ Colour colourOfLabel(Label label) {
   return {light * decodeSrgb(hue[0]), light * decodeSrgb(hue[1]), light * decodeSrgb(hue[2])};
 }
 
+Colour colourOfLabel(Label label, const std::array<float, 4>& own) {
+  if (!(own[3] > 0) || !(own[0] + own[1] + own[2] > 0)) return colourOfLabel(label);
+  const auto linear = [](float x) {
+    return decodeSrgb(static_cast<std::uint8_t>(std::lround(255 * std::clamp(x, 0.0F, 1.0F))));
+  };
+  return {linear(own[0]), linear(own[1]), linear(own[2])};
+}
+
 ColourScale scaleFor(const Eigen::VectorXd& values, std::string title, std::string unit,
                      std::optional<ColourMap> map) {
   std::vector<double> sorted;

@@ -216,8 +216,11 @@ double textWidth(std::string_view text, double size) {
   return std::max(0.0, columns - kGap) * size / kRows;
 }
 
-void drawText(Picture& picture, std::string_view text, const Eigen::Vector2d& position, double size,
-              const Colour& colour, TextAnchor anchor) {
+namespace {
+
+/// The strokes of a line of text.
+std::vector<Segment2> textSegments(std::string_view text, const Eigen::Vector2d& position,
+                                   double size, TextAnchor anchor) {
   const double unit = size / kRows;
   double x = position.x();
   if (anchor == TextAnchor::Middle) x -= 0.5 * textWidth(text, size);
@@ -245,7 +248,25 @@ void drawText(Picture& picture, std::string_view text, const Eigen::Vector2d& po
     }
     x += (high - low + kGap) * unit;
   }
-  drawSegments(picture, segments, colour, std::max(1.0, kStroke * size));
+  return segments;
+}
+
+double strokeWidth(double size) {
+  return std::max(1.0, kStroke * size);
+}
+
+}  // namespace
+
+void drawText(Picture& picture, std::string_view text, const Eigen::Vector2d& position, double size,
+              const Colour& colour, TextAnchor anchor) {
+  drawSegments(picture, textSegments(text, position, size, anchor), colour, strokeWidth(size));
+}
+
+void drawTextWithRim(Picture& picture, std::string_view text, const Eigen::Vector2d& position,
+                     double size, const Colour& colour, const Colour& rim, TextAnchor anchor) {
+  const std::vector<Segment2> segments = textSegments(text, position, size, anchor);
+  drawSegments(picture, segments, rim, strokeWidth(size) + 0.45 * size);
+  drawSegments(picture, segments, colour, 1.15 * strokeWidth(size));
 }
 
 std::string tickText(double value, double range) {

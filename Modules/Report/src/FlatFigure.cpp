@@ -6,12 +6,16 @@
 #include "Explica/Core/Errors.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
+#include <optional>
 
 namespace explica::report {
 namespace {
 
 constexpr Colour kInk = {0.01f, 0.01f, 0.01f};
+constexpr Colour kPaper = {1, 1, 1};
 constexpr double kBarShare = 0.25;  // of the picture's width that the scale bar takes at most
 
 void drawScaleBar(Picture& picture, double pixelsPerMillimetre, int width, int height) {
@@ -22,6 +26,64 @@ void drawScaleBar(Picture& picture, double pixelsPerMillimetre, int width, int h
   drawSegments(picture, {{from, to}}, kInk, letters / 4);
   drawText(picture, tickText(length, length) + " mm",
            (from + to) / 2 - Eigen::Vector2d(0, 0.6 * letters), letters, kInk, TextAnchor::Middle);
+}
+
+/// A piece of an outline in pixels, y downwards.
+struct Stroke {
+  Segment2 line;
+  std::optional<Colour> left, right;
+};
+
+/// Outlines: a dark line, and on its sides the regions' colours.
+void drawOutlines(Picture& picture, const std::vector<Stroke>& strokes, double width) {
+  std::vector<Segment2> middle;
+  std::map<Colour, std::vector<Segment2>> sides;
+  for (const Stroke& stroke : strokes) {
+    middle.push_back(stroke.line);
+    const Eigen::Vector2d along = stroke.line.to - stroke.line.from;
+    if (!(along.norm() > 0)) continue;
+    const Eigen::Vector2d left = Eigen::Vector2d(along.y(), -along.x()) * (width / along.norm());
+    if (stroke.left)
+      sides[*stroke.left].push_back({stroke.line.from + left, stroke.line.to + left});
+    if (stroke.right) {
+      sides[*stroke.right].push_back({stroke.line.from - left, stroke.line.to - left});
+    }
+  }
+  drawSegments(picture, middle, kInk, 3.4 * width);
+  for (const auto& [colour, segments] : sides) drawSegments(picture, segments, colour, width);
+  drawSegments(picture, middle, kInk, 0.8 * width);
+}
+
+/// A name's box in pixels.
+struct Box {
+  Eigen::Vector2d low, high;
+  [[nodiscard]] bool meets(const Box& other) const {
+    return (low.array() < other.high.array()).all() && (other.low.array() < high.array()).all();
+  }
+};
+
+/// Names, each at its place or as near above or below as keeps it off those already written.
+void drawNames(Picture& picture, const std::vector<std::pair<Eigen::Vector2d, std::string>>& names,
+               int width, double letters) {
+  constexpr std::array kRowsAside = {0.0, 1.0, -1.0, 2.0, -2.0, 3.0, -3.0};
+  std::vector<Box> taken;
+  for (const auto& [place, name] : names) {
+    const double half = 0.5 * textWidth(name, letters) + 0.3 * letters;
+    const double x = std::clamp(place.x(), half, std::max(half, width - half));
+    const auto boxAt = [&](double row) {
+      const double y = std::clamp(place.y() + row * 1.7 * letters, 1.5 * letters,
+                                  picture.height - 0.5 * letters);
+      return Box{{x - half, y - 1.35 * letters}, {x + half, y + 0.35 * letters}};
+    };
+    const auto free = std::find_if(kRowsAside.begin(), kRowsAside.end(), [&](double row) {
+      const Box box = boxAt(row);
+      return std::none_of(taken.begin(), taken.end(), [&](const Box& b) { return b.meets(box); });
+    });
+    const Box box = boxAt(free == kRowsAside.end() ? 0.0 : *free);
+    taken.push_back(box);
+    drawTextWithRim(picture, name, {x, box.high.y() - 0.35 * letters}, letters, kInk, kPaper,
+                    TextAnchor::Middle);
+  }
 }
 
 }  // namespace
@@ -54,13 +116,14 @@ Picture flatFigure(const TriangleMesh& mesh, const SurfacePaint& paint, const Fl
     return Eigen::Vector2d(options.width / 2.0 + scale * (p.x() - camera.target.x()),
                            options.height / 2.0 - scale * (p.y() - camera.target.y()));
   };
-  std::vector<Segment2> segments;
-  for (const auto& [from, to] : marks.lines) segments.push_back({pixelOf(from), pixelOf(to)});
-  drawSegments(picture, segments, kInk, height / 450.0);
-  const double letters = std::clamp(height / 75.0, 8.0, 14.0);
-  for (const auto& [place, name] : marks.names) {
-    drawText(picture, name, pixelOf(place), letters, kInk, TextAnchor::Middle);
+  std::vector<Stroke> strokes;
+  for (const FlatLine& line : marks.lines) {
+    strokes.push_back({{pixelOf(line.from), pixelOf(line.to)}, line.left, line.right});
   }
+  drawOutlines(picture, strokes, height / 330.0);
+  std::vector<std::pair<Eigen::Vector2d, std::string>> names;
+  for (const auto& [place, name] : marks.names) names.emplace_back(pixelOf(place), name);
+  drawNames(picture, names, options.width, std::clamp(height / 56.0, 9.0, 18.0));
   drawScaleBar(picture, scale, options.width, options.height);
   return picture;
 }

@@ -275,6 +275,23 @@ std::string chartsHtml(const std::vector<ReportChart>& charts) {
   return group.empty() ? html : html + chartGroupHtml(group);
 }
 
+std::string tableHtml(const ReportTable& table) {
+  std::string html = figureOpen(table.id) + "<div class='wide'><table class='findings'><thead><tr>";
+  for (const std::string& column : table.columns) {
+    html += "<th scope='col'>" + escapeHtml(column) + "</th>";
+  }
+  html += "</tr></thead><tbody>";
+  for (const auto& row : table.rows) {
+    html += "<tr>";
+    for (std::size_t n = 0; n < row.size(); ++n) {
+      html += n == 0 ? "<th scope='row'>" + escapeHtml(row[n]) + "</th>"
+                     : "<td>" + escapeHtml(row[n]) + "</td>";
+    }
+    html += "</tr>";
+  }
+  return html + "</tbody></table></div>" + captionHtml(table.title, table.caption) + "</figure>\n";
+}
+
 std::string lookHtml(const ReportContent& content) {
   std::string html;
   if (content.evolution) html += kViewHtml;
@@ -291,6 +308,7 @@ std::string lookHtml(const ReportContent& content) {
             "</figure>\n";
   }
   html += chartsHtml(content.charts);
+  for (const ReportTable& table : content.tables) html += tableHtml(table);
   return html.empty() ? html : "<section><h2>See for yourself</h2>" + html + "</section>\n";
 }
 

@@ -1,10 +1,13 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
+#include "Explica/Report/FlatFigure.h"
 #include "Explica/Report/Picture.h"
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Report/ColourMap.h"
 #include "Explica/Report/Drawing.h"
+
+#include "Explica/Geometry/Fixtures.h"
 
 #include <gtest/gtest.h>
 #include <zlib.h>
@@ -187,6 +190,56 @@ TEST(Drawing, TextHasInkWhereItSaysItHasWidth) {
     }
   }
   EXPECT_NEAR(lastInk, end, 3);
+}
+
+TEST(Drawing, ARimSetsTextOffFromADarkGround) {
+  Picture dark(120, 40, {20, 20, 60});
+  drawTextWithRim(dark, "V1", {60, 30}, 16, {0, 0, 0}, {1, 1, 1}, TextAnchor::Middle);
+  int light = 0, black = 0;
+  for (int x = 0; x < 120; ++x) {
+    for (int y = 0; y < 40; ++y) {
+      light += dark.pixel(x, y)[0] > 240;
+      black += dark.pixel(x, y)[2] < 10;
+    }
+  }
+  EXPECT_GT(light, 100);
+  EXPECT_GT(black, 40);
+}
+
+TEST(LabelColours, AreTheTablesOwnWhereItHasAny) {
+  const Colour own = colourOfLabel(3, {60 / 255.0F, 20 / 255.0F, 220 / 255.0F, 1});
+  EXPECT_EQ(encodeSrgb(own[0]), 60);
+  EXPECT_EQ(encodeSrgb(own[2]), 220);
+  EXPECT_EQ(colourOfLabel(3, {0, 0, 0, 0}), colourOfLabel(3));
+}
+
+/// A plane of two halves, painted plainly.
+TEST(FlatFigure, OutlinesCarryTheColoursOfTheRegionsOnTheirSides) {
+  const TriangleMesh plane = geometry::makeRectangle(40, 40, 40, 40);
+  SurfacePaint paint;
+  paint.values = Eigen::VectorXd::Zero(plane.vertexCount());
+  paint.scale = {ColourMap::Grey, -1, 0.2, "x", ""};
+  FlatMarks marks;
+  const Colour red = {1, 0, 0}, blue = {0, 0, 1};
+  marks.lines.push_back({{20, 5, 0}, {20, 35, 0}, red, blue});  // upwards: left is left
+  marks.names.emplace_back(Point(1, 20, 0), "a long name at the rim");
+  const Picture picture = flatFigure(plane, paint, marks, 450);
+  int reds = 0, blues = 0, lastRed = 0, firstBlue = picture.width;
+  for (int x = 0; x < 450; ++x) {
+    const std::uint8_t* p = picture.pixel(x, 120);
+    if (p[0] > 200 && p[2] < 60) {
+      ++reds;
+      lastRed = x;
+    }
+    if (p[2] > 200 && p[0] < 60) {
+      ++blues;
+      firstBlue = std::min(firstBlue, x);
+    }
+  }
+  EXPECT_GE(reds, 1);
+  EXPECT_GE(blues, 1);
+  EXPECT_LT(lastRed, firstBlue);
+  for (int y = 0; y < 430; ++y) EXPECT_GT(picture.pixel(0, y)[0], 60) << "a name is cut off";
 }
 
 TEST(Ticks, HaveTheDigitsThatTheRangeNeeds) {

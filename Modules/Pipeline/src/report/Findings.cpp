@@ -65,6 +65,22 @@ constexpr std::array kFindings = {
             "Of the patch's faces."},
     Finding{"unfold", "edge_strain_mean", "", "Change of lengths, mean", "", Shown::Percent,
             "Of the patch's edges."},
+    Finding{"flatten", "area", "", "Area of the patch", "cm\u00b2", Shown::SquareCentimetres,
+            "On the surface where areas and lengths count."},
+    Finding{"flatten", "area_error_mean", "", "Error of areas in the flat map, mean", "",
+            Shown::Percent, "Of the patch's faces."},
+    Finding{"flatten", "edge_strain_mean", "", "Change of lengths, mean", "", Shown::Percent,
+            "Of the patch's edges."},
+    Finding{"flatten", "geodesic_error_local", "", "Error of distances up to 30 mm, mean", "",
+            Shown::Percent,
+            "Straight on the map against along the surface, at the scale that suits all best."},
+    Finding{"flatten", "geodesic_error_all", "", "Error of all distances, mean", "", Shown::Percent,
+            ""},
+    Finding{"sample", "vertices", "", "Vertices", "", Shown::Plain, ""},
+    Finding{"sample", "layers", "", "Layers", "", Shown::Plain, ""},
+    Finding{"sample", "points", "", "Points", "", Shown::Plain, ""},
+    Finding{"sample", "points_distance_max", "", "Farthest point from the cortex", "mm",
+            Shown::Plain, "Of its nearest column from white to pial."},
 };
 
 std::string shownAs(Shown shown, double value) {

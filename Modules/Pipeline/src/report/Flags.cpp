@@ -128,6 +128,44 @@ std::vector<ReportFlag> unfoldFlags(const StepFolder& step) {
   return flags;
 }
 
+std::vector<ReportFlag> flattenFlags(const StepFolder& step) {
+  std::vector<ReportFlag> flags;
+  const auto turned = step.number("turned_over"), crossings = step.number("rim_crossings");
+  if (turned && crossings) {
+    const bool sound = *turned == 0 && *crossings == 0;
+    flags.push_back({sound ? FlagLevel::Good : FlagLevel::Bad, "One-to-one" + sideWord(step) + ":",
+                     sound ? "no face turned over, no part on another, by an exact test"
+                           : readable(*turned) + " faces turned over, " + readable(*crossings) +
+                                 " pairs of rim edges that meet",
+                     kFlatPlace});
+  }
+  const auto area = step.number("area_error_mean"), goal = step.number("area_tolerance");
+  if (area && goal) {
+    constexpr double kRounding = 1.02;
+    flags.push_back({*area <= kRounding * *goal ? FlagLevel::Good : FlagLevel::Notice,
+                     "Areas kept" + sideWord(step) + ":",
+                     "mean error " + percent(*area) + ", asked for " + percent(*goal),
+                     kDistortionPlace});
+  }
+  return flags;
+}
+
+/// How much of each volume is known on the cortex.
+std::vector<ReportFlag> sampleFlags(const StepFolder& step) {
+  constexpr std::string_view kKey = "known_fraction_";
+  constexpr double kNearlyAll = 0.95;
+  std::vector<ReportFlag> flags;
+  for (const auto& [key, value] : step.summary.items()) {
+    if (key.rfind(kKey, 0) != 0 || !value.is_number()) continue;
+    const double share = value.get<double>();
+    flags.push_back({share >= kNearlyAll ? FlagLevel::Good : FlagLevel::Notice,
+                     key.substr(kKey.size()) + " is known" + sideWord(step) + ":",
+                     "at " + percent(share) + " of the places where it was asked for",
+                     step.has("profiles.tsv") ? kSampledPlace : ""});
+  }
+  return flags;
+}
+
 /// What the program itself could not vouch for: the list "flags" of a summary.
 std::vector<ReportFlag> ownFlags(const StepFolder& step) {
   std::vector<ReportFlag> flags;
@@ -149,6 +187,8 @@ std::vector<ReportFlag> flagsOf(const StepFolder& step) {
   if (step.command == "surface") return surfaceFlags(step);
   if (step.command == "thickness") return thicknessFlags(step);
   if (step.command == "unfold") return unfoldFlags(step);
+  if (step.command == "flatten") return flattenFlags(step);
+  if (step.command == "sample") return sampleFlags(step);
   return {};
 }
 

@@ -72,10 +72,18 @@ void listSteps(ResultFolder& results) {
 }
 
 /// What a step has of its own to show, beside what the parts above show of all steps together.
-void showStep(ResultFolder& results, const StepFolder& step) {
+void showStep(ResultFolder& results, const StepFolder& step, const std::vector<GivenMap>& maps) {
   if (step.command == "unfold") {
-    results.attempt("Evolution", [&] { showUnfolding(results, step); });
+    results.attempt("Evolution", [&] { showUnfolding(results, step, maps); });
     chartUnfolding(results, step);
+  }
+  if (step.command == "sample") {
+    results.attempt("Sampled maps", [&] { showSampled(results, step); });
+    results.attempt("Profiles", [&] { showProfiles(results, step); });
+  }
+  if (step.command == "flatten") {
+    results.attempt("Flat map", [&] { showFlat(results, step, maps); });
+    return;
   }
   results.attempt("Pictures of " + titleOf(step.name), [&] { showOwnPictures(results, step); });
 }
@@ -94,13 +102,14 @@ report::ReportContent collectReport(const fs::path& folder, const FolderReportOp
   listSteps(results);
   results.attempt("Tissues", [&] { showTissues(results, options); });
   monitor.progress(0.2, "report");
-  results.attempt("Surfaces", [&] { showSurfaces(results, options); });
+  const std::vector<GivenMap> maps = readGivenMaps(results, options.maps);
+  results.attempt("Surfaces", [&] { showSurfaces(results, options, maps); });
   monitor.progress(0.5, "report");
   for (const StepFolder* step : results.stepsOf("thickness")) {
     if (!step->has("thickness.nii.gz")) continue;
     results.attempt("Thickness", [&] { chartThickness(results, *step); });
   }
-  for (const StepFolder& step : results.steps()) showStep(results, step);
+  for (const StepFolder& step : results.steps()) showStep(results, step, maps);
   results.attempt("Numbers", [&] { findNumbers(results); });
   flagSteps(results);
   monitor.progress(1, "report");

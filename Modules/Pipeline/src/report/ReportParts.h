@@ -3,6 +3,7 @@
 #pragma once
 
 #include "Explica/Pipeline/FolderReport.h"
+#include "GivenMaps.h"
 #include "ResultFolder.h"
 
 namespace explica::pipeline {
@@ -14,6 +15,9 @@ inline constexpr const char* kThicknessPlace = "thickness-maps";
 inline constexpr const char* kPatchPlace = "view3d";
 inline constexpr const char* kPatchViewsPlace = "before-after";
 inline constexpr const char* kDistortionPlace = "distortion";
+inline constexpr const char* kProfilePlace = "profiles";
+inline constexpr const char* kSampledPlace = "sampled";
+inline constexpr const char* kFlatPlace = "flat";
 
 /// Heading of the histograms of thickness, on surfaces and in voxels.
 inline constexpr const char* kThicknessCharts = "Thickness";
@@ -28,16 +32,28 @@ void findNumbers(ResultFolder& results);
 void showTissues(ResultFolder& results, const FolderReportOptions& options);
 
 /// White and pial outlines on the image, and maps on the surfaces from all sides.
-void showSurfaces(ResultFolder& results, const FolderReportOptions& options);
+void showSurfaces(ResultFolder& results, const FolderReportOptions& options,
+                  const std::vector<GivenMap>& maps);
 
 /// The unfolding: what the interactive view plays, before and after, curves and histograms.
-void showUnfolding(ResultFolder& results, const StepFolder& step);
+void showUnfolding(ResultFolder& results, const StepFolder& step,
+                   const std::vector<GivenMap>& maps);
 
 /// Histogram of the thickness in voxels.
 void chartThickness(ResultFolder& results, const StepFolder& step);
 
 /// Curves over an unfolding's iterations, and histograms of its maps.
 void chartUnfolding(ResultFolder& results, const StepFolder& step);
+
+/// Sampled maps and labels on the surface, and the table of points.
+void showSampled(ResultFolder& results, const StepFolder& step);
+
+/// Profiles over depth or layers, by region, and their course over time.
+void showProfiles(ResultFolder& results, const StepFolder& step);
+
+/// A flat map: its picture, the patch with its maps folded, unfolded and flat, stacks of depths,
+/// the table of regions, histograms of the distortion.
+void showFlat(ResultFolder& results, const StepFolder& step, const std::vector<GivenMap>& maps);
 
 /// Pictures that a command has drawn itself: SVG and PNG files of its folder.
 void showOwnPictures(ResultFolder& results, const StepFolder& step);

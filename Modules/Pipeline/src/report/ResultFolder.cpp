@@ -6,6 +6,7 @@
 #include "Explica/Provenance/Record.h"
 #include "Explica/Provenance/Verify.h"
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <cmath>
@@ -106,14 +107,28 @@ void ResultFolder::add(const fs::path& folder, const std::string& name) {
   });
 }
 
-std::optional<fs::path> inputOf(const StepFolder& step, std::string_view role) {
+std::vector<fs::path> inputsOf(const StepFolder& step, std::string_view role) {
+  std::vector<fs::path> found;
   const Json inputs = step.record.value("inputs", Json::array());
   for (std::size_t i = 0; i < inputs.size(); ++i) {
-    if (inputs[i].value("role", "") == role) {
-      return provenance::locateInput(step.record, i, step.folder / provenance::kRecordName);
-    }
+    if (inputs[i].value("role", "") != role) continue;
+    found.push_back(provenance::locateInput(step.record, i, step.folder / provenance::kRecordName));
   }
-  return {};
+  return found;
+}
+
+std::optional<fs::path> inputOf(const StepFolder& step, std::string_view role) {
+  const std::vector<fs::path> all = inputsOf(step, role);
+  return all.empty() ? std::nullopt : std::optional(all.front());
+}
+
+std::vector<fs::path> filesOf(const StepFolder& step, std::string_view ending) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(step.folder)) {
+    if (entry.path().filename().string().ends_with(ending)) files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
 }
 
 std::optional<io::VertexMap> mapNamed(const fs::path& file, Eigen::Index vertexCount,

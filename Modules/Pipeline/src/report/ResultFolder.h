@@ -66,6 +66,13 @@ class ResultFolder {
 [[nodiscard]] std::optional<std::filesystem::path> inputOf(const StepFolder& step,
                                                            std::string_view role);
 
+[[nodiscard]] std::vector<std::filesystem::path> inputsOf(const StepFolder& step,
+                                                          std::string_view role);
+
+/// Files of a step's folder whose names end so, in order.
+[[nodiscard]] std::vector<std::filesystem::path> filesOf(const StepFolder& step,
+                                                         std::string_view ending);
+
 /// The map of that name in a file, or its first where the name is empty.
 [[nodiscard]] std::optional<io::VertexMap> mapNamed(const std::filesystem::path& file,
                                                     Eigen::Index vertexCount,

@@ -5,19 +5,18 @@
 #include "Explica/Report/Chart.h"
 #include "Explica/Report/Figure.h"
 #include "ReportParts.h"
+#include "StandardViews.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
 
 namespace explica::pipeline {
 namespace {
 
 namespace fs = std::filesystem;
-using report::ViewName;
-
-constexpr int kViewWidth = 300, kViewHeight = 230;  // pixels
 
 /// One hemisphere's surfaces, and the scenes in which they are drawn.
 struct Hemisphere {
@@ -60,29 +59,13 @@ std::optional<fs::path> imageOf(const ResultFolder& results, const StepFolder& s
   return scanBeside(*labels).value_or(*labels);
 }
 
-std::vector<std::pair<std::string, ViewName>> viewsOf(const std::string& side) {
-  const bool right = side == "right";
-  return {{"lateral", right ? ViewName::Right : ViewName::Left},
-          {"medial", right ? ViewName::Left : ViewName::Right},
-          {"dorsal", ViewName::Top},
-          {"ventral", ViewName::Bottom},
-          {"frontal", ViewName::Front},
-          {"occipital", ViewName::Back}};
-}
-
-report::SurfacePictureOptions viewSize() {
-  report::SurfacePictureOptions options;
-  options.width = kViewWidth;
-  options.height = kViewHeight;
-  return options;
-}
-
 /// Half the height of a picture that holds every hemisphere from any of the sides.
-double commonHalfHeight(const std::vector<Hemisphere>& all) {
+double commonHalfHeight(const std::vector<const Hemisphere*>& all) {
+  const report::SurfacePictureOptions size = viewSize();
   double half = 0;
-  for (const Hemisphere& h : all) {
-    for (const auto& [title, view] : viewsOf(h.side)) {
-      half = std::max(half, report::cameraFor(h.pial, view, kViewWidth, kViewHeight).halfHeight);
+  for (const Hemisphere* h : all) {
+    for (const auto& [title, view] : standardViews(h->side)) {
+      half = std::max(half, report::cameraFor(h->pial, view, size.width, size.height).halfHeight);
     }
   }
   return half;
@@ -98,45 +81,36 @@ Eigen::VectorXd known(Eigen::VectorXd values, const Eigen::VectorXd& thickness) 
 }
 
 /// One colour a vertex, `count` of the standard views of every hemisphere.
-report::ReportViews drawViews(std::vector<Hemisphere>& all,
+report::ReportViews drawViews(const std::vector<const Hemisphere*>& all,
                               const std::vector<std::vector<report::Colour>>& colours,
                               report::Filling filling, std::size_t count,
                               Drawn drawn = Drawn::Pial) {
+  const report::SurfacePictureOptions size = viewSize();
   report::ReportViews views;
   const double half = commonHalfHeight(all);
   for (std::size_t h = 0; h < all.size(); ++h) {
-    const auto standard = viewsOf(all[h].side);
+    const auto standard = standardViews(all[h]->side);
     const report::SurfaceScene& scene =
-        drawn == Drawn::Pial ? *all[h].pialScene : *all[h].whiteScene;
+        drawn == Drawn::Pial ? *all[h]->pialScene : *all[h]->whiteScene;
     for (std::size_t n = 0; n < std::min(count, standard.size()); ++n) {
       report::Camera camera =
-          report::cameraFor(all[h].pial, standard[n].second, kViewWidth, kViewHeight);
+          report::cameraFor(all[h]->pial, standard[n].second, size.width, size.height);
       camera.halfHeight = half;
-      views.views.push_back({(all[h].side.empty() ? "" : all[h].side + ", ") + standard[n].first,
-                             scene.render(camera, colours[h], filling, viewSize())});
+      views.views.push_back({(all[h]->side.empty() ? "" : all[h]->side + ", ") + standard[n].first,
+                             scene.render(camera, colours[h], filling, size)});
     }
   }
   return views;
 }
 
-/// A map of every hemisphere on one scale.
-void showMap(ResultFolder& results, std::vector<Hemisphere>& all, const char* file,
-             const std::string& title, const std::string& caption, const char* id,
-             std::size_t count, Drawn drawn) {
-  std::vector<Eigen::VectorXd> values;
+/// A map of every hemisphere on one scale; the words are the caller's.
+report::ReportViews drawMap(const std::vector<const Hemisphere*>& all,
+                            const std::vector<Eigen::VectorXd>& values, const std::string& name,
+                            const std::string& unit, std::size_t count, Drawn drawn) {
   std::vector<double> pooled;
-  std::string name, unit;
-  for (const Hemisphere& h : all) {
-    const Eigen::Index n = h.pial.vertexCount();
-    const auto map = mapNamed(h.step->folder / file, n);
-    if (!map) return;
-    const auto thickness = mapNamed(h.step->folder / "thickness.shape.gii", n);
-    values.push_back(thickness ? known(map->values, thickness->values) : map->values);
-    for (const double v : values.back()) {
-      if (std::isfinite(v)) pooled.push_back(v);
-    }
-    name = map->name;
-    unit = map->unit;
+  for (const Eigen::VectorXd& one : values) {
+    std::copy_if(one.begin(), one.end(), std::back_inserter(pooled),
+                 [](double v) { return std::isfinite(v); });
   }
   const Eigen::VectorXd pool =
       Eigen::Map<const Eigen::VectorXd>(pooled.data(), static_cast<Eigen::Index>(pooled.size()));
@@ -144,32 +118,70 @@ void showMap(ResultFolder& results, std::vector<Hemisphere>& all, const char* fi
   std::vector<std::vector<report::Colour>> colours;
   for (const auto& v : values) colours.push_back(report::coloursOf(v, scale));
   report::ReportViews views = drawViews(all, colours, report::Filling::Smooth, count, drawn);
+  views.scale = scale;
+  return views;
+}
+
+/// A map of `explica surface`.
+void showMap(ResultFolder& results, const std::vector<const Hemisphere*>& all, const char* file,
+             const std::string& title, const std::string& caption, const char* id,
+             std::size_t count, Drawn drawn) {
+  std::vector<Eigen::VectorXd> values;
+  std::string name, unit;
+  for (const Hemisphere* h : all) {
+    const Eigen::Index n = h->pial.vertexCount();
+    const auto map = mapNamed(h->step->folder / file, n);
+    if (!map) return;
+    const auto thickness = mapNamed(h->step->folder / "thickness.shape.gii", n);
+    values.push_back(thickness ? known(map->values, thickness->values) : map->values);
+    name = map->name;
+    unit = map->unit;
+  }
+  report::ReportViews views = drawMap(all, values, name, unit, count, drawn);
   views.id = id;
   views.title = title;
   views.caption = caption;
-  views.scale = scale;
   results.content().views.push_back(std::move(views));
 }
 
-report::Colour colourOf(const io::LabelEntry& entry) {
-  const auto& c = entry.colour;
-  if (c[0] + c[1] + c[2] == 0) return report::colourOfLabel(entry.key);
-  const auto linear = [](float x) {
-    return report::decodeSrgb(static_cast<std::uint8_t>(std::lround(255 * x)));
-  };
-  return {linear(c[0]), linear(c[1]), linear(c[2])};
+/// The reader's maps on the hemispheres that they fit; those of one name on one scale.
+void showGiven(ResultFolder& results, const std::vector<const Hemisphere*>& all,
+               const std::vector<GivenMap>& maps) {
+  std::vector<std::string> names;
+  for (const GivenMap& map : maps) {
+    if (std::find(names.begin(), names.end(), map.name) == names.end()) names.push_back(map.name);
+  }
+  for (const std::string& name : names) {
+    std::vector<const Hemisphere*> shown;
+    std::vector<Eigen::VectorXd> values;
+    std::string unit;
+    for (const Hemisphere* h : all) {
+      const auto map = std::find_if(maps.begin(), maps.end(), [&](const GivenMap& m) {
+        return m.name == name && m.fits(h->pial.vertexCount(), h->side);
+      });
+      if (map == maps.end()) continue;
+      shown.push_back(h);
+      values.push_back(map->values);
+      unit = map->unit;
+    }
+    if (shown.empty()) continue;
+    report::ReportViews views = drawMap(shown, values, name, unit, 4, Drawn::White);
+    views.title = name + " on the white surface";
+    views.caption = "Dark grey: not known.";
+    results.content().views.push_back(std::move(views));
+  }
 }
 
-void showRegions(ResultFolder& results, std::vector<Hemisphere>& all) {
+void showRegions(ResultFolder& results, const std::vector<const Hemisphere*>& all) {
   std::vector<std::vector<report::Colour>> colours;
   std::map<Label, report::LegendEntry> legend;
-  for (const Hemisphere& h : all) {
-    if (!h.step->has("regions.label.gii")) return;
+  for (const Hemisphere* h : all) {
+    if (!h->step->has("regions.label.gii")) return;
     const io::LabelMap labels =
-        io::readVertexLabels(h.step->folder / "regions.label.gii", h.pial.vertexCount());
+        io::readVertexLabels(h->step->folder / "regions.label.gii", h->pial.vertexCount());
     std::map<Label, report::LegendEntry> entries;
     for (const io::LabelEntry& entry : labels.table) {
-      entries[entry.key] = {entry.name, colourOf(entry)};
+      entries[entry.key] = {entry.name, report::colourOfLabel(entry.key, entry.colour)};
     }
     colours.emplace_back();
     for (const Label key : labels.keys) {
@@ -229,7 +241,8 @@ void chartSurfaceThickness(ResultFolder& results, const std::vector<Hemisphere>&
 
 }  // namespace
 
-void showSurfaces(ResultFolder& results, const FolderReportOptions& options) {
+void showSurfaces(ResultFolder& results, const FolderReportOptions& options,
+                  const std::vector<GivenMap>& maps) {
   std::vector<Hemisphere> all;
   for (const StepFolder* step : results.stepsOf("surface")) {
     all.push_back({step,
@@ -247,15 +260,18 @@ void showSurfaces(ResultFolder& results, const FolderReportOptions& options) {
     h.whiteScene.emplace(h.white);
   }
   results.attempt("Outlines on the image", [&] { showOutlines(results, all, options); });
+  std::vector<const Hemisphere*> shown;
+  for (const Hemisphere& h : all) shown.push_back(&h);
   results.attempt("Thickness map", [&] {
-    showMap(results, all, "thickness.shape.gii", "Thickness on the pial surface",
+    showMap(results, shown, "thickness.shape.gii", "Thickness on the pial surface",
             "Grey: not measured, as on the medial wall.", kThicknessPlace, 6, Drawn::Pial);
   });
   results.attempt("Depth map", [&] {
-    showMap(results, all, "sulc.shape.gii", "Depth on the white surface",
+    showMap(results, shown, "sulc.shape.gii", "Depth on the white surface",
             "How far the middle surface lies below its hull.", "depth-maps", 2, Drawn::White);
   });
-  results.attempt("Regions", [&] { showRegions(results, all); });
+  results.attempt("Regions", [&] { showRegions(results, shown); });
+  results.attempt("Given maps", [&] { showGiven(results, shown, maps); });
   results.attempt("Thickness histogram", [&] { chartSurfaceThickness(results, all); });
 }
 

@@ -147,7 +147,7 @@ void addSurfaceMaps(const StepFolder& surface, report::Evolution& evolution) {
   for (const io::LabelEntry& entry : labels.table) {
     if (entry.key == 0) continue;
     entryOf[entry.key] = static_cast<std::int32_t>(named.legend.size());
-    named.legend.push_back({entry.name, report::colourOfLabel(entry.key)});
+    named.legend.push_back({entry.name, report::colourOfLabel(entry.key, entry.colour)});
   }
   for (const Label key : labels.keys) {
     const auto found = entryOf.find(key);
@@ -156,63 +156,124 @@ void addSurfaceMaps(const StepFolder& surface, report::Evolution& evolution) {
   evolution.labels.push_back(std::move(named));
 }
 
-/// Before and after from the viewpoint and from the side, filled by the region; sulci painted on
-/// the surface show on the opened patch what was folded.
-void drawBeforeAndAfter(ResultFolder& results, const Unfolded& unfolded, const StepFolder* surface,
-                        const std::string& side) {
-  const TriangleMesh& before = unfolded.whole ? *unfolded.whole : unfolded.frames.front();
-  const Vector towards = (centreOf(before, unfolded.region) - *unfolded.viewpoint).normalized();
-  report::FigureView front;
-  front.towards = towards;
-  front.focus = unfolded.region;
-  report::FigureView oblique = front;
-  const Vector across = towards.cross(Vector(0, 0, 1));
-  oblique.towards = towards + 1.7 * (across.norm() > 1e-3 ? across.normalized() : Vector(1, 0, 0));
+/// What the patch is coloured by in the pictures before and after, and what they are called.
+struct PatchPaint {
+  std::string id, title, caption;
   report::SurfacePaint paint;
-  paint.region.setZero(before.vertexCount());
+};
+
+/// Sulci painted on the surface show on the opened patch what was folded; without a curvature the
+/// patch itself is coloured.
+PatchPaint foldsOf(const Unfolded& unfolded, Eigen::Index vertexCount, const StepFolder* surface,
+                   const std::string& side) {
+  PatchPaint folds{kPatchViewsPlace,
+                   "The patch" + (side.empty() ? "" : " on the " + side) + " before and after",
+                   "",
+                   {}};
+  const auto curvature = surface != nullptr
+                             ? mapNamed(surface->folder / "curvature.shape.gii", vertexCount)
+                             : std::nullopt;
+  folds.caption =
+      std::string("From the viewpoint and from the side, with the same colours: ") +
+      (curvature ? "gyri blue, sulci brown." : "the patch coloured, its surroundings pale.");
+  report::SurfacePaint& paint = folds.paint;
+  paint.region.setZero(vertexCount);
   for (const std::int32_t v : unfolded.region) paint.region[v] = 1;
-  const auto curvature =
-      surface != nullptr ? mapNamed(surface->folder / "curvature.shape.gii", before.vertexCount())
-                         : std::nullopt;
   if (curvature) {
     paint.values = curvature->values;
-    paint.scale = report::scaleFor(paint.values, "", "", report::ColourMap::Diverging);
+    paint.scale = report::scaleFor(paint.values, curvature->name, curvature->unit,
+                                   report::ColourMap::Diverging);
   } else {
     paint.labels = paint.region;
   }
-  const std::vector<report::Colour> colours = report::coloursOf(paint, before.vertexCount());
-  report::SurfacePictureOptions size;
-  size.width = 520;
-  size.height = 400;
-  report::ReportViews views;
-  views.id = kPatchViewsPlace;
-  views.title = "The patch" + (side.empty() ? "" : " on the " + side) + " before and after";
-  views.caption =
-      std::string("From the viewpoint and from the side, with the same colours: ") +
-      (curvature ? "gyri blue, sulci brown." : "the patch coloured, its surroundings pale.") +
-      (unfolded.detached ? " It was unfolded alone, and is drawn apart from the surface." : "");
-  for (const bool folded : {true, false}) {
-    const TriangleMesh& shown = folded ? before : unfolded.frames.back();
-    const report::SurfaceScene scene(shown);
-    for (const report::FigureView& view : {front, oblique}) {
-      views.views.push_back(
-          {std::string(folded ? "before" : "after") +
-               (&view == &front || view.towards == front.towards ? ", from the viewpoint"
-                                                                 : ", from the side"),
-           scene.render(report::cameraOf(shown, view, size.width, size.height), colours,
-                        curvature ? report::Filling::Smooth : report::Filling::Discrete, size)});
+  return folds;
+}
+
+PatchPaint paintOf(const Unfolded& unfolded, const GivenMap& map) {
+  PatchPaint given{"",
+                   map.name + " on the patch before and after",
+                   "From the viewpoint and from the side, with the same colours; what lies off the "
+                   "patch is pale, what is not known grey.",
+                   {}};
+  given.paint.region.setZero(map.values.size());
+  for (const std::int32_t v : unfolded.region) given.paint.region[v] = 1;
+  given.paint.values = map.values;
+  Eigen::VectorXd onPatch(static_cast<Eigen::Index>(unfolded.region.size()));
+  for (std::size_t n = 0; n < unfolded.region.size(); ++n) {
+    onPatch[static_cast<Eigen::Index>(n)] = map.values[unfolded.region[n]];
+  }
+  given.paint.scale = report::scaleFor(onPatch, map.name, map.unit);
+  return given;
+}
+
+/// Scenes and cameras for pictures of the patch before and after.
+class PatchPictures {
+ public:
+  explicit PatchPictures(const Unfolded& unfolded)
+      : unfolded_(unfolded),
+        before_(unfolded.whole ? *unfolded.whole : unfolded.frames.front()),
+        after_(unfolded.frames.back()),
+        sceneBefore_(before_),
+        sceneAfter_(after_) {
+    front_.towards = (centreOf(before_, unfolded.region) - *unfolded.viewpoint).normalized();
+    front_.focus = unfolded.region;
+    side_ = front_;
+    const Vector across = front_.towards.cross(Vector(0, 0, 1));
+    side_.towards =
+        front_.towards + 1.7 * (across.norm() > 1e-3 ? across.normalized() : Vector(1, 0, 0));
+  }
+
+  /// From the viewpoint and from the side, filled by the region.
+  [[nodiscard]] report::ReportViews draw(const PatchPaint& painted) const {
+    const auto colours = report::coloursOf(painted.paint, before_.vertexCount());
+    const bool smooth = painted.paint.values.size() > 0;
+    report::SurfacePictureOptions size;
+    size.width = 520;
+    size.height = 400;
+    report::ReportViews views;
+    views.id = painted.id;
+    views.title = painted.title;
+    views.caption = painted.caption;
+    if (unfolded_.detached) {
+      views.caption += " It was unfolded alone, and is drawn apart from the surface.";
     }
+    for (const bool folded : {true, false}) {
+      const TriangleMesh& shown = folded ? before_ : after_;
+      for (const report::FigureView* view : {&front_, &side_}) {
+        views.views.push_back(
+            {std::string(folded ? "before" : "after") +
+                 (view == &front_ ? ", from the viewpoint" : ", from the side"),
+             (folded ? sceneBefore_ : sceneAfter_)
+                 .render(report::cameraOf(shown, *view, size.width, size.height), colours,
+                         smooth ? report::Filling::Smooth : report::Filling::Discrete, size)});
+      }
+    }
+    if (smooth) views.scale = painted.paint.scale;
+    return views;
   }
-  if (curvature) {
-    views.scale = report::scaleFor(curvature->values, curvature->name, curvature->unit,
-                                   report::ColourMap::Diverging);
+
+ private:
+  const Unfolded& unfolded_;
+  const TriangleMesh& before_;
+  const TriangleMesh& after_;
+  report::SurfaceScene sceneBefore_, sceneAfter_;
+  report::FigureView front_, side_;
+};
+
+void drawBeforeAndAfter(ResultFolder& results, const Unfolded& unfolded, const StepFolder* surface,
+                        const std::string& side, const std::vector<const GivenMap*>& maps) {
+  const PatchPictures pictures(unfolded);
+  const Eigen::Index count = unfolded.frames.front().vertexCount();
+  results.content().views.push_back(pictures.draw(foldsOf(unfolded, count, surface, side)));
+  for (const GivenMap* map : maps) {
+    results.content().views.push_back(pictures.draw(paintOf(unfolded, *map)));
   }
-  results.content().views.push_back(std::move(views));
 }
 
 }  // namespace
 
-void showUnfolding(ResultFolder& results, const StepFolder& step) {
+void showUnfolding(ResultFolder& results, const StepFolder& step,
+                   const std::vector<GivenMap>& maps) {
   const Unfolded unfolded = readUnfolded(step);
   report::Evolution evolution = report::evolutionOf(unfolded.frames);
   evolution.frameTitles = unfolded.titles;
@@ -228,9 +289,15 @@ void showUnfolding(ResultFolder& results, const StepFolder& step) {
   if (surface != nullptr) {
     results.attempt("Maps of the surface", [&] { addSurfaceMaps(*surface, evolution); });
   }
+  std::vector<const GivenMap*> fitting;
+  for (const GivenMap& map : maps) {
+    if (!map.fits(evolution.mesh.vertexCount(), step.side())) continue;
+    fitting.push_back(&map);
+    evolution.maps.push_back({map.values, report::scaleFor(map.values, map.name, map.unit)});
+  }
   if (!unfolded.region.empty() && unfolded.viewpoint) {
     results.attempt("Before and after",
-                    [&] { drawBeforeAndAfter(results, unfolded, surface, step.side()); });
+                    [&] { drawBeforeAndAfter(results, unfolded, surface, step.side(), fitting); });
   }
   // One film a page: of several patches the first.
   if (!results.content().evolution) results.content().evolution = std::move(evolution);

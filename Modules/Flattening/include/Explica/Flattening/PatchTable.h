@@ -18,18 +18,24 @@ struct PatchMap {
   Eigen::VectorXd values;  ///< V; not a number: not known, and left out of means
 };
 
-/// One line for the whole patch and one for each region, as tab-separated text with a header:
-/// region, vertices, faces, area on the reference and in the map (mm^2), and for each map mean and
-/// standard deviation, weighted by the vertices' areas on the reference.
+/// One parcellation of a patch's vertices; keys that `names` lacks are no region.
+struct PatchRegions {
+  VertexKeys keys;  ///< V
+  std::map<Label, std::string> names;
+};
+
+/// One line for the whole patch and one for each region that has a vertex, parcellation after
+/// parcellation, as tab-separated text with a header: region, vertices, faces, area on the
+/// reference and in the map (mm^2), and for each map mean and standard deviation, weighted by the
+/// vertices' areas on the reference.
 ///
 /// A face belongs to a region if its three vertices do.
-/// @param regions  V, or empty for none; key 0 is no region
 [[nodiscard]] std::string patchTable(const TriangleMesh& reference, const Positions& flat,
-                                     const VertexKeys& regions,
-                                     const std::map<Label, std::string>& names,
+                                     const std::vector<PatchRegions>& regions,
                                      const std::vector<PatchMap>& maps);
 
-/// The line between regions: one piece in each face whose vertices differ.
+/// The line between regions: one piece in each face whose vertices differ (three where all do).
+/// On an oriented surface seen from outside, sides[0] lies left of the way from `from` to `to`.
 struct OutlinePiece {
   Point from, to;
   std::array<Label, 2> sides;

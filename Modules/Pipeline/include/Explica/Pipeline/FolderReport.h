@@ -8,12 +8,17 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace explica::pipeline {
 
 struct FolderReportOptions {
   report::SideConvention convention = report::SideConvention::Neurological;
   int slices = 7;  ///< in each direction, in [1, 30]
+  /// Files of vertex data to show on every surface that they fit; not described below, for they
+  /// are inputs.
+  std::vector<std::string> maps = {};
 };
 
 template <class Visitor>

@@ -4,6 +4,8 @@
 
 #include <Eigen/Core>
 
+#include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,6 +17,8 @@ struct Series {
   std::string name;
   std::vector<double> x;
   std::vector<double> y;  ///< as long as x; what is not finite is left out
+  /// Half the height of a band about the line, as long as y, or empty for none.
+  std::vector<double> spread = {};
 };
 
 /// A moment worth marking on the x axis.
@@ -30,7 +34,13 @@ struct ChartText {
   std::string yTitle;
   bool logarithmic = false;           ///< the y axis, where all values are positive
   std::vector<ChartMark> marks = {};  ///< of curves
+  /// First and last value on the y axis of curves; without, what the curves need.
+  std::optional<std::array<double, 2>> yRange = {};
 };
+
+/// Lowest and highest value of curves with their bands, to give several charts one axis; none
+/// where nothing is finite.
+[[nodiscard]] std::optional<std::array<double, 2>> rangeOf(const std::vector<Series>& series);
 
 /// How often values occur, as a self-contained SVG element; from the 0.5th to the 99.5th
 /// percentile, with the median marked.  A sentence says so where there is nothing to show.

@@ -32,6 +32,10 @@ enum class ColourMap {
 /// other lightnesses; label 0 is light grey.
 [[nodiscard]] Colour colourOfLabel(Label label);
 
+/// The colour that a label's own table gives it (red, green, blue, opacity; sRGB in [0, 1]), or
+/// where that is black or clear the one above.
+[[nodiscard]] Colour colourOfLabel(Label label, const std::array<float, 4>& own);
+
 /// A name and its colour.
 struct LegendEntry {
   std::string name;

@@ -31,6 +31,11 @@ enum class TextAnchor { Left, Middle, Right };
 void drawText(Picture& picture, std::string_view text, const Eigen::Vector2d& position, double size,
               const Colour& colour, TextAnchor anchor = TextAnchor::Left);
 
+/// The same with a rim in another colour about its strokes, to be read on any ground.
+void drawTextWithRim(Picture& picture, std::string_view text, const Eigen::Vector2d& position,
+                     double size, const Colour& colour, const Colour& rim,
+                     TextAnchor anchor = TextAnchor::Left);
+
 /// Width of a text as drawn, pixels.
 [[nodiscard]] double textWidth(std::string_view text, double size);
 

@@ -5,20 +5,29 @@
 #include "Explica/Report/Drawing.h"
 #include "Explica/Report/Figure.h"
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace explica::report {
 
+/// A piece of a line between regions, in the map, and the colour of the region on either side; of
+/// what is no region, none.
+struct FlatLine {
+  Point from, to;
+  std::optional<Colour> left, right;  ///< seen from above, on the way from `from` to `to`
+};
+
 /// What is drawn onto a flat map.
 struct FlatMarks {
-  std::vector<std::pair<Point, Point>> lines;        ///< outlines of regions, in the map
-  std::vector<std::pair<Point, std::string>> names;  ///< and what they are called
+  std::vector<FlatLine> lines;                       ///< outlines of regions
+  std::vector<std::pair<Point, std::string>> names;  ///< what they are called, the largest first
 };
 
 /// A flat map seen from above with its colours, outlines, names, a scale bar of a round length and
-/// a colour bar.
+/// a colour bar.  Each region has a line of its own along its outline's inside, in its colour, with
+/// a dark one between; names have a white rim and keep off each other where there is room.
 /// @param mesh  z = 0, counter-clockwise from above
 [[nodiscard]] Picture flatFigure(const TriangleMesh& mesh, const SurfacePaint& paint,
                                  const FlatMarks& marks, int height = 900);

@@ -98,6 +98,15 @@ struct ReportChart {
   bool detail = false;     ///< folded away until somebody asks for it
 };
 
+/// Rows of words and numbers.
+struct ReportTable {
+  std::string id;
+  std::string title;
+  std::string caption;
+  std::vector<std::string> columns;
+  std::vector<std::vector<std::string>> rows;  ///< each as long as `columns`
+};
+
 /// Everything that a page shows, in the order in which it is shown.
 struct ReportContent {
   std::string title;
@@ -109,6 +118,7 @@ struct ReportContent {
   std::vector<ReportPicture> pictures;
   std::vector<ReportDrawing> drawings;
   std::vector<ReportChart> charts;
+  std::vector<ReportTable> tables;
   std::vector<ReportStep> steps;
 };
 

@@ -1,0 +1,328 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "../Table.h"
+#include "Explica/Geometry/MeshMeasures.h"
+#include "Explica/IO/SurfaceFile.h"
+#include "Explica/IO/VolumeSeries.h"
+#include "Explica/Report/Chart.h"
+#include "Explica/Report/Figure.h"
+#include "ReportParts.h"
+#include "StandardViews.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <iterator>
+
+namespace explica::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostMaps = 6;  // drawn folded, unfolded and flat
+constexpr int kTileWidth = 300;       // pixels of a depth's picture, about
+constexpr std::array<std::uint8_t, 3> kOffTheMap = {206, 220, 236};  // no colour of the maps
+constexpr int kMostTiles = 12;                                       // depths of a stack
+constexpr double kWholeHemisphere = 0.6;  // share of the surface's area from which it counts as all
+
+/// A patch and the shapes in which it is shown.
+struct FlatPatch {
+  std::vector<std::int32_t> vertices;    ///< of the whole surface
+  TriangleMesh reference;                ///< the whole surface where areas and lengths count
+  std::optional<TriangleMesh> unfolded;  ///< as it was given, if it is another shape than that
+  TriangleMesh flat;                     ///< the patch alone
+  std::string side;
+  bool whole = false;  ///< a hemisphere with cuts
+};
+
+std::vector<std::int32_t> patchVertices(const StepFolder& step) {
+  std::vector<std::int32_t> vertices;
+  for (const double v : io::readVertexMaps(step.folder / "vertex_of.shape.gii").front().values) {
+    vertices.push_back(static_cast<std::int32_t>(v));
+  }
+  return vertices;
+}
+
+std::optional<FlatPatch> readPatch(const StepFolder& step) {
+  FlatPatch patch;
+  patch.vertices = patchVertices(step);
+  patch.flat = io::readSurface(step.folder / "patch_flat.surf.gii").mesh;
+  const auto given = inputOf(step, "SURFACE"), reference = inputOf(step, "reference");
+  if (!given || !fs::exists(*given)) return {};
+  io::LoadedSurface surface = io::readSurface(*given);
+  patch.side = surface.metadata.structure == "CortexRight" ? "right" : "left";
+  if (reference && fs::exists(*reference)) {
+    patch.unfolded = std::move(surface.mesh);
+    patch.reference = io::readSurface(*reference).mesh;
+  } else {
+    patch.reference = std::move(surface.mesh);
+  }
+  const Eigen::Index count = patch.reference.vertexCount();
+  const bool fits = patch.flat.vertexCount() == static_cast<Eigen::Index>(patch.vertices.size()) &&
+                    std::all_of(patch.vertices.begin(), patch.vertices.end(),
+                                [&](std::int32_t v) { return v >= 0 && v < count; });
+  if (!fits || (patch.unfolded && patch.unfolded->vertexCount() != count)) return {};
+  patch.whole =
+      geometry::totalArea(patch.flat) > kWholeHemisphere * geometry::totalArea(patch.reference);
+  return patch;
+}
+
+/// From where the patch is looked at: against its mean normal.
+Vector sightOf(const FlatPatch& patch) {
+  Vector normal = Vector::Zero();
+  for (Eigen::Index f = 0; f < patch.flat.faceCount(); ++f) {
+    const auto corner = [&](int k) -> Point {
+      return patch.reference.positions.row(patch.vertices[patch.flat.faces(f, k)]).transpose();
+    };
+    normal += (corner(1) - corner(0)).cross(corner(2) - corner(0));
+  }
+  return normal.norm() > 0 ? Vector(-normal.normalized()) : Vector(1, 0, 0);
+}
+
+Eigen::VectorXd onPatch(const FlatPatch& patch, const Eigen::VectorXd& whole) {
+  Eigen::VectorXd part(static_cast<Eigen::Index>(patch.vertices.size()));
+  for (std::size_t n = 0; n < patch.vertices.size(); ++n) {
+    part[static_cast<Eigen::Index>(n)] = whole[patch.vertices[n]];
+  }
+  return part;
+}
+
+/// Shapes of a patch, ready for pictures of any number of maps.
+class PatchShapes {
+ public:
+  explicit PatchShapes(const FlatPatch& patch) : patch_(patch) {
+    report::FigureView against;
+    against.towards = sightOf(patch);
+    against.focus = patch.vertices;
+    if (patch.whole) {
+      for (const auto& [title, name] : standardViews(patch.side)) {
+        if (shapes_.size() == 2) break;
+        report::FigureView view;
+        view.name = name;
+        shapes_.push_back({title, &patch.reference, view, true});
+      }
+    } else {
+      shapes_.push_back({"on the surface", &patch.reference, against, true});
+    }
+    if (patch.unfolded) shapes_.push_back({"unfolded", &*patch.unfolded, against, true});
+    report::FigureView above;
+    above.towards = Vector(0, 0, -1);
+    above.up = Vector(0, 1, 0);
+    shapes_.push_back({"flat", &patch.flat, above, false});
+    for (Shape& shape : shapes_) scenes_.emplace_back(*shape.mesh);
+  }
+
+  [[nodiscard]] report::ReportViews draw(const std::string& name, const std::string& unit,
+                                         const Eigen::VectorXd& values) const {
+    report::SurfacePictureOptions size;
+    size.width = 400;
+    size.height = 320;
+    const Eigen::VectorXd part = onPatch(patch_, values);
+    report::SurfacePaint whole;
+    whole.values = values;
+    whole.scale = report::scaleFor(part, name, unit);
+    whole.region.setZero(values.size());
+    for (const std::int32_t v : patch_.vertices) whole.region[v] = 1;
+    report::ReportViews views;
+    views.id = kFlatPlace;
+    views.title = name + (patch_.unfolded ? " on the surface, unfolded and flat"
+                                          : " on the surface and flat");
+    views.caption =
+        "The same values on each; what lies off the patch is pale, what is not known "
+        "dark grey.";
+    views.scale = whole.scale;
+    for (std::size_t n = 0; n < shapes_.size(); ++n) {
+      const Shape& shape = shapes_[n];
+      const auto colours = shape.isWhole ? report::coloursOf(whole, values.size())
+                                         : report::coloursOf(part, whole.scale);
+      report::SurfacePictureOptions look = size;
+      if (!shape.isWhole) look.occlusion = 0;
+      views.views.push_back(
+          {shape.title,
+           scenes_[n].render(report::cameraOf(*shape.mesh, shape.view, size.width, size.height),
+                             colours, report::Filling::Smooth, look)});
+    }
+    return views;
+  }
+
+ private:
+  struct Shape {
+    std::string title;
+    const TriangleMesh* mesh;
+    report::FigureView view;
+    bool isWhole;
+  };
+  const FlatPatch& patch_;
+  std::vector<Shape> shapes_;
+  std::vector<report::SurfaceScene> scenes_;
+};
+
+/// The maps that the command was given, and the reader's.
+std::vector<GivenMap> mapsOf(ResultFolder& results, const StepFolder& step,
+                             const std::vector<GivenMap>& given) {
+  std::vector<std::string> files;
+  for (const fs::path& file : inputsOf(step, "map")) files.push_back(file.string());
+  std::vector<GivenMap> maps = readGivenMaps(results, files);
+  for (const GivenMap& map : given) {
+    const bool known = std::any_of(maps.begin(), maps.end(),
+                                   [&](const GivenMap& m) { return m.name == map.name; });
+    if (!known) maps.push_back(map);
+  }
+  return maps;
+}
+
+void showShapes(ResultFolder& results, const StepFolder& step, const std::vector<GivenMap>& given) {
+  const auto patch = readPatch(step);
+  if (!patch) return;
+  std::vector<GivenMap> maps = mapsOf(results, step, given);
+  const Eigen::Index count = patch->reference.vertexCount();
+  std::erase_if(maps, [&](const GivenMap& m) { return !m.fits(count, patch->side); });
+  if (maps.empty()) {
+    const auto strain = mapNamed(step.folder / "distortion.shape.gii", count, "edge strain");
+    if (strain) maps.push_back({"edge strain of the flat map", "", "", strain->values});
+  }
+  if (maps.size() > kMostMaps) maps.resize(kMostMaps);
+  const PatchShapes shapes(*patch);
+  for (const GivenMap& map : maps) {
+    results.content().views.push_back(shapes.draw(map.name, map.unit, map.values));
+  }
+}
+
+/// A volume of the grid: mean over its frames where it has several.
+struct Stack {
+  Volume<float> values;
+  int frames = 1;
+};
+
+Stack readStack(const fs::path& file) {
+  io::VolumeSeries series(file);
+  Stack stack{Volume<float>(series.grid()), series.frames()};
+  std::vector<double> sum(stack.values.size(), 0);
+  for (int f = 0; f < stack.frames; ++f) {
+    const std::vector<float> frame = series.next(1);
+    for (std::size_t v = 0; v < sum.size(); ++v) sum[v] += frame[v];
+  }
+  for (std::size_t v = 0; v < sum.size(); ++v) {
+    stack.values[v] = static_cast<float>(sum[v] / stack.frames);
+  }
+  return stack;
+}
+
+/// One depth of a stack, u to the right and v upwards.
+report::Picture depthPicture(const Volume<float>& stack, int k, int zoom,
+                             const std::function<report::Colour(float)>& colourOf) {
+  const int width = stack.grid.size[0], height = stack.grid.size[1];
+  report::Picture picture(width * zoom, height * zoom, kOffTheMap);
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 0; x < picture.width; ++x) {
+      const float value = stack[stack.grid.linear(x / zoom, height - 1 - y / zoom, k)];
+      if (!std::isfinite(value)) continue;
+      const report::Colour colour = colourOf(value);
+      for (int c = 0; c < 3; ++c) picture.pixel(x, y)[c] = report::encodeSrgb(colour[c]);
+    }
+  }
+  return picture;
+}
+
+void showStack(ResultFolder& results, const StepFolder& step, const fs::path& file) {
+  const Stack stack = readStack(file);
+  const Grid& grid = stack.values.grid;
+  std::string name = file.filename().string().substr(std::string_view("flat_").size());
+  name.resize(name.size() - std::string_view(".nii.gz").size());
+  const Json options = step.record.value("options", Json::object());
+  const bool labels = options.value("nearest", false);
+  std::vector<double> known;
+  std::copy_if(stack.values.data.begin(), stack.values.data.end(), std::back_inserter(known),
+               [](float v) { return std::isfinite(v); });
+  const report::ColourScale scale = report::scaleFor(
+      Eigen::Map<const Eigen::VectorXd>(known.data(), static_cast<Eigen::Index>(known.size())),
+      name, "", labels ? std::nullopt : std::optional(report::ColourMap::Grey));
+  report::ReportViews views;
+  views.title = name + ", layer by layer";
+  views.caption =
+      std::string("The grid's depths from white to pial, cells of ") + readable(grid.spacing[0]) +
+      " mm" + (stack.frames > 1 ? "; mean of " + std::to_string(stack.frames) + " frames" : "") +
+      ". Pale blue: off the map, or not known.";
+  if (!labels) views.scale = scale;
+  const auto colourOf = [&](float value) {
+    return labels ? report::colourOfLabel(static_cast<Label>(std::lround(value))) : scale(value);
+  };
+  const int zoom = std::max(1, (kTileWidth + grid.size[0] / 2) / std::max(1, grid.size[0]));
+  const int depths = grid.size[2], shown = std::min(depths, kMostTiles);
+  for (int n = 0; n < shown; ++n) {
+    const int k = shown < 2 ? 0 : n * (depths - 1) / (shown - 1);
+    const double depth = depths < 2 ? 0.5 : static_cast<double>(k) / (depths - 1);
+    views.views.push_back(
+        {"depth " + readable(depth), depthPicture(stack.values, k, zoom, colourOf)});
+  }
+  results.content().views.push_back(std::move(views));
+}
+
+void tabulateRegions(ResultFolder& results, const StepFolder& step) {
+  const Table read = readTable(step.folder / "patch.tsv");
+  report::ReportTable table{"",
+                            "Regions of the patch",
+                            "Areas in mm\u00b2; means and standard deviations of the maps are "
+                            "weighted by the vertices' areas.",
+                            {},
+                            {}};
+  for (std::size_t c = 0; c < read.names.size(); ++c) {
+    if (read.names[c] != "key") table.columns.push_back(inWords(read.names[c]));
+  }
+  for (std::size_t row = 0; row < read.rows(); ++row) {
+    std::vector<std::string>& cells = table.rows.emplace_back();
+    for (std::size_t c = 0; c < read.names.size(); ++c) {
+      if (read.names[c] == "key") continue;
+      const double value = read.columns[c][row];
+      cells.push_back(c > 0 && std::isfinite(value) ? readable(value) : read.texts[c][row]);
+    }
+  }
+  results.content().tables.push_back(std::move(table));
+}
+
+void chartDistortion(ResultFolder& results, const StepFolder& step) {
+  const std::vector<std::int32_t> vertices = patchVertices(step);
+  bool first = true;
+  for (const io::VertexMap& map : io::readVertexMaps(step.folder / "distortion.shape.gii")) {
+    Eigen::VectorXd values(static_cast<Eigen::Index>(vertices.size()));
+    for (std::size_t n = 0; n < vertices.size(); ++n) {
+      values[static_cast<Eigen::Index>(n)] = map.values[vertices[n]];
+    }
+    const std::string axis = map.unit.empty() ? map.name : map.name + " [" + map.unit + "]";
+    results.content().charts.push_back(
+        {first ? kDistortionPlace : "",
+         report::histogramSvg(values, {inWords(map.name), axis, "share of the patch's vertices"}),
+         titleOf(step.name)});
+    first = false;
+  }
+}
+
+void showPicture(ResultFolder& results, const StepFolder& step) {
+  std::ifstream in(step.folder / "flat.png", std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  if (bytes.empty()) return;
+  results.content().drawings.push_back(
+      {"", "The flat map",
+       "Regions are outlined in their own colours; the scale bar holds everywhere up to the area "
+       "error.",
+       "image/png", bytes});
+}
+
+}  // namespace
+
+void showFlat(ResultFolder& results, const StepFolder& step, const std::vector<GivenMap>& maps) {
+  results.attempt("Picture of the flat map", [&] { showPicture(results, step); });
+  results.attempt("The patch's shapes", [&] { showShapes(results, step, maps); });
+  for (const fs::path& file : filesOf(step, ".nii.gz")) {
+    if (file.filename().string().rfind("flat_", 0) != 0) continue;
+    results.attempt(file.filename().string(), [&] { showStack(results, step, file); });
+  }
+  results.attempt("Distortion maps", [&] { chartDistortion(results, step); });
+  results.attempt("Regions of the patch", [&] { tabulateRegions(results, step); });
+}
+
+}  // namespace explica::pipeline

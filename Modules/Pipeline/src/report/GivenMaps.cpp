@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "GivenMaps.h"
+
+#include <array>
+#include <string_view>
+
+namespace explica::pipeline {
+
+bool GivenMap::fits(Eigen::Index vertexCount, const std::string& ofSide) const {
+  return values.size() == vertexCount && (side.empty() || ofSide.empty() || side == ofSide);
+}
+
+std::string nameBesideOthers(const std::filesystem::path& file, const std::string& map) {
+  std::string stem = file.filename().string();
+  for (const std::string_view ending : {".gz", ".gii", ".shape", ".func", ".mgz", ".mgh"}) {
+    if (stem.size() > ending.size() && stem.ends_with(ending)) {
+      stem.resize(stem.size() - ending.size());
+    }
+  }
+  // FreeSurfer's files name their maps with the folder they came from.
+  const std::string own = std::filesystem::path(map).filename().string();
+  return own.empty() || own == stem ? stem : stem + ", " + own;
+}
+
+std::vector<GivenMap> readGivenMaps(ResultFolder& results, const std::vector<std::string>& files) {
+  std::vector<GivenMap> all;
+  for (const std::string& file : files) {
+    results.attempt("Map " + file, [&] {
+      const std::string structure = io::vertexDataStructure(file);
+      const std::string side = structure == "CortexLeft"    ? "left"
+                               : structure == "CortexRight" ? "right"
+                                                            : "";
+      for (io::VertexMap& map : io::readVertexMaps(file)) {
+        all.push_back({nameBesideOthers(file, map.name), map.unit, side, std::move(map.values)});
+      }
+    });
+  }
+  return all;
+}
+
+}  // namespace explica::pipeline
