@@ -21,8 +21,10 @@ void declare(Declaration& d, Settings& s) {
           "A folded white surface with grey matter of one thickness all around it, and fluid "
           "beyond. Label 3 is "
           "white matter, 2 grey, 1 fluid, as explica segment writes them. The image has noise and "
-          "a bias field.")
+          "a bias field; with --dura, a sheet nearly as bright as grey matter lies in the fluid.")
       .example("explica phantom cortex --size 48 --out cortex", "A ribbon in 48 voxels a side")
+      .example("explica phantom cortex --dura 1 --noise 6 --out dura",
+               "With a sheet of dura near it, noisy")
       .options("Cortex", s.cortex)
       .output("labels.nii.gz", FileKind::LabelVolume, "3 white, 2 grey, 1 fluid, 0 outside")
       .output("t1.nii.gz", FileKind::Volume, "T1-weighted image, skull-stripped")

@@ -40,6 +40,11 @@ Cortex makeCortex(const CortexOptions& o) {
   if (!(o.depth >= 0 && o.depth <= 0.5)) throw InvalidInput("depth: must lie in 0 to 0.5");
   if (o.waves < 1) throw InvalidInput("waves: must be 1 or more");
   if (!(o.noise >= 0)) throw InvalidInput("noise: must be 0 or more");
+  if (!(o.dura >= 0)) throw InvalidInput("dura: must be 0 mm or more");
+  if (!(o.duraGap > 0) || o.duraGap + o.dura > kFluid) {
+    throw InvalidInput(
+        "dura-gap: must be above 0 mm, and with the sheet itself at most the 3 mm of fluid");
+  }
   const double radius = 0.5 * o.size * o.spacing - o.thickness - kFluid - kMargin * o.spacing;
   if (!(o.thickness > 0) || !(radius > 2 * o.thickness)) {
     throw InvalidInput("thickness: must be above 0 mm and leave room for white matter in the grid");
@@ -71,7 +76,9 @@ Cortex makeCortex(const CortexOptions& o) {
     cortex.labels[v] = d <= 0 ? Cortex::kWhite : (d <= o.thickness ? Cortex::kGrey : Cortex::kCsf);
     const double white = share(-d);
     const double grey = share(o.thickness - d) - white;
-    const double clean = 115 * white + 85 * grey + 35 * (1 - white - grey);
+    const double sheet = o.thickness + o.duraGap;
+    const double dura = o.dura > 0 ? share(sheet + o.dura - d) - share(sheet - d) : 0;
+    const double clean = 115 * white + 85 * grey + 70 * dura + 35 * (1 - white - grey - dura);
     const auto [i, j, k] = grid.subscripts(v);
     const double x = grid.toWorld(Vector(i, j, k)).x() / (0.5 * o.size * o.spacing);
     cortex.image[v] =

@@ -44,6 +44,30 @@ TEST(CortexPhantom, DoesNotDependOnThreads) {
   EXPECT_EQ(one.image.data, four.image.data);
 }
 
+TEST(CortexPhantom, DuraIsASheetInTheFluid) {
+  CortexOptions options = small();
+  options.noise = options.bias = 0;
+  const Cortex without = makeCortex(options);
+  options.dura = 1;
+  options.duraGap = 1;
+  const Cortex with = makeCortex(options);
+  EXPECT_EQ(with.labels.data, without.labels.data);
+  int bright = 0;
+  for (std::size_t v = 0; v < with.image.size(); ++v) {
+    const double beyond = with.level[v] - options.thickness;
+    if (beyond > 1 && beyond < 2) {
+      EXPECT_GT(with.image[v], without.image[v]);
+      bright += std::abs(beyond - 1.5) < 0.01 ? std::abs(with.image[v] - 70) < 1 : 0;
+    }
+    if (beyond < 0.4) {
+      EXPECT_EQ(with.image[v], without.image[v]);
+    }
+  }
+  EXPECT_GT(bright, 0);
+  options.duraGap = 2.5;
+  EXPECT_THROW((void)makeCortex(options), InvalidInput) << "beyond the fluid";
+}
+
 TEST(CortexPhantom, RefusesARibbonWithoutRoom) {
   CortexOptions options = small();
   options.thickness = 20;

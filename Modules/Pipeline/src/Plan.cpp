@@ -323,6 +323,7 @@ class Planner {
       json = {{"inner-level", (segment / "white_share.nii.gz").string()},
               {"outer-level", (segment / "tissue_share.nii.gz").string()},
               {"insulated-mask", (segment / "cut.nii.gz").string()},
+              {"image", files_.t1->string()},
               {"hemisphere", left_ ? "L" : "R"}};
       needs = needs_;
     } else {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "BiasField.h"
 
+#include "BlockWindow.h"
 #include "Explica/Core/Parallel.h"
 
 #include <algorithm>
@@ -10,7 +11,6 @@
 namespace explica::segmentation {
 namespace {
 
-constexpr double kBlocksPerWidth = 4;
 constexpr std::size_t kGrain = 16384;
 constexpr float kDarkShare = 0.4f;           // of the median: fluid lies below
 constexpr std::size_t kMostSamples = 50000;  // enough for a smooth field
@@ -19,99 +19,6 @@ constexpr int kSharpenings = 150;
 constexpr double kOverstep = 1.8;  // the window's gain is below 1, so that this converges, faster
 constexpr double kSettled = 1e-4;  // of the field's logarithm in one iteration
 constexpr double kLeastWeight = 1e-3;  // samples under a window: else the field stays as it is
-
-/// Block lattice: block b along an axis holds voxels [b * step, (b + 1) * step).
-struct Blocks {
-  std::array<int, 3> step;
-  std::array<int, 3> size;
-  [[nodiscard]] std::size_t count() const {
-    return static_cast<std::size_t>(size[0]) * size[1] * size[2];
-  }
-  [[nodiscard]] std::size_t linear(int i, int j, int k) const {
-    return i + static_cast<std::size_t>(size[0]) * (j + static_cast<std::size_t>(size[1]) * k);
-  }
-};
-
-void smoothAlong(std::vector<double>& values, const Blocks& blocks, int axis, double sigma) {
-  const int radius = static_cast<int>(std::ceil(3 * sigma));
-  std::vector<double> kernel(static_cast<std::size_t>(2 * radius + 1));
-  for (int r = -radius; r <= radius; ++r)
-    kernel[r + radius] = std::exp(-0.5 * r * r / (sigma * sigma));
-  std::size_t stride = 1;
-  for (int a = 0; a < axis; ++a) stride *= blocks.size[a];
-  const int length = blocks.size[axis];
-  std::vector<double> line(length);
-  for (std::size_t start = 0; start < values.size(); ++start) {
-    if ((start / stride) % length != 0) continue;
-    for (int s = 0; s < length; ++s) line[s] = values[start + s * stride];
-    for (int s = 0; s < length; ++s) {
-      double sum = 0;
-      const int low = std::max(0, s - radius);
-      const int high = std::min(length - 1, s + radius);
-      for (int t = low; t <= high; ++t) sum += kernel[t - s + radius] * line[t];
-      values[start + s * stride] = sum;
-    }
-  }
-}
-
-Blocks blocksOf(const Grid& grid, double width) {
-  Blocks blocks;
-  for (int a = 0; a < 3; ++a) {
-    blocks.step[a] = std::clamp(
-        static_cast<int>(std::lround(width / kBlocksPerWidth / grid.spacing[a])), 1, grid.size[a]);
-    blocks.size[a] = (grid.size[a] + blocks.step[a] - 1) / blocks.step[a];
-  }
-  return blocks;
-}
-
-/// Sums of the samples in each block, under a Gaussian window.
-std::vector<double> windowed(const Grid& grid, const Blocks& blocks,
-                             const std::vector<std::size_t>& voxel,
-                             const std::vector<float>& values, double width) {
-  std::vector<double> sums(blocks.count(), 0.0);
-  for (std::size_t s = 0; s < voxel.size(); ++s) {
-    const auto at = grid.subscripts(voxel[s]);
-    sums[blocks.linear(at[0] / blocks.step[0], at[1] / blocks.step[1], at[2] / blocks.step[2])] +=
-        values[s];
-  }
-  for (int a = 0; a < 3; ++a) {
-    if (blocks.size[a] == 1) continue;
-    smoothAlong(sums, blocks, a, width / (grid.spacing[a] * blocks.step[a]));
-  }
-  return sums;
-}
-
-/// The block values at voxels, trilinear between the blocks' centres.
-std::vector<float> atVoxels(const Grid& grid, const Blocks& blocks,
-                            const std::vector<double>& values,
-                            const std::vector<std::size_t>& voxel) {
-  std::vector<float> result(voxel.size());
-  parallelForBlocks(voxel.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t s = begin; s < end; ++s) {
-      const auto at = grid.subscripts(voxel[s]);
-      std::array<int, 3> low;
-      std::array<int, 3> high;
-      std::array<double, 3> share;
-      for (int a = 0; a < 3; ++a) {
-        const double x =
-            std::clamp((at[a] + 0.5) / blocks.step[a] - 0.5, 0.0, blocks.size[a] - 1.0);
-        low[a] = static_cast<int>(x);
-        high[a] = std::min(low[a] + 1, blocks.size[a] - 1);
-        share[a] = x - low[a];
-      }
-      double sum = 0;
-      for (int c = 0; c < 8; ++c) {
-        const int i = (c & 1) != 0 ? high[0] : low[0];
-        const int j = (c & 2) != 0 ? high[1] : low[1];
-        const int k = (c & 4) != 0 ? high[2] : low[2];
-        sum += ((c & 1) != 0 ? share[0] : 1 - share[0]) * ((c & 2) != 0 ? share[1] : 1 - share[1]) *
-               ((c & 4) != 0 ? share[2] : 1 - share[2]) * values[blocks.linear(i, j, k)];
-      }
-      result[s] = static_cast<float>(sum);
-    }
-  });
-  return result;
-}
 
 double meanOf(const std::vector<float>& values) {
   return parallelSum(values.size(), kGrain, 0.0,
@@ -222,11 +129,10 @@ class Sharpening {
 };
 
 /// The field on blocks that makes the histogram of these logarithms sharpest.
-std::vector<double> sharpenOnce(const Grid& grid, const Blocks& blocks,
-                                const std::vector<std::size_t>& voxel,
-                                const std::vector<float>& logarithm, double width) {
-  const auto weight = windowed(grid, blocks, voxel, std::vector<float>(voxel.size(), 1.0f), width);
-  std::vector<double> field(blocks.count(), 0.0);
+std::vector<double> sharpenOnce(const BlockWindow& window, const std::vector<std::size_t>& voxel,
+                                const std::vector<float>& logarithm) {
+  const auto weight = window.sums(voxel, std::vector<float>(voxel.size(), 1.0f));
+  std::vector<double> field(window.count(), 0.0);
   std::vector<float> residual(voxel.size());
   std::vector<float> corrected = logarithm;
   for (int iteration = 0; iteration < kSharpenings; ++iteration) {
@@ -234,7 +140,7 @@ std::vector<double> sharpenOnce(const Grid& grid, const Blocks& blocks,
     for (std::size_t s = 0; s < corrected.size(); ++s) {
       residual[s] = corrected[s] - sharp(corrected[s]);
     }
-    const auto sums = windowed(grid, blocks, voxel, residual, width);
+    const auto sums = window.sums(voxel, residual);
     double most = 0;
     for (std::size_t b = 0; b < field.size(); ++b) {
       if (!(weight[b] > kLeastWeight)) continue;
@@ -242,7 +148,7 @@ std::vector<double> sharpenOnce(const Grid& grid, const Blocks& blocks,
       field[b] += step;
       most = std::max(most, std::abs(step));
     }
-    const std::vector<float> found = atVoxels(grid, blocks, field, voxel);
+    const std::vector<float> found = window.atVoxels(field, voxel);
     for (std::size_t s = 0; s < corrected.size(); ++s) corrected[s] = logarithm[s] - found[s];
     if (most < kSettled) break;
   }
@@ -252,16 +158,16 @@ std::vector<double> sharpenOnce(const Grid& grid, const Blocks& blocks,
 }  // namespace
 
 std::vector<float> fitBiasField(const Grid& grid, const BiasSamples& samples, double width) {
-  const Blocks blocks = blocksOf(grid, width);
   const std::vector<std::size_t>& voxel = *samples.voxel;
-  const auto numerator = windowed(grid, blocks, voxel, samples.numerator, width);
-  const auto denominator = windowed(grid, blocks, voxel, samples.denominator, width);
-  std::vector<double> logField(blocks.count(), 0.0);
+  const BlockWindow window(grid, voxel, width);
+  const auto numerator = window.sums(voxel, samples.numerator);
+  const auto denominator = window.sums(voxel, samples.denominator);
+  std::vector<double> logField(window.count(), 0.0);
   for (std::size_t b = 0; b < logField.size(); ++b) {
     if (numerator[b] > 0 && denominator[b] > 0)
       logField[b] = std::log(numerator[b] / denominator[b]);
   }
-  return fieldOf(atVoxels(grid, blocks, logField, voxel));
+  return fieldOf(window.atVoxels(logField, voxel));
 }
 
 std::vector<float> sharpenHistogram(const Grid& grid, const std::vector<std::size_t>& voxel,
@@ -280,9 +186,8 @@ std::vector<float> sharpenHistogram(const Grid& grid, const std::vector<std::siz
     logarithm.push_back(std::log(intensity[s]));
   }
   if (chosen.size() < kFewestSamples) return std::vector<float>(voxel.size(), 1.0f);
-  const Blocks blocks = blocksOf(grid, width);
-  return fieldOf(
-      atVoxels(grid, blocks, sharpenOnce(grid, blocks, chosen, logarithm, width), voxel));
+  const BlockWindow window(grid, voxel, width);
+  return fieldOf(window.atVoxels(sharpenOnce(window, chosen, logarithm), voxel));
 }
 
 }  // namespace explica::segmentation

@@ -3,7 +3,9 @@
 #include "Explica/Segmentation/Tissue.h"
 
 #include "BiasField.h"
+#include "BorderLevels.h"
 #include "Explica/Core/Parallel.h"
+#include "VoxelSets.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,6 +23,13 @@ constexpr double kLeastDeviation = 0.02;
 constexpr double kMostDeviation = 0.08;
 constexpr double kFirstDeviation = 0.06;   // of the range of means: the noise to start from
 constexpr double kFirstMixedShare = 0.15;  // of the voxels, for each of the two mixtures
+constexpr double kRimShare = 0.05;         // of the brain's radius: 3 to 4 mm in an adult
+constexpr std::size_t kFewestInCore = 100;
+constexpr double kDeepFluid = 0.002;  // of the voxels off the rim: fewer do not tell what fluid is
+constexpr double kFluidOverGrey = 0.7;  // what is brighter beside grey matter is no fluid
+constexpr int kEdgeRounds = 10;         // after which levels move no more
+constexpr int kPriorRounds = 4;         // for the neighbours to agree
+constexpr double kLocalBlocks = 2;      // of the local windows' width
 
 /// Fluid, grey, white, and the voxels where two of them meet.
 enum Component { kPureCsf, kPureGrey, kPureWhite, kCsfGrey, kGreyWhite, kComponents };
@@ -42,6 +51,7 @@ struct Brain {
   std::vector<std::size_t> voxel;
   std::vector<std::array<std::int32_t, 6>> neighbours;
   std::vector<float> intensity;
+  std::vector<std::uint8_t> rim;  ///< 1 near what is not brain
   [[nodiscard]] std::size_t size() const { return voxel.size(); }
 };
 
@@ -76,11 +86,24 @@ Brain packBrain(const Volume<float>& image, const Volume<Label>& mask) {
   return brain;
 }
 
-/// First guess: the two thresholds that leave the least variance within three classes [Otsu1979],
+/// Marks the voxels near the brain's border, where masks leave dark remains that are darker than
+/// fluid, by their distance as a share of the radius of a ball of the brain's volume.
+void markRim(const Grid& grid, Brain& brain) {
+  VoxelSet outside(grid, 1);
+  for (const std::size_t v : brain.voxel) outside[v] = 0;
+  const Volume<float> squared = squaredDistanceTo(outside);
+  const double volume = static_cast<double>(brain.size()) * grid.voxelVolume();
+  const double most = kRimShare * std::cbrt(0.75 / kPi * volume);
+  brain.rim.resize(brain.size());
+  for (std::size_t b = 0; b < brain.size(); ++b) {
+    brain.rim[b] = squared[brain.voxel[b]] <= most * most ? 1 : 0;
+  }
+}
+
+/// The two thresholds that leave the least variance within three classes [Otsu1979],
 /// by trying all pairs on a histogram of the middle 99 % of the intensities.
-Mixture firstGuess(const Brain& brain) {
+Mixture guessFrom(std::vector<float> sorted) {
   constexpr int kBins = 256;
-  std::vector<float> sorted = brain.intensity;
   std::sort(sorted.begin(), sorted.end());
   const std::size_t first = sorted.size() / 200;
   const std::size_t last = sorted.size() - first;
@@ -135,6 +158,23 @@ Mixture firstGuess(const Brain& brain) {
   mixture.share[kCsfGrey] = kFirstMixedShare;
   mixture.share[kGreyWhite] = kFirstMixedShare;
   return mixture;
+}
+
+/// First guess, without the rim where the rest shows fluid; else the rim counts like the rest.
+Mixture firstGuess(Brain& brain) {
+  std::vector<float> core;
+  for (std::size_t b = 0; b < brain.size(); ++b) {
+    if (brain.rim[b] == 0) core.push_back(brain.intensity[b]);
+  }
+  const auto [least, most] = std::minmax_element(core.begin(), core.end());
+  if (core.size() >= kFewestInCore && *least < *most) {
+    const Mixture guess = guessFrom(std::move(core));
+    if (guess.mean[0] < kFluidOverGrey * guess.mean[1] && guess.share[kPureCsf] > kDeepFluid) {
+      return guess;
+    }
+  }
+  std::fill(brain.rim.begin(), brain.rim.end(), std::uint8_t{0});
+  return guessFrom(brain.intensity);
 }
 
 /// Logarithm of each component's weighted density between the outer means, tabulated.
@@ -237,11 +277,13 @@ void expect(const Brain& brain, const std::vector<float>& corrected, const Mixtu
 /// Sums of the maximisation step.
 struct Moments {
   std::array<double, kComponents> weight{};
+  std::array<double, kClasses> pure{};
   std::array<double, kClasses> first{};
   std::array<double, kClasses> second{};
   Moments& operator+=(const Moments& other) {
     for (int c = 0; c < kComponents; ++c) weight[c] += other.weight[c];
     for (int k = 0; k < kClasses; ++k) {
+      pure[k] += other.pure[k];
       first[k] += other.first[k];
       second[k] += other.second[k];
     }
@@ -249,14 +291,16 @@ struct Moments {
   }
 };
 
-Mixture maximise(const std::vector<float>& corrected, const std::vector<Posterior>& posterior) {
+Mixture maximise(const Brain& brain, const std::vector<float>& corrected,
+                 const std::vector<Posterior>& posterior) {
   const Moments sums =
       parallelSum(corrected.size(), kGrain, Moments{}, [&](std::size_t begin, std::size_t end) {
         Moments part;
         for (std::size_t b = begin; b < end; ++b) {
           const double y = corrected[b];
           for (int c = 0; c < kComponents; ++c) part.weight[c] += posterior[b][c];
-          for (int k = 0; k < kClasses; ++k) {
+          for (int k = brain.rim[b]; k < kClasses; ++k) {  // fluid not from the rim
+            part.pure[k] += posterior[b][k];
             part.first[k] += posterior[b][k] * y;
             part.second[k] += posterior[b][k] * y * y;
           }
@@ -265,14 +309,14 @@ Mixture maximise(const std::vector<float>& corrected, const std::vector<Posterio
       });
   Mixture mixture;
   for (int k = 0; k < kClasses; ++k) {
-    mixture.mean[k] = sums.first[k] / sums.weight[k];
+    mixture.mean[k] = sums.first[k] / sums.pure[k];
   }
   for (int c = 0; c < kComponents; ++c) {
     mixture.share[c] = sums.weight[c] / static_cast<double>(corrected.size());
   }
   const double range = mixture.mean[2] - mixture.mean[0];
   for (int k = 0; k < kClasses; ++k) {
-    const double variance = sums.second[k] / sums.weight[k] - mixture.mean[k] * mixture.mean[k];
+    const double variance = sums.second[k] / sums.pure[k] - mixture.mean[k] * mixture.mean[k];
     mixture.deviation[k] = std::clamp(std::sqrt(std::max(0.0, variance)), kLeastDeviation * range,
                                       kMostDeviation * range);
   }
@@ -306,9 +350,118 @@ std::vector<float> updateBias(const Grid& grid, const Brain& brain, const Mixtur
 void checkOptions(const TissueOptions& options) {
   if (!(options.smooth >= 0)) throw InvalidInput("smooth: must be 0 or more");
   if (!(options.biasWidth >= 0)) throw InvalidInput("bias-width: must be 0 mm or more");
+  if (!(options.localWidth >= 0)) throw InvalidInput("local-width: must be 0 mm or more");
   if (options.maxIterations < 1) throw InvalidInput("max-iterations: must be 1 or more");
   if (!(options.tolerance > 0)) throw InvalidInput("tolerance: must be above 0");
 }
+
+/// Tissue classes of a brain on their way.
+class Classifier {
+ public:
+  Classifier(const Grid& grid, Brain brain, const TissueOptions& options)
+      : grid_(grid), options_(options), brain_(std::move(brain)) {
+    // Classes of a strongly shaded image would take the shading for tissue and keep it: so it is
+    // taken off first, as far as it can be without classes.
+    shading_.assign(brain_.size(), 1.0f);
+    if (options_.biasWidth > 0) {
+      shading_ = sharpenHistogram(grid_, brain_.voxel, brain_.intensity, options_.biasWidth);
+      for (std::size_t b = 0; b < brain_.size(); ++b) brain_.intensity[b] /= shading_[b];
+    }
+    markRim(grid_, brain_);
+    mixture_ = firstGuess(brain_);
+    const Vector spacing = grid_.spacing;
+    for (int n = 0; n < 6; ++n) {
+      weights_[n] = static_cast<float>(options_.smooth * spacing.minCoeff() / spacing[n / 2]);
+    }
+    corrected_ = brain_.intensity;
+    field_.assign(brain_.size(), 1.0f);
+    posterior_.resize(brain_.size());
+  }
+
+  /// One expectation and maximisation.
+  /// @return how far a mean has moved, of their range
+  /// @throws InvalidInput  the classes fall together
+  double iterate() {
+    expect(brain_, corrected_, mixture_, weights_, shares_, posterior_);
+    if (options_.biasWidth > 0) {
+      field_ = updateBias(grid_, brain_, mixture_, posterior_, options_.biasWidth);
+      forVoxels([&](std::size_t b) { corrected_[b] = brain_.intensity[b] / field_[b]; });
+    }
+    const Mixture updated = maximise(brain_, corrected_, posterior_);
+    if (!(updated.mean[0] < updated.mean[1] && updated.mean[1] < updated.mean[2])) {
+      throw InvalidInput(
+          "T1: the intensities do not separate into fluid, grey and white matter; "
+          "check that the image is T1-weighted and skull-stripped");
+    }
+    double moved = 0;
+    for (int k = 0; k < kClasses; ++k) {
+      moved = std::max(moved, std::abs(updated.mean[k] - mixture_.mean[k]));
+    }
+    mixture_ = updated;
+    takeShares(corrected_);
+    return moved / (mixture_.mean[2] - mixture_.mean[0]);
+  }
+
+  /// Puts the borders where brightness changes most steeply around each voxel.
+  void followEdges() {
+    const BlockWindow window(grid_, brain_.voxel, options_.localWidth, kLocalBlocks);
+    const std::array<double, kClasses> mean = mixture_.mean;
+    BorderFinder finder(
+        window, {&brain_.voxel, &brain_.neighbours, &brain_.rim, &corrected_, grid_.spacing}, mean);
+    // Two tissues of equal spread and share meet half way between their means.
+    Mixture fair = mixture_;
+    const double pure = (1 - mixture_.share[kCsfGrey] - mixture_.share[kGreyWhite]) / kClasses;
+    for (int k = 0; k < kClasses; ++k) {
+      fair.share[k] = pure;
+      fair.deviation[k] = 0.5 * (mixture_.deviation[kPureGrey] + mixture_.deviation[kPureWhite]);
+    }
+    for (int round = 0; round < kEdgeRounds; ++round) finder.improve();
+    const auto even = evened(corrected_, finder.levels(), mean);
+    for (int round = 0; round < kPriorRounds; ++round) {
+      expect(brain_, even, fair, weights_, shares_, posterior_);
+      takeShares(even);
+    }
+  }
+
+  void write(TissueSegmentation& result) const {
+    for (int k = 0; k < kClasses; ++k) {
+      result.classes[k] = {mixture_.mean[k], mixture_.deviation[k], 0};
+    }
+    result.labels = Volume<Label>(grid_, 0);
+    result.bias = Volume<float>(grid_, 1.0f);
+    for (auto& p : result.probability) p = Volume<float>(grid_, 0.0f);
+    for (std::size_t b = 0; b < shares_.size(); ++b) {
+      const std::size_t v = brain_.voxel[b];
+      for (int k = 0; k < kClasses; ++k) {
+        result.probability[k][v] = shares_[b][k];
+        result.classes[k].share += shares_[b][k] / static_cast<double>(brain_.size());
+      }
+      const auto likeliest = std::max_element(shares_[b].begin(), shares_[b].end());
+      result.labels[v] = static_cast<Label>(likeliest - shares_[b].begin()) + kCsf;
+      result.bias[v] = shading_[b] * field_[b];
+    }
+  }
+
+ private:
+  template <class Work>
+  void forVoxels(const Work& work) const {
+    parallelFor(brain_.size(), kGrain, work);
+  }
+
+  void takeShares(const std::vector<float>& seen) {
+    shares_.resize(brain_.size());
+    forVoxels([&](std::size_t b) { shares_[b] = sharesOf(posterior_[b], seen[b], mixture_); });
+  }
+
+  Grid grid_;
+  TissueOptions options_;
+  Brain brain_;
+  std::array<float, 6> weights_{};
+  std::vector<float> shading_, field_, corrected_;
+  Mixture mixture_;
+  std::vector<Posterior> posterior_;
+  std::vector<Shares> shares_;
+};
 
 }  // namespace
 
@@ -324,83 +477,25 @@ TissueSegmentation segmentTissue(const Volume<float>& intensity, const Volume<La
                        " brain voxels (intensity above 0, or in the mask), expected a "
                        "skull-stripped brain");
   }
-
   TissueSegmentation result;
   result.brainVoxels = static_cast<std::int64_t>(brain.size());
   result.termination = Termination::MaxIterations;
-  // Classes of a strongly shaded image would take the shading for tissue and keep it: so it is
-  // taken off first, as far as it can be without classes.
-  std::vector<float> shading(brain.size(), 1.0f);
-  if (options.biasWidth > 0) {
-    shading = sharpenHistogram(intensity.grid, brain.voxel, brain.intensity, options.biasWidth);
-    for (std::size_t b = 0; b < brain.size(); ++b) brain.intensity[b] /= shading[b];
-  }
-  Mixture mixture = firstGuess(brain);
-
-  std::array<float, 6> weights;
-  const Vector spacing = intensity.grid.spacing;
-  for (int n = 0; n < 6; ++n) {
-    weights[n] = static_cast<float>(options.smooth * spacing.minCoeff() / spacing[n / 2]);
-  }
-
-  std::vector<float> corrected = brain.intensity;
-  std::vector<float> field(brain.size(), 1.0f);
-  std::vector<Posterior> posterior(brain.size());
-  std::vector<Shares> shares;
-  for (int iteration = 1; iteration <= options.maxIterations; ++iteration) {
+  Classifier classifier(intensity.grid, std::move(brain), options);
+  while (result.iterations < options.maxIterations) {
     if (monitor.shouldStop()) {
       result.termination = Termination::Interrupted;
       break;
     }
-    monitor.progress(static_cast<double>(iteration - 1) / options.maxIterations, "tissue classes");
-    expect(brain, corrected, mixture, weights, shares, posterior);
-    if (options.biasWidth > 0) {
-      field = updateBias(intensity.grid, brain, mixture, posterior, options.biasWidth);
-      parallelForBlocks(brain.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t b = begin; b < end; ++b) corrected[b] = brain.intensity[b] / field[b];
-      });
-    }
-    const Mixture updated = maximise(corrected, posterior);
-    if (!(updated.mean[0] < updated.mean[1] && updated.mean[1] < updated.mean[2])) {
-      throw InvalidInput(
-          "T1: the intensities do not separate into fluid, grey and white matter; "
-          "check that the image is T1-weighted and skull-stripped");
-    }
-    double moved = 0;
-    for (int k = 0; k < kClasses; ++k) {
-      moved = std::max(moved, std::abs(updated.mean[k] - mixture.mean[k]));
-    }
-    mixture = updated;
-    shares.resize(brain.size());
-    parallelForBlocks(brain.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t b = begin; b < end; ++b) {
-        shares[b] = sharesOf(posterior[b], corrected[b], mixture);
-      }
-    });
-    result.iterations = iteration;
-    if (iteration > 3 && moved <= options.tolerance * (mixture.mean[2] - mixture.mean[0])) {
+    monitor.progress(static_cast<double>(result.iterations) / options.maxIterations,
+                     "tissue classes");
+    const double moved = classifier.iterate();
+    if (++result.iterations > 3 && moved <= options.tolerance) {
       result.termination = Termination::Converged;
       break;
     }
   }
-
-  for (int k = 0; k < kClasses; ++k) {
-    result.classes[k] = {mixture.mean[k], mixture.deviation[k], 0};
-  }
-  result.labels = Volume<Label>(intensity.grid, 0);
-  result.bias = Volume<float>(intensity.grid, 1.0f);
-  for (auto& p : result.probability) p = Volume<float>(intensity.grid, 0.0f);
-  for (std::size_t b = 0; b < shares.size(); ++b) {
-    const std::size_t v = brain.voxel[b];
-    for (int k = 0; k < kClasses; ++k) {
-      result.probability[k][v] = shares[b][k];
-      result.classes[k].share += shares[b][k] / static_cast<double>(brain.size());
-    }
-    result.labels[v] = static_cast<Label>(std::max_element(shares[b].begin(), shares[b].end()) -
-                                          shares[b].begin()) +
-                       kCsf;
-    result.bias[v] = shading[b] * field[b];
-  }
+  if (options.localWidth > 0 && !monitor.shouldStop()) classifier.followEdges();
+  classifier.write(result);
   monitor.progress(1, "tissue classes");
   return result;
 }

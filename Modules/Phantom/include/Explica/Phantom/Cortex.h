@@ -16,8 +16,10 @@ struct CortexOptions {
   double depth = 0.25;     ///< of the folds, share of the radius, in [0, 0.5]
   int waves = 5;           ///< folds along an axis
   double noise = 3;        ///< standard deviation in the image; grey and white matter differ by 30
-  double bias = 0.1;  ///< how much the image brightens from the middle to the right side, share
-  int seed = 1;       ///< of the noise
+  double bias = 0.1;     ///< how much the image brightens from the middle to the right side, share
+  int seed = 1;          ///< of the noise
+  double dura = 0;       ///< thickness of a sheet of the dura's brightness beyond the ribbon, mm
+  double duraGap = 1.5;  ///< width of the fluid between ribbon and sheet, mm
 };
 
 template <class Visitor>
@@ -31,6 +33,10 @@ void describe(CortexOptions& options, Visitor&& visit) {
         options.noise);
   visit(Field{"bias", "", "brightening from the middle to the right side, share"}, options.bias);
   visit(Field{"seed", "", "of the noise"}, options.seed);
+  visit(Field{"dura", "mm", "thickness of a sheet as bright as dura beyond the ribbon; 0 for none"},
+        options.dura);
+  visit(Field{"dura-gap", "mm", "width of the fluid between the ribbon and that sheet"},
+        options.duraGap);
 }
 
 /// The ribbon and what is known of it exactly.
@@ -38,13 +44,14 @@ struct Cortex {
   static constexpr Label kOutside = 0, kCsf = 1, kGrey = 2, kWhite = 3;
   Volume<Label> labels;  ///< by the voxel centre's distance from the white surface
   Volume<float> level;   ///< signed distance to the white surface, mm, negative inside
-  Volume<float> image;   ///< T1-weighted: fluid 35, grey 85, white 115, mixed at borders; 0 outside
+  Volume<float> image;   ///< T1-weighted: fluid 35, dura 70, grey 85, white 115, mixed at borders;
+                         ///< 0 outside
   TriangleMesh white;    ///< the exact white surface
   double thickness = 0;  ///< mm: distance of the pial surface from the white one, everywhere
 };
 
 /// Grey matter is what lies within `thickness` outside of a folded, star-shaped white surface,
-/// fluid what lies within 3 mm beyond it.
+/// fluid what lies within 3 mm beyond it.  A sheet of dura lies in the fluid and is labelled so.
 /// @throws InvalidInput  an option out of range
 [[nodiscard]] Cortex makeCortex(const CortexOptions& options = {});
 

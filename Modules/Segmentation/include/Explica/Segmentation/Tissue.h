@@ -21,6 +21,7 @@ inline constexpr Label kWhite = 3;
 struct TissueOptions {
   double smooth = 0.1;     ///< weight of the Markov prior; 0 looks at each voxel alone
   double biasWidth = 40;   ///< standard deviation of the bias field's smoothing, mm; 0 for no field
+  double localWidth = 8;   ///< of the windows in which edges tell a border's brightness, mm
   int maxIterations = 60;  ///< of expectation and maximisation
   double tolerance = 5e-4;  ///< stop once no class mean moves by more than this share of the range
 };
@@ -32,6 +33,10 @@ void describe(TissueOptions& options, Visitor&& visit) {
   visit(
       Field{"bias-width", "mm", "standard deviation of the bias field's smoothing; 0 for no field"},
       options.biasWidth);
+  visit(Field{"local-width", "mm",
+              "standard deviation of the windows in which edges tell the brightness of a border; 0 "
+              "to take it from the tissues' means"},
+        options.localWidth);
   visit(Field{"max-iterations", "", "expectation-maximisation iterations at most"},
         options.maxIterations);
   visit(Field{"tolerance", "",

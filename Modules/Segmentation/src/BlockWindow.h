@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Core/Grid.h"
+
+#include <array>
+#include <vector>
+
+namespace explica::segmentation {
+
+/// Sums of samples under a Gaussian window, on blocks of a share of its width over the box of some
+/// voxels; between the blocks' centres values are interpolated.
+class BlockWindow {
+ public:
+  /// @param voxel           linear indices: the box that holds them
+  /// @param width           standard deviation of the window, mm
+  /// @param blocksPerWidth  how many blocks that is
+  BlockWindow(const Grid& grid, const std::vector<std::size_t>& voxel, double width,
+              double blocksPerWidth = 4);
+
+  [[nodiscard]] std::size_t count() const;
+
+  /// One sum a block; a sample at the block's centre counts once, others as far as they are near.
+  /// @param voxel  of the samples, in the box
+  [[nodiscard]] std::vector<double> sums(const std::vector<std::size_t>& voxel,
+                                         const std::vector<float>& values) const;
+
+  /// The block values at voxels of the box, trilinear.
+  [[nodiscard]] std::vector<float> atVoxels(const std::vector<double>& values,
+                                            const std::vector<std::size_t>& voxel) const;
+
+ private:
+  [[nodiscard]] std::size_t linear(int i, int j, int k) const;
+  void smoothAlong(std::vector<double>& values, int axis) const;
+
+  Grid grid_;
+  double width_;
+  std::array<int, 3> first_;  ///< voxel of the box
+  std::array<int, 3> step_;   ///< voxels a block
+  std::array<int, 3> size_;   ///< blocks
+};
+
+}  // namespace explica::segmentation
