@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "Explica/Flattening/Flatten.h"
+
+#include "AutomaticCuts.h"
 #include "Explica/Application/Command.h"
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
@@ -34,15 +36,18 @@
 namespace explica::app {
 namespace {
 
-constexpr double kPatchTolerance = 0.01;  // mean area error of a patch ...
-constexpr double kCutTolerance = 0.05;    // ... and of a hemisphere with cuts: less costs lengths
-constexpr double kDistanceWork = 2e6;     // vertices visited for the distance errors, about
+constexpr double kPatchTolerance = 0.01;    // mean area error of a patch ...
+constexpr double kCutTolerance = 0.05;      // ... and of a hemisphere with cuts: less costs lengths
+constexpr const char* kAutomatic = "auto";  // of --cuts
+constexpr double kDistanceWork = 2e6;       // vertices visited for the distance errors, about
 
 struct Settings {
   std::string surface;
   io::SurfaceReadOptions reading;
   std::optional<std::string> reference;
   std::optional<std::string> cuts;
+  std::optional<std::string> cortex;
+  flattening::CutOptions cut;
   std::optional<std::string> label;
   std::optional<int> labelKey;
   std::optional<double> areaTolerance;
@@ -63,6 +68,8 @@ void declare(Declaration& d, Settings& s) {
 
 A closed surface needs --label (a patch) or --cuts (a hemisphere): a FreeSurfer patch or a label of the vertices that stay, or a flat map whose faces stay.
 
+--cuts auto takes the medial wall out (--cortex; or lh.cortex.label or valid.shape.gii beside the surface; or the flattest fortieth of it) and finds relief cuts: each ends where a conformal map would change lengths most and comes along the sulci, where a way costs half as much for each standard deviation of depth; of four such cuts the one is taken that lowers the strain most for its length, until --cut.strain is reached. No face is lost: vertices along a cut become two, the second copies last in patch.surf.gii. Where a vertex has one place only, what touches a second copy is left out: of flat.surf.gii faces, of FreeSurfer's patches the vertices on cuts.
+
 With --surfaces the map becomes a stack of depths: grid.nii.gz gives each cell its place in the tissue (RAS mm), --volumes are resampled into it, and to_flat.nii.gz gives each voxel of the first volume its u and v (mm in the map) and depth (0 at the white surface, 1 at the pial).)")
       .reference("Tutte 1963, Proceedings of the London Mathematical Society 13:743-767")
       .reference("Shen, Jiang, Zorin, Panozzo 2019, ACM Transactions on Graphics 38(4):32")
@@ -73,14 +80,22 @@ With --surfaces the map becomes a stack of depths: grid.nii.gz gives each cell i
           "The flat map of an unfolded patch, and a volume as a stack of depths")
       .example("explica flatten lh.pial --cuts lh.cortex.patch.3d --out flat",
                "A hemisphere with given cuts")
+      .example("explica flatten lh.pial --cuts auto --out flat", "A hemisphere, cut by the program")
+      .reference("Ben-Chen, Gotsman, Bunin 2008, Computer Graphics Forum 27(2):449-458")
       .input("SURFACE", FileKind::Surface, "triangulated surface with a rim, or to be cut",
              s.surface)
       .options("Reading", s.reading)
       .inputOption("reference", FileKind::Surface,
                    "surface with the same vertices whose areas and lengths count", s.reference)
-      .inputOption("cuts", FileKind::Any,
-                   "what stays of a hemisphere: FreeSurfer patch, label (not 0), or flat map",
-                   s.cuts, "Region")
+      .option("Region",
+              Field{"cuts", "",
+                    "what stays of a hemisphere: FreeSurfer patch, label (not 0), flat map, or "
+                    "auto: cuts are found"},
+              s.cuts)
+      .inputOption("cortex", FileKind::Any,
+                   "for --cuts auto, where there is cortex: label, annot, or map (not 0)", s.cortex,
+                   "Region")
+      .options("Region", s.cut, "cut.")
       .inputOption("label", FileKind::VertexLabel, "lay flat only where this label is not 0",
                    s.label, "Region")
       .option("Region", Field{"label-key", "", "lay flat only where --label has this key"},
@@ -111,14 +126,19 @@ With --surfaces the map becomes a stack of depths: grid.nii.gz gives each cell i
       .inputOption("regions", FileKind::VertexLabel,
                    "regions for patch.tsv, their outlines in their own colours for flat.png",
                    s.regions, "Patch")
-      .output("flat.surf.gii", FileKind::Surface,
-              "the flat map, z = 0: all vertices in their order, the patch's faces")
+      .output(
+          "flat.surf.gii", FileKind::Surface,
+          "the flat map, z = 0: all vertices in their order, the patch's faces (one bank of cuts)")
       .output("patch.surf.gii", FileKind::Surface,
               "the reference, the patch's vertices only, in the order of vertex_of.shape.gii")
       .output("patch_flat.surf.gii", FileKind::Surface, "the flat map of patch.surf.gii")
       .output("vertex_of.shape.gii", FileKind::VertexData,
               "for each vertex of patch.surf.gii its number in the whole surface")
       .output("*.patch.flat", FileKind::Any, "the flat map as FreeSurfer writes it")
+      .output("*.patch.3d", FileKind::Any, "the patch on the reference, as FreeSurfer writes it")
+      .output("cuts.tsv", FileKind::Table,
+              "of --cuts auto: ends (vertices), length (mm), mean depth (standard deviations)")
+      .output("cuts.label.gii", FileKind::VertexLabel, "of --cuts auto: the wall and each cut")
       .output("distortion.shape.gii", FileKind::VertexData,
               "area ratio, angle change in degrees, edge strain")
       .output("patch_*.label.gii", FileKind::VertexLabel,
@@ -173,6 +193,12 @@ void requireSameVertices(const TriangleMesh& a, const TriangleMesh& b, const std
 std::vector<std::int32_t> facesOfCuts(Context& context, const Settings& s,
                                       const TriangleMesh& mesh) {
   const auto all = everyFace(mesh.faces);
+  if (*s.cuts == kAutomatic) {
+    const bool closed = flattening::boundaryLoops(mesh.faces, mesh.vertexCount()).empty();
+    if (s.label || !closed) return all;
+    return flattening::facesWithoutWall(mesh, cortexOf(context, s.surface, mesh, s.cortex));
+  }
+  context.input(*s.cuts, "cuts");
   if (io::isPatchFile(*s.cuts)) {
     const io::Patch patch = io::readPatch(*s.cuts, mesh.vertexCount());
     return flattening::facesAlsoIn(mesh.faces, all,
@@ -222,18 +248,37 @@ Subject subjectOf(Context& context, const Settings& s) {
   return subject;
 }
 
-/// The map on all vertices of the whole, those off the patch at the origin.
+/// The map on all vertices of the whole, those off the patch at the origin.  A vertex on a cut lies
+/// where its first copy does, and faces at second copies are left out.
 TriangleMesh wholeMap(const TriangleMesh& reference, const flattening::Disc& disc,
                       const flattening::FlatMap& map) {
+  const std::vector<bool> second = flattening::secondCopies(disc);
   TriangleMesh flat{Positions::Zero(reference.vertexCount(), 3), Faces(disc.mesh.faceCount(), 3)};
   for (std::size_t v = 0; v < disc.vertexOrigin.size(); ++v) {
+    if (second[v]) continue;
     flat.positions.row(disc.vertexOrigin[v]).head<2>() =
         map.positions.row(static_cast<Eigen::Index>(v));
   }
+  Eigen::Index kept = 0;
   for (std::size_t f = 0; f < disc.faceOrigin.size(); ++f) {
-    flat.faces.row(static_cast<Eigen::Index>(f)) = reference.faces.row(disc.faceOrigin[f]);
+    const auto corners = disc.mesh.faces.row(static_cast<Eigen::Index>(f));
+    if (second[corners[0]] || second[corners[1]] || second[corners[2]]) continue;
+    flat.faces.row(kept++) = reference.faces.row(disc.faceOrigin[f]);
   }
+  flat.faces.conservativeResize(kept, 3);
   return flat;
+}
+
+/// Which vertices of the whole FreeSurfer's patch has: one place each, none on a cut, for its faces
+/// are all those between its vertices.
+std::vector<bool> freeSurferVertices(const flattening::Disc& disc, Eigen::Index vertexCount) {
+  const std::vector<bool> second = flattening::secondCopies(disc);
+  std::vector<bool> inPatch(static_cast<std::size_t>(vertexCount), false);
+  for (const std::int32_t v : disc.vertexOrigin) inPatch[v] = true;
+  for (std::size_t v = 0; v < second.size(); ++v) {
+    if (second[v]) inPatch[disc.vertexOrigin[v]] = false;
+  }
+  return inPatch;
 }
 
 /// Values of the whole's vertices at the patch's.
@@ -267,27 +312,49 @@ void writeSurfaces(Context& context, const Subject& subject, const flattening::D
   std::copy(disc.vertexOrigin.begin(), disc.vertexOrigin.end(), numbers.begin());
   io::writeGiftiShape(context.output("vertex_of.shape.gii"), {{"vertex", "", numbers}},
                       metadata.structure);
-  std::vector<bool> inPatch(static_cast<std::size_t>(flat.vertexCount()), false);
-  for (const std::int32_t v : disc.vertexOrigin) inPatch[v] = true;
-  const bool right = metadata.structure == "CortexRight";
-  io::writePatch(context.output(right ? "rh.patch.flat" : "lh.patch.flat"),
-                 io::patchOf(flat, inPatch));
+  const std::string side = metadata.structure == "CortexRight" ? "rh" : "lh";
+  const auto inPatch = freeSurferVertices(disc, flat.vertexCount());
+  io::writePatch(context.output(side + ".patch.flat"), io::patchOf(flat, inPatch));
+  TriangleMesh whole = subject.reference.mesh;
+  if (subject.reference.origin.format == "FreeSurfer") {  // patches hold surface RAS as stored
+    const Eigen::Matrix4d back = subject.reference.origin.applied.inverse();
+    whole.positions = ((whole.positions * back.topLeftCorner<3, 3>().transpose()).rowwise() +
+                       back.topRightCorner<3, 1>().transpose())
+                          .eval();
+  }
+  io::writePatch(context.output(side + ".patch.3d"), io::patchOf(whole, inPatch));
+}
+
+/// Values of the patch's vertices on the whole's; where a vertex has copies, their mean.
+Eigen::VectorXd onWhole(const Eigen::VectorXd& part, const flattening::Disc& disc,
+                        Eigen::Index vertexCount, double elsewhere) {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(vertexCount), count = sum;
+  for (std::size_t v = 0; v < disc.vertexOrigin.size(); ++v) {
+    sum[disc.vertexOrigin[v]] += part[static_cast<Eigen::Index>(v)];
+    count[disc.vertexOrigin[v]] += 1;
+  }
+  return (count.array() > 0).select(sum.cwiseQuotient(count), elsewhere);
 }
 
 /// Distortion and distance errors, into the summary and distortion.shape.gii.
-Eigen::VectorXd measure(Context& context, const Subject& subject, const TriangleMesh& flat) {
-  const TriangleMesh before{subject.reference.mesh.positions, flat.faces};
+/// @return area ratio at the patch's vertices
+Eigen::VectorXd measure(Context& context, const Subject& subject, const flattening::Disc& disc,
+                        const TriangleMesh& flat) {
+  const TriangleMesh& before = disc.mesh;
   const auto all = everyFace(flat.faces);
   unfolding::DistortionOptions plain;
   plain.geodesicSources = 0;
   const auto distortion = unfolding::measureDistortion(before, flat.positions, all, plain);
   const Eigen::VectorXd angleDeg = distortion.angleErrorRad * (180 / kPi);
   const Eigen::VectorXd ratio = unfolding::vertexMeans(before, all, distortion.areaRatio, 1);
+  const auto whole = [&](const Eigen::VectorXd& part, double elsewhere) {
+    return onWhole(part, disc, subject.reference.mesh.vertexCount(), elsewhere);
+  };
   io::writeGiftiShape(
       context.output("distortion.shape.gii"),
-      {{"area ratio", "", ratio},
-       {"angle change", "degrees", unfolding::vertexMeans(before, all, angleDeg, 0)},
-       {"edge strain", "", unfolding::vertexStrains(before, flat.positions, all)}},
+      {{"area ratio", "", whole(ratio, 1)},
+       {"angle change", "degrees", whole(unfolding::vertexMeans(before, all, angleDeg, 0), 0)},
+       {"edge strain", "", whole(unfolding::vertexStrains(before, flat.positions, all), 0)}},
       subject.reference.metadata.structure);
   flattening::DistanceOptions options;
   options.farSources = static_cast<int>(
@@ -380,24 +447,25 @@ void writeRegions(Context& context, io::LabelMap regions, const std::string& str
   io::writeGiftiLabel(context.output("patch_" + regions.name + ".label.gii"), regions, structure);
 }
 
-void writePatchTable(Context& context, const Settings& s, const std::string& structure,
+void writePatchTable(Context& context, const Settings& s, const Subject& subject,
                      const flattening::Disc& disc, const flattening::FlatMap& map,
                      const Eigen::VectorXd& areaRatio) {
   report::SurfacePaint paint;
-  const auto maps = mapsOnPatch(s, disc, areaRatio.size(), paint);
+  const Eigen::Index whole = subject.reference.mesh.vertexCount();
+  const auto maps = mapsOnPatch(s, disc, whole, paint);
   if (maps.empty()) {
-    paint.values = atPatch(areaRatio, disc).cwiseMax(1e-6).array().log2();
+    paint.values = areaRatio.cwiseMax(1e-6).array().log2();
     paint.scale = {report::ColourMap::Diverging, -0.5, 0.5, "area, doublings", ""};
   }
   const TriangleMesh flat{patchPositions(map), disc.mesh.faces};
   std::vector<flattening::PatchRegions> rows;
   report::FlatMarks marks;
-  for (const io::LabelMap& regions : regionsOnPatch(s, disc, areaRatio.size())) {
+  for (const io::LabelMap& regions : regionsOnPatch(s, disc, whole)) {
     flattening::PatchRegions& row = rows.emplace_back();
     row.keys = regions.keys;
     for (const io::LabelEntry& entry : regions.table) row.names[entry.key] = entry.name;
     markRegions(regions, flat, marks);
-    writeRegions(context, regions, structure);
+    writeRegions(context, regions, subject.reference.metadata.structure);
   }
   writeTextFile(context.output("patch.tsv"),
                 flattening::patchTable(disc.mesh, flat.positions, rows, maps));
@@ -464,13 +532,12 @@ std::vector<VolumeOnDemand<float>> framesOnGrid(const Settings& s, const std::st
 }
 
 void writeGrid(Context& context, const Settings& s, const Subject& subject,
-               const TriangleMesh& flat) {
-  flattening::FlatSheet sheet{flat.faces, flat.positions, subject.reference.mesh.positions,
-                              subject.reference.mesh.positions};
+               const flattening::Disc& disc, const TriangleMesh& flat) {
+  flattening::FlatSheet sheet{flat.faces, flat.positions, disc.mesh.positions, disc.mesh.positions};
   if (s.surfaces) {
     const auto surfaces = sheetSurfaces(context, s, subject);
-    sheet.inner = surfaces[0];
-    sheet.outer = surfaces[1];
+    sheet.inner = surfaces[0](disc.vertexOrigin, Eigen::all);
+    sheet.outer = surfaces[1](disc.vertexOrigin, Eigen::all);
   }
   flattening::FlatGridOptions options;
   options.cell = s.grid;
@@ -511,11 +578,16 @@ void warnOf(Context& context, const flattening::Disc& disc, const flattening::Fl
 Termination run(Context& context, const Settings& s) {
   const auto begin = Clock::now();
   const Subject subject = subjectOf(context, s);
-  const flattening::Disc disc = flattening::discOf(subject.reference.mesh, subject.faces);
+  flattening::Disc disc = flattening::discOf(subject.reference.mesh, subject.faces);
   sayHowRead(context, subject.reference.origin);
   flattening::FlattenOptions options = s.flatten;
   options.areaTolerance = s.areaTolerance.value_or(s.cuts ? kCutTolerance : kPatchTolerance);
   const double read = secondsSince(begin);
+  if (s.cuts == kAutomatic) {
+    auto step = context.step("cut");
+    disc = openedByItself(context, subject.reference, disc, s.cut);
+  }
+  const double cut = secondsSince(begin);
   flattening::FlatMap map;
   {
     auto step = context.step("flatten");
@@ -526,11 +598,11 @@ Termination run(Context& context, const Settings& s) {
   const double flattened = secondsSince(begin);
   warnOf(context, disc, map);
   auto step = context.step("measure and write");
-  const TriangleMesh flat = wholeMap(subject.reference.mesh, disc, map);
-  writeSurfaces(context, subject, disc, map, flat);
-  const Eigen::VectorXd areaRatio = measure(context, subject, flat);
-  writePatchTable(context, s, subject.reference.metadata.structure, disc, map, areaRatio);
-  writeGrid(context, s, subject, flat);
+  const TriangleMesh flat{patchPositions(map), disc.mesh.faces};
+  writeSurfaces(context, subject, disc, map, wholeMap(subject.reference.mesh, disc, map));
+  const Eigen::VectorXd areaRatio = measure(context, subject, disc, flat);
+  writePatchTable(context, s, subject, disc, map, areaRatio);
+  writeGrid(context, s, subject, disc, flat);
   context.result("faces", flat.faceCount());
   context.result("vertices", disc.vertexOrigin.size());
   context.result("faces_trimmed", disc.trimmedFaces);
@@ -543,7 +615,8 @@ Termination run(Context& context, const Settings& s) {
   context.result("iterations", map.iterations);
   context.result("stop_reason", std::string(nameOf(map.termination)));
   context.result("seconds_start", read);
-  context.result("seconds_flatten", flattened - read);
+  context.result("seconds_cut", cut - read);
+  context.result("seconds_flatten", flattened - cut);
   context.result("seconds_output", secondsSince(begin) - flattened);
   context.result("seconds", secondsSince(begin));
   const bool folded = map.turnedOver > 0 || map.rimCrossings > 0;

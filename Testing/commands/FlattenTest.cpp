@@ -3,8 +3,10 @@
 // explica flatten and explica compare on surfaces of real heads.
 
 #include "Explica/Geometry/Fixtures.h"
+#include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Geometry/SelfIntersection.h"
+#include "Explica/IO/PatchFile.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/IO/VolumeFile.h"
@@ -76,6 +78,54 @@ TEST_P(WholeHemisphere, WithTheShippedCutsKeepsDistancesBetterThanTheShippedMap)
   EXPECT_LT(ours["geodesic_error_all"], theirs["geodesic_error_all"]);
   EXPECT_LT(ours["area_error_mean"], theirs["area_error_mean"]);
   EXPECT_EQ(ours["crossings"], 0);
+}
+
+TEST_P(WholeHemisphere, CutByItselfKeepsDistancesAsWellAsWithCutsMadeByHand) {
+  TemporaryFolder folder;
+  const std::string side = GetParam(), mid = middle(folder, side);
+  const auto byHand = explica({"flatten", mid, "--cuts", shipped(side), "--out", folder / "hand"});
+  ASSERT_EQ(byHand.exitCode, 0) << byHand;
+  const auto made = explica({"flatten", mid, "--cuts", "auto", "--cortex",
+                             (data() / "fsaverage5" / ("thick_" + side + ".gii.gz")).string(),
+                             "--out", folder / "auto"});
+  ASSERT_EQ(made.exitCode, 0) << made;
+  const auto hand = readJson(folder / "hand/summary.json"),
+             ours = readJson(folder / "auto/summary.json");
+  EXPECT_LE(ours["geodesic_error_local"], 1.1 * double(hand["geodesic_error_local"]));
+  EXPECT_LE(ours["geodesic_error_all"], 1.1 * double(hand["geodesic_error_all"]));
+  EXPECT_LE(ours["area_error_mean"], 0.05);
+  EXPECT_EQ(ours["turned_over"], 0);
+  EXPECT_EQ(ours["rim_crossings"], 0);
+  EXPECT_GT(ours["faces"], hand["faces"]);  // no face is lost along cuts
+  EXPECT_LE(ours["cuts"], 6);
+  EXPECT_LT(ours["cut_length"], 450);
+  EXPECT_GT(ours["cut_depth"], 0.5);  // standard deviations: in sulci
+  EXPECT_NEAR(ours["cut_strain"], ours["edge_strain_mean"], 0.01);
+  const auto patch = io::readSurface(folder / "auto/patch.surf.gii").mesh;
+  const auto condition = geometry::inspectMesh(patch);
+  EXPECT_EQ(condition.eulerCharacteristic, 1);  // a disc
+  EXPECT_TRUE(condition.manifold());
+  EXPECT_EQ(condition.vertices, std::int64_t(ours["vertices"]));
+  EXPECT_TRUE(
+      geometry::findSelfIntersections(io::readSurface(folder / "auto/patch_flat.surf.gii").mesh)
+          .empty());
+
+  // The patch, which leaves the vertices on cuts out, and the same vertices as a label.
+  const std::string name = (side == "right" ? "rh" : "lh") + std::string(".patch.3d");
+  const auto again =
+      explica({"flatten", mid, "--cuts", folder / ("auto/" + name), "--out", folder / "again"});
+  ASSERT_EQ(again.exitCode, 0) << again;
+  EXPECT_LE(readJson(folder / "again/summary.json")["geodesic_error_all"],
+            1.1 * double(hand["geodesic_error_all"]));
+  io::LabelMap stays;
+  stays.keys.setZero(10242);
+  stays.table = {{0, "out", {}}, {1, "in", {}}};
+  for (const auto v : io::readPatch(folder / ("auto/" + name)).vertices) stays.keys[v] = 1;
+  io::writeGiftiLabel(folder / "stays.label.gii", stays, "CortexLeft");
+  const auto labelled =
+      explica({"flatten", mid, "--cuts", folder / "stays.label.gii", "--out", folder / "label"});
+  ASSERT_EQ(labelled.exitCode, 0) << labelled;
+  EXPECT_EQ(readText(folder / "again/flat.surf.gii"), readText(folder / "label/flat.surf.gii"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Fsaverage5, WholeHemisphere, ::testing::Values("left", "right"),
@@ -168,6 +218,37 @@ TEST(FlattenRegions, KeepNamesAndColoursOfEachFile) {
     EXPECT_NE(table.find(row), std::string::npos) << table;
   }
   EXPECT_EQ(table.find("elsewhere"), std::string::npos);
+}
+
+TEST_F(FlattenCommand, TheWallOfAutomaticCutsIsTakenFromWhatIsGivenOrFound) {
+  TemporaryFolder folder;
+  const std::string mid = middle(folder, "left");
+  const auto areaWith = [&](const std::vector<std::string>& words) {
+    auto all = std::vector<std::string>{"flatten", mid, "--cuts", "auto", "--cut.most", "0"};
+    all.insert(all.end(), words.begin(), words.end());
+    all.insert(all.end(), {"--out", folder / "out", "--force"});
+    const auto made = explica(all);
+    EXPECT_EQ(made.exitCode, 0) << made;
+    return double(readJson(folder / "out/summary.json")["area"]);
+  };
+  const double found = areaWith({});
+  const double whole = geometry::totalArea(io::readSurface(mid).mesh);
+  EXPECT_NEAR(found, 0.97 * whole, 0.01 * whole);
+  const auto thickness = io::readVertexMaps(data() / "fsaverage5/thick_left.gii.gz").front().values;
+  io::LabelMap cortex;
+  cortex.keys = (thickness.array() != 0).cast<Label>() + 1;
+  cortex.table = {{1, "Medial_wall", {0, 0, 0, 1}}, {2, "cortex", {1, 1, 0, 1}}};
+  io::writeGiftiLabel(folder / "cortex.label.gii", cortex, "CortexLeft");
+  io::writeFreeSurferAnnot(folder / "lh.test.annot", cortex);
+  const double byThickness =
+      areaWith({"--cortex", (data() / "fsaverage5/thick_left.gii.gz").string()});
+  EXPECT_EQ(areaWith({"--cortex", folder / "cortex.label.gii"}), byThickness);
+  EXPECT_EQ(areaWith({"--cortex", folder / "lh.test.annot"}), byThickness);
+  cortex.keys.array() -= 1;
+  io::writeFreeSurferLabel(folder / "lh.cortex.label", cortex, io::readSurface(mid).mesh.positions);
+  EXPECT_EQ(areaWith({"--cortex", folder / "lh.cortex.label"}), byThickness);
+  io::writeGiftiShape(folder / "valid.shape.gii", {{"thickness", "mm", thickness}}, "CortexLeft");
+  EXPECT_EQ(areaWith({}), byThickness);  // beside the surface
 }
 
 }  // namespace

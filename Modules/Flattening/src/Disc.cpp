@@ -155,6 +155,22 @@ std::vector<Loop> boundaryLoops(const Faces& faces, Eigen::Index vertexCount) {
   return loops;
 }
 
+void findLoops(Disc& disc) {
+  auto loops = boundaryLoops(disc.mesh.faces, disc.mesh.vertexCount());
+  if (loops.empty()) {
+    throw InvalidInput(
+        "surface: it is closed, so that no plane can hold it; cut it (--cuts), or give a part of "
+        "it (--label)");
+  }
+  std::stable_sort(loops.begin(), loops.end(), [&](const Loop& a, const Loop& b) {
+    return lengthOf(a, disc.mesh.positions) > lengthOf(b, disc.mesh.positions);
+  });
+  disc.rim = std::move(loops.front());
+  disc.holes.assign(std::make_move_iterator(loops.begin() + 1),
+                    std::make_move_iterator(loops.end()));
+  requireDiscWithHoles(disc);
+}
+
 Disc discOf(const TriangleMesh& mesh, std::span<const std::int32_t> faces) {
   if (faces.empty()) throw InvalidInput("surface: no face to lay flat");
   requireOriented(geometry::extractFaces(mesh, faces).mesh);
@@ -173,19 +189,7 @@ Disc discOf(const TriangleMesh& mesh, std::span<const std::int32_t> faces) {
   disc.mesh = std::move(part.mesh);
   disc.vertexOrigin = std::move(part.vertexOrigin);
   disc.faceOrigin = std::move(part.faceOrigin);
-  auto loops = boundaryLoops(disc.mesh.faces, disc.mesh.vertexCount());
-  if (loops.empty()) {
-    throw InvalidInput(
-        "surface: it is closed, so that no plane can hold it; cut it (--cuts), or give a part of "
-        "it (--label)");
-  }
-  std::stable_sort(loops.begin(), loops.end(), [&](const Loop& a, const Loop& b) {
-    return lengthOf(a, disc.mesh.positions) > lengthOf(b, disc.mesh.positions);
-  });
-  disc.rim = std::move(loops.front());
-  disc.holes.assign(std::make_move_iterator(loops.begin() + 1),
-                    std::make_move_iterator(loops.end()));
-  requireDiscWithHoles(disc);
+  findLoops(disc);
   return disc;
 }
 

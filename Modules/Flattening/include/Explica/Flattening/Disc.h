@@ -28,6 +28,10 @@ struct Disc {
 /// @throws InvalidInput  no face; no rim; several pieces; handles (no plane can hold them)
 [[nodiscard]] Disc discOf(const TriangleMesh& mesh, std::span<const std::int32_t> faces);
 
+/// Finds the rim and the holes of a disc whose mesh is given.
+/// @throws InvalidInput  no rim; several pieces; handles
+void findLoops(Disc& disc);
+
 /// Boundary loops of an oriented manifold, each in the direction of its faces; the one of the
 /// smallest vertex first.
 [[nodiscard]] std::vector<Loop> boundaryLoops(const Faces& faces, Eigen::Index vertexCount);

@@ -1,0 +1,182 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "AutomaticCuts.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/WholeFile.h"
+#include "Explica/Flattening/FoldDepth.h"
+#include "Explica/IO/VertexDataFile.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <set>
+
+namespace explica::app {
+namespace {
+
+/// Words for what is no region of the cortex, in FreeSurfer's and our own tables.
+const std::set<std::string> kNoCortex = {
+    "",           "???",         "unknown",     "Unknown",     "medialwall",
+    "MedialWall", "Medial_wall", "Medial_Wall", "medial wall", "corpuscallosum",
+    "outside",    "none"};
+
+std::vector<bool> cortexOfLabels(const io::LabelMap& labels) {
+  std::set<Label> regions;
+  for (const io::LabelEntry& entry : labels.table) {
+    if (!kNoCortex.contains(entry.name)) regions.insert(entry.key);
+  }
+  std::vector<bool> cortex;
+  for (const Label key : labels.keys) {
+    cortex.push_back(labels.table.empty() ? key != 0 : regions.contains(key));
+  }
+  return cortex;
+}
+
+std::vector<bool> cortexOfFile(const std::filesystem::path& path, Eigen::Index vertexCount) {
+  std::optional<io::LabelMap> labels;
+  try {
+    labels = io::readVertexLabels(path, vertexCount);
+  } catch (const Error&) {
+    // No labels: a map.
+  }
+  if (labels) return cortexOfLabels(*labels);
+  std::vector<bool> cortex;
+  for (const double value : io::readVertexMaps(path, vertexCount).front().values) {
+    cortex.push_back(std::isfinite(value) && value != 0);
+  }
+  return cortex;
+}
+
+/// What FreeSurfer or `explica surface` leave beside a surface to say where its cortex is.
+std::optional<std::filesystem::path> besideSurface(const std::filesystem::path& surface) {
+  const std::filesystem::path folder = surface.parent_path();
+  const std::string name = surface.filename().string();
+  std::vector<std::filesystem::path> places = {folder / "valid.shape.gii"};
+  for (const std::string side : {"lh", "rh"}) {
+    if (name.starts_with(side + ".")) {
+      places.push_back(folder / ".." / "label" / (side + ".cortex.label"));
+    }
+  }
+  for (const auto& place : places) {
+    if (std::filesystem::exists(place)) return place.lexically_normal();
+  }
+  return {};
+}
+
+std::string tableOf(const flattening::Disc& disc, const std::vector<flattening::Cut>& cuts) {
+  std::string text = "cut\tfrom\tto\tvertices\tlength\tdepth\tx\ty\tz\n";
+  for (std::size_t n = 0; n < cuts.size(); ++n) {
+    const flattening::Cut& cut = cuts[n];
+    const Point end = disc.mesh.positions.row(cut.path.back());
+    char row[256];
+    std::snprintf(row, sizeof row, "%zu\t%d\t%d\t%zu\t%.2f\t%.3f\t%.2f\t%.2f\t%.2f\n", n + 1,
+                  disc.vertexOrigin[cut.path.front()], disc.vertexOrigin[cut.path.back()],
+                  cut.path.size(), cut.length, cut.depth, end.x(), end.y(), end.z());
+    text += row;
+  }
+  return text;
+}
+
+/// Key 1 off the disc, 2 and on along the cuts, 0 elsewhere.
+io::LabelMap labelsOf(const flattening::Disc& disc, const std::vector<flattening::Cut>& cuts,
+                      Eigen::Index vertexCount) {
+  constexpr std::array<std::array<float, 4>, 6> kColours = {{{0.90F, 0.10F, 0.10F, 1},
+                                                             {0.10F, 0.35F, 0.90F, 1},
+                                                             {0.10F, 0.65F, 0.20F, 1},
+                                                             {0.95F, 0.60F, 0.05F, 1},
+                                                             {0.60F, 0.20F, 0.75F, 1},
+                                                             {0.05F, 0.70F, 0.75F, 1}}};
+  io::LabelMap labels;
+  labels.name = "cuts";
+  labels.keys.setConstant(vertexCount, 1);
+  for (const std::int32_t v : disc.vertexOrigin) labels.keys[v] = 0;
+  labels.table = {{0, "cortex", {0, 0, 0, 0}}, {1, "medial wall", {0.5F, 0.5F, 0.5F, 1}}};
+  for (std::size_t n = 0; n < cuts.size(); ++n) {
+    const auto key = static_cast<Label>(n + 2);
+    labels.table.push_back({key, "cut " + std::to_string(n + 1), kColours[n % kColours.size()]});
+    for (const std::int32_t v : cuts[n].path) {
+      Label& at = labels.keys[disc.vertexOrigin[v]];
+      if (at == 0) at = key;
+    }
+  }
+  return labels;
+}
+
+void report(Context& context, const flattening::CutPlan& plan,
+            const flattening::CutOptions& options) {
+  double length = 0, depth = 0;
+  for (const flattening::Cut& cut : plan.cuts) {
+    length += cut.length;
+    depth += cut.length * cut.depth;
+  }
+  context.result("cuts", plan.cuts.size());
+  context.result("cut_length", length);
+  context.result("cut_depth", length > 0 ? depth / length : kNaN);
+  context.result("cut_strain_before", plan.strainBefore);
+  context.result("cut_strain", plan.edgeStrain);
+  char line[160];
+  std::snprintf(line, sizeof line, "%zu cuts, %.0f mm in all; edge strain %.3f without, %.3f with",
+                plan.cuts.size(), length, plan.strainBefore, plan.edgeStrain);
+  context.info(line);
+  if (plan.edgeStrain > options.edgeStrain) {
+    std::snprintf(line, sizeof line,
+                  "the cuts reach an edge strain of %.3f, not the %.3f of --cut.strain; more "
+                  "would need --cut.most",
+                  plan.edgeStrain, options.edgeStrain);
+    context.warn(line);
+  }
+}
+
+}  // namespace
+
+std::vector<bool> cortexOf(Context& context, const std::string& surface, const TriangleMesh& mesh,
+                           const std::optional<std::string>& cortex) {
+  if (cortex) {
+    context.note("cortex", *cortex);
+    return cortexOfFile(*cortex, mesh.vertexCount());
+  }
+  if (const auto beside = besideSurface(surface)) {
+    context.info("cortex: by '" + beside->string() + "' beside the surface");
+    context.note("cortex", beside->filename().string());
+    return cortexOfFile(context.input(*beside, "cortex"), mesh.vertexCount());
+  }
+  const auto wall = flattening::flattestPlace(mesh);
+  Point middle = Point::Zero();
+  for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
+    if (wall[v]) middle += mesh.positions.row(v).transpose();
+  }
+  middle /= static_cast<double>(std::count(wall.begin(), wall.end(), true));
+  char line[200];
+  std::snprintf(line, sizeof line,
+                "medial wall: taken to be the flattest fortieth of the surface, about %.0f, %.0f, "
+                "%.0f mm; --cortex would say",
+                middle.x(), middle.y(), middle.z());
+  context.info(line);
+  context.note("cortex", "all but the flattest fortieth");
+  std::vector<bool> inCortex(wall.size());
+  for (std::size_t v = 0; v < wall.size(); ++v) inCortex[v] = !wall[v];
+  return inCortex;
+}
+
+flattening::Disc openedByItself(Context& context, const io::LoadedSurface& reference,
+                                const flattening::Disc& disc,
+                                const flattening::CutOptions& options) {
+  const Eigen::VectorXd whole = flattening::foldDepth(reference.mesh);
+  Eigen::VectorXd depth(disc.mesh.vertexCount());
+  for (Eigen::Index v = 0; v < depth.size(); ++v) depth[v] = whole[disc.vertexOrigin[v]];
+  const auto plan = flattening::findCuts(disc, depth, options, context.monitor());
+  report(context, plan, options);
+  writeTextFile(context.output("cuts.tsv"), tableOf(disc, plan.cuts));
+  io::writeGiftiLabel(context.output("cuts.label.gii"),
+                      labelsOf(disc, plan.cuts, reference.mesh.vertexCount()),
+                      reference.metadata.structure);
+  std::vector<flattening::CutPath> paths;
+  for (const flattening::Cut& cut : plan.cuts) paths.push_back(cut.path);
+  return flattening::openedAlong(disc, paths);
+}
+
+}  // namespace explica::app

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Application/Context.h"
+#include "Explica/Flattening/Cuts.h"
+#include "Explica/Flattening/Disc.h"
+#include "Explica/IO/SurfaceFile.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace explica::app {
+
+/// Where there is cortex, one a vertex: by `cortex` (FreeSurfer label or annot, GIFTI label, or a
+/// map that is 0 elsewhere, such as thickness), else by what lies beside the surface
+/// (../label/lh.cortex.label, valid.shape.gii), else everywhere but in the flattest place.  Says
+/// which, and notes the file.
+/// @throws InvalidInput  a file that is none of these, or of another surface
+[[nodiscard]] std::vector<bool> cortexOf(Context& context, const std::string& surface,
+                                         const TriangleMesh& mesh,
+                                         const std::optional<std::string>& cortex);
+
+/// Finds relief cuts, writes them (cuts.tsv, cuts.label.gii) and opens the disc along them.
+[[nodiscard]] flattening::Disc openedByItself(Context& context, const io::LoadedSurface& reference,
+                                              const flattening::Disc& disc,
+                                              const flattening::CutOptions& options);
+
+}  // namespace explica::app

@@ -1,0 +1,255 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Flattening/Cuts.h"
+
+#include "Explica/Core/Errors.h"
+#include "FoldWays.h"
+#include "LayFlat.h"
+#include "ScaleFactor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace explica::flattening {
+namespace {
+
+constexpr Eigen::Index kSearchVertices = 20000;  // on which ways are found: 2 mm apart in a human
+constexpr Eigen::Index kTrialVertices = 3000;    // that show what cuts relieve
+constexpr double kTrialAreaError = 0.05;         // as a hemisphere with cuts is laid flat
+constexpr std::size_t kCandidates = 4;           // ends that are tried out for each cut
+constexpr double kPriceOfACut = 0.1;             // of the square root of the area: few, not many
+constexpr int kHalvings = 4;                     // of the last cut's length: to a sixteenth of it
+
+/// Mean of |length in the map / length - 1| over edges, those of two faces counted twice.
+double meanStrain(const IntrinsicMesh& mesh, const FlatPositions& flat) {
+  double sum = 0;
+  for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      const double length =
+          (flat.row(mesh.faces(f, (k + 1) % 3)) - flat.row(mesh.faces(f, k))).norm();
+      sum += std::abs(length / mesh.lengths(f, k) - 1);
+    }
+  }
+  return sum / static_cast<double>(mesh.lengths.size());
+}
+
+double meanAreaError(const std::vector<RestFace>& rest, const IntrinsicMesh& mesh,
+                     const FlatPositions& flat) {
+  double sum = 0;
+  for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f) {
+    const auto a = flat.row(mesh.faces(f, 0));
+    const Eigen::RowVector2d u = flat.row(mesh.faces(f, 1)) - a;
+    const Eigen::RowVector2d v = flat.row(mesh.faces(f, 2)) - a;
+    sum += std::abs((u[0] * v[1] - u[1] * v[0]) / (2 * rest[static_cast<std::size_t>(f)].area) - 1);
+  }
+  return sum / static_cast<double>(mesh.faces.rows());
+}
+
+/// A disc seen with few vertices, and how much its map strains edges.
+struct Trial {
+  CoarseDisc coarse;
+  double strain = kNaN;
+};
+
+Trial layTrial(const IntrinsicDisc& disc, const Monitor& monitor) {
+  Trial trial;
+  trial.coarse = coarseDisc(disc, kTrialVertices);
+  const IntrinsicMesh& mesh = trial.coarse.disc.mesh;
+  const auto rest = restFaces(mesh, kNeedleHeight * mesh.lengths.mean());
+  FlattenOptions options;
+  options.areaTolerance = kTrialAreaError;
+  options.tolerance = 1e-3;
+  Monitor quiet = monitor;
+  quiet.onProgress = nullptr;
+  const Laid laid = layFlat(
+      trial.coarse.disc, [&](const FlatPositions& flat) { return meanAreaError(rest, mesh, flat); },
+      options, quiet);
+  trial.strain = meanStrain(mesh, laid.positions);
+  return trial;
+}
+
+/// The search for cuts on a disc of moderate size.
+class CutSearch {
+ public:
+  CutSearch(IntrinsicDisc disc, Eigen::VectorXd depth, std::vector<bool> barred,
+            const Monitor& monitor)
+      : disc_(std::move(disc)),
+        barred_(std::move(barred)),
+        ways_(disc_.mesh, std::move(depth), barred_),
+        monitor_(monitor),
+        starts_(disc_.rim) {
+    double area = 0;
+    for (const RestFace& face : restFaces(disc_.mesh, 0)) area += face.area;
+    price_ = kPriceOfACut * std::sqrt(area);
+    trial_ = tryOut({});
+  }
+
+  [[nodiscard]] double strain() const { return trial_.strain; }
+  [[nodiscard]] const std::vector<CutPath>& paths() const { return paths_; }
+
+  /// Adds the cut that relieves most for its price.
+  /// @return false if no cut relieves anything
+  bool addBest() {
+    struct Found {
+      CutPath path;
+      Trial trial;
+      double gain = 0;
+    };
+    std::optional<Found> best;
+    for (const std::int32_t end : worstPlaces()) {
+      if (monitor_.shouldStop()) return false;
+      CutPath path = ways_.to(end, starts_);
+      if (path.size() < 2) continue;
+      std::vector<CutPath> tried = paths_;
+      tried.push_back(path);
+      Trial trial = tryOut(tried);
+      const double gain = (strain() - trial.strain) / (price_ + ways_.lengthOf(path));
+      if (!(gain > (best ? best->gain : 0))) continue;
+      best = Found{std::move(path), std::move(trial), gain};
+    }
+    if (!best) return false;
+    starts_.insert(starts_.end(), best->path.begin(), best->path.end());
+    paths_.push_back(std::move(best->path));
+    trial_ = std::move(best->trial);
+    return true;
+  }
+
+  /// Shortens the last cut as far as the strain stays within what is asked for.
+  void shortenLast(double wanted) {
+    const CutPath whole = paths_.back();
+    double enough = 1, tooShort = 0;
+    for (int n = 0; n < kHalvings && !monitor_.shouldStop(); ++n) {
+      const double share = (enough + tooShort) / 2;
+      std::vector<CutPath> tried = paths_;
+      tried.back() = beginning(whole, share);
+      Trial trial = tryOut(tried);
+      if (trial.strain > wanted) {
+        tooShort = share;
+        continue;
+      }
+      enough = share;
+      trial_ = std::move(trial);
+      paths_ = std::move(tried);
+    }
+  }
+
+ private:
+  [[nodiscard]] Trial tryOut(const std::vector<CutPath>& cuts) const {
+    IntrinsicDisc opened = disc_;
+    const auto copyOf = openFaces(opened.mesh.faces, opened.mesh.vertexCount, cuts);
+    opened.mesh.vertexCount += static_cast<Eigen::Index>(copyOf.size());
+    opened.rim = boundaryLoops(opened.mesh.faces, opened.mesh.vertexCount).front();
+    return layTrial(opened, monitor_);
+  }
+
+  /// Where distances suffer most: the highest peaks of |u|, the highest first.
+  [[nodiscard]] std::vector<std::int32_t> worstPlaces() const {
+    const IntrinsicMesh& mesh = trial_.coarse.disc.mesh;
+    const Eigen::VectorXd u = scaleFactor(trial_.coarse.disc).cwiseAbs();
+    std::vector<bool> peak(static_cast<std::size_t>(mesh.vertexCount), true);
+    for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f) {
+      for (int k = 0; k < 3; ++k) {
+        const std::int32_t a = mesh.faces(f, k), b = mesh.faces(f, (k + 1) % 3);
+        peak[u[a] < u[b] ? a : b] = false;
+      }
+    }
+    std::vector<std::int32_t> peaks;
+    for (std::size_t v = 0; v < peak.size(); ++v) {
+      const std::int32_t origin = trial_.coarse.vertexOrigin[v];
+      const bool known = origin < disc_.mesh.vertexCount && !barred_[origin];
+      if (peak[v] && known && u[static_cast<Eigen::Index>(v)] > 0) {
+        peaks.push_back(static_cast<std::int32_t>(v));
+      }
+    }
+    std::stable_sort(peaks.begin(), peaks.end(), [&](auto a, auto b) { return u[a] > u[b]; });
+    if (peaks.size() > kCandidates) peaks.resize(kCandidates);
+    for (std::int32_t& v : peaks) v = trial_.coarse.vertexOrigin[v];
+    return peaks;
+  }
+
+  /// The beginning of a path up to a share of its length, one edge at least.
+  [[nodiscard]] CutPath beginning(const CutPath& path, double share) const {
+    const double whole = ways_.lengthOf(path);
+    CutPath part = {path[0], path[1]};
+    while (part.size() < path.size()) {
+      part.push_back(path[part.size()]);
+      if (ways_.lengthOf(part) <= share * whole) continue;
+      part.pop_back();
+      break;
+    }
+    return part;
+  }
+
+  IntrinsicDisc disc_;
+  std::vector<bool> barred_;
+  FoldWays ways_;
+  const Monitor& monitor_;
+  double price_ = 0;  ///< of a cut beside its length, mm
+  Trial trial_;
+  std::vector<std::int32_t> starts_;
+  std::vector<CutPath> paths_;
+};
+
+/// Vertices at holes and, after them, the middles of the fans across: a cut there could take the
+/// disc apart.
+std::vector<bool> atHoles(const Disc& disc, Eigen::Index vertexCount) {
+  std::vector<bool> barred(static_cast<std::size_t>(vertexCount), false);
+  for (const Loop& hole : disc.holes) {
+    for (const std::int32_t v : hole) barred[v] = true;
+  }
+  for (auto v = disc.mesh.vertexCount(); v < vertexCount; ++v) {
+    barred[static_cast<std::size_t>(v)] = true;
+  }
+  return barred;
+}
+
+}  // namespace
+
+CutPlan findCuts(const Disc& disc, const Eigen::VectorXd& depth, const CutOptions& options,
+                 const Monitor& monitor) {
+  if (depth.size() != disc.mesh.vertexCount()) {
+    throw InvalidInput("depth: needs one value a vertex");
+  }
+  if (!(options.edgeStrain > 0) || options.most < 0) {
+    throw InvalidInput("cuts: needs a strain above 0 and no negative number of cuts");
+  }
+  const IntrinsicDisc fine = intrinsicDisc(disc);
+  const std::vector<bool> barred = atHoles(disc, fine.mesh.vertexCount);
+  Eigen::VectorXd fineDepth = Eigen::VectorXd::Zero(fine.mesh.vertexCount);
+  fineDepth.head(depth.size()) = depth;
+  CoarseDisc coarse = coarseDisc(fine, kSearchVertices);
+  Eigen::VectorXd coarseDepth(coarse.disc.mesh.vertexCount);
+  std::vector<bool> coarseBarred;
+  for (Eigen::Index v = 0; v < coarseDepth.size(); ++v) {
+    coarseDepth[v] = fineDepth[coarse.vertexOrigin[v]];
+    coarseBarred.push_back(barred[coarse.vertexOrigin[v]]);
+  }
+  CutSearch search(coarse.disc, std::move(coarseDepth), std::move(coarseBarred), monitor);
+  CutPlan plan;
+  plan.strainBefore = search.strain();
+  while (search.strain() > options.edgeStrain &&
+         static_cast<int>(search.paths().size()) < options.most) {
+    monitor.progress(std::min(1.0, options.edgeStrain / search.strain()),
+                     "cut " + std::to_string(search.paths().size() + 1));
+    if (!search.addBest()) break;
+  }
+  if (!search.paths().empty() && search.strain() <= options.edgeStrain) {
+    search.shortenLast(options.edgeStrain);
+  }
+  plan.edgeStrain = search.strain();
+  const FoldWays ways(fine.mesh, fineDepth, barred);
+  std::vector<std::int32_t> starts = disc.rim;
+  for (const CutPath& found : search.paths()) {
+    Cut cut;
+    cut.path = ways.to(coarse.vertexOrigin[found.back()], starts);
+    cut.length = ways.lengthOf(cut.path);
+    cut.depth = ways.depthOf(cut.path);
+    starts.insert(starts.end(), cut.path.begin(), cut.path.end());
+    plan.cuts.push_back(std::move(cut));
+  }
+  return plan;
+}
+
+}  // namespace explica::flattening

@@ -1,0 +1,199 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Flattening/Opening.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Geometry/MeshMeasures.h"
+#include "Explica/Geometry/MeshTopology.h"
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+#include <unordered_set>
+
+namespace explica::flattening {
+namespace {
+
+/// The part of each chosen face, chosen faces joined by edges; -1 for the others.
+std::vector<std::int32_t> partsOf(const geometry::MeshTopology& topology,
+                                  const std::vector<bool>& chosen) {
+  std::vector<std::int32_t> part(chosen.size(), -1), queue;
+  std::int32_t parts = 0;
+  for (std::size_t first = 0; first < chosen.size(); ++first) {
+    if (!chosen[first] || part[first] >= 0) continue;
+    part[first] = parts;
+    queue.assign(1, static_cast<std::int32_t>(first));
+    while (!queue.empty()) {
+      const std::int32_t f = queue.back();
+      queue.pop_back();
+      for (int k = 0; k < 3; ++k) {
+        const auto faces = topology.edgeFaces.row(topology.faceEdges(f, k));
+        const std::int32_t g = faces[0] == f ? faces[1] : faces[0];
+        if (g < 0 || !chosen[g] || part[g] >= 0) continue;
+        part[g] = parts;
+        queue.push_back(g);
+      }
+    }
+    ++parts;
+  }
+  return part;
+}
+
+/// True for the faces of the part that has the largest area; none if there is no part.
+std::vector<bool> largestPart(const geometry::MeshTopology& topology, const Eigen::VectorXd& areas,
+                              const std::vector<bool>& chosen) {
+  const auto part = partsOf(topology, chosen);
+  std::vector<double> sizes;
+  for (std::size_t f = 0; f < part.size(); ++f) {
+    if (part[f] < 0) continue;
+    if (part[f] >= static_cast<std::int32_t>(sizes.size())) sizes.resize(part[f] + 1, 0);
+    sizes[part[f]] += areas[static_cast<Eigen::Index>(f)];
+  }
+  std::vector<bool> largest(part.size(), false);
+  if (sizes.empty()) return largest;
+  const auto best = std::max_element(sizes.begin(), sizes.end()) - sizes.begin();
+  for (std::size_t f = 0; f < part.size(); ++f) largest[f] = part[f] == best;
+  return largest;
+}
+
+/// Edges as one number each, whichever end comes first.
+class EdgeSet {
+ public:
+  void add(std::int32_t a, std::int32_t b) { keys_.insert(keyOf(a, b)); }
+  [[nodiscard]] bool has(std::int32_t a, std::int32_t b) const {
+    return keys_.contains(keyOf(a, b));
+  }
+
+ private:
+  static std::uint64_t keyOf(std::int32_t a, std::int32_t b) {
+    return static_cast<std::uint64_t>(std::min(a, b)) << 32 |
+           static_cast<std::uint64_t>(std::max(a, b));
+  }
+  std::unordered_set<std::uint64_t> keys_;
+};
+
+/// The faces about a vertex in groups: of those that share an edge at it which is not cut.
+std::vector<std::vector<std::int32_t>> sidesOf(std::int32_t v, std::span<const std::int32_t> around,
+                                               const Faces& faces, const EdgeSet& cut) {
+  const auto joined = [&](std::int32_t f, std::int32_t g) {
+    for (int i = 0; i < 3; ++i) {
+      const std::int32_t a = faces(f, i);
+      if (a == v || cut.has(v, a)) continue;
+      for (int j = 0; j < 3; ++j) {
+        if (faces(g, j) == a) return true;
+      }
+    }
+    return false;
+  };
+  std::vector<std::vector<std::int32_t>> sides;
+  std::vector<bool> taken(around.size(), false);
+  for (std::size_t first = 0; first < around.size(); ++first) {
+    if (taken[first]) continue;
+    taken[first] = true;
+    std::vector<std::int32_t> side = {around[first]};
+    for (std::size_t at = 0; at < side.size(); ++at) {
+      for (std::size_t other = 0; other < around.size(); ++other) {
+        if (taken[other] || !joined(side[at], around[other])) continue;
+        taken[other] = true;
+        side.push_back(around[other]);
+      }
+    }
+    sides.push_back(std::move(side));
+  }
+  return sides;
+}
+
+EdgeSet edgesOf(const geometry::MeshTopology& topology, std::span<const CutPath> cuts) {
+  EdgeSet cut;
+  for (const CutPath& path : cuts) {
+    for (std::size_t n = 1; n < path.size(); ++n) {
+      const auto near = topology.vertexVertices[path[n]];
+      if (!std::binary_search(near.begin(), near.end(), path[n - 1])) {
+        throw InvalidInput("cuts: vertices " + std::to_string(path[n - 1]) + " and " +
+                           std::to_string(path[n]) + " are no neighbours");
+      }
+      cut.add(path[n - 1], path[n]);
+    }
+  }
+  return cut;
+}
+
+}  // namespace
+
+std::vector<std::int32_t> facesWithoutWall(const TriangleMesh& mesh,
+                                           const std::vector<bool>& inCortex) {
+  const auto topology = geometry::buildTopology(mesh.faces, mesh.vertexCount());
+  const Eigen::VectorXd areas = geometry::faceAreas(mesh);
+  std::vector<bool> outside(static_cast<std::size_t>(mesh.faceCount()), false);
+  for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      if (!inCortex[mesh.faces(f, k)]) outside[f] = true;
+    }
+  }
+  const auto wall = largestPart(topology, areas, outside);
+  std::vector<bool> rest(wall.size());
+  for (std::size_t f = 0; f < wall.size(); ++f) rest[f] = !wall[f];
+  const auto cortex = largestPart(topology, areas, rest);
+  std::vector<std::int32_t> kept;
+  for (std::size_t f = 0; f < cortex.size(); ++f) {
+    if (cortex[f]) kept.push_back(static_cast<std::int32_t>(f));
+  }
+  if (kept.empty()) throw InvalidInput("cortex: it has no face");
+  if (kept.size() == cortex.size()) {
+    throw InvalidInput("cortex: it is the whole surface, so that there is no medial wall");
+  }
+  return kept;
+}
+
+std::vector<std::int32_t> openFaces(Faces& faces, Eigen::Index vertexCount,
+                                    std::span<const CutPath> cuts) {
+  const auto topology = geometry::buildTopology(faces, vertexCount);
+  const EdgeSet cut = edgesOf(topology, cuts);
+  std::vector<std::int32_t> touched, copyOf;
+  for (const CutPath& path : cuts) touched.insert(touched.end(), path.begin(), path.end());
+  std::sort(touched.begin(), touched.end());
+  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+  const Faces before = faces;
+  for (const std::int32_t v : touched) {
+    const auto sides = sidesOf(v, topology.vertexFaces[v], before, cut);
+    for (std::size_t n = 1; n < sides.size(); ++n) {
+      const auto copy =
+          static_cast<std::int32_t>(vertexCount) + static_cast<std::int32_t>(copyOf.size());
+      copyOf.push_back(v);
+      for (const std::int32_t f : sides[n]) {
+        for (int k = 0; k < 3; ++k) {
+          if (before(f, k) == v) faces(f, k) = copy;
+        }
+      }
+    }
+  }
+  return copyOf;
+}
+
+Disc openedAlong(const Disc& disc, std::span<const CutPath> cuts) {
+  Disc opened;
+  opened.faceOrigin = disc.faceOrigin;
+  opened.vertexOrigin = disc.vertexOrigin;
+  opened.mesh = disc.mesh;
+  opened.trimmedFaces = disc.trimmedFaces;
+  const Eigen::Index before = disc.mesh.vertexCount();
+  const auto copyOf = openFaces(opened.mesh.faces, before, cuts);
+  opened.mesh.positions.conservativeResize(before + static_cast<Eigen::Index>(copyOf.size()), 3);
+  for (std::size_t n = 0; n < copyOf.size(); ++n) {
+    opened.vertexOrigin.push_back(disc.vertexOrigin[copyOf[n]]);
+    opened.mesh.positions.row(before + static_cast<Eigen::Index>(n)) =
+        disc.mesh.positions.row(copyOf[n]);
+  }
+  findLoops(opened);
+  return opened;
+}
+
+std::vector<bool> secondCopies(const Disc& disc) {
+  std::unordered_set<std::int32_t> known;
+  std::vector<bool> second;
+  for (const std::int32_t v : disc.vertexOrigin) second.push_back(!known.insert(v).second);
+  return second;
+}
+
+}  // namespace explica::flattening

@@ -1,0 +1,233 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Flattening/Cuts.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/Parallel.h"
+#include "Explica/Flattening/Flatten.h"
+#include "Explica/Flattening/FoldDepth.h"
+#include "Explica/Geometry/Fixtures.h"
+#include "Explica/Geometry/MeshMeasures.h"
+#include "Explica/Geometry/MeshTopology.h"
+#include "Explica/Geometry/SelfIntersection.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace explica::flattening {
+namespace {
+
+/// A sphere about the origin, bent inwards along great half-circles through the poles: sulci at
+/// known longitudes.
+TriangleMesh sphereWithSulci(int levels, int sulci, double depth) {
+  TriangleMesh mesh = geometry::makeIcosphere(levels, 30);
+  for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
+    const Point p = mesh.positions.row(v);
+    const double longitude = std::atan2(p.y(), p.x());
+    const double across = std::sin(longitude * sulci / 2.0) * std::hypot(p.x(), p.y()) / 30;
+    mesh.positions.row(v) *= 1 - depth * std::exp(-across * across / 0.02);
+  }
+  return mesh;
+}
+
+/// Everything but the south pole's surroundings.
+Disc withoutSouth(const TriangleMesh& mesh, double height = -26) {
+  std::vector<bool> cortex(static_cast<std::size_t>(mesh.vertexCount()));
+  for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
+    cortex[v] = mesh.positions(v, 2) > height;
+  }
+  return discOf(mesh, facesWithoutWall(mesh, cortex));
+}
+
+Eigen::VectorXd depthOf(const TriangleMesh& mesh, const Disc& disc) {
+  const Eigen::VectorXd whole = foldDepth(mesh);
+  Eigen::VectorXd depth(disc.mesh.vertexCount());
+  for (Eigen::Index v = 0; v < depth.size(); ++v) depth[v] = whole[disc.vertexOrigin[v]];
+  return depth;
+}
+
+std::vector<CutPath> pathsOf(const CutPlan& plan) {
+  std::vector<CutPath> paths;
+  for (const Cut& cut : plan.cuts) paths.push_back(cut.path);
+  return paths;
+}
+
+TEST(Opening, ACutDoublesItsVerticesButTheInnerEnd) {
+  const Disc disc = withoutSouth(geometry::makeIcosphere(4, 30));
+  const auto topology = geometry::buildTopology(disc.mesh.faces, disc.mesh.vertexCount());
+  CutPath path = {disc.rim.front()};
+  while (path.size() < 6) {  // upwards
+    const auto near = topology.vertexVertices[path.back()];
+    path.push_back(*std::max_element(near.begin(), near.end(), [&](auto a, auto b) {
+      return disc.mesh.positions(a, 2) < disc.mesh.positions(b, 2);
+    }));
+  }
+  const Disc opened = openedAlong(disc, std::vector<CutPath>{path});
+  EXPECT_EQ(opened.mesh.vertexCount(), disc.mesh.vertexCount() + 5);
+  EXPECT_EQ(opened.mesh.faceCount(), disc.mesh.faceCount());
+  EXPECT_EQ(opened.rim.size(), disc.rim.size() + 10);
+  EXPECT_TRUE(opened.holes.empty());
+  EXPECT_TRUE(geometry::inspectMesh(opened.mesh).manifold());
+  EXPECT_EQ(geometry::faceAreas(opened.mesh), geometry::faceAreas(disc.mesh));
+  const auto second = secondCopies(opened);
+  EXPECT_EQ(std::count(second.begin(), second.end(), true), 5);
+}
+
+TEST(Opening, ABranchedCutMakesThreeOfTheVertexWhereItBranches) {
+  const Disc disc = discOf(geometry::makeRectangle(6, 6, 6, 6), [] {
+    std::vector<std::int32_t> all(72);
+    std::iota(all.begin(), all.end(), 0);
+    return all;
+  }());
+  const auto at = [](int column, int row) { return row * 7 + column; };
+  const CutPath trunk = {at(0, 3), at(1, 3), at(2, 3), at(3, 3), at(4, 3)};
+  const CutPath branch = {at(2, 3), at(2, 2), at(2, 1)};
+  const Disc opened = openedAlong(disc, std::vector<CutPath>{trunk, branch});
+  EXPECT_EQ(opened.mesh.vertexCount(), disc.mesh.vertexCount() + 4 + 1 + 1);
+  EXPECT_TRUE(geometry::inspectMesh(opened.mesh).manifold());
+  EXPECT_TRUE(opened.holes.empty());
+}
+
+TEST(Opening, RefusesWhatIsNoPathOrTakesTheDiscApart) {
+  const Disc disc = discOf(geometry::makeRectangle(4, 4, 4, 4), [] {
+    std::vector<std::int32_t> all(32);
+    std::iota(all.begin(), all.end(), 0);
+    return all;
+  }());
+  EXPECT_THROW((void)openedAlong(disc, std::vector<CutPath>{{0, 12}}), InvalidInput);
+  EXPECT_THROW((void)openedAlong(disc, std::vector<CutPath>{{10, 11, 12, 13, 14}}), InvalidInput);
+}
+
+TEST(MedialWall, IsTheLargestPartOffTheCortexAndWhatItEncloses) {
+  const TriangleMesh mesh = geometry::makeIcosphere(4, 30);
+  std::vector<bool> cortex(static_cast<std::size_t>(mesh.vertexCount()));
+  for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
+    const Point p = mesh.positions.row(v);
+    const bool ring = p.z() < -20 && p.z() > -29;        // an island stays within it
+    const bool spot = (p - Point(30, 0, 0)).norm() < 5;  // no wall
+    cortex[v] = !ring && !spot;
+  }
+  const Disc disc = discOf(mesh, facesWithoutWall(mesh, cortex));
+  EXPECT_TRUE(disc.holes.empty());
+  EXPECT_GT(disc.mesh.positions.col(2).minCoeff(), -22);
+  EXPECT_GT(disc.mesh.positions.col(0).maxCoeff(), 29.5);
+  EXPECT_THROW((void)facesWithoutWall(mesh, std::vector<bool>(cortex.size(), true)), InvalidInput);
+  EXPECT_THROW((void)facesWithoutWall(mesh, std::vector<bool>(cortex.size(), false)), InvalidInput);
+}
+
+TEST(FoldDepth, IsPositiveInSulciAndTheSameAtAnyScaleAndPlace) {
+  const TriangleMesh mesh = sphereWithSulci(5, 4, 0.15);
+  const Eigen::VectorXd depth = foldDepth(mesh);
+  const double equator = 30;
+  for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
+    const Point p = mesh.positions.row(v);
+    if (std::abs(p.z()) > 10) continue;
+    const double off = std::abs(std::remainder(std::atan2(p.y(), p.x()), kPi / 2)) * equator;
+    if (off < 1) {
+      EXPECT_GT(depth[v], 1);
+    } else if (off > 12) {
+      EXPECT_LT(depth[v], 0.5);
+    }
+  }
+  TriangleMesh moved = mesh;
+  moved.positions = (mesh.positions * 0.125).eval();
+  moved.positions.rowwise() += Eigen::RowVector3d(1000, -2000, 500);
+  EXPECT_LT((foldDepth(moved) - depth).cwiseAbs().maxCoeff(), 1e-2);
+}
+
+TEST(FlattestPlace, IsTheLevelOne) {
+  TriangleMesh mesh = geometry::makeFoldedSphere(5, 30, 0.2, 6);
+  for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
+    mesh.positions(v, 2) = std::max(mesh.positions(v, 2), -22.0);
+  }
+  const auto place = flattestPlace(mesh);
+  const Eigen::VectorXd areas = geometry::vertexAreas(mesh);
+  double inside = 0, all = 0;
+  for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
+    if (!place[v]) continue;
+    all += areas[v];
+    if (mesh.positions(v, 2) < -21.9) inside += areas[v];
+  }
+  EXPECT_NEAR(all, 0.025 * areas.sum(), 0.002 * areas.sum());
+  EXPECT_GT(inside, 0.9 * all);
+}
+
+TEST(Cuts, RunAlongSulciAndReachTheStrainAskedFor) {
+  const TriangleMesh mesh = sphereWithSulci(5, 4, 0.12);
+  const Disc disc = withoutSouth(mesh);
+  const Eigen::VectorXd depth = depthOf(mesh, disc);
+  CutOptions options;
+  options.edgeStrain = 0.12;
+  const CutPlan plan = findCuts(disc, depth, options);
+  ASSERT_GE(plan.cuts.size(), 1U);
+  EXPECT_GT(plan.strainBefore, 0.2);
+  EXPECT_LE(plan.edgeStrain, options.edgeStrain);
+  for (const Cut& cut : plan.cuts) EXPECT_GT(cut.depth, 1);  // in sulci, a quarter of the area
+  const Disc opened = openedAlong(disc, pathsOf(plan));
+  EXPECT_TRUE(opened.holes.empty());
+  FlattenOptions flat;
+  flat.areaTolerance = 0.05;
+  const FlatMap map = flatten(opened, flat);
+  EXPECT_EQ(map.turnedOver, 0);
+  EXPECT_EQ(map.rimCrossings, 0);
+  TriangleMesh laid{Positions::Zero(opened.mesh.vertexCount(), 3), opened.mesh.faces};
+  laid.positions.leftCols<2>() = map.positions;
+  EXPECT_TRUE(geometry::findSelfIntersections(laid).empty());
+}
+
+TEST(Cuts, GoToTheFarPoleOfASphereByAMeridian) {
+  const Disc disc = withoutSouth(geometry::makeIcosphere(5, 30));
+  CutOptions options;
+  options.edgeStrain = 0.001;
+  options.most = 1;
+  const CutPlan plan = findCuts(disc, Eigen::VectorXd::Zero(disc.mesh.vertexCount()), options);
+  ASSERT_EQ(plan.cuts.size(), 1U);
+  EXPECT_GT(disc.mesh.positions(plan.cuts[0].path.back(), 2), 29);
+  // From 26 below the equator to the pole; along edges the way is up to a sixth longer.
+  const double meridian = 30 * (kPi / 2 + std::asin(26.0 / 30));
+  EXPECT_GT(plan.cuts[0].length, 0.95 * meridian);
+  EXPECT_LT(plan.cuts[0].length, 1.16 * meridian);
+  EXPECT_LT(plan.edgeStrain, 0.8 * plan.strainBefore);
+}
+
+TEST(Cuts, ThereAreNoneWhereNoneAreNeeded) {
+  const Disc disc = withoutSouth(geometry::makeIcosphere(4, 30), 10);
+  EXPECT_TRUE(findCuts(disc, Eigen::VectorXd::Zero(disc.mesh.vertexCount())).cuts.empty());
+  CutOptions none;
+  none.most = 0;
+  const Disc sphere = withoutSouth(geometry::makeIcosphere(4, 30));
+  EXPECT_TRUE(
+      findCuts(sphere, Eigen::VectorXd::Zero(sphere.mesh.vertexCount()), none).cuts.empty());
+}
+
+TEST(Cuts, AreTheSameForAnyNumberOfThreadsAndAtAnyScale) {
+  const TriangleMesh mesh = sphereWithSulci(5, 5, 0.12);
+  TriangleMesh small = mesh;
+  small.positions /= 64;
+  const Disc disc = withoutSouth(mesh), tiny = withoutSouth(small, -26.0 / 64);
+  const int before = threadCount();
+  setThreadCount(1);
+  const CutPlan one = findCuts(disc, depthOf(mesh, disc));
+  setThreadCount(3);
+  const CutPlan three = findCuts(disc, depthOf(mesh, disc));
+  const CutPlan scaled = findCuts(tiny, depthOf(small, tiny));
+  setThreadCount(before);
+  EXPECT_EQ(pathsOf(one), pathsOf(three));
+  EXPECT_EQ(pathsOf(one), pathsOf(scaled));
+}
+
+TEST(Cuts, RefuseOptionsOutOfRangeAndDepthsOfAnotherSurface) {
+  const Disc disc = withoutSouth(geometry::makeIcosphere(3, 30));
+  CutOptions options;
+  options.edgeStrain = 0;
+  const Eigen::VectorXd depth = Eigen::VectorXd::Zero(disc.mesh.vertexCount());
+  EXPECT_THROW((void)findCuts(disc, depth, options), InvalidInput);
+  EXPECT_THROW((void)findCuts(disc, depth.head(3)), InvalidInput);
+}
+
+}  // namespace
+}  // namespace explica::flattening
