@@ -10,7 +10,14 @@
 namespace explica::testing {
 namespace {
 
-class FlattenAtFullResolution : public RealSurfaces {};
+class FlattenAtFullResolution : public RealSurfaces {
+ protected:
+  static CommandResult patiently(const std::vector<std::string>& words) {
+    CommandSetting setting;
+    setting.timeout = 1000;
+    return explica(words, setting);
+  }
+};
 
 TEST_F(FlattenAtFullResolution, CutByItselfIsAsGoodAsWithCutsMadeByHand) {
   const TemporaryFolder folder;
@@ -20,10 +27,10 @@ TEST_F(FlattenAtFullResolution, CutByItselfIsAsGoodAsWithCutsMadeByHand) {
   const std::string surface = folder / "mid.surf.gii";
   io::writeGiftiSurface(surface, mid.mesh, mid.metadata);
   const auto byHand =
-      explica({"flatten", surface, "--cuts", (data() / "s1_pycortex_lh/flat_lh.gii").string(),
-               "--out", folder / "hand"});
+      patiently({"flatten", surface, "--cuts", (data() / "s1_pycortex_lh/flat_lh.gii").string(),
+                 "--out", folder / "hand"});
   ASSERT_EQ(byHand.exitCode, 0) << byHand;
-  const auto made = explica({"flatten", surface, "--cuts", "auto", "--out", folder / "auto"});
+  const auto made = patiently({"flatten", surface, "--cuts", "auto", "--out", folder / "auto"});
   ASSERT_EQ(made.exitCode, 0) << made;
   const auto hand = readJson(folder / "hand/summary.json"),
              ours = readJson(folder / "auto/summary.json");
