@@ -76,6 +76,12 @@ void Hybrid(benchmark::State& state) {
   options.lambda = state.range(0) < 0 ? kInfinity : 0.01 * static_cast<double>(state.range(0));
   measure(state, options);
 }
+void AppendixA(benchmark::State& state) {
+  CorrespondenceOptions options;
+  options.method = Method::AppendixA;
+  options.lambda = state.range(0) < 0 ? kInfinity : 0.01 * static_cast<double>(state.range(0));
+  measure(state, options);
+}
 BENCHMARK(Lagrangian)->Unit(benchmark::kMillisecond);
 BENCHMARK(Eulerian)->Unit(benchmark::kMillisecond);
 BENCHMARK(Hybrid)->Arg(0)->Arg(1)->Arg(10)->Arg(50)->Arg(100)->Arg(200)->Arg(-1)->Unit(

@@ -127,7 +127,7 @@ class Sweep {
   Sweep(const Tracer& tracer, const CorrespondenceOptions& options, bool inner)
       : tracer_(tracer),
         annulus_(tracer.annulus),
-        hybrid_(options.method == Method::Hybrid),
+        appendixA_(options.method == Method::AppendixA),
         inner_(inner),
         uphill_(inner ? -1 : 1),
         target_(inner ? 0.0 : 1.0),
@@ -145,14 +145,14 @@ class Sweep {
     traced_ = arrivals_.size();
   }
 
-  /// (3.1) and (3.2), voxel by voxel in the order of u.
+  /// (3.1) and (3.2), voxel by voxel in the order of u: the Eulerian method and appendix A.
   void sweep(const std::vector<std::int32_t>& order, const Monitor& monitor) {
     turn_.assign(arrivals_.size(), kNever);
-    if (hybrid_) traceBesideWall();
+    if (appendixA_) traceBesideWall();
     for (std::size_t k = 0; k < order.size(); ++k) {
       const std::int32_t r = order[inner_ ? k : order.size() - 1 - k];
       if (!found(r) && !fromNeighbours(r)) {
-        if (hybrid_) {
+        if (appendixA_) {
           traced_ += traceToFace(r, 1);
         } else {
           traceToWall(r);
@@ -164,7 +164,7 @@ class Sweep {
     }
   }
 
-  /// Appendix A: follows each trajectory to the first grid face whose corners belong to earlier
+  /// The hybrid: follows each trajectory to the first grid face whose corners belong to earlier
   /// steps and agree.
   void sweep(const Steps& steps, const Monitor& monitor) {
     const std::size_t count = steps.count();
@@ -299,8 +299,8 @@ class Sweep {
     arrivals_[r] << way.cast<float>(), static_cast<float>(walk.length);
   }
 
-  /// (3.1), (3.2) with weights |T_a| / h_a.  False if there is nothing upwind, or if the hybrid
-  /// finds its points further apart than lambda.
+  /// (3.1), (3.2) with weights |T_a| / h_a.  False if there is nothing upwind, or if appendix A
+  /// finds its points lambda or more apart.
   bool fromNeighbours(std::int32_t r) {
     const Vector g =
         tracer_.node[r].head<3>().matrix().cast<double>().cwiseProduct(tracer_.inverseSpacing);
@@ -325,7 +325,7 @@ class Sweep {
         const std::int32_t m = tracer_.rankAt[place + signOf(d) * strides[a]];
         if (!found(m)) continue;
         there = arrivals_[m].cast<double>();
-      } else if (links[d] != wall_ || hybrid_) {
+      } else if (links[d] != wall_ || appendixA_) {
         continue;
       }
       there[a] += signOf(d) * h[a];
@@ -334,7 +334,7 @@ class Sweep {
       sum += weight;
     }
     if (count == 0) return false;
-    if (hybrid_) {
+    if (appendixA_) {
       for (int p = 0; p < count; ++p) {
         for (int q = p + 1; q < count; ++q) {
           if ((points[p] - points[q]).head<3>().matrix().norm() >= lambda_) return false;
@@ -444,7 +444,7 @@ class Sweep {
     }
     Arrival sum = value[0] + fb * (value[1] - value[0]);
     if (corners == 4) sum += fc * (value[2] + fb * (value[3] - value[2]) - sum);
-    if (lambda_ < static_cast<float>(kInfinity)) {
+    if (!appendixA_) {
       // Second order: -f (1 - f) / 2 times the second difference along each axis.
       for (int e = 0; e < corners; e += 2) {
         const float across = corners == 2 ? 1 : e == 0 ? 1 - fc : fc;
@@ -497,7 +497,7 @@ class Sweep {
 
   const Tracer& tracer_;
   const Annulus& annulus_;
-  bool hybrid_, inner_;
+  bool appendixA_, inner_;
   int uphill_;
   double target_;
   std::int32_t wall_;
@@ -519,11 +519,12 @@ Correspondence findCorrespondences(const Annulus& annulus, const Interpolant& in
   Sweep inner(field, options, true);
   Sweep outer(field, options, false);
   const bool hybrid = options.method == Method::Hybrid;
-  if (options.method == Method::Lagrangian || (hybrid && options.lambda == 0.0)) {
+  const bool dialled = hybrid || options.method == Method::AppendixA;
+  if (options.method == Method::Lagrangian || (dialled && options.lambda == 0.0)) {
     inner.traceAll(monitor);
     monitor.progress(0.5, "correspondences");
     outer.traceAll(monitor);
-  } else if (hybrid && options.lambda != kInfinity) {
+  } else if (hybrid) {
     const Steps steps = stepsOf(field);
     parallelFor(2, 1, [&](std::size_t side) { (side == 0 ? inner : outer).sweep(steps, monitor); });
   } else {

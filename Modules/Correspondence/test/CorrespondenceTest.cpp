@@ -170,8 +170,61 @@ TEST(Correspondence, HybridIsNearlyAsGoodAndEulerianVisiblyWorse) {
   };
   const double lagrangian = error(with(Method::Lagrangian));
   EXPECT_LE(error(with(Method::Hybrid)), 1.5 * lagrangian);
-  EXPECT_GE(error(with(Method::Hybrid, kInfinity)), 5 * lagrangian);
+  EXPECT_GE(error(with(Method::AppendixA, kInfinity)), 5 * lagrangian);
   EXPECT_GE(error(with(Method::Eulerian)), 20 * lagrangian);
+}
+
+TEST(Correspondence, HybridDoesNotJumpAtLambdaInfinity) {
+  const Solved s = eccentric();
+  const auto finite = findCorrespondences(s.annulus, s.interpolant, with(Method::Hybrid, 1e6));
+  const auto infinite =
+      findCorrespondences(s.annulus, s.interpolant, with(Method::Hybrid, kInfinity));
+  EXPECT_EQ(finite.innerDistance, infinite.innerDistance);
+  EXPECT_EQ(finite.outerDistance, infinite.outerDistance);
+}
+
+TEST(Correspondence, LambdaDialsAppendixAFromTheLagrangianToTheSweep) {
+  const Solved s = eccentric();
+  const double unit = s.annulus.grid.spacing[0];
+  const auto measured = [&](std::optional<double> lambda) {
+    const auto found =
+        findCorrespondences(s.annulus, s.interpolant, with(Method::AppendixA, lambda));
+    return std::pair{errorsOf(s, found, unit).meanPoint, found.traced};
+  };
+  const double lagrangian =
+      errorsOf(s, findCorrespondences(s.annulus, s.interpolant, with(Method::Lagrangian)), unit)
+          .meanPoint;
+  const double eulerian =
+      errorsOf(s, findCorrespondences(s.annulus, s.interpolant, with(Method::Eulerian)), unit)
+          .meanPoint;
+  EXPECT_DOUBLE_EQ(measured(0.0).first, lagrangian);
+  auto before = measured(0.1);
+  for (const double lambda : {0.2, 0.4, 0.8, 1.6, 3.2}) {
+    const auto now = measured(lambda);
+    EXPECT_GE(now.first, before.first) << lambda;
+    EXPECT_LE(now.second, before.second) << lambda;
+    before = now;
+  }
+  EXPECT_NEAR(measured(kInfinity).first, before.first, 0.1 * before.first);
+  EXPECT_GT(before.first, 10 * lagrangian);
+  EXPECT_LT(before.first, eulerian);
+}
+
+TEST(Correspondence, AppendixAIsOfFirstOrderAndTheHybridOfSecond) {
+  const ExactAnnulus exact = harmonic::exactEccentric(10, 25, 5);
+  double appendix[2], ours[2];
+  for (int fine = 0; fine < 2; ++fine) {
+    const double h = fine ? 0.375 : 0.75;
+    const int n = fine ? 144 : 72;
+    const Solved s = solve(exact, harmonic::centredGrid({n, n, 1}, {h, h, 1}));
+    const auto error = [&](const CorrespondenceOptions& options) {
+      return errorsOf(s, findCorrespondences(s.annulus, s.interpolant, options), 1).meanPoint;
+    };
+    appendix[fine] = error(with(Method::AppendixA, kInfinity));
+    ours[fine] = error(with(Method::Hybrid, kInfinity));
+  }
+  EXPECT_NEAR(std::log2(appendix[0] / appendix[1]), 1, 0.4);
+  EXPECT_NEAR(std::log2(ours[0] / ours[1]), 2, 0.7);
 }
 
 TEST(Correspondence, HoldsForAnisotropicVoxelsAndObliqueAxes) {

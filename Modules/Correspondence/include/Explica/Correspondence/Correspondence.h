@@ -13,27 +13,29 @@ namespace explica::correspondence {
 
 /// How correspondences are found [thesis 3.1].
 enum class Method {
-  Hybrid,     ///< ordered sweep that follows a trajectory where its neighbours disagree
-  Eulerian,   ///< ordered sweep alone, boundary values at grid points [YezziPrince2003]
-  Lagrangian  ///< every trajectory followed to the boundary
+  Hybrid,      ///< trajectories followed to the first grid face whose corners agree; second order
+  AppendixA,   ///< the hybrid of the thesis's appendix A to the letter, lambda its dial
+  Eulerian,    ///< ordered sweep alone, boundary values at grid points [YezziPrince2003]
+  Lagrangian,  ///< every trajectory followed to the boundary
 };
 
 struct CorrespondenceOptions {
   Method method = Method::Hybrid;
   std::optional<double>
-      lambda;  ///< mm; neighbours' boundary points nearer than this are
-               ///< interpolated; 0 gives the Lagrangian result, infinity the
-               ///< sweep with better boundary values; unset: twice the finest spacing
+      lambda;  ///< mm; of `Hybrid` and `AppendixA`: neighbours' boundary points nearer than this
+               ///< are interpolated, others followed; 0 gives the Lagrangian result, infinity
+               ///< follows none beyond a grid face; unset: twice the finest spacing
   TraceOptions trace;
 };
 
 template <class Visitor>
 void describe(CorrespondenceOptions& options, Visitor&& visit) {
   visit(Field{"method", "", "how boundary points and lengths are found"}, options.method);
-  visit(Field{"lambda", "mm",
-              "hybrid: boundary points of neighbours nearer than this are interpolated, others "
-              "followed; 0 follows all (default: twice the finest voxel size)"},
-        options.lambda);
+  visit(
+      Field{"lambda", "mm",
+            "hybrid, appendix-a: boundary points of neighbours nearer than this are interpolated, "
+            "others followed; 0 follows all (default: twice the finest voxel size)"},
+      options.lambda);
 }
 
 /// Boundary points and lengths of every tissue voxel.
@@ -53,10 +55,22 @@ struct Correspondence {
 /// Correspondences across the tissue: phi0 and phi1 are constant along T = grad u / |grad u| with
 /// phi0 = x on the inner and phi1 = x on the outer boundary; grad L0 . T = 1.
 ///
-/// Hybrid: the algorithm of the thesis's appendix A, with one sweep sorted by u in place of the
-/// heap (a voxel's upwind neighbours have smaller u, so the order is the same), in 3D with faces
-/// for line segments and bilinear interpolation on them. The result does not depend on the number
-/// of threads.
+/// AppendixA: the thesis's appendix A to the letter. A voxel whose upwind neighbours' boundary
+/// points are all nearer to each other than lambda takes (3.1) of them, which is of first order;
+/// any other follows its trajectory to the first line (in space: face) between solved grid points
+/// that agree within lambda and interpolates linearly there. One sweep sorted by u stands for the
+/// heap: the unsolved point of least u always has a solved neighbour, so it is on the heap's top.
+/// Upwind neighbours are a voxel's diagonal apart, and so are their boundary points where
+/// trajectories run in parallel: the error hangs on lambda below that, and rises to the sweep's
+/// with better boundary values above it.
+///
+/// Hybrid: never takes (3.1). Every trajectory is followed at least to the first grid face ahead,
+/// where the arrivals are interpolated with their second differences. So each voxel adds an error
+/// of third order where (3.1) adds one of second, and lambda only says which faces are passed by
+/// because trajectories part there: the error is near the Lagrangian's for every lambda, up to
+/// infinity, at a third of its time. It works in steps of u, on all threads.
+///
+/// No result depends on the number of threads.
 [[nodiscard]] Correspondence findCorrespondences(const harmonic::Annulus& annulus,
                                                  const harmonic::Interpolant& interpolant,
                                                  const CorrespondenceOptions& options = {},
@@ -82,6 +96,7 @@ namespace explica {
 template <>
 struct EnumNames<correspondence::Method> {
   static constexpr std::array table{std::pair{correspondence::Method::Hybrid, "hybrid"},
+                                    std::pair{correspondence::Method::AppendixA, "appendix-a"},
                                     std::pair{correspondence::Method::Eulerian, "eulerian"},
                                     std::pair{correspondence::Method::Lagrangian, "lagrangian"}};
 };
