@@ -50,48 +50,105 @@ bool has(const std::vector<std::string>& words, const std::string& wanted) {
   return std::find(words.begin(), end, wanted) != end;
 }
 
+/// What is asked of the program as a whole, before any command; true if it was answered.
+bool answerAboutProgram(const std::string& word) {
+  if (word == "--version") {
+    std::cout << provenance::softwareText() << "\n";
+  } else if (word == "--help" || word == "--help-all" || word == "-h") {
+    std::cout << overview();
+  } else if (word == "--describe") {
+    std::cout << provenance::textOf(describeAllCommands(), 2) << "\n";
+  } else {
+    return false;
+  }
+  return true;
+}
+
+/// What is asked about a command instead of running it; true if it was answered.
+bool answerAboutCommand(const Declaration& declaration, const std::vector<std::string>& words) {
+  if (has(words, "--help-all")) {
+    std::cout << helpText(declaration);
+  } else if (has(words, "--help") || has(words, "-h")) {
+    std::cout << firstHelpText(declaration);
+  } else if (has(words, "--version")) {
+    std::cout << provenance::softwareText() << "\n";
+  } else if (has(words, "--describe")) {
+    std::cout << provenance::textOf(describeJson(declaration), 2) << "\n";
+  } else if (has(words, "--xml")) {
+    std::cout << slicerXmlOf(describeJson(declaration), provenance::software().version);
+  } else if (has(words, "--describe=page")) {
+    std::cout << referencePage(declaration);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+/// The kinds of a verb that is no command by itself, such as `phantom`; empty for other words.
+std::string kindsText(const std::string& verb) {
+  const auto kinds = kindsOf(verb);
+  if (kinds.empty()) return {};
+  std::string text = "explica " + verb + " KIND; kinds are\n";
+  for (const Command* kind : kinds) {
+    text += "  " + kind->name() + ": " + kind->begin().declaration.synopsisText + "\n";
+  }
+  return text;
+}
+
+[[noreturn]] void refuseUnknown(const std::vector<std::string>& words, const std::string& kinds) {
+  if (!kinds.empty()) {
+    throw UsageError(words.size() > 1 ? "unknown kind '" + words[1] + "': " + kinds : kinds);
+  }
+  std::vector<std::string> names;
+  for (const Command& candidate : allCommands()) names.push_back(candidate.name());
+  const std::string near = nearestWord(words[0], names);
+  throw UsageError("unknown command '" + words[0] + "'" +
+                   (near.empty() ? "; see explica --help" : "; did you mean '" + near + "'?"));
+}
+
+/// Says how it ended; a dry run's answer is the options as they were understood.
+void report(const Run& run, const Outcome& outcome, Console& console) {
+  if (run.common.dryRun) {
+    Json options = Json::object();
+    for (const Parameter& parameter : run.invocation.declaration.parameters) {
+      options[parameter.option.name] = provenance::valueOf(parameter.option);
+    }
+    std::cout << provenance::textOf(options, 2) << "\n";
+    console.info("dry run: inputs and options are usable; nothing was written");
+    return;
+  }
+  if (outcome.record.empty()) return;
+  const std::string where = outcome.record.parent_path().string();
+  if (!outcome.plausible && reachedGoal(outcome.termination)) {
+    console.warning("done, but not to be believed as it is; results in " + where);
+  } else if (outcome.exitCode == kStoppedEarly) {
+    console.warning("stopped before its goal (" + std::string(nameOf(outcome.termination)) +
+                    "); what was reached is in " + where);
+  } else {
+    console.info("done: results in " + where);
+  }
+}
+
 int runCommandLine(std::vector<std::string> words, const std::vector<std::string>& argv,
                    Console& console, std::string& commandName) {
   if (words.empty()) {
     std::cerr << overview();
     return kUsage;
   }
-  if (words[0] == "--version") {
-    std::cout << provenance::softwareText() << "\n";
-    return kDone;
-  }
   if (words[0] == "help") words.erase(words.begin()), words.push_back("--help");
-  if (words[0] == "--help" || words[0] == "--help-all" || words[0] == "-h") {
-    std::cout << overview();
-    return kDone;
-  }
-  if (words[0] == "--describe") {
-    std::cout << provenance::textOf(describeAllCommands(), 2) << "\n";
-    return kDone;
-  }
+  if (answerAboutProgram(words[0])) return kDone;
 
   const Command* command = nullptr;
   if (words.size() > 1) command = findCommand(words[0] + " " + words[1]);
-  std::size_t used = command ? 2 : 1;
+  const std::size_t used = command ? 2 : 1;
   if (!command) command = findCommand(words[0]);
   if (!command) {
-    const auto kinds = kindsOf(words[0]);
-    if (!kinds.empty()) {
-      std::string text = "explica " + words[0] + " KIND; kinds are\n";
-      for (const Command* kind : kinds) {
-        text += "  " + kind->name() + ": " + kind->begin().declaration.synopsisText + "\n";
-      }
-      if (has(words, "--help") || has(words, "--help-all")) {
-        std::cout << text;
-        return kDone;
-      }
-      throw UsageError(words.size() > 1 ? "unknown kind '" + words[1] + "': " + text : text);
+    const std::string kinds = kindsText(words[0]);
+    if (kinds.empty() || !(has(words, "--help") || has(words, "--help-all"))) {
+      refuseUnknown(words, kinds);
     }
-    std::vector<std::string> names;
-    for (const Command& candidate : allCommands()) names.push_back(candidate.name());
-    const std::string near = nearestWord(words[0], names);
-    throw UsageError("unknown command '" + words[0] + "'" +
-                     (near.empty() ? "; see explica --help" : "; did you mean '" + near + "'?"));
+    std::cout << kinds;
+    return kDone;
   }
   commandName = command->name();
   words.erase(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(used));
@@ -99,30 +156,7 @@ int runCommandLine(std::vector<std::string> words, const std::vector<std::string
   Run run;
   run.invocation = command->begin();
   Declaration& declaration = run.invocation.declaration;
-  if (has(words, "--help-all")) {
-    std::cout << helpText(declaration);
-    return kDone;
-  }
-  if (has(words, "--help") || has(words, "-h")) {
-    std::cout << firstHelpText(declaration);
-    return kDone;
-  }
-  if (has(words, "--version")) {
-    std::cout << provenance::softwareText() << "\n";
-    return kDone;
-  }
-  if (has(words, "--describe")) {
-    std::cout << provenance::textOf(describeJson(declaration), 2) << "\n";
-    return kDone;
-  }
-  if (has(words, "--xml")) {
-    std::cout << slicerXmlOf(describeJson(declaration), provenance::software().version);
-    return kDone;
-  }
-  if (has(words, "--describe=page")) {
-    std::cout << referencePage(declaration);
-    return kDone;
-  }
+  if (answerAboutCommand(declaration, words)) return kDone;
   run.given = parseWords(declaration, run.common, words);
   requireGiven(declaration, run.given);
   run.argv = argv;
@@ -134,24 +168,7 @@ int runCommandLine(std::vector<std::string> words, const std::vector<std::string
   std::optional<TimeLimit> limit;
   if (run.common.maxTime) run.limit = &limit.emplace(*run.common.maxTime);
   const Outcome outcome = execute(run, console);
-  if (run.common.dryRun) {
-    Json options = Json::object();
-    for (const Parameter& parameter : declaration.parameters) {
-      options[parameter.option.name] = provenance::valueOf(parameter.option);
-    }
-    std::cout << provenance::textOf(options, 2) << "\n";
-    console.info("dry run: inputs and options are usable; nothing was written");
-  } else if (!outcome.record.empty()) {
-    const std::string where = outcome.record.parent_path().string();
-    if (!outcome.plausible && reachedGoal(outcome.termination)) {
-      console.warning("done, but not to be believed as it is; results in " + where);
-    } else if (outcome.exitCode == kStoppedEarly) {
-      console.warning("stopped before its goal (" + std::string(nameOf(outcome.termination)) +
-                      "); what was reached is in " + where);
-    } else {
-      console.info("done: results in " + where);
-    }
-  }
+  report(run, outcome, console);
   return outcome.exitCode;
 }
 

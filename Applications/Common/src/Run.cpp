@@ -384,6 +384,125 @@ std::string withInputNames(const std::string& message, const provenance::Record&
   return names.empty() ? message : message + " (" + names + ")";
 }
 
+/// The program, its words and its processors: what is known before anything is read.
+provenance::Record beginRecord(const Run& run, const ThreadChoice& threads) {
+  provenance::Record record;
+  record.command = run.invocation.declaration.name;
+  record.argv = run.argv;
+  record.directory = fs::current_path();
+  record.started = timeNow();
+  record.threads = threads.count;
+  record.threadsBecause = threads.because;
+  record.withNames = !run.common.privateRecord;
+  return record;
+}
+
+/// Warnings go to the record and to whoever listens, progress to the console; signals, limits and
+/// the run around this one stop it.
+Monitor monitorOf(Run& run, Console& console, provenance::Record& record, std::mutex& warnings) {
+  Monitor monitor;
+  monitor.onWarning = [&](const std::string& message) {
+    const std::lock_guard<std::mutex> lock(warnings);
+    record.warnings.push_back(message);
+    if (run.parent) {
+      run.parent->warn(run.name + message);  // it puts its own name before
+    } else {
+      console.warning(message);
+    }
+  };
+  monitor.onProgress = [&](double fraction, std::string_view activity) {
+    console.progress(fraction, run.prefix + std::string(activity));
+  };
+  monitor.stopWanted = [&] {
+    return signalled() || (run.limit && run.limit->passed()) ||
+           (run.parent && run.parent->shouldStop());
+  };
+  return monitor;
+}
+
+/// Where the results are gathered until they are whole; none if the command writes none itself.
+void openFolder(Run& run, Context::State& state) {
+  const Declaration& declaration = run.invocation.declaration;
+  if (!declaration.writesOutput) return;
+  if (!run.common.out && declaration.fallbackOut) run.common.out = *declaration.fallbackOut;
+  if (!run.common.out) throw UsageError("--out is missing: the folder for the results");
+  if (declaration.handsOutputOn) return;
+  const bool reuse = declaration.reuse && *declaration.reuse;
+  const OutputRules rules{
+      run.common.force || reuse, run.common.force && !reuse,
+      declaration.writesInPlace, run.common.dryRun,
+      declaration.name,          declaration.share ? declaration.share() : std::string()};
+  state.folder.emplace(*run.common.out, rules,
+                       [&](const std::string& message) { state.monitor.warn(message); });
+  std::error_code ignored;
+  state.record.out = fs::absolute(*run.common.out, ignored);
+}
+
+/// How the command ended, as its exit code says it.
+Outcome outcomeOf(Termination termination, const Run& run, const Context::State& state) {
+  if (termination == Termination::NotRun) termination = Termination::Finished;
+  if (termination == Termination::Interrupted && !signalled() && run.limit && run.limit->passed()) {
+    termination = Termination::MaxTime;
+  }
+  Outcome outcome;
+  outcome.termination = termination;
+  outcome.plausible = state.plausible;
+  outcome.exitCode = reachedGoal(termination) && state.plausible ? kDone : kStoppedEarly;
+  return outcome;
+}
+
+/// summary.json: the command's numbers, then what every command states.
+Json summaryOf(const Context::State& state) {
+  const provenance::Record& record = state.record;
+  Json summary = {{"command", record.command}, {"termination", nameOf(record.termination)}};
+  summary.update(state.summary);
+  if (state.flags) {
+    summary["plausible"] = state.plausible;
+    summary["flags"] = *state.flags;
+  }
+  if (!summary.contains("seconds")) summary["seconds"] = record.seconds;
+  summary["peak_memory_bytes"] = record.peakMemoryBytes;
+  summary["warnings"] = record.warnings;
+  return summary;
+}
+
+/// What may be compared between two runs: all but times, memory and what was said on the way.
+void recordResults(const Json& summary, provenance::Record& record) {
+  for (const auto& [key, value] : summary.items()) {
+    if (isTime(key) || key == "peak_memory_bytes" || key == "warnings") continue;
+    record.results[key] = value;
+  }
+}
+
+void recordOutputs(Context::State& state) {
+  const std::vector<std::string> files = state.folder->files();
+  std::vector<fs::path> places;
+  for (const auto& name : files) places.push_back(state.folder->place(name));
+  std::vector<provenance::Digest> digests(files.size());
+  parallelFor(files.size(), 1,
+              [&](std::size_t f) { digests[f] = provenance::digestOf(places[f]); });
+  for (std::size_t f = 0; f < files.size(); ++f) {
+    const bool varies =
+        std::find(state.varying.begin(), state.varying.end(), files[f]) != state.varying.end();
+    state.record.outputs.push_back({files[f], digests[f], varies});
+  }
+  for (const auto& [name, path] : state.nestedRecords) {
+    state.record.outputs.push_back({name, provenance::digestOf(path), true});
+  }
+}
+
+/// Writes summary and record and lets the folder appear.
+void publish(Context::State& state) {
+  Json summary = summaryOf(state);
+  recordResults(summary, state.record);
+  if (!state.record.withNames) summary = provenance::withoutFolders(summary);
+  provenance::writeJson(state.folder->place(provenance::kSummaryName), summary);
+  state.varying.push_back(provenance::kSummaryName);
+  recordOutputs(state);
+  provenance::writeJson(state.folder->place(provenance::kRecordName), toJson(state.record));
+  state.folder->publish(provenance::kRecordName);
+}
+
 }  // namespace
 
 Outcome execute(Run& run, Console& console) {
@@ -396,52 +515,15 @@ Outcome execute(Run& run, Console& console) {
   Context::State state{run, console, {}, Json::object(), {}, {}, {}, {}, {}, true};
   Context context(state);
   provenance::Record& record = state.record;
-  record.command = declaration.name;
-  record.argv = run.argv;
-  record.directory = fs::current_path();
-  record.started = timeNow();
-  record.threads = threads.count;
-  record.threadsBecause = threads.because;
-  record.withNames = !run.common.privateRecord;
+  record = beginRecord(run, threads);
   const double begin = secondsNow();
   const double cpuBegin = cpuSeconds();
-
-  std::mutex warningsMutex;
-  state.monitor.onWarning = [&](const std::string& message) {
-    const std::lock_guard<std::mutex> lock(warningsMutex);
-    record.warnings.push_back(message);
-    if (run.parent) {
-      run.parent->warn(run.name + message);  // it puts its own name before
-    } else {
-      console.warning(message);
-    }
-  };
-  state.monitor.onProgress = [&](double fraction, std::string_view activity) {
-    console.progress(fraction, run.prefix + std::string(activity));
-  };
-  state.monitor.stopWanted = [&] {
-    return signalled() || (run.limit && run.limit->passed()) ||
-           (run.parent && run.parent->shouldStop());
-  };
+  std::mutex warnings;
+  state.monitor = monitorOf(run, console, record, warnings);
 
   noteDeclaredInputs(context, declaration);
   recordValues(declaration, record);
-
-  if (declaration.writesOutput) {
-    if (!run.common.out && declaration.fallbackOut) run.common.out = *declaration.fallbackOut;
-    if (!run.common.out) throw UsageError("--out is missing: the folder for the results");
-  }
-  if (declaration.writesOutput && !declaration.handsOutputOn) {
-    const bool reuse = declaration.reuse && *declaration.reuse;
-    const OutputRules rules{
-        run.common.force || reuse, run.common.force && !reuse,
-        declaration.writesInPlace, run.common.dryRun,
-        declaration.name,          declaration.share ? declaration.share() : std::string()};
-    state.folder.emplace(*run.common.out, rules,
-                         [&](const std::string& message) { state.monitor.warn(message); });
-    std::error_code ignored;
-    record.out = fs::absolute(*run.common.out, ignored);
-  }
+  openFolder(run, state);
 
   Termination termination = Termination::NotRun;
   try {
@@ -454,55 +536,15 @@ Outcome execute(Run& run, Console& console) {
   console.endProgress();
   if (run.common.dryRun) return {};
 
-  Outcome outcome;
-  if (termination == Termination::NotRun) termination = Termination::Finished;
-  if (termination == Termination::Interrupted && !signalled() && run.limit && run.limit->passed()) {
-    termination = Termination::MaxTime;
-  }
-  outcome.termination = termination;
-  outcome.plausible = state.plausible;
-  outcome.exitCode = reachedGoal(termination) && state.plausible ? kDone : kStoppedEarly;
+  Outcome outcome = outcomeOf(termination, run, state);
   if (!state.folder) return outcome;
-
-  record.termination = termination;
+  record.termination = outcome.termination;
   record.exitCode = outcome.exitCode;
   record.ended = timeNow();
   record.seconds = secondsNow() - begin;
   record.cpuSeconds = cpuSeconds() - cpuBegin;
   record.peakMemoryBytes = peakMemory();
-
-  Json summary = {{"command", declaration.name}, {"termination", nameOf(termination)}};
-  summary.update(state.summary);
-  if (state.flags) {
-    summary["plausible"] = state.plausible;
-    summary["flags"] = *state.flags;
-  }
-  for (const auto& [key, value] : summary.items()) {
-    if (!isTime(key)) record.results[key] = value;
-  }
-  if (!summary.contains("seconds")) summary["seconds"] = record.seconds;
-  summary["peak_memory_bytes"] = record.peakMemoryBytes;
-  summary["warnings"] = record.warnings;
-  if (!record.withNames) summary = provenance::withoutFolders(summary);
-  provenance::writeJson(state.folder->place(provenance::kSummaryName), summary);
-  state.varying.push_back(provenance::kSummaryName);
-
-  const std::vector<std::string> files = state.folder->files();
-  std::vector<fs::path> places;
-  for (const auto& name : files) places.push_back(state.folder->place(name));
-  std::vector<provenance::Digest> digests(files.size());
-  parallelFor(files.size(), 1,
-              [&](std::size_t f) { digests[f] = provenance::digestOf(places[f]); });
-  for (std::size_t f = 0; f < files.size(); ++f) {
-    const bool varies =
-        std::find(state.varying.begin(), state.varying.end(), files[f]) != state.varying.end();
-    record.outputs.push_back({files[f], digests[f], varies});
-  }
-  for (const auto& [name, path] : state.nestedRecords) {
-    record.outputs.push_back({name, provenance::digestOf(path), true});
-  }
-  provenance::writeJson(state.folder->place(provenance::kRecordName), toJson(record));
-  state.folder->publish(provenance::kRecordName);
+  publish(state);
   outcome.record = fs::path(*run.common.out) / provenance::kRecordName;
   return outcome;
 }

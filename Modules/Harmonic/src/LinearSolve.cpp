@@ -51,22 +51,30 @@ void forAll(std::size_t count, const F& f) {
   parallelFor(count, kGrain, f);
 }
 
-}  // namespace
+double dot(const std::vector<double>& a, const std::vector<double>& b) {
+  return parallelSum(a.size(), kGrain, 0.0, [&](std::size_t begin, std::size_t end) {
+    double sum = 0;
+    for (std::size_t k = begin; k < end; ++k) sum += a[k] * b[k];
+    return sum;
+  });
+}
 
-LinearOutcome solveLinear(const Annulus& annulus, const Stencil& stencil, Multigrid& multigrid,
-                          const std::vector<double>& rhs, std::vector<double>& u,
-                          double relativeTolerance, int maxIterations, const Monitor& monitor) {
-  const std::size_t n = annulus.count();
-  const auto dot = [n](const std::vector<double>& a, const std::vector<double>& b) {
-    return parallelSum(n, kGrain, 0.0, [&](std::size_t begin, std::size_t end) {
-      double sum = 0;
-      for (std::size_t k = begin; k < end; ++k) sum += a[k] * b[k];
-      return sum;
-    });
-  };
-  std::vector<double> r(n), shadow, p(n, 0), v(n, 0), t(n);
-  std::vector<float> single(n), phat(n), shat(n);
-  // r = rhs - A u, with u in double precision.
+/// a . b and a . a in one pass.
+Pair dotAndSquare(const std::vector<double>& a, const std::vector<double>& b) {
+  return parallelSum(a.size(), kGrain, Pair{}, [&](std::size_t begin, std::size_t end) {
+    Pair sum;
+    for (std::size_t k = begin; k < end; ++k) {
+      sum.first += a[k] * b[k];
+      sum.second += a[k] * a[k];
+    }
+    return sum;
+  });
+}
+
+/// rhs - A u, with u in double precision.
+std::vector<double> residualOf(const Annulus& annulus, const Stencil& stencil,
+                               const std::vector<double>& rhs, const std::vector<double>& u) {
+  std::vector<double> r(annulus.count());
   for (int colour = 0; colour < 2; ++colour) {
     forRunsOf(annulus, colour, [&](std::int32_t begin, std::int32_t end, std::int32_t offset) {
       parallelFor(end - begin, kGrain, [&, begin, offset](std::size_t k) {
@@ -81,78 +89,123 @@ LinearOutcome solveLinear(const Annulus& annulus, const Stencil& stencil, Multig
       });
     });
   }
-  LinearOutcome outcome;
+  return r;
+}
+
+/// BiCGStab with the multigrid cycle before it [VanDerVorst1992]; one object a solve.
+class BiCGStab {
+ public:
+  BiCGStab(const Annulus& annulus, const Stencil& stencil, Multigrid& multigrid,
+           const std::vector<double>& rhs, std::vector<double>& u)
+      : annulus_(annulus),
+        stencil_(stencil),
+        multigrid_(multigrid),
+        u_(u),
+        r_(residualOf(annulus, stencil, rhs, u)),
+        shadow_(r_),
+        p_(r_.size(), 0),
+        v_(r_.size(), 0),
+        t_(r_.size()),
+        single_(r_.size()),
+        phat_(r_.size()),
+        shat_(r_.size()),
+        norm_(std::sqrt(dot(r_, r_))) {}
+
+  [[nodiscard]] double residual() const { return norm_; }
+
+  /// One iteration; false if it broke down, so that a further one would bring nothing.
+  [[nodiscard]] bool iterate() {
+    chooseDirection();
+    const double pScale = precondition(p_, phat_);
+    apply(annulus_, stencil_, phat_, v_);
+    forAll(v_.size(), [&](std::size_t k) { v_[k] *= pScale; });
+    alpha_ = rho_ / dot(shadow_, v_);
+    forAll(r_.size(), [&](std::size_t k) { r_[k] -= alpha_ * v_[k]; });  // now s
+    norm_ = std::sqrt(dot(r_, r_));
+    if (!std::isfinite(norm_)) return false;
+    const double sScale = precondition(r_, shat_);
+    apply(annulus_, stencil_, shat_, t_);
+    const Pair dots = dotAndSquare(t_, r_);
+    omega_ = dots.second > 0 ? dots.first / dots.second : 0;  // of the unscaled s-hat
+    forAll(u_.size(), [&](std::size_t k) {
+      u_[k] += alpha_ * pScale * phat_[k] + omega_ * shat_[k];
+      r_[k] -= omega_ * t_[k];
+    });
+    omega_ /= sScale;
+    norm_ = std::sqrt(dot(r_, r_));
+    return omega_ != 0;
+  }
+
+ private:
+  void chooseDirection() {
+    double rhoNext = dot(shadow_, r_);
+    if (std::abs(rhoNext) < 1e-14 * norm_ * std::sqrt(dot(shadow_, shadow_))) {
+      // Breakdown: begin again from here.
+      shadow_ = r_;
+      rhoNext = norm_ * norm_;
+      std::fill(p_.begin(), p_.end(), 0);
+      std::fill(v_.begin(), v_.end(), 0);
+      rho_ = alpha_ = omega_ = 1;
+    }
+    const double beta = rhoNext / rho_ * alpha_ / omega_;
+    rho_ = rhoNext;
+    forAll(p_.size(), [&](std::size_t k) { p_[k] = r_[k] + beta * (p_[k] - omega_ * v_[k]); });
+  }
+
+  /// Puts the cycle's answer to `from`, scaled, into `to`; returns what it is to be scaled by.
+  double precondition(const std::vector<double>& from, std::vector<float>& to) {
+    // Residuals shrink far below single precision's smallest normal numbers: scale to order one.
+    const double factor = norm_ > 0 ? 1 / norm_ : 1;
+    forAll(from.size(), [&](std::size_t k) { single_[k] = static_cast<float>(from[k] * factor); });
+    multigrid_.cycle(single_, to);
+    return 1 / factor;
+  }
+
+  const Annulus& annulus_;
+  const Stencil& stencil_;
+  Multigrid& multigrid_;
+  std::vector<double>& u_;
+  std::vector<double> r_, shadow_, p_, v_, t_;
+  std::vector<float> single_, phat_, shat_;
+  double rho_ = 1, alpha_ = 1, omega_ = 1;
+  double norm_;
+};
+
+}  // namespace
+
+LinearOutcome solveLinear(const Annulus& annulus, const Stencil& stencil, Multigrid& multigrid,
+                          const std::vector<double>& rhs, std::vector<double>& u,
+                          double relativeTolerance, int maxIterations, const Monitor& monitor) {
+  BiCGStab solver(annulus, stencil, multigrid, rhs, u);
   const double scale = std::sqrt(dot(rhs, rhs));
-  double norm = std::sqrt(dot(r, r));
-  outcome.relativeResidual = scale > 0 ? norm / scale : 0;
+  const double start = solver.residual();
+  LinearOutcome outcome;
+  outcome.relativeResidual = scale > 0 ? start / scale : 0;
   if (outcome.relativeResidual <= relativeTolerance) {
     outcome.termination = Termination::Converged;
     return outcome;
   }
-  const auto precondition = [&](const std::vector<double>& from, std::vector<float>& to) {
-    // Residuals shrink far below single precision's smallest normal numbers: scale to order one.
-    const double factor = norm > 0 ? 1 / norm : 1;
-    forAll(n, [&](std::size_t k) { single[k] = static_cast<float>(from[k] * factor); });
-    multigrid.cycle(single, to);
-    return 1 / factor;
-  };
-  shadow = r;
-  double rho = 1, alpha = 1, omega = 1;
-  const double start = norm;
   outcome.termination = Termination::MaxIterations;
   while (outcome.iterations < maxIterations) {
     if (monitor.shouldStop()) {
       outcome.termination = Termination::Interrupted;
       break;
     }
-    double rhoNext = dot(shadow, r);
-    if (std::abs(rhoNext) < 1e-14 * norm * std::sqrt(dot(shadow, shadow))) {
-      // Breakdown: begin again from here.
-      shadow = r;
-      rhoNext = norm * norm;
-      std::fill(p.begin(), p.end(), 0);
-      std::fill(v.begin(), v.end(), 0);
-      rho = alpha = omega = 1;
-    }
-    const double beta = rhoNext / rho * alpha / omega;
-    rho = rhoNext;
-    forAll(n, [&](std::size_t k) { p[k] = r[k] + beta * (p[k] - omega * v[k]); });
-    const double pScale = precondition(p, phat);
-    apply(annulus, stencil, phat, v);
-    forAll(n, [&](std::size_t k) { v[k] *= pScale; });
-    alpha = rho / dot(shadow, v);
-    forAll(n, [&](std::size_t k) { r[k] -= alpha * v[k]; });  // now s
-    norm = std::sqrt(dot(r, r));
-    if (!std::isfinite(norm)) {
+    const bool sound = solver.iterate();
+    if (!std::isfinite(solver.residual())) {
       outcome.termination = Termination::Stalled;
       break;
     }
-    const double sScale = precondition(r, shat);
-    apply(annulus, stencil, shat, t);
-    const Pair dots = parallelSum(n, kGrain, Pair{}, [&](std::size_t begin, std::size_t end) {
-      Pair sum;
-      for (std::size_t k = begin; k < end; ++k) {
-        sum.first += t[k] * r[k];
-        sum.second += t[k] * t[k];
-      }
-      return sum;
-    });
-    omega = dots.second > 0 ? dots.first / dots.second : 0;  // of the unscaled s-hat
-    forAll(n, [&](std::size_t k) {
-      u[k] += alpha * pScale * phat[k] + omega * shat[k];
-      r[k] -= omega * t[k];
-    });
-    omega /= sScale;
-    norm = std::sqrt(dot(r, r));
     ++outcome.iterations;
-    outcome.relativeResidual = norm / scale;
-    const double done = std::log(norm / start) / std::log(relativeTolerance * scale / start);
+    outcome.relativeResidual = solver.residual() / scale;
+    const double done =
+        std::log(solver.residual() / start) / std::log(relativeTolerance * scale / start);
     monitor.progress(std::clamp(done, 0.0, 1.0), "harmonic interpolant");
     if (outcome.relativeResidual <= relativeTolerance) {
       outcome.termination = Termination::Converged;
       break;
     }
-    if (omega == 0) {
+    if (!sound) {
       outcome.termination = Termination::Stalled;
       break;
     }

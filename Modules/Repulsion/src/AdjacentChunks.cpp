@@ -132,39 +132,114 @@ std::vector<AdjacentChunks::Chunk> AdjacentChunks::cut(const MovingSet& set,
   return chunks;
 }
 
+/// Adds up one chunk's pairs: sixteen at once where they need the same rule.
 template <class Kind>
-void AdjacentChunks::sumUp(const Chunk& chunk, const Positions& positions,
-                           const std::vector<FaceArea>& allAreas, double unit, Sum& sum) {
-  constexpr int kArms = Kind::kArms;
-  constexpr int kLanes = kernels::kLanes;
-  std::vector<Point>& x = sum.positions;
-  x.resize(chunk.vertices.size());
-  for (std::size_t v = 0; v < x.size(); ++v) x[v] = positions.row(chunk.vertices[v]).transpose();
-  const auto areaOf = [&](std::int32_t face) -> const FaceArea& {
-    return allAreas[chunk.areas[face]];
-  };
-  const double inverseUnit = 1 / unit;
-  sum.value = 0;
-  sum.gradient.assign(x.size(), Vector::Zero());
-  std::vector<double>& byArea = sum.byArea;
-  byArea.assign(chunk.faces.size(), 0.0);
-
-  // Adds what a batch of means contributes; its derivatives are used up.
-  const auto add = [&](typename Kind::Batch& batch, const std::array<const Pair*, kLanes>& pairs,
-                       int count) {
-    constexpr int kRows = 3 * kArms;
-    std::array<float, kLanes> factor{};
-    for (int lane = 0; lane < count; ++lane) {
-      const Pair& pair = *pairs[lane];
-      const double mean = 2 * inverseUnit * inverseUnit * batch.value[lane];
-      const double areaS = areaOf(pair.s).area;
-      const double areaT = areaOf(pair.t).area;
-      sum.value += areaS * areaT * mean;
-      byArea[pair.s] += areaT * mean;
-      byArea[pair.t] += areaS * mean;
-      factor[lane] =
-          static_cast<float>(2 * areaS * areaT * (inverseUnit * inverseUnit * inverseUnit));
+class AdjacentChunks::Adder {
+ public:
+  Adder(const Chunk& chunk, const Positions& positions, const std::vector<FaceArea>& areas,
+        double unit, Sum& sum)
+      : chunk_(chunk), areas_(areas), inverseUnit_(1 / unit), sum_(sum), x_(sum.positions) {
+    x_.resize(chunk.vertices.size());
+    for (std::size_t v = 0; v < x_.size(); ++v) {
+      x_[v] = positions.row(chunk.vertices[v]).transpose();
     }
+    sum_.value = 0;
+    sum_.gradient.assign(x_.size(), Vector::Zero());
+    sum_.byArea.assign(chunk.faces.size(), 0.0);
+  }
+
+  void run() {
+    for (std::size_t begin = 0; begin < chunk_.pairs.size(); begin += kLanes) takeBatch(begin);
+    for (int rule = 0; rule < kernels::kRules; ++rule) flush(rule);
+    addAreas();
+  }
+
+ private:
+  static constexpr int kArms = Kind::kArms;
+  static constexpr int kRows = 3 * kArms;
+  static constexpr int kLanes = kernels::kLanes;
+  using Batch = typename Kind::Batch;
+  using Pairs = std::array<const Pair*, kLanes>;
+
+  /// Pairs that wait until sixteen need the same rule.
+  struct Waiting {
+    Batch batch;
+    Pairs pair{};
+    int filled = 0;
+  };
+
+  [[nodiscard]] const FaceArea& areaOf(std::int32_t face) const {
+    return areas_[chunk_.areas[face]];
+  }
+
+  /// Arms of up to sixteen pairs from `begin` on; the last one fills what is left.
+  void load(std::size_t begin, int count, Batch& batch) const {
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const auto& v =
+          chunk_.pairs[begin + static_cast<std::size_t>(std::min(lane, count - 1))].vertex;
+      for (int k = 0; k < kArms; ++k) {
+        for (int a = 0; a < 3; ++a) {
+          batch.arm[3 * k + a][lane] =
+              static_cast<float>((x_[v[k + 1]][a] - x_[v[0]][a]) * inverseUnit_);
+        }
+      }
+    }
+  }
+
+  void takeBatch(std::size_t begin) {
+    const int count = static_cast<int>(std::min<std::size_t>(kLanes, chunk_.pairs.size() - begin));
+    Batch batch;
+    load(begin, count, batch);
+    std::array<std::int32_t, kLanes> rules;
+    Kind::choose(batch, rules.data());
+    if (rules[0] < kernels::kRules &&
+        std::all_of(rules.begin(), rules.end(), [&](std::int32_t r) { return r == rules[0]; })) {
+      Kind::integrate(batch, rules[0]);
+      Pairs pairs{};
+      for (int lane = 0; lane < count; ++lane) {
+        pairs[lane] = &chunk_.pairs[begin + static_cast<std::size_t>(lane)];
+      }
+      add(batch, pairs, count);
+      return;
+    }
+    for (int lane = 0; lane < count; ++lane) {
+      const Pair& pair = chunk_.pairs[begin + static_cast<std::size_t>(lane)];
+      rules[lane] == kernels::kRules ? addExactly(pair) : await(pair, batch, lane, rules[lane]);
+    }
+  }
+
+  void addExactly(const Pair& pair) {
+    const auto& v = pair.vertex;
+    const auto& t = Kind::kCornersT;
+    const PairIntegral exact =
+        Kind::exactly({x_[v[0]], x_[v[1]], x_[v[2]]}, {x_[v[t[0]]], x_[v[t[1]]], x_[v[t[2]]]});
+    sum_.value += 2 * exact.value;
+    for (int k = 0; k < 3; ++k) {
+      sum_.gradient[v[k]] += 2 * exact.byS[k];
+      sum_.gradient[v[t[k]]] += 2 * exact.byT[k];
+    }
+  }
+
+  void await(const Pair& pair, const Batch& batch, int lane, int rule) {
+    Waiting& w = waiting_[rule];
+    for (int row = 0; row < kRows; ++row) w.batch.arm[row][w.filled] = batch.arm[row][lane];
+    w.pair[w.filled++] = &pair;
+    if (w.filled == kLanes) flush(rule);
+  }
+
+  void flush(int rule) {
+    Waiting& w = waiting_[rule];
+    if (w.filled == 0) return;
+    for (auto& row : w.batch.arm) std::fill(row + w.filled, row + kLanes, row[0]);
+    Kind::integrate(w.batch, rule);
+    add(w.batch, w.pair, w.filled);
+    w.filled = 0;
+  }
+
+  /// Adds what a batch of means contributes; its derivatives are used up.
+  void add(Batch& batch, const Pairs& pairs, int count) {
+    std::array<float, kLanes> factor{};
+    for (int lane = 0; lane < count; ++lane) factor[lane] = addValue(batch, *pairs[lane], lane);
     for (int row = 0; row < kRows; ++row) {
       for (int lane = 0; lane < kLanes; ++lane) batch.byArm[row][lane] *= factor[lane];
     }
@@ -177,87 +252,42 @@ void AdjacentChunks::sumUp(const Chunk& chunk, const Positions& positions,
     }
     for (int lane = 0; lane < count; ++lane) {
       const auto& vertex = pairs[lane]->vertex;
-      Vector& first = sum.gradient[vertex[0]];
+      Vector& first = sum_.gradient[vertex[0]];
       for (int a = 0; a < 3; ++a) first[a] += common[a][lane];
       for (int arm = 0; arm < kArms; ++arm) {
-        Vector& by = sum.gradient[vertex[arm + 1]];
+        Vector& by = sum_.gradient[vertex[arm + 1]];
         for (int a = 0; a < 3; ++a) by[a] += batch.byArm[3 * arm + a][lane];
       }
     }
-  };
+  }
 
-  // Pairs that wait until sixteen need the same rule.
-  struct Waiting {
-    typename Kind::Batch batch;
-    std::array<const Pair*, kLanes> pair{};
-    int filled = 0;
-  };
-  std::array<Waiting, kernels::kRules> waiting;
+  /// Value and derivatives by the areas of one lane; what its derivatives by arms are scaled by.
+  float addValue(const Batch& batch, const Pair& pair, int lane) {
+    const double mean = 2 * inverseUnit_ * inverseUnit_ * batch.value[lane];
+    const double areaS = areaOf(pair.s).area;
+    const double areaT = areaOf(pair.t).area;
+    sum_.value += areaS * areaT * mean;
+    sum_.byArea[pair.s] += areaT * mean;
+    sum_.byArea[pair.t] += areaS * mean;
+    return static_cast<float>(2 * areaS * areaT * (inverseUnit_ * inverseUnit_ * inverseUnit_));
+  }
 
-  const auto flush = [&](int rule) {
-    Waiting& w = waiting[rule];
-    if (w.filled == 0) return;
-    for (auto& row : w.batch.arm) std::fill(row + w.filled, row + kLanes, row[0]);
-    Kind::integrate(w.batch, rule);
-    add(w.batch, w.pair, w.filled);
-    w.filled = 0;
-  };
-
-  for (std::size_t begin = 0; begin < chunk.pairs.size(); begin += kLanes) {
-    const int count = static_cast<int>(std::min<std::size_t>(kLanes, chunk.pairs.size() - begin));
-    typename Kind::Batch batch;
-    for (int lane = 0; lane < kLanes; ++lane) {
-      const auto& v =
-          chunk.pairs[begin + static_cast<std::size_t>(std::min(lane, count - 1))].vertex;
-      for (int k = 0; k < kArms; ++k) {
-        for (int a = 0; a < 3; ++a) {
-          batch.arm[3 * k + a][lane] =
-              static_cast<float>((x[v[k + 1]][a] - x[v[0]][a]) * inverseUnit);
-        }
-      }
-    }
-    std::array<std::int32_t, kLanes> rules;
-    Kind::choose(batch, rules.data());
-    if (rules[0] < kernels::kRules &&
-        std::all_of(rules.begin(), rules.end(), [&](std::int32_t r) { return r == rules[0]; })) {
-      Kind::integrate(batch, rules[0]);
-      std::array<const Pair*, kLanes> batchPairs{};
-      for (int lane = 0; lane < count; ++lane) {
-        batchPairs[lane] = &chunk.pairs[begin + static_cast<std::size_t>(lane)];
-      }
-      add(batch, batchPairs, count);
-      continue;
-    }
-    for (int lane = 0; lane < count; ++lane) {
-      const Pair& pair = chunk.pairs[begin + static_cast<std::size_t>(lane)];
-      const int rule = rules[lane];
-      if (rule == kernels::kRules) {
-        const auto& v = pair.vertex;
-        const auto& t = Kind::kCornersT;
-        const PairIntegral exact =
-            Kind::exactly({x[v[0]], x[v[1]], x[v[2]]}, {x[v[t[0]]], x[v[t[1]]], x[v[t[2]]]});
-        sum.value += 2 * exact.value;
-        for (int k = 0; k < 3; ++k) {
-          sum.gradient[v[k]] += 2 * exact.byS[k];
-          sum.gradient[v[t[k]]] += 2 * exact.byT[k];
-        }
-        continue;
-      }
-      Waiting& w = waiting[rule];
-      for (int row = 0; row < 3 * kArms; ++row) w.batch.arm[row][w.filled] = batch.arm[row][lane];
-      w.pair[w.filled++] = &pair;
-      if (w.filled == kLanes) flush(rule);
+  void addAreas() {
+    for (std::size_t f = 0; f < chunk_.faces.size(); ++f) {
+      const auto& v = chunk_.faces[f];
+      const Corners corners = {x_[v[0]], x_[v[1]], x_[v[2]]};
+      const Vector scaled = sum_.byArea[f] * areaOf(static_cast<std::int32_t>(f)).normal;
+      for (int k = 0; k < 3; ++k) sum_.gradient[v[k]] += areaByCorner(scaled, corners, k);
     }
   }
-  for (int rule = 0; rule < kernels::kRules; ++rule) flush(rule);
 
-  for (std::size_t f = 0; f < chunk.faces.size(); ++f) {
-    const auto& v = chunk.faces[f];
-    const Corners corners = {x[v[0]], x[v[1]], x[v[2]]};
-    const Vector scaled = byArea[f] * areaOf(static_cast<std::int32_t>(f)).normal;
-    for (int k = 0; k < 3; ++k) sum.gradient[v[k]] += areaByCorner(scaled, corners, k);
-  }
-}
+  const Chunk& chunk_;
+  const std::vector<FaceArea>& areas_;
+  double inverseUnit_;
+  Sum& sum_;
+  std::vector<Point>& x_;
+  std::array<Waiting, kernels::kRules> waiting_;
+};
 
 void AdjacentChunks::add(const Positions& positions, const std::vector<FaceArea>& areas,
                          double unit, std::vector<Sum>& sums, double& value,
@@ -266,9 +296,9 @@ void AdjacentChunks::add(const Positions& positions, const std::vector<FaceArea>
   sums.resize(edges + vertexChunks_.size());
   parallelFor(sums.size(), 1, [&](std::size_t c) {
     if (c < edges) {
-      sumUp<EdgeKind>(edgeChunks_[c], positions, areas, unit, sums[c]);
+      Adder<EdgeKind>(edgeChunks_[c], positions, areas, unit, sums[c]).run();
     } else {
-      sumUp<VertexKind>(vertexChunks_[c - edges], positions, areas, unit, sums[c]);
+      Adder<VertexKind>(vertexChunks_[c - edges], positions, areas, unit, sums[c]).run();
     }
   });
   for (const Sum& sum : sums) value += sum.value;

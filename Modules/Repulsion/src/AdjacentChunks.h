@@ -53,8 +53,7 @@ class AdjacentChunks {
                                 const std::vector<std::int32_t>& rank,
                                 const std::vector<std::int32_t>& involved, bool edges);
   template <class Kind>
-  static void sumUp(const Chunk& chunk, const Positions& positions,
-                    const std::vector<FaceArea>& areas, double unit, Sum& sum);
+  class Adder;
 
   /// A vertex of a chunk: edge chunks count first.
   struct Place {

@@ -38,9 +38,8 @@ py::dict conditionOf(const geometry::MeshCondition& c) {
       "closed_manifold"_a = c.closedManifold());
 }
 
-}  // namespace
-
-void bindGeometry(py::module_& m) {
+/// Areas, normals, angles, lengths and the Laplacian.
+void bindMeasures(py::module_& m) {
   const auto p = py::arg("positions"), f = py::arg("faces");
   m.def(
       "face_areas",
@@ -61,62 +60,17 @@ void bindGeometry(py::module_& m) {
       },
       p, f, "Area-weighted outward unit normals, shape (V, 3).");
   m.def(
-      "enclosed_volume",
-      [](const PositionsIn& positions, const FacesIn& faces) {
-        return geometry::enclosedVolume(meshOf(positions, faces));
-      },
-      p, f, "Signed volume of a closed surface, mm^3; positive if faces are outward.");
-  m.def(
-      "inspect_mesh",
-      [](const PositionsIn& positions, const FacesIn& faces) {
-        return conditionOf(geometry::inspectMesh({positions, faces}));
-      },
-      p, f,
-      "Counts of what makes a surface usable or not: Euler characteristic, boundary, defects.");
-  m.def(
-      "self_intersections",
-      [](const PositionsIn& positions, const FacesIn& faces) {
-        const TriangleMesh mesh = meshOf(positions, faces);
-        return rowsOf(unlocked([&] { return geometry::findSelfIntersections(mesh); }));
-      },
-      p, f, "Pairs of faces that intersect, shape (N, 2); decided exactly.");
-  m.def(
-      "geodesic_distances",
-      [](const PositionsIn& positions, const FacesIn& faces,
-         const std::vector<std::int32_t>& sources, double limit) {
-        const TriangleMesh mesh = meshOf(positions, faces);
-        return unlocked([&] {
-          const auto topology = geometry::buildTopology(mesh.faces, mesh.vertexCount());
-          return geometry::geodesicDistances(mesh, topology, sources, limit);
-        });
-      },
-      p, f, py::arg("sources"), py::arg("limit") = kInfinity,
-      "Distance along the surface from the nearest source vertex, mm, shape (V,); inf beyond "
-      "limit.");
-  m.def(
-      "closest_points",
-      [](const PositionsIn& positions, const FacesIn& faces, const PositionsIn& queries) {
-        const TriangleMesh mesh = meshOf(positions, faces);
-        Positions points(queries.rows(), 3);
-        Eigen::VectorXi face(queries.rows());
-        unlocked([&] {
-          const geometry::FaceTree tree(mesh);
-          for (Eigen::Index q = 0; q < queries.rows(); ++q) {
-            const auto nearest = tree.closestPoint(queries.row(q).transpose());
-            points.row(q) = nearest.point.transpose();
-            face[q] = nearest.face;
-          }
-        });
-        return std::make_tuple(std::move(points), std::move(face));
-      },
-      p, f, py::arg("queries"),
-      "Nearest surface points, shape (N, 3), and their faces, shape (N,), of query points (N, 3).");
-  m.def(
       "face_normals",
       [](const PositionsIn& positions, const FacesIn& faces) {
         return geometry::faceNormalVectors(meshOf(positions, faces));
       },
       p, f, "Outward normal of each face, twice its area long, shape (F, 3), mm^2.");
+  m.def(
+      "enclosed_volume",
+      [](const PositionsIn& positions, const FacesIn& faces) {
+        return geometry::enclosedVolume(meshOf(positions, faces));
+      },
+      p, f, "Signed volume of a closed surface, mm^3; positive if faces are outward.");
   m.def(
       "smallest_angles",
       [](const PositionsIn& positions, const FacesIn& faces) {
@@ -148,6 +102,66 @@ void bindGeometry(py::module_& m) {
       p, f,
       "Cotangent Laplacian (V, V), symmetric positive semi-definite, without mass, as\n"
       "(values, rows, columns): scipy.sparse.coo_matrix((values, (rows, columns))).");
+}
+
+/// What makes a surface usable or not.
+void bindTests(py::module_& m) {
+  const auto p = py::arg("positions"), f = py::arg("faces");
+  m.def(
+      "inspect_mesh",
+      [](const PositionsIn& positions, const FacesIn& faces) {
+        return conditionOf(geometry::inspectMesh({positions, faces}));
+      },
+      p, f,
+      "Counts of what makes a surface usable or not: Euler characteristic, boundary, defects.");
+  m.def(
+      "self_intersections",
+      [](const PositionsIn& positions, const FacesIn& faces) {
+        const TriangleMesh mesh = meshOf(positions, faces);
+        return rowsOf(unlocked([&] { return geometry::findSelfIntersections(mesh); }));
+      },
+      p, f, "Pairs of faces that intersect, shape (N, 2); decided exactly.");
+}
+
+/// Distances on a surface and from it.
+void bindPlaces(py::module_& m) {
+  const auto p = py::arg("positions"), f = py::arg("faces");
+  m.def(
+      "geodesic_distances",
+      [](const PositionsIn& positions, const FacesIn& faces,
+         const std::vector<std::int32_t>& sources, double limit) {
+        const TriangleMesh mesh = meshOf(positions, faces);
+        return unlocked([&] {
+          const auto topology = geometry::buildTopology(mesh.faces, mesh.vertexCount());
+          return geometry::geodesicDistances(mesh, topology, sources, limit);
+        });
+      },
+      p, f, py::arg("sources"), py::arg("limit") = kInfinity,
+      "Distance along the surface from the nearest source vertex, mm, shape (V,); inf beyond "
+      "limit.");
+  m.def(
+      "closest_points",
+      [](const PositionsIn& positions, const FacesIn& faces, const PositionsIn& queries) {
+        const TriangleMesh mesh = meshOf(positions, faces);
+        Positions points(queries.rows(), 3);
+        Eigen::VectorXi face(queries.rows());
+        unlocked([&] {
+          const geometry::FaceTree tree(mesh);
+          for (Eigen::Index q = 0; q < queries.rows(); ++q) {
+            const auto nearest = tree.closestPoint(queries.row(q).transpose());
+            points.row(q) = nearest.point.transpose();
+            face[q] = nearest.face;
+          }
+        });
+        return std::make_tuple(std::move(points), std::move(face));
+      },
+      p, f, py::arg("queries"),
+      "Nearest surface points, shape (N, 3), and their faces, shape (N,), of query points (N, 3).");
+}
+
+/// Edges, pieces and parts.
+void bindTopology(py::module_& m) {
+  const auto p = py::arg("positions"), f = py::arg("faces");
   m.def(
       "mesh_edges",
       [](const PositionsIn& positions, const FacesIn& faces) {
@@ -185,6 +199,10 @@ void bindGeometry(py::module_& m) {
         return meshPair(geometry::subdivide(meshOf(positions, faces)));
       },
       p, f, "Each face into four by its edges' midpoints; old vertices keep their numbers.");
+}
+
+/// Surfaces whose measures are known.
+void bindFixtures(py::module_& m) {
   m.def(
       "torus",
       [](int majorSegments, int minorSegments, double major, double minor) {
@@ -212,6 +230,16 @@ void bindGeometry(py::module_& m) {
       },
       py::arg("levels"), py::arg("radius") = 1.0, py::arg("depth") = 0.25, py::arg("waves") = 6,
       "Sphere with folds: positions (V, 3), faces (F, 3).");
+}
+
+}  // namespace
+
+void bindGeometry(py::module_& m) {
+  bindMeasures(m);
+  bindTests(m);
+  bindPlaces(m);
+  bindTopology(m);
+  bindFixtures(m);
 }
 
 }  // namespace explica::python
