@@ -285,6 +285,27 @@ void smooth(const Place& place, Best& best) {
   }
 }
 
+/// Goes back towards the start nearly as far as nothing more crosses: both ways above go in steps.
+/// What is left of the way, a 128th, is a hundred times what rounding to single precision moves.
+Positions drawnBack(const Place& place, const Attempt& found) {
+  constexpr int kHalvings = 7;
+  const Positions& start = place.start().positions;
+  const auto stateAt = [&](double share) {
+    return place.withinReach(start + share * (found.positions - start));
+  };
+  const auto allowed = [&](const Positions& x) {
+    const auto pairs = place.crossings(x);
+    return pairs.size() <= found.left && place.onlyOld(pairs);
+  };
+  double far = 1, near = 0;
+  for (int n = 0; n < kHalvings; ++n) {
+    const double share = (far + near) / 2;
+    (allowed(stateAt(share)) ? far : near) = share;
+  }
+  const Positions x = stateAt(std::min(1.0, 2 * far - near));
+  return allowed(x) ? x : found.positions;
+}
+
 bool isConcerned(const std::vector<geometry::FacePair>& pairs, const std::vector<bool>& concerned) {
   return std::any_of(pairs.begin(), pairs.end(), [&](const geometry::FacePair& pair) {
     return concerned.empty() || concerned[pair[0]] || concerned[pair[1]];
@@ -319,9 +340,8 @@ Untangling untangle(const TriangleMesh& mesh, const UntangleOptions& options) {
       descend(place, options, best);
       smooth(place, best);
       if (!best.get()) continue;
-      for (const std::int32_t v : place.free()) {
-        now.positions.row(place.origin(v)) = best.get()->positions.row(v);
-      }
+      const Positions moved = drawnBack(place, *best.get());
+      for (const std::int32_t v : place.free()) now.positions.row(place.origin(v)) = moved.row(v);
       tree.refit(geometry::faceBoxes(now));
     }
     result.after = geometry::findSelfIntersections(now);
