@@ -59,6 +59,16 @@ TEST(Untangling, PartsBanksThatPassedThroughEachOther) {
   }
 }
 
+TEST(Untangling, MovesNoFartherThanItMust) {
+  const TriangleMesh mesh = geometry::joined(
+      geometry::makeIcosphere(4, 10.0), geometry::makeIcosphere(4, 10.0, Point(19.8, 0.3, 0.2)));
+  const Untangling result = untangle(mesh);
+  ASSERT_TRUE(result.after.empty());
+  TriangleMesh nearly = mesh;
+  nearly.positions += 0.98 * (result.positions - mesh.positions);
+  EXPECT_FALSE(geometry::findSelfIntersections(nearly).empty());
+}
+
 TEST(Untangling, OpensFolds) {
   const TriangleMesh mesh = makeCrumpledSphere(1.2);
   const Untangling result = untangle(mesh);
