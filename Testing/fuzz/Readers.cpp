@@ -67,6 +67,7 @@ const std::vector<Reader>& allReaders() {
       {"mgh", "volume.mgh", readVolume},
       {"nrrd", "volume.nrrd", readVolume},
       {"metaimage", "volume.mha", readVolume},
+      {"png", "volume.png", readVolume},
       {"gifti", "a.surf.gii", readSurface},
       {"gifti-maps", "a.shape.gii", readMaps},
       {"gifti-labels", "a.label.gii", readMaps},

@@ -4,6 +4,7 @@
 #include "ItkVolume.h"
 
 #include "ByteSource.h"
+#include "PngStructure.h"
 
 #include <itkMetaImageIO.h>
 #include <itkNrrdImageIO.h>
@@ -276,18 +277,6 @@ void checkMetaImage(const std::filesystem::path& path, ByteView bytes) {
   const std::uint64_t needed = checkedProduct(path, all) * (text ? 2 : widthOf(*type)) - text;
   if (needed > dataLimit(path, header, dataFile, bytes.size(), packed)) {
     failTruncated(path, "the data end too early for the sizes of the header");
-  }
-}
-
-void checkPng(const std::filesystem::path& path, ByteView bytes) {
-  // Signature 8, then the IHDR chunk: length, type, width, height, bits, colour, ...
-  constexpr std::int64_t kWidestPixel = 8;
-  if (bytes.size() < 33) failTruncated(path, "the file ends too early");
-  const std::int64_t width = load<std::uint32_t>(bytes.data() + 16, true);
-  const std::int64_t height = load<std::uint32_t>(bytes.data() + 20, true);
-  const std::int64_t pixels = checkedProduct(path, {width, height});
-  if (pixels > static_cast<std::int64_t>(bytes.size()) * 1032 * kWidestPixel) {
-    failToRead(path, "the file is too short for the size that its header announces");
   }
 }
 

@@ -50,6 +50,29 @@ io::LabelMap smallLabels() {
   return labels;
 }
 
+/// A chunk of a PNG file with its right checksum [ISO 15948, annex D].
+std::string pngChunk(const std::string& type, const std::string& content) {
+  const auto bigEndian = [](std::uint32_t n) {
+    return std::string{static_cast<char>(n >> 24), static_cast<char>(n >> 16),
+                       static_cast<char>(n >> 8), static_cast<char>(n)};
+  };
+  std::uint32_t sum = ~0U;
+  for (const char c : type + content) {
+    sum ^= static_cast<unsigned char>(c);
+    for (int bit = 0; bit < 8; ++bit) sum = sum >> 1 ^ (0xEDB88320U & (0U - (sum & 1U)));
+  }
+  return bigEndian(static_cast<std::uint32_t>(content.size())) + type + content + bigEndian(~sum);
+}
+
+/// A grey picture of 4 x 3 pixels with more chunks before its pixels.
+std::string pngWith(const std::string& more, char colour = 0) {
+  const std::string size("\0\0\0\4\0\0\0\3\10", 9);
+  const std::string packed(
+      "\x78\x9c\x63\x60\x30\x4a\x39\xc1\xc0\x05\x22\x44\x80\x04\x00\x1b\xad\x04\x39", 19);
+  return "\x89PNG\r\n\x1a\n" + pngChunk("IHDR", size + colour + std::string(3, '\0')) + more +
+         pngChunk("IDAT", packed) + pngChunk("IEND", "");
+}
+
 void write(const fs::path& path) {
   const std::string name = path.filename().string();
   const TriangleMesh mesh = geometry::makeIcosphere(0);
@@ -95,6 +118,8 @@ void write(const fs::path& path) {
                "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
                "property float z\nelement face 1\nproperty list uchar int vertex_index\n"
                "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  } else if (name == "volume.png") {
+    putContent(path, pngWith(""));
   } else if (name.starts_with("volume.")) {
     io::writeVolume(path, smallVolume());
   } else {
@@ -274,6 +299,28 @@ TEST(ImplausibleCoordinates, AreRefused) {
   EXPECT_EQ(said("9e6"), "accepted");
 }
 
+/// libpng, as ITK calls it, ends the program on these.
+TEST(DamagedFile, PicturesThatLibpngWouldAbortOnAreRefused) {
+  const TemporaryFolder folder;
+  const fs::path path = folder / "a.png";
+  const auto said = [&](const std::string& bytes) {
+    putContent(path, bytes);
+    return complaint(path, [](const fs::path& p) { static_cast<void>(io::readScalars(p)); });
+  };
+  EXPECT_EQ(said(pngWith("")), "accepted");
+  EXPECT_EQ(said(pngWith(pngChunk("teXt", "what no reader needs"))), "accepted");
+  const std::string header = pngWith("").substr(8, 25);
+  for (const std::string& chunk :
+       {header, pngChunk("ABCD", "must be understood"), pngChunk("PLTE", std::string(7, '\1'))}) {
+    EXPECT_NE(said(pngWith(chunk)).find("is damaged"), std::string::npos) << chunk.substr(4, 4);
+  }
+  EXPECT_NE(said(pngWith("", 3)).find("lacks its palette"), std::string::npos);
+  EXPECT_NE(said(pngWith("", 5)).find("values that do not exist"), std::string::npos);
+  std::string renamed = pngWith("");
+  renamed[37] = '\3';
+  EXPECT_NE(said(renamed).find("is damaged"), std::string::npos);
+}
+
 /// With EXPLICA_SEEDS set to a folder, writes one file of each format as fuzzers' first inputs.
 TEST_P(DamagedFiles, WholeOnesAreSeeds) {
   const char* seeds = std::getenv("EXPLICA_SEEDS");
@@ -285,11 +332,12 @@ TEST_P(DamagedFiles, WholeOnesAreSeeds) {
 
 INSTANTIATE_TEST_SUITE_P(Formats, DamagedFiles,
                          testing::Values("volume.nii", "volume.nii.gz", "volume.mgh", "volume.mgz",
-                                         "volume.nrrd", "volume.mha", "a.surf.gii", "a.surf.gii.gz",
-                                         "a.shape.gii", "a.label.gii", "lh.white", "lh.curv",
-                                         "lh.a.annot", "lh.a.label", "a.vtp", "base64.vtp",
-                                         "legacy.vtk", "a.ply", "text.ply", "a.obj", "a.off",
-                                         "a.stl", "text.stl", "polygon.csv", "polygon.vtp"),
+                                         "volume.nrrd", "volume.mha", "volume.png", "a.surf.gii",
+                                         "a.surf.gii.gz", "a.shape.gii", "a.label.gii", "lh.white",
+                                         "lh.curv", "lh.a.annot", "lh.a.label", "a.vtp",
+                                         "base64.vtp", "legacy.vtk", "a.ply", "text.ply", "a.obj",
+                                         "a.off", "a.stl", "text.stl", "polygon.csv",
+                                         "polygon.vtp"),
                          [](const auto& instance) {
                            std::string name = instance.param;
                            std::replace(name.begin(), name.end(), '.', '_');
