@@ -27,8 +27,11 @@ class Mutation:
 
 ALL = [
     Mutation("Modules/Harmonic/src/MultigridCoarsening.cpp",
-             "conductance += own * h_.unit[axis] / (distance + shift);",
-             "conductance += own * h_.unit[axis] / distance;", "ExplicaHarmonicUnitTests"),
+             "t_.coarsened[axis] ? 0.5F * conductance : conductance;",
+             "t_.coarsened[axis] ? conductance : conductance;", "ExplicaHarmonicUnitTests"),
+    Mutation("Modules/Harmonic/src/Stencil.cpp",
+             "2 * inverseSquare[a] / (fractions[d] * (left + right));",
+             "inverseSquare[a] / fractions[d];", "ExplicaHarmonicUnitTests"),
     Mutation("Modules/Correspondence/src/Layers.cpp",
              "share[n] = below / (below + above);", "share[n] = above / (below + above);",
              "ExplicaCorrespondenceUnitTests"),
@@ -70,7 +73,7 @@ ALL = [
              "ExplicaSamplingUnitTests"),
     Mutation("Modules/IO/src/NiftiFormat.cpp",
              "affine(axis, 3) = header.quaternion[axis + 3] * unit;",
-             "affine(axis, 3) = header.quaternion[axis + 3];", "ExplicaIOUnitTests"),
+             "affine(axis, 3) = header.quaternion[axis + 3] * unit * unit;", "ExplicaIOUnitTests"),
     Mutation("Modules/Flattening/src/MapEnergy.cpp",
              "density.dP = 4 * (p - 1) + 2 * p * slope;", "density.dP = 4 * (p - 1) + p * slope;",
              "ExplicaFlatteningUnitTests"),
