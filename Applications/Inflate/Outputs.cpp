@@ -59,7 +59,7 @@ void reportDistances(Context& context, const Inflated& u) {
   const auto all = everyFace(u.before);
   flattening::DistanceOptions options;
   options.sources = options.farSources = static_cast<int>(
-      std::clamp(kDistanceWork / static_cast<double>(u.before.vertexCount() + 1), 10.0, 30.0));
+      std::clamp(kDistanceWork / static_cast<double>(u.before.vertexCount() + 1), 10.0, 20.0));
   const auto pairs = flattening::drawPairs(u.before, all, options);
   const auto along = flattening::DistanceKind::Surface;
   context.result("geodesic_error_local",

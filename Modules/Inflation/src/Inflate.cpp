@@ -71,9 +71,15 @@ unfolding::UnfolderOptions solverOptions(const InflateOptions& options) {
   return solver;
 }
 
-/// How much harder to drive: more the farther the goal is.
-double driveFactor(double visibility, double goal) {
-  return std::clamp(1 + 10 * (goal - visibility), 1.05, 1.5);
+/// What to aim at for a goal: a little beyond, since areas that are still off cost visibility.
+double aimFor(double goal) {
+  constexpr double kBeyond = 0.2;  // of what the goal leaves
+  return goal + kBeyond * (1 - goal);
+}
+
+/// How much harder to drive: more the farther the aim is.
+double driveFactor(double visibility, double aim) {
+  return std::clamp(1 + 10 * (aim - visibility), 1.1, 1.5);
 }
 
 /// An inflation under way.
@@ -146,12 +152,10 @@ class Inflation {
   void look() {
     auto [now, directions] = lookNow();
     unfolder_.setDirections(field_.spread(directions));
+    const double aim = aimFor(options_.targetSeen), drive = unfolder_.state().drive;
     const bool slow = !looks_.empty() && now.visibility - looks_.back().visibility < kSlowGain;
-    const double drive = unfolder_.state().drive;
-    if (slow && !unfolder_.state().separating && now.visibility < options_.targetSeen &&
-        drive < kLargestDrive) {
-      unfolder_.raiseDrive(
-          std::min(driveFactor(now.visibility, options_.targetSeen), kLargestDrive / drive));
+    if (slow && !unfolder_.state().separating && now.visibility < aim && drive < kLargestDrive) {
+      unfolder_.raiseDrive(std::min(driveFactor(now.visibility, aim), kLargestDrive / drive));
     }
     looks_.push_back(now);
   }

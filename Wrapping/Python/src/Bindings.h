@@ -19,6 +19,7 @@ void bindCollision(pybind11::module_& m);
 void bindSampling(pybind11::module_& m);
 void bindUnfolding(pybind11::module_& m);
 void bindFlattening(pybind11::module_& m);
+void bindInflation(pybind11::module_& m);
 void bindPlanar(pybind11::module_& m);
 void bindShapes(pybind11::module_& m);
 void bindReport(pybind11::module_& m);

@@ -17,6 +17,7 @@ PYBIND11_MODULE(_explica, m) {
   explica::python::bindSampling(m);
   explica::python::bindUnfolding(m);
   explica::python::bindFlattening(m);
+  explica::python::bindInflation(m);
   explica::python::bindPlanar(m);
   explica::python::bindShapes(m);
   explica::python::bindReport(m);

@@ -81,6 +81,20 @@ constexpr std::array kFindings = {
     Finding{"sample", "points", "", "Points", "", Shown::Plain, ""},
     Finding{"sample", "points_distance_max", "", "Farthest point from the cortex", "mm",
             Shown::Plain, "Of its nearest column from white to pial."},
+    Finding{"inflate", "visibility_final", "visibility_initial", "Global visibility", "",
+            Shown::Plain,
+            "Share of the view from all around that reaches the surface, each place weighing the "
+            "viewpoints before it by the cosine, before and after; 1 for convex surfaces only."},
+    Finding{"inflate", "seen_final", "seen_initial", "Seen from somewhere", "", Shown::Percent,
+            "Share of the area that any viewpoint of the enclosing sphere sees, before and after."},
+    Finding{"inflate", "area_error_mean", "", "Error of areas, mean", "", Shown::Percent,
+            "Of the surface's faces."},
+    Finding{"inflate", "edge_strain_mean", "", "Change of lengths, mean", "", Shown::Percent,
+            "Of the surface's edges."},
+    Finding{"inflate", "angle_error_mean_deg", "", "Change of angles, mean", "\u00b0", Shown::Plain,
+            "Largest of each face."},
+    Finding{"inflate", "geodesic_error_local", "", "Error of distances within 30 mm", "",
+            Shown::Percent, "Along the surface, at the scale that suits it best."},
 };
 
 std::string shownAs(Shown shown, double value) {

@@ -55,11 +55,12 @@ std::vector<ReportFlag> thicknessFlags(const StepFolder& step) {
   return flags;
 }
 
-ReportFlag crossingFlag(const StepFolder& step, double pairs) {
+ReportFlag crossingFlag(const StepFolder& step, double pairs,
+                        const std::string& what = "Unfolded surface") {
   const double before = step.number("self_intersections_initial").value_or(0);
   const FlagLevel level =
       pairs == 0 ? FlagLevel::Good : (pairs <= before ? FlagLevel::Notice : FlagLevel::Bad);
-  return {level, "Unfolded surface meets itself" + sideWord(step) + ":",
+  return {level, what + " meets itself" + sideWord(step) + ":",
           pairs == 0
               ? "nowhere, by an exact test"
               : "at " + readable(pairs) + " pairs of faces, " + readable(before) + " at the start",
@@ -95,6 +96,16 @@ std::vector<ReportFlag> surroundingFlags(const StepFolder& step) {
   return flags;
 }
 
+ReportFlag areaFlag(const StepFolder& step, double error) {
+  const FlagLevel level = error < kAreaErrorGood  ? FlagLevel::Good
+                          : error < kAreaErrorBad ? FlagLevel::Notice
+                                                  : FlagLevel::Bad;
+  return {level, "Areas kept" + sideWord(step) + ":",
+          "mean error " + percent(error) + ", largest " +
+              percent(step.number("area_error_max").value_or(kNaN)),
+          kDistortionPlace};
+}
+
 std::vector<ReportFlag> unfoldFlags(const StepFolder& step) {
   std::vector<ReportFlag> flags;
   const std::string side = sideWord(step);
@@ -108,15 +119,7 @@ std::vector<ReportFlag> unfoldFlags(const StepFolder& step) {
                      "the result is not what was asked for; the warnings below say why",
                      kPatchPlace});
   }
-  if (const auto area = step.number("area_error_mean")) {
-    flags.push_back({*area < kAreaErrorGood
-                         ? FlagLevel::Good
-                         : (*area < kAreaErrorBad ? FlagLevel::Notice : FlagLevel::Bad),
-                     "Areas kept" + side + ":",
-                     "mean error " + percent(*area) + ", largest " +
-                         percent(step.number("area_error_max").value_or(kNaN)),
-                     kDistortionPlace});
-  }
+  if (const auto area = step.number("area_error_mean")) flags.push_back(areaFlag(step, *area));
   if (const auto visibility = step.number("visibility_final")) {
     const double seen = step.number("seen_final").value_or(kNaN);
     flags.push_back(
@@ -166,6 +169,30 @@ std::vector<ReportFlag> sampleFlags(const StepFolder& step) {
   return flags;
 }
 
+std::vector<ReportFlag> inflateFlags(const StepFolder& step) {
+  std::vector<ReportFlag> flags;
+  const std::string side = sideWord(step);
+  if (const auto pairs = step.number("self_intersections_final")) {
+    flags.push_back(crossingFlag(step, *pairs, "Inflated surface"));
+  }
+  const std::string flag = step.text("flag");
+  if (!flag.empty()) {
+    flags.push_back({FlagLevel::Bad, "Inflation " + flag + side + ":",
+                     "the result is not what was asked for; the warnings below say why",
+                     kPatchPlace});
+  }
+  if (const auto area = step.number("area_error_mean")) flags.push_back(areaFlag(step, *area));
+  if (const auto visibility = step.number("visibility_final")) {
+    flags.push_back({*visibility > kOpened ? FlagLevel::Good : FlagLevel::Notice,
+                     "Seen from all around" + side + ":",
+                     percent(step.number("seen_final").value_or(kNaN)) +
+                         " of the area from somewhere, at global visibility " +
+                         readable(*visibility),
+                     kPatchViewsPlace});
+  }
+  return flags;
+}
+
 /// What the program itself could not vouch for: the list "flags" of a summary.
 std::vector<ReportFlag> ownFlags(const StepFolder& step) {
   std::vector<ReportFlag> flags;
@@ -189,6 +216,7 @@ std::vector<ReportFlag> flagsOf(const StepFolder& step) {
   if (step.command == "unfold") return unfoldFlags(step);
   if (step.command == "flatten") return flattenFlags(step);
   if (step.command == "sample") return sampleFlags(step);
+  if (step.command == "inflate") return inflateFlags(step);
   return {};
 }
 

@@ -85,6 +85,10 @@ void showStep(ResultFolder& results, const StepFolder& step, const std::vector<G
     results.attempt("Flat map", [&] { showFlat(results, step, maps); });
     return;
   }
+  if (step.command == "inflate") {
+    results.attempt("Evolution", [&] { showInflation(results, step); });
+    chartUnfolding(results, step);
+  }
   results.attempt("Pictures of " + titleOf(step.name), [&] { showOwnPictures(results, step); });
 }
 

@@ -39,6 +39,16 @@ void showSurfaces(ResultFolder& results, const FolderReportOptions& options,
 void showUnfolding(ResultFolder& results, const StepFolder& step,
                    const std::vector<GivenMap>& maps);
 
+/// The inflation: what the interactive view plays, and the surface before and after.
+void showInflation(ResultFolder& results, const StepFolder& step);
+
+/// Frames that a step has written, thinned to what a page can hold.
+struct ShownFrames {
+  std::vector<TriangleMesh> meshes;
+  std::vector<std::string> titles;  ///< "frame 12, visibility 0.834"
+};
+[[nodiscard]] ShownFrames framesOf(const StepFolder& step);
+
 /// Histogram of the thickness in voxels.
 void chartThickness(ResultFolder& results, const StepFolder& step);
 

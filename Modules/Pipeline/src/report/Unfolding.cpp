@@ -79,10 +79,9 @@ Unfolded readUnfolded(const StepFolder& step) {
   Unfolded unfolded;
   const auto source = inputOf(step, "SURFACE");
   if (source && fs::exists(*source)) unfolded.whole = io::readSurface(*source).mesh;
-  for (const fs::path& file : fewFrames(step.folder, kMostFrames)) {
-    unfolded.frames.push_back(io::readSurface(file).mesh);
-    unfolded.titles.push_back(titleOf(file, step.summary));
-  }
+  ShownFrames frames = framesOf(step);
+  unfolded.frames = std::move(frames.meshes);
+  unfolded.titles = std::move(frames.titles);
   const TriangleMesh after = io::readSurface(step.folder / "unfolded.surf.gii").mesh;
   if (unfolded.frames.empty()) {
     if (unfolded.whole && unfolded.whole->vertexCount() == after.vertexCount()) {
@@ -271,6 +270,15 @@ void drawBeforeAndAfter(ResultFolder& results, const Unfolded& unfolded, const S
 }
 
 }  // namespace
+
+ShownFrames framesOf(const StepFolder& step) {
+  ShownFrames frames;
+  for (const fs::path& file : fewFrames(step.folder, kMostFrames)) {
+    frames.meshes.push_back(io::readSurface(file).mesh);
+    frames.titles.push_back(titleOf(file, step.summary));
+  }
+  return frames;
+}
 
 void showUnfolding(ResultFolder& results, const StepFolder& step,
                    const std::vector<GivenMap>& maps) {

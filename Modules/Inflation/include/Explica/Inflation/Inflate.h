@@ -16,7 +16,7 @@ namespace explica::inflation {
 /// How to inflate and when to stop.
 struct InflateOptions {
   double targetSeen = 0.98;      ///< global visibility to reach, see visibility::lookFromSphere()
-  double areaTolerance = 0.005;  ///< ... with a mean relative area error not above this
+  double areaTolerance = 0.008;  ///< ... with a mean relative area error not above this
   double smoothing = 0.15;       ///< reach of DirectionField, of the radius of a sphere of the area
   int lookEvery = 4;             ///< iterations between two looks from the enclosing sphere, > 0
   int viewpoints = 64;           ///< on the enclosing sphere
