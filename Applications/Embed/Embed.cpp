@@ -15,6 +15,7 @@
 #include "Explica/Shapes/FitFigure.h"
 #include "Explica/Shapes/ShapeFit.h"
 #include "Explica/Shapes/ShapeLevel.h"
+#include "Series.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,6 +37,7 @@ struct Settings {
   shapes::AnnulusOptions annulus;
   int grid = 96;
   int frames = 6;
+  std::optional<int> series;
   shapes::ShapeFitOptions fitting;
 };
 
@@ -54,6 +56,8 @@ void declare(Declaration& d, Settings& s) {
       .example("explica embed a.csv b.csv --average --out mean", "Mean shape of two contours")
       .example("explica embed a.surf.gii b.surf.gii --combine 0.3,0.7 --out mix",
                "Between two surfaces")
+      .example("explica embed a.csv b.csv --series 9 --out series",
+               "Nine shapes from one contour to the other, side by side and as a film")
       .example("explica embed ED_label.nii.gz --label 2 --band 3 --out band",
                "The outer contour of the heart muscle, in a band of 3 mm about it")
       .example("explica embed mid.csv --annulus ED_label.nii.gz --inner 1 --tissue 2 --out muscle",
@@ -63,6 +67,12 @@ void declare(Declaration& d, Settings& s) {
       .option("Shape", Field{"fit", "", "fit a single target (default for one target)"}, s.fit)
       .option("Shape", Field{"average", "", "mean of the targets (default for several)"}, s.average)
       .option("Shape", Field{"combine", "", "weights of the targets, one each"}, s.weights);
+  d.option("Shape",
+           Field{"series", "",
+                 "of two targets: this many convex combinations from the first to the second, as "
+                 "files, figure and film",
+                 2, 1000},
+           s.series);
   declarePolygonReading(d, s.reading);
   d.options("Annulus", s.annulus)
       .option("Annulus",
@@ -86,7 +96,13 @@ void declare(Declaration& d, Settings& s) {
               "annulus' centre")
       .output("frames/frame-*.csv", FileKind::Polygon,
               "in 2D: from the initial estimate to the fit")
-      .output("frames/frame-*.surf.gii", FileKind::Surface, "in 3D: the same");
+      .output("frames/frame-*.surf.gii", FileKind::Surface, "in 3D: the same")
+      .output("series/shape-*.csv", FileKind::Polygon, "with --series, in 2D: the combinations")
+      .output("series/shape-*.surf.gii", FileKind::Surface, "with --series, in 3D: the same")
+      .output("series.svg", FileKind::Picture,
+              "with --series: the combinations side by side; in 3D their sections")
+      .output("series.png", FileKind::Picture, "with --series, in 3D: the surfaces side by side")
+      .output("series.gif", FileKind::Picture, "with --series: from one shape to the other");
 }
 
 /// A target as it was read: one of the three.
@@ -238,6 +254,7 @@ Termination run(Context& context, const Settings& s) {
   if (s.grid < 16 || s.fitting.samples < 16 || s.frames < 0) {
     throw UsageError("--grid and --samples need at least 16, --frames at least 0");
   }
+  if (s.series && s.targets.size() != 2) throw UsageError("--series takes two targets");
   std::vector<Target> targets;
   std::vector<shapes::TargetSamples> samples;
   for (const std::string& path : s.targets) {
@@ -299,6 +316,7 @@ Termination run(Context& context, const Settings& s) {
   context.result("annulus_width", shapes::widthOf(annulus));
   context.result("voxel", 2 * shapes::boxOf(annulus).halfSide / (s.grid - 1));
   context.result("boundary_margin", shapes::boundaryMargin(shape));
+  if (s.series) writeSeries(context, fitted[0], fitted[1], *s.series, s.grid);
   if (targets.size() == 1) reportDistance(context, shape, targets.front(), s.grid);
   return termination;
 }

@@ -8,6 +8,7 @@
 #include "Explica/IO/PolygonFile.h"
 #include "Explica/Planar/AngularSweep.h"
 #include "Explica/Planar/EvolutionFigure.h"
+#include "Explica/Planar/GlobalFlow.h"
 #include "Explica/Planar/PolygonMeasures.h"
 #include "Explica/Planar/PolygonPhantoms.h"
 #include "Explica/Planar/PolygonUnfolding.h"
@@ -46,11 +47,14 @@ struct Settings {
   std::optional<PhantomPolygon> phantom;
   PolygonReading reading;
   std::optional<std::string> region;
-  std::optional<Eigen::Vector2d> viewpoint;
-  std::optional<Eigen::Vector2d> direction;
+  std::vector<Eigen::Vector2d> viewpoint;
+  std::vector<Eigen::Vector2d> direction;
   double distance = 1000;
+  std::vector<double> weights;
   std::vector<double> line;
   planar::PolygonUnfoldingOptions unfolding;
+  std::optional<planar::GlobalMeasure> flow;
+  std::optional<double> viewingRadius;
   int frames = 0;
   int stages = 6;
   bool resume = false;
@@ -78,7 +82,9 @@ void declare(Declaration& d, Settings& s) {
   declarePolygonReading(d, s.reading);
   d.option("Region", Field{"region", "", "first and last vertex, I:J; default: the whole polygon"},
            s.region)
-      .option("Viewpoint", Field{"viewpoint", "mm", "point to look from"}, s.viewpoint)
+      .option("Viewpoint",
+              Field{"viewpoint", "mm", "point to look from; of several the weighted mean counts"},
+              s.viewpoint)
       .option("Viewpoint",
               Field{"direction", "", "look from the region's centroid plus --distance along this"},
               s.direction)
@@ -86,9 +92,27 @@ void declare(Declaration& d, Settings& s) {
               Field{"distance", "mm", "how far off a viewpoint given by --direction is"},
               s.distance)
       .option("Viewpoint",
+              Field{"view-weights", "",
+                    "weights of several viewpoints or directions, one each, in their order "
+                    "(default: equal)",
+                    kAboveZero},
+              s.weights)
+      .option("Viewpoint",
               Field{"view-line", "mm", "look from all points of the line X,Y,X,Y between two"},
               s.line)
       .options("Unfolding", s.unfolding)
+      .option("Unfolding",
+              Field{"global-flow", "",
+                    "instead of unfolding towards a viewpoint: descend on how much of a viewing "
+                    "circle is hidden, or on how much the polygon hides itself; all vertices move, "
+                    "lengths are free"},
+              s.flow)
+      .option("Unfolding",
+              Field{"viewing-radius", "mm",
+                    "of the viewing circle about the polygon's middle (default: ten times its "
+                    "farthest vertex)",
+                    kAboveZero},
+              s.viewingRadius)
       .option("Unfolding", Field{"resume", "", "continue the run whose outputs are in --out"},
               s.resume)
       .reuseOutputIf(s.resume)
@@ -123,24 +147,33 @@ planar::Region regionOf(const planar::Curve& curve, const std::optional<std::str
   return planar::regionBetween(curve, first, last);
 }
 
+planar::Viewpoints inPlane(const visibility::Viewpoints& view) {
+  planar::Viewpoints plane{{}, view.weights};
+  for (const Point& point : view.points) plane.points.emplace_back(point.head<2>());
+  return plane;
+}
+
 /// From where to look, if anything was said of it.
 std::optional<planar::Viewpoints> viewOf(const Settings& s, const planar::Curve& curve,
                                          const planar::Region& region) {
-  const int given =
-      int{s.viewpoint.has_value()} + int{s.direction.has_value()} + int{!s.line.empty()};
+  const int given = int{!s.viewpoint.empty()} + int{!s.direction.empty()} + int{!s.line.empty()};
   if (given == 0) return std::nullopt;
   if (given > 1) throw UsageError("give one of --viewpoint, --direction and --view-line");
-  if (s.viewpoint) return *s.viewpoint;
   if (!s.line.empty()) {
     if (s.line.size() != 4) throw UsageError("--view-line needs four numbers X,Y,X,Y");
-    const auto rule =
-        visibility::viewLine(Point(s.line[0], s.line[1], 0), Point(s.line[2], s.line[3], 0));
-    planar::Viewpoints view{{}, rule.weights};
-    for (const Point& point : rule.points) view.points.emplace_back(point.head<2>());
-    return view;
+    if (!s.weights.empty()) throw UsageError("--view-weights belong to --viewpoint or --direction");
+    return inPlane(
+        visibility::viewLine(Point(s.line[0], s.line[1], 0), Point(s.line[2], s.line[3], 0)));
   }
-  if (!(s.direction->norm() > 0)) throw UsageError("--direction has no length");
-  return planar::Point2(planar::centroidOf(curve, region) + s.distance * s.direction->normalized());
+  std::vector<Point> points;
+  for (const Eigen::Vector2d& point : s.viewpoint) points.emplace_back(point.x(), point.y(), 0);
+  for (const Eigen::Vector2d& direction : s.direction) {
+    if (!(direction.norm() > 0)) throw UsageError("--direction has no length");
+    const planar::Point2 point =
+        planar::centroidOf(curve, region) + s.distance * direction.normalized();
+    points.emplace_back(point.x(), point.y(), 0);
+  }
+  return inPlane(visibility::viewpoints(points, s.weights));
 }
 
 Task taskOf(Context& context, const Settings& s) {
@@ -178,6 +211,30 @@ std::string tableOf(const std::vector<planar::PolygonIteration>& history) {
   return table;
 }
 
+/// The figure of some stages, and the states on the way.
+/// @param history  rows with iteration, visibility, variance and length, one a state of `path`
+template <class Row>
+void writeStages(Context& context, const Settings& s, const std::vector<Row>& history,
+                 const std::vector<planar::PolygonState>& path, bool closed,
+                 const planar::Viewpoints& view) {
+  // Evenly spread in what the run is after: its visibility, or else its length.
+  std::vector<double> progress;
+  for (const Row& row : history) progress.push_back(s.flow ? row.length : row.visibility);
+  std::vector<planar::EvolutionStage> stages;
+  for (std::size_t k : planar::evenStages(progress, static_cast<std::size_t>(s.stages))) {
+    const Row& row = history[k];
+    const std::string title =
+        row.iteration == 0 ? "start" : "iteration " + std::to_string(row.iteration);
+    stages.push_back(
+        {title, path[k].positions, path[k].region, row.visibility, row.variance, row.length});
+  }
+  writeTextFile(context.output("evolution.svg"), planar::drawEvolution(closed, view, stages));
+  std::size_t number = 0;
+  for (std::size_t k : planar::evenStages(progress, static_cast<std::size_t>(s.frames))) {
+    io::writePolygonCsv(context.output(frameName(number++, ".csv")), path[k].positions);
+  }
+}
+
 /// One value an edge of the curve, NaN off the region.
 io::VertexMap edgeMap(const planar::Curve& curve, const planar::Region& region, std::string name,
                       const Eigen::VectorXd& values) {
@@ -203,49 +260,87 @@ void writeUnfolding(Context& context, const Settings& s, const planar::PolygonUn
   writeTextFile(context.output("evolution.tsv"), tableOf(result.history));
   writeTextFile(context.output(kStateFile), textOf(result.checkpoint));
 
-  std::vector<double> visibilities;
-  for (const auto& row : result.history) visibilities.push_back(row.visibility);
-  std::vector<planar::EvolutionStage> stages;
-  for (std::size_t k : planar::evenStages(visibilities, static_cast<std::size_t>(s.stages))) {
-    const planar::PolygonIteration& row = result.history[k];
-    const std::string title =
-        row.iteration == 0 ? "start" : "iteration " + std::to_string(row.iteration);
-    stages.push_back({title, result.path[k].positions, result.path[k].region, row.visibility,
-                      row.variance, row.length});
+  writeStages(context, s, result.history, result.path, result.curve.closed, view);
+}
+
+std::string tableOf(const std::vector<planar::GlobalFlowStep>& history) {
+  std::string table = "iteration\tmeasure\tvisibility\tflux_variance\tlength\tcrossings\n";
+  for (const planar::GlobalFlowStep& row : history) {
+    char line[200];
+    std::snprintf(line, sizeof line, "%d\t%.9g\t%.9g\t%.9g\t%.9g\t%d\n", row.iteration, row.measure,
+                  row.visibility, row.variance, row.length, row.crossings);
+    table += line;
   }
-  writeTextFile(context.output("evolution.svg"),
-                planar::drawEvolution(result.curve.closed, view, stages));
-  std::size_t number = 0;
-  for (std::size_t k : planar::evenStages(visibilities, static_cast<std::size_t>(s.frames))) {
-    io::writePolygonCsv(context.output(frameName(number++, ".csv")), result.path[k].positions);
-  }
+  return table;
+}
+
+/// The flow of a global measure, and what became of the region on the way.
+Termination runGlobalFlow(Context& context, const Settings& s, const Task& task) {
+  auto step = context.step("descend");
+  planar::GlobalFlowOptions options;
+  options.measure = *s.flow;
+  options.viewingRadius = s.viewingRadius;
+  if (context.given("max-iterations")) options.maxIterations = s.unfolding.maxIterations;
+  const planar::GlobalFlow flow =
+      planar::descendGlobalMeasure(task.curve, task.region, *task.view, options, context.monitor());
+  const planar::GlobalFlowStep& start = flow.history.front();
+  const planar::GlobalFlowStep& end = flow.history.back();
+  step.iterations(end.iteration);
+  step.termination(flow.termination);
+  io::writePolygonCsv(context.output("unfolded.csv"), flow.curve.positions);
+  io::writePolygonVtp(context.output("unfolded.vtp"), flow.curve.positions, {}, {});
+  writeTextFile(context.output("evolution.tsv"), tableOf(flow.history));
+  writeStages(context, s, flow.history, flow.path, true, *task.view);
+  context.result("measure_initial", start.measure);
+  context.result("measure_final", end.measure);
+  context.result("length_final", end.length);
+  context.result("visibility_initial", start.visibility);
+  context.result("visibility_final", end.visibility);
+  context.result("self_intersections_final", end.crossings);
+  context.result("iterations", end.iteration);
+  context.result("stop_reason", std::string(nameOf(flow.termination)));
+  return flow.termination;
+}
+
+/// The measures of the whole polygon, whatever the viewpoint.
+void reportPolygon(Context& context, const Settings& s, const Task& task) {
+  const planar::Curve& curve = task.curve;
+  const planar::ViewingCircle circle = planar::viewingCircle(curve, s.viewingRadius);
+  context.result("region_edges", task.region.edgeCount);
+  context.result("length_initial", planar::lengthOf(curve, task.region));
+  context.result("area", planar::signedArea(curve.positions));
+  context.result("self_occlusion", planar::selfOcclusion(curve));
+  context.result("hidden_viewing_arc",
+                 planar::hiddenViewingArc(curve, circle.centre, circle.radius));
+  context.result("viewing_radius", circle.radius);
+  context.result("self_intersections_initial", planar::intersectingEdges(curve).size());
 }
 
 Termination run(Context& context, const Settings& s) {
   if (s.frames < 0 || s.stages < 1) throw UsageError("--frames and --stages count states");
-  const auto& [curve, region, view] = taskOf(context, s);
+  const Task task = taskOf(context, s);
+  const auto& [curve, region, view] = task;
   std::optional<planar::PolygonCheckpoint> state;
   if (s.resume) {
     if (!view) throw UsageError("--resume needs the viewpoint of the first run");
     state = readState(context.outputFolder() / kStateFile);
   }
 
-  context.result("region_edges", region.edgeCount);
-  context.result("length_initial", planar::lengthOf(curve, region));
-  context.result("area", planar::signedArea(curve.positions));
-  context.result("self_occlusion", planar::selfOcclusion(curve));
-  context.result("self_intersections_initial", planar::intersectingEdges(curve).size());
+  reportPolygon(context, s, task);
   {
     auto step = context.step("polygon");
     io::writePolygonCsv(context.output("polygon.csv"), curve.positions);
   }
+  if (s.flow && !view) throw UsageError("--global-flow needs a viewpoint, from which it is judged");
   if (!view) return Termination::NotRun;
 
+  std::vector<double> eyes;
+  for (const planar::Point2& point : view->points)
+    eyes.insert(eyes.end(), point.begin(), point.end());
+  context.result("viewpoint", eyes);
+  context.result("viewpoint_weights", view->weights);
+  if (s.flow) return runGlobalFlow(context, s, task);
   auto step = context.step("unfold");
-  if (view->points.size() == 1) {
-    const planar::Point2& point = view->points.front();
-    context.result("viewpoint", std::vector<double>{point.x(), point.y()});
-  }
   const planar::PolygonUnfolding result = planar::unfoldPolygon(
       curve, region, *view, s.unfolding, context.monitor(), state ? &*state : nullptr);
   const planar::PolygonIteration& start = result.history.front();
@@ -260,8 +355,12 @@ Termination run(Context& context, const Settings& s) {
   context.result("visibility_final", end.visibility);
   context.result("flux_variance_initial", start.variance);
   context.result("flux_variance_final", end.variance);
-  context.result("seen_initial", planar::visiblePart(curve, region, *view).fraction);
-  context.result("seen_final", planar::visiblePart(result.curve, result.region, *view).fraction);
+  const planar::VisiblePart before = planar::visiblePart(curve, region, *view);
+  const planar::VisiblePart after = planar::visiblePart(result.curve, result.region, *view);
+  context.result("seen_initial", before.fraction);
+  context.result("seen_final", after.fraction);
+  context.result("real_visibility_initial", before.realVisibility);
+  context.result("real_visibility_final", after.realVisibility);
   context.result("self_intersections_final", result.intersectionsFinal.size());
   context.result("first_crossing", result.firstCrossing);
   context.result("vertices_merged", result.verticesMerged);

@@ -123,7 +123,9 @@ void settleView(const Context& context, const pipeline::PlannedStep& step, Json&
   if (given("center") || given("vertex") || given("label")) return;
   Vector direction(-1, 0, 0);
   if (values.contains("direction")) {
-    for (int a = 0; a < 3; ++a) direction[a] = values["direction"][a];
+    const Json& all = values["direction"];
+    const Json& first = all.front().is_array() ? all.front() : all;
+    for (int a = 0; a < 3; ++a) direction[a] = first[a];
   }
   const TriangleMesh mesh = io::readSurface((*step.values)["SURFACE"].get<std::string>()).mesh;
   const Point centre = pipeline::outermostPoint(mesh, direction);

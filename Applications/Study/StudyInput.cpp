@@ -30,7 +30,11 @@ Json schemaOf(const provenance::Option& option) {
   } else {
     one["type"] = types.at(type);
   }
-  if (option.isList()) one = {{"type", "array"}, {"items", one}};
+  const Json element = one;
+  if (option.isList()) one = {{"type", "array"}, {"items", element}};
+  if (option.isList() && element.contains("maxItems")) {
+    one = {{"anyOf", {element, one}}};  // one point stands for a list of one
+  }
   one["description"] = option.help + (option.unit.empty() ? "" : ", in " + option.unit);
   return one;
 }

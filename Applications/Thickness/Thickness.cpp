@@ -7,6 +7,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Core/WholeFile.h"
+#include "Explica/Correspondence/FieldFigure.h"
 #include "Explica/Correspondence/Measurement.h"
 #include "Explica/Harmonic/Annulus.h"
 #include "Explica/IO/VolumeFile.h"
@@ -32,6 +33,8 @@ struct Settings {
   io::VolumeReadOptions reading;
   harmonic::LabelRoles roles;
   correspondence::MeasurementOptions measurement;
+  bool figure = false;
+  std::optional<int> figureSlice;
   bool aha = false;
   std::vector<std::string> accept;
   ventricle::OrientationOptions orientation;
@@ -80,6 +83,17 @@ void declare(Declaration& d, Settings& s) {
       .options("Layers", s.measurement.layers)
       .option("Layers", Field{"grid", "", "write an anatomical grid with this many cells across"},
               s.measurement.grid)
+      .option("Figure",
+              Field{"figure", "",
+                    "draw a slice: harmonic interpolant, tangent field, selected trajectories, and "
+                    "with --grid its cells"},
+              s.figure)
+      .option("Figure",
+              Field{"figure-slice", "",
+                    "draw this slice along the third axis, counted from 0 (default: that with most "
+                    "tissue)",
+                    0, 100000},
+              s.figureSlice)
       .option(
           "Heart",
           Field{"aha", "", "the left ventricle's 17 segments, as 'explica heart' measures them"},
@@ -99,6 +113,8 @@ void declare(Declaration& d, Settings& s) {
       .output("layers.nii.gz", FileKind::LabelVolume, "layer, 1 at the inner boundary")
       .output("grid.vtu", FileKind::Grid,
               "with --grid: points at equal depths along trajectories, with depth and thickness")
+      .output("field.svg", FileKind::Picture,
+              "with --figure: u, tangent field, trajectories and grid in a slice")
       .output("segments.tsv", FileKind::Table, "with --aha: thickness of the 17 segments")
       .output("bullseye.png", FileKind::Picture, "with --aha: bullseye.svg in pixels")
       .output("segments.nii.gz", FileKind::LabelVolume, "with --aha: segment of each voxel")
@@ -221,6 +237,17 @@ void writeOutputs(Context& context, const correspondence::Measurement& m, bool s
   }
 }
 
+/// The figure of a slice.
+void writeFigure(Context& context, const correspondence::Measurement& m,
+                 std::optional<int> wanted) {
+  auto step = context.step("figure");
+  const int slice = wanted.value_or(correspondence::fullestSlice(m.annulus));
+  writeTextFile(context.output("field.svg"),
+                correspondence::drawField(m.annulus, m.interpolant, m.correspondence, slice,
+                                          m.grid ? &*m.grid : nullptr));
+  context.result("figure_slice", slice);
+}
+
 /// Table, volume and picture of the 17 segments.
 void writeSegments(Context& context, const harmonic::Annulus& annulus, const Settings& s) {
   auto step = context.step("segments");
@@ -250,6 +277,7 @@ Termination run(Context& context, const Settings& s) {
   const correspondence::Measurement m = measure(context, std::move(annulus), options);
   report(context, judge, m);
   writeOutputs(context, m, options.sulciMode() == correspondence::SulciMode::Recover);
+  if (s.figure || s.figureSlice) writeFigure(context, m, s.figureSlice);
   if (s.aha) writeSegments(context, m.annulus, s);
   return m.interpolant.termination;
 }

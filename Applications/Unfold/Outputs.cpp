@@ -12,6 +12,7 @@
 #include "Explica/Unfolding/Crossings.h"
 #include "Explica/Unfolding/Distortion.h"
 #include "Explica/Visibility/AverageVisibility.h"
+#include "Explica/Visibility/FluxVariance.h"
 #include "Explica/Visibility/VisibleFraction.h"
 
 #include <nlohmann/json.hpp>
@@ -141,6 +142,7 @@ void reportRegion(Context& context, const Unfolded& u, const Measures& m) {
   std::vector<double> eyes;
   for (const Point& eye : u.view.points) eyes.insert(eyes.end(), eye.begin(), eye.end());
   context.result("viewpoint", eyes);
+  context.result("viewpoint_weights", u.view.weights);
   context.result("region_faces", faces.size());
   context.result("region_vertices", region.vertices.size());
   context.result("region_pieces", region.pieces);
@@ -149,8 +151,12 @@ void reportRegion(Context& context, const Unfolded& u, const Measures& m) {
                  geometry::totalArea(geometry::extractFaces(m.reference, faces).mesh));
   context.result("visibility_initial", visibilityOf(m.reference));
   context.result("visibility_final", visibilityOf(after));
+  context.result("flux_variance_initial", visibility::fluxVariance(m.reference, faces, u.view));
+  context.result("flux_variance_final", visibility::fluxVariance(after, faces, u.view));
   context.result("seen_initial", m.seenBefore.of(u.before, u.chosen.faces));
   context.result("seen_final", m.seenAfter.of(after, faces));
+  context.result("real_visibility_initial", m.seenBefore.realOf(u.before, u.chosen.faces));
+  context.result("real_visibility_final", m.seenAfter.realOf(after, faces));
   context.result("backfacing_initial", unfolding::backfacingShare(m.reference, faces, u.view));
   context.result("backfacing_final", unfolding::backfacingShare(after, faces, u.view));
   context.result("area_error_mean", m.distortion.areaErrorMean);

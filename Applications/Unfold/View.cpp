@@ -9,18 +9,26 @@ namespace explica::app {
 
 visibility::Viewpoints viewFrom(const ViewSettings& view, const std::optional<std::string>& surface,
                                 const io::SurfaceReadOptions& reading, const Point& about) {
-  const int given = view.viewpoint.has_value() + view.direction.has_value() + !view.line.empty() +
-                    surface.has_value();
+  const int given =
+      !view.viewpoint.empty() + !view.direction.empty() + !view.line.empty() + surface.has_value();
   if (given != 1) {
     throw InvalidInput(
-        "viewpoint: give exactly one of --viewpoint, --direction, --view-line and --view-surface");
+        "viewpoint: give exactly one of --viewpoint, --direction, --view-line and --view-surface; "
+        "--viewpoint and --direction may be repeated");
   }
-  if (view.viewpoint) return visibility::viewpoint(*view.viewpoint);
-  if (view.direction) {
-    const double length = view.direction->norm();
-    if (!(length > 0)) throw InvalidInput("direction: has no length");
+  if (!view.weights.empty() && (!view.line.empty() || surface)) {
+    throw InvalidInput("view-weights: they belong to --viewpoint or --direction");
+  }
+  if (!view.viewpoint.empty()) return visibility::viewpoints(view.viewpoint, view.weights);
+  if (!view.direction.empty()) {
     if (!(view.distance > 0)) throw InvalidInput("distance: must be positive");
-    return visibility::viewpoint(about + view.distance / length * *view.direction);
+    std::vector<Point> points;
+    for (const Vector& direction : view.direction) {
+      const double length = direction.norm();
+      if (!(length > 0)) throw InvalidInput("direction: has no length");
+      points.emplace_back(about + view.distance / length * direction);
+    }
+    return visibility::viewpoints(points, view.weights);
   }
   if (!view.line.empty()) {
     if (view.line.size() != 6) throw InvalidInput("view-line: needs six numbers X,Y,Z,X,Y,Z");

@@ -14,18 +14,25 @@ namespace explica::app {
 
 /// Where to look from.
 struct ViewSettings {
-  std::optional<Eigen::Vector3d> viewpoint;
-  std::optional<Eigen::Vector3d> direction;
+  std::vector<Eigen::Vector3d> viewpoint;
+  std::vector<Eigen::Vector3d> direction;
   double distance = 1000;
+  std::vector<double> weights;
   std::vector<double> line;
 };
 
 template <class Visitor>
 void describe(ViewSettings& view, Visitor&& visit) {
-  visit(Field{"viewpoint", "mm", "point to look from"}, view.viewpoint);
+  visit(Field{"viewpoint", "mm", "point to look from; of several the weighted mean counts"},
+        view.viewpoint);
   visit(Field{"direction", "", "look from the region's centroid plus --distance along this"},
         view.direction);
   visit(Field{"distance", "mm", "how far off a viewpoint given by --direction is"}, view.distance);
+  visit(Field{"view-weights", "",
+              "weights of several viewpoints or directions, one each, in their order (default: "
+              "equal)",
+              kAboveZero},
+        view.weights);
   visit(Field{"view-line", "mm", "look from a segment: X,Y,Z of its start and of its end"},
         view.line);
 }

@@ -13,6 +13,7 @@ namespace explica::testing {
 namespace {
 
 namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
 
 TEST(Polygon, ResumedWritesTheBytesOfAnUninterruptedRun) {
   const TemporaryFolder folder;
@@ -84,6 +85,57 @@ TEST(Polygon, LooksFromALine) {
           .exitCode,
       1);
   EXPECT_EQ(explica({"polygon", "--out", folder / "c"}).exitCode, 1) << "neither file nor phantom";
+}
+
+TEST(Polygon, LooksFromSeveralPointsWithWeights) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> words = {"polygon",     "--phantom",     "polygon19",
+                                          "--viewpoint", "-400,4000",     "--viewpoint",
+                                          "500,4000",    "--view-weights"};
+  const auto made = explica(words + std::vector<std::string>{"3,1", "--out", folder / "a"});
+  ASSERT_EQ(made.exitCode, 0) << made;
+  const auto summary = readJson(folder / "a/summary.json");
+  EXPECT_EQ(summary["viewpoint"], Json::parse("[-400, 4000, 500, 4000]"));
+  EXPECT_EQ(summary["viewpoint_weights"], Json::parse("[0.75, 0.25]"));
+  EXPECT_GE(summary["visibility_final"], 0.995);
+  EXPECT_NEAR(summary["real_visibility_final"], summary["visibility_final"], 1e-6);
+  EXPECT_EQ(readJson(folder / "a/provenance.json")["options"]["viewpoint"],
+            Json::parse("[[-400, 4000], [500, 4000]]"));
+  EXPECT_EQ(explica({"replay", folder / "a", "--out", folder / "b"}).exitCode, 0);
+  const auto few = explica(words + std::vector<std::string>{"1", "--out", folder / "c"});
+  EXPECT_EQ(few.exitCode, 2) << few;
+  EXPECT_NE(few.err.find("one positive number a viewpoint"), std::string::npos) << few;
+}
+
+TEST(Polygon, GlobalFlowsDoNotUnfold) {
+  const TemporaryFolder folder;
+  for (const std::string measure : {"hidden-arc", "self-occlusion"}) {
+    const auto made = explica({"polygon", "--phantom", "polygon19", "--global-flow", measure,
+                               "--max-iterations", "600", "--out", folder / measure});
+    ASSERT_TRUE(made.exitCode == 0 || made.exitCode == 3) << made;
+    const auto summary = readJson(folder / (measure + "/summary.json"));
+    EXPECT_LT(summary["measure_final"], summary["measure_initial"]);
+    EXPECT_LT(summary["length_final"].get<double>(), 0.8 * summary["length_initial"].get<double>());
+    const double stated =
+        summary[measure == "hidden-arc" ? "hidden_viewing_arc" : "self_occlusion"];
+    EXPECT_NEAR(summary["measure_initial"].get<double>() / stated, 1, 1e-12);
+  }
+  const auto without = explica({"polygon", folder / "hidden-arc/polygon.csv", "--global-flow",
+                                "hidden-arc", "--out", folder / "c"});
+  EXPECT_EQ(without.exitCode, 1) << without;
+  const auto small = explica({"polygon", "--phantom", "polygon19", "--global-flow", "hidden-arc",
+                              "--viewing-radius", "10", "--out", folder / "d"});
+  EXPECT_EQ(small.exitCode, 2) << small;
+}
+
+TEST(Polygon, TheKnotEnergyAloneKeepsTheThesisPolygonsFromCrossing) {
+  const TemporaryFolder folder;
+  const auto made = explica({"polygon", "--phantom", "polygon34", "--method", "thesis",
+                             "--no-collision", "--out", folder / "a"});
+  ASSERT_EQ(made.exitCode, 0) << made;
+  const auto summary = readJson(folder / "a/summary.json");
+  EXPECT_GE(summary["visibility_final"], 0.995);
+  EXPECT_EQ(summary["first_crossing"], -1);
 }
 
 /// A label image: 1 within an ellipse, 2 from there to a larger one with another centre.

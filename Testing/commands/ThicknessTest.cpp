@@ -115,6 +115,37 @@ INSTANTIATE_TEST_SUITE_P(Table, ThicknessOfShell,
                                            Choice{"staircase", "lagrangian", 1.2},
                                            Choice{"staircase", "eulerian", 1.2}));
 
+TEST(ThicknessCommand, DrawsTheFieldOfASlice) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(explica({"phantom", "eccentric", "--size", "64", "--out", folder / "e"}).exitCode, 0);
+  const auto made = explica({"thickness", folder / "e/labels.nii.gz", "--inner", "1", "--tissue",
+                             "2", "--grid", "4", "--figure", "--out", folder / "out"});
+  ASSERT_EQ(made.exitCode, 0) << made;
+  const std::string svg = readText(folder / "out/field.svg");
+  EXPECT_NE(svg.find("tangent field"), std::string::npos);
+  EXPECT_NE(svg.find("(d) grid"), std::string::npos);
+  EXPECT_EQ(readJson(folder / "out/summary.json")["figure_slice"], 0);
+  const auto empty = explica({"thickness", folder / "e/labels.nii.gz", "--inner", "1", "--tissue",
+                              "2", "--figure-slice", "7", "--out", folder / "b"});
+  EXPECT_EQ(empty.exitCode, 2) << empty;
+  EXPECT_NE(empty.err.find("no tissue in slice 7"), std::string::npos) << empty;
+}
+
+TEST(ThicknessCommand, AppendixAIsDialledByLambda) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(explica({"phantom", "eccentric", "--size", "64", "--out", folder / "e"}).exitCode, 0);
+  double before = 2;
+  for (const std::string lambda : {"0", "0.3", "1", "inf"}) {
+    const auto run = explica({"thickness", "--inner-level", folder / "e/inner_level.nii.gz",
+                              "--outer-level", folder / "e/outer_level.nii.gz", "--method",
+                              "appendix-a", "--lambda", lambda, "--out", folder / lambda});
+    ASSERT_EQ(run.exitCode, 0) << run;
+    const double traced = readJson(folder / (lambda + "/summary.json"))["traced_fraction"];
+    EXPECT_LT(traced, before) << lambda;
+    before = traced;
+  }
+}
+
 TEST(ThicknessCommand, LambdaZeroIsTheLagrangianMethod) {
   TemporaryFolder folder;
   writeShell(folder / "shell.nii.gz");

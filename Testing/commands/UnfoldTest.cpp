@@ -26,6 +26,7 @@ namespace explica::testing {
 namespace {
 
 namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
 
 TEST_F(RealSurfaces, FixedSurroundingsOnTheAverageCortex) {
   const TemporaryFolder folder;
@@ -139,6 +140,11 @@ TEST(UnfoldCommand, WritesEveryFileArrayAndKeyThatOthersRelyOn) {
                             "seconds_solve",
                             "seconds_output",
                             "viewpoint",
+                            "viewpoint_weights",
+                            "flux_variance_initial",
+                            "flux_variance_final",
+                            "real_visibility_initial",
+                            "real_visibility_final",
                             "surround",
                             "crossings_with_rest",
                             "collar_faces",
@@ -374,6 +380,41 @@ TEST(UnfoldCommand, WhatTheThesisMethodLetsCrossIsSaid) {
   EXPECT_NE(result.err.find("intersect in what is written"), std::string::npos);
 }
 
+TEST(UnfoldCommand, LooksFromSeveralDirectionsWithWeights) {
+  const TemporaryFolder folder;
+  auto words = onFoldedSphere(folder);
+  const auto made =
+      explica(words + std::vector<std::string>{"--direction", "0,0.3,1", "--view-weights", "3,1",
+                                               "--out", folder / "out"});
+  ASSERT_EQ(made.exitCode, 0) << made;
+  const auto summary = readJson(folder / "out/summary.json");
+  EXPECT_EQ(summary["viewpoint"].size(), 6u);
+  EXPECT_EQ(summary["viewpoint_weights"], Json::parse("[0.75, 0.25]"));
+  EXPECT_GT(summary["visibility_final"], summary["visibility_initial"]);
+  EXPECT_LT(summary["flux_variance_final"], summary["flux_variance_initial"]);
+  // What arrives is at most what is seen, and the flux estimates it.
+  EXPECT_LE(summary["real_visibility_final"], summary["seen_final"]);
+  EXPECT_NEAR(summary["real_visibility_final"], summary["visibility_final"], 0.02);
+  EXPECT_EQ(readJson(folder / "out/provenance.json")["options"]["direction"].size(), 2u);
+  EXPECT_EQ(explica({"replay", folder / "out", "--out", folder / "again"}).exitCode, 0);
+}
+
+TEST(UnfoldCommand, OpensFoldsThatHideEachOther) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(explica({"phantom", "folds", "--out", folder / "folds"}).exitCode, 0);
+  const auto made =
+      explica({"unfold", folder / "folds/folds.surf.gii", "--label",
+               folder / "folds/region.label.gii", "--direction", "0,0,1", "--out", folder / "out"});
+  ASSERT_EQ(made.exitCode, 0) << made;
+  const auto summary = readJson(folder / "out/summary.json");
+  EXPECT_NEAR(summary["visibility_initial"], 0.2, 0.01);
+  EXPECT_LT(summary["seen_initial"], 0.4);
+  EXPECT_GT(summary["visibility_final"], 0.99);
+  EXPECT_GT(summary["seen_final"], 0.99);
+  EXPECT_EQ(summary["self_intersections_final"], 0);
+  EXPECT_LT(summary["area_error_mean"], 0.003);
+}
+
 TEST(UnfoldCommand, RefusesWhatCannotBeUnfoldedAndSaysWhy) {
   const TemporaryFolder folder;
   const auto words = onFoldedSphere(folder);
@@ -454,6 +495,11 @@ const WrongInput kWrongInputs[] = {
      "belongs to no face"},
     {"NoView", nothing, kDisc, "exactly one of --viewpoint"},
     {"TwoViews", nothing, onDisc({"--direction", "0,0,1", "--viewpoint", "0,0,99"}), "exactly one"},
+    {"WeightsTooFew", nothing,
+     onDisc({"--direction", "0,0,1", "--direction", "0,1,1", "--view-weights", "1"}),
+     "one positive number a viewpoint"},
+    {"WeightsOfALine", nothing, onDisc({"--view-line", "0,0,99,1,0,99", "--view-weights", "1"}),
+     "view-weights"},
     {"DirectionZero", nothing, onDisc({"--direction", "0,0,0"}), "direction"},
     {"DistanceNegative", nothing, onDisc({"--direction", "0,0,1", "--distance", "-5"}), "distance"},
     {"ViewpointOnTheSurface", nothing, onDisc({"--viewpoint", "0,0,0"}), "on the surface"},

@@ -9,6 +9,16 @@
 
 namespace explica::app {
 
+namespace {
+
+/// A list option whose elements are given by repeating it.
+bool repeats(const Parameter& parameter) {
+  const std::string type = parameter.option.type();
+  return parameter.option.isList() && (parameter.file || type == "point2" || type == "point3");
+}
+
+}  // namespace
+
 std::string placeholder(const Parameter& parameter) {
   const auto& option = parameter.option;
   if (option.isFlag()) return "";
@@ -36,7 +46,7 @@ std::string placeholder(const Parameter& parameter) {
   } else {
     word = "TEXT";
   }
-  const bool commas = option.isList() && !parameter.file && option.type() != "text";
+  const bool commas = option.isList() && !repeats(parameter) && option.type() != "text";
   return word + (commas ? "[," + word + "...]" : "");
 }
 
@@ -59,7 +69,7 @@ std::string rightColumn(const Parameter& parameter) {
   if (parameter.required && !parameter.positional) append("required");
   if (!parameter.required && parameter.positional) append("may be left out");
   if (parameter.positional && option.isList()) append("one or more");
-  if (!parameter.positional && option.isList() && parameter.file) append("may be repeated");
+  if (!parameter.positional && repeats(parameter)) append("may be repeated");
   if (option.isFlag()) {
     if (parameter.defaultText == "true")
       append("default on; --no-" + option.name + " to switch off");

@@ -45,11 +45,13 @@ double frameVisibility(const nlohmann::ordered_json& summary, std::size_t frame)
 
 std::optional<Point> pointIn(const nlohmann::ordered_json& json, const std::string& key) {
   const auto found = json.find(key);
-  if (found == json.end() || !found->is_array() || found->size() != 3) return {};
-  for (const auto& x : *found) {
+  if (found == json.end() || !found->is_array() || found->empty()) return {};
+  const auto& first = found->front().is_array() ? found->front() : *found;
+  if (first.size() % 3 != 0) return {};
+  for (const auto& x : first) {
     if (!x.is_number()) return {};
   }
-  return Point((*found)[0], (*found)[1], (*found)[2]);
+  return Point(first[0], first[1], first[2]);
 }
 
 }  // namespace explica::pipeline

@@ -40,8 +40,13 @@ Point2 unit(double angle) {
   return {std::cos(angle), std::sin(angle)};
 }
 
-/// Seen length of each edge of the curve, mm.
-Eigen::VectorXd seenLengths(const Curve& curve, const Point2& viewpoint) {
+/// What is seen of each edge of the curve, mm.
+struct Seen {
+  Eigen::VectorXd length;
+  Eigen::VectorXd flux;  ///< that arrives
+};
+
+Seen seenOf(const Curve& curve, const Point2& viewpoint) {
   // Angles are taken from the direction of the curve's middle, where far viewpoints keep all
   // digits.
   const Point2 middle =
@@ -90,7 +95,7 @@ Eigen::VectorXd seenLengths(const Curve& curve, const Point2& viewpoint) {
   std::stable_sort(events.begin(), events.end(),
                    [](const Event& x, const Event& y) { return x.angle < y.angle; });
 
-  Eigen::VectorXd seen = Eigen::VectorXd::Zero(curve.edgeCount());
+  Seen seen{Eigen::VectorXd::Zero(curve.edgeCount()), Eigen::VectorXd::Zero(curve.edgeCount())};
   std::vector<int> active;
   for (std::size_t k = 0; k < events.size(); ++k) {
     const Event& event = events[k];
@@ -115,8 +120,12 @@ Eigen::VectorXd seenLengths(const Curve& curve, const Point2& viewpoint) {
     }
     if (nearest < 0 || !spans[nearest].front) continue;
     const Span& span = spans[nearest];
-    const double share = span.parameter(unit(end)) - span.parameter(unit(begin));
-    seen[span.edge] += share * span.length;
+    const double from = span.parameter(unit(begin));
+    const double to = span.parameter(unit(end));
+    if (!(from < to)) continue;
+    const Point2 way = span.b - span.a;
+    seen.length[span.edge] += (to - from) * span.length;
+    seen.flux[span.edge] += edgeFlux(span.a + to * way, span.a + from * way, Point2::Zero()).flux;
   }
 
   return seen;
@@ -127,21 +136,27 @@ Eigen::VectorXd seenLengths(const Curve& curve, const Point2& viewpoint) {
 VisiblePart visiblePart(const Curve& curve, const Region& region, const Viewpoints& view) {
   if (region.edgeCount < 1) throw InvalidInput("visible part: the region has no edge");
   Eigen::VectorXd seen = Eigen::VectorXd::Zero(curve.edgeCount());
+  Eigen::VectorXd flux = seen;
   for (std::size_t p = 0; p < view.points.size(); ++p) {
-    seen += view.weights[p] * seenLengths(curve, view.points[p]);
+    const Seen one = seenOf(curve, view.points[p]);
+    seen += view.weights[p] * one.length;
+    flux += view.weights[p] * one.flux;
   }
   VisiblePart result;
   result.edgeSeen.resize(region.edgeCount);
   double seenLength = 0;
+  double seenFlux = 0;
   double length = 0;
   for (int k = 0; k < region.edgeCount; ++k) {
     const int e = (region.firstEdge + k) % curve.edgeCount();
     const double edgeLength = (curve.positions.row(curve.next(e)) - curve.positions.row(e)).norm();
     result.edgeSeen[k] = std::min(1.0, seen[e] / edgeLength);
     seenLength += seen[e];
+    seenFlux += flux[e];
     length += edgeLength;
   }
   result.fraction = std::min(1.0, seenLength / length);
+  result.realVisibility = seenFlux / length;
   return result;
 }
 

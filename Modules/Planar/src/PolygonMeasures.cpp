@@ -7,6 +7,7 @@
 #include "Explica/Core/Parallel.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <vector>
@@ -28,20 +29,32 @@ void requireClosed(const Curve& curve) {
 }  // namespace
 
 double hiddenViewingArc(const Curve& curve, const Point2& centre, double radius) {
+  return hiddenViewingArcGradient(curve, centre, radius).value;
+}
+
+MeasureValue hiddenViewingArcGradient(const Curve& curve, const Point2& centre, double radius) {
   requireClosed(curve);
-  double energy = 0;
+  MeasureValue result{0, Positions2::Zero(curve.vertexCount(), 2)};
   for (int i = 0; i < curve.edgeCount(); ++i) {
+    const int j = curve.next(i);
     const Point2 a = curve.point(i) - centre;
-    const Point2 t = curve.point(curve.next(i)) - centre - a;
+    const Point2 b = curve.point(j) - centre;
     if (a.norm() >= radius) {
       throw InvalidInput("hidden arc: vertex " + std::to_string(i) +
                          " lies on or outside the viewing circle; take a larger radius");
     }
-    const double length = t.norm();
-    const double h = (t.y() * a.x() - t.x() * a.y()) / length;
-    energy += radius * length * (2 * kPi - 2 * std::acos(h / radius));
+    const double length = (b - a).norm();
+    const Point2 tangent = (b - a) / length;
+    const double h = (b.y() * a.x() - b.x() * a.y()) / length;
+    const double arc = 2 * kPi - 2 * std::acos(h / radius);
+    result.value += radius * length * arc;
+    // d(L arc) = arc dL + 2 (d(L h) - h dL) / sqrt(r^2 - h^2), and L h is the cross product.
+    const double turn = 2 / std::sqrt(radius * radius - h * h);
+    const Point2 byEnd = (arc - turn * h) * tangent;
+    result.gradient.row(i) += radius * (turn * Point2(b.y(), -b.x()) - byEnd).transpose();
+    result.gradient.row(j) += radius * (turn * Point2(-a.y(), a.x()) + byEnd).transpose();
   }
-  return energy;
+  return result;
 }
 
 namespace {
@@ -96,6 +109,81 @@ double selfOcclusion(const Curve& curve) {
               [&](std::size_t i) { rows[i] = occlusionAfter(lines, static_cast<int>(i)); });
   // The condition is the same for (i, j) and (j, i).
   return 2 * std::accumulate(rows.begin(), rows.end(), 0.0);
+}
+
+namespace {
+
+/// How a number changes with the ends of two edges: i's start and end, j's start and end.
+using ByEnds = Eigen::Matrix<double, 4, 2>;
+
+/// A number and its derivatives.
+struct Varying {
+  double value = 0;
+  ByEnds by = ByEnds::Zero();
+};
+
+Varying operator*(const Varying& a, const Varying& b) {
+  return {a.value * b.value, a.value * b.by + b.value * a.by};
+}
+
+/// Length of the edge between two of the ends.
+Varying lengthBetween(const std::array<Point2, 4>& ends, int from) {
+  const Point2 way = ends[from + 1] - ends[from];
+  Varying length{way.norm()};
+  length.by.row(from + 1) = way.transpose() / length.value;
+  length.by.row(from) = -length.by.row(from + 1);
+  return length;
+}
+
+/// Distance of an end from the line of the edge that begins at `from`, outward positive.
+Varying outward(const std::array<Point2, 4>& ends, int from, const Varying& length, int end) {
+  const Point2 t = ends[from + 1] - ends[from];
+  const Point2 d = ends[end] - ends[from];
+  const double g = t.y() * d.x() - t.x() * d.y();
+  Varying result{g / length.value};
+  result.by.row(end) += Eigen::RowVector2d(t.y(), -t.x());
+  result.by.row(from + 1) += Eigen::RowVector2d(-d.y(), d.x());
+  result.by.row(from) += Eigen::RowVector2d(d.y() - t.y(), t.x() - d.x());
+  result.by = (result.by - result.value * length.by) / length.value;
+  return result;
+}
+
+/// positiveShare() with its derivatives.
+Varying positiveShare(const Varying& p, const Varying& q) {
+  Varying share{positiveShare(p.value, q.value)};
+  if (share.value == 0 || share.value == 1) return share;
+  const double span = q.value - p.value;
+  share.by = (q.value * p.by - p.value * q.by) / (span * span);
+  if (p.value > 0) share.by = -share.by;
+  return share;
+}
+
+}  // namespace
+
+MeasureValue selfOcclusionGradient(const Curve& curve) {
+  requireClosed(curve);
+  MeasureValue result{0, Positions2::Zero(curve.vertexCount(), 2)};
+  for (int i = 0; i < curve.edgeCount(); ++i) {
+    for (int j = i + 1; j < curve.edgeCount(); ++j) {
+      const std::array<int, 4> vertex = {i, curve.next(i), j, curve.next(j)};
+      std::array<Point2, 4> ends;
+      for (int k = 0; k < 4; ++k) ends[k] = curve.point(vertex[k]);
+      const Varying li = lengthBetween(ends, 0);
+      const Varying lj = lengthBetween(ends, 2);
+      // A common end lies on both lines, whatever rounding says.
+      const Varying none;
+      const Varying yShare = positiveShare(vertex[2] == vertex[1] ? none : outward(ends, 0, li, 2),
+                                           vertex[3] == vertex[0] ? none : outward(ends, 0, li, 3));
+      if (yShare.value == 0) continue;
+      const Varying xShare = positiveShare(vertex[0] == vertex[3] ? none : outward(ends, 2, lj, 0),
+                                           vertex[1] == vertex[2] ? none : outward(ends, 2, lj, 1));
+      if (xShare.value == 0) continue;
+      const Varying term = li * lj * xShare * yShare;
+      result.value += 2 * term.value;
+      for (int k = 0; k < 4; ++k) result.gradient.row(vertex[k]) += 2 * term.by.row(k);
+    }
+  }
+  return result;
 }
 
 }  // namespace explica::planar

@@ -176,7 +176,7 @@ PolygonUnfolding unfoldPolygon(const Curve& input, const Region& inputRegion,
       break;
     }
     record(iteration, step);
-    if (options.noTopology && result.firstCrossing < 0 &&
+    if ((options.noTopology || options.noCollision) && result.firstCrossing < 0 &&
         !intersectingEdges(problem->curve()).empty()) {
       result.firstCrossing = iteration;
     }

@@ -65,7 +65,7 @@ std::pair<double, Positions2> UnfoldingProblem::knot(const Curve& curve) {
 }
 
 std::vector<VertexEdgePair> UnfoldingProblem::pairsWithin(double reach) {
-  if (options_.noTopology) return {};
+  if (options_.noTopology || options_.noCollision) return {};
   const PhaseClock watch(secondsTopology_);
   std::vector<VertexEdgePair> pairs =
       nearbyPairs(curve_, moving_, restLengths_, barrierRange(), reach);
@@ -105,7 +105,8 @@ std::optional<std::pair<Curve, Region>> UnfoldingProblem::merged() {
     for (int v = 0, row = 0; v < n; ++v) {
       if (v != f) fewer.positions.row(row++) = target.positions.row(v);
     }
-    if (!options_.noTopology && !intersectingEdges(fewer).empty()) continue;
+    const bool mayCross = options_.noTopology || options_.noCollision;
+    if (!mayCross && !intersectingEdges(fewer).empty()) continue;
     Region region = region_;
     --region.edgeCount;
     // Vertex f is gone: a region that starts behind it starts one earlier.

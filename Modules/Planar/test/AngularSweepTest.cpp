@@ -78,6 +78,32 @@ TEST(AngularSweep, AgreesWithSamplingOnFoldedPolygons) {
   }
 }
 
+TEST(AngularSweep, WhatArrivesIsTheFluxWhereNothingHides) {
+  // A convex arc that looks at the viewpoint: seen everywhere, so the real visibility is the flux.
+  const Curve arc = polygon({{-3, 0}, {3, 0}, {2, 1}, {0, 1.4}, {-2, 1}});
+  const Region region{1, 4};
+  const VisiblePart open = visiblePart(arc, region, {0.5, 40});
+  EXPECT_NEAR(open.fraction, 1, 1e-12);
+  EXPECT_NEAR(open.realVisibility, polygonVisibility(arc, region, {0.5, 40}).average, 1e-12);
+  // A notch: the floor's seen share with its flux, the hidden rest without.
+  const Curve block = polygon({{0, -1}, {6, -1}, {6, 2}, {3, 2}, {3, 0}, {2, 0}, {2, 2}, {0, 2}});
+  const Region floor{4, 1};
+  const VisiblePart part = visiblePart(block, floor, {1.5, 8});
+  EXPECT_NEAR(part.realVisibility, edgeFlux({3, 0}, {2 + 1.0 / 6, 0}, {1.5, 8}).flux, 1e-12);
+}
+
+TEST(AngularSweep, RealVisibilityIsNearItsEstimateByTheFlux) {
+  for (const PolygonPhantom& phantom : {makePolygon19(), makePolygon34()}) {
+    const Region region = regionBetween(phantom.curve, phantom.first, phantom.last);
+    const VisiblePart part = visiblePart(phantom.curve, region, phantom.viewpoint);
+    const double flux = polygonVisibility(phantom.curve, region, phantom.viewpoint).average;
+    // [Thesis, section 4.2]: where every hidden front side has a back side before it, the flux
+    // estimates what arrives.
+    EXPECT_NEAR(part.realVisibility, flux, 0.06);
+    EXPECT_GE(part.fraction, part.realVisibility);
+  }
+}
+
 TEST(AngularSweep, ViewpointWithinTheCurvesArmsSeesAcrossTheCutOfAngles) {
   // A U around the viewpoint: directions of all angles but those upward.
   const Curve u = polygon({{-3, -3}, {3, -3}, {3, 3}, {2, 3}, {2, -2}, {-2, -2}, {-2, 3}, {-3, 3}});

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
+#include "Explica/Planar/GlobalFlow.h"
 #include "Explica/Planar/PolygonMeasures.h"
 
 #include "Explica/Core/Errors.h"
@@ -111,32 +112,47 @@ TEST(SelfOcclusion, EqualsSampling) {
   EXPECT_NEAR(selfOcclusion(curve) / sum, 1, 0.01);
 }
 
-/// Follows the negative gradient with steps that shrink to nothing; the measures have kinks.
-Curve descend(Curve curve, const std::function<double(const Curve&)>& measure, int iterations) {
-  for (int k = 0; k < iterations; ++k) {
-    const Positions2 gradient = centralDifferences(curve, measure, 1e-6);
-    const double size = gradient.rowwise().norm().maxCoeff();
-    if (!(size > 1e-9)) break;
-    const double step = 0.04 * (1 - static_cast<double>(k) / iterations);
-    curve.positions -= step / size * gradient;
-  }
-  return curve;
+TEST(GlobalMeasures, GradientsEqualDifferences) {
+  const Curve curve = makePolygon34().curve;
+  const ViewingCircle circle = viewingCircle(curve, {});
+  const auto arc = [&](const Curve& c) {
+    return hiddenViewingArc(c, circle.centre, circle.radius);
+  };
+  const auto expectNear = [](const Positions2& exact, const Positions2& differences) {
+    EXPECT_LT((exact - differences).norm(), 1e-6 * differences.norm());
+  };
+  const MeasureValue byArc = hiddenViewingArcGradient(curve, circle.centre, circle.radius);
+  EXPECT_DOUBLE_EQ(byArc.value, arc(curve));
+  expectNear(byArc.gradient, centralDifferences(curve, arc, 1e-3));
+  const MeasureValue byHiding = selfOcclusionGradient(curve);
+  EXPECT_NEAR(byHiding.value / selfOcclusion(curve), 1, 1e-12);
+  expectNear(byHiding.gradient, centralDifferences(curve, selfOcclusion, 1e-5));
 }
 
-TEST(GlobalMeasures, TheirFlowsDoNotUnfold) {
+TEST(GlobalFlow, NeitherMeasureUnfolds) {
   // What section 4.1 says: the flows shrink what is folded; they do not bring it out at its length.
-  const Curve start =
-      polygon({{-3, -2}, {3, -2}, {3, 2}, {0.8, 2}, {0.5, 0}, {-0.5, 0}, {-0.8, 2}, {-3, 2}});
-  const Region notch{3, 3};
-  const double length = lengthOf(start, notch);
+  const PolygonPhantom phantom = makePolygon19();
+  const Region region = regionBetween(phantom.curve, phantom.first, phantom.last);
+  GlobalFlowOptions options;
+  const GlobalFlow convex = descendGlobalMeasure(phantom.curve, region, phantom.viewpoint, options);
+  EXPECT_LT(convex.history.back().measure, 0.2 * convex.history.front().measure);
+  EXPECT_LT(convex.history.back().length, 0.75 * convex.history.front().length);
 
-  const Curve convex = descend(start, selfOcclusion, 600);
-  EXPECT_LT(selfOcclusion(convex), 0.1 * selfOcclusion(start)) << "it becomes nearly convex";
-  EXPECT_LT(lengthOf(convex, notch), 0.75 * length) << "but the walls are lost on the way";
+  options.measure = GlobalMeasure::HiddenArc;
+  options.maxIterations = 600;
+  const GlobalFlow smooth = descendGlobalMeasure(phantom.curve, region, phantom.viewpoint, options);
+  EXPECT_LT(smooth.history.back().length, 0.8 * smooth.history.front().length);
+  // To first order in 1/r the measure is pi r times the length, whose flow is curve shortening.
+  const ViewingCircle circle = viewingCircle(phantom.curve, {});
+  EXPECT_NEAR(smooth.history.back().measure, kPi * circle.radius * edgeLengths(smooth.curve).sum(),
+              0.1 * smooth.history.back().measure);
+}
 
-  const Curve smooth = descend(
-      start, [](const Curve& c) { return hiddenViewingArc(c, Point2::Zero(), 100); }, 150);
-  EXPECT_LT(edgeLengths(smooth).sum(), 0.8 * edgeLengths(start).sum()) << "curve shortening";
+TEST(GlobalFlow, LeavesAConvexPolygonToItsSecondMeasure) {
+  const Curve circle = makeCircle(40, 5);
+  const GlobalFlow flow = descendGlobalMeasure(circle, wholeRegion(circle), {0, 100}, {});
+  EXPECT_EQ(flow.termination, Termination::Converged);
+  EXPECT_LT((flow.curve.positions - circle.positions).norm(), 1e-6);
 }
 
 TEST(GlobalMeasures, BadArgumentsAreRefused) {

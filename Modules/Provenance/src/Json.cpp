@@ -102,6 +102,10 @@ void setValue(Option& option, const Json& value) {
       unset(option);
       return;
     }
+    if (isPoint && !value.front().is_array()) {  // one point stands for a list of one
+      option.setText({commaJoined(value)});
+      return;
+    }
     std::vector<std::string> words;
     for (const auto& element : value) {
       words.push_back(element.is_array() ? commaJoined(element) : wordOf(element));

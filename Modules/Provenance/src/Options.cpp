@@ -212,7 +212,8 @@ std::string Option::text() const {
           using T = std::remove_pointer_t<Where>;
           if constexpr (IsOptional<T>::value) {
             if (*where) append(elementText(**where), ",");
-          } else if constexpr (std::is_same_v<T, std::vector<Eigen::Vector3d>>) {
+          } else if constexpr (std::is_same_v<T, std::vector<Eigen::Vector2d>> ||
+                               std::is_same_v<T, std::vector<Eigen::Vector3d>>) {
             for (const auto& element : *where) append(elementText(element), " ");
           } else if constexpr (IsVector<T>::value) {
             for (const auto& element : *where) append(elementText(element), ",");

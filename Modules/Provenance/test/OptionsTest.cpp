@@ -120,6 +120,19 @@ TEST(Options, TextSetsEachType) {
   EXPECT_EQ(sample.line.size(), 2u);
 }
 
+TEST(Options, AListOfPointsTakesOneJsonPointToo) {
+  Sample sample;
+  auto options = listOptions(sample);
+  Option line = optionNamed(options, "line");
+  setValue(line, Json::parse("[[0, 0, 1], [-1, 0, 2]]"));
+  ASSERT_EQ(sample.line.size(), 2u);
+  EXPECT_EQ(sample.line[1], Eigen::Vector3d(-1, 0, 2));
+  setValue(line, Json::parse("[4, 5, 6]"));
+  ASSERT_EQ(sample.line.size(), 1u);
+  EXPECT_EQ(sample.line[0], Eigen::Vector3d(4, 5, 6));
+  EXPECT_THROW(setValue(line, Json::parse("[4, 5]")), UsageError);
+}
+
 TEST(Options, WrongTextIsRefusedWithNameAndExpectation) {
   Sample sample;
   auto options = listOptions(sample, "unfold.");

@@ -70,7 +70,7 @@ void drawAnnulus(std::string& page, const Panel& panel, const HarmonicAnnulus& a
 }
 
 /// What the lines are, and a scale bar; in narrow figures on as many lines as it takes.
-void drawLegend(std::string& page, double top, double width, double scale) {
+void drawLegend(std::string& page, double top, double width, double scale, bool target = true) {
   double x = kMargin;
   double y = top + 20;
   const auto room = [&](double needed) {
@@ -85,7 +85,7 @@ void drawLegend(std::string& page, double top, double width, double scale) {
     page += text(x + 38, y + 5, words);
     x += length;
   };
-  entry(kTargetStyle, "target", 110);
+  if (target) entry(kTargetStyle, "target", 110);
   entry(kShapeStyle, "shape", 110);
   entry(kRimStyle, "annulus", 125);
   room(170);
@@ -163,6 +163,35 @@ std::string drawFit(const HarmonicAnnulus& annulus, double z, const Outline& tar
     drawOutline(page, panel, stage.outline, kShapeStyle);
   }
   drawLegend(page, rows * rowHeight, width, (kPanel / 2 - 2) / box.halfSide);
+  page += "</svg>\n";
+  return page;
+}
+
+std::string drawSeries(const HarmonicAnnulus& annulus, double z,
+                       const std::vector<SeriesPanel>& panels) {
+  if (panels.empty()) throw InvalidInput("figure: no shape to draw");
+  requireUsable(annulus);
+  const AnnulusBox box = boxOf(annulus);
+  const int count = static_cast<int>(panels.size());
+  const int columns = std::min(count, kMostColumns);
+  const int rows = (count + columns - 1) / columns;
+  constexpr double kTitle = 28;
+  const double rowHeight = kTitle + kPanel + kMargin;
+  const double width = columns * (kPanel + kMargin) + kMargin;
+  const double scale = (kPanel / 2 - 2) / box.halfSide;
+  std::string page = planar::svg::pageBegin(width, rows * rowHeight + kLegendHeight);
+  for (int p = 0; p < count; ++p) {
+    Panel panel;
+    panel.left = kMargin + p % columns * (kPanel + kMargin);
+    panel.top = kMargin + p / columns * rowHeight + kTitle;
+    panel.scale = scale;
+    panel.centre = box.centre;
+    const SeriesPanel& shape = panels[static_cast<std::size_t>(p)];
+    page += planar::svg::panelTitle(panel.left, panel.top - 10, p, shape.title);
+    drawAnnulus(page, panel, annulus, z);
+    drawOutline(page, panel, shape.outline, kShapeStyle);
+  }
+  drawLegend(page, rows * rowHeight, width, scale, false);
   page += "</svg>\n";
   return page;
 }

@@ -177,10 +177,12 @@ class Fit {
     }
   }
 
-  /// Amplitudes of the concentric shape: 1/2 of the constant on either boundary.
-  [[nodiscard]] Eigen::VectorXd initial() const {
+  /// Amplitudes of a concentric shape: constants on both boundaries, 1 apart.
+  /// @param start  which level of the function that is 0 on the inner and 1 on the outer boundary
+  [[nodiscard]] Eigen::VectorXd initial(double start = 0.5) const {
     Eigen::VectorXd x = Eigen::VectorXd::Zero(2 * bumps_.cols());
-    x[0] = x[bumps_.cols()] = 0.5;
+    x[0] = start;
+    x[bumps_.cols()] = 1 - start;
     return x;
   }
 
@@ -280,8 +282,9 @@ ShapeFit fitShape(const HarmonicAnnulus& annulus, const TargetSamples& target,
     throw InvalidInput("fit: the target needs points with one weight each");
   }
   if (!(options.step > 0 && options.step <= 1) || options.maxIterations < 0 ||
-      !(options.smoothness > 0)) {
-    throw InvalidInput("fit: step in (0, 1], iterations >= 0 and smoothness > 0 are needed");
+      !(options.smoothness > 0) || !(options.start > 0 && options.start < 1)) {
+    throw InvalidInput(
+        "fit: step in (0, 1], start in (0, 1), iterations >= 0 and smoothness > 0 are needed");
   }
   for (Eigen::Index p = 0; p < target.points.rows(); ++p) {
     const Point point = target.points.row(p).transpose();
@@ -301,7 +304,7 @@ ShapeFit fitShape(const HarmonicAnnulus& annulus, const TargetSamples& target,
     throw InvalidInput(message);
   }
   const Fit fit(annulus, target, options);
-  Eigen::VectorXd x = fit.initial();
+  Eigen::VectorXd x = fit.initial(options.start);
   ShapeFit result;
   std::vector<Eigen::VectorXd> states;
   const auto record = [&] {

@@ -217,6 +217,49 @@ TEST(ShapeFit, ATurnedTargetHasTheTurnedShapeWhateverItsSampling) {
   }
 }
 
+TEST(ShapeFit, DoesNotHangOnTheStart) {
+  ShapeFitOptions options;
+  for (const planar::Curve& target : {lobed(3, 0.2, 0.4), lobed(2, 0.25, 1)}) {
+    const HarmonicShape middle = fitShape(planeAnnulus(), samplesOf(target, 600)).shape;
+    for (const double start : {0.05, 0.3, 0.9}) {
+      options.start = start;
+      const ShapeFit fit = fitShape(planeAnnulus(), samplesOf(target, 600), options);
+      EXPECT_LT((fit.shape.inner - middle.inner).cwiseAbs().maxCoeff(), 2e-3) << start;
+      EXPECT_LT((fit.shape.outer - middle.outer).cwiseAbs().maxCoeff(), 2e-3) << start;
+      EXPECT_LT(distanceBetween(levelCurves(fit.shape, 200)[0], levelCurves(middle, 200)[0]).max,
+                0.005);
+    }
+  }
+  options.start = 1;
+  EXPECT_THROW((void)fitShape(planeAnnulus(), samplesOf(lobed(3, 0.2, 0), 300), options),
+               InvalidInput);
+}
+
+TEST(ShapeFit, OfATurnedSurfaceIsTheTurnedFitWhateverTheStart) {
+  const HarmonicAnnulus annulus{3, Point::Zero(), 23.5, 38.5, 8};
+  const TriangleMesh target = lobedSurface(0.3, 0);
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(0.8, Vector(1, 2, 3).normalized()).toRotationMatrix();
+  TriangleMesh turned = target;
+  turned.positions = target.positions * turn.transpose();
+  const HarmonicShape straight = fitShape(annulus, samplesOf(target, 1500)).shape;
+  ShapeFitOptions options;
+  options.start = 0.2;
+  for (const int samples : {1500, 2500}) {
+    const HarmonicShape other = fitShape(annulus, samplesOf(turned, samples), options).shape;
+    TriangleMesh expected = levelSurface(straight, 48);
+    expected.positions = expected.positions * turn.transpose();
+    // Off the level too: averages with a sphere are turned alike.
+    const HarmonicShape sphere{annulus, Eigen::VectorXd::Zero(annulus.perBoundary()),
+                               Eigen::VectorXd::Unit(annulus.perBoundary(), 0)};
+    TriangleMesh mixed = levelSurface(combine({straight, sphere}, {1, 1}), 48);
+    mixed.positions = mixed.positions * turn.transpose();
+    EXPECT_LT(distanceBetween(levelSurface(other, 48), expected).max, 0.15) << samples;
+    EXPECT_LT(distanceBetween(levelSurface(combine({other, sphere}, {1, 1}), 48), mixed).max, 0.15)
+        << samples;
+  }
+}
+
 TEST(ShapeFit, CombinationAtACornerIsThatShape) {
   const HarmonicShape a = fitShape(planeAnnulus(), samplesOf(lobed(3, 0.2, 0), 300)).shape;
   const HarmonicShape b = fitShape(planeAnnulus(), samplesOf(lobed(4, 0.15, 0), 300)).shape;

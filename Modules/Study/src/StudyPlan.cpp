@@ -54,6 +54,15 @@ Json arrayOf(const Eigen::Vector3d& v) {
   return Json::array({v.x(), v.y(), v.z()});
 }
 
+/// A point moved, or each of a list of points.
+template <class Move>
+Json moved(const Json& points, const Move& move) {
+  if (points.empty() || !points.front().is_array()) return arrayOf(move(vectorOf(points)));
+  Json all = Json::array();
+  for (const Json& point : points) all.push_back(arrayOf(move(vectorOf(point))));
+  return all;
+}
+
 /// One study file being taken apart.
 class Planner {
  public:
@@ -248,11 +257,15 @@ class Planner {
     const Eigen::Vector3d shift = back.topRightCorner<3, 1>();
     for (const char* point : {"center", "viewpoint"}) {
       if (region.contains(point)) {
-        region[point] = arrayOf(turn * vectorOf(region[point]) + shift);
+        region[point] = moved(region[point], [&](const Eigen::Vector3d& p) -> Eigen::Vector3d {
+          return turn * p + shift;
+        });
       }
     }
     if (region.contains("direction")) {
-      region["direction"] = arrayOf((turn * vectorOf(region["direction"])).normalized());
+      region["direction"] = moved(
+          region["direction"],
+          [&](const Eigen::Vector3d& d) -> Eigen::Vector3d { return (turn * d).normalized(); });
     }
     if (region.contains("view-line")) {
       Json line = Json::array();

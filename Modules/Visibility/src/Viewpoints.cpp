@@ -19,6 +19,28 @@ Viewpoints viewpoint(const Point& point) {
   return {{point}, {1.0}};
 }
 
+Viewpoints viewpoints(const std::vector<Point>& points, const std::vector<double>& weights) {
+  if (points.empty()) throw InvalidInput("viewpoints: there is none");
+  for (const Point& point : points) {
+    if (!point.allFinite()) throw InvalidInput("viewpoints: one is not finite");
+  }
+  Viewpoints result{points, weights};
+  if (weights.empty()) result.weights.assign(points.size(), 1.0);
+  double sum = 0;
+  bool positive = result.weights.size() == points.size();
+  for (const double w : result.weights) {
+    positive = positive && w > 0;
+    sum += w;
+  }
+  if (!positive || !(sum < kInfinity)) {
+    throw InvalidInput("weights: one positive number a viewpoint is needed; there are " +
+                       std::to_string(points.size()) + " viewpoints and " +
+                       std::to_string(weights.size()) + " weights");
+  }
+  for (double& w : result.weights) w /= sum;
+  return result;
+}
+
 Viewpoints viewLine(const Point& start, const Point& end, int count) {
   if (count < 1 || count > 64) {
     throw InvalidInput("view line: " + std::to_string(count) +

@@ -48,17 +48,27 @@ Eigen::VectorXd areasOf(const TriangleMesh& mesh) {
   return areas;
 }
 
+double meanOver(const TriangleMesh& mesh, const std::vector<std::int32_t>& faces,
+                const Eigen::VectorXd& values) {
+  const Eigen::VectorXd areas = areasOf(mesh);
+  double sum = 0;
+  double area = 0;
+  for (const std::int32_t f : faces) {
+    sum += values[f] * areas[f];
+    area += areas[f];
+  }
+  return area > 0 ? sum / area : 0;
+}
+
 }  // namespace
 
 double VisibleFraction::of(const TriangleMesh& mesh, const std::vector<std::int32_t>& faces) const {
-  const Eigen::VectorXd areas = areasOf(mesh);
-  double seen = 0;
-  double area = 0;
-  for (const std::int32_t f : faces) {
-    seen += face[f] * areas[f];
-    area += areas[f];
-  }
-  return area > 0 ? seen / area : 0;
+  return meanOver(mesh, faces, face);
+}
+
+double VisibleFraction::realOf(const TriangleMesh& mesh,
+                               const std::vector<std::int32_t>& faces) const {
+  return meanOver(mesh, faces, arriving);
 }
 
 VisibleFraction visibleFraction(const TriangleMesh& mesh, const Viewpoints& viewpoints,
@@ -83,17 +93,20 @@ VisibleFraction visibleFraction(const TriangleMesh& mesh, const Viewpoints& view
 
   VisibleFraction result;
   result.face.setZero(mesh.faceCount());
+  result.arriving.setZero(mesh.faceCount());
   parallelFor(static_cast<std::size_t>(mesh.faceCount()), kGrain, [&](std::size_t i) {
     const auto f = static_cast<Eigen::Index>(i);
     const Point a = mesh.corner(f, 0) - centre;
     const Point b = mesh.corner(f, 1) - centre;
     const Point c = mesh.corner(f, 2) - centre;
-    const Vector normal = (b - a).cross(c - a);
+    const Vector normal = (b - a).cross(c - a).stableNormalized();
     double seen = 0;
+    double arriving = 0;
     for (std::size_t p = 0; p < viewpoints.points.size(); ++p) {
       const Point target = viewpoints.points[p] - centre;
       if (!(normal.dot(target - a) > 0)) continue;  // turned away
       int clear = 0;
+      double cosines = 0;
       std::array<Point, Occluders::kPacket> from;
       std::array<Vector, Occluders::kPacket> by;
       std::array<double, Occluders::kPacket> lengths;
@@ -108,13 +121,20 @@ VisibleFraction visibleFraction(const TriangleMesh& mesh, const Viewpoints& view
           // Nothing lies beyond the mesh's ball: a far viewpoint costs no precision.
           lengths[n] = std::min(distance, from[n].norm() + 1.001 * radius);
         }
-        clear +=
-            std::popcount(occluders.clear({from.data(), count}, {by.data(), count},
-                                          {lengths.data(), count}, static_cast<std::uint32_t>(i)));
+        const std::uint32_t free =
+            occluders.clear({from.data(), count}, {by.data(), count}, {lengths.data(), count},
+                            static_cast<std::uint32_t>(i));
+        clear += std::popcount(free);
+        for (std::size_t n = 0; n < count; ++n) {
+          if (free >> n & 1U) cosines += normal.dot(by[n]);
+        }
       }
-      seen += viewpoints.weights[p] * clear / static_cast<double>(samples.size());
+      const double weight = viewpoints.weights[p] / static_cast<double>(samples.size());
+      seen += weight * clear;
+      arriving += weight * cosines;
     }
     result.face[f] = seen;
+    result.arriving[f] = arriving;
   });
 
   const Eigen::VectorXd areas = areasOf(mesh);

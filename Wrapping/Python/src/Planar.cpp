@@ -95,10 +95,12 @@ void bindMeasures(py::module_& m) {
       [](const PolygonIn& polygon, const Point2& viewpoint, const Ends& region) {
         const Curve curve = curveOf(polygon);
         auto seen = planar::visiblePart(curve, regionOf(curve, region), viewpoint);
-        return py::dict("fraction"_a = seen.fraction, "edge_seen"_a = std::move(seen.edgeSeen));
+        return py::dict("fraction"_a = seen.fraction, "real_visibility"_a = seen.realVisibility,
+                        "edge_seen"_a = std::move(seen.edgeSeen));
       },
       "polygon"_a, "viewpoint"_a, "region"_a = py::none(),
       "What is truly seen of a region from a viewpoint (2,), mm, exactly: fraction of its length,\n"
+      "real_visibility, the flux that arrives over that length,\n"
       "and edge_seen, the seen share of each region edge.");
   m.def(
       "knot_energy",

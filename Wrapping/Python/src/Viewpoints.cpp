@@ -31,21 +31,14 @@ Viewpoints viewpointsOf(const py::array_t<double, py::array::c_style | py::array
     throw InvalidInput("viewpoints: one point of three coordinates or an array (N, 3) is needed");
   }
   const py::ssize_t count = given.size() / 3;
-  Viewpoints viewpoints;
+  std::vector<Point> points;
   for (py::ssize_t n = 0; n < count; ++n) {
     const double* p = given.data() + 3 * n;
-    viewpoints.points.emplace_back(p[0], p[1], p[2]);
+    points.emplace_back(p[0], p[1], p[2]);
   }
-  viewpoints.weights.assign(static_cast<std::size_t>(count), 1.0 / static_cast<double>(count));
-  if (!weights) return viewpoints;
-  const double sum = std::accumulate(weights->begin(), weights->end(), 0.0);
-  const bool positive =
-      std::all_of(weights->begin(), weights->end(), [](double w) { return w > 0; });
-  if (static_cast<py::ssize_t>(weights->size()) != count || !positive || !(sum < kInfinity)) {
+  if (weights && weights->empty())
     throw InvalidInput("weights: one positive number a viewpoint is needed");
-  }
-  for (std::size_t n = 0; n < weights->size(); ++n) viewpoints.weights[n] = (*weights)[n] / sum;
-  return viewpoints;
+  return visibility::viewpoints(points, weights.value_or(std::vector<double>{}));
 }
 
 }  // namespace

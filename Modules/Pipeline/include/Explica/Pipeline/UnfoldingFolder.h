@@ -25,7 +25,7 @@ namespace explica::pipeline {
 /// Average visibility of a frame, from the folder's summary; NaN where it is not there.
 [[nodiscard]] double frameVisibility(const nlohmann::ordered_json& summary, std::size_t frame);
 
-/// Three numbers under a key, RAS mm.
+/// Three numbers under a key, RAS mm; of several points the first.
 [[nodiscard]] std::optional<Point> pointIn(const nlohmann::ordered_json& json,
                                            const std::string& key);
 

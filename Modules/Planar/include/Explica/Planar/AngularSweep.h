@@ -9,8 +9,11 @@ namespace explica::planar {
 
 /// What is truly seen of a region from a viewpoint.
 struct VisiblePart {
-  double fraction = 0;       ///< length of the region that is seen, front side, over its length
-  Eigen::VectorXd edgeSeen;  ///< seen share of each region edge, in [0, 1], in the region's order
+  double fraction = 0;        ///< length of the region that is seen, front side, over its length
+  double realVisibility = 0;  ///< flux that arrives over the region's length, in [0, 1]: the seen
+                              ///< share times its cosine, the "real" average visibility of [Thesis,
+                              ///< figure 4.14], with a flux of zero where nothing is seen
+  Eigen::VectorXd edgeSeen;   ///< seen share of each region edge, in [0, 1], in the region's order
 };
 
 /// Seen share of a region by an exact angular sweep: edges enter and leave in the order of the

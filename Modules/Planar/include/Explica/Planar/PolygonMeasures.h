@@ -25,4 +25,14 @@ namespace explica::planar {
 /// @throws InvalidInput  an open curve
 [[nodiscard]] double selfOcclusion(const Curve& curve);
 
+/// A global measure and how it changes with the vertices.
+struct MeasureValue {
+  double value = 0;     ///< mm^2
+  Positions2 gradient;  ///< V x 2, mm, exact; of (4.7) one-sided where an edge's end lies on
+                        ///< another's line
+};
+[[nodiscard]] MeasureValue hiddenViewingArcGradient(const Curve& curve, const Point2& centre,
+                                                    double radius);
+[[nodiscard]] MeasureValue selfOcclusionGradient(const Curve& curve);
+
 }  // namespace explica::planar

@@ -31,9 +31,10 @@ enum class PolygonSurround {
 struct PolygonUnfoldingOptions {
   PolygonMethod method = PolygonMethod::Implicit;
   PolygonSurround surround = PolygonSurround::Fixed;
-  int collar = 4;           ///< edges on each side that follow with PolygonSurround::Elastic
-  bool noLength = false;    ///< let the region's edges change their length
-  bool noTopology = false;  ///< no knot energy, no barrier, no collision detection
+  int collar = 4;            ///< edges on each side that follow with PolygonSurround::Elastic
+  bool noLength = false;     ///< let the region's edges change their length
+  bool noTopology = false;   ///< no knot energy, no barrier, no collision detection
+  bool noCollision = false;  ///< the knot energy alone keeps edges apart, as in the thesis
   PolygonKnot knot = PolygonKnot::AllPairs;
   double knotWeight = 0.02;         ///< implicit method: knot energy against total flux
   double targetVisibility = 0.995;  ///< variance is then below 0.01, since f^2 <= 1
@@ -52,6 +53,10 @@ void describe(PolygonUnfoldingOptions& options, Visitor&& visit) {
   visit(Field{"no-length", "", "let edges of the region change their length"}, options.noLength);
   visit(Field{"no-topology", "", "let edges cross: no repulsion, no collision detection"},
         options.noTopology);
+  visit(Field{"no-collision", "",
+              "no barrier and no collision detection: the knot energy alone keeps edges apart, as "
+              "in the thesis"},
+        options.noCollision);
   visit(Field{"knot", "", "how the knot energy is summed"}, options.knot);
   visit(Field{"knot-weight", "", "implicit method: weight of the knot energy"}, options.knotWeight);
   visit(Field{"target-visibility", "", "stop at this average visibility"},
@@ -124,9 +129,10 @@ struct PolygonUnfolding {
 /// Moves the region's vertices until its average visibility from a viewpoint reaches the target.
 ///
 /// Lengths of the region's edges are constraints of every step, [Thesis, Eq. 4.21], met to 1e-6 by
-/// the implicit method and to first order by the thesis's.  Unless `noTopology`, no accepted step
-/// lets edges meet: it ends before the first contact of any vertex with any edge.  With `noLength`,
-/// edges that have shrunk to a quarter of the mean are merged into a vertex, as in the thesis.
+/// the implicit method and to first order by the thesis's.  Unless `noTopology` or
+/// `noCollision`, no accepted step lets edges meet: it ends before the first contact of any vertex
+/// with any edge.  With `noLength`, edges that have shrunk to a quarter of the mean are merged into
+/// a vertex, as in the thesis.
 ///
 /// @param view    mm, outside the polygon
 /// @param resume  where an earlier run on the same polygon, region and view stood: the result is

@@ -31,7 +31,8 @@ using OptionTarget =
                  std::optional<bool>*, std::optional<int>*, std::optional<double>*,
                  std::optional<std::string>*, std::optional<Eigen::Vector2d>*,
                  std::optional<Eigen::Vector3d>*, std::vector<int>*, std::vector<double>*,
-                 std::vector<std::string>*, std::vector<Eigen::Vector3d>*, ChoiceTarget>;
+                 std::vector<std::string>*, std::vector<Eigen::Vector2d>*,
+                 std::vector<Eigen::Vector3d>*, ChoiceTarget>;
 
 /// One option of a struct, with its type erased: what parser, JSON, help, descriptors and Python
 /// share.  It refers to the struct it was listed from, which must outlive it.
@@ -59,7 +60,7 @@ struct Option {
   /// The value now, as a user would write it: "1,2,3"; empty if unset.
   [[nodiscard]] std::string text() const;
   /// Sets the value from a user's words: one, or several for a list.  Points and lists of numbers
-  /// or choices separate by commas; lists of text take one element per word.
+  /// or choices separate by commas; lists of text and of points take one element per word.
   /// @throws UsageError  names the option, the text and what is expected
   void setText(const std::vector<std::string>& words);
 };

@@ -37,4 +37,17 @@ struct FitStage {
 [[nodiscard]] std::string drawFit(const HarmonicAnnulus& annulus, double z, const Outline& target,
                                   const std::vector<FitStage>& stages);
 
+/// One shape of a series.
+struct SeriesPanel {
+  std::string title;
+  Outline outline;
+};
+
+/// Draws shapes side by side in their annulus as SVG, as figure 3.7 of [Thesis]; of shapes in space
+/// the section at z.
+/// @param panels  at least one
+/// @return the whole SVG document
+[[nodiscard]] std::string drawSeries(const HarmonicAnnulus& annulus, double z,
+                                     const std::vector<SeriesPanel>& panels);
+
 }  // namespace explica::shapes

@@ -44,7 +44,9 @@ void describe(AnnulusOptions& options, Visitor&& visit) {
 struct ShapeFitOptions {
   int samples = 2000;  ///< points of the target's boundary that are fitted; taken by the caller
   int maxIterations = 200;
-  double step = 0.5;         ///< share of the way to each iteration's optimum; 1 is the full step
+  double start = 0.5;  ///< where the concentric initial estimate lies: u on it in the harmonic
+                       ///< function that is 0 on the inner and 1 on the outer boundary
+  double step = 0.5;   ///< share of the way to each iteration's optimum; 1 is the full step
   double smoothness = 1e-9;  ///< weight of the boundary values' mean square slope, against the
                              ///< fit's mean weight
 };
@@ -53,6 +55,11 @@ template <class Visitor>
 void describe(ShapeFitOptions& options, Visitor&& visit) {
   visit(Field{"samples", "", "points of each target's boundary that are fitted"}, options.samples);
   visit(Field{"max-iterations", "", "iterations of the fit"}, options.maxIterations);
+  visit(Field{"fit-start", "",
+              "initial estimate: 0 near the inner boundary, 1 near the outer one; the fit does not "
+              "hang on it",
+              0.01, 0.99},
+        options.start);
   visit(Field{"fit-step", "", "share of the way to each iteration's optimum"}, options.step);
   visit(Field{"smoothness", "",
               "weight of smooth boundary values, which settles what the target leaves open"},
@@ -73,7 +80,7 @@ struct ShapeFit {
 };
 
 /// Finds the coefficients whose 1/2 level has the smallest set-symmetric difference to a target,
-/// starting from the concentric shape.
+/// starting from a concentric shape.
 ///
 /// A target says what u is on it, not elsewhere: each frequency has two boundary values and one
 /// equation.  Of all u that fit equally well the one with the smoothest boundary values is taken,

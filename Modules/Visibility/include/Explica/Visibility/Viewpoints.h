@@ -19,6 +19,12 @@ struct Viewpoints {
 
 [[nodiscard]] Viewpoints viewpoint(const Point& point);
 
+/// Several points at once; weights are divided by their sum, and are equal if none are given.
+/// @throws InvalidInput  no point, one that is not finite, another number of weights than of
+///                       points, or a weight that is not positive
+[[nodiscard]] Viewpoints viewpoints(const std::vector<Point>& points,
+                                    const std::vector<double>& weights = {});
+
 /// Segment from `start` to `end`, Gauss-Legendre: exact for integrands of degree 2 * count - 1.
 /// @throws InvalidInput  count outside [1, 64], or a non-finite end
 [[nodiscard]] Viewpoints viewLine(const Point& start, const Point& end, int count = 8);

@@ -15,10 +15,16 @@ struct VisibleFractionOptions {
 struct VisibleFraction {
   Eigen::VectorXd face;    ///< F, share of each face's area that is seen, in [0, 1]
   Eigen::VectorXd vertex;  ///< V, the same of the area around each vertex; 0 at vertices of no face
-  double total = 0;        ///< share of the whole area, in [0, 1]
+  Eigen::VectorXd arriving;  ///< F, flux that arrives over the face's area, in [0, 1]: the seen
+                             ///< share times its cosine, the "real" average visibility of [Thesis,
+                             ///< figure 4.14]; nothing where nothing is seen
+  double total = 0;          ///< share of the whole area, in [0, 1]
 
   /// Share of the area of the listed faces.
   [[nodiscard]] double of(const TriangleMesh& mesh, const std::vector<std::int32_t>& faces) const;
+  /// Mean over the area of the listed faces of what arrives.
+  [[nodiscard]] double realOf(const TriangleMesh& mesh,
+                              const std::vector<std::int32_t>& faces) const;
 };
 
 /// Share of each face that is seen from the viewpoints: it faces the viewpoint, and no other face

@@ -1,0 +1,697 @@
+# SPDX-FileCopyrightText: The Explica developers
+# SPDX-License-Identifier: Apache-2.0
+"""Runs the thesis's simulations and writes them as one page; see thesis.sh."""
+
+import argparse
+import base64
+import gzip
+import html
+import json
+import math
+import shutil
+import struct
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import nibabel
+import numpy
+
+
+class Work:
+    """Runs explica into folders of one place and keeps what it said."""
+
+    def __init__(self, explica, out):
+        self.explica, self.out, self.commands = explica, out, {}
+
+    def run(self, name, *words, may_stop=True):
+        folder = self.out / "runs" / name
+        shutil.rmtree(folder, ignore_errors=True)
+        command = [str(w) for w in words]
+        done = subprocess.run([self.explica, *command, "--out", folder, "--quiet"],
+                              capture_output=True, text=True)
+        if done.returncode not in ((0, 3) if may_stop else (0,)):
+            raise SystemExit(f"explica {' '.join(command)}: exit {done.returncode}\n{done.stderr}")
+        root = str(self.out / "runs") + "/"
+        self.commands[name] = "explica " + " ".join(w.replace(root, "") for w in command)
+        summary = json.loads((folder / "summary.json").read_text())
+        summary["exit"] = done.returncode
+        return summary
+
+    def path(self, name):
+        return self.out / "runs" / name
+
+    def picture(self, target, *words):
+        path = self.out / "runs" / target
+        done = subprocess.run([self.explica, "view", *map(str, words), "--screenshot", str(path)],
+                              capture_output=True, text=True)
+        if done.returncode != 0:
+            raise SystemExit(f"explica view {words}: {done.stderr}")
+        return path
+
+
+# ---- figures ------------------------------------------------------------------------------------
+
+def svg_chart(series, x_label, y_label, x_log=True, y_log=True, width=560, height=360):
+    """Lines with marks; series: list of (name, colour, [(x, y)]).  Infinite x stand at the right."""
+    def scale(values, log, low, high):
+        values = [v for v in values if math.isfinite(v) and (v > 0 or not log)]
+        a, b = min(values), max(values)
+        if log:
+            a, b = math.log10(a), math.log10(b)
+        if a == b:
+            a, b = a - 0.5, b + 0.5
+        pad = 0.06 * (b - a)
+        a, b = a - pad, b + pad
+        def place(v):
+            v = math.log10(max(v, 1e-300)) if log else v
+            return low + (min(max(v, a), b) - a) / (b - a) * (high - low)
+        return place, a, b
+
+    left, right, top, bottom = 70, width - 14, 14, height - 46
+    xs = [x for _, _, points in series for x, _ in points]
+    ys = [y for _, _, points in series for _, y in points]
+    some_infinite = any(math.isinf(x) for x in xs)
+    place_x, x0, x1 = scale(xs, x_log, left, right - (40 if some_infinite else 0))
+    place_y, y0, y1 = scale(ys, y_log, bottom, top)
+    def at_x(x):
+        return right - 10 if math.isinf(x) else place_x(x)
+    parts = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}" '
+             'font-family="sans-serif" font-size="12"><rect width="100%" height="100%" fill="#fff"/>']
+    def ticks(a, b, log):
+        if log:
+            found = [10.0 ** e * m for e in range(math.floor(a), math.ceil(b) + 1) for m in (1, 2, 5)
+                     if a <= math.log10(10.0 ** e * m) <= b]
+            return found if len(found) < 8 else [t for t in found if f"{t:e}"[0] == "1"]
+        step = 10 ** math.floor(math.log10((b - a) / 4))
+        step *= next(m for m in (1, 2, 5, 10) if (b - a) / (step * m) <= 6)
+        return [k * step for k in range(math.ceil(a / step), math.floor(b / step) + 1)]
+    for t in ticks(x0, x1, x_log):
+        parts.append(f'<path d="M{place_x(t):.1f},{top} V{bottom}" stroke="#e4e6e8"/>'
+                     f'<text x="{place_x(t):.1f}" y="{bottom + 16}" text-anchor="middle">{t:g}</text>')
+    if some_infinite:
+        parts.append(f'<text x="{right - 10}" y="{bottom + 16}" text-anchor="middle">∞</text>')
+    for t in ticks(y0, y1, y_log):
+        parts.append(f'<path d="M{left},{place_y(t):.1f} H{right}" stroke="#e4e6e8"/>'
+                     f'<text x="{left - 6}" y="{place_y(t) + 4:.1f}" text-anchor="end">{t:g}</text>')
+    parts.append(f'<path d="M{left},{top} V{bottom} H{right}" fill="none" stroke="#444"/>')
+    parts.append(f'<text x="{(left + right) / 2}" y="{height - 8}" text-anchor="middle">{x_label}</text>')
+    parts.append(f'<text x="14" y="{(top + bottom) / 2}" text-anchor="middle" '
+                 f'transform="rotate(-90 14 {(top + bottom) / 2})">{y_label}</text>')
+    marks = ["circle", "square", "diamond", "triangle"]
+    for s, (name, colour, points) in enumerate(series):
+        points = [(x, y) for x, y in points if math.isfinite(y) and (y > 0 or not y_log)]
+        line = " ".join(f"{at_x(x):.1f},{place_y(y):.1f}" for x, y in points)
+        parts.append(f'<polyline points="{line}" fill="none" stroke="{colour}" stroke-width="2"/>')
+        def mark(x, y):
+            shape = marks[s % 4]
+            if shape == "circle":
+                return f'<circle cx="{x:.1f}" cy="{y:.1f}" r="4" fill="{colour}"/>'
+            if shape == "square":
+                return f'<rect x="{x - 4:.1f}" y="{y - 4:.1f}" width="8" height="8" fill="{colour}"/>'
+            corners = ((0, -5), (5, 0), (0, 5), (-5, 0)) if shape == "diamond" else ((0, -5), (5, 4), (-5, 4))
+            return ('<polygon points="' + " ".join(f"{x + a:.1f},{y + b:.1f}" for a, b in corners) +
+                    f'" fill="{colour}"/>')
+        for x, y in points:
+            parts.append(mark(at_x(x), place_y(y)))
+        y = top + 16 + 18 * s
+        parts.append(mark(left + 16, y - 4) + f'<text x="{left + 28}" y="{y}">{html.escape(name)}</text>')
+    return "".join(parts) + "</svg>"
+
+
+class Page:
+    """Sections with figures and numbers; every figure of the thesis is named once."""
+
+    def __init__(self):
+        self.body, self.numbers, self.figures, self.contents = [], [], {}, []
+
+    def section(self, title):
+        self.contents.append(title)
+        self.body.append(f'<h2 id="s{len(self.contents)}">{html.escape(title)}</h2>')
+
+    def text(self, words):
+        self.body.append(f"<p>{words}</p>")
+
+    def figure(self, numbers, caption, *pictures, command=None, wide=False):
+        """numbers: the thesis's figures that this one is, "3.4"; pictures: paths or SVG text."""
+        for number in numbers:
+            self.figures[number] = "made"
+        named = ", ".join(numbers)
+        inner = []
+        for picture in pictures:
+            if isinstance(picture, str):
+                inner.append(picture)
+                continue
+            data = Path(picture).read_bytes()
+            kind = {".svg": "image/svg+xml", ".png": "image/png", ".gif": "image/gif"}[Path(picture).suffix]
+            alt = html.escape(f"figure {named}: {caption}", quote=True)
+            inner.append(f'<img alt="{alt}" src="data:{kind};base64,{base64.b64encode(data).decode()}">')
+        line = f"<code>{html.escape(command)}</code>" if command else ""
+        anchor = f' id="f{numbers[0]}"' if numbers else ""
+        head = f"<b>Figure {named}.</b> " if numbers else ""
+        self.body.append(f'<figure{anchor}{" class=wide" if wide else ""}><div>{"".join(inner)}</div>'
+                         f"<figcaption>{head}{caption}{line}</figcaption></figure>")
+
+    def not_made(self, numbers, why):
+        for number in numbers:
+            self.figures[number] = "not made"
+        self.body.append(f"<p class=note><b>Figure {', '.join(numbers)}</b> is not made anew: {why}</p>")
+
+    def table(self, head, rows):
+        cells = "".join(f"<th>{h}</th>" for h in head)
+        lines = "".join("<tr>" + "".join(f"<td>{c}</td>" for c in row) + "</tr>" for row in rows)
+        self.body.append(f"<div class=scroll><table><tr>{cells}</tr>{lines}</table></div>")
+
+    def number(self, key, what, thesis, ours, shown, where):
+        """A number beside the thesis's; `ours` is what a test bounds."""
+        self.numbers.append({"key": key, "what": what, "thesis": thesis, "ours": ours, "shown": shown,
+                             "figure": where})
+
+    def write(self, out, seconds):
+        (out / "thesis.json").write_text(json.dumps(
+            {"numbers": self.numbers, "figures": self.figures, "seconds": seconds}, indent=1))
+        rows = "".join(
+            f"<tr><td>{html.escape(n['what'])}</td><td>{html.escape(n['thesis'])}</td>"
+            f"<td>{html.escape(n['shown'])}</td><td><a href='#f{n['figure']}'>{n['figure']}</a></td></tr>"
+            for n in self.numbers)
+        contents = "".join(f'<li><a href="#s{k + 1}">{html.escape(t)}</a></li>'
+                           for k, t in enumerate(self.contents))
+        made = [f for f, state in self.figures.items() if state == "made"]
+        text = f"""<!doctype html><html lang="en"><head><meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>The thesis, figure by figure</title><style>
+body {{ font: 16px/1.5 sans-serif; color: #1a1d21; max-width: 1180px; margin: 2em auto; padding: 0 1em }}
+h2 {{ margin-top: 2.2em; border-bottom: 1px solid #ccd0d4 }}
+figure {{ margin: 1.4em 0 }} figure div {{ display: flex; flex-wrap: wrap; gap: 10px; overflow-x: auto }}
+figure img, figure svg {{ max-width: 100%; height: auto }}
+figcaption {{ color: #3c434a; font-size: 15px; max-width: 60em }}
+figcaption code {{ display: block; margin-top: 4px; font-size: 13px; overflow-wrap: anywhere }}
+code {{ background: #f1f3f5; padding: 1px 5px; border-radius: 3px }}
+table {{ border-collapse: collapse; font-size: 15px }} td, th {{ border: 1px solid #d5d9dd; padding: 3px 9px; text-align: left }}
+th {{ background: #f1f3f5 }} .note {{ background: #fbf6e6; border-left: 4px solid #d9b84a; padding: 6px 12px }}
+.scroll {{ overflow-x: auto }} ul {{ columns: 2 }}
+</style></head><body>
+<h1>The thesis, figure by figure</h1>
+<p>Every simulation of the thesis run again by <code>ExampleData/thesis.sh</code> on phantoms of the same kind: the
+thesis's own polygons and surfaces are not published. {len(made)} of its figures are made anew here; where one is not,
+the page says so. {seconds:.0f} seconds for all of it.</p>
+<ul>{contents}</ul>
+<h2>Reported numbers beside ours</h2><div class=scroll><table>
+<tr><th>number</th><th>thesis</th><th>here</th><th>figure</th></tr>{rows}</table></div>
+{''.join(self.body)}</body></html>"""
+        (out / "thesis.html").write_text(text)
+
+
+# ---- inputs -------------------------------------------------------------------------------------
+
+def write_labels(path, labels, spacing):
+    """labels[j, i] as a NIfTI image of one slice."""
+    rows, columns = labels.shape
+    header = bytearray(348)
+    struct.pack_into("<i", header, 0, 348)
+    struct.pack_into("<8h", header, 40, 3, columns, rows, 1, 1, 1, 1, 1)
+    struct.pack_into("<2h", header, 70, 2, 8)
+    struct.pack_into("<8f", header, 76, 1, spacing, spacing, 1, 0, 0, 0, 0)
+    struct.pack_into("<f", header, 108, 352)
+    header[123] = 2
+    struct.pack_into("<2h", header, 252, 0, 1)
+    for row, values in enumerate(((spacing, 0, 0, 0), (0, spacing, 0, 0), (0, 0, 1, 0))):
+        struct.pack_into("<4f", header, 280 + 16 * row, *values)
+    header[344:348] = b"n+1\0"
+    with gzip.open(path, "wb") as file:
+        file.write(bytes(header) + b"\0" * 4 + labels.astype(numpy.uint8).tobytes())
+
+
+def ellipse_and_circle(path):
+    """The region of figure 3.2: between an ellipse and a circle."""
+    spacing, size = 0.5, 152
+    x = (numpy.arange(size) - size / 2) * spacing
+    X, Y = numpy.meshgrid(x, x)
+    labels = numpy.where((X / 34) ** 2 + (Y / 22) ** 2 < 1, 2, 0)
+    labels[(X - 7) ** 2 + Y ** 2 < 11.3 ** 2] = 1
+    write_labels(path, labels, spacing)
+
+
+def write_curve(path, radius):
+    """A closed curve, radius(t) mm."""
+    t = numpy.linspace(0, 2 * math.pi, 400, endpoint=False)
+    r = radius(t) * numpy.ones_like(t)
+    numpy.savetxt(path, numpy.stack([r * numpy.cos(t), r * numpy.sin(t)], 1), delimiter=",", fmt="%.6f")
+
+
+def icosphere(level):
+    g = (1 + 5 ** 0.5) / 2
+    v = [(-1, g, 0), (1, g, 0), (-1, -g, 0), (1, -g, 0), (0, -1, g), (0, 1, g), (0, -1, -g), (0, 1, -g),
+         (g, 0, -1), (g, 0, 1), (-g, 0, -1), (-g, 0, 1)]
+    v = [tuple(numpy.array(p) / numpy.linalg.norm(p)) for p in v]
+    f = [(0, 11, 5), (0, 5, 1), (0, 1, 7), (0, 7, 10), (0, 10, 11), (1, 5, 9), (5, 11, 4), (11, 10, 2),
+         (10, 7, 6), (7, 1, 8), (3, 9, 4), (3, 4, 2), (3, 2, 6), (3, 6, 8), (3, 8, 9), (4, 9, 5), (2, 4, 11),
+         (6, 2, 10), (8, 6, 7), (9, 8, 1)]
+    for _ in range(level):
+        middle, finer = {}, []
+        def half(a, b):
+            key = (min(a, b), max(a, b))
+            if key not in middle:
+                p = numpy.array(v[a]) + v[b]
+                v.append(tuple(p / numpy.linalg.norm(p)))
+                middle[key] = len(v) - 1
+            return middle[key]
+        for a, b, c in f:
+            x, y, z = half(a, b), half(b, c), half(c, a)
+            finer += [(a, x, z), (b, y, x), (c, z, y), (x, y, z)]
+        f = finer
+    return numpy.array(v), numpy.array(f)
+
+
+def write_surface(path, radius):
+    """A closed surface about the origin, radius(x, y, z) mm in each direction."""
+    v, f = icosphere(4)
+    v = v * radius(v[:, 0], v[:, 1], v[:, 2])[:, None]
+    with open(path, "w") as file:
+        file.write(f"OFF\n{len(v)} {len(f)} 0\n")
+        file.writelines("%.6f %.6f %.6f\n" % tuple(p) for p in v)
+        file.writelines("3 %d %d %d\n" % tuple(t) for t in f)
+
+
+def data(path):
+    return numpy.asarray(nibabel.load(path).dataobj, dtype=float)
+
+
+# ---- chapters -----------------------------------------------------------------------------------
+
+def chapter_3_tissue(work, page, heart):
+    page.section("3.1 Correspondences in annular tissue")
+    labels = work.path("ellipse.nii.gz")
+    ellipse_and_circle(labels)
+    work.run("ellipse", "thickness", labels, "--inner", 1, "--tissue", 2, "--figure")
+    page.figure(["3.1", "3.2"],
+                "A region between an ellipse and a circle: the interpolant u, its tangent field, and correspondence "
+                "trajectories from the inner (red) to the outer boundary (blue). ",
+                work.path("ellipse") / "field.svg", command=work.commands["ellipse"], wide=True)
+    if heart:
+        words = [heart, "--inner", 1, "--tissue", 2]
+        whose = "the heart that was given"
+    else:
+        work.run("ventricle", "phantom", "ventricle", "--size", 64, "--spacing", 1.4)
+        words = [work.path("ventricle") / "labels.nii.gz", "--inner", 1, "--tissue", 2]
+        whose = "the phantom of a left ventricle, as no heart was given"
+    measured = work.run("myocardium", "thickness", *words, "--per-slice", "--grid", 4, "--figure")
+    page.figure(["3.3"], f"A short-axis slice of {whose}: boundaries, tangent field, boundary correspondences of "
+                         "selected points, and the generated grid. ",
+                work.path("myocardium") / "field.svg", command=work.commands["myocardium"], wide=True)
+    page.number("grid_cells_degenerate", "cells of the grid with a Jacobian that is not positive", "not reported",
+                measured["grid_cells_degenerate"], f"{measured['grid_cells_degenerate']} kept out of "
+                f"{measured['grid_cells'] + measured['grid_cells_degenerate']}", "3.3")
+
+
+def appendix_a(work, page):
+    page.section("Appendix A: the hybrid, and its dial")
+    truth = work.path("spheroid")
+    work.run("spheroid", "phantom", "spheroid", "--size", 96, "--spacing", 1)
+    exact = {name: data(truth / f"{name}.nii.gz") for name in ("inner_point", "outer_point", "thickness")}
+    levels = ["--inner-level", truth / "inner_level.nii.gz", "--outer-level", truth / "outer_level.nii.gz"]
+
+    def measure(name, *words):
+        summary = work.run(name, "thickness", *levels, "--sulci", "ignore", *words)
+        folder = work.path(name)
+        thickness = data(folder / "thickness.nii.gz")
+        # Exact answers and ours are both there.
+        tissue = (thickness > 0) & (exact["thickness"] > 0)
+        points = 0
+        for side in ("inner_point", "outer_point"):
+            off = data(folder / f"{side}.nii.gz") - exact[side]
+            points += 0.5 * numpy.linalg.norm(numpy.squeeze(off), axis=-1)[tissue].mean()
+        result = {"points": points, "seconds": summary["seconds_correspondence"],
+                  "thickness": abs(thickness - exact["thickness"])[tissue].mean(),
+                  "traced": summary["traced_fraction"]}
+        shutil.rmtree(folder)
+        return result
+
+    pure = {name: measure(name, "--method", name) for name in ("lagrangian", "eulerian")}
+    dial = [0.1, 0.2, 0.4, 0.6, 0.8, 1, 1.5, 2, math.inf]
+    ours, literal = {}, {}
+    for value in dial:
+        word = "inf" if math.isinf(value) else f"{value:g}"
+        literal[value] = measure(f"appendix-{word}", "--method", "appendix-a", "--lambda", word)
+        ours[value] = measure(f"hybrid-{word}", "--method", "hybrid", "--lambda", word)
+    rows = [[n, "", f"{r['points']:.4f}", f"{r['thickness']:.4f}", f"{1000 * r['seconds']:.0f}",
+             f"{100 * r['traced']:.0f} %"] for n, r in pure.items()]
+    for name, found in (("appendix A", literal), ("ours", ours)):
+        rows += [[name, "∞" if math.isinf(v) else f"{v:g}", f"{r['points']:.4f}", f"{r['thickness']:.4f}",
+                  f"{1000 * r['seconds']:.0f}", f"{100 * r['traced']:.0f} %"] for v, r in found.items()]
+    page.text("Confocal spheroids at 1 mm, whose correspondences are known exactly. Appendix A to the letter takes the "
+              "Eulerian average where the upwind neighbours' boundary points are nearer than λ, else follows the "
+              "trajectory to the first grid face that agrees. Its error hangs on λ, from the Lagrangian's to that of "
+              "the Eulerian sweep with better boundary values. Ours follows every trajectory to the first face and "
+              "interpolates there to second order: its error is near the Lagrangian's for every λ, with no jump at "
+              "infinity.")
+    chart = lambda key, label, factor: svg_chart(
+        [("appendix A", "#c0392b", [(v, factor * r[key]) for v, r in literal.items()]),
+         ("ours", "#145ab4", [(v, factor * r[key]) for v, r in ours.items()]),
+         ("Lagrangian", "#7a7f85", [(dial[0], factor * pure["lagrangian"][key]),
+                                    (dial[-1], factor * pure["lagrangian"][key])]),
+         ("Eulerian", "#b98a00", [(dial[0], factor * pure["eulerian"][key]),
+                                  (dial[-1], factor * pure["eulerian"][key])])],
+        "λ, mm (voxels)", label)
+    page.figure([], "<b>Error and time over λ.</b> Mean distance of the boundary points from the exact ones, and "
+                    "wall time of the correspondences. ",
+                chart("points", "error of boundary points, mm", 1), chart("seconds", "time, ms", 1000),
+                command="explica thickness --inner-level ... --outer-level ... --method appendix-a --lambda L")
+    page.table(["method", "λ, mm", "boundary points, mm", "thickness, mm", "ms", "followed"], rows)
+    lagrangian = pure["lagrangian"]["points"]
+    page.number("appendix_a_dial", "appendix A: error at λ = ∞ over that at 0.1 mm", "λ controls the accuracy",
+                literal[math.inf]["points"] / literal[0.1]["points"],
+                f"{literal[math.inf]['points'] / literal[0.1]['points']:.1f}", "3.3")
+    page.number("hybrid_worst", "ours: largest error over λ, relative to the Lagrangian method", "not reported",
+                max(r["points"] for r in ours.values()) / lagrangian,
+                f"{max(r['points'] for r in ours.values()) / lagrangian:.2f}", "3.3")
+
+
+def chapter_3_shapes(work, page):
+    page.section("3.2 Harmonic embedding")
+    annulus = ["--centre", "0,0,0", "--inner-radius", 21, "--outer-radius", 40, "--order", 10, "--grid", 72]
+    targets = {"cube": lambda x, y, z: 30 * (1 - 0.3 * (x ** 4 + y ** 4 + z ** 4 - 0.6)),
+               "pear": lambda x, y, z: 30 * (1 + 0.13 * z + 0.12 * (x * x - y * y))}
+    for name, number in (("cube", "3.4"), ("pear", "3.5")):
+        surface = work.path(f"{name}.off")
+        write_surface(surface, targets[name])
+        fit = work.run(name, "embed", surface, "--fit", *annulus, "--samples", 1500,
+                       "--fit-start", 0.15 if name == "cube" else 0.85)
+        page.figure([number], f"Evolution from an initial estimate to the minimum of the set-symmetric difference: "
+                              f"sections of the surface (blue) and its target (orange); at the end "
+                              f"{fit['distance_max']:.2f} mm away at most, where half a voxel is "
+                              f"{fit['voxel'] / 2:.2f} mm. ",
+                    work.path(name) / "evolution.svg", command=work.commands[name], wide=True)
+        page.number(f"fit_{name}", f"largest distance of the fit from its target, in voxels (figure {number})",
+                    "not reported", fit["distance_max"] / fit["voxel"], f"{fit['distance_max'] / fit['voxel']:.2f}",
+                    number)
+    coefficients = [work.path(n) / "coefficients.json" for n in ("cube", "pear")]
+    series = work.run("series", "embed", *coefficients, "--series", 9, "--grid", 72)
+    work.run("average", "embed", *coefficients, "--average", "--grid", 72)
+    views = [work.picture(f"{n}.png", work.path(n) / "shape.surf.gii", "--direction", "0.5,-0.75,0.45", "--width", 320,
+                          "--height", 320) for n in ("cube", "average", "pear")]
+    page.figure(["3.6"], "The average of the two: the mean of their coefficients (middle). ", *views,
+                command=work.commands["average"])
+    page.figure(["3.7"], "Convex combinations of the two, from the first to the second; the film runs to and fro. ",
+                work.path("series") / "series.png", work.path("series") / "series.gif",
+                command=work.commands["series"])
+    page.number("series_margin", "least distance of boundary values from 1/2 over the series: above 0 every "
+                                 "combination is one closed surface", "one surface",
+                series["series_boundary_margin_min"], f"{series['series_boundary_margin_min']:.3f}", "3.7")
+    for a, b in ((18, 22), (15, 25)):
+        for r in (a, b):
+            write_curve(work.path(f"circle{r}.csv"), lambda t, r=r: r + 0 * t)
+        work.run("circles", "embed", work.path(f"circle{a}.csv"), work.path(f"circle{b}.csv"), "--average",
+                 "--centre", "0,0,0", "--inner-radius", 12.5, "--outer-radius", 29)
+        r = numpy.linalg.norm(numpy.loadtxt(work.path("circles") / "shape.csv", delimiter=",", comments="#"), axis=1)
+        page.number(f"circles_{a}_{b}", f"average of circles of {a} and {b} mm: farthest from the circle of their "
+                                        "geometric mean, mm", "not reported", float(abs(r - math.sqrt(a * b)).max()),
+                    f"{abs(r - math.sqrt(a * b)).max():.4f}", "3.6")
+
+
+def chapter_4(work, page):
+    page.section("4.1 Global measures")
+    arc = work.run("arc", "polygon", "--phantom", "polygon19", "--global-flow", "hidden-arc", "--max-iterations", 600)
+    page.figure(["4.8"], "The measure (4.6), how much of a viewing circle is hidden, and its flow: curve shortening, "
+                         "which smooths and does not unfold. ",
+                work.path("arc") / "evolution.svg", command=work.commands["arc"], wide=True)
+    hiding = work.run("hiding", "polygon", "--phantom", "polygon19", "--global-flow", "self-occlusion")
+    page.figure(["4.9"], "The measure (4.7), how much the polygon hides itself, and its flow: it ends nearly convex, "
+                         "with the length of the folds lost. ",
+                work.path("hiding") / "evolution.svg", command=work.commands["hiding"], wide=True)
+    for key, run, number in (("arc", arc, "4.8"), ("occlusion", hiding, "4.9")):
+        kept = run["length_final"] / run["length_initial"]
+        page.number(f"length_kept_{key}", f"length of the region that the flow of figure {number} keeps",
+                    "does not unfold", kept, f"{100 * kept:.0f} %", number)
+
+    page.section("4.2 Unfolding of polygons")
+    p19 = work.run("p19", "polygon", "--phantom", "polygon19")
+    p34 = work.run("p34", "polygon", "--phantom", "polygon34")
+    t19 = work.run("thesis19", "polygon", "--phantom", "polygon19", "--method", "thesis", "--no-collision")
+    t34 = work.run("thesis34", "polygon", "--phantom", "polygon34", "--method", "thesis", "--no-collision")
+    page.not_made(["4.10", "4.11", "4.12"], "they define visibility from a point and the flux of a point. The flux is "
+                  "computed in closed form (4.11), and what is seen by an exact angular sweep.")
+    page.figure(["4.13", "4.15", "4.17"],
+                f"The region of 19 edges from its viewpoint, by our implicit steps: the colour of an edge is its flux. ",
+                work.path("p19") / "evolution.svg", command=work.commands["p19"], wide=True)
+    page.text("The flux estimates the “real” average visibility, the seen share times its cosine (figure 4.14):")
+    page.figures["4.14"] = "made"
+    page.table(["region", "flux", "seen", "seen times cosine"],
+               [[f"<span id='f4.14'></span>{n}, {when}", f"{r['visibility_' + when]:.3f}", f"{r['seen_' + when]:.3f}",
+                 f"{r['real_visibility_' + when]:.3f}"]
+                for n, r in (("19 edges", p19), ("34 edges", p34)) for when in ("initial", "final")])
+    page.number("real_19", "19 edges: real visibility less its estimate by the flux, at the start", "a good estimate",
+                p19["real_visibility_initial"] - p19["visibility_initial"],
+                f"{p19['real_visibility_initial'] - p19['visibility_initial']:+.3f}", "4.14")
+    page.not_made(["4.16"], "it explains that an edge receives most flux when rays meet it at right angles.")
+    page.figure(["4.18"],
+                "The region of 34 edges by the thesis's explicit flow (4.20), the knot energy as the only guard, "
+                "collision detection off: no edge crosses another on the way. ",
+                work.path("thesis34") / "evolution.svg", command=work.commands["thesis34"], wide=True)
+    collapse = work.run("collapse", "polygon", "--phantom", "polygon34", "--method", "thesis", "--no-length",
+                        "--no-collision")
+    page.figure(["4.19"], "The same without length constraints: the region shrinks itself. ",
+                work.path("collapse") / "evolution.svg", command=work.commands["collapse"], wide=True)
+    crossing = work.run("crossing", "polygon", "--phantom", "polygon34", "--method", "thesis", "--no-topology",
+                        "--max-iterations", 400)
+    page.figure(["4.20"], f"Without topology preservation edges cross after {crossing['first_crossing']} iterations "
+                          "(rings). ",
+                work.path("crossing") / "evolution.svg", command=work.commands["crossing"], wide=True)
+    rows = []
+    for name, edges, thesis, method, run in (
+            ("4.17", 19, "0.21, 0.39, 416, 418.79, 1.50", "ours", p19), ("4.17", 19, "", "explicit", t19),
+            ("4.18", 34, "0.17, 0.69, 723.70, 727.60, 40", "ours", p34), ("4.18", 34, "", "explicit", t34)):
+        rows.append([f"{edges} edges", method, f"{run['visibility_initial']:.3f} to {run['visibility_final']:.3f}",
+                     f"{run['flux_variance_initial']:.3f} to {run['flux_variance_final']:.1e}",
+                     f"{run['length_initial']:.2f} to {run['length_final']:.2f}", run["iterations"],
+                     f"{1000 * run['seconds']:.0f} ms, {1000 * run['seconds_topology']:.0f} ms for the topology",
+                     run["self_intersections_final"]])
+    page.table(["region", "method", "visibility", "flux variance", "length, px", "iterations", "time", "crossings"], rows)
+    for key, edges, run, explicit, thesis in (
+            ("19", 19, p19, t19, ("0.21", "0.39", "416 to 418.79 px", "1.50 s, 0.70 s for the topology")),
+            ("34", 34, p34, t34, ("0.17", "0.69", "723.70 to 727.60 px", "40 s, 36 s for the topology"))):
+        where = "4.17" if key == "19" else "4.18"
+        page.number(f"visibility_initial_{key}", f"{edges} edges: initial average visibility", thesis[0],
+                    run["visibility_initial"], f"{run['visibility_initial']:.3f}", where)
+        page.number(f"variance_initial_{key}", f"{edges} edges: initial variance of the flux", thesis[1],
+                    run["flux_variance_initial"], f"{run['flux_variance_initial']:.3f}", where)
+        page.number(f"visibility_final_{key}", f"{edges} edges: final average visibility", "almost 1",
+                    run["visibility_final"], f"{run['visibility_final']:.4f}", where)
+        page.number(f"length_{key}", f"{edges} edges: length kept by ours (relative change)", thesis[2],
+                    abs(run["length_final"] / run["length_initial"] - 1),
+                    f"{run['length_initial']:.2f} to {run['length_final']:.2f} px", where)
+        page.number(f"length_explicit_{key}", f"{edges} edges: length kept by the thesis's flow", thesis[2],
+                    abs(explicit["length_final"] / explicit["length_initial"] - 1),
+                    f"{explicit['length_initial']:.2f} to {explicit['length_final']:.2f} px", where)
+        page.number(f"knot_alone_{key}", f"{edges} edges: crossings with the knot energy as the only guard", "none",
+                    explicit["self_intersections_final"] + max(0, explicit["first_crossing"]),
+                    f"{explicit['self_intersections_final']}", where)
+        page.number(f"seconds_{key}", f"{edges} edges: time, ours (thesis: a 2.52 GHz Pentium IV)", thesis[3],
+                    run["seconds"], f"{run['seconds']:.3f} s, {run['seconds_topology']:.3f} s for the topology", where)
+    page.number("length_collapse", "34 edges without length constraints: length at the end",
+                "723.70 to 205.41 px", collapse["length_final"],
+                f"{collapse['length_initial']:.2f} to {collapse['length_final']:.2f} px", "4.19")
+    page.number("first_crossing", "34 edges without topology preservation: iterations to the first crossing",
+                "“after a few iterations”", crossing["first_crossing"], f"{crossing['first_crossing']}", "4.20")
+
+
+def frames_of(folder):
+    return sorted((folder / "frames").glob("frame-*.surf.gii"))
+
+
+def strip(work, name, folder, frames, direction, region, focus=False, size=300):
+    """Pictures of frames, in a row."""
+    pictures = []
+    for k, frame in enumerate(frames):
+        words = [frame, "--region", region, "--direction", direction, "--width", size, "--height", size]
+        pictures.append(work.picture(f"{name}-{k}.png", *words, *(["--focus"] if focus else [])))
+    return pictures
+
+
+def clear_visibility(work, before, name):
+    """Visibility of the last frame before one with crossing faces, and whether all were without."""
+    frames = frames_of(work.path(name))
+    compared = work.run(name + "-compared", "compare", before, *frames, "--pairs", 100, "--sources", 4)
+    table = (work.path(name + "-compared") / "comparison.tsv").read_text().splitlines()
+    columns = table[0].split("\t")
+    crossings = [int(float(line.split("\t")[columns.index("crossings")])) for line in table[1:]]
+    summary = json.loads((work.path(name) / "summary.json").read_text())
+    reached, clear = summary["visibility_initial"], True
+    for count, visibility in zip(crossings, summary["frame_visibilities"]):
+        if count > 0:
+            clear = False
+            break
+        reached = visibility
+    return reached, clear
+
+
+def chapter_5_folds(work, page):
+    page.section("5.6 A synthetic surface")
+    work.run("folds", "phantom", "folds", "--edge", 1)
+    surface, region = work.path("folds") / "folds.surf.gii", work.path("folds") / "region.label.gii"
+    ours = work.run("folds-open", "unfold", surface, "--label", region, "--direction", "0,0,1", "--frames", 4)
+    pictures = strip(work, "folds-open", surface, [surface, *frames_of(work.path("folds-open"))], "0.45,-1,0.75", region)
+    page.figure(["5.24"],
+                f"A sheet whose folds hide each other, seen from above (the pictures look from the side): average "
+                f"visibility {ours['visibility_initial']:.2f}, seen {ours['seen_initial']:.2f}; by our implicit steps "
+                f"{ours['visibility_final']:.4f} and {ours['seen_final']:.3f}, areas kept to "
+                f"{100 * ours['area_error_mean']:.2f} %, no crossing. ", *pictures,
+                command=work.commands["folds-open"])
+    page.number("folds_initial", "synthetic surface: initial visibility", "0.2", ours["visibility_initial"],
+                f"{ours['visibility_initial']:.3f}", "5.24")
+    page.number("folds_final", "synthetic surface: final visibility", "very close to 1", ours["visibility_final"],
+                f"{ours['visibility_final']:.4f}", "5.24")
+    page.number("folds_crossings", "synthetic surface: crossings at the end", "topology preserved",
+                ours["self_intersections_final"], f"{ours['self_intersections_final']}", "5.24")
+
+    page.section("5.3 and 5.4 The thesis's own flow in space")
+    work.run("coarse", "phantom", "folds", "--edge", 2, "--length", 60, "--waves", 3)
+    surface, region = work.path("coarse") / "folds.surf.gii", work.path("coarse") / "region.label.gii"
+    aim = [surface, "--label", region, "--direction", "0,0,1", "--surround", "fixed", "--method", "thesis"]
+    weights, steps = [0.001, 0.003, 0.01, 0.03, 0.1], [0.02, 0.005]
+    found = {}
+    for step in steps:
+        for weight in weights:
+            name = f"flow-{weight:g}-{step:g}"
+            work.run(name, "unfold", *aim, "--knot", "thesis-tree", "--knot-weight", weight, "--time-step", step,
+                     "--max-iterations", 150, "--frames", 12)
+            found[step, weight] = clear_visibility(work, surface, name)
+    best = max(v for v, _ in found.values())
+    page.figure([], "<b>The limit of the knot energy alone.</b> Visibility that the flow (5.46), with (5.43) to (5.45), "
+                    "the merging tree, projected areas and a fixed time step, has reached when faces cross first, on "
+                    "the folded sheet in surroundings that stay. The knot energy of triangles stays finite where an "
+                    "edge meets an edge, so it cannot stop a crossing by itself: heavier weights hold the surface "
+                    "before it opens, lighter ones let it cross. ",
+                svg_chart([(f"time step {s:g}", c, [(w, found[s, w][0]) for w in weights])
+                           for s, c in zip(steps, ("#145ab4", "#c0392b"))],
+                          "weight of the knot energy", "visibility without a crossing", y_log=False),
+                command=work.commands[f"flow-{weights[2]:g}-{steps[0]:g}"])
+    page.number("flow_limit", "the thesis's flow in space: best visibility without a crossing, over knot weight and "
+                              "time step", "very close to 1", best, f"{best:.2f}", "5.24")
+    # Time of one iteration.
+    times = {}
+    for knot in ("all-pairs", "thesis-tree", "tree"):
+        run = work.run(f"time-{knot}", "unfold", *aim, "--knot", knot, "--knot-weight", 0.01, "--max-iterations", 2)
+        times[knot] = run["seconds_repulsion"] / max(1, run["iterations"])
+    faces = json.loads((work.path("time-tree") / "summary.json").read_text())["region_faces"]
+    page.text(f"Time of the topology forces in one iteration, {faces} faces that move: all pairs "
+              f"{times['all-pairs']:.2f} s, the thesis's merging tree {times['thesis-tree']:.2f} s, ours "
+              f"{1000 * times['tree']:.1f} ms. The thesis reports 20 minutes and 5 seconds for about 1,500 faces of a "
+              "whole cortex on a 2.53 GHz computer.")
+    page.number("tree_gain", "time of all pairs over the merging tree", "20 min to 5 s: 240 times",
+                times["all-pairs"] / times["thesis-tree"], f"{times['all-pairs'] / times['thesis-tree']:.1f}", "5.24")
+    page.number("our_gain", "time of the thesis's tree over ours", "not applicable",
+                times["thesis-tree"] / times["tree"], f"{times['thesis-tree'] / times['tree']:.0f}", "5.24")
+    page.not_made(["5.21", "5.22"], "they define the region of interest and a face's corners.")
+    page.not_made(["5.23"], "the merging tree is built as the algorithm says; tests compare it with the figure node by "
+                  "node.")
+
+
+def chapter_5_cortex(work, page, fsaverage):
+    page.section("5.6 Regions of a cortex")
+    if fsaverage:
+        surface = Path(fsaverage) / "pial_left.gii.gz"
+        whose = "fsaverage5's left pial surface"
+        regions = {"5.25": ("-1,0.2,0.2", "-67,-22,20", 20), "5.26": ("-0.3,-1,0.4", "-25,-97,5", 20),
+                   "5.27": ("0,0.2,1", "-25,-5,68", 20)}
+    else:
+        work.run("cortex", "phantom", "cortex", "--size", 40, "--depth", 0.3, "--waves", 4)
+        work.run("cortex-surface", "surface", work.path("cortex") / "labels.nii.gz", "--white", 3, "--grey", 2,
+                 "--faces", 12000)
+        surface = work.path("cortex-surface") / "mid.surf.gii"
+        whose = "the phantom of a cortex, as no real one was given"
+        regions = {"5.25": ("0,0,1", "0,0,16", 9), "5.26": ("1,0.2,0.2", "16,3,3", 9), "5.27": ("0,-1,0.6", "0,-14,8", 9)}
+    rows = []
+    for number, (direction, centre, radius) in regions.items():
+        name = "region-" + number
+        aim = [surface, "--center", centre, "--radius", radius, "--direction", direction]
+        ours = work.run(name, "unfold", *aim, "--frames", 3)
+        literal = work.run(name + "-thesis", "unfold", *aim, "--surround", "fixed", "--method", "thesis", "--knot",
+                           "thesis-tree", "--knot-weight", 0.01, "--max-iterations", 60)
+        region = work.path(name) / "region.label.gii"
+        pictures = strip(work, name, surface, [surface, *frames_of(work.path(name))], direction, region, size=290)
+        page.figure([number], f"A region of {whose}: visibility {ours['visibility_initial']:.2f} to "
+                              f"{ours['visibility_final']:.3f}, seen {ours['seen_initial']:.2f} to "
+                              f"{ours['seen_final']:.3f}. ", *pictures, command=work.commands[name])
+        for method, run in (("ours", ours), ("thesis, knot weight 0.01, 60 iterations", literal)):
+            rows.append([number, run["region_faces"], method,
+                         f"{run['visibility_initial']:.3f} to {run['visibility_final']:.3f}",
+                         f"{run['real_visibility_initial']:.3f} to {run['real_visibility_final']:.3f}",
+                         f"{run['flux_variance_initial']:.3f} to {run['flux_variance_final']:.3f}",
+                         f"{100 * run['area_error_mean']:.2f} %", run["self_intersections_final"], run["iterations"],
+                         f"{run['seconds_per_iteration']:.3f}"])
+        page.number(f"region_{number}", f"region of a cortex (figure {number}): final visibility", "not reported",
+                    ours["visibility_final"], f"{ours['visibility_final']:.3f}", number)
+        page.number(f"region_crossings_{number}", f"figure {number}: crossing pairs that are new", "topology preserved",
+                    ours["self_intersections_new"], f"{ours['self_intersections_new']}", number)
+    page.table(["figure", "faces", "method", "flux", "seen times cosine", "flux variance", "area error", "crossings",
+                "iterations", "s an iteration"], rows)
+    return surface, work.path("region-5.25")
+
+
+def comparison(work, page, fsaverage, surface, unfolded):
+    page.section("Beside flat, inflated and spherical maps")
+    maps = {"unfolded": unfolded / "unfolded.surf.gii"}
+    work.run("flat", "flatten", unfolded / "unfolded.surf.gii", "--reference", surface, "--label",
+             unfolded / "region.label.gii") if False else None
+    if fsaverage:
+        for name in ("infl", "sphere"):
+            maps[name] = Path(fsaverage) / f"{name}_left.gii.gz"
+    if len(maps) == 1:
+        page.text("No fsaverage was given (<code>--fsaverage DIR</code>), so there is no inflated or spherical map of "
+                  "the same vertices to compare with.")
+    work.run("beside", "compare", surface, *maps.values(), "--label", unfolded / "region.label.gii", "--pairs", 4000)
+    lines = (work.path("beside") / "comparison.tsv").read_text().splitlines()
+    head = lines[0].split("\t")
+    page.table(head, [line.split("\t") for line in lines[1:]])
+
+
+def errata(page):
+    page.section("Errata of the thesis, each pinned by a test")
+    page.table(["equation", "printed", "right", "test"], [
+        ["(53)", "γ/|C|²", "γ/|C|", "<code>EdgeFlux.GradientShowsTheErratumOfEquation53</code>"],
+        ["(4.19)", "weight 2 of the first sum", "weight 1", "<code>PolygonKnotEnergy.DoesNotChangeWhenAnEdgeIsSplit</code>"],
+        ["(5.25)", "drops the factor 2 of (60)", "with the factor", "<code>SmoothFlow.NeedsTheFactorTwoThatTheThesisDrops</code>"],
+        ["(5.44)", "last b, c are those of face i", "those of face j",
+         "<code>PairIntegral.DerivativeOfSharedCornersNeedsTheOtherFacesOwnCorners</code>"],
+        ["(5.45), (84)", "distance of sums of vertices", "of centroids",
+         "<code>PairIntegral.DividesByTheCentroidDistanceNotByThatOfSums</code>"],
+        ["(5.46)", "+ μ<sub>R</sub>", "− μ<sub>R</sub>: descent on a repulsive energy",
+         "<code>AllPairs.DescentOnTheEnergyNeedsTheMinusSign</code>"]])
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--explica", type=Path, required=True)
+    parser.add_argument("--out", type=Path, required=True)
+    parser.add_argument("--fsaverage", type=Path)
+    parser.add_argument("--heart", type=Path)
+    given = parser.parse_args()
+    out = given.out.resolve()
+    (out / "runs").mkdir(parents=True, exist_ok=True)
+    work, page, begin = Work(given.explica.resolve(), out), Page(), time.monotonic()
+
+    def note(words):
+        print(f"{time.monotonic() - begin:6.1f} s  {words}", file=sys.stderr, flush=True)
+
+    chapter_3_tissue(work, page, given.heart and given.heart.resolve())
+    note("3.1 correspondences")
+    appendix_a(work, page)
+    note("appendix A")
+    chapter_3_shapes(work, page)
+    note("3.2 shapes")
+    chapter_4(work, page)
+    note("4 polygons")
+    chapter_5_folds(work, page)
+    note("5 the folded sheet")
+    surface, unfolded = chapter_5_cortex(work, page, given.fsaverage and given.fsaverage.resolve())
+    note("5 the cortex")
+    comparison(work, page, given.fsaverage and given.fsaverage.resolve(), surface, unfolded)
+    errata(page)
+    page.write(out, time.monotonic() - begin)
+    note(f"look at {out / 'thesis.html'}")
+
+
+if __name__ == "__main__":
+    main()
