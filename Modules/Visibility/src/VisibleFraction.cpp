@@ -129,9 +129,9 @@ VisibleFraction visibleFraction(const TriangleMesh& mesh, const Viewpoints& view
           if (free >> n & 1U) cosines += normal.dot(by[n]);
         }
       }
-      const double weight = viewpoints.weights[p] / static_cast<double>(samples.size());
-      seen += weight * clear;
-      arriving += weight * cosines;
+      const auto rays = static_cast<double>(samples.size());
+      seen += viewpoints.weights[p] * clear / rays;
+      arriving += viewpoints.weights[p] * cosines / rays;
     }
     result.face[f] = seen;
     result.arriving[f] = arriving;
