@@ -24,8 +24,8 @@ namespace {
 constexpr int kSide = 420;               // pixels of the film's pictures
 constexpr int kCaption = 34;             // pixels below them
 constexpr double kFramesPerSecond = 12;  // of the film
-constexpr int kFilmSteps = 36;           // of the film, from one shape to the other
-constexpr int kFilmGrid = 64;            // voxels per side for its surfaces
+constexpr int kFilmSteps = 24;           // of the film, from one shape to the other
+constexpr int kFilmGrid = 44;            // voxels per side for its surfaces
 constexpr report::Colour kLine = {0.007F, 0.10F, 0.46F};
 constexpr report::Colour kInk = {0.012F, 0.014F, 0.018F};
 
