@@ -20,4 +20,5 @@ $view "$out/surface-L/mid.surf.gii" "$last" --map "$out/surface-L/curvature.shap
   --screenshot "$to/unfolding.png"
 $view "$out/unfold-L" --map "$out/surface-L/curvature.shape.gii" --colours diverging --range -0.4,0.4 \
   --direction -1,0,0 --width 260 --height 220 --film "$to/unfolding.gif"
+cp "$out-flat/flat.png" "$to/flat.png"
 echo "Look at $to"

@@ -17,3 +17,18 @@ if [ "${status:-0}" != 0 ] && [ "${status:-0}" != 3 ]; then
   exit "$status"
 fi
 echo "Look at $PWD/$out/report.html in a browser"
+
+# The image on the patch of the left hemisphere, with AAL's regions: over the depth of the cortex, and flat.
+left=$out/surface-L
+if [ -d "$left" ] && [ -d "$out/unfold-L" ]; then
+  sample="build/bin/explica sample $templates/ch2bet.nii.gz --surfaces $left --force --quiet"
+  $sample --depths 11 --labels "$left/regions.label.gii" --out "$out-profiles"
+  $sample --depths 0.5 --out "$out-middle"
+  build/bin/explica flatten "$out/unfold-L/unfolded.surf.gii" --surfaces "$left" --depths 7 \
+    --volumes "$templates/ch2bet.nii.gz" --map "$out-middle/ch2bet.func.gii" \
+    --regions "$left/regions.label.gii" --out "$out-flat" --force --quiet
+  for folder in "$out-profiles" "$out-flat"; do
+    build/bin/explica report "$folder" --quiet
+    echo "and at $PWD/$folder/report.html"
+  done
+fi

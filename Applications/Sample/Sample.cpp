@@ -14,6 +14,7 @@
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/IO/VolumeSeries.h"
 #include "Explica/Sampling/NearestColumn.h"
+#include "Explica/Sampling/Ribbon.h"
 #include "Explica/Sampling/Transfer.h"
 
 #include <nlohmann/json.hpp>
@@ -22,6 +23,8 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <set>
 #include <span>
 
@@ -76,11 +79,13 @@ void declare(Declaration& d, SampleSettings& s) {
                     "depths are shares of the distance or of the "
                     "column's volume"},
               s.depthKind)
-      .option("Depths",
-              Field{"across", "",
-                    "one map of all depths: their mean or maximum; of labels "
-                    "the most frequent"},
-              s.across)
+      .option(
+          "Depths",
+          Field{"across", "",
+                "one map of all depths: their mean or maximum, of labels the most frequent; "
+                "ribbon: mean over the volume of the faces about a vertex, as Workbench's ribbon "
+                "mapping"},
+          s.across)
       .option("Values", Field{"interpolate", "", "how values between voxel centres are made"},
               s.interpolate)
       .inputOption("mask", FileKind::Volume,
@@ -175,6 +180,8 @@ class SurfaceSampling {
         s_(s),
         cortex_(readCortex(context, s.cortex)),
         depths_(sampling::depthsFromText(s.depths.value_or(kDefaultDepths))),
+        ribbon_(s.across == sampling::Across::Ribbon),
+        layers_(ribbon_ ? 1 : depths_.size()),
         count_(static_cast<std::size_t>(cortex_.white.vertexCount())),
         regions_(regionsOf(s, cortex_.white.vertexCount())) {
     if (s.points) points_ = readPointTable(*s.points);
@@ -188,7 +195,7 @@ class SurfaceSampling {
       if (s_.mask) static_cast<void>(maskFor(series.grid(), s_));
     }
     auto step = context_.step("sample");
-    at_ = positionsAtDepths(cortex_, depths_, s_.depthKind);
+    if (!ribbon_) at_ = positionsAtDepths(cortex_, depths_, s_.depthKind);
     for (const std::string& path : s_.volumes) {
       sampleSeries(path);
       if (context_.monitor().shouldStop()) {
@@ -205,6 +212,27 @@ class SurfaceSampling {
   sampling::Sampler samplerFor(const Grid& grid, sampling::Interpolation way) {
     const auto mask = maskFor(grid, s_);
     return {grid, placesIn(context_, grid, s_, &cortex_, at_), way, mask ? &*mask : nullptr};
+  }
+
+  using Values = std::function<std::vector<float>(std::span<const float> frames)>;
+
+  /// How frames become values, frame after frame, in each of them layers_ x V.
+  Values valuesOn(const Grid& grid) {
+    if (!ribbon_) {
+      auto sampler = std::make_shared<sampling::Sampler>(samplerFor(grid, s_.interpolate));
+      return [sampler](std::span<const float> frames) { return sampler->sample(frames); };
+    }
+    auto mask = std::make_shared<std::optional<Volume<std::uint8_t>>>(maskFor(grid, s_));
+    std::function<Positions(const Positions&)> toVolume;
+    if (const auto transform = transformTo(context_, grid, s_, &cortex_)) toVolume = *transform;
+    const sampling::RibbonSampler sampler(grid, cortex_.white, cortex_.pial, s_.interpolate,
+                                          toVolume, *mask ? &**mask : nullptr);
+    return [sampler, mask](std::span<const float> frames) { return sampler.sample(frames); };
+  }
+
+  /// What a layer is called in tables.
+  [[nodiscard]] std::string layerText(std::size_t layer) const {
+    return ribbon_ ? "n/a" : depthText(depths_[layer]);
   }
 
   /// Maps of a volume are written while it is read: one file, or one a depth.
@@ -229,13 +257,13 @@ class SurfaceSampling {
   void sampleSeries(const std::string& path) {
     io::VolumeSeries series(path, s_.reading);
     const std::string name = stemOf(path);
-    const sampling::Sampler sampler = samplerFor(series.grid(), s_.interpolate);
+    const Values sample = valuesOn(series.grid());
     std::vector<io::GiftiMapsWriter> writers = writersFor(name, series);
-    std::vector<std::uint8_t> known(depths_.size() * count_, 1);
+    std::vector<std::uint8_t> known(layers_ * count_, 1);
     int frame = 0;
     for (auto block = series.next(sampling::Sampler::kFramesAtOnce); !block.empty();
          block = series.next(sampling::Sampler::kFramesAtOnce)) {
-      const std::vector<float> values = sampler.sample(block);
+      const std::vector<float> values = sample(block);
       block.clear();
       const std::size_t frames = values.size() / known.size();
       noteKnown(values, known);
@@ -251,9 +279,10 @@ class SurfaceSampling {
 
   void noteKnown(const std::vector<float>& values, std::vector<std::uint8_t>& known) {
     constexpr std::size_t kGrain = 1 << 14;
-    parallelFor(known.size(), kGrain, [&](std::size_t p) {
-      for (std::size_t at = p; at < values.size(); at += known.size()) {
-        if (std::isnan(values[at])) known[p] = 0;
+    parallelForBlocks(known.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t frame = 0; frame < values.size(); frame += known.size()) {
+        const float* at = values.data() + frame;
+        for (std::size_t p = begin; p < end; ++p) known[p] &= at[p] == at[p];  // not NaN
       }
     });
   }
@@ -264,11 +293,11 @@ class SurfaceSampling {
     const std::size_t rows = values.size() / count_;
     std::vector<std::string> texts(rows);
     parallelFor(rows, 1, [&](std::size_t row) {
-      const std::size_t depth = row % depths_.size();
-      const std::string frame = std::to_string(firstFrame + static_cast<int>(row / depths_.size()));
+      const std::size_t layer = row % layers_;
+      const std::string frame = std::to_string(firstFrame + static_cast<int>(row / layers_));
       const auto moments = regions_.momentsOf(std::span(values).subspan(row * count_, count_));
       for (std::size_t r = 0; r < moments.size(); ++r) {
-        texts[row] += name + "\t" + regions_.names()[r] + "\t" + depthText(depths_[depth]) + "\t" +
+        texts[row] += name + "\t" + regions_.names()[r] + "\t" + layerText(layer) + "\t" +
                       (frames > 1 ? frame : "n/a") + "\t" + cell(moments[r].mean) + "\t" +
                       cell(moments[r].deviation) + "\t" + std::to_string(moments[r].count) + "\n";
       }
@@ -278,12 +307,16 @@ class SurfaceSampling {
 
   void writeMaps(std::vector<io::GiftiMapsWriter>& writers, const std::vector<float>& values,
                  int firstFrame, int frames) {
-    const std::size_t depths = depths_.size(), some = values.size() / (depths * count_);
+    const std::size_t depths = layers_, some = values.size() / (depths * count_);
     const auto at = [&](std::size_t frame, std::size_t depth) {
       return std::span(values).subspan((frame * depths + depth) * count_, count_);
     };
     const auto frameName = [&](std::size_t f) { return "frame " + std::to_string(firstFrame + f); };
-    if (s_.across != sampling::Across::None) {
+    if (ribbon_) {
+      for (std::size_t f = 0; f < some; ++f) {
+        writers[0].add(frames > 1 ? frameName(f) : "ribbon", "", at(f, 0));
+      }
+    } else if (s_.across != sampling::Across::None) {
       for (std::size_t f = 0; f < some; ++f) {
         const auto all = std::span(values).subspan(f * depths * count_, depths * count_);
         writers[0].add(frames > 1 ? frameName(f) : std::string(nameOf(s_.across)), "",
@@ -320,8 +353,8 @@ class SurfaceSampling {
           name.c_str(), 100 * share);
       context_.warn(text);
     }
-    for (std::size_t d = 0; d < depths_.size(); ++d) {
-      io::VertexMap map{name + " depth " + depthText(depths_[d]), "", {}};
+    for (std::size_t d = 0; d < layers_; ++d) {
+      io::VertexMap map{name + (ribbon_ ? " ribbon" : " depth " + layerText(d)), "", {}};
       map.values.resize(static_cast<Eigen::Index>(count_));
       for (std::size_t v = 0; v < count_; ++v) map.values[v] = known[d * count_ + v];
       valid_.push_back(std::move(map));
@@ -407,7 +440,7 @@ class SurfaceSampling {
 
   Termination finish(Termination termination) {
     context_.result("vertices", count_);
-    context_.result("depths", depths_);
+    if (!ribbon_) context_.result("depths", depths_);
     if (!valid_.empty()) {
       io::writeGiftiShape(context_.output("valid.shape.gii"), valid_, cortex_.structure);
     }
@@ -432,6 +465,8 @@ class SurfaceSampling {
   const SampleSettings& s_;
   Cortex cortex_;
   std::vector<double> depths_;
+  bool ribbon_;         ///< means over the tissue's volume instead of values at depths
+  std::size_t layers_;  ///< maps a frame: the depths, or the one of the ribbon
   std::size_t count_;
   sampling::Regions regions_;
   std::optional<PointTable> points_;
@@ -462,6 +497,11 @@ Termination run(Context& context, const SampleSettings& s) {
   if (s.vertexMaps.empty() == s.vertexSurface.has_value()) {
     throw UsageError("--vertex-map and --vertex-surface belong together; one of them is missing");
   }
+  if (s.across == sampling::Across::Ribbon && (s.depths || !s.labelVolumes.empty())) {
+    throw UsageError(
+        "--across ribbon takes values over the whole depth: leave --depths out, and sample label "
+        "volumes with --across mean");
+  }
   if (s.sense != io::TransformSense::Auto && !s.toVolume) {
     throw UsageError("--to-volume-sense is for --to-volume");
   }
@@ -483,9 +523,9 @@ std::string stemOf(const std::string& path) {
   return name;
 }
 
-Positions placesIn(Context& context, const Grid& volume, const SampleSettings& s,
-                   const Cortex* cortex, const Positions& points) {
-  if (!s.toVolume) return points;
+std::optional<io::PointTransform> transformTo(Context& context, const Grid& volume,
+                                              const SampleSettings& s, const Cortex* cortex) {
+  if (!s.toVolume) return {};
   io::TransformSides sides;
   sides.volume = volume;
   sides.sense = s.sense;
@@ -493,11 +533,17 @@ Positions placesIn(Context& context, const Grid& volume, const SampleSettings& s
     sides.scannerFromFile = cortex->origin.applied;
     sides.scannerFromTkr = cortex->scannerFromTkr;
   }
-  const io::PointTransform transform = io::readPointTransform(*s.toVolume, sides);
+  io::PointTransform transform = io::readPointTransform(*s.toVolume, sides);
   context.note("to-volume",
                nlohmann::ordered_json{{"format", transform.format}, {"sense", transform.sense}});
   context.detail("'" + *s.toVolume + "': " + transform.format + ", " + transform.sense);
-  return transform(points);
+  return transform;
+}
+
+Positions placesIn(Context& context, const Grid& volume, const SampleSettings& s,
+                   const Cortex* cortex, const Positions& points) {
+  const auto transform = transformTo(context, volume, s, cortex);
+  return transform ? (*transform)(points) : points;
 }
 
 std::optional<Volume<std::uint8_t>> maskFor(const Grid& volume, const SampleSettings& s) {

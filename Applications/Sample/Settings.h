@@ -39,6 +39,11 @@ struct SampleSettings {
 /// Name of a volume's outputs: its file name without endings such as .nii.gz.
 [[nodiscard]] std::string stemOf(const std::string& path);
 
+/// The transform of --to-volume, if it is given.
+[[nodiscard]] std::optional<io::PointTransform> transformTo(Context& context, const Grid& volume,
+                                                            const SampleSettings& s,
+                                                            const Cortex* cortex);
+
 /// Places of surface points in a volume's world: through --to-volume, or as they are.
 [[nodiscard]] Positions placesIn(Context& context, const Grid& volume, const SampleSettings& s,
                                  const Cortex* cortex, const Positions& points);

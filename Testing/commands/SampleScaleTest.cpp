@@ -31,6 +31,7 @@ std::string run(const Words& words) {
 struct Beside {
   double worst = 0;        ///< difference over the range, where both know the value
   double correlation = 0;  ///< with the ribbon mapping, ours the mean of depths
+  double ribbon = 0;       ///< with the ribbon mapping, ours over the same volumes
 };
 
 class BesideWorkbench : public ::testing::Test {
@@ -64,14 +65,19 @@ class BesideWorkbench : public ::testing::Test {
                        "0.1,0.3,0.5,0.7,0.9", "--across", "mean", "--out", folder_ / "mean"})
                   .exitCode,
               0);
+    EXPECT_EQ(explica({"sample", nifti, "--white", w, "--pial", p, "--across", "ribbon", "--out",
+                       folder_ / "over"})
+                  .exitCode,
+              0);
     const auto map = [&](const std::string& file) {
       return io::readVertexMaps(folder_ / file, white.vertexCount())[0].values;
     };
     const Eigen::VectorXd wb = map("wb.shape.gii"), ribbon = map("ribbon.shape.gii"),
-                          one = map("one/volume.func.gii"), mean = map("mean/volume.func.gii");
+                          one = map("one/volume.func.gii"), mean = map("mean/volume.func.gii"),
+                          over = map("over/volume.func.gii");
     Beside beside;
     const double range = wb.maxCoeff() - wb.minCoeff();
-    std::vector<double> a, b;
+    std::vector<double> a, b, c;
     for (Eigen::Index v = 0; v < wb.size(); ++v) {
       if (!std::isnan(one[v]))
         beside.worst = std::max(beside.worst, std::abs(one[v] - wb[v]) / range);
@@ -79,8 +85,10 @@ class BesideWorkbench : public ::testing::Test {
       if (std::isnan(mean[v]) || ribbon[v] == 0) continue;
       a.push_back(mean[v]);
       b.push_back(ribbon[v]);
+      c.push_back(over[v]);
     }
     beside.correlation = correlation(a, b);
+    beside.ribbon = correlation(c, b);
     return beside;
   }
   TemporaryFolder folder_;
@@ -105,6 +113,7 @@ TEST_F(BesideWorkbench, EchoPlanarImageOfS1) {
   const Beside beside = compare(volume, white, pial);
   EXPECT_LT(beside.worst, 1e-4);
   EXPECT_GT(beside.correlation, 0.99);
+  EXPECT_GT(beside.ribbon, 0.99);
 
   // The same through pycortex's own file.
   ASSERT_EQ(
@@ -144,9 +153,10 @@ TEST_F(BesideWorkbench, BrainOfBert) {
       compare(data / "brain.mgz", io::readSurface(folder_ / "surface/white.surf.gii").mesh,
               io::readSurface(folder_ / "surface/pial.surf.gii").mesh);
   EXPECT_LT(beside.worst, 1e-4);
-  // The ribbon mapping averages over the faces about a vertex, 1.7 mm wide here, across the borders
-  // of a sharp image; ours are columns of points.
+  // The ribbon mapping averages over all faces about a vertex, whose edges are 1.7 mm long here,
+  // across the borders of a sharp image; columns of points do not.
   EXPECT_GT(beside.correlation, 0.94);
+  EXPECT_GT(beside.ribbon, 0.99);
 }
 
 }  // namespace

@@ -242,6 +242,25 @@ TEST_F(Sample, PointsAndRegions) {
   EXPECT_NE(bad.err.find("'z'"), std::string::npos) << bad;
 }
 
+TEST_F(Sample, RibbonIsTheMeanOverTheTissueAboutAVertex) {
+  writeX("x.nii.gz");
+  const CommandResult result = sample({folder_ / "x.nii.gz", "--across", "ribbon"});
+  ASSERT_EQ(result.exitCode, 0) << result;
+  const auto got = maps("x.func.gii");
+  ASSERT_EQ(got.size(), 1U);
+  EXPECT_EQ(got[0].name, "ribbon");
+  const TriangleMesh white = io::readSurface(folder_ / "white.surf.gii").mesh;
+  // Mean radius by volume of the shell from 10 to 14 mm.
+  const double mean = 0.75 * (std::pow(14, 4) - 1e4) / (std::pow(14, 3) - 1e3);
+  EXPECT_LT((got[0].values - mean / 10 * white.positions.col(0)).cwiseAbs().maxCoeff(),
+            0.04 * mean);
+  const auto rows = readTable(folder_ / "out/profiles.tsv");
+  ASSERT_EQ(rows.size(), 1U);
+  EXPECT_EQ(rows[0].at("depth"), "n/a");
+  EXPECT_EQ(
+      sample({folder_ / "x.nii.gz", "--across", "ribbon", "--depths", "5", "--force"}).exitCode, 1);
+}
+
 TEST_F(Sample, RegionsOfSeveralFilesMayOverlap) {
   const TriangleMesh mesh = io::readSurface(folder_ / "white.surf.gii").mesh;
   io::LabelMap upper{"parts", {}, {{0, "unknown", {0, 0, 0, 0}}, {1, "upper", {1, 0, 0, 1}}}};

@@ -9,6 +9,7 @@
 #include <isa-l/igzip_lib.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <limits>
 
@@ -17,6 +18,9 @@ namespace {
 
 constexpr std::size_t kBlock = std::size_t{1} << 18;  // 8 windows: costs 1 % of size, feeds threads
 constexpr std::size_t kBlocksAtOnce = 128;            // bounds the memory of a batch
+// A Huffman code is made of a quarter of a block, piece by piece: costs 0.1 % of size, saves a third
+// of the packing's time.
+constexpr std::size_t kLook = std::size_t{1} << 14, kLooksEvery = 4 * kLook;
 constexpr std::uint32_t kCrcPolynomial = 0xedb88320;  // of gzip, x^31 in the lowest bit
 
 struct Packed {
@@ -46,7 +50,10 @@ Bytes deflated(ByteView block, bool zlib) {
   auto* bytes = const_cast<std::uint8_t*>(block.data());
   std::memset(&histogram, 0, sizeof(histogram));
   std::memset(&codes, 0, sizeof(codes));
-  isal_update_histogram(bytes, static_cast<int>(block.size()), &histogram);
+  for (std::size_t at = 0; at < block.size(); at += kLooksEvery) {
+    isal_update_histogram(bytes + at, static_cast<int>(std::min(kLook, block.size() - at)),
+                          &histogram);
+  }
   if (isal_create_hufftables(&codes, &histogram) != 0) {
     throw EnvironmentError("a block cannot be packed");
   }
@@ -166,17 +173,29 @@ Bytes packZlib(ByteView bytes) {
 void appendBase64(std::string& text, ByteView bytes) {
   static constexpr char kAlphabet[] =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  text.reserve(text.size() + (bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t held = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t bits = static_cast<std::uint32_t>(bytes[i]) << 16;
-    if (held > 1) bits |= static_cast<std::uint32_t>(bytes[i + 1]) << 8;
-    if (held > 2) bits |= bytes[i + 2];
-    text += kAlphabet[bits >> 18];
-    text += kAlphabet[bits >> 12 & 63];
-    text += held > 1 ? kAlphabet[bits >> 6 & 63] : '=';
-    text += held > 2 ? kAlphabet[bits & 63] : '=';
+  static const auto kPairs = [] {  // 12 bits at once
+    std::array<std::array<char, 2>, 4096> pairs{};
+    for (std::size_t n = 0; n < pairs.size(); ++n)
+      pairs[n] = {kAlphabet[n >> 6], kAlphabet[n & 63]};
+    return pairs;
+  }();
+  const std::size_t before = text.size();
+  text.resize(before + (bytes.size() + 2) / 3 * 4);
+  char* to = text.data() + before;
+  std::size_t i = 0;
+  for (; i + 3 <= bytes.size(); i += 3, to += 4) {
+    const std::uint32_t bits = static_cast<std::uint32_t>(bytes[i]) << 16 |
+                               static_cast<std::uint32_t>(bytes[i + 1]) << 8 | bytes[i + 2];
+    std::memcpy(to, kPairs[bits >> 12].data(), 2);
+    std::memcpy(to + 2, kPairs[bits & 4095].data(), 2);
   }
+  if (i == bytes.size()) return;
+  const bool two = i + 2 == bytes.size();
+  const std::uint32_t bits = static_cast<std::uint32_t>(bytes[i]) << 16 |
+                             (two ? static_cast<std::uint32_t>(bytes[i + 1]) << 8 : 0);
+  std::memcpy(to, kPairs[bits >> 12].data(), 2);
+  to[2] = two ? kAlphabet[bits >> 6 & 63] : '=';
+  to[3] = '=';
 }
 
 }  // namespace explica::io

@@ -13,7 +13,9 @@
 namespace explica::sampling {
 namespace {
 
-constexpr std::size_t kPointGrain = 256;  // points a task, written together
+constexpr std::size_t kChunk = 64;        // points that follow each other, written together
+constexpr std::size_t kChunksATask = 16;  // taken by one thread
+constexpr std::size_t kPointGrain = kChunk * kChunksATask;
 constexpr std::size_t kVoxelGrain = 1 << 15;
 constexpr float kNotKnown = std::numeric_limits<float>::quiet_NaN();
 constexpr float kEnoughWeight = 0.5F;  // below, most of a value would be made up
@@ -82,6 +84,25 @@ Sampler::Sampler(const Grid& grid, const Positions& points, Interpolation interp
       corner.fraction[axis] = static_cast<float>(at - low);
     }
   });
+  orderChunks();
+}
+
+void Sampler::orderChunks() {
+  const std::size_t count = (corners_.size() + kChunk - 1) / kChunk;
+  std::vector<std::pair<std::size_t, std::uint32_t>> places(count);
+  for (std::size_t c = 0; c < count; ++c) {
+    const Corner& first = corners_[c * kChunk];
+    std::size_t place = 0;
+    for (int axis = 2; axis >= 0; --axis) {
+      place = place * static_cast<std::size_t>(grid_.size[axis]) +
+              static_cast<std::size_t>(std::max(first.voxel[axis], 0));
+    }
+    places[c] = {place, static_cast<std::uint32_t>(c)};
+  }
+  std::sort(places.begin(), places.end());
+  chunks_.resize(count);
+  std::transform(places.begin(), places.end(), chunks_.begin(),
+                 [](const auto& place) { return place.second; });
 }
 
 bool Sampler::allKnown(const Corner& corner, const std::uint8_t* whole, int reach) const {
@@ -111,11 +132,12 @@ void Sampler::linear(const Corner& corner, const float* values, float* to) const
   const float* at = values + F * grid_.linear(corner.voxel[0], corner.voxel[1], corner.voxel[2]);
   const float* rows[4] = {at, at + F * stepJ, at + F * stepK, at + F * (stepJ + stepK)};
   const float w[4] = {(1 - y) * (1 - z), y * (1 - z), (1 - y) * z, y * z};
-  for (int f = 0; f < F; ++f) to[f] = 0;
+  std::array<float, F> sum{};  // apart from the voxels, so that it stays in registers
   for (int r = 0; r < 4; ++r) {
     const float a = w[r] * (1 - x), b = w[r] * x;
-    for (int f = 0; f < F; ++f) to[f] += a * rows[r][f] + b * rows[r][F + f];
+    for (int f = 0; f < F; ++f) sum[f] += a * rows[r][f] + b * rows[r][F + f];
   }
+  std::copy(sum.begin(), sum.end(), to);
 }
 
 template <int F>
@@ -198,29 +220,34 @@ void Sampler::nearest(const Corner& corner, const float* values, int frameCount,
 }
 
 template <int F>
+void Sampler::sampleOne(const Corner& corner, const float* values, const std::uint8_t* whole,
+                        int frameCount, float* to) const {
+  if (!corner.inside) {
+    std::fill(to, to + F, kNotKnown);
+  } else if (interpolation_ == Interpolation::Nearest) {
+    nearest(corner, values, frameCount, to);
+  } else if (interpolation_ == Interpolation::Cubic && allKnown(corner, whole, 2)) {
+    cubic<F>(corner, values, to);
+  } else if (interpolation_ == Interpolation::Linear && allKnown(corner, whole, 1)) {
+    linear<F>(corner, values, to);
+  } else {
+    linearOfKnown(corner, values, frameCount, to);
+    if (interpolation_ == Interpolation::Cubic && allKnown(corner, nullptr, 2)) {
+      cubicOfKnown(corner, values, frameCount, to);
+    }
+  }
+}
+
+template <int F>
 void Sampler::sampleBlock(const float* values, const std::uint8_t* whole, std::size_t frameCount,
                           std::vector<float>& result, std::size_t firstFrame) const {
   const std::size_t points = corners_.size();
-  parallelForBlocks(points, kPointGrain, [&](std::size_t begin, std::size_t end) {
-    alignas(64) std::array<float, kPointGrain * F> made;
-    const auto count = static_cast<int>(frameCount);
+  parallelFor(chunks_.size(), kChunksATask, [&](std::size_t c) {
+    alignas(64) std::array<float, kChunk * F> made;
+    const std::size_t begin = chunks_[c] * kChunk, end = std::min(begin + kChunk, points);
     for (std::size_t p = begin; p < end; ++p) {
-      float* to = made.data() + (p - begin) * F;
-      const Corner& corner = corners_[p];
-      if (!corner.inside) {
-        std::fill(to, to + F, kNotKnown);
-      } else if (interpolation_ == Interpolation::Nearest) {
-        nearest(corner, values, count, to);
-      } else if (interpolation_ == Interpolation::Cubic && allKnown(corner, whole, 2)) {
-        cubic<F>(corner, values, to);
-      } else if (interpolation_ == Interpolation::Linear && allKnown(corner, whole, 1)) {
-        linear<F>(corner, values, to);
-      } else {
-        linearOfKnown(corner, values, count, to);
-        if (interpolation_ == Interpolation::Cubic && allKnown(corner, nullptr, 2)) {
-          cubicOfKnown(corner, values, count, to);
-        }
-      }
+      sampleOne<F>(corners_[p], values, whole, static_cast<int>(frameCount),
+                   made.data() + (p - begin) * F);
     }
     for (std::size_t f = 0; f < frameCount; ++f) {
       float* row = result.data() + (firstFrame + f) * points;

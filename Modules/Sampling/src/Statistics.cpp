@@ -7,6 +7,7 @@
 #include "Explica/Core/Parallel.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <string>
@@ -38,6 +39,36 @@ struct Sums {
     return m;
   }
 };
+
+/// Sums of the values that are known and wanted: lanes side by side, which one instruction adds.
+Sums sumsOf(std::span<const float> values, const std::vector<std::uint8_t>& wanted) {
+  constexpr std::size_t kLanes = 8;
+  std::size_t first = 0;
+  while (first < wanted.size() && !(wanted[first] && values[first] == values[first])) ++first;
+  Sums all;
+  if (first == wanted.size()) return all;
+  all.shift = values[first];
+  std::array<double, kLanes> sum{}, squares{};
+  std::array<std::uint32_t, kLanes> count{};
+  const auto add = [&](std::size_t v, std::size_t lane) {
+    const bool known = wanted[v] != 0 && values[v] == values[v];
+    const double x = known ? values[v] - all.shift : 0;
+    sum[lane] += x;
+    squares[lane] += x * x;
+    count[lane] += known;
+  };
+  const std::size_t even = wanted.size() / kLanes * kLanes;
+  for (std::size_t v = 0; v < even; v += kLanes) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) add(v + lane, lane);
+  }
+  for (std::size_t v = even; v < wanted.size(); ++v) add(v, v - even);
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    all.sum += sum[lane];
+    all.squares += squares[lane];
+    all.count += count[lane];
+  }
+  return all;
+}
 
 }  // namespace
 
@@ -123,9 +154,7 @@ std::string Regions::nameAt(std::size_t vertex) const {
 
 std::vector<Moments> Regions::momentsOf(std::span<const float> values) const {
   std::vector<Sums> sums(names_.size());
-  for (std::size_t v = 0; v < inAny_.size(); ++v) {
-    if (inAny_[v] && !std::isnan(values[v])) sums.back().add(values[v]);
-  }
+  sums.back() = sumsOf(values, inAny_);
   for (const auto& regionOf : regionOf_) {
     for (std::size_t v = 0; v < regionOf.size(); ++v) {
       if (regionOf[v] >= 0 && !std::isnan(values[v])) sums[regionOf[v]].add(values[v]);

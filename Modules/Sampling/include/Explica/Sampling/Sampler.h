@@ -67,9 +67,14 @@ class Sampler {
     bool inside;                        ///< one of the 8 voxels is in the grid
   };
 
+  /// Fills chunks_.
+  void orderChunks();
   template <int F>
   void sampleBlock(const float* values, const std::uint8_t* whole, std::size_t frameCount,
                    std::vector<float>& result, std::size_t firstFrame) const;
+  template <int F>
+  void sampleOne(const Corner& corner, const float* values, const std::uint8_t* whole,
+                 int frameCount, float* to) const;
   template <int F>
   void cubic(const Corner& corner, const float* values, float* to) const;
   template <int F>
@@ -83,6 +88,9 @@ class Sampler {
   Grid grid_;
   Interpolation interpolation_;
   std::vector<Corner> corners_;
+  /// Runs of points in the order in which they are taken: neighbours in the volume after each
+  /// other, so that points of a column at all its depths find their voxels at hand.
+  std::vector<std::uint32_t> chunks_;
   std::vector<std::uint8_t> mask_;
 };
 

@@ -19,7 +19,8 @@ namespace explica::sampling {
 enum class Across {
   None,  ///< one map a depth
   Mean,  ///< of the depths at which it is known; of labels the most frequent one
-  Max
+  Max,
+  Ribbon  ///< over the volume of the faces about a vertex, see RibbonSampler
 };
 
 /// One value a vertex from those at several depths.
@@ -80,5 +81,6 @@ template <>
 struct explica::EnumNames<explica::sampling::Across> {
   using Way = explica::sampling::Across;
   static constexpr std::array table = {std::pair{Way::None, "none"}, std::pair{Way::Mean, "mean"},
-                                       std::pair{Way::Max, "max"}};
+                                       std::pair{Way::Max, "max"},
+                                       std::pair{Way::Ribbon, "ribbon"}};
 };
