@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <sstream>
 
 namespace explica::testing {
 namespace {
@@ -19,12 +20,21 @@ namespace fs = std::filesystem;
 
 using Words = std::vector<std::string>;
 
-std::string run(const Words& words) {
+/// For a machine that has other work, too.
+CommandSetting patience() {
   CommandSetting patient;
   patient.timeout = 500;
-  const CommandResult result = runProgram(words, patient);
+  return patient;
+}
+
+void run(const Words& words) {
+  const CommandResult result = runProgram(words, patience());
   EXPECT_EQ(result.exitCode, 0) << result;
-  return result.out;
+}
+
+void runExplica(const Words& words) {
+  const CommandResult result = explica(words, patience());
+  EXPECT_EQ(result.exitCode, 0) << result;
 }
 
 /// Ours beside Workbench's mapping of the same volume on the same surface.
@@ -58,17 +68,11 @@ class BesideWorkbench : public ::testing::Test {
          "-trilinear"});
     run({"wb_command", "-volume-to-surface-mapping", nifti, m, folder_ / "ribbon.shape.gii",
          "-ribbon-constrained", w, p});
-    EXPECT_EQ(
-        explica({"sample", nifti, "--white", w, "--pial", p, "--out", folder_ / "one"}).exitCode,
-        0);
-    EXPECT_EQ(explica({"sample", nifti, "--white", w, "--pial", p, "--depths",
-                       "0.1,0.3,0.5,0.7,0.9", "--across", "mean", "--out", folder_ / "mean"})
-                  .exitCode,
-              0);
-    EXPECT_EQ(explica({"sample", nifti, "--white", w, "--pial", p, "--across", "ribbon", "--out",
-                       folder_ / "over"})
-                  .exitCode,
-              0);
+    runExplica({"sample", nifti, "--white", w, "--pial", p, "--out", folder_ / "one"});
+    runExplica({"sample", nifti, "--white", w, "--pial", p, "--depths", "0.1,0.3,0.5,0.7,0.9",
+                "--across", "mean", "--out", folder_ / "mean"});
+    runExplica({"sample", nifti, "--white", w, "--pial", p, "--across", "ribbon", "--out",
+                folder_ / "over"});
     const auto map = [&](const std::string& file) {
       return io::readVertexMaps(folder_ / file, white.vertexCount())[0].values;
     };
@@ -116,11 +120,8 @@ TEST_F(BesideWorkbench, EchoPlanarImageOfS1) {
   EXPECT_GT(beside.ribbon, 0.99);
 
   // The same through pycortex's own file.
-  ASSERT_EQ(
-      explica({"sample", volume, "--white", data / "wm_lh.gii", "--pial", data / "pia_lh.gii",
-               "--to-volume", data / "transforms/fullhead_matrices.xfm", "--out", folder_ / "x"})
-          .exitCode,
-      0);
+  runExplica({"sample", volume, "--white", data / "wm_lh.gii", "--pial", data / "pia_lh.gii",
+              "--to-volume", data / "transforms/fullhead_matrices.xfm", "--out", folder_ / "x"});
   const Eigen::VectorXd a = io::readVertexMaps(folder_ / "x/fullhead_reference.func.gii")[0].values,
                         b = io::readVertexMaps(folder_ / "one/volume.func.gii")[0].values;
   EXPECT_LT((a - b).cwiseAbs().maxCoeff(), 1e-4 * (b.maxCoeff() - b.minCoeff()));
@@ -145,10 +146,8 @@ TEST_F(BesideWorkbench, OccipitalSlabOfS1IsKnownWhereItLies) {
 
 TEST_F(BesideWorkbench, BrainOfBert) {
   const fs::path data = fs::path(EXPLICA_REAL_DATA) / "bert_freesurfer/mri";
-  ASSERT_EQ(explica({"surface", data / "ribbon.mgz", "--preset", "ribbon", "--hemisphere", "L",
-                     "--faces", "60000", "--out", folder_ / "surface"})
-                .exitCode,
-            0);
+  runExplica({"surface", data / "ribbon.mgz", "--preset", "ribbon", "--hemisphere", "L", "--faces",
+              "60000", "--out", folder_ / "surface"});
   const Beside beside =
       compare(data / "brain.mgz", io::readSurface(folder_ / "surface/white.surf.gii").mesh,
               io::readSurface(folder_ / "surface/pial.surf.gii").mesh);
@@ -157,6 +156,47 @@ TEST_F(BesideWorkbench, BrainOfBert) {
   // across the borders of a sharp image; columns of points do not.
   EXPECT_GT(beside.correlation, 0.94);
   EXPECT_GT(beside.ribbon, 0.99);
+}
+
+/// A slab of motor cortex, of which LayNii's own depths are the maps: their profiles over our
+/// layers and over LayNii's of the same tissue.
+TEST(BesideLayNii, ProfilesOfASlab) {
+  const fs::path data = fs::path(EXPLICA_REAL_DATA) / "laynii_sc";
+  if (!fs::exists(data)) GTEST_SKIP() << "skipped: no real data";
+  constexpr int kLayers = 20;
+  TemporaryFolder folder;
+  runExplica({"thickness", data / "sc_rim.nii.gz", "--inner", "2", "--tissue", "3", "--outer", "1",
+              "--insulated", "0", "--sulci", "ignore", "--image-edge", "insulated", "--out",
+              folder / "thickness"});
+  const Volume<float> thickness = io::readScalars(folder / "thickness/thickness.nii.gz").volume;
+  const Volume<Label> theirs = io::readLabels(data / "sc_layers.nii.gz").volume;
+  for (const std::string name : {"sc_leakylay_1000", "sc_distlay_1000"}) {
+    const fs::path map = data / (name + ".nii.gz");
+    runExplica({"sample", map, "--thickness", folder / "thickness", "--depths",
+                std::to_string(kLayers), "--out", folder / name});
+    std::vector<double> ours, layNii;
+    std::istringstream table(readText(folder / (name + "/" + name + "_layers.tsv")));
+    std::string line;
+    std::getline(table, line);
+    while (std::getline(table, line)) {
+      std::istringstream cells(line);
+      std::string region, layer, depth, mean;
+      cells >> region >> layer >> depth >> mean;
+      ours.push_back(std::stod(mean));
+    }
+    const Volume<float> values = io::readScalars(map).volume;
+    std::vector<double> sum(kLayers + 1), count(kLayers + 1);
+    for (std::size_t v = 0; v < values.size(); ++v) {
+      if (!(thickness[v] > 0) || theirs[v] < 1 || theirs[v] > kLayers) continue;
+      sum[theirs[v]] += values[v];
+      count[theirs[v]] += 1;
+    }
+    for (int n = 1; n <= kLayers; ++n) layNii.push_back(sum[n] / count[n]);
+    ASSERT_EQ(ours.size(), layNii.size());
+    const double r = correlation(ours, layNii);
+    RecordProperty("r_" + name, std::to_string(r));
+    EXPECT_GT(r, 0.95) << name;
+  }
 }
 
 }  // namespace
