@@ -277,7 +277,9 @@ bool isBlock(const TissueMasks& masks) {
 TissueMasks masksFromLabels(const Volume<Label>& labels, const TissueOptions& options,
                             const Monitor& monitor) {
   if (labels.grid.dimension() != 3) {
-    throw InvalidInput("labels: one slice; a surface needs a volume");
+    throw InvalidInput(
+        "labels: one slice; a surface needs a volume (explica thickness gives a slice's "
+        "inner, middle and outer contours)");
   }
   const Histogram histogram = histogramOf(labels);
   TissueMasks masks;

@@ -10,17 +10,25 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <atomic>
+#include <bit>
 #include <cmath>
+#include <utility>
 
 namespace explica::surface {
 namespace {
 
 constexpr std::size_t kMostFaces = 64;  ///< made by one step; a step that makes more is refused
 
-bool overlap(const std::array<float, 6>& a, const std::array<float, 6>& b) {
-  return a[0] <= b[3] && b[0] <= a[3] && a[1] <= b[4] && b[1] <= a[4] && a[2] <= b[5] &&
-         b[2] <= a[5];
+bool contains(const std::array<float, 6>& outer, const std::array<float, 6>& inner) {
+  return outer[0] <= inner[0] && outer[1] <= inner[1] && outer[2] <= inner[2] &&
+         inner[3] <= outer[3] && inner[4] <= outer[4] && inner[5] <= outer[5];
 }
+
+/// How much wider than its face an entry's box is, in cells: small steps then leave it as it is.
+constexpr double kSlack = 0.08;
+/// Entries that a cell has room for beyond those it starts with.
+constexpr std::uint32_t kSpare = 1;
 
 /// Rounding of a projection, relative to the sizes of what is multiplied; with room to spare.
 constexpr double kClear = 1e-12;
@@ -99,11 +107,15 @@ GuardedMesh::GuardedMesh(const TriangleMesh& mesh, double cell)
     high = high.cwiseMax(positions_[v]);
   }
   placeCells(low, high, cell, mesh.faceCount());
-  faces_.reserve(mesh.faceCount());
-  boxes_.reserve(mesh.faceCount());
+  faces_.resize(mesh.faceCount());
+  boxes_.resize(mesh.faceCount());
+  scratch_.stamp.resize(mesh.faceCount(), 0);
   for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
-    addFace({mesh.faces(f, 0), mesh.faces(f, 1), mesh.faces(f, 2)});
+    faces_[f] = {mesh.faces(f, 0), mesh.faces(f, 1), mesh.faces(f, 2)};
+    for (const std::int32_t v : faces_[f]) vertexFaces_[v].add(static_cast<std::int32_t>(f));
   }
+  fillCells();
+  faceCount_ = mesh.faceCount();
   for (std::int32_t v = 0; v < vertexSlots() && !open_; ++v) open_ = rimNeighbours(v)[1] >= 0;
 }
 
@@ -121,10 +133,12 @@ void GuardedMesh::placeCells(const Point& low, const Point& high, double cell, E
   cellOrigin_ = low - Point::Constant(kMargin * cell);
   cellsPerMm_ = 1 / cell;
   roomOfBoxes_ = 1e-6 * cell;
+  slack_ = static_cast<float>(kSlack * cell);
   cells_.resize(static_cast<std::size_t>(cellSize_[0]) * cellSize_[1] * cellSize_[2]);
+  occupied_.assign(cells_.size() / 64 + 1, 0);
 }
 
-GuardedMesh::Box GuardedMesh::boxOf(const std::array<Point, 3>& p) const {
+Box GuardedMesh::boxOf(const std::array<Point, 3>& p) const {
   constexpr double kRounding = 1e-6;  // more than that of a float
   Box box;
   for (int a = 0; a < 3; ++a) {
@@ -262,66 +276,139 @@ void GuardedMesh::forCells(const CellRange& r, const Visit& visit) const {
   }
 }
 
+void GuardedMesh::Cell::add(std::int32_t face, const Box& box) {
+  constexpr std::uint32_t kLanes = BoxLanes::kLanes;
+  if (count == kLanes * room) {
+    room = 2 * room + 1;
+    auto wider = std::make_unique<Entries[]>(room);
+    std::copy(begin, end(), wider.get());
+    own = std::move(wider);
+    begin = own.get();
+  }
+  Entries& last = begin[count / kLanes];
+  const auto lane = static_cast<int>(count % kLanes);
+  last.boxes.set(lane, box);
+  last.face[lane] = face;
+  ++count;
+}
+
+void GuardedMesh::Cell::remove(std::int32_t face) {
+  constexpr std::uint32_t kLanes = BoxLanes::kLanes;
+  for (Entries* entries = begin; entries != end(); ++entries) {
+    for (int lane = 0; lane < BoxLanes::kLanes; ++lane) {
+      if (entries->face[lane] != face) continue;
+      --count;
+      Entries& last = begin[count / kLanes];
+      const auto lastLane = static_cast<int>(count % kLanes);
+      entries->boxes.copy(lane, last.boxes, lastLane);
+      entries->face[lane] = last.face[lastLane];
+      last.boxes.clear(lastLane);
+      last.face[lastLane] = -1;
+      return;
+    }
+  }
+}
+
+void GuardedMesh::Cell::change(std::int32_t face, const Box& box) {
+  for (Entries* entries = begin; entries != end(); ++entries) {
+    for (int lane = 0; lane < BoxLanes::kLanes; ++lane) {
+      if (entries->face[lane] == face) entries->boxes.set(lane, box);
+    }
+  }
+}
+
+Box GuardedMesh::roomy(const Box& box) const {
+  return {box[0] - slack_, box[1] - slack_, box[2] - slack_,
+          box[3] + slack_, box[4] + slack_, box[5] + slack_};
+}
+
+void GuardedMesh::fillCells() {
+  constexpr std::uint32_t kLanes = BoxLanes::kLanes;
+  parallelFor(faces_.size(), 4096, [&](std::size_t f) {
+    const Corners& c = faces_[f];
+    boxes_[f] = roomy(boxOf({positions_[c[0]], positions_[c[1]], positions_[c[2]]}));
+  });
+  for (const Box& box : boxes_) {
+    forCells(cellsOf(box), [&](std::size_t cell) {
+      ++cells_[cell].room;
+      return true;
+    });
+  }
+  std::size_t entries = 0;
+  for (Cell& cell : cells_) {
+    if (cell.room > 0) cell.room = (cell.room + kSpare + kLanes - 1) / kLanes;
+    entries += cell.room;
+  }
+  store_.resize(entries);
+  Entries* next = store_.data();
+  for (Cell& cell : cells_) {
+    cell.begin = next;
+    next += cell.room;
+  }
+  for (std::int32_t f = 0; f < faceSlots(); ++f) enter(f);
+}
+
 void GuardedMesh::enter(std::int32_t f) {
   forCells(cellsOf(boxes_[f]), [&](std::size_t cell) {
-    cells_[cell].push_back({boxes_[f], f});
+    if (cells_[cell].count == 0) {
+      // Neighbouring slabs share words.
+      std::atomic_ref(occupied_[cell / 64])
+          .fetch_or(1ULL << (cell % 64), std::memory_order_relaxed);
+    }
+    cells_[cell].add(f, boxes_[f]);
     return true;
   });
 }
 
 void GuardedMesh::leave(std::int32_t f) {
   forCells(cellsOf(boxes_[f]), [&](std::size_t cell) {
-    auto& entries = cells_[cell];
-    const auto it = std::find_if(entries.begin(), entries.end(),
-                                 [f](const Entry& entry) { return entry.face == f; });
-    *it = entries.back();
-    entries.pop_back();
+    cells_[cell].remove(f);
     return true;
   });
 }
 
 void GuardedMesh::rebox(std::int32_t f, const Box& box) {
-  const CellRange range = cellsOf(box);
+  if (contains(boxes_[f], box)) return;
+  const Box wider = roomy(box);
+  const CellRange range = cellsOf(wider);
   if (range != cellsOf(boxes_[f])) {
     leave(f);
-    boxes_[f] = box;
+    boxes_[f] = wider;
     enter(f);
     return;
   }
-  boxes_[f] = box;
+  boxes_[f] = wider;
   forCells(range, [&](std::size_t cell) {
-    for (Entry& entry : cells_[cell]) {
-      if (entry.face == f) entry.box = box;
-    }
+    cells_[cell].change(f, wider);
     return true;
   });
 }
 
-std::int32_t GuardedMesh::addFace(const Corners& corners) {
+std::int32_t GuardedMesh::addFace(const Corners& corners, Scratch& scratch) {
   std::int32_t f;
-  if (freeFaces_.empty()) {
+  if (scratch.freeFaces.empty()) {
     f = faceSlots();
     faces_.emplace_back();
     boxes_.emplace_back();
-    scratch_.stamp.push_back(0);
   } else {
-    f = freeFaces_.back();
-    freeFaces_.pop_back();
+    f = scratch.freeFaces.back();
+    scratch.freeFaces.pop_back();
   }
   faces_[f] = corners;
-  boxes_[f] = boxOf({positions_[corners[0]], positions_[corners[1]], positions_[corners[2]]});
+  boxes_[f] =
+      roomy(boxOf({positions_[corners[0]], positions_[corners[1]], positions_[corners[2]]}));
   for (const std::int32_t v : corners) vertexFaces_[v].add(f);
   enter(f);
-  ++faceCount_;
+  ++scratch.facesAdded;
   return f;
 }
 
-void GuardedMesh::removeFace(std::int32_t f) {
+void GuardedMesh::removeFace(std::int32_t f, Scratch& scratch) {
   leave(f);
   for (const std::int32_t v : faces_[f]) vertexFaces_[v].remove(f);
   faces_[f] = {-1, -1, -1};
-  freeFaces_.push_back(f);
-  --faceCount_;
+  scratch.freeFaces.push_back(f);
+  --scratch.facesAdded;
 }
 
 bool GuardedMesh::admissible(std::span<const Placed> made, std::span<const std::int32_t> removed,
@@ -338,32 +425,65 @@ bool GuardedMesh::admissible(std::span<const Placed> made, std::span<const std::
       if (facesMeet(made[m], made[n].corners, made[n].points)) return false;
     }
   }
-  const CellRange r = cellsOf(all);
-  if (r[scratch.axis] < scratch.lowCell || r[scratch.axis + 3] > scratch.highCell) {
+  const CellRange r = cellsOf(all), touched = cellsOf(roomy(all));
+  if (touched[scratch.axis] < scratch.lowCell || touched[scratch.axis + 3] > scratch.highCell) {
     scratch.leftZone = true;
     return false;
   }
   if (scratch.stamp.size() < faces_.size()) scratch.stamp.resize(faces_.size(), 0);
   const std::uint32_t query = ++scratch.query;
   for (const std::int32_t f : removed) scratch.stamp[f] = query;
-  bool free = true;
-  forCells(r, [&](std::size_t cell) {
-    for (const Entry& entry : cells_[cell]) {
-      if (!overlap(all, entry.box)) continue;
-      const std::int32_t g = entry.face;
-      if (scratch.stamp[g] == query) continue;
-      scratch.stamp[g] = query;
-      const Corners& c = faces_[g];
-      for (const Placed& m : made) {
-        if (overlap(m.box, entry.box) &&
-            facesMeet(m, c, {positions_[c[0]], positions_[c[1]], positions_[c[2]]})) {
-          return free = false;
-        }
+  std::array<BoxLanes, kMostFaces / BoxLanes::kLanes> boxes;
+  for (std::size_t m = 0; m < made.size(); ++m) {
+    boxes[m / BoxLanes::kLanes].set(static_cast<int>(m % BoxLanes::kLanes), made[m].box);
+  }
+  const std::size_t groups = (made.size() + BoxLanes::kLanes - 1) / BoxLanes::kLanes;
+  const auto meets = [&](std::int32_t g) {
+    const Corners& c = faces_[g];
+    const std::array<Point, 3> points = {positions_[c[0]], positions_[c[1]], positions_[c[2]]};
+    const Box box = boxOf(points);
+    for (std::size_t group = 0; group < groups; ++group) {
+      for (unsigned hits = boxes[group].meeting(box); hits != 0; hits &= hits - 1) {
+        const std::size_t m = group * BoxLanes::kLanes + std::countr_zero(hits);
+        if (facesMeet(made[m], c, points)) return true;
       }
     }
+    return false;
+  };
+  facesNear(r, all, scratch);
+  return std::none_of(scratch.near.begin(), scratch.near.end(), meets);
+}
+
+void GuardedMesh::facesNear(const CellRange& range, const Box& box, Scratch& scratch) const {
+  // What each round reads is fetched in the one before: else the processor waits for memory most of
+  // the time.
+  auto& cells = scratch.cells;
+  auto& near = scratch.near;
+  cells.clear();
+  near.clear();
+  forCells(range, [&](std::size_t cell) {
+    if (!(occupied_[cell / 64] >> (cell % 64) & 1U)) return true;
+    cells.push_back(static_cast<std::uint32_t>(cell));
+    __builtin_prefetch(&cells_[cell]);
     return true;
   });
-  return free;
+  for (const std::uint32_t cell : cells) __builtin_prefetch(cells_[cell].begin);
+  for (const std::uint32_t cell : cells) {
+    for (const Entries* at = cells_[cell].begin; at != cells_[cell].end(); ++at) {
+      for (unsigned hits = at->boxes.meeting(box); hits != 0; hits &= hits - 1) {
+        const std::int32_t g = at->face[std::countr_zero(hits)];
+        near.push_back(g);
+        __builtin_prefetch(&scratch.stamp[g]);
+        __builtin_prefetch(&faces_[g]);
+      }
+    }
+  }
+  std::erase_if(near, [&](std::int32_t g) {
+    if (scratch.stamp[g] == scratch.query) return true;
+    scratch.stamp[g] = scratch.query;
+    for (const std::int32_t v : faces_[g]) __builtin_prefetch(&positions_[v]);
+    return false;
+  });
 }
 
 bool GuardedMesh::move(std::int32_t v, const Point& to) {
@@ -411,8 +531,13 @@ bool GuardedMesh::keepsTopology(std::int32_t u, std::int32_t v) const {
   return common == (rimEdge ? 1 : 2) && valence(u) + valence(v) >= fewest;
 }
 
-bool GuardedMesh::collapse(std::int32_t u, std::int32_t v, const Point& wanted,
+bool GuardedMesh::collapse(std::int32_t u, std::int32_t v, const Point& to,
                            const CollapseLimits& limits) {
+  return collapse(u, v, to, limits, scratch_);
+}
+
+bool GuardedMesh::collapse(std::int32_t u, std::int32_t v, const Point& wanted,
+                           const CollapseLimits& limits, Scratch& scratch) {
   if (!keepsTopology(u, v)) return false;
   Point to = asStored(wanted);
   if (onRim(u) != onRim(v)) to = positions_[onRim(u) ? u : v];
@@ -450,15 +575,19 @@ bool GuardedMesh::collapse(std::int32_t u, std::int32_t v, const Point& wanted,
     if (c[0] == u || c[1] == u || c[2] == u) continue;
     if (!take(f, v)) return false;
   }
-  if (!admissible({made.data(), madeCount}, {removed.data(), removedCount}, scratch_)) return false;
-  for (std::size_t k = 0; k < removedCount; ++k) removeFace(removed[k]);
+  if (!admissible({made.data(), madeCount}, {removed.data(), removedCount}, scratch)) return false;
+  for (std::size_t k = 0; k < removedCount; ++k) removeFace(removed[k], scratch);
   positions_[v] = to;
-  for (std::size_t k = 0; k < madeCount; ++k) addFace(made[k].corners);
-  freeVertices_.push_back(u);
+  for (std::size_t k = 0; k < madeCount; ++k) addFace(made[k].corners, scratch);
+  scratch.freeVertices.push_back(u);
   return true;
 }
 
 bool GuardedMesh::flip(std::int32_t a, std::int32_t b) {
+  return flip(a, b, scratch_);
+}
+
+bool GuardedMesh::flip(std::int32_t a, std::int32_t b, Scratch& scratch) {
   const std::int32_t c = opposite(a, b), d = opposite(b, a);
   if (c < 0 || d < 0 || c == d || areJoined(c, d)) return false;
   if (valence(a) <= 3 || valence(b) <= 3) return false;
@@ -469,9 +598,9 @@ bool GuardedMesh::flip(std::int32_t a, std::int32_t b) {
     if (corners[0] == b || corners[1] == b || corners[2] == b) removed[found++] = f;
   }
   const std::array<Placed, 2> made = {place({a, d, c}, -1, {}), place({d, b, c}, -1, {})};
-  if (!admissible(made, removed, scratch_)) return false;
-  for (const std::int32_t f : removed) removeFace(f);
-  for (const Placed& m : made) addFace(m.corners);
+  if (!admissible(made, removed, scratch)) return false;
+  for (const std::int32_t f : removed) removeFace(f, scratch);
+  for (const Placed& m : made) addFace(m.corners, scratch);
   return true;
 }
 
@@ -479,13 +608,13 @@ std::int32_t GuardedMesh::split(std::int32_t a, std::int32_t b) {
   const std::int32_t c = opposite(a, b), d = opposite(b, a);
   if ((c < 0 || d < 0) && !(open_ && (c >= 0 || d >= 0))) return -1;
   std::int32_t m;
-  if (freeVertices_.empty()) {
+  if (scratch_.freeVertices.empty()) {
     m = vertexSlots();
     positions_.emplace_back();
     vertexFaces_.emplace_back();
   } else {
-    m = freeVertices_.back();
-    freeVertices_.pop_back();
+    m = scratch_.freeVertices.back();
+    scratch_.freeVertices.pop_back();
   }
   positions_[m] = asStored(0.5 * (positions_[a] + positions_[b]));
   std::array<std::int32_t, 2> removed = {-1, -1};
@@ -504,11 +633,11 @@ std::int32_t GuardedMesh::split(std::int32_t a, std::int32_t b) {
     made[madeCount++] = place({m, a, d}, -1, {});
   }
   if (!admissible({made.data(), madeCount}, {removed.data(), removedCount}, scratch_)) {
-    freeVertices_.push_back(m);
+    scratch_.freeVertices.push_back(m);
     return -1;
   }
-  for (std::size_t k = 0; k < removedCount; ++k) removeFace(removed[k]);
-  for (std::size_t k = 0; k < madeCount; ++k) addFace(made[k].corners);
+  for (std::size_t k = 0; k < removedCount; ++k) removeFace(removed[k], scratch_);
+  for (std::size_t k = 0; k < madeCount; ++k) addFace(made[k].corners, scratch_);
   return m;
 }
 
@@ -522,45 +651,100 @@ bool GuardedMesh::inZone(std::int32_t v, const Scratch& scratch) const {
   return true;
 }
 
-std::int64_t GuardedMesh::sweep(const std::function<bool(std::int32_t, Scratch&)>& step) {
-  // Cells in half a slab: several faces, so that few vertices must wait for the end.
-  constexpr int kHalfSlab = 5;
-  const int axis =
-      static_cast<int>(std::max_element(cellSize_.begin(), cellSize_.end()) - cellSize_.begin());
-  const int width = 2 * kHalfSlab;
-  const int slabs = (cellSize_[axis] + width - 1) / width;
-  std::vector<std::vector<std::int32_t>> members(slabs), late(slabs);
-  for (std::int32_t v = 0; v < vertexSlots(); ++v) {
-    if (!hasVertex(v)) continue;
-    members[cellAt(positions_[v][axis], axis) / width].push_back(v);
-  }
-  std::vector<std::int64_t> refused(slabs, 0);
+namespace {
+
+/// Cells in half a slab: several faces, so that few vertices must wait for the end.
+constexpr int kHalfSlab = 5;
+constexpr int kSlab = 2 * kHalfSlab;
+
+}  // namespace
+
+int GuardedMesh::slabAxis() const {
+  return static_cast<int>(std::max_element(cellSize_.begin(), cellSize_.end()) - cellSize_.begin());
+}
+
+template <class Item, class Work>
+void GuardedMesh::overSlabs(const std::vector<std::vector<Item>>& members, const Work& work) {
+  const std::size_t slabs = members.size();
   slabScratch_.resize(slabs);
-  for (const int parity : {0, 1}) {
+  for (const std::size_t parity : {0, 1}) {
     parallelFor((slabs + 1 - parity) / 2, 1, [&](std::size_t pair) {
-      const int slab = static_cast<int>(2 * pair) + parity;
+      const std::size_t slab = 2 * pair + parity;
       Scratch& scratch = slabScratch_[slab];
-      scratch.axis = axis;
-      // Zones of slabs worked on together touch, but do not overlap.
-      scratch.lowCell = slab * width - kHalfSlab;
-      scratch.highCell = (slab + 1) * width + kHalfSlab - 1;
-      for (const std::int32_t v : members[slab]) {
-        scratch.leftZone = !inZone(v, scratch);
-        if (!scratch.leftZone && step(v, scratch)) continue;
-        if (scratch.leftZone) {
-          late[slab].push_back(v);
-        } else {
-          ++refused[slab];
-        }
-      }
+      scratch.axis = slabAxis();
+      scratch.lowCell = static_cast<int>(slab) * kSlab - kHalfSlab;
+      scratch.highCell = static_cast<int>(slab + 1) * kSlab + kHalfSlab - 1;
+      work(slab, scratch);
     });
   }
+  // What the slabs freed is free for all, in an order that does not depend on the threads.
+  for (Scratch& scratch : slabScratch_) {
+    const auto give = [](std::vector<std::int32_t>& from, std::vector<std::int32_t>& to) {
+      to.insert(to.end(), from.begin(), from.end());
+      from.clear();
+    };
+    give(scratch.freeFaces, scratch_.freeFaces);
+    give(scratch.freeVertices, scratch_.freeVertices);
+    scratch_.facesAdded += std::exchange(scratch.facesAdded, 0);
+  }
+}
+
+std::int64_t GuardedMesh::sweep(const std::function<bool(std::int32_t, Scratch&)>& step) {
+  std::vector<std::int32_t> vertices;
+  vertices.reserve(positions_.size());
+  for (std::int32_t v = 0; v < vertexSlots(); ++v) {
+    if (hasVertex(v)) vertices.push_back(v);
+  }
+  return sweep(vertices, step);
+}
+
+std::int64_t GuardedMesh::sweep(const std::vector<std::int32_t>& vertices,
+                                const std::function<bool(std::int32_t, Scratch&)>& step) {
+  if (vertices.empty()) return 0;
+  const int axis = slabAxis();
+  const int slabs = (cellSize_[axis] + kSlab - 1) / kSlab;
+  std::vector<std::vector<std::int32_t>> members(slabs), late(slabs);
+  for (const std::int32_t v : vertices) {
+    members[cellAt(positions_[v][axis], axis) / kSlab].push_back(v);
+  }
+  std::vector<std::int64_t> refused(slabs, 0);
+  overSlabs(members, [&](std::size_t slab, Scratch& scratch) {
+    for (const std::int32_t v : members[slab]) {
+      scratch.leftZone = !inZone(v, scratch);
+      if (!scratch.leftZone && step(v, scratch)) continue;
+      if (scratch.leftZone) {
+        late[slab].push_back(v);
+      } else {
+        ++refused[slab];
+      }
+    }
+  });
   std::int64_t sum = 0;
   for (int slab = 0; slab < slabs; ++slab) {
     for (const std::int32_t v : late[slab]) sum += !step(v, scratch_);
     sum += refused[slab];
   }
   return sum;
+}
+
+void GuardedMesh::sweepEdges(const std::vector<Edge>& edges,
+                             const std::function<void(const Edge&, Scratch&)>& step) {
+  const int axis = slabAxis();
+  std::vector<std::vector<Edge>> members((cellSize_[axis] + kSlab - 1) / kSlab);
+  for (const Edge& edge : edges) {
+    members[cellAt(positions_[edge[0]][axis], axis) / kSlab].push_back(edge);
+  }
+  std::vector<std::vector<Edge>> late(members.size());
+  overSlabs(members, [&](std::size_t slab, Scratch& scratch) {
+    for (const Edge& edge : members[slab]) {
+      scratch.leftZone = !inZone(edge[0], scratch) || !inZone(edge[1], scratch);
+      if (!scratch.leftZone) step(edge, scratch);
+      if (scratch.leftZone) late[slab].push_back(edge);
+    }
+  });
+  for (const std::vector<Edge>& ofSlab : late) {
+    for (const Edge& edge : ofSlab) step(edge, scratch_);
+  }
 }
 
 TriangleMesh GuardedMesh::toMesh() const {
@@ -574,7 +758,7 @@ TriangleMesh GuardedMesh::toMesh() const {
   for (std::int32_t v = 0; v < vertexSlots(); ++v) {
     if (number[v] >= 0) mesh.positions.row(number[v]) = positions_[v];
   }
-  mesh.faces.resize(faceCount_, 3);
+  mesh.faces.resize(faceCount(), 3);
   Eigen::Index row = 0;
   for (const Corners& c : faces_) {
     if (c[0] < 0) continue;

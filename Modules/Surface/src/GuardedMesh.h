@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "BoxLanes.h"
 #include "Explica/Core/TriangleMesh.h"
 
 #include <array>
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -53,7 +55,7 @@ class GuardedMesh {
     return static_cast<std::int32_t>(positions_.size());
   }
   [[nodiscard]] std::int32_t faceSlots() const { return static_cast<std::int32_t>(faces_.size()); }
-  [[nodiscard]] std::int64_t faceCount() const { return faceCount_; }
+  [[nodiscard]] std::int64_t faceCount() const { return faceCount_ + scratch_.facesAdded; }
   [[nodiscard]] bool hasVertex(std::int32_t v) const { return !vertexFaces_[v].empty(); }
   [[nodiscard]] bool hasFace(std::int32_t f) const { return faces_[f][0] >= 0; }
   [[nodiscard]] const Point& at(std::int32_t v) const { return positions_[v]; }
@@ -78,11 +80,17 @@ class GuardedMesh {
   struct Scratch {
     std::vector<std::uint32_t> stamp;  ///< per face: query that met it last
     std::uint32_t query = 0;
+    std::vector<std::uint32_t> cells;                   ///< of that query
+    std::vector<std::int32_t> near;                     ///< faces that it has found
+    std::vector<std::int32_t> freeFaces, freeVertices;  ///< left by what it joined
+    std::int64_t facesAdded = 0;
     int axis = 0;     ///< across the slabs
     int lowCell = 0;  ///< cells that it may touch
     int highCell = std::numeric_limits<int>::max();
     bool leftZone = false;  ///< a move was refused because it would touch others
   };
+  /// That of work on the whole mesh, outside of sweeps.
+  [[nodiscard]] Scratch& scratch() { return scratch_; }
   /// As move(), within the zone of `scratch`.
   bool move(std::int32_t v, const Point& to, Scratch& scratch);
 
@@ -92,6 +100,16 @@ class GuardedMesh {
   /// outcome does not depend on the number of threads.
   /// @return how many steps were refused
   std::int64_t sweep(const std::function<bool(std::int32_t v, Scratch& scratch)>& step);
+  /// As above, for some vertices only.
+  std::int64_t sweep(const std::vector<std::int32_t>& vertices,
+                     const std::function<bool(std::int32_t v, Scratch& scratch)>& step);
+
+  /// An edge of the mesh, to be worked on.
+  using Edge = std::array<std::int32_t, 2>;
+  /// Calls step(edge, scratch) once for each of the edges, those of one slab in their order; the
+  /// step may collapse or flip the edge.  Threads and outcome as with sweep().
+  void sweepEdges(const std::vector<Edge>& edges,
+                  const std::function<void(const Edge& edge, Scratch& scratch)>& step);
 
   /// What a collapse must keep.
   struct CollapseLimits {
@@ -101,8 +119,11 @@ class GuardedMesh {
   };
   /// Joins u to v, which goes to `to`; to the rim's vertex if one of the two lies on it.
   bool collapse(std::int32_t u, std::int32_t v, const Point& to, const CollapseLimits& limits);
+  bool collapse(std::int32_t u, std::int32_t v, const Point& to, const CollapseLimits& limits,
+                Scratch& scratch);
   /// Replaces edge (a, b) by the one between the corners that face it.
   bool flip(std::int32_t a, std::int32_t b);
+  bool flip(std::int32_t a, std::int32_t b, Scratch& scratch);
   /// Puts a vertex at the middle of edge (a, b), which may be one of the rim.
   /// @return the vertex, or -1 if refused
   std::int32_t split(std::int32_t a, std::int32_t b);
@@ -111,7 +132,6 @@ class GuardedMesh {
   [[nodiscard]] TriangleMesh toMesh() const;
 
  private:
-  using Box = std::array<float, 6>;
   struct Placed {
     Corners corners;
     std::array<Point, 3> points;
@@ -121,10 +141,23 @@ class GuardedMesh {
     /// 1 or -1 on the two sides of the face's plane, 0 where rounding leaves it open.
     [[nodiscard]] int sideOf(const Point& p) const;
   };
-  /// A face as its cells know it: most are told apart by boxes, without a look elsewhere.
-  struct Entry {
-    Box box;
-    std::int32_t face;
+  /// Faces as their cells know them: most are told apart by boxes, without a look elsewhere.
+  struct Entries {
+    BoxLanes boxes;
+    std::array<std::int32_t, BoxLanes::kLanes> face = {-1, -1, -1, -1};
+  };
+  /// The faces of a cell: in the common store as long as they have room there, else on their own.
+  struct Cell {
+    Entries* begin = nullptr;
+    std::uint32_t count = 0;  ///< of faces
+    std::uint32_t room = 0;   ///< for so many times four of them
+    std::unique_ptr<Entries[]> own;
+    [[nodiscard]] Entries* end() const {
+      return begin + (count + BoxLanes::kLanes - 1) / BoxLanes::kLanes;
+    }
+    void add(std::int32_t face, const Box& box);
+    void remove(std::int32_t face);
+    void change(std::int32_t face, const Box& box);
   };
   using CellRange = std::array<int, 6>;
   /// True if a face made meets another one where it may not.
@@ -135,6 +168,9 @@ class GuardedMesh {
   /// True if the faces made meet nothing but what they may; `removed` are left out of account.
   bool admissible(std::span<const Placed> made, std::span<const std::int32_t> removed,
                   Scratch& scratch) const;
+  /// Faces whose boxes meet a box, each once and but for those stamped by the query, in
+  /// scratch.near.
+  void facesNear(const CellRange& range, const Box& box, Scratch& scratch) const;
   /// True if joining two vertices leaves a manifold of the same topology.
   [[nodiscard]] bool keepsTopology(std::int32_t u, std::int32_t v) const;
   /// The box of three points, wider than their rounding to float.
@@ -146,24 +182,34 @@ class GuardedMesh {
   /// True if every face at v lies within the zone.
   [[nodiscard]] bool inZone(std::int32_t v, const Scratch& scratch) const;
   void placeCells(const Point& low, const Point& high, double cell, Eigen::Index faces);
+  /// Gives every cell its part of the common store, with room for more.
+  void fillCells();
+  [[nodiscard]] Box roomy(const Box& box) const;
   void enter(std::int32_t f);
   void leave(std::int32_t f);
   void rebox(std::int32_t f, const Box& box);
-  std::int32_t addFace(const Corners& corners);
-  void removeFace(std::int32_t f);
+  std::int32_t addFace(const Corners& corners, Scratch& scratch);
+  void removeFace(std::int32_t f, Scratch& scratch);
+  [[nodiscard]] int slabAxis() const;
+  /// Space cut into slabs along the longest side of the mesh; zones of slabs worked on together
+  /// touch, but do not overlap.
+  template <class Item, class Work>
+  void overSlabs(const std::vector<std::vector<Item>>& members, const Work& work);
 
   std::vector<Point> positions_;
   std::vector<Corners> faces_;
-  std::vector<Box> boxes_;
+  std::vector<Box> boxes_;  ///< as the cells have them: a little wider than the faces
   std::vector<FaceRing> vertexFaces_;
-  std::vector<std::int32_t> freeFaces_, freeVertices_;
-  std::int64_t faceCount_ = 0;
+  std::int64_t faceCount_ = 0;  ///< at the start
   bool open_ = false;
   Point cellOrigin_ = Point::Zero();
   double cellsPerMm_ = 1;
   double roomOfBoxes_ = 0;  ///< mm
+  float slack_ = 0;         ///< mm that a face may move before its cells are told
   std::array<int, 3> cellSize_ = {1, 1, 1};
-  std::vector<std::vector<Entry>> cells_;
+  std::vector<Entries> store_;
+  std::vector<Cell> cells_;
+  std::vector<std::uint64_t> occupied_;  ///< a bit a cell: 0 where there never was a face
   Scratch scratch_;
   std::vector<Scratch> slabScratch_;
 };

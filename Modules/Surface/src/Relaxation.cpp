@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 #include <vector>
 
 namespace explica::surface {
@@ -91,20 +93,61 @@ bool isCrumpled(const GuardedMesh& mesh, std::int32_t v, double edge, const Limi
   return false;
 }
 
-/// Vertices of crumpled rings, and their neighbours.
-std::vector<std::uint8_t> crumpled(const GuardedMesh& mesh, const std::vector<std::uint8_t>& moves,
-                                   double edge, const Limits& limits) {
-  std::vector<std::uint8_t> bad(moves.size()), near(moves.size(), 0);
-  parallelFor(moves.size(), 1024, [&](std::size_t v) {
-    bad[v] = isCrumpled(mesh, static_cast<std::int32_t>(v), edge, limits);
-  });
-  for (std::int32_t f = 0; f < mesh.faceSlots(); ++f) {
-    const auto& c = mesh.face(f);
-    if (!bad[c[0]] && !bad[c[1]] && !bad[c[2]]) continue;
-    for (const std::int32_t v : c) near[v] = moves[v];
+/// Vertices of crumpled rings and their neighbours, looked for anew only where something may have
+/// moved since.
+class Crumpled {
+ public:
+  /// @param moves  1 for the vertices that may be among them
+  Crumpled(const GuardedMesh& mesh, const std::vector<std::uint8_t>& moves, double edge,
+           const Limits& limits)
+      : mesh_(mesh), moves_(moves), edge_(edge), limits_(limits), bad_(moves.size(), 0) {
+    stale_.resize(moves.size());
+    std::iota(stale_.begin(), stale_.end(), 0);
   }
-  return near;
-}
+
+  /// In the order of their numbers.
+  const std::vector<std::int32_t>& vertices() {
+    parallelFor(stale_.size(), 256, [&](std::size_t k) {
+      bad_[stale_[k]] = isCrumpled(mesh_, stale_[k], edge_, limits_);
+    });
+    std::vector<std::int32_t> bad;
+    for (const std::int32_t v : known_) {
+      if (bad_[v]) bad.push_back(v);
+    }
+    for (const std::int32_t v : stale_) {
+      if (bad_[v]) bad.push_back(v);
+    }
+    known_ = sortedOnce(std::move(bad));
+    near_ = withNeighbours(known_);
+    std::erase_if(near_, [&](std::int32_t v) { return !moves_[v]; });
+    stale_ = withNeighbours(near_);
+    return near_;
+  }
+
+ private:
+  static std::vector<std::int32_t> sortedOnce(std::vector<std::int32_t> list) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    return list;
+  }
+  [[nodiscard]] std::vector<std::int32_t> withNeighbours(
+      const std::vector<std::int32_t>& vertices) const {
+    std::vector<std::int32_t> list;
+    for (const std::int32_t v : vertices) {
+      for (const std::int32_t f : mesh_.facesOf(v)) {
+        list.insert(list.end(), mesh_.face(f).begin(), mesh_.face(f).end());
+      }
+    }
+    return sortedOnce(std::move(list));
+  }
+
+  const GuardedMesh& mesh_;
+  const std::vector<std::uint8_t>& moves_;
+  double edge_;
+  Limits limits_;
+  std::vector<std::uint8_t> bad_;
+  std::vector<std::int32_t> stale_, known_, near_;
+};
 
 }  // namespace
 
@@ -118,10 +161,10 @@ TriangleMesh relaxed(const TriangleMesh& mesh, double edge, const std::vector<st
     }
     return false;
   };
+  Crumpled crumpled(guarded, moves, edge, kCrumpled);
   for (int sweep = 0; sweep < options.sweeps; ++sweep) {
-    const std::vector<std::uint8_t> active = crumpled(guarded, moves, edge, kCrumpled);
-    guarded.sweep([&](std::int32_t v, GuardedMesh::Scratch& scratch) {
-      if (!active[v] || guarded.onRim(v)) return true;
+    guarded.sweep(crumpled.vertices(), [&](std::int32_t v, GuardedMesh::Scratch& scratch) {
+      if (guarded.onRim(v)) return true;
       const Ring ring = ringOf(guarded, v);
       const Vector step = ring.centre - guarded.at(v);
       const double across = ring.normal.dot(step);
@@ -132,10 +175,10 @@ TriangleMesh relaxed(const TriangleMesh& mesh, double edge, const std::vector<st
   }
   // A vertex without way of its own among others that have grown is a pit: it may move, too.
   const std::vector<std::uint8_t> all(mesh.vertexCount(), 1);
+  Crumpled unsound(guarded, all, edge, kUnsound);
   for (int sweep = 0; sweep < options.lastSweeps; ++sweep) {
-    const std::vector<std::uint8_t> active = crumpled(guarded, all, edge, kUnsound);
-    guarded.sweep([&](std::int32_t v, GuardedMesh::Scratch& scratch) {
-      if (!active[v] || guarded.onRim(v)) return true;
+    guarded.sweep(unsound.vertices(), [&](std::int32_t v, GuardedMesh::Scratch& scratch) {
+      if (guarded.onRim(v)) return true;
       const Ring ring = ringOf(guarded, v);
       return tryWays(v, sweep % 2 == 0 ? ring.mean : ring.centre, scratch);
     });

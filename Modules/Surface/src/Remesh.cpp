@@ -28,7 +28,7 @@ constexpr double kBlock = 4;
 /// Edges are worked on by length in classes of this share of the aim, each in the order of storage.
 constexpr double kLengthClass = 0.1;
 
-using Edge = std::array<std::int32_t, 2>;
+using Edge = GuardedMesh::Edge;
 
 class Remesher {
  public:
@@ -55,19 +55,17 @@ class Remesher {
   void collapseShort(double share) {
     GuardedMesh::CollapseLimits limits;
     limits.longestEdge = kLong * edge_;
-    for (const Edge& e : edges([&](double length) { return length < share * edge_; }, false)) {
-      if (stillShort(e, share * edge_)) collapse(e, limits);
-    }
+    const double limit = share * edge_;
+    mesh_.sweepEdges(edges([&](double length) { return length < limit; }, false),
+                     [&](const Edge& e, GuardedMesh::Scratch& scratch) {
+                       if (stillShort(e, limit)) collapse(e, limits, scratch);
+                     });
   }
 
   void flipForValence() {
-    for (std::int32_t f = 0; f < mesh_.faceSlots(); ++f) {
-      if (!mesh_.hasFace(f)) continue;
-      for (int k = 0; k < 3 && mesh_.hasFace(f); ++k) {
-        const std::int32_t a = mesh_.face(f)[k], b = mesh_.face(f)[(k + 1) % 3];
-        if (a < b && wantsFlip(a, b)) mesh_.flip(a, b);
-      }
-    }
+    mesh_.sweepEdges(allEdges(), [&](const Edge& e, GuardedMesh::Scratch& scratch) {
+      if (wantsFlip(e[0], e[1])) mesh_.flip(e[0], e[1], scratch);
+    });
   }
 
   void smooth() {
@@ -97,7 +95,7 @@ class Remesher {
           continue;
         }
         if (tooMany) {
-          collapse(e, limits);
+          collapse(e, limits, mesh_.scratch());
         } else {
           mesh_.split(e[0], e[1]);
         }
@@ -129,16 +127,30 @@ class Remesher {
     return sorted;
   }
 
+  std::vector<Edge> allEdges() const {
+    std::vector<Edge> found;
+    found.reserve(3 * mesh_.faceCount() / 2);
+    for (std::int32_t f = 0; f < mesh_.faceSlots(); ++f) {
+      if (!mesh_.hasFace(f)) continue;
+      for (int k = 0; k < 3; ++k) {
+        const std::int32_t a = mesh_.face(f)[k], b = mesh_.face(f)[(k + 1) % 3];
+        if (a < b) found.push_back({a, b});
+      }
+    }
+    return found;
+  }
+
   [[nodiscard]] bool stillShort(const Edge& e, double limit) const {
     return mesh_.hasVertex(e[0]) && mesh_.hasVertex(e[1]) && mesh_.areJoined(e[0], e[1]) &&
            (mesh_.at(e[0]) - mesh_.at(e[1])).norm() < limit;
   }
 
-  void collapse(const Edge& e, const GuardedMesh::CollapseLimits& limits) {
+  void collapse(const Edge& e, const GuardedMesh::CollapseLimits& limits,
+                GuardedMesh::Scratch& scratch) {
     const Point middle = 0.5 * (mesh_.at(e[0]) + mesh_.at(e[1]));
-    if (mesh_.collapse(e[0], e[1], onLevel(e[1], middle), limits)) return;
-    if (mesh_.collapse(e[0], e[1], mesh_.at(e[1]), limits)) return;
-    mesh_.collapse(e[1], e[0], mesh_.at(e[0]), limits);
+    if (mesh_.collapse(e[0], e[1], onLevel(e[1], middle), limits, scratch)) return;
+    if (mesh_.collapse(e[0], e[1], mesh_.at(e[1]), limits, scratch)) return;
+    mesh_.collapse(e[1], e[0], mesh_.at(e[0]), limits, scratch);
   }
 
   [[nodiscard]] bool wantsFlip(std::int32_t a, std::int32_t b) const {

@@ -17,7 +17,7 @@ namespace explica::surface {
 struct SurfaceOptions {
   GenusRule genus = GenusRule::Zero;
   int faces = 150000;  ///< of each surface
-  int steps = 12;      ///< in which the outer surface grows out of the white one, even
+  int steps = 6;       ///< in which the outer surface grows out of the white one, even
 };
 
 /// Wall-clock time of each part, s.
@@ -76,6 +76,7 @@ struct CorticalSurfaces {
   Eigen::VectorXd sulcalDepth;       ///< of the middle surface below the closed hull, mm
   std::int64_t noRibbon = 0;         ///< vertices without grey matter: all three surfaces coincide
   std::int64_t endedAtBank = 0;      ///< trajectories that end in the middle of a buried sulcus
+  std::int64_t shortened = 0;        ///< trajectories far longer than all around them: cut to those
   std::int64_t cutLinks = 0;         ///< grid links that buried sulci cut
   std::int64_t heldBackMid = 0;   ///< vertices kept short of half their way, so that faces do not
   std::int64_t heldBackPial = 0;  ///< meet; or of their whole way
@@ -97,7 +98,8 @@ struct CorticalSurfaces {
 /// length.  Both grow out of the white surface by small moves, each checked exactly, so that
 /// neither intersects itself; a vertex whose faces would meet others waits on its trajectory. Where
 /// growth has left stretched, poor or folded triangles, vertices then slide along their surface;
-/// thickness stays that of the trajectory.
+/// thickness stays that of the trajectory.  A trajectory more than 1.3 times as long as the median
+/// within two edges of its vertex, and by half a voxel, has gone astray and ends at that median.
 /// @throws InvalidInput  no grey matter
 [[nodiscard]] CorticalSurfaces buildSurfaces(const CorticalTissue& tissue,
                                              const SurfaceOptions& options = {},
