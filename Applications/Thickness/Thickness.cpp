@@ -7,6 +7,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Core/WholeFile.h"
+#include "Explica/Correspondence/Contours.h"
 #include "Explica/Correspondence/FieldFigure.h"
 #include "Explica/Correspondence/Measurement.h"
 #include "Explica/Harmonic/Annulus.h"
@@ -14,9 +15,12 @@
 #include "Explica/IO/VtkFile.h"
 #include "Explica/Ventricle/Pictures.h"
 
+#include <array>
 #include <chrono>
+#include <filesystem>
 #include <functional>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -70,13 +74,14 @@ void declare(Declaration& d, Settings& s) {
       .option("Boundary",
               Field{"sulci", "",
                     "what to do where the banks of a sulcus touch (default: recover; ignore with "
-                    "--per-slice, --open-ends or --aha, which are for hearts)"},
+                    "--open-ends or --aha, which are for hearts, and with --per-slice where the "
+                    "inner region is not folded as a cortex's)"},
               s.measurement.sulci)
       .option("Boundary",
               Field{"image-edge", "",
                     "what tissue does at the edge of the image: runs on, so that voxels beside it "
-                    "are left out, or ends there (default: open; insulated with --per-slice, "
-                    "--open-ends or --aha)"},
+                    "are left out, or ends there (default: open; insulated where sulci are "
+                    "ignored by default)"},
               s.measurement.imageEdge)
       .options("Boundary", s.measurement.sulcus)
       .options("Correspondences", s.measurement.correspondence)
@@ -115,6 +120,10 @@ void declare(Declaration& d, Settings& s) {
               "with --grid: points at equal depths along trajectories, with depth and thickness")
       .output("field.svg", FileKind::Picture,
               "with --figure: u, tangent field, trajectories and grid in a slice")
+      .output(
+          "contours.tsv", FileKind::Table,
+          "of a 2-D image or with --per-slice: inner, middle and outer contours, point by point")
+      .output("contours.vtu", FileKind::Grid, "the same as lines, with depth and thickness")
       .output("segments.tsv", FileKind::Table, "with --aha: thickness of the 17 segments")
       .output("bullseye.png", FileKind::Picture, "with --aha: bullseye.svg in pixels")
       .output("segments.nii.gz", FileKind::LabelVolume, "with --aha: segment of each voxel")
@@ -178,6 +187,7 @@ correspondence::Measurement measure(Context& context, harmonic::Annulus annulus,
 
 void report(Context& context, Judge& judge, const correspondence::Measurement& m) {
   const correspondence::Correspondence& found = m.correspondence;
+  context.result("sulci", m.sulciRecovered ? "recover" : "ignore");
   context.result("sulcal_voxels_recovered", m.sulcalVoxels.size());
   context.result("residual", m.interpolant.relativeResidual);
   context.result("iterations", m.interpolant.iterations);
@@ -248,6 +258,65 @@ void writeFigure(Context& context, const correspondence::Measurement& m,
   context.result("figure_slice", slice);
 }
 
+std::string contourTable(const std::vector<correspondence::Contour>& contours) {
+  std::ostringstream table;
+  table << "slice\tcontour\tclosed\tpoint\tinner_x_mm\tinner_y_mm\tinner_z_mm\tmiddle_x_mm\t"
+           "middle_y_mm\tmiddle_z_mm\touter_x_mm\touter_y_mm\touter_z_mm\tthickness_mm\n";
+  for (std::size_t c = 0; c < contours.size(); ++c) {
+    const correspondence::Contour& contour = contours[c];
+    for (std::size_t k = 0; k < contour.inner.size(); ++k) {
+      table << contour.slice << '\t' << c + 1 << '\t' << (contour.closed ? "yes" : "no") << '\t'
+            << k + 1;
+      for (const Point& p : {contour.inner[k], contour.middle[k], contour.outer[k]}) {
+        table << '\t' << p.x() << '\t' << p.y() << '\t' << p.z();
+      }
+      table << '\t' << contour.thickness[k] << '\n';
+    }
+  }
+  return table.str();
+}
+
+/// Three lines for each contour, at depth 0, 0.5 and 1.
+void writeContourLines(const std::filesystem::path& path,
+                       const std::vector<correspondence::Contour>& contours) {
+  std::vector<Point> points;
+  std::vector<double> depth, thickness;
+  std::vector<std::array<std::int32_t, 2>> lines;
+  for (const correspondence::Contour& contour : contours) {
+    for (const auto& [line, at] :
+         {std::pair{&contour.inner, 0.0}, {&contour.middle, 0.5}, {&contour.outer, 1.0}}) {
+      const auto first = static_cast<std::int32_t>(points.size());
+      for (std::size_t k = 0; k < line->size(); ++k) {
+        const auto here = static_cast<std::int32_t>(points.size());
+        if (k > 0) lines.push_back({here - 1, here});
+        points.push_back((*line)[k]);
+        depth.push_back(at);
+        thickness.push_back(contour.thickness[k]);
+      }
+      if (contour.closed) lines.push_back({static_cast<std::int32_t>(points.size()) - 1, first});
+    }
+  }
+  Positions positions(static_cast<Eigen::Index>(points.size()), 3);
+  for (std::size_t p = 0; p < points.size(); ++p) positions.row(p) = points[p];
+  io::Cells cells{io::CellKind::Line, {}};
+  cells.vertices.resize(static_cast<Eigen::Index>(lines.size()), 2);
+  for (std::size_t l = 0; l < lines.size(); ++l) cells.vertices.row(l) << lines[l][0], lines[l][1];
+  const auto column = [](const std::vector<double>& values) {
+    return Eigen::VectorXd(Eigen::VectorXd::Map(values.data(), values.size()));
+  };
+  io::writeVtu(path, positions, {cells},
+               {{"depth", "", column(depth)}, {"thickness", "mm", column(thickness)}});
+}
+
+void writeContours(Context& context, const correspondence::Measurement& m) {
+  auto step = context.step("contours");
+  const auto contours = correspondence::contoursOf(m.annulus, m.interpolant);
+  context.result("contours", contours.size());
+  if (contours.empty()) return;
+  writeTextFile(context.output("contours.tsv"), contourTable(contours));
+  writeContourLines(context.output("contours.vtu"), contours);
+}
+
 /// Table, volume and picture of the 17 segments.
 void writeSegments(Context& context, const harmonic::Annulus& annulus, const Settings& s) {
   auto step = context.step("segments");
@@ -276,7 +345,8 @@ Termination run(Context& context, const Settings& s) {
   options.heart = s.aha;
   const correspondence::Measurement m = measure(context, std::move(annulus), options);
   report(context, judge, m);
-  writeOutputs(context, m, options.sulciMode() == correspondence::SulciMode::Recover);
+  writeOutputs(context, m, m.sulciRecovered);
+  if (m.annulus.planar) writeContours(context, m);
   if (s.figure || s.figureSlice) writeFigure(context, m, s.figureSlice);
   if (s.aha) writeSegments(context, m.annulus, s);
   return m.interpolant.termination;

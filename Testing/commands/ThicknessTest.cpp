@@ -10,7 +10,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <functional>
+#include <iterator>
 #include <numeric>
 #include <sstream>
 
@@ -254,6 +256,32 @@ TEST(ThicknessCommand, SulciAreRecoveredByDefaultButNotInHearts) {
   EXPECT_EQ(recovered({"--per-slice"}), 0);
   EXPECT_EQ(recovered({"--open-ends"}), 0);
   EXPECT_GT(recovered({"--per-slice", "--sulci", "recover"}), 50);
+}
+
+TEST(ThicknessCommand, ASliceOfCortexGivesContoursLayersAndItsSulci) {
+  TemporaryFolder folder;
+  // A comb of white matter whose slots grey matter fills.
+  writeLabels(folder / "slice.nii.gz", {130, 50, 1}, Vector(0.5, 0.5, 2), [](const Point& p, int) {
+    const Point x = 2 * p;
+    if (std::abs(x[0]) > 58 || x[1] < -20 || x[1] > 13) return 0;
+    return x[1] > 10 || (std::abs(std::remainder(x[0], 12.0)) < 3 && x[1] > -14) ? 2 : 1;
+  });
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{}, std::vector<std::string>{"--per-slice"}}) {
+    const auto made = explica(thickness(folder, "slice.nii.gz", words));
+    ASSERT_EQ(made.exitCode, 0) << made;
+    const auto summary = readJson(folder / "out/summary.json");
+    EXPECT_EQ(summary["sulci"], "recover");
+    EXPECT_GT(summary["sulcal_voxels_recovered"].get<int>(), 200);
+    EXPECT_GE(summary["contours"].get<int>(), 1);
+    EXPECT_NEAR(summary["thickness_median"].get<double>(), 1.5, 0.15);
+    std::ifstream table(folder / "out/contours.tsv");
+    const auto lines = std::count(std::istreambuf_iterator<char>(table), {}, '\n');
+    EXPECT_GT(lines, 300);
+    EXPECT_TRUE(fs::exists(folder / "out/contours.vtu"));
+    const auto layers = io::readLabels(folder / "out/layers.nii.gz").volume;
+    EXPECT_EQ(*std::max_element(layers.data.begin(), layers.data.end()), 3);
+  }
 }
 
 TEST(ThicknessCommand, NoFluxCrossesAnInsulatedCut) {

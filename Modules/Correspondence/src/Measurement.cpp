@@ -2,9 +2,35 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Correspondence/Measurement.h"
 
+#include <cmath>
 #include <utility>
+#include <vector>
 
 namespace explica::correspondence {
+
+double foldingOf(const harmonic::Annulus& annulus) {
+  std::vector<double> links(annulus.size[2], 0), voxels(annulus.size[2], 0);
+  const std::size_t sliceSize = annulus.strides()[2];
+  for (std::size_t p = 0; p < annulus.numberAt.size(); ++p) {
+    voxels[p / sliceSize] += annulus.numberAt[p] == harmonic::kInner;
+  }
+  for (std::size_t n = 0; n < annulus.count(); ++n) {
+    for (int d = 0; d < 4; ++d) {
+      links[annulus.place[n] / sliceSize] += annulus.links[n][d] == harmonic::kInner;
+    }
+  }
+  const Vector& h = annulus.grid.spacing;
+  double sum = 0, area = 0;
+  for (std::size_t k = 0; k < voxels.size(); ++k) {
+    if (voxels[k] == 0) continue;
+    // Voxel faces along the axes are 4 / pi times as long as a line of any direction.
+    const double perimeter = kPi / 4 * links[k] * std::sqrt(h[0] * h[1]);
+    const double here = voxels[k] * h[0] * h[1];
+    sum += here * perimeter * perimeter / (4 * kPi * here);
+    area += here;
+  }
+  return area > 0 ? sum / area : 0;
+}
 
 Measurement measure(harmonic::Annulus annulus, const MeasurementOptions& options,
                     const Monitor& monitor, const OnPart& onPart) {
@@ -13,7 +39,9 @@ Measurement measure(harmonic::Annulus annulus, const MeasurementOptions& options
   const auto begin = [&](const char* part) {
     if (onPart) onPart(part, m);
   };
-  if (options.sulciMode() == SulciMode::Recover) {
+  const double folding = foldingOf(m.annulus);
+  m.sulciRecovered = options.sulciMode(folding) == SulciMode::Recover;
+  if (m.sulciRecovered) {
     begin("sulci");
     SulcalRecovery recovered = recoverSulci(std::move(m.annulus), options.sulcus, monitor);
     m.annulus = std::move(recovered.annulus);
@@ -23,7 +51,7 @@ Measurement measure(harmonic::Annulus annulus, const MeasurementOptions& options
   m.interpolant = harmonic::solveInterpolant(m.annulus, options.interpolant, monitor);
   begin("correspondence");
   m.correspondence = findCorrespondences(m.annulus, m.interpolant, options.correspondence, monitor);
-  if (options.imageEdgeMode() == ImageEdge::Open) {
+  if (options.imageEdgeMode(folding) == ImageEdge::Open) {
     const bool flat = m.annulus.planar || m.annulus.grid.dimension() == 2;
     m.cutVoxels = leaveOutCut(m.annulus, {true, true, !flat}, m.correspondence);
   }

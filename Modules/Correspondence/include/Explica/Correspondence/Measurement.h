@@ -25,7 +25,8 @@ enum class SulciMode {
 struct MeasurementOptions {
   harmonic::AnnulusOptions annulus;
   harmonic::InterpolantOptions interpolant;
-  std::optional<SulciMode> sulci;  ///< unset: recover, but ignore with perSlice, openEnds or heart:
+  std::optional<SulciMode> sulci;  ///< unset: recover, but ignore with openEnds or heart, and with
+                                   ///< perSlice unless the inner region is folded as a cortex's:
                                    ///< the folds of a cavity (papillary muscles) are no sulci
   SulcusOptions sulcus;
   CorrespondenceOptions correspondence;
@@ -36,14 +37,23 @@ struct MeasurementOptions {
   std::optional<ImageEdge> imageEdge;  ///< unset: open, but insulated in a wall: a stack cuts a
                                        ///< heart across it
 
-  [[nodiscard]] bool isWall() const { return heart || annulus.perSlice || annulus.openEnds; }
-  [[nodiscard]] SulciMode sulciMode() const {
-    return sulci.value_or(isWall() ? SulciMode::Ignore : SulciMode::Recover);
+  /// @param folding  foldingOf() the tissue
+  [[nodiscard]] bool isWall(double folding) const {
+    return heart || annulus.openEnds || (annulus.perSlice && folding < kCortex);
   }
-  [[nodiscard]] ImageEdge imageEdgeMode() const {
-    return imageEdge.value_or(isWall() ? ImageEdge::Insulated : ImageEdge::Open);
+  [[nodiscard]] SulciMode sulciMode(double folding) const {
+    return sulci.value_or(isWall(folding) ? SulciMode::Ignore : SulciMode::Recover);
   }
+  [[nodiscard]] ImageEdge imageEdgeMode(double folding) const {
+    return imageEdge.value_or(isWall(folding) ? ImageEdge::Insulated : ImageEdge::Open);
+  }
+  /// Folding that no cavity of a heart has, and every slice of a folded cortex.
+  static constexpr double kCortex = 2.5;
 };
+
+/// How folded the inner region is within its slices: perimeter squared over 4 pi times the area, 1
+/// for a disc; mean over the slices, by area.  0 without an inner voxel.
+[[nodiscard]] double foldingOf(const harmonic::Annulus& annulus);
 
 /// Tissue and everything that is measured on it, per tissue number of `annulus`.
 struct Measurement {
@@ -53,6 +63,7 @@ struct Measurement {
   std::size_t cutVoxels = 0;               ///< left out because tissue runs out of the image there
   std::vector<double> depth;               ///< L0 / thickness
   std::vector<int> layers;                 ///< from 1 at the inner boundary; 0: unknown
+  bool sulciRecovered = false;             ///< or at least looked for
   std::vector<std::int32_t> sulcalVoxels;  ///< beside a recovered boundary
   std::optional<AnatomicalGrid> grid;
 };
