@@ -70,6 +70,8 @@ A closed surface needs --label (a patch) or --cuts (a hemisphere): a FreeSurfer 
 
 --cuts auto takes the medial wall out (--cortex; or lh.cortex.label or valid.shape.gii beside the surface; or the flattest fortieth of it) and finds relief cuts: each ends where a conformal map would change lengths most and comes along the sulci, where a way costs half as much for each standard deviation of depth; of four such cuts the one is taken that lowers the strain most for its length, until --cut.strain is reached. No face is lost: vertices along a cut become two, the second copies last in patch.surf.gii. Where a vertex has one place only, what touches a second copy is left out: of flat.surf.gii faces, of FreeSurfer's patches the vertices on cuts.
 
+A run that is stopped writes the map as far as it came, one-to-one as ever, and ends with exit code 3; there is nothing to resume, for a hemisphere takes seconds, and there are no frames, for the map grows from few vertices to all of them and not out of the surface.
+
 With --surfaces the map becomes a stack of depths: grid.nii.gz gives each cell its place in the tissue (RAS mm), --volumes are resampled into it, and to_flat.nii.gz gives each voxel of the first volume its u and v (mm in the map) and depth (0 at the white surface, 1 at the pial).)")
       .reference("Tutte 1963, Proceedings of the London Mathematical Society 13:743-767")
       .reference("Shen, Jiang, Zorin, Panozzo 2019, ACM Transactions on Graphics 38(4):32")

@@ -39,7 +39,9 @@ void declare(Declaration& d, Settings& s) {
           "left as it is and said; so the result never crosses more than the input. Several "
           "surfaces "
           "with the same faces (white, pial) are repaired each by itself and never come to meet "
-          "each other where they did not. A FreeSurfer file is also written in its own format, to "
+          "each other where they did not. A run that is stopped writes what it has parted by then; "
+          "repair the result again to go on. A FreeSurfer file is also written in its own format, "
+          "to "
           "take its place between recon-all and what follows.")
       .reference("Volino, Magnenat-Thalmann 2006, ACM Trans. Graphics 25(3):1154-1159")
       .example("explica repair lh.white lh.pial --out repaired",
@@ -188,7 +190,8 @@ Termination run(Context& context, const Settings& s) {
   report(context, inputs, repaired);
   context.result("seconds",
                  std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-  return left == 0 ? Termination::Converged : Termination::Stalled;
+  if (left == 0) return Termination::Converged;
+  return context.monitor().shouldStop() ? Termination::Interrupted : Termination::Stalled;
 }
 
 }  // namespace

@@ -290,12 +290,16 @@ std::vector<RepairedSurface> repairSurfaces(std::span<const TriangleMesh> surfac
   std::vector<Piece> pieces;
   std::vector<Untangling> untangled;
   for (std::size_t n = 0; n < surfaces.size(); ++n) {
-    untangled.push_back(untangle(surfaces[n], options.untangle));
+    Monitor part = monitor;
+    part.onProgress = [&](double fraction, std::string_view activity) {
+      monitor.progress((static_cast<double>(n) + fraction) / static_cast<double>(surfaces.size()),
+                       activity);
+    };
+    untangled.push_back(untangle(surfaces[n], options.untangle, part));
     TriangleMesh now{untangled.back().positions, surfaces[n].faces};
     MovedGroups groups(topology, surfaces[n].positions, now.positions);
     pieces.push_back({&surfaces[n], std::move(now), std::move(groups)});
     putBackFar(pieces.back(), options.maxMove);
-    monitor.progress(static_cast<double>(n + 1) / static_cast<double>(surfaces.size()), "repair");
   }
   while (putBackMeetings(pieces) > 0) {
   }

@@ -314,7 +314,8 @@ bool isConcerned(const std::vector<geometry::FacePair>& pairs, const std::vector
 
 }  // namespace
 
-Untangling untangle(const TriangleMesh& mesh, const UntangleOptions& options) {
+Untangling untangle(const TriangleMesh& mesh, const UntangleOptions& options,
+                    const Monitor& monitor) {
   if (options.largestRings < 1 || options.largestRings > 20) {
     throw InvalidInput("largestRings: must be from 1 to 20");
   }
@@ -333,7 +334,13 @@ Untangling untangle(const TriangleMesh& mesh, const UntangleOptions& options) {
   geometry::BoxTree tree(geometry::faceBoxes(now));
   for (int rings = 1; rings <= options.largestRings && isConcerned(result.after, options.concerned);
        ++rings) {
-    for (const Group& group : groupsOf(now, topology, result.after, rings)) {
+    const auto groups = groupsOf(now, topology, result.after, rings);
+    for (std::size_t n = 0; n < groups.size() && !monitor.shouldStop(); ++n) {
+      const Group& group = groups[n];
+      // Most groups part with their first ring.
+      monitor.progress(1 - (1 - static_cast<double>(n) / static_cast<double>(groups.size())) /
+                               std::pow(2.0, rings - 1),
+                       "crossings");
       if (!isConcerned(group.pairs, options.concerned)) continue;
       const Place place(now, topology, tree, group, options.largestMove);
       Best best(place, group.pairs.size());

@@ -69,6 +69,22 @@ TEST(Untangling, MovesNoFartherThanItMust) {
   EXPECT_FALSE(geometry::findSelfIntersections(nearly).empty());
 }
 
+TEST(Untangling, AStopLeavesWhatWasMendedByThen) {
+  // Two places far apart: the stop is wanted once the first is mended.
+  const TriangleMesh one = geometry::joined(
+      geometry::makeIcosphere(4, 10.0), geometry::makeIcosphere(4, 10.0, Point(19.8, 0.3, 0.2)));
+  TriangleMesh other = one;
+  other.positions.rowwise() += Eigen::RowVector3d(0, 0, 100);
+  const TriangleMesh mesh = geometry::joined(one, other);
+  int asked = 0;
+  Monitor monitor;
+  monitor.stopWanted = [&] { return ++asked > 1; };
+  const Untangling result = untangle(mesh, {}, monitor);
+  EXPECT_FALSE(result.after.empty());
+  EXPECT_LT(result.after.size(), result.before.size());
+  EXPECT_EQ(result.after, geometry::findSelfIntersections({result.positions, mesh.faces}));
+}
+
 TEST(Untangling, OpensFolds) {
   const TriangleMesh mesh = makeCrumpledSphere(1.2);
   const Untangling result = untangle(mesh);

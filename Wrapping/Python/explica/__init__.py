@@ -77,6 +77,7 @@ from ._surfaces import (
     mean_edge_length,
     mesh_edges,
     near_pairs,
+    relief_cuts,
     repair_surface,
     select_region,
     self_intersections,

@@ -7,8 +7,10 @@
 #include "Watch.h"
 
 #include "Explica/Flattening/Comparison.h"
+#include "Explica/Flattening/Cuts.h"
 #include "Explica/Flattening/FlatGrid.h"
 #include "Explica/Flattening/Flatten.h"
+#include "Explica/Flattening/FoldDepth.h"
 
 #include <numeric>
 
@@ -54,6 +56,41 @@ void bindFlattening(py::module_& m) {
       "are\n"
       "their numbers in the surface.  No face is turned over and no part lies on another:\n"
       "`turned_over` and `rim_crossings`, both exact, are 0.",
+      "positions"_a, "faces"_a, "region"_a = py::none(), "progress"_a = py::none());
+  defWithOptions<flattening::CutOptions>(
+      m, "relief_cuts",
+      [](const PositionsIn& positions, const FacesIn& faces,
+         const std::optional<std::vector<std::int32_t>>& region, const py::object& progress,
+         const py::kwargs& keywords) {
+        const auto options = optionsOf<flattening::CutOptions>(keywords);
+        const TriangleMesh mesh = meshOf(positions, faces);
+        const auto disc = flattening::discOf(mesh, listed(mesh, region));
+        const auto plan = Watch(progress).run([&](const Monitor& monitor) {
+          const Eigen::VectorXd depth = flattening::foldDepth(mesh)(disc.vertexOrigin);
+          return flattening::findCuts(disc, depth, options, monitor);
+        });
+        std::vector<flattening::CutPath> paths;
+        py::list cuts;
+        std::vector<double> lengths;
+        for (const flattening::Cut& cut : plan.cuts) {
+          paths.push_back(cut.path);
+          lengths.push_back(cut.length);
+          flattening::CutPath named;
+          for (const std::int32_t v : cut.path) named.push_back(disc.vertexOrigin[v]);
+          cuts.append(columnOf(named));
+        }
+        const auto opened = flattening::openedAlong(disc, paths);
+        return py::dict("faces"_a = opened.mesh.faces, "vertices"_a = columnOf(opened.vertexOrigin),
+                        "region"_a = columnOf(opened.faceOrigin), "cuts"_a = cuts,
+                        "lengths"_a = columnOf(lengths), "strain_before"_a = plan.strainBefore,
+                        "strain"_a = plan.edgeStrain);
+      },
+      "Cuts along the folds by which a surface with a rim, or the listed faces, can be laid flat.\n"
+      "`cuts`: the vertices along each, from the rim or an earlier cut inwards; `lengths` in mm;\n"
+      "`faces` (F, 3) of the surface opened along them, whose N vertices are the surface's "
+      "`vertices`\n"
+      "(N,), those on cuts there twice; `region` (F,) their numbers in it; edge strain of the map "
+      "without and with them.",
       "positions"_a, "faces"_a, "region"_a = py::none(), "progress"_a = py::none());
   m.def(
       "distance_errors",

@@ -31,6 +31,21 @@ class Flattening(unittest.TestCase):
         self.assertEqual((self.map["turned_over"], self.map["rim_crossings"]), (0, 0))
         np.testing.assert_array_equal(self.map["vertices"][f], self.faces[self.map["region"]])
 
+    def test_relief_cuts_open_a_ball_so_that_it_lies_flat_with_less_strain(self):
+        kept = np.flatnonzero(np.all(self.positions[self.faces][:, :, 2] > -25, axis=1))
+        found = explica.relief_cuts((self.positions, self.faces), region=kept, strain=0.15)
+        self.assertLessEqual(found["strain"], 0.15)
+        self.assertGreater(found["strain_before"], 0.15)
+        self.assertEqual(len(found["cuts"]), len(found["lengths"]))
+        np.testing.assert_array_equal(found["vertices"][found["faces"]], self.faces[found["region"]])
+        self.assertTrue(np.all(np.isin(found["region"], kept)))
+        along = self.positions[found["cuts"][0]]
+        length = np.linalg.norm(np.diff(along, axis=0), axis=1).sum()
+        self.assertAlmostEqual(length, found["lengths"][0], places=9)
+        opened = (self.positions[found["vertices"]], found["faces"])
+        laid = explica.flatten(opened, area_tolerance=0.05)
+        self.assertEqual((laid["turned_over"], laid["rim_crossings"]), (0, 0))
+
     def test_distance_errors_are_small_and_zero_for_itself(self):
         f = self.map["faces"]
         local, far = explica.distance_errors((self.part, f), self.part, pairs=400, sources=10)

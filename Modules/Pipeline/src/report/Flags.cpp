@@ -153,6 +153,16 @@ std::vector<ReportFlag> flattenFlags(const StepFolder& step) {
   return flags;
 }
 
+std::vector<ReportFlag> repairFlags(const StepFolder& step) {
+  const auto before = step.number("pairs_before"), after = step.number("pairs_after");
+  if (!before || !after) return {};
+  const std::string said = *before == 0 ? "no faces crossed"
+                                        : readable(*before - *after) + " of " + readable(*before) +
+                                              " crossing pairs of faces parted";
+  return {
+      {*after == 0 ? FlagLevel::Good : FlagLevel::Bad, "Parted" + sideWord(step) + ":", said, ""}};
+}
+
 /// How much of each volume is known on the cortex.
 std::vector<ReportFlag> sampleFlags(const StepFolder& step) {
   constexpr std::string_view kKey = "known_fraction_";
@@ -215,6 +225,7 @@ std::vector<ReportFlag> flagsOf(const StepFolder& step) {
   if (step.command == "thickness") return thicknessFlags(step);
   if (step.command == "unfold") return unfoldFlags(step);
   if (step.command == "flatten") return flattenFlags(step);
+  if (step.command == "repair") return repairFlags(step);
   if (step.command == "sample") return sampleFlags(step);
   if (step.command == "inflate") return inflateFlags(step);
   return {};

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "Explica/Core/Monitor.h"
 #include "Explica/Core/TriangleMesh.h"
 #include "Explica/Geometry/SelfIntersection.h"
 
@@ -42,7 +43,10 @@ struct Untangling {
 ///
 /// @throws InvalidInput  option out of range, or as geometry::buildTopology()
 ///
+/// A stop that the monitor asks for leaves the groups that were mended by then.
+///
 /// Deterministic; does not depend on threads.
-[[nodiscard]] Untangling untangle(const TriangleMesh& mesh, const UntangleOptions& options = {});
+[[nodiscard]] Untangling untangle(const TriangleMesh& mesh, const UntangleOptions& options = {},
+                                  const Monitor& monitor = {});
 
 }  // namespace explica::collision
