@@ -13,6 +13,7 @@
 #include "Explica/Segmentation/Hemisphere.h"
 #include "Explica/Segmentation/Plausibility.h"
 #include "Explica/Segmentation/Tissue.h"
+#include "Explica/Segmentation/VoxelBox.h"
 #include "TemplateFiles.h"
 
 #include <nlohmann/json.hpp>
@@ -38,6 +39,8 @@ namespace explica::app {
 namespace {
 
 using segmentation::Side;
+
+constexpr int kMargin = 4;  // voxels around what is looked at
 
 struct Settings {
   std::string image;
@@ -180,7 +183,20 @@ double halvesOf(const Volume<Label>& mask, const registration::HeadTransform& tr
   return right > 0 ? left / right : kInfinity;
 }
 
-void writeTemplate(Context& context, const Atlas& atlas, Label stem,
+/// Boxes of voxels within each other, the outermost first.
+using Boxes = std::vector<segmentation::VoxelBox>;
+
+/// Writes a volume of the innermost box on the grid of the image.
+template <class T>
+void writeWhole(Context& context, const std::string& name, const Boxes& boxes, Volume<T> volume,
+                T outside = T{0}) {
+  for (auto box = boxes.rbegin(); box != boxes.rend(); ++box) {
+    volume = box->putBack(volume, outside);
+  }
+  io::writeVolume(context.output(name), volume);
+}
+
+void writeTemplate(Context& context, const Boxes& boxes, const Atlas& atlas, Label stem,
                    const registration::HeadTransform& transform) {
   Volume<Label> labels = atlas.labels;
   std::ostringstream legend;
@@ -189,23 +205,22 @@ void writeTemplate(Context& context, const Atlas& atlas, Label stem,
     if (label != stem) legend << label << '\t' << structure.name << '\n';
   }
   for (Label& label : labels.data) label = label == stem ? 0 : label;
-  io::writeVolume(context.output("atlas.nii.gz"), labels);
+  writeWhole(context, "atlas.nii.gz", boxes, std::move(labels));
   writeTextFile(context.output("atlas.tsv"), legend.str());
   io::writeTransform(context.output("to_template.h5"), transform.affine, transform.displacement);
 }
 
 /// The template in the image's space: mask, atlas, and how well it fits.
 Head fitTemplate(Context& context, Judge& judge, const Settings& s, const LoadedTemplate& loaded,
-                 const Volume<float>& image, Volume<Label> mask) {
+                 const Boxes& boxes, const Volume<float>& image, Volume<Label> mask) {
   const bool stripped =
       s.stripped == Stripped::Yes || mask.size() != 0 ||
       (s.stripped == Stripped::Auto && registration::looksStripped(image, loaded.volumes));
   context.result("stripped", stripped);
   context.info(stripped ? "T1: without skull" : "T1: with skull, which is taken off");
   auto step = context.step("template");
-  const Volume<float> seen = mask.size() != 0 ? within(image, mask) : image;
-  const auto found =
-      registration::registerHead(seen, loaded.volumes, stripped, {}, context.monitor());
+  const auto found = registration::registerHead(mask.size() != 0 ? within(image, mask) : image,
+                                                loaded.volumes, stripped, {}, context.monitor());
   context.result("registration_information", found.information);
   context.result("registration_correlation", found.agreement.correlation);
   context.result("registration_least_jacobian", found.agreement.leastJacobian);
@@ -222,15 +237,22 @@ Head fitTemplate(Context& context, Judge& judge, const Settings& s, const Loaded
   judge.flag("half-head", halves);
   head.atlas =
       Atlas{registration::pulled(loaded.volumes.atlas, found.transform, image.grid), loaded.legend};
-  writeTemplate(context, *head.atlas, loaded.stem, found.transform);
+  writeTemplate(context, boxes, *head.atlas, loaded.stem, found.transform);
   return head;
 }
 
 /// Finds out what is needed to know brain and hemispheres, and gets it.
 Head readHead(Context& context, Judge& judge, const Settings& s,
-              const io::VolumeReadOptions& reading, const Volume<float>& image) {
+              const io::VolumeReadOptions& reading, const Boxes& boxes,
+              const Volume<float>& image) {
   Volume<Label> mask;
-  if (s.mask) mask = readLabels(context, "mask", *s.mask, reading);
+  if (s.mask) {
+    mask = readLabels(context, "mask", *s.mask, reading);
+    if (!sameGrid(mask.grid, boxes.front().whole())) {
+      throw InvalidInput("mask: lies on another grid than the T1; resample it to the T1's grid");
+    }
+    mask = boxes.front().of(mask);
+  }
   std::optional<Atlas> atlas;
   if (s.atlas) atlas = readAtlas(context, s, reading, image.grid);
   const std::string name = s.headTemplate.value_or("colin27");
@@ -248,7 +270,7 @@ Head readHead(Context& context, Judge& judge, const Settings& s,
         "skull, and its hemispheres cannot be told");
     return {std::move(mask), std::move(atlas), 1};
   }
-  Head head = fitTemplate(context, judge, s, *loaded, image, std::move(mask));
+  Head head = fitTemplate(context, judge, s, *loaded, boxes, image, std::move(mask));
   if (atlas) head.atlas = std::move(atlas);
   // A template of another species brings its own size.
   if (s.headTemplate) head.brainShare = registration::brainVolumeOf(loaded->volumes) / 1.7e6;
@@ -286,13 +308,15 @@ segmentation::TissueSegmentation findTissue(Context& context, const Settings& s,
   return tissue;
 }
 
-void writeHemisphere(Context& context, const std::string& folder,
+void writeHemisphere(Context& context, const Boxes& boxes, const std::string& folder,
                      const segmentation::Hemisphere& hemisphere) {
-  const auto place = [&](const char* name) { return context.output(folder + name); };
-  io::writeVolume(place("hemisphere.nii.gz"), hemisphere.labels);
-  io::writeVolume(place("white_share.nii.gz"), hemisphere.whiteShare);
-  io::writeVolume(place("tissue_share.nii.gz"), hemisphere.tissueShare);
-  io::writeVolume(place("cut.nii.gz"), segmentation::maskOf(hemisphere.labels, segmentation::kCut));
+  const auto write = [&](const char* name, const auto& volume) {
+    writeWhole(context, folder + name, boxes, volume);
+  };
+  write("hemisphere.nii.gz", hemisphere.labels);
+  write("white_share.nii.gz", hemisphere.whiteShare);
+  write("tissue_share.nii.gz", hemisphere.tissueShare);
+  write("cut.nii.gz", segmentation::maskOf(hemisphere.labels, segmentation::kCut));
 }
 
 void countHemisphere(Context& context, const std::string& side,
@@ -314,7 +338,7 @@ void addSide(Volume<Label>& both, const segmentation::Hemisphere& hemisphere, Si
   }
 }
 
-void makeHemispheres(Context& context, const Settings& s,
+void makeHemispheres(Context& context, const Settings& s, const Boxes& boxes,
                      const segmentation::TissueSegmentation& tissue, const Atlas& atlas) {
   auto step = context.step("hemisphere");
   const bool both = s.hemisphere.side == Side::Both;
@@ -329,33 +353,52 @@ void makeHemispheres(Context& context, const Settings& s,
                                                             options, context.monitor());
     const std::string folder = side == Side::Left ? "left/" : "right/";
     countHemisphere(context, both ? (side == Side::Left ? "_left" : "_right") : "", hemisphere);
-    writeHemisphere(context, both ? folder : "", hemisphere);
+    writeHemisphere(context, boxes, both ? folder : "", hemisphere);
     if (both) addSide(merged, hemisphere, side);
   }
-  if (both) io::writeVolume(context.output("hemisphere.nii.gz"), merged);
+  if (both) writeWhole(context, "hemisphere.nii.gz", boxes, std::move(merged));
+}
+
+void writeTissue(Context& context, const Boxes& boxes,
+                 const segmentation::TissueSegmentation& tissue) {
+  auto step = context.step("write");
+  writeWhole(context, "seg.nii.gz", boxes, tissue.labels);
+  writeWhole(context, "csf.nii.gz", boxes, tissue.probability[0]);
+  writeWhole(context, "gm.nii.gz", boxes, tissue.probability[1]);
+  writeWhole(context, "wm.nii.gz", boxes, tissue.probability[2]);
+  writeWhole(context, "bias.nii.gz", boxes, tissue.bias, 1.0f);
+  Volume<Label> mask(tissue.labels.grid, 0);
+  for (std::size_t v = 0; v < mask.size(); ++v) mask[v] = tissue.labels[v] != 0 ? 1 : 0;
+  writeWhole(context, "brain_mask.nii.gz", boxes, std::move(mask));
+}
+
+/// The image without the empty space around it.
+Volume<float> readImage(Context& context, Judge& judge, const Settings& s,
+                        const io::VolumeReadOptions& reading, Boxes& boxes) {
+  const Volume<float> image = readScalars(context, "T1", s.image, reading);
+  refuseOtherImages(judge, image);
+  boxes.push_back(segmentation::VoxelBox::around(image, kMargin));
+  return boxes.back().of(image);
 }
 
 Termination run(Context& context, const Settings& s) {
   Judge judge(context, s.accept);
   io::VolumeReadOptions reading = s.reading;
   reading.dimension = 3;
-  const Volume<float> image = readScalars(context, "T1", s.image, reading);
-  refuseOtherImages(judge, image);
-  const Head head = readHead(context, judge, s, reading, image);
-  const segmentation::TissueSegmentation tissue = findTissue(context, s, image, head.mask);
-  judgeTissue(context, judge, tissue, head.brainShare);
-  {
-    auto step = context.step("write");
-    io::writeVolume(context.output("seg.nii.gz"), tissue.labels);
-    io::writeVolume(context.output("csf.nii.gz"), tissue.probability[0]);
-    io::writeVolume(context.output("gm.nii.gz"), tissue.probability[1]);
-    io::writeVolume(context.output("wm.nii.gz"), tissue.probability[2]);
-    io::writeVolume(context.output("bias.nii.gz"), tissue.bias);
-    Volume<Label> mask(image.grid, 0);
-    for (std::size_t v = 0; v < mask.size(); ++v) mask[v] = tissue.labels[v] != 0 ? 1 : 0;
-    io::writeVolume(context.output("brain_mask.nii.gz"), mask);
+  Boxes boxes;
+  Volume<float> image = readImage(context, judge, s, reading, boxes);
+  Head head = readHead(context, judge, s, reading, boxes, image);
+  if (head.mask.size() != 0) {
+    boxes.push_back(segmentation::VoxelBox::around(head.mask, kMargin));
+    image = boxes.back().of(image);
+    head.mask = boxes.back().of(head.mask);
+    if (head.atlas) head.atlas->labels = boxes.back().of(head.atlas->labels);
   }
-  if (head.atlas) makeHemispheres(context, s, tissue, *head.atlas);
+  const segmentation::TissueSegmentation tissue = findTissue(context, s, image, head.mask);
+  image = {};
+  judgeTissue(context, judge, tissue, head.brainShare);
+  writeTissue(context, boxes, tissue);
+  if (head.atlas) makeHemispheres(context, s, boxes, tissue, *head.atlas);
   return tissue.termination;
 }
 

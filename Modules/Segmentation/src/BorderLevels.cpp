@@ -15,6 +15,8 @@ constexpr std::size_t kGrain = 16384;
 constexpr double kPrior = 25, kPriorSlope = 0.1;
 /// A level stays this share of the means' distance away from them.
 constexpr double kMargin = 0.1;
+/// Of a sum of three squared normal numbers; single edges among pure voxels do not move the median.
+constexpr float kMedianOverMean = 0.79F;
 
 /// The least or largest of each voxel and its neighbours, corners included.
 template <class Choose>
@@ -33,6 +35,20 @@ std::vector<float> among(const EdgeSamples& samples, const Choose& choose) {
   return values;
 }
 
+/// Takes away what noise adds to squared slopes, as voxels of one tissue show it.
+void removeNoise(const std::vector<std::uint8_t>& pure, std::vector<float>& squared) {
+  std::vector<float> noise;
+  for (std::size_t v = 0; v < pure.size(); ++v) {
+    if (pure[v] != 0) noise.push_back(squared[v]);
+  }
+  if (noise.empty()) return;
+  const auto middle = noise.begin() + static_cast<std::ptrdiff_t>(noise.size() / 2);
+  std::nth_element(noise.begin(), middle, noise.end());
+  const float mean = *middle / kMedianOverMean;
+  for (float& value : squared) value = std::max(0.0F, value - mean);
+}
+
+/// Length of the gradient, without noise.
 std::vector<float> slopesOf(const EdgeSamples& samples) {
   const std::vector<float>& values = *samples.intensity;
   std::vector<float> slopes(values.size());
@@ -45,8 +61,10 @@ std::vector<float> slopesOf(const EdgeSamples& samples) {
       const double rise = (values[after] - values[before]) / (2 * samples.spacing[axis]);
       squared += rise * rise;
     }
-    slopes[v] = static_cast<float>(std::sqrt(squared));
+    slopes[v] = static_cast<float>(squared);
   });
+  removeNoise(samples.pure, slopes);
+  for (float& slope : slopes) slope = std::sqrt(slope);
   return slopes;
 }
 

@@ -11,13 +11,14 @@
 
 namespace explica::segmentation {
 
-/// The brain's voxels as far as edges are concerned; nothing is owned.
+/// The brain's voxels as far as edges are concerned; nothing is owned but what is pure.
 struct EdgeSamples {
   const std::vector<std::size_t>* voxel = nullptr;                       ///< linear indices
   const std::vector<std::array<std::int32_t, 6>>* neighbours = nullptr;  ///< packed; -1: none
   const std::vector<std::uint8_t>* rim = nullptr;  ///< 1 where the brain's own edge is near
   const std::vector<float>* intensity = nullptr;   ///< without bias
   Vector spacing = Vector::Ones();                 ///< mm
+  std::vector<std::uint8_t> pure;  ///< 1 in white matter beyond doubt: its slopes are noise
 };
 
 /// Brightness at which one tissue ends and the next begins, around each voxel.
@@ -30,10 +31,10 @@ struct BorderLevels {
 ///
 /// A border seen through a point spread is steepest half way between what lies on its two sides.
 /// So a level is the mean brightness of the voxels that straddle this border and no other, weighed
-/// by their gradient, under a window.  That asks for no pure voxel of either tissue: the narrow
-/// fluid of sulci has none, nor have thin blades of white matter, and the myelin of sensory and
-/// motor cortex makes it brighter than the rest.  Which voxels straddle a border follows from
-/// the levels of the round before.
+/// by their gradient as far as it exceeds that of noise, under a window.  That asks for no pure
+/// voxel of either tissue: the narrow fluid of sulci has none, nor have thin blades of white
+/// matter, and the myelin of sensory and motor cortex makes it brighter than the rest.  Which
+/// voxels straddle a border follows from the levels of the round before.
 class BorderFinder {
  public:
   /// @param mean  of fluid, grey and white matter everywhere, rising

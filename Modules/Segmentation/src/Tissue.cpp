@@ -28,8 +28,9 @@ constexpr std::size_t kFewestInCore = 100;
 constexpr double kDeepFluid = 0.002;  // of the voxels off the rim: fewer do not tell what fluid is
 constexpr double kFluidOverGrey = 0.7;  // what is brighter beside grey matter is no fluid
 constexpr int kEdgeRounds = 10;         // after which levels move no more
-constexpr int kPriorRounds = 4;         // for the neighbours to agree
-constexpr double kLocalBlocks = 2;      // of the local windows' width
+constexpr float kBeyondDoubt = 0.9F;
+constexpr int kPriorRounds = 4;     // for the neighbours to agree
+constexpr double kLocalBlocks = 2;  // of the local windows' width
 
 /// Fluid, grey, white, and the voxels where two of them meet.
 enum Component { kPureCsf, kPureGrey, kPureWhite, kCsfGrey, kGreyWhite, kComponents };
@@ -406,8 +407,12 @@ class Classifier {
   void followEdges() {
     const BlockWindow window(grid_, brain_.voxel, options_.localWidth, kLocalBlocks);
     const std::array<double, kClasses> mean = mixture_.mean;
-    BorderFinder finder(
-        window, {&brain_.voxel, &brain_.neighbours, &brain_.rim, &corrected_, grid_.spacing}, mean);
+    EdgeSamples samples{&brain_.voxel, &brain_.neighbours,
+                        &brain_.rim,   &corrected_,
+                        grid_.spacing, std::vector<std::uint8_t>(brain_.size())};
+    forVoxels(
+        [&](std::size_t b) { samples.pure[b] = posterior_[b][kPureWhite] > kBeyondDoubt ? 1 : 0; });
+    BorderFinder finder(window, samples, mean);
     // Two tissues of equal spread and share meet half way between their means.
     Mixture fair = mixture_;
     const double pure = (1 - mixture_.share[kCsfGrey] - mixture_.share[kGreyWhite]) / kClasses;

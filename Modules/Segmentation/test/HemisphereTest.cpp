@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Segmentation/Hemisphere.h"
 
+#include "Explica/Segmentation/VoxelBox.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -144,6 +146,24 @@ TEST(ResampledLabels, KeepValuesOnAShiftedGrid) {
   const Volume<Label> moved = resampleLabels(labels, b);
   EXPECT_EQ(moved(1, 1, 3), 7);
   EXPECT_EQ(moved(3, 0, 0), 0);
+}
+
+TEST(VoxelBox, HoldsWhatIsThereAndPutsItBack) {
+  Grid grid;
+  grid.size = {9, 8, 7};
+  grid.spacing = Vector(1, 2, 3);
+  Volume<float> volume(grid, 0.0f);
+  volume(3, 4, 5) = 7;
+  volume(5, 4, 2) = 8;
+  const VoxelBox box = VoxelBox::around(volume, 1);
+  EXPECT_EQ(box.grid().size, (std::array{5, 3, 6}));
+  const Volume<float> part = box.of(volume);
+  EXPECT_EQ(part(1, 1, 4), 7);
+  EXPECT_LT((part.grid.toWorld(Vector(1, 1, 4)) - grid.toWorld(Vector(3, 4, 5))).norm(), 1e-12);
+  EXPECT_EQ(box.putBack(part).data, volume.data);
+  EXPECT_EQ(box.putBack(part, 1.0f)(0, 0, 0), 1);
+  EXPECT_EQ(VoxelBox::around(Volume<float>(grid, 0.0f), 2).grid().size, grid.size);
+  EXPECT_THROW((void)box.of(part), InvalidInput);
 }
 
 }  // namespace
