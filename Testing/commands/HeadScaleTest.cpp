@@ -51,6 +51,9 @@ class WholeHead : public ::testing::Test {
 TEST_F(WholeHead, IsTakenOutOfItsSkull) {
   const auto run = patiently({"segment", kTemplates / "ch2.nii.gz", "--out", folder_ / "segment"});
   ASSERT_EQ(run.exitCode, 0) << run;
+  ASSERT_EQ(explica({"report", folder_ / "segment"}).exitCode, 0);
+  EXPECT_NE(readText(folder_ / "segment/report.html").find("Template on ch2.nii.gz"),
+            std::string::npos);
   const auto ours = io::readLabels(folder_ / "segment/brain_mask.nii.gz").volume;
   const auto known = io::readScalars(kTemplates / "ch2bet.nii.gz").volume;
   ASSERT_EQ(ours.size(), known.size());
