@@ -41,6 +41,28 @@ TEST_P(Interrupt, WritesAndMarksWhatWasReachedAndResumes) {
   EXPECT_EQ(explica({"verify", folder / "a"}).exitCode, 0);
 }
 
+TEST_P(Interrupt, InflationGoesOnToTheBytesOfARunThatNeverStopped) {
+  TemporaryFolder folder;
+  io::writeSurface(folder / "sphere.surf.gii", geometry::makeFoldedSphere(5, 30.0, 0.5, 9));
+  const std::vector<std::string> words = {"inflate", folder / "sphere.surf.gii", "--out",
+                                          folder / "a"};
+  CommandSetting setting;
+  setting.signal = GetParam();
+  setting.signalWhen = "iteration 2";
+  const auto stopped = explica(words, setting);
+  ASSERT_EQ(stopped.exitCode, 3) << stopped;
+  EXPECT_EQ(readJson(folder / "a/provenance.json")["termination"], "interrupted");
+  const auto summary = readJson(folder / "a/summary.json");
+  EXPECT_EQ(summary["stop_reason"], "interrupted");
+  EXPECT_EQ(summary["self_intersections_final"], 0);
+  EXPECT_EQ(explica({"verify", folder / "a"}).exitCode, 0);
+  const auto resumed = explica(words + std::vector<std::string>{"--resume"});
+  EXPECT_EQ(resumed.exitCode, 0) << resumed;
+  const auto whole = explica({"inflate", folder / "sphere.surf.gii", "--out", folder / "b"});
+  EXPECT_EQ(whole.exitCode, 0) << whole;
+  EXPECT_EQ(readText(folder / "a/inflated.surf.gii"), readText(folder / "b/inflated.surf.gii"));
+}
+
 INSTANTIATE_TEST_SUITE_P(Signals, Interrupt, ::testing::Values(SIGINT, SIGUSR1),
                          [](const auto& row) { return "Signal" + std::to_string(row.param); });
 

@@ -79,7 +79,7 @@ double aimFor(double goal) {
 
 /// How much harder to drive: more the farther the aim is.
 double driveFactor(double visibility, double aim) {
-  return std::clamp(1 + 10 * (aim - visibility), 1.1, 1.5);
+  return std::clamp(1 + 30 * (aim - visibility), 1.1, 1.5);
 }
 
 /// An inflation under way.
