@@ -21,6 +21,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <limits>
 
 namespace explica::app {
 namespace {
@@ -31,7 +32,7 @@ struct Settings {
   ViewSettings view;
   std::optional<std::string> viewSurface;
   unfolding::RegionOptions region;
-  std::optional<std::string> label;
+  std::vector<std::string> labels;
   std::vector<int> labelKeys;
   std::optional<std::string> map;
   std::optional<double> above;
@@ -69,8 +70,9 @@ void declare(Declaration& d, Settings& s) {
       .inputOption("view-surface", FileKind::Surface, "look from all points of this surface",
                    s.viewSurface, "View")
       .options("Region", s.region)
-      .inputOption("label", FileKind::VertexLabel, "the region is where this label is not 0",
-                   s.label, "Region")
+      .inputOption("label", FileKind::VertexLabel,
+                   "the region is where this label, or one of several, is not 0", s.labels,
+                   "Region")
       .option("Region", Field{"label-key", "", "the region is where --label has one of these keys"},
               s.labelKeys)
       .inputOption("map", FileKind::VertexData, "the region is where this map is above --above",
@@ -109,23 +111,30 @@ visibility::Viewpoints viewOf(const Settings& s, const Point& about) {
   return viewFrom(s.view, s.viewSurface, s.reading, about);
 }
 
-/// Vertices with one of the keys wanted, or with any key but 0.
+/// Vertices with one of the keys wanted, or with any key but 0, in any of the files.
 std::vector<bool> markedByLabel(const TriangleMesh& mesh, const Settings& s) {
-  const auto labels = io::readVertexLabels(*s.label, mesh.vertexCount());
   std::vector<bool> marked(static_cast<std::size_t>(mesh.vertexCount()));
-  for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
-    marked[v] = s.labelKeys.empty() ? labels.keys[v] != 0
-                                    : std::find(s.labelKeys.begin(), s.labelKeys.end(),
-                                                labels.keys[v]) != s.labelKeys.end();
+  Label lowest = std::numeric_limits<Label>::max(), highest = std::numeric_limits<Label>::lowest();
+  for (const std::string& file : s.labels) {
+    const auto labels = io::readVertexLabels(file, mesh.vertexCount());
+    lowest = std::min(lowest, labels.keys.minCoeff());
+    highest = std::max(highest, labels.keys.maxCoeff());
+    for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
+      const Label key = labels.keys[v];
+      const bool wanted = s.labelKeys.empty() ? key != 0
+                                              : std::find(s.labelKeys.begin(), s.labelKeys.end(),
+                                                          key) != s.labelKeys.end();
+      if (wanted) marked[v] = true;
+    }
   }
   if (std::find(marked.begin(), marked.end(), true) == marked.end()) {
     std::string wanted;
     for (const int key : s.labelKeys)
       wanted += (wanted.empty() ? "" : " or ") + std::to_string(key);
-    throw InvalidInput(!wanted.empty() ? "label: no vertex has key " + wanted + ", keys go from " +
-                                             std::to_string(labels.keys.minCoeff()) + " to " +
-                                             std::to_string(labels.keys.maxCoeff())
-                                       : "label: it is 0 everywhere, so the region is empty");
+    throw InvalidInput(!wanted.empty()
+                           ? "label: no vertex has key " + wanted + ", keys go from " +
+                                 std::to_string(lowest) + " to " + std::to_string(highest)
+                           : "label: it is 0 everywhere, so the region is empty");
   }
   return marked;
 }
@@ -153,9 +162,10 @@ unfolding::Region regionOf(const TriangleMesh& mesh, const Settings& s,
   if (s.map.has_value() != s.above.has_value()) {
     throw UsageError("--map and --above belong together; one of them is missing");
   }
-  if (s.map && s.label) throw UsageError("the region is given by --label or by --map, not by both");
+  if (s.map && !s.labels.empty())
+    throw UsageError("the region is given by --label or by --map, not by both");
   if (s.map) return unfolding::regionOfMarked(mesh, markedByMap(mesh, s));
-  if (s.label) return unfolding::regionOfMarked(mesh, markedByLabel(mesh, s));
+  if (!s.labels.empty()) return unfolding::regionOfMarked(mesh, markedByLabel(mesh, s));
   return unfolding::selectRegion(mesh, s.region, view);
 }
 

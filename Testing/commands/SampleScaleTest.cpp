@@ -165,9 +165,13 @@ TEST(BesideLayNii, ProfilesOfASlab) {
   if (!fs::exists(data)) GTEST_SKIP() << "skipped: no real data";
   constexpr int kLayers = 20;
   TemporaryFolder folder;
-  runExplica({"thickness", data / "sc_rim.nii.gz", "--inner", "2", "--tissue", "3", "--outer", "1",
-              "--insulated", "0", "--sulci", "ignore", "--image-edge", "insulated", "--out",
-              folder / "thickness"});
+  // At the open ends of the slab 2 % of the voxels reach one border only, and that is said.
+  const CommandResult made =
+      explica({"thickness", data / "sc_rim.nii.gz", "--inner", "2", "--tissue", "3", "--outer", "1",
+               "--insulated", "0", "--sulci", "ignore", "--image-edge", "insulated", "--out",
+               folder / "thickness"},
+              patience());
+  ASSERT_TRUE(made.exitCode == 0 || made.exitCode == 3) << made;
   const Volume<float> thickness = io::readScalars(folder / "thickness/thickness.nii.gz").volume;
   const Volume<Label> theirs = io::readLabels(data / "sc_layers.nii.gz").volume;
   for (const std::string name : {"sc_leakylay_1000", "sc_distlay_1000"}) {

@@ -604,11 +604,13 @@ void writeLabels(const TemporaryFolder& folder) {
   io::writeGiftiShape(
       folder / "active.shape.gii",
       std::vector<io::VertexMap>{{"z", "", 3 * labelsOf(441, two).keys.cast<double>()}}, "");
-  std::string left = "#!ascii label\n98\n";
-  for (int v = 0; v < 441; ++v) {
-    if (two(v % 21, v / 21) && v % 21 <= 8) left += std::to_string(v) + " 0 0 0 1\n";
+  for (const bool right : {false, true}) {
+    std::string lines = "#!ascii label\n98\n";
+    for (int v = 0; v < 441; ++v) {
+      if (two(v % 21, v / 21) && (v % 21 > 8) == right) lines += std::to_string(v) + " 0 0 0 1\n";
+    }
+    writeText(folder / (right ? "right.label" : "left.label"), lines);
   }
-  writeText(folder / "left.label", left);
   writeText(folder / "far.label", "#!ascii label\n1\n9999 0 0 0 1\n");
 }
 
@@ -654,6 +656,7 @@ const RegionKind kRegionKinds[] = {
     {"GiftiLabelOfTwoPieces", {"--label", "{folder}/two.label.gii"}, 2, 0},
     {"GiftiLabelWithAHole", {"--label", "{folder}/ring.label.gii", "--label-key", "1"}, 1, 1},
     {"FreeSurferLabel", {"--label", "{folder}/left.label"}, 1, 0},
+    {"SeveralFiles", {"--label", "{folder}/left.label", "--label", "{folder}/right.label"}, 2, 0},
     {"SeveralKeys", {"--label", "{folder}/two.label.gii", "--label-key", "9,1"}, 2, 0},
     {"MapAboveAValue", {"--map", "{folder}/active.shape.gii", "--above", "2.5"}, 2, 0},
 };
