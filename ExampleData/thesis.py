@@ -22,8 +22,9 @@ import numpy
 class Work:
     """Runs explica into folders of one place and keeps what it said."""
 
-    def __init__(self, explica, out):
+    def __init__(self, explica, out, given=()):
         self.explica, self.out, self.commands = explica, out, {}
+        self.folders = [f"{out / 'runs'}/", *(f"{folder}/" for folder in given)]
 
     def run(self, name, *words, may_stop=True):
         folder = self.out / "runs" / name
@@ -33,8 +34,10 @@ class Work:
                               capture_output=True, text=True)
         if done.returncode not in ((0, 3) if may_stop else (0,)):
             raise SystemExit(f"explica {' '.join(command)}: exit {done.returncode}\n{done.stderr}")
-        root = str(self.out / "runs") + "/"
-        self.commands[name] = "explica " + " ".join(w.replace(root, "") for w in command)
+        line = "explica " + " ".join(command)
+        for folder in self.folders:
+            line = line.replace(folder, "")
+        self.commands[name] = line
         summary = json.loads((folder / "summary.json").read_text())
         summary["exit"] = done.returncode
         return summary
@@ -293,7 +296,7 @@ def chapter_3_tissue(work, page, heart):
         words = [heart, "--inner", 1, "--tissue", 2]
         whose = "the heart that was given"
     else:
-        work.run("ventricle", "phantom", "ventricle", "--size", 64, "--spacing", 1.4)
+        work.run("ventricle", "phantom", "ventricle", "--size", 64, "--spacing", 1.8)
         words = [work.path("ventricle") / "labels.nii.gz", "--inner", 1, "--tissue", 2]
         whose = "the phantom of a left ventricle, as no heart was given"
     measured = work.run("myocardium", "thickness", *words, "--per-slice", "--grid", 4, "--figure")
@@ -500,14 +503,14 @@ def frames_of(folder):
     return sorted((folder / "frames").glob("frame-*.surf.gii"))
 
 
-def strip(work, name, folder, frames, direction, region, focus=False, size=300):
+def strip(work, name, frames, direction, region, size=270):
     """Pictures of frames, in a row."""
     pictures = []
     for k, frame in enumerate(frames):
         words = [frame, "--direction", direction, "--width", size, "--height", size]
         if region:
-            words += ["--region", region]
-        pictures.append(work.picture(f"{name}-{k}.png", *words, *(["--focus"] if focus else [])))
+            words += ["--labels", region]
+        pictures.append(work.picture(f"{name}-{k}.png", *words))
     return pictures
 
 
@@ -532,8 +535,8 @@ def chapter_5_folds(work, page):
     page.section("5.6 A synthetic surface")
     work.run("folds", "phantom", "folds", "--edge", 1)
     surface, region = work.path("folds") / "folds.surf.gii", work.path("folds") / "region.label.gii"
-    ours = work.run("folds-open", "unfold", surface, "--label", region, "--direction", "0,0,1", "--frames", 4)
-    pictures = strip(work, "folds-open", surface, [surface, *frames_of(work.path("folds-open"))], "0.45,-1,0.75", region)
+    ours = work.run("folds-open", "unfold", surface, "--label", region, "--direction", "0,0,1", "--frames", 5)
+    pictures = strip(work, "folds-open", frames_of(work.path("folds-open")), "0.45,-1,0.75", region, size=215)
     page.figure(["5.24"],
                 f"A sheet whose folds hide each other, seen from above (the pictures look from the side): average "
                 f"visibility {ours['visibility_initial']:.2f}, seen {ours['seen_initial']:.2f}; by our implicit steps "
@@ -558,20 +561,20 @@ def chapter_5_folds(work, page):
     page.figure([], f"<b>The flow as the thesis has it</b>: (5.46) with (5.43) to (5.45), the merging tree and projected "
                     f"areas, no collision detection, knot weight 0.03, the region cut out of its surroundings. "
                     f"Visibility {literal['visibility_initial']:.2f} to {literal['visibility_final']:.3f}, "
-                    f"{'no faces cross on the way' if clear else f'faces cross from {reached:.2f} on'}; areas drift by "
+                    f"{'no faces cross in any of twelve states on the way' if clear else f'faces cross from {reached:.2f} on'}; areas drift by "
                     f"{100 * literal['area_error_mean']:.0f} % in the mean, since their projection is of first order. ",
-                *strip(work, "literal", surface, shown, "0.45,-1,0.75", None, size=230),
+                *strip(work, "literal", shown, "0.45,-1,0.75", None, size=215),
                 command=work.commands["literal"])
     page.number("literal_final", "the thesis's flow in space, region alone: final visibility", "very close to 1",
                 literal["visibility_final"], f"{literal['visibility_final']:.3f}", "5.24")
     page.number("literal_clear", "the same: visibility reached before any faces cross", "topology preserved", reached,
                 f"{reached:.3f}", "5.24")
-    weights = [0.001, 0.003, 0.01, 0.03, 0.1]
+    weights = [0.003, 0.01, 0.03, 0.1]
     found = {}
     for surround, step in (("none", None), ("none", 0.005), ("fixed", None)):
-        for weight in weights if step is None else weights[1:4]:
+        for weight in weights if step is None else weights[:3]:
             name = f"flow-{surround}-{weight:g}-{step or 'adaptive'}"
-            iterations = 250 if step is None else 600
+            iterations = 200 if step is None else 500
             work.run(name, "unfold", *aim, "--surround", surround, "--knot", "tree", "--knot-weight", weight,
                      *(["--time-step", step] if step else []), "--max-iterations", iterations, "--frames", 12)
             found.setdefault((surround, step), []).append((weight, clear_visibility(work, surface, name)[0]))
@@ -612,24 +615,25 @@ def chapter_5_cortex(work, page, fsaverage):
     if fsaverage:
         surface = Path(fsaverage) / "pial_left.gii.gz"
         whose = "fsaverage5's left pial surface"
-        regions = {"5.25": ("-1,0.2,0.2", "-67,-22,20", 20), "5.26": ("-0.3,-1,0.4", "-25,-97,5", 20),
-                   "5.27": ("0,0.2,1", "-25,-5,68", 20)}
+        regions = {"5.25": ((-1, 0.2, 0.2), 25), "5.26": ((-0.2, -1, 0.3), 25), "5.27": ((-0.2, 0.1, 1), 25)}
     else:
         work.run("cortex", "phantom", "cortex", "--size", 40, "--depth", 0.3, "--waves", 4)
         work.run("cortex-surface", "surface", work.path("cortex") / "labels.nii.gz", "--white", 3, "--grey", 2,
                  "--faces", 12000)
         surface = work.path("cortex-surface") / "mid.surf.gii"
         whose = "the phantom of a cortex, as no real one was given"
-        regions = {"5.25": ("0,0,1", "0,0,16", 9), "5.26": ("1,0.2,0.2", "16,3,3", 9), "5.27": ("0,-1,0.6", "0,-14,8", 9)}
-    rows = []
-    for number, (direction, centre, radius) in regions.items():
+        regions = {"5.25": ((0, 0, 1), 9), "5.26": ((1, 0.2, 0.2), 9), "5.27": ((0, -1, 0.6), 9)}
+    rows, positions = [], nibabel.load(surface).darrays[0].data
+    for number, (direction, radius) in regions.items():
         name = "region-" + number
-        aim = [surface, "--center", centre, "--radius", radius, "--direction", direction]
-        ours = work.run(name, "unfold", *aim, "--frames", 3)
+        farthest = int((positions @ numpy.array(direction)).argmax())
+        direction = ",".join(f"{x:g}" for x in direction)
+        aim = [surface, "--vertex", farthest, "--radius", radius, "--direction", direction]
+        ours = work.run(name, "unfold", *aim, "--frames", 4)
         literal = work.run(name + "-thesis", "unfold", *aim, "--surround", "none", "--method", "thesis", "--knot",
                            "tree", "--knot-weight", 0.03, "--max-iterations", 150)
         region = work.path(name) / "region.label.gii"
-        pictures = strip(work, name, surface, [surface, *frames_of(work.path(name))], direction, region, size=290)
+        pictures = strip(work, name, frames_of(work.path(name)), direction, region)
         page.figure([number], f"A region of {whose}: visibility {ours['visibility_initial']:.2f} to "
                               f"{ours['visibility_final']:.3f}, seen {ours['seen_initial']:.2f} to "
                               f"{ours['seen_final']:.3f}. ", *pictures, command=work.commands[name])
@@ -687,7 +691,8 @@ def main():
     given = parser.parse_args()
     out = given.out.resolve()
     (out / "runs").mkdir(parents=True, exist_ok=True)
-    work, page, begin = Work(given.explica.resolve(), out), Page(), time.monotonic()
+    theirs = [given.fsaverage and given.fsaverage.resolve(), given.heart and given.heart.resolve().parent]
+    work, page, begin = Work(given.explica.resolve(), out, filter(None, theirs)), Page(), time.monotonic()
 
     def note(words):
         print(f"{time.monotonic() - begin:6.1f} s  {words}", file=sys.stderr, flush=True)

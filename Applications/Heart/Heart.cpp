@@ -7,6 +7,7 @@
 #include "Explica/Core/WholeFile.h"
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Ventricle/Pictures.h"
+#include "Explica/Ventricle/Slices.h"
 
 #include <nlohmann/json.hpp>
 
@@ -175,6 +176,27 @@ std::string degrees(double value) {
   return text;
 }
 
+/// A wall without an opening encloses no ventricle: a flag.
+void judgeOpening(Context& context, const ventricle::Beat& beat) {
+  constexpr double kLeastOpening = 0.01;  // of the cavity's area; a base alone takes a tenth
+  const double open = ventricle::openShareOf(beat.atDiastole().heart);
+  context.judged();
+  context.result("open_share_ed", open);
+  if (!(open < kLeastOpening)) return;
+  char sentence[200];
+  std::snprintf(
+      sentence, sizeof sentence,
+      "the wall encloses the cavity on all sides (%.1f %% of its area is open; a ventricle "
+      "is open at its base): this is no ventricle, or labels are wrong",
+      100 * open);
+  context.flag({{"name", "closed-wall"},
+                {"value", open},
+                {"low", kLeastOpening},
+                {"high", nullptr},
+                {"accepted", false},
+                {"message", sentence}});
+}
+
 /// What a reader must know before trusting the numbers.
 void sayWhatIsOdd(Context& context, const ventricle::Beat& beat) {
   for (const ventricle::Frame& frame : beat.frames) {
@@ -306,6 +328,7 @@ Termination run(Context& context, const Settings& s) {
                                   context.monitor());
   }
   sayWhatIsOdd(context, beat);
+  judgeOpening(context, beat);
   report(context, roles, beat);
   auto step = context.step("write");
   writeOutputs(context, beat);

@@ -57,6 +57,22 @@ std::vector<std::string> heart(const TemporaryFolder& folder,
 
 }  // namespace
 
+TEST(HeartCommand, AClosedShellIsFlaggedAsNoVentricle) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(explica({"phantom", "shell", "--size", "32", "--out", folder / "shell"}).exitCode, 0);
+  const auto shell = explica({"heart", folder / "shell/labels.nii.gz", "--preset", "none",
+                              "--cavity", "1", "--wall", "2", "--out", folder / "out"});
+  EXPECT_EQ(shell.exitCode, 3) << shell;
+  EXPECT_NE(shell.err.find("no ventricle"), std::string::npos) << shell;
+  const auto summary = readJson(folder / "out/summary.json");
+  EXPECT_EQ(summary["plausible"], false);
+  EXPECT_EQ(summary["flags"][0]["name"], "closed-wall");
+  makeBeat(folder);
+  const auto beat = explica(heart(folder, {}));
+  EXPECT_EQ(beat.exitCode, 0) << beat;
+  EXPECT_GT(readJson(folder / "out/summary.json")["open_share_ed"], 0.05);
+}
+
 TEST(HeartCommand, TellsVolumesThicknessAndThickeningOfABeat) {
   TemporaryFolder folder;
   makeBeat(folder, {"--ejection", "0.4"});

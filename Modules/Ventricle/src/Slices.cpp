@@ -65,4 +65,36 @@ std::vector<Slice> slicesOf(const Volume<Label>& heart) {
   return slices;
 }
 
+double openShareOf(const Volume<Label>& heart) {
+  const Grid& grid = heart.grid;
+  const Vector area(grid.spacing[1] * grid.spacing[2], grid.spacing[2] * grid.spacing[0],
+                    grid.spacing[0] * grid.spacing[1]);
+  struct Faces {
+    double all = 0, open = 0;
+    Faces& operator+=(const Faces& other) {
+      all += other.all, open += other.open;
+      return *this;
+    }
+  };
+  const Faces faces =
+      parallelSum(heart.size(), 1 << 14, Faces{}, [&](std::size_t begin, std::size_t end) {
+        Faces sum;
+        for (std::size_t v = begin; v < end; ++v) {
+          if (heart[v] != kCavity) continue;
+          const auto at = grid.subscripts(v);
+          for (int d = 0; d < 6; ++d) {
+            auto next = at;
+            next[d / 2] += d % 2 == 0 ? -1 : 1;
+            const bool inside = next[d / 2] >= 0 && next[d / 2] < grid.size[d / 2];
+            const Label other = inside ? heart(next[0], next[1], next[2]) : kOutside;
+            if (other == kCavity) continue;
+            sum.all += area[d / 2];
+            if (other != kWall) sum.open += area[d / 2];
+          }
+        }
+        return sum;
+      });
+  return faces.all > 0 ? faces.open / faces.all : kNaN;
+}
+
 }  // namespace explica::ventricle

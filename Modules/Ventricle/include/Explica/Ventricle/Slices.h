@@ -42,6 +42,11 @@ inline constexpr double kValveShare = 0.3;
 /// @return one per plane of constant k
 [[nodiscard]] std::vector<Slice> slicesOf(const Volume<Label>& heart);
 
+/// Share of the cavity's outer area, by voxel faces, that touches no wall: the base of a ventricle
+/// and its openings; beyond the image counts as open.  0 of a closed shell, which is no ventricle.
+/// @param heart  with this module's labels
+[[nodiscard]] double openShareOf(const Volume<Label>& heart);
+
 }  // namespace explica::ventricle
 
 namespace explica {
