@@ -35,8 +35,8 @@ class Work:
         if done.returncode not in ((0, 3) if may_stop else (0,)):
             raise SystemExit(f"explica {' '.join(command)}: exit {done.returncode}\n{done.stderr}")
         line = "explica " + " ".join(command)
-        for folder in self.folders:
-            line = line.replace(folder, "")
+        for prefix in self.folders:
+            line = line.replace(prefix, "")
         self.commands[name] = line
         summary = json.loads((folder / "summary.json").read_text())
         summary["exit"] = done.returncode
@@ -72,7 +72,7 @@ def svg_chart(series, x_label, y_label, x_log=True, y_log=True, width=560, heigh
             return low + (min(max(v, a), b) - a) / (b - a) * (high - low)
         return place, a, b
 
-    left, right, top, bottom = 70, width - 14, 14, height - 46
+    left, right, top, bottom = 70, width - 14, 34, height - 46
     xs = [x for _, _, points in series for x, _ in points]
     ys = [y for _, _, points in series for _, y in points]
     some_infinite = any(math.isinf(x) for x in xs)
@@ -118,8 +118,8 @@ def svg_chart(series, x_label, y_label, x_log=True, y_log=True, width=560, heigh
                     f'" fill="{colour}"/>')
         for x, y in points:
             parts.append(mark(at_x(x), place_y(y)))
-        y = top + 16 + 18 * s
-        parts.append(mark(left + 16, y - 4) + f'<text x="{left + 28}" y="{y}">{html.escape(name)}</text>')
+        x = left + 10 + s * (right - left) / len(series)
+        parts.append(mark(x, 14) + f'<text x="{x + 10:.1f}" y="18">{html.escape(name)}</text>')
     return "".join(parts) + "</svg>"
 
 
@@ -457,9 +457,9 @@ def chapter_4(work, page):
     page.figure(["4.19"], "The same without length constraints: the region shrinks itself. ",
                 work.path("collapse") / "evolution.svg", command=work.commands["collapse"], wide=True)
     crossing = work.run("crossing", "polygon", "--phantom", "polygon34", "--method", "thesis", "--no-topology",
-                        "--max-iterations", 400)
+                        "--explicit-step", 0.1, "--stages", 9)
     page.figure(["4.20"], f"Without topology preservation edges cross after {crossing['first_crossing']} iterations "
-                          "(rings). ",
+                          "(rings), at steps of a tenth of an edge. ",
                 work.path("crossing") / "evolution.svg", command=work.commands["crossing"], wide=True)
     rows = []
     for name, edges, thesis, method, run in (
