@@ -49,6 +49,24 @@ TEST(InflateCommand, OpensAFoldedSurfaceAndSaysWhatItDid) {
   const std::string page = readText(folder / "out/report.html");
   EXPECT_NE(page.find("The surface before and after"), std::string::npos);
   EXPECT_NE(page.find("Global visibility"), std::string::npos);
+  const auto film = explica(
+      {"view", folder / "out", "--film", folder / "film.gif", "--width", "120", "--height", "100"});
+  EXPECT_EQ(film.exitCode, 0) << film;
+}
+
+TEST(InflateCommand, OpensTheFoldsOfAGeneratedCortex) {
+  TemporaryFolder folder;
+  const auto made = explica({"phantom", "cortex", "--size", "40", "--spacing", "2", "--depth",
+                             "0.5", "--waves", "7", "--out", folder / "cortex"});
+  ASSERT_EQ(made.exitCode, 0) << made;
+  const auto run =
+      explica({"inflate", folder / "cortex/white.surf.gii", "--out", folder / "inflated"});
+  ASSERT_EQ(run.exitCode, 0) << run;
+  const auto summary = readJson(folder / "inflated/summary.json");
+  EXPECT_LT(summary["visibility_initial"], 0.8);
+  EXPECT_GE(summary["visibility_final"], 0.98);
+  EXPECT_LE(summary["area_error_mean"], 0.008);
+  EXPECT_EQ(summary["self_intersections_final"], 0);
 }
 
 TEST(InflateCommand, PartsFacesThatCrossAtTheStart) {
