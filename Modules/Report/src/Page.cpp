@@ -276,7 +276,9 @@ std::string chartsHtml(const std::vector<ReportChart>& charts) {
 }
 
 std::string tableHtml(const ReportTable& table) {
-  std::string html = figureOpen(table.id) + "<div class='wide'><table class='findings'><thead><tr>";
+  std::string html = figureOpen(table.id) +
+                     "<div class='wide' tabindex='0' role='region' aria-label='" +
+                     escapeHtml(table.title) + "'><table class='rows'><thead><tr>";
   for (const std::string& column : table.columns) {
     html += "<th scope='col'>" + escapeHtml(column) + "</th>";
   }

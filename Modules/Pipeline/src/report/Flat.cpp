@@ -296,7 +296,7 @@ void chartDistortion(ResultFolder& results, const StepFolder& step) {
     results.content().charts.push_back(
         {first ? kDistortionPlace : "",
          report::histogramSvg(values, {inWords(map.name), axis, "share of the patch's vertices"}),
-         titleOf(step.name)});
+         "Distortion of the flat map"});
     first = false;
   }
 }
