@@ -18,7 +18,9 @@ namespace {
 constexpr Eigen::Index kSearchVertices = 20000;  // on which ways are found: 2 mm apart in a human
 constexpr Eigen::Index kTrialVertices = 3000;    // that show what cuts relieve
 constexpr double kTrialAreaError = 0.05;         // as a hemisphere with cuts is laid flat
-constexpr std::size_t kCandidates = 4;           // ends that are tried out for each cut
+constexpr std::size_t kCandidates = 5;           // ends that are tried out for each cut ...
+constexpr std::size_t kHighest = 2;              // ... the highest peaks first, then the widest
+constexpr double kFlank = 0.5;                   // of a peak's height: what is above belongs to it
 constexpr double kPriceOfACut = 0.1;             // of the square root of the area: few, not many
 constexpr int kHalvings = 4;                     // of the last cut's length: to a sixteenth of it
 
@@ -68,6 +70,55 @@ Trial layTrial(const IntrinsicDisc& disc, const Monitor& monitor) {
       options, quiet);
   trial.strain = meanStrain(mesh, laid.positions);
   return trial;
+}
+
+/// A vertex higher than its neighbours, and the integral of the height over what lies about it
+/// above its flank and belongs to no higher peak, mm^2.
+struct Peak {
+  std::int32_t vertex = -1;
+  double beneath = 0;
+};
+
+/// Peaks of a function on the vertices, the highest first.
+std::vector<Peak> peaksOf(const IntrinsicMesh& mesh, const Eigen::VectorXd& height) {
+  std::vector<std::vector<std::int32_t>> near(static_cast<std::size_t>(mesh.vertexCount));
+  Eigen::VectorXd areas = Eigen::VectorXd::Zero(mesh.vertexCount);
+  const auto rest = restFaces(mesh, 0);
+  for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      near[mesh.faces(f, k)].push_back(mesh.faces(f, (k + 1) % 3));
+      near[mesh.faces(f, (k + 1) % 3)].push_back(mesh.faces(f, k));
+      areas[mesh.faces(f, k)] += rest[static_cast<std::size_t>(f)].area / 3;
+    }
+  }
+  std::vector<std::int32_t> order;
+  for (std::int32_t v = 0; v < mesh.vertexCount; ++v) {
+    if (height[v] > 0) order.push_back(v);
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::int32_t a, std::int32_t b) { return height[a] > height[b]; });
+  std::vector<Peak> peaks;
+  std::vector<bool> taken(near.size(), false);
+  for (const std::int32_t top : order) {
+    const bool peak = std::none_of(near[top].begin(), near[top].end(),
+                                   [&](std::int32_t w) { return height[w] > height[top]; });
+    if (!peak || taken[top]) continue;
+    Peak found{top, 0};
+    std::vector<std::int32_t> stack = {top};
+    taken[top] = true;
+    while (!stack.empty()) {
+      const std::int32_t v = stack.back();
+      stack.pop_back();
+      found.beneath += areas[v] * height[v];
+      for (const std::int32_t w : near[v]) {
+        if (taken[w] || !(height[w] > kFlank * height[top])) continue;
+        taken[w] = true;
+        stack.push_back(w);
+      }
+    }
+    peaks.push_back(found);
+  }
+  return peaks;
 }
 
 /// The search for cuts on a disc of moderate size.
@@ -144,29 +195,29 @@ class CutSearch {
     return layTrial(opened, monitor_);
   }
 
-  /// Where distances suffer most: the highest peaks of |u|, the highest first.
+  /// Where distances suffer most: the highest peaks of |u|, then those under which most of |u|
+  /// lies, for a thin finger is high and a whole lobe is wide.
   [[nodiscard]] std::vector<std::int32_t> worstPlaces() const {
-    const IntrinsicMesh& mesh = trial_.coarse.disc.mesh;
-    const Eigen::VectorXd u = scaleFactor(trial_.coarse.disc).cwiseAbs();
-    std::vector<bool> peak(static_cast<std::size_t>(mesh.vertexCount), true);
-    for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f) {
-      for (int k = 0; k < 3; ++k) {
-        const std::int32_t a = mesh.faces(f, k), b = mesh.faces(f, (k + 1) % 3);
-        peak[u[a] < u[b] ? a : b] = false;
+    const IntrinsicDisc& disc = trial_.coarse.disc;
+    const Eigen::VectorXd u = scaleFactor(disc).cwiseAbs();
+    std::vector<Peak> peaks = peaksOf(disc.mesh, u);
+    std::erase_if(peaks, [&](const Peak& peak) {
+      const std::int32_t origin = trial_.coarse.vertexOrigin[peak.vertex];
+      return origin >= disc_.mesh.vertexCount || barred_[origin];
+    });
+    std::vector<std::int32_t> places;
+    const auto take = [&](std::size_t upTo) {
+      for (const Peak& peak : peaks) {
+        const std::int32_t place = trial_.coarse.vertexOrigin[peak.vertex];
+        if (places.size() >= upTo) return;
+        if (std::find(places.begin(), places.end(), place) == places.end()) places.push_back(place);
       }
-    }
-    std::vector<std::int32_t> peaks;
-    for (std::size_t v = 0; v < peak.size(); ++v) {
-      const std::int32_t origin = trial_.coarse.vertexOrigin[v];
-      const bool known = origin < disc_.mesh.vertexCount && !barred_[origin];
-      if (peak[v] && known && u[static_cast<Eigen::Index>(v)] > 0) {
-        peaks.push_back(static_cast<std::int32_t>(v));
-      }
-    }
-    std::stable_sort(peaks.begin(), peaks.end(), [&](auto a, auto b) { return u[a] > u[b]; });
-    if (peaks.size() > kCandidates) peaks.resize(kCandidates);
-    for (std::int32_t& v : peaks) v = trial_.coarse.vertexOrigin[v];
-    return peaks;
+    };
+    take(kHighest);
+    std::stable_sort(peaks.begin(), peaks.end(),
+                     [](const Peak& a, const Peak& b) { return a.beneath > b.beneath; });
+    take(kCandidates);
+    return places;
   }
 
   /// The beginning of a path up to a share of its length, one edge at least.

@@ -13,7 +13,7 @@ namespace explica::flattening {
 /// How far relief cuts are to go.
 struct CutOptions {
   double edgeStrain = 0.12;  ///< mean edge strain that the map is to have, on some 3,000 vertices
-  int most = 8;              ///< cuts at most
+  int most = 12;             ///< cuts at most
 };
 
 template <class Visitor>
@@ -43,11 +43,11 @@ struct CutPlan {
 /// A conformal map that keeps lengths along the rim scales all others by exp(u), where u is 0 on
 /// the rim and its Laplacian is the Gaussian curvature [BenChen2008]: the peaks of |u| are where
 /// distances suffer most, and where cuts can end [Gu2002 cut to where a map stretches most].  From
-/// each of the four highest the cheapest way to the rim or an earlier cut is tried, where a
-/// millimetre costs 2^(-depth): a standard deviation deeper in the folds costs half as much.  The
-/// one is taken that lowers the map's edge strain most for its length and a tenth of the square
-/// root of the area (so that few long cuts are found and not many short ones), until the strain
-/// asked for is reached; the last one ends where it is.
+/// the two highest and the three under which most of |u| lies the cheapest way to the rim or an
+/// earlier cut is tried, where a millimetre costs 2^(-depth): a standard deviation deeper in the
+/// folds costs half as much.  The one is taken that lowers the map's edge strain most for its length
+/// and a tenth of the square root of the area (so that few long cuts are found and not many short
+/// ones), until the strain asked for is reached; the last one ends where it is.
 ///
 /// Ways are found on some 20,000 vertices and then again on all, strains are those of flatten() on
 /// some 3,000 that keep the distances of the rest.
