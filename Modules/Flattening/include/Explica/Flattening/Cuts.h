@@ -45,9 +45,9 @@ struct CutPlan {
 /// distances suffer most, and where cuts can end [Gu2002 cut to where a map stretches most].  From
 /// the two highest and the three under which most of |u| lies the cheapest way to the rim or an
 /// earlier cut is tried, where a millimetre costs 2^(-depth): a standard deviation deeper in the
-/// folds costs half as much.  The one is taken that lowers the map's edge strain most for its length
-/// and a tenth of the square root of the area (so that few long cuts are found and not many short
-/// ones), until the strain asked for is reached; the last one ends where it is.
+/// folds costs half as much.  The one is taken that lowers the map's edge strain most for its
+/// length and a tenth of the square root of the area (so that few long cuts are found and not many
+/// short ones), until the strain asked for is reached; the last one ends where it is.
 ///
 /// Ways are found on some 20,000 vertices and then again on all, strains are those of flatten() on
 /// some 3,000 that keep the distances of the rest.
