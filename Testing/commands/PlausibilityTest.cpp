@@ -80,6 +80,56 @@ TEST(PlausibilityCommand, ABrainTooLargeIsFlaggedUnlessAccepted) {
   EXPECT_TRUE(after["flags"][0]["accepted"].get<bool>());
 }
 
+std::vector<std::string> flagsOf(const std::filesystem::path& out) {
+  std::vector<std::string> names;
+  const auto summary = readJson(out / "summary.json");
+  for (const auto& flag : summary["flags"]) names.push_back(flag["name"].get<std::string>());
+  return names;
+}
+
+/// A ball of white matter within grey within fluid, by radii in mm.
+Volume<float> ballLabels(double white, double tissue, double radius, double spacing) {
+  Volume<float> labels = ballHead(radius, spacing, {kFluid, kGrey, kWhite});
+  for (std::size_t v = 0; v < labels.size(); ++v) {
+    const auto [i, j, k] = labels.grid.subscripts(v);
+    const double r = labels.grid.toWorld(Vector(i, j, k)).norm();
+    labels[v] = r > radius ? 0.0f : (r > tissue ? 1.0f : (r > white ? 2.0f : 3.0f));
+  }
+  return labels;
+}
+
+TEST(PlausibilityCommand, SharesOfTissueThatNoHeadHasAreFlagged) {
+  constexpr std::array<double, 4> kBrightness = {0, kFluid, kGrey, kWhite};
+  TemporaryFolder folder;
+  Volume<float> image = ballHead(70, 3, {kFluid, kGrey, kWhite});
+  const Volume<float> usual = ballLabels(49, 63, 70, 3), labels = ballLabels(28, 42, 70, 3);
+  for (std::size_t v = 0; v < image.size(); ++v) {  // the same noise, less white matter
+    if (image[v] == 0) continue;
+    image[v] += static_cast<float>(kBrightness[static_cast<std::size_t>(labels[v])] -
+                                   kBrightness[static_cast<std::size_t>(usual[v])]);
+    image[v] = std::max(1.0f, image[v]);
+  }
+  io::writeVolume(folder / "t1.nii.gz", image);
+  const auto result = segment(folder, "t1.nii.gz");
+  EXPECT_EQ(result.exitCode, 3) << result;
+  EXPECT_EQ(flagsOf(folder.path() / "out"), std::vector<std::string>{"white-share"}) << result;
+}
+
+TEST(PlausibilityCommand, WhiteMatterFullOfHolesIsFlagged) {
+  TemporaryFolder folder;
+  Volume<float> labels = ballLabels(40, 44, 48, 2);
+  for (std::size_t v = 0; v < labels.size(); ++v) {
+    const auto [i, j, k] = labels.grid.subscripts(v);
+    const double r = labels.grid.toWorld(Vector(i, j, k)).norm();
+    if (r < 35 && i % 3 == 0 && j % 3 == 0 && k % 3 == 0) labels[v] = 2;
+  }
+  io::writeVolume(folder / "seg.nii.gz", labels);
+  const auto result = explica({"surface", folder / "seg.nii.gz", "--preset", "three-class",
+                               "--faces", "2000", "--out", folder / "out"});
+  EXPECT_EQ(result.exitCode, 3) << result;
+  EXPECT_EQ(flagsOf(folder.path() / "out"), std::vector<std::string>{"defects"}) << result;
+}
+
 TEST(PlausibilityCommand, AnUnknownNameToAcceptIsAUsageError) {
   TemporaryFolder folder;
   io::writeVolume(folder / "t1.nii.gz", ballHead(20, 2, {kFluid, kGrey, kWhite}));
