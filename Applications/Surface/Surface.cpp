@@ -83,6 +83,7 @@ struct Settings {
   surface::SurfaceOptions surface;
   std::vector<std::string> accept;
   Sheet sheet = Sheet::Automatic;
+  double scale = 1;
   ThicknessMeasure thicknessMeasure = ThicknessMeasure::Trajectory;
 };
 
@@ -159,6 +160,11 @@ void declare(Declaration& d, Settings& s) {
                    "regions of given surfaces, vertex by vertex, instead of --atlas",
                    s.parcellation, "Regions")
       .options("Reading", s.reading)
+      .option("Reading",
+              Field{"scale", "",
+                    "multiplies the lengths of the volumes' headers, for such as were scaled to a "
+                    "human brain's size"},
+              s.scale)
       .options("Tissue", s.tissue)
       .options("Surface", s.surface)
       .option(
@@ -233,11 +239,25 @@ struct Inputs {
   Grid grid;
 };
 
+template <class T>
+Volume<T> scaled(Volume<T> volume, double scale) {
+  volume.grid.spacing *= scale;
+  volume.grid.origin *= scale;
+  return volume;
+}
+
 bool surfacesGiven(const Settings& s) {
   return s.whiteSurface || s.pialSurface || s.midSurface;
 }
 
 void checkChoice(const Settings& s) {
+  constexpr double kMostScale = 1e3;
+  if (!(s.scale >= 1 / kMostScale && s.scale <= kMostScale)) {
+    throw UsageError("surface: --scale is a factor between 0.001 and 1000");
+  }
+  if (s.scale != 1 && surfacesGiven(s)) {
+    throw UsageError("surface: --scale is of volumes; given surfaces have their own lengths");
+  }
   const int sources = s.segmentation.has_value() + s.innerLevel.has_value() + surfacesGiven(s);
   if (sources != 1) {
     throw UsageError("surface: give one of SEG, --inner-level and --white-surface");
@@ -299,7 +319,7 @@ Regions readRegions(Context& context, const Settings& s, const surface::Cortical
   } else if (s.atlas) {
     io::VolumeReadOptions reading = s.reading;
     reading.dimension = 3;
-    regions.atlas = readLabels(context, "atlas", *s.atlas, reading);
+    regions.atlas = scaled(readLabels(context, "atlas", *s.atlas, reading), s.scale);
     const auto legend = s.atlasLegend ? std::optional<std::filesystem::path>(*s.atlasLegend)
                                       : io::findLegend(*s.atlas);
     if (legend) {
@@ -409,7 +429,8 @@ Inputs readTissue(Context& context, const Settings& s) {
   reading.dimension = 3;
   Inputs inputs;
   if (s.segmentation) {
-    const Volume<Label> labels = readTissueLabels(context, "SEG", *s.segmentation, reading);
+    const Volume<Label> labels =
+        scaled(readTissueLabels(context, "SEG", *s.segmentation, reading), s.scale);
     inputs.grid = labels.grid;
     auto step = context.step("tissue");
     surface::TissueMasks masks = surface::masksFromLabels(labels, s.tissue, context.monitor());
@@ -421,14 +442,20 @@ Inputs readTissue(Context& context, const Settings& s) {
     }
     return inputs;
   }
-  const Volume<float> inner = readScalars(context, "inner-level", *s.innerLevel, reading);
+  const Volume<float> inner =
+      scaled(readScalars(context, "inner-level", *s.innerLevel, reading), s.scale);
   inputs.grid = inner.grid;
   Volume<float> outer, grey;
   Volume<std::uint8_t> insulated;
-  if (s.outerLevel) outer = readScalars(context, "outer-level", *s.outerLevel, reading);
-  if (s.greyShare) grey = readScalars(context, "grey-share", *s.greyShare, reading);
+  if (s.outerLevel) {
+    outer = scaled(readScalars(context, "outer-level", *s.outerLevel, reading), s.scale);
+  }
+  if (s.greyShare) {
+    grey = scaled(readScalars(context, "grey-share", *s.greyShare, reading), s.scale);
+  }
   if (s.insulatedMask) {
-    const Volume<Label> mask = readLabels(context, "insulated-mask", *s.insulatedMask, reading);
+    const Volume<Label> mask =
+        scaled(readLabels(context, "insulated-mask", *s.insulatedMask, reading), s.scale);
     insulated = Volume<std::uint8_t>(mask.grid);
     std::transform(mask.data.begin(), mask.data.end(), insulated.data.begin(),
                    [](Label label) { return static_cast<std::uint8_t>(label != 0); });
@@ -712,17 +739,46 @@ surface::CorticalSurfaces makeSurfaces(Context& context, const Settings& s, cons
   return made;
 }
 
+/// Of human labels: says so where the cerebrum's volume is not a human's.
+void checkVolume(Context& context, const surface::CorticalSurfaces& made,
+                 const surface::CorticalTissue& tissue) {
+  using surface::LabelPreset;
+  const LabelPreset preset = tissue.preset;
+  const bool human = preset == LabelPreset::Aseg || preset == LabelPreset::Ribbon ||
+                     preset == LabelPreset::Dhcp || preset == LabelPreset::Dhcp87;
+  if (!human || made.sheet.open || !tissue.hasGrey) return;
+  // Millilitres: from a newborn's to the largest adult's (Gilmore et al. 2007, J. Neurosci.
+  // 27:1255).
+  constexpr double kLeast = 250, kMost = 2000, kUsual = 1100;
+  const double sides = tissue.structure == "Cortex" ? 1 : 2;
+  const double volume = sides * geometry::enclosedVolume(made.pial) / 1000;
+  context.result("cerebrum_volume_ml", volume);
+  if (volume >= kLeast && volume <= kMost) return;
+  std::ostringstream text;
+  text.precision(3);
+  text << "the cerebrum holds " << volume << " ml" << (sides == 2 ? " (twice this hemisphere)" : "")
+       << ", a human one 250 to 2000 ml: if the header's lengths were scaled, --scale V multiplies "
+          "them ("
+       << std::cbrt(kUsual / volume) << " would make it a human's)";
+  context.warn(text.str());
+}
+
 std::optional<Volume<float>> readImage(Context& context, const Settings& s) {
   if (!s.image) return {};
   io::VolumeReadOptions reading = s.reading;
   reading.dimension = 3;
   reading.frame.reset();
-  return readScalars(context, "image", *s.image, reading);
+  return scaled(readScalars(context, "image", *s.image, reading), s.scale);
 }
 
 /// The volume whose surface RAS FreeSurfer files use.
 std::optional<Grid> freeSurferGrid(const Settings& s, const Inputs& inputs) {
-  if (s.fsVolume) return io::readGrid(*s.fsVolume);
+  if (s.fsVolume) {
+    Grid grid = io::readGrid(*s.fsVolume);
+    grid.spacing *= s.scale;
+    grid.origin *= s.scale;
+    return grid;
+  }
   const surface::LabelPreset preset = inputs.tissue.preset;
   if (preset == surface::LabelPreset::Aseg || preset == surface::LabelPreset::Ribbon ||
       preset == surface::LabelPreset::Wm) {
@@ -756,6 +812,7 @@ Termination run(Context& context, const Settings& s) {
     if (s.freeSurfer) writeFreeSurfer(context, s, made, tissue, surfaces, fsGrid);
   }
   report(context, s, tissue, made);
+  if (!given) checkVolume(context, made, tissue);
   judge.flag("defects", static_cast<double>(made.white.defects.size()));
   // Labels named by hand need not be a cortex's.
   if (tissue.hasGrey && s.tissue.white.empty()) {

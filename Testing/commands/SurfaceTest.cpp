@@ -92,6 +92,42 @@ TEST(SurfaceCommand, SaysWhatIsWrongWithTheNumbersFound) {
   EXPECT_FALSE(fs::exists(folder / "out"));
 }
 
+TEST(SurfaceCommand, ScaledHeadersAreFlaggedAndScaledBack) {
+  TemporaryFolder folder;
+  // FreeSurfer's labels on a ball of 13 voxels, 0.1 mm each: no human hemisphere.
+  Grid grid;
+  grid.size = {40, 40, 40};
+  grid.spacing = Vector::Constant(0.1);
+  grid.origin = Point(3, -2, 1);
+  Volume<Label> labels(grid);
+  for (std::size_t v = 0; v < labels.size(); ++v) {
+    const auto s = grid.subscripts(v);
+    const double r = (Vector(s[0], s[1], s[2]) - Vector(19.5, 19.5, 19.5)).norm();
+    labels[v] = r < 3 ? 4 : (r < 10 ? 2 : (r < 13 ? 3 : 0));
+  }
+  io::writeVolume(folder / "small.nii.gz", labels);
+  const auto made = [&](const std::string& out, const std::vector<std::string>& more) {
+    std::vector<std::string> words = {
+        "surface",  folder / "small.nii.gz", "--faces", "2000", "--out", folder / out,
+        "--accept", "thickness-mean"};
+    words.insert(words.end(), more.begin(), more.end());
+    return explica(words);
+  };
+  const auto asStated = made("stated", {});
+  EXPECT_EQ(asStated.exitCode, 0) << asStated;
+  EXPECT_NE(asStated.err.find("--scale"), std::string::npos) << asStated;
+  const auto scaled = made("scaled", {"--scale", "40"});
+  EXPECT_EQ(scaled.exitCode, 0) << scaled;
+  EXPECT_EQ(scaled.err.find("cerebrum holds"), std::string::npos) << scaled;
+  const auto small = readJson(folder / "stated/summary.json");
+  const auto large = readJson(folder / "scaled/summary.json");
+  EXPECT_NEAR(large["thickness_mean"].get<double>(), 40 * small["thickness_mean"].get<double>(),
+              0.05);
+  EXPECT_NEAR(large["cerebrum_volume_ml"].get<double>(),
+              64000 * small["cerebrum_volume_ml"].get<double>(), 5);
+  EXPECT_EQ(made("none", {"--scale", "0"}).exitCode, 1);
+}
+
 TEST(SurfaceCommand, MakesSheetsOfABlockAndSaysSo) {
   TemporaryFolder folder;
   Grid grid;
