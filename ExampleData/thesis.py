@@ -571,7 +571,7 @@ def chapter_5_folds(work, page):
                 f"{reached:.3f}", "5.24")
     weights = [0.003, 0.01, 0.03, 0.1]
     found = {}
-    for surround, step in (("none", None), ("none", 0.005), ("fixed", None)):
+    for surround, step in (("none", None), ("none", 0.02), ("fixed", None)):
         for weight in weights if step is None else weights[:3]:
             name = f"flow-{surround}-{weight:g}-{step or 'adaptive'}"
             iterations = 200 if step is None else 500
@@ -580,7 +580,7 @@ def chapter_5_folds(work, page):
             found.setdefault((surround, step), []).append((weight, clear_visibility(work, surface, name)[0]))
     best = {s: max(v for (place, _), points in found.items() for _, v in points if place == s) for s in ("none", "fixed")}
     page.figure([], "<b>The limit of the knot energy alone.</b> Visibility that the flow has reached when faces cross "
-                    "first, over the weight of the knot energy and the time step. The energy of two triangles stays "
+                    "first, or when its iterations end (200, with the fixed step 500), over the weight of the knot energy and the time step. The energy of two triangles stays "
                     "finite where edges meet edges, so it stops a crossing only if it is heavy beside the flux; where "
                     "surroundings hold the region, a weight that heavy holds it shut. ",
                 svg_chart([(f"{place}, {'adaptive step' if step is None else f'time step {step:g}'}", colour, points)

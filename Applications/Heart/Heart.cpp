@@ -6,6 +6,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/IO/VolumeFile.h"
+#include "Explica/IO/VolumeSeries.h"
 #include "Explica/Ventricle/Pictures.h"
 #include "Explica/Ventricle/Slices.h"
 
@@ -88,7 +89,22 @@ void declare(Declaration& d, Settings& s) {
               "thickness per voxel and frame, mm; 0 off the wall and where it does not count");
 }
 
-/// Frames of all files in order.
+/// One frame of a series of labels.
+Volume<Label> labelsOf(const std::vector<float>& values, const Grid& grid, const std::string& path,
+                       int frame) {
+  constexpr float kMostExact = 1 << 24;  // whole numbers beyond are not kept by single precision
+  Volume<Label> labels(grid);
+  for (std::size_t v = 0; v < values.size(); ++v) {
+    if (!(std::abs(values[v]) < kMostExact) || values[v] != std::round(values[v])) {
+      throw InvalidInput("'" + path + "': frame " + std::to_string(frame) +
+                         " holds values that are no labels, such as " + std::to_string(values[v]));
+    }
+    labels[v] = static_cast<Label>(values[v]);
+  }
+  return labels;
+}
+
+/// Frames of all files in order; each file is gone through once, whatever its number of frames.
 std::vector<Volume<Label>> readFrames(Context& context, const Settings& s) {
   std::vector<Volume<Label>> frames;
   for (std::size_t f = 0; f < s.segmentations.size(); ++f) {
@@ -108,10 +124,14 @@ std::vector<Volume<Label>> readFrames(Context& context, const Settings& s) {
                                         {"stored_size", size},
                                         {"placement", first.origin.placement},
                                         {"notes", first.origin.notes}});
-    frames.push_back(first.volume);
-    for (int n = 1; n < count; ++n) {
-      options.frame = n;
-      frames.push_back(io::readLabels(path, options).volume);
+    if (count == 1) {
+      frames.push_back(first.volume);
+      continue;
+    }
+    options.frame.reset();
+    io::VolumeSeries series(path, options);
+    for (int n = 0; n < count; ++n) {
+      frames.push_back(labelsOf(series.next(1), first.volume.grid, path, n));
     }
   }
   return frames;
