@@ -190,6 +190,21 @@ void reportRun(Context& context, const Unfolded& u) {
   context.result("seconds_per_iteration", last.iteration > 0 ? last.seconds / last.iteration : 0);
 }
 
+/// A region that looks at the viewpoint but lies under something else is not unfolded either.
+void checkSeen(Context& context, Unfolded& u, const Measures& m, double goal) {
+  constexpr double kFar = 0.1;  // of the region's area, below the goal
+  const double seen = m.seenAfter.of(u.result.mesh, u.result.region.faces);
+  const bool byItself = u.result.termination == Termination::Converged ||
+                        u.result.termination == Termination::Stalled;
+  if (!byItself || seen >= goal - kFar) return;
+  if (u.result.flag == unfolding::Flag::None) u.result.flag = unfolding::Flag::Held;
+  u.result.termination = Termination::Stalled;
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "the region is held: only %.3f of its area can be seen from the viewpoint", seen);
+  context.warn(text);
+}
+
 /// What the file holds against what the method promises.
 void checkWritten(Context& context, Unfolded& u, const unfolding::CrossingAccount& crossings) {
   context.result("self_intersections_final", crossings.after.size());
@@ -219,6 +234,7 @@ Termination writeUnfolded(Context& context, Unfolded& u) {
   reportRegion(context, u, m);
   reportCollar(context, u, m);
   reportRun(context, u);
+  checkSeen(context, u, m, u.goal);
   checkWritten(context, u, crossings);
   context.result("flag", std::string(nameOf(u.result.flag)));
   context.result("stop_reason", std::string(nameOf(u.result.termination)));

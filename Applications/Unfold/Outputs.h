@@ -22,6 +22,7 @@ struct Unfolded {
   std::vector<geometry::FacePair> crossings;  ///< of `before`, sorted
   unfolding::UnfoldResult result;
   unfolding::Surround surround = unfolding::Surround::Elastic;
+  double goal = 1;  ///< of the visibility
   double secondsStart = 0;
 };
 

@@ -201,13 +201,14 @@ double timeToIterate(double limit, double start, const unfolding::UnfoldOptions&
 /// Lists the start's intersections and parts in `mesh` those that stand in the way.
 /// @return the pairs that are left
 std::vector<geometry::FacePair> checkStart(Context& context, const Settings& s,
-                                           const unfolding::Region& region, TriangleMesh& mesh) {
+                                           const unfolding::Region& region,
+                                           const visibility::Viewpoints& view, TriangleMesh& mesh) {
   collision::Untangling repair;
   if (s.repair) {
     auto step = context.step("repair");
     collision::UntangleOptions options;
     if (!context.given("repair")) {
-      options.concerned = unfolding::movingFaces(mesh, region, s.unfold.unfolder);
+      options.concerned = unfolding::movingFaces(mesh, region, view, s.unfold.unfolder);
     }
     repair = collision::untangle(mesh, options);
     mesh.positions = repair.positions;
@@ -297,9 +298,10 @@ Termination run(Context& context, const Settings& s) {
   u.chosen = aim.region;
   u.view = aim.view;
   u.surround = s.unfold.unfolder.surround;
+  u.goal = s.unfold.targetVisibility.value_or(1.0);
   std::optional<unfolding::Checkpoint> checkpoint;
   if (s.resume) checkpoint = unfolding::readCheckpoint(context.outputFolder() / kStateFile);
-  u.crossings = checkStart(context, s, u.chosen, u.before);
+  u.crossings = checkStart(context, s, u.chosen, u.view, u.before);
   u.secondsStart = seconds();
   {
     auto step = context.step("unfold");

@@ -13,7 +13,7 @@
 namespace explica::unfolding {
 namespace {
 
-constexpr char kMagic[] = "ExplicaUnfold5\n";
+constexpr char kMagic[] = "ExplicaUnfold6\n";
 static_assert(sizeof(std::int64_t) == 8 && sizeof(double) == 8);
 
 /// FNV-1a: tells a damaged file, not a forged one.
@@ -83,10 +83,11 @@ class Reader {
 /// The members of a record, one list for writing and reading.
 template <class Record, class Visit>
 void visitNumbers(Record& r, const Visit& visit) {
-  for (auto* member : {&r.visibility, &r.areaErrorMean, &r.areaErrorMax, &r.edgeStrainMean,
-                       &r.objectiveBefore, &r.objectiveAfter, &r.nearestContact, &r.safeStep,
-                       &r.step, &r.largestMove, &r.damping, &r.phases.visibility,
-                       &r.phases.repulsion, &r.phases.collision, &r.phases.solve, &r.seconds}) {
+  for (auto* member :
+       {&r.visibility, &r.areaErrorMean, &r.areaErrorMax, &r.edgeStrainMean, &r.collarStretchMean,
+        &r.collarStretchMax, &r.objectiveBefore, &r.objectiveAfter, &r.nearestContact, &r.safeStep,
+        &r.step, &r.largestMove, &r.damping, &r.phases.visibility, &r.phases.repulsion,
+        &r.phases.collision, &r.phases.solve, &r.seconds}) {
     visit(*member);
   }
   for (auto& energy : r.energies.values) visit(energy);
@@ -104,6 +105,9 @@ void writeCheckpoint(const std::filesystem::path& path, const Checkpoint& checkp
   w.number(s.areaStiffness);
   w.number(s.drive);
   w.count(s.driveIteration);
+  w.number(s.lift);
+  w.number(s.collarWidth);
+  w.count(s.ways);
   w.number(s.contactStiffness);
   w.count(s.iteration);
   w.count(s.separating);
@@ -155,6 +159,9 @@ Checkpoint readCheckpoint(const std::filesystem::path& path) {
   c.state.areaStiffness = r.number();
   c.state.drive = r.number();
   c.state.driveIteration = static_cast<int>(r.count());
+  c.state.lift = r.number();
+  c.state.collarWidth = r.number();
+  c.state.ways = static_cast<int>(r.count());
   c.state.contactStiffness = r.number();
   c.state.iteration = static_cast<int>(r.count());
   c.state.separating = r.count() != 0;

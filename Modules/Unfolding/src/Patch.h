@@ -18,6 +18,7 @@ struct PatchFace {
   double restArea = 0;    ///< A0, mm^2, > 0
   double weight = 0;      ///< w, mm^2: the rest area, less for needles
   double holdWeight = 0;  ///< h, mm^2: the rest area, more for needles, whose ratio is bounded too
+  double nearWeight = 0;  ///< o, mm^2: of a collar's face, the weight beside the region, less away
 };
 
 /// An edge of such faces.
@@ -27,12 +28,13 @@ struct PatchSpring {
   double weight = 0;      ///< e, mm^2: two thirds of the mean face, less for the shortest edges
 };
 
-/// Room for the region laid flat: the height along `axis` above which no surroundings stand within
-/// its radius.
+/// Room for the region laid flat: the height along `axis` above which it is clear of all that
+/// stands within its radius at rest.
 struct PatchRoom {
   Vector axis = Vector::UnitZ();  ///< a, unit, towards the viewpoints
   double height = -kInfinity;     ///< mm, of x . axis
   double radius = 1;              ///< mm, of a disc of the region's area
+  double depth = 0;  ///< mm: how far below `height` the region lies at rest, in the mean
 };
 
 /// What moves, at rest: the region, and what joins it to its surroundings.

@@ -3,6 +3,8 @@
 
 #include "PatchSetup.h"
 
+#include "Room.h"
+
 #include "Explica/Core/Errors.h"
 #include "Explica/Geometry/Geodesic.h"
 #include "Explica/Geometry/MeshMeasures.h"
@@ -20,8 +22,9 @@ constexpr double kNeedleShare = 0.02;
 constexpr double kLeastArea = 1e-12;
 // Of the mean edge: edges far shorter must not rule the rest.
 constexpr double kShortShare = 0.1;
-// Of the radius of a disc of the region's area: how wide a collar is by default.
-constexpr double kCollarShare = 0.5;
+// Of the radius of a disc of the region's area, or of how far the region has to rise if that is
+// more: how wide a collar is by default.
+constexpr double kCollarShare = 0.6;
 
 void requireUsable(const UnfolderOptions& options, const Region& region) {
   if (!(options.contactRange > 0)) throw InvalidInput("contactRange: must be positive");
@@ -53,24 +56,14 @@ std::vector<bool> flags(Eigen::Index count, const std::vector<std::int32_t>& mar
 
 /// Distance from the region along the surface, mm, of vertices that move: 0 in the region, below
 /// the collar's width in an elastic collar; infinity of those that stay.
-Eigen::VectorXd reachOf(const PatchSetup& s, const UnfolderOptions& options, double regionArea) {
+Eigen::VectorXd reachOf(const PatchSetup& s, Surround surround) {
   Eigen::VectorXd reach = Eigen::VectorXd::Constant(s.mesh.vertexCount(), kInfinity);
-  if (options.surround == Surround::Elastic) {
-    const double width = options.collarWidth.value_or(kCollarShare * std::sqrt(regionArea / kPi));
-    reach = geometry::geodesicDistances(s.mesh, s.topology, s.region.vertices, width);
-    reach = (reach.array() < width).select(reach, kInfinity);
+  if (surround == Surround::Elastic) {
+    reach = geometry::geodesicDistances(s.mesh, s.topology, s.region.vertices, s.collarWidth);
+    reach = (reach.array() < s.collarWidth).select(reach, kInfinity);
   }
   for (const std::int32_t v : s.region.vertices) reach[v] = 0;
   return reach;
-}
-
-void numberUnknowns(PatchSetup& s, const Eigen::VectorXd& reach) {
-  s.unknown.assign(static_cast<std::size_t>(reach.size()), -1);
-  for (std::int32_t v = 0; v < reach.size(); ++v) {
-    if (!std::isfinite(reach[v])) continue;
-    s.unknown[v] = static_cast<std::int32_t>(s.moving.size());
-    s.moving.push_back(v);
-  }
 }
 
 /// Faces outside the region that have a vertex that moves.
@@ -85,42 +78,73 @@ std::vector<std::int32_t> collarFaces(const PatchSetup& s) {
   return faces;
 }
 
-/// @return the region's area, mm^2
-double measureRegion(PatchSetup& s, const Eigen::VectorXd& areas) {
-  double regionArea = 0, edgeSum = 0;
+/// The region's area and mean edge.
+void measureRegion(PatchSetup& s, const Eigen::VectorXd& areas) {
+  double edgeSum = 0;
   for (const std::int32_t f : s.region.faces) {
     if (!(areas[f] > 0)) {
       throw InvalidInput("region: face " + std::to_string(f) +
                          " has zero area, so its area cannot be kept; remesh the surface there");
     }
-    regionArea += areas[f];
+    s.area += areas[f];
     for (int k = 0; k < 3; ++k) {
       edgeSum += (s.mesh.corner(f, k) - s.mesh.corner(f, (k + 1) % 3)).norm();
     }
   }
   s.edge = edgeSum / (3 * static_cast<double>(s.region.faces.size()));
-  return regionArea;
 }
 
-/// @param holds  whether faces beside the region hold back when they stretch far; a single ring
-///               beside fixed surroundings has no other way to follow
-void listFaces(PatchSetup& s, const Eigen::VectorXd& areas, double regionArea, bool holds) {
-  const double needle = kNeedleShare * regionArea / static_cast<double>(s.region.faces.size());
+/// What moves, by the way that it has to go.
+void chooseMoving(PatchSetup& s, const visibility::Viewpoints& viewpoints,
+                  const UnfolderOptions& options) {
+  s.patch.room = findRoom(s.mesh, s.region, viewpoints);
+  if (options.surround == Surround::Elastic) {
+    s.collarWidth = options.collarWidth.value_or(kCollarShare *
+                                                 std::max(s.patch.room.radius, s.patch.room.depth));
+  }
+  s.reach = reachOf(s, options.surround);
+  for (std::int32_t v = 0; v < s.reach.size(); ++v) {
+    if (std::isfinite(s.reach[v])) s.moving.push_back(v);
+  }
+  s.unknown.assign(static_cast<std::size_t>(s.reach.size()), -1);
+  for (std::size_t i = 0; i < s.moving.size(); ++i) {
+    s.unknown[s.moving[i]] = static_cast<std::int32_t>(i);
+  }
+  s.collar = collarFaces(s);
+}
+
+/// 1 for a face of the collar at the region's rim, falling to 0 at the collar's end.
+double nearness(const PatchSetup& s, std::int32_t f) {
+  double reach = 0;
+  for (int k = 0; k < 3; ++k) reach += std::min(s.collarWidth, s.reach[s.mesh.faces(f, k)]) / 3;
+  return std::max(0.0, 1 - reach / s.collarWidth);
+}
+
+/// Faces of an elastic collar hold back when they stretch far, and shall not lean over the region;
+/// a single ring beside fixed surroundings has no other way to follow.
+void listFaces(PatchSetup& s, const Eigen::VectorXd& areas) {
+  const double needle = kNeedleShare * s.area / static_cast<double>(s.region.faces.size());
   const auto list = [&](std::int32_t f) {
-    const double area = std::max(areas[f], kLeastArea * regionArea);
-    s.patch.faces.push_back({{s.mesh.faces(f, 0), s.mesh.faces(f, 1), s.mesh.faces(f, 2)},
-                             area,
-                             area * area / (area + needle),
-                             holds ? area + needle : 0});
+    PatchFace face;
+    face.vertices = {s.mesh.faces(f, 0), s.mesh.faces(f, 1), s.mesh.faces(f, 2)};
+    face.restArea = std::max(areas[f], kLeastArea * s.area);
+    face.weight = face.restArea * face.restArea / (face.restArea + needle);
+    s.patch.faces.push_back(face);
   };
   for (const std::int32_t f : s.region.faces) list(f);
   s.patch.regionFaces = s.region.faces.size();
-  for (const std::int32_t f : s.collar) list(f);
+  for (const std::int32_t f : s.collar) {
+    list(f);
+    if (!(s.collarWidth > 0)) continue;
+    PatchFace& face = s.patch.faces.back();
+    face.holdWeight = face.restArea + needle;
+    if (areas[f] > 0) face.nearWeight = nearness(s, f) * face.weight;
+  }
 }
 
 /// All edges count alike, as in the mean strain: by area, small faces would pay for large ones.
-void listSprings(PatchSetup& s, double regionArea) {
-  const double full = 2 * regionArea / (3 * static_cast<double>(s.region.faces.size()));
+void listSprings(PatchSetup& s) {
+  const double full = 2 * s.area / (3 * static_cast<double>(s.region.faces.size()));
   const double tooShort = kShortShare * kShortShare * s.edge * s.edge;
   const std::vector<bool> inRegion = flags(s.mesh.faceCount(), s.region.faces);
   const std::vector<bool> inCollar = flags(s.mesh.faceCount(), s.collar);
@@ -154,6 +178,7 @@ void listCouplings(PatchSetup& s) {
 }  // namespace
 
 std::vector<bool> movingFaces(const TriangleMesh& mesh, const Region& region,
+                              const visibility::Viewpoints& viewpoints,
                               const UnfolderOptions& options) {
   requireUsable(options, region);
   if (options.surround == Surround::None) return flags(mesh.faceCount(), region.faces);
@@ -161,10 +186,10 @@ std::vector<bool> movingFaces(const TriangleMesh& mesh, const Region& region,
   s.mesh = mesh;
   s.region = region;
   s.topology = geometry::buildTopology(s.mesh.faces, s.mesh.vertexCount());
-  const double regionArea = measureRegion(s, geometry::faceAreas(s.mesh));
-  numberUnknowns(s, reachOf(s, options, regionArea));
+  measureRegion(s, geometry::faceAreas(s.mesh));
+  chooseMoving(s, viewpoints, options);
   std::vector<bool> moves = flags(mesh.faceCount(), region.faces);
-  for (const std::int32_t f : collarFaces(s)) moves[f] = true;
+  for (const std::int32_t f : s.collar) moves[f] = true;
   return moves;
 }
 
@@ -177,40 +202,12 @@ PatchSetup setUpPatch(TriangleMesh mesh, Region region, const visibility::Viewpo
   if (options.surround == Surround::None) isolate(s.mesh, s.region);
   s.topology = geometry::buildTopology(s.mesh.faces, s.mesh.vertexCount());
   const Eigen::VectorXd areas = geometry::faceAreas(s.mesh);
-  const double regionArea = measureRegion(s, areas);
-  numberUnknowns(s, reachOf(s, options, regionArea));
-  s.collar = collarFaces(s);
-  listFaces(s, areas, regionArea, options.surround == Surround::Elastic);
-  listSprings(s, regionArea);
+  measureRegion(s, areas);
+  chooseMoving(s, viewpoints, options);
+  listFaces(s, areas);
+  listSprings(s);
   listCouplings(s);
-  s.patch.room = findRoom(s, viewpoints);
   return s;
-}
-
-PatchRoom findRoom(const PatchSetup& s, const visibility::Viewpoints& viewpoints) {
-  PatchRoom room;
-  Point middle = Point::Zero();
-  for (const std::int32_t v : s.region.vertices) middle += s.mesh.positions.row(v).transpose();
-  middle /= static_cast<double>(s.region.vertices.size());
-  Vector towards = Vector::Zero();
-  for (std::size_t k = 0; k < viewpoints.points.size(); ++k) {
-    towards += viewpoints.weights[k] * (viewpoints.points[k] - middle).normalized();
-  }
-  double area = 0;
-  for (const PatchFace& face : s.patch.ofRegion()) area += face.restArea;
-  room.radius = std::sqrt(area / kPi);
-  constexpr double kOneSide = 0.1;  // of unit length: below it they look from all sides, and no way
-                                    // leads towards them
-  if (towards.norm() <= kOneSide) return room;
-  room.axis = towards.normalized();
-  for (Eigen::Index v = 0; v < s.mesh.vertexCount(); ++v) {
-    const Vector from = s.mesh.positions.row(v).transpose() - middle;
-    const double height = room.axis.dot(from);
-    if ((from - height * room.axis).norm() < room.radius) {
-      room.height = std::max(room.height, room.axis.dot(s.mesh.positions.row(v).transpose()));
-    }
-  }
-  return room;
 }
 
 }  // namespace explica::unfolding

@@ -17,6 +17,10 @@ struct PatchSetup {
   std::vector<std::int32_t> moving;   ///< vertices that move, ascending
   std::vector<std::int32_t> unknown;  ///< V: row of the system, or -1
   double edge = 0;                    ///< mean edge length of the region, mm
+  double area = 0;                    ///< of the region, mm^2
+  double collarWidth = 0;             ///< of an elastic collar, mm along the surface
+  Eigen::VectorXd reach;              ///< V: mm along the surface from the region; infinity of what
+                                      ///< stays
   std::vector<std::int32_t> collar;   ///< faces outside the region with a vertex that moves
   Patch patch;
   Couplings couplings;  ///< of the unknowns that share an edge
@@ -27,9 +31,5 @@ struct PatchSetup {
 [[nodiscard]] PatchSetup setUpPatch(TriangleMesh mesh, Region region,
                                     const visibility::Viewpoints& viewpoints,
                                     const UnfolderOptions& options);
-
-/// Laid flat, the region needs a disc of its area, which is wider than the hole that it came from;
-/// so it has to rise until nothing stands within that disc.
-[[nodiscard]] PatchRoom findRoom(const PatchSetup& setup, const visibility::Viewpoints& viewpoints);
 
 }  // namespace explica::unfolding

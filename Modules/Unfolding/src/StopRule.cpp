@@ -77,8 +77,10 @@ Termination StopRule::check(Unfolder& unfolder, const std::vector<IterationRecor
   const bool kept = last.areaErrorMean <= options_.areaTolerance;
   if (atGoal && targetHolds(history)) return Termination::TargetReached;
   const bool started = thesis || !unfolder.state().separating;
-  if (!atGoal && started && (kept || thesis) &&
-      isSettled(history, unfolder.state().driveIteration)) {
+  const bool settled = !atGoal && started && isSettled(history, unfolder.state().driveIteration);
+  if (settled && !thesis && unfolder.isHeldBelow()) {
+    unfolder.makeWay();
+  } else if (settled && (kept || thesis)) {
     if (!options_.targetVisibility) return Termination::Converged;
     if (thesis || unfolder.state().drive >= kLargestDrive) return Termination::Stalled;
     unfolder.raiseDrive(driveFactor(last.visibility, goal));

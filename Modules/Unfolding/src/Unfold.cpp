@@ -19,13 +19,26 @@ namespace {
 constexpr double kFar = 0.1;       // of visibility below the goal: a region that ends there is held
 constexpr double kNoWorse = 1e-3;  // of visibility: less than that is no reason to go back
 
-Positions movingOnly(const Unfolder& unfolder) {
-  const auto& moving = unfolder.movingVertices();
-  Positions rows(static_cast<Eigen::Index>(moving.size()), 3);
-  for (std::size_t i = 0; i < moving.size(); ++i) {
-    rows.row(static_cast<Eigen::Index>(i)) = unfolder.state().positions.row(moving[i]);
+Positions rowsOf(const Positions& positions, const std::vector<std::int32_t>& vertices) {
+  Positions rows(static_cast<Eigen::Index>(vertices.size()), 3);
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    rows.row(static_cast<Eigen::Index>(i)) = positions.row(vertices[i]);
   }
   return rows;
+}
+
+Positions movingOnly(const Unfolder& unfolder) {
+  return rowsOf(unfolder.state().positions, unfolder.movingVertices());
+}
+
+/// The same state once more vertices move than did then: those stood where they stand at rest.
+void addStanding(const Unfolder& unfolder, const std::vector<std::int32_t>& movedThen,
+                 Positions& state) {
+  Positions all = unfolder.reference().positions;
+  for (std::size_t i = 0; i < movedThen.size(); ++i) {
+    all.row(movedThen[i]) = state.row(static_cast<Eigen::Index>(i));
+  }
+  state = rowsOf(all, unfolder.movingVertices());
 }
 
 void requirePositive(double visibility) {
@@ -133,7 +146,12 @@ UnfoldResult unfoldHere(const TriangleMesh& mesh, const Region& region,
   const double goal = options.targetVisibility.value_or(1.0);
   double latest = 0;  // s, that the last step took: one more shall still fit
   const auto reason = [&] {
+    const std::vector<std::int32_t> movedThen = unfolder.movingVertices();
     const Termination byItself = rule.check(unfolder, result.history);
+    if (unfolder.movingVertices().size() != movedThen.size()) {
+      addStanding(unfolder, movedThen, best.moving);
+      for (Positions& state : path) addStanding(unfolder, movedThen, state);
+    }
     if (byItself != Termination::NotRun) return byItself;
     if (monitor.shouldStop()) return Termination::Interrupted;
     if (options.maxTime && elapsed() + latest > *options.maxTime) return Termination::MaxTime;

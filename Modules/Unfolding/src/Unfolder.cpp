@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
+#include "Room.h"
 #include "UnfolderImplementation.h"
 
 #include "Explica/Core/Errors.h"
@@ -11,6 +12,14 @@
 #include <cmath>
 
 namespace explica::unfolding {
+namespace {
+
+constexpr double kSunk = 0.01;   // of the region's area: less than that below is no reason
+constexpr int kMostWays = 3;     // times that surroundings are asked to part further ...
+constexpr double kWiden = 1.5;   // ... by this factor of the collar's width ...
+constexpr double kStronger = 2;  // ... and this one of the lift
+
+}  // namespace
 
 Unfolder::Implementation::Implementation(TriangleMesh mesh, Region region,
                                          visibility::Viewpoints eyes, const UnfolderOptions& chosen)
@@ -21,6 +30,7 @@ Unfolder::Implementation::Implementation(TriangleMesh mesh, Region region,
   state.positions = setup.mesh.positions;
   state.multipliers = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(setup.patch.regionFaces));
   state.areaStiffness = options.weights[Term::Area];
+  state.collarWidth = setup.collarWidth;
   makeKnot(state.positions);
   measure(record);
 }
@@ -28,6 +38,14 @@ Unfolder::Implementation::Implementation(TriangleMesh mesh, Region region,
 void Unfolder::Implementation::standAt(const Positions& positions) {
   contacts.standAt(setup, positions);
   makeKnot(positions);
+}
+
+void Unfolder::Implementation::setUpCollar(double width) {
+  options.collarWidth = width;
+  setup = setUpPatch(std::move(setup.mesh), std::move(setup.region), viewpoints, options);
+  contacts = Contacts(setup, options);
+  standAt(state.positions);
+  contacts.forget();
 }
 
 void Unfolder::Implementation::makeKnot(const Positions& positions) {
@@ -41,7 +59,9 @@ TermValues Unfolder::Implementation::strengths() const {
   TermValues strengths = options.weights;
   strengths[Term::Visibility] = state.separating ? 0 : state.drive;
   strengths[Term::Area] = state.areaStiffness;
+  strengths[Term::Lift] *= state.lift;
   if (state.separating || options.surround == Surround::None) strengths[Term::Lift] = 0;
+  if (state.separating) strengths[Term::Overhang] = 0;
   strengths[Term::Contact] *= state.contactStiffness * setup.edge * setup.edge;
   return strengths;
 }
@@ -111,6 +131,19 @@ void Unfolder::raiseDrive(double factor) {
   self_->state.drive *= factor;
   self_->state.driveIteration = self_->state.iteration;
 }
+bool Unfolder::isHeldBelow() const {
+  return self_->options.surround == Surround::Elastic && self_->state.ways < kMostWays &&
+         sunkShare(self_->setup.patch, self_->state.positions) > kSunk;
+}
+void Unfolder::makeWay() {
+  UnfoldState& state = self_->state;
+  ++state.ways;
+  state.driveIteration = state.iteration;
+  state.lift *= kStronger;
+  state.collarWidth *= kWiden;
+  self_->setUpCollar(state.collarWidth);
+  self_->measure(self_->record);
+}
 const UnfoldState& Unfolder::state() const {
   return self_->state;
 }
@@ -120,6 +153,9 @@ void Unfolder::restore(UnfoldState state) {
     throw InvalidInput("state: it belongs to another surface or region");
   }
   self_->state = std::move(state);
+  if (self_->state.collarWidth != self_->setup.collarWidth) {
+    self_->setUpCollar(self_->state.collarWidth);
+  }
   const Positions& positions = self_->state.positions;
   bool standing = true;  // unless another region of the surface was unfolded before
   for (Eigen::Index v = 0; v < positions.rows() && standing; ++v) {
@@ -150,7 +186,7 @@ const std::vector<std::int32_t>& Unfolder::movingVertices() const {
 }
 void Unfolder::setViewpoints(visibility::Viewpoints viewpoints) {
   self_->viewpoints = std::move(viewpoints);
-  self_->setup.patch.room = findRoom(self_->setup, self_->viewpoints);
+  self_->setup.patch.room = findRoom(self_->setup.mesh, self_->setup.region, self_->viewpoints);
 }
 void Unfolder::setDirections(Positions directions) {
   if (directions.rows() != 0 &&

@@ -38,7 +38,8 @@ struct Sample {
       patch.faces.push_back({{mesh.faces(f, 0), mesh.faces(f, 1), mesh.faces(f, 2)},
                              (f % 2 == 0 ? 0.9 : 0.2) * areas[f],
                              areas[f],
-                             1.5 * areas[f]});
+                             1.5 * areas[f],
+                             0.5 * areas[f]});
     }
     patch.regionFaces = patch.faces.size() * 3 / 4;
     const Edges edges = geometry::buildTopology(mesh.faces, mesh.vertexCount()).edges;
@@ -46,7 +47,7 @@ struct Sample {
       patch.springs.push_back({{edges(e, 0), edges(e, 1)}, 1.1, 0.5});
     }
     patch.regionSprings = patch.springs.size() * 3 / 4;
-    patch.room = {Vector(0.6, 0, 0.8), 40, 5};  // above all of it
+    patch.room = {Vector(0.6, 0, -0.8), 40, 5};  // above all of it, faces look away from it
     multipliers = Eigen::VectorXd::LinSpaced(static_cast<Eigen::Index>(patch.regionFaces), -1, 2);
     unknown.resize(static_cast<std::size_t>(mesh.vertexCount()));
     std::iota(unknown.begin(), unknown.end(), 0);
@@ -196,6 +197,33 @@ TEST(Energy, LiftPullsAlongItsAxisUpToItsHeightOnly) {
   EXPECT_LT(all.col(2).sum(), 0);
 }
 
+TEST(Energy, ACollarThatStandsUprightIsNotTurned) {
+  Sample s;
+  s.multipliers.setZero();
+  for (PatchFace& face : s.patch.faces) face.holdWeight = 0;
+  const double size = s.gradient(only(Term::Overhang, 1)).norm();
+  EXPECT_GT(size, 0);
+  s.patch.room.axis = Vector::UnitZ();  // all faces of this sample look up
+  EXPECT_EQ(s.gradient(only(Term::Overhang, 1)).norm(), 0);
+}
+
+TEST(Energy, ALengthCostsItsSquareAtFirstAndInProportionFarOff) {
+  Positions x = Positions::Zero(2, 3);
+  x(1, 0) = 1;
+  const auto costOf = [&](double strain) {
+    const std::vector<PatchSpring> springs = {{{0, 1}, 1 / (1 + strain), 1}};
+    return springValue(springs, x, 1);
+  };
+  EXPECT_NEAR(costOf(1e-3), 1e-6, 1e-10);
+  EXPECT_NEAR(costOf(-1e-3), 1e-6, 1e-10);
+  // Its asymptote is 2 d |s| - 2 d^2, d = 0.1, reached from above by d^3 / |s|.
+  for (const double strain : {2.0, 4.0}) {
+    const double asymptote = 0.2 * strain - 0.02;
+    EXPECT_GT(costOf(strain), asymptote);
+    EXPECT_LT(costOf(strain), asymptote + 1.01e-3 / strain);
+  }
+}
+
 TEST(Energy, VisibilityTermIsAreaTimesOneLessTheAverageVisibility) {
   // The two agree where areas are at rest, up to the centroid rule for the flux.
   Sample s;
@@ -210,7 +238,8 @@ TEST(Energy, VisibilityTermIsAreaTimesOneLessTheAverageVisibility) {
     s.patch.faces.push_back({{s.mesh.faces(f, 0), s.mesh.faces(f, 1), s.mesh.faces(f, 2)},
                              areas[f],
                              areas[f],
-                             areas[f]});
+                             areas[f],
+                             0});
     all.push_back(f);
   }
   s.patch.regionFaces = all.size();
@@ -227,7 +256,7 @@ TEST(AreaProjection, LeavesNoFirstOrderChangeOfArea) {
   Patch patch;
   for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
     patch.faces.push_back(
-        {{mesh.faces(f, 0), mesh.faces(f, 1), mesh.faces(f, 2)}, areas[f], areas[f], areas[f]});
+        {{mesh.faces(f, 0), mesh.faces(f, 1), mesh.faces(f, 2)}, areas[f], areas[f], areas[f], 0});
   }
   patch.regionFaces = patch.faces.size();
   std::vector<std::int32_t> unknown(static_cast<std::size_t>(mesh.vertexCount()));

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
+#include "Flask.h"
 #include "Meander.h"
 
 #include "Explica/Core/Errors.h"
@@ -93,13 +94,81 @@ TEST(Unfolder, ACollarIsAsWideOnARefinedSurface) {
     const Region region = regionOfMarked(mesh, interiorOf(columns, rows, 6 << fine));
     UnfolderOptions options = with(Surround::Elastic);
     options.collarWidth = 3.01;
-    const std::vector<bool> moves = movingFaces(mesh, region, options);
+    const std::vector<bool> moves =
+        movingFaces(mesh, region, visibility::viewpoint(Point(8, 8, 1000)), options);
     const Eigen::VectorXd faces = geometry::faceAreas(mesh);
     for (std::size_t f = 0; f < moves.size(); ++f) areas[fine] += moves[f] ? faces[f] : 0;
   }
   // A rim of 80 mm, times the half mm that faces across the width reach farther where coarse.
   EXPECT_NEAR(areas[0], areas[1], 60);
   EXPECT_GT(areas[0], areas[1]);
+}
+
+TEST(Unfolder, ACollarIsAsWideAsTheRegionOrAsItIsDeep) {
+  constexpr double kWall = 12, kLean = 0.15;
+  const Flask flask(kWall, kLean);
+  const auto view = visibility::viewpoint(Point(0, 0, 1e6));
+  const auto widthOf = [&](const std::vector<bool>& marked) {
+    const Region region = regionOfMarked(flask.mesh, marked);
+    const Unfolder unfolder(flask.mesh, region, view);
+    double area = 0;
+    const Eigen::VectorXd areas = geometry::faceAreas(flask.mesh);
+    for (const std::int32_t f : region.faces) area += areas[f];
+    return std::pair(unfolder.state().collarWidth, std::sqrt(area / kPi));
+  };
+  const double depth = Flask::profileAt(Flask::kBottom + kWall, kWall, kLean)[1];
+  const auto [wide, radius] = widthOf(flask.bottom);
+  ASSERT_GT(depth, radius);
+  EXPECT_NEAR(wide, 0.6 * (depth + 0.1 * radius), 0.1);
+  std::vector<bool> all(flask.bottom.size(), true);
+  const auto [widest, whole] = widthOf(all);
+  EXPECT_NEAR(widest, 0.6 * whole, 1e-9);
+}
+
+/// A narrow collar: the walls above it hold the region down, unless they are parted.
+UnfoldOptions inTheFlask() {
+  UnfoldOptions options;
+  options.unfolder.collarWidth = 2.1;
+  return options;
+}
+
+TEST(Unfold, SurroundingsThatHoldTheRegionBelowArePartedFurther) {
+  const Flask flask;
+  const Region region = regionOfMarked(flask.mesh, flask.bottom);
+  const auto view = visibility::viewpoint(Point(0, 0, 1000));
+  const UnfoldResult result = unfold(flask.mesh, region, view, inTheFlask());
+  EXPECT_EQ(result.termination, Termination::Converged);
+  EXPECT_EQ(result.flag, Flag::None);
+  EXPECT_GE(result.checkpoint.state.ways, 1);
+  EXPECT_GT(result.checkpoint.state.collarWidth, 3.7);
+  EXPECT_GT(result.history.back().visibility, 0.95);
+  double lowest = kInfinity;
+  for (const std::int32_t v : region.vertices) {
+    lowest = std::min(lowest, result.mesh.positions(v, 2));
+  }
+  EXPECT_GT(lowest, 6);  // out of the pit
+  EXPECT_TRUE(geometry::findSelfIntersections(result.mesh).empty());
+}
+
+TEST(Unfold, ResumesAcrossAPartingOfTheSurroundings) {
+  const Flask flask;
+  const Region region = regionOfMarked(flask.mesh, flask.bottom);
+  const auto view = visibility::viewpoint(Point(0, 0, 1000));
+  UnfoldOptions options = inTheFlask();
+  options.frames = 4;
+  const UnfoldResult whole = unfold(flask.mesh, region, view, options);
+  ASSERT_GE(whole.checkpoint.state.ways, 1);
+  for (const int part : {5, static_cast<int>(whole.history.size()) - 3}) {
+    UnfoldOptions brief = options;
+    brief.maxIterations = part;
+    const UnfoldResult begun = unfold(flask.mesh, region, view, brief);
+    const UnfoldResult rest = unfold(flask.mesh, region, view, options, {}, &begun.checkpoint);
+    EXPECT_EQ(whole.mesh.positions, rest.mesh.positions) << part;
+    ASSERT_EQ(whole.frames.size(), rest.frames.size());
+    for (std::size_t n = 0; n < whole.frames.size(); ++n) {
+      EXPECT_EQ(whole.frames[n].positions, rest.frames[n].positions) << part;
+    }
+  }
 }
 
 TEST(Unfold, NeverEndsWorseThanTheBestStateSeen) {
@@ -141,23 +210,24 @@ TEST(Unfold, ARunThatNeverGetsBetterGivesBackItsStartAndSaysSo) {
   EXPECT_EQ(result.mesh.positions, c.mesh.positions);
 }
 
-TEST(Unfolder, ALiftOpensAPitThatFixedWallsKeepShut) {
-  // Half a meander's sheet moves; folds of its rim stand in fixed walls as high as themselves.
-  const TriangleMesh mesh = makeMeander(kColumns, kRows, 2.1, 3);
-  const Region region = regionOfMarked(mesh, interiorOf(kColumns, kRows, 4));
-  const auto view = visibility::viewpoint(Point(8, 8, 1000));
-  std::array<double, 2> reached{};
+TEST(Unfold, ALiftBringsARegionOutOfAPit) {
+  const Flask flask;
+  const Region region = regionOfMarked(flask.mesh, flask.bottom);
+  const auto view = visibility::viewpoint(Point(0, 0, 1000));
+  std::array<double, 2> lowest{};
   for (const int lifted : {0, 1}) {
-    UnfolderOptions options = with(Surround::Fixed);
-    if (!lifted) options.weights[Term::Lift] = 0;
-    Unfolder unfolder(mesh, region, view, options);
-    for (int n = 0; n < 40 && unfolder.step(); ++n) {
-      ASSERT_LE(unfolder.record().objectiveAfter, unfolder.record().objectiveBefore);
+    UnfoldOptions options;
+    if (!lifted) options.unfolder.weights[Term::Lift] = 0;
+    const UnfoldResult result = unfold(flask.mesh, region, view, options);
+    EXPECT_TRUE(geometry::findSelfIntersections(result.mesh).empty());
+    lowest[lifted] = kInfinity;
+    for (const std::int32_t v : region.vertices) {
+      lowest[lifted] = std::min(lowest[lifted], result.mesh.positions(v, 2));
     }
-    ASSERT_TRUE(geometry::findSelfIntersections(unfolder.current()).empty());
-    reached[lifted] = unfolder.record().visibility;
   }
-  EXPECT_GT(reached[1], reached[0] + 0.01);
+  const double lip = Flask::profileAt(Flask::kBottom + 6, 6, 0.15)[1];
+  EXPECT_GT(lowest[1], lip);
+  EXPECT_LT(lowest[0], lip);
 }
 
 TEST(Unfolder, ACollarThatFollowsLetsARegionGoFurtherThanFixedWalls) {

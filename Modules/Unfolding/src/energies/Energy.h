@@ -69,10 +69,13 @@ class Energy {
 [[nodiscard]] std::unique_ptr<Energy> makeSpringEnergy();
 [[nodiscard]] std::unique_ptr<Energy> makeLiftEnergy();
 [[nodiscard]] std::unique_ptr<Energy> makeCollarEnergy();
+[[nodiscard]] std::unique_ptr<Energy> makeOverhangEnergy();
 [[nodiscard]] std::unique_ptr<Energy> makeContactEnergy();
 [[nodiscard]] std::unique_ptr<Energy> makeKnotTerm();
 
-// What springs contribute: a part of two terms, strength * sum of e (l / l0 - 1)^2.
+// What springs contribute: a part of two terms, strength * sum of e r(l / l0 - 1), with
+// r(s) = 2 d^2 (sqrt(1 + (s / d)^2) - 1), d = 0.1: s^2 for strains far below d, 2 d |s| far above,
+// so that a few edges may give way where the surface cannot be laid flat otherwise.
 [[nodiscard]] double springValue(std::span<const PatchSpring> springs, const Positions& x,
                                  double strength);
 void addSpringGradient(std::span<const PatchSpring> springs, const Positions& x, double strength,

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
+#include "../Room.h"
 #include "Energy.h"
 
 #include "Explica/Core/Parallel.h"
@@ -11,15 +12,6 @@ namespace explica::unfolding {
 namespace {
 
 constexpr std::size_t kGrain = 256;
-
-// Of the room's radius: so far above its height the region shall lie, clear of what lies in its
-// way.
-constexpr double kAbove = 0.1;
-
-/// How far below the room for the flat region a place is, mm.
-double deficit(const PatchRoom& room, const Point& place) {
-  return std::max(0.0, room.height + kAbove * room.radius - room.axis.dot(place));
-}
 
 // Of the room's radius: beyond this the pull grows no more, so that a deep region is not dragged
 // through a narrow opening before the folds above have made way.
@@ -34,7 +26,7 @@ struct Shortfall {
 };
 
 Shortfall shortfall(const PatchRoom& room, const Point& place) {
-  const double share = deficit(room, place) / room.radius;
+  const double share = deficitOf(room, place) / room.radius;
   if (!(share > 0)) return {};
   if (share <= kFirm) return {0.5 * share * share, share, 1};
   return {kFirm * (share - 0.5 * kFirm), kFirm, kFirm / share};

@@ -6,11 +6,25 @@
 #include "Explica/Core/Parallel.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace explica::unfolding {
 namespace {
 
-/// strength * sum over the region's edges of e (l / l0 - 1)^2.
+constexpr double kYield =
+    0.1;  // strain from which on the cost of an edge grows less than its square
+
+/// r(s) = 2 d^2 (sqrt(1 + (s / d)^2) - 1), d = kYield; its slope is 2 s times softening(s).
+double costOf(double strain) {
+  const double share = strain / kYield;
+  return 2 * kYield * kYield * (std::sqrt(1 + share * share) - 1);
+}
+double softening(double strain) {
+  const double share = strain / kYield;
+  return 1 / std::sqrt(1 + share * share);
+}
+
+/// strength * sum over the region's edges of e r(l / l0 - 1).
 class SpringEnergy final : public Energy {
  public:
   [[nodiscard]] double value(const Configuration& now, double strength) const override {
@@ -33,7 +47,7 @@ double springValue(std::span<const PatchSpring> springs, const Positions& x, dou
     double block = 0;
     for (std::size_t s = begin; s < end; ++s) {
       const double strain = lengthOf(springs[s], x) / springs[s].restLength - 1;
-      block += strength * springs[s].weight * strain * strain;
+      block += strength * springs[s].weight * costOf(strain);
     }
     return block;
   });
@@ -44,9 +58,9 @@ void addSpringGradient(std::span<const PatchSpring> springs, const Positions& x,
   for (const PatchSpring& spring : springs) {
     const Eigen::RowVector3d along = x.row(spring.vertices[1]) - x.row(spring.vertices[0]);
     const double length = along.norm();
-    const Eigen::RowVector3d pull = 2 * strength * spring.weight *
-                                    (length / spring.restLength - 1) / spring.restLength / length *
-                                    along;
+    const double strain = length / spring.restLength - 1;
+    const Eigen::RowVector3d pull = 2 * strength * spring.weight * strain * softening(strain) /
+                                    spring.restLength / length * along;
     gradient.row(spring.vertices[0]) -= pull;
     gradient.row(spring.vertices[1]) += pull;
   }
@@ -58,7 +72,9 @@ void addSpringStiffness(std::span<const PatchSpring> springs, const Positions& x
     const Vector along = (x.row(spring.vertices[1]) - x.row(spring.vertices[0])).transpose();
     const double length = along.norm();
     const Vector unit = along / length;
-    const double stiffness = 2 * strength * spring.weight / (spring.restLength * spring.restLength);
+    const double stiffness = 2 * strength * spring.weight *
+                             softening(length / spring.restLength - 1) /
+                             (spring.restLength * spring.restLength);
     const double lateral = stiffness * std::max(0.0, 1 - spring.restLength / length);
     const Eigen::Matrix3d block =
         (stiffness - lateral) * unit * unit.transpose() + lateral * Eigen::Matrix3d::Identity();

@@ -17,7 +17,8 @@ class StopRule {
   /// Looks at the account so far, the start's row included.
   ///
   /// A target counts as reached once areas and lengths have settled, too.  Where lengths and
-  /// contacts balance the visibility below a target, its term is strengthened, up to a limit.
+  /// contacts balance the visibility below a target, its term is strengthened, up to a limit; where
+  /// a part of the region is held below its surroundings, these are parted further.
   /// @return NotRun as long as another iteration pays
   [[nodiscard]] Termination check(Unfolder& unfolder,
                                   const std::vector<IterationRecord>& history) const;

@@ -17,11 +17,12 @@ namespace explica::unfolding {
 enum class Term {
   Visibility,  ///< sum over the region's faces of w (1 - n . d)
   Area,        ///< sum over the region's faces of w (lambda c + weight/2 c^2), lambda a multiplier
-  Spring,      ///< weight times the sum over the region's edges of e s^2, e the same for all edges
-  Lift,        ///< weight/2 times the sum of w (deficit / radius)^2, deficit from where it has room
-  Collar,      ///< weight times the sum over faces that move outside the region, see CollarEnergy
-  Contact,     ///< weight times the sum over near pairs of barrier(distance), see ContactPotential
-  Knot         ///< weight times the double integral of 1 / |x - y|^2, see KnotEnergy
+  Spring,    ///< weight times the sum over the region's edges of e r(s), r = s^2 for small strains
+  Lift,      ///< weight/2 times the sum of w (deficit / radius)^2, deficit from where it has room
+  Collar,    ///< weight times the sum over faces that move outside the region, see CollarEnergy
+  Overhang,  ///< weight times the sum over those faces of o max(0, -n . d)^2, o near the region
+  Contact,   ///< weight times the sum over near pairs of barrier(distance), see ContactPotential
+  Knot       ///< weight times the double integral of 1 / |x - y|^2, see KnotEnergy
 };
 
 /// What the program tells about a term.  Columns of evolution.tsv, options, checkpoints and
@@ -38,11 +39,13 @@ inline constexpr std::array kTerms = {
     TermInfo{Term::Visibility, "visibility", 1, "", ""},
     TermInfo{Term::Area, "area", 20, "area-weight",
              "stiffness of face areas before it is tightened"},
-    TermInfo{Term::Spring, "spring", 2.4, "spring-weight", "stiffness of edge lengths"},
+    TermInfo{Term::Spring, "spring", 5.5, "spring-weight", "stiffness of edge lengths"},
     TermInfo{Term::Lift, "lift", 60, "lift-weight",
              "pull out of fixed or elastic surroundings, up to where the flat region has room"},
     TermInfo{Term::Collar, "collar", 2e-4, "collar-weight",
              "stiffness of an elastic collar beside the region's"},
+    TermInfo{Term::Overhang, "overhang", 0.3, "overhang-weight",
+             "pull on faces of the collar that lean over the region"},
     TermInfo{Term::Contact, "contact", 0.2, "contact-weight", "strength of the contact barrier"},
     TermInfo{Term::Knot, "knot", 3e-4, "knot-weight", "strength of the knot energy"},
 };

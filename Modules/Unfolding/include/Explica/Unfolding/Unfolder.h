@@ -49,11 +49,13 @@ void describe(UnfolderOptions& options, Visitor&& visit) {
               "the surface around the region stays, follows with a collar, or is "
               "left out"},
         options.surround);
-  visit(Field{"collar-width", "mm",
-              "how far an elastic collar reaches from the region along the surface (default 0.5 of "
-              "the radius of a disc of the region's area; replaces --collar-rings)",
-              kAboveZero, 1000},
-        options.collarWidth);
+  visit(
+      Field{"collar-width", "mm",
+            "how far an elastic collar reaches from the region along the surface (default 0.6 of "
+            "the radius of a disc of the region's area, or of its depth if that is more; replaces "
+            "--collar-rings)",
+            kAboveZero, 1000},
+      options.collarWidth);
   visit(Field{"contact-range", "", "reach of the contact barrier in mean edge lengths", kAboveZero,
               10},
         options.contactRange);
@@ -116,7 +118,10 @@ struct UnfoldState {
   double damping = 1;
   double areaStiffness = 0;     ///< current, >= weights.area
   double drive = 1;             ///< strength of the visibility term against the others
-  int driveIteration = 0;       ///< when it was raised last
+  int driveIteration = 0;       ///< when it was raised last, or way was made
+  double lift = 1;              ///< factor of weights.lift, raised where way was made
+  double collarWidth = 0;       ///< mm along the surface; wider where way was made
+  int ways = 0;                 ///< how often that was
   double contactStiffness = 1;  ///< factor of weights.contact, raised where pairs are pressed close
   int iteration = 0;
   bool separating = true;               ///< pairs that start almost in contact are parted first
@@ -155,6 +160,13 @@ class Unfolder {
   /// Strengthens the visibility term, for a target that the present balance does not reach.
   void raiseDrive(double factor);
 
+  /// Whether a part of the region that counts is held below its elastic surroundings, which can
+  /// still be asked to part further.
+  [[nodiscard]] bool isHeldBelow() const;
+  /// Parts the surroundings: from now on more of them moves (beginning where it stands, so that
+  /// nothing is lost), and the region is pulled up with more force.  More vertices move then.
+  void makeWay();
+
   [[nodiscard]] const UnfoldState& state() const;
   /// Continues from a state of the same inputs: bit-identical to never having stopped.
   /// @throws InvalidInput  sizes that do not fit
@@ -190,6 +202,7 @@ class Unfolder {
 
 /// F flags: the faces with a vertex that will move, the region's and those of its surroundings.
 [[nodiscard]] std::vector<bool> movingFaces(const TriangleMesh& mesh, const Region& region,
+                                            const visibility::Viewpoints& viewpoints,
                                             const UnfolderOptions& options);
 
 }  // namespace explica::unfolding
