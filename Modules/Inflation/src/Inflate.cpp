@@ -66,6 +66,7 @@ unfolding::UnfolderOptions solverOptions(const InflateOptions& options) {
   unfolding::UnfolderOptions solver;
   solver.surround = unfolding::Surround::None;
   solver.contactRange = options.contactRange;
+  solver.yieldStrain = kInfinity;  // strain is spread, so that curvature is
   solver.weights[unfolding::Term::Spring] = options.springWeight;
   solver.weights[unfolding::Term::Area] = options.areaWeight;
   return solver;

@@ -105,6 +105,7 @@ void writeCheckpoint(const std::filesystem::path& path, const Checkpoint& checkp
   w.number(s.areaStiffness);
   w.number(s.drive);
   w.count(s.driveIteration);
+  w.number(s.firmness);
   w.number(s.lift);
   w.number(s.collarWidth);
   w.count(s.ways);
@@ -115,6 +116,7 @@ void writeCheckpoint(const std::filesystem::path& path, const Checkpoint& checkp
   w.count(s.stalled);
   w.count(checkpoint.best.iteration);
   w.number(checkpoint.best.visibility);
+  w.number(checkpoint.best.strain);
   w.points(checkpoint.best.moving);
   w.count(static_cast<std::int64_t>(checkpoint.history.size()));
   for (const IterationRecord& r : checkpoint.history) {
@@ -159,6 +161,7 @@ Checkpoint readCheckpoint(const std::filesystem::path& path) {
   c.state.areaStiffness = r.number();
   c.state.drive = r.number();
   c.state.driveIteration = static_cast<int>(r.count());
+  c.state.firmness = r.number();
   c.state.lift = r.number();
   c.state.collarWidth = r.number();
   c.state.ways = static_cast<int>(r.count());
@@ -169,6 +172,7 @@ Checkpoint readCheckpoint(const std::filesystem::path& path) {
   c.state.stalled = r.count() != 0;
   c.best.iteration = static_cast<int>(r.count());
   c.best.visibility = r.number();
+  c.best.strain = r.number();
   c.best.moving = r.points();
   c.history.resize(static_cast<std::size_t>(r.count()));
   for (IterationRecord& row : c.history) {

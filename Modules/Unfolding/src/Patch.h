@@ -43,6 +43,7 @@ struct Patch {
   std::size_t regionFaces = 0;       ///< how many of `faces` are the region's
   std::vector<PatchSpring> springs;  ///< of the region's edges, then of the collar's
   std::size_t regionSprings = 0;
+  double yieldStrain = kInfinity;  ///< beyond it an edge's length costs less than its square
   PatchRoom room;
 
   [[nodiscard]] std::span<const PatchFace> ofRegion() const { return {faces.data(), regionFaces}; }

@@ -28,6 +28,7 @@ constexpr double kCollarShare = 0.6;
 
 void requireUsable(const UnfolderOptions& options, const Region& region) {
   if (!(options.contactRange > 0)) throw InvalidInput("contactRange: must be positive");
+  if (!(options.yieldStrain > 0)) throw InvalidInput("yield-strain: must be positive");
   if (!(options.largestMove > 0)) throw InvalidInput("largestMove: must be positive");
   if (options.timeStep && !(*options.timeStep > 0)) {
     throw InvalidInput("time-step: must be positive");
@@ -206,6 +207,7 @@ PatchSetup setUpPatch(TriangleMesh mesh, Region region, const visibility::Viewpo
   chooseMoving(s, viewpoints, options);
   listFaces(s, areas);
   listSprings(s);
+  s.patch.yieldStrain = options.yieldStrain;
   listCouplings(s);
   return s;
 }

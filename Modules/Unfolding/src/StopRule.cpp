@@ -70,6 +70,8 @@ bool StopRule::targetHolds(const std::vector<IterationRecord>& history) const {
 
 Termination StopRule::check(Unfolder& unfolder, const std::vector<IterationRecord>& history) const {
   constexpr double kLargestDrive = 4;  // lengths and contacts are outweighed up to here
+  constexpr double kFirming = 1.03;  // of the lengths' strength per iteration, where enough is seen
+  constexpr double kFirmest = 2;     // ... up to here
   const IterationRecord& last = history.back();
   const bool thesis = options_.unfolder.method == Method::Thesis;
   const double goal = options_.targetVisibility.value_or(1.0);
@@ -78,8 +80,12 @@ Termination StopRule::check(Unfolder& unfolder, const std::vector<IterationRecor
   if (atGoal && targetHolds(history)) return Termination::TargetReached;
   const bool started = thesis || !unfolder.state().separating;
   const bool settled = !atGoal && started && isSettled(history, unfolder.state().driveIteration);
+  const double firmness = unfolder.state().firmness;
   if (settled && !thesis && unfolder.isHeldBelow()) {
     unfolder.makeWay();
+  } else if (settled && !thesis && !options_.targetVisibility && firmness < kFirmest &&
+             last.visibility > kEnoughSeen && last.edgeStrainMean > kLittleStrained) {
+    unfolder.firmUp(kFirming);
   } else if (settled && (kept || thesis)) {
     if (!options_.targetVisibility) return Termination::Converged;
     if (thesis || unfolder.state().drive >= kLargestDrive) return Termination::Stalled;

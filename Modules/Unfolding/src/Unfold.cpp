@@ -16,8 +16,9 @@
 namespace explica::unfolding {
 namespace {
 
-constexpr double kFar = 0.1;       // of visibility below the goal: a region that ends there is held
-constexpr double kNoWorse = 1e-3;  // of visibility: less than that is no reason to go back
+constexpr double kFar = 0.1;  // of visibility below the goal: a region that ends there is held
+constexpr double kNoWorse =
+    1e-3;  // of visibility or strain: less than that is no reason to go back
 
 Positions rowsOf(const Positions& positions, const std::vector<std::int32_t>& vertices) {
   Positions rows(static_cast<Eigen::Index>(vertices.size()), 3);
@@ -55,18 +56,31 @@ void tellProgress(const Monitor& monitor, const IterationRecord& now, double ini
   monitor.progress(std::clamp((now.visibility - initial) / (goal - initial), 0.0, 1.0), line);
 }
 
+/// How much more an edge is strained than needs no mending, where enough is seen; else infinite.
+double excessOf(double visibility, double strain) {
+  return visibility < kEnoughSeen ? kInfinity : std::max(0.0, strain - kLittleStrained);
+}
+
+/// Whether it pays to go back from a state.
+bool isWorse(const IterationRecord& state, const BestState& than) {
+  const double excess = excessOf(state.visibility, state.edgeStrainMean);
+  const double known = excessOf(than.visibility, than.strain);
+  if (std::isfinite(excess) && known > 0) return excess > known + kNoWorse;
+  return state.visibility < than.visibility - kNoWorse;
+}
+
 /// Takes note of a state if it keeps areas and is better than all before.
 void consider(const Unfolder& unfolder, double areaTolerance, BestState& best) {
   const IterationRecord& now = unfolder.record();
-  if (now.areaErrorMean > areaTolerance || now.visibility <= best.visibility) return;
-  best = {now.iteration, now.visibility, movingOnly(unfolder)};
+  if (now.areaErrorMean > areaTolerance || !isBetter(now, best)) return;
+  best = {now.iteration, now.visibility, now.edgeStrainMean, movingOnly(unfolder)};
 }
 
 /// The state to give back: the last, or the best seen if the last is worse.
 void chooseState(const Unfolder& unfolder, const BestState& best, UnfoldResult& result) {
   result.mesh = unfolder.current();
   result.iteration = unfolder.state().iteration;
-  if (unfolder.record().visibility >= best.visibility - kNoWorse) return;
+  if (!isWorse(unfolder.record(), best)) return;
   const auto& moving = unfolder.movingVertices();
   for (std::size_t i = 0; i < moving.size(); ++i) {
     result.mesh.positions.row(moving[i]) = best.moving.row(static_cast<Eigen::Index>(i));
@@ -134,10 +148,11 @@ UnfoldResult unfoldHere(const TriangleMesh& mesh, const Region& region,
     path = resume->path;
     best = resume->best;
     if (best.moving.rows() == 0) {  // a state that no run of this function left
-      best = {unfolder.state().iteration, unfolder.record().visibility, movingOnly(unfolder)};
+      best = {unfolder.state().iteration, unfolder.record().visibility,
+              unfolder.record().edgeStrainMean, movingOnly(unfolder)};
     }
   } else {
-    best = {0, initial, movingOnly(unfolder)};
+    best = {0, initial, 0, movingOnly(unfolder)};
     result.history.push_back(unfolder.record());
   }
   if (options.frames > 0 && path.empty()) path.push_back(movingOnly(unfolder));
@@ -189,6 +204,15 @@ Point originFor(const TriangleMesh& mesh, const Region& region) {
 }
 
 }  // namespace
+
+bool isBetter(const IterationRecord& state, const BestState& than) {
+  const double excess = excessOf(state.visibility, state.edgeStrainMean);
+  const double known = excessOf(than.visibility, than.strain);
+  if (std::isfinite(excess) && std::isfinite(known) && std::max(excess, known) > 0) {
+    return excess < known;
+  }
+  return state.visibility > than.visibility;
+}
 
 UnfoldResult unfold(const TriangleMesh& mesh, const Region& region,
                     const visibility::Viewpoints& viewpoints, const UnfoldOptions& options,

@@ -59,6 +59,7 @@ TermValues Unfolder::Implementation::strengths() const {
   TermValues strengths = options.weights;
   strengths[Term::Visibility] = state.separating ? 0 : state.drive;
   strengths[Term::Area] = state.areaStiffness;
+  strengths[Term::Spring] *= state.firmness;
   strengths[Term::Lift] *= state.lift;
   if (state.separating || options.surround == Surround::None) strengths[Term::Lift] = 0;
   if (state.separating) strengths[Term::Overhang] = 0;
@@ -130,6 +131,9 @@ bool Unfolder::step() {
 void Unfolder::raiseDrive(double factor) {
   self_->state.drive *= factor;
   self_->state.driveIteration = self_->state.iteration;
+}
+void Unfolder::firmUp(double factor) {
+  self_->state.firmness *= factor;
 }
 bool Unfolder::isHeldBelow() const {
   return self_->options.surround == Surround::Elastic && self_->state.ways < kMostWays &&

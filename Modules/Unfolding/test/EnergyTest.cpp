@@ -47,6 +47,7 @@ struct Sample {
       patch.springs.push_back({{edges(e, 0), edges(e, 1)}, 1.1, 0.5});
     }
     patch.regionSprings = patch.springs.size() * 3 / 4;
+    patch.yieldStrain = 0.1;
     patch.room = {Vector(0.6, 0, -0.8), 40, 5};  // above all of it, faces look away from it
     multipliers = Eigen::VectorXd::LinSpaced(static_cast<Eigen::Index>(patch.regionFaces), -1, 2);
     unknown.resize(static_cast<std::size_t>(mesh.vertexCount()));
@@ -212,10 +213,11 @@ TEST(Energy, ALengthCostsItsSquareAtFirstAndInProportionFarOff) {
   x(1, 0) = 1;
   const auto costOf = [&](double strain) {
     const std::vector<PatchSpring> springs = {{{0, 1}, 1 / (1 + strain), 1}};
-    return springValue(springs, x, 1);
+    return springValue(springs, 0.1, x, 1);
   };
   EXPECT_NEAR(costOf(1e-3), 1e-6, 1e-10);
   EXPECT_NEAR(costOf(-1e-3), 1e-6, 1e-10);
+  EXPECT_EQ(springValue(std::vector<PatchSpring>{{{0, 1}, 0.5, 1}}, kInfinity, x, 1), 1);
   // Its asymptote is 2 d |s| - 2 d^2, d = 0.1, reached from above by d^3 / |s|.
   for (const double strain : {2.0, 4.0}) {
     const double asymptote = 0.2 * strain - 0.02;

@@ -15,6 +15,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <filesystem>
 
@@ -169,6 +170,46 @@ TEST(Unfold, ResumesAcrossAPartingOfTheSurroundings) {
       EXPECT_EQ(whole.frames[n].positions, rest.frames[n].positions) << part;
     }
   }
+}
+
+TEST(Unfold, LengthsRecoverWhereMoreIsSeenThanNeeded) {
+  // A dome cannot be laid flat without strain.
+  TriangleMesh dome = geometry::makeRectangle(20, 20, 20, 20);
+  for (Eigen::Index v = 0; v < dome.vertexCount(); ++v) {
+    const double x = dome.positions(v, 0) - 10, y = dome.positions(v, 1) - 10;
+    dome.positions(v, 2) = 9 * std::exp(-(x * x + y * y) / 30);
+  }
+  const Region region = regionOfMarked(dome, interiorOf(20, 20, 0));
+  UnfoldOptions options;
+  options.unfolder.surround = Surround::None;
+  options.unfolder.weights[Term::Spring] = 1;
+  const auto view = visibility::viewpoint(Point(10, 10, 1000));
+  const UnfoldResult result = unfold(dome, region, view, options);
+  double strained = 0;  // at most, where areas are kept
+  for (const IterationRecord& row : result.history) {
+    if (row.areaErrorMean <= options.areaTolerance) {
+      strained = std::max(strained, row.edgeStrainMean);
+    }
+  }
+  const IterationRecord& end = result.history[static_cast<std::size_t>(result.iteration)];
+  ASSERT_GT(strained, kLittleStrained);
+  EXPECT_GT(result.checkpoint.state.firmness, 1);
+  EXPECT_LT(end.edgeStrainMean, strained - 0.002);
+  EXPECT_GT(end.visibility, kEnoughSeen - 0.005);
+}
+
+TEST(Unfold, OfTwoStatesThatAreSeenWellTheLessStrainedIsBetter) {
+  IterationRecord state;
+  const auto better = [&](double visibility, double strain, double other, double otherStrain) {
+    state.visibility = visibility;
+    state.edgeStrainMean = strain;
+    return isBetter(state, {0, other, otherStrain, {}});
+  };
+  EXPECT_TRUE(better(0.986, 0.09, 0.99, 0.12));
+  EXPECT_FALSE(better(0.99, 0.12, 0.986, 0.09));
+  EXPECT_TRUE(better(0.99, 0.08, 0.986, 0.03));  // both strained little: more is seen
+  EXPECT_FALSE(better(0.98, 0.05, 0.99, 0.12));  // not seen well
+  EXPECT_TRUE(better(0.97, 0.12, 0.96, 0.05));
 }
 
 TEST(Unfold, NeverEndsWorseThanTheBestStateSeen) {

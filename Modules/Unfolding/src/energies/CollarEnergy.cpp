@@ -51,7 +51,8 @@ class CollarEnergy final : public Energy {
           }
           return block;
         });
-    return areas + springValue(now.patch.collarEdges(), now.x, strength * kCollarSpring);
+    return areas + springValue(now.patch.collarEdges(), now.patch.yieldStrain, now.x,
+                               strength * kCollarSpring);
   }
 
   void addGradient(const Configuration& now, double strength, Positions& gradient) const override {
@@ -64,7 +65,8 @@ class CollarEnergy final : public Energy {
       for (int k = 0; k < 3; ++k) forces[f][k] = tension * shape.hat[k];
     });
     addForces(faces, forces, gradient);
-    addSpringGradient(now.patch.collarEdges(), now.x, strength * kCollarSpring, gradient);
+    addSpringGradient(now.patch.collarEdges(), now.patch.yieldStrain, now.x,
+                      strength * kCollarSpring, gradient);
   }
 
   void addStiffness(const Configuration& now, double strength,
@@ -79,7 +81,8 @@ class CollarEnergy final : public Energy {
       blocks[f] = faceBlocks(shape, inPlane, std::max(0.0, stretch.slope * ratio));
     });
     addBlocks(faces, blocks, unknown, system);
-    addSpringStiffness(now.patch.collarEdges(), now.x, strength * kCollarSpring, unknown, system);
+    addSpringStiffness(now.patch.collarEdges(), now.patch.yieldStrain, now.x,
+                       strength * kCollarSpring, unknown, system);
   }
 
  private:

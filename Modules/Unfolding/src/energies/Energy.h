@@ -74,13 +74,15 @@ class Energy {
 [[nodiscard]] std::unique_ptr<Energy> makeKnotTerm();
 
 // What springs contribute: a part of two terms, strength * sum of e r(l / l0 - 1), with
-// r(s) = 2 d^2 (sqrt(1 + (s / d)^2) - 1), d = 0.1: s^2 for strains far below d, 2 d |s| far above,
-// so that a few edges may give way where the surface cannot be laid flat otherwise.
-[[nodiscard]] double springValue(std::span<const PatchSpring> springs, const Positions& x,
-                                 double strength);
-void addSpringGradient(std::span<const PatchSpring> springs, const Positions& x, double strength,
-                       Positions& gradient);
-void addSpringStiffness(std::span<const PatchSpring> springs, const Positions& x, double strength,
-                        const std::vector<std::int32_t>& unknown, BlockSystem& system);
+// r(s) = 2 s^2 / (1 + sqrt(1 + (s / d)^2)), d the strain of yielding: s^2 for strains far below d,
+// 2 d |s| far above, so that a few edges may give way where a surface cannot be laid flat
+// otherwise.
+[[nodiscard]] double springValue(std::span<const PatchSpring> springs, double yield,
+                                 const Positions& x, double strength);
+void addSpringGradient(std::span<const PatchSpring> springs, double yield, const Positions& x,
+                       double strength, Positions& gradient);
+void addSpringStiffness(std::span<const PatchSpring> springs, double yield, const Positions& x,
+                        double strength, const std::vector<std::int32_t>& unknown,
+                        BlockSystem& system);
 
 }  // namespace explica::unfolding

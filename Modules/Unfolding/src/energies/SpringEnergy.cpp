@@ -11,16 +11,14 @@
 namespace explica::unfolding {
 namespace {
 
-constexpr double kYield =
-    0.1;  // strain from which on the cost of an edge grows less than its square
-
-/// r(s) = 2 d^2 (sqrt(1 + (s / d)^2) - 1), d = kYield; its slope is 2 s times softening(s).
-double costOf(double strain) {
-  const double share = strain / kYield;
-  return 2 * kYield * kYield * (std::sqrt(1 + share * share) - 1);
+/// r(s) = 2 s^2 / (1 + sqrt(1 + (s / d)^2)), d the strain of yielding; its slope is 2 s times
+/// softening(s, d).
+double costOf(double strain, double yield) {
+  const double share = strain / yield;
+  return 2 * strain * strain / (1 + std::sqrt(1 + share * share));
 }
-double softening(double strain) {
-  const double share = strain / kYield;
+double softening(double strain, double yield) {
+  const double share = strain / yield;
   return 1 / std::sqrt(1 + share * share);
 }
 
@@ -28,52 +26,55 @@ double softening(double strain) {
 class SpringEnergy final : public Energy {
  public:
   [[nodiscard]] double value(const Configuration& now, double strength) const override {
-    return springValue(now.patch.regionEdges(), now.x, strength);
+    return springValue(now.patch.regionEdges(), now.patch.yieldStrain, now.x, strength);
   }
   void addGradient(const Configuration& now, double strength, Positions& gradient) const override {
-    addSpringGradient(now.patch.regionEdges(), now.x, strength, gradient);
+    addSpringGradient(now.patch.regionEdges(), now.patch.yieldStrain, now.x, strength, gradient);
   }
   void addStiffness(const Configuration& now, double strength,
                     const std::vector<std::int32_t>& unknown, BlockSystem& system) const override {
-    addSpringStiffness(now.patch.regionEdges(), now.x, strength, unknown, system);
+    addSpringStiffness(now.patch.regionEdges(), now.patch.yieldStrain, now.x, strength, unknown,
+                       system);
   }
 };
 
 }  // namespace
 
-double springValue(std::span<const PatchSpring> springs, const Positions& x, double strength) {
+double springValue(std::span<const PatchSpring> springs, double yield, const Positions& x,
+                   double strength) {
   constexpr std::size_t kGrain = 256;
   return parallelSum(springs.size(), kGrain, 0.0, [&](std::size_t begin, std::size_t end) {
     double block = 0;
     for (std::size_t s = begin; s < end; ++s) {
       const double strain = lengthOf(springs[s], x) / springs[s].restLength - 1;
-      block += strength * springs[s].weight * costOf(strain);
+      block += strength * springs[s].weight * costOf(strain, yield);
     }
     return block;
   });
 }
 
-void addSpringGradient(std::span<const PatchSpring> springs, const Positions& x, double strength,
-                       Positions& gradient) {
+void addSpringGradient(std::span<const PatchSpring> springs, double yield, const Positions& x,
+                       double strength, Positions& gradient) {
   for (const PatchSpring& spring : springs) {
     const Eigen::RowVector3d along = x.row(spring.vertices[1]) - x.row(spring.vertices[0]);
     const double length = along.norm();
     const double strain = length / spring.restLength - 1;
-    const Eigen::RowVector3d pull = 2 * strength * spring.weight * strain * softening(strain) /
-                                    spring.restLength / length * along;
+    const Eigen::RowVector3d pull = 2 * strength * spring.weight * strain *
+                                    softening(strain, yield) / spring.restLength / length * along;
     gradient.row(spring.vertices[0]) -= pull;
     gradient.row(spring.vertices[1]) += pull;
   }
 }
 
-void addSpringStiffness(std::span<const PatchSpring> springs, const Positions& x, double strength,
-                        const std::vector<std::int32_t>& unknown, BlockSystem& system) {
+void addSpringStiffness(std::span<const PatchSpring> springs, double yield, const Positions& x,
+                        double strength, const std::vector<std::int32_t>& unknown,
+                        BlockSystem& system) {
   for (const PatchSpring& spring : springs) {
     const Vector along = (x.row(spring.vertices[1]) - x.row(spring.vertices[0])).transpose();
     const double length = along.norm();
     const Vector unit = along / length;
     const double stiffness = 2 * strength * spring.weight *
-                             softening(length / spring.restLength - 1) /
+                             softening(length / spring.restLength - 1, yield) /
                              (spring.restLength * spring.restLength);
     const double lateral = stiffness * std::max(0.0, 1 - spring.restLength / length);
     const Eigen::Matrix3d block =

@@ -51,12 +51,19 @@ struct UnfoldFrame {
   Positions positions;  ///< V x 3
 };
 
-/// The best state that a run has seen: the highest visibility among those that keep areas.
+/// The best state that a run has seen among those that keep areas: see isBetter().
 struct BestState {
   int iteration = 0;
   double visibility = kNaN;
-  Positions moving;  ///< of the vertices that move
+  double strain = kNaN;  ///< mean edge strain
+  Positions moving;      ///< of the vertices that move
 };
+
+inline constexpr double kEnoughSeen = 0.985;      ///< visibility from which on lengths count first
+inline constexpr double kLittleStrained = 0.085;  ///< mean edge strain that needs no mending
+
+/// The higher visibility, by more than noise; but of two that are high enough, the less strained.
+[[nodiscard]] bool isBetter(const IterationRecord& state, const BestState& than);
 
 /// A run that can go on: state, account so far, and the way there if frames were asked for.
 struct Checkpoint {
