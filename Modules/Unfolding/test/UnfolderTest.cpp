@@ -182,7 +182,7 @@ TEST(Unfold, LengthsRecoverWhereMoreIsSeenThanNeeded) {
   const Region region = regionOfMarked(dome, interiorOf(20, 20, 0));
   UnfoldOptions options;
   options.unfolder.surround = Surround::None;
-  options.unfolder.weights[Term::Spring] = 1;
+  options.unfolder.weights[Term::Spring] = 0.3;
   const auto view = visibility::viewpoint(Point(10, 10, 1000));
   const UnfoldResult result = unfold(dome, region, view, options);
   double strained = 0;  // at most, where areas are kept
