@@ -271,6 +271,85 @@ void takeBack(HomotopicSet& set, const std::vector<std::size_t>& added, const Ma
   }
 }
 
+/// Cuts handles and fills tunnels until the mask is a ball.
+void makeBall(const LevelSet& level, Mask& inside, std::vector<Defect>& defects,
+              const Monitor& monitor) {
+  const Grid& grid = level.grid;
+  const double unit = grid.spacing.minCoeff();
+  Volume<std::uint8_t> mask(grid);
+  mask.data = inside;
+
+  monitor.progress(0.2, "growing from inside");
+  const Volume<float> depth = distanceTo(mask, 0);
+  Mask seed(inside.size(), 0);
+  seed[std::max_element(depth.data.begin(), depth.data.end()) - depth.data.begin()] = 1;
+  HomotopicSet grown(grid, std::move(seed));
+  grown.approach(inside, depth, unit);
+
+  if (grown.members() == inside) return;
+  monitor.progress(0.5, "growing from outside");
+  Mask box(inside.size());
+  for (std::size_t v = 0; v < box.size(); ++v) box[v] = !onBorder(grid, v);
+  HomotopicSet shrunk(grid, std::move(box));
+  shrunk.approach(inside, distanceTo(mask, 1), unit);
+
+  monitor.progress(0.8, "choosing between fills and cuts");
+  Mask difference(inside.size());
+  for (std::size_t v = 0; v < inside.size(); ++v) {
+    difference[v] = shrunk.members()[v] && !inside[v];
+  }
+  auto fills = pieces(difference, grid);
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t f = 0; f < fills.size(); ++f) {
+    order.emplace_back(describeChange(level, fills[f], DefectKind::Tunnel).cost, f);
+  }
+  std::sort(order.begin(), order.end());
+  Mask inFill(inside.size(), 0);
+  std::vector<std::pair<Point, double>> accepted;  // place of a fill, what it recovered
+  for (const auto& [cost, f] : order) {
+    const Trial trial = tryFill(grown, fills[f], inside, inFill, level);
+    if (trial.recoveredCost > trial.filledCost) {
+      takeBack(grown, trial.added, inside);
+      accepted.emplace_back(describeChange(level, fills[f], DefectKind::Tunnel).place,
+                            trial.recoveredCost);
+    } else {
+      for (const std::size_t v : trial.added) grown.members()[v] = 0;
+    }
+  }
+  // Cuts whose fill was refused get that fill's price as the alternative.
+  const auto report = [&](DefectKind kind, bool cut) {
+    for (std::size_t v = 0; v < inside.size(); ++v) {
+      difference[v] = cut ? inside[v] && !grown.members()[v] : grown.members()[v] && !inside[v];
+    }
+    for (const auto& piece : pieces(difference, grid)) {
+      Defect defect = describeChange(level, piece, kind);
+      double nearest = kInfinity;
+      if (cut) {
+        for (const auto& [fillCost, f] : order) {
+          const Defect fill = describeChange(level, fills[f], DefectKind::Tunnel);
+          const double d = (fill.place - defect.place).squaredNorm();
+          if (d < nearest) {
+            nearest = d;
+            defect.alternativeCost = fillCost;
+          }
+        }
+      } else {
+        for (const auto& [place, recovered] : accepted) {
+          const double d = (place - defect.place).squaredNorm();
+          if (d < nearest) {
+            nearest = d;
+            defect.alternativeCost = recovered;
+          }
+        }
+      }
+      defects.push_back(defect);
+    }
+  };
+  report(DefectKind::Handle, true);
+  report(DefectKind::Tunnel, false);
+  inside = grown.members();
+}
+
 }  // namespace
 
 Volume<float> distanceTo(const Volume<std::uint8_t>& mask, std::uint8_t target) {
@@ -349,82 +428,7 @@ TopologyResult correctTopology(const LevelSet& level, GenusRule rule, const Moni
   monitor.progress(0.0, "islands and cavities");
   cleanPieces(level, inside, result.defects);
 
-  if (rule == GenusRule::Zero) {
-    const double unit = grid.spacing.minCoeff();
-    Volume<std::uint8_t> mask(grid);
-    mask.data = inside;
-
-    monitor.progress(0.2, "growing from inside");
-    const Volume<float> depth = distanceTo(mask, 0);
-    Mask seed(inside.size(), 0);
-    seed[std::max_element(depth.data.begin(), depth.data.end()) - depth.data.begin()] = 1;
-    HomotopicSet grown(grid, std::move(seed));
-    grown.approach(inside, depth, unit);
-
-    if (grown.members() != inside) {
-      monitor.progress(0.5, "growing from outside");
-      Mask box(inside.size());
-      for (std::size_t v = 0; v < box.size(); ++v) box[v] = !onBorder(grid, v);
-      HomotopicSet shrunk(grid, std::move(box));
-      shrunk.approach(inside, distanceTo(mask, 1), unit);
-
-      monitor.progress(0.8, "choosing between fills and cuts");
-      Mask difference(inside.size());
-      for (std::size_t v = 0; v < inside.size(); ++v) {
-        difference[v] = shrunk.members()[v] && !inside[v];
-      }
-      auto fills = pieces(difference, grid);
-      std::vector<std::pair<double, std::size_t>> order;
-      for (std::size_t f = 0; f < fills.size(); ++f) {
-        order.emplace_back(describeChange(level, fills[f], DefectKind::Tunnel).cost, f);
-      }
-      std::sort(order.begin(), order.end());
-      Mask inFill(inside.size(), 0);
-      std::vector<std::pair<Point, double>> accepted;  // place of a fill, what it recovered
-      for (const auto& [cost, f] : order) {
-        const Trial trial = tryFill(grown, fills[f], inside, inFill, level);
-        if (trial.recoveredCost > trial.filledCost) {
-          takeBack(grown, trial.added, inside);
-          accepted.emplace_back(describeChange(level, fills[f], DefectKind::Tunnel).place,
-                                trial.recoveredCost);
-        } else {
-          for (const std::size_t v : trial.added) grown.members()[v] = 0;
-        }
-      }
-      // Cuts whose fill was refused get that fill's price as the alternative.
-      const auto report = [&](DefectKind kind, bool cut) {
-        for (std::size_t v = 0; v < inside.size(); ++v) {
-          difference[v] = cut ? inside[v] && !grown.members()[v] : grown.members()[v] && !inside[v];
-        }
-        for (const auto& piece : pieces(difference, grid)) {
-          Defect defect = describeChange(level, piece, kind);
-          double nearest = kInfinity;
-          if (cut) {
-            for (const auto& [fillCost, f] : order) {
-              const Defect fill = describeChange(level, fills[f], DefectKind::Tunnel);
-              const double d = (fill.place - defect.place).squaredNorm();
-              if (d < nearest) {
-                nearest = d;
-                defect.alternativeCost = fillCost;
-              }
-            }
-          } else {
-            for (const auto& [place, recovered] : accepted) {
-              const double d = (place - defect.place).squaredNorm();
-              if (d < nearest) {
-                nearest = d;
-                defect.alternativeCost = recovered;
-              }
-            }
-          }
-          result.defects.push_back(defect);
-        }
-      };
-      report(DefectKind::Handle, true);
-      report(DefectKind::Tunnel, false);
-      inside = grown.members();
-    }
-  }
+  if (rule == GenusRule::Zero) makeBall(level, inside, result.defects, monitor);
 
   for (std::size_t v = 0; v < level.size(); ++v) {
     if ((level[v] > 0) != (inside[v] != 0)) {
