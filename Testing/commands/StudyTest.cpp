@@ -73,9 +73,9 @@ TEST_F(Study, TheExampleGoesFromFileToTable) {
     return readJson(runs / run / "unfold/provenance.json")["options"];
   };
   EXPECT_EQ(optionsOf("sub-01_hemi-L_region-crown")["viewpoint"],
-            nlohmann::ordered_json({0, 0, 1000}));
+            nlohmann::ordered_json::parse("[[0, 0, 1000]]"));
   EXPECT_EQ(optionsOf("sub-03_hemi-L_region-crown")["viewpoint"],
-            nlohmann::ordered_json({100, 0, 900}));
+            nlohmann::ordered_json::parse("[[100, 0, 900]]"));
 }
 
 TEST_F(Study, OnlyWhatHasChangedByContentIsDoneAgain) {
