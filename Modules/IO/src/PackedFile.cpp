@@ -18,8 +18,8 @@ namespace {
 
 constexpr std::size_t kBlock = std::size_t{1} << 18;  // 8 windows: costs 1 % of size, feeds threads
 constexpr std::size_t kBlocksAtOnce = 128;            // bounds the memory of a batch
-// A Huffman code is made of a quarter of a block, piece by piece: costs 0.1 % of size, saves a third
-// of the packing's time.
+// A Huffman code is made of a quarter of a block, piece by piece: costs 0.1 % of size, saves a
+// third of the packing's time.
 constexpr std::size_t kLook = std::size_t{1} << 14, kLooksEvery = 4 * kLook;
 constexpr std::uint32_t kCrcPolynomial = 0xedb88320;  // of gzip, x^31 in the lowest bit
 
