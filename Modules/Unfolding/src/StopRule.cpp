@@ -86,6 +86,11 @@ Termination StopRule::check(Unfolder& unfolder, const std::vector<IterationRecor
   } else if (settled && !thesis && !options_.targetVisibility && firmness < kFirmest &&
              last.visibility > kEnoughSeen && last.edgeStrainMean > kLittleStrained) {
     unfolder.firmUp(kFirming);
+  } else if (settled && kept && !thesis && !options_.targetVisibility &&
+             last.visibility < kSeenAsPromised && last.edgeStrainMean < kLittleStrained &&
+             unfolder.state().drive < kLargestDrive) {
+    // Lengths have something to give where less is seen than promised.
+    unfolder.raiseDrive(driveFactor(last.visibility, kEnoughSeen));
   } else if (settled && (kept || thesis)) {
     if (!options_.targetVisibility) return Termination::Converged;
     if (thesis || unfolder.state().drive >= kLargestDrive) return Termination::Stalled;

@@ -198,6 +198,25 @@ TEST(Unfold, LengthsRecoverWhereMoreIsSeenThanNeeded) {
   EXPECT_GT(end.visibility, kEnoughSeen - 0.005);
 }
 
+TEST(Unfold, LengthsYieldFurtherWhereLessIsSeenThanPromised) {
+  // Waves that stiff lengths would keep half closed.
+  TriangleMesh waves = geometry::makeRectangle(24, 8, 24, 8);
+  for (Eigen::Index v = 0; v < waves.vertexCount(); ++v) {
+    waves.positions(v, 2) = 0.7 * std::sin(kPi * waves.positions(v, 0) / 3) *
+                            std::sin(kPi * waves.positions(v, 1) / 3);
+  }
+  const Region region = regionOfMarked(waves, interiorOf(24, 8, 0));
+  UnfoldOptions options;
+  options.unfolder.surround = Surround::None;
+  options.unfolder.weights[Term::Spring] = 300;
+  const UnfoldResult result =
+      unfold(waves, region, visibility::viewpoint(Point(12, 4, 1000)), options);
+  const IterationRecord& end = result.history[static_cast<std::size_t>(result.iteration)];
+  EXPECT_GT(result.checkpoint.state.drive, 1);
+  EXPECT_GT(end.visibility, result.history[15].visibility + 0.005);
+  EXPECT_LT(end.edgeStrainMean, kLittleStrained + 0.01);
+}
+
 TEST(Unfold, OfTwoStatesThatAreSeenWellTheLessStrainedIsBetter) {
   IterationRecord state;
   const auto better = [&](double visibility, double strain, double other, double otherStrain) {

@@ -59,6 +59,7 @@ struct BestState {
   Positions moving;      ///< of the vertices that move
 };
 
+inline constexpr double kSeenAsPromised = 0.98;   ///< visibility below which lengths yield further
 inline constexpr double kEnoughSeen = 0.985;      ///< visibility from which on lengths count first
 inline constexpr double kLittleStrained = 0.085;  ///< mean edge strain that needs no mending
 
