@@ -71,8 +71,8 @@ def map_errors(path, bars):
     figure, axes = plt.subplots(figsize=(6.4, 3.2))
     labels = []
     for n, (on, (ours, theirs)) in enumerate(bars.items()):
-        for k, (key, what) in enumerate((("distance_error_local", "local"),
-                                         ("distance_error_all", "all"))):
+        for k, (key, what) in enumerate((("geodesic_error_local", "local"),
+                                         ("geodesic_error_all", "all"))):
             at = 2.4 * n + k
             axes.bar(at - 0.18, 100 * float(ours[key]), 0.34, color=BLUE,
                      label="Explica" if at == 0 else None)

@@ -45,7 +45,7 @@ def shells(explica, page):
                                      0.1 * error + 1e-4, command))
         order = float(-np.polyfit(np.log(1 / np.array(spacings)), np.log(errors[name]), 1)[0])
         rows.append(Measured(f"thickness from {name}, order of convergence",
-                             "shells of 4 to 0.5 mm voxels", order, "", 0.15, "as above"))
+                             "shells of 4 to 0.5 mm voxels", order, "", 0.15, command))
     figures.errors_over_spacing(page / "shells.svg", spacings, errors)
     return rows
 
@@ -68,15 +68,24 @@ def known_points(side):
     return points[inside], table["thickness_mm"][inside]
 
 
-def distance_to_surface(points, positions, faces, count=12):
-    """Distance of points from a triangulated surface, mm: nearest of the faces about the nearest
-    vertices."""
-    centres = positions[faces].mean(axis=1)
-    _, near = cKDTree(centres).query(points, k=count, workers=-1)
-    best = np.full(len(points), np.inf)
-    for k in range(count):
-        best = np.minimum(best, distance_to_triangles(points, positions[faces[near[:, k]]]))
-    return best
+def nearest_faces(points, positions, faces, count=12):
+    """Distance of points from a triangulated surface, mm, and the nearest face: of those whose
+    centres are nearest."""
+    _, near = cKDTree(positions[faces].mean(axis=1)).query(points, k=count, workers=-1)
+    apart = np.stack([distance_to_triangles(points, positions[faces[near[:, k]]])
+                      for k in range(count)], axis=1)
+    best = apart.argmin(axis=1)
+    rows = np.arange(len(points))
+    return apart[rows, best], near[rows, best]
+
+
+def at_points(points, positions, corners, values):
+    """Values at points: the mean over a face's corners, the nearer the more; 0 (not measured) at a
+    corner makes the mean 0."""
+    apart = np.linalg.norm(positions[corners] - points[:, None, :], axis=2)
+    weight = 1 / np.maximum(apart, 1e-6)
+    mean = (weight * values[corners]).sum(axis=1) / weight.sum(axis=1)
+    return np.where((values[corners] > 0).all(axis=1), mean, 0)
 
 
 def distance_to_triangles(p, t):
@@ -106,9 +115,9 @@ def beside_freesurfer(explica, page, made, side, kind):
     positions, faces = white.agg_data("pointset").astype(float), white.agg_data("triangle")
     thickness = nib.load(made / "thickness.shape.gii").darrays[0].data.astype(float)
     points, reference = known_points(side)
-    _, vertex = cKDTree(positions).query(points, workers=-1)
-    at, known = thickness[vertex], thickness[vertex] > 0
-    apart = distance_to_surface(points, positions, faces)
+    apart, face = nearest_faces(points, positions, faces)
+    at = at_points(points, positions, faces[face], thickness)
+    known = at > 0
     theirs = freesurfer_regions(side)
     pairs = [(row["name"], theirs[row["name"]], float(row["thickness_mean_mm"]))
              for row in made.table("regions.tsv") if row["name"] in theirs]
@@ -168,22 +177,26 @@ def freesurfer_image(explica, page):
 
 UNFOLDED = [
     ("fsaverage5 left pial, 25 mm", ("fsaverage5", "pial_left.gii.gz"),
-     ["--radius", 25, "--direction=-1,0.2,0.2"]),
+     25, (-1, 0.2, 0.2)),
     ("fsaverage5 right white, 25 mm", ("fsaverage5", "white_right.gii.gz"),
-     ["--radius", 25, "--direction=1,0.2,0.2"]),
+     25, (1, 0.2, 0.2)),
     ("S1 left pial, 20 mm", ("s1_pycortex_lh", "pia_lh.gii"),
-     ["--radius", 20, "--direction=-1,0.2,0.2"]),
+     20, (-1, 0.2, 0.2)),
     ("S1 left white, 20 mm", ("s1_pycortex_lh", "wm_lh.gii"),
-     ["--radius", 20, "--direction=-1,0.2,0.2"]),
+     20, (-1, 0.2, 0.2)),
 ]
 
 
 def unfolding(explica, page):
+    """Patches about the vertex that lies farthest along a direction, opened towards it."""
     del page
     rows = []
-    for on, path, options in UNFOLDED:
-        name = on.replace(",", "").replace(" ", "-")
-        made = explica("unfold", real(*path), *options, out=name, done=(0, 3))
+    for on, path, radius, direction in UNFOLDED:
+        surface = real(*path)
+        farthest = int((nib.load(surface).agg_data("pointset") @ np.array(direction)).argmax())
+        made = explica("unfold", surface, "--vertex", farthest, "--radius", radius,
+                       "--direction=" + ",".join(map(str, direction)),
+                       out=on.replace(",", "").replace(" ", "-"), done=(0, 3))
         s = made.summary
         new = s["self_intersections_final"] - s["self_intersections_initial"]
         rows += [
@@ -214,13 +227,13 @@ def flat_maps(explica, page):
                            out=f"flat-{side}-compared")
         ours, theirs = compared.table("comparison.tsv")[:2]
         bars[on] = (ours, theirs)
-        for key, what, tolerance in (("distance_error_local", "local distance error", 0.3),
-                                     ("distance_error_all", "distance error over all pairs", 0.5)):
+        for key, what, tolerance in (("geodesic_error_local", "local distance error", 0.3),
+                                     ("geodesic_error_all", "distance error over all pairs", 0.5)):
             for row, whose in ((ours, "ours"), (theirs, "FreeSurfer's")):
                 rows.append(Measured(f"{what}, {whose}", on, 100 * float(row[key]), "%", tolerance,
                                      compared.command))
         for row, whose in ((ours, "ours"), (theirs, "FreeSurfer's")):
-            rows.append(Measured(f"faces turned over, {whose}", on, float(row["faces_flipped"]), "",
+            rows.append(Measured(f"faces turned over, {whose}", on, float(row["turned_over"]), "",
                                  0, compared.command))
         rows.append(Measured("seconds of the whole command", on, made.seconds, "s",
                              2 * made.seconds + 1, made.command))
@@ -238,7 +251,9 @@ def sampled(explica, page):
     image = nib.load(scan)
     ijk = np.stack(np.meshgrid(*map(np.arange, image.shape), indexing="ij"), axis=-1)
     place = nib.affines.apply_affine(image.affine, ijk).astype(np.float32)
-    mid = nib.load(surfaces / "mid.surf.gii").agg_data("pointset")
+    white, pial = (nib.load(surfaces / f"{name}.surf.gii").agg_data("pointset")
+                   for name in ("white", "pial"))
+    half = (white.astype(float) + pial) / 2
     worst, command = 0.0, ""
     for axis in range(3):
         volume = explica.folder / f"coordinate-{axis}.nii.gz"
@@ -247,9 +262,9 @@ def sampled(explica, page):
         made = explica("sample", volume, "--surfaces", surfaces.folder, "--depths", "0.5",
                        out=f"coordinate-{axis}-sampled")
         found = nib.load(next(pathlib.Path(made.folder).glob("*.func.gii"))).darrays[0].data
-        worst = max(worst, float(np.abs(found - mid[:, axis]).max()))
+        worst = max(worst, float(np.abs(found - half[:, axis]).max()))
         command = made.command
-    return [Measured("coordinates sampled half way, largest error", "bert, left", worst, "mm",
+    return [Measured("coordinates sampled half way from white to pial, largest error", "bert, left", worst, "mm",
                      1e-4, command)]
 
 

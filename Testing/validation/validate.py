@@ -27,10 +27,13 @@ def digits(value):
 
 def table(rows):
     lines = ["| on | what | value | may differ by | command |", "|---|---|---|---|---|"]
+    before = ""
     for row in rows:
         unit = f" {row.unit}" if row.unit else ""
         lines.append(f"| {row.on} | {row.what} | {digits(row.value)}{unit} | "
-                     f"{row.tolerance:.2g}{unit} | `{row.command}` |")
+                     f"{row.tolerance:.2g}{unit} | "
+                     + (f"`{row.command}` |" if row.command != before else "as above |"))
+        before = row.command
     return "\n".join(lines) + "\n"
 
 
