@@ -202,8 +202,8 @@ TEST(Unfold, LengthsYieldFurtherWhereLessIsSeenThanPromised) {
   // Waves that stiff lengths would keep half closed.
   TriangleMesh waves = geometry::makeRectangle(24, 8, 24, 8);
   for (Eigen::Index v = 0; v < waves.vertexCount(); ++v) {
-    waves.positions(v, 2) = 0.7 * std::sin(kPi * waves.positions(v, 0) / 3) *
-                            std::sin(kPi * waves.positions(v, 1) / 3);
+    waves.positions(v, 2) =
+        0.7 * std::sin(kPi * waves.positions(v, 0) / 3) * std::sin(kPi * waves.positions(v, 1) / 3);
   }
   const Region region = regionOfMarked(waves, interiorOf(24, 8, 0));
   UnfoldOptions options;
