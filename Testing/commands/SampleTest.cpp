@@ -8,6 +8,7 @@
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Testing/Command.h"
 #include "Explica/Testing/FreeSurferSubject.h"
+#include "Explica/Testing/Grids.h"
 
 #include <gtest/gtest.h>
 
@@ -49,16 +50,6 @@ Grid gridAbout0() {
   grid.direction.col(0) *= -1;  // as FreeSurfer and most scanners have it
   grid.origin = -grid.direction * grid.spacing.cwiseProduct(Vector(19.5, 21.5, 17.5));
   return grid;
-}
-
-template <class Function>
-Volume<float> volumeOf(const Grid& grid, const Function& f) {
-  Volume<float> volume(grid);
-  for (std::size_t v = 0; v < volume.size(); ++v) {
-    const auto [i, j, k] = grid.subscripts(v);
-    volume[v] = static_cast<float>(f(grid.toWorld(Vector(i, j, k))));
-  }
-  return volume;
 }
 
 /// White and pial spheres of 10 and 14 mm, and volumes of coordinates.

@@ -5,7 +5,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Geometry/Fixtures.h"
-#include "Grids.h"
+#include "Explica/Testing/Grids.h"
 
 #include <gtest/gtest.h>
 

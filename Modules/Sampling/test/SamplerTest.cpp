@@ -7,7 +7,7 @@
 #include "Explica/Core/Parallel.h"
 #include "Explica/Geometry/Fixtures.h"
 #include "Explica/Sampling/Depth.h"
-#include "Grids.h"
+#include "Explica/Testing/Grids.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include "Explica/Sampling/TissueLayers.h"
 
 #include "Explica/Core/Errors.h"
-#include "Grids.h"
+#include "Explica/Testing/Grids.h"
 
 #include <gtest/gtest.h>
 
