@@ -2,37 +2,30 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "Explica/Core/TriangleMesh.h"
+#include "Explica/Report/ColourMap.h"
 #include "Explica/Viewer/Window.h"
+#include "ShownSurface.h"
 
 #include <filesystem>
-#include <optional>
-#include <string>
 
 namespace explica::app {
 
 /// True if the name is that of a volume's file.
 [[nodiscard]] bool isVolume(const std::filesystem::path& path);
 
-/// True if the folder holds what `explica unfold` writes.
-[[nodiscard]] bool isUnfolding(const std::filesystem::path& folder);
-
-/// The surface that an unfolding began with: its input if that is still there, else its first
-/// frame.
-/// @throws InvalidInput, IOError  neither can be read
-struct StartingSurface {
-  TriangleMesh mesh;
-  std::string file;
-};
-[[nodiscard]] StartingSurface startOfUnfolding(const std::filesystem::path& folder);
-
 /// What the window shows of a file or folder on a surface: maps, labels, slices of a volume, the
-/// states of a finished unfolding.
+/// states of a finished unfolding, profiles and stacks of depths.
 /// @throws InvalidInput, IOError  nothing that fits the surface
 [[nodiscard]] viewer::Opened openForWindow(const std::filesystem::path& path,
-                                           const TriangleMesh& surface);
+                                           const ShownSurface& surface);
+
+/// A file's labels in the colours of its own table.
+/// @throws as readLabelsOn
+[[nodiscard]] viewer::WindowLabels windowLabels(const ShownSurface& surface,
+                                                const std::filesystem::path& path);
 
 /// Colours as in the pictures of `explica view --screenshot`.
 [[nodiscard]] viewer::Scale scaleOf(const Eigen::VectorXd& values);
+[[nodiscard]] viewer::Scale scaleFrom(const report::ColourScale& scale);
 
 }  // namespace explica::app

@@ -66,10 +66,10 @@ std::future<std::string> saveState(Context& context, const std::string& surface,
 
 }  // namespace
 
-void steer(Context& context, const std::string& path, const TriangleMesh& surface,
-           const Vector& direction, std::vector<viewer::Opened> opened,
-           const SteerOptions& options) {
-  viewer::Session session(surface);
+void steer(Context& context, const ShownSurface& surface, const Vector& direction,
+           std::vector<viewer::Opened> opened, const SteerOptions& options) {
+  const std::string& path = surface.file;
+  viewer::Session session(surface.mesh);
   viewer::Choice choice;
   choice.centre = options.vertex.value_or(-1);
   choice.radius = options.radius;

@@ -3,6 +3,7 @@
 
 #include "Film.h"
 #include "OpenedFiles.h"
+#include "OpenedFolders.h"
 #include "Steer.h"
 
 #include "Explica/Application/Command.h"
@@ -44,9 +45,13 @@ void declare(Declaration& d, Settings& s) {
   d.synopsis("choose and steer an unfolding in a window; pictures and films without one")
       .description(
           "Without --screenshot or --film a window opens on a surface, or on a folder of `explica "
-          "unfold`: pick a centre (C), take the view as viewpoint (V), set the radius, run and "
-          "pause (Space), step back and forth, save (W); F1 shows every key. Maps, labels and "
-          "volumes named after the surface are shown with it. "
+          "unfold`, `flatten` or `sample`: pick a centre (C), take the view as viewpoint (V), set "
+          "the radius, run and pause (Space), step back and forth, save (W); F1 shows every key. "
+          "Maps, labels, volumes and folders named after the surface are shown with it: of a "
+          "folder "
+          "of `explica sample` the maps and their curves over the depth of the cortex, region by "
+          "region; of `explica flatten` the flat map, and each volume on it depth by depth. Where "
+          "a map was not measured (off the valid.shape.gii beside it, thickness 0) it is grey. "
           "Surfaces are drawn with a map or labels on their vertices, from one or more sides; a "
           "volume is "
           "shown in slices with the cut lines of the surfaces named after it (the first red, the "
@@ -59,8 +64,13 @@ void declare(Declaration& d, Settings& s) {
           "Thickness on the pial surface, from both sides")
       .example("explica view T1.nii.gz white.surf.gii pial.surf.gii --screenshot slices.png",
                "White and pial surface on the T1")
+      .example(
+          "explica view flat sampled",
+          "A flat map, its stack of depths, and sampled maps with their profiles, in the window")
       .input("FILE", FileKind::Any,
-             "surfaces; or a volume and surfaces; or a folder of `explica unfold`", s.files)
+             "surfaces; or a volume and surfaces; or a folder of `explica unfold`, `flatten` or "
+             "`sample`",
+             s.files)
       .option("Picture", Field{"screenshot", "", "PNG file to write"}, s.screenshot)
       .option(
           "Picture",
@@ -177,19 +187,24 @@ void openWindow(Context& context, const Settings& s) {
         "the window shows a surface, and volumes beside it: name the surface first; or write a "
         "picture with --screenshot FILE.png");
   }
-  const bool finished = isUnfolding(s.files.front());
-  const StartingSurface start =
-      finished ? startOfUnfolding(s.files.front())
-               : StartingSurface{io::readSurface(s.files.front(), s.reading).mesh, s.files.front()};
+  const bool folder = std::filesystem::is_directory(s.files.front());
+  const auto found = folder ? surfaceOfFolder(s.files.front()) : std::nullopt;
+  if (folder && !found) {
+    throw UsageError("'" + s.files.front() +
+                     "': is no folder of explica unfold, flatten or sample");
+  }
+  const ShownSurface start =
+      found ? *found
+            : ShownSurface{io::readSurface(s.files.front(), s.reading).mesh, s.files.front()};
   std::vector<viewer::Opened> opened;
-  for (std::size_t n = finished ? 0 : 1; n < s.files.size(); ++n) {
-    opened.push_back(openForWindow(s.files[n], start.mesh));
+  for (std::size_t n = folder ? 0 : 1; n < s.files.size(); ++n) {
+    opened.push_back(openForWindow(s.files[n], start));
   }
   for (const auto& file : {s.map, s.labels}) {
-    if (file) opened.push_back(openForWindow(*file, start.mesh));
+    if (file) opened.push_back(openForWindow(*file, start));
   }
-  steer(context, start.file, start.mesh, s.direction.value_or(Vector(-1, 0, 0)), std::move(opened),
-        s.window);
+  const Vector direction = s.direction.value_or(start.direction.value_or(Vector(-1, 0, 0)));
+  steer(context, start, direction, std::move(opened), s.window);
 }
 
 Termination run(Context& context, const Settings& s) {

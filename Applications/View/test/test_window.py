@@ -9,6 +9,10 @@ import subprocess
 import tempfile
 import unittest
 
+import matplotlib.image
+import nibabel
+import numpy as np
+
 import virtual_display
 
 EXECUTABLE = os.environ["EXPLICA_EXECUTABLE"]
@@ -45,6 +49,67 @@ def folded_ball(path, rings=48, sectors=72, radius=30.0):
         file.write(f"OFF\n{len(points)} {len(faces)} 0\n")
         file.writelines("%.17g %.17g %.17g\n" % p for p in points)
         file.writelines("3 %d %d %d\n" % f for f in faces)
+
+
+def sampled_and_flat(folder):
+    """A folded sheet with a volume on it: the folders of explica sample and explica flatten."""
+    points, faces = [], []
+    count, pitch = 41, 1.0
+    for i in range(count):
+        for j in range(count):
+            x, y = pitch * (i - count // 2), pitch * (j - count // 2)
+            points.append((x, y, 4 * math.cos(0.35 * x) * math.cos(0.1 * y)))
+    for i in range(count - 1):
+        for j in range(count - 1):
+            a, b = i * count + j, (i + 1) * count + j
+            faces += [(a, b, b + 1), (a, b + 1, a + 1)]
+    points = np.array(points, "f4")
+    faces = np.array(faces, "i4")
+    gifti = nibabel.gifti
+    for name, lift in (("white", 0), ("pial", 2)):
+        surface = gifti.GiftiImage()
+        for data, intent in ((points + [0, 0, lift], "POINTSET"), (faces, "TRIANGLE")):
+            kind = "NIFTI_TYPE_FLOAT32" if intent == "POINTSET" else "NIFTI_TYPE_INT32"
+            surface.add_gifti_data_array(
+                gifti.GiftiDataArray(
+                    data.astype("f4" if intent == "POINTSET" else "i4"),
+                    "NIFTI_INTENT_" + intent,
+                    kind,
+                )
+            )
+        surface.meta["AnatomicalStructurePrimary"] = "CortexLeft"
+        nibabel.save(surface, folder / f"{name}.surf.gii")
+    affine = np.diag([1.0, 1, 1, 1])
+    affine[:3, 3] = (-25, -25, -8)
+    place = np.moveaxis(np.indices((51, 51, 18)), 0, -1) + affine[:3, 3]
+    folded = 4 * np.cos(0.35 * place[..., 0]) * np.cos(0.1 * place[..., 1])
+    depth = (place[..., 2] - folded) / 2
+    values = 10 * depth + np.where(place[..., 1] > 0, 5, 0)
+    nibabel.save(nibabel.Nifti1Image(values.astype("f4"), affine), folder / "t1.nii.gz")
+    labels = gifti.GiftiImage()
+    keys = np.where(points[:, 1] > 0, 2, 1).astype("i4")
+    labels.add_gifti_data_array(
+        gifti.GiftiDataArray(keys, "NIFTI_INTENT_LABEL", "NIFTI_TYPE_INT32")
+    )
+    for key, name, red in ((1, "posterior", 0.9), (2, "anterior", 0.1)):
+        entry = gifti.GiftiLabel(key, red, 0.2, 1 - red, 1)
+        entry.label = name
+        labels.labeltable.labels.append(entry)
+    nibabel.save(labels, folder / "areas.label.gii")
+    for words in (
+        ["sample", "t1.nii.gz", "--surfaces", ".", "--depths", "5", "--labels", "areas.label.gii"]
+        + ["--out", "sampled"],
+        ["flatten", "white.surf.gii", "--surfaces", ".", "--volumes", "t1.nii.gz"]
+        + ["--regions", "areas.label.gii", "--out", "flat"],
+    ):
+        subprocess.run([EXECUTABLE, *words, "--quiet"], cwd=folder, check=True)
+
+
+def colours_of(path):
+    """How many pixels of each colour a picture has."""
+    pixels = np.rint(255 * matplotlib.image.imread(path)[..., :3]).astype(int).reshape(-1, 3)
+    colours, counts = np.unique(pixels, axis=0, return_counts=True)
+    return dict(zip(map(tuple, colours.tolist()), counts.tolist()))
 
 
 class Window(unittest.TestCase):
@@ -126,6 +191,38 @@ class Window(unittest.TestCase):
         )
         self.assertEqual(result.returncode, 0, result.stderr)
         self.pictures("over opened before labels refused")
+
+    @unittest.skipUnless(virtual_display.SERVER, "skipped: Xvfb is not installed")
+    def test_sampled_and_flattened_folders_open_with_curves_and_depths(self):
+        sampled_and_flat(self.folder)
+        result = self.view(
+            "picture curves.png\nset profileRegion anterior\npicture region.png\n"
+            "set map areas.label.gii\npicture labels.png\n"
+            "open flat\npicture montage.png\n",
+            "sampled",
+        )
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.pictures("curves region labels montage")
+        # The curve of the chosen region has the region's own colour; labels have no others.
+        own = (26, 51, 230)
+        self.assertGreater(colours_of(self.folder / "region.png").get(own, 0), 200)
+        # The stack's pale ground shows only where the stack does.
+        ground = (206, 220, 236)
+        before, after = (
+            colours_of(self.folder / f"{name}.png").get(ground, 0) for name in ("labels", "montage")
+        )
+        self.assertEqual(before, 0)
+        self.assertGreater(after, 500)
+
+        # A flattening by itself: its patch, folded and flat, under the maps of the whole.
+        result = self.view(
+            "picture flat.png\nkey Home 0 0\npicture folded.png\n"
+            "set map t1 depth 1\npicture map.png\ndo profiles\n",
+            "flat", "sampled",
+        )  # fmt: skip
+        self.assertEqual(result.returncode, 2, result.stderr)  # there is no such action
+        self.assertIn("do profiles", result.stderr)
+        self.pictures("flat folded map")
 
     def test_without_a_display_it_says_so(self):
         environment = {k: v for k, v in os.environ.items() if k != "DISPLAY"}

@@ -3,7 +3,7 @@
 #include "../Table.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/IO/SurfaceFile.h"
-#include "Explica/IO/VolumeSeries.h"
+#include "Explica/Pipeline/FlatStack.h"
 #include "Explica/Report/Chart.h"
 #include "Explica/Report/Figure.h"
 #include "ReportParts.h"
@@ -12,10 +12,8 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <fstream>
-#include <functional>
 #include <iterator>
 
 namespace explica::pipeline {
@@ -23,10 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostMaps = 6;  // drawn folded, unfolded and flat
-constexpr int kTileWidth = 300;       // pixels of a depth's picture, about
-constexpr std::array<std::uint8_t, 3> kOffTheMap = {206, 220, 236};  // no colour of the maps
-constexpr int kMostTiles = 12;                                       // depths of a stack
+constexpr std::size_t kMostMaps = 6;      // drawn folded, unfolded and flat
 constexpr double kWholeHemisphere = 0.6;  // share of the surface's area from which it counts as all
 
 /// A patch and the shapes in which it is shown.
@@ -192,72 +187,17 @@ void showShapes(ResultFolder& results, const StepFolder& step, const std::vector
   }
 }
 
-/// A volume of the grid: mean over its frames where it has several.
-struct Stack {
-  Volume<float> values;
-  int frames = 1;
-};
-
-Stack readStack(const fs::path& file) {
-  io::VolumeSeries series(file);
-  Stack stack{Volume<float>(series.grid()), series.frames()};
-  std::vector<double> sum(stack.values.size(), 0);
-  for (int f = 0; f < stack.frames; ++f) {
-    const std::vector<float> frame = series.next(1);
-    for (std::size_t v = 0; v < sum.size(); ++v) sum[v] += frame[v];
-  }
-  for (std::size_t v = 0; v < sum.size(); ++v) {
-    stack.values[v] = static_cast<float>(sum[v] / stack.frames);
-  }
-  return stack;
-}
-
-/// One depth of a stack, u to the right and v upwards.
-report::Picture depthPicture(const Volume<float>& stack, int k, int zoom,
-                             const std::function<report::Colour(float)>& colourOf) {
-  const int width = stack.grid.size[0], height = stack.grid.size[1];
-  report::Picture picture(width * zoom, height * zoom, kOffTheMap);
-  for (int y = 0; y < picture.height; ++y) {
-    for (int x = 0; x < picture.width; ++x) {
-      const float value = stack[stack.grid.linear(x / zoom, height - 1 - y / zoom, k)];
-      if (!std::isfinite(value)) continue;
-      const report::Colour colour = colourOf(value);
-      for (int c = 0; c < 3; ++c) picture.pixel(x, y)[c] = report::encodeSrgb(colour[c]);
-    }
-  }
-  return picture;
-}
-
-void showStack(ResultFolder& results, const StepFolder& step, const fs::path& file) {
-  const Stack stack = readStack(file);
-  const Grid& grid = stack.values.grid;
-  std::string name = file.filename().string().substr(std::string_view("flat_").size());
-  name.resize(name.size() - std::string_view(".nii.gz").size());
-  const Json options = step.record.value("options", Json::object());
-  const bool labels = options.value("nearest", false);
-  std::vector<double> known;
-  std::copy_if(stack.values.data.begin(), stack.values.data.end(), std::back_inserter(known),
-               [](float v) { return std::isfinite(v); });
-  const report::ColourScale scale = report::scaleFor(
-      Eigen::Map<const Eigen::VectorXd>(known.data(), static_cast<Eigen::Index>(known.size())),
-      name, "", labels ? std::nullopt : std::optional(report::ColourMap::Grey));
+void showStack(ResultFolder& results, const fs::path& file) {
+  FlatStack stack = drawFlatStack(file);
   report::ReportViews views;
-  views.title = name + ", layer by layer";
+  views.title = stack.name + ", layer by layer";
   views.caption =
-      std::string("The grid's depths from white to pial, cells of ") + readable(grid.spacing[0]) +
+      std::string("The grid's depths from white to pial, cells of ") + readable(stack.cell) +
       " mm" + (stack.frames > 1 ? "; mean of " + std::to_string(stack.frames) + " frames" : "") +
       ". Pale blue: off the map, or not known.";
-  if (!labels) views.scale = scale;
-  const auto colourOf = [&](float value) {
-    return labels ? report::colourOfLabel(static_cast<Label>(std::lround(value))) : scale(value);
-  };
-  const int zoom = std::max(1, (kTileWidth + grid.size[0] / 2) / std::max(1, grid.size[0]));
-  const int depths = grid.size[2], shown = std::min(depths, kMostTiles);
-  for (int n = 0; n < shown; ++n) {
-    const int k = shown < 2 ? 0 : n * (depths - 1) / (shown - 1);
-    const double depth = depths < 2 ? 0.5 : static_cast<double>(k) / (depths - 1);
-    views.views.push_back(
-        {"depth " + readable(depth), depthPicture(stack.values, k, zoom, colourOf)});
+  views.scale = stack.scale;
+  for (FlatStack::Tile& tile : stack.tiles) {
+    views.views.push_back({"depth " + readable(tile.depth), std::move(tile.picture)});
   }
   results.content().views.push_back(std::move(views));
 }
@@ -317,9 +257,8 @@ void showPicture(ResultFolder& results, const StepFolder& step) {
 void showFlat(ResultFolder& results, const StepFolder& step, const std::vector<GivenMap>& maps) {
   results.attempt("Picture of the flat map", [&] { showPicture(results, step); });
   results.attempt("The patch's shapes", [&] { showShapes(results, step, maps); });
-  for (const fs::path& file : filesOf(step, ".nii.gz")) {
-    if (file.filename().string().rfind("flat_", 0) != 0) continue;
-    results.attempt(file.filename().string(), [&] { showStack(results, step, file); });
+  for (const fs::path& file : flatStackFiles(step.folder)) {
+    results.attempt(file.filename().string(), [&] { showStack(results, file); });
   }
   results.attempt("Distortion maps", [&] { chartDistortion(results, step); });
   results.attempt("Regions of the patch", [&] { tabulateRegions(results, step); });

@@ -15,6 +15,10 @@ Curves::Curves(QWidget* parent) : QWidget(parent) {
 }
 
 void Curves::show(std::vector<Curve> curves, std::size_t state) {
+  std::erase_if(curves, [](const Curve& curve) {
+    return std::none_of(curve.values.begin(), curve.values.end(),
+                        [](double v) { return std::isfinite(v); });
+  });
   curves_ = std::move(curves);
   state_ = state;
   update();

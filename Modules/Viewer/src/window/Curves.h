@@ -21,6 +21,7 @@ class Curves : public QWidget {
   };
 
   explicit Curves(QWidget* parent = nullptr);
+  /// Curves without a known value are left out.
   void show(std::vector<Curve> curves, std::size_t state);
 
  protected:

@@ -67,10 +67,11 @@ MainWindow::MainWindow(Session& session, MakeScale scale, OpenFile open, Save sa
   for (Opened& opened : options_.opened) take(std::move(opened));
   options_.opened.clear();
   fillMaps();
+  if (!maps_.empty()) panels_.map->setCurrentIndex(kOwnMaps);
   connectPanels();
-  stage_->look(session_.choice().direction);
   crosshair_ = session_.surface().positions.colwise().mean().transpose();
   refresh();
+  stage_->look(session_.choice().direction);
   QObject::connect(&timer_, &QTimer::timeout, this, [this] { follow(); });
   timer_.start(kFrameMilliseconds);
   view_->setFocus();
@@ -97,15 +98,16 @@ void MainWindow::buildMenus() {
     };
   };
   QMenu* file = menuBar()->addMenu("&File");
-  addAction(file, "open", "&Open map, labels, volume or unfolding ...", QKeySequence::Open, [this] {
+  addAction(file, "open", "&Open map, labels or volume ...", QKeySequence::Open, [this] {
     const QString path = QFileDialog::getOpenFileName(this, "Open");
     if (!path.isEmpty()) open(path.toStdString());
   });
-  addAction(
-      file, "openFolder", "Open finished unfolding ...", QKeySequence("Ctrl+Shift+O"), [this] {
-        const QString path = QFileDialog::getExistingDirectory(this, "Folder of explica unfold");
-        if (!path.isEmpty()) open(path.toStdString());
-      });
+  addAction(file, "openFolder", "Open folder of unfold, flatten or sample ...",
+            QKeySequence("Ctrl+Shift+O"), [this] {
+              const QString path = QFileDialog::getExistingDirectory(
+                  this, "Folder of explica unfold, flatten or sample");
+              if (!path.isEmpty()) open(path.toStdString());
+            });
   addAction(file, "save", "&Save the state shown", QKeySequence("W"), [this] { saveState(); });
   addAction(file, "picture", "Save &picture ...", QKeySequence("P"), [this] {
     const QString path = QFileDialog::getSaveFileName(this, "Picture", "explica.png", "*.png");
@@ -160,7 +162,9 @@ void MainWindow::buildMenus() {
   });
   addAction(view, "measure", "&Distance along the surface, between two points under the pointer",
             QKeySequence("D"), under(&MainWindow::measure));
-  view->addAction(panels_.slicesDock->toggleViewAction());
+  for (QDockWidget* dock : {panels_.slicesDock, panels_.profilesDock, panels_.stackDock}) {
+    view->addAction(dock->toggleViewAction());
+  }
 
   QMenu* helpMenu = menuBar()->addMenu("&Help");
   addAction(helpMenu, "help", "&Keys and what to do", QKeySequence::HelpContents,
@@ -252,6 +256,15 @@ void MainWindow::take(Opened opened) {
     slices_ = std::move(opened.slices);
     panels_.slicesDock->show();
   }
+  if (!opened.profiles.empty()) {
+    panels_.profiles->add(std::move(opened.profiles));
+    panels_.profilesDock->show();
+  }
+  if (!opened.stacks.empty()) {
+    panels_.stack->add(std::move(opened.stacks));
+    panels_.stackDock->show();
+  }
+  shareRoomBelow(*this, panels_);
   statusBar()->showMessage(QString::fromStdString(opened.what));
 }
 
@@ -342,10 +355,17 @@ void MainWindow::takeAbove() {
     return;
   }
   const WindowMap& values = maps_[static_cast<std::size_t>(map)];
+  if (values.file.empty()) {
+    statusBar()->showMessage(
+        "explica unfold takes the first map of a file: write this one into a file of its own.");
+    return;
+  }
   Choice choice = session_.choice();
   choice.marked.clear();
   for (const double v : values.values) choice.marked.push_back(v > panels_.above->value());
-  choice.markedOptions = {{"map", values.name}, {"above", std::to_string(panels_.above->value())}};
+  choice.markedOptions = {
+      {"map", values.file},
+      {"above", QString::number(panels_.above->value(), 'g', 17).toStdString()}};
   choose(std::move(choice));
 }
 

@@ -3,7 +3,9 @@
 #pragma once
 
 #include "Curves.h"
+#include "DepthPanel.h"
 #include "SlicePanel.h"
+#include "StackPanel.h"
 
 #include <QCheckBox>
 #include <QComboBox>
@@ -42,9 +44,17 @@ struct Panels {
   // Slices
   SlicePanel* slices = nullptr;
   QDockWidget* slicesDock = nullptr;
+  // Depths
+  DepthPanel* profiles = nullptr;
+  QDockWidget* profilesDock = nullptr;
+  StackPanel* stack = nullptr;
+  QDockWidget* stackDock = nullptr;
 };
 
 /// Builds the panels into docks of the window.
 [[nodiscard]] Panels buildPanels(QMainWindow& window);
+
+/// Gives the docks below the picture equal widths and enough height.
+void shareRoomBelow(QMainWindow& window, const Panels& panels);
 
 }  // namespace explica::viewer

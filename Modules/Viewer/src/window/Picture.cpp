@@ -43,6 +43,18 @@ std::string wordOf(const Session& session) {
   }
 }
 
+/// What is known of a state's numbers.
+QString inWords(const unfolding::IterationRecord& record) {
+  QStringList words;
+  const auto say = [&](const char* text, double value, int digits) {
+    if (std::isfinite(value)) words << QString(text).arg(value, 0, 'f', digits);
+  };
+  say("visibility %1", record.visibility, 3);
+  say("area error %1 %", 100 * record.areaErrorMean, 2);
+  say("edge strain %1 %", 100 * record.edgeStrainMean, 1);
+  return words.join(", ");
+}
+
 Rgb colourIn(const Scale& scale, double value) {
   if (!std::isfinite(value)) return scale.unknown;
   const double share = std::clamp((value - scale.low) / (scale.high - scale.low), 0.0, 1.0);
@@ -119,13 +131,11 @@ void MainWindow::showState(const unfolding::IterationRecord& record, std::size_t
   panels_.run->setEnabled(activity != Activity::Over);
   QString says = QString::fromStdString(wordOf(session_));
   if (count > 0) {
-    says = QString("state %1 of %2 (%3)\nvisibility %4, area error %5 %, edge strain %6 %")
+    says = QString("state %1 of %2 (%3)\n%4")
                .arg(shown_)
                .arg(count - 1)
                .arg(says)
-               .arg(record.visibility, 0, 'f', 3)
-               .arg(100 * record.areaErrorMean, 0, 'f', 2)
-               .arg(100 * record.edgeStrainMean, 0, 'f', 1);
+               .arg(inWords(record));
   }
   panels_.stateSays->setText(says);
 }
@@ -239,10 +249,20 @@ std::string MainWindow::valueAt(std::int32_t vertex) const {
   return QString("%1 %2").arg(value, 0, 'g', 4).arg(shownUnit_.c_str()).toStdString();
 }
 
+std::string MainWindow::regionAt(std::int32_t vertex) const {
+  for (const WindowLabels& labels : labels_) {
+    for (const auto& [key, name] : labels.names) {
+      if (key == labels.keys[vertex] && key != 0) return name;
+    }
+  }
+  return "";
+}
+
 void MainWindow::readUnder(const QPoint& at) {
   const QPoint pixel = fromLowerLeft(at);
   const auto picked = stage_->pick(pixel.x(), pixel.y());
   if (!picked) return;
+  panels_.profiles->emphasise(regionAt(picked->vertex));
   const Point p = session_.surface().positions.row(picked->vertex).transpose();
   statusBar()->showMessage(QString("%1: %2   vertex %3 at %4, %5, %6 mm on the folded surface")
                                .arg(panels_.map->currentText())

@@ -22,6 +22,7 @@
 #include <vtkRenderWindowInteractor.h>
 #include <vtkRenderer.h>
 #include <vtkScalarBarActor.h>
+#include <vtkTextActor.h>
 #include <vtkTextProperty.h>
 #include <vtkUnsignedCharArray.h>
 
@@ -69,12 +70,16 @@ Stage::Stage(const TriangleMesh& surface) : surface_(surface), positions_(surfac
   renderer_->SetBackground(0.97, 0.975, 0.98);
   bar_->SetLookupTable(barColours_);
   bar_->SetNumberOfLabels(5);
-  bar_->SetPosition(0.9, 0.25);
+  bar_->SetPosition(0.91, 0.25);
   bar_->SetWidth(0.08);
   bar_->SetHeight(0.5);
   bar_->SetVisibility(0);
   bar_->SetUnconstrainedFontSize(true);
-  for (vtkTextProperty* text : {bar_->GetLabelTextProperty(), bar_->GetTitleTextProperty()}) {
+  barTitle_->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
+  barTitle_->SetPosition(0.99, 0.78);
+  barTitle_->GetTextProperty()->SetJustificationToRight();
+  barTitle_->SetVisibility(0);
+  for (vtkTextProperty* text : {bar_->GetLabelTextProperty(), barTitle_->GetTextProperty()}) {
     text->SetColor(0.1, 0.1, 0.1);
     text->SetFontSize(15);
     text->ShadowOff();
@@ -82,6 +87,7 @@ Stage::Stage(const TriangleMesh& surface) : surface_(surface), positions_(surfac
     text->ItalicOff();
   }
   renderer_->AddActor2D(bar_);
+  renderer_->AddActor2D(barTitle_);
 }
 
 Stage::~Stage() = default;
@@ -211,6 +217,7 @@ void Stage::paintFaces(const std::vector<Rgb>& colours) {
 
 void Stage::showScale(const std::optional<Scale>& scale, const std::string& title) {
   bar_->SetVisibility(scale.has_value());
+  barTitle_->SetVisibility(scale.has_value());
   if (!scale) return;
   barColours_->SetNumberOfTableValues(static_cast<vtkIdType>(scale->colours.size()));
   for (std::size_t n = 0; n < scale->colours.size(); ++n) {
@@ -218,8 +225,11 @@ void Stage::showScale(const std::optional<Scale>& scale, const std::string& titl
     barColours_->SetTableValue(static_cast<vtkIdType>(n), c[0] / 255.0, c[1] / 255.0, c[2] / 255.0);
   }
   barColours_->SetRange(scale->low, scale->high);
-  bar_->SetTitle(title.c_str());
-  bar_->SetLabelFormat("%-#.3g");
+  barTitle_->SetInput(title.c_str());
+  const double largest = std::max(std::abs(scale->low), std::abs(scale->high));
+  const double shares = std::max(1.0, largest / std::max(1e-300, scale->high - scale->low));
+  const int digits = std::min(9, 3 + static_cast<int>(std::log10(shares)));
+  bar_->SetLabelFormat(("%-." + std::to_string(digits) + "g").c_str());
 }
 
 void Stage::showRim(const std::vector<std::int32_t>& regionFaces) {

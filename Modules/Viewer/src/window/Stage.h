@@ -25,6 +25,7 @@ class vtkRenderWindow;
 class vtkRenderWindowInteractor;
 class vtkRenderer;
 class vtkScalarBarActor;
+class vtkTextActor;
 class vtkUnsignedCharArray;
 
 namespace explica::viewer {
@@ -86,6 +87,7 @@ class Stage {
   vtkNew<vtkPolyData> rimLines_;
   vtkNew<vtkPolyData> pathLines_;
   vtkNew<vtkScalarBarActor> bar_;
+  vtkNew<vtkTextActor> barTitle_;
   vtkNew<vtkLookupTable> barColours_;
   vtkNew<vtkOrientationMarkerWidget> cube_;
   vtkNew<vtkCellPicker> picker_;
