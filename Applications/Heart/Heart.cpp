@@ -8,6 +8,7 @@
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/IO/VolumeSeries.h"
 #include "Explica/Ventricle/Pictures.h"
+#include "Explica/Ventricle/Reference.h"
 #include "Explica/Ventricle/Slices.h"
 
 #include <nlohmann/json.hpp>
@@ -47,6 +48,9 @@ void declare(Declaration& d, Settings& s) {
           "Papillary muscles belong to whatever label they have.")
       .reference("Cerqueira et al. 2002, Circulation 105(4):539-542 (17 segments)")
       .reference("Kawel et al. 2012, Circ Cardiovasc Imaging 5(4):500-508 (normal thickness)")
+      .reference(
+          "Hudsmith et al. 2005, Petersen et al. 2017, Ubachs et al. 2009, Kawel-Boehm et al. "
+          "2015, J Cardiovasc Magn Reson 7:775, 19:18, 11(Suppl 1):P61, 17:29 (other ranges)")
       .reference("Jones, Buchbinder, Aharon 2000, Human Brain Mapping 11:12-32")
       .example("explica heart patient001_4d_gt.nii.gz --out heart",
                "All frames of a file; which label is what is found from their values and places")
@@ -69,10 +73,12 @@ void declare(Declaration& d, Settings& s) {
       .output("frames.tsv", FileKind::Table,
               "per frame: volumes (ml), mass (g, 1.05 g/ml), mean thickness (mm), thickening (%)")
       .output("segments.tsv", FileKind::Table,
-              "per segment and frame: thickness (mm), its spread, thickening (%)")
+              "per segment and frame: thickness (mm), its spread, thickening (%, mm)")
       .output("slices.tsv", FileKind::Table,
               "per slice and frame: areas, wall of circles of equal areas, thickness plain and "
               "corrected")
+      .output("reference.tsv", FileKind::Table,
+              "numbers of this heart beside those of healthy adults, with sources")
       .output("bullseye.svg", FileKind::Picture, "thickness at ED and ES, thickening")
       .output("bullseye.png", FileKind::Picture, "the same in pixels")
       .output("slices_ed.svg", FileKind::Picture, "slices with boundaries and trajectories")
@@ -323,6 +329,7 @@ void writeOutputs(Context& context, const ventricle::Beat& beat) {
   writeTextFile(context.output("frames.tsv"), ventricle::frameTable(beat));
   writeTextFile(context.output("segments.tsv"), ventricle::segmentTable(beat));
   writeTextFile(context.output("slices.tsv"), ventricle::sliceTable(beat));
+  writeTextFile(context.output("reference.tsv"), ventricle::referenceTable(beat));
   writePicture(context, "bullseye", ventricle::bullseye(beat));
   writePicture(context, "slices_ed", ventricle::slicePicture(beat, beat.diastole));
   if (beat.systole != beat.diastole && beat.atSystole().measures) {

@@ -192,4 +192,108 @@ TEST(HeartCommand, ReadsAllFramesOfOneFile) {
   EXPECT_EQ(readText(folder / "one/segments.tsv"), readText(folder / "out/segments.tsv"));
 }
 
+namespace {
+
+/// Writes the labels that `labelAt` gives to places (mm) of a grid about the origin.
+template <class LabelAt>
+void writeLabels(const std::string& path, double pixel, double slice, const LabelAt& labelAt) {
+  Grid grid;
+  grid.size = {static_cast<int>(130 / pixel), static_cast<int>(130 / pixel),
+               static_cast<int>(72 / slice)};
+  grid.spacing = Vector(pixel, pixel, slice);
+  for (int c = 0; c < 3; ++c) grid.origin[c] = -0.5 * (grid.size[c] - 1) * grid.spacing[c];
+  Volume<Label> labels(grid);
+  std::size_t v = 0;
+  for (int k = 0; k < grid.size[2]; ++k) {
+    for (int j = 0; j < grid.size[1]; ++j) {
+      for (int i = 0; i < grid.size[0]; ++i) labels[v++] = labelAt(grid.toWorld(Vector(i, j, k)));
+    }
+  }
+  io::writeVolume(path, labels);
+}
+
+}  // namespace
+
+TEST(HeartCommand, TheRightVentriclesWallIsPlainTissueWithOpenEnds) {
+  // A crescent of 3 mm about the right ventricle (3), that ends at the left one's wall (2).
+  const TemporaryFolder folder;
+  const auto heartAt = [](const Point& p) -> Label {
+    const double left = std::hypot(p[0], p[1]), right = std::hypot(p[0] + 24, p[1]);
+    if (left < 28) return left < 20 ? 1 : 2;
+    return right < 28 ? 3 : right < 31 ? 4 : 0;
+  };
+  for (const auto& [pixel, slice] : {std::pair{1.0, 1.0}, {1.4, 8.0}}) {
+    writeLabels(folder / "heart.nii.gz", pixel, slice, heartAt);
+    const auto made =
+        explica({"thickness", folder / "heart.nii.gz", "--inner", "3", "--tissue", "4",
+                 "--insulated", "1,2", "--open-ends", "--out", folder / "out", "--force"});
+    ASSERT_EQ(made.exitCode, 0) << made;
+    const auto summary = readJson(folder / "out/summary.json");
+    EXPECT_NEAR(summary["thickness_mean_columns"].get<double>(), 3, 0.06) << slice;
+    // Pixels of 1.4 mm make steps of the wall's borders: a quarter of one to either side.
+    EXPECT_NEAR(summary["thickness_p05"].get<double>(), 3, 0.25 * std::max(pixel, 1.4)) << slice;
+    EXPECT_NEAR(summary["thickness_p95"].get<double>(), 3, 0.25 * std::max(pixel, 1.4)) << slice;
+  }
+}
+
+TEST(HeartCommand, AThinAtrialWallWithAMouthIsPlainTissueWithOpenEnds) {
+  // A sphere of 22 mm with a wall of 2 mm, open above 12 mm.
+  const TemporaryFolder folder;
+  writeLabels(folder / "atrium.nii.gz", 1, 1, [](const Point& p) -> Label {
+    if (p[2] > 12) return 0;
+    return p.norm() < 22 ? 1 : p.norm() < 24 ? 2 : 0;
+  });
+  const auto made = explica({"thickness", folder / "atrium.nii.gz", "--inner", "1", "--tissue", "2",
+                             "--open-ends", "--out", folder / "out"});
+  ASSERT_EQ(made.exitCode, 0) << made;
+  EXPECT_NEAR(readJson(folder / "out/summary.json")["thickness_mean_columns"].get<double>(), 2,
+              0.05);
+}
+
+TEST(HeartCommand, AFolderOfHeartsBecomesATableOfPeople) {
+  const TemporaryFolder folder;
+  makeBeat(folder);
+  for (const std::string& name : {std::string("1"), std::string("2")}) {
+    const fs::path place = folder / ("data/sub-" + name + "/anat/sub-" + name + "_frame-");
+    fs::create_directories(place.parent_path());
+    fs::copy_file(folder / "beat/frame-0000.nii.gz", place.string() + "ED_dseg.nii.gz");
+    fs::copy_file(folder / "beat/frame-0001.nii.gz", place.string() + "ES_dseg.nii.gz");
+  }
+  fs::create_directories(folder / "data/sub-3");
+  writeText(folder / "data/sub-3/sub-3_dseg.nii.gz", "nothing of the kind");
+  writeText(folder / "data/participants.tsv", "participant_id\tsex\nsub-2\tF\n");
+  const std::vector<std::string> words = {"study", "hearts", folder / "data", folder / "out"};
+  const auto made = explica(words);
+  EXPECT_EQ(made.exitCode, 3) << made;
+  EXPECT_NE(made.err.find("1 of 3 hearts failed: sub-3"), std::string::npos) << made;
+  auto table = tableOf(folder / "out/hearts.tsv");
+  EXPECT_EQ(table["participant_id"], (std::vector<std::string>{"sub-1", "sub-2", "sub-3"}));
+  EXPECT_EQ(table["sex"], (std::vector<std::string>{"n/a", "F", "n/a"}));
+  EXPECT_EQ(table["state"][1], "done");
+  EXPECT_EQ(table["state"][2].find("failed: "), 0U) << table["state"][2];
+  const auto single = explica({"heart", folder / "beat/frame-0000.nii.gz",
+                               folder / "beat/frame-0001.nii.gz", "--out", folder / "single"});
+  ASSERT_EQ(single.exitCode, 0) << single;
+  const auto summary = readJson(folder / "single/summary.json");
+  EXPECT_NEAR(std::stod(table["ejection_fraction_percent"][0]),
+              summary["ejection_fraction_percent"].get<double>(), 1e-9);
+  const auto segments = tableOf(folder / "single/segments.tsv");
+  EXPECT_EQ(table["segment_08_thickness_ed"][1], segments.at("thickness")[7]);
+  EXPECT_EQ(table["segment_08_thickening"][1], segments.at("thickening")[17 + 7]);
+  // What has not changed is kept, a heart that is mended is done, and its row says so.
+  const auto before = fs::last_write_time(folder / "out/sub-1/heart/segments.nii.gz");
+  fs::copy_file(folder / "beat/frame-0000.nii.gz", folder / "data/sub-3/sub-3_dseg.nii.gz",
+                fs::copy_options::overwrite_existing);
+  const auto again = explica(words);
+  EXPECT_EQ(again.exitCode, 0) << again;
+  EXPECT_EQ(fs::last_write_time(folder / "out/sub-1/heart/segments.nii.gz"), before);
+  EXPECT_EQ(tableOf(folder / "out/hearts.tsv")["state"][2], "done");
+  EXPECT_FALSE(fs::exists(folder / "out/sub-3/heart/problem.txt"));
+  EXPECT_NE(readText(folder / "out/index.html").find("sub-2/heart/bullseye.png"),
+            std::string::npos);
+  const auto nobody =
+      explica({"study", "hearts", folder / "data", folder / "out", "--participant-label", "9"});
+  EXPECT_EQ(nobody.exitCode, 2) << nobody;
+}
+
 }  // namespace explica::testing

@@ -184,6 +184,15 @@ echo '{"hemispheres": ["L"], "input": "cortex/labels.nii.gz", "subjects": ["01"]
   "parameters": {"steps": ["thickness"]}}' > study.json
 explica study participant study.json results
 explica study group study.json results)"},
+      {"study hearts",
+       "a folder with a folder of label volumes for each person",
+       "a table with a row a person, a page of bull's-eyes, each heart's results",
+       {"participant-label", "endings", "preset", "frames"},
+       R"(explica phantom ventricle --size 64 --spacing 2 --slice 8 --frames 2 --out beat
+mkdir -p data/sub-01
+cp beat/frame-0000.nii.gz data/sub-01/sub-01_frame-ED_dseg.nii.gz
+cp beat/frame-0001.nii.gz data/sub-01/sub-01_frame-ES_dseg.nii.gz
+explica study hearts data hearts)"},
       {"study list",
        "a study file",
        "the labels of its subjects, or of those that are not done",

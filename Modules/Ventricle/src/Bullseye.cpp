@@ -3,6 +3,7 @@
 #include "Canvas.h"
 #include "Explica/Report/ColourMap.h"
 #include "Explica/Ventricle/Pictures.h"
+#include "Explica/Ventricle/Reference.h"
 
 #include <array>
 #include <cmath>
@@ -178,6 +179,38 @@ std::string leftOutNote(const Frame& frame) {
          " wall voxels are left out: openings, valve plane, apex";
 }
 
+std::string here(const Beat& beat, Quantity quantity) {
+  const double value = valueOf(beat, quantity);
+  return std::isfinite(value) ? format(value, 1) : "n/a";
+}
+
+/// Thickness of healthy adults and of this heart.
+std::vector<std::string> thicknessNotes(const Beat& beat) {
+  const Reference& healthy = referenceOf(Quantity::MiddleThickness);
+  return {leftOutNote(beat.atDiastole()),
+          "rings from outside: basal, middle, apical, and the apex",
+          "* healthy adults, mean of the middle ring, 2 SD to either side (here " +
+              here(beat, Quantity::MiddleThickness) + " mm):",
+          rangeText(healthy),
+          healthy.people,
+          healthy.source};
+}
+
+/// Thickening of healthy adults and of this heart, which was published in mm.
+std::vector<std::string> thickeningNotes(const Beat& beat) {
+  std::vector<std::string> notes = {"100 x (end-systole - end-diastole) / end-diastole",
+                                    "in mm, means of rings:"};
+  for (const auto& [quantity, name] : {std::pair{Quantity::BasalThickening, "basal "},
+                                       std::pair{Quantity::MiddleThickening, "middle "},
+                                       std::pair{Quantity::ApicalThickening, "apical "}}) {
+    notes.push_back(name + here(beat, quantity) + ", healthy " + rangeText(referenceOf(quantity)));
+  }
+  const Reference& healthy = referenceOf(Quantity::BasalThickening);
+  notes.push_back(healthy.people);
+  notes.push_back(healthy.source);
+  return notes;
+}
+
 std::vector<Panel> panelsOf(const Beat& beat) {
   const Frame& diastole = beat.atDiastole();
   const Frame& systole = beat.atSystole();
@@ -193,17 +226,16 @@ std::vector<Panel> panelsOf(const Beat& beat) {
   const auto thickness = [](const Segment& row) { return row.thickness; };
   const report::ColourScale scale = scaleOf(lengths, "mm", false);
   std::vector<Panel> panels;
-  Panel first{"Wall thickness at end-diastole",
-              "mm",
-              1,
-              scale,
-              thickness,
-              &diastole,
-              {leftOutNote(diastole), "rings from outside: basal, middle, apical, and the apex",
-               "* healthy adults, middle ring, mean and 2 SD: women 3.5 to 7.1 mm,",
-               "men 4.1 to 8.5 mm (Kawel et al. 2012, Circ Cardiovasc Imaging 5:500)"},
-              3.5,
-              8.5};
+  const Reference& healthy = referenceOf(Quantity::MiddleThickness);
+  const Panel first{"Wall thickness at end-diastole",
+                    "mm",
+                    1,
+                    scale,
+                    thickness,
+                    &diastole,
+                    thicknessNotes(beat),
+                    healthy.women.low(),
+                    healthy.men.high()};
   panels.push_back(first);
   if (!both) return panels;
   panels.push_back({"Wall thickness at end-systole",
@@ -212,14 +244,11 @@ std::vector<Panel> panelsOf(const Beat& beat) {
                     scale,
                     thickness,
                     &systole,
-                    {leftOutNote(systole), "same colours as at end-diastole"}});
-  panels.push_back({"Thickening from end-diastole to end-systole",
-                    "%",
-                    0,
-                    scaleOf(changes, "%", true),
-                    [](const Segment& row) { return row.thickening; },
-                    &systole,
-                    {"100 x (end-systole - end-diastole) / end-diastole"}});
+                    {leftOutNote(systole), "same colours as at end-diastole",
+                     "of systolic thickness no range is given: see thickening in mm"}});
+  panels.push_back({"Thickening from end-diastole to end-systole", "%", 0,
+                    scaleOf(changes, "%", true), [](const Segment& row) { return row.thickening; },
+                    &systole, thickeningNotes(beat)});
   return panels;
 }
 

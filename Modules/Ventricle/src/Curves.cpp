@@ -3,21 +3,32 @@
 #include "Canvas.h"
 #include "Explica/Report/ColourMap.h"
 #include "Explica/Ventricle/Pictures.h"
+#include "Explica/Ventricle/Reference.h"
 
 #include <cmath>
+#include <cstdio>
 #include <functional>
+#include <utility>
 
 namespace explica::ventricle {
 
 namespace {
 
-constexpr double kWidth = 430, kHeight = 320;
+constexpr double kWidth = 460, kHeight = 320, kNotes = 96;  // of one curve, and of the lines below
 constexpr double kLeft = 70, kRight = 24, kTop = 56, kBottom = 58;
+
+/// The range of healthy adults at one frame.
+struct Range {
+  std::size_t frame;
+  Quantity quantity;
+};
 
 /// A quantity over the frames.
 struct Curve {
   std::string title, unit;
   std::function<double(const Frame&)> value;
+  std::vector<Range> ranges;
+  std::vector<std::string> notes;  ///< below
 };
 
 /// A step of 1, 2 or 5 times a power of ten that gives about five ticks.
@@ -40,6 +51,10 @@ Axes axesOf(const Beat& beat, const Curve& curve, const Point2& corner) {
   double high = 0;
   for (const Frame& frame : beat.frames) {
     if (std::isfinite(curve.value(frame))) high = std::max(high, curve.value(frame));
+  }
+  for (const Range& range : curve.ranges) {
+    const Reference& healthy = referenceOf(range.quantity);
+    high = std::max({high, healthy.women.high(), healthy.men.high()});
   }
   if (high <= 0) high = 1;
   const double step = tickStep(high), first = beat.frames.front().number;
@@ -66,9 +81,32 @@ void drawAxes(Canvas& canvas, const Axes& axes, const Curve& curve) {
               kGrey);
 }
 
+/// Women's range and men's beside the frame's mark: mean and 2 SD.
+void drawRanges(Canvas& canvas, const Beat& beat, const Curve& curve, const Axes& axes) {
+  constexpr double kNear = 14, kApart = 15, kHalfCap = 4;
+  constexpr double kLabel = 16;  // of the first frame's mark, which stands right of the axis
+  for (const Range& range : curve.ranges) {
+    const Reference& healthy = referenceOf(range.quantity);
+    const double frame = beat.frames[range.frame].number;
+    const bool last = axes.at(frame, 0)[0] > axes.corner[0] + kWidth - kRight - 3 * kApart;
+    double shift = last ? -kNear - kApart : kNear + (range.frame == 0 ? kLabel : 0);
+    for (const auto& [spread, letter] :
+         {std::pair{healthy.women, "w"}, std::pair{healthy.men, "m"}}) {
+      const Point2 x(shift, 0), cap(kHalfCap, 0);
+      const Point2 low = axes.at(frame, spread.low()) + x, high = axes.at(frame, spread.high()) + x;
+      const Point2 mean = axes.at(frame, spread.mean) + x;
+      canvas.stroke({low, high}, kGrey, 1);
+      for (const Point2& end : {low, mean, high}) canvas.stroke({end - cap, end + cap}, kGrey, 1);
+      canvas.text(high + Point2(0, -4), letter, 6, kGrey);
+      shift += kApart;
+    }
+  }
+}
+
 void drawCurve(Canvas& canvas, const Beat& beat, const Curve& curve, const Point2& corner) {
   const Axes axes = axesOf(beat, curve, corner);
   drawAxes(canvas, axes, curve);
+  drawRanges(canvas, beat, curve, axes);
   const report::Colour colour = report::colourAt(report::ColourMap::Sequential, 0.35);
   std::vector<Point2> line;
   for (std::size_t f = 0; f < beat.frames.size(); ++f) {
@@ -82,17 +120,55 @@ void drawCurve(Canvas& canvas, const Beat& beat, const Curve& curve, const Point
     if (f == beat.systole && f != beat.diastole) canvas.text(above, "ES", 7.5, kInk);
   }
   if (line.size() > 1) canvas.stroke(line, colour, 2);
+  double y = kHeight + 12;
+  for (const std::string& note : curve.notes) {
+    canvas.text(corner + Point2(24, y), note, 7, kGrey, report::TextAnchor::Left);
+    y += 14;
+  }
+}
+
+/// What the bars are, and where the numbers come from.
+std::vector<std::string> volumeNotes(const Beat& beat) {
+  const Reference &volume = referenceOf(Quantity::DiastolicVolume),
+                  &ejection = referenceOf(Quantity::Ejection);
+  std::vector<std::string> notes = {"bars: healthy women (w) and men (m), mean and 2 SD",
+                                    volume.source, volume.people};
+  if (beat.ejectionFraction) {
+    char text[64];
+    std::snprintf(text, sizeof text, "ejection fraction here %.0f %%, healthy ",
+                  *beat.ejectionFraction);
+    notes.push_back(text + rangeText(ejection));
+    notes.push_back(ejection.source);
+  }
+  return notes;
+}
+
+std::vector<Curve> curvesOf(const Beat& beat) {
+  const Reference& mass = referenceOf(Quantity::Mass);
+  return {{"Volume of the cavity",
+           "ml",
+           [](const Frame& f) { return f.cavity; },
+           {{beat.diastole, Quantity::DiastolicVolume}, {beat.systole, Quantity::SystolicVolume}},
+           volumeNotes(beat)},
+          {"Mean thickness of the wall",
+           "mm",
+           [](const Frame& f) { return f.thickness; },
+           {},
+           {"of the whole wall, ranges of its rings: bullseye.svg, reference.tsv"}},
+          {"Mass of the wall",
+           "g",
+           [](const Frame& f) { return f.mass; },
+           {{beat.diastole, Quantity::Mass}},
+           {"bars: healthy women (w) and men (m), mean and 2 SD,", "papillary muscles in the wall",
+            mass.source}}};
 }
 
 }  // namespace
 
 Drawn beatCurves(const Beat& beat) {
-  const std::vector<Curve> curves = {
-      {"Volume of the cavity", "ml", [](const Frame& f) { return f.cavity; }},
-      {"Mean thickness of the wall", "mm", [](const Frame& f) { return f.thickness; }},
-      {"Mass of the wall", "g", [](const Frame& f) { return f.mass; }}};
+  const std::vector<Curve> curves = curvesOf(beat);
   Canvas canvas(static_cast<int>(kWidth * static_cast<double>(curves.size())),
-                static_cast<int>(kHeight));
+                static_cast<int>(kHeight + kNotes));
   for (std::size_t c = 0; c < curves.size(); ++c) {
     drawCurve(canvas, beat, curves[c], {kWidth * static_cast<double>(c), 0});
   }

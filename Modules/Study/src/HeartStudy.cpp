@@ -1,0 +1,411 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Study/HeartStudy.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Provenance/Json.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <sstream>
+
+namespace explica::study {
+namespace {
+
+namespace fs = std::filesystem;
+using provenance::Json;
+
+constexpr int kDeepest = 4;  // folders between a person and the label volumes
+
+bool isOther(const std::string& name) {
+  static const std::set<std::string> others = {"code", "derivatives", "sourcedata", "stimuli"};
+  return name.starts_with(".") || others.count(name) > 0;
+}
+
+std::vector<fs::path> foldersIn(const fs::path& parent) {
+  std::vector<fs::path> folders;
+  for (const auto& entry : fs::directory_iterator(parent)) {
+    if (entry.is_directory() && !isOther(entry.path().filename().string())) {
+      folders.push_back(entry.path());
+    }
+  }
+  std::sort(folders.begin(), folders.end());
+  return folders;
+}
+
+/// Files below a folder, in the order of their names.
+std::vector<fs::path> filesBelow(const fs::path& folder) {
+  std::vector<fs::path> files;
+  auto entry = fs::recursive_directory_iterator(folder);
+  for (; entry != fs::recursive_directory_iterator(); ++entry) {
+    if (entry.depth() >= kDeepest) entry.disable_recursion_pending();
+    if (entry->is_regular_file()) files.push_back(entry->path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+bool endsWith(const fs::path& file, const std::string& ending) {
+  const std::string name = file.filename().string();
+  return name.ends_with(ending + ".nii.gz") || name.ends_with(ending + ".nii");
+}
+
+std::vector<fs::path> labelsBelow(const fs::path& folder, const HeartLayout& layout) {
+  const std::vector<fs::path> files = filesBelow(folder);
+  for (const std::string& ending : layout.endings) {
+    std::vector<fs::path> labels;
+    std::copy_if(files.begin(), files.end(), std::back_inserter(labels),
+                 [&](const fs::path& file) { return endsWith(file, ending); });
+    if (!labels.empty()) return labels;
+  }
+  return {};
+}
+
+/// The person's sessions, or the person.
+std::vector<HeartSubject> sessionsOf(const fs::path& person, const HeartLayout& layout) {
+  const std::string name = person.filename().string();
+  std::vector<HeartSubject> found;
+  for (const fs::path& session : foldersIn(person)) {
+    const std::string part = session.filename().string();
+    if (!part.starts_with("ses-")) continue;
+    found.push_back({name + '_' + part, fs::path(name) / part, labelsBelow(session, layout)});
+  }
+  if (found.empty()) found.push_back({name, name, labelsBelow(person, layout)});
+  return found;
+}
+
+bool isWanted(const std::string& person, const std::vector<std::string>& wanted) {
+  return wanted.empty() || std::any_of(wanted.begin(), wanted.end(), [&](const std::string& one) {
+           return one == person || "sub-" + one == person;
+         });
+}
+
+std::vector<std::string> cellsOf(const std::string& line) {
+  std::vector<std::string> cells;
+  std::istringstream in(line.ends_with('\r') ? line.substr(0, line.size() - 1) : line);
+  for (std::string cell; std::getline(in, cell, '\t');) cells.push_back(cell);
+  return cells;
+}
+
+std::string textOf(const Json& value) {
+  if (value.is_null()) return "n/a";
+  return value.is_string() ? value.get<std::string>() : provenance::textOf(value);
+}
+
+/// A column of a heart's numbers.
+struct Column {
+  const char* key;
+  const char* unit;
+  const char* meaning;
+};
+
+/// Keys of the heart's summary.json, in the order of the table.
+constexpr Column kColumns[] = {
+    {"cavity_volume_ed_ml", "mL", "volume of the left ventricle's cavity at end-diastole"},
+    {"cavity_volume_es_ml", "mL", "volume of the left ventricle's cavity at end-systole"},
+    {"stroke_volume_ml", "mL", "end-diastolic less end-systolic volume"},
+    {"ejection_fraction_percent", "%", "stroke volume over end-diastolic volume"},
+    {"mass_ed_g", "g", "volume of the wall at end-diastole times 1.05 g/mL"},
+    {"thickness_mean_ed", "mm", "mean over columns of the wall that counts, at end-diastole"},
+    {"thickness_mean_es", "mm", "the same at end-systole"},
+    {"thickening_percent", "%", "end-systolic over end-diastolic mean thickness, less 1"},
+    {"thickness_plain_ed", "mm", "as thickness_mean_ed, not corrected for oblique cuts"},
+    {"axis_angle_deg", "degree", "long axis to the slices' normal"},
+    {"septum_deg", "degree", "angle over which the right ventricle touches the wall"},
+    {"orientation", "", "what tells where segments begin"},
+    {"labels", "", "convention of the labels"},
+    {"measured", "", "by slice or in space"},
+    {"frames", "", "frames read"},
+    {"frames_with_wall", "", "frames that have a wall"},
+    {"frame_ed", "", "number of the end-diastolic frame"},
+    {"frame_es", "", "number of the end-systolic frame"}};
+
+/// Thickness of the segments at both phases, and thickening.
+void addSegments(HeartRow& row, const fs::path& file, const Json& summary) {
+  std::ifstream table(file);
+  std::string line;
+  std::getline(table, line);
+  const std::vector<std::string> head = cellsOf(line);
+  const auto at = [&](const char* name) {
+    return static_cast<std::size_t>(std::find(head.begin(), head.end(), name) - head.begin());
+  };
+  const std::size_t segment = at("segment"), frame = at("frame"), thickness = at("thickness"),
+                    thickening = at("thickening");
+  const auto phase = [&](const char* key) {
+    return summary.contains(key) ? textOf(summary[key]) : std::string();
+  };
+  const std::string diastole = phase("frame_ed"), systole = phase("frame_es");
+  while (std::getline(table, line)) {
+    const std::vector<std::string> cells = cellsOf(line);
+    if (cells.size() < head.size() || cells[segment].empty()) continue;
+    const std::string name =
+        "segment_" + std::string(cells[segment].size() < 2 ? "0" : "") + cells[segment] + "_";
+    if (cells[frame] == diastole) row.values[name + "thickness_ed"] = cells[thickness];
+    if (cells[frame] != systole) continue;
+    row.values[name + "thickness_es"] = cells[thickness];
+    row.values[name + "thickening"] = cells[thickening];
+  }
+}
+
+HeartRow rowOf(const fs::path& out, const HeartSubject& subject) {
+  HeartRow row;
+  row.name = subject.name;
+  row.folder = subject.folder / "heart";
+  const fs::path folder = out / row.folder;
+  row.state = "not begun";
+  if (std::ifstream problem(folder / "problem.txt"); problem) {
+    std::string why;
+    std::getline(problem, why);
+    row.state = "failed: " + why;
+    return row;
+  }
+  if (!fs::exists(folder / "summary.json")) return row;
+  try {
+    const Json summary = provenance::readJson(folder / "summary.json");
+    row.state = "done";
+    for (const Json& flag : summary.value("flags", Json::array())) {
+      if (!flag.value("accepted", false)) row.state = "implausible: " + textOf(flag["message"]);
+    }
+    for (const Column& column : kColumns) {
+      if (summary.contains(column.key)) row.values[column.key] = textOf(summary[column.key]);
+    }
+    addSegments(row, folder / "segments.tsv", summary);
+  } catch (const std::exception& fault) {  // a damaged file is a fact of the study, not its end
+    row.state = std::string("failed: ") + fault.what();
+  }
+  row.pictured = fs::exists(folder / "bullseye.png");
+  return row;
+}
+
+std::vector<std::string> aboutColumns(const std::vector<HeartRow>& rows) {
+  std::set<std::string> names;
+  for (const HeartRow& row : rows) {
+    for (const auto& [name, value] : row.about) names.insert(name);
+  }
+  return {names.begin(), names.end()};
+}
+
+std::vector<std::string> segmentColumns(const std::vector<HeartRow>& rows) {
+  std::set<std::string> names;
+  for (const HeartRow& row : rows) {
+    for (const auto& [name, value] : row.values) {
+      if (name.starts_with("segment_")) names.insert(name);
+    }
+  }
+  return {names.begin(), names.end()};
+}
+
+std::string valueIn(const std::map<std::string, std::string>& values, const std::string& key) {
+  const auto found = values.find(key);
+  return found == values.end() || found->second.empty() ? "n/a" : found->second;
+}
+
+/// No tab or line end may stand in a cell.
+std::string cellText(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == '\t' || c == '\n' || c == '\r'; }, ' ');
+  return text;
+}
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else if (c == '"')
+      out += "&quot;";
+    else
+      out += c;
+  }
+  return out;
+}
+
+/// What the page shows of each person.
+constexpr Column kShown[] = {{"cavity_volume_ed_ml", "ml", "cavity, end-diastole"},
+                             {"cavity_volume_es_ml", "ml", "cavity, end-systole"},
+                             {"ejection_fraction_percent", "%", "ejection fraction"},
+                             {"mass_ed_g", "g", "mass"},
+                             {"thickness_mean_ed", "mm", "wall, end-diastole"},
+                             {"thickness_mean_es", "mm", "wall, end-systole"},
+                             {"thickening_percent", "%", "thickening"}};
+
+/// "63.27618" as "63.3".
+std::string rounded(const std::string& text) {
+  char* end = nullptr;
+  const double number = std::strtod(text.c_str(), &end);
+  if (end == text.c_str() || *end != '\0') return text;
+  char shown[48];
+  std::snprintf(shown, sizeof shown, "%.1f", number);
+  return shown;
+}
+
+constexpr char kStyle[] =
+    "body{font:16px/1.5 sans-serif;color:#1a1d21;max-width:1180px;margin:2em auto;padding:0 1em}"
+    ".scroll{overflow-x:auto}table{border-collapse:collapse}"
+    "td,th{border:1px solid #d5d9dd;padding:4px 10px;text-align:left;vertical-align:top}"
+    "td.n{text-align:right}th{background:#f1f3f5}tr.bad{background:#fbf0ee}"
+    "td.wide{padding:8px 10px "
+    "20px}img{height:360px;max-width:100%;object-fit:contain}a{color:#145ab4}";
+
+/// A line of numbers, and below it the pictures or what went wrong.
+std::string pageRow(const HeartRow& row, const std::vector<std::string>& about) {
+  const std::size_t colon = row.state.find(": ");
+  const std::string open = row.state == "done" ? "<tr><td>" : "<tr class=\"bad\"><td>";
+  std::string text =
+      open + escaped(row.name) + "</td><td>" + escaped(row.state.substr(0, colon)) + "</td>";
+  for (const std::string& name : about) {
+    text += "<td>" + escaped(valueIn(row.about, name)) + "</td>";
+  }
+  for (const Column& column : kShown) {
+    text += "<td class=\"n\">" + escaped(rounded(valueIn(row.values, column.key))) + "</td>";
+  }
+  text += "</tr>\n<tr><td class=\"wide\" colspan=\"" +
+          std::to_string(2 + about.size() + std::size(kShown)) + "\">";
+  if (colon != std::string::npos) text += escaped(row.state.substr(colon + 2));
+  if (row.pictured) {
+    const std::string folder = escaped(row.folder.generic_string());
+    text += "<a href=\"" + folder + "/bullseye.svg\"><img loading=\"lazy\" alt=\"bull's-eyes of " +
+            escaped(row.name) + "\" src=\"" + folder + "/bullseye.png\"></a>";
+  }
+  return text + "</td></tr>\n";
+}
+
+}  // namespace
+
+std::vector<HeartSubject> findHearts(const fs::path& dataset,
+                                     const std::vector<std::string>& wanted,
+                                     const HeartLayout& layout) {
+  if (!fs::is_directory(dataset)) throw InvalidInput(dataset.string() + ": is not a folder");
+  std::vector<HeartSubject> subjects;
+  std::set<std::string> people;
+  for (const fs::path& person : foldersIn(dataset)) {
+    const std::string name = person.filename().string();
+    if (!isWanted(name, wanted)) continue;
+    const bool participant = name.starts_with("sub-");
+    for (HeartSubject& subject : sessionsOf(person, layout)) {
+      // A participant without labels is a row that says so; another folder is not a person.
+      if (subject.labels.empty() && !participant) continue;
+      people.insert(name);
+      subjects.push_back(std::move(subject));
+    }
+  }
+  for (const std::string& one : wanted) {
+    if (!people.count(one) && !people.count("sub-" + one)) {
+      throw InvalidInput(dataset.string() + ": has nobody named " + one);
+    }
+  }
+  if (subjects.empty()) {
+    std::string endings;
+    for (const std::string& ending : layout.endings) endings += " *" + ending + ".nii.gz";
+    throw InvalidInput(dataset.string() + ": no folder in it holds label volumes; looked for" +
+                       endings);
+  }
+  return subjects;
+}
+
+std::map<std::string, std::map<std::string, std::string>> aboutParticipants(
+    const fs::path& dataset) {
+  std::map<std::string, std::map<std::string, std::string>> about;
+  std::ifstream table(dataset / "participants.tsv");
+  std::string line;
+  if (!table || !std::getline(table, line)) return about;
+  if (line.starts_with("\xef\xbb\xbf")) line.erase(0, 3);
+  const std::vector<std::string> head = cellsOf(line);
+  if (std::find(head.begin(), head.end(), "participant_id") == head.end()) {
+    throw InvalidInput((dataset / "participants.tsv").string() +
+                       ": has no column participant_id, which BIDS asks for");
+  }
+  while (std::getline(table, line)) {
+    const std::vector<std::string> cells = cellsOf(line);
+    std::map<std::string, std::string> row;
+    std::string id;
+    for (std::size_t c = 0; c < std::min(head.size(), cells.size()); ++c) {
+      if (head[c] == "participant_id")
+        id = cells[c];
+      else
+        row[head[c]] = cells[c];
+    }
+    about[id] = std::move(row);
+  }
+  return about;
+}
+
+std::vector<HeartRow> heartRows(
+    const fs::path& out, const std::vector<HeartSubject>& subjects,
+    const std::map<std::string, std::map<std::string, std::string>>& about) {
+  std::vector<HeartRow> rows;
+  for (const HeartSubject& subject : subjects) {
+    rows.push_back(rowOf(out, subject));
+    const auto known = about.find(subject.folder.begin()->string());
+    if (known != about.end()) rows.back().about = known->second;
+  }
+  return rows;
+}
+
+std::string heartTable(const std::vector<HeartRow>& rows) {
+  const std::vector<std::string> about = aboutColumns(rows), segments = segmentColumns(rows);
+  std::string text = "participant_id";
+  for (const std::string& name : about) text += '\t' + cellText(name);
+  text += "\tstate";
+  for (const Column& column : kColumns) text += std::string("\t") + column.key;
+  for (const std::string& name : segments) text += '\t' + name;
+  text += '\n';
+  for (const HeartRow& row : rows) {
+    text += cellText(row.name);
+    for (const std::string& name : about) text += '\t' + cellText(valueIn(row.about, name));
+    text += '\t' + cellText(row.state);
+    for (const Column& column : kColumns) text += '\t' + cellText(valueIn(row.values, column.key));
+    for (const std::string& name : segments) text += '\t' + valueIn(row.values, name);
+    text += '\n';
+  }
+  return text;
+}
+
+std::string heartColumns(const std::vector<HeartRow>& rows) {
+  Json columns = Json::object();
+  columns["state"] = {{"Description", "done, or what became of the run and why"}};
+  for (const Column& column : kColumns) {
+    columns[column.key] = {{"Description", column.meaning}};
+    if (*column.unit != '\0') columns[column.key]["Units"] = column.unit;
+  }
+  for (const std::string& name : segmentColumns(rows)) {
+    const bool percent = name.ends_with("thickening");
+    columns[name] = {{"Description",
+                      "mean over columns of a segment of the American Heart "
+                      "Association's 17"},
+                     {"Units", percent ? "%" : "mm"}};
+  }
+  return provenance::textOf(columns, 2) + "\n";
+}
+
+std::string heartPage(const std::vector<HeartRow>& rows, const std::string& title) {
+  const std::vector<std::string> about = aboutColumns(rows);
+  const auto done = std::count_if(rows.begin(), rows.end(),
+                                  [](const HeartRow& row) { return row.state == "done"; });
+  std::string text =
+      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
+      "content=\"width=device-width, initial-scale=1\"><link rel=\"icon\" href=\"data:,\"><title>" +
+      escaped(title) + "</title><style>" + kStyle + "</style></head><body>\n<h1>" + escaped(title) +
+      "</h1>\n<p>" + std::to_string(done) + " of " + std::to_string(rows.size()) +
+      " hearts are done. All numbers, segments too, are in <a href=\"hearts.tsv\">hearts.tsv</a>; "
+      "each folder holds what healthy adults have beside it (reference.tsv).</p>\n"
+      "<div class=\"scroll\"><table><tr><th>heart</th><th>state</th>";
+  for (const std::string& name : about) text += "<th>" + escaped(name) + "</th>";
+  for (const Column& column : kShown) {
+    text += std::string("<th>") + column.meaning + ", " + column.unit + "</th>";
+  }
+  text += "</tr>\n";
+  for (const HeartRow& row : rows) text += pageRow(row, about);
+  return text + "</table></div>\n</body></html>\n";
+}
+
+}  // namespace explica::study
