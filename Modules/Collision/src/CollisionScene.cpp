@@ -382,7 +382,7 @@ double largestSafeStep(const CollisionScene& scene, std::span<const Meeting> mee
   constexpr double kRoundDown = 1 - 1e-9;
   return leastTime(meetings.size(), limit, [&](std::size_t n, double atMost) {
     const Meeting& m = meetings[n];
-    const double room = kRoundDown * (1 - options.keptShare) * m.separation;
+    const double room = kRoundDown * (m.separation - options.gap(m.separation));
     if (room > 0 && atMost * m.closing <= room) return atMost;
     return safeTime(m.pair.kind, scene.points(m.pair, start), scene.points(m.pair, motion), atMost,
                     options);

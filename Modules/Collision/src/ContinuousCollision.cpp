@@ -48,6 +48,50 @@ AlongLine alongLine(PairKind kind, const FourPoints& x, const FourPoints& motion
   return {split(place) - kRound * size, -split(speed) + kRound * fastest};
 }
 
+/// Four points as the volume that they span: a . (u x v), |u x v| times the distance from the
+/// vertex to the face's plane, or between the lines of the two edges.
+struct Span {
+  Vector a, u, v;
+};
+
+Span spanOf(PairKind kind, const FourPoints& x) {
+  if (kind == PairKind::VertexFace) return {x[0] - x[1], x[2] - x[1], x[3] - x[1]};
+  return {x[0] - x[2], x[1] - x[0], x[3] - x[2]};
+}
+
+double volumeOf(const Vector& a, const Vector& u, const Vector& v) {
+  return a.dot(u.cross(v));
+}
+
+/// Whether the plane of a face, or the lines of two edges, provably stay farther than `gap` from
+/// the vertex or from each other, from x to y on straight ways.
+///
+/// The volume is a cubic of time and u x v a quadratic: both stay within the hull of their
+/// Bernstein coefficients.  Unlike planes that keep their direction, this bound follows a pair that
+/// turns.
+bool staysApart(PairKind kind, const FourPoints& x, const FourPoints& y, double gap) {
+  const Span s = spanOf(kind, x), e = spanOf(kind, y);
+  const std::array<double, 4> volume = {
+      volumeOf(s.a, s.u, s.v),
+      (volumeOf(e.a, s.u, s.v) + volumeOf(s.a, e.u, s.v) + volumeOf(s.a, s.u, e.v)) / 3,
+      (volumeOf(s.a, e.u, e.v) + volumeOf(e.a, s.u, e.v) + volumeOf(e.a, e.u, s.v)) / 3,
+      volumeOf(e.a, e.u, e.v)};
+  const auto [least, most] = std::minmax_element(volume.begin(), volume.end());
+  const double room = *least > 0 ? *least : -*most;
+  if (!(room > 0)) return false;
+  const double area = std::sqrt(std::max({s.u.cross(s.v).squaredNorm(),
+                                          (0.5 * (s.u.cross(e.v) + e.u.cross(s.v))).squaredNorm(),
+                                          e.u.cross(e.v).squaredNorm()}));
+  double size = 0;
+  for (int i = 0; i < 4; ++i) {
+    size = std::max({size, x[i].lpNorm<Eigen::Infinity>(), y[i].lpNorm<Eigen::Infinity>()});
+  }
+  constexpr double kRound = 1e-13;  // some hundreds of roundings
+  const double lengths = std::sqrt(std::max(s.u.squaredNorm(), e.u.squaredNorm()) *
+                                   std::max(s.v.squaredNorm(), e.v.squaredNorm()));
+  return room - kRound * size * lengths > kRoundUp * gap * area;
+}
+
 }  // namespace
 
 double approachBound(PairKind kind, const FourPoints& motion) {
@@ -68,7 +112,7 @@ double safeTime(PairKind kind, const FourPoints& x, const FourPoints& motion, do
   const double speed = approachBound(kind, motion);
   const double start = distanceBound(kind, x);
   if (!(start > 0)) return 0;
-  const double gap = options.keptShare * start;
+  const double gap = options.gap(start);
   if (speed * limit <= start - gap) return limit;
 
   // Time in which the distance cannot fall to the gap, whatever the features do in between.
@@ -80,8 +124,20 @@ double safeTime(PairKind kind, const FourPoints& x, const FourPoints& motion, do
   };
   double time = 0, distance = start;
   FourPoints now = x;
+  // Time that the pair stays apart as the volume between its points tells, 0 if it does not.
+  const auto turningTime = [&](double atLeast) {
+    constexpr double kShorter = 0.25;
+    for (double ahead = limit - time; ahead > atLeast; ahead *= kShorter) {
+      FourPoints then;
+      for (int i = 0; i < 4; ++i) then[i] = x[i] + (time + ahead) * motion[i];
+      if (staysApart(kind, now, then, gap)) return ahead;
+    }
+    return 0.0;
+  };
   for (int n = 0; n < options.maxAdvances; ++n) {
-    const double next = time + kAdvanceShare * freeTime(now, distance);
+    const double straight = kAdvanceShare * freeTime(now, distance);
+    if (time + straight >= limit) return limit;
+    const double next = time + std::max(straight, turningTime(straight));
     if (next >= limit) return limit;
     if (next <= time) return time;  // no advance left that floating point can tell
     const bool small = next - time < kSmallAdvance * limit;

@@ -123,6 +123,39 @@ TEST(ContinuousCollision, PairsAlmostInContactThatOpenAreNotHeldUp) {
   EXPECT_EQ(safeTime(PairKind::VertexFace, x, motion), 1);
 }
 
+TEST(ContinuousCollision, PairsAlmostInContactThatTurnAreNotHeldUp) {
+  // x + t w x (x - c): a turn that is followed along straight lines brings nothing closer, but the
+  // ends of the edges go two thousand gaps against each other along any direction that is kept.
+  const FourPoints vertexFace = {Point(0.2, 0.3, 1e-4), Point(0, 0, 0), Point(1, 0, 0),
+                                 Point(0, 1, 0)};
+  const FourPoints edges = {Point(-1, 0, 0), Point(1, 0, 0), Point(0.3, -1, 1e-4),
+                            Point(0.3, 1, 1e-4)};
+  const Vector turn(0.2, -0.3, 0.1), shift(30, -20, 10);
+  for (const PairKind kind : {PairKind::VertexFace, PairKind::EdgeEdge}) {
+    FourPoints x = kind == PairKind::VertexFace ? vertexFace : edges, motion;
+    for (int i = 0; i < 4; ++i) motion[i] = turn.cross(x[i]);
+    for (auto& at : x) at += shift;
+    EXPECT_EQ(safeTime(kind, x, motion), 1);
+  }
+}
+
+TEST(ContinuousCollision, PairsNearerThanTheKeptDistanceHardlyComeNearer) {
+  FourPoints x = kTriangleAndVertex;
+  FourPoints motion = {};
+  for (auto& m : motion) m.setZero();
+  AdvanceOptions options;
+  options.keptDistance = 0.01;
+  for (const double start : {1.0, 0.02, 0.005}) {
+    x[0][2] = start;
+    motion[0] = Vector(0, 0, -4 * start);
+    const double t = safeTime(PairKind::VertexFace, x, motion, 1, options);
+    const double left = start * (1 - 4 * t),
+                 kept = std::max(0.1 * start, std::min(0.01, 0.8 * start));
+    EXPECT_GE(left, kept * (1 - 1e-12)) << start;
+    EXPECT_LT(left, kept + 0.05 * start) << start;
+  }
+}
+
 TEST(ContinuousCollision, WhatMovesAsOneIsSafeThoughItTouches) {
   const FourPoints x = {Point(0, 0, 0), Point(-1, -1, 0), Point(2, -1, 0), Point(-1, 2, 0)};
   const Vector along(0.3, 0.1, 0.7);

@@ -13,8 +13,8 @@
 namespace explica::unfolding {
 namespace {
 
-constexpr char kMagic[] = "ExplicaUnfold6\n";
-static_assert(sizeof(std::int64_t) == 8 && sizeof(double) == 8);
+constexpr char kMagic[] = "ExplicaUnfold7\n";
+static_assert(sizeof(std::int64_t) == 8 && sizeof(double) == 8 && sizeof(HeldPair) == 20);
 
 /// FNV-1a: tells a damaged file, not a forged one.
 std::uint64_t checkSum(std::string_view bytes) {
@@ -114,6 +114,8 @@ void writeCheckpoint(const std::filesystem::path& path, const Checkpoint& checkp
   w.count(s.separating);
   w.number(s.separatingEnergy);
   w.count(s.stalled);
+  w.count(static_cast<std::int64_t>(s.held.size()));
+  for (const HeldPair& held : s.held) w.raw(&held, sizeof held);
   w.count(checkpoint.best.iteration);
   w.number(checkpoint.best.visibility);
   w.number(checkpoint.best.strain);
@@ -170,6 +172,8 @@ Checkpoint readCheckpoint(const std::filesystem::path& path) {
   c.state.separating = r.count() != 0;
   c.state.separatingEnergy = r.number();
   c.state.stalled = r.count() != 0;
+  c.state.held.resize(static_cast<std::size_t>(r.count()));
+  for (HeldPair& held : c.state.held) r.raw(&held, sizeof held);
   c.best.iteration = static_cast<int>(r.count());
   c.best.visibility = r.number();
   c.best.strain = r.number();

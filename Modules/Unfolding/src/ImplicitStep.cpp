@@ -28,12 +28,18 @@ constexpr double kPressed = 0.03;          // of a contact's range: below it con
 constexpr double kClosing = 0.99;  // of the squared distance: those that come no nearer do not
 constexpr double kStiffestContact = 1e3;  // ... up to this factor
 constexpr double kLockStiffness = 1e5;    // against about 1 of the other terms
+constexpr int kHoldFirst = 4;             // iterations that a pair is locked for, twice as many ...
+constexpr int kHoldLongest = 64;          // ... each time that it stops a step again, up to these
 constexpr double kSlowGain = 0.003;       // visibility per iteration below which areas tighten ...
 constexpr double kTightening = 1.2;       // ... by this factor ...
 constexpr double kTightest = 20;          // ... up to this one
 constexpr int kMaxAttempts = 12;          // with four times the damping each
 constexpr int kMaxHalvings = 8;           // of an attempt's step
 constexpr double kArmijo = 1e-4;          // of the descent that the gradient promises
+
+Pair pairOf(const HeldPair& held) {
+  return {static_cast<collision::PairKind>(held.pair[0]), held.pair[1], held.pair[2]};
+}
 
 /// One damped Newton-like step: contacts, gradient and objective of the state it starts from, then
 /// attempts until one lowers the objective.
@@ -50,7 +56,10 @@ class ImplicitStep {
   void couple(const Pair& pair);
   void couple(const std::array<std::int32_t, 4>& vertices);
   [[nodiscard]] Positions cappedMotion(const Positions& direction) const;
+  void lockHeld();
+  void lock(const Pair& pair);
   bool lockBlocking(const Motion& motion);
+  void hold(const Pair& pair);
   /// Halves the step until the objective does not rise.
   bool search(const Motion& motion, const std::vector<Contact>& onTheWay);
   void accept(Motion& motion);
@@ -66,6 +75,7 @@ class ImplicitStep {
   Positions gradient_, rightSide_;
   Couplings couplings_;
   std::vector<Pair> locked_;
+  bool relocked_ = false;  ///< pairs have been locked because they stopped this step
   Positions trial_;
 };
 
@@ -87,6 +97,7 @@ ImplicitStep::ImplicitStep(Unfolder::Implementation& unfolder)
   }
   couplings_ = u_.setup.couplings;
   for (const Contact& contact : contacts_) couple(contact.vertices);
+  lockHeld();
 }
 
 bool ImplicitStep::take() {
@@ -138,9 +149,10 @@ bool ImplicitStep::solve(Positions& direction) {
   return system.solve(rightSide_, direction);
 }
 
-/// Stiff springs along the six lines that join a pair's four vertices: the pair can then turn and
-/// shift, and open, but not slide or shear.  A rigid turn that is followed along straight lines
-/// brings nothing closer, so a locked pair does not stop the step.
+/// Stiff springs along the six lines that join a pair's four vertices, and along the one between
+/// its nearest points: the pair can then turn and shift, but not slide, shear or close.  A rigid
+/// turn that is followed along straight lines brings nothing closer, so a locked pair does not stop
+/// the step.
 void ImplicitStep::addLock(const Pair& pair) {
   const Positions& x = state_.positions;
   const auto v = u_.contacts.scene().vertices(pair);
@@ -153,6 +165,17 @@ void ImplicitStep::addLock(const Pair& pair) {
       if (a >= 0) u_.system.add(a, a, block);
       if (b >= 0) u_.system.add(b, b, block);
       if (a >= 0 && b >= 0) u_.system.add(a, b, -block);
+    }
+  }
+  const collision::Proximity near =
+      collision::findProximity(pair.kind, u_.contacts.scene().points(pair, x));
+  if (!(near.squaredDistance > 0)) return;
+  const Eigen::Matrix3d across =
+      kLockStiffness / near.squaredDistance * near.difference * near.difference.transpose();
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      const std::int32_t a = u_.setup.unknown[v[i]], b = u_.setup.unknown[v[j]];
+      if (a >= 0 && b >= 0) u_.system.add(a, b, near.weights[i] * near.weights[j] * across);
     }
   }
 }
@@ -183,13 +206,46 @@ Positions ImplicitStep::cappedMotion(const Positions& direction) const {
   return motion;
 }
 
+/// Pairs that stopped steps before are likely to stop this one.
+void ImplicitStep::lockHeld() {
+  std::erase_if(state_.held, [&](const HeldPair& h) { return h.until + h.hold < now_.iteration; });
+  if (state_.separating) return;
+  for (const HeldPair& held : state_.held) {
+    if (held.until > now_.iteration) lock(pairOf(held));
+  }
+}
+
+void ImplicitStep::lock(const Pair& pair) {
+  locked_.push_back(pair);
+  couple(pair);
+}
+
 /// Few pairs, almost in contact, would stop all the rest: they are solved for as rigid, once.
 /// @return true if the step has to be solved again
 bool ImplicitStep::lockBlocking(const Motion& motion) {
-  if (motion.safe >= kBlocked || !locked_.empty()) return false;
-  locked_ = blockingPairs(u_.contacts, state_.positions, motion);
-  for (const Pair& pair : locked_) couple(pair);
-  return !locked_.empty();
+  if (motion.safe >= kBlocked || relocked_) return false;
+  relocked_ = true;
+  const std::size_t before = locked_.size();
+  for (const Pair& pair : blockingPairs(u_.contacts, state_.positions, motion)) {
+    if (std::find(locked_.begin(), locked_.end(), pair) != locked_.end()) continue;
+    lock(pair);
+    hold(pair);
+  }
+  return locked_.size() > before;
+}
+
+/// Keeps a pair locked in the next steps, so that these need not be solved twice.
+void ImplicitStep::hold(const Pair& pair) {
+  const auto known = std::find_if(state_.held.begin(), state_.held.end(),
+                                  [&](const HeldPair& held) { return pairOf(held) == pair; });
+  if (known == state_.held.end()) {
+    state_.held.push_back({{static_cast<std::int32_t>(pair.kind), pair.first, pair.second},
+                           kHoldFirst,
+                           now_.iteration + kHoldFirst});
+  } else {
+    known->hold = std::min(kHoldLongest, 2 * known->hold);
+    known->until = now_.iteration + known->hold;
+  }
 }
 
 bool ImplicitStep::search(const Motion& motion, const std::vector<Contact>& onTheWay) {

@@ -364,6 +364,32 @@ TEST(Unfolder, APairThatStartsInContactHoldsUpNoStep) {
   }
 }
 
+TEST(Unfolder, APairThatStoppedAStepIsSolvedForAsRigidInTheNext) {
+  const Case c;
+  Unfolder unfolder(touched(c, {1, -1}), c.region, c.view, with(Surround::Fixed));
+  int steps = 0, twice = 0;
+  while (steps < 25 && unfolder.step()) {
+    ++steps;
+    twice += unfolder.record().solves > 1;
+  }
+  EXPECT_EQ(steps, 25);
+  ASSERT_FALSE(unfolder.state().held.empty());
+  EXPECT_LT(twice, 9);
+
+  // Who is held belongs to the state: without it the next step would be another.
+  Checkpoint checkpoint;
+  checkpoint.state = unfolder.state();
+  const auto path = std::filesystem::temp_directory_path() / "explica-held-test.state";
+  writeCheckpoint(path, checkpoint);
+  const Checkpoint read = readCheckpoint(path);
+  std::filesystem::remove(path);
+  EXPECT_EQ(read.state.held, unfolder.state().held);
+  Unfolder other(touched(c, {1, -1}), c.region, c.view, with(Surround::Fixed));
+  other.restore(read.state);
+  ASSERT_TRUE(unfolder.step() && other.step());
+  EXPECT_EQ(unfolder.state().positions, other.state().positions);
+}
+
 TEST(Unfolder, AFlatDiscStaysPut) {
   const TriangleMesh flat = geometry::makeRectangle(12, 12, 12, 12);
   const Region region = regionOfMarked(flat, interiorOf(12, 12, 0));

@@ -4,18 +4,27 @@
 
 #include "Explica/Collision/Proximity.h"
 
+#include <algorithm>
+
 namespace explica::collision {
 
 /// How near a pair may come on its way.
 struct AdvanceOptions {
-  double keptShare = 0.1;  ///< of the pair's distance at the start, in (0, 1)
-  int maxAdvances = 200;   ///< conservative advances per pair; what is reached by then is returned
+  double keptShare = 0.1;   ///< of the pair's distance at the start, in (0, 1)
+  int maxAdvances = 200;    ///< conservative advances per pair; what is reached by then is returned
+  double keptDistance = 0;  ///< mm: a pair keeps it, or four fifths of its distance if that is less
+
+  /// What a pair keeps of its distance at the start, mm.
+  [[nodiscard]] double gap(double start) const {
+    constexpr double kNearShare = 0.8;
+    return std::max(keptShare * start, std::min(kNearShare * start, keptDistance));
+  }
 };
 
 /// Largest t found in [0, limit] such that for every time in [0, t] the pair x + time * motion
-/// stays apart by `keptShare` of its distance at the start, by additive conservative advancement
-/// [Li2021] that also knows how fast the features close along the line between their nearest
-/// points.
+/// stays apart by the options' gap() of its distance at the start, by additive conservative
+/// advancement [Li2021] that also knows how fast the features close along the line between their
+/// nearest points.
 ///
 /// Conservative in floating point: each advance uses distances that are rounded down and speeds
 /// that are rounded up, so that no contact in [0, t] is missed.  The result may be smaller than the

@@ -9,6 +9,7 @@
 #include "Explica/Unfolding/Terms.h"
 #include "Explica/Visibility/Viewpoints.h"
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -116,6 +117,14 @@ struct IterationRecord {
   double seconds = 0;  ///< wall time since the run began, set by unfold()
 };
 
+/// Two features of the surface that stopped a step: they are solved for as rigid for a while.
+struct HeldPair {
+  std::array<std::int32_t, 3> pair = {};  ///< kind, first and second of a collision::Pair
+  std::int32_t hold = 0;   ///< iterations that it is held for, more each time that it stops a step
+  std::int32_t until = 0;  ///< the iteration that solves without holding it again
+  friend bool operator==(const HeldPair&, const HeldPair&) = default;
+};
+
 /// Everything that the next step depends on, beyond the inputs of construction.
 struct UnfoldState {
   Positions positions;          ///< V x 3, all vertices of the surface
@@ -134,6 +143,7 @@ struct UnfoldState {
   bool separating = true;               ///< pairs that start almost in contact are parted first
   double separatingEnergy = kInfinity;  ///< of their contacts before the last such step
   bool stalled = false;                 ///< no step lowered the objective
+  std::vector<HeldPair> held;           ///< in the order in which they stopped steps
 };
 
 /// Unfolds a region one iteration at a time, so that a viewer or a script can watch and steer.
