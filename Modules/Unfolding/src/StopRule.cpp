@@ -87,7 +87,7 @@ Termination StopRule::check(Unfolder& unfolder, const std::vector<IterationRecor
              last.visibility > kEnoughSeen && last.edgeStrainMean > kLittleStrained) {
     unfolder.firmUp(kFirming);
   } else if (settled && kept && !thesis && !options_.targetVisibility &&
-             last.visibility < kSeenAsPromised && last.edgeStrainMean < kLittleStrained &&
+             last.visibility < kSeenAsPromised && last.edgeStrainMean < kBearablyStrained &&
              unfolder.state().drive < kLargestDrive) {
     // Lengths have something to give where less is seen than promised.
     unfolder.raiseDrive(driveFactor(last.visibility, kEnoughSeen));

@@ -14,10 +14,13 @@
 namespace explica::unfolding {
 namespace {
 
-constexpr double kSunk = 0.01;   // of the region's area: less than that below is no reason
-constexpr int kMostWays = 3;     // times that surroundings are asked to part further ...
-constexpr double kWiden = 1.5;   // ... by this factor of the collar's width ...
-constexpr double kStronger = 2;  // ... and this one of the lift
+constexpr double kSunk = 0.01;      // of the region's area: less than that below is no reason
+constexpr int kMostWays = 3;        // times that surroundings are asked to part further ...
+constexpr double kWiden = 1.5;      // ... by this factor of the collar's width ...
+constexpr double kStronger = 2;     // ... and this one of the lift
+constexpr double kSoft = 0.3;       // share of the lengths' strength up to a visibility ...
+constexpr double kSoftUntil = 0.8;  // ... of this, ...
+constexpr double kFirmFrom = 0.98;  // ... which rises to all of it at this one
 
 }  // namespace
 
@@ -55,11 +58,20 @@ void Unfolder::Implementation::makeKnot(const Positions& positions) {
   knot = repulsion::makeKnotEnergy(options.knot, standing, moves);
 }
 
+/// Lengths are soft as long as folds have to open, and as firm as asked for once the region is
+/// seen: firm ones keep pleats that no later step gets out of.  Faces with directions of their own
+/// are not on their way to a plane.
+double Unfolder::Implementation::firmnessOnTheWay() const {
+  if (state.directions.rows() > 0) return 1;
+  const double way = (record.visibility - kSoftUntil) / (kFirmFrom - kSoftUntil);
+  return kSoft + (1 - kSoft) * std::clamp(way, 0.0, 1.0);
+}
+
 TermValues Unfolder::Implementation::strengths() const {
   TermValues strengths = options.weights;
   strengths[Term::Visibility] = state.separating ? 0 : state.drive;
   strengths[Term::Area] = state.areaStiffness;
-  strengths[Term::Spring] *= state.firmness;
+  strengths[Term::Spring] *= state.firmness * firmnessOnTheWay();
   strengths[Term::Lift] *= state.lift;
   if (state.separating || options.surround == Surround::None) strengths[Term::Lift] = 0;
   if (state.separating) strengths[Term::Overhang] = 0;

@@ -33,6 +33,7 @@ struct Unfolder::Implementation {
   /// Sets up once more with another collar, the state as it is.
   void setUpCollar(double width);
 
+  [[nodiscard]] double firmnessOnTheWay() const;
   /// Strengths of the terms in the present state.
   [[nodiscard]] TermValues strengths() const;
   [[nodiscard]] Configuration configurationAt(const Positions& x,

@@ -62,6 +62,7 @@ struct BestState {
 inline constexpr double kSeenAsPromised = 0.98;   ///< visibility below which lengths yield further
 inline constexpr double kEnoughSeen = 0.985;      ///< visibility from which on lengths count first
 inline constexpr double kLittleStrained = 0.085;  ///< mean edge strain that needs no mending
+inline constexpr double kBearablyStrained = 0.089;  ///< up to which lengths yield for that promise
 
 /// The higher visibility, by more than noise; but of two that are high enough, the less strained.
 [[nodiscard]] bool isBetter(const IterationRecord& state, const BestState& than);
