@@ -33,15 +33,17 @@ bool onEdge(const Annulus& annulus, std::int32_t n, const std::array<bool, 3>& a
   return false;
 }
 
-/// For each tissue voxel the nearest one on the edge, carried from voxel to voxel; -1: none.
-std::vector<std::int32_t> nearestOnEdge(const Annulus& annulus, const std::array<bool, 3>& axes) {
+/// For each tissue voxel the nearest one that `isSource` holds for, carried from voxel to voxel
+/// through the tissue; -1: none.
+template <class IsSource>
+std::vector<std::int32_t> nearestOf(const Annulus& annulus, const IsSource& isSource) {
   const auto count = static_cast<std::int32_t>(annulus.count());
   const auto strides = annulus.strides();
   std::vector<std::int32_t> nearest(annulus.count(), -1);
   std::vector<double> distance(annulus.count(), kInfinity);
   std::deque<std::int32_t> waiting;
   for (std::int32_t n = 0; n < count; ++n) {
-    if (!onEdge(annulus, n, axes)) continue;
+    if (!isSource(n)) continue;
     nearest[n] = n;
     distance[n] = 0;
     waiting.push_back(n);
@@ -65,11 +67,39 @@ std::vector<std::int32_t> nearestOnEdge(const Annulus& annulus, const std::array
   return nearest;
 }
 
+/// Counts voxels without thickness that are nearer to the edge than to one of the two boundaries:
+/// the way there leaves the image before it arrives.  They no longer count as missing.
+std::size_t countLeaving(const Annulus& annulus, const std::vector<std::int32_t>& onEdgeNearest,
+                         Correspondence& correspondence) {
+  const auto beside = [&](std::int32_t wall) {
+    return nearestOf(annulus, [&annulus, wall](std::int32_t n) {
+      const auto& links = annulus.links[n];
+      return std::find(links.begin(), links.end(), wall) != links.end();
+    });
+  };
+  const std::vector<std::int32_t> inner = beside(harmonic::kInner),
+                                  outer = beside(harmonic::kOuter);
+  const auto wayTo = [&](std::int32_t n, std::int32_t m) {
+    return m < 0 ? kInfinity : (placeOf(annulus, n) - placeOf(annulus, m)).norm();
+  };
+  std::size_t leaving = 0;
+  for (std::int32_t n = 0; n < static_cast<std::int32_t>(annulus.count()); ++n) {
+    if (!std::isnan(correspondence.thickness(n)) || onEdgeNearest[n] < 0) continue;
+    leaving += wayTo(n, onEdgeNearest[n]) < std::max(wayTo(n, inner[n]), wayTo(n, outer[n]));
+  }
+  correspondence.missing -= leaving;
+  return leaving;
+}
+
 }  // namespace
 
 std::size_t leaveOutCut(const Annulus& annulus, const std::array<bool, 3>& axes,
                         Correspondence& correspondence) {
-  const std::vector<std::int32_t> nearest = nearestOnEdge(annulus, axes);
+  const std::vector<std::int32_t> nearest =
+      nearestOf(annulus, [&](std::int32_t n) { return onEdge(annulus, n, axes); });
+  if (std::all_of(nearest.begin(), nearest.end(), [](std::int32_t n) { return n < 0; })) return 0;
+  const std::size_t leaving =
+      correspondence.missing > 0 ? countLeaving(annulus, nearest, correspondence) : 0;
   const Eigen::Matrix3d toAxes = annulus.grid.direction.transpose();
   std::vector<std::uint8_t> cut(annulus.count(), 0);
   parallelFor(annulus.count(), 1 << 12, [&](std::size_t index) {
@@ -90,7 +120,7 @@ std::size_t leaveOutCut(const Annulus& annulus, const std::array<bool, 3>& axes,
     correspondence.innerPoint[n].setConstant(static_cast<float>(kNaN));
     correspondence.outerPoint[n].setConstant(static_cast<float>(kNaN));
   }
-  return static_cast<std::size_t>(std::count(cut.begin(), cut.end(), std::uint8_t{1}));
+  return leaving + static_cast<std::size_t>(std::count(cut.begin(), cut.end(), std::uint8_t{1}));
 }
 
 }  // namespace explica::correspondence

@@ -140,6 +140,32 @@ TEST(ImageEdge, TissueThatRunsOutOfTheImageIsLeftOutWhereItsThicknessIsNotKnown)
   }
 }
 
+/// A layer that runs on far beyond the region under it, whose other side lies below the image.
+TEST(ImageEdge, WhatLeavesTheImageBeforeItsBoundaryIsCutAndNotMissing) {
+  Grid grid;
+  grid.size = {120, 8, 12};
+  Volume<Label> labels(grid);
+  for (std::size_t v = 0; v < labels.size(); ++v) {
+    const auto at = grid.subscripts(v);
+    labels[v] = at[2] >= 6 ? 0 : at[2] < 2 && at[0] < 15 ? 1 : 2;
+  }
+  harmonic::LabelRoles roles;
+  roles.inner = {1};
+  roles.tissue = {2};
+  MeasurementOptions options;
+  options.imageEdge = ImageEdge::Insulated;
+  const Measurement insulated = measure(harmonic::annulusFromLabels(labels, roles), options);
+  EXPECT_GT(insulated.correspondence.missing, 100U);
+  options.imageEdge = ImageEdge::Open;
+  const Measurement open = measure(harmonic::annulusFromLabels(labels, roles), options);
+  std::size_t known = 0;
+  for (std::size_t n = 0; n < open.annulus.count(); ++n) {
+    known += !std::isnan(open.correspondence.thickness(n));
+  }
+  EXPECT_EQ(open.correspondence.missing, 0U);
+  EXPECT_EQ(known + open.cutVoxels, open.annulus.count());
+}
+
 }  // namespace
 
 TEST(Correspondence, LagrangianIsExactToAFewHundredthsOfAVoxel) {

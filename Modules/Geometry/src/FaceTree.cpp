@@ -150,7 +150,13 @@ Point closestPointOnTriangle(const Point& q, const Point& a, const Point& b, con
   return a + ab * (weightB / sum) + ac * (weightC / sum);
 }
 
-FaceTree::FaceTree(TriangleMesh mesh) : mesh_(std::move(mesh)), tree_(faceBoxes(mesh_)) {}
+FaceTree::FaceTree(TriangleMesh mesh)
+    : mesh_(std::move(mesh)), tree_(faceBoxes(mesh_)), corners_(tree_.items().size()) {
+  for (std::size_t n = 0; n < corners_.size(); ++n) {
+    const std::int32_t face = tree_.items()[n];
+    corners_[n] = {mesh_.corner(face, 0), mesh_.corner(face, 1), mesh_.corner(face, 2)};
+  }
+}
 
 ClosestPoint FaceTree::closestPoint(const Point& query) const {
   ClosestPoint best;
@@ -170,8 +176,8 @@ ClosestPoint FaceTree::closestPoint(const Point& query) const {
     if (node.count > 0) {
       for (std::int32_t n = node.first; n < node.first + node.count; ++n) {
         const std::int32_t face = tree_.items()[n];
-        const Point point = closestPointOnTriangle(query, mesh_.corner(face, 0),
-                                                   mesh_.corner(face, 1), mesh_.corner(face, 2));
+        const auto& [a, b, c] = corners_[n];
+        const Point point = closestPointOnTriangle(query, a, b, c);
         const double squared = (point - query).squaredNorm();
         if (squared < best.squaredDistance ||
             (squared == best.squaredDistance && face < best.face)) {

@@ -8,10 +8,30 @@
 #include "Explica/Geometry/TriangleIntersection.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 namespace explica::geometry {
 namespace {
+
+/// True if the points lie clearly, beyond rounding, on one side of the triangle's plane.
+template <std::size_t N>
+bool clearlyBeside(const Point& a, const Point& b, const Point& c,
+                   const std::array<Point, N>& points) {
+  // Many times the rounding of three products, each of a difference and a component of the normal.
+  constexpr double kBound = 1e-14;
+  const Vector ab = b - a, ac = c - a;
+  const Vector normal = ab.cross(ac);
+  const double size = kBound * ab.lpNorm<1>() * ac.lpNorm<1>();
+  int above = 0, below = 0;
+  for (const Point& p : points) {
+    const Vector way = p - a;
+    const double height = normal.dot(way), least = size * way.lpNorm<1>();
+    above += height > least;
+    below += height < -least;
+  }
+  return above == static_cast<int>(N) || below == static_cast<int>(N);
+}
 
 bool facesIntersect(const TriangleMesh& mesh, std::int32_t f, std::int32_t g) {
   // Corners of f and g, the shared ones first and in the same order.
@@ -28,15 +48,22 @@ bool facesIntersect(const TriangleMesh& mesh, std::int32_t f, std::int32_t g) {
       }
     }
   }
-  const auto pf = [&](int k) { return mesh.corner(f, ofF[k]); };
-  const auto pg = [&](int k) { return mesh.corner(g, ofG[k]); };
+  // Most pairs are clearly apart but for what they share; the rest is decided exactly.
+  const std::array<Point, 3> pf = {mesh.corner(f, ofF[0]), mesh.corner(f, ofF[1]),
+                                   mesh.corner(f, ofF[2])};
+  const std::array<Point, 3> pg = {mesh.corner(g, ofG[0]), mesh.corner(g, ofG[1]),
+                                   mesh.corner(g, ofG[2])};
+  using Two = std::array<Point, 2>;
   switch (shared) {
     case 0:
-      return trianglesIntersect({pf(0), pf(1), pf(2)}, {pg(0), pg(1), pg(2)});
+      return !clearlyBeside(pf[0], pf[1], pf[2], pg) && !clearlyBeside(pg[0], pg[1], pg[2], pf) &&
+             trianglesIntersect(pf, pg);
     case 1:
-      return trianglesSharingVertexIntersect(pf(0), pf(1), pf(2), pg(1), pg(2));
+      return !clearlyBeside(pf[0], pf[1], pf[2], Two{pg[1], pg[2]}) &&
+             !clearlyBeside(pg[0], pg[1], pg[2], Two{pf[1], pf[2]}) &&
+             trianglesSharingVertexIntersect(pf[0], pf[1], pf[2], pg[1], pg[2]);
     case 2:
-      return trianglesSharingEdgeIntersect(pf(0), pf(1), pf(2), pg(2));
+      return trianglesSharingEdgeIntersect(pf[0], pf[1], pf[2], pg[2]);
     default:
       return true;
   }

@@ -258,7 +258,7 @@ void growSurfaces(const Ribbon& ribbon, const SurfaceOptions& options, CorticalS
   RelaxationOptions relaxation;
   relaxation.most = kRoughness * voxel;
 
-  Growth growth(result.white.mesh, ribbon.paths, edge);
+  Growth growth(result.white.mesh, ribbon.paths);
   for (int step = 1; step <= options.steps; ++step) {
     monitor.progress(static_cast<double>(step) / (options.steps + 1), "growing the outer surface");
     growth.goTo(static_cast<double>(step) / options.steps);

@@ -3,29 +3,58 @@
 
 #include "Growth.h"
 
+#include "MoveTogether.h"
+
+#include <cstdint>
+
 namespace explica::surface {
+namespace {
 
-Growth::Growth(const TriangleMesh& white, const std::vector<Trajectory>& paths, double edge)
-    : mesh_(white, edge), paths_(paths), reached_(paths.size(), 0.0) {}
+/// All vertices, then one half and the other, then quarters: what stood in each other's way going
+/// together may pass going one after another.
+constexpr int kSweeps = 7;
 
-void Growth::goTo(double share) {
-  constexpr int kSweeps = 3;
-  share_ = share;
-  for (int sweep = 0; sweep < kSweeps; ++sweep) {
-    const auto waiting = mesh_.sweep([&](std::int32_t v, GuardedMesh::Scratch& scratch) {
-      const double target = share * paths_[v].length();
-      if (reached_[v] >= target || tryReach(v, target, scratch)) return true;
-      tryReach(v, 0.5 * (reached_[v] + target), scratch);
-      return false;
-    });
-    if (waiting == 0) return;
+bool takesTurn(std::int32_t v, int sweep) {
+  constexpr std::uint32_t kMix = 2654435761U;  // Knuth's multiplicative hash
+  const std::uint32_t mixed = static_cast<std::uint32_t>(v) * kMix >> 16;
+  if (sweep == 0) return true;
+  if (sweep < 3) return (mixed & 1U) == static_cast<std::uint32_t>(sweep - 1);
+  return (mixed >> 1 & 3U) == static_cast<std::uint32_t>(sweep - 3);
+}
+
+}  // namespace
+
+Growth::Growth(const TriangleMesh& white, const std::vector<Trajectory>& paths)
+    : mesh_(white), paths_(paths), reached_(paths.size(), 0.0) {
+  for (Eigen::Index v = 0; v < mesh_.vertexCount(); ++v) {
+    mesh_.positions.row(v) = asStored(mesh_.positions.row(v));
   }
 }
 
-bool Growth::tryReach(std::int32_t v, double arc, GuardedMesh::Scratch& scratch) {
-  if (!mesh_.move(v, paths_[v].at(arc), scratch)) return false;
-  reached_[v] = arc;
-  return true;
+void Growth::goTo(double share) {
+  constexpr int kWays = 2;
+  share_ = share;
+  const auto target = [&](std::int32_t v) { return share * paths_[v].length(); };
+  const auto arcAt = [&](std::int32_t v, int way) {
+    return way == 0 ? target(v) : 0.5 * (reached_[v] + target(v));
+  };
+  std::vector<std::int32_t> waiting;
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    waiting.clear();
+    bool any = false;
+    for (std::int32_t v = 0; v < static_cast<std::int32_t>(paths_.size()); ++v) {
+      if (reached_[v] >= target(v)) continue;
+      any = true;
+      if (takesTurn(v, sweep)) waiting.push_back(v);
+    }
+    if (!any) return;
+    const std::vector<std::uint8_t> way =
+        moveTogether(mesh_, waiting, kWays,
+                     [&](std::int32_t v, int attempt) { return paths_[v].at(arcAt(v, attempt)); });
+    for (std::size_t n = 0; n < waiting.size(); ++n) {
+      if (way[n] < kWays) reached_[waiting[n]] = arcAt(waiting[n], way[n]);
+    }
+  }
 }
 
 }  // namespace explica::surface

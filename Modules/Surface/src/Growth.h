@@ -4,7 +4,6 @@
 
 #include "Explica/Core/Monitor.h"
 #include "Explica/Core/TriangleMesh.h"
-#include "GuardedMesh.h"
 #include "RibbonField.h"
 
 #include <cstdint>
@@ -16,8 +15,7 @@ namespace explica::surface {
 class Growth {
  public:
   /// @param paths  one for each vertex of `white`, which must outlive this
-  /// @param edge   mean edge of `white`, mm
-  Growth(const TriangleMesh& white, const std::vector<Trajectory>& paths, double edge);
+  Growth(const TriangleMesh& white, const std::vector<Trajectory>& paths);
 
   /// Takes every vertex as near to a share of its way as its faces allow.
   void goTo(double share);
@@ -26,12 +24,10 @@ class Growth {
   [[nodiscard]] double missing(std::size_t v) const {
     return share_ * paths_[v].length() - reached_[v];
   }
-  [[nodiscard]] TriangleMesh mesh() const { return mesh_.toMesh(); }
+  [[nodiscard]] const TriangleMesh& mesh() const { return mesh_; }
 
  private:
-  bool tryReach(std::int32_t v, double arc, GuardedMesh::Scratch& scratch);
-
-  GuardedMesh mesh_;
+  TriangleMesh mesh_;
   const std::vector<Trajectory>& paths_;
   std::vector<double> reached_;
   double share_ = 0;

@@ -6,6 +6,7 @@
 #include "Explica/Core/Parallel.h"
 #include "Explica/Geometry/Predicates.h"
 #include "Explica/Geometry/TriangleIntersection.h"
+#include "MoveTogether.h"
 
 #include <Eigen/Geometry>
 
@@ -54,18 +55,6 @@ bool clearlyParted(const Point& p, const Point& a, const Point& b, const Point& 
     return axis.dot(way) > kClear * axis.lpNorm<1>() * way.lpNorm<1>();
   };
   return clear(pc) && clear(pd) && clear(-pa) && clear(-pb);
-}
-
-/// Files hold float32: what is checked must be what is written.
-Point asStored(const Point& p) {
-  Point stored;
-  for (int a = 0; a < 3; ++a) {
-    // Volatile: GCC 12 at -O3 takes the way to float and back for nothing when it joins two
-    // components into one vector.
-    const volatile float rounded = static_cast<float>(p[a]);
-    stored[a] = rounded;
-  }
-  return stored;
 }
 
 double qualityOf(const std::array<Point, 3>& p) {
@@ -689,13 +678,17 @@ void GuardedMesh::overSlabs(const std::vector<std::vector<Item>>& members, const
   }
 }
 
-std::int64_t GuardedMesh::sweep(const std::function<bool(std::int32_t, Scratch&)>& step) {
+std::vector<std::int32_t> GuardedMesh::allVertices() const {
   std::vector<std::int32_t> vertices;
   vertices.reserve(positions_.size());
   for (std::int32_t v = 0; v < vertexSlots(); ++v) {
     if (hasVertex(v)) vertices.push_back(v);
   }
-  return sweep(vertices, step);
+  return vertices;
+}
+
+std::int64_t GuardedMesh::sweep(const std::function<bool(std::int32_t, Scratch&)>& step) {
+  return sweep(allVertices(), step);
 }
 
 std::int64_t GuardedMesh::sweep(const std::vector<std::int32_t>& vertices,
@@ -744,6 +737,56 @@ void GuardedMesh::sweepEdges(const std::vector<Edge>& edges,
   });
   for (const std::vector<Edge>& ofSlab : late) {
     for (const Edge& edge : ofSlab) step(edge, scratch_);
+  }
+}
+
+TriangleMesh GuardedMesh::withAllSlots() const {
+  TriangleMesh mesh;
+  mesh.positions.resize(vertexSlots(), 3);
+  for (std::int32_t v = 0; v < vertexSlots(); ++v) mesh.positions.row(v) = positions_[v];
+  mesh.faces.resize(faceCount(), 3);
+  Eigen::Index row = 0;
+  for (const Corners& c : faces_) {
+    if (c[0] >= 0) mesh.faces.row(row++) << c[0], c[1], c[2];
+  }
+  return mesh;
+}
+
+std::int64_t GuardedMesh::moveTogether(const std::vector<std::int32_t>& vertices, int attempts,
+                                       const Attempts& to) {
+  TriangleMesh mesh = withAllSlots();
+  const std::vector<std::uint8_t> stand = surface::moveTogether(mesh, vertices, attempts, to);
+  for (const std::int32_t v : vertices) positions_[v] = mesh.positions.row(v);
+  reboxAll();
+  return std::count(stand.begin(), stand.end(), static_cast<std::uint8_t>(attempts));
+}
+
+void GuardedMesh::reboxAll() {
+  const int axis = slabAxis();
+  std::vector<std::vector<std::int32_t>> members((cellSize_[axis] + kSlab - 1) / kSlab);
+  for (std::int32_t f = 0; f < faceSlots(); ++f) {
+    if (hasFace(f)) members[cellAt(boxes_[f][axis], axis) / kSlab].push_back(f);
+  }
+  const auto boxNow = [&](std::int32_t f) {
+    const Corners& c = faces_[f];
+    return boxOf({positions_[c[0]], positions_[c[1]], positions_[c[2]]});
+  };
+  std::vector<std::vector<std::int32_t>> late(members.size());
+  overSlabs(members, [&](std::size_t slab, Scratch& scratch) {
+    for (const std::int32_t f : members[slab]) {
+      const Box box = boxNow(f);
+      if (contains(boxes_[f], box)) continue;
+      const CellRange range = cellsOf(roomy(box));
+      if (range[axis] < scratch.lowCell || range[axis + 3] > scratch.highCell ||
+          cellAt(boxes_[f][axis + 3], axis) > scratch.highCell) {
+        late[slab].push_back(f);
+      } else {
+        rebox(f, box);
+      }
+    }
+  });
+  for (const std::vector<std::int32_t>& ofSlab : late) {
+    for (const std::int32_t f : ofSlab) rebox(f, boxNow(f));
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include "BoxLanes.h"
 #include "Explica/Core/TriangleMesh.h"
+#include "MoveTogether.h"
 
 #include <array>
 #include <cstdint>
@@ -104,6 +105,12 @@ class GuardedMesh {
   std::int64_t sweep(const std::vector<std::int32_t>& vertices,
                      const std::function<bool(std::int32_t v, Scratch& scratch)>& step);
 
+  /// Moves vertices all at once, as the function of that name.
+  /// @return how many have stayed where they were
+  std::int64_t moveTogether(const std::vector<std::int32_t>& vertices, int attempts,
+                            const Attempts& to);
+  [[nodiscard]] std::vector<std::int32_t> allVertices() const;
+
   /// An edge of the mesh, to be worked on.
   using Edge = std::array<std::int32_t, 2>;
   /// Calls step(edge, scratch) once for each of the edges, those of one slab in their order; the
@@ -136,8 +143,8 @@ class GuardedMesh {
     Corners corners;
     std::array<Point, 3> points;
     Box box;
-    Vector normal = Vector::Zero();  ///< (b - a) x (c - a)
-    double magnitude = 0;            ///< that its rounding is relative to
+    Vector normal;     ///< (b - a) x (c - a)
+    double magnitude;  ///< that its rounding is relative to
     /// 1 or -1 on the two sides of the face's plane, 0 where rounding leaves it open.
     [[nodiscard]] int sideOf(const Point& p) const;
   };
@@ -188,6 +195,10 @@ class GuardedMesh {
   void enter(std::int32_t f);
   void leave(std::int32_t f);
   void rebox(std::int32_t f, const Box& box);
+  /// Brings the cells up to date after all vertices may have moved.
+  void reboxAll();
+  /// The faces there are; vertices keep their numbers, those without faces too.
+  [[nodiscard]] TriangleMesh withAllSlots() const;
   std::int32_t addFace(const Corners& corners, Scratch& scratch);
   void removeFace(std::int32_t f, Scratch& scratch);
   [[nodiscard]] int slabAxis() const;

@@ -9,7 +9,9 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -100,7 +102,12 @@ class Crumpled {
   /// @param moves  1 for the vertices that may be among them
   Crumpled(const GuardedMesh& mesh, const std::vector<std::uint8_t>& moves, double edge,
            const Limits& limits)
-      : mesh_(mesh), moves_(moves), edge_(edge), limits_(limits), bad_(moves.size(), 0) {
+      : mesh_(mesh),
+        moves_(moves),
+        edge_(edge),
+        limits_(limits),
+        bad_(moves.size(), 0),
+        listed_(moves.size(), 0) {
     stale_.resize(moves.size());
     std::iota(stale_.begin(), stale_.end(), 0);
   }
@@ -110,14 +117,12 @@ class Crumpled {
     parallelFor(stale_.size(), 256, [&](std::size_t k) {
       bad_[stale_[k]] = isCrumpled(mesh_, stale_[k], edge_, limits_);
     });
-    std::vector<std::int32_t> bad;
-    for (const std::int32_t v : known_) {
-      if (bad_[v]) bad.push_back(v);
-    }
-    for (const std::int32_t v : stale_) {
-      if (bad_[v]) bad.push_back(v);
-    }
-    known_ = sortedOnce(std::move(bad));
+    // What is known and not stale is as bad as it was.
+    std::vector<std::int32_t> both;
+    std::set_union(known_.begin(), known_.end(), stale_.begin(), stale_.end(),
+                   std::back_inserter(both));
+    std::erase_if(both, [&](std::int32_t v) { return bad_[v] == 0; });
+    known_ = std::move(both);
     near_ = withNeighbours(known_);
     std::erase_if(near_, [&](std::int32_t v) { return !moves_[v]; });
     stale_ = withNeighbours(near_);
@@ -125,53 +130,68 @@ class Crumpled {
   }
 
  private:
-  static std::vector<std::int32_t> sortedOnce(std::vector<std::int32_t> list) {
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-    return list;
-  }
+  /// The vertices of a list's faces, each once, in the order of their numbers.
   [[nodiscard]] std::vector<std::int32_t> withNeighbours(
-      const std::vector<std::int32_t>& vertices) const {
+      const std::vector<std::int32_t>& vertices) {
     std::vector<std::int32_t> list;
     for (const std::int32_t v : vertices) {
       for (const std::int32_t f : mesh_.facesOf(v)) {
-        list.insert(list.end(), mesh_.face(f).begin(), mesh_.face(f).end());
+        for (const std::int32_t w : mesh_.face(f)) {
+          if (std::exchange(listed_[w], 1) == 0) list.push_back(w);
+        }
       }
     }
-    return sortedOnce(std::move(list));
+    for (const std::int32_t v : list) listed_[v] = 0;
+    std::sort(list.begin(), list.end());
+    return list;
   }
 
   const GuardedMesh& mesh_;
   const std::vector<std::uint8_t>& moves_;
   double edge_;
   Limits limits_;
-  std::vector<std::uint8_t> bad_;
+  std::vector<std::uint8_t> bad_, listed_;
   std::vector<std::int32_t> stale_, known_, near_;
 };
+
+/// What is tried of a way, one after another.
+constexpr std::array<double, 4> kShares = {1.0, 0.5, 0.2, 0.05};
+/// The same where many go together, sweep after sweep.
+constexpr std::array<double, 2> kSharesTogether = {1.0, 0.3};
+/// Steps shorter than this are not worth a look at what is in the way, edges.
+constexpr double kSmallStep = 0.01;
+
+Point partOfWay(const Point& from, const Point& to, double share) {
+  return from + share * (to - from);
+}
 
 }  // namespace
 
 TriangleMesh relaxed(const TriangleMesh& mesh, double edge, const std::vector<std::uint8_t>& moves,
                      const Placement& place, const RelaxationOptions& options) {
   GuardedMesh guarded(mesh, edge);
-  const auto tryWays = [&](std::int32_t v, const Point& to, GuardedMesh::Scratch& scratch) {
-    const Point from = guarded.at(v);
-    for (const double share : {1.0, 0.5, 0.2, 0.05}) {
-      if (guarded.move(v, from + share * (to - from), scratch)) return true;
-    }
-    return false;
-  };
   Crumpled crumpled(guarded, moves, edge, kCrumpled);
   for (int sweep = 0; sweep < options.sweeps; ++sweep) {
-    guarded.sweep(crumpled.vertices(), [&](std::int32_t v, GuardedMesh::Scratch& scratch) {
-      if (guarded.onRim(v)) return true;
+    std::vector<std::int32_t> vertices = crumpled.vertices();
+    std::vector<Point> goal(mesh.vertexCount());
+    parallelFor(vertices.size(), 64, [&](std::size_t n) {
+      const std::int32_t v = vertices[n];
+      goal[v] = guarded.at(v);
+      if (guarded.onRim(v)) return;
       const Ring ring = ringOf(guarded, v);
       const Vector step = ring.centre - guarded.at(v);
       const double across = ring.normal.dot(step);
       const double bend = std::clamp(options.bend * across, -options.most, options.most);
       const Point target = guarded.at(v) + step + (bend - across) * ring.normal;
-      return tryWays(v, place(v, target, ring.normal), scratch);
+      goal[v] = place(v, target, ring.normal);
     });
+    std::erase_if(vertices, [&](std::int32_t v) {
+      return (goal[v] - guarded.at(v)).squaredNorm() < kSmallStep * kSmallStep * edge * edge;
+    });
+    guarded.moveTogether(vertices, static_cast<int>(kSharesTogether.size()),
+                         [&](std::int32_t v, int way) {
+                           return partOfWay(guarded.at(v), goal[v], kSharesTogether[way]);
+                         });
   }
   // A vertex without way of its own among others that have grown is a pit: it may move, too.
   const std::vector<std::uint8_t> all(mesh.vertexCount(), 1);
@@ -180,7 +200,10 @@ TriangleMesh relaxed(const TriangleMesh& mesh, double edge, const std::vector<st
     guarded.sweep(unsound.vertices(), [&](std::int32_t v, GuardedMesh::Scratch& scratch) {
       if (guarded.onRim(v)) return true;
       const Ring ring = ringOf(guarded, v);
-      return tryWays(v, sweep % 2 == 0 ? ring.mean : ring.centre, scratch);
+      const Point from = guarded.at(v), to = sweep % 2 == 0 ? ring.mean : ring.centre;
+      return std::any_of(kShares.begin(), kShares.end(), [&](double share) {
+        return guarded.move(v, partOfWay(from, to, share), scratch);
+      });
     });
   }
   return guarded.toMesh();

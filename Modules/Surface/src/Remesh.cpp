@@ -4,6 +4,7 @@
 #include "Explica/Surface/Remesh.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Parallel.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "GuardedMesh.h"
@@ -69,11 +70,15 @@ class Remesher {
   }
 
   void smooth() {
-    refused_ += mesh_.sweep([&](std::int32_t v, GuardedMesh::Scratch& scratch) {
-      const Point target = centred(v);
-      // Half way is often free where the whole way is not.
-      return mesh_.move(v, onLevel(v, target), scratch) ||
-             mesh_.move(v, 0.5 * (mesh_.at(v) + target), scratch);
+    std::vector<Point> centre(mesh_.vertexSlots());
+    parallelFor(centre.size(), 256, [&](std::size_t v) {
+      const auto vertex = static_cast<std::int32_t>(v);
+      if (mesh_.hasVertex(vertex)) centre[v] = centred(vertex);
+    });
+    // Half way is often free where the whole way is not.
+    constexpr int kWays = 2;
+    refused_ += mesh_.moveTogether(mesh_.allVertices(), kWays, [&](std::int32_t v, int way) {
+      return way == 0 ? onLevel(v, centre[v]) : Point(0.5 * (mesh_.at(v) + centre[v]));
     });
   }
 

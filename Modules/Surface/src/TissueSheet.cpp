@@ -346,7 +346,7 @@ Grown grow(const TriangleMesh& sheet, const std::vector<Trajectory>& paths, doub
            double least, const Placement& place, const RelaxationOptions& relaxation) {
   std::vector<std::uint8_t> moves(paths.size());
   for (std::size_t v = 0; v < moves.size(); ++v) moves[v] = paths[v].length() > 0;
-  Growth growth(sheet, paths, edge);
+  Growth growth(sheet, paths);
   for (int step = 1; step <= steps; ++step) growth.goTo(static_cast<double>(step) / steps);
   Grown grown;
   for (std::size_t v = 0; v < paths.size(); ++v) {

@@ -23,8 +23,10 @@ enum class ImageEdge {
 /// a layer of thickness t.  So a voxel is left out (lengths and points NaN) if it, or an end of its
 /// trajectory, is nearer than 1.25 t, where the rest is two per cent of the disturbance, to a
 /// tissue voxel on the edge.
+/// Voxels that have no thickness anyway count as cut, and no longer as missing, if one of the two
+/// boundaries is farther away than the edge: the way there leaves the image first.
 /// @param axes  of the grid whose edges count, by i, j, k
-/// @return how many voxels lost a thickness
+/// @return how many voxels the edge cuts
 std::size_t leaveOutCut(const harmonic::Annulus& annulus, const std::array<bool, 3>& axes,
                         Correspondence& correspondence);
 

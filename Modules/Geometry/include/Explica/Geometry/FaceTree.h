@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include <array>
 #include <functional>
 #include <vector>
 
@@ -68,6 +69,7 @@ class FaceTree {
  private:
   TriangleMesh mesh_;
   BoxTree tree_;
+  std::vector<std::array<Point, 3>> corners_;  ///< of the faces, in the tree's order of items
 };
 
 /// Boxes of a mesh's faces, widened by `margin` mm on every side.
