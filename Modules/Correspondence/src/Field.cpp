@@ -5,6 +5,7 @@
 #include "Explica/Core/Parallel.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace explica::correspondence {
@@ -29,6 +30,19 @@ constexpr double kEnough = 1e-5;  // voxels from the boundary at which a walk ha
 constexpr double kPoorGain = 0.25;
 constexpr double kNearEnd = 1.5;
 constexpr int kStrikes = 8;
+
+/// Where in (0, 1) the cubic with values and slopes f0 < 0, g0 and f1 > 0, g1 at 0 and 1 is zero,
+/// by Newton steps from the chord's crossing; that crossing if they leave the interval.
+double crossingOf(double f0, double g0, double f1, double g1) {
+  const double chord = f0 / (f0 - f1);
+  const double c = g0, d = 3 * (f1 - f0) - 2 * g0 - g1, e = 2 * (f0 - f1) + g0 + g1;
+  double t = chord;
+  for (int k = 0; k < 3; ++k) {
+    t -= (f0 + t * (c + t * (d + t * e))) / (c + t * (2 * d + 3 * t * e));
+    if (!(t > 0 && t < 1)) return chord;
+  }
+  return t;
+}
 
 }  // namespace
 
@@ -172,6 +186,39 @@ void TrajectoryTracer::Field::prepareCells() {
       extend(number, firstOf(number), cells_[cellAt_[p]].corner.data());
     });
   });
+  prepareSides();
+}
+
+void TrajectoryTracer::Field::prepareSides() {
+  const auto strides = annulus.strides();
+  const int corners = flat ? 4 : 8;
+  std::vector<std::int32_t> divided;
+  for (std::size_t p = 0; p < cellAt_.size(); ++p) {
+    if (cellAt_[p] != kDivided) continue;
+    cellAt_[p] = kDivided - static_cast<std::int32_t>(divided.size());
+    divided.push_back(static_cast<std::int32_t>(p));
+  }
+  std::vector<std::vector<Side>> sidesOf(divided.size());
+  parallelFor(divided.size(), 256, [&](std::size_t n) {
+    std::int32_t number[8] = {};
+    unsigned left = 0;
+    for (int c = 0; c < corners; ++c) {
+      number[c] =
+          annulus
+              .numberAt[divided[n] + (c & 1) + (c >> 1 & 1) * strides[1] + (c >> 2) * strides[2]];
+      left |= number[c] >= 0 ? 1U << c : 0U;
+    }
+    while (left != 0) {
+      Side& side = sidesOf[n].emplace_back();
+      side.corners = extend(number, std::countr_zero(left), side.cell.corner.data());
+      left &= ~static_cast<unsigned>(side.corners);
+    }
+  });
+  firstSide_.assign(1, 0);
+  for (const std::vector<Side>& ofCell : sidesOf) {
+    sides_.insert(sides_.end(), ofCell.begin(), ofCell.end());
+    firstSide_.push_back(static_cast<std::int32_t>(sides_.size()));
+  }
 }
 
 inline Vector TrajectoryTracer::Field::velocityOf(const Sample& sample, int uphill,
@@ -213,7 +260,6 @@ inline TrajectoryTracer::Field::Sample TrajectoryTracer::Field::sampleOf(const V
   if (cell == kEmpty) return result;
 
   const Corner* corner[8];
-  Corner own[8];
   const int nearest = (f[0] > 0.5F ? 1 : 0) + (f[1] > 0.5F ? 2 : 0) + (f[2] > 0.5F ? 4 : 0);
   if (cell == kWhole) {
     for (int c = 0; c < 8; c += 2) {
@@ -244,11 +290,12 @@ inline TrajectoryTracer::Field::Sample TrajectoryTracer::Field::sampleOf(const V
         if (number[c] >= 0 && weight[c] > weight[seed]) seed = c;
       }
     }
-    const std::uint8_t side = extend(number, seed, own);
+    std::int32_t side = firstSide_[kDivided - cell];
+    while (!(sides_[side].corners >> seed & 1)) ++side;
     float best = -1;
     for (int c = 0; c < 8; ++c) {
-      corner[c] = &own[flat ? c & 3 : c];
-      if (c < corners && (side >> c & 1) && weight[c] > best) {
+      corner[c] = &sides_[side].cell.corner[flat ? c & 3 : c];
+      if (c < corners && (sides_[side].corners >> c & 1) && weight[c] > best) {
         best = weight[c];
         result.home = number[c];
       }
@@ -539,7 +586,7 @@ bool TrajectoryTracer::Field::toPlane(std::int32_t rank, const std::array<int, 3
   const Vector k1 = velocityOf(one, uphill);
   const double s = (1 + kBeyondPlane) / k1.cwiseAbs().maxCoeff();
   if (!(s <= 2 * options.maxStep * finest)) return false;
-  if (cellAt_[cellAhead(rank, uphill)] == kDivided) return false;
+  if (cellAt_[cellAhead(rank, uphill)] <= kDivided) return false;
   const Sample two = sampleOf<false>(x + 0.5 * s * k1, -1);
   if (two.home < 0 || two.divided) return false;
   const Vector k2 = velocityOf(two, uphill);
@@ -562,6 +609,18 @@ bool TrajectoryTracer::Field::goStraight(Walk& walk, double target, int uphill) 
   walk.length += rest;
   walk.u = target;
   return true;
+}
+
+double TrajectoryTracer::Field::stepAfter(double step, double error) const {
+  constexpr double kSafety = 0.9, kLeast = 0.3, kMost = 4.0;
+  const double longest = options.maxStep * finest, growth = longest / step;
+  // The cubic root only where the longest step is not within reach.
+  if (growth <= kMost &&
+      error * growth * growth * growth <= kSafety * kSafety * kSafety * options.tolerance) {
+    return longest;
+  }
+  const double factor = error > 0 ? kSafety * std::cbrt(options.tolerance / error) : kMost;
+  return std::min(longest, step * std::clamp(factor, kLeast, kMost));
 }
 
 bool TrajectoryTracer::Field::advance(Walk& walk, double target, int uphill) const {
@@ -606,8 +665,7 @@ bool TrajectoryTracer::Field::advance(Walk& walk, double target, int uphill) con
       walk.u = four.u;
       walk.slope = slope;
       walk.length += s;
-      const double factor = error > 0 ? 0.9 * std::cbrt(options.tolerance / error) : 4.0;
-      walk.step = std::min(options.maxStep * finest, s * std::clamp(factor, 0.3, 4.0));
+      walk.step = stepAfter(s, error);
       return false;
     }
     // The target is between: find it on the step's cubic by regula falsi (Illinois).
@@ -623,8 +681,10 @@ bool TrajectoryTracer::Field::advance(Walk& walk, double target, int uphill) con
     if (fLow >= 0) {
       t = 0;
     } else {
+      // First where the cubic through both ends' u and slopes crosses: mostly near enough.
+      const double first = crossingOf(fLow, s * walk.slope, fHigh, s * slope);
       for (int k = 0; k < 12; ++k) {
-        t = (low * fHigh - high * fLow) / (fHigh - fLow);
+        t = k == 0 ? first : (low * fHigh - high * fLow) / (fHigh - fLow);
         const double value = uphill * (sample(at(t), walk.home).u - target);
         if (std::abs(value) < kEnough * walk.slope * finest) break;
         if (value < 0) {

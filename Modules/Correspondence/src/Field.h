@@ -88,7 +88,13 @@ struct TrajectoryTracer::Field {
   struct Cell {
     std::array<Corner, 8> corner;
   };
-  enum : std::int32_t { kWhole = -1, kDivided = -2, kEmpty = -3 };
+  /// One side of a cell that has several.
+  struct Side {
+    std::uint8_t corners = 0;  ///< its own, a bit each
+    Cell cell;
+  };
+  /// kDivided - n: the cell whose sides start at firstSide_[n].
+  enum : std::int32_t { kWhole = -1, kEmpty = -2, kDivided = -3 };
 
   template <bool kWithU>
   [[nodiscard]] Sample sampleOf(const Vector& x, std::int32_t home) const;
@@ -96,6 +102,9 @@ struct TrajectoryTracer::Field {
   void prepareCells();
   /// Corners from the side of `seed`; a bit per corner that belongs to it.
   std::uint8_t extend(const std::int32_t* number, int seed, Corner* corner) const;
+  void prepareSides();
+  /// mm of the step after one with this error estimate.
+  [[nodiscard]] double stepAfter(double step, double error) const;
   /// Ends a walk on a straight line if the target is near; else it is stuck.
   bool goStraight(Walk& walk, double target, int uphill) const;
   [[nodiscard]] Vector velocityOf(const Sample& sample, int uphill, double* slope = nullptr) const;
@@ -103,6 +112,8 @@ struct TrajectoryTracer::Field {
   std::vector<std::int32_t> cellAt_;  ///< per box voxel, the cell with it as lowest corner: row of
                                       ///< cells_, or what else
   std::vector<Cell> cells_;
+  std::vector<Side> sides_;
+  std::vector<std::int32_t> firstSide_;  ///< of each divided cell, and the end
 };
 
 }  // namespace explica::correspondence

@@ -294,33 +294,40 @@ float LabelBoundary::curvatureOf(std::size_t link, int chain,
 void LabelBoundary::relax(Energy energy, int iterations) {
   const std::size_t count = low_.size();
   const int chains = axes_ - 1;
-  std::vector<std::array<float, 2>> curvature(count), bending(count);
+  // Per slot, twice the neighbour plus its chain, and the weight of the own theta in that chain's
+  // curvature; where a chain ends the link itself without weight, so that loops need not ask.
+  std::vector<std::array<std::int32_t, 4>> near(count);
+  std::vector<std::array<float, 4>> weight(count);
+  parallelFor(count, kGrain, [&](std::size_t link) {
+    for (int slot = 0; slot < 4; ++slot) {
+      const std::int32_t code = back_[link][slot];
+      near[link][slot] = code < 0 ? static_cast<std::int32_t>(2 * link) : code >> 1;
+      weight[link][slot] = code < 0 ? 0 : beside_[code >> 2][code & 3];
+    }
+  });
+  std::vector<float> curvature(2 * count), bending(2 * count);
   std::vector<float> bound(count), pull(count);
   // Derivative of half the energy by the curvatures, or with sign 1 a bound on its row sums.
   const auto bend = [&](float sign, const auto& curvatureAt) {
     if (energy == Energy::Curvature) {
       parallelFor(count, kGrain, [&](std::size_t link) {
         for (int chain = 0; chain < chains; ++chain) {
-          bending[link][chain] = length_[link][chain] * curvatureAt(link, chain);
+          bending[2 * link + chain] = length_[link][chain] * curvatureAt(link, chain);
         }
       });
       return;
     }
     parallelFor(count, kGrain, [&](std::size_t link) {
       for (int chain = 0; chain < chains; ++chain) {
-        curvature[link][chain] = curvatureAt(link, chain);
+        curvature[2 * link + chain] = curvatureAt(link, chain);
       }
     });
     parallelFor(count, kGrain, [&](std::size_t link) {
       for (int chain = 0; chain < chains; ++chain) {
-        float sum = 0;
-        for (int slot = 2 * chain; slot < 2 * chain + 2; ++slot) {
-          const std::int32_t code = back_[link][slot];
-          if (code < 0) continue;
-          sum += stiffness_[link][slot] *
-                 (curvature[link][chain] + sign * curvature[code >> 2][code >> 1 & 1]);
-        }
-        bending[link][chain] = sum;
+        const float own = curvature[2 * link + chain];
+        bending[2 * link + chain] =
+            stiffness_[link][2 * chain] * (own + sign * curvature[near[link][2 * chain]]) +
+            stiffness_[link][2 * chain + 1] * (own + sign * curvature[near[link][2 * chain + 1]]);
       }
     });
   };
@@ -333,27 +340,31 @@ void LabelBoundary::relax(Energy energy, int iterations) {
     pull[link] = pull_[link] * std::max(across * across, 0.01F);
     float sum = pull[link];
     for (int chain = 0; chain < chains; ++chain) {
-      sum += std::abs(own_[link][chain]) * bending[link][chain];
+      sum += std::abs(own_[link][chain]) * bending[2 * link + chain];
     }
-    for (const std::int32_t code : back_[link]) {
-      if (code >= 0)
-        sum += std::abs(beside_[code >> 2][code & 3]) * bending[code >> 2][code >> 1 & 1];
+    for (int slot = 0; slot < 2 * chains; ++slot) {
+      sum += std::abs(weight[link][slot]) * bending[near[link][slot]];
     }
     bound[link] = sum;
   });
   std::vector<float> ahead = theta_, next(count);
   double momentum = 1;
   for (int iteration = 0; iteration < iterations; ++iteration) {
-    bend(-1, [&](std::size_t link, int chain) { return curvatureOf(link, chain, ahead); });
+    bend(-1, [&](std::size_t link, int chain) {
+      const auto& beside = beside_[link];
+      return constant_[link][chain] + own_[link][chain] * ahead[link] +
+             beside[2 * chain] * ahead[near[link][2 * chain] >> 1] +
+             beside[2 * chain + 1] * ahead[near[link][2 * chain + 1] >> 1];
+    });
     const double uphill = parallelSum(count, kGrain, 0.0, [&](std::size_t begin, std::size_t end) {
       double sum = 0;
       for (std::size_t link = begin; link < end; ++link) {
         float slope = pull[link] * (ahead[link] - 0.5F);
         for (int chain = 0; chain < chains; ++chain) {
-          slope += own_[link][chain] * bending[link][chain];
+          slope += own_[link][chain] * bending[2 * link + chain];
         }
-        for (const std::int32_t code : back_[link]) {
-          if (code >= 0) slope += beside_[code >> 2][code & 3] * bending[code >> 2][code >> 1 & 1];
+        for (int slot = 0; slot < 2 * chains; ++slot) {
+          slope += weight[link][slot] * bending[near[link][slot]];
         }
         next[link] = std::clamp(ahead[link] - slope / bound[link], kNearest, 1 - kNearest);
         sum += static_cast<double>((ahead[link] - next[link]) * bound[link] *
