@@ -109,10 +109,10 @@ TEST_F(WholeHead, BertIsAsThickAsFreeSurferSays) {
       mean, distance / points, comparison.vertexCorrelation(), comparison.difference(),
       regions.count, regions.correlation);
   EXPECT_NEAR(mean, 2.603, 0.15);
-  EXPECT_LT(distance / points, 0.37);
-  EXPECT_GT(comparison.vertexCorrelation(), 0.7);
-  EXPECT_LT(comparison.difference(), 0.42);
-  EXPECT_GT(regions.correlation, 0.93);
+  EXPECT_LT(distance / points, 0.31);
+  EXPECT_GT(comparison.vertexCorrelation(), 0.81);
+  EXPECT_LT(comparison.difference(), 0.36);
+  EXPECT_GT(regions.correlation, 0.95);
 }
 
 /// Which numbers of a head were implausible.

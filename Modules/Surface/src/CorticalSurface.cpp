@@ -14,6 +14,7 @@
 #include "Growth.h"
 #include "GuardedMesh.h"
 #include "ImageBorder.h"
+#include "PathProfile.h"
 #include "Relaxation.h"
 #include "RibbonField.h"
 
@@ -136,7 +137,9 @@ void placeByImage(const Volume<float>& image, Ribbon& ribbon, CorticalSurfaces& 
   const Grid& grid = ribbon.tissue.white.grid;
   const double voxel = std::cbrt(grid.voxelVolume());
   TriangleMesh& white = result.white.mesh;
-  const ImageBorders borders = findBorders(ribbon.paths, white, image, voxel);
+  ImageBorderOptions options;
+  options.search = ribbon.tissue.byBrightness;
+  const ImageBorders borders = findBorders(ribbon.paths, white, image, voxel, options);
   result.image.missingWhite = borders.missingWhite;
   result.image.missingOuter = borders.missingOuter;
 

@@ -392,6 +392,7 @@ CorticalTissue tissueFromShares(const Volume<float>& white, const Volume<float>&
   }
   result.insulated = crop(neither, box);
   result.hasGrey = hasTissue && result.greyVoxels > 0;
+  result.byBrightness = true;
   result.structure = !options.hemisphere                 ? "Cortex"
                      : *options.hemisphere == Side::Left ? "CortexLeft"
                                                          : "CortexRight";

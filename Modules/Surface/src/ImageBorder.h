@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "BorderChooser.h"
 #include "Explica/Core/TriangleMesh.h"
 #include "Explica/Core/Volume.h"
 #include "RibbonField.h"
@@ -15,19 +16,19 @@ namespace explica::surface {
 
 /// How one border is looked for; lengths in voxels of the labels.
 struct EdgeOptions {
-  double level = 0.5;       ///< brightness of the border, from 0, outside, to 1, inside of it
-  int spread = 5;           ///< times that brightness of tissue is averaged over neighbours
-  double centring = 0.5;    ///< cost of a voxel squared off the labels' border, beside the squared
-                            ///< share of the contrast by which brightness misses the level
-  double smoothness = 0.1;  ///< cost of a voxel squared off the neighbours' mean
+  double level = 0.5;  ///< brightness of the border, from 0, outside, to 1, inside of it
+  int spread = 5;      ///< times that brightness of tissue is averaged over neighbours
+  ChoiceCosts costs = {0.5, 0.1};  ///< beside squared shares of the contrast
 };
 
 struct ImageBorderOptions {
   EdgeOptions white = {};
-  EdgeOptions outer = {0.45, 30, 0.5, 0.3};
-  double reach = 1;   ///< farthest that a border may lie from that of the labels
-  double flat = 0.3;  ///< share of the usual contrast below which an edge is missing
-  int rounds = 15;    ///< of weighing a vertex's edge against its neighbours
+  EdgeOptions outer = {0.45, 30, {0.2, 0.3}};
+  double reach = 1;     ///< farthest that a border may lie from that of the labels
+  double flat = 0.3;    ///< share of the usual contrast below which an edge is missing
+  int rounds = 15;      ///< of weighing a vertex's edge against its neighbours
+  bool search = false;  ///< the white border is first searched over millimetres: no labels, but one
+                        ///< brightness for a neighbourhood, have put it where it is
 };
 
 /// Where the image puts the borders, beside where the labels do.
@@ -48,15 +49,10 @@ struct ImageBorders {
 /// its neighbours' choices.  Only a change of the usual sense counts, as most vertices have it
 /// between white and grey matter (in a T1 brightness falls outward at both borders): a vessel or
 /// meninges, where it rises, are no edge.  A trajectory that ends between two banks of a sulcus is
-/// not carried on: the other bank's edge is not its own.
+/// carried on by half a voxel only, as well as their middle is known: the other bank's edge is not
+/// its own.
 [[nodiscard]] ImageBorders findBorders(const std::vector<Trajectory>& paths,
                                        const TriangleMesh& white, const Volume<float>& image,
                                        double voxel, const ImageBorderOptions& options = {});
-
-/// The part of a trajectory between two borders; it is carried on straight where they lie beyond
-/// its ends.
-/// @param from  mm from the trajectory's start, may be negative
-/// @param to    mm from its start, > from
-[[nodiscard]] Trajectory between(const Trajectory& path, double from, double to);
 
 }  // namespace explica::surface

@@ -15,6 +15,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -234,8 +235,8 @@ float brightness(const Point& p, double inner, double outer) {
 
 TEST(CorticalSurface, AnImagePlacesTheBordersOfAShell) {
   // Labels say 14 and 17 mm; the image, 14.4 and 16.7.
-  const double h = 1;
-  const auto tissue = shell(14, 17, h);
+  CorticalTissue tissue = shell(14, 17, 1);
+  tissue.byBrightness = false;
   const auto image = volumeOf(lattice(56, Vector::Constant(0.8)),
                               [](const Point& p) { return brightness(p, 14.4, 16.7); });
   auto inverse = image;
@@ -253,6 +254,43 @@ TEST(CorticalSurface, AnImagePlacesTheBordersOfAShell) {
     EXPECT_EQ(made.image.missingWhite, 0);
     EXPECT_EQ(made.image.missingOuter, 0);
   }
+}
+
+TEST(CorticalSurface, AWhiteBorderThatOneBrightnessPutIntoBrightCortexIsFound) {
+  // Upwards, grey matter comes near to white matter's brightness, and the shares' white border lies
+  // 1.8 mm too far out.
+  const auto bright = [](const Point& p) {
+    const double x = std::clamp(2 * p.z() / p.norm() - 0.5, 0.0, 1.0);
+    return x * x * (3 - 2 * x);
+  };
+  const Grid grid = lattice(44, Vector::Constant(1));
+  const auto image = volumeOf(grid, [&](const Point& p) {
+    const auto step = [](double x) { return 0.5 * (1 + std::erf(x / (0.6 * std::sqrt(2.0)))); };
+    const double r = p.norm(), grey = 80 + 20 * bright(p);
+    return static_cast<float>(20 + (grey - 20) * step(17 - r) + (110 - grey) * step(14 - r));
+  });
+  CorticalTissue tissue = tissueFromShares(
+      volumeOf(grid, [&](const Point& p) { return shareOf(p, 14 + 1.8 * bright(p), 4); }),
+      volumeOf(grid, [&](const Point& p) { return shareOf(p, 17, 4); }));
+  SurfaceOptions options;
+  options.faces = 6000;
+  const auto errors = [&] {  // mean distance from the border: where cortex is bright, elsewhere
+    const auto made = buildSurfaces(tissue, image, options);
+    expectSound(made.white.mesh);
+    std::array<double, 2> sum = {}, count = {};
+    for (Eigen::Index v = 0; v < made.white.mesh.vertexCount(); ++v) {
+      const Point p = made.white.mesh.positions.row(v);
+      const int where = bright(p) > 0.9 ? 0 : 1;
+      sum[where] += std::abs(p.norm() - 14);
+      count[where] += 1;
+    }
+    return std::array{sum[0] / count[0], sum[1] / count[1]};
+  };
+  const auto found = errors();
+  EXPECT_LT(found[0], 0.3);
+  EXPECT_LT(found[1], 0.2);
+  tissue.byBrightness = false;  // labels are right to a voxel
+  EXPECT_GT(errors()[0], 0.7);
 }
 
 TEST(CorticalSurface, AnImageWithoutEdgesLeavesTheLabelsBorders) {

@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "BorderChooser.h"
+
+#include "Explica/Core/Parallel.h"
+#include "Explica/Core/Types.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace explica::surface {
+namespace {
+
+/// An edge is there if brightness comes so near to its level, in contrasts.
+constexpr float kNear = 0.3F;
+
+}  // namespace
+
+BorderChooser::BorderChooser(std::vector<Profile> misses, std::vector<Choice> choices,
+                             const geometry::MeshTopology& topology, double step, double length,
+                             const ChoiceCosts& costs)
+    : misses_(std::move(misses)),
+      choices_(std::move(choices)),
+      topology_(topology),
+      step_(step),
+      length_(length),
+      costs_(costs),
+      has_(misses_.size()) {
+  for (std::size_t v = 0; v < has_.size(); ++v) has_[v] = comesNear(v);
+}
+
+Eigen::VectorXd BorderChooser::choose(int rounds) const {
+  Eigen::VectorXd chosen = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(misses_.size()));
+  for (int round = 0; round < rounds; ++round) {
+    Eigen::VectorXd next(chosen.size());
+    parallelFor(misses_.size(), 512, [&](std::size_t v) {
+      double mean = 0;
+      const auto& ring = topology_.vertexVertices[v];
+      for (const std::int32_t w : ring) mean += chosen[w] / static_cast<double>(ring.size());
+      next[static_cast<Eigen::Index>(v)] = has_[v] ? bestOf(v, mean) : 0.0;
+    });
+    chosen = std::move(next);
+  }
+  return chosen;
+}
+
+std::int64_t BorderChooser::missing() const {
+  return std::count(has_.begin(), has_.end(), std::uint8_t{0});
+}
+
+bool BorderChooser::comesNear(std::size_t v) const {
+  for (int k = choices_[v].first; k <= choices_[v].last; ++k) {
+    if (std::abs(misses_[v][k]) < kNear) return true;
+  }
+  return false;
+}
+
+double BorderChooser::costOf(std::size_t v, int place, double mean) const {
+  const double way = (place - kSide) * step_ / length_, off = way - mean / length_;
+  const double miss = std::min(1.0F, misses_[v][place] * misses_[v][place]);
+  return miss + costs_.centring * way * way + costs_.smoothness * off * off;
+}
+
+double BorderChooser::bestOf(std::size_t v, double mean) const {
+  const Choice& choice = choices_[v];
+  int best = -1;
+  double least = kInfinity;
+  for (int place = choice.first; place <= choice.last; ++place) {
+    const double cost = costOf(v, place, mean);
+    if (!(cost < least)) continue;
+    least = cost;
+    best = place;
+  }
+  if (best < 0) return 0;
+  double shift = 0;  // of the parabola through the best place and its neighbours
+  if (best > choice.first && best < choice.last) {
+    const double before = costOf(v, best - 1, mean), after = costOf(v, best + 1, mean);
+    const double bend = before - 2 * least + after;
+    if (bend > 0) shift = std::clamp(0.5 * (before - after) / bend, -0.5, 0.5);
+  }
+  return (best + shift - kSide) * step_;
+}
+
+}  // namespace explica::surface

@@ -1,0 +1,157 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "EdgeSearch.h"
+
+#include "BorderChooser.h"
+#include "Explica/Core/Parallel.h"
+#include "PathProfile.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace explica::surface {
+namespace {
+
+constexpr double kFine = 0.1;    // voxels from place to place of a mean profile
+constexpr double kDeep = 2;      // voxels inside the border: white matter
+constexpr double kMost = 0.5;    // of the ribbon a border goes outward in one pass
+constexpr double kFarthest = 4;  // voxels inward, all passes together
+constexpr int kSmooth = 1;       // places on each side over which a slope is taken
+
+/// The usual brightness of the tissues, times `sign`.
+struct Usual {
+  double white = 0, grey = 0;
+  double sign = 1;  ///< 1 if white matter is brighter than grey matter
+};
+
+Usual usualBrightness(const std::vector<Trajectory>& paths, const Volume<float>& image,
+                      double voxel) {
+  std::vector<double> white, grey;
+  for (const Trajectory& path : paths) {
+    if (path.end == TrajectoryEnd::NoRibbon) continue;
+    white.push_back(valueAt(image, along(path, -kDeep * voxel)));
+    grey.push_back(valueAt(image, along(path, 0.5 * path.length())));
+  }
+  Usual usual{median(std::move(white)), median(std::move(grey)), 1};
+  if (usual.white < usual.grey) usual = {-usual.white, -usual.grey, -1};
+  return usual;
+}
+
+class Search {
+ public:
+  Search(const std::vector<Trajectory>& paths, const geometry::MeshTopology& topology,
+         const Volume<float>& image, double voxel, const EdgeSearchOptions& options)
+      : paths_(paths),
+        topology_(topology),
+        image_(image),
+        voxel_(voxel),
+        options_(options),
+        usual_(usualBrightness(paths, image, voxel)),
+        way_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(paths.size()))),
+        first_(-static_cast<int>(std::lround(options.inward / kFine)) - kSmooth),
+        count_(static_cast<int>(std::lround(options.outward / kFine)) + kSmooth - first_ + 1) {}
+
+  void improve() {
+    const Eigen::VectorXd level = averaged(
+        levelsOf(averaged(profiles(), topology_, options_.spread)), topology_, options_.spread);
+    const double step = voxel_ / kSide;
+    std::vector<Profile> misses(paths_.size());
+    std::vector<Choice> choices(paths_.size());
+    parallelFor(paths_.size(), 256, [&](std::size_t v) {
+      misses[v].fill(static_cast<float>(kNaN));
+      const auto row = static_cast<Eigen::Index>(v);
+      if (!std::isfinite(level[row])) return;
+      choices[v] = choiceOf(v, step);
+      for (int k = 0; k < kPlaces; ++k) {
+        misses[v][k] =
+            static_cast<float>((valueOf(v, way_[row] + (k - kSide) * step) - level[row]) /
+                               (usual_.white - usual_.grey));
+      }
+    });
+    const BorderChooser chooser(std::move(misses), std::move(choices), topology_, step, voxel_,
+                                {options_.centring, options_.smoothness});
+    way_ += chooser.choose(options_.rounds);
+  }
+
+  [[nodiscard]] const Eigen::VectorXd& way() const { return way_; }
+
+ private:
+  [[nodiscard]] double valueOf(std::size_t v, double arc) const {
+    return usual_.sign * valueAt(image_, along(paths_[v], arc));
+  }
+
+  /// Length of the ribbon outside of the border as it is.
+  [[nodiscard]] double lengthOf(std::size_t v) const {
+    return paths_[v].length() - way_[static_cast<Eigen::Index>(v)];
+  }
+
+  [[nodiscard]] Eigen::MatrixXd profiles() const {
+    Eigen::MatrixXd all =
+        Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(paths_.size()), count_, kNaN);
+    parallelFor(paths_.size(), 256, [&](std::size_t v) {
+      if (paths_[v].end == TrajectoryEnd::NoRibbon) return;
+      const auto row = static_cast<Eigen::Index>(v);
+      for (int k = 0; k < count_; ++k) {
+        all(row, k) = valueOf(v, way_[row] + (first_ + k) * kFine * voxel_);
+      }
+      if (!all.row(row).allFinite()) all(row, 0) = kNaN;
+    });
+    return all;
+  }
+
+  /// Brightness at the edge of each mean profile; NaN where it has none.
+  [[nodiscard]] Eigen::VectorXd levelsOf(const Eigen::MatrixXd& mean) const {
+    Eigen::VectorXd level = Eigen::VectorXd::Constant(mean.rows(), kNaN);
+    parallelFor(paths_.size(), 256, [&](std::size_t v) {
+      const auto row = static_cast<Eigen::Index>(v);
+      if (!std::isfinite(mean(row, 0))) return;
+      Eigen::VectorXd slope = Eigen::VectorXd::Zero(count_);
+      for (int k = kSmooth; k < count_ - kSmooth; ++k) {
+        slope[k] = mean(row, k - kSmooth) - mean(row, k + kSmooth);
+      }
+      double best = 0;
+      for (int k = kSmooth + 1; k < count_ - kSmooth - 1; ++k) {
+        const double place = (first_ + k) * kFine;
+        if (place * voxel_ > kMost * lengthOf(v) || !(mean(row, k) > usual_.grey)) continue;
+        if (slope[k] < slope[k - 1] || slope[k] < slope[k + 1]) continue;
+        const double off = place / options_.likely;
+        const double score = slope[k] * std::exp(-0.5 * off * off);
+        if (score <= best) continue;
+        best = score;
+        level[row] = mean(row, k);
+      }
+    });
+    return level;
+  }
+
+  [[nodiscard]] Choice choiceOf(std::size_t v, double step) const {
+    const double way = way_[static_cast<Eigen::Index>(v)];
+    const auto places = [&](double length) {
+      return std::clamp(static_cast<int>(std::floor(length / step)), 0, kSide);
+    };
+    return {kSide - places(kFarthest * voxel_ + way), kSide + places(kMost * lengthOf(v))};
+  }
+
+  const std::vector<Trajectory>& paths_;
+  const geometry::MeshTopology& topology_;
+  const Volume<float>& image_;
+  double voxel_;
+  EdgeSearchOptions options_;
+  Usual usual_;
+  Eigen::VectorXd way_;
+  int first_, count_;
+};
+
+}  // namespace
+
+Eigen::VectorXd searchWhite(const std::vector<Trajectory>& paths,
+                            const geometry::MeshTopology& topology, const Volume<float>& image,
+                            double voxel, const EdgeSearchOptions& options) {
+  Search search(paths, topology, image, voxel, options);
+  for (int pass = 0; pass < options.passes; ++pass) search.improve();
+  return search.way();
+}
+
+}  // namespace explica::surface

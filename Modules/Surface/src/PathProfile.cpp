@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "PathProfile.h"
+
+#include "Explica/Core/Parallel.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace explica::surface {
+
+Point along(const Trajectory& path, double arc) {
+  const std::size_t n = path.points.size();
+  if (n > 1 && arc < 0) {
+    return path.points[0] - arc * (path.points[0] - path.points[1]).normalized();
+  }
+  if (n > 1 && arc > path.length()) {
+    const Vector way = (path.points[n - 1] - path.points[n - 2]).normalized();
+    return path.points[n - 1] + (arc - path.length()) * way;
+  }
+  return path.at(arc);
+}
+
+Trajectory between(const Trajectory& path, double from, double to) {
+  Trajectory part;
+  part.end = path.end;
+  const auto add = [&](double arc) {
+    part.points.push_back(along(path, arc));
+    part.along.push_back(static_cast<float>(arc - from));
+  };
+  add(from);
+  for (const float arc : path.along) {
+    const double rest = 1e-3 * (to - from);  // closer points would leave a direction to rounding
+    if (arc > from + rest && arc < to - rest) add(arc);
+  }
+  add(to);
+  return part;
+}
+
+double valueAt(const Volume<float>& image, const Point& p) {
+  const Grid& grid = image.grid;
+  const Vector index = grid.toIndex(p);
+  std::array<int, 3> base;
+  Vector t;
+  for (int a = 0; a < 3; ++a) {
+    if (!(index[a] >= 0 && index[a] <= grid.size[a] - 1)) return kNaN;
+    base[a] = std::min(static_cast<int>(index[a]), std::max(0, grid.size[a] - 2));
+    t[a] = index[a] - base[a];
+  }
+  double sum = 0;
+  for (int c = 0; c < 8; ++c) {
+    const int i = c & 1, j = c >> 1 & 1, k = c >> 2;
+    const double weight = (i ? t[0] : 1 - t[0]) * (j ? t[1] : 1 - t[1]) * (k ? t[2] : 1 - t[2]);
+    if (weight > 0) sum += weight * image(base[0] + i, base[1] + j, base[2] + k);
+  }
+  return sum;
+}
+
+double median(std::vector<double> values) {
+  std::erase_if(values, [](double value) { return !std::isfinite(value); });
+  if (values.empty()) return kNaN;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+Eigen::MatrixXd averaged(Eigen::MatrixXd values, const geometry::MeshTopology& topology,
+                         int times) {
+  for (int pass = 0; pass < times; ++pass) {
+    Eigen::MatrixXd next = values;
+    parallelFor(topology.vertexVertices.size(), 1024, [&](std::size_t v) {
+      const auto row = static_cast<Eigen::Index>(v);
+      if (!std::isfinite(values(row, 0))) return;
+      int count = 1;
+      for (const std::int32_t w : topology.vertexVertices[v]) {
+        if (!std::isfinite(values(w, 0))) continue;
+        next.row(row) += values.row(w);
+        ++count;
+      }
+      next.row(row) /= count;
+    });
+    values = std::move(next);
+  }
+  return values;
+}
+
+}  // namespace explica::surface

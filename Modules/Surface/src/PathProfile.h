@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Core/Volume.h"
+#include "Explica/Geometry/MeshTopology.h"
+#include "RibbonField.h"
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace explica::surface {
+
+/// Point of a trajectory at any arc length, mm; straight beyond its ends.
+[[nodiscard]] Point along(const Trajectory& path, double arc);
+
+/// The part of a trajectory between two borders; it is carried on straight where they lie beyond
+/// its ends.
+/// @param from  mm from the trajectory's start, may be negative
+/// @param to    mm from its start, > from
+[[nodiscard]] Trajectory between(const Trajectory& path, double from, double to);
+
+/// Trilinear value; NaN off the image.
+[[nodiscard]] double valueAt(const Volume<float>& image, const Point& p);
+
+/// Median of the finite values; NaN if there is none.
+[[nodiscard]] double median(std::vector<double> values);
+
+/// Means over a vertex and its ring, `times` over; rows that begin with NaN are not known and take
+/// no part.
+/// @param values  V x any number
+[[nodiscard]] Eigen::MatrixXd averaged(Eigen::MatrixXd values,
+                                       const geometry::MeshTopology& topology, int times);
+
+}  // namespace explica::surface
