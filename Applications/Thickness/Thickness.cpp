@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
+#include "GridFunctions.h"
+
 #include "Explica/Application/Command.h"
 #include "Explica/Application/Plausible.h"
 #include "Explica/Application/ReadInputs.h"
@@ -37,6 +39,7 @@ struct Settings {
   io::VolumeReadOptions reading;
   harmonic::LabelRoles roles;
   correspondence::MeasurementOptions measurement;
+  GridFunctions functions;
   bool figure = false;
   std::optional<int> figureSlice;
   bool aha = false;
@@ -88,6 +91,16 @@ void declare(Declaration& d, Settings& s) {
       .options("Layers", s.measurement.layers)
       .option("Layers", Field{"grid", "", "write an anatomical grid with this many cells across"},
               s.measurement.grid)
+      .inputOption(
+          "functions", FileKind::Volume,
+          "with --grid: volumes, 3-D or 4-D, whose values at the grid's points are written "
+          "into it and by depth into a table",
+          s.functions.volumes, "Layers")
+      .option("Layers",
+              Field{"along", "mm",
+                    "with --grid: list the trajectory nearest to this point of the tissue with the "
+                    "values of --functions"},
+              s.functions.along)
       .option("Figure",
               Field{"figure", "",
                     "draw a slice: harmonic interpolant, tangent field, selected trajectories, and "
@@ -118,6 +131,10 @@ void declare(Declaration& d, Settings& s) {
       .output("layers.nii.gz", FileKind::LabelVolume, "layer, 1 at the inner boundary")
       .output("grid.vtu", FileKind::Grid,
               "with --grid: points at equal depths along trajectories, with depth and thickness")
+      .output("grid_functions.tsv", FileKind::Table,
+              "with --functions: mean, deviation and count of each at each depth of the grid")
+      .output("grid_trajectories.tsv", FileKind::Table,
+              "with --along: points, thickness and functions along chosen trajectories")
       .output("field.svg", FileKind::Picture,
               "with --figure: u, tangent field, trajectories and grid in a slice")
       .output(
@@ -240,10 +257,24 @@ void writeOutputs(Context& context, const correspondence::Measurement& m, bool s
   write("layers.nii.gz", harmonic::spreadLabels(m.annulus, m.layers));
   if (sulci) write("sulci.nii.gz", harmonic::maskOf(m.annulus, m.sulcalVoxels));
   parallelFor(files.size(), 1, [&](std::size_t f) { files[f](); });
-  if (m.grid) {
-    const auto kind = m.grid->cells.cols() == 8 ? io::CellKind::Hexahedron : io::CellKind::Quad;
-    io::writeVtu(context.output("grid.vtu"), m.grid->points, {{kind, m.grid->cells}},
-                 {{"depth", "", m.grid->depth}, {"thickness", "mm", m.grid->thickness}});
+}
+
+/// The anatomical grid with the functions that were asked for.
+void writeGrid(Context& context, const correspondence::AnatomicalGrid& grid, const Settings& s) {
+  auto step = context.step("grid");
+  const auto functions = functionsOnGrid(context, s.functions, s.reading, grid);
+  std::vector<io::VertexMap> maps = {{"depth", "", grid.depth},
+                                     {"thickness", "mm", grid.thickness}};
+  maps.insert(maps.end(), functions.begin(), functions.end());
+  const auto kind = grid.cells.cols() == 8 ? io::CellKind::Hexahedron : io::CellKind::Quad;
+  io::writeVtu(context.output("grid.vtu"), grid.points, {{kind, grid.cells}}, maps);
+  if (!functions.empty()) {
+    writeTextFile(context.output("grid_functions.tsv"), depthTable(functions, grid));
+    context.result("grid_functions", functions.size());
+  }
+  if (!s.functions.along.empty()) {
+    writeTextFile(context.output("grid_trajectories.tsv"),
+                  trajectoryTable(functions, grid, s.functions.along));
   }
 }
 
@@ -335,6 +366,9 @@ void writeSegments(Context& context, const harmonic::Annulus& annulus, const Set
 }
 
 Termination run(Context& context, const Settings& s) {
+  if (!s.measurement.grid && (!s.functions.volumes.empty() || !s.functions.along.empty())) {
+    throw UsageError("--functions and --along need --grid N, on whose points they are taken");
+  }
   Judge judge(context, s.accept);
   harmonic::Annulus annulus = readAnnulus(context, s);
   context.result("voxels", annulus.count());
@@ -346,6 +380,7 @@ Termination run(Context& context, const Settings& s) {
   const correspondence::Measurement m = measure(context, std::move(annulus), options);
   report(context, judge, m);
   writeOutputs(context, m, m.sulciRecovered);
+  if (m.grid) writeGrid(context, *m.grid, s);
   if (m.annulus.planar) writeContours(context, m);
   if (s.figure || s.figureSlice) writeFigure(context, m, s.figureSlice);
   if (s.aha) writeSegments(context, m.annulus, s);

@@ -237,6 +237,54 @@ TEST(ThicknessCommand, GridFollowsTheTissueInTwoAndThreeDimensions) {
   EXPECT_EQ(explica(thickness(folder, "ring.nii.gz", {"--grid", "0"})).exitCode, 2);
 }
 
+TEST(ThicknessCommand, FunctionsAreKnownOnTheGridByDepthAndAlongTrajectories) {
+  TemporaryFolder folder;
+  writeShell(folder / "shell.nii.gz");
+  Volume<float> radius(io::readLabels(folder / "shell.nii.gz").volume.grid);
+  for (std::size_t v = 0; v < radius.size(); ++v) {
+    const auto s = radius.grid.subscripts(v);
+    radius[v] = static_cast<float>(radius.grid.toWorld(Vector(s[0], s[1], s[2])).norm());
+  }
+  io::writeVolume(folder / "radius.nii.gz", radius);
+  const auto words = [&](const std::string& along) {
+    return thickness(folder, "shell.nii.gz",
+                     {"--grid", "3", "--functions", folder / "radius.nii.gz", "--along", along});
+  };
+  const auto made = explica(words("7,8,-6"));
+  ASSERT_EQ(made.exitCode, 0) << made;
+  // Depth is a share of the length from 9 to 15 mm, so that the radius is 9 + 6 times it.
+  std::istringstream depths(readText(folder / "out/grid_functions.tsv"));
+  std::string head, name;
+  std::getline(depths, head);
+  EXPECT_EQ(head, "function\tdepth\tmean\tsd\tn");
+  double depth = 0, mean = 0, deviation = 0, count = 0;
+  int rows = 0;
+  for (; depths >> name >> depth >> mean >> deviation >> count; ++rows) {
+    EXPECT_EQ(name, "radius");
+    EXPECT_NEAR(mean, 9 + 6 * depth, 0.12);
+    EXPECT_LT(deviation, 0.25);
+    EXPECT_GT(count, 1000);
+  }
+  EXPECT_EQ(rows, 4);
+  std::istringstream line(readText(folder / "out/grid_trajectories.tsv"));
+  std::getline(line, head);
+  EXPECT_EQ(head, "trajectory\tdepth\tx\ty\tz\tthickness\tradius");
+  const Vector direction = Vector(7, 8, -6).normalized();
+  double number = 0, x = 0, y = 0, z = 0, length = 0, value = 0;
+  for (rows = 0; line >> number >> depth >> x >> y >> z >> length >> value; ++rows) {
+    const Vector place(x, y, z);
+    EXPECT_NEAR(value, place.norm(), 0.03);
+    EXPECT_LT((place.normalized() - direction).norm(), 0.1);
+  }
+  EXPECT_EQ(rows, 4);
+  EXPECT_NE(readText(folder / "out/grid.vtu").find("\"radius\""), std::string::npos);
+  EXPECT_EQ(explica(words("200,0,0")).exitCode, 2);
+  const auto without =
+      explica(thickness(folder, "shell.nii.gz", {"--functions", folder / "radius.nii.gz"}));
+  EXPECT_EQ(without.exitCode, 1) << without;
+  EXPECT_NE(without.err.find("--grid"), std::string::npos);
+}
+
 TEST(ThicknessCommand, SulciAreRecoveredByDefaultButNotInHearts) {
   TemporaryFolder folder;
   // Two balls of white matter whose grey shells touch: the sheet between them is hidden.

@@ -16,6 +16,7 @@
 #include "Explica/Planar/PolygonPhantoms.h"
 #include "Explica/Planar/PolygonUnfolding.h"
 #include "Explica/Planar/PolygonVisibility.h"
+#include "Explica/Visibility/Viewpoints.h"
 
 namespace explica::python {
 namespace {
@@ -35,6 +36,28 @@ Curve curveOf(const PolygonIn& polygon, bool closed = true) {
 planar::Region regionOf(const Curve& curve, const Ends& region) {
   return region ? planar::regionBetween(curve, region->first, region->second)
                 : planar::wholeRegion(curve);
+}
+
+using ViewIn = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using WeightsIn = std::optional<std::vector<double>>;
+
+/// A viewpoint (2,) or several (N, 2), and their weights: default equal.
+planar::Viewpoints viewOf(const ViewIn& view, const WeightsIn& weights) {
+  const bool one = view.ndim() == 1 && view.shape(0) == 2;
+  if (!one && !(view.ndim() == 2 && view.shape(1) == 2 && view.shape(0) > 0)) {
+    throw InvalidInput("viewpoint: one point of two coordinates or an array (N, 2) is needed");
+  }
+  if (weights && weights->empty()) {
+    throw InvalidInput("view_weights: one positive number a viewpoint is needed");
+  }
+  std::vector<Point> points;
+  for (const double* p = view.data(); p != view.data() + view.size(); p += 2) {
+    points.emplace_back(p[0], p[1], 0);
+  }
+  const auto inSpace = visibility::viewpoints(points, weights.value_or(std::vector<double>{}));
+  planar::Viewpoints plane{{}, inSpace.weights};
+  for (const Point& point : inSpace.points) plane.points.emplace_back(point.head<2>());
+  return plane;
 }
 
 py::dict frameDict(const planar::PlaneFrame& frame) {
@@ -79,29 +102,34 @@ py::dict unfoldingDict(planar::PolygonUnfolding made) {
 void bindMeasures(py::module_& m) {
   m.def(
       "visibility",
-      [](const PolygonIn& polygon, const Point2& viewpoint, const Ends& region) {
+      [](const PolygonIn& polygon, const ViewIn& viewpoint, const Ends& region,
+         const WeightsIn& weights) {
         const Curve curve = curveOf(polygon);
-        auto v = planar::polygonVisibility(curve, regionOf(curve, region), viewpoint);
+        auto v =
+            planar::polygonVisibility(curve, regionOf(curve, region), viewOf(viewpoint, weights));
         return py::dict("value"_a = v.average, "flux_variance"_a = v.variance,
                         "length"_a = v.length, "edge_flux"_a = std::move(v.edgeFlux),
                         "gradient"_a = std::move(v.gradient));
       },
-      "polygon"_a, "viewpoint"_a, "region"_a = py::none(),
+      "polygon"_a, "viewpoint"_a, "region"_a = py::none(), "view_weights"_a = py::none(),
       "Average visibility of a region (first and last vertex; default: all) of a polygon (V, 2),\n"
       "mm, from a viewpoint (2,): value in [-1, 1], its gradient (V, 2) in 1/mm, which ascends,\n"
-      "flux_variance, length in mm, and edge_flux, the mean flux of each region edge.");
+      "flux_variance, length in mm, and edge_flux, the mean flux of each region edge.  Of several\n"
+      "viewpoints (N, 2) the means by view_weights (N,), positive (default: equal).");
   m.def(
       "visible_part",
-      [](const PolygonIn& polygon, const Point2& viewpoint, const Ends& region) {
+      [](const PolygonIn& polygon, const ViewIn& viewpoint, const Ends& region,
+         const WeightsIn& weights) {
         const Curve curve = curveOf(polygon);
-        auto seen = planar::visiblePart(curve, regionOf(curve, region), viewpoint);
+        auto seen = planar::visiblePart(curve, regionOf(curve, region), viewOf(viewpoint, weights));
         return py::dict("fraction"_a = seen.fraction, "real_visibility"_a = seen.realVisibility,
                         "edge_seen"_a = std::move(seen.edgeSeen));
       },
-      "polygon"_a, "viewpoint"_a, "region"_a = py::none(),
+      "polygon"_a, "viewpoint"_a, "region"_a = py::none(), "view_weights"_a = py::none(),
       "What is truly seen of a region from a viewpoint (2,), mm, exactly: fraction of its length,\n"
       "real_visibility, the flux that arrives over that length,\n"
-      "and edge_seen, the seen share of each region edge.");
+      "and edge_seen, the seen share of each region edge.  Of several viewpoints (N, 2) the means\n"
+      "by view_weights (N,), positive (default: equal).");
   m.def(
       "knot_energy",
       [](const PolygonIn& polygon, std::optional<std::vector<bool>> moves,
@@ -247,23 +275,26 @@ void bindPlanar(py::module_& parent) {
   bindExamples(m);
   defWithOptions<planar::PolygonUnfoldingOptions>(
       m, "unfold",
-      [](const PolygonIn& polygon, const Ends& region, const Point2& viewpoint,
-         const py::object& progress, const py::kwargs& keywords) {
+      [](const PolygonIn& polygon, const Ends& region, const ViewIn& viewpoint,
+         const py::object& progress, const WeightsIn& weights, const py::kwargs& keywords) {
         const auto options = optionsOf<planar::PolygonUnfoldingOptions>(keywords);
         const Curve curve = curveOf(polygon);
         const planar::Region chosen = regionOf(curve, region);
+        const planar::Viewpoints view = viewOf(viewpoint, weights);
         return unfoldingDict(Watch(progress).run([&](const Monitor& monitor) {
-          return planar::unfoldPolygon(curve, chosen, viewpoint, options, monitor);
+          return planar::unfoldPolygon(curve, chosen, view, options, monitor);
         }));
       },
       "Move the region (first and last vertex; None: all) of a polygon (V, 2), mm, until it is "
       "seen\n"
-      "from a viewpoint (2,), its edges' lengths kept.  Returns polygon (V, 2), region_edges,\n"
+      "from a viewpoint (2,), or from several (N, 2) with view_weights (N,), positive (default:\n"
+      "equal), its edges' lengths kept.  Returns polygon (V, 2), region_edges,\n"
       "history (one dict an iteration), path (the positions at every entry of it), termination, "
       "and\n"
       "the pairs of edges that intersect, self_intersections_initial and _final (N, 2).\n"
       "`progress(fraction, activity)` may return False to stop.",
-      "polygon"_a, "region"_a, "viewpoint"_a, "progress"_a = py::none());
+      "polygon"_a, "region"_a, "viewpoint"_a, "progress"_a = py::none(),
+      "view_weights"_a = py::none());
 }
 
 }  // namespace explica::python

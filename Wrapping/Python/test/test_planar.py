@@ -64,6 +64,34 @@ class Planar(unittest.TestCase):
         self.assertLess(last["length_error"], 1e-6)
         self.assertEqual(len(made["self_intersections_final"]), 0)
 
+    def test_several_viewpoints_with_weights(self):
+        views = np.array([self.viewpoint, np.asarray(self.viewpoint) + [400.0, 0.0]])
+        single = [planar.visibility(self.polygon, v, self.region) for v in views]
+        mean = planar.visibility(self.polygon, views, self.region, view_weights=[3, 1])
+        for key in ("value", "gradient", "edge_flux"):
+            expected = 0.75 * np.asarray(single[0][key]) + 0.25 * np.asarray(single[1][key])
+            np.testing.assert_allclose(mean[key], expected, atol=1e-12)
+        seen = [planar.visible_part(self.polygon, v, self.region)["fraction"] for v in views]
+        both = planar.visible_part(self.polygon, views, self.region)
+        self.assertAlmostEqual(both["fraction"], 0.5 * sum(seen))
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "polygon.csv"
+            planar.write_polygon(file, self.polygon)
+            words = ["{!r},{!r}".format(*map(float, view)) for view in views]
+            explica.command(
+                "polygon", file, out=pathlib.Path(folder) / "out", quiet=True, max_iterations=8,
+                region="{}:{}".format(*self.region), viewpoint=words, view_weights="3,1",
+            )  # fmt: skip
+            written = planar.read_polygon(pathlib.Path(folder) / "out" / "unfolded.csv")
+        made = planar.unfold(
+            self.polygon, self.region, views, view_weights=[3, 1], max_iterations=8
+        )
+        np.testing.assert_array_equal(made["polygon"], written)
+        with self.assertRaisesRegex(ValueError, "viewpoint"):
+            planar.visibility(self.polygon, [[0.0, 0.0, 1.0]], self.region)
+        with self.assertRaisesRegex(ValueError, "weights"):
+            planar.visibility(self.polygon, views, self.region, view_weights=[1])
+
     def test_progress_may_stop_the_work(self):
         made = planar.unfold(
             self.polygon, self.region, self.viewpoint, progress=lambda fraction, activity: False
