@@ -27,6 +27,7 @@ struct Settings {
   io::SurfaceReadOptions reading;
   bool repair = true;
   inflation::InflateOptions inflate;
+  bool globalMeasures = false;
   bool resume = false;
 };
 
@@ -47,6 +48,11 @@ What is written is tested once more: faces that cross in it and did not at the s
                     "result is compared with the surface so repaired"},
               s.repair)
       .options("Inflation", s.inflate)
+      .option("Inflation",
+              Field{"global-measures", "",
+                    "compute the thesis's global measures, too: area of a viewing sphere hidden "
+                    "(4.6), area that hides itself (4.7); time grows with the square of the faces"},
+              s.globalMeasures)
       .option("Inflation", Field{"resume", "", "continue the run whose outputs are in --out"},
               s.resume)
       .reuseOutputIf(s.resume)
@@ -122,6 +128,7 @@ Termination run(Context& context, const Settings& s) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   };
   Inflated u;
+  u.globalMeasures = s.globalMeasures;
   u.before = readUsable(context, s, u.metadata);
   std::optional<unfolding::Checkpoint> checkpoint;
   if (s.resume) checkpoint = unfolding::readCheckpoint(context.outputFolder() / kInflationState);

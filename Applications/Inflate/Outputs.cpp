@@ -9,6 +9,7 @@
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/Unfolding/Account.h"
 #include "Explica/Unfolding/Distortion.h"
+#include "Explica/Visibility/GlobalMeasures.h"
 #include "Explica/Visibility/SphereView.h"
 
 #include <nlohmann/json.hpp>
@@ -53,6 +54,29 @@ void writeVisibility(Context& context, const Inflated& u,
   context.result("visibility_final", after.visibility);
   context.result("seen_initial", before.seenShare);
   context.result("seen_final", after.seenShare);
+}
+
+/// The thesis's own global measures (4.6) and (4.7), before and after; a sphere for both.
+void reportGlobalMeasures(Context& context, const Inflated& u) {
+  constexpr double kAway = 10;  // of the farthest vertex: the radius of the viewing sphere
+  const auto outward = [](TriangleMesh mesh) {
+    if (geometry::enclosedVolume(mesh) < 0) mesh.faces.col(1).swap(mesh.faces.col(2));
+    return mesh;
+  };
+  const TriangleMesh before = outward(u.before), after = outward(u.result.mesh);
+  const Point centre = before.positions.colwise().mean();
+  double farthest = 0;
+  for (const TriangleMesh* mesh : {&before, &after}) {
+    farthest = std::max(
+        farthest, (mesh->positions.rowwise() - centre.transpose()).rowwise().norm().maxCoeff());
+  }
+  const double radius = kAway * farthest;
+  context.result("viewing_radius", radius);
+  context.result("hidden_viewing_area_initial",
+                 visibility::hiddenViewingArea(before, centre, radius));
+  context.result("hidden_viewing_area_final", visibility::hiddenViewingArea(after, centre, radius));
+  context.result("self_occlusion_initial", visibility::selfOcclusion(before));
+  context.result("self_occlusion_final", visibility::selfOcclusion(after));
 }
 
 void reportDistances(Context& context, const Inflated& u) {
@@ -147,6 +171,7 @@ Termination writeInflated(Context& context, Inflated& u, const inflation::Inflat
   writeTextFile(context.output("evolution.tsv"), inflation::evolutionTable(u.result.history));
   unfolding::writeCheckpoint(context.output(kInflationState), u.result.checkpoint);
   writeVisibility(context, u, options);
+  if (u.globalMeasures) reportGlobalMeasures(context, u);
   writeDistortion(context, u);
   reportDistances(context, u);
   writeFrames(context, u);

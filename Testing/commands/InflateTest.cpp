@@ -54,6 +54,26 @@ TEST(InflateCommand, OpensAFoldedSurfaceAndSaysWhatItDid) {
   EXPECT_EQ(film.exitCode, 0) << film;
 }
 
+TEST(InflateCommand, TellsTheGlobalMeasuresOfTheThesisIfAsked) {
+  TemporaryFolder folder;
+  const TriangleMesh mesh = geometry::makeFoldedSphere(3, 30.0, 0.4, 7);
+  io::writeSurface(folder / "folded.surf.gii", mesh);
+  const auto run = explica({"inflate", folder / "folded.surf.gii", "--global-measures",
+                            "--max-iterations", "150", "--out", folder / "out"});
+  ASSERT_TRUE(run.exitCode == 0 || run.exitCode == 3) << run;
+  const auto summary = readJson(folder / "out/summary.json");
+  const auto number = [&](const std::string& key) { return summary.at(key).get<double>(); };
+  // What hides itself all but vanishes as the surface becomes round.
+  EXPECT_GT(number("self_occlusion_initial"), 0);
+  EXPECT_LT(number("self_occlusion_final"), 0.2 * number("self_occlusion_initial"));
+  // 2 pi r^2 A + 6 pi r V of a closed smooth surface: no measure of folding.
+  const double r = number("viewing_radius"), tau = 2 * 3.14159265358979;
+  for (const std::string when : {"initial", "final"}) {
+    const double closed = tau * r * r * number("area") + 3 * tau * r * number("volume_" + when);
+    EXPECT_NEAR(number("hidden_viewing_area_" + when) / closed, 1, 0.05) << when;
+  }
+}
+
 TEST(InflateCommand, OpensTheFoldsOfAGeneratedCortex) {
   TemporaryFolder folder;
   const auto made = explica({"phantom", "cortex", "--size", "40", "--spacing", "2", "--depth",
