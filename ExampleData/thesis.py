@@ -18,6 +18,8 @@ from pathlib import Path
 import nibabel
 import numpy
 
+import thesis_figures
+
 
 class Work:
     """Runs explica into folders of one place and keeps what it said."""
@@ -413,6 +415,57 @@ def chapter_3_shapes(work, page):
                     f"{abs(r - math.sqrt(a * b)).max():.4f}", "3.6")
 
 
+def polygon_of(work, name):
+    """Vertices of a run's polygon, and its region's edges: those of a phantom come first."""
+    polygon = numpy.loadtxt(work.path(name) / "polygon.csv", delimiter=",", skiprows=1)
+    edges = json.loads((work.path(name) / "summary.json").read_text())["region_edges"]
+    return polygon, list(range(edges))
+
+
+def definitions_4(work, page, p34):
+    """Figures 4.10 to 4.12: what is seen from a point, and the flux of a point."""
+    polygon, edges = polygon_of(work, "p34")
+    svg, stretches, share = thesis_figures.visible_parts(polygon, edges)
+    page.figure(["4.10"], f"What a viewpoint P sees of the polygon of 34 edges: {stretches} stretches (blue), "
+                          f"{100 * share:.0f} % of the region. P stands near here, far off in the simulations. ", svg)
+    svg, values = thesis_figures.region_of_interest(polygon, edges)
+    told = ", ".join(f"{name} {flux:+.2f} ({'seen' if seen else 'not seen'})"
+                     for name, (flux, seen) in sorted(values.items()))
+    page.figure(["4.11"], f"The region of interest from a to b, and the flux of points of it: {told}. Rays meet g at "
+                          "nearly right angles and c at a slant; e would be lit if nothing stood in the way; d faces "
+                          "away. ", svg)
+    svg, flux = thesis_figures.flux_of_a_point()
+    page.figure(["4.12"], "The flux of a point: the unit ray from P times the inward unit normal. ", svg)
+    page.number("points_4.11", "flux of the seen point g less that of the seen point c", "greater",
+                values["g"][0] - values["c"][0], f"{values['g'][0]:.2f} and {values['c'][0]:.2f}", "4.11")
+    page.number("hidden_4.11", "flux of the hidden point e, which faces P", "positive", values["e"][0],
+                f"{values['e'][0]:.2f}", "4.11")
+    page.number("away_4.11", "flux of the hidden point d, which faces away", "negative", values["d"][0],
+                f"{values['d'][0]:.2f}", "4.11")
+
+
+def edges_and_rays(work, page):
+    """Figure 4.16: an edge receives most where rays meet it at right angles; closed form beside quadrature."""
+    eye, length = numpy.array([0.0, 60.0]), 40
+    pictures, totals, apart = [], [], 0
+    for name, angle in (("upright", 0.0), ("slanted", math.radians(55))):
+        svg, total, (a, b) = thesis_figures.edge_and_rays(length, angle, eye)
+        pictures.append(svg)
+        totals.append(total)
+        below = 0.5 * (a + b) - [0, 200]
+        numpy.savetxt(work.path(f"{name}.csv"), numpy.stack([a, b, below]), delimiter=",", fmt="%.12g")
+        ours = work.run(f"edge-{name}", "polygon", work.path(f"{name}.csv"), "--region", "0:1", "--viewpoint",
+                        f"{eye[0]:g},{eye[1]:g}", "--max-iterations", 1)
+        apart = max(apart, abs(ours["visibility_initial"] * length - total))
+    page.figure(["4.16"], f"Two edges of the same length: the flux is {totals[0]:.2f} where rays meet it at right angles "
+                          f"(a) and {totals[1]:.2f} where they come at a slant (b). ", *pictures,
+                command=work.commands["edge-slanted"])
+    page.number("edge_flux", "flux of an edge: closed form (4.11) less quadrature, px", "closed form", apart,
+                f"{apart:.1e}", "4.16")
+    page.number("edge_gain", "flux of the edge at right angles over that at a slant", "greater", totals[0] / totals[1],
+                f"{totals[0] / totals[1]:.2f}", "4.16")
+
+
 def chapter_4(work, page):
     page.section("4.1 Global measures")
     arc = work.run("arc", "polygon", "--phantom", "polygon19", "--global-flow", "hidden-arc", "--max-iterations", 600)
@@ -433,8 +486,7 @@ def chapter_4(work, page):
     p34 = work.run("p34", "polygon", "--phantom", "polygon34")
     t19 = work.run("thesis19", "polygon", "--phantom", "polygon19", "--method", "thesis", "--no-collision")
     t34 = work.run("thesis34", "polygon", "--phantom", "polygon34", "--method", "thesis", "--no-collision")
-    page.not_made(["4.10", "4.11", "4.12"], "they define visibility from a point and the flux of a point. The flux is "
-                  "computed in closed form (4.11), and what is seen by an exact angular sweep.")
+    definitions_4(work, page, p34)
     page.figure(["4.13", "4.15", "4.17"],
                 f"The region of 19 edges from its viewpoint, by our implicit steps: the colour of an edge is its flux. ",
                 work.path("p19") / "evolution.svg", command=work.commands["p19"], wide=True)
@@ -447,7 +499,7 @@ def chapter_4(work, page):
     page.number("real_19", "19 edges: real visibility less its estimate by the flux, at the start", "a good estimate",
                 p19["real_visibility_initial"] - p19["visibility_initial"],
                 f"{p19['real_visibility_initial'] - p19['visibility_initial']:+.3f}", "4.14")
-    page.not_made(["4.16"], "it explains that an edge receives most flux when rays meet it at right angles.")
+    edges_and_rays(work, page)
     page.figure(["4.18"],
                 "The region of 34 edges by the thesis's explicit flow (4.20), the knot energy as the only guard, "
                 "collision detection off: no edge crosses another on the way. ",
@@ -531,6 +583,37 @@ def clear_visibility(work, before, name):
     return reached, clear
 
 
+def definitions_5(work, page):
+    """Figures 5.21 to 5.23: region and viewpoint, a face's corners, the merging tree."""
+    page.section("5.1 and 5.4 Region, face and tree")
+    surface, region = work.path("folds") / "folds.surf.gii", work.path("folds") / "region.label.gii"
+    width, height = 620, 430
+    picture = work.picture("region-of-interest.png", surface, "--labels", region, "--direction", "0.45,-1,0.75",
+                           "--width", width, "--height", height)
+    page.figure(["5.21"], "The region of interest S<sub>v</sub> (coloured) of a surface S, and the external viewpoint P. ",
+                thesis_figures.over_picture(picture, width, height, (width / 2, 26),
+                                            [(x * width, 70 + y * height) for x, y in
+                                             ((0.24, 0.46), (0.4, 0.5), (0.52, 0.42), (0.66, 0.5), (0.78, 0.46))],
+                                            "the region of the folded sheet of figure 5.24"))
+    svg, before = thesis_figures.face_with_normal()
+    page.figure(["5.22"], "A face S<sub>i</sub> with its corners counter-clockwise seen from outside, and its inward unit "
+                          f"normal (69): (v<sub>a</sub> − P) · N = {before:.1f} is positive where the face looks at P. ", svg)
+    tree = thesis_figures.tree_of_the_figure()
+    drawings, starts = [thesis_figures.draw_tree(tree, "(a) the tree of nine faces")[0]], []
+    for letter, face, near in (("b", 1, [2]), ("c", 4, [3, 5]), ("d", 6, [5, 7])):
+        drawn, begins = thesis_figures.draw_tree(tree, f"({letter}) forces on face {face}", face, near)
+        drawings.append(drawn)
+        starts.append(begins)
+    page.figure(["5.23"], "The merging algorithm's tree of nine faces, and what is left of it for faces 1, 4 and 6 (grey): "
+                          "neighbours (orange) exactly, then recursion from the green nodes. The same tree and the "
+                          "same nodes are pinned in the software's test <code>MergingTree.*</code>. ", *drawings)
+    page.number("tree_nodes", "nodes of the tree of nine faces", "16", max(tree.centre), f"{max(tree.centre)}", "5.23")
+    page.number("tree_three", "children of node 11", "3 (faces 3 to 5)", len(tree.children[11]),
+                ", ".join(map(str, tree.children[11])), "5.23")
+    page.number("tree_start", "face 1: node at which the recursion begins", "15", starts[0][0],
+                ", ".join(map(str, starts[0])), "5.23")
+
+
 def chapter_5_folds(work, page):
     page.section("5.6 A synthetic surface")
     work.run("folds", "phantom", "folds", "--edge", 1)
@@ -605,9 +688,7 @@ def chapter_5_folds(work, page):
                 times["all-pairs"] / times["thesis-tree"], f"{times['all-pairs'] / times['thesis-tree']:.1f}", "5.24")
     page.number("our_gain", "time of the thesis's tree over ours", "not applicable",
                 times["thesis-tree"] / times["tree"], f"{times['thesis-tree'] / times['tree']:.0f}", "5.24")
-    page.not_made(["5.21", "5.22"], "they define the region of interest and a face's corners.")
-    page.not_made(["5.23"], "the merging tree is built as the algorithm says; tests compare it with the figure node by "
-                  "node.")
+    definitions_5(work, page)
 
 
 def chapter_5_cortex(work, page, fsaverage):

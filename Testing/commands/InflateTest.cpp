@@ -74,6 +74,23 @@ TEST(InflateCommand, TellsTheGlobalMeasuresOfTheThesisIfAsked) {
   }
 }
 
+TEST(InflateCommand, FlowsOfTheGlobalMeasuresLoseAreaInsteadOfUnfolding) {
+  TemporaryFolder folder;
+  io::writeSurface(folder / "folded.surf.gii", geometry::makeFoldedSphere(2, 30.0, 0.4, 4));
+  for (const std::string measure : {"hidden-area", "self-occlusion"}) {
+    const auto run = explica({"inflate", folder / "folded.surf.gii", "--global-flow", measure,
+                              "--max-iterations", "120", "--out", folder / measure});
+    ASSERT_TRUE(run.exitCode == 0 || run.exitCode == 3) << run;
+    const auto summary = readJson(folder / (measure + "/summary.json"));
+    EXPECT_LT(summary["measure_final"], summary["measure_initial"]) << measure;
+    EXPECT_LT(summary["area_final"].get<double>(), 0.97 * summary["area_initial"].get<double>());
+    EXPECT_EQ(io::readSurface(folder / (measure + "/inflated.surf.gii")).mesh.faceCount(), 320);
+  }
+  const auto both = explica({"inflate", folder / "folded.surf.gii", "--global-flow", "hidden-area",
+                             "--resume", "--out", folder / "hidden-area"});
+  EXPECT_EQ(both.exitCode, 1) << both;
+}
+
 TEST(InflateCommand, OpensTheFoldsOfAGeneratedCortex) {
   TemporaryFolder folder;
   const auto made = explica({"phantom", "cortex", "--size", "40", "--spacing", "2", "--depth",
