@@ -269,9 +269,9 @@ def icosphere(level):
     return numpy.array(v), numpy.array(f)
 
 
-def write_surface(path, radius):
+def write_surface(path, radius, level=4):
     """A closed surface about the origin, radius(x, y, z) mm in each direction."""
-    v, f = icosphere(4)
+    v, f = icosphere(level)
     v = v * radius(v[:, 0], v[:, 1], v[:, 2])[:, None]
     with open(path, "w") as file:
         file.write(f"OFF\n{len(v)} {len(f)} 0\n")
@@ -481,6 +481,28 @@ def chapter_4(work, page):
         page.number(f"length_kept_{key}", f"length of the region that the flow of figure {number} keeps",
                     "does not unfold", kept, f"{100 * kept:.0f} %", number)
 
+    surface = work.path("lobes.off")
+    write_surface(surface, lambda x, y, z: 30 * (1 + 0.35 * (1 - z * z) * numpy.sin(5 * numpy.arctan2(y, x))), level=3)
+    pictures, kept = [work.picture("lobes.png", surface, "--direction", "0.3,-0.6,0.75", "--width", 260, "--height", 260)], {}
+    for name in ("hidden-area", "self-occlusion"):
+        flow = work.run(name, "inflate", surface, "--global-flow", name, "--max-iterations", 120)
+        kept[name] = flow["area_final"] / flow["area_initial"]
+        pictures.append(work.picture(f"{name}.png", work.path(name) / "inflated.surf.gii", "--direction", "0.3,-0.6,0.75",
+                                     "--width", 260, "--height", 260))
+    ours = work.run("lobes", "inflate", surface, "--global-measures")
+    pictures.append(work.picture("lobes-ours.png", work.path("lobes") / "inflated.surf.gii", "--direction", "0.3,-0.6,0.75",
+                                 "--width", 260, "--height", 260))
+    page.figure([], f"<b>Both measures of a closed surface.</b> A lobed surface; after the flow of (4.6), which keeps "
+                    f"{100 * kept['hidden-area']:.0f} % of its area; after that of (4.7), which keeps "
+                    f"{100 * kept['self-occlusion']:.0f} %; and inflated by our steps to global visibility "
+                    f"{ours['visibility_final']:.3f} with areas kept to {100 * ours['area_error_mean']:.1f} %. ", *pictures,
+                command=work.commands["self-occlusion"])
+    page.number("area_kept_4.7", "area that the flow of (4.7) keeps of a lobed closed surface", "does not unfold",
+                kept["self-occlusion"], f"{100 * kept['self-occlusion']:.0f} %", "4.9")
+    page.number("occlusion_inflated", "what hides itself (4.7) after our inflation, share of the start", "not reported",
+                ours["self_occlusion_final"] / ours["self_occlusion_initial"],
+                f"{ours['self_occlusion_final'] / ours['self_occlusion_initial']:.2g}", "4.9")
+
     page.section("4.2 Unfolding of polygons")
     p19 = work.run("p19", "polygon", "--phantom", "polygon19")
     p34 = work.run("p34", "polygon", "--phantom", "polygon34")
@@ -490,12 +512,24 @@ def chapter_4(work, page):
     page.figure(["4.13", "4.15", "4.17"],
                 f"The region of 19 edges from its viewpoint, by our implicit steps: the colour of an edge is its flux. ",
                 work.path("p19") / "evolution.svg", command=work.commands["p19"], wide=True)
-    page.text("The flux estimates the “real” average visibility, the seen share times its cosine (figure 4.14):")
-    page.figures["4.14"] = "made"
+    half = work.run("seen40", "polygon", "--phantom", "polygon19", "--method", "thesis", "--no-collision",
+                    "--target-visibility", 0.4)
+    opened = numpy.loadtxt(work.path("seen40") / "unfolded.csv", delimiter=",", skiprows=1)
+    page.figure(["4.14"], f"A region on its way whose average visibility is {half['visibility_final']:.2f}: what is truly "
+                          f"seen of it (blue), {100 * half['seen_final']:.0f} % of its length, has "
+                          f"{half['real_visibility_final']:.2f} by its cosine. So the flux estimates the “real” average "
+                          "visibility: ",
+                thesis_figures.seen_region(opened, list(range(half["region_edges"])), numpy.array(half["viewpoint"])),
+                command=work.commands["seen40"])
     page.table(["region", "flux", "seen", "seen times cosine"],
-               [[f"<span id='f4.14'></span>{n}, {when}", f"{r['visibility_' + when]:.3f}", f"{r['seen_' + when]:.3f}",
+               [[f"{n}, {when}", f"{r['visibility_' + when]:.3f}", f"{r['seen_' + when]:.3f}",
                  f"{r['real_visibility_' + when]:.3f}"]
                 for n, r in (("19 edges", p19), ("34 edges", p34)) for when in ("initial", "final")])
+    page.number("flux_40", "region of figure 4.14: average visibility", "0.4", half["visibility_final"],
+                f"{half['visibility_final']:.3f}", "4.14")
+    page.number("real_40", "the same: seen times cosine less the flux", "a good estimate",
+                half["real_visibility_final"] - half["visibility_final"],
+                f"{half['real_visibility_final'] - half['visibility_final']:+.3f}", "4.14")
     page.number("real_19", "19 edges: real visibility less its estimate by the flux, at the start", "a good estimate",
                 p19["real_visibility_initial"] - p19["visibility_initial"],
                 f"{p19['real_visibility_initial'] - p19['visibility_initial']:+.3f}", "4.14")
@@ -533,6 +567,9 @@ def chapter_4(work, page):
                     run["flux_variance_initial"], f"{run['flux_variance_initial']:.3f}", where)
         page.number(f"visibility_final_{key}", f"{edges} edges: final average visibility", "almost 1",
                     run["visibility_final"], f"{run['visibility_final']:.4f}", where)
+        page.number(f"variance_final_{key}", f"{edges} edges: final variance of the flux",
+                    "0" if key == "19" else "almost 0", run["flux_variance_final"], f"{run['flux_variance_final']:.1e}",
+                    where)
         page.number(f"length_{key}", f"{edges} edges: length kept by ours (relative change)", thesis[2],
                     abs(run["length_final"] / run["length_initial"] - 1),
                     f"{run['length_initial']:.2f} to {run['length_final']:.2f} px", where)
@@ -547,8 +584,18 @@ def chapter_4(work, page):
     page.number("length_collapse", "34 edges without length constraints: length at the end",
                 "723.70 to 205.41 px", collapse["length_final"],
                 f"{collapse['length_initial']:.2f} to {collapse['length_final']:.2f} px", "4.19")
-    page.number("first_crossing", "34 edges without topology preservation: iterations to the first crossing",
-                "“after a few iterations”", crossing["first_crossing"], f"{crossing['first_crossing']}", "4.20")
+    page.number("edges_collapse", "the same: vertices of the region", "34 to 13", 34 - collapse["vertices_merged"],
+                f"34 to {34 - collapse['vertices_merged']}", "4.19")
+    page.number("visibility_collapse", "the same: average visibility", "0.17 to almost 1",
+                collapse["visibility_final"],
+                f"{collapse['visibility_initial']:.2f} to {collapse['visibility_final']:.3f}", "4.19")
+    coarse = work.run("crossing-coarse", "polygon", "--phantom", "polygon34", "--method", "thesis", "--no-topology",
+                      "--explicit-step", 1)
+    page.number("first_crossing", "34 edges without topology preservation: iterations to the first crossing, at steps "
+                "of a tenth of an edge", "“after a few iterations”", crossing["first_crossing"],
+                f"{crossing['first_crossing']}", "4.20")
+    page.number("first_crossing_coarse", "the same at steps of an edge", "drawn after 10 and 100",
+                coarse["first_crossing"], f"{coarse['first_crossing']}", "4.20")
 
 
 def frames_of(folder):
@@ -593,7 +640,7 @@ def definitions_5(work, page):
     page.figure(["5.21"], "The region of interest S<sub>v</sub> (coloured) of a surface S, and the external viewpoint P. ",
                 thesis_figures.over_picture(picture, width, height, (width / 2, 26),
                                             [(x * width, 70 + y * height) for x, y in
-                                             ((0.24, 0.46), (0.4, 0.5), (0.52, 0.42), (0.66, 0.5), (0.78, 0.46))],
+                                             ((0.36, 0.53), (0.49, 0.62), (0.55, 0.19), (0.65, 0.3), (0.6, 0.5))],
                                             "the region of the folded sheet of figure 5.24"))
     svg, before = thesis_figures.face_with_normal()
     page.figure(["5.22"], "A face S<sub>i</sub> with its corners counter-clockwise seen from outside, and its inward unit "
@@ -606,7 +653,7 @@ def definitions_5(work, page):
         starts.append(begins)
     page.figure(["5.23"], "The merging algorithm's tree of nine faces, and what is left of it for faces 1, 4 and 6 (grey): "
                           "neighbours (orange) exactly, then recursion from the green nodes. The same tree and the "
-                          "same nodes are pinned in the software's test <code>MergingTree.*</code>. ", *drawings)
+                          "same nodes are pinned in the software's test “MergingTree”. ", *drawings)
     page.number("tree_nodes", "nodes of the tree of nine faces", "16", max(tree.centre), f"{max(tree.centre)}", "5.23")
     page.number("tree_three", "children of node 11", "3 (faces 3 to 5)", len(tree.children[11]),
                 ", ".join(map(str, tree.children[11])), "5.23")
@@ -684,6 +731,11 @@ def chapter_5_folds(work, page):
               f"{times['all-pairs']:.2f} s, the thesis's merging tree {times['thesis-tree']:.2f} s, ours "
               f"{1000 * times['tree']:.1f} ms. The thesis reports 20 minutes and 5 seconds for about 1,500 faces of a "
               "whole cortex on a 2.53 GHz computer.")
+    for key, name, thesis in (("all-pairs", "all pairs", "about 20 min"), ("thesis-tree", "merging tree", "5 s"),
+                              ("tree", "our tree", "not applicable")):
+        page.number(f"seconds_{key}", f"seconds an iteration for the topology forces, {name} (thesis: about 1,500 faces of "
+                                      f"a cortex, 2.53 GHz; here: {faces} faces)", thesis, times[key],
+                    f"{times[key]:.3g} s", "5.24")
     page.number("tree_gain", "time of all pairs over the merging tree", "20 min to 5 s: 240 times",
                 times["all-pairs"] / times["thesis-tree"], f"{times['all-pairs'] / times['thesis-tree']:.1f}", "5.24")
     page.number("our_gain", "time of the thesis's tree over ours", "not applicable",

@@ -170,6 +170,20 @@ def region_of_interest(polygon, edges):
     return drawing.svg(), values
 
 
+def seen_region(polygon, edges, eye):
+    """Figure 4.14: a region and what is seen of it from afar."""
+    samples = Samples(polygon, edges, eye, 0.4)
+    drawing = Drawing(polygon.min(0) - 14, polygon.max(0) + [14, 60], 430)
+    drawing.line(polygon, GREY, 1.4, closed=True, fill="#f4f5f6")
+    drawing.line([polygon[edges[0]], *(polygon[(k + 1) % len(polygon)] for k in edges)], RED, 2.2)
+    for first, last in samples.runs():
+        drawing.line(samples.place[first:last + 1], BLUE, 4)
+    top = numpy.array([0.5 * (polygon[:, 0].min() + polygon[:, 0].max()), polygon[:, 1].max() + 52])
+    drawing.line([top, top - [0, 30]], INK, 2, arrow=True)
+    drawing.text(top, "to P, far above", 8, 12, "start")
+    return drawing.svg()
+
+
 def flux_of_a_point():
     """Figure 4.12: ray, inward normal and the cosine between them."""
     t = numpy.linspace(0.16 * math.pi, 0.9 * math.pi, 90)
@@ -192,7 +206,7 @@ def flux_of_a_point():
     drawing.text(point + 34 * normal, "N, inward", 8, 4, "start")
     drawing.text(point - 34 * ray, "unit ray", 10, 4, "start")
     drawing.text(arc[10], "θ", 4, 16, colour=GREEN, style="italic")
-    drawing.text([-92, 12], f"flux = cos θ = {flux:.3f}", anchor="start", size=14)
+    drawing.text([-92, 112], f"flux = cos θ = {flux:.3f}", anchor="start", size=14)
     drawing.dot(point)
     drawing.eye(eye)
     return drawing.svg(), flux

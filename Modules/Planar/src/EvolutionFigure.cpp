@@ -200,16 +200,17 @@ std::string drawEvolution(bool closed, const Viewpoints& view,
     const EvolutionStage& stage = stages[s];
     const double textX = kMargin + (s % columns) * (cell + kMargin);
     const double textY = kMargin + row * rowHeight + 16;
-    page += svg::panelTitle(textX, textY, s, stage.title);
     // Of several viewpoints the first and the last.
     drawArrow(page, panel, view.points.front());
     if (view.points.size() > 1) drawArrow(page, panel, view.points.back());
     const std::size_t crossings = drawStage(page, panel, closed, view, stage);
     anyCrossing = anyCrossing || crossings > 0;
-    std::string numbers = "visibility " + format("%.3f", stage.visibility) + ", flux variance " +
-                          format("%.3f", stage.variance) + ", length " +
-                          format("%.2f", stage.length);
-    if (crossings > 0) numbers += ", crossings " + std::to_string(crossings);
+    const std::string numbers = "visibility " + format("%.3f", stage.visibility) +
+                                ", flux variance " + format("%.3f", stage.variance) + ", length " +
+                                format("%.2f", stage.length);
+    const std::string crossed =
+        crossings > 0 ? ", crossings " + std::to_string(crossings) : std::string();
+    page += svg::panelTitle(textX, textY, s, stage.title + crossed);
     page += text(textX, textY + 19, numbers, "fill=\"#444\"");
   }
   drawLegend(page, rows * rowHeight, scale, anyCrossing);
