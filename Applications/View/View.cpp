@@ -45,7 +45,9 @@ void declare(Declaration& d, Settings& s) {
   d.synopsis("choose and steer an unfolding in a window; pictures and films without one")
       .description(
           "Without --screenshot or --film a window opens on a surface, or on a folder of `explica "
-          "unfold`, `flatten` or `sample`: pick a centre (C), take the view as viewpoint (V), set "
+          "unfold`, `flatten` or `sample`: pick a centre (C), take the view as viewpoint (V) or "
+          "add "
+          "it to those taken (Shift+V), set "
           "the radius, run and pause (Space), step back and forth, save (W); F1 shows every key. "
           "Maps, labels, volumes and folders named after the surface are shown with it: of a "
           "folder "

@@ -37,11 +37,16 @@ unfolding::Region regionOf(const TriangleMesh& surface, const Choice& choice) {
   return unfolding::selectRegion(surface, options);
 }
 
-/// Where `explica unfold --direction --distance` puts it.
-Point viewpointOf(const TriangleMesh& surface, const unfolding::Region& region,
-                  const Choice& choice) {
-  return unfolding::centroidOf(surface, region) +
-         choice.distance / choice.direction.norm() * choice.direction;
+/// Where `explica unfold --direction --distance` puts them.
+visibility::Viewpoints viewpointsOf(const TriangleMesh& surface, const unfolding::Region& region,
+                                    const Choice& choice) {
+  const Point about = unfolding::centroidOf(surface, region);
+  std::vector<Point> points = {about +
+                               choice.distance / choice.direction.norm() * choice.direction};
+  for (const Vector& direction : choice.further) {
+    points.emplace_back(about + choice.distance / direction.norm() * direction);
+  }
+  return visibility::viewpoints(points, {});
 }
 
 /// A state, kept as what differs from the start: a region moves, the rest of a hemisphere does not.
@@ -94,7 +99,7 @@ struct Session::Implementation {
   std::atomic<bool> pauseWanted{false};
 
   visibility::Viewpoints viewpoints() const {
-    return visibility::viewpoint(viewpointOf(surface, preview.region, choice));
+    return viewpointsOf(surface, preview.region, choice);
   }
 
   std::vector<unfolding::IterationRecord> history(std::size_t last) const {
@@ -304,6 +309,7 @@ std::vector<std::pair<std::string, std::string>> Session::batchOptions(std::size
     options = {{"vertex", std::to_string(c.centre)}, {"radius", exactText(c.radius)}};
   }
   options.emplace_back("direction", exactText(c.direction));
+  for (const Vector& further : c.further) options.emplace_back("direction", exactText(further));
   options.emplace_back("distance", exactText(c.distance));
   options.emplace_back("surround", std::string(nameOf(c.unfold.unfolder.surround)));
   if (c.unfold.targetVisibility) {

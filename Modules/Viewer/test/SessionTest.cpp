@@ -110,6 +110,28 @@ TEST(Session, StopsByItselfWhereABatchRunWould) {
   EXPECT_EQ(session.activity(), Activity::Over) << "what is over does not go on";
 }
 
+TEST(Session, SeveralViewpointsCountAlike) {
+  const TriangleMesh ball = geometry::makeFoldedSphere(3, 30);
+  Session session(ball);
+  Choice choice = sideChoice(session);
+  choice.unfold.maxIterations = 3;
+  choice.further = {choice.direction + 0.4 * Vector::UnitY()};
+  session.choose(choice);
+  const auto& region = session.preview().region;
+  std::vector<Point> eyes;
+  for (const Vector& direction : {choice.direction, choice.further[0]}) {
+    eyes.emplace_back(unfolding::centroidOf(ball, region) + 1000 * direction.normalized());
+  }
+  session.run();
+  waitFor(session, 100);
+  const auto result =
+      unfolding::unfold(ball, region, visibility::viewpoints(eyes, {}), choice.unfold);
+  EXPECT_LT((result.mesh.positions - session.moment(3).positions).cwiseAbs().maxCoeff(), 1e-9);
+  int directions = 0;
+  for (const auto& [name, value] : session.batchOptions(3)) directions += name == "direction";
+  EXPECT_EQ(directions, 2);
+}
+
 TEST(Session, ACheckpointContinuesToTheSameStates) {
   const TriangleMesh ball = geometry::makeFoldedSphere(3, 30);
   Session session(ball);

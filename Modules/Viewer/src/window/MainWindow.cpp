@@ -120,6 +120,8 @@ void MainWindow::buildMenus() {
             under(&MainWindow::pickCentre));
   addAction(edit, "view", "Present &view is the viewpoint", QKeySequence("V"),
             [this] { takeView(); });
+  addAction(edit, "addView", "Present view is a &further viewpoint", QKeySequence("Shift+V"),
+            [this] { addView(); });
   addAction(edit, "undo", "&Undo the last choice", QKeySequence::Undo, [this] { undo(); });
   addAction(edit, "reset", "&Reset to choosing", QKeySequence("R"), [this] {
     session_.reset();
@@ -210,6 +212,7 @@ void MainWindow::connectPanels() {
   });
   connect(panels_.takeAbove, &QPushButton::clicked, this, [this] { takeAbove(); });
   connect(panels_.takeView, &QPushButton::clicked, this, [this] { takeView(); });
+  connect(panels_.addView, &QPushButton::clicked, this, [this] { addView(); });
   connect(panels_.run, &QPushButton::clicked, this, [this] { toggle(); });
   connect(panels_.state, &QSlider::valueChanged, this, [this](int state) {
     if (!filling_) step(static_cast<std::size_t>(state));
@@ -372,6 +375,13 @@ void MainWindow::takeAbove() {
 void MainWindow::takeView() {
   Choice choice = session_.choice();
   choice.direction = stage_->direction();
+  choice.further.clear();
+  choose(std::move(choice));
+}
+
+void MainWindow::addView() {
+  Choice choice = session_.choice();
+  choice.further.push_back(stage_->direction());
   choose(std::move(choice));
 }
 

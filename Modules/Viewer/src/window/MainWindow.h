@@ -67,6 +67,7 @@ class MainWindow : public QMainWindow {
   void takeRegion();  ///< of the label or of the ball that the panel names
   void takeAbove();
   void takeView();
+  void addView();  ///< as a further viewpoint
   void toggle();
   void saveState();
   void copyCommand();

@@ -62,11 +62,14 @@ QGroupBox* viewGroup(Panels& p) {
   auto* form = new QFormLayout;
   p.takeView = named(new QPushButton("Take the present view (V)"), "takeView",
                      "The region is opened towards the side from which you look now");
+  p.addView = named(new QPushButton("Add the present view (Shift+V)"), "addView",
+                    "The side from which you look now counts as much as those taken before");
   p.distance = number("distance", "How far the viewpoint is", 10, 1e6, 100, 0, " mm");
   p.surround = named(new QComboBox, "surround", "What becomes of the surface around the region");
   p.target = number("target", "Average visibility at which to stop; 0: where it no longer pays", 0,
                     1, 0.01, 3, "");
   form->addRow(p.takeView);
+  form->addRow(p.addView);
   form->addRow("Distance", p.distance);
   form->addRow("Surroundings", p.surround);
   form->addRow("Target", p.target);

@@ -29,6 +29,7 @@ struct Panels {
   // Viewpoint and surroundings
   QDoubleSpinBox* distance = nullptr;
   QPushButton* takeView = nullptr;
+  QPushButton* addView = nullptr;
   QComboBox* surround = nullptr;
   QDoubleSpinBox* target = nullptr;  ///< 0: none
   // Run

@@ -25,7 +25,11 @@ constexpr Rgb kInside = {224, 150, 84};
 
 visibility::Viewpoints viewpointOf(const TriangleMesh& mesh, const Choice& choice) {
   const Point middle = mesh.positions.colwise().mean().transpose();
-  return visibility::viewpoint(middle + choice.distance * choice.direction.normalized());
+  std::vector<Point> points = {middle + choice.distance * choice.direction.normalized()};
+  for (const Vector& direction : choice.further) {
+    points.emplace_back(middle + choice.distance * direction.normalized());
+  }
+  return visibility::viewpoints(points, {});
 }
 
 std::string wordOf(const Session& session) {

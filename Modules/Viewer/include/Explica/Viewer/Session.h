@@ -21,9 +21,10 @@ struct Choice {
   std::vector<bool> marked = {};  ///< V, or empty; where given, the region instead of a ball
   /// Options of `explica unfold` that give `marked`: label, label-key.
   std::vector<std::pair<std::string, std::string>> markedOptions = {};
-  Vector direction = {-1, 0, 0};    ///< from the surface to the viewer, any length > 0
-  double distance = 1000;           ///< of the viewpoint from the region's centroid, mm
-  unfolding::UnfoldOptions unfold;  ///< how, and when it is over
+  Vector direction = {-1, 0, 0};     ///< from the surface to the viewer, any length > 0
+  std::vector<Vector> further = {};  ///< to further viewpoints, which count as much as the first
+  double distance = 1000;            ///< of the viewpoint from the region's centroid, mm
+  unfolding::UnfoldOptions unfold;   ///< how, and when it is over
 };
 
 /// The region that a choice makes, before anything moves.
