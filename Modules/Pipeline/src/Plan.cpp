@@ -328,6 +328,10 @@ class Planner {
       needs = needs_;
     } else {
       json = surfaceValues(*files_.labels, labels_, left_);
+      if (files_.image) {
+        use("image", *files_.image, "places the borders");
+        json["image"] = files_.image->string();
+      }
     }
     if (given && surfaces().parcellation) {
       use("regions", *surfaces().parcellation);

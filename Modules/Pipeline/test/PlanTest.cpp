@@ -12,6 +12,7 @@
 
 #include <unistd.h>
 
+#include <fstream>
 #include <functional>
 #include <set>
 
@@ -99,6 +100,31 @@ TEST_F(PlanOfLabels, ARibbonTellsItsSides) {
   EXPECT_EQ(valuesOf(whole, "thickness")["inner"], Json({41}));
   EXPECT_EQ(valuesOf(whole, "thickness")["tissue"], Json({42}));
   EXPECT_EQ(valuesOf(whole, "surface")["hemisphere"], "R");
+}
+
+TEST_F(PlanOfLabels, AFreeSurferSubjectsImagePlacesTheBordersOfSurfacesThatAreMade) {
+  const fs::path labels = write([](double radius, bool left) -> Label {
+    if (radius < 6) return left ? 2 : 41;
+    return radius < 9 ? (left ? 3 : 42) : 0;
+  });
+  const fs::path subject = folder_ / "subject";
+  fs::create_directories(subject / "mri");
+  fs::create_directories(subject / "surf");
+  const auto volume = io::readLabels(labels).volume;
+  io::writeVolume(subject / "mri/ribbon.mgz", volume);
+  PlanOptions options;
+  options.hemisphere = RunHemisphere::Left;
+  options.steps = {RunStep::Surface};
+  EXPECT_FALSE(valuesOf(plan(subject, options), "surface").contains("image"));
+  io::writeVolume(subject / "mri/brain.mgz", volume);
+  const std::string image = (subject / "mri/brain.mgz").string();
+  EXPECT_EQ(valuesOf(plan(subject, options), "surface")["image"], image);
+  for (const char* name : {"lh.white", "lh.pial"}) std::ofstream(subject / "surf" / name) << ' ';
+  const Json given = valuesOf(plan(subject, options), "surface");
+  EXPECT_TRUE(given.contains("white-surface"));
+  EXPECT_FALSE(given.contains("image"));
+  options.given = GivenSurfaces::Remake;
+  EXPECT_EQ(valuesOf(plan(subject, options), "surface")["image"], image);
 }
 
 TEST_F(PlanOfLabels, ThreeClassesHaveNoSides) {

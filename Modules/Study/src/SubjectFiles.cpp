@@ -59,6 +59,8 @@ SubjectFiles inFreeSurferSubject(const fs::path& subject) {
     if (files.labels)
       files.remarks.emplace_back("mri/ribbon.mgz is not there: mri/aseg.mgz is used");
   }
+  files.image = ifThere(mri / "brain.mgz");
+  if (!files.image) files.image = ifThere(mri / "norm.mgz");
   files.atlas = ifThere(mri / "aparc+aseg.mgz");
   files.left = freeSurferSurfaces(subject, "lh", files.remarks);
   files.right = freeSurferSurfaces(subject, "rh", files.remarks);

@@ -77,6 +77,7 @@ TEST_F(Study, FindsTheFilesOfAFreeSurferSubject) {
   EXPECT_EQ(files.layout, SubjectLayout::FreeSurfer);
   EXPECT_EQ(files.labels, folder_ / "bert/mri/ribbon.mgz");
   EXPECT_EQ(files.atlas, folder_ / "bert/mri/aparc+aseg.mgz");
+  EXPECT_FALSE(files.image);
   EXPECT_EQ(files.left.pial, folder_ / "bert/surf/lh.pial");
   EXPECT_EQ(files.left.parcellation, folder_ / "bert/label/lh.aparc.annot");
   EXPECT_FALSE(files.right.white);  // alone it is of no use
@@ -85,6 +86,10 @@ TEST_F(Study, FindsTheFilesOfAFreeSurferSubject) {
   fs::remove(folder_ / "bert/mri/ribbon.mgz");
   put("bert/mri/aseg.mgz");
   EXPECT_EQ(findSubjectFiles(folder_ / "bert").labels, folder_ / "bert/mri/aseg.mgz");
+  put("bert/mri/norm.mgz");
+  EXPECT_EQ(findSubjectFiles(folder_ / "bert").image, folder_ / "bert/mri/norm.mgz");
+  put("bert/mri/brain.mgz");
+  EXPECT_EQ(findSubjectFiles(folder_ / "bert").image, folder_ / "bert/mri/brain.mgz");
 }
 
 TEST_F(Study, FindsTheFilesOfFmriPrep) {

@@ -26,6 +26,7 @@ enum class SubjectLayout {
 struct SubjectFiles {
   SubjectLayout layout = SubjectLayout::Bids;
   std::optional<std::filesystem::path> labels;         ///< white and grey matter, voxel by voxel
+  std::optional<std::filesystem::path> image;          ///< the brain whose labels these are
   std::optional<std::filesystem::path> t1;             ///< in which an atlas lies
   std::optional<std::filesystem::path> mask;           ///< brain, if the T1 still has its skull
   std::optional<std::filesystem::path> atlas;          ///< cortical regions, voxel by voxel
@@ -41,7 +42,8 @@ struct SubjectFiles {
 /// Looks through a subject's folder: a FreeSurfer subject directory, a `sub-XX`, `ses-YY` or `anat`
 /// folder of a BIDS data set or derivative.
 ///
-/// FreeSurfer: labels are `mri/ribbon.mgz`, else `mri/aseg.mgz`; atlas `mri/aparc+aseg.mgz`;
+/// FreeSurfer: labels are `mri/ribbon.mgz`, else `mri/aseg.mgz`; their image `mri/brain.mgz`, else
+/// `mri/norm.mgz`; atlas `mri/aparc+aseg.mgz`;
 /// surfaces `surf/?h.white` and `surf/?h.pial` with `label/?h.aparc.annot`.
 /// BIDS, in this order: `*_desc-aseg_dseg`, `*_desc-aparcaseg_dseg`; a skull-stripped T1
 /// (`*_desc-brain_T1w`, or `*_desc-preproc_T1w` with `*_desc-brain_mask`) with an atlas in its
