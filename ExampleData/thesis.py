@@ -272,7 +272,10 @@ def icosphere(level):
 def write_surface(path, radius, level=4):
     """A closed surface about the origin, radius(x, y, z) mm in each direction."""
     v, f = icosphere(level)
-    v = v * radius(v[:, 0], v[:, 1], v[:, 2])[:, None]
+    write_off(path, v * radius(v[:, 0], v[:, 1], v[:, 2])[:, None], f)
+
+
+def write_off(path, v, f):
     with open(path, "w") as file:
         file.write(f"OFF\n{len(v)} {len(f)} 0\n")
         file.writelines("%.6f %.6f %.6f\n" % tuple(p) for p in v)
@@ -786,19 +789,40 @@ def chapter_5_cortex(work, page, fsaverage):
     return surface, work.path("region-5.25")
 
 
+def round_off(surface, target):
+    """A closed surface projected from its middle to the sphere of its area."""
+    points, faces = (array.data for array in nibabel.load(surface).darrays[:2])
+    corners = points[faces].astype(float)
+    area = 0.5 * numpy.linalg.norm(numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum()
+    away = points - points.mean(0)
+    away *= math.sqrt(area / (4 * math.pi)) / numpy.linalg.norm(away, axis=1)[:, None]
+    write_off(target, away, faces)
+
+
 def comparison(work, page, fsaverage, surface, unfolded):
     page.section("Beside flat, inflated and spherical maps")
     maps = {"unfolded": unfolded / "unfolded.surf.gii"}
     if fsaverage:
         for name in ("infl", "sphere", "flat"):
             maps[name] = Path(fsaverage) / f"{name}_left.gii.gz"
-    if len(maps) == 1:
-        page.text("No fsaverage was given (<code>--fsaverage DIR</code>), so there is no inflated or spherical map of "
-                  "the same vertices to compare with.")
+    else:
+        work.run("inflated", "inflate", surface, "--target-seen", 0.998)
+        maps["inflated"] = work.path("inflated") / "inflated.surf.gii"
+        maps["spherical"] = work.path("spherical.off")
+        round_off(maps["inflated"], maps["spherical"])
+        page.text("No fsaverage was given (<code>--fsaverage DIR</code>): the maps are the phantom's own, inflated by "
+                  "<code>explica inflate</code>, and that projected to a sphere from its middle.")
     work.run("beside", "compare", surface, *maps.values(), "--label", unfolded / "region.label.gii", "--pairs", 4000)
     lines = (work.path("beside") / "comparison.tsv").read_text().splitlines()
     head = lines[0].split("\t")
-    page.table(head, [line.split("\t") for line in lines[1:]])
+    rows = [line.split("\t") for line in lines[1:]]
+    page.table(head, rows)
+    beside = {name: dict(zip(head, row)) for name, row in zip(maps, rows[-len(maps):])}
+    for name, row in beside.items():
+        page.number(f"area_error_{name}", f"the region of figure 5.25, {name}: mean area error", "little distortion",
+                    float(row["area_error_mean"]), f"{100 * float(row['area_error_mean']):.1f} %", "5.25")
+        page.number(f"strain_{name}", f"the same, {name}: mean strain of edges", "little distortion",
+                    float(row["edge_strain_mean"]), f"{100 * float(row['edge_strain_mean']):.1f} %", "5.25")
 
 
 def errata(page):
