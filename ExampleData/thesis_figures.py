@@ -27,9 +27,20 @@ class Drawing:
 
     def line(self, points, colour=INK, width=1.5, closed=False, dash=None, fill="none", arrow=False):
         path = " ".join("%.1f,%.1f" % self.at(p) for p in points)
-        more = (f' stroke-dasharray="{dash}"' if dash else "") + (' marker-end="url(#tip)"' if arrow else "")
+        more = f' stroke-dasharray="{dash}"' if dash else ""
         self.parts.append(f'<{"polygon" if closed else "polyline"} points="{path}" fill="{fill}" '
                           f'stroke="{colour}" stroke-width="{width}" stroke-linejoin="round"{more}/>')
+        if arrow:
+            self.tip(points[-2], points[-1], colour)
+
+    def tip(self, start, end, colour):
+        """An arrow's head at the end of a line."""
+        a, b = numpy.array(self.at(start)), numpy.array(self.at(end))
+        along = (b - a) / numpy.linalg.norm(b - a)
+        across = numpy.array([-along[1], along[0]])
+        corners = " ".join("%.1f,%.1f" % tuple(p) for p in (b + 2 * along, b - 8 * along + 4.5 * across,
+                                                            b - 8 * along - 4.5 * across))
+        self.parts.append(f'<polygon points="{corners}" fill="{colour}"/>')
 
     def dot(self, point, colour=INK, radius=3.5):
         x, y = self.at(point)
@@ -47,9 +58,7 @@ class Drawing:
     def svg(self):
         w, h = self.size
         return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {w:.0f} {h:.0f}" width="{w:.0f}" '
-                'font-family="sans-serif"><defs><marker id="tip" viewBox="0 0 8 8" refX="7" refY="4" '
-                'markerWidth="7" markerHeight="7" orient="auto"><path d="M0,0 L8,4 L0,8 z" fill="#1a1d21"/>'
-                f'</marker></defs><rect width="100%" height="100%" fill="#fff"/>{"".join(self.parts)}</svg>')
+                f'font-family="sans-serif"><rect width="100%" height="100%" fill="#fff"/>{"".join(self.parts)}</svg>')
 
 
 # ---- the plane ----------------------------------------------------------------------------------
