@@ -30,6 +30,9 @@ constexpr double kEnough = 1e-5;  // voxels from the boundary at which a walk ha
 constexpr double kPoorGain = 0.25;
 constexpr double kNearEnd = 1.5;
 constexpr int kStrikes = 8;
+// Hops of a walk from voxel to voxel, and the least that u gains by one: less is round-off.
+constexpr int kMostHops = 64;
+constexpr double kLeastGain = 1e-7;
 
 /// Where in (0, 1) the cubic with values and slopes f0 < 0, g0 and f1 > 0, g1 at 0 and 1 is zero,
 /// by Newton steps from the chord's crossing; that crossing if they leave the interval.
@@ -623,7 +626,57 @@ double TrajectoryTracer::Field::stepAfter(double step, double error) const {
   return std::min(longest, step * std::clamp(factor, kLeast, kMost));
 }
 
+bool TrajectoryTracer::Field::hop(Walk& walk, double target, int uphill) const {
+  walk.stuck = true;
+  if (walk.home < 0 || ++walk.hops > kMostHops) return false;
+  const auto s = annulus.boxSubscripts(walk.home);
+  const Vector centre(s[0], s[1], s[2]);
+  const std::int32_t wall = target > 0.5 ? kOuter : kInner;
+  const auto& links = annulus.links[walk.home];
+  const auto lengthTo = [&](const Vector& x) {
+    return (x - walk.x).cwiseProduct(annulus.grid.spacing).norm();
+  };
+  Vector end = walk.x;
+  double nearest = kInfinity;
+  std::int32_t next = uphill * (interpolant.u[walk.home] - walk.u) > kLeastGain ? walk.home : -1;
+  double steepest = 0;
+  for (int d = 0; d < 6; ++d) {
+    const int a = harmonic::axisOf(d);
+    const Vector way = harmonic::signOf(d) * Vector::Unit(a);
+    if (links[d] == wall) {
+      const Vector x = centre + annulus.fractions[annulus.irregular(walk.home)][d] * way;
+      if (lengthTo(x) < nearest) {
+        nearest = lengthTo(x);
+        end = x;
+      }
+    } else if (links[d] >= 0) {
+      const double gain = uphill * (interpolant.u[links[d]] - walk.u);
+      if (gain <= kLeastGain || gain <= steepest * annulus.grid.spacing[a]) continue;
+      steepest = gain / annulus.grid.spacing[a];
+      next = links[d];
+    }
+  }
+  if (nearest < kInfinity) {
+    walk.length += nearest;
+    walk.x = end;
+    walk.u = target;
+    walk.stuck = false;
+    return true;
+  }
+  if (next < 0) return false;
+  Walk on = begin(annulus.place[next], uphill);
+  on.length = walk.length + lengthTo(on.x);
+  on.hops = walk.hops;
+  walk = on;
+  return false;
+}
+
 bool TrajectoryTracer::Field::advance(Walk& walk, double target, int uphill) const {
+  const bool done = advanceAlong(walk, target, uphill);
+  return !done && walk.stuck ? hop(walk, target, uphill) : done;
+}
+
+bool TrajectoryTracer::Field::advanceAlong(Walk& walk, double target, int uphill) const {
   // Half a voxel at most where the side must be known: a step then never leaves its neighbourhood.
   const double longest = (walk.divided ? std::min(0.5, options.maxStep) : options.maxStep) * finest;
   walk.step = std::min(walk.step, longest);

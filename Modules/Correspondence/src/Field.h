@@ -31,6 +31,7 @@ struct TrajectoryTracer::Field {
     double slope = 0;      ///< |grad u| here, 1/mm
     bool divided = false;  ///< the last cell has more than one side
     int strikes = 0;       ///< steps along which u did not change as its gradient says
+    int hops = 0;          ///< from voxel to voxel, where the field between them led nowhere
     bool stuck = false;
   };
 
@@ -103,6 +104,12 @@ struct TrajectoryTracer::Field {
   /// Corners from the side of `seed`; a bit per corner that belongs to it.
   std::uint8_t extend(const std::int32_t* number, int seed, Corner* corner) const;
   void prepareSides();
+  bool advanceAlong(Walk& walk, double target, int uphill) const;
+  /// Takes a walk that is stuck straight to the boundary beside its voxel or to the neighbour
+  /// towards which u gains most: a harmonic function has such a one everywhere, so that the walk
+  /// gets on where the field between voxels leads nowhere, as it may at the edges of sheets.
+  /// True if the walk has arrived; it stays stuck where u is flat.
+  bool hop(Walk& walk, double target, int uphill) const;
   /// mm of the step after one with this error estimate.
   [[nodiscard]] double stepAfter(double step, double error) const;
   /// Ends a walk on a straight line if the target is near; else it is stuck.

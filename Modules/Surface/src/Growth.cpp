@@ -10,16 +10,17 @@
 namespace explica::surface {
 namespace {
 
-/// All vertices, then one half and the other, then quarters: what stood in each other's way going
-/// together may pass going one after another.
-constexpr int kSweeps = 7;
+/// All vertices, then one half and the other, then quarters, at the end eighths: what stood in each
+/// other's way going together may pass going one after another.
+constexpr int kSweeps = 7, kLastSweeps = 15;
 
 bool takesTurn(std::int32_t v, int sweep) {
   constexpr std::uint32_t kMix = 2654435761U;  // Knuth's multiplicative hash
   const std::uint32_t mixed = static_cast<std::uint32_t>(v) * kMix >> 16;
   if (sweep == 0) return true;
   if (sweep < 3) return (mixed & 1U) == static_cast<std::uint32_t>(sweep - 1);
-  return (mixed >> 1 & 3U) == static_cast<std::uint32_t>(sweep - 3);
+  if (sweep < 7) return (mixed >> 1 & 3U) == static_cast<std::uint32_t>(sweep - 3);
+  return (mixed >> 3 & 7U) == static_cast<std::uint32_t>(sweep - 7);
 }
 
 }  // namespace
@@ -39,7 +40,7 @@ void Growth::goTo(double share) {
     return way == 0 ? target(v) : 0.5 * (reached_[v] + target(v));
   };
   std::vector<std::int32_t> waiting;
-  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+  for (int sweep = 0; sweep < (share < 1 ? kSweeps : kLastSweeps); ++sweep) {
     waiting.clear();
     bool any = false;
     for (std::int32_t v = 0; v < static_cast<std::int32_t>(paths_.size()); ++v) {

@@ -76,7 +76,10 @@ bool isPoor(const GuardedMesh& mesh, std::int32_t f, double edge, const Limits& 
 
 /// True if the triangles at a vertex are stretched, crowded, flat or folded, or it stands out.
 bool isCrumpled(const GuardedMesh& mesh, std::int32_t v, double edge, const Limits& limits) {
-  if (mesh.onRim(v)) return false;
+  if (mesh.onRim(v)) {
+    return std::any_of(mesh.facesOf(v).begin(), mesh.facesOf(v).end(),
+                       [&](std::int32_t f) { return isPoor(mesh, f, edge, limits); });
+  }
   Vector sum = Vector::Zero();
   Point ring = Point::Zero();
   for (const std::int32_t f : mesh.facesOf(v)) {
@@ -176,8 +179,11 @@ TriangleMesh relaxed(const TriangleMesh& mesh, double edge, const std::vector<st
     std::vector<Point> goal(mesh.vertexCount());
     parallelFor(vertices.size(), 64, [&](std::size_t n) {
       const std::int32_t v = vertices[n];
-      goal[v] = guarded.at(v);
-      if (guarded.onRim(v)) return;
+      if (guarded.onRim(v)) {
+        const auto [before, after] = guarded.rimNeighbours(v);
+        goal[v] = 0.5 * guarded.at(v) + 0.25 * (guarded.at(before) + guarded.at(after));
+        return;
+      }
       const Ring ring = ringOf(guarded, v);
       const Vector step = ring.centre - guarded.at(v);
       const double across = ring.normal.dot(step);

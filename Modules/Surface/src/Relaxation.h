@@ -24,8 +24,8 @@ using Placement =
 
 /// Where triangles are stretched, poor or folded, lets vertices slide along their surface to the
 /// middle of their neighbours, so that neither crowns nor floors keep the triangles that growth has
-/// left them; what stands out from the ring goes back.  Faces stay, and no step makes them meet.
-/// Elsewhere nothing moves, nor does a rim.
+/// left them; what stands out from the ring goes back; vertices of a rim slide along it.  Faces
+/// stay, and no step makes them meet.  Elsewhere nothing moves.
 /// @param edge   mean edge, mm
 /// @param moves  1 for the vertices that may move
 [[nodiscard]] TriangleMesh relaxed(const TriangleMesh& mesh, double edge,

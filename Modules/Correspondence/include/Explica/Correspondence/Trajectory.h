@@ -12,7 +12,7 @@ namespace explica::correspondence {
 
 /// How carefully trajectories are followed.
 struct TraceOptions {
-  double tolerance = 1e-3;  ///< greatest error estimate of a step, in voxels
+  double tolerance = 4e-3;  ///< greatest error estimate of a step, in voxels
   double maxStep = 1;       ///< longest step, in voxels of the finest spacing, at most 1; where two
                             ///< banks share a cell, half a voxel, so that the bank stays known
 };
