@@ -2,6 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs and studies: what a run would do, who takes part, what came out."""
 
-from ._explica.study import find_participants, plan, table
+from ._explica.study import find_participants, hearts, plan, table
 
-__all__ = ["find_participants", "plan", "table"]
+__all__ = ["find_participants", "hearts", "plan", "table"]

@@ -6,6 +6,7 @@
 
 #include "Explica/Pipeline/Plan.h"
 #include "Explica/Study/BidsDataset.h"
+#include "Explica/Study/HeartStudy.h"
 #include "Explica/Study/StudyTable.h"
 
 #include <pybind11/stl.h>
@@ -47,6 +48,23 @@ void bindStudy(py::module_& parent) {
       "out"_a,
       "Rows of a study's output folder, one a participant's hemisphere: participant, hemisphere,\n"
       "region, state, report and values, a dictionary of text by column.");
+  m.def(
+      "hearts",
+      [](const std::filesystem::path& dataset, const std::filesystem::path& out,
+         const std::vector<std::string>& endings) {
+        study::HeartLayout layout;
+        if (!endings.empty()) layout.endings = endings;
+        const auto subjects = study::findHearts(dataset, {}, layout);
+        py::list list;
+        for (const auto& row : study::heartRows(out, subjects, study::aboutParticipants(dataset))) {
+          list.append(py::dict("name"_a = row.name, "state"_a = row.state, "about"_a = row.about,
+                               "values"_a = row.values));
+        }
+        return list;
+      },
+      "dataset"_a, "out"_a, "endings"_a = std::vector<std::string>{},
+      "Rows of what `explica study hearts` has made of a folder of hearts, one a person: name,\n"
+      "state, about (participants.tsv) and values, dictionaries of text by column.");
   defWithOptions<pipeline::PlanOptions>(
       m, "plan",
       [](const std::filesystem::path& input, const std::filesystem::path& out,

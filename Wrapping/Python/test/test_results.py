@@ -107,6 +107,24 @@ class Commands(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "no runs"):
             study.table(dataset)
 
+    def test_a_study_of_hearts_is_a_list_of_rows(self):
+        beat = self.folder / "beat"
+        options = dict(size=64, spacing=2, slice=8, frames=2, quiet=True)
+        explica.command("phantom ventricle", out=beat, **options)
+        person = self.folder / "people" / "sub-1"
+        person.mkdir(parents=True)
+        for frame, phase in ((0, "ED"), (1, "ES")):
+            name = f"sub-1_frame-{phase}_dseg.nii.gz"
+            (person / name).write_bytes((beat / f"frame-000{frame}.nii.gz").read_bytes())
+        (person.parent / "participants.tsv").write_text("participant_id\tsex\nsub-1\tF\n")
+        (row,) = study.hearts(person.parent, self.folder / "hearts")
+        self.assertEqual(row["state"], "not begun")
+        explica.command("study hearts", person.parent, self.folder / "hearts", quiet=True)
+        (row,) = study.hearts(person.parent, self.folder / "hearts")
+        self.assertEqual((row["name"], row["state"], row["about"]), ("sub-1", "done", {"sex": "F"}))
+        self.assertAlmostEqual(float(row["values"]["ejection_fraction_percent"]), 50, delta=2)
+        self.assertIn("segment_16_thickening", row["values"])
+
 
 class Pictures(unittest.TestCase):
     def test_picture_shows_the_surface_in_its_colours(self):
