@@ -48,8 +48,8 @@ struct Settings {
   std::optional<std::string> cuts;
   std::optional<std::string> cortex;
   flattening::CutOptions cut;
-  std::optional<std::string> label;
-  std::optional<int> labelKey;
+  std::vector<std::string> labels;
+  std::vector<int> labelKeys;
   std::optional<double> areaTolerance;
   flattening::FlattenOptions flatten;
   double grid = 0.5;
@@ -98,10 +98,11 @@ With --surfaces the map becomes a stack of depths: grid.nii.gz gives each cell i
                    "for --cuts auto, where there is cortex: label, annot, or map (not 0)", s.cortex,
                    "Region")
       .options("Region", s.cut, "cut.")
-      .inputOption("label", FileKind::VertexLabel, "lay flat only where this label is not 0",
-                   s.label, "Region")
-      .option("Region", Field{"label-key", "", "lay flat only where --label has this key"},
-              s.labelKey)
+      .inputOption("label", FileKind::VertexLabel,
+                   "lay flat only where this label, or one of several, is not 0", s.labels,
+                   "Region")
+      .option("Region", Field{"label-key", "", "lay flat only where --label has one of these keys"},
+              s.labelKeys)
       .option("Flattening",
               Field{"area-tolerance", "",
                     "mean relative area error to reach (default: 0.01; with --cuts 0.05)", 1e-6, 1},
@@ -197,7 +198,7 @@ std::vector<std::int32_t> facesOfCuts(Context& context, const Settings& s,
   const auto all = everyFace(mesh.faces);
   if (*s.cuts == kAutomatic) {
     const bool closed = flattening::boundaryLoops(mesh.faces, mesh.vertexCount()).empty();
-    if (s.label || !closed) return all;
+    if (!s.labels.empty() || !closed) return all;
     return flattening::facesWithoutWall(mesh, cortexOf(context, s.surface, mesh, s.cortex));
   }
   context.input(*s.cuts, "cuts");
@@ -236,12 +237,15 @@ Subject subjectOf(Context& context, const Settings& s) {
   }
   subject.faces = everyFace(mesh.faces);
   if (s.cuts) subject.faces = facesOfCuts(context, s, mesh);
-  if (s.label) {
-    const auto labels = io::readVertexLabels(*s.label, mesh.vertexCount());
-    subject.faces = flattening::facesWithin(mesh.faces, subject.faces, labels.keys, s.labelKey);
+  if (!s.labels.empty()) {
+    const auto marked =
+        io::markedByLabels({s.labels.begin(), s.labels.end()}, s.labelKeys, mesh.vertexCount());
+    flattening::VertexKeys keys(mesh.vertexCount());
+    std::copy(marked.begin(), marked.end(), keys.begin());
+    subject.faces = flattening::facesWithin(mesh.faces, subject.faces, keys);
   }
   const auto region = std::filesystem::path(s.surface).parent_path() / "region.label.gii";
-  if (recorded && !s.label && !s.cuts && std::filesystem::exists(region)) {
+  if (recorded && s.labels.empty() && !s.cuts && std::filesystem::exists(region)) {
     const auto labels = io::readVertexLabels(context.input(region, "region"), mesh.vertexCount());
     subject.faces = flattening::facesWithin(mesh.faces, subject.faces, labels.keys);
   }

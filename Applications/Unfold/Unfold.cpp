@@ -13,6 +13,7 @@
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Geometry/SelfIntersection.h"
+#include "Explica/IO/RegionFiles.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/Unfolding/Account.h"
@@ -111,34 +112,6 @@ visibility::Viewpoints viewOf(const Settings& s, const Point& about) {
   return viewFrom(s.view, s.viewSurface, s.reading, about);
 }
 
-/// Vertices with one of the keys wanted, or with any key but 0, in any of the files.
-std::vector<bool> markedByLabel(const TriangleMesh& mesh, const Settings& s) {
-  std::vector<bool> marked(static_cast<std::size_t>(mesh.vertexCount()));
-  Label lowest = std::numeric_limits<Label>::max(), highest = std::numeric_limits<Label>::lowest();
-  for (const std::string& file : s.labels) {
-    const auto labels = io::readVertexLabels(file, mesh.vertexCount());
-    lowest = std::min(lowest, labels.keys.minCoeff());
-    highest = std::max(highest, labels.keys.maxCoeff());
-    for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
-      const Label key = labels.keys[v];
-      const bool wanted = s.labelKeys.empty() ? key != 0
-                                              : std::find(s.labelKeys.begin(), s.labelKeys.end(),
-                                                          key) != s.labelKeys.end();
-      if (wanted) marked[v] = true;
-    }
-  }
-  if (std::find(marked.begin(), marked.end(), true) == marked.end()) {
-    std::string wanted;
-    for (const int key : s.labelKeys)
-      wanted += (wanted.empty() ? "" : " or ") + std::to_string(key);
-    throw InvalidInput(!wanted.empty()
-                           ? "label: no vertex has key " + wanted + ", keys go from " +
-                                 std::to_string(lowest) + " to " + std::to_string(highest)
-                           : "label: it is 0 everywhere, so the region is empty");
-  }
-  return marked;
-}
-
 /// Vertices at which the map is above the value.
 std::vector<bool> markedByMap(const TriangleMesh& mesh, const Settings& s) {
   const Eigen::VectorXd values = io::readVertexMaps(*s.map, mesh.vertexCount()).front().values;
@@ -165,7 +138,9 @@ unfolding::Region regionOf(const TriangleMesh& mesh, const Settings& s,
   if (s.map && !s.labels.empty())
     throw UsageError("the region is given by --label or by --map, not by both");
   if (s.map) return unfolding::regionOfMarked(mesh, markedByMap(mesh, s));
-  if (!s.labels.empty()) return unfolding::regionOfMarked(mesh, markedByLabel(mesh, s));
+  if (!s.labels.empty())
+    return unfolding::regionOfMarked(mesh, io::markedByLabels({s.labels.begin(), s.labels.end()},
+                                                              s.labelKeys, mesh.vertexCount()));
   return unfolding::selectRegion(mesh, s.region, view);
 }
 

@@ -105,10 +105,21 @@ void declare(Declaration& d, Settings& s) {
       .withoutOutput();
 }
 
-report::SurfacePaint readPaint(const Settings& s, Eigen::Index vertexCount) {
+void paintLabels(const ShownSurface& surface, const std::string& file,
+                 report::SurfacePaint& paint) {
+  const io::LabelMap labels = readLabelsOn(surface, file);
+  paint.labels = labels.keys;
+  for (const io::LabelEntry& entry : labels.table) {
+    paint.labelColours[entry.key] = report::colourOfLabel(entry.key, entry.colour);
+  }
+}
+
+report::SurfacePaint readPaint(const Settings& s, const ShownSurface& surface) {
   report::SurfacePaint paint;
-  if (s.map) {
-    const auto maps = io::readVertexMaps(*s.map, vertexCount);
+  if (s.map && isLabelFile(*s.map)) {
+    paintLabels(surface, *s.map, paint);
+  } else if (s.map) {
+    const auto maps = readMapsOn(surface, *s.map);
     const auto chosen =
         s.mapName ? std::find_if(maps.begin(), maps.end(),
                                  [&](const io::VertexMap& m) { return m.name == *s.mapName; })
@@ -128,9 +139,9 @@ report::SurfacePaint readPaint(const Settings& s, Eigen::Index vertexCount) {
       paint.scale.high = s.range->y();
     }
   } else if (s.labels) {
-    paint.labels = io::readVertexLabels(*s.labels, vertexCount).keys;
+    paintLabels(surface, *s.labels, paint);
   }
-  if (s.region) paint.region = io::readVertexLabels(*s.region, vertexCount).keys;
+  if (s.region) paint.region = readLabelsOn(surface, *s.region).keys;
   return paint;
 }
 
@@ -175,9 +186,10 @@ report::Picture drawSlices(const Settings& s) {
 report::Picture drawSurfaces(const Settings& s) {
   std::vector<report::Picture> figures;
   for (const std::string& file : s.files) {
-    const TriangleMesh mesh = io::readSurface(file, s.reading).mesh;
-    const report::SurfacePaint paint = readPaint(s, mesh.vertexCount());
-    figures.push_back(report::surfaceFigure(mesh, paint, viewsOf(s, paint), s.columns, s.picture));
+    const ShownSurface surface{io::readSurface(file, s.reading).mesh, file};
+    const report::SurfacePaint paint = readPaint(s, surface);
+    figures.push_back(
+        report::surfaceFigure(surface.mesh, paint, viewsOf(s, paint), s.columns, s.picture));
   }
   return report::tilePictures(figures, s.columns);
 }
@@ -220,7 +232,7 @@ Termination run(Context& context, const Settings& s) {
   if (s.film) {
     const std::filesystem::path folder = s.files.front();
     std::optional<report::SurfacePaint> paint;
-    if (s.map || s.labels) paint = readPaint(s, firstFrame(folder).vertexCount());
+    if (s.map || s.labels) paint = readPaint(s, {firstFrame(folder), folder.string()});
     std::vector<FilmView> views;
     if (s.direction || !s.views.empty()) {
       for (const report::FigureView& view : viewsOf(s, {})) views.push_back(filmView(view));

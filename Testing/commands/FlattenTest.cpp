@@ -220,6 +220,40 @@ TEST(FlattenRegions, KeepNamesAndColoursOfEachFile) {
   EXPECT_EQ(table.find("elsewhere"), std::string::npos);
 }
 
+TEST(FlattenRegions, SeveralLabelsAndKeysMakeOnePatch) {
+  TemporaryFolder folder;
+  const TriangleMesh sphere = geometry::makeIcosphere(4, 30);
+  io::writeGiftiSurface(folder / "mid.surf.gii", sphere);
+  const auto write = [&](const std::string& name, const auto& keys) {
+    io::LabelMap labels{name, keys, {{0, "???", {0, 0, 0, 0}}}};
+    for (const Label key : {1, 2, 3}) labels.table.push_back({key, std::to_string(key), {}});
+    io::writeGiftiLabel(folder / (name + ".label.gii"), labels, "CortexLeft");
+  };
+  const auto x = sphere.positions.col(0).array(), z = sphere.positions.col(2).array();
+  const auto left = (z > 10 && x < 1).cast<Label>().eval(),
+             right = (z > 10 && x > -1).cast<Label>().eval();
+  write("left", left.matrix().eval());
+  write("right", right.matrix().eval());
+  write("cap", (left + 2 * right).min(3).matrix().eval());
+  const auto facesOf = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"flatten", folder / "mid.surf.gii", "--area-tolerance", "0.05"});
+    words.insert(words.end(), {"--out", folder / "flat", "--force"});
+    const auto made = explica(words);
+    EXPECT_EQ(made.exitCode, 0) << made;
+    return int(readJson(folder / "flat/summary.json")["faces"]);
+  };
+  const int whole = facesOf({"--label", folder / "cap.label.gii"});
+  EXPECT_EQ(facesOf({"--label", folder / "left.label.gii", "--label", folder / "right.label.gii"}),
+            whole);
+  EXPECT_EQ(facesOf({"--label", folder / "cap.label.gii", "--label-key", "1,2,3"}), whole);
+  EXPECT_LT(facesOf({"--label", folder / "cap.label.gii", "--label-key", "1,3"}), 0.7 * whole);
+  const auto none =
+      explica({"flatten", folder / "mid.surf.gii", "--label", folder / "cap.label.gii",
+               "--label-key", "7,8", "--out", folder / "none"});
+  EXPECT_EQ(none.exitCode, 2);
+  EXPECT_NE(none.err.find("7 or 8, keys go from 0 to 3"), std::string::npos) << none;
+}
+
 TEST_F(FlattenCommand, TheWallOfAutomaticCutsIsTakenFromWhatIsGivenOrFound) {
   TemporaryFolder folder;
   const std::string mid = middle(folder, "left");

@@ -37,6 +37,61 @@ TEST(View, DrawsTheSameBytesTwiceWithoutADisplay) {
   EXPECT_EQ(pictures[0], pictures[1]);
 }
 
+TEST(View, LabelsHaveTheirTablesColoursAndTheMedialWallIsGrey) {
+  TemporaryFolder folder;
+  writeSphere(folder);
+  const TriangleMesh mesh = io::readSurface(folder / "a.surf.gii").mesh;
+  const auto picture = [&](const std::vector<std::string>& words, const std::string& name) {
+    std::vector<std::string> all = {"view", folder / "a.surf.gii"};
+    all.insert(all.end(), words.begin(), words.end());
+    all.insert(all.end(), {"--views", "left", "--width", "200", "--height", "150", "--screenshot",
+                           folder / (name + ".png")});
+    const auto drawn = explica(all, kNoDisplay);
+    EXPECT_EQ(drawn.exitCode, 0) << drawn;
+    return readText(folder / (name + ".png"));
+  };
+  io::LabelMap labels{"areas", (mesh.positions.col(2).array() > 0).cast<Label>() + 1, {}};
+  const auto write = [&](const std::string& file, const std::array<float, 4>& second) {
+    labels.table = {{1, "one", {1, 0, 0, 1}}, {2, "two", second}};
+    io::writeGiftiLabel(folder / file, labels, "CortexLeft");
+    return folder / file;
+  };
+  const std::string blue = write("blue.label.gii", {0, 0, 1, 1}),
+                    green = write("green.label.gii", {0, 1, 0, 1});
+  const std::string drawn = picture({"--labels", blue}, "labels");
+  EXPECT_NE(drawn, picture({"--labels", green}, "green"));
+  EXPECT_EQ(drawn, picture({"--map", blue}, "map"));  // never as a scale of values
+
+  // What was not measured, by valid.shape.gii or as a thickness of 0, has no value's colour.
+  Eigen::VectorXd values = mesh.positions.col(2).cwiseAbs().array() + 1, valid(values.size());
+  for (Eigen::Index v = 0; v < values.size(); ++v) {
+    valid[v] = mesh.positions(v, 1) > 0 ? 1 : 0;
+    if (valid[v] == 0) values[v] = 0;
+  }
+  Eigen::VectorXd unknown = values;
+  for (Eigen::Index v = 0; v < values.size(); ++v) {
+    if (valid[v] == 0) unknown[v] = kNaN;
+  }
+  const auto maps = [&](const std::string& file, const std::string& name, const auto& of) {
+    io::GiftiMapsWriter writer(folder / file, "CortexLeft", 1);
+    const std::vector<float> floats(of.begin(), of.end());
+    writer.add(name, "mm", floats);
+    writer.finish();
+    return folder / file;
+  };
+  const auto drawnMap = [&](const std::string& file, const std::string& name) {
+    return picture({"--map", file, "--map-name", name, "--range", "0,40"}, "m");
+  };
+  const std::string plain = drawnMap(maps("m.shape.gii", "m", values), "m");
+  const std::string known = drawnMap(maps("m.shape.gii", "m", unknown), "m");
+  EXPECT_NE(plain, known);
+  io::writeGiftiShape(folder / "valid.shape.gii", {{"valid", "", valid}}, "CortexLeft");
+  EXPECT_EQ(drawnMap(maps("m.shape.gii", "m", values), "m"), known);
+  std::filesystem::remove(folder / "valid.shape.gii");
+  const std::string thin = drawnMap(maps("t.shape.gii", "thickness", values), "thickness");
+  EXPECT_EQ(thin, drawnMap(maps("t.shape.gii", "thickness", unknown), "thickness"));
+}
+
 TEST(View, ShowsContoursOnAVolume) {
   TemporaryFolder folder;
   ASSERT_EQ(explica({"phantom", "cortex", "--size", "40", "--out", folder / "p"}).exitCode, 0);

@@ -89,4 +89,28 @@ std::vector<LabelMap> readRegions(const std::vector<std::filesystem::path>& file
   return all;
 }
 
+std::vector<bool> markedByLabels(const std::vector<std::filesystem::path>& files,
+                                 const std::vector<int>& keys, Eigen::Index vertexCount) {
+  std::vector<bool> marked(static_cast<std::size_t>(vertexCount));
+  Label lowest = std::numeric_limits<Label>::max(), highest = std::numeric_limits<Label>::lowest();
+  for (const std::filesystem::path& file : files) {
+    const LabelMap labels = readVertexLabels(file, vertexCount);
+    lowest = std::min(lowest, labels.keys.minCoeff());
+    highest = std::max(highest, labels.keys.maxCoeff());
+    for (Eigen::Index v = 0; v < vertexCount; ++v) {
+      const Label key = labels.keys[v];
+      const bool wanted =
+          keys.empty() ? key != 0 : std::find(keys.begin(), keys.end(), key) != keys.end();
+      if (wanted) marked[static_cast<std::size_t>(v)] = true;
+    }
+  }
+  if (std::find(marked.begin(), marked.end(), true) != marked.end()) return marked;
+  std::string wanted;
+  for (const int key : keys) wanted += (wanted.empty() ? "" : " or ") + std::to_string(key);
+  throw InvalidInput(wanted.empty()
+                         ? "label: it is 0 everywhere, so the region is empty"
+                         : "label: no vertex has key " + wanted + ", keys go from " +
+                               std::to_string(lowest) + " to " + std::to_string(highest));
+}
+
 }  // namespace explica::io

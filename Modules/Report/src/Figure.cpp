@@ -32,7 +32,10 @@ std::vector<Colour> coloursOf(const SurfacePaint& paint, Eigen::Index vertexCoun
   if (paint.values.size() != 0) {
     colours = coloursOf(paint.values, paint.scale);
   } else if (paint.labels.size() != 0) {
-    for (const Label label : paint.labels) colours.push_back(colourOfLabel(label));
+    for (const Label label : paint.labels) {
+      const auto own = paint.labelColours.find(label);
+      colours.push_back(own == paint.labelColours.end() ? colourOfLabel(label) : own->second);
+    }
   }
   if (paint.region.size() != 0 && !colours.empty()) {
     for (Eigen::Index v = 0; v < vertexCount; ++v) {

@@ -27,4 +27,11 @@ inline constexpr Label kNoRegion = std::numeric_limits<Label>::lowest();
 [[nodiscard]] std::vector<LabelMap> readRegions(const std::vector<std::filesystem::path>& files,
                                                 Eigen::Index vertexCount);
 
+/// Vertices that have one of the keys in any of the label files; without keys, any key but 0.
+/// @return V marks, at least one of them true
+/// @throws as readVertexLabels; InvalidInput also if no vertex is marked
+[[nodiscard]] std::vector<bool> markedByLabels(const std::vector<std::filesystem::path>& files,
+                                               const std::vector<int>& keys,
+                                               Eigen::Index vertexCount);
+
 }  // namespace explica::io

@@ -8,6 +8,7 @@
 #include "Explica/Report/SlicePicture.h"
 #include "Explica/Report/SurfacePicture.h"
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,6 +20,7 @@ struct SurfacePaint {
   Eigen::VectorXd values;                          ///< V, or empty
   ColourScale scale;                               ///< of the values
   Eigen::Matrix<Label, Eigen::Dynamic, 1> labels;  ///< V, or empty; used where there are no values
+  std::map<Label, Colour> labelColours;            ///< of their table; others get colourOfLabel
   Eigen::Matrix<Label, Eigen::Dynamic, 1> region;  ///< V, or empty: what is 0 here is shown paler
 };
 
