@@ -310,6 +310,7 @@ void writeSurfaces(Context& context, const Subject& subject, const flattening::D
   io::writeGiftiSurface(context.output("patch.surf.gii"), disc.mesh, metadata);
   metadata.geometricType = "Flat";
   metadata.secondary.clear();
+  metadata.name = "flat";
   io::writeGiftiSurface(context.output("flat.surf.gii"), flat, metadata);
   const Positions positions = patchPositions(map);
   io::writeGiftiSurface(context.output("patch_flat.surf.gii"), {positions, disc.mesh.faces},

@@ -255,10 +255,14 @@ TriangleMesh readUsable(Context& context, const Settings& s, io::SurfaceMetadata
   sayHowRead(context, loaded.origin);
   if (s.region.center) {
     const std::string mixUp =
-        io::frameMixUp(*s.region.center, loaded.mesh.positions, loaded.origin.applied);
+        io::frameMixUp(*s.region.center, loaded.mesh.positions, surfaceFromTkr(loaded, s.reading));
     if (!mixUp.empty()) throw InvalidInput("center: " + mixUp);
   }
   metadata = loaded.metadata;
+  // What is written is no anatomy any more: viewers keep it out of volumes and their slices.
+  metadata.geometricType = "Inflated";
+  metadata.secondary.clear();
+  metadata.name = "unfolded";
   return loaded.mesh;
 }
 

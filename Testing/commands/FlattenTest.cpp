@@ -3,6 +3,7 @@
 // explica flatten and explica compare on surfaces of real heads.
 
 #include "Explica/Geometry/Fixtures.h"
+#include "Explica/Geometry/Geodesic.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Geometry/SelfIntersection.h"
@@ -15,7 +16,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 #include <sstream>
 
 namespace explica::testing {
@@ -57,6 +61,29 @@ class FlattenCommand : public RealSurfaces {
     return rows;
   }
 };
+
+/// The grid's place (RAS mm) at u, v (mm) and depth (0 to 1), trilinear; none where a cell is
+/// empty.
+std::optional<Point> interpolated(const Volume<Eigen::Vector3f>& grid, const Eigen::Vector3f& uvd) {
+  const auto& size = grid.grid.size;
+  const Vector index((uvd[0] - grid.grid.origin[0]) / grid.grid.spacing[0],
+                     (uvd[1] - grid.grid.origin[1]) / grid.grid.spacing[1], uvd[2] * (size[2] - 1));
+  Point sum = Point::Zero();
+  for (int corner = 0; corner < 8; ++corner) {
+    double weight = 1;
+    std::array<int, 3> at{};
+    for (int axis = 0; axis < 3; ++axis) {
+      const int low = std::clamp(static_cast<int>(std::floor(index[axis])), 0, size[axis] - 2);
+      const int upper = corner >> axis & 1;
+      weight *= upper == 1 ? index[axis] - low : 1 - (index[axis] - low);
+      at[axis] = low + upper;
+    }
+    const Eigen::Vector3f& place = grid(at[0], at[1], at[2]);
+    if (!place.allFinite()) return {};
+    sum += weight * place.cast<double>();
+  }
+  return sum;
+}
 
 class WholeHemisphere : public FlattenCommand, public ::testing::WithParamInterface<std::string> {};
 
@@ -152,6 +179,10 @@ TEST_F(FlattenCommand, AnUnfoldedPatchIsMeasuredAgainstTheSurfaceThatItsRecordNa
 
   const auto flat = io::readSurface(folder / "flat/flat.surf.gii");
   EXPECT_EQ(flat.metadata.geometricType, "Flat");
+  const auto opened = io::readSurface(folder / "unfolded/unfolded.surf.gii").metadata;
+  EXPECT_EQ(opened.geometricType, "Inflated");
+  EXPECT_EQ(opened.secondary, "");
+  EXPECT_EQ(opened.structure, flat.metadata.structure);
   EXPECT_EQ(flat.mesh.vertexCount(), 10242);
   EXPECT_TRUE((flat.mesh.positions.col(2).array() == 0).all());
   EXPECT_TRUE(geometry::findSelfIntersections(flat.mesh).empty());
@@ -163,6 +194,131 @@ TEST_F(FlattenCommand, AnUnfoldedPatchIsMeasuredAgainstTheSurfaceThatItsRecordNa
   EXPECT_NEAR(grid.grid.spacing[0], 1, 1e-6);
   EXPECT_NEAR(grid.grid.spacing[1], 1, 1e-6);
   EXPECT_EQ(grid.grid.size[2], 5);
+}
+
+/// A patch of a real hemisphere with its stack of depths, and what lies at its voxels and cells.
+class RealStack : public FlattenCommand {
+ protected:
+  void SetUp() override {
+    FlattenCommand::SetUp();
+    if (IsSkipped()) return;
+    for (const std::string name : {"white", "pial"}) {
+      const auto surface = io::readSurface(data() / "fsaverage5" / (name + "_left.gii.gz"));
+      io::writeGiftiSurface(folder_ / (name + ".surf.gii"), surface.mesh, surface.metadata);
+    }
+    const std::string mid = middle(folder_, "left");
+    const TriangleMesh mesh = io::readSurface(mid).mesh;
+    Eigen::Index centre = 0;
+    (void)(mesh.positions * Vector(-1, 0.2, 0.2)).maxCoeff(&centre);
+    const std::array<std::int32_t, 1> sources = {static_cast<std::int32_t>(centre)};
+    const Eigen::VectorXd distance = geometry::geodesicDistances(
+        mesh, geometry::buildTopology(mesh.faces, mesh.vertexCount()), sources);
+    io::LabelMap ball{"ball", (distance.array() < 25).cast<Label>(), {}};
+    ball.table = {{0, "rest", {}}, {1, "ball", {1, 0, 0, 1}}};
+    io::writeGiftiLabel(folder_ / "ball.label.gii", ball, "CortexLeft");
+    lattice_.spacing = {0.8, 0.8, 0.8};
+    for (int axis = 0; axis < 3; ++axis) {
+      lattice_.origin[axis] = mesh.positions(centre, axis) - 32;
+      lattice_.size[axis] = 80;
+    }
+    io::writeVolume(folder_ / "any.nii.gz", Volume<float>(lattice_, 1));
+    flatten("any", "flat");
+  }
+
+  void flatten(const std::string& volume, const std::string& out) {
+    const auto made =
+        explica({"flatten", folder_ / "mid.surf.gii", "--label", folder_ / "ball.label.gii",
+                 "--surfaces", folder_.path().string(), "--volumes", folder_ / (volume + ".nii.gz"),
+                 "--depths", "5", "--grid", "0.5", "--out", folder_ / out});
+    ASSERT_EQ(made.exitCode, 0) << made;
+  }
+
+  [[nodiscard]] Volume<Eigen::Vector3f> points(const std::string& name) const {
+    io::VolumeReadOptions withNaN;
+    withNaN.allowNonFinite = true;
+    return io::readVectors(folder_ / ("flat/" + name), withNaN).volume;
+  }
+
+  TemporaryFolder folder_;
+  Grid lattice_;
+};
+
+TEST_F(RealStack, HasSquareCellsAndNoEmptyOneInsideThePatch) {
+  const auto grid = points("grid.nii.gz");
+  EXPECT_NEAR(grid.grid.spacing[0], 0.5, 1e-6);
+  EXPECT_NEAR(grid.grid.spacing[1], 0.5, 1e-6);
+  const TriangleMesh flat = io::readSurface(folder_ / "flat/patch_flat.surf.gii").mesh;
+  const auto layer = static_cast<std::size_t>(grid.grid.size[0]) * grid.grid.size[1];
+  std::vector<bool> inside(layer, false);
+  for (Eigen::Index f = 0; f < flat.faceCount(); ++f) {
+    Eigen::Matrix2d sides;
+    sides.col(0) = (flat.corner(f, 1) - flat.corner(f, 0)).head<2>();
+    sides.col(1) = (flat.corner(f, 2) - flat.corner(f, 0)).head<2>();
+    const Eigen::Matrix2d inverse = sides.inverse();
+    for (std::size_t n = 0; n < layer; ++n) {
+      const auto [i, j, k] = grid.grid.subscripts(n);
+      const Point at = grid.grid.origin + Vector(0.5 * i, 0.5 * j, 0);
+      const Eigen::Vector2d share = inverse * (at - flat.corner(f, 0)).head<2>();
+      if (share.minCoeff() > 1e-4 && share.sum() < 1 - 1e-4) inside[n] = true;
+    }
+  }
+  const auto count = std::count(inside.begin(), inside.end(), true);
+  EXPECT_GT(count, 5000);
+  for (std::size_t n = 0; n < layer; ++n) {
+    for (int k = 0; k < 5; ++k) {
+      const bool filled = grid[n + layer * static_cast<std::size_t>(k)].allFinite();
+      EXPECT_TRUE(filled || !inside[n]) << n << " " << k;
+      EXPECT_EQ(filled, grid[n].allFinite());
+    }
+  }
+}
+
+TEST_F(RealStack, AFunctionPrintedOnTheCortexComesBack) {
+  const auto places = points("to_flat.nii.gz");
+  ASSERT_EQ(places.grid.size, lattice_.size);
+  const auto f = [](double u, double v, double depth) {
+    return std::sin(0.2 * u) * std::cos(0.2 * v) + depth;
+  };
+  Volume<float> printed(lattice_, std::numeric_limits<float>::quiet_NaN());
+  for (std::size_t n = 0; n < printed.size(); ++n) {
+    const Eigen::Vector3f& at = places[n];
+    if (at.allFinite()) printed[n] = static_cast<float>(f(at[0], at[1], at[2]));
+  }
+  io::writeVolume(folder_ / "printed.nii.gz", printed);
+  flatten("printed", "back");
+  io::VolumeReadOptions withNaN;
+  withNaN.allowNonFinite = true;
+  const auto back = io::readScalars(folder_ / "back/flat_printed.nii.gz", withNaN).volume;
+  std::vector<double> errors;
+  for (std::size_t n = 0; n < back.size(); ++n) {
+    if (!std::isfinite(back[n])) continue;
+    const auto [i, j, k] = back.grid.subscripts(n);
+    const double u = back.grid.origin[0] + 0.5 * i, v = back.grid.origin[1] + 0.5 * j;
+    errors.push_back(std::abs(back[n] - f(u, v, k / 4.0)));
+  }
+  ASSERT_GT(errors.size(), 2000U);
+  std::sort(errors.begin(), errors.end());
+  RecordProperty("median", std::to_string(errors[errors.size() / 2]));
+  RecordProperty("p99", std::to_string(errors[errors.size() * 99 / 100]));
+  EXPECT_LT(errors[errors.size() / 2], 0.01);  // the function's range is 3
+  EXPECT_LT(errors[errors.size() * 99 / 100], 0.06);
+}
+
+TEST_F(RealStack, VoxelsComeBackWithinATenthOfAVoxel) {
+  const auto places = points("to_flat.nii.gz"), grid = points("grid.nii.gz");
+  std::vector<double> errors;
+  for (std::size_t n = 0; n < places.size(); ++n) {
+    if (!places[n].allFinite()) continue;
+    const auto back = interpolated(grid, places[n]);
+    const auto [i, j, k] = lattice_.subscripts(n);
+    if (back) errors.push_back((lattice_.toIndex(*back) - Vector(i, j, k)).norm());
+  }
+  ASSERT_GT(errors.size(), 5000U);
+  std::sort(errors.begin(), errors.end());
+  RecordProperty("median", std::to_string(errors[errors.size() / 2]));
+  RecordProperty("p99", std::to_string(errors[errors.size() * 99 / 100]));
+  EXPECT_LT(errors[errors.size() / 2], 0.1);
+  EXPECT_LT(errors[errors.size() * 99 / 100], 0.3);
 }
 
 TEST_F(FlattenCommand, ClosedSurfacesAndStrangersAreRefusedWithARemedy) {

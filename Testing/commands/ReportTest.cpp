@@ -42,7 +42,7 @@ std::string wordsOf(const std::string& page) {
   std::string words = page;
   for (const auto& [open, close] :
        {std::pair{"<script", "</script>"}, std::pair{"<style", "</style>"},
-        std::pair{"<pre>", "</pre>"}, std::pair{"base64,", "'"}}) {
+        std::pair{"<pre", "</pre>"}, std::pair{"base64,", "'"}}) {
     for (std::size_t at = words.find(open); at != std::string::npos; at = words.find(open, at)) {
       words.erase(at, words.find(close, at) - at + std::string_view(close).size());
     }
@@ -103,6 +103,19 @@ TEST(Report, ShowsSlicesInEitherConvention) {
     EXPECT_EQ(tiles, 9u);
   }
   EXPECT_EQ(explica({"report", folder / "s", "--slices", "0"}).exitCode, 2);
+}
+
+TEST(Report, ComparesTheImageBeforeAndAfterItsPreparation) {
+  TemporaryFolder folder;
+  ASSERT_EQ(explica({"phantom", "cortex", "--size", "40", "--out", folder / "p"}).exitCode, 0);
+  const auto segmented = explica({"segment", folder / "p/t1.nii.gz", "--template", "none",
+                                  "--max-iterations", "4", "--out", folder / "s"});
+  ASSERT_TRUE(segmented.exitCode == 0 || segmented.exitCode == 3) << segmented;
+  ASSERT_EQ(explica({"report", folder / "s"}).exitCode, 0);
+  const std::string words = wordsOf(readText(folder / "s/report.html"));
+  EXPECT_NE(words.find("<b>Bias field.</b>"), std::string::npos);
+  EXPECT_NE(words.find("field divided out instead of the image as it came"), std::string::npos);
+  EXPECT_NE(words.find("class='other'"), std::string::npos);
 }
 
 TEST(Report, LeavesOutWhatItCannotReadAndSaysSo) {

@@ -66,7 +66,10 @@ TEST(Run, GoesFromLabelsToAReport) {
   }
   EXPECT_EQ(explica({"verify", folder / "out/surface/provenance.json"}).exitCode, 0);
   const std::string page = readText(folder / "out/report.html");
-  EXPECT_NE(page.find("id=\"evolution\""), std::string::npos);
+  EXPECT_NE(page.find("class=\"evolution\""), std::string::npos);
+  // Each step's command can be pasted into a shell.
+  EXPECT_NE(page.find(">explica surface "), std::string::npos);
+  EXPECT_EQ(page.find("{&quot;"), std::string::npos);
 }
 
 TEST(Run, ResumesWhatIsStillTrueAndRedoesWhatIsNot) {

@@ -93,6 +93,9 @@ class BesideWorkbench : public ::testing::Test {
     }
     beside.correlation = correlation(a, b);
     beside.ribbon = correlation(c, b);
+    RecordProperty("worst_share_of_range_e6", std::to_string(1e6 * beside.worst));
+    RecordProperty("r_ribbon_mean_of_depths", std::to_string(beside.correlation));
+    RecordProperty("r_ribbon", std::to_string(beside.ribbon));
     return beside;
   }
   TemporaryFolder folder_;

@@ -434,6 +434,7 @@ TEST(SampleLayers, AgreeWithLayNiisOnRealActivation) {
     }
     for (Label n = 2; n < last; ++n) layNii.push_back(sum[n] / count[n]);
     ASSERT_EQ(ours.size(), layNii.size());
+    RecordProperty("r_" + name, std::to_string(correlation(ours, layNii)));
     EXPECT_GT(correlation(ours, layNii), 0.95) << name;
   }
 }

@@ -9,6 +9,7 @@
 #include "Explica/Geometry/SelfIntersection.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VertexDataFile.h"
+#include "Explica/IO/VolumeFile.h"
 #include "Explica/Testing/Command.h"
 #include "Explica/Testing/DepthBuffer.h"
 #include "Explica/Unfolding/Region.h"
@@ -720,6 +721,42 @@ TEST(UnfoldCommand, AdjustsTheRegionUntilItIsSeen) {
   EXPECT_EQ(result.exitCode, 3) << result;
   EXPECT_NE(result.err.find("the region was adjusted from"), std::string::npos) << result;
   EXPECT_GT(readJson(folder / "out/summary.json")["visibility_initial"], 0);
+}
+
+TEST(UnfoldCentre, GivenInFreeSurfersOtherFrameIsNamed) {
+  TemporaryFolder folder;
+  // A ball in a volume whose middle is not the scanner's origin, as in every FreeSurfer subject.
+  Grid grid;
+  grid.size = {64, 64, 64};
+  grid.direction << -1, 0, 0, 0, 0, 1, 0, -1, 0;  // as FreeSurfer's conformed volumes
+  grid.origin = Point(38, -14, 32);
+  Volume<Label> labels(grid, 0);
+  const Point middle(6, 18, 0);
+  for (std::size_t n = 0; n < labels.size(); ++n) {
+    const auto [i, j, k] = grid.subscripts(n);
+    const double r = (grid.toWorld(Vector(i, j, k)) - middle).norm();
+    labels[n] = r < 20 ? 2 : (r < 24 ? 1 : 0);
+  }
+  io::writeVolume(folder / "seg.nii.gz", labels);
+  const auto made = explica({"surface", folder / "seg.nii.gz", "--white", "2", "--grey", "1",
+                             "--faces", "4000", "--out", folder / "s"});
+  ASSERT_TRUE(made.exitCode == 0 || made.exitCode == 3) << made;
+  const auto unfold = [&](const std::string& center) {
+    return explica({"unfold", folder / "s/pial.surf.gii", "--center", center, "--radius", "8",
+                    "--direction", "0,0,1", "--max-iterations", "1", "--out", folder / "u",
+                    "--force"});
+  };
+  // The ball's top in scanner RAS is (6, 18, 24), in surface RAS (0, 0, 24).
+  const auto right = unfold("6,18,24");
+  EXPECT_TRUE(right.exitCode == 0 || right.exitCode == 3) << right;
+  const auto mixed = unfold("0,0,24");
+  EXPECT_EQ(mixed.exitCode, 2);
+  EXPECT_NE(mixed.err.find("tkregister"), std::string::npos) << mixed;
+  EXPECT_NE(mixed.err.find("6.00,18.00,24.00"), std::string::npos) << mixed;
+  const auto lost = unfold("200,0,0");
+  EXPECT_EQ(lost.exitCode, 2);
+  EXPECT_NE(lost.err.find("mm from the surface"), std::string::npos) << lost;
+  EXPECT_EQ(lost.err.find("tkregister"), std::string::npos) << lost;
 }
 
 }  // namespace

@@ -67,6 +67,17 @@ try:
     time.sleep(1)
     reading = driver.execute_script("return document.getElementById('under-pointer').textContent")
     check("value under the pointer: " + reading, "vertex" in reading and ":" in reading)
+    if driver.execute_script("return document.getElementById('which').options.length") > 1:
+        one = picture()
+        driver.execute_script("const w = document.getElementById('which'); w.value = '1';"
+                              "w.dispatchEvent(new Event('change'));")
+        end = time.time() + 60
+        while time.time() < end and not driver.execute_script(
+                "return document.getElementById('canvas').dataset.ready === 'true'"):
+            time.sleep(0.2)
+        other = picture()
+        check("another patch is another picture", other != one)
+        check("and is still chosen", driver.execute_script("return document.getElementById('which').value") == "1")
     driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
                            {"width": 390, "height": 800, "deviceScaleFactor": 1, "mobile": True})
     time.sleep(0.5)

@@ -4,6 +4,8 @@
 #include "Explica/Application/ReadInputs.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Provenance/Digest.h"
+#include "Explica/Provenance/Record.h"
 #include "Explica/Segmentation/Plausibility.h"
 
 #include <nlohmann/json.hpp>
@@ -39,7 +41,43 @@ void record(Context& context, const std::string& name, const std::string& path,
   say(context, path, origin.notes);
 }
 
+/// Where a volume lay, by what a record notes of it.
+std::optional<Grid> notedGrid(const Json& note) {
+  const Json rows = note.value("affine", Json::array()),
+             size = note.value("stored_size", Json::array());
+  if (rows.size() != 4 || size.size() < 3) return {};
+  Grid grid;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vector step(rows[0][axis], rows[1][axis], rows[2][axis]);
+    if (!(step.norm() > 0) || !step.allFinite()) return {};
+    grid.size[axis] = size[axis];
+    grid.spacing[axis] = step.norm();
+    grid.direction.col(axis) = step.normalized();
+    grid.origin[axis] = rows[axis][3];
+  }
+  return grid;
+}
+
+/// The volume that a surface was made from, by the record beside it.
+std::optional<Grid> gridOfOrigin(const std::filesystem::path& surface) {
+  const auto found = provenance::findRecordOf(surface, provenance::digestOf(surface));
+  if (!found || !found->sameContent || found->record.value("command", "") != "surface") return {};
+  const Json notes = found->record.value("notes", Json::object());
+  for (const auto& [name, note] : notes.items()) {
+    if (const auto grid = notedGrid(note)) return grid;
+  }
+  return {};
+}
+
 }  // namespace
+
+Eigen::Matrix4d surfaceFromTkr(const io::LoadedSurface& surface,
+                               const io::SurfaceReadOptions& options) {
+  if (!surface.origin.applied.isIdentity(1e-6)) return surface.origin.applied;
+  if (options.fsVolume) return io::scannerFromTkr(io::readGrid(*options.fsVolume));
+  const auto grid = gridOfOrigin(surface.origin.path);
+  return grid ? io::scannerFromTkr(*grid) : Eigen::Matrix4d::Identity();
+}
 
 Volume<float> readScalars(Context& context, const std::string& name, const std::string& path,
                           const io::VolumeReadOptions& options) {

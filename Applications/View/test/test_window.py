@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The interactive window under a virtual display, with scripted events and pictures of it."""
 
+import json
 import math
 import os
 import pathlib
@@ -162,8 +163,10 @@ class Window(unittest.TestCase):
             "start chosen larger unfolded turned flux seen area range first saved reset"
         )
 
-        # The saved state is what the printed command writes.
-        saved = self.folder / "kept" / "iteration-2"
+        self.saved_is_what_the_command_writes(result, 2)
+
+    def saved_is_what_the_command_writes(self, result, state):
+        saved = self.folder / "kept" / f"iteration-{state}"
         command = result.stderr.split("the same as: ")[1].splitlines()[0].split()
         command[0] = EXECUTABLE
         command[command.index("--out") + 1] = "again"
@@ -173,6 +176,22 @@ class Window(unittest.TestCase):
             self.assertEqual(
                 (saved / name).read_bytes(), (self.folder / "again" / name).read_bytes()
             )
+        return command
+
+    @unittest.skipUnless(virtual_display.SERVER, "skipped: Xvfb is not installed")
+    def test_several_viewpoints_are_kept_in_the_record(self):
+        result = self.view(
+            "key c 540 420\npicture one.png\ndrag 500 400 560 380\ndo addView\npicture two.png\n"
+            "set target 1\nkey space 0 0\nwait 4\nkey space 0 0\n"
+            "key Home 0 0\nkey Right 0 0\nkey Right 0 0\nkey w 0 0\nsaved\npicture saved.png\n",
+            "ball.off", "--radius", "14", "--save", "kept",
+        )  # fmt: skip
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.pictures("one two saved")
+        command = self.saved_is_what_the_command_writes(result, 2)
+        self.assertEqual(command.count("--direction"), 2)
+        record = json.loads((self.folder / "kept/iteration-2/provenance.json").read_text())
+        self.assertEqual(len(record["options"]["direction"]), 2)
 
     @unittest.skipUnless(virtual_display.SERVER, "skipped: Xvfb is not installed")
     def test_it_stops_by_itself_and_opens_what_was_finished(self):
@@ -216,7 +235,7 @@ class Window(unittest.TestCase):
 
         # A flattening by itself: its patch, folded and flat, under the maps of the whole.
         result = self.view(
-            "picture flat.png\nkey Home 0 0\npicture folded.png\n"
+            "picture flat.png\nkey b 0 0\npicture folded.png\n"
             "set map t1 depth 1\npicture map.png\ndo profiles\n",
             "flat", "sampled",
         )  # fmt: skip

@@ -107,6 +107,23 @@ SliceMosaic makeMosaic(const Volume<float>& image, const std::vector<MosaicOutli
                   [&](const SliceFrame& frame) { return renderSlice(image, frame, grey); });
 }
 
+std::array<SliceMosaic, 2> makeMosaics(const Volume<float>& before, const Volume<float>& after,
+                                       const MosaicOptions& options) {
+  if (before.grid.size != after.grid.size) {
+    throw InvalidInput("after: is of another size than before");
+  }
+  Extent extent{boxAbove(after, 0), boxAbove(before, 0)};
+  if (extent.shown.empty() || extent.framed.empty()) {
+    throw InvalidInput("volume: every voxel is 0 or less; there is nothing to show");
+  }
+  const ColourScale grey = greyScale(after);
+  const auto of = [&](const Volume<float>& image) {
+    return mosaicOf(extent, {}, options,
+                    [&](const SliceFrame& frame) { return renderSlice(image, frame, grey); });
+  };
+  return {of(before), of(after)};
+}
+
 SliceMosaic makeMosaic(const Volume<Label>& labels, const MosaicOptions& options) {
   Volume<float> tissue(labels.grid, 0.0f);
   for (std::size_t v = 0; v < labels.size(); ++v) tissue[v] = labels[v] != 0 ? 1.0f : 0.0f;

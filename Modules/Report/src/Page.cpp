@@ -65,7 +65,9 @@ std::string stepHtml(const ReportStep& step) {
   if (!step.message.empty())
     html += " <span class='message'>" + escapeHtml(step.message) + "</span>";
   html += "</summary>";
-  if (!step.commandLine.empty()) html += "<pre>" + escapeHtml(step.commandLine) + "</pre>";
+  if (!step.commandLine.empty())
+    html += "<pre tabindex='0' role='region' aria-label='Command of " + escapeHtml(step.name) +
+            "'>" + escapeHtml(step.commandLine) + "</pre>";
   for (const std::string& warning : step.warnings)
     html += "<p class='message'>" + escapeHtml(warning) + "</p>";
   html += "<div class='columns'>";
@@ -94,7 +96,8 @@ std::string scriptSafe(const std::string& json) {
 
 constexpr const char* kViewHtml = R"(<section id="view3d"><h3>In three dimensions</h3>
 <div id="stage"><canvas id="canvas" tabindex="0" aria-label="Surface in three dimensions. Arrow keys rotate, plus and minus zoom, space plays, comma and full stop step, B switches between first and last frame, R resets."></canvas><p id="stage-message">Preparing the surface ...</p><p id="under-pointer" aria-live="polite"></p><div id="bar" aria-hidden="true"><span id="bar-title"></span><span id="bar-high"></span><canvas id="bar-colours" width="14" height="128"></canvas><span id="bar-low"></span></div></div>
-<div id="controls"><button id="play" type="button" aria-label="Play or pause">&#9654;</button>
+<div id="controls"><label id="which-label">Patch <select id="which"></select></label>
+<button id="play" type="button" aria-label="Play or pause">&#9654;</button>
 <input id="frame" type="range" min="0" max="0" value="0" step="1" aria-label="Frame">
 <output id="frame-title"></output>
 <label>Map <select id="map"></select></label>
@@ -140,7 +143,9 @@ std::string flagsHtml(const std::vector<ReportFlag>& flags) {
 
 std::string findingsHtml(const ReportFindings& findings) {
   if (findings.rows.empty()) return {};
-  std::string html = "<section><h2>What was found</h2><div class='wide'><table class='findings'>";
+  std::string html =
+      "<section><h2>What was found</h2><div class='wide' tabindex='0' "
+      "role='region' aria-label='What was found'><table class='findings'>";
   if (findings.columns.size() > 1) {
     html += "<thead><tr><td></td>";
     for (const std::string& column : findings.columns) {
@@ -203,8 +208,13 @@ std::string viewsHtml(const ReportViews& views) {
   return html + captionHtml(views.title, views.caption) + "</figure>\n";
 }
 
-std::string tileHtml(const MosaicTile& tile, const SliceMosaic& mosaic) {
+/// @param after  the same slice of the other image, or nullptr
+std::string tileHtml(const MosaicTile& tile, const SliceMosaic& mosaic, const MosaicTile* after) {
   std::string html = "<div class='tile'>" + imageHtml(tile.picture, "slice at " + tile.place);
+  if (after) {
+    html += "<div class='other'>" +
+            imageHtml(after->picture, "slice at " + tile.place + ", after") + "</div>";
+  }
   html += "<svg viewBox='0 0 " + std::to_string(tile.picture.width) + " " +
           std::to_string(tile.picture.height) + "' aria-hidden='true'>";
   for (std::size_t n = 0; n < tile.paths.size(); ++n) {
@@ -227,13 +237,22 @@ std::string mosaicHtml(const ReportMosaic& mosaic) {
   if (!mosaic.slices.outlines.empty()) {
     html += "<label><input type='checkbox' class='outlines' checked> outlines</label> &nbsp; ";
   }
+  if (mosaic.after) {
+    html += "<span class='states'><label><input type='checkbox' class='to-other'> " +
+            escapeHtml(mosaic.states[1]) + " instead of " + escapeHtml(mosaic.states[0]) +
+            "</label> <button type='button' class='flicker' aria-pressed='false'>Flicker</button>"
+            "</span> &nbsp; ";
+  }
   html += mosaic.slices.convention == SideConvention::Neurological
               ? "Neurological convention: the person's left is on the left."
               : "Radiological convention: the person's left is on the right.";
   html += "</p>";
-  for (const auto& row : mosaic.slices.rows) {
+  for (std::size_t r = 0; r < mosaic.slices.rows.size(); ++r) {
+    const auto& row = mosaic.slices.rows[r];
     html += "<div class='tiles' style='--tiles:" + std::to_string(row.size()) + "'>";
-    for (const MosaicTile& tile : row) html += tileHtml(tile, mosaic.slices);
+    for (std::size_t n = 0; n < row.size(); ++n) {
+      html += tileHtml(row[n], mosaic.slices, mosaic.after ? &mosaic.after->rows[r][n] : nullptr);
+    }
     html += "</div>";
   }
   return html + captionHtml(mosaic.title, mosaic.caption) + "</figure>\n";
@@ -296,7 +315,7 @@ std::string tableHtml(const ReportTable& table) {
 
 std::string lookHtml(const ReportContent& content) {
   std::string html;
-  if (content.evolution) html += kViewHtml;
+  if (!content.evolutions.empty()) html += kViewHtml;
   for (const ReportMosaic& mosaic : content.mosaics) html += mosaicHtml(mosaic);
   for (const ReportViews& views : content.views) html += viewsHtml(views);
   for (const ReportPicture& picture : content.pictures) {
@@ -329,9 +348,12 @@ std::string reportPage(const ReportContent& content) {
   html += "<section><h2>How it was made</h2>";
   for (const ReportStep& step : content.steps) html += stepHtml(step);
   html += "</section></main>\n";
-  if (content.evolution) {
-    html += "<script type=\"application/json\" id=\"evolution\">" +
-            scriptSafe(evolutionJson(*content.evolution)) + "</script>\n";
+  for (const Evolution& evolution : content.evolutions) {
+    html += "<script type=\"application/json\" class=\"evolution\" data-title=\"" +
+            escapeHtml(evolution.title) + "\">" + scriptSafe(evolutionJson(evolution)) +
+            "</script>\n";
+  }
+  if (!content.evolutions.empty()) {
     html += "<script>\n" + std::string(kThreeScript) + "\n</script>\n";
   }
   html += std::string("<script>\n") + kPageScript + "</script>\n";

@@ -121,7 +121,7 @@ TEST(ReportPage, ShowsAFailedStepAndEscapesItsWords) {
 TEST(ReportPage, NamesNothingToFetch) {
   ReportContent content;
   content.title = "page";
-  content.evolution = movingSphere();
+  content.evolutions.push_back(movingSphere());
   content.pictures.push_back({"white", "White", "white square", Picture(8, 8)});
   const std::string page = reportPage(content);
   for (const char* fetching :
@@ -129,6 +129,34 @@ TEST(ReportPage, NamesNothingToFetch) {
     EXPECT_EQ(page.find(fetching), std::string::npos) << fetching;
   }
   EXPECT_EQ(page, reportPage(content));
+}
+
+TEST(ReportPage, OffersEveryPatchAndTheStatesOfAMosaic) {
+  ReportContent content;
+  for (const char* title : {"Unfold (left)", "Unfold (right)"}) {
+    content.evolutions.push_back(movingSphere());
+    content.evolutions.back().title = title;
+  }
+  MosaicTile tile{"x = 0 mm", {"L", "R", "A", "P"}, Picture(8, 8), {}};
+  SliceMosaic mosaic;
+  mosaic.rows = {{tile}};
+  content.mosaics.push_back({"", "Bias", "", mosaic, mosaic, {"as it came", "corrected"}});
+  content.mosaics.push_back({"", "Plain", "", mosaic});
+  const std::string page = reportPage(content);
+  const auto count = [&](const std::string& what) {
+    int found = 0;
+    for (std::size_t at = page.find(what); at != std::string::npos; at = page.find(what, at + 1)) {
+      ++found;
+    }
+    return found;
+  };
+  EXPECT_EQ(count("class=\"evolution\""), 2);
+  EXPECT_EQ(count("data-title=\"Unfold (right)\""), 1);
+  EXPECT_EQ(count("class='other'"), 1);
+  EXPECT_EQ(count("corrected instead of as it came"), 1);
+  content.evolutions.pop_back();
+  EXPECT_LT(page.size(), 1.5 * static_cast<double>(reportPage(content).size()))
+      << "one copy of the library for all patches";
 }
 
 TEST(ReportPage, GathersChartsUnderHeadingsAndFoldsDetailsAway) {

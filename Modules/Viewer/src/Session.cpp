@@ -38,15 +38,12 @@ unfolding::Region regionOf(const TriangleMesh& surface, const Choice& choice) {
 }
 
 /// Where `explica unfold --direction --distance` puts them.
-visibility::Viewpoints viewpointsOf(const TriangleMesh& surface, const unfolding::Region& region,
-                                    const Choice& choice) {
-  const Point about = unfolding::centroidOf(surface, region);
-  std::vector<Point> points = {about +
-                               choice.distance / choice.direction.norm() * choice.direction};
-  for (const Vector& direction : choice.further) {
-    points.emplace_back(about + choice.distance / direction.norm() * direction);
-  }
-  return visibility::viewpoints(points, {});
+std::vector<Point> viewpointsAbout(const Point& centre, const Choice& choice) {
+  std::vector<Vector> directions = {choice.direction};
+  directions.insert(directions.end(), choice.further.begin(), choice.further.end());
+  std::vector<Point> points;
+  for (const Vector& d : directions) points.push_back(centre + choice.distance / d.norm() * d);
+  return points;
 }
 
 /// A state, kept as what differs from the start: a region moves, the rest of a hemisphere does not.
@@ -99,7 +96,8 @@ struct Session::Implementation {
   std::atomic<bool> pauseWanted{false};
 
   visibility::Viewpoints viewpoints() const {
-    return viewpointsOf(surface, preview.region, choice);
+    return visibility::viewpoints(
+        viewpointsAbout(unfolding::centroidOf(surface, preview.region), choice));
   }
 
   std::vector<unfolding::IterationRecord> history(std::size_t last) const {
@@ -188,6 +186,14 @@ const Preview& Session::choose(const Choice& choice) {
     s.preview.problem = error.what();
   }
   return s.preview;
+}
+
+std::vector<Point> Session::viewpoints() const {
+  const Implementation& s = *self_;
+  const Point centre = s.preview.region.faces.empty()
+                           ? Point(s.surface.positions.colwise().mean().transpose())
+                           : unfolding::centroidOf(s.surface, s.preview.region);
+  return viewpointsAbout(centre, s.choice);
 }
 
 std::int32_t Session::nearestVertex(const Point& point) const {
@@ -309,7 +315,7 @@ std::vector<std::pair<std::string, std::string>> Session::batchOptions(std::size
     options = {{"vertex", std::to_string(c.centre)}, {"radius", exactText(c.radius)}};
   }
   options.emplace_back("direction", exactText(c.direction));
-  for (const Vector& further : c.further) options.emplace_back("direction", exactText(further));
+  for (const Vector& direction : c.further) options.emplace_back("direction", exactText(direction));
   options.emplace_back("distance", exactText(c.distance));
   options.emplace_back("surround", std::string(nameOf(c.unfold.unfolder.surround)));
   if (c.unfold.targetVisibility) {

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <thread>
 
@@ -48,6 +49,23 @@ TEST(Session, RegionSeenFromBehindIsAProblem) {
   EXPECT_NE(session.preview().problem.find("not positive"), std::string::npos);
   session.run();
   EXPECT_EQ(session.activity(), Activity::Choosing);
+}
+
+TEST(Session, TheVisibilityFromSeveralViewpointsIsTheirMean) {
+  Session session(geometry::makeFoldedSphere(3, 30));
+  Choice choice = sideChoice(session);
+  const double one = session.choose(choice).visibility;
+  const Vector other(-1, 0.8, 0);
+  choice.direction = other;
+  const double two = session.choose(choice).visibility;
+  choice.direction = {-1, 0, 0};
+  choice.further = {other};
+  EXPECT_NEAR(session.choose(choice).visibility, 0.5 * (one + two), 1e-12);
+  ASSERT_EQ(session.viewpoints().size(), 2u);
+  const auto options = session.batchOptions(1);
+  EXPECT_EQ(std::count_if(options.begin(), options.end(),
+                          [](const auto& option) { return option.first == "direction"; }),
+            2);
 }
 
 TEST(Session, RunsPausesGoesOnAndKeepsEveryState) {

@@ -7,6 +7,7 @@
 #include "ReportParts.h"
 
 #include <algorithm>
+#include <cctype>
 
 namespace explica::pipeline {
 namespace {
@@ -15,16 +16,64 @@ namespace fs = std::filesystem;
 
 constexpr int kMostSlices = 30;
 
+/// A word as a shell takes it.
+std::string quoted(const std::string& word) {
+  const bool plain =
+      !word.empty() && word.find_first_of(" \t\"'\\$&;()<>|*?{}") == std::string::npos;
+  return plain ? word : "'" + word + "'";
+}
+
+/// Values of an option, as a command line has them: numbers of one array belong together.
+std::string wordsOf(const std::string& option, const Json& value) {
+  if (!value.is_array()) {
+    if (value.is_boolean()) return value.get<bool>() ? " " + option : "";
+    const std::string text =
+        value.is_string() ? value.get<std::string>() : provenance::textOf(value);
+    return (option.empty() ? " " : " " + option + " ") + quoted(text);
+  }
+  std::string words, numbers;
+  for (const Json& one : value) {
+    if (one.is_number()) {
+      numbers += (numbers.empty() ? "" : ",") + provenance::textOf(one);
+    } else {
+      words += wordsOf(option, one);
+    }
+  }
+  // An equals sign, for the first number may be negative.
+  if (!numbers.empty()) words += " " + option + (option.empty() ? "" : "=") + numbers;
+  return words;
+}
+
+/// The command line of a step: `explica run` gives its steps their options as one JSON object.
+std::string commandLineOf(const Json& execution) {
+  const Json argv = execution.value("argv", Json::array());
+  std::string line;
+  for (const Json& word : argv) {
+    const std::string text = word.is_string() ? word.get<std::string>() : provenance::textOf(word);
+    const Json options = text.starts_with("{") ? Json::parse(text, nullptr, false) : Json();
+    if (!options.is_object()) {
+      line += (line.empty() ? "" : " ") + text;
+      continue;
+    }
+    std::string inputs, others;
+    for (const auto& [key, value] : options.items()) {
+      const bool isInput = !key.empty() && std::isupper(static_cast<unsigned char>(key[0])) != 0;
+      (isInput ? inputs : others) += wordsOf(isInput ? "" : "--" + key, value);
+    }
+    line += inputs + others;
+    if (!options.contains("out") && execution.contains("out") && execution["out"].is_string()) {
+      line += " --out " + quoted(execution["out"].get<std::string>());
+    }
+  }
+  return line;
+}
+
 report::ReportStep reportStep(const StepFolder& step) {
   report::ReportStep out;
   out.name = titleOf(step.name);
   const Json execution = step.record.value("execution", Json::object());
   out.seconds = execution.value("seconds", 0.0);
-  if (execution.contains("argv")) {
-    for (const Json& word : execution["argv"])
-      out.commandLine += (out.commandLine.empty() ? "" : " ") +
-                         (word.is_string() ? word.get<std::string>() : provenance::textOf(word));
-  }
+  out.commandLine = commandLineOf(execution);
   if (step.record.contains("software")) {
     const Json& software = step.record["software"];
     out.version =

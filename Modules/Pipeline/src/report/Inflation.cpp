@@ -83,7 +83,8 @@ void showInflation(ResultFolder& results, const StepFolder& step) {
   results.attempt("Maps of the inflation", [&] { addMaps(step, evolution); });
   results.attempt("Before and after", [&] { drawBeforeAndAfter(results, step, frames); });
   // One film a page: of several the first.
-  if (!results.content().evolution) results.content().evolution = std::move(evolution);
+  evolution.title = titleOf(step.name);
+  results.content().evolutions.push_back(std::move(evolution));
 }
 
 }  // namespace explica::pipeline

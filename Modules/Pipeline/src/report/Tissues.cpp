@@ -3,6 +3,7 @@
 #include "Explica/IO/VolumeFile.h"
 #include "ReportParts.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
@@ -11,7 +12,9 @@
 namespace explica::pipeline {
 namespace {
 
-constexpr double kCell = 2;  // mm: finer steps would only make the page heavier
+constexpr int kFewSlices = 5;    // in each direction, where two images are compared
+constexpr int kSmallTile = 170;  // pixels, of theirs
+constexpr double kCell = 2;      // mm: finer steps would only make the page heavier
 
 /// Every so many voxels' label, so that cells are about as wide as the page needs.
 Volume<Label> thinned(const Volume<Label>& labels) {
@@ -80,6 +83,46 @@ void showTemplate(ResultFolder& results, const StepFolder& step,
                           options)});
 }
 
+/// The image before and after each thing that was done to it, to change to and fro between them:
+/// the bias field divided out, all but the brain taken away.
+void showPreparation(ResultFolder& results, const StepFolder& step,
+                     const report::MosaicOptions& options) {
+  const auto file = inputOf(step, "T1");
+  if (!file || !std::filesystem::exists(*file)) return;
+  io::VolumeReadOptions reading;
+  reading.dimension = 3;
+  const Volume<float> image = io::readScalars(*file, reading).volume;
+  report::MosaicOptions small = options;
+  small.perRow = std::min(options.perRow, kFewSlices);
+  small.tileHeight = kSmallTile;
+  const auto compare = [&](const char* with, const std::string& title, const std::string& caption,
+                           const std::array<std::string, 2>& states, const auto& changed) {
+    if (!step.has(with)) return;
+    const Volume<float> by = io::readScalars(step.folder / with, reading).volume;
+    if (by.size() != image.size()) return;
+    Volume<float> after = image;
+    double most = 0;
+    for (std::size_t v = 0; v < after.size(); ++v) {
+      after[v] = changed(image[v], by[v]);
+      most = std::max(most, static_cast<double>(std::abs(after[v] - image[v])));
+    }
+    if (most == 0) return;
+    auto slices = report::makeMosaics(image, after, small);
+    results.content().mosaics.push_back(
+        {"", title, caption, std::move(slices[0]), std::move(slices[1]), states});
+  };
+  compare("bias.nii.gz", "Bias field",
+          "The image as it came, and with the estimated field divided out: one tissue must be "
+          "equally bright everywhere.",
+          {"the image as it came", "field divided out"},
+          [](float value, float bias) { return bias > 0 ? value / bias : value; });
+  compare("brain_mask.nii.gz", "Brain mask",
+          "The image as it came, and what was taken for brain: no cortex may be lost, no skull "
+          "left.",
+          {"the whole image", "the brain"},
+          [](float value, float inside) { return inside > 0 ? value : 0.0F; });
+}
+
 }  // namespace
 
 void showTissues(ResultFolder& results, const FolderReportOptions& options) {
@@ -88,6 +131,8 @@ void showTissues(ResultFolder& results, const FolderReportOptions& options) {
   mosaic.convention = options.convention;
   for (const StepFolder* step : results.stepsOf("segment")) {
     showTemplate(results, *step, mosaic);
+    results.attempt("Preparation of the image",
+                    [&, step = step] { showPreparation(results, *step, mosaic); });
     const bool half = step->has("hemisphere.nii.gz") && !step->has("left");
     const auto labels =
         io::readLabels(step->folder / (half ? "hemisphere.nii.gz" : "seg.nii.gz")).volume;

@@ -307,8 +307,8 @@ void showUnfolding(ResultFolder& results, const StepFolder& step,
     results.attempt("Before and after",
                     [&] { drawBeforeAndAfter(results, unfolded, surface, step.side(), fitting); });
   }
-  // One film a page: of several patches the first.
-  if (!results.content().evolution) results.content().evolution = std::move(evolution);
+  evolution.title = titleOf(step.name);
+  results.content().evolutions.push_back(std::move(evolution));
 }
 
 }  // namespace explica::pipeline

@@ -6,11 +6,46 @@
   for (const box of document.querySelectorAll('input.outlines')) {
     box.addEventListener('change', () => box.closest('figure').classList.toggle('no-outlines', !box.checked));
   }
+  // Two images of the same slices: one or the other, or both in turn.
+  const flickerMilliseconds = 600;
+  for (const states of document.querySelectorAll('.states')) {
+    const box = states.querySelector('.to-other'), button = states.querySelector('.flicker');
+    const figure = states.closest('figure');
+    const show = () => figure.classList.toggle('show-other', box.checked);
+    let timer = null;
+    const stop = () => { clearInterval(timer); timer = null; button.setAttribute('aria-pressed', 'false'); };
+    box.addEventListener('change', () => { stop(); show(); });
+    button.addEventListener('click', () => {
+      if (timer !== null) { stop(); return; }
+      button.setAttribute('aria-pressed', 'true');
+      timer = setInterval(() => { box.checked = !box.checked; show(); }, flickerMilliseconds);
+    });
+  }
 })();
-(async function () {
+(function () {
   'use strict';
+  const sources = [...document.querySelectorAll('script.evolution')];
+  if (sources.length === 0) return;
+  const fresh = document.getElementById('view3d').cloneNode(true);
+  let stop = () => {};
+  // Another patch gets elements of its own: nothing of the former listens to them.
+  function open(number) {
+    stop();
+    document.getElementById('view3d').replaceWith(fresh.cloneNode(true));
+    const which = document.getElementById('which');
+    document.getElementById('which-label').hidden = sources.length < 2;
+    sources.forEach((source, n) => which.add(new Option(source.dataset.title || 'patch ' + (n + 1), String(n))));
+    which.value = String(number);
+    which.addEventListener('change', () => open(Number(which.value)));
+    let stopped = false;
+    let dispose = () => {};
+    stop = () => { stopped = true; dispose(); };
+    showEvolution(sources[number], () => stopped, (work) => { dispose = work; });
+  }
+  open(0);
+
+async function showEvolution(source, isStopped, onStop) {
   const byId = (id) => document.getElementById(id);
-  if (!byId('evolution')) return;
   const message = byId('stage-message');
   const canvas = byId('canvas');
 
@@ -38,13 +73,14 @@
   let data;
   let renderer;
   try {
-    data = JSON.parse(byId('evolution').textContent);
+    data = JSON.parse(source.textContent);
     renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
   } catch (fault) {
     message.textContent = 'This browser cannot show the surface (' + fault.message + '); the pictures below show its views.';
     byId('controls').style.display = 'none';
     return;
   }
+  onStop(() => renderer.dispose());
 
   const start = await unpack(data.positions);
   const faces = await unpack(data.faces);
@@ -74,6 +110,8 @@
     labelMaps.push({ name: map.name, names: map.names, entries: await unpack(map.entries), colours: bytesOf(map.colours) });
   }
   const region = await unpack(data.region);
+
+  if (isStopped()) return;
 
   // Geometry in millimetres about the middle of what moves, or of everything.
   const positions = new Float32Array(vertexCount * 3);
@@ -474,6 +512,12 @@
     action();
   });
   window.addEventListener('resize', draw);
+  onStop(() => {
+    clearInterval(playing);
+    window.removeEventListener('resize', draw);
+    renderer.dispose();
+    renderer.forceContextLoss();
+  });
 
   message.textContent = '';
   if (data.detached) { alone.checked = true; partOrAll(); }
@@ -481,4 +525,5 @@
   paint();
   resetView();
   canvas.dataset.ready = 'true';
+}
 })();

@@ -137,6 +137,8 @@ void MainWindow::buildMenus() {
   addAction(run, "first", "&First state", QKeySequence(Qt::Key_Home), [this] { step(0); });
   addAction(run, "last", "&Last state", QKeySequence(Qt::Key_End),
             [this] { step(session_.momentCount()); });
+  addAction(run, "flip", "&Before or after", QKeySequence("B"),
+            [this] { step(shown_ == 0 ? session_.momentCount() : 0); });
   addAction(run, "command", "Copy the &command that gives this state", QKeySequence("Ctrl+Shift+C"),
             [this] { copyCommand(); });
 
@@ -382,7 +384,9 @@ void MainWindow::takeView() {
 void MainWindow::addView() {
   Choice choice = session_.choice();
   choice.further.push_back(stage_->direction());
+  const std::size_t count = choice.further.size() + 1;
   choose(std::move(choice));
+  statusBar()->showMessage(QString("%1 viewpoints; V leaves only the present one").arg(count));
 }
 
 void MainWindow::toggle() {

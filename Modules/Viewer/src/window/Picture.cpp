@@ -23,15 +23,6 @@ namespace {
 constexpr Rgb kOutside = {205, 198, 190};
 constexpr Rgb kInside = {224, 150, 84};
 
-visibility::Viewpoints viewpointOf(const TriangleMesh& mesh, const Choice& choice) {
-  const Point middle = mesh.positions.colwise().mean().transpose();
-  std::vector<Point> points = {middle + choice.distance * choice.direction.normalized()};
-  for (const Vector& direction : choice.further) {
-    points.emplace_back(middle + choice.distance * direction.normalized());
-  }
-  return visibility::viewpoints(points, {});
-}
-
 std::string wordOf(const Session& session) {
   switch (session.activity()) {
     case Activity::Choosing:
@@ -118,6 +109,9 @@ void MainWindow::showRegion() {
   if (std::isfinite(preview.visibility)) {
     says += QString(", average visibility %1").arg(preview.visibility, 0, 'f', 3);
   }
+  if (const auto count = session_.viewpoints().size(); count > 1) {
+    says += QString(", %1 viewpoints").arg(count);
+  }
   if (!preview.problem.empty()) says += "\n" + QString::fromStdString(preview.problem);
   panels_.regionSays->setText(says);
 }
@@ -161,7 +155,7 @@ std::optional<WindowMap> MainWindow::ownMap(int number) {
   if (number == kFlux) {
     return WindowMap{
         "faces the viewpoint", "",
-        visibility::vertexFlux(shownMesh_, viewpointOf(shownMesh_, session_.choice()))};
+        visibility::vertexFlux(shownMesh_, visibility::viewpoints(session_.viewpoints()))};
   }
   if (number == kAreaRatio) {
     return WindowMap{"area now / at the start", "",
@@ -172,8 +166,8 @@ std::optional<WindowMap> MainWindow::ownMap(int number) {
   const bool fresh = seenState_ == shown_ && seenValues_.size() == shownMesh_.vertexCount();
   if (!fresh && !seen_.valid()) {
     seenState_ = shown_;
-    seen_ = std::async(std::launch::async, [mesh = shownMesh_, choice = session_.choice()] {
-      return visibility::visibleFraction(mesh, viewpointOf(mesh, choice)).vertex;
+    seen_ = std::async(std::launch::async, [mesh = shownMesh_, points = session_.viewpoints()] {
+      return visibility::visibleFraction(mesh, visibility::viewpoints(points)).vertex;
     });
   }
   if (seenValues_.size() != shownMesh_.vertexCount()) return {};

@@ -28,6 +28,12 @@ namespace explica::app {
                                             const std::string& path,
                                             const io::SurfaceReadOptions& options);
 
+/// From FreeSurfer's surface RAS (tkregister) to the frame of a surface as it was read, as its own
+/// file, `fsVolume`, or the record of `explica surface` beside it tell; identity where nothing
+/// does.
+[[nodiscard]] Eigen::Matrix4d surfaceFromTkr(const io::LoadedSurface& surface,
+                                             const io::SurfaceReadOptions& options);
+
 /// Tells the user what the file left open and how it was taken (a frame that it does not state,
 /// polygons split); to be called once all inputs are found good.
 void sayHowRead(Context& context, const io::SurfaceOrigin& origin);

@@ -113,7 +113,8 @@ void writeSurface(const std::filesystem::path& path, const TriangleMesh& mesh,
 /// Whether a point far from a surface was given in the other of FreeSurfer's two frames: it lies
 /// more than `far` mm off, but near the surface once it is taken from surface RAS (tkregister) to
 /// scanner RAS, or back.
-/// @param scannerFromTkr  SurfaceOrigin::applied of a surface that was moved to scanner RAS
+/// @param scannerFromTkr  between the frames; of a surface that was moved to scanner RAS
+///                        SurfaceOrigin::applied
 /// @return a sentence that says so, with the point in the surface's frame; empty if that is not so
 [[nodiscard]] std::string frameMixUp(const Point& point, const Positions& positions,
                                      const Eigen::Matrix4d& scannerFromTkr, double far = 5);

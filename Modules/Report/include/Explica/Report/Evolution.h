@@ -26,6 +26,7 @@ struct EvolutionLabels {
 
 /// A surface of which some vertices move from frame to frame: what the interactive view plays.
 struct Evolution {
+  std::string title = {};                ///< "left": tells it from others on the page
   TriangleMesh mesh;                     ///< as it is at the start
   std::vector<std::int32_t> moved;       ///< vertices that differ in any frame, ascending
   std::vector<Positions> frames;         ///< positions of `moved`; the first frame is the start

@@ -51,6 +51,12 @@ struct MosaicOptions {
 [[nodiscard]] SliceMosaic makeMosaic(const Volume<float>& image,
                                      const std::vector<MosaicOutline>& outlines,
                                      const MosaicOptions& options = {});
+/// The same slices of two images of one grid, such as before and after a correction: over the
+/// voxels of `after` above 0, framed by those of `before`, both in the grey scale of `after`.
+/// @throws as makeMosaic; InvalidInput also for images of different size
+[[nodiscard]] std::array<SliceMosaic, 2> makeMosaics(const Volume<float>& before,
+                                                     const Volume<float>& after,
+                                                     const MosaicOptions& options = {});
 /// The same of labels, each in its colour.
 [[nodiscard]] SliceMosaic makeMosaic(const Volume<Label>& labels,
                                      const MosaicOptions& options = {});

@@ -7,6 +7,7 @@
 #include "Explica/Report/Mosaic.h"
 #include "Explica/Report/Picture.h"
 
+#include <array>
 #include <optional>
 #include <string>
 #include <utility>
@@ -82,12 +83,15 @@ struct ReportViews {
   std::vector<LegendEntry> legend;
 };
 
-/// Slices of a volume with outlines that can be switched off.
+/// Slices of a volume with outlines that can be switched off; where there is an `after`, the reader
+/// can change to and fro between the two, or let them flicker.
 struct ReportMosaic {
   std::string id;
   std::string title;
   std::string caption;
   SliceMosaic slices;
+  std::optional<SliceMosaic> after = {};         ///< the same slices of another image
+  std::array<std::string, 2> states = {"", ""};  ///< what the two images are
 };
 
 /// An SVG element of Chart.h.
@@ -112,7 +116,7 @@ struct ReportContent {
   std::string title;
   std::vector<ReportFlag> flags;
   ReportFindings findings;
-  std::optional<Evolution> evolution;
+  std::vector<Evolution> evolutions;  ///< the reader chooses among several by their titles
   std::vector<ReportMosaic> mosaics;
   std::vector<ReportViews> views;
   std::vector<ReportPicture> pictures;

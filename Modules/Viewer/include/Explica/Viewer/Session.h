@@ -21,10 +21,11 @@ struct Choice {
   std::vector<bool> marked = {};  ///< V, or empty; where given, the region instead of a ball
   /// Options of `explica unfold` that give `marked`: label, label-key.
   std::vector<std::pair<std::string, std::string>> markedOptions = {};
-  Vector direction = {-1, 0, 0};     ///< from the surface to the viewer, any length > 0
-  std::vector<Vector> further = {};  ///< to further viewpoints, which count as much as the first
-  double distance = 1000;            ///< of the viewpoint from the region's centroid, mm
-  unfolding::UnfoldOptions unfold;   ///< how, and when it is over
+  Vector direction = {-1, 0, 0};  ///< from the surface to the viewer, any length > 0
+  /// Directions of further viewpoints: the region is to be seen well from all, each counts alike.
+  std::vector<Vector> further = {};
+  double distance = 1000;           ///< of every viewpoint from the region's centroid, mm
+  unfolding::UnfoldOptions unfold;  ///< how, and when it is over
 };
 
 /// The region that a choice makes, before anything moves.
@@ -74,6 +75,10 @@ class Session {
   /// @return what the choice selects; also available as preview()
   const Preview& choose(const Choice& choice);
   [[nodiscard]] const Preview& preview() const;
+
+  /// Where the choice puts the viewpoints, RAS mm: about the centroid of its region, without one
+  /// about that of the surface.
+  [[nodiscard]] std::vector<Point> viewpoints() const;
 
   /// Vertex nearest to a point of the surface.
   [[nodiscard]] std::int32_t nearestVertex(const Point& point) const;
