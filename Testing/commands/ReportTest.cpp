@@ -35,6 +35,23 @@ TEST(Report, WorksInABrowserWithoutANetwork) {
       runProgram({"/usr/bin/python3", EXPLICA_SOURCE_DIR "/Testing/commands/report_page.py",
                   folder / "u/report.html"});
   EXPECT_EQ(browser.exitCode, 0) << browser;
+
+  // Of a run on both sides the reader chooses which patch to see.
+  const auto other = explica({"unfold", folder / "a.surf.gii", "--center", "0,40,0", "--radius",
+                              "11", "--direction", "0,1,0", "--max-iterations", "3", "--frames",
+                              "3", "--out", folder / "both/unfold-R"});
+  ASSERT_TRUE(other.exitCode == 0 || other.exitCode == 3) << other;
+  std::filesystem::copy(folder / "u", folder / "both/unfold-L");
+  std::filesystem::copy(folder / "u/frames", folder / "both/unfold-L/frames");
+  writeText(folder / "both/run.json",
+            R"({"steps": [{"name": "unfold-L", "command": "unfold", "state": "done", "message": ""},
+                          {"name": "unfold-R", "command": "unfold", "state": "done", "message": ""}]})");
+  ASSERT_EQ(explica({"report", folder / "both"}).exitCode, 0);
+  const auto both =
+      runProgram({"/usr/bin/python3", EXPLICA_SOURCE_DIR "/Testing/commands/report_page.py",
+                  folder / "both/report.html"});
+  EXPECT_EQ(both.exitCode, 0) << both;
+  EXPECT_NE(both.out.find("another patch is another picture"), std::string::npos) << both;
 }
 
 /// The page without scripts, styles and pictures: what a reader reads.
