@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace explica::report {
@@ -61,6 +62,21 @@ std::string mapJson(const EvolutionMap& map) {
          "}";
 }
 
+/// Corners of the faces, each face turned to begin with its least and all in ascending order, which
+/// deflates a quarter better.
+std::vector<std::int32_t> facesInOrder(const Faces& faces) {
+  std::vector<std::array<std::int32_t, 3>> sorted;
+  for (Eigen::Index f = 0; f < faces.rows(); ++f) {
+    std::array<std::int32_t, 3> face = {faces(f, 0), faces(f, 1), faces(f, 2)};
+    std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
+    sorted.push_back(face);
+  }
+  std::sort(sorted.begin(), sorted.end());
+  std::vector<std::int32_t> corners;
+  for (const auto& face : sorted) corners.insert(corners.end(), face.begin(), face.end());
+  return corners;
+}
+
 std::string labelsJson(const EvolutionLabels& labels) {
   std::vector<std::string> names;
   std::vector<Colour> colours;
@@ -104,6 +120,28 @@ Evolution evolutionOf(const std::vector<TriangleMesh>& frames) {
   return evolution;
 }
 
+void leaveOutSurroundings(Evolution& evolution) {
+  std::vector<bool> kept(static_cast<std::size_t>(evolution.mesh.vertexCount()), false);
+  for (const std::int32_t v : evolution.region) kept[v] = true;
+  for (const std::int32_t v : evolution.moved) kept[v] = true;
+  Faces& faces = evolution.mesh.faces;
+  Eigen::Index count = 0;
+  for (Eigen::Index f = 0; f < faces.rows(); ++f) {
+    if (kept[faces(f, 0)] && kept[faces(f, 1)] && kept[faces(f, 2)]) {
+      faces.row(count++) = faces.row(f).eval();
+    }
+  }
+  if (count == 0) return;
+  faces.conservativeResize(count, 3);
+  const Eigen::RowVector3d inside = evolution.mesh.positions.row(faces(0, 0));
+  for (Eigen::Index v = 0; v < evolution.mesh.vertexCount(); ++v) {
+    if (kept[v]) continue;
+    evolution.mesh.positions.row(v) = inside;
+    for (EvolutionMap& map : evolution.maps) map.values[v] = kNaN;
+    for (EvolutionLabels& labels : evolution.labels) labels.entries[v] = -1;
+  }
+}
+
 std::string evolutionJson(const Evolution& evolution) {
   const TriangleMesh& mesh = evolution.mesh;
   Point low = mesh.positions.colwise().minCoeff().transpose();
@@ -122,7 +160,7 @@ std::string evolutionJson(const Evolution& evolution) {
   for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
     for (int c = 0; c < 3; ++c) positions.push_back(quantise(mesh.positions(v, c), c));
   }
-  const std::vector<std::int32_t> faces(mesh.faces.data(), mesh.faces.data() + mesh.faces.size());
+  const std::vector<std::int32_t> faces = facesInOrder(mesh.faces);
   const SurfaceScene scene(mesh);
   std::vector<std::int32_t> openness;
   for (const float open : scene.openness())
@@ -131,7 +169,7 @@ std::string evolutionJson(const Evolution& evolution) {
   std::string json = "{\"low\":[" + number(low.x()) + "," + number(low.y()) + "," +
                      number(low.z()) + "],\"unit\":" + number(unit);
   json += ",\"positions\":" + packIntegers(positions, 3);
-  json += ",\"faces\":" + packIntegers(faces, 1);
+  json += ",\"faces\":" + packIntegers(faces, 3);
   json += ",\"openness\":" + packIntegers(openness, 1);
   json += ",\"moved\":" + packIntegers(evolution.moved, 1);
   json += ",\"frames\":[";

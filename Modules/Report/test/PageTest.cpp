@@ -8,9 +8,12 @@
 #include "Explica/Report/Chart.h"
 
 #include <gtest/gtest.h>
+
 #include <zlib.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <array>
 #include <set>
 
 namespace explica::report {
@@ -131,6 +134,27 @@ TEST(ReportPage, NamesNothingToFetch) {
   EXPECT_EQ(page, reportPage(content));
 }
 
+TEST(Evolution, WithoutSurroundingsKeepsThePatchAndItsNumbers) {
+  Evolution evolution = movingSphere();
+  evolution.region = evolution.moved;
+  const Eigen::VectorXd values = evolution.mesh.positions.col(0);
+  evolution.maps.push_back({values, scaleFor(values, "x", "mm")});
+  const Evolution before = evolution;
+  const std::size_t size = evolutionJson(evolution).size();
+  leaveOutSurroundings(evolution);
+  EXPECT_LT(evolutionJson(evolution).size(), size);
+  ASSERT_GT(evolution.mesh.faceCount(), 0);
+  EXPECT_LT(evolution.mesh.faceCount(), before.mesh.faceCount());
+  EXPECT_EQ(evolution.mesh.vertexCount(), before.mesh.vertexCount());
+  for (const std::int32_t v : evolution.moved) {
+    EXPECT_EQ(evolution.mesh.positions.row(v), before.mesh.positions.row(v));
+    EXPECT_EQ(evolution.maps[0].values[v], values[v]);
+  }
+  for (const std::int32_t v : evolution.mesh.faces.reshaped()) {
+    EXPECT_TRUE(std::binary_search(evolution.moved.begin(), evolution.moved.end(), v));
+  }
+}
+
 TEST(ReportPage, OffersEveryPatchAndTheStatesOfAMosaic) {
   ReportContent content;
   for (const char* title : {"Unfold (left)", "Unfold (right)"}) {
@@ -229,6 +253,19 @@ TEST(Evolution, KeepsValuesThatCanBeReadUnderThePointer) {
   }
   EXPECT_EQ(unpack(json["labels"][0]["entries"]), evolution.labels[0].entries);
   EXPECT_EQ(unpack(json["region"]), evolution.moved);
+  // The same faces, each with the same sense, in another order.
+  const std::vector<std::int32_t> corners = unpack(json["faces"]);
+  std::set<std::array<std::int32_t, 3>> drawn, given;
+  for (std::size_t c = 0; c < corners.size(); c += 3) {
+    drawn.insert({corners[c], corners[c + 1], corners[c + 2]});
+  }
+  for (Eigen::Index f = 0; f < evolution.mesh.faceCount(); ++f) {
+    std::array<std::int32_t, 3> face = {evolution.mesh.faces(f, 0), evolution.mesh.faces(f, 1),
+                                        evolution.mesh.faces(f, 2)};
+    std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
+    given.insert(face);
+  }
+  EXPECT_EQ(drawn, given);
 }
 
 TEST(Charts, DrawConstantsAndGaps) {

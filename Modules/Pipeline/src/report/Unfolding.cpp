@@ -308,6 +308,11 @@ void showUnfolding(ResultFolder& results, const StepFolder& step,
                     [&] { drawBeforeAndAfter(results, unfolded, surface, step.side(), fitting); });
   }
   evolution.title = titleOf(step.name);
+  if (!results.content().evolutions.empty()) {
+    report::leaveOutSurroundings(evolution);
+    evolution.title += ", the patch alone";
+    evolution.detached = false;
+  }
   results.content().evolutions.push_back(std::move(evolution));
 }
 

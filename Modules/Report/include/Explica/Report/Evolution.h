@@ -42,6 +42,10 @@ struct Evolution {
 /// @throws InvalidInput  no mesh, or meshes that differ in faces or number of vertices
 [[nodiscard]] Evolution evolutionOf(const std::vector<TriangleMesh>& frames);
 
+/// Leaves only the region and what moves with it: of a page with several patches, whole surfaces
+/// for each would not fit.  Vertices keep their numbers; those off the patch are of no face.
+void leaveOutSurroundings(Evolution& evolution);
+
 /// The evolution as JSON for the page's script: positions quantised to 1/65535 of the box, frames
 /// as differences, everything deflated.
 [[nodiscard]] std::string evolutionJson(const Evolution& evolution);
