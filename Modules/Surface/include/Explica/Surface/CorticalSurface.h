@@ -109,7 +109,9 @@ struct CorticalSurfaces {
 /// where it changes most steeply along each trajectory, within about a voxel of the labels' border,
 /// weighed against the neighbours' places.  Change of the usual sense only (most vertices' own)
 /// counts; where it is flat or missing, as in a sulcus without visible fluid or off the image, the
-/// labels' border stays, and is counted.  Topology is kept, and nothing meets, as before.
+/// labels' border stays, and is counted.  Where the tissue comes of shares, not of labels
+/// (`byBrightness`), the white border is first searched up to 4 voxels inward: one brightness for a
+/// neighbourhood may have put it into bright cortex.  Topology is kept, and nothing meets.
 /// @param image  any contrast between white and grey matter and fluid, such as a T1; on any grid
 [[nodiscard]] CorticalSurfaces buildSurfaces(const CorticalTissue& tissue,
                                              const Volume<float>& image,
