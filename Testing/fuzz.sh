@@ -10,7 +10,7 @@ set -eu
 cd "$(dirname "$0")/.."
 seconds=${1:-60}
 [ $# -gt 0 ] && shift
-readers=$(sed -n 's/^ *{"\([a-z-]*\)", "\([^"]*\)", read.*/\1:\2/p' Testing/fuzz/Readers.cpp)
+readers=$(sed -n 's/^ *{"\([a-z0-9-]*\)", "\([^"]*\)", read.*/\1:\2/p' Testing/fuzz/Readers.cpp)
 [ -f build-fuzz/build.ninja ] || cmake --preset fuzz
 cmake --build build-fuzz ${EXPLICA_JOBS:+-j "$EXPLICA_JOBS"} --target ExplicaFuzz
 seeds=build-fuzz/seeds

@@ -184,7 +184,7 @@ class SurfaceSampling {
         layers_(ribbon_ ? 1 : depths_.size()),
         count_(static_cast<std::size_t>(cortex_.white.vertexCount())),
         regions_(regionsOf(s, cortex_.white.vertexCount())) {
-    if (s.points) points_ = readPointTable(*s.points);
+    if (s.points) points_ = io::readPointTable(*s.points);
     sayHowRead(context, cortex_.origin);
   }
 
@@ -469,7 +469,7 @@ class SurfaceSampling {
   std::size_t layers_;  ///< maps a frame: the depths, or the one of the ribbon
   std::size_t count_;
   sampling::Regions regions_;
-  std::optional<PointTable> points_;
+  std::optional<io::PointTable> points_;
   Positions at_;  ///< depths x V
   std::vector<io::VertexMap> valid_;
   std::string profiles_;

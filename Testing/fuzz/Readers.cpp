@@ -4,6 +4,10 @@
 #include "Readers.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/IO/LabelNames.h"
+#include "Explica/IO/PatchFile.h"
+#include "Explica/IO/PointTableFile.h"
+#include "Explica/IO/PointTransformFile.h"
 #include "Explica/IO/PolygonFile.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VertexDataFile.h"
@@ -45,6 +49,28 @@ void readMaps(const Path& path) {
 void readPolygon(const Path& path) {
   ask([&] { static_cast<void>(io::readPolygon(path)); });
 }
+void readCifti(const Path& path) {  // which is written only: as a volume, and as maps
+  readVolume(path);
+  readMaps(path);
+}
+void readTransform(const Path& path) {
+  io::TransformSides sides;
+  sides.volume.size = {40, 40, 40};
+  sides.scannerFromTkr = Eigen::Matrix4d::Identity();
+  for (const auto sense : {io::TransformSense::Auto, io::TransformSense::Inverse}) {
+    sides.sense = sense;
+    ask([&] { static_cast<void>(io::readPointTransform(path, sides).map(Point(1, 2, 3))); });
+  }
+}
+void readPatch(const Path& path) {
+  ask([&] { static_cast<void>(io::readPatch(path)); });
+}
+void readPoints(const Path& path) {
+  ask([&] { static_cast<void>(io::readPointTable(path)); });
+}
+void readLegend(const Path& path) {
+  ask([&] { static_cast<void>(io::readLabelNames(path)); });
+}
 void readRecord(const Path& path) {
   ask([&] { static_cast<void>(provenance::verifyRecord(path, true)); });
   ask([&] { static_cast<void>(provenance::historyOf(path)); });
@@ -83,6 +109,20 @@ const std::vector<Reader>& allReaders() {
       {"off", "a.off", readSurface},
       {"stl", "a.stl", readSurface},
       {"stl-text", "text.stl", readSurface},
+      {"minc1", "minc1.mnc", readVolume},
+      {"minc2", "minc2.mnc", readVolume},
+      {"mni-obj", "a.mni.obj", readSurface},
+      {"cifti", "a.dscalar.nii", readCifti},
+      {"patch", "lh.a.patch.3d", readPatch},
+      {"matrix", "matrix.txt", readTransform},
+      {"itk-text", "itk.tfm", readTransform},
+      {"itk-mat", "itk.mat", readTransform},
+      {"itk-hdf5", "itk.h5", readTransform},
+      {"lta", "reg.lta", readTransform},
+      {"register-dat", "register.dat", readTransform},
+      {"pycortex", "matrices.xfm", readTransform},
+      {"points-tsv", "points.tsv", readPoints},
+      {"legend-tsv", "legend.tsv", readLegend},
       {"polygon-csv", "polygon.csv", readPolygon},
       {"polygon-vtp", "polygon.vtp", readPolygon},
       {"record", "provenance.json", readRecord},

@@ -140,7 +140,7 @@ ByteSource::ByteSource(const std::filesystem::path& path)
 ByteSource::~ByteSource() = default;
 
 bool ByteSource::fetch() {
-  constexpr std::size_t kChunk = std::size_t{1} << 20;
+  constexpr std::size_t kChunk = std::size_t{1} << 20;  // bytes taken from the file at a time
   chunk_.erase(chunk_.begin(), chunk_.begin() + static_cast<std::ptrdiff_t>(at_));
   at_ = 0;
   const std::size_t held = chunk_.size();
@@ -233,14 +233,19 @@ void ByteSource::finish() {
   }
 }
 
-Bytes ByteSource::rest() {
+Bytes ByteSource::rest(std::uint64_t mostUnpacked) {
   Bytes all;
   std::size_t filled = 0;
   std::size_t room = members_ ? 4 * file_->size() + 4096 : leftAtMost();
   while (true) {
+    if (members_) room = std::min<std::size_t>(room, mostUnpacked + 1 - filled);
     all.resize(filled + room);
     const std::size_t got = read(all.data() + filled, room);
     filled += got;
+    if (members_ && filled > mostUnpacked) {
+      failToRead(path_, "unpacks to more than " + std::to_string(mostUnpacked >> 20) +
+                            " MB, far more than such a file holds");
+    }
     if (got < room || !members_) break;
     room = filled;
   }

@@ -19,6 +19,9 @@ class ByteSource {
  public:
   class OpenFile;
 
+  static constexpr std::uint64_t kMostUnpacked = std::uint64_t{4} << 30;  ///< bytes of any kind
+  static constexpr std::uint64_t kMostText = std::uint64_t{256} << 20;    ///< bytes of a table
+
   explicit ByteSource(const std::filesystem::path& path);
   ~ByteSource();
   ByteSource(const ByteSource&) = delete;
@@ -36,7 +39,11 @@ class ByteSource {
   /// Reads on to the end, so that gzip's checksum is verified.
   void finish();
   /// All that is left.
-  [[nodiscard]] Bytes rest();
+  /// @param mostUnpacked  bytes that packed content may grow to: what is longer is no file of a
+  /// kind
+  ///                      that is read as a whole
+  /// @throws IOError  it grows to more
+  [[nodiscard]] Bytes rest(std::uint64_t mostUnpacked = kMostUnpacked);
   /// How many bytes can be left at most: a compressed byte gives at most 1032.
   [[nodiscard]] std::uint64_t leftAtMost() const;
   [[nodiscard]] bool compressed() const { return members_ != nullptr; }

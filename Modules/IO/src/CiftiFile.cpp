@@ -124,7 +124,7 @@ void write(const std::filesystem::path& path, Kind kind, std::size_t maps, std::
   const auto put = [&head](std::size_t at, auto value) { store(head.data() + at, value, false); };
   put(0, static_cast<std::int32_t>(kHeader));
   std::memcpy(head.data() + 4, "n+2\0\r\n\032\n", 8);
-  constexpr std::int16_t kFloat32 = 16;
+  constexpr std::int16_t kFloat32 = 16;  // NIfTI's code of the type
   put(12, kFloat32);
   put(14, std::int16_t{32});
   const std::int64_t dim[8] = {6,
@@ -139,8 +139,8 @@ void write(const std::filesystem::path& path, Kind kind, std::size_t maps, std::
     put(16 + 8 * i, dim[i]);
     put(104 + 8 * i, i == 5 ? step : 1.0);
   }
-  put(176, 1.0);  // slope
-  constexpr std::int32_t kMillimetresAndSeconds = 2 + 8;
+  put(176, 1.0);                                          // slope
+  constexpr std::int32_t kMillimetresAndSeconds = 2 + 8;  // NIfTI's code of the units
   put(500, kMillimetresAndSeconds);
   put(504, rowOf(kind).intent);
   std::memcpy(head.data() + 508, rowOf(kind).intentName, std::strlen(rowOf(kind).intentName));

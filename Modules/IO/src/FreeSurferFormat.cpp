@@ -39,7 +39,7 @@ int take24(ByteCursor& cursor) {
 /// The `key = value` lines of a volume geometry, if valid.
 std::optional<Grid> volumeOf(const std::filesystem::path& path, ByteCursor& cursor) {
   std::map<std::string, std::string> fields;
-  constexpr int kLines = 8;
+  constexpr int kLines = 8;  // of the geometry in a footer
   for (int i = 0; i < kLines && cursor.left() > 0; ++i) {
     const std::string_view line = cursor.line();
     const std::size_t mark = line.find('=');

@@ -257,7 +257,7 @@ std::optional<Grid> volumeOf(const std::filesystem::path& path, const Metadata& 
 }
 
 std::string spaceWord(const std::string& dataSpace) {
-  constexpr std::string_view kPrefix = "NIFTI_XFORM_";
+  constexpr std::string_view kPrefix = "NIFTI_XFORM_";  // of the names of frames
   std::string word = dataSpace.starts_with(kPrefix) ? dataSpace.substr(kPrefix.size()) : dataSpace;
   return word.empty() ? "UNKNOWN" : word;
 }
@@ -354,7 +354,7 @@ bool isClosed(const Faces& faces) {
 }  // namespace
 
 bool looksLikeGifti(ByteView bytes) {
-  constexpr std::size_t kFarEnough = 4096;
+  constexpr std::size_t kFarEnough = 4096;  // bytes in which the root element begins
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()),
                               std::min(bytes.size(), kFarEnough));
   return text.find("<GIFTI") != std::string_view::npos ||

@@ -3,80 +3,297 @@
 
 #include "ItkTransform.h"
 
-#include "Bytes.h"
+#include "ByteSource.h"
+#include "Hdf5File.h"
+#include "MeshBuilder.h"
 
+#include "Explica/IO/TransformFile.h"
+
+#include <itkAffineTransform.h>
 #include <itkCompositeTransform.h>
-#include <itkHDF5TransformIOFactory.h>
-#include <itkMatlabTransformIOFactory.h>
+#include <itkDisplacementFieldTransform.h>
+#include <itkHDF5TransformIO.h>
 #include <itkTransformFactoryBase.h>
-#include <itkTransformFileReader.h>
-#include <itkTxtTransformIOFactory.h>
+#include <itkTransformFileWriter.h>
 
-#include <hdf5.h>
-
+#include <cmath>
 #include <mutex>
 
 namespace explica::io {
 namespace {
 
+using Path = std::filesystem::path;
 using Composite = itk::CompositeTransform<double, 3>;
 using Transform = itk::Transform<double, 3, 3>;
 
-void registerFactories() {
-  static std::once_flag once;
-  std::call_once(once, [] {
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // it tells faults on standard error otherwise
-    itk::TransformFactoryBase::RegisterDefaultTransforms();
-    itk::ObjectFactoryBase::RegisterFactory(itk::HDF5TransformIOFactory::New());
-    itk::ObjectFactoryBase::RegisterFactory(itk::MatlabTransformIOFactory::New());
-    itk::ObjectFactoryBase::RegisterFactory(itk::TxtTransformIOFactory::New());
-  });
+/// What a file says of one transform.
+struct Entry {
+  std::string type;  ///< "AffineTransform_double_3_3"
+  std::vector<double> parameters, fixed;
+};
+
+/// `Transform:`, `Parameters:` and `FixedParameters:`, a line each.
+std::vector<Entry> entriesOfText(const Path& path, ByteView bytes) {
+  std::vector<Entry> entries;
+  ByteCursor lines(path, bytes, false);
+  while (lines.left() > 0) {
+    const std::string_view line = lines.line();
+    ByteCursor words(path, {reinterpret_cast<const std::uint8_t*>(line.data()), line.size()},
+                     false);
+    const std::string_view key = words.word();
+    if (key == "Transform:") {
+      entries.push_back({std::string(words.word()), {}, {}});
+    } else if (key == "Parameters:" || key == "FixedParameters:") {
+      if (entries.empty()) failToRead(path, "has parameters before any transform");
+      std::vector<double>& to =
+          key == "Parameters:" ? entries.back().parameters : entries.back().fixed;
+      for (std::string_view word = words.word(); !word.empty(); word = words.word()) {
+        to.push_back(parseNumber<double>(path, word));
+      }
+    }
+  }
+  return entries;
 }
 
-Transform::Pointer compositeOf(const std::filesystem::path& path) {
-  const auto reader = itk::TransformFileReaderTemplate<double>::New();
-  reader->SetFileName(path.string());
-  reader->Update();
-  const auto& list = *reader->GetTransformList();
-  const Composite::Pointer composite = Composite::New();
-  for (const auto& entry : list) {
-    auto* transform = dynamic_cast<Transform*>(entry.GetPointer());
-    if (transform == nullptr) refuse(path, "holds a transform that is not of three dimensions");
-    composite->AddTransform(transform);
+/// Matrices of Matlab's level 4, two for each transform: one of its type's name, one called
+/// "fixed".
+std::vector<Entry> entriesOfMatlab(const Path& path, ByteView bytes) {
+  std::vector<Entry> entries;
+  ByteCursor cursor(path, bytes, false);
+  while (cursor.left() > 0) {
+    constexpr std::int32_t kDouble = 0, kFloat = 10;  // little-endian, full
+    const auto type = cursor.take<std::int32_t>();
+    if (type != kDouble && type != kFloat) {
+      failToRead(path, "is not a transform as ITK writes it (a matrix of the type " +
+                           std::to_string(type) + ")");
+    }
+    const std::size_t width = type == kDouble ? 8 : 4;
+    const std::size_t rows =
+        checkedCount(path, cursor.take<std::int32_t>(), cursor.left(), width, "rows");
+    const std::size_t columns = checkedCount(path, cursor.take<std::int32_t>(), cursor.left(),
+                                             width * std::max<std::size_t>(rows, 1), "columns");
+    static_cast<void>(cursor.take<std::int32_t>());  // whether there is an imaginary part
+    const ByteView name = cursor.view(
+        checkedCount(path, cursor.take<std::int32_t>(), cursor.left(), 1, "characters"));
+    std::string word(name.begin(), name.end());
+    word.resize(std::min(word.find('\0'), word.size()));
+    std::vector<double> values;
+    for (std::size_t n = 0; n < rows * columns; ++n) {
+      values.push_back(type == kDouble ? cursor.take<double>() : cursor.take<float>());
+    }
+    if (word != "fixed") {
+      entries.push_back({word, std::move(values), {}});
+    } else if (!entries.empty()) {
+      entries.back().fixed = std::move(values);
+    }
   }
-  if (list.empty()) refuse(path, "holds no transform");
+  return entries;
+}
+
+std::vector<double> doublesOf(const Path& path, const Hdf5File& file, const std::string& place,
+                              const std::string& misspelt) {
+  std::optional<Hdf5Array> array = file.find(place);
+  if (!array) array = file.find(misspelt);
+  if (!array) failToRead(path, "lacks '" + place + "'");
+  const Bytes bytes = file.valuesOf(*array);
+  std::vector<double> values;
+  withType(array->type, [&]<class In>(const In*) {
+    for (std::size_t at = 0; at + sizeof(In) <= bytes.size(); at += sizeof(In)) {
+      values.push_back(static_cast<double>(load<In>(bytes.data() + at, false)));
+    }
+  });
+  return values;
+}
+
+/// Groups /TransformGroup/0, 1, ...; older versions of ITK misspelt two names.
+std::vector<Entry> entriesOfHdf5(const Path& path, ByteView bytes) {
+  const Hdf5File file(path, bytes);
+  std::vector<Entry> entries;
+  while (true) {
+    const std::string group = "/TransformGroup/" + std::to_string(entries.size()) + "/";
+    const std::optional<std::string> type = file.textAt(group + "TransformType");
+    if (!type) return entries;
+    Entry entry{*type, {}, {}};
+    if (!type->starts_with("CompositeTransform")) {
+      entry.parameters =
+          doublesOf(path, file, group + "TransformParameters", group + "TranformParameters");
+      entry.fixed = doublesOf(path, file, group + "TransformFixedParameters",
+                              group + "TranformFixedParameters");
+    }
+    entries.push_back(std::move(entry));
+  }
+}
+
+/// Refuses numbers that ITK would take memory for, or divide by, before it asks.
+void checkLattice(const Path& path, const Entry& entry) {
+  constexpr std::size_t kFixed = 18;  // size, origin, spacing and direction of a lattice
+  if (entry.fixed.size() != kFixed) {
+    failToRead(path, "has a lattice of " + std::to_string(entry.fixed.size()) +
+                         " numbers; those of three dimensions have 18");
+  }
+  std::vector<std::int64_t> size;
+  for (int axis = 0; axis < 3; ++axis) {
+    constexpr double kMostAlong = 1e6;  // places along an axis of a lattice
+    const double n = entry.fixed[axis];
+    if (!(n >= 1 && n <= kMostAlong && n == std::trunc(n))) {
+      failToRead(path, "has a lattice of no whole number of places");
+    }
+    if (!(entry.fixed[6 + axis] > 0)) failToRead(path, "has a lattice without spacing");
+    size.push_back(static_cast<std::int64_t>(n));
+  }
+  if (3 * checkedProduct(path, size) != static_cast<std::int64_t>(entry.parameters.size())) {
+    failTruncated(path, "its lattice has not three numbers a place");
+  }
+}
+
+Transform::Pointer transformOf(const Path& path, Entry entry) {
+  constexpr double kLargest = 1e9;  // mm or of a matrix; beyond it sums lose their digits
+  for (const std::vector<double>* numbers : {&entry.parameters, &entry.fixed}) {
+    for (const double number : *numbers) {
+      if (!(std::abs(number) <= kLargest)) {
+        refuse(path, "has a number that is not finite, or too large for a transform in mm");
+      }
+    }
+  }
+  const std::string given = entry.type;
+  if (const auto at = entry.type.find("_float_"); at != std::string::npos) {
+    entry.type.replace(at, 7, "_double_");
+  }
+  if (!entry.type.ends_with("_double_3_3")) {
+    refuse(path, "holds '" + given.substr(0, 60) + "', which is no transform of three dimensions");
+  }
+  const auto made = itk::ObjectFactoryBase::CreateInstance(entry.type.c_str());
+  auto* transform = dynamic_cast<Transform*>(made.GetPointer());
+  if (transform == nullptr) {
+    refuse(path, "holds '" + given.substr(0, 60) + "', which ITK does not know");
+  }
+  if (entry.type.find("Field") != std::string::npos ||
+      entry.type.find("BSpline") != std::string::npos) {
+    checkLattice(path, entry);
+  } else if (entry.parameters.size() != transform->GetNumberOfParameters() ||
+             entry.fixed.size() != transform->GetNumberOfFixedParameters()) {
+    failToRead(path, "has " + std::to_string(entry.parameters.size()) + " and " +
+                         std::to_string(entry.fixed.size()) + " parameters for " + given + "; " +
+                         std::to_string(transform->GetNumberOfParameters()) + " and " +
+                         std::to_string(transform->GetNumberOfFixedParameters()) + " are needed");
+  }
+  Transform::FixedParametersType fixed(entry.fixed.size());
+  std::copy(entry.fixed.begin(), entry.fixed.end(), fixed.begin());
+  Transform::ParametersType parameters(entry.parameters.size());
+  std::copy(entry.parameters.begin(), entry.parameters.end(), parameters.begin());
+  transform->SetFixedParameters(fixed);
+  transform->SetParametersByValue(parameters);
+  return transform;
+}
+
+Transform::Pointer compositeOf(const Path& path) {
+  static std::once_flag once;
+  std::call_once(once, [] { itk::TransformFactoryBase::RegisterDefaultTransforms(); });
+  const Bytes bytes = ByteSource(path).rest();
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const std::vector<Entry> entries = looksLikeHdf5(bytes)           ? entriesOfHdf5(path, bytes)
+                                     : text.starts_with("#Insight") ? entriesOfText(path, bytes)
+                                                                    : entriesOfMatlab(path, bytes);
+  const Composite::Pointer composite = Composite::New();
+  for (const Entry& entry : entries) {
+    if (entry.type.starts_with("CompositeTransform")) continue;  // of those that follow
+    composite->AddTransform(transformOf(path, entry));
+  }
+  if (composite->GetNumberOfTransforms() == 0) refuse(path, "holds no transform");
   return composite.GetPointer();
+}
+
+/// RAS to LPS and back.
+const Eigen::Vector3d kTurned(-1, -1, 1);
+
+itk::AffineTransform<double, 3>::Pointer affineInLps(const Eigen::Affine3d& affine) {
+  auto result = itk::AffineTransform<double, 3>::New();
+  itk::AffineTransform<double, 3>::MatrixType matrix;
+  itk::AffineTransform<double, 3>::OutputVectorType offset;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      matrix(row, column) = kTurned[row] * affine.linear()(row, column) * kTurned[column];
+    }
+    offset[row] = kTurned[row] * affine.translation()[row];
+  }
+  result->SetMatrix(matrix);
+  result->SetOffset(offset);
+  return result;
+}
+
+itk::DisplacementFieldTransform<double, 3>::Pointer fieldInLps(
+    const Volume<Eigen::Vector3f>& displacement) {
+  using Warp = itk::DisplacementFieldTransform<double, 3>;
+  using Field = Warp::DisplacementFieldType;
+  const Grid& grid = displacement.grid;
+  auto field = Field::New();
+  Field::RegionType region;
+  Field::SpacingType spacing;
+  Field::PointType origin;
+  Field::DirectionType direction;
+  for (int a = 0; a < 3; ++a) {
+    region.SetSize(a, static_cast<itk::SizeValueType>(grid.size[a]));
+    spacing[a] = grid.spacing[a];
+    origin[a] = kTurned[a] * grid.origin[a];
+    for (int b = 0; b < 3; ++b) direction(a, b) = kTurned[a] * grid.direction(a, b);
+  }
+  field->SetRegions(region);
+  field->SetSpacing(spacing);
+  field->SetOrigin(origin);
+  field->SetDirection(direction);
+  field->Allocate();
+  auto* voxel = field->GetBufferPointer();
+  for (std::size_t v = 0; v < displacement.size(); ++v) {
+    for (int a = 0; a < 3; ++a) voxel[v][a] = kTurned[a] * displacement[v][a];
+  }
+  auto result = Warp::New();
+  result->SetDisplacementField(field);
+  return result;
 }
 
 }  // namespace
 
-std::function<Point(const Point&)> readItkTransform(const std::filesystem::path& path,
-                                                    bool inverse) {
-  registerFactories();
+std::function<Point(const Point&)> readItkTransform(const Path& path, bool inverse) {
   Transform::Pointer transform;
   try {
     transform = compositeOf(path);
+    if (inverse) {
+      const auto inverted = transform->GetInverseTransform();
+      if (inverted.IsNull()) {
+        refuse(path,
+               "has no inverse; give the transform of the other direction, which ANTs writes as "
+               "InverseComposite or InverseWarp");
+      }
+      transform = dynamic_cast<Transform*>(inverted.GetPointer());
+    }
   } catch (const itk::ExceptionObject& error) {
     const std::string cause = error.GetDescription();
-    failToRead(path, "ITK cannot read this transform: " + cause.substr(0, cause.find('\n')));
-  }
-  if (inverse) {
-    const auto inverted = transform->GetInverseTransform();
-    if (inverted.IsNull()) {
-      refuse(path,
-             "has no inverse; give the transform of the other direction, which ANTs writes as "
-             "InverseComposite or InverseWarp");
-    }
-    transform = dynamic_cast<Transform*>(inverted.GetPointer());
+    failToRead(path, "ITK does not take this transform: " + cause.substr(0, cause.find('\n')));
   }
   return [transform](const Point& ras) -> Point {
     Transform::InputPointType lps;
-    lps[0] = -ras[0];
-    lps[1] = -ras[1];
-    lps[2] = ras[2];
+    for (int axis = 0; axis < 3; ++axis) lps[axis] = kTurned[axis] * ras[axis];
     const auto there = transform->TransformPoint(lps);
-    return {-there[0], -there[1], there[2]};
+    return {kTurned[0] * there[0], kTurned[1] * there[1], kTurned[2] * there[2]};
   };
+}
+
+void writeTransform(const std::filesystem::path& path, const Eigen::Affine3d& affine,
+                    const Volume<Eigen::Vector3f>& displacement) {
+  try {
+    // The transform that is added last is applied first.
+    auto composite = itk::CompositeTransform<double, 3>::New();
+    composite->AddTransform(affineInLps(affine));
+    if (displacement.size() != 0) composite->AddTransform(fieldInLps(displacement));
+    auto writer = itk::TransformFileWriterTemplate<double>::New();
+    writer->SetTransformIO(itk::HDF5TransformIOTemplate<double>::New());
+    writer->SetUseCompression(true);
+    writer->SetFileName(path.string());
+    writer->SetInput(composite);
+    writer->Update();
+  } catch (const itk::ExceptionObject& fault) {
+    throw EnvironmentError(path.string() + ": cannot be written: " + fault.GetDescription());
+  }
 }
 
 }  // namespace explica::io

@@ -22,7 +22,7 @@
 namespace explica::io {
 namespace {
 
-constexpr std::size_t kLongestHeader = 1 << 16;
+constexpr std::size_t kLongestHeader = 1 << 16;  // bytes; ITK's own headers have some hundred
 
 std::string lower(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -352,7 +352,7 @@ StoredVolume readWithItk(const std::filesystem::path& path, ItkFormat format, Ex
       case ItkFormat::Png:
         checkPng(path, bytes);
         volume.origin.format = "PNG";
-        volume.origin.placement = "none";
+        volume.origin.placement = kNotPlaced;
         reader = itk::PNGImageIO::New();
         break;
     }

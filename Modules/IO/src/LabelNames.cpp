@@ -56,7 +56,7 @@ std::optional<fs::path> findColours(const fs::path& volume) {
 }
 
 LabelColours readLabelColours(const fs::path& file) {
-  constexpr std::size_t kColours = 256;
+  constexpr std::size_t kColours = 256;  // of MRIcron's table
   std::ifstream in(file, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(in), {}};
   if (bytes.size() != 3 * kColours) {

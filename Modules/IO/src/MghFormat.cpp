@@ -86,6 +86,7 @@ StoredVolume readMgh(ByteSource& source, Extent extent) {
       }
     }
   } else {
+    volume.origin.placement = kNotPlaced;
     volume.origin.notes.push_back(
         "no geometry in the header (goodRASFlag 0): coronal slices of 1 mm assumed, as FreeSurfer "
         "does");
@@ -105,13 +106,6 @@ StoredVolume readMgh(ByteSource& source, Extent extent) {
   source.finish();
   swapBytes(volume.values.data(), valueCount, width);
   return volume;
-}
-
-bool mghCanHold(StoredType type) {
-  for (const TypeRow& row : kTypes) {
-    if (row.type == type) return true;
-  }
-  return false;
 }
 
 Bytes mghHeader(const VolumeToWrite& volume) {

@@ -12,9 +12,6 @@ namespace explica::io {
 
 [[nodiscard]] StoredVolume readMgh(ByteSource& source, Extent extent);
 
-/// The MGH types are uchar, short, ushort, int and float.
-[[nodiscard]] bool mghCanHold(StoredType type);
-
 /// 284 bytes: FreeSurfer's geometry with goodRASFlag 1.
 [[nodiscard]] Bytes mghHeader(const VolumeToWrite& volume);
 /// The scan parameters that follow the data, all 0 (unknown).

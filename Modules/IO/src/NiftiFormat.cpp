@@ -12,9 +12,9 @@
 namespace explica::io {
 namespace {
 
-constexpr std::size_t kHeader1 = 348;
-constexpr std::size_t kHeader2 = 540;
-constexpr double kAgreement = 0.01;  // voxels: q- and sform that round differently differ by 1e-4
+constexpr std::size_t kHeader1 = 348;  // bytes of NIfTI-1's header
+constexpr std::size_t kHeader2 = 540;  // bytes of NIfTI-2's header
+constexpr double kAgreement = 0.01;    // voxels: q- and sform that round differently differ by 1e-4
 
 /// The fields of either header version that matter here.
 struct Header {
@@ -132,7 +132,7 @@ Vector spacingOf(const std::filesystem::path& path, const Header& header,
 /// The rotation that a qform's b, c, d stand for.  Its real part is the root of a difference that
 /// float32 rounding leaves uncertain by 1e-7: below that it is 0, as NIfTI's own library has it.
 Eigen::Quaterniond rotationOf(const Vector& bcd) {
-  constexpr double kRounding = 1e-7;
+  constexpr double kRounding = 1e-7;  // of float32 in a quaternion
   const double rest = 1 - bcd.squaredNorm();
   Eigen::Quaterniond rotation(rest < kRounding ? 0 : std::sqrt(rest), bcd[0], bcd[1], bcd[2]);
   rotation.normalize();
@@ -232,6 +232,10 @@ Eigen::Matrix4d place(const Header& header, const std::array<int, 3>& size, Plac
   const auto qform = [&] {
     return qformOf(path, header, spacingOf(path, header, size, unit), unit);
   };
+  if (hasQ && hasS && (choice == PlacementChoice::Qform || choice == PlacementChoice::Sform)) {
+    const double apart = disagreement(qform(), sformOf(header, size, unit), size);
+    if (!(apart <= kAgreement)) origin.placementsApart = apart;
+  }
   switch (choice) {
     case PlacementChoice::Qform:
       if (!hasQ) refuse(path, "has no qform (" + codes + "); use --xform sform");
@@ -242,7 +246,7 @@ Eigen::Matrix4d place(const Header& header, const std::array<int, 3>& size, Plac
       origin.placement = "sform";
       return sformOf(header, size, unit);
     case PlacementChoice::None: {
-      origin.placement = "none";
+      origin.placement = kNotPlaced;
       Eigen::Matrix4d affine = Eigen::Matrix4d::Identity();
       affine.diagonal().head<3>() = spacingOf(path, header, size, unit);
       return affine;
@@ -438,9 +442,9 @@ Bytes niftiHeader(const VolumeToWrite& volume) {
   const bool qformHolds = disagreement(qform, affine, grid.size) < 0.5 * kAgreement;
   for (int i = 0; i < 12; ++i) real(280 + 4 * i, 400 + 8 * i, affine(i / 4, i % 4));
 
-  constexpr int kMillimetres = 2;
-  constexpr int kScanner = 1;
-  constexpr int kVectorIntent = 1007;
+  constexpr int kMillimetres = 2;      // NIfTI's code of the unit
+  constexpr int kScanner = 1;          // NIfTI's code of the frame
+  constexpr int kVectorIntent = 1007;  // NIfTI's code of vectors
   static constexpr char kDescription[] = "Explica";
   if (one) {
     bytes[123] = kMillimetres;

@@ -16,6 +16,10 @@
 namespace explica::io {
 namespace {
 
+std::string_view textOf(ByteView bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
 LoadedSurface finished(const std::filesystem::path& path, const char* format,
                        const MeshBuilder& builder) {
   LoadedSurface surface;
@@ -83,7 +87,7 @@ class PlyValues {
   }
   std::int64_t takeWhole(PlyType type) {
     const double value = take(type);
-    constexpr double kLargest = 9e15;
+    constexpr double kLargest = 9e15;  // whole numbers that a double holds exactly
     if (!(std::abs(value) <= kLargest) ||
         value != static_cast<double>(static_cast<std::int64_t>(value))) {
       failToRead(path_, "has a vertex number that is no whole number");
@@ -211,7 +215,7 @@ void writePly(const std::filesystem::path& path, const TriangleMesh& mesh) {
       std::to_string(mesh.vertexCount()) +
       "\nproperty double x\nproperty double y\nproperty double z\nelement face " +
       std::to_string(mesh.faceCount()) + "\nproperty list uchar int vertex_indices\nend_header\n";
-  constexpr std::size_t kFace = 13;
+  constexpr std::size_t kFace = 13;  // bytes: a count and three corners
   Bytes faces(kFace * static_cast<std::size_t>(mesh.faceCount()));
   for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
     std::uint8_t* to = faces.data() + kFace * static_cast<std::size_t>(f);
@@ -274,7 +278,12 @@ void writeObj(const std::filesystem::path& path, const TriangleMesh& mesh) {
   writeTextFile(path, text);
 }
 
-bool looksLikeOff(std::string_view text) {
+bool looksLikePly(ByteView bytes) {
+  return textOf(bytes).starts_with("ply\n") || textOf(bytes).starts_with("ply\r\n");
+}
+
+bool looksLikeOff(ByteView bytes) {
+  const std::string_view text = textOf(bytes);
   for (const std::string_view start : {"OFF", "COFF", "NOFF", "CNOFF"}) {
     if (text.starts_with(start) && text.size() > start.size() &&
         (text[start.size()] == '\n' || text[start.size()] == '\r' || text[start.size()] == ' ')) {
@@ -347,12 +356,8 @@ void writeOff(const std::filesystem::path& path, const TriangleMesh& mesh) {
 
 namespace {
 
-constexpr std::size_t kStlHeader = 84;
-constexpr std::size_t kStlFacet = 50;
-
-std::string_view textOf(ByteView bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
+constexpr std::size_t kStlHeader = 84;  // bytes: a text and the count of facets
+constexpr std::size_t kStlFacet = 50;   // bytes: normal, three corners, attributes
 
 bool isBinaryStl(ByteView bytes) {
   return bytes.size() >= kStlHeader &&
@@ -387,7 +392,7 @@ void mergeCorners(const std::vector<Corner>& corners, MeshBuilder& builder) {
 }  // namespace
 
 bool looksLikeStl(ByteView bytes) {
-  constexpr std::size_t kFarEnough = 1024;
+  constexpr std::size_t kFarEnough = 1024;  // bytes in which a text names its first facet
   const std::string_view text = textOf(bytes).substr(0, kFarEnough);
   return isBinaryStl(bytes) ||
          (text.starts_with("solid") && text.find("facet") != std::string_view::npos);

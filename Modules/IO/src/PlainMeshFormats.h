@@ -15,7 +15,8 @@ namespace explica::io {
 [[nodiscard]] LoadedSurface readOff(const std::filesystem::path& path, ByteView bytes);
 [[nodiscard]] LoadedSurface readStl(const std::filesystem::path& path, ByteView bytes);
 
-[[nodiscard]] bool looksLikeOff(std::string_view text);
+[[nodiscard]] bool looksLikePly(ByteView bytes);
+[[nodiscard]] bool looksLikeOff(ByteView bytes);
 /// Binary of the right length, or text of facets.
 [[nodiscard]] bool looksLikeStl(ByteView bytes);
 

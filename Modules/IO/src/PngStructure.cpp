@@ -14,11 +14,11 @@ namespace explica::io {
 
 namespace {
 
-constexpr std::size_t kSignature = 8;
-constexpr std::size_t kFrame = 12;  // of a chunk: length, type and checksum
-constexpr std::uint32_t kHeaderLength = 13;
-constexpr std::uint32_t kPaletteEntry = 3;
-constexpr int kPaletteColour = 3;
+constexpr std::size_t kSignature = 8;        // bytes
+constexpr std::size_t kFrame = 12;           // of a chunk: length, type and checksum
+constexpr std::uint32_t kHeaderLength = 13;  // bytes
+constexpr std::uint32_t kPaletteEntry = 3;   // bytes
+constexpr int kPaletteColour = 3;            // PNG's number of this kind of colour
 
 struct Chunk {
   std::string_view type;

@@ -147,7 +147,7 @@ std::optional<Grid> sideOf(const std::filesystem::path& path, std::string_view t
       false);
   static_cast<void>(lines.line());
   std::map<std::string, std::vector<double>> fields;
-  constexpr int kLines = 8;
+  constexpr int kLines = 8;  // of a volume's description
   for (int n = 0; n < kLines && lines.left() > 0; ++n) {
     const std::string_view line = withoutComment(lines.line());
     const std::size_t mark = line.find('=');
@@ -186,7 +186,7 @@ PointTransform lta(const std::filesystem::path& path, std::string_view text,
         false);
     return parseNumber<int>(path, cursor.word());
   };
-  constexpr int kVoxelToVoxel = 0, kRasToRas = 1;
+  constexpr int kVoxelToVoxel = 0, kRasToRas = 1;  // FreeSurfer's numbers of types
   const int type = after("type");
   if (type != kVoxelToVoxel && type != kRasToRas) {
     refuse(path, "is an LTA of type " + std::to_string(type) +
@@ -227,7 +227,7 @@ PointTransform lta(const std::filesystem::path& path, std::string_view text,
 }  // namespace
 
 Positions PointTransform::operator()(const Positions& points) const {
-  constexpr std::size_t kGrain = 4096;
+  constexpr std::size_t kGrain = 4096;  // elements a task
   Positions moved(points.rows(), 3);
   parallelFor(static_cast<std::size_t>(points.rows()), kGrain, [&](std::size_t p) {
     const auto row = static_cast<Eigen::Index>(p);

@@ -27,6 +27,33 @@ enum class StoredType {
   Float64
 };
 
+/// Calls action with a null pointer of the stored type.
+template <class Action>
+void withType(StoredType type, const Action& action) {
+  switch (type) {
+    case StoredType::Int8:
+      return action(static_cast<const std::int8_t*>(nullptr));
+    case StoredType::UInt8:
+      return action(static_cast<const std::uint8_t*>(nullptr));
+    case StoredType::Int16:
+      return action(static_cast<const std::int16_t*>(nullptr));
+    case StoredType::UInt16:
+      return action(static_cast<const std::uint16_t*>(nullptr));
+    case StoredType::Int32:
+      return action(static_cast<const std::int32_t*>(nullptr));
+    case StoredType::UInt32:
+      return action(static_cast<const std::uint32_t*>(nullptr));
+    case StoredType::Int64:
+      return action(static_cast<const std::int64_t*>(nullptr));
+    case StoredType::UInt64:
+      return action(static_cast<const std::uint64_t*>(nullptr));
+    case StoredType::Float32:
+      return action(static_cast<const float*>(nullptr));
+    case StoredType::Float64:
+      return action(static_cast<const double*>(nullptr));
+  }
+}
+
 [[nodiscard]] std::size_t widthOf(StoredType type);
 [[nodiscard]] const char* nameOf(StoredType type);
 

@@ -90,7 +90,7 @@ std::string frameMixUp(const Point& point, const Positions& positions,
 }
 
 Grid gridOfVolumeText(const std::filesystem::path& path, const VolumeText& text) {
-  constexpr double kLargest = 1e6;
+  constexpr double kLargest = 1e6;  // voxels along an axis; beyond it the text is damaged
   std::array<int, 3> size{};
   for (int i = 0; i < 3; ++i) {
     if (!(text.size[i] >= 1 && text.size[i] <= kLargest) || !(text.spacing[i] > 0)) {
@@ -138,10 +138,8 @@ void moveToScanner(LoadedSurface& surface, const FrameInFile& frame,
       break;
   }
   if (!tkr) {
-    origin.space = "not stated";
-    origin.notes.push_back(
-        "the file does not say in which frame its coordinates are; used as they stand (say it with "
-        "--surface-space scanner, or tkr and --fs-volume orig.mgz)");
+    origin.space = kFrameNotStated;
+    origin.notes.emplace_back(kFrameNotStatedNote);
     return;
   }
   origin.space = "tkr, moved to scanner";

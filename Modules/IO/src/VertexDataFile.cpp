@@ -61,12 +61,11 @@ std::vector<VertexMap> readVertexMaps(const std::filesystem::path& path,
     maps = readMghOverlay(path);
   } else {
     const Bytes bytes = source.rest();
-    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     if (looksLikeGifti(bytes)) {
       maps = readGiftiMaps(path, bytes);
-    } else if (looksLikeVtkLegacy(bytes) || looksLikeVtkXml(bytes)) {
+    } else if (looksLikeVtk(bytes)) {
       maps = readPolyData(path, bytes).pointMaps;
-    } else if (text.starts_with("ply\n") || text.starts_with("ply\r\n")) {
+    } else if (looksLikePly(bytes)) {
       maps = readPly(path, bytes).maps;
     } else if (freeSurferKindOf(bytes) == FreeSurferKind::Curv || looksLikeOldCurv(bytes)) {
       maps = {readFreeSurferCurv(path, bytes)};

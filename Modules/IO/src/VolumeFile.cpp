@@ -4,11 +4,9 @@
 #include "Explica/IO/VolumeFile.h"
 
 #include "ByteSource.h"
-#include "ItkVolume.h"
-#include "MghFormat.h"
-#include "NiftiFormat.h"
 #include "PackedFile.h"
 #include "StoredVolume.h"
+#include "VolumeFormats.h"
 
 #include "Explica/Core/Parallel.h"
 
@@ -35,33 +33,6 @@ std::string voxelText(const Grid& grid, std::size_t voxel) {
   const std::array<int, 3> at = grid.subscripts(voxel);
   return "(" + std::to_string(at[0]) + ", " + std::to_string(at[1]) + ", " + std::to_string(at[2]) +
          ")";
-}
-
-/// Calls action with a null pointer of the stored type.
-template <class Action>
-void withType(StoredType type, const Action& action) {
-  switch (type) {
-    case StoredType::Int8:
-      return action(static_cast<const std::int8_t*>(nullptr));
-    case StoredType::UInt8:
-      return action(static_cast<const std::uint8_t*>(nullptr));
-    case StoredType::Int16:
-      return action(static_cast<const std::int16_t*>(nullptr));
-    case StoredType::UInt16:
-      return action(static_cast<const std::uint16_t*>(nullptr));
-    case StoredType::Int32:
-      return action(static_cast<const std::int32_t*>(nullptr));
-    case StoredType::UInt32:
-      return action(static_cast<const std::uint32_t*>(nullptr));
-    case StoredType::Int64:
-      return action(static_cast<const std::int64_t*>(nullptr));
-    case StoredType::UInt64:
-      return action(static_cast<const std::uint64_t*>(nullptr));
-    case StoredType::Float32:
-      return action(static_cast<const float*>(nullptr));
-    case StoredType::Float64:
-      return action(static_cast<const double*>(nullptr));
-  }
 }
 
 /// What a pass over the voxels found.
@@ -166,113 +137,31 @@ Survey toFloats(const StoredVolume& stored, std::size_t frame, float* to, std::s
   });
 }
 
-struct NamedFormat {
-  enum class Kind { Nifti, Mgh, Nrrd, MetaImage } kind;
-  bool packed;
-};
-
-NamedFormat formatOf(const std::filesystem::path& path) {
-  const std::string name = path.filename().string();
-  using Kind = NamedFormat::Kind;
-  static constexpr std::pair<const char*, NamedFormat> kFormats[] = {
-      {".nii", {Kind::Nifti, false}},    {".nii.gz", {Kind::Nifti, true}},
-      {".mgh", {Kind::Mgh, false}},      {".mgz", {Kind::Mgh, true}},
-      {".mgh.gz", {Kind::Mgh, true}},    {".nrrd", {Kind::Nrrd, true}},
-      {".mha", {Kind::MetaImage, false}}};
-  for (const auto& [ending, format] : kFormats) {
-    if (name.ends_with(ending)) return format;
-  }
-  throw InvalidInput("cannot tell the format of volume " + quoted(path) +
-                     " from its name; end it in .nii.gz, .nii, .mgz, .mgh, .nrrd or .mha");
-}
-
-std::string joined(const std::array<double, 3>& values, char separator) {
+std::string allEndings() {
   std::string text;
-  for (const double value : values) {
-    if (!text.empty()) text += separator;
-    appendNumber(text, value);
+  for (const VolumeFormat& format : volumeFormats()) {
+    for (const VolumeEnding& ending : format.endings) {
+      text += (text.empty() ? "" : ", ") + std::string(ending.text);
+    }
   }
   return text;
 }
 
-std::array<double, 3> components(const Vector& v) {
-  return {v[0], v[1], v[2]};
-}
+/// How a volume is written under a name.
+struct NamedLayout {
+  const VolumeFormat& format;
+  bool packed;
+};
 
-Bytes bytesOf(const std::string& text) {
-  return Bytes(text.begin(), text.end());
-}
-
-const char* nrrdNameOf(StoredType type) {
-  switch (type) {
-    case StoredType::UInt8:
-      return "uint8";
-    case StoredType::Int16:
-      return "int16";
-    case StoredType::Int32:
-      return "int32";
-    default:
-      return "float";
+NamedLayout layoutFor(const std::filesystem::path& path) {
+  const std::string name = path.filename().string();
+  for (const VolumeFormat& format : volumeFormats()) {
+    for (const VolumeEnding& ending : format.endings) {
+      if (name.ends_with(ending.text)) return {format, ending.packed};
+    }
   }
-}
-
-Bytes nrrdHeader(const VolumeToWrite& volume) {
-  const Grid& grid = volume.grid;
-  const bool vectors = volume.valuesPerVoxel > 1;
-  std::string text = "NRRD0004\n# written by Explica\ntype: ";
-  text += nrrdNameOf(volume.type);
-  text += vectors ? "\ndimension: 4" : "\ndimension: 3";
-  text += "\nspace: right-anterior-superior\nsizes:";
-  if (vectors) text += " " + std::to_string(volume.valuesPerVoxel);
-  for (const int n : grid.size) text += " " + std::to_string(n);
-  text += "\nspace directions:";
-  if (vectors) text += " none";
-  for (int axis = 0; axis < 3; ++axis) {
-    const Vector column = grid.direction.col(axis) * grid.spacing[axis];
-    text += " (" + joined(components(column), ',') + ")";
-  }
-  text += vectors ? "\nkinds: vector domain domain domain" : "\nkinds: domain domain domain";
-  text += "\nendian: little\nencoding: gzip\nspace origin: (" +
-          joined(components(grid.origin), ',') + ")\n\n";
-  return bytesOf(text);
-}
-
-const char* metaNameOf(StoredType type) {
-  switch (type) {
-    case StoredType::UInt8:
-      return "MET_UCHAR";
-    case StoredType::Int16:
-      return "MET_SHORT";
-    case StoredType::Int32:
-      return "MET_INT";
-    default:
-      return "MET_FLOAT";
-  }
-}
-
-Bytes metaHeader(const VolumeToWrite& volume) {
-  const Grid& grid = volume.grid;
-  const Eigen::Matrix3d lps = Vector(-1, -1, 1).asDiagonal();
-  std::string text =
-      "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\n"
-      "CompressedData = False\nTransformMatrix =";
-  for (int axis = 0; axis < 3; ++axis) {
-    text += " " + joined(components(lps * grid.direction.col(axis)), ' ');
-  }
-  text += "\nOffset = " + joined(components(lps * grid.origin), ' ');
-  text += "\nCenterOfRotation = 0 0 0\nAnatomicalOrientation = ";
-  for (int axis = 0; axis < 3; ++axis) {  // the letters from which an axis runs
-    int along = 0;
-    grid.direction.col(axis).cwiseAbs().maxCoeff(&along);
-    text += grid.direction(along, axis) > 0 ? "LPI"[along] : "RAS"[along];
-  }
-  text += "\nElementSpacing = " + joined(components(grid.spacing), ' ') + "\nDimSize =";
-  for (const int n : grid.size) text += " " + std::to_string(n);
-  if (volume.valuesPerVoxel > 1) {
-    text += "\nElementNumberOfChannels = " + std::to_string(volume.valuesPerVoxel);
-  }
-  text += std::string("\nElementType = ") + metaNameOf(volume.type) + "\nElementDataFile = LOCAL\n";
-  return bytesOf(text);
+  throw InvalidInput("cannot tell the format of volume " + quoted(path) +
+                     " from its name; end it in one of " + allEndings());
 }
 
 /// Puts bytes [begin, begin + count) of the values component by component.
@@ -306,22 +195,37 @@ void fillInterleaved(const VolumeToWrite& volume, std::size_t begin, std::uint8_
   }
 }
 
+/// True if bytes [begin, begin + count) of the values lie where the volume has one value only.
+bool repeatsBlank(const VolumeToWrite& volume, bool interleaved, std::size_t begin,
+                  std::size_t count) {
+  const std::size_t width = volume.elsewhere.size(), voxels = volume.grid.voxelCount();
+  std::size_t first = begin / width, last = (begin + count) / width - 1;
+  if (interleaved) {
+    first /= volume.valuesPerVoxel;
+    last /= volume.valuesPerVoxel;
+  } else {
+    if (first / voxels != last / voxels) return false;
+    first %= voxels;
+    last %= voxels;
+  }
+  return last < volume.begin || first >= volume.end;
+}
+
 void writeValues(const std::filesystem::path& path, const VolumeToWrite& volume) {
-  const NamedFormat format = formatOf(path);
+  const auto [format, packed] = layoutFor(path);
+  const VolumeLayout& layout = *format.layout;
   if (volume.grid.voxelCount() == 0) {
     throw InvalidInput("volume for " + quoted(path) + ": it has no voxels");
   }
-  using Kind = NamedFormat::Kind;
-  const bool packsComponents = format.kind == Kind::Nrrd || format.kind == Kind::MetaImage;
-  if (volume.valuesPerVoxel > 1 && !volume.vectors && packsComponents) {
+  if (volume.valuesPerVoxel > 1 && !volume.vectors && layout.componentsTogether) {
     throw InvalidInput("volume for " + quoted(path) +
                        ": several frames are written as .nii.gz, .nii, .mgz or .mgh only");
   }
-  const bool interleaved = volume.valuesPerVoxel > 1 && packsComponents;
-  const bool bigEndian = format.kind == Kind::Mgh;
-  const std::size_t width = volume.elsewhere.size(), voxels = volume.grid.voxelCount();
+  const bool interleaved = volume.valuesPerVoxel > 1 && layout.componentsTogether;
+  const bool bigEndian = layout.bigEndian;
+  const std::size_t width = volume.elsewhere.size();
   Content content;
-  content.bodySize = voxels * volume.valuesPerVoxel * width;
+  content.bodySize = volume.grid.voxelCount() * volume.valuesPerVoxel * width;
   content.body = [&, interleaved, bigEndian, width](std::size_t begin, std::uint8_t* to,
                                                     std::size_t count) {
     (interleaved ? fillInterleaved : fillPlanar)(volume, begin, to, count);
@@ -329,41 +233,18 @@ void writeValues(const std::filesystem::path& path, const VolumeToWrite& volume)
   };
   content.blank = volume.elsewhere;
   if (bigEndian) swapBytes(content.blank.data(), 1, width);
-  content.isBlank = [&, interleaved, width, voxels](std::size_t begin, std::size_t count) {
-    std::size_t first = begin / width, last = (begin + count) / width - 1;
-    if (interleaved) {
-      first /= volume.valuesPerVoxel;
-      last /= volume.valuesPerVoxel;
-    } else {
-      if (first / voxels != last / voxels) return false;
-      first %= voxels;
-      last %= voxels;
-    }
-    return last < volume.begin || first >= volume.end;
+  content.isBlank = [&, interleaved](std::size_t begin, std::size_t count) {
+    return repeatsBlank(volume, interleaved, begin, count);
   };
   WholeFile file(path);
-  switch (format.kind) {
-    case Kind::Nifti:
-      content.head = niftiHeader(volume);
-      break;
-    case Kind::Mgh:
-      content.head = mghHeader(volume);
-      content.tail = mghFooter();
-      break;
-    case Kind::Nrrd: {
-      const Bytes header = nrrdHeader(volume);  // stands before the packed data
-      file.write(header.data(), header.size());
-      break;
-    }
-    case Kind::MetaImage:
-      content.head = metaHeader(volume);
-      break;
-  }
-  if (format.packed) {
-    writeGzip(file, content);
+  Bytes head = layout.head(volume);
+  if (layout.headApart) {
+    file.write(head.data(), head.size());
   } else {
-    writePlain(file, content);
+    content.head = std::move(head);
   }
+  if (layout.tail != nullptr) content.tail = layout.tail();
+  (packed ? writeGzip : writePlain)(file, content);
   file.commit();
 }
 
@@ -503,7 +384,7 @@ Grid gridOf(const std::filesystem::path& path, const std::array<int, 3>& size,
 
 std::int64_t checkedProduct(const std::filesystem::path& path,
                             const std::vector<std::int64_t>& sizes) {
-  constexpr std::int64_t kMost = std::int64_t{1} << 40;
+  constexpr std::int64_t kMost = std::int64_t{1} << 40;  // values; beyond it a header is damaged
   std::int64_t product = 1;
   for (const std::int64_t size : sizes) {
     if (size < 1 || size > std::numeric_limits<std::int32_t>::max()) {
@@ -546,16 +427,15 @@ void scaledFloats(const StoredVolume& stored, const std::uint8_t* from, float* t
 
 StoredVolume readStored(ByteSource& source, const std::filesystem::path& path,
                         const VolumeReadOptions& options, Extent extent) {
-  const ByteView first = source.peek(348);
-  const std::string_view text(reinterpret_cast<const char*>(first.data()), first.size());
-  if (looksLikeNifti(first)) return readNifti(source, options.placement, extent);
-  if (text.starts_with("NRRD000")) return readWithItk(path, ItkFormat::Nrrd, extent);
-  if (text.starts_with("\x89PNG\r\n\x1a\n")) return readWithItk(path, ItkFormat::Png, extent);
-  if (text.starts_with("ObjectType") || text.starts_with("NDims")) {
-    return readWithItk(path, ItkFormat::MetaImage, extent);
+  const ByteView first = source.peek(kTellingBytes);
+  for (const VolumeFormat& format : volumeFormats()) {
+    if (format.looksLike(first)) return format.read(source, path, options, extent);
   }
-  if (looksLikeMgh(first)) return readMgh(source, extent);
-  failToRead(path, "is not an image of a known format (NIfTI, MGH, NRRD, MetaImage, PNG)");
+  std::string names;
+  for (const VolumeFormat& format : volumeFormats()) {
+    names += (names.empty() ? "" : ", ") + std::string(format.name);
+  }
+  failToRead(path, "is not an image of a known format (" + names + ")");
 }
 
 LoadedVolume<float> readScalars(const std::filesystem::path& path,

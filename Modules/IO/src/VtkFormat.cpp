@@ -5,6 +5,7 @@
 
 #include "ByteSource.h"
 #include "MeshBuilder.h"
+#include "SurfaceFrame.h"
 #include "Xml.h"
 
 #include <cmath>
@@ -49,7 +50,7 @@ constexpr TypeRow kTypes[] = {{"float", "Float32", 4, loadReal<float>},
                               {"vtktypeuint64", "UInt64", 8, loadReal<std::uint64_t>}};
 
 std::int64_t wholeOf(const std::filesystem::path& path, double value) {
-  constexpr double kLargest = 9e15;
+  constexpr double kLargest = 9e15;  // whole numbers that a double holds exactly
   if (!(std::abs(value) <= kLargest) || std::trunc(value) != value) {
     failToRead(path, "has a vertex number that is no whole number");
   }
@@ -174,7 +175,7 @@ class LegacyReader {
   }
 
   std::vector<double> values(std::int64_t rows, std::int64_t columns, const TypeRow& type) {
-    constexpr std::int64_t kMostColumns = 1024;
+    constexpr std::int64_t kMostColumns = 1024;  // of a map; beyond it a header is damaged
     if (columns < 1 || columns > kMostColumns) failToRead(path_, "has arrays of no sensible width");
     if (!text_) static_cast<void>(cursor_.line());
     const std::size_t each = static_cast<std::size_t>(columns) * (text_ ? 1 : type.width);
@@ -511,7 +512,7 @@ bool looksLikeVtkLegacy(ByteView bytes) {
 }
 
 bool looksLikeVtkXml(ByteView bytes) {
-  constexpr std::size_t kFarEnough = 1024;
+  constexpr std::size_t kFarEnough = 1024;  // bytes in which the root element begins
   return textOf(bytes).substr(0, kFarEnough).find("<VTKFile") != std::string_view::npos;
 }
 
@@ -526,6 +527,40 @@ PolyData readPolyData(const std::filesystem::path& path, ByteView bytes) {
     }
   }
   return data;
+}
+
+bool looksLikeVtk(ByteView bytes) {
+  return looksLikeVtkLegacy(bytes) || looksLikeVtkXml(bytes);
+}
+
+LoadedSurface readVtkSurface(const std::filesystem::path& path, ByteView bytes,
+                             const SurfaceReadOptions& options) {
+  PolyData data = readPolyData(path, bytes);
+  MeshBuilder builder;
+  builder.coordinates = std::move(data.coordinates);
+  for (std::size_t c = 0; c < data.polygons.count(); ++c) {
+    const std::int64_t begin = data.polygons.offsets[c];
+    builder.addPolygon(path, data.polygons.connectivity.data() + begin,
+                       static_cast<std::size_t>(data.polygons.offsets[c + 1] - begin));
+  }
+  for (std::size_t c = 0; c < data.strips.count(); ++c) {
+    // Every other triangle of a strip runs backwards.
+    for (std::int64_t i = data.strips.offsets[c]; i + 2 < data.strips.offsets[c + 1]; ++i) {
+      const std::int64_t* at = data.strips.connectivity.data() + i;
+      const bool odd = (i - data.strips.offsets[c]) % 2 != 0;
+      builder.triangles.insert(builder.triangles.end(), {at[0], at[odd ? 2 : 1], at[odd ? 1 : 2]});
+    }
+  }
+  LoadedSurface surface;
+  surface.origin.path = path;
+  surface.origin.format = looksLikeVtkLegacy(bytes) ? "VTK" : "VTP";
+  surface.metadata.structure = structureFromName(path);
+  surface.mesh = builder.finish(path, surface.origin.notes);
+  surface.maps = std::move(data.pointMaps);
+  FrameInFile frame;
+  if (data.saysRas) frame.stated = "scanner";
+  moveToScanner(surface, frame, options);
+  return surface;
 }
 
 }  // namespace explica::io

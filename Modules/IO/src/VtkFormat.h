@@ -4,6 +4,7 @@
 
 #include "Bytes.h"
 
+#include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VertexDataFile.h"
 
 #include <cstdint>
@@ -31,6 +32,10 @@ struct PolyData {
 
 [[nodiscard]] bool looksLikeVtkLegacy(ByteView bytes);
 [[nodiscard]] bool looksLikeVtkXml(ByteView bytes);
+/// Either kind.
+[[nodiscard]] bool looksLikeVtk(ByteView bytes);
+[[nodiscard]] LoadedSurface readVtkSurface(const std::filesystem::path& path, ByteView bytes,
+                                           const SurfaceReadOptions& options);
 /// Reads either kind.
 [[nodiscard]] PolyData readPolyData(const std::filesystem::path& path, ByteView bytes);
 

@@ -11,8 +11,8 @@
 namespace explica::io {
 namespace {
 
-constexpr std::size_t kDeepest = 64;
-constexpr int kStep = 1 << 20;  // expat counts in int
+constexpr std::size_t kDeepest = 64;  // elements in one another; our formats have six
+constexpr int kStep = 1 << 20;        // expat counts in int
 
 struct Builder {
   XML_Parser parser;

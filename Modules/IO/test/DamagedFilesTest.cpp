@@ -6,11 +6,18 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Geometry/Fixtures.h"
+#include "Explica/IO/CiftiFile.h"
+#include "Explica/IO/LabelNames.h"
+#include "Explica/IO/PatchFile.h"
+#include "Explica/IO/PointTableFile.h"
+#include "Explica/IO/PointTransformFile.h"
 #include "Explica/IO/PolygonFile.h"
 #include "Explica/IO/SurfaceFile.h"
+#include "Explica/IO/TransformFile.h"
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/IO/VtkFile.h"
+#include "MincFiles.h"
 #include "TemporaryFolder.h"
 
 #include <gtest/gtest.h>
@@ -21,6 +28,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <limits>
+#include <map>
 #include <random>
 #include <string>
 
@@ -73,8 +81,74 @@ std::string pngWith(const std::string& more, char colour = 0) {
          pngChunk("IDAT", packed) + pngChunk("IEND", "");
 }
 
+/// A rigid transform in each format that is text; false for another name.
+bool writeTextTransform(const fs::path& path) {
+  const std::string rows = "0 -1 0 5\n1 0 0 -7\n0 0 1 11\n0 0 0 1\n";
+  const std::string side =
+      " volume info\nvalid = 1  # volume info valid\nfilename = a.nii\nvolume = 40 40 40\n"
+      "voxelsize = 1 1 1\nxras = 1 0 0\nyras = 0 1 0\nzras = 0 0 1\ncras = ";
+  const std::map<std::string, std::string> texts = {
+      {"matrix.txt", "# surface to volume\n" + rows},
+      {"itk.tfm",
+       "#Insight Transform File V1.0\n#Transform 0\nTransform: AffineTransform_double_3_3\n"
+       "Parameters: 0 -1 0 1 0 0 0 0 1 5 -7 11\nFixedParameters: 0 0 0\n"},
+      {"reg.lta", "type = 1\nnxforms = 1\nmean = 0 0 0\nsigma = 1\n1 4 4\n" + rows + "src" + side +
+                      "0 0 0\ndst" + side + "20 20 20\nsubject a\nfscale 0.1\n"},
+      {"register.dat", "bert\n2.2\n3.5\n0.15\n" + rows + "round\n"},
+      {"matrices.xfm",
+       "{\"coord\": [[0, -1, 0, 5],\n [1, 0, 0, -7],\n [0, 0, 1, 11], [0, 0, 0, 1]], \"shape\": "
+       "[4]}"}};
+  const auto found = texts.find(path.filename().string());
+  if (found == texts.end()) return false;
+  putContent(path, found->second);
+  return true;
+}
+
+/// A matrix of Matlab's level 4, as ANTs writes its transforms: header, name, values.
+void appendMatlab(std::string& bytes, const std::string& name, const std::vector<double>& values) {
+  const auto add = [&bytes](const void* from, std::size_t count) {
+    bytes.append(static_cast<const char*>(from), count);
+  };
+  const std::int32_t header[] = {0, static_cast<std::int32_t>(values.size()), 1, 0,
+                                 static_cast<std::int32_t>(name.size()) + 1};
+  add(header, sizeof header);
+  add(name.c_str(), name.size() + 1);
+  add(values.data(), values.size() * sizeof(double));
+}
+
+/// Transforms, tables and patches; false for another name.
+bool writeOtherThanMaps(const fs::path& path) {
+  const std::string name = path.filename().string();
+  const TriangleMesh mesh = geometry::makeIcosphere(0);
+  if (writeTextTransform(path)) return true;
+  if (name == "itk.mat") {
+    std::string bytes;
+    appendMatlab(bytes, "AffineTransform_double_3_3", {0, -1, 0, 1, 0, 0, 0, 0, 1, 5, -7, 11});
+    appendMatlab(bytes, "fixed", {0, 0, 0});
+    putContent(path, bytes);
+  } else if (name == "itk.h5") {
+    Grid grid;
+    grid.size = {3, 3, 3};
+    io::writeTransform(path, Eigen::Affine3d(Eigen::Translation3d(1, 2, 3)),
+                       Volume<Eigen::Vector3f>(grid, Eigen::Vector3f(0.5F, 0, -1)));
+  } else if (name == "points.tsv") {
+    putContent(path, "name\tx\ty\tz\nA1\t1.5\t-2\t30\nA2\t1e1\t0\t0.25\n");
+  } else if (name == "legend.tsv") {
+    putContent(path, "index\tname\n1\tleft\n2\tright\n");
+  } else if (name.ends_with(".dscalar.nii")) {
+    const Eigen::VectorXd values = Eigen::VectorXd::LinSpaced(12, 1, 2);
+    io::writeCiftiScalars(path, {{io::ciftiStructure("CortexLeft", values), {{"a", "", values}}}});
+  } else if (name.ends_with(".patch.3d")) {
+    io::writePatch(path, {{0, 1, 2, 5}, {true, false, true, false}, mesh.positions.topRows(4)});
+  } else {
+    return false;
+  }
+  return true;
+}
+
 void write(const fs::path& path) {
   const std::string name = path.filename().string();
+  if (writeOtherThanMaps(path)) return;
   const TriangleMesh mesh = geometry::makeIcosphere(0);
   const Eigen::VectorXd values = Eigen::VectorXd::LinSpaced(12, 0, 1);
   if (name.ends_with(".shape.gii")) {
@@ -120,6 +194,10 @@ void write(const fs::path& path) {
                "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
   } else if (name == "volume.png") {
     putContent(path, pngWith(""));
+  } else if (name == "minc1.mnc") {
+    putContent(path, minc1Bytes());
+  } else if (name == "minc2.mnc") {
+    writeMinc2(path);
   } else if (name.starts_with("volume.")) {
     io::writeVolume(path, smallVolume());
   } else {
@@ -147,6 +225,13 @@ std::string wrongAnswer(const fs::path& path) {
   wrong += ask([&] { static_cast<void>(io::readVertexMaps(path)); });
   wrong += ask([&] { static_cast<void>(io::readVertexLabels(path, 12)); });
   wrong += ask([&] { static_cast<void>(io::readPolygon(path)); });
+  wrong += ask([&] { static_cast<void>(io::readPatch(path)); });
+  wrong += ask([&] { static_cast<void>(io::readPointTable(path)); });
+  wrong += ask([&] { static_cast<void>(io::readLabelNames(path)); });
+  io::TransformSides sides;
+  sides.volume.size = {40, 40, 40};
+  sides.scannerFromTkr = Eigen::Matrix4d::Identity();
+  wrong += ask([&] { static_cast<void>(io::readPointTransform(path, sides)); });
   return wrong;
 }
 
@@ -287,6 +372,18 @@ TEST(ImplausibleHeaders, OfGiftiAreRefused) {
   EXPECT_EQ(said("LittleEndian", "GIFTI_ENDIAN_LITTLE"), "accepted");
 }
 
+TEST(ImplausibleCoordinates, OfTablesAreRefused) {
+  const TemporaryFolder folder;
+  const auto said = [&](const std::string& number) {
+    putContent(folder / "points.tsv", "x\ty\tz\n1\t2\t3\n0\t" + number + "\t0\n");
+    return complaint(folder / "points.tsv",
+                     [](const fs::path& p) { static_cast<void>(io::readPointTable(p)); });
+  };
+  EXPECT_EQ(said("9e6"), "accepted");
+  EXPECT_NE(said("1e18").find("row 2 has '1e18', farther than 10 km"), std::string::npos);
+  EXPECT_NE(said("nan").find("where a coordinate is needed"), std::string::npos);
+}
+
 TEST(ImplausibleCoordinates, AreRefused) {
   const TemporaryFolder folder;
   const fs::path path = folder / "a.off";
@@ -330,18 +427,19 @@ TEST_P(DamagedFiles, WholeOnesAreSeeds) {
   EXPECT_EQ(contentOf(place / "seed"), whole_);
 }
 
-INSTANTIATE_TEST_SUITE_P(Formats, DamagedFiles,
-                         testing::Values("volume.nii", "volume.nii.gz", "volume.mgh", "volume.mgz",
-                                         "volume.nrrd", "volume.mha", "volume.png", "a.surf.gii",
-                                         "a.surf.gii.gz", "a.shape.gii", "a.label.gii", "lh.white",
-                                         "lh.curv", "lh.a.annot", "lh.a.label", "a.vtp",
-                                         "base64.vtp", "legacy.vtk", "a.ply", "text.ply", "a.obj",
-                                         "a.off", "a.stl", "text.stl", "polygon.csv",
-                                         "polygon.vtp"),
-                         [](const auto& instance) {
-                           std::string name = instance.param;
-                           std::replace(name.begin(), name.end(), '.', '_');
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Formats, DamagedFiles,
+    testing::Values("volume.nii", "volume.nii.gz", "volume.mgh", "volume.mgz", "volume.nrrd",
+                    "volume.mha", "volume.png", "a.surf.gii", "a.surf.gii.gz", "a.shape.gii",
+                    "a.label.gii", "lh.white", "lh.curv", "lh.a.annot", "lh.a.label", "a.vtp",
+                    "base64.vtp", "legacy.vtk", "a.ply", "text.ply", "a.obj", "a.off", "a.stl",
+                    "text.stl", "polygon.csv", "polygon.vtp", "minc1.mnc", "minc2.mnc", "a.mni.obj",
+                    "a.dscalar.nii", "lh.a.patch.3d", "matrix.txt", "itk.tfm", "itk.mat", "itk.h5",
+                    "reg.lta", "register.dat", "matrices.xfm", "points.tsv", "legend.tsv"),
+    [](const auto& instance) {
+      std::string name = instance.param;
+      std::replace(name.begin(), name.end(), '.', '_');
+      return name;
+    });
 
 }  // namespace

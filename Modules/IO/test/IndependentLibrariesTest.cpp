@@ -5,7 +5,6 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Geometry/Fixtures.h"
-#include "Explica/IO/ItkFormats.h"
 #include "Explica/IO/PolygonFile.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VolumeFile.h"
@@ -53,8 +52,6 @@ void registerFormats() {
   itk::NiftiImageIOFactory::RegisterOneFactory();
   itk::NrrdImageIOFactory::RegisterOneFactory();
   itk::MetaImageIOFactory::RegisterOneFactory();
-  io::registerMghWithItk();
-  io::registerMghWithItk();
 }
 
 Volume<float> someVolume(bool leftHanded) {
@@ -87,7 +84,7 @@ TEST(Itk, ReadsOurVolumesThroughItsFactories) {
   const TemporaryFolder folder;
   for (const bool leftHanded : {false, true}) {
     const Volume<float> volume = someVolume(leftHanded);
-    for (const char* name : {"a.nii", "a.nii.gz", "a.nrrd", "a.mha", "a.mgh", "a.mgz"}) {
+    for (const char* name : {"a.nii", "a.nii.gz", "a.nrrd", "a.mha"}) {
       io::writeVolume(folder / name, volume);
       const auto reader = itk::ImageFileReader<Image>::New();
       reader->SetFileName((folder / name).string());
@@ -104,7 +101,7 @@ TEST(Itk, WritesVolumesThatWeRead) {
   io::writeVolume(folder / "a.mha", volume);
   const auto reader = itk::ImageFileReader<Image>::New();
   reader->SetFileName((folder / "a.mha").string());
-  for (const char* name : {"b.nii.gz", "b.nrrd", "b.nhdr", "b.mha", "b.mhd", "b.mgh", "b.mgz"}) {
+  for (const char* name : {"b.nii.gz", "b.nrrd", "b.nhdr", "b.mha", "b.mhd"}) {
     for (const bool packed : {false, true}) {
       const auto writer = itk::ImageFileWriter<Image>::New();
       writer->SetInput(reader->GetOutput());

@@ -49,10 +49,17 @@ struct SurfaceMetadata {
   std::map<std::string, std::string> extra;  ///< further file-level entries, e.g. Explica:Version
 };
 
+/// SurfaceOrigin::space of a surface whose file does not say it, and the note that goes with it.
+inline constexpr const char* kFrameNotStated = "not stated";
+inline constexpr const char* kFrameNotStatedNote =
+    "the file does not say in which frame its coordinates are; used as they stand (say it with "
+    "--surface-space scanner, or tkr and --fs-volume orig.mgz)";
+
 /// Where a surface came from and how its file was understood; goes into the provenance record.
 struct SurfaceOrigin {
   std::filesystem::path path;
-  std::string format;  ///< "GIFTI", "FreeSurfer", "VTK", "VTP", "PLY", "OBJ", "STL", "OFF"
+  std::string format;  ///< "GIFTI", "FreeSurfer", "VTK", "VTP", "PLY", "OBJ", "MNI obj", "STL",
+                       ///< "OFF"
   std::string space;   ///< "scanner", "tkr, moved to scanner", "MNI", "not stated", ...
   Eigen::Matrix4d applied = Eigen::Matrix4d::Identity();  ///< from the file's coordinates to ours
   std::vector<std::string> notes;  ///< quads split, vertices merged, frame not stated, ...
@@ -66,7 +73,8 @@ struct LoadedSurface {
 };
 
 /// Reads a triangulated surface: GIFTI (any encoding, external data, .gz), FreeSurfer binary
-/// (triangles and quads), VTK legacy and XML polydata, PLY, OBJ, STL (equal corners merged), OFF.
+/// (triangles and quads), VTK legacy and XML polydata, PLY, OBJ, MNI's OBJ (CIVET), STL (equal
+/// corners merged), OFF.
 /// The format is told by content first, then by name.  Polygons are split into triangles, fan-wise.
 ///
 /// Positions come back in scanner RAS mm where the file allows it (see SurfaceSpace).
@@ -100,9 +108,9 @@ void rewriteFreeSurferSurface(const std::filesystem::path& path,
                               const std::filesystem::path& original, const Positions& positions,
                               std::span<const std::int32_t> moved);
 
-/// Writes by the name's extension: .gii, .vtp, .ply (binary, double), .obj, .off (both text that
-/// gives back every double exactly), .stl (binary, float32); FreeSurfer for any other or no
-/// extension.
+/// Writes by the name's extension: .gii, .vtp, .ply (binary, double), .mni.obj, .obj, .off (all
+/// text that gives back every double exactly), .stl (binary, float32); FreeSurfer for any other or
+/// no extension.
 void writeSurface(const std::filesystem::path& path, const TriangleMesh& mesh,
                   const SurfaceMetadata& metadata = {});
 

@@ -43,15 +43,20 @@ void describe(VolumeReadOptions& options, Visitor&& visit) {
         options.frame);
 }
 
+/// VolumeOrigin::placement of a volume whose header does not say where its voxels lie.
+inline constexpr const char* kNotPlaced = "none";
+
 /// Where a volume came from and how its file was understood; goes into the provenance record.
 struct VolumeOrigin {
   std::filesystem::path path;
-  std::string format;           ///< "NIfTI-1", "NIfTI-2", "MGH", "NRRD", "MetaImage", "PNG"
+  std::string format;  ///< "NIfTI-1", "NIfTI-2", "MGH", "MINC 1", ..., "NRRD", "MetaImage", "PNG"
   std::string storedType;       ///< "uint8", "float32", ...
   std::vector<int> storedSize;  ///< as the file has it, all dimensions
   std::string placement;        ///< "sform", "qform", "sform and qform agree", "none", "header"
-  std::optional<int> qformCode = std::nullopt;           ///< NIfTI only
-  std::optional<int> sformCode = std::nullopt;           ///< NIfTI only
+  std::optional<int> qformCode = std::nullopt;  ///< NIfTI only
+  std::optional<int> sformCode = std::nullopt;  ///< NIfTI only
+  double placementsApart = 0;  ///< voxels between qform and sform, where they differ and one of
+                               ///< them was chosen; else 0
   Eigen::Matrix4d affine = Eigen::Matrix4d::Identity();  ///< index to RAS mm that was used
   std::vector<std::string>
       notes;  ///< facts that a user may want to know: defaults, units converted
@@ -63,9 +68,9 @@ struct LoadedVolume {
   VolumeOrigin origin;
 };
 
-/// Reads a file of scalars: NIfTI-1/2 (.nii, .nii.gz, .hdr/.img), MGH/MGZ, NRRD, MetaImage, 8- or
-/// 16-bit grey PNG (2D).  The format is told by content, not by name.  Stored values are scaled by
-/// the header's slope and intercept.
+/// Reads a file of scalars: NIfTI-1/2 (.nii, .nii.gz, .hdr/.img), MGH/MGZ, MINC 1 and 2, NRRD,
+/// MetaImage, 8- or 16-bit grey PNG (2D).  The format is told by content, not by name.  Stored
+/// values are scaled by the header's slope and intercept.
 ///
 /// @return values on a grid in RAS mm, i fastest as in the file; a file of one slice gives a 2D
 /// grid

@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "VolumeFormats.h"
+
+#include "ItkHeaders.h"
+#include "ItkVolume.h"
+#include "MghFormat.h"
+#include "MincFormat.h"
+#include "NiftiFormat.h"
+
+namespace explica::io {
+namespace {
+
+using Path = std::filesystem::path;
+
+StoredVolume readNiftiFile(ByteSource& source, const Path&, const VolumeReadOptions& options,
+                           Extent extent) {
+  return readNifti(source, options.placement, extent);
+}
+
+StoredVolume readMghFile(ByteSource& source, const Path&, const VolumeReadOptions&, Extent extent) {
+  return readMgh(source, extent);
+}
+
+StoredVolume readMincFile(ByteSource& source, const Path& path, const VolumeReadOptions&,
+                          Extent extent) {
+  return readMinc(source, path, extent);
+}
+
+/// ITK opens the file itself.
+template <ItkFormat format>
+StoredVolume readByItk(ByteSource&, const Path& path, const VolumeReadOptions&, Extent extent) {
+  return readWithItk(path, format, extent);
+}
+
+/// Whether a file begins with these bytes.
+template <std::size_t count>
+bool begins(ByteView bytes, const char (&start)[count]) {
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  return text.starts_with(std::string_view(start, count - 1));
+}
+
+bool looksLikeNrrd(ByteView bytes) {
+  return begins(bytes, "NRRD000");
+}
+
+bool looksLikePng(ByteView bytes) {
+  return begins(bytes, "\x89PNG\r\n\x1a\n");
+}
+
+bool looksLikeMetaImage(ByteView bytes) {
+  return begins(bytes, "ObjectType") || begins(bytes, "NDims");
+}
+
+}  // namespace
+
+const std::vector<VolumeFormat>& volumeFormats() {
+  static const std::vector<VolumeFormat> all = {
+      {"NIfTI",
+       looksLikeNifti,
+       readNiftiFile,
+       {{".nii.gz", true}, {".nii", false}},
+       VolumeLayout{.head = niftiHeader}},
+      {"NRRD",
+       looksLikeNrrd,
+       readByItk<ItkFormat::Nrrd>,
+       {{".nrrd", true}},
+       VolumeLayout{.head = nrrdHeader, .componentsTogether = true, .headApart = true}},
+      {"PNG", looksLikePng, readByItk<ItkFormat::Png>},
+      {"MetaImage",
+       looksLikeMetaImage,
+       readByItk<ItkFormat::MetaImage>,
+       {{".mha", false}},
+       VolumeLayout{.head = metaHeader, .componentsTogether = true}},
+      {"MINC", looksLikeMinc, readMincFile},
+      {"MGH",
+       looksLikeMgh,
+       readMghFile,
+       {{".mgz", true}, {".mgh.gz", true}, {".mgh", false}},
+       VolumeLayout{.head = mghHeader, .tail = mghFooter, .bigEndian = true}}};
+  return all;
+}
+
+}  // namespace explica::io
