@@ -14,6 +14,7 @@
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/IO/VolumeFile.h"
+#include "Explica/Provenance/Doubts.h"
 #include "Explica/Segmentation/Atlas.h"
 #include "Explica/Surface/CorticalSurface.h"
 #include "Explica/Surface/CorticalTissue.h"
@@ -697,6 +698,28 @@ void reportImage(Context& context, const surface::CorticalSurfaces& made) {
   }
 }
 
+/// What of the labels is cut, guessed or not known.
+void doubtLabels(Context& context, const surface::TissueFacts& tissue, bool sheet) {
+  const auto count = [](std::int64_t number) { return static_cast<std::size_t>(number); };
+  context.doubt(provenance::kHemisphereCutByGuess, count(tissue.cutContact),
+                "no label parts the hemispheres: white matter was cut at " +
+                    std::to_string(tissue.cutContact) +
+                    " voxel faces where waves from both sides meet; look at the cut");
+  // A sheet is meant to end there, and says which vertices it concerns.
+  context.doubt(provenance::kTissueAtImageBorder, count(tissue.atImageBorder),
+                sheet ? ""
+                      : std::to_string(tissue.atImageBorder) +
+                            " voxels of white and grey matter lie in the image's outermost layer: "
+                            "the surface ends where the image does");
+  std::string unknown;
+  for (const Label label : tissue.unknownLabels) {
+    unknown += (unknown.empty() ? "" : ", ") + std::to_string(label);
+  }
+  context.doubt(provenance::kLabelsUnknown, tissue.unknownLabels.size(),
+                "programs of preset '" + std::string(nameOf(tissue.preset)) + "' use no label " +
+                    unknown + "; taken to lie outside the tissue");
+}
+
 void report(Context& context, const Settings& s, const surface::CorticalTissue& tissue,
             const surface::CorticalSurfaces& made) {
   const bool given = surfacesGiven(s);
@@ -707,6 +730,7 @@ void report(Context& context, const Settings& s, const surface::CorticalTissue& 
     context.result("white_voxels", tissue.whiteVoxels);
     context.result("filled_voxels", tissue.filledVoxels);
     context.result("grey_voxels", tissue.greyVoxels);
+    doubtLabels(context, tissue, made.sheet.open);
   }
   context.result("defects_corrected", made.white.defects.size());
   context.result("voxels_changed", made.white.voxelsChanged);

@@ -15,6 +15,7 @@
 #include "Explica/Harmonic/Annulus.h"
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/IO/VtkFile.h"
+#include "Explica/Provenance/Doubts.h"
 #include "Explica/Ventricle/Pictures.h"
 
 #include <array>
@@ -375,6 +376,10 @@ Termination run(Context& context, const Settings& s) {
   context.result("components", annulus.components);
   context.result("direct_contacts", annulus.directContacts);
   context.result("voxels_left_out", annulus.droppedVoxels);
+  const std::size_t atBorder = harmonic::countAtImageBorder(annulus);
+  context.doubt(provenance::kTissueAtImageBorder, atBorder,
+                std::to_string(atBorder) + " of " + std::to_string(annulus.count()) +
+                    " tissue voxels lie in the image's outermost layer, which may cut the tissue");
   correspondence::MeasurementOptions options = s.measurement;
   options.heart = s.aha;
   const correspondence::Measurement m = measure(context, std::move(annulus), options);

@@ -13,15 +13,18 @@
 namespace explica::testing {
 namespace {
 
-/// Says what is wrong with how a command refused; empty if nothing is.
+/// Says what is wrong with how a command refused; empty if nothing is.  Warnings that came before,
+/// such as that a file states no frame, do not count.
 std::string faultOfRefusal(const CommandResult& result, const std::string& file,
                            const std::vector<std::string>& message) {
   if (result.exitCode != 2) return "exit code " + std::to_string(result.exitCode) + " instead of 2";
-  if (std::count(result.err.begin(), result.err.end(), '\n') != 1) return "not one sentence";
-  if (result.err.rfind("error: explica ", 0) != 0) return "does not start with the command";
-  if (result.err.find(file) == std::string::npos) return "does not name " + file;
+  std::string said = result.err;
+  while (said.rfind("warning: ", 0) == 0) said.erase(0, said.find('\n') + 1);
+  if (std::count(said.begin(), said.end(), '\n') != 1) return "not one sentence";
+  if (said.rfind("error: explica ", 0) != 0) return "does not start with the command";
+  if (said.find(file) == std::string::npos) return "does not name " + file;
   for (const auto& part : message) {
-    if (result.err.find(part) == std::string::npos) return "does not say '" + part + "'";
+    if (said.find(part) == std::string::npos) return "does not say '" + part + "'";
   }
   return "";
 }

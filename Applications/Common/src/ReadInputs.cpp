@@ -5,6 +5,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Provenance/Digest.h"
+#include "Explica/Provenance/Doubts.h"
 #include "Explica/Provenance/Record.h"
 #include "Explica/Segmentation/Plausibility.h"
 
@@ -39,6 +40,13 @@ void record(Context& context, const std::string& name, const std::string& path,
   understood["notes"] = origin.notes;
   context.note(name, understood);
   say(context, path, origin.notes);
+  const bool disagree = origin.placementsApart > 0;
+  context.doubt(provenance::kHeadersDisagree, disagree ? 1 : 0,
+                "'" + path + "': its qform and sform place the voxels differently (by up to " +
+                    std::to_string(origin.placementsApart) + " voxels); the " + origin.placement +
+                    " is used, as chosen");
+  context.doubt(provenance::kPlacementsAssumed, origin.placement == io::kNotPlaced ? 1 : 0,
+                "'" + path + "': its header does not say where the voxels lie; that is assumed");
 }
 
 /// Where a volume lay, by what a record notes of it.
@@ -114,11 +122,15 @@ io::LoadedSurface readSurface(Context& context, const std::string& name, const s
                           {"space", origin.space},
                           {"applied_matrix", rowsOf(origin.applied)},
                           {"notes", origin.notes}});
+  context.doubt(provenance::kFramesNotStated, origin.space == io::kFrameNotStated ? 1 : 0,
+                "'" + path + "': " + std::string(io::kFrameNotStatedNote));
   return loaded;
 }
 
 void sayHowRead(Context& context, const io::SurfaceOrigin& origin) {
-  say(context, origin.path.string(), origin.notes);
+  std::vector<std::string> notes = origin.notes;
+  std::erase(notes, io::kFrameNotStatedNote);  // a warning since it was read
+  say(context, origin.path.string(), notes);
 }
 
 }  // namespace explica::app

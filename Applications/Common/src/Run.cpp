@@ -6,6 +6,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/IO/ItkFormats.h"
+#include "Explica/Provenance/Doubts.h"
 #include "Explica/Provenance/Record.h"
 #include "Explica/Provenance/Software.h"
 #include "Explica/Provenance/Verify.h"
@@ -101,7 +102,8 @@ fs::path Context::input(const fs::path& path, std::string_view role) {
       file.parent = provenance::Parent{found->record["id"],
                                        provenance::digestOf(found->path).sha256, found->path};
     } else {
-      warn(path.string() + " was changed since " + found->path.string() + " recorded it");
+      doubt(provenance::kInputsChanged, 1,
+            path.string() + " was changed since " + found->path.string() + " recorded it");
     }
   }
   inputs.push_back(std::move(file));
@@ -183,6 +185,12 @@ void Context::flag(const Json& flag) {
   state_->plausible = false;
   if (flag.contains("step")) return;  // the step has said it
   warn(flag["message"].get<std::string>());
+}
+
+void Context::doubt(const char* key, std::size_t count, const std::string& sentence) {
+  Json& number = state_->summary[key];
+  number = number.is_null() ? count : number.get<std::size_t>() + count;
+  if (count > 0 && !sentence.empty()) warn(sentence);
 }
 
 const Monitor& Context::monitor() const {
@@ -521,6 +529,7 @@ Outcome execute(Run& run, Console& console) {
   std::mutex warnings;
   state.monitor = monitorOf(run, console, record, warnings);
 
+  if (!declaration.parameters.empty()) context.doubt(provenance::kInputsChanged, 0);
   noteDeclaredInputs(context, declaration);
   recordValues(declaration, record);
   openFolder(run, state);

@@ -393,81 +393,101 @@ VolumeOnDemand<T> onGrid(const Annulus& annulus, T outside, const ValueAt& value
 
 }  // namespace
 
-Annulus annulusFromLabels(const Volume<Label>& labels, const LabelRoles& roles,
-                          const AnnulusOptions& options, const Monitor& monitor) {
-  checkGrid(labels.grid);
-  if (roles.tissue.empty()) throw InvalidInput("no tissue label was given (--tissue)");
-  if (roles.inner.empty()) throw InvalidInput("no inner label was given (--inner)");
+namespace {
 
-  // Role of each label value; labels are few, so a sorted list of pairs serves.
-  std::vector<std::pair<Label, Code>> table;
-  const auto assign = [&](const std::vector<Label>& values, Site site) {
+/// What each label is to the tissue; labels are few, so a list of pairs serves.
+class RoleTable {
+ public:
+  explicit RoleTable(const LabelRoles& roles)
+      // If the outer labels are named, the rest belongs to neither side.
+      : rest_(codeOf(roles.outer.empty() ? Site::Outer : Site::Insulated)) {
+    if (roles.tissue.empty()) throw InvalidInput("no tissue label was given (--tissue)");
+    if (roles.inner.empty()) throw InvalidInput("no inner label was given (--inner)");
+    assign(roles.inner, Site::Inner);
+    assign(roles.tissue, Site::Tissue);
+    assign(roles.insulated, Site::Insulated);
+    assign(roles.outer, Site::Outer);
+  }
+
+  [[nodiscard]] Code roleOf(Label value) const {
+    for (const auto& [other, code] : table_) {
+      if (other == value) return code;
+    }
+    return rest_;
+  }
+
+  /// @throws InvalidInput  a label that is named is not among those present
+  void requirePresent(const std::set<Label>& present) const {
+    std::vector<Label> missing;
+    for (const auto& [value, code] : table_) {
+      if (!present.contains(value)) missing.push_back(value);
+    }
+    if (missing.empty()) return;
+    constexpr std::size_t kMostListed = 40;
+    std::vector<Label> found(present.begin(), present.end());
+    const bool many = found.size() > kMostListed;
+    if (many) found.resize(kMostListed);
+    throw InvalidInput("label " + listed(missing) + " is absent; the file has " + listed(found) +
+                       (many ? ", ..." : ""));
+  }
+
+ private:
+  void assign(const std::vector<Label>& values, Site site) {
     for (const Label value : values) {
-      for (const auto& [other, code] : table) {
+      for (const auto& [other, code] : table_) {
         if (other == value && code != codeOf(site)) {
           throw InvalidInput("label " + std::to_string(value) +
                              " is given two roles; each label has one");
         }
       }
-      table.emplace_back(value, codeOf(site));
+      table_.emplace_back(value, codeOf(site));
     }
-  };
-  assign(roles.inner, Site::Inner);
-  assign(roles.tissue, Site::Tissue);
-  assign(roles.insulated, Site::Insulated);
-  assign(roles.outer, Site::Outer);
-  // If the outer labels are named, the rest belongs to neither side.
-  const Code rest = codeOf(roles.outer.empty() ? Site::Outer : Site::Insulated);
-  const auto roleOf = [&](Label value) {
-    for (const auto& [other, code] : table) {
-      if (other == value) return code;
-    }
-    return rest;
-  };
+  }
 
-  // Which labels exist: collect per slice.
+  Code rest_;
+  std::vector<std::pair<Label, Code>> table_;
+};
+
+std::set<Label> labelsIn(const Volume<Label>& labels) {
   const Grid& grid = labels.grid;
   const std::size_t sliceSize = static_cast<std::size_t>(grid.size[0]) * grid.size[1];
-  std::vector<std::set<Label>> presentBySlice(grid.size[2]);
+  std::vector<std::set<Label>> bySlice(grid.size[2]);
   parallelFor(grid.size[2], 1, [&](std::size_t k) {
     Label last = labels[k * sliceSize];
-    presentBySlice[k].insert(last);
+    bySlice[k].insert(last);
     for (std::size_t v = k * sliceSize; v < (k + 1) * sliceSize; ++v) {
       if (labels[v] == last) continue;
       last = labels[v];
-      presentBySlice[k].insert(last);
+      bySlice[k].insert(last);
     }
   });
   std::set<Label> present;
-  for (const auto& slice : presentBySlice) present.insert(slice.begin(), slice.end());
-  std::vector<Label> missing;
-  for (const auto& [value, code] : table) {
-    if (!present.contains(value)) missing.push_back(value);
-  }
-  if (!missing.empty()) {
-    std::vector<Label> found(present.begin(), present.end());
-    const bool many = found.size() > 40;
-    if (many) found.resize(40);
-    throw InvalidInput("label " + listed(missing) + " is absent; the file has " + listed(found) +
-                       (many ? ", ..." : ""));
-  }
+  for (const auto& slice : bySlice) present.insert(slice.begin(), slice.end());
+  return present;
+}
 
-  const Box box = boxAround(grid, kLabelMargin, [&](std::size_t row, int& low, int& high) {
+Box boxAroundTissue(const Volume<Label>& labels, const RoleTable& roles) {
+  const Grid& grid = labels.grid;
+  return boxAround(grid, kLabelMargin, [&](std::size_t row, int& low, int& high) {
     const Label* line = labels.data.data() + row * grid.size[0];
     Label last = line[0];
-    bool tissue = roleOf(last) == kTissueCode;
+    bool tissue = roles.roleOf(last) == kTissueCode;
     low = grid.size[0];
     for (int i = 0; i < grid.size[0]; ++i) {
       if (line[i] != last) {
         last = line[i];
-        tissue = roleOf(last) == kTissueCode;
+        tissue = roles.roleOf(last) == kTissueCode;
       }
       if (!tissue) continue;
       low = std::min(low, i);
       high = i;
     }
   });
+}
 
+/// Roles of the box's voxels; beyond the image they are insulated.
+std::vector<Code> sitesIn(const Box& box, const Volume<Label>& labels, const RoleTable& roles) {
+  const Grid& grid = labels.grid;
   std::vector<Code> sites(box.count(), codeOf(Site::Insulated));
   parallelFor(box.size[2], 1, [&](std::size_t kk) {
     const int k = static_cast<int>(kk);
@@ -475,35 +495,51 @@ Annulus annulusFromLabels(const Volume<Label>& labels, const LabelRoles& roles,
       const int gj = j + box.first[1], gk = k + box.first[2];
       if (gj < 0 || gk < 0 || gj >= grid.size[1] || gk >= grid.size[2]) continue;
       Label last = 0;
-      Code code = roleOf(last);
+      Code code = roles.roleOf(last);
       for (int i = 0; i < box.size[0]; ++i) {
         const int gi = i + box.first[0];
         if (gi < 0 || gi >= grid.size[0]) continue;
         const Label value = labels(gi, gj, gk);
         if (value != last) {
           last = value;
-          code = roleOf(value);
+          code = roles.roleOf(value);
         }
         sites[box.linear(i, j, k)] = code;
       }
     }
   });
+  return sites;
+}
 
+/// The inner boundary of sites, or the outer one.
+LabelBoundary boundaryOf(const std::vector<Code>& sites, const Box& box, bool outer, int axes) {
+  std::vector<std::uint8_t> side(sites.size());
+  parallelFor(side.size(), 1 << 16, [&](std::size_t p) {
+    const auto site = static_cast<Site>(sites[p]);
+    if (site == Site::Insulated) {
+      side[p] = 255;
+    } else {
+      side[p] = site == Site::Inner || (outer && site == Site::Tissue) ? 1 : 0;
+    }
+  });
+  return LabelBoundary(side, box.size, axes);
+}
+
+}  // namespace
+
+Annulus annulusFromLabels(const Volume<Label>& labels, const LabelRoles& roles,
+                          const AnnulusOptions& options, const Monitor& monitor) {
+  checkGrid(labels.grid);
+  const RoleTable table(roles);
+  table.requirePresent(labelsIn(labels));
+  const Grid& grid = labels.grid;
+  const Box box = boxAroundTissue(labels, table);
+  std::vector<Code> sites = sitesIn(box, labels, table);
   std::optional<LabelBoundary> innerBoundary, outerBoundary;
   if (options.boundary != BoundaryModel::Staircase) {
     const int axes = options.perSlice ? 2 : grid.dimension();
-    std::vector<std::uint8_t> side(sites.size());
-    for (const bool outer : {false, true}) {
-      parallelFor(side.size(), 1 << 16, [&](std::size_t p) {
-        const auto site = static_cast<Site>(sites[p]);
-        if (site == Site::Insulated) {
-          side[p] = 255;
-        } else {
-          side[p] = site == Site::Inner || (outer && site == Site::Tissue) ? 1 : 0;
-        }
-      });
-      (outer ? outerBoundary : innerBoundary).emplace(side, box.size, axes);
-    }
+    innerBoundary.emplace(boundaryOf(sites, box, false, axes));
+    outerBoundary.emplace(boundaryOf(sites, box, true, axes));
   }
   const std::array<int, 3> strides = {1, box.size[0], box.size[0] * box.size[1]};
   const auto placeOnLink = [&](std::int32_t p, const std::array<int, 3>&, int d, bool inner) {
@@ -682,6 +718,21 @@ Annulus withCuts(const Annulus& annulus, const std::vector<Cut>& cuts) {
     result.fractions[result.irregular(result.numberAt[q])][2 * cut.axis] = static_cast<float>(rest);
   }
   return result;
+}
+
+std::size_t countAtImageBorder(const Annulus& annulus) {
+  const int axes = annulus.planar ? 2 : 3;
+  std::size_t count = 0;
+  for (std::int32_t n = 0; n < static_cast<std::int32_t>(annulus.count()); ++n) {
+    const std::array<int, 3> s = annulus.boxSubscripts(n);
+    bool atBorder = false;
+    for (int a = 0; a < axes; ++a) {
+      const int at = s[a] + annulus.first[a], last = annulus.grid.size[a] - 1;
+      atBorder = atBorder || (last > 0 && (at == 0 || at == last));
+    }
+    count += atBorder;
+  }
+  return count;
 }
 
 VolumeOnDemand<float> spread(const Annulus& annulus, std::vector<double> values, float elsewhere,

@@ -4,6 +4,7 @@
 #include "Explica/Study/StudyTable.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Provenance/Doubts.h"
 #include "Explica/Provenance/Json.h"
 
 #include <algorithm>
@@ -41,6 +42,9 @@ constexpr const char* kFirstColumns[] = {"surface.thickness_mean",
                                          "unfold.self_intersections_final",
                                          "unfold.iterations",
                                          "unfold.stop_reason"};
+
+/// Steps whose numbers make a row.
+constexpr const char* kSteps[] = {"segment", "thickness", "surface", "unfold"};
 
 /// Numbers that should be alike in all rows.
 constexpr const char* kComparedColumns[] = {"thickness.thickness_mean_columns",
@@ -132,7 +136,7 @@ StudyRow rowOf(const fs::path& out, const fs::path& run) {
   }
   try {
     addState(row, run);
-    for (const char* step : {"segment", "thickness", "surface", "unfold"}) {
+    for (const char* step : kSteps) {
       const fs::path summary = run / step / "summary.json";
       if (!fs::exists(summary)) continue;
       const Json numbers = provenance::readJson(summary);
@@ -168,6 +172,16 @@ double medianOf(std::vector<double> values) {
   std::nth_element(values.begin(), middle, values.end());
   if (values.size() % 2 == 1) return *middle;
   return 0.5 * (*middle + *std::max_element(values.begin(), middle));
+}
+
+/// What of a row's inputs was cut, guessed or contradicted.
+void flagDoubts(const StudyRow& row, std::vector<StudyFlag>& flags) {
+  for (const char* step : kSteps) {
+    for (const provenance::Doubt& doubt : provenance::kDoubts) {
+      const std::string column = std::string(step) + "." + doubt.key;
+      if (numberIn(row, column).value_or(0) > 0) flags.push_back({column, doubt.meaning});
+    }
+  }
 }
 
 /// Marks the rows whose number is far from the others'.
@@ -262,6 +276,7 @@ std::vector<std::vector<StudyFlag>> flagsOf(const std::vector<StudyRow>& rows) {
         number("unfold.self_intersections_initial").value_or(0)) {
       flags[n].push_back({"unfold.self_intersections_final", "the patch meets itself"});
     }
+    flagDoubts(row, flags[n]);
   }
   for (const auto& [region, group] : groups) {
     for (const std::string& column : columnsOf(rows)) {

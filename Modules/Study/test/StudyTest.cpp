@@ -3,6 +3,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/WholeFile.h"
+#include "Explica/Provenance/Doubts.h"
 #include "Explica/Study/BidsDataset.h"
 #include "Explica/Study/Derivatives.h"
 #include "Explica/Study/StudyPage.h"
@@ -234,6 +235,23 @@ TEST_F(Study, OutliersAndBadSurfacesAreFlagged) {
   rows.resize(7);  // too few to call one of them far
   rows[6].values["surface.thickness_mean"] = "4.5";
   EXPECT_TRUE(flagsOf(rows)[6].empty());
+}
+
+TEST_F(Study, WhatIsCutGuessedOrContradictedIsAColumnAndAFlag) {
+  for (const provenance::Doubt& doubt : provenance::kDoubts) {
+    const std::string column = std::string("surface.") + doubt.key;
+    std::vector<StudyRow> rows(2);
+    for (StudyRow& row : rows) row.state = "done";
+    rows[0].values[column] = "0";
+    rows[1].values[column] = "12";
+    const auto flags = flagsOf(rows);
+    EXPECT_TRUE(flags[0].empty()) << column;
+    ASSERT_EQ(flags[1].size(), 1u) << column;
+    EXPECT_EQ(flags[1][0].column, column);
+    EXPECT_EQ(flags[1][0].reason, doubt.meaning);
+    EXPECT_NE(tableText(rows).find("\t" + column + "\n"), std::string::npos);
+    EXPECT_NE(tableText(rows).find("\t12\n"), std::string::npos);
+  }
 }
 
 TEST_F(Study, PageEscapesAndMarks) {

@@ -288,6 +288,7 @@ TissueMasks masksFromLabels(const Volume<Label>& labels, const TissueOptions& op
     masks.preset = options.white.empty() ? guessPreset(labels, histogram) : LabelPreset::None;
   }
   Roles roles = rolesOf(masks.preset, histogram, options);
+  if (options.white.empty()) masks.unknownLabels = unknownTo(masks.preset, histogram);
   takeNamed(options, roles);
   checkRoles(histogram, options, roles);
   masks.structure = structureOf(roles, options);
@@ -316,6 +317,7 @@ TissueMasks masksFromLabels(const Volume<Label>& labels, const TissueOptions& op
                        std::to_string(masks.whiteVoxels) + " voxels)");
   }
   masks.greyVoxels = countIn(masks.grey);
+  masks.atImageBorder = countOnEdge(masks.white) + countOnEdge(masks.grey);
   for (std::size_t v = 0; v < masks.white.size(); ++v) {
     if (masks.white[v] || masks.grey[v]) masks.insulated[v] = 0;
   }
@@ -364,6 +366,7 @@ CorticalTissue tissueFromShares(const Volume<float>& white, const Volume<float>&
   // Where the caller says what was cut off, the shares hold one hemisphere already.
   if (options.hemisphere && insulated.size() == 0) {
     const Mask sides = splitHemispheres(inner, monitor);
+    result.cutContact = contactOf(sides);
     Mask reached = sides;
     spreadLabels(all, reached);
     const std::uint8_t side = *options.hemisphere == Side::Left ? 1 : 2;
@@ -381,6 +384,7 @@ CorticalTissue tissueFromShares(const Volume<float>& white, const Volume<float>&
     }
   }
   if (!options.hemisphere) warnOfTwoHemispheres(inner, monitor);
+  result.atImageBorder = countOnEdge(all);
   requireInside(inner, options.closeEdges, monitor);
   constexpr int kMargin = 3;
   const VoxelBox box = boundingBox(all, kMargin);

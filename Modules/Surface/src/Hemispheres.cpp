@@ -129,16 +129,9 @@ void warnOfTwoHemispheres(const Mask& white, const Monitor& monitor) {
                " right of the plane with least white matter); --hemisphere L or R takes one");
 }
 
-std::int64_t takeHemisphere(Side side, TissueMasks& masks, const Monitor& monitor) {
-  Mask& white = masks.white;
-  const Mask sides = splitHemispheres(white, monitor);
-  Mask all = sides;
-  Mask through(white.grid);
-  for (std::size_t v = 0; v < through.size(); ++v) through[v] = white[v] || masks.grey[v];
-  spreadLabels(through, all);
-  const std::uint8_t own = side == Side::Left ? 1 : 2;
+std::int64_t contactOf(const Mask& sides) {
   std::int64_t contact = 0;
-  const auto& n = white.grid.size;
+  const auto& n = sides.grid.size;
   for (int k = 0; k + 1 < n[2]; ++k) {
     for (int j = 0; j + 1 < n[1]; ++j) {
       for (int i = 0; i + 1 < n[0]; ++i) {
@@ -148,6 +141,17 @@ std::int64_t takeHemisphere(Side side, TissueMasks& masks, const Monitor& monito
       }
     }
   }
+  return contact;
+}
+
+std::int64_t takeHemisphere(Side side, TissueMasks& masks, const Monitor& monitor) {
+  Mask& white = masks.white;
+  const Mask sides = splitHemispheres(white, monitor);
+  Mask all = sides;
+  Mask through(white.grid);
+  for (std::size_t v = 0; v < through.size(); ++v) through[v] = white[v] || masks.grey[v];
+  spreadLabels(through, all);
+  const std::uint8_t own = side == Side::Left ? 1 : 2;
   for (std::size_t v = 0; v < white.size(); ++v) {
     if (white[v] && sides[v] != own) {
       white[v] = 0;
@@ -155,7 +159,7 @@ std::int64_t takeHemisphere(Side side, TissueMasks& masks, const Monitor& monito
     }
     if (masks.grey[v] && all[v] != own) masks.grey[v] = 0;
   }
-  return contact;
+  return contactOf(sides);
 }
 
 }  // namespace explica::surface

@@ -13,6 +13,9 @@ namespace explica::surface {
 /// One label for the whole brain is legal, and seldom what was meant: says what was found.
 void warnOfTwoHemispheres(const Mask& white, const Monitor& monitor);
 
+/// Voxel faces between the two sides (1 and 2) of a cut.
+[[nodiscard]] std::int64_t contactOf(const Mask& sides);
+
 /// Leaves one hemisphere of labels that hold both; white matter beyond the cut is insulated.
 /// @return voxel faces between the hemispheres where white matter was cut
 /// @throws InvalidInput  white matter does not hold two hemispheres

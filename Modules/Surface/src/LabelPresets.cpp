@@ -31,8 +31,16 @@ struct Row {
   Hemisphere right = {};
   Ranges unsided = {};
   Ranges insulated = {};
+  Ranges outside;  ///< what its programs use besides
   bool borderLines = false;
 };
+
+/// FreeSurfer's colour table beside the cerebrum: structures of aseg with the numbers of old
+/// versions, air and skull (130, 165), brain stem and vermis (170 to 175), callosum as one (192),
+/// what lies around the brain (257 to 259), cerebellar lobules (600 to 628), limbic structures (801
+/// to 870).
+const Ranges kFreeSurferOutside = {{1, 99}, 130,        165,        {170, 175},
+                                   192,     {250, 260}, {600, 628}, {801, 870}};
 
 /// The presets, one table for all programs.
 const std::vector<Row>& rows() {
@@ -51,22 +59,24 @@ const std::vector<Row>& rows() {
         {42, {2000, 2035}, {12100, 12175}, {2100, 2181}},
         {43, 44, {48, 52}, 53, 54, 58, 60, 62, 63, 79, 82}},
        {72, 77, 80, {250, 255}},
-       {16, {173, 175}}},
+       {16, {173, 175}},
+       kFreeSurferOutside},
       // FreeSurfer's and the Human Connectome Project's ribbon, filled by its program.
       {LabelPreset::Ribbon,
        {{2, {3000, 3035}, 5001}, {3, {1000, 1035}, {11100, 11175}}, {}},
        {{41, {4000, 4035}, 5002}, {42, {2000, 2035}, {12100, 12175}}, {}},
        {},
-       {16}},
+       {16},
+       kFreeSurferOutside},
       // Fluid, grey, white, and a cut where `explica segment` makes one; FAST, SPM, CAT12, CIVET
       // and iBEAT number the classes alike.
-      {LabelPreset::ThreeClass, {{3}, {2}, {}}, {}, {}, {4}},
+      {LabelPreset::ThreeClass, {{3}, {2}, {}}, {}, {}, {4}, {1}},
       // Six classes of antsCorticalThickness and Atropos: 4 deep grey matter, 5 brain stem, 6
       // cerebellum.
-      {LabelPreset::Ants, {{3}, {2}, {4}}, {}, {}, {5}},
+      {LabelPreset::Ants, {{3}, {2}, {4}}, {}, {}, {5}, {1, 6}},
       // The nine classes of dHCP (Draw-EM): 5 ventricles, 7 deep grey matter, 8 brain stem, 9
       // hippocampus and amygdala.
-      {LabelPreset::Dhcp, {{3}, {2}, {5, 7, 9}}, {}, {}, {8}},
+      {LabelPreset::Dhcp, {{3}, {2}, {5, 7, 9}}, {}, {}, {8}, {1, 4, 6}},
       // The 87 structures of dHCP (Draw-EM): up to 16 and in white matter up to 62 odd numbers are
       // left, beyond even ones are right but for the ventricles; 48 callosum, 19 brain stem.
       {LabelPreset::Dhcp87,
@@ -77,13 +87,14 @@ const std::vector<Row>& rows() {
         {6, 8, 10, 12, 14, 16, 20, 22, 24, 26, 28, 30, 32, 34, 36, 38},
         {2, 4, 40, 42, 44, 46, 50, 86}},
        {48},
-       {19}},
+       {19},
+       {{17, 18}, {83, 85}}},
       // NIMH Macaque Template, version 2: fluid, deep grey matter, cortex, white matter, vessels.
-      {LabelPreset::Nmt, {{4}, {3}, {2}}, {}, {}, {}},
+      {LabelPreset::Nmt, {{4}, {3}, {2}}, {}, {}, {}, {1, 5}},
       // LayNii's rim: 1 border line to fluid, 2 border line to white matter, 3 grey matter.
-      {LabelPreset::LayNii, {{2}, {3}, {}}, {}, {}, {0}, true},
+      {LabelPreset::LayNii, {{2}, {3}, {}}, {}, {}, {0}, {1}, true},
       // FreeSurfer's filled; wm has white matter only, from 5 on.
-      {LabelPreset::Wm, {{255}, {}, {}}, {{127}, {}, {}}, {}, {}}};
+      {LabelPreset::Wm, {{255}, {}, {}}, {{127}, {}, {}}, {}, {}, {{1, 255}}}};
   return table;
 }
 
@@ -191,6 +202,23 @@ PresetLabels labelsOf(LabelPreset preset, const Histogram& histogram) {
   labels.sided = !row.right.white.empty();
   labels.borderLines = row.borderLines;
   return labels;
+}
+
+Labels unknownTo(LabelPreset preset, const Histogram& histogram) {
+  if (preset == LabelPreset::None) return {};
+  const Row& row = rowOf(preset);
+  std::set<Label> known = {0};
+  for (const Ranges* ranges :
+       {&row.left.white, &row.left.grey, &row.left.fill, &row.right.white, &row.right.grey,
+        &row.right.fill, &row.unsided, &row.insulated, &row.outside}) {
+    const Labels of = present(*ranges, histogram);
+    known.insert(of.begin(), of.end());
+  }
+  Labels unknown;
+  for (const auto& [label, count] : histogram) {
+    if (!known.contains(label)) unknown.push_back(label);
+  }
+  return unknown;
 }
 
 LabelPreset guessPreset(const Volume<Label>& labels, const Histogram& histogram) {

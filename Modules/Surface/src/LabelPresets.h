@@ -45,6 +45,9 @@ struct PresetLabels {
 /// first that the preset has, so that a message can name it.
 [[nodiscard]] PresetLabels labelsOf(LabelPreset preset, const Histogram& histogram);
 
+/// Labels of a volume that the preset's programs do not use; of no preset none.
+[[nodiscard]] Labels unknownTo(LabelPreset preset, const Histogram& histogram);
+
 /// Tells by the values that are there, and where they leave it open by what lies beside what, which
 /// program wrote a label volume.
 /// @throws InvalidInput  no preset fits; lists the labels found

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
+#include "Explica/Provenance/Doubts.h"
 #include "ReportParts.h"
 
 #include <algorithm>
@@ -220,6 +221,18 @@ std::vector<ReportFlag> ownFlags(const StepFolder& step) {
   return flags;
 }
 
+/// What of the inputs was cut, guessed or contradicted.
+std::vector<ReportFlag> doubtFlags(const StepFolder& step) {
+  std::vector<ReportFlag> flags;
+  for (const provenance::Doubt& doubt : provenance::kDoubts) {
+    const auto count = step.number(doubt.key);
+    if (!count || *count == 0) continue;
+    flags.push_back({FlagLevel::Notice, doubt.what + sideWord(step) + ":",
+                     readable(*count) + " " + doubt.meaning + " (" + step.command + ")", ""});
+  }
+  return flags;
+}
+
 std::vector<ReportFlag> flagsOf(const StepFolder& step) {
   if (step.command == "surface") return surfaceFlags(step);
   if (step.command == "thickness") return thicknessFlags(step);
@@ -247,6 +260,7 @@ void flagSteps(ResultFolder& results) {
   }
   for (const StepFolder& step : results.steps()) {
     results.attempt("Flags of " + titleOf(step.name), [&] {
+      for (ReportFlag& flag : doubtFlags(step)) content.flags.push_back(std::move(flag));
       for (ReportFlag& flag : ownFlags(step)) content.flags.push_back(std::move(flag));
       for (ReportFlag& flag : flagsOf(step)) content.flags.push_back(std::move(flag));
     });

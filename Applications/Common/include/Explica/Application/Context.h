@@ -81,6 +81,11 @@ class Context {
   /// `step`.
   void flag(const nlohmann::ordered_json& flag);
 
+  /// Something that is cut, guessed or contradicted (provenance::kDoubts): adds to the number under
+  /// that key of summary.json, which is there from the first call on, and warns if `count` is not 0
+  /// and there is a sentence.
+  void doubt(const char* key, std::size_t count, const std::string& sentence = {});
+
   /// Progress, warnings and stop requests, to hand to long work.
   [[nodiscard]] const Monitor& monitor() const;
 

@@ -99,6 +99,10 @@ struct Annulus {
   }
 };
 
+/// Tissue voxels in the outermost layer of the image, along axes with more than one voxel; of
+/// planar tissue within its slices.
+[[nodiscard]] std::size_t countAtImageBorder(const Annulus& annulus);
+
 /// Which labels play which part.
 struct LabelRoles {
   std::vector<Label> inner;      ///< enclosed region

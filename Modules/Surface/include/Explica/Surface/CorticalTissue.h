@@ -53,7 +53,9 @@ struct TissueFacts {
   std::int64_t whiteVoxels = 0;            ///< labelled white
   std::int64_t filledVoxels = 0;           ///< joined to it
   std::int64_t greyVoxels = 0;
-  std::int64_t cutContact = 0;  ///< voxel faces between the hemispheres where white was cut
+  std::int64_t cutContact = 0;       ///< voxel faces between the hemispheres where white was cut
+  std::int64_t atImageBorder = 0;    ///< white and grey voxels in the image's outermost layer
+  std::vector<Label> unknownLabels;  ///< that the preset's programs do not use; ascending
 };
 
 /// Voxels of one cortical ribbon; what is none of the three lies outside.

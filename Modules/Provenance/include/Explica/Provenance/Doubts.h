@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+
+namespace explica::provenance {
+
+/// Something about an input that is cut, guessed or contradicted, so that results hang on it.
+/// Commands that can meet it state how often they did, under this key of summary.json; reports and
+/// study tables show those that are not 0.
+struct Doubt {
+  const char* key;
+  const char* what;     ///< heading of a report's line
+  const char* meaning;  ///< what the number counts
+};
+
+inline constexpr const char* kTissueAtImageBorder = "tissue_at_image_border";
+inline constexpr const char* kHemisphereCutByGuess = "hemisphere_cut_by_guess";
+inline constexpr const char* kLabelsUnknown = "labels_unknown";
+inline constexpr const char* kHeadersDisagree = "headers_disagree";
+inline constexpr const char* kPlacementsAssumed = "placements_assumed";
+inline constexpr const char* kFramesNotStated = "frames_not_stated";
+inline constexpr const char* kInputsChanged = "inputs_changed";
+
+inline constexpr std::array kDoubts = {
+    Doubt{kTissueAtImageBorder, "Tissue at the image's border",
+          "voxels of tissue in the outermost layer of the image, which may cut it off"},
+    Doubt{kHemisphereCutByGuess, "Hemispheres parted by a guess",
+          "voxel faces of white matter along a cut that no label draws"},
+    Doubt{kLabelsUnknown, "Labels unknown",
+          "labels that programs of this preset do not use, taken to lie outside the tissue"},
+    Doubt{kHeadersDisagree, "Header disagrees with itself",
+          "volumes whose qform and sform place the voxels differently, one chosen by --xform"},
+    Doubt{kPlacementsAssumed, "Placement assumed",
+          "volumes whose header does not say where the voxels lie"},
+    Doubt{
+        kFramesNotStated, "Frame of a surface not stated",
+        "surfaces whose file does not say in which frame its coordinates are, used as they stand"},
+    Doubt{kInputsChanged, "Input changed since it was made",
+          "files that differ from what the record beside them says was written"}};
+
+}  // namespace explica::provenance
