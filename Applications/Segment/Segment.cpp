@@ -280,6 +280,8 @@ Head readHead(Context& context, Judge& judge, const Settings& s,
 /// What a segmentation of a T1 cannot be.
 void judgeTissue(Context& context, Judge& judge, const segmentation::TissueSegmentation& tissue,
                  double brainShare) {
+  // Classes that were stopped on the way are marked so; they say nothing of the image.
+  if (tissue.termination == Termination::Interrupted) return;
   const double contrast = segmentation::rimContrast(tissue.labels);
   context.result("rim_contrast", contrast);
   judge.require("contrast", contrast);

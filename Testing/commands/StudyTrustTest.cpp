@@ -3,16 +3,15 @@
 // What a study leaves when it is killed, when the disk is full, when inputs are bad or when two
 // runs want the same folder.
 
-#include "Explica/Provenance/Digest.h"
 #include "Explica/Testing/KillMoments.h"
+#include "Explica/Testing/SmallDisk.h"
+#include "Explica/Testing/WholeFiles.h"
 #include "SmallStudy.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>
-#include <sys/mount.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
 #include <thread>
 
@@ -20,45 +19,6 @@ namespace explica::testing {
 namespace {
 
 namespace fs = std::filesystem;
-using Hashes = std::map<std::string, std::string>;
-
-/// Names of files that one has and the other has not, or with other content.
-std::vector<std::string> differences(const Hashes& a, const Hashes& b) {
-  std::vector<std::string> names;
-  for (const auto& [name, hash] : a) {
-    const auto other = b.find(name);
-    if (other == b.end() || other->second != hash) names.push_back(name);
-  }
-  for (const auto& [name, hash] : b) {
-    if (!a.count(name)) names.push_back(name);
-  }
-  return names;
-}
-
-/// Final files that are not what an undisturbed run writes; remains of the interruption (hidden
-/// names) are no final files.
-std::vector<std::string> damagedFiles(const fs::path& out, const Hashes& undisturbed) {
-  std::vector<std::string> damaged;
-  if (!fs::exists(out)) return damaged;
-  for (const auto& entry : fs::recursive_directory_iterator(out)) {
-    const fs::path name = entry.path().lexically_relative(out);
-    const auto hidden = [](const fs::path& part) { return part.string().rfind('.', 0) == 0; };
-    if (!entry.is_regular_file() || std::any_of(name.begin(), name.end(), hidden)) continue;
-    const auto whole = undisturbed.find(name.string());
-    if (whole != undisturbed.end()) {
-      if (provenance::digestOf(entry.path()).sha256 != whole->second) damaged.push_back(name);
-    } else if (name.extension() == ".json") {
-      try {
-        (void)readJson(entry.path());
-      } catch (const std::exception&) {
-        damaged.push_back(name);
-      }
-    } else if (name.filename() == "report.html") {
-      if (readText(entry.path()).find("</html>") == std::string::npos) damaged.push_back(name);
-    }
-  }
-  return damaged;
-}
 
 TEST(StudyTrust, AKillAtAnyMomentLeavesWholeFilesAndTheRerunGivesTheSameBytes) {
   const TemporaryFolder folder;
@@ -85,28 +45,6 @@ TEST(StudyTrust, AKillAtAnyMomentLeavesWholeFilesAndTheRerunGivesTheSameBytes) {
     fs::remove_all(out);
   }
 }
-
-/// A small file system of its own, while this object lives.
-class SmallDisk {
- public:
-  SmallDisk(fs::path place, const std::string& size) : place_(std::move(place)) {
-    fs::create_directories(place_);
-    mounted_ = mount("tmpfs", place_.c_str(), "tmpfs", 0, ("size=" + size).c_str()) == 0;
-  }
-  ~SmallDisk() {
-    if (mounted_) umount2(place_.c_str(), MNT_DETACH);
-  }
-  SmallDisk(const SmallDisk&) = delete;
-  SmallDisk& operator=(const SmallDisk&) = delete;
-  [[nodiscard]] bool mounted() const { return mounted_; }
-  void resize(const std::string& size) const {
-    ASSERT_EQ(mount("tmpfs", place_.c_str(), "tmpfs", MS_REMOUNT, ("size=" + size).c_str()), 0);
-  }
-
- private:
-  fs::path place_;
-  bool mounted_ = false;
-};
 
 TEST(StudyTrust, AFullDiskLeavesWholeFilesAndMoreRoomGivesTheSameBytes) {
   const TemporaryFolder folder;

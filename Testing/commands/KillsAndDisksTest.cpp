@@ -1,0 +1,127 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+// What every command that writes a folder leaves when it is killed, asked to end, or when the disk
+// fills up while it writes; on one quick run of each.
+
+#include "Explica/Testing/KillMoments.h"
+#include "Explica/Testing/SmallDisk.h"
+#include "Explica/Testing/WholeFiles.h"
+#include "QuickRuns.h"
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+
+namespace explica::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+class KillsAndDisks : public ::testing::TestWithParam<QuickRun> {
+ protected:
+  void SetUp() override {
+    for (const auto& line : GetParam().before) {
+      const auto made = explica(filled(line, folder_));
+      ASSERT_TRUE(made.exitCode == 0 || made.exitCode == 3) << made;
+    }
+    if (GetParam().prepare) GetParam().prepare(folder_);
+    words_ = filled(GetParam().words, folder_) + std::vector<std::string>{"--force"};
+    const auto whole = explica(into(folder_ / "undisturbed"));
+    ASSERT_TRUE(whole.exitCode == 0 || whole.exitCode == 3) << whole;
+    expected_ = stableHashes(folder_ / "undisturbed");
+    exitCode_ = whole.exitCode;
+    ASSERT_FALSE(expected_.empty());
+  }
+
+  [[nodiscard]] std::vector<std::string> into(const std::string& out) const {
+    return words_ + std::vector<std::string>{"--out", out};
+  }
+
+  void expectTheSameBytesIn(const std::string& out) const {
+    const CommandResult again = explica(into(out));
+    ASSERT_EQ(again.exitCode, exitCode_) << again;
+    ASSERT_EQ(differences(stableHashes(out), expected_), std::vector<std::string>());
+  }
+
+  TemporaryFolder folder_;
+  std::vector<std::string> words_;
+  Hashes expected_;
+  int exitCode_ = -1;
+};
+
+TEST_P(KillsAndDisks, AKillLeavesWholeFilesAndTheRerunGivesTheSameBytes) {
+  constexpr int kKills = 5;
+  const auto before = folder_.entries();
+  KillMoments moments(20261122);
+  int killed = 0;
+  for (int run = 0; killed < kKills; ++run) {
+    SCOPED_TRACE("run " + std::to_string(run));
+    ASSERT_LT(run, 10 * kKills) << "only " << killed << " runs were killed before their end";
+    // A fresh folder, and one that is there: results appear in two different ways.
+    const std::string out = folder_ / (run % 2 ? "fresh" : "there");
+    if (run % 2 == 0) fs::create_directories(out);
+    if (moments.kill(into(out))) {
+      ++killed;
+      ASSERT_EQ(damagedFiles(out, expected_), std::vector<std::string>());
+    }
+    expectTheSameBytesIn(out);
+    fs::remove_all(out);
+  }
+  EXPECT_EQ(folder_.entries(), before);
+}
+
+TEST_P(KillsAndDisks, ARequestToEndLeavesAVerifiedFolderOrNone) {
+  CommandSetting setting;
+  setting.signal = SIGTERM;
+  for (const double seconds : {0.0, 0.03, 0.1, 0.3}) {
+    SCOPED_TRACE(seconds);
+    setting.signalAfter = seconds;
+    const std::string out = folder_ / "out";
+    const CommandResult ended = explica(into(out), setting);
+    // A signal that comes before the program listens ends it as the system does.
+    const bool before = ended.exitCode == 128 + SIGTERM;
+    EXPECT_TRUE(before || ended.exitCode == 0 || ended.exitCode == 3) << ended;
+    if (fs::exists(out)) {
+      EXPECT_EQ(explica({"verify", out}).exitCode, 0);
+    } else {
+      EXPECT_TRUE(before) << ended;
+    }
+    expectTheSameBytesIn(out);
+    fs::remove_all(out);
+  }
+}
+
+/// Room that the files of a folder take, in kB.
+long kilobytesOf(const fs::path& folder) {
+  constexpr long kPage = 4;  // kB
+  long sum = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.is_regular_file()) {
+      sum += kPage * (static_cast<long>(entry.file_size()) / (1024 * kPage) + 1);
+    }
+  }
+  return sum;
+}
+
+TEST_P(KillsAndDisks, AFullDiskLeavesWholeFilesAndMoreRoomGivesTheSameBytes) {
+  const long needed = kilobytesOf(folder_ / "undisturbed");
+  for (const long eighths : {1, 7}) {
+    const long size = std::max(8L, needed * eighths / 8 / 4 * 4);
+    SCOPED_TRACE(std::to_string(size) + " of " + std::to_string(needed) + " kB");
+    const SmallDisk disk(folder_ / "disk", std::to_string(size) + "k");
+    if (!disk.mounted()) GTEST_SKIP() << "skipped: this user may not mount a small file system";
+    const std::string out = folder_ / "disk/out";
+    const CommandResult full = explica(into(out));
+    EXPECT_EQ(full.exitCode, 4) << full;
+    EXPECT_NE(full.err.find("o space left on"), std::string::npos) << full;
+    EXPECT_EQ(damagedFiles(out, expected_), std::vector<std::string>());
+    disk.resize("100m");
+    expectTheSameBytesIn(out);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Quick, KillsAndDisks, ::testing::ValuesIn(quickRuns()),
+                         [](const auto& row) { return row.param.name; });
+
+}  // namespace
+}  // namespace explica::testing
