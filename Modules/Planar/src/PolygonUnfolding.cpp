@@ -74,6 +74,126 @@ void isolate(Curve& curve, Region& region) {
   region.firstEdge = 0;
 }
 
+/// @throws InvalidInput  edges cross although topology is to be kept
+void requireNoCrossing(const std::vector<std::array<int, 2>>& pairs,
+                       const PolygonUnfoldingOptions& options) {
+  if (options.noTopology || pairs.empty()) return;
+  throw InvalidInput("polygon: " + std::to_string(pairs.size()) +
+                     " pairs of edges cross at the start, first " +
+                     std::to_string(pairs.front()[0]) + " and " + std::to_string(pairs.front()[1]) +
+                     "; mend it or use --no-topology");
+}
+
+/// @throws InvalidInput  nothing of the region is to be seen
+double initialVisibility(const Curve& curve, const Region& region, const Viewpoints& view) {
+  const double visibility = polygonVisibility(curve, region, view).average;
+  if (visibility > 0) return visibility;
+  throw InvalidInput("the region's average visibility is " + std::to_string(visibility) +
+                     ", not positive: grow or shrink the region or move the viewpoint");
+}
+
+/// An unfolding under way: the method at work, and the account of what it did.
+class PolygonRun {
+ public:
+  PolygonRun(PolygonUnfolding& result, const Viewpoints& view,
+             const PolygonUnfoldingOptions& options, const PolygonCheckpoint* resume)
+      : result_(result), view_(view), options_(options), start_(Clock::now()) {
+    const double length = lengthOf(result.curve, result.region);
+    sizes_ = {length / result.region.edgeCount, length};
+    if (resume == nullptr) {
+      pose(result.curve, result.region);
+      record(0, 0);
+      return;
+    }
+    secondsBefore_ = resume->history.back().seconds;
+    pose({resume->posed.positions, result.curve.closed}, resume->posed.region);
+    problem_->moveTo(resume->path.back().positions);
+    method_->restore(resume->methodState);
+    result.history = resume->history;
+    result.path = resume->path;
+    result.verticesMerged = resume->verticesMerged;
+    result.firstCrossing = resume->firstCrossing;
+  }
+
+  /// Why no iteration of this number is to follow, if none is.
+  [[nodiscard]] std::optional<Termination> reasonToEnd(int iteration,
+                                                       const Monitor& monitor) const {
+    const std::size_t last = result_.history.size() - 1;
+    const double visibility = result_.history[last].visibility;
+    if (visibility >= options_.targetVisibility) return Termination::TargetReached;
+    if (last >= kStallWindow &&
+        visibility - result_.history[last - kStallWindow].visibility < kStallGain) {
+      return Termination::Stalled;
+    }
+    if (iteration > options_.maxIterations) return Termination::MaxIterations;
+    if (secondsSince(start_) > options_.maxTime) return Termination::MaxTime;
+    if (monitor.shouldStop()) return Termination::Interrupted;
+    return {};
+  }
+
+  /// One iteration.
+  /// @return whether anything moved
+  bool advance(int iteration) {
+    const double step = method_->advance();
+    bool merges = false;
+    while (const auto fewer = problem_->merged()) {
+      pose(fewer->first, fewer->second);
+      ++result_.verticesMerged;
+      merges = true;
+    }
+    if (step == 0 && !merges) return false;
+    record(iteration, step);
+    if ((options_.noTopology || options_.noCollision) && result_.firstCrossing < 0 &&
+        !intersectingEdges(problem_->curve()).empty()) {
+      result_.firstCrossing = iteration;
+    }
+    return true;
+  }
+
+  /// Puts what was reached into the result, and what a later run needs into its checkpoint.
+  void finish() {
+    result_.curve = problem_->curve();
+    result_.region = problem_->region();
+    result_.seconds = secondsBefore_ + secondsSince(start_);
+    result_.secondsTopology += problem_->secondsTopology();
+    result_.intersectionsFinal = intersectingEdges(result_.curve);
+    PolygonCheckpoint& checkpoint = result_.checkpoint;
+    checkpoint.methodState = method_->state();
+    checkpoint.history = result_.history;
+    checkpoint.path = result_.path;
+    checkpoint.verticesMerged = result_.verticesMerged;
+    checkpoint.firstCrossing = result_.firstCrossing;
+  }
+
+ private:
+  /// Begins anew from a curve, whose vertices may be fewer.
+  void pose(const Curve& curve, const Region& region) {
+    if (problem_) result_.secondsTopology += problem_->secondsTopology();
+    problem_.emplace(curve, region, view_, options_, sizes_);
+    result_.checkpoint.posed = {curve.positions, region};
+    method_ = options_.method == PolygonMethod::Implicit ? makeImplicitMethod(*problem_)
+                                                         : makeExplicitMethod(*problem_);
+  }
+
+  void record(int iteration, double step) {
+    PolygonIteration row = problem_->account();
+    row.iteration = iteration;
+    row.step = step;
+    row.seconds = secondsBefore_ + secondsSince(start_);
+    result_.history.push_back(row);
+    result_.path.push_back({problem_->curve().positions, problem_->region()});
+  }
+
+  PolygonUnfolding& result_;
+  const Viewpoints& view_;
+  const PolygonUnfoldingOptions& options_;
+  Clock::time_point start_;
+  double secondsBefore_ = 0;
+  StartSizes sizes_{};
+  std::optional<UnfoldingProblem> problem_;
+  std::unique_ptr<UnfoldingMethod> method_;
+};
+
 }  // namespace
 
 PolygonUnfolding unfoldPolygon(const Curve& input, const Region& inputRegion,
@@ -88,110 +208,29 @@ PolygonUnfolding unfoldPolygon(const Curve& input, const Region& inputRegion,
   result.curve = input;
   result.region = inputRegion;
   if (options.surround == PolygonSurround::None) isolate(result.curve, result.region);
-
   result.intersectionsInitial = intersectingEdges(result.curve);
-  if (!options.noTopology && !result.intersectionsInitial.empty()) {
-    const auto& pair = result.intersectionsInitial.front();
-    throw InvalidInput("polygon: " + std::to_string(result.intersectionsInitial.size()) +
-                       " pairs of edges cross at the start, first " + std::to_string(pair[0]) +
-                       " and " + std::to_string(pair[1]) + "; mend it or use --no-topology");
-  }
-  const double initial = polygonVisibility(result.curve, result.region, view).average;
-  if (!(initial > 0)) {
-    throw InvalidInput("the region's average visibility is " + std::to_string(initial) +
-                       ", not positive: grow or shrink the region or move the viewpoint");
-  }
-
+  requireNoCrossing(result.intersectionsInitial, options);
+  const double initial = initialVisibility(result.curve, result.region, view);
   if (resume) requireStateOf(*resume, input, inputRegion, view, options);
-  PolygonCheckpoint& checkpoint = result.checkpoint;
-  checkpoint.input = input.positions;
-  checkpoint.inputRegion = inputRegion;
-  checkpoint.view = view;
-  checkpoint.method = options.method;
+  result.checkpoint.input = input.positions;
+  result.checkpoint.inputRegion = inputRegion;
+  result.checkpoint.view = view;
+  result.checkpoint.method = options.method;
 
-  const auto start = Clock::now();
-  const double secondsBefore = resume ? resume->history.back().seconds : 0;
-  const double length = lengthOf(result.curve, result.region);
-  const StartSizes sizes{length / result.region.edgeCount, length};
-  std::optional<UnfoldingProblem> problem;
-  std::unique_ptr<UnfoldingMethod> method;
-  const auto pose = [&](const Curve& curve, const Region& region) {
-    if (problem) result.secondsTopology += problem->secondsTopology();
-    problem.emplace(curve, region, view, options, sizes);
-    checkpoint.posed = {curve.positions, region};
-    method = options.method == PolygonMethod::Implicit ? makeImplicitMethod(*problem)
-                                                       : makeExplicitMethod(*problem);
-  };
-  const auto record = [&](int iteration, double step) {
-    PolygonIteration row = problem->account();
-    row.iteration = iteration;
-    row.step = step;
-    row.seconds = secondsBefore + secondsSince(start);
-    result.history.push_back(row);
-    result.path.push_back({problem->curve().positions, problem->region()});
-  };
-  if (resume) {
-    pose({resume->posed.positions, result.curve.closed}, resume->posed.region);
-    problem->moveTo(resume->path.back().positions);
-    method->restore(resume->methodState);
-    result.history = resume->history;
-    result.path = resume->path;
-    result.verticesMerged = resume->verticesMerged;
-    result.firstCrossing = resume->firstCrossing;
-  } else {
-    pose(result.curve, result.region);
-    record(0, 0);
-  }
-  result.termination = Termination::MaxIterations;
+  PolygonRun run(result, view, options, resume);
   for (int iteration = result.history.back().iteration + 1;; ++iteration) {
-    const std::size_t last = result.history.size() - 1;
-    const double visibility = result.history[last].visibility;
-    if (visibility >= options.targetVisibility) {
-      result.termination = Termination::TargetReached;
+    const double visibility = result.history.back().visibility;
+    if (const auto reason = run.reasonToEnd(iteration, monitor)) {
+      result.termination = *reason;
       break;
     }
-    if (last >= kStallWindow &&
-        visibility - result.history[last - kStallWindow].visibility < kStallGain) {
+    if (!run.advance(iteration)) {
       result.termination = Termination::Stalled;
       break;
-    }
-    if (iteration > options.maxIterations) break;
-    if (secondsSince(start) > options.maxTime) {
-      result.termination = Termination::MaxTime;
-      break;
-    }
-    if (monitor.shouldStop()) {
-      result.termination = Termination::Interrupted;
-      break;
-    }
-    const double step = method->advance();
-    bool merges = false;
-    while (const auto fewer = problem->merged()) {
-      pose(fewer->first, fewer->second);
-      ++result.verticesMerged;
-      merges = true;
-    }
-    if (step == 0 && !merges) {
-      result.termination = Termination::Stalled;
-      break;
-    }
-    record(iteration, step);
-    if ((options.noTopology || options.noCollision) && result.firstCrossing < 0 &&
-        !intersectingEdges(problem->curve()).empty()) {
-      result.firstCrossing = iteration;
     }
     monitor.progress((visibility - initial) / (options.targetVisibility - initial), "unfolding");
   }
-  result.curve = problem->curve();
-  result.region = problem->region();
-  result.seconds = secondsBefore + secondsSince(start);
-  result.secondsTopology += problem->secondsTopology();
-  result.intersectionsFinal = intersectingEdges(result.curve);
-  checkpoint.methodState = method->state();
-  checkpoint.history = result.history;
-  checkpoint.path = result.path;
-  checkpoint.verticesMerged = result.verticesMerged;
-  checkpoint.firstCrossing = result.firstCrossing;
+  run.finish();
   return result;
 }
 
