@@ -54,11 +54,13 @@ TEST(Framework, EveryCommandHelpsFromItsDeclaration) {
   }
 }
 
-TEST(Framework, VersionNamesTheCommit) {
+TEST(Framework, VersionNamesTheCommitAndWhatItWasBuiltWith) {
   const auto version = explica({"--version"});
   EXPECT_EQ(version.exitCode, 0);
-  EXPECT_TRUE(contains(version.out, "explica ")) << version;
-  EXPECT_TRUE(contains(version.out, "commit ")) << version;
+  for (const char* word :
+       {"explica ", "commit ", "built by ", "ITK 5", "VTK 9", "Eigen 3", "TBB 20"}) {
+    EXPECT_TRUE(contains(version.out, word)) << word << version;
+  }
 }
 
 TEST(Framework, WrongUseIsExitCodeOneWithAHint) {

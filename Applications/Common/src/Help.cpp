@@ -119,7 +119,7 @@ std::string helpText(const Declaration& d) {
   }
   row(out, "--help", "the options that most people need, and an example");
   row(out, "--help-all", "this text");
-  row(out, "--version", "version and commit");
+  row(out, "--version", "version, commit, and what it was built with");
   if (d.writesOutput) {
     out << "\nWrites into --out:\n";
     for (const auto& slot : allOutputs(d)) row(out, slot.pattern, slot.help);

@@ -53,7 +53,7 @@ bool has(const std::vector<std::string>& words, const std::string& wanted) {
 /// What is asked of the program as a whole, before any command; true if it was answered.
 bool answerAboutProgram(const std::string& word) {
   if (word == "--version") {
-    std::cout << provenance::softwareText() << "\n";
+    std::cout << provenance::softwareText() << "\n" << provenance::builtWithText() << "\n";
   } else if (word == "--help" || word == "--help-all" || word == "-h") {
     std::cout << overview();
   } else if (word == "--describe") {
@@ -71,7 +71,7 @@ bool answerAboutCommand(const Declaration& declaration, const std::vector<std::s
   } else if (has(words, "--help") || has(words, "-h")) {
     std::cout << firstHelpText(declaration);
   } else if (has(words, "--version")) {
-    std::cout << provenance::softwareText() << "\n";
+    std::cout << provenance::softwareText() << "\n" << provenance::builtWithText() << "\n";
   } else if (has(words, "--describe")) {
     std::cout << provenance::textOf(describeJson(declaration), 2) << "\n";
   } else if (has(words, "--xml")) {

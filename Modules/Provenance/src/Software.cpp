@@ -35,6 +35,15 @@ std::string softwareText() {
          (s.dirty ? ", with uncommitted changes)" : ")");
 }
 
+std::string builtWithText() {
+  std::string libraries;
+  const Json versions = describeLibraries();
+  for (const auto& [name, version] : versions.items()) {
+    libraries += (libraries.empty() ? "" : ", ") + name + " " + version.get<std::string>();
+  }
+  return "built by " + software().compiler + " (" + software().buildType + ") with " + libraries;
+}
+
 Json describeMachine(bool withNames) {
   Json machine = Json::object();
   utsname name{};

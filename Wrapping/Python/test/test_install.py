@@ -36,6 +36,32 @@ class Install(unittest.TestCase):
         self.assertTrue(compiled.startswith("_explica."))
         self.assertEqual(installed - {compiled}, sources | stubs)
 
+    def test_wheel_is_made_and_installed_without_network(self):
+        made = subprocess.run(
+            [sys.executable, PYTHON / "tools" / "make_wheel.py", BUILD, self.prefix / "wheels"],
+            check=True, capture_output=True, text=True,
+        )  # fmt: skip
+        wheel = pathlib.Path(made.stdout.strip())
+        first = wheel.read_bytes()
+        subprocess.run(
+            [sys.executable, PYTHON / "tools" / "make_wheel.py", BUILD, self.prefix / "wheels"],
+            check=True, stdout=subprocess.DEVNULL,
+        )  # fmt: skip
+        self.assertEqual(wheel.read_bytes(), first)
+        target = self.prefix / "target"
+        subprocess.run(
+            [sys.executable, "-m", "pip", "install", "--quiet", "--no-index", "--no-deps",
+             "--disable-pip-version-check", "--root-user-action=ignore", "--target", target, wheel],
+            check=True,
+        )  # fmt: skip
+        environment = {**os.environ, "PYTHONPATH": str(target)}
+        said = subprocess.run(
+            [sys.executable, "-c", "import explica; print(explica.__file__, explica.__version__)"],
+            check=True, capture_output=True, text=True, env=environment,
+        ).stdout.split()  # fmt: skip
+        self.assertTrue(said[0].startswith(str(target)), said)
+        self.assertIn(said[1], wheel.name)
+
     def test_installed_package_is_imported_and_works(self):
         program = (
             "import explica, pathlib; print(pathlib.Path(explica.__file__).parent);"

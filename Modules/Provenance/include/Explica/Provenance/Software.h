@@ -22,6 +22,9 @@ struct Software {
 /// "explica 0.1.0 (commit 1a2b3c4, with uncommitted changes)".
 [[nodiscard]] std::string softwareText();
 
+/// "built by GNU 12.2.0 (Release) with Eigen 3.4.0, ITK 5.2.1, ...".
+[[nodiscard]] std::string builtWithText();
+
 /// This machine: operating system, processor, memory; host and user unless `withNames` is false.
 [[nodiscard]] Json describeMachine(bool withNames);
 

@@ -1,0 +1,108 @@
+#!/usr/bin/python3
+# SPDX-FileCopyrightText: The Explica developers
+# SPDX-License-Identifier: Apache-2.0
+"""Holds the lists of packages (Testing/packages.txt with the Containerfile, and the conda recipe) to
+what CMake looks for, and the versions to CMake's: a library that is found by a build but not listed
+fails here, and so does one that is listed and not looked for.
+
+    Testing/check-recipes.py
+"""
+
+import pathlib
+import re
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+
+# What CMake looks for: Debian's package, conda-forge's.
+LIBRARIES = {
+    "CLI11": ("libcli11-dev", "cli11"),
+    "EXPAT": ("libexpat1-dev", "expat"),
+    "Eigen3": ("libeigen3-dev", "eigen"),
+    "HDF5": ("libinsighttoolkit5-dev", "hdf5"),  # Debian's ITK brings it
+    "ISAL": ("libisal-dev", "isa-l"),
+    "ITK": ("libinsighttoolkit5-dev", "libitk-devel"),
+    "OpenSSL": ("libssl-dev", "openssl"),
+    "Python": ("python3-dev", "python"),
+    "Qt5": ("qtbase5-dev", "qt-main"),
+    "TBB": ("libtbb-dev", "tbb-devel"),
+    "VTK": ("libvtk9-dev", "vtk"),
+    "X11": ("libx11-dev", "xorg-libx11"),
+    "ZLIB": ("zlib1g-dev", "zlib"),
+    "embree": ("libembree-dev", "embree"),
+    "hwy": ("libhwy-dev", "libhwy"),
+    "nlohmann_json": ("nlohmann-json3-dev", "nlohmann_json"),
+    "pybind11": ("pybind11-dev", "pybind11"),
+    "valijson": ("libvalijson-dev", "valijson"),
+    "yaml-cpp": ("libyaml-cpp-dev", "yaml-cpp"),
+}
+FOR_TESTS = {"Explica", "GTest", "benchmark", "Threads"}  # or of the compiler
+NOT_LIBRARIES = {"numpy"}  # in the recipe for the Python module
+
+
+def looked_for():
+    found = set()
+    for path in ROOT.glob("[AMTW]*/**/*"):
+        if path.name != "CMakeLists.txt" and path.suffix != ".cmake":
+            continue
+        text = re.sub(r"#.*", "", path.read_text())
+        found.update(re.findall(r"find_package\(\s*([\w-]+)", text))
+        if "valijson/" in text:
+            found.add("valijson")
+    return found - FOR_TESTS
+
+
+def debian_packages():
+    lines = (ROOT / "Testing/packages.txt").read_text().splitlines()
+    return {line.split("#")[0].strip() for line in lines} - {""}
+
+
+def conda_packages():
+    text = (ROOT / "Wrapping/Conda/meta.yaml").read_text()
+    host = re.search(r"\n  host:\n((?:    - .*\n)+)", text)[1]
+    return {line.split()[1] for line in host.splitlines()}
+
+
+def versions():
+    """The version wherever it is written."""
+    places = {
+        "CMakeLists.txt": r"project\(\s*Explica\s+VERSION\s+([\d.]+)",
+        "Wrapping/Conda/meta.yaml": r'set version = "([\d.]+)"',
+        "Wrapping/Python/pyproject.toml": r'\nversion = "([\d.]+)"',
+        "CITATION.cff": r'\nversion: "?([\d.]+)"?',
+    }
+    for place, pattern in places.items():
+        match = re.search(pattern, (ROOT / place).read_text())
+        yield place, match[1] if match else "none"
+
+
+def main():
+    wrong = []
+    found = looked_for()
+    debian, conda = debian_packages(), conda_packages()
+    for name in sorted(found | set(LIBRARIES)):
+        if name not in LIBRARIES:
+            wrong.append(f"CMake looks for {name}, which Testing/check-recipes.py does not know")
+            continue
+        if name not in found:
+            wrong.append(f"nothing looks for {name} any more: take it off the lists")
+        if LIBRARIES[name][0] not in debian:
+            wrong.append(f"Testing/packages.txt lacks {LIBRARIES[name][0]} ({name})")
+        if LIBRARIES[name][1] not in conda:
+            wrong.append(f"Wrapping/Conda/meta.yaml lacks {LIBRARIES[name][1]} ({name})")
+    known = {pair[1] for pair in LIBRARIES.values()} | NOT_LIBRARIES
+    wrong += [f"Wrapping/Conda/meta.yaml: nothing looks for {p}" for p in sorted(conda - known)]
+    told = dict(versions())
+    if len(set(told.values())) != 1:
+        wrong.append(f"versions differ: {told}")
+    container = (ROOT / "Wrapping/Container/Containerfile").read_text()
+    for path in re.findall(r"^COPY (?!--from)(\S+) ", container, re.MULTILINE):
+        if path != "." and not (ROOT / path).exists():
+            wrong.append(f"Containerfile copies {path}, which is not there")
+    for line in wrong:
+        print(line)
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
