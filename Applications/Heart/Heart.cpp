@@ -23,7 +23,7 @@ namespace {
 
 constexpr double kFarTiltDeg = 30;  // of the axis from the slices' normal: not short axis
 constexpr double kLowSeptum = 60, kHighSeptum = 200;  // degrees
-constexpr int kMostFrames = 1000;
+constexpr int kMostFrames = 1000;                     // of a beat; far beyond any scanner's
 
 struct Settings {
   std::vector<std::string> segmentations;

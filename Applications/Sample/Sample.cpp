@@ -278,7 +278,7 @@ class SurfaceSampling {
   }
 
   void noteKnown(const std::vector<float>& values, std::vector<std::uint8_t>& known) {
-    constexpr std::size_t kGrain = 1 << 14;
+    constexpr std::size_t kGrain = 1 << 14;  // elements a task
     parallelForBlocks(known.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t frame = 0; frame < values.size(); frame += known.size()) {
         const float* at = values.data() + frame;

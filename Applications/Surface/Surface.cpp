@@ -252,7 +252,7 @@ bool surfacesGiven(const Settings& s) {
 }
 
 void checkChoice(const Settings& s) {
-  constexpr double kMostScale = 1e3;
+  constexpr double kMostScale = 1e3;  // from metres to millimetres
   if (!(s.scale >= 1 / kMostScale && s.scale <= kMostScale)) {
     throw UsageError("surface: --scale is a factor between 0.001 and 1000");
   }

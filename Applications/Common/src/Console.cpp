@@ -89,9 +89,9 @@ void Console::progress(double fraction, std::string_view activity) {
     const std::lock_guard<std::mutex> lock(mutex_);
     const bool newActivity = activity != lastActivity_;
     if (terminal_ && level_ != Level::Quiet) {
-      constexpr auto kRedraw = std::chrono::milliseconds(100);
+      constexpr auto kRedraw = std::chrono::milliseconds(100);  // often enough to be seen to move
       if (newActivity || now - lastDrawn_ > kRedraw || fraction >= 1.0) {
-        constexpr int kWidth = 30;
+        constexpr int kWidth = 30;  // characters of the bar
         const int filled = static_cast<int>(fraction * kWidth);
         std::fprintf(stderr, "\r\033[K[%s%s] %3d %%  %.*s", std::string(filled, '=').c_str(),
                      std::string(kWidth - filled, ' ').c_str(), static_cast<int>(fraction * 100),

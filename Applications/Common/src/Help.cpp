@@ -34,7 +34,7 @@ std::size_t optionCount(const std::vector<Parameter>& parameters) {
 
 /// The first files that it writes, by name.
 std::string filesOf(const Declaration& d) {
-  constexpr std::size_t kNamed = 6;
+  constexpr std::size_t kNamed = 6;  // options named before "..."
   std::string names;
   for (std::size_t f = 0; f < std::min(kNamed, d.outputs.size()); ++f) {
     names += (f ? ", " : "") + d.outputs[f].pattern;
@@ -44,7 +44,7 @@ std::string filesOf(const Declaration& d) {
 
 /// What goes in and what comes out, in words.
 void picture(std::ostringstream& out, const FirstHelp& first, const Declaration& d) {
-  constexpr std::size_t kIndent = 9;
+  constexpr std::size_t kIndent = 9;  // columns
   const auto line = [&](const char* word, const std::string& text) {
     if (text.empty()) return;
     out << word;

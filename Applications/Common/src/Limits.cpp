@@ -18,7 +18,7 @@ namespace explica::app {
 namespace {
 
 constexpr double kGraceShare = 0.25;  // of the limit, for work to come to a consistent state
-constexpr double kGraceSeconds = 10;
+constexpr double kGraceSeconds = 10;  // for a command to write what it reached
 
 std::chrono::steady_clock::duration duration(double seconds) {
   return std::chrono::duration_cast<std::chrono::steady_clock::duration>(

@@ -81,7 +81,7 @@ std::string rightColumn(const Parameter& parameter) {
 
 void wrap(std::ostringstream& out, const std::string& text, std::size_t indent,
           std::size_t column) {
-  constexpr std::size_t kWidth = 96;
+  constexpr std::size_t kWidth = 96;  // columns of help
   std::istringstream words(text);
   std::string word;
   std::size_t at = column;
@@ -102,7 +102,7 @@ void wrap(std::ostringstream& out, const std::string& text, std::size_t indent,
 }
 
 void row(std::ostringstream& out, const std::string& left, const std::string& right) {
-  constexpr std::size_t kIndent = 30;
+  constexpr std::size_t kIndent = 30;  // columns
   out << "  " << left;
   std::size_t at = left.size() + 2;
   if (at + 2 > kIndent) {

@@ -355,7 +355,7 @@ namespace {
 /// The least of the safe times of `count` pairs, those that timeOf(n, limit) gives.
 template <class TimeOf>
 double leastTime(std::size_t count, double limit, const TimeOf& timeOf) {
-  constexpr std::size_t kGrain = 512;
+  constexpr std::size_t kGrain = 512;  // elements a task
   std::vector<double> safe((count + kGrain - 1) / kGrain, limit);
   parallelForBlocks(count, kGrain, [&](std::size_t begin, std::size_t end) {
     double& mine = safe[begin / kGrain];

@@ -16,7 +16,7 @@
 namespace explica::collision {
 namespace {
 
-constexpr std::size_t kGrain = 512;
+constexpr std::size_t kGrain = 512;  // elements a task
 
 FourPoints pointsOf(const Contact& contact, const Positions& positions) {
   FourPoints x;

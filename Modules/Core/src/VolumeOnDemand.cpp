@@ -8,7 +8,7 @@ namespace explica {
 Volume<Eigen::Vector3f> volumeOf(const VectorsOnDemand& components) {
   const auto& [x, y, z] = components;
   Volume<Eigen::Vector3f> volume(x.grid, {x.elsewhere, y.elsewhere, z.elsewhere});
-  constexpr std::size_t kGrain = 1 << 14;
+  constexpr std::size_t kGrain = 1 << 14;  // elements a task
   for (int c = 0; c < 3; ++c) {
     const VolumeOnDemand<float>& values = components[c];
     parallelForBlocks(values.end - values.begin, kGrain, [&](std::size_t begin, std::size_t end) {

@@ -21,8 +21,8 @@ using harmonic::signOf;
 namespace {
 
 using Tracer = TrajectoryTracer::Field;
-constexpr int kMaxSteps = 4000;
-constexpr std::size_t kBlock = 1 << 13;
+constexpr int kMaxSteps = 4000;          // of a trajectory, before it counts as lost
+constexpr std::size_t kBlock = 1 << 13;  // voxels a task
 // Default lambda in voxels.  Corners of a grid face are up to sqrt(2) voxels apart, and so are
 // their boundary points where trajectories run in parallel: beyond this they diverge.
 constexpr double kLambda = 2;

@@ -16,7 +16,7 @@ using harmonic::kOuter;
 
 namespace {
 
-constexpr int kMaxSteps = 4000;
+constexpr int kMaxSteps = 4000;        // of a trajectory, before it counts as lost
 constexpr double kBeyondPlane = 1e-3;  // so that the plane lies within the step, whatever it bends
 // Slope (change of u per voxel) below which a trajectory's direction is round-off.
 constexpr double kFlat = 1e-9;

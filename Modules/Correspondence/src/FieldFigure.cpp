@@ -23,10 +23,10 @@ using planar::Point2;
 using planar::svg::format;
 using planar::svg::text;
 
-constexpr double kPanel = 460;  // SVG units, of the longer side
-constexpr double kMargin = 18;
-constexpr double kTitle = 30;
-constexpr double kLegend = 44;
+constexpr double kPanel = 460;     // SVG units, of the longer side
+constexpr double kMargin = 18;     // pixels
+constexpr double kTitle = 30;      // pixels
+constexpr double kLegend = 44;     // pixels
 constexpr int kBands = 10;         // of u
 constexpr int kArrowsAcross = 34;  // along the longer side of a panel
 constexpr int kPathsAcross = 16;   // trajectories along the longer side, about

@@ -22,7 +22,7 @@ using harmonic::kOuter;
 
 namespace {
 
-constexpr std::size_t kGrain = 1 << 9;
+constexpr std::size_t kGrain = 1 << 9;  // elements a task
 // Fronts advance by this share of the finest spacing at a time: a voxel keeps a source that is
 // farther than another by no more than that.
 constexpr double kAdvance = 0.125;
@@ -138,7 +138,7 @@ Fronts frontsFromInside(const Annulus& annulus) {
 
 /// Where fronts that face each other meet.
 std::vector<Cut> meetingsOf(const Annulus& annulus, const Fronts& fronts, double facing) {
-  constexpr std::size_t kBlock = 1 << 12;
+  constexpr std::size_t kBlock = 1 << 12;  // voxels a task
   const Vector& h = annulus.grid.spacing;
   std::vector<std::vector<Cut>> parts((annulus.count() + kBlock - 1) / kBlock);
   parallelFor(annulus.count(), kBlock, [&](std::size_t number) {

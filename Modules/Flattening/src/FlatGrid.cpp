@@ -17,7 +17,7 @@ namespace explica::flattening {
 namespace {
 
 using Plane = Eigen::Vector2d;
-constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kGrain = 4096;  // elements a task
 
 const Eigen::Vector3f kUnknown = Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
 

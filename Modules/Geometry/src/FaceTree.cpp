@@ -12,7 +12,7 @@
 namespace explica::geometry {
 namespace {
 
-constexpr std::int32_t kLeafSize = 4;
+constexpr std::int32_t kLeafSize = 4;  // faces of a leaf at most
 
 bool overlap(const Box& a, const Box& b) {
   return (a.min().array() <= b.max().array()).all() && (b.min().array() <= a.max().array()).all();
@@ -98,7 +98,7 @@ void BoxTree::forOverlaps(const Box& box, const std::function<void(std::int32_t)
 }
 
 std::vector<std::array<std::int32_t, 2>> BoxTree::overlappingPairs() const {
-  constexpr std::size_t kGrain = 512;
+  constexpr std::size_t kGrain = 512;  // elements a task
   std::vector<std::vector<std::array<std::int32_t, 2>>> found((boxes_.size() + kGrain - 1) /
                                                               kGrain);
   parallelForBlocks(boxes_.size(), kGrain, [&](std::size_t begin, std::size_t end) {

@@ -16,7 +16,7 @@
 namespace explica::geometry {
 namespace {
 
-constexpr std::size_t kGrain = 2048;
+constexpr std::size_t kGrain = 2048;  // elements a task
 
 /// A face's side: its two vertices in ascending order, and which side of which face it is.
 struct HalfEdge {

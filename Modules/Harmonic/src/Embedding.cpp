@@ -13,7 +13,7 @@ namespace explica::harmonic {
 
 namespace {
 
-constexpr std::size_t kGrain = 1 << 13;
+constexpr std::size_t kGrain = 1 << 13;  // elements a task
 // A Laplace solve's error must stay below what the iteration still gains.
 constexpr double kSolveTolerance = 1e-10;
 constexpr int kSolveIterations = 60;

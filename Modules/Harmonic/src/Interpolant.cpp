@@ -15,7 +15,7 @@ namespace explica::harmonic {
 
 namespace {
 
-constexpr std::size_t kGrain = 1 << 13;
+constexpr std::size_t kGrain = 1 << 13;  // elements a task
 // Nearer than this (in voxels) a boundary's difference to the voxel is too small to divide by.
 constexpr double kTooClose = 0.005;
 

@@ -14,7 +14,7 @@ namespace explica::harmonic {
 
 namespace {
 
-constexpr std::size_t kGrain = 1 << 12;
+constexpr std::size_t kGrain = 1 << 12;  // elements a task
 // Nearest that the surface may come to a voxel's centre, in voxels.
 constexpr float kNearest = 0.01F;
 // Pull to the middle of a link where the net is smooth.  It only decides where no step is near:

@@ -10,7 +10,7 @@ namespace explica::harmonic {
 
 namespace {
 
-constexpr std::size_t kGrain = 1 << 13;
+constexpr std::size_t kGrain = 1 << 13;  // elements a task
 
 struct Pair {
   double first = 0, second = 0;

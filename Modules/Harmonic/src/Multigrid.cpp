@@ -7,8 +7,8 @@ namespace explica::harmonic {
 
 namespace {
 
-constexpr std::size_t kGrain = 1 << 13;
-constexpr int kCoarsestSweeps = 20;
+constexpr std::size_t kGrain = 1 << 13;  // elements a task
+constexpr int kCoarsestSweeps = 20;  // smoothings that stand for a solution on the coarsest grid
 
 }  // namespace
 

@@ -10,9 +10,9 @@ namespace explica::harmonic {
 
 namespace {
 
-constexpr std::size_t kGrain = 1 << 13;
-constexpr int kCoarsestSize = 60;  // cells; solved by sweeps
-constexpr int kMaxLevels = 16;
+constexpr std::size_t kGrain = 1 << 13;  // elements a task
+constexpr int kCoarsestSize = 60;        // cells; solved by sweeps
+constexpr int kMaxLevels = 16;           // of grids, each half as wide as the one before
 // Axes are coarsened together if their spacings differ by less than this; so smoothing stays good.
 constexpr double kNearlyIsotropic = 1.5;
 

@@ -42,7 +42,7 @@ Shell makeShell(const ShellOptions& options) {
   shell.innerDistance = shell.outerDistance = shell.thicknessMap = Volume<float>(grid, 0);
   shell.innerPoint = shell.outerPoint = Volume<Eigen::Vector3f>(grid, Eigen::Vector3f::Zero());
   const double a = shell.innerRadius, b = shell.outerRadius;
-  constexpr std::size_t kGrain = 16384;
+  constexpr std::size_t kGrain = 16384;  // elements a task
   parallelFor(grid.voxelCount(), kGrain, [&](std::size_t v) {
     const auto [i, j, k] = grid.subscripts(v);
     const Point x = grid.toWorld({double(i), double(j), double(k)});

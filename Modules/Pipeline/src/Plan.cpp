@@ -31,8 +31,8 @@ const std::vector<int> kLeftInside = {2, 4, 5, 9, 10, 11, 12, 13, 17, 18, 26, 28
 const std::vector<int> kRightInside = {41, 43, 44, 48, 49, 50, 51, 52, 53, 54, 58, 60, 62, 63, 79};
 // Not 24: it is fluid, which SynthSeg puts all around the cortex.
 const std::vector<int> kBetween = {14, 15, 16, 72, 80, 85, 192, 251, 252, 253, 254, 255};
-constexpr int kLeftCortex = 3;
-constexpr int kRightCortex = 42;
+constexpr int kLeftCortex = 3;    // FreeSurfer's label
+constexpr int kRightCortex = 42;  // FreeSurfer's label
 
 /// Of aparc+aseg (1001 to 1035, 2001 to 2035) and aparc.a2009s+aseg (11101 to 11175, ...).
 bool isParcel(Label label, bool left) {

@@ -18,7 +18,7 @@ EdgeTree::EdgeTree(const Curve& curve, const std::function<bool(int edge)>& move
 }
 
 int EdgeTree::build(const Curve& curve, int firstEdge, int edgeCount, bool moves) {
-  constexpr int kLeafSize = 1;
+  constexpr int kLeafSize = 1;  // edges of a leaf
   Node node;
   node.firstEdge = firstEdge;
   node.edgeCount = edgeCount;

@@ -20,12 +20,12 @@ using svg::pair;
 using svg::text;
 
 constexpr double kPageWidth = 1180;  // SVG units
-constexpr double kMargin = 18;
-constexpr double kTitleHeight = 46;
-constexpr double kArrowRoom = 64;  // on the viewpoint's side
+constexpr double kMargin = 18;       // pixels
+constexpr double kTitleHeight = 46;  // pixels
+constexpr double kArrowRoom = 64;    // on the viewpoint's side
 constexpr int kMostColumns = 3;
-constexpr double kLegendHeight = 44;
-constexpr double kBarLength = 100;  // of the legend's colours
+constexpr double kLegendHeight = 44;  // pixels
+constexpr double kBarLength = 100;    // of the legend's colours
 
 /// Blue where an edge faces the viewpoint, grey across, orange where it faces away.
 std::string fluxColour(double flux) {

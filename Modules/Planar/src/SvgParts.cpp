@@ -9,7 +9,7 @@
 namespace explica::planar::svg {
 namespace {
 
-constexpr double kLongestBar = 100;
+constexpr double kLongestBar = 100;   // pixels
 constexpr double kLetterWidth = 7.5;  // of 14-unit text, about
 
 /// The largest of 1, 2, 5 times a power of ten that is not above a length.

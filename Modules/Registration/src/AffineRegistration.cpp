@@ -14,9 +14,9 @@
 namespace explica::registration {
 namespace {
 
-constexpr int kBins = 32;
-constexpr std::size_t kGrain = 4096;
-constexpr int kParameters = 12;
+constexpr int kBins = 32;             // of brightness, along each axis of the joint histogram
+constexpr std::size_t kGrain = 4096;  // elements a task
+constexpr int kParameters = 12;       // of an affine map
 constexpr double kImageShare = 0.75;  // the image's voxels, of the template's points' distance
 
 /// Translation mm, rotation rad, logarithm of scale, shear, about the region's centre.

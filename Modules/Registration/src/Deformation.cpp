@@ -13,7 +13,7 @@
 namespace explica::registration {
 namespace {
 
-constexpr std::size_t kGrain = 16384;
+constexpr std::size_t kGrain = 16384;   // elements a task
 constexpr double kLargestStep = 0.4;    // voxels, of one update
 constexpr double kSmallestStep = 0.04;  // voxels: below, the level is done
 constexpr int kPatience = 3;            // iterations without gain before the step is halved

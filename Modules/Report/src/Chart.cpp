@@ -15,13 +15,13 @@
 namespace explica::report {
 namespace {
 
-constexpr double kWidth = 460;
-constexpr double kHeight = 260;
-constexpr double kLeft = 62;
-constexpr double kRight = 14;
-constexpr double kTop = 30;
-constexpr double kBottom = 46;
-constexpr int kBins = 48;
+constexpr double kWidth = 460;   // pixels
+constexpr double kHeight = 260;  // pixels
+constexpr double kLeft = 62;     // pixels, margin
+constexpr double kRight = 14;    // pixels, margin
+constexpr double kTop = 30;      // pixels, margin
+constexpr double kBottom = 46;   // pixels, margin
+constexpr int kBins = 48;        // of a histogram
 
 std::string number(double value) {
   std::array<char, 32> text{};
@@ -259,10 +259,10 @@ struct Legend {
   std::string svg;
   int rows = 0;
 };
-constexpr double kLegendRow = 16;
+constexpr double kLegendRow = 16;  // pixels
 
 Legend legendOf(const std::vector<Series>& series) {
-  constexpr double kLetter = 6.2, kLine = 18, kGap = 24;
+  constexpr double kLetter = 6.2, kLine = 18, kGap = 24;  // pixels, of the page's letters
   Legend legend;
   if (series.size() < 2) return legend;
   legend.rows = 1;

@@ -74,7 +74,7 @@ Picture surfaceFigure(const TriangleMesh& mesh, const SurfacePaint& paint,
   }
   Picture tiled = tilePictures(pictures, columns);
   if (paint.values.size() == 0) return tiled;
-  constexpr int kGap = 10;
+  constexpr int kGap = 10;  // pixels
   const int barHeight = std::min(std::max(tiled.height * 3 / 5, 120), tiled.height);
   const double letters = std::clamp(barHeight / 24.0, 8.0, 14.0);
   const std::string title = paint.scale.unit.empty()

@@ -166,7 +166,7 @@ std::string findingsHtml(const ReportFindings& findings) {
 
 /// Five values along the bar, as text.
 std::string barHtml(const ColourScale& scale) {
-  constexpr int kStops = 16;
+  constexpr int kStops = 16;  // of a scale's gradient
   std::string gradient;
   for (int s = 0; s <= kStops; ++s) {
     gradient += (s == 0 ? "" : ",") + hex(colourAt(scale.map, static_cast<double>(s) / kStops));

@@ -108,8 +108,8 @@ std::vector<std::uint8_t> ditherFrame(const Picture& frame) {
 
 /// GIF's variable-width LZW in sub-blocks of at most 255 bytes.
 std::string compressLzw(const std::vector<std::uint8_t>& indices) {
-  constexpr int kClear = 256;
-  constexpr int kEnd = 257;
+  constexpr int kClear = 256;  // GIF's code: begin a new table
+  constexpr int kEnd = 257;    // GIF's code: the picture ends
   std::string bytes;
   std::uint32_t bits = 0;
   int bitCount = 0;

@@ -14,7 +14,7 @@
 namespace explica::sampling {
 namespace {
 
-constexpr int kMostDepths = 1000;
+constexpr int kMostDepths = 1000;  // between two surfaces
 
 std::string shown(std::string_view text) {
   return "depths: '" + std::string(text.substr(0, 40)) + "'";

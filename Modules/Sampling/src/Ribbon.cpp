@@ -15,9 +15,9 @@ namespace explica::sampling {
 namespace {
 
 constexpr int kLayers = 10;
-constexpr std::size_t kGrain = 4096;
-constexpr double kThinnest = 1e-3;  // mm: where the surfaces touch, places count a little still
-constexpr double kEnough = 0.5;     // of the volume about a vertex
+constexpr std::size_t kGrain = 4096;  // elements a task
+constexpr double kThinnest = 1e-3;    // mm: where the surfaces touch, places count a little still
+constexpr double kEnough = 0.5;       // of the volume about a vertex
 
 /// Centres of the four triangles into which the middles of its edges cut a face.
 constexpr std::array<std::array<double, 3>, 4> kPlaces = {{{2.0 / 3, 1.0 / 6, 1.0 / 6},

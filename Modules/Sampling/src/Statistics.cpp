@@ -15,7 +15,7 @@
 namespace explica::sampling {
 namespace {
 
-constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kGrain = 4096;  // elements a task
 
 /// Sums about a first value, so that a large mean does not swallow the deviation.
 struct Sums {

@@ -13,8 +13,8 @@
 namespace explica::sampling {
 namespace {
 
-constexpr int kPointsAcross = 5;  // of a voxel, along each axis
-constexpr std::size_t kGrain = 1024;
+constexpr int kPointsAcross = 5;      // of a voxel, along each axis
+constexpr std::size_t kGrain = 1024;  // elements a task
 
 void requireGrid(const Grid& a, const Grid& b, const char* name) {
   if (!sameGrid(a, b)) {

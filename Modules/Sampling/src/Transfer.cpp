@@ -45,7 +45,7 @@ NearestOnSurface nearestOn(const TriangleMesh& surface, const Positions& points)
   nearest.corners.resize(points.rows(), 3);
   nearest.weights.resize(points.rows(), 3);
   nearest.distance.resize(points.rows());
-  constexpr std::size_t kGrain = 256;
+  constexpr std::size_t kGrain = 256;  // elements a task
   parallelFor(static_cast<std::size_t>(points.rows()), kGrain, [&](std::size_t p) {
     const auto row = static_cast<Eigen::Index>(p);
     const geometry::ClosestPoint found = tree.closestPoint(points.row(row).transpose());

@@ -11,7 +11,7 @@
 namespace explica::segmentation {
 namespace {
 
-constexpr std::size_t kGrain = 16384;
+constexpr std::size_t kGrain = 16384;        // elements a task
 constexpr float kDarkShare = 0.4f;           // of the median: fluid lies below
 constexpr std::size_t kMostSamples = 50000;  // enough for a smooth field
 constexpr std::size_t kFewestSamples = 100;

@@ -10,8 +10,8 @@
 namespace explica::segmentation {
 namespace {
 
-constexpr std::size_t kGrain = 16384;
-constexpr std::size_t kLineGrain = 256;
+constexpr std::size_t kGrain = 16384;    // elements a task
+constexpr std::size_t kLineGrain = 256;  // elements a task
 
 }  // namespace
 

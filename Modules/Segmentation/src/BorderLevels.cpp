@@ -10,7 +10,7 @@
 namespace explica::segmentation {
 namespace {
 
-constexpr std::size_t kGrain = 16384;
+constexpr std::size_t kGrain = 16384;  // elements a task
 /// The level of all edges weighs as much as so many voxels with a tenth of the range a mm.
 constexpr double kPrior = 25, kPriorSlope = 0.1;
 /// A level stays this share of the means' distance away from them.

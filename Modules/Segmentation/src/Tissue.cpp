@@ -16,7 +16,7 @@ namespace explica::segmentation {
 namespace {
 
 constexpr int kClasses = 3;
-constexpr std::size_t kGrain = 16384;
+constexpr std::size_t kGrain = 16384;  // elements a task
 // Spread of a pure tissue, of the range of means: a narrower one is a single grey value, a wider
 // one has begun to stand for mixtures.
 constexpr double kLeastDeviation = 0.02;

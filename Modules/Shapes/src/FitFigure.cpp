@@ -16,11 +16,11 @@ namespace {
 using planar::svg::format;
 using planar::svg::text;
 
-constexpr double kPanel = 340;  // SVG units
-constexpr double kMargin = 18;
-constexpr double kTitleHeight = 64;
+constexpr double kPanel = 340;       // SVG units
+constexpr double kMargin = 18;       // pixels
+constexpr double kTitleHeight = 64;  // pixels
 constexpr int kMostColumns = 3;
-constexpr double kLegendHeight = 64;
+constexpr double kLegendHeight = 64;  // pixels
 constexpr const char* kTargetStyle =
     "stroke=\"#d6540a\" stroke-width=\"4\" stroke-opacity=\"0.55\"";
 constexpr const char* kShapeStyle = "stroke=\"#145ab4\" stroke-width=\"1.8\"";
@@ -175,7 +175,7 @@ std::string drawSeries(const HarmonicAnnulus& annulus, double z,
   const int count = static_cast<int>(panels.size());
   const int columns = std::min(count, kMostColumns);
   const int rows = (count + columns - 1) / columns;
-  constexpr double kTitle = 28;
+  constexpr double kTitle = 28;  // pixels
   const double rowHeight = kTitle + kPanel + kMargin;
   const double width = columns * (kPanel + kMargin) + kMargin;
   const double scale = (kPanel / 2 - 2) / box.halfSide;

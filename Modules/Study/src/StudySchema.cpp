@@ -81,7 +81,7 @@ std::string hint(const std::string& word, const std::vector<std::string>& known)
   if (nearest != known.end() && lettersBetween(word, *nearest) <= word.size() / 3 + 1) {
     return "; did you mean '" + *nearest + "'?";
   }
-  constexpr std::size_t kListed = 12;
+  constexpr std::size_t kListed = 12;  // names in a message
   return known.size() > kListed || known.empty() ? "" : "; known are " + joined(known);
 }
 

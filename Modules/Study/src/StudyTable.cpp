@@ -129,7 +129,7 @@ StudyRow rowOf(const fs::path& out, const fs::path& run) {
   const std::size_t hemi = name.rfind("_hemi-");
   row.participant = name.substr(0, hemi);
   row.hemisphere = name.substr(hemi + 6);
-  constexpr std::string_view kRegion = "_region-";
+  constexpr std::string_view kRegion = "_region-";  // stands before a region's name in a folder's
   if (const auto at = row.hemisphere.find(kRegion); at != std::string::npos) {
     row.region = row.hemisphere.substr(at + kRegion.size());
     row.hemisphere.resize(at);

@@ -11,7 +11,7 @@
 namespace explica::unfolding {
 namespace {
 
-constexpr std::size_t kGrain = 512;
+constexpr std::size_t kGrain = 512;  // elements a task
 
 }  // namespace
 

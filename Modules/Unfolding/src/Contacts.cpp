@@ -112,7 +112,7 @@ Contact Contacts::contactOf(const Pair& pair, double range) const {
 }
 
 std::vector<Contact> Contacts::contactsOf(const std::vector<Pair>& pairs) const {
-  constexpr std::size_t kGrain = 1024;
+  constexpr std::size_t kGrain = 1024;  // elements a task
   std::vector<Contact> contacts(pairs.size());
   const auto before = [](const auto& entry, const Pair& pair) { return entry.first < pair; };
   parallelForBlocks(pairs.size(), kGrain, [&](std::size_t begin, std::size_t end) {

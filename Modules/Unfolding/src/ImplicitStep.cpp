@@ -294,7 +294,7 @@ void ImplicitStep::accountForContacts() {
       pressed = std::min(pressed, other.pressed);
     }
   };
-  constexpr std::size_t kGrain = 256;
+  constexpr std::size_t kGrain = 256;  // elements a task
   const Nearness all =
       parallelSum(contacts_.size(), kGrain, Nearness{}, [&](std::size_t begin, std::size_t end) {
         Nearness block;

@@ -12,7 +12,7 @@ namespace explica::ventricle {
 
 namespace {
 
-constexpr double kMlPerMm3 = 1e-3;
+constexpr double kMlPerMm3 = 1e-3;  // ml of a cubic millimetre
 
 std::size_t countOf(const Volume<Label>& heart, Label label) {
   return static_cast<std::size_t>(std::count(heart.data.begin(), heart.data.end(), label));

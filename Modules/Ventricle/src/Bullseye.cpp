@@ -17,9 +17,9 @@ namespace {
 using report::Colour;
 using report::TextAnchor;
 
-constexpr double kPanel = 500, kHeight = 600;  // of one bull's-eye
-constexpr double kRadius = 150, kMiddleX = 212, kMiddleY = 270;
-constexpr double kBarX = 425, kBarTop = 130, kBarHeight = 280, kBarWidth = 16;
+constexpr double kPanel = 500, kHeight = 600;                                   // of one bull's-eye
+constexpr double kRadius = 150, kMiddleX = 212, kMiddleY = 270;                 // pixels
+constexpr double kBarX = 425, kBarTop = 130, kBarHeight = 280, kBarWidth = 16;  // pixels
 
 /// What a bull's-eye shows.
 struct Panel {

@@ -15,7 +15,7 @@ namespace explica::ventricle {
 namespace {
 
 constexpr double kWidth = 460, kHeight = 320, kNotes = 96;  // of one curve, and of the lines below
-constexpr double kLeft = 70, kRight = 24, kTop = 56, kBottom = 58;
+constexpr double kLeft = 70, kRight = 24, kTop = 56, kBottom = 58;  // pixels, margins
 
 /// The range of healthy adults at one frame.
 struct Range {
@@ -83,7 +83,7 @@ void drawAxes(Canvas& canvas, const Axes& axes, const Curve& curve) {
 
 /// Women's range and men's beside the frame's mark: mean and 2 SD.
 void drawRanges(Canvas& canvas, const Beat& beat, const Curve& curve, const Axes& axes) {
-  constexpr double kNear = 14, kApart = 15, kHalfCap = 4;
+  constexpr double kNear = 14, kApart = 15, kHalfCap = 4;  // pixels
   constexpr double kLabel = 16;  // of the first frame's mark, which stands right of the axis
   for (const Range& range : curve.ranges) {
     const Reference& healthy = referenceOf(range.quantity);

@@ -33,7 +33,7 @@ std::set<Label> valuesOf(const std::vector<Volume<Label>>& frames) {
 
 /// The first dozen; an image taken for labels has hundreds.
 std::string listOf(const std::set<Label>& values) {
-  constexpr std::size_t kShown = 12;
+  constexpr std::size_t kShown = 12;  // labels in a message
   std::string text;
   std::size_t shown = 0;
   for (const Label v : values) {

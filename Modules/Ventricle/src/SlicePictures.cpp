@@ -17,7 +17,7 @@ namespace {
 
 using report::Colour;
 
-constexpr double kTile = 230, kCaption = 40, kHead = 84;
+constexpr double kTile = 230, kCaption = 40, kHead = 84;  // pixels
 constexpr int kColumns = 4, kMostSlices = 12, kTrajectories = 36;
 
 constexpr Colour kWallColour = {0.84F, 0.74F, 0.62F};

@@ -15,9 +15,9 @@
 namespace explica::visibility {
 namespace {
 
-constexpr double kNear = 8;       // distance over longest edge below which a face is divided
-constexpr int kMostHalvings = 8;  // of a face's edges: a viewpoint on the surface ends here
-constexpr std::size_t kGrain = 256;
+constexpr double kNear = 8;          // distance over longest edge below which a face is divided
+constexpr int kMostHalvings = 8;     // of a face's edges: a viewpoint on the surface ends here
+constexpr std::size_t kGrain = 256;  // elements a task
 
 struct Corners {
   Point a, b, c;

@@ -14,7 +14,7 @@
 namespace explica::visibility {
 namespace {
 
-constexpr std::size_t kGrain = 64;
+constexpr std::size_t kGrain = 64;  // elements a task
 
 struct Centroids {
   Positions point;   // F x 3

@@ -132,7 +132,7 @@ std::string valueIn(const StepFolder& step, const Finding& finding) {
 
 /// Numbers of a command that has no rows of its own in the table.
 void listOwnNumbers(const StepFolder& step, report::ReportFindings& findings) {
-  constexpr std::size_t kMost = 12;
+  constexpr std::size_t kMost = 12;  // rows
   for (const auto& [key, value] : step.summary.items()) {
     if (findings.rows.size() >= kMost) return;
     if (!value.is_number() || key.rfind("seconds", 0) == 0 || key == "peak_memory_bytes") continue;

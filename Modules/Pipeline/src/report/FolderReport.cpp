@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMostSlices = 30;
+constexpr int kMostSlices = 30;  // of a direction, so that a page stays below some megabytes
 
 /// A word as a shell takes it.
 std::string quoted(const std::string& word) {

@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostPictures = 12;
+constexpr std::size_t kMostPictures = 12;      // of a folder on one page
 constexpr std::uintmax_t kLargest = 3u << 20;  // bytes: the page stays below 10 MB
 
 /// What a browser calls the picture in a file; empty for other files.

@@ -10,7 +10,7 @@
 namespace explica::unfolding {
 namespace {
 
-constexpr std::size_t kGrain = 256;
+constexpr std::size_t kGrain = 256;  // elements a task
 
 /// sum over the region's faces of w (lambda c + strength/2 c^2) with c = A / A0 - 1.
 class AreaEnergy final : public Energy {

@@ -10,7 +10,7 @@
 namespace explica::unfolding {
 namespace {
 
-constexpr std::size_t kGrain = 256;
+constexpr std::size_t kGrain = 256;    // elements a task
 constexpr double kCollarArea = 20;     // as the region's terms are by default, so that the weight
 constexpr double kCollarSpring = 2.4;  // compares the collar with the region
 constexpr double kFree = 2;            // area ratio from which on stretching is held back ...

@@ -19,7 +19,7 @@ Configuration::Configuration(const Patch& whose, const Positions& where,
       contacts(near),
       knot(repulsion),
       shapes(patch.faces.size()) {
-  constexpr std::size_t kGrain = 256;
+  constexpr std::size_t kGrain = 256;  // elements a task
   parallelFor(shapes.size(), kGrain,
               [&](std::size_t f) { shapes[f] = shapeOf(patch.faces[f], x); });
 }

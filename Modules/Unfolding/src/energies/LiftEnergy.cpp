@@ -11,7 +11,7 @@
 namespace explica::unfolding {
 namespace {
 
-constexpr std::size_t kGrain = 256;
+constexpr std::size_t kGrain = 256;  // elements a task
 
 // Of the room's radius: beyond this the pull grows no more, so that a deep region is not dragged
 // through a narrow opening before the folds above have made way.

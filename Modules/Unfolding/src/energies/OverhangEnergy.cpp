@@ -10,7 +10,7 @@
 namespace explica::unfolding {
 namespace {
 
-constexpr std::size_t kGrain = 256;
+constexpr std::size_t kGrain = 256;  // elements a task
 
 /// strength * sum over the collar's faces of o max(0, -n . a)^2, a the room's axis.
 ///

@@ -42,7 +42,7 @@ class SpringEnergy final : public Energy {
 
 double springValue(std::span<const PatchSpring> springs, double yield, const Positions& x,
                    double strength) {
-  constexpr std::size_t kGrain = 256;
+  constexpr std::size_t kGrain = 256;  // elements a task
   return parallelSum(springs.size(), kGrain, 0.0, [&](std::size_t begin, std::size_t end) {
     double block = 0;
     for (std::size_t s = begin; s < end; ++s) {

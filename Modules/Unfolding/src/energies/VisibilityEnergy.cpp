@@ -8,7 +8,7 @@
 namespace explica::unfolding {
 namespace {
 
-constexpr std::size_t kGrain = 256;
+constexpr std::size_t kGrain = 256;  // elements a task
 
 struct MeanDirection {
   Vector direction = Vector::Zero();                     ///< at most 1 long

@@ -28,7 +28,7 @@ using VectorsOnDemand = std::array<VolumeOnDemand<float>, 3>;
 /// All values at once.
 template <class T>
 [[nodiscard]] Volume<T> volumeOf(const VolumeOnDemand<T>& values) {
-  constexpr std::size_t kGrain = 1 << 16;
+  constexpr std::size_t kGrain = 1 << 16;  // elements a task
   Volume<T> volume(values.grid, values.elsewhere);
   parallelForBlocks(values.end - values.begin, kGrain, [&](std::size_t begin, std::size_t end) {
     const std::size_t first = values.begin + begin;
