@@ -190,6 +190,31 @@ void reportRun(Context& context, const Unfolded& u) {
   context.result("seconds_per_iteration", last.iteration > 0 ? last.seconds / last.iteration : 0);
 }
 
+/// What the surroundings had to give for the region to be seen.
+void checkCollar(Context& context, Unfolded& u, const Measures& m) {
+  const auto& collar = u.result.collar;
+  if (collar.empty()) return;
+  const Eigen::VectorXd stretch = m.areaRatio(collar);
+  const double mean = stretch.mean(), most = stretch.maxCoeff();
+  if (most <= unfolding::kCollarMost) return;
+  const auto beyond = (stretch.array() > unfolding::kCollarMost).count();
+  const bool elastic = u.surround == unfolding::Surround::Elastic;
+  char text[240];
+  std::snprintf(
+      text, sizeof text,
+      "%lld of %zu faces around the region are stretched to more than %g times their area, "
+      "one to %.1f times; %.2f times in the mean%s",
+      static_cast<long long>(beyond), collar.size(), unfolding::kCollarMost, most, mean,
+      elastic ? "" : ": with --surround elastic more of them follow, and stretch less");
+  context.warn(text);
+  if (!elastic || mean <= unfolding::kCollarMean) return;
+  if (u.result.flag == unfolding::Flag::None) u.result.flag = unfolding::Flag::Stretched;
+  if (u.result.termination == Termination::Converged ||
+      u.result.termination == Termination::TargetReached) {
+    u.result.termination = Termination::Stalled;
+  }
+}
+
 /// A region that looks at the viewpoint but lies under something else is not unfolded either.
 void checkSeen(Context& context, Unfolded& u, const Measures& m, double goal) {
   constexpr double kFar = 0.1;  // of the region's area, below the goal
@@ -235,6 +260,7 @@ Termination writeUnfolded(Context& context, Unfolded& u) {
   reportCollar(context, u, m);
   reportRun(context, u);
   checkSeen(context, u, m, u.goal);
+  checkCollar(context, u, m);
   checkWritten(context, u, crossings);
   context.result("flag", std::string(nameOf(u.result.flag)));
   context.result("stop_reason", std::string(nameOf(u.result.termination)));

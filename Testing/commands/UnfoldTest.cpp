@@ -334,6 +334,26 @@ TEST(UnfoldCommand, ByDefaultThePatchStaysInPlaceAndItsCollarIsAccountedFor) {
   EXPECT_LE(largest, 8);
 }
 
+TEST(UnfoldCommand, ACollarThatGivesWayIsSaidAndNotTakenForDone) {
+  const TemporaryFolder folder;
+  const auto words = onFoldedSphere(folder);
+  for (const std::string surround : {"elastic", "fixed"}) {
+    const fs::path out = folder / surround;
+    const auto result =
+        explica(words + std::vector<std::string>{"--surround", surround, "--collar-width", "0.5",
+                                                 "--lift-weight", "1e5", "--out", out});
+    const auto summary = readJson(out / "summary.json");
+    ASSERT_GT(summary["collar_stretch_max"], 8) << surround;
+    ASSERT_GT(summary["collar_stretch_mean"], 2) << surround;
+    EXPECT_NE(result.err.find("around the region are stretched to more than 8 times"),
+              std::string::npos)
+        << result;
+    if (surround == "fixed") continue;  // its ring has no other way, which the page says
+    EXPECT_EQ(summary["flag"], "stretched");
+    EXPECT_EQ(result.exitCode, 3);
+  }
+}
+
 TEST(UnfoldCommand, ADetachedPatchIsComparedWithTheSurfaceThatItCameFrom) {
   const TemporaryFolder folder;
   const auto result =

@@ -17,6 +17,9 @@ namespace {
 
 // Of the mean face: relative area errors of a face far smaller than the rest must not rule them.
 constexpr double kNeedleShare = 0.02;
+// Of the mean face: what a face of the collar counts at least where it stretches far, so that small
+// faces do not stretch in place of large ones.
+constexpr double kHoldShare = 0.25;
 // Of the region's area: faces of the collar may be degenerate, and need an area to be compared
 // with.
 constexpr double kLeastArea = 1e-12;
@@ -124,7 +127,8 @@ double nearness(const PatchSetup& s, std::int32_t f) {
 /// Faces of an elastic collar hold back when they stretch far, and shall not lean over the region;
 /// a single ring beside fixed surroundings has no other way to follow.
 void listFaces(PatchSetup& s, const Eigen::VectorXd& areas) {
-  const double needle = kNeedleShare * s.area / static_cast<double>(s.region.faces.size());
+  const double mean = s.area / static_cast<double>(s.region.faces.size());
+  const double needle = kNeedleShare * mean;
   const auto list = [&](std::int32_t f) {
     PatchFace face;
     face.vertices = {s.mesh.faces(f, 0), s.mesh.faces(f, 1), s.mesh.faces(f, 2)};
@@ -138,7 +142,7 @@ void listFaces(PatchSetup& s, const Eigen::VectorXd& areas) {
     list(f);
     if (!(s.collarWidth > 0)) continue;
     PatchFace& face = s.patch.faces.back();
-    face.holdWeight = face.restArea + needle;
+    face.holdWeight = face.restArea + kHoldShare * mean;
     if (areas[f] > 0) face.nearWeight = nearness(s, f) * face.weight;
   }
 }

@@ -64,6 +64,9 @@ inline constexpr double kEnoughSeen = 0.985;      ///< visibility from which on 
 inline constexpr double kLittleStrained = 0.085;  ///< mean edge strain that needs no mending
 inline constexpr double kBearablyStrained = 0.089;  ///< up to which lengths yield for that promise
 
+/// Area ratios of a collar's faces, in the mean and at most, beyond which it has given way.
+inline constexpr double kCollarMean = 2, kCollarMost = 8;
+
 /// The higher visibility, by more than noise; but of two that are high enough, the less strained.
 [[nodiscard]] bool isBetter(const IterationRecord& state, const BestState& than);
 
@@ -79,9 +82,10 @@ struct Checkpoint {
 /// What keeps a result from being what it seems.
 enum class Flag {
   None,
-  Held,     ///< the region stays far from its goal
-  Worse,    ///< no state was better than the start
-  Crossing  ///< faces cross that did not at the start
+  Held,      ///< the region stays far from its goal
+  Worse,     ///< no state was better than the start
+  Crossing,  ///< faces cross that did not at the start
+  Stretched  ///< an elastic collar gave way: see kCollarMean and kCollarMost
 };
 
 struct UnfoldResult {
@@ -127,5 +131,6 @@ struct explica::EnumNames<explica::unfolding::Flag> {
   static constexpr std::array table = {std::pair{explica::unfolding::Flag::None, ""},
                                        std::pair{explica::unfolding::Flag::Held, "held"},
                                        std::pair{explica::unfolding::Flag::Worse, "worse"},
-                                       std::pair{explica::unfolding::Flag::Crossing, "crossing"}};
+                                       std::pair{explica::unfolding::Flag::Crossing, "crossing"},
+                                       std::pair{explica::unfolding::Flag::Stretched, "stretched"}};
 };
