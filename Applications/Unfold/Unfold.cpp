@@ -53,8 +53,8 @@ void declare(Declaration& d, Settings& s) {
           "parted first where the region or its collar is concerned; the thesis's method promises "
           "nothing of the kind. What is written is tested once more: faces that cross in it and "
           "did "
-          "not at the start, a region that stays far from its goal, and a run that never got "
-          "better "
+          "not at the start, a region that stays far from its goal, a collar that gives way (twice "
+          "its area in the mean, a face at more than eight times), and a run that never got better "
           "than its start end with a warning, a 'flag' in the summary and exit code 3. A run can "
           "be "
           "stopped at any time and continued with --resume into the same --out.")

@@ -58,11 +58,11 @@ void Unfolder::Implementation::makeKnot(const Positions& positions) {
   knot = repulsion::makeKnotEnergy(options.knot, standing, moves);
 }
 
-/// Lengths are soft as long as folds have to open, and as firm as asked for once the region is
-/// seen: firm ones keep pleats that no later step gets out of.  Faces with directions of their own
-/// are not on their way to a plane.
+/// Beside surroundings lengths are soft as long as folds have to open, and as firm as asked for
+/// once the region is seen: firm ones keep pleats there that no later step gets out of.  A region
+/// alone opens as well with firm ones, a large one better.
 double Unfolder::Implementation::firmnessOnTheWay() const {
-  if (state.directions.rows() > 0) return 1;
+  if (options.surround == Surround::None) return 1;
   const double way = (record.visibility - kSoftUntil) / (kFirmFrom - kSoftUntil);
   return kSoft + (1 - kSoft) * std::clamp(way, 0.0, 1.0);
 }
