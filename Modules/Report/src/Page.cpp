@@ -102,10 +102,10 @@ constexpr const char* kViewHtml = R"(<section id="view3d"><h3>In three dimension
 <output id="frame-title"></output>
 <label>Map <select id="map"></select></label>
 <button id="before-after" type="button">Before / after</button>
-<label><input id="alone" type="checkbox"> patch alone</label>
-<button id="whole" type="button">Whole surface</button>
+<label class="of-part"><input id="alone" type="checkbox"> patch alone</label>
+<button id="whole" class="of-part" type="button">Whole surface</button>
 <button id="reset" type="button">Back to the patch</button></div>
-<p class="quiet">Drag to rotate, wheel or two fingers to zoom, right drag to move; the value under the pointer is shown. Keys: arrows rotate, + and - zoom, space plays, comma and full stop step, B before/after, R back to the patch. The dark line is the rim of the region.</p></section>
+<p class="quiet">Drag to rotate, wheel or two fingers to zoom, right drag to move; the value under the pointer is shown. Keys: arrows rotate, + and - zoom, space plays, comma and full stop step, B before/after, R resets the view.<span class="of-part"> The dark line is the rim of the region.</span></p></section>
 )";
 
 std::string hex(const Colour& colour) {

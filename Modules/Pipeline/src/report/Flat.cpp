@@ -5,6 +5,7 @@
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/Pipeline/FlatStack.h"
 #include "Explica/Report/Chart.h"
+#include "Explica/Report/Evolution.h"
 #include "Explica/Report/Figure.h"
 #include "ReportParts.h"
 #include "StandardViews.h"
@@ -252,10 +253,30 @@ void showPicture(ResultFolder& results, const StepFolder& step) {
        "image/png", bytes});
 }
 
+/// The states on the way, looked at from above.
+void playFrames(ResultFolder& results, const StepFolder& step) {
+  const ShownFrames frames = framesOf(step);
+  if (frames.meshes.size() < 2 || results.content().evolution) return;
+  report::Evolution evolution = report::evolutionOf(frames.meshes);
+  evolution.frameTitles = frames.titles;
+  for (const io::VertexMap& map :
+       io::readVertexMaps(step.folder / "distortion.shape.gii", evolution.mesh.vertexCount())) {
+    evolution.maps.push_back({map.values, report::scaleFor(map.values, map.name, map.unit)});
+  }
+  constexpr double kFarAbove = 1e5;  // mm
+  evolution.viewpoint = Point(0, 0, kFarAbove);
+  for (std::int32_t v : evolution.mesh.faces.reshaped()) evolution.region.push_back(v);
+  std::sort(evolution.region.begin(), evolution.region.end());
+  evolution.region.erase(std::unique(evolution.region.begin(), evolution.region.end()),
+                         evolution.region.end());
+  results.content().evolution = std::move(evolution);
+}
+
 }  // namespace
 
 void showFlat(ResultFolder& results, const StepFolder& step, const std::vector<GivenMap>& maps) {
   results.attempt("Picture of the flat map", [&] { showPicture(results, step); });
+  results.attempt("The way to the map", [&] { playFrames(results, step); });
   results.attempt("The patch's shapes", [&] { showShapes(results, step, maps); });
   for (const fs::path& file : flatStackFiles(step.folder)) {
     results.attempt(file.filename().string(), [&] { showStack(results, file); });

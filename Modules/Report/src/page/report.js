@@ -121,6 +121,12 @@ async function showEvolution(source, isStopped, onStop) {
   const inRegion = new Uint8Array(vertexCount);
   for (const v of region) inRegion[v] = 1;
   const faceInRegion = (f) => inRegion[faces[f]] && inRegion[faces[f + 1]] && inRegion[faces[f + 2]];
+  let isWhole = region.length > 0;
+  for (let f = 0; f < faces.length && isWhole; f += 3) isWhole = faceInRegion(f);
+  if (isWhole) {  // there is no patch, and nothing speaks of one
+    for (const element of document.querySelectorAll('#view3d .of-part')) element.style.display = 'none';
+    byId('reset').textContent = 'Reset the view';
+  }
   function boxOf(filter) {
     const low = [Infinity, Infinity, Infinity];
     const high = [-Infinity, -Infinity, -Infinity];
@@ -415,7 +421,7 @@ async function showEvolution(source, isStopped, onStop) {
     option.textContent = text;
     chooser.appendChild(option);
   };
-  addChoice('none', moved.length > 0 ? 'region' : 'plain');
+  addChoice('none', moved.length > 0 && !isWhole ? 'region' : 'plain');
   addChoice('facing', 'faces the viewpoint');
   maps.forEach((map, m) => addChoice(String(m), map.name));
   labelMaps.forEach((map, m) => addChoice('label' + m, map.name));
@@ -442,7 +448,7 @@ async function showEvolution(source, isStopped, onStop) {
   const readable = (x) => String(Number(x.toPrecision(3)));
   function valueAt(v) {
     const choice = chooser.value;
-    if (choice === 'none') return inRegion[v] ? 'in the region' : 'outside the region';
+    if (choice === 'none') return isWhole ? '' : inRegion[v] ? 'in the region' : 'outside the region';
     if (choice.startsWith('label')) {
       const map = labelMaps[Number(choice.slice(5))];
       return map.name + ': ' + (map.entries[v] < 0 ? 'none' : map.names[map.entries[v]]);
