@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <tuple>
 
 namespace explica::flattening {
@@ -354,6 +355,24 @@ std::vector<Plane> kernelOf(const std::vector<Plane>& ring) {
   return kernel;
 }
 
+/// A place from which the ring is seen where the kernel is too thin for its corners to be computed:
+/// beside the vertex that the removed one merged with.  The faces that join this one to the ring
+/// are positive, so that the exact test finds a place on the way to any vertex across, near enough.
+std::optional<Plane> placeBeside(const std::vector<Plane>& ring, bool open, std::size_t centre) {
+  constexpr int kHalvings = 50;  // down to the rounding of the coordinates
+  const std::size_t size = ring.size();
+  const Plane& from = ring[centre];
+  const Plane to = open        ? ring[size - 1 - centre]
+                   : size == 3 ? Plane((ring[0] + ring[1] + ring[2]) / 3)
+                               : ring[(centre + size / 2) % size];
+  double share = 0.5;
+  for (int n = 0; n < kHalvings; ++n, share /= 2) {
+    const Plane tried = from + share * (to - from);
+    if (seesRing(ring, open, tried)) return tried;
+  }
+  return {};
+}
+
 /// Place of a rim vertex: on the segment from the first to the last of its ring, as near as
 /// possible to the wanted share of the way.  Where the rim turns inwards there so sharply that the
 /// segment does not see the ring, inside, so that the rim still cannot meet itself.
@@ -450,10 +469,12 @@ bool Insertion::insert(const Removal& removal, FlatPositions& flat) {
   Plane place;
   if (removal.onRim) {
     std::int32_t after = removal.ring.front(), before = removal.ring.back();
+    std::size_t centre = 0;
     double wanted = removal.spokes.front() / (removal.spokes.front() + removal.spokes.back());
     if (next_[before] != after) {  // the list runs along the rim: faces lie to its right
       std::swap(before, after);
       std::reverse(ring.begin(), ring.end());
+      centre = ring.size() - 1;
       wanted = 1 - wanted;
       for (StarFace& face : star) {
         std::swap(face.rest.gradient[1], face.rest.gradient[2]);
@@ -462,7 +483,11 @@ bool Insertion::insert(const Removal& removal, FlatPositions& flat) {
       }
     }
     place = rimPlace(ring, wanted);
-    if (!seesRing(ring, true, place)) return false;
+    if (!seesRing(ring, true, place)) {
+      const auto beside = placeBeside(ring, true, centre);
+      if (!beside) return false;
+      place = *beside;
+    }
     const Plane relaxed = relaxedPlace(star, areaWeight_, place);
     for (double share = 1; share > 0.05; share /= 2) {
       const Plane tried = place + share * (relaxed - place);
@@ -476,11 +501,14 @@ bool Insertion::insert(const Removal& removal, FlatPositions& flat) {
     Plane mean = Plane::Zero();
     for (const Plane& p : ring) mean += p / static_cast<double>(ring.size());
     const auto kernel = kernelOf(ring);
-    if (kernel.size() < 3) return false;
     // Halfway between the kernel's middle, which is safe, and that of the neighbours.
-    const Plane middle = centroidOf(kernel);
+    const Plane middle = kernel.size() < 3 ? ring.front() : centroidOf(kernel);
     place = seesRing(ring, false, mean) ? Plane((mean + middle) / 2) : middle;
-    if (!seesRing(ring, false, place)) return false;
+    if (!seesRing(ring, false, place)) {
+      const auto beside = placeBeside(ring, false, 0);
+      if (!beside) return false;
+      place = *beside;
+    }
     const Plane relaxed = relaxedPlace(star, areaWeight_, place);
     if (seesRing(ring, false, relaxed)) place = relaxed;
   }
