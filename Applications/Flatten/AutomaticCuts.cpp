@@ -118,7 +118,15 @@ void report(Context& context, const flattening::CutPlan& plan,
   context.result("cut_depth", length > 0 ? depth / length : kNaN);
   context.result("cut_strain_before", plan.strainBefore);
   context.result("cut_strain", plan.edgeStrain);
-  char line[160];
+  char line[200];
+  if (plan.termination == Termination::Interrupted) {
+    std::snprintf(line, sizeof line,
+                  "stopped while cuts were sought: %zu so far, %.0f mm in all; --resume goes on "
+                  "from them",
+                  plan.cuts.size(), length);
+    context.info(line);
+    return;
+  }
   std::snprintf(line, sizeof line, "%zu cuts, %.0f mm in all; edge strain %.3f without, %.3f with",
                 plan.cuts.size(), length, plan.strainBefore, plan.edgeStrain);
   context.info(line);
@@ -162,21 +170,31 @@ std::vector<bool> cortexOf(Context& context, const std::string& surface, const T
   return inCortex;
 }
 
-flattening::Disc openedByItself(Context& context, const io::LoadedSurface& reference,
-                                const flattening::Disc& disc,
-                                const flattening::CutOptions& options) {
-  const Eigen::VectorXd whole = flattening::foldDepth(reference.mesh);
-  Eigen::VectorXd depth(disc.mesh.vertexCount());
-  for (Eigen::Index v = 0; v < depth.size(); ++v) depth[v] = whole[disc.vertexOrigin[v]];
-  const auto plan = flattening::findCuts(disc, depth, options, context.monitor());
-  report(context, plan, options);
-  writeTextFile(context.output("cuts.tsv"), tableOf(disc, plan.cuts));
+Opened openedByItself(Context& context, const Monitor& monitor, const io::LoadedSurface& reference,
+                      const flattening::Disc& disc, const flattening::CutOptions& options,
+                      const flattening::Checkpoint* resume) {
+  const bool known = resume != nullptr && resume->cuts;
+  if (known && resume->uncut != flattening::sumOver(disc)) {
+    throw InvalidInput("resume: the cuts that lie in --out belong to another surface");
+  }
+  Opened opened;
+  if (known) opened.plan = *resume->cuts;
+  if (!known || opened.plan.termination == Termination::Interrupted) {
+    Eigen::VectorXd depth = Eigen::VectorXd::Zero(disc.mesh.vertexCount());
+    if (!monitor.shouldStop()) depth = flattening::foldDepth(reference.mesh)(disc.vertexOrigin);
+    opened.plan =
+        flattening::findCuts(disc, depth, options, monitor, known ? &*resume->cuts : nullptr);
+  }
+  const auto& cuts = opened.plan.cuts;
+  report(context, opened.plan, options);
+  writeTextFile(context.output("cuts.tsv"), tableOf(disc, cuts));
   io::writeGiftiLabel(context.output("cuts.label.gii"),
-                      labelsOf(disc, plan.cuts, reference.mesh.vertexCount()),
+                      labelsOf(disc, cuts, reference.mesh.vertexCount()),
                       reference.metadata.structure);
   std::vector<flattening::CutPath> paths;
-  for (const flattening::Cut& cut : plan.cuts) paths.push_back(cut.path);
-  return flattening::openedAlong(disc, paths);
+  for (const flattening::Cut& cut : cuts) paths.push_back(cut.path);
+  opened.disc = flattening::openedAlong(disc, paths);
+  return opened;
 }
 
 }  // namespace explica::app

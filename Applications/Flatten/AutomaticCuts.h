@@ -5,6 +5,7 @@
 #include "Explica/Application/Context.h"
 #include "Explica/Flattening/Cuts.h"
 #include "Explica/Flattening/Disc.h"
+#include "Explica/Flattening/State.h"
 #include "Explica/IO/SurfaceFile.h"
 
 #include <optional>
@@ -22,9 +23,18 @@ namespace explica::app {
                                          const TriangleMesh& mesh,
                                          const std::optional<std::string>& cortex);
 
+/// A disc opened along cuts that the program found.
+struct Opened {
+  flattening::CutPlan plan;
+  flattening::Disc disc;
+};
 /// Finds relief cuts, writes them (cuts.tsv, cuts.label.gii) and opens the disc along them.
-[[nodiscard]] flattening::Disc openedByItself(Context& context, const io::LoadedSurface& reference,
-                                              const flattening::Disc& disc,
-                                              const flattening::CutOptions& options);
+/// @param resume  what an earlier run has found; nothing is sought if that was all
+/// @throws InvalidInput  a state of another surface
+[[nodiscard]] Opened openedByItself(Context& context, const Monitor& monitor,
+                                    const io::LoadedSurface& reference,
+                                    const flattening::Disc& disc,
+                                    const flattening::CutOptions& options,
+                                    const flattening::Checkpoint* resume);
 
 }  // namespace explica::app

@@ -13,6 +13,7 @@
 #include "Explica/Flattening/FlatGrid.h"
 #include "Explica/Flattening/PatchTable.h"
 #include "Explica/Flattening/Selection.h"
+#include "Explica/Flattening/State.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/IO/PatchFile.h"
@@ -39,7 +40,8 @@ namespace {
 constexpr double kPatchTolerance = 0.01;    // mean area error of a patch ...
 constexpr double kCutTolerance = 0.05;      // ... and of a hemisphere with cuts: less costs lengths
 constexpr const char* kAutomatic = "auto";  // of --cuts
-constexpr double kDistanceWork = 2e6;       // vertices visited for the distance errors, about
+constexpr const char* kStateFile = "flattening.state";
+constexpr double kDistanceWork = 2e6;  // vertices visited for the distance errors, about
 
 struct Settings {
   std::string surface;
@@ -59,6 +61,7 @@ struct Settings {
   bool nearest = false;
   std::vector<std::string> maps;
   std::vector<std::string> regions;
+  bool resume = false;
 };
 
 void declare(Declaration& d, Settings& s) {
@@ -70,7 +73,7 @@ A closed surface needs --label (a patch) or --cuts (a hemisphere): a FreeSurfer 
 
 --cuts auto takes the medial wall out (--cortex; or lh.cortex.label or valid.shape.gii beside the surface; or the flattest fortieth of it) and finds relief cuts: each ends where a conformal map would change lengths most and comes along the sulci, where a way costs half as much for each standard deviation of depth; of five such cuts the one is taken that lowers the strain most for its length, until --cut.strain is reached. No face is lost: vertices along a cut become two, the second copies last in patch.surf.gii. Where a vertex has one place only, what touches a second copy is left out: of flat.surf.gii faces, of FreeSurfer's patches the vertices on cuts.
 
-A run that is stopped writes the map as far as it came, one-to-one as ever, and ends with exit code 3; there is nothing to resume, for a hemisphere takes seconds, and there are no frames, for the map grows from few vertices to all of them and not out of the surface.
+The map grows from a circle of few vertices to all of them, and is one-to-one from the start. A run that is stopped, by a signal or by --max-time at any moment, writes the map as far as it came, whole and one-to-one as ever, with the cuts found until then, and ends with exit code 3; --resume into the same --out goes on to the very map of a run that never stopped. --frames shows the way.
 
 With --surfaces the map becomes a stack of depths: grid.nii.gz gives each cell its place in the tissue (RAS mm), --volumes are resampled into it, and to_flat.nii.gz gives each voxel of the first volume its u and v (mm in the map) and depth (0 at the white surface, 1 at the pial).)")
       .reference("Tutte 1963, Proceedings of the London Mathematical Society 13:743-767")
@@ -109,6 +112,18 @@ With --surfaces the map becomes a stack of depths: grid.nii.gz gives each cell i
               s.areaTolerance)
       .options("Flattening", s.flatten, "solver.")
       .without("solver.area-tolerance")
+      .without("solver.max-time")
+      .without("solver.frames")
+      .option("Flattening",
+              Field{"frames", "",
+                    "states to write on the way, evenly spaced along the way that vertices go", 0,
+                    flattening::kMostFrames},
+              s.flatten.frames)
+      .option("Flattening", Field{"max-time", "s", "stop after this time", kAboveZero},
+              s.flatten.maxTime)
+      .option("Flattening", Field{"resume", "", "continue the run whose outputs are in --out"},
+              s.resume)
+      .reuseOutputIf(s.resume)
       .option("Grid", Field{"grid", "mm", "size of the grid's cells along u and v", 1e-3, 1e3},
               s.grid)
       .option("Grid",
@@ -151,7 +166,10 @@ With --surfaces the map becomes a stack of depths: grid.nii.gz gives each cell i
       .output("to_flat.nii.gz", FileKind::PointVolume,
               "u, v (mm) and depth (0 to 1) of each voxel of the first volume")
       .output("flat_*.nii.gz", FileKind::Volume, "each volume on the grid")
-      .output("flat.png", FileKind::Picture, "the map with outlines, scale bar and colour bar");
+      .output("flat.png", FileKind::Picture, "the map with outlines, scale bar and colour bar")
+      .output("frames/frame-*.surf.gii", FileKind::Surface,
+              "--frames states on the way, vertices and faces as in flat.surf.gii")
+      .varyingOutput(kStateFile, FileKind::Any, "what --resume needs");
 }
 
 using Clock = std::chrono::steady_clock;
@@ -257,13 +275,12 @@ Subject subjectOf(Context& context, const Settings& s) {
 /// The map on all vertices of the whole, those off the patch at the origin.  A vertex on a cut lies
 /// where its first copy does, and faces at second copies are left out.
 TriangleMesh wholeMap(const TriangleMesh& reference, const flattening::Disc& disc,
-                      const flattening::FlatMap& map) {
+                      const flattening::FlatPositions& map) {
   const std::vector<bool> second = flattening::secondCopies(disc);
   TriangleMesh flat{Positions::Zero(reference.vertexCount(), 3), Faces(disc.mesh.faceCount(), 3)};
   for (std::size_t v = 0; v < disc.vertexOrigin.size(); ++v) {
     if (second[v]) continue;
-    flat.positions.row(disc.vertexOrigin[v]).head<2>() =
-        map.positions.row(static_cast<Eigen::Index>(v));
+    flat.positions.row(disc.vertexOrigin[v]).head<2>() = map.row(static_cast<Eigen::Index>(v));
   }
   Eigen::Index kept = 0;
   for (std::size_t f = 0; f < disc.faceOrigin.size(); ++f) {
@@ -582,31 +599,95 @@ void warnOf(Context& context, const flattening::Disc& disc, const flattening::Fl
   }
 }
 
+/// Writes the states on the way, and says whether they are one-to-one as they are written.
+void writeFrames(Context& context, const Subject& subject, const flattening::Disc& disc,
+                 const std::vector<flattening::FlatPositions>& frames) {
+  if (frames.empty()) return;
+  io::SurfaceMetadata metadata = subject.reference.metadata;
+  metadata.topologicalType = "Open";
+  metadata.geometricType = "Flat";
+  metadata.secondary.clear();
+  std::int64_t turnedOver = 0;
+  for (std::size_t n = 0; n < frames.size(); ++n) {
+    turnedOver = std::max(turnedOver, flattening::countTurnedOver(disc.mesh.faces, frames[n]));
+    char name[64];
+    std::snprintf(name, sizeof name, "frames/frame-%04zu.surf.gii", n);
+    io::writeGiftiSurface(context.output(name), wholeMap(subject.reference.mesh, disc, frames[n]),
+                          metadata);
+  }
+  context.result("frames", frames.size());
+  context.result("turned_over_frames_max", static_cast<long long>(turnedOver));
+}
+
+/// Seconds for cuts and map within the limit of the whole command: what comes after them measures
+/// and writes for about four times as long as the start took, and each frame for half as long.
+double timeToIterate(double limit, double start, int frames) {
+  constexpr double kOutputShare = 4, kFrameShare = 0.5;
+  constexpr double kLeast = 1e-3;  // s: the map as its first level gives it
+  return std::max(kLeast, limit - start * (kOutputShare + kFrameShare * frames));
+}
+
+/// The run from the opened surface on: its disc, its map, and what going on needs.
+struct Made {
+  flattening::Disc disc;
+  flattening::FlatMap map;
+  flattening::Checkpoint state;
+  double secondsCut = 0;
+};
+
+Made make(Context& context, const Settings& s, const Subject& subject, flattening::Disc disc,
+          flattening::FlattenOptions options) {
+  const auto begin = Clock::now();
+  std::optional<flattening::Checkpoint> from;
+  if (s.resume) from = flattening::readCheckpoint(context.outputFolder() / kStateFile);
+  Made made;
+  made.state.uncut = flattening::sumOver(disc);
+  bool cutting = false;
+  if (s.cuts == kAutomatic) {
+    auto step = context.step("cut");
+    Monitor limited = context.monitor();
+    limited.stopWanted = [&] {
+      return context.monitor().shouldStop() ||
+             (options.maxTime && secondsSince(begin) > *options.maxTime);
+    };
+    Opened opened =
+        openedByItself(context, limited, subject.reference, disc, s.cut, from ? &*from : nullptr);
+    cutting = opened.plan.termination == Termination::Interrupted;
+    made.state.cuts = std::move(opened.plan);
+    disc = std::move(opened.disc);
+  }
+  made.secondsCut = secondsSince(begin);
+  constexpr double kAtOnce = 1e-9;  // s
+  if (options.maxTime) options.maxTime = std::max(kAtOnce, *options.maxTime - made.secondsCut);
+  if (cutting) options.frames = 0;  // the map stands at its very start
+  auto step = context.step("flatten");
+  made.map = flattening::flatten(disc, options, context.monitor(), from ? &from->map : nullptr);
+  step.iterations(made.map.iterations);
+  step.termination(made.map.termination);
+  if (!cutting) made.state.map = std::move(made.map.state);
+  made.disc = std::move(disc);
+  return made;
+}
+
 Termination run(Context& context, const Settings& s) {
   const auto begin = Clock::now();
   const Subject subject = subjectOf(context, s);
-  flattening::Disc disc = flattening::discOf(subject.reference.mesh, subject.faces);
+  flattening::Disc whole = flattening::discOf(subject.reference.mesh, subject.faces);
   sayHowRead(context, subject.reference.origin);
   flattening::FlattenOptions options = s.flatten;
   options.areaTolerance = s.areaTolerance.value_or(s.cuts ? kCutTolerance : kPatchTolerance);
   const double read = secondsSince(begin);
-  if (s.cuts == kAutomatic) {
-    auto step = context.step("cut");
-    disc = openedByItself(context, subject.reference, disc, s.cut);
-  }
-  const double cut = secondsSince(begin);
-  flattening::FlatMap map;
-  {
-    auto step = context.step("flatten");
-    map = flattening::flatten(disc, options, context.monitor());
-    step.iterations(map.iterations);
-    step.termination(map.termination);
-  }
+  if (options.maxTime) options.maxTime = timeToIterate(*options.maxTime, read, options.frames);
+  const Made made = make(context, s, subject, std::move(whole), options);
+  const flattening::Disc& disc = made.disc;
+  const flattening::FlatMap& map = made.map;
   const double flattened = secondsSince(begin);
   warnOf(context, disc, map);
   auto step = context.step("measure and write");
+  flattening::writeCheckpoint(context.output(kStateFile), made.state);
   const TriangleMesh flat{patchPositions(map), disc.mesh.faces};
-  writeSurfaces(context, subject, disc, map, wholeMap(subject.reference.mesh, disc, map));
+  writeSurfaces(context, subject, disc, map, wholeMap(subject.reference.mesh, disc, map.positions));
+  writeFrames(context, subject, disc, map.frames);
   const Eigen::VectorXd areaRatio = measure(context, subject, disc, flat);
   writePatchTable(context, s, subject, disc, map, areaRatio);
   writeGrid(context, s, subject, disc, flat);
@@ -622,8 +703,8 @@ Termination run(Context& context, const Settings& s) {
   context.result("iterations", map.iterations);
   context.result("stop_reason", std::string(nameOf(map.termination)));
   context.result("seconds_start", read);
-  context.result("seconds_cut", cut - read);
-  context.result("seconds_flatten", flattened - cut);
+  context.result("seconds_cut", made.secondsCut);
+  context.result("seconds_flatten", flattened - read - made.secondsCut);
   context.result("seconds_output", secondsSince(begin) - flattened);
   context.result("seconds", secondsSince(begin));
   const bool folded = map.turnedOver > 0 || map.rimCrossings > 0;

@@ -410,6 +410,38 @@ TEST(FlattenRegions, SeveralLabelsAndKeysMakeOnePatch) {
   EXPECT_NE(none.err.find("7 or 8, keys go from 0 to 3"), std::string::npos) << none;
 }
 
+/// A limit that has passed before any work begins: what the help promises does not hang on a clock.
+TEST(FlattenLimit, AMapIsWrittenHoweverShortTheTimeAndTheRunGoesOn) {
+  TemporaryFolder folder;
+  io::writeSurface(folder / "sphere.surf.gii", geometry::makeFoldedSphere(5, 30.0));
+  const auto withWords = [&](std::vector<std::string> more, const std::string& out) {
+    std::vector<std::string> words = {
+        "flatten",   folder / "sphere.surf.gii", "--cuts", "auto", "--grid", "2", "--out",
+        folder / out};
+    words.insert(words.end(), more.begin(), more.end());
+    return explica(words);
+  };
+  const auto stopped = withWords({"--max-time", "1e-9", "--frames", "4"}, "a");
+  ASSERT_EQ(stopped.exitCode, 3) << stopped;
+  EXPECT_NE(stopped.err.find("stopped while cuts were sought"), std::string::npos) << stopped;
+  const auto summary = readJson(folder / "a/summary.json");
+  EXPECT_EQ(summary["termination"], "max-time");
+  EXPECT_EQ(summary["turned_over"], 0);
+  EXPECT_EQ(summary["rim_crossings"], 0);
+  const auto map = io::readSurface(folder / "a/patch_flat.surf.gii").mesh;
+  EXPECT_GT(map.faceCount(), 19000);
+  EXPECT_TRUE(geometry::findSelfIntersections(map).empty());
+  EXPECT_EQ(withWords({"--resume"}, "a").exitCode, 0);
+  EXPECT_EQ(withWords({}, "b").exitCode, 0);
+  EXPECT_EQ(readText(folder / "a/flat.surf.gii"), readText(folder / "b/flat.surf.gii"));
+  EXPECT_EQ(withWords({"--resume"}, "c").exitCode, 2);  // nothing lies there
+
+  io::writeSurface(folder / "sphere.surf.gii", geometry::makeFoldedSphere(5, 31.0));
+  const auto stranger = withWords({"--resume"}, "a");
+  EXPECT_EQ(stranger.exitCode, 2);
+  EXPECT_NE(stranger.err.find("another surface"), std::string::npos) << stranger;
+}
+
 TEST_F(FlattenCommand, TheWallOfAutomaticCutsIsTakenFromWhatIsGivenOrFound) {
   TemporaryFolder folder;
   const std::string mid = middle(folder, "left");

@@ -63,6 +63,39 @@ TEST_P(Interrupt, InflationGoesOnToTheBytesOfARunThatNeverStopped) {
   EXPECT_EQ(readText(folder / "a/inflated.surf.gii"), readText(folder / "b/inflated.surf.gii"));
 }
 
+TEST_P(Interrupt, AFlatMapGoesOnToTheBytesOfARunThatNeverStopped) {
+  TemporaryFolder folder;
+  io::writeSurface(folder / "sphere.surf.gii", geometry::makeFoldedSphere(5, 30.0));
+  const std::vector<std::string> words = {
+      "flatten", folder / "sphere.surf.gii", "--cuts", "auto", "--grid", "2", "--frames", "3"};
+  const auto whole = explica(words + std::vector<std::string>{"--out", folder / "whole"});
+  ASSERT_EQ(whole.exitCode, 0) << whole;
+  for (const std::string moment : {"cut 1", "iteration 2 on 10"}) {
+    const std::vector<std::string> here = {"--out", folder / "a", "--force"};
+    CommandSetting setting;
+    setting.signal = GetParam();
+    setting.signalWhen = moment;
+    const auto stopped = explica(words + here, setting);
+    ASSERT_EQ(stopped.exitCode, 3) << stopped;
+    EXPECT_NE(stopped.err.find("interrupted"), std::string::npos) << stopped;
+    const auto summary = readJson(folder / "a/summary.json");
+    EXPECT_EQ(summary["stop_reason"], "interrupted");
+    EXPECT_EQ(summary["turned_over"], 0);
+    EXPECT_EQ(summary["rim_crossings"], 0);
+    EXPECT_EQ(explica({"verify", folder / "a"}).exitCode, 0);
+    const auto resumed =
+        explica(words + std::vector<std::string>{"--out", folder / "a", "--resume"});
+    EXPECT_EQ(resumed.exitCode, 0) << resumed;
+    for (const char* file : {"patch_flat.surf.gii", "flat.surf.gii", "cuts.tsv",
+                             "frames/frame-0001.surf.gii", "lh.patch.flat"}) {
+      EXPECT_EQ(readText(folder / ("a/" + std::string(file))),
+                readText(folder / ("whole/" + std::string(file))))
+          << moment << " " << file;
+    }
+    EXPECT_EQ(explica({"verify", folder / "a"}).exitCode, 0);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Signals, Interrupt, ::testing::Values(SIGINT, SIGUSR1),
                          [](const auto& row) { return "Signal" + std::to_string(row.param); });
 

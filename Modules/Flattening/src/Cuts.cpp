@@ -124,24 +124,28 @@ std::vector<Peak> peaksOf(const IntrinsicMesh& mesh, const Eigen::VectorXd& heig
 /// The search for cuts on a disc of moderate size.
 class CutSearch {
  public:
+  /// @param paths  cuts that an earlier search has found
   CutSearch(IntrinsicDisc disc, Eigen::VectorXd depth, std::vector<bool> barred,
-            const Monitor& monitor)
+            std::vector<CutPath> paths, const Monitor& monitor)
       : disc_(std::move(disc)),
         barred_(std::move(barred)),
         ways_(disc_.mesh, std::move(depth), barred_),
         monitor_(monitor),
-        starts_(disc_.rim) {
+        starts_(disc_.rim),
+        paths_(std::move(paths)) {
+    for (const CutPath& path : paths_) starts_.insert(starts_.end(), path.begin(), path.end());
     double area = 0;
     for (const RestFace& face : restFaces(disc_.mesh, 0)) area += face.area;
     price_ = kPriceOfACut * std::sqrt(area);
-    trial_ = tryOut({});
+    Trial trial = tryOut(paths_);
+    if (!monitor_.shouldStop()) trial_ = std::move(trial);
   }
 
   [[nodiscard]] double strain() const { return trial_.strain; }
   [[nodiscard]] const std::vector<CutPath>& paths() const { return paths_; }
 
   /// Adds the cut that relieves most for its price.
-  /// @return false if no cut relieves anything
+  /// @return false if no cut relieves anything, or the search is to stop
   bool addBest() {
     struct Found {
       CutPath path;
@@ -149,13 +153,14 @@ class CutSearch {
       double gain = 0;
     };
     std::optional<Found> best;
+    if (monitor_.shouldStop()) return false;
     for (const std::int32_t end : worstPlaces()) {
-      if (monitor_.shouldStop()) return false;
       CutPath path = ways_.to(end, starts_);
       if (path.size() < 2) continue;
       std::vector<CutPath> tried = paths_;
       tried.push_back(path);
       Trial trial = tryOut(tried);
+      if (monitor_.shouldStop()) return false;  // a trial cut short says nothing
       const double gain = (strain() - trial.strain) / (price_ + ways_.lengthOf(path));
       if (!(gain > (best ? best->gain : 0))) continue;
       best = Found{std::move(path), std::move(trial), gain};
@@ -167,15 +172,22 @@ class CutSearch {
     return true;
   }
 
-  /// Shortens the last cut as far as the strain stays within what is asked for.
+  /// Shortens the last cut as far as the strain stays within what is asked for; leaves it whole if
+  /// the search is to stop.
   void shortenLast(double wanted) {
     const CutPath whole = paths_.back();
+    const Trial before = trial_;
     double enough = 1, tooShort = 0;
-    for (int n = 0; n < kHalvings && !monitor_.shouldStop(); ++n) {
+    for (int n = 0; n < kHalvings; ++n) {
       const double share = (enough + tooShort) / 2;
       std::vector<CutPath> tried = paths_;
       tried.back() = beginning(whole, share);
       Trial trial = tryOut(tried);
+      if (monitor_.shouldStop()) {
+        paths_.back() = whole;
+        trial_ = before;
+        return;
+      }
       if (trial.strain > wanted) {
         tooShort = share;
         continue;
@@ -256,43 +268,66 @@ std::vector<bool> atHoles(const Disc& disc, Eigen::Index vertexCount) {
   return barred;
 }
 
+/// Adds cuts until the strain asked for, or as many as allowed.
+Termination searchOn(CutSearch& search, const CutOptions& options, const Monitor& monitor) {
+  while (!(search.strain() <= options.edgeStrain)) {
+    if (monitor.shouldStop()) return Termination::Interrupted;
+    if (static_cast<int>(search.paths().size()) >= options.most) return Termination::MaxIterations;
+    monitor.progress(std::min(1.0, options.edgeStrain / search.strain()),
+                     "cut " + std::to_string(search.paths().size() + 1));
+    if (search.addBest()) continue;
+    return monitor.shouldStop() ? Termination::Interrupted : Termination::Stalled;
+  }
+  if (!search.paths().empty()) search.shortenLast(options.edgeStrain);
+  return monitor.shouldStop() ? Termination::Interrupted : Termination::TargetReached;
+}
+
+void requireWithin(const std::vector<CutPath>& paths, Eigen::Index vertexCount) {
+  for (const CutPath& path : paths) {
+    for (const std::int32_t v : path) {
+      if (v < 0 || v >= vertexCount) {
+        throw InvalidInput("state: its cuts belong to another surface");
+      }
+    }
+  }
+}
+
 }  // namespace
 
 CutPlan findCuts(const Disc& disc, const Eigen::VectorXd& depth, const CutOptions& options,
-                 const Monitor& monitor) {
+                 const Monitor& monitor, const CutPlan* resume) {
   if (depth.size() != disc.mesh.vertexCount()) {
     throw InvalidInput("depth: needs one value a vertex");
   }
   if (!(options.edgeStrain > 0) || options.most < 0) {
     throw InvalidInput("cuts: needs a strain above 0 and no negative number of cuts");
   }
+  CutPlan plan;
+  if (resume != nullptr) plan = *resume;
+  plan.termination = Termination::Interrupted;
+  if (monitor.shouldStop()) return plan;
   const IntrinsicDisc fine = intrinsicDisc(disc);
   const std::vector<bool> barred = atHoles(disc, fine.mesh.vertexCount);
   Eigen::VectorXd fineDepth = Eigen::VectorXd::Zero(fine.mesh.vertexCount);
   fineDepth.head(depth.size()) = depth;
   CoarseDisc coarse = coarseDisc(fine, kSearchVertices);
+  requireWithin(plan.found, coarse.disc.mesh.vertexCount);
   Eigen::VectorXd coarseDepth(coarse.disc.mesh.vertexCount);
   std::vector<bool> coarseBarred;
   for (Eigen::Index v = 0; v < coarseDepth.size(); ++v) {
     coarseDepth[v] = fineDepth[coarse.vertexOrigin[v]];
     coarseBarred.push_back(barred[coarse.vertexOrigin[v]]);
   }
-  CutSearch search(coarse.disc, std::move(coarseDepth), std::move(coarseBarred), monitor);
-  CutPlan plan;
-  plan.strainBefore = search.strain();
-  while (search.strain() > options.edgeStrain &&
-         static_cast<int>(search.paths().size()) < options.most) {
-    monitor.progress(std::min(1.0, options.edgeStrain / search.strain()),
-                     "cut " + std::to_string(search.paths().size() + 1));
-    if (!search.addBest()) break;
-  }
-  if (!search.paths().empty() && search.strain() <= options.edgeStrain) {
-    search.shortenLast(options.edgeStrain);
-  }
-  plan.edgeStrain = search.strain();
+  CutSearch search(coarse.disc, std::move(coarseDepth), std::move(coarseBarred), plan.found,
+                   monitor);
+  if (plan.found.empty()) plan.strainBefore = search.strain();
+  plan.termination = searchOn(search, options, monitor);
+  if (std::isfinite(search.strain())) plan.edgeStrain = search.strain();
+  plan.found = search.paths();
+  plan.cuts.clear();
   const FoldWays ways(fine.mesh, fineDepth, barred);
   std::vector<std::int32_t> starts = disc.rim;
-  for (const CutPath& found : search.paths()) {
+  for (const CutPath& found : plan.found) {
     Cut cut;
     cut.path = ways.to(coarse.vertexOrigin[found.back()], starts);
     cut.length = ways.lengthOf(cut.path);

@@ -4,12 +4,14 @@
 #include "Explica/Flattening/Flatten.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/StateFile.h"
 #include "Explica/Flattening/RimContact.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/Predicates.h"
 #include "LayFlat.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <string>
 
@@ -38,25 +40,56 @@ void centre(FlatPositions& flat, Eigen::Index count) {
   flat.rowwise() -= flat.topRows(count).colwise().mean();
 }
 
-/// Turns the map so that an axis of the reference points up as well as it can.
-void turnUp(const Disc& disc, FlatPositions& flat) {
+/// The turn after which an axis of the reference points up as well as it can.
+Eigen::Matrix2d turnUp(const Disc& disc, const FlatPositions& flat) {
   constexpr double kLeast = 0.3;  // of a unit gradient: below it the piece lies across the axis
   const Eigen::Index count = disc.mesh.vertexCount();
   const FlatPositions known = flat.topRows(count);
   const Eigen::Matrix2d moments = known.transpose() * known;
+  Eigen::Matrix2d turn = Eigen::Matrix2d::Identity();  // rows of the new frame: right of up, and up
   for (const int axis : {2, 1}) {
     const Eigen::VectorXd height =
         disc.mesh.positions.col(axis).array() - disc.mesh.positions.col(axis).mean();
     const Eigen::Vector2d slope = moments.inverse() * (known.transpose() * height);
     if (!(slope.norm() > kLeast) && axis == 2) continue;
-    if (!(slope.norm() > 0)) return;
+    if (!(slope.norm() > 0)) return turn;
     const Eigen::Vector2d up = slope.normalized();
-    Eigen::Matrix2d turn;  // rows of the new frame: right of up, and up
     turn << up.y(), -up.x(), up.x(), up.y();
-    flat = (flat * turn.transpose()).eval();
-    return;
+    return turn;
   }
+  return turn;
 }
+
+/// Centred, turned, and as it is written.
+FlatPositions placed(const Disc& disc, FlatPositions flat, const Eigen::Matrix2d& turn) {
+  centre(flat, disc.mesh.vertexCount());
+  flat = (flat * turn.transpose()).eval();
+  return rounded(flat.topRows(disc.mesh.vertexCount()));
+}
+
+/// Asks to stop as `monitor` does, and where one more iteration would not fit into the time.
+class Limited {
+ public:
+  Limited(const Monitor& monitor, std::optional<double> seconds) : monitor_(monitor) {
+    if (!seconds) return;
+    monitor_.stopWanted = [this, &monitor, limit = *seconds] {
+      const double now = std::chrono::duration<double>(Clock::now() - begin_).count();
+      const double next = asked_ > 0 ? now + (now - asked_) : now;
+      asked_ = now;
+      return monitor.shouldStop() || next > limit;
+    };
+  }
+  Limited(const Limited&) = delete;
+  Limited& operator=(const Limited&) = delete;
+  [[nodiscard]] const Monitor& monitor() const { return monitor_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  Monitor monitor_;
+  Clock::time_point begin_ = Clock::now();
+  double asked_ = 0;  ///< s: an iteration lies between two questions
+};
 
 void requireInRange(const FlattenOptions& options) {
   const auto positive = [](const char* name, double value) {
@@ -68,9 +101,19 @@ void requireInRange(const FlattenOptions& options) {
   positive("contact-range", options.contactRange);
   positive("tolerance", options.tolerance);
   positive("max-iterations", options.maxIterations);
+  positive("max-time", options.maxTime.value_or(1));
+  if (options.frames < 0) throw InvalidInput("frames: must not be negative");
 }
 
 }  // namespace
+
+std::uint64_t sumOver(const Disc& disc) {
+  const auto bytes = [](const auto& m) {
+    return std::string_view(reinterpret_cast<const char*>(m.data()),
+                            static_cast<std::size_t>(m.size()) * sizeof(*m.data()));
+  };
+  return checkSum(bytes(disc.mesh.faces), checkSum(bytes(disc.mesh.positions)));
+}
 
 std::int64_t countTurnedOver(const Faces& faces, const FlatPositions& flat) {
   std::int64_t count = 0;
@@ -82,24 +125,37 @@ std::int64_t countTurnedOver(const Faces& faces, const FlatPositions& flat) {
   return count;
 }
 
-FlatMap flatten(const Disc& disc, const FlattenOptions& options, const Monitor& monitor) {
+FlatMap flatten(const Disc& disc, const FlattenOptions& options, const Monitor& monitor,
+                const FlattenState* resume) {
   requireInRange(options);
   if (!(geometry::totalArea(disc.mesh) > 0)) {
     throw InvalidInput("surface: it has no area, so that nothing can be kept");
   }
+  const std::uint64_t sum = sumOver(disc);
+  if (resume != nullptr && resume->level >= 0 && resume->disc != sum) {
+    throw InvalidInput("state: it belongs to another surface, or to other cuts");
+  }
+  const Limited limited(monitor, options.maxTime);
   const IntrinsicDisc piece = intrinsicDisc(disc);
   const auto areaError = [&](const FlatPositions& flat) { return meanAreaError(disc, flat); };
-  Laid laid = layFlat(piece, areaError, options, monitor);
-  FlatPositions& flat = laid.positions;
+  Laid laid = layFlat(piece, areaError, options, limited.monitor(), resume);
   FlatMap map;
   map.energy = laid.energy;
   map.iterations = laid.iterations;
-  map.areaWeight = laid.areaWeight;
   map.termination = laid.termination;
+  if (map.termination == Termination::Interrupted && !monitor.shouldStop()) {
+    map.termination = Termination::MaxTime;
+  }
+  map.areaWeight = laid.state.areaWeight;
+  map.state = std::move(laid.state);
+  map.state.disc = sum;
   (void)restFaces(piece.mesh, kNeedleHeight * piece.mesh.lengths.mean(), &map.raisedFaces);
-  centre(flat, disc.mesh.vertexCount());
-  turnUp(disc, flat);
-  map.positions = rounded(flat.topRows(disc.mesh.vertexCount()));
+  centre(laid.positions, disc.mesh.vertexCount());
+  const Eigen::Matrix2d turn = turnUp(disc, laid.positions);
+  for (FlatPositions& frame : laid.frames) {
+    map.frames.push_back(placed(disc, std::move(frame), turn));
+  }
+  map.positions = placed(disc, std::move(laid.positions), turn);
   map.turnedOver = countTurnedOver(disc.mesh.faces, map.positions);
   map.rimCrossings = static_cast<std::int64_t>(rimCrossings(disc.rim, map.positions).size());
   return map;

@@ -116,38 +116,6 @@ double areaOf(const IntrinsicMesh& mesh) {
   return sum;
 }
 
-/// Lowers the energy at full resolution, areas counting more and more until they are kept.
-void lowerFinest(const IntrinsicDisc& disc,
-                 const std::function<double(const FlatPositions&)>& areaError,
-                 const FlattenOptions& options, const Monitor& monitor, Laid& map) {
-  FlatPositions& flat = map.positions;
-  std::vector<double> weights;
-  if (disc.surfaceFaces < disc.mesh.faces.rows()) {
-    weights.assign(static_cast<std::size_t>(disc.mesh.faces.rows()), kHoleWeight);
-    std::fill_n(weights.begin(), disc.surfaceFaces, 1.0);
-  }
-  map.areaWeight = kFirstAreaWeight;
-  MapSolver solver(disc.mesh, disc.rim, map.areaWeight, options.contactRange, weights);
-  const auto lower = [&](double tolerance) {
-    const auto run = solver.lower(flat, options.maxIterations - map.iterations, tolerance, monitor);
-    map.iterations += run.iterations;
-    map.energy = run.energy;
-    map.termination = run.termination;
-    return run.termination != Termination::Interrupted && map.iterations < options.maxIterations;
-  };
-  while (lower(kRough)) {
-    const double error = areaError(flat);
-    monitor.progress(std::min(0.9, options.areaTolerance / error), "areas");
-    if (error <= kAim * options.areaTolerance || map.areaWeight >= kLastAreaWeight) {
-      (void)lower(options.tolerance);
-      return;
-    }
-    map.areaWeight *=
-        std::clamp(std::pow(error / (kAim * options.areaTolerance), 1.5), kLeastRise, kMostRise);
-    solver.setAreaWeight(map.areaWeight);
-  }
-}
-
 /// Puts back what was removed after a level.
 void insertAll(const CoarseningLevel& level, const Loop& coarserRim, double areaWeight,
                FlatPositions& flat) {
@@ -159,6 +127,220 @@ void insertAll(const CoarseningLevel& level, const Loop& coarserRim, double area
     }
   }
 }
+
+/// Vertices of a level, ascending.
+std::vector<std::int32_t> verticesOf(const IntrinsicMesh& mesh) {
+  std::vector<bool> used(static_cast<std::size_t>(mesh.vertexCount), false);
+  for (const std::int32_t v : mesh.faces.reshaped()) used[v] = true;
+  std::vector<std::int32_t> vertices;
+  for (std::int32_t v = 0; v < mesh.vertexCount; ++v) {
+    if (used[v]) vertices.push_back(v);
+  }
+  return vertices;
+}
+
+/// A map on its way from few vertices to all.
+class Descent {
+ public:
+  Descent(const IntrinsicDisc& disc, const std::function<double(const FlatPositions&)>& areaError,
+          const FlattenOptions& options, const Monitor& monitor)
+      : disc_(disc),
+        areaError_(areaError),
+        options_(options),
+        monitor_(monitor),
+        levels_(coarsen(disc.mesh, disc.rim, kCoarsest)) {
+    for (const CoarseningLevel& level : levels_) vertices_.push_back(verticesOf(level.mesh));
+  }
+
+  void begin() {
+    const CoarseningLevel& coarsest = levels_.back();
+    flat_ = circleMap(coarsest.mesh, coarsest.rim, areaOf(coarsest.mesh));
+    state_.level = static_cast<int>(levels_.size()) - 1;
+    state_.areaTolerance = options_.areaTolerance;
+    keepPath();
+  }
+
+  void resume(const FlattenState& from) {
+    const auto fits = [&](const FlatStage& stage) {
+      return stage.level >= 0 && stage.level < static_cast<int>(levels_.size()) &&
+             stage.positions.rows() == static_cast<Eigen::Index>(vertices_[stage.level].size());
+    };
+    if (!fits({from.level, from.positions}) ||
+        !std::all_of(from.path.begin(), from.path.end(), fits)) {
+      throw InvalidInput("state: it belongs to another surface, or to other cuts");
+    }
+    state_ = from;
+    flat_ = FlatPositions::Zero(disc_.mesh.vertexCount, 2);
+    flat_(vertices_[state_.level], Eigen::all) = from.positions;
+    // Who asks for better areas than the run so far had in mind has its weight rise further.
+    if (options_.areaTolerance < state_.areaTolerance) state_.settled = false;
+    state_.areaTolerance = options_.areaTolerance;
+    if (state_.path.empty()) keepPath();
+  }
+
+  void run() {
+    while (state_.level > 0) {
+      if (lowerCoarse() == Termination::Interrupted) {
+        termination_ = Termination::Interrupted;
+        return;
+      }
+      insertAll(levels_[state_.level - 1], levels_[state_.level].rim, kFirstAreaWeight, flat_);
+      --state_.level;
+      state_.iterations = 0;
+    }
+    lowerFinest();
+  }
+
+  [[nodiscard]] Laid laid() const {
+    Laid result;
+    result.positions = wholeMap(state_.level, flat_);
+    result.state = state_;
+    result.state.positions = flat_(vertices_[state_.level], Eigen::all);
+    result.iterations = state_.level == 0 ? state_.iterations : 0;
+    result.energy = energy_;
+    result.termination = termination_;
+    result.frames = frames();
+    return result;
+  }
+
+ private:
+  /// The map of a level with all finer vertices put back.
+  [[nodiscard]] FlatPositions wholeMap(int level, FlatPositions flat) const {
+    for (; level > 0; --level) {
+      insertAll(levels_[level - 1], levels_[level].rim, kFirstAreaWeight, flat);
+    }
+    return flat;
+  }
+
+  void keepPath() {
+    if (options_.frames == 0) return;
+    state_.path.push_back({state_.level, flat_(vertices_[state_.level], Eigen::all)});
+  }
+
+  /// Lowers the map of one level, some of whose iterations may have been made before.
+  Termination lower(MapSolver& solver, int iterations, double tolerance) {
+    const int before = state_.iterations;
+    const auto run = solver.lower(flat_, iterations - before, tolerance, monitor_, [&](int made) {
+      state_.iterations = before + made;
+      keepPath();
+      tellProgress();
+    });
+    state_.iterations = before + run.iterations;
+    energy_ = run.energy;
+    return run.termination;
+  }
+
+  Termination lowerCoarse() {
+    const CoarseningLevel& level = levels_[state_.level];
+    MapSolver solver(level.mesh, level.rim, kFirstAreaWeight, options_.contactRange);
+    const bool coarsest = state_.level + 1 == static_cast<int>(levels_.size());
+    return lower(solver, coarsest ? kCoarseIterations : kMiddleIterations, kRough);
+  }
+
+  /// Lowers the energy at full resolution, areas counting more and more until they are kept.
+  void lowerFinest() {
+    std::vector<double> weights;
+    if (disc_.surfaceFaces < disc_.mesh.faces.rows()) {
+      weights.assign(static_cast<std::size_t>(disc_.mesh.faces.rows()), kHoleWeight);
+      std::fill_n(weights.begin(), disc_.surfaceFaces, 1.0);
+    }
+    double& weight = state_.areaWeight;
+    if (!std::isfinite(weight)) weight = kFirstAreaWeight;
+    MapSolver solver(disc_.mesh, disc_.rim, weight, options_.contactRange, weights);
+    const double aim = kAim * options_.areaTolerance;
+    while (true) {
+      const double tolerance = state_.settled ? options_.tolerance : kRough;
+      termination_ = lower(solver, options_.maxIterations, tolerance);
+      if (termination_ == Termination::Interrupted || state_.settled ||
+          state_.iterations >= options_.maxIterations) {
+        return;
+      }
+      const double error = areaError_(flat_);
+      areaShare_ = std::max(areaShare_, std::min(1.0, options_.areaTolerance / error));
+      state_.settled = error <= aim || weight >= kLastAreaWeight;
+      if (state_.settled) continue;
+      weight *= std::clamp(std::pow(error / aim, 1.5), kLeastRise, kMostRise);
+      solver.setAreaWeight(weight);
+    }
+  }
+
+  void tellProgress() const {
+    constexpr double kCoarseShare = 0.3, kFineShare = 0.6;  // of the whole
+    const double coarser = 1 - (state_.level + 1.0) / static_cast<double>(levels_.size());
+    monitor_.progress(kCoarseShare * coarser + (state_.level == 0 ? kFineShare * areaShare_ : 0),
+                      "iteration " + std::to_string(state_.iterations) + " on " +
+                          std::to_string(vertices_[state_.level].size()) + " vertices");
+  }
+
+  /// How far the coarsest level's vertices had come at each state of the path, mm.
+  [[nodiscard]] std::vector<double> wayAlongPath() const {
+    const std::vector<std::int32_t>& few = vertices_.back();
+    const auto places = [&](const FlatStage& stage) {
+      FlatPositions all = FlatPositions::Zero(disc_.mesh.vertexCount, 2);
+      all(vertices_[stage.level], Eigen::all) = stage.positions;
+      return FlatPositions(all(few, Eigen::all));
+    };
+    std::vector<double> way = {0};
+    FlatPositions before = places(state_.path.front());
+    for (std::size_t n = 1; n < state_.path.size(); ++n) {
+      FlatPositions now = places(state_.path[n]);
+      const double step = std::sqrt((now - before).rowwise().squaredNorm().mean());
+      way.push_back(way.back() + step);
+      before = std::move(now);
+    }
+    return way;
+  }
+
+  /// A state between two of the path, with all vertices.  Where the level changes the coarser
+  /// vertices stay, so that the finer state says where the others were.
+  [[nodiscard]] FlatPositions stateAt(std::size_t n, double share) const {
+    FlatPositions flat = FlatPositions::Zero(disc_.mesh.vertexCount, 2);
+    const FlatStage& here = state_.path[n];
+    int level = here.level;
+    flat(vertices_[level], Eigen::all) = here.positions;
+    if (share > 0 && n + 1 < state_.path.size()) {
+      const FlatStage& next = state_.path[n + 1];
+      for (; level > next.level; --level) {
+        insertAll(levels_[level - 1], levels_[level].rim, kFirstAreaWeight, flat);
+      }
+      const FlatPositions from = flat(vertices_[level], Eigen::all);
+      flat(vertices_[level], Eigen::all) = from + share * (next.positions - from);
+    }
+    return wholeMap(level, std::move(flat));
+  }
+
+  /// States evenly spaced along the way.  They lie on the straight pieces between iterations, on
+  /// which no face vanishes and no two rim edges meet.
+  [[nodiscard]] std::vector<FlatPositions> frames() const {
+    std::vector<FlatPositions> result;
+    if (options_.frames <= 0 || state_.path.empty()) return result;
+    const std::vector<double> way = wayAlongPath();
+    for (int k = 0; k < options_.frames; ++k) {
+      if (k + 1 == options_.frames) {
+        result.push_back(wholeMap(state_.level, flat_));
+        break;
+      }
+      const double wanted = way.back() * k / (options_.frames - 1);
+      const auto next = std::upper_bound(way.begin(), way.end(), wanted);
+      const auto n = static_cast<std::size_t>(next - way.begin()) - 1;
+      const double step = next == way.end() ? 0 : *next - way[n];
+      result.push_back(stateAt(n, step > 0 ? (wanted - way[n]) / step : 0));
+    }
+    return result;
+  }
+
+  const IntrinsicDisc& disc_;
+  const std::function<double(const FlatPositions&)>& areaError_;
+  const FlattenOptions& options_;
+  const Monitor& monitor_;
+  std::vector<CoarseningLevel> levels_;              ///< the finest first
+  std::vector<std::vector<std::int32_t>> vertices_;  ///< of each level
+  FlatPositions flat_;                               ///< rows of this level's vertices count
+  FlattenState state_;                               ///< without its positions
+  double energy_ = kNaN;
+  double areaShare_ = 0;  ///< of the way to the area tolerance
+  Termination termination_ = Termination::NotRun;
+};
 
 }  // namespace
 
@@ -193,21 +375,16 @@ CoarseDisc coarseDisc(const IntrinsicDisc& fine, Eigen::Index vertices) {
 
 Laid layFlat(const IntrinsicDisc& disc,
              const std::function<double(const FlatPositions&)>& areaError,
-             const FlattenOptions& options, const Monitor& monitor) {
+             const FlattenOptions& options, const Monitor& monitor, const FlattenState* resume) {
   monitor.progress(0, "coarsening");
-  const auto levels = coarsen(disc.mesh, disc.rim, kCoarsest);
-  Laid laid;
-  FlatPositions& flat = laid.positions;
-  flat = circleMap(levels.back().mesh, levels.back().rim, areaOf(levels.back().mesh));
-  for (std::size_t n = levels.size(); n-- > 1;) {
-    const CoarseningLevel& level = levels[n];
-    MapSolver solver(level.mesh, level.rim, kFirstAreaWeight, options.contactRange);
-    const bool coarsest = n + 1 == levels.size();
-    (void)solver.lower(flat, coarsest ? kCoarseIterations : kMiddleIterations, kRough, monitor);
-    insertAll(levels[n - 1], level.rim, kFirstAreaWeight, flat);
+  Descent descent(disc, areaError, options, monitor);
+  if (resume != nullptr && resume->level >= 0) {
+    descent.resume(*resume);
+  } else {
+    descent.begin();
   }
-  lowerFinest(disc, areaError, options, monitor, laid);
-  return laid;
+  descent.run();
+  return descent.laid();
 }
 
 }  // namespace explica::flattening

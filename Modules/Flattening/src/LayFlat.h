@@ -31,14 +31,19 @@ struct CoarseDisc {
 /// The map, not yet centred, turned and rounded.
 struct Laid {
   FlatPositions positions;
-  int iterations = 0;
+  std::vector<FlatPositions> frames;
+  FlattenState state;
+  int iterations = 0;  ///< at full resolution
   double energy = kNaN;
-  double areaWeight = kNaN;
   Termination termination = Termination::NotRun;
 };
+/// Stopped early, the map is what the levels reached so far give: the vertices still missing are
+/// put back where there is room for them.
 /// @param areaError  mean area error of a map, which is to reach the options' tolerance
+/// @throws InvalidInput  a state that does not fit the disc
 [[nodiscard]] Laid layFlat(const IntrinsicDisc& disc,
                            const std::function<double(const FlatPositions&)>& areaError,
-                           const FlattenOptions& options, const Monitor& monitor);
+                           const FlattenOptions& options, const Monitor& monitor,
+                           const FlattenState* resume = nullptr);
 
 }  // namespace explica::flattening

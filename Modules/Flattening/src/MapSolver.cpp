@@ -164,7 +164,7 @@ void MapSolver::assemble(const FlatPositions& flat, Eigen::VectorXd& gradient) {
 }
 
 MapSolver::Run MapSolver::lower(FlatPositions& flat, int maxIterations, double tolerance,
-                                const Monitor& monitor) {
+                                const Monitor& monitor, const std::function<void(int)>& taken) {
   Run run;
   run.energy = value(flat);
   run.termination = Termination::MaxIterations;
@@ -207,6 +207,7 @@ MapSolver::Run MapSolver::lower(FlatPositions& flat, int maxIterations, double t
       run.termination = Termination::Stalled;
       break;
     }
+    if (taken) taken(run.iterations);
   }
   return run;
 }

@@ -9,6 +9,7 @@
 #include "Explica/Geometry/BlockCholesky.h"
 
 #include <array>
+#include <functional>
 #include <vector>
 
 namespace explica::flattening {
@@ -25,8 +26,11 @@ class MapSolver {
     double energy = kNaN;
     Termination termination = Termination::NotRun;
   };
-  /// Iterates until a step promises less than `tolerance` of the energy.
-  Run lower(FlatPositions& flat, int maxIterations, double tolerance, const Monitor& monitor);
+  /// Iterates until a step promises less than `tolerance` of the energy.  An iteration depends on
+  /// nothing but the map, so that a run can go on from where it was stopped.
+  /// @param taken  called after every step with the number of iterations
+  Run lower(FlatPositions& flat, int maxIterations, double tolerance, const Monitor& monitor,
+            const std::function<void(int)>& taken = {});
 
   [[nodiscard]] double value(const FlatPositions& flat) const;
   void setAreaWeight(double weight) { energy_.setAreaWeight(weight); }

@@ -7,6 +7,7 @@
 #include "Explica/Core/Parallel.h"
 #include "Explica/Flattening/Flatten.h"
 #include "Explica/Flattening/FoldDepth.h"
+#include "Explica/Flattening/State.h"
 #include "Explica/Geometry/Fixtures.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
@@ -14,9 +15,13 @@
 
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <numeric>
+#include <string>
 
 namespace explica::flattening {
 namespace {
@@ -227,6 +232,61 @@ TEST(Cuts, RefuseOptionsOutOfRangeAndDepthsOfAnotherSurface) {
   const Eigen::VectorXd depth = Eigen::VectorXd::Zero(disc.mesh.vertexCount());
   EXPECT_THROW((void)findCuts(disc, depth, options), InvalidInput);
   EXPECT_THROW((void)findCuts(disc, depth.head(3)), InvalidInput);
+}
+
+TEST(Cuts, ASearchThatWasStoppedGoesOnToTheSameCuts) {
+  const TriangleMesh mesh = sphereWithSulci(4, 5, 0.2);
+  const Disc disc = withoutSouth(mesh);
+  const Eigen::VectorXd depth = depthOf(mesh, disc);
+  CutOptions options;
+  options.edgeStrain = 0.07;
+  int questions = 0;
+  Monitor counting;
+  counting.stopWanted = [&] { return ++questions < 0; };
+  const CutPlan whole = findCuts(disc, depth, options, counting);
+  ASSERT_EQ(whole.termination, Termination::TargetReached);
+  ASSERT_GT(whole.cuts.size(), 1U);
+  for (int n = 0; n < 3; ++n) {
+    int asked = 0;
+    Monitor stopping;
+    stopping.stopWanted = [&] { return ++asked > n * questions / 3; };
+    const CutPlan stopped = findCuts(disc, depth, options, stopping);
+    EXPECT_EQ(stopped.termination, Termination::Interrupted);
+    EXPECT_LE(stopped.cuts.size(), whole.cuts.size());
+    EXPECT_NO_THROW((void)openedAlong(disc, pathsOf(stopped)));
+    const CutPlan resumed = findCuts(disc, depth, options, {}, &stopped);
+    EXPECT_EQ(resumed.termination, Termination::TargetReached);
+    EXPECT_EQ(pathsOf(resumed), pathsOf(whole)) << n;
+    EXPECT_EQ(resumed.strainBefore, whole.strainBefore);
+    EXPECT_EQ(resumed.edgeStrain, whole.edgeStrain);
+  }
+}
+
+TEST(Checkpoint, GivesBackCutsAndMap) {
+  const TriangleMesh mesh = sphereWithSulci(4, 5, 0.2);
+  const Disc disc = withoutSouth(mesh);
+  Checkpoint kept;
+  kept.uncut = sumOver(disc);
+  kept.cuts = findCuts(disc, depthOf(mesh, disc));
+  FlattenOptions options;
+  options.frames = 2;
+  options.maxTime = 1e-9;
+  kept.map = flatten(openedAlong(disc, pathsOf(*kept.cuts)), options).state;
+  const auto path = std::filesystem::temp_directory_path() /
+                    ("explica-flat-" + std::to_string(::getpid()) + ".state");
+  writeCheckpoint(path, kept);
+  const Checkpoint read = readCheckpoint(path);
+  std::filesystem::remove(path);
+  EXPECT_EQ(read.uncut, kept.uncut);
+  ASSERT_TRUE(read.cuts);
+  EXPECT_EQ(pathsOf(*read.cuts), pathsOf(*kept.cuts));
+  EXPECT_EQ(read.cuts->found, kept.cuts->found);
+  EXPECT_EQ(read.cuts->termination, kept.cuts->termination);
+  EXPECT_EQ(read.map.disc, kept.map.disc);
+  EXPECT_EQ(read.map.level, kept.map.level);
+  EXPECT_EQ(read.map.positions, kept.map.positions);
+  ASSERT_EQ(read.map.path.size(), kept.map.path.size());
+  EXPECT_EQ(read.map.path.back().positions, kept.map.path.back().positions);
 }
 
 }  // namespace

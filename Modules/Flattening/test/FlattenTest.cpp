@@ -194,6 +194,104 @@ TEST(Flatten, TheMapDoesNotDependOnTheNumberOfThreads) {
   EXPECT_TRUE(one.positions == three.positions);
 }
 
+/// A folded cap, and a monitor that asks to stop at the n-th question.
+Disc foldedCap() {
+  return partOf(geometry::makeFoldedSphere(4, 30, 0.2, 5),
+                [](const Point& p) { return p.z() > 5; });
+}
+
+Monitor stoppingAt(int question, int& asked) {
+  Monitor monitor;
+  monitor.stopWanted = [question, &asked] { return ++asked > question; };
+  return monitor;
+}
+
+TEST(Flatten, StoppedAnywhereItIsOneToOneAndGoesOnToTheMapOfARunThatNeverStopped) {
+  const Disc disc = foldedCap();
+  int questions = 0;
+  FlattenOptions options;
+  options.frames = 4;
+  const FlatMap whole = flatten(disc, options, stoppingAt(1 << 20, questions));
+  ASSERT_GT(questions, 20);
+  for (int at = 0; at < questions; at += 7) {
+    int asked = 0;
+    const FlatMap stopped = flatten(disc, options, stoppingAt(at, asked));
+    EXPECT_EQ(stopped.termination, Termination::Interrupted) << at;
+    expectOneToOne(disc, stopped);
+    const FlatMap resumed = flatten(disc, options, {}, &stopped.state);
+    EXPECT_EQ(resumed.termination, whole.termination);
+    EXPECT_EQ(resumed.iterations, whole.iterations);
+    EXPECT_TRUE(resumed.positions == whole.positions) << at;
+    EXPECT_TRUE(resumed.frames == whole.frames) << at;
+  }
+  const FlatMap again = flatten(disc, options, {}, &whole.state);
+  EXPECT_TRUE(again.positions == whole.positions);  // nothing was left to do
+}
+
+TEST(Flatten, AnExpiredTimeStillGivesAWholeMap) {
+  const Disc disc = foldedCap();
+  FlattenOptions options;
+  options.maxTime = 1e-9;
+  const FlatMap map = flatten(disc, options);
+  EXPECT_EQ(map.termination, Termination::MaxTime);
+  expectOneToOne(disc, map);
+  options.maxTime.reset();
+  EXPECT_TRUE(flatten(disc, options, {}, &map.state).positions == flatten(disc).positions);
+}
+
+TEST(Flatten, ASmallerAreaToleranceTakesAFinishedMapFurther) {
+  const Disc disc = foldedCap();
+  FlattenOptions options;
+  options.areaTolerance = 0.05;
+  const FlatMap rough = flatten(disc, options);
+  options.areaTolerance = 0.005;
+  const FlatMap fine = flatten(disc, options, {}, &rough.state);
+  EXPECT_GT(meanAreaError(disc.mesh, mapOf(disc, rough)), 0.008);
+  EXPECT_LT(meanAreaError(disc.mesh, mapOf(disc, fine)), 0.00505);
+}
+
+TEST(Flatten, FramesLeadFromACircleToTheMapAndAreOneToOne) {
+  const Disc disc = foldedCap();
+  FlattenOptions options;
+  options.frames = 6;
+  FlatMap map = flatten(disc, options);
+  ASSERT_EQ(map.frames.size(), 6U);
+  EXPECT_TRUE(map.frames.back() == map.positions);
+  std::vector<double> toEnd;
+  for (const FlatPositions& frame : map.frames) {
+    FlatMap state = map;
+    state.positions = frame;
+    state.turnedOver = countTurnedOver(disc.mesh.faces, frame);
+    state.rimCrossings = static_cast<std::int64_t>(rimCrossings(disc.rim, frame).size());
+    expectOneToOne(disc, state);
+    toEnd.push_back((frame - map.positions).norm());
+  }
+  EXPECT_GT(toEnd[0], toEnd[3]);
+  EXPECT_GT(toEnd[3], toEnd[4]);
+  // The coarsest rim lies on a circle; what was put back lies near it.
+  double least = kInfinity, most = 0;
+  for (const std::int32_t v : disc.rim) {
+    const double radius = map.frames.front().row(v).norm();
+    least = std::min(least, radius);
+    most = std::max(most, radius);
+  }
+  EXPECT_LT(most / least, 1.3);
+  options.frames = 0;
+  EXPECT_TRUE(flatten(disc, options).positions == map.positions);
+}
+
+TEST(Flatten, RefusesAStateOfAnotherDisc) {
+  const Disc disc = foldedCap();
+  int asked = 0;
+  const FlatMap stopped = flatten(disc, {}, stoppingAt(5, asked));
+  const Disc other =
+      partOf(geometry::makeFoldedSphere(4, 30, 0.2, 5), [](const Point& p) { return p.z() > 7; });
+  EXPECT_THROW((void)flatten(other, {}, {}, &stopped.state), InvalidInput);
+  FlattenState wrong = stopped.state;
+  wrong.level = 40;
+  EXPECT_THROW((void)flatten(disc, {}, {}, &wrong), InvalidInput);
+}
+
 TEST(Flatten, ScalesWithTheSurface) {
   const TriangleMesh mesh = geometry::makeFoldedSphere(4, 32, 0.2, 5);
   TriangleMesh small = mesh;

@@ -45,8 +45,10 @@ void bindFlattening(py::module_& m) {
         const auto disc = flattening::discOf(mesh, listed(mesh, region));
         auto map = Watch(progress).run(
             [&](const Monitor& monitor) { return flattening::flatten(disc, options, monitor); });
+        py::list frames;
+        for (const auto& frame : map.frames) frames.append(Eigen::MatrixXd(frame));
         return py::dict("positions"_a = Eigen::MatrixXd(map.positions), "faces"_a = disc.mesh.faces,
-                        "vertices"_a = columnOf(disc.vertexOrigin),
+                        "frames"_a = frames, "vertices"_a = columnOf(disc.vertexOrigin),
                         "region"_a = columnOf(disc.faceOrigin), "turned_over"_a = map.turnedOver,
                         "rim_crossings"_a = map.rimCrossings, "iterations"_a = map.iterations,
                         "termination"_a = std::string(nameOf(map.termination)));
@@ -55,7 +57,10 @@ void bindFlattening(py::module_& m) {
       "`faces` (F, 3) of these N vertices, counter-clockwise; `vertices` (N,) and `region` (F,) "
       "are\n"
       "their numbers in the surface.  No face is turned over and no part lies on another:\n"
-      "`turned_over` and `rim_crossings`, both exact, are 0.",
+      "`turned_over` and `rim_crossings`, both exact, are 0; so it is of a run that is stopped, "
+      "by\n"
+      "`max_time` or where `progress(fraction, activity)` returns False.  `frames` holds the\n"
+      "positions on the way from a circle, as many as `frames=` asks for.",
       "positions"_a, "faces"_a, "region"_a = py::none(), "progress"_a = py::none());
   defWithOptions<flattening::CutOptions>(
       m, "relief_cuts",

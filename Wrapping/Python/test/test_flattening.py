@@ -31,6 +31,18 @@ class Flattening(unittest.TestCase):
         self.assertEqual((self.map["turned_over"], self.map["rim_crossings"]), (0, 0))
         np.testing.assert_array_equal(self.map["vertices"][f], self.faces[self.map["region"]])
 
+    def test_frames_lead_to_the_map_and_a_stopped_run_is_one_to_one(self):
+        made = explica.flatten((self.positions, self.faces), region=self.region, frames=4)
+        self.assertEqual(len(made["frames"]), 4)
+        np.testing.assert_array_equal(made["frames"][-1], self.map["positions"])
+        stopped = explica.flatten(
+            (self.positions, self.faces), region=self.region, progress=lambda fraction, activity: False
+        )
+        self.assertEqual(stopped["termination"], "interrupted")
+        self.assertEqual((stopped["turned_over"], stopped["rim_crossings"]), (0, 0))
+        brief = explica.flatten((self.positions, self.faces), region=self.region, max_time=1e-9)
+        self.assertEqual((brief["termination"], brief["turned_over"]), ("max-time", 0))
+
     def test_relief_cuts_open_a_ball_so_that_it_lies_flat_with_less_strain(self):
         kept = np.flatnonzero(np.all(self.positions[self.faces][:, :, 2] > -25, axis=1))
         found = explica.relief_cuts((self.positions, self.faces), region=kept, strain=0.15)

@@ -4,6 +4,7 @@
 
 #include "Explica/Core/Describe.h"
 #include "Explica/Core/Monitor.h"
+#include "Explica/Core/Termination.h"
 #include "Explica/Flattening/Opening.h"
 
 #include <vector>
@@ -36,6 +37,10 @@ struct CutPlan {
   std::vector<Cut> cuts;       ///< in the order of their finding: the ones that relieve most first
   double strainBefore = kNaN;  ///< edge strain of the map without them, on some 3,000 vertices
   double edgeStrain = kNaN;    ///< with them
+  std::vector<CutPath> found;  ///< the same on the vertices of the search, for going on from here
+  /// TargetReached: the strain asked for; MaxIterations: as many cuts as allowed; Stalled: no
+  /// further cut relieves anything; Interrupted: as many as were found until then.
+  Termination termination = Termination::NotRun;
 };
 
 /// Relief cuts of a disc that is curved too much to be laid flat as it is.
@@ -53,8 +58,11 @@ struct CutPlan {
 /// some 3,000 that keep the distances of the rest.
 ///
 /// Deterministic, and the same for any number of threads.  Holes are left alone.
-/// @param depth  of the disc's vertices (foldDepth of the whole surface)
+/// @param depth   of the disc's vertices (foldDepth of the whole surface)
+/// @param resume  go on after these cuts, which an interrupted search of the same disc left: the
+///                result equals that of a search which never stopped
 [[nodiscard]] CutPlan findCuts(const Disc& disc, const Eigen::VectorXd& depth,
-                               const CutOptions& options = {}, const Monitor& monitor = {});
+                               const CutOptions& options = {}, const Monitor& monitor = {},
+                               const CutPlan* resume = nullptr);
 
 }  // namespace explica::flattening

@@ -8,6 +8,7 @@
 #include "Explica/Flattening/Disc.h"
 #include "Explica/Flattening/MapEnergy.h"
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -22,7 +23,11 @@ struct FlattenOptions {
   double tolerance = 1e-4;  ///< stop once a Newton step promises to lower the energy by less than
                             ///< this share of it
   int maxIterations = 200;  ///< Newton iterations at full resolution, > 0
+  std::optional<double> maxTime;  ///< s, of this run
+  int frames = 0;                 ///< states to keep, evenly spaced along the way of the vertices
 };
+
+constexpr int kMostFrames = 1000;  ///< of FlattenOptions::frames
 
 template <class Visitor>
 void describe(FlattenOptions& options, Visitor&& visit) {
@@ -37,7 +42,30 @@ void describe(FlattenOptions& options, Visitor&& visit) {
         options.tolerance);
   visit(Field{"max-iterations", "", "Newton iterations at full resolution at most", 1, 1e6},
         options.maxIterations);
+  visit(Field{"max-time", "s", "stop after this time", kAboveZero}, options.maxTime);
+  visit(Field{"frames", "",
+              "states to write on the way, evenly spaced along the way that vertices go", 0,
+              kMostFrames},
+        options.frames);
 }
+
+/// The map on the vertices of one level.
+struct FlatStage {
+  int level = -1;           ///< 0 is the disc itself
+  FlatPositions positions;  ///< of the level's vertices in ascending order
+};
+
+/// Where a map is on its way: what flatten() needs to go on.
+struct FlattenState {
+  std::uint64_t disc = 0;  ///< sumOver() the disc that it belongs to
+  int level = -1;          ///< -1: not begun
+  int iterations = 0;      ///< made at this level
+  double areaWeight = kNaN;
+  double areaTolerance = kNaN;  ///< that was aimed at
+  bool settled = false;         ///< areas are kept; the last descent
+  FlatPositions positions;      ///< of the level's vertices in ascending order
+  std::vector<FlatStage> path;  ///< after each iteration, if frames were asked for
+};
 
 struct FlatMap {
   FlatPositions positions;        ///< of the disc's vertices, mm, exact in single precision
@@ -48,6 +76,8 @@ struct FlatMap {
   double areaWeight = kNaN;     ///< w of mapDensity() that was needed
   std::size_t raisedFaces = 0;  ///< needles of the reference whose height was raised
   Termination termination = Termination::NotRun;
+  std::vector<FlatPositions> frames;  ///< of the disc's vertices, as `positions`
+  FlattenState state;
 };
 
 /// Lays a disc flat: one-to-one, areas kept closely, lengths as well as can be.
@@ -61,9 +91,17 @@ struct FlatMap {
 /// Deterministic, and the same for any number of threads.  The map is turned so that the
 /// reference's z axis (or its y axis, for a piece that lies level) points up, and centred.
 ///
-/// @throws InvalidInput  option out of range
+/// A run that is stopped gives the map as far as it came, one-to-one as ever: vertices that are
+/// still missing are put back where there is room for them.  Frames begin with the map into a
+/// circle and are one-to-one, too, up to rounding.
+///
+/// @param resume  continue from here: the result equals that of a run which never stopped
+/// @throws InvalidInput  option out of range; a state of another disc
 [[nodiscard]] FlatMap flatten(const Disc& disc, const FlattenOptions& options = {},
-                              const Monitor& monitor = {});
+                              const Monitor& monitor = {}, const FlattenState* resume = nullptr);
+
+/// A sum over a disc's vertices and faces, by which a state knows its own.
+[[nodiscard]] std::uint64_t sumOver(const Disc& disc);
 
 /// Faces whose corners do not run counter-clockwise; exact.
 [[nodiscard]] std::int64_t countTurnedOver(const Faces& faces, const FlatPositions& flat);
