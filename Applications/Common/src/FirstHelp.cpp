@@ -51,8 +51,8 @@ explica embed shell/labels.nii.gz --label 1 --order 8 --out fit)"},
       {"flatten",
        "an unfolded patch, a surface with a rim, or a hemisphere with cuts",
        "a flat map that folds nowhere, as surface, table, picture and stack of depths",
-       {"reference", "cuts", "cortex", "cut.strain", "label", "area-tolerance", "grid", "depths",
-        "surfaces", "volumes", "map", "regions", "frames", "max-time", "resume"},
+       {"reference", "cuts", "cortex", "cut.strain", "label", "area-tolerance", "grid", "surfaces",
+        "volumes", "map", "regions", "frames", "max-time", "resume"},
        R"(explica phantom shell --size 32 --out shell
 explica surface shell/labels.nii.gz --white 1 --grey 2 --faces 2000 --out surfaces
 explica unfold surfaces/pial.surf.gii --center 0,0,12 --radius 8 --direction 0,0,1 --surround none --out unfolded

@@ -401,7 +401,7 @@ Plane rimPlace(const std::vector<Plane>& ring, double wanted) {
 }  // namespace
 
 std::vector<CoarseningLevel> coarsen(const IntrinsicMesh& mesh, const Loop& rim,
-                                     Eigen::Index smallest) {
+                                     Eigen::Index smallest, bool anyShape) {
   Shrinking shrinking(mesh, rim);
   std::vector<CoarseningLevel> levels = {shrinking.snapshot()};
   Eigen::Index levelCount = shrinking.count();
@@ -413,7 +413,7 @@ std::vector<CoarseningLevel> coarsen(const IntrinsicMesh& mesh, const Loop& rim,
     // Where few vertices can go, poorer shapes are allowed, and then it is enough.
     if (static_cast<Eigen::Index>(removals.size()) * 25 < shrinking.count()) {
       leastQuality /= 2;
-      if (leastQuality < 0.03) break;
+      if (leastQuality < (anyShape ? 1e-6 : 0.03)) break;
     }
     if (static_cast<double>(shrinking.count()) * kLevelRatio < static_cast<double>(levelCount)) {
       levels.push_back(shrinking.snapshot());

@@ -32,9 +32,10 @@ struct CoarseningLevel {
 /// straight way through the faces about the removed vertex, unfolded.  So a coarse level keeps the
 /// distances of the folds which its vertices can no longer show [Shen2019 insert vertices again in
 /// the reverse order, which a one-to-one map always allows].
+/// @param anyShape  do not stop short of `smallest` where only needles would be left
 /// @return levels from the finest on; the last has no removals
 [[nodiscard]] std::vector<CoarseningLevel> coarsen(const IntrinsicMesh& mesh, const Loop& rim,
-                                                   Eigen::Index smallest);
+                                                   Eigen::Index smallest, bool anyShape = false);
 
 /// Puts removed vertices back into a map, the last one first.
 class Insertion {

@@ -17,6 +17,9 @@ namespace explica::flattening {
 namespace {
 
 constexpr Eigen::Index kCoarsest = 250;  // vertices: Tutte's map is well scaled, a step is cheap
+constexpr Eigen::Index kAtOnce = 3000;   // vertices: levels so coarse are lowered at any rate
+constexpr Eigen::Index kFewest = 12;     // where it is not, fewer are tried, down to these
+constexpr double kThinnest = 1e-13;      // area of a face of that map over the mean: rounding's
 constexpr int kCoarseIterations = 200;
 constexpr int kMiddleIterations = 40;
 constexpr double kRough = 1e-3;  // tolerance of what is not the last word
@@ -128,6 +131,40 @@ void insertAll(const CoarseningLevel& level, const Loop& coarserRim, double area
   }
 }
 
+/// True if every face is positive and none is so small that rounding could turn it over.
+bool isSound(const IntrinsicMesh& mesh, const FlatPositions& flat) {
+  double least = kInfinity, sum = 0;
+  for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f) {
+    const auto a = flat.row(mesh.faces(f, 0));
+    const Eigen::RowVector2d u = flat.row(mesh.faces(f, 1)) - a;
+    const Eigen::RowVector2d v = flat.row(mesh.faces(f, 2)) - a;
+    const double area = u[0] * v[1] - u[1] * v[0];
+    least = std::min(least, area);
+    sum += area;
+  }
+  return least > kThinnest * sum / static_cast<double>(mesh.faces.rows());
+}
+
+/// A disc on ever fewer vertices, and the coarsest one's map into a circle.
+struct Coarsened {
+  std::vector<CoarseningLevel> levels;
+  FlatPositions circle;
+};
+
+/// What hangs on the rest by a thin neck lands in a few faces of the circle, a neck behind a neck
+/// in a face of these, and so on until rounding turns faces over: such a disc is coarsened until it
+/// has no such necks any more.
+Coarsened coarsened(const IntrinsicDisc& disc) {
+  Coarsened result;
+  for (Eigen::Index smallest = kCoarsest; smallest >= kFewest; smallest /= 2) {
+    result.levels = coarsen(disc.mesh, disc.rim, smallest, smallest < kCoarsest);
+    const CoarseningLevel& coarsest = result.levels.back();
+    result.circle = circleMap(coarsest.mesh, coarsest.rim, areaOf(coarsest.mesh));
+    if (isSound(coarsest.mesh, result.circle)) break;
+  }
+  return result;
+}
+
 /// Vertices of a level, ascending.
 std::vector<std::int32_t> verticesOf(const IntrinsicMesh& mesh) {
   std::vector<bool> used(static_cast<std::size_t>(mesh.vertexCount), false);
@@ -148,13 +185,13 @@ class Descent {
         areaError_(areaError),
         options_(options),
         monitor_(monitor),
-        levels_(coarsen(disc.mesh, disc.rim, kCoarsest)) {
+        coarsened_(coarsened(disc)),
+        levels_(coarsened_.levels) {
     for (const CoarseningLevel& level : levels_) vertices_.push_back(verticesOf(level.mesh));
   }
 
   void begin() {
-    const CoarseningLevel& coarsest = levels_.back();
-    flat_ = circleMap(coarsest.mesh, coarsest.rim, areaOf(coarsest.mesh));
+    flat_ = coarsened_.circle;
     state_.level = static_cast<int>(levels_.size()) - 1;
     state_.areaTolerance = options_.areaTolerance;
     keepPath();
@@ -218,9 +255,9 @@ class Descent {
   }
 
   /// Lowers the map of one level, some of whose iterations may have been made before.
-  Termination lower(MapSolver& solver, int iterations, double tolerance) {
+  Termination lower(MapSolver& solver, int iterations, double tolerance, const Monitor& monitor) {
     const int before = state_.iterations;
-    const auto run = solver.lower(flat_, iterations - before, tolerance, monitor_, [&](int made) {
+    const auto run = solver.lower(flat_, iterations - before, tolerance, monitor, [&](int made) {
       state_.iterations = before + made;
       keepPath();
       tellProgress();
@@ -230,11 +267,14 @@ class Descent {
     return run.termination;
   }
 
+  /// A level of few vertices takes a moment and is always finished: all others can be put back into
+  /// what it gives with room to spare, so that a run that is stopped at once has a map to show.
   Termination lowerCoarse() {
     const CoarseningLevel& level = levels_[state_.level];
     MapSolver solver(level.mesh, level.rim, kFirstAreaWeight, options_.contactRange);
-    const bool coarsest = state_.level + 1 == static_cast<int>(levels_.size());
-    return lower(solver, coarsest ? kCoarseIterations : kMiddleIterations, kRough);
+    const auto size = static_cast<Eigen::Index>(vertices_[state_.level].size());
+    return lower(solver, size <= kCoarsest ? kCoarseIterations : kMiddleIterations, kRough,
+                 size <= kAtOnce ? Monitor{} : monitor_);
   }
 
   /// Lowers the energy at full resolution, areas counting more and more until they are kept.
@@ -250,7 +290,7 @@ class Descent {
     const double aim = kAim * options_.areaTolerance;
     while (true) {
       const double tolerance = state_.settled ? options_.tolerance : kRough;
-      termination_ = lower(solver, options_.maxIterations, tolerance);
+      termination_ = lower(solver, options_.maxIterations, tolerance, monitor_);
       if (termination_ == Termination::Interrupted || state_.settled ||
           state_.iterations >= options_.maxIterations) {
         return;
@@ -333,7 +373,8 @@ class Descent {
   const std::function<double(const FlatPositions&)>& areaError_;
   const FlattenOptions& options_;
   const Monitor& monitor_;
-  std::vector<CoarseningLevel> levels_;              ///< the finest first
+  const Coarsened coarsened_;
+  const std::vector<CoarseningLevel>& levels_;       ///< of it, the finest first
   std::vector<std::vector<std::int32_t>> vertices_;  ///< of each level
   FlatPositions flat_;                               ///< rows of this level's vertices count
   FlattenState state_;                               ///< without its positions

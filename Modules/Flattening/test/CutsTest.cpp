@@ -235,11 +235,11 @@ TEST(Cuts, RefuseOptionsOutOfRangeAndDepthsOfAnotherSurface) {
 }
 
 TEST(Cuts, ASearchThatWasStoppedGoesOnToTheSameCuts) {
-  const TriangleMesh mesh = sphereWithSulci(4, 5, 0.2);
+  const TriangleMesh mesh = sphereWithSulci(3, 5, 0.2);
   const Disc disc = withoutSouth(mesh);
   const Eigen::VectorXd depth = depthOf(mesh, disc);
   CutOptions options;
-  options.edgeStrain = 0.07;
+  options.edgeStrain = 0.1;
   int questions = 0;
   Monitor counting;
   counting.stopWanted = [&] { return ++questions < 0; };
