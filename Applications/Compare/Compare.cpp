@@ -37,7 +37,9 @@ struct Settings {
 void declare(Declaration& d, Settings& s) {
   d.synopsis("surfaces with the same vertices beside a reference: what each keeps and what not")
       .description(
-          R"(Compares flat maps, inflated surfaces, spheres and unfolded surfaces with the surface that they came from, on the faces that all of them have. Area error, edge strain and angle change are means over faces and edges. Distances are measured on the reference along the surface, between the same pairs of vertices for all; on flat maps straight, on other surfaces along them; each kind of surface at the scale that suits it best. 'Turned over' and 'crossings' are exact. 'Seen' is the share of the area that rays reach: straight from above for a flat map, from all sides of an enclosing sphere for any other.)")
+          R"(Compares flat maps, inflated surfaces, spheres and unfolded surfaces with the surface that they came from, on the faces that all of them have. Area error, edge strain and angle change are means over faces and edges. Distances are measured on the reference along the surface, between the same pairs of vertices for all; on flat maps straight, on other surfaces along them; each kind of surface at the scale that suits it best. 'Turned over' and 'crossings' are exact. 'Seen' is the share of the area that rays reach: straight from above for a flat map, from all sides of an enclosing sphere for any other.
+
+A run that is stopped holds the surfaces that it has measured, the first at any rate, and ends with exit code 3.)")
       .example("explica compare pial.surf.gii flat/flat.surf.gii inflated.surf.gii --out compared",
                "A flat map and an inflated surface beside the surface that they came from")
       .input("BEFORE", FileKind::Surface, "reference surface", s.before)
@@ -166,6 +168,7 @@ Termination run(Context& context, const Settings& s) {
     auto step = context.step("compare");
     const auto pairs = flattening::drawPairs(reference.mesh, faces, s.distances);
     for (std::size_t n = 0; n < surfaces.size(); ++n) {
+      if (n > 0 && context.monitor().shouldStop()) break;
       context.monitor().progress(static_cast<double>(n) / static_cast<double>(surfaces.size()),
                                  s.after[n]);
       rows.push_back(measure(reference.mesh, surfaces[n], faces, pairs));
@@ -198,7 +201,7 @@ Termination run(Context& context, const Settings& s) {
   context.result("surfaces", list);
   context.result("seconds",
                  std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-  return Termination::NotRun;
+  return rows.size() < surfaces.size() ? Termination::Interrupted : Termination::NotRun;
 }
 
 }  // namespace

@@ -132,9 +132,11 @@ void report(Context& context, const flattening::CutPlan& plan,
   context.info(line);
   if (plan.edgeStrain > options.edgeStrain) {
     std::snprintf(line, sizeof line,
-                  "the cuts reach an edge strain of %.3f, not the %.3f of --cut.strain; more "
-                  "would need --cut.most",
-                  plan.edgeStrain, options.edgeStrain);
+                  "the cuts reach an edge strain of %.3f, not the %.3f of --cut.strain; %s",
+                  plan.edgeStrain, options.edgeStrain,
+                  plan.termination == Termination::Stalled
+                      ? "no further cut was found that relieves"
+                      : "more would need --cut.most");
     context.warn(line);
   }
 }

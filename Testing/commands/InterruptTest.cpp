@@ -96,6 +96,27 @@ TEST_P(Interrupt, AFlatMapGoesOnToTheBytesOfARunThatNeverStopped) {
   }
 }
 
+TEST_P(Interrupt, AComparisonHoldsTheSurfacesThatItHasMeasured) {
+  TemporaryFolder folder;
+  std::vector<std::string> words = {"compare"};
+  for (const std::string name : {"before", "first", "second", "third"}) {
+    io::writeSurface(folder / (name + ".surf.gii"), geometry::makeFoldedSphere(5, 30.0));
+    words.push_back(folder / (name + ".surf.gii"));
+  }
+  CommandSetting setting;
+  setting.signal = GetParam();
+  setting.signalWhen = "first.surf.gii: ";
+  const auto stopped = explica(words + std::vector<std::string>{"--out", folder / "a"}, setting);
+  ASSERT_EQ(stopped.exitCode, 3) << stopped;
+  const auto summary = readJson(folder / "a/summary.json");
+  EXPECT_EQ(summary["termination"], "interrupted");
+  ASSERT_GE(summary["surfaces"].size(), 1U);
+  EXPECT_LT(summary["surfaces"].size(), 3U);
+  EXPECT_EQ(summary["surfaces"][0]["surface"], "first.surf.gii");
+  EXPECT_EQ(summary["area_error_mean"], 0);
+  EXPECT_EQ(explica({"verify", folder / "a"}).exitCode, 0);
+}
+
 INSTANTIATE_TEST_SUITE_P(Signals, Interrupt, ::testing::Values(SIGINT, SIGUSR1),
                          [](const auto& row) { return "Signal" + std::to_string(row.param); });
 

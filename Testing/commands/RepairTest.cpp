@@ -71,6 +71,19 @@ TEST(Repair, SaysWhatItCannotMend) {
   EXPECT_NE(readText(folder / "out/intersections.tsv").find("\tno\n"), std::string::npos);
 }
 
+/// A limit that has passed before any work begins.
+TEST(Repair, StoppedItWritesTheSurfaceAsFarAsItCame) {
+  TemporaryFolder folder;
+  io::writeSurface(folder / "a.surf.gii", crossed());
+  const CommandResult result = explica({"repair", folder / "a.surf.gii", "--max-move", "5",
+                                        "--max-time", "1e-9", "--out", folder / "out"});
+  EXPECT_EQ(result.exitCode, 3) << result;
+  const auto summary = readJson(folder / "out/summary.json");
+  EXPECT_EQ(summary["termination"], "max-time");
+  EXPECT_EQ(summary["pairs_after"], summary["pairs_before"]);
+  EXPECT_EQ(explica({"verify", folder / "out"}).exitCode, 0);
+}
+
 TEST(Repair, TakesSurfacesThatCorrespondOnly) {
   TemporaryFolder folder;
   io::writeSurface(folder / "a.surf.gii", geometry::makeIcosphere(2, 10.0));

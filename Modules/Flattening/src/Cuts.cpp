@@ -19,6 +19,7 @@ constexpr Eigen::Index kSearchVertices = 20000;  // on which ways are found: 2 m
 constexpr Eigen::Index kTrialVertices = 3000;    // that show what cuts relieve
 constexpr double kTrialAreaError = 0.05;         // as a hemisphere with cuts is laid flat
 constexpr std::size_t kCandidates = 5;           // ends that are tried out for each cut ...
+constexpr std::size_t kFurther = 15;             // ... and as many where none of these helps
 constexpr std::size_t kHighest = 2;              // ... the highest peaks first, then the widest
 constexpr double kFlank = 0.5;                   // of a peak's height: what is above belongs to it
 constexpr double kPriceOfACut = 0.1;             // of the square root of the area: few, not many
@@ -154,7 +155,9 @@ class CutSearch {
     };
     std::optional<Found> best;
     if (monitor_.shouldStop()) return false;
+    std::size_t triedEnds = 0;
     for (const std::int32_t end : worstPlaces()) {
+      if (triedEnds++ >= kCandidates && best) break;
       CutPath path = ways_.to(end, starts_);
       if (path.size() < 2) continue;
       std::vector<CutPath> tried = paths_;
@@ -228,7 +231,7 @@ class CutSearch {
     take(kHighest);
     std::stable_sort(peaks.begin(), peaks.end(),
                      [](const Peak& a, const Peak& b) { return a.beneath > b.beneath; });
-    take(kCandidates);
+    take(kFurther);
     return places;
   }
 
