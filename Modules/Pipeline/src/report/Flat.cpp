@@ -256,7 +256,7 @@ void showPicture(ResultFolder& results, const StepFolder& step) {
 /// The states on the way, looked at from above.
 void playFrames(ResultFolder& results, const StepFolder& step) {
   const ShownFrames frames = framesOf(step);
-  if (frames.meshes.size() < 2 || results.content().evolution) return;
+  if (frames.meshes.size() < 2) return;
   report::Evolution evolution = report::evolutionOf(frames.meshes);
   evolution.frameTitles = frames.titles;
   for (const io::VertexMap& map :
@@ -269,7 +269,8 @@ void playFrames(ResultFolder& results, const StepFolder& step) {
   std::sort(evolution.region.begin(), evolution.region.end());
   evolution.region.erase(std::unique(evolution.region.begin(), evolution.region.end()),
                          evolution.region.end());
-  results.content().evolution = std::move(evolution);
+  evolution.title = "the way to the flat map";
+  results.content().evolutions.push_back(std::move(evolution));
 }
 
 }  // namespace

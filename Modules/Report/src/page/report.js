@@ -123,10 +123,9 @@ async function showEvolution(source, isStopped, onStop) {
   const faceInRegion = (f) => inRegion[faces[f]] && inRegion[faces[f + 1]] && inRegion[faces[f + 2]];
   let isWhole = region.length > 0;
   for (let f = 0; f < faces.length && isWhole; f += 3) isWhole = faceInRegion(f);
-  if (isWhole) {  // there is no patch, and nothing speaks of one
-    for (const element of document.querySelectorAll('#view3d .of-part')) element.style.display = 'none';
-    byId('reset').textContent = 'Reset the view';
-  }
+  // Where there is no patch, nothing speaks of one.
+  for (const element of document.querySelectorAll('#view3d .of-part')) element.style.display = isWhole ? 'none' : '';
+  byId('reset').textContent = isWhole ? 'Reset the view' : 'Back to the patch';
   function boxOf(filter) {
     const low = [Infinity, Infinity, Infinity];
     const high = [-Infinity, -Infinity, -Infinity];
