@@ -15,6 +15,7 @@ namespace {
 struct Settings {
   std::string folder;
   std::optional<std::string> page;
+  std::optional<std::string> out;
   pipeline::FolderReportOptions show;
 };
 
@@ -33,6 +34,8 @@ void declare(Declaration& d, Settings& s) {
       .input("DIR", FileKind::Folder, "output folder of a command or of explica run", s.folder)
       .option("Page", Field{"page", "", "file to write (default: report.html in the folder)"},
               s.page)
+      .option("Page", Field{"out", "", "new folder to write report.html into, instead of --page"},
+              s.out)
       .options("Page", s.show)
       .inputOption("map", FileKind::VertexData,
                    "vertex data (of explica sample, say) to show on the surfaces, on the unfolding "
@@ -41,11 +44,31 @@ void declare(Declaration& d, Settings& s) {
       .withoutOutput();
 }
 
+std::filesystem::path pageOf(const Settings& s) {
+  namespace fs = std::filesystem;
+  if (s.out && s.page) throw UsageError("--out and --page both say where the page goes; give one");
+  if (s.page) return *s.page;
+  if (!s.out) return fs::path(s.folder) / "report.html";
+  if (fs::exists(*s.out)) {
+    throw InvalidInput("--out: '" + *s.out + "' exists already; choose another folder");
+  }
+  return fs::path(*s.out) / "report.html";
+}
+
+void makeFolder(const std::filesystem::path& folder) {
+  std::error_code fault;
+  std::filesystem::create_directories(folder, fault);
+  if (fault) {
+    throw EnvironmentError("cannot make the folder '" + folder.string() + "': " + fault.message());
+  }
+}
+
 Termination run(Context& context, const Settings& s) {
-  const std::filesystem::path page =
-      s.page ? std::filesystem::path(*s.page) : std::filesystem::path(s.folder) / "report.html";
-  writeTextFile(page,
-                report::reportPage(pipeline::collectReport(s.folder, s.show, context.monitor())));
+  const std::filesystem::path page = pageOf(s);
+  const std::string text =
+      report::reportPage(pipeline::collectReport(s.folder, s.show, context.monitor()));
+  if (s.out) makeFolder(*s.out);
+  writeTextFile(page, text);
   context.info("wrote " + page.string());
   return Termination::NotRun;
 }

@@ -191,6 +191,7 @@ void writeAsymmetry(Context& context, const fs::path& out) {
 }
 
 /// The report must not be lost to a fault of its own.
+/// The report; what cannot be shown is a warning, what cannot be written ends the run.
 void writeReport(Context& context, const fs::path& out) {
   try {
     const report::ReportContent content = pipeline::collectReport(out, {}, context.monitor());
@@ -198,6 +199,8 @@ void writeReport(Context& context, const fs::path& out) {
     if (const auto small = pipeline::thumbnailOf(content)) {
       report::writePng(context.output("thumbnail.png"), *small);
     }
+  } catch (const EnvironmentError&) {
+    throw;
   } catch (const Error& fault) {
     context.warn(std::string("report: ") + fault.what());
   }

@@ -109,6 +109,16 @@ TEST(HeartCommand, TellsVolumesThicknessAndThickeningOfABeat) {
   }
   const auto of = io::readLabels(folder / "out/segments.nii.gz").volume;
   EXPECT_EQ(*std::max_element(of.data.begin(), of.data.end()), 17);
+
+  // What was judged of a heart stands first in its report, which may go to a folder of its own.
+  const auto report = explica({"report", folder / "out", "--out", folder / "shown"});
+  ASSERT_EQ(report.exitCode, 0) << report;
+  const std::string page = readText(folder / "shown/report.html");
+  EXPECT_NE(page.find("Open at its base:"), std::string::npos);
+  EXPECT_NE(page.find("by right ventricle"), std::string::npos);
+  EXPECT_EQ(page.find("Nothing was found that could be judged"), std::string::npos);
+  EXPECT_FALSE(fs::exists(folder / "out/report.html"));
+  EXPECT_EQ(explica({"report", folder / "out", "--out", folder / "shown"}).exitCode, 2);
 }
 
 TEST(HeartCommand, FindsTheFramesOrTakesThem) {

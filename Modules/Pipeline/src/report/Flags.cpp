@@ -204,6 +204,34 @@ std::vector<ReportFlag> inflateFlags(const StepFolder& step) {
   return flags;
 }
 
+/// Where a heart is open, how its segments are oriented, and how much of its wall is left out.
+std::vector<ReportFlag> heartFlags(const StepFolder& step) {
+  std::vector<ReportFlag> flags;
+  if (const auto open = step.number("open_share_ed");
+      open && step.summary.value("plausible", true)) {
+    flags.push_back({FlagLevel::Good, "Open at its base:",
+                     percent(*open) + " of the cavity's surface at end-diastole has no wall", ""});
+  }
+  const std::string orientation = step.text("orientation");
+  if (!orientation.empty()) {
+    const bool known = orientation != "none";
+    flags.push_back({known ? FlagLevel::Good : FlagLevel::Notice, "Orientation of the segments:",
+                     known ? "by " + orientation : "not known; segments have numbers, not names",
+                     ""});
+  }
+  double left = 0;
+  for (const char* cause : {"opening", "valve", "cap", "unreached"}) {
+    left += step.number(std::string("voxels_left_out_") + cause + "_ed").value_or(0);
+  }
+  if (const auto counted = step.number("voxels_counted_ed"); counted && *counted > 0) {
+    flags.push_back({left == 0 ? FlagLevel::Good : FlagLevel::Notice, "Left out of the means:",
+                     percent(left / (left + *counted)) +
+                         " of the wall at end-diastole: openings, valve plane, apex",
+                     ""});
+  }
+  return flags;
+}
+
 /// What the program itself could not vouch for: the list "flags" of a summary.
 std::vector<ReportFlag> ownFlags(const StepFolder& step) {
   std::vector<ReportFlag> flags;
@@ -241,6 +269,7 @@ std::vector<ReportFlag> flagsOf(const StepFolder& step) {
   if (step.command == "repair") return repairFlags(step);
   if (step.command == "sample") return sampleFlags(step);
   if (step.command == "inflate") return inflateFlags(step);
+  if (step.command == "heart") return heartFlags(step);
   return {};
 }
 
