@@ -3,6 +3,7 @@
 
 #include "Explica/Application/Command.h"
 #include "Explica/Application/Execute.h"
+#include "Explica/Application/ManyRuns.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Pipeline/Plan.h"
@@ -63,15 +64,10 @@ std::vector<pipeline::RunHemisphere> sidesOf(const Settings& s) {
 
 /// A name for the part of the work that the options ask for; empty for all of it.
 std::string shareOf(const Settings& s) {
-  if (s.level != BidsLevel::Participant || s.participants.empty()) return {};
-  std::set<std::string> labels;
-  for (const std::string& label : s.participants) {
-    labels.insert(label.starts_with("sub-") ? label.substr(4) : label);
-  }
-  std::string name;
-  for (const std::string& label : labels) name += label + "_";
-  for (const auto side : sidesOf(s)) name += std::string(nameOf(side)) + "_";
-  return provenance::sha256Of(name).substr(0, 16);
+  if (s.level != BidsLevel::Participant) return {};
+  std::vector<std::string> sides;
+  for (const auto side : sidesOf(s)) sides.emplace_back(nameOf(side));
+  return shareOfWork(s.participants, sides);
 }
 
 void declare(Declaration& d, Settings& s) {
@@ -122,17 +118,6 @@ void declare(Declaration& d, Settings& s) {
   }
 }
 
-/// The options of `explica run` that the user gave here.
-Json givenOptions(const Context& context, const Settings& s) {
-  Json values = Json::object();
-  for (const Parameter& parameter : s.run.declaration.parameters) {
-    if (!parameter.positional && context.given(parameter.option.name)) {
-      values[parameter.option.name] = provenance::valueOf(parameter.option);
-    }
-  }
-  return values;
-}
-
 /// Both hemispheres of labels without sides would be the same volume, twice.
 void requireSides(const Settings& s, const study::Participant& participant) {
   if (sidesOf(s).size() < 2) return;
@@ -176,7 +161,7 @@ bool doHemisphere(Context& context, const Settings& s, const study::Participant&
   try {
     if (!participant.problem.empty()) throw InvalidInput(participant.problem);
     requireSides(s, participant);
-    Json values = givenOptions(context, s);
+    Json values = givenOptions(context, s.run.declaration);
     values["INPUT"] = participant.input.string();
     if (participant.atlas) values["atlas"] = participant.atlas->string();
     values["hemisphere"] = hemisphere;
@@ -192,21 +177,11 @@ bool doHemisphere(Context& context, const Settings& s, const study::Participant&
   } catch (const Error& fault) {
     if (!participant.problem.empty()) dropSteps(context, "runs/" + name);
     context.dropCommand("runs/" + name);  // an earlier run's account of itself
-    context.warn(name + ": " + fault.what());
-    fs::create_directories(folder);
-    const std::string why = fault.what();
-    writeTextFile(problem,
-                  (context.isPrivate() ? provenance::textWithoutFolders(why) : why) + "\n");
+    sayProblem(context, name, folder, fault.what());
   }
   const study::DerivativeOrigin origin{s.dataset, !context.isPrivate()};
   study::exportRun(folder, context.outputFolder(), participant, hemisphere, origin);
   return good;
-}
-
-std::string listed(const std::vector<std::string>& names) {
-  std::string all;
-  for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
-  return all;
 }
 
 /// All that can be done is done; exit code 3 if some failed, 2 if all did.

@@ -3,16 +3,14 @@
 
 #include "Explica/Application/Command.h"
 #include "Explica/Application/Execute.h"
+#include "Explica/Application/ManyRuns.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/WholeFile.h"
-#include "Explica/Provenance/Digest.h"
 #include "Explica/Provenance/Json.h"
-#include "Explica/Provenance/Record.h"
 #include "Explica/Provenance/Software.h"
 #include "Explica/Study/HeartStudy.h"
 
 #include <filesystem>
-#include <set>
 
 namespace explica::app {
 namespace {
@@ -28,16 +26,6 @@ struct Settings {
   bool reuse = true;
   Invocation heart;  ///< whose options are taken over
 };
-
-/// A name for the part of the work that the options ask for; empty for all of it.
-std::string shareOf(const Settings& s) {
-  if (s.participants.empty()) return {};
-  std::string name;
-  for (const std::string& label : std::set(s.participants.begin(), s.participants.end())) {
-    name += label + "_";
-  }
-  return provenance::sha256Of(name).substr(0, 16);
-}
 
 void declare(Declaration& d, Settings& s) {
   d.synopsis("a folder of hearts, person by person, to one table")
@@ -66,7 +54,7 @@ void declare(Declaration& d, Settings& s) {
       .defaultOut(s.out)
       .reuseOutputIf(s.reuse)
       .inPlace()
-      .shareOfWork([&s] { return shareOf(s); })
+      .shareOfWork([&s] { return shareOfWork(s.participants); })
       .output("dataset_description.json", FileKind::JsonFile, "what this derivative is")
       .output(".bidsignore", FileKind::Any, "files that BIDS does not know")
       .output("*/heart", FileKind::Folder, "what `explica heart` writes of each person")
@@ -79,32 +67,21 @@ void declare(Declaration& d, Settings& s) {
   }
 }
 
-/// The options of `explica heart` that the user gave here.
-Json givenOptions(const Context& context, const Settings& s) {
-  Json values = Json::object();
-  for (const Parameter& parameter : s.heart.declaration.parameters) {
-    if (!parameter.positional && context.given(parameter.option.name)) {
-      values[parameter.option.name] = provenance::valueOf(parameter.option);
-    }
-  }
-  return values;
-}
-
 /// @return false if it failed: the reason is then in problem.txt in its folder
 bool doHeart(Context& context, const Settings& s, const study::HeartSubject& subject,
              Termination& worst) {
   const std::string name = (subject.folder / "heart").generic_string();
-  const fs::path folder = context.outputFolder() / name, problem = folder / "problem.txt";
+  const fs::path folder = context.outputFolder() / name;
   try {
     if (subject.labels.empty()) throw InvalidInput("no label volume lies below its folder");
-    Json values = givenOptions(context, s);
+    Json values = givenOptions(context, s.heart.declaration);
     values["SEG"] = Json::array();
     for (const fs::path& file : subject.labels) values["SEG"].push_back(file.string());
     const Command& heart = *findCommand("heart");
     auto outcome = context.reuseCommand(heart, name, values);
     if (!outcome) {
       context.dropCommand(name);
-      fs::remove(problem);
+      fs::remove(folder / "problem.txt");
       outcome = context.runCommand(heart, name, values);
     }
     if (!reachedGoal(outcome->termination)) worst = outcome->termination;
@@ -113,11 +90,7 @@ bool doHeart(Context& context, const Settings& s, const study::HeartSubject& sub
     throw;  // a full disk, or another run at work here: no fault of the heart
   } catch (const Error& fault) {
     context.dropCommand(name);
-    const std::string why = fault.what();
-    context.warn(subject.name + ": " + why);
-    fs::create_directories(folder);
-    writeTextFile(problem,
-                  (context.isPrivate() ? provenance::textWithoutFolders(why) : why) + "\n");
+    sayProblem(context, subject.name, folder, fault.what());
     return false;
   }
 }
@@ -163,14 +136,12 @@ Termination run(Context& context, const Settings& s) {
   context.result("hearts_failed", failed.size());
   context.result("failed", Json(failed));
   if (failed.empty()) return worst;
-  std::string names;
-  for (const std::string& name : failed) names += (names.empty() ? "" : ", ") + name;
   if (failed.size() == subjects.size()) {
     throw InvalidInput(s.dataset + ": all " + std::to_string(failed.size()) +
                        " hearts failed; each one's problem.txt says why");
   }
   context.warn(std::to_string(failed.size()) + " of " + std::to_string(subjects.size()) +
-               " hearts failed: " + names);
+               " hearts failed: " + listed(failed));
   return reachedGoal(worst) ? Termination::Stalled : worst;
 }
 

@@ -11,20 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class EveryCommand : public ::testing::TestWithParam<QuickRun> {
- protected:
-  void SetUp() override {
-    for (const auto& line : GetParam().before) {
-      const auto made = explica(filled(line, folder_));
-      ASSERT_TRUE(made.exitCode == 0 || made.exitCode == 3) << made;
-    }
-    if (GetParam().prepare) GetParam().prepare(folder_);
-    words_ = filled(GetParam().words, folder_);
-  }
-
-  TemporaryFolder folder_;
-  std::vector<std::string> words_;
-};
+using EveryCommand = PreparedRun;
 
 TEST_P(EveryCommand, GivesTheSameBytesWithAnyNumberOfThreads) {
   std::map<std::string, std::string> first;

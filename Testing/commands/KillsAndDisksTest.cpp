@@ -17,15 +17,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class KillsAndDisks : public ::testing::TestWithParam<QuickRun> {
+class KillsAndDisks : public PreparedRun {
  protected:
   void SetUp() override {
-    for (const auto& line : GetParam().before) {
-      const auto made = explica(filled(line, folder_));
-      ASSERT_TRUE(made.exitCode == 0 || made.exitCode == 3) << made;
-    }
-    if (GetParam().prepare) GetParam().prepare(folder_);
-    words_ = filled(GetParam().words, folder_) + std::vector<std::string>{"--force"};
+    PreparedRun::SetUp();
+    if (HasFatalFailure()) return;
+    words_.emplace_back("--force");
     const auto whole = explica(into(folder_ / "undisturbed"));
     ASSERT_TRUE(whole.exitCode == 0 || whole.exitCode == 3) << whole;
     expected_ = stableHashes(folder_ / "undisturbed");
@@ -43,8 +40,6 @@ class KillsAndDisks : public ::testing::TestWithParam<QuickRun> {
     ASSERT_EQ(differences(stableHashes(out), expected_), std::vector<std::string>());
   }
 
-  TemporaryFolder folder_;
-  std::vector<std::string> words_;
   Hashes expected_;
   int exitCode_ = -1;
 };

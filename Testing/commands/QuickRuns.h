@@ -9,6 +9,8 @@
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Testing/Command.h"
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <functional>
 #include <ostream>
@@ -180,5 +182,21 @@ inline std::vector<std::string> operator+(std::vector<std::string> words,
   words.insert(words.end(), more.begin(), more.end());
   return words;
 }
+
+/// A quick run whose inputs are made; `words_` is its command line without --out.
+class PreparedRun : public ::testing::TestWithParam<QuickRun> {
+ protected:
+  void SetUp() override {
+    for (const auto& line : GetParam().before) {
+      const auto made = explica(filled(line, folder_));
+      ASSERT_TRUE(made.exitCode == 0 || made.exitCode == 3) << made;
+    }
+    if (GetParam().prepare) GetParam().prepare(folder_);
+    words_ = filled(GetParam().words, folder_);
+  }
+
+  TemporaryFolder folder_;
+  std::vector<std::string> words_;
+};
 
 }  // namespace explica::testing

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Report/Chart.h"
 
+#include "Explica/Core/Html.h"
 #include "Explica/Core/Types.h"
 #include "Explica/Report/ColourMap.h"
 #include "Explica/Report/Drawing.h"
@@ -121,32 +122,6 @@ std::string nothing(const ChartText& titles) {
 }
 
 }  // namespace
-
-std::string escapeHtml(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      case '\'':
-        out += "&#39;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
 
 std::string histogramSvg(const Eigen::VectorXd& values, const ChartText& titles) {
   std::vector<double> sorted;

@@ -3,6 +3,7 @@
 #include "Explica/Report/Page.h"
 
 #include "Encoding.h"
+#include "Explica/Core/Html.h"
 #include "Explica/Report/Chart.h"
 #include "Explica/Report/Drawing.h"
 #include "PageParts.h"

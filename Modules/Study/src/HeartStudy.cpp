@@ -5,6 +5,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Provenance/Json.h"
+#include "HeartColumns.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -97,15 +98,8 @@ std::string textOf(const Json& value) {
   return value.is_string() ? value.get<std::string>() : provenance::textOf(value);
 }
 
-/// A column of a heart's numbers.
-struct Column {
-  const char* key;
-  const char* unit;
-  const char* meaning;
-};
-
 /// Keys of the heart's summary.json, in the order of the table.
-constexpr Column kColumns[] = {
+constexpr HeartColumn kColumns[] = {
     {"cavity_volume_ed_ml", "mL", "volume of the left ventricle's cavity at end-diastole"},
     {"cavity_volume_es_ml", "mL", "volume of the left ventricle's cavity at end-systole"},
     {"stroke_volume_ml", "mL", "end-diastolic less end-systolic volume"},
@@ -171,7 +165,7 @@ HeartRow rowOf(const fs::path& out, const HeartSubject& subject) {
     for (const Json& flag : summary.value("flags", Json::array())) {
       if (!flag.value("accepted", false)) row.state = "implausible: " + textOf(flag["message"]);
     }
-    for (const Column& column : kColumns) {
+    for (const HeartColumn& column : kColumns) {
       if (summary.contains(column.key)) row.values[column.key] = textOf(summary[column.key]);
     }
     addSegments(row, folder / "segments.tsv", summary);
@@ -180,14 +174,6 @@ HeartRow rowOf(const fs::path& out, const HeartSubject& subject) {
   }
   row.pictured = fs::exists(folder / "bullseye.png");
   return row;
-}
-
-std::vector<std::string> aboutColumns(const std::vector<HeartRow>& rows) {
-  std::set<std::string> names;
-  for (const HeartRow& row : rows) {
-    for (const auto& [name, value] : row.about) names.insert(name);
-  }
-  return {names.begin(), names.end()};
 }
 
 std::vector<std::string> segmentColumns(const std::vector<HeartRow>& rows) {
@@ -200,11 +186,6 @@ std::vector<std::string> segmentColumns(const std::vector<HeartRow>& rows) {
   return {names.begin(), names.end()};
 }
 
-std::string valueIn(const std::map<std::string, std::string>& values, const std::string& key) {
-  const auto found = values.find(key);
-  return found == values.end() || found->second.empty() ? "n/a" : found->second;
-}
-
 /// No tab or line end may stand in a cell.
 std::string cellText(std::string text) {
   std::replace_if(
@@ -212,74 +193,20 @@ std::string cellText(std::string text) {
   return text;
 }
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '"')
-      out += "&quot;";
-    else
-      out += c;
-  }
-  return out;
-}
-
-/// What the page shows of each person.
-constexpr Column kShown[] = {{"cavity_volume_ed_ml", "ml", "cavity, end-diastole"},
-                             {"cavity_volume_es_ml", "ml", "cavity, end-systole"},
-                             {"ejection_fraction_percent", "%", "ejection fraction"},
-                             {"mass_ed_g", "g", "mass"},
-                             {"thickness_mean_ed", "mm", "wall, end-diastole"},
-                             {"thickness_mean_es", "mm", "wall, end-systole"},
-                             {"thickening_percent", "%", "thickening"}};
-
-/// "63.27618" as "63.3".
-std::string rounded(const std::string& text) {
-  char* end = nullptr;
-  const double number = std::strtod(text.c_str(), &end);
-  if (end == text.c_str() || *end != '\0') return text;
-  char shown[48];
-  std::snprintf(shown, sizeof shown, "%.1f", number);
-  return shown;
-}
-
-constexpr char kStyle[] =
-    "body{font:16px/1.5 sans-serif;color:#1a1d21;max-width:1180px;margin:2em auto;padding:0 1em}"
-    ".scroll{overflow-x:auto}table{border-collapse:collapse}"
-    "td,th{border:1px solid #d5d9dd;padding:4px 10px;text-align:left;vertical-align:top}"
-    "td.n{text-align:right}th{background:#f1f3f5}tr.bad{background:#fbf0ee}"
-    "td.wide{padding:8px 10px "
-    "20px}img{height:360px;max-width:100%;object-fit:contain}a{color:#145ab4}";
-
-/// A line of numbers, and below it the pictures or what went wrong.
-std::string pageRow(const HeartRow& row, const std::vector<std::string>& about) {
-  const std::size_t colon = row.state.find(": ");
-  const std::string open = row.state == "done" ? "<tr><td>" : "<tr class=\"bad\"><td>";
-  std::string text =
-      open + escaped(row.name) + "</td><td>" + escaped(row.state.substr(0, colon)) + "</td>";
-  for (const std::string& name : about) {
-    text += "<td>" + escaped(valueIn(row.about, name)) + "</td>";
-  }
-  for (const Column& column : kShown) {
-    text += "<td class=\"n\">" + escaped(rounded(valueIn(row.values, column.key))) + "</td>";
-  }
-  text += "</tr>\n<tr><td class=\"wide\" colspan=\"" +
-          std::to_string(2 + about.size() + std::size(kShown)) + "\">";
-  if (colon != std::string::npos) text += escaped(row.state.substr(colon + 2));
-  if (row.pictured) {
-    const std::string folder = escaped(row.folder.generic_string());
-    text += "<a href=\"" + folder + "/bullseye.svg\"><img loading=\"lazy\" alt=\"bull's-eyes of " +
-            escaped(row.name) + "\" src=\"" + folder + "/bullseye.png\"></a>";
-  }
-  return text + "</td></tr>\n";
-}
-
 }  // namespace
+
+std::vector<std::string> aboutColumns(const std::vector<HeartRow>& rows) {
+  std::set<std::string> names;
+  for (const HeartRow& row : rows) {
+    for (const auto& [name, value] : row.about) names.insert(name);
+  }
+  return {names.begin(), names.end()};
+}
+
+std::string valueIn(const std::map<std::string, std::string>& values, const std::string& key) {
+  const auto found = values.find(key);
+  return found == values.end() || found->second.empty() ? "n/a" : found->second;
+}
 
 std::vector<HeartSubject> findHearts(const fs::path& dataset,
                                      const std::vector<std::string>& wanted,
@@ -356,14 +283,15 @@ std::string heartTable(const std::vector<HeartRow>& rows) {
   std::string text = "participant_id";
   for (const std::string& name : about) text += '\t' + cellText(name);
   text += "\tstate";
-  for (const Column& column : kColumns) text += std::string("\t") + column.key;
+  for (const HeartColumn& column : kColumns) text += std::string("\t") + column.key;
   for (const std::string& name : segments) text += '\t' + name;
   text += '\n';
   for (const HeartRow& row : rows) {
     text += cellText(row.name);
     for (const std::string& name : about) text += '\t' + cellText(valueIn(row.about, name));
     text += '\t' + cellText(row.state);
-    for (const Column& column : kColumns) text += '\t' + cellText(valueIn(row.values, column.key));
+    for (const HeartColumn& column : kColumns)
+      text += '\t' + cellText(valueIn(row.values, column.key));
     for (const std::string& name : segments) text += '\t' + valueIn(row.values, name);
     text += '\n';
   }
@@ -373,7 +301,7 @@ std::string heartTable(const std::vector<HeartRow>& rows) {
 std::string heartColumns(const std::vector<HeartRow>& rows) {
   Json columns = Json::object();
   columns["state"] = {{"Description", "done, or what became of the run and why"}};
-  for (const Column& column : kColumns) {
+  for (const HeartColumn& column : kColumns) {
     columns[column.key] = {{"Description", column.meaning}};
     if (*column.unit != '\0') columns[column.key]["Units"] = column.unit;
   }
@@ -385,27 +313,6 @@ std::string heartColumns(const std::vector<HeartRow>& rows) {
                      {"Units", percent ? "%" : "mm"}};
   }
   return provenance::textOf(columns, 2) + "\n";
-}
-
-std::string heartPage(const std::vector<HeartRow>& rows, const std::string& title) {
-  const std::vector<std::string> about = aboutColumns(rows);
-  const auto done = std::count_if(rows.begin(), rows.end(),
-                                  [](const HeartRow& row) { return row.state == "done"; });
-  std::string text =
-      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
-      "content=\"width=device-width, initial-scale=1\"><link rel=\"icon\" href=\"data:,\"><title>" +
-      escaped(title) + "</title><style>" + kStyle + "</style></head><body>\n<h1>" + escaped(title) +
-      "</h1>\n<p>" + std::to_string(done) + " of " + std::to_string(rows.size()) +
-      " hearts are done. All numbers, segments too, are in <a href=\"hearts.tsv\">hearts.tsv</a>; "
-      "each folder holds what healthy adults have beside it (reference.tsv).</p>\n"
-      "<div class=\"scroll\"><table><tr><th>heart</th><th>state</th>";
-  for (const std::string& name : about) text += "<th>" + escaped(name) + "</th>";
-  for (const Column& column : kShown) {
-    text += std::string("<th>") + column.meaning + ", " + column.unit + "</th>";
-  }
-  text += "</tr>\n";
-  for (const HeartRow& row : rows) text += pageRow(row, about);
-  return text + "</table></div>\n</body></html>\n";
 }
 
 }  // namespace explica::study

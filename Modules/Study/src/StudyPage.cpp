@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Study/StudyPage.h"
 
+#include "Explica/Core/Html.h"
 #include "Explica/Provenance/Json.h"
 #include "PageParts.h"
 
@@ -56,30 +57,6 @@ Heading headingOf(const std::string& column) {
   if (isRegion(column)) return {words, "mm"};
   std::replace(words.begin(), words.end(), '_', ' ');
   return {column.substr(0, dot) + ": " + words, ""};
-}
-
-/// Text for HTML.
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
 }
 
 /// JSON that may stand in a script element.
@@ -166,8 +143,8 @@ std::string indexPage(const std::vector<StudyRow>& rows, const std::string& titl
   return "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta "
          "name=\"viewport\" content=\"width=device-width\"><link rel=\"icon\" "
          "href=\"data:,\"><title>" +
-         escaped(title) + "</title><style>" + kStudyStyle + "</style></head><body>\n<main><h1>" +
-         escaped(title) + "</h1>\n<p>" + std::to_string(done) + " of " +
+         escapeHtml(title) + "</title><style>" + kStudyStyle + "</style></head><body>\n<main><h1>" +
+         escapeHtml(title) + "</h1>\n<p>" + std::to_string(done) + " of " +
          std::to_string(rows.size()) + " hemispheres are done; " + std::to_string(marked) +
          " need a look. The numbers in full are in <a href=\"study.tsv\">study.tsv</a>.</p>\n" +
          kBody + "</main><script type=\"application/json\" id=\"data\">" + scriptText(data) +

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Canvas.h"
 
-#include "Explica/Report/Chart.h"
+#include "Explica/Core/Html.h"
 
 #include <algorithm>
 #include <cmath>
@@ -118,7 +118,7 @@ std::string Canvas::svg() const {
                                                             : "end";
       out += "<text x=\"" + number(s.points[0][0]) + "\" y=\"" + number(s.points[0][1]) +
              "\" font-size=\"" + number(s.width * kFontPerCapital) + "\" text-anchor=\"" + anchor +
-             "\" fill=\"" + hex(s.colour) + "\">" + report::escapeHtml(*s.words) + "</text>\n";
+             "\" fill=\"" + hex(s.colour) + "\">" + escapeHtml(*s.words) + "</text>\n";
     } else if (s.width == 0) {
       out += "<polygon points=\"" + listOf(s.points) + "\" fill=\"" + hex(s.colour) + "\"/>\n";
     } else {

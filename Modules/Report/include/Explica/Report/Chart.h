@@ -7,7 +7,6 @@
 #include <array>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace explica::report {
@@ -49,8 +48,5 @@ struct ChartText {
 /// Lines over a common axis, as a self-contained SVG element, with a legend below if there are
 /// several.
 [[nodiscard]] std::string curvesSvg(const std::vector<Series>& series, const ChartText& text);
-
-/// Text as it may stand in HTML and SVG: &, <, >, quotes replaced.
-[[nodiscard]] std::string escapeHtml(std::string_view text);
 
 }  // namespace explica::report

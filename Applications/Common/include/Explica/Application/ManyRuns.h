@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Application/Context.h"
+#include "Explica/Application/Declaration.h"
+#include "Explica/Provenance/Json.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace explica::app {
+
+/// What commands share that take many people through another command.
+
+/// A name for the part of the work that these people are, whatever their order and with or without
+/// "sub-"; empty for all of it.
+/// @param further  what else parts the work, such as hemispheres
+[[nodiscard]] std::string shareOfWork(const std::vector<std::string>& people,
+                                      const std::vector<std::string>& further = {});
+
+/// Those options of another command's declaration that the user gave to this one.
+[[nodiscard]] provenance::Json givenOptions(const Context& context, const Declaration& declaration);
+
+/// Warns of a run that failed, and writes why into problem.txt in its folder.
+void sayProblem(Context& context, const std::string& name, const std::filesystem::path& folder,
+                const std::string& why);
+
+/// "a, b, c".
+[[nodiscard]] std::string listed(const std::vector<std::string>& names);
+
+}  // namespace explica::app

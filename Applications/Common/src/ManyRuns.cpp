@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Application/ManyRuns.h"
+
+#include "Explica/Core/WholeFile.h"
+#include "Explica/Provenance/Digest.h"
+#include "Explica/Provenance/Record.h"
+
+#include <set>
+
+namespace explica::app {
+
+std::string shareOfWork(const std::vector<std::string>& people,
+                        const std::vector<std::string>& further) {
+  if (people.empty()) return {};
+  std::set<std::string> labels;
+  for (const std::string& label : people) {
+    labels.insert(label.starts_with("sub-") ? label.substr(4) : label);
+  }
+  std::string name;
+  for (const std::string& label : labels) name += label + "_";
+  for (const std::string& part : further) name += part + "_";
+  return provenance::sha256Of(name).substr(0, 16);
+}
+
+provenance::Json givenOptions(const Context& context, const Declaration& declaration) {
+  provenance::Json values = provenance::Json::object();
+  for (const Parameter& parameter : declaration.parameters) {
+    if (!parameter.positional && context.given(parameter.option.name)) {
+      values[parameter.option.name] = provenance::valueOf(parameter.option);
+    }
+  }
+  return values;
+}
+
+void sayProblem(Context& context, const std::string& name, const std::filesystem::path& folder,
+                const std::string& why) {
+  context.warn(name + ": " + why);
+  std::filesystem::create_directories(folder);
+  writeTextFile(folder / "problem.txt",
+                (context.isPrivate() ? provenance::textWithoutFolders(why) : why) + "\n");
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string all;
+  for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
+  return all;
+}
+
+}  // namespace explica::app

@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Core/Html.h"
+#include "Explica/Study/HeartStudy.h"
+#include "HeartColumns.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <iterator>
+
+namespace explica::study {
+namespace {
+
+/// What the page shows of each person.
+constexpr HeartColumn kShown[] = {{"cavity_volume_ed_ml", "ml", "cavity, end-diastole"},
+                                  {"cavity_volume_es_ml", "ml", "cavity, end-systole"},
+                                  {"ejection_fraction_percent", "%", "ejection fraction"},
+                                  {"mass_ed_g", "g", "mass"},
+                                  {"thickness_mean_ed", "mm", "wall, end-diastole"},
+                                  {"thickness_mean_es", "mm", "wall, end-systole"},
+                                  {"thickening_percent", "%", "thickening"}};
+
+/// "63.27618" as "63.3".
+std::string rounded(const std::string& text) {
+  char* end = nullptr;
+  const double number = std::strtod(text.c_str(), &end);
+  if (end == text.c_str() || *end != '\0') return text;
+  char shown[48];
+  std::snprintf(shown, sizeof shown, "%.1f", number);
+  return shown;
+}
+
+constexpr char kStyle[] =
+    "body{font:16px/1.5 sans-serif;color:#1a1d21;max-width:1180px;margin:2em auto;padding:0 1em}"
+    ".scroll{overflow-x:auto}table{border-collapse:collapse}"
+    "td,th{border:1px solid #d5d9dd;padding:4px 10px;text-align:left;vertical-align:top}"
+    "td.n{text-align:right}th{background:#f1f3f5}tr.bad{background:#fbf0ee}"
+    "td.wide{padding:8px 10px "
+    "20px}img{height:360px;max-width:100%;object-fit:contain}a{color:#145ab4}";
+
+/// A line of numbers, and below it the pictures or what went wrong.
+std::string pageRow(const HeartRow& row, const std::vector<std::string>& about) {
+  const std::size_t colon = row.state.find(": ");
+  const std::string open = row.state == "done" ? "<tr><td>" : "<tr class=\"bad\"><td>";
+  std::string text =
+      open + escapeHtml(row.name) + "</td><td>" + escapeHtml(row.state.substr(0, colon)) + "</td>";
+  for (const std::string& name : about) {
+    text += "<td>" + escapeHtml(valueIn(row.about, name)) + "</td>";
+  }
+  for (const HeartColumn& column : kShown) {
+    text += "<td class=\"n\">" + escapeHtml(rounded(valueIn(row.values, column.key))) + "</td>";
+  }
+  text += "</tr>\n<tr><td class=\"wide\" colspan=\"" +
+          std::to_string(2 + about.size() + std::size(kShown)) + "\">";
+  if (colon != std::string::npos) text += escapeHtml(row.state.substr(colon + 2));
+  if (row.pictured) {
+    const std::string folder = escapeHtml(row.folder.generic_string());
+    text += "<a href=\"" + folder + "/bullseye.svg\"><img loading=\"lazy\" alt=\"bull's-eyes of " +
+            escapeHtml(row.name) + "\" src=\"" + folder + "/bullseye.png\"></a>";
+  }
+  return text + "</td></tr>\n";
+}
+
+}  // namespace
+
+std::string heartPage(const std::vector<HeartRow>& rows, const std::string& title) {
+  const std::vector<std::string> about = aboutColumns(rows);
+  const auto done = std::count_if(rows.begin(), rows.end(),
+                                  [](const HeartRow& row) { return row.state == "done"; });
+  std::string text =
+      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
+      "content=\"width=device-width, initial-scale=1\"><link rel=\"icon\" href=\"data:,\"><title>" +
+      escapeHtml(title) + "</title><style>" + kStyle + "</style></head><body>\n<h1>" +
+      escapeHtml(title) + "</h1>\n<p>" + std::to_string(done) + " of " +
+      std::to_string(rows.size()) +
+      " hearts are done. All numbers, segments too, are in <a href=\"hearts.tsv\">hearts.tsv</a>; "
+      "each folder holds what healthy adults have beside it (reference.tsv).</p>\n"
+      "<div class=\"scroll\"><table><tr><th>heart</th><th>state</th>";
+  for (const std::string& name : about) text += "<th>" + escapeHtml(name) + "</th>";
+  for (const HeartColumn& column : kShown) {
+    text += std::string("<th>") + column.meaning + ", " + column.unit + "</th>";
+  }
+  text += "</tr>\n";
+  for (const HeartRow& row : rows) text += pageRow(row, about);
+  return text + "</table></div>\n</body></html>\n";
+}
+
+}  // namespace explica::study
