@@ -3,6 +3,7 @@
 // explica heart: what users type and what they get.
 
 #include "Explica/IO/VolumeFile.h"
+#include "Explica/Provenance/Digest.h"
 #include "Explica/Testing/Command.h"
 
 #include <gtest/gtest.h>
@@ -304,6 +305,28 @@ TEST(HeartCommand, AFolderOfHeartsBecomesATableOfPeople) {
   const auto nobody =
       explica({"study", "hearts", folder / "data", folder / "out", "--participant-label", "9"});
   EXPECT_EQ(nobody.exitCode, 2) << nobody;
+}
+
+TEST(HeartCommand, APersonOfAStudyIsTheSameWithAndWithoutSub) {
+  const TemporaryFolder folder;
+  makeBeat(folder);
+  fs::create_directories(folder / "data/sub-1");
+  fs::copy_file(folder / "beat/frame-0000.nii.gz", folder / "data/sub-1/sub-1_dseg.nii.gz");
+  const auto only = [&](const std::string& label) {
+    return explica(
+        {"study", "hearts", folder / "data", folder / "out", "--participant-label", label});
+  };
+  ASSERT_EQ(only("1").exitCode, 0);
+  // Another machine is at work on this person.
+  const std::string share = provenance::sha256Of("1_").substr(0, 16);
+  writeText(folder / ("out/.explica-lock-" + share),
+            R"({"host": "elsewhere", "pid": 1, "process_start": "1",
+                "started": "2026-01-01T00:00:00Z", "command": "study hearts"})");
+  for (const char* label : {"1", "sub-1"}) {
+    const auto refused = only(label);
+    EXPECT_EQ(refused.exitCode, 4) << refused;
+    EXPECT_NE(refused.err.find("elsewhere"), std::string::npos) << refused;
+  }
 }
 
 }  // namespace explica::testing
