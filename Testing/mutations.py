@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The Explica developers
 # SPDX-License-Identifier: Apache-2.0
-"""Breaks the code in twenty places, one at a time, and asks whether a test notices.
+"""Breaks the code in some thirty places, one at a time, and asks whether a test notices.
 
     mutations.py [--only WORD]      needs a configured build/; leaves the sources as they were
 
@@ -88,6 +88,24 @@ ALL = [
              "ExplicaPipelineUnitTests"),
     Mutation("Modules/Segmentation/src/Plausibility.cpp",
              """"ml", 300, 2500""", """"ml", 300, 25000""", "ExplicaSegmentationUnitTests"),
+    Mutation("Modules/Collision/src/ContinuousCollision.cpp",
+             "const double room = *least > 0 ? *least : -*most;",
+             "const double room = *least > 0 ? *least : *most;", "ExplicaCollisionUnitTests"),
+    Mutation("Modules/Collision/src/ContinuousCollision.cpp",
+             "if (staysApart(kind, now, then, gap)) return ahead;", "static_cast<void>(then);",
+             "ExplicaCollisionUnitTests"),
+    Mutation("Modules/Unfolding/src/ImplicitStep.cpp",
+             "if (held.until > now_.iteration) lock(pairOf(held));",
+             "if (held.until < 0) lock(pairOf(held));", "ExplicaUnfoldingUnitTests"),
+    Mutation("Modules/Unfolding/src/Motion.cpp",
+             "options.keptDistance = kTouching * contacts.range();", "options.keptDistance = 0;",
+             "ExplicaUnfoldingUnitTests"),
+    Mutation("Modules/Correspondence/src/Field.cpp",
+             "return !done && walk.stuck ? hop(walk, target, uphill) : done;", "return done;",
+             "ExplicaCorrespondenceUnitTests"),
+    Mutation("Modules/Correspondence/src/ImageEdge.cpp",
+             "correspondence.missing -= leaving;", "static_cast<void>(leaving);",
+             "ExplicaCorrespondenceUnitTests"),
     Mutation("Modules/Provenance/src/Verify.cpp",
              """found.sha256 == entry["sha256"] &&""", """true &&""",
              "ExplicaProvenanceUnitTests"),
