@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kSufficient = 1e-4;     // of the decrease that the gradient promises [Armijo1966]
 constexpr double kDamping = 1e-7;        // of the mean diagonal: holds translation and rotation
+constexpr double kRounding = 1e-14;      // decrease that the energy, a difference of ones, can tell
 constexpr double kContactWeight = 1e-4;  // energy of one touching pair over that of one unit strain
 
 /// Corners that the blocks of FaceBlocks belong to.
@@ -183,7 +184,7 @@ MapSolver::Run MapSolver::lower(FlatPositions& flat, int maxIterations, double t
     Eigen::VectorXd solved = gradient;
     cholesky_.solve(solved);
     const double promised = gradient.dot(solved);
-    if (promised <= tolerance * run.energy) {
+    if (promised <= std::max(tolerance * run.energy, kRounding)) {
       run.termination = Termination::Converged;
       break;
     }

@@ -26,8 +26,9 @@ class MapSolver {
     double energy = kNaN;
     Termination termination = Termination::NotRun;
   };
-  /// Iterates until a step promises less than `tolerance` of the energy.  An iteration depends on
-  /// nothing but the map, so that a run can go on from where it was stopped.
+  /// Iterates until a step promises less than `tolerance` of the energy, or less than rounding lets
+  /// the energy tell: a sheet that unrolls has none.  An iteration depends on nothing but the map,
+  /// so that a run can go on from where it was stopped.
   /// @param taken  called after every step with the number of iterations
   Run lower(FlatPositions& flat, int maxIterations, double tolerance, const Monitor& monitor,
             const std::function<void(int)>& taken = {});
