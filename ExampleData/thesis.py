@@ -799,6 +799,27 @@ def round_off(surface, target):
     write_off(target, away, faces)
 
 
+# Columns of `comparison.tsv` that the page shows: their names for people, and the unit's factor and format.
+COMPARED = {"area_error_mean": ("area error, mean", 100, "{:.1f} %"),
+            "area_error_max": ("largest", 100, "{:.1f} %"),
+            "edge_strain_mean": ("edge strain, mean", 100, "{:.1f} %"),
+            "angle_error_mean_deg": ("angle error, mean", 1, "{:.1f}°"),
+            "geodesic_error_local": ("distances, local", 100, "{:.1f} %"),
+            "geodesic_error_all": ("distances, all", 100, "{:.1f} %"),
+            "turned_over": ("faces turned over", 1, "{:.0f}"),
+            "crossings": ("crossing pairs", 1, "{:.0f}"),
+            "seen": ("seen", 1, "{:.3f}")}
+
+
+def compared(text, factor, shown):
+    """A value of `comparison.tsv` for people; one that was not measured stays empty."""
+    try:
+        value = float(text)
+    except ValueError:
+        return ""
+    return shown.format(factor * value) if math.isfinite(value) else ""
+
+
 def comparison(work, page, fsaverage, surface, unfolded):
     page.section("Beside flat, inflated and spherical maps")
     maps = {"unfolded": unfolded / "unfolded.surf.gii"}
@@ -816,8 +837,10 @@ def comparison(work, page, fsaverage, surface, unfolded):
     lines = (work.path("beside") / "comparison.tsv").read_text().splitlines()
     head = lines[0].split("\t")
     rows = [line.split("\t") for line in lines[1:]]
-    page.table(head, rows)
     beside = {name: dict(zip(head, row)) for name, row in zip(maps, rows[-len(maps):])}
+    page.table(["map of the region"] + [name for name, _, _ in COMPARED.values()],
+               [[name] + [compared(row.get(key, ""), *shown) for key, (_, *shown) in COMPARED.items()]
+                for name, row in beside.items()])
     for name, row in beside.items():
         page.number(f"area_error_{name}", f"the region of figure 5.25, {name}: mean area error", "little distortion",
                     float(row["area_error_mean"]), f"{100 * float(row['area_error_mean']):.1f} %", "5.25")
