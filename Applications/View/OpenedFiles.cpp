@@ -98,6 +98,10 @@ bool isVolume(const fs::path& path) {
                      [&](const char* ending) { return name.ends_with(ending); });
 }
 
+std::string counted(std::size_t count, const char* what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
 viewer::WindowLabels windowLabels(const ShownSurface& surface, const fs::path& path) {
   const io::LabelMap read = readLabelsOn(surface, path);
   viewer::WindowLabels labels;
@@ -120,14 +124,15 @@ viewer::Opened openForWindow(const fs::path& path, const ShownSurface& surface) 
     opened.what = name + ": slices through the point that is picked (C)";
   } else if (isLabelFile(path)) {
     opened.labels.push_back(windowLabels(surface, path));
-    opened.what = name + ": " + std::to_string(opened.labels[0].names.size()) + " labels";
+    opened.what = name + ": " + counted(opened.labels[0].names.size(), "label");
   } else {
     for (io::VertexMap& map : readMapsOn(surface, path)) {
       const bool first = opened.maps.empty();
-      opened.maps.push_back(
-          {map.name, map.unit, std::move(map.values), first ? path.string() : ""});
+      // Some programs name a map by the path of the file that it came from.
+      opened.maps.push_back({fs::path(map.name).filename().string(), map.unit,
+                             std::move(map.values), first ? path.string() : ""});
     }
-    opened.what = name + ": " + std::to_string(opened.maps.size()) + " maps";
+    opened.what = name + ": " + counted(opened.maps.size(), "map");
   }
   return opened;
 }

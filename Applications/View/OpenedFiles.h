@@ -13,6 +13,9 @@ namespace explica::app {
 /// True if the name is that of a volume's file.
 [[nodiscard]] bool isVolume(const std::filesystem::path& path);
 
+/// A number of things in words: "1 map", "2 maps".
+[[nodiscard]] std::string counted(std::size_t count, const char* what);
+
 /// What the window shows of a file or folder on a surface: maps, labels, slices of a volume, the
 /// states of a finished unfolding, profiles and stacks of depths.
 /// @throws InvalidInput, IOError  nothing that fits the surface

@@ -67,10 +67,22 @@ unfolding::Region regionOf(const fs::path& folder, const TriangleMesh& surface) 
   return unfolding::regionOfMarked(surface, marked);
 }
 
+/// Viewpoints as a summary has them; none where it has none.
+std::optional<visibility::Viewpoints> viewpointsIn(const provenance::Json& summary) {
+  const auto numbers = summary.value("viewpoint", std::vector<double>());
+  std::vector<Point> points;
+  for (std::size_t n = 0; n + 3 <= numbers.size(); n += 3) {
+    points.emplace_back(numbers[n], numbers[n + 1], numbers[n + 2]);
+  }
+  if (points.empty()) return {};
+  return visibility::viewpoints(points, summary.value("viewpoint_weights", std::vector<double>()));
+}
+
 viewer::Finished readUnfolding(const fs::path& folder, const TriangleMesh& surface) {
   viewer::Finished finished;
   finished.region = regionOf(folder, surface);
   const auto summary = summaryOf(folder);
+  finished.view = viewpointsIn(summary);
   const std::vector<fs::path> files = pipeline::frameFiles(folder);
   if (files.empty()) {
     viewer::Moment start;
@@ -106,6 +118,8 @@ viewer::Finished readFlattening(const fs::path& folder, const TriangleMesh& patc
   viewer::Finished finished;
   finished.region.faces.resize(static_cast<std::size_t>(patch.faceCount()));
   std::iota(finished.region.faces.begin(), finished.region.faces.end(), 0);
+  finished.region.vertices.resize(static_cast<std::size_t>(patch.vertexCount()));
+  std::iota(finished.region.vertices.begin(), finished.region.vertices.end(), 0);
   viewer::Moment folded, flat;
   for (viewer::Moment* moment : {&folded, &flat}) {
     moment->record.visibility = moment->record.areaErrorMean = moment->record.edgeStrainMean = kNaN;
@@ -259,10 +273,6 @@ ShownSurface middleOf(const fs::path& folder) {
     middle.mesh.positions = (0.5 * (middle.mesh.positions + outer)).eval();
   }
   return middle;
-}
-
-std::string counted(std::size_t count, const char* what) {
-  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
 }  // namespace

@@ -32,11 +32,23 @@ int runSelf(std::vector<std::string> words) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
+using CommandOptions = std::vector<std::pair<std::string, std::string>>;
+
+/// Options of `explica unfold` that differ from their defaults.
+CommandOptions optionsOf(const io::SurfaceReadOptions& reading) {
+  CommandOptions options;
+  if (reading.space != io::SurfaceSpace::Stated) {
+    options.emplace_back("surface-space", std::string(nameOf(reading.space)));
+  }
+  if (reading.fsVolume) options.emplace_back("fs-volume", *reading.fsVolume);
+  return options;
+}
+
 /// Writes the state that is shown as `explica unfold` would, from where it stands: the command goes
 /// on from a checkpoint and finds nothing left to do.
 std::future<std::string> saveState(Context& context, const std::string& surface,
-                                   const std::string& folder, const viewer::Session& session,
-                                   std::size_t state) {
+                                   const CommandOptions& reading, const std::string& folder,
+                                   const viewer::Session& session, std::size_t state) {
   const auto checkpoint = session.checkpoint(state);
   if (!checkpoint) {
     std::promise<std::string> answer;
@@ -45,9 +57,11 @@ std::future<std::string> saveState(Context& context, const std::string& surface,
   }
   const std::string out = folder + "/iteration-" + std::to_string(state);
   std::vector<std::string> words = {"explica", "unfold", surface, "--out", out};
-  for (const auto& [name, value] : session.batchOptions(state)) {
-    words.push_back("--" + name);
-    words.push_back(value);
+  for (const auto& options : {session.batchOptions(state), reading}) {
+    for (const auto& [name, value] : options) {
+      words.push_back("--" + name);
+      words.push_back(value);
+    }
   }
   std::string command;
   for (const std::string& word : words) command += (command.empty() ? "" : " ") + word;
@@ -66,15 +80,16 @@ std::future<std::string> saveState(Context& context, const std::string& surface,
 
 }  // namespace
 
-void steer(Context& context, const ShownSurface& surface, const Vector& direction,
-           std::vector<viewer::Opened> opened, const SteerOptions& options) {
+void steer(Context& context, const ShownSurface& surface, const io::SurfaceReadOptions& reading,
+           const Vector& direction, std::vector<viewer::Opened> opened,
+           const SteerOptions& options) {
   const std::string& path = surface.file;
   viewer::Session session(surface.mesh);
   viewer::Choice choice;
   choice.centre = options.vertex.value_or(-1);
   choice.radius = options.radius;
-  choice.direction = direction;
-  choice.distance = options.distance;
+  choice.view.directions = {direction};
+  choice.view.distance = options.distance;
   choice.unfold.unfolder.surround = options.surround;
   choice.unfold.targetVisibility = options.targetVisibility;
   session.choose(choice);
@@ -82,13 +97,17 @@ void steer(Context& context, const ShownSurface& surface, const Vector& directio
   viewer::WindowOptions window;
   window.title = "Explica: " + path;
   window.surface = path;
+  window.reading = optionsOf(reading);
   window.script = options.script;
   window.opened = std::move(opened);
-  const auto open = [&](const std::string& file) { return openForWindow(file, surface); };
-  const auto save = [&](const viewer::Session& shown, std::size_t state) {
-    return saveState(context, path, options.save, shown, state);
+  viewer::WindowCalls calls;
+  calls.scale = scaleOf;
+  calls.open = [&](const std::string& file) { return openForWindow(file, surface); };
+  calls.readSurface = [&](const std::string& file) { return io::readSurface(file, reading).mesh; };
+  calls.save = [&](const viewer::Session& shown, std::size_t state) {
+    return saveState(context, path, window.reading, options.save, shown, state);
   };
-  viewer::showWindow(session, scaleOf, open, save, window);
+  viewer::showWindow(session, calls, window);
 }
 
 }  // namespace explica::app

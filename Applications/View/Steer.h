@@ -4,6 +4,7 @@
 
 #include "Explica/Application/Context.h"
 #include "Explica/Core/Describe.h"
+#include "Explica/IO/SurfaceFile.h"
 #include "Explica/Unfolding/Unfolder.h"
 #include "Explica/Viewer/Window.h"
 #include "ShownSurface.h"
@@ -39,9 +40,11 @@ void describe(SteerOptions& o, Visitor&& visit) {
 
 /// Opens the window on a surface.  A saved state is what `explica unfold` writes when it runs with
 /// the same choices: the same surfaces and maps, from a process of its own.
+/// @param reading    how the surface was read
 /// @param direction  from the surface to the viewer
 /// @param opened     what else to show
-void steer(Context& context, const ShownSurface& surface, const Vector& direction,
-           std::vector<viewer::Opened> opened, const SteerOptions& options);
+void steer(Context& context, const ShownSurface& surface, const io::SurfaceReadOptions& reading,
+           const Vector& direction, std::vector<viewer::Opened> opened,
+           const SteerOptions& options);
 
 }  // namespace explica::app

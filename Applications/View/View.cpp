@@ -44,22 +44,7 @@ struct Settings {
 void declare(Declaration& d, Settings& s) {
   d.synopsis("choose and steer an unfolding in a window; pictures and films without one")
       .description(
-          "Without --screenshot or --film a window opens on a surface, or on a folder of `explica "
-          "unfold`, `flatten` or `sample`: pick a centre (C), take the view as viewpoint (V) or "
-          "add "
-          "it to those taken (Shift+V), set "
-          "the radius, run and pause (Space), step back and forth, save (W); F1 shows every key. "
-          "Maps, labels, volumes and folders named after the surface are shown with it: of a "
-          "folder "
-          "of `explica sample` the maps and their curves over the depth of the cortex, region by "
-          "region; of `explica flatten` the flat map, and each volume on it depth by depth. Where "
-          "a map was not measured (off the valid.shape.gii beside it, thickness 0) it is grey. "
-          "Surfaces are drawn with a map or labels on their vertices, from one or more sides; a "
-          "volume is "
-          "shown in slices with the cut lines of the surfaces named after it (the first red, the "
-          "second "
-          "yellow); a folder of `explica unfold` is shown as its evolution with --film. "
-          "Pictures and films are drawn on the processor, without a display.")
+          R"(Without --screenshot or --film a window opens on a surface, or on a folder of `explica unfold`, `flatten` or `sample`: pick a centre (C), take the view as viewpoint (V), add it to those taken (Shift+V), or look from a line (L) or a surface (S); set the radius, run and pause (Space), step back and forth, save (W); F1 shows every key. Maps, labels, volumes and folders named after the surface are shown with it: of a folder of `explica sample` the maps and their curves over the depth of the cortex, region by region; of `explica flatten` the flat map, and each volume on it depth by depth. Where a map was not measured (off the valid.shape.gii beside it, thickness 0) it is grey. Surfaces are drawn with a map or labels on their vertices, from one or more sides; a volume is shown in slices with the cut lines of the surfaces named after it (the first red, the second yellow); a folder of `explica unfold` is shown as its evolution with --film. Pictures and films are drawn on the processor, without a display.)")
       .example(
           "explica view pial.surf.gii --map thickness.shape.gii --views left,right --screenshot "
           "pial.png",
@@ -218,7 +203,7 @@ void openWindow(Context& context, const Settings& s) {
     if (file) opened.push_back(openForWindow(*file, start));
   }
   const Vector direction = s.direction.value_or(start.direction.value_or(Vector(-1, 0, 0)));
-  steer(context, start, direction, std::move(opened), s.window);
+  steer(context, start, s.reading, direction, std::move(opened), s.window);
 }
 
 Termination run(Context& context, const Settings& s) {

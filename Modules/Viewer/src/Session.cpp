@@ -9,8 +9,10 @@
 #include "Explica/Unfolding/StopRule.h"
 #include "Explica/Visibility/AverageVisibility.h"
 
+#include <algorithm>
 #include <atomic>
 #include <charconv>
+#include <functional>
 #include <mutex>
 #include <thread>
 #include <utility>
@@ -37,13 +39,44 @@ unfolding::Region regionOf(const TriangleMesh& surface, const Choice& choice) {
   return unfolding::selectRegion(surface, options);
 }
 
-/// Where `explica unfold --direction --distance` puts them.
-std::vector<Point> viewpointsAbout(const Point& centre, const Choice& choice) {
-  std::vector<Vector> directions = {choice.direction};
-  directions.insert(directions.end(), choice.further.begin(), choice.further.end());
+bool countAlike(const std::vector<double>& weights) {
+  return std::adjacent_find(weights.begin(), weights.end(), std::not_equal_to<>()) == weights.end();
+}
+
+/// Where `explica unfold` puts them with the options of optionsOf().
+visibility::Viewpoints viewpointsOf(const View& view, const Point& centre) {
+  if (view.kind == ViewKind::Line) {
+    if (view.line[0] == view.line[1]) throw InvalidInput("the line to look from has no length");
+    return visibility::viewLine(view.line[0], view.line[1]);
+  }
+  if (view.kind == ViewKind::Surface) {
+    if (!view.surface) throw InvalidInput("no surface to look from is opened");
+    return visibility::viewSurface(view.surface->mesh);
+  }
   std::vector<Point> points;
-  for (const Vector& d : directions) points.push_back(centre + choice.distance / d.norm() * d);
-  return points;
+  for (const Vector& d : view.directions) points.push_back(centre + view.distance / d.norm() * d);
+  return visibility::viewpoints(points,
+                                countAlike(view.weights) ? std::vector<double>{} : view.weights);
+}
+
+using CommandOptions = std::vector<std::pair<std::string, std::string>>;
+
+CommandOptions optionsOf(const View& view) {
+  if (view.kind == ViewKind::Line) {
+    return {{"view-line", exactText(view.line[0]) + "," + exactText(view.line[1])}};
+  }
+  if (view.kind == ViewKind::Surface) {
+    return {{"view-surface", view.surface ? view.surface->file : ""}};
+  }
+  CommandOptions options;
+  for (const Vector& d : view.directions) options.emplace_back("direction", exactText(d));
+  options.emplace_back("distance", exactText(view.distance));
+  if (!countAlike(view.weights)) {
+    std::string weights;
+    for (const double w : view.weights) weights += (weights.empty() ? "" : ",") + exactText(w);
+    options.emplace_back("view-weights", weights);
+  }
+  return options;
 }
 
 /// A state, kept as what differs from the start: a region moves, the rest of a hemisphere does not.
@@ -88,16 +121,21 @@ struct Session::Implementation {
   std::vector<Kept> moments;
   Activity activity = Activity::Choosing;
   Termination termination = Termination::NotRun;
-  bool opened = false;  ///< the states are those of an earlier run
+  bool opened = false;                               ///< the states are those of an earlier run
+  std::optional<visibility::Viewpoints> openedView;  ///< of that run
 
   std::unique_ptr<unfolding::Unfolder>
       unfolder;  // touched by the iterations' thread only while it runs
   std::thread worker;
   std::atomic<bool> pauseWanted{false};
 
+  Point centre() const {
+    return preview.region.faces.empty() ? Point(surface.positions.colwise().mean().transpose())
+                                        : unfolding::centroidOf(surface, preview.region);
+  }
+
   visibility::Viewpoints viewpoints() const {
-    return visibility::viewpoints(
-        viewpointsAbout(unfolding::centroidOf(surface, preview.region), choice));
+    return openedView ? *openedView : viewpointsOf(choice.view, centre());
   }
 
   std::vector<unfolding::IterationRecord> history(std::size_t last) const {
@@ -164,6 +202,7 @@ const Preview& Session::choose(const Choice& choice) {
     s.activity = Activity::Choosing;
     s.termination = Termination::NotRun;
     s.opened = false;
+    s.openedView.reset();
   }
   s.unfolder.reset();
   s.choice = choice;
@@ -188,12 +227,12 @@ const Preview& Session::choose(const Choice& choice) {
   return s.preview;
 }
 
-std::vector<Point> Session::viewpoints() const {
-  const Implementation& s = *self_;
-  const Point centre = s.preview.region.faces.empty()
-                           ? Point(s.surface.positions.colwise().mean().transpose())
-                           : unfolding::centroidOf(s.surface, s.preview.region);
-  return viewpointsAbout(centre, s.choice);
+Point Session::centre() const {
+  return self_->centre();
+}
+
+visibility::Viewpoints Session::viewpoints() const {
+  return self_->viewpoints();
 }
 
 std::int32_t Session::nearestVertex(const Point& point) const {
@@ -295,6 +334,7 @@ void Session::open(Finished finished) {
   }
   s.activity = Activity::Over;
   s.opened = true;
+  s.openedView = std::move(finished.view);
 }
 
 std::optional<unfolding::Checkpoint> Session::checkpoint(std::size_t number) const {
@@ -310,13 +350,11 @@ std::optional<unfolding::Checkpoint> Session::checkpoint(std::size_t number) con
 
 std::vector<std::pair<std::string, std::string>> Session::batchOptions(std::size_t number) const {
   const Choice& c = self_->choice;
-  std::vector<std::pair<std::string, std::string>> options = c.markedOptions;
+  CommandOptions options = c.markedOptions;
   if (c.marked.empty()) {
     options = {{"vertex", std::to_string(c.centre)}, {"radius", exactText(c.radius)}};
   }
-  options.emplace_back("direction", exactText(c.direction));
-  for (const Vector& direction : c.further) options.emplace_back("direction", exactText(direction));
-  options.emplace_back("distance", exactText(c.distance));
+  for (auto& option : optionsOf(c.view)) options.push_back(std::move(option));
   options.emplace_back("surround", std::string(nameOf(c.unfold.unfolder.surround)));
   if (c.unfold.targetVisibility) {
     options.emplace_back("target-visibility", exactText(*c.unfold.targetVisibility));

@@ -11,7 +11,7 @@
 namespace explica::viewer {
 
 Curves::Curves(QWidget* parent) : QWidget(parent) {
-  setMinimumHeight(180);
+  setMinimumHeight(160);
 }
 
 void Curves::show(std::vector<Curve> curves, std::size_t state) {
@@ -21,6 +21,7 @@ void Curves::show(std::vector<Curve> curves, std::size_t state) {
   });
   curves_ = std::move(curves);
   state_ = state;
+  setVisible(!curves_.empty());
   update();
 }
 

@@ -42,12 +42,9 @@ std::vector<std::int32_t> wayDown(const geometry::MeshTopology& topology,
 
 }  // namespace
 
-MainWindow::MainWindow(Session& session, MakeScale scale, OpenFile open, Save save,
-                       WindowOptions options)
+MainWindow::MainWindow(Session& session, WindowCalls calls, WindowOptions options)
     : session_(session),
-      scale_(std::move(scale)),
-      open_(std::move(open)),
-      save_(std::move(save)),
+      calls_(std::move(calls)),
       options_(std::move(options)),
       shownMesh_(session.surface()) {
   setWindowTitle(QString::fromStdString(options_.title));
@@ -63,6 +60,7 @@ MainWindow::MainWindow(Session& session, MakeScale scale, OpenFile open, Save sa
   view_->installEventFilter(this);
   setCentralWidget(view_);
   panels_ = buildPanels(*this);
+  showField(panels_.regionKey, false);
   buildMenus();
   for (Opened& opened : options_.opened) take(std::move(opened));
   options_.opened.clear();
@@ -70,8 +68,9 @@ MainWindow::MainWindow(Session& session, MakeScale scale, OpenFile open, Save sa
   if (!maps_.empty()) panels_.map->setCurrentIndex(kOwnMaps);
   connectPanels();
   crosshair_ = session_.surface().positions.colwise().mean().transpose();
+  showChoice();
   refresh();
-  stage_->look(session_.choice().direction);
+  lookFromViewpoint();
   QObject::connect(&timer_, &QTimer::timeout, this, [this] { follow(); });
   timer_.start(kFrameMilliseconds);
   view_->setFocus();
@@ -122,10 +121,17 @@ void MainWindow::buildMenus() {
             [this] { takeView(); });
   addAction(edit, "addView", "Present view is a &further viewpoint", QKeySequence("Shift+V"),
             [this] { addView(); });
+  addAction(edit, "lineAlong", "&Line of viewpoints along the present view", QKeySequence("L"),
+            [this] { lineAlong(); });
+  addAction(edit, "lineTo", "Line from the viewpoint &to the present view", QKeySequence("Shift+L"),
+            [this] { lineTo(); });
+  addAction(edit, "viewSurface", "&Surface of viewpoints ...", QKeySequence("S"),
+            [this] { chooseViewSurface(); });
   addAction(edit, "undo", "&Undo the last choice", QKeySequence::Undo, [this] { undo(); });
   addAction(edit, "reset", "&Reset to choosing", QKeySequence("R"), [this] {
     session_.reset();
     shown_ = known_ = 0;
+    showChoice();
     refresh();
   });
 
@@ -158,7 +164,18 @@ void MainWindow::buildMenus() {
     });
   }
   addAction(view, "viewpoint", "From the &viewpoint", QKeySequence("0"), [this] {
-    stage_->look(session_.choice().direction);
+    lookFromViewpoint();
+    stage_->render();
+  });
+  addAction(view, "all", "&All, with the viewpoints", QKeySequence("A"), [this] {
+    stage_->lookAtAll();
+    stage_->render();
+  });
+  QAction* eyes = addAction(view, "eyes", "Mark th&e viewpoints", QKeySequence("E"), [] {});
+  eyes->setCheckable(true);
+  eyes->setChecked(true);
+  QObject::connect(eyes, &QAction::toggled, this, [this](bool shown) {
+    stage_->setEyesShown(shown);
     stage_->render();
   });
   addAction(view, "nextMap", "Next &map", QKeySequence("M"), [this] {
@@ -193,14 +210,7 @@ void MainWindow::connectPanels() {
     panels_.surround->addItem(QString::fromStdString(std::string(nameOf(surround))),
                               static_cast<int>(surround));
   }
-  const Choice choice = session_.choice();
-  panels_.surround->setCurrentIndex(
-      panels_.surround->findData(static_cast<int>(choice.unfold.unfolder.surround)));
-  panels_.radius->setValue(choice.radius);
-  panels_.distance->setValue(choice.distance);
-  panels_.target->setValue(choice.unfold.targetVisibility.value_or(0));
   connect(panels_.radius, number, this, changed([](Choice& c, double mm) { c.radius = mm; }));
-  connect(panels_.distance, number, this, changed([](Choice& c, double mm) { c.distance = mm; }));
   connect(panels_.target, number, this, changed([](Choice& c, double v) {
             c.unfold.targetVisibility = v > 0 ? std::optional(v) : std::nullopt;
           }));
@@ -213,8 +223,12 @@ void MainWindow::connectPanels() {
     if (!filling_) takeRegion();
   });
   connect(panels_.takeAbove, &QPushButton::clicked, this, [this] { takeAbove(); });
-  connect(panels_.takeView, &QPushButton::clicked, this, [this] { takeView(); });
-  connect(panels_.addView, &QPushButton::clicked, this, [this] { addView(); });
+  panels_.view->calls = {[this](View view) { changeView(std::move(view)); },
+                         [this] { takeView(); },
+                         [this] { addView(); },
+                         [this] { lineAlong(); },
+                         [this] { lineTo(); },
+                         [this] { chooseViewSurface(); }};
   connect(panels_.run, &QPushButton::clicked, this, [this] { toggle(); });
   connect(panels_.state, &QSlider::valueChanged, this, [this](int state) {
     if (!filling_) step(static_cast<std::size_t>(state));
@@ -239,8 +253,9 @@ void MainWindow::connectPanels() {
 
 void MainWindow::open(const std::string& path) {
   try {
-    take(open_(path));
+    take(calls_.open(path));
     fillMaps();
+    showChoice();
     refresh();
   } catch (const Error& fault) {
     statusBar()->showMessage(QString::fromStdString(fault.what()));
@@ -289,11 +304,14 @@ void MainWindow::fillMaps() {
 void MainWindow::choose(Choice choice) {
   if (session_.activity() == Activity::Running) {
     statusBar()->showMessage("It is running: pause (Space) before you change the choice.");
+    showChoice();
     return;
   }
   earlier_.push_back(session_.choice());
+  statusBar()->clearMessage();
   session_.choose(choice);
   shown_ = known_ = 0;
+  showChoice();
   refresh();
 }
 
@@ -302,14 +320,8 @@ void MainWindow::undo() {
   const Choice choice = earlier_.back();
   earlier_.pop_back();
   session_.choose(choice);
-  filling_ = true;
-  panels_.radius->setValue(choice.radius);
-  panels_.distance->setValue(choice.distance);
-  panels_.target->setValue(choice.unfold.targetVisibility.value_or(0));
-  panels_.surround->setCurrentIndex(
-      panels_.surround->findData(static_cast<int>(choice.unfold.unfolder.surround)));
-  filling_ = false;
   shown_ = known_ = 0;
+  showChoice();
   refresh();
 }
 
@@ -333,7 +345,7 @@ void MainWindow::takeRegion() {
   Choice choice = session_.choice();
   choice.marked.clear();
   choice.markedOptions.clear();
-  panels_.regionKey->setEnabled(source >= 0);
+  showField(panels_.regionKey, source >= 0);
   if (source >= 0) {
     const WindowLabels& labels = labels_[static_cast<std::size_t>(source)];
     if (panels_.regionKey->property("source") != source) {
@@ -374,19 +386,73 @@ void MainWindow::takeAbove() {
   choose(std::move(choice));
 }
 
-void MainWindow::takeView() {
+void MainWindow::changeView(View view) {
   Choice choice = session_.choice();
-  choice.direction = stage_->direction();
-  choice.further.clear();
+  choice.view = std::move(view);
   choose(std::move(choice));
 }
 
+void MainWindow::takeView() {
+  View view = session_.choice().view;
+  view.kind = ViewKind::Points;
+  view.directions = {stage_->direction()};
+  view.weights = {1};
+  changeView(std::move(view));
+}
+
 void MainWindow::addView() {
-  Choice choice = session_.choice();
-  choice.further.push_back(stage_->direction());
-  const std::size_t count = choice.further.size() + 1;
-  choose(std::move(choice));
-  statusBar()->showMessage(QString("%1 viewpoints; V leaves only the present one").arg(count));
+  View view = session_.choice().view;
+  view.kind = ViewKind::Points;
+  view.directions.push_back(stage_->direction());
+  view.weights.push_back(1);
+  changeView(std::move(view));
+  statusBar()->showMessage(QString("%1 viewpoints; V leaves only the present one")
+                               .arg(session_.choice().view.directions.size()));
+}
+
+void MainWindow::lineAlong() {
+  constexpr double kNear = 0.1;  // of the distance, where the line begins
+  View view = session_.choice().view;
+  view.kind = ViewKind::Line;
+  const Vector far = view.distance * stage_->direction();
+  view.line = {session_.centre() + kNear * far, session_.centre() + far};
+  changeView(std::move(view));
+}
+
+void MainWindow::lineTo() {
+  View view = session_.choice().view;
+  const Point first =
+      view.kind == ViewKind::Line
+          ? view.line[0]
+          : Point(session_.centre() + view.distance * view.directions[0].normalized());
+  view.kind = ViewKind::Line;
+  view.line = {first, session_.centre() + view.distance * stage_->direction()};
+  changeView(std::move(view));
+}
+
+void MainWindow::chooseViewSurface() {
+  const QString path = QFileDialog::getOpenFileName(this, "Surface to look from");
+  if (!path.isEmpty()) lookFrom(path.toStdString());
+}
+
+void MainWindow::lookFrom(const std::string& path) {
+  try {
+    View view = session_.choice().view;
+    view.kind = ViewKind::Surface;
+    view.surface = std::make_shared<ViewSurface>(ViewSurface{path, calls_.readSurface(path)});
+    changeView(std::move(view));
+  } catch (const Error& fault) {
+    statusBar()->showMessage(QString::fromStdString(fault.what()));
+  }
+}
+
+void MainWindow::lookFromViewpoint() {
+  const visibility::Viewpoints points = session_.viewpoints();
+  Vector towards = Vector::Zero();
+  for (std::size_t n = 0; n < points.points.size(); ++n) {
+    towards += points.weights[n] * (points.points[n] - session_.centre());
+  }
+  stage_->look(towards.norm() > 0 ? towards : Vector(-1, 0, 0));
 }
 
 void MainWindow::toggle() {
@@ -417,14 +483,16 @@ void MainWindow::saveState() {
   } else if (isSaving()) {
     statusBar()->showMessage("It is still saving.");
   } else {
-    saving_ = save_(session_, shown_);
+    saving_ = calls_.save(session_, shown_);
     statusBar()->showMessage("Saving ...");
   }
 }
 
 void MainWindow::copyCommand() {
   QString command = "explica unfold " + QString::fromStdString(options_.surface);
-  for (const auto& [name, value] : session_.batchOptions(std::max<std::size_t>(1, shown_))) {
+  auto options = session_.batchOptions(std::max<std::size_t>(1, shown_));
+  options.insert(options.end(), options_.reading.begin(), options_.reading.end());
+  for (const auto& [name, value] : options) {
     command += QString(" --%1 %2").arg(QString::fromStdString(name), QString::fromStdString(value));
   }
   QApplication::clipboard()->setText(command + " --out unfolded");

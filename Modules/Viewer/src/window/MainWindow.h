@@ -30,13 +30,14 @@ inline constexpr std::array kOwnMapNames = {"region", "faces the viewpoint", "sh
 /// The window: a session's picture, its panels and menus, and what the user's events do to them.
 class MainWindow : public QMainWindow {
  public:
-  MainWindow(Session& session, MakeScale scale, OpenFile open, Save save, WindowOptions options);
+  MainWindow(Session& session, WindowCalls calls, WindowOptions options);
   ~MainWindow() override;
 
   // What menus, keys and scripts do.
   void open(const std::string& path);
-  void pickCentre(int x, int y);  ///< pixels of the view from its lower left
-  void measure(int x, int y);     ///< the first call begins, the second says the way between
+  void lookFrom(const std::string& path);  ///< a surface of viewpoints
+  void pickCentre(int x, int y);           ///< pixels of the view from its lower left
+  void measure(int x, int y);  ///< the first call begins, the second says the way between
   void step(std::size_t state);
   void savePicture(const QString& path);
   /// @return false if there is no such action, or no such field
@@ -66,13 +67,19 @@ class MainWindow : public QMainWindow {
   void undo();
   void takeRegion();  ///< of the label or of the ball that the panel names
   void takeAbove();
+  void changeView(View view);
   void takeView();
-  void addView();  ///< as a further viewpoint
+  void addView();    ///< as a further viewpoint
+  void lineAlong();  ///< of viewpoints, along the present view
+  void lineTo();     ///< of viewpoints, from the first one to the present view
+  void chooseViewSurface();
+  void lookFromViewpoint();  ///< of several their mean
   void toggle();
   void saveState();
   void copyCommand();
   void help();
 
+  void showChoice();  ///< whenever the choice is another
   void refresh();
   void showState(const unfolding::IterationRecord& record, std::size_t count);
   void showCurves(std::size_t count);
@@ -92,9 +99,7 @@ class MainWindow : public QMainWindow {
   [[nodiscard]] QPoint fromLowerLeft(const QPoint& at) const;
 
   Session& session_;
-  MakeScale scale_;
-  OpenFile open_;
-  Save save_;
+  WindowCalls calls_;
   WindowOptions options_;
 
   QVTKOpenGLNativeWidget* view_ = nullptr;

@@ -10,7 +10,7 @@ bool hasWindow() {
   return false;
 }
 
-void showWindow(Session&, const MakeScale&, const OpenFile&, const Save&, const WindowOptions&) {
+void showWindow(Session&, const WindowCalls&, const WindowOptions&) {
   throw EnvironmentError(
       "this build of explica has no window (it was built without Qt 5 and VTK's Qt widget); use "
       "--screenshot or --film");

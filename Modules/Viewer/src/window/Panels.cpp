@@ -2,35 +2,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Panels.h"
 
+#include "Fields.h"
+
 #include <QDockWidget>
 #include <QFormLayout>
 #include <QGroupBox>
+#include <QHBoxLayout>
 #include <QScrollArea>
 #include <QVBoxLayout>
 
 namespace explica::viewer {
 namespace {
 
-template <class Field>
-Field* named(Field* field, const char* name, const char* tip) {
-  field->setObjectName(name);
-  field->setToolTip(tip);
-  return field;
-}
-
-QDoubleSpinBox* number(const char* name, const char* tip, double low, double high, double step,
-                       int decimals, const char* unit) {
-  auto* box = named(new QDoubleSpinBox, name, tip);
-  box->setRange(low, high);
-  box->setSingleStep(step);
-  box->setDecimals(decimals);
-  box->setSuffix(unit);
-  box->setKeyboardTracking(false);
-  box->setFocusPolicy(Qt::ClickFocus);
-  return box;
-}
-
 QGroupBox* group(const char* title, QLayout* layout) {
+  constexpr int kMargin = 7, kSpacing = 4;  // pixels: all groups fit into a window of 900
+  layout->setContentsMargins(kMargin, kMargin, kMargin, kMargin);
+  layout->setSpacing(kSpacing);
   auto* box = new QGroupBox(title);
   box->setLayout(layout);
   return box;
@@ -38,42 +25,40 @@ QGroupBox* group(const char* title, QLayout* layout) {
 
 QGroupBox* regionGroup(Panels& p) {
   auto* form = new QFormLayout;
-  p.radius = number("radius", "Radius of the region about its centre", 1, 200, 1, 1, " mm");
+  p.radius = numberField("radius", "Radius of the region about its centre", {1, 200, 1, 1, " mm"});
   p.regionLabels = named(new QComboBox, "regionLabels", "What makes the region");
   p.regionLabels->addItem("ball about the centre (C)");
   p.regionKey = named(new QComboBox, "regionKey", "Which label is the region");
-  p.regionKey->setEnabled(false);
-  p.above =
-      number("above", "The region is where the map shown is above this", -1e9, 1e9, 0.1, 3, "");
-  p.takeAbove = named(new QPushButton("Take where map is above"), "takeAbove",
+  p.above = numberField("above", "The region is where the map shown is above this",
+                        {-1e9, 1e9, 0.1, 3, ""});
+  p.takeAbove = named(new QPushButton("Take"), "takeAbove",
                       "Makes the region of the vertices where the map shown is above the value");
   p.regionSays = named(new QLabel, "regionSays", "What the choice selects");
   p.regionSays->setWordWrap(true);
-  form->addRow("Radius", p.radius);
+  auto* above = new QHBoxLayout;
+  above->addWidget(p.above, 1);
+  above->addWidget(p.takeAbove);
   form->addRow("Region", p.regionLabels);
+  form->addRow("Radius", p.radius);
   form->addRow("Label", p.regionKey);
-  form->addRow("Above", p.above);
-  form->addRow(p.takeAbove);
+  form->addRow("Map above", above);
   form->addRow(p.regionSays);
   return group("Region", form);
 }
 
 QGroupBox* viewGroup(Panels& p) {
+  auto* column = new QVBoxLayout;
+  p.view = new ViewPanel;
+  column->addWidget(p.view);
   auto* form = new QFormLayout;
-  p.takeView = named(new QPushButton("Take the present view (V)"), "takeView",
-                     "The region is opened towards the side from which you look now");
-  p.addView = named(new QPushButton("Add the present view (Shift+V)"), "addView",
-                    "The side from which you look now counts as much as those taken before");
-  p.distance = number("distance", "How far the viewpoint is", 10, 1e6, 100, 0, " mm");
   p.surround = named(new QComboBox, "surround", "What becomes of the surface around the region");
-  p.target = number("target", "Average visibility at which to stop; 0: where it no longer pays", 0,
-                    1, 0.01, 3, "");
-  form->addRow(p.takeView);
-  form->addRow(p.addView);
-  form->addRow("Distance", p.distance);
+  p.target =
+      numberField("target", "Average visibility at which to stop; 0: where it no longer pays",
+                  {0, 1, 0.01, 3, ""});
   form->addRow("Surroundings", p.surround);
   form->addRow("Target", p.target);
-  return group("Viewpoint and surroundings", form);
+  column->addLayout(form);
+  return group("Viewpoints and surroundings", column);
 }
 
 QGroupBox* runGroup(Panels& p) {
@@ -96,12 +81,15 @@ QGroupBox* mapGroup(Panels& p) {
   p.map = named(new QComboBox, "map", "What colours the surface");
   p.automatic = named(new QCheckBox("range from the values"), "automatic", "Range of the colours");
   p.automatic->setChecked(true);
-  p.low = number("low", "Value of the first colour", -1e9, 1e9, 0.1, 3, "");
-  p.high = number("high", "Value of the last colour", -1e9, 1e9, 0.1, 3, "");
+  p.low = numberField("low", "Value of the first colour", {-1e9, 1e9, 0.1, 3, ""});
+  p.high = numberField("high", "Value of the last colour", {-1e9, 1e9, 0.1, 3, ""});
   form->addRow("Map", p.map);
-  form->addRow(p.automatic);
-  form->addRow("From", p.low);
-  form->addRow("To", p.high);
+  auto* range = new QHBoxLayout;
+  range->addWidget(p.low, 1);
+  range->addWidget(new QLabel("to"));
+  range->addWidget(p.high, 1);
+  form->addRow("Colours", range);
+  form->addRow("", p.automatic);
   return group("Map", form);
 }
 
@@ -110,7 +98,7 @@ QGroupBox* mapGroup(Panels& p) {
 Panels buildPanels(QMainWindow& window) {
   Panels p;
   auto* column = new QVBoxLayout;
-  for (QGroupBox* box : {regionGroup(p), viewGroup(p), runGroup(p), mapGroup(p)}) {
+  for (QGroupBox* box : {mapGroup(p), regionGroup(p), viewGroup(p), runGroup(p)}) {
     column->addWidget(box);
   }
   column->addStretch();
@@ -149,6 +137,13 @@ Panels buildPanels(QMainWindow& window) {
   }
   window.splitDockWidget(p.profilesDock, p.stackDock, Qt::Horizontal);
   return p;
+}
+
+void showField(QWidget* field, bool shown) {
+  field->setVisible(shown);
+  const auto* form = qobject_cast<QFormLayout*>(field->parentWidget()->layout());
+  if (form == nullptr) return;
+  if (QWidget* name = form->labelForField(field)) name->setVisible(shown);
 }
 
 void shareRoomBelow(QMainWindow& window, const Panels& panels) {

@@ -6,6 +6,7 @@
 #include "DepthPanel.h"
 #include "SlicePanel.h"
 #include "StackPanel.h"
+#include "ViewPanel.h"
 
 #include <QCheckBox>
 #include <QComboBox>
@@ -26,10 +27,8 @@ struct Panels {
   QDoubleSpinBox* above = nullptr;  ///< threshold of the map shown
   QPushButton* takeAbove = nullptr;
   QLabel* regionSays = nullptr;
-  // Viewpoint and surroundings
-  QDoubleSpinBox* distance = nullptr;
-  QPushButton* takeView = nullptr;
-  QPushButton* addView = nullptr;
+  // Viewpoints and surroundings
+  ViewPanel* view = nullptr;
   QComboBox* surround = nullptr;
   QDoubleSpinBox* target = nullptr;  ///< 0: none
   // Run
@@ -54,6 +53,9 @@ struct Panels {
 
 /// Builds the panels into docks of the window.
 [[nodiscard]] Panels buildPanels(QMainWindow& window);
+
+/// Shows or hides a field of a form together with its name.
+void showField(QWidget* field, bool shown);
 
 /// Gives the docks below the picture equal widths and enough height.
 void shareRoomBelow(QMainWindow& window, const Panels& panels);

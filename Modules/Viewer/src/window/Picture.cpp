@@ -102,15 +102,24 @@ void MainWindow::refresh() {
   stage_->render();
 }
 
+void MainWindow::showChoice() {
+  const Choice choice = session_.choice();
+  filling_ = true;
+  panels_.radius->setValue(choice.radius);
+  panels_.target->setValue(choice.unfold.targetVisibility.value_or(0));
+  panels_.surround->setCurrentIndex(
+      panels_.surround->findData(static_cast<int>(choice.unfold.unfolder.surround)));
+  panels_.view->show(choice.view);
+  filling_ = false;
+  stage_->showRim(session_.preview().region.faces);
+  stage_->showEyes(choice.view, session_.viewpoints(), session_.centre());
+}
+
 void MainWindow::showRegion() {
   const Preview& preview = session_.preview();
-  stage_->showRim(preview.region.faces);
   QString says = QString("%1 faces").arg(preview.region.faces.size());
   if (std::isfinite(preview.visibility)) {
     says += QString(", average visibility %1").arg(preview.visibility, 0, 'f', 3);
-  }
-  if (const auto count = session_.viewpoints().size(); count > 1) {
-    says += QString(", %1 viewpoints").arg(count);
   }
   if (!preview.problem.empty()) says += "\n" + QString::fromStdString(preview.problem);
   panels_.regionSays->setText(says);
@@ -153,9 +162,8 @@ void MainWindow::showCurves(std::size_t count) {
 
 std::optional<WindowMap> MainWindow::ownMap(int number) {
   if (number == kFlux) {
-    return WindowMap{
-        "faces the viewpoint", "",
-        visibility::vertexFlux(shownMesh_, visibility::viewpoints(session_.viewpoints()))};
+    return WindowMap{"faces the viewpoint", "",
+                     visibility::vertexFlux(shownMesh_, session_.viewpoints())};
   }
   if (number == kAreaRatio) {
     return WindowMap{"area now / at the start", "",
@@ -167,7 +175,7 @@ std::optional<WindowMap> MainWindow::ownMap(int number) {
   if (!fresh && !seen_.valid()) {
     seenState_ = shown_;
     seen_ = std::async(std::launch::async, [mesh = shownMesh_, points = session_.viewpoints()] {
-      return visibility::visibleFraction(mesh, visibility::viewpoints(points)).vertex;
+      return visibility::visibleFraction(mesh, points).vertex;
     });
   }
   if (seenValues_.size() != shownMesh_.vertexCount()) return {};
@@ -207,7 +215,7 @@ void MainWindow::paintLabels(const WindowLabels& labels) {
 }
 
 void MainWindow::paintValues(const WindowMap& map) {
-  Scale scale = scale_(map.values);
+  Scale scale = calls_.scale(map.values);
   filling_ = true;
   if (panels_.automatic->isChecked()) {
     panels_.low->setValue(scale.low);

@@ -9,6 +9,7 @@
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkCellPicker.h>
+#include <vtkDoubleArray.h>
 #include <vtkLookupTable.h>
 #include <vtkOrientationMarkerWidget.h>
 #include <vtkPointData.h>
@@ -45,6 +46,21 @@ void fill(vtkUnsignedCharArray& array, const std::vector<Rgb>& colours) {
   array.Modified();
 }
 
+/// Round numbers from low to high, 1, 2 or 5 times a power of ten apart, three to seven of them.
+std::vector<double> roundValues(double low, double high) {
+  const double least = (high - low) / 6;
+  double step = std::pow(10, std::floor(std::log10(least)));
+  for (const double factor : {2.0, 2.5, 2.0}) {
+    if (step < least) step *= factor;
+  }
+  std::vector<double> values;
+  constexpr double kRoundOff = 1e-9;  // of a step
+  for (double n = std::ceil(low / step - kRoundOff); n * step <= high + kRoundOff * step; ++n) {
+    values.push_back(n * step + 0.0);
+  }
+  return values;
+}
+
 /// Ends of the edges that one of the faces has and no other of them, two by two.
 std::vector<std::int32_t> rimOf(const Faces& faces, const std::vector<std::int32_t>& chosen) {
   std::map<std::pair<std::int32_t, std::int32_t>, int> count;
@@ -69,14 +85,14 @@ Stage::Stage(const TriangleMesh& surface) : surface_(surface), positions_(surfac
   buildLines();
   renderer_->SetBackground(0.97, 0.975, 0.98);
   bar_->SetLookupTable(barColours_);
-  bar_->SetNumberOfLabels(5);
-  bar_->SetPosition(0.91, 0.25);
-  bar_->SetWidth(0.08);
-  bar_->SetHeight(0.5);
+  bar_->SetPosition(0.93, 0.3);
+  bar_->SetWidth(0.06);
+  bar_->SetHeight(0.4);
+  bar_->SetBarRatio(0.3);
   bar_->SetVisibility(0);
   bar_->SetUnconstrainedFontSize(true);
   barTitle_->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
-  barTitle_->SetPosition(0.99, 0.78);
+  barTitle_->SetPosition(0.985, 0.73);
   barTitle_->GetTextProperty()->SetJustificationToRight();
   barTitle_->SetVisibility(0);
   for (vtkTextProperty* text : {bar_->GetLabelTextProperty(), barTitle_->GetTextProperty()}) {
@@ -225,6 +241,10 @@ void Stage::showScale(const std::optional<Scale>& scale, const std::string& titl
     barColours_->SetTableValue(static_cast<vtkIdType>(n), c[0] / 255.0, c[1] / 255.0, c[2] / 255.0);
   }
   barColours_->SetRange(scale->low, scale->high);
+  vtkNew<vtkDoubleArray> ticks;
+  for (const double value : roundValues(scale->low, scale->high)) ticks->InsertNextValue(value);
+  bar_->SetUseCustomLabels(true);
+  bar_->SetCustomLabels(ticks);
   barTitle_->SetInput(title.c_str());
   const double largest = std::max(std::abs(scale->low), std::abs(scale->high));
   const double shares = std::max(1.0, largest / std::max(1e-300, scale->high - scale->low));
@@ -272,7 +292,28 @@ void Stage::look(const Vector& direction) {
   constexpr double kUpright = 0.95;  // nearer to the head's axis than this, anterior is up
   const bool along = std::abs(direction.normalized().z()) > kUpright;
   camera->SetViewUp(0, along ? 1 : 0, along ? 0 : 1);
+  double bounds[6];
+  for (int axis = 0; axis < 3; ++axis) {
+    bounds[2 * axis] = low[axis];
+    bounds[2 * axis + 1] = high[axis];
+  }
+  renderer_->ResetCamera(bounds);
+}
+
+void Stage::lookAtAll() {
   renderer_->ResetCamera();
+}
+
+void Stage::showEyes(const View& view, const visibility::Viewpoints& points, const Point& from) {
+  constexpr double kReach = 0.6;  // of the surface's diagonal: about as far as the picture goes
+  const Vector size =
+      (surface_.positions.colwise().maxCoeff() - surface_.positions.colwise().minCoeff())
+          .transpose();
+  eyes_.show(view, points, from, kReach * size.norm());
+}
+
+void Stage::setEyesShown(bool shown) {
+  eyes_.setShown(shown);
 }
 
 Vector Stage::direction() const {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "Eyes.h"
+
 #include "Explica/Core/TriangleMesh.h"
 #include "Explica/Viewer/Window.h"
 
@@ -58,7 +60,14 @@ class Stage {
   /// A line along the surface, or none: V indices one after the other.
   void showPath(const std::vector<std::int32_t>& vertices);
 
+  /// Marks from where the region is looked at.
+  void showEyes(const View& view, const visibility::Viewpoints& points, const Point& from);
+  void setEyesShown(bool shown);
+
+  /// The surface fills the picture, seen from this side.
   void look(const Vector& direction);
+  /// The viewpoints are in the picture, too.
+  void lookAtAll();
   /// From the surface to the eye.
   [[nodiscard]] Vector direction() const;
   /// @param x,y  pixels of the window from the lower left
@@ -91,6 +100,7 @@ class Stage {
   vtkNew<vtkLookupTable> barColours_;
   vtkNew<vtkOrientationMarkerWidget> cube_;
   vtkNew<vtkCellPicker> picker_;
+  Eyes eyes_{*renderer_.Get()};  // goes before the renderer does
   vtkRenderWindow* window_ = nullptr;
 };
 

@@ -16,15 +16,14 @@ bool hasWindow() {
   return true;
 }
 
-void showWindow(Session& session, const MakeScale& scale, const OpenFile& open, const Save& save,
-                const WindowOptions& options) {
+void showWindow(Session& session, const WindowCalls& calls, const WindowOptions& options) {
   requireDisplay();
   QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());
   std::string program = "explica";
   std::array<char*, 2> words = {program.data(), nullptr};
   int count = 1;
   QApplication application(count, words.data());
-  MainWindow window(session, scale, open, save, options);
+  MainWindow window(session, calls, options);
   window.show();
   if (!options.script) {
     QApplication::exec();

@@ -5,7 +5,9 @@
 #include "Explica/Core/Termination.h"
 #include "Explica/Core/TriangleMesh.h"
 #include "Explica/Unfolding/Unfold.h"
+#include "Explica/Visibility/Viewpoints.h"
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,6 +16,26 @@
 
 namespace explica::viewer {
 
+/// A surface to look from.
+struct ViewSurface {
+  std::string file;  ///< for `explica unfold --view-surface`
+  TriangleMesh mesh;
+};
+
+/// What a region is looked at from: the three ways that `explica unfold` knows.
+enum class ViewKind { Points, Line, Surface };
+
+/// From where a region is to be seen well.  All that belongs to the other kinds is kept.
+struct View {
+  ViewKind kind = ViewKind::Points;
+  /// From the region's centroid to each viewpoint, of any length > 0; at least one.
+  std::vector<Vector> directions = {Vector(-1, 0, 0)};
+  std::vector<double> weights = {1};  ///< of the viewpoints, one each, > 0
+  double distance = 1000;             ///< of every viewpoint from the region's centroid, mm
+  std::array<Point, 2> line = {Point::Zero(), Point::Zero()};  ///< its ends, RAS mm
+  std::shared_ptr<const ViewSurface> surface = {};             ///< none before one is opened
+};
+
 /// What the user has chosen so far; all that an unfolding depends on.
 struct Choice {
   std::int32_t centre = -1;       ///< vertex; -1 before one is picked
@@ -21,10 +43,7 @@ struct Choice {
   std::vector<bool> marked = {};  ///< V, or empty; where given, the region instead of a ball
   /// Options of `explica unfold` that give `marked`: label, label-key.
   std::vector<std::pair<std::string, std::string>> markedOptions = {};
-  Vector direction = {-1, 0, 0};  ///< from the surface to the viewer, any length > 0
-  /// Directions of further viewpoints: the region is to be seen well from all, each counts alike.
-  std::vector<Vector> further = {};
-  double distance = 1000;           ///< of every viewpoint from the region's centroid, mm
+  View view;
   unfolding::UnfoldOptions unfold;  ///< how, and when it is over
 };
 
@@ -51,7 +70,8 @@ struct Moment {
 /// An unfolding that is over: the states that were kept of it.
 struct Finished {
   unfolding::Region region;
-  std::vector<Moment> moments;  ///< at least one
+  std::vector<Moment> moments;                      ///< at least one
+  std::optional<visibility::Viewpoints> view = {};  ///< that it was opened towards, if known
 };
 
 /// An unfolding that is watched and steered: what an interactive window shows and changes, without
@@ -76,9 +96,11 @@ class Session {
   const Preview& choose(const Choice& choice);
   [[nodiscard]] const Preview& preview() const;
 
-  /// Where the choice puts the viewpoints, RAS mm: about the centroid of its region, without one
-  /// about that of the surface.
-  [[nodiscard]] std::vector<Point> viewpoints() const;
+  /// Centroid of the region, without one that of the surface; RAS mm.
+  [[nodiscard]] Point centre() const;
+  /// From where the region is looked at: as chosen, or as the unfolding that was opened says.
+  /// @throws InvalidInput  a view that is incomplete: no surface, or a line of no length
+  [[nodiscard]] visibility::Viewpoints viewpoints() const;
 
   /// Vertex nearest to a point of the surface.
   [[nodiscard]] std::int32_t nearestVertex(const Point& point) const;

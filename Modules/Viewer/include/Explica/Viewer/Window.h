@@ -101,14 +101,26 @@ struct Opened {
 /// Opens a file or folder for the window's surface; throws Error with a sentence for the user.
 using OpenFile = std::function<Opened(const std::string& path)>;
 
+/// Reads a surface to look from; throws Error with a sentence for the user.
+using ReadSurface = std::function<TriangleMesh(const std::string& path)>;
 /// Saves a state; the text, shown when it is there, says what came of it.
 using Save = std::function<std::future<std::string>(const Session& session, std::size_t moment)>;
+
+/// What the window asks for from outside, since it reads and writes nothing itself.
+struct WindowCalls {
+  MakeScale scale;
+  OpenFile open;
+  ReadSurface readSurface;
+  Save save;
+};
 
 struct WindowOptions {
   int width = 1400;  ///< pixels
   int height = 900;  ///< pixels
   std::string title = "Explica";
-  std::string surface;                ///< its file, for the command that reproduces a state
+  std::string surface;  ///< its file, for the command that reproduces a state
+  /// Options of `explica unfold` by which that file was read.
+  std::vector<std::pair<std::string, std::string>> reading = {};
   std::vector<Opened> opened;         ///< at the start
   std::optional<std::string> script;  ///< file of events to play; the window then closes
 };
@@ -124,12 +136,12 @@ struct WindowOptions {
 ///
 /// A script has one event a line, for tests and demonstrations; positions are pixels of the
 /// three-dimensional view from its lower left: `key KEY X Y` (space, Left, c, ...), `drag X0 Y0 X1
-/// Y1`, `do ACTION` (the name of a menu's action), `set PANEL_FIELD VALUE`, `open FILE`, `wait N`
-/// (until N states exist or nothing runs), `saved` (until saving is over), `picture FILE.png`.
+/// Y1`, `do ACTION` (the name of a menu's action), `set PANEL_FIELD VALUE`, `open FILE`, `lookFrom
+/// FILE` (a surface of viewpoints), `wait N` (until N states exist or nothing runs), `saved` (until
+/// saving is over), `picture FILE.png`.
 ///
 /// @throws InvalidInput      a line of the script that is none of these
 /// @throws EnvironmentError  no display, or none that answers; a build without the window
-void showWindow(Session& session, const MakeScale& scale, const OpenFile& open, const Save& save,
-                const WindowOptions& options = {});
+void showWindow(Session& session, const WindowCalls& calls, const WindowOptions& options = {});
 
 }  // namespace explica::viewer
