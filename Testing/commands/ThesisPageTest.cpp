@@ -77,7 +77,13 @@ const std::map<std::string, Bounds> kBounds = {{"appendix_a_dial", {3, 1000}},
                                                {"region_5.27", {0.8, 1}},
                                                {"region_crossings_5.25", {0, 0}},
                                                {"region_crossings_5.26", {0, 0}},
-                                               {"region_crossings_5.27", {0, 0}}};
+                                               {"region_crossings_5.27", {0, 0}},
+                                               {"thesis_region_5.25", {0.88, 1}},
+                                               {"thesis_region_5.26", {0.88, 1}},
+                                               {"thesis_region_5.27", {0.88, 1}},
+                                               {"thesis_region_crossings_5.25", {0, 0}},
+                                               {"thesis_region_crossings_5.26", {0, 0}},
+                                               {"thesis_region_crossings_5.27", {0, 0}}};
 
 TEST(ThesisPage, HoldsEveryFigureStandsAloneAndItsNumbersAreWithinBounds) {
   const TemporaryFolder folder;
