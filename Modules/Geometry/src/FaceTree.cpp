@@ -159,7 +159,16 @@ FaceTree::FaceTree(TriangleMesh mesh)
 }
 
 ClosestPoint FaceTree::closestPoint(const Point& query) const {
-  ClosestPoint best;
+  return nearerThan({}, query);
+}
+
+ClosestPoint FaceTree::closestPoint(const Point& query, std::int32_t near) const {
+  const Point point = closestPointOnTriangle(query, mesh_.corner(near, 0), mesh_.corner(near, 1),
+                                             mesh_.corner(near, 2));
+  return nearerThan({point, near, (point - query).squaredNorm()}, query);
+}
+
+ClosestPoint FaceTree::nearerThan(ClosestPoint best, const Point& query) const {
   const auto& nodes = tree_.nodes();
   if (nodes.empty()) return best;
   struct Pending {

@@ -8,8 +8,11 @@
 #include "Explica/Geometry/FaceTree.h"
 #include "Explica/Surface/Measures.h"
 
+#include <array>
 #include <cmath>
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace explica::surface {
 namespace {
@@ -29,15 +32,20 @@ void requireSameFaces(const TriangleMesh& white, const TriangleMesh& other, cons
 }  // namespace
 
 Eigen::VectorXd distanceThickness(const TriangleMesh& white, const TriangleMesh& pial) {
-  const geometry::FaceTree whiteTree(white), pialTree(pial);
+  std::array<std::optional<geometry::FaceTree>, 2> trees;
+  parallelFor(2, 1, [&](std::size_t n) { trees[n].emplace(n == 0 ? white : pial); });
+  // What lies beyond a vertex is near its own face of the other surface.
+  std::vector<std::int32_t> faceAt(static_cast<std::size_t>(white.vertexCount()), 0);
+  for (Eigen::Index f = 0; f < white.faceCount(); ++f) {
+    for (int k = 0; k < 3; ++k) faceAt[white.faces(f, k)] = static_cast<std::int32_t>(f);
+  }
   Eigen::VectorXd thickness(white.vertexCount());
-  parallelFor(white.vertexCount(), 1024, [&](std::size_t v) {
+  parallelFor(faceAt.size(), 1024, [&](std::size_t v) {
     const Point inner = white.positions.row(v).transpose();
     const Point outer = pial.positions.row(v).transpose();
-    thickness[v] = inner == outer
-                       ? 0.0
-                       : 0.5 * (std::sqrt(pialTree.closestPoint(inner).squaredDistance) +
-                                std::sqrt(whiteTree.closestPoint(outer).squaredDistance));
+    const double outward = trees[1]->closestPoint(inner, faceAt[v]).squaredDistance;
+    const double inward = trees[0]->closestPoint(outer, faceAt[v]).squaredDistance;
+    thickness[v] = inner == outer ? 0.0 : 0.5 * (std::sqrt(outward) + std::sqrt(inward));
   });
   return thickness;
 }

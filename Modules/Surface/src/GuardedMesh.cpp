@@ -105,7 +105,7 @@ GuardedMesh::GuardedMesh(const TriangleMesh& mesh, double cell)
   }
   fillCells();
   faceCount_ = mesh.faceCount();
-  for (std::int32_t v = 0; v < vertexSlots() && !open_; ++v) open_ = rimNeighbours(v)[1] >= 0;
+  for (std::int32_t v = 0; v < vertexSlots() && !open_; ++v) open_ = endsAt(v);
 }
 
 void GuardedMesh::placeCells(const Point& low, const Point& high, double cell, Eigen::Index faces) {
@@ -160,6 +160,16 @@ bool GuardedMesh::areJoined(std::int32_t a, std::int32_t b) const {
     if (c[0] == b || c[1] == b || c[2] == b) return true;
   }
   return false;
+}
+
+bool GuardedMesh::endsAt(std::int32_t v) const {
+  std::int32_t odd = 0;
+  for (const std::int32_t f : vertexFaces_[v]) {
+    const Corners& c = faces_[f];
+    const int k = c[0] == v ? 0 : (c[1] == v ? 1 : 2);
+    odd ^= c[(k + 1) % 3] ^ c[(k + 2) % 3];
+  }
+  return odd != 0;
 }
 
 std::array<std::int32_t, 2> GuardedMesh::rimNeighbours(std::int32_t v) const {

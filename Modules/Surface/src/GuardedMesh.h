@@ -71,7 +71,7 @@ class GuardedMesh {
   /// True if the mesh has a rim.
   [[nodiscard]] bool isOpen() const { return open_; }
   /// True if a face ends at v and there is none beyond.
-  [[nodiscard]] bool onRim(std::int32_t v) const { return open_ && rimNeighbours(v)[1] >= 0; }
+  [[nodiscard]] bool onRim(std::int32_t v) const { return open_ && endsAt(v); }
   /// The vertices before and after v on the rim; -1 if it does not lie there.
   [[nodiscard]] std::array<std::int32_t, 2> rimNeighbours(std::int32_t v) const;
 
@@ -178,6 +178,8 @@ class GuardedMesh {
   /// Faces whose boxes meet a box, each once and but for those stamped by the query, in
   /// scratch.near.
   void facesNear(const CellRange& range, const Box& box, Scratch& scratch) const;
+  /// True if the faces at v do not close: then two neighbours are in one of them only.
+  [[nodiscard]] bool endsAt(std::int32_t v) const;
   /// True if joining two vertices leaves a manifold of the same topology.
   [[nodiscard]] bool keepsTopology(std::int32_t u, std::int32_t v) const;
   /// The box of three points, wider than their rounding to float.

@@ -8,7 +8,9 @@
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "GuardedMesh.h"
+#include "OntoLevel.h"
 #include "SpatialOrder.h"
+#include "Thinning.h"
 
 #include <Eigen/Geometry>
 
@@ -24,6 +26,12 @@ namespace {
 constexpr double kLong = 4.0 / 3;
 constexpr double kShort = 4.0 / 5;
 
+/// No edge is aimed at that is shorter than this share of a voxel: of so small a triangle the
+/// volume can tell nothing.
+constexpr double kFinest = 0.2;
+/// The mesh is stored anew once it has so many times the faces.
+constexpr double kGrown = 1.5;
+
 /// Edge of the blocks in which the mesh is stored, in edges.
 constexpr double kBlock = 4;
 /// Edges are worked on by length in classes of this share of the aim, each in the order of storage.
@@ -34,10 +42,11 @@ using Edge = GuardedMesh::Edge;
 class Remesher {
  public:
   Remesher(const TriangleMesh& mesh, const LevelSet& level, double edge)
-      : mesh_(inSpatialOrder(mesh, kBlock * edge), edge),
+      : mesh_(thinned(inSpatialOrder(mesh, kBlock * edge), level, edge), edge),
         level_(level),
         edge_(edge),
-        voxel_(level.grid.spacing.minCoeff()) {}
+        voxel_(level.grid.spacing.minCoeff()),
+        stored_(mesh_.faceCount()) {}
 
   void setEdge(double edge) { edge_ = edge; }
   [[nodiscard]] double edge() const { return edge_; }
@@ -45,9 +54,13 @@ class Remesher {
   [[nodiscard]] std::int64_t refused() const { return refused_; }
 
   /// Stores the mesh in the order of space, which changes have spoilt.
-  void tidy() { mesh_ = GuardedMesh(inSpatialOrder(mesh_.toMesh(), kBlock * edge_), edge_); }
+  void tidy() {
+    mesh_ = GuardedMesh(inSpatialOrder(mesh_.toMesh(), kBlock * edge_), edge_);
+    stored_ = mesh_.faceCount();
+  }
 
   void splitLong() {
+    if (static_cast<double>(mesh_.faceCount()) > kGrown * static_cast<double>(stored_)) tidy();
     for (const Edge& e : edges([&](double length) { return length > kLong * edge_; }, true)) {
       if (mesh_.areJoined(e[0], e[1])) mesh_.split(e[0], e[1]);
     }
@@ -211,23 +224,14 @@ class Remesher {
   [[nodiscard]] Point onLevel(std::int32_t v, const Point& from) const {
     Vector normal = Vector::Zero();
     for (const std::int32_t f : mesh_.facesOf(v)) normal += mesh_.normalOf(f);
-    Point p = from;
-    constexpr double kFlat = 1e-8;  // squared change of the level per voxel: nothing to follow
-    const double most = 0.5 * std::min(edge_, voxel_ * 2);
-    for (int step = 0; step < 3; ++step) {
-      const LevelSample s = sample(level_, p);
-      const double squared = s.gradient.squaredNorm();
-      if (squared * voxel_ * voxel_ < kFlat || s.gradient.dot(normal) > 0) return from;
-      p -= s.value / squared * s.gradient;
-      if ((p - from).squaredNorm() > most * most) return from;
-    }
-    return p;
+    return ontoLevel(level_, from, normal, 0.5 * std::min(edge_, voxel_ * 2));
   }
 
   GuardedMesh mesh_;
   const LevelSet& level_;
   double edge_;
   double voxel_;
+  std::int64_t stored_;  ///< faces when it was stored last
   std::int64_t refused_ = 0;
 };
 
@@ -235,11 +239,27 @@ double edgeFor(double area, std::int64_t faces) {
   return std::sqrt(4 / std::sqrt(3.0) * area / static_cast<double>(faces));
 }
 
+constexpr std::int64_t kFewestFaces = 100;
+
+/// What was asked for, to the next even number, but no more than the volume can tell.
+std::int64_t facesWanted(const RemeshOptions& options, double area, double voxel,
+                         const Monitor& monitor) {
+  const std::int64_t asked = options.faces + options.faces % 2;
+  const double edge = kFinest * voxel;
+  const double most = 4 / std::sqrt(3.0) * area / (edge * edge);
+  if (static_cast<double>(asked) <= most) return asked;
+  const std::int64_t bound = std::max(kFewestFaces, 2 * static_cast<std::int64_t>(most / 2));
+  if (asked <= bound) return asked;
+  monitor.warn(std::to_string(options.faces) + " faces asked, " + std::to_string(bound) +
+               " made: with more their edges would be shorter than a fifth of a voxel, of which "
+               "the volume can tell nothing");
+  return bound;
+}
+
 }  // namespace
 
 RemeshResult remesh(const TriangleMesh& mesh, const LevelSet& level, const RemeshOptions& options,
                     const Monitor& monitor) {
-  constexpr std::int64_t kFewestFaces = 100;
   if (options.faces < kFewestFaces) {
     throw InvalidInput("faces: " + std::to_string(options.faces) + " asked; at least " +
                        std::to_string(kFewestFaces) + " are needed");
@@ -251,13 +271,13 @@ RemeshResult remesh(const TriangleMesh& mesh, const LevelSet& level, const Remes
   }
   // An equilateral mesh of edge a has edges from 4/5 to 4/3 of it; their mean area is a little less
   // than that of the aim, which the rounds correct.
-  Remesher remesher(mesh, level, edgeFor(geometry::totalArea(mesh), options.faces));
-  const std::int64_t wanted = options.faces + options.faces % 2;
+  const double area = geometry::totalArea(mesh);
+  const std::int64_t wanted = facesWanted(options, area, level.grid.spacing.minCoeff(), monitor);
+  Remesher remesher(mesh, level, edgeFor(area, wanted));
   for (int round = 0; round < options.rounds && !monitor.shouldStop(); ++round) {
     monitor.progress(static_cast<double>(round) / options.rounds, "remeshing");
     remesher.splitLong();
     if (round == 0) {
-      for (const double share : {0.4, 0.6}) remesher.collapseShort(share);
       remesher.flipForValence();
       remesher.tidy();
     }

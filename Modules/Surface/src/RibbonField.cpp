@@ -88,20 +88,27 @@ harmonic::Annulus RibbonField::ribbon() const {
   return harmonic::annulusFromSites(sites, innerLevel, outerLevel);
 }
 
+RibbonField::Bank RibbonField::bankAt(const Point& p, std::int32_t& near) const {
+  Bank bank;
+  const auto nearest = white_.closestPoint(p, near);
+  near = nearest.face;
+  bank.distance = static_cast<float>(std::sqrt(nearest.squaredDistance));
+  const auto& mesh = white_.mesh();
+  Vector normal = (mesh.corner(nearest.face, 1) - mesh.corner(nearest.face, 0))
+                      .cross(mesh.corner(nearest.face, 2) - mesh.corner(nearest.face, 0));
+  // The way from the bank is a better normal than the face's, once there is a way.
+  if (bank.distance > 0.5 * step_ && normal.dot(p - nearest.point) > 0) normal = p - nearest.point;
+  bank.normal = (grid_.direction.transpose() * normal.normalized()).cast<float>();
+  return bank;
+}
+
 std::vector<RibbonField::Bank> RibbonField::banksOf(const harmonic::Annulus& ribbon) {
   std::vector<Bank> banks(ribbon.count());
-  parallelFor(banks.size(), 512, [&](std::size_t n) {
-    const Point p = ribbon.world(static_cast<std::int32_t>(n));
-    const auto nearest = white_.closestPoint(p);
-    banks[n].distance = static_cast<float>(std::sqrt(nearest.squaredDistance));
-    const auto& mesh = white_.mesh();
-    Vector normal = (mesh.corner(nearest.face, 1) - mesh.corner(nearest.face, 0))
-                        .cross(mesh.corner(nearest.face, 2) - mesh.corner(nearest.face, 0));
-    // The way from the bank is a better normal than the face's, once there is a way.
-    if (banks[n].distance > 0.5 * step_ && normal.dot(p - nearest.point) > 0) {
-      normal = p - nearest.point;
+  parallelForBlocks(banks.size(), 512, [&](std::size_t begin, std::size_t end) {
+    std::int32_t near = 0;  // to the voxel before
+    for (std::size_t n = begin; n < end; ++n) {
+      banks[n] = bankAt(ribbon.world(static_cast<std::int32_t>(n)), near);
     }
-    banks[n].normal = (grid_.direction.transpose() * normal.normalized()).cast<float>();
   });
   // What leaves white matter at the least rate allowed is no longer than this where it is deepest.
   float deepest = 0;
@@ -186,14 +193,18 @@ Vector RibbonField::direction(const Vector& index, const Vector& previous) const
   return length > 1e-9 ? Vector(sum / length) : previous;
 }
 
-bool RibbonField::pastMiddle(const Point& p, const Vector& along) const {
-  const auto nearest = white_.closestPoint(p);
+bool RibbonField::pastMiddle(const Point& p, const Vector& along, std::int32_t& near) const {
+  const auto nearest = white_.closestPoint(p, near);
+  near = nearest.face;
   return (p - nearest.point).dot(along) < -0.2 * std::sqrt(nearest.squaredDistance);
 }
 
 void RibbonField::cutWhereItStalls(Trajectory& path) const {
+  std::int32_t near = 0;
   const auto distanceAt = [&](const Point& p) {
-    return std::sqrt(white_.closestPoint(p).squaredDistance);
+    const auto nearest = white_.closestPoint(p, near);
+    near = nearest.face;
+    return std::sqrt(nearest.squaredDistance);
   };
   if (path.length() <
       kStallRatio * distanceAt(path.points.back()) + kStallSlack * grid_.spacing.minCoeff()) {
@@ -235,6 +246,7 @@ Trajectory RibbonField::trace(const Point& start, const Vector& normal) const {
   Vector previous = toAxes(normal);
   double arc = 0;
   Point p = start;
+  std::int32_t near = 0;
   while (arc < longest_) {
     // Midpoint rule.
     const Vector first = direction(grid_.toIndex(p), previous);
@@ -244,7 +256,7 @@ Trajectory RibbonField::trace(const Point& start, const Vector& normal) const {
     Point next = p + step_ * world;
     const auto stops = [&](const Point& q) {
       if (outside(q)) return TrajectoryEnd::Outer;
-      if (arc > step_ && checked(q) && pastMiddle(q + gap * world, world)) {
+      if (arc > step_ && checked(q) && pastMiddle(q + gap * world, world, near)) {
         return TrajectoryEnd::Bank;
       }
       return TrajectoryEnd::NoRibbon;

@@ -53,6 +53,8 @@ class RibbonField {
     float distance;          ///< to it, mm
   };
   [[nodiscard]] harmonic::Annulus ribbon() const;
+  /// @param near  a face of the white surface to look at first; then the nearest one
+  [[nodiscard]] Bank bankAt(const Point& p, std::int32_t& near) const;
   [[nodiscard]] std::vector<Bank> banksOf(const harmonic::Annulus& ribbon);
   /// Links between voxels where fronts from two banks meet head-on.
   [[nodiscard]] std::vector<harmonic::Cut> betweenBanks(const harmonic::Annulus& ribbon,
@@ -62,7 +64,8 @@ class RibbonField {
   [[nodiscard]] Eigen::Vector3f slopeAt(int i, int j, int k) const;
   [[nodiscard]] Vector direction(const Vector& index, const Vector& previous) const;
   /// True if the nearest white matter lies ahead: the middle between two banks was passed.
-  [[nodiscard]] bool pastMiddle(const Point& p, const Vector& direction) const;
+  /// @param near  as of bankAt()
+  [[nodiscard]] bool pastMiddle(const Point& p, const Vector& direction, std::int32_t& near) const;
   /// Ends a path where it no longer leaves white matter behind: from there it only follows the
   /// floor between two banks.
   void cutWhereItStalls(Trajectory& path) const;

@@ -485,7 +485,9 @@ CorticalSurfaces buildSheets(const TissueMasks& masks, const SurfaceOptions& opt
   RemeshOptions remeshing;
   remeshing.faces = options.faces;
   remeshing.open = true;
-  RemeshResult remeshed = remesh(raw, level.level, remeshing);
+  Monitor warnings = monitor;
+  warnings.onProgress = nullptr;
+  RemeshResult remeshed = remesh(raw, level.level, remeshing, warnings);
   const TriangleMesh sheet = std::move(remeshed.mesh);
   made.white.edgeLength = remeshed.edgeLength;
   made.seconds.remeshing = secondsSince(last);

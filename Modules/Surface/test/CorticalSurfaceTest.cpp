@@ -168,6 +168,22 @@ TEST(Remesh, MakesEvenTrianglesAndMeetsTheCount) {
   EXPECT_THROW((void)remesh(iso, tissue.white, few), InvalidInput);
 }
 
+TEST(Remesh, MakesNoMoreTrianglesThanTheVolumeCanTell) {
+  // A ball of nine voxels across: what 150,000 faces would have in their way took minutes.
+  const auto tissue = shell(4.5, 7, 1);
+  const auto iso = extractIsoSurface(tissue.white);
+  std::vector<std::string> warnings;
+  Monitor monitor;
+  monitor.onWarning = [&](const std::string& message) { warnings.push_back(message); };
+  const auto result = remesh(iso, tissue.white, {}, monitor);
+  expectSound(result.mesh);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("150000 faces asked"), std::string::npos);
+  EXPECT_NEAR(result.edgeLength, 0.2, 0.03);
+  // Edges of a fifth of a voxel on 4 pi 4.5^2 voxels.
+  EXPECT_NEAR(static_cast<double>(result.mesh.faceCount()), 4 / std::sqrt(3.0) * 254.5 / 0.04, 700);
+}
+
 TEST(Remesh, ConvergesToTheSphereAtSecondOrder) {
   double error[3];
   for (int s = 0; s < 3; ++s) {

@@ -63,10 +63,15 @@ class FaceTree {
   explicit FaceTree(TriangleMesh mesh);
 
   [[nodiscard]] ClosestPoint closestPoint(const Point& query) const;
+  /// As above, looking at face `near` first: the sooner done, the nearer that is.  Where several
+  /// faces are equally near it may be another one of them.
+  [[nodiscard]] ClosestPoint closestPoint(const Point& query, std::int32_t near) const;
   [[nodiscard]] const BoxTree& boxes() const { return tree_; }
   [[nodiscard]] const TriangleMesh& mesh() const { return mesh_; }
 
  private:
+  [[nodiscard]] ClosestPoint nearerThan(ClosestPoint best, const Point& query) const;
+
   TriangleMesh mesh_;
   BoxTree tree_;
   std::vector<std::array<Point, 3>> corners_;  ///< of the faces, in the tree's order of items

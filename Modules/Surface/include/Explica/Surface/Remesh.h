@@ -12,7 +12,8 @@ namespace explica::surface {
 
 /// How a surface gets triangles of nearly equal shape and size.
 struct RemeshOptions {
-  std::int64_t faces = 150000;  ///< wanted; met exactly (to the next even number) where possible
+  std::int64_t faces = 150000;  ///< wanted; met exactly (to the next even number) where
+                                ///< possible, but no edge is made shorter than a fifth of a voxel
   int rounds = 5;               ///< of splitting, collapsing, flipping and smoothing
   bool open = false;            ///< the surface may have rims, which stay but for being smoothed
 };
