@@ -508,6 +508,16 @@ class Sweep {
   std::vector<std::uint16_t> turn_;  ///< per rank: only arrivals with smaller turns are read
 };
 
+/// Share of tissue voxels beside a boundary from which on all trajectories are followed: tissue is
+/// then so thin that looking for faces to stop at costs more than the rest of the way.
+constexpr double kThin = 0.4;
+
+bool isThin(const Annulus& annulus) {
+  const auto& end = annulus.runEnd;
+  const double beside = end[1] - end[0] + (end[3] - end[2]);
+  return beside > kThin * static_cast<double>(annulus.count());
+}
+
 }  // namespace
 
 Correspondence findCorrespondences(const Annulus& annulus, const Interpolant& interpolant,
@@ -520,7 +530,10 @@ Correspondence findCorrespondences(const Annulus& annulus, const Interpolant& in
   Sweep outer(field, options, false);
   const bool hybrid = options.method == Method::Hybrid;
   const bool dialled = hybrid || options.method == Method::AppendixA;
-  if (options.method == Method::Lagrangian || (dialled && options.lambda == 0.0)) {
+  const bool followAll = options.method == Method::Lagrangian ||
+                         (dialled && options.lambda == 0.0) ||
+                         (hybrid && !options.lambda && isThin(annulus));
+  if (followAll) {
     inner.traceAll(monitor);
     monitor.progress(0.5, "correspondences");
     outer.traceAll(monitor);

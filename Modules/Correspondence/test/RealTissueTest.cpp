@@ -102,6 +102,52 @@ TEST(RealTissue, CortexIsAsThickAsFreeSurferSays) {
   }
 }
 
+/// How much a value changes across a voxel: the sum of its central differences, NaN at the edge.
+double acrossVoxel(const Volume<float>& values, std::size_t voxel) {
+  const auto at = values.grid.subscripts(voxel);
+  const auto& n = values.grid.size;
+  const std::array<std::size_t, 3> strides = {1, static_cast<std::size_t>(n[0]),
+                                              static_cast<std::size_t>(n[0]) * n[1]};
+  double sum = 0;
+  for (int a = 0; a < 3; ++a) {
+    if (at[a] == 0 || at[a] == n[a] - 1) return kNaN;
+    sum += 0.5 * std::abs(values[voxel + strides[a]] - values[voxel - strides[a]]);
+  }
+  return sum;
+}
+
+/// LayNii's voxels at half depth, which are voxels that a surface cuts: they lie as far off it as a
+/// voxel reaches.
+void expectMidGreyAtHalfDepth(const std::filesystem::path& folder, const Volume<float>& depth,
+                              const Volume<float>& layers) {
+  const auto midGrey = io::readScalars(folder / "sc_midGM.nii.gz").volume;
+  double count = 0, sum = 0, squares = 0, layerSum = 0, layerSquares = 0, reach = 0, reaching = 0;
+  for (std::size_t v = 0; v < depth.size(); ++v) {
+    if (midGrey[v] <= 0 || !(depth[v] > 0)) continue;
+    const double layer = (layers[v] - 0.5) / 20;
+    ++count;
+    sum += depth[v];
+    squares += depth[v] * depth[v];
+    layerSum += layer;
+    layerSquares += layer * layer;
+    const double across = acrossVoxel(depth, v);
+    if (std::isnan(across)) continue;
+    reach += across * across / 12;
+    ++reaching;
+  }
+  const double mean = sum / count, deviation = std::sqrt(squares / count - mean * mean);
+  const double theirs = layerSum / count;
+  std::printf(
+      "LayNii's %.0f mid-grey voxels: depth %.3f +- %.3f, by its own layers %.3f +- %.3f, a "
+      "voxel's "
+      "reach alone +- %.3f\n",
+      count, mean, deviation, theirs, std::sqrt(layerSquares / count - theirs * theirs),
+      std::sqrt(reach / reaching));
+  EXPECT_NEAR(mean, 0.5, 0.02);
+  EXPECT_LE(deviation, 0.07);
+  EXPECT_LE(deviation, 1.3 * std::sqrt(reach / reaching));
+}
+
 TEST(RealTissue, OpenSlabOfCortexHasDepthNearTheEquidistantLayers) {
   const auto folder = kData / "laynii_sc";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "skipped: no real data";
@@ -120,6 +166,11 @@ TEST(RealTissue, OpenSlabOfCortexHasDepthNearTheEquidistantLayers) {
   }
   EXPECT_GT(ours.size(), 700000U);
   EXPECT_GE(correlation(ours, theirs), 0.9);
+  Volume<float> everywhere = volumeOf(harmonic::spread(annulus, depth));
+  std::replace_if(
+      everywhere.data.begin(), everywhere.data.end(), [](float d) { return !(d > 0); },
+      static_cast<float>(kNaN));
+  expectMidGreyAtHalfDepth(folder, everywhere, equidistant);
 }
 
 TEST(RealTissue, ShortAxisStackIsMeasuredThoughItsBasalRingIsOpen) {

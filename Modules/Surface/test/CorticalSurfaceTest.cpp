@@ -219,6 +219,7 @@ TEST(CorticalSurface, TrajectoriesBendToMeetTheOuterBoundaryAtRightAngles) {
   }
   EXPECT_GT(expected / made.white.mesh.vertexCount(), 0.3);
   EXPECT_NEAR(bent / expected, 1, 0.2);
+  EXPECT_EQ(made.shortened, 0);  // bent is not astray
 }
 
 TEST(CorticalSurface, FindsTheThicknessOfAShell) {
@@ -238,6 +239,7 @@ TEST(CorticalSurface, FindsTheThicknessOfAShell) {
     EXPECT_NEAR(made.mid.positions.row(v).norm(), 15.5, 0.12);
   }
   EXPECT_NEAR(made.curvature.mean(), -1.0 / 14, 0.005);
+  EXPECT_EQ(made.shortened, 0);
 }
 
 /// Brightness of a shell seen through a point spread: white, grey, dark, and a bright vessel

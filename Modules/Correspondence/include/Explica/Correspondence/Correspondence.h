@@ -24,7 +24,8 @@ struct CorrespondenceOptions {
   std::optional<double>
       lambda;  ///< mm; of `Hybrid` and `AppendixA`: neighbours' boundary points nearer than this
                ///< are interpolated, others followed; 0 gives the Lagrangian result, infinity
-               ///< follows none beyond a grid face; unset: twice the finest spacing
+               ///< follows none beyond a grid face; unset: twice the finest spacing, of
+               ///< `Hybrid` in tissue a few voxels thick 0
   TraceOptions trace;
 };
 
@@ -34,7 +35,8 @@ void describe(CorrespondenceOptions& options, Visitor&& visit) {
   visit(
       Field{"lambda", "mm",
             "hybrid, appendix-a: boundary points of neighbours nearer than this are interpolated, "
-            "others followed; 0 follows all (default: twice the finest voxel size)"},
+            "others followed; 0 follows all (default: twice the finest voxel size, 0 in tissue a "
+            "few voxels thick)"},
       options.lambda);
 }
 
