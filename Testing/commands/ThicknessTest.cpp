@@ -332,6 +332,39 @@ TEST(ThicknessCommand, ASliceOfCortexGivesContoursLayersAndItsSulci) {
   }
 }
 
+TEST(ThicknessCommand, GreyMatterBeyondANeckIsCountedAndHarmsNothingElse) {
+  TemporaryFolder folder;
+  // A shell of 4 mm, and a ball of grey matter that hangs on it by a neck of two voxels: what flows
+  // into the ball leaves it on all sides, so that u is 1 there in nearly all its digits.
+  const auto labelAt = [](const Point& p) -> Label {
+    const Point x = p + Point(12, 0, 0);
+    const bool neck = x[0] > 0 && x[0] < 30 && std::abs(x[1]) < 1 && std::abs(x[2]) < 1;
+    if (x.norm() < 10) return 1;
+    return x.norm() < 14 || neck || (x - Point(30, 0, 0)).norm() < 8 ? 2 : 0;
+  };
+  writeLabels(folder / "neck.nii.gz", {64, 40, 40}, Vector::Ones(),
+              [&](const Point& x, int) { return labelAt(x); });
+  const auto made = explica(thickness(folder, "neck.nii.gz", {}));
+  EXPECT_EQ(made.exitCode, 3) << made;
+  EXPECT_NE(made.err.find("voxels have no thickness"), std::string::npos) << made;
+  const auto found = io::readScalars(folder / "out/thickness.nii.gz").volume;
+  const auto labels = io::readLabels(folder / "neck.nii.gz").volume;
+  std::size_t without = 0;
+  for (std::size_t v = 0; v < found.size(); ++v) {
+    if (labels[v] != 2) continue;
+    const auto at = found.grid.subscripts(v);
+    const Point x = found.grid.toWorld(Vector(at[0], at[1], at[2])) + Point(12, 0, 0);
+    without += found[v] == 0;
+    if (x[0] < 12) {
+      EXPECT_NEAR(found[v], 4, 0.75) << x.transpose();
+    }
+  }
+  const auto summary = readJson(folder / "out/summary.json");
+  EXPECT_EQ(summary["voxels_without_thickness"].get<std::size_t>(), without);
+  EXPECT_NEAR(static_cast<double>(without), 2174, 60);
+  EXPECT_NEAR(summary["thickness_mean_columns"].get<double>(), 4, 0.05);
+}
+
 TEST(ThicknessCommand, NoFluxCrossesAnInsulatedCut) {
   TemporaryFolder folder;
   writeLabels(folder / "half.nii.gz", {36, 36, 36}, Vector::Ones(),

@@ -214,12 +214,15 @@ std::int64_t shortenAstray(const TriangleMesh& white, double voxel,
 
 /// Thickness counts no more than so many times the mean of the nearest distances both ways and so
 /// many voxels: trajectories between eccentric spheres are never longer, what is winds along a
-/// bank.
+/// bank. Where edges are longer than voxels their chords shorten those distances, as the edges'
+/// square.
 constexpr double kWinding = 1.1, kWindingBy = 0.2;
 
 void capWinding(double voxel, CorticalSurfaces& result) {
+  const double edge = result.white.edgeLength / voxel;
+  const double slack = kWindingBy * voxel * std::max(1.0, edge * edge);
   for (Eigen::Index v = 0; v < result.thickness.size(); ++v) {
-    const double most = kWinding * result.nearestThickness[v] + kWindingBy * voxel;
+    const double most = kWinding * result.nearestThickness[v] + slack;
     if (result.thickness[v] <= most) continue;
     result.thickness[v] = most;
     ++result.shortened;
