@@ -214,15 +214,15 @@ std::int64_t shortenAstray(const TriangleMesh& white, double voxel,
 
 /// Thickness counts no more than so many times the mean of the nearest distances both ways and so
 /// many voxels: trajectories between eccentric spheres are never longer, what is winds along a
-/// bank. Where edges are longer than voxels their chords shorten those distances, as the edges'
-/// square.
+/// bank.
 constexpr double kWinding = 1.1, kWindingBy = 0.2;
+/// Where edges are longer than this, voxels, their chords shorten those distances too much to tell.
+constexpr double kFineEdge = 1.5;
 
 void capWinding(double voxel, CorticalSurfaces& result) {
-  const double edge = result.white.edgeLength / voxel;
-  const double slack = kWindingBy * voxel * std::max(1.0, edge * edge);
+  if (result.white.edgeLength > kFineEdge * voxel) return;
   for (Eigen::Index v = 0; v < result.thickness.size(); ++v) {
-    const double most = kWinding * result.nearestThickness[v] + slack;
+    const double most = kWinding * result.nearestThickness[v] + kWindingBy * voxel;
     if (result.thickness[v] <= most) continue;
     result.thickness[v] = most;
     ++result.shortened;
