@@ -133,6 +133,20 @@ void settleView(const Context& context, const pipeline::PlannedStep& step, Json&
   values["center"] = {centre.x(), centre.y(), centre.z()};
 }
 
+/// How bright fluid is in the image, as the segmentation has found it, for the surfaces' outer
+/// border.
+void settleFluid(const Context& context, const pipeline::PlannedStep& step, Json& values) {
+  const fs::path found = context.outputFolder() / "segment" / provenance::kSummaryName;
+  if (context.given("surface.fluid") || !values.contains("image") ||
+      !values.contains("inner-level") ||
+      std::find(step.needs.begin(), step.needs.end(), "segment") == step.needs.end() ||
+      !fs::exists(found)) {
+    return;
+  }
+  const Json summary = provenance::readJson(found);
+  if (summary.contains("fluid_of_white")) values["fluid"] = summary["fluid_of_white"];
+}
+
 /// The first step that this one needs and that has no outputs.
 const std::string* missingNeed(const pipeline::PlannedStep& step,
                                const std::vector<pipeline::StepNote>& notes) {
@@ -163,6 +177,7 @@ void runStep(Context& context, const Settings& s, const pipeline::PlannedStep& s
     throw EnvironmentError("explica " + step.command + " is not part of this build");
   Json values = valuesOf(context, s, step);
   if (step.command == "unfold") settleView(context, step, values);
+  if (step.command == "surface") settleFluid(context, step, values);
   std::optional<Outcome> outcome;
   if (s.resume) outcome = context.reuseCommand(*command, step.name, values);
   if (outcome) {

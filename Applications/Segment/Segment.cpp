@@ -10,6 +10,7 @@
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Registration/HeadRegistration.h"
 #include "Explica/Registration/SkullStripping.h"
+#include "Explica/Segmentation/Disagreement.h"
 #include "Explica/Segmentation/Hemisphere.h"
 #include "Explica/Segmentation/Plausibility.h"
 #include "Explica/Segmentation/Tissue.h"
@@ -110,8 +111,9 @@ void declare(Declaration& d, Settings& s) {
           s.legend)
       .option("Head",
               Field{"template", "",
-                    "colin27 (default, of the package mricron-data), a folder with T1.nii.gz, "
-                    "brain.nii.gz and atlas.nii.gz, or none"},
+                    "colin27 (default) or inia19 (a macaque without skull), both of the package "
+                    "mricron-data, a folder with T1.nii.gz, brain.nii.gz and atlas.nii.gz, or "
+                    "none"},
               s.headTemplate)
       .option("Head", Field{"stripped", "", "whether the skull is off already"}, s.stripped)
       .options("Reading", s.reading)
@@ -167,6 +169,7 @@ Volume<float> within(Volume<float> image, const Volume<Label>& mask) {
 struct Head {
   Volume<Label> mask;          ///< empty: the brain is where the image is above 0
   std::optional<Atlas> atlas;  ///< nothing: hemispheres cannot be told
+  Volume<float> expected;      ///< the template's T1 without skull; empty without a template
   double brainShare = 1;       ///< volume of the template's brain over that of a human one
 };
 
@@ -237,6 +240,7 @@ Head fitTemplate(Context& context, Judge& judge, const Settings& s, const Loaded
   judge.flag("half-head", halves);
   head.atlas =
       Atlas{registration::pulled(loaded.volumes.atlas, found.transform, image.grid), loaded.legend};
+  head.expected = registration::pulled(loaded.volumes.brain, found.transform, image.grid);
   writeTemplate(context, boxes, *head.atlas, loaded.stem, found.transform);
   return head;
 }
@@ -258,7 +262,7 @@ Head readHead(Context& context, Judge& judge, const Settings& s,
   const std::string name = s.headTemplate.value_or("colin27");
   // With an atlas in its space, an image is taken to be stripped unless it is said not to be.
   const bool known = s.atlas && s.stripped != Stripped::No && !s.headTemplate;
-  if (name == "none" || known) return {std::move(mask), std::move(atlas), 1};
+  if (name == "none" || known) return {std::move(mask), std::move(atlas), {}, 1};
   const auto loaded = readTemplate(context, name);
   if (!loaded) {
     if (s.headTemplate || s.stripped == Stripped::No) {
@@ -268,7 +272,7 @@ Head readHead(Context& context, Judge& judge, const Settings& s,
     context.warn(
         "no template: the package mricron-data is not installed; the image is taken to be without "
         "skull, and its hemispheres cannot be told");
-    return {std::move(mask), std::move(atlas), 1};
+    return {std::move(mask), std::move(atlas), {}, 1};
   }
   Head head = fitTemplate(context, judge, s, *loaded, boxes, image, std::move(mask));
   if (atlas) head.atlas = std::move(atlas);
@@ -293,6 +297,16 @@ void judgeTissue(Context& context, Judge& judge, const segmentation::TissueSegme
   judge.flag("white-share", tissue.classes[2].share);
 }
 
+/// Where template and image show different tissues, the image is believed, and the reader told.
+void judgeTemplate(Context& context, Judge& judge, const segmentation::TissueSegmentation& tissue,
+                   const Head& head) {
+  if (head.expected.size() == 0 || tissue.termination == Termination::Interrupted) return;
+  const auto found = segmentation::whiteDisagreement(tissue.labels, head.expected);
+  context.result("template_white_not_white_share", found.share);
+  context.result("template_white_not_white_ml", found.largest / 1000);
+  judge.flag("template-tissue", found.largest / 1000);
+}
+
 segmentation::TissueSegmentation findTissue(Context& context, const Settings& s,
                                             const Volume<float>& image, const Volume<Label>& mask) {
   auto step = context.step("tissue");
@@ -307,6 +321,7 @@ segmentation::TissueSegmentation findTissue(Context& context, const Settings& s,
     context.result(std::string(kNames[k]) + "_deviation", tissue.classes[k].deviation);
     context.result(std::string(kNames[k]) + "_share", tissue.classes[k].share);
   }
+  context.result("fluid_of_white", tissue.deepFluid / tissue.classes[2].mean);
   return tissue;
 }
 
@@ -395,10 +410,12 @@ Termination run(Context& context, const Settings& s) {
     image = boxes.back().of(image);
     head.mask = boxes.back().of(head.mask);
     if (head.atlas) head.atlas->labels = boxes.back().of(head.atlas->labels);
+    if (head.expected.size() != 0) head.expected = boxes.back().of(head.expected);
   }
   const segmentation::TissueSegmentation tissue = findTissue(context, s, image, head.mask);
   image = {};
   judgeTissue(context, judge, tissue, head.brainShare);
+  judgeTemplate(context, judge, tissue, head);
   writeTissue(context, boxes, tissue);
   if (head.atlas) makeHemispheres(context, s, boxes, tissue, *head.atlas);
   return tissue.termination;

@@ -28,13 +28,35 @@ TemplatePaths pathsOf(const std::string& name) {
   if (name == "colin27") {
     return {kMricron / "ch2.nii.gz", kMricron / "ch2bet.nii.gz", kMricron / "aal.nii.gz"};
   }
+  if (name == "inia19") {
+    return {{}, kMricron / "inia19-t1-brain.nii.gz", kMricron / "inia19-NeuroMaps.nii.gz"};
+  }
   const fs::path folder = name;
   if (!fs::is_directory(folder)) {
-    throw InvalidInput("template: '" + name +
-                       "' is neither colin27 nor none nor a folder with brain.nii.gz and "
-                       "atlas.nii.gz");
+    throw InvalidInput(
+        "template: '" + name +
+        "' is neither colin27 nor inia19 nor none nor a folder with brain.nii.gz and "
+        "atlas.nii.gz");
   }
   return {folder / "T1.nii.gz", folder / "brain.nii.gz", folder / "atlas.nii.gz"};
+}
+
+/// Reads a volume of a template.  Where its header places the voxels in two ways, the sform counts:
+/// it is the one that leads to a stereotaxic frame; registration finds the rest, and only which
+/// side is left hangs on it.
+template <class Read>
+auto readPlaced(Context& context, const fs::path& path, const Read& read) {
+  io::VolumeReadOptions reading{.dimension = 3};
+  try {
+    return read(reading).volume;
+  } catch (const InvalidInput&) {
+    reading.placement = io::PlacementChoice::Sform;
+    const auto loaded = read(reading);
+    if (!(loaded.origin.placementsApart > 0)) throw;
+    context.warn("template: qform and sform of " + path.filename().string() +
+                 " place its voxels differently; the sform is taken, and says which side is left");
+    return loaded.volume;
+  }
 }
 
 }  // namespace
@@ -43,21 +65,31 @@ std::optional<LoadedTemplate> readTemplate(Context& context, const std::string& 
   const TemplatePaths paths = pathsOf(name);
   if (!fs::exists(paths.brain) || !fs::exists(paths.atlas)) {
     if (name == "colin27") return {};
+    if (name == "inia19") {
+      throw InvalidInput("template: inia19 is not installed; install the package mricron-data");
+    }
     throw InvalidInput("template: " + name + " lacks brain.nii.gz or atlas.nii.gz");
   }
   LoadedTemplate loaded;
-  const io::VolumeReadOptions reading{.dimension = 3};
-  loaded.volumes.brain = io::readScalars(context.input(paths.brain, "template"), reading).volume;
-  loaded.volumes.atlas = io::readLabels(context.input(paths.atlas, "template"), reading).volume;
-  if (fs::exists(paths.head)) {
-    loaded.volumes.head = io::readScalars(context.input(paths.head, "template"), reading).volume;
-  }
+  const auto scalars = [&](const fs::path& path) {
+    const fs::path file = context.input(path, "template");
+    return readPlaced(context, file, [&](const io::VolumeReadOptions& reading) {
+      return io::readScalars(file, reading);
+    });
+  };
+  loaded.volumes.brain = scalars(paths.brain);
+  const fs::path atlas = context.input(paths.atlas, "template");
+  loaded.volumes.atlas = readPlaced(context, atlas, [&](const io::VolumeReadOptions& reading) {
+    return io::readLabels(atlas, reading);
+  });
+  if (fs::exists(paths.head)) loaded.volumes.head = scalars(paths.head);
   for (const Grid* grid : {&loaded.volumes.atlas.grid, &loaded.volumes.head.grid}) {
     if (grid->voxelCount() != 0 && !sameGrid(*grid, loaded.volumes.brain.grid)) {
       throw InvalidInput("template: the volumes of " + name + " lie on different grids");
     }
   }
-  loaded.legend = readAtlasLegend(context, paths.atlas, {});
+  loaded.legend =
+      name == "inia19" ? segmentation::inia19Legend() : readAtlasLegend(context, paths.atlas, {});
   loaded.stem = segmentation::labelStem(loaded.volumes.atlas, loaded.legend);
   return loaded;
 }

@@ -216,8 +216,9 @@ void report(Context& context, Judge& judge, const correspondence::Measurement& m
     context.warn(std::to_string(found.missing) +
                  " voxels have no thickness: their trajectory does not reach both boundaries");
   }
-  judge.flag("without-thickness",
-             static_cast<double>(found.missing) / static_cast<double>(m.annulus.count()));
+  const auto leftOut = static_cast<double>(m.annulus.droppedVoxels);
+  judge.flag("without-thickness", (static_cast<double>(found.missing) + leftOut) /
+                                      (static_cast<double>(m.annulus.count()) + leftOut));
   context.result("voxels_cut_by_image", m.cutVoxels);
   if (m.cutVoxels > 0) {
     context.warn(std::to_string(m.cutVoxels) +

@@ -9,9 +9,13 @@
 #include "Explica/Testing/Command.h"
 #include "Explica/Testing/FreeSurferSubject.h"
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <cstdio>
+#include <random>
 #include <set>
 
 namespace explica::testing {
@@ -42,7 +46,8 @@ class WholeHead : public ::testing::Test {
     const std::string side = folder_ / "segment/left/";
     return patiently({"surface", "--inner-level", side + "white_share.nii.gz", "--outer-level",
                       side + "tissue_share.nii.gz", "--insulated-mask", side + "cut.nii.gz",
-                      "--hemisphere", "L", "--faces", "60000", "--image", image.string(), "--out",
+                      "--hemisphere", "L", "--faces", "60000", "--image", image.string(), "--fluid",
+                      std::to_string(numberOf(folder_ / "segment", "fluid_of_white")), "--out",
                       folder_ / "surface"});
   }
 
@@ -140,6 +145,62 @@ TEST_F(WholeHead, HalvesOfAHeadAreFlagged) {
     EXPECT_TRUE(flags.contains("registration")) << run;
     EXPECT_EQ(flags.contains("half-head"), axis == 0) << run;
   }
+}
+
+/// The template's T1 as another animal's: turned by 10 degrees, moved, bent by 1.5 mm, shaded and
+/// with noise, on voxels of 0.6 mm.
+Volume<float> anotherMacaque() {
+  const Volume<float> brain = io::readScalars(kTemplates / "inia19-t1-brain.nii.gz",
+                                              {.placement = io::PlacementChoice::Sform})
+                                  .volume;
+  Grid grid;
+  grid.spacing = Vector::Constant(0.6);
+  grid.size = {150, 180, 120};
+  grid.origin = Point(-41.7, -55.7, -30.7);
+  Volume<float> image(grid, 0.0f);
+  std::mt19937 generator(1);
+  std::normal_distribution<double> noise(0, 3);
+  const Eigen::AngleAxisd turn(kPi / 18, Vector::UnitZ());
+  for (std::size_t v = 0; v < image.size(); ++v) {
+    const auto [i, j, k] = grid.subscripts(v);
+    const Point at = grid.toWorld(Vector(i, j, k));
+    Point from = turn * Point(at - Point(3, -2, 5)) + Point(0, -6, 2);
+    from += 1.5 * Vector(std::sin(from.y() / 12), std::cos(from.z() / 11), std::sin(from.x() / 13));
+    const Vector index = brain.grid.toIndex(from);
+    double sum = 0;
+    for (int c = 0; c < 8; ++c) {
+      std::array<int, 3> corner{};
+      double weight = 1;
+      for (int a = 0; a < 3; ++a) {
+        corner[a] = static_cast<int>(std::floor(index[a])) + (c >> a & 1);
+        weight *= 1 - std::abs(index[a] - corner[a]);
+      }
+      if (brain.grid.contains(corner[0], corner[1], corner[2])) {
+        sum += weight * brain(corner[0], corner[1], corner[2]);
+      }
+    }
+    if (sum < 25) continue;
+    image[v] = static_cast<float>(
+        std::max(1.0, sum * (1 + 0.15 * std::sin(at.y() / 30)) + noise(generator)));
+  }
+  return image;
+}
+
+TEST_F(WholeHead, OfAMacaqueTakesItsOwnTemplate) {
+  io::writeVolume(folder_ / "t1.nii.gz", anotherMacaque());
+  const auto run =
+      patiently({"run", folder_ / "t1.nii.gz", "--segment.template", "inia19", "--steps",
+                 "segment,surface", "--surface.faces", "30000", "--out", folder_ / "run"});
+  ASSERT_EQ(run.exitCode, 0) << run;
+  EXPECT_NE(run.err.find("the sform is taken"), std::string::npos) << run;
+  EXPECT_GT(numberOf(folder_ / "run/segment", "registration_correlation"), 0.9);
+  EXPECT_NEAR(numberOf(folder_ / "run/segment", "brain_volume_ml"), 108, 5);
+  const double left = numberOf(folder_ / "run/surface-L", "thickness_mean");
+  const double right = numberOf(folder_ / "run/surface-R", "thickness_mean");
+  std::printf("macaque: %.2f mm left, %.2f mm right\n", left, right);
+  EXPECT_NEAR(left, right, 0.1);
+  EXPECT_GT(left, 1.4);  // macaques: 1.5 to 2.5 mm
+  EXPECT_LT(left, 2.6);
 }
 
 TEST_F(WholeHead, GoesThroughAStudyAsTheScannerGivesIt) {

@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <random>
 
 namespace explica::testing {
@@ -80,13 +81,6 @@ TEST(PlausibilityCommand, ABrainTooLargeIsFlaggedUnlessAccepted) {
   EXPECT_TRUE(after["flags"][0]["accepted"].get<bool>());
 }
 
-std::vector<std::string> flagsOf(const std::filesystem::path& out) {
-  std::vector<std::string> names;
-  const auto summary = readJson(out / "summary.json");
-  for (const auto& flag : summary["flags"]) names.push_back(flag["name"].get<std::string>());
-  return names;
-}
-
 /// A ball of white matter within grey within fluid, by radii in mm.
 Volume<float> ballLabels(double white, double tissue, double radius, double spacing) {
   Volume<float> labels = ballHead(radius, spacing, {kFluid, kGrey, kWhite});
@@ -96,38 +90,6 @@ Volume<float> ballLabels(double white, double tissue, double radius, double spac
     labels[v] = r > radius ? 0.0f : (r > tissue ? 1.0f : (r > white ? 2.0f : 3.0f));
   }
   return labels;
-}
-
-TEST(PlausibilityCommand, SharesOfTissueThatNoHeadHasAreFlagged) {
-  constexpr std::array<double, 4> kBrightness = {0, kFluid, kGrey, kWhite};
-  TemporaryFolder folder;
-  Volume<float> image = ballHead(70, 3, {kFluid, kGrey, kWhite});
-  const Volume<float> usual = ballLabels(49, 63, 70, 3), labels = ballLabels(28, 42, 70, 3);
-  for (std::size_t v = 0; v < image.size(); ++v) {  // the same noise, less white matter
-    if (image[v] == 0) continue;
-    image[v] += static_cast<float>(kBrightness[static_cast<std::size_t>(labels[v])] -
-                                   kBrightness[static_cast<std::size_t>(usual[v])]);
-    image[v] = std::max(1.0f, image[v]);
-  }
-  io::writeVolume(folder / "t1.nii.gz", image);
-  const auto result = segment(folder, "t1.nii.gz");
-  EXPECT_EQ(result.exitCode, 3) << result;
-  EXPECT_EQ(flagsOf(folder.path() / "out"), std::vector<std::string>{"white-share"}) << result;
-}
-
-TEST(PlausibilityCommand, WhiteMatterFullOfHolesIsFlagged) {
-  TemporaryFolder folder;
-  Volume<float> labels = ballLabels(40, 44, 48, 2);
-  for (std::size_t v = 0; v < labels.size(); ++v) {
-    const auto [i, j, k] = labels.grid.subscripts(v);
-    const double r = labels.grid.toWorld(Vector(i, j, k)).norm();
-    if (r < 35 && i % 3 == 0 && j % 3 == 0 && k % 3 == 0) labels[v] = 2;
-  }
-  io::writeVolume(folder / "seg.nii.gz", labels);
-  const auto result = explica({"surface", folder / "seg.nii.gz", "--preset", "three-class",
-                               "--faces", "2000", "--out", folder / "out"});
-  EXPECT_EQ(result.exitCode, 3) << result;
-  EXPECT_EQ(flagsOf(folder.path() / "out"), std::vector<std::string>{"defects"}) << result;
 }
 
 TEST(PlausibilityCommand, AnUnknownNameToAcceptIsAUsageError) {
@@ -209,6 +171,121 @@ TEST(PlausibilityCommand, ACortexTooThickIsRedInTheReportAndFailsItsRow) {
   const std::string table = readText(folder.path() / "study/study.tsv");
   EXPECT_NE(table.find("implausible (surface)"), std::string::npos) << table;
 }
+
+/// Balls of white within grey within fluid as a T1, by radii in mm.
+Volume<float> ballT1(double white, double tissue, double radius, double spacing) {
+  constexpr std::array<double, 4> kBrightness = {0, kFluid, kGrey, kWhite};
+  Volume<float> image = ballHead(radius, spacing, {kFluid, kGrey, kWhite});
+  const Volume<float> usual = ballLabels(0.7 * radius, 0.9 * radius, radius, spacing);
+  const Volume<float> labels = ballLabels(white, tissue, radius, spacing);
+  for (std::size_t v = 0; v < image.size(); ++v) {  // the same noise
+    if (image[v] == 0) continue;
+    image[v] += static_cast<float>(kBrightness[static_cast<std::size_t>(labels[v])] -
+                                   kBrightness[static_cast<std::size_t>(usual[v])]);
+    image[v] = std::max(1.0f, image[v]);
+  }
+  return image;
+}
+
+/// A made input, and the command whose number it puts beyond a limit.
+struct Beyond {
+  std::string limit;
+  bool refused;  ///< else flagged
+  std::function<Volume<float>()> input;
+  std::vector<std::string> words;  ///< of the command, {input} for the file
+};
+
+std::vector<Beyond> beyondEachLimit() {
+  const std::vector<std::string> segment = {"segment", "{input}", "--template", "none"};
+  const std::vector<std::string> surface = {"surface",     "{input}", "--preset",
+                                            "three-class", "--faces", "2000"};
+  return {
+      {"hounsfield", true,
+       [] {
+         Volume<float> image = ballHead(70, 4, {kFluid, kGrey, kWhite});
+         for (float& value : image.data) value = value == 0 ? -1000 : value;
+         return image;
+       },
+       segment},
+      {"labels", true, [] { return ballLabels(52, 68, 75, 3); }, segment},
+      {"contrast", true,
+       [] {
+         return ballHead(70, 3, {kWhite, kGrey, kFluid});
+       },
+       segment},
+      {"brain-volume", false,
+       [] {
+         return ballHead(90, 4, {kFluid, kGrey, kWhite});
+       },
+       segment},
+      {"grey-share", false, [] { return ballT1(54, 56, 70, 3); }, segment},
+      {"white-share", false, [] { return ballT1(28, 42, 70, 3); }, segment},
+      {"thickness-mean", false, [] { return ballLabels(36, 54, 60, 3); }, surface},
+      {"without-thickness",
+       false,
+       [] {  // grey matter in the middle of the white touches no fluid
+         Volume<float> labels = ballLabels(40, 44, 48, 2);
+         for (std::size_t v = 0; v < labels.size(); ++v) {
+           const auto [i, j, k] = labels.grid.subscripts(v);
+           if (labels.grid.toWorld(Vector(i, j, k)).norm() < 14) labels[v] = 2;
+         }
+         return labels;
+       },
+       {"thickness", "{input}", "--inner", "3", "--tissue", "2"}},
+      {"defects", false,
+       [] {
+         Volume<float> labels = ballLabels(40, 44, 48, 2);
+         for (std::size_t v = 0; v < labels.size(); ++v) {
+           const auto [i, j, k] = labels.grid.subscripts(v);
+           const double r = labels.grid.toWorld(Vector(i, j, k)).norm();
+           if (r < 35 && i % 3 == 0 && j % 3 == 0 && k % 3 == 0) labels[v] = 2;
+         }
+         return labels;
+       },
+       surface},
+  };
+}
+
+class EveryLimit : public ::testing::TestWithParam<Beyond> {};
+
+TEST_P(EveryLimit, IsRefusedOrFlaggedUnlessAccepted) {
+  const Beyond& beyond = GetParam();
+  TemporaryFolder folder;
+  io::writeVolume(folder / "input.nii.gz", beyond.input());
+  std::vector<std::string> words = beyond.words;
+  for (std::string& word : words) {
+    if (word == "{input}") word = folder / "input.nii.gz";
+  }
+  const std::string out = folder / "out";
+  const auto result = explica(words + std::vector<std::string>{"--out", out});
+  if (beyond.refused) {
+    EXPECT_EQ(result.exitCode, 2) << result;
+    EXPECT_NE(result.err.find("--accept " + beyond.limit), std::string::npos) << result;
+    EXPECT_FALSE(std::filesystem::exists(out + "/summary.json"));
+  } else {
+    EXPECT_EQ(result.exitCode, 3) << result;
+    const auto flags = readJson(std::filesystem::path(out) / "summary.json")["flags"];
+    ASSERT_EQ(flags.size(), 1u) << result;
+    EXPECT_EQ(flags[0]["name"], beyond.limit);
+    const double value = flags[0]["value"].get<double>();
+    const bool below = flags[0]["low"].is_number() && value < flags[0]["low"].get<double>();
+    const bool above = flags[0]["high"].is_number() && value > flags[0]["high"].get<double>();
+    EXPECT_TRUE(below || above) << flags;
+    ASSERT_EQ(explica({"report", out}).exitCode, 0);
+    EXPECT_NE(readText(std::filesystem::path(out) / "report.html").find("class='badge bad'"),
+              std::string::npos);
+  }
+  const auto accepted =
+      explica(words + std::vector<std::string>{"--force", "--accept", beyond.limit, "--out", out});
+  EXPECT_EQ(accepted.exitCode, 0) << accepted;
+}
+
+INSTANTIATE_TEST_SUITE_P(MadeInputs, EveryLimit, ::testing::ValuesIn(beyondEachLimit()),
+                         [](const auto& made) {
+                           std::string name = made.param.limit;
+                           std::erase(name, '-');
+                           return name;
+                         });
 
 }  // namespace
 }  // namespace explica::testing

@@ -6,6 +6,7 @@ import pathlib
 
 import nibabel as nib
 import numpy as np
+from scipy.ndimage import map_coordinates
 from scipy.spatial import cKDTree
 
 import figures
@@ -160,6 +161,63 @@ def freesurfer_labels(explica, page):
     return rows
 
 
+def signed_offset(made, reference, name):
+    """Mean signed distance of a surface from another one where both are cortex, by area, mm;
+    positive outward."""
+    ours, theirs = (nib.load(folder / f"{name}.surf.gii") for folder in (made, reference))
+    positions, faces = ours.agg_data("pointset").astype(float), ours.agg_data("triangle")
+    points, corners = theirs.agg_data("pointset").astype(float), theirs.agg_data("triangle")
+    cortex, beside = (nib.load(folder / "thickness.shape.gii").darrays[0].data > 0
+                      for folder in (made, reference))
+    apart, face = nearest_faces(positions, points, corners)
+    t = points[corners[face]]
+    normal = np.cross(t[:, 1] - t[:, 0], t[:, 2] - t[:, 0])
+    side = np.sign(np.einsum("ij,ij->i", positions - t.mean(axis=1), normal))
+    own = positions[faces]
+    area = np.linalg.norm(np.cross(own[:, 1] - own[:, 0], own[:, 2] - own[:, 0]), axis=1) / 6
+    weight = np.bincount(faces.ravel(), np.repeat(area, 3), len(positions))
+    weight *= cortex & beside[corners[face]].all(axis=1)
+    return float((weight * side * apart).sum() / weight.sum())
+
+
+def beside_aseg(explica, made, side):
+    """Our surfaces from a T1 beside those that FreeSurfer's labels of the same head give."""
+    on = f"bert, {'left' if side == 'l' else 'right'}, from T1"
+    labels = explica("surface", real("bert_freesurfer", "mri", "aseg.mgz"), "--hemisphere",
+                     side.upper(), out=f"bert-aseg-{side}")
+    return [Measured(f"{name} surface from that of aseg, mean, outward positive", on,
+                     signed_offset(made, labels, name), "mm", 0.03, made.command)
+            for name in ("white", "pial")]
+
+
+def phantom_borders(explica, page):
+    """White and outer border of a ribbon of 2.5 mm in a T1, beside fluid of several widths."""
+    del page
+    rows = []
+    for title, words in (("wide fluid", []), ("1 mm of fluid to a sheet of dura",
+                                              ["--dura", 1, "--dura-gap", 1]),
+                         ("2 mm of fluid to a sheet of dura", ["--dura", 1, "--dura-gap", 2])):
+        for noise in (3, 6):
+            out = f"ribbon-{title[:4].strip().replace(' ', '-')}-{noise}"
+            phantom = explica("phantom", "cortex", "--size", 48, "--ventricle", 4, "--noise", noise,
+                              *words, out=out)
+            tissue = explica("segment", phantom / "t1.nii.gz", "--template", "none", "--accept",
+                             "brain-volume", out=out + "-tissue")
+            made = explica("surface", "--inner-level", tissue / "wm.nii.gz", "--grey-share",
+                           tissue / "gm.nii.gz", "--image", phantom / "t1.nii.gz", "--fluid",
+                           f"{tissue.summary['fluid_of_white']:.3f}", "--faces", 8000,
+                           out=out + "-surface")
+            level = nib.load(phantom / "level.nii.gz")
+            for name, depth in (("white", 0.0), ("pial", phantom.summary["thickness"])):
+                at = nib.load(made / f"{name}.surf.gii").agg_data("pointset").astype(float)
+                index = nib.affines.apply_affine(np.linalg.inv(level.affine), at)
+                off = map_coordinates(level.get_fdata(), index.T, order=1) - depth
+                rows.append(Measured(f"{name} surface, mean, outward positive",
+                                     f"ribbon of 2.5 mm, {title}, noise {noise}",
+                                     float(off.mean()), "mm", 0.02, made.command))
+    return rows
+
+
 def freesurfer_image(explica, page):
     """From the T1 alone; the parcellation is used for regions and sides only."""
     made = explica("run", real("bert_freesurfer", "mri", "brain.mgz"), "--atlas",
@@ -168,6 +226,7 @@ def freesurfer_image(explica, page):
     rows = []
     for side in "lr":
         rows += beside_freesurfer(explica, page, made.step(f"surface-{side.upper()}"), side, "T1")
+        rows += beside_aseg(explica, made.step(f"surface-{side.upper()}"), side)
     rows.append(Measured("seconds of the whole command", "bert, both hemispheres, from T1",
                          made.seconds, "s", 2 * made.seconds, made.command))
     return rows
@@ -309,6 +368,7 @@ ALL = [
     ("Thickness where it is known", shells),
     ("Cortex from labels, beside FreeSurfer", freesurfer_labels),
     ("Cortex from a T1 alone, beside FreeSurfer", freesurfer_image),
+    ("Borders in a T1 that are known", phantom_borders),
     ("Unfolding in place, default options", unfolding),
     ("Flat maps beside FreeSurfer's", flat_maps),
     ("Volumes on surfaces", sampled),

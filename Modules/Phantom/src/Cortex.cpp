@@ -16,6 +16,7 @@ namespace {
 
 constexpr int kSubdivisions = 5;  // 20,480 faces
 constexpr double kFluid = 3;      // mm beyond the ribbon
+constexpr double kWhiteLeft = 3;  // mm at least between ventricle and ribbon
 constexpr double kMargin = 3;     // voxels to the grid's edge
 
 /// Distance from the surface, negative inside.  The mesh is fine beside its folds, so that the
@@ -50,6 +51,11 @@ Cortex makeCortex(const CortexOptions& o) {
     throw InvalidInput("thickness: must be above 0 mm and leave room for white matter in the grid");
   }
 
+  if (!(o.ventricle >= 0) ||
+      (o.ventricle > 0 && o.ventricle + kWhiteLeft > radius * (1 - o.depth))) {
+    throw InvalidInput("ventricle: must be 0 mm or more and leave 3 mm of white matter");
+  }
+
   Grid grid;
   grid.size = {o.size, o.size, o.size};
   grid.spacing = Vector::Constant(o.spacing);
@@ -74,13 +80,16 @@ Cortex makeCortex(const CortexOptions& o) {
     const double d = cortex.level[v];
     if (d > o.thickness + kFluid) continue;
     cortex.labels[v] = d <= 0 ? Cortex::kWhite : (d <= o.thickness ? Cortex::kGrey : Cortex::kCsf);
-    const double white = share(-d);
-    const double grey = share(o.thickness - d) - white;
+    const auto [i, j, k] = grid.subscripts(v);
+    const Point at = grid.toWorld(Vector(i, j, k));
+    const double lake = o.ventricle > 0 ? share(o.ventricle - at.norm()) : 0;
+    if (lake > 0.5) cortex.labels[v] = Cortex::kCsf;
+    const double white = share(-d) - lake;
+    const double grey = share(o.thickness - d) - share(-d);
     const double sheet = o.thickness + o.duraGap;
     const double dura = o.dura > 0 ? share(sheet + o.dura - d) - share(sheet - d) : 0;
     const double clean = 115 * white + 85 * grey + 70 * dura + 35 * (1 - white - grey - dura);
-    const auto [i, j, k] = grid.subscripts(v);
-    const double x = grid.toWorld(Vector(i, j, k)).x() / (0.5 * o.size * o.spacing);
+    const double x = at.x() / (0.5 * o.size * o.spacing);
     cortex.image[v] =
         static_cast<float>(std::max(1.0, (clean + o.noise * gauss(generator)) * (1 + o.bias * x)));
   }

@@ -44,6 +44,28 @@ TEST(CortexPhantom, DoesNotDependOnThreads) {
   EXPECT_EQ(one.image.data, four.image.data);
 }
 
+TEST(CortexPhantom, VentricleIsFluidAndNothingElseChanges) {
+  CortexOptions options = small();
+  options.noise = options.bias = 0;
+  const Cortex without = makeCortex(options);
+  options.ventricle = 4;
+  const Cortex with = makeCortex(options);
+  const Grid& grid = with.image.grid;
+  for (std::size_t v = 0; v < with.image.size(); ++v) {
+    const auto [i, j, k] = grid.subscripts(v);
+    const double r = grid.toWorld(Vector(i, j, k)).norm();
+    if (r > 4.5) {
+      EXPECT_EQ(with.image[v], without.image[v]);
+    }
+    if (r < 3.5) {
+      EXPECT_NEAR(with.image[v], 35, 1e-3);
+      EXPECT_EQ(with.labels[v], Cortex::kCsf);
+    }
+  }
+  options.ventricle = 15;
+  EXPECT_THROW((void)makeCortex(options), InvalidInput);
+}
+
 TEST(CortexPhantom, DuraIsASheetInTheFluid) {
   CortexOptions options = small();
   options.noise = options.bias = 0;

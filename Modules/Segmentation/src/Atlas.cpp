@@ -36,11 +36,14 @@ AtlasStructure structureNamed(const std::string& name) {
       std::string_view(name).substr(name.size() - std::min<std::size_t>(2, name.size()));
   if (ending == "_L") structure.side = Side::Left;
   if (ending == "_R") structure.side = Side::Right;
-  if (startsWithAny(name, {"Cerebel", "Vermis"})) structure.kind = StructureKind::BelowTent;
-  if (startsWithAny(name,
-                    {"Caudate", "Putamen", "Pallidum", "Thalamus", "Hippocampus", "Amygdala"})) {
+  if (startsWithAny(name, {"Cerebel", "Vermis", "Below_"})) {
+    structure.kind = StructureKind::BelowTent;
+  }
+  if (startsWithAny(name, {"Caudate", "Putamen", "Pallidum", "Thalamus", "Hippocampus", "Amygdala",
+                           "Deep_"})) {
     structure.kind = StructureKind::Deep;
   }
+  if (startsWithAny(name, {"White_"})) structure.kind = StructureKind::White;
   return structure;
 }
 

@@ -25,6 +25,9 @@ constexpr double kFirstDeviation = 0.06;   // of the range of means: the noise t
 constexpr double kFirstMixedShare = 0.15;  // of the voxels, for each of the two mixtures
 constexpr double kRimShare = 0.08;         // of the brain's radius: 5 to 6 mm in an adult
 constexpr std::size_t kFewestInCore = 100;
+constexpr double kFarVoxels =
+    1.9;  // from anything brighter than half way to grey matter: deep fluid
+constexpr std::size_t kFewestDeep = 20;  // voxels of deep fluid whose median is believed
 constexpr double kDeepFluid = 0.002;  // of the voxels off the rim: fewer do not tell what fluid is
 constexpr double kFluidOverGrey = 0.7;  // what is brighter beside grey matter is no fluid
 constexpr int kEdgeRounds = 10;         // after which levels move no more
@@ -428,7 +431,28 @@ class Classifier {
     }
   }
 
+  /// The median of fluid that nothing else mixes with: thin layers are never seen as dark as they
+  /// are, nor is what lies beside a sheet of dura.
+  [[nodiscard]] double deepFluid() const {
+    const double half = 0.5 * (mixture_.mean[0] + mixture_.mean[1]);
+    VoxelSet bright(grid_, 1);
+    for (std::size_t b = 0; b < brain_.size(); ++b) {
+      bright[brain_.voxel[b]] = corrected_[b] > half ? 1 : 0;
+    }
+    const Volume<float> squared = squaredDistanceTo(bright);
+    const double far = kFarVoxels * std::cbrt(grid_.voxelVolume());
+    std::vector<float> deep;
+    for (std::size_t b = 0; b < brain_.size(); ++b) {
+      if (brain_.rim[b] == 0 && squared[brain_.voxel[b]] > far * far) deep.push_back(corrected_[b]);
+    }
+    if (deep.size() < kFewestDeep) return mixture_.mean[0];
+    const auto middle = deep.begin() + static_cast<std::ptrdiff_t>(deep.size() / 2);
+    std::nth_element(deep.begin(), middle, deep.end());
+    return *middle;
+  }
+
   void write(TissueSegmentation& result) const {
+    result.deepFluid = deepFluid();
     for (int k = 0; k < kClasses; ++k) {
       result.classes[k] = {mixture_.mean[k], mixture_.deviation[k], 0};
     }

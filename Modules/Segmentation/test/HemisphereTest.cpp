@@ -166,5 +166,23 @@ TEST(VoxelBox, HoldsWhatIsThereAndPutsItBack) {
   EXPECT_THROW((void)box.of(part), InvalidInput);
 }
 
+TEST(AtlasLegend, OfInia19PutsAThousandBetweenTheSides) {
+  const AtlasLegend legend = inia19Legend();
+  int cortical = 0;
+  for (const auto& [label, structure] : legend) {
+    const bool right = label > 1000;
+    EXPECT_EQ(structure.side, right ? Side::Right : Side::Left) << label;
+    if (!right) {
+      EXPECT_EQ(legend.at(label + 1000).kind, structure.kind) << label;
+      cortical += structure.kind == StructureKind::Cortex;
+    }
+  }
+  EXPECT_EQ(cortical, 32);
+  EXPECT_EQ(legend.at(1147).name, "Precentral_R");
+  EXPECT_EQ(legend.at(82).kind, StructureKind::Deep);        // caudate nucleus
+  EXPECT_EQ(legend.at(55).kind, StructureKind::White);       // cerebral white matter
+  EXPECT_EQ(legend.at(230).kind, StructureKind::BelowTent);  // of the cerebellum
+}
+
 }  // namespace
 }  // namespace explica::segmentation

@@ -66,6 +66,22 @@ TEST(TissueSegmentation, FindsThreeTissuesInNoise) {
   EXPECT_NEAR(found.classes[2].mean, 115, 2);
 }
 
+TEST(TissueSegmentation, KnowsPureFluidByAVentricle) {
+  Phantom phantom = makePhantom(4, 0.1);
+  const Grid& grid = phantom.image.grid;
+  const auto share = [](double inside) { return std::clamp(0.5 + inside, 0.0, 1.0); };
+  for (std::size_t v = 0; v < phantom.image.size(); ++v) {
+    const auto [i, j, k] = grid.subscripts(v);
+    const double r = (grid.toWorld(Vector(i, j, k)) - Point::Constant(30)).norm();
+    const double dura = share(24 - r) - share(23 - r);  // leaves 1 mm of fluid on both sides
+    phantom.image[v] += static_cast<float>(35 * dura - 80 * share(5 - r));
+    if (r > 25) phantom.image[v] = 0;
+  }
+  const TissueSegmentation found = segmentTissue(phantom.image);
+  EXPECT_NEAR(found.deepFluid, 35, 3);
+  EXPECT_GT(found.classes[0].mean, 39);
+}
+
 TEST(TissueSegmentation, ToleratesABiasField) {
   const Phantom phantom = makePhantom(3, 0.25);
   TissueOptions without;

@@ -132,12 +132,14 @@ Ribbon traceRibbon(const CorticalTissue& tissue, CorticalSurfaces& result, const
 }
 
 /// Moves the white surface and the trajectories' ends to where an image changes most steeply.
-void placeByImage(const Volume<float>& image, Ribbon& ribbon, CorticalSurfaces& result) {
+void placeByImage(const Volume<float>& image, double fluid, Ribbon& ribbon,
+                  CorticalSurfaces& result) {
   Stopwatch watch;
   const Grid& grid = ribbon.tissue.white.grid;
   const double voxel = std::cbrt(grid.voxelVolume());
   TriangleMesh& white = result.white.mesh;
   ImageBorderOptions options;
+  options.fluid = fluid;
   options.search = ribbon.tissue.byBrightness;
   const ImageBorders borders = findBorders(ribbon.paths, white, image, voxel, options);
   result.image.missingWhite = borders.missingWhite;
@@ -342,6 +344,8 @@ double thicknessDeviation(const TriangleMesh& white, const Eigen::VectorXd& thic
 
 namespace {
 
+constexpr double kBrightestFluid = 10;  // over white matter, of any contrast
+
 CorticalSurfaces build(const CorticalTissue& tissue, const Volume<float>* image,
                        const SurfaceOptions& options, const Monitor& monitor) {
   if (!tissue.hasGrey) {
@@ -350,11 +354,16 @@ CorticalSurfaces build(const CorticalTissue& tissue, const Volume<float>* image,
   if (options.steps < 2 || options.steps % 2 != 0) {
     throw InvalidInput("steps: " + std::to_string(options.steps) + " given; an even number >= 2");
   }
+  if (!(options.fluid >= 0 && options.fluid <= kBrightestFluid)) {
+    throw InvalidInput("fluid: " + std::to_string(options.fluid) +
+                       " given; 0, or the brightness of fluid over that of white matter, at most " +
+                       std::to_string(static_cast<int>(kBrightestFluid)));
+  }
   CorticalSurfaces result;
   result.white = extractWhite(tissue, options, partOf(monitor, 0, 0.5));
   result.seconds = result.white.seconds;
   Ribbon ribbon = traceRibbon(tissue, result, partOf(monitor, 0.5, 0.7));
-  if (image != nullptr) placeByImage(*image, ribbon, result);
+  if (image != nullptr) placeByImage(*image, options.fluid, ribbon, result);
   result.shortened =
       shortenAstray(result.white.mesh, tissue.white.grid.spacing.minCoeff(), ribbon.paths);
   takeThickness(ribbon.paths, result);

@@ -7,6 +7,7 @@
 #include "EdgeSearch.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Geometry/MeshTopology.h"
+#include "NarrowFluid.h"
 #include "PathProfile.h"
 
 #include <algorithm>
@@ -28,6 +29,8 @@ constexpr std::array kWhiteDepths = {1.5, 2.0, 2.5};
 constexpr std::array kGreyShares = {0.4, 0.5, 0.6};
 constexpr double kOutsideReach = 2;
 constexpr int kOutsideSamples = 9;
+/// Fluid is as bright as white matter around says: times that this is averaged over neighbours.
+constexpr int kFluidSpread = 30;
 
 /// Brightness of the tissues along each trajectory, averaged over neighbours; NaN where there is no
 /// ribbon or no image.
@@ -77,15 +80,38 @@ Choice choiceOn(const Trajectory& path, bool outer, double step) {
   return {kSide - inside, path.end == TrajectoryEnd::Bank ? kSide + kBeyondBank : kPlaces - 1};
 }
 
+/// Brightness on both sides of a border, and of the border itself.
+struct Edge {
+  Eigen::VectorXd inside, outside, level;
+  Eigen::VectorXd contrast;  ///< in which misses of the level count
+};
+
+/// Half way between what is seen on both sides, or where `share` says.
+Edge edgeBetween(const Eigen::VectorXd& inside, const Eigen::VectorXd& outside, double share) {
+  return {inside, outside, outside + share * (inside - outside), (inside - outside).cwiseAbs()};
+}
+
+/// The outer border beside fluid that may be too narrow to be seen as dark as it is: there the
+/// slope is small against noise, too, so that misses count in the contrast that there would be.
+Edge edgeBesideFluid(const Eigen::VectorXd& grey, const Eigen::VectorXd& darkest,
+                     const Eigen::VectorXd& fluid) {
+  Edge edge{grey, darkest, darkest, (grey - fluid).cwiseAbs()};
+  for (Eigen::Index v = 0; v < grey.size(); ++v) {
+    const double depth = (grey[v] - darkest[v]) / (grey[v] - fluid[v]);
+    if (!std::isfinite(depth)) continue;
+    edge.level[v] += levelBesideFluid(depth) * (grey[v] - darkest[v]);
+  }
+  return edge;
+}
+
 /// How far brightness is from the border's level at each place, in contrasts: positive inside.
 std::vector<Profile> missesOf(const std::vector<Trajectory>& paths, bool outer,
                               const Volume<float>& image, double step, double sign,
-                              const Eigen::VectorXd& inside, const Eigen::VectorXd& outside,
-                              const EdgeOptions& options, double flat) {
+                              const Edge& edge, double flat) {
   std::vector<double> contrast(paths.size());
   for (std::size_t v = 0; v < paths.size(); ++v) {
     const auto row = static_cast<Eigen::Index>(v);
-    contrast[v] = sign * (inside[row] - outside[row]);
+    contrast[v] = sign * (edge.inside[row] - edge.outside[row]);
   }
   const double least = flat * median(contrast);
   std::vector<Profile> profiles(paths.size());
@@ -93,11 +119,10 @@ std::vector<Profile> missesOf(const std::vector<Trajectory>& paths, bool outer,
     profiles[v].fill(static_cast<float>(kNaN));
     if (!(contrast[v] > least)) return;
     const auto row = static_cast<Eigen::Index>(v);
-    const double level = outside[row] + options.level * (inside[row] - outside[row]);
     const double border = outer ? paths[v].length() : 0;
     for (int k = 0; k < kPlaces; ++k) {
       const double value = valueAt(image, along(paths[v], border + (k - kSide) * step));
-      profiles[v][k] = static_cast<float>(sign * (value - level) / contrast[v]);
+      profiles[v][k] = static_cast<float>(sign * (value - edge.level[row]) / edge.contrast[row]);
     }
   });
   return profiles;
@@ -122,16 +147,23 @@ ImageBorders findBorders(const std::vector<Trajectory>& given, const TriangleMes
   }
   const Tissues tissues = brightnessOf(paths, image, voxel);
   for (const bool outer : {false, true}) {
-    const EdgeOptions& edge = outer ? options.outer : options.white;
+    const bool besideFluid = outer && options.fluid > 0;
+    const EdgeOptions& chosen =
+        besideFluid ? options.besideFluid : (outer ? options.outer : options.white);
     const Eigen::VectorXd inside =
-        averaged(outer ? tissues.grey : tissues.white, topology, edge.spread);
+        averaged(outer ? tissues.grey : tissues.white, topology, chosen.spread);
     const Eigen::VectorXd outside =
-        averaged(outer ? tissues.outside : tissues.grey, topology, edge.spread);
+        averaged(outer ? tissues.outside : tissues.grey, topology, chosen.spread);
+    const Edge edge =
+        besideFluid
+            ? edgeBesideFluid(inside, outside,
+                              options.fluid * averaged(tissues.white, topology, kFluidSpread))
+            : edgeBetween(inside, outside, chosen.level);
     std::vector<Choice> choices(paths.size());
     for (std::size_t v = 0; v < paths.size(); ++v) choices[v] = choiceOn(paths[v], outer, step);
     const BorderChooser chooser(
-        missesOf(paths, outer, image, step, tissues.sign, inside, outside, edge, options.flat),
-        std::move(choices), topology, step, voxel, edge.costs);
+        missesOf(paths, outer, image, step, tissues.sign, edge, options.flat), std::move(choices),
+        topology, step, voxel, chosen.costs);
     if (outer) {
       borders.outer = chooser.choose(options.rounds);
       borders.missingOuter = chooser.missing();

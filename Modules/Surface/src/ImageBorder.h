@@ -24,9 +24,12 @@ struct EdgeOptions {
 struct ImageBorderOptions {
   EdgeOptions white = {};
   EdgeOptions outer = {0.45, 30, {0.2, 0.3}};
+  EdgeOptions besideFluid = {0.5, 10, {0.2, 0.3}};  ///< outer, if `fluid` is known: its level then
+                                                    ///< comes of how dark the sulcus is
   double reach = 1;     ///< farthest that a border may lie from that of the labels
   double flat = 0.3;    ///< share of the usual contrast below which an edge is missing
   int rounds = 15;      ///< of weighing a vertex's edge against its neighbours
+  double fluid = 0;     ///< brightness of pure fluid, of that of white matter; 0: not known
   bool search = false;  ///< the white border is first searched over millimetres: no labels, but one
                         ///< brightness for a neighbourhood, have put it where it is
 };

@@ -20,6 +20,7 @@ struct CortexOptions {
   int seed = 1;          ///< of the noise
   double dura = 0;       ///< thickness of a sheet of the dura's brightness beyond the ribbon, mm
   double duraGap = 1.5;  ///< width of the fluid between ribbon and sheet, mm
+  double ventricle = 0;  ///< radius of a ball of fluid in the middle, mm; 0 for none
 };
 
 template <class Visitor>
@@ -37,6 +38,9 @@ void describe(CortexOptions& options, Visitor&& visit) {
         options.dura);
   visit(Field{"dura-gap", "mm", "width of the fluid between the ribbon and that sheet"},
         options.duraGap);
+  visit(Field{"ventricle", "mm",
+              "radius of a ball of fluid in the middle of the white matter; 0 for none"},
+        options.ventricle);
 }
 
 /// The ribbon and what is known of it exactly.
@@ -51,7 +55,8 @@ struct Cortex {
 };
 
 /// Grey matter is what lies within `thickness` outside of a folded, star-shaped white surface,
-/// fluid what lies within 3 mm beyond it.  A sheet of dura lies in the fluid and is labelled so.
+/// fluid what lies within 3 mm beyond it, and in the ventricle.  A sheet of dura lies in the fluid
+/// and is labelled so.
 /// @throws InvalidInput  an option out of range
 [[nodiscard]] Cortex makeCortex(const CortexOptions& options = {});
 

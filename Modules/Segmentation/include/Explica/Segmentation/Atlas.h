@@ -33,7 +33,7 @@ struct AtlasStructure {
 using AtlasLegend = std::map<Label, AtlasStructure>;
 
 /// A structure by its name: side from the name's end (_L, _R), kind from its beginning, as the AAL
-/// atlas names them [TzourioMazoyer2002].
+/// atlas names them [TzourioMazoyer2002], or Deep_, White_, Below_ where that says it.
 [[nodiscard]] AtlasStructure structureNamed(const std::string& name);
 
 /// Reads a legend: one structure a line, "value name", anything after the name ignored; empty
@@ -52,6 +52,11 @@ using AtlasLegend = std::map<Label, AtlasStructure>;
 
 /// What FreeSurfer's labels (aseg, aparc+aseg, aparc.a2009s+aseg) mean to a hemisphere.
 [[nodiscard]] AtlasLegend freeSurferLegend();
+
+/// What the labels of INIA19's atlas NeuroMaps mean [Rohlfing2012]: cortex by the names of its
+/// gyri, the rest by what it is to the cortex.  A label of the right side is that of the left one
+/// and 1000.
+[[nodiscard]] AtlasLegend inia19Legend();
 
 /// The labels of an atlas that its legend does not name become 0.
 void keepNamed(Volume<Label>& atlas, const AtlasLegend& legend);

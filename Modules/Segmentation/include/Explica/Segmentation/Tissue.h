@@ -57,6 +57,8 @@ struct TissueSegmentation {
   std::array<Volume<float>, 3> probability;  ///< shares of CSF, grey, white; sum 1 inside
   Volume<float> bias;                        ///< multiplicative field, geometric mean 1; 1 outside
   std::array<TissueClass, 3> classes;
+  double deepFluid = kNaN;  ///< bias-corrected intensity of fluid far from other tissue, as in
+                            ///< ventricles; the class's mean where there is none
   std::int64_t brainVoxels = 0;
   Termination termination = Termination::NotRun;
   int iterations = 0;
