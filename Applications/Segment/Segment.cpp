@@ -8,6 +8,7 @@
 #include "Explica/Core/WholeFile.h"
 #include "Explica/IO/TransformFile.h"
 #include "Explica/IO/VolumeFile.h"
+#include "Explica/Provenance/Doubts.h"
 #include "Explica/Registration/HeadRegistration.h"
 #include "Explica/Registration/SkullStripping.h"
 #include "Explica/Segmentation/Disagreement.h"
@@ -298,13 +299,17 @@ void judgeTissue(Context& context, Judge& judge, const segmentation::TissueSegme
 }
 
 /// Where template and image show different tissues, the image is believed, and the reader told.
-void judgeTemplate(Context& context, Judge& judge, const segmentation::TissueSegmentation& tissue,
-                   const Head& head) {
+void compareWithTemplate(Context& context, const segmentation::TissueSegmentation& tissue,
+                         const Head& head) {
   if (head.expected.size() == 0 || tissue.termination == Termination::Interrupted) return;
   const auto found = segmentation::whiteDisagreement(tissue.labels, head.expected);
   context.result("template_white_not_white_share", found.share);
   context.result("template_white_not_white_ml", found.largest / 1000);
-  judge.flag("template-tissue", found.largest / 1000);
+  context.doubt(provenance::kWhiteUnlikeTemplate, static_cast<std::size_t>(found.voxels),
+                std::to_string(found.voxels) +
+                    " voxels are deep white matter in the template and other tissue in the image, "
+                    "which is believed: a lesion, wide ventricles, or a template in the wrong "
+                    "place; look at seg.nii.gz there");
 }
 
 segmentation::TissueSegmentation findTissue(Context& context, const Settings& s,
@@ -415,7 +420,7 @@ Termination run(Context& context, const Settings& s) {
   const segmentation::TissueSegmentation tissue = findTissue(context, s, image, head.mask);
   image = {};
   judgeTissue(context, judge, tissue, head.brainShare);
-  judgeTemplate(context, judge, tissue, head);
+  compareWithTemplate(context, tissue, head);
   writeTissue(context, boxes, tissue);
   if (head.atlas) makeHemispheres(context, s, boxes, tissue, *head.atlas);
   return tissue.termination;

@@ -6,6 +6,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/IO/LabelNames.h"
 #include "Explica/IO/VolumeFile.h"
+#include "Explica/Provenance/Doubts.h"
 #include "Explica/Segmentation/Hemisphere.h"
 
 #include <filesystem>
@@ -53,8 +54,10 @@ auto readPlaced(Context& context, const fs::path& path, const Read& read) {
     reading.placement = io::PlacementChoice::Sform;
     const auto loaded = read(reading);
     if (!(loaded.origin.placementsApart > 0)) throw;
-    context.warn("template: qform and sform of " + path.filename().string() +
-                 " place its voxels differently; the sform is taken, and says which side is left");
+    context.doubt(provenance::kHeadersDisagree, 1,
+                  "template: qform and sform of " + path.filename().string() +
+                      " place its voxels differently; the sform is taken, and says which side is "
+                      "left");
     return loaded.volume;
   }
 }

@@ -9,8 +9,8 @@
 #include "Explica/Testing/Command.h"
 #include "Explica/Testing/FreeSurferSubject.h"
 
-#include <Eigen/Geometry>
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include <array>
 #include <cmath>
@@ -144,6 +144,11 @@ TEST_F(WholeHead, HalvesOfAHeadAreFlagged) {
     const auto flags = flagsOf(folder_ / "segment");
     EXPECT_TRUE(flags.contains("registration")) << run;
     EXPECT_EQ(flags.contains("half-head"), axis == 0) << run;
+    std::vector<std::string> words = {"segment", folder_ / "half.nii.gz", "--force", "--out",
+                                      folder_ / "segment"};
+    for (const std::string& flag : flags) words.insert(words.end(), {"--accept", flag});
+    const auto accepted = patiently(words);
+    EXPECT_EQ(accepted.exitCode, 0) << accepted;
   }
 }
 
@@ -203,13 +208,41 @@ TEST_F(WholeHead, OfAMacaqueTakesItsOwnTemplate) {
   EXPECT_LT(left, 2.6);
 }
 
+TEST_F(WholeHead, ALesionIsBelievedAndSaid) {
+  Volume<float> image = io::readScalars(kTemplates / "ch2bet.nii.gz").volume;
+  const Point middle(-26, -22, 30);  // of the left hemisphere's white matter
+  std::vector<std::size_t> lesion;
+  for (std::size_t v = 0; v < image.size(); ++v) {
+    const auto [i, j, k] = image.grid.subscripts(v);
+    if ((image.grid.toWorld(Vector(i, j, k)) - middle).norm() > 12 || image[v] == 0) continue;
+    image[v] = 32 + static_cast<float>(v % 5);  // as bright as fluid
+    lesion.push_back(v);
+  }
+  io::writeVolume(folder_ / "t1.nii.gz", image);
+  const auto run = patiently({"segment", folder_ / "t1.nii.gz", "--out", folder_ / "segment"});
+  ASSERT_EQ(run.exitCode, 0) << run;  // no reason to fail a study's row
+  EXPECT_NE(run.err.find("a lesion, wide ventricles"), std::string::npos) << run;
+  const auto found = io::readLabels(folder_ / "segment/seg.nii.gz").volume;
+  double fluid = 0;
+  for (const std::size_t v : lesion) fluid += found[v] == 1;
+  EXPECT_GT(fluid, 0.9 * static_cast<double>(lesion.size()));
+  const double told = numberOf(folder_ / "segment", "white_unlike_template");
+  std::printf("lesion of %zu voxels, %.0f fluid, %.0f unlike the template\n", lesion.size(), fluid,
+              told);
+  EXPECT_GT(told, 1000);
+}
+
 TEST_F(WholeHead, GoesThroughAStudyAsTheScannerGivesIt) {
   fs::create_directories(folder_ / "data/sub-01/anat");
   fs::copy_file(kTemplates / "ch2.nii.gz", folder_ / "data/sub-01/anat/sub-01_T1w.nii.gz");
   writeText(folder_ / "data/dataset_description.json", R"({"Name": "a", "BIDSVersion": "1.8.0"})");
+  Volume<float> ct = io::readScalars(kTemplates / "ch2.nii.gz").volume;
+  for (float& value : ct.data) value = value < 10 ? -1000 : value;
+  fs::create_directories(folder_ / "data/sub-02/anat");
+  io::writeVolume(folder_ / "data/sub-02/anat/sub-02_T1w.nii.gz", ct);
   const auto run = patiently({"bids", folder_ / "data", folder_ / "out", "participant", "--steps",
                               "segment,surface", "--surface.faces", "20000"});
-  ASSERT_EQ(run.exitCode, 0) << run;
+  ASSERT_EQ(run.exitCode, 3) << run;  // the second is no T1: its row says so, the first is done
   const fs::path anat = folder_ / "out/sub-01/anat";
   for (const char* side : {"L", "R"}) {
     const fs::path surface = anat / ("sub-01_hemi-" + std::string(side) + "_pial.surf.gii");
@@ -219,6 +252,7 @@ TEST_F(WholeHead, GoesThroughAStudyAsTheScannerGivesIt) {
   const std::string table = readText(folder_ / "out/study.tsv");
   EXPECT_NE(table.find("sub-01\tL\tdone\t"), std::string::npos) << table;
   EXPECT_NE(table.find("sub-01\tR\tdone\t"), std::string::npos) << table;
+  EXPECT_NE(table.find("sub-02\tL\tfailed: "), std::string::npos) << table;
 }
 
 }  // namespace

@@ -45,12 +45,6 @@ constexpr Limit kLimits[] = {
      "a part of the head may lie outside of the image",
      "hemispheres differ by a few per cent in the healthy (Giedd et al. 1996, Cereb. Cortex "
      "6:551); beyond a quarter, tissue is missing"},
-    {"template-tissue",
-     "the largest piece of the template's deep white matter that the image shows as other tissue",
-     "ml", 0, 5,
-     "a lesion, wide ventricles or a template in the wrong place: the image was believed; look at "
-     "seg.nii.gz there",
-     "measured: bert on Colin27 0.3 ml (Modules/Segmentation/README.md); a ball of 2 cm has 4 ml"},
     {"thickness-mean", "the mean thickness of the cortex", "mm", 1, 5,
      "one of its borders may be in the wrong place",
      "1 to 4.5 mm from place to place (Fischl, Dale 2000, Proc. Natl. Acad. Sci. USA 97:11050)"},

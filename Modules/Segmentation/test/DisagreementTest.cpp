@@ -39,6 +39,9 @@ TEST(Disagreement, IsTheLesionsVolume) {
     const Disagreement found = whiteDisagreement(head.tissues, head.expected);
     EXPECT_NEAR(found.largest, 4.0 / 3 * kPi * 216, 30);
     EXPECT_GT(found.share, 0.05);
+    EXPECT_EQ(static_cast<double>(found.voxels), found.largest);
+    const Head small = makeHead(3, tissue);  // 0.1 ml
+    EXPECT_EQ(whiteDisagreement(small.tissues, small.expected).voxels, 0);
   }
 }
 

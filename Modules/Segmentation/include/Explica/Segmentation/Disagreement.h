@@ -4,12 +4,15 @@
 
 #include "Explica/Core/Volume.h"
 
+#include <cstdint>
+
 namespace explica::segmentation {
 
 /// Where image and template do not show the same tissue.
 struct Disagreement {
   double share = 0;    ///< of the template's deep white matter within the brain, not white here
   double largest = 0;  ///< volume of its largest connected piece, mm^3
+  std::int64_t voxels = 0;  ///< in pieces of at least 500 mm^3
 };
 
 /// Which of the template's deep white matter the image shows as grey matter or fluid: a lesion,
