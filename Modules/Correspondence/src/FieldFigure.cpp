@@ -23,16 +23,16 @@ using planar::Point2;
 using planar::svg::format;
 using planar::svg::text;
 
-constexpr double kPanel = 460;     // SVG units, of the longer side
-constexpr double kMargin = 18;     // pixels
-constexpr double kTitle = 30;      // pixels
-constexpr double kLegend = 44;     // pixels
-constexpr int kBands = 10;         // of u
-constexpr int kArrowsAcross = 34;  // along the longer side of a panel
-constexpr int kPathsAcross = 16;   // trajectories along the longer side, about
-constexpr const char* kInnerStyle = "#b01414";
-constexpr const char* kOuterStyle = "#143c9c";
-constexpr const char* kPathStyle = "#0f6b3a";
+constexpr double kPanel = 460;                  // SVG units, of the longer side
+constexpr double kMargin = 18;                  // pixels
+constexpr double kTitle = 30;                   // pixels
+constexpr double kLegend = 44;                  // pixels
+constexpr int kBands = 10;                      // of u
+constexpr int kArrowsAcross = 34;               // along the longer side of a panel
+constexpr int kPathsAcross = 16;                // trajectories along the longer side, about
+constexpr const char* kInnerStyle = "#b01414";  // red
+constexpr const char* kOuterStyle = "#143c9c";  // blue
+constexpr const char* kPathStyle = "#0f6b3a";   // green: apart for the colour-blind, too
 
 /// From the world to a panel, by the slice's own axes.
 struct Plane {

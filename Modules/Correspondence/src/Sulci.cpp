@@ -37,7 +37,7 @@ struct Fronts {
 /// A voxel's distance and foot in one word, so that the smaller of two is the nearer one, or of
 /// equally near ones the first.
 using Reach = std::uint64_t;
-constexpr Reach kUnreached = std::numeric_limits<Reach>::max();
+constexpr Reach kUnreached = std::numeric_limits<Reach>::max();  // beyond every way
 
 Reach reachOf(double distance, std::int32_t foot) {
   return static_cast<Reach>(std::bit_cast<std::uint32_t>(static_cast<float>(distance))) << 32 |

@@ -20,9 +20,10 @@ constexpr Eigen::Index kCoarsest = 250;  // vertices: Tutte's map is well scaled
 constexpr Eigen::Index kAtOnce = 3000;   // vertices: levels so coarse are lowered at any rate
 constexpr Eigen::Index kFewest = 12;     // where it is not, fewer are tried, down to these
 constexpr double kThinnest = 1e-13;      // area of a face of that map over the mean: rounding's
-constexpr int kCoarseIterations = 200;
-constexpr int kMiddleIterations = 40;
-constexpr double kRough = 1e-3;  // tolerance of what is not the last word
+constexpr int kCoarseIterations = 200;   // at most
+constexpr int kMiddleIterations = 40;    // at most: finer levels go on
+constexpr double kRough = 1e-3;          // tolerance of what is not the last word
+// Against angles: soft, then as good as firm.
 constexpr double kFirstAreaWeight = 0.25, kLastAreaWeight = 100;
 constexpr double kLeastRise = 1.15, kMostRise = 3;  // of the area weight at a time
 constexpr double kAim = 0.97;  // of the area tolerance: the last steps and rounding take some of it

@@ -8,7 +8,7 @@
 namespace explica::flattening {
 namespace {
 
-constexpr char kMagic[] = "ExplicaFlat1\n";
+constexpr char kMagic[] = "ExplicaFlat1\n";  // the number counts changes of the format
 
 void write(StateWriter& w, const CutPlan& plan) {
   w.count(static_cast<std::int64_t>(plan.termination));

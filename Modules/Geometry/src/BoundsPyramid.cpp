@@ -14,9 +14,9 @@
 namespace explica::geometry {
 namespace {
 
-constexpr int kLanes = BoundsBlock::kLanes;
-constexpr std::size_t kGrain = 2048;  // elements a task
-constexpr float kFar = 1e30F;         // of lanes without an item: nothing is near them
+constexpr int kLanes = BoundsBlock::kLanes;  // boxes a block
+constexpr std::size_t kGrain = 2048;         // elements a task
+constexpr float kFar = 1e30F;                // of lanes without an item: nothing is near them
 
 constexpr int kCodeBits = 10;  // per axis
 

@@ -21,7 +21,7 @@ using Code = std::uint8_t;
 constexpr Code codeOf(Site site) {
   return static_cast<Code>(site);
 }
-constexpr Code kTissueCode = codeOf(Site::Tissue);
+constexpr Code kTissueCode = codeOf(Site::Tissue);  // as the fields of sites hold it
 
 // Closest that a boundary may come to a voxel's centre, in voxels: moves it by no more than that
 // and keeps 1 / fraction well inside single precision.

@@ -151,6 +151,7 @@ struct StructureRow {
   const char* name;
   Rgb colour;
 };
+// FreeSurfer's aseg: numbers, names and colours of its FreeSurferColorLUT.txt.
 constexpr StructureRow kStructures[] = {{2, "Left-Cerebral-White-Matter", {245, 245, 245}},
                                         {3, "Left-Cerebral-Cortex", {205, 62, 78}},
                                         {4, "Left-Lateral-Ventricle", {120, 18, 134}},

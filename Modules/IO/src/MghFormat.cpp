@@ -20,6 +20,7 @@ struct TypeRow {
   int code;
   StoredType type;
 };
+// Codes of MGH headers.
 constexpr TypeRow kTypes[] = {{0, StoredType::UInt8},
                               {1, StoredType::Int32},
                               {3, StoredType::Float32},

@@ -88,6 +88,7 @@ struct TypeRow {
   int code;
   StoredType type;
 };
+// The codes of nifti1.h's NIFTI_TYPE_*.
 constexpr TypeRow kTypes[] = {{2, StoredType::UInt8},    {4, StoredType::Int16},
                               {8, StoredType::Int32},    {16, StoredType::Float32},
                               {64, StoredType::Float64}, {256, StoredType::Int8},

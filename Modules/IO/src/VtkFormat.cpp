@@ -34,6 +34,7 @@ double loadReal(const std::uint8_t* from, bool bigEndian) {
   return static_cast<double>(load<T>(from, bigEndian));
 }
 
+// Names in legacy files, in XML files, bytes.
 constexpr TypeRow kTypes[] = {{"float", "Float32", 4, loadReal<float>},
                               {"double", "Float64", 8, loadReal<double>},
                               {"int", "Int32", 4, loadReal<std::int32_t>},

@@ -13,9 +13,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kProfiles = "profiles.tsv";
-constexpr std::string_view kLayers = "_layers.tsv";
-constexpr const char* kAll = "all";
+constexpr const char* kProfiles = "profiles.tsv";    // on vertices, as `explica sample` names it
+constexpr std::string_view kLayers = "_layers.tsv";  // after the name of the volume, in voxels
+constexpr const char* kAll = "all";                  // the row of all regions together
 
 /// Mean of the known values, each to the power of 1 or 2.
 double averageOf(const std::vector<double>& values, int power) {

@@ -17,6 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::array<std::uint8_t, 3> kOffTheMap = {206, 220, 236};  // no colour of the maps
+// As `explica flatten` names them.
 constexpr std::string_view kPrefix = "flat_", kEnding = ".nii.gz";
 
 /// A volume of the grid: mean over its frames where it has several.

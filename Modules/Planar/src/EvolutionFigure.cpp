@@ -19,11 +19,11 @@ using svg::format;
 using svg::pair;
 using svg::text;
 
-constexpr double kPageWidth = 1180;  // SVG units
-constexpr double kMargin = 18;       // pixels
-constexpr double kTitleHeight = 46;  // pixels
-constexpr double kArrowRoom = 64;    // on the viewpoint's side
-constexpr int kMostColumns = 3;
+constexpr double kPageWidth = 1180;   // SVG units
+constexpr double kMargin = 18;        // pixels
+constexpr double kTitleHeight = 46;   // pixels
+constexpr double kArrowRoom = 64;     // on the viewpoint's side
+constexpr int kMostColumns = 3;       // pictures beside each other
 constexpr double kLegendHeight = 44;  // pixels
 constexpr double kBarLength = 100;    // of the legend's colours
 
@@ -55,6 +55,7 @@ struct Panel {
   }
 };
 
+// The viewpoint and the ends of the region.
 constexpr const char* kRing = " fill=\"none\" stroke=\"#c2185b\" stroke-width=\"1.8\"";
 
 /// An arrow of 46 units from a point along a unit direction of the page.

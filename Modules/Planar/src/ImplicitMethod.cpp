@@ -20,10 +20,10 @@ constexpr double kMassShare = 0.05;        // of the identity in the metric; the
 constexpr double kLongestMove = 0.4;       // of a vertex per step, in mean edges
 constexpr double kCompliance = 1e-9;       // makes the saddle-point matrix quasi-definite
 constexpr double kLengthTolerance = 1e-7;  // relative, at which a trial's lengths are taken as kept
-constexpr int kMostRestorations = 6;
-constexpr int kMostTrials = 25;
-constexpr double kLeastDamping = 1e-6;
-constexpr double kMostDamping = 1e8;
+constexpr int kMostRestorations = 6;       // Newton steps back to the lengths
+constexpr int kMostTrials = 25;            // enough to grow the damping to its most
+constexpr double kLeastDamping = 1e-6;     // in 1 / edge length squared
+constexpr double kMostDamping = 1e8;       // beyond it no step is left to take
 
 /// Newton steps on flux + knot energy + barrier on the manifold of kept lengths:
 ///

@@ -14,8 +14,8 @@
 namespace explica::report {
 namespace {
 
-constexpr Colour kInk = {0.01f, 0.01f, 0.01f};
-constexpr Colour kPaper = {1, 1, 1};
+constexpr Colour kInk = {0.01f, 0.01f, 0.01f};  // linear light, as all colours here
+constexpr Colour kPaper = {1, 1, 1};            // white
 constexpr double kBarShare = 0.25;  // of the picture's width that the scale bar takes at most
 
 void drawScaleBar(Picture& picture, double pixelsPerMillimetre, int width, int height) {

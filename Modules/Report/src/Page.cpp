@@ -95,6 +95,7 @@ std::string scriptSafe(const std::string& json) {
   return safe;
 }
 
+// What the script of the three-dimensional view fills.
 constexpr const char* kViewHtml = R"(<section id="view3d"><h3>In three dimensions</h3>
 <div id="stage"><canvas id="canvas" tabindex="0" aria-label="Surface in three dimensions. Arrow keys rotate, plus and minus zoom, space plays, comma and full stop step, B switches between first and last frame, R resets."></canvas><p id="stage-message">Preparing the surface ...</p><p id="under-pointer" aria-live="polite"></p><div id="bar" aria-hidden="true"><span id="bar-title"></span><span id="bar-high"></span><canvas id="bar-colours" width="14" height="128"></canvas><span id="bar-low"></span></div></div>
 <div id="controls"><label id="which-label">Patch <select id="which"></select></label>

@@ -45,8 +45,8 @@ FaceMoments momentsOf(const Corners& c) {
   return m;
 }
 
-constexpr std::int32_t kLeafFaces = 2;
-constexpr std::int32_t kBlockFaces = 8 * kernels::kLanes;
+constexpr std::int32_t kLeafFaces = 2;                     // in the smallest leaves
+constexpr std::int32_t kBlockFaces = 8 * kernels::kLanes;  // eight rows of lanes
 // Nodes of at most this many faces are cut to the leaves by one task each.
 constexpr std::int32_t kTaskFaces = 4096;
 

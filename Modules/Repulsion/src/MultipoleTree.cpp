@@ -26,7 +26,7 @@
 namespace explica::repulsion {
 namespace {
 
-constexpr int kLanes = kernels::kLanes;
+constexpr int kLanes = kernels::kLanes;  // faces taken at once
 
 // Distances of centroids, in sums of radii, from which seven and twelve points a face are enough;
 // faces nearer than the last are halved.

@@ -14,7 +14,7 @@
 namespace explica::sampling {
 namespace {
 
-constexpr int kLayers = 10;
+constexpr int kLayers = 10;           // between white and pial surface
 constexpr std::size_t kGrain = 4096;  // elements a task
 constexpr double kThinnest = 1e-3;    // mm: where the surfaces touch, places count a little still
 constexpr double kEnough = 0.5;       // of the volume about a vertex

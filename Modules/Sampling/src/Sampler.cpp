@@ -15,8 +15,9 @@ namespace {
 
 constexpr std::size_t kChunk = 64;        // points that follow each other, written together
 constexpr std::size_t kChunksATask = 16;  // taken by one thread
-constexpr std::size_t kPointGrain = kChunk * kChunksATask;
-constexpr std::size_t kVoxelGrain = 1 << 15;  // elements a task
+constexpr std::size_t kPointGrain = kChunk * kChunksATask;  // points a task
+constexpr std::size_t kVoxelGrain = 1 << 15;                // elements a task
+// Outside of the volume or mask.
 constexpr float kNotKnown = std::numeric_limits<float>::quiet_NaN();
 constexpr float kEnoughWeight = 0.5F;  // below, most of a value would be made up
 

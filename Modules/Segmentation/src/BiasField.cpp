@@ -14,8 +14,8 @@ namespace {
 constexpr std::size_t kGrain = 16384;        // elements a task
 constexpr float kDarkShare = 0.4f;           // of the median: fluid lies below
 constexpr std::size_t kMostSamples = 50000;  // enough for a smooth field
-constexpr std::size_t kFewestSamples = 100;
-constexpr int kSharpenings = 150;
+constexpr std::size_t kFewestSamples = 100;  // fewer say nothing about a field
+constexpr int kSharpenings = 150;            // at most, until kSettled
 constexpr double kOverstep = 1.8;  // the window's gain is below 1, so that this converges, faster
 constexpr double kSettled = 1e-4;  // of the field's logarithm in one iteration
 constexpr double kLeastWeight = 1e-3;  // samples under a window: else the field stays as it is

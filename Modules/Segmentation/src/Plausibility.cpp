@@ -13,6 +13,7 @@
 namespace explica::segmentation {
 namespace {
 
+// What an image must be within to be believed, and where the limit comes from.
 constexpr Limit kLimits[] = {
     {"hounsfield", "the share of voxels below -500", "", 0, 0.05,
      "the image looks like a CT; give a T1-weighted one",

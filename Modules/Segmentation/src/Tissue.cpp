@@ -15,7 +15,7 @@
 namespace explica::segmentation {
 namespace {
 
-constexpr int kClasses = 3;
+constexpr int kClasses = 3;            // fluid, grey, white
 constexpr std::size_t kGrain = 16384;  // elements a task
 // Spread of a pure tissue, of the range of means: a narrower one is a single grey value, a wider
 // one has begun to stand for mixtures.
@@ -37,6 +37,7 @@ constexpr double kLocalBlocks = 2;  // of the local windows' width
 
 /// Fluid, grey, white, and the voxels where two of them meet.
 enum Component { kPureCsf, kPureGrey, kPureWhite, kCsfGrey, kGreyWhite, kComponents };
+// Shares of fluid, grey and white in each; half and half where two meet.
 constexpr std::array<std::array<float, kClasses>, kComponents> kComposition = {
     {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.5f, 0.5f, 0}, {0, 0.5f, 0.5f}}};
 

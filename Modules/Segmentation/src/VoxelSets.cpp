@@ -11,7 +11,7 @@
 namespace explica::segmentation {
 namespace {
 
-constexpr float kFar = std::numeric_limits<float>::infinity();
+constexpr float kFar = std::numeric_limits<float>::infinity();  // no voxel of the set anywhere
 
 /// Lower envelope of the parabolas f[q] + (h (p - q))^2 along one line, in place.
 void envelope(std::vector<float>& f, double h, std::vector<int>& site,

@@ -16,14 +16,16 @@ namespace {
 using planar::svg::format;
 using planar::svg::text;
 
-constexpr double kPanel = 340;       // SVG units
-constexpr double kMargin = 18;       // pixels
-constexpr double kTitleHeight = 64;  // pixels
-constexpr int kMostColumns = 3;
+constexpr double kPanel = 340;        // SVG units
+constexpr double kMargin = 18;        // pixels
+constexpr double kTitleHeight = 64;   // pixels
+constexpr int kMostColumns = 3;       // pictures beside each other
 constexpr double kLegendHeight = 64;  // pixels
+// The contour that is fitted.
 constexpr const char* kTargetStyle =
     "stroke=\"#d6540a\" stroke-width=\"4\" stroke-opacity=\"0.55\"";
-constexpr const char* kShapeStyle = "stroke=\"#145ab4\" stroke-width=\"1.8\"";
+constexpr const char* kShapeStyle = "stroke=\"#145ab4\" stroke-width=\"1.8\"";  // the fit
+// The annulus' two circles.
 constexpr const char* kRimStyle = "stroke=\"#9a9a9a\" stroke-dasharray=\"4 3\"";
 
 /// From the plane to one panel, y downward; the outer boundary just fits.

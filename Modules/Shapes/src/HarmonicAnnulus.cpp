@@ -18,8 +18,8 @@ namespace {
 constexpr int kSamplesPerOrder = 32;
 
 constexpr double kFading = 7;  // what has faded to exp(-7) of a boundary's values cannot be seen
-constexpr int kHighestOrderInPlane = 512;
-constexpr int kHighestOrderInSpace = 64;
+constexpr int kHighestOrderInPlane = 512;  // 1025 coefficients a boundary
+constexpr int kHighestOrderInSpace = 64;   // 4225 coefficients a boundary
 
 int samplesOf(const HarmonicAnnulus& annulus, int perOrder) {
   return perOrder * std::max(annulus.order, 1);

@@ -31,6 +31,7 @@ struct Export {
   const char* description;
 };
 
+// Names after BIDS derivatives: surfaces and maps of a hemisphere.
 constexpr Export kExports[] = {
     {"surface", "white.surf.gii", "_white.surf.gii", "mm", "white surface"},
     {"surface", "mid.surf.gii", "_midthickness.surf.gii", "mm", "surface at half depth"},

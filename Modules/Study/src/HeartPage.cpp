@@ -32,6 +32,7 @@ std::string rounded(const std::string& text) {
   return shown;
 }
 
+// In addition to the style that all pages share.
 constexpr char kStyle[] =
     "body{font:16px/1.5 sans-serif;color:#1a1d21;max-width:1180px;margin:2em auto;padding:0 1em}"
     ".scroll{overflow-x:auto}table{border-collapse:collapse}"

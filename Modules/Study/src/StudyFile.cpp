@@ -8,6 +8,7 @@
 namespace explica::study {
 namespace {
 
+// 16 MiB, 32 deep.
 constexpr provenance::DocumentLimits kStudyLimits = {std::size_t{16} << 20, 32, 300'000};
 
 }  // namespace

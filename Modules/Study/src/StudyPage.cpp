@@ -21,6 +21,7 @@ struct ColumnWords {
   const char* unit;
 };
 
+// Columns that the page calls by words; others by their own name.
 constexpr std::array kWords = {
     ColumnWords{"thickness.thickness_mean", "Thickness, mean over voxels", "mm"},
     ColumnWords{"thickness.thickness_mean_columns", "Thickness, mean over columns", "mm"},
@@ -109,6 +110,7 @@ Json rowJson(const StudyRow& row, const std::vector<StudyFlag>& flags, bool regi
   return entry;
 }
 
+// What the script fills from the data.
 constexpr const char* kBody =
     R"(<noscript><p>Sorting and plots need JavaScript; study.tsv holds the same table.</p></noscript>
 <section id="failures" aria-label="what failed"></section>

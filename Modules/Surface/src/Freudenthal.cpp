@@ -8,7 +8,7 @@
 namespace explica::surface {
 namespace {
 
-constexpr unsigned kAll = (1u << kNeighbours) - 1;
+constexpr unsigned kAll = (1u << kNeighbours) - 1;  // a bit each
 
 /// Bit sets of the link's edges: neighbours a and b are joined if the step between them is a step.
 std::array<unsigned, kNeighbours> linkEdges() {

@@ -55,6 +55,7 @@ struct Limits {
   double standsOut;  ///< way from a vertex to the mean of its neighbours
   double folded;     ///< cosine between a face's normal and the ring's
 };
+// Stricter than kUnsound: mended while surfaces grow.
 constexpr Limits kCrumpled{0.55, 2.7, 0.05, 1.2, 0.75};
 /// What must not be left: 4 mm, 0.02 mm^2 and 1.5 mm where edges are 1.16 mm.
 constexpr Limits kUnsound{0, 3.3, 0.02, 0.9, -1};

@@ -12,7 +12,7 @@
 namespace explica::surface {
 namespace {
 
-constexpr int kBitsPerAxis = 21;
+constexpr int kBitsPerAxis = 21;  // three times 21 fit into 64
 
 /// Puts two zeros before each of the lowest 21 bits.
 std::uint64_t spreadBits(std::uint64_t x) {

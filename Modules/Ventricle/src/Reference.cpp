@@ -13,7 +13,7 @@ namespace {
 struct Ring {
   int first, last;
 };
-constexpr Ring kBasal{1, 6}, kMiddle{7, 12}, kApical{13, 16};
+constexpr Ring kBasal{1, 6}, kMiddle{7, 12}, kApical{13, 16};  // AHA's numbers
 
 std::string number(const char* format, double value) {
   if (!std::isfinite(value)) return "n/a";

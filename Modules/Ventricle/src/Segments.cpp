@@ -12,6 +12,7 @@ namespace explica::ventricle {
 
 namespace {
 
+// Names of the 17 segments of the American Heart Association [Cerqueira2002], without the apex.
 constexpr std::array<const char*, 3> kThird = {"basal", "mid", "apical"};
 constexpr std::array<const char*, 6> kSix = {"anterior", "anteroseptal",  "inferoseptal",
                                              "inferior", "inferolateral", "anterolateral"};

@@ -18,11 +18,13 @@ namespace {
 using report::Colour;
 
 constexpr double kTile = 230, kCaption = 40, kHead = 84;  // pixels
+// Tiles a row, tiles, lines a slice.
 constexpr int kColumns = 4, kMostSlices = 12, kTrajectories = 36;
 
-constexpr Colour kWallColour = {0.84F, 0.74F, 0.62F};
+constexpr Colour kWallColour = {0.84F, 0.74F, 0.62F};  // pale, so that lines show
+// Red, blue.
 constexpr Colour kInnerLine = {0.55F, 0.03F, 0.03F}, kOuterLine = {0.02F, 0.09F, 0.42F};
-constexpr Colour kPathLine = {0.05F, 0.26F, 0.12F};
+constexpr Colour kPathLine = {0.05F, 0.26F, 0.12F};  // green
 
 /// Colour of what is left out, by LeftOut.
 Colour colourOf(LeftOut why) {

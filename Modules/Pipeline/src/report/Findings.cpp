@@ -22,6 +22,7 @@ struct Finding {
   const char* meaning;
 };
 
+// What the head of a page shows, in this order.
 constexpr std::array kFindings = {
     Finding{"segment", "brain_volume_ml", "", "Brain volume", "ml", Shown::Plain,
             "Everything inside the brain mask."},

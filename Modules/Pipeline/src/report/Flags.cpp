@@ -12,8 +12,8 @@ using report::FlagLevel;
 using report::ReportFlag;
 
 constexpr double kAreaErrorGood = 0.02;  // mean: areas on a printed map are trusted to a few %
-constexpr double kAreaErrorBad = 0.10;
-constexpr double kOpened = 0.95;    // average visibility and seen share of what counts as open
+constexpr double kAreaErrorBad = 0.10;   // mean: more is seen by eye
+constexpr double kOpened = 0.95;         // average visibility and seen share of what counts as open
 constexpr double kStretchGood = 2;  // mean area ratio of what joins a patch to its surroundings
 
 /// "left: " where there are two sides to tell apart.

@@ -12,10 +12,10 @@
 namespace explica::pipeline {
 namespace {
 
-constexpr std::size_t kMostRegions = 11;  // with a chart of their own
-constexpr std::size_t kMostRows = 80;     // of a table
-constexpr std::size_t kMostCourses = 5;   // depths over time in one chart
-constexpr const char* kDepthAxis = "depth (0 white, 1 pial)";
+constexpr std::size_t kMostRegions = 11;                       // with a chart of their own
+constexpr std::size_t kMostRows = 80;                          // of a table
+constexpr std::size_t kMostCourses = 5;                        // depths over time in one chart
+constexpr const char* kDepthAxis = "depth (0 white, 1 pial)";  // in words
 
 report::Series seriesOf(const DepthProfile& profile, const std::string& name) {
   report::Series line{name, {}, {}};

@@ -16,8 +16,8 @@
 namespace explica::viewer {
 namespace {
 
-constexpr std::size_t kMostCurves = 8;  // more cannot be told apart
-constexpr int kAllRegions = 0, kFirstRegion = 1;
+constexpr std::size_t kMostCurves = 8;            // more cannot be told apart
+constexpr int kAllRegions = 0, kFirstRegion = 1;  // rows of the list
 /// Colours that differ for colour-blind readers too [Okabe2008], for regions that have none.
 constexpr std::array<Rgb, kMostCurves> kColours = {{{0, 114, 178},
                                                     {213, 94, 0},

@@ -23,7 +23,7 @@
 namespace explica::viewer {
 namespace {
 
-constexpr std::array kColour = {0.42, 0.24, 0.70};
+constexpr std::array kColour = {0.42, 0.24, 0.70};  // violet
 constexpr double kBall = 0.03;           // radius of a ball of mean weight, share of the reach
 constexpr double kFarBall = 0.02;        // of one outside the picture, share of its distance
 constexpr double kSmallBall = 0.015;     // of one on a line, share of the reach

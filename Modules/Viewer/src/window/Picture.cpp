@@ -20,8 +20,8 @@
 namespace explica::viewer {
 namespace {
 
-constexpr Rgb kOutside = {205, 198, 190};
-constexpr Rgb kInside = {224, 150, 84};
+constexpr Rgb kOutside = {205, 198, 190};  // pale brown
+constexpr Rgb kInside = {224, 150, 84};    // orange
 
 std::string wordOf(const Session& session) {
   switch (session.activity()) {

@@ -18,7 +18,7 @@
 namespace explica::viewer {
 namespace {
 
-constexpr std::array kKindNames = {"points", "line", "surface"};
+constexpr std::array kKindNames = {"points", "line", "surface"};  // rows of the list
 
 /// A direction as two letters would say it, the largest part first: "L 0.98, S 0.20".
 QString inLetters(const Vector& direction) {
