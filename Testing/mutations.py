@@ -9,11 +9,13 @@ mutation that survives names a test that is missing."""
 
 import argparse
 import pathlib
+import resource
 import subprocess
 import sys
 from dataclasses import dataclass
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
+LONGEST = 600  # seconds of processor time of tests: a loop that never ends is noticed, too
 
 
 @dataclass
@@ -76,7 +78,7 @@ ALL = [
              "affine(axis, 3) = header.quaternion[axis + 3] * unit * unit;", "ExplicaIOUnitTests"),
     Mutation("Modules/Flattening/src/MapEnergy.cpp",
              "density.dP = 4 * (p - 1) + 2 * p * slope;", "density.dP = 4 * (p - 1) + p * slope;",
-             "ExplicaFlatteningUnitTests"),
+             "ExplicaFlatteningUnitTests", "MapEnergy*"),
     Mutation("Modules/Surface/src/Measures.cpp",
              "-0.5 * product.row(v).dot(normals.row(v)) / areas[v]",
              "-product.row(v).dot(normals.row(v)) / areas[v]", "ExplicaSurfaceUnitTests"),
@@ -92,17 +94,17 @@ ALL = [
              "const double room = *least > 0 ? *least : -*most;",
              "const double room = *least > 0 ? *least : *most;", "ExplicaCollisionUnitTests"),
     Mutation("Modules/Collision/src/ContinuousCollision.cpp",
-             "if (staysApart(kind, now, then, gap)) return ahead;", "static_cast<void>(then);",
+             "if (staysApart(kind, now, then, gap)) return ahead;", "if (staysApart(kind, now, then, gap) && ahead < 0) return ahead;",
              "ExplicaCollisionUnitTests"),
     Mutation("Modules/Unfolding/src/ImplicitStep.cpp",
              "if (held.until > now_.iteration) lock(pairOf(held));",
              "if (held.until < 0) lock(pairOf(held));", "ExplicaUnfoldingUnitTests"),
     Mutation("Modules/Unfolding/src/Motion.cpp",
              "options.keptDistance = kTouching * contacts.range();", "options.keptDistance = 0;",
-             "ExplicaUnfoldingUnitTests"),
+             "ExplicaUnfoldingUnitTests", "Motion.*"),
     Mutation("Modules/Correspondence/src/Field.cpp",
              "return !done && walk.stuck ? hop(walk, target, uphill) : done;", "return done;",
-             "ExplicaCorrespondenceUnitTests"),
+             "ExplicaCorrespondenceSlowTests", "RealTissue.CortexIsAsThickAsFreeSurferSays"),
     Mutation("Modules/Correspondence/src/ImageEdge.cpp",
              "correspondence.missing -= leaving;", "static_cast<void>(leaving);",
              "ExplicaCorrespondenceUnitTests"),
@@ -132,7 +134,8 @@ def survives(mutation):
         tests = subprocess.run([str(ROOT / "build/bin" / mutation.program), "--gtest_brief=1",
                                 "--gtest_fail_fast", f"--gtest_filter={mutation.tests}"],
                                check=False, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-                               timeout=900)
+                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU,
+                                                                     (LONGEST, LONGEST)))
         return tests.returncode == 0
     finally:
         path.write_text(before, encoding="utf-8")
