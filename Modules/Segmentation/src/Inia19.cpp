@@ -10,7 +10,7 @@
 namespace explica::segmentation {
 namespace {
 
-constexpr Label kLast = 606;  // of the left side
+constexpr Label kLast = 606;    // of the left side
 constexpr Label kRight = 1000;  // added to the numbers on the left
 
 /// Gyri and cortical areas.
