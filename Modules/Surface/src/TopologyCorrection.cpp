@@ -279,19 +279,21 @@ void makeBall(const LevelSet& level, Mask& inside, std::vector<Defect>& defects,
   Volume<std::uint8_t> mask(grid);
   mask.data = inside;
 
-  monitor.progress(0.2, "growing from inside");
+  monitor.progress(0.2, "growing from inside and from outside");
+  Mask seed(inside.size(), 0), box(inside.size());
   const Volume<float> depth = distanceTo(mask, 0);
-  Mask seed(inside.size(), 0);
   seed[std::max_element(depth.data.begin(), depth.data.end()) - depth.data.begin()] = 1;
-  HomotopicSet grown(grid, std::move(seed));
-  grown.approach(inside, depth, unit);
-
-  if (grown.members() == inside) return;
-  monitor.progress(0.5, "growing from outside");
-  Mask box(inside.size());
   for (std::size_t v = 0; v < box.size(); ++v) box[v] = !onBorder(grid, v);
-  HomotopicSet shrunk(grid, std::move(box));
-  shrunk.approach(inside, distanceTo(mask, 1), unit);
+  HomotopicSet grown(grid, std::move(seed)), shrunk(grid, std::move(box));
+  // Each waits for its own voxels only, one after another: the two run beside each other.
+  parallelFor(2, 1, [&](std::size_t side) {
+    if (side == 0) {
+      grown.approach(inside, depth, unit);
+    } else {
+      shrunk.approach(inside, distanceTo(mask, 1), unit);
+    }
+  });
+  if (grown.members() == inside) return;
 
   monitor.progress(0.8, "choosing between fills and cuts");
   Mask difference(inside.size());
