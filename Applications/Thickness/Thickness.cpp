@@ -216,7 +216,8 @@ void report(Context& context, Judge& judge, const correspondence::Measurement& m
     context.warn(std::to_string(found.missing) +
                  " voxels have no thickness: their trajectory does not reach both boundaries");
   }
-  const auto leftOut = static_cast<double>(m.annulus.droppedVoxels);
+  // Slices on their own always leave out what lies beyond the inner region's ends.
+  const double leftOut = m.annulus.planar ? 0 : static_cast<double>(m.annulus.droppedVoxels);
   judge.flag("without-thickness", (static_cast<double>(found.missing) + leftOut) /
                                       (static_cast<double>(m.annulus.count()) + leftOut));
   context.result("voxels_cut_by_image", m.cutVoxels);
