@@ -118,6 +118,16 @@ class ByteSource::OpenFile {
   std::uint64_t taken_ = 0;
 };
 
+std::filesystem::path besideFile(const std::filesystem::path& header, const std::string& name) {
+  const std::filesystem::path below(name);
+  const bool leaves =
+      below.is_absolute() || std::find(below.begin(), below.end(), "..") != below.end();
+  if (leaves || name.empty()) {
+    refuse(header, "names the file '" + name + "' for its data; one in its own folder is read");
+  }
+  return header.parent_path() / below;
+}
+
 Bytes readFile(const std::filesystem::path& path) {
   ByteSource::OpenFile file(path);
   Bytes bytes(file.size());
@@ -226,17 +236,29 @@ void ByteSource::skip(std::uint64_t count) {
   }
 }
 
-void ByteSource::finish() {
-  if (!members_) return;
+std::uint64_t ByteSource::finish() {
+  if (!members_) return leftAtMost();
+  constexpr std::uint64_t kMostLeft = std::uint64_t{16}
+                                      << 20;  // bytes: tags of FreeSurfer and others
   std::array<std::uint8_t, 1 << 14> scratch;
-  while (read(scratch.data(), scratch.size()) > 0) {
+  std::uint64_t left = 0;
+  while (const std::size_t got = read(scratch.data(), scratch.size())) {
+    left += got;
+    if (left > kMostLeft) {
+      failToRead(path_,
+                 "its packed data go on for more than 16 MB after the values that its header "
+                 "announces; it is damaged, or made to fill memory");
+    }
   }
+  return left;
 }
 
 Bytes ByteSource::rest(std::uint64_t mostUnpacked) {
+  constexpr std::uint64_t kSmall = std::uint64_t{32} << 20, kMostTimes = 100;
   Bytes all;
   std::size_t filled = 0;
   std::size_t room = members_ ? 4 * file_->size() + 4096 : leftAtMost();
+  if (members_) mostUnpacked = std::min(mostUnpacked, std::max(kSmall, kMostTimes * file_->size()));
   while (true) {
     if (members_) room = std::min<std::size_t>(room, mostUnpacked + 1 - filled);
     all.resize(filled + room);

@@ -9,6 +9,11 @@
 
 namespace explica::io {
 
+/// The file with a part of the data that a header names: in its folder or below.
+/// @throws InvalidInput  a place outside: a stranger's header must not choose what is read
+[[nodiscard]] std::filesystem::path besideFile(const std::filesystem::path& header,
+                                               const std::string& name);
+
 /// Content of a regular file.
 /// @throws IOError  missing, a folder, not permitted, empty
 [[nodiscard]] Bytes readFile(const std::filesystem::path& path);
@@ -37,11 +42,13 @@ class ByteSource {
   [[nodiscard]] Bytes take(std::uint64_t count);
   void skip(std::uint64_t count);
   /// Reads on to the end, so that gzip's checksum is verified.
-  void finish();
+  /// @return how many bytes were left
+  /// @throws IOError  packed data go on for more than 16 MB: whoever made them wants time or memory
+  std::uint64_t finish();
   /// All that is left.
   /// @param mostUnpacked  bytes that packed content may grow to: what is longer is no file of a
-  /// kind
-  ///                      that is read as a whole
+  ///                      kind that is read as a whole.  A small file may grow to 32 MB and less
+  ///                      than a hundred times its size: surfaces and tables pack to a fifth
   /// @throws IOError  it grows to more
   [[nodiscard]] Bytes rest(std::uint64_t mostUnpacked = kMostUnpacked);
   /// How many bytes can be left at most: a compressed byte gives at most 1032.

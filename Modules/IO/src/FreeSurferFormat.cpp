@@ -27,6 +27,8 @@ constexpr int kOldQuadSurface = 0xffffff;  ///< also: new curv
 constexpr int kNewQuadSurface = 0xfffffd;
 constexpr double kOldUnit = 0.01;  // old files hold hundredths in 16 bits
 
+constexpr std::int32_t kMostNames = 1 << 16;  // of a colour table; atlases have some thousand
+
 // Tags after a surface.
 constexpr int kTagUseRealRas = 2;
 constexpr int kTagVolumeGeometry = 20;
@@ -166,8 +168,8 @@ LoadedSurface readFreeSurferSurface(const std::filesystem::path& path, ByteView 
     }
     const std::size_t quads = checkedCount(path, announcedQuads, cursor.left(), 12, "faces");
     for (std::size_t q = 0; q < quads; ++q) {
-      std::int64_t corner[4];
-      for (std::int64_t& c : corner) c = take24(cursor);
+      std::int32_t corner[4];
+      for (std::int32_t& c : corner) c = take24(cursor);
       // FreeSurfer alternates the diagonal with the parity of the first vertex.
       const bool even = corner[0] % 2 == 0;
       builder.triangles.insert(builder.triangles.end(),
@@ -254,6 +256,10 @@ LabelMap readFreeSurferAnnot(const std::filesystem::path& path, ByteView bytes) 
   static_cast<void>(text());                                 // where the table came from
   const std::int32_t entries = old ? version : cursor.take<std::int32_t>();
   static_cast<void>(checkedCount(path, entries, cursor.left(), 20, "table entries"));
+  if (entries > kMostNames) {
+    failToRead(path, "has a colour table of " + std::to_string(entries) + " names; up to " +
+                         std::to_string(kMostNames) + " are read");
+  }
   std::map<std::uint32_t, Label> keyOf;
   for (std::int32_t e = 0; e < entries; ++e) {
     LabelEntry entry;

@@ -97,16 +97,13 @@ Bytes rawValues(const std::filesystem::path& path, const XmlElement& array, cons
   } else if (encoding == "Base64Binary" || encoding == "GIFTI_ENCODING_B64BIN") {
     raw = decodeBase64(path, text);
   } else if (encoding == "ExternalFileBinary" || encoding == "GIFTI_ENCODING_EXTBIN") {
-    const std::filesystem::path external = path.parent_path() / array["ExternalFileName"];
+    const std::filesystem::path external = besideFile(path, array["ExternalFileName"]);
     const std::string offsetText = array["ExternalFileOffset"];
     const auto offset = offsetText.empty() ? 0 : parseNumber<std::int64_t>(path, offsetText);
-    const Bytes whole = readFile(external);
-    if (offset < 0 || static_cast<std::uint64_t>(offset) > whole.size() ||
-        byteCount > whole.size() - static_cast<std::uint64_t>(offset)) {
-      failToRead(external, "is too short for an array of '" + path.string() + "'");
-    }
-    raw.assign(whole.begin() + offset,
-               whole.begin() + offset + static_cast<std::int64_t>(byteCount));
+    if (offset < 0) failToRead(path, "has a GIFTI array that begins before its file");
+    ByteSource source(external);
+    source.skip(static_cast<std::uint64_t>(offset));
+    raw = source.take(byteCount);
   } else {
     failToRead(path, "has a GIFTI array in the unknown encoding '" + encoding + "'");
   }
@@ -207,16 +204,16 @@ std::vector<LabelEntry> tableOf(const std::filesystem::path& path, const XmlElem
   return table;
 }
 
-const GiftiArray* find(const GiftiFile& file, std::string_view intent) {
-  for (const GiftiArray& array : file.arrays) {
+GiftiArray* find(GiftiFile& file, std::string_view intent) {
+  for (GiftiArray& array : file.arrays) {
     if (array.intent == intent) return &array;
   }
   return nullptr;
 }
 
-const GiftiArray& needColumns(const std::filesystem::path& path, const GiftiFile& file,
-                              const char* intent, const char* what) {
-  const GiftiArray* array = find(file, intent);
+GiftiArray& needColumns(const std::filesystem::path& path, GiftiFile& file, const char* intent,
+                        const char* what) {
+  GiftiArray* array = find(file, intent);
   if (array == nullptr) {
     refuse(path, std::string("is GIFTI without ") + what + "; a surface (.surf.gii) is needed");
   }
@@ -362,30 +359,33 @@ bool looksLikeGifti(ByteView bytes) {
 }
 
 GiftiFile parseGifti(const std::filesystem::path& path, ByteView bytes) {
-  const XmlElement root =
+  XmlElement root =
       parseXml(path, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
   if (root.name != "GIFTI") failToRead(path, "is XML, but not GIFTI");
   GiftiFile file;
   file.metadata = metadataOf(root);
   file.table = tableOf(path, root);
-  for (const XmlElement& child : root.children) {
+  for (XmlElement& child : root.children) {
     if (child.name == "DataArray") file.arrays.push_back(parseArray(path, child));
+    child = {};  // its text is as long as its values
   }
   return file;
 }
 
 LoadedSurface readGiftiSurface(const std::filesystem::path& path, ByteView bytes,
                                const SurfaceReadOptions& options) {
-  const GiftiFile file = parseGifti(path, bytes);
-  const GiftiArray& points = needColumns(path, file, "NIFTI_INTENT_POINTSET", "points");
-  const GiftiArray& faces = needColumns(path, file, "NIFTI_INTENT_TRIANGLE", "triangles");
+  GiftiFile file = parseGifti(path, bytes);
+  GiftiArray& points = needColumns(path, file, "NIFTI_INTENT_POINTSET", "points");
+  GiftiArray& faces = needColumns(path, file, "NIFTI_INTENT_TRIANGLE", "triangles");
   MeshBuilder builder;
-  builder.coordinates = points.values;
+  builder.coordinates = std::move(points.values);
   builder.triangles.reserve(faces.values.size());
   for (const double corner : faces.values) {
     const bool whole = std::abs(corner) < 1e15 && std::trunc(corner) == corner;
-    builder.triangles.push_back(whole ? static_cast<std::int64_t>(corner) : -1);
+    builder.triangles.push_back(whole ? MeshBuilder::vertexNumber(static_cast<std::int64_t>(corner))
+                                      : -1);
   }
+  std::vector<double>().swap(faces.values);
   LoadedSurface surface;
   surface.origin.path = path;
   surface.origin.format = "GIFTI";
@@ -442,7 +442,7 @@ std::vector<VertexMap> readGiftiMaps(const std::filesystem::path& path, ByteView
 }
 
 LabelMap readGiftiLabels(const std::filesystem::path& path, ByteView bytes) {
-  const GiftiFile file = parseGifti(path, bytes);
+  GiftiFile file = parseGifti(path, bytes);
   const GiftiArray* array = find(file, "NIFTI_INTENT_LABEL");
   for (const GiftiArray& candidate : file.arrays) {  // some writers give labels another intent
     const bool mesh =

@@ -163,6 +163,7 @@ Transform::Pointer transformOf(const Path& path, Entry entry) {
     refuse(path, "holds '" + given.substr(0, 60) + "', which is no transform of three dimensions");
   }
   const auto made = itk::ObjectFactoryBase::CreateInstance(entry.type.c_str());
+  if (made.IsNotNull()) made->UnRegister();  // CreateInstance counts a reference too many
   auto* transform = dynamic_cast<Transform*>(made.GetPointer());
   if (transform == nullptr) {
     refuse(path, "holds '" + given.substr(0, 60) + "', which ITK does not know");

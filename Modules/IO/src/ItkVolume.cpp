@@ -177,7 +177,7 @@ std::uint64_t dataLimit(const std::filesystem::path& path, const TextHeader& hea
     if (dataFile.find('%') != std::string::npos || lower(dataFile).starts_with("list")) {
       refuse(path, "spreads its data over several files; store it in one");
     }
-    const std::filesystem::path data = path.parent_path() / dataFile;
+    const std::filesystem::path data = besideFile(path, dataFile);
     std::error_code error;
     size =
         std::filesystem::is_regular_file(data, error) ? std::filesystem::file_size(data, error) : 0;

@@ -3,13 +3,15 @@
 
 #include "Explica/IO/LabelNames.h"
 
+#include "ByteSource.h"
+
 #include "Explica/Core/Errors.h"
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <fstream>
 #include <iterator>
 #include <set>
 #include <sstream>
@@ -31,6 +33,16 @@ std::vector<std::string> wordsOf(const std::string& line) {
     while (stream >> word) words.push_back(word);
   }
   return words;
+}
+
+constexpr std::uint64_t kMostLegend = std::uint64_t{8} << 20;  // bytes
+
+/// A label's number, all of the word.
+std::optional<Label> labelIn(const std::string& word) {
+  Label label = 0;
+  const auto [end, fault] = std::from_chars(word.data(), word.data() + word.size(), label);
+  if (fault != std::errc{} || end != word.data() + word.size()) return std::nullopt;
+  return label;
 }
 
 }  // namespace
@@ -57,15 +69,15 @@ std::optional<fs::path> findColours(const fs::path& volume) {
 
 LabelColours readLabelColours(const fs::path& file) {
   constexpr std::size_t kColours = 256;  // of MRIcron's table
-  std::ifstream in(file, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
-  if (bytes.size() != 3 * kColours) {
-    throw IOError(file.string() + ": is no colour table of 768 bytes, as MRIcron writes them");
+  ByteSource source(file);
+  if (source.compressed() || source.leftAtMost() != 3 * kColours) {
+    failToRead(file, "is no colour table of 768 bytes, as MRIcron writes them");
   }
+  const Bytes bytes = source.rest();
   LabelColours colours;
   for (std::size_t key = 1; key < kColours; ++key) {
     const auto channel = [&](std::size_t c) {
-      return static_cast<float>(static_cast<std::uint8_t>(bytes[c * kColours + key])) / 255;
+      return static_cast<float>(bytes[c * kColours + key]) / 255;
     };
     colours[static_cast<Label>(key)] = {channel(0), channel(1), channel(2), 1};
   }
@@ -73,13 +85,14 @@ LabelColours readLabelColours(const fs::path& file) {
 }
 
 LabelNames readLabelNames(const fs::path& legend) {
-  std::ifstream file(legend);
-  if (!file) throw IOError(legend.string() + ": cannot be opened");
+  constexpr std::size_t kMostNames = 100'000;  // of an atlas
+  const Bytes bytes = ByteSource(legend).rest(kMostLegend);
+  if (bytes.size() > kMostLegend) refuse(legend, "is longer than any table of names (8 MB)");
+  ByteCursor cursor(legend, bytes, false);
   LabelNames names;
   std::size_t index = 0, name = 1;
-  std::string line;
-  for (int number = 1; std::getline(file, line); ++number) {
-    if (!line.empty() && line.back() == '\r') line.pop_back();
+  for (int number = 1; cursor.left() > 0; ++number) {
+    const std::string line(cursor.line());
     if (line.empty() || line.front() == '#') continue;
     const auto words = wordsOf(line);
     const auto heading = [&](const char* word) {
@@ -90,12 +103,14 @@ LabelNames readLabelNames(const fs::path& legend) {
       name = heading("name");
       continue;
     }
-    try {
-      if (words.size() <= std::max(index, name)) throw std::invalid_argument("too short");
-      names[static_cast<Label>(std::stol(words[index]))] = words[name];
-    } catch (const std::exception&) {
-      throw InvalidInput(legend.string() + ": line " + std::to_string(number) +
-                         " has no number and name");
+    const std::optional<Label> label =
+        words.size() > std::max(index, name) ? labelIn(words[index]) : std::nullopt;
+    if (!label) {
+      refuse(legend, "line " + std::to_string(number) + " has no number of a label and name");
+    }
+    names[*label] = words[name];
+    if (names.size() > kMostNames) {
+      refuse(legend, "holds more than " + std::to_string(kMostNames) + " names of labels");
     }
   }
   return names;

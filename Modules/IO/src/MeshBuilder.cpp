@@ -18,12 +18,19 @@ void MeshBuilder::addPolygon(const std::filesystem::path& path, const std::int64
   if (count < 3) failToRead(path, "has a face of " + std::to_string(count) + " corners");
   splitPolygons += count > 3;
   for (std::size_t k = 2; k < count; ++k) {
-    triangles.insert(triangles.end(), {corners[0], corners[k - 1], corners[k]});
+    triangles.insert(triangles.end(), {vertexNumber(corners[0]), vertexNumber(corners[k - 1]),
+                                       vertexNumber(corners[k])});
   }
 }
 
+std::int32_t MeshBuilder::vertexNumber(std::int64_t inFile) {
+  return inFile < 0 || inFile > std::numeric_limits<std::int32_t>::max()
+             ? -1
+             : static_cast<std::int32_t>(inFile);
+}
+
 TriangleMesh MeshBuilder::finish(const std::filesystem::path& path,
-                                 std::vector<std::string>& notes) const {
+                                 std::vector<std::string>& notes) {
   const std::size_t vertexCount = coordinates.size() / 3;
   const std::size_t faceCount = triangles.size() / 3;
   if (vertexCount == 0 || faceCount == 0) refuse(path, "holds no triangles; a surface is needed");
@@ -42,13 +49,17 @@ TriangleMesh MeshBuilder::finish(const std::filesystem::path& path,
     }
     mesh.positions.data()[i] = coordinates[i];
   }
+  std::vector<double>().swap(coordinates);
   mesh.faces.resize(static_cast<Eigen::Index>(faceCount), 3);
   for (std::size_t i = 0; i < triangles.size(); ++i) {
-    if (triangles[i] < 0 || triangles[i] >= static_cast<std::int64_t>(vertexCount)) {
-      refuse(path, "face " + std::to_string(i / 3) + " names vertex " +
-                       std::to_string(triangles[i]) + "; there are " + std::to_string(vertexCount));
+    const std::int32_t vertex = triangles[i];
+    if (vertex < 0 || static_cast<std::size_t>(vertex) >= vertexCount) {
+      refuse(path, "face " + std::to_string(i / 3) + " names " +
+                       (vertex < 0 ? "a vertex of a negative or huge number"
+                                   : "vertex " + std::to_string(vertex)) +
+                       "; there are " + std::to_string(vertexCount));
     }
-    mesh.faces.data()[i] = static_cast<std::int32_t>(triangles[i]);
+    mesh.faces.data()[i] = vertex;
   }
   if (splitPolygons > 0) {
     notes.push_back(std::to_string(splitPolygons) + " polygons were split into triangles");

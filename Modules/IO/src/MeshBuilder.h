@@ -14,18 +14,21 @@ namespace explica::io {
 /// Gathers what a surface file holds and checks it as a whole.
 struct MeshBuilder {
   std::vector<double> coordinates;      ///< x, y, z of each vertex
-  std::vector<std::int64_t> triangles;  ///< three vertices each, as the file has them
+  std::vector<std::int32_t> triangles;  ///< three vertices each; see vertexNumber()
   std::int64_t splitPolygons = 0;
+
+  /// A vertex as the file has it, in 32 bits: numbers that no mesh has become -1.
+  [[nodiscard]] static std::int32_t vertexNumber(std::int64_t inFile);
 
   /// Adds a polygon, cut into a fan of triangles.
   /// @throws IOError  fewer than 3 corners
   void addPolygon(const std::filesystem::path& path, const std::int64_t* corners,
                   std::size_t count);
 
-  /// The mesh; notes how many polygons were split.
+  /// The mesh, into which what was gathered goes; notes how many polygons were split.
   /// @throws InvalidInput  no triangle, a missing vertex, a coordinate that is not finite
   [[nodiscard]] TriangleMesh finish(const std::filesystem::path& path,
-                                    std::vector<std::string>& notes) const;
+                                    std::vector<std::string>& notes);
 };
 
 /// A count from a file, bounded by the bytes that each item takes at least.

@@ -47,6 +47,12 @@ std::optional<Detected> detect(ByteView bytes) {
   return {};
 }
 
+/// NIfTI-1's offset of the values, a float; -1 for one that is no place in a file.
+std::int64_t wholeOffset(float offset) {
+  constexpr float kFarthest = 1e15F;
+  return offset >= 0 && offset <= kFarthest ? static_cast<std::int64_t>(offset) : -1;
+}
+
 Header parse(const std::filesystem::path& path, const Bytes& bytes, const Detected& detected) {
   Header header;
   header.version = detected.version;
@@ -68,8 +74,7 @@ Header parse(const std::filesystem::path& path, const Bytes& bytes, const Detect
     header.pixdim[i] = one ? at(76 + 4 * i, float{}) : at(104 + 8 * i, double{});
   }
   header.datatype = at(one ? 70 : 12, std::int16_t{});
-  header.offset = one ? static_cast<std::int64_t>(std::clamp(at(108, float{}), -1.0F, 1e15F))
-                      : at(168, std::int64_t{});
+  header.offset = one ? wholeOffset(at(108, float{})) : at(168, std::int64_t{});
   header.slope = one ? at(112, float{}) : at(176, double{});
   header.intercept = one ? at(116, float{}) : at(184, double{});
   header.units = one ? bytes[123] : at(500, std::int32_t{});
@@ -361,7 +366,10 @@ StoredVolume readNifti(ByteSource& source, PlacementChoice placement, Extent ext
   const auto readValues = [&](ByteSource& from, std::uint64_t skipped) {
     from.skip(skipped);
     volume.values = from.take(static_cast<std::uint64_t>(valueCount) * width);
-    from.finish();
+    if (const std::uint64_t left = from.finish(); left > 0) {
+      volume.origin.notes.push_back(std::to_string(left) +
+                                    " bytes after the last value are not used");
+    }
   };
   if (header.pair) {
     ByteSource image(imageOfPair(path));

@@ -10,6 +10,8 @@
 #include <Eigen/Geometry>
 
 #include <array>
+#include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -21,7 +23,7 @@ std::string_view textOf(ByteView bytes) {
 }
 
 LoadedSurface finished(const std::filesystem::path& path, const char* format,
-                       const MeshBuilder& builder) {
+                       MeshBuilder& builder) {
   LoadedSurface surface;
   surface.origin.path = path;
   surface.origin.format = format;
@@ -108,6 +110,9 @@ struct PlyHeader {
   std::size_t size = 0;
 };
 
+constexpr std::size_t kMostElements = 64;     // kinds in a header
+constexpr std::size_t kMostProperties = 256;  // of each
+
 PlyHeader plyHeaderOf(const std::filesystem::path& path, ByteView bytes) {
   PlyHeader header;
   ByteCursor cursor(path, bytes, false);
@@ -129,6 +134,10 @@ PlyHeader plyHeaderOf(const std::filesystem::path& path, ByteView bytes) {
       PlyElement element;
       element.name = words.word();
       element.count = parseNumber<std::int64_t>(path, words.word());
+      if (header.elements.size() == kMostElements) {
+        failToRead(path,
+                   "has more than " + std::to_string(kMostElements) + " kinds of PLY elements");
+      }
       header.elements.push_back(element);
     } else if (word == "property") {
       if (header.elements.empty()) failToRead(path, "has a PLY property before any element");
@@ -141,6 +150,10 @@ PlyHeader plyHeaderOf(const std::filesystem::path& path, ByteView bytes) {
       }
       property.type = plyTypeOf(path, type);
       property.name = words.word();
+      if (header.elements.back().properties.size() == kMostProperties) {
+        failToRead(path, "has PLY elements of more than " + std::to_string(kMostProperties) +
+                             " properties");
+      }
       header.elements.back().properties.push_back(property);
     }
   }
@@ -365,28 +378,93 @@ bool isBinaryStl(ByteView bytes) {
                                                       bytes.data() + 80, false));
 }
 
-using Corner = std::array<double, 3>;
+template <class Real>
+using Corners = std::vector<std::array<Real, 3>>;
 
 /// Numbers equal corners alike, in the order of their first appearance.
-void mergeCorners(const std::vector<Corner>& corners, MeshBuilder& builder) {
-  std::vector<std::size_t> order(corners.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&corners](std::size_t a, std::size_t b) {
+template <class Real>
+void mergeCorners(const Corners<Real>& corners, MeshBuilder& builder) {
+  std::vector<std::int32_t> order(corners.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&corners](std::int32_t a, std::int32_t b) {
     return corners[a] != corners[b] ? corners[a] < corners[b] : a < b;
   });
-  std::vector<std::size_t> first(corners.size());
+  std::vector<std::int32_t>& vertex = builder.triangles;  // at first the first corner of that place
+  vertex.resize(corners.size());
   for (std::size_t i = 0; i < order.size(); ++i) {
     const bool same = i > 0 && corners[order[i]] == corners[order[i - 1]];
-    first[order[i]] = same ? first[order[i - 1]] : order[i];
+    vertex[order[i]] = same ? vertex[order[i - 1]] : order[i];
   }
-  std::vector<std::int64_t> number(corners.size());
+  std::vector<std::int32_t>().swap(order);
+  std::size_t different = 0;
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    if (first[i] == i) {
-      number[i] = static_cast<std::int64_t>(builder.coordinates.size() / 3);
-      builder.coordinates.insert(builder.coordinates.end(), corners[i].begin(), corners[i].end());
-    }
-    builder.triangles.push_back(number[first[i]]);
+    different += vertex[i] == static_cast<std::int32_t>(i);
   }
+  builder.coordinates.reserve(3 * different);
+  // A corner's own number comes before all that refer to it.
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    if (vertex[i] != static_cast<std::int32_t>(i)) {
+      vertex[i] = vertex[vertex[i]];
+      continue;
+    }
+    vertex[i] = static_cast<std::int32_t>(builder.coordinates.size() / 3);
+    builder.coordinates.insert(builder.coordinates.end(), corners[i].begin(), corners[i].end());
+  }
+}
+
+Corners<float> binaryCorners(ByteView bytes) {
+  Corners<float> corners;
+  corners.reserve((bytes.size() - kStlHeader) / kStlFacet * 3);
+  for (std::size_t facet = kStlHeader; facet < bytes.size(); facet += kStlFacet) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      auto& corner = corners.emplace_back();
+      for (std::size_t c = 0; c < 3; ++c) {
+        corner[c] = load<float>(bytes.data() + facet + 12 + 12 * k + 4 * c, false);
+      }
+    }
+  }
+  return corners;
+}
+
+Corners<double> textCorners(const std::filesystem::path& path, ByteView bytes) {
+  if (!textOf(bytes).starts_with("solid")) {
+    failTruncated(path, "its length does not fit the facets that it announces");
+  }
+  Corners<double> corners;
+  ByteCursor cursor(path, bytes, false);
+  bool ended = false;
+  while (cursor.left() > 0) {
+    const std::string_view line = cursor.line();
+    ByteCursor words(
+        path, ByteView(reinterpret_cast<const std::uint8_t*>(line.data()), line.size()), false);
+    const std::string_view word = words.word();
+    if (word == "endsolid") ended = true;
+    if (word != "vertex") continue;
+    for (double& c : corners.emplace_back()) c = parseNumber<double>(path, words.word());
+  }
+  if (!ended || corners.size() % 3 != 0) failTruncated(path, "the file ends too early");
+  return corners;
+}
+
+template <class Real>
+LoadedSurface mergedSurface(const std::filesystem::path& path, Corners<Real> corners) {
+  if (corners.size() > std::numeric_limits<std::int32_t>::max()) {
+    refuse(path, "has more corners than 32-bit indices count");
+  }
+  for (auto& corner : corners) {
+    for (Real& c : corner) {
+      if (!std::isfinite(c)) refuse(path, "has a coordinate that is not finite");
+      c += Real{0};  // negative zero equals zero
+    }
+  }
+  const std::size_t count = corners.size();
+  MeshBuilder builder;
+  mergeCorners(corners, builder);
+  Corners<Real>().swap(corners);
+  LoadedSurface surface = finished(path, "STL", builder);
+  surface.origin.notes.push_back(std::to_string(count) + " corners merged to " +
+                                 std::to_string(surface.mesh.vertexCount()) + " vertices");
+  return surface;
 }
 
 }  // namespace
@@ -399,48 +477,8 @@ bool looksLikeStl(ByteView bytes) {
 }
 
 LoadedSurface readStl(const std::filesystem::path& path, ByteView bytes) {
-  std::vector<Corner> corners;
-  ByteCursor cursor(path, bytes, false);
-  if (isBinaryStl(bytes)) {
-    for (std::size_t facet = kStlHeader; facet < bytes.size(); facet += kStlFacet) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        Corner corner;
-        for (std::size_t c = 0; c < 3; ++c) {
-          corner[c] = load<float>(bytes.data() + facet + 12 + 12 * k + 4 * c, false);
-        }
-        corners.push_back(corner);
-      }
-    }
-  } else {
-    if (!textOf(bytes).starts_with("solid")) {
-      failTruncated(path, "its length does not fit the facets that it announces");
-    }
-    bool ended = false;
-    while (cursor.left() > 0) {
-      const std::string_view line = cursor.line();
-      ByteCursor words(
-          path, ByteView(reinterpret_cast<const std::uint8_t*>(line.data()), line.size()), false);
-      const std::string_view word = words.word();
-      if (word == "endsolid") ended = true;
-      if (word != "vertex") continue;
-      Corner corner;
-      for (double& c : corner) c = parseNumber<double>(path, words.word());
-      corners.push_back(corner);
-    }
-    if (!ended || corners.size() % 3 != 0) failTruncated(path, "the file ends too early");
-  }
-  for (Corner& corner : corners) {
-    for (double& c : corner) {
-      if (!std::isfinite(c)) refuse(path, "has a coordinate that is not finite");
-      c += 0.0;  // negative zero equals zero
-    }
-  }
-  MeshBuilder builder;
-  mergeCorners(corners, builder);
-  LoadedSurface surface = finished(path, "STL", builder);
-  surface.origin.notes.push_back(std::to_string(corners.size()) + " corners merged to " +
-                                 std::to_string(surface.mesh.vertexCount()) + " vertices");
-  return surface;
+  return isBinaryStl(bytes) ? mergedSurface(path, binaryCorners(bytes))
+                            : mergedSurface(path, textCorners(path, bytes));
 }
 
 void writeStl(const std::filesystem::path& path, const TriangleMesh& mesh) {

@@ -61,12 +61,14 @@ void tellApart(std::vector<LabelMap>& all) {
     for (const LabelEntry& entry : labels.table) ++times[entry.name];
   }
   std::set<std::string> taken;
+  std::map<std::string, int> next;  // number of a name that was taken
   for (LabelMap& labels : all) {
     for (LabelEntry& entry : labels.table) {
       if (times[entry.name] > 1) entry.name = labels.name + " " + entry.name;
       // Two keys of one name in one file, or two files of one name.
       const std::string name = entry.name;
-      for (int n = 2; !taken.insert(entry.name).second; ++n) {
+      for (int& n = next.try_emplace(name, 2).first->second; !taken.insert(entry.name).second;
+           ++n) {
         entry.name = name + " " + std::to_string(n);
       }
     }

@@ -8,36 +8,30 @@
 #include "GiftiFormat.h"
 #include "MghFormat.h"
 #include "PlainMeshFormats.h"
-#include "StoredVolume.h"
 #include "SurfaceFrame.h"
 #include "VtkFormat.h"
 
-#include "Explica/IO/VolumeFile.h"
+#include "Explica/IO/VolumeSeries.h"
 
 namespace explica::io {
 namespace {
 
 /// FreeSurfer keeps overlays as volumes of V x 1 x 1 voxels, one frame a map.
 std::vector<VertexMap> readMghOverlay(const std::filesystem::path& path) {
-  VolumeReadOptions options;
-  options.allowAllZero = true;
-  options.allowNonFinite = true;
-  ByteSource source(path);
-  const std::int64_t frames = readMgh(source, Extent::Header).valuesPerVoxel;
+  constexpr int kMostFrames = 100'000;  // of a series; what is longer is damaged
+  VolumeSeries series(path);
+  if (series.grid().size[1] != 1 || series.grid().size[2] != 1) {
+    refuse(path, "is a volume; one value a vertex is needed");
+  }
+  if (series.frames() > kMostFrames) {
+    refuse(path, "holds " + std::to_string(series.frames()) + " maps; up to " +
+                     std::to_string(kMostFrames) + " are read");
+  }
   std::vector<VertexMap> maps;
-  for (int frame = 0; frame < frames; ++frame) {
-    options.frame = frame;
-    const Volume<float> volume = readScalars(path, options).volume;
-    if (volume.grid.size[1] != 1 || volume.grid.size[2] != 1) {
-      refuse(path, "is a volume; one value a vertex is needed");
-    }
-    VertexMap map;
-    map.name = path.stem().string();
-    map.values.resize(static_cast<Eigen::Index>(volume.size()));
-    for (std::size_t v = 0; v < volume.size(); ++v) {
-      map.values[static_cast<Eigen::Index>(v)] = volume[v];
-    }
-    maps.push_back(std::move(map));
+  for (std::vector<float> frame = series.next(1); !frame.empty(); frame = series.next(1)) {
+    const Eigen::Map<const Eigen::VectorXf> values(frame.data(),
+                                                   static_cast<Eigen::Index>(frame.size()));
+    maps.push_back({path.stem().string(), "", values.cast<double>()});
   }
   return maps;
 }

@@ -58,8 +58,7 @@ std::int64_t wholeOf(const std::filesystem::path& path, double value) {
   return static_cast<std::int64_t>(value);
 }
 
-std::vector<std::int64_t> wholeOf(const std::filesystem::path& path,
-                                  const std::vector<double>& values) {
+std::vector<std::int64_t> wholeOf(const std::filesystem::path& path, std::vector<double> values) {
   std::vector<std::int64_t> whole;
   whole.reserve(values.size());
   for (const double value : values) whole.push_back(wholeOf(path, value));
@@ -179,7 +178,7 @@ class LegacyReader {
     constexpr std::int64_t kMostColumns = 1024;  // of a map; beyond it a header is damaged
     if (columns < 1 || columns > kMostColumns) failToRead(path_, "has arrays of no sensible width");
     if (!text_) static_cast<void>(cursor_.line());
-    const std::size_t each = static_cast<std::size_t>(columns) * (text_ ? 1 : type.width);
+    const std::size_t each = static_cast<std::size_t>(columns) * (text_ ? 2 : type.width);
     const std::size_t count = checkedCount(path_, rows, cursor_.left() + 1, each, "values") *
                               static_cast<std::size_t>(columns);
     std::vector<double> result(count);
@@ -377,14 +376,27 @@ class XmlReader {
     const XmlElement* element = piece.child(name);
     if (element == nullptr) return cells;
     for (const XmlElement& array : element->children) {
-      if (array["Name"] == "connectivity") cells.connectivity = wholeOf(path_, valuesOf(array));
+      if (array["Name"] == "connectivity") cells.connectivity = wholesOf(array);
       if (array["Name"] == "offsets") {
-        const std::vector<std::int64_t> ends = wholeOf(path_, valuesOf(array));
+        const std::vector<std::int64_t> ends = wholesOf(array);
         cells.offsets.insert(cells.offsets.end(), ends.begin(), ends.end());
       }
     }
     checkCells(path_, cells);
     return cells;
+  }
+
+  /// Numbers of vertices or cells; as doubles they would take as much again.
+  std::vector<std::int64_t> wholesOf(const XmlElement& array) const {
+    if (array["type"] == "Int64" && array["format"] != "ascii" && !array["format"].empty()) {
+      const Bytes raw = rawOf(array);
+      std::vector<std::int64_t> values(raw.size() / sizeof(std::int64_t));
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        values[i] = load<std::int64_t>(raw.data() + i * sizeof(std::int64_t), bigEndian_);
+      }
+      return values;
+    }
+    return wholeOf(path_, valuesOf(array));
   }
 
   std::vector<double> valuesOf(const XmlElement& array) const {
@@ -402,24 +414,27 @@ class XmlReader {
       if (row.xml == array["type"] && (row.xml != "Int64" || row.width == 8)) type = &row;
     }
     if (type == nullptr) failToRead(path_, "has the unknown VTK type '" + array["type"] + "'");
-    Bytes raw;
+    const Bytes raw = rawOf(array);
+    std::vector<double> values(raw.size() / type->width);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      values[i] = type->load(raw.data() + i * type->width, bigEndian_);
+    }
+    return values;
+  }
+
+  /// The bytes of an array that is no text.
+  Bytes rawOf(const XmlElement& array) const {
+    const std::string format = array["format"];
     if (format == "appended") {
       const auto offset = parseNumber<std::int64_t>(path_, array["offset"]);
       if (offset < 0 || static_cast<std::size_t>(offset) >= appended_.size()) {
         failTruncated(path_, "the appended data end too early");
       }
       const ByteView from = appended_.subspan(static_cast<std::size_t>(offset));
-      raw = appendedRaw_ ? rawBlock(from) : base64Block(textOf(from));
-    } else if (format == "binary") {
-      raw = base64Block(trimmedText(array.text));
-    } else {
-      failToRead(path_, "has an array in the unknown format '" + format + "'");
+      return appendedRaw_ ? rawBlock(from) : base64Block(textOf(from));
     }
-    std::vector<double> values(raw.size() / type->width);
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      values[i] = type->load(raw.data() + i * type->width, bigEndian_);
-    }
-    return values;
+    if (format == "binary") return base64Block(trimmedText(array.text));
+    failToRead(path_, "has an array in the unknown format '" + format + "'");
   }
 
   [[nodiscard]] std::size_t headerWidth() const { return wideHeaders_ ? 8 : 4; }
@@ -539,6 +554,8 @@ LoadedSurface readVtkSurface(const std::filesystem::path& path, ByteView bytes,
   PolyData data = readPolyData(path, bytes);
   MeshBuilder builder;
   builder.coordinates = std::move(data.coordinates);
+  const std::size_t corners = data.polygons.connectivity.size();
+  builder.triangles.reserve(3 * (corners - std::min(corners, 2 * data.polygons.count())));
   for (std::size_t c = 0; c < data.polygons.count(); ++c) {
     const std::int64_t begin = data.polygons.offsets[c];
     builder.addPolygon(path, data.polygons.connectivity.data() + begin,
@@ -549,9 +566,13 @@ LoadedSurface readVtkSurface(const std::filesystem::path& path, ByteView bytes,
     for (std::int64_t i = data.strips.offsets[c]; i + 2 < data.strips.offsets[c + 1]; ++i) {
       const std::int64_t* at = data.strips.connectivity.data() + i;
       const bool odd = (i - data.strips.offsets[c]) % 2 != 0;
-      builder.triangles.insert(builder.triangles.end(), {at[0], at[odd ? 2 : 1], at[odd ? 1 : 2]});
+      for (const int k : {0, odd ? 2 : 1, odd ? 1 : 2}) {
+        builder.triangles.push_back(MeshBuilder::vertexNumber(at[k]));
+      }
     }
   }
+  data.polygons = {};
+  data.strips = {};
   LoadedSurface surface;
   surface.origin.path = path;
   surface.origin.format = looksLikeVtkLegacy(bytes) ? "VTK" : "VTP";

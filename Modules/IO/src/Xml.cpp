@@ -5,6 +5,7 @@
 
 #include <expat.h>
 
+#include <algorithm>
 #include <memory>
 #include <type_traits>
 
@@ -12,17 +13,24 @@ namespace explica::io {
 namespace {
 
 constexpr std::size_t kDeepest = 64;  // elements in one another; our formats have six
-constexpr int kStep = 1 << 20;        // expat counts in int
+// Elements and attributes take some hundred bytes each: a table of 16,000 labels, and beyond it as
+// many as stand between real data.
+constexpr std::size_t kMostNodes = 100'000, kBytesEach = 100;
+constexpr int kStep = 1 << 20;  // expat counts in int
 
 struct Builder {
   XML_Parser parser;
   XmlElement document;  ///< its only child is the root
   std::vector<XmlElement*> open{&document};
+  std::size_t most;       ///< elements and attributes
+  std::size_t nodes = 0;  ///< of them, so far
 };
 
 void onStart(void* data, const XML_Char* name, const XML_Char** attributes) {
   auto& builder = *static_cast<Builder*>(data);
-  if (builder.open.size() > kDeepest) {
+  ++builder.nodes;
+  for (const XML_Char** at = attributes; *at != nullptr; at += 2) ++builder.nodes;
+  if (builder.open.size() > kDeepest || builder.nodes > builder.most) {
     XML_StopParser(builder.parser, XML_FALSE);
     return;
   }
@@ -42,6 +50,19 @@ void onText(void* data, const XML_Char* text, int length) {
   static_cast<Builder*>(data)->open.back()->text.append(text, static_cast<std::size_t>(length));
 }
 
+/// A tag is kept whole until it ends, with all its attributes.
+void requireShortTags(const std::filesystem::path& path, std::string_view document) {
+  constexpr std::size_t kLongest = 1 << 18;  // bytes
+  for (std::size_t at = document.find('<'); at != std::string_view::npos;
+       at = document.find('<', at + 1)) {
+    const std::string_view tag = document.substr(at, kLongest);
+    const bool text = tag.starts_with("<![CDATA[") || tag.starts_with("<!--");
+    if (!text && tag.size() == kLongest && tag.find('>') == std::string_view::npos) {
+      failToRead(path, "has an XML tag of more than 256 kB");
+    }
+  }
+}
+
 }  // namespace
 
 std::string XmlElement::operator[](const std::string& key) const {
@@ -57,9 +78,10 @@ const XmlElement* XmlElement::child(std::string_view childName) const {
 }
 
 XmlElement parseXml(const std::filesystem::path& path, std::string_view document) {
+  requireShortTags(path, document);
   const std::unique_ptr<std::remove_pointer_t<XML_Parser>, decltype(&XML_ParserFree)> parser(
       XML_ParserCreate(nullptr), &XML_ParserFree);
-  Builder builder{parser.get(), {}, {}};
+  Builder builder{parser.get(), {}, {}, std::max(kMostNodes, document.size() / kBytesEach)};
   builder.open = {&builder.document};
   XML_SetUserData(parser.get(), &builder);
   XML_SetElementHandler(parser.get(), onStart, onEnd);
@@ -69,6 +91,10 @@ XmlElement parseXml(const std::filesystem::path& path, std::string_view document
     const bool last = at + kStep >= document.size();
     if (XML_Parse(parser.get(), piece.data(), static_cast<int>(piece.size()), last) !=
         XML_STATUS_OK) {
+      if (builder.nodes > builder.most) {
+        failToRead(path, "holds more than " + std::to_string(builder.most) +
+                             " XML elements and attributes, far more than such a file has");
+      }
       failToRead(path, "is damaged or truncated: XML line " +
                            std::to_string(XML_GetCurrentLineNumber(parser.get())) + ": " +
                            XML_ErrorString(XML_GetErrorCode(parser.get())));

@@ -35,7 +35,7 @@ TEST(LabelNames, ALineWithoutNameIsNamed) {
     (void)readLabelNames(folder / "a.txt");
     FAIL();
   } catch (const InvalidInput& fault) {
-    EXPECT_NE(std::string(fault.what()).find("a.txt: line 2"), std::string::npos) << fault.what();
+    EXPECT_NE(std::string(fault.what()).find("a.txt': line 2"), std::string::npos) << fault.what();
   }
   EXPECT_THROW((void)readLabelNames(folder / "absent.txt"), IOError);
 }
