@@ -302,6 +302,28 @@ Termination runGlobalFlow(Context& context, const Settings& s, const Task& task)
   return flow.termination;
 }
 
+/// Says beforehand how long work takes that grows with the square of a polygon's size.
+/// @param pairs   of edges
+/// @param advice  what is faster, if anything
+void sayHowLong(Context& context, const std::string& what, double pairs, double pairsPerSecond,
+                const std::string& advice = {}) {
+  const double seconds = pairs / pairsPerSecond;
+  if (seconds < 1) return;
+  char text[160];
+  std::snprintf(text, sizeof text, ": %.2g pairs of edges, about %.0f s on one processor", pairs,
+                std::ceil(seconds));
+  context.info(what + text + advice);
+}
+
+/// Of unfolding, whose knot energy is summed several times an iteration.
+void sayHowLongUnfoldingIs(Context& context, const Settings& s, const Task& task) {
+  constexpr double kSumsPerIteration = 2.5, kPairsPerSecond = 1.2e7;  // of the exact integral
+  if (s.unfolding.noTopology || s.unfolding.knot != planar::PolygonKnot::AllPairs) return;
+  sayHowLong(context, "knot energy, each iteration",
+             kSumsPerIteration * task.region.edgeCount * task.curve.edgeCount(), kPairsPerSecond,
+             "; --knot auto or tree sums it in n log n");
+}
+
 /// The measures of the whole polygon, whatever the viewpoint.
 void reportPolygon(Context& context, const Settings& s, const Task& task) {
   const planar::Curve& curve = task.curve;
@@ -309,6 +331,9 @@ void reportPolygon(Context& context, const Settings& s, const Task& task) {
   context.result("region_edges", task.region.edgeCount);
   context.result("length_initial", planar::lengthOf(curve, task.region));
   context.result("area", planar::signedArea(curve.positions));
+  const double edges = curve.edgeCount();
+  constexpr double kPairsPerSecond = 5e8;
+  sayHowLong(context, "self occlusion", edges * edges / 2, kPairsPerSecond);
   context.result("self_occlusion", planar::selfOcclusion(curve));
   context.result("hidden_viewing_arc",
                  planar::hiddenViewingArc(curve, circle.centre, circle.radius));
@@ -340,6 +365,7 @@ Termination run(Context& context, const Settings& s) {
   context.result("viewpoint", eyes);
   context.result("viewpoint_weights", view->weights);
   if (s.flow) return runGlobalFlow(context, s, task);
+  sayHowLongUnfoldingIs(context, s, task);
   auto step = context.step("unfold");
   const planar::PolygonUnfolding result = planar::unfoldPolygon(
       curve, region, *view, s.unfolding, context.monitor(), state ? &*state : nullptr);

@@ -139,22 +139,31 @@ double signedArea(const Positions2& polygon) {
 }
 
 std::vector<std::array<int, 2>> intersectingEdges(const Curve& curve) {
-  const int n = curve.edgeCount();
-  const auto left = [&](int e) {
-    return std::min(curve.positions(e, 0), curve.positions(curve.next(e), 0));
+  constexpr std::size_t kMostCrossings = 10'000'000;
+  struct Box {
+    Point2 low, high;
+    int edge;
   };
-  const auto right = [&](int e) {
-    return std::max(curve.positions(e, 0), curve.positions(curve.next(e), 0));
-  };
-  std::vector<int> order(n);
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](int i, int j) { return left(i) < left(j); });
+  std::vector<Box> boxes;
+  for (int e = 0; e < curve.edgeCount(); ++e) {
+    const Point2 a = curve.point(e), b = curve.point(curve.next(e));
+    boxes.push_back({a.cwiseMin(b), a.cwiseMax(b), e});
+  }
+  std::stable_sort(boxes.begin(), boxes.end(),
+                   [](const Box& a, const Box& b) { return a.low.x() < b.low.x(); });
   std::vector<std::array<int, 2>> pairs;
-  for (int k = 0; k < n; ++k) {
-    const int i = order[k];
-    for (int m = k + 1; m < n && left(order[m]) <= right(i); ++m) {
-      const int j = order[m];
-      if (edgesMeet(curve, i, j)) pairs.push_back({std::min(i, j), std::max(i, j)});
+  for (std::size_t k = 0; k < boxes.size(); ++k) {
+    const Box& one = boxes[k];
+    for (std::size_t m = k + 1; m < boxes.size() && boxes[m].low.x() <= one.high.x(); ++m) {
+      const Box& other = boxes[m];
+      if (other.low.y() > one.high.y() || other.high.y() < one.low.y()) continue;
+      if (!edgesMeet(curve, one.edge, other.edge)) continue;
+      pairs.push_back({std::min(one.edge, other.edge), std::max(one.edge, other.edge)});
+      if (pairs.size() > kMostCrossings) {
+        throw InvalidInput(
+            "polygon: more than " + std::to_string(kMostCrossings) +
+            " pairs of its edges cross; are its vertices in the order of an outline?");
+      }
     }
   }
   std::sort(pairs.begin(), pairs.end());

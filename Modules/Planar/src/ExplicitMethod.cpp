@@ -20,7 +20,7 @@ class ExplicitMethod final : public UnfoldingMethod {
  public:
   explicit ExplicitMethod(UnfoldingProblem& problem) : problem_(problem) {}
 
-  double advance() override {
+  double advance(const Monitor&) override {
     const PolygonUnfoldingOptions& options = problem_.options();
     const Curve& curve = problem_.curve();
     Positions2 flow = options.visibilityGain *

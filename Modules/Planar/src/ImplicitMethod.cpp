@@ -41,7 +41,7 @@ class ImplicitMethod final : public UnfoldingMethod {
         constraints_(static_cast<int>(problem.keptEdges().size())),
         tension_(Eigen::VectorXd::Zero(constraints_)) {}
 
-  double advance() override {
+  double advance(const Monitor& monitor) override {
     const Curve start = problem_.curve();
     const double unit = problem_.meanEdge();
     const double longest = kLongestMove * unit;
@@ -52,8 +52,13 @@ class ImplicitMethod final : public UnfoldingMethod {
     knotWeight_ = problem_.options().knotWeight * std::min(1.0, hidden);
     Eigen::VectorXd gradient;
     const double energy = evaluate(start, pairs, &gradient);
+    const double dampingBefore = damping_;
 
     for (int trial = 0; trial < kMostTrials && damping_ <= kMostDamping; ++trial) {
+      if (monitor.shouldStop()) {
+        damping_ = dampingBefore;
+        return 0;
+      }
       factorize(start, pairs);
       Eigen::VectorXd right(unknowns_ + constraints_);
       right << -gradient, Eigen::VectorXd::Zero(constraints_);

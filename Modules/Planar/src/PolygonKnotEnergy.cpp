@@ -338,6 +338,13 @@ std::unique_ptr<PolygonKnotEnergy> makePolygonKnotEnergy(PolygonKnot method, con
     throw InvalidInput("knot energy: the opening ratio must lie between 0 and 1");
   }
   switch (method) {
+    case PolygonKnot::Auto: {
+      constexpr double kMostPairs = 4e6;  // a third of a second on one processor
+      const auto movers = static_cast<double>(std::count(moving.begin(), moving.end(), true));
+      const bool few = movers * curve.edgeCount() <= kMostPairs;
+      return makePolygonKnotEnergy(few ? PolygonKnot::AllPairs : PolygonKnot::Tree, curve, moving,
+                                   openingRatio);
+    }
     case PolygonKnot::Tree:
       return std::make_unique<ClusterSum>(curve, moving, openingRatio);
     case PolygonKnot::AllPairs:

@@ -133,8 +133,8 @@ class PolygonRun {
 
   /// One iteration.
   /// @return whether anything moved
-  bool advance(int iteration) {
-    const double step = method_->advance();
+  bool advance(int iteration, const Monitor& monitor) {
+    const double step = method_->advance(monitor);
     bool merges = false;
     while (const auto fewer = problem_->merged()) {
       pose(fewer->first, fewer->second);
@@ -224,8 +224,8 @@ PolygonUnfolding unfoldPolygon(const Curve& input, const Region& inputRegion,
       result.termination = *reason;
       break;
     }
-    if (!run.advance(iteration)) {
-      result.termination = Termination::Stalled;
+    if (!run.advance(iteration, monitor)) {
+      result.termination = monitor.shouldStop() ? Termination::Interrupted : Termination::Stalled;
       break;
     }
     monitor.progress((visibility - initial) / (options.targetVisibility - initial), "unfolding");

@@ -47,10 +47,10 @@ UnfoldingProblem::UnfoldingProblem(const Curve& curve, const Region& region, con
   }
   const std::vector<int> regionEdges = edgesOf(curve, region);
   if (!options.noLength) keptEdges_ = regionEdges;
-  for (int e : edgesOf(curve, movingRegion)) {
-    if (std::find(regionEdges.begin(), regionEdges.end(), e) == regionEdges.end()) {
-      softEdges_.push_back(e);
-    }
+  std::vector<bool> inRegion(curve.edgeCount(), false);
+  for (const int e : regionEdges) inRegion[e] = true;
+  for (const int e : edgesOf(curve, movingRegion)) {
+    if (!inRegion[e]) softEdges_.push_back(e);
   }
   knot_ =
       makePolygonKnotEnergy(options.noTopology ? PolygonKnot::Off : options.knot, curve, moving_);

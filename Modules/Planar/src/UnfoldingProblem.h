@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "Explica/Core/Monitor.h"
 #include "Explica/Planar/PolygonCollision.h"
 #include "Explica/Planar/PolygonUnfolding.h"
 
@@ -77,8 +78,9 @@ class UnfoldingProblem {
 class UnfoldingMethod {
  public:
   virtual ~UnfoldingMethod() = default;
-  /// Moves the problem's curve; returns the largest motion of a vertex, mm, 0 if none was found.
-  virtual double advance() = 0;
+  /// Moves the problem's curve; returns the largest motion of a vertex, mm, 0 if none was found or
+  /// if `monitor` wanted a stop first, which leaves everything as before the call.
+  virtual double advance(const Monitor& monitor) = 0;
   /// What the next iteration takes from those before, besides the curve.
   [[nodiscard]] virtual PolygonMethodState state() const { return {}; }
   virtual void restore(const PolygonMethodState&) {}

@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace explica::planar {
 namespace {
 
@@ -56,6 +58,17 @@ TEST(Curve, GapOfOneRoundingErrorIsNoCrossing) {
   const double above = std::nextafter(0.5, 1.0);
   const Curve near = polygon({{0, 0}, {1, 1}, {1, 2}, {0.5, above}, {0, 2}});
   EXPECT_TRUE(intersectingEdges(near).empty());
+}
+
+TEST(Curve, ScribblesAreRefusedBeforeTheirCrossingsFillMemory) {
+  Curve scribble;
+  constexpr int kVertices = 4501;  // of a star whose edges all cross each other
+  scribble.positions.resize(kVertices, 2);
+  for (int v = 0; v < kVertices; ++v) {
+    const double angle = kPi * v * (kVertices - 1) / kVertices;
+    scribble.positions.row(v) << std::cos(angle), std::sin(angle);
+  }
+  EXPECT_THROW(static_cast<void>(intersectingEdges(scribble)), InvalidInput);
 }
 
 TEST(Curve, UnusableCurvesAreRefused) {

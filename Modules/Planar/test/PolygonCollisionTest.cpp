@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -106,6 +107,32 @@ TEST(PolygonCollision, NearbyPairsAreAllThatBruteForceFinds) {
     }
   }
   EXPECT_EQ(nearbyPairs(curve, moving, edgeLengths(curve), 0.5, 2).size(), expected);
+}
+
+TEST(PolygonCollision, NearbyPairsAreFoundWhateverTheReachAndTheSpread) {
+  std::mt19937 random(12);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  for (const double stretch : {1.0, 1e3, 1e9}) {
+    for (const double reach : {1e-6, 0.3, 1e3}) {
+      Curve curve;
+      curve.positions.resize(50, 2);
+      for (int v = 0; v < 50; ++v)
+        curve.positions.row(v) << stretch * uniform(random), uniform(random);
+      std::vector<std::array<int, 2>> expected;
+      for (int e = 0; e < 50; ++e) {
+        for (int v = 0; v < 50; ++v) {
+          if (v == e || v == curve.next(e)) continue;
+          if (vertexEdgeDistance(curve, v, e).distance <= reach) expected.push_back({v, e});
+        }
+      }
+      std::vector<std::array<int, 2>> found;
+      for (const VertexEdgePair& pair :
+           nearbyPairs(curve, std::vector<bool>(50, true), edgeLengths(curve), 1, reach)) {
+        found.push_back({pair.vertex, pair.edge});
+      }
+      EXPECT_EQ(found, expected) << stretch << " " << reach;  // in this order, on which sums hang
+    }
+  }
 }
 
 }  // namespace

@@ -193,6 +193,28 @@ TEST(PolygonKnotEnergy, ScalesWithLength) {
   EXPECT_NEAR(energyOf(scaled), 4 * energyOf(curve) + 4 * std::log(4) * length, 1e-8);
 }
 
+TEST(PolygonKnotEnergy, AutoTakesPairsWhileTheyAreFewAndTheTreeBeyond) {
+  const auto ring = [](int n) {
+    Curve curve;
+    curve.positions.resize(n, 2);
+    for (int v = 0; v < n; ++v) {
+      curve.positions.row(v) << std::cos(2 * kPi * v / n), std::sin(2 * kPi * v / n);
+    }
+    return curve;
+  };
+  for (const auto& [n, expected] :
+       {std::pair{200, PolygonKnot::AllPairs}, std::pair{2400, PolygonKnot::Tree}}) {
+    const Curve curve = ring(n);
+    const std::vector<bool> moving(n, true);
+    const auto valueBy = [&](PolygonKnot method) {
+      return makePolygonKnotEnergy(method, curve, moving)->evaluate(curve.positions);
+    };
+    const PolygonKnotValue chosen = valueBy(PolygonKnot::Auto), wanted = valueBy(expected);
+    EXPECT_EQ(chosen.value, wanted.value) << n;
+    EXPECT_EQ(chosen.pairs, wanted.pairs) << n;
+  }
+}
+
 TEST(PolygonKnotEnergy, TreeTendsToAllPairs) {
   // A wavy ring with many edges, part of it moving.
   Curve ring;

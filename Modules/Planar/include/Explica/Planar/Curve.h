@@ -69,6 +69,7 @@ struct Region {
 
 /// Pairs of edges i < j that share a point other than the vertex that joins them, by exact
 /// predicates: an empty list says that the curve is simple.  O(n log n) for edges of like size.
+/// @throws InvalidInput  more than ten million pairs do: that is no outline
 [[nodiscard]] std::vector<std::array<int, 2>> intersectingEdges(const Curve& curve);
 
 /// Checks what every algorithm here needs.

@@ -67,6 +67,7 @@ class PolygonKnotEnergy {
 
 /// Who evaluates the knot energy.
 enum class PolygonKnot {
+  Auto,      ///< every pair up to four million, the tree beyond, whose time grows as n log n
   Tree,      ///< far clusters by charge and second moments; errs by about openingRatio^3
   AllPairs,  ///< every pair of edges, exactly
   Off        ///< no knot energy
@@ -86,7 +87,8 @@ namespace explica {
 
 template <>
 struct EnumNames<planar::PolygonKnot> {
-  static constexpr std::array table = {std::pair{planar::PolygonKnot::Tree, "tree"},
+  static constexpr std::array table = {std::pair{planar::PolygonKnot::Auto, "auto"},
+                                       std::pair{planar::PolygonKnot::Tree, "tree"},
                                        std::pair{planar::PolygonKnot::AllPairs, "all-pairs"},
                                        std::pair{planar::PolygonKnot::Off, "off"}};
 };

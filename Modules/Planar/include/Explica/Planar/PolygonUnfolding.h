@@ -35,7 +35,7 @@ struct PolygonUnfoldingOptions {
   bool noLength = false;     ///< let the region's edges change their length
   bool noTopology = false;   ///< no knot energy, no barrier, no collision detection
   bool noCollision = false;  ///< the knot energy alone keeps edges apart, as in the thesis
-  PolygonKnot knot = PolygonKnot::AllPairs;
+  PolygonKnot knot = PolygonKnot::Auto;
   double knotWeight = 0.02;         ///< implicit method: knot energy against total flux
   double targetVisibility = 0.995;  ///< variance is then below 0.01, since f^2 <= 1
   int maxIterations = 20000;
