@@ -170,6 +170,34 @@ TEST(Framework, AFolderThatHoldsFilesIsRefusedUnlessForced) {
   EXPECT_EQ(explica({"verify", folder / "a"}).exitCode, 0);
 }
 
+TEST(Framework, AnOutputFolderThatIsALinkIsTheFolderThatIsMeant) {
+  const TemporaryFolder folder;
+  const auto into = [&](const std::string& out, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> words = {"phantom", "shell", "--size", "8", "--out", out};
+    words.insert(words.end(), more.begin(), more.end());
+    return explica(words);
+  };
+  fs::create_directory(folder / "meant");
+  fs::create_directory_symlink("meant", folder / "link");
+  EXPECT_EQ(into(folder / "link").exitCode, 0);
+  const auto expected = stableHashes(folder / "meant");
+  EXPECT_FALSE(expected.empty());
+  EXPECT_EQ(into(folder / "link").exitCode, 1);  // it holds files now
+  EXPECT_EQ(into(folder / "link", {"--force"}).exitCode, 0);
+  EXPECT_TRUE(fs::is_symlink(folder / "link"));
+  EXPECT_EQ(stableHashes(folder / "meant"), expected);
+
+  fs::create_directory_symlink("nowhere", folder / "dangling");
+  const auto before = folder.entries();
+  for (const auto& [out, said] : {std::pair{folder / "dangling", "a place that does not exist"},
+                                  std::pair{std::string(), "--out is empty"}}) {
+    const auto result = into(out);
+    EXPECT_EQ(result.exitCode, 1) << result;
+    EXPECT_NE(result.err.find(said), std::string::npos) << result;
+  }
+  EXPECT_EQ(folder.entries(), before);
+}
+
 TEST(Framework, BadInputLeavesNothingBehind) {
   TemporaryFolder folder;
   const auto result = explica(shell(folder / "deep/er/a", {"--inner-radius", "0.9"}));

@@ -86,6 +86,36 @@ TEST_P(KillsAndDisks, ARequestToEndLeavesAVerifiedFolderOrNone) {
   }
 }
 
+TEST_P(KillsAndDisks, AMemoryLimitGivesTheSameBytesOrASentence) {
+  const auto before = folder_.entries();
+  const std::string out = folder_ / "out";
+  for (const char* megabytes : {"64", "100", "160", "250", "400"}) {
+    SCOPED_TRACE(megabytes);
+    const CommandResult ended =
+        explica(into(out) + std::vector<std::string>{"--max-memory", megabytes});
+    if (ended.exitCode == exitCode_) {
+      EXPECT_EQ(differences(stableHashes(out), expected_), std::vector<std::string>());
+      fs::remove_all(out);
+    } else {
+      EXPECT_EQ(ended.exitCode, 4) << ended;
+      EXPECT_NE(ended.err.find("out of memory"), std::string::npos) << ended;
+    }
+    EXPECT_EQ(folder_.entries(), before);
+  }
+}
+
+TEST_P(KillsAndDisks, ATimeLimitGivesAVerifiedFolderOrASentence) {
+  const std::string out = folder_ / "out";
+  for (const char* seconds : {"0.001", "0.05"}) {
+    SCOPED_TRACE(seconds);
+    const CommandResult ended =
+        explica(into(out) + std::vector<std::string>{"--max-time", seconds});
+    ASSERT_TRUE(ended.exitCode == 0 || ended.exitCode == 3) << ended;
+    EXPECT_EQ(explica({"verify", out}).exitCode, 0);
+    fs::remove_all(out);
+  }
+}
+
 /// Room that the files of a folder take, in kB.
 long kilobytesOf(const fs::path& folder) {
   constexpr long kPage = 4;  // kB

@@ -11,7 +11,7 @@ namespace explica::app {
 namespace {
 
 struct Noted {
-  std::mutex mutex;
+  std::recursive_mutex mutex;  // memory may end while a path is noted
   std::vector<std::filesystem::path> paths;
 };
 
@@ -23,12 +23,12 @@ Noted& noted() {
 }  // namespace
 
 void noteLeaving(const std::filesystem::path& path) {
-  const std::lock_guard<std::mutex> guard(noted().mutex);
+  const std::lock_guard<std::recursive_mutex> guard(noted().mutex);
   noted().paths.push_back(path);
 }
 
 void forgetLeaving(const std::filesystem::path& path) {
-  const std::lock_guard<std::mutex> guard(noted().mutex);
+  const std::lock_guard<std::recursive_mutex> guard(noted().mutex);
   auto& paths = noted().paths;
   const auto found = std::find(paths.begin(), paths.end(), path);
   if (found != paths.end()) paths.erase(found);
@@ -36,7 +36,7 @@ void forgetLeaving(const std::filesystem::path& path) {
 
 void removeLeavings() {
   constexpr int kAttempts = 5;  // other threads may still be writing into a stage
-  const std::lock_guard<std::mutex> guard(noted().mutex);
+  const std::lock_guard<std::recursive_mutex> guard(noted().mutex);
   // Those noted last lie within those noted first: a stage goes before its lock.
   for (auto path = noted().paths.rbegin(); path != noted().paths.rend(); ++path) {
     std::error_code fault;

@@ -12,6 +12,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <new>
 #include <string>
 
 namespace explica::app {
@@ -23,6 +24,20 @@ constexpr double kGraceSeconds = 10;  // for a command to write what it reached
 std::chrono::steady_clock::duration duration(double seconds) {
   return std::chrono::duration_cast<std::chrono::steady_clock::duration>(
       std::chrono::duration<double>(seconds));
+}
+
+/// Ends the process without results from whichever thread gets no memory: an exception there would
+/// not reach the command, or meet code of others that does not expect it.
+void endForMemory() {
+  std::set_new_handler(nullptr);
+  rlimit limit{};
+  getrlimit(RLIMIT_DATA, &limit);
+  limit.rlim_cur = limit.rlim_max;  // what follows needs a little
+  setrlimit(RLIMIT_DATA, &limit);
+  removeLeavings();
+  const std::string said = "error: explica: " + std::string(kOutOfMemory) + '\n';
+  static_cast<void>(!write(STDERR_FILENO, said.data(), said.size()));
+  _exit(kEnvironment);
 }
 
 }  // namespace
@@ -62,6 +77,7 @@ void limitMemory(int megabytes) {
     throw EnvironmentError(std::string("--max-memory cannot be set (") + std::strerror(errno) +
                            ")");
   }
+  std::set_new_handler(endForMemory);
 }
 
 }  // namespace explica::app

@@ -31,7 +31,12 @@ class TimeLimit {
   std::thread guard_;
 };
 
-/// From now on this process gets no more than so many megabytes of its own.
+/// What is said when memory, or room for another thread's, is at an end.
+inline constexpr char kOutOfMemory[] =
+    "out of memory (see --max-memory, ulimit -d, or the machine's)";
+
+/// From now on this process gets no more than so many megabytes of its own.  Where it asks for more
+/// it is ended: exit code 4, no results, no stages or locks left.
 /// @throws EnvironmentError  the system refuses the limit
 void limitMemory(int megabytes);
 

@@ -4,6 +4,7 @@
 #include "Explica/Application/Descriptors.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Provenance/Software.h"
+#include "Limits.h"
 #include "Parse.h"
 #include "Run.h"
 #include "Signals.h"
@@ -15,6 +16,7 @@
 #include <iostream>
 #include <new>
 #include <optional>
+#include <string_view>
 #include <system_error>
 
 namespace explica::app {
@@ -223,10 +225,15 @@ int runMain(int argc, char** argv) {
                 std::string("a JSON file of the input holds what is not expected there (") +
                     error.what() + ")");
   } catch (const std::bad_alloc&) {
-    return fail(kEnvironment, "out of memory (see --max-memory, ulimit -d, or the machine's)");
+    return fail(kEnvironment, kOutOfMemory);
   } catch (const std::system_error& error) {
-    return fail(kEnvironment, error.what());  // files, and threads that the system refuses
+    const bool noThread = error.code() == std::errc::resource_unavailable_try_again;
+    return fail(kEnvironment, noThread ? kOutOfMemory : error.what());
   } catch (const std::exception& error) {
+    // So oneTBB says that its threads' stacks found no room.
+    const bool noThread =
+        std::string_view(error.what()).find("pthread_create") != std::string_view::npos;
+    if (noThread) return fail(kEnvironment, kOutOfMemory);
     return fail(kEnvironment, std::string("internal error, please report it: ") + error.what());
   }
 }

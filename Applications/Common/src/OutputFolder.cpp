@@ -159,8 +159,18 @@ void removeRecorded(const fs::path& folder, const std::vector<std::string>& keep
 OutputFolder::OutputFolder(fs::path folder, const OutputRules& rules,
                            const std::function<void(const std::string&)>& warn)
     : folder_(std::move(folder)), inPlace_(rules.inPlace), replaceEarlier_(rules.replaceEarlier) {
+  if (folder_.empty()) throw UsageError("--out is empty; it names a folder");
   if (!folder_.has_filename()) folder_ = folder_.parent_path();  // "results/" is "results"
   std::error_code fault;
+  if (fs::is_symlink(fs::symlink_status(folder_, fault))) {
+    // The folder that is meant: a link must neither be replaced by results nor taken for a new
+    // name.
+    const fs::path meant = fs::canonical(folder_, fault);
+    if (fault) {
+      throw UsageError(folder_.string() + ": --out is a link to a place that does not exist");
+    }
+    folder_ = meant;
+  }
   const auto status = fs::status(folder_, fault);
   existed_ = fs::exists(status);
   if (existed_ && !fs::is_directory(status)) {

@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <new>
 
 namespace explica::report {
 namespace {
@@ -106,6 +107,7 @@ void SurfaceScene::Implementation::build(const TriangleMesh& mesh) {
   diagonal = (mesh.positions.colwise().maxCoeff() - mesh.positions.colwise().minCoeff()).norm();
 
   device.reset(rtcNewDevice(nullptr));
+  if (!device && rtcGetDeviceError(nullptr) == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
   if (!device) throw EnvironmentError("Embree cannot start on this processor; pictures need it");
   scene.reset(rtcNewScene(device.get()));
   rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);

@@ -6,6 +6,7 @@
 #include "Explica/Core/Errors.h"
 
 #include <array>
+#include <new>
 
 namespace explica::visibility {
 namespace {
@@ -28,6 +29,7 @@ void ignoreOwnFace(const RTCFilterFunctionNArguments* args) {
 
 Occluders::Occluders(const TriangleMesh& mesh, const Point& centre)
     : device_(rtcNewDevice(nullptr)) {
+  if (!device_ && rtcGetDeviceError(nullptr) == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
   if (!device_) throw EnvironmentError("ray casting: Embree cannot start");
   scene_.reset(rtcNewScene(device_.get()));
   rtcSetSceneFlags(

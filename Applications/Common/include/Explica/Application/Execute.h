@@ -39,7 +39,7 @@ void describe(CommonOptions& o, Visitor&& visit) {
   visit(Field{"max-time", "s", "ask for an end after this time, with what was reached", kAboveZero,
               1e9},
         o.maxTime);
-  visit(Field{"max-memory", "MB", "memory at most", 1, 1 << 30}, o.maxMemory);
+  visit(Field{"max-memory", "MB", "memory at most", 64, 1 << 30}, o.maxMemory);
   visit(Field{"dry-run", "", "resolve and check everything, print the options, write nothing"},
         o.dryRun);
   visit(Field{"quiet", "", "say nothing but warnings and errors"}, o.quiet);
