@@ -256,10 +256,20 @@ std::optional<std::filesystem::path> ownFile(const std::filesystem::path& folder
 }
 
 std::string printable(std::string_view text) {
-  std::string safe(text);
-  for (char& c : safe) {
-    const auto byte = static_cast<unsigned char>(c);
-    if ((byte < 0x20 && c != '\n' && c != '\t') || byte == 0x7f) c = '?';
+  std::string safe;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    const auto byte = [&](std::size_t ahead) {
+      return at + ahead < text.size() ? static_cast<unsigned char>(text[at + ahead]) : 0U;
+    };
+    const bool control =
+        (byte(0) < 0x20 && text[at] != '\n' && text[at] != '\t') || byte(0) == 0x7f;
+    // In UTF-8: the other control characters, and marks that turn the direction of what follows.
+    const bool highControl = byte(0) == 0xc2 && byte(1) >= 0x80 && byte(1) < 0xa0;
+    const bool turning =
+        byte(0) == 0xe2 && ((byte(1) == 0x80 && byte(2) >= 0xaa && byte(2) <= 0xae) ||
+                            (byte(1) == 0x81 && byte(2) >= 0xa6 && byte(2) <= 0xa9));
+    safe += control || highControl || turning ? '?' : text[at];
+    at += highControl ? 1 : turning ? 2 : 0;
   }
   return safe;
 }

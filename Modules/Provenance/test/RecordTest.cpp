@@ -153,6 +153,16 @@ TEST_F(RecordChain, ExportsGoBackToTheFirstInput) {
   EXPECT_EQ(recordsBelow(folder_).size(), 2u);
 }
 
+TEST(Printable, TakesTheTeethOutOfWhatATerminalWouldObey) {
+  EXPECT_EQ(printable("a\x1b[2Jb\x7f\rc"), "a?[2Jb??c");
+  EXPECT_EQ(printable("\xc2\x9b"
+                      "2J, \xe2\x80\xaegpj.exe, \xe2\x81\xa6x"),
+            "?2J, ?gpj.exe, ?x");
+  const std::string usual = "Größe 3 µm – 日本\n\ttwo";
+  EXPECT_EQ(printable(usual), usual);
+  EXPECT_EQ(printable("\xc2"), "\xc2");  // cut short: nothing behind it is read
+}
+
 TEST(Privacy, FoldersAreTakenOutOfSentences) {
   EXPECT_EQ(textWithoutFolders("/home/jane/a.nii.gz: label 2 absent (found 0, 1)"),
             "a.nii.gz: label 2 absent (found 0, 1)");

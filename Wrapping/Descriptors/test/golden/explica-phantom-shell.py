@@ -9,7 +9,7 @@ class PhantomShellInputSpec(CommandLineInputSpec):
     config = traits.Str(desc="JSON file with option values; the command line wins", argstr="--config %s")
     threads = traits.Int(desc="processors to use (default: all that this process may)", argstr="--threads %s")
     max_time = traits.Float(desc="ask for an end after this time, with what was reached [s; above 0, at most 1e+09]", argstr="--max-time %s")
-    max_memory = traits.Int(desc="memory at most [MB; 1 to 1073741824]", argstr="--max-memory %s")
+    max_memory = traits.Int(desc="memory at most [MB; 64 to 1073741824]", argstr="--max-memory %s")
     dry_run = traits.Bool(desc="resolve and check everything, print the options, write nothing", argstr="--dry-run")
     quiet = traits.Bool(desc="say nothing but warnings and errors", argstr="--quiet")
     verbose = traits.Bool(desc="say more", argstr="--verbose")
