@@ -13,6 +13,7 @@
 namespace explica::report {
 namespace {
 
+constexpr std::array kAxes = {SliceAxis::Axial, SliceAxis::Coronal, SliceAxis::Sagittal};
 constexpr double kOffLattice = 1e-4;  // mm: no plane runs along a surface's faces
 
 /// What a mosaic shows, and the box of the world that each tile frames.
@@ -48,23 +49,52 @@ ColourScale greyScale(const Volume<float>& image) {
   return grey;
 }
 
+/// Of a line's points those that lie apart by what can be seen, and its ends; from one to the next
+/// in tenths of a pixel, since pages hold hundreds of such lines.
 std::string pathData(const TriangleMesh& mesh, const SliceFrame& frame) {
+  constexpr double kSeen = 1.1;  // pixels
   std::string path;
   std::array<char, 40> text{};
   for (const auto& line : cutPolylines(mesh, frame)) {
-    char command = 'M';
-    for (const Eigen::Vector2d& p : line) {
-      std::snprintf(text.data(), text.size(), "%c%.1f %.1f", command, p.x(), p.y());
+    Eigen::Vector2i last(0, 0);  // tenths of a pixel
+    for (std::size_t n = 0; n < line.size(); ++n) {
+      const Eigen::Vector2i at = (10 * line[n]).array().round().cast<int>();
+      const bool seen = (at - last).cast<double>().norm() >= 10 * kSeen;
+      if (n > 0 && n + 1 < line.size() && !seen) continue;
+      const Eigen::Vector2i by = n == 0 ? at : Eigen::Vector2i(at - last);
+      std::snprintf(text.data(), text.size(), "%c%g %g", n == 0 ? 'M' : 'l', 0.1 * by.x(),
+                    0.1 * by.y());
       path += text.data();
-      command = 'L';
+      last = at;
     }
   }
   return path;
 }
 
-SliceMosaic mosaicOf(const Extent& extent, const std::vector<MosaicOutline>& outlines,
-                     const MosaicOptions& options,
-                     const std::function<Picture(const SliceFrame&)>& render) {
+using RenderSlice = std::function<Picture(const SliceFrame&)>;
+
+int normalOf(SliceAxis axis) {
+  return axis == SliceAxis::Sagittal ? 0 : (axis == SliceAxis::Coronal ? 1 : 2);
+}
+
+std::string placeWords(SliceAxis axis, double at) {
+  return std::string(1, "xyz"[normalOf(axis)]) + " = " +
+         std::to_string(static_cast<int>(std::lround(at))) + " mm";
+}
+
+MosaicTile tileOf(const SliceFrame& frame, const std::vector<MosaicOutline>& outlines,
+                  const RenderSlice& render) {
+  MosaicTile tile;
+  const auto letters = directionLetters(frame);
+  for (int l = 0; l < 4; ++l) tile.letters[l] = std::string(1, letters[l]);
+  tile.picture = render(frame);
+  for (const MosaicOutline& outline : outlines) {
+    tile.paths.push_back(pathData(*outline.mesh, frame));
+  }
+  return tile;
+}
+
+SliceMosaic emptyMosaic(const std::vector<MosaicOutline>& outlines, const MosaicOptions& options) {
   if (options.perRow <= 0) throw InvalidInput("perRow: must be positive");
   if (options.tileHeight <= 0) throw InvalidInput("tileHeight: must be positive");
   SliceMosaic mosaic;
@@ -72,8 +102,38 @@ SliceMosaic mosaicOf(const Extent& extent, const std::vector<MosaicOutline>& out
   for (const MosaicOutline& outline : outlines) {
     mosaic.outlines.emplace_back(outline.name, outline.colour);
   }
-  for (const SliceAxis axis : {SliceAxis::Axial, SliceAxis::Coronal, SliceAxis::Sagittal}) {
-    const int normal = axis == SliceAxis::Sagittal ? 0 : (axis == SliceAxis::Coronal ? 1 : 2);
+  return mosaic;
+}
+
+/// The faces of a mesh that reach into a box.
+TriangleMesh partWithin(const TriangleMesh& mesh, const Point& low, const Point& high) {
+  TriangleMesh part{mesh.positions, Faces(mesh.faceCount(), 3)};
+  Eigen::Index count = 0;
+  for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
+    const Point a = mesh.corner(f, 0), b = mesh.corner(f, 1), c = mesh.corner(f, 2);
+    const bool apart = (a.cwiseMin(b).cwiseMin(c).array() > high.array()).any() ||
+                       (a.cwiseMax(b).cwiseMax(c).array() < low.array()).any();
+    if (!apart) part.faces.row(count++) = mesh.faces.row(f);
+  }
+  part.faces.conservativeResize(count, 3);
+  return part;
+}
+
+/// A ring about the middle of a picture, as SVG path data.
+std::string ringPath(const Picture& picture, double radius) {
+  std::array<char, 120> text{};
+  const double x = 0.5 * picture.width, y = 0.5 * picture.height;
+  std::snprintf(text.data(), text.size(),
+                "M%.1f %.1fa%.1f %.1f 0 1 0 %.1f 0a%.1f %.1f 0 1 0 %.1f 0", x - radius, y, radius,
+                radius, 2 * radius, radius, radius, -2 * radius);
+  return text.data();
+}
+
+SliceMosaic mosaicOf(const Extent& extent, const std::vector<MosaicOutline>& outlines,
+                     const MosaicOptions& options, const RenderSlice& render) {
+  SliceMosaic mosaic = emptyMosaic(outlines, options);
+  for (const SliceAxis axis : kAxes) {
+    const int normal = normalOf(axis);
     std::vector<MosaicTile> row;
     for (int s = 0; s < options.perRow; ++s) {
       const double share = (s + 1.0) / (options.perRow + 1.0);
@@ -82,15 +142,8 @@ SliceMosaic mosaicOf(const Extent& extent, const std::vector<MosaicOutline>& out
       SliceFrame frame = frameAround(axis, at + kOffLattice, extent.framed.low, extent.framed.high,
                                      options.tileHeight);
       frame.leftOnRight = options.convention == SideConvention::Radiological;
-      MosaicTile tile;
-      tile.place = std::string(1, "xyz"[normal]) + " = " +
-                   std::to_string(static_cast<int>(std::lround(at))) + " mm";
-      const auto letters = directionLetters(frame);
-      for (int l = 0; l < 4; ++l) tile.letters[l] = std::string(1, letters[l]);
-      tile.picture = render(frame);
-      for (const MosaicOutline& outline : outlines) {
-        tile.paths.push_back(pathData(*outline.mesh, frame));
-      }
+      MosaicTile tile = tileOf(frame, outlines, render);
+      tile.place = placeWords(axis, at);
       row.push_back(std::move(tile));
     }
     mosaic.rows.push_back(std::move(row));
@@ -105,6 +158,41 @@ SliceMosaic makeMosaic(const Volume<float>& image, const std::vector<MosaicOutli
   const ColourScale grey = greyScale(image);
   return mosaicOf(extentOf(boxAbove(image, 0), outlines), outlines, options,
                   [&](const SliceFrame& frame) { return renderSlice(image, frame, grey); });
+}
+
+SliceMosaic makeCloseUps(const Volume<float>& image, const std::vector<MosaicOutline>& outlines,
+                         const std::vector<CloseUp>& places, double width,
+                         const MosaicOptions& options) {
+  if (places.empty()) throw InvalidInput("places: none is given");
+  if (!(width > 0)) throw InvalidInput("width: must be positive");
+  constexpr double kRing = 0.12;  // of a tile's height
+  const ColourScale grey = greyScale(image);
+  const RenderSlice render = [&](const SliceFrame& frame) {
+    return renderSlice(image, frame, grey);
+  };
+  SliceMosaic mosaic = emptyMosaic(outlines, options);
+  mosaic.outlines.emplace_back("the place", "#32d7ff");
+  mosaic.rows.resize(kAxes.size());
+  for (const CloseUp& closeUp : places) {
+    const Point low = closeUp.place.array() - 0.5 * width;
+    const Point high = closeUp.place.array() + 0.5 * width;
+    std::vector<TriangleMesh> parts;
+    for (const MosaicOutline& outline : outlines) {
+      parts.push_back(partWithin(*outline.mesh, low, high));
+    }
+    std::vector<MosaicOutline> near = outlines;
+    for (std::size_t n = 0; n < near.size(); ++n) near[n].mesh = &parts[n];
+    for (std::size_t a = 0; a < kAxes.size(); ++a) {
+      const double at = closeUp.place[normalOf(kAxes[a])];
+      SliceFrame frame = frameAround(kAxes[a], at + kOffLattice, low, high, options.tileHeight);
+      frame.leftOnRight = options.convention == SideConvention::Radiological;
+      MosaicTile tile = tileOf(frame, near, render);
+      tile.paths.push_back(ringPath(tile.picture, kRing * options.tileHeight));
+      tile.place = placeWords(kAxes[a], at) + (a == 0 ? ": " + closeUp.words : "");
+      mosaic.rows[a].push_back(std::move(tile));
+    }
+  }
+  return mosaic;
 }
 
 std::array<SliceMosaic, 2> makeMosaics(const Volume<float>& before, const Volume<float>& after,

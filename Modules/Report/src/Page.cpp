@@ -318,7 +318,9 @@ std::string tableHtml(const ReportTable& table) {
 std::string lookHtml(const ReportContent& content) {
   std::string html;
   if (!content.evolutions.empty()) html += kViewHtml;
+  if (!content.mosaics.empty()) html += "<h3>Slices</h3>";
   for (const ReportMosaic& mosaic : content.mosaics) html += mosaicHtml(mosaic);
+  if (!content.views.empty()) html += "<h3>Surfaces</h3>";
   for (const ReportViews& views : content.views) html += viewsHtml(views);
   for (const ReportPicture& picture : content.pictures) {
     html += figureOpen(picture.id) + imageHtml(picture.picture, picture.title) +

@@ -20,11 +20,13 @@
 namespace explica::report {
 namespace {
 
-constexpr int kSkyRays = 12;        // a vertex; neighbours are averaged afterwards
-constexpr int kSkySmoothing = 2;    // passes
-constexpr double kSkyReach = 0.10;  // of the surface's diagonal
-constexpr double kMargin = 1.04;    // of the picture around the surface
-constexpr int kTile = 32;           // pixels; one task
+constexpr int kSkyRays = 12;           // a vertex; neighbours are averaged afterwards
+constexpr int kSkySmoothing = 2;       // passes
+constexpr double kSkyReach = 0.10;     // of the surface's diagonal
+constexpr double kMargin = 1.04;       // of the picture around the surface
+constexpr int kTile = 32;              // pixels; one task
+constexpr double kBorder = 1.6;        // pixels: width of the line between two regions
+constexpr float kBorderShade = 0.15F;  // what it leaves of the colour
 
 /// Embree's traversal wants denormals flushed; our own arithmetic must not be left that way.
 class FlushDenormals {
@@ -95,6 +97,9 @@ struct SurfaceScene::Implementation {
   Scene scene;
 
   void build(const TriangleMesh& mesh);
+  /// True if a point of a face lies within `reach` of where two of its corners' keys meet.
+  [[nodiscard]] bool onBorder(Eigen::Index face, const std::array<float, 3>& weight, int nearest,
+                              const std::vector<std::int32_t>& keys, double reach) const;
   void measureOpenness(const TriangleMesh& mesh);
 };
 
@@ -130,6 +135,19 @@ void SurfaceScene::Implementation::build(const TriangleMesh& mesh) {
   rtcReleaseGeometry(geometry);
   rtcCommitScene(scene.get());
   measureOpenness(mesh);
+}
+
+bool SurfaceScene::Implementation::onBorder(Eigen::Index face, const std::array<float, 3>& weight,
+                                            int nearest, const std::vector<std::int32_t>& keys,
+                                            double reach) const {
+  const std::int32_t own = faces(face, nearest);
+  for (int k = 0; k < 3; ++k) {
+    const std::int32_t other = faces(face, k);
+    if (keys[other] == keys[own]) continue;
+    const double edge = (positions.row(own) - positions.row(other)).norm();
+    if (0.5 * (weight[nearest] - weight[k]) * edge < reach) return true;
+  }
+  return false;
 }
 
 void SurfaceScene::Implementation::measureOpenness(const TriangleMesh& mesh) {
@@ -192,12 +210,16 @@ const std::vector<float>& SurfaceScene::openness() const {
 }
 
 Picture SurfaceScene::render(const Camera& camera, const std::vector<Colour>& colours,
-                             Filling filling, const SurfacePictureOptions& options) const {
+                             Filling filling, const SurfacePictureOptions& options,
+                             const std::vector<std::int32_t>& keys) const {
   const Implementation& self = *implementation_;
   if (!colours.empty() && colours.size() != static_cast<std::size_t>(self.positions.rows())) {
     throw InvalidInput("colours: found " + std::to_string(colours.size()) +
                        ", expected one for each of " + std::to_string(self.positions.rows()) +
                        " vertices");
+  }
+  if (!keys.empty() && keys.size() != static_cast<std::size_t>(self.positions.rows())) {
+    throw InvalidInput("keys: found " + std::to_string(keys.size()) + ", expected one a vertex");
   }
   if (options.width < 1 || options.height < 1 || options.width > 20000 || options.height > 20000) {
     throw InvalidInput("width, height: must lie in 1 to 20000 pixels");
@@ -215,6 +237,7 @@ Picture SurfaceScene::render(const Camera& camera, const std::vector<Colour>& co
       (0.5f * static_cast<float>(options.height * options.samples) * step) * up -
       (0.5f * static_cast<float>(options.width * options.samples) * step) * right;
   const auto occlusion = static_cast<float>(options.occlusion);
+  const double border = kBorder * camera.halfHeight / options.height;  // mm, half the line
 
   Picture picture(options.width, options.height);
   const int columns = (options.width + kTile - 1) / kTile;
@@ -257,6 +280,9 @@ Picture SurfaceScene::render(const Camera& camera, const std::vector<Colour>& co
           }
           if (filling == Filling::Discrete && !colours.empty())
             base = colours[self.faces(face, nearest)];
+          if (!keys.empty() && self.onBorder(face, weight, nearest, keys, border)) {
+            for (float& c : base) c *= kBorderShade;
+          }
           const Eigen::Vector3f outward(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z);
           const bool inside = outward.dot(towards) > 0;
           normal.normalize();

@@ -116,5 +116,33 @@ TEST(Mosaic, RefusesWhatShowsNothing) {
   EXPECT_THROW((void)makeMosaic(brightRight(), {}, none), InvalidInput);
 }
 
+TEST(Mosaic, CloseUpsAreCentredOnTheirPlaces) {
+  Grid grid;
+  grid.size = {60, 60, 60};
+  Volume<float> image(grid, 1.0F);
+  const TriangleMesh sphere = [] {
+    TriangleMesh mesh = geometry::makeIcosphere(3, 15);
+    mesh.positions.rowwise() += Eigen::RowVector3d(30, 30, 30);
+    return mesh;
+  }();
+  MosaicOptions options;
+  options.tileHeight = 100;
+  const Point onSphere(45, 30, 30), off(10, 12, 14);
+  const SliceMosaic near = makeCloseUps(image, {{&sphere, "sphere", "#fff"}},
+                                        {{onSphere, "here"}, {off, "there"}}, 20, options);
+  ASSERT_EQ(near.rows.size(), 3u);
+  ASSERT_EQ(near.outlines.size(), 2u) << "the ring is an outline, too";
+  for (const auto& row : near.rows) {
+    ASSERT_EQ(row.size(), 2u);
+    for (const MosaicTile& tile : row) ASSERT_EQ(tile.paths.size(), 2u);
+    EXPECT_TRUE(row[1].paths[0].empty()) << "nothing of the sphere is within 10 mm";
+  }
+  EXPECT_NE(near.rows[0][0].place.find("here"), std::string::npos);
+  EXPECT_FALSE(near.rows[0][0].paths[0].empty());
+  EXPECT_EQ(near.rows[0][0].paths[1].substr(0, 2), "M3") << "a ring about the middle of 100 pixels";
+  EXPECT_THROW((void)makeCloseUps(image, {}, {}, 20, options), InvalidInput);
+  EXPECT_THROW((void)makeCloseUps(image, {}, {{off, ""}}, 0, options), InvalidInput);
+}
+
 }  // namespace
 }  // namespace explica::report

@@ -35,7 +35,7 @@ Picture gradient(int width, int height) {
   return p;
 }
 
-/// Decodes the PNG files that we write: 8-bit RGB, one IDAT, filters 1 and 2.
+/// Decodes the PNG files that we write: 8-bit RGB, one IDAT, the filters of PNG's specification.
 Picture decode(const std::string& png) {
   Picture p(static_cast<int>(bigEndianAt(png, 16)), static_cast<int>(bigEndianAt(png, 20)));
   std::size_t at = 8;
@@ -51,8 +51,18 @@ Picture decode(const std::string& png) {
     const int filter = static_cast<std::uint8_t>(rows[y * (stride + 1)]);
     for (std::size_t b = 0; b < stride; ++b) {
       int value = static_cast<std::uint8_t>(rows[y * (stride + 1) + 1 + b]);
-      if (filter == 1 && b >= 3) value += p.rgb[y * stride + b - 3];
-      if (filter == 2) value += p.rgb[(y - 1) * stride + b];
+      const int a = b >= 3 ? p.rgb[y * stride + b - 3] : 0;
+      const int above = y > 0 ? p.rgb[(y - 1) * stride + b] : 0;
+      const int c = b >= 3 && y > 0 ? p.rgb[(y - 1) * stride + b - 3] : 0;
+      if (filter == 1) value += a;
+      if (filter == 2) value += above;
+      if (filter == 3) value += (a + above) / 2;
+      if (filter == 4) {
+        const int estimate = a + above - c;
+        const int da = std::abs(estimate - a), db = std::abs(estimate - above),
+                  dc = std::abs(estimate - c);
+        value += da <= db && da <= dc ? a : (db <= dc ? above : c);
+      }
       p.rgb[y * stride + b] = static_cast<std::uint8_t>(value);
     }
   }

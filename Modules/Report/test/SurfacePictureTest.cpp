@@ -143,5 +143,27 @@ TEST(SlicePicture, ContourLiesOnTheEdgeOfWhatItOutlines) {
   }
 }
 
+TEST(SurfacePicture, ADarkLineRunsBetweenKeys) {
+  const TriangleMesh sphere = geometry::makeIcosphere(4, 30);
+  const SurfaceScene scene(sphere);
+  std::vector<std::int32_t> keys;
+  for (Eigen::Index v = 0; v < sphere.vertexCount(); ++v) {
+    keys.push_back(sphere.positions(v, 2) > 0 ? 1 : 0);
+  }
+  const Camera camera = cameraFor(sphere, ViewName::Left, 200, 160);
+  const Picture plain = scene.render(camera, {}, Filling::Smooth, small());
+  const Picture lined = scene.render(camera, {}, Filling::Smooth, small(), keys);
+  int darker = 0, rows = 0;
+  for (int y = 0; y < 160; ++y) {
+    int inRow = 0;
+    for (int x = 0; x < 200; ++x) inRow += lined.pixel(x, y)[0] + 40 < plain.pixel(x, y)[0];
+    darker += inRow;
+    rows += inRow > 0;
+  }
+  EXPECT_GT(darker, 100) << "across the sphere";
+  EXPECT_LT(rows, 16) << "about its equator only";
+  EXPECT_THROW((void)scene.render(camera, {}, Filling::Smooth, small(), {1, 2}), InvalidInput);
+}
+
 }  // namespace
 }  // namespace explica::report

@@ -96,6 +96,28 @@ constexpr std::array kFindings = {
     Finding{"sample", "points", "", "Points", "", Shown::Plain, ""},
     Finding{"sample", "points_distance_max", "", "Farthest point from the cortex", "mm",
             Shown::Plain, "Of its nearest column from white to pial."},
+    Finding{"polygon", "visibility_final", "visibility_initial", "Average visibility", "",
+            Shown::Plain,
+            "Mean cosine under which the region's edges look at the viewpoint, before and after."},
+    Finding{"polygon", "seen_final", "seen_initial", "Seen from the viewpoint", "", Shown::Percent,
+            "Share of the region's length that nothing hides, before and after."},
+    Finding{"polygon", "region_edges", "", "Edges of the region", "", Shown::Plain, ""},
+    Finding{"polygon", "length_final", "length_initial", "Length of the region", "", Shown::Plain,
+            "In the units of the file, before and after."},
+    Finding{"polygon", "length_error_max", "", "Error of an edge's length, largest", "",
+            Shown::Percent, ""},
+    Finding{"polygon", "iterations", "", "Iterations", "", Shown::Plain, ""},
+    Finding{"embed", "distance_mean", "", "Distance from the target, mean", "mm", Shown::Plain, ""},
+    Finding{"embed", "distance_max", "", "Distance from the target, largest", "mm", Shown::Plain,
+            ""},
+    Finding{"embed", "symmetric_difference_final", "symmetric_difference_initial",
+            "Symmetric difference", "", Shown::Plain,
+            "What one of shape and target holds and the other does not, before and after the fit: "
+            "mm\u00b2 of a plane, mm\u00b3 of space."},
+    Finding{"embed", "targets", "", "Targets", "", Shown::Plain, ""},
+    Finding{"embed", "order", "", "Highest angular frequency", "", Shown::Plain, ""},
+    Finding{"embed", "inner_radius", "", "Inner radius of the annulus", "mm", Shown::Plain, ""},
+    Finding{"embed", "outer_radius", "", "Outer radius of the annulus", "mm", Shown::Plain, ""},
     Finding{"inflate", "visibility_final", "visibility_initial", "Global visibility", "",
             Shown::Plain,
             "Share of the view from all around that reaches the surface, each place weighing the "
@@ -164,6 +186,11 @@ void findNumbers(ResultFolder& results) {
         }
       }
       row.values.push_back(value);
+    }
+    // The thickness is stated once: that of the surfaces where there are any.
+    if (finding.key == std::string_view("thickness_mean_columns") &&
+        !results.stepsOf("surface").empty()) {
+      continue;
     }
     const bool known =
         std::any_of(row.values.begin(), row.values.end(), [](const auto& v) { return !v.empty(); });

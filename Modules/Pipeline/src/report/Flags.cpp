@@ -1,9 +1,12 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Provenance/Doubts.h"
+#include "Explica/Provenance/Verify.h"
 #include "ReportParts.h"
 
 #include <algorithm>
+#include <array>
+#include <set>
 
 namespace explica::pipeline {
 namespace {
@@ -15,6 +18,7 @@ constexpr double kAreaErrorGood = 0.02;  // mean: areas on a printed map are tru
 constexpr double kAreaErrorBad = 0.10;   // mean: more is seen by eye
 constexpr double kOpened = 0.95;         // average visibility and seen share of what counts as open
 constexpr double kStretchGood = 2;  // mean area ratio of what joins a patch to its surroundings
+constexpr double kStretchMost = 8;  // of a single one of its faces
 
 /// "left: " where there are two sides to tell apart.
 std::string sideWord(const StepFolder& step) {
@@ -36,7 +40,7 @@ std::vector<ReportFlag> surfaceFlags(const StepFolder& step) {
                      readable(*defects) + " defects, " +
                          readable(step.number("voxels_changed").value_or(0)) +
                          " voxels changed (topology.tsv lists them)",
-                     kOutlinePlace});
+                     kCorrectedPlace});
   }
   if (const auto pairs = step.number("self_intersections")) {
     flags.push_back(
@@ -88,7 +92,9 @@ std::vector<ReportFlag> surroundingFlags(const StepFolder& step) {
                      kPatchPlace});
   }
   if (const auto stretch = step.number("collar_stretch_mean"); stretch && !detached) {
-    flags.push_back({*stretch <= kStretchGood ? FlagLevel::Good : FlagLevel::Notice,
+    const double most = step.number("collar_stretch_max").value_or(0);
+    const bool little = *stretch <= kStretchGood && most <= kStretchMost;
+    flags.push_back({little ? FlagLevel::Good : FlagLevel::Notice,
                      "What joins patch and surroundings" + sideWord(step) + ":",
                      "its faces are stretched to " + readable(*stretch) + " times their area, " +
                          readable(step.number("collar_stretch_max").value_or(kNaN)) + " at most",
@@ -232,6 +238,61 @@ std::vector<ReportFlag> heartFlags(const StepFolder& step) {
   return flags;
 }
 
+std::vector<ReportFlag> polygonFlags(const StepFolder& step) {
+  std::vector<ReportFlag> flags;
+  constexpr double kLengthGood = 1e-3;  // of an edge
+  if (const auto pairs = step.number("self_intersections_final")) {
+    flags.push_back({*pairs == 0 ? FlagLevel::Good : FlagLevel::Bad, "Polygon meets itself:",
+                     *pairs == 0 ? "nowhere" : "at " + readable(*pairs) + " pairs of edges", ""});
+  }
+  if (const auto error = step.number("length_error_max")) {
+    flags.push_back({*error < kLengthGood ? FlagLevel::Good : FlagLevel::Notice,
+                     "Lengths kept:", "largest error of an edge " + percent(*error), ""});
+  }
+  if (const auto visibility = step.number("visibility_final")) {
+    flags.push_back({*visibility > kOpened ? FlagLevel::Good : FlagLevel::Notice,
+                     "Seen from the viewpoint:",
+                     percent(step.number("seen_final").value_or(kNaN)) +
+                         " of the length, at average visibility " + readable(*visibility),
+                     ""});
+  }
+  return flags;
+}
+
+/// A fit is judged by how far it is from its target beside the size of the shape.
+std::vector<ReportFlag> embedFlags(const StepFolder& step) {
+  constexpr double kClose = 0.05;  // of the annulus's inner radius
+  const auto distance = step.number("distance_mean"), most = step.number("distance_max"),
+             radius = step.number("inner_radius");
+  if (!distance || !most || !radius) return {};
+  return {{*most < kClose * *radius ? FlagLevel::Good : FlagLevel::Notice,
+           "Shape beside its target:",
+           readable(*distance) + " mm apart on average, " + readable(*most) + " mm at most", ""}};
+}
+
+/// Whether what lies on the disk is what the records say was read and written.
+void judgeFiles(ResultFolder& results) {
+  using provenance::FileState;
+  constexpr std::size_t kNamed = 5;
+  std::size_t same = 0, others = 0;
+  std::string names;
+  for (const StepFolder& step : results.steps()) {
+    for (const auto& file : provenance::verifyRecord(step.folder / provenance::kRecordName).files) {
+      if (file.state == FileState::Same || file.state == FileState::Unhashed) {
+        ++same;
+      } else if (++others <= kNamed) {
+        names += (names.empty() ? "" : ", ") + file.path.filename().string() +
+                 (file.state == FileState::Missing ? " is gone" : " is another");
+      }
+    }
+  }
+  std::string why = readable(static_cast<double>(same)) + " files are what the records say";
+  if (others > 0) why += ", " + readable(static_cast<double>(others)) + " are not: " + names;
+  if (others > kNamed) why += ", ...";
+  results.content().flags.push_back(
+      {others == 0 ? FlagLevel::Good : FlagLevel::Notice, "Inputs and outputs:", why});
+}
+
 /// What the program itself could not vouch for: the list "flags" of a summary.
 std::vector<ReportFlag> ownFlags(const StepFolder& step) {
   std::vector<ReportFlag> flags;
@@ -270,7 +331,36 @@ std::vector<ReportFlag> flagsOf(const StepFolder& step) {
   if (step.command == "sample") return sampleFlags(step);
   if (step.command == "inflate") return inflateFlags(step);
   if (step.command == "heart") return heartFlags(step);
+  if (step.command == "polygon") return polygonFlags(step);
+  if (step.command == "embed") return embedFlags(step);
   return {};
+}
+
+/// Where a reader sees what a step warns of.
+std::string placeOf(const std::string& step) {
+  constexpr std::array kPlaces = {std::pair{"Segment", kTissuePlace},
+                                  std::pair{"Thickness", kUnknownPlace},
+                                  std::pair{"Surface", kOutlinePlace},
+                                  std::pair{"Unfold", kPatchPlace}, std::pair{"Flat", kFlatPlace}};
+  for (const auto& [name, place] : kPlaces) {
+    if (step.starts_with(name)) return place;
+  }
+  return "";
+}
+
+/// Takes away links to what this page does not show.
+void dropIdleLinks(report::ReportContent& content) {
+  std::set<std::string> places;
+  if (!content.evolutions.empty()) places.insert(kPatchPlace);
+  for (const auto& shown : content.mosaics) places.insert(shown.id);
+  for (const auto& shown : content.views) places.insert(shown.id);
+  for (const auto& shown : content.pictures) places.insert(shown.id);
+  for (const auto& shown : content.drawings) places.insert(shown.id);
+  for (const auto& shown : content.charts) places.insert(shown.id);
+  for (const auto& shown : content.tables) places.insert(shown.id);
+  for (ReportFlag& flag : content.flags) {
+    if (!places.contains(flag.see)) flag.see.clear();
+  }
 }
 
 }  // namespace
@@ -285,7 +375,7 @@ void flagSteps(ResultFolder& results) {
     if (step.state == report::StepState::Missing)
       content.flags.push_back({FlagLevel::Notice, step.name + " was not run:", step.message});
     for (const std::string& warning : step.warnings)
-      content.flags.push_back({FlagLevel::Notice, step.name + ":", warning});
+      content.flags.push_back({FlagLevel::Notice, step.name + ":", warning, placeOf(step.name)});
   }
   for (const StepFolder& step : results.steps()) {
     results.attempt("Flags of " + titleOf(step.name), [&] {
@@ -294,6 +384,8 @@ void flagSteps(ResultFolder& results) {
       for (ReportFlag& flag : flagsOf(step)) content.flags.push_back(std::move(flag));
     });
   }
+  results.attempt("Comparison of files", [&] { judgeFiles(results); });
+  dropIdleLinks(content);
   std::stable_sort(content.flags.begin(), content.flags.end(), [](const auto& a, const auto& b) {
     return static_cast<int>(a.level) > static_cast<int>(b.level);
   });

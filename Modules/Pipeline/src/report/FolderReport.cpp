@@ -161,6 +161,10 @@ report::ReportContent collectReport(const fs::path& folder, const FolderReportOp
   for (const StepFolder* step : results.stepsOf("thickness")) {
     if (!step->has("thickness.nii.gz")) continue;
     results.attempt("Thickness", [&] { chartThickness(results, *step); });
+    // Where there are surfaces, they show it.
+    if (results.stepsOf("surface").empty()) {
+      results.attempt("Layers", [&] { showLayers(results, *step, options); });
+    }
   }
   for (const StepFolder& step : results.steps()) showStep(results, step, maps);
   results.attempt("Numbers", [&] { findNumbers(results); });

@@ -11,6 +11,10 @@ namespace explica::pipeline {
 /// Places on the page that flags lead to.
 inline constexpr const char* kTissuePlace = "tissues";
 inline constexpr const char* kOutlinePlace = "surfaces-on-image";
+inline constexpr const char* kCorrectedPlace = "corrected-places";
+inline constexpr const char* kUnknownPlace = "places-without-thickness";
+inline constexpr const char* kCrossingPlace = "crossing-places";
+inline constexpr const char* kLayerPlace = "layers";
 inline constexpr const char* kThicknessPlace = "thickness-maps";
 inline constexpr const char* kPatchPlace = "view3d";
 inline constexpr const char* kPatchViewsPlace = "before-after";
@@ -47,7 +51,10 @@ struct ShownFrames {
   std::vector<TriangleMesh> meshes;
   std::vector<std::string> titles;  ///< "frame 12, visibility 0.834"
 };
-[[nodiscard]] ShownFrames framesOf(const StepFolder& step);
+[[nodiscard]] ShownFrames framesOf(const StepFolder& step, std::size_t most = 26);
+
+/// Layers of the tissue in slices, and the thickness layer by layer.
+void showLayers(ResultFolder& results, const StepFolder& step, const FolderReportOptions& options);
 
 /// Histogram of the thickness in voxels.
 void chartThickness(ResultFolder& results, const StepFolder& step);

@@ -107,12 +107,38 @@ void ResultFolder::add(const fs::path& folder, const std::string& name) {
   });
 }
 
+namespace {
+
+/// Where an input lies that is still what the step read: as the record says, or beside the step's
+/// folder, where a whole run was moved to.  None if something else lies there now; the place of the
+/// record if nothing does.
+std::optional<fs::path> unchangedInput(const StepFolder& step, std::size_t input) {
+  const Json& entry = step.record["inputs"].at(input);
+  const fs::path recorded =
+      provenance::locateInput(step.record, input, step.folder / provenance::kRecordName);
+  const fs::path beside = step.folder.parent_path();
+  bool any = false;
+  for (const fs::path& path :
+       {recorded, beside / recorded.parent_path().filename() / recorded.filename(),
+        beside / recorded.filename()}) {
+    std::error_code ignored;
+    if (!fs::is_regular_file(path, ignored)) continue;
+    any = true;
+    if (!entry.contains("sha256") || provenance::digestOf(path).sha256 == entry["sha256"]) {
+      return path;
+    }
+  }
+  return any ? std::nullopt : std::optional(recorded);
+}
+
+}  // namespace
+
 std::vector<fs::path> inputsOf(const StepFolder& step, std::string_view role) {
   std::vector<fs::path> found;
   const Json inputs = step.record.value("inputs", Json::array());
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     if (inputs[i].value("role", "") != role) continue;
-    found.push_back(provenance::locateInput(step.record, i, step.folder / provenance::kRecordName));
+    if (auto path = unchangedInput(step, i)) found.push_back(std::move(*path));
   }
   return found;
 }

@@ -1,9 +1,11 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
+#include "CloseUps.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Report/Chart.h"
 #include "Explica/Report/Figure.h"
+#include "MaskBorder.h"
 #include "ReportParts.h"
 #include "StandardViews.h"
 
@@ -83,8 +85,8 @@ Eigen::VectorXd known(Eigen::VectorXd values, const Eigen::VectorXd& thickness) 
 /// One colour a vertex, `count` of the standard views of every hemisphere.
 report::ReportViews drawViews(const std::vector<const Hemisphere*>& all,
                               const std::vector<std::vector<report::Colour>>& colours,
-                              report::Filling filling, std::size_t count,
-                              Drawn drawn = Drawn::Pial) {
+                              report::Filling filling, std::size_t count, Drawn drawn = Drawn::Pial,
+                              const std::vector<std::vector<std::int32_t>>& keys = {}) {
   const report::SurfacePictureOptions size = viewSize();
   report::ReportViews views;
   const double half = commonHalfHeight(all);
@@ -97,7 +99,8 @@ report::ReportViews drawViews(const std::vector<const Hemisphere*>& all,
           report::cameraFor(all[h]->pial, standard[n].second, size.width, size.height);
       camera.halfHeight = half;
       views.views.push_back({(all[h]->side.empty() ? "" : all[h]->side + ", ") + standard[n].first,
-                             scene.render(camera, colours[h], filling, size)});
+                             scene.render(camera, colours[h], filling, size,
+                                          keys.empty() ? std::vector<std::int32_t>() : keys[h])});
     }
   }
   return views;
@@ -123,21 +126,21 @@ report::ReportViews drawMap(const std::vector<const Hemisphere*>& all,
 }
 
 /// A map of `explica surface`.
+/// @param word  what it is called at its colours
 void showMap(ResultFolder& results, const std::vector<const Hemisphere*>& all, const char* file,
-             const std::string& title, const std::string& caption, const char* id,
-             std::size_t count, Drawn drawn) {
+             const std::string& word, const std::string& title, const std::string& caption,
+             const char* id, std::size_t count, Drawn drawn) {
   std::vector<Eigen::VectorXd> values;
-  std::string name, unit;
+  std::string unit;
   for (const Hemisphere* h : all) {
     const Eigen::Index n = h->pial.vertexCount();
     const auto map = mapNamed(h->step->folder / file, n);
     if (!map) return;
     const auto thickness = mapNamed(h->step->folder / "thickness.shape.gii", n);
     values.push_back(thickness ? known(map->values, thickness->values) : map->values);
-    name = map->name;
     unit = map->unit;
   }
-  report::ReportViews views = drawMap(all, values, name, unit, count, drawn);
+  report::ReportViews views = drawMap(all, values, word, unit, count, drawn);
   views.id = id;
   views.title = title;
   views.caption = caption;
@@ -174,6 +177,7 @@ void showGiven(ResultFolder& results, const std::vector<const Hemisphere*>& all,
 
 void showRegions(ResultFolder& results, const std::vector<const Hemisphere*>& all) {
   std::vector<std::vector<report::Colour>> colours;
+  std::vector<std::vector<std::int32_t>> keys;
   std::map<Label, report::LegendEntry> legend;
   for (const Hemisphere* h : all) {
     if (!h->step->has("regions.label.gii")) return;
@@ -184,6 +188,7 @@ void showRegions(ResultFolder& results, const std::vector<const Hemisphere*>& al
       entries[entry.key] = {entry.name, report::colourOfLabel(entry.key, entry.colour)};
     }
     colours.emplace_back();
+    keys.emplace_back(labels.keys.begin(), labels.keys.end());
     for (const Label key : labels.keys) {
       const auto found = entries.find(key);
       const bool named = key != 0 && found != entries.end();
@@ -191,12 +196,53 @@ void showRegions(ResultFolder& results, const std::vector<const Hemisphere*>& al
       if (named) legend[key] = found->second;
     }
   }
-  report::ReportViews views = drawViews(all, colours, report::Filling::Discrete, 2);
+  report::ReportViews views =
+      drawViews(all, colours, report::Filling::Discrete, 2, Drawn::Pial, keys);
   views.id = "regions";
   views.title = "Regions";
   views.caption = "Each vertex in the colour of its region.";
   for (const auto& [key, entry] : legend) views.legend.push_back(entry);
   results.content().views.push_back(std::move(views));
+}
+
+/// Tiles about places that a reader must judge: where the surface was corrected, where there is no
+/// thickness, where faces cross.
+void showCloseUps(ResultFolder& results, const std::vector<Hemisphere>& all,
+                  const Volume<float>& image, const std::vector<report::MosaicOutline>& outlines,
+                  const report::MosaicOptions& options) {
+  constexpr double kWidth = 36;     // mm
+  constexpr std::size_t kMost = 7;  // places of a kind
+  report::MosaicOptions close = options;
+  close.tileHeight = 170;
+  const std::size_t each = all.size() == 1 ? kMost : kMost / 2 + 1;
+  std::vector<report::CloseUp> corrected, unknown, crossing;
+  const auto add = [&](std::vector<report::CloseUp>& to, std::vector<report::CloseUp> places) {
+    for (report::CloseUp& place : places) {
+      if (to.size() < kMost) to.push_back(std::move(place));
+    }
+  };
+  for (const Hemisphere& h : all) {
+    add(corrected, correctedPlaces(*h.step, each));
+    if (const auto* thickness = results.beside(*h.step, "thickness")) {
+      add(unknown, unknownPlaces(*thickness, each));
+    }
+    add(crossing, crossingPlaces(*h.step, each));
+    if (const auto* unfold = results.beside(*h.step, "unfold")) {
+      add(crossing, crossingPlaces(*unfold, each));
+    }
+  }
+  const auto show = [&](const std::vector<report::CloseUp>& places, const char* id,
+                        const char* title, const char* caption) {
+    if (places.empty()) return;
+    results.content().mosaics.push_back(
+        {id, title, caption, report::makeCloseUps(image, outlines, places, kWidth, close)});
+  };
+  show(corrected, kCorrectedPlace, "Where the surface was corrected",
+       "The largest of the defects of the white surface that were cut or filled: the outline must "
+       "be right there, too.");
+  show(unknown, kUnknownPlace, "Where there is no thickness",
+       "Places with the most voxels of the ribbon from which no path leads to both of its sides.");
+  show(crossing, kCrossingPlace, "Where faces cross", "At the start; listed in intersections.tsv.");
 }
 
 void showOutlines(ResultFolder& results, const std::vector<Hemisphere>& all,
@@ -212,13 +258,21 @@ void showOutlines(ResultFolder& results, const std::vector<Hemisphere>& all,
     outlines.push_back({&h.white, "white surface" + side, "#ff453a"});
     outlines.push_back({&h.pial, "pial surface" + side, "#ffd60a"});
   }
+  TriangleMesh brain;
+  for (const StepFolder* segment : results.stepsOf("segment")) {
+    if (!segment->has("brain_mask.nii.gz")) continue;
+    brain = borderOf(segment->folder / "brain_mask.nii.gz");
+  }
   report::MosaicOptions mosaic;
   mosaic.perRow = options.slices;
   mosaic.convention = options.convention;
+  const std::vector<report::MosaicOutline> surfaces = outlines;
+  if (brain.faceCount() > 0) outlines.push_back({&brain, "brain", "#5ac8fa"});
   results.content().mosaics.push_back({kOutlinePlace,
                                        "White and pial surface on " + image->filename().string(),
                                        "The outlines must follow the borders of the grey ribbon.",
                                        report::makeMosaic(volume, outlines, mosaic)});
+  showCloseUps(results, all, volume, surfaces, mosaic);
 }
 
 void chartSurfaceThickness(ResultFolder& results, const std::vector<Hemisphere>& all) {
@@ -263,12 +317,17 @@ void showSurfaces(ResultFolder& results, const FolderReportOptions& options,
   std::vector<const Hemisphere*> shown;
   for (const Hemisphere& h : all) shown.push_back(&h);
   results.attempt("Thickness map", [&] {
-    showMap(results, shown, "thickness.shape.gii", "Thickness on the pial surface",
+    showMap(results, shown, "thickness.shape.gii", "thickness", "Thickness on the pial surface",
             "Grey: not measured, as on the medial wall.", kThicknessPlace, 6, Drawn::Pial);
   });
   results.attempt("Depth map", [&] {
-    showMap(results, shown, "sulc.shape.gii", "Depth on the white surface",
+    showMap(results, shown, "sulc.shape.gii", "depth", "Depth on the white surface",
             "How far the middle surface lies below its hull.", "depth-maps", 2, Drawn::White);
+  });
+  results.attempt("Curvature map", [&] {
+    showMap(results, shown, "curvature.shape.gii", "mean curvature",
+            "Curvature on the white surface", "Gyri blue, sulci brown.", "curvature-maps", 2,
+            Drawn::White);
   });
   results.attempt("Regions", [&] { showRegions(results, shown); });
   results.attempt("Given maps", [&] { showGiven(results, shown, maps); });

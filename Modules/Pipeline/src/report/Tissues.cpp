@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/IO/VolumeFile.h"
+#include "MaskBorder.h"
 #include "ReportParts.h"
 
 #include <algorithm>
@@ -12,57 +13,7 @@
 namespace explica::pipeline {
 namespace {
 
-constexpr int kFewSlices = 5;    // in each direction, where two images are compared
-constexpr int kSmallTile = 170;  // pixels, of theirs
-constexpr double kCell = 2;      // mm: finer steps would only make the page heavier
-
-/// Every so many voxels' label, so that cells are about as wide as the page needs.
-Volume<Label> thinned(const Volume<Label>& labels) {
-  std::array<int, 3> step;
-  Grid grid = labels.grid;
-  for (int a = 0; a < 3; ++a) {
-    step[a] = std::max(1, static_cast<int>(std::lround(kCell / grid.spacing[a])));
-    grid.size[a] = (grid.size[a] - 1) / step[a] + 1;
-    grid.spacing[a] *= step[a];
-  }
-  Volume<Label> thin(grid, 0);
-  for (std::size_t v = 0; v < thin.size(); ++v) {
-    const auto [i, j, k] = grid.subscripts(v);
-    thin[v] = labels(i * step[0], j * step[1], k * step[2]);
-  }
-  return thin;
-}
-
-/// Cells' faces between what is labelled and what is not, two triangles each.
-TriangleMesh borderOf(const Volume<Label>& labels) {
-  std::vector<Point> corners;
-  const Grid& grid = labels.grid;
-  for (std::size_t v = 0; v < labels.size(); ++v) {
-    const auto at = grid.subscripts(v);
-    for (int axis = 0; axis < 3; ++axis) {
-      auto next = at;
-      if (++next[axis] >= grid.size[axis]) continue;
-      if ((labels[v] != 0) == (labels(next[0], next[1], next[2]) != 0)) continue;
-      const int b = (axis + 1) % 3, c = (axis + 2) % 3;
-      for (const auto& [p, q] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, -1}, {1, 1}, {-1, 1}}) {
-        Vector index(at[0], at[1], at[2]);
-        index[axis] += 0.5;
-        index[b] += 0.5 * p;
-        index[c] += 0.5 * q;
-        corners.push_back(grid.toWorld(index));
-      }
-    }
-  }
-  TriangleMesh mesh;
-  mesh.positions.resize(static_cast<Eigen::Index>(corners.size()), 3);
-  mesh.faces.resize(static_cast<Eigen::Index>(corners.size() / 3), 3);
-  for (std::size_t n = 0; n < corners.size(); ++n) {
-    const auto row = static_cast<Eigen::Index>(n);
-    mesh.positions.row(row) = corners[n].transpose();
-    mesh.faces(row / 3, row % 3) = static_cast<std::int32_t>(n);
-  }
-  return mesh;
-}
+constexpr int kSmallTile = 150;  // pixels, of tiles where two images are compared
 
 /// The template's structures on the T1, where one was brought there.
 void showTemplate(ResultFolder& results, const StepFolder& step,
@@ -71,9 +22,8 @@ void showTemplate(ResultFolder& results, const StepFolder& step,
   if (!step.has("atlas.nii.gz") || !image || !std::filesystem::exists(*image)) return;
   io::VolumeReadOptions reading;
   reading.dimension = 3;
-  const TriangleMesh atlas = borderOf(thinned(io::readLabels(step.folder / "atlas.nii.gz").volume));
-  const TriangleMesh brain =
-      borderOf(thinned(io::readLabels(step.folder / "brain_mask.nii.gz").volume));
+  const TriangleMesh atlas = borderOf(step.folder / "atlas.nii.gz");
+  const TriangleMesh brain = borderOf(step.folder / "brain_mask.nii.gz");
   results.content().mosaics.push_back(
       {kTissuePlace, "Template on " + image->filename().string(),
        "Structures of the template's atlas and the brain as it was found, in steps of 2 mm. Cortex "
@@ -93,7 +43,6 @@ void showPreparation(ResultFolder& results, const StepFolder& step,
   reading.dimension = 3;
   const Volume<float> image = io::readScalars(*file, reading).volume;
   report::MosaicOptions small = options;
-  small.perRow = std::min(options.perRow, kFewSlices);
   small.tileHeight = kSmallTile;
   const auto compare = [&](const char* with, const std::string& title, const std::string& caption,
                            const std::array<std::string, 2>& states, const auto& changed) {

@@ -19,7 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostFrames = 60;  // in the interactive view
+constexpr std::size_t kMostFrames = 26;  // in the interactive view: a page stays below 10 MB
+constexpr std::size_t kFewFrames = 16;   // of further patches on the same page
 
 /// An unfolding's surfaces: where it began, the states on the way, and the region.
 struct Unfolded {
@@ -75,11 +76,12 @@ std::optional<Point> viewpointOf(const StepFolder& step, const Unfolded& unfolde
          options.value("distance", 1000.0) * direction->normalized();
 }
 
-Unfolded readUnfolded(const StepFolder& step) {
+/// @param further  another patch is on the page already
+Unfolded readUnfolded(const StepFolder& step, bool further) {
   Unfolded unfolded;
   const auto source = inputOf(step, "SURFACE");
   if (source && fs::exists(*source)) unfolded.whole = io::readSurface(*source).mesh;
-  ShownFrames frames = framesOf(step);
+  ShownFrames frames = framesOf(step, further ? kFewFrames : kMostFrames);
   unfolded.frames = std::move(frames.meshes);
   unfolded.titles = std::move(frames.titles);
   const TriangleMesh after = io::readSurface(step.folder / "unfolded.surf.gii").mesh;
@@ -173,7 +175,7 @@ PatchPaint foldsOf(const Unfolded& unfolded, Eigen::Index vertexCount, const Ste
                              ? mapNamed(surface->folder / "curvature.shape.gii", vertexCount)
                              : std::nullopt;
   folds.caption =
-      std::string("From the viewpoint and from the side, with the same colours: ") +
+      std::string("From the viewpoint and from the side, to one scale, the patch's rim dark: ") +
       (curvature ? "gyri blue, sulci brown." : "the patch coloured, its surroundings pale.");
   report::SurfacePaint& paint = folds.paint;
   paint.region.setZero(vertexCount);
@@ -226,9 +228,10 @@ class PatchPictures {
   [[nodiscard]] report::ReportViews draw(const PatchPaint& painted) const {
     const auto colours = report::coloursOf(painted.paint, before_.vertexCount());
     const bool smooth = painted.paint.values.size() > 0;
+    const std::vector<std::int32_t> rim(painted.paint.region.begin(), painted.paint.region.end());
     report::SurfacePictureOptions size;
-    size.width = 520;
-    size.height = 400;
+    size.width = 360;
+    size.height = 280;
     report::ReportViews views;
     views.id = painted.id;
     views.title = painted.title;
@@ -237,14 +240,13 @@ class PatchPictures {
       views.caption += " It was unfolded alone, and is drawn apart from the surface.";
     }
     for (const bool folded : {true, false}) {
-      const TriangleMesh& shown = folded ? before_ : after_;
       for (const report::FigureView* view : {&front_, &side_}) {
         views.views.push_back(
             {std::string(folded ? "before" : "after") +
                  (view == &front_ ? ", from the viewpoint" : ", from the side"),
              (folded ? sceneBefore_ : sceneAfter_)
-                 .render(report::cameraOf(shown, *view, size.width, size.height), colours,
-                         smooth ? report::Filling::Smooth : report::Filling::Discrete, size)});
+                 .render(cameraFor(folded, *view, size), colours,
+                         smooth ? report::Filling::Smooth : report::Filling::Discrete, size, rim)});
       }
     }
     if (smooth) views.scale = painted.paint.scale;
@@ -252,6 +254,15 @@ class PatchPictures {
   }
 
  private:
+  /// On the patch, before and after to one scale.
+  [[nodiscard]] report::Camera cameraFor(bool folded, const report::FigureView& view,
+                                         const report::SurfacePictureOptions& size) const {
+    report::Camera before = report::cameraOf(before_, view, size.width, size.height);
+    report::Camera after = report::cameraOf(after_, view, size.width, size.height);
+    before.halfHeight = after.halfHeight = std::max(before.halfHeight, after.halfHeight);
+    return folded ? before : after;
+  }
+
   const Unfolded& unfolded_;
   const TriangleMesh& before_;
   const TriangleMesh& after_;
@@ -271,9 +282,9 @@ void drawBeforeAndAfter(ResultFolder& results, const Unfolded& unfolded, const S
 
 }  // namespace
 
-ShownFrames framesOf(const StepFolder& step) {
+ShownFrames framesOf(const StepFolder& step, std::size_t most) {
   ShownFrames frames;
-  for (const fs::path& file : fewFrames(step.folder, kMostFrames)) {
+  for (const fs::path& file : fewFrames(step.folder, most)) {
     frames.meshes.push_back(io::readSurface(file).mesh);
     frames.titles.push_back(titleOf(file, step.summary));
   }
@@ -282,7 +293,7 @@ ShownFrames framesOf(const StepFolder& step) {
 
 void showUnfolding(ResultFolder& results, const StepFolder& step,
                    const std::vector<GivenMap>& maps) {
-  const Unfolded unfolded = readUnfolded(step);
+  const Unfolded unfolded = readUnfolded(step, !results.content().evolutions.empty());
   report::Evolution evolution = report::evolutionOf(unfolded.frames);
   evolution.frameTitles = unfolded.titles;
   evolution.region = unfolded.region;

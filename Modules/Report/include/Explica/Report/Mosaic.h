@@ -32,6 +32,12 @@ struct MosaicTile {
   std::vector<std::string> paths;  ///< SVG path data in pixels, one an outline; may be empty
 };
 
+/// A place to look at closely.
+struct CloseUp {
+  Point place = Point::Zero();  ///< RAS mm
+  std::string words;            ///< what is there; short
+};
+
 /// Rows of slices.
 struct SliceMosaic {
   SideConvention convention = SideConvention::Neurological;
@@ -51,6 +57,13 @@ struct MosaicOptions {
 [[nodiscard]] SliceMosaic makeMosaic(const Volume<float>& image,
                                      const std::vector<MosaicOutline>& outlines,
                                      const MosaicOptions& options = {});
+/// Slices through each of the places, `width` mm to a side and the place in their middle, ringed: a
+/// column a place, a row a direction.
+/// @throws InvalidInput  no place, or an option out of range
+[[nodiscard]] SliceMosaic makeCloseUps(const Volume<float>& image,
+                                       const std::vector<MosaicOutline>& outlines,
+                                       const std::vector<CloseUp>& places, double width,
+                                       const MosaicOptions& options = {});
 /// The same slices of two images of one grid, such as before and after a correction: over the
 /// voxels of `after` above 0, framed by those of `before`, both in the grey scale of `after`.
 /// @throws as makeMosaic; InvalidInput also for images of different size

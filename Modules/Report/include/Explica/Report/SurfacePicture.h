@@ -68,9 +68,12 @@ class SurfaceScene {
   /// Draws the surface on white, lit from the eye's upper left, dark where folds hide from the sky.
   /// The inner side of faces is shown darker and bluish.
   /// @param colours  one a vertex; empty for a plain light grey
+  /// @param keys     one a vertex, or none: a thin dark line runs between vertices of different
+  /// keys
   [[nodiscard]] Picture render(const Camera& camera, const std::vector<Colour>& colours,
                                Filling filling = Filling::Smooth,
-                               const SurfacePictureOptions& options = {}) const;
+                               const SurfacePictureOptions& options = {},
+                               const std::vector<std::int32_t>& keys = {}) const;
 
   /// Share of the sky that each vertex sees within a tenth of the surface's size, V values in [0,
   /// 1].

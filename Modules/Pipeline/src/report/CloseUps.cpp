@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "CloseUps.h"
+
+#include "Explica/IO/VolumeFile.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+namespace explica::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Rows of a table of this program, by the names of its columns.
+std::vector<std::map<std::string, std::string>> rowsOf(const fs::path& file) {
+  std::vector<std::map<std::string, std::string>> rows;
+  std::ifstream in(file);
+  std::string line;
+  std::vector<std::string> names;
+  while (std::getline(in, line)) {
+    std::istringstream words(line);
+    std::string word;
+    std::vector<std::string> values;
+    while (std::getline(words, word, '\t')) values.push_back(word);
+    if (names.empty()) {
+      names = values;
+      continue;
+    }
+    std::map<std::string, std::string> row;
+    for (std::size_t n = 0; n < std::min(names.size(), values.size()); ++n) {
+      row[names[n]] = values[n];
+    }
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+double numberIn(const std::map<std::string, std::string>& row, const std::string& name) {
+  const auto found = row.find(name);
+  double value = kNaN;
+  if (found == row.end()) return value;
+  const char* end = found->second.data() + found->second.size();
+  return std::from_chars(found->second.data(), end, value).ec == std::errc() ? value : kNaN;
+}
+
+/// A cube of the image, and what of its tissue has no thickness.
+struct Cell {
+  int count = 0;
+  Vector sum = Vector::Zero();  ///< of the voxels' indices
+};
+
+}  // namespace
+
+std::vector<report::CloseUp> correctedPlaces(const StepFolder& surface, std::size_t most) {
+  std::vector<std::pair<double, report::CloseUp>> places;
+  for (auto& row : rowsOf(surface.folder / "topology.tsv")) {
+    const Point at(numberIn(row, "x_mm"), numberIn(row, "y_mm"), numberIn(row, "z_mm"));
+    const double voxels = numberIn(row, "voxels");
+    if (!at.allFinite()) continue;
+    places.emplace_back(voxels, report::CloseUp{at, row["kind"] + " " + row["side"] + ", " +
+                                                        readable(voxels) + " voxels"});
+  }
+  std::stable_sort(places.begin(), places.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<report::CloseUp> largest;
+  for (auto& [size, place] : places) {
+    if (largest.size() < most) largest.push_back(std::move(place));
+  }
+  return largest;
+}
+
+std::vector<report::CloseUp> unknownPlaces(const StepFolder& thickness, std::size_t most) {
+  if (!thickness.has("thickness.nii.gz") || !thickness.has("harmonic.nii.gz")) return {};
+  io::VolumeReadOptions reading;
+  reading.allowNonFinite = true;
+  const Volume<float> known =
+      io::readScalars(thickness.folder / "thickness.nii.gz", reading).volume;
+  const Volume<float> harmonic =
+      io::readScalars(thickness.folder / "harmonic.nii.gz", reading).volume;
+  if (known.size() != harmonic.size()) return {};
+  constexpr double kCell = 8;  // mm
+  std::map<std::array<int, 3>, Cell> cells;
+  for (std::size_t v = 0; v < known.size(); ++v) {
+    const bool tissue = harmonic[v] > 0 && harmonic[v] < 1;
+    if (!tissue || known[v] > 0) continue;
+    const auto at = known.grid.subscripts(v);
+    std::array<int, 3> key{};
+    for (int a = 0; a < 3; ++a) {
+      key[a] = static_cast<int>(at[a] * known.grid.spacing[a] / kCell);
+    }
+    Cell& cell = cells[key];
+    ++cell.count;
+    cell.sum += Vector(at[0], at[1], at[2]);
+  }
+  std::vector<Cell> fullest;
+  for (const auto& [key, cell] : cells) fullest.push_back(cell);
+  std::stable_sort(fullest.begin(), fullest.end(),
+                   [](const Cell& a, const Cell& b) { return a.count > b.count; });
+  std::vector<report::CloseUp> places;
+  for (std::size_t n = 0; n < std::min(most, fullest.size()); ++n) {
+    places.push_back({known.grid.toWorld(fullest[n].sum / fullest[n].count),
+                      readable(fullest[n].count) + (fullest[n].count == 1 ? " voxel" : " voxels")});
+  }
+  return places;
+}
+
+std::vector<report::CloseUp> crossingPlaces(const StepFolder& step, std::size_t most) {
+  std::vector<report::CloseUp> places;
+  for (auto& row : rowsOf(step.folder / "intersections.tsv")) {
+    const Point at(numberIn(row, "x"), numberIn(row, "y"), numberIn(row, "z"));
+    if (!at.allFinite() || places.size() >= most) continue;
+    const bool parted = row.contains("parted") && row["parted"] != "0" && row["parted"] != "no";
+    places.push_back(
+        {at, "faces " + row["face_1"] + ", " + row["face_2"] + (parted ? ", parted" : "")});
+  }
+  return places;
+}
+
+}  // namespace explica::pipeline

@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+// What a measurement of thickness shows of itself: layers in slices, and the thickness layer by
+// layer.
+#include "Explica/IO/VolumeFile.h"
+#include "Explica/Report/Chart.h"
+#include "ReportParts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace explica::pipeline {
+namespace {
+
+constexpr int kShells = 5;              // of equal depth, where no layers were asked for
+constexpr std::size_t kMostCharts = 6;  // histograms of layers
+
+Volume<float> readMap(const StepFolder& step, const char* file) {
+  io::VolumeReadOptions reading;
+  reading.allowNonFinite = true;
+  reading.allowAllZero = true;
+  return io::readScalars(step.folder / file, reading).volume;
+}
+
+/// Layers as they were written, or else shells of equal depth.
+Volume<Label> layersOf(const StepFolder& step) {
+  if (step.has("layers.nii.gz")) return io::readLabels(step.folder / "layers.nii.gz").volume;
+  const Volume<float> depth = readMap(step, "depth.nii.gz");
+  Volume<Label> shells(depth.grid, 0);
+  for (std::size_t v = 0; v < depth.size(); ++v) {
+    if (!(depth[v] > 0)) continue;
+    shells[v] = std::clamp(1 + static_cast<int>(kShells * depth[v]), 1, kShells);
+  }
+  return shells;
+}
+
+/// A histogram of the thickness in each layer.
+void chartLayers(ResultFolder& results, const StepFolder& step, const Volume<Label>& layers) {
+  const Volume<float> thickness = readMap(step, "thickness.nii.gz");
+  if (thickness.size() != layers.size()) return;
+  std::map<Label, std::vector<double>> values;
+  for (std::size_t v = 0; v < layers.size(); ++v) {
+    if (layers[v] > 0 && thickness[v] > 0) values[layers[v]].push_back(thickness[v]);
+  }
+  if (values.size() > kMostCharts) return;
+  for (const auto& [layer, in] : values) {
+    const auto count = static_cast<Eigen::Index>(in.size());
+    results.content().charts.push_back(
+        {"",
+         report::histogramSvg(Eigen::Map<const Eigen::VectorXd>(in.data(), count),
+                              {"Layer " + std::to_string(layer) + ": " +
+                                   readable(static_cast<double>(count)) + " voxels",
+                               "thickness [mm]", "share of voxels"}),
+         kThicknessCharts});
+  }
+}
+
+}  // namespace
+
+void showLayers(ResultFolder& results, const StepFolder& step, const FolderReportOptions& options) {
+  const bool written = step.has("layers.nii.gz");
+  if (!written && !step.has("depth.nii.gz")) return;
+  const Volume<Label> layers = layersOf(step);
+  report::MosaicOptions mosaic;
+  mosaic.perRow = options.slices;
+  mosaic.convention = options.convention;
+  const std::string side = step.side().empty() ? "" : ", " + step.side();
+  results.content().mosaics.push_back(
+      {kLayerPlace, (written ? "Layers" : "Depth") + side,
+       written ? "Each layer in its colour, the innermost orange."
+               : "Five shells of equal depth from the inner to the outer boundary, the innermost "
+                 "orange.",
+       report::makeMosaic(layers, mosaic)});
+  if (written) chartLayers(results, step, layers);
+}
+
+}  // namespace explica::pipeline
