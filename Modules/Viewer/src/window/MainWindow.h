@@ -45,6 +45,7 @@ class MainWindow : public QMainWindow {
   bool set(const QString& field, const QString& value);
   void press(const QString& key, int x, int y);
   void drag(int x0, int y0, int x1, int y1);
+  void turn(int pictures);  ///< the surface, with the pointer held, so many pictures long
 
   [[nodiscard]] const Session& session() const { return session_; }
   [[nodiscard]] bool isSaving() const { return saving_.valid(); }

@@ -11,6 +11,7 @@
 #include <QMouseEvent>
 
 #include <chrono>
+#include <cmath>
 #include <fstream>
 #include <sstream>
 #include <thread>
@@ -41,6 +42,8 @@ bool playEvent(MainWindow& window, const std::string& verb, std::istringstream& 
     window.press(QString::fromStdString(name), x, y);
   } else if (verb == "drag" && words >> x >> y >> x1 >> y1) {
     window.drag(x, y, x1, y1);
+  } else if (verb == "turn" && words >> x) {
+    window.turn(x);
   } else if (verb == "do" && words >> name) {
     return window.act(QString::fromStdString(name));
   } else if (verb == "set" && words >> name && std::getline(words >> std::ws, value)) {
@@ -77,7 +80,7 @@ void playScript(MainWindow& window, const std::string& path) {
     if (!playEvent(window, verb, words)) {
       throw InvalidInput(
           path + ": '" + line +
-          "' is no event (key, drag, do, set, open, lookFrom, wait, saved, picture)");
+          "' is no event (key, drag, turn, do, set, open, lookFrom, wait, saved, picture)");
     }
   }
 }
@@ -115,6 +118,22 @@ void MainWindow::press(const QString& key, int x, int y) {
       return;
     }
   }
+}
+
+void MainWindow::turn(int pictures) {
+  const QPointF middle(0.5 * view_->width(), 0.5 * view_->height());
+  const auto send = [this](QEvent::Type type, const QPointF& p, Qt::MouseButton button) {
+    QMouseEvent event(type, p, button, Qt::LeftButton, Qt::NoModifier);
+    QApplication::sendEvent(view_, &event);
+    QApplication::processEvents();
+  };
+  send(QEvent::MouseButtonPress, middle, Qt::LeftButton);
+  for (int n = 1; n <= pictures; ++n) {
+    const double angle = 0.1 * n, radius = 0.2 * view_->height();
+    send(QEvent::MouseMove, middle + radius * QPointF(std::cos(angle), std::sin(angle)),
+         Qt::NoButton);
+  }
+  send(QEvent::MouseButtonRelease, middle, Qt::LeftButton);
 }
 
 void MainWindow::drag(int x0, int y0, int x1, int y1) {

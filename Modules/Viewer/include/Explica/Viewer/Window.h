@@ -136,9 +136,9 @@ struct WindowOptions {
 ///
 /// A script has one event a line, for tests and demonstrations; positions are pixels of the
 /// three-dimensional view from its lower left: `key KEY X Y` (space, Left, c, ...), `drag X0 Y0 X1
-/// Y1`, `do ACTION` (the name of a menu's action), `set PANEL_FIELD VALUE`, `open FILE`, `lookFrom
-/// FILE` (a surface of viewpoints), `wait N` (until N states exist or nothing runs), `saved` (until
-/// saving is over), `picture FILE.png`.
+/// Y1`, `turn PICTURES`, `do ACTION` (the name of a menu's action), `set PANEL_FIELD VALUE`, `open
+/// FILE`, `lookFrom FILE` (a surface of viewpoints), `wait N` (until N states exist or nothing
+/// runs), `saved` (until saving is over), `picture FILE.png`.
 ///
 /// @throws InvalidInput      a line of the script that is none of these
 /// @throws EnvironmentError  no display, or none that answers; a build without the window
