@@ -1,0 +1,99 @@
+#!/usr/bin/python3
+# SPDX-FileCopyrightText: The Explica developers
+# SPDX-License-Identifier: Apache-2.0
+"""A head turned by 15 degrees and resampled, segmented beside itself: Dice of tissues and hemispheres.
+
+    Modules/Registration/benchmark/turned.py build/bin/explica T1 FOLDER [X,Y,Z mm ...]
+
+Each voxel of the turned image is compared with the nearest one of the segmentation of the image as it
+is.  "resampled" is what resampling alone costs: the shares of tissues found in the image as it is, resampled
+as the brightness was, the largest taken, in the same comparison.  What is in FOLDER already is used."""
+
+import pathlib
+import subprocess
+import sys
+
+import nibabel as nib
+import numpy as np
+from scipy.ndimage import map_coordinates
+
+
+def turn():
+    """15 degrees about the axis from foot to head, 6 about that from left to right."""
+    a, b = np.deg2rad(15), np.deg2rad(6)
+    about_z = np.array([[np.cos(a), -np.sin(a), 0], [np.sin(a), np.cos(a), 0], [0, 0, 1]])
+    about_x = np.array([[1, 0, 0], [0, np.cos(b), -np.sin(b)], [0, np.sin(b), np.cos(b)]])
+    return about_z @ about_x
+
+
+def turned_grid(image, spacing):
+    """Size and affine of a grid around the turned head, and the places of its voxels in the image."""
+    voxels = np.argwhere(image.get_fdata() > 0)
+    centre = nib.affines.apply_affine(image.affine, (voxels.min(0) + voxels.max(0)) / 2)
+    shift = np.array([4.3, -7.1, 3.6])
+    size = np.ceil(np.array([190, 230, 210]) / spacing).astype(int)
+    affine = np.diag([*spacing, 1.0])
+    affine[:3, 3] = shift - spacing * (size - 1) / 2
+    motion = np.eye(4)
+    motion[:3, :3] = turn()
+    motion[:3, 3] = shift - turn() @ centre
+    index = np.indices(size).reshape(3, -1).T
+    back = np.linalg.inv(image.affine) @ np.linalg.inv(motion) @ affine
+    return size, affine, nib.affines.apply_affine(back, index).T
+
+
+def segmented(program, image, out):
+    if not (out / "summary.json").exists():
+        subprocess.run([program, "segment", image, "--out", out, "--force", "--quiet"], check=False)
+    return out
+
+
+def read(path):
+    return np.asarray(nib.load(path).dataobj)
+
+
+def dice(a, b):
+    return 2 * np.count_nonzero(a & b) / (np.count_nonzero(a) + np.count_nonzero(b))
+
+
+def compare(program, path, work, spacing):
+    image = nib.load(path)
+    size, affine, places = turned_grid(image, spacing)
+    name = "turned-" + "x".join(f"{s:g}" for s in spacing)
+    file = work / (name + ".nii.gz")
+    if not file.exists():
+        values = map_coordinates(image.get_fdata(), places, order=1).reshape(size)
+        nib.save(nib.Nifti1Image(values.astype(np.float32), affine), file)
+    plain, turned = segmented(program, path, work / "plain"), segmented(program, file, work / name)
+
+    nearest = np.round(places).astype(int)
+    inside = np.all((nearest >= 0) & (nearest < np.array(image.shape)[:, None]), axis=0)
+    nearest = np.where(inside, nearest, 0)
+
+    def beside(volume):
+        return np.where(inside, volume[tuple(nearest)], 0).reshape(size)
+
+    known, found = beside(read(plain / "seg.nii.gz")), read(turned / "seg.nii.gz")
+    shares = np.array([map_coordinates(read(plain / f"{k}.nii.gz").astype(np.float32), places, order=1)
+                       for k in ("csf", "gm", "wm")])
+    resampled = np.where(shares.sum(0) > 0.5, shares.argmax(0) + 1, 0).reshape(size)
+    half_known, half = beside(read(plain / "hemisphere.nii.gz")), read(turned / "hemisphere.nii.gz")
+    left, right = (2, 3), (41, 42)
+    wrong = (np.isin(half, left) & np.isin(half_known, right)) | (
+        np.isin(half, right) & np.isin(half_known, left))
+    print(f"{name}: grey {dice(found == 2, known == 2):.3f} (resampled "
+          f"{dice(resampled == 2, known == 2):.3f}), white {dice(found == 3, known == 3):.3f} (resampled "
+          f"{dice(resampled == 3, known == 3):.3f}), grey and white "
+          f"{dice(found >= 2, known >= 2):.3f}; hemispheres "
+          + ", ".join(f"{dice(np.isin(half, s), np.isin(half_known, s)):.3f}" for s in (left, right))
+          + f"; on the other side {100 * wrong.sum() / np.isin(half_known, left + right).sum():.2f} %")
+
+
+def main():
+    program, path, work = sys.argv[1], sys.argv[2], pathlib.Path(sys.argv[3])
+    work.mkdir(parents=True, exist_ok=True)
+    for words in sys.argv[4:] or ["0.8,0.8,0.8", "1,1,2"]:
+        compare(program, path, work, np.array([float(w) for w in words.split(",")]))
+
+
+main()
