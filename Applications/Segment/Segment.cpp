@@ -298,7 +298,8 @@ void judgeTissue(Context& context, Judge& judge, const segmentation::TissueSegme
   judge.flag("white-share", tissue.classes[2].share);
 }
 
-/// Where template and image show different tissues, the image is believed, and the reader told.
+/// Where template and image show different tissues in spite of the deformation, the image is
+/// believed, and the reader told.
 void compareWithTemplate(Context& context, const segmentation::TissueSegmentation& tissue,
                          const Head& head) {
   if (head.expected.size() == 0 || tissue.termination == Termination::Interrupted) return;

