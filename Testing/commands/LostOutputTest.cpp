@@ -59,6 +59,22 @@ TEST_F(LostOutput, OfTheLogIsToldBeforeAnyWork) {
   EXPECT_EQ(folder_.entries(), before);
 }
 
+TEST_F(LostOutput, OfALogThatNobodyReadsOrThatIsAnotherFileIsTold) {
+  const auto pipe = bash("mkfifo pipe; \"$EXPLICA\" phantom shell --size 8 --log pipe --out b");
+  EXPECT_EQ(pipe.exitCode, 4) << pipe;
+  EXPECT_NE(pipe.err.find("pipe: the log cannot be written"), std::string::npos) << pipe;
+  const auto input = bash("\"$EXPLICA\" phantom shell --size 8 --log a/labels.nii.gz --out b");
+  EXPECT_EQ(input.exitCode, 1) << input;
+  EXPECT_NE(input.err.find("no log of explica"), std::string::npos) << input;
+  EXPECT_FALSE(fs::exists(folder_ / "b"));
+  EXPECT_EQ(explica({"verify", folder_ / "a"}).exitCode, 0);
+  for (const char* out : {"b", "c"}) {  // its own log grows
+    EXPECT_EQ(bash("\"$EXPLICA\" phantom shell --size 8 --log own.log --out " + std::string(out))
+                  .exitCode,
+              0);
+  }
+}
+
 TEST_F(LostOutput, OfMessagesIsExitCodeFour) {
   EXPECT_EQ(bash("\"$EXPLICA\" phantom shell --size 8 --out b 2> /dev/full").exitCode, 4);
   // Closed from the start is as wished.

@@ -6,6 +6,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Provenance/Record.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -13,8 +14,27 @@
 #include <cmath>
 #include <cstring>
 #include <ctime>
+#include <filesystem>
+#include <fstream>
 
 namespace explica::app {
+namespace {
+
+constexpr char kFirstLine[] = "log of explica, process ";
+
+/// True if the file holds something else than a log of ours: an input named by mistake must not
+/// grow a log at its end.
+bool isAnotherFile(const std::filesystem::path& path) {
+  std::error_code fault;
+  if (!std::filesystem::is_regular_file(path, fault)) return false;
+  std::ifstream file(path);
+  std::string start(200, '\0');
+  file.read(start.data(), static_cast<std::streamsize>(start.size()));
+  start.resize(static_cast<std::size_t>(file.gcount()));
+  return !start.empty() && start.substr(0, start.find('\n')).find(kFirstLine) == std::string::npos;
+}
+
+}  // namespace
 
 std::string timeNow() {
   const std::time_t now = std::time(nullptr);
@@ -32,12 +52,21 @@ Console::~Console() {
 }
 
 void Console::openLog(const std::string& path) {
-  log_.reset(std::fopen(path.c_str(), "a"));
+  if (isAnotherFile(path)) {
+    throw UsageError(path + ": --log would be appended to this file, which is no log of explica");
+  }
+  // Without waiting: a pipe that nobody reads is an error, not a reason to stand still.
+  const int descriptor =
+      open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | O_NONBLOCK, 0666);
+  if (descriptor >= 0) {
+    fcntl(descriptor, F_SETFL, fcntl(descriptor, F_GETFL) & ~O_NONBLOCK);
+    log_.reset(fdopen(descriptor, "a"));
+  }
   if (!log_) {
     throw EnvironmentError(path + ": the log cannot be written (" + std::strerror(errno) + ")");
   }
   logPath_ = path;
-  line("", "log of explica, process " + std::to_string(getpid()), false);
+  line("", kFirstLine + std::to_string(getpid()), false);
   if (!lost_.empty()) throw EnvironmentError(lost_);
 }
 
