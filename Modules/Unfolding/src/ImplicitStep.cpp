@@ -17,7 +17,7 @@ using collision::Contact;
 using collision::Pair;
 
 constexpr double kSeparated = 0.25;  // of their range: pairs that start nearer are parted first
-constexpr double kStillSeparating = 0.9;   // of the contact energy before: above it the rest ...
+constexpr double kStillSeparating = 0.6;   // of the contact energy before: above it the rest ...
 constexpr int kSeparatingIterations = 60;  // ... or after these goes on beside the unfolding
 constexpr double kMultiplierRate = 0.3;    // of the full update: the inner problem is not solved
 constexpr double kLargestMultiplier = 20;  // times the pull of the visibility term
