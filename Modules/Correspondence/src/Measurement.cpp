@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Correspondence/Measurement.h"
 
+#include "Explica/Core/Errors.h"
+
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -34,6 +36,8 @@ double foldingOf(const harmonic::Annulus& annulus) {
 
 Measurement measure(harmonic::Annulus annulus, const MeasurementOptions& options,
                     const Monitor& monitor, const OnPart& onPart) {
+  // Before the work, not after it.
+  if (options.layers.layers < 1) throw InvalidInput("there must be at least one layer");
   Measurement m;
   m.annulus = std::move(annulus);
   const auto begin = [&](const char* part) {

@@ -3,6 +3,7 @@
 #include "Explica/Correspondence/Correspondence.h"
 #include "Explica/Correspondence/Measurement.h"
 
+#include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Correspondence/Layers.h"
 #include "Explica/Correspondence/Sulci.h"
@@ -392,4 +393,17 @@ TEST(Layers, EqualVolumeFollowsTheColumn) {
   const auto layers = layersOf(depth, 4);
   EXPECT_EQ(*std::min_element(layers.begin(), layers.end()), 1);
   EXPECT_EQ(*std::max_element(layers.begin(), layers.end()), 4);
+}
+
+TEST(Measurement, NoLayerIsRefusedBeforeAnyWork) {
+  harmonic::LabelRoles roles;
+  roles.inner = {1};
+  roles.tissue = {2};
+  MeasurementOptions options;
+  options.layers.layers = 0;
+  int parts = 0;
+  EXPECT_THROW((void)measure(harmonic::annulusFromLabels(cutShell(Vector(1, 1, 1)), roles), options,
+                             {}, [&](const std::string&, const Measurement&) { ++parts; }),
+               InvalidInput);
+  EXPECT_EQ(parts, 0);
 }
