@@ -7,7 +7,7 @@
 namespace explica::unfolding {
 namespace {
 
-constexpr char kMagic[] = "ExplicaUnfold7\n";  // the number counts changes of the format
+constexpr char kMagic[] = "ExplicaUnfold8\n";  // the number counts changes of the format
 static_assert(sizeof(HeldPair) == 20);
 
 /// The members of a record, one list for writing and reading.
@@ -35,7 +35,6 @@ void writeCheckpoint(const std::filesystem::path& path, const Checkpoint& checkp
   w.number(s.areaStiffness);
   w.number(s.drive);
   w.count(s.driveIteration);
-  w.number(s.firmness);
   w.number(s.lift);
   w.number(s.collarWidth);
   w.count(s.ways);
@@ -78,7 +77,6 @@ Checkpoint readCheckpoint(const std::filesystem::path& path) {
   c.state.areaStiffness = r.number();
   c.state.drive = r.number();
   c.state.driveIteration = static_cast<int>(r.count());
-  c.state.firmness = r.number();
   c.state.lift = r.number();
   c.state.collarWidth = r.number();
   c.state.ways = static_cast<int>(r.count());

@@ -316,13 +316,17 @@ void ImplicitStep::accountForContacts() {
   }
 }
 
+/// A multiplier grows by what an area is off beyond the slack, so that faces that press against
+/// their areas end at its edge.
 void ImplicitStep::updateMultipliers() {
   const auto faces = u_.setup.patch.ofRegion();
+  const double slack = u_.options.areaSlack;
+  const double largest = kLargestMultiplier * std::max(1.0, state_.drive);
   for (std::size_t f = 0; f < faces.size(); ++f) {
     const double error = shapeOf(faces[f], state_.positions).area / faces[f].restArea - 1;
-    state_.multipliers[f] =
-        std::clamp(state_.multipliers[f] + kMultiplierRate * state_.areaStiffness * error,
-                   -kLargestMultiplier, kLargestMultiplier);
+    const double excess = error - std::clamp(error, -slack, slack);
+    state_.multipliers[f] = std::clamp(
+        state_.multipliers[f] + kMultiplierRate * state_.areaStiffness * excess, -largest, largest);
   }
 }
 

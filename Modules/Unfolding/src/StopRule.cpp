@@ -11,6 +11,12 @@
 namespace explica::unfolding {
 namespace {
 
+constexpr double kLargestDrive = 8;   // lengths and contacts are outweighed up to here
+constexpr double kLeastDrive = 0.1;   // ... and the visibility term down to here
+constexpr double kBalanced = 0.0008;  // of visibility
+constexpr double kEnough = 0.002;     // of merit: no iteration is spent on more
+constexpr int kBalancing = 150;       // iterations at most that seeing and lengths are weighed
+
 void requireUsable(const UnfoldOptions& options) {
   if (options.targetVisibility &&
       !(*options.targetVisibility > 0 && *options.targetVisibility <= 1)) {
@@ -44,6 +50,56 @@ bool isRelaxed(const std::vector<IterationRecord>& history) {
   return history.back().edgeStrainMean > 0.996 * before;
 }
 
+/// True if folds no longer open fast, or lengths have so much to spare that no fold is in the way:
+/// what is seen and lengths can then be weighed.
+bool isOpen(const std::vector<IterationRecord>& history, int since) {
+  constexpr std::size_t kWindow = 4;
+  constexpr double kGain = 0.006;    // of visibility over the window ...
+  constexpr double kHalfOpen = 0.9;  // ... where slowness is not that of a fold on its way
+  constexpr double kMuch = 0.021;    // of visibility
+  const IterationRecord& last = history.back();
+  if (last.iteration - since < static_cast<int>(kWindow)) return false;
+  if (last.visibility < kHalfOpen) return false;
+  return lengthsToSpare(last.edgeStrainMean) > kMuch ||
+         last.visibility - history[history.size() - 1 - kWindow].visibility < kGain;
+}
+
+/// What lengths have to spare more than what is seen, in visibility; nothing where the one that
+/// gains has plenty.
+double imbalance(double visibility, double strain) {
+  const double seen = seenToSpare(visibility), lengths = lengthsToSpare(strain);
+  return std::min(seen, lengths) < kPlenty ? lengths - seen : 0;
+}
+
+/// By how much the visibility term shall be stronger or weaker in the next step: where the last
+/// ones lead to counts.
+double balancingFactor(const std::vector<IterationRecord>& history) {
+  constexpr double kLead = 4;      // steps that the last one is carried on for
+  constexpr double kGain = 3;      // of the factor for each of visibility
+  constexpr double kMost = 0.03;   // of the strength per step ...
+  constexpr double kFaster = 1.5;  // ... and more for each of visibility that lengths ...
+  constexpr double kFrom = 0.005;  // ... have to spare beyond this
+  const IterationRecord& last = history.back();
+  const IterationRecord& before = history[history.size() - 2];
+  const double gap =
+      imbalance(last.visibility + kLead * (last.visibility - before.visibility),
+                last.edgeStrainMean + kLead * (last.edgeStrainMean - before.edgeStrainMean));
+  const double most =
+      1 + kMost + kFaster * std::max(0.0, lengthsToSpare(last.edgeStrainMean) - kFrom);
+  return std::clamp(1 + kGain * gap, 1 / most, most);
+}
+
+/// True if the last steps changed neither what is seen nor lengths by anything that counts.
+bool isAtRest(const std::vector<IterationRecord>& history) {
+  constexpr std::size_t kWindow = 5;
+  constexpr double kMove = 3e-4;
+  if (history.size() <= kWindow) return false;
+  const IterationRecord& last = history.back();
+  const IterationRecord& before = history[history.size() - 1 - kWindow];
+  return std::abs(last.visibility - before.visibility) < kMove &&
+         std::abs(last.edgeStrainMean - before.edgeStrainMean) < kMove;
+}
+
 /// How much stronger the visibility term has to be for a goal.  Against springs the deficit 1 - v
 /// falls with its square: a quarter of the way at a time, since lengths are better spared.
 double driveFactor(double visibility, double goal) {
@@ -69,9 +125,6 @@ bool StopRule::targetHolds(const std::vector<IterationRecord>& history) const {
 }
 
 Termination StopRule::check(Unfolder& unfolder, const std::vector<IterationRecord>& history) const {
-  constexpr double kLargestDrive = 4;  // lengths and contacts are outweighed up to here
-  constexpr double kFirming = 1.03;  // of the lengths' strength per iteration, where enough is seen
-  constexpr double kFirmest = 2;     // ... up to here
   const IterationRecord& last = history.back();
   const bool thesis = options_.unfolder.method == Method::Thesis;
   const double goal = options_.targetVisibility.value_or(1.0);
@@ -79,24 +132,32 @@ Termination StopRule::check(Unfolder& unfolder, const std::vector<IterationRecor
   const bool kept = last.areaErrorMean <= options_.areaTolerance;
   if (atGoal && targetHolds(history)) return Termination::TargetReached;
   const bool started = thesis || !unfolder.state().separating;
-  const bool settled = !atGoal && started && isSettled(history, unfolder.state().driveIteration);
-  const double firmness = unfolder.state().firmness;
-  if (settled && !thesis && unfolder.isHeldBelow()) {
-    unfolder.makeWay();
-  } else if (settled && !thesis && !options_.targetVisibility && firmness < kFirmest &&
-             last.visibility > kEnoughSeen && last.edgeStrainMean > kLittleStrained) {
-    unfolder.firmUp(kFirming);
-  } else if (settled && kept && !thesis && !options_.targetVisibility &&
-             last.visibility < kSeenAsPromised && last.edgeStrainMean < kBearablyStrained &&
-             unfolder.state().drive < kLargestDrive) {
-    // Lengths have something to give where less is seen than promised.
-    unfolder.raiseDrive(driveFactor(last.visibility, kEnoughSeen));
-  } else if (settled && (kept || thesis)) {
-    if (!options_.targetVisibility) return Termination::Converged;
-    if (thesis || unfolder.state().drive >= kLargestDrive) return Termination::Stalled;
-    unfolder.raiseDrive(driveFactor(last.visibility, goal));
-  }
+  const int since = unfolder.state().driveIteration;
+  const bool settled = !atGoal && started && isSettled(history, since);
   const bool limit = static_cast<int>(history.size()) > options_.maxIterations;
+  if (!thesis && started && unfolder.isHeldBelow()) {
+    if (settled) unfolder.makeWay();
+  } else if (thesis || options_.targetVisibility) {
+    if (settled && (kept || thesis)) {
+      if (!options_.targetVisibility) return Termination::Converged;
+      if (thesis || unfolder.state().drive >= kLargestDrive) return Termination::Stalled;
+      unfolder.raiseDrive(driveFactor(last.visibility, goal));
+    }
+  } else if (started && (settled || isOpen(history, since))) {
+    const double factor = balancingFactor(history);
+    const double drive = unfolder.state().drive;
+    const bool atLimit = factor > 1 ? drive >= kLargestDrive : drive <= kLeastDrive;
+    const bool balanced = std::abs(imbalance(last.visibility, last.edgeStrainMean)) < kBalanced;
+    const bool longEnough = last.iteration - since > kBalancing;
+    const bool enough = merit(last.visibility, last.edgeStrainMean) > kEnough;
+    if (kept && (enough || longEnough || ((balanced || atLimit) && isAtRest(history)))) {
+      return Termination::Converged;
+    }
+    if (limit) return Termination::MaxIterations;
+    if (!enough) {
+      unfolder.balance(std::clamp(drive * factor, kLeastDrive, kLargestDrive) / drive);
+    }
+  }
   return limit ? Termination::MaxIterations : Termination::NotRun;
 }
 

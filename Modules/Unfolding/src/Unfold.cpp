@@ -56,31 +56,27 @@ void tellProgress(const Monitor& monitor, const IterationRecord& now, double ini
   monitor.progress(std::clamp((now.visibility - initial) / (goal - initial), 0.0, 1.0), line);
 }
 
-/// How much more an edge is strained than needs no mending, where enough is seen; else infinite.
-double excessOf(double visibility, double strain) {
-  return visibility < kEnoughSeen ? kInfinity : std::max(0.0, strain - kLittleStrained);
-}
-
 /// Whether it pays to go back from a state.
-bool isWorse(const IterationRecord& state, const BestState& than) {
-  const double excess = excessOf(state.visibility, state.edgeStrainMean);
-  const double known = excessOf(than.visibility, than.strain);
-  if (std::isfinite(excess) && known > 0) return excess > known + kNoWorse;
-  return state.visibility < than.visibility - kNoWorse;
+bool isWorse(const IterationRecord& state, const BestState& than, bool towardsTarget) {
+  if (towardsTarget) return state.visibility < than.visibility - kNoWorse;
+  return merit(state.visibility, state.edgeStrainMean) <
+         merit(than.visibility, than.strain) - kNoWorse;
 }
 
 /// Takes note of a state if it keeps areas and is better than all before.
-void consider(const Unfolder& unfolder, double areaTolerance, BestState& best) {
+void consider(const Unfolder& unfolder, const UnfoldOptions& options, BestState& best) {
   const IterationRecord& now = unfolder.record();
-  if (now.areaErrorMean > areaTolerance || !isBetter(now, best)) return;
+  if (now.areaErrorMean > options.areaTolerance) return;
+  if (!isBetter(now, best, options.targetVisibility.has_value())) return;
   best = {now.iteration, now.visibility, now.edgeStrainMean, movingOnly(unfolder)};
 }
 
 /// The state to give back: the last, or the best seen if the last is worse.
-void chooseState(const Unfolder& unfolder, const BestState& best, UnfoldResult& result) {
+void chooseState(const Unfolder& unfolder, const BestState& best, bool towardsTarget,
+                 UnfoldResult& result) {
   result.mesh = unfolder.current();
   result.iteration = unfolder.state().iteration;
-  if (!isWorse(unfolder.record(), best)) return;
+  if (!isWorse(unfolder.record(), best, towardsTarget)) return;
   const auto& moving = unfolder.movingVertices();
   for (std::size_t i = 0; i < moving.size(); ++i) {
     result.mesh.positions.row(moving[i]) = best.moving.row(static_cast<Eigen::Index>(i));
@@ -136,7 +132,7 @@ UnfoldResult unfoldHere(const TriangleMesh& mesh, const Region& region,
   const auto elapsed = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   };
-  Unfolder unfolder(mesh, region, viewpoints, options.unfolder);
+  Unfolder unfolder(mesh, region, viewpoints, solverOptions(options));
   UnfoldResult result;
   const double initial = unfolder.record().visibility;
   requirePositive(initial);
@@ -161,6 +157,9 @@ UnfoldResult unfoldHere(const TriangleMesh& mesh, const Region& region,
   const double goal = options.targetVisibility.value_or(1.0);
   double latest = 0;  // s, that the last step took: one more shall still fit
   const auto reason = [&] {
+    // Before the rule, which steers: a run that goes on from here is steered once.
+    if (monitor.shouldStop()) return Termination::Interrupted;
+    if (options.maxTime && elapsed() + latest > *options.maxTime) return Termination::MaxTime;
     const std::vector<std::int32_t> movedThen = unfolder.movingVertices();
     const Termination byItself = rule.check(unfolder, result.history);
     if (unfolder.movingVertices().size() != movedThen.size()) {
@@ -168,8 +167,6 @@ UnfoldResult unfoldHere(const TriangleMesh& mesh, const Region& region,
       for (Positions& state : path) addStanding(unfolder, movedThen, state);
     }
     if (byItself != Termination::NotRun) return byItself;
-    if (monitor.shouldStop()) return Termination::Interrupted;
-    if (options.maxTime && elapsed() + latest > *options.maxTime) return Termination::MaxTime;
     const double before = elapsed();
     const bool moved = unfolder.step();
     latest = elapsed() - before;
@@ -179,10 +176,10 @@ UnfoldResult unfoldHere(const TriangleMesh& mesh, const Region& region,
     result.history.push_back(unfolder.record());
     result.history.back().seconds = earlier + elapsed();
     if (options.frames > 0) path.push_back(movingOnly(unfolder));
-    consider(unfolder, options.areaTolerance, best);
+    consider(unfolder, options, best);
     tellProgress(monitor, unfolder.record(), initial, goal);
   }
-  chooseState(unfolder, best, result);
+  chooseState(unfolder, best, options.targetVisibility.has_value(), result);
   judge(options, monitor, result);
   std::vector<Positions> whole = path;
   if (options.frames > 0) path.resize(static_cast<std::size_t>(result.iteration) + 1);
@@ -205,13 +202,20 @@ Point originFor(const TriangleMesh& mesh, const Region& region) {
 
 }  // namespace
 
-bool isBetter(const IterationRecord& state, const BestState& than) {
-  const double excess = excessOf(state.visibility, state.edgeStrainMean);
-  const double known = excessOf(than.visibility, than.strain);
-  if (std::isfinite(excess) && std::isfinite(known) && std::max(excess, known) > 0) {
-    return excess < known;
-  }
-  return state.visibility > than.visibility;
+double merit(double visibility, double strain) {
+  return std::min({seenToSpare(visibility), lengthsToSpare(strain), kPlenty});
+}
+
+bool isBetter(const IterationRecord& state, const BestState& than, bool towardsTarget) {
+  if (towardsTarget) return state.visibility > than.visibility;
+  return merit(state.visibility, state.edgeStrainMean) > merit(than.visibility, than.strain);
+}
+
+UnfolderOptions solverOptions(const UnfoldOptions& options) {
+  constexpr double kSlack = 0.65;  // of the tolerance: nearer, areas would reach it slowly
+  UnfolderOptions solver = options.unfolder;
+  solver.areaSlack = kSlack * options.areaTolerance;
+  return solver;
 }
 
 UnfoldResult unfold(const TriangleMesh& mesh, const Region& region,

@@ -71,7 +71,7 @@ TermValues Unfolder::Implementation::strengths() const {
   TermValues strengths = options.weights;
   strengths[Term::Visibility] = state.separating ? 0 : state.drive;
   strengths[Term::Area] = state.areaStiffness;
-  strengths[Term::Spring] *= state.firmness * firmnessOnTheWay();
+  strengths[Term::Spring] *= firmnessOnTheWay();
   strengths[Term::Lift] *= state.lift;
   if (state.separating || options.surround == Surround::None) strengths[Term::Lift] = 0;
   if (state.separating) strengths[Term::Overhang] = 0;
@@ -144,8 +144,8 @@ void Unfolder::raiseDrive(double factor) {
   self_->state.drive *= factor;
   self_->state.driveIteration = self_->state.iteration;
 }
-void Unfolder::firmUp(double factor) {
-  self_->state.firmness *= factor;
+void Unfolder::balance(double factor) {
+  self_->state.drive *= factor;
 }
 bool Unfolder::isHeldBelow() const {
   return self_->options.surround == Surround::Elastic && self_->state.ways < kMostWays &&

@@ -256,8 +256,8 @@ void Session::run() {
   s.join();
   if (!s.unfolder) {
     try {
-      s.unfolder = std::make_unique<unfolding::Unfolder>(s.surface, s.preview.region,
-                                                         s.viewpoints(), s.choice.unfold.unfolder);
+      s.unfolder = std::make_unique<unfolding::Unfolder>(
+          s.surface, s.preview.region, s.viewpoints(), unfolding::solverOptions(s.choice.unfold));
     } catch (const InvalidInput& error) {
       s.preview.problem = error.what();
       return;

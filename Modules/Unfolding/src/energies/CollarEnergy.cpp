@@ -11,8 +11,8 @@ namespace explica::unfolding {
 namespace {
 
 constexpr std::size_t kGrain = 256;    // elements a task
-constexpr double kCollarArea = 20;     // as the region's terms are by default, so that the weight
-constexpr double kCollarSpring = 2.4;  // compares the collar with the region
+constexpr double kCollarArea = 20;     // as the region's by default, so that the weight compares
+constexpr double kCollarSpring = 2.4;  // the collar with the region
 constexpr double kFree = 2;            // area ratio from which on stretching is held back ...
 constexpr double kFull = 8;            // ... and up to which it shall stay
 constexpr double kHold = 2;            // strength of that beside the visibility's, at kFull

@@ -73,10 +73,11 @@ void addSpringStiffness(std::span<const PatchSpring> springs, double yield, cons
     const Vector along = (x.row(spring.vertices[1]) - x.row(spring.vertices[0])).transpose();
     const double length = along.norm();
     const Vector unit = along / length;
-    const double stiffness = 2 * strength * spring.weight *
-                             softening(length / spring.restLength - 1, yield) /
-                             (spring.restLength * spring.restLength);
-    const double lateral = stiffness * std::max(0.0, 1 - spring.restLength / length);
+    const double soft = softening(length / spring.restLength - 1, yield);
+    const double secant =
+        2 * strength * spring.weight * soft / (spring.restLength * spring.restLength);
+    const double lateral = secant * std::max(0.0, 1 - spring.restLength / length);
+    const double stiffness = secant * soft;
     const Eigen::Matrix3d block =
         (stiffness - lateral) * unit * unit.transpose() + lateral * Eigen::Matrix3d::Identity();
     const std::int32_t i = unknown[spring.vertices[0]], j = unknown[spring.vertices[1]];

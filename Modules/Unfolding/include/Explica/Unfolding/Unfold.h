@@ -59,16 +59,32 @@ struct BestState {
   Positions moving;      ///< of the vertices that move
 };
 
-inline constexpr double kSeenAsPromised = 0.98;   ///< visibility below which lengths yield further
-inline constexpr double kEnoughSeen = 0.985;      ///< visibility from which on lengths count first
-inline constexpr double kLittleStrained = 0.085;  ///< mean edge strain that needs no mending
-inline constexpr double kBearablyStrained = 0.089;  ///< up to which lengths yield for that promise
+inline constexpr double kSeen = 0.9805;      ///< visibility that a result shall have ...
+inline constexpr double kStrained = 0.0893;  ///< ... at a mean edge strain of this at most
+/// Visibility that a mean edge strain of 1 is worth.
+inline constexpr double kStrainWorth = 0.5;
+/// To spare of both, in visibility: more is not asked for.
+inline constexpr double kPlenty = 0.0065;
+
+/// What a visibility has to spare; negative: it lacks.
+[[nodiscard]] inline double seenToSpare(double visibility) {
+  return visibility - kSeen;
+}
+/// What lengths have to spare, in visibility; negative: they are strained too far.
+[[nodiscard]] inline double lengthsToSpare(double strain) {
+  return kStrainWorth * (kStrained - strain);
+}
 
 /// Area ratios of a collar's faces, in the mean and at most, beyond which it has given way.
 inline constexpr double kCollarMean = 2, kCollarMost = 8;
 
-/// The higher visibility, by more than noise; but of two that are high enough, the less strained.
-[[nodiscard]] bool isBetter(const IterationRecord& state, const BestState& than);
+/// The lesser of what seeing and lengths have to spare, up to plenty.
+[[nodiscard]] double merit(double visibility, double strain);
+/// More merit; on the way to a target, the higher visibility.
+[[nodiscard]] bool isBetter(const IterationRecord& state, const BestState& than,
+                            bool towardsTarget = false);
+/// How a driver of its own sets up an Unfolder that ends where unfold() does.
+[[nodiscard]] UnfolderOptions solverOptions(const UnfoldOptions& options);
 
 /// A run that can go on: state, account so far, and the way there if frames were asked for.
 struct Checkpoint {

@@ -37,8 +37,9 @@ struct UnfolderOptions {
   std::optional<double> collarWidth;  ///< of an elastic collar, mm along the surface, > 0; else in
                                       ///< proportion to the region
   double contactRange = 0.25;         ///< of the mean edge length: the barrier acts below it, > 0
-  double yieldStrain = 0.1;  ///< strain beyond which an edge costs less than its square, > 0
-  double largestMove = 3;    ///< mean edge lengths that a vertex goes per iteration at most, > 0
+  double yieldStrain = 0.015;  ///< strain beyond which an edge costs less than its square, > 0
+  double areaSlack = 0;    ///< relative area error that needs no mending; unfold() sets it, >= 0
+  double largestMove = 3;  ///< mean edge lengths that a vertex goes per iteration at most, > 0
   repulsion::KnotMethod knot = repulsion::KnotMethod::Off;
   bool keepAreas = true;           ///< thesis method: project; without it the region shrinks
   std::optional<double> timeStep;  ///< thesis method: fixed step, mm per mm; else adaptive
@@ -134,7 +135,6 @@ struct UnfoldState {
   double areaStiffness = 0;     ///< current, >= weights.area
   double drive = 1;             ///< strength of the visibility term against the others
   int driveIteration = 0;       ///< when it was raised last, or way was made
-  double firmness = 1;          ///< factor of weights.spring, raised where visibility is to spare
   double lift = 1;              ///< factor of weights.lift, raised where way was made
   double collarWidth = 0;       ///< mm along the surface; wider where way was made
   int ways = 0;                 ///< how often that was
@@ -177,8 +177,8 @@ class Unfolder {
   /// Strengthens the visibility term, for a target that the present balance does not reach.
   void raiseDrive(double factor);
 
-  /// Strengthens lengths, where more is seen than is asked for.
-  void firmUp(double factor);
+  /// Strengthens or weakens the visibility term a little, without waiting for what follows.
+  void balance(double factor);
 
   /// Whether a part of the region that counts is held below its elastic surroundings, which can
   /// still be asked to part further.
