@@ -21,12 +21,30 @@ if(EXPLICA_CCACHE)
   set(CMAKE_C_COMPILER_LAUNCHER "${EXPLICA_CCACHE}")
   # Without these ccache passes over every file that uses a precompiled header.
   set(CMAKE_CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND}" -E env
-    CCACHE_SLOPPINESS=pch_defines,time_macros "${EXPLICA_CCACHE}")
+    CCACHE_SLOPPINESS=pch_defines,time_macros "CCACHE_IGNOREOPTIONS=--param=ggc-min-heapsize=*"
+    "${EXPLICA_CCACHE}")
 endif()
+
+option(EXPLICA_BATCHES "Compile several sources of bindings, framework and what deals with JSON at once: half the \
+work when all are built, more when one of them changes" ON)
 
 # For targets whose time is spent compiling them rather than running them: tests, JSON, commands.
 function(explica_compile_quickly target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+endfunction()
+
+# Compiles the target's sources a few at a time: they share what templates they instantiate.  Names in their
+# unnamed namespaces must differ.
+function(explica_compile_in_batches target size)
+  if(EXPLICA_BATCHES)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${size})
+  endif()
+endfunction()
+
+# GCC looks through its memory for what is free, and so through all precompiled headers, each time it has
+# grown by as much as this (kB): a tenth of its time, for little.
+function(explica_collect_garbage_seldom target)
+  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=400000>)
 endfunction()
 
 # Flags live on targets: call this for every library and executable of the project.
@@ -68,6 +86,7 @@ function(explica_precompile_headers kind)
 endfunction()
 function(explica_use_precompiled_headers target kind)
   target_precompile_headers(${target} REUSE_FROM ExplicaPrecompiled${kind})
+  explica_collect_garbage_seldom(${target})
   # The same false warnings inside std::string, under more names.
   foreach(warning IN ITEMS array-bounds stringop-overflow stringop-overread)
     target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-${warning}>)

@@ -15,9 +15,10 @@
 #   PROPERTY_TESTS test/...
 #   SLOW_TESTS test/...
 #   BENCHMARKS benchmark/...    Google Benchmark sources, one executable each
-#   TEST_LINKS target...)       extra links of tests and benchmarks
+#   TEST_LINKS target...        extra links of tests and benchmarks
+#   TESTS_IN_BATCHES)           tests' sources are compiled a few at a time
 function(explica_add_module name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "COMPILE_QUICKLY" "PURPOSE"
+  cmake_parse_arguments(PARSE_ARGV 1 arg "COMPILE_QUICKLY;TESTS_IN_BATCHES" "PURPOSE"
     "HEADERS;SOURCES;PUBLIC;PRIVATE;FIND;UNIT_TESTS;PROPERTY_TESTS;SLOW_TESTS;BENCHMARKS;TEST_LINKS")
   if(arg_UNPARSED_ARGUMENTS OR NOT arg_PURPOSE OR NOT arg_SOURCES)
     message(FATAL_ERROR "explica_add_module(${name}): PURPOSE and SOURCES are needed; "
@@ -34,6 +35,7 @@ function(explica_add_module name)
   explica_set_flags(${target})
   if(arg_COMPILE_QUICKLY)
     explica_compile_quickly(${target})
+    explica_compile_in_batches(${target} 4)
     explica_use_precompiled_headers(${target} Quick)
   else()
     explica_use_precompiled_headers(${target} Library)
@@ -79,6 +81,9 @@ function(explica_add_module name)
         string(SUBSTRING ${kind} 0 1 first)
         explica_add_test_executable(${target}${first}${rest}Tests LABEL ${label}
           SOURCES ${arg_${kind}_TESTS} LINKS Explica::${name} ${arg_TEST_LINKS})
+        if(arg_TESTS_IN_BATCHES)
+          explica_compile_in_batches(${target}${first}${rest}Tests 4)
+        endif()
       endif()
     endforeach()
   endif()
