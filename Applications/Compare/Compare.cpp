@@ -139,6 +139,22 @@ void draw(const std::filesystem::path& path, const TriangleMesh& reference,
       path, report::surfaceFigure(part.mesh, paint, views, static_cast<int>(views.size()), size));
 }
 
+nlohmann::ordered_json listOf(const std::vector<Row>& rows) {
+  auto list = nlohmann::ordered_json::array();
+  for (const Row& row : rows) {
+    list.push_back({{"surface", row.name},
+                    {"area_error_mean", row.distortion.areaErrorMean},
+                    {"edge_strain_mean", row.distortion.edgeStrainMean},
+                    {"angle_error_mean_deg", row.distortion.angleErrorMeanRad * 180 / kPi},
+                    {"geodesic_error_local", row.local.error},
+                    {"geodesic_error_all", row.all.error},
+                    {"turned_over", row.turnedOver},
+                    {"crossings", row.crossings},
+                    {"seen", row.seen}});
+  }
+  return list;
+}
+
 Termination run(Context& context, const Settings& s) {
   const auto begin = std::chrono::steady_clock::now();
   const auto reference = readSurface(context, "BEFORE", s.before, s.reading);
@@ -177,19 +193,9 @@ Termination run(Context& context, const Settings& s) {
   }
   auto step = context.step("write");
   writeTextFile(context.output("comparison.tsv"), tableOf(rows));
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (std::size_t n = 0; n < rows.size(); ++n) {
     draw(context.output("comparison-" + std::to_string(n + 1) + ".png"), reference.mesh,
          surfaces[n], faces, rows[n]);
-    list.push_back({{"surface", rows[n].name},
-                    {"area_error_mean", rows[n].distortion.areaErrorMean},
-                    {"edge_strain_mean", rows[n].distortion.edgeStrainMean},
-                    {"angle_error_mean_deg", rows[n].distortion.angleErrorMeanRad * 180 / kPi},
-                    {"geodesic_error_local", rows[n].local.error},
-                    {"geodesic_error_all", rows[n].all.error},
-                    {"turned_over", rows[n].turnedOver},
-                    {"crossings", rows[n].crossings},
-                    {"seen", rows[n].seen}});
   }
   const Row& first = rows.front();
   context.result("faces", faces.size());
@@ -198,7 +204,7 @@ Termination run(Context& context, const Settings& s) {
   context.result("geodesic_error_local", first.local.error);
   context.result("geodesic_error_all", first.all.error);
   context.result("turned_over", static_cast<long long>(first.turnedOver));
-  context.result("surfaces", list);
+  context.result("surfaces", listOf(rows));
   context.result("seconds",
                  std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   return rows.size() < surfaces.size() ? Termination::Interrupted : Termination::NotRun;

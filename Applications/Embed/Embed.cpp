@@ -247,6 +247,51 @@ void reportDistance(Context& context, const shapes::HarmonicShape& shape, const 
   context.result("distance_max", std::max(there.max, back.max));
 }
 
+/// What the targets become in the annulus, and how well, iteration by iteration, as a table.
+struct Fits {
+  std::vector<shapes::HarmonicShape> shapes;
+  std::string table = "target\titeration\tsymmetric_difference\tdistance_mean\tdistance_max\n";
+  Termination termination = Termination::NotRun;  ///< of the last, or the first that fell short
+};
+
+void appendRows(std::string& table, std::size_t target, const shapes::ShapeFit& fit) {
+  for (std::size_t i = 0; i < fit.history.size(); ++i) {
+    char line[160];
+    std::snprintf(line, sizeof line, "%zu\t%zu\t%.9g\t%.9g\t%.9g\n", target, i,
+                  fit.history[i].symmetricDifference, fit.history[i].distanceMean,
+                  fit.history[i].distanceMax);
+    table += line;
+  }
+}
+
+/// Targets that are shapes already stay as they are; `samples` are of the others, in their order.
+Fits fitAll(Context& context, const Settings& s, const std::vector<Target>& targets,
+            const std::vector<shapes::TargetSamples>& samples,
+            const shapes::HarmonicAnnulus& annulus) {
+  auto step = context.step("fit");
+  Fits fits;
+  std::size_t next = 0;
+  for (std::size_t k = 0; k < targets.size(); ++k) {
+    if (targets[k].shape) {
+      fits.shapes.push_back(*targets[k].shape);
+      continue;
+    }
+    const shapes::ShapeFit fit =
+        shapes::fitShape(annulus, samples[next++], s.fitting, context.monitor());
+    fits.shapes.push_back(fit.shape);
+    if (fits.termination == Termination::NotRun || !reachedGoal(fit.termination)) {
+      fits.termination = fit.termination;
+    }
+    appendRows(fits.table, k, fit);
+    if (k > 0) continue;
+    if (s.frames > 0) writeEvolution(context, s, fit, targets[k]);
+    context.result("symmetric_difference_initial", fit.history.front().symmetricDifference);
+    context.result("symmetric_difference_final", fit.history.back().symmetricDifference);
+  }
+  step.termination(fits.termination);
+  return fits;
+}
+
 Termination run(Context& context, const Settings& s) {
   const int asked = int{s.fit} + int{s.average} + int{!s.weights.empty()};
   if (asked > 1) throw UsageError("give one of --fit, --average and --combine");
@@ -266,43 +311,13 @@ Termination run(Context& context, const Settings& s) {
   const shapes::HarmonicAnnulus annulus = annulusFor(context, s, targets, samples);
   shapes::requireUsable(annulus);
 
-  std::vector<shapes::HarmonicShape> fitted;
-  std::string table = "target\titeration\tsymmetric_difference\tdistance_mean\tdistance_max\n";
-  Termination termination = Termination::NotRun;
-  {
-    auto step = context.step("fit");
-    std::size_t next = 0;
-    for (std::size_t k = 0; k < targets.size(); ++k) {
-      if (targets[k].shape) {
-        fitted.push_back(*targets[k].shape);
-        continue;
-      }
-      const shapes::ShapeFit fit =
-          shapes::fitShape(annulus, samples[next++], s.fitting, context.monitor());
-      fitted.push_back(fit.shape);
-      if (termination == Termination::NotRun || !reachedGoal(fit.termination)) {
-        termination = fit.termination;
-      }
-      for (std::size_t i = 0; i < fit.history.size(); ++i) {
-        char line[160];
-        std::snprintf(line, sizeof line, "%zu\t%zu\t%.9g\t%.9g\t%.9g\n", k, i,
-                      fit.history[i].symmetricDifference, fit.history[i].distanceMean,
-                      fit.history[i].distanceMax);
-        table += line;
-      }
-      if (k > 0) continue;
-      if (s.frames > 0) writeEvolution(context, s, fit, targets[k]);
-      context.result("symmetric_difference_initial", fit.history.front().symmetricDifference);
-      context.result("symmetric_difference_final", fit.history.back().symmetricDifference);
-    }
-    step.termination(termination);
-  }
+  const Fits fits = fitAll(context, s, targets, samples, annulus);
   auto step = context.step("combine");
   const std::vector<double> weights =
-      s.weights.empty() ? std::vector<double>(fitted.size(), 1.0) : s.weights;
-  const shapes::HarmonicShape shape = shapes::combine(fitted, weights);
+      s.weights.empty() ? std::vector<double>(fits.shapes.size(), 1.0) : s.weights;
+  const shapes::HarmonicShape shape = shapes::combine(fits.shapes, weights);
   writeTextFile(context.output("coefficients.json"), provenance::textOf(jsonOf(shape), 1) + "\n");
-  writeTextFile(context.output("fit.tsv"), table);
+  writeTextFile(context.output("fit.tsv"), fits.table);
   writeShape(context, "shape", shape, s.grid);
   if (annulus.dimension == 3) {
     io::writeVolume(context.output("field.nii.gz"), shapes::fieldOf(shape, s.grid));
@@ -316,9 +331,9 @@ Termination run(Context& context, const Settings& s) {
   context.result("annulus_width", shapes::widthOf(annulus));
   context.result("voxel", 2 * shapes::boxOf(annulus).halfSide / (s.grid - 1));
   context.result("boundary_margin", shapes::boundaryMargin(shape));
-  if (s.series) writeSeries(context, fitted[0], fitted[1], *s.series, s.grid);
+  if (s.series) writeSeries(context, fits.shapes[0], fits.shapes[1], *s.series, s.grid);
   if (targets.size() == 1) reportDistance(context, shape, targets.front(), s.grid);
-  return termination;
+  return fits.termination;
 }
 
 }  // namespace

@@ -64,6 +64,34 @@ struct Settings {
   bool resume = false;
 };
 
+void declareOutputs(Declaration& d) {
+  d.output("flat.surf.gii", FileKind::Surface,
+           "the flat map, z = 0: all vertices in their order, the patch's faces (one bank of cuts)")
+      .output("patch.surf.gii", FileKind::Surface,
+              "the reference, the patch's vertices only, in the order of vertex_of.shape.gii")
+      .output("patch_flat.surf.gii", FileKind::Surface, "the flat map of patch.surf.gii")
+      .output("vertex_of.shape.gii", FileKind::VertexData,
+              "for each vertex of patch.surf.gii its number in the whole surface")
+      .output("*.patch.flat", FileKind::Any, "the flat map as FreeSurfer writes it")
+      .output("*.patch.3d", FileKind::Any, "the patch on the reference, as FreeSurfer writes it")
+      .output("cuts.tsv", FileKind::Table,
+              "of --cuts auto: ends (vertices), length (mm), mean depth (standard deviations)")
+      .output("cuts.label.gii", FileKind::VertexLabel, "of --cuts auto: the wall and each cut")
+      .output("distortion.shape.gii", FileKind::VertexData,
+              "area ratio, angle change in degrees, edge strain")
+      .output("patch_*.label.gii", FileKind::VertexLabel,
+              "each file of --regions on the vertices of patch.surf.gii, names and colours kept")
+      .output("patch.tsv", FileKind::Table, "area and means of maps, per region and in all")
+      .output("grid.nii.gz", FileKind::PointVolume, "place (RAS mm) of each cell (u, v, depth)")
+      .output("to_flat.nii.gz", FileKind::PointVolume,
+              "u, v (mm) and depth (0 to 1) of each voxel of the first volume")
+      .output("flat_*.nii.gz", FileKind::Volume, "each volume on the grid")
+      .output("flat.png", FileKind::Picture, "the map with outlines, scale bar and colour bar")
+      .output("frames/frame-*.surf.gii", FileKind::Surface,
+              "--frames states on the way, vertices and faces as in flat.surf.gii")
+      .varyingOutput(kStateFile, FileKind::Any, "what --resume needs");
+}
+
 void declare(Declaration& d, Settings& s) {
   d.synopsis("a patch, or a hemisphere with cuts, as a flat map that folds nowhere")
       .description(
@@ -143,33 +171,8 @@ With --surfaces the map becomes a stack of depths: grid.nii.gz gives each cell i
                    "Patch")
       .inputOption("regions", FileKind::VertexLabel,
                    "regions for patch.tsv, their outlines in their own colours for flat.png",
-                   s.regions, "Patch")
-      .output(
-          "flat.surf.gii", FileKind::Surface,
-          "the flat map, z = 0: all vertices in their order, the patch's faces (one bank of cuts)")
-      .output("patch.surf.gii", FileKind::Surface,
-              "the reference, the patch's vertices only, in the order of vertex_of.shape.gii")
-      .output("patch_flat.surf.gii", FileKind::Surface, "the flat map of patch.surf.gii")
-      .output("vertex_of.shape.gii", FileKind::VertexData,
-              "for each vertex of patch.surf.gii its number in the whole surface")
-      .output("*.patch.flat", FileKind::Any, "the flat map as FreeSurfer writes it")
-      .output("*.patch.3d", FileKind::Any, "the patch on the reference, as FreeSurfer writes it")
-      .output("cuts.tsv", FileKind::Table,
-              "of --cuts auto: ends (vertices), length (mm), mean depth (standard deviations)")
-      .output("cuts.label.gii", FileKind::VertexLabel, "of --cuts auto: the wall and each cut")
-      .output("distortion.shape.gii", FileKind::VertexData,
-              "area ratio, angle change in degrees, edge strain")
-      .output("patch_*.label.gii", FileKind::VertexLabel,
-              "each file of --regions on the vertices of patch.surf.gii, names and colours kept")
-      .output("patch.tsv", FileKind::Table, "area and means of maps, per region and in all")
-      .output("grid.nii.gz", FileKind::PointVolume, "place (RAS mm) of each cell (u, v, depth)")
-      .output("to_flat.nii.gz", FileKind::PointVolume,
-              "u, v (mm) and depth (0 to 1) of each voxel of the first volume")
-      .output("flat_*.nii.gz", FileKind::Volume, "each volume on the grid")
-      .output("flat.png", FileKind::Picture, "the map with outlines, scale bar and colour bar")
-      .output("frames/frame-*.surf.gii", FileKind::Surface,
-              "--frames states on the way, vertices and faces as in flat.surf.gii")
-      .varyingOutput(kStateFile, FileKind::Any, "what --resume needs");
+                   s.regions, "Patch");
+  declareOutputs(d);
 }
 
 using Clock = std::chrono::steady_clock;

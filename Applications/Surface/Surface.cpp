@@ -88,6 +88,53 @@ struct Settings {
   ThicknessMeasure thicknessMeasure = ThicknessMeasure::Trajectory;
 };
 
+void declareOutputs(Declaration& d) {
+  d.output("white.surf.gii", FileKind::Surface, "white surface")
+      .output("mid.surf.gii", FileKind::Surface, "surface at half depth, same faces")
+      .output("pial.surf.gii", FileKind::Surface, "outer surface, same faces")
+      .output("thickness.shape.gii", FileKind::VertexData,
+              "thickness by both measures, mm, the one asked for first; 0 where there is no grey "
+              "matter")
+      .output("valid.shape.gii", FileKind::VertexData, "1 where the thickness is defined, else 0")
+      .output("curvature.shape.gii", FileKind::VertexData,
+              "mean curvature of the white surface, 1/mm, positive in sulci")
+      .output("sulc.shape.gii", FileKind::VertexData,
+              "depth of the middle surface below the hull, mm")
+      .output("area.shape.gii", FileKind::VertexData,
+              "area at each vertex of the white, middle and outer surface, mm^2")
+      .output("topology.tsv", FileKind::Table, "one row for each corrected defect")
+      .output("regions.tsv", FileKind::Table, "with --atlas: area and thickness of each region")
+      .output("regions.label.gii", FileKind::VertexLabel, "with --atlas: region of each vertex")
+      .output("surface.spec", FileKind::Any, "opens everything in Workbench")
+      .output("*lh.*", FileKind::Any, "with --freesurfer: FreeSurfer files, left")
+      .output("*rh.*", FileKind::Any, "with --freesurfer: FreeSurfer files, right");
+}
+
+void declareVolumes(Declaration& d, Settings& s) {
+  d.input("SEG", FileKind::LabelVolume,
+          "labels; may be left out if --inner-level or --white-surface is given", s.segmentation)
+      .inputOption("inner-level", FileKind::Volume,
+                   "scalars that cross a level at the white surface: a probability or a distance",
+                   s.innerLevel)
+      .inputOption("outer-level", FileKind::Volume,
+                   "scalars that cross a level at the outer surface", s.outerLevel)
+      .inputOption("grey-share", FileKind::Volume,
+                   "probability of grey matter: with --inner-level the outer surface is where both "
+                   "together reach one half",
+                   s.greyShare)
+      .inputOption("insulated-mask", FileKind::LabelVolume,
+                   "with --inner-level: not 0 where neither side is (a cut)", s.insulatedMask)
+      .inputOption("image", FileKind::Volume,
+                   "image whose labels these are, such as a T1: white and outer border are placed "
+                   "by it, within a voxel of the labels' border",
+                   s.image)
+      .option("Inputs",
+              Field{"level", "",
+                    "value on the boundaries of level volumes (default: half the "
+                    "largest value of shares, 0 of distances)"},
+              s.level);
+}
+
 void declare(Declaration& d, Settings& s) {
   d.synopsis("inner, middle and outer surface of the cortical ribbon, vertex by vertex")
       .description(
@@ -117,31 +164,10 @@ void declare(Declaration& d, Settings& s) {
       .example(
           "explica surface --white-surface lh.white --pial-surface lh.pial --fs-volume "
           "orig.mgz --surface-space tkr --out left",
-          "FreeSurfer's surfaces, checked and measured")
-      .input("SEG", FileKind::LabelVolume,
-             "labels; may be left out if --inner-level or --white-surface is given", s.segmentation)
-      .inputOption("inner-level", FileKind::Volume,
-                   "scalars that cross a level at the white surface: a probability or a distance",
-                   s.innerLevel)
-      .inputOption("outer-level", FileKind::Volume,
-                   "scalars that cross a level at the outer surface", s.outerLevel)
-      .inputOption("grey-share", FileKind::Volume,
-                   "probability of grey matter: with --inner-level the outer surface is where both "
-                   "together reach one half",
-                   s.greyShare)
-      .inputOption("insulated-mask", FileKind::LabelVolume,
-                   "with --inner-level: not 0 where neither side is (a cut)", s.insulatedMask)
-      .inputOption("image", FileKind::Volume,
-                   "image whose labels these are, such as a T1: white and outer border are placed "
-                   "by it, within a voxel of the labels' border",
-                   s.image)
-      .option("Inputs",
-              Field{"level", "",
-                    "value on the boundaries of level volumes (default: half the "
-                    "largest value of shares, 0 of distances)"},
-              s.level)
-      .inputOption("white-surface", FileKind::Surface, "white surface that is there already",
-                   s.whiteSurface, "Given surfaces")
+          "FreeSurfer's surfaces, checked and measured");
+  declareVolumes(d, s);
+  d.inputOption("white-surface", FileKind::Surface, "white surface that is there already",
+                s.whiteSurface, "Given surfaces")
       .inputOption("pial-surface", FileKind::Surface, "its pial surface, same faces", s.pialSurface,
                    "Given surfaces")
       .inputOption("mid-surface", FileKind::Surface,
@@ -191,25 +217,7 @@ void declare(Declaration& d, Settings& s) {
                    "(default: the labels, if FreeSurfer's)",
                    s.fsVolume, "Output");
   declareAccept(d, s.accept);
-  d.output("white.surf.gii", FileKind::Surface, "white surface")
-      .output("mid.surf.gii", FileKind::Surface, "surface at half depth, same faces")
-      .output("pial.surf.gii", FileKind::Surface, "outer surface, same faces")
-      .output("thickness.shape.gii", FileKind::VertexData,
-              "thickness by both measures, mm, the one asked for first; 0 where there is no grey "
-              "matter")
-      .output("valid.shape.gii", FileKind::VertexData, "1 where the thickness is defined, else 0")
-      .output("curvature.shape.gii", FileKind::VertexData,
-              "mean curvature of the white surface, 1/mm, positive in sulci")
-      .output("sulc.shape.gii", FileKind::VertexData,
-              "depth of the middle surface below the hull, mm")
-      .output("area.shape.gii", FileKind::VertexData,
-              "area at each vertex of the white, middle and outer surface, mm^2")
-      .output("topology.tsv", FileKind::Table, "one row for each corrected defect")
-      .output("regions.tsv", FileKind::Table, "with --atlas: area and thickness of each region")
-      .output("regions.label.gii", FileKind::VertexLabel, "with --atlas: region of each vertex")
-      .output("surface.spec", FileKind::Any, "opens everything in Workbench")
-      .output("*lh.*", FileKind::Any, "with --freesurfer: FreeSurfer files, left")
-      .output("*rh.*", FileKind::Any, "with --freesurfer: FreeSurfer files, right");
+  declareOutputs(d);
 }
 
 std::string defectTable(const std::vector<surface::Defect>& defects) {

@@ -48,6 +48,38 @@ struct Settings {
   ventricle::OrientationOptions orientation;
 };
 
+void declareOutputs(Declaration& d) {
+  d.output("harmonic.nii.gz", FileKind::Volume, "u: 0 at the inner boundary to 1 at the outer one")
+      .output("thickness.nii.gz", FileKind::Volume,
+              "length of the trajectory, mm; 0 off the tissue")
+      .output("inner_distance.nii.gz", FileKind::Volume, "L0: length to the inner boundary, mm")
+      .output("outer_distance.nii.gz", FileKind::Volume, "L1: length to the outer boundary, mm")
+      .output("depth.nii.gz", FileKind::Volume, "L0 / thickness")
+      .output("inner_point.nii.gz", FileKind::PointVolume,
+              "phi0: corresponding point of the inner boundary, RAS mm")
+      .output("outer_point.nii.gz", FileKind::PointVolume,
+              "phi1: corresponding point of the outer boundary, RAS mm")
+      .output("layers.nii.gz", FileKind::LabelVolume, "layer, 1 at the inner boundary")
+      .output("grid.vtu", FileKind::Grid,
+              "with --grid: points at equal depths along trajectories, with depth and thickness")
+      .output("grid_functions.tsv", FileKind::Table,
+              "with --functions: mean, deviation and count of each at each depth of the grid")
+      .output("grid_trajectories.tsv", FileKind::Table,
+              "with --along: points, thickness and functions along chosen trajectories")
+      .output("field.svg", FileKind::Picture,
+              "with --figure: u, tangent field, trajectories and grid in a slice")
+      .output(
+          "contours.tsv", FileKind::Table,
+          "of a 2-D image or with --per-slice: inner, middle and outer contours, point by point")
+      .output("contours.vtu", FileKind::Grid, "the same as lines, with depth and thickness")
+      .output("segments.tsv", FileKind::Table, "with --aha: thickness of the 17 segments")
+      .output("bullseye.png", FileKind::Picture, "with --aha: bullseye.svg in pixels")
+      .output("segments.nii.gz", FileKind::LabelVolume, "with --aha: segment of each voxel")
+      .output("bullseye.svg", FileKind::Picture, "with --aha: the segments' mean thickness, mm")
+      .output("sulci.nii.gz", FileKind::LabelVolume,
+              "where sulci are recovered: 1 beside a boundary that was put between banks");
+}
+
 void declare(Declaration& d, Settings& s) {
   d.synopsis("thickness, depth and layers of the tissue between two boundaries")
       .description(
@@ -119,35 +151,7 @@ void declare(Declaration& d, Settings& s) {
           s.aha)
       .options("Heart", s.orientation);
   declareAccept(d, s.accept);
-  d.output("harmonic.nii.gz", FileKind::Volume, "u: 0 at the inner boundary to 1 at the outer one")
-      .output("thickness.nii.gz", FileKind::Volume,
-              "length of the trajectory, mm; 0 off the tissue")
-      .output("inner_distance.nii.gz", FileKind::Volume, "L0: length to the inner boundary, mm")
-      .output("outer_distance.nii.gz", FileKind::Volume, "L1: length to the outer boundary, mm")
-      .output("depth.nii.gz", FileKind::Volume, "L0 / thickness")
-      .output("inner_point.nii.gz", FileKind::PointVolume,
-              "phi0: corresponding point of the inner boundary, RAS mm")
-      .output("outer_point.nii.gz", FileKind::PointVolume,
-              "phi1: corresponding point of the outer boundary, RAS mm")
-      .output("layers.nii.gz", FileKind::LabelVolume, "layer, 1 at the inner boundary")
-      .output("grid.vtu", FileKind::Grid,
-              "with --grid: points at equal depths along trajectories, with depth and thickness")
-      .output("grid_functions.tsv", FileKind::Table,
-              "with --functions: mean, deviation and count of each at each depth of the grid")
-      .output("grid_trajectories.tsv", FileKind::Table,
-              "with --along: points, thickness and functions along chosen trajectories")
-      .output("field.svg", FileKind::Picture,
-              "with --figure: u, tangent field, trajectories and grid in a slice")
-      .output(
-          "contours.tsv", FileKind::Table,
-          "of a 2-D image or with --per-slice: inner, middle and outer contours, point by point")
-      .output("contours.vtu", FileKind::Grid, "the same as lines, with depth and thickness")
-      .output("segments.tsv", FileKind::Table, "with --aha: thickness of the 17 segments")
-      .output("bullseye.png", FileKind::Picture, "with --aha: bullseye.svg in pixels")
-      .output("segments.nii.gz", FileKind::LabelVolume, "with --aha: segment of each voxel")
-      .output("bullseye.svg", FileKind::Picture, "with --aha: the segments' mean thickness, mm")
-      .output("sulci.nii.gz", FileKind::LabelVolume,
-              "where sulci are recovered: 1 beside a boundary that was put between banks");
+  declareOutputs(d);
 }
 
 double seconds() {

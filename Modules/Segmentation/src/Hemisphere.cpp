@@ -144,146 +144,197 @@ bool touches(const Grid& grid, std::size_t v, const VoxelSet& set) {
   return false;
 }
 
+/// A hemisphere while it is put together.
+struct Draft {
+  VoxelSet own;     ///< tissue and fluid on its side
+  VoxelSet white;   ///< white matter, and what counts as such
+  VoxelSet filled;  ///< of these, what is not white by the segmentation
+  VoxelSet tissue;  ///< white and grey matter
+};
+
+/// Where the atlas' structures are nearest, squared distances in mm^2.
+struct Nearness {
+  Volume<float> side, other, belowTent, cortex;
+};
+
+Nearness nearnessOf(const AtlasMap& map, std::uint8_t side, std::uint8_t otherSide) {
+  const Grid& grid = map.kind.grid;
+  const auto cerebral = [&](std::size_t v) {
+    return map.kind[v] != 0 && map.kind[v] != kindCode(StructureKind::BelowTent) &&
+           map.kind[v] != kindCode(StructureKind::Stem);
+  };
+  return {
+      squaredDistanceTo(
+          setWhere(grid, [&](std::size_t v) { return cerebral(v) && map.side[v] == side; })),
+      squaredDistanceTo(
+          setWhere(grid, [&](std::size_t v) { return cerebral(v) && map.side[v] == otherSide; })),
+      squaredDistanceTo(setWhere(
+          grid, [&](std::size_t v) { return map.kind[v] == kindCode(StructureKind::BelowTent); })),
+      squaredDistanceTo(setWhere(
+          grid, [&](std::size_t v) { return map.kind[v] == kindCode(StructureKind::Cortex); }))};
+}
+
+/// White matter and the deep structures, which count as such; how many voxels these add.
+std::int64_t takeDeep(const VoxelSet& deep, const Volume<Label>& seg, Draft& draft) {
+  std::int64_t added = 0;
+  for (std::size_t v = 0; v < deep.size(); ++v) {
+    if (draft.own[v] != 0 && seg[v] == kWhite) draft.white[v] = 1;
+    if (deep[v] == 0) continue;
+    if (draft.white[v] == 0) ++added;
+    draft.white[v] = draft.filled[v] = 1;
+  }
+  return added;
+}
+
+/// Fills the voids that border deep structures and do not open to the outside; how many voxels.
+std::int64_t fillVentricles(const VoxelSet& voidSet, const VoxelSet& deep, const Volume<Label>& seg,
+                            Draft& draft) {
+  const Grid& grid = seg.grid;
+  const Components voids = componentsOf(voidSet);
+  const VoxelSet outside = setWhere(grid, [&](std::size_t v) { return seg[v] == 0; });
+  std::vector<std::uint8_t> nearDeep(voids.size.size(), 0);
+  std::vector<std::uint8_t> open(voids.size.size(), 0);
+  for (std::size_t v = 0; v < seg.size(); ++v) {
+    const std::int32_t n = voids.number[v];
+    if (n < 0) continue;
+    if (touches(grid, v, deep)) nearDeep[n] = 1;
+    if (outside[v] != 0 || touches(grid, v, outside)) open[n] = 1;
+  }
+  std::int64_t count = 0;
+  for (std::size_t v = 0; v < seg.size(); ++v) {
+    const std::int32_t n = voids.number[v];
+    if (n < 0 || nearDeep[n] == 0 || open[n] != 0) continue;
+    draft.white[v] = draft.filled[v] = 1;
+    ++count;
+  }
+  return count;
+}
+
+/// Only the largest piece of a set counts; how many voxels that leaves out.
+std::int64_t keepLargest(VoxelSet& set, const Components& pieces) {
+  const std::int32_t largest = pieces.largest();
+  std::int64_t dropped = 0;
+  for (std::size_t v = 0; v < set.size(); ++v) {
+    if (set[v] == 0 || pieces.number[v] == largest) continue;
+    set[v] = 0;
+    ++dropped;
+  }
+  return dropped;
+}
+
+/// Fills what white matter encloses; how many voxels.
+std::int64_t fillCavities(Draft& draft) {
+  VoxelSet& white = draft.white;
+  const Components around =
+      componentsOf(setWhere(white.grid, [&](std::size_t v) { return white[v] == 0; }));
+  const std::int32_t outside = around.largest();
+  std::int64_t count = 0;
+  for (std::size_t v = 0; v < white.size(); ++v) {
+    if (white[v] != 0 || around.number[v] == outside) continue;
+    white[v] = draft.filled[v] = 1;
+    ++count;
+  }
+  return count;
+}
+
+/// Labels and shares of tissue from the finished draft; `cut` are voxels where the hemisphere was
+/// cut off from the rest.
+void label(const TissueSegmentation& tissue, const Draft& draft, const VoxelSet& cut,
+           Hemisphere& result) {
+  const Grid& grid = tissue.labels.grid;
+  result.labels = Volume<Label>(grid, 0);
+  result.whiteShare = Volume<float>(grid, 0.0f);
+  result.tissueShare = Volume<float>(grid, 0.0f);
+  for (std::size_t v = 0; v < cut.size(); ++v) {
+    const float both = tissue.probability[1][v] + tissue.probability[2][v];
+    if (draft.white[v] != 0) {
+      result.labels[v] = kWhite;
+      ++result.whiteVoxels;
+      result.whiteShare[v] = draft.filled[v] != 0 ? 1.0f : tissue.probability[2][v];
+      result.tissueShare[v] = draft.filled[v] != 0 ? 1.0f : both;
+    } else if (draft.tissue[v] != 0) {
+      result.labels[v] = kGrey;
+      ++result.greyVoxels;
+      // A voxel that is mostly white but stray stays below one half.
+      result.whiteShare[v] = std::min(tissue.probability[2][v], 0.49f);
+      result.tissueShare[v] = both;
+    } else if (draft.own[v] != 0) {
+      result.labels[v] = kCsf;
+      result.tissueShare[v] = std::min(both, 0.49f);
+    } else if (cut[v] != 0) {
+      result.labels[v] = kCut;
+    }
+  }
+}
+
+void requireOneSide(const TissueSegmentation& tissue, const Volume<Label>& atlas, Side side) {
+  if (!sameGrid(tissue.labels.grid, atlas.grid)) {
+    throw InvalidInput(
+        "atlas: lies on another grid than the segmentation; resample its labels to the T1's grid");
+  }
+  if (side == Side::Both) throw InvalidInput("hemisphere: found 'both', expected L or R");
+}
+
 }  // namespace
 
 Hemisphere extractHemisphere(const TissueSegmentation& tissue, const Volume<Label>& atlas,
                              const AtlasLegend& legend, const HemisphereOptions& options,
                              const Monitor& monitor) {
+  requireOneSide(tissue, atlas, options.side);
   const Grid& grid = tissue.labels.grid;
-  if (!sameGrid(grid, atlas.grid)) {
-    throw InvalidInput(
-        "atlas: lies on another grid than the segmentation; resample its labels to the T1's grid");
-  }
-  if (options.side == Side::Both) throw InvalidInput("hemisphere: found 'both', expected L or R");
-  const std::uint8_t side = sideCode(options.side);
-  const std::uint8_t otherSide = sideCode(options.side == Side::Left ? Side::Right : Side::Left);
   const Volume<Label>& seg = tissue.labels;
-
   const AtlasMap map = mapAtlas(atlas, legend);
-  const auto cerebral = [&](std::size_t v) {
-    return map.kind[v] != 0 && map.kind[v] != kindCode(StructureKind::BelowTent) &&
-           map.kind[v] != kindCode(StructureKind::Stem);
-  };
   monitor.progress(0.1, "nearest atlas labels");
-  const Volume<float> toSide = squaredDistanceTo(
-      setWhere(grid, [&](std::size_t v) { return cerebral(v) && map.side[v] == side; }));
-  const Volume<float> toOther = squaredDistanceTo(
-      setWhere(grid, [&](std::size_t v) { return cerebral(v) && map.side[v] == otherSide; }));
-  const Volume<float> toBelow = squaredDistanceTo(setWhere(
-      grid, [&](std::size_t v) { return map.kind[v] == kindCode(StructureKind::BelowTent); }));
-  const Volume<float> toCortex = squaredDistanceTo(setWhere(
-      grid, [&](std::size_t v) { return map.kind[v] == kindCode(StructureKind::Cortex); }));
+  const Nearness to = nearnessOf(map, sideCode(options.side),
+                                 sideCode(options.side == Side::Left ? Side::Right : Side::Left));
   const VoxelSet stem = findStem(map, legend, atlas);
 
   // Ties between the halves go to the left, so that the two hemispheres never share a voxel.
   const auto ours = [&](std::size_t v) {
-    const bool half = options.side == Side::Left ? toSide[v] <= toOther[v] : toSide[v] < toOther[v];
-    return half && toSide[v] <= toBelow[v] && stem[v] == 0;
+    const bool half =
+        options.side == Side::Left ? to.side[v] <= to.other[v] : to.side[v] < to.other[v];
+    return half && to.side[v] <= to.belowTent[v] && stem[v] == 0;
   };
-  const VoxelSet own = setWhere(grid, [&](std::size_t v) { return seg[v] != 0 && ours(v); });
+  Draft draft{setWhere(grid, [&](std::size_t v) { return seg[v] != 0 && ours(v); }),
+              VoxelSet(grid, 0), VoxelSet(grid, 0), VoxelSet(grid, 0)};
 
   monitor.progress(0.5, "filling deep structures and ventricles");
   Hemisphere result;
-  VoxelSet white(grid, 0);
-  VoxelSet filled(grid, 0);
   const VoxelSet deep = setWhere(grid, [&](std::size_t v) {
-    return own[v] != 0 && map.kind[v] == kindCode(StructureKind::Deep);
+    return draft.own[v] != 0 && map.kind[v] == kindCode(StructureKind::Deep);
   });
-  for (std::size_t v = 0; v < own.size(); ++v) {
-    if (own[v] != 0 && seg[v] == kWhite) white[v] = 1;
-    if (deep[v] == 0) continue;
-    if (white[v] == 0) ++result.deepVoxels;
-    white[v] = filled[v] = 1;
-  }
-  {
-    const double leastSquared = options.coreDepth * options.coreDepth;
-    const Components voids = componentsOf(setWhere(grid, [&](std::size_t v) {
-      return ours(v) && map.kind[v] == 0 && seg[v] != kWhite && toCortex[v] >= leastSquared;
-    }));
-    const VoxelSet outside = setWhere(grid, [&](std::size_t v) { return seg[v] == 0; });
-    std::vector<std::uint8_t> nearDeep(voids.size.size(), 0);
-    std::vector<std::uint8_t> open(voids.size.size(), 0);
-    for (std::size_t v = 0; v < own.size(); ++v) {
-      const std::int32_t n = voids.number[v];
-      if (n < 0) continue;
-      if (touches(grid, v, deep)) nearDeep[n] = 1;
-      if (outside[v] != 0 || touches(grid, v, outside)) open[n] = 1;
-    }
-    bool found = false;
-    for (std::size_t v = 0; v < own.size(); ++v) {
-      const std::int32_t n = voids.number[v];
-      if (n < 0 || nearDeep[n] == 0 || open[n] != 0) continue;
-      white[v] = filled[v] = 1;
-      ++result.ventricleVoxels;
-      found = true;
-    }
-    if (!found) {
-      monitor.warn(
-          "no ventricle was found next to the deep structures: where fluid borders white matter "
-          "inside the hemisphere, the white surface will follow it");
-    }
+  result.deepVoxels = takeDeep(deep, seg, draft);
+  const double leastSquared = options.coreDepth * options.coreDepth;
+  const VoxelSet voids = setWhere(grid, [&](std::size_t v) {
+    return ours(v) && map.kind[v] == 0 && seg[v] != kWhite && to.cortex[v] >= leastSquared;
+  });
+  result.ventricleVoxels = fillVentricles(voids, deep, seg, draft);
+  if (result.ventricleVoxels == 0) {
+    monitor.warn(
+        "no ventricle was found next to the deep structures: where fluid borders white matter "
+        "inside the hemisphere, the white surface will follow it");
   }
 
-  // Only the largest piece of white matter counts; what it encloses is filled.
   monitor.progress(0.7, "cleaning the hemisphere");
-  {
-    const Components pieces = componentsOf(white);
-    const std::int32_t largest = pieces.largest();
-    if (largest < 0) {
-      throw InvalidInput(
-          "segmentation: no white matter voxel in the hemisphere; check that atlas and T1 overlap");
-    }
-    for (std::size_t v = 0; v < white.size(); ++v) {
-      if (white[v] == 0 || pieces.number[v] == largest) continue;
-      white[v] = 0;
-      ++result.strayVoxels;
-    }
-    const Components around =
-        componentsOf(setWhere(grid, [&](std::size_t v) { return white[v] == 0; }));
-    const std::int32_t outside = around.largest();
-    for (std::size_t v = 0; v < white.size(); ++v) {
-      if (white[v] != 0 || around.number[v] == outside) continue;
-      white[v] = filled[v] = 1;
-      ++result.cavityVoxels;
-    }
+  const Components pieces = componentsOf(draft.white);
+  if (pieces.largest() < 0) {
+    throw InvalidInput(
+        "segmentation: no white matter voxel in the hemisphere; check that atlas and T1 overlap");
   }
-  VoxelSet tissueSet = setWhere(grid, [&](std::size_t v) {
-    return white[v] != 0 || (own[v] != 0 && (seg[v] == kGrey || seg[v] == kWhite));
+  result.strayVoxels = keepLargest(draft.white, pieces);
+  result.cavityVoxels = fillCavities(draft);
+  draft.tissue = setWhere(grid, [&](std::size_t v) {
+    return draft.white[v] != 0 || (draft.own[v] != 0 && (seg[v] == kGrey || seg[v] == kWhite));
   });
-  {
-    const Components pieces = componentsOf(tissueSet);
-    const std::int32_t largest = pieces.largest();
-    for (std::size_t v = 0; v < tissueSet.size(); ++v) {
-      if (tissueSet[v] == 0 || pieces.number[v] == largest) continue;
-      tissueSet[v] = 0;
-      ++result.strayVoxels;
-    }
-  }
+  result.strayVoxels += keepLargest(draft.tissue, componentsOf(draft.tissue));
 
-  result.labels = Volume<Label>(grid, 0);
-  result.whiteShare = Volume<float>(grid, 0.0f);
-  result.tissueShare = Volume<float>(grid, 0.0f);
-  for (std::size_t v = 0; v < own.size(); ++v) {
-    if (white[v] != 0) {
-      result.labels[v] = kWhite;
-      ++result.whiteVoxels;
-      result.whiteShare[v] = filled[v] != 0 ? 1.0f : tissue.probability[2][v];
-      result.tissueShare[v] =
-          filled[v] != 0 ? 1.0f : tissue.probability[1][v] + tissue.probability[2][v];
-    } else if (tissueSet[v] != 0) {
-      result.labels[v] = kGrey;
-      ++result.greyVoxels;
-      // A voxel that is mostly white but stray stays below one half.
-      result.whiteShare[v] = std::min(tissue.probability[2][v], 0.49f);
-      result.tissueShare[v] = tissue.probability[1][v] + tissue.probability[2][v];
-    } else if (own[v] != 0) {
-      result.labels[v] = kCsf;
-      result.tissueShare[v] = std::min(tissue.probability[1][v] + tissue.probability[2][v], 0.49f);
-    } else if (seg[v] == kWhite || map.kind[v] == kindCode(StructureKind::Deep) ||
-               (stem[v] != 0 && seg[v] == kGrey)) {
-      result.labels[v] = kCut;
-    }
-  }
+  label(tissue, draft,
+        setWhere(grid,
+                 [&](std::size_t v) {
+                   return seg[v] == kWhite || map.kind[v] == kindCode(StructureKind::Deep) ||
+                          (stem[v] != 0 && seg[v] == kGrey);
+                 }),
+        result);
   if (result.greyVoxels == 0) {
     throw InvalidInput(
         "segmentation: no grey matter voxel in the hemisphere; check that atlas and T1 overlap");

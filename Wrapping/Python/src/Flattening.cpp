@@ -32,9 +32,7 @@ std::vector<std::int32_t> listed(const TriangleMesh& mesh,
   return all;
 }
 
-}  // namespace
-
-void bindFlattening(py::module_& m) {
+void bindFlatMaps(py::module_& m) {
   defWithOptions<flattening::FlattenOptions>(
       m, "flatten",
       [](const PositionsIn& positions, const FacesIn& faces,
@@ -97,6 +95,9 @@ void bindFlattening(py::module_& m) {
       "(N,), those on cuts there twice; `region` (F,) their numbers in it; edge strain of the map "
       "without and with them.",
       "positions"_a, "faces"_a, "region"_a = py::none(), "progress"_a = py::none());
+}
+
+void bindFlatMeasures(py::module_& m) {
   m.def(
       "distance_errors",
       [](const PositionsIn& before, const FacesIn& faces, const PositionsIn& after, int pairs,
@@ -140,6 +141,13 @@ void bindFlattening(py::module_& m) {
       "Cells of `cell` mm over a flat map (z = 0): their RAS places (I, J, depths, 3) between the\n"
       "surfaces inner and outer (V, 3), NaN off the map, and the affine from cells to u, v (mm) "
       "and depth.");
+}
+
+}  // namespace
+
+void bindFlattening(py::module_& m) {
+  bindFlatMaps(m);
+  bindFlatMeasures(m);
 }
 
 }  // namespace explica::python

@@ -89,13 +89,14 @@ QAction* MainWindow::addAction(QMenu* menu, const char* name, const QString& tex
   return action;
 }
 
-void MainWindow::buildMenus() {
-  const auto under = [this](void (MainWindow::*work)(int, int)) {
-    return [this, work] {
-      const QPoint at = fromLowerLeft(pointer_);
-      (this->*work)(at.x(), at.y());
-    };
+std::function<void()> MainWindow::underPointer(void (MainWindow::*work)(int, int)) {
+  return [this, work] {
+    const QPoint at = fromLowerLeft(pointer_);
+    (this->*work)(at.x(), at.y());
   };
+}
+
+void MainWindow::buildMenus() {
   QMenu* file = menuBar()->addMenu("&File");
   addAction(file, "open", "&Open map, labels or volume ...", QKeySequence::Open, [this] {
     const QString path = QFileDialog::getOpenFileName(this, "Open");
@@ -116,7 +117,7 @@ void MainWindow::buildMenus() {
 
   QMenu* edit = menuBar()->addMenu("&Choose");
   addAction(edit, "centre", "&Centre under the pointer", QKeySequence("C"),
-            under(&MainWindow::pickCentre));
+            underPointer(&MainWindow::pickCentre));
   addAction(edit, "view", "Present &view is the viewpoint", QKeySequence("V"),
             [this] { takeView(); });
   addAction(edit, "addView", "Present view is a &further viewpoint", QKeySequence("Shift+V"),
@@ -148,6 +149,13 @@ void MainWindow::buildMenus() {
   addAction(run, "command", "Copy the &command that gives this state", QKeySequence("Ctrl+Shift+C"),
             [this] { copyCommand(); });
 
+  buildViewMenu();
+  QMenu* helpMenu = menuBar()->addMenu("&Help");
+  addAction(helpMenu, "help", "&Keys and what to do", QKeySequence::HelpContents,
+            [this] { help(); });
+}
+
+void MainWindow::buildViewMenu() {
   QMenu* view = menuBar()->addMenu("&View");
   const std::array<std::tuple<const char*, const char*, Vector>, 6> sides = {
       {{"left", "From the &left", Vector(-1, 0, 0)},
@@ -182,14 +190,10 @@ void MainWindow::buildMenus() {
     panels_.map->setCurrentIndex((panels_.map->currentIndex() + 1) % panels_.map->count());
   });
   addAction(view, "measure", "&Distance along the surface, between two points under the pointer",
-            QKeySequence("D"), under(&MainWindow::measure));
+            QKeySequence("D"), underPointer(&MainWindow::measure));
   for (QDockWidget* dock : {panels_.slicesDock, panels_.profilesDock, panels_.stackDock}) {
     view->addAction(dock->toggleViewAction());
   }
-
-  QMenu* helpMenu = menuBar()->addMenu("&Help");
-  addAction(helpMenu, "help", "&Keys and what to do", QKeySequence::HelpContents,
-            [this] { help(); });
 }
 
 void MainWindow::connectPanels() {

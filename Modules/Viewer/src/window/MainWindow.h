@@ -24,6 +24,7 @@ namespace explica::viewer {
 
 /// The window's own maps, in their order in the panel; those that were opened follow.
 enum OwnMap : int { kRegion, kFlux, kSeen, kAreaRatio, kOwnMaps };
+// As the panel calls them.
 inline constexpr std::array kOwnMapNames = {"region", "faces the viewpoint", "share seen",
                                             "area now / at the start"};
 
@@ -59,6 +60,8 @@ class MainWindow : public QMainWindow {
 
  private:
   void buildMenus();
+  void buildViewMenu();
+  std::function<void()> underPointer(void (MainWindow::*work)(int, int));
   QAction* addAction(QMenu* menu, const char* name, const QString& text, const QKeySequence& key,
                      std::function<void()> work);
   void connectPanels();

@@ -1,0 +1,98 @@
+# SPDX-FileCopyrightText: The Explica developers
+# SPDX-License-Identifier: Apache-2.0
+"""What the sources promise their readers, as far as a script can tell:
+
+- a constant of a module's sources says what it is, in which unit and why so large, on its line or in a sentence
+  above it (which may stand above several);
+- no function is longer than 100 lines, the `run` of a command not longer than 60; the
+  median body has at most 9.
+
+    check-style.py [--lengths]      with --lengths: the longest functions, too"""
+
+import pathlib
+import re
+import statistics
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+LONGEST, LONGEST_RUN, MEDIAN = 100, 60, 9  # lines
+
+CONSTANT = re.compile(r"(?:static |inline )*constexpr [^=({]*?\b(k[A-Z]\w*)")
+
+def sources(*patterns: str) -> list[pathlib.Path]:
+    return sorted(path for pattern in patterns for path in ROOT.glob(pattern))
+
+
+def explained(lines: list[str], at: int) -> bool:
+    """Whether the constant that begins at a line, or the block of constants it stands in, has a comment."""
+    end = at
+    while ";" not in lines[end] and end + 1 < len(lines):
+        end += 1
+    if any("//" in line for line in lines[at:end + 1]):
+        return True
+    above = at
+    while above > 0 and (CONSTANT.match(lines[above - 1]) or lines[above - 1].startswith("  ")):
+        above -= 1
+    return lines[above - 1].startswith("//")
+
+
+def unexplained(path: pathlib.Path) -> list[str]:
+    lines = path.read_text().split("\n")
+    return [f"{path.relative_to(ROOT)}:{n + 1}: {match[1]} says neither unit nor reason"
+            for n, line in enumerate(lines)
+            if (match := CONSTANT.match(line)) and not explained(lines, n)]
+
+
+def functions(path: pathlib.Path) -> list[tuple[int, int, str]]:
+    """Lines, lines of the body and first line of each function: formatted sources close it as far left as it began."""
+    found = []
+    begin = {"": None, "  ": None}  # in a namespace, in a class: first line and line of the opening brace
+    for n, line in enumerate(path.read_text().split("\n")):
+        for indent, now in begin.items():
+            inside = indent == "" or begin[""] and re.match(r"(struct|class|template)\b", begin[""][2])
+            if now is None and inside and re.match(indent + r"[A-Za-z\[~]", line):
+                now = [n, None, line.strip()]
+            if now is None:
+                continue
+            if now[1] is None and line.endswith("{"):
+                now[1] = n
+            if now[1] == n - 1 and line.startswith(indent + "  static const "):
+                begin[indent] = None  # a table with a function around it
+                continue
+            if line == indent + "}" and now[1] is not None:
+                found.append((n - now[0] + 1, n - now[1] - 1, now[2]))
+            if now[0] == n and indent and re.search(r"\)( const| override| noexcept)* \{ .* \}$", line):
+                found.append((1, 1, now[2]))
+            left = line.startswith(indent) and line[len(indent):len(indent) + 1] not in (" ", "")
+            ends = line.startswith((indent + "}", "}")) or line.endswith("}") or line.endswith(";")
+            begins_space = re.match(r"(inline )?(namespace|extern)\b.*\{$", line)
+            begin[indent] = None if left and (ends or begins_space) else now
+    return found
+
+
+def main() -> int:
+    faults = [fault for path in sources("Modules/*/src/**/*.cpp", "Modules/*/src/**/*.h")
+              for fault in unexplained(path)]
+    lengths = []
+    bodies = []
+    for path in sources("Modules/*/src/**/*.cpp", "Applications/**/*.cpp", "Wrapping/Python/src/*.cpp"):
+        for length, body, first in functions(path):
+            lengths.append((length, path, first))
+            bodies.append(body)
+            command = path.is_relative_to(ROOT / "Applications") and re.match(r"Termination run\(", first)
+            limit = LONGEST_RUN if command else LONGEST
+            if length > limit:
+                faults.append(f"{path.relative_to(ROOT)}: {length} lines, more than {limit}: {first}")
+    median = statistics.median(bodies)
+    if median > MEDIAN:
+        faults.append(f"the median body has {median:g} lines, more than {MEDIAN}")
+    if "--lengths" in sys.argv:
+        for length, path, first in sorted(lengths, key=lambda entry: -entry[0])[:15]:
+            print(f"{length:4d}  {path.relative_to(ROOT)}: {first}")
+    print(f"{len(lengths)} functions, median body {median:g} lines, longest {max(lengths)[0]}")
+    print("\n".join(faults) if faults else "every constant says what it is")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
