@@ -13,6 +13,7 @@
 namespace explica::report {
 namespace {
 
+// One row of pictures each, from above to below.
 constexpr std::array kAxes = {SliceAxis::Axial, SliceAxis::Coronal, SliceAxis::Sagittal};
 constexpr double kOffLattice = 1e-4;  // mm: no plane runs along a surface's faces
 
