@@ -1,6 +1,9 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
+#include "../src/Contacts.h"
+#include "../src/Motion.h"
+#include "../src/PatchSetup.h"
 #include "Flask.h"
 #include "Meander.h"
 
@@ -352,6 +355,24 @@ TriangleMesh touched(const Case& c, const std::vector<double>& sides) {
     for (int k = 0; k < 3; ++k) mesh.faces(last, k) = static_cast<std::int32_t>(first + k);
   }
   return mesh;
+}
+
+TEST(Motion, APairThatAlmostTouchesBlocksAWayTowardsItself) {
+  const Case c;
+  const TriangleMesh mesh = touched(c, {1});
+  const PatchSetup setup = setUpPatch(mesh, c.region, c.view, with(Surround::Fixed));
+  const Contacts contacts(setup, with(Surround::Fixed));
+  const std::int32_t tip = static_cast<std::int32_t>(c.mesh.vertexCount());
+  const Eigen::Index face = c.region.faces[c.region.faces.size() / 2];
+  Motion motion;
+  motion.by = Positions::Zero(mesh.vertexCount(), 3);
+  const Point middle = (mesh.corner(face, 0) + mesh.corner(face, 1) + mesh.corner(face, 2)) / 3;
+  for (int k = 0; k < 3; ++k) {
+    motion.by.row(mesh.faces(face, k)) = mesh.positions.row(tip) - middle.transpose();
+  }
+  findSafeStep(contacts, mesh.positions, motion);
+  EXPECT_LT(motion.safe, kBlocked);
+  EXPECT_GT(motion.safe, 0.1);
 }
 
 TEST(Unfolder, APairThatStartsInContactHoldsUpNoStep) {
