@@ -6,7 +6,8 @@
 # The first inputs are the files that the tests write (build/ must be configured) and the regressions.
 # A file that crashes, takes 20 s or 2.5 GB is kept in Testing/fuzz/regressions/READER, where every
 # later test run tries it: mend the reader, then commit both.  EXPLICA_JOBS bounds the compilers at
-# once, EXPLICA_RUNS the executions of each reader, which are printed.
+# once, EXPLICA_RUNS the executions of each reader, which are printed; EXPLICA_SEED makes the inputs
+# of one run those of another.
 set -eu
 cd "$(dirname "$0")/.."
 seconds=${1:-60}
@@ -40,7 +41,7 @@ for reader in $readers; do
   EXPLICA_FUZZ_READER=$name build-fuzz/bin/ExplicaFuzz "$corpus" "$seeds/$file" \
     $([ -d "$kept" ] && echo "$kept") -max_total_time="$seconds" -timeout=20 -rss_limit_mb=2560 \
     -max_len=65536 -print_final_stats=1 -artifact_prefix="$crashes/" \
-    -runs="${EXPLICA_RUNS:--1}" \
+    -runs="${EXPLICA_RUNS:--1}" -seed="${EXPLICA_SEED:-0}" \
     >"build-fuzz/$name.log" 2>&1 || found=1
   runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "build-fuzz/$name.log")
   echo "$name: ${runs:-?} executions$([ $found = 0 ] || echo ', CRASH: see build-fuzz/'"$name.log")"

@@ -214,23 +214,6 @@ std::int64_t shortenAstray(const TriangleMesh& white, double voxel,
   return shortened;
 }
 
-/// Thickness counts no more than so many times the mean of the nearest distances both ways and so
-/// many voxels: trajectories between eccentric spheres are never longer, what is winds along a
-/// bank.
-constexpr double kWinding = 1.1, kWindingBy = 0.2;
-/// Where edges are longer than this, voxels, their chords shorten those distances too much to tell.
-constexpr double kFineEdge = 1.5;
-
-void capWinding(double voxel, CorticalSurfaces& result) {
-  if (result.white.edgeLength > kFineEdge * voxel) return;
-  for (Eigen::Index v = 0; v < result.thickness.size(); ++v) {
-    const double most = kWinding * result.nearestThickness[v] + kWindingBy * voxel;
-    if (result.thickness[v] <= most) continue;
-    result.thickness[v] = most;
-    ++result.shortened;
-  }
-}
-
 void takeThickness(const std::vector<Trajectory>& paths, CorticalSurfaces& result) {
   result.thickness.resize(static_cast<Eigen::Index>(paths.size()));
   for (std::size_t v = 0; v < paths.size(); ++v) {
@@ -375,7 +358,6 @@ CorticalSurfaces build(const CorticalTissue& tissue, const Volume<float>* image,
   result.curvature = meanCurvature(result.white.mesh);
   result.nearestThickness = distanceThickness(result.white.mesh, result.pial);
   result.nearestThickness = (result.thickness.array() > 0).select(result.nearestThickness, 0.0);
-  capWinding(tissue.white.grid.spacing.minCoeff(), result);
   result.sulcalDepth = depthBelowHull(ribbon.tissue.tissue, result.mid.positions);
   result.seconds.measures = watch.lap();
   monitor.progress(1.0, "surfaces");

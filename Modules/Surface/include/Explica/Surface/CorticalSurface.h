@@ -78,8 +78,7 @@ struct CorticalSurfaces {
   Eigen::VectorXd sulcalDepth;       ///< of the middle surface below the closed hull, mm
   std::int64_t noRibbon = 0;         ///< vertices without grey matter: all three surfaces coincide
   std::int64_t endedAtBank = 0;      ///< trajectories that end in the middle of a buried sulcus
-  std::int64_t shortened = 0;        ///< trajectories far longer than all around them, or than the
-                                     ///< nearest distances both ways: counted no longer
+  std::int64_t shortened = 0;        ///< trajectories far longer than all around them: cut to those
   std::int64_t cutLinks = 0;         ///< grid links that buried sulci cut
   std::int64_t heldBackMid = 0;   ///< vertices kept short of half their way, so that faces do not
   std::int64_t heldBackPial = 0;  ///< meet; or of their whole way
