@@ -5,20 +5,9 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Segmentation/Plausibility.h"
-
-#include <nlohmann/json.hpp>
-
-#include <cmath>
+#include "JsonNumber.h"
 
 namespace explica::app {
-namespace {
-
-nlohmann::ordered_json numberOrNull(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
-}
-
-}  // namespace
-
 void declareAccept(Declaration& d, std::vector<std::string>& accepted) {
   static const std::string help = [] {
     std::string names;

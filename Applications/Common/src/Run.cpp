@@ -10,6 +10,7 @@
 #include "Explica/Provenance/Record.h"
 #include "Explica/Provenance/Software.h"
 #include "Explica/Provenance/Verify.h"
+#include "JsonNumber.h"
 #include "OutputFolder.h"
 #include "Parse.h"
 #include "Signals.h"
@@ -41,10 +42,6 @@ double secondsNow() {
 /// Result keys that start so are times: they differ between equal runs.
 bool isTime(const std::string& key) {
   return key.rfind("seconds", 0) == 0;
-}
-
-Json numberOrNull(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
 }  // namespace

@@ -70,7 +70,7 @@ Use useOf(const std::function<std::size_t()>& work) {
     } catch (const Error&) {
     }
     use.peak = statusOf("VmHWM") - std::min(before, statusOf("VmHWM"));
-    const bool told = write(ends[1], &use, sizeof use) == sizeof use;
+    const bool told = ::write(ends[1], &use, sizeof use) == sizeof use;
     _exit(told ? 0 : 1);
   }
   close(ends[1]);
