@@ -49,9 +49,11 @@ A run that is stopped holds the surfaces that it has measured, the first at any 
                    s.label, "Region")
       .option("Region", Field{"label-key", "", "compare only where --label has this key"},
               s.labelKey)
-      .option("Distances", Field{"pairs", "", "pairs of vertices in each of the two groups"},
+      .option("Distances",
+              Field{"pairs", "", "pairs of vertices in each of the two groups", 0, 1e8},
               s.distances.pairs)
-      .option("Distances", Field{"sources", "", "vertices from which the pairs are counted"},
+      .option("Distances",
+              Field{"sources", "", "vertices from which the pairs are counted", 0, 1e6},
               s.distances.sources)
       .option("Distances", Field{"local-limit", "mm", "pairs nearer than this are 'local'"},
               s.distances.localLimit)

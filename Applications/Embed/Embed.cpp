@@ -84,8 +84,9 @@ void declare(Declaration& d, Settings& s) {
       .option("Annulus", Field{"inner", "", "labels that a given annulus encloses"}, s.innerLabels)
       .option("Annulus", Field{"tissue", "", "labels of a given annulus itself"}, s.tissueLabels)
       .options("Fit", s.fitting)
-      .option("Output", Field{"grid", "", "voxels per side, for drawing the shape"}, s.grid)
-      .option("Output", Field{"frames", "", "states of the first target's fit"}, s.frames)
+      .option("Output", Field{"grid", "", "voxels per side, for drawing the shape", 0, 1024},
+              s.grid)
+      .option("Output", Field{"frames", "", "states of the first target's fit", 0, 1000}, s.frames)
       .output("coefficients.json", FileKind::JsonFile, "the shape's coefficients")
       .output("field.nii.gz", FileKind::Volume, "in 3D: u on the grid; the shape is its 1/2 level")
       .output("shape.csv", FileKind::Polygon, "in 2D: the shape")

@@ -116,8 +116,9 @@ void declare(Declaration& d, Settings& s) {
       .option("Unfolding", Field{"resume", "", "continue the run whose outputs are in --out"},
               s.resume)
       .reuseOutputIf(s.resume)
-      .option("Output", Field{"frames", "", "write this many states on the way"}, s.frames)
-      .option("Output", Field{"stages", "", "panels of evolution.svg"}, s.stages)
+      .option("Output", Field{"frames", "", "write this many states on the way", 0, 100000},
+              s.frames)
+      .option("Output", Field{"stages", "", "panels of evolution.svg", 0, 1000}, s.stages)
       .output("polygon.csv", FileKind::Polygon, "the polygon as it was understood")
       .output("unfolded.csv", FileKind::Polygon, "the unfolded polygon")
       .output("unfolded.vtp", FileKind::Polygon, "the same with flux and seen share of each edge")

@@ -18,8 +18,8 @@ struct LoadedTemplate {
   Label stem = 0;  ///< 0 if it has none
 };
 
-/// A template by name (colin27, or inia19 for a macaque: of mricron-data) or folder: T1.nii.gz (with skull, may be absent),
-/// brain.nii.gz (without), atlas.nii.gz with its legend beside it.
+/// A template by name (colin27, or inia19 for a macaque: of mricron-data) or folder: T1.nii.gz
+/// (with skull, may be absent), brain.nii.gz (without), atlas.nii.gz with its legend beside it.
 /// @return nothing if it is not installed
 /// @throws InvalidInput  an unknown name, a folder without brain or atlas, volumes on different
 /// grids

@@ -122,7 +122,8 @@ void declare(Declaration& d, Settings& s) {
       .options("Boundary", s.measurement.sulcus)
       .options("Correspondences", s.measurement.correspondence)
       .options("Layers", s.measurement.layers)
-      .option("Layers", Field{"grid", "", "write an anatomical grid with this many cells across"},
+      .option("Layers",
+              Field{"grid", "", "write an anatomical grid with this many cells across", 0, 1000},
               s.measurement.grid)
       .inputOption(
           "functions", FileKind::Volume,

@@ -81,8 +81,9 @@ void declare(Declaration& d, Settings& s) {
       .option("Picture", Field{"focus", "", "fill the picture with the --region"}, s.focus)
       .option("Picture", Field{"colours", "", "colour map (default: by the values)"}, s.colours)
       .option("Picture", Field{"range", "", "values of the first and last colour"}, s.range)
-      .option("Picture", Field{"columns", "", "views in a row"}, s.columns)
-      .option("Picture", Field{"slices", "", "slices of a volume in each direction"}, s.slices)
+      .option("Picture", Field{"columns", "", "views in a row", 0, 100}, s.columns)
+      .option("Picture", Field{"slices", "", "slices of a volume in each direction", 0, 1000},
+              s.slices)
       .option("Picture", Field{"fps", "", "frames a second of a film"}, s.framesPerSecond)
       .options("Picture", s.picture)
       .options("Window", s.window)

@@ -101,5 +101,34 @@ TEST(EveryCommandHelp, ExampleWorksAsPasted) {
   }
 }
 
+/// Values of labels, seeds and numbers of vertices: not how many of something there shall be.
+bool isNoCount(const std::string& name) {
+  static const std::vector<std::string> kNames = {
+      "cavity", "fill", "grey", "inner",  "insulated", "label", "label-key",
+      "outer",  "rv",   "seed", "tissue", "vertex",    "wall",  "white"};
+  return std::find(kNames.begin(), kNames.end(), name.substr(name.rfind('.') + 1)) != kNames.end();
+}
+
+TEST(EveryCommandHelp, NoCountIsWithoutAnUpperBound) {
+  int counts = 0;
+  for (const Json& command : declarations()) {
+    for (const Json& option : command["parameters"]) {
+      const auto name = option["name"].get<std::string>();
+      if (option["type"] != "integer" || isNoCount(name)) continue;
+      ++counts;
+      EXPECT_TRUE(option["most"].is_number())
+          << command["command"] << " " << name << ": give its Field a least and a most";
+    }
+  }
+  EXPECT_GT(counts, 100);
+}
+
+TEST(EveryCommandHelp, ACountBeyondItsBoundIsRefusedWithTheBound) {
+  const CommandResult said =
+      explica({"thickness", "x.nii.gz", "--threads", "1000000000", "--out", "x"});
+  EXPECT_EQ(said.exitCode, 1) << said;
+  EXPECT_NE(said.err.find("1 to 4096"), std::string::npos) << said;
+}
+
 }  // namespace
 }  // namespace explica::testing

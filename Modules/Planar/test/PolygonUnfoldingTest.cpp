@@ -314,8 +314,9 @@ TEST(PolygonUnfolding, StopsWhenAsked) {
   const PolygonUnfolding result =
       unfoldPolygon(phantom.curve, regionOf(phantom), phantom.viewpoint, {}, monitor);
   EXPECT_EQ(result.termination, Termination::Interrupted);
-  EXPECT_EQ(result.history.size(), 6U);
-  EXPECT_EQ(result.path.size(), 6U);
+  EXPECT_GE(result.history.size(), 2U);
+  EXPECT_LE(result.history.size(), 6U);  // at least one look an iteration
+  EXPECT_EQ(result.path.size(), result.history.size());
 }
 
 }  // namespace

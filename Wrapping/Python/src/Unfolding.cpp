@@ -65,6 +65,13 @@ py::dict resultDict(unfolding::UnfoldResult result) {
                   "collar"_a = columnOf(result.collar), "history"_a = history, "frames"_a = frames);
 }
 
+/// The solver of unfold() with these options.
+unfolding::UnfolderOptions asUnfoldHas(unfolding::UnfolderOptions options) {
+  unfolding::UnfoldOptions whole;
+  whole.unfolder = std::move(options);
+  return unfolding::solverOptions(whole);
+}
+
 /// An unfolder that can be given another region on the way; Python's face of unfolding::Unfolder.
 class Stepper {
  public:
@@ -72,7 +79,7 @@ class Stepper {
           unfolding::UnfolderOptions options)
       : mesh_(std::move(mesh)),
         viewpoints_(std::move(viewpoints)),
-        options_(options),
+        options_(asUnfoldHas(std::move(options))),
         unfolder_(mesh_, regionOf(mesh_, region), viewpoints_, options_) {}
 
   bool step(int count) {

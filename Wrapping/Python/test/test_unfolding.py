@@ -83,7 +83,7 @@ class Unfolding(unittest.TestCase):
     def test_weights_change_on_the_way(self):
         """Stiffer springs stretch the edges less from there on."""
         strains = []
-        for weight in (0.1, 50.0):
+        for weight in (0.1, 500.0):
             stepper = explica.Unfolder(self.surface, self.region["vertices"], self.view)
             stepper.step(2)
             stepper.set_weights(spring_weight=weight)

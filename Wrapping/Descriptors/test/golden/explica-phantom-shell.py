@@ -1,5 +1,5 @@
 class PhantomShellInputSpec(CommandLineInputSpec):
-    size = traits.Int(desc="voxels along the first axis", argstr="--size %s")
+    size = traits.Int(desc="voxels along the first axis [0 to 1024]", argstr="--size %s")
     spacing = traits.Float(desc="voxel size along the first axis [mm]", argstr="--spacing %s")
     inner_radius = traits.Float(desc="inner radius over half the grid's width", argstr="--inner-radius %s")
     outer_radius = traits.Float(desc="outer radius over half the grid's width", argstr="--outer-radius %s")
@@ -7,7 +7,7 @@ class PhantomShellInputSpec(CommandLineInputSpec):
     out = traits.Str(desc="folder for the results; made if absent, refused if not empty", argstr="--out %s", mandatory=True)
     force = traits.Bool(desc="write into a folder that is not empty, replacing earlier results", argstr="--force")
     config = traits.Str(desc="JSON file with option values; the command line wins", argstr="--config %s")
-    threads = traits.Int(desc="processors to use (default: all that this process may)", argstr="--threads %s")
+    threads = traits.Int(desc="processors to use (default: all that this process may) [1 to 4096]", argstr="--threads %s")
     max_time = traits.Float(desc="ask for an end after this time, with what was reached [s; above 0, at most 1e+09]", argstr="--max-time %s")
     max_memory = traits.Int(desc="memory at most [MB; 64 to 1073741824]", argstr="--max-memory %s")
     dry_run = traits.Bool(desc="resolve and check everything, print the options, write nothing", argstr="--dry-run")

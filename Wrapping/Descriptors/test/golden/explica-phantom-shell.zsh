@@ -1,6 +1,6 @@
   'phantom shell')
     _arguments \
-      '--size[voxels along the first axis]:size: ' \
+      '--size[voxels along the first axis (0 to 1024)]:size: ' \
       '--spacing[voxel size along the first axis (mm)]:spacing: ' \
       '--inner-radius[inner radius over half the grid'\''s width]:inner-radius: ' \
       '--outer-radius[outer radius over half the grid'\''s width]:outer-radius: ' \
@@ -8,7 +8,7 @@
       '--out[folder for the results; made if absent, refused if not empty]:out:_files' \
       '--force[write into a folder that is not empty, replacing earlier results]' \
       '--config[JSON file with option values; the command line wins]:config:_files' \
-      '--threads[processors to use (default\: all that this process may)]:threads: ' \
+      '--threads[processors to use (default\: all that this process may) (1 to 4096)]:threads: ' \
       '--max-time[ask for an end after this time, with what was reached (s; above 0, at most 1e+09)]:max-time: ' \
       '--max-memory[memory at most (MB; 64 to 1073741824)]:max-memory: ' \
       '--dry-run[resolve and check everything, print the options, write nothing]' \

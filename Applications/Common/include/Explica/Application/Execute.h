@@ -35,7 +35,8 @@ void describe(CommonOptions& o, Visitor&& visit) {
   visit(Field{"force", "", "write into a folder that is not empty, replacing earlier results"},
         o.force);
   visit(Field{"config", "", "JSON file with option values; the command line wins"}, o.config);
-  visit(Field{"threads", "", "processors to use (default: all that this process may)"}, o.threads);
+  visit(Field{"threads", "", "processors to use (default: all that this process may)", 1, 4096},
+        o.threads);
   visit(Field{"max-time", "s", "ask for an end after this time, with what was reached", kAboveZero,
               1e9},
         o.maxTime);

@@ -39,7 +39,7 @@ template <class Visitor>
 void describe(VolumeReadOptions& options, Visitor&& visit) {
   visit(Field{"xform", "", "which placement of a NIfTI header to believe where the two differ"},
         options.placement);
-  visit(Field{"frame", "", "which volume of a file that holds several, counted from 0"},
+  visit(Field{"frame", "", "which volume of a file that holds several, counted from 0", 0, 1e6},
         options.frame);
 }
 

@@ -49,7 +49,8 @@ template <class Visitor>
 void describe(PolygonUnfoldingOptions& options, Visitor&& visit) {
   visit(Field{"method", "", "implicit steps, or the thesis's explicit flow"}, options.method);
   visit(Field{"surround", "", "what happens to the polygon outside the region"}, options.surround);
-  visit(Field{"collar", "", "edges on each side that follow an elastic surround"}, options.collar);
+  visit(Field{"collar", "", "edges on each side that follow an elastic surround", 0, 1e6},
+        options.collar);
   visit(Field{"no-length", "", "let edges of the region change their length"}, options.noLength);
   visit(Field{"no-topology", "", "let edges cross: no repulsion, no collision detection"},
         options.noTopology);
@@ -61,7 +62,8 @@ void describe(PolygonUnfoldingOptions& options, Visitor&& visit) {
   visit(Field{"knot-weight", "", "implicit method: weight of the knot energy"}, options.knotWeight);
   visit(Field{"target-visibility", "", "stop at this average visibility"},
         options.targetVisibility);
-  visit(Field{"max-iterations", "", "stop after this many iterations"}, options.maxIterations);
+  visit(Field{"max-iterations", "", "stop after this many iterations", 0, 1e9},
+        options.maxIterations);
   visit(Field{"max-time", "s", "stop after this time"}, options.maxTime);
   visit(Field{"visibility-gain", "", "thesis method: mu, the weight of the visibility"},
         options.visibilityGain);

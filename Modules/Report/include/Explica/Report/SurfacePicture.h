@@ -41,9 +41,9 @@ struct SurfacePictureOptions {
 
 template <class Visitor>
 void describe(SurfacePictureOptions& options, Visitor&& visit) {
-  visit(Field{"width", "pixels", "width of a view"}, options.width);
-  visit(Field{"height", "pixels", "height of a view"}, options.height);
-  visit(Field{"samples", "", "rays a pixel in each direction, against jagged edges"},
+  visit(Field{"width", "pixels", "width of a view", 0, 16384}, options.width);
+  visit(Field{"height", "pixels", "height of a view", 0, 16384}, options.height);
+  visit(Field{"samples", "", "rays a pixel in each direction, against jagged edges", 0, 16},
         options.samples);
   visit(Field{"occlusion", "", "how much folds darken, 0 to 1"}, options.occlusion);
 }

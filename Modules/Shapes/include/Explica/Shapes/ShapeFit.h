@@ -33,7 +33,8 @@ void describe(AnnulusOptions& options, Visitor&& visit) {
         options.innerRadius);
   visit(Field{"outer-radius", "mm", "default: 1.15 of the farthest target point"},
         options.outerRadius);
-  visit(Field{"order", "", "highest angular frequency; default 64 in 2D, 14 in 3D"}, options.order);
+  visit(Field{"order", "", "highest angular frequency; default 64 in 2D, 14 in 3D", 0, 1000},
+        options.order);
 }
 
 /// The annulus about targets of a dimension, 2 or 3, that leaves some room on both sides of them.
@@ -53,8 +54,9 @@ struct ShapeFitOptions {
 
 template <class Visitor>
 void describe(ShapeFitOptions& options, Visitor&& visit) {
-  visit(Field{"samples", "", "points of each target's boundary that are fitted"}, options.samples);
-  visit(Field{"max-iterations", "", "iterations of the fit"}, options.maxIterations);
+  visit(Field{"samples", "", "points of each target's boundary that are fitted", 0, 1e7},
+        options.samples);
+  visit(Field{"max-iterations", "", "iterations of the fit", 0, 1e6}, options.maxIterations);
   visit(Field{"fit-start", "",
               "initial estimate: 0 near the inner boundary, 1 near the outer one; the fit does not "
               "hang on it",
