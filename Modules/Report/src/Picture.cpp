@@ -88,7 +88,7 @@ std::string compressRows(const Picture& picture) {
   uLongf size = compressBound(static_cast<uLong>(rows.size()));
   std::string packed(size, '\0');
   compress2(reinterpret_cast<Bytef*>(packed.data()), &size,
-            reinterpret_cast<const Bytef*>(rows.data()), static_cast<uLong>(rows.size()), 9);
+            reinterpret_cast<const Bytef*>(rows.data()), static_cast<uLong>(rows.size()), 7);
   packed.resize(size);
   return packed;
 }
