@@ -128,6 +128,9 @@ TEST(EveryCommandHelp, ACountBeyondItsBoundIsRefusedWithTheBound) {
       explica({"thickness", "x.nii.gz", "--threads", "1000000000", "--out", "x"});
   EXPECT_EQ(said.exitCode, 1) << said;
   EXPECT_NE(said.err.find("1 to 4096"), std::string::npos) << said;
+  const CommandResult none = explica({"thickness", "x.nii.gz", "--layers", "0", "--out", "x"});
+  EXPECT_EQ(none.exitCode, 1) << none;
+  EXPECT_NE(none.err.find("1 to 1000"), std::string::npos) << none;
 }
 
 }  // namespace

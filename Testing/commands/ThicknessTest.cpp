@@ -489,10 +489,7 @@ INSTANTIATE_TEST_SUITE_P(
                   "label 7, 9 is absent; the file has 0, 1, 2"},
         BadTissue{"TwoRoles", {"--inner", "1", "--tissue", "1"}, "label 1 is given two roles"},
         BadTissue{"NoTissueLabel", {"--inner", "1"}, "no tissue label was given (--tissue)"},
-        BadTissue{"NoInnerLabel", {"--tissue", "2"}, "no inner label was given (--inner)"},
-        BadTissue{"NoLayer",
-                  {"--inner", "1", "--tissue", "2", "--layers", "0"},
-                  "there must be at least one layer"}),
+        BadTissue{"NoInnerLabel", {"--tissue", "2"}, "no inner label was given (--inner)"}),
     [](const auto& row) { return row.param.name; });
 
 TEST(ThicknessCommand, AHoleThroughTheTissueIsAWarningWithItsPlace) {

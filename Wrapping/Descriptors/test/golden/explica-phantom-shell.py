@@ -1,5 +1,5 @@
 class PhantomShellInputSpec(CommandLineInputSpec):
-    size = traits.Int(desc="voxels along the first axis [0 to 1024]", argstr="--size %s")
+    size = traits.Int(desc="voxels along the first axis [8 to 1024]", argstr="--size %s")
     spacing = traits.Float(desc="voxel size along the first axis [mm]", argstr="--spacing %s")
     inner_radius = traits.Float(desc="inner radius over half the grid's width", argstr="--inner-radius %s")
     outer_radius = traits.Float(desc="outer radius over half the grid's width", argstr="--outer-radius %s")

@@ -1,6 +1,6 @@
   'phantom shell')
     _arguments \
-      '--size[voxels along the first axis (0 to 1024)]:size: ' \
+      '--size[voxels along the first axis (8 to 1024)]:size: ' \
       '--spacing[voxel size along the first axis (mm)]:spacing: ' \
       '--inner-radius[inner radius over half the grid'\''s width]:inner-radius: ' \
       '--outer-radius[outer radius over half the grid'\''s width]:outer-radius: ' \

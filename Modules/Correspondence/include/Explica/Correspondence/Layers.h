@@ -23,7 +23,7 @@ struct LayerOptions {
 
 template <class Visitor>
 void describe(LayerOptions& options, Visitor&& visit) {
-  visit(Field{"layers", "", "number of layers, counted from the inner boundary", 0, 1000},
+  visit(Field{"layers", "", "number of layers, counted from the inner boundary", 1, 1000},
         options.layers);
   visit(Field{"layer-kind", "", "layers of equal share of the thickness or of the column's volume"},
         options.layerKind);

@@ -18,7 +18,7 @@ struct ShellOptions {
 
 template <class Visitor>
 void describe(ShellOptions& options, Visitor&& visit) {
-  visit(Field{"size", "", "voxels along the first axis", 0, 1024}, options.size);
+  visit(Field{"size", "", "voxels along the first axis", 8, 1024}, options.size);
   visit(Field{"spacing", "mm", "voxel size along the first axis"}, options.spacing);
   visit(Field{"inner-radius", "", "inner radius over half the grid's width"}, options.innerRadius);
   visit(Field{"outer-radius", "", "outer radius over half the grid's width"}, options.outerRadius);

@@ -41,9 +41,9 @@ struct SurfacePictureOptions {
 
 template <class Visitor>
 void describe(SurfacePictureOptions& options, Visitor&& visit) {
-  visit(Field{"width", "pixels", "width of a view", 0, 16384}, options.width);
-  visit(Field{"height", "pixels", "height of a view", 0, 16384}, options.height);
-  visit(Field{"samples", "", "rays a pixel in each direction, against jagged edges", 0, 16},
+  visit(Field{"width", "pixels", "width of a view", 1, 20000}, options.width);
+  visit(Field{"height", "pixels", "height of a view", 1, 20000}, options.height);
+  visit(Field{"samples", "", "rays a pixel in each direction, against jagged edges", 1, 8},
         options.samples);
   visit(Field{"occlusion", "", "how much folds darken, 0 to 1"}, options.occlusion);
 }
