@@ -84,7 +84,7 @@ TEST(Framework, WrongUseIsExitCodeOneWithAHint) {
       {shell(folder / "a", {"--aspect", "1,", "1,", "-2"}), "without spaces: --aspect 1,1,-2"},
       {{"thickness", "x.nii", "--tissue", "2", "3", "--out", folder / "a"}, "--tissue 2,3"},
       {shell(folder / "a", {"surplus"}), "'surplus' was not expected"},
-      {shell(folder / "a", {"--threads", "0"}), "threads: '0' is not a positive whole number"},
+      {shell(folder / "a", {"--threads", "0"}), "threads: '0' is not a whole number, 1 to 4096"},
       {shell(folder / "a", {"--spacing"}), "--spacing"},
   };
   for (const auto& row : rows) {
