@@ -64,6 +64,22 @@ TEST_P(EveryCommand, IsRecordedVerifiedAndReplayed) {
   EXPECT_EQ(replayed.exitCode, 0) << replayed;
 }
 
+TEST_P(EveryCommand, WritesTheReportOfItsResultsWhereAskedTo) {
+  const bool may =
+      explica({words_[0], words_[1], "--help-all"}).out.find("--report") != std::string::npos;
+  const auto made = explica(words_ + std::vector<std::string>{"--report", "--out", folder_ / "a"});
+  if (!may) {
+    EXPECT_EQ(made.exitCode, 1) << made;
+    return;
+  }
+  ASSERT_TRUE(made.exitCode == 0 || made.exitCode == 3) << made;
+  const std::string page = readText(folder_ / "a/report.html");
+  EXPECT_EQ(explica({"verify", folder_ / "a"}).exitCode, 0);
+  fs::remove(folder_ / "a/report.html");
+  ASSERT_EQ(explica({"report", folder_ / "a"}).exitCode, 0);
+  EXPECT_EQ(readText(folder_ / "a/report.html"), page);
+}
+
 TEST_P(EveryCommand, WritesNothingInADryRun) {
   const auto before = folder_.entries();
   const auto result =

@@ -131,6 +131,22 @@ void report(const Run& run, const Outcome& outcome, Console& console) {
   }
 }
 
+/// --report: the page that `explica report` makes of the finished folder, which it leaves as it is.
+void writeReport(const Run& run, const Outcome& outcome, Console& console) {
+  if (!run.common.report || outcome.record.empty()) return;
+  const std::string folder = outcome.record.parent_path().string();
+  if (signalled()) {
+    console.warning("no report: the run was asked to end; see explica report " + folder);
+    return;
+  }
+  Run page;
+  page.invocation = findCommand("report")->begin();
+  page.argv = {"explica", "report", folder};
+  page.given = parseWords(page.invocation.declaration, page.common, {"--", folder});
+  page.common.threads = run.common.threads;
+  execute(page, console);
+}
+
 int runCommandLine(std::vector<std::string> words, const std::vector<std::string>& argv,
                    Console& console, std::string& commandName) {
   if (words.empty()) {
@@ -171,6 +187,7 @@ int runCommandLine(std::vector<std::string> words, const std::vector<std::string
   if (run.common.maxTime) run.limit = &limit.emplace(*run.common.maxTime);
   const Outcome outcome = execute(run, console);
   report(run, outcome, console);
+  writeReport(run, outcome, console);
   return outcome.exitCode;
 }
 

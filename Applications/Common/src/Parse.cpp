@@ -108,12 +108,22 @@ std::string nearestWord(const std::string& word, const std::vector<std::string>&
   return best;
 }
 
+namespace {
+
+/// Whether --report may be asked for: not where pages are among the results already.
+bool mayBeReported(const Declaration& declaration) {
+  return declaration.writesOutput && !declaration.writesInPlace && !declaration.handsOutputOn;
+}
+
+}  // namespace
+
 std::vector<Parameter> commonParameters(const Declaration& declaration, CommonOptions& common) {
   std::vector<Parameter> parameters;
   for (auto& option : provenance::listOptions(common)) {
     const bool concernsOutput = option.name == "out" || option.name == "force" ||
                                 option.name == "dry-run" || option.name == "private";
     if (concernsOutput && !declaration.writesOutput) continue;
+    if (option.name == "report" && !mayBeReported(declaration)) continue;
     if (declaration.find(option.name) != nullptr) continue;  // a command's own --max-time
     Parameter parameter;
     parameter.option = std::move(option);

@@ -432,7 +432,7 @@ class StudySchema(unittest.TestCase):
         known = set(schema["properties"]["parameters"]["properties"])
         run = next(c for c in declarations() if c["command"] == "run")
         common = {"out", "force", "config", "threads", "dry-run", "quiet", "verbose", "log", "private",
-                  "max-time", "max-memory"}
+                  "max-time", "max-memory", "report"}
         options = {p["name"] for p in run["parameters"] if not p["positional"]} - common
         self.assertEqual(options - known, {"atlas", "hemisphere", "resume"})
 

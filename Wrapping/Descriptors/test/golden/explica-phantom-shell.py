@@ -15,6 +15,7 @@ class PhantomShellInputSpec(CommandLineInputSpec):
     verbose = traits.Bool(desc="say more", argstr="--verbose")
     log = traits.Str(desc="file to which every message goes, with times", argstr="--log %s")
     private = traits.Bool(desc="leave host, user and absolute paths out of the record", argstr="--private")
+    report = traits.Bool(desc="write report.html, a page on the results, too", argstr="--report")
 
 
 class PhantomShellOutputSpec(TraitedSpec):

@@ -16,5 +16,6 @@
       '--verbose[say more]' \
       '--log[file to which every message goes, with times]:log:_files' \
       '--private[leave host, user and absolute paths out of the record]' \
+      '--report[write report.html, a page on the results, too]' \
       '*:file:_files'
     ;;

@@ -27,6 +27,7 @@ struct CommonOptions {
   bool verbose = false;
   std::optional<std::string> log;
   bool privateRecord = false;
+  bool report = false;
 };
 
 template <class Visitor>
@@ -48,6 +49,7 @@ void describe(CommonOptions& o, Visitor&& visit) {
   visit(Field{"log", "", "file to which every message goes, with times"}, o.log);
   visit(Field{"private", "", "leave host, user and absolute paths out of the record"},
         o.privateRecord);
+  visit(Field{"report", "", "write report.html, a page on the results, too"}, o.report);
 }
 
 /// How a command ended.
