@@ -5,7 +5,8 @@
 - a constant of a module's sources says what it is, in which unit and why so large, on its line or in a sentence
   above it (which may stand above several);
 - no function is longer than 100 lines, the `run` of a command not longer than 60; the
-  median body has at most 9.
+  median body has at most 9;
+- no loop runs over a part of what a call has just handed out in a container: that is gone before the first turn.
 
     check-style.py [--lengths]      with --lengths: the longest functions, too"""
 
@@ -18,6 +19,11 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 LONGEST, LONGEST_RUN, MEDIAN = 100, 60, 9  # lines
 
 CONSTANT = re.compile(r"(?:static |inline )*constexpr [^=({]*?\b(k[A-Z]\w*)")
+
+
+# for (x : call(...).front().part): the call's container ends with the line, before the loop.
+DANGLING = re.compile(r"\bfor \([^;]* : [^;{]*\w\([^;{]*\)\.(front|back|at|value)\(")
+
 
 def sources(*patterns: str) -> list[pathlib.Path]:
     return sorted(path for pattern in patterns for path in ROOT.glob(pattern))
@@ -41,6 +47,11 @@ def unexplained(path: pathlib.Path) -> list[str]:
     return [f"{path.relative_to(ROOT)}:{n + 1}: {match[1]} says neither unit nor reason"
             for n, line in enumerate(lines)
             if (match := CONSTANT.match(line)) and not explained(lines, n)]
+
+
+def dangling(path: pathlib.Path) -> list[str]:
+    return [f"{path.relative_to(ROOT)}:{n + 1}: loops over a part of what is gone: name the container first"
+            for n, line in enumerate(path.read_text().split("\n")) if DANGLING.search(line)]
 
 
 def functions(path: pathlib.Path) -> list[tuple[int, int, str]]:
@@ -73,6 +84,8 @@ def functions(path: pathlib.Path) -> list[tuple[int, int, str]]:
 def main() -> int:
     faults = [fault for path in sources("Modules/*/src/**/*.cpp", "Modules/*/src/**/*.h")
               for fault in unexplained(path)]
+    faults += [fault for root in ("Modules", "Applications", "Wrapping", "Testing")
+               for path in sources(f"{root}/**/*.cpp", f"{root}/**/*.h") for fault in dangling(path)]
     lengths = []
     bodies = []
     for path in sources("Modules/*/src/**/*.cpp", "Applications/**/*.cpp", "Wrapping/Python/src/*.cpp"):

@@ -44,8 +44,9 @@ std::vector<bool> cortexOfFile(const std::filesystem::path& path, Eigen::Index v
     // No labels: a map.
   }
   if (labels) return cortexOfLabels(*labels);
+  const std::vector<io::VertexMap> maps = io::readVertexMaps(path, vertexCount);
   std::vector<bool> cortex;
-  for (const double value : io::readVertexMaps(path, vertexCount).front().values) {
+  for (const double value : maps.front().values) {
     cortex.push_back(std::isfinite(value) && value != 0);
   }
   return cortex;

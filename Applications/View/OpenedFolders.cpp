@@ -174,7 +174,8 @@ void addMaps(const fs::path& file, const ShownSurface& surface, viewer::Opened& 
 ShownSurface patchOf(const fs::path& folder) {
   const fs::path file = folder / "patch.surf.gii";
   ShownSurface patch{io::readSurface(file).mesh, file.string()};
-  for (const double v : io::readVertexMaps(folder / "vertex_of.shape.gii").front().values) {
+  const std::vector<io::VertexMap> places = io::readVertexMaps(folder / "vertex_of.shape.gii");
+  for (const double v : places.front().values) {
     patch.origin.push_back(static_cast<std::int32_t>(v));
   }
   patch.wholeCount = io::readSurface(folder / "flat.surf.gii").mesh.vertexCount();

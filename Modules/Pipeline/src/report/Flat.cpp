@@ -36,10 +36,9 @@ struct FlatPatch {
 };
 
 std::vector<std::int32_t> patchVertices(const StepFolder& step) {
+  const std::vector<io::VertexMap> maps = io::readVertexMaps(step.folder / "vertex_of.shape.gii");
   std::vector<std::int32_t> vertices;
-  for (const double v : io::readVertexMaps(step.folder / "vertex_of.shape.gii").front().values) {
-    vertices.push_back(static_cast<std::int32_t>(v));
-  }
+  for (const double v : maps.front().values) vertices.push_back(static_cast<std::int32_t>(v));
   return vertices;
 }
 
