@@ -31,6 +31,8 @@ void declare(Declaration& d, Settings& s) {
       .example("explica report colin", "Writes colin/report.html")
       .example("explica report colin --map sampled/bold.func.gii",
                "The same with a sampled map on the surfaces and on the opened patch")
+      .example("explica report sub-01 --reference study/runs",
+               "The same with the thickness of a study behind this person's")
       .input("DIR", FileKind::Folder, "output folder of a command or of explica run", s.folder)
       .option("Page", Field{"page", "", "file to write (default: report.html in the folder)"},
               s.page)
@@ -41,6 +43,12 @@ void declare(Declaration& d, Settings& s) {
                    "vertex data (of explica sample, say) to show on the surfaces, on the unfolding "
                    "and flat, wherever it fits",
                    s.show.maps, "Page")
+      .inputOption(
+          "reference", FileKind::Folder,
+          "folder of others' results, of a person or a study or a FreeSurfer subject, whose "
+          "thickness is drawn behind this one's histograms (default: FreeSurfer's own of "
+          "the same subject)",
+          s.show.references, "Page")
       .withoutOutput();
 }
 

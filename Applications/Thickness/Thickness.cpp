@@ -67,7 +67,7 @@ void declareOutputs(Declaration& d) {
       .output("grid_trajectories.tsv", FileKind::Table,
               "with --along: points, thickness and functions along chosen trajectories")
       .output("field.svg", FileKind::Picture,
-              "with --figure: u, tangent field, trajectories and grid in a slice")
+              "with --figure or --grid: u, tangent field, trajectories and grid in a slice")
       .output(
           "contours.tsv", FileKind::Table,
           "of a 2-D image or with --per-slice: inner, middle and outer contours, point by point")
@@ -138,7 +138,7 @@ void declare(Declaration& d, Settings& s) {
       .option("Figure",
               Field{"figure", "",
                     "draw a slice: harmonic interpolant, tangent field, selected trajectories, and "
-                    "with --grid its cells"},
+                    "with --grid, which draws it too, its cells"},
               s.figure)
       .option("Figure",
               Field{"figure-slice", "",
@@ -394,7 +394,7 @@ Termination run(Context& context, const Settings& s) {
   writeOutputs(context, m, m.sulciRecovered);
   if (m.grid) writeGrid(context, *m.grid, s);
   if (m.annulus.planar) writeContours(context, m);
-  if (s.figure || s.figureSlice) writeFigure(context, m, s.figureSlice);
+  if (s.figure || s.figureSlice || m.grid) writeFigure(context, m, s.figureSlice);
   if (s.aha) writeSegments(context, m.annulus, s);
   return m.interpolant.termination;
 }

@@ -11,18 +11,20 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <optional>
 
 namespace explica::report {
 namespace {
 
-constexpr double kWidth = 460;   // pixels
-constexpr double kHeight = 260;  // pixels
-constexpr double kLeft = 62;     // pixels, margin
-constexpr double kRight = 14;    // pixels, margin
-constexpr double kTop = 30;      // pixels, margin
-constexpr double kBottom = 46;   // pixels, margin
-constexpr int kBins = 48;        // of a histogram
+constexpr double kWidth = 460;     // pixels
+constexpr double kHeight = 260;    // pixels
+constexpr double kLeft = 62;       // pixels, margin
+constexpr double kRight = 14;      // pixels, margin
+constexpr double kTop = 30;        // pixels, margin
+constexpr double kBottom = 46;     // pixels, margin
+constexpr int kBins = 48;          // of a histogram
+constexpr double kLegendRow = 16;  // pixels
 
 std::string number(double value) {
   std::array<char, 32> text{};
@@ -34,6 +36,17 @@ std::string hex(const Colour& colour) {
   std::array<char, 8> text{};
   std::snprintf(text.data(), text.size(), "#%02x%02x%02x", encodeSrgb(colour[0]),
                 encodeSrgb(colour[1]), encodeSrgb(colour[2]));
+  return text.data();
+}
+
+/// Three digits, never as a power of ten below a million.
+std::string significant(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g", value);
+  const double rounded = std::strtod(text.data(), nullptr);
+  if (std::abs(rounded) >= 1000 && std::abs(rounded) < 1e6) {
+    std::snprintf(text.data(), text.size(), "%.0f", rounded);
+  }
   return text.data();
 }
 
@@ -123,43 +136,85 @@ std::string nothing(const ChartText& titles) {
 
 }  // namespace
 
-std::string histogramSvg(const Eigen::VectorXd& values, const ChartText& titles) {
+namespace {
+
+std::vector<double> finiteInOrder(const Eigen::VectorXd& values) {
   std::vector<double> sorted;
   for (const double v : values) {
     if (std::isfinite(v)) sorted.push_back(v);
   }
-  if (sorted.empty()) return nothing(titles);
   std::sort(sorted.begin(), sorted.end());
+  return sorted;
+}
+
+std::array<double, kBins> sharesOf(const std::vector<double>& sorted, double low, double high) {
+  std::array<double, kBins> share{};
+  for (const double v : sorted) {
+    if (v < low || v > high) continue;
+    share[std::min(static_cast<int>((v - low) / (high - low) * kBins), kBins - 1)] +=
+        1.0 / static_cast<double>(sorted.size());
+  }
+  return share;
+}
+
+/// Steps along the tops of bins.
+std::string stepsOf(const std::array<double, kBins>& share, const Axes& axes) {
+  std::string path = "M" + number(axes.px(axes.x0)) + " " + number(axes.py(0));
+  for (int b = 0; b < kBins; ++b) {
+    path += "V" + number(axes.py(share[b])) + "H" +
+            number(axes.px(axes.x0 + (b + 1) * (axes.x1 - axes.x0) / kBins));
+  }
+  return path + "V" + number(axes.py(0));
+}
+
+/// Both ends of what a histogram shows: all but the outermost values.
+std::array<double, 2> rangeShown(const std::vector<double>& sorted) {
   const std::size_t n = sorted.size();
-  double low = sorted[n / 200];
-  double high = sorted[n - 1 - n / 200];
+  return {sorted[n / 200], sorted[n - 1 - n / 200]};
+}
+
+}  // namespace
+
+std::string histogramSvg(const Eigen::VectorXd& values, const ChartText& titles) {
+  const std::vector<double> sorted = finiteInOrder(values), behind = finiteInOrder(titles.behind);
+  if (sorted.empty()) return nothing(titles);
+  auto [low, high] = rangeShown(sorted);
+  if (!behind.empty()) {
+    const auto other = rangeShown(behind);
+    low = std::min(low, other[0]);
+    high = std::max(high, other[1]);
+  }
   if (!(high > low)) {
     const double half = std::max(0.5, 0.5 * std::abs(low));
     low -= half;
     high += half;
   }
-  std::array<std::size_t, kBins> count{};
-  for (const double v : sorted) {
-    if (v < low || v > high) continue;
-    ++count[std::min(static_cast<int>((v - low) / (high - low) * kBins), kBins - 1)];
-  }
-  const double most = static_cast<double>(*std::max_element(count.begin(), count.end()));
-  const Axes axes{low, high, 0, 1.05 * most / static_cast<double>(n)};
-  std::string svg = head(axes, titles, true);
+  const auto share = sharesOf(sorted, low, high), other = sharesOf(behind, low, high);
+  const double most = std::max(*std::max_element(share.begin(), share.end()),
+                               *std::max_element(other.begin(), other.end()));
+  const Axes axes{low, high, 0, 1.05 * most};
+  std::string svg = head(axes, titles, true, behind.empty() ? 0 : kLegendRow);
   const double binWidth = (high - low) / kBins;
   for (int b = 0; b < kBins; ++b) {
-    const double share = static_cast<double>(count[b]) / static_cast<double>(n);
     svg += "<rect class='bar' x='" + number(axes.px(low + b * binWidth)) + "' y='" +
-           number(axes.py(share)) + "' width='" +
+           number(axes.py(share[b])) + "' width='" +
            number(0.92 * (axes.px(low + binWidth) - axes.px(low))) + "' height='" +
-           number(axes.py(0) - axes.py(share)) + "'/>";
+           number(axes.py(0) - axes.py(share[b])) + "'/>";
   }
-  const double median = sorted[n / 2];
+  const double median = sorted[sorted.size() / 2];
   svg += "<path class='median' d='M" + number(axes.px(median)) + " " + number(kTop) + "V" +
          number(kHeight - kBottom) + "'/>";
   const bool late = axes.px(median) > 0.75 * kWidth;
   svg += text(axes.px(median) + (late ? -4 : 4), kTop + 10, late ? "end" : "start",
-              "median " + tickText(median, high - low));
+              "median " + significant(median));
+  if (behind.empty()) return svg + "</svg>";
+  constexpr double kLine = 18;  // pixels
+  svg += "<path class='behind' d='" + stepsOf(other, axes) + "'/>";
+  const double y = kHeight + kLegendRow - 4;
+  svg += "<path class='behind' d='M" + number(kLeft) + " " + number(y - 4) + "h" + number(kLine) +
+         "'/>" +
+         text(kLeft + kLine + 5, y, "start",
+              titles.behindName + ", median " + significant(behind[behind.size() / 2]));
   return svg + "</svg>";
 }
 
@@ -234,7 +289,6 @@ struct Legend {
   std::string svg;
   int rows = 0;
 };
-constexpr double kLegendRow = 16;  // pixels
 
 Legend legendOf(const std::vector<Series>& series) {
   constexpr double kLetter = 6.2, kLine = 18, kGap = 24;  // pixels, of the page's letters
@@ -275,6 +329,9 @@ std::string curvesSvg(const std::vector<Series>& series, const ChartText& titles
   if (titles.yRange && !axes->logarithmic) {
     axes->y0 = (*titles.yRange)[0];
     axes->y1 = (*titles.yRange)[1];
+  } else if (!titles.marks.empty()) {
+    constexpr double kHeadroom = 0.1;  // of the height: no curve crosses a mark's name
+    axes->y1 += kHeadroom * (axes->y1 - axes->y0);
   }
   const Legend legend = legendOf(series);
   std::string svg = head(*axes, titles, true, kLegendRow * legend.rows);

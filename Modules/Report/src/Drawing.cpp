@@ -276,8 +276,15 @@ std::string tickText(double value, double range) {
   if (value != 0 && (magnitude >= 1e5 || std::abs(range) < 1e-3)) {
     std::snprintf(text.data(), text.size(), "%.2g", value);
   } else {
-    const int digits = std::clamp(
+    int digits = std::clamp(
         2 - static_cast<int>(std::floor(std::log10(std::max(std::abs(range), 1e-12)))), 0, 4);
+    // No more than three digits say anything, unless neighbours would then be the same.
+    constexpr double kFinest = 0.05;  // of the range: no ticks are nearer
+    const auto unit = [](int decimals) { return std::pow(10.0, -decimals); };
+    while (digits > 0 && std::abs(value) >= 1000 * unit(digits) &&
+           unit(digits - 1) <= kFinest * std::abs(range)) {
+      --digits;
+    }
     std::snprintf(text.data(), text.size(), "%.*f", digits, value);
     std::string trimmed = text.data();
     if (trimmed.find('.') != std::string::npos) {
@@ -287,6 +294,27 @@ std::string tickText(double value, double range) {
     return trimmed;
   }
   return text.data();
+}
+
+std::string unitText(std::string_view unit) {
+  constexpr std::array kRaised = {"\u2070", "\u00b9", "\u00b2", "\u00b3", "\u2074",
+                                  "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};
+  std::string text;
+  bool raised = false;
+  for (const char c : unit) {
+    const bool digit = c >= '0' && c <= '9';
+    if (raised && c == '-') {
+      text += "\u207b";
+    } else if (raised && digit) {
+      text += kRaised[static_cast<std::size_t>(c - '0')];
+    } else if (c == '^') {
+      raised = true;
+    } else {
+      raised = false;
+      text += c;
+    }
+  }
+  return text;
 }
 
 void drawColourBar(Picture& picture, const ColourScale& scale, int x, int y, int width,

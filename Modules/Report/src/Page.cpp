@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cstdio>
+#include <set>
 
 namespace explica::report {
 namespace {
@@ -174,7 +175,7 @@ std::string barHtml(const ColourScale& scale) {
     gradient += (s == 0 ? "" : ",") + hex(colourAt(scale.map, static_cast<double>(s) / kStops));
   }
   std::string html = "<div class='scale'><span class='scale-title'>" + escapeHtml(scale.title) +
-                     (scale.unit.empty() ? "" : " [" + escapeHtml(scale.unit) + "]") +
+                     (scale.unit.empty() ? "" : " [" + escapeHtml(unitText(scale.unit)) + "]") +
                      "</span><div class='scale-bar' style='background:linear-gradient(to right," +
                      gradient + ")'></div><div class='scale-ticks'>";
   constexpr int kTicks = 4;
@@ -232,7 +233,9 @@ std::string tileHtml(const MosaicTile& tile, const SliceMosaic& mosaic, const Mo
 
 std::string mosaicHtml(const ReportMosaic& mosaic) {
   std::string html = figureOpen(mosaic.id) + "<p class='quiet'>";
+  std::set<std::string> named;  // both hemispheres' outlines have one name
   for (const auto& [name, colour] : mosaic.slices.outlines) {
+    if (!named.insert(name).second) continue;
     html += "<span class='swatch' style='background:" + colour + "'></span>" + escapeHtml(name) +
             " &nbsp; ";
   }

@@ -3,6 +3,7 @@
 
 #include "Explica/Viewer/Session.h"
 
+#include "Explica/Collision/Untangling.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Geometry/FaceTree.h"
 #include "Explica/Geometry/MeshTopology.h"
@@ -121,6 +122,8 @@ struct Session::Implementation {
   std::vector<Kept> moments;
   Activity activity = Activity::Choosing;
   Termination termination = Termination::NotRun;
+  std::string fault;                                 ///< why it could not begin
+  std::optional<Parting> parting;                    ///< once it began
   bool opened = false;                               ///< the states are those of an earlier run
   std::optional<visibility::Viewpoints> openedView;  ///< of that run
 
@@ -142,6 +145,39 @@ struct Session::Implementation {
     std::vector<unfolding::IterationRecord> records;
     for (std::size_t n = 0; n <= last; ++n) records.push_back(moments[n].record);
     return records;
+  }
+
+  /// Parts crossing faces as `explica unfold` does, so that what is seen is what it would write.
+  /// @return false if a pause was asked for before it came to its first state
+  bool begin() {
+    const visibility::Viewpoints view = viewpoints();
+    const unfolding::UnfolderOptions options = unfolding::solverOptions(choice.unfold);
+    collision::UntangleOptions concerned;
+    concerned.concerned =
+        unfolding::movingFaces(surface, preview.region, view, choice.unfold.unfolder);
+    Monitor monitor;
+    monitor.stopWanted = [this] { return pauseWanted.load(); };
+    const collision::Untangling start = collision::untangle(surface, concerned, monitor);
+    if (pauseWanted) return false;
+    unfolder = std::make_unique<unfolding::Unfolder>(TriangleMesh{start.positions, surface.faces},
+                                                     preview.region, view, options);
+    Kept kept = keep(surface.positions, unfolder->state(), unfolder->record());
+    const std::lock_guard<std::mutex> hold(mutex);
+    moments.push_back(std::move(kept));
+    parting = Parting{start.before.size(), start.before.size() - start.after.size(),
+                      start.moved.size(), start.moveMax};
+    return true;
+  }
+
+  void work() {
+    try {
+      if (unfolder || begin()) return iterate();
+    } catch (const InvalidInput& error) {
+      const std::lock_guard<std::mutex> hold(mutex);
+      fault = error.what();
+    }
+    const std::lock_guard<std::mutex> hold(mutex);
+    activity = Activity::Choosing;
   }
 
   /// Only this thread adds moments while it runs, so that it may read them without the mutex.
@@ -201,6 +237,8 @@ const Preview& Session::choose(const Choice& choice) {
     s.moments.clear();
     s.activity = Activity::Choosing;
     s.termination = Termination::NotRun;
+    s.fault.clear();
+    s.parting.reset();
     s.opened = false;
     s.openedView.reset();
   }
@@ -252,25 +290,14 @@ std::int32_t Session::nearestVertex(const Point& point) const {
 void Session::run() {
   Implementation& s = *self_;
   const Activity now = activity();
-  if (now == Activity::Running || now == Activity::Over || !s.preview.problem.empty()) return;
+  if (now == Activity::Running || now == Activity::Over || !problem().empty()) return;
   s.join();
-  if (!s.unfolder) {
-    try {
-      s.unfolder = std::make_unique<unfolding::Unfolder>(
-          s.surface, s.preview.region, s.viewpoints(), unfolding::solverOptions(s.choice.unfold));
-    } catch (const InvalidInput& error) {
-      s.preview.problem = error.what();
-      return;
-    }
-    const std::lock_guard<std::mutex> hold(s.mutex);
-    s.moments.push_back(keep(s.surface.positions, s.unfolder->state(), s.unfolder->record()));
-  }
   s.pauseWanted = false;
   {
     const std::lock_guard<std::mutex> hold(s.mutex);
     s.activity = Activity::Running;
   }
-  s.worker = std::thread([&s] { s.iterate(); });
+  s.worker = std::thread([&s] { s.work(); });
 }
 
 void Session::pause() {
@@ -285,6 +312,17 @@ void Session::reset() {
     if (self_->activity == Activity::Running) self_->activity = Activity::Paused;
   }
   choose(self_->choice);
+}
+
+std::string Session::problem() const {
+  if (!self_->preview.problem.empty()) return self_->preview.problem;
+  const std::lock_guard<std::mutex> hold(self_->mutex);
+  return self_->fault;
+}
+
+std::optional<Parting> Session::parting() const {
+  const std::lock_guard<std::mutex> hold(self_->mutex);
+  return self_->parting;
 }
 
 Activity Session::activity() const {

@@ -5,11 +5,13 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Geometry/Fixtures.h"
+#include "Explica/Geometry/SelfIntersection.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <chrono>
+#include <random>
 #include <thread>
 
 namespace explica::viewer {
@@ -103,6 +105,65 @@ TEST(Session, StatesDoNotDependOnPauses) {
   ASSERT_GE(often.momentCount(), 6u);
   for (std::size_t n = 0; n < 6; ++n)
     EXPECT_EQ(once.moment(n).positions, often.moment(n).positions);
+}
+
+/// A folded ball some of whose vertices at the side that faces -x were thrown out of place.
+TriangleMesh crossingBall() {
+  TriangleMesh ball = geometry::makeFoldedSphere(4, 30);
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal(0, 2);
+  for (Eigen::Index v = 0; v < ball.vertexCount(); v += 11) {
+    if (ball.positions(v, 0) > -25) continue;
+    ball.positions.row(v) += Eigen::RowVector3d(normal(random), normal(random), normal(random));
+  }
+  return ball;
+}
+
+TEST(Session, FacesThatCrossArePartedBeforeItBegins) {
+  const TriangleMesh ball = crossingBall();
+  const auto crossings = geometry::findSelfIntersections(ball);
+  ASSERT_FALSE(crossings.empty());
+  Session session(ball);
+  Choice choice = sideChoice(session);
+  choice.unfold.maxIterations = 2;
+  session.choose(choice);
+  EXPECT_FALSE(session.parting());
+  session.run();
+  waitFor(session, 100);
+  ASSERT_EQ(session.momentCount(), 3u);
+  const auto parting = session.parting();
+  ASSERT_TRUE(parting);
+  EXPECT_EQ(parting->crossings, crossings.size());
+  EXPECT_EQ(parting->parted, crossings.size());
+  EXPECT_GT(parting->moveMax, 0);
+  for (std::size_t n = 0; n < 3; ++n) {
+    const TriangleMesh now{session.moment(n).positions, ball.faces};
+    EXPECT_TRUE(geometry::findSelfIntersections(now).empty()) << "state " << n;
+  }
+  session.reset();
+  EXPECT_FALSE(session.parting());
+}
+
+TEST(Session, APauseBeforeTheFirstStateDropsTheStart) {
+  const TriangleMesh ball = crossingBall();
+  Session session(ball), other(ball);
+  for (Session* each : {&session, &other}) {
+    Choice choice = sideChoice(*each);
+    choice.unfold.maxIterations = 3;
+    each->choose(choice);
+  }
+  for (int n = 0; n < 5; ++n) {
+    session.run();
+    session.pause();
+    EXPECT_NE(session.activity(), Activity::Running);
+    EXPECT_EQ(session.activity() == Activity::Choosing, session.momentCount() == 0);
+  }
+  for (Session* each : {&session, &other}) {
+    each->run();
+    waitFor(*each, 100);
+    ASSERT_EQ(each->momentCount(), 4u);
+  }
+  EXPECT_EQ(session.moment(3).positions, other.moment(3).positions);
 }
 
 TEST(Session, NewChoiceDropsTheStates) {

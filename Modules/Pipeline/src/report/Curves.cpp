@@ -3,6 +3,7 @@
 #include "../Table.h"
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Report/Chart.h"
+#include "Explica/Report/Drawing.h"
 #include "ReportParts.h"
 
 #include <cmath>
@@ -59,17 +60,33 @@ void chartMaps(ResultFolder& results, const StepFolder& step, const char* file, 
       inRegion.push_back(key != 0);
   }
   bool first = true;
-  for (const io::VertexMap& map : io::readVertexMaps(step.folder / file)) {
+  const auto inside = [&](const io::VertexMap& map) {
     std::vector<double> values;
     for (Eigen::Index v = 0; v < map.values.size(); ++v) {
       if (inRegion.empty() || (static_cast<std::size_t>(v) < inRegion.size() && inRegion[v]))
         values.push_back(map.values[v]);
     }
-    const std::string axis = map.unit.empty() ? map.name : map.name + " [" + map.unit + "]";
-    results.content().charts.push_back(
-        {first ? id : "",
-         report::histogramSvg(asVector(values), {inWords(map.name), axis, "share of vertices"}),
-         titleOf(step.name), map.name.find("before") != std::string::npos});
+    return asVector(values);
+  };
+  const auto maps = io::readVertexMaps(step.folder / file);
+  for (const io::VertexMap& map : maps) {
+    report::ChartText words{inWords(map.name), "", "share of vertices"};
+    // What was before lies behind what is after.
+    const std::size_t after = map.name.find("after");
+    for (const io::VertexMap& other : maps) {
+      if (after == std::string::npos ||
+          other.name != std::string(map.name).replace(after, 5, "before")) {
+        continue;
+      }
+      words.behind = inside(other);
+      words.behindName = "before";
+    }
+    const std::string axis =
+        map.unit.empty() ? map.name : map.name + " [" + report::unitText(map.unit) + "]";
+    words.xTitle = axis;
+    results.content().charts.push_back({first ? id : "", report::histogramSvg(inside(map), words),
+                                        titleOf(step.name),
+                                        map.name.find("before") != std::string::npos});
     first = false;
   }
 }
@@ -86,11 +103,16 @@ void chartThickness(ResultFolder& results, const StepFolder& step) {
     if (t > 0 && std::isfinite(t)) values.push_back(t);
   }
   const std::string side = step.side().empty() ? "" : ", " + step.side();
+  // The thickness is stated once: that of the surfaces where there are any.
+  const bool surfaces = !results.stepsOf("surface").empty();
   results.content().charts.push_back(
       {"",
-       report::histogramSvg(asVector(values), {"Thickness in the tissue's voxels" + side,
-                                               "thickness [mm]", "share of voxels"}),
-       kThicknessCharts});
+       report::histogramSvg(asVector(values),
+                            {(surfaces ? "Thickness by voxels, thick columns count more"
+                                       : "Thickness in the tissue's voxels") +
+                                 side,
+                             "thickness [mm]", "share of voxels"}),
+       kThicknessCharts, surfaces});
 }
 
 void chartUnfolding(ResultFolder& results, const StepFolder& step) {

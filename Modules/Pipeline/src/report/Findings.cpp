@@ -9,7 +9,7 @@ namespace explica::pipeline {
 namespace {
 
 /// How a number of a summary is shown.
-enum class Shown { Plain, Percent, SquareCentimetres };
+enum class Shown { Plain, Percent, SquareCentimetres, Range };
 
 /// A row of the table: where its number is found, and what it means.
 struct Finding {
@@ -34,6 +34,13 @@ constexpr std::array kFindings = {
     Finding{"thickness", "thickness_mean_columns", "", "Thickness, mean over columns", "mm",
             Shown::Plain,
             "n / sum(1/t) over the tissue's voxels: each column counts once, however thick."},
+    Finding{"thickness", "thickness_p95", "thickness_p05", "Thickness, 5th to 95th percentile",
+            "mm", Shown::Range, "Over voxels."},
+    Finding{"thickness", "voxels", "", "Voxels of tissue", "", Shown::Plain, ""},
+    Finding{"thickness", "voxels_without_thickness", "", "Voxels without thickness", "",
+            Shown::Plain, "No path leads from them to both boundaries."},
+    Finding{"thickness", "sulcal_voxels_recovered", "", "Voxels of hidden sulci recovered", "",
+            Shown::Plain, "Tissue where banks touch, taken for what lies between them."},
     Finding{"surface", "area_white", "", "Area of the white surface", "cm\u00b2",
             Shown::SquareCentimetres, ""},
     Finding{"surface", "area_pial", "", "Area of the pial surface", "cm\u00b2",
@@ -149,8 +156,8 @@ std::string valueIn(const StepFolder& step, const Finding& finding) {
   const auto value = step.number(finding.key);
   if (!value) return "";
   const auto start = *finding.start != '\0' ? step.number(finding.start) : std::nullopt;
-  return (start ? shownAs(finding.shown, *start) + " \u2192 " : "") +
-         shownAs(finding.shown, *value);
+  const char* between = finding.shown == Shown::Range ? " to " : " \u2192 ";
+  return (start ? shownAs(finding.shown, *start) + between : "") + shownAs(finding.shown, *value);
 }
 
 /// Numbers of a command that has no rows of its own in the table.
@@ -188,8 +195,7 @@ void findNumbers(ResultFolder& results) {
       row.values.push_back(value);
     }
     // The thickness is stated once: that of the surfaces where there are any.
-    if (finding.key == std::string_view("thickness_mean_columns") &&
-        !results.stepsOf("surface").empty()) {
+    if (finding.command == std::string_view("thickness") && !results.stepsOf("surface").empty()) {
       continue;
     }
     const bool known =

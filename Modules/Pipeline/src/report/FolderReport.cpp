@@ -4,6 +4,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Termination.h"
+#include "References.h"
 #include "ReportParts.h"
 
 #include <algorithm>
@@ -93,7 +94,10 @@ report::ReportStep reportStep(const StepFolder& step) {
       out.numbers.emplace_back(inWords(key), readable(value));
   }
   const Json options = step.record.value("options", Json::object());
-  for (const auto& [key, value] : options.items()) out.options.emplace_back(key, readable(value));
+  for (const auto& [key, value] : options.items()) {
+    const bool plain = value.is_string() || value.is_boolean() || value.is_null();
+    out.options.emplace_back(key, plain ? readable(value) : provenance::textOf(value));
+  }
   const Json warnings = step.record.value("warnings", Json::array());
   for (const Json& warning : warnings) out.warnings.push_back(readable(warning));
   return out;
@@ -117,7 +121,11 @@ void listSteps(ResultFolder& results) {
   auto& steps = results.content().steps;
   for (const StepNote& note : results.notes()) steps.push_back(reportStep(note, results.steps()));
   if (!results.notes().empty()) return;
-  for (const StepFolder& step : results.steps()) steps.push_back(reportStep(step));
+  // A folder by itself may be called anything: its command says what it is.
+  for (const StepFolder& step : results.steps()) {
+    steps.push_back(reportStep(step));
+    if (!step.command.empty()) steps.back().name = inWords(step.command);
+  }
 }
 
 /// What a step has of its own to show, beside what the parts above show of all steps together.
@@ -148,6 +156,7 @@ report::ReportContent collectReport(const fs::path& folder, const FolderReportOp
   if (options.slices < 1 || options.slices > kMostSlices) {
     throw InvalidInput("slices: must be between 1 and " + std::to_string(kMostSlices));
   }
+  requireThickness(options.references);
   if (!fs::is_directory(folder)) throw InvalidInput(folder.string() + ": no such folder");
   report::ReportContent content;
   content.title = "Explica: " + fs::weakly_canonical(folder).filename().string();

@@ -44,15 +44,22 @@ void chartLayers(ResultFolder& results, const StepFolder& step, const Volume<Lab
     if (layers[v] > 0 && thickness[v] > 0) values[layers[v]].push_back(thickness[v]);
   }
   if (values.size() > kMostCharts) return;
+  std::vector<double> all;
+  for (const auto& [layer, in] : values) all.insert(all.end(), in.begin(), in.end());
+  const auto asVector = [](const std::vector<double>& in) {
+    return Eigen::VectorXd(
+        Eigen::Map<const Eigen::VectorXd>(in.data(), static_cast<Eigen::Index>(in.size())));
+  };
   for (const auto& [layer, in] : values) {
-    const auto count = static_cast<Eigen::Index>(in.size());
+    report::ChartText words{"Layer " + std::to_string(layer) + ": " +
+                                readable(static_cast<double>(in.size())) + " voxels",
+                            "thickness [mm]", "share of voxels"};
+    if (values.size() > 1) {
+      words.behind = asVector(all);
+      words.behindName = "all layers";
+    }
     results.content().charts.push_back(
-        {"",
-         report::histogramSvg(Eigen::Map<const Eigen::VectorXd>(in.data(), count),
-                              {"Layer " + std::to_string(layer) + ": " +
-                                   readable(static_cast<double>(count)) + " voxels",
-                               "thickness [mm]", "share of voxels"}),
-         kThicknessCharts});
+        {"", report::histogramSvg(asVector(in), words), kThicknessCharts});
   }
 }
 

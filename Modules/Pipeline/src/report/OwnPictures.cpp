@@ -4,6 +4,7 @@
 #include "ReportParts.h"
 
 #include <algorithm>
+#include <array>
 #include <fstream>
 #include <iterator>
 
@@ -20,6 +21,19 @@ std::string mediaTypeOf(const fs::path& file) {
   if (file.extension() == ".svg") return "image/svg+xml";
   if (file.extension() == ".png") return "image/png";
   return "";
+}
+
+/// What a picture shows, by the name that commands give it.
+std::string titleOfPicture(const std::string& stem) {
+  constexpr std::array kKnown = {
+      std::pair{"bullseye", "The wall's segments"},
+      std::pair{"slices_ed", "Slices at end-diastole"},
+      std::pair{"slices_es", "Slices at end-systole"},
+      std::pair{"field", "Interpolant, tangent field, trajectories and grid in a slice"}};
+  for (const auto& [name, title] : kKnown) {
+    if (stem == name) return title;
+  }
+  return inWords(stem);
 }
 
 std::string bytesOf(const fs::path& file) {
@@ -43,7 +57,7 @@ void showOwnPictures(ResultFolder& results, const StepFolder& step) {
   std::sort(files.begin(), files.end());
   if (files.size() > kMostPictures) files.resize(kMostPictures);
   for (const fs::path& file : files) {
-    results.content().drawings.push_back({"", inWords(file.stem().string()),
+    results.content().drawings.push_back({"", titleOfPicture(file.stem().string()),
                                           step.name + "/" + file.filename().string(),
                                           mediaTypeOf(file), bytesOf(file)});
   }

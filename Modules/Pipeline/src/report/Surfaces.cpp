@@ -6,6 +6,7 @@
 #include "Explica/Report/Chart.h"
 #include "Explica/Report/Figure.h"
 #include "MaskBorder.h"
+#include "References.h"
 #include "ReportParts.h"
 #include "StandardViews.h"
 
@@ -200,7 +201,7 @@ void showRegions(ResultFolder& results, const std::vector<const Hemisphere*>& al
       drawViews(all, colours, report::Filling::Discrete, 2, Drawn::Pial, keys);
   views.id = "regions";
   views.title = "Regions";
-  views.caption = "Each vertex in the colour of its region.";
+  views.caption = "Each region in the colour that its own table gives it.";
   for (const auto& [key, entry] : legend) views.legend.push_back(entry);
   results.content().views.push_back(std::move(views));
 }
@@ -254,9 +255,8 @@ void showOutlines(ResultFolder& results, const std::vector<Hemisphere>& all,
   const Volume<float> volume = io::readScalars(*image, reading).volume;
   std::vector<report::MosaicOutline> outlines;
   for (const Hemisphere& h : all) {
-    const std::string side = h.side.empty() ? "" : ", " + h.side;
-    outlines.push_back({&h.white, "white surface" + side, "#ff453a"});
-    outlines.push_back({&h.pial, "pial surface" + side, "#ffd60a"});
+    outlines.push_back({&h.white, "white surface", "#ff453a"});
+    outlines.push_back({&h.pial, "pial surface", "#ffd60a"});
   }
   TriangleMesh brain;
   for (const StepFolder* segment : results.stepsOf("segment")) {
@@ -275,7 +275,8 @@ void showOutlines(ResultFolder& results, const std::vector<Hemisphere>& all,
   showCloseUps(results, all, volume, surfaces, mosaic);
 }
 
-void chartSurfaceThickness(ResultFolder& results, const std::vector<Hemisphere>& all) {
+void chartSurfaceThickness(ResultFolder& results, const std::vector<Hemisphere>& all,
+                           const FolderReportOptions& options) {
   for (const Hemisphere& h : all) {
     const auto map = mapNamed(h.step->folder / "thickness.shape.gii", h.pial.vertexCount());
     if (!map) continue;
@@ -283,12 +284,17 @@ void chartSurfaceThickness(ResultFolder& results, const std::vector<Hemisphere>&
     for (const double t : map->values) {
       if (t > 0) ribbon.push_back(t);
     }
+    report::ChartText words{"Cortical thickness" + (h.side.empty() ? "" : ", " + h.side),
+                            "thickness [mm]", "share of vertices"};
+    if (auto reference = thicknessReference(options.references, *h.step)) {
+      words.behind = std::move(reference->values);
+      words.behindName = std::move(reference->name);
+    }
     results.content().charts.push_back(
         {"",
          report::histogramSvg(Eigen::Map<const Eigen::VectorXd>(
                                   ribbon.data(), static_cast<Eigen::Index>(ribbon.size())),
-                              {"Cortical thickness" + (h.side.empty() ? "" : ", " + h.side),
-                               "thickness [mm]", "share of vertices"}),
+                              words),
          kThicknessCharts});
   }
 }
@@ -331,7 +337,7 @@ void showSurfaces(ResultFolder& results, const FolderReportOptions& options,
   });
   results.attempt("Regions", [&] { showRegions(results, shown); });
   results.attempt("Given maps", [&] { showGiven(results, shown, maps); });
-  results.attempt("Thickness histogram", [&] { chartSurfaceThickness(results, all); });
+  results.attempt("Thickness histogram", [&] { chartSurfaceThickness(results, all, options); });
 }
 
 }  // namespace explica::pipeline

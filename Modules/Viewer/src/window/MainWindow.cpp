@@ -465,8 +465,8 @@ void MainWindow::toggle() {
     step(session_.momentCount() - 1);
     return;
   }
-  if (!session_.preview().problem.empty()) {
-    statusBar()->showMessage(QString::fromStdString(session_.preview().problem));
+  if (!session_.problem().empty()) {
+    statusBar()->showMessage(QString::fromStdString(session_.problem()));
     return;
   }
   newest_ = true;

@@ -28,7 +28,7 @@ std::string wordOf(const Session& session) {
     case Activity::Choosing:
       return "choosing";
     case Activity::Running:
-      return "running";
+      return session.momentCount() > 0 ? "running" : "parting faces that cross";
     case Activity::Paused:
       return "paused";
     default:
@@ -48,6 +48,14 @@ QString inWords(const unfolding::IterationRecord& record) {
   say("area error %1 %", 100 * record.areaErrorMean, 2);
   say("edge strain %1 %", 100 * record.edgeStrainMean, 1);
   return words.join(", ");
+}
+
+/// What was done before the first state, where there was something to do.
+QString inWords(const Parting& parting) {
+  if (parting.parted == 0) return "";
+  return QString("\n%1 crossing pairs parted first, by moves of at most %2 mm")
+      .arg(parting.parted)
+      .arg(parting.moveMax, 0, 'f', 2);
 }
 
 Rgb colourIn(const Scale& scale, double value) {
@@ -121,7 +129,9 @@ void MainWindow::showRegion() {
   if (std::isfinite(preview.visibility)) {
     says += QString(", average visibility %1").arg(preview.visibility, 0, 'f', 3);
   }
-  if (!preview.problem.empty()) says += "\n" + QString::fromStdString(preview.problem);
+  if (const std::string problem = session_.problem(); !problem.empty()) {
+    says += "\n" + QString::fromStdString(problem);
+  }
   panels_.regionSays->setText(says);
 }
 
@@ -143,6 +153,7 @@ void MainWindow::showState(const unfolding::IterationRecord& record, std::size_t
                .arg(count - 1)
                .arg(says)
                .arg(inWords(record));
+    if (const auto parting = session_.parting()) says += inWords(*parting);
   }
   panels_.stateSays->setText(says);
 }
@@ -166,9 +177,11 @@ std::optional<WindowMap> MainWindow::ownMap(int number) {
                      visibility::vertexFlux(shownMesh_, session_.viewpoints())};
   }
   if (number == kAreaRatio) {
+    TriangleMesh start = session_.surface();
+    if (session_.momentCount() > 0) start.positions = session_.moment(0).positions;
     return WindowMap{"area now / at the start", "",
                      geometry::vertexAreas(shownMesh_)
-                         .cwiseQuotient(geometry::vertexAreas(session_.surface()).cwiseMax(1e-12))};
+                         .cwiseQuotient(geometry::vertexAreas(start).cwiseMax(1e-12))};
   }
   // Rays take long on a large surface: another thread casts them, and the picture waits.
   const bool fresh = seenState_ == shown_ && seenValues_.size() == shownMesh_.vertexCount();

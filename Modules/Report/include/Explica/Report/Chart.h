@@ -35,6 +35,9 @@ struct ChartText {
   std::vector<ChartMark> marks = {};  ///< of curves
   /// First and last value on the y axis of curves; without, what the curves need.
   std::optional<std::array<double, 2>> yRange = {};
+  /// Other values drawn behind a histogram's as a line, each of its bins as a share of theirs.
+  Eigen::VectorXd behind = {};
+  std::string behindName = {};  ///< "before", "study of 20"
 };
 
 /// Lowest and highest value of curves with their bands, to give several charts one axis; none
@@ -42,7 +45,8 @@ struct ChartText {
 [[nodiscard]] std::optional<std::array<double, 2>> rangeOf(const std::vector<Series>& series);
 
 /// How often values occur, as a self-contained SVG element; from the 0.5th to the 99.5th
-/// percentile, with the median marked.  A sentence says so where there is nothing to show.
+/// percentile, with the median marked, of what is drawn behind too.  A sentence says so where there
+/// is nothing to show.
 [[nodiscard]] std::string histogramSvg(const Eigen::VectorXd& values, const ChartText& text);
 
 /// Lines over a common axis, as a self-contained SVG element, with a legend below if there are

@@ -46,4 +46,7 @@ void drawColourBar(Picture& picture, const ColourScale& scale, int x, int y, int
 /// A number with as many digits as a reader needs on a range: "2.5", "-0.25", "1e-05".
 [[nodiscard]] std::string tickText(double value, double range);
 
+/// A unit as it is printed: "mm^-1" with raised digits, in UTF-8 (not for drawText()).
+[[nodiscard]] std::string unitText(std::string_view unit);
+
 }  // namespace explica::report

@@ -54,6 +54,14 @@ struct Preview {
   std::string problem;       ///< why there is no region, or why it cannot be unfolded; else empty
 };
 
+/// What became of faces that cross at the start, where they concern what moves.
+struct Parting {
+  std::size_t crossings = 0;  ///< pairs of faces that cross in the whole surface
+  std::size_t parted = 0;     ///< pairs that were parted
+  std::size_t moved = 0;      ///< vertices that were moved for it
+  double moveMax = 0;         ///< mm, of one of them
+};
+
 enum class Activity {
   Choosing,  ///< the choice may change
   Running,   ///< iterations go on in their own thread
@@ -61,7 +69,7 @@ enum class Activity {
   Over  ///< it ended by itself (see Session::termination), or was over when it was opened
 };
 
-/// One state on the way; number 0 is the start.
+/// One state on the way; number 0 is the start, its crossing faces parted.
 struct Moment {
   Positions positions;
   unfolding::IterationRecord record;
@@ -95,6 +103,8 @@ class Session {
   /// @return what the choice selects; also available as preview()
   const Preview& choose(const Choice& choice);
   [[nodiscard]] const Preview& preview() const;
+  /// Why it cannot be unfolded: the preview's problem, or what was found when it began; else empty.
+  [[nodiscard]] std::string problem() const;
 
   /// Centroid of the region, without one that of the surface; RAS mm.
   [[nodiscard]] Point centre() const;
@@ -105,12 +115,16 @@ class Session {
   /// Vertex nearest to a point of the surface.
   [[nodiscard]] std::int32_t nearestVertex(const Point& point) const;
 
-  /// Starts, or goes on from the last state.  Nothing happens if the preview has a problem.
+  /// Starts, or goes on from the last state.  Nothing happens if there is a problem().  Faces that
+  /// cross at the start are parted first, as `explica unfold` does; no state exists until that is
+  /// done, and a pause before drops it.
   void run();
   void pause();
   /// Back to choosing; keeps the choice.
   void reset();
   [[nodiscard]] Activity activity() const;
+  /// What was parted before the first state; none before it, and of an unfolding that was opened.
+  [[nodiscard]] std::optional<Parting> parting() const;
   /// Why it is over: as `explica unfold` would say with the same options; NotRun before.
   [[nodiscard]] Termination termination() const;
 

@@ -1,0 +1,141 @@
+# SPDX-FileCopyrightText: The Explica developers
+# SPDX-License-Identifier: Apache-2.0
+"""Opens the page of a study in headless Chromium; prints what a reader would notice, one fact a line, and ends
+with 0 if the page is sound.
+
+    study_page.py PAGE.html [SECONDS [PICTURE.png]]
+
+The page was made of at least 1,000 rows: it is below 20 MB, its first paint is counted by the browser (by
+default not judged, since tests hang on no clock), it asks for nothing but thumbnails, the console is empty,
+filter and sort do what they say, by mouse and by keyboard, and what failed can be read with its remedy."""
+import json
+import pathlib
+import sys
+
+from selenium import webdriver
+from selenium.webdriver.chrome.options import Options
+from selenium.webdriver.chrome.service import Service
+from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
+
+faults = []
+
+
+def check(fact, holds):
+    print(("ok    " if holds else "FAULT ") + fact)
+    if not holds:
+        faults.append(fact)
+
+
+def start():
+    options = Options()
+    options.binary_location = "/usr/bin/chromium"
+    for flag in "--headless=new --no-sandbox --disable-gpu --window-size=1440,900".split():
+        options.add_argument(flag)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+    return webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
+
+
+def wait(driver):
+    driver.set_script_timeout(120)
+    driver.execute_async_script("""const done = arguments[0];
+        (function look() { document.body.dataset.ready ? done() : setTimeout(look, 50); })();""")
+
+
+def column(driver, index):
+    return driver.execute_script("""return [...document.querySelectorAll('tbody')[0].rows].map(
+        (row) => row.cells[arguments[0]].textContent)""", index)
+
+
+def timing(driver, page, limit):
+    size = page.stat().st_size
+    check("%.1f MB" % (size / 1e6), size < 20e6)
+    rows = driver.execute_script("return JSON.parse(document.getElementById('data').textContent).rows.length")
+    check("%d rows" % rows, rows >= 1000)
+    paint = driver.execute_script("return performance.getEntriesByName('first-contentful-paint')[0].startTime")
+    check("first paint after %.2f s" % (paint / 1e3), limit is None or paint < 1e3 * limit)
+
+
+def filter_and_sort(driver):
+    all_rows = int(driver.find_element(By.ID, "shown").text.split()[0])
+    search = driver.find_element(By.ID, "search")
+    search.send_keys("sub-7 ")
+    names = column(driver, 0)
+    check("the filter leaves %d of %d rows" % (len(names), all_rows), 0 < len(names) < all_rows)
+    check("and only what was asked for", all("sub-7" in name for name in names))
+    search.send_keys(Keys.BACKSPACE * 6)
+    driver.execute_script("arguments[0].dispatchEvent(new Event('input'))", search)
+    headings = driver.find_elements(By.CSS_SELECTOR, "thead th button")
+    number = next(n for n, b in enumerate(headings) if "thickness" in b.text.lower())
+    headings[number].click()
+    values = [float(v) for v in column(driver, number) if v != "n/a"]
+    check("a click sorts upwards", values == sorted(values) and values[0] < values[-1])
+    button = driver.find_elements(By.CSS_SELECTOR, "thead th button")[number]
+    driver.execute_script("arguments[0].focus()", button)
+    button.send_keys(Keys.ENTER)
+    values = [float(v) for v in column(driver, number) if v != "n/a"]
+    check("Enter on the heading sorts downwards", values == sorted(values, reverse=True))
+    heading = driver.find_elements(By.CSS_SELECTOR, "thead th")[number]
+    check("a screen reader is told so", heading.get_attribute("aria-sort") == "descending")
+    driver.find_element(By.ID, "flagged").click()
+    marked = driver.execute_script("""return [...document.querySelectorAll('tbody')[0].rows].every(
+        (row) => row.querySelector('.odd, .bad'))""")
+    check("only those that need a look can be shown", marked)
+    driver.find_element(By.ID, "flagged").click()
+
+
+def words(driver):
+    check("every input and button has a name", driver.execute_script("""
+        return [...document.querySelectorAll('button, input, select')].every((e) =>
+            e.textContent.trim() || e.getAttribute('aria-label') || e.closest('label'))"""))
+    check("every strip says what it shows", driver.execute_script("""
+        const strips = [...document.querySelectorAll('.strip svg')];
+        return strips.length > 2 && strips.every((s) => s.getAttribute('aria-label').includes('median'))"""))
+    failure = driver.execute_script("""const box = document.querySelector('.failure');
+        return box ? [box.textContent, box.clientWidth] : null""")
+    if failure:
+        check("a failure is read in %d pixels: %s" % (failure[1], failure[0][:90]), failure[1] > 900)
+    stated = driver.execute_script("return document.body.textContent.includes('robust z above 3.5')")
+    check("the rule for outliers is stated", stated)
+    odd = driver.execute_script("return document.querySelectorAll('.strip circle.odd').length")
+    check("%d outliers are marked" % odd, odd > 0)
+
+
+def logs(driver):
+    messages = [entry["message"][:200] for entry in driver.get_log("browser")]
+    check("the console is empty %s" % (messages[:3] or ""), not messages)
+    foreign = set()
+    for entry in driver.get_log("performance"):
+        event = json.loads(entry["message"])["message"]
+        if event["method"] == "Network.requestWillBeSent":
+            url = event["params"]["request"]["url"]
+            if not url.startswith(("data:", "file://")):
+                foreign.add(url)
+    check("no request elsewhere %s" % (sorted(foreign) or ""), not foreign)
+
+
+def main():
+    page = pathlib.Path(sys.argv[1]).resolve()
+    limit = float(sys.argv[2]) if len(sys.argv) > 2 else None
+    driver = start()
+    try:
+        driver.get(page.as_uri())
+        wait(driver)
+        timing(driver, page, limit)
+        filter_and_sort(driver)
+        words(driver)
+        for width in (820, 390):
+            driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
+                                   {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": True})
+            wide = driver.execute_script("return document.documentElement.scrollWidth")
+            check("%d pixels hold the page (%d)" % (width, wide), wide <= width)
+        logs(driver)
+        if len(sys.argv) > 3:
+            driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+            driver.save_screenshot(sys.argv[3])
+    finally:
+        driver.quit()
+    sys.exit(1 if faults else 0)
+
+
+main()
