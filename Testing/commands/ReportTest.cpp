@@ -133,6 +133,11 @@ TEST(Report, ComparesTheImageBeforeAndAfterItsPreparation) {
   EXPECT_NE(words.find("<b>Bias field.</b>"), std::string::npos);
   EXPECT_NE(words.find("field divided out instead of the image as it came"), std::string::npos);
   EXPECT_NE(words.find("class='other'"), std::string::npos);
+  if (!std::filesystem::exists("/usr/bin/chromium")) return;
+  const auto browser =
+      runProgram({"/usr/bin/python3", EXPLICA_SOURCE_DIR "/Testing/commands/report_flicker.py",
+                  folder / "s/report.html"});
+  EXPECT_EQ(browser.exitCode, 0) << browser;
 }
 
 TEST(Report, LeavesOutWhatItCannotReadAndSaysSo) {
@@ -227,6 +232,63 @@ TEST(Report, ShowsGivenMapsOnTheUnfolding) {
   const std::string words = wordsOf(readText(folder / "u/report.html"));
   EXPECT_NE(words.find("height on the patch before and after"), std::string::npos);
   EXPECT_EQ(words.find("short on the patch"), std::string::npos);
+}
+
+/// The folder of `explica surface` on a phantom cortex of so many voxels.
+void makeSurface(const TemporaryFolder& folder, const std::string& size) {
+  ASSERT_EQ(explica({"phantom", "cortex", "--size", size, "--out", folder / ("p" + size)}).exitCode,
+            0);
+  const auto made = explica({"surface", folder / ("p" + size + "/labels.nii.gz"), "--white", "3",
+                             "--grey", "2", "--faces", "2000", "--out", folder / ("s" + size)});
+  ASSERT_EQ(made.exitCode, 0) << made;
+}
+
+TEST(Report, DrawsTheThicknessOfOthersBehind) {
+  TemporaryFolder folder;
+  makeSurface(folder, "40");
+  makeSurface(folder, "44");
+  ASSERT_EQ(explica({"report", folder / "s40"}).exitCode, 0);
+  EXPECT_EQ(countOf(readText(folder / "s40/report.html"), "class='behind'"), 0u);
+  const auto one = explica({"report", folder / "s40", "--reference", folder / "s44"});
+  ASSERT_EQ(one.exitCode, 0) << one;
+  EXPECT_EQ(countOf(readText(folder / "s40/report.html"), "class='behind'"), 2u)
+      << "the line, and its key";
+  EXPECT_NE(readText(folder / "s40/report.html").find("s44, median"), std::string::npos);
+  const auto many = explica({"report", folder / "s40", "--reference", folder.path().string()});
+  ASSERT_EQ(many.exitCode, 0) << many;
+  EXPECT_NE(readText(folder / "s40/report.html").find("2 hemispheres of the reference, median"),
+            std::string::npos);
+  const auto none = explica({"report", folder / "s40", "--reference", folder / "p40"});
+  EXPECT_EQ(none.exitCode, 2) << none;
+  EXPECT_NE(none.err.find("holds no thickness"), std::string::npos) << none;
+}
+
+TEST(Report, SaysWhatIsWrongOnceAndNamesCommandsNotFolders) {
+  TemporaryFolder folder;
+  ASSERT_EQ(explica({"phantom", "cortex", "--size", "40", "--out", folder / "p"}).exitCode, 0);
+  const auto small = explica(
+      {"segment", folder / "p/t1.nii.gz", "--template", "none", "--out", folder / "odd-name"});
+  ASSERT_EQ(small.exitCode, 3) << small;
+  ASSERT_EQ(explica({"report", folder / "odd-name"}).exitCode, 0);
+  const std::string words = wordsOf(readText(folder / "odd-name/report.html"));
+  const std::string flags = words.substr(0, words.find("What was found"));
+  EXPECT_EQ(countOf(flags, "skull or neck may be left"), 1u);
+  EXPECT_NE(flags.find("Brain volume:"), std::string::npos);
+  EXPECT_EQ(flags.find("Odd-name:"), std::string::npos);
+}
+
+TEST(Report, ShowsLayersAndTheGridOfThickness) {
+  TemporaryFolder folder;
+  ASSERT_EQ(explica({"phantom", "shell", "--size", "20", "--out", folder / "p"}).exitCode, 0);
+  const auto made = explica({"thickness", folder / "p/labels.nii.gz", "--inner", "1", "--tissue",
+                             "2", "--layers", "2", "--grid", "3", "--out", folder / "t"});
+  ASSERT_EQ(made.exitCode, 0) << made;
+  ASSERT_EQ(explica({"report", folder / "t"}).exitCode, 0);
+  const std::string page = readText(folder / "t/report.html");
+  EXPECT_NE(page.find("<b>Layers.</b>"), std::string::npos);
+  EXPECT_NE(page.find("trajectories and grid in a slice"), std::string::npos);
+  EXPECT_NE(page.find("Layer 2: "), std::string::npos);
+  EXPECT_EQ(countOf(page, "all layers, median"), 2u);
 }
 
 TEST(Report, RefusesAFolderWithoutRecords) {

@@ -19,8 +19,9 @@ import virtual_display
 EXECUTABLE = os.environ["EXPLICA_EXECUTABLE"]
 
 
-def folded_ball(path, rings=48, sectors=72, radius=30.0):
-    """A ball with folds, as OFF, faces counter-clockwise from outside."""
+def folded_ball(path, rings=48, sectors=72, radius=30.0, thrown=0.0):
+    """A ball with folds, as OFF, faces counter-clockwise from outside; some points of its side at -x are
+    thrown out of place by so many millimetres, so that faces cross."""
 
     def point(theta, phi):
         x, y, z = (
@@ -38,6 +39,10 @@ def folded_ball(path, rings=48, sectors=72, radius=30.0):
         for j in range(sectors)
     ]
     points.append(point(math.pi, 0))
+    random = np.random.default_rng(7)
+    for n in range(0, len(points), 17):
+        if points[n][0] < -15:
+            points[n] = tuple(np.array(points[n]) + thrown * random.standard_normal(3))
     at = lambda i, j: 1 + (i - 1) * sectors + j % sectors
     faces = []
     for j in range(sectors):
@@ -193,6 +198,20 @@ class Window(unittest.TestCase):
         self.assertEqual(command.count("--direction"), 2)
         self.assertEqual(self.saved_options(2)["view-weights"], [1, 3])
         self.assertEqual(len(self.saved_options(2)["direction"]), 2)
+
+    @unittest.skipUnless(virtual_display.SERVER, "skipped: Xvfb is not installed")
+    def test_faces_that_cross_are_parted_first(self):
+        folded_ball(self.folder / "ball.off", thrown=4)
+        result = self.view(
+            "key c 540 420\nset target 1\nkey space 0 0\nwait 3\nkey space 0 0\n"
+            "key Home 0 0\npicture parted.png\nkey Right 0 0\nkey w 0 0\nsaved\npicture one.png\n",
+            "ball.off", "--radius", "14", "--save", "kept",
+        )  # fmt: skip
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.pictures("parted one")
+        self.saved_is_what_the_command_writes(result, 1)
+        summary = json.loads((self.folder / "kept" / "iteration-1" / "summary.json").read_text())
+        self.assertGreater(summary["self_intersections_repaired"], 0)
 
     def saved_options(self, state):
         record = self.folder / "kept" / f"iteration-{state}" / "provenance.json"

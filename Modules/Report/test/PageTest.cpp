@@ -220,6 +220,18 @@ TEST(Charts, KeepTheLegendOffTheCurvesAndTellThemApart) {
   EXPECT_NE(svg.find("viewBox='0 0 460 292"), std::string::npos) << "two rows below the plot";
 }
 
+TEST(Charts, DrawOthersBehindAHistogram) {
+  ChartText words{"t", "mm", ""};
+  const Eigen::VectorXd values = Eigen::VectorXd::LinSpaced(100, 1, 2);
+  EXPECT_EQ(histogramSvg(values, words).find("behind"), std::string::npos);
+  words.behind = Eigen::VectorXd::LinSpaced(1000, 1, 4.5);
+  words.behindName = "study";
+  const std::string svg = histogramSvg(values, words);
+  EXPECT_NE(svg.find("class='behind'"), std::string::npos);
+  EXPECT_NE(svg.find("study, median 2.75"), std::string::npos);
+  EXPECT_NE(svg.find(">4<"), std::string::npos) << "the axis holds both";
+}
+
 TEST(Charts, LogarithmicAxesLeaveOutZeroAndMarkPowersOfTen) {
   ChartText words{"t", "", "", true, {{2, "converged"}}};
   const std::string svg = curvesSvg({{"a", {0, 1, 2}, {0, 10, 1000}}}, words);

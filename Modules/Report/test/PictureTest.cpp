@@ -257,6 +257,10 @@ TEST(Ticks, HaveTheDigitsThatTheRangeNeeds) {
   EXPECT_EQ(tickText(0, 4), "0");
   EXPECT_EQ(tickText(-0.25, 1), "-0.25");
   EXPECT_EQ(tickText(60, 120), "60");
+  EXPECT_EQ(tickText(2.3575, 0.67), "2.36");
+  EXPECT_EQ(tickText(4.75, 0.18), "4.75");
+  EXPECT_EQ(unitText("mm^-1"), "mm\u207b\u00b9");
+  EXPECT_EQ(unitText("mm"), "mm");
 }
 
 }  // namespace

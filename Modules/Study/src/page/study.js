@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 'use strict';
-const data = JSON.parse(document.getElementById('data').textContent), perPage = 200;
+const crowd = 300;  // rows, above which dots would cover each other
+const data = JSON.parse(document.getElementById('data').textContent), perPage = 100;
 const byId = (id) => document.getElementById(id);
 const make = (name, text, parent) => {
   const element = document.createElement(name);
@@ -35,6 +36,17 @@ const spread = data.columns.map((column, c) => {
 });
 const placeOf = (c, value) => (spread[c] ? (value - spread[c].low) / (spread[c].high - spread[c].low) : NaN);
 
+// How many rows lie where, as the outline of an area that stands on a line.
+function shapeOf(c, left, width, bottom, height) {
+  const bins = 40, counts = new Array(bins).fill(0);
+  for (const row of data.rows) {
+    const place = placeOf(c, numberOf(row.cells[c]));
+    if (Number.isFinite(place)) ++counts[Math.min(bins - 1, Math.floor(bins * place))];
+  }
+  const most = Math.max(...counts), step = width / bins;
+  return 'M' + left + ' ' + bottom + counts.map((n) => 'V' + (bottom - height * n / most).toFixed(1) + 'h' + step).join('') + 'V' + bottom + 'Z';
+}
+
 function showFailures() {
   const failed = data.rows.filter((r) => r.cells[state] !== 'done');
   if (failed.length === 0) return;
@@ -63,10 +75,11 @@ function showStrip(c) {
   drawn('line', { class: 'median', x1: at(spread[c].median), x2: at(spread[c].median), y1: 4, y2: 46 }, svg);
   drawn('text', { x: 8, y: 59 }, svg).textContent = short(String(spread[c].low));
   drawn('text', { x: 292, y: 59, 'text-anchor': 'end' }, svg).textContent = short(String(spread[c].high));
-  const taken = new Map();
+  const taken = new Map(), crowded = spread[c].count > crowd;
+  if (crowded) drawn('path', { class: 'spread', d: shapeOf(c, 8, 284, 46, 40) }, svg);
   for (const row of data.rows) {
     const value = numberOf(row.cells[c]);
-    if (!Number.isFinite(value)) continue;
+    if (!Number.isFinite(value) || (crowded && !row.flags[c])) continue;
     const bin = Math.round(at(value) / 3), count = taken.get(bin) || 0;
     taken.set(bin, count + 1);
     const dot = drawn('circle', { cx: at(value).toFixed(1), cy: 42 - 4 * (count % 10), r: row.flags[c] ? 4 : 2.6 }, svg);
@@ -105,7 +118,7 @@ function drawHead(columns) {
 }
 function drawCell(row, c, tr) {
   const td = make('td', undefined, tr), value = cell(row, c);
-  if (c < data.fixed) td.className = c === state ? 't state' : 't';
+  if (c < data.fixed) td.className = c === state && value !== 'done' ? 't state' : 't';
   if (c === 0 && row.report) {
     const link = make('a', undefined, td);
     link.href = row.report;
@@ -122,7 +135,9 @@ function drawCell(row, c, tr) {
   const place = data.columns[c].compared ? placeOf(c, numberOf(value)) : NaN;
   if (Number.isFinite(place)) {
     td.classList.add('number');
-    td.style.setProperty('--at', (2 + 96 * place).toFixed(1) + '%');
+    const svg = drawn('svg', { viewBox: '0 0 100 16', preserveAspectRatio: 'none', 'aria-hidden': 'true' }, td);
+    drawn('use', { href: '#spread' + c }, svg);
+    drawn('rect', { x: (1 + 98 * place - 0.8).toFixed(1), y: 0, width: 1.6, height: 16 }, svg);
   }
   if (row.flags[c]) {
     td.classList.add(row.flags[c].startsWith('robust') ? 'odd' : 'bad');
@@ -160,10 +175,17 @@ function showRegions() {
   const low = Math.min(...all.map((s) => s.mean - (s.sd || 0))), high = Math.max(...all.map((s) => s.mean + (s.sd || 0)), low + 1e-9);
   const table = make('table', undefined, byId('regions').querySelector('.wide'));
   const titles = make('tr', undefined, make('thead', undefined, table));
-  for (const text of ['region', ...sides.flatMap((s) => [s + ' mean', s + ' SD', s + ' n']), sides.join(' and ') + ', ' + low.toFixed(1) + ' to ' + high.toFixed(1) + ' mm']) {
+  for (const text of ['region', ...sides.flatMap((s) => [s + ' mean', s + ' SD', s + ' n']), '']) {
     const th = make('th', text, titles);
     th.scope = 'col';
   }
+  const picture = titles.lastChild;
+  sides.forEach((side, n) => {
+    const dot = drawn('svg', { width: 12, height: 12, 'aria-hidden': 'true' }, picture);
+    drawn('circle', { cx: 6, cy: 7, r: 4, class: n ? 'second' : 'first' }, dot);
+    picture.append(side + ' ');
+  });
+  picture.append(low.toFixed(1) + ' to ' + high.toFixed(1) + ' mm');
   const rows = make('tbody', undefined, table);
   columns.forEach((c, n) => {
     const tr = make('tr', undefined, rows), name = make('td', data.columns[c].words, tr);
@@ -177,13 +199,18 @@ function showRegions() {
     const at = (v) => 6 + 248 * (v - low) / (high - low);
     statistics[n].forEach((s, side) => {
       if (!s.n) return;
-      const y = 7 + 8 * side, colour = side ? '#d55e00' : '#0072b2';
-      if (Number.isFinite(s.sd)) drawn('line', { x1: at(s.mean - s.sd), x2: at(s.mean + s.sd), y1: y, y2: y, stroke: colour, 'stroke-width': 2 }, svg);
-      drawn('circle', { cx: at(s.mean), cy: y, r: 3.5, fill: colour }, svg);
+      const y = 7 + 8 * side, which = side ? 'second' : 'first';
+      if (Number.isFinite(s.sd)) drawn('line', { x1: at(s.mean - s.sd), x2: at(s.mean + s.sd), y1: y, y2: y, class: which }, svg);
+      drawn('circle', { cx: at(s.mean), cy: y, r: 3.5, class: which }, svg);
     });
   });
 }
 
+// The shapes that stand behind numbers, each drawn once.
+const shapes = drawn('svg', { width: 0, height: 0, 'aria-hidden': 'true', style: 'position:absolute' }, document.body);
+data.columns.forEach((column, c) => {
+  if (column.compared && spread[c]) drawn('path', { id: 'spread' + c, d: shapeOf(c, 1, 98, 16, 15) }, shapes);
+});
 for (const row of data.rows) row.text = row.cells.slice(0, data.fixed).join(' ').toLowerCase();
 search.oninput = flagged.onchange = set.onchange = () => { page = 0; draw(); };
 byId('before').onclick = () => { --page; draw(); };
