@@ -56,6 +56,21 @@ Eigen::VectorXd meanCurvature(const TriangleMesh& mesh, int smoothing) {
   return curvature;
 }
 
+Eigen::VectorXd meanOverSurroundings(const TriangleMesh& mesh, const Eigen::VectorXd& values) {
+  const Eigen::VectorXd areas = geometry::faceAreas(mesh);
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(values.size()), weight = sum;
+  for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
+    const Eigen::Vector3d at = values(mesh.faces.row(f));
+    if ((at.array() == 0).any()) continue;
+    // The integral of a linear function times the corner's hat function over that of the latter.
+    for (int c = 0; c < 3; ++c) {
+      sum[mesh.faces(f, c)] += areas[f] * (at.sum() + at[c]) / 4;
+      weight[mesh.faces(f, c)] += areas[f];
+    }
+  }
+  return (weight.array() > 0).select(sum.array() / weight.array(), values.array());
+}
+
 Evenness evennessOf(const TriangleMesh& mesh) {
   const auto topology = geometry::buildTopology(mesh.faces, mesh.vertexCount());
   const auto normalOf = [&](Eigen::Index f) -> Vector {

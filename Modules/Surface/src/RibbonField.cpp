@@ -24,12 +24,11 @@ constexpr double kTolerance = 1e-6;
 constexpr double kMiddleGap = 0.1;
 /// Steps a voxel of a trajectory.
 constexpr double kStepsPerVoxel = 4;
-/// A path is looked at again if it is longer than this many times its end's distance to white
-/// matter and this many voxels; it is cut where that distance grows at less than this rate along
-/// it.
-constexpr double kStallRatio = 1.3;
-constexpr double kStallSlack = 0.25;
-constexpr double kStallRate = 0.3;
+/// A path is cut where, over so many of its steps, its distance to white matter grows at less than
+/// this rate along it.  Along the floor where fronts meet head-on the rate is at most the sine of
+/// half the angle by which they fall short of running straight against each other.
+constexpr std::size_t kStallSteps = 2;
+constexpr double kStallRate = 0.5;
 /// Slope of the interpolant, per voxel, below which its direction is round-off.
 constexpr float kFlat = 1e-6F;
 
@@ -206,19 +205,17 @@ void RibbonField::cutWhereItStalls(Trajectory& path) const {
     near = nearest.face;
     return std::sqrt(nearest.squaredDistance);
   };
-  if (path.length() <
-      kStallRatio * distanceAt(path.points.back()) + kStallSlack * grid_.spacing.minCoeff()) {
-    return;
-  }
-  constexpr std::size_t kWindow = 3;
+  // A path is longer than the distance it has gained by what every part of it loses.
+  const double lost = path.length() - distanceAt(path.points.back());
+  if (lost < (1 - kStallRate) * (kStallSteps - 1) * step_) return;
   std::vector<double> distance;
   for (std::size_t k = 0; k < path.points.size(); ++k) {
     distance.push_back(distanceAt(path.points[k]));
-    if (k < kWindow + 1) continue;
-    const double way = path.along[k] - path.along[k - kWindow];
-    if (distance[k] - distance[k - kWindow] >= kStallRate * way) continue;
-    path.points.resize(k - kWindow + 1);
-    path.along.resize(k - kWindow + 1);
+    if (k < kStallSteps + 1) continue;
+    const double way = path.along[k] - path.along[k - kStallSteps];
+    if (distance[k] - distance[k - kStallSteps] >= kStallRate * way) continue;
+    path.points.resize(k - kStallSteps + 1);
+    path.along.resize(k - kStallSteps + 1);
     path.end = TrajectoryEnd::Bank;
     return;
   }

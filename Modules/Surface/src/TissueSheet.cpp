@@ -511,6 +511,7 @@ CorticalSurfaces buildSheets(const TissueMasks& masks, const SurfaceOptions& opt
   made.nearestThickness = distanceThickness(made.white.mesh, made.pial);
   made.sulcalDepth = Eigen::VectorXd::Zero(sheet.vertexCount());
   markCut(masks.white.grid, sheet, made.thickness, made);
+  made.thickness = meanOverSurroundings(sheet, made.thickness);
   made.noRibbon = (made.thickness.array() == 0).count();
   made.seconds.measures = secondsSince(last);
   monitor.progress(1, "surfaces");

@@ -141,12 +141,12 @@ TEST(RealCortex, LiesWhereFreeSurferPutsItAndIsAsThick) {
   EXPECT_LE(found.distance, 0.15);
   EXPECT_LE(found.distance95, 0.41);
   EXPECT_GT(found.withThickness, 0.99 * static_cast<double>(found.points));
-  EXPECT_GE(found.correlation, 0.917);
-  EXPECT_LE(found.difference, 0.24);
+  EXPECT_GE(found.correlation, 0.93);
+  EXPECT_LE(found.difference, 0.21);
   EXPECT_GE(found.regionCount, 10U);
   EXPECT_GE(found.regions, 0.988);
-  EXPECT_LE(found.deviation, 1.08 * found.theirDeviation);
-  EXPECT_LE(made.heldBackPial, made.pial.vertexCount() / 50);
+  EXPECT_LE(found.deviation, 1.03 * found.theirDeviation);
+  EXPECT_LE(made.heldBackPial, made.pial.vertexCount() / 200);
   expectEven(made);
 }
 
@@ -160,8 +160,8 @@ TEST(RealCortex, IsNearerToFreeSurfersWhereTheImagePlacesIt) {
               static_cast<long>(made.image.missingOuter), made.image.movedWhite,
               made.image.movedOuter);
   EXPECT_LE(found.distance, 0.12);
-  EXPECT_GE(found.correlation, 0.923);
-  EXPECT_LE(found.difference, 0.217);
+  EXPECT_GE(found.correlation, 0.935);
+  EXPECT_LE(found.difference, 0.2);
   EXPECT_GE(found.regions, 0.99);
   expectEven(made);
 }
