@@ -153,7 +153,11 @@ std::vector<report::Picture> drawFilm(const fs::path& folder,
     look.filling = paint->values.size() == 0 ? report::Filling::Discrete : report::Filling::Smooth;
   } else if (!look.focus.empty()) {
     look.colours.assign(static_cast<std::size_t>(vertices), kOutside);
-    for (const std::int32_t v : look.focus) look.colours[v] = kInside;
+    look.keys.assign(static_cast<std::size_t>(vertices), 0);
+    for (const std::int32_t v : look.focus) {
+      look.colours[v] = kInside;
+      look.keys[v] = 1;
+    }
     look.filling = report::Filling::Discrete;
   }
   std::vector<FilmView> chosen = views;

@@ -48,8 +48,11 @@ std::vector<Picture> filmPictures(const std::vector<FilmFrame>& frames, const Fi
   std::vector<Picture> pictures;
   for (const FilmFrame& frame : frames) {
     Picture whole(options.width, options.height);
-    pastePicture(whole, SurfaceScene(frame.mesh).render(camera, look.colours, look.filling, drawn),
-                 0, 0);
+    pastePicture(
+        whole,
+        SurfaceScene(frame.mesh)
+            .render(camera, look.colours, look.filling, drawn, look.keys, Border::AroundFaces),
+        0, 0);
     drawText(whole, frame.caption, Eigen::Vector2d(0.5 * options.width, options.height - letters),
              letters, {0.02F, 0.02F, 0.02F}, TextAnchor::Middle);
     pictures.push_back(std::move(whole));

@@ -16,6 +16,7 @@
 #include <cmath>
 #include <cstring>
 #include <new>
+#include <unordered_map>
 
 namespace explica::report {
 namespace {
@@ -101,6 +102,30 @@ struct SurfaceScene::Implementation {
   [[nodiscard]] bool onBorder(Eigen::Index face, const std::array<float, 3>& weight, int nearest,
                               const std::vector<std::int32_t>& keys, double reach) const;
   void measureOpenness(const TriangleMesh& mesh);
+  struct Tint;
+  /// Of each face a bit for each edge, opposite to its first, second and third corner: whether it
+  /// is the only face at that edge without a corner of key 0, or beside that face.
+  [[nodiscard]] std::vector<std::uint8_t> rimOf(const std::vector<std::int32_t>& keys) const;
+  [[nodiscard]] bool isWithin(Eigen::Index face, const std::vector<std::int32_t>& keys) const {
+    return keys[faces(face, 0)] != 0 && keys[faces(face, 1)] != 0 && keys[faces(face, 2)] != 0;
+  }
+};
+
+/// What colours a surface's points.
+struct SurfaceScene::Implementation::Tint {
+  const std::vector<Colour>& colours;  ///< one a vertex, or none
+  Filling filling;
+  const std::vector<std::int32_t>& keys;  ///< one a vertex, or none
+  Border border;
+  std::vector<std::uint8_t> rim;  ///< of Border::AroundFaces, see rimOf()
+  double reach = 0;               ///< mm, half the line
+
+  [[nodiscard]] Colour at(const Implementation& surface, Eigen::Index face,
+                          const std::array<float, 3>& weight) const;
+
+ private:
+  [[nodiscard]] bool onLine(const Implementation& surface, Eigen::Index face,
+                            const std::array<float, 3>& weight, int nearest) const;
 };
 
 void SurfaceScene::Implementation::build(const TriangleMesh& mesh) {
@@ -148,6 +173,72 @@ bool SurfaceScene::Implementation::onBorder(Eigen::Index face, const std::array<
     if (0.5 * (weight[nearest] - weight[k]) * edge < reach) return true;
   }
   return false;
+}
+
+std::vector<std::uint8_t> SurfaceScene::Implementation::rimOf(
+    const std::vector<std::int32_t>& keys) const {
+  std::unordered_map<std::uint64_t, int> count;  // of faces within, by edge
+  const auto edgeOf = [&](Eigen::Index face, int k) {
+    const auto [low, high] = std::minmax(faces(face, (k + 1) % 3), faces(face, (k + 2) % 3));
+    return static_cast<std::uint64_t>(low) << 32 | static_cast<std::uint32_t>(high);
+  };
+  for (Eigen::Index f = 0; f < faces.rows(); ++f) {
+    for (int k = 0; k < 3 && isWithin(f, keys); ++k) ++count[edgeOf(f, k)];
+  }
+  std::vector<std::uint8_t> rim(static_cast<std::size_t>(faces.rows()), 0);
+  for (Eigen::Index f = 0; f < faces.rows(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      const auto found = count.find(edgeOf(f, k));
+      if (found != count.end() && found->second == 1) rim[f] |= static_cast<std::uint8_t>(1 << k);
+    }
+  }
+  return rim;
+}
+
+bool SurfaceScene::Implementation::Tint::onLine(const Implementation& surface, Eigen::Index face,
+                                                const std::array<float, 3>& weight,
+                                                int nearest) const {
+  if (border == Border::BetweenVertices) {
+    return surface.onBorder(face, weight, nearest, keys, reach);
+  }
+  if (rim[face] == 0) return false;
+  std::array<Eigen::Vector3f, 3> corner;
+  for (int k = 0; k < 3; ++k) corner[k] = surface.positions.row(surface.faces(face, k)).transpose();
+  const float twice = (corner[1] - corner[0]).cross(corner[2] - corner[0]).norm();
+  for (int k = 0; k < 3; ++k) {
+    const float edge = (corner[(k + 1) % 3] - corner[(k + 2) % 3]).norm();
+    if ((rim[face] >> k & 1) != 0 && weight[k] * twice < reach * edge) return true;
+  }
+  return false;
+}
+
+Colour SurfaceScene::Implementation::Tint::at(const Implementation& surface, Eigen::Index face,
+                                              const std::array<float, 3>& weight) const {
+  constexpr Colour kPlain = {0.60f, 0.58f, 0.56f};
+  const bool parts = !keys.empty() && border == Border::AroundFaces;
+  const bool outside = parts && !surface.isWithin(face, keys);
+  const auto nearest =
+      static_cast<int>(std::max_element(weight.begin(), weight.end()) - weight.begin());
+  Colour base = kPlain;
+  if (!colours.empty() && filling == Filling::Discrete && !outside) {
+    base = colours[surface.faces(face, nearest)];
+  } else if (!colours.empty()) {
+    constexpr float kLeast = 1e-6f;  // a point on the edge between two corners within
+    base = {0, 0, 0};
+    float sum = 0;
+    for (int k = 0; k < 3; ++k) {
+      const std::int32_t v = surface.faces(face, k);
+      if (outside && keys[v] != 0) continue;
+      const float share = outside ? weight[k] + kLeast : weight[k];
+      for (int c = 0; c < 3; ++c) base[c] += share * colours[v][c];
+      sum += share;
+    }
+    for (float& c : base) c /= sum;
+  }
+  if (!keys.empty() && onLine(surface, face, weight, nearest)) {
+    for (float& c : base) c *= kBorderShade;
+  }
+  return base;
 }
 
 void SurfaceScene::Implementation::measureOpenness(const TriangleMesh& mesh) {
@@ -211,7 +302,7 @@ const std::vector<float>& SurfaceScene::openness() const {
 
 Picture SurfaceScene::render(const Camera& camera, const std::vector<Colour>& colours,
                              Filling filling, const SurfacePictureOptions& options,
-                             const std::vector<std::int32_t>& keys) const {
+                             const std::vector<std::int32_t>& keys, Border border) const {
   const Implementation& self = *implementation_;
   if (!colours.empty() && colours.size() != static_cast<std::size_t>(self.positions.rows())) {
     throw InvalidInput("colours: found " + std::to_string(colours.size()) +
@@ -225,7 +316,6 @@ Picture SurfaceScene::render(const Camera& camera, const std::vector<Colour>& co
     throw InvalidInput("width, height: must lie in 1 to 20000 pixels");
   }
   if (options.samples < 1 || options.samples > 8) throw InvalidInput("samples: must lie in 1 to 8");
-  const Colour plain = {0.60f, 0.58f, 0.56f};
   const Eigen::Vector3f towards = camera.towards.normalized().cast<float>();
   const Eigen::Vector3f up = camera.up.normalized().cast<float>();
   const Eigen::Vector3f right = towards.cross(up);
@@ -237,7 +327,13 @@ Picture SurfaceScene::render(const Camera& camera, const std::vector<Colour>& co
       (0.5f * static_cast<float>(options.height * options.samples) * step) * up -
       (0.5f * static_cast<float>(options.width * options.samples) * step) * right;
   const auto occlusion = static_cast<float>(options.occlusion);
-  const double border = kBorder * camera.halfHeight / options.height;  // mm, half the line
+  const bool around = !keys.empty() && border == Border::AroundFaces;
+  const Implementation::Tint paint{colours,
+                                   filling,
+                                   keys,
+                                   border,
+                                   around ? self.rimOf(keys) : std::vector<std::uint8_t>(),
+                                   kBorder * camera.halfHeight / options.height};
 
   Picture picture(options.width, options.height);
   const int columns = (options.width + kTile - 1) / kTile;
@@ -268,21 +364,12 @@ Picture SurfaceScene::render(const Camera& camera, const std::vector<Colour>& co
                                                query.hit.v};
           Eigen::Vector3f normal = Eigen::Vector3f::Zero();
           float open = 0;
-          Colour base = {0, 0, 0};
-          int nearest = 0;
           for (int k = 0; k < 3; ++k) {
             const std::int32_t v = self.faces(face, k);
             normal += weight[k] * self.normals.row(v).transpose();
             open += weight[k] * self.openness[v];
-            if (weight[k] > weight[nearest]) nearest = k;
-            const Colour& colour = colours.empty() ? plain : colours[v];
-            for (int c = 0; c < 3; ++c) base[c] += weight[k] * colour[c];
           }
-          if (filling == Filling::Discrete && !colours.empty())
-            base = colours[self.faces(face, nearest)];
-          if (!keys.empty() && self.onBorder(face, weight, nearest, keys, border)) {
-            for (float& c : base) c *= kBorderShade;
-          }
+          const Colour base = paint.at(self, face, weight);
           const Eigen::Vector3f outward(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z);
           const bool inside = outward.dot(towards) > 0;
           normal.normalize();

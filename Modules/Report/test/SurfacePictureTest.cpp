@@ -26,6 +26,41 @@ bool isWhite(const Picture& p, int x, int y) {
   return p.pixel(x, y)[0] == 255 && p.pixel(x, y)[1] == 255 && p.pixel(x, y)[2] == 255;
 }
 
+TEST(SurfacePicture, ARegionsColourEndsAtTheEdgesOfItsFaces) {
+  // Two squares side by side, each of two faces; the vertices of the left one are the region.
+  TriangleMesh mesh;
+  mesh.positions.resize(6, 3);
+  mesh.positions << 0, 0, 0, 0, 0, 10, 0, 10, 0, 0, 10, 10, 0, 20, 0, 0, 20, 10;
+  mesh.faces.resize(4, 3);
+  mesh.faces << 0, 2, 1, 1, 2, 3, 2, 4, 3, 3, 4, 5;
+  const std::vector<Colour> colours = {{1, 0, 0}, {1, 0, 0}, {1, 0, 0},
+                                       {1, 0, 0}, {0, 0, 1}, {0, 0, 1}};
+  const std::vector<std::int32_t> keys = {1, 1, 1, 1, 0, 0};
+  SurfacePictureOptions options;
+  options.width = 80;
+  options.height = 60;
+  options.occlusion = 0;
+  options.samples = 1;
+  const Camera camera =
+      cameraTowards(mesh, Vector(-1, 0, 0), Vector(0, 0, 1), options.width, options.height);
+  const SurfaceScene scene(mesh);
+  for (const Filling filling : {Filling::Smooth, Filling::Discrete}) {
+    const Picture picture =
+        scene.render(camera, colours, filling, options, keys, Border::AroundFaces);
+    int red = 0, blue = 0, mixed = 0;
+    for (int x = 0; x < options.width; ++x) {
+      const std::uint8_t* p = picture.pixel(x, options.height / 2 + 1);
+      if (p[0] == 255 && p[1] == 255 && p[2] == 255) continue;
+      red += p[0] > 0 && p[2] == 0;
+      blue += p[2] > 0 && p[0] == 0;
+      mixed += p[0] > 0 && p[2] > 0;
+    }
+    EXPECT_EQ(mixed, 0);
+    EXPECT_NEAR(red, blue, 2) << "each has its square, none half a face of the other's";
+    EXPECT_GT(red, 20);
+  }
+}
+
 TEST(SurfacePicture, SphereFillsItsDisc) {
   const TriangleMesh sphere = geometry::makeIcosphere(4, 50);
   const SurfaceScene scene(sphere);

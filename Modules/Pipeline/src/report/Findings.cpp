@@ -26,6 +26,10 @@ struct Finding {
 constexpr std::array kFindings = {
     Finding{"segment", "brain_volume_ml", "", "Brain volume", "ml", Shown::Plain,
             "Everything inside the brain mask."},
+    Finding{"segment", "white_share", "", "White matter in it", "", Shown::Percent,
+            "Shares of the brain's volume."},
+    Finding{"segment", "grey_share", "", "Grey matter in it", "", Shown::Percent, ""},
+    Finding{"segment", "csf_share", "", "Fluid in it", "", Shown::Percent, ""},
     Finding{"surface", "thickness_mean", "", "Cortical thickness, mean", "mm", Shown::Plain,
             "Length of the paths from the white to the pial surface that follow the gradient of "
             "the harmonic function between them, averaged over the surface's area."},

@@ -246,7 +246,8 @@ class PatchPictures {
                  (view == &front_ ? ", from the viewpoint" : ", from the side"),
              (folded ? sceneBefore_ : sceneAfter_)
                  .render(cameraFor(folded, *view, size), colours,
-                         smooth ? report::Filling::Smooth : report::Filling::Discrete, size, rim)});
+                         smooth ? report::Filling::Smooth : report::Filling::Discrete, size, rim,
+                         report::Border::AroundFaces)});
       }
     }
     if (smooth) views.scale = painted.paint.scale;

@@ -219,9 +219,14 @@ async function showEvolution(source, isStopped, onStop) {
   }
   // The colour of a face is that of two of its corners, else of the first.
   function paintFaces(entryOf, colourOf) {
-    for (let f = 0; f < faces.length; f += 3) {
+    paintEach((f) => {
       const a = entryOf(faces[f]), b = entryOf(faces[f + 1]), c = entryOf(faces[f + 2]);
-      const colour = colourOf(b === c ? b : a);
+      return colourOf(b === c ? b : a);
+    });
+  }
+  function paintEach(colourOf) {
+    for (let f = 0; f < faces.length; f += 3) {
+      const colour = colourOf(f);
       for (let k = 0; k < 3; ++k) for (let i = 0; i < 3; ++i) flat.tone[3 * (f + k) + i] = colour[i];
     }
     flatGeometry.attributes.tone.needsUpdate = true;
@@ -337,7 +342,8 @@ async function showEvolution(source, isStopped, onStop) {
         for (let c = 0; c < 3; ++c) colours[3 * v + c] = linear(ramp[entry + c]);
       }
     } else if (choice === 'none') {
-      paintFaces((v) => inRegion[v], (inside) => (inside ? [0.80, 0.50, 0.28] : [0.60, 0.58, 0.56]));
+      // The region is made of the faces with all corners in it: its colour ends at its rim.
+      paintEach((f) => (faceInRegion(f) ? [0.80, 0.50, 0.28] : [0.60, 0.58, 0.56]));
     } else if (choice.startsWith('label')) {
       const map = labelMaps[Number(choice.slice(5))];
       paintFaces((v) => map.entries[v], (entry) => (entry < 0 ? [0.60, 0.58, 0.56]

@@ -21,6 +21,7 @@ struct FilmLook {
   std::vector<std::int32_t> focus;  ///< vertices that the picture holds in all frames; empty: all
   std::vector<Colour> colours;      ///< one a vertex; empty for a plain light grey
   Filling filling = Filling::Smooth;
+  std::vector<std::int32_t> keys = {};  ///< one a vertex, 0 off the region; or none
 };
 
 /// The pictures of a film: one camera that holds the focus in every frame, no wider than it needs,
