@@ -62,8 +62,9 @@ std::vector<report::CloseUp> correctedPlaces(const StepFolder& surface, std::siz
     const Point at(numberIn(row, "x_mm"), numberIn(row, "y_mm"), numberIn(row, "z_mm"));
     const double voxels = numberIn(row, "voxels");
     if (!at.allFinite()) continue;
-    places.emplace_back(voxels, report::CloseUp{at, row["kind"] + " " + row["side"] + ", " +
-                                                        readable(voxels) + " voxels"});
+    places.emplace_back(
+        voxels, report::CloseUp{at, row["kind"] + " " + row["side"] + ", " + readable(voxels) +
+                                        (voxels == 1 ? " voxel" : " voxels")});
   }
   std::stable_sort(places.begin(), places.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });

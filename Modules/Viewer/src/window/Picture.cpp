@@ -265,7 +265,7 @@ std::string MainWindow::valueAt(std::int32_t vertex) const {
   if (vertex >= shownValues_.size()) return "";
   const double value = shownValues_[vertex];
   if (!std::isfinite(value)) return "not known";
-  return QString("%1 %2").arg(value, 0, 'g', 4).arg(shownUnit_.c_str()).toStdString();
+  return QString("%1 %2").arg(value, 0, 'g', 3).arg(shownUnit_.c_str()).toStdString();
 }
 
 std::string MainWindow::regionAt(std::int32_t vertex) const {
