@@ -30,14 +30,17 @@ constexpr std::array kFindings = {
             "Shares of the brain's volume."},
     Finding{"segment", "grey_share", "", "Grey matter in it", "", Shown::Percent, ""},
     Finding{"segment", "csf_share", "", "Fluid in it", "", Shown::Percent, ""},
-    Finding{"surface", "thickness_mean", "", "Cortical thickness, mean", "mm", Shown::Plain,
-            "Length of the paths from the white to the pial surface that follow the gradient of "
-            "the harmonic function between them, averaged over the surface's area."},
+    Finding{
+        "surface", "thickness_mean", "", "Cortical thickness, mean", "mm", Shown::Plain,
+        "Length of the paths from the white to the pial surface that follow the gradient of "
+        "the harmonic function between them, averaged over the surface's area. The mean over the "
+        "tissue's voxels is greater: a thick column holds more voxels."},
     Finding{"surface", "thickness_sd", "", "Cortical thickness, standard deviation", "mm",
             Shown::Plain, ""},
     Finding{"thickness", "thickness_mean_columns", "", "Thickness, mean over columns", "mm",
             Shown::Plain,
-            "n / sum(1/t) over the tissue's voxels: each column counts once, however thick."},
+            "n / sum(1/t) over the tissue's voxels: each column counts once, however thick. The "
+            "plain mean is greater: a thick column holds more voxels."},
     Finding{"thickness", "thickness_p95", "thickness_p05", "Thickness, 5th to 95th percentile",
             "mm", Shown::Range, "Over voxels."},
     Finding{"thickness", "voxels", "", "Voxels of tissue", "", Shown::Plain, ""},
