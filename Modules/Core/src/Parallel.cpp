@@ -11,8 +11,39 @@
 #include <algorithm>
 #include <memory>
 
+#ifdef EXPLICA_THREAD_SANITIZER
+#include <sanitizer/tsan_interface.h>
+#endif
+
 namespace explica {
 namespace {
+
+/// What TBB's library promises of a loop: all that was written before it is seen by each block, all
+/// that the blocks write is seen after it.  The thread sanitizer cannot see this for itself, as the
+/// library is not instrumented; elsewhere nothing is done.
+class Promise {
+ public:
+  void given() { release(before_); }
+  void taken() { acquire(before_); }
+  void kept() { release(after_); }
+  void met() { acquire(after_); }
+
+ private:
+#ifdef EXPLICA_THREAD_SANITIZER
+  static void release(char& place) {
+    __tsan_release(&place);
+  }
+  static void acquire(char& place) {
+    __tsan_acquire(&place);
+  }
+#else
+  static void release(char& /*place*/) {}
+  static void acquire(char& /*place*/) {}
+#endif
+
+  char before_ = 0;
+  char after_ = 0;
+};
 
 std::unique_ptr<tbb::global_control>& threadLimit() {
   static std::unique_ptr<tbb::global_control> limit;
@@ -46,10 +77,15 @@ void parallelForBlocks(std::size_t count, std::size_t grain,
     runBlock(0);
     return;
   }
+  Promise promise;
+  promise.given();
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, blocks, 1),
                     [&](const tbb::blocked_range<std::size_t>& range) {
+                      promise.taken();
                       for (std::size_t b = range.begin(); b < range.end(); ++b) runBlock(b);
+                      promise.kept();
                     });
+  promise.met();
 }
 
 }  // namespace explica
