@@ -26,12 +26,8 @@ export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
 # ITK's reader of NRRD forgets its buffers and messages when a file turns out to be damaged.
 printf 'leak:libITKNrrdIO\nleak:libz.so\n' >"$folder/leaks.supp"
 export LSAN_OPTIONS="suppressions=$PWD/$folder/leaks.supp:print_suppressions=0"
-# GCC 12's runtime for threads does not start where addresses are drawn from many bits (Linux 6.5 and later).
-same_places=""
-[ $preset = sanitize ] || same_places="setarch -R"
 failed=""
 for target in $targets; do
-  # shellcheck disable=SC2086  # a list of words, or none
-  $same_places "$folder/bin/$target" --gtest_brief=1 || failed="$failed $target"
+  "$folder/bin/$target" --gtest_brief=1 || failed="$failed $target"
 done
 [ -z "$failed" ] || { echo "sanitizers: failures in$failed"; exit 1; }

@@ -40,6 +40,27 @@ PolygonUnfolding unfold(const PolygonPhantom& phantom,
   return unfoldPolygon(phantom.curve, regionOf(phantom), phantom.viewpoint, options);
 }
 
+/// Average and variance of the cosine between normal and direction to the viewpoint, by midpoints.
+std::pair<double, double> cosinesByQuadrature(const PolygonPhantom& phantom) {
+  constexpr int kPoints = 2000;  // an edge
+  double length = 0, sum = 0, squares = 0;
+  const auto& positions = phantom.curve.positions;
+  for (int v = phantom.first; v < phantom.last; ++v) {
+    const Eigen::RowVector2d along = positions.row(v + 1) - positions.row(v);
+    const double step = along.norm() / kPoints;
+    const Eigen::RowVector2d outward(along.y() / along.norm(), -along.x() / along.norm());
+    for (int k = 0; k < kPoints; ++k) {
+      const Eigen::RowVector2d at = positions.row(v) + (k + 0.5) / kPoints * along;
+      const double cosine = outward.dot((phantom.viewpoint.transpose() - at).normalized());
+      length += step;
+      sum += step * cosine;
+      squares += step * cosine * cosine;
+    }
+  }
+  const double average = sum / length;
+  return {average, squares / length - average * average};
+}
+
 TEST(PolygonPhantoms, AreOfTheThesisKind) {
   for (const Case& c : cases()) {
     const Region region = regionOf(c.phantom);
@@ -48,6 +69,9 @@ TEST(PolygonPhantoms, AreOfTheThesisKind) {
     EXPECT_NEAR(v.length, c.length, 1);
     EXPECT_NEAR(v.average, c.visibility, 0.005);
     EXPECT_NEAR(v.variance, c.variance, 0.005);
+    const auto [average, variance] = cosinesByQuadrature(c.phantom);
+    EXPECT_NEAR(v.average, average, 1e-6);
+    EXPECT_NEAR(v.variance, variance, 1e-6);
     EXPECT_TRUE(intersectingEdges(c.phantom.curve).empty());
     EXPECT_GT(signedArea(c.phantom.curve.positions), 0);
   }
