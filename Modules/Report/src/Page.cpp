@@ -330,10 +330,11 @@ std::string lookHtml(const ReportContent& content) {
             captionHtml(picture.title, picture.caption) + "</figure>\n";
   }
   for (const ReportDrawing& drawing : content.drawings) {
-    html += figureOpen(drawing.id) + "<img alt='" + escapeHtml(drawing.title) +
-            "' class='drawing' src='data:" + drawing.mediaType + ";base64," +
-            base64(drawing.bytes) + "'>" + captionHtml(drawing.title, drawing.caption) +
-            "</figure>\n";
+    const std::string title = escapeHtml(drawing.title);
+    html += figureOpen(drawing.id) + "<div class='wide' tabindex='0' role='region' aria-label='" +
+            title + "'><img alt='" + title + "' class='drawing' src='data:" + drawing.mediaType +
+            ";base64," + base64(drawing.bytes) + "'></div>" +
+            captionHtml(drawing.title, drawing.caption) + "</figure>\n";
   }
   html += chartsHtml(content.charts);
   for (const ReportTable& table : content.tables) html += tableHtml(table);
