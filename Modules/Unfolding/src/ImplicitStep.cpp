@@ -19,7 +19,6 @@ using collision::Pair;
 constexpr double kSeparated = 0.25;  // of their range: pairs that start nearer are parted first
 constexpr double kStillSeparating = 0.6;   // of the contact energy before: above it the rest ...
 constexpr int kSeparatingIterations = 60;  // ... or after these goes on beside the unfolding
-constexpr double kMultiplierRate = 0.3;    // of the full update: the inner problem is not solved
 constexpr double kLargestMultiplier = 20;  // times the pull of the visibility term
 constexpr double kLeastDamping = 0.1;      // below it steps overshoot the quadratic model
 constexpr double kMassShare = 0.01;        // of the damping: the rest is the graph Laplacian
@@ -30,9 +29,9 @@ constexpr double kStiffestContact = 1e3;  // ... up to this factor
 constexpr double kLockStiffness = 1e5;    // against about 1 of the other terms
 constexpr int kHoldFirst = 4;             // iterations that a pair is locked for, twice as many ...
 constexpr int kHoldLongest = 64;          // ... each time that it stops a step again, up to these
-constexpr double kSlowGain = 0.003;       // visibility per iteration below which areas tighten ...
-constexpr double kTightening = 1.2;       // ... by this factor ...
-constexpr double kTightest = 20;          // ... up to this one
+constexpr double kSlowGain = 0.003;       // visibility per iteration below which areas tighten, ...
+constexpr double kTightening = 1.5;       // ... unless told otherwise, by this factor ...
+constexpr double kTightest = 50;          // ... up to this one
 constexpr int kMaxAttempts = 12;          // with four times the damping each
 constexpr int kMaxHalvings = 8;           // of an attempt's step
 constexpr double kArmijo = 1e-4;          // of the descent that the gradient promises
@@ -63,6 +62,7 @@ class ImplicitStep {
   /// Halves the step until the objective does not rise.
   bool search(const Motion& motion, const std::vector<Contact>& onTheWay);
   void accept(Motion& motion);
+  void tightenAreas();
   void accountForContacts();
   void updateMultipliers();
   void endSeparationIfDone();
@@ -278,11 +278,16 @@ void ImplicitStep::accept(Motion& motion) {
   }
   updateMultipliers();
   u_.measure(now_);
-  if (!state_.separating && std::abs(now_.visibility - u_.record.visibility) < kSlowGain) {
-    state_.areaStiffness =
-        std::min(kTightest * u_.options.weights[Term::Area], kTightening * state_.areaStiffness);
-  }
+  tightenAreas();
   u_.record = now_;
+}
+
+/// Soft areas let folds open, and stiff ones keep them open only where they are.
+void ImplicitStep::tightenAreas() {
+  const bool slow = std::abs(now_.visibility - u_.record.visibility) < kSlowGain;
+  if (state_.separating || !u_.areasTighten.value_or(slow)) return;
+  state_.areaStiffness =
+      std::min(kTightest * u_.options.weights[Term::Area], kTightening * state_.areaStiffness);
 }
 
 /// How near contacts are at the new positions; those pressed close stiffen from the next step on.
@@ -325,8 +330,8 @@ void ImplicitStep::updateMultipliers() {
   for (std::size_t f = 0; f < faces.size(); ++f) {
     const double error = shapeOf(faces[f], state_.positions).area / faces[f].restArea - 1;
     const double excess = error - std::clamp(error, -slack, slack);
-    state_.multipliers[f] = std::clamp(
-        state_.multipliers[f] + kMultiplierRate * state_.areaStiffness * excess, -largest, largest);
+    state_.multipliers[f] =
+        std::clamp(state_.multipliers[f] + state_.areaStiffness * excess, -largest, largest);
   }
 }
 

@@ -11,11 +11,14 @@
 namespace explica::unfolding {
 namespace {
 
-constexpr double kLargestDrive = 8;   // lengths and contacts are outweighed up to here
-constexpr double kLeastDrive = 0.1;   // ... and the visibility term down to here
-constexpr double kBalanced = 0.0008;  // of visibility
-constexpr double kEnough = 0.002;     // of merit: no iteration is spent on more
-constexpr int kBalancing = 150;       // iterations at most that seeing and lengths are weighed
+constexpr double kLargestDrive = 8;     // lengths and contacts are outweighed up to here
+constexpr double kLeastDrive = 0.1;     // ... and the visibility term down to here
+constexpr double kMostSteering = 1.15;  // factor of the visibility term a step
+constexpr double kOpen = 0.9;           // visibility from which on seeing and lengths are weighed
+constexpr double kBalanced = 0.0008;    // of visibility
+constexpr double kAim = 0.003;          // to spare of visibility, what tightening areas may cost
+constexpr double kEnough = 0.001;       // to spare of both: no iteration is spent on more
+constexpr int kBalancing = 150;         // iterations at most that seeing and lengths are weighed
 
 void requireUsable(const UnfoldOptions& options) {
   if (options.targetVisibility &&
@@ -50,49 +53,42 @@ bool isRelaxed(const std::vector<IterationRecord>& history) {
   return history.back().edgeStrainMean > 0.996 * before;
 }
 
-/// True if folds no longer open fast, or lengths have so much to spare that no fold is in the way:
-/// what is seen and lengths can then be weighed.
-bool isOpen(const std::vector<IterationRecord>& history, int since) {
-  constexpr std::size_t kWindow = 4;
-  constexpr double kGain = 0.006;    // of visibility over the window ...
-  constexpr double kHalfOpen = 0.9;  // ... where slowness is not that of a fold on its way
-  constexpr double kMuch = 0.021;    // of visibility
-  const IterationRecord& last = history.back();
-  if (last.iteration - since < static_cast<int>(kWindow)) return false;
-  if (last.visibility < kHalfOpen) return false;
-  return lengthsToSpare(last.edgeStrainMean) > kMuch ||
-         last.visibility - history[history.size() - 1 - kWindow].visibility < kGain;
+/// Where a quantity leads to whose steps shrink as the last two did [Aitken], by a quarter at
+/// least.
+double limitOf(const std::vector<IterationRecord>& history, double IterationRecord::*quantity) {
+  constexpr double kSlowest = 0.75;
+  const auto back = [&](std::size_t n) { return history[history.size() - 1 - n].*quantity; };
+  const double step = back(0) - back(1), before = back(1) - back(2);
+  const double ratio = before == 0 ? 0 : std::clamp(step / before, 0.0, kSlowest);
+  return back(0) + ratio / (1 - ratio) * step;
 }
 
-/// What lengths have to spare more than what is seen, in visibility; nothing where the one that
-/// gains has plenty.
-double imbalance(double visibility, double strain) {
-  const double seen = seenToSpare(visibility), lengths = lengthsToSpare(strain);
-  return std::min(seen, lengths) < kPlenty ? lengths - seen : 0;
+/// Visibility to aim at: more than asked for, as long as lengths have as much to spare; less than
+/// that where both lack.
+double goalAt(double strain) {
+  return kSeen + std::min(kAim, lengthsToSpare(strain));
 }
 
-/// By how much the visibility term shall be stronger or weaker in the next step: where the last
-/// ones lead to counts.
-double balancingFactor(const std::vector<IterationRecord>& history) {
-  constexpr double kLead = 4;      // steps that the last one is carried on for
-  constexpr double kGain = 3;      // of the factor for each of visibility
-  constexpr double kMost = 0.03;   // of the strength per step ...
-  constexpr double kFaster = 1.5;  // ... and more for each of visibility that lengths ...
-  constexpr double kFrom = 0.005;  // ... have to spare beyond this
-  const IterationRecord& last = history.back();
-  const IterationRecord& before = history[history.size() - 2];
-  const double gap =
-      imbalance(last.visibility + kLead * (last.visibility - before.visibility),
-                last.edgeStrainMean + kLead * (last.edgeStrainMean - before.edgeStrainMean));
-  const double most =
-      1 + kMost + kFaster * std::max(0.0, lengthsToSpare(last.edgeStrainMean) - kFrom);
-  return std::clamp(1 + kGain * gap, 1 / most, most);
+/// How the next step shall differ from the last.
+struct Steering {
+  double factor = 1;     ///< of the visibility term
+  bool nearGoal = true;  ///< what is seen comes to its goal without it
+};
+
+/// Against springs the deficit 1 - v falls about with the square of the visibility term.
+Steering steer(const std::vector<IterationRecord>& history) {
+  constexpr double kNear = 0.002;  // of visibility
+  if (history.size() < 3) return {};
+  const double visibility = std::min(1.0, limitOf(history, &IterationRecord::visibility));
+  const double goal = goalAt(limitOf(history, &IterationRecord::edgeStrainMean));
+  const double factor = std::sqrt((1 - visibility) / (1 - goal));
+  return {std::clamp(factor, 1 / kMostSteering, kMostSteering), visibility > goal - kNear};
 }
 
 /// True if the last steps changed neither what is seen nor lengths by anything that counts.
 bool isAtRest(const std::vector<IterationRecord>& history) {
   constexpr std::size_t kWindow = 5;
-  constexpr double kMove = 3e-4;
+  constexpr double kMove = 1e-4;
   if (history.size() <= kWindow) return false;
   const IterationRecord& last = history.back();
   const IterationRecord& before = history[history.size() - 1 - kWindow];
@@ -124,6 +120,27 @@ bool StopRule::targetHolds(const std::vector<IterationRecord>& history) const {
   return settled || atGoal > kPolish;
 }
 
+/// Soft areas as long as what is seen is far from its goal, then stiff ones.
+Termination StopRule::weigh(Unfolder& unfolder, const std::vector<IterationRecord>& history) const {
+  const IterationRecord& last = history.back();
+  const auto [factor, nearGoal] = steer(history);
+  const double drive = unfolder.state().drive;
+  const bool atLimit = factor > 1 ? drive >= kLargestDrive : drive <= kLeastDrive;
+  const bool balanced = std::abs(last.visibility - goalAt(last.edgeStrainMean)) < kBalanced;
+  const bool atRest = isAtRest(history);
+  const bool elastic = options_.unfolder.surround == Surround::Elastic;
+  const bool torn = elastic && last.collarStretchMax > kCollarMost;
+  const bool enough = merit(last.visibility, last.edgeStrainMean) > kEnough && !torn;
+  const bool longEnough = last.iteration - unfolder.state().driveIteration > kBalancing;
+  const bool ended = enough || longEnough || ((balanced || atLimit) && atRest);
+  const bool kept = last.areaErrorMean <= options_.areaTolerance;
+  if (ended && kept) return Termination::Converged;
+  if (static_cast<int>(history.size()) > options_.maxIterations) return Termination::MaxIterations;
+  unfolder.balance(std::clamp(drive * factor, kLeastDrive, kLargestDrive) / drive,
+                   !kept && (nearGoal || atLimit || atRest));
+  return Termination::NotRun;
+}
+
 Termination StopRule::check(Unfolder& unfolder, const std::vector<IterationRecord>& history) const {
   const IterationRecord& last = history.back();
   const bool thesis = options_.unfolder.method == Method::Thesis;
@@ -135,6 +152,7 @@ Termination StopRule::check(Unfolder& unfolder, const std::vector<IterationRecor
   const int since = unfolder.state().driveIteration;
   const bool settled = !atGoal && started && isSettled(history, since);
   const bool limit = static_cast<int>(history.size()) > options_.maxIterations;
+  if (!thesis && !options_.targetVisibility) unfolder.balance(1, false);  // areas are soft at first
   if (!thesis && started && unfolder.isHeldBelow()) {
     if (settled) unfolder.makeWay();
   } else if (thesis || options_.targetVisibility) {
@@ -143,20 +161,9 @@ Termination StopRule::check(Unfolder& unfolder, const std::vector<IterationRecor
       if (thesis || unfolder.state().drive >= kLargestDrive) return Termination::Stalled;
       unfolder.raiseDrive(driveFactor(last.visibility, goal));
     }
-  } else if (started && (settled || isOpen(history, since))) {
-    const double factor = balancingFactor(history);
-    const double drive = unfolder.state().drive;
-    const bool atLimit = factor > 1 ? drive >= kLargestDrive : drive <= kLeastDrive;
-    const bool balanced = std::abs(imbalance(last.visibility, last.edgeStrainMean)) < kBalanced;
-    const bool longEnough = last.iteration - since > kBalancing;
-    const bool enough = merit(last.visibility, last.edgeStrainMean) > kEnough;
-    if (kept && (enough || longEnough || ((balanced || atLimit) && isAtRest(history)))) {
-      return Termination::Converged;
-    }
-    if (limit) return Termination::MaxIterations;
-    if (!enough) {
-      unfolder.balance(std::clamp(drive * factor, kLeastDrive, kLargestDrive) / drive);
-    }
+  } else if (started && (settled || last.visibility > kOpen)) {
+    const Termination end = weigh(unfolder, history);
+    if (end != Termination::NotRun) return end;
   }
   return limit ? Termination::MaxIterations : Termination::NotRun;
 }

@@ -203,7 +203,7 @@ Point originFor(const TriangleMesh& mesh, const Region& region) {
 }  // namespace
 
 double merit(double visibility, double strain) {
-  return std::min({seenToSpare(visibility), lengthsToSpare(strain), kPlenty});
+  return std::min(seenToSpare(visibility), lengthsToSpare(strain));
 }
 
 bool isBetter(const IterationRecord& state, const BestState& than, bool towardsTarget) {
@@ -212,9 +212,8 @@ bool isBetter(const IterationRecord& state, const BestState& than, bool towardsT
 }
 
 UnfolderOptions solverOptions(const UnfoldOptions& options) {
-  constexpr double kSlack = 0.65;  // of the tolerance: nearer, areas would reach it slowly
   UnfolderOptions solver = options.unfolder;
-  solver.areaSlack = kSlack * options.areaTolerance;
+  solver.areaSlack = options.areaTolerance;  // of a face: the mean ends below
   return solver;
 }
 

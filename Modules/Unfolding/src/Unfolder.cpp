@@ -138,14 +138,17 @@ Unfolder::Unfolder(Unfolder&&) noexcept = default;
 Unfolder& Unfolder::operator=(Unfolder&&) noexcept = default;
 
 bool Unfolder::step() {
-  return self_->step();
+  const bool moved = self_->step();
+  self_->areasTighten.reset();
+  return moved;
 }
 void Unfolder::raiseDrive(double factor) {
   self_->state.drive *= factor;
   self_->state.driveIteration = self_->state.iteration;
 }
-void Unfolder::balance(double factor) {
+void Unfolder::balance(double factor, bool tightenAreas) {
   self_->state.drive *= factor;
+  self_->areasTighten = tightenAreas;
 }
 bool Unfolder::isHeldBelow() const {
   return self_->options.surround == Surround::Elastic && self_->state.ways < kMostWays &&

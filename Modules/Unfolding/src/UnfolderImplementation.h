@@ -9,6 +9,7 @@
 #include "Explica/Unfolding/Unfolder.h"
 
 #include <memory>
+#include <optional>
 
 namespace explica::unfolding {
 
@@ -26,6 +27,7 @@ struct Unfolder::Implementation {
   BlockSystem system;
   UnfoldState state;
   IterationRecord record;
+  std::optional<bool> areasTighten;  ///< in the next step, if who steers has said so
 
   /// Fixed vertices stand at these positions from now on: as obstacles, and for the knot energy.
   void standAt(const Positions& positions);

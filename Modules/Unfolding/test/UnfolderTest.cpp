@@ -216,7 +216,7 @@ TEST(Unfold, LengthsYieldFurtherWhereLessIsSeenThanPromised) {
       unfold(waves, region, visibility::viewpoint(Point(12, 4, 1000)), options);
   const IterationRecord& end = result.history[static_cast<std::size_t>(result.iteration)];
   EXPECT_GT(result.checkpoint.state.drive, 1);
-  EXPECT_GT(end.visibility, result.history[15].visibility + 0.005);
+  EXPECT_GT(end.visibility, result.history[5].visibility + 0.01);  // before it is strengthened
   EXPECT_LT(end.edgeStrainMean, kStrained + 0.001);
 }
 
@@ -229,7 +229,7 @@ TEST(Unfold, OfTwoStatesTheOneThatLacksLessIsBetter) {
   };
   EXPECT_TRUE(better(0.986, 0.09, 0.99, 0.12));
   EXPECT_FALSE(better(0.99, 0.12, 0.986, 0.09));
-  EXPECT_FALSE(better(0.995, 0.06, 0.99, 0.03));  // plenty of both
+  EXPECT_TRUE(better(0.995, 0.06, 0.99, 0.03));
   EXPECT_TRUE(better(0.984, 0.08, 0.982, 0.03));  // strained little: more is seen
   EXPECT_TRUE(better(0.97, 0.10, 0.96, 0.05));
   EXPECT_FALSE(better(0.97, 0.15, 0.96, 0.05));

@@ -25,6 +25,9 @@ class StopRule {
 
  private:
   [[nodiscard]] bool targetHolds(const std::vector<IterationRecord>& history) const;
+  /// Without a target: weighs what is seen against lengths for the next step.
+  [[nodiscard]] Termination weigh(Unfolder& unfolder,
+                                  const std::vector<IterationRecord>& history) const;
 
   UnfoldOptions options_;
 };

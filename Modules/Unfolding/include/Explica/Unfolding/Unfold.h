@@ -63,8 +63,6 @@ inline constexpr double kSeen = 0.9805;      ///< visibility that a result shall
 inline constexpr double kStrained = 0.0893;  ///< ... at a mean edge strain of this at most
 /// Visibility that a mean edge strain of 1 is worth.
 inline constexpr double kStrainWorth = 0.5;
-/// To spare of both, in visibility: more is not asked for.
-inline constexpr double kPlenty = 0.0065;
 
 /// What a visibility has to spare; negative: it lacks.
 [[nodiscard]] inline double seenToSpare(double visibility) {
@@ -78,7 +76,7 @@ inline constexpr double kPlenty = 0.0065;
 /// Area ratios of a collar's faces, in the mean and at most, beyond which it has given way.
 inline constexpr double kCollarMean = 2, kCollarMost = 8;
 
-/// The lesser of what seeing and lengths have to spare, up to plenty.
+/// The lesser of what seeing and lengths have to spare.
 [[nodiscard]] double merit(double visibility, double strain);
 /// More merit; on the way to a target, the higher visibility.
 [[nodiscard]] bool isBetter(const IterationRecord& state, const BestState& than,

@@ -177,8 +177,10 @@ class Unfolder {
   /// Strengthens the visibility term, for a target that the present balance does not reach.
   void raiseDrive(double factor);
 
-  /// Strengthens or weakens the visibility term a little, without waiting for what follows.
-  void balance(double factor);
+  /// Strengthens or weakens the visibility term a little, without waiting for what follows, and
+  /// says whether areas tighten in the next step; without it they do once the visibility rises
+  /// slowly.
+  void balance(double factor, bool tightenAreas);
 
   /// Whether a part of the region that counts is held below its elastic surroundings, which can
   /// still be asked to part further.
