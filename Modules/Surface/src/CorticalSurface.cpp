@@ -168,6 +168,7 @@ void placeByImage(const Volume<float>& image, double fluid, Ribbon& ribbon,
     if (path.end == TrajectoryEnd::NoRibbon) continue;
     path = between(path, moved[row], path.length() + borders.outer[row]);
     path.points.front() = white.positions.row(row);
+    if (borders.outer[row] < -voxel) path.end = TrajectoryEnd::Image;
   }
   ribbon.outside = borders.outer;
   result.image.movedWhite = moved.cwiseAbs().mean();

@@ -8,6 +8,7 @@
 #include "Explica/Core/Parallel.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "NarrowFluid.h"
+#include "OuterSearch.h"
 #include "PathProfile.h"
 
 #include <algorithm>
@@ -136,7 +137,7 @@ ImageBorders findBorders(const std::vector<Trajectory>& given, const TriangleMes
   const auto topology = geometry::buildTopology(white.faces, white.vertexCount());
   const double step = options.reach * voxel / kSide;
   ImageBorders borders;
-  borders.white = Eigen::VectorXd::Zero(white.vertexCount());
+  borders.white = borders.outer = Eigen::VectorXd::Zero(white.vertexCount());
   std::vector<Trajectory> paths = given;
   if (options.search) {
     borders.white = searchWhite(given, topology, image, voxel);
@@ -144,6 +145,14 @@ ImageBorders findBorders(const std::vector<Trajectory>& given, const TriangleMes
       if (paths[v].end == TrajectoryEnd::NoRibbon) return;
       paths[v] = between(given[v], borders.white[static_cast<Eigen::Index>(v)], given[v].length());
     });
+    borders.outer = searchOuter(paths, topology, meanEdge(white), image, voxel,
+                                brightnessOf(paths, image, voxel).sign);
+    for (std::size_t v = 0; v < paths.size(); ++v) {
+      const double way = borders.outer[static_cast<Eigen::Index>(v)];
+      if (way == 0) continue;
+      paths[v] = between(paths[v], 0, paths[v].length() + way);
+      paths[v].end = TrajectoryEnd::Outer;
+    }
   }
   const Tissues tissues = brightnessOf(paths, image, voxel);
   for (const bool outer : {false, true}) {
@@ -165,7 +174,7 @@ ImageBorders findBorders(const std::vector<Trajectory>& given, const TriangleMes
         missesOf(paths, outer, image, step, tissues.sign, edge, options.flat), std::move(choices),
         topology, step, voxel, chosen.costs);
     if (outer) {
-      borders.outer = chooser.choose(options.rounds);
+      borders.outer += chooser.choose(options.rounds);
       borders.missingOuter = chooser.missing();
     } else {
       borders.white += chooser.choose(options.rounds);

@@ -87,4 +87,23 @@ Eigen::MatrixXd averaged(Eigen::MatrixXd values, const geometry::MeshTopology& t
   return values;
 }
 
+int timesFor(double deviation, double edge) {
+  constexpr double kVariance = 3.0 / 7;  // of one time, in squared edges
+  constexpr double kMost = 400;          // a window of 13 edges; wider ones say nothing more
+  if (!(edge > 0)) return 1;
+  return static_cast<int>(
+      std::clamp(std::round(deviation * deviation / (kVariance * edge * edge)), 1.0, kMost));
+}
+
+double meanEdge(const TriangleMesh& mesh) {
+  double sum = 0;
+  for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
+    for (int c = 0; c < 3; ++c) {
+      sum += (mesh.positions.row(mesh.faces(f, c)) - mesh.positions.row(mesh.faces(f, (c + 1) % 3)))
+                 .norm();
+    }
+  }
+  return mesh.faceCount() > 0 ? sum / (3 * static_cast<double>(mesh.faceCount())) : 0;
+}
+
 }  // namespace explica::surface

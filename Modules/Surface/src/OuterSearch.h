@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Core/Volume.h"
+#include "Explica/Geometry/MeshTopology.h"
+#include "RibbonField.h"
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace explica::surface {
+
+/// How far the outer border is searched inward; lengths in voxels.
+struct OuterSearchOptions {
+  double farthest = 2;    ///< what lies no deeper than that is left to the border's choice by level
+  double beyond = 2;      ///< how far outside of the border the darkest is looked for
+  double greySpread = 4;  ///< deviation of the neighbourhood whose grey matter is taken together
+  double flat = 0.3;      ///< share of the usual contrast below which there is no edge
+};
+
+/// Ways to where cortex ends, inward from a start that may lie in other tissue: dura, the wall of a
+/// sinus and muscle are as bright as grey matter's class, so that brightness voxel by voxel puts
+/// the border beyond them.
+///
+/// Cortex has the brightness of the cortex around.  So grey matter is looked at no deeper than a
+/// cortex is usually thick, and averaged over a neighbourhood; a trajectory that is darker than
+/// half way from there to the darkest that it reaches, and stays so for more than a voxel before it
+/// ends, has left the cortex where it became so.  Medians of a vertex and two rings tell noise from
+/// that.
+/// @param paths  from the white border
+/// @param sign   1 if white matter is brighter than grey matter, else -1
+/// @return per vertex, mm outward along the trajectory from its end: 0 or less
+[[nodiscard]] Eigen::VectorXd searchOuter(const std::vector<Trajectory>& paths,
+                                          const geometry::MeshTopology& topology, double edge,
+                                          const Volume<float>& image, double voxel, double sign,
+                                          const OuterSearchOptions& options = {});
+
+}  // namespace explica::surface
