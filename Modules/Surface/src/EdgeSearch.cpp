@@ -41,21 +41,22 @@ Usual usualBrightness(const std::vector<Trajectory>& paths, const Volume<float>&
 
 class Search {
  public:
-  Search(const std::vector<Trajectory>& paths, const geometry::MeshTopology& topology,
+  Search(const std::vector<Trajectory>& paths, const geometry::MeshTopology& topology, double edge,
          const Volume<float>& image, double voxel, const EdgeSearchOptions& options)
       : paths_(paths),
         topology_(topology),
         image_(image),
         voxel_(voxel),
         options_(options),
+        times_(timesFor(options.spread * voxel, edge)),
         usual_(usualBrightness(paths, image, voxel)),
         way_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(paths.size()))),
         first_(-static_cast<int>(std::lround(options.inward / kFine)) - kSmooth),
         count_(static_cast<int>(std::lround(options.outward / kFine)) + kSmooth - first_ + 1) {}
 
   void improve() {
-    const Eigen::VectorXd level = averaged(
-        levelsOf(averaged(profiles(), topology_, options_.spread)), topology_, options_.spread);
+    const Eigen::VectorXd level =
+        averaged(levelsOf(averaged(profiles(), topology_, times_)), topology_, times_);
     const double step = voxel_ / kSide;
     std::vector<Profile> misses(paths_.size());
     std::vector<Choice> choices(paths_.size());
@@ -139,6 +140,7 @@ class Search {
   const Volume<float>& image_;
   double voxel_;
   EdgeSearchOptions options_;
+  int times_;  ///< that profiles are averaged over neighbours
   Usual usual_;
   Eigen::VectorXd way_;
   int first_, count_;
@@ -147,9 +149,10 @@ class Search {
 }  // namespace
 
 Eigen::VectorXd searchWhite(const std::vector<Trajectory>& paths,
-                            const geometry::MeshTopology& topology, const Volume<float>& image,
-                            double voxel, const EdgeSearchOptions& options) {
-  Search search(paths, topology, image, voxel, options);
+                            const geometry::MeshTopology& topology, double edge,
+                            const Volume<float>& image, double voxel,
+                            const EdgeSearchOptions& options) {
+  Search search(paths, topology, edge, image, voxel, options);
   for (int pass = 0; pass < options.passes; ++pass) search.improve();
   return search.way();
 }

@@ -17,7 +17,7 @@ struct EdgeSearchOptions {
   double inward = 3.5;   ///< as far as one level for a whole neighbourhood errs in cortex that
                          ///< myelin makes nearly as bright as white matter
   double outward = 1.5;  ///< and never beyond half of the ribbon: the next edge is the outer one's
-  int spread = 3;        ///< times that profiles are averaged over neighbours, against noise
+  double spread = 1.3;   ///< deviation of the window in which profiles are averaged
   int passes = 6;        ///< each may move the border by a voxel
   double likely = 1.5;   ///< of two edges alike the nearer one is meant: deviation of a Gaussian
   double centring = 0.05;  ///< see ChoiceCosts; the start says little
@@ -35,9 +35,10 @@ struct EdgeSearchOptions {
 /// mean of its neighbours', aligned at where the border is held to be, and again once it has moved.
 /// What is darker than the usual middle of the ribbon is no border of white matter.  The brightness
 /// there, averaged, is the level at which each vertex's own profile is then cut.
+/// @param edge  mean length of the edges, mm
 /// @return per vertex, mm outward along the trajectory
 [[nodiscard]] Eigen::VectorXd searchWhite(const std::vector<Trajectory>& paths,
-                                          const geometry::MeshTopology& topology,
+                                          const geometry::MeshTopology& topology, double edge,
                                           const Volume<float>& image, double voxel,
                                           const EdgeSearchOptions& options = {});
 

@@ -30,8 +30,8 @@ constexpr std::array kWhiteDepths = {1.5, 2.0, 2.5};
 constexpr std::array kGreyShares = {0.4, 0.5, 0.6};
 constexpr double kOutsideReach = 2;
 constexpr int kOutsideSamples = 9;
-/// Fluid is as bright as white matter around says: times that this is averaged over neighbours.
-constexpr int kFluidSpread = 30;
+/// Fluid is as bright as white matter around says: deviation of the window, voxels.
+constexpr double kFluidSpread = 4.1;
 
 /// Brightness of the tissues along each trajectory, averaged over neighbours; NaN where there is no
 /// ribbon or no image.
@@ -136,16 +136,20 @@ ImageBorders findBorders(const std::vector<Trajectory>& given, const TriangleMes
                          const ImageBorderOptions& options) {
   const auto topology = geometry::buildTopology(white.faces, white.vertexCount());
   const double step = options.reach * voxel / kSide;
+  const double edgeLength = meanEdge(white);
+  const auto over = [&](const Eigen::VectorXd& values, double spread) -> Eigen::VectorXd {
+    return averaged(values, topology, timesFor(spread * voxel, edgeLength));
+  };
   ImageBorders borders;
   borders.white = borders.outer = Eigen::VectorXd::Zero(white.vertexCount());
   std::vector<Trajectory> paths = given;
   if (options.search) {
-    borders.white = searchWhite(given, topology, image, voxel);
+    borders.white = searchWhite(given, topology, edgeLength, image, voxel);
     parallelFor(paths.size(), 256, [&](std::size_t v) {
       if (paths[v].end == TrajectoryEnd::NoRibbon) return;
       paths[v] = between(given[v], borders.white[static_cast<Eigen::Index>(v)], given[v].length());
     });
-    borders.outer = searchOuter(paths, topology, meanEdge(white), image, voxel,
+    borders.outer = searchOuter(paths, topology, edgeLength, image, voxel,
                                 brightnessOf(paths, image, voxel).sign);
     for (std::size_t v = 0; v < paths.size(); ++v) {
       const double way = borders.outer[static_cast<Eigen::Index>(v)];
@@ -159,14 +163,11 @@ ImageBorders findBorders(const std::vector<Trajectory>& given, const TriangleMes
     const bool besideFluid = outer && options.fluid > 0;
     const EdgeOptions& chosen =
         besideFluid ? options.besideFluid : (outer ? options.outer : options.white);
-    const Eigen::VectorXd inside =
-        averaged(outer ? tissues.grey : tissues.white, topology, chosen.spread);
-    const Eigen::VectorXd outside =
-        averaged(outer ? tissues.outside : tissues.grey, topology, chosen.spread);
+    const Eigen::VectorXd inside = over(outer ? tissues.grey : tissues.white, chosen.spread);
+    const Eigen::VectorXd outside = over(outer ? tissues.outside : tissues.grey, chosen.spread);
     const Edge edge =
         besideFluid
-            ? edgeBesideFluid(inside, outside,
-                              options.fluid * averaged(tissues.white, topology, kFluidSpread))
+            ? edgeBesideFluid(inside, outside, options.fluid * over(tissues.white, kFluidSpread))
             : edgeBetween(inside, outside, chosen.level);
     std::vector<Choice> choices(paths.size());
     for (std::size_t v = 0; v < paths.size(); ++v) choices[v] = choiceOn(paths[v], outer, step);

@@ -16,16 +16,16 @@ namespace explica::surface {
 
 /// How one border is looked for; lengths in voxels of the labels.
 struct EdgeOptions {
-  double level = 0.5;  ///< brightness of the border, from 0, outside, to 1, inside of it
-  int spread = 5;      ///< times that brightness of tissue is averaged over neighbours
+  double level = 0.5;   ///< brightness of the border, from 0, outside, to 1, inside of it
+  double spread = 1.7;  ///< deviation of the window in which brightness of tissue is averaged
   ChoiceCosts costs = {0.5, 0.1};  ///< beside squared shares of the contrast
 };
 
 struct ImageBorderOptions {
   EdgeOptions white = {};
-  EdgeOptions outer = {0.45, 30, {0.2, 0.3}};
-  EdgeOptions besideFluid = {0.5, 10, {0.2, 0.3}};  ///< outer, if `fluid` is known: its level then
-                                                    ///< comes of how dark the sulcus is
+  EdgeOptions outer = {0.45, 4.1, {0.2, 0.3}};
+  EdgeOptions besideFluid = {0.5, 2.4, {0.2, 0.3}};  ///< outer, if `fluid` is known: its level then
+                                                     ///< comes of how dark the sulcus is
   double reach = 1;     ///< farthest that a border may lie from that of the labels
   double flat = 0.3;    ///< share of the usual contrast below which an edge is missing
   int rounds = 15;      ///< of weighing a vertex's edge against its neighbours
