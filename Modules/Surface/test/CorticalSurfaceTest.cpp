@@ -18,6 +18,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <random>
 
 namespace explica::surface {
 namespace {
@@ -344,6 +345,47 @@ TEST(CorticalSurface, AWhiteBorderThatOneBrightnessPutIntoBrightCortexIsFound) {
   EXPECT_LT(found[1], 0.2);
   tissue.byBrightness = false;  // labels are right to a voxel
   EXPECT_GT(errors()[0], 0.7);
+}
+
+TEST(CorticalSurface, AnOuterBorderBeyondASinussWallIsFound) {
+  // Upwards, a wall as bright as dark grey matter lies on the cortex, 5 mm thick, with cerebellum
+  // beyond, and the shares take the wall for tissue.
+  const auto covered = [](const Point& p) {
+    const double x = std::clamp(4 * p.z() / p.norm() - 2, 0.0, 1.0);
+    return x * x * (3 - 2 * x);
+  };
+  const Grid grid = lattice(54, Vector::Constant(1));
+  std::mt19937 generator(1);
+  std::normal_distribution<double> noise(0, 2);
+  const auto image = volumeOf(grid, [&](const Point& p) {
+    const auto step = [](double x) { return 0.5 * (1 + std::erf(x / (0.6 * std::sqrt(2.0)))); };
+    const double r = p.norm(), wall = 20 + 40 * covered(p) + 20 * covered(p) * step(r - 21);
+    return static_cast<float>(wall + (85 - wall) * step(17 - r) + 25 * step(14 - r) +
+                              noise(generator));
+  });
+  CorticalTissue tissue = tissueFromShares(
+      volumeOf(grid, [&](const Point& p) { return shareOf(p, 14, 4); }),
+      volumeOf(grid, [&](const Point& p) { return shareOf(p, 17 + 5 * covered(p), 4); }));
+  SurfaceOptions options;
+  options.faces = 6000;
+  const auto errors = [&] {  // mean distance from the border: under the wall, elsewhere
+    const auto made = buildSurfaces(tissue, image, options);
+    expectSound(made.pial);
+    std::array<double, 2> sum = {}, count = {};
+    for (Eigen::Index v = 0; v < made.pial.vertexCount(); ++v) {
+      const Point p = made.pial.positions.row(v);
+      if (covered(p) > 0 && covered(p) < 1) continue;
+      const int where = covered(p) > 0 ? 0 : 1;
+      sum[where] += std::abs(p.norm() - 17);
+      count[where] += 1;
+    }
+    return std::array{sum[0] / count[0], sum[1] / count[1]};
+  };
+  const auto found = errors();
+  EXPECT_LT(found[0], 0.7);
+  EXPECT_LT(found[1], 0.2);
+  tissue.byBrightness = false;
+  EXPECT_GT(errors()[0], 3);
 }
 
 TEST(CorticalSurface, AnImageWithoutEdgesLeavesTheLabelsBorders) {
