@@ -21,6 +21,7 @@
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
+#include <iomanip>
 #include <sstream>
 
 namespace explica::app {
@@ -170,7 +171,8 @@ Volume<float> within(Volume<float> image, const Volume<Label>& mask) {
 struct Head {
   Volume<Label> mask;          ///< empty: the brain is where the image is above 0
   std::optional<Atlas> atlas;  ///< nothing: hemispheres cannot be told
-  Volume<float> expected;      ///< the template's T1 without skull; empty without a template
+  Volume<float> expected;      ///< the template's T1 without skull, brought affinely; empty
+                               ///< without a template
   double brainShare = 1;       ///< volume of the template's brain over that of a human one
 };
 
@@ -241,7 +243,9 @@ Head fitTemplate(Context& context, Judge& judge, const Settings& s, const Loaded
   judge.flag("half-head", halves);
   head.atlas =
       Atlas{registration::pulled(loaded.volumes.atlas, found.transform, image.grid), loaded.legend};
-  head.expected = registration::pulled(loaded.volumes.brain, found.transform, image.grid);
+  registration::HeadTransform placed;
+  placed.affine = found.transform.affine;
+  head.expected = registration::pulled(loaded.volumes.brain, placed, image.grid);
   writeTemplate(context, boxes, *head.atlas, loaded.stem, found.transform);
   return head;
 }
@@ -298,19 +302,26 @@ void judgeTissue(Context& context, Judge& judge, const segmentation::TissueSegme
   judge.flag("white-share", tissue.classes[2].share);
 }
 
-/// Where template and image show different tissues in spite of the deformation, the image is
-/// believed, and the reader told.
+/// Where template and image show different tissues, the image is believed, and the reader told.
 void compareWithTemplate(Context& context, const segmentation::TissueSegmentation& tissue,
                          const Head& head) {
   if (head.expected.size() == 0 || tissue.termination == Termination::Interrupted) return;
   const auto found = segmentation::whiteDisagreement(tissue.labels, head.expected);
   context.result("template_white_not_white_share", found.share);
   context.result("template_white_not_white_ml", found.largest / 1000);
+  context.result("template_white_not_white_radius", found.deepest);
+  if (found.voxels > 0) {
+    context.result("template_white_not_white_at",
+                   nlohmann::ordered_json{found.middle.x(), found.middle.y(), found.middle.z()});
+  }
+  std::ostringstream sentence;
+  sentence << std::fixed << std::setprecision(0) << found.voxels << " voxels around "
+           << found.middle.x() << ", " << found.middle.y() << ", " << found.middle.z()
+           << " mm are deep white matter in the template and other tissue in the image, which is "
+              "believed: a lesion, wide ventricles, or a template in the wrong place; look at "
+              "seg.nii.gz there";
   context.doubt(provenance::kWhiteUnlikeTemplate, static_cast<std::size_t>(found.voxels),
-                std::to_string(found.voxels) +
-                    " voxels are deep white matter in the template and other tissue in the image, "
-                    "which is believed: a lesion, wide ventricles, or a template in the wrong "
-                    "place; look at seg.nii.gz there");
+                sentence.str());
 }
 
 segmentation::TissueSegmentation findTissue(Context& context, const Settings& s,

@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace explica::segmentation {
 namespace {
 
@@ -40,6 +42,8 @@ TEST(Disagreement, IsTheLesionsVolume) {
     EXPECT_NEAR(found.largest, 4.0 / 3 * kPi * 216, 30);
     EXPECT_GT(found.share, 0.05);
     EXPECT_EQ(static_cast<double>(found.voxels), found.largest);
+    EXPECT_NEAR(found.deepest, 6, 1);
+    EXPECT_LT((found.middle - Point(5, 0, 0)).norm(), 1.5);
     const Head small = makeHead(3, tissue);  // 0.1 ml
     EXPECT_EQ(whiteDisagreement(small.tissues, small.expected).voxels, 0);
   }
@@ -55,6 +59,19 @@ TEST(Disagreement, ABorderThatIsOffByAVoxelOrTwoDoesNotCount) {
   const Disagreement found = whiteDisagreement(head.tissues, head.expected);
   EXPECT_EQ(found.largest, 0);
   EXPECT_EQ(found.share, 0);
+}
+
+TEST(Disagreement, WhatIsThinnerThanALesionDoesNotCount) {
+  Head head = makeHead(0, kCsf);
+  for (std::size_t v = 0; v < head.tissues.size(); ++v) {
+    const auto [i, j, k] = head.tissues.grid.subscripts(v);
+    const Point at = head.tissues.grid.toWorld(Vector(i, j, k));
+    if (head.tissues[v] == kWhite && std::abs(at.x()) < 3.5) head.tissues[v] = kCsf;
+  }
+  const Disagreement found = whiteDisagreement(head.tissues, head.expected);
+  EXPECT_GT(found.largest, 2000);
+  EXPECT_LT(found.deepest, 5);
+  EXPECT_EQ(found.voxels, 0);
 }
 
 TEST(Disagreement, VolumesMustShareAGrid) {

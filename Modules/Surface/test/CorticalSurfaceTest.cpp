@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <optional>
 #include <random>
 
@@ -386,6 +387,56 @@ TEST(CorticalSurface, AnOuterBorderBeyondASinussWallIsFound) {
   EXPECT_LT(found[1], 0.2);
   tissue.byBrightness = false;
   EXPECT_GT(errors()[0], 3);
+}
+
+/// Mean over a voxel of what is at its points.
+template <class At>
+float meanOver(const Grid& grid, const Point& middle, const At& at) {
+  constexpr int kPoints = 4;
+  double sum = 0;
+  for (int n = 0; n < kPoints * kPoints * kPoints; ++n) {
+    const Vector part(n % kPoints, n / kPoints % kPoints, n / (kPoints * kPoints));
+    const Vector off = (part.array() + 0.5) / kPoints - 0.5;
+    sum += at(Point(middle + grid.direction * off.cwiseProduct(grid.spacing)).norm());
+  }
+  return static_cast<float>(sum / (kPoints * kPoints * kPoints));
+}
+
+TEST(CorticalSurface, TheBorderBesideNarrowFluidIsRightOnVoxelsOfAnyShape) {
+  // White matter, cortex, fluid, dura and fluid, as voxels of a scanner take their mean.
+  constexpr double kInner = 14, kOuter = 17, kFluid = 35, kWhite = 115;
+  for (const Vector& spacing : {Vector(0.8, 0.8, 0.8), Vector(1, 1, 2)}) {
+    Grid grid = lattice(1, spacing);
+    for (int a = 0; a < 3; ++a) grid.size[a] = static_cast<int>(44 / spacing[a]) + 1;
+    const Vector last = Vector(grid.size[0], grid.size[1], grid.size[2]) - Vector::Ones();
+    grid.origin = -(grid.direction * (0.5 * last.cwiseProduct(spacing)));
+    const auto image = volumeOf(grid, [&](const Point& p) {
+      return meanOver(grid, p, [&](double r) {
+        if (r < kInner) return kWhite;
+        if (r < kOuter) return 80.0;
+        return r > kOuter + 1 && r < kOuter + 2 ? 70.0 : kFluid;
+      });
+    });
+    const auto within = [&](double border) {
+      return volumeOf(grid, [&](const Point& p) {
+        return meanOver(grid, p, [&](double r) { return r < border ? 1.0 : 0.0; });
+      });
+    };
+    SurfaceOptions options;
+    options.faces = 3000;
+    options.fluid = kFluid / kWhite;
+    const CorticalTissue tissue = tissueFromShares(within(kInner), within(kOuter));
+    const auto made = buildSurfaces(tissue, image, options);
+    const double known = (made.pial.positions.rowwise().norm().array() - kOuter).mean();
+    options.fluid = 0;
+    const auto other = buildSurfaces(tissue, image, options);
+    const double unknown = (other.pial.positions.rowwise().norm().array() - kOuter).mean();
+    std::printf("voxels %g x %g x %g: %+.3f mm, %+.3f without fluid's brightness\n", spacing[0],
+                spacing[1], spacing[2], known, unknown);
+    EXPECT_LT(std::abs(known), 0.1) << spacing.transpose();
+    EXPECT_LT(unknown, known - 0.02) << spacing.transpose();
+    EXPECT_LT(std::abs(made.white.mesh.positions.rowwise().norm().mean() - kInner), 0.1);
+  }
 }
 
 TEST(CorticalSurface, AnImageWithoutEdgesLeavesTheLabelsBorders) {
