@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kFine = 0.25;  // voxels from place to place of a profile
 constexpr double kLong = 1.5;   // of the usual length
+/// Of the usual depth: the middle, clear of both borders.
 constexpr std::array kGreyShares = {0.4, 0.5, 0.6};
 
 double usualLength(const std::vector<Trajectory>& paths) {

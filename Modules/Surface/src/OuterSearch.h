@@ -30,6 +30,7 @@ struct OuterSearchOptions {
 /// ends, has left the cortex where it became so.  Medians of a vertex and two rings tell noise from
 /// that.
 /// @param paths  from the white border
+/// @param edge   mean length of the edges, mm
 /// @param sign   1 if white matter is brighter than grey matter, else -1
 /// @return per vertex, mm outward along the trajectory from its end: 0 or less
 [[nodiscard]] Eigen::VectorXd searchOuter(const std::vector<Trajectory>& paths,
