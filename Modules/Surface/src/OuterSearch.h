@@ -26,9 +26,8 @@ struct OuterSearchOptions {
 ///
 /// Cortex has the brightness of the cortex around.  So grey matter is looked at no deeper than a
 /// cortex is usually thick, and averaged over a neighbourhood; a trajectory that is darker than
-/// half way from there to the darkest that it reaches, and stays so for more than a voxel before it
-/// ends, has left the cortex where it became so.  Medians of a vertex and two rings tell noise from
-/// that.
+/// half way from there to the first darkest that it reaches has left the cortex there, if that is
+/// more than two voxels before its end.  Medians of a vertex and two rings tell noise from that.
 /// @param paths  from the white border
 /// @param edge   mean length of the edges, mm
 /// @param sign   1 if white matter is brighter than grey matter, else -1
