@@ -53,7 +53,7 @@ A run that is stopped holds the surfaces that it has measured, the first at any 
               Field{"pairs", "", "pairs of vertices in each of the two groups", 0, 1e8},
               s.distances.pairs)
       .option("Distances",
-              Field{"sources", "", "vertices from which the pairs are counted", 0, 1e6},
+              Field{"sources", "", "vertices from which the pairs are counted", 1, 1e6},
               s.distances.sources)
       .option("Distances", Field{"local-limit", "mm", "pairs nearer than this are 'local'"},
               s.distances.localLimit)

@@ -84,7 +84,7 @@ void declare(Declaration& d, Settings& s) {
       .option("Annulus", Field{"inner", "", "labels that a given annulus encloses"}, s.innerLabels)
       .option("Annulus", Field{"tissue", "", "labels of a given annulus itself"}, s.tissueLabels)
       .options("Fit", s.fitting)
-      .option("Output", Field{"grid", "", "voxels per side, for drawing the shape", 0, 1024},
+      .option("Output", Field{"grid", "", "voxels per side, for drawing the shape", 16, 1024},
               s.grid)
       .option("Output", Field{"frames", "", "states of the first target's fit", 0, 1000}, s.frames)
       .output("coefficients.json", FileKind::JsonFile, "the shape's coefficients")

@@ -22,7 +22,7 @@ void declare(Declaration& d, Settings& s) {
 }
 
 Termination run(Context&, const Settings& s) {
-  std::cout << provenance::printable(provenance::historyOf(s.file));
+  std::cout << provenance::historyOf(s.file);
   return Termination::NotRun;
 }
 

@@ -4,14 +4,13 @@
 #include "TemplateFiles.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/FileText.h"
 #include "Explica/IO/LabelNames.h"
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Provenance/Doubts.h"
 #include "Explica/Segmentation/Hemisphere.h"
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 namespace explica::app {
 namespace {
@@ -108,13 +107,7 @@ segmentation::AtlasLegend readAtlasLegend(Context& context, const fs::path& atla
     throw InvalidInput(atlas.string() +
                        ": no legend (.tsv or .nii.txt) beside it; name one with --atlas-legend");
   }
-  std::ifstream file(path, std::ios::binary);
-  if (!file) {
-    throw IOError(path.string() +
-                  ": cannot be opened; name the atlas's legend with --atlas-legend");
-  }
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
-  return segmentation::parseAtlasLegend(text, path.string());
+  return segmentation::parseAtlasLegend(fileText(path), path.string());
 }
 
 }  // namespace explica::app

@@ -123,7 +123,7 @@ void declare(Declaration& d, Settings& s) {
       .options("Correspondences", s.measurement.correspondence)
       .options("Layers", s.measurement.layers)
       .option("Layers",
-              Field{"grid", "", "write an anatomical grid with this many cells across", 0, 1000},
+              Field{"grid", "", "write an anatomical grid with this many cells across", 1, 1000},
               s.measurement.grid)
       .inputOption(
           "functions", FileKind::Volume,

@@ -16,6 +16,7 @@
 #include "Explica/IO/RegionFiles.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VertexDataFile.h"
+#include "Explica/Repulsion/KnotEnergy.h"
 #include "Explica/Unfolding/Account.h"
 #include "Explica/Unfolding/Region.h"
 
@@ -23,6 +24,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 
@@ -279,6 +281,20 @@ void keepFreedMemory() {
 #endif
 }
 
+/// Says beforehand how long the exact knot energy takes, which grows with the square of the
+/// surface.
+void sayHowLong(Context& context, const Settings& s, const Unfolded& u) {
+  if (s.unfold.unfolder.knot != repulsion::KnotMethod::AllPairs) return;
+  constexpr double kPairsPerSecond = 1.4e5;  // an iteration sums several times along its step
+  const double pairs = static_cast<double>(u.chosen.faces.size()) * u.before.faceCount();
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "knot energy, each iteration: %.2g pairs of faces, about %.0f s on one processor; "
+                "--knot tree sums it in n log n",
+                pairs, std::ceil(pairs / kPairsPerSecond));
+  context.info(text);
+}
+
 Termination run(Context& context, const Settings& s) {
   keepFreedMemory();
   const auto begin = std::chrono::steady_clock::now();
@@ -296,6 +312,7 @@ Termination run(Context& context, const Settings& s) {
   if (s.resume) checkpoint = unfolding::readCheckpoint(context.outputFolder() / kStateFile);
   u.crossings = checkStart(context, s, u.chosen, u.view, u.before);
   u.secondsStart = seconds();
+  sayHowLong(context, s, u);
   {
     auto step = context.step("unfold");
     unfolding::UnfoldOptions options = s.unfold;

@@ -66,23 +66,29 @@ TEST_P(KillsAndDisks, AKillLeavesWholeFilesAndTheRerunGivesTheSameBytes) {
 }
 
 TEST_P(KillsAndDisks, ARequestToEndLeavesAVerifiedFolderOrNone) {
-  CommandSetting setting;
-  setting.signal = SIGTERM;
-  for (const double seconds : {0.0, 0.03, 0.1, 0.3}) {
-    SCOPED_TRACE(seconds);
+  const auto entries = folder_.entries();
+  const std::string out = folder_ / "out";
+  const std::pair<int, double> moments[] = {{SIGTERM, 0.0},  {SIGHUP, 0.02}, {SIGQUIT, 0.03},
+                                            {SIGPIPE, 0.05}, {SIGTERM, 0.1}, {SIGHUP, 0.15},
+                                            {SIGQUIT, 0.2},  {SIGTERM, 0.3}};
+  for (const auto& [number, seconds] : moments) {
+    SCOPED_TRACE("signal " + std::to_string(number) + " after " + std::to_string(seconds) + " s");
+    CommandSetting setting;
+    setting.signal = number;
     setting.signalAfter = seconds;
-    const std::string out = folder_ / "out";
     const CommandResult ended = explica(into(out), setting);
     // A signal that comes before the program listens ends it as the system does.
-    const bool before = ended.exitCode == 128 + SIGTERM;
+    const bool before = ended.exitCode == 128 + number;
     EXPECT_TRUE(before || ended.exitCode == 0 || ended.exitCode == 3) << ended;
     if (fs::exists(out)) {
       EXPECT_EQ(explica({"verify", out}).exitCode, 0);
     } else {
       EXPECT_TRUE(before) << ended;
+      EXPECT_EQ(folder_.entries(), entries);  // neither stage nor lock
     }
     expectTheSameBytesIn(out);
     fs::remove_all(out);
+    EXPECT_EQ(folder_.entries(), entries);
   }
 }
 

@@ -74,6 +74,42 @@ TEST(Polygon, WrongStatesAreRefusedInOneSentence) {
   EXPECT_EQ(explica(words + std::vector<std::string>{"--resume"}).exitCode, 2);
 }
 
+/// A ring with waves.
+void writeWavyRing(const std::string& file, Eigen::Index vertices) {
+  Positions2 ring(vertices, 2);
+  for (Eigen::Index v = 0; v < vertices; ++v) {
+    const double t = 2 * kPi * static_cast<double>(v) / static_cast<double>(vertices);
+    ring.row(v) << std::cos(t), std::sin(t);
+    ring.row(v) *= 50 + 5 * std::sin(40 * t);
+  }
+  io::writePolygonCsv(file, ring);
+}
+
+TEST(Polygon, SaysHowLongWorkTakesThatGrowsWithTheSquare) {
+  const TemporaryFolder folder;
+  writeWavyRing(folder / "ring.csv", 6000);
+  const auto told =
+      explica({"polygon", folder / "ring.csv", "--region", "100:2900", "--direction", "0,1",
+               "--knot", "all-pairs", "--max-time", "0.001", "--out", folder / "out"});
+  EXPECT_EQ(told.exitCode, 3) << told;
+  EXPECT_NE(told.err.find("pairs of edges, about "), std::string::npos) << told;
+  EXPECT_NE(told.err.find("--knot auto or tree sums it in n log n"), std::string::npos) << told;
+}
+
+TEST(Polygon, OfFiftyThousandVerticesTakesLessThanTenSecondsOfOneProcessor) {
+  const TemporaryFolder folder;
+  writeWavyRing(folder / "ring.csv", 50000);
+  // Processor time, of which the system ends what takes more: a busy machine is no fault.
+  CommandSetting here;
+  here.directory = folder.path();
+  const auto done = runProgram({"bash", "-c",
+                                "ulimit -t 10; exec '" EXPLICA_EXECUTABLE
+                                "' polygon ring.csv --region 1000:24000 --direction 0,1 "
+                                "--max-iterations 3 --out out"},
+                               here);
+  EXPECT_EQ(done.exitCode, 3) << done;  // 137 or 152: it took longer
+}
+
 TEST(Polygon, LooksFromALine) {
   const TemporaryFolder folder;
   const auto made = explica({"polygon", "--phantom", "polygon19", "--view-line",

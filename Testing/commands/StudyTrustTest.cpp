@@ -46,6 +46,75 @@ TEST(StudyTrust, AKillAtAnyMomentLeavesWholeFilesAndTheRerunGivesTheSameBytes) {
   }
 }
 
+/// Whatever ends it: only what is whole, and no stage or lock of a process that is no more.
+TEST(StudyTrust, ASignalAtAnyMomentLeavesNeitherStageNorLock) {
+  const TemporaryFolder folder;
+  const SmallStudy study(folder.path(), {"01"});
+  ASSERT_EQ(explica(study.participants(folder / "undisturbed")).exitCode, 0);
+  const Hashes expected = stableHashes(folder / "undisturbed");
+  const std::pair<int, double> moments[] = {{SIGHUP, 0.05}, {SIGQUIT, 0.1}, {SIGPIPE, 0.2},
+                                            {SIGTERM, 0.3}, {SIGHUP, 0.4},  {SIGQUIT, 0.6}};
+  for (const auto& [number, seconds] : moments) {
+    SCOPED_TRACE("signal " + std::to_string(number) + " after " + std::to_string(seconds) + " s");
+    CommandSetting setting;
+    setting.signal = number;
+    setting.signalAfter = seconds;
+    const CommandResult ended = explica(study.participants(study.out()), setting);
+    EXPECT_TRUE(ended.exitCode == 0 || ended.exitCode == 3 || ended.exitCode == 128 + number)
+        << ended;
+    for (const std::string& name : folder.entries()) {
+      EXPECT_EQ(name.find("explica-stage"), std::string::npos) << name;
+      EXPECT_EQ(name.find("explica-lock"), std::string::npos) << name;
+    }
+    ASSERT_EQ(explica(study.participants(study.out())).exitCode, 0);
+    EXPECT_EQ(differences(stableHashes(study.out()), expected), std::vector<std::string>());
+    fs::remove_all(study.out());
+  }
+}
+
+/// The commands that KillsAndDisks does not try: of many runs, of records, of pages and pictures.
+TEST(StudyTrust, LimitsHoldForCommandsOfManyRunsRecordsAndPictures) {
+  const TemporaryFolder folder;
+  const SmallStudy study(folder.path(), {"01"});
+  ASSERT_EQ(explica(study.participants(folder / "done")).exitCode, 0);
+  const std::string run = folder / "done/runs/sub-01_hemi-L", surface = run + "/surface";
+  writeText(folder / "study.json", R"({"hemispheres": ["L"], "subjects": ["01"],
+    "parameters": {"steps": ["surface"], "surface": {"faces": 1000}}, "input": ")" +
+                                       study.labels("01").string() + R"("})");
+  const std::vector<std::vector<std::string>> rows = {
+      study.participants(folder / "out"),
+      study.group(folder / "done"),
+      {"study", "check", folder / "study.json"},
+      {"study", "list", folder / "study.json"},
+      {"study", "participant", folder / "study.json", folder / "of-file"},
+      {"verify", "--deep", surface},
+      {"history", surface},
+      {"replay", surface, "--force", "--out", folder / "again"},
+      {"report", run},
+      {"view", surface + "/white.surf.gii", "--width", "64", "--height", "48", "--screenshot",
+       folder / "a.png"},
+      {"descriptors", "--force", "--out", folder / "descriptors"},
+  };
+  for (const auto& words : rows) {
+    for (const char* megabytes : {"64", "200"}) {
+      std::vector<std::string> limited = words;
+      limited.insert(limited.end(), {"--max-memory", megabytes});
+      const CommandResult ended = explica(limited);
+      EXPECT_TRUE(ended.exitCode == 0 || ended.exitCode == 3 || ended.exitCode == 4) << ended;
+      if (ended.exitCode == 4) {
+        EXPECT_NE(ended.err.find("out of memory"), std::string::npos) << ended;
+      }
+    }
+    std::vector<std::string> limited = words;
+    limited.insert(limited.end(), {"--max-time", "0.001"});
+    const CommandResult ended = explica(limited);
+    EXPECT_TRUE(ended.exitCode == 0 || ended.exitCode == 3) << words[0] << ended;
+    for (const std::string& name : folder.entries()) {
+      EXPECT_EQ(name.find("explica-stage"), std::string::npos) << name;
+    }
+  }
+}
+
 TEST(StudyTrust, AFullDiskLeavesWholeFilesAndMoreRoomGivesTheSameBytes) {
   const TemporaryFolder folder;
   const SmallStudy study(folder.path(), {"01"});

@@ -89,6 +89,16 @@ std::vector<std::string> onFoldedSphere(const TemporaryFolder& folder) {
   return {"unfold", surface, "--center", "0,0,30", "--radius", "15", "--direction", "0,0,1"};
 }
 
+TEST(UnfoldCommand, SaysHowLongTheExactKnotEnergyTakes) {
+  const TemporaryFolder folder;
+  writeFoldedSphere(folder);
+  const auto told = explica({"unfold", folder / "sphere.surf.gii", "--center", "0,0,30", "--radius",
+                             "12", "--direction", "0,0,1", "--knot", "all-pairs", "--max-time",
+                             "0.001", "--out", folder / "out"});
+  EXPECT_EQ(told.exitCode, 3) << told;
+  EXPECT_NE(told.err.find("pairs of faces, about "), std::string::npos) << told;
+}
+
 TEST(UnfoldCommand, ResumedRunsWriteTheBytesOfUninterruptedOnes) {
   const TemporaryFolder folder;
   auto words = onFoldedSphere(folder);

@@ -31,7 +31,8 @@ class Trial {
 
  private:
   const Reader& reader_;
-  std::filesystem::path folder_;
+  std::filesystem::path folder_;  ///< in memory
+  int file_ = -1;                 ///< kept open: to make a file anew takes longer than to read it
 };
 
 }  // namespace explica::fuzz

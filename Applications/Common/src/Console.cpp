@@ -108,8 +108,9 @@ void Console::error(const std::string& message) {
   line("error: ", message, true);
 }
 
-void Console::progress(double fraction, std::string_view activity) {
+void Console::progress(double fraction, std::string_view said) {
   if (!std::isfinite(fraction)) return;
+  const std::string activity = provenance::printable(said);
   fraction = std::clamp(fraction, 0.0, 1.0);
   const auto now = std::chrono::steady_clock::now();
   const int tenth = static_cast<int>(fraction * 10);
@@ -124,7 +125,7 @@ void Console::progress(double fraction, std::string_view activity) {
         const int filled = static_cast<int>(fraction * kWidth);
         std::fprintf(stderr, "\r\033[K[%s%s] %3d %%  %.*s", std::string(filled, '=').c_str(),
                      std::string(kWidth - filled, ' ').c_str(), static_cast<int>(fraction * 100),
-                     static_cast<int>(activity.size()), activity.data());
+                     static_cast<int>(activity.size()), activity.c_str());
         std::fflush(stderr);
         barShown_ = true;
         lastDrawn_ = now;
@@ -133,7 +134,7 @@ void Console::progress(double fraction, std::string_view activity) {
     if (!newActivity && tenth == lastTenth_) return;
     lastActivity_ = activity;
     lastTenth_ = tenth;
-    text = std::string(activity) + ": " + std::to_string(tenth * 10) + " %";
+    text = activity + ": " + std::to_string(tenth * 10) + " %";
   }
   if (!terminal_) {
     line("", text, level_ != Level::Quiet);

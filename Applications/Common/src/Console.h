@@ -30,7 +30,7 @@ class Console {
   void detail(const std::string& message);
   void warning(const std::string& message);
   void error(const std::string& message);
-  void progress(double fraction, std::string_view activity);
+  void progress(double fraction, std::string_view said);
   void endProgress();
 
  private:

@@ -97,9 +97,14 @@ std::string kindsText(const std::string& verb) {
   return text;
 }
 
-[[noreturn]] void refuseUnknown(const std::vector<std::string>& words, const std::string& kinds) {
-  if (!kinds.empty()) {
-    throw UsageError(words.size() > 1 ? "unknown kind '" + words[1] + "': " + kinds : kinds);
+[[noreturn]] void refuseUnknown(const std::vector<std::string>& words) {
+  if (const auto kinds = kindsOf(words[0]); !kinds.empty()) {
+    std::string names;
+    for (const Command* kind : kinds) {
+      names += (names.empty() ? "" : ", ") + kind->name().substr(words[0].size() + 1);
+    }
+    throw UsageError((words.size() > 1 ? "unknown kind '" + words[1] + "' of " : "no kind of ") +
+                     words[0] + "; kinds are " + names);
   }
   std::vector<std::string> names;
   for (const Command& candidate : allCommands()) names.push_back(candidate.name());
@@ -163,7 +168,7 @@ int runCommandLine(std::vector<std::string> words, const std::vector<std::string
   if (!command) {
     const std::string kinds = kindsText(words[0]);
     if (kinds.empty() || !(has(words, "--help") || has(words, "--help-all"))) {
-      refuseUnknown(words, kinds);
+      refuseUnknown(words);
     }
     std::cout << kinds;
     return kDone;

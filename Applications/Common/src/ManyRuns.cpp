@@ -38,8 +38,10 @@ void sayProblem(Context& context, const std::string& name, const std::filesystem
                 const std::string& why) {
   context.warn(name + ": " + why);
   std::filesystem::create_directories(folder);
-  writeTextFile(folder / "problem.txt",
-                (context.isPrivate() ? provenance::textWithoutFolders(why) : why) + "\n");
+  writeTextFile(
+      folder / "problem.txt",
+      provenance::printable(context.isPrivate() ? provenance::textWithoutFolders(why) : why) +
+          "\n");
 }
 
 std::string listed(const std::vector<std::string>& names) {

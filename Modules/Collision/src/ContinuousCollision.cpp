@@ -3,6 +3,8 @@
 
 #include "Explica/Collision/ContinuousCollision.h"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "Explica/Core/StateFile.h"
+#include "Explica/Core/FileText.h"
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/WholeFile.h"
 
 #include <cstring>
-#include <fstream>
 #include <iterator>
 
 namespace explica {
@@ -38,12 +38,16 @@ void StateWriter::commit(const std::filesystem::path& path, std::string_view mag
   file.commit();
 }
 
+constexpr std::size_t kMostState = std::size_t{16} << 30;  // bytes: of the largest surfaces
+
 StateReader::StateReader(const std::filesystem::path& path, std::string_view magic,
                          std::string what)
     : name_(path.string()), what_(std::move(what)) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw IOError(name_ + " cannot be read; nothing was left to resume from");
-  const std::string all{std::istreambuf_iterator<char>(in), {}};
+  std::error_code fault;
+  if (!std::filesystem::exists(path, fault)) {
+    throw IOError(name_ + " cannot be read; nothing was left to resume from");
+  }
+  const std::string all = fileText(path, kMostState);
   std::uint64_t sum = 0;
   if (!std::string_view(all).starts_with(magic) || all.size() < magic.size() + sizeof sum) {
     fail("has another format");

@@ -7,6 +7,8 @@
 #include "Explica/Geometry/BoundsSearch.h"
 #include "Explica/Geometry/TriangleIntersection.h"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <array>
 #include <numeric>

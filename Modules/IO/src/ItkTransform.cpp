@@ -32,6 +32,15 @@ struct Entry {
   std::vector<double> parameters, fixed;
 };
 
+constexpr std::size_t kMostTransforms = 1000;  // in a row; a pipeline's have a dozen
+
+void add(const Path& path, std::vector<Entry>& entries, Entry entry) {
+  if (entries.size() == kMostTransforms) {
+    refuse(path, "holds more than " + std::to_string(kMostTransforms) + " transforms");
+  }
+  entries.push_back(std::move(entry));
+}
+
 /// `Transform:`, `Parameters:` and `FixedParameters:`, a line each.
 std::vector<Entry> entriesOfText(const Path& path, ByteView bytes) {
   std::vector<Entry> entries;
@@ -42,7 +51,7 @@ std::vector<Entry> entriesOfText(const Path& path, ByteView bytes) {
                      false);
     const std::string_view key = words.word();
     if (key == "Transform:") {
-      entries.push_back({std::string(words.word()), {}, {}});
+      add(path, entries, {std::string(words.word()), {}, {}});
     } else if (key == "Parameters:" || key == "FixedParameters:") {
       if (entries.empty()) failToRead(path, "has parameters before any transform");
       std::vector<double>& to =
@@ -78,11 +87,12 @@ std::vector<Entry> entriesOfMatlab(const Path& path, ByteView bytes) {
     std::string word(name.begin(), name.end());
     word.resize(std::min(word.find('\0'), word.size()));
     std::vector<double> values;
+    values.reserve(rows * columns);
     for (std::size_t n = 0; n < rows * columns; ++n) {
       values.push_back(type == kDouble ? cursor.take<double>() : cursor.take<float>());
     }
     if (word != "fixed") {
-      entries.push_back({word, std::move(values), {}});
+      add(path, entries, {word, std::move(values), {}});
     } else if (!entries.empty()) {
       entries.back().fixed = std::move(values);
     }
@@ -98,6 +108,7 @@ std::vector<double> doublesOf(const Path& path, const Hdf5File& file, const std:
   const Bytes bytes = file.valuesOf(*array);
   std::vector<double> values;
   withType(array->type, [&]<class In>(const In*) {
+    values.reserve(bytes.size() / sizeof(In));
     for (std::size_t at = 0; at + sizeof(In) <= bytes.size(); at += sizeof(In)) {
       values.push_back(static_cast<double>(load<In>(bytes.data() + at, false)));
     }
@@ -120,7 +131,7 @@ std::vector<Entry> entriesOfHdf5(const Path& path, ByteView bytes) {
       entry.fixed = doublesOf(path, file, group + "TransformFixedParameters",
                               group + "TranformFixedParameters");
     }
-    entries.push_back(std::move(entry));
+    add(path, entries, std::move(entry));
   }
 }
 
@@ -180,25 +191,29 @@ Transform::Pointer transformOf(const Path& path, Entry entry) {
   }
   Transform::FixedParametersType fixed(entry.fixed.size());
   std::copy(entry.fixed.begin(), entry.fixed.end(), fixed.begin());
-  Transform::ParametersType parameters(entry.parameters.size());
-  std::copy(entry.parameters.begin(), entry.parameters.end(), parameters.begin());
+  Transform::ParametersType parameters;  // ITK takes a copy
+  parameters.SetData(entry.parameters.data(), entry.parameters.size());
   transform->SetFixedParameters(fixed);
   transform->SetParametersByValue(parameters);
   return transform;
 }
 
+std::vector<Entry> entriesOf(const Path& path) {
+  const Bytes bytes = ByteSource(path).rest();
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  if (looksLikeHdf5(bytes)) return entriesOfHdf5(path, bytes);
+  if (text.starts_with("#Insight")) return entriesOfText(path, bytes);
+  return entriesOfMatlab(path, bytes);
+}
+
 Transform::Pointer compositeOf(const Path& path) {
   static std::once_flag once;
   std::call_once(once, [] { itk::TransformFactoryBase::RegisterDefaultTransforms(); });
-  const Bytes bytes = ByteSource(path).rest();
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  const std::vector<Entry> entries = looksLikeHdf5(bytes)           ? entriesOfHdf5(path, bytes)
-                                     : text.starts_with("#Insight") ? entriesOfText(path, bytes)
-                                                                    : entriesOfMatlab(path, bytes);
   const Composite::Pointer composite = Composite::New();
-  for (const Entry& entry : entries) {
+  std::vector<Entry> entries = entriesOf(path);
+  for (Entry& entry : entries) {
     if (entry.type.starts_with("CompositeTransform")) continue;  // of those that follow
-    composite->AddTransform(transformOf(path, entry));
+    composite->AddTransform(transformOf(path, std::move(entry)));
   }
   if (composite->GetNumberOfTransforms() == 0) refuse(path, "holds no transform");
   return composite.GetPointer();

@@ -18,6 +18,7 @@
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/IO/VtkFile.h"
 #include "MincFiles.h"
+#include "RawFiles.h"
 #include "TemporaryFolder.h"
 
 #include <gtest/gtest.h>
@@ -58,20 +59,6 @@ io::LabelMap smallLabels() {
   return labels;
 }
 
-/// A chunk of a PNG file with its right checksum [ISO 15948, annex D].
-std::string pngChunk(const std::string& type, const std::string& content) {
-  const auto bigEndian = [](std::uint32_t n) {
-    return std::string{static_cast<char>(n >> 24), static_cast<char>(n >> 16),
-                       static_cast<char>(n >> 8), static_cast<char>(n)};
-  };
-  std::uint32_t sum = ~0U;
-  for (const char c : type + content) {
-    sum ^= static_cast<unsigned char>(c);
-    for (int bit = 0; bit < 8; ++bit) sum = sum >> 1 ^ (0xEDB88320U & (0U - (sum & 1U)));
-  }
-  return bigEndian(static_cast<std::uint32_t>(content.size())) + type + content + bigEndian(~sum);
-}
-
 /// A grey picture of 4 x 3 pixels with more chunks before its pixels.
 std::string pngWith(const std::string& more, char colour = 0) {
   const std::string size("\0\0\0\4\0\0\0\3\10", 9);
@@ -102,18 +89,6 @@ bool writeTextTransform(const fs::path& path) {
   if (found == texts.end()) return false;
   putContent(path, found->second);
   return true;
-}
-
-/// A matrix of Matlab's level 4, as ANTs writes its transforms: header, name, values.
-void appendMatlab(std::string& bytes, const std::string& name, const std::vector<double>& values) {
-  const auto add = [&bytes](const void* from, std::size_t count) {
-    bytes.append(static_cast<const char*>(from), count);
-  };
-  const std::int32_t header[] = {0, static_cast<std::int32_t>(values.size()), 1, 0,
-                                 static_cast<std::int32_t>(name.size()) + 1};
-  add(header, sizeof header);
-  add(name.c_str(), name.size() + 1);
-  add(values.data(), values.size() * sizeof(double));
 }
 
 /// Transforms, tables and patches; false for another name.

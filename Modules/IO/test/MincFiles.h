@@ -4,6 +4,7 @@
 
 #include <hdf5.h>
 
+#include <array>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
@@ -49,8 +50,15 @@ class NetcdfBytes {
   std::string bytes;
 };
 
+/// Slices, rows, columns.
+using MincSize = std::array<std::uint32_t, 3>;
+constexpr MincSize kSmallMinc = {2, 3, 4};
+
 /// @param spacing  MINC's word for how a dimension is divided
-inline std::string minc1Bytes(const std::string& spacing = "regular__") {
+/// @param size  others hold the same values again and again
+inline std::string minc1Bytes(const std::string& spacing = "regular__",
+                              const MincSize& size = kSmallMinc) {
+  const std::uint32_t count = size[0] * size[1] * size[2];
   NetcdfBytes out;
   constexpr std::uint32_t kDimensions = 10, kVariables = 11, kAttributes = 12;
   constexpr std::uint32_t kShort = 3, kInt = 4, kDouble = 6;
@@ -60,9 +68,9 @@ inline std::string minc1Bytes(const std::string& spacing = "regular__") {
     out.bytes = std::string("CDF\1", 4);
     out.number(0);
     out.list(kDimensions, 3);
-    for (const auto& [name, size] : {std::pair{"zspace", 2U}, {"yspace", 3U}, {"xspace", 4U}}) {
+    for (const auto& [name, axis] : {std::pair{"zspace", 0}, {"yspace", 1}, {"xspace", 2}}) {
       out.text(name);
-      out.number(size);
+      out.number(size[axis]);
     }
     out.list(kAttributes, 0);
     out.list(kVariables, 6);
@@ -71,9 +79,9 @@ inline std::string minc1Bytes(const std::string& spacing = "regular__") {
       out.number(static_cast<std::uint32_t>(over.size()));
       for (const std::uint32_t dimension : over) out.number(dimension);
     };
-    const auto place = [&](std::uint32_t type, std::uint32_t size, std::uint32_t offset) {
+    const auto place = [&](std::uint32_t type, std::uint32_t bytes, std::uint32_t offset) {
       out.number(type);
-      out.number(size);
+      out.number(bytes);
       out.number(begin + offset);
     };
     const auto dimension = [&](const std::string& name, double start, double step,
@@ -91,26 +99,27 @@ inline std::string minc1Bytes(const std::string& spacing = "regular__") {
     dimension("xspace", 30, 1.5, {0.8, 0.6, 0});
     variable("image-max", {0});
     out.list(kAttributes, 0);
-    place(kDouble, 16, 8);
+    place(kDouble, 8 * size[0], 8);
     variable("image-min", {0});
     out.list(kAttributes, 0);
-    place(kDouble, 16, 24);
+    place(kDouble, 8 * size[0], 8 + 8 * size[0]);
     variable("image", {0, 1, 2});
     out.list(kAttributes, 2);
     out.numbers("valid_range", {0, 100});
     out.words("signtype", "signed__");
-    place(kShort, 48, 40);
+    place(kShort, 2 * count, 8 + 16 * size[0]);
     begin = static_cast<std::uint32_t>(out.bytes.size());
   }
   out.bytes += std::string(8, '\0');
-  for (const double most : {50.0, 110.0}) out.real(most);
-  for (const double least : {0.0, 10.0}) out.real(least);
-  for (int n = 0; n < 24; ++n) out.bytes += {static_cast<char>(n >> 8), static_cast<char>(n)};
+  for (std::uint32_t z = 0; z < size[0]; ++z) out.real(z % 2 == 0 ? 50 : 110);
+  for (std::uint32_t z = 0; z < size[0]; ++z) out.real(z % 2 == 0 ? 0 : 10);
+  for (std::uint32_t n = 0; n < count; ++n) out.bytes += {'\0', static_cast<char>(n % 24)};
   return out.bytes;
 }
 
 /// @param packed  in chunks, by deflate after a shuffle; else one piece
-inline void writeMinc2(const std::filesystem::path& path, bool packed = true) {
+inline void writeMinc2(const std::filesystem::path& path, bool packed = true,
+                       const MincSize& dimensions = kSmallMinc) {
   const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
   const auto group = [&](const char* name) {
     H5Gclose(H5Gcreate2(file, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
@@ -169,13 +178,21 @@ inline void writeMinc2(const std::filesystem::path& path, bool packed = true) {
     H5Pclose(how);
     H5Sclose(space);
   };
-  std::int16_t image[24];
-  for (std::int16_t n = 0; n < 24; ++n) image[n] = n;
-  const double most[] = {50, 110}, least[] = {0, 10};
+  const hsize_t slices = dimensions[0], rows = dimensions[1], columns = dimensions[2];
+  std::vector<std::int16_t> image(slices * rows * columns);
+  for (std::size_t n = 0; n < image.size(); ++n) image[n] = static_cast<std::int16_t>(n % 24);
+  std::vector<double> most(slices), least(slices);
+  for (std::size_t z = 0; z < slices; ++z) {
+    most[z] = z % 2 == 0 ? 50 : 110;
+    least[z] = z % 2 == 0 ? 0 : 10;
+  }
   // Chunks of other lengths than the image's: the last ones run over its edge.
-  array("/minc-2.0/image/0/image", H5T_STD_I16LE, H5T_NATIVE_SHORT, image, {2, 3, 4},
-        packed ? std::vector<hsize_t>{1, 2, 3} : std::vector<hsize_t>{});
-  array("/minc-2.0/image/0/image-max", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, most, {2}, {});
-  array("/minc-2.0/image/0/image-min", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, least, {2}, {});
+  const std::vector<hsize_t> chunk = {slices / 2, rows * 2 / 3, columns * 3 / 4};
+  array("/minc-2.0/image/0/image", H5T_STD_I16LE, H5T_NATIVE_SHORT, image.data(),
+        {slices, rows, columns}, packed ? chunk : std::vector<hsize_t>{});
+  array("/minc-2.0/image/0/image-max", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, most.data(), {slices},
+        {});
+  array("/minc-2.0/image/0/image-min", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, least.data(), {slices},
+        {});
   H5Fclose(file);
 }

@@ -9,11 +9,16 @@
 #include "Explica/Geometry/Fixtures.h"
 #include "Explica/IO/CiftiFile.h"
 #include "Explica/IO/LabelNames.h"
+#include "Explica/IO/PatchFile.h"
 #include "Explica/IO/PointTableFile.h"
+#include "Explica/IO/PointTransformFile.h"
 #include "Explica/IO/PolygonFile.h"
 #include "Explica/IO/SurfaceFile.h"
+#include "Explica/IO/TransformFile.h"
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/IO/VolumeFile.h"
+#include "MincFiles.h"
+#include "RawFiles.h"
 #include "TemporaryFolder.h"
 
 #include <gtest/gtest.h>
@@ -25,6 +30,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <functional>
+#include <numeric>
 #include <string>
 
 namespace {
@@ -117,6 +123,22 @@ std::size_t points(const fs::path& path) {
   return bytesOf(table.places) + sizeof(std::string) * table.rows.size();
 }
 
+/// A transform hands out no array: its file's own bytes justify what it takes.
+std::size_t transform(const fs::path& path) {
+  io::TransformSides sides;
+  sides.volume.size = {40, 40, 40};
+  sides.scannerFromTkr = Eigen::Matrix4d::Identity();
+  return io::readPointTransform(path, sides).map(Point(1, 2, 3)).allFinite() ? 1 : 0;
+}
+constexpr int kFieldSize = 120;  // places of a displacement field along each axis
+std::size_t fieldTransform(const fs::path& path) {
+  constexpr std::size_t kPlaces = std::size_t{kFieldSize} * kFieldSize * kFieldSize;
+  return transform(path) * 3 * sizeof(double) * kPlaces;
+}
+std::size_t patch(const fs::path& path) {
+  return bytesOf(io::readPatch(path).positions);
+}
+
 Volume<float> volumeOf(int size) {
   Grid grid;
   grid.size = {size, size, size};
@@ -133,6 +155,11 @@ void repeated(const fs::path& path, const std::string& head, const std::string& 
   for (int n = 0; n < 1000; ++n) block += piece;
   for (std::size_t n = 0; n < count / 1000; ++n) file << block;
   file << tail;
+}
+
+/// The lattice of a spline of 100 x 100 x 100 weights: size, origin, spacing, directions.
+std::vector<double> splineGrid() {
+  return {100, 100, 100, 0, 0, 0, 1, 1, 1, 1, 0, 0, 0, 1, 0, 0, 0, 1};
 }
 
 struct Row {
@@ -178,35 +205,89 @@ std::vector<Row> honest() {
     if (path.extension() == ".csv") io::writePolygonCsv(path, polygon, {});
     if (path.extension() == ".vtp") io::writePolygonVtp(path, polygon, {}, {});
   };
-  return {{"NiftiVolume", "a.nii", volume, scalars},
-          {"PackedNiftiVolume", "a.nii.gz", volume, scalars},
-          {"NiftiLabels", "a.nii", segmentation, labels},
-          {"PackedNiftiLabels", "a.nii.gz", segmentation, labels},
-          {"MghVolume", "a.mgh", volume, scalars},
-          {"PackedMghVolume", "a.mgz", volume, scalars},
-          {"NrrdVolume", "a.nrrd", volume, scalars},
-          {"MetaImageVolume", "a.mha", volume, scalars},
-          {"GiftiSurface", "a.surf.gii", mesh, surface},
-          {"PackedGiftiSurface", "a.surf.gii.gz", mesh, surface},
-          {"FreeSurferSurface", "lh.white", mesh, surface},
-          {"VtpSurface", "a.vtp", mesh, surface},
-          {"PlySurface", "a.ply", mesh, surface},
-          {"ObjSurface", "a.obj", mesh, surface},
-          {"MniObjSurface", "a.mni.obj", mesh, surface},
-          {"OffSurface", "a.off", mesh, surface},
-          {"StlSurface", "a.stl", mesh, surface},
-          {"GiftiMap", "a.shape.gii", shape, maps},
-          {"FreeSurferCurv", "lh.curv", shape, maps},
-          {"GiftiLabels", "a.label.gii", atlas, vertexLabels},
-          {"FreeSurferAnnot", "lh.a.annot", atlas, vertexLabels},
-          {"FreeSurferLabel", "lh.a.label", atlas, vertexLabels},
-          {"PolygonTable", "a.csv", outline, polygon},
-          {"PolygonVtp", "a.vtp", outline, polygon},
-          {"PointTable", "p.tsv",
-           [](const fs::path& path) {
-             repeated(path, "x\ty\tz\n", "12.5\t-30.25\t7\n", 1'000'000, "");
-           },
-           points}};
+  return {
+      {"NiftiVolume", "a.nii", volume, scalars},
+      {"PackedNiftiVolume", "a.nii.gz", volume, scalars},
+      {"NiftiLabels", "a.nii", segmentation, labels},
+      {"PackedNiftiLabels", "a.nii.gz", segmentation, labels},
+      {"MghVolume", "a.mgh", volume, scalars},
+      {"PackedMghVolume", "a.mgz", volume, scalars},
+      {"NrrdVolume", "a.nrrd", volume, scalars},
+      {"MetaImageVolume", "a.mha", volume, scalars},
+      {"GiftiSurface", "a.surf.gii", mesh, surface},
+      {"PackedGiftiSurface", "a.surf.gii.gz", mesh, surface},
+      {"FreeSurferSurface", "lh.white", mesh, surface},
+      {"VtpSurface", "a.vtp", mesh, surface},
+      {"PlySurface", "a.ply", mesh, surface},
+      {"ObjSurface", "a.obj", mesh, surface},
+      {"MniObjSurface", "a.mni.obj", mesh, surface},
+      {"OffSurface", "a.off", mesh, surface},
+      {"StlSurface", "a.stl", mesh, surface},
+      {"GiftiMap", "a.shape.gii", shape, maps},
+      {"FreeSurferCurv", "lh.curv", shape, maps},
+      {"GiftiLabels", "a.label.gii", atlas, vertexLabels},
+      {"FreeSurferAnnot", "lh.a.annot", atlas, vertexLabels},
+      {"FreeSurferLabel", "lh.a.label", atlas, vertexLabels},
+      {"PolygonTable", "a.csv", outline, polygon},
+      {"PolygonVtp", "a.vtp", outline, polygon},
+      {"Minc1Volume", "a.mnc",
+       [](const fs::path& path) {
+         std::ofstream(path, std::ios::binary) << minc1Bytes("regular__", {200, 200, 200});
+       },
+       scalars},
+      {"Minc2Volume", "a.mnc",
+       [](const fs::path& path) {
+         writeMinc2(path, false, {200, 200, 200});
+       },
+       scalars},
+      {"PackedMinc2Volume", "a.mnc",
+       [](const fs::path& path) {
+         writeMinc2(path, true, {200, 200, 200});
+       },
+       scalars},
+      {"PngPicture", "a.png",
+       [](const fs::path& path) { std::ofstream(path, std::ios::binary) << plainPng(4000, 4000); },
+       scalars},
+      {"CiftiMap", "a.dscalar.nii",
+       [](const fs::path& path) {
+         const Eigen::VectorXd values = Eigen::VectorXd::LinSpaced(kValues, 1, 2);
+         io::writeCiftiScalars(path,
+                               {{io::ciftiStructure("CortexLeft", values), {{"a", "mm", values}}}});
+       },
+       maps, true},
+      {"FreeSurferPatch", "lh.a.patch.3d",
+       [](const fs::path& path) {
+         io::Patch all;
+         all.vertices.resize(kValues);
+         std::iota(all.vertices.begin(), all.vertices.end(), 0);
+         all.border.assign(kValues, false);
+         all.positions = Positions::Random(kValues, 3);
+         io::writePatch(path, all);
+       },
+       patch},
+      {"Hdf5Transform", "a.h5",
+       [](const fs::path& path) {
+         Grid grid;
+         grid.size = {kFieldSize, kFieldSize, kFieldSize};
+         io::writeTransform(path, Eigen::Affine3d::Identity(),
+                            Volume<Eigen::Vector3f>(grid, Eigen::Vector3f(0.5F, 0, -1)));
+       },
+       fieldTransform},
+      {"TextTransform", "a.tfm",
+       [](const fs::path& path) {
+         std::string fixed = "\nFixedParameters:";
+         for (const double value : splineGrid()) fixed += " " + std::to_string(value);
+         repeated(path,
+                  "#Insight Transform File V1.0\n#Transform 0\nTransform: "
+                  "BSplineTransform_double_3_3\nParameters:",
+                  " 0.53125", 3'000'000, fixed + "\n");
+       },
+       transform},
+      {"PointTable", "p.tsv",
+       [](const fs::path& path) {
+         repeated(path, "x\ty\tz\n", "12.5\t-30.25\t7\n", 1'000'000, "");
+       },
+       points}};
 }
 
 std::vector<Row> hostile() {
@@ -275,6 +356,35 @@ std::vector<Row> hostile() {
        maps, true},
       {"LegendOfManyNames", "l.tsv", with("index\tname\n", "1\ta\n", 5'000'000, ""),
        [](const fs::path& path) { return io::readLabelNames(path).size(); }, true},
+      {"PngLargerThanItsFile", "a.png",
+       [](const fs::path& path) {
+         std::string bytes = plainPng(40, 30);
+         bytes.replace(8, 25,
+                       pngChunk("IHDR", std::string("\0\0\x7f\xff\0\0\x7f\xff\10\0\0\0\0", 13)));
+         std::ofstream(path, std::ios::binary) << bytes;
+       },
+       scalars, true},
+      {"MatlabOfManyNumbers", "a.mat",
+       [](const fs::path& path) {
+         std::string bytes;
+         appendMatlab(bytes, "AffineTransform_double_3_3", std::vector<double>(3'000'000, 0.5));
+         appendMatlab(bytes, "fixed", {0, 0, 0});
+         std::ofstream(path, std::ios::binary) << bytes;
+       },
+       transform, true},
+      {"LtaOfManyLines", "a.lta", with("type = 1\nnxforms = 1\n", "mean = 0 0 0\n", 3'000'000, ""),
+       transform, true},
+      {"MatrixOfManyNumbers", "m.txt", with("", "1 0 0 0\n", 5'000'000, ""), transform, true},
+      {"RegisterDatOfManyLines", "register.dat",
+       with("bert\n1\n1\n1\n", "1 0 0 0\n", 5'000'000, ""), transform, true},
+      {"PycortexOfManyNumbers", "m.xfm", with("{\"coord\": [[", "0, ", 5'000'000, "0]]}"),
+       transform, true},
+      {"TextOfManyTransforms", "a.tfm",
+       with("#Insight Transform File V1.0\n",
+            "Transform: AffineTransform_double_3_3\nParameters: 1 0 0 0 1 0 0 0 1 0 0 0\n"
+            "FixedParameters: 0 0 0\n",
+            200'000, ""),
+       transform, true},
       {"PointsOfFewCharacters", "p.tsv", with("x\ty\tz\n", "1\t2\t3\n", 5'000'000, ""), points},
   };
 }

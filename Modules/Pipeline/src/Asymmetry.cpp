@@ -3,11 +3,11 @@
 #include "Explica/Pipeline/Asymmetry.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/FileText.h"
 #include "Explica/Core/Types.h"
 
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <map>
 #include <sstream>
 #include <vector>
@@ -44,7 +44,7 @@ std::vector<std::string> cellsOf(const std::string& line) {
 }
 
 std::map<std::string, Region> readRegions(const std::filesystem::path& path) {
-  std::ifstream file(path);
+  std::istringstream file(fileText(path));
   std::string line;
   if (!std::getline(file, line)) throw IOError(path.string() + ": cannot be read");
   const std::vector<std::string> heads = cellsOf(line);

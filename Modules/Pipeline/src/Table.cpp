@@ -3,9 +3,9 @@
 #include "Table.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/FileText.h"
 #include "Explica/Core/Types.h"
 
-#include <fstream>
 #include <sstream>
 
 namespace explica::pipeline {
@@ -36,10 +36,9 @@ const std::vector<std::string>* Table::text(std::string_view name) const {
 }
 
 Table readTable(const std::filesystem::path& file) {
-  std::ifstream stream(file);
+  std::istringstream stream(fileText(file));
   std::string line;
-  if (!stream || !std::getline(stream, line))
-    throw IOError(file.string() + ": no table can be read from it");
+  if (!std::getline(stream, line)) throw IOError(file.string() + ": no table can be read from it");
   Table table;
   table.names = cells(line);
   table.columns.resize(table.names.size());

@@ -41,6 +41,8 @@ class Sha256 {
   std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
 };
 
+constexpr std::size_t kLargestBlock = std::size_t{1} << 20;  // bytes read at a time
+
 }  // namespace
 
 Digest digestOf(const std::filesystem::path& file) {
@@ -59,7 +61,8 @@ Digest digestOf(const std::filesystem::path& file) {
   if (!stream) refuse(std::string("cannot be read (") + std::strerror(errno) + ")");
   Sha256 hash;
   Digest digest;
-  std::vector<unsigned char> block(1 << 20);
+  const auto size = std::filesystem::file_size(file, fault);
+  std::vector<unsigned char> block(fault || size >= kLargestBlock ? kLargestBlock : size + 1);
   std::size_t count = 0;
   while ((count = std::fread(block.data(), 1, block.size(), stream.get())) > 0) {
     hash.add(block.data(), count);

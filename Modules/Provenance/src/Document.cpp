@@ -4,16 +4,15 @@
 #include "Explica/Provenance/Document.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/FileText.h"
 
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <sstream>
 #include <unordered_set>
 
@@ -78,6 +77,53 @@ std::optional<Json> typedWord(const std::string& word) {
   return Json(real);
 }
 
+/// Looks YAML through without keeping it, as far as its limits allow.  The library's own loader of
+/// all documents takes a stray ',' for one document after another until no memory is left, and
+/// makes nodes of a kilobyte out of a character each.
+class YamlSurvey : public YAML::EventHandler {
+ public:
+  YamlSurvey(const fs::path& path, const DocumentLimits& limits) : path_(path), limits_(limits) {}
+
+  void OnDocumentStart(const YAML::Mark& mark) override {
+    if (++documents_ > 1) {
+      refuse(mark, "a second document begins here, after --- or a stray comma; one is expected");
+    }
+  }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { count(mark); }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override { count(mark); }
+  void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                const std::string&) override {
+    count(mark);
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {
+    count(mark);
+  }
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                  YAML::EmitterStyle::value) override {
+    count(mark);
+  }
+  void OnMapEnd() override {}
+
+ private:
+  void count(const YAML::Mark& mark) {
+    // Keys are no values of their own.
+    if (++seen_ > 2 * limits_.values) {
+      refuse(mark, "holds more than " + std::to_string(limits_.values) + " values");
+    }
+  }
+  [[noreturn]] void refuse(const YAML::Mark& mark, const std::string& what) const {
+    throw InvalidInput(path_.string() + ", line " + std::to_string(mark.line + 1) + ": " + what);
+  }
+
+  const fs::path& path_;
+  DocumentLimits limits_;
+  int documents_ = 0;
+  std::size_t seen_ = 0;
+};
+
 /// Turns YAML into JSON and keeps the line of each place.
 class YamlReader {
  public:
@@ -86,7 +132,7 @@ class YamlReader {
 
   Json read(const YAML::Node& node, const std::string& place, int depth = 0) {
     const int line = node.Mark().line + 1;
-    if (!document_.lines.count(place) && line > 0) document_.lines[place] = line;
+    if (line > 0) document_.lines.try_emplace(place, line);
     if (depth > limits_.depth) {
       refuse(line, "is nested too deeply; an alias (*name) may hold itself");
     }
@@ -142,24 +188,10 @@ class YamlReader {
 }  // namespace
 
 std::string readText(const fs::path& path, const DocumentLimits& limits) {
-  const auto refuse = [&](const std::string& what) { throw IOError(path.string() + what); };
-  std::error_code fault;
-  const auto status = fs::status(path, fault);
-  if (fs::is_directory(status)) refuse(": cannot be read (it is a folder)");
-  if (fs::exists(status) && !fs::is_regular_file(status)) refuse(": is not a regular file");
-  std::ifstream file(path, std::ios::binary);
-  if (!file) refuse(std::string(": cannot be read (") + std::strerror(errno) + ")");
-  const auto size = fs::file_size(path, fault);
-  if (fault || size > limits.bytes) {
-    refuse(": has " + std::to_string(size) + " bytes; a text of this kind has " +
-           std::to_string(limits.bytes) + " at most");
-  }
-  std::string text(size, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(size));
-  text.resize(static_cast<std::size_t>(file.gcount()));
+  std::string text = fileText(path, limits.bytes);
   if (const std::size_t place = firstFault(text); place != std::string::npos) {
-    refuse(", line " + std::to_string(lineAt(text, place)) +
-           ": is not text in UTF-8; save it so in your editor");
+    throw IOError(path.string() + ", line " + std::to_string(lineAt(text, place)) +
+                  ": is not text in UTF-8; save it so in your editor");
   }
   return text;
 }
@@ -177,12 +209,12 @@ Document readDocument(const fs::path& path, const DocumentLimits& limits) {
     return document;
   }
   try {
-    const std::vector<YAML::Node> all = YAML::LoadAll(text);
-    if (all.size() > 1) {
-      throw InvalidInput(path.string() + ", line " + std::to_string(all[1].Mark().line + 1) +
-                         ": a second document begins here (after ---); one is expected");
+    std::istringstream stream(text);
+    YAML::Parser parser(stream);
+    YamlSurvey survey(path, limits);
+    while (parser.HandleNextDocument(survey)) {
     }
-    if (!all.empty()) document.values = YamlReader(document, limits).read(all.front(), "");
+    document.values = YamlReader(document, limits).read(YAML::Load(text), "");
   } catch (const YAML::Exception& fault) {
     throw InvalidInput(path.string() + ", line " + std::to_string(fault.mark.line + 1) +
                        ": is not YAML (" + fault.msg + "); mend the line or the one before");

@@ -261,8 +261,8 @@ std::string printable(std::string_view text) {
     const auto byte = [&](std::size_t ahead) {
       return at + ahead < text.size() ? static_cast<unsigned char>(text[at + ahead]) : 0U;
     };
-    const bool control =
-        (byte(0) < 0x20 && text[at] != '\n' && text[at] != '\t') || byte(0) == 0x7f;
+    // Line breaks too: a file's name may hold one, and a message is one line.
+    const bool control = byte(0) < 0x20 || byte(0) == 0x7f;
     // In UTF-8: the other control characters, and marks that turn the direction of what follows.
     const bool highControl = byte(0) == 0xc2 && byte(1) >= 0x80 && byte(1) < 0xa0;
     const bool turning =

@@ -88,39 +88,41 @@ void verifyInto(const fs::path& recordPath, bool deep, Verification& all,
 
 void historyInto(const fs::path& recordPath, int depth, std::ostringstream& text,
                  std::set<fs::path>& seen) {
-  const std::string indent(2 * static_cast<std::size_t>(depth), ' ');
   const Json record = readRecord(recordPath);
   const Json& software = record["software"];
   const Json& execution = record["execution"];
+  // Words and names of a stranger's record: each stays on its line.
+  const auto say = [&](const std::string& line) {
+    text << std::string(2 * static_cast<std::size_t>(depth), ' ') << printable(line) << '\n';
+  };
   auto ended = record["termination"].get<std::string>();
   if (ended == nameOf(Termination::NotRun) || ended == nameOf(Termination::Finished)) {
     const int code = record["exit_code"].get<int>();
     ended = code == 0 ? "done" : "failed with exit code " + std::to_string(code);
   }
-  text << indent << "explica " << record["command"].get<std::string>() << "  ("
-       << software["version"].get<std::string>() << ", commit "
-       << software["commit"].get<std::string>().substr(0, 10)
-       << (software["dirty"].get<bool>() ? ", changed" : "") << "; "
-       << execution["started"].get<std::string>() << ", " << execution["seconds"].get<double>()
-       << " s; " << ended << ")\n";
-  text << indent << "  record: " << recordPath.string() << '\n';
+  std::ostringstream seconds;
+  seconds << execution["seconds"].get<double>();
+  say("explica " + record["command"].get<std::string>() + "  (" +
+      software["version"].get<std::string>() + ", commit " +
+      software["commit"].get<std::string>().substr(0, 10) +
+      (software["dirty"].get<bool>() ? ", changed" : "") + "; " +
+      execution["started"].get<std::string>() + ", " + seconds.str() + " s; " + ended + ")");
+  say("  record: " + recordPath.string());
   std::string argv;
   for (const auto& word : execution["argv"]) argv += " " + word.get<std::string>();
-  text << indent << "  command line:" << argv << '\n';
-  for (const auto& warning : record["warnings"]) {
-    text << indent << "  warning: " << warning.get<std::string>() << '\n';
-  }
+  say("  command line:" + argv);
+  for (const auto& warning : record["warnings"]) say("  warning: " + warning.get<std::string>());
   if (!seen.insert(recordPath).second) return;
   for (std::size_t i = 0; i < record["inputs"].size(); ++i) {
     const Json& input = record["inputs"][i];
     const fs::path path = locateInput(record, i, recordPath);
-    text << indent << "  from " << input["role"].get<std::string>() << ": " << path.string()
-         << "  sha256 " << input["sha256"].get<std::string>().substr(0, 12) << '\n';
+    say("  from " + input["role"].get<std::string>() + ": " + path.string() + "  sha256 " +
+        input["sha256"].get<std::string>().substr(0, 12));
     if (const auto parent = locateParent(record, i, path)) {
       if (isThere(*parent)) {
         historyInto(*parent, depth + 2, text, seen);
       } else {
-        text << indent << "    its record is gone: " << parent->string() << '\n';
+        say("    its record is gone: " + parent->string());
       }
     }
   }

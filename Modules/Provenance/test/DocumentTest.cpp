@@ -95,9 +95,13 @@ TEST_F(DocumentFile, FaultsOfYamlAreToldWithLine) {
   const struct {
     std::string text, said;
   } rows[] = {
-      {"a: 1\n---\nb: 2\n", "d.yaml, line 3: a second document begins here"},
+      {"a: 1\n---\nb: 2\n", "d.yaml, line 2: a second document begins here"},
       {"a: 1\nb: 1e999\n", "d.yaml, line 2: 1e999 is larger than any number of this machine"},
       {"a: 1\na: 2\n", "d.yaml, line 2: 'a' is given twice, first in line 1; remove one"},
+      {", a: 1\n", "a second document begins here, after --- or a stray comma"},
+      {"# c\na: [1]\n ]\n", "d.yaml, line 3: is not YAML"},
+      {"}", "d.yaml, line 1: is not YAML"},
+      {"[" + std::string(4'000'000, ',') + "]", "holds more than 1000000 values"},
       {"a: \xff\n", "d.yaml, line 1: is not text in UTF-8"},
       {"a: &x [*x]", "d.yaml, line 1: is nested too deeply; an alias (*name) may hold itself"},
       {"? [1]\n: 2\n", "has a key that is not a word"},
@@ -117,7 +121,7 @@ TEST_F(DocumentFile, LimitsHold) {
   DocumentLimits limits;
   limits.bytes = 10;
   EXPECT_EQ(complaint("d.json", "[1,2,3,4,5]", limits),
-            "d.json: has 11 bytes; a text of this kind has 10 at most");
+            "d.json: has 11 bytes; a file of this kind has 10 at most");
   limits = {};
   limits.values = 3;
   EXPECT_EQ(complaint("d.json", "[1,2]", limits), "accepted");

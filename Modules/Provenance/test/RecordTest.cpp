@@ -158,7 +158,8 @@ TEST(Printable, TakesTheTeethOutOfWhatATerminalWouldObey) {
   EXPECT_EQ(printable("\xc2\x9b"
                       "2J, \xe2\x80\xaegpj.exe, \xe2\x81\xa6x"),
             "?2J, ?gpj.exe, ?x");
-  const std::string usual = "Größe 3 µm – 日本\n\ttwo";
+  EXPECT_EQ(printable("a\nerror: b\tc"), "a?error: b?c");
+  const std::string usual = "Größe 3 µm – 日本 two";
   EXPECT_EQ(printable(usual), usual);
   EXPECT_EQ(printable("\xc2"), "\xc2");  // cut short: nothing behind it is read
 }

@@ -4,17 +4,16 @@
 #include "Explica/Study/Derivatives.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/FileText.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Provenance/Export.h"
 #include "Explica/Provenance/Record.h"
 #include "Explica/Study/SubjectFiles.h"
 
 #include <algorithm>
-#include <fstream>
 #include <map>
 #include <optional>
 #include <set>
-#include <sstream>
 
 namespace explica::study {
 namespace {
@@ -63,16 +62,9 @@ constexpr Export kExports[] = {
      "layers, counted from the white matter"},
 };
 
-std::string readText(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
-
 /// Writes unless the file holds the same already: names and dates of unchanged files stay.
 void writeIfDifferent(const fs::path& path, const std::string& text) {
-  if (fs::exists(path) && readText(path) == text) return;
+  if (fs::exists(path) && fileText(path) == text) return;
   writeTextFile(path, text);
 }
 
@@ -280,7 +272,7 @@ std::vector<fs::path> exportRun(const fs::path& run, const fs::path& out,
   for (const Export* listed : items) {
     const Export& item = *listed;
     const std::string name = nameOf(item);
-    const std::string content = readText(run / item.step / item.file);
+    const std::string content = fileText(run / item.step / item.file);
     Json sidecar = Json::object();
     sidecar["Description"] = item.description;
     sidecar["Sources"] = sources.of(item.step);

@@ -4,13 +4,13 @@
 #include "Explica/Study/HeartStudy.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/FileText.h"
 #include "Explica/Provenance/Json.h"
 #include "HeartColumns.h"
 
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <iterator>
 #include <set>
 #include <sstream>
@@ -121,7 +121,9 @@ constexpr HeartColumn kColumns[] = {
 
 /// Thickness of the segments at both phases, and thickening.
 void addSegments(HeartRow& row, const fs::path& file, const Json& summary) {
-  std::ifstream table(file);
+  std::error_code fault;
+  if (!fs::exists(file, fault)) return;
+  std::istringstream table(fileText(file));
   std::string line;
   std::getline(table, line);
   const std::vector<std::string> head = cellsOf(line);
@@ -152,7 +154,8 @@ HeartRow rowOf(const fs::path& out, const HeartSubject& subject) {
   row.folder = subject.folder / "heart";
   const fs::path folder = out / row.folder;
   row.state = "not begun";
-  if (std::ifstream problem(folder / "problem.txt"); problem) {
+  if (fs::exists(folder / "problem.txt")) {
+    std::istringstream problem(fileText(folder / "problem.txt"));
     std::string why;
     std::getline(problem, why);
     row.state = "failed: " + why;
@@ -242,9 +245,11 @@ std::vector<HeartSubject> findHearts(const fs::path& dataset,
 std::map<std::string, std::map<std::string, std::string>> aboutParticipants(
     const fs::path& dataset) {
   std::map<std::string, std::map<std::string, std::string>> about;
-  std::ifstream table(dataset / "participants.tsv");
+  std::error_code fault;
+  if (!fs::exists(dataset / "participants.tsv", fault)) return about;
+  std::istringstream table(fileText(dataset / "participants.tsv"));
   std::string line;
-  if (!table || !std::getline(table, line)) return about;
+  if (!std::getline(table, line)) return about;
   if (line.starts_with("\xef\xbb\xbf")) line.erase(0, 3);
   const std::vector<std::string> head = cellsOf(line);
   if (std::find(head.begin(), head.end(), "participant_id") == head.end()) {

@@ -4,13 +4,14 @@
 #include "Explica/Study/StudyPlan.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/FileText.h"
 
 #include <Eigen/Dense>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <map>
+#include <sstream>
 
 namespace explica::study {
 namespace {
@@ -211,10 +212,13 @@ class Planner {
     if (given.is_string()) {
       const std::string path = pathOf(given.get<std::string>(), label);
       what = path;
-      std::ifstream text(path);
-      if (!text)
-        refuse(region,
-               path + " cannot be read; it must hold subject " + label + "'s to-common matrix");
+      std::istringstream text;
+      try {
+        text.str(fileText(path));
+      } catch (const IOError& fault) {
+        refuse(region, std::string(fault.what()) + "; it must hold subject " + label +
+                           "'s to-common matrix");
+      }
       for (double number; text >> number;) numbers.push_back(number);
       if (!text.eof()) numbers.clear();
     } else {

@@ -4,13 +4,13 @@
 #include "Explica/Study/StudyTable.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/FileText.h"
 #include "Explica/Provenance/Doubts.h"
 #include "Explica/Provenance/Json.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -83,7 +83,9 @@ void addSummary(StudyRow& row, const std::string& step, const Json& summary) {
 
 /// Mean thickness of each region, from the table that `explica surface --atlas` writes.
 void addRegions(StudyRow& row, const fs::path& file) {
-  std::ifstream table(file);
+  std::error_code fault;
+  if (!fs::exists(file, fault)) return;
+  std::istringstream table(fileText(file));
   std::string line;
   std::getline(table, line);  // headings: index name vertices area mean sd
   while (std::getline(table, line)) {
@@ -148,7 +150,7 @@ StudyRow rowOf(const fs::path& out, const fs::path& run) {
     row.state = std::string("failed: ") + fault.what();
   }
   if (fs::exists(run / "problem.txt")) {
-    std::ifstream file(run / "problem.txt");
+    std::istringstream file(fileText(run / "problem.txt"));
     std::string problem;
     std::getline(file, problem);
     row.state = "failed: " + problem;

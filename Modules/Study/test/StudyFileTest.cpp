@@ -177,7 +177,7 @@ TEST_F(StudyFiles, AMatrixThatCannotBeOneIsRefused) {
   EXPECT_NE(
       refusal(begin + "[[1, 0, 0, 0], [0, 1, 0, 0], [1, 1, 0, 0]]}}").find("is not an affine"),
       std::string::npos);
-  EXPECT_NE(refusal(begin + "absent.txt}}").find("absent.txt cannot be read"), std::string::npos);
+  EXPECT_NE(refusal(begin + "absent.txt}}").find("absent.txt: cannot be read"), std::string::npos);
   writeTextFile(folder_ / "words.txt", "1 0 0 0\n0 1 0 nought\n0 0 1 0\n");
   EXPECT_NE(refusal(begin + "words.txt}}").find("does not hold 3 or 4 rows"), std::string::npos);
 }

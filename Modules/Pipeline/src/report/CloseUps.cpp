@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "CloseUps.h"
 
+#include "Explica/Core/FileText.h"
 #include "Explica/IO/VolumeFile.h"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <sstream>
 
@@ -19,7 +19,9 @@ namespace fs = std::filesystem;
 /// Rows of a table of this program, by the names of its columns.
 std::vector<std::map<std::string, std::string>> rowsOf(const fs::path& file) {
   std::vector<std::map<std::string, std::string>> rows;
-  std::ifstream in(file);
+  std::error_code fault;
+  if (!fs::exists(file, fault)) return rows;
+  std::istringstream in(fileText(file));
   std::string line;
   std::vector<std::string> names;
   while (std::getline(in, line)) {

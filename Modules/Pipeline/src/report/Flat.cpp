@@ -10,11 +10,12 @@
 #include "ReportParts.h"
 #include "StandardViews.h"
 
+#include "Explica/Core/FileText.h"
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <iterator>
 
 namespace explica::pipeline {
@@ -242,9 +243,10 @@ void chartDistortion(ResultFolder& results, const StepFolder& step) {
 }
 
 void showPicture(ResultFolder& results, const StepFolder& step) {
-  std::ifstream in(step.folder / "flat.png", std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
-  if (bytes.empty()) return;
+  const std::filesystem::path file = step.folder / "flat.png";
+  std::error_code fault;
+  if (!std::filesystem::exists(file, fault)) return;
+  const std::string bytes = fileText(file);
   results.content().drawings.push_back(
       {"", "The flat map",
        "Regions are outlined in their own colours; the scale bar holds everywhere up to the area "

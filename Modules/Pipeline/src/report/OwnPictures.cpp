@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
-#include "Explica/Core/Errors.h"
+#include "Explica/Core/FileText.h"
 #include "ReportParts.h"
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <iterator>
 
 namespace explica::pipeline {
@@ -36,12 +35,6 @@ std::string titleOfPicture(const std::string& stem) {
   return inWords(stem);
 }
 
-std::string bytesOf(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw IOError(file.string() + ": cannot be read");
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 }  // namespace
 
 void showOwnPictures(ResultFolder& results, const StepFolder& step) {
@@ -59,7 +52,7 @@ void showOwnPictures(ResultFolder& results, const StepFolder& step) {
   for (const fs::path& file : files) {
     results.content().drawings.push_back({"", titleOfPicture(file.stem().string()),
                                           step.name + "/" + file.filename().string(),
-                                          mediaTypeOf(file), bytesOf(file)});
+                                          mediaTypeOf(file), fileText(file)});
   }
 }
 

@@ -4,6 +4,7 @@
 #include "MainWindow.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/FileText.h"
 
 #include <QAction>
 #include <QApplication>
@@ -12,7 +13,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <fstream>
 #include <sstream>
 #include <thread>
 
@@ -70,8 +70,7 @@ bool playEvent(MainWindow& window, const std::string& verb, std::istringstream& 
 }  // namespace
 
 void playScript(MainWindow& window, const std::string& path) {
-  std::ifstream script(path);
-  if (!script) throw IOError(path + ": cannot be read");
+  std::istringstream script(fileText(path));
   std::string line;
   while (std::getline(script, line)) {
     std::istringstream words(line);

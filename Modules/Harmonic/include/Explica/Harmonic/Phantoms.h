@@ -59,7 +59,7 @@ struct PhantomOptions {
 
 template <class Visitor>
 void describe(PhantomOptions& options, Visitor&& visit) {
-  visit(Field{"size", "voxels", "voxels along each axis", 0, 4096}, options.size);
+  visit(Field{"size", "voxels", "voxels along each axis", 8, 4096}, options.size);
   visit(Field{"spacing", "mm", "voxel size"}, options.spacing);
 }
 

@@ -24,7 +24,7 @@ struct BeatOptions {
 
 template <class Visitor>
 void describe(BeatOptions& options, Visitor&& visit) {
-  visit(Field{"frames", "", "a beating ventricle with this many frames, frame-*.nii.gz", 0, 1000},
+  visit(Field{"frames", "", "a beating ventricle with this many frames, frame-*.nii.gz", 1, 200},
         options.frames);
   visit(Field{"slice", "mm", "with --frames: spacing of the slices (default: the voxel size)"},
         options.slice);

@@ -25,11 +25,11 @@ struct CortexOptions {
 
 template <class Visitor>
 void describe(CortexOptions& options, Visitor&& visit) {
-  visit(Field{"size", "", "voxels along each axis", 0, 1024}, options.size);
+  visit(Field{"size", "", "voxels along each axis", 32, 1024}, options.size);
   visit(Field{"spacing", "mm", "voxel size"}, options.spacing);
   visit(Field{"thickness", "mm", "of the grey ribbon"}, options.thickness);
   visit(Field{"depth", "", "of the folds, share of the radius"}, options.depth);
-  visit(Field{"waves", "", "folds along an axis", 0, 1000}, options.waves);
+  visit(Field{"waves", "", "folds along an axis", 1, 1000}, options.waves);
   visit(Field{"noise", "", "standard deviation in the image, where tissues differ by 30"},
         options.noise);
   visit(Field{"bias", "", "brightening from the middle to the right side, share"}, options.bias);

@@ -28,7 +28,7 @@ void describe(FolderReportOptions& options, Visitor&& visit) {
   visit(Field{"convention", "",
               "slices with the person's left on the left (neurological) or on the right"},
         options.convention);
-  visit(Field{"slices", "", "slices in each direction", 0, 1000}, options.slices);
+  visit(Field{"slices", "", "slices in each direction", 1, 30}, options.slices);
 }
 
 /// What a report on an output folder shows: of a whole run, or of one command.

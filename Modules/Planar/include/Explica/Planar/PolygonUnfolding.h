@@ -49,7 +49,7 @@ template <class Visitor>
 void describe(PolygonUnfoldingOptions& options, Visitor&& visit) {
   visit(Field{"method", "", "implicit steps, or the thesis's explicit flow"}, options.method);
   visit(Field{"surround", "", "what happens to the polygon outside the region"}, options.surround);
-  visit(Field{"collar", "", "edges on each side that follow an elastic surround", 0, 1e6},
+  visit(Field{"collar", "", "edges on each side that follow an elastic surround", 1, 1e6},
         options.collar);
   visit(Field{"no-length", "", "let edges of the region change their length"}, options.noLength);
   visit(Field{"no-topology", "", "let edges cross: no repulsion, no collision detection"},

@@ -37,7 +37,7 @@ void describe(TissueOptions& options, Visitor&& visit) {
               "standard deviation of the windows in which edges tell the brightness of a border; 0 "
               "to take it from the tissues' means"},
         options.localWidth);
-  visit(Field{"max-iterations", "", "expectation-maximisation iterations at most", 0, 1e6},
+  visit(Field{"max-iterations", "", "expectation-maximisation iterations at most", 1, 1e6},
         options.maxIterations);
   visit(Field{"tolerance", "",
               "stop once no class mean moves by more than this share of their range"},

@@ -54,7 +54,7 @@ struct ShapeFitOptions {
 
 template <class Visitor>
 void describe(ShapeFitOptions& options, Visitor&& visit) {
-  visit(Field{"samples", "", "points of each target's boundary that are fitted", 0, 1e7},
+  visit(Field{"samples", "", "points of each target's boundary that are fitted", 16, 1e7},
         options.samples);
   visit(Field{"max-iterations", "", "iterations of the fit", 0, 1e6}, options.maxIterations);
   visit(Field{"fit-start", "",

@@ -131,8 +131,8 @@ struct CorticalSurfaces {
 template <class Visitor>
 void describe(SurfaceOptions& options, Visitor&& visit) {
   visit(Field{"genus", "", "whether handles and tunnels are removed"}, options.genus);
-  visit(Field{"faces", "", "faces of each surface", 0, 1e8}, options.faces);
-  visit(Field{"steps", "", "in which the outer surface grows out of the white one", 0, 1000},
+  visit(Field{"faces", "", "faces of each surface", 100, 1e8}, options.faces);
+  visit(Field{"steps", "", "in which the outer surface grows out of the white one", 2, 1000},
         options.steps);
   visit(Field{"fluid", "",
               "brightness of pure fluid in --image, of that of white matter (fluid_of_white of "
