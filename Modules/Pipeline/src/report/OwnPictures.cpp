@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
+
 #include "Explica/Core/FileText.h"
 #include "ReportParts.h"
 
 #include <algorithm>
 #include <array>
-#include <iterator>
 
 namespace explica::pipeline {
 namespace {
