@@ -250,7 +250,8 @@ LabelMap readFreeSurferAnnot(const std::filesystem::path& path, ByteView bytes) 
   const auto version = cursor.take<std::int32_t>();
   const bool old = version > 0;
   if (!old && version != -2) {
-    failToRead(path, "has a colour table of the unknown version " + std::to_string(-version));
+    failToRead(path, "has a colour table of the unknown version " +
+                         std::to_string(-std::int64_t{version}));
   }
   if (!old) static_cast<void>(cursor.take<std::int32_t>());  // largest structure
   static_cast<void>(text());                                 // where the table came from
