@@ -22,6 +22,14 @@ void unfoldSphere(const TemporaryFolder& folder) {
   ASSERT_TRUE(unfold.exitCode == 0 || unfold.exitCode == 3) << unfold;
 }
 
+std::size_t countOf(const std::string& text, const std::string& what) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) {
+    ++count;
+  }
+  return count;
+}
+
 TEST(Report, WorksInABrowserWithoutANetwork) {
   if (!std::filesystem::exists("/usr/bin/chromium") ||
       !std::filesystem::exists("/usr/bin/chromedriver")) {
@@ -98,6 +106,36 @@ TEST(Report, SaysThatADetachedPatchIsDrawnApart) {
             std::string::npos);
 }
 
+TEST(Report, ShowsWhereFacesCrossAndTheFlagLeadsThere) {
+  TemporaryFolder folder;
+  // Two spheres that pass through each other, far from the region, where nothing parts them.
+  io::writeGiftiSurface(folder / "a.surf.gii",
+                        geometry::joined(geometry::makeFoldedSphere(4, 40),
+                                         geometry::makeIcosphere(3, 10, Point(1, 2, -42))));
+  const auto unfold = explica({"unfold", folder / "a.surf.gii", "--center", "0,0,40", "--radius",
+                               "14", "--direction", "0,0.3,1", "--no-repair", "--max-iterations",
+                               "4", "--out", folder / "u"});
+  ASSERT_EQ(unfold.exitCode, 3) << unfold;
+  const auto pairs = readJson(folder / "u/summary.json")["self_intersections_initial"];
+  ASSERT_GT(pairs, 7);
+  ASSERT_EQ(explica({"report", folder / "u"}).exitCode, 0);
+  const std::string page = readText(folder / "u/report.html");
+  EXPECT_EQ(countOf(page, "id='crossing-places'"), 1u);
+  EXPECT_EQ(countOf(page, "<a href='#crossing-places'>see</a>"), 1u);
+  const std::size_t begin = page.find("id='crossing-places'");
+  const std::string figure = page.substr(begin, page.find("</figure>", begin) - begin);
+  EXPECT_EQ(countOf(figure, "class='tile'"), 21u) << "seven places in three directions";
+  EXPECT_EQ(countOf(figure, "class='place'>z = "), 7u);
+  EXPECT_NE(figure.find("faces that cross"), std::string::npos);
+  EXPECT_EQ(countOf(figure, "<path stroke='#ffd60a' d=''"), 0u) << "the surface is in every tile";
+  EXPECT_EQ(countOf(figure, "<path stroke='#ff453a' d=''"), 0u) << "and so are the faces";
+
+  // Without the surface of the start there is no picture, and no link to none.
+  std::filesystem::remove((folder / "a.surf.gii"));
+  ASSERT_EQ(explica({"report", folder / "u"}).exitCode, 0);
+  EXPECT_EQ(readText(folder / "u/report.html").find("#crossing-places'"), std::string::npos);
+}
+
 TEST(Report, ShowsSlicesInEitherConvention) {
   TemporaryFolder folder;
   ASSERT_EQ(explica({"phantom", "shell", "--size", "20", "--out", folder / "p"}).exitCode, 0);
@@ -167,14 +205,6 @@ void makeCortex(const TemporaryFolder& folder) {
   io::LabelMap regions{"areas", {}, {{0, "???", {0, 0, 0, 0}}, {1, "upper", {1, 0, 0, 1}}}};
   regions.keys = (white.positions.col(2).array() > 3).cast<Label>();
   io::writeGiftiLabel(folder / "areas.label.gii", regions, "CortexLeft");
-}
-
-std::size_t countOf(const std::string& text, const std::string& what) {
-  std::size_t count = 0;
-  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) {
-    ++count;
-  }
-  return count;
 }
 
 TEST(Report, OfSamplesShowsMapsAndProfiles) {

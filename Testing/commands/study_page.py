@@ -98,8 +98,22 @@ def words(driver):
         check("a failure is read in %d pixels: %s" % (failure[1], failure[0][:90]), failure[1] > 900)
     stated = driver.execute_script("return document.body.textContent.includes('robust z above 3.5')")
     check("the rule for outliers is stated", stated)
-    odd = driver.execute_script("return document.querySelectorAll('.strip circle.odd').length")
+    odd = driver.execute_script("return document.querySelectorAll('.strip circle.odd, .strip .beyond.odd').length")
     check("%d outliers are marked" % odd, odd > 0)
+
+
+def far_off(driver):
+    """A row at a thousand times the others' value must leave them their axis."""
+    ends, inside, words = driver.execute_script("""const strip = document.querySelector('.strip svg');
+        const shape = strip.querySelector('.spread').getBBox();
+        const ends = [...strip.querySelectorAll('.beyond')].map((e) => e.querySelector('title').textContent);
+        return [ends, shape.width / 284, strip.textContent]""")
+    full = driver.execute_script("""const steps = document.querySelector('.strip .spread').getAttribute('d')
+        .match(/V[0-9.]+h/g).map((s) => parseFloat(s.slice(1)));
+        return steps.filter((y) => y < 45.95).length / steps.length""")
+    check("%d rows stand beyond an axis, with their names" % len(ends), len(ends) > 0 and all("sub-" in e for e in ends))
+    check("the others keep %.0f %% of it" % (100 * full), inside > 0.99 and full > 0.9)
+    check("their number is written", "%d beyond, to" % len(ends) in words)
 
 
 def logs(driver):
@@ -125,6 +139,7 @@ def main():
         timing(driver, page, limit)
         filter_and_sort(driver)
         words(driver)
+        far_off(driver)
         for width in (820, 390):
             driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
                                    {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": True})

@@ -112,14 +112,46 @@ std::vector<report::CloseUp> unknownPlaces(const StepFolder& thickness, std::siz
   return places;
 }
 
-std::vector<report::CloseUp> crossingPlaces(const StepFolder& step, std::size_t most) {
-  std::vector<report::CloseUp> places;
+std::vector<CrossingPair> crossingPairs(const StepFolder& step) {
+  std::vector<CrossingPair> pairs;
   for (auto& row : rowsOf(step.folder / "intersections.tsv")) {
-    const Point at(numberIn(row, "x"), numberIn(row, "y"), numberIn(row, "z"));
-    if (!at.allFinite() || places.size() >= most) continue;
-    const bool parted = row.contains("parted") && row["parted"] != "0" && row["parted"] != "no";
-    places.push_back(
-        {at, "faces " + row["face_1"] + ", " + row["face_2"] + (parted ? ", parted" : "")});
+    const double first = numberIn(row, "face_1"), second = numberIn(row, "face_2");
+    CrossingPair pair;
+    pair.place = Point(numberIn(row, "x"), numberIn(row, "y"), numberIn(row, "z"));
+    if (!pair.place.allFinite() || !(first >= 0) || !(second >= 0)) continue;
+    pair.faces = {static_cast<std::int32_t>(first), static_cast<std::int32_t>(second)};
+    pair.inRegion = numberIn(row, "faces_in_region") > 0;
+    pair.parted = row["parted"] == "yes";
+    pairs.push_back(pair);
+  }
+  return pairs;
+}
+
+std::vector<report::CloseUp> crossingPlaces(const std::vector<CrossingPair>& pairs,
+                                            std::size_t most) {
+  constexpr double kOnePlace = 3;  // mm
+  struct Group {
+    const CrossingPair* first = nullptr;
+    std::size_t count = 0;
+  };
+  std::vector<Group> groups;
+  for (const CrossingPair& pair : pairs) {
+    auto near = std::find_if(groups.begin(), groups.end(), [&](const Group& group) {
+      return (group.first->place - pair.place).norm() < kOnePlace;
+    });
+    if (near == groups.end()) near = groups.insert(groups.end(), {&pair, 0});
+    ++near->count;
+  }
+  std::stable_sort(groups.begin(), groups.end(), [](const Group& a, const Group& b) {
+    return std::pair(a.first->inRegion, a.count) > std::pair(b.first->inRegion, b.count);
+  });
+  std::vector<report::CloseUp> places;
+  for (std::size_t n = 0; n < std::min(most, groups.size()); ++n) {
+    const CrossingPair& pair = *groups[n].first;
+    std::string words =
+        "faces " + std::to_string(pair.faces[0]) + ", " + std::to_string(pair.faces[1]);
+    if (groups[n].count > 1) words += " and " + std::to_string(groups[n].count - 1) + " more";
+    places.push_back({pair.place, words + (pair.parted ? ", parted" : "")});
   }
   return places;
 }

@@ -70,7 +70,7 @@ ReportFlag crossingFlag(const StepFolder& step, double pairs,
           pairs == 0
               ? "nowhere, by an exact test"
               : "at " + readable(pairs) + " pairs of faces, " + readable(before) + " at the start",
-          kPatchPlace};
+          pairs > 0 && pairs <= before ? kCrossingPlace : kPatchPlace};
 }
 
 /// How the patch lies beside the surface that it came from.

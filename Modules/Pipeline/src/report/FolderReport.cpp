@@ -129,7 +129,8 @@ void listSteps(ResultFolder& results) {
 }
 
 /// What a step has of its own to show, beside what the parts above show of all steps together.
-void showStep(ResultFolder& results, const StepFolder& step, const std::vector<GivenMap>& maps) {
+void showStep(ResultFolder& results, const StepFolder& step, const std::vector<GivenMap>& maps,
+              const FolderReportOptions& options) {
   if (step.command == "unfold") {
     results.attempt("Evolution", [&] { showUnfolding(results, step, maps); });
     chartUnfolding(results, step);
@@ -146,6 +147,7 @@ void showStep(ResultFolder& results, const StepFolder& step, const std::vector<G
     results.attempt("Evolution", [&] { showInflation(results, step); });
     chartUnfolding(results, step);
   }
+  results.attempt("Where faces cross", [&] { showCrossings(results, step, options); });
   results.attempt("Pictures of " + titleOf(step.name), [&] { showOwnPictures(results, step); });
 }
 
@@ -175,7 +177,7 @@ report::ReportContent collectReport(const fs::path& folder, const FolderReportOp
       results.attempt("Layers", [&] { showLayers(results, *step, options); });
     }
   }
-  for (const StepFolder& step : results.steps()) showStep(results, step, maps);
+  for (const StepFolder& step : results.steps()) showStep(results, step, maps, options);
   results.attempt("Numbers", [&] { findNumbers(results); });
   flagSteps(results);
   monitor.progress(1, "report");

@@ -43,6 +43,11 @@ void showSurfaces(ResultFolder& results, const FolderReportOptions& options,
 void showUnfolding(ResultFolder& results, const StepFolder& step,
                    const std::vector<GivenMap>& maps);
 
+/// Slices through the places where faces of the surface cross before a step changes it, unless the
+/// page has them on an image.
+void showCrossings(ResultFolder& results, const StepFolder& step,
+                   const FolderReportOptions& options);
+
 /// The inflation: what the interactive view plays, and the surface before and after.
 void showInflation(ResultFolder& results, const StepFolder& step);
 

@@ -212,6 +212,7 @@ void showCloseUps(ResultFolder& results, const std::vector<Hemisphere>& all,
                   const Volume<float>& image, const std::vector<report::MosaicOutline>& outlines,
                   const report::MosaicOptions& options) {
   constexpr double kWidth = 36;     // mm
+  constexpr double kNarrow = 12;    // mm, for faces
   constexpr std::size_t kMost = 7;  // places of a kind
   report::MosaicOptions close = options;
   close.tileHeight = 170;
@@ -227,23 +228,25 @@ void showCloseUps(ResultFolder& results, const std::vector<Hemisphere>& all,
     if (const auto* thickness = results.beside(*h.step, "thickness")) {
       add(unknown, unknownPlaces(*thickness, each));
     }
-    add(crossing, crossingPlaces(*h.step, each));
     if (const auto* unfold = results.beside(*h.step, "unfold")) {
-      add(crossing, crossingPlaces(*unfold, each));
+      add(crossing, crossingPlaces(crossingPairs(*unfold), each));
     }
   }
   const auto show = [&](const std::vector<report::CloseUp>& places, const char* id,
-                        const char* title, const char* caption) {
+                        const char* title, const char* caption, double width) {
     if (places.empty()) return;
     results.content().mosaics.push_back(
-        {id, title, caption, report::makeCloseUps(image, outlines, places, kWidth, close)});
+        {id, title, caption, report::makeCloseUps(image, outlines, places, width, close)});
   };
   show(corrected, kCorrectedPlace, "Where the surface was corrected",
        "The largest of the defects of the white surface that were cut or filled: the outline must "
-       "be right there, too.");
+       "be right there, too.",
+       kWidth);
   show(unknown, kUnknownPlace, "Where there is no thickness",
-       "Places with the most voxels of the ribbon from which no path leads to both of its sides.");
-  show(crossing, kCrossingPlace, "Where faces cross", "At the start; listed in intersections.tsv.");
+       "Places with the most voxels of the ribbon from which no path leads to both of its sides.",
+       kWidth);
+  show(crossing, kCrossingPlace, "Where faces cross", "At the start; listed in intersections.tsv.",
+       kNarrow);
 }
 
 void showOutlines(ResultFolder& results, const std::vector<Hemisphere>& all,

@@ -27,21 +27,30 @@ const search = byId('search'), flagged = byId('flagged'), set = byId('set');
 const head = document.querySelector('thead tr'), body = document.querySelector('tbody');
 let sorted = -1, up = true, page = 0;
 
-// What lies where among the rows: of each column its values in order.
+const middleOf = (sorted) => (sorted[Math.floor((sorted.length - 1) / 2)] + sorted[Math.floor(sorted.length / 2)]) / 2;
+
+// What lies where among the rows.  A few that lie far off must not press all others together: an
+// axis holds what is within 4 robust deviations (1.4826 MAD) of the median; what lies beyond stands at its end.
 const spread = data.columns.map((column, c) => {
   if (c < data.fixed) return null;
   const values = data.rows.map((r) => numberOf(r.cells[c])).filter((v) => Number.isFinite(v)).sort((a, b) => a - b);
   if (values.length < 2 || values[0] === values[values.length - 1]) return null;
-  return { low: values[0], high: values[values.length - 1], median: values[Math.floor(values.length / 2)], count: values.length };
+  const count = values.length, median = middleOf(values), least = values[0], most = values[count - 1];
+  const off = 4 * 1.4826 * middleOf(values.map((v) => Math.abs(v - median)).sort((a, b) => a - b));
+  // Where most rows are equal there is no such deviation: then all that there is.
+  const near = off > 0 ? values.filter((v) => Math.abs(v - median) <= off) : values;
+  const low = near[0], high = near[near.length - 1];
+  return { low, high, least, most, median, count };
 });
-const placeOf = (c, value) => (spread[c] ? (value - spread[c].low) / (spread[c].high - spread[c].low) : NaN);
+const outside = (c, value) => (value < spread[c].low ? -1 : value > spread[c].high ? 1 : 0);
+const placeOf = (c, value) => (spread[c] ? Math.min(1, Math.max(0, (value - spread[c].low) / (spread[c].high - spread[c].low))) : NaN);
 
 // How many rows lie where, as the outline of an area that stands on a line.
 function shapeOf(c, left, width, bottom, height) {
   const bins = 40, counts = new Array(bins).fill(0);
   for (const row of data.rows) {
-    const place = placeOf(c, numberOf(row.cells[c]));
-    if (Number.isFinite(place)) ++counts[Math.min(bins - 1, Math.floor(bins * place))];
+    const value = numberOf(row.cells[c]), place = placeOf(c, value);
+    if (Number.isFinite(place) && !outside(c, value)) ++counts[Math.min(bins - 1, Math.floor(bins * place))];
   }
   const most = Math.max(...counts), step = width / bins;
   return 'M' + left + ' ' + bottom + counts.map((n) => 'V' + (bottom - height * n / most).toFixed(1) + 'h' + step).join('') + 'V' + bottom + 'Z';
@@ -69,12 +78,16 @@ function showStrip(c) {
   const column = data.columns[c], box = make('div', undefined, byId('strips'));
   box.className = 'strip';
   make('h3', column.words + (column.unit ? ', ' + column.unit : ''), box);
-  const svg = drawn('svg', { viewBox: '0 0 300 62', role: 'img', 'aria-label': column.words + ': from ' + short(String(spread[c].low)) + ' to ' + short(String(spread[c].high)) + ', median ' + short(String(spread[c].median)) }, box);
+  const svg = drawn('svg', { viewBox: '0 0 300 62', role: 'img', 'aria-label': column.words + ': from ' + short(String(spread[c].least)) + ' to ' + short(String(spread[c].most)) + ', median ' + short(String(spread[c].median)) }, box);
   drawn('line', { x1: 8, x2: 292, y1: 46, y2: 46 }, svg);
   const at = (value) => 8 + 284 * placeOf(c, value);
   drawn('line', { class: 'median', x1: at(spread[c].median), x2: at(spread[c].median), y1: 4, y2: 46 }, svg);
-  drawn('text', { x: 8, y: 59 }, svg).textContent = short(String(spread[c].low));
-  drawn('text', { x: 292, y: 59, 'text-anchor': 'end' }, svg).textContent = short(String(spread[c].high));
+  const endOf = (side, end, last) => {
+    const beyond = data.rows.filter((r) => outside(c, numberOf(r.cells[c])) === side).length;
+    return short(String(end)) + (beyond ? ' (' + beyond + ' beyond, to ' + short(String(last)) + ')' : '');
+  };
+  drawn('text', { x: 8, y: 59 }, svg).textContent = endOf(-1, spread[c].low, spread[c].least);
+  drawn('text', { x: 292, y: 59, 'text-anchor': 'end' }, svg).textContent = endOf(1, spread[c].high, spread[c].most);
   const taken = new Map(), crowded = spread[c].count > crowd;
   if (crowded) drawn('path', { class: 'spread', d: shapeOf(c, 8, 284, 46, 40) }, svg);
   for (const row of data.rows) {
@@ -82,7 +95,9 @@ function showStrip(c) {
     if (!Number.isFinite(value) || (crowded && !row.flags[c])) continue;
     const bin = Math.round(at(value) / 3), count = taken.get(bin) || 0;
     taken.set(bin, count + 1);
-    const dot = drawn('circle', { cx: at(value).toFixed(1), cy: 42 - 4 * (count % 10), r: row.flags[c] ? 4 : 2.6 }, svg);
+    const x = at(value), y = 42 - 4 * (count % 10), r = row.flags[c] ? 4 : 2.6, beyond = outside(c, value);
+    const dot = beyond ? drawn('path', { class: 'beyond', d: 'M' + (x + beyond * 7) + ' ' + y + 'l' + -beyond * 8 + ' -4v8z' }, svg)
+      : drawn('circle', { cx: x.toFixed(1), cy: y, r }, svg);
     if (row.flags[c]) dot.classList.add('odd');
     drawn('title', {}, dot).textContent = nameOf(row) + ': ' + short(row.cells[c]) + (row.flags[c] ? ' (' + row.flags[c] + ')' : '');
     dot.addEventListener('click', () => { search.value = row.cells[0]; page = 0; draw(); search.scrollIntoView(); });
