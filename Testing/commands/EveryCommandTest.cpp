@@ -4,8 +4,12 @@
 
 #include "QuickRuns.h"
 
+#include "Explica/Core/Termination.h"
+
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <map>
 #include <set>
 
 namespace explica::testing {
@@ -62,6 +66,46 @@ TEST_P(EveryCommand, IsRecordedVerifiedAndReplayed) {
   EXPECT_EQ(verified.exitCode, 0) << verified;
   const auto replayed = explica({"replay", folder_ / "a", "--out", folder_ / "b"});
   EXPECT_EQ(replayed.exitCode, 0) << replayed;
+}
+
+/// How the rows end that iterate; the limits are too small for those that have one.
+std::string endOf(const std::string& name) {
+  static const std::map<std::string, std::string> ends = {
+      {"Embed", "max-iterations"},
+      {"EmbedBand", "max-iterations"},
+      {"Flatten", "converged"},
+      {"FlattenCut", "converged"},
+      {"Inflate", "max-iterations"},
+      {"Polygon", "target-reached"},
+      {"PolygonGlobalFlow", "max-iterations"},
+      {"PolygonPhantom", "target-reached"},
+      {"Repair", "converged"},
+      {"Segment", "max-iterations"},
+      {"Thickness", "converged"},
+      {"Unfold", "max-iterations"},
+  };
+  const auto found = ends.find(name);
+  return found == ends.end() ? "finished" : found->second;
+}
+
+TEST_P(EveryCommand, SaysTruthfullyHowItEnded) {
+  const auto made = explica(words_ + std::vector<std::string>{"--out", folder_ / "a"});
+  const auto record = readJson(folder_ / "a/provenance.json");
+  const auto summary = readJson(folder_ / "a/summary.json");
+  const std::string end = summary["termination"];
+  EXPECT_EQ(record["termination"], end);
+  EXPECT_EQ(end, endOf(GetParam().name));
+  EXPECT_TRUE(reachedGoal(valueOf<Termination>(end)) || made.exitCode == 3) << made;
+  const auto limit = std::find(words_.begin(), words_.end(), "--max-iterations");
+  EXPECT_EQ(limit != words_.end(), end == "max-iterations");
+  if (limit != words_.end() && summary.contains("iterations")) {
+    EXPECT_EQ(summary["iterations"], std::stoi(*(limit + 1)));
+  }
+  EXPECT_EQ(summary.value("pairs_after", 0), 0) << "left by Repair, which says converged";
+  if (end == "target-reached") {
+    EXPECT_GE(summary["visibility_final"].get<double>(),
+              record["options"]["target-visibility"].get<double>());
+  }
 }
 
 TEST_P(EveryCommand, WritesTheReportOfItsResultsWhereAskedTo) {

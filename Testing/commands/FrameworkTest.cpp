@@ -96,6 +96,38 @@ TEST(Framework, WrongUseIsExitCodeOneWithAHint) {
   EXPECT_TRUE(folder.entries().empty());
 }
 
+TEST(Framework, OptionsAreJudgedBeforeAnyFileIsOpened) {
+  TemporaryFolder folder;
+  writeText(folder / "rubbish.nii", "not a volume");
+  writeText(folder / "rubbish.gii", "not a surface");
+  const struct {
+    std::vector<std::string> words;
+    std::string expected;
+  } rows[] = {
+      {{"thickness", "rubbish.nii", "--inner", "1", "--tissue", "2", "--layers", "0"},
+       "layers: '0' is not a whole number, 1 to 1000"},
+      {{"unfold", "rubbish.gii", "--center", "0", "0", "19", "--radius", "5"},
+       "--center: separate its numbers by commas, without spaces: --center 0,0,19"},
+      {{"unfold", "rubbish.gii", "--center", "0,0,19", "--radius", "5", "--max-iterations", "-1"},
+       "max-iterations: '-1' is not a whole number"},
+      {{"inflate", "rubbish.gii", "--max-iterations", "-1"},
+       "max-iterations: '-1' is not a whole number"},
+      {{"flatten", "rubbish.gii", "--grid", "-1"}, "grid: '-1' is not a number"},
+  };
+  for (const auto& row : rows) {
+    for (const bool exists : {false, true}) {
+      std::vector<std::string> words = row.words;
+      words[1] = folder / (exists ? words[1] : "no-" + words[1]);
+      words.insert(words.end(), {"--out", folder / "a"});
+      const auto result = explica(words);
+      EXPECT_EQ(result.exitCode, 1) << result;
+      EXPECT_TRUE(contains(result.err, row.expected)) << result;
+      EXPECT_FALSE(contains(result.err, "rubbish")) << "the file has been looked at\n" << result;
+    }
+  }
+  EXPECT_EQ(folder.entries().size(), 2u);
+}
+
 TEST(Framework, NegativeNumbersAreValuesNotOptions) {
   TemporaryFolder folder;
   const auto result = explica(shell(folder / "a", {"--aspect", "-1,2,2"}));

@@ -36,11 +36,15 @@ Extent extentOf(const WorldBox& tissue, const std::vector<MosaicOutline>& outlin
   return {lines.empty() ? tissue : lines, tissue.empty() ? lines : tissue};
 }
 
-/// Black below 0, white at the brightest but for the last half per cent.
-ColourScale greyScale(const Volume<float>& image) {
+/// Black below 0, white at the brightest of the subject but for the last half per cent.
+ColourScale greyScale(const Volume<float>& image, const Volume<float>* subject) {
+  if (subject && subject->grid.size != image.grid.size) {
+    throw InvalidInput("subject: is of another size than the image");
+  }
   std::vector<float> values;
-  for (const float v : image.data) {
-    if (v > 0 && std::isfinite(v)) values.push_back(v);
+  for (std::size_t n = 0; n < image.size(); ++n) {
+    const float v = image[n];
+    if (v > 0 && std::isfinite(v) && (!subject || (*subject)[n] > 0)) values.push_back(v);
   }
   ColourScale grey{ColourMap::Grey, 0, 1, "", ""};
   if (values.empty()) return grey;
@@ -156,7 +160,7 @@ SliceMosaic mosaicOf(const Extent& extent, const std::vector<MosaicOutline>& out
 
 SliceMosaic makeMosaic(const Volume<float>& image, const std::vector<MosaicOutline>& outlines,
                        const MosaicOptions& options) {
-  const ColourScale grey = greyScale(image);
+  const ColourScale grey = greyScale(image, options.subject);
   return mosaicOf(extentOf(boxAbove(image, 0), outlines), outlines, options,
                   [&](const SliceFrame& frame) { return renderSlice(image, frame, grey); });
 }
@@ -167,7 +171,7 @@ SliceMosaic makeCloseUps(const Volume<float>& image, const std::vector<MosaicOut
   if (places.empty()) throw InvalidInput("places: none is given");
   if (!(width > 0)) throw InvalidInput("width: must be positive");
   constexpr double kRing = 0.12;  // of a tile's height
-  const ColourScale grey = greyScale(image);
+  const ColourScale grey = greyScale(image, options.subject);
   const RenderSlice render = [&](const SliceFrame& frame) {
     return renderSlice(image, frame, grey);
   };
@@ -205,7 +209,7 @@ std::array<SliceMosaic, 2> makeMosaics(const Volume<float>& before, const Volume
   if (extent.shown.empty() || extent.framed.empty()) {
     throw InvalidInput("volume: every voxel is 0 or less; there is nothing to show");
   }
-  const ColourScale grey = greyScale(after);
+  const ColourScale grey = greyScale(after, options.subject);
   const auto of = [&](const Volume<float>& image) {
     return mosaicOf(extent, {}, options,
                     [&](const SliceFrame& frame) { return renderSlice(image, frame, grey); });

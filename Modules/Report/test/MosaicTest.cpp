@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace explica::report {
@@ -142,6 +143,34 @@ TEST(Mosaic, CloseUpsAreCentredOnTheirPlaces) {
   EXPECT_EQ(near.rows[0][0].paths[1].substr(0, 2), "M3") << "a ring about the middle of 100 pixels";
   EXPECT_THROW((void)makeCloseUps(image, {}, {}, 20, options), InvalidInput);
   EXPECT_THROW((void)makeCloseUps(image, {}, {{off, ""}}, 0, options), InvalidInput);
+}
+
+TEST(Mosaic, GreyLevelsAreThoseOfTheSubject) {
+  // A brain of 100 in a shell of fat of 1000.
+  Grid grid;
+  grid.size = {20, 20, 20};
+  Volume<float> head(grid, 1000.0F), brain(grid, 0.0F);
+  for (std::size_t v = 0; v < head.size(); ++v) {
+    const auto at = grid.subscripts(v);
+    const bool inside = std::all_of(at.begin(), at.end(), [](int i) { return i > 4 && i < 15; });
+    if (!inside) continue;
+    head[v] = 100;
+    brain[v] = 1;
+  }
+  MosaicOptions options;
+  options.perRow = 1;
+  const auto middleOf = [](const SliceMosaic& mosaic) {
+    const Picture& picture = mosaic.rows[0][0].picture;
+    return static_cast<int>(picture.pixel(picture.width / 2, picture.height / 2)[0]);
+  };
+  EXPECT_LT(middleOf(makeMosaic(head, std::vector<MosaicOutline>{}, options)), 60);
+  options.subject = &brain;
+  EXPECT_GT(middleOf(makeMosaic(head, std::vector<MosaicOutline>{}, options)), 200);
+  EXPECT_GT(middleOf(makeMosaics(head, head, options)[0]), 200);
+  const Volume<float> other;
+  options.subject = &other;
+  EXPECT_THROW(static_cast<void>(makeMosaic(head, std::vector<MosaicOutline>{}, options)),
+               InvalidInput);
 }
 
 }  // namespace

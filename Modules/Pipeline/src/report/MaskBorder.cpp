@@ -69,4 +69,10 @@ TriangleMesh borderOf(const std::filesystem::path& labels) {
   return borderOfCells(thinned(io::readLabels(labels).volume));
 }
 
+std::optional<Volume<float>> brainOf(const StepFolder& segment, const Grid& grid) {
+  if (!segment.has("brain_mask.nii.gz")) return {};
+  Volume<float> brain = io::readScalars(segment.folder / "brain_mask.nii.gz").volume;
+  return brain.grid.size == grid.size ? std::optional(std::move(brain)) : std::nullopt;
+}
+
 }  // namespace explica::pipeline

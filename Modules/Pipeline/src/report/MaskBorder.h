@@ -3,8 +3,11 @@
 #pragma once
 
 #include "Explica/Core/TriangleMesh.h"
+#include "Explica/Core/Volume.h"
+#include "ResultFolder.h"
 
 #include <filesystem>
+#include <optional>
 
 namespace explica::pipeline {
 
@@ -12,5 +15,8 @@ namespace explica::pipeline {
 /// outlines: voxels' faces, two triangles each, RAS mm.
 /// @throws IOError, InvalidInput  as io::readLabels
 [[nodiscard]] TriangleMesh borderOf(const std::filesystem::path& labels);
+
+/// The brain that a segmentation found, if it is of this grid's size.
+[[nodiscard]] std::optional<Volume<float>> brainOf(const StepFolder& segment, const Grid& grid);
 
 }  // namespace explica::pipeline

@@ -262,11 +262,14 @@ void showOutlines(ResultFolder& results, const std::vector<Hemisphere>& all,
     outlines.push_back({&h.pial, "pial surface", "#ffd60a"});
   }
   TriangleMesh brain;
+  std::optional<Volume<float>> inside;
   for (const StepFolder* segment : results.stepsOf("segment")) {
     if (!segment->has("brain_mask.nii.gz")) continue;
     brain = borderOf(segment->folder / "brain_mask.nii.gz");
+    inside = brainOf(*segment, volume.grid);
   }
   report::MosaicOptions mosaic;
+  mosaic.subject = inside ? &*inside : nullptr;
   mosaic.perRow = options.slices;
   mosaic.convention = options.convention;
   const std::vector<report::MosaicOutline> surfaces = outlines;

@@ -22,15 +22,18 @@ void showTemplate(ResultFolder& results, const StepFolder& step,
   if (!step.has("atlas.nii.gz") || !image || !std::filesystem::exists(*image)) return;
   io::VolumeReadOptions reading;
   reading.dimension = 3;
+  const Volume<float> head = io::readScalars(*image, reading).volume;
+  const auto found = brainOf(step, head.grid);
+  report::MosaicOptions drawing = options;
+  drawing.subject = found ? &*found : nullptr;
   const TriangleMesh atlas = borderOf(step.folder / "atlas.nii.gz");
   const TriangleMesh brain = borderOf(step.folder / "brain_mask.nii.gz");
   results.content().mosaics.push_back(
       {kTissuePlace, "Template on " + image->filename().string(),
        "Structures of the template's atlas and the brain as it was found, in steps of 2 mm. Cortex "
        "and deep structures must lie where the image has them.",
-       report::makeMosaic(io::readScalars(*image, reading).volume,
-                          {{&brain, "brain", "#ff9f0a"}, {&atlas, "template", "#32d7ff"}},
-                          options)});
+       report::makeMosaic(head, {{&brain, "brain", "#ff9f0a"}, {&atlas, "template", "#32d7ff"}},
+                          drawing)});
 }
 
 /// The image before and after each thing that was done to it, to change to and fro between them:
@@ -44,6 +47,8 @@ void showPreparation(ResultFolder& results, const StepFolder& step,
   const Volume<float> image = io::readScalars(*file, reading).volume;
   report::MosaicOptions small = options;
   small.tileHeight = kSmallTile;
+  const auto brain = brainOf(step, image.grid);
+  small.subject = brain ? &*brain : nullptr;
   const auto compare = [&](const char* with, const std::string& title, const std::string& caption,
                            const std::array<std::string, 2>& states, const auto& changed) {
     if (!step.has(with)) return;

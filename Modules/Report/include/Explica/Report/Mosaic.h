@@ -49,11 +49,14 @@ struct MosaicOptions {
   int perRow = 7;        ///< slices in each direction, > 0
   int tileHeight = 220;  ///< pixels
   SideConvention convention = SideConvention::Neurological;
+  /// What the image is of, above 0 there: grey levels are chosen for these voxels, so that the fat
+  /// of a head does not leave its brain dim.  Of the image's size; not owned; nullptr: all voxels.
+  const Volume<float>* subject = nullptr;
 };
 
 /// Evenly spaced slices over the box of the outlines, or else of the voxels above 0, in three
 /// directions.
-/// @throws InvalidInput  nothing to show, or an option out of range
+/// @throws InvalidInput  nothing to show, an option out of range, or a subject of another size
 [[nodiscard]] SliceMosaic makeMosaic(const Volume<float>& image,
                                      const std::vector<MosaicOutline>& outlines,
                                      const MosaicOptions& options = {});
