@@ -65,6 +65,11 @@ TEST(Means, OfTheSurfaceAndOfColumnsLeadAndThatOfVoxelsIsNamed) {
     EXPECT_NE(page->find("a thick column holds more voxels"), std::string::npos);
   }
 
+  // A reader of the whole finds one histogram, by the definition that leads.
+  EXPECT_NE(whole.find("share of vertices"), std::string::npos);
+  EXPECT_EQ(whole.find("share of voxels"), std::string::npos);
+  EXPECT_NE(alone.find("share of voxels"), std::string::npos);
+
   fs::create_directories(folder / "data");
   writeText(folder / "data/dataset_description.json", R"({"Name": "a", "BIDSVersion": "1.8.0"})");
   const auto group = explica({"bids", folder / "data", folder / "study", "group"});

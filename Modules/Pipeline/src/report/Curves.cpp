@@ -103,16 +103,11 @@ void chartThickness(ResultFolder& results, const StepFolder& step) {
     if (t > 0 && std::isfinite(t)) values.push_back(t);
   }
   const std::string side = step.side().empty() ? "" : ", " + step.side();
-  // The thickness is stated once: that of the surfaces where there are any.
-  const bool surfaces = !results.stepsOf("surface").empty();
   results.content().charts.push_back(
       {"",
-       report::histogramSvg(asVector(values),
-                            {(surfaces ? "Thickness by voxels, thick columns count more"
-                                       : "Thickness in the tissue's voxels") +
-                                 side,
-                             "thickness [mm]", "share of voxels"}),
-       kThicknessCharts, surfaces});
+       report::histogramSvg(asVector(values), {"Thickness in the tissue's voxels" + side,
+                                               "thickness [mm]", "share of voxels"}),
+       kThicknessCharts});
 }
 
 void chartUnfolding(ResultFolder& results, const StepFolder& step) {

@@ -171,11 +171,10 @@ report::ReportContent collectReport(const fs::path& folder, const FolderReportOp
   monitor.progress(0.5, "report");
   for (const StepFolder* step : results.stepsOf("thickness")) {
     if (!step->has("thickness.nii.gz")) continue;
+    // Where there are surfaces, they show it: a reader finds one thickness, by one definition.
+    if (!results.stepsOf("surface").empty()) continue;
     results.attempt("Thickness", [&] { chartThickness(results, *step); });
-    // Where there are surfaces, they show it.
-    if (results.stepsOf("surface").empty()) {
-      results.attempt("Layers", [&] { showLayers(results, *step, options); });
-    }
+    results.attempt("Layers", [&] { showLayers(results, *step, options); });
   }
   for (const StepFolder& step : results.steps()) showStep(results, step, maps, options);
   results.attempt("Numbers", [&] { findNumbers(results); });

@@ -23,7 +23,7 @@ inline constexpr const char* kProfilePlace = "profiles";
 inline constexpr const char* kSampledPlace = "sampled";
 inline constexpr const char* kFlatPlace = "flat";
 
-/// Heading of the histograms of thickness, on surfaces and in voxels.
+/// Heading of the histograms of thickness, on surfaces or in voxels.
 inline constexpr const char* kThicknessCharts = "Thickness";
 
 /// What a reader must know before trusting the results, the worst first.
@@ -61,7 +61,7 @@ struct ShownFrames {
 /// Layers of the tissue in slices, and the thickness layer by layer.
 void showLayers(ResultFolder& results, const StepFolder& step, const FolderReportOptions& options);
 
-/// Histogram of the thickness in voxels.
+/// Histogram of the thickness in voxels: a thick column counts more often than on a surface.
 void chartThickness(ResultFolder& results, const StepFolder& step);
 
 /// Curves over an unfolding's iterations, and histograms of its maps.
