@@ -4,6 +4,7 @@
 
 #include "Explica/Geometry/Fixtures.h"
 #include "Explica/IO/SurfaceFile.h"
+#include "Explica/IO/TransformFile.h"
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Testing/Command.h"
@@ -126,6 +127,32 @@ TEST_F(Sample, AcceptsNaNAndWhatLiesOutside) {
   EXPECT_EQ(rows[0].at("mean"), "3");
   EXPECT_EQ(rows[0].at("n"), std::to_string(known));
   EXPECT_NE(result.err.find("known at"), std::string::npos) << result;  // less than half
+}
+
+TEST_F(Sample, GoesToATemplateByTheTransformThatSegmentWrites) {
+  // to_template.h5: T(x) = A (x + u(x)), from the T1's space, where the surfaces lie.
+  Eigen::Affine3d affine = Eigen::Affine3d::Identity();
+  affine.rotate(Eigen::AngleAxisd(0.2, Vector(1, 2, -1).normalized()))
+      .pretranslate(Vector(3, -2, 1));
+  Volume<Eigen::Vector3f> field(gridAbout0(), Eigen::Vector3f::Zero());
+  const Eigen::Vector3f slope(0.05F, -0.03F, 0.02F);
+  for (std::size_t v = 0; v < field.size(); ++v) {
+    const auto [i, j, k] = field.grid.subscripts(v);
+    const Point at = field.grid.toWorld(Vector(i, j, k));
+    field[v] = slope * static_cast<float>(at[1]) + Eigen::Vector3f(1, 0, 0);
+  }
+  io::writeTransform(folder_ / "to_template.h5", affine, field);
+  writeX("template.nii.gz");
+  const CommandResult result = sample(
+      {folder_ / "template.nii.gz", "--depths", "0.5", "--to-volume", folder_ / "to_template.h5"});
+  ASSERT_EQ(result.exitCode, 0) << result;
+  const Eigen::VectorXd values = maps("template.func.gii")[0].values;
+  const TriangleMesh white = io::readSurface(folder_ / "white.surf.gii").mesh;
+  for (Eigen::Index v = 0; v < values.size(); ++v) {
+    const Point at = 1.2 * white.positions.row(v).transpose();
+    const Point moved = at + slope.cast<double>() * at[1] + Vector(1, 0, 0);
+    EXPECT_NEAR(values[v], (affine * moved)[0], 1e-3) << at.transpose();
+  }
 }
 
 TEST_F(Sample, RefusesAVolumeThatLiesElsewhere) {

@@ -3,12 +3,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """A head turned by 15 degrees and resampled, segmented beside itself: Dice of tissues and hemispheres.
 
-    Modules/Registration/benchmark/turned.py build/bin/explica T1 FOLDER [X,Y,Z mm ...]
+    Modules/Registration/benchmark/turned.py build/bin/explica T1 FOLDER [X,Y,Z mm ...] [--OPTION V ...]
 
 Each voxel of the turned image is compared with the nearest one of the segmentation of the image as it
 is.  "resampled" is what resampling alone costs: the shares of tissues found in the image as it is, resampled
-as the brightness was, the largest taken, in the same comparison.  What is in FOLDER already is used."""
+as the brightness was, the largest taken, in the same comparison.  "beside these" compares with them
+instead of the nearest voxels.  The last line is the same with the mask of the image as it is brought along
+(1 where its resampled mask is 0.5 or more), so that what resampling blends with the zeros around a
+stripped brain is not taken for brain.  Options go to every segmentation.  What is in FOLDER already is
+used."""
 
+import json
 import pathlib
 import subprocess
 import sys
@@ -42,9 +47,10 @@ def turned_grid(image, spacing):
     return size, affine, nib.affines.apply_affine(back, index).T
 
 
-def segmented(program, image, out):
+def segmented(program, image, out, *options):
     if not (out / "summary.json").exists():
-        subprocess.run([program, "segment", image, "--out", out, "--force", "--quiet"], check=False)
+        subprocess.run([program, "segment", image, "--out", out, "--force", "--quiet", *options],
+                       check=False)
     return out
 
 
@@ -56,7 +62,7 @@ def dice(a, b):
     return 2 * np.count_nonzero(a & b) / (np.count_nonzero(a) + np.count_nonzero(b))
 
 
-def compare(program, path, work, spacing):
+def compare(program, path, work, spacing, options):
     image = nib.load(path)
     size, affine, places = turned_grid(image, spacing)
     name = "turned-" + "x".join(f"{s:g}" for s in spacing)
@@ -64,7 +70,8 @@ def compare(program, path, work, spacing):
     if not file.exists():
         values = map_coordinates(image.get_fdata(), places, order=1).reshape(size)
         nib.save(nib.Nifti1Image(values.astype(np.float32), affine), file)
-    plain, turned = segmented(program, path, work / "plain"), segmented(program, file, work / name)
+    plain = segmented(program, path, work / "plain", *options)
+    turned = segmented(program, file, work / name, *options)
 
     nearest = np.round(places).astype(int)
     inside = np.all((nearest >= 0) & (nearest < np.array(image.shape)[:, None]), axis=0)
@@ -87,13 +94,35 @@ def compare(program, path, work, spacing):
           f"{dice(found >= 2, known >= 2):.3f}; hemispheres "
           + ", ".join(f"{dice(np.isin(half, s), np.isin(half_known, s)):.3f}" for s in (left, right))
           + f"; on the other side {100 * wrong.sum() / np.isin(half_known, left + right).sum():.2f} %")
+    tell(f"{name}, beside these", turned, resampled, known)
+
+    mask = work / (name + "-mask.nii.gz")
+    if not mask.exists():
+        inside = map_coordinates((image.get_fdata() > 0).astype(np.float32), places, order=1) >= 0.5
+        nib.save(nib.Nifti1Image(inside.reshape(size).astype(np.uint8), affine), mask)
+    masked = segmented(program, file, work / (name + "-masked"), "--mask", mask, "--template", "none",
+                       *options)
+    tell(f"{name}, mask brought along", masked, resampled, known)
+
+
+def tell(title, made, resampled, known):
+    """Tissues beside the shares resampled and the nearest voxels, and what the image was taken for."""
+    found = read(made / "seg.nii.gz")
+    numbers = json.loads((made / "summary.json").read_text())
+    print(f"{title}: grey {dice(found == 2, resampled == 2):.3f}, white "
+          f"{dice(found == 3, resampled == 3):.3f} (nearest voxels {dice(found == 2, known == 2):.3f}, "
+          f"{dice(found == 3, known == 3):.3f}); brain {numbers['brain_volume_ml']:.0f} ml, means "
+          + ", ".join(f"{numbers[k + '_mean']:.1f}" for k in ("csf", "grey", "white")))
 
 
 def main():
     program, path, work = sys.argv[1], sys.argv[2], pathlib.Path(sys.argv[3])
     work.mkdir(parents=True, exist_ok=True)
-    for words in sys.argv[4:] or ["0.8,0.8,0.8", "1,1,2"]:
-        compare(program, path, work, np.array([float(w) for w in words.split(",")]))
+    rest = sys.argv[4:]
+    first = next((n for n, word in enumerate(rest) if word.startswith("--")), len(rest))
+    for words in rest[:first] or ["0.8,0.8,0.8", "1,1,1", "1,1,2"]:
+        spacing = np.array([float(w) for w in words.split(",")])
+        compare(program, path, work, spacing, rest[first:])
 
 
 main()
