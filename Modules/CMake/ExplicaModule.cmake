@@ -15,10 +15,9 @@
 #   PROPERTY_TESTS test/...
 #   SLOW_TESTS test/...
 #   BENCHMARKS benchmark/...    Google Benchmark sources, one executable each
-#   TEST_LINKS target...        extra links of tests and benchmarks
-#   TESTS_IN_BATCHES)           tests' sources are compiled a few at a time
+#   TEST_LINKS target...)       extra links of tests and benchmarks
 function(explica_add_module name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "COMPILE_QUICKLY;TESTS_IN_BATCHES" "PURPOSE"
+  cmake_parse_arguments(PARSE_ARGV 1 arg "COMPILE_QUICKLY" "PURPOSE"
     "HEADERS;SOURCES;PUBLIC;PRIVATE;FIND;UNIT_TESTS;PROPERTY_TESTS;SLOW_TESTS;BENCHMARKS;TEST_LINKS")
   if(arg_UNPARSED_ARGUMENTS OR NOT arg_PURPOSE OR NOT arg_SOURCES)
     message(FATAL_ERROR "explica_add_module(${name}): PURPOSE and SOURCES are needed; "
@@ -81,9 +80,7 @@ function(explica_add_module name)
         string(SUBSTRING ${kind} 0 1 first)
         explica_add_test_executable(${target}${first}${rest}Tests LABEL ${label}
           SOURCES ${arg_${kind}_TESTS} LINKS Explica::${name} ${arg_TEST_LINKS})
-        if(arg_TESTS_IN_BATCHES)
-          explica_compile_in_batches(${target}${first}${rest}Tests 4)
-        endif()
+        explica_compile_in_batches(${target}${first}${rest}Tests 5)
       endif()
     endforeach()
   endif()

@@ -6,20 +6,16 @@
 #include "Explica/Flattening/PatchTable.h"
 #include "Explica/Flattening/Seen.h"
 #include "Explica/Geometry/Fixtures.h"
+#include "Explica/Testing/Selections.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numeric>
 
 namespace explica::flattening {
 namespace {
 
-std::vector<std::int32_t> everyFace(const TriangleMesh& mesh) {
-  std::vector<std::int32_t> faces(static_cast<std::size_t>(mesh.faceCount()));
-  std::iota(faces.begin(), faces.end(), 0);
-  return faces;
-}
+using testing::everyFace;
 
 TEST(DistancePairs, AreGreatCirclesOnASphere) {
   const double radius = 20;

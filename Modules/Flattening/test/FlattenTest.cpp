@@ -10,21 +10,17 @@
 #include "Explica/Geometry/Fixtures.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/SelfIntersection.h"
+#include "Explica/Testing/Selections.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numeric>
 #include <random>
 
 namespace explica::flattening {
 namespace {
 
-std::vector<std::int32_t> everyFace(const TriangleMesh& mesh) {
-  std::vector<std::int32_t> faces(static_cast<std::size_t>(mesh.faceCount()));
-  std::iota(faces.begin(), faces.end(), 0);
-  return faces;
-}
+using testing::everyFace;
 
 Disc wholeDisc(const TriangleMesh& mesh) {
   return discOf(mesh, everyFace(mesh));

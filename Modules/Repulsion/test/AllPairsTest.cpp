@@ -6,6 +6,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Geometry/Fixtures.h"
+#include "Explica/Testing/Selections.h"
 #include "Explica/Testing/TaylorRemainder.h"
 
 #include <gtest/gtest.h>
@@ -16,12 +17,10 @@
 namespace explica::repulsion {
 namespace {
 
-std::vector<bool> all(const TriangleMesh& mesh) {
-  return std::vector<bool>(static_cast<std::size_t>(mesh.vertexCount()), true);
-}
+using testing::everyVertex;
 
 double energyOf(const TriangleMesh& mesh) {
-  return AllPairs(mesh, all(mesh)).value(mesh.positions);
+  return AllPairs(mesh, everyVertex(mesh)).value(mesh.positions);
 }
 
 TEST(AllPairs, OfConcentricSpheresIsTheKnownIntegral) {
@@ -43,7 +42,7 @@ TEST(AllPairs, OfConcentricSpheresIsTheKnownIntegral) {
 
 TEST(AllPairs, GradientPassesTheTaylorTest) {
   const TriangleMesh mesh = geometry::makeFoldedSphere(1, 1.0, 0.2, 3);
-  const AllPairs knot(mesh, all(mesh));
+  const AllPairs knot(mesh, everyVertex(mesh));
   const auto energy = [&](const Positions& x) { return knot.value(x); };
   const KnotValue v = knot.evaluate(mesh.positions);
   EXPECT_NEAR(test::taylorSlope(energy, mesh.positions, v.gradient, 1e-4), 2, 0.15);
@@ -56,7 +55,7 @@ TEST(AllPairs, CountsPairsOfMovingAndFixedFacesBothWays) {
   some[0] = some[5] = some[11] = true;
   Positions moved = mesh.positions;
   for (const int v : {0, 5, 11}) moved.row(v) *= 1.05;
-  const AllPairs whole(mesh, all(mesh));
+  const AllPairs whole(mesh, everyVertex(mesh));
   const AllPairs part(mesh, some);
   const KnotValue wholeValue = whole.evaluate(moved);
   const KnotValue partValue = part.evaluate(moved);
@@ -73,7 +72,7 @@ TEST(AllPairs, CountsPairsOfMovingAndFixedFacesBothWays) {
 
 TEST(AllPairs, GradientHasNoNetForceAndNoNetTorque) {
   const TriangleMesh mesh = geometry::makeFoldedSphere(1);
-  const KnotValue v = AllPairs(mesh, all(mesh)).evaluate(mesh.positions);
+  const KnotValue v = AllPairs(mesh, everyVertex(mesh)).evaluate(mesh.positions);
   EXPECT_LT(v.gradient.colwise().sum().norm(), 1e-4 * v.gradient.norm());
   Vector torque = Vector::Zero();
   for (Eigen::Index i = 0; i < mesh.vertexCount(); ++i) {
@@ -85,7 +84,7 @@ TEST(AllPairs, GradientHasNoNetForceAndNoNetTorque) {
 TEST(AllPairs, FollowsEulersIdentityForItsDegreeTwo) {
   // E(s x) = s^2 E(x) gives x . grad E = 2 E.
   const TriangleMesh mesh = geometry::makeFoldedSphere(1);
-  const KnotValue v = AllPairs(mesh, all(mesh)).evaluate(mesh.positions);
+  const KnotValue v = AllPairs(mesh, everyVertex(mesh)).evaluate(mesh.positions);
   EXPECT_NEAR((v.gradient.array() * mesh.positions.array()).sum(), 2 * v.value, 1e-9 * v.value);
   TriangleMesh twice = mesh;
   twice.positions *= 2;
@@ -98,7 +97,7 @@ TEST(AllPairs, DescentOnTheEnergyNeedsTheMinusSign) {
   TriangleMesh upper = lower;
   upper.positions.col(2).array() += 0.2;
   const TriangleMesh sheets = geometry::joined(lower, upper);
-  const AllPairs knot(sheets, all(sheets));
+  const AllPairs knot(sheets, everyVertex(sheets));
   const KnotValue v = knot.evaluate(sheets.positions);
   const double step = 1e-3 / v.gradient.norm();
   const auto gap = [&](const Positions& x) {
@@ -112,7 +111,7 @@ TEST(AllPairs, DescentOnTheEnergyNeedsTheMinusSign) {
 
 TEST(AllPairs, DoesNotDependOnTheNumberOfThreads) {
   const TriangleMesh mesh = geometry::makeIcosphere(2);
-  const AllPairs knot(mesh, all(mesh));
+  const AllPairs knot(mesh, everyVertex(mesh));
   setThreadCount(1);
   const KnotValue one = knot.evaluate(mesh.positions);
   setThreadCount(4);
@@ -126,12 +125,12 @@ TEST(AllPairs, RefusesWhatHasNoEnergy) {
   TriangleMesh mesh = geometry::makeIcosphere(0);
   EXPECT_THROW(AllPairs(mesh, std::vector<bool>(3)), InvalidInput);
   mesh.faces.row(1) = mesh.faces.row(0);
-  EXPECT_THROW(AllPairs(mesh, all(mesh)), InvalidInput);
+  EXPECT_THROW(AllPairs(mesh, everyVertex(mesh)), InvalidInput);
   mesh = geometry::makeIcosphere(0);
   mesh.faces(0, 1) = 99;
-  EXPECT_THROW(AllPairs(mesh, all(mesh)), InvalidInput);
+  EXPECT_THROW(AllPairs(mesh, everyVertex(mesh)), InvalidInput);
   mesh.faces(0, 1) = mesh.faces(0, 0);
-  EXPECT_THROW(AllPairs(mesh, all(mesh)), InvalidInput);
+  EXPECT_THROW(AllPairs(mesh, everyVertex(mesh)), InvalidInput);
 }
 
 }  // namespace

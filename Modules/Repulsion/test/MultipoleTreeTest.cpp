@@ -8,6 +8,7 @@
 #include "Explica/Geometry/Fixtures.h"
 #include "Explica/Repulsion/AllPairs.h"
 #include "Explica/Testing/InstructionSets.h"
+#include "Explica/Testing/Selections.h"
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
@@ -17,9 +18,7 @@
 namespace explica::repulsion {
 namespace {
 
-std::vector<bool> all(const TriangleMesh& mesh) {
-  return std::vector<bool>(static_cast<std::size_t>(mesh.vertexCount()), true);
-}
+using testing::everyVertex;
 
 std::vector<bool> cap(const TriangleMesh& mesh, double z) {
   std::vector<bool> moves(static_cast<std::size_t>(mesh.vertexCount()));
@@ -39,9 +38,9 @@ void expectClose(const TriangleMesh& mesh, const std::vector<bool>& moves, doubl
 
 TEST(MultipoleTree, AgreesWithAllPairsOnClosedSurfaces) {
   const TriangleMesh sphere = geometry::makeIcosphere(2);
-  expectClose(sphere, all(sphere), 1e-3);
+  expectClose(sphere, everyVertex(sphere), 1e-3);
   const TriangleMesh folded = geometry::makeFoldedSphere(2);
-  expectClose(folded, all(folded), 1e-3);
+  expectClose(folded, everyVertex(folded), 1e-3);
 }
 
 TEST(MultipoleTree, AgreesWithAllPairsWhereSomeFacesAreFixed) {
@@ -59,7 +58,7 @@ TEST(MultipoleTree, AgreesWithAllPairsForNeedlesAndSheetsThatAlmostTouch) {
   sheets.faces.resize(lower.faceCount() + upper.faceCount(), 3);
   sheets.faces << lower.faces,
       (upper.faces.array() + static_cast<std::int32_t>(lower.vertexCount())).matrix();
-  expectClose(sheets, all(sheets), 2e-3);
+  expectClose(sheets, everyVertex(sheets), 2e-3);
 }
 
 TEST(MultipoleTree, ErrorFallsWithTheOpening) {
@@ -81,10 +80,10 @@ TEST(MultipoleTree, ErrorFallsWithTheOpening) {
 
 TEST(MultipoleTree, ErrorFallsWithTheNearRatio) {
   const TriangleMesh sphere = geometry::makeIcosphere(3);
-  const KnotValue exact = AllPairs(sphere, all(sphere)).evaluate(sphere.positions);
+  const KnotValue exact = AllPairs(sphere, everyVertex(sphere)).evaluate(sphere.positions);
   const auto error = [&](double nearRatio) {
     const KnotValue v =
-        MultipoleTree(sphere, all(sphere), {0.25, nearRatio}).evaluate(sphere.positions);
+        MultipoleTree(sphere, everyVertex(sphere), {0.25, nearRatio}).evaluate(sphere.positions);
     return (v.gradient - exact.gradient).norm() / exact.gradient.norm();
   };
   EXPECT_LT(error(2), 0.6 * error(1));
@@ -107,12 +106,12 @@ TEST(MultipoleTree, GivesTheSameWhenItsMemoryIsUsedAgain) {
 
 TEST(MultipoleTree, FollowsPositionsAwayFromThoseOfItsConstruction) {
   const TriangleMesh sphere = geometry::makeFoldedSphere(2);
-  const MultipoleTree tree(sphere, all(sphere));
+  const MultipoleTree tree(sphere, everyVertex(sphere));
   TriangleMesh moved = sphere;
   moved.positions.col(0) *= 1.5;
   moved.positions.col(1).array() += 0.3 * sphere.positions.col(2).array().square();
   const KnotValue again = tree.evaluate(moved.positions);
-  const KnotValue fresh = AllPairs(moved, all(moved)).evaluate(moved.positions);
+  const KnotValue fresh = AllPairs(moved, everyVertex(moved)).evaluate(moved.positions);
   EXPECT_NEAR(again.value, fresh.value, 1e-3 * fresh.value);
   EXPECT_LT((again.gradient - fresh.gradient).norm(), 1e-3 * fresh.gradient.norm());
 }
@@ -122,8 +121,8 @@ TEST(MultipoleTree, ScalesWithTheSquareOfTheSizeToTheLastBit) {
   const TriangleMesh folded = geometry::makeFoldedSphere(2);
   TriangleMesh large = folded;
   large.positions *= 1024;
-  const KnotValue small = MultipoleTree(folded, all(folded)).evaluate(folded.positions);
-  const KnotValue big = MultipoleTree(large, all(large)).evaluate(large.positions);
+  const KnotValue small = MultipoleTree(folded, everyVertex(folded)).evaluate(folded.positions);
+  const KnotValue big = MultipoleTree(large, everyVertex(large)).evaluate(large.positions);
   EXPECT_EQ(big.value, 1024.0 * 1024 * small.value);
   EXPECT_EQ(big.gradient, 1024 * small.gradient);
 }
@@ -135,8 +134,8 @@ TEST(MultipoleTree, IsUnmovedByRigidMotion) {
   TriangleMesh moved = folded;
   moved.positions =
       (folded.positions * turn.transpose()).rowwise() + Vector(90, -70, 50).transpose();
-  const KnotValue before = MultipoleTree(folded, all(folded)).evaluate(folded.positions);
-  const KnotValue after = MultipoleTree(moved, all(moved)).evaluate(moved.positions);
+  const KnotValue before = MultipoleTree(folded, everyVertex(folded)).evaluate(folded.positions);
+  const KnotValue after = MultipoleTree(moved, everyVertex(moved)).evaluate(moved.positions);
   EXPECT_NEAR(after.value, before.value, 1e-3 * before.value);
   EXPECT_LT((after.gradient - before.gradient * turn.transpose()).norm(),
             1e-3 * before.gradient.norm());
@@ -160,7 +159,7 @@ TEST(MultipoleTree, DoesNotDependOnTheNumberOfThreads) {
 
 TEST(MultipoleTree, InstructionSetsDifferByTheRoundingOfSinglePrecision) {
   const TriangleMesh folded = geometry::makeFoldedSphere(3);
-  const MultipoleTree tree(folded, all(folded));
+  const MultipoleTree tree(folded, everyVertex(folded));
   const KnotValue widest = tree.evaluate(folded.positions);
   testing::forEachNarrowerInstructionSet([&](std::int64_t target) {
     const KnotValue narrow = tree.evaluate(folded.positions);
@@ -172,7 +171,7 @@ TEST(MultipoleTree, InstructionSetsDifferByTheRoundingOfSinglePrecision) {
 TEST(MultipoleTree, StaysFiniteForFacesWithoutAreaAndSheetsInContact) {
   TriangleMesh sheet = geometry::makeRectangle(4, 4, 1, 1);
   sheet.positions.row(7) = sheet.positions.row(6);  // two vertices in one place
-  const KnotValue v = MultipoleTree(sheet, all(sheet)).evaluate(sheet.positions);
+  const KnotValue v = MultipoleTree(sheet, everyVertex(sheet)).evaluate(sheet.positions);
   EXPECT_TRUE(std::isfinite(v.value));
   EXPECT_TRUE(v.gradient.allFinite());
 
@@ -184,16 +183,16 @@ TEST(MultipoleTree, StaysFiniteForFacesWithoutAreaAndSheetsInContact) {
   twice.faces.conservativeResize(2 * f, 3);
   twice.faces.bottomRows(f) = twice.faces.topRows(f).array() + static_cast<std::int32_t>(n);
   twice.positions.bottomRows(n).col(0).array() += 0.25;
-  const KnotValue contact = MultipoleTree(twice, all(twice)).evaluate(twice.positions);
+  const KnotValue contact = MultipoleTree(twice, everyVertex(twice)).evaluate(twice.positions);
   EXPECT_TRUE(std::isfinite(contact.value));
   EXPECT_TRUE(contact.gradient.allFinite());
 }
 
 TEST(MultipoleTree, RefusesOptionsOutOfRange) {
   const TriangleMesh sphere = geometry::makeIcosphere(0);
-  EXPECT_THROW(MultipoleTree(sphere, all(sphere), {1.0, 2.0}), InvalidInput);
-  EXPECT_THROW(MultipoleTree(sphere, all(sphere), {0.0, 2.0}), InvalidInput);
-  EXPECT_THROW(MultipoleTree(sphere, all(sphere), {0.5, 0.5}), InvalidInput);
+  EXPECT_THROW(MultipoleTree(sphere, everyVertex(sphere), {1.0, 2.0}), InvalidInput);
+  EXPECT_THROW(MultipoleTree(sphere, everyVertex(sphere), {0.0, 2.0}), InvalidInput);
+  EXPECT_THROW(MultipoleTree(sphere, everyVertex(sphere), {0.5, 0.5}), InvalidInput);
 }
 
 TEST(MultipoleTree, OfNothingThatMovesIsZero) {

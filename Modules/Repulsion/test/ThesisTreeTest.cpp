@@ -7,17 +7,16 @@
 #include "Explica/Core/Parallel.h"
 #include "Explica/Geometry/Fixtures.h"
 #include "Explica/Repulsion/AllPairs.h"
+#include "Explica/Testing/Selections.h"
 
 #include <gtest/gtest.h>
 
 namespace explica::repulsion {
 namespace {
 
-using List = std::vector<std::int32_t>;
+using testing::everyVertex;
 
-std::vector<bool> all(const TriangleMesh& mesh) {
-  return std::vector<bool>(static_cast<std::size_t>(mesh.vertexCount()), true);
-}
+using List = std::vector<std::int32_t>;
 
 /// [Thesis, figure 5.23]: nine faces in a row, each the neighbour of the next, so spaced that the
 /// tree is the figure's.  Numbers are the figure's less one.
@@ -78,14 +77,15 @@ TEST(MergingTree, JoinsPartsThatAreNoNeighbours) {
 
 TEST(ThesisTree, AgreesWithAllPairsToItsOwnAccuracy) {
   const TriangleMesh folded = geometry::makeFoldedSphere(2);
-  const KnotValue exact = AllPairs(folded, all(folded)).evaluate(folded.positions);
-  const KnotValue tree = ThesisTree(folded, all(folded)).evaluate(folded.positions);
+  const KnotValue exact = AllPairs(folded, everyVertex(folded)).evaluate(folded.positions);
+  const KnotValue tree = ThesisTree(folded, everyVertex(folded)).evaluate(folded.positions);
   EXPECT_NEAR(tree.value, exact.value, 0.01 * exact.value);
   EXPECT_LT((tree.gradient - exact.gradient).norm(), 0.05 * exact.gradient.norm());
   ThesisTreeOptions careful;
   careful.nearDistance = 8;
   careful.relativeError = 1e-4;
-  const KnotValue better = ThesisTree(folded, all(folded), careful).evaluate(folded.positions);
+  const KnotValue better =
+      ThesisTree(folded, everyVertex(folded), careful).evaluate(folded.positions);
   EXPECT_LT((better.gradient - exact.gradient).norm(),
             0.5 * (tree.gradient - exact.gradient).norm());
 }
@@ -103,7 +103,7 @@ TEST(ThesisTree, CountsFixedFacesTwice) {
 
 TEST(ThesisTree, DoesNotDependOnTheNumberOfThreads) {
   const TriangleMesh folded = geometry::makeFoldedSphere(2);
-  const ThesisTree tree(folded, all(folded));
+  const ThesisTree tree(folded, everyVertex(folded));
   setThreadCount(1);
   const KnotValue one = tree.evaluate(folded.positions);
   setThreadCount(4);
@@ -115,8 +115,8 @@ TEST(ThesisTree, DoesNotDependOnTheNumberOfThreads) {
 
 TEST(ThesisTree, RefusesOptionsOutOfRange) {
   const TriangleMesh sphere = geometry::makeIcosphere(0);
-  EXPECT_THROW(ThesisTree(sphere, all(sphere), {-1, 0.02}), InvalidInput);
-  EXPECT_THROW(ThesisTree(sphere, all(sphere), {1, 0}), InvalidInput);
+  EXPECT_THROW(ThesisTree(sphere, everyVertex(sphere), {-1, 0.02}), InvalidInput);
+  EXPECT_THROW(ThesisTree(sphere, everyVertex(sphere), {1, 0}), InvalidInput);
 }
 
 }  // namespace

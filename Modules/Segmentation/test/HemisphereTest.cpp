@@ -13,7 +13,7 @@ namespace {
 
 /// Two mirrored half balls of white with a grey shell, a deep structure and a ventricle in each,
 /// joined at the midline, and a stem below.  Grid axes may be flipped.
-struct Phantom {
+struct HeadPhantom {
   TissueSegmentation tissue;
   Volume<Label> atlas;
   AtlasLegend legend;
@@ -23,7 +23,7 @@ constexpr std::string_view kLegend =
     "1 Frontal_L 2101\n2 Frontal_R 2102\n3 Thalamus_L\n4 Thalamus_R\n5 Cerebelum_L\n"
     "6 Hippocampus_L\n7 Hippocampus_R\n";
 
-Phantom makePhantom(bool flipX) {
+HeadPhantom makeHeadPhantom(bool flipX) {
   Grid grid;
   grid.size = {70, 60, 60};
   grid.origin = Point(-34.5, -30, -30);
@@ -31,7 +31,7 @@ Phantom makePhantom(bool flipX) {
     grid.direction.col(0) *= -1;
     grid.origin.x() = 34.5;
   }
-  Phantom p;
+  HeadPhantom p;
   p.legend = parseAtlasLegend(kLegend, "legend");
   p.tissue.labels = Volume<Label>(grid, 0);
   for (auto& q : p.tissue.probability) q = Volume<float>(grid, 0.0f);
@@ -67,7 +67,7 @@ Phantom makePhantom(bool flipX) {
 
 TEST(Hemisphere, TakesTheNamedSideWhicheverWayTheGridRuns) {
   for (const bool flip : {false, true}) {
-    const Phantom p = makePhantom(flip);
+    const HeadPhantom p = makeHeadPhantom(flip);
     const Hemisphere left = extractHemisphere(p.tissue, p.atlas, p.legend);
     for (std::size_t v = 0; v < left.labels.size(); ++v) {
       if (left.labels[v] != kWhite && left.labels[v] != kGrey) continue;
@@ -79,7 +79,7 @@ TEST(Hemisphere, TakesTheNamedSideWhicheverWayTheGridRuns) {
 }
 
 TEST(Hemisphere, FillsDeepStructuresAndVentricles) {
-  const Phantom p = makePhantom(false);
+  const HeadPhantom p = makeHeadPhantom(false);
   const Hemisphere left = extractHemisphere(p.tissue, p.atlas, p.legend);
   const auto labelAt = [&](const Point& w) {
     const Vector at = p.atlas.grid.toIndex(w);
@@ -94,7 +94,7 @@ TEST(Hemisphere, FillsDeepStructuresAndVentricles) {
 }
 
 TEST(Hemisphere, LeavesTheStemOutAndMarksTheCut) {
-  const Phantom p = makePhantom(false);
+  const HeadPhantom p = makeHeadPhantom(false);
   const Hemisphere left = extractHemisphere(p.tissue, p.atlas, p.legend);
   const Vector stem = p.atlas.grid.toIndex(Point(-2.5, 0, -10));
   const Vector across = p.atlas.grid.toIndex(Point(3.5, 10, 0));
@@ -107,7 +107,7 @@ TEST(Hemisphere, LeavesTheStemOutAndMarksTheCut) {
 }
 
 TEST(Hemisphere, LeftAndRightShareNoVoxel) {
-  const Phantom p = makePhantom(false);
+  const HeadPhantom p = makeHeadPhantom(false);
   HemisphereOptions options;
   const Hemisphere left = extractHemisphere(p.tissue, p.atlas, p.legend, options);
   options.side = Side::Right;
@@ -121,7 +121,7 @@ TEST(Hemisphere, LeftAndRightShareNoVoxel) {
 }
 
 TEST(Hemisphere, SaysWhatIsWrongWithTheAtlas) {
-  Phantom p = makePhantom(false);
+  HeadPhantom p = makeHeadPhantom(false);
   p.atlas[5] = 99;
   EXPECT_THROW((void)extractHemisphere(p.tissue, p.atlas, p.legend), InvalidInput);
   EXPECT_THROW((void)parseAtlasLegend("1 Frontal_L\n", "legend"), InvalidInput);

@@ -8,6 +8,7 @@
 #include "Explica/Shapes/AnnulusBoundaries.h"
 #include "Explica/Shapes/ShapeFit.h"
 #include "Explica/Shapes/ShapeLevel.h"
+#include "Lobed.h"
 
 #include <gtest/gtest.h>
 
@@ -20,16 +21,6 @@ namespace {
 
 using planar::Curve;
 using planar::Point2;
-
-/// A closed curve with lobes: radius 20 (1 + depth cos(lobes t + phase)).
-Curve lobed(int lobes, double depth, double phase) {
-  Curve curve = planar::makeCircle(400, 1);
-  for (int v = 0; v < curve.vertexCount(); ++v) {
-    const double t = 2 * kPi * v / curve.vertexCount();
-    curve.positions.row(v) *= 20 * (1 + depth * std::cos(lobes * t + phase));
-  }
-  return curve;
-}
 
 double farthest(const Curve& a, const Curve& b) {
   return std::max(distanceBetween(a, b).max, distanceBetween(b, a).max);

@@ -6,6 +6,7 @@
 #include "Explica/Geometry/Fixtures.h"
 #include "Explica/Planar/PolygonPhantoms.h"
 #include "Explica/Shapes/ShapeLevel.h"
+#include "Lobed.h"
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
@@ -17,16 +18,6 @@
 
 namespace explica::shapes {
 namespace {
-
-/// A closed curve with lobes: radius 20 (1 + depth cos(lobes t + phase)).
-planar::Curve lobed(int lobes, double depth, double phase) {
-  planar::Curve curve = planar::makeCircle(400, 1);
-  for (int v = 0; v < curve.vertexCount(); ++v) {
-    const double t = 2 * kPi * v / curve.vertexCount();
-    curve.positions.row(v) *= 20 * (1 + depth * std::cos(lobes * t + phase));
-  }
-  return curve;
-}
 
 /// A smooth closed surface with lobes about the coordinate axes.
 TriangleMesh lobedSurface(double depth, double twist) {

@@ -6,27 +6,22 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Geometry/Fixtures.h"
+#include "Explica/Testing/Selections.h"
 #include "Explica/Testing/TaylorRemainder.h"
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
-#include <numeric>
-
 namespace explica::visibility {
 namespace {
 
-std::vector<std::int32_t> allFaces(const TriangleMesh& mesh) {
-  std::vector<std::int32_t> faces(static_cast<std::size_t>(mesh.faceCount()));
-  std::iota(faces.begin(), faces.end(), 0);
-  return faces;
-}
+using testing::everyFace;
 
 TEST(AverageVisibility, OfASphereAroundTheViewpointTurnedInsideOutIsOne) {
   // Every ray from the centre meets the inverted faces at right angles.
   TriangleMesh sphere = geometry::makeIcosphere(4, 2.0);
   sphere.faces.col(1).swap(sphere.faces.col(2));
-  const AverageVisibility visibility(sphere.faces, allFaces(sphere), viewpoint(Point::Zero()));
+  const AverageVisibility visibility(sphere.faces, everyFace(sphere), viewpoint(Point::Zero()));
   EXPECT_NEAR(visibility.value(sphere.positions), 1, 2e-3);
   EXPECT_LT(visibility.value(sphere.positions), 1);
 }
@@ -34,7 +29,7 @@ TEST(AverageVisibility, OfASphereAroundTheViewpointTurnedInsideOutIsOne) {
 TEST(AverageVisibility, OfAClosedSurfaceIsMinusTheMeanOfTwoOverR) {
   // Divergence theorem: flux = -integral of 2/r over the ball = -2 V / D for a ball at distance D.
   const TriangleMesh sphere = geometry::makeIcosphere(4, 1.0);
-  const AverageVisibility visibility(sphere.faces, allFaces(sphere), viewpoint(Point(0, 0, 5)));
+  const AverageVisibility visibility(sphere.faces, everyFace(sphere), viewpoint(Point(0, 0, 5)));
   EXPECT_NEAR(visibility.value(sphere.positions), -2.0 / (3 * 5), 5e-4);
 }
 
@@ -71,7 +66,8 @@ TEST(AverageVisibility, GradientIsZeroOffTheRegion) {
 TEST(AverageVisibility, FarFromTheViewpointOnlyTheRimIsPulled) {
   // div F = 2/r vanishes: moving an inner vertex does not change the flux, only the area.
   TriangleMesh plate = geometry::makeRectangle(6, 6, 1, 1);
-  const AverageVisibility visibility(plate.faces, allFaces(plate), viewpoint(Point(0.5, 0.5, 1e5)));
+  const AverageVisibility visibility(plate.faces, everyFace(plate),
+                                     viewpoint(Point(0.5, 0.5, 1e5)));
   const VisibilityValue v = visibility.evaluate(plate.positions);
   EXPECT_NEAR(v.value, 1, 1e-8);
   for (Eigen::Index i = 0; i < v.gradient.rows(); ++i) EXPECT_LT(v.gradient.row(i).norm(), 1e-3);
@@ -96,7 +92,7 @@ TEST(AverageVisibility, SurvivesFaceOrderAndRigidMotion) {
 
 TEST(AverageVisibility, DoesNotDependOnTheNumberOfThreads) {
   const TriangleMesh sphere = geometry::makeFoldedSphere(4);
-  const AverageVisibility visibility(sphere.faces, allFaces(sphere), viewpoint(Point(0, 0, 4)));
+  const AverageVisibility visibility(sphere.faces, everyFace(sphere), viewpoint(Point(0, 0, 4)));
   setThreadCount(1);
   const VisibilityValue one = visibility.evaluate(sphere.positions);
   setThreadCount(4);

@@ -5,32 +5,28 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Geometry/Fixtures.h"
+#include "Explica/Testing/Selections.h"
 #include "Explica/Visibility/VisibleFraction.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numeric>
 
 namespace explica::visibility {
 namespace {
 
-std::vector<std::int32_t> allFaces(const TriangleMesh& mesh) {
-  std::vector<std::int32_t> faces(static_cast<std::size_t>(mesh.faceCount()));
-  std::iota(faces.begin(), faces.end(), 0);
-  return faces;
-}
+using testing::everyFace;
 
 TEST(FluxVariance, OfASphereFromFarIsAThird) {
   // f = cos: its mean over the sphere is 0, that of its square 1/3.
   const TriangleMesh sphere = geometry::makeIcosphere(5);
-  EXPECT_NEAR(fluxVariance(sphere, allFaces(sphere), viewpoint(Point(0, 0, 1e5))), 1.0 / 3, 1e-3);
+  EXPECT_NEAR(fluxVariance(sphere, everyFace(sphere), viewpoint(Point(0, 0, 1e5))), 1.0 / 3, 1e-3);
 }
 
 TEST(FluxVariance, IsNothingOnAPlateSeenFromFarAtAnyAngle) {
   const TriangleMesh plate = geometry::makeRectangle(4, 3, 2, 1);
   for (const Point& from : {Point(0, 0, 1e6), Point(1e6, 0, 1e6), Point(0, 3e6, -1e6)}) {
-    EXPECT_LT(fluxVariance(plate, allFaces(plate), viewpoint(from)), 1e-10);
+    EXPECT_LT(fluxVariance(plate, everyFace(plate), viewpoint(from)), 1e-10);
   }
 }
 
@@ -49,14 +45,14 @@ TEST(FluxVariance, OfADiscFromNearIsItsClosedForm) {
   for (const double h : {0.2, 1.0, 5.0}) {
     const double mean = 2 * h * (std::sqrt(h * h + 1) - h);
     const double square = h * h * std::log1p(1 / (h * h));
-    EXPECT_NEAR(fluxVariance(disc, allFaces(disc), viewpoint(Point(0, 0, h))), square - mean * mean,
-                1e-5);
+    EXPECT_NEAR(fluxVariance(disc, everyFace(disc), viewpoint(Point(0, 0, h))),
+                square - mean * mean, 1e-5);
   }
 }
 
 TEST(FluxVariance, OfSeveralViewpointsIsTheirWeightedMean) {
   const TriangleMesh sphere = geometry::makeIcosphere(2);
-  const auto faces = allFaces(sphere);
+  const auto faces = everyFace(sphere);
   const Point a(0, 0, 3), b(5, 1, 0);
   const double both = fluxVariance(sphere, faces, viewpoints({a, b}, {1, 3}));
   EXPECT_NEAR(both,
@@ -70,7 +66,7 @@ TEST(RealVisibility, OfASphereFromFarIsAQuarter) {
   // Its shadow, pi R^2, over its area.
   const TriangleMesh sphere = geometry::makeIcosphere(5);
   const VisibleFraction seen = visibleFraction(sphere, viewpoint(Point(0, 1e5, 0)));
-  EXPECT_NEAR(seen.realOf(sphere, allFaces(sphere)), 0.25, 1e-3);
+  EXPECT_NEAR(seen.realOf(sphere, everyFace(sphere)), 0.25, 1e-3);
   EXPECT_LE((seen.arriving - seen.face).maxCoeff(), 1e-12);
 }
 
