@@ -116,7 +116,7 @@ function(explica_use_precompiled_headers target kind)
   target_precompile_headers(${target} REUSE_FROM ExplicaPrecompiled${kind})
   explica_collect_garbage_seldom(${target})
   # The same false warnings inside std::string, under more names.
-  foreach(warning IN ITEMS array-bounds stringop-overflow stringop-overread)
+  foreach(warning IN ITEMS array-bounds maybe-uninitialized stringop-overflow stringop-overread)
     target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-${warning}>)
   endforeach()
 endfunction()
