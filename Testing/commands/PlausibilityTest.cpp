@@ -161,7 +161,7 @@ TEST(PlausibilityCommand, ACortexTooThickIsRedInTheReportAndFailsItsRow) {
   EXPECT_FALSE(summary["plausible"].get<bool>());
   EXPECT_EQ(summary["flags"][0]["name"], "thickness-mean");
   EXPECT_EQ(summary["flags"][0]["step"], "surface");
-  EXPECT_NE(readText(std::filesystem::path(run) / "report.html").find("Thickness-mean"),
+  EXPECT_NE(readText(std::filesystem::path(run) / "report.html").find("Thickness mean:"),
             std::string::npos);
 
   std::filesystem::create_directories(folder / "data");

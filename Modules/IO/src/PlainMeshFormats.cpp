@@ -32,6 +32,19 @@ LoadedSurface finished(const std::filesystem::path& path, const char* format,
   return surface;
 }
 
+/// Says what a file holds beyond the faces that its header announces, blank space and comments
+/// aside.
+void noteRest(ByteCursor& cursor, LoadedSurface& surface) {
+  while (cursor.left() > 0) {
+    const std::size_t left = cursor.left();
+    const std::string_view line = cursor.line();
+    if (line.substr(0, line.find('#')).find_first_not_of(" \t") == std::string_view::npos) continue;
+    surface.origin.notes.push_back(std::to_string(left) +
+                                   " bytes after the last face are not used");
+    return;
+  }
+}
+
 enum class PlyType { Int8, UInt8, Int16, UInt16, Int32, UInt32, Float32, Float64 };
 
 PlyType plyTypeOf(const std::filesystem::path& path, std::string_view word) {
@@ -218,6 +231,7 @@ LoadedSurface readPly(const std::filesystem::path& path, ByteView bytes) {
     }
   }
   LoadedSurface surface = finished(path, "PLY", builder);
+  noteRest(cursor, surface);
   surface.maps = std::move(maps);
   return surface;
 }
@@ -344,7 +358,9 @@ LoadedSurface readOff(const std::filesystem::path& path, ByteView bytes) {
     for (std::int64_t& corner : corners) corner = parseNumber<std::int64_t>(path, words.word());
     builder.addPolygon(path, corners.data(), corners.size());
   }
-  return finished(path, "OFF", builder);
+  LoadedSurface surface = finished(path, "OFF", builder);
+  noteRest(cursor, surface);
+  return surface;
 }
 
 void writeOff(const std::filesystem::path& path, const TriangleMesh& mesh) {

@@ -308,6 +308,23 @@ TEST(SurfaceFile, PolygonsAreSplitAndSaid) {
   }
 }
 
+TEST(SurfaceFile, WhatLiesBehindTheLastFaceIsSaid) {
+  const TemporaryFolder folder;
+  const std::string off = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 1\nproperty list uchar int vertex_index\nend_header\n"
+      "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  for (const auto& [name, text] : {std::pair("a.off", off), std::pair("a.ply", ply)}) {
+    putContent(folder / name, text + "\n \n# the end\n");
+    EXPECT_TRUE(io::readSurface(folder / name).origin.notes.empty()) << name;
+    putContent(folder / name, text + "3 0 2 1\n");
+    const std::vector<std::string> notes = io::readSurface(folder / name).origin.notes;
+    ASSERT_EQ(notes.size(), 1U) << name;
+    EXPECT_EQ(notes[0], "8 bytes after the last face are not used") << name;
+  }
+}
+
 TEST(SurfaceFile, StripsAlternateTheirSense) {
   const TemporaryFolder folder;
   putContent(folder / "a.vtk",
