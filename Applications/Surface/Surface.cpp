@@ -653,6 +653,7 @@ void reportMaking(Context& context, const surface::CorticalSurfaces& made, bool 
   context.result("edge_length", made.white.edgeLength);
   if (hasGrey) {
     context.result("vertices_ended_at_bank", made.endedAtBank);
+    context.result("trajectories_shortened", made.shortened);
     context.result("sulcal_links_recovered", made.cutLinks);
     context.result("vertices_held_back_mid", made.heldBackMid);
     context.result("vertices_held_back_pial", made.heldBackPial);

@@ -315,13 +315,17 @@ TEST(SurfaceFile, WhatLiesBehindTheLastFaceIsSaid) {
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
       "property float z\nelement face 1\nproperty list uchar int vertex_index\nend_header\n"
       "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  const auto said = [&](const std::string& name) {
+    std::string notes;
+    for (const std::string& note : io::readSurface(folder / name).origin.notes)
+      notes += note + "\n";
+    return notes.find("8 bytes after the last face are not used") != std::string::npos;
+  };
   for (const auto& [name, text] : {std::pair("a.off", off), std::pair("a.ply", ply)}) {
     putContent(folder / name, text + "\n \n# the end\n");
-    EXPECT_TRUE(io::readSurface(folder / name).origin.notes.empty()) << name;
+    EXPECT_FALSE(said(name)) << name;
     putContent(folder / name, text + "3 0 2 1\n");
-    const std::vector<std::string> notes = io::readSurface(folder / name).origin.notes;
-    ASSERT_EQ(notes.size(), 1U) << name;
-    EXPECT_EQ(notes[0], "8 bytes after the last face are not used") << name;
+    EXPECT_TRUE(said(name)) << name;
   }
 }
 

@@ -96,6 +96,15 @@ bool isAtRest(const std::vector<IterationRecord>& history) {
          std::abs(last.edgeStrainMean - before.edgeStrainMean) < kMove;
 }
 
+/// True if a face of the collar is stretched beyond what it should be and is still giving way back:
+/// one that is caught in a contact stays as it is, and is no reason to go on.
+bool isTorn(const std::vector<IterationRecord>& history) {
+  constexpr std::size_t kWindow = 5;
+  const double now = history.back().collarStretchMax;
+  if (history.size() <= kWindow) return now > kCollarMost;
+  return now > kCollarMost && now < history[history.size() - 1 - kWindow].collarStretchMax;
+}
+
 /// How much stronger the visibility term has to be for a goal.  Against springs the deficit 1 - v
 /// falls with its square: a quarter of the way at a time, since lengths are better spared.
 double driveFactor(double visibility, double goal) {
@@ -129,7 +138,7 @@ Termination StopRule::weigh(Unfolder& unfolder, const std::vector<IterationRecor
   const bool balanced = std::abs(last.visibility - goalAt(last.edgeStrainMean)) < kBalanced;
   const bool atRest = isAtRest(history);
   const bool elastic = options_.unfolder.surround == Surround::Elastic;
-  const bool torn = elastic && last.collarStretchMax > kCollarMost;
+  const bool torn = elastic && isTorn(history);
   const bool enough = merit(last.visibility, last.edgeStrainMean) > kEnough && !torn;
   const bool longEnough = last.iteration - unfolder.state().driveIteration > kBalancing;
   const bool ended = enough || longEnough || ((balanced || atLimit) && atRest);

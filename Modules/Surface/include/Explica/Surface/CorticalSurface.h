@@ -79,6 +79,7 @@ struct CorticalSurfaces {
   Eigen::VectorXd sulcalDepth;       ///< of the middle surface below the closed hull, mm
   std::int64_t noRibbon = 0;         ///< vertices without grey matter: all three surfaces coincide
   std::int64_t endedAtBank = 0;      ///< trajectories that end in the middle of a buried sulcus
+  std::int64_t shortened = 0;        ///< trajectories far longer than all around: not followed
   std::int64_t cutLinks = 0;         ///< grid links that buried sulci cut
   std::int64_t heldBackMid = 0;   ///< vertices kept short of half their way, so that faces do not
   std::int64_t heldBackPial = 0;  ///< meet; or of their whole way
@@ -101,7 +102,9 @@ struct CorticalSurfaces {
 /// neither intersects itself; a vertex whose faces would meet others waits on its trajectory. Where
 /// growth has left stretched, poor or folded triangles, vertices then slide along their surface;
 /// thickness stays that of the trajectories.  A trajectory ends where it no longer leaves white
-/// matter behind: from there it would only follow the floor of a sulcus.
+/// matter behind: from there it would only follow the floor of a sulcus.  Along one more than 1.3
+/// times as long as the median within two edges of its vertex, and by half a voxel, the surfaces
+/// stay at that median; thickness keeps its length.
 /// @throws InvalidInput  no grey matter
 [[nodiscard]] CorticalSurfaces buildSurfaces(const CorticalTissue& tissue,
                                              const SurfaceOptions& options = {},
