@@ -8,15 +8,20 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <set>
+#include <string>
 
 namespace explica::testing {
 namespace {
 
-/// Rows whose bytes hang on the last digit of the C library's functions, which are others without
-/// fused multiply-add: descents that take thousands of steps.
-const std::set<std::string>& onTheLastDigit() {
-  static const std::set<std::string> rows = {"Embed", "EmbedBand", "PolygonPhantom", "Polygon"};
+/// Rows whose bytes hang on the last digit of functions that are others on that processor: descents
+/// that take thousands of steps, and cuts that are chosen by them.  Testing/README.md says by how
+/// much they differ.
+const std::map<std::string, std::set<std::string>>& onTheLastDigit() {
+  static const std::map<std::string, std::set<std::string>> rows = {
+      {"Nehalem", {"Embed", "EmbedBand", "FlattenCut", "PolygonPhantom", "Polygon"}},
+      {"Haswell", {"Embed", "EmbedBand"}}};
   return rows;
 }
 
@@ -45,8 +50,10 @@ TEST_P(Processors, OfOlderKindsGiveTheSameBytes) {
     const std::string out = folder_ / processor;
     const auto there = explicaOn(processor, words_ + std::vector<std::string>{"--out", out});
     ASSERT_EQ(there.exitCode, here.exitCode) << there;
-    const bool equal = stableHashes(out) == expected;
-    EXPECT_EQ(equal, processor == "Haswell" || !onTheLastDigit().contains(GetParam().name));
+    const auto hashes = stableHashes(out);
+    EXPECT_EQ(hashes.size(), expected.size());
+    if (onTheLastDigit().at(processor).contains(GetParam().name)) continue;
+    EXPECT_EQ(hashes, expected);
   }
 }
 
