@@ -5,6 +5,7 @@
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Testing/Command.h"
+#include "Explica/Testing/Grids.h"
 
 #include <gtest/gtest.h>
 
@@ -21,13 +22,9 @@ namespace fs = std::filesystem;
 /// grey matter is 3 to 7 voxels thick.
 Volume<Label> eccentricBalls(double unit) {
   constexpr int n = 44;
-  Grid grid;
-  grid.size = {n, n, n};
-  grid.spacing = Vector::Constant(unit);
-  grid.origin = Point::Constant(-0.5 * (n - 1) * unit);
-  Volume<Label> labels(grid);
+  Volume<Label> labels(cubeGrid(n, unit));
   for (std::size_t v = 0; v < labels.size(); ++v) {
-    const auto at = grid.subscripts(v);
+    const auto at = labels.grid.subscripts(v);
     const Vector p = Vector(at[0], at[1], at[2]) - Vector::Constant(0.5 * (n - 1));
     labels[v] = (p - Vector(2, 0, 0)).norm() < 12 ? 3 : p.norm() < 17 ? 2 : 0;
   }

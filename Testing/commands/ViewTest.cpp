@@ -108,14 +108,19 @@ TEST(View, ShowsContoursOnAVolume) {
   EXPECT_NE(readText(folder / "plain.png"), readText(folder / "lined.png"));
 }
 
-TEST(View, MakesAFilmOfFrames) {
-  TemporaryFolder folder;
+/// The folder `u` of three iterations with their frames.
+void writeUnfoldedSphere(const TemporaryFolder& folder) {
   writeSphere(folder);
   ASSERT_NE(explica({"unfold", folder / "a.surf.gii", "--center", "0,0,40", "--radius", "14",
                      "--direction", "0,0,1", "--max-iterations", "3", "--frames", "3", "--out",
                      folder / "u"})
                 .exitCode,
             2);
+}
+
+TEST(View, MakesAFilmOfFrames) {
+  TemporaryFolder folder;
+  writeUnfoldedSphere(folder);
   const auto film =
       explica({"view", folder / "u", "--labels", folder / "u/region.label.gii", "--width", "160",
                "--height", "120", "--direction", "0,0,1", "--film", folder / "u.gif"},
@@ -137,12 +142,7 @@ TEST(View, MakesAFilmOfFrames) {
 
 TEST(View, MakesFilmsOfEveryFormat) {
   TemporaryFolder folder;
-  writeSphere(folder);
-  ASSERT_NE(explica({"unfold", folder / "a.surf.gii", "--center", "0,0,40", "--radius", "14",
-                     "--direction", "0,0,1", "--max-iterations", "3", "--frames", "3", "--out",
-                     folder / "u"})
-                .exitCode,
-            2);
+  writeUnfoldedSphere(folder);
   // An odd width, which the codecs of videos do not take as it is.
   const auto film = [&](const std::string& name, const CommandSetting& setting = kNoDisplay) {
     return explica(

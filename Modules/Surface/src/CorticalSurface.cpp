@@ -3,6 +3,7 @@
 
 #include "Explica/Surface/CorticalSurface.h"
 
+#include "AstrayPaths.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Geometry/MeshMeasures.h"
@@ -174,45 +175,6 @@ void placeByImage(const Volume<float>& image, double fluid, Ribbon& ribbon,
   result.image.movedWhite = moved.cwiseAbs().mean();
   result.image.movedOuter = borders.outer.cwiseAbs().mean();
   result.seconds.image = watch.lap();
-}
-
-/// A surface follows a trajectory no farther than the median of the vertices within two edges if it
-/// is longer than that so many times and by so many voxels: it has gone astray, along the floor of
-/// a sulcus or into the next one, and a vertex there would stand against other banks.
-constexpr double kAstray = 1.3, kAstrayBy = 0.5;
-
-std::int64_t shortenAstray(const TriangleMesh& white, double voxel,
-                           std::vector<Trajectory>& paths) {
-  const auto topology = geometry::buildTopology(white.faces, white.vertexCount());
-  std::vector<double> most(paths.size(), kInfinity);
-  parallelFor(paths.size(), 512, [&](std::size_t v) {
-    std::vector<std::int32_t> near;
-    for (const std::int32_t w : topology.vertexVertices[v]) {
-      near.push_back(w);
-      const auto second = topology.vertexVertices[w];
-      near.insert(near.end(), second.begin(), second.end());
-    }
-    std::sort(near.begin(), near.end());
-    near.erase(std::unique(near.begin(), near.end()), near.end());
-    std::vector<double> lengths;
-    for (const std::int32_t w : near) {
-      if (paths[w].length() > 0) lengths.push_back(paths[w].length());
-    }
-    if (lengths.empty()) return;
-    const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-    std::nth_element(lengths.begin(), middle, lengths.end());
-    const double length = paths[v].length();
-    if (length > kAstray * *middle && length > *middle + kAstrayBy * voxel) most[v] = *middle;
-  });
-  std::int64_t shortened = 0;
-  for (std::size_t v = 0; v < paths.size(); ++v) {
-    if (most[v] == kInfinity) continue;
-    const TrajectoryEnd end = paths[v].end;
-    paths[v] = between(paths[v], 0, most[v]);
-    paths[v].end = end;
-    ++shortened;
-  }
-  return shortened;
 }
 
 void takeThickness(const std::vector<Trajectory>& paths, CorticalSurfaces& result) {

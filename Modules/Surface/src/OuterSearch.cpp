@@ -30,16 +30,8 @@ double usualLength(const std::vector<Trajectory>& paths) {
 /// Median over a vertex and two rings.
 double medianAround(std::size_t v, const Eigen::VectorXd& values,
                     const geometry::MeshTopology& topology) {
-  std::vector<std::int32_t> near = {static_cast<std::int32_t>(v)};
-  for (const std::int32_t w : topology.vertexVertices[v]) {
-    near.push_back(w);
-    const auto second = topology.vertexVertices[w];
-    near.insert(near.end(), second.begin(), second.end());
-  }
-  std::sort(near.begin(), near.end());
-  near.erase(std::unique(near.begin(), near.end()), near.end());
   std::vector<double> around;
-  for (const std::int32_t w : near) around.push_back(values[w]);
+  for (const std::int32_t w : withinTwoEdges(v, topology)) around.push_back(values[w]);
   return median(std::move(around));
 }
 

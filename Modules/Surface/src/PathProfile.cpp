@@ -67,6 +67,19 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
+std::vector<std::int32_t> withinTwoEdges(std::size_t vertex,
+                                         const geometry::MeshTopology& topology) {
+  std::vector<std::int32_t> near = {static_cast<std::int32_t>(vertex)};
+  for (const std::int32_t w : topology.vertexVertices[vertex]) {
+    near.push_back(w);
+    const auto second = topology.vertexVertices[w];
+    near.insert(near.end(), second.begin(), second.end());
+  }
+  std::sort(near.begin(), near.end());
+  near.erase(std::unique(near.begin(), near.end()), near.end());
+  return near;
+}
+
 Eigen::MatrixXd averaged(Eigen::MatrixXd values, const geometry::MeshTopology& topology,
                          int times) {
   for (int pass = 0; pass < times; ++pass) {

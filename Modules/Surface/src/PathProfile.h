@@ -28,6 +28,10 @@ namespace explica::surface {
 /// Median of the finite values; NaN if there is none.
 [[nodiscard]] double median(std::vector<double> values);
 
+/// The vertices no more than two edges from one, itself among them, in order.
+[[nodiscard]] std::vector<std::int32_t> withinTwoEdges(std::size_t vertex,
+                                                       const geometry::MeshTopology& topology);
+
 /// Means over a vertex and its ring, `times` over; rows that begin with NaN are not known and take
 /// no part.
 /// @param values  V x any number

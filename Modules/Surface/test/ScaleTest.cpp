@@ -4,6 +4,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Surface/CorticalSurface.h"
+#include "Explica/Testing/Grids.h"
 
 #include <gtest/gtest.h>
 
@@ -17,13 +18,9 @@ namespace {
 /// voxel.
 Volume<Label> wavyBall(double unit) {
   constexpr int n = 62;
-  Grid grid;
-  grid.size = {n, n, n};
-  grid.spacing = Vector::Constant(unit);
-  grid.origin = Point::Constant(-0.5 * (n - 1) * unit);
-  Volume<Label> labels(grid);
+  Volume<Label> labels(testing::cubeGrid(n, unit));
   for (std::size_t v = 0; v < labels.size(); ++v) {
-    const auto at = grid.subscripts(v);
+    const auto at = labels.grid.subscripts(v);
     const Vector p = Vector(at[0], at[1], at[2]) - Vector::Constant(0.5 * (n - 1));
     const double r = p.norm(), flat = std::hypot(p.x(), p.y()) / r;
     const double wave = 4 * std::sin(12 * std::atan2(p.y(), p.x())) * flat * flat;

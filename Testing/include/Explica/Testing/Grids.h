@@ -31,6 +31,15 @@ inline std::vector<Grid> scannerGrids() {
   return grids;
 }
 
+/// n x n x n voxels of that many mm about the origin.
+inline Grid cubeGrid(int n, double spacing) {
+  Grid grid;
+  grid.size = {n, n, n};
+  grid.spacing = Vector::Constant(spacing);
+  grid.origin = Point::Constant(-0.5 * (n - 1) * spacing);
+  return grid;
+}
+
 /// f(place) at each voxel centre.
 template <class Function>
 Volume<float> volumeOf(const Grid& grid, const Function& f) {
