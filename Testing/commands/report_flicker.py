@@ -9,27 +9,14 @@ keyboard, and if the button flickers between these two pictures until it is pres
 import sys
 import time
 
-from selenium import webdriver
-from selenium.webdriver.chrome.options import Options
-from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 
-faults = []
-
-
-def check(fact, holds):
-    print(("ok    " if holds else "FAULT ") + fact)
-    if not holds:
-        faults.append(fact)
+from browser import check, faults, start
 
 
 def main():
-    options = Options()
-    options.binary_location = "/usr/bin/chromium"
-    for flag in "--headless=new --no-sandbox --disable-gpu --window-size=1200,900".split():
-        options.add_argument(flag)
-    driver = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
+    driver = start(1200)
     try:
         driver.get("file://" + sys.argv[1])
         boxes = driver.find_elements(By.CSS_SELECTOR, "input.to-other")

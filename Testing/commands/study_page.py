@@ -12,28 +12,10 @@ import json
 import pathlib
 import sys
 
-from selenium import webdriver
-from selenium.webdriver.chrome.options import Options
-from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 
-faults = []
-
-
-def check(fact, holds):
-    print(("ok    " if holds else "FAULT ") + fact)
-    if not holds:
-        faults.append(fact)
-
-
-def start():
-    options = Options()
-    options.binary_location = "/usr/bin/chromium"
-    for flag in "--headless=new --no-sandbox --disable-gpu --window-size=1440,900".split():
-        options.add_argument(flag)
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
-    return webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
+from browser import check, faults, start
 
 
 def wait(driver):
@@ -132,7 +114,7 @@ def logs(driver):
 def main():
     page = pathlib.Path(sys.argv[1]).resolve()
     limit = float(sys.argv[2]) if len(sys.argv) > 2 else None
-    driver = start()
+    driver = start(1440, logging=True)
     try:
         driver.get(page.as_uri())
         wait(driver)

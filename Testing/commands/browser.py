@@ -1,0 +1,26 @@
+# SPDX-FileCopyrightText: The Explica developers
+# SPDX-License-Identifier: Apache-2.0
+"""Debian's Chromium without a window, and what was found not to hold in it."""
+from selenium import webdriver
+from selenium.webdriver.chrome.options import Options
+from selenium.webdriver.chrome.service import Service
+
+faults = []
+
+
+def check(fact, holds):
+    print(("ok    " if holds else "FAULT ") + fact)
+    if not holds:
+        faults.append(fact)
+
+
+def start(width, logging=False):
+    """A driver of a page `width` pixels wide; `logging` keeps console and requests."""
+    options = Options()
+    options.binary_location = "/usr/bin/chromium"
+    size = "--window-size=%d,900" % width
+    for flag in ("--headless=new", "--no-sandbox", "--disable-gpu", size):
+        options.add_argument(flag)
+    if logging:
+        options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+    return webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
