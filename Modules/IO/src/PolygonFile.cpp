@@ -16,6 +16,8 @@
 namespace explica::io {
 namespace {
 
+constexpr double kFarthest = 1e7;  // mm; beyond it differences of coordinates lose their digits
+
 using Points2 = std::vector<std::array<double, 2>>;
 
 /// The first two numbers of a line, if it starts with two numbers.
@@ -143,6 +145,10 @@ Positions2 readPolygon(const std::filesystem::path& path) {
     polygon.row(row) << points[v][0], points[v][1];
     if (!polygon.row(row).allFinite()) {
       refuse(path, "vertex " + std::to_string(v) + " has a coordinate that is not finite");
+    }
+    if (polygon.row(row).cwiseAbs().maxCoeff() > kFarthest) {
+      refuse(path, "vertex " + std::to_string(v) +
+                       " lies farther than 10 km from the origin; coordinates are in mm");
     }
   }
   return polygon;

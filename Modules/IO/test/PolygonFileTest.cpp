@@ -16,7 +16,7 @@ using namespace explica;
 
 Positions2 somePolygon() {
   Positions2 polygon(5, 2);
-  polygon << 0, 0, 1.0 / 3, -0.1, 2, 1e-17, 1.5, 2, -1e8, 0.7;
+  polygon << 0, 0, 1.0 / 3, -0.1, 2, 1e-17, 1.5, 2, -1e7, 0.7;
   return polygon;
 }
 

@@ -53,6 +53,11 @@ Grid gridOf(const HarmonicAnnulus& annulus, int voxels) {
   return grid;
 }
 
+[[noreturn]] void refuseThinShape(int voxels) {
+  throw InvalidInput("the shape is so thin that it falls between the points of a grid of " +
+                     std::to_string(voxels) + " a side; a finer grid or a wider shape is needed");
+}
+
 }  // namespace
 
 Volume<float> fieldOf(const HarmonicShape& shape, int voxels) {
@@ -92,6 +97,7 @@ std::vector<planar::Curve> levelCurves(const HarmonicShape& shape, int voxels) {
   Volume<float> field = fieldOf(shape, voxels);
   for (float& value : field.data) value = 1 - value;  // contours run around high values
   std::vector<planar::Curve> curves = planar::contoursOfSlice(field, 0, 0.5);
+  if (curves.empty()) refuseThinShape(voxels);
   for (planar::Curve& curve : curves) {
     Positions points = Positions::Zero(curve.vertexCount(), 3);
     points.leftCols(2) = curve.positions;
@@ -105,6 +111,7 @@ TriangleMesh levelSurface(const HarmonicShape& shape, int voxels) {
   if (shape.annulus.dimension != 3) throw InvalidInput("level surface: the shape is in the plane");
   const Volume<float> field = fieldOf(shape, voxels);
   TriangleMesh mesh = levelSurfaceOf(field, 0.5);
+  if (mesh.faceCount() == 0) refuseThinShape(voxels);
   moveOntoLevel(shape, field.grid.spacing.x(), mesh.positions);
   return mesh;
 }

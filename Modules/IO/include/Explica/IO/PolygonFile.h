@@ -16,7 +16,8 @@ namespace explica::io {
 ///
 /// @return V x 2, mm, in the file's order along the loop
 /// @throws IOError       missing, truncated or of no known format
-/// @throws InvalidInput  fewer than 3 vertices, a value that is not finite, an open line, two loops
+/// @throws InvalidInput  fewer than 3 vertices, a value that is not finite, a vertex farther than
+///                       10 km from the origin, an open line, two loops
 [[nodiscard]] Positions2 readPolygon(const std::filesystem::path& path);
 
 /// Writes `x,y` and the maps as further columns, one vertex a line; numbers give back every double.

@@ -17,12 +17,12 @@ namespace explica::shapes {
 [[nodiscard]] Volume<float> fieldOf(const HarmonicShape& shape, int voxels);
 
 /// The closed curves where u = 1/2, vertices moved onto the level; one for every valid shape.
-/// @throws InvalidInput  a shape in space
+/// @throws InvalidInput  a shape in space, or one too thin for such a grid
 [[nodiscard]] std::vector<planar::Curve> levelCurves(const HarmonicShape& shape, int voxels);
 
 /// The surface where u = 1/2, by marching tetrahedra, closed and outward, vertices moved onto the
 /// level.
-/// @throws InvalidInput  a shape in the plane
+/// @throws InvalidInput  a shape in the plane, or one too thin for such a grid
 [[nodiscard]] TriangleMesh levelSurface(const HarmonicShape& shape, int voxels);
 
 /// The surface where a field equals `level`, lower values inside: marching tetrahedra on the
