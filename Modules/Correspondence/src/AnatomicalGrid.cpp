@@ -16,8 +16,6 @@ namespace explica::correspondence {
 
 namespace {
 
-constexpr int kMaxSteps = 4000;  // of a trajectory, before it counts as lost
-
 /// A corner's Jacobian over the product of its three edges' lengths (its two edges' in the plane),
 /// at and below which a cell is flat: well above the round-off of coordinates in single precision.
 constexpr double kFlat = 1e-4;

@@ -21,7 +21,6 @@ using harmonic::signOf;
 namespace {
 
 using Tracer = TrajectoryTracer::Field;
-constexpr int kMaxSteps = 4000;          // of a trajectory, before it counts as lost
 constexpr std::size_t kBlock = 1 << 13;  // voxels a task
 // Default lambda in voxels.  Corners of a grid face are up to sqrt(2) voxels apart, and so are
 // their boundary points where trajectories run in parallel: beyond this they diverge.
@@ -140,7 +139,7 @@ class Sweep {
   void traceAll(const Monitor& monitor) {
     parallelForBlocks(arrivals_.size(), 1024, [&](std::size_t begin, std::size_t end) {
       if (monitor.shouldStop()) return;
-      for (std::size_t r = begin; r < end; ++r) traceToWall(static_cast<std::int32_t>(r));
+      traceToWall([&] { return begin < end ? static_cast<std::int32_t>(begin++) : -1; });
     });
     traced_ = arrivals_.size();
   }
@@ -181,10 +180,9 @@ class Sweep {
       traced_ += parallelSum(steps.start[step + 1] - steps.start[step], 256, std::size_t{0},
                              [&](std::size_t begin, std::size_t end) {
                                std::size_t sum = 0;
-                               for (std::size_t v = begin; v < end; ++v) {
-                                 fetch(ranks, v, end);
-                                 if (!found(ranks[v]))
-                                   sum += traceToFace(ranks[v], static_cast<std::uint16_t>(k + 1));
+                               for (std::size_t v = begin; v < end; v += kBeside) {
+                                 sum +=
+                                     traceToFace(ranks, v, end, static_cast<std::uint16_t>(k + 1));
                                }
                                return sum;
                              });
@@ -210,18 +208,23 @@ class Sweep {
     traced_ += parallelSum(arrivals_.size(), 1 << 12, std::size_t{0},
                            [&](std::size_t begin, std::size_t end) {
                              std::size_t sum = 0;
-                             for (std::size_t r = begin; r < end; ++r) {
-                               const std::int32_t n = annulus_.numberAt[tracer_.placeOf[r]];
-                               if (annulus_.irregular(n) < 0) continue;
-                               const auto& links = annulus_.links[n];
-                               if (std::find(links.begin(), links.end(), wall_) == links.end())
-                                 continue;
-                               traceToWall(static_cast<std::int32_t>(r));
+                             traceToWall([&] {
+                               while (begin < end && !isBesideWall(begin)) ++begin;
+                               if (begin == end) return -1;
+                               const auto r = static_cast<std::int32_t>(begin++);
                                ++sum;
-                               if (!onCut(static_cast<std::int32_t>(r))) turn_[r] = 0;
-                             }
+                               if (!onCut(r)) turn_[r] = 0;
+                               return r;
+                             });
                              return sum;
                            });
+  }
+
+  [[nodiscard]] bool isBesideWall(std::size_t r) const {
+    const std::int32_t n = annulus_.numberAt[tracer_.placeOf[r]];
+    if (annulus_.irregular(n) < 0) return false;
+    const auto& links = annulus_.links[n];
+    return std::find(links.begin(), links.end(), wall_) != links.end();
   }
 
   /// Voxels of a step lie apart in memory: brings what following those next in turn will read
@@ -283,14 +286,17 @@ class Sweep {
     }
   }
 
+  /// Follows the trajectories of all ranks that next() gives until it gives -1.
+  template <class Next>
+  void traceToWall(const Next& next) {
+    tracer_.followEach(target_, uphill_, next,
+                       [&](std::int32_t r, const Tracer::Walk& walk, bool done) {
+                         if (done) store(r, tracer_.placeOf[r], walk);
+                       });
+  }
+
   void traceToWall(std::int32_t r) {
-    const std::int32_t place = tracer_.placeOf[r];
-    auto walk = tracer_.begin(place, uphill_);
-    bool done = uphill_ * (walk.u - target_) >= 0;
-    for (int k = 0; !done && !walk.stuck && k < kMaxSteps; ++k) {
-      done = tracer_.advance(walk, target_, uphill_);
-    }
-    if (done) store(r, place, walk);
+    traceToWall([&] { return std::exchange(r, -1); });
   }
 
   void store(std::int32_t r, std::int32_t place, const Tracer::Walk& walk) {
@@ -346,17 +352,38 @@ class Sweep {
     return true;
   }
 
+  /// traceToFace() of those of the next kBeside ranks whose arrivals are not known; how many went
+  /// on.
+  std::size_t traceToFace(const std::int32_t* ranks, std::size_t begin, std::size_t end,
+                          std::uint16_t turn) {
+    std::int32_t open[kBeside];
+    int count = 0;
+    for (std::size_t v = begin; v < std::min(begin + kBeside, end); ++v) {
+      fetch(ranks, v, end);
+      if (!found(ranks[v])) open[count++] = ranks[v];
+    }
+    Tracer::ToPlane first[kBeside];
+    tracer_.toPlane(open, first, count, uphill_);
+    std::size_t sum = 0;
+    for (int w = 0; w < count; ++w) sum += traceToFace(open[w], first[w], turn);
+    return sum;
+  }
+
+  bool traceToFace(std::int32_t r, std::uint16_t turn) {
+    Tracer::ToPlane first;
+    tracer_.toPlane(&r, &first, 1, uphill_);
+    return traceToFace(r, first, turn);
+  }
+
   /// Follows the trajectory to the first grid face whose corners have earlier turns and agree
   /// within lambda, else to the boundary.
   /// @return  whether it went past a face whose corners disagree, or to the boundary
-  bool traceToFace(std::int32_t r, std::uint16_t turn) {
+  bool traceToFace(std::int32_t r, const Tracer::ToPlane& first, std::uint16_t turn) {
     const std::int32_t place = tracer_.placeOf[r];
     const auto s = subscripts(place);
     bool disagreed = false;
-    Vector end;
-    double way = 0;
-    if (tracer_.toPlane(r, s, uphill_, end, way) &&
-        fromFaceBetween(r, s, turn, Vector(s[0], s[1], s[2]), end, 0, way, disagreed)) {
+    if (first.made &&
+        fromFaceBetween(r, s, turn, first.start, first.end, 0, first.length, disagreed)) {
       return false;
     }
     auto walk = tracer_.begin(place, uphill_);

@@ -16,7 +16,6 @@ using harmonic::kOuter;
 
 namespace {
 
-constexpr int kMaxSteps = 4000;        // of a trajectory, before it counts as lost
 constexpr double kBeyondPlane = 1e-3;  // so that the plane lies within the step, whatever it bends
 // Slope (change of u per voxel) below which a trajectory's direction is round-off.
 constexpr double kFlat = 1e-9;
@@ -57,18 +56,16 @@ TrajectoryTracer::Field::Field(const harmonic::Annulus& a, const harmonic::Inter
   finest = flat ? std::min(h[0], h[1]) : h.minCoeff();
   inverseSpacing = h.cwiseInverse();
   options.maxStep = std::min(options.maxStep, 1.0);
-  bool anyCut = false;
   std::vector<std::uint8_t> cut(annulus.count(), 0);
   const auto strides = annulus.strides();
-  for (std::size_t n = 0; n < annulus.count(); ++n) {
-    if (annulus.irregular(static_cast<std::int32_t>(n)) < 0) continue;
+  parallelFor(annulus.count(), 1 << 14, [&](std::size_t n) {
+    if (annulus.irregular(static_cast<std::int32_t>(n)) < 0) return;
     for (int d = 0; d < 6; ++d) {
       const std::int32_t q = annulus.place[n] + harmonic::signOf(d) * strides[harmonic::axisOf(d)];
       if (annulus.links[n][d] < 0 && annulus.numberAt[q] >= 0) cut[n] = 1;
     }
-    anyCut = anyCut || cut[n];
-  }
-  if (anyCut) onCut = std::move(cut);
+  });
+  if (std::find(cut.begin(), cut.end(), 1) != cut.end()) onCut = std::move(cut);
   rankTissue();
   prepareCells();
 }
@@ -581,27 +578,39 @@ void TrajectoryTracer::Field::fetchCorners(std::int32_t cell) const {
   }
 }
 
-bool TrajectoryTracer::Field::toPlane(std::int32_t rank, const std::array<int, 3>& centre,
-                                      int uphill, Vector& end, double& length) const {
-  const Vector x(centre[0], centre[1], centre[2]);
-  Sample one;
-  one.gradient = node[rank].head<3>().matrix().cast<double>();
-  const Vector k1 = velocityOf(one, uphill);
-  const double s = (1 + kBeyondPlane) / k1.cwiseAbs().maxCoeff();
-  if (!(s <= 2 * options.maxStep * finest)) return false;
-  if (cellAt_[cellAhead(rank, uphill)] <= kDivided) return false;
-  const Sample two = sampleOf<false>(x + 0.5 * s * k1, -1);
-  if (two.home < 0 || two.divided) return false;
-  const Vector k2 = velocityOf(two, uphill);
-  const Sample three = sampleOf<false>(x + 0.75 * s * k2, -1);
-  if (three.home < 0 || three.divided) return false;
-  const Vector k3 = velocityOf(three, uphill);
-  // The third-order step of advance(); its difference from the midpoint rule's bounds the error.
-  const Vector way = s * (2.0 / 9 * k1 + 1.0 / 3 * k2 + 4.0 / 9 * k3);
-  if (!((way - s * k2).norm() <= options.tolerance)) return false;
-  end = x + way;
-  length = s;
-  return true;
+void TrajectoryTracer::Field::toPlane(const std::int32_t* ranks, ToPlane* steps, int count,
+                                      int uphill) const {
+  const std::int32_t row = annulus.size[0], rows = annulus.size[1];
+  Vector k1[kBeside], k2[kBeside];
+  for (int w = 0; w < count; ++w) {
+    const std::int32_t place = placeOf[ranks[w]];
+    ToPlane& step = steps[w];
+    step.start = Vector(place % row, place / row % rows, place / row / rows);
+    Sample one;
+    one.gradient = node[ranks[w]].head<3>().matrix().cast<double>();
+    k1[w] = velocityOf(one, uphill);
+    step.length = (1 + kBeyondPlane) / k1[w].cwiseAbs().maxCoeff();
+    step.made = step.length <= 2 * options.maxStep * finest &&
+                cellAt_[cellAhead(ranks[w], uphill)] > kDivided;
+  }
+  for (int w = 0; w < count; ++w) {
+    ToPlane& step = steps[w];
+    if (!step.made) continue;
+    const Sample two = sampleOf<false>(step.start + 0.5 * step.length * k1[w], -1);
+    step.made = two.home >= 0 && !two.divided;
+    k2[w] = velocityOf(two, uphill);
+  }
+  for (int w = 0; w < count; ++w) {
+    ToPlane& step = steps[w];
+    if (!step.made) continue;
+    const double s = step.length;
+    const Sample three = sampleOf<false>(step.start + 0.75 * s * k2[w], -1);
+    const Vector k3 = velocityOf(three, uphill);
+    // The third-order step of advance(); its difference from the midpoint rule's bounds the error.
+    const Vector way = s * (2.0 / 9 * k1[w] + 1.0 / 3 * k2[w] + 4.0 / 9 * k3);
+    step.made = three.home >= 0 && !three.divided && (way - s * k2[w]).norm() <= options.tolerance;
+    step.end = step.start + way;
+  }
 }
 
 bool TrajectoryTracer::Field::goStraight(Walk& walk, double target, int uphill) const {
@@ -671,92 +680,125 @@ bool TrajectoryTracer::Field::hop(Walk& walk, double target, int uphill) const {
   return false;
 }
 
-bool TrajectoryTracer::Field::advance(Walk& walk, double target, int uphill) const {
-  const bool done = advanceAlong(walk, target, uphill);
-  return !done && walk.stuck ? hop(walk, target, uphill) : done;
-}
-
-bool TrajectoryTracer::Field::advanceAlong(Walk& walk, double target, int uphill) const {
+void TrajectoryTracer::Field::limitStep(Walk& walk) const {
   // Half a voxel at most where the side must be known: a step then never leaves its neighbourhood.
   const double longest = (walk.divided ? std::min(0.5, options.maxStep) : options.maxStep) * finest;
   walk.step = std::min(walk.step, longest);
-  for (;;) {
-    const double s = walk.step;
-    const Vector& k1 = walk.velocity;
-    const Sample two = sampleOf<false>(walk.x + 0.5 * s * k1, walk.home);
-    const Vector k2 = velocityOf(two, uphill);
-    const Sample three = sampleOf<false>(walk.x + 0.75 * s * k2, walk.home);
-    const Vector k3 = velocityOf(three, uphill);
-    const Vector next = walk.x + s * (2.0 / 9 * k1 + 1.0 / 3 * k2 + 4.0 / 9 * k3);
-    const Sample four = sample(next, walk.home);
-    double slope = 0;
-    const Vector k4 = velocityOf(four, uphill, &slope);
-    const bool lost = two.home < 0 || three.home < 0 || four.home < 0 || k4.isZero(0);
-    const double error = s * (-5.0 / 72 * k1 + 1.0 / 12 * k2 + 1.0 / 9 * k3 - 1.0 / 8 * k4).norm();
-    if (lost || error > options.tolerance) {
-      if (s < kTinyStep * finest) {
-        // At the end of the cells that know the tissue: the boundary is there, or as near as the
-        // extension beyond it is good.
-        return goStraight(walk, target, uphill);
-      }
-      walk.step = lost ? 0.25 * s : s * std::max(0.2, 0.9 * std::cbrt(options.tolerance / error));
-      continue;
-    }
-    if (uphill * (four.u - target) < 0) {
-      // Where the tissue is thinner than the grid resolves, the extension beyond the boundary may
-      // bend a trajectory along it.  Then u does not gain what its slope promises: if the boundary
-      // is near, go straight to it.
-      if (uphill * (four.u - walk.u) < kPoorGain * walk.slope * s) {
-        if (goStraight(walk, target, uphill)) return true;
-        walk.stuck = ++walk.strikes > kStrikes;
-        if (walk.stuck) return false;
-      }
-      walk.x = next;
-      walk.velocity = k4;
-      walk.home = four.home;
-      walk.divided = four.divided;
-      walk.u = four.u;
-      walk.slope = slope;
-      walk.length += s;
-      walk.step = stepAfter(s, error);
-      return false;
-    }
-    // The target is between: find it on the step's cubic by regula falsi (Illinois).
-    const Vector start = walk.x;
-    const auto at = [&](double t) {
-      const double t2 = t * t, t3 = t2 * t;
-      return Vector((2 * t3 - 3 * t2 + 1) * start + (t3 - 2 * t2 + t) * s * k1 +
-                    (-2 * t3 + 3 * t2) * next + (t3 - t2) * s * k4);
-    };
-    double low = 0, high = 1;
-    double fLow = uphill * (walk.u - target), fHigh = uphill * (four.u - target);
-    double t = 1;
-    if (fLow >= 0) {
-      t = 0;
-    } else {
-      // First where the cubic through both ends' u and slopes crosses: mostly near enough.
-      const double first = crossingOf(fLow, s * walk.slope, fHigh, s * slope);
-      for (int k = 0; k < 12; ++k) {
-        t = k == 0 ? first : (low * fHigh - high * fLow) / (fHigh - fLow);
-        const double value = uphill * (sample(at(t), walk.home).u - target);
-        if (std::abs(value) < kEnough * walk.slope * finest) break;
-        if (value < 0) {
-          low = t;
-          fLow = value;
-          fHigh *= 0.5;
-        } else {
-          high = t;
-          fHigh = value;
-          fLow *= 0.5;
-        }
-      }
-    }
-    walk.x = at(t);
-    walk.u = target;
-    walk.length += t * s;
-    walk.home = four.home;
-    return true;
+}
+
+void TrajectoryTracer::Field::attempt(const Walk* walks, Attempt* tries, int count,
+                                      int uphill) const {
+  for (int w = 0; w < count; ++w) {
+    const Walk& walk = walks[w];
+    const Sample two = sampleOf<false>(walk.x + 0.5 * walk.step * walk.velocity, walk.home);
+    tries[w].k2 = velocityOf(two, uphill);
+    tries[w].lost = two.home < 0;
   }
+  for (int w = 0; w < count; ++w) {
+    const Walk& walk = walks[w];
+    const Sample three = sampleOf<false>(walk.x + 0.75 * walk.step * tries[w].k2, walk.home);
+    tries[w].k3 = velocityOf(three, uphill);
+    tries[w].lost = tries[w].lost || three.home < 0;
+  }
+  for (int w = 0; w < count; ++w) {
+    const Walk& walk = walks[w];
+    Attempt& made = tries[w];
+    const double s = walk.step;
+    made.end = walk.x + s * (2.0 / 9 * walk.velocity + 1.0 / 3 * made.k2 + 4.0 / 9 * made.k3);
+    made.there = sample(made.end, walk.home);
+    made.k4 = velocityOf(made.there, uphill, &made.slope);
+    made.lost = made.lost || made.there.home < 0 || made.k4.isZero(0);
+    made.error =
+        s * (-5.0 / 72 * walk.velocity + 1.0 / 12 * made.k2 + 1.0 / 9 * made.k3 - 1.0 / 8 * made.k4)
+                .norm();
+  }
+}
+
+TrajectoryTracer::Field::Outcome TrajectoryTracer::Field::conclude(Walk& walk, const Attempt& made,
+                                                                   double target,
+                                                                   int uphill) const {
+  const double s = walk.step;
+  const auto straight = [&] {
+    return goStraight(walk, target, uphill) ? Outcome::Arrived : Outcome::Advanced;
+  };
+  if (made.lost || made.error > options.tolerance) {
+    // At the end of the cells that know the tissue: the boundary is there, or as near as the
+    // extension beyond it is good.
+    if (s < kTinyStep * finest) return straight();
+    walk.step =
+        made.lost ? 0.25 * s : s * std::max(0.2, 0.9 * std::cbrt(options.tolerance / made.error));
+    return Outcome::Again;
+  }
+  if (uphill * (made.there.u - target) >= 0) {
+    arrive(walk, made, target, uphill);
+    return Outcome::Arrived;
+  }
+  // Where the tissue is thinner than the grid resolves, the extension beyond the boundary may
+  // bend a trajectory along it.  Then u does not gain what its slope promises: if the boundary
+  // is near, go straight to it.
+  if (uphill * (made.there.u - walk.u) < kPoorGain * walk.slope * s) {
+    if (goStraight(walk, target, uphill)) return Outcome::Arrived;
+    walk.stuck = ++walk.strikes > kStrikes;
+    if (walk.stuck) return Outcome::Advanced;
+  }
+  walk.x = made.end;
+  walk.velocity = made.k4;
+  walk.home = made.there.home;
+  walk.divided = made.there.divided;
+  walk.u = made.there.u;
+  walk.slope = made.slope;
+  walk.length += s;
+  walk.step = stepAfter(s, made.error);
+  return Outcome::Advanced;
+}
+
+void TrajectoryTracer::Field::arrive(Walk& walk, const Attempt& made, double target,
+                                     int uphill) const {
+  const double s = walk.step;
+  // On the step's cubic, by regula falsi (Illinois).
+  const auto at = [&](double t) {
+    const double t2 = t * t, t3 = t2 * t;
+    return Vector((2 * t3 - 3 * t2 + 1) * walk.x + (t3 - 2 * t2 + t) * s * walk.velocity +
+                  (-2 * t3 + 3 * t2) * made.end + (t3 - t2) * s * made.k4);
+  };
+  double low = 0, high = 1;
+  double fLow = uphill * (walk.u - target), fHigh = uphill * (made.there.u - target);
+  double t = 1;
+  if (fLow >= 0) {
+    t = 0;
+  } else {
+    // First where the cubic through both ends' u and slopes crosses: mostly near enough.
+    const double first = crossingOf(fLow, s * walk.slope, fHigh, s * made.slope);
+    for (int k = 0; k < 12; ++k) {
+      t = k == 0 ? first : (low * fHigh - high * fLow) / (fHigh - fLow);
+      const double value = uphill * (sample(at(t), walk.home).u - target);
+      if (std::abs(value) < kEnough * walk.slope * finest) break;
+      if (value < 0) {
+        low = t;
+        fLow = value;
+        fHigh *= 0.5;
+      } else {
+        high = t;
+        fHigh = value;
+        fLow *= 0.5;
+      }
+    }
+  }
+  walk.x = at(t);
+  walk.u = target;
+  walk.length += t * s;
+  walk.home = made.there.home;
+}
+
+bool TrajectoryTracer::Field::advance(Walk& walk, double target, int uphill) const {
+  limitStep(walk);
+  Attempt made;
+  Outcome outcome = Outcome::Again;
+  while (outcome == Outcome::Again) {
+    attempt(&walk, &made, 1, uphill);
+    outcome = conclude(walk, made, target, uphill);
+  }
+  return outcome == Outcome::Arrived || (walk.stuck && hop(walk, target, uphill));
 }
 
 Trace TrajectoryTracer::Field::run(Walk walk, double target, int uphill) const {

@@ -10,6 +10,10 @@
 
 namespace explica::correspondence {
 
+inline constexpr int kMaxSteps = 4000;  ///< of a trajectory, before it counts as lost
+
+inline constexpr int kBeside = 4;  ///< trajectories that are followed in turns
+
 /// u and its gradient between voxel centres.  Positions are continuous indices of the annulus' box;
 /// gradients are per voxel (index space), so that du = G . dx.
 struct TrajectoryTracer::Field {
@@ -47,12 +51,16 @@ struct TrajectoryTracer::Field {
   /// One accepted step towards the target; true when it was reached (the walk then ends on it).
   bool advance(Walk& walk, double target, int uphill) const;
 
-  /// One step of third order from a tissue voxel's centre to just beyond the first grid plane.
-  /// False, and nothing done, if it leaves the tissue, or more than one side or a greater error
-  /// than the tolerance is in the way.
-  /// @param length  mm of the step
-  bool toPlane(std::int32_t rank, const std::array<int, 3>& centre, int uphill, Vector& end,
-               double& length) const;
+  /// A step from a tissue voxel's centre to just beyond the first grid plane.
+  struct ToPlane {
+    Vector start, end;
+    double length = 0;  ///< mm
+    bool made = false;  ///< false if it leaves the tissue, or more than one side or a greater error
+                        ///< than the tolerance is in the way
+  };
+  /// Such steps, of third order, from the centres of at most kBeside voxels, in turns like
+  /// followEach.
+  void toPlane(const std::int32_t* ranks, ToPlane* steps, int count, int uphill) const;
 
   /// Cell that the trajectory through a tissue voxel's centre enters: its lowest corner in the box.
   [[nodiscard]] std::int32_t cellAhead(std::int32_t rank, int uphill) const;
@@ -62,6 +70,13 @@ struct TrajectoryTracer::Field {
   void fetchCorners(std::int32_t cell) const;
 
   [[nodiscard]] Trace run(Walk walk, double target, int uphill) const;
+
+  /// Follows the trajectories through the centres of tissue voxels to the target, a few in turns,
+  /// so that one is worked on while another waits for what it reads; each goes as it would alone.
+  /// @param next   next() gives the rank of a voxel, or -1 after the last one
+  /// @param ended  ended(rank, walk, done) takes each, in no particular order
+  template <class Next, class Ended>
+  void followEach(double target, int uphill, const Next& next, const Ended& ended) const;
 
   /// Tissue voxel to start from for any point: in its cell, else the nearest within two voxels.
   [[nodiscard]] std::int32_t homeOf(const Vector& x) const;
@@ -104,7 +119,23 @@ struct TrajectoryTracer::Field {
   /// Corners from the side of `seed`; a bit per corner that belongs to it.
   std::uint8_t extend(const std::int32_t* number, int seed, Corner* corner) const;
   void prepareSides();
-  bool advanceAlong(Walk& walk, double target, int uphill) const;
+  /// A step that is tried: the pair's later stages and where it ends.
+  struct Attempt {
+    Vector k2, k3, k4, end;
+    Sample there;       ///< at the end
+    double slope = 0;   ///< |grad u| there, 1/mm
+    double error = 0;   ///< voxels
+    bool lost = false;  ///< it leaves the tissue, or u is flat where it ends
+  };
+  enum class Outcome { Again, Advanced, Arrived };
+  /// Makes walk.step no longer than it may be where the walk is.
+  void limitStep(Walk& walk) const;
+  /// The next step of each walk, stage by stage beside each other.
+  void attempt(const Walk* walks, Attempt* tries, int count, int uphill) const;
+  /// Takes a step that was tried, or makes it shorter to be tried again.
+  Outcome conclude(Walk& walk, const Attempt& made, double target, int uphill) const;
+  /// Ends a walk at the target, which a step that was tried has passed.
+  void arrive(Walk& walk, const Attempt& made, double target, int uphill) const;
   /// Takes a walk that is stuck straight to the boundary beside its voxel or to the neighbour
   /// towards which u gains most: a harmonic function has such a one everywhere, so that the walk
   /// gets on where the field between voxels leads nowhere, as it may at the edges of sheets.
@@ -122,5 +153,47 @@ struct TrajectoryTracer::Field {
   std::vector<Side> sides_;
   std::vector<std::int32_t> firstSide_;  ///< of each divided cell, and the end
 };
+
+template <class Next, class Ended>
+void TrajectoryTracer::Field::followEach(double target, int uphill, const Next& next,
+                                         const Ended& ended) const {
+  std::array<Walk, kBeside> walks;
+  std::array<Attempt, kBeside> tries;
+  std::array<std::int32_t, kBeside> rank{}, steps{};
+  int count = 0;
+  const auto beginNext = [&](int w) {
+    for (;;) {
+      rank[w] = next();
+      if (rank[w] < 0) return false;
+      walks[w] = begin(placeOf[rank[w]], uphill);
+      steps[w] = 0;
+      const bool done = uphill * (walks[w].u - target) >= 0;
+      if (!done && !walks[w].stuck) break;
+      ended(rank[w], walks[w], done);
+    }
+    limitStep(walks[w]);
+    return true;
+  };
+  while (count < kBeside && beginNext(count)) ++count;
+  while (count > 0) {
+    attempt(walks.data(), tries.data(), count, uphill);
+    for (int w = count - 1; w >= 0; --w) {
+      const Outcome outcome = conclude(walks[w], tries[w], target, uphill);
+      if (outcome == Outcome::Again) continue;
+      const bool done =
+          outcome == Outcome::Arrived || (walks[w].stuck && hop(walks[w], target, uphill));
+      if (!done && !walks[w].stuck && ++steps[w] < kMaxSteps) {
+        limitStep(walks[w]);
+        continue;
+      }
+      ended(rank[w], walks[w], done);
+      if (beginNext(w)) continue;
+      --count;
+      walks[w] = walks[count];
+      rank[w] = rank[count];
+      steps[w] = steps[count];
+    }
+  }
+}
 
 }  // namespace explica::correspondence

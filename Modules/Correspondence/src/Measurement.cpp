@@ -3,6 +3,7 @@
 #include "Explica/Correspondence/Measurement.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Parallel.h"
 
 #include <cmath>
 #include <utility>
@@ -13,14 +14,13 @@ namespace explica::correspondence {
 double foldingOf(const harmonic::Annulus& annulus) {
   std::vector<double> links(annulus.size[2], 0), voxels(annulus.size[2], 0);
   const std::size_t sliceSize = annulus.strides()[2];
-  for (std::size_t p = 0; p < annulus.numberAt.size(); ++p) {
-    voxels[p / sliceSize] += annulus.numberAt[p] == harmonic::kInner;
-  }
-  for (std::size_t n = 0; n < annulus.count(); ++n) {
-    for (int d = 0; d < 4; ++d) {
-      links[annulus.place[n] / sliceSize] += annulus.links[n][d] == harmonic::kInner;
+  parallelFor(annulus.size[2], 1, [&](std::size_t k) {
+    for (std::size_t p = k * sliceSize; p < (k + 1) * sliceSize; ++p) {
+      const std::int32_t n = annulus.numberAt[p];
+      voxels[k] += n == harmonic::kInner;
+      for (int d = 0; n >= 0 && d < 4; ++d) links[k] += annulus.links[n][d] == harmonic::kInner;
     }
-  }
+  });
   const Vector& h = annulus.grid.spacing;
   double sum = 0, area = 0;
   for (std::size_t k = 0; k < voxels.size(); ++k) {

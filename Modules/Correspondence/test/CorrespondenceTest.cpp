@@ -344,8 +344,8 @@ TEST(Trajectory, ReachesAnyLevelFromAnyPoint) {
   EXPECT_FALSE(tracer.trace(Point(200, 0, 0), 1).reached);
 }
 
-TEST(Sulci, TwoBanksThatTouchAreParted) {
-  // Two slabs of white matter 12 voxels apart, grey matter all between: each bank is half of it.
+/// Two slabs of white matter 12 voxels apart, grey matter all between: each bank is half of it.
+Volume<Label> banksThatTouch() {
   Volume<Label> labels(harmonic::centredGrid({24, 20, 40}, {1, 1, 0.9}), 0);
   for (int k = 0; k < 40; ++k) {
     for (int j = 0; j < 20; ++j) {
@@ -355,6 +355,31 @@ TEST(Sulci, TwoBanksThatTouchAreParted) {
       }
     }
   }
+  return labels;
+}
+
+TEST(Correspondence, EachTrajectoryGoesAsItWouldAlone) {
+  const Annulus annulus =
+      recoverSulci(harmonic::annulusFromLabels(banksThatTouch(), {{1}, {2}, {}, {}})).annulus;
+  const Interpolant interpolant = harmonic::solveInterpolant(annulus);
+  CorrespondenceOptions options;
+  options.method = Method::Lagrangian;
+  const Correspondence found = findCorrespondences(annulus, interpolant, options);
+  const TrajectoryTracer tracer(annulus, interpolant, options.trace);
+  const auto expectSame = [](double together, const Trace& alone) {
+    EXPECT_EQ(std::isnan(together), !alone.reached);
+    if (alone.reached) {
+      EXPECT_EQ(together, static_cast<float>(alone.length));
+    }
+  };
+  for (std::int32_t n = 0; n < static_cast<std::int32_t>(annulus.count()); ++n) {
+    expectSame(found.innerDistance[n], tracer.trace(n, 0));
+    expectSame(found.outerDistance[n], tracer.trace(n, 1));
+  }
+}
+
+TEST(Sulci, TwoBanksThatTouchAreParted) {
+  const Volume<Label> labels = banksThatTouch();
   for (const auto model : {harmonic::BoundaryModel::Subvoxel, harmonic::BoundaryModel::Embedding}) {
     const Annulus annulus =
         harmonic::annulusFromLabels(labels, {{1}, {2}, {}, {}}, {.boundary = model});

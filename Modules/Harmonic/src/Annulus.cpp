@@ -538,8 +538,10 @@ Annulus annulusFromLabels(const Volume<Label>& labels, const LabelRoles& roles,
   std::optional<LabelBoundary> innerBoundary, outerBoundary;
   if (options.boundary != BoundaryModel::Staircase) {
     const int axes = options.perSlice ? 2 : grid.dimension();
-    innerBoundary.emplace(boundaryOf(sites, box, false, axes));
-    outerBoundary.emplace(boundaryOf(sites, box, true, axes));
+    parallelFor(2, 1, [&](std::size_t outer) {
+      (outer == 1 ? outerBoundary : innerBoundary)
+          .emplace(boundaryOf(sites, box, outer == 1, axes));
+    });
   }
   const std::array<int, 3> strides = {1, box.size[0], box.size[0] * box.size[1]};
   const auto placeOnLink = [&](std::int32_t p, const std::array<int, 3>&, int d, bool inner) {
@@ -722,17 +724,22 @@ Annulus withCuts(const Annulus& annulus, const std::vector<Cut>& cuts) {
 
 std::size_t countAtImageBorder(const Annulus& annulus) {
   const int axes = annulus.planar ? 2 : 3;
-  std::size_t count = 0;
-  for (std::int32_t n = 0; n < static_cast<std::int32_t>(annulus.count()); ++n) {
+  const auto isAtBorder = [&](std::int32_t n) {
     const std::array<int, 3> s = annulus.boxSubscripts(n);
-    bool atBorder = false;
     for (int a = 0; a < axes; ++a) {
       const int at = s[a] + annulus.first[a], last = annulus.grid.size[a] - 1;
-      atBorder = atBorder || (last > 0 && (at == 0 || at == last));
+      if (last > 0 && (at == 0 || at == last)) return true;
     }
-    count += atBorder;
-  }
-  return count;
+    return false;
+  };
+  return parallelSum(annulus.count(), 1 << 14, std::size_t{0},
+                     [&](std::size_t begin, std::size_t end) {
+                       std::size_t count = 0;
+                       for (std::size_t n = begin; n < end; ++n) {
+                         count += isAtBorder(static_cast<std::int32_t>(n));
+                       }
+                       return count;
+                     });
 }
 
 VolumeOnDemand<float> spread(const Annulus& annulus, std::vector<double> values, float elsewhere,

@@ -68,11 +68,10 @@ std::int32_t LabelBoundary::find(std::int32_t p, int axis) const {
   return -1;
 }
 
-Eigen::Vector3f LabelBoundary::offset(std::int32_t p, std::int32_t q) const {
-  const std::int32_t i = q % size_[0] - p % size_[0];
-  const std::int32_t j = q / size_[0] % size_[1] - p / size_[0] % size_[1];
-  const std::int32_t k = q / strides_[2] - p / strides_[2];
-  return {static_cast<float>(i), static_cast<float>(j), static_cast<float>(k)};
+Eigen::Vector3f LabelBoundary::offset(std::size_t link, std::size_t other) const {
+  const auto &from = at_[link], &to = at_[other];
+  return {static_cast<float>(to[0] - from[0]), static_cast<float>(to[1] - from[1]),
+          static_cast<float>(to[2] - from[2])};
 }
 
 void LabelBoundary::collect(const std::vector<std::uint8_t>& side) {
@@ -85,23 +84,27 @@ void LabelBoundary::collect(const std::vector<std::uint8_t>& side) {
       if (side[p] > 1) continue;
       more[0] = i + 1 < size_[0];
       for (int a = 0; a < 3; ++a) {
-        if (more[a] && side[p] + side[p + strides_[a]] == 1) body(p, a);
+        if (more[a] && side[p] + side[p + strides_[a]] == 1) body({i, j, k}, p, a);
       }
     }
   };
   rowStart_.assign(rows + 1, 0);
   parallelFor(rows, 256, [&](std::size_t row) {
-    forLinks(static_cast<int>(row), [&](std::int32_t, int) { ++rowStart_[row + 1]; });
+    forLinks(static_cast<int>(row),
+             [&](const std::array<std::int32_t, 3>&, std::int32_t, int) { ++rowStart_[row + 1]; });
   });
   for (int row = 0; row < rows; ++row) rowStart_[row + 1] += rowStart_[row];
   low_.resize(rowStart_[rows]);
+  at_.resize(low_.size());
   axis_.resize(low_.size());
   parallelFor(rows, 256, [&](std::size_t row) {
     std::int32_t next = rowStart_[row];
-    forLinks(static_cast<int>(row), [&](std::int32_t p, int a) {
-      low_[next] = p;
-      axis_[next++] = static_cast<std::uint8_t>(a);
-    });
+    forLinks(static_cast<int>(row),
+             [&](const std::array<std::int32_t, 3>& at, std::int32_t p, int a) {
+               low_[next] = p;
+               at_[next] = at;
+               axis_[next++] = static_cast<std::uint8_t>(a);
+             });
   });
   theta_.assign(low_.size(), 0.5F);
 }
@@ -114,8 +117,7 @@ void LabelBoundary::join(const std::vector<std::uint8_t>& side) {
   parallelFor(low_.size(), kGrain, [&](std::size_t link) {
     const std::int32_t p = low_[link];
     const int a = axis_[link];
-    const std::int32_t row = p / size_[0];
-    const std::array<int, 3> at = {p % size_[0], row % size_[1], row / size_[1]};
+    const std::array<std::int32_t, 3>& at = at_[link];
     back_[link] = {-1, -1, -1, -1};
     for (int chain = 0; chain < axes_ - 1; ++chain) {
       const int b = secondAxis(a, chain);
@@ -161,8 +163,7 @@ void LabelBoundary::findNormals(const std::vector<std::uint8_t>& side, int smoot
   // Position of a neighbour relative to a link's own crossing.
   const auto towards = [&](std::size_t link, std::int32_t code) {
     const std::int32_t m = code >> 2;
-    const std::int32_t p = low_[link], q = low_[m];
-    Eigen::Vector3f d = offset(p, q);
+    Eigen::Vector3f d = offset(link, m);
     d[axis_[m]] += theta_[m];
     d[axis_[link]] -= theta_[link];
     return d;
@@ -205,7 +206,6 @@ void LabelBoundary::findCurvatures() {
   length_.assign(low_.size(), {0, 0});
   stiffness_.assign(low_.size(), {0, 0, 0, 0});
   parallelFor(low_.size(), kGrain, [&](std::size_t link) {
-    const std::int32_t p = low_[link];
     const auto& n = normal_[link];
     const float ownNormal = n[axis_[link]];
     for (int chain = 0; chain < axes_ - 1; ++chain) {
@@ -213,8 +213,7 @@ void LabelBoundary::findCurvatures() {
       float along[2], distance[2], fixed[2];
       for (int s = 0; s < 2; ++s) {
         const std::int32_t m = back_[link][2 * chain + s] >> 2;
-        const std::int32_t q = low_[m];
-        Eigen::Vector3f d = offset(p, q);
+        Eigen::Vector3f d = offset(link, m);
         fixed[s] = d[0] * n[0] + d[1] * n[1] + d[2] * n[2];
         along[s] = n[axis_[m]];
         d[axis_[m]] += theta_[m];
@@ -291,9 +290,9 @@ float LabelBoundary::curvatureOf(std::size_t link, int chain,
 
 /// Accelerated projected gradients with restart [BeckTeboulle2009; ODonoghueCandes2015], each
 /// unknown with a bound of its own on the row sums of the Hessian.
-void LabelBoundary::relax(Energy energy, int iterations) {
+template <int kChains>
+void LabelBoundary::relaxChains(Energy energy, int iterations) {
   const std::size_t count = low_.size();
-  const int chains = axes_ - 1;
   // Per slot, twice the neighbour plus its chain, and the weight of the own theta in that chain's
   // curvature; where a chain ends the link itself without weight, so that loops need not ask.
   std::vector<std::array<std::int32_t, 4>> near(count);
@@ -311,19 +310,19 @@ void LabelBoundary::relax(Energy energy, int iterations) {
   const auto bend = [&](float sign, const auto& curvatureAt) {
     if (energy == Energy::Curvature) {
       parallelFor(count, kGrain, [&](std::size_t link) {
-        for (int chain = 0; chain < chains; ++chain) {
+        for (int chain = 0; chain < kChains; ++chain) {
           bending[2 * link + chain] = length_[link][chain] * curvatureAt(link, chain);
         }
       });
       return;
     }
     parallelFor(count, kGrain, [&](std::size_t link) {
-      for (int chain = 0; chain < chains; ++chain) {
+      for (int chain = 0; chain < kChains; ++chain) {
         curvature[2 * link + chain] = curvatureAt(link, chain);
       }
     });
     parallelFor(count, kGrain, [&](std::size_t link) {
-      for (int chain = 0; chain < chains; ++chain) {
+      for (int chain = 0; chain < kChains; ++chain) {
         const float own = curvature[2 * link + chain];
         bending[2 * link + chain] =
             stiffness_[link][2 * chain] * (own + sign * curvature[near[link][2 * chain]]) +
@@ -339,10 +338,10 @@ void LabelBoundary::relax(Energy energy, int iterations) {
     const float across = normal_[link][axis_[link]];
     pull[link] = pull_[link] * std::max(across * across, 0.01F);
     float sum = pull[link];
-    for (int chain = 0; chain < chains; ++chain) {
+    for (int chain = 0; chain < kChains; ++chain) {
       sum += std::abs(own_[link][chain]) * bending[2 * link + chain];
     }
-    for (int slot = 0; slot < 2 * chains; ++slot) {
+    for (int slot = 0; slot < 2 * kChains; ++slot) {
       sum += std::abs(weight[link][slot]) * bending[near[link][slot]];
     }
     bound[link] = sum;
@@ -360,13 +359,15 @@ void LabelBoundary::relax(Energy energy, int iterations) {
       double sum = 0;
       for (std::size_t link = begin; link < end; ++link) {
         float slope = pull[link] * (ahead[link] - 0.5F);
-        for (int chain = 0; chain < chains; ++chain) {
+        for (int chain = 0; chain < kChains; ++chain) {
           slope += own_[link][chain] * bending[2 * link + chain];
         }
-        for (int slot = 0; slot < 2 * chains; ++slot) {
+        for (int slot = 0; slot < 2 * kChains; ++slot) {
           slope += weight[link][slot] * bending[near[link][slot]];
         }
-        next[link] = std::clamp(ahead[link] - slope / bound[link], kNearest, 1 - kNearest);
+        // Not std::clamp, which jumps, and no processor foresees where.
+        const float below = std::min(ahead[link] - slope / bound[link], 1 - kNearest);
+        next[link] = std::max(below, kNearest);
         sum += static_cast<double>((ahead[link] - next[link]) * bound[link] *
                                    (next[link] - theta_[link]));
       }
@@ -380,6 +381,14 @@ void LabelBoundary::relax(Energy energy, int iterations) {
       ahead[link] = next[link] + share * (next[link] - theta_[link]);
     });
     theta_.swap(next);
+  }
+}
+
+void LabelBoundary::relax(Energy energy, int iterations) {
+  if (axes_ == 3) {
+    relaxChains<2>(energy, iterations);
+  } else {
+    relaxChains<1>(energy, iterations);
   }
 }
 

@@ -143,8 +143,15 @@ double equalNeighbours(const Volume<Label>& labels) {
 }
 
 bool looksLikeImage(const Volume<Label>& labels) {
-  const std::set<Label> found(labels.data.begin(), labels.data.end());
-  return found.size() > kFewestGreyValues && equalNeighbours(labels) < kMostEqualInImage;
+  std::set<Label> found;
+  const Label* last = nullptr;  // voxels come in runs of one value
+  for (const Label& value : labels.data) {
+    if (last != nullptr && value == *last) continue;
+    last = &value;
+    found.insert(value);
+    if (found.size() > kFewestGreyValues) return equalNeighbours(labels) < kMostEqualInImage;
+  }
+  return false;
 }
 
 bool looksLikeLabels(const Volume<float>& image) {

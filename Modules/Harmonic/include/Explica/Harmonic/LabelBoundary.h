@@ -50,8 +50,8 @@ class LabelBoundary {
 
  private:
   [[nodiscard]] std::int32_t find(std::int32_t p, int axis) const;
-  /// From voxel p to voxel q, in voxels.
-  [[nodiscard]] Eigen::Vector3f offset(std::int32_t p, std::int32_t q) const;
+  /// From the lower end of a link to that of another, in voxels.
+  [[nodiscard]] Eigen::Vector3f offset(std::size_t link, std::size_t other) const;
   void collect(const std::vector<std::uint8_t>& side);
   void join(const std::vector<std::uint8_t>& side);
   void findNormals(const std::vector<std::uint8_t>& side, int smoothings);
@@ -61,15 +61,19 @@ class LabelBoundary {
                                   const std::vector<float>& theta) const;
   enum class Energy { Curvature, Variation };
   void relax(Energy energy, int iterations);
+  /// @tparam kChains  on which a crossing lies
+  template <int kChains>
+  void relaxChains(Energy energy, int iterations);
 
   std::array<int, 3> size_;
   std::array<std::int32_t, 3> strides_;
   int axes_;
   // Links are sorted by voxel, then axis.
-  std::vector<std::int32_t> rowStart_;  ///< first link of each row of voxels
-  std::vector<std::int32_t> low_;       ///< per link: voxel at its lower end
-  std::vector<std::uint8_t> axis_;      ///< per link
-  std::vector<float> theta_;            ///< per link: place from the lower end
+  std::vector<std::int32_t> rowStart_;           ///< first link of each row of voxels
+  std::vector<std::int32_t> low_;                ///< per link: voxel at its lower end
+  std::vector<std::array<std::int32_t, 3>> at_;  ///< its subscripts
+  std::vector<std::uint8_t> axis_;               ///< per link
+  std::vector<float> theta_;                     ///< per link: place from the lower end
   /// Per link, chain (2) and side (2): the slot of the neighbour that points back, that is
   /// (4 neighbour + 2 chain + side); -1 where the chain ends.
   std::vector<std::array<std::int32_t, 4>> back_;
