@@ -209,22 +209,26 @@ void checkCollar(Context& context, Unfolded& u, const Measures& m) {
   context.warn(text);
   if (!elastic || mean <= unfolding::kCollarMean) return;
   if (u.result.flag == unfolding::Flag::None) u.result.flag = unfolding::Flag::Stretched;
-  if (u.result.termination == Termination::Converged ||
-      u.result.termination == Termination::TargetReached) {
-    u.result.termination = Termination::Stalled;
-  }
+  if (reachedGoal(u.result.termination)) u.result.termination = Termination::Stalled;
 }
 
 /// A region that looks at the viewpoint but lies under something else is not unfolded either.
 void checkSeen(Context& context, Unfolded& u, const Measures& m, double goal) {
   constexpr double kFar = 0.1;  // of the region's area, below the goal
   const double seen = m.seenAfter.of(u.result.mesh, u.result.region.faces);
-  const bool byItself = u.result.termination == Termination::Converged ||
-                        u.result.termination == Termination::Stalled;
-  if (!byItself || seen >= goal - kFar) return;
+  const Termination end = u.result.termination;
+  const bool atRest = end == Termination::Converged || end == Termination::Finished;
+  char text[160];
+  if (end == Termination::Converged && seen < unfolding::kGoalSeen) {
+    u.result.termination = Termination::Finished;
+    std::snprintf(text, sizeof text,
+                  "%.4f of the region's area can be seen in what is written; the goal is %g", seen,
+                  unfolding::kGoalSeen);
+    context.warn(text);
+  }
+  if (!(atRest || end == Termination::Stalled) || seen >= goal - kFar) return;
   if (u.result.flag == unfolding::Flag::None) u.result.flag = unfolding::Flag::Held;
   u.result.termination = Termination::Stalled;
-  char text[160];
   std::snprintf(text, sizeof text,
                 "the region is held: only %.3f of its area can be seen from the viewpoint", seen);
   context.warn(text);
@@ -237,10 +241,7 @@ void checkWritten(Context& context, Unfolded& u, const unfolding::CrossingAccoun
   context.result("crossings_with_rest", crossings.withRest);
   if (crossings.added == 0) return;
   u.result.flag = unfolding::Flag::Crossing;
-  if (u.result.termination == Termination::Converged ||
-      u.result.termination == Termination::TargetReached) {
-    u.result.termination = Termination::Stalled;
-  }
+  if (reachedGoal(u.result.termination)) u.result.termination = Termination::Stalled;
   context.warn(std::to_string(crossings.added) +
                " pairs of faces intersect in what is written that did not at the start");
 }

@@ -7,7 +7,7 @@
 namespace explica::unfolding {
 namespace {
 
-constexpr char kMagic[] = "ExplicaUnfold8\n";  // the number counts changes of the format
+constexpr char kMagic[] = "ExplicaUnfold9\n";  // the number counts changes of the format
 static_assert(sizeof(HeldPair) == 20);
 
 /// The members of a record, one list for writing and reading.
@@ -45,9 +45,12 @@ void writeCheckpoint(const std::filesystem::path& path, const Checkpoint& checkp
   w.count(s.stalled);
   w.count(static_cast<std::int64_t>(s.held.size()));
   for (const HeldPair& held : s.held) w.raw(&held, sizeof held);
+  w.count(s.look.iteration + 1);
+  w.number(s.look.seen);
   w.count(checkpoint.best.iteration);
   w.number(checkpoint.best.visibility);
   w.number(checkpoint.best.strain);
+  w.number(checkpoint.best.seen);
   w.rows(checkpoint.best.moving);
   w.count(static_cast<std::int64_t>(checkpoint.history.size()));
   for (const IterationRecord& r : checkpoint.history) {
@@ -87,9 +90,12 @@ Checkpoint readCheckpoint(const std::filesystem::path& path) {
   c.state.stalled = r.count() != 0;
   c.state.held.resize(static_cast<std::size_t>(r.count()));
   for (HeldPair& held : c.state.held) r.raw(&held, sizeof held);
+  c.state.look.iteration = static_cast<int>(r.count()) - 1;
+  c.state.look.seen = r.number();
   c.best.iteration = static_cast<int>(r.count());
   c.best.visibility = r.number();
   c.best.strain = r.number();
+  c.best.seen = r.number();
   c.best.moving = r.rows<Positions>();
   c.history.resize(static_cast<std::size_t>(r.count()));
   for (IterationRecord& row : c.history) {

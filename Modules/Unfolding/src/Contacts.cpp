@@ -21,6 +21,9 @@ constexpr double kParallel = 1e-3;  // of |u|^2 |v|^2, as in incremental potenti
 constexpr double kParted = 0.2;     // of the range: pairs that start nearer are parted up to there,
 constexpr double kNeedle = 0.25;    // neighbours up to this share of the thinnest face's height ...
 constexpr double kAsNear = 0.5;     // ... or to this one of their distance
+// Of the mean edge: with faces thinner than that the surface is a hair, around which neighbours of
+// neighbours are as near as its faces are thin.  Parting them would have to blow it up.
+constexpr double kHair = 0.003;
 
 std::vector<bool> flags(Eigen::Index count, const std::vector<std::int32_t>& marked) {
   std::vector<bool> result(static_cast<std::size_t>(count), false);
@@ -48,6 +51,26 @@ Eigen::VectorXd thinnestFaces(const TriangleMesh& mesh) {
   return thinnest;
 }
 
+/// True if an edge joins the pair's features, or two.
+bool areJoined(const geometry::MeshTopology& topology, PairKind kind,
+               const std::array<std::int32_t, 4>& v, bool byTwo) {
+  const auto adjacent = [&](std::int32_t a, std::int32_t b) {
+    const auto list = topology.vertexVertices[a];
+    return std::binary_search(list.begin(), list.end(), b);
+  };
+  const int split = kind == PairKind::VertexFace ? 1 : 2;
+  for (int i = 0; i < split; ++i) {
+    for (int k = split; k < 4; ++k) {
+      if (adjacent(v[i], v[k])) return true;
+      if (!byTwo) continue;
+      for (const std::int32_t between : topology.vertexVertices[v[i]]) {
+        if (adjacent(between, v[k])) return true;
+      }
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 double squaredDistance(const Contact& contact, const Positions& x) {
@@ -71,10 +94,6 @@ void Contacts::standAt(const PatchSetup& setup, const Positions& positions) {
 
 void Contacts::findRanges(const PatchSetup& setup, bool mayTouch) {
   const Eigen::VectorXd thinnest = thinnestFaces(setup.mesh);
-  const auto adjacent = [&](std::int32_t a, std::int32_t b) {
-    const auto list = setup.topology.vertexVertices[a];
-    return std::binary_search(list.begin(), list.end(), b);
-  };
   for (const Pair& pair : near_) {
     const double distance =
         std::sqrt(collision::squaredDistance(pair.kind, scene_->points(pair, start_)));
@@ -85,16 +104,13 @@ void Contacts::findRanges(const PatchSetup& setup, bool mayTouch) {
                          ", so that nothing there can move; weld coincident vertices, or part them "
                          "first (--repair)");
     }
-    const int split = pair.kind == PairKind::VertexFace ? 1 : 2;
-    bool neighbours = false;
     double thin = kInfinity;
-    for (int i = 0; i < split; ++i) {
-      for (int k = split; k < 4; ++k) neighbours = neighbours || adjacent(v[i], v[k]);
-    }
     for (const std::int32_t vertex : v) thin = std::min(thin, thinnest[vertex]);
     const double wanted = std::max(distance, kParted * range_);
-    ranges_.emplace_back(
-        pair, neighbours ? std::max(kAsNear * distance, std::min(wanted, kNeedle * thin)) : wanted);
+    const double needle = std::max(kAsNear * distance, std::min(wanted, kNeedle * thin));
+    const bool mayStayNear =
+        needle < wanted && areJoined(setup.topology, pair.kind, v, thin < kHair * setup.edge);
+    ranges_.emplace_back(pair, mayStayNear ? needle : wanted);
   }
 }
 

@@ -3,6 +3,8 @@
 
 #include "Explica/Unfolding/StopRule.h"
 
+#include "Trend.h"
+
 #include "Explica/Core/Errors.h"
 
 #include <algorithm>
@@ -11,14 +13,14 @@
 namespace explica::unfolding {
 namespace {
 
-constexpr double kLargestDrive = 8;     // lengths and contacts are outweighed up to here
-constexpr double kLeastDrive = 0.1;     // ... and the visibility term down to here
-constexpr double kMostSteering = 1.15;  // factor of the visibility term a step
-constexpr double kOpen = 0.9;           // visibility from which on seeing and lengths are weighed
-constexpr double kBalanced = 0.0008;    // of visibility
-constexpr double kAim = 0.003;          // to spare of visibility, what tightening areas may cost
-constexpr double kEnough = 0.001;       // to spare of both: no iteration is spent on more
-constexpr int kBalancing = 150;         // iterations at most that seeing and lengths are weighed
+constexpr double kLargestDrive = 8;   // lengths and contacts are outweighed up to here
+constexpr double kLeastDrive = 0.1;   // ... and the visibility term down to here
+constexpr double kOpen = 0.9;         // visibility from which on seeing and lengths are weighed
+constexpr double kBalanced = 0.0008;  // of visibility
+constexpr double kEnough = 0.001;     // to spare of both: no iteration is spent on more
+constexpr int kLookEvery = 5;         // iterations from one look to the next, ...
+constexpr double kAppearing = 1e-3;   // ... in which so much more of the area has to be seen
+constexpr int kBalancing = 150;       // iterations at most that seeing and lengths are weighed
 
 void requireUsable(const UnfoldOptions& options) {
   if (options.targetVisibility &&
@@ -29,87 +31,6 @@ void requireUsable(const UnfoldOptions& options) {
   if (options.maxIterations <= 0) throw InvalidInput("max-iterations: must be positive");
   if (options.maxTime && !(*options.maxTime > 0)) throw InvalidInput("max-time: must be positive");
   if (options.frames < 0) throw InvalidInput("frames: must not be negative");
-}
-
-/// True if the last iterations brought the visibility no further and the areas are kept.
-bool isSettled(const std::vector<IterationRecord>& history, int since) {
-  constexpr std::size_t kWindow = 12;
-  constexpr double kGain = 0.002;  // of visibility over the window
-  if (history.back().iteration - since < static_cast<int>(kWindow)) return false;
-  double best = -1, bestBefore = -1;
-  for (std::size_t n = 0; n < history.size(); ++n) {
-    const double v = history[n].visibility;
-    best = std::max(best, v);
-    if (n + kWindow < history.size()) bestBefore = std::max(bestBefore, v);
-  }
-  return best - bestBefore < kGain;
-}
-
-/// True if lengths no longer recover: the strain fell by less than 0.4 % over the last steps.
-bool isRelaxed(const std::vector<IterationRecord>& history) {
-  constexpr std::size_t kWindow = 5;
-  if (history.size() <= kWindow) return false;
-  const double before = history[history.size() - 1 - kWindow].edgeStrainMean;
-  return history.back().edgeStrainMean > 0.996 * before;
-}
-
-/// Where a quantity leads to whose steps shrink as the last two did [Aitken], by a quarter at
-/// least.
-double limitOf(const std::vector<IterationRecord>& history, double IterationRecord::*quantity) {
-  constexpr double kSlowest = 0.75;
-  const auto back = [&](std::size_t n) { return history[history.size() - 1 - n].*quantity; };
-  const double step = back(0) - back(1), before = back(1) - back(2);
-  const double ratio = before == 0 ? 0 : std::clamp(step / before, 0.0, kSlowest);
-  return back(0) + ratio / (1 - ratio) * step;
-}
-
-/// Visibility to aim at: more than asked for, as long as lengths have as much to spare; less than
-/// that where both lack.
-double goalAt(double strain) {
-  return kSeen + std::min(kAim, lengthsToSpare(strain));
-}
-
-/// How the next step shall differ from the last.
-struct Steering {
-  double factor = 1;     ///< of the visibility term
-  bool nearGoal = true;  ///< what is seen comes to its goal without it
-};
-
-/// Against springs the deficit 1 - v falls about with the square of the visibility term.
-Steering steer(const std::vector<IterationRecord>& history) {
-  constexpr double kNear = 0.002;  // of visibility
-  if (history.size() < 3) return {};
-  const double visibility = std::min(1.0, limitOf(history, &IterationRecord::visibility));
-  const double goal = goalAt(limitOf(history, &IterationRecord::edgeStrainMean));
-  const double factor = std::sqrt((1 - visibility) / (1 - goal));
-  return {std::clamp(factor, 1 / kMostSteering, kMostSteering), visibility > goal - kNear};
-}
-
-/// True if the last steps changed neither what is seen nor lengths by anything that counts.
-bool isAtRest(const std::vector<IterationRecord>& history) {
-  constexpr std::size_t kWindow = 5;
-  constexpr double kMove = 1e-4;
-  if (history.size() <= kWindow) return false;
-  const IterationRecord& last = history.back();
-  const IterationRecord& before = history[history.size() - 1 - kWindow];
-  return std::abs(last.visibility - before.visibility) < kMove &&
-         std::abs(last.edgeStrainMean - before.edgeStrainMean) < kMove;
-}
-
-/// True if a face of the collar is stretched beyond what it should be and is still giving way back:
-/// one that is caught in a contact stays as it is, and is no reason to go on.
-bool isTorn(const std::vector<IterationRecord>& history) {
-  constexpr std::size_t kWindow = 5;
-  const double now = history.back().collarStretchMax;
-  if (history.size() <= kWindow) return now > kCollarMost;
-  return now > kCollarMost && now < history[history.size() - 1 - kWindow].collarStretchMax;
-}
-
-/// How much stronger the visibility term has to be for a goal.  Against springs the deficit 1 - v
-/// falls with its square: a quarter of the way at a time, since lengths are better spared.
-double driveFactor(double visibility, double goal) {
-  const double share = goal < 1 ? std::sqrt((1 - visibility) / (1 - goal)) : kInfinity;
-  return std::clamp(std::max(1 + 10 * (goal - visibility), 1 + 0.25 * (share - 1)), 1.01, 1.3);
 }
 
 }  // namespace
@@ -129,6 +50,17 @@ bool StopRule::targetHolds(const std::vector<IterationRecord>& history) const {
   return settled || atGoal > kPolish;
 }
 
+/// True if too little of the region is seen, but more from one look to the next.
+bool StopRule::isStillAppearing(Unfolder& unfolder) {
+  const Look before = unfolder.state().look;
+  const bool looked = before.iteration >= 0;
+  if (looked && unfolder.state().iteration - before.iteration < kLookEvery) {
+    return before.seen < kGoalSeen;
+  }
+  const double seen = unfolder.look();
+  return seen < kGoalSeen && (!looked || seen > before.seen + kAppearing);
+}
+
 /// Soft areas as long as what is seen is far from its goal, then stiff ones.
 Termination StopRule::weigh(Unfolder& unfolder, const std::vector<IterationRecord>& history) const {
   const IterationRecord& last = history.back();
@@ -143,7 +75,8 @@ Termination StopRule::weigh(Unfolder& unfolder, const std::vector<IterationRecor
   const bool longEnough = last.iteration - unfolder.state().driveIteration > kBalancing;
   const bool ended = enough || longEnough || ((balanced || atLimit) && atRest);
   const bool kept = last.areaErrorMean <= options_.areaTolerance;
-  if (ended && kept) return Termination::Converged;
+  const bool appearing = ended && kept && isStillAppearing(unfolder);
+  if (ended && kept && (longEnough || !appearing)) return Termination::Converged;
   if (static_cast<int>(history.size()) > options_.maxIterations) return Termination::MaxIterations;
   unfolder.balance(std::clamp(drive * factor, kLeastDrive, kLargestDrive) / drive,
                    !kept && (nearGoal || atLimit || atRest));

@@ -57,35 +57,86 @@ void tellProgress(const Monitor& monitor, const IterationRecord& now, double ini
 }
 
 /// Whether it pays to go back from a state.
-bool isWorse(const IterationRecord& state, const BestState& than, bool towardsTarget) {
+bool isWorse(const IterationRecord& state, const BestState& than, bool towardsTarget, double seen) {
   if (towardsTarget) return state.visibility < than.visibility - kNoWorse;
-  return merit(state.visibility, state.edgeStrainMean) <
-         merit(than.visibility, than.strain) - kNoWorse;
+  return merit(state.visibility, state.edgeStrainMean, seen) <
+         merit(than.visibility, than.strain, than.seen) - kNoWorse;
+}
+
+/// Share of the region that is seen in the present state, if the stop rule has begun to ask.
+double seenIfAsked(const Unfolder& unfolder) {
+  const Look& look = unfolder.state().look;
+  if (look.iteration < 0) return kNaN;
+  return look.iteration == unfolder.state().iteration ? look.seen : unfolder.seenShare();
 }
 
 /// Takes note of a state if it keeps areas and is better than all before.
 void consider(const Unfolder& unfolder, const UnfoldOptions& options, BestState& best) {
   const IterationRecord& now = unfolder.record();
   if (now.areaErrorMean > options.areaTolerance) return;
-  if (!isBetter(now, best, options.targetVisibility.has_value())) return;
-  best = {now.iteration, now.visibility, now.edgeStrainMean, movingOnly(unfolder)};
+  const double seen = seenIfAsked(unfolder);
+  if (!isBetter(now, best, options.targetVisibility.has_value(), seen)) return;
+  best = {now.iteration, now.visibility, now.edgeStrainMean, movingOnly(unfolder), seen};
+}
+
+/// Where the first look shows too little, its state is the best so far: nobody knows what was seen
+/// of earlier ones.
+void considerLook(const Unfolder& unfolder, bool isFirst, BestState& best) {
+  const IterationRecord& now = unfolder.record();
+  const Look& look = unfolder.state().look;
+  if (!isFirst || look.iteration != now.iteration || look.seen >= kGoalSeen) return;
+  best = {now.iteration, now.visibility, now.edgeStrainMean, movingOnly(unfolder), look.seen};
 }
 
 /// The state to give back: the last, or the best seen if the last is worse.
-void chooseState(const Unfolder& unfolder, const BestState& best, bool towardsTarget,
-                 UnfoldResult& result) {
+/// @return the share seen of its region's area; NaN if nobody looked
+double chooseState(const Unfolder& unfolder, const BestState& best, bool towardsTarget,
+                   UnfoldResult& result) {
   result.mesh = unfolder.current();
   result.iteration = unfolder.state().iteration;
-  if (!isWorse(unfolder.record(), best, towardsTarget)) return;
+  const double seen = seenIfAsked(unfolder);
+  if (!isWorse(unfolder.record(), best, towardsTarget, seen)) return seen;
   const auto& moving = unfolder.movingVertices();
   for (std::size_t i = 0; i < moving.size(); ++i) {
     result.mesh.positions.row(moving[i]) = best.moving.row(static_cast<Eigen::Index>(i));
   }
   result.iteration = best.iteration;
+  return best.seen;
+}
+
+/// A run that has come to rest a little short of a goal has not converged.
+void sayWhatIsShort(const IterationRecord& kept, double seen, const Monitor& monitor,
+                    UnfoldResult& result) {
+  char text[160];
+  if (kept.visibility < kGoalVisibility) {
+    std::snprintf(text, sizeof text, "the visibility is %.4f, %.4f short of its goal of %g",
+                  kept.visibility, kGoalVisibility - kept.visibility, kGoalVisibility);
+    monitor.warn(text);
+    result.termination = Termination::Finished;
+  }
+  if (seen < kGoalSeen) {
+    std::snprintf(
+        text, sizeof text,
+        "%.4f of the region's area can be seen from the viewpoint, %.4f short of its goal "
+        "of %g",
+        seen, kGoalSeen - seen, kGoalSeen);
+    monitor.warn(text);
+    result.termination = Termination::Finished;
+  }
+  if (kept.edgeStrainMean > kGoalStrain) {
+    std::snprintf(text, sizeof text,
+                  "edges are strained by %.2f %% in the mean, %.2f %% beyond their goal of %g %%",
+                  100 * kept.edgeStrainMean, 100 * (kept.edgeStrainMean - kGoalStrain),
+                  100 * kGoalStrain);
+    monitor.warn(text);
+    result.termination = Termination::Finished;
+  }
 }
 
 /// Says what a user must know about the result, and does not call it what it is not.
-void judge(const UnfoldOptions& options, const Monitor& monitor, UnfoldResult& result) {
+/// @param seen  share of the region's area, as far as somebody looked
+void judge(const UnfoldOptions& options, double seen, const Monitor& monitor,
+           UnfoldResult& result) {
   const IterationRecord& start = result.history.front();
   const IterationRecord& kept = result.history[static_cast<std::size_t>(result.iteration)];
   const IterationRecord& last = result.history.back();
@@ -122,6 +173,7 @@ void judge(const UnfoldOptions& options, const Monitor& monitor, UnfoldResult& r
   if (result.flag != Flag::None && result.termination == Termination::Converged) {
     result.termination = Termination::Stalled;
   }
+  if (result.termination == Termination::Converged) sayWhatIsShort(kept, seen, monitor, result);
 }
 
 UnfoldResult unfoldHere(const TriangleMesh& mesh, const Region& region,
@@ -161,7 +213,9 @@ UnfoldResult unfoldHere(const TriangleMesh& mesh, const Region& region,
     if (monitor.shouldStop()) return Termination::Interrupted;
     if (options.maxTime && elapsed() + latest > *options.maxTime) return Termination::MaxTime;
     const std::vector<std::int32_t> movedThen = unfolder.movingVertices();
+    const bool isFirstLook = unfolder.state().look.iteration < 0;
     const Termination byItself = rule.check(unfolder, result.history);
+    considerLook(unfolder, isFirstLook, best);
     if (unfolder.movingVertices().size() != movedThen.size()) {
       addStanding(unfolder, movedThen, best.moving);
       for (Positions& state : path) addStanding(unfolder, movedThen, state);
@@ -179,8 +233,8 @@ UnfoldResult unfoldHere(const TriangleMesh& mesh, const Region& region,
     consider(unfolder, options, best);
     tellProgress(monitor, unfolder.record(), initial, goal);
   }
-  chooseState(unfolder, best, options.targetVisibility.has_value(), result);
-  judge(options, monitor, result);
+  const double seen = chooseState(unfolder, best, options.targetVisibility.has_value(), result);
+  judge(options, seen, monitor, result);
   std::vector<Positions> whole = path;
   if (options.frames > 0) path.resize(static_cast<std::size_t>(result.iteration) + 1);
   result.frames = framesAlong(unfolder, viewpoints, path, options.frames);
@@ -202,13 +256,16 @@ Point originFor(const TriangleMesh& mesh, const Region& region) {
 
 }  // namespace
 
-double merit(double visibility, double strain) {
-  return std::min(seenToSpare(visibility), lengthsToSpare(strain));
+double merit(double visibility, double strain, double seen) {
+  const double spare = std::min(seenToSpare(visibility), lengthsToSpare(strain));
+  return seen < kGoalSeen ? std::min(spare, seen - kGoalSeen) : spare;
 }
 
-bool isBetter(const IterationRecord& state, const BestState& than, bool towardsTarget) {
+bool isBetter(const IterationRecord& state, const BestState& than, bool towardsTarget,
+              double seen) {
   if (towardsTarget) return state.visibility > than.visibility;
-  return merit(state.visibility, state.edgeStrainMean) > merit(than.visibility, than.strain);
+  return merit(state.visibility, state.edgeStrainMean, seen) >
+         merit(than.visibility, than.strain, than.seen);
 }
 
 UnfolderOptions solverOptions(const UnfoldOptions& options) {

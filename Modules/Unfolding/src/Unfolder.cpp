@@ -7,6 +7,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/PhaseClock.h"
 #include "Explica/Visibility/AverageVisibility.h"
+#include "Explica/Visibility/VisibleFraction.h"
 
 #include <algorithm>
 #include <cmath>
@@ -162,6 +163,13 @@ void Unfolder::makeWay() {
   state.collarWidth *= kWiden;
   self_->setUpCollar(state.collarWidth);
   self_->measure(self_->record);
+}
+double Unfolder::seenShare() const {
+  return visibility::seenShare(current(), self_->setup.region.faces, self_->viewpoints);
+}
+double Unfolder::look() {
+  self_->state.look = {self_->state.iteration, seenShare()};
+  return self_->state.look.seen;
 }
 const UnfoldState& Unfolder::state() const {
   return self_->state;

@@ -13,6 +13,7 @@
 #include "Explica/Geometry/SelfIntersection.h"
 #include "Explica/Testing/InstructionSets.h"
 #include "Explica/Unfolding/Distortion.h"
+#include "Explica/Unfolding/StopRule.h"
 #include "Explica/Unfolding/Unfold.h"
 
 #include <gtest/gtest.h>
@@ -21,6 +22,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <map>
 
 namespace explica::unfolding {
 namespace {
@@ -141,7 +143,7 @@ TEST(Unfold, SurroundingsThatHoldTheRegionBelowArePartedFurther) {
   const Region region = regionOfMarked(flask.mesh, flask.bottom);
   const auto view = visibility::viewpoint(Point(0, 0, 1000));
   const UnfoldResult result = unfold(flask.mesh, region, view, inTheFlask());
-  EXPECT_EQ(result.termination, Termination::Converged);
+  EXPECT_TRUE(reachedGoal(result.termination));
   EXPECT_EQ(result.flag, Flag::None);
   EXPECT_GE(result.checkpoint.state.ways, 1);
   EXPECT_GT(result.checkpoint.state.collarWidth, 3.7);
@@ -175,13 +177,18 @@ TEST(Unfold, ResumesAcrossAPartingOfTheSurroundings) {
   }
 }
 
-TEST(Unfold, LengthsRecoverWhereMoreIsSeenThanNeeded) {
-  // A dome cannot be laid flat without strain.
+/// A sheet with a dome in its middle, which cannot be laid flat without strain.
+TriangleMesh makeDome(double height) {
   TriangleMesh dome = geometry::makeRectangle(20, 20, 20, 20);
   for (Eigen::Index v = 0; v < dome.vertexCount(); ++v) {
     const double x = dome.positions(v, 0) - 10, y = dome.positions(v, 1) - 10;
-    dome.positions(v, 2) = 9 * std::exp(-(x * x + y * y) / 30);
+    dome.positions(v, 2) = height * std::exp(-(x * x + y * y) / 30);
   }
+  return dome;
+}
+
+TEST(Unfold, LengthsRecoverWhereMoreIsSeenThanNeeded) {
+  const TriangleMesh dome = makeDome(9);
   const Region region = regionOfMarked(dome, interiorOf(20, 20, 0));
   UnfoldOptions options;
   options.unfolder.surround = Surround::None;
@@ -236,6 +243,120 @@ TEST(Unfold, OfTwoStatesTheOneThatLacksLessIsBetter) {
   state.visibility = 0.991;
   state.edgeStrainMean = 0.2;
   EXPECT_TRUE(isBetter(state, {0, 0.99, 0.05, {}}, true)) << "on the way to a target seeing counts";
+}
+
+TEST(Unfold, AStateOfWhichTooLittleIsSeenIsNoBetterThanThatLacks) {
+  EXPECT_NEAR(merit(0.99, 0.05, 0.95), -0.03, 1e-12);
+  EXPECT_NEAR(merit(0.97, 0.05, 0.95), -0.03, 1e-12);
+  EXPECT_DOUBLE_EQ(merit(0.94, 0.05, 0.95), merit(0.94, 0.05)) << "the visibility lacks more";
+  EXPECT_DOUBLE_EQ(merit(0.99, 0.05, 0.98), merit(0.99, 0.05)) << "enough is seen";
+  IterationRecord state;
+  state.visibility = 0.982;
+  state.edgeStrainMean = 0.08;
+  EXPECT_TRUE(isBetter(state, {0, 0.99, 0.05, {}, 0.95}, false, 0.97));
+  EXPECT_FALSE(isBetter(state, {0, 0.981, 0.08, {}, 0.97}, false, 0.95));
+}
+
+/// A floor with low waves, one seventh of the region under a lid high above, which stays.
+struct UnderALid {
+  TriangleMesh mesh;
+  Region region;
+  UnfoldOptions options;
+
+  explicit UnderALid(bool lidded = true) {
+    constexpr int kSteps = 20;
+    mesh = geometry::makeRectangle(kSteps, kSteps, 10, 10);
+    for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
+      mesh.positions(v, 2) = 0.05 * std::sin(kPi * mesh.positions(v, 0));
+    }
+    std::vector<bool> marked = interiorOf(kSteps, kSteps, 2);
+    if (lidded) {
+      TriangleMesh lid = geometry::makeRectangle(1, 1, 3, 3);
+      lid.positions.rowwise() += Eigen::RowVector3d(6, 3.5, kHeight);
+      mesh = geometry::joined(mesh, lid);
+      marked.resize(static_cast<std::size_t>(mesh.vertexCount()), false);
+    }
+    region = regionOfMarked(mesh, marked);
+    options.unfolder.surround = Surround::Fixed;
+    options.unfolder.weights[Term::Lift] = 0;
+  }
+  /// From so far aside that the lid's shadow is shifted by `shift` mm.
+  static visibility::Viewpoints view(double shift = 0) {
+    return visibility::viewpoint(Point(5 - shift * 1e6 / kHeight, 5, 1e6));
+  }
+  static constexpr double kHeight = 20;
+};
+
+/// Iterations until the stop rule ends a run whose view slides by `slide` mm of shadow each time.
+int iterationsUnderALid(double slide, Look& look) {
+  const UnderALid c;
+  Unfolder unfolder(c.mesh, c.region, UnderALid::view(), solverOptions(c.options));
+  const StopRule rule(c.options);
+  std::vector<IterationRecord> history = {unfolder.record()};
+  while (history.size() < 60 && rule.check(unfolder, history) == Termination::NotRun) {
+    unfolder.setViewpoints(UnderALid::view(slide * static_cast<double>(history.size())));
+    unfolder.step();
+    history.push_back(unfolder.record());
+  }
+  look = unfolder.state().look;
+  return history.back().iteration;
+}
+
+TEST(StopRule, GoesOnAsLongAsMoreAndMoreIsSeen) {
+  const UnderALid open(false);
+  const UnfoldResult bare = unfold(open.mesh, open.region, UnderALid::view(), open.options);
+  ASSERT_EQ(bare.termination, Termination::Converged);
+  const int first = bare.history.back().iteration;
+  EXPECT_EQ(bare.checkpoint.state.look.iteration, first) << "one look where enough is seen";
+  EXPECT_DOUBLE_EQ(bare.checkpoint.state.look.seen, 1);
+  Look look;
+  EXPECT_EQ(iterationsUnderALid(0, look), first + 5) << "one more look, which shows no more";
+  EXPECT_NEAR(look.seen, 1 - 9.0 / 64, 0.01);
+  EXPECT_GT(iterationsUnderALid(0.2, look), first + 5) << "more at every look";
+  EXPECT_GE(look.seen, kGoalSeen);
+}
+
+/// What a run says that ends with a goal missed.
+std::vector<std::string> warningsOf(const TriangleMesh& mesh, const Region& region,
+                                    const visibility::Viewpoints& view,
+                                    const UnfoldOptions& options, UnfoldResult& result) {
+  std::vector<std::string> said;
+  Monitor monitor;
+  monitor.onWarning = [&](const std::string& text) { said.push_back(text); };
+  result = unfold(mesh, region, view, options, monitor);
+  return said;
+}
+
+TEST(Unfold, IsNotCalledConvergedWhereTooLittleIsSeen) {
+  const UnderALid c;
+  UnfoldResult result;
+  const auto said = warningsOf(c.mesh, c.region, UnderALid::view(), c.options, result);
+  EXPECT_EQ(result.termination, Termination::Finished);
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_NE(said[0].find("can be seen from the viewpoint, 0."), std::string::npos) << said[0];
+  EXPECT_NE(said[0].find("short of its goal of 0.98"), std::string::npos) << said[0];
+}
+
+TEST(Unfold, IsCalledConvergedOnlyWhereEveryGoalIsReachedAndSaysWhichIsNot) {
+  // A steep dome cannot be laid flat without more strain than the goal allows.
+  const Case sheet;
+  const TriangleMesh dome = makeDome(13);
+  const Region whole = regionOfMarked(dome, interiorOf(20, 20, 0));
+  UnfoldOptions alone;
+  alone.unfolder.surround = Surround::None;
+  UnfoldResult inReach, outOfReach;
+  EXPECT_TRUE(warningsOf(sheet.mesh, sheet.region, sheet.view, alone, inReach).empty());
+  EXPECT_EQ(inReach.termination, Termination::Converged);
+  const auto said =
+      warningsOf(dome, whole, visibility::viewpoint(Point(10, 10, 1000)), alone, outOfReach);
+  EXPECT_EQ(outOfReach.termination, Termination::Finished);
+  const IterationRecord& end = outOfReach.history[static_cast<std::size_t>(outOfReach.iteration)];
+  ASSERT_LT(end.visibility, kGoalVisibility);
+  ASSERT_GT(end.edgeStrainMean, kGoalStrain);
+  ASSERT_EQ(said.size(), 2u);
+  EXPECT_NE(said[0].find("the visibility is 0.9"), std::string::npos) << said[0];
+  EXPECT_NE(said[0].find("short of its goal of 0.98"), std::string::npos) << said[0];
+  EXPECT_NE(said[1].find("beyond their goal of 9 %"), std::string::npos) << said[1];
 }
 
 TEST(Unfold, NeverEndsWorseThanTheBestStateSeen) {
@@ -387,6 +508,85 @@ TEST(Unfolder, APairThatStartsInContactHoldsUpNoStep) {
     EXPECT_GT(unfolder.record().visibility, start + 0.2) << sides.size();
     EXPECT_TRUE(geometry::findSelfIntersections(unfolder.current()).empty());
   }
+}
+
+/// The case's sheet with a hair in place of an inner vertex, as surfaces between two others have
+/// them where these touch: rings of its neighbours' number, thinner and thinner, `tip` at the end.
+TriangleMesh withHair(const Case& c, std::int32_t tip) {
+  constexpr int kRings = 7;
+  TriangleMesh mesh = c.mesh;
+  const Point root = mesh.positions.row(tip).transpose();
+  std::map<std::int32_t, std::int32_t> next;  // around the vertex, and the face there
+  std::vector<Eigen::Index> fan;
+  Vector up = Vector::Zero();
+  for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      if (mesh.faces(f, k) != tip) continue;
+      next[mesh.faces(f, (k + 1) % 3)] = mesh.faces(f, (k + 2) % 3);
+      fan.push_back(f);
+      up += (mesh.corner(f, 1) - mesh.corner(f, 0)).cross(mesh.corner(f, 2) - mesh.corner(f, 0));
+    }
+  }
+  std::vector<std::int32_t> below = {next.begin()->first};
+  while (below.size() < next.size()) below.push_back(next.at(below.back()));
+  const std::vector<std::int32_t> foot = below;
+  const auto around = static_cast<int>(foot.size());
+  for (int n = 0; n < kRings; ++n) {
+    const auto first = static_cast<std::int32_t>(mesh.vertexCount());
+    const Eigen::Index faces = mesh.faceCount();
+    mesh.positions.conservativeResize(first + around, 3);
+    mesh.faces.conservativeResize(faces + 2 * around, 3);
+    std::vector<std::int32_t> ring;
+    for (int i = 0; i < around; ++i) {
+      ring.push_back(first + i);
+      const Vector aside = mesh.positions.row(foot[i]).transpose() - root;
+      mesh.positions.row(first + i) =
+          (root + 0.05 * std::pow(0.4, n) * aside + 0.3 * n * up.normalized()).transpose();
+    }
+    for (int i = 0; i < around; ++i) {
+      const int j = (i + 1) % around;
+      mesh.faces.row(faces + 2 * i) << below[i], below[j], ring[j];
+      mesh.faces.row(faces + 2 * i + 1) << below[i], ring[j], ring[i];
+    }
+    below = ring;
+  }
+  mesh.positions.row(tip) = (root + 0.3 * kRings * up.normalized()).transpose();
+  for (int i = 0; i < around; ++i) mesh.faces.row(fan[i]) << tip, below[i], below[(i + 1) % around];
+  return mesh;
+}
+
+struct Hairy {
+  Case bare;
+  std::int32_t root = 2 * (kColumns + 1) + kColumns / 2;  ///< in its place, beside the region
+  TriangleMesh mesh = withHair(bare, root);
+};
+
+TEST(Contacts, AHairStartsFreeOfForces) {
+  const Hairy c;
+  ASSERT_TRUE(geometry::findSelfIntersections(c.mesh).empty());
+  const UnfolderOptions options = with(Surround::Elastic);
+  const PatchSetup setup = setUpPatch(c.mesh, c.bare.region, c.bare.view, options);
+  Contacts contacts(setup, options);
+  // Its end is thinner than 0.002 of an edge: there all is of one piece.
+  const Eigen::Index thin = c.bare.mesh.vertexCount() + 4 * 6;
+  const auto ofHair = [&](std::int32_t v) { return v == c.root || v >= thin; };
+  for (const collision::Contact& contact : contacts.within(c.mesh.positions)) {
+    const double distance = std::sqrt(squaredDistance(contact, c.mesh.positions));
+    const bool inside = std::all_of(contact.vertices.begin(), contact.vertices.end(), ofHair);
+    EXPECT_FALSE(inside && contact.range > 0.01)
+        << distance << " to be parted to " << contact.range;
+  }
+}
+
+TEST(Unfold, AHairOfTheCollarIsNeitherBlownUpNorInTheWay) {
+  const Hairy c;
+  const UnfoldResult bare = unfold(c.bare.mesh, c.bare.region, c.bare.view);
+  const UnfoldResult result = unfold(c.mesh, c.bare.region, c.bare.view);
+  const IterationRecord& end = result.history[static_cast<std::size_t>(result.iteration)];
+  EXPECT_LE(end.collarStretchMax, kCollarMost);
+  EXPECT_NEAR(end.visibility, bare.history.back().visibility, 0.003);
+  EXPECT_LT(result.history.size(), 2.5 * static_cast<double>(bare.history.size()));
+  EXPECT_TRUE(geometry::findSelfIntersections(result.mesh).empty());
 }
 
 TEST(Unfolder, APairThatStoppedAStepIsSolvedForAsRigidInTheNext) {

@@ -48,6 +48,119 @@ Eigen::VectorXd areasOf(const TriangleMesh& mesh) {
   return areas;
 }
 
+/// Rays from samples of faces to the viewpoints.
+class Rays {
+ public:
+  Rays(const TriangleMesh& mesh, const Viewpoints& viewpoints, int subdivision)
+      : mesh_(mesh),
+        viewpoints_(viewpoints),
+        low_(mesh.positions.colwise().minCoeff().transpose()),
+        high_(mesh.positions.colwise().maxCoeff().transpose()),
+        occluders_(mesh, centre()),
+        samples_(subTriangleCentroids(subdivision)) {}
+
+  /// Shares of a face's area: what is seen, and what arrives of the flux.
+  struct Share {
+    double seen = 0;
+    double arriving = 0;
+  };
+  [[nodiscard]] Share of(Eigen::Index face) const {
+    const Point middle = centre();
+    const double radius = (high_ - low_).norm() / 2;
+    const Point a = mesh_.corner(face, 0) - middle;
+    const Point b = mesh_.corner(face, 1) - middle;
+    const Point c = mesh_.corner(face, 2) - middle;
+    const Vector normal = (b - a).cross(c - a).stableNormalized();
+    Share share;
+    for (std::size_t p = 0; p < viewpoints_.points.size(); ++p) {
+      const Point target = viewpoints_.points[p] - middle;
+      if (!(normal.dot(target - a) > 0)) continue;  // turned away
+      int clear = 0;
+      double cosines = 0;
+      std::array<Point, Occluders::kPacket> from;
+      std::array<Vector, Occluders::kPacket> by;
+      std::array<double, Occluders::kPacket> lengths;
+      for (std::size_t first = 0; first < samples_.size(); first += Occluders::kPacket) {
+        const std::size_t count = std::min(Occluders::kPacket, samples_.size() - first);
+        for (std::size_t n = 0; n < count; ++n) {
+          const Vector& s = samples_[first + n];
+          from[n] = s[0] * a + s[1] * b + s[2] * c;
+          const Vector toTarget = target - from[n];
+          const double distance = toTarget.norm();
+          by[n] = toTarget / distance;
+          // Nothing lies beyond the mesh's ball: a far viewpoint costs no precision.
+          lengths[n] = std::min(distance, from[n].norm() + 1.001 * radius);
+        }
+        const std::uint32_t free =
+            occluders_.clear({from.data(), count}, {by.data(), count}, {lengths.data(), count},
+                             static_cast<std::uint32_t>(face));
+        clear += std::popcount(free);
+        for (std::size_t n = 0; n < count; ++n) {
+          if (free >> n & 1U) cosines += normal.dot(by[n]);
+        }
+      }
+      const auto rays = static_cast<double>(samples_.size());
+      share.seen += viewpoints_.weights[p] * clear / rays;
+      share.arriving += viewpoints_.weights[p] * cosines / rays;
+    }
+    return share;
+  }
+
+ private:
+  [[nodiscard]] Point centre() const { return (low_ + high_) / 2; }
+
+  const TriangleMesh& mesh_;
+  const Viewpoints& viewpoints_;
+  Point low_, high_;
+  Occluders occluders_;
+  std::vector<Vector> samples_;
+};
+
+void requireUsable(const TriangleMesh& mesh, const Viewpoints& viewpoints) {
+  if (mesh.faceCount() == 0) throw InvalidInput("visible fraction: the surface has no face");
+  if (viewpoints.points.empty() || viewpoints.points.size() != viewpoints.weights.size()) {
+    throw InvalidInput("visible fraction: at least one viewpoint, each with a weight, is needed");
+  }
+  if (!mesh.positions.allFinite()) {
+    throw InvalidInput("visible fraction: a vertex position is not finite");
+  }
+}
+
+/// The listed faces, and behind them all others that may hide them: those that reach into the
+/// cylinder from a ball about the listed ones to a viewpoint.
+TriangleMesh withWhatMayHide(const TriangleMesh& mesh, const std::vector<std::int32_t>& faces,
+                             const Viewpoints& viewpoints) {
+  std::vector<bool> listed(static_cast<std::size_t>(mesh.faceCount()), false);
+  Point low = Point::Constant(kInfinity), high = -low;
+  for (const std::int32_t f : faces) {
+    listed[f] = true;
+    for (int k = 0; k < 3; ++k) {
+      low = low.cwiseMin(mesh.corner(f, k));
+      high = high.cwiseMax(mesh.corner(f, k));
+    }
+  }
+  const Point middle = (low + high) / 2;
+  const double radius = (high - low).norm() / 2;
+  const auto mayHide = [&](Eigen::Index f) {
+    const Point a = mesh.corner(f, 0), b = mesh.corner(f, 1), c = mesh.corner(f, 2);
+    const double size = std::max((b - a).norm(), (c - a).norm());
+    for (const Point& eye : viewpoints.points) {
+      const Vector axis = (eye - middle).normalized();
+      if ((a - middle - axis.dot(a - middle) * axis).norm() <= radius + size) return true;
+    }
+    return false;
+  };
+  std::vector<std::int32_t> chosen = faces;
+  for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
+    if (!listed[f] && mayHide(f)) chosen.push_back(static_cast<std::int32_t>(f));
+  }
+  TriangleMesh part{mesh.positions, Faces(static_cast<Eigen::Index>(chosen.size()), 3)};
+  for (std::size_t n = 0; n < chosen.size(); ++n) {
+    part.faces.row(static_cast<Eigen::Index>(n)) = mesh.faces.row(chosen[n]);
+  }
+  return part;
+}
+
 double meanOver(const TriangleMesh& mesh, const std::vector<std::int32_t>& faces,
                 const Eigen::VectorXd& values) {
   const Eigen::VectorXd areas = areasOf(mesh);
@@ -73,68 +186,20 @@ double VisibleFraction::realOf(const TriangleMesh& mesh,
 
 VisibleFraction visibleFraction(const TriangleMesh& mesh, const Viewpoints& viewpoints,
                                 const VisibleFractionOptions& options) {
-  if (mesh.faceCount() == 0) throw InvalidInput("visible fraction: the surface has no face");
-  if (viewpoints.points.empty() || viewpoints.points.size() != viewpoints.weights.size()) {
-    throw InvalidInput("visible fraction: at least one viewpoint, each with a weight, is needed");
-  }
+  requireUsable(mesh, viewpoints);
   if (options.subdivision < 1 || options.subdivision > 64) {
     throw InvalidInput("visible fraction: subdivision is " + std::to_string(options.subdivision) +
                        "; it must lie between 1 and 64");
   }
-  if (!mesh.positions.allFinite()) {
-    throw InvalidInput("visible fraction: a vertex position is not finite");
-  }
-  const Point low = mesh.positions.colwise().minCoeff().transpose();
-  const Point high = mesh.positions.colwise().maxCoeff().transpose();
-  const Point centre = (low + high) / 2;
-  const double radius = (high - low).norm() / 2;
-  const Occluders occluders(mesh, centre);
-  const std::vector<Vector> samples = subTriangleCentroids(options.subdivision);
-
+  const Rays rays(mesh, viewpoints, options.subdivision);
   VisibleFraction result;
   result.face.setZero(mesh.faceCount());
   result.arriving.setZero(mesh.faceCount());
   parallelFor(static_cast<std::size_t>(mesh.faceCount()), kGrain, [&](std::size_t i) {
     const auto f = static_cast<Eigen::Index>(i);
-    const Point a = mesh.corner(f, 0) - centre;
-    const Point b = mesh.corner(f, 1) - centre;
-    const Point c = mesh.corner(f, 2) - centre;
-    const Vector normal = (b - a).cross(c - a).stableNormalized();
-    double seen = 0;
-    double arriving = 0;
-    for (std::size_t p = 0; p < viewpoints.points.size(); ++p) {
-      const Point target = viewpoints.points[p] - centre;
-      if (!(normal.dot(target - a) > 0)) continue;  // turned away
-      int clear = 0;
-      double cosines = 0;
-      std::array<Point, Occluders::kPacket> from;
-      std::array<Vector, Occluders::kPacket> by;
-      std::array<double, Occluders::kPacket> lengths;
-      for (std::size_t first = 0; first < samples.size(); first += Occluders::kPacket) {
-        const std::size_t count = std::min(Occluders::kPacket, samples.size() - first);
-        for (std::size_t n = 0; n < count; ++n) {
-          const Vector& s = samples[first + n];
-          from[n] = s[0] * a + s[1] * b + s[2] * c;
-          const Vector toTarget = target - from[n];
-          const double distance = toTarget.norm();
-          by[n] = toTarget / distance;
-          // Nothing lies beyond the mesh's ball: a far viewpoint costs no precision.
-          lengths[n] = std::min(distance, from[n].norm() + 1.001 * radius);
-        }
-        const std::uint32_t free =
-            occluders.clear({from.data(), count}, {by.data(), count}, {lengths.data(), count},
-                            static_cast<std::uint32_t>(i));
-        clear += std::popcount(free);
-        for (std::size_t n = 0; n < count; ++n) {
-          if (free >> n & 1U) cosines += normal.dot(by[n]);
-        }
-      }
-      const auto rays = static_cast<double>(samples.size());
-      seen += viewpoints.weights[p] * clear / rays;
-      arriving += viewpoints.weights[p] * cosines / rays;
-    }
-    result.face[f] = seen;
-    result.arriving[f] = arriving;
+    const Rays::Share share = rays.of(f);
+    result.face[f] = share.seen;
+    result.arriving[f] = share.arriving;
   });
 
   const Eigen::VectorXd areas = areasOf(mesh);
@@ -152,6 +217,20 @@ VisibleFraction visibleFraction(const TriangleMesh& mesh, const Viewpoints& view
     result.vertex[v] = around[v] > 0 ? result.vertex[v] / around[v] : 0;
   }
   return result;
+}
+
+double seenShare(const TriangleMesh& mesh, const std::vector<std::int32_t>& faces,
+                 const Viewpoints& viewpoints) {
+  requireUsable(mesh, viewpoints);
+  const TriangleMesh part = withWhatMayHide(mesh, faces, viewpoints);
+  const Rays rays(part, viewpoints, VisibleFractionOptions{}.subdivision);
+  const auto count = static_cast<Eigen::Index>(faces.size());
+  Eigen::VectorXd seen(count);
+  parallelFor(faces.size(), kGrain, [&](std::size_t i) {
+    seen[static_cast<Eigen::Index>(i)] = rays.of(static_cast<Eigen::Index>(i)).seen;
+  });
+  const Eigen::VectorXd areas = areasOf(part).head(count);
+  return areas.sum() > 0 ? seen.dot(areas) / areas.sum() : 0;
 }
 
 }  // namespace explica::visibility

@@ -93,6 +93,36 @@ TEST(VisibleFraction, RemovingAnOccluderHidesNothing) {
   for (Eigen::Index f = 0; f < part.faceCount(); ++f) EXPECT_GE(less.face[f], whole.face[f]) << f;
 }
 
+TEST(SeenShare, OfFewFacesIsThatOfTheWholeSurface) {
+  const TriangleMesh folded = geometry::makeFoldedSphere(5, 1.0, 0.3, 8);
+  for (const Point& eye : {Point(0.3, 0.4, 3), Point(-2, 1.5, 1), Point(400, -700, 300)}) {
+    const VisibleFraction all = visibleFraction(folded, viewpoint(eye));
+    for (const Point& about : {Point(0, 0, 1), Point(-0.6, 0.5, 0.6), Point(0.5, -0.8, -0.3)}) {
+      std::vector<std::int32_t> faces;
+      for (Eigen::Index f = 0; f < folded.faceCount(); ++f) {
+        if ((folded.corner(f, 0) - about).norm() < 0.5) faces.push_back(static_cast<int>(f));
+      }
+      ASSERT_GT(faces.size(), 100u);
+      // Rays in single precision about another centre may graze an edge on its other side.
+      EXPECT_NEAR(seenShare(folded, faces, viewpoint(eye)), all.of(folded, faces), 1e-3)
+          << eye.transpose() << " onto " << about.transpose();
+    }
+  }
+}
+
+TEST(SeenShare, WhatStandsFarAboveHidesToo) {
+  TriangleMesh floor = geometry::makeRectangle(10, 10, 1, 1);
+  TriangleMesh lid = geometry::makeRectangle(1, 1, 100, 100);  // no corner of it is near
+  lid.positions.rowwise() += Eigen::RowVector3d(-50, -49.5, 30);
+  const TriangleMesh both = geometry::joined(floor, lid);
+  std::vector<std::int32_t> faces(200);
+  std::iota(faces.begin(), faces.end(), 0);
+  EXPECT_NEAR(seenShare(both, faces, viewpoint(Point(0.5, 0.5, 1e5))), 0, 1e-12);
+  lid.positions.col(1).array() += 50;  // from the middle line on
+  EXPECT_NEAR(seenShare(geometry::joined(floor, lid), faces, viewpoint(Point(0.5, 0.5, 1e5))), 0.5,
+              0.01);
+}
+
 TEST(VisibleFraction, FromALineIsTheMeanOfItsPoints) {
   const TriangleMesh plate = geometry::makeRectangle(3, 3, 1, 1);
   const Viewpoints line = viewLine(Point(0.5, 0.5, -1), Point(0.5, 0.5, 1), 2);

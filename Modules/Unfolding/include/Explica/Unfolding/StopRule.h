@@ -18,13 +18,15 @@ class StopRule {
   ///
   /// A target counts as reached once areas and lengths have settled, too.  Where lengths and
   /// contacts balance the visibility below a target, its term is strengthened, up to a limit; where
-  /// a part of the region is held below its surroundings, these are parted further.
+  /// a part of the region is held below its surroundings, these are parted further.  A run that has
+  /// come to rest goes on as long as too little of the region is seen, but more and more.
   /// @return NotRun as long as another iteration pays
   [[nodiscard]] Termination check(Unfolder& unfolder,
                                   const std::vector<IterationRecord>& history) const;
 
  private:
   [[nodiscard]] bool targetHolds(const std::vector<IterationRecord>& history) const;
+  static bool isStillAppearing(Unfolder& unfolder);
   /// Without a target: weighs what is seen against lengths for the next step.
   [[nodiscard]] Termination weigh(Unfolder& unfolder,
                                   const std::vector<IterationRecord>& history) const;

@@ -57,9 +57,15 @@ struct BestState {
   double visibility = kNaN;
   double strain = kNaN;  ///< mean edge strain
   Positions moving;      ///< of the vertices that move
+  double seen = kNaN;    ///< share of the region's area that is seen; NaN if nobody looked
 };
 
-inline constexpr double kSeen = 0.9805;      ///< visibility that a result shall have ...
+/// Goals: a result that misses one is not called converged.
+inline constexpr double kGoalVisibility = 0.98;
+inline constexpr double kGoalSeen = 0.98;    ///< share of the region's area that is seen
+inline constexpr double kGoalStrain = 0.09;  ///< mean edge strain, at most
+
+inline constexpr double kSeen = 0.9805;      ///< visibility that a run aims at ...
 inline constexpr double kStrained = 0.0893;  ///< ... at a mean edge strain of this at most
 /// Visibility that a mean edge strain of 1 is worth.
 inline constexpr double kStrainWorth = 0.5;
@@ -76,11 +82,14 @@ inline constexpr double kStrainWorth = 0.5;
 /// Area ratios of a collar's faces, in the mean and at most, beyond which it has given way.
 inline constexpr double kCollarMean = 2, kCollarMost = 8;
 
-/// The lesser of what seeing and lengths have to spare.
-[[nodiscard]] double merit(double visibility, double strain);
+/// The lesser of what seeing and lengths have to spare, or what the share seen lacks if that is
+/// more.
+/// @param seen  NaN: nobody looked, and nothing is known to lack
+[[nodiscard]] double merit(double visibility, double strain, double seen = kNaN);
 /// More merit; on the way to a target, the higher visibility.
+/// @param seen  of the state
 [[nodiscard]] bool isBetter(const IterationRecord& state, const BestState& than,
-                            bool towardsTarget = false);
+                            bool towardsTarget = false, double seen = kNaN);
 /// How a driver of its own sets up an Unfolder that ends where unfold() does.
 [[nodiscard]] UnfolderOptions solverOptions(const UnfoldOptions& options);
 
@@ -124,8 +133,9 @@ struct UnfoldResult {
 ///                       range
 ///
 /// A run never ends worse than the best state it has seen that keeps its areas.  A target that is
-/// out of reach, and a region that is held far from full visibility, end as Stalled; Converged is
-/// said of nothing else than no more progress near the goal.
+/// out of reach, and a region that is held far from full visibility, end as Stalled.  Converged is
+/// said of what reaches its goals (kGoalVisibility, kGoalSeen, kGoalStrain) only; a run that comes
+/// to rest a little short of one ends as Finished, with a warning.
 [[nodiscard]] UnfoldResult unfold(const TriangleMesh& mesh, const Region& region,
                                   const visibility::Viewpoints& viewpoints,
                                   const UnfoldOptions& options = {}, const Monitor& monitor = {},

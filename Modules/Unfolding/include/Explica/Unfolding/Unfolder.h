@@ -126,6 +126,12 @@ struct HeldPair {
   friend bool operator==(const HeldPair&, const HeldPair&) = default;
 };
 
+/// What rays to the viewpoints told of a state.
+struct Look {
+  int iteration = -1;  ///< whose state it was; -1: there was no look
+  double seen = kNaN;  ///< share of the region's area that is seen then
+};
+
 /// Everything that the next step depends on, beyond the inputs of construction.
 struct UnfoldState {
   Positions positions;          ///< V x 3, all vertices of the surface
@@ -144,6 +150,7 @@ struct UnfoldState {
   double separatingEnergy = kInfinity;  ///< of their contacts before the last such step
   bool stalled = false;                 ///< no step lowered the objective
   std::vector<HeldPair> held;           ///< in the order in which they stopped steps
+  Look look;                            ///< the last
 };
 
 /// Unfolds a region one iteration at a time, so that a viewer or a script can watch and steer.
@@ -188,6 +195,12 @@ class Unfolder {
   /// Parts the surroundings: from now on more of them moves (beginning where it stands, so that
   /// nothing is lost), and the region is pulled up with more force.  More vertices move then.
   void makeWay();
+
+  /// Share of the region's area that is seen from the viewpoints, by rays: about as expensive as a
+  /// quarter of a step.
+  [[nodiscard]] double seenShare() const;
+  /// The same, taken note of in the state.
+  double look();
 
   [[nodiscard]] const UnfoldState& state() const;
   /// Continues from a state of the same inputs: bit-identical to never having stopped.

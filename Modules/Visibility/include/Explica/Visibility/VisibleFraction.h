@@ -36,4 +36,11 @@ struct VisibleFraction {
                                               const Viewpoints& viewpoints,
                                               const VisibleFractionOptions& options = {});
 
+/// Share of the area of the listed faces that is seen: visibleFraction(...).of(mesh, faces),
+/// without looking at the rest of the surface where it stands nowhere in the way.  For few faces of
+/// many.
+/// @throws InvalidInput  as visibleFraction
+[[nodiscard]] double seenShare(const TriangleMesh& mesh, const std::vector<std::int32_t>& faces,
+                               const Viewpoints& viewpoints);
+
 }  // namespace explica::visibility
