@@ -21,8 +21,8 @@ constexpr double kParallel = 1e-3;  // of |u|^2 |v|^2, as in incremental potenti
 constexpr double kParted = 0.2;     // of the range: pairs that start nearer are parted up to there,
 constexpr double kNeedle = 0.25;    // neighbours up to this share of the thinnest face's height ...
 constexpr double kAsNear = 0.5;     // ... or to this one of their distance
-// Of the mean edge: with faces thinner than that the surface is a hair, around which neighbours of
-// neighbours are as near as its faces are thin.  Parting them would have to blow it up.
+// Of the mean edge: where faces are thinner than that, one beside the other, the surface is a hair,
+// around which all pairs are as near as it is thin.  Parting them would have to blow it up.
 constexpr double kHair = 0.003;
 
 std::vector<bool> flags(Eigen::Index count, const std::vector<std::int32_t>& marked) {
@@ -51,18 +51,43 @@ Eigen::VectorXd thinnestFaces(const TriangleMesh& mesh) {
   return thinnest;
 }
 
-/// True if an edge joins the pair's features, or two.
-bool areJoined(const geometry::MeshTopology& topology, PairKind kind,
-               const std::array<std::int32_t, 4>& v, bool byTwo) {
+/// V: the hair that a vertex belongs to, by its first vertex; -1 for those whose faces are all
+/// thicker.
+std::vector<std::int32_t> hairsOf(const PatchSetup& setup, const Eigen::VectorXd& thinnest) {
+  const auto isThin = [&](std::int32_t v) { return thinnest[v] < kHair * setup.edge; };
+  std::vector<std::int32_t> hair(static_cast<std::size_t>(thinnest.size()), -1);
+  for (std::int32_t first = 0; first < thinnest.size(); ++first) {
+    if (hair[first] >= 0 || !isThin(first)) continue;
+    std::vector<std::int32_t> open = {first};
+    hair[first] = first;
+    while (!open.empty()) {
+      const std::int32_t v = open.back();
+      open.pop_back();
+      for (const std::int32_t beside : setup.topology.vertexVertices[v]) {
+        if (hair[beside] >= 0 || !isThin(beside)) continue;
+        hair[beside] = first;
+        open.push_back(beside);
+      }
+    }
+  }
+  return hair;
+}
+
+/// True if the pair's features belong to one piece of surface: joined by an edge, or of one hair,
+/// or by two edges at the end of one.
+bool areOfOnePiece(const geometry::MeshTopology& topology, const std::vector<std::int32_t>& hair,
+                   PairKind kind, const std::array<std::int32_t, 4>& v) {
   const auto adjacent = [&](std::int32_t a, std::int32_t b) {
     const auto list = topology.vertexVertices[a];
     return std::binary_search(list.begin(), list.end(), b);
   };
+  const bool thin = std::any_of(v.begin(), v.end(), [&](std::int32_t a) { return hair[a] >= 0; });
   const int split = kind == PairKind::VertexFace ? 1 : 2;
   for (int i = 0; i < split; ++i) {
     for (int k = split; k < 4; ++k) {
       if (adjacent(v[i], v[k])) return true;
-      if (!byTwo) continue;
+      if (!thin) continue;
+      if (hair[v[i]] >= 0 && hair[v[i]] == hair[v[k]]) return true;
       for (const std::int32_t between : topology.vertexVertices[v[i]]) {
         if (adjacent(between, v[k])) return true;
       }
@@ -94,6 +119,7 @@ void Contacts::standAt(const PatchSetup& setup, const Positions& positions) {
 
 void Contacts::findRanges(const PatchSetup& setup, bool mayTouch) {
   const Eigen::VectorXd thinnest = thinnestFaces(setup.mesh);
+  const std::vector<std::int32_t> hair = hairsOf(setup, thinnest);
   for (const Pair& pair : near_) {
     const double distance =
         std::sqrt(collision::squaredDistance(pair.kind, scene_->points(pair, start_)));
@@ -108,8 +134,7 @@ void Contacts::findRanges(const PatchSetup& setup, bool mayTouch) {
     for (const std::int32_t vertex : v) thin = std::min(thin, thinnest[vertex]);
     const double wanted = std::max(distance, kParted * range_);
     const double needle = std::max(kAsNear * distance, std::min(wanted, kNeedle * thin));
-    const bool mayStayNear =
-        needle < wanted && areJoined(setup.topology, pair.kind, v, thin < kHair * setup.edge);
+    const bool mayStayNear = needle < wanted && areOfOnePiece(setup.topology, hair, pair.kind, v);
     ranges_.emplace_back(pair, mayStayNear ? needle : wanted);
   }
 }
