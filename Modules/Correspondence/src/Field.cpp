@@ -107,6 +107,48 @@ void TrajectoryTracer::Field::rankTissue() {
   });
 }
 
+namespace {
+
+/// For each set of a cell's corners, a bit each: whether its edges join them all.
+constexpr std::array<bool, 256> kHangTogether = [] {
+  constexpr std::array<unsigned, 3> kLower = {0x55, 0x33, 0x0f};  // corners at an axis' lower end
+  std::array<bool, 256> together{};
+  for (unsigned corners = 1; corners < 256; ++corners) {
+    unsigned reached = corners & (~corners + 1);
+    for (unsigned before = 0; before != reached;) {
+      before = reached;
+      for (int a = 0; a < 3; ++a) {
+        reached |=
+            ((reached & kLower[a]) << (1 << a) | (reached >> (1 << a) & kLower[a])) & corners;
+      }
+    }
+    together[corners] = reached == corners;
+  }
+  return together;
+}();
+
+/// Whether uncut links along a cell's edges join all its corners that are tissue.
+bool hangTogether(const harmonic::Annulus& annulus, const std::int32_t* number, int corners) {
+  const int axes = corners == 4 ? 2 : 3;
+  unsigned tissue = 0;
+  for (int c = 0; c < corners; ++c) tissue |= static_cast<unsigned>(number[c] >= 0) << c;
+  unsigned reached = tissue & (~tissue + 1);
+  for (unsigned before = 0; before != reached;) {
+    before = reached;
+    for (int c = 0; c < corners; ++c) {
+      if (!(reached >> c & 1)) continue;
+      for (int a = 0; a < axes; ++a) {
+        const int other = c ^ (1 << a), d = 2 * a + ((c >> a & 1) ? 0 : 1);
+        const bool joined = number[other] >= 0 && annulus.links[number[c]][d] == number[other];
+        reached |= static_cast<unsigned>(joined) << other;
+      }
+    }
+  }
+  return reached == tissue;
+}
+
+}  // namespace
+
 void TrajectoryTracer::Field::prepareCells() {
   const auto strides = annulus.strides();
   const int corners = flat ? 4 : 8;
@@ -115,75 +157,56 @@ void TrajectoryTracer::Field::prepareCells() {
   cellAt_.assign(annulus.numberAt.size(), kEmpty);
   std::vector<std::int32_t> start(slices + 1, 0);
   const auto numbersOf = [&](std::size_t p, std::int32_t* number) {
-    int tissue = 0;
     for (int c = 0; c < corners; ++c) {
       number[c] = annulus.numberAt[p + (c & 1) + (c >> 1 & 1) * strides[1] + (c >> 2) * strides[2]];
-      tissue += number[c] >= 0;
+    }
+  };
+  // Which corners of the cells with this voxel as a lower one are tissue, of those at the first
+  // axis' lower end: a bit each.
+  const auto lowerEnd = [&](std::size_t p) {
+    unsigned tissue = 0;
+    for (int c = 0; c < corners; c += 2) {
+      const std::size_t q = p + (c >> 1 & 1) * strides[1] + (c >> 2) * strides[2];
+      tissue |= static_cast<unsigned>(annulus.numberAt[q] >= 0) << c;
     }
     return tissue;
   };
   const auto forCells = [&](int k, const auto& body) {
     if (!flat && k + 1 >= slices) return;
     for (int j = 0; j + 1 < annulus.size[1]; ++j) {
-      for (int i = 0; i + 1 < annulus.size[0]; ++i) {
-        body(i + static_cast<std::size_t>(j) * strides[1] + k * sliceSize);
+      std::size_t p = static_cast<std::size_t>(j) * strides[1] + k * sliceSize;
+      unsigned here = lowerEnd(p);
+      for (int i = 0; i + 1 < annulus.size[0]; ++i, ++p) {
+        const unsigned next = lowerEnd(p + 1);
+        if ((here | next) != 0) body(p, here | next << 1);
+        here = next;
       }
     }
   };
-  const auto firstOf = [&](const std::int32_t* number) {
-    int seed = 0;
-    while (number[seed] < 0) ++seed;
-    return seed;
+  const auto kindOf = [&](std::size_t p, unsigned tissue, std::int32_t& count) -> std::int32_t {
+    std::int32_t number[8];
+    bool cut = false;
+    if (!onCut.empty()) {
+      numbersOf(p, number);
+      for (int c = 0; c < corners; ++c) cut = cut || (number[c] >= 0 && onCut[number[c]]);
+    }
+    if (!cut && tissue == (1U << corners) - 1) return kWhole;
+    const bool one = cut ? hangTogether(annulus, number, corners) : kHangTogether[tissue];
+    return one ? count++ : static_cast<std::int32_t>(kDivided);
   };
   parallelFor(slices, 1, [&](std::size_t k) {
-    forCells(static_cast<int>(k), [&](std::size_t p) {
-      std::int32_t number[8];
-      const int tissue = numbersOf(p, number);
-      if (tissue == 0) return;
-      bool cut = false;
-      for (int c = 0; c < corners && !onCut.empty(); ++c) {
-        cut = cut || (number[c] >= 0 && onCut[number[c]]);
-      }
-      if (tissue == corners && !cut) {
-        cellAt_[p] = kWhole;
-        return;
-      }
-      // One side if a walk along uncut links reaches every tissue corner.
-      unsigned reached = 1U << firstOf(number);
-      for (bool grown = true; grown;) {
-        grown = false;
-        for (int c = 0; c < corners; ++c) {
-          if (!(reached >> c & 1)) continue;
-          for (int a = 0; a < (flat ? 2 : 3); ++a) {
-            const int other = c ^ (1 << a);
-            const int d = 2 * a + ((c >> a & 1) ? 0 : 1);
-            if ((reached >> other & 1) || number[other] < 0 ||
-                annulus.links[number[c]][d] != number[other]) {
-              continue;
-            }
-            reached |= 1U << other;
-            grown = true;
-          }
-        }
-      }
-      bool one = true;
-      for (int c = 0; c < corners; ++c) one = one && (number[c] < 0 || (reached >> c & 1));
-      if (!one) {
-        cellAt_[p] = kDivided;
-        return;
-      }
-      cellAt_[p] = start[k + 1]++;
-    });
+    forCells(static_cast<int>(k),
+             [&](std::size_t p, unsigned tissue) { cellAt_[p] = kindOf(p, tissue, start[k + 1]); });
   });
   for (int k = 0; k < slices; ++k) start[k + 1] += start[k];
   cells_.resize(start[slices]);
   parallelFor(slices, 1, [&](std::size_t k) {
-    forCells(static_cast<int>(k), [&](std::size_t p) {
+    forCells(static_cast<int>(k), [&](std::size_t p, unsigned tissue) {
       if (cellAt_[p] < 0) return;
       cellAt_[p] += start[k];
       std::int32_t number[8] = {};
       numbersOf(p, number);
-      extend(number, firstOf(number), cells_[cellAt_[p]].corner.data());
+      extend(number, std::countr_zero(tissue), cells_[cellAt_[p]].corner.data());
     });
   });
   prepareSides();

@@ -685,13 +685,13 @@ Annulus withCuts(const Annulus& annulus, const std::vector<Cut>& cuts) {
   });
   std::vector<std::uint8_t> cutBits(sites.size(), 0);
   // Cuts that the annulus has already.
-  for (std::size_t n = 0; n < annulus.count(); ++n) {
+  parallelFor(annulus.count(), 1 << 14, [&](std::size_t n) {
     const std::int32_t p = annulus.place[n];
     for (int d = 0; d < (annulus.planar ? 4 : 6); ++d) {
       const std::int32_t q = p + signOf(d) * strides[axisOf(d)];
       if (annulus.links[n][d] == kOuter && sites[q] == kTissueCode) cutBits[p] |= 1U << d;
     }
-  }
+  });
   for (const Cut& cut : cuts) {
     const std::int32_t p = annulus.place[cut.number];
     const std::int32_t q = p + strides[cut.axis];
@@ -701,11 +701,11 @@ Annulus withCuts(const Annulus& annulus, const std::vector<Cut>& cuts) {
   }
   Annulus result = annulus;
   number(result, sites, cutBits);
-  for (std::size_t n = 0; n < annulus.count(); ++n) {
+  parallelFor(annulus.count(), 1 << 14, [&](std::size_t n) {
     const std::int32_t old = annulus.irregular(static_cast<std::int32_t>(n));
-    if (old < 0) continue;
+    if (old < 0) return;
     result.fractions[result.irregular(result.numberAt[annulus.place[n]])] = annulus.fractions[old];
-  }
+  });
   for (const Cut& cut : cuts) {
     const std::int32_t p = annulus.place[cut.number];
     const std::int32_t q = p + strides[cut.axis];
