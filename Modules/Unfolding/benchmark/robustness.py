@@ -4,10 +4,10 @@
 """Unfolds one patch again and again, a little different each time: does the result hang on chance?
 
     Modules/Unfolding/benchmark/robustness.py build/bin/explica SURFACE.gii --center=X,Y,Z --radius R --direction=X,Y,Z
-        [--surround elastic] [--seed 7]
+        [--surround elastic] [--seed 7] [--shifts 0.5 1 2] [--jitters 6] [--uncut]
 
-The centre is shifted by 0.5, 1 and 2 mm both ways along the three axes; vertices are moved by a thousandth of the mean
-edge within their tangent planes; faces are cut in four.  Prints a row for each run, then for each kind how many runs,
+The centre is shifted by 0.5, 1 and 2 mm (--shifts) both ways along the three axes; vertices are moved by a thousandth of the mean
+edge within their tangent planes, six times (--jitters); faces are cut in four (not with --uncut).  Prints a row for each run, then for each kind how many runs,
 the least and the median visibility and share seen, the largest and the median strain, the largest collar stretch, new
 crossings and flags.
 """
@@ -65,17 +65,18 @@ def variants(chosen, folder):
     """Kind, surface and centre of every run."""
     centre = np.array([float(x) for x in chosen.center.split(",")])
     yield "as it is", chosen.surface, centre
-    for step in (0.5, 1, 2):
+    for step in chosen.shifts:
         for axis in range(3):
             for sign in (-1, 1):
                 yield "shifted", chosen.surface, centre + sign * step * np.eye(3)[axis]
     read = nibabel.load(chosen.surface)
     positions, faces = read.darrays[0].data.astype(float), read.darrays[1].data
     random = np.random.default_rng(chosen.seed)
-    for n in range(6):
+    for n in range(chosen.jitters):
         path = write(f"{folder}/jittered{n}.surf.gii", jittered(positions, faces, random), faces)
         yield "jittered", path, centre
-    yield "cut in four", write(f"{folder}/four.surf.gii", *cut_in_four(positions, faces)), centre
+    if not chosen.uncut:
+        yield "cut in four", write(f"{folder}/four.surf.gii", *cut_in_four(positions, faces)), centre
 
 
 def unfold(chosen, surface, centre, out):
@@ -110,6 +111,9 @@ def main():
     parser.add_argument("--direction", required=True)
     parser.add_argument("--surround", default="elastic")
     parser.add_argument("--seed", type=int, default=7)
+    parser.add_argument("--shifts", type=float, nargs="*", default=[0.5, 1, 2])
+    parser.add_argument("--jitters", type=int, default=6)
+    parser.add_argument("--uncut", action="store_true")
     chosen = parser.parse_args()
     results = {}
     with tempfile.TemporaryDirectory() as folder:
