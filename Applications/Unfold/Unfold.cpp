@@ -19,6 +19,7 @@
 #include "Explica/Repulsion/KnotEnergy.h"
 #include "Explica/Unfolding/Account.h"
 #include "Explica/Unfolding/Region.h"
+#include "Explica/Unfolding/TimeBudget.h"
 
 #include <malloc.h>
 
@@ -168,15 +169,6 @@ std::string crossingsInWords(const std::vector<unfolding::Crossing>& list, std::
   return message + text;
 }
 
-/// Seconds for the iterations within the limit of the whole command.  What comes after them tests,
-/// measures and writes what the start read, tested and measured: it takes up to three times as
-/// long, and each frame a share of it.
-double timeToIterate(double limit, double start, const unfolding::UnfoldOptions& options) {
-  constexpr double kFrameShare = 0.2;  // a frame is tested where it moved, and written
-  constexpr double kLeast = 1e-3;      // s: one look at the state, and it ends
-  return std::max(kLeast, limit - start * (3 + kFrameShare * options.frames));
-}
-
 /// Lists the start's intersections and parts in `mesh` those that stand in the way.
 /// @return the pairs that are left
 std::vector<geometry::FacePair> checkStart(Context& context, const Settings& s,
@@ -316,7 +308,9 @@ Termination run(Context& context, const Settings& s) {
   {
     auto step = context.step("unfold");
     unfolding::UnfoldOptions options = s.unfold;
-    if (options.maxTime) options.maxTime = timeToIterate(*options.maxTime, u.secondsStart, options);
+    if (options.maxTime) {
+      options.maxTime = unfolding::timeToIterate(*options.maxTime, u.secondsStart, options.frames);
+    }
     u.result = unfolding::unfold(u.before, u.chosen, u.view, options, context.monitor(),
                                  checkpoint ? &*checkpoint : nullptr);
     step.iterations(u.result.history.back().iteration);

@@ -7,6 +7,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Unfolding/StopRule.h"
+#include "Explica/Unfolding/TimeBudget.h"
 
 #include <algorithm>
 #include <chrono>
@@ -207,11 +208,11 @@ UnfoldResult unfoldHere(const TriangleMesh& mesh, const Region& region,
 
   const double earlier = result.history.back().seconds;
   const double goal = options.targetVisibility.value_or(1.0);
-  double latest = 0;  // s, that the last step took: one more shall still fit
+  TimeBudget budget(options.maxTime);
   const auto reason = [&] {
     // Before the rule, which steers: a run that goes on from here is steered once.
     if (monitor.shouldStop()) return Termination::Interrupted;
-    if (options.maxTime && elapsed() + latest > *options.maxTime) return Termination::MaxTime;
+    if (!budget.fits(elapsed())) return Termination::MaxTime;
     const std::vector<std::int32_t> movedThen = unfolder.movingVertices();
     const bool isFirstLook = unfolder.state().look.iteration < 0;
     const Termination byItself = rule.check(unfolder, result.history);
@@ -223,7 +224,7 @@ UnfoldResult unfoldHere(const TriangleMesh& mesh, const Region& region,
     if (byItself != Termination::NotRun) return byItself;
     const double before = elapsed();
     const bool moved = unfolder.step();
-    latest = elapsed() - before;
+    budget.stepTook(elapsed() - before);
     return moved ? Termination::NotRun : Termination::Stalled;
   };
   while ((result.termination = reason()) == Termination::NotRun) {
