@@ -3,7 +3,7 @@
 // Digests of what two processors must agree on: the C library's functions, and the unfolding of
 // polygons, one line each.  Testing/check-arm64.sh compares them.
 
-#include "Explica/Core/Parallel.h"
+#include "Explica/Core/PortableMath.h"
 #include "Explica/Planar/PolygonKnotEnergy.h"
 #include "Explica/Planar/PolygonMeasures.h"
 #include "Explica/Planar/PolygonPhantoms.h"
@@ -13,14 +13,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-
-// One thread in place of oneTBB's, which would have to be there for both processors; results do
-// not hang on their number.
-void explica::parallelForBlocks(std::size_t count, std::size_t grain,
-                                const std::function<void(std::size_t, std::size_t)>& body) {
-  grain = std::max<std::size_t>(grain, 1);
-  for (std::size_t at = 0; at < count; at += grain) body(at, std::min(count, at + grain));
-}
 
 namespace {
 
@@ -77,6 +69,10 @@ int main() {
   printFunction("log1p", std::log1p);
   printFunction("cbrt", std::cbrt);
   printFunction("sqrt", std::sqrt);
+  printFunction("portable-log", portable::log);
+  printFunction("portable-exp", portable::exp);
+  printFunction("portable-sin", portable::sin);
+  printFunction("portable-acos", portable::acos);
   const auto phantom = planar::makePolygon34();
   const auto region = planar::regionBetween(phantom.curve, phantom.first, phantom.last);
   Digest visibility, knot;

@@ -117,6 +117,39 @@ TEST(Limits, TimeEndsACommandWithWhatWasReached) {
   EXPECT_EQ(readJson(folder / "r/summary.json")["termination"], "max-time");
 }
 
+TEST(Limits, TimeEndsACommandThatDoesNotHearOfIt) {
+  const TemporaryFolder folder;
+  CommandSetting setting;
+  setting.directory = folder.path();
+  setting.environment["EXPLICA"] = EXPLICA_EXECUTABLE;
+  // Its messages go to a pipe that is full and that nobody reads: it waits there for ever.
+  const auto result = runProgram(
+      {"bash", "-c",
+       "mkfifo pipe; exec 3<>pipe; dd if=/dev/zero bs=4096 count=16 status=none >&3\n"
+       "\"$EXPLICA\" phantom shell --size 8 --verbose --max-time 0.1 --out a 2>&3; echo $?"},
+      setting);
+  EXPECT_EQ(result.out, "4\n") << result;
+  EXPECT_EQ(folder.entries(), std::vector<std::string>{"pipe"});
+}
+
+TEST(Limits, TimeEndsACommandThatDoesNotHearOfItWithASentence) {
+  const TemporaryFolder folder;
+  std::string subjects;
+  for (int n = 0; n < 20000; ++n) subjects += (n > 0 ? ",\"" : "\"") + std::to_string(n) + "\"";
+  writeText(folder / "study.json",
+            R"({"hemispheres": ["L"], "input": "a.nii", "subjects": [)" + subjects + "]}");
+  CommandSetting setting;
+  setting.directory = folder.path();
+  setting.environment["EXPLICA"] = EXPLICA_EXECUTABLE;
+  const auto result = runProgram({"bash", "-c",
+                                  "mkfifo pipe; exec 3<>pipe\n"
+                                  "\"$EXPLICA\" study list study.json --max-time 0.1 >&3; echo $?"},
+                                 setting);
+  EXPECT_EQ(result.out, "4\n") << result;
+  EXPECT_NE(result.err.find("did not come to a stop after --max-time"), std::string::npos)
+      << result;
+}
+
 TEST(Limits, MemoryEndsACommandWithASentenceAndNothingElse) {
   const TemporaryFolder folder;
   const auto result = explica(

@@ -7,6 +7,7 @@
 #include "Explica/Core/Errors.h"
 #include "Leavings.h"
 
+#include <poll.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -26,6 +27,13 @@ std::chrono::steady_clock::duration duration(double seconds) {
       std::chrono::duration<double>(seconds));
 }
 
+/// The last words of a process; none where nobody takes them, for which nothing may wait.
+void sayAtTheEnd(const std::string& message) {
+  pollfd end = {STDERR_FILENO, POLLOUT, 0};
+  if (poll(&end, 1, 0) <= 0) return;
+  static_cast<void>(!write(STDERR_FILENO, message.data(), message.size()));
+}
+
 /// Ends the process without results from whichever thread gets no memory: an exception there would
 /// not reach the command, or meet code of others that does not expect it.
 void endForMemory() {
@@ -35,8 +43,7 @@ void endForMemory() {
   limit.rlim_cur = limit.rlim_max;  // what follows needs a little
   setrlimit(RLIMIT_DATA, &limit);
   removeLeavings();
-  const std::string said = "error: explica: " + std::string(kOutOfMemory) + '\n';
-  static_cast<void>(!write(STDERR_FILENO, said.data(), said.size()));
+  sayAtTheEnd("error: explica: " + std::string(kOutOfMemory) + '\n');
   _exit(kEnvironment);
 }
 
@@ -48,9 +55,7 @@ TimeLimit::TimeLimit(double seconds) : end_(Clock::now() + duration(seconds)) {
     std::unique_lock<std::mutex> lock(mutex_);
     if (wake_.wait_until(lock, last, [this] { return over_; })) return;
     removeLeavings();
-    const std::string said =
-        "error: explica: did not come to a stop after --max-time; ended without results\n";
-    static_cast<void>(!write(STDERR_FILENO, said.data(), said.size()));
+    sayAtTheEnd("error: explica: did not come to a stop after --max-time; ended without results\n");
     _exit(kEnvironment);
   });
 }

@@ -5,6 +5,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
+#include "Explica/Core/PortableMath.h"
 #include "Explica/IO/ItkFormats.h"
 #include "Explica/Provenance/Doubts.h"
 #include "Explica/Provenance/Record.h"
@@ -515,6 +516,7 @@ Outcome execute(Run& run, Console& console) {
   const ThreadChoice threads = chooseThreads(run.common.threads);
   setThreadCount(threads.count);
   Eigen::setNbThreads(threads.count);
+  portable::fixBlocksOfProducts();
   io::setItkThreadCount(threads.count);  // Embree runs on TBB and follows it
 
   Context::State state{run, console, {}, Json::object(), {}, {}, {}, {}, {}, true};

@@ -3,6 +3,8 @@
 
 #include "MghFormat.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -32,6 +34,60 @@ std::optional<StoredType> typeOf(int code) {
     if (row.code == code) return row.type;
   }
   return {};
+}
+
+/// The number at the start of one of FreeSurfer's tags (its `tags.h`).
+bool isTag(std::int32_t number) {
+  constexpr std::array<std::array<std::int32_t, 2>, 5> kRanges = {
+      {{1, 7}, {10, 14}, {20, 24}, {30, 33}, {40, 45}}};
+  return std::any_of(kRanges.begin(), kRanges.end(), [number](const auto& range) {
+    return number >= range[0] && number <= range[1];
+  });
+}
+
+/// Tags of old, whose length is not written, or not in one way: what follows cannot be told apart.
+bool hasNoLength(std::int32_t tag) {
+  // Colour table, which RAS, geometry of a surface, name of a transform.
+  return tag == 1 || tag == 2 || tag == 20 || tag == 30;
+}
+
+/// How many of these bytes were read.
+std::uint64_t skipped(ByteSource& source, std::uint64_t count) {
+  std::array<std::uint8_t, 1 << 12> scratch;
+  std::uint64_t gone = 0;
+  while (gone < count) {
+    const std::size_t got =
+        source.read(scratch.data(), std::min<std::uint64_t>(scratch.size(), count - gone));
+    if (got == 0) break;
+    gone += got;
+  }
+  return gone;
+}
+
+/// Reads on to the end: scan parameters, then tags, each a number, the length of what follows and
+/// that.
+/// @return how many bytes at the end are neither
+std::uint64_t bytesAfterTags(ByteSource& source) {
+  constexpr std::size_t kParameters = 5 * sizeof(float);
+  constexpr std::int64_t kLongest = std::int64_t{16} << 20;  // bytes of a tag
+  if (skipped(source, kParameters) < kParameters) return 0;
+  std::array<std::uint8_t, 12> head;
+  while (true) {
+    std::size_t read = source.read(head.data(), 4);
+    if (read == 0) return 0;
+    const std::int32_t tag = read == 4 ? load<std::int32_t>(head.data(), true) : 0;
+    if (!isTag(tag)) return read + source.finish();
+    if (hasNoLength(tag)) {
+      source.finish();
+      return 0;
+    }
+    read += source.read(head.data() + 4, 8);
+    if (read < head.size()) return read;
+    const auto length = load<std::int64_t>(head.data() + 4, true);
+    if (length < 0 || length > kLongest) return read + source.finish();
+    const std::uint64_t gone = skipped(source, static_cast<std::uint64_t>(length));
+    if (gone < static_cast<std::uint64_t>(length)) return read + gone;
+  }
 }
 
 }  // namespace
@@ -104,7 +160,10 @@ StoredVolume readMgh(ByteSource& source, Extent extent) {
 
   const std::size_t width = widthOf(volume.type);
   volume.values = source.take(static_cast<std::uint64_t>(valueCount) * width);
-  source.finish();
+  if (const std::uint64_t left = bytesAfterTags(source); left > 0) {
+    volume.origin.notes.push_back(std::to_string(left) +
+                                  " bytes after the last value are not used");
+  }
   swapBytes(volume.values.data(), valueCount, width);
   return volume;
 }

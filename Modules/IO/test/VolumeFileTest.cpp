@@ -487,6 +487,38 @@ TEST(VolumeFile, MghWithoutGeometryIsCoronalAsInFreeSurfer) {
   EXPECT_EQ(read.origin.notes.size(), 1U);
 }
 
+TEST(VolumeFile, MghTagsAreToldFromWhatIsNone) {
+  const TemporaryFolder folder;
+  Grid grid;
+  grid.size = {4, 6, 8};
+  io::writeVolume(folder / "a.mgh", Volume<std::uint8_t>(grid, 1));
+  const std::string whole = contentOf(folder / "a.mgh");
+  const auto notesWith = [&](const std::string& more) {
+    putContent(folder / "a.mgh", whole + more);
+    return io::readScalars(folder / "a.mgh").origin.notes;
+  };
+  using Notes = std::vector<std::string>;
+  const auto word = [](std::size_t bytes, int value) {
+    return std::string(bytes - 1, '\0') + static_cast<char>(value);
+  };
+  const std::string command = word(4, 3) + word(8, 6) + "mri_a\n";
+  const std::string transform = word(4, 31) + word(8, 5) + "a.xfm";
+  const std::string oldTable = word(4, 1) + "anything";
+  for (const std::string& tags : {std::string(), command, transform, command + transform + command,
+                                  command + oldTable, word(4, 30) + word(4, 6) + "a.xfm"}) {
+    EXPECT_EQ(notesWith(tags), Notes()) << tags.size();
+  }
+  const auto unused = [](std::size_t bytes) {
+    return Notes{std::to_string(bytes) + " bytes after the last value are not used"};
+  };
+  EXPECT_EQ(notesWith("Dear reader, this is a letter."), unused(30));
+  EXPECT_EQ(notesWith(command + "abc"), unused(3));
+  EXPECT_EQ(notesWith(command + word(4, 99) + word(8, 0)), unused(12));
+  EXPECT_EQ(notesWith(word(4, 3) + word(8, 7) + "mri_a\n"), unused(18));
+  EXPECT_EQ(notesWith(word(4, 3) + std::string(8, '\xFF') + "abcd"), unused(16));
+  EXPECT_EQ(notesWith(std::string(40, '\0')), unused(40));
+}
+
 TEST(VolumeFile, ManySlicesNeedNiftiTwo) {
   const TemporaryFolder folder;
   Grid grid;
