@@ -15,11 +15,16 @@
 #include "Growth.h"
 #include "GuardedMesh.h"
 #include "ImageBorder.h"
+#include "KeepRoom.h"
+#include "MendTogether.h"
 #include "PathProfile.h"
 #include "Relaxation.h"
 #include "RibbonField.h"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -56,6 +61,10 @@ class Stopwatch {
 
 /// Less than this is no shortfall, voxels: what the border itself is uncertain by.
 constexpr double kNoShortfall = 0.02;
+/// The image makes no face of the white surface less high than this, edges.
+constexpr double kLeastHeight = 0.1;
+/// Longest edge that is left, in mean ones: 4 mm where these are 1.29 mm.
+constexpr double kLongestEdge = 3.1;
 /// Farthest that smoothing may take a vertex across its surface in one sweep, voxels.
 constexpr double kRoughness = 0.2;
 /// Farthest that a sliding vertex is brought back to the border of the tissue in one sweep, voxels.
@@ -132,6 +141,29 @@ Ribbon traceRibbon(const CorticalTissue& tissue, CorticalSurfaces& result, const
   return ribbon;
 }
 
+/// What the surfaces keep clear of themselves.
+Room roomOf(const WhiteSurface& white) {
+  return roomFor(white.level.grid.spacing.minCoeff(), white.edgeLength);
+}
+
+/// Height of a triangle over its longest edge.
+double heightOf(const Point& a, const Point& b, const Point& c) {
+  const double longest = std::max({(a - b).norm(), (b - c).norm(), (c - a).norm()});
+  return longest > 0 ? (b - a).cross(c - a).norm() / longest : 0;
+}
+
+/// True if a move would make a face lower than `least` mm, and lower than it is.
+bool flattens(const GuardedMesh& mesh, std::int32_t v, const Point& to, double least) {
+  const auto& ring = mesh.facesOf(v);
+  return std::any_of(ring.begin(), ring.end(), [&](std::int32_t f) {
+    const auto& c = mesh.face(f);
+    std::array<Point, 3> now = {mesh.at(c[0]), mesh.at(c[1]), mesh.at(c[2])}, then = now;
+    then[std::find(c.begin(), c.end(), v) - c.begin()] = to;
+    const double height = heightOf(then[0], then[1], then[2]);
+    return height < least && height < heightOf(now[0], now[1], now[2]);
+  });
+}
+
 /// Moves the white surface and the trajectories' ends to where an image changes most steeply.
 void placeByImage(const Volume<float>& image, double fluid, Ribbon& ribbon,
                   CorticalSurfaces& result) {
@@ -148,14 +180,14 @@ void placeByImage(const Volume<float>& image, double fluid, Ribbon& ribbon,
 
   GuardedMesh mesh(white, result.white.edgeLength);
   Eigen::VectorXd moved = Eigen::VectorXd::Zero(white.vertexCount());
+  const double least = kLeastHeight * result.white.edgeLength;
   // In steps, so that neighbours make way for each other.
   for (const double share : {0.25, 0.5, 0.75, 1.0, 1.0}) {
     mesh.sweep([&](std::int32_t v, GuardedMesh::Scratch& scratch) {
       const double wanted = share * borders.white[v];
       if (moved[v] == wanted) return true;
-      if (!mesh.move(v, between(ribbon.paths[v], wanted, wanted + voxel).points[0], scratch)) {
-        return false;
-      }
+      const Point to = between(ribbon.paths[v], wanted, wanted + voxel).points[0];
+      if (flattens(mesh, v, to, least) || !mesh.move(v, to, scratch)) return false;
       moved[v] = wanted;
       return true;
     });
@@ -163,6 +195,7 @@ void placeByImage(const Volume<float>& image, double fluid, Ribbon& ribbon,
   RelaxationOptions mending;
   mending.sweeps = 0;
   white = relaxed(mesh.toMesh(), result.white.edgeLength, {}, stayThere, mending);
+  keepRoom(white, roomOf(result.white));
   for (std::size_t v = 0; v < ribbon.paths.size(); ++v) {
     const auto row = static_cast<Eigen::Index>(v);
     Trajectory& path = ribbon.paths[v];
@@ -236,6 +269,7 @@ void growSurfaces(const Ribbon& ribbon, const SurfaceOptions& options, CorticalS
         result.heldBackMid += growth.missing(v) > kNoShortfall * voxel;
       }
       result.mid = relaxed(growth.mesh(), edge, moves, stayThere, sliding);
+      keepRoom(result.mid, roomOf(result.white));
     }
   }
   const LevelSet& border = ribbon.tissue.tissue;
@@ -247,7 +281,23 @@ void growSurfaces(const Ribbon& ribbon, const SurfaceOptions& options, CorticalS
                    : point;
       },
       relaxation);
+  keepRoom(result.pial, roomOf(result.white));
   noteHeldBack(ribbon, growth, kNoShortfall * voxel, result);
+}
+
+/// Takes what is too small or too long out of all three surfaces together.
+void mendTriangles(CorticalSurfaces& result) {
+  constexpr int kRounds = 3;  // keeping a gap may make a face small again
+  const double edge = result.white.edgeLength;
+  const Room room = roomOf(result.white);
+  const MendingLimits limits{room.leastArea, kLongestEdge * edge};
+  const std::array<TriangleMesh*, 3> surfaces = {&result.white.mesh, &result.mid, &result.pial};
+  for (int round = 0; round < kRounds; ++round) {
+    const Mending mending = mendTogether(surfaces, result.thickness, limits, edge);
+    if (mending.removed + mending.inserted == 0) return;
+    for (TriangleMesh* surface : surfaces) keepRoom(*surface, room);
+    result.noRibbon = (result.thickness.array() == 0).count();
+  }
 }
 
 }  // namespace
@@ -271,6 +321,7 @@ WhiteSurface extractWhite(const CorticalTissue& tissue, const SurfaceOptions& op
   white.seconds.remeshing = watch.lap();
   white.mesh = std::move(result.mesh);
   white.edgeLength = result.edgeLength;
+  keepRoom(white.mesh, roomOf(white));
   return white;
 }
 
@@ -316,6 +367,7 @@ CorticalSurfaces build(const CorticalTissue& tissue, const Volume<float>* image,
       shortenAstray(result.white.mesh, tissue.white.grid.spacing.minCoeff(), ribbon.paths);
   Stopwatch watch;
   growSurfaces(ribbon, options, result, partOf(monitor, 0.7, 0.96));
+  mendTriangles(result);
   result.seconds.growing = watch.lap();
 
   monitor.progress(0.96, "curvature and depth");

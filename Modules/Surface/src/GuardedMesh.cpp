@@ -19,8 +19,6 @@
 namespace explica::surface {
 namespace {
 
-constexpr std::size_t kMostFaces = 64;  ///< made by one step; a step that makes more is refused
-
 bool contains(const std::array<float, 6>& outer, const std::array<float, 6>& inner) {
   return outer[0] <= inner[0] && outer[1] <= inner[1] && outer[2] <= inner[2] &&
          inner[3] <= outer[3] && inner[4] <= outer[4] && inner[5] <= outer[5];
@@ -535,35 +533,34 @@ bool GuardedMesh::collapse(std::int32_t u, std::int32_t v, const Point& to,
   return collapse(u, v, to, limits, scratch_);
 }
 
-bool GuardedMesh::collapse(std::int32_t u, std::int32_t v, const Point& wanted,
-                           const CollapseLimits& limits, Scratch& scratch) {
+bool GuardedMesh::plan(std::int32_t u, std::int32_t v, const Point& wanted,
+                       const CollapseLimits& limits, Scratch& scratch, Step& step) const {
   if (!keepsTopology(u, v)) return false;
-  Point to = asStored(wanted);
-  if (onRim(u) != onRim(v)) to = positions_[onRim(u) ? u : v];
-  std::array<std::int32_t, 2 * kMostFaces> removed;
-  std::array<Placed, kMostFaces> made;
-  std::size_t removedCount = 0, madeCount = 0;
+  step.to = asStored(wanted);
+  if (onRim(u) != onRim(v)) step.to = positions_[onRim(u) ? u : v];
 
   const auto take = [&](std::int32_t f, std::int32_t from) {
     Corners c = faces_[f];
-    removed[removedCount++] = f;
+    step.removed[step.removedCount++] = f;
     bool both = false;
     for (std::int32_t& w : c) {
       if (w == (from == u ? v : u)) both = true;
       if (w == u) w = v;
     }
     if (both) return true;
-    const Placed placed = place(c, v, to);
+    const Placed placed = place(c, v, step.to);
     const auto& p = placed.points;
     const Vector before = normalOf(f), after = (p[1] - p[0]).cross(p[2] - p[0]);
-    if (before.dot(after) < limits.leastCosine * before.norm() * after.norm()) return false;
+    const double sizeBefore = before.norm(), sizeAfter = after.norm();
+    if (before.dot(after) < limits.leastCosine * sizeBefore * sizeAfter) return false;
+    if (sizeAfter < 2 * limits.leastArea && sizeAfter <= sizeBefore) return false;
     if (qualityOf(p) < limits.leastQuality) return false;
     const double most = limits.longestEdge * limits.longestEdge;
     for (int k = 0; k < 3; ++k) {
       if (c[k] != v && c[(k + 1) % 3] != v) continue;
       if ((p[k] - p[(k + 1) % 3]).squaredNorm() > most) return false;
     }
-    made[madeCount++] = placed;
+    step.made[step.madeCount++] = placed;
     return true;
   };
   for (const std::int32_t f : vertexFaces_[u]) {
@@ -574,12 +571,29 @@ bool GuardedMesh::collapse(std::int32_t u, std::int32_t v, const Point& wanted,
     if (c[0] == u || c[1] == u || c[2] == u) continue;
     if (!take(f, v)) return false;
   }
-  if (!admissible({made.data(), madeCount}, {removed.data(), removedCount}, scratch)) return false;
-  for (std::size_t k = 0; k < removedCount; ++k) removeFace(removed[k], scratch);
-  positions_[v] = to;
-  for (std::size_t k = 0; k < madeCount; ++k) addFace(made[k].corners, scratch);
+  return admissible({step.made.data(), step.madeCount}, {step.removed.data(), step.removedCount},
+                    scratch);
+}
+
+void GuardedMesh::replaceFaces(const Step& step, Scratch& scratch) {
+  for (std::size_t k = 0; k < step.removedCount; ++k) removeFace(step.removed[k], scratch);
+  for (std::size_t k = 0; k < step.madeCount; ++k) addFace(step.made[k].corners, scratch);
+}
+
+bool GuardedMesh::collapse(std::int32_t u, std::int32_t v, const Point& to,
+                           const CollapseLimits& limits, Scratch& scratch) {
+  Step step;
+  if (!plan(u, v, to, limits, scratch, step)) return false;
+  positions_[v] = step.to;
+  replaceFaces(step, scratch);
   scratch.freeVertices.push_back(u);
   return true;
+}
+
+bool GuardedMesh::mayCollapse(std::int32_t u, std::int32_t v, const Point& to,
+                              const CollapseLimits& limits) {
+  Step step;
+  return plan(u, v, to, limits, scratch_, step);
 }
 
 bool GuardedMesh::flip(std::int32_t a, std::int32_t b) {
@@ -603,41 +617,50 @@ bool GuardedMesh::flip(std::int32_t a, std::int32_t b, Scratch& scratch) {
   return true;
 }
 
-std::int32_t GuardedMesh::split(std::int32_t a, std::int32_t b) {
+bool GuardedMesh::planSplit(std::int32_t a, std::int32_t b, std::int32_t m, Step& step) {
   const std::int32_t c = opposite(a, b), d = opposite(b, a);
-  if ((c < 0 || d < 0) && !(open_ && (c >= 0 || d >= 0))) return -1;
-  std::int32_t m;
-  if (scratch_.freeVertices.empty()) {
-    m = vertexSlots();
-    positions_.emplace_back();
-    vertexFaces_.emplace_back();
-  } else {
-    m = scratch_.freeVertices.back();
-    scratch_.freeVertices.pop_back();
-  }
-  positions_[m] = asStored(0.5 * (positions_[a] + positions_[b]));
-  std::array<std::int32_t, 2> removed = {-1, -1};
-  std::size_t removedCount = 0, madeCount = 0;
+  if ((c < 0 || d < 0) && !(open_ && (c >= 0 || d >= 0))) return false;
+  step.to = asStored(0.5 * (positions_[a] + positions_[b]));
   for (const std::int32_t f : vertexFaces_[a]) {
     const Corners& corners = faces_[f];
-    if (corners[0] == b || corners[1] == b || corners[2] == b) removed[removedCount++] = f;
+    if (corners[0] == b || corners[1] == b || corners[2] == b) {
+      step.removed[step.removedCount++] = f;
+    }
   }
-  std::array<Placed, 4> made;
+  const auto make = [&](const Corners& corners) {
+    step.made[step.madeCount++] = place(corners, m, step.to);
+  };
   if (c >= 0) {
-    made[madeCount++] = place({a, m, c}, -1, {});
-    made[madeCount++] = place({m, b, c}, -1, {});
+    make({a, m, c});
+    make({m, b, c});
   }
   if (d >= 0) {
-    made[madeCount++] = place({b, m, d}, -1, {});
-    made[madeCount++] = place({m, a, d}, -1, {});
+    make({b, m, d});
+    make({m, a, d});
   }
-  if (!admissible({made.data(), madeCount}, {removed.data(), removedCount}, scratch_)) {
-    scratch_.freeVertices.push_back(m);
-    return -1;
+  return admissible({step.made.data(), step.madeCount}, {step.removed.data(), step.removedCount},
+                    scratch_);
+}
+
+std::int32_t GuardedMesh::split(std::int32_t a, std::int32_t b) {
+  const bool reused = !scratch_.freeVertices.empty();
+  const std::int32_t m = reused ? scratch_.freeVertices.back() : vertexSlots();
+  Step step;
+  if (!planSplit(a, b, m, step)) return -1;
+  if (reused) {
+    scratch_.freeVertices.pop_back();
+  } else {
+    positions_.emplace_back();
+    vertexFaces_.emplace_back();
   }
-  for (std::size_t k = 0; k < removedCount; ++k) removeFace(removed[k], scratch_);
-  for (std::size_t k = 0; k < madeCount; ++k) addFace(made[k].corners, scratch_);
+  positions_[m] = step.to;
+  replaceFaces(step, scratch_);
   return m;
+}
+
+bool GuardedMesh::maySplit(std::int32_t a, std::int32_t b) {
+  Step step;
+  return planSplit(a, b, vertexSlots(), step);
 }
 
 bool GuardedMesh::inZone(std::int32_t v, const Scratch& scratch) const {

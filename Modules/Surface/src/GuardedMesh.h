@@ -123,17 +123,23 @@ class GuardedMesh {
     double longestEdge = 0;      ///< no new edge may be longer, mm
     double leastCosine = 0.2;    ///< between a face's normals before and after
     double leastQuality = 0.15;  ///< 4 sqrt(3) area / sum of squared edges of new faces
+    double leastArea = 0;        ///< new faces below it must be larger than they were, mm^2
   };
   /// Joins u to v, which goes to `to`; to the rim's vertex if one of the two lies on it.
   bool collapse(std::int32_t u, std::int32_t v, const Point& to, const CollapseLimits& limits);
   bool collapse(std::int32_t u, std::int32_t v, const Point& to, const CollapseLimits& limits,
                 Scratch& scratch);
+  /// True if collapse() would not be refused.
+  [[nodiscard]] bool mayCollapse(std::int32_t u, std::int32_t v, const Point& to,
+                                 const CollapseLimits& limits);
   /// Replaces edge (a, b) by the one between the corners that face it.
   bool flip(std::int32_t a, std::int32_t b);
   bool flip(std::int32_t a, std::int32_t b, Scratch& scratch);
   /// Puts a vertex at the middle of edge (a, b), which may be one of the rim.
   /// @return the vertex, or -1 if refused
   std::int32_t split(std::int32_t a, std::int32_t b);
+  /// True if split() would not be refused.
+  [[nodiscard]] bool maySplit(std::int32_t a, std::int32_t b);
 
   /// The mesh, vertices and faces in the order of their slots.
   [[nodiscard]] TriangleMesh toMesh() const;
@@ -166,6 +172,14 @@ class GuardedMesh {
     void remove(std::int32_t face);
     void change(std::int32_t face, const Box& box);
   };
+  static constexpr std::size_t kMostFaces = 64;  ///< made by one step: more are refused
+  /// A step that was found to be allowed, and what it replaces.
+  struct Step {
+    std::array<std::int32_t, 2 * kMostFaces> removed;
+    std::array<Placed, kMostFaces> made;
+    std::size_t removedCount = 0, madeCount = 0;
+    Point to;  ///< of the vertex that is moved or made
+  };
   using CellRange = std::array<int, 6>;
   /// True if a face made meets another one where it may not.
   [[nodiscard]] static bool facesMeet(const Placed& made, const Corners& corners,
@@ -182,6 +196,13 @@ class GuardedMesh {
   [[nodiscard]] bool endsAt(std::int32_t v) const;
   /// True if joining two vertices leaves a manifold of the same topology.
   [[nodiscard]] bool keepsTopology(std::int32_t u, std::int32_t v) const;
+  /// What a collapse would do; false if it is refused.
+  bool plan(std::int32_t u, std::int32_t v, const Point& to, const CollapseLimits& limits,
+            Scratch& scratch, Step& step) const;
+  /// What a split of edge (a, b) at vertex m would do; false if it is refused.
+  bool planSplit(std::int32_t a, std::int32_t b, std::int32_t m, Step& step);
+  /// Takes a step's faces out and puts its new ones in.
+  void replaceFaces(const Step& step, Scratch& scratch);
   /// The box of three points, wider than their rounding to float.
   [[nodiscard]] Box boxOf(const std::array<Point, 3>& points) const;
   [[nodiscard]] int cellAt(double coordinate, int axis) const;

@@ -15,6 +15,7 @@
 #include "Explica/Surface/Measures.h"
 #include "Explica/Surface/Remesh.h"
 #include "Growth.h"
+#include "KeepRoom.h"
 #include "Masks.h"
 #include "Relaxation.h"
 #include "SheetMesh.h"
@@ -24,6 +25,7 @@
 #include <chrono>
 #include <cmath>
 #include <deque>
+#include <functional>
 #include <utility>
 
 namespace explica::surface {
@@ -342,21 +344,30 @@ struct Grown {
   double most = 0;     ///< mm
 };
 
+/// How far a point is from where a sheet belongs, mm; infinite if that is not known.
+using Shortfall = std::function<double(const Point&)>;
+
+/// @param least  of what is counted as held back, mm
 Grown grow(const TriangleMesh& sheet, const std::vector<Trajectory>& paths, double edge, int steps,
-           double least, const Placement& place, const RelaxationOptions& relaxation) {
+           double least, const Placement& place, const Shortfall& shortfall, const Room& room,
+           const RelaxationOptions& relaxation) {
   std::vector<std::uint8_t> moves(paths.size());
   for (std::size_t v = 0; v < moves.size(); ++v) moves[v] = paths[v].length() > 0;
   Growth growth(sheet, paths);
   for (int step = 1; step <= steps; ++step) growth.goTo(static_cast<double>(step) / steps);
   Grown grown;
+  grown.mesh = relaxed(growth.mesh(), edge, moves, place, relaxation);
+  keepRoom(grown.mesh, room);
   for (std::size_t v = 0; v < paths.size(); ++v) {
-    const double missing = growth.missing(v);
+    double missing = growth.missing(v);
+    if (missing <= least) continue;
+    // What has waited on its trajectory may have come to the border by sliding.
+    missing = std::min(missing, shortfall(grown.mesh.positions.row(static_cast<Eigen::Index>(v))));
     if (missing <= least) continue;
     ++grown.heldBack;
     grown.missing += missing;
     grown.most = std::max(grown.most, missing);
   }
-  grown.mesh = relaxed(growth.mesh(), edge, moves, place, relaxation);
   return grown;
 }
 
@@ -436,6 +447,14 @@ void growSheets(const TriangleMesh& sheet, const Ways& ways, const TrajectoryTra
       return near ? trace.point : point;
     };
   };
+  const auto shortOf = [&](double target) -> Shortfall {
+    return [&tracer, target](const Point& point) {
+      const correspondence::Trace trace = tracer.trace(point, target);
+      return trace.reached ? (trace.point - point).norm() : kInfinity;
+    };
+  };
+  const Shortfall unknown = [](const Point&) { return kInfinity; };
+  const Room room = roomFor(voxel, edge);
   const auto stay = [](std::int32_t, const Point& point, const Vector&) { return point; };
   RelaxationOptions relaxation;
   relaxation.most *= voxel;
@@ -444,9 +463,11 @@ void growSheets(const TriangleMesh& sheet, const Ways& ways, const TrajectoryTra
   sliding.sweeps = 4;
   const double least = kNoShortfall * voxel;
   const int steps = std::max(2, options.steps / 2);
-  Grown inner = grow(sheet, ways.inward, edge, steps, least, backTo(0), relaxation);
-  Grown outer = grow(sheet, ways.outward, edge, steps, least, backTo(1), relaxation);
-  Grown middle = grow(sheet, waysToMiddle(ways), edge, 2, least, stay, sliding);
+  Grown inner =
+      grow(sheet, ways.inward, edge, steps, least, backTo(0), shortOf(0), room, relaxation);
+  Grown outer =
+      grow(sheet, ways.outward, edge, steps, least, backTo(1), shortOf(1), room, relaxation);
+  Grown middle = grow(sheet, waysToMiddle(ways), edge, 2, least, stay, unknown, room, sliding);
   made.white.mesh = std::move(inner.mesh);
   made.pial = std::move(outer.mesh);
   made.mid = std::move(middle.mesh);

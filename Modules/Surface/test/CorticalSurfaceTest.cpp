@@ -11,6 +11,7 @@
 #include "Explica/Surface/IsoSurface.h"
 #include "Explica/Surface/Measures.h"
 #include "Explica/Surface/Remesh.h"
+#include "NearestToItself.h"
 
 #include <gtest/gtest.h>
 
@@ -494,6 +495,59 @@ TEST(CorticalSurface, RecoversTheBoundaryOfABuriedSulcus) {
   }
   ASSERT_GT(count, 50);
   EXPECT_NEAR(sum / count, 2.4, 0.2);  // 2.5 less the gap that is kept
+}
+
+/// A ball in a thick ribbon, with a thread of white matter out of it, `share` above the level.
+CorticalTissue ballWithThread(double share) {
+  const Grid grid = lattice(44, Vector::Constant(1));
+  const auto white = volumeOf(grid, [&](const Point& p) {
+    const Vector s = grid.toIndex(p) - Vector::Constant(22);
+    const bool onThread =
+        std::abs(s.x()) < 0.4 && std::abs(s.y()) < 0.4 && s.z() > 0 && s.z() < 14.5;
+    return std::max(shareOf(p, 12, 1), onThread ? static_cast<float>(0.5 + share) : 0.0F);
+  });
+  const auto tissue = volumeOf(grid, [&](const Point& p) { return shareOf(p, 16, 1); });
+  return tissueFromShares(white, tissue);
+}
+
+TEST(CorticalSurface, AThreadFarThinnerThanAVoxelHasNoFacesOfAlmostNothing) {
+  SurfaceOptions options;
+  options.faces = 6000;
+  const CorticalTissue tissue = ballWithThread(0.003);
+  const CorticalSurfaces made = buildSurfaces(tissue, options);
+  const auto faces = extractWhite(tissue, options).mesh.faceCount();
+  const double least = 0.02 * made.white.edgeLength * made.white.edgeLength;
+  for (const TriangleMesh* mesh : {&made.white.mesh, &made.mid, &made.pial}) {
+    expectSound(*mesh);
+    EXPECT_EQ(mesh->faceCount(), faces);
+    const Evenness evenness = evennessOf(*mesh);
+    EXPECT_GE(evenness.leastFace, least);
+    EXPECT_LE(evenness.longestEdge, 3.1 * made.white.edgeLength);
+  }
+  EXPECT_EQ(made.thickness.size(), made.pial.vertexCount());
+}
+
+TEST(CorticalSurface, BanksBesideAFilmOfFluidKeepAGap) {
+  // Two plates of white matter on a base; between their banks a voxel of almost no fluid.
+  const Grid grid = lattice(44, Vector::Constant(1));
+  const auto within = [&](const Point& p, double grow) {
+    const Vector s = grid.toIndex(p) - Vector::Constant(21);
+    const double x = std::abs(s.x()), sides = std::min(12 - std::abs(s.y()), 12 - std::abs(s.z()));
+    const double plate = std::min({9 - x, x - 4, sides}),
+                 base = std::min({9 - x, -9 - s.z(), sides});
+    return static_cast<float>(std::clamp(0.5 + std::max(plate, base) + grow, 0.0, 1.0));
+  };
+  const auto white = volumeOf(grid, [&](const Point& p) { return within(p, 0); });
+  const auto tissue = volumeOf(grid, [&](const Point& p) {
+    const Vector s = grid.toIndex(p) - Vector::Constant(21);
+    const bool film = std::abs(s.x()) < 0.5 && s.z() > -4 && within(p, 4.5) > 0.5F;
+    return film ? 0.495F : within(p, 4.5);
+  });
+  SurfaceOptions options;
+  options.faces = 12000;
+  const CorticalSurfaces made = buildSurfaces(tissueFromShares(white, tissue), options);
+  expectSound(made.pial);
+  EXPECT_GE(nearestToItself(made.pial, 0.1), 0.05 * std::min(1.0, made.white.edgeLength));
 }
 
 TEST(CorticalSurface, DoesNotDependOnThreads) {
