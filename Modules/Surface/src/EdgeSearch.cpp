@@ -55,8 +55,10 @@ class Search {
         count_(static_cast<int>(std::lround(options.outward / kFine)) + kSmooth - first_ + 1) {}
 
   void improve() {
-    const Eigen::VectorXd level =
-        averaged(levelsOf(averaged(profiles(), topology_, times_)), topology_, times_);
+    const Eigen::MatrixXd edges =
+        averaged(edgesOf(averaged(profiles(), topology_, times_)), topology_, times_);
+    follow(edges.col(1));
+    const Eigen::VectorXd level = edges.col(0);
     const double step = voxel_ / kSide;
     std::vector<Profile> misses(paths_.size());
     std::vector<Choice> choices(paths_.size());
@@ -102,9 +104,9 @@ class Search {
     return all;
   }
 
-  /// Brightness at the edge of each mean profile; NaN where it has none.
-  [[nodiscard]] Eigen::VectorXd levelsOf(const Eigen::MatrixXd& mean) const {
-    Eigen::VectorXd level = Eigen::VectorXd::Constant(mean.rows(), kNaN);
+  /// Brightness at the edge of each mean profile, and where it lies, voxels; NaN where it has none.
+  [[nodiscard]] Eigen::MatrixXd edgesOf(const Eigen::MatrixXd& mean) const {
+    Eigen::MatrixXd edges = Eigen::MatrixXd::Constant(mean.rows(), 2, kNaN);
     parallelFor(paths_.size(), 256, [&](std::size_t v) {
       const auto row = static_cast<Eigen::Index>(v);
       if (!std::isfinite(mean(row, 0))) return;
@@ -121,10 +123,22 @@ class Search {
         const double score = slope[k] * std::exp(-0.5 * off * off);
         if (score <= best) continue;
         best = score;
-        level[row] = mean(row, k);
+        edges.row(row) << mean(row, k), place;
       }
     });
-    return level;
+    return edges;
+  }
+
+  /// Goes to where the edges of the mean profiles lie, a voxel at most: across a cortex of even
+  /// brightness no level leads there.
+  void follow(const Eigen::VectorXd& places) {
+    parallelFor(paths_.size(), 256, [&](std::size_t v) {
+      const auto row = static_cast<Eigen::Index>(v);
+      if (!std::isfinite(places[row])) return;
+      const double least = -kFarthest * voxel_;
+      const double most = std::max(least, way_[row] + kMost * lengthOf(v));
+      way_[row] = std::clamp(way_[row] + std::clamp(places[row], -1.0, 1.0) * voxel_, least, most);
+    });
   }
 
   [[nodiscard]] Choice choiceOf(std::size_t v, double step) const {

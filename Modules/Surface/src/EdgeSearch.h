@@ -33,8 +33,10 @@ struct EdgeSearchOptions {
 /// is further in and out: a local maximum of the slope, so that the steeper fall to fluid beyond a
 /// bright cortex is not taken for it.  Single profiles show noise; so each vertex's profile is the
 /// mean of its neighbours', aligned at where the border is held to be, and again once it has moved.
-/// What is darker than the usual middle of the ribbon is no border of white matter.  The brightness
-/// there, averaged, is the level at which each vertex's own profile is then cut.
+/// What is darker than the usual middle of the ribbon is no border of white matter.  Each vertex
+/// goes to where that edge lies on the average of its neighbours', and cuts its own profile near
+/// there at the edge's brightness, averaged.  Going by brightness alone, it would never cross a
+/// cortex that is nearly white and equally so all through.
 /// @param edge  mean length of the edges, mm
 /// @return per vertex, mm outward along the trajectory
 [[nodiscard]] Eigen::VectorXd searchWhite(const std::vector<Trajectory>& paths,

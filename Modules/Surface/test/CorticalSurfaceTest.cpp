@@ -349,6 +349,42 @@ TEST(CorticalSurface, AWhiteBorderThatOneBrightnessPutIntoBrightCortexIsFound) {
   EXPECT_GT(errors()[0], 0.7);
 }
 
+TEST(CorticalSurface, AWhiteBorderIsFoundAcrossACortexOfEvenBrightness) {
+  // As in motor cortex: upwards, a thick cortex is hardly darker than white matter and equally so
+  // all through, and the shares' border lies 2.5 mm too far out: no level leads back from there.
+  const auto bright = [](const Point& p) {
+    const double x = std::clamp(4 * p.z() / p.norm() - 2, 0.0, 1.0);
+    return x * x * (3 - 2 * x);
+  };
+  const Grid grid = lattice(48, Vector::Constant(1));
+  std::mt19937 generator(1);
+  std::normal_distribution<double> noise(0, 1);
+  const auto image = volumeOf(grid, [&](const Point& p) {
+    const auto step = [](double x) { return 0.5 * (1 + std::erf(x / (0.6 * std::sqrt(2.0)))); };
+    const double r = p.norm(), grey = 83 + 20 * bright(p), outer = 17 + bright(p);
+    return static_cast<float>(40 + (grey - 40) * step(outer - r) + (110 - grey) * step(14 - r) +
+                              noise(generator));
+  });
+  const CorticalTissue tissue = tissueFromShares(
+      volumeOf(grid, [&](const Point& p) { return shareOf(p, 14 + 2.5 * bright(p), 4); }),
+      volumeOf(grid, [&](const Point& p) { return shareOf(p, 17 + bright(p), 4); }));
+  SurfaceOptions options;
+  options.faces = 6000;
+  const auto made = buildSurfaces(tissue, image, options);
+  expectSound(made.white.mesh);
+  std::array<double, 2> sum = {}, count = {};
+  for (Eigen::Index v = 0; v < made.white.mesh.vertexCount(); ++v) {
+    const Point p = made.white.mesh.positions.row(v);
+    const int where = bright(p) == 1 ? 0 : 1;
+    sum[where] += std::abs(p.norm() - 14);
+    count[where] += 1;
+  }
+  std::printf("off the border: %.3f mm where cortex is bright, %.3f mm elsewhere\n",
+              sum[0] / count[0], sum[1] / count[1]);
+  EXPECT_LT(sum[0] / count[0], 0.3);
+  EXPECT_LT(sum[1] / count[1], 0.2);
+}
+
 TEST(CorticalSurface, AnOuterBorderBeyondASinussWallIsFound) {
   // Upwards, a wall as bright as dark grey matter lies on the cortex, 5 mm thick, with cerebellum
   // beyond, and the shares take the wall for tissue.
