@@ -231,6 +231,9 @@ Head fitTemplate(Context& context, Judge& judge, const Settings& s, const Loaded
   context.result("registration_correlation", found.agreement.correlation);
   context.result("registration_least_jacobian", found.agreement.leastJacobian);
   judge.flag("registration", found.agreement.correlation);
+  const double stretch = registration::stretchOf(found.transform.affine);
+  context.result("registration_stretch", stretch);
+  judge.flag("stretch", stretch);
   Head head;
   head.mask = std::move(mask);
   if (!stripped) head.mask = registration::stripSkull(image, found.brain);

@@ -8,6 +8,7 @@
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Testing/Command.h"
 #include "Explica/Testing/FreeSurferSubject.h"
+#include "QuickRuns.h"
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
@@ -15,6 +16,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <random>
 #include <set>
 
@@ -149,6 +151,85 @@ TEST_F(WholeHead, HalvesOfAHeadAreFlagged) {
     for (const std::string& flag : flags) words.insert(words.end(), {"--accept", flag});
     const auto accepted = patiently(words);
     EXPECT_EQ(accepted.exitCode, 0) << accepted;
+  }
+}
+
+/// The template's brain on voxels of 2 mm, changed: for tests of the way, not of the tissues.
+template <class Change>
+void writeCoarse(const fs::path& file, const Change& change) {
+  const Volume<float> brain = io::readScalars(kTemplates / "ch2bet.nii.gz").volume;
+  Grid grid = brain.grid;
+  for (int a = 0; a < 3; ++a) grid.size[a] /= 2;
+  grid.spacing *= 2;
+  grid.origin = brain.grid.toWorld(Vector::Constant(0.5));
+  Volume<float> image(grid, 0.0f);
+  for (std::size_t v = 0; v < image.size(); ++v) {
+    const auto [i, j, k] = grid.subscripts(v);
+    const auto from = change(grid, std::array{i, j, k});
+    if (!from) continue;
+    const auto [a, b, c] = *from;
+    for (int n = 0; n < 8; ++n) {
+      image[v] += brain(2 * a + (n & 1), 2 * b + (n >> 1 & 1), 2 * c + (n >> 2)) / 8;
+    }
+  }
+  fs::create_directories(file.parent_path());
+  io::writeVolume(file, image);
+}
+
+using Subscripts = std::array<int, 3>;
+using Source = std::optional<Subscripts>;
+
+Source asItIs(const Grid& /*grid*/, const Subscripts& at) {
+  return at;
+}
+
+Source leftHalf(const Grid& grid, const Subscripts& at) {
+  return grid.toWorld(Vector(at[0], at[1], at[2])).x() < 0 ? Source(at) : std::nullopt;
+}
+
+Source flipped(const Grid& grid, const Subscripts& at) {
+  return Subscripts{grid.size[0] - 1 - at[0], at[1], at[2]};
+}
+
+Source upsideDown(const Grid& grid, const Subscripts& at) {
+  return Subscripts{at[0], at[1], grid.size[2] - 1 - at[2]};
+}
+
+TEST_F(WholeHead, UpsideDownIsFlaggedByItsRegistrationAlone) {
+  const fs::path image = folder_ / "t1.nii.gz";
+  writeCoarse(image, upsideDown);
+  const auto run = patiently({"segment", image, "--out", folder_ / "segment"});
+  EXPECT_EQ(run.exitCode, 3) << run;
+  EXPECT_EQ(flagsOf(folder_ / "segment"), std::set<std::string>{"registration"});
+  const auto flag = readJson(folder_ / "segment/summary.json")["flags"][0];
+  EXPECT_EQ(flag["value"], numberOf(folder_ / "segment", "registration_correlation"));
+}
+
+TEST_F(WholeHead, HalfABrainIsFlaggedByARunAndFailsItsRowOfAStudyAlone) {
+  const auto image = [&](const std::string& subject) {
+    return folder_ / ("data/sub-" + subject + "/anat/sub-" + subject + "_T1w.nii.gz");
+  };
+  writeCoarse(image("half"), leftHalf);
+  writeCoarse(image("whole"), asItIs);
+  // Nothing tells a flip, and nothing tries to: it is done like the others.
+  writeCoarse(image("flipped"), flipped);
+  writeText(folder_ / "data/dataset_description.json", R"({"Name": "a", "BIDSVersion": "1.8.0"})");
+  const std::vector<std::string> small = {"--steps", "segment,surface", "--surface.faces", "5000"};
+  const auto run =
+      patiently(std::vector<std::string>{"run", image("half"), "--out", folder_ / "run"} + small);
+  EXPECT_EQ(run.exitCode, 3) << run;
+  EXPECT_TRUE(flagsOf(folder_ / "run").contains("stretch")) << run;
+  EXPECT_GT(numberOf(folder_ / "run/segment", "registration_stretch"), 1.5);
+  const auto study = patiently(std::vector<std::string>{"bids", folder_ / "data", folder_ / "out",
+                                                        "participant", "--hemispheres", "L"} +
+                               small);
+  EXPECT_EQ(study.exitCode, 3) << study;
+  ASSERT_EQ(explica({"bids", folder_ / "data", folder_ / "out", "group"}).exitCode, 0);
+  const std::string table = readText(folder_ / "out/study.tsv");
+  EXPECT_NE(table.find("sub-half\tL\timplausible (segment): "), std::string::npos) << table;
+  for (const char* subject : {"whole", "flipped"}) {
+    EXPECT_NE(table.find("sub-" + std::string(subject) + "\tL\tdone\t"), std::string::npos)
+        << table;
   }
 }
 

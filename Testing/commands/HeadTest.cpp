@@ -2,9 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // From an image to a thickness that is known.
 
+#include "Explica/IO/VolumeFile.h"
 #include "Explica/Testing/Command.h"
 
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <random>
 
 namespace explica::testing {
 namespace {
@@ -44,6 +51,91 @@ TEST_P(CortexWithDura, IsAsThickAsItIs) {
   EXPECT_NEAR(
       thickness({"--image", folder / "phantom/t1.nii.gz", "--fluid", std::to_string(fluid)}), 2.5,
       0.08);
+}
+
+/// Trilinear; 0 beyond the volume.
+double valueAt(const Volume<float>& volume, const Point& p) {
+  const Vector index = volume.grid.toIndex(p);
+  double sum = 0;
+  for (int c = 0; c < 8; ++c) {
+    std::array<int, 3> corner{};
+    double weight = 1;
+    for (int a = 0; a < 3; ++a) {
+      corner[a] = static_cast<int>(std::floor(index[a])) + (c >> a & 1);
+      weight *= 1 - std::abs(index[a] - corner[a]);
+    }
+    if (weight > 0 && volume.grid.contains(corner[0], corner[1], corner[2])) {
+      sum += weight * volume(corner[0], corner[1], corner[2]);
+    }
+  }
+  return sum;
+}
+
+/// What a scanner with turned axes and voxels of that size sees: means over what of the head is in
+/// them, and noise; 0 where their middle is outside.
+Volume<float> seenBy(const Vector& spacing, const Volume<float>& fine) {
+  constexpr int kPoints = 4;
+  const double extent = fine.grid.spacing[0] * fine.grid.size[0];
+  const Point middle = fine.grid.toWorld(
+      0.5 * Vector(fine.grid.size[0] - 1, fine.grid.size[1] - 1, fine.grid.size[2] - 1));
+  Grid grid;
+  grid.spacing = spacing;
+  grid.direction =
+      (Eigen::AngleAxisd(0.3, Vector::UnitZ()) * Eigen::AngleAxisd(0.2, Vector::UnitX()))
+          .toRotationMatrix();
+  for (int a = 0; a < 3; ++a) grid.size[a] = static_cast<int>(1.1 * extent / spacing[a]);
+  const Vector last(grid.size[0] - 1, grid.size[1] - 1, grid.size[2] - 1);
+  grid.origin = middle - grid.direction * (0.5 * last.cwiseProduct(spacing));
+  Volume<float> seen(grid, 0.0f);
+  std::mt19937 generator(1);
+  std::normal_distribution<double> noise(0, 3);
+  for (std::size_t v = 0; v < seen.size(); ++v) {
+    const auto [i, j, k] = grid.subscripts(v);
+    if (!(valueAt(fine, grid.toWorld(Vector(i, j, k))) > 0)) continue;
+    double sum = 0;
+    int count = 0;
+    for (int n = 0; n < kPoints * kPoints * kPoints; ++n) {
+      const Vector part(n % kPoints, n / kPoints % kPoints, n / (kPoints * kPoints));
+      const Vector off = (part.array() + 0.5) / kPoints - 0.5;
+      const double value = valueAt(fine, grid.toWorld(Vector(i, j, k) + off));
+      sum += value;
+      count += value > 0 ? 1 : 0;
+    }
+    seen[v] = static_cast<float>(std::max(1.0, sum / count + noise(generator)));
+  }
+  return seen;
+}
+
+TEST(CortexBesideDura, IsAsThickOnVoxelsOfAnyShape) {
+  // Given, for it is not found here: the rim in which fluid is not learnt is a share of the brain's
+  // radius, too narrow in so small a head for dura that is blurred.
+  const std::string kFluid = std::to_string(35.0 / 115.0);
+  TemporaryFolder folder;
+  auto run =
+      explica({"phantom", "cortex", "--size", "96", "--spacing", "0.5", "--dura", "1", "--dura-gap",
+               "1", "--ventricle", "4", "--noise", "0", "--out", folder / "phantom"});
+  ASSERT_EQ(run.exitCode, 0) << run;
+  const Volume<float> fine = io::readScalars(folder / "phantom/t1.nii.gz").volume;
+  const auto thickness = [&](const Vector& spacing) {
+    io::writeVolume(folder / "t1.nii.gz", seenBy(spacing, fine));
+    const auto tissue = explica({"segment", folder / "t1.nii.gz", "--template", "none", "--accept",
+                                 "brain-volume", "--force", "--out", folder / "segment"});
+    EXPECT_EQ(tissue.exitCode, 0) << tissue;
+    const auto made =
+        explica({"surface", "--inner-level", folder / "segment/wm.nii.gz", "--grey-share",
+                 folder / "segment/gm.nii.gz", "--faces", "8000", "--image", folder / "t1.nii.gz",
+                 "--fluid", kFluid, "--force", "--out", folder / "surface"});
+    EXPECT_EQ(made.exitCode, 0) << made;
+    const double mean =
+        readJson(folder.path() / "surface/summary.json")["thickness_mean"].get<double>();
+    std::printf("voxels %g x %g x %g mm: thickness %.3f mm\n", spacing[0], spacing[1], spacing[2],
+                mean);
+    return mean;
+  };
+  const double even = thickness(Vector(1, 1, 1));
+  EXPECT_NEAR(even, 2.5, 0.1);
+  EXPECT_NEAR(thickness(Vector(0.8, 0.8, 0.8)), even, 0.1);
+  EXPECT_NEAR(thickness(Vector(1, 1, 1.6)), even, 0.1);
 }
 
 INSTANTIATE_TEST_SUITE_P(TwoNoises, CortexWithDura, ::testing::Values("3", "6"));

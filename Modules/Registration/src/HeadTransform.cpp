@@ -4,6 +4,8 @@
 
 #include "Filters.h"
 
+#include <Eigen/SVD>
+
 #include <algorithm>
 #include <cmath>
 
@@ -33,6 +35,12 @@ Vector displacementAt(const Volume<Eigen::Vector3f>& field, const Point& at) {
 }
 
 }  // namespace
+
+double stretchOf(const Eigen::Affine3d& affine) {
+  const Eigen::Vector3d stretches =
+      Eigen::JacobiSVD<Eigen::Matrix3d>(affine.linear()).singularValues();
+  return stretches[0] / stretches[2];
+}
 
 Point HeadTransform::operator()(const Point& inImage) const {
   if (displacement.size() == 0) return affine * inImage;

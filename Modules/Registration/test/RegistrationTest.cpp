@@ -70,6 +70,11 @@ Eigen::Affine3d movement() {
   return back;
 }
 
+TEST(HeadTransform, TellsHowMuchItSqueezesAHead) {
+  EXPECT_NEAR(stretchOf(movement()), 1.06 / 0.95, 1e-12);
+  EXPECT_NEAR(stretchOf(movement() * Eigen::Scaling(0.5)), 1.06 / 0.95, 1e-12);
+}
+
 double meanDistance(const HeadTransform& found, const std::function<Point(const Point&)>& truth) {
   double sum = 0;
   int count = 0;

@@ -31,6 +31,12 @@ constexpr Limit kLimits[] = {
      "--mask",
      "measured: six good registrations 0.78 to 1.00; a head upside down or cut 0.35 to 0.52 "
      "(Modules/Registration/README.md)"},
+    {"stretch", "the template's longest over its shortest stretch onto the head", "", 1, 1.5,
+     "a part of the head may be missing, over which the template was squeezed; look at the "
+     "outlines "
+     "in the report, or give --atlas",
+     "breadth over length of heads is 0.7 to 0.9; measured: heads 1.00 to 1.20, half a brain 1.92 "
+     "(Modules/Registration/README.md)"},
     {"brain-volume", "the brain's volume", "ml", 300, 2500,
      "skull or neck may be left in the brain, or parts of it missing; another species needs "
      "--template",

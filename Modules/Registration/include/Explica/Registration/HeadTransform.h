@@ -19,6 +19,10 @@ struct HeadTransform {
   [[nodiscard]] Point operator()(const Point& inImage) const;
 };
 
+/// The longest over the shortest stretch of an affine map along any direction: 1 if it keeps
+/// proportions.
+[[nodiscard]] double stretchOf(const Eigen::Affine3d& affine);
+
 /// The template's scalars on a grid in the image's space: trilinear, 0 beyond the template.
 [[nodiscard]] Volume<float> pulled(const Volume<float>& inTemplate, const HeadTransform& transform,
                                    const Grid& grid);
