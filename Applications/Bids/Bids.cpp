@@ -79,8 +79,8 @@ void declare(Declaration& d, Settings& s) {
           "results "
           "to BIDS names with sidecars. Steps whose inputs and options have not changed, by "
           "content, "
-          "are kept. A participant that fails does not stop the others: exit code 3, or 2 if all "
-          "failed. group: writes from all "
+          "are kept. A participant that fails, or whose numbers are implausible, does not stop the "
+          "others: exit code 3, or 2 if all failed. group: writes from all "
           "runs, failed ones too, study.tsv and index.html, and exports their records as BIDS-Prov "
           "and RO-Crate. Several of these commands may work on one OUT_DIR at a time, as in a job "
           "array, on different participants.")
@@ -149,6 +149,15 @@ void shareSegment(const fs::path& made, const fs::path& run) {
   if (fault) fs::remove_all(run / "segment", fault);  // no such links here: the run makes its own
 }
 
+/// What a run's numbers say against it counts against the whole.
+void passFlagsOn(Context& context, const fs::path& run) {
+  const Json summary = provenance::readJson(run / provenance::kSummaryName);
+  for (Json flag : summary.value("flags", Json::array())) {
+    flag["run"] = run.filename().string();
+    context.flag(flag);
+  }
+}
+
 /// Takes one hemisphere through the run and names its results.
 /// @return false if it failed: the reason is then in problem.txt beside the run
 bool doHemisphere(Context& context, const Settings& s, const study::Participant& participant,
@@ -170,6 +179,7 @@ bool doHemisphere(Context& context, const Settings& s, const study::Participant&
     shareSegment(folder.parent_path() / (participant.name() + "_hemi-" + other), folder);
     const Outcome outcome = context.runCommand(*findCommand("run"), "runs/" + name, values);
     if (!reachedGoal(outcome.termination)) worst = outcome.termination;
+    if (!outcome.plausible) passFlagsOn(context, folder);
     fs::remove(problem);
     good = true;
   } catch (const EnvironmentError&) {

@@ -224,6 +224,9 @@ TEST_F(WholeHead, HalfABrainIsFlaggedByARunAndFailsItsRowOfAStudyAlone) {
                                                         "participant", "--hemispheres", "L"} +
                                small);
   EXPECT_EQ(study.exitCode, 3) << study;
+  const auto flags = readJson(folder_ / "out/summary.json")["flags"];
+  ASSERT_FALSE(flags.empty());
+  for (const auto& flag : flags) EXPECT_EQ(flag["run"], "sub-half_hemi-L");
   ASSERT_EQ(explica({"bids", folder_ / "data", folder_ / "out", "group"}).exitCode, 0);
   const std::string table = readText(folder_ / "out/study.tsv");
   EXPECT_NE(table.find("sub-half\tL\timplausible (segment): "), std::string::npos) << table;
