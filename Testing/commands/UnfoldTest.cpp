@@ -174,6 +174,7 @@ TEST(UnfoldCommand, WritesEveryFileArrayAndKeyThatOthersRelyOn) {
                                "energy_area",
                                "energy_spring",
                                "energy_lift",
+                               "energy_guide",
                                "energy_collar",
                                "energy_overhang",
                                "energy_contact",

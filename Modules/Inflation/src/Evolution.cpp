@@ -14,9 +14,9 @@ namespace {
 
 /// Columns of an unfolding that mean nothing where there are neither surroundings nor a knot
 /// energy.
-constexpr std::array<std::string_view, 7> kWithout = {
-    "collar_stretch_mean", "collar_stretch_max", "energy_lift",      "energy_collar",
-    "energy_overhang",     "energy_knot",        "seconds_repulsion"};
+constexpr std::array<std::string_view, 8> kWithout = {
+    "collar_stretch_mean", "collar_stretch_max", "energy_lift", "energy_guide",
+    "energy_collar",       "energy_overhang",    "energy_knot", "seconds_repulsion"};
 
 std::vector<unfolding::EvolutionColumn> columns() {
   std::vector<unfolding::EvolutionColumn> kept;

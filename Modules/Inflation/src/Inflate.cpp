@@ -69,6 +69,7 @@ unfolding::UnfolderOptions solverOptions(const InflateOptions& options) {
   solver.yieldStrain = kInfinity;  // strain is spread, so that curvature is
   solver.weights[unfolding::Term::Spring] = options.springWeight;
   solver.weights[unfolding::Term::Area] = options.areaWeight;
+  solver.weights[unfolding::Term::Guide] = 0;  // a closed surface has no flat map
   return solver;
 }
 

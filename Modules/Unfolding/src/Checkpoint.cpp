@@ -7,7 +7,7 @@
 namespace explica::unfolding {
 namespace {
 
-constexpr char kMagic[] = "ExplicaUnfold9\n";  // the number counts changes of the format
+constexpr char kMagic[] = "ExplicaUnfold10\n";  // the number counts changes of the format
 static_assert(sizeof(HeldPair) == 20);
 
 /// The members of a record, one list for writing and reading.

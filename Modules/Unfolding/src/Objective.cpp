@@ -9,9 +9,9 @@ namespace explica::unfolding {
 
 // In the order of kTerms.
 Objective::Objective()
-    : energies_{makeVisibilityEnergy(), makeAreaEnergy(),     makeSpringEnergy(),  makeLiftEnergy(),
-                makeCollarEnergy(),     makeOverhangEnergy(), makeContactEnergy(), makeKnotTerm()} {
-}
+    : energies_{makeVisibilityEnergy(), makeAreaEnergy(),    makeSpringEnergy(),
+                makeLiftEnergy(),       makeGuideEnergy(),   makeCollarEnergy(),
+                makeOverhangEnergy(),   makeContactEnergy(), makeKnotTerm()} {}
 
 double Objective::value(const Configuration& now, const TermValues& strengths,
                         IterationRecord& account) const {

@@ -37,6 +37,17 @@ struct PatchRoom {
   double depth = 0;  ///< mm: how far below `height` the region lies at rest, in the mean
 };
 
+/// A flat map of the region, laid across the way to the viewpoints where it fits the region at rest
+/// best: it says which parts shall lie beside which.
+struct PatchGuide {
+  std::vector<std::int32_t> vertices = {};  ///< those that the map has; none: no guide
+  std::vector<double> weights = {};         ///< a, mm^2: of each, the area that is its share
+  Eigen::MatrixX2d flat = {};               ///< the map, mm, a row for each
+  Positions places = {};                    ///< p, mm: the map where it is laid, a row for each
+  Vector axis = Vector::UnitZ();            ///< unit, towards the viewpoints; p is normal to it
+  double radius = 1;                        ///< R, mm, of a disc of the region's area
+};
+
 /// What moves, at rest: the region, and what joins it to its surroundings.
 struct Patch {
   std::vector<PatchFace> faces;      ///< the region's, then the collar's
@@ -45,6 +56,7 @@ struct Patch {
   std::size_t regionSprings = 0;
   double yieldStrain = kInfinity;  ///< beyond it an edge's length costs less than its square
   PatchRoom room;
+  PatchGuide guide;
 
   [[nodiscard]] std::span<const PatchFace> ofRegion() const { return {faces.data(), regionFaces}; }
   [[nodiscard]] std::span<const PatchFace> ofCollar() const {

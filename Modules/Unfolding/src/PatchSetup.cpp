@@ -3,6 +3,7 @@
 
 #include "PatchSetup.h"
 
+#include "Guide.h"
 #include "Room.h"
 
 #include "Explica/Core/Errors.h"
@@ -180,6 +181,14 @@ void listCouplings(PatchSetup& s) {
   std::sort(s.couplings.begin(), s.couplings.end());
 }
 
+/// A large region alone finds no way of its own past the parts of its rim that come to lie over one
+/// another.
+bool isGuided(const PatchSetup& s, const UnfolderOptions& options) {
+  return options.method == Method::Implicit && options.surround == Surround::None &&
+         options.weights[Term::Guide] > 0 &&
+         static_cast<std::int64_t>(s.region.faces.size()) >= options.guideFaces;
+}
+
 }  // namespace
 
 std::vector<bool> movingFaces(const TriangleMesh& mesh, const Region& region,
@@ -211,6 +220,7 @@ PatchSetup setUpPatch(TriangleMesh mesh, Region region, const visibility::Viewpo
   chooseMoving(s, viewpoints, options);
   listFaces(s, areas);
   listSprings(s);
+  if (isGuided(s, options)) s.patch.guide = makeGuide(s.mesh, s.region, s.patch.room);
   s.patch.yieldStrain = options.yieldStrain;
   listCouplings(s);
   return s;

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
+#include "Guide.h"
 #include "Room.h"
 #include "UnfolderImplementation.h"
 
@@ -75,6 +76,7 @@ TermValues Unfolder::Implementation::strengths() const {
   strengths[Term::Spring] *= firmnessOnTheWay();
   strengths[Term::Lift] *= state.lift;
   if (state.separating || options.surround == Surround::None) strengths[Term::Lift] = 0;
+  if (state.separating) strengths[Term::Guide] = 0;
   if (state.separating) strengths[Term::Overhang] = 0;
   strengths[Term::Contact] *= state.contactStiffness * setup.edge * setup.edge;
   return strengths;
@@ -213,7 +215,9 @@ const std::vector<std::int32_t>& Unfolder::movingVertices() const {
 }
 void Unfolder::setViewpoints(visibility::Viewpoints viewpoints) {
   self_->viewpoints = std::move(viewpoints);
-  self_->setup.patch.room = findRoom(self_->setup.mesh, self_->setup.region, self_->viewpoints);
+  PatchSetup& setup = self_->setup;
+  setup.patch.room = findRoom(setup.mesh, setup.region, self_->viewpoints);
+  layGuide(setup.mesh, setup.patch.room, setup.patch.guide);
 }
 void Unfolder::setDirections(Positions directions) {
   if (directions.rows() != 0 &&

@@ -49,6 +49,7 @@ struct Sample {
     patch.regionSprings = patch.springs.size() * 3 / 4;
     patch.yieldStrain = 0.1;
     patch.room = {Vector(0.6, 0, -0.8), 40, 5};  // above all of it, faces look away from it
+    guideBeside(0.035);
     multipliers = Eigen::VectorXd::LinSpaced(static_cast<Eigen::Index>(patch.regionFaces), -1, 2);
     unknown.resize(static_cast<std::size_t>(mesh.vertexCount()));
     std::iota(unknown.begin(), unknown.end(), 0);
@@ -56,6 +57,20 @@ struct Sample {
     contacts.push_back({{last, mesh.faces(0, 0), mesh.faces(0, 1), mesh.faces(0, 2)},
                         collision::PairKind::VertexFace,
                         50});
+  }
+
+  /// Every other vertex is guided to a place `share` of the guide's radius beside it.
+  void guideBeside(double share) {
+    patch.guide.axis = Vector(0.6, 0, -0.8);
+    patch.guide.radius = 40;
+    patch.guide.vertices.clear();
+    patch.guide.weights.clear();
+    for (std::int32_t v = 0; v < mesh.vertexCount(); v += 2) {
+      patch.guide.vertices.push_back(v);
+      patch.guide.weights.push_back(1 + 0.1 * v);
+    }
+    patch.guide.places = mesh.positions(patch.guide.vertices, Eigen::all);
+    patch.guide.places.rowwise() += 40 * share * Eigen::RowVector3d(0.8, 0, 0.6);
   }
 
   [[nodiscard]] Configuration at(const Positions& x) const {
@@ -196,6 +211,27 @@ TEST(Energy, LiftPullsAlongItsAxisUpToItsHeightOnly) {
   EXPECT_EQ(all.leftCols(2).norm(), 0);
   EXPECT_LE(all.col(2).maxCoeff(), 0);  // downhill is up
   EXPECT_LT(all.col(2).sum(), 0);
+}
+
+TEST(Energy, AGuidePullsAcrossTheViewOnceAVertexIsFarFromHomeAndNoHarderFartherOff) {
+  Sample s;
+  s.multipliers.setZero();
+  for (PatchFace& face : s.patch.faces) face.holdWeight = 0;
+  const auto pull = [&](double share) {
+    s.guideBeside(share);
+    return s.gradient(only(Term::Guide, 2));
+  };
+  EXPECT_EQ(pull(0.019).norm(), 0);
+  const Positions most = pull(0.05);
+  EXPECT_NEAR((pull(0.2) - most).norm(), 0, 1e-12 * most.norm());
+  EXPECT_NEAR((pull(0.035) - 0.5 * most).norm(), 0, 1e-12 * most.norm());
+  const Eigen::VectorXd along = most * s.patch.guide.axis;
+  EXPECT_LT(along.norm(), 1e-12 * most.norm());
+  EXPECT_EQ(most.row(1).norm(), 0);  // has no place in the map
+  // Strength, area of the vertex, slope and radius; downhill is towards the place.
+  EXPECT_NEAR(most(2, 0), -2 * 1.2 * 0.03 / 40 * 0.8, 1e-12);
+  s.patch.guide.places.rowwise() += 7 * s.patch.guide.axis.transpose();
+  EXPECT_NEAR((s.gradient(only(Term::Guide, 2)) - 0.5 * most).norm(), 0, 1e-12 * most.norm());
 }
 
 TEST(Energy, ACollarThatStandsUprightIsNotTurned) {

@@ -68,6 +68,7 @@ class Energy {
 [[nodiscard]] std::unique_ptr<Energy> makeAreaEnergy();
 [[nodiscard]] std::unique_ptr<Energy> makeSpringEnergy();
 [[nodiscard]] std::unique_ptr<Energy> makeLiftEnergy();
+[[nodiscard]] std::unique_ptr<Energy> makeGuideEnergy();
 [[nodiscard]] std::unique_ptr<Energy> makeCollarEnergy();
 [[nodiscard]] std::unique_ptr<Energy> makeOverhangEnergy();
 [[nodiscard]] std::unique_ptr<Energy> makeContactEnergy();

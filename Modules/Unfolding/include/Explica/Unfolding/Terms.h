@@ -19,6 +19,7 @@ enum class Term {
   Area,        ///< sum over the region's faces of w (lambda c + weight/2 c^2), lambda a multiplier
   Spring,    ///< weight times the sum over the region's edges of e r(s), r = s^2 for small strains
   Lift,      ///< weight/2 times the sum of w (deficit / radius)^2, deficit from where it has room
+  Guide,     ///< weight times the sum over vertices of a h(way to the vertex's place in a flat map)
   Collar,    ///< weight times the sum over faces that move outside the region, see CollarEnergy
   Overhang,  ///< weight times the sum over those faces of o max(0, -n . d)^2, o near the region
   Contact,   ///< weight times the sum over near pairs of barrier(distance), see ContactPotential
@@ -43,6 +44,8 @@ inline constexpr std::array kTerms = {
              "stiffness of edge lengths until it is weighed against what is seen"},
     TermInfo{Term::Lift, "lift", 60, "lift-weight",
              "pull out of fixed or elastic surroundings, up to where the flat region has room"},
+    TermInfo{Term::Guide, "guide", 100, "guide-weight",
+             "pull of a large region without surroundings towards its flat map"},
     TermInfo{Term::Collar, "collar", 2e-4, "collar-weight",
              "stiffness of an elastic collar beside the region's"},
     TermInfo{Term::Overhang, "overhang", 0.3, "overhang-weight",

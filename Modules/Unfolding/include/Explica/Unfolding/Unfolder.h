@@ -39,6 +39,7 @@ struct UnfolderOptions {
   double contactRange = 0.25;         ///< of the mean edge length: the barrier acts below it, > 0
   double yieldStrain = 0.015;  ///< strain beyond which an edge costs less than its square, > 0
   double areaSlack = 0;    ///< relative area error that needs no mending; unfold() sets it, >= 0
+  int guideFaces = 30000;  ///< a region alone of so many faces is pulled towards its flat map, >= 0
   double largestMove = 3;  ///< mean edge lengths that a vertex goes per iteration at most, > 0
   repulsion::KnotMethod knot = repulsion::KnotMethod::Off;
   bool keepAreas = true;           ///< thesis method: project; without it the region shrinks
@@ -67,6 +68,11 @@ void describe(UnfolderOptions& options, Visitor&& visit) {
               "where the surface cannot be laid flat otherwise",
               kAboveZero, 1e6},
         options.yieldStrain);
+  visit(Field{"guide-faces", "",
+              "a region without surroundings that has so many faces or more is pulled towards its "
+              "flat map",
+              0, 1e9},
+        options.guideFaces);
   visit(Field{"largest-move", "", "mean edge lengths that a vertex goes per iteration at most",
               kAboveZero, 1000},
         options.largestMove);
