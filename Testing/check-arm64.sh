@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-FileCopyrightText: The Explica developers
 # SPDX-License-Identifier: Apache-2.0
-# Testing/check-arm64.sh [MODULE...]      default: Core Geometry Harmonic
+# Testing/check-arm64.sh [MODULE...]      default: Core Geometry
 # Builds for arm64, by Debian's cross compiler, and runs under qemu the unit tests of modules, and the
 # polygons' numerics (Modules/Planar), whose bits it compares with those of this processor.  Needs
 # Debian's g++-aarch64-linux-gnu, qemu-user, libeigen3-dev, libhwy-dev and googletest (its sources);
@@ -35,7 +35,7 @@ compiled() {
 
 # Unit tests, but for those that need other modules or several threads.
 failed=""
-[ $# -gt 0 ] || set -- Core Geometry Harmonic
+[ $# -gt 0 ] || set -- Core Geometry
 for module in "$@"; do
   sources="Testing/arm64/OneThread.cpp Modules/Core/src/PortableMath.cpp Modules/Core/src/Grid.cpp"
   for source in Modules/Core/src/*.cpp "Modules/$module"/src/*.cpp; do
