@@ -6,10 +6,12 @@
   above it (which may stand above several);
 - no function is longer than 100 lines, the `run` of a command not longer than 60; the
   median body has at most 9;
-- no loop runs over a part of what a call has just handed out in a container: that is gone before the first turn.
+- no loop runs over a part of what a call has just handed out in a container: that is gone before the first turn;
+- names in the unnamed namespaces of one module differ, since a build compiles several of its sources at once.
 
     check-style.py [--lengths]      with --lengths: the longest functions, too"""
 
+import collections
 import pathlib
 import re
 import statistics
@@ -81,11 +83,51 @@ def functions(path: pathlib.Path) -> list[tuple[int, int, str]]:
     return found
 
 
+def without_texts(source: str) -> str:
+    """The source without comments and with empty literals, so that its braces can be counted."""
+    source = re.sub(r'R"(\w*)\(.*?\)\1"', '""', source, flags=re.S)
+    source = re.sub(r'//[^\n]*|/\*.*?\*/', "", source, flags=re.S)
+    return re.sub(r"""'(\\.|[^'\\\w]|\w)'|"(\\.|[^"\\\n])*\"""", '""', source)
+
+
+def hidden_names(path: pathlib.Path) -> set[str]:
+    """Types, constants and functions (with the types of their arguments) of a file's unnamed namespaces."""
+    text = without_texts(path.read_text())
+    names = set()
+    for space in re.finditer(r"\bnamespace\s*\{", text):
+        depth, at, outer = 1, space.end(), []
+        while depth and at < len(text):
+            depth += {"{": 1, "}": -1}.get(text[at], 0)
+            if depth == 1 or (depth == 2 and text[at] == "{"):
+                outer.append(text[at])
+            at += 1
+        outer = "".join(outer)
+        names |= set(re.findall(r"\b(?:struct|class|enum class)\s+(\w+)\s*(?:\{|:(?!:)|final)", outer))
+        names |= set(re.findall(r"\b(k[A-Z]\w*)\b\s*(?:\[[^\]]*\])?\s*(?:=|\{)", outer))
+        for name, arguments in re.findall(r"[\w&*>] +(\w+)\(([^;{}()]*)\)\s*(?:const)?\s*[{;]", outer):
+            types = [re.sub(r"\s*\b\w+\s*$", "", argument) for argument in arguments.split(",")]
+            names.add(f"{name}({', '.join(' '.join(t.split()) for t in types)})")
+    return names
+
+
+def repeated_names() -> list[str]:
+    faults = []
+    for module in sources("Modules/*/src"):
+        files = collections.defaultdict(list)
+        for path in sorted(module.rglob("*.cpp")):
+            for name in hidden_names(path):
+                files[name].append(path.name)
+        faults += [f"{module.relative_to(ROOT)}: {name} stands in {' and '.join(where)}: give them names of their own "
+                   "or one home" for name, where in sorted(files.items()) if len(where) > 1]
+    return faults
+
+
 def main() -> int:
     faults = [fault for path in sources("Modules/*/src/**/*.cpp", "Modules/*/src/**/*.h")
               for fault in unexplained(path)]
     faults += [fault for root in ("Modules", "Applications", "Wrapping", "Testing")
                for path in sources(f"{root}/**/*.cpp", f"{root}/**/*.h") for fault in dangling(path)]
+    faults += repeated_names()
     lengths = []
     bodies = []
     for path in sources("Modules/*/src/**/*.cpp", "Applications/**/*.cpp", "Wrapping/Python/src/*.cpp"):

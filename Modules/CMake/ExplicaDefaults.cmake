@@ -38,6 +38,8 @@ endfunction()
 function(explica_compile_in_batches target size)
   if(EXPLICA_BATCHES)
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${size})
+    # Hidden implementations hold types of their file's unnamed namespace; in a batch that file counts as a header.
+    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
   endif()
 endfunction()
 

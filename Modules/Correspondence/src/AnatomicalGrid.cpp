@@ -18,7 +18,7 @@ namespace {
 
 /// A corner's Jacobian over the product of its three edges' lengths (its two edges' in the plane),
 /// at and below which a cell is flat: well above the round-off of coordinates in single precision.
-constexpr double kFlat = 1e-4;
+constexpr double kLevel = 1e-4;
 
 /// A polyline in box indices with arc lengths, mm.
 struct Path {
@@ -157,7 +157,7 @@ double lowestCorner(const AnatomicalGrid& grid, Eigen::Index cell) {
 void leaveOutDegenerate(AnatomicalGrid& grid) {
   std::vector<std::uint8_t> good(static_cast<std::size_t>(grid.cells.rows()));
   parallelFor(good.size(), 1024, [&](std::size_t c) {
-    good[c] = lowestCorner(grid, static_cast<Eigen::Index>(c)) > kFlat;
+    good[c] = lowestCorner(grid, static_cast<Eigen::Index>(c)) > kLevel;
   });
   Eigen::Index kept = 0;
   for (std::size_t c = 0; c < good.size(); ++c) {

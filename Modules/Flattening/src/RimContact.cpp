@@ -18,7 +18,7 @@ Plane at(const FlatPositions& flat, std::int32_t v) {
   return flat.row(v).transpose();
 }
 
-double cross(const Plane& a, const Plane& b) {
+double crossProduct(const Plane& a, const Plane& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
@@ -41,7 +41,8 @@ double meetingTime(const Plane& p, const Plane& a, const Plane& b, const Plane& 
                    const Plane& db) {
   constexpr double kSlack = 1e-9;  // of the edge: a point that passes an end counts as meeting
   const Plane u = b - a, v = p - a, du = db - da, dv = dp - da;
-  const double c0 = cross(u, v), c1 = cross(u, dv) + cross(du, v), c2 = cross(du, dv);
+  const double c0 = crossProduct(u, v), c1 = crossProduct(u, dv) + crossProduct(du, v),
+               c2 = crossProduct(du, dv);
   const double discriminant = c1 * c1 - 4 * c0 * c2;
   if (discriminant < 0) return kInfinity;
   const double w = -(c1 + std::copysign(std::sqrt(discriminant), c1)) / 2;

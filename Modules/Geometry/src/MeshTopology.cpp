@@ -16,7 +16,7 @@
 namespace explica::geometry {
 namespace {
 
-constexpr std::size_t kGrain = 2048;  // elements a task
+constexpr std::size_t kTopologyGrain = 2048;  // elements a task
 
 /// A face's side: its two vertices in ascending order, and which side of which face it is.
 struct HalfEdge {
@@ -49,7 +49,7 @@ std::vector<HalfEdge> sortedHalfEdges(const Faces& faces, Eigen::Index vertexCou
       sides[at[std::min(a, b)]++] = {std::min(a, b), std::max(a, b), f, k};
     }
   }
-  parallelFor(static_cast<std::size_t>(vertexCount), kGrain, [&](std::size_t v) {
+  parallelFor(static_cast<std::size_t>(vertexCount), kTopologyGrain, [&](std::size_t v) {
     std::sort(sides.begin() + begin[v], sides.begin() + begin[v + 1]);
   });
   return sides;
@@ -95,7 +95,7 @@ IndexLists groupByKey(std::size_t keys, const std::vector<std::array<std::int32_
   std::partial_sum(lists.begin.begin(), lists.begin.end(), lists.begin.begin());
   std::vector<std::int32_t> next(lists.begin.begin(), lists.begin.end() - 1);
   for (const auto& [key, value] : pairs) lists.values[next[key]++] = value;
-  parallelFor(keys, kGrain, [&](std::size_t key) {
+  parallelFor(keys, kTopologyGrain, [&](std::size_t key) {
     std::sort(lists.values.begin() + lists.begin[key], lists.values.begin() + lists.begin[key + 1]);
   });
   return lists;
@@ -165,7 +165,7 @@ std::int64_t countRepeated(std::size_t count, const Hash& hash, const Before& be
   std::size_t bins = 1;
   while (kPerBin * bins < count) bins *= 2;
   std::vector<std::uint32_t> binOf(count);
-  parallelFor(count, kGrain, [&](std::size_t i) {
+  parallelFor(count, kTopologyGrain, [&](std::size_t i) {
     std::uint64_t mixed = hash(i);
     mixed = (mixed ^ (mixed >> 29)) * 0xBF58476D1CE4E5B9U;
     binOf[i] = static_cast<std::uint32_t>((mixed ^ (mixed >> 32)) & (bins - 1));
@@ -175,16 +175,17 @@ std::int64_t countRepeated(std::size_t count, const Hash& hash, const Before& be
   std::partial_sum(begin.begin(), begin.end(), begin.begin());
   std::vector<std::uint32_t> at(begin.begin(), begin.end() - 1);
   for (std::size_t i = 0; i < count; ++i) order[at[binOf[i]]++] = static_cast<std::uint32_t>(i);
-  return parallelSum(bins, kGrain, std::int64_t{0}, [&](std::size_t first, std::size_t last) {
-    std::int64_t repeated = 0;
-    for (std::size_t b = first; b < last; ++b) {
-      std::sort(order.begin() + begin[b], order.begin() + begin[b + 1], before);
-      for (std::size_t n = begin[b] + 1; n < begin[b + 1]; ++n) {
-        repeated += !before(order[n - 1], order[n]);
-      }
-    }
-    return repeated;
-  });
+  return parallelSum(bins, kTopologyGrain, std::int64_t{0},
+                     [&](std::size_t first, std::size_t last) {
+                       std::int64_t repeated = 0;
+                       for (std::size_t b = first; b < last; ++b) {
+                         std::sort(order.begin() + begin[b], order.begin() + begin[b + 1], before);
+                         for (std::size_t n = begin[b] + 1; n < begin[b + 1]; ++n) {
+                           repeated += !before(order[n - 1], order[n]);
+                         }
+                       }
+                       return repeated;
+                     });
 }
 
 std::int64_t countCoincident(const TriangleMesh& mesh, const std::vector<bool>& used) {
@@ -213,7 +214,7 @@ std::int64_t countCoincident(const TriangleMesh& mesh, const std::vector<bool>& 
 
 std::int64_t countDuplicateFaces(const Faces& faces, const std::vector<std::int32_t>& sound) {
   std::vector<std::array<std::int32_t, 3>> keys(sound.size());
-  parallelFor(sound.size(), kGrain, [&](std::size_t i) {
+  parallelFor(sound.size(), kTopologyGrain, [&](std::size_t i) {
     keys[i] = {faces(sound[i], 0), faces(sound[i], 1), faces(sound[i], 2)};
     std::sort(keys[i].begin(), keys[i].end());
   });
@@ -232,11 +233,12 @@ std::int64_t countDuplicateFaces(const Faces& faces, const std::vector<std::int3
 /// How many of [0, count) have a property.
 template <class Has>
 std::int64_t countOf(std::size_t count, const Has& has) {
-  return parallelSum(count, kGrain, std::int64_t{0}, [&](std::size_t begin, std::size_t end) {
-    std::int64_t found = 0;
-    for (std::size_t i = begin; i < end; ++i) found += has(i);
-    return found;
-  });
+  return parallelSum(count, kTopologyGrain, std::int64_t{0},
+                     [&](std::size_t begin, std::size_t end) {
+                       std::int64_t found = 0;
+                       for (std::size_t i = begin; i < end; ++i) found += has(i);
+                       return found;
+                     });
 }
 
 MeshCondition require(const TriangleMesh& mesh, std::string_view name, bool closed) {

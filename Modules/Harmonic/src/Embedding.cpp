@@ -13,7 +13,7 @@ namespace explica::harmonic {
 
 namespace {
 
-constexpr std::size_t kGrain = 1 << 13;  // elements a task
+constexpr std::size_t kEmbeddingGrain = 1 << 13;  // elements a task
 // A Laplace solve's error must stay below what the iteration still gains.
 constexpr double kSolveTolerance = 1e-10;
 constexpr int kSolveIterations = 60;
@@ -63,7 +63,7 @@ class Embedding {
   [[nodiscard]] std::vector<Eigen::Vector3f> gradient(const std::vector<double>& alpha,
                                                       const std::vector<double>& u) const {
     std::vector<Eigen::Vector3f> gradient(u.size());
-    parallelFor(u.size(), kGrain, [&](std::size_t index) {
+    parallelFor(u.size(), kEmbeddingGrain, [&](std::size_t index) {
       const auto n = static_cast<std::int32_t>(index);
       const std::int32_t row = staircase_.irregular(n);
       const auto at = [&](int d) {
@@ -82,7 +82,7 @@ class Embedding {
   [[nodiscard]] std::vector<double> sample(const std::vector<double>& alpha,
                                            const std::vector<double>& u) const {
     std::vector<double> values(crossings_.size());
-    parallelFor(crossings_.size(), kGrain, [&](std::size_t s) {
+    parallelFor(crossings_.size(), kEmbeddingGrain, [&](std::size_t s) {
       double sum = 0;
       for (int k = 0; k < 3; ++k) {
         const std::int32_t v = crossings_[s].vertex[k];
@@ -204,7 +204,7 @@ class Embedding {
 };
 
 double squared(const std::vector<double>& values) {
-  return parallelSum(values.size(), kGrain, 0.0, [&](std::size_t begin, std::size_t end) {
+  return parallelSum(values.size(), kEmbeddingGrain, 0.0, [&](std::size_t begin, std::size_t end) {
     double sum = 0;
     for (std::size_t k = begin; k < end; ++k) sum += values[k] * values[k];
     return sum;

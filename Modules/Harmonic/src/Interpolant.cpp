@@ -15,7 +15,7 @@ namespace explica::harmonic {
 
 namespace {
 
-constexpr std::size_t kGrain = 1 << 13;  // elements a task
+constexpr std::size_t kInterpolantGrain = 1 << 13;  // elements a task
 // Nearer than this (in voxels) a boundary's difference to the voxel is too small to divide by.
 constexpr double kTooClose = 0.005;
 
@@ -24,7 +24,7 @@ void finalSweep(const Annulus& annulus, const Stencil& stencil, const std::vecto
                 std::vector<double>& u) {
   for (int colour = 0; colour < 2; ++colour) {
     forRunsOf(annulus, colour, [&](std::int32_t begin, std::int32_t end, std::int32_t offset) {
-      parallelFor(end - begin, kGrain, [&, begin, offset](std::size_t k) {
+      parallelFor(end - begin, kInterpolantGrain, [&, begin, offset](std::size_t k) {
         const std::size_t n = begin + k;
         const auto& links = annulus.links[n];
         double sum = rhs[n];
@@ -44,7 +44,7 @@ void finalSweep(const Annulus& annulus, const Stencil& stencil, const std::vecto
 std::vector<Eigen::Vector3f> gradientOf(const Annulus& annulus, const std::vector<double>& u) {
   std::vector<Eigen::Vector3f> gradient(annulus.count());
   const Vector inverse = annulus.grid.spacing.cwiseInverse();
-  parallelFor(annulus.count(), kGrain, [&](std::size_t index) {
+  parallelFor(annulus.count(), kInterpolantGrain, [&](std::size_t index) {
     const auto n = static_cast<std::int32_t>(index);
     const auto& links = annulus.links[n];
     const std::int32_t row = annulus.irregular(n);
@@ -96,7 +96,7 @@ Interpolant solveInterpolant(const Annulus& annulus, const InterpolantOptions& o
   const Stencil stencil(annulus);
   Multigrid multigrid(annulus);
   std::vector<double> rhs(annulus.count(), 0);
-  parallelFor(annulus.count(), kGrain, [&](std::size_t index) {
+  parallelFor(annulus.count(), kInterpolantGrain, [&](std::size_t index) {
     const auto n = static_cast<std::int32_t>(index);
     const std::int32_t row = annulus.irregular(n);
     if (row < 0) return;
@@ -111,16 +111,16 @@ Interpolant solveInterpolant(const Annulus& annulus, const InterpolantOptions& o
   result.termination = outcome.termination;
   result.iterations = outcome.iterations;
   result.relativeResidual = outcome.relativeResidual;
-  result.corrected =
-      parallelSum(annulus.count(), kGrain, std::size_t{0}, [&](std::size_t begin, std::size_t end) {
-        std::size_t corrected = 0;
-        for (std::size_t n = begin; n < end; ++n) {
-          const double kept = std::clamp(result.u[n], 0.0, 1.0);
-          corrected += kept != result.u[n];
-          result.u[n] = kept;
-        }
-        return corrected;
-      });
+  result.corrected = parallelSum(annulus.count(), kInterpolantGrain, std::size_t{0},
+                                 [&](std::size_t begin, std::size_t end) {
+                                   std::size_t corrected = 0;
+                                   for (std::size_t n = begin; n < end; ++n) {
+                                     const double kept = std::clamp(result.u[n], 0.0, 1.0);
+                                     corrected += kept != result.u[n];
+                                     result.u[n] = kept;
+                                   }
+                                   return corrected;
+                                 });
   finalSweep(annulus, stencil, rhs, result.u);
   result.gradient = gradientOf(annulus, result.u);
   return result;

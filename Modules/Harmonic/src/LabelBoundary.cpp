@@ -14,7 +14,7 @@ namespace explica::harmonic {
 
 namespace {
 
-constexpr std::size_t kGrain = 1 << 12;  // elements a task
+constexpr std::size_t kBoundaryGrain = 1 << 12;  // elements a task
 // Nearest that the surface may come to a voxel's centre, in voxels.
 constexpr float kNearest = 0.01F;
 // Pull to the middle of a link where the net is smooth.  It only decides where no step is near:
@@ -114,7 +114,7 @@ void LabelBoundary::join(const std::vector<std::uint8_t>& side) {
   const auto secondAxis = [&](int a, int chain) {
     return axes_ == 2 ? 1 - a : (a + 1 + chain) % 3;
   };
-  parallelFor(low_.size(), kGrain, [&](std::size_t link) {
+  parallelFor(low_.size(), kBoundaryGrain, [&](std::size_t link) {
     const std::int32_t p = low_[link];
     const int a = axis_[link];
     const std::array<std::int32_t, 3>& at = at_[link];
@@ -148,7 +148,7 @@ void LabelBoundary::join(const std::vector<std::uint8_t>& side) {
   // Which side of the neighbour points back; only the lowest bit of own slots is written, and only
   // the others are read.
   const auto made = back_;
-  parallelFor(low_.size(), kGrain, [&](std::size_t link) {
+  parallelFor(low_.size(), kBoundaryGrain, [&](std::size_t link) {
     for (int slot = 0; slot < 4; ++slot) {
       const std::int32_t code = made[link][slot];
       if (code < 0) continue;
@@ -168,7 +168,7 @@ void LabelBoundary::findNormals(const std::vector<std::uint8_t>& side, int smoot
     d[axis_[link]] -= theta_[link];
     return d;
   };
-  parallelFor(low_.size(), kGrain, [&](std::size_t link) {
+  parallelFor(low_.size(), kBoundaryGrain, [&](std::size_t link) {
     Eigen::Vector3f along[2] = {Eigen::Vector3f::Zero(), Eigen::Vector3f::Unit(2)};
     const int a = axis_[link];
     for (int chain = 0; chain < axes_ - 1; ++chain) {
@@ -187,7 +187,7 @@ void LabelBoundary::findNormals(const std::vector<std::uint8_t>& side, int smoot
   });
   for (int pass = 0; pass < smoothings; ++pass) {
     const auto before = normal_;
-    parallelFor(low_.size(), kGrain, [&](std::size_t link) {
+    parallelFor(low_.size(), kBoundaryGrain, [&](std::size_t link) {
       Eigen::Vector3f n = Eigen::Map<const Eigen::Vector3f>(before[link].data());
       for (const std::int32_t code : back_[link]) {
         if (code >= 0) n += Eigen::Map<const Eigen::Vector3f>(before[code >> 2].data());
@@ -205,7 +205,7 @@ void LabelBoundary::findCurvatures() {
   beside_.assign(low_.size(), {0, 0, 0, 0});
   length_.assign(low_.size(), {0, 0});
   stiffness_.assign(low_.size(), {0, 0, 0, 0});
-  parallelFor(low_.size(), kGrain, [&](std::size_t link) {
+  parallelFor(low_.size(), kBoundaryGrain, [&](std::size_t link) {
     const auto& n = normal_[link];
     const float ownNormal = n[axis_[link]];
     for (int chain = 0; chain < axes_ - 1; ++chain) {
@@ -241,13 +241,13 @@ void LabelBoundary::findCurvatures() {
 
 void LabelBoundary::findPull(const LabelTrust& trust) {
   std::vector<std::array<float, 2>> curvature(low_.size());
-  parallelFor(low_.size(), kGrain, [&](std::size_t link) {
+  parallelFor(low_.size(), kBoundaryGrain, [&](std::size_t link) {
     for (int chain = 0; chain < axes_ - 1; ++chain) {
       curvature[link][chain] = curvatureOf(link, chain, theta_);
     }
   });
   std::vector<float> roughness(low_.size()), before;
-  parallelFor(low_.size(), kGrain, [&](std::size_t link) {
+  parallelFor(low_.size(), kBoundaryGrain, [&](std::size_t link) {
     float sum = 0;
     int found = 0;
     for (int slot = 0; slot < 4; ++slot) {
@@ -262,7 +262,7 @@ void LabelBoundary::findPull(const LabelTrust& trust) {
   });
   for (int pass = 0; pass < kRoughnessSmoothings; ++pass) {
     before = roughness;
-    parallelFor(low_.size(), kGrain, [&](std::size_t link) {
+    parallelFor(low_.size(), kBoundaryGrain, [&](std::size_t link) {
       float sum = before[link], count = 1;
       for (const std::int32_t code : back_[link]) {
         if (code < 0) continue;
@@ -272,7 +272,7 @@ void LabelBoundary::findPull(const LabelTrust& trust) {
       roughness[link] = sum / count;
     });
   }
-  parallelFor(low_.size(), kGrain, [&](std::size_t link) {
+  parallelFor(low_.size(), kBoundaryGrain, [&](std::size_t link) {
     const float rough = (roughness[link] - trust.smooth) / (trust.rough - trust.smooth);
     pull_[link] = std::clamp(trust.pull * rough, kWeakPull, trust.pull);
   });
@@ -297,7 +297,7 @@ void LabelBoundary::relaxChains(Energy energy, int iterations) {
   // curvature; where a chain ends the link itself without weight, so that loops need not ask.
   std::vector<std::array<std::int32_t, 4>> near(count);
   std::vector<std::array<float, 4>> weight(count);
-  parallelFor(count, kGrain, [&](std::size_t link) {
+  parallelFor(count, kBoundaryGrain, [&](std::size_t link) {
     for (int slot = 0; slot < 4; ++slot) {
       const std::int32_t code = back_[link][slot];
       near[link][slot] = code < 0 ? static_cast<std::int32_t>(2 * link) : code >> 1;
@@ -309,19 +309,19 @@ void LabelBoundary::relaxChains(Energy energy, int iterations) {
   // Derivative of half the energy by the curvatures, or with sign 1 a bound on its row sums.
   const auto bend = [&](float sign, const auto& curvatureAt) {
     if (energy == Energy::Curvature) {
-      parallelFor(count, kGrain, [&](std::size_t link) {
+      parallelFor(count, kBoundaryGrain, [&](std::size_t link) {
         for (int chain = 0; chain < kChains; ++chain) {
           bending[2 * link + chain] = length_[link][chain] * curvatureAt(link, chain);
         }
       });
       return;
     }
-    parallelFor(count, kGrain, [&](std::size_t link) {
+    parallelFor(count, kBoundaryGrain, [&](std::size_t link) {
       for (int chain = 0; chain < kChains; ++chain) {
         curvature[2 * link + chain] = curvatureAt(link, chain);
       }
     });
-    parallelFor(count, kGrain, [&](std::size_t link) {
+    parallelFor(count, kBoundaryGrain, [&](std::size_t link) {
       for (int chain = 0; chain < kChains; ++chain) {
         const float own = curvature[2 * link + chain];
         bending[2 * link + chain] =
@@ -334,7 +334,7 @@ void LabelBoundary::relaxChains(Energy energy, int iterations) {
     return std::abs(own_[link][chain]) + std::abs(beside_[link][2 * chain]) +
            std::abs(beside_[link][2 * chain + 1]);
   });
-  parallelFor(count, kGrain, [&](std::size_t link) {
+  parallelFor(count, kBoundaryGrain, [&](std::size_t link) {
     const float across = normal_[link][axis_[link]];
     pull[link] = pull_[link] * std::max(across * across, 0.01F);
     float sum = pull[link];
@@ -355,29 +355,30 @@ void LabelBoundary::relaxChains(Energy energy, int iterations) {
              beside[2 * chain] * ahead[near[link][2 * chain] >> 1] +
              beside[2 * chain + 1] * ahead[near[link][2 * chain + 1] >> 1];
     });
-    const double uphill = parallelSum(count, kGrain, 0.0, [&](std::size_t begin, std::size_t end) {
-      double sum = 0;
-      for (std::size_t link = begin; link < end; ++link) {
-        float slope = pull[link] * (ahead[link] - 0.5F);
-        for (int chain = 0; chain < kChains; ++chain) {
-          slope += own_[link][chain] * bending[2 * link + chain];
-        }
-        for (int slot = 0; slot < 2 * kChains; ++slot) {
-          slope += weight[link][slot] * bending[near[link][slot]];
-        }
-        // Not std::clamp, which jumps, and no processor foresees where.
-        const float below = std::min(ahead[link] - slope / bound[link], 1 - kNearest);
-        next[link] = std::max(below, kNearest);
-        sum += static_cast<double>((ahead[link] - next[link]) * bound[link] *
-                                   (next[link] - theta_[link]));
-      }
-      return sum;
-    });
+    const double uphill =
+        parallelSum(count, kBoundaryGrain, 0.0, [&](std::size_t begin, std::size_t end) {
+          double sum = 0;
+          for (std::size_t link = begin; link < end; ++link) {
+            float slope = pull[link] * (ahead[link] - 0.5F);
+            for (int chain = 0; chain < kChains; ++chain) {
+              slope += own_[link][chain] * bending[2 * link + chain];
+            }
+            for (int slot = 0; slot < 2 * kChains; ++slot) {
+              slope += weight[link][slot] * bending[near[link][slot]];
+            }
+            // Not std::clamp, which jumps, and no processor foresees where.
+            const float below = std::min(ahead[link] - slope / bound[link], 1 - kNearest);
+            next[link] = std::max(below, kNearest);
+            sum += static_cast<double>((ahead[link] - next[link]) * bound[link] *
+                                       (next[link] - theta_[link]));
+          }
+          return sum;
+        });
     if (uphill > 0) momentum = 1;
     const double later = 0.5 * (1 + std::sqrt(1 + 4 * momentum * momentum));
     const auto share = static_cast<float>((momentum - 1) / later);
     momentum = later;
-    parallelFor(count, kGrain, [&](std::size_t link) {
+    parallelFor(count, kBoundaryGrain, [&](std::size_t link) {
       ahead[link] = next[link] + share * (next[link] - theta_[link]);
     });
     theta_.swap(next);

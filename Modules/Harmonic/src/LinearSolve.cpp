@@ -10,7 +10,7 @@ namespace explica::harmonic {
 
 namespace {
 
-constexpr std::size_t kGrain = 1 << 13;  // elements a task
+constexpr std::size_t kSolveGrain = 1 << 13;  // elements a task
 
 struct Pair {
   double first = 0, second = 0;
@@ -26,7 +26,7 @@ void apply(const Annulus& annulus, const Stencil& stencil, const std::vector<flo
            std::vector<double>& y) {
   for (int colour = 0; colour < 2; ++colour) {
     forRunsOf(annulus, colour, [&](std::int32_t begin, std::int32_t end, std::int32_t offset) {
-      parallelFor(end - begin, kGrain, [&, begin, offset](std::size_t k) {
+      parallelFor(end - begin, kSolveGrain, [&, begin, offset](std::size_t k) {
         const std::size_t n = begin + k;
         const auto& l = annulus.links[n];
         double sum = x[n];
@@ -48,11 +48,11 @@ void apply(const Annulus& annulus, const Stencil& stencil, const std::vector<flo
 
 template <class F>
 void forAll(std::size_t count, const F& f) {
-  parallelFor(count, kGrain, f);
+  parallelFor(count, kSolveGrain, f);
 }
 
 double dot(const std::vector<double>& a, const std::vector<double>& b) {
-  return parallelSum(a.size(), kGrain, 0.0, [&](std::size_t begin, std::size_t end) {
+  return parallelSum(a.size(), kSolveGrain, 0.0, [&](std::size_t begin, std::size_t end) {
     double sum = 0;
     for (std::size_t k = begin; k < end; ++k) sum += a[k] * b[k];
     return sum;
@@ -61,7 +61,7 @@ double dot(const std::vector<double>& a, const std::vector<double>& b) {
 
 /// a . b and a . a in one pass.
 Pair dotAndSquare(const std::vector<double>& a, const std::vector<double>& b) {
-  return parallelSum(a.size(), kGrain, Pair{}, [&](std::size_t begin, std::size_t end) {
+  return parallelSum(a.size(), kSolveGrain, Pair{}, [&](std::size_t begin, std::size_t end) {
     Pair sum;
     for (std::size_t k = begin; k < end; ++k) {
       sum.first += a[k] * b[k];
@@ -77,7 +77,7 @@ std::vector<double> residualOf(const Annulus& annulus, const Stencil& stencil,
   std::vector<double> r(annulus.count());
   for (int colour = 0; colour < 2; ++colour) {
     forRunsOf(annulus, colour, [&](std::int32_t begin, std::int32_t end, std::int32_t offset) {
-      parallelFor(end - begin, kGrain, [&, begin, offset](std::size_t k) {
+      parallelFor(end - begin, kSolveGrain, [&, begin, offset](std::size_t k) {
         const std::size_t i = begin + k;
         double sum = rhs[i] - u[i];
         for (int d = 0; d < 6; ++d) {

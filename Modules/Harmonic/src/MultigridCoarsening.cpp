@@ -10,9 +10,9 @@ namespace explica::harmonic {
 
 namespace {
 
-constexpr std::size_t kGrain = 1 << 13;  // elements a task
-constexpr int kCoarsestSize = 60;        // cells; solved by sweeps
-constexpr int kMaxLevels = 16;           // of grids, each half as wide as the one before
+constexpr std::size_t kCoarseningGrain = 1 << 13;  // elements a task
+constexpr int kCoarsestSize = 60;                  // cells; solved by sweeps
+constexpr int kMaxLevels = 16;                     // of grids, each half as wide as the one before
 // Axes are coarsened together if their spacings differ by less than this; so smoothing stays good.
 constexpr double kNearlyIsotropic = 1.5;
 
@@ -117,7 +117,7 @@ void Coarsener::sortByBlock() {
   blocks_.size = size;
   blocks_.start.assign(blocks + 1, 0);
   blocks_.of.resize(fineCount_);
-  parallelFor(fineCount_, kGrain, [&](std::size_t n) {
+  parallelFor(fineCount_, kCoarseningGrain, [&](std::size_t n) {
     const Subscripts b = parentOf(h_.blockOf(level_, static_cast<std::int32_t>(n)));
     blocks_.of[n] = static_cast<std::int32_t>(
         b[0] + stride * (b[1] + static_cast<std::size_t>(size[1]) * b[2]));
@@ -233,7 +233,7 @@ void Coarsener::placeInterpolation() {
   for (int a = 0; a < 3; ++a) halved += t_.coarsened[a];
   t_.ownWeight = 1 - 0.25F * static_cast<float>(halved);
   t_.toward.resize(fineCount_);
-  parallelFor(fineCount_, kGrain, [&](std::size_t index) {
+  parallelFor(fineCount_, kCoarseningGrain, [&](std::size_t index) {
     const auto n = static_cast<std::int32_t>(index);
     for (int a = 0; a < 3; ++a) t_.toward[n][a] = t_.coarsened[a] ? towardAt(n, a) : -1;
   });

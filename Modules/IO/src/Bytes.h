@@ -23,6 +23,12 @@ static_assert(std::endian::native == std::endian::little, "readers swap as on li
 using Bytes = std::vector<std::uint8_t>;
 using ByteView = std::span<const std::uint8_t>;
 
+constexpr double kFarthest = 1e7;  ///< mm; beyond it differences of coordinates lose their digits
+
+inline std::string_view textOf(ByteView bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
 inline std::string quoted(const std::filesystem::path& path) {
   return "'" + path.string() + "'";
 }
@@ -52,6 +58,12 @@ template <class T>
   T value;
   std::memcpy(&value, raw, sizeof(T));
   return value;
+}
+
+/// The same as a real number, for tables of types.
+template <class T>
+[[nodiscard]] double loadReal(const std::uint8_t* from, bool bigEndian) {
+  return static_cast<double>(load<T>(from, bigEndian));
 }
 
 template <class T>

@@ -16,7 +16,7 @@ namespace explica::io {
 namespace {
 
 // CIFTI-2 is NIfTI-2 with an XML extension; dimension 5 counts the maps, 6 the vertices.
-constexpr std::size_t kHeader = 540;
+constexpr std::size_t kNifti2Header = 540;
 constexpr std::int32_t kExtensionCode = 32;
 
 enum class Kind { Scalars, Series, Labels };
@@ -120,9 +120,9 @@ void check(const std::filesystem::path& path, Kind kind,
 /// @param values  vertices x maps, the maps of a vertex together
 void write(const std::filesystem::path& path, Kind kind, std::size_t maps, std::string xml,
            const std::vector<float>& values, double step) {
-  Bytes head(kHeader + 4);
+  Bytes head(kNifti2Header + 4);
   const auto put = [&head](std::size_t at, auto value) { store(head.data() + at, value, false); };
-  put(0, static_cast<std::int32_t>(kHeader));
+  put(0, static_cast<std::int32_t>(kNifti2Header));
   std::memcpy(head.data() + 4, "n+2\0\r\n\032\n", 8);
   constexpr std::int16_t kFloat32 = 16;  // NIfTI's code of the type
   put(12, kFloat32);
@@ -144,7 +144,7 @@ void write(const std::filesystem::path& path, Kind kind, std::size_t maps, std::
   put(500, kMillimetresAndSeconds);
   put(504, rowOf(kind).intent);
   std::memcpy(head.data() + 508, rowOf(kind).intentName, std::strlen(rowOf(kind).intentName));
-  head[kHeader] = 1;  // an extension follows: its size, a multiple of 16, its code, the text
+  head[kNifti2Header] = 1;  // an extension follows: its size, a multiple of 16, its code, the text
   xml.append((16 - (xml.size() + 8) % 16) % 16, '\0');
   append(head, static_cast<std::int32_t>(xml.size() + 8), false);
   append(head, kExtensionCode, false);

@@ -34,29 +34,24 @@ Metadata metadataOf(const XmlElement& element) {
   return metadata;
 }
 
-struct TypeRow {
+struct GiftiType {
   const char* name;
   std::size_t width;
   double (*load)(const std::uint8_t*, bool);
 };
 
-template <class T>
-double loadReal(const std::uint8_t* from, bool bigEndian) {
-  return static_cast<double>(load<T>(from, bigEndian));
-}
-
-const TypeRow& typeOf(const std::filesystem::path& path, const std::string& name) {
-  static constexpr TypeRow kTypes[] = {{"NIFTI_TYPE_FLOAT32", 4, loadReal<float>},
-                                       {"NIFTI_TYPE_INT32", 4, loadReal<std::int32_t>},
-                                       {"NIFTI_TYPE_UINT8", 1, loadReal<std::uint8_t>},
-                                       {"NIFTI_TYPE_FLOAT64", 8, loadReal<double>},
-                                       {"NIFTI_TYPE_UINT32", 4, loadReal<std::uint32_t>},
-                                       {"NIFTI_TYPE_INT16", 2, loadReal<std::int16_t>},
-                                       {"NIFTI_TYPE_UINT16", 2, loadReal<std::uint16_t>},
-                                       {"NIFTI_TYPE_INT8", 1, loadReal<std::int8_t>},
-                                       {"NIFTI_TYPE_INT64", 8, loadReal<std::int64_t>},
-                                       {"NIFTI_TYPE_UINT64", 8, loadReal<std::uint64_t>}};
-  for (const TypeRow& row : kTypes) {
+const GiftiType& typeOf(const std::filesystem::path& path, const std::string& name) {
+  static constexpr GiftiType kTypes[] = {{"NIFTI_TYPE_FLOAT32", 4, loadReal<float>},
+                                         {"NIFTI_TYPE_INT32", 4, loadReal<std::int32_t>},
+                                         {"NIFTI_TYPE_UINT8", 1, loadReal<std::uint8_t>},
+                                         {"NIFTI_TYPE_FLOAT64", 8, loadReal<double>},
+                                         {"NIFTI_TYPE_UINT32", 4, loadReal<std::uint32_t>},
+                                         {"NIFTI_TYPE_INT16", 2, loadReal<std::int16_t>},
+                                         {"NIFTI_TYPE_UINT16", 2, loadReal<std::uint16_t>},
+                                         {"NIFTI_TYPE_INT8", 1, loadReal<std::int8_t>},
+                                         {"NIFTI_TYPE_INT64", 8, loadReal<std::int64_t>},
+                                         {"NIFTI_TYPE_UINT64", 8, loadReal<std::uint64_t>}};
+  for (const GiftiType& row : kTypes) {
     if (name == row.name) return row;
   }
   failToRead(path, "has a GIFTI array of the unknown type '" + name + "'");
@@ -148,7 +143,7 @@ GiftiArray parseArray(const std::filesystem::path& path, const XmlElement& eleme
       }
     }
   }
-  const TypeRow& type = typeOf(path, element["DataType"]);
+  const GiftiType& type = typeOf(path, element["DataType"]);
   const XmlElement* data = element.child("Data");
   static const std::string kNone;
   const std::string& text = data == nullptr ? kNone : data->text;

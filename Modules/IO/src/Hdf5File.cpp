@@ -42,10 +42,6 @@ struct ElementType {
   std::size_t width = 0;
 };
 
-std::string_view textOf(ByteView bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
 [[noreturn]] void failAsUnknown(const std::filesystem::path& path, const std::string& what) {
   failToRead(path, "is HDF5 with " + what +
                        ", which is not read here; write it anew with the program that made "

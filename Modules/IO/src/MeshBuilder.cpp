@@ -7,12 +7,6 @@
 #include <limits>
 
 namespace explica::io {
-namespace {
-
-constexpr double kFarthest = 1e7;  // mm; beyond it differences of coordinates lose their digits
-
-}  // namespace
-
 void MeshBuilder::addPolygon(const std::filesystem::path& path, const std::int64_t* corners,
                              std::size_t count) {
   if (count < 3) failToRead(path, "has a face of " + std::to_string(count) + " corners");

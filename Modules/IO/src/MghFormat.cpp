@@ -18,19 +18,19 @@ constexpr std::size_t kSpacing = 30;
 constexpr std::size_t kAxes = 42;
 constexpr std::size_t kCentre = 78;
 
-struct TypeRow {
+struct MghType {
   int code;
   StoredType type;
 };
 // Codes of MGH headers.
-constexpr TypeRow kTypes[] = {{0, StoredType::UInt8},
-                              {1, StoredType::Int32},
-                              {3, StoredType::Float32},
-                              {4, StoredType::Int16},
-                              {10, StoredType::UInt16}};
+constexpr MghType kMghTypes[] = {{0, StoredType::UInt8},
+                                 {1, StoredType::Int32},
+                                 {3, StoredType::Float32},
+                                 {4, StoredType::Int16},
+                                 {10, StoredType::UInt16}};
 
 std::optional<StoredType> typeOf(int code) {
-  for (const TypeRow& row : kTypes) {
+  for (const MghType& row : kMghTypes) {
     if (row.code == code) return row.type;
   }
   return {};
@@ -180,7 +180,7 @@ Bytes mghHeader(const VolumeToWrite& volume) {
   integer(0, 1);
   for (int i = 0; i < 3; ++i) integer(i + 1, grid.size[i]);
   integer(4, volume.valuesPerVoxel);
-  for (const TypeRow& row : kTypes) {
+  for (const MghType& row : kMghTypes) {
     if (row.type == volume.type) integer(5, row.code);
   }
   store(header.data() + 28, std::int16_t{1}, true);

@@ -23,10 +23,6 @@
 namespace explica::io {
 namespace {
 
-std::string_view textOf(ByteView bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
 /// Colours carry nothing that a surface keeps.
 void skipColours(const std::filesystem::path& path, ByteCursor& cursor, std::size_t points,
                  std::size_t items) {

@@ -89,19 +89,19 @@ Header parse(const std::filesystem::path& path, const Bytes& bytes, const Detect
   return header;
 }
 
-struct TypeRow {
+struct NiftiType {
   int code;
   StoredType type;
 };
 // The codes of nifti1.h's NIFTI_TYPE_*.
-constexpr TypeRow kTypes[] = {{2, StoredType::UInt8},    {4, StoredType::Int16},
-                              {8, StoredType::Int32},    {16, StoredType::Float32},
-                              {64, StoredType::Float64}, {256, StoredType::Int8},
-                              {512, StoredType::UInt16}, {768, StoredType::UInt32},
-                              {1024, StoredType::Int64}, {1280, StoredType::UInt64}};
+constexpr NiftiType kNiftiTypes[] = {{2, StoredType::UInt8},    {4, StoredType::Int16},
+                                     {8, StoredType::Int32},    {16, StoredType::Float32},
+                                     {64, StoredType::Float64}, {256, StoredType::Int8},
+                                     {512, StoredType::UInt16}, {768, StoredType::UInt32},
+                                     {1024, StoredType::Int64}, {1280, StoredType::UInt64}};
 
 StoredType typeOf(const std::filesystem::path& path, int code) {
-  for (const TypeRow& row : kTypes) {
+  for (const NiftiType& row : kNiftiTypes) {
     if (row.code == code) return row.type;
   }
   switch (code) {
@@ -424,7 +424,7 @@ Bytes niftiHeader(const VolumeToWrite& volume) {
       put(16 + 8 * i, dim[i]);
     }
   }
-  for (const TypeRow& row : kTypes) {
+  for (const NiftiType& row : kNiftiTypes) {
     if (row.type != volume.type) continue;
     put(one ? 70 : 12, static_cast<std::int16_t>(row.code));
     put(one ? 72 : 14, static_cast<std::int16_t>(8 * widthOf(row.type)));

@@ -18,10 +18,6 @@
 namespace explica::io {
 namespace {
 
-std::string_view textOf(ByteView bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
 LoadedSurface finished(const std::filesystem::path& path, const char* format,
                        MeshBuilder& builder) {
   LoadedSurface surface;

@@ -25,7 +25,7 @@ struct Chunk {
   ByteView content;
 };
 
-struct Header {
+struct Picture {
   int bits = 0, colour = 0;
 };
 
@@ -56,14 +56,14 @@ bool bitsFit(int bits, int colour) {
   return (colour == 2 || colour == 4 || colour == 6) && (bits == 8 || bits == 16);
 }
 
-Header headerOf(const std::filesystem::path& path, const Chunk& chunk, std::size_t fileSize) {
+Picture headerOf(const std::filesystem::path& path, const Chunk& chunk, std::size_t fileSize) {
   if (chunk.type != "IHDR" || chunk.content.size() != kHeaderLength) {
     failToRead(path, "is damaged: a PNG file begins with a chunk IHDR of 13 bytes");
   }
   const std::uint8_t* at = chunk.content.data();
   const std::int64_t width = load<std::uint32_t>(at, true);
   const std::int64_t height = load<std::uint32_t>(at + 4, true);
-  const Header header{at[8], at[9]};
+  const Picture header{at[8], at[9]};
   if (!bitsFit(header.bits, header.colour) || at[10] != 0 || at[11] != 0 || at[12] > 1) {
     failToRead(path, "is damaged: the PNG header holds values that do not exist");
   }
@@ -76,7 +76,7 @@ Header headerOf(const std::filesystem::path& path, const Chunk& chunk, std::size
   return header;
 }
 
-void checkPalette(const std::filesystem::path& path, const Header& header, ByteView palette) {
+void checkPalette(const std::filesystem::path& path, const Picture& header, ByteView palette) {
   const std::size_t most =
       header.colour == kPaletteColour ? std::size_t{1} << header.bits : std::size_t{256};
   if (palette.empty() || palette.size() % kPaletteEntry != 0 ||
@@ -94,7 +94,7 @@ void checkPng(const std::filesystem::path& path, ByteView bytes) {
     offset += kFrame + chunk.content.size();
     return chunk;
   };
-  const Header header = headerOf(path, next(), bytes.size());
+  const Picture header = headerOf(path, next(), bytes.size());
   bool palette = false, pixels = false;
   for (Chunk chunk = next(); chunk.type != "IEND"; chunk = next()) {
     if (std::islower(static_cast<unsigned char>(chunk.type[0]))) continue;  // no reader needs it

@@ -12,8 +12,6 @@
 namespace explica::io {
 namespace {
 
-constexpr double kFarthest = 1e7;  // mm; beyond it differences of coordinates lose their digits
-
 std::vector<std::string_view> cellsOf(std::string_view line) {
   std::vector<std::string_view> cells;
   while (true) {

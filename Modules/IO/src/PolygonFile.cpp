@@ -16,8 +16,6 @@
 namespace explica::io {
 namespace {
 
-constexpr double kFarthest = 1e7;  // mm; beyond it differences of coordinates lose their digits
-
 using Points2 = std::vector<std::array<double, 2>>;
 
 /// The first two numbers of a line, if it starts with two numbers.

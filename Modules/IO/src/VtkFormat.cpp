@@ -14,10 +14,6 @@
 namespace explica::io {
 namespace {
 
-std::string_view textOf(ByteView bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
 ByteView bytesOf(std::string_view text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
@@ -28,11 +24,6 @@ struct TypeRow {
   std::size_t width;
   double (*load)(const std::uint8_t*, bool);
 };
-
-template <class T>
-double loadReal(const std::uint8_t* from, bool bigEndian) {
-  return static_cast<double>(load<T>(from, bigEndian));
-}
 
 // Names in legacy files, in XML files, bytes.
 constexpr TypeRow kTypes[] = {{"float", "Float32", 4, loadReal<float>},

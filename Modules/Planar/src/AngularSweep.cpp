@@ -13,7 +13,7 @@
 namespace explica::planar {
 namespace {
 
-double cross(const Point2& a, const Point2& b) {
+double crossProduct(const Point2& a, const Point2& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
@@ -29,11 +29,11 @@ struct Span {
 
   /// Where along (a, b) the ray of a direction meets the edge, in [0, 1].
   [[nodiscard]] double parameter(const Point2& direction) const {
-    return std::clamp(cross(a, direction) / cross(direction, b - a), 0.0, 1.0);
+    return std::clamp(crossProduct(a, direction) / crossProduct(direction, b - a), 0.0, 1.0);
   }
   /// Distance along the ray of a unit direction.
   [[nodiscard]] double distance(const Point2& direction) const {
-    return cross(a, b - a) / cross(direction, b - a);
+    return crossProduct(a, b - a) / crossProduct(direction, b - a);
   }
 };
 
@@ -56,7 +56,7 @@ Seen seenOf(const Curve& curve, const Point2& viewpoint) {
       middle == viewpoint ? Point2(1, 0) : Point2((middle - viewpoint).normalized());
   const auto seenFrom = [&](int vertex) {
     const Point2 d = curve.point(vertex) - viewpoint;
-    return Point2(axis.dot(d), cross(axis, d));
+    return Point2(axis.dot(d), crossProduct(axis, d));
   };
 
   std::vector<Span> spans;
@@ -69,7 +69,7 @@ Seen seenOf(const Curve& curve, const Point2& viewpoint) {
     Point2 b = seenFrom(curve.next(e));
     if (a.isZero(0) || b.isZero(0)) throw InvalidInput("the viewpoint lies on the curve");
     // Clockwise about the viewpoint: it lies to the right of the edge, on its outer side.
-    const bool front = cross(a, b) < 0;
+    const bool front = crossProduct(a, b) < 0;
     if (front) std::swap(a, b);
     const double length = (b - a).norm();
     const double begin = portable::atan2(a.y(), a.x());

@@ -13,12 +13,12 @@
 namespace explica::registration {
 namespace {
 
-constexpr std::size_t kGrain = 16384;   // elements a task
-constexpr double kLargestStep = 0.4;    // voxels, of one update
-constexpr double kSmallestStep = 0.04;  // voxels: below, the level is done
-constexpr int kPatience = 3;            // iterations without gain before the step is halved
-constexpr double kLeastGain = 1e-4;     // of the mean squared correlation
-constexpr float kNoContrast = 1e-5f;    // variance of a window, where the images reach about 1
+constexpr std::size_t kFieldGrain = 16384;  // elements a task
+constexpr double kLargestStep = 0.4;        // voxels, of one update
+constexpr double kSmallestStep = 0.04;      // voxels: below, the level is done
+constexpr int kPatience = 3;                // iterations without gain before the step is halved
+constexpr double kLeastGain = 1e-4;         // of the mean squared correlation
+constexpr float kNoContrast = 1e-5f;        // variance of a window, where the images reach about 1
 
 /// A vector field by component, in voxels along the grid's axes.
 using Field = std::array<Volume<float>, 3>;
@@ -29,13 +29,13 @@ Field zeroField(const Grid& grid) {
 
 template <class Work>
 void forVoxels(std::size_t count, const Work& work) {
-  parallelForBlocks(count, kGrain, [&](std::size_t begin, std::size_t end) {
+  parallelForBlocks(count, kFieldGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) work(v);
   });
 }
 
 /// What one resolution compares.
-struct Level {
+struct FieldLevel {
   Grid grid;
   Volume<float> image;
   Volume<float> moving;  ///< the template, affinely brought
@@ -59,10 +59,10 @@ std::pair<Vector, Vector> boxOf(const Grid& image, const Volume<float>& region,
   return {low - around, high + around};
 }
 
-Level makeLevel(const Volume<float>& image, const Volume<float>& inTemplate,
-                const Volume<float>& region, const Eigen::Affine3d& imageToTemplate,
-                double spacing) {
-  Level level;
+FieldLevel makeLevel(const Volume<float>& image, const Volume<float>& inTemplate,
+                     const Volume<float>& region, const Eigen::Affine3d& imageToTemplate,
+                     double spacing) {
+  FieldLevel level;
   // Room for the margins of the coarser grids that are made of this one.
   const auto [low, high] = boxOf(image.grid, region, imageToTemplate, 2 * spacing);
   level.grid = cubicGrid(image.grid, low, high, spacing);
@@ -77,8 +77,8 @@ Level makeLevel(const Volume<float>& image, const Volume<float>& inTemplate,
 }
 
 /// The same at a coarser spacing.
-Level coarser(const Level& fine, double factor) {
-  Level level;
+FieldLevel coarser(const FieldLevel& fine, double factor) {
+  FieldLevel level;
   const auto& n = fine.grid.size;
   level.grid = cubicGrid(fine.grid, Vector::Zero(), Vector(n[0] - 1, n[1] - 1, n[2] - 1),
                          factor * fine.grid.spacing[0]);
@@ -139,7 +139,7 @@ Windows compare(const Volume<float>& fixed, const Volume<float>& moved, int radi
 
 double weightedMean(const Volume<float>& values, const Volume<float>& weight) {
   using Sums = Eigen::Vector2d;
-  const Sums sums = parallelSum(values.size(), kGrain, Sums(Sums::Zero()),
+  const Sums sums = parallelSum(values.size(), kFieldGrain, Sums(Sums::Zero()),
                                 [&](std::size_t begin, std::size_t end) {
                                   Sums part = Sums::Zero();
                                   for (std::size_t v = begin; v < end; ++v) {
@@ -176,7 +176,7 @@ void normalise(Field& field) {
 }
 
 /// The smooth direction of gain, its longest vector one voxel.
-Field updateOf(const Level& level, const Volume<float>& moved, const Volume<float>& force,
+Field updateOf(const FieldLevel& level, const Volume<float>& moved, const Volume<float>& force,
                double width) {
   Field update = zeroField(level.grid);
   forPlanes(level.grid, [&](int k) {
@@ -228,7 +228,7 @@ Field refined(const Field& u, const Grid& grid) {
   return result;
 }
 
-Field climb(const Level& level, Field u, const DeformationOptions& options,
+Field climb(const FieldLevel& level, Field u, const DeformationOptions& options,
             const Monitor& monitor) {
   double step = kLargestStep;
   double best = -1;
@@ -296,9 +296,10 @@ DeformationResult registerDeformation(const Volume<float>& image, const Volume<f
                                       const DeformationOptions& options, const Monitor& monitor) {
   const Volume<float> bright = normalised(image);
   const Volume<float> brightTemplate = normalised(inTemplate);
-  const Level finest = makeLevel(bright, brightTemplate, region, imageToTemplate, options.spacing);
+  const FieldLevel finest =
+      makeLevel(bright, brightTemplate, region, imageToTemplate, options.spacing);
   Field u;
-  Level level;
+  FieldLevel level;
   int done = 0;
   for (const double factor : {4.0, 2.0, 1.0}) {
     monitor.progress(done++ / 3.0, "registration");

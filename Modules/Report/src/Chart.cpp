@@ -32,7 +32,7 @@ std::string number(double value) {
   return text.data();
 }
 
-std::string hex(const Colour& colour) {
+std::string hexOf(const Colour& colour) {
   std::array<char, 8> text{};
   std::snprintf(text.data(), text.size(), "#%02x%02x%02x", encodeSrgb(colour[0]),
                 encodeSrgb(colour[1]), encodeSrgb(colour[2]));
@@ -253,7 +253,7 @@ std::optional<Axes> axesAround(const std::vector<Series>& series, bool logarithm
 constexpr std::array<Label, 5> kHues = {5, 6, 3, 7, 1};  // colour-blind readers can tell them
 
 std::string hueOf(std::size_t curve) {
-  return hex(colourOfLabel(kHues[curve % kHues.size()]));
+  return hexOf(colourOfLabel(kHues[curve % kHues.size()]));
 }
 
 /// How a curve is drawn: hues, then dashes.

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kSteps = 65535;  // of the box along each axis
 
-std::string number(double value) {
+std::string exactly(double value) {
   return nlohmann::json(value).dump();
 }
 
@@ -56,8 +56,8 @@ std::string mapJson(const EvolutionMap& map) {
   }
   return "{\"name\":" + nlohmann::json(map.scale.title).dump() +
          ",\"unit\":" + nlohmann::json(map.scale.unit).dump() +
-         ",\"low\":" + number(map.scale.low) + ",\"high\":" + number(map.scale.high) +
-         ",\"least\":" + number(least) + ",\"step\":" + number((most - least) / kLevels) +
+         ",\"low\":" + exactly(map.scale.low) + ",\"high\":" + exactly(map.scale.high) +
+         ",\"least\":" + exactly(least) + ",\"step\":" + exactly((most - least) / kLevels) +
          ",\"colours\":\"" + packColours(colours) + "\",\"values\":" + packIntegers(values, 1) +
          "}";
 }
@@ -166,8 +166,8 @@ std::string evolutionJson(const Evolution& evolution) {
   for (const float open : scene.openness())
     openness.push_back(static_cast<std::int32_t>(std::lround(255 * open)));
 
-  std::string json = "{\"low\":[" + number(low.x()) + "," + number(low.y()) + "," +
-                     number(low.z()) + "],\"unit\":" + number(unit);
+  std::string json = "{\"low\":[" + exactly(low.x()) + "," + exactly(low.y()) + "," +
+                     exactly(low.z()) + "],\"unit\":" + exactly(unit);
   json += ",\"positions\":" + packIntegers(positions, 3);
   json += ",\"faces\":" + packIntegers(faces, 3);
   json += ",\"openness\":" + packIntegers(openness, 1);
@@ -203,7 +203,7 @@ std::string evolutionJson(const Evolution& evolution) {
   json += "]";
   if (evolution.viewpoint) {
     const Point& p = *evolution.viewpoint;
-    json += ",\"viewpoint\":[" + number(p.x()) + "," + number(p.y()) + "," + number(p.z()) + "]";
+    json += ",\"viewpoint\":[" + exactly(p.x()) + "," + exactly(p.y()) + "," + exactly(p.z()) + "]";
   }
   return json + "}";
 }

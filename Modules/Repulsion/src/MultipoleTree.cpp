@@ -38,7 +38,7 @@ constexpr float kLocal = 0.5F;
 constexpr int kHalvings = 8;  // at most: then the faces touch
 
 /// A face or a part of it, single precision, relative to the target leaf's centre.
-struct Part {
+struct EnergyPart {
   std::array<Eigen::Vector3f, 3> corner;
   std::array<Eigen::Vector3f, 3> lambda;  // of the corners, in the whole face
   Eigen::Vector3f centre;
@@ -53,7 +53,7 @@ struct Part {
     radius = std::sqrt(radius);
   }
 
-  void halve(Part& left, Part& right) const {
+  void halve(EnergyPart& left, EnergyPart& right) const {
     int from = 0;
     for (int k = 1; k < 3; ++k) {
       if ((corner[k] - corner[(k + 1) % 3]).squaredNorm() >
@@ -65,7 +65,7 @@ struct Part {
     left = right = *this;
     left.corner[to] = right.corner[from] = (corner[from] + corner[to]) / 2;
     left.lambda[to] = right.lambda[from] = (lambda[from] + lambda[to]) / 2;
-    for (Part* part : {&left, &right}) {
+    for (EnergyPart* part : {&left, &right}) {
       part->share = share / 2;
       part->whole = false;
       part->measure();
@@ -95,8 +95,8 @@ void setSecondMoments(const LeafCorners& corners, kernels::TargetLeaf& target) {
   }
 }
 
-Part wholePart(const std::array<float, 9>& corners) {
-  Part part;
+EnergyPart wholePart(const std::array<float, 9>& corners) {
+  EnergyPart part;
   for (int k = 0; k < 3; ++k) {
     part.corner[k] = Eigen::Vector3f(corners[3 * k], corners[3 * k + 1], corners[3 * k + 2]);
     part.lambda[k] = Eigen::Vector3f::Unit(k);
@@ -151,11 +151,11 @@ class NearPairs {
     Eigen::Vector3f lambda[kLanes][3];
   };
 
-  void divide(const Part& s, const Part& t, int lane, int set, float areaT, int depth) {
+  void divide(const EnergyPart& s, const EnergyPart& t, int lane, int set, float areaT, int depth) {
     const float ratio = (s.centre - t.centre).norm() / (s.radius + t.radius);
     if (ratio < kTwelveRatio && depth < 2 * kHalvings) {
-      Part left;
-      Part right;
+      EnergyPart left;
+      EnergyPart right;
       if (s.radius >= t.radius) {
         s.halve(left, right);
         divide(left, t, lane, set, areaT, depth + 1);

@@ -30,7 +30,7 @@ std::array<double, kPointsAcross> offsets() {
 }
 
 /// Weighted sums of one layer of one region.
-struct Sums {
+struct LayerSums {
   double weight = 0, sum = 0, squares = 0, columnWeight = 0, columnSum = 0;
   std::size_t count = 0;
 
@@ -132,7 +132,7 @@ std::vector<LayerRow> layerTable(const TissueVoxels& tissue, const LayerShares& 
     throw InvalidInput("values: one for each voxel of the tissue is needed");
   }
   const auto layers = static_cast<std::size_t>(shares.layers);
-  std::vector<Sums> sums(regionNames.size() * layers);
+  std::vector<LayerSums> sums(regionNames.size() * layers);
   for (std::size_t n = 0; n < values.size(); ++n) {
     if (regionOf[n] < 0 || !std::isfinite(values[n])) continue;
     for (std::size_t s = shares.begin[n]; s < shares.begin[n + 1]; ++s) {
@@ -143,7 +143,7 @@ std::vector<LayerRow> layerTable(const TissueVoxels& tissue, const LayerShares& 
   std::vector<LayerRow> rows;
   for (std::size_t region = 0; region < regionNames.size(); ++region) {
     for (std::size_t layer = 0; layer < layers; ++layer) {
-      const Sums& s = sums[region * layers + layer];
+      const LayerSums& s = sums[region * layers + layer];
       LayerRow row;
       row.region = regionNames[region];
       row.layer = static_cast<int>(layer) + 1;

@@ -11,7 +11,7 @@
 namespace explica::segmentation {
 namespace {
 
-constexpr std::size_t kGrain = 16384;        // elements a task
+constexpr std::size_t kBiasGrain = 16384;    // elements a task
 constexpr float kDarkShare = 0.4f;           // of the median: fluid lies below
 constexpr std::size_t kMostSamples = 50000;  // enough for a smooth field
 constexpr std::size_t kFewestSamples = 100;  // fewer say nothing about a field
@@ -21,7 +21,7 @@ constexpr double kSettled = 1e-4;  // of the field's logarithm in one iteration
 constexpr double kLeastWeight = 1e-3;  // samples under a window: else the field stays as it is
 
 double meanOf(const std::vector<float>& values) {
-  return parallelSum(values.size(), kGrain, 0.0,
+  return parallelSum(values.size(), kBiasGrain, 0.0,
                      [&](std::size_t begin, std::size_t end) {
                        double sum = 0;
                        for (std::size_t s = begin; s < end; ++s) sum += values[s];

@@ -10,8 +10,8 @@
 namespace explica::segmentation {
 namespace {
 
-constexpr std::size_t kGrain = 16384;    // elements a task
-constexpr std::size_t kLineGrain = 256;  // elements a task
+constexpr std::size_t kWindowGrain = 16384;  // elements a task
+constexpr std::size_t kLineGrain = 256;      // elements a task
 
 }  // namespace
 
@@ -85,7 +85,7 @@ std::vector<double> BlockWindow::sums(const std::vector<std::size_t>& voxel,
 std::vector<float> BlockWindow::atVoxels(const std::vector<double>& values,
                                          const std::vector<std::size_t>& voxel) const {
   std::vector<float> result(voxel.size());
-  parallelFor(voxel.size(), kGrain, [&](std::size_t s) {
+  parallelFor(voxel.size(), kWindowGrain, [&](std::size_t s) {
     const auto at = grid_.subscripts(voxel[s]);
     std::array<int, 3> low;
     std::array<int, 3> high;

@@ -10,7 +10,7 @@
 namespace explica::segmentation {
 namespace {
 
-constexpr std::size_t kGrain = 16384;  // elements a task
+constexpr std::size_t kBorderGrain = 16384;  // elements a task
 /// The level of all edges weighs as much as so many voxels with a tenth of the range a mm.
 constexpr double kPrior = 25, kPriorSlope = 0.1;
 /// A level stays this share of the means' distance away from them.
@@ -23,7 +23,7 @@ template <class Choose>
 std::vector<float> among(const EdgeSamples& samples, const Choose& choose) {
   std::vector<float> values = *samples.intensity, next(values.size());
   for (int axis = 0; axis < 3; ++axis) {
-    parallelFor(values.size(), kGrain, [&](std::size_t v) {
+    parallelFor(values.size(), kBorderGrain, [&](std::size_t v) {
       next[v] = values[v];
       for (int n = 2 * axis; n < 2 * axis + 2; ++n) {
         const std::int32_t other = (*samples.neighbours)[v][n];
@@ -52,7 +52,7 @@ void removeNoise(const std::vector<std::uint8_t>& pure, std::vector<float>& squa
 std::vector<float> slopesOf(const EdgeSamples& samples) {
   const std::vector<float>& values = *samples.intensity;
   std::vector<float> slopes(values.size());
-  parallelFor(values.size(), kGrain, [&](std::size_t v) {
+  parallelFor(values.size(), kBorderGrain, [&](std::size_t v) {
     double squared = 0;
     for (int axis = 0; axis < 3; ++axis) {
       const std::int32_t before = (*samples.neighbours)[v][2 * axis];
@@ -100,7 +100,7 @@ void BorderFinder::updateLevel(std::vector<float>& level, const std::vector<floa
 
 void BorderFinder::improve() {
   std::vector<float> outer(slope_.size()), white(slope_.size());
-  parallelFor(slope_.size(), kGrain, [&](std::size_t v) {
+  parallelFor(slope_.size(), kBorderGrain, [&](std::size_t v) {
     const float low = levels_.outer[v], high = levels_.white[v];
     const bool counts = (*samples_.rim)[v] == 0;
     const bool fluid = least_[v]<low, grey = most_[v]> low && least_[v] < high;
@@ -115,7 +115,7 @@ void BorderFinder::improve() {
     return std::clamp(level, static_cast<float>(mean_[k] + margin),
                       static_cast<float>(mean_[k + 1] - margin));
   };
-  parallelFor(slope_.size(), kGrain, [&](std::size_t v) {
+  parallelFor(slope_.size(), kBorderGrain, [&](std::size_t v) {
     levels_.outer[v] = between(levels_.outer[v], 0);
     levels_.white[v] = between(levels_.white[v], 1);
   });
@@ -126,7 +126,7 @@ std::vector<float> evened(const std::vector<float>& intensity, const BorderLevel
   const std::array<double, 4> even = {mean[0], 0.5 * (mean[0] + mean[1]), 0.5 * (mean[1] + mean[2]),
                                       mean[2]};
   std::vector<float> result(intensity.size());
-  parallelFor(intensity.size(), kGrain, [&](std::size_t v) {
+  parallelFor(intensity.size(), kBorderGrain, [&](std::size_t v) {
     const std::array<double, 4> here = {mean[0], levels.outer[v], levels.white[v], mean[2]};
     const double y = intensity[v];
     const int k = y < here[1] ? 0 : (y < here[2] ? 1 : 2);

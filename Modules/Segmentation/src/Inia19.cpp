@@ -50,7 +50,7 @@ constexpr std::array kCortex = {
 };
 
 /// White matter of the hemispheres, the callosum, the capsules beside the claustrum and it.
-constexpr std::array kWhite = {2, 55, 71, 124, 148, 149, 150, 151, 193, 221, 473};
+constexpr std::array kWhiteAreas = {2, 55, 71, 124, 148, 149, 150, 151, 193, 221, 473};
 
 /// Basal ganglia, thalamus, hypothalamus, hippocampus, amygdala, fornix, ventricles.
 constexpr std::array kDeep = {
@@ -76,7 +76,7 @@ AtlasLegend inia19Legend() {
     const auto in = [&](const auto& labels) {
       return std::binary_search(labels.begin(), labels.end(), static_cast<int>(label));
     };
-    const char* kind = in(kWhite) ? "White_" : in(kDeep) ? "Deep_" : "Below_";
+    const char* kind = in(kWhiteAreas) ? "White_" : in(kDeep) ? "Deep_" : "Below_";
     add(label, kind + std::to_string(label));
   }
   for (const auto& [label, name] : kCortex) add(label, name);

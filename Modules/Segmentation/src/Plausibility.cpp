@@ -111,7 +111,7 @@ double shareOfEqualNeighbours(const Volume<T>& volume) {
 
 constexpr std::size_t kFewestGreyValues = 64;  // a parcellation may have more, a T1 has
 constexpr double kMostEqualInImage = 0.3;      // above the T1s', below the parcellations' 0.8
-constexpr double kRimShare = 0.05;             // of the brain's radius: 3 to 4 mm in an adult
+constexpr double kRim = 0.05;                  // of the brain's radius: 3 to 4 mm in an adult
 
 }  // namespace
 
@@ -182,7 +182,7 @@ double rimContrast(const Volume<Label>& tissues) {
   const double brain = all[kCsf] + all[kGrey] + all[kWhite];
   const double radius = std::cbrt(0.75 / kPi * brain * tissues.grid.voxelVolume());
   const Volume<float> squared = squaredDistanceTo(outside);
-  const double most = std::max(kRimShare * radius, 1.01 * tissues.grid.spacing.minCoeff());
+  const double most = std::max(kRim * radius, 1.01 * tissues.grid.spacing.minCoeff());
   std::array<double, 4> rim{};
   for (std::size_t v = 0; v < tissues.size(); ++v) {
     if (tissues[v] < kCsf || tissues[v] > kWhite || squared[v] > most * most) continue;

@@ -93,7 +93,7 @@ std::vector<std::string> cellsOf(const std::string& line) {
   return cells;
 }
 
-std::string textOf(const Json& value) {
+std::string cellOf(const Json& value) {
   if (value.is_null()) return "n/a";
   return value.is_string() ? value.get<std::string>() : provenance::textOf(value);
 }
@@ -133,7 +133,7 @@ void addSegments(HeartRow& row, const fs::path& file, const Json& summary) {
   const std::size_t segment = at("segment"), frame = at("frame"), thickness = at("thickness"),
                     thickening = at("thickening");
   const auto phase = [&](const char* key) {
-    return summary.contains(key) ? textOf(summary[key]) : std::string();
+    return summary.contains(key) ? cellOf(summary[key]) : std::string();
   };
   const std::string diastole = phase("frame_ed"), systole = phase("frame_es");
   while (std::getline(table, line)) {
@@ -166,10 +166,10 @@ HeartRow rowOf(const fs::path& out, const HeartSubject& subject) {
     const Json summary = provenance::readJson(folder / "summary.json");
     row.state = "done";
     for (const Json& flag : summary.value("flags", Json::array())) {
-      if (!flag.value("accepted", false)) row.state = "implausible: " + textOf(flag["message"]);
+      if (!flag.value("accepted", false)) row.state = "implausible: " + cellOf(flag["message"]);
     }
     for (const HeartColumn& column : kColumns) {
-      if (summary.contains(column.key)) row.values[column.key] = textOf(summary[column.key]);
+      if (summary.contains(column.key)) row.values[column.key] = cellOf(summary[column.key]);
     }
     addSegments(row, folder / "segments.tsv", summary);
   } catch (const std::exception& fault) {  // a damaged file is a fact of the study, not its end

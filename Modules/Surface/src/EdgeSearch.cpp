@@ -14,11 +14,11 @@
 namespace explica::surface {
 namespace {
 
-constexpr double kFine = 0.1;    // voxels from place to place of a mean profile
-constexpr double kDeep = 2;      // voxels inside the border: white matter
-constexpr double kMost = 0.5;    // of the ribbon a border goes outward in one pass
-constexpr double kFarthest = 4;  // voxels inward, all passes together
-constexpr int kSmooth = 1;       // places on each side over which a slope is taken
+constexpr double kProfileStep = 0.1;  // voxels from place to place of a mean profile
+constexpr double kDeep = 2;           // voxels inside the border: white matter
+constexpr double kMost = 0.5;         // of the ribbon a border goes outward in one pass
+constexpr double kFarthest = 4;       // voxels inward, all passes together
+constexpr int kSmooth = 1;            // places on each side over which a slope is taken
 
 /// The usual brightness of the tissues, times `sign`.
 struct Usual {
@@ -39,10 +39,11 @@ Usual usualBrightness(const std::vector<Trajectory>& paths, const Volume<float>&
   return usual;
 }
 
-class Search {
+class PathSearch {
  public:
-  Search(const std::vector<Trajectory>& paths, const geometry::MeshTopology& topology, double edge,
-         const Volume<float>& image, double voxel, const EdgeSearchOptions& options)
+  PathSearch(const std::vector<Trajectory>& paths, const geometry::MeshTopology& topology,
+             double edge, const Volume<float>& image, double voxel,
+             const EdgeSearchOptions& options)
       : paths_(paths),
         topology_(topology),
         image_(image),
@@ -51,8 +52,9 @@ class Search {
         times_(timesFor(options.spread * voxel, edge)),
         usual_(usualBrightness(paths, image, voxel)),
         way_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(paths.size()))),
-        first_(-static_cast<int>(std::lround(options.inward / kFine)) - kSmooth),
-        count_(static_cast<int>(std::lround(options.outward / kFine)) + kSmooth - first_ + 1) {}
+        first_(-static_cast<int>(std::lround(options.inward / kProfileStep)) - kSmooth),
+        count_(static_cast<int>(std::lround(options.outward / kProfileStep)) + kSmooth - first_ +
+               1) {}
 
   void improve() {
     const Eigen::MatrixXd edges =
@@ -97,7 +99,7 @@ class Search {
       if (paths_[v].end == TrajectoryEnd::NoRibbon) return;
       const auto row = static_cast<Eigen::Index>(v);
       for (int k = 0; k < count_; ++k) {
-        all(row, k) = valueOf(v, way_[row] + (first_ + k) * kFine * voxel_);
+        all(row, k) = valueOf(v, way_[row] + (first_ + k) * kProfileStep * voxel_);
       }
       if (!all.row(row).allFinite()) all(row, 0) = kNaN;
     });
@@ -116,7 +118,7 @@ class Search {
       }
       double best = 0;
       for (int k = kSmooth + 1; k < count_ - kSmooth - 1; ++k) {
-        const double place = (first_ + k) * kFine;
+        const double place = (first_ + k) * kProfileStep;
         if (place * voxel_ > kMost * lengthOf(v) || !(mean(row, k) > usual_.grey)) continue;
         if (slope[k] < slope[k - 1] || slope[k] < slope[k + 1]) continue;
         const double off = place / options_.likely;
@@ -166,7 +168,7 @@ Eigen::VectorXd searchWhite(const std::vector<Trajectory>& paths,
                             const geometry::MeshTopology& topology, double edge,
                             const Volume<float>& image, double voxel,
                             const EdgeSearchOptions& options) {
-  Search search(paths, topology, edge, image, voxel, options);
+  PathSearch search(paths, topology, edge, image, voxel, options);
   for (int pass = 0; pass < options.passes; ++pass) search.improve();
   return search.way();
 }

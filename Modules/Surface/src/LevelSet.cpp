@@ -17,7 +17,7 @@ namespace {
 /// pull, spheres want it only where curvature changes, noisy masks want little of it.
 constexpr harmonic::LabelTrust kTrust{30, 0.004F, 0.02F};
 /// Distance at which a label's level reaches 1, in voxels of the coarsest axis.
-constexpr float kReach = 2;
+constexpr float kBand = 2;
 
 /// A mask's boundary as a voxel beside it sees it.
 struct Seen {
@@ -131,7 +131,7 @@ LevelSet levelSetOf(const Volume<std::uint8_t>& mask) {
   });
 
   const Eigen::Vector3f spacing = grid.spacing.cast<float>();
-  const float scale = 1 / (kReach * spacing.maxCoeff());
+  const float scale = 1 / (kBand * spacing.maxCoeff());
   const float least = kLeastLevel * spacing.minCoeff() / spacing.maxCoeff();
   LevelSet level(grid);
   parallelFor(n[2], 1, [&](std::size_t slice) {

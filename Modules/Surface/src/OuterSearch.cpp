@@ -14,10 +14,10 @@
 namespace explica::surface {
 namespace {
 
-constexpr double kFine = 0.25;  // voxels from place to place of a profile
-constexpr double kLong = 1.5;   // of the usual length
+constexpr double kFine = 0.25;    // voxels from place to place of a profile
+constexpr double kTooLong = 1.5;  // of the usual length
 /// Of the usual depth: the middle, clear of both borders.
-constexpr std::array kGreyShares = {0.4, 0.5, 0.6};
+constexpr std::array kGreyPlaces = {0.4, 0.5, 0.6};
 
 double usualLength(const std::vector<Trajectory>& paths) {
   std::vector<double> lengths;
@@ -50,11 +50,11 @@ class Search {
   /// tissue.
   [[nodiscard]] Eigen::RowVector2d greyAt(std::size_t v) const {
     const double length = paths_[v].length();
-    if (paths_[v].end == TrajectoryEnd::NoRibbon || length > kLong * usual_) return {0, 0};
+    if (paths_[v].end == TrajectoryEnd::NoRibbon || length > kTooLong * usual_) return {0, 0};
     double sum = 0;
-    for (const double share : kGreyShares) sum += valueOf(v, share * depthOf(v));
+    for (const double share : kGreyPlaces) sum += valueOf(v, share * depthOf(v));
     if (!std::isfinite(sum)) return {0, 0};
-    return {sum / kGreyShares.size(), 1};
+    return {sum / kGreyPlaces.size(), 1};
   }
 
   /// Of grey matter beside the darkest just outside, over all vertices.

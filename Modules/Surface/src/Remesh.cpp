@@ -35,7 +35,7 @@ constexpr double kGrown = 1.5;
 /// Edge of the blocks in which the mesh is stored, in edges.
 constexpr double kBlock = 4;
 /// Edges are worked on by length in classes of this share of the aim, each in the order of storage.
-constexpr double kLengthClass = 0.1;
+constexpr double kQueueClass = 0.1;
 
 using Edge = GuardedMesh::Edge;
 
@@ -127,7 +127,7 @@ class Remesher {
   template <class Condition>
   std::vector<Edge> edges(const Condition& wanted, bool longestFirst) const {
     std::vector<std::pair<int, Edge>> found;
-    const double perClass = (longestFirst ? -1 : 1) / (kLengthClass * edge_);
+    const double perClass = (longestFirst ? -1 : 1) / (kQueueClass * edge_);
     for (std::int32_t f = 0; f < mesh_.faceSlots(); ++f) {
       if (!mesh_.hasFace(f)) continue;
       for (int k = 0; k < 3; ++k) {

@@ -26,7 +26,7 @@ using Corners = GuardedMesh::Corners;
 using Edge = GuardedMesh::Edge;
 
 /// Edges shorter than these shares of the aim are collapsed, one share after the other.
-constexpr std::array<double, 2> kShares = {0.4, 0.6};
+constexpr std::array<double, 2> kEdgeShares = {0.4, 0.6};
 /// Edges are taken by length in classes of this share of the aim, each in the order of memory.
 constexpr double kLengthClass = 0.05;
 /// No new edge is longer than this share of the aim.
@@ -34,7 +34,7 @@ constexpr double kLongest = 4.0 / 3;
 /// Cosine of the greatest turn of a face, and least quality of a new one.
 constexpr double kLeastCosine = 0.3, kLeastQuality = 0.15;
 /// Faces at an edge's two ends at most.
-constexpr std::size_t kMostFaces = 40;
+constexpr std::size_t kMostAround = 40;
 /// Vertices of a region of memory.
 constexpr std::int32_t kRegion = 1 << 14;
 
@@ -71,7 +71,7 @@ class Thinner {
       parallelFor(count, 1, [&](std::size_t n) {
         const auto region = static_cast<std::int32_t>(n);
         const Range range = {region * kRegion - shift, (region + 1) * kRegion - shift};
-        for (const double share : kShares) collapseShort(range, share * edge_);
+        for (const double share : kEdgeShares) collapseShort(range, share * edge_);
       });
     }
   }
@@ -132,7 +132,7 @@ class Thinner {
 
   /// The faces at an edge's ends.
   struct Star {
-    std::array<std::int32_t, kMostFaces> faces;  ///< with one end among their corners
+    std::array<std::int32_t, kMostAround> faces;  ///< with one end among their corners
     std::size_t count = 0;
     std::array<std::int32_t, 2> gone = {-1, -1};  ///< the edge's own
   };
@@ -140,11 +140,11 @@ class Thinner {
   /// Nothing if the topology would change or a neighbour lies beyond the range.
   [[nodiscard]] std::optional<Star> starOf(std::int32_t u, std::int32_t v,
                                            const Range& range) const {
-    if (rings_[u].size() + rings_[v].size() > kMostFaces) return {};
+    if (rings_[u].size() + rings_[v].size() > kMostAround) return {};
     if (rings_[u].size() + rings_[v].size() < 8) return {};
     Star star;
     std::size_t gone = 0;
-    std::array<std::int32_t, kMostFaces> around;
+    std::array<std::int32_t, kMostAround> around;
     std::size_t aroundCount = 0;
     for (const std::int32_t f : rings_[u]) {
       const auto [next, before] = nextTo(u, f);

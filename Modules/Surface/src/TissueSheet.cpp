@@ -46,11 +46,11 @@ constexpr double kPocket = 0.02;
 /// Levels on the way from the sheet to a boundary at which a trajectory is remembered.
 constexpr int kLegs = 5;
 /// The image's edge counts so many thicknesses far (Correspondence's ImageEdge.h gives the reason).
-constexpr double kReach = 1.25;
+constexpr double kSheetReach = 1.25;
 /// Farthest that a sliding vertex is brought back to the border of the tissue in one sweep, voxels.
-constexpr double kNearBorder = 0.5;
+constexpr double kNearSheet = 0.5;
 /// Less than this is no shortfall, voxels.
-constexpr double kNoShortfall = 0.02;
+constexpr double kNoSheetShortfall = 0.02;
 
 double secondsSince(std::chrono::steady_clock::time_point& last) {
   const auto now = std::chrono::steady_clock::now();
@@ -407,7 +407,7 @@ void markCut(const Grid& image, const TriangleMesh& sheet, const Eigen::VectorXd
     for (const TriangleMesh* mesh : {&made.white.mesh, &made.mid, &made.pial}) {
       least = std::min(least, (mesh->positions.row(row) - sheet.positions.row(nearest[v])).norm());
     }
-    if (least >= kReach * thickness[row]) continue;
+    if (least >= kSheetReach * thickness[row]) continue;
     facts.known[v] = 0;
     ++facts.cutByImage;
   }
@@ -443,7 +443,7 @@ void growSheets(const TriangleMesh& sheet, const Ways& ways, const TrajectoryTra
   const auto backTo = [&](double target) {
     return [&tracer, target, voxel](std::int32_t, const Point& point, const Vector&) {
       const correspondence::Trace trace = tracer.trace(point, target);
-      const bool near = trace.reached && (trace.point - point).norm() <= kNearBorder * voxel;
+      const bool near = trace.reached && (trace.point - point).norm() <= kNearSheet * voxel;
       return near ? trace.point : point;
     };
   };
@@ -461,7 +461,7 @@ void growSheets(const TriangleMesh& sheet, const Ways& ways, const TrajectoryTra
   RelaxationOptions sliding = relaxation;
   sliding.bend = 0;
   sliding.sweeps = 4;
-  const double least = kNoShortfall * voxel;
+  const double least = kNoSheetShortfall * voxel;
   const int steps = std::max(2, options.steps / 2);
   Grown inner =
       grow(sheet, ways.inward, edge, steps, least, backTo(0), shortOf(0), room, relaxation);

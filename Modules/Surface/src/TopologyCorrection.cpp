@@ -13,7 +13,7 @@
 namespace explica::surface {
 namespace {
 
-using Mask = std::vector<std::uint8_t>;
+using Marks = std::vector<std::uint8_t>;
 
 /// Linear offsets of the 14 neighbours; border voxels must never be asked.
 std::array<std::ptrdiff_t, kNeighbours> neighbourOffsets(const Grid& grid) {
@@ -64,7 +64,7 @@ class RankedQueue {
 /// A set of voxels that changes by simple points only.
 class HomotopicSet {
  public:
-  HomotopicSet(const Grid& grid, Mask members)
+  HomotopicSet(const Grid& grid, Marks members)
       : offsets_(neighbourOffsets(grid)), members_(std::move(members)) {}
 
   [[nodiscard]] bool canChange(std::size_t v) const {
@@ -77,11 +77,11 @@ class HomotopicSet {
 
   /// Turns every voxel with wanted[v] != members[v] that a chain of simple changes reaches, in the
   /// order of rank.
-  void approach(const Mask& wanted, const Volume<float>& rank, double unit) {
+  void approach(const Marks& wanted, const Volume<float>& rank, double unit) {
     double highest = 0;
     for (float r : rank.data) highest = std::max(highest, static_cast<double>(r));
     RankedQueue queue(highest, unit);
-    Mask queued(members_.size(), 0);
+    Marks queued(members_.size(), 0);
     const auto offer = [&](std::size_t v) {
       if (wanted[v] != members_[v] && !queued[v]) {
         queued[v] = 1;
@@ -105,21 +105,21 @@ class HomotopicSet {
     }
   }
 
-  [[nodiscard]] const Mask& members() const { return members_; }
-  [[nodiscard]] Mask& members() { return members_; }
+  [[nodiscard]] const Marks& members() const { return members_; }
+  [[nodiscard]] Marks& members() { return members_; }
   [[nodiscard]] const auto& offsets() const { return offsets_; }
 
  private:
   std::array<std::ptrdiff_t, kNeighbours> offsets_;
-  Mask members_;
+  Marks members_;
 };
 
 /// Pieces of a mask, each a list of voxels in the order of discovery; voxels on the border of the
 /// box are not followed.
-std::vector<std::vector<std::size_t>> pieces(const Mask& mask, const Grid& grid) {
+std::vector<std::vector<std::size_t>> pieces(const Marks& mask, const Grid& grid) {
   const auto offsets = neighbourOffsets(grid);
   std::vector<std::vector<std::size_t>> found;
-  Mask seen(mask.size(), 0);
+  Marks seen(mask.size(), 0);
   for (std::size_t start = 0; start < mask.size(); ++start) {
     if (!mask[start] || seen[start]) continue;
     std::vector<std::size_t> piece = {start};
@@ -187,7 +187,7 @@ Defect describeChange(const LevelSet& level, const std::vector<std::size_t>& vox
 }
 
 /// Turns islands and cavities over; records them.
-void cleanPieces(const LevelSet& level, Mask& inside, std::vector<Defect>& defects) {
+void cleanPieces(const LevelSet& level, Marks& inside, std::vector<Defect>& defects) {
   const auto islands = pieces(inside, level.grid);
   const auto largest =
       std::max_element(islands.begin(), islands.end(),
@@ -198,7 +198,7 @@ void cleanPieces(const LevelSet& level, Mask& inside, std::vector<Defect>& defec
     defects.push_back(describeChange(level, *island, DefectKind::Island));
   }
   // The background that reaches the border: the box's border voxels are joined through voxel 0.
-  Mask outside(inside.size());
+  Marks outside(inside.size());
   for (std::size_t v = 0; v < inside.size(); ++v)
     outside[v] = !inside[v] && !onBorder(level.grid, v);
   const auto offsets = neighbourOffsets(level.grid);
@@ -221,8 +221,8 @@ struct Trial {
   double recoveredCost = 0;
 };
 
-Trial tryFill(HomotopicSet& set, const std::vector<std::size_t>& fill, const Mask& target,
-              Mask& inFill, const LevelSet& level) {
+Trial tryFill(HomotopicSet& set, const std::vector<std::size_t>& fill, const Marks& target,
+              Marks& inFill, const LevelSet& level) {
   Trial trial;
   std::vector<std::size_t> waiting(fill.rbegin(), fill.rend());
   for (const std::size_t v : fill) inFill[v] = 1;
@@ -258,7 +258,7 @@ Trial tryFill(HomotopicSet& set, const std::vector<std::size_t>& fill, const Mas
 }
 
 /// Takes fill voxels back that the set does not need: simple ones, outermost first as listed.
-void takeBack(HomotopicSet& set, const std::vector<std::size_t>& added, const Mask& target) {
+void takeBack(HomotopicSet& set, const std::vector<std::size_t>& added, const Marks& target) {
   bool changed = true;
   while (changed) {
     changed = false;
@@ -272,7 +272,7 @@ void takeBack(HomotopicSet& set, const std::vector<std::size_t>& added, const Ma
 }
 
 /// Cuts handles and fills tunnels until the mask is a ball.
-void makeBall(const LevelSet& level, Mask& inside, std::vector<Defect>& defects,
+void makeBall(const LevelSet& level, Marks& inside, std::vector<Defect>& defects,
               const Monitor& monitor) {
   const Grid& grid = level.grid;
   const double unit = grid.spacing.minCoeff();
@@ -280,7 +280,7 @@ void makeBall(const LevelSet& level, Mask& inside, std::vector<Defect>& defects,
   mask.data = inside;
 
   monitor.progress(0.2, "growing from inside and from outside");
-  Mask seed(inside.size(), 0), box(inside.size());
+  Marks seed(inside.size(), 0), box(inside.size());
   const Volume<float> depth = distanceTo(mask, 0);
   seed[std::max_element(depth.data.begin(), depth.data.end()) - depth.data.begin()] = 1;
   for (std::size_t v = 0; v < box.size(); ++v) box[v] = !onBorder(grid, v);
@@ -296,7 +296,7 @@ void makeBall(const LevelSet& level, Mask& inside, std::vector<Defect>& defects,
   if (grown.members() == inside) return;
 
   monitor.progress(0.8, "choosing between fills and cuts");
-  Mask difference(inside.size());
+  Marks difference(inside.size());
   for (std::size_t v = 0; v < inside.size(); ++v) {
     difference[v] = shrunk.members()[v] && !inside[v];
   }
@@ -306,7 +306,7 @@ void makeBall(const LevelSet& level, Mask& inside, std::vector<Defect>& defects,
     order.emplace_back(describeChange(level, fills[f], DefectKind::Tunnel).cost, f);
   }
   std::sort(order.begin(), order.end());
-  Mask inFill(inside.size(), 0);
+  Marks inFill(inside.size(), 0);
   std::vector<std::pair<Point, double>> accepted;  // place of a fill, what it recovered
   for (const auto& [cost, f] : order) {
     const Trial trial = tryFill(grown, fills[f], inside, inFill, level);
@@ -416,7 +416,7 @@ TopologyResult correctTopology(const LevelSet& level, GenusRule rule, const Moni
   TopologyResult result;
   result.level = level;
 
-  Mask inside(level.size());
+  Marks inside(level.size());
   bool any = false;
   for (std::size_t v = 0; v < level.size(); ++v) {
     inside[v] = level[v] > 0;

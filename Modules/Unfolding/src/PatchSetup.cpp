@@ -53,7 +53,7 @@ void isolate(TriangleMesh& mesh, Region& region) {
   mesh.faces = own;
 }
 
-std::vector<bool> flags(Eigen::Index count, const std::vector<std::int32_t>& marked) {
+std::vector<bool> markedOf(Eigen::Index count, const std::vector<std::int32_t>& marked) {
   std::vector<bool> result(static_cast<std::size_t>(count), false);
   for (const std::int32_t i : marked) result[i] = true;
   return result;
@@ -74,7 +74,7 @@ Eigen::VectorXd reachOf(const PatchSetup& s, Surround surround) {
 /// Faces outside the region that have a vertex that moves.
 std::vector<std::int32_t> collarFaces(const PatchSetup& s) {
   std::vector<std::int32_t> faces;
-  const std::vector<bool> inRegion = flags(s.mesh.faceCount(), s.region.faces);
+  const std::vector<bool> inRegion = markedOf(s.mesh.faceCount(), s.region.faces);
   for (std::int32_t f = 0; f < s.mesh.faceCount(); ++f) {
     bool moves = false;
     for (int k = 0; k < 3; ++k) moves = moves || s.unknown[s.mesh.faces(f, k)] >= 0;
@@ -152,8 +152,8 @@ void listFaces(PatchSetup& s, const Eigen::VectorXd& areas) {
 void listSprings(PatchSetup& s) {
   const double full = 2 * s.area / (3 * static_cast<double>(s.region.faces.size()));
   const double tooShort = kShortShare * kShortShare * s.edge * s.edge;
-  const std::vector<bool> inRegion = flags(s.mesh.faceCount(), s.region.faces);
-  const std::vector<bool> inCollar = flags(s.mesh.faceCount(), s.collar);
+  const std::vector<bool> inRegion = markedOf(s.mesh.faceCount(), s.region.faces);
+  const std::vector<bool> inCollar = markedOf(s.mesh.faceCount(), s.collar);
   std::vector<PatchSpring> ofCollar;
   for (Eigen::Index e = 0; e < s.topology.edges.rows(); ++e) {
     bool region = false, beside = false;
@@ -195,14 +195,14 @@ std::vector<bool> movingFaces(const TriangleMesh& mesh, const Region& region,
                               const visibility::Viewpoints& viewpoints,
                               const UnfolderOptions& options) {
   requireUsable(options, region);
-  if (options.surround == Surround::None) return flags(mesh.faceCount(), region.faces);
+  if (options.surround == Surround::None) return markedOf(mesh.faceCount(), region.faces);
   PatchSetup s;
   s.mesh = mesh;
   s.region = region;
   s.topology = geometry::buildTopology(s.mesh.faces, s.mesh.vertexCount());
   measureRegion(s, geometry::faceAreas(s.mesh));
   chooseMoving(s, viewpoints, options);
-  std::vector<bool> moves = flags(mesh.faceCount(), region.faces);
+  std::vector<bool> moves = markedOf(mesh.faceCount(), region.faces);
   for (const std::int32_t f : s.collar) moves[f] = true;
   return moves;
 }

@@ -14,7 +14,7 @@ namespace explica::ventricle {
 
 namespace {
 
-constexpr double kWidth = 460, kHeight = 320, kNotes = 96;  // of one curve, and of the lines below
+constexpr double kWidth = 460, kTall = 320, kNotes = 96;  // of one curve, and of the lines below
 constexpr double kLeft = 70, kRight = 24, kTop = 56, kBottom = 58;  // pixels, margins
 
 /// The range of healthy adults at one frame.
@@ -43,7 +43,7 @@ struct Axes {
   Point2 corner;
   [[nodiscard]] Point2 at(double x, double y) const {
     return corner + Point2(kLeft + (x - x0) / (x1 - x0) * (kWidth - kLeft - kRight),
-                           kHeight - kBottom - (y - y0) / (y1 - y0) * (kHeight - kTop - kBottom));
+                           kTall - kBottom - (y - y0) / (y1 - y0) * (kTall - kTop - kBottom));
   }
 };
 
@@ -77,7 +77,7 @@ void drawAxes(Canvas& canvas, const Axes& axes, const Curve& curve) {
   canvas.text(axes.corner + Point2(0.5 * kWidth, 26), curve.title, 10, kInk);
   canvas.text(axes.corner + Point2(kLeft - 8, 44), curve.unit, 7.5, kGrey,
               report::TextAnchor::Right);
-  canvas.text(axes.corner + Point2(0.5 * (kLeft + kWidth - kRight), kHeight - 18), "frame", 7.5,
+  canvas.text(axes.corner + Point2(0.5 * (kLeft + kWidth - kRight), kTall - 18), "frame", 7.5,
               kGrey);
 }
 
@@ -120,7 +120,7 @@ void drawCurve(Canvas& canvas, const Beat& beat, const Curve& curve, const Point
     if (f == beat.systole && f != beat.diastole) canvas.text(above, "ES", 7.5, kInk);
   }
   if (line.size() > 1) canvas.stroke(line, colour, 2);
-  double y = kHeight + 12;
+  double y = kTall + 12;
   for (const std::string& note : curve.notes) {
     canvas.text(corner + Point2(24, y), note, 7, kGrey, report::TextAnchor::Left);
     y += 14;
@@ -168,7 +168,7 @@ std::vector<Curve> curvesOf(const Beat& beat) {
 Drawn beatCurves(const Beat& beat) {
   const std::vector<Curve> curves = curvesOf(beat);
   Canvas canvas(static_cast<int>(kWidth * static_cast<double>(curves.size())),
-                static_cast<int>(kHeight + kNotes));
+                static_cast<int>(kTall + kNotes));
   for (std::size_t c = 0; c < curves.size(); ++c) {
     drawCurve(canvas, beat, curves[c], {kWidth * static_cast<double>(c), 0});
   }

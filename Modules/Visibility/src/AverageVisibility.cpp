@@ -16,7 +16,7 @@
 namespace explica::visibility {
 namespace {
 
-constexpr std::size_t kGrain = 128;  // faces a task
+constexpr std::size_t kAverageGrain = 128;  // faces a task
 
 void requireViewpoints(const Viewpoints& viewpoints) {
   if (viewpoints.points.empty() || viewpoints.points.size() != viewpoints.weights.size()) {
@@ -73,7 +73,7 @@ VisibilityValue AverageVisibility::evaluate(const Positions& positions) const {
   const auto count = static_cast<std::size_t>(faces_.rows());
   std::vector<FaceFlux> fluxes(count);
   Eigen::VectorXd areas(faces_.rows());
-  parallelFor(count, kGrain, [&](std::size_t i) {
+  parallelFor(count, kAverageGrain, [&](std::size_t i) {
     const Point a = positions.row(faces_(i, 0)).transpose();
     const Point b = positions.row(faces_(i, 1)).transpose();
     const Point c = positions.row(faces_(i, 2)).transpose();
@@ -121,7 +121,7 @@ double AverageVisibility::value(const Positions& positions) const {
       return *this;
     }
   };
-  const Sums sums = parallelSum(static_cast<std::size_t>(faces_.rows()), kGrain, Sums{},
+  const Sums sums = parallelSum(static_cast<std::size_t>(faces_.rows()), kAverageGrain, Sums{},
                                 [&](std::size_t begin, std::size_t end) {
                                   Sums part;
                                   for (std::size_t i = begin; i < end; ++i) {
@@ -142,7 +142,7 @@ Eigen::VectorXd vertexFlux(const TriangleMesh& mesh, const Viewpoints& viewpoint
   requireViewpoints(viewpoints);
   const auto count = static_cast<std::size_t>(mesh.faceCount());
   std::vector<double> fluxes(count);
-  parallelFor(count, kGrain, [&](std::size_t i) {
+  parallelFor(count, kAverageGrain, [&](std::size_t i) {
     const auto f = static_cast<Eigen::Index>(i);
     fluxes[i] = meanFlux(mesh.corner(f, 0), mesh.corner(f, 1), mesh.corner(f, 2), viewpoints,
                          AverageVisibilityOptions{}.farRatio)

@@ -15,9 +15,9 @@
 namespace explica::visibility {
 namespace {
 
-constexpr double kNear = 8;          // distance over longest edge below which a face is divided
-constexpr int kMostHalvings = 8;     // of a face's edges: a viewpoint on the surface ends here
-constexpr std::size_t kGrain = 256;  // elements a task
+constexpr double kNear = 8;       // distance over longest edge below which a face is divided
+constexpr int kMostHalvings = 8;  // of a face's edges: a viewpoint on the surface ends here
+constexpr std::size_t kVarianceGrain = 256;  // elements a task
 
 struct Corners {
   Point a, b, c;
@@ -77,7 +77,7 @@ double fluxVariance(const TriangleMesh& mesh, const std::vector<std::int32_t>& f
     using Sums = Eigen::Array3d;  // area, flux, its square
     const Point& from = viewpoints.points[p];
     const Sums sums = parallelSum(
-        faces.size(), kGrain, Sums(Sums::Zero()), [&](std::size_t begin, std::size_t end) {
+        faces.size(), kVarianceGrain, Sums(Sums::Zero()), [&](std::size_t begin, std::size_t end) {
           Sums part = Sums::Zero();
           for (std::size_t i = begin; i < end; ++i) {
             const Eigen::Index f = faces[i];

@@ -15,10 +15,10 @@ namespace explica::visibility {
 
 namespace {
 
-constexpr std::size_t kGrain = 32;     // faces a task: each meets all others
-constexpr double kFarAway = 10;        // viewing radius over that of the farthest vertex
-constexpr double kGone = 1e-2;         // share of the mean edge at which one has shrunk to nothing
-constexpr double kNothingLeft = 1e-6;  // share of the start's measure that counts as none
+constexpr std::size_t kFlowGrain = 32;  // faces a task: each meets all others
+constexpr double kFarAway = 10;         // viewing radius over that of the farthest vertex
+constexpr double kGone = 1e-2;          // share of the mean edge at which one has shrunk to nothing
+constexpr double kNothingLeft = 1e-6;   // share of the start's measure that counts as none
 
 /// A face as the measure sees it.
 struct Faces {
@@ -163,7 +163,7 @@ GlobalValue softSelfOcclusion(const TriangleMesh& mesh, double softness) {
   const Faces faces = facesOf(mesh);
   const auto count = static_cast<std::size_t>(mesh.faceCount());
   std::vector<Share> shares(count);
-  parallelForBlocks(count, kGrain, [&](std::size_t begin, std::size_t end) {
+  parallelForBlocks(count, kFlowGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       for (std::size_t j = 0; j < count; ++j) {
         if (j == i) continue;

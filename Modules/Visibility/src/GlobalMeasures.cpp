@@ -14,7 +14,7 @@
 namespace explica::visibility {
 namespace {
 
-constexpr std::size_t kGrain = 64;  // elements a task
+constexpr std::size_t kMeasureGrain = 64;  // elements a task
 
 struct Centroids {
   Positions point;   // F x 3
@@ -45,7 +45,7 @@ double hiddenViewingArea(const TriangleMesh& mesh, const Point& centre, double r
   }
   const Centroids faces = centroidsOf(mesh);
   const auto count = static_cast<std::size_t>(mesh.faceCount());
-  return parallelSum(count, kGrain, 0.0, [&](std::size_t begin, std::size_t end) {
+  return parallelSum(count, kMeasureGrain, 0.0, [&](std::size_t begin, std::size_t end) {
     double sum = 0;
     for (std::size_t i = begin; i < end; ++i) {
       const Vector x = faces.point.row(i).transpose() - centre;
@@ -71,7 +71,7 @@ double selfOcclusion(const TriangleMesh& mesh) {
   const Centroids faces = centroidsOf(mesh);
   const Eigen::VectorXd areas = faces.vector.rowwise().norm();
   const auto count = static_cast<std::size_t>(mesh.faceCount());
-  return parallelSum(count, kGrain, 0.0, [&](std::size_t begin, std::size_t end) {
+  return parallelSum(count, kMeasureGrain, 0.0, [&](std::size_t begin, std::size_t end) {
     double sum = 0;
     for (std::size_t i = begin; i < end; ++i) {
       double hidden = 0;

@@ -18,9 +18,9 @@
 namespace explica::visibility {
 namespace {
 
-constexpr std::size_t kGrain = 256;     // faces a task
-constexpr double kEnclosingRadius = 3;  // of the box's diagonal
-constexpr double kBeyond = 1.001;       // of the mesh's ball: nothing stands farther away
+constexpr std::size_t kSphereGrain = 256;  // faces a task
+constexpr double kEnclosingRadius = 3;     // of the box's diagonal
+constexpr double kBeyond = 1.001;          // of the mesh's ball: nothing stands farther away
 
 /// The viewpoints before a face, as a packet after the other, and what arrives from them.
 class FaceLook {
@@ -114,7 +114,7 @@ SphereView lookFromSphere(const TriangleMesh& mesh, const Viewpoints& viewpoints
   view.share.setZero(mesh.faceCount());
   view.seen.setZero(mesh.faceCount());
   Eigen::VectorXd areas(mesh.faceCount());
-  parallelFor(static_cast<std::size_t>(mesh.faceCount()), kGrain, [&](std::size_t i) {
+  parallelFor(static_cast<std::size_t>(mesh.faceCount()), kSphereGrain, [&](std::size_t i) {
     const auto f = static_cast<Eigen::Index>(i);
     const Point a = mesh.corner(f, 0), b = mesh.corner(f, 1), c = mesh.corner(f, 2);
     const Vector twice = (b - a).cross(c - a);

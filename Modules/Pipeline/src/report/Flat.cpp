@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostMaps = 6;      // drawn folded, unfolded and flat
+constexpr std::size_t kMostFlatMaps = 6;  // drawn folded, unfolded and flat
 constexpr double kWholeHemisphere = 0.6;  // share of the surface's area from which it counts as all
 
 /// A patch and the shapes in which it is shown.
@@ -181,7 +181,7 @@ void showShapes(ResultFolder& results, const StepFolder& step, const std::vector
     const auto strain = mapNamed(step.folder / "distortion.shape.gii", count, "edge strain");
     if (strain) maps.push_back({"edge strain of the flat map", "", "", strain->values});
   }
-  if (maps.size() > kMostMaps) maps.resize(kMostMaps);
+  if (maps.size() > kMostFlatMaps) maps.resize(kMostMaps);
   const PatchShapes shapes(*patch);
   for (const GivenMap& map : maps) {
     results.content().views.push_back(shapes.draw(map.name, map.unit, map.values));

@@ -12,8 +12,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostPictures = 12;      // of a folder on one page
-constexpr std::uintmax_t kLargest = 3u << 20;  // bytes: the page stays below 10 MB
+constexpr std::size_t kMostPictures = 12;             // of a folder on one page
+constexpr std::uintmax_t kLargestPicture = 3u << 20;  // bytes: the page stays below 10 MB
 
 /// What a browser calls the picture in a file; empty for other files.
 std::string mediaTypeOf(const fs::path& file) {
@@ -45,7 +45,7 @@ void showOwnPictures(ResultFolder& results, const StepFolder& step) {
     // Of a picture in both forms the drawing is sharper.
     if (file.extension() == ".png" && fs::exists(fs::path(file).replace_extension(".svg")))
       continue;
-    if (entry.file_size() <= kLargest) files.push_back(file);
+    if (entry.file_size() <= kLargestPicture) files.push_back(file);
   }
   std::sort(files.begin(), files.end());
   if (files.size() > kMostPictures) files.resize(kMostPictures);

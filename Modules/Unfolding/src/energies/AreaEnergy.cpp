@@ -10,14 +10,14 @@
 namespace explica::unfolding {
 namespace {
 
-constexpr std::size_t kGrain = 256;  // elements a task
+constexpr std::size_t kAreaGrain = 256;  // elements a task
 
 /// sum over the region's faces of w (lambda c + strength/2 c^2) with c = A / A0 - 1.
 class AreaEnergy final : public Energy {
  public:
   [[nodiscard]] double value(const Configuration& now, double strength) const override {
     const auto faces = now.patch.ofRegion();
-    return parallelSum(faces.size(), kGrain, 0.0, [&](std::size_t begin, std::size_t end) {
+    return parallelSum(faces.size(), kAreaGrain, 0.0, [&](std::size_t begin, std::size_t end) {
       double block = 0;
       for (std::size_t f = begin; f < end; ++f) {
         const double c = now.shapes[f].area / faces[f].restArea - 1;
@@ -30,7 +30,7 @@ class AreaEnergy final : public Energy {
   void addGradient(const Configuration& now, double strength, Positions& gradient) const override {
     const auto faces = now.patch.ofRegion();
     std::vector<CornerForces> forces(faces.size());
-    parallelFor(faces.size(), kGrain, [&](std::size_t f) {
+    parallelFor(faces.size(), kAreaGrain, [&](std::size_t f) {
       const double tension = tensionOf(now, f, strength);
       for (int k = 0; k < 3; ++k) forces[f][k] = tension * now.shapes[f].hat[k];
     });
@@ -42,7 +42,7 @@ class AreaEnergy final : public Energy {
                     const std::vector<std::int32_t>& unknown, BlockSystem& system) const override {
     const auto faces = now.patch.ofRegion();
     std::vector<CornerBlocks> blocks(faces.size());
-    parallelFor(faces.size(), kGrain, [&](std::size_t f) {
+    parallelFor(faces.size(), kAreaGrain, [&](std::size_t f) {
       const FaceShape& shape = now.shapes[f];
       const double ratio = shape.area / faces[f].restArea;
       const double inPlane = faces[f].weight * strength * ratio * ratio;

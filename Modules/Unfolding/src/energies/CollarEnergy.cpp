@@ -10,7 +10,7 @@
 namespace explica::unfolding {
 namespace {
 
-constexpr std::size_t kGrain = 256;    // elements a task
+constexpr std::size_t kCollarGrain = 256;  // elements a task
 constexpr double kCollarArea = 20;     // as the region's by default, so that the weight compares
 constexpr double kCollarSpring = 2.4;  // the collar with the region
 constexpr double kFree = 2;            // area ratio from which on stretching is held back ...
@@ -44,7 +44,7 @@ class CollarEnergy final : public Energy {
   [[nodiscard]] double value(const Configuration& now, double strength) const override {
     const auto faces = now.patch.ofCollar();
     const double areas =
-        parallelSum(faces.size(), kGrain, 0.0, [&](std::size_t begin, std::size_t end) {
+        parallelSum(faces.size(), kCollarGrain, 0.0, [&](std::size_t begin, std::size_t end) {
           double block = 0;
           for (std::size_t f = begin; f < end; ++f) {
             block += stretching(faces[f], shapeAt(now, f).area / faces[f].restArea, strength).value;
@@ -58,7 +58,7 @@ class CollarEnergy final : public Energy {
   void addGradient(const Configuration& now, double strength, Positions& gradient) const override {
     const auto faces = now.patch.ofCollar();
     std::vector<CornerForces> forces(faces.size());
-    parallelFor(faces.size(), kGrain, [&](std::size_t f) {
+    parallelFor(faces.size(), kCollarGrain, [&](std::size_t f) {
       const FaceShape& shape = shapeAt(now, f);
       const double ratio = shape.area / faces[f].restArea;
       const double tension = stretching(faces[f], ratio, strength).slope * ratio;
@@ -73,7 +73,7 @@ class CollarEnergy final : public Energy {
                     const std::vector<std::int32_t>& unknown, BlockSystem& system) const override {
     const auto faces = now.patch.ofCollar();
     std::vector<CornerBlocks> blocks(faces.size());
-    parallelFor(faces.size(), kGrain, [&](std::size_t f) {
+    parallelFor(faces.size(), kCollarGrain, [&](std::size_t f) {
       const FaceShape& shape = shapeAt(now, f);
       const double ratio = shape.area / faces[f].restArea;
       const Stretching stretch = stretching(faces[f], ratio, strength);

@@ -11,7 +11,7 @@
 namespace explica::unfolding {
 namespace {
 
-constexpr std::size_t kGrain = 256;  // elements a task
+constexpr std::size_t kLiftGrain = 256;  // elements a task
 
 // Of the room's radius: beyond this the pull grows no more, so that a deep region is not dragged
 // through a narrow opening before the folds above have made way.
@@ -39,7 +39,7 @@ class LiftEnergy final : public Energy {
     if (!(strength > 0)) return 0;
     const auto faces = now.patch.ofRegion();
     const PatchRoom& room = now.patch.room;
-    return parallelSum(faces.size(), kGrain, 0.0, [&](std::size_t begin, std::size_t end) {
+    return parallelSum(faces.size(), kLiftGrain, 0.0, [&](std::size_t begin, std::size_t end) {
       double block = 0;
       for (std::size_t f = begin; f < end; ++f) {
         block += strength * faces[f].weight * shortfall(room, centroidOf(faces[f], now.x)).value;

@@ -10,7 +10,7 @@
 namespace explica::unfolding {
 namespace {
 
-constexpr std::size_t kGrain = 256;  // elements a task
+constexpr std::size_t kOverhangGrain = 256;  // elements a task
 
 /// strength * sum over the collar's faces of o max(0, -n . a)^2, a the room's axis.
 ///
@@ -20,7 +20,7 @@ class OverhangEnergy final : public Energy {
  public:
   [[nodiscard]] double value(const Configuration& now, double strength) const override {
     const auto faces = now.patch.ofCollar();
-    return parallelSum(faces.size(), kGrain, 0.0, [&](std::size_t begin, std::size_t end) {
+    return parallelSum(faces.size(), kOverhangGrain, 0.0, [&](std::size_t begin, std::size_t end) {
       double block = 0;
       for (std::size_t f = begin; f < end; ++f) {
         const double away = awayOf(now, f);
@@ -49,7 +49,7 @@ class OverhangEnergy final : public Energy {
                     const std::vector<std::int32_t>& unknown, BlockSystem& system) const override {
     const auto faces = now.patch.ofCollar();
     std::vector<CornerBlocks> blocks(faces.size());
-    parallelFor(faces.size(), kGrain, [&](std::size_t f) {
+    parallelFor(faces.size(), kOverhangGrain, [&](std::size_t f) {
       const double away = awayOf(now, f);
       if (away > 0) {
         blocks[f] = faceBlocks(shapeAt(now, f), 0, 2 * strength * faces[f].nearWeight * away);

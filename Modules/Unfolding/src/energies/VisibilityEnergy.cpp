@@ -8,7 +8,7 @@
 namespace explica::unfolding {
 namespace {
 
-constexpr std::size_t kGrain = 256;  // elements a task
+constexpr std::size_t kVisibilityGrain = 256;  // elements a task
 
 struct MeanDirection {
   Vector direction = Vector::Zero();                     ///< at most 1 long
@@ -46,20 +46,21 @@ class VisibilityEnergy final : public Energy {
  public:
   [[nodiscard]] double value(const Configuration& now, double strength) const override {
     const auto faces = now.patch.ofRegion();
-    return parallelSum(faces.size(), kGrain, 0.0, [&](std::size_t begin, std::size_t end) {
-      double block = 0;
-      for (std::size_t f = begin; f < end; ++f) {
-        const Vector d = directionOf(now, f).direction;
-        block += faces[f].weight * (1 - now.shapes[f].normal.dot(d));
-      }
-      return strength * block;
-    });
+    return parallelSum(faces.size(), kVisibilityGrain, 0.0,
+                       [&](std::size_t begin, std::size_t end) {
+                         double block = 0;
+                         for (std::size_t f = begin; f < end; ++f) {
+                           const Vector d = directionOf(now, f).direction;
+                           block += faces[f].weight * (1 - now.shapes[f].normal.dot(d));
+                         }
+                         return strength * block;
+                       });
   }
 
   void addGradient(const Configuration& now, double strength, Positions& gradient) const override {
     const auto faces = now.patch.ofRegion();
     std::vector<CornerForces> forces(faces.size());
-    parallelFor(faces.size(), kGrain, [&](std::size_t f) {
+    parallelFor(faces.size(), kVisibilityGrain, [&](std::size_t f) {
       const FaceShape& shape = now.shapes[f];
       const MeanDirection look = directionOf(now, f);
       const double scale = strength * faces[f].weight;
@@ -76,7 +77,7 @@ class VisibilityEnergy final : public Energy {
                     const std::vector<std::int32_t>& unknown, BlockSystem& system) const override {
     const auto faces = now.patch.ofRegion();
     std::vector<CornerBlocks> blocks(faces.size());
-    parallelFor(faces.size(), kGrain, [&](std::size_t f) {
+    parallelFor(faces.size(), kVisibilityGrain, [&](std::size_t f) {
       blocks[f] = faceBlocks(now.shapes[f], 0, strength * faces[f].weight);
     });
     addBlocks(faces, blocks, unknown, system);
