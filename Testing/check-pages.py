@@ -8,7 +8,8 @@
 Of every README.md: scripts and files of the repository, test programs and benchmarks (as CMake makes
 them), tests named after `ctest -R` or a gtest filter, and, with the program given, commands and
 options of `explica`.  Pages written from the declarations (Applications/NAME/README.md) are tested
-by ReferencePages.
+by ReferencePages.  A section with three measured numbers or more (times, memory, shares, errors) must
+name a test, a script, a benchmark or a command that gives such numbers.
 """
 
 import json
@@ -117,8 +118,22 @@ def options_missing(words, options):
                 yield f"explica {command} has no {option}"
 
 
+MEASURED = re.compile(r"\d(?:\.\d+)?\s?(?:ms|s|min|minutes|seconds|GB|MB|%)(?!\w)|\d\.?\d*e-\d")
+GIVES = re.compile(r"\.(?:sh|py)\b|Benchmark|\bexplica \w|\b(?:c?test|ninja|cmake) |--benchmark|Tests?\b")
+
+
+def numbers_without_source(text, suites):
+    """Headings of sections whose numbers nothing that is kept gives; ranges of options are no measurements."""
+    for section in re.split(r"^(?=#{1,3} )", re.sub(r"^\| `--.*", "", text, flags=re.MULTILINE), flags=re.MULTILINE):
+        words = list(codes(section)) + re.findall(r"\]\(([^)\s]+)", section)
+        named = any(GIVES.search(w) or suites & set(re.findall(r"\w+", w)) for w in words)
+        if len(MEASURED.findall(section)) >= 3 and not named:
+            yield section.partition("\n")[0].lstrip("# ")
+
+
 def main(program=None):
     known = programs(), tests()
+    suites = {name.split(".")[0] for name in known[1] if "." in name}
     options = described(program) if program else {}
     wrong = []
     for page in [ROOT / "README.md", *sorted(p for p in SOURCES if p.name == "README.md")]:
@@ -130,6 +145,8 @@ def main(program=None):
             if options:
                 found += options_missing(words, options)
             wrong += [f"{page.relative_to(ROOT)}: {what}" for what in found]
+        wrong += [f"{page.relative_to(ROOT)}: no command gives the numbers under '{heading}'"
+                  for heading in numbers_without_source(text, suites)]
         for target in re.findall(r"\]\((?!https?:|#|mailto:)([^)#\s]+)", text):
             if not (page.parent / target).exists():
                 wrong.append(f"{page.relative_to(ROOT)}: links to {target}, which is not there")

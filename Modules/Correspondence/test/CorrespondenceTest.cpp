@@ -420,6 +420,50 @@ TEST(Layers, EqualVolumeFollowsTheColumn) {
   EXPECT_EQ(*std::max_element(layers.begin(), layers.end()), 4);
 }
 
+/// A lump of voxels with folds of a few voxels, and three layers of tissue around it.
+Volume<Label> crumpledLabels() {
+  Grid grid;
+  grid.size = {32, 32, 32};
+  Volume<Label> labels(grid);
+  const Vector middle = Vector::Constant(15.5);
+  for (std::size_t v = 0; v < labels.size(); ++v) {
+    const auto at = grid.subscripts(v);
+    const double x = at[0], y = at[1], z = at[2];
+    const double folds = std::sin(1.6 * x + 0.3 * y) * std::cos(1.28 * y + 0.5) +
+                         std::sin(1.44 * y) * std::cos(1.76 * z) +
+                         std::sin(1.52 * z) * std::cos(1.68 * x);
+    labels[v] = (Vector(x, y, z) - middle).norm() + 1.5 * folds < 9.6 ? 1 : 0;
+  }
+  for (int layer = 0; layer < 3; ++layer) {
+    const Volume<Label> before = labels;
+    for (std::size_t v = 0; v < labels.size(); ++v) {
+      const auto at = grid.subscripts(v);
+      for (int axis = 0; axis < 3 && labels[v] == 0; ++axis) {
+        for (const int step : {-1, 1}) {
+          auto next = at;
+          next[axis] += step;
+          if (grid.contains(next[0], next[1], next[2]) && before(next[0], next[1], next[2]) != 0) {
+            labels[v] = 2;
+          }
+        }
+      }
+    }
+  }
+  return labels;
+}
+
+/// The solution has no extremum within the tissue, so a walk that keeps rising arrives, however
+/// rough the walls are; only ties are left.
+TEST(Measurement, NextToNoVoxelOfCrumpledLabelsIsWithoutThickness) {
+  harmonic::LabelRoles roles;
+  roles.inner = {1};
+  roles.tissue = {2};
+  const Measurement measured =
+      measure(harmonic::annulusFromLabels(crumpledLabels(), roles), MeasurementOptions());
+  EXPECT_GT(measured.annulus.count(), 5000U);
+  EXPECT_LE(measured.correspondence.missing, 5U);
+}
+
 TEST(Measurement, NoLayerIsRefusedBeforeAnyWork) {
   harmonic::LabelRoles roles;
   roles.inner = {1};
