@@ -116,7 +116,7 @@ class Rays {
   std::vector<Vector> samples_;
 };
 
-void requireVisible(const TriangleMesh& mesh, const Viewpoints& viewpoints) {
+void requireInputs(const TriangleMesh& mesh, const Viewpoints& viewpoints) {
   if (mesh.faceCount() == 0) throw InvalidInput("visible fraction: the surface has no face");
   if (viewpoints.points.empty() || viewpoints.points.size() != viewpoints.weights.size()) {
     throw InvalidInput("visible fraction: at least one viewpoint, each with a weight, is needed");
@@ -186,7 +186,7 @@ double VisibleFraction::realOf(const TriangleMesh& mesh,
 
 VisibleFraction visibleFraction(const TriangleMesh& mesh, const Viewpoints& viewpoints,
                                 const VisibleFractionOptions& options) {
-  requireVisible(mesh, viewpoints);
+  requireInputs(mesh, viewpoints);
   if (options.subdivision < 1 || options.subdivision > 64) {
     throw InvalidInput("visible fraction: subdivision is " + std::to_string(options.subdivision) +
                        "; it must lie between 1 and 64");
@@ -221,7 +221,7 @@ VisibleFraction visibleFraction(const TriangleMesh& mesh, const Viewpoints& view
 
 double seenShare(const TriangleMesh& mesh, const std::vector<std::int32_t>& faces,
                  const Viewpoints& viewpoints) {
-  requireVisible(mesh, viewpoints);
+  requireInputs(mesh, viewpoints);
   const TriangleMesh part = withWhatMayHide(mesh, faces, viewpoints);
   const Rays rays(part, viewpoints, VisibleFractionOptions{}.subdivision);
   const auto count = static_cast<Eigen::Index>(faces.size());
