@@ -14,12 +14,14 @@ def check(fact, holds):
         faults.append(fact)
 
 
-def start(width, logging=False):
-    """A driver of a page `width` pixels wide; `logging` keeps console and requests."""
+def start(width, logging=False, drawing=False):
+    """A driver of a page `width` pixels wide; `logging` keeps console and requests, `drawing` is for pages
+    with a canvas in three dimensions (by the processor)."""
     options = Options()
     options.binary_location = "/usr/bin/chromium"
-    size = "--window-size=%d,900" % width
-    for flag in ("--headless=new", "--no-sandbox", "--disable-gpu", size):
+    graphics = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+                "--ignore-gpu-blocklist") if drawing else ("--disable-gpu",)
+    for flag in ("--headless=new", "--no-sandbox", *graphics, "--window-size=%d,900" % width):
         options.add_argument(flag)
     if logging:
         options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})

@@ -10,9 +10,7 @@ import pathlib
 import sys
 import time
 
-from selenium import webdriver
-from selenium.webdriver.chrome.options import Options
-from selenium.webdriver.chrome.service import Service
+from browser import start
 
 WIDTHS = (1440, 820, 390)
 ASK = """const done = arguments[arguments.length - 1];
@@ -20,12 +18,7 @@ axe.run(document, {resultTypes: ['violations']}).then((r) => done(r.violations))
 
 
 def browser(dark):
-    options = Options()
-    options.binary_location = "/usr/bin/chromium"
-    for flag in ("--headless=new --no-sandbox --use-gl=angle --use-angle=swiftshader "
-                 "--enable-unsafe-swiftshader --ignore-gpu-blocklist").split():
-        options.add_argument(flag)
-    driver = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
+    driver = start(WIDTHS[0], drawing=True)
     driver.set_script_timeout(240)
     if dark:
         driver.execute_cdp_cmd("Emulation.setEmulatedMedia",

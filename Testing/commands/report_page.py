@@ -7,29 +7,14 @@ import json
 import sys
 import time
 
-from selenium import webdriver
-from selenium.webdriver.chrome.options import Options
-from selenium.webdriver.chrome.service import Service
+from browser import check, faults, start
 
-options = Options()
-options.binary_location = "/usr/bin/chromium"
-for flag in ("--headless=new --no-sandbox --use-gl=angle --use-angle=swiftshader --enable-unsafe-swiftshader "
-             "--ignore-gpu-blocklist --window-size=1000,900").split():
-    options.add_argument(flag)
-options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
-driver = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
-faults = []
+driver = start(1000, logging=True, drawing=True)
 
 
 def picture():
     time.sleep(0.7)
     return driver.execute_script("return document.getElementById('canvas').toDataURL()")
-
-
-def check(fact, holds):
-    print(("ok    " if holds else "FAULT ") + fact)
-    if not holds:
-        faults.append(fact)
 
 
 try:
