@@ -181,7 +181,7 @@ void showShapes(ResultFolder& results, const StepFolder& step, const std::vector
     const auto strain = mapNamed(step.folder / "distortion.shape.gii", count, "edge strain");
     if (strain) maps.push_back({"edge strain of the flat map", "", "", strain->values});
   }
-  if (maps.size() > kMostFlatMaps) maps.resize(kMostMaps);
+  if (maps.size() > kMostFlatMaps) maps.resize(kMostFlatMaps);
   const PatchShapes shapes(*patch);
   for (const GivenMap& map : maps) {
     results.content().views.push_back(shapes.draw(map.name, map.unit, map.values));
