@@ -24,7 +24,7 @@ using collision::Proximity;
 
 /// Nearest that a surface comes to itself, voxels or edges; smallest face, squared edges.
 constexpr double kGap = 0.05, kLeastArea = 0.02;
-constexpr int kSweeps = 16;
+constexpr int kRoomSweeps = 16;
 /// Sweeps in which all vertices go at once; then quarters, for which others do not get in the way.
 constexpr int kTogether = 6;
 /// Looks for pairs: faces that grow may come near to what was far at the look before.
@@ -32,10 +32,10 @@ constexpr int kLooks = 6;
 /// Pushed a little farther than the gap, which the next push from elsewhere may take again.
 constexpr double kBeyond = 1.1;
 /// Shares of a push that are tried.
-constexpr std::array<double, 3> kShares = {1.0, 0.4, 0.1};
+constexpr std::array<double, 3> kRoomShares = {1.0, 0.4, 0.1};
 
 /// A quarter of the vertices, another one each sweep.
-bool takesTurn(std::int32_t v, int sweep) {
+bool isItsTurn(std::int32_t v, int sweep) {
   constexpr std::uint32_t kMix = 2654435761U;  // Knuth's multiplicative hash
   return (static_cast<std::uint32_t>(v) * kMix >> 16 & 3U) ==
          (static_cast<std::uint32_t>(sweep) & 3U);
@@ -146,15 +146,15 @@ Cramped sweepApart(TriangleMesh& mesh, const CollisionScene& scene,
       ++left.faces;
       widen(mesh, f, kBeyond * room.leastArea, std::sqrt(room.leastArea), pushes);
     }
-    if (left.pairs + left.faces == 0 || sweep == kSweeps) return left;
+    if (left.pairs + left.faces == 0 || sweep == kRoomSweeps) return left;
     const Positions from = mesh.positions;
     std::vector<std::int32_t> vertices = pushes.vertices();
     if (sweep >= kTogether) {
-      std::erase_if(vertices, [&](std::int32_t v) { return !takesTurn(v, sweep); });
+      std::erase_if(vertices, [&](std::int32_t v) { return !isItsTurn(v, sweep); });
     }
-    moveTogether(mesh, vertices, static_cast<int>(kShares.size()),
+    moveTogether(mesh, vertices, static_cast<int>(kRoomShares.size()),
                  [&](std::int32_t v, int attempt) {
-                   return pushes.goal(v, start.row(v), from.row(v), kShares[attempt]);
+                   return pushes.goal(v, start.row(v), from.row(v), kRoomShares[attempt]);
                  });
   }
 }
