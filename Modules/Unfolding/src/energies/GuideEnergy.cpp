@@ -8,11 +8,11 @@
 namespace explica::unfolding {
 namespace {
 
-constexpr std::size_t kGrain = 1024;  // elements a task
+constexpr std::size_t kGuideGrain = 1024;  // elements a task
 
 // Of the guide's radius: nearer to its place a vertex is at home, where lengths and areas say how
 // it lies; from the second on the pull grows no more, so that nothing is dragged through the rest.
-constexpr double kHome = 0.02, kFirm = 0.05;
+constexpr double kHome = 0.02, kGuideFirm = 0.05;
 
 struct Pull {
   Vector towards = Vector::Zero();  ///< unit, normal to the axis; 0 at home
@@ -21,15 +21,15 @@ struct Pull {
   double curvature = 0;             ///< of the parabola that touches there from above
 };
 
-/// h(s) = (s - kHome)^2 / 2, 0 below, on a straight line from kFirm on; s = |p - x| / R across the
-/// axis.
+/// h(s) = (s - kHome)^2 / 2, 0 below, on a straight line from kGuideFirm on; s = |p - x| / R across
+/// the axis.
 Pull pullOn(const PatchGuide& guide, std::size_t n, const Positions& x) {
   Vector way =
       (guide.places.row(static_cast<Eigen::Index>(n)) - x.row(guide.vertices[n])).transpose();
   way -= guide.axis.dot(way) * guide.axis;
   const double s = way.norm() / guide.radius;
   if (!(s > kHome)) return {};
-  constexpr double kMost = kFirm - kHome;
+  constexpr double kMost = kGuideFirm - kHome;
   const double slope = std::min(s - kHome, kMost);
   return {way.normalized(), slope * (s - kHome - 0.5 * slope), slope, slope / s};
 }
@@ -47,13 +47,13 @@ class GuideEnergy final : public Energy {
       }
       return block;
     };
-    return strength * parallelSum(guide.vertices.size(), kGrain, 0.0, sum);
+    return strength * parallelSum(guide.vertices.size(), kGuideGrain, 0.0, sum);
   }
 
   void addGradient(const Configuration& now, double strength, Positions& gradient) const override {
     if (!(strength > 0)) return;
     const PatchGuide& guide = now.patch.guide;
-    parallelFor(guide.vertices.size(), kGrain, [&](std::size_t n) {
+    parallelFor(guide.vertices.size(), kGuideGrain, [&](std::size_t n) {
       const Pull pull = pullOn(guide, n, now.x);
       gradient.row(guide.vertices[n]) -=
           strength * guide.weights[n] / guide.radius * pull.slope * pull.towards.transpose();
