@@ -113,8 +113,8 @@ void declare(Declaration& d, Settings& s) {
       .varyingOutput(kStateFile, FileKind::Any, "what --resume needs");
 }
 
-visibility::Viewpoints viewOf(const Settings& s, const Point& about) {
-  return viewFrom(s.view, s.viewSurface, s.reading, about);
+visibility::Viewpoints viewOf(const Settings& s, const TriangleMesh& mesh, const Point& about) {
+  return viewFrom(s.view, s.viewSurface, s.reading, mesh, about);
 }
 
 /// Vertices at which the map is above the value.
@@ -215,11 +215,11 @@ Aim chooseAim(Context& context, const TriangleMesh& mesh, const Settings& s) {
     unfolding::RegionOptions centre = s.region;
     centre.cone.reset();
     const unfolding::Region ball = unfolding::selectRegion(mesh, centre);
-    aim.view = viewOf(s, mesh.positions.row(ball.centre).transpose());
+    aim.view = viewOf(s, mesh, mesh.positions.row(ball.centre).transpose());
     aim.region = regionOf(mesh, s, &aim.view);
   } else {
     aim.region = regionOf(mesh, s, nullptr);
-    aim.view = viewOf(s, unfolding::centroidOf(mesh, aim.region));
+    aim.view = viewOf(s, mesh, unfolding::centroidOf(mesh, aim.region));
   }
   unfolding::requireViewFromOutside(mesh, aim.view);
   if (s.adjustRegion) {

@@ -4,11 +4,13 @@
 #include "View.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Unfolding/Region.h"
 
 namespace explica::app {
 
 visibility::Viewpoints viewFrom(const ViewSettings& view, const std::optional<std::string>& surface,
-                                const io::SurfaceReadOptions& reading, const Point& about) {
+                                const io::SurfaceReadOptions& reading, const TriangleMesh& mesh,
+                                const Point& about) {
   const int given =
       !view.viewpoint.empty() + !view.direction.empty() + !view.line.empty() + surface.has_value();
   if (given != 1) {
@@ -21,12 +23,12 @@ visibility::Viewpoints viewFrom(const ViewSettings& view, const std::optional<st
   }
   if (!view.viewpoint.empty()) return visibility::viewpoints(view.viewpoint, view.weights);
   if (!view.direction.empty()) {
-    if (!(view.distance > 0)) throw InvalidInput("distance: must be positive");
+    const double distance = view.distance ? *view.distance : unfolding::usualDistance(mesh);
     std::vector<Point> points;
     for (const Vector& direction : view.direction) {
       const double length = direction.norm();
       if (!(length > 0)) throw InvalidInput("direction: has no length");
-      points.emplace_back(about + view.distance / length * direction);
+      points.emplace_back(about + distance / length * direction);
     }
     return visibility::viewpoints(points, view.weights);
   }

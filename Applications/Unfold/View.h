@@ -16,7 +16,7 @@ namespace explica::app {
 struct ViewSettings {
   std::vector<Eigen::Vector3d> viewpoint;
   std::vector<Eigen::Vector3d> direction;
-  double distance = 1000;
+  std::optional<double> distance;
   std::vector<double> weights;
   std::vector<double> line;
 };
@@ -27,7 +27,12 @@ void describe(ViewSettings& view, Visitor&& visit) {
         view.viewpoint);
   visit(Field{"direction", "", "look from the region's centroid plus --distance along this"},
         view.direction);
-  visit(Field{"distance", "mm", "how far off a viewpoint given by --direction is"}, view.distance);
+  visit(Field{"distance", "mm",
+              "how far off a viewpoint given by --direction is (default 1000, or three times the "
+              "surface's "
+              "extent if that is more)",
+              kAboveZero},
+        view.distance);
   visit(Field{"view-weights", "",
               "weights of several viewpoints or directions, one each, in their order (default: "
               "equal)",
@@ -38,11 +43,12 @@ void describe(ViewSettings& view, Visitor&& visit) {
 }
 
 /// The viewpoints that the options name.
+/// @param mesh   the surface that is looked at
 /// @param about  what --direction counts from
 /// @throws InvalidInput  none or several ways of naming them
 [[nodiscard]] visibility::Viewpoints viewFrom(const ViewSettings& view,
                                               const std::optional<std::string>& surface,
                                               const io::SurfaceReadOptions& reading,
-                                              const Point& about);
+                                              const TriangleMesh& mesh, const Point& about);
 
 }  // namespace explica::app

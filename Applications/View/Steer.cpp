@@ -3,6 +3,7 @@
 
 #include "Steer.h"
 
+#include "Explica/Unfolding/Region.h"
 #include "Explica/Viewer/Window.h"
 #include "OpenedFiles.h"
 
@@ -89,7 +90,7 @@ void steer(Context& context, const ShownSurface& surface, const io::SurfaceReadO
   choice.centre = options.vertex.value_or(-1);
   choice.radius = options.radius;
   choice.view.directions = {direction};
-  choice.view.distance = options.distance;
+  choice.view.distance = options.distance.value_or(unfolding::usualDistance(surface.mesh));
   choice.unfold.unfolder.surround = options.surround;
   choice.unfold.targetVisibility = options.targetVisibility;
   session.choose(choice);

@@ -19,7 +19,7 @@ namespace explica::app {
 struct SteerOptions {
   std::optional<int> vertex;
   double radius = 25;
-  double distance = 1000;
+  std::optional<double> distance;
   unfolding::Surround surround = unfolding::UnfolderOptions{}.surround;
   std::optional<double> targetVisibility;
   std::string save = "unfolded";
@@ -30,7 +30,11 @@ template <class Visitor>
 void describe(SteerOptions& o, Visitor&& visit) {
   visit(Field{"vertex", "", "centre of the region to start with"}, o.vertex);
   visit(Field{"radius", "mm", "of the region to start with"}, o.radius);
-  visit(Field{"distance", "mm", "of the viewpoint from the region"}, o.distance);
+  visit(Field{"distance", "mm",
+              "of the viewpoint from the region (default 1000, or three times the surface's extent "
+              "if that is more)",
+              kAboveZero},
+        o.distance);
   visit(Field{"surround", "", "what becomes of the surface around the region"}, o.surround);
   visit(Field{"target-visibility", "", "stop there; else where it no longer pays"},
         o.targetVisibility);

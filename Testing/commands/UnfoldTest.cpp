@@ -790,5 +790,25 @@ TEST(UnfoldCentre, GivenInFreeSurfersOtherFrameIsNamed) {
   EXPECT_EQ(lost.err.find("tkregister"), std::string::npos) << lost;
 }
 
+TEST(UnfoldCommand, UnitsOfASurfaceDecideNothing) {
+  const TemporaryFolder folder;
+  const auto unfold = [&](double unit, double off) {
+    io::writeSurface(folder / "s.surf.gii", geometry::makeFoldedSphere(3, 30 * unit));
+    return explica({"unfold", folder / "s.surf.gii", "--center",
+                    "0,0," + std::to_string((26.25 + off) * unit), "--radius",
+                    std::to_string(12 * unit), "--direction", "0,0,1", "--out", folder / "u",
+                    "--force"});
+  };
+  for (const double unit : {1e-3, 1.0, 1e3}) {
+    const auto near = unfold(unit, 2);
+    EXPECT_EQ(near.exitCode, 0) << unit << near;
+    const double eye = readJson(folder / "u/summary.json")["viewpoint"][2];
+    EXPECT_GT(eye, 200 * unit);  // well beyond the sphere, 60 wide
+    const auto far = unfold(unit, 4);
+    EXPECT_EQ(far.exitCode, 2) << unit << far;
+    EXPECT_NE(far.err.find("mm from the surface"), std::string::npos) << far;
+  }
+}
+
 }  // namespace
 }  // namespace explica::testing

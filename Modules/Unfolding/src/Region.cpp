@@ -26,14 +26,21 @@ std::string text(double value) {
   return s;
 }
 
-/// A point farther off than this is a slip: another frame, a sign, a digit.
-constexpr double kFarthestCentre = 5;  // mm
+/// Diagonal of the surface's box, mm.
+double extentOf(const TriangleMesh& mesh) {
+  return (mesh.positions.colwise().maxCoeff() - mesh.positions.colwise().minCoeff()).norm();
+}
 
-void requireNear(const Point& wanted, std::int32_t vertex, const Point& nearest) {
-  const double distance = (wanted - nearest).norm();
-  if (distance <= kFarthestCentre) return;
+/// Of the surface's extent: a point farther off, 6 mm from a hemisphere, is a slip: another frame,
+/// a sign, a digit.
+constexpr double kFarthestCentre = 0.03;
+
+void requireNear(const TriangleMesh& mesh, const Point& wanted, std::int32_t vertex) {
+  const Point nearest = mesh.positions.row(vertex);
+  const double distance = (wanted - nearest).norm(), most = kFarthestCentre * extentOf(mesh);
+  if (distance <= most) return;
   throw InvalidInput("center: it lies " + text(distance) + " mm from the surface, at most " +
-                     text(kFarthestCentre) + " mm make sense; the nearest vertex is " +
+                     text(most) + " mm make sense; the nearest vertex is " +
                      std::to_string(vertex) + " at " + text(nearest[0]) + "," + text(nearest[1]) +
                      "," + text(nearest[2]));
 }
@@ -158,7 +165,7 @@ Region selectRegion(const TriangleMesh& mesh, const RegionOptions& options,
     if (centre < 0 || squared(v) < squared(centre)) centre = v;
   }
   const Point middle = mesh.positions.row(centre).transpose();
-  if (options.center) requireNear(*options.center, centre, middle);
+  if (options.center) requireNear(mesh, *options.center, centre);
   std::vector<bool> within(static_cast<std::size_t>(mesh.vertexCount()), false);
   if (options.cone) {
     if (!(*options.cone > 0 && *options.cone < 90)) {
@@ -252,6 +259,12 @@ Region adjustRegion(const TriangleMesh& mesh, const Region& region, const Region
       "region: its average visibility is not positive, and no larger or smaller one nearby is; "
       "look "
       "from another side");
+}
+
+double usualDistance(const TriangleMesh& mesh) {
+  constexpr double kFromAHead = 1000;  // mm: from there rays to a patch are parallel to 2 degrees
+  constexpr double kFromAnything = 3;  // extents: beyond what stands about a region
+  return std::max(kFromAHead, kFromAnything * extentOf(mesh));
 }
 
 void requireViewFromOutside(const TriangleMesh& mesh, const visibility::Viewpoints& viewpoints,

@@ -55,7 +55,8 @@ struct Region {
 };
 
 /// Faces whose three vertices lie within the radius of the centre vertex, or within the cone.
-/// @throws InvalidInput  no centre, one farther than 5 mm from the surface, radius or cone out of
+/// @throws InvalidInput  no centre, one farther from the surface than 3 % of its extent, radius or
+/// cone out of
 ///                       range, or as regionOfMarked()
 [[nodiscard]] Region selectRegion(const TriangleMesh& mesh, const RegionOptions& options,
                                   const visibility::Viewpoints* viewpoints = nullptr);
@@ -77,6 +78,10 @@ struct Region {
 [[nodiscard]] Region adjustRegion(const TriangleMesh& mesh, const Region& region,
                                   const RegionOptions& options,
                                   const visibility::Viewpoints& viewpoints);
+
+/// How far off a viewpoint is of which only the direction is given: 1000 mm, or three times the
+/// extent of a surface that is larger, such as one in micrometres.
+[[nodiscard]] double usualDistance(const TriangleMesh& mesh);
 
 /// Demands that viewpoints look at the surface from outside and not from on it.
 /// @throws InvalidInput  a viewpoint inside the closed surface or within `clearance` mm of it
