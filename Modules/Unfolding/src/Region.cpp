@@ -31,13 +31,15 @@ double extentOf(const TriangleMesh& mesh) {
   return (mesh.positions.colwise().maxCoeff() - mesh.positions.colwise().minCoeff()).norm();
 }
 
-/// Of the surface's extent: a point farther off, 6 mm from a hemisphere, is a slip: another frame,
-/// a sign, a digit.
-constexpr double kFarthestCentre = 0.03;
+/// A point farther off than this is a slip: another frame, a sign, a digit.  5 mm, and 2 % to an
+/// eighth of the extent of surfaces far larger or smaller than a brain, or in another unit.
+double farthestCentre(double extent) {
+  return std::clamp(5.0, 0.02 * extent, 0.125 * extent);
+}
 
 void requireNear(const TriangleMesh& mesh, const Point& wanted, std::int32_t vertex) {
   const Point nearest = mesh.positions.row(vertex);
-  const double distance = (wanted - nearest).norm(), most = kFarthestCentre * extentOf(mesh);
+  const double distance = (wanted - nearest).norm(), most = farthestCentre(extentOf(mesh));
   if (distance <= most) return;
   throw InvalidInput("center: it lies " + text(distance) + " mm from the surface, at most " +
                      text(most) + " mm make sense; the nearest vertex is " +

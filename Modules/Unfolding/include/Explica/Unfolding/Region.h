@@ -55,9 +55,8 @@ struct Region {
 };
 
 /// Faces whose three vertices lie within the radius of the centre vertex, or within the cone.
-/// @throws InvalidInput  no centre, one farther from the surface than 3 % of its extent, radius or
-/// cone out of
-///                       range, or as regionOfMarked()
+/// @throws InvalidInput  no centre, one more than 5 mm off a surface like a brain's, radius or
+///                       cone out of range, or as regionOfMarked()
 [[nodiscard]] Region selectRegion(const TriangleMesh& mesh, const RegionOptions& options,
                                   const visibility::Viewpoints* viewpoints = nullptr);
 
