@@ -70,7 +70,13 @@ TextHeader parseHeader(const std::filesystem::path& path, ByteView bytes, ItkFor
     }
     if (line.starts_with('#')) continue;
     const std::size_t mark = line.find(format == ItkFormat::Nrrd ? ':' : '=');
-    if (mark == std::string_view::npos) continue;
+    if (mark == std::string_view::npos) {
+      // MetaIO takes the next lines for its value, and may look for billions of numbers there.
+      if (format == ItkFormat::MetaImage && !trimmed(line).empty()) {
+        failToRead(path, "its header has a line without '='");
+      }
+      continue;
+    }
     const bool custom = format == ItkFormat::Nrrd && line.substr(mark).starts_with(":=");
     if (custom) continue;
     std::string key = trimmed(line.substr(0, mark));
