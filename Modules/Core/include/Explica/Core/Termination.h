@@ -12,7 +12,7 @@ namespace explica {
 /// Why an iterative method stopped.  Only bad input is an exception; these are results.
 enum class Termination {
   NotRun,         ///< nothing was done yet
-  Finished,       ///< all was done, and nothing in it is iterated until a criterion holds
+  Finished,       ///< all was done without a criterion, or it came to rest short of its goals
   Converged,      ///< the method's own criterion holds
   TargetReached,  ///< the value that the user asked for was reached
   MaxIterations,  ///< stopped at the iteration limit
