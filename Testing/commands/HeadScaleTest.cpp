@@ -8,6 +8,7 @@
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Testing/Command.h"
 #include "Explica/Testing/FreeSurferSubject.h"
+#include "Explica/Testing/Grids.h"
 #include "QuickRuns.h"
 
 #include <gtest/gtest.h>
@@ -255,19 +256,7 @@ Volume<float> anotherMacaque() {
     const Point at = grid.toWorld(Vector(i, j, k));
     Point from = turn * Point(at - Point(3, -2, 5)) + Point(0, -6, 2);
     from += 1.5 * Vector(std::sin(from.y() / 12), std::cos(from.z() / 11), std::sin(from.x() / 13));
-    const Vector index = brain.grid.toIndex(from);
-    double sum = 0;
-    for (int c = 0; c < 8; ++c) {
-      std::array<int, 3> corner{};
-      double weight = 1;
-      for (int a = 0; a < 3; ++a) {
-        corner[a] = static_cast<int>(std::floor(index[a])) + (c >> a & 1);
-        weight *= 1 - std::abs(index[a] - corner[a]);
-      }
-      if (brain.grid.contains(corner[0], corner[1], corner[2])) {
-        sum += weight * brain(corner[0], corner[1], corner[2]);
-      }
-    }
+    const double sum = valueAt(brain, from);
     if (sum < 25) continue;
     image[v] = static_cast<float>(
         std::max(1.0, sum * (1 + 0.15 * std::sin(at.y() / 30)) + noise(generator)));

@@ -4,6 +4,7 @@
 
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Testing/Command.h"
+#include "Explica/Testing/Grids.h"
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
@@ -51,24 +52,6 @@ TEST_P(CortexWithDura, IsAsThickAsItIs) {
   EXPECT_NEAR(
       thickness({"--image", folder / "phantom/t1.nii.gz", "--fluid", std::to_string(fluid)}), 2.5,
       0.08);
-}
-
-/// Trilinear; 0 beyond the volume.
-double valueAt(const Volume<float>& volume, const Point& p) {
-  const Vector index = volume.grid.toIndex(p);
-  double sum = 0;
-  for (int c = 0; c < 8; ++c) {
-    std::array<int, 3> corner{};
-    double weight = 1;
-    for (int a = 0; a < 3; ++a) {
-      corner[a] = static_cast<int>(std::floor(index[a])) + (c >> a & 1);
-      weight *= 1 - std::abs(index[a] - corner[a]);
-    }
-    if (weight > 0 && volume.grid.contains(corner[0], corner[1], corner[2])) {
-      sum += weight * volume(corner[0], corner[1], corner[2]);
-    }
-  }
-  return sum;
 }
 
 /// What a scanner with turned axes and voxels of that size sees: means over what of the head is in

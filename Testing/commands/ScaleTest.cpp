@@ -20,27 +20,13 @@
 namespace explica::testing {
 namespace {
 
-/// A ball with twelve waves, white matter 3 in a ribbon 2, some sulci of it buried.
-void writeWavyBall(const std::filesystem::path& path, double unit) {
-  constexpr int n = 62;
-  Volume<Label> labels(cubeGrid(n, unit));
-  for (std::size_t v = 0; v < labels.size(); ++v) {
-    const auto at = labels.grid.subscripts(v);
-    const Vector p = Vector(at[0], at[1], at[2]) - Vector::Constant(0.5 * (n - 1));
-    const double r = p.norm(), flat = std::hypot(p.x(), p.y()) / r;
-    const double wave = 4 * std::sin(12 * std::atan2(p.y(), p.x())) * flat * flat;
-    labels[v] = r < 20 + wave ? 3 : r < 23 || r < 23 + wave ? 2 : 0;
-  }
-  io::writeVolume(path, labels);
-}
-
 std::vector<std::string> thickness(const TemporaryFolder& folder, double unit) {
-  writeWavyBall(folder / "ball.nii.gz", unit);
+  io::writeVolume(folder / "ball.nii.gz", wavyBall(unit));
   return {"thickness", folder / "ball.nii.gz", "--inner", "3", "--tissue", "2"};
 }
 
 std::vector<std::string> surface(const TemporaryFolder& folder, double unit) {
-  writeWavyBall(folder / "ball.nii.gz", unit);
+  io::writeVolume(folder / "ball.nii.gz", wavyBall(unit));
   return {"surface", folder / "ball.nii.gz", "--white", "3", "--grey", "2", "--faces", "6000"};
 }
 

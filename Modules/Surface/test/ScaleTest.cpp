@@ -14,21 +14,6 @@
 namespace explica::surface {
 namespace {
 
-/// A ball with twelve waves, white matter 3 in a ribbon 2, some sulci of it buried; `unit` mm to a
-/// voxel.
-Volume<Label> wavyBall(double unit) {
-  constexpr int n = 62;
-  Volume<Label> labels(testing::cubeGrid(n, unit));
-  for (std::size_t v = 0; v < labels.size(); ++v) {
-    const auto at = labels.grid.subscripts(v);
-    const Vector p = Vector(at[0], at[1], at[2]) - Vector::Constant(0.5 * (n - 1));
-    const double r = p.norm(), flat = std::hypot(p.x(), p.y()) / r;
-    const double wave = 4 * std::sin(12 * std::atan2(p.y(), p.x())) * flat * flat;
-    labels[v] = r < 20 + wave ? 3 : r < 23 || r < 23 + wave ? 2 : 0;
-  }
-  return labels;
-}
-
 CorticalSurfaces surfacesAt(double unit) {
   TissueOptions labels;
   labels.preset = LabelPreset::ThreeClass;
@@ -36,7 +21,7 @@ CorticalSurfaces surfacesAt(double unit) {
   labels.grey = {2};
   SurfaceOptions options;
   options.faces = 6000;
-  return buildSurfaces(tissueFromLabels(wavyBall(unit), labels), options);
+  return buildSurfaces(tissueFromLabels(testing::wavyBall(unit), labels), options);
 }
 
 class Scale : public ::testing::TestWithParam<int> {};
@@ -75,7 +60,7 @@ TEST(Scale, ByAThousandChangesTheResultByRounding) {
 }
 
 TEST(Scale, TooFarFromTheOriginForTheFilesNumbersIsRefused) {
-  Volume<Label> labels = wavyBall(1);
+  Volume<Label> labels = testing::wavyBall(1);
   labels.grid.origin += Vector(1e6, 0, 0);
   TissueOptions tissue;
   tissue.white = {3};

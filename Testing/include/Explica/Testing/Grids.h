@@ -7,6 +7,8 @@
 
 #include <Eigen/Geometry>
 
+#include <array>
+#include <cmath>
 #include <vector>
 
 namespace explica::testing {
@@ -49,6 +51,39 @@ Volume<float> volumeOf(const Grid& grid, const Function& f) {
     volume[v] = static_cast<float>(f(grid.toWorld(Vector(i, j, k))));
   }
   return volume;
+}
+
+/// A ball with twelve waves, white matter 3 in a ribbon 2, some sulci of it buried.
+/// @param unit  mm to a voxel
+inline Volume<Label> wavyBall(double unit) {
+  constexpr int n = 62;
+  Volume<Label> labels(cubeGrid(n, unit));
+  for (std::size_t v = 0; v < labels.size(); ++v) {
+    const auto at = labels.grid.subscripts(v);
+    const Vector p = Vector(at[0], at[1], at[2]) - Vector::Constant(0.5 * (n - 1));
+    const double r = p.norm(), flat = std::hypot(p.x(), p.y()) / r;
+    const double wave = 4 * std::sin(12 * std::atan2(p.y(), p.x())) * flat * flat;
+    labels[v] = r < 20 + wave ? 3 : r < 23 || r < 23 + wave ? 2 : 0;
+  }
+  return labels;
+}
+
+/// Trilinear at a point in RAS mm; 0 beyond the volume.
+inline double valueAt(const Volume<float>& volume, const Point& p) {
+  const Vector index = volume.grid.toIndex(p);
+  double sum = 0;
+  for (int c = 0; c < 8; ++c) {
+    std::array<int, 3> corner{};
+    double weight = 1;
+    for (int a = 0; a < 3; ++a) {
+      corner[a] = static_cast<int>(std::floor(index[a])) + (c >> a & 1);
+      weight *= 1 - std::abs(index[a] - corner[a]);
+    }
+    if (weight > 0 && volume.grid.contains(corner[0], corner[1], corner[2])) {
+      sum += weight * volume(corner[0], corner[1], corner[2]);
+    }
+  }
+  return sum;
 }
 
 }  // namespace explica::testing
