@@ -24,6 +24,10 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME explica)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS mricron-data)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libexplica-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+# What a consumer's find_package(Explica) looks for (FIND of the modules); the last only for the window of the viewer.
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libeigen3-dev, libtbb-dev, libhwy-dev, libinsighttoolkit5-dev, \
+libisal-dev, libexpat1-dev, nlohmann-json3-dev, libssl-dev, libyaml-cpp-dev, libembree-dev, zlib1g-dev")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "libvtk9-qt-dev, qtbase5-dev, libx11-dev")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-explica)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 # A compiled module fits one version of Python.
