@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-FileCopyrightText: The Explica developers
 # SPDX-License-Identifier: Apache-2.0
-"""Holds the lists of packages (Testing/packages.txt with the Containerfile, and the conda recipe) to
-what CMake looks for, and the versions to CMake's: a library that is found by a build but not listed
+"""Holds the lists of packages (Testing/packages.txt with the Containerfile, the conda recipe, and what libexplica-dev
+depends on) to what CMake looks for, and the versions to CMake's: a library that is found by a build but not listed
 fails here, and so does one that is listed and not looked for.
 
     Testing/check-recipes.py
@@ -63,6 +63,20 @@ def conda_packages():
     return {line.split()[1] for line in host.splitlines()}
 
 
+def consumers_look_for():
+    """Debian's packages of what the modules' FIND names: what find_package(Explica) looks for elsewhere."""
+    names = set()
+    for path in ROOT.glob("Modules/*/CMakeLists.txt"):
+        for line in re.findall(r"^ *FIND (.*)$", path.read_text(), re.MULTILINE):
+            names.update(word.split()[0] for word in re.findall(r'"([^"]+)"', line))
+    return {LIBRARIES[name][0] for name in names}
+
+
+def development_packages():
+    text = (ROOT / "Modules/CMake/ExplicaPackage.cmake").read_text().replace("\\\n", "")
+    return set(re.search(r'DEVELOPMENT_PACKAGE_DEPENDS "([^"]+)"', text)[1].split(", "))
+
+
 def versions():
     """The version wherever it is written."""
     places = {
@@ -92,6 +106,9 @@ def main():
             wrong.append(f"Wrapping/Conda/meta.yaml lacks {LIBRARIES[name][1]} ({name})")
     known = {pair[1] for pair in LIBRARIES.values()} | NOT_LIBRARIES
     wrong += [f"Wrapping/Conda/meta.yaml: nothing looks for {p}" for p in sorted(conda - known)]
+    needed, given = consumers_look_for(), development_packages()
+    wrong += [f"ExplicaPackage.cmake: libexplica-dev does not depend on {p}" for p in sorted(needed - given)]
+    wrong += [f"ExplicaPackage.cmake: no module's FIND needs {p}" for p in sorted(given - needed)]
     told = dict(versions())
     if len(set(told.values())) != 1:
         wrong.append(f"versions differ: {told}")
