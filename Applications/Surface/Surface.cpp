@@ -5,6 +5,7 @@
 #include "Explica/Application/Plausible.h"
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Parallel.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
@@ -484,11 +485,12 @@ Inputs readTissue(Context& context, const Settings& s) {
 struct Checked {
   std::int64_t selfIntersections = 0;
   geometry::MeshCondition condition;
+  surface::Evenness evenness;
 };
 
 Checked check(const TriangleMesh& mesh) {
   return {static_cast<std::int64_t>(geometry::findSelfIntersections(mesh).size()),
-          geometry::inspectMesh(mesh)};
+          geometry::inspectMesh(mesh), surface::evennessOf(mesh)};
 }
 
 io::SurfaceMetadata metadataOf(const std::string& structure, const std::string& secondary) {
@@ -518,8 +520,7 @@ std::vector<Named> namedSurfaces(const surface::CorticalSurfaces& made, bool has
   return surfaces;
 }
 
-void reportEvenness(Context& context, const std::string& key, const TriangleMesh& mesh) {
-  const surface::Evenness found = surface::evennessOf(mesh);
+void reportEvenness(Context& context, const std::string& key, const surface::Evenness& found) {
   context.result("dihedral_above_60_" + key, found.dihedralAbove60);
   if (key == "pial") context.result("dihedral_above_60", found.dihedralAbove60);
   context.result("longest_edge_" + key, found.longestEdge);
@@ -531,9 +532,11 @@ void reportEvenness(Context& context, const std::string& key, const TriangleMesh
 /// @return pairs of faces that meet
 std::int64_t checkSurfaces(Context& context, const std::vector<Named>& surfaces) {
   auto step = context.step("check");
+  std::vector<Checked> all(surfaces.size());
+  parallelFor(all.size(), 1, [&](std::size_t n) { all[n] = check(*surfaces[n].mesh); });
   std::int64_t selfIntersections = 0;
   for (const Named& surface : surfaces) {
-    const Checked checked = check(*surface.mesh);
+    const Checked& checked = all[&surface - surfaces.data()];
     selfIntersections += checked.selfIntersections;
     if (&surface == &surfaces.front()) {
       context.result("vertices", checked.condition.vertices);
@@ -548,7 +551,7 @@ std::int64_t checkSurfaces(Context& context, const std::vector<Named>& surfaces)
     if (checked.condition.boundaryEdges == 0) {
       context.result("volume_" + std::string(surface.key), geometry::enclosedVolume(*surface.mesh));
     }
-    reportEvenness(context, surface.key, *surface.mesh);
+    reportEvenness(context, surface.key, checked.evenness);
   }
   context.result("self_intersections", selfIntersections);
   return selfIntersections;

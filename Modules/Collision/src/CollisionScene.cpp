@@ -25,18 +25,34 @@ using geometry::BoundsSearch;
 using geometry::MotionBounds;
 
 Edges edgesOf(const Faces& faces) {
-  std::vector<std::array<std::int32_t, 2>> all;
-  all.reserve(3 * faces.rows());
-  for (Eigen::Index f = 0; f < faces.rows(); ++f) {
-    for (int k = 0; k < 3; ++k) {
-      const std::int32_t a = faces(f, k), b = faces(f, (k + 1) % 3);
-      all.push_back({std::min(a, b), std::max(a, b)});
+  // Those of each vertex that is the smaller end, together: few, which are then put in order.
+  const auto forSides = [&](const auto& visit) {
+    for (Eigen::Index f = 0; f < faces.rows(); ++f) {
+      for (int k = 0; k < 3; ++k) {
+        const std::int32_t a = faces(f, k), b = faces(f, (k + 1) % 3);
+        visit(std::min(a, b), std::max(a, b));
+      }
+    }
+  };
+  const std::size_t vertices = faces.size() == 0 ? 0 : std::size_t(faces.maxCoeff()) + 1;
+  std::vector<std::size_t> begin(vertices + 1, 0);
+  forSides([&](std::int32_t a, std::int32_t /*b*/) { ++begin[a + 1]; });
+  for (std::size_t v = 0; v < vertices; ++v) begin[v + 1] += begin[v];
+  std::vector<std::int32_t> ends(begin.back());
+  std::vector<std::size_t> next(begin.begin(), begin.end() - 1);
+  forSides([&](std::int32_t a, std::int32_t b) { ends[next[a]++] = b; });
+  Edges edges(static_cast<Eigen::Index>(ends.size()), 2);
+  Eigen::Index count = 0;
+  for (std::size_t v = 0; v < vertices; ++v) {
+    const auto from = ends.begin() + static_cast<std::ptrdiff_t>(begin[v]);
+    const auto to = ends.begin() + static_cast<std::ptrdiff_t>(begin[v + 1]);
+    std::sort(from, to);
+    for (auto end = from; end != to; ++end) {
+      if (end == from || *end != *(end - 1))
+        edges.row(count++) << static_cast<std::int32_t>(v), *end;
     }
   }
-  std::sort(all.begin(), all.end());
-  all.erase(std::unique(all.begin(), all.end()), all.end());
-  Edges edges(static_cast<Eigen::Index>(all.size()), 2);
-  for (std::size_t e = 0; e < all.size(); ++e) edges.row(e) << all[e][0], all[e][1];
+  edges.conservativeResize(count, 2);
   return edges;
 }
 

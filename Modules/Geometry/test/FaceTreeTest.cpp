@@ -63,6 +63,67 @@ TEST(FaceTree, ClosestPointEqualsBruteForce) {
   }
 }
 
+/// The nearest of all faces, the first of those that are equally near.
+ClosestPoint bruteForce(const TriangleMesh& mesh, const Point& query) {
+  ClosestPoint best;
+  for (std::int32_t f = 0; f < mesh.faceCount(); ++f) {
+    const Point nearest =
+        closestPointOnTriangle(query, mesh.corner(f, 0), mesh.corner(f, 1), mesh.corner(f, 2));
+    const double squared = (nearest - query).squaredNorm();
+    if (squared < best.squaredDistance) best = {nearest, f, squared};
+  }
+  return best;
+}
+
+TEST(FaceTree, GivesTheFirstOfEquallyNearFacesWhereverItLooksFirst) {
+  const TriangleMesh mesh = makeIcosphere(2);
+  const FaceTree tree(mesh);
+  for (std::int32_t v = 0; v < mesh.vertexCount(); ++v) {
+    const Point beyond = 2 * mesh.positions.row(v).transpose();
+    const ClosestPoint expected = bruteForce(mesh, beyond);
+    EXPECT_EQ(tree.closestPoint(beyond).face, expected.face);
+    for (std::int32_t near = v % 7; near < mesh.faceCount(); near += 7) {
+      EXPECT_EQ(tree.closestPoint(beyond, near).face, expected.face);
+    }
+  }
+}
+
+TEST(FaceTree, ClosestPointEqualsBruteForceInAnyUnitAndPlace) {
+  std::mt19937 random(4);
+  std::normal_distribution<double> normal;
+  for (const double unit : {1e-30, 1e-3, 1.0, 1e3, 1e30}) {
+    for (const double place : {0.0, 1e4, -1e9}) {
+      TriangleMesh mesh = makeFoldedSphere(2);
+      mesh.positions.array() += place;
+      mesh.positions *= unit;
+      const FaceTree tree(mesh);
+      for (const double away : {0.1, 1.0, 10.0, 1e6, 1e20}) {
+        for (int n = 0; n < 20; ++n) {
+          const Point way(normal(random), normal(random), normal(random));
+          const Point query = unit * (Point::Constant(place) + away * way);
+          const ClosestPoint found = tree.closestPoint(query), expected = bruteForce(mesh, query);
+          EXPECT_EQ(found.squaredDistance, expected.squaredDistance) << unit << " " << place;
+          EXPECT_EQ(found.face, expected.face) << unit << " " << place << " " << away;
+        }
+      }
+    }
+  }
+}
+
+TEST(FaceTree, FlatAndTinyMeshesAreNoSpecialCase) {
+  TriangleMesh one;
+  one.positions.resize(3, 3);
+  one.positions << 1, 2, 3, 1, 2, 3, 1, 2, 3;
+  one.faces.resize(1, 3);
+  one.faces << 0, 1, 2;
+  EXPECT_EQ(FaceTree(one).closestPoint(Point(1, 2, 5)).squaredDistance, 4);
+  TriangleMesh flat = makeIcosphere(2);
+  flat.positions.col(1).setZero();
+  EXPECT_EQ(FaceTree(flat).closestPoint(Point(0.1, 3, 0.2)).squaredDistance,
+            bruteForce(flat, Point(0.1, 3, 0.2)).squaredDistance);
+  EXPECT_EQ(FaceTree(TriangleMesh()).closestPoint(Point(0, 0, 0)).face, -1);
+}
+
 TEST(ClosestPointOnTriangle, BeatsADenseSampleOfTheTriangle) {
   std::mt19937 random(5);
   std::normal_distribution<double> normal;

@@ -324,21 +324,32 @@ ByteView viewOf(const std::vector<T>& values) {
 
 /// True if each side of a face is shared with a face that runs it the other way.
 bool isClosed(const Faces& faces) {
-  std::vector<std::uint64_t> sides;
-  sides.reserve(static_cast<std::size_t>(faces.size()));
-  for (Eigen::Index f = 0; f < faces.rows(); ++f) {
-    for (int k = 0; k < 3; ++k) {
-      const auto a = static_cast<std::uint32_t>(faces(f, k));
-      const auto b = static_cast<std::uint32_t>(faces(f, (k + 1) % 3));
-      // Side and direction: an even number marks the falling one.
-      sides.push_back((static_cast<std::uint64_t>(std::max(a, b)) << 32 | std::min(a, b)) << 1 |
-                      static_cast<std::uint64_t>(a < b));
+  // The sides whose larger end is a vertex, together: few, which are then put in order.
+  const auto forSides = [&](const auto& visit) {
+    for (Eigen::Index f = 0; f < faces.rows(); ++f) {
+      for (int k = 0; k < 3; ++k) {
+        const auto a = static_cast<std::uint32_t>(faces(f, k));
+        const auto b = static_cast<std::uint32_t>(faces(f, (k + 1) % 3));
+        // Other end and direction: an even number marks the falling one.
+        const std::uint64_t side = static_cast<std::uint64_t>(std::min(a, b)) << 1;
+        visit(std::max(a, b), side | static_cast<std::uint64_t>(a < b));
+      }
     }
-  }
-  std::sort(sides.begin(), sides.end());
-  if (sides.size() % 2 != 0) return false;
-  for (std::size_t i = 0; i < sides.size(); i += 2) {
-    if (sides[i + 1] != sides[i] + 1 || sides[i] % 2 != 0) return false;
+  };
+  const std::size_t vertices = static_cast<std::size_t>(faces.maxCoeff()) + 1;
+  std::vector<std::size_t> begin(vertices + 1, 0);
+  forSides([&](std::uint32_t v, std::uint64_t /*side*/) { ++begin[v + 1]; });
+  for (std::size_t v = 0; v < vertices; ++v) begin[v + 1] += begin[v];
+  std::vector<std::size_t> next(begin.begin(), begin.end() - 1);
+  std::vector<std::uint64_t> sides(begin.back());
+  forSides([&](std::uint32_t v, std::uint64_t side) { sides[next[v]++] = side; });
+  for (std::size_t v = 0; v < vertices; ++v) {
+    if ((begin[v + 1] - begin[v]) % 2 != 0) return false;
+    std::sort(sides.begin() + static_cast<std::ptrdiff_t>(begin[v]),
+              sides.begin() + static_cast<std::ptrdiff_t>(begin[v + 1]));
+    for (std::size_t i = begin[v]; i < begin[v + 1]; i += 2) {
+      if (sides[i + 1] != sides[i] + 1 || sides[i] % 2 != 0) return false;
+    }
   }
   return true;
 }

@@ -27,6 +27,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <string>
 
@@ -132,9 +133,10 @@ Ribbon traceRibbon(const CorticalTissue& tissue, CorticalSurfaces& result, const
 
   monitor.progress(0.7, "trajectories");
   const Positions normals = geometry::vertexNormals(white);
+  const std::vector<std::int32_t> faceAt = geometry::faceOfEachVertex(white);
   ribbon.paths.resize(white.vertexCount());
   parallelFor(ribbon.paths.size(), 256, [&](std::size_t v) {
-    ribbon.paths[v] = field.trace(white.positions.row(v), normals.row(v));
+    ribbon.paths[v] = field.trace(white.positions.row(v), normals.row(v), faceAt[v]);
   });
   ribbon.outside = Eigen::VectorXd::Zero(white.vertexCount());
   result.seconds.trajectories = watch.lap();
@@ -371,10 +373,12 @@ CorticalSurfaces build(const CorticalTissue& tissue, const Volume<float>* image,
   result.seconds.growing = watch.lap();
 
   monitor.progress(0.96, "curvature and depth");
-  result.curvature = meanCurvature(result.white.mesh);
-  result.nearestThickness = distanceThickness(result.white.mesh, result.pial);
+  const std::array<std::function<void()>, 3> measures = {
+      [&] { result.curvature = meanCurvature(result.white.mesh); },
+      [&] { result.nearestThickness = distanceThickness(result.white.mesh, result.pial); },
+      [&] { result.sulcalDepth = depthBelowHull(ribbon.tissue.tissue, result.mid.positions); }};
+  parallelFor(measures.size(), 1, [&](std::size_t n) { measures[n](); });
   result.nearestThickness = (result.thickness.array() > 0).select(result.nearestThickness, 0.0);
-  result.sulcalDepth = depthBelowHull(ribbon.tissue.tissue, result.mid.positions);
   result.seconds.measures = watch.lap();
   monitor.progress(1.0, "surfaces");
   return result;

@@ -27,6 +27,14 @@ void requirePresent(const Histogram& histogram, const Labels& labels, const std:
   }
 }
 
+constexpr std::size_t kVoxelGrain = 1 << 18;  // voxels a task
+
+void addTo(Mask& mask, const Mask& other) {
+  parallelFor(mask.size(), kVoxelGrain, [&](std::size_t v) {
+    mask[v] = static_cast<std::uint8_t>(mask[v] != 0 || other[v] != 0);
+  });
+}
+
 void requireInside(const Mask& mask, bool closeEdges, const Monitor& monitor) {
   const std::int64_t atEdge = countOnEdge(mask);
   if (atEdge == 0) return;
@@ -299,12 +307,13 @@ TissueMasks masksFromLabels(const Volume<Label>& labels, const TissueOptions& op
   masks.insulated = maskOf(labels, roles.insulated);
   masks.whiteVoxels = countIn(masks.white);
   const Mask filled = maskOf(labels, roles.fill);
-  for (std::size_t v = 0; v < filled.size(); ++v) {
-    masks.filledVoxels += filled[v] && !masks.white[v];
-    masks.white[v] = masks.white[v] || filled[v];
+  masks.filledVoxels =
+      countWhere(filled.size(), [&](std::size_t v) { return filled[v] && !masks.white[v]; });
+  if (masks.filledVoxels > 0) addTo(masks.white, filled);
+  if (!roles.unsided.empty()) {
+    masks.filledVoxels +=
+        addNearer(maskOf(labels, roles.unsided), masks.white, maskOf(labels, roles.otherWhite));
   }
-  masks.filledVoxels +=
-      addNearer(maskOf(labels, roles.unsided), masks.white, maskOf(labels, roles.otherWhite));
   if (roles.borderLines) growBorderLines(maskOf(labels, {1}), masks);
   if (roles.split) {
     monitor.progress(0.3, "separating hemispheres");
@@ -318,16 +327,16 @@ TissueMasks masksFromLabels(const Volume<Label>& labels, const TissueOptions& op
   }
   masks.greyVoxels = countIn(masks.grey);
   masks.atImageBorder = countOnEdge(masks.white) + countOnEdge(masks.grey);
-  for (std::size_t v = 0; v < masks.white.size(); ++v) {
+  parallelFor(masks.white.size(), kVoxelGrain, [&](std::size_t v) {
     if (masks.white[v] || masks.grey[v]) masks.insulated[v] = 0;
-  }
+  });
   return masks;
 }
 
 CorticalTissue tissueFromMasks(const TissueMasks& masks, bool closeEdges, const Monitor& monitor) {
   requireInside(masks.white, closeEdges, monitor);
   Mask tissue = masks.white;
-  for (std::size_t v = 0; v < tissue.size(); ++v) tissue[v] = masks.white[v] || masks.grey[v];
+  addTo(tissue, masks.grey);
   monitor.progress(0.7, "level sets");
   CorticalTissue result = assemble(masks.white, tissue, masks.insulated);
   static_cast<TissueFacts&>(result) = masks;

@@ -35,10 +35,7 @@ Eigen::VectorXd distanceThickness(const TriangleMesh& white, const TriangleMesh&
   std::array<std::optional<geometry::FaceTree>, 2> trees;
   parallelFor(2, 1, [&](std::size_t n) { trees[n].emplace(n == 0 ? white : pial); });
   // What lies beyond a vertex is near its own face of the other surface.
-  std::vector<std::int32_t> faceAt(static_cast<std::size_t>(white.vertexCount()), 0);
-  for (Eigen::Index f = 0; f < white.faceCount(); ++f) {
-    for (int k = 0; k < 3; ++k) faceAt[white.faces(f, k)] = static_cast<std::int32_t>(f);
-  }
+  const std::vector<std::int32_t> faceAt = geometry::faceOfEachVertex(white);
   Eigen::VectorXd thickness(white.vertexCount());
   parallelFor(faceAt.size(), 1024, [&](std::size_t v) {
     const Point inner = white.positions.row(v).transpose();

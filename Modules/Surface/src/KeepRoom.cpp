@@ -118,9 +118,13 @@ void widen(const TriangleMesh& mesh, std::int32_t f, double wanted, double most,
 }
 
 std::vector<std::int32_t> smallFaces(const TriangleMesh& mesh, double leastArea) {
+  std::vector<std::uint8_t> isSmall(static_cast<std::size_t>(mesh.faceCount()));
+  parallelFor(isSmall.size(), 8192, [&](std::size_t f) {
+    isSmall[f] = areaOf(mesh, static_cast<std::int32_t>(f)) < leastArea;
+  });
   std::vector<std::int32_t> small;
-  for (std::int32_t f = 0; f < mesh.faceCount(); ++f) {
-    if (areaOf(mesh, f) < leastArea) small.push_back(f);
+  for (auto at = isSmall.begin(); (at = std::find(at, isSmall.end(), 1)) != isSmall.end(); ++at) {
+    small.push_back(static_cast<std::int32_t>(at - isSmall.begin()));
   }
   return small;
 }

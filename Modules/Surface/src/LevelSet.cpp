@@ -71,19 +71,28 @@ Volume<T> cropped(const Volume<T>& volume, const VoxelBox& box, T outside) {
 
 VoxelBox boundingBox(const Volume<std::uint8_t>& mask, int margin) {
   const auto& n = mask.grid.size;
-  std::array<int, 3> low = n, high = {-1, -1, -1};
-  for (int k = 0; k < n[2]; ++k) {
-    for (int j = 0; j < n[1]; ++j) {
-      for (int i = 0; i < n[0]; ++i) {
-        if (!mask(i, j, k)) continue;
-        const std::array<int, 3> at = {i, j, k};
-        for (int a = 0; a < 3; ++a) {
-          low[a] = std::min(low[a], at[a]);
-          high[a] = std::max(high[a], at[a]);
+  struct Range {
+    std::array<int, 3> low, high;
+    void operator+=(const Range& other) {
+      for (int a = 0; a < 3; ++a) {
+        low[a] = std::min(low[a], other.low[a]);
+        high[a] = std::max(high[a], other.high[a]);
+      }
+    }
+  };
+  const Range nothing = {n, {-1, -1, -1}};
+  const auto slices = static_cast<std::size_t>(n[2]);
+  const auto [low, high] = parallelSum(slices, 4, nothing, [&](std::size_t begin, std::size_t end) {
+    Range range = nothing;
+    for (int k = static_cast<int>(begin); k < static_cast<int>(end); ++k) {
+      for (int j = 0; j < n[1]; ++j) {
+        for (int i = 0; i < n[0]; ++i) {
+          if (mask(i, j, k)) range += Range{{i, j, k}, {i, j, k}};
         }
       }
     }
-  }
+    return range;
+  });
   VoxelBox box;
   if (high[0] < 0) return box;
   for (int a = 0; a < 3; ++a) {

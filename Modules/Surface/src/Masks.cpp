@@ -28,7 +28,7 @@ Mask maskOf(const Volume<Label>& volume, const std::vector<Label>& labels) {
 }
 
 std::int64_t countIn(const Mask& mask) {
-  return std::count_if(mask.data.begin(), mask.data.end(), [](std::uint8_t m) { return m != 0; });
+  return countWhere(mask.size(), [&](std::size_t v) { return mask[v] != 0; });
 }
 
 std::int64_t countOnEdge(const Mask& mask) {

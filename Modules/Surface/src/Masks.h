@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "Explica/Core/Parallel.h"
 #include "Explica/Core/Volume.h"
 
 #include <cstdint>
@@ -16,6 +17,17 @@ using Mask = Volume<std::uint8_t>;
 
 /// Voxels that are not 0.
 [[nodiscard]] std::int64_t countIn(const Mask& mask);
+
+/// How many numbers below `count` fulfil a condition; asked on several threads.
+template <class Condition>
+[[nodiscard]] std::int64_t countWhere(std::size_t count, const Condition& condition) {
+  constexpr std::size_t kGrain = 1 << 18;  // voxels a task
+  return parallelSum(count, kGrain, std::int64_t{0}, [&](std::size_t begin, std::size_t end) {
+    std::int64_t found = 0;
+    for (std::size_t v = begin; v < end; ++v) found += condition(v);
+    return found;
+  });
+}
 
 /// Those of them that lie on the edge of the image.
 [[nodiscard]] std::int64_t countOnEdge(const Mask& mask);

@@ -3,12 +3,15 @@
 
 #include "MendTogether.h"
 
+#include "Explica/Core/Parallel.h"
 #include "GuardedMesh.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -31,7 +34,11 @@ class JointMesh {
   JointMesh(const std::array<TriangleMesh*, 3>& surfaces, const Eigen::VectorXd& values,
             const MendingLimits& limits, double cell)
       : limits_(limits), values_(values.begin(), values.end()) {
-    for (const TriangleMesh* surface : surfaces) meshes_.emplace_back(*surface, cell);
+    std::array<std::unique_ptr<GuardedMesh>, 3> made;
+    parallelFor(made.size(), 1, [&](std::size_t n) {
+      made[n] = std::make_unique<GuardedMesh>(*surfaces[n], cell);
+    });
+    for (const auto& mesh : made) meshes_.push_back(std::move(*mesh));
   }
 
   [[nodiscard]] const GuardedMesh& first() const { return meshes_.front(); }
@@ -128,16 +135,36 @@ class JointMesh {
   Mending done_;
 };
 
+/// What look(f, found) adds to a list, of all faces there are, in order.
+template <class T, class Look>
+std::vector<T> sortedOfFaces(const JointMesh& mesh, const Look& look) {
+  struct List {
+    std::vector<T> values;
+    void operator+=(const List& other) {
+      values.insert(values.end(), other.values.begin(), other.values.end());
+    }
+  };
+  const auto slots = static_cast<std::size_t>(mesh.first().faceSlots());
+  List all = parallelSum(slots, 4096, List{}, [&](std::size_t begin, std::size_t end) {
+    List part;
+    for (std::size_t n = begin; n < end; ++n) {
+      const auto f = static_cast<std::int32_t>(n);
+      if (mesh.first().hasFace(f)) look(f, part.values);
+    }
+    return part;
+  });
+  std::sort(all.values.begin(), all.values.end());
+  return std::move(all.values);
+}
+
 /// Edges of faces whose area fulfils a condition, those of the smallest face first, each face's
 /// shortest edge first.
 std::vector<Edge> edgesOfSmallest(const JointMesh& mesh, double below) {
-  std::vector<std::pair<double, std::int32_t>> faces;
-  for (std::int32_t f = 0; f < mesh.first().faceSlots(); ++f) {
-    if (!mesh.first().hasFace(f)) continue;
+  using Small = std::pair<double, std::int32_t>;
+  const auto faces = sortedOfFaces<Small>(mesh, [&](std::int32_t f, std::vector<Small>& found) {
     const double area = mesh.areaOf(f);
-    if (area < below) faces.emplace_back(area, f);
-  }
-  std::sort(faces.begin(), faces.end());
+    if (area < below) found.emplace_back(area, f);
+  });
   std::vector<Edge> edges;
   for (const auto& [area, f] : faces) {
     const auto& c = mesh.first().face(f);
@@ -152,18 +179,16 @@ std::vector<Edge> edgesOfSmallest(const JointMesh& mesh, double below) {
 
 /// Edges longer than a length in any of the surfaces, the longest first.
 std::vector<Edge> edgesLongerThan(const JointMesh& mesh, double length) {
-  std::vector<std::pair<double, Edge>> found;
-  for (std::int32_t f = 0; f < mesh.first().faceSlots(); ++f) {
-    if (!mesh.first().hasFace(f)) continue;
+  using Long = std::pair<double, Edge>;
+  const auto found = sortedOfFaces<Long>(mesh, [&](std::int32_t f, std::vector<Long>& mine) {
     const auto& c = mesh.first().face(f);
     for (int k = 0; k < 3; ++k) {
       const Edge e = {c[k], c[(k + 1) % 3]};
-      if (e[0] > e[1] && mesh.first().opposite(e[1], e[0]) >= 0) continue;
       const double own = mesh.lengthOf(e);
-      if (own > length) found.emplace_back(-own, e);
+      if (own <= length || (e[0] > e[1] && mesh.first().opposite(e[1], e[0]) >= 0)) continue;
+      mine.emplace_back(-own, e);
     }
-  }
-  std::sort(found.begin(), found.end());
+  });
   std::vector<Edge> edges;
   for (const auto& [negative, e] : found) edges.push_back(e);
   return edges;
@@ -171,12 +196,15 @@ std::vector<Edge> edgesLongerThan(const JointMesh& mesh, double length) {
 
 /// True if some face or edge of a surface is beyond the limits.
 bool isBeyond(const TriangleMesh& mesh, const MendingLimits& limits) {
-  for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
+  const auto isFaceBeyond = [&](Eigen::Index f) {
     const Point a = mesh.corner(f, 0), b = mesh.corner(f, 1), c = mesh.corner(f, 2);
     if ((b - a).cross(c - a).norm() < 2 * limits.leastArea) return true;
     const double squared =
         std::max({(a - b).squaredNorm(), (b - c).squaredNorm(), (c - a).squaredNorm()});
-    if (squared > limits.longestEdge * limits.longestEdge) return true;
+    return squared > limits.longestEdge * limits.longestEdge;
+  };
+  for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
+    if (isFaceBeyond(f)) return true;
   }
   return false;
 }

@@ -32,6 +32,51 @@ constexpr double kStallRate = 0.5;
 /// Slope of the interpolant, per voxel, below which its direction is round-off.
 constexpr float kFlat = 1e-6F;
 
+/// Where a path is to be cut: how many of its points stay, all if it does not stall.
+///
+/// No part of a path gains more distance than it is long.  So what a part loses of it is no more
+/// than what the whole does, and where the whole loses too little, nobody has to look at its parts.
+template <class DistanceAt>
+class StallSearch {
+ public:
+  StallSearch(const std::vector<float>& along, double step, const DistanceAt& distanceAt)
+      : along_(along), distanceAt_(distanceAt), lostByStep_((1 - kStallRate) * step) {}
+
+  [[nodiscard]] std::size_t run() const {
+    constexpr std::size_t kFirst = 1;  // what is left of a shorter path is none
+    const std::size_t last = along_.size() - 1;
+    if (last < kFirst + kStallSteps) return along_.size();
+    // The last step may be short: a stall that it is part of loses what the other steps do.
+    if (along_[last] - distanceAt_(last) < (kStallSteps - 1) * lostByStep_) return along_.size();
+    const std::size_t found = firstWithin(kFirst, last - 1);
+    if (found < along_.size()) return found;
+    return stallsTo(last) ? last - kStallSteps + 1 : along_.size();
+  }
+
+ private:
+  [[nodiscard]] double lost(std::size_t from, std::size_t to) const {
+    return along_[to] - along_[from] - (distanceAt_(to) - distanceAt_(from));
+  }
+  [[nodiscard]] bool stallsTo(std::size_t k) const {
+    const double way = along_[k] - along_[k - kStallSteps];
+    return distanceAt_(k) - distanceAt_(k - kStallSteps) < kStallRate * way;
+  }
+  /// The first stall between two points of the path.
+  [[nodiscard]] std::size_t firstWithin(std::size_t from, std::size_t to) const {
+    if (to < from + kStallSteps) return along_.size();
+    constexpr double kRounding = 1e-3;  // of what a stall loses; arcs are float32 numbers
+    if (lost(from, to) < (1 - kRounding) * kStallSteps * lostByStep_) return along_.size();
+    if (to == from + kStallSteps) return stallsTo(to) ? from + 1 : along_.size();
+    const std::size_t middle = (from + to + kStallSteps) / 2;
+    const std::size_t found = firstWithin(from, middle);
+    return found < along_.size() ? found : firstWithin(middle - kStallSteps + 1, to);
+  }
+
+  const std::vector<float>& along_;
+  const DistanceAt& distanceAt_;
+  double lostByStep_;  ///< by each whole step of a stall, at least, mm
+};
+
 }  // namespace
 
 Point Trajectory::at(double arc) const {
@@ -198,30 +243,25 @@ bool RibbonField::pastMiddle(const Point& p, const Vector& along, std::int32_t& 
   return (p - nearest.point).dot(along) < -0.2 * std::sqrt(nearest.squaredDistance);
 }
 
-void RibbonField::cutWhereItStalls(Trajectory& path) const {
-  std::int32_t near = 0;
-  const auto distanceAt = [&](const Point& p) {
-    const auto nearest = white_.closestPoint(p, near);
-    near = nearest.face;
-    return std::sqrt(nearest.squaredDistance);
+void RibbonField::cutWhereItStalls(Trajectory& path, std::int32_t near) const {
+  const std::size_t count = path.points.size();
+  std::vector<double> known(count, -1);
+  const auto distanceAt = [&](std::size_t k) {
+    if (known[k] < 0) {
+      const auto nearest = white_.closestPoint(path.points[k], near);
+      near = nearest.face;
+      known[k] = std::sqrt(nearest.squaredDistance);
+    }
+    return known[k];
   };
-  // A path is longer than the distance it has gained by what every part of it loses.
-  const double lost = path.length() - distanceAt(path.points.back());
-  if (lost < (1 - kStallRate) * (kStallSteps - 1) * step_) return;
-  std::vector<double> distance;
-  for (std::size_t k = 0; k < path.points.size(); ++k) {
-    distance.push_back(distanceAt(path.points[k]));
-    if (k < kStallSteps + 1) continue;
-    const double way = path.along[k] - path.along[k - kStallSteps];
-    if (distance[k] - distance[k - kStallSteps] >= kStallRate * way) continue;
-    path.points.resize(k - kStallSteps + 1);
-    path.along.resize(k - kStallSteps + 1);
-    path.end = TrajectoryEnd::Bank;
-    return;
-  }
+  const std::size_t end = StallSearch(path.along, step_, distanceAt).run();
+  if (end == count) return;
+  path.points.resize(end);
+  path.along.resize(end);
+  path.end = TrajectoryEnd::Bank;
 }
 
-Trajectory RibbonField::trace(const Point& start, const Vector& normal) const {
+Trajectory RibbonField::trace(const Point& start, const Vector& normal, std::int32_t face) const {
   Trajectory path;
   path.points.push_back(start);
   path.along.push_back(0);
@@ -243,7 +283,7 @@ Trajectory RibbonField::trace(const Point& start, const Vector& normal) const {
   Vector previous = toAxes(normal);
   double arc = 0;
   Point p = start;
-  std::int32_t near = 0;
+  std::int32_t near = face;
   while (arc < longest_) {
     // Midpoint rule.
     const Vector first = direction(grid_.toIndex(p), previous);
@@ -269,7 +309,7 @@ Trajectory RibbonField::trace(const Point& start, const Vector& normal) const {
       path.points.push_back(p + low * world);
       path.along.push_back(static_cast<float>(arc));
       path.end = end;
-      cutWhereItStalls(path);
+      cutWhereItStalls(path, face);
       return path;
     }
     arc += step_;
@@ -279,7 +319,7 @@ Trajectory RibbonField::trace(const Point& start, const Vector& normal) const {
     path.along.push_back(static_cast<float>(arc));
   }
   path.end = TrajectoryEnd::Outer;
-  cutWhereItStalls(path);
+  cutWhereItStalls(path, face);
   return path;
 }
 

@@ -43,7 +43,8 @@ class RibbonField {
   RibbonField(const CorticalTissue& tissue, const TriangleMesh& white, const Monitor& monitor);
 
   /// Trajectory from a point of the white surface with outward normal `normal`.
-  [[nodiscard]] Trajectory trace(const Point& start, const Vector& normal) const;
+  /// @param face  of the white surface, at the point: only the time hangs on it
+  [[nodiscard]] Trajectory trace(const Point& start, const Vector& normal, std::int32_t face) const;
 
   [[nodiscard]] std::int64_t cutLinks() const { return cutLinks_; }
 
@@ -69,7 +70,8 @@ class RibbonField {
   [[nodiscard]] bool pastMiddle(const Point& p, const Vector& direction, std::int32_t& near) const;
   /// Ends a path where it no longer leaves white matter behind: from there it only follows the
   /// floor between two banks.
-  void cutWhereItStalls(Trajectory& path) const;
+  /// @param near  as of bankAt()
+  void cutWhereItStalls(Trajectory& path, std::int32_t near) const;
 
   const CorticalTissue& tissue_;
   geometry::FaceTree white_;

@@ -57,28 +57,42 @@ class BoxTree {
   std::vector<Box> boxes_;
 };
 
-/// Box tree over a mesh's faces with distance queries.  Keeps a copy of the mesh.
+/// Eight boxes side by side, for vector arithmetic: single precision, rounded outwards.
+struct alignas(64) BoxBlock {
+  static constexpr int kLanes = 8;
+  float lower[3][kLanes], upper[3][kLanes];
+};
+
+/// Hierarchy over a mesh's faces, eight to a node, with distance queries.  Keeps a copy of the
+/// mesh.
 class FaceTree {
  public:
   explicit FaceTree(TriangleMesh mesh);
 
+  /// Of faces that are equally near, to the last bit, the first.
   [[nodiscard]] ClosestPoint closestPoint(const Point& query) const;
-  /// As above, looking at face `near` first: the sooner done, the nearer that is.  Where several
-  /// faces are equally near it may be another one of them.
+  /// The same, looking at face `near` first: the sooner done, the nearer that is.
   [[nodiscard]] ClosestPoint closestPoint(const Point& query, std::int32_t near) const;
-  [[nodiscard]] const BoxTree& boxes() const { return tree_; }
   [[nodiscard]] const TriangleMesh& mesh() const { return mesh_; }
 
  private:
   [[nodiscard]] ClosestPoint nearerThan(ClosestPoint best, const Point& query) const;
+  void fillLevels();
 
   TriangleMesh mesh_;
-  BoxTree tree_;
-  std::vector<std::array<Point, 3>> corners_;  ///< of the faces, in the tree's order of items
+  Point origin_ = Point::Zero();
+  double perMm_ = 1;                           ///< boxes count in half sizes of the mesh
+  std::vector<std::int32_t> items_;            ///< faces in the order of level 0's lanes
+  std::vector<std::array<Point, 3>> corners_;  ///< theirs
+  /// Lane n of the level above bounds block n of a level.
+  std::vector<std::vector<BoxBlock>> levels_;
 };
 
 /// Boxes of a mesh's faces, widened by `margin` mm on every side.
 [[nodiscard]] std::vector<Box> faceBoxes(const TriangleMesh& mesh, double margin = 0);
+
+/// A face at each vertex, the last of them; 0 where there is none.
+[[nodiscard]] std::vector<std::int32_t> faceOfEachVertex(const TriangleMesh& mesh);
 
 /// Nearest point of the triangle (a, b, c) to q.
 [[nodiscard]] Point closestPointOnTriangle(const Point& q, const Point& a, const Point& b,
