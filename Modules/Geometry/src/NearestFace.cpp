@@ -14,8 +14,8 @@
 namespace explica::geometry {
 namespace {
 
-constexpr auto kBoxLanes = static_cast<std::size_t>(BoxBlock::kLanes);
-constexpr int kMostLevels = 11;  // of 2^31 faces
+constexpr auto kBoxLanes = static_cast<std::size_t>(BoxBlock::kLanes);  // boxes a block
+constexpr int kMostLevels = 11;                                         // of 2^31 faces
 /// Relative roundings to single precision, with room to spare: of one number, and of a square of
 /// sums of them.
 constexpr float kBoxRounding = 1.2e-7F, kSquareRounding = 2e-6F;
