@@ -51,6 +51,9 @@ constexpr double kSheetReach = 1.25;
 constexpr double kNearSheet = 0.5;
 /// Less than this is no shortfall, voxels.
 constexpr double kNoSheetShortfall = 0.02;
+/// What an outer sheet keeps from the middle of a closed sulcus, voxels: both banks' trajectories
+/// end there, in one and the same place.
+constexpr double kSulcusGap = 0.1;
 
 double secondsSince(std::chrono::steady_clock::time_point& last) {
   const auto now = std::chrono::steady_clock::now();
@@ -111,7 +114,7 @@ Volume<Label> rolesOf(const TissueMasks& masks) {
 struct Field {
   Annulus annulus;
   harmonic::Interpolant interpolant;
-  std::int64_t sulcalVoxels = 0;
+  std::vector<std::int32_t> sulcal;  ///< voxels beside the middle of a closed sulcus
 };
 
 Field solve(const Volume<Label>& roles, const Monitor& monitor) {
@@ -127,7 +130,7 @@ Field solve(const Volume<Label>& roles, const Monitor& monitor) {
   correspondence::SulcalRecovery recovered = correspondence::recoverSulci(
       harmonic::annulusFromLabels(roles, named, {}, stoppable), {}, stoppable);
   field.annulus = std::move(recovered.annulus);
-  field.sulcalVoxels = static_cast<std::int64_t>(recovered.voxels.size());
+  field.sulcal = std::move(recovered.voxels);
   field.interpolant = harmonic::solveInterpolant(field.annulus, {}, stoppable);
   return field;
 }
@@ -324,6 +327,59 @@ std::int64_t interpolateWays(const TriangleMesh& sheet, Ways& ways,
   return count;
 }
 
+/// Where the outer boundary is the middle between two banks.
+class ClosedSulci {
+ public:
+  explicit ClosedSulci(const Field& field)
+      : annulus_(field.annulus), beside_(field.annulus.numberAt.size(), 0) {
+    const auto strides = annulus_.strides();
+    std::vector<std::uint8_t> isSulcal(static_cast<std::size_t>(annulus_.count()), 0);
+    for (const std::int32_t n : field.sulcal) isSulcal[n] = 1;
+    for (std::size_t p = 0; p < beside_.size(); ++p) {
+      const std::int32_t n = annulus_.numberAt[p];
+      if (n >= 0 && isSulcal[n]) beside_[p] = 1;
+    }
+    strides_ = {strides[0], strides[1], strides[2]};
+  }
+
+  /// True if a corner of the point's cell lies beside a middle.
+  [[nodiscard]] bool at(const Point& point) const {
+    const Vector index = annulus_.grid.toIndex(point);
+    for (int c = 0; c < 8; ++c) {
+      std::ptrdiff_t place = 0;
+      bool within = true;
+      for (int a = 0; a < 3; ++a) {
+        const int along = static_cast<int>(std::floor(index[a])) + (c >> a & 1) - annulus_.first[a];
+        within = within && along >= 0 && along < annulus_.size[a];
+        place += along * strides_[a];
+      }
+      if (within && beside_[place]) return true;
+    }
+    return false;
+  }
+
+ private:
+  const Annulus& annulus_;
+  std::array<std::ptrdiff_t, 3> strides_ = {};
+  std::vector<std::uint8_t> beside_;
+};
+
+/// Ends ways that lead to the middle of a closed sulcus a little before it.
+void keepFromMiddles(const ClosedSulci& sulci, double gap, std::vector<Trajectory>& paths) {
+  parallelFor(paths.size(), 1024, [&](std::size_t v) {
+    Trajectory& path = paths[v];
+    if (path.length() <= gap || !sulci.at(path.points.back())) return;
+    const double end = path.length() - gap;
+    const Point last = path.at(end);
+    while (path.along.size() > 1 && path.along[path.along.size() - 2] >= end) {
+      path.along.pop_back();
+      path.points.pop_back();
+    }
+    path.points.back() = last;
+    path.along.back() = static_cast<float>(end);
+  });
+}
+
 /// The way to half depth.
 std::vector<Trajectory> waysToMiddle(const Ways& ways) {
   std::vector<Trajectory> middle(ways.inward.size());
@@ -437,14 +493,16 @@ Eigen::VectorXd curvatureOfSheet(const TriangleMesh& mesh) {
 
 /// Inner, middle and outer surface out of the sheet.
 void growSheets(const TriangleMesh& sheet, const Ways& ways, const TrajectoryTracer& tracer,
-                const SurfaceOptions& options, CorticalSurfaces& made) {
+                const ClosedSulci& sulci, const SurfaceOptions& options, CorticalSurfaces& made) {
   const double edge = made.white.edgeLength;
   const double voxel = tracer.annulus().grid.spacing.minCoeff();
   const auto backTo = [&](double target) {
-    return [&tracer, target, voxel](std::int32_t, const Point& point, const Vector&) {
+    return [&tracer, &sulci, target, voxel](std::int32_t, const Point& point, const Vector&) {
       const correspondence::Trace trace = tracer.trace(point, target);
-      const bool near = trace.reached && (trace.point - point).norm() <= kNearSheet * voxel;
-      return near ? trace.point : point;
+      if (!trace.reached || (trace.point - point).norm() > kNearSheet * voxel) return point;
+      if (target == 0 || !sulci.at(trace.point)) return trace.point;
+      const auto outward = tracer.direction(point);
+      return outward ? Point(trace.point - kSulcusGap * voxel * *outward) : point;
     };
   };
   const auto shortOf = [&](double target) -> Shortfall {
@@ -465,8 +523,9 @@ void growSheets(const TriangleMesh& sheet, const Ways& ways, const TrajectoryTra
   const int steps = std::max(2, options.steps / 2);
   Grown inner =
       grow(sheet, ways.inward, edge, steps, least, backTo(0), shortOf(0), room, relaxation);
-  Grown outer =
-      grow(sheet, ways.outward, edge, steps, least, backTo(1), shortOf(1), room, relaxation);
+  std::vector<Trajectory> outward = ways.outward;
+  keepFromMiddles(sulci, kSulcusGap * voxel, outward);
+  Grown outer = grow(sheet, outward, edge, steps, least, backTo(1), shortOf(1), room, relaxation);
   Grown middle = grow(sheet, waysToMiddle(ways), edge, 2, least, stay, unknown, room, sliding);
   made.white.mesh = std::move(inner.mesh);
   made.pial = std::move(outer.mesh);
@@ -494,7 +553,7 @@ CorticalSurfaces buildSheets(const TissueMasks& masks, const SurfaceOptions& opt
   made.seconds.topology = secondsSince(last);
   monitor.progress(0.05, "harmonic interpolant");
   const Field field = solve(roles, monitor);
-  made.cutLinks = field.sulcalVoxels;
+  made.cutLinks = static_cast<std::int64_t>(field.sulcal.size());
   made.seconds.interpolant = secondsSince(last);
 
   monitor.progress(0.25, "extracting the sheet");
@@ -524,7 +583,8 @@ CorticalSurfaces buildSheets(const TissueMasks& masks, const SurfaceOptions& opt
   }
   made.seconds.trajectories = secondsSince(last);
   monitor.progress(0.7, "growing the surfaces");
-  growSheets(sheet, ways, tracer, options, made);
+  const ClosedSulci sulci(field);
+  growSheets(sheet, ways, tracer, sulci, options, made);
   made.seconds.growing = secondsSince(last);
 
   monitor.progress(0.95, "curvature");

@@ -124,6 +124,20 @@ TEST(TissueSheet, ClosesPocketsAndSpecksInTheTissue) {
   }
 }
 
+TEST(TissueSheet, BanksOfAClosedSulcusReachItsMiddle) {
+  // A groove as wide as twice the cortex, aslant to the grid, that nothing but grey matter fills.
+  const auto groove = [](const Vector& p) -> Label {
+    const double across = (p.x() + 0.3 * p.y() + 0.2 * p.z()) / std::sqrt(1.13);
+    if (p.y() > 11) return kOutside;
+    return p.y() > 7 || (std::abs(across) < 4 && p.y() > -9) ? kGrey : kWhite;
+  };
+  const CorticalSurfaces made = sheetsOf(blockOf(44, 1, groove), 8000);
+  expectSound(made, 1, 1);
+  EXPECT_GT(made.cutLinks, 500);
+  EXPECT_LT(static_cast<double>(made.heldBackPial),
+            0.02 * static_cast<double>(made.mid.vertexCount()));
+}
+
 TEST(TissueSheet, ScalesWithTheUnitOfLength) {
   const CorticalSurfaces one = sheetsOf(blockOf(40, 1, cutShell), 2000);
   Volume<Label> labels = blockOf(40, 1, cutShell);
