@@ -7,7 +7,11 @@
 #include "Field.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <numeric>
+#include <span>
+#include <thread>
 #include <utility>
 
 namespace explica::correspondence {
@@ -30,14 +34,10 @@ constexpr double kLambda = 2;
 /// axes, then the length, mm; NaN where the trajectory did not arrive.
 using Arrival = Eigen::Array4f;
 
-/// Tissue in steps of u: those of one step do not depend on each other.  Ranks, each step's in
-/// storage order.
+/// Tissue in steps of u: those of one step do not depend on each other.
 struct Steps {
-  std::vector<std::uint16_t> of;    ///< per rank
-  std::vector<std::int32_t> rank;   ///< step after step
-  std::vector<std::int32_t> start;  ///< of each step in `rank`, and the end
-
-  [[nodiscard]] std::size_t count() const { return start.size() - 1; }
+  std::size_t count = 0;
+  std::vector<std::uint16_t> of;  ///< per rank
 };
 
 /// Steps so small that nearly everywhere the first grid face upwind lies in an earlier one: its
@@ -63,36 +63,90 @@ Steps stepsOf(const Tracer& tracer) {
   std::nth_element(slope.begin(), small, slope.end());
   const auto count = static_cast<int>(
       *small > 0 ? std::clamp(std::ceil(kStepsPerVoxel / *small), kFewest, kMost) : kMost);
-
   Steps steps;
+  steps.count = count;
   steps.of.resize(n);
-  const std::size_t blocks = (n + kBlock - 1) / kBlock;
-  std::vector<std::int32_t> cursor(blocks * count, 0);
-  parallelForBlocks(n, kBlock, [&](std::size_t begin, std::size_t end) {
-    std::int32_t* own = cursor.data() + begin / kBlock * count;
-    for (std::size_t r = begin; r < end; ++r) {
-      const float u = std::clamp(tracer.node[r][3], 0.0F, 1.0F);
-      const int step = std::min(static_cast<int>(u * static_cast<float>(count)), count - 1);
-      steps.of[r] = static_cast<std::uint16_t>(step);
-      ++own[step];
-    }
-  });
-  std::int32_t next = 0;
-  for (int step = 0; step < count; ++step) {
-    steps.start.push_back(next);
-    for (std::size_t block = 0; block < blocks; ++block) {
-      next += std::exchange(cursor[block * count + step], next);
-    }
-  }
-  steps.start.push_back(next);
-  steps.rank.resize(n);
-  parallelForBlocks(n, kBlock, [&](std::size_t begin, std::size_t end) {
-    std::int32_t* own = cursor.data() + begin / kBlock * count;
-    for (std::size_t r = begin; r < end; ++r) {
-      steps.rank[own[steps.of[r]]++] = static_cast<std::int32_t>(r);
-    }
+  parallelFor(n, kBlock, [&](std::size_t r) {
+    const float u = std::clamp(tracer.node[r][3], 0.0F, 1.0F);
+    const int step = std::min(static_cast<int>(u * static_cast<float>(count)), count - 1);
+    steps.of[r] = static_cast<std::uint16_t>(step);
   });
   return steps;
+}
+
+/// Tissue in blocks of space, the blocks and the ranks of each in the order of steps.  What a
+/// trajectory reads on its way to the first grid face lies in its block or beside it: a block's
+/// share of every array fits into a processor's own cache.
+struct Blocks {
+  struct Range {
+    std::int32_t begin = 0, end = 0;  ///< in `rank`
+  };
+  std::vector<std::int32_t> rank;  ///< of one block after the other in space
+  std::vector<Range> ranges;       ///< per block
+
+  [[nodiscard]] std::span<const std::int32_t> of(std::size_t block) const {
+    const Range& range = ranges[block];
+    return {rank.data() + range.begin, rank.data() + range.end};
+  }
+};
+
+/// Sorts ranks by a key below `keys`, equal ones as they were; returns where each key begins.
+template <class KeyOf>
+std::vector<std::int32_t> sortBy(std::span<std::int32_t> ranks, std::size_t keys,
+                                 const KeyOf& keyOf) {
+  std::vector<std::int32_t> start(keys + 1, 0);
+  for (const std::int32_t r : ranks) ++start[keyOf(r) + 1];
+  for (std::size_t k = 0; k < keys; ++k) start[k + 1] += start[k];
+  const std::vector<std::int32_t> before(ranks.begin(), ranks.end());
+  std::vector<std::int32_t> cursor(start.begin(), start.end() - 1);
+  for (const std::int32_t r : before) ranks[cursor[keyOf(r)]++] = r;
+  return start;
+}
+
+Blocks blocksOf(const Tracer& tracer, const Steps& steps) {
+  constexpr std::array<int, 3> kSize = {32, 16, 16};  // voxels
+  const std::array<int, 3>& size = tracer.annulus.size;
+  const int wide = (size[0] + kSize[0] - 1) / kSize[0], high = (size[1] + kSize[1] - 1) / kSize[1];
+  const int slabs = (size[2] + kSize[2] - 1) / kSize[2];
+  const auto columnOf = [&](std::int32_t r) {
+    const std::int32_t row = tracer.placeOf[r] / size[0];
+    const std::int32_t i = tracer.placeOf[r] - row * size[0], j = row % size[1];
+    return i / kSize[0] + wide * (j / kSize[1]);
+  };
+  // Ranks are in storage order, so that those of a slab follow each other.
+  const auto rankAtSlice = [&](int k) {
+    const auto place = static_cast<std::int64_t>(k) * size[0] * size[1];
+    const auto& places = tracer.placeOf;
+    return std::lower_bound(places.begin(), places.end(), place) - places.begin();
+  };
+  Blocks blocks;
+  blocks.rank.resize(tracer.placeOf.size());
+  std::vector<std::vector<Blocks::Range>> bySlab(slabs);
+  parallelFor(slabs, 1, [&](std::size_t slab) {
+    const int slice = static_cast<int>(slab) * kSize[2];
+    const auto begin = static_cast<std::int32_t>(rankAtSlice(slice));
+    const auto end = static_cast<std::int32_t>(rankAtSlice(std::min(slice + kSize[2], size[2])));
+    const std::span ranks(blocks.rank.data() + begin, blocks.rank.data() + end);
+    std::iota(ranks.begin(), ranks.end(), begin);
+    sortBy(ranks, steps.count, [&](std::int32_t r) { return steps.of[r]; });
+    const std::vector<std::int32_t> start =
+        sortBy(ranks, static_cast<std::size_t>(wide) * high, columnOf);
+    for (std::size_t column = 0; column + 1 < start.size(); ++column) {
+      if (start[column] == start[column + 1]) continue;
+      bySlab[slab].push_back({begin + start[column], begin + start[column + 1]});
+    }
+  });
+  for (const auto& ranges : bySlab) {
+    blocks.ranges.insert(blocks.ranges.end(), ranges.begin(), ranges.end());
+  }
+  std::stable_sort(blocks.ranges.begin(), blocks.ranges.end(),
+                   [&](const Blocks::Range& one, const Blocks::Range& two) {
+                     const auto middleStep = [&](const Blocks::Range& range) {
+                       return steps.of[blocks.rank[std::midpoint(range.begin, range.end)]];
+                     };
+                     return middleStep(one) < middleStep(two);
+                   });
+  return blocks;
 }
 
 /// Ranks by ascending u (radix sort of 32-bit fixed point; equal values by rank).
@@ -164,29 +218,45 @@ class Sweep {
   }
 
   /// The hybrid: follows each trajectory to the first grid face whose corners belong to earlier
-  /// steps and agree.
-  void sweep(const Steps& steps, const Monitor& monitor) {
-    const std::size_t count = steps.count();
+  /// steps and agree.  What is beside the wall first; then followBlock() of every block.
+  void begin(const Steps& steps) {
     turn_.resize(arrivals_.size());
+    state_ = std::vector<std::atomic<State>>(arrivals_.size());
+    ownTurn_.resize(arrivals_.size());
     parallelFor(arrivals_.size(), kBlock, [&](std::size_t r) {
       const std::size_t step = steps.of[r];
-      const auto turn = static_cast<std::uint16_t>(1 + (inner_ ? step : count - 1 - step));
-      turn_[r] = onCut(static_cast<std::int32_t>(r)) ? kNever : turn;
+      ownTurn_[r] = static_cast<std::uint16_t>(1 + (inner_ ? step : steps.count - 1 - step));
+      turn_[r] = onCut(static_cast<std::int32_t>(r)) ? kNever : ownTurn_[r];
     });
     traceBesideWall();
-    for (std::size_t k = 0; k < count && !monitor.shouldStop(); ++k) {
-      const std::size_t step = inner_ ? k : count - 1 - k;
-      const std::int32_t* ranks = steps.rank.data() + steps.start[step];
-      traced_ += parallelSum(steps.start[step + 1] - steps.start[step], 256, std::size_t{0},
-                             [&](std::size_t begin, std::size_t end) {
-                               std::size_t sum = 0;
-                               for (std::size_t v = begin; v < end; v += kBeside) {
-                                 sum +=
-                                     traceToFace(ranks, v, end, static_cast<std::uint16_t>(k + 1));
-                               }
-                               return sum;
-                             });
+  }
+
+  /// Follows the trajectories of a block's voxels, each after those at the corners that it meets.
+  /// Blocks may be followed beside each other and in any order.
+  void followBlock(std::span<const std::int32_t> ranks) {
+    std::size_t v = 0;
+    while (v < ranks.size()) {
+      std::int32_t open[kBeside];
+      int count = 0;
+      for (; v < ranks.size() && count < kBeside; ++v) {
+        const std::int32_t r = inner_ ? ranks[v] : ranks[ranks.size() - 1 - v];
+        if (state_[r].load(std::memory_order_relaxed) == State::Open) open[count++] = r;
+      }
+      Tracer::ToPlane first[kBeside];
+      tracer_.toPlane(open, first, count, uphill_);
+      for (int w = 0; w < count; ++w) {
+        if (take(open[w])) settle(open[w], first[w]);
+      }
     }
+  }
+
+  void end() {
+    traced_ +=
+        parallelSum(state_.size(), kBlock, std::size_t{0}, [&](std::size_t begin, std::size_t end) {
+          return static_cast<std::size_t>(
+              std::count(state_.begin() + static_cast<std::ptrdiff_t>(begin),
+                         state_.begin() + static_cast<std::ptrdiff_t>(end), State::Followed));
+        });
   }
 
   [[nodiscard]] const Arrival& at(std::size_t rank) const { return arrivals_[rank]; }
@@ -194,6 +264,40 @@ class Sweep {
 
  private:
   static constexpr std::uint16_t kNever = 0xffff;
+
+  /// How far a voxel is: its arrival may be read from `Interpolated` on.
+  enum class State : std::uint8_t {
+    Open,
+    Taken,         ///< a thread is at it
+    Interpolated,  ///< at the first grid face
+    Followed       ///< further than that
+  };
+
+  /// True for one thread only: it is to settle the voxel.
+  [[nodiscard]] bool take(std::int32_t r) {
+    State open = State::Open;
+    return state_[r].compare_exchange_strong(open, State::Taken, std::memory_order_relaxed);
+  }
+
+  void settle(std::int32_t r, const Tracer::ToPlane& first) {
+    const bool onward = traceToFace(r, first, ownTurn_[r]);
+    state_[r].store(onward ? State::Followed : State::Interpolated, std::memory_order_release);
+  }
+
+  /// Settles a voxel unless it is, or waits until the thread that has taken it is done.  Threads
+  /// cannot wait for each other in a ring: whoever waits has taken voxels of later turns only.
+  void settle(std::int32_t r) {
+    const auto isSettled = [&] {
+      return state_[r].load(std::memory_order_acquire) >= State::Interpolated;
+    };
+    if (isSettled()) return;
+    if (take(r)) {
+      Tracer::ToPlane first;
+      tracer_.toPlane(&r, &first, 1, uphill_);
+      settle(r, first);
+    }
+    while (!isSettled()) std::this_thread::yield();
+  }
 
   [[nodiscard]] bool found(std::int32_t r) const { return !std::isnan(arrivals_[r][3]); }
   [[nodiscard]] bool onCut(std::int32_t r) const {
@@ -205,17 +309,22 @@ class Sweep {
   }
 
   void traceBesideWall() {
+    const auto ended = [&](std::int32_t r, const Tracer::Walk& walk, bool done) {
+      if (!done) return;
+      store(r, tracer_.placeOf[r], walk);
+      if (!onCut(r)) turn_[r] = 0;
+      if (!state_.empty()) state_[r].store(State::Interpolated, std::memory_order_relaxed);
+    };
     traced_ += parallelSum(arrivals_.size(), 1 << 12, std::size_t{0},
                            [&](std::size_t begin, std::size_t end) {
                              std::size_t sum = 0;
-                             traceToWall([&] {
+                             const auto next = [&] {
                                while (begin < end && !isBesideWall(begin)) ++begin;
                                if (begin == end) return -1;
-                               const auto r = static_cast<std::int32_t>(begin++);
                                ++sum;
-                               if (!onCut(r)) turn_[r] = 0;
-                               return r;
-                             });
+                               return static_cast<std::int32_t>(begin++);
+                             };
+                             tracer_.followEach(target_, uphill_, next, ended);
                              return sum;
                            });
   }
@@ -225,65 +334,6 @@ class Sweep {
     if (annulus_.irregular(n) < 0) return false;
     const auto& links = annulus_.links[n];
     return std::find(links.begin(), links.end(), wall_) != links.end();
-  }
-
-  /// Voxels of a step lie apart in memory: brings what following those next in turn will read
-  /// towards the caches, each address once what it depends on has arrived.
-  void fetch(const std::int32_t* ranks, std::size_t v, std::size_t end) const {
-    constexpr std::size_t kAhead = 4;
-    if (v + 3 * kAhead < end) {
-      const std::int32_t r = ranks[v + 3 * kAhead];
-      __builtin_prefetch(&tracer_.placeOf[r]);
-      __builtin_prefetch(&tracer_.node[r]);
-    }
-    if (v + 2 * kAhead < end) {
-      const std::int32_t r = ranks[v + 2 * kAhead];
-      tracer_.fetchCell(tracer_.cellAhead(r, uphill_));
-      forFaceAhead(r, [&](std::int32_t place) { __builtin_prefetch(&tracer_.rankAt[place]); });
-    }
-    if (v + kAhead < end) {
-      const std::int32_t r = ranks[v + kAhead];
-      tracer_.fetchCorners(tracer_.cellAhead(r, uphill_));
-      forFaceAhead(r, [&](std::int32_t place) {
-        const std::int32_t m = tracer_.rankAt[place];
-        if (m < 0) return;
-        __builtin_prefetch(&arrivals_[m]);
-        __builtin_prefetch(&turn_[m]);
-      });
-    }
-  }
-
-  /// Box voxels that fromFace() reads at the first face in a voxel's way: the corners, and those
-  /// before and after them.
-  template <class Visit>
-  void forFaceAhead(std::int32_t r, const Visit& visit) const {
-    const auto& node = tracer_.node[r];
-    const int axes = annulus_.planar ? 2 : 3;
-    int axis = 0;
-    float fastest = -1;
-    for (int a = 0; a < axes; ++a) {
-      const float speed = std::abs(node[a]) / (spacing_[a] * spacing_[a]);
-      if (speed > fastest) {
-        fastest = speed;
-        axis = a;
-      }
-    }
-    const auto strides = annulus_.strides();
-    const std::int32_t b = strides[axis == 0 ? 1 : 0];
-    const std::int32_t c = annulus_.planar ? 0 : strides[axis == 2 ? 1 : 2];
-    const bool up = static_cast<float>(uphill_) * node[axis] > 0;
-    const std::int32_t p = tracer_.cellAhead(r, uphill_) + (up ? strides[axis] : 0);
-    const auto visitInBox = [&](std::int32_t place) {
-      if (static_cast<std::size_t>(place) < tracer_.rankAt.size()) visit(place);
-    };
-    for (int e = -1; e < 3; ++e) {
-      visitInBox(p + e * b);
-      if (c == 0) continue;
-      visitInBox(p + c + e * b);
-      if (e == 0 || e == 1) continue;
-      visitInBox(p + e * c);
-      visitInBox(p + e * c + b);
-    }
   }
 
   /// Follows the trajectories of all ranks that next() gives until it gives -1.
@@ -350,23 +400,6 @@ class Sweep {
     value[3] += 1;
     arrivals_[r] = (value / sum).cast<float>();
     return true;
-  }
-
-  /// traceToFace() of those of the next kBeside ranks whose arrivals are not known; how many went
-  /// on.
-  std::size_t traceToFace(const std::int32_t* ranks, std::size_t begin, std::size_t end,
-                          std::uint16_t turn) {
-    std::int32_t open[kBeside];
-    int count = 0;
-    for (std::size_t v = begin; v < std::min(begin + kBeside, end); ++v) {
-      fetch(ranks, v, end);
-      if (!found(ranks[v])) open[count++] = ranks[v];
-    }
-    Tracer::ToPlane first[kBeside];
-    tracer_.toPlane(open, first, count, uphill_);
-    std::size_t sum = 0;
-    for (int w = 0; w < count; ++w) sum += traceToFace(open[w], first[w], turn);
-    return sum;
   }
 
   bool traceToFace(std::int32_t r, std::uint16_t turn) {
@@ -491,10 +524,12 @@ class Sweep {
     return true;
   }
 
-  /// Arrival at a box voxel that has had its turn; null otherwise.
-  [[nodiscard]] const Arrival* earlier(std::int32_t place, std::uint16_t turn) const {
+  /// Arrival at a box voxel with an earlier turn; null otherwise.
+  [[nodiscard]] const Arrival* earlier(std::int32_t place, std::uint16_t turn) {
     const std::int32_t m = tracer_.rankAt[place];
-    return m >= 0 && turn_[m] < turn && found(m) ? &arrivals_[m] : nullptr;
+    if (m < 0 || turn_[m] >= turn) return nullptr;
+    if (turn_[m] > 0) settle(m);
+    return found(m) ? &arrivals_[m] : nullptr;
   }
 
   static float apart(const Arrival& difference) {
@@ -505,7 +540,7 @@ class Sweep {
   /// f (1 - f) / 2 times the second difference along four voxels in line: `low` and `high` at the
   /// face, and beyond them whichever have had their turn.
   [[nodiscard]] Arrival bend(std::int32_t beyondLow, const Arrival& low, const Arrival& high,
-                             std::int32_t beyondHigh, float f, std::uint16_t turn) const {
+                             std::int32_t beyondHigh, float f, std::uint16_t turn) {
     Arrival second = Arrival::Zero();
     int found = 0;
     const auto add = [&](const Arrival* outside, const Arrival& middle, const Arrival& other) {
@@ -531,9 +566,32 @@ class Sweep {
   float lambda_;
   Eigen::Array3f spacing_;
   std::size_t traced_ = 0;
-  std::vector<Arrival> arrivals_;    ///< per rank
-  std::vector<std::uint16_t> turn_;  ///< per rank: only arrivals with smaller turns are read
+  std::vector<Arrival> arrivals_;          ///< per rank
+  std::vector<std::uint16_t> turn_;        ///< per rank: only arrivals with smaller turns are read
+  std::vector<std::uint16_t> ownTurn_;     ///< per rank: as what it reads
+  std::vector<std::atomic<State>> state_;  ///< per rank
 };
+
+/// The hybrid from both sides: blocks are taken in the order of u, so that most of what one reads
+/// is there.
+void sweepBlocks(const Tracer& tracer, Sweep& inner, Sweep& outer, const Monitor& monitor) {
+  const Steps steps = stepsOf(tracer);
+  const Blocks blocks = blocksOf(tracer, steps);
+  const std::size_t count = blocks.ranges.size();
+  parallelFor(2, 1, [&](std::size_t side) { (side == 0 ? inner : outer).begin(steps); });
+  std::atomic<std::size_t> next = 0;
+  parallelFor(2 * count, 1, [&](std::size_t) {
+    if (monitor.shouldStop()) return;
+    const std::size_t turn = next++, block = turn / 2;
+    if (turn % 2 == 0) {
+      inner.followBlock(blocks.of(block));
+    } else {
+      outer.followBlock(blocks.of(count - 1 - block));
+    }
+  });
+  inner.end();
+  outer.end();
+}
 
 /// Share of tissue voxels beside a boundary from which on all trajectories are followed: tissue is
 /// then so thin that looking for faces to stop at costs more than the rest of the way.
@@ -565,8 +623,7 @@ Correspondence findCorrespondences(const Annulus& annulus, const Interpolant& in
     monitor.progress(0.5, "correspondences");
     outer.traceAll(monitor);
   } else if (hybrid) {
-    const Steps steps = stepsOf(field);
-    parallelFor(2, 1, [&](std::size_t side) { (side == 0 ? inner : outer).sweep(steps, monitor); });
+    sweepBlocks(field, inner, outer, monitor);
   } else {
     const auto order = orderByValue(field, interpolant.u);
     parallelFor(2, 1, [&](std::size_t side) { (side == 0 ? inner : outer).sweep(order, monitor); });

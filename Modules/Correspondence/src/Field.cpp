@@ -585,22 +585,6 @@ std::int32_t TrajectoryTracer::Field::cellAhead(std::int32_t rank, int uphill) c
   return cell;
 }
 
-void TrajectoryTracer::Field::fetchCell(std::int32_t cell) const {
-  const auto strides = annulus.strides();
-  __builtin_prefetch(&cellAt_[cell]);
-  for (int row = 0; row < (flat ? 2 : 4); ++row) {
-    __builtin_prefetch(&rankAt[cell + (row & 1) * strides[1] + (row >> 1) * strides[2]]);
-  }
-}
-
-void TrajectoryTracer::Field::fetchCorners(std::int32_t cell) const {
-  const auto strides = annulus.strides();
-  for (int row = 0; row < (flat ? 2 : 4); ++row) {
-    const std::int32_t m = rankAt[cell + (row & 1) * strides[1] + (row >> 1) * strides[2]];
-    if (m >= 0) __builtin_prefetch(&node[m]);
-  }
-}
-
 void TrajectoryTracer::Field::toPlane(const std::int32_t* ranks, ToPlane* steps, int count,
                                       int uphill) const {
   const std::int32_t row = annulus.size[0], rows = annulus.size[1];

@@ -64,10 +64,6 @@ struct TrajectoryTracer::Field {
 
   /// Cell that the trajectory through a tissue voxel's centre enters: its lowest corner in the box.
   [[nodiscard]] std::int32_t cellAhead(std::int32_t rank, int uphill) const;
-  /// Brings what sampling a cell reads towards the caches: what its corners are, and, once that has
-  /// arrived, the corners.
-  void fetchCell(std::int32_t cell) const;
-  void fetchCorners(std::int32_t cell) const;
 
   [[nodiscard]] Trace run(Walk walk, double target, int uphill) const;
 
