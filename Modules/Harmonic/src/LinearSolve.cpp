@@ -24,25 +24,32 @@ struct Pair {
 /// y = A x, where x has single precision.
 void apply(const Annulus& annulus, const Stencil& stencil, const std::vector<float>& x,
            std::vector<double>& y) {
+  const auto ofStrand = [&](const Strand& strand) {
+    std::array<const float*, 6> near{};
+    for (int d = 0; d < 6; ++d) near[d] = x.data() + strand.links[d];
+    const float* own = x.data() + strand.begin;
+    double* to = y.data() + strand.begin;
+    const std::array<double, 3> weight = {stencil.regular[0], stencil.regular[1],
+                                          stencil.regular[2]};
+    const auto pair = [&](int a, std::int32_t k) {
+      return weight[a] *
+             (static_cast<double>(near[2 * a][k]) + static_cast<double>(near[2 * a + 1][k]));
+    };
+#pragma GCC ivdep
+    for (std::int32_t k = 0; k < strand.count; ++k) {
+      to[k] = static_cast<double>(own[k]) - pair(0, k) - pair(1, k) - pair(2, k);
+    }
+  };
+  const auto ofIrregular = [&](std::size_t n, std::size_t row) {
+    double sum = x[n];
+    for (int d = 0; d < 6; ++d) {
+      const std::int32_t m = annulus.links[n][d];
+      if (m >= 0) sum -= static_cast<double>(stencil.weights[row][d]) * x[m];
+    }
+    y[n] = sum;
+  };
   for (int colour = 0; colour < 2; ++colour) {
-    forRunsOf(annulus, colour, [&](std::int32_t begin, std::int32_t end, std::int32_t offset) {
-      parallelFor(end - begin, kSolveGrain, [&, begin, offset](std::size_t k) {
-        const std::size_t n = begin + k;
-        const auto& l = annulus.links[n];
-        double sum = x[n];
-        if (offset < 0) {
-          for (int a = 0; a < 3; ++a) {
-            sum -= stencil.regular[a] *
-                   (static_cast<double>(x[l[2 * a]]) + static_cast<double>(x[l[2 * a + 1]]));
-          }
-        } else {
-          for (int d = 0; d < 6; ++d) {
-            if (l[d] >= 0) sum -= static_cast<double>(stencil.weights[k + offset][d]) * x[l[d]];
-          }
-        }
-        y[n] = sum;
-      });
-    });
+    forVoxelsOf(annulus, stencil, colour, ofStrand, ofIrregular);
   }
 }
 

@@ -74,60 +74,56 @@ void MultigridHierarchy::solve(int level) {
   smoothCoarse(l, false);
 }
 
-void MultigridHierarchy::cycle(const std::vector<float>& r, std::vector<float>& e) {
-  const auto& links = annulus.links;
-  const auto w = stencil.regular;
-  const auto irregularSum = [&](std::size_t n, std::size_t row) {
-    float sum = 0;
-    for (int d = 0; d < 6; ++d) {
-      const std::int32_t m = links[n][d];
-      if (m >= 0) sum += stencil.weights[row][d] * e[m];
-    }
-    return sum;
+void MultigridHierarchy::sweep(int colour, const std::vector<float>& r,
+                               std::vector<float>& e) const {
+  const auto ofStrand = [&](const Strand& strand) {
+    const float* from = r.data() + strand.begin;
+    float* to = e.data() + strand.begin;
+    sumNeighbours(strand, stencil.regular, e.data(),
+                  [&](std::int32_t k, float sum) { to[k] = from[k] + sum; });
   };
-  const auto regularSum = [&](std::size_t n) {
-    const auto& l = links[n];
-    return w[0] * (e[l[0]] + e[l[1]]) + w[1] * (e[l[2]] + e[l[3]]) + w[2] * (e[l[4]] + e[l[5]]);
+  const auto ofIrregular = [&](std::size_t n, std::size_t row) {
+    e[n] = r[n] + irregularSum(n, row, e);
   };
-  const auto sweep = [&](int colour) {
-    forRunsOf(annulus, colour, [&](std::int32_t begin, std::int32_t end, std::int32_t offset) {
-      if (offset < 0) {
-        parallelFor(end - begin, kGrain, [&, begin](std::size_t k) {
-          e[begin + k] = r[begin + k] + regularSum(begin + k);
-        });
-      } else {
-        parallelFor(end - begin, kGrain, [&, begin, offset](std::size_t k) {
-          e[begin + k] = r[begin + k] + irregularSum(begin + k, k + offset);
-        });
-      }
-    });
+  forVoxelsOf(annulus, stencil, colour, ofStrand, ofIrregular);
+}
+
+void MultigridHierarchy::restrictEven(const std::vector<float>& r, const std::vector<float>& e) {
+  const auto diagonal = static_cast<float>(stencil.regularDiagonal);
+  const auto ofStrand = [&](const Strand& strand) {
+    const float *from = r.data() + strand.begin, *at = e.data() + strand.begin;
+    float* to = evenResidual.data() + strand.begin;
+    sumNeighbours(strand, stencil.regular, e.data(),
+                  [&](std::int32_t k, float sum) { to[k] = diagonal * (from[k] - at[k] + sum); });
+  };
+  const auto ofIrregular = [&](std::size_t n, std::size_t row) {
+    evenResidual[n] =
+        stencil.diagonal[row] * stencil.share[row] * (r[n] - e[n] + irregularSum(n, row, e));
   };
   const std::int32_t red = annulus.runEnd[1];
-  parallelFor(red, kGrain, [&](std::size_t n) { e[n] = r[n]; });
-  sweep(1);
+  evenResidual.resize(red);
+  forVoxelsOf(annulus, stencil, 0, ofStrand, ofIrregular);
+  const MultigridTransfer& t = transfers[0];
+  MultigridLevel& next = coarse[0];
+  parallelFor(next.count, kGrain / 4, [&](std::size_t c) {
+    float sum = 0;
+    for (std::int32_t s = t.childStart[c]; s < t.childStart[c + 1]; ++s) {
+      if (t.child[s] < red) sum += evenResidual[t.child[s]];
+    }
+    next.b[c] = sum;
+  });
+}
+
+void MultigridHierarchy::cycle(const std::vector<float>& r, std::vector<float>& e) {
+  parallelFor(annulus.runEnd[1], kGrain, [&](std::size_t n) { e[n] = r[n]; });
+  sweep(1, r, e);
   if (!coarse.empty()) {
-    const MultigridTransfer& t = transfers[0];
-    MultigridLevel& next = coarse[0];
-    const auto diagonal = static_cast<float>(stencil.regularDiagonal);
-    parallelFor(next.count, kGrain / 4, [&](std::size_t c) {
-      float sum = 0;
-      for (std::int32_t s = t.childStart[c]; s < t.childStart[c + 1]; ++s) {
-        const std::int32_t n = t.child[s];
-        if (n >= red) continue;
-        const std::int32_t row = annulus.irregular(n);
-        if (row < 0) {
-          sum += diagonal * (r[n] - e[n] + regularSum(n));
-        } else {
-          sum += stencil.diagonal[row] * stencil.share[row] * (r[n] - e[n] + irregularSum(n, row));
-        }
-      }
-      next.b[c] = sum;
-    });
+    restrictEven(r, e);
     solve(1);
     prolong(0, e);
   }
-  sweep(0);
-  sweep(1);
+  sweep(0, r, e);
+  sweep(1, r, e);
 }
 
 Multigrid::Multigrid(const Annulus& annulus)

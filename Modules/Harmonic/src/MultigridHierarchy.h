@@ -39,6 +39,7 @@ struct MultigridHierarchy {
   Stencil stencil;
   std::vector<MultigridLevel> coarse;        // coarse[l] is level l + 1
   std::vector<MultigridTransfer> transfers;  // transfers[l] joins level l and l + 1
+  std::vector<float> evenResidual;           // of the finest level's even voxels
   std::vector<std::array<double, 3>> spacing;
 
   [[nodiscard]] std::int32_t countOf(int level) const {
@@ -72,6 +73,19 @@ struct MultigridHierarchy {
   void coarsen(int level, const std::array<bool, 3>& coarsened, const std::array<float, 3>& extent);
   void solve(int level);  // level >= 1
   void cycle(const std::vector<float>& r, std::vector<float>& e);
+  /// One colour of a red-black Gauss-Seidel sweep on the finest level.
+  void sweep(int colour, const std::vector<float>& r, std::vector<float>& e) const;
+  /// Right-hand side of level 1, when odd voxels have no residual.
+  void restrictEven(const std::vector<float>& r, const std::vector<float>& e);
+  [[nodiscard]] float irregularSum(std::size_t n, std::size_t row,
+                                   const std::vector<float>& e) const {
+    float sum = 0;
+    for (int d = 0; d < 6; ++d) {
+      const std::int32_t m = annulus.links[n][d];
+      if (m >= 0) sum += stencil.weights[row][d] * e[m];
+    }
+    return sum;
+  }
   void smoothCoarse(MultigridLevel& l, bool fromZero) const;
   void prolong(int level, std::vector<float>& x) const;
 };

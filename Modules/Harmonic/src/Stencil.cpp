@@ -2,9 +2,34 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Stencil.h"
 
-#include "Explica/Core/Parallel.h"
-
 namespace explica::harmonic {
+
+namespace {
+
+/// Strands of the regular voxels [begin, end).
+std::vector<Strand> strandsOf(const Annulus& annulus, std::int32_t begin, std::int32_t end) {
+  constexpr std::size_t kGrain = 1 << 14;  // voxels a task; a strand ends with its task's voxels
+  const auto follows = [&](std::int32_t n) {
+    bool next = true;
+    for (int d = 0; d < 6; ++d) next &= annulus.links[n][d] == annulus.links[n - 1][d] + 1;
+    return next;
+  };
+  const std::size_t count = end - begin;
+  std::vector<std::vector<Strand>> parts((count + kGrain - 1) / kGrain);
+  parallelForBlocks(count, kGrain, [&](std::size_t first, std::size_t last) {
+    std::vector<Strand>& part = parts[first / kGrain];
+    for (std::size_t k = first; k < last; ++k) {
+      const auto n = static_cast<std::int32_t>(begin + k);
+      if (k == first || !follows(n)) part.push_back({n, 0, annulus.links[n]});
+      ++part.back().count;
+    }
+  });
+  std::vector<Strand> strands;
+  for (const auto& part : parts) strands.insert(strands.end(), part.begin(), part.end());
+  return strands;
+}
+
+}  // namespace
 
 Stencil::Stencil(const Annulus& annulus) {
   std::array<double, 3> inverseSquare{};
@@ -20,7 +45,10 @@ Stencil::Stencil(const Annulus& annulus) {
   share.resize(annulus.fractions.size());
   for (int colour = 0; colour < 2; ++colour) {
     forRunsOf(annulus, colour, [&](std::int32_t begin, std::int32_t end, std::int32_t offset) {
-      if (offset < 0) return;
+      if (offset < 0) {
+        strands[colour] = strandsOf(annulus, begin, end);
+        return;
+      }
       parallelFor(end - begin, 4096, [&, begin, offset](std::size_t k) {
         const std::size_t row = k + offset;
         const auto& links = annulus.links[begin + k];
