@@ -7,6 +7,7 @@
 #include "Explica/Application/Plausible.h"
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Memory.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Correspondence/Contours.h"
@@ -377,6 +378,7 @@ Termination run(Context& context, const Settings& s) {
   if (!s.measurement.grid && (!s.functions.volumes.empty() || !s.functions.along.empty())) {
     throw UsageError("--functions and --along need --grid N, on whose points they are taken");
   }
+  keepFreedMemory();
   Judge judge(context, s.accept);
   harmonic::Annulus annulus = readAnnulus(context, s);
   context.result("voxels", annulus.count());
