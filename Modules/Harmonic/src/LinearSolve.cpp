@@ -21,24 +21,27 @@ struct Pair {
   }
 };
 
+/// The rows of A x over a strand.
+/// @param to  of the strand's first voxel; aliases nothing else
+void applyTo(const Strand& strand, const std::array<double, 3>& weight, const std::vector<float>& x,
+             double* __restrict to) {
+  std::array<const float*, 6> at{};
+  for (int d = 0; d < 6; ++d) at[d] = x.data() + strand.links[d];
+  const auto pair = [&](int a, std::int32_t k) {
+    return weight[a] * (static_cast<double>(at[2 * a][k]) + static_cast<double>(at[2 * a + 1][k]));
+  };
+  const float* own = x.data() + strand.begin;
+  for (std::int32_t k = 0; k < strand.count; ++k) {
+    to[k] = static_cast<double>(own[k]) - pair(0, k) - pair(1, k) - pair(2, k);
+  }
+}
+
 /// y = A x, where x has single precision.
 void apply(const Annulus& annulus, const Stencil& stencil, const std::vector<float>& x,
            std::vector<double>& y) {
+  const std::array<double, 3> weight = {stencil.regular[0], stencil.regular[1], stencil.regular[2]};
   const auto ofStrand = [&](const Strand& strand) {
-    std::array<const float*, 6> near{};
-    for (int d = 0; d < 6; ++d) near[d] = x.data() + strand.links[d];
-    const float* own = x.data() + strand.begin;
-    double* to = y.data() + strand.begin;
-    const std::array<double, 3> weight = {stencil.regular[0], stencil.regular[1],
-                                          stencil.regular[2]};
-    const auto pair = [&](int a, std::int32_t k) {
-      return weight[a] *
-             (static_cast<double>(near[2 * a][k]) + static_cast<double>(near[2 * a + 1][k]));
-    };
-#pragma GCC ivdep
-    for (std::int32_t k = 0; k < strand.count; ++k) {
-      to[k] = static_cast<double>(own[k]) - pair(0, k) - pair(1, k) - pair(2, k);
-    }
+    applyTo(strand, weight, x, y.data() + strand.begin);
   };
   const auto ofIrregular = [&](std::size_t n, std::size_t row) {
     double sum = x[n];

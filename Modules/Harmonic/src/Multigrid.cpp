@@ -78,9 +78,8 @@ void MultigridHierarchy::sweep(int colour, const std::vector<float>& r,
                                std::vector<float>& e) const {
   const auto ofStrand = [&](const Strand& strand) {
     const float* from = r.data() + strand.begin;
-    float* to = e.data() + strand.begin;
-    sumNeighbours(strand, stencil.regular, e.data(),
-                  [&](std::int32_t k, float sum) { to[k] = from[k] + sum; });
+    combineWithSums(strand, stencil.regular, e, e.data() + strand.begin,
+                    [from](std::int32_t k, float sum) { return from[k] + sum; });
   };
   const auto ofIrregular = [&](std::size_t n, std::size_t row) {
     e[n] = r[n] + irregularSum(n, row, e);
@@ -91,10 +90,11 @@ void MultigridHierarchy::sweep(int colour, const std::vector<float>& r,
 void MultigridHierarchy::restrictEven(const std::vector<float>& r, const std::vector<float>& e) {
   const auto diagonal = static_cast<float>(stencil.regularDiagonal);
   const auto ofStrand = [&](const Strand& strand) {
-    const float *from = r.data() + strand.begin, *at = e.data() + strand.begin;
-    float* to = evenResidual.data() + strand.begin;
-    sumNeighbours(strand, stencil.regular, e.data(),
-                  [&](std::int32_t k, float sum) { to[k] = diagonal * (from[k] - at[k] + sum); });
+    const float *from = r.data() + strand.begin, *own = e.data() + strand.begin;
+    combineWithSums(strand, stencil.regular, e, evenResidual.data() + strand.begin,
+                    [from, own, diagonal](std::int32_t k, float sum) {
+                      return diagonal * (from[k] - own[k] + sum);
+                    });
   };
   const auto ofIrregular = [&](std::size_t n, std::size_t row) {
     evenResidual[n] =

@@ -53,16 +53,18 @@ void forVoxelsOf(const Annulus& annulus, const Stencil& stencil, int colour,
   });
 }
 
-/// Weighted sums of the neighbours' x over a strand, each given to put(k, sum).
-template <class Put>
-void sumNeighbours(const Strand& strand, const std::array<float, 3>& weight, const float* x,
-                   const Put& put) {
-  const float *a = x + strand.links[0], *b = x + strand.links[1], *c = x + strand.links[2],
-              *d = x + strand.links[3], *e = x + strand.links[4], *f = x + strand.links[5];
-  const float u = weight[0], v = weight[1], w = weight[2];
-#pragma GCC ivdep
+/// Over a strand, to[k] = combine(k, weighted sum of the neighbours' x).
+/// @param to  aliases nothing of what `combine` and the sums read
+template <class Combine>
+void combineWithSums(const Strand& strand, const std::array<float, 3>& weight,
+                     const std::vector<float>& x, float* __restrict to, const Combine& combine) {
+  std::array<const float*, 6> at{};
+  for (int d = 0; d < 6; ++d) at[d] = x.data() + strand.links[d];
+  const auto pair = [&](int a, std::int32_t k) {
+    return weight[a] * (at[2 * a][k] + at[2 * a + 1][k]);
+  };
   for (std::int32_t k = 0; k < strand.count; ++k) {
-    put(k, u * (a[k] + b[k]) + v * (c[k] + d[k]) + w * (e[k] + f[k]));
+    to[k] = combine(k, pair(0, k) + pair(1, k) + pair(2, k));
   }
 }
 
