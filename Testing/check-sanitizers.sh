@@ -1,19 +1,28 @@
 #!/bin/sh
 # SPDX-FileCopyrightText: The Explica developers
 # SPDX-License-Identifier: Apache-2.0
-# Unit tests under the address and undefined-behaviour sanitizers, in build-sanitize/, or under that for threads, in
-# build-tsan/:
+# Unit tests under the address and undefined-behaviour sanitizers (build-sanitize/), under that for threads
+# (build-tsan/) or in Debug (build-debug/); the assertions of Eigen and of the standard library hold in each:
 #   Testing/check-sanitizers.sh [MODULE...]             default: every module whose unit tests are fast
 #   Testing/check-sanitizers.sh --threads [MODULE...]   default: Repulsion, Correspondence, Unfolding
+#   Testing/check-sanitizers.sh --debug [MODULE...]     default: every module
 # Any finding ends a test with a failure and the place.  EXPLICA_JOBS bounds the compilers at once.
 set -eu
 cd "$(dirname "$0")/.."
 preset=sanitize
-if [ "${1:-}" = --threads ]; then
-  preset=tsan
-  shift
-  [ $# -gt 0 ] || set -- Repulsion Correspondence Unfolding
-fi
+case "${1:-}" in
+  --threads)
+    preset=tsan
+    shift
+    [ $# -gt 0 ] || set -- Repulsion Correspondence Unfolding
+    ;;
+  --debug)
+    preset=debug
+    shift
+    # shellcheck disable=SC2046  # a list of words
+    [ $# -gt 0 ] || set -- $(grep -l UNIT_TESTS Modules/*/CMakeLists.txt | cut -d/ -f2)
+    ;;
+esac
 [ $# -gt 0 ] || set -- Core Geometry Collision Visibility Repulsion Unfolding Planar Shapes Harmonic \
   Correspondence Surface Segmentation Report Study IO Provenance Phantom Viewer
 targets=$(printf 'Explica%sUnitTests ' "$@")
@@ -26,8 +35,14 @@ export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
 # ITK's reader of NRRD forgets its buffers and messages when a file turns out to be damaged.
 printf 'leak:libITKNrrdIO\nleak:libz.so\n' >"$folder/leaks.supp"
 export LSAN_OPTIONS="suppressions=$PWD/$folder/leaks.supp:print_suppressions=0"
+# Embree builds its trees on TBB's threads; neither library is instrumented, so that the sanitizer sees what Embree
+# allocates, copies and frees there but not what orders it.  Only calls out of Embree's own code are left out.
+echo 'called_from_lib:libembree3' >"$folder/races.supp"
+export TSAN_OPTIONS="suppressions=$PWD/$folder/races.supp"
 failed=""
 for target in $targets; do
+  began=$(date +%s)
   "$folder/bin/$target" --gtest_brief=1 || failed="$failed $target"
+  echo "$target: $(($(date +%s) - began)) s"
 done
-[ -z "$failed" ] || { echo "sanitizers: failures in$failed"; exit 1; }
+[ -z "$failed" ] || { echo "$preset: failures in$failed"; exit 1; }

@@ -2,13 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Breaks the code in some thirty places, one at a time, and asks whether a test notices.
 
-    mutations.py [--only WORD]      needs a configured build/; leaves the sources as they were
+    mutations.py [--only WORD]      needs a configured build/; leaves the sources as they were; EXPLICA_JOBS bounds
+                                    the compilers at once
 
 Each mutation is a small wrong step of the kind that people make: a sign, a factor, a bound, an index.  A
 mutation counts as caught where an assertion failed or the program crashed, not where time ran out: one that
 survives, or of which nothing is known after that time, names a test that is missing or too slow."""
 
 import argparse
+import os
 import pathlib
 import resource
 import signal
@@ -105,7 +107,7 @@ ALL = [
              "options.keptDistance = kTouching * contacts.range();", "options.keptDistance = 0;",
              "ExplicaUnfoldingUnitTests", "Motion.*"),
     Mutation("Modules/Unfolding/src/energies/GuideEnergy.cpp",
-             "const double slope = std::min(s - kHome, kMost);", "const double slope = s - kHome;",
+             "const double slope = std::min(s - kHome, kMost);", "const double slope = std::min(s - kHome, 100 * kMost);",
              "ExplicaUnfoldingUnitTests", "Energy.AGuide*"),
     Mutation("Modules/Unfolding/src/Contacts.cpp",
              "constexpr double kHair = 0.003;", "constexpr double kHair = 0;",
@@ -142,7 +144,8 @@ ALL = [
 
 def build(program):
     """Whether the program could be built."""
-    return subprocess.run(["ninja", "-C", str(ROOT / "build"), program], check=False,
+    jobs = ["-j", os.environ["EXPLICA_JOBS"]] if "EXPLICA_JOBS" in os.environ else []
+    return subprocess.run(["ninja", "-C", str(ROOT / "build"), *jobs, program], check=False,
                           stdout=subprocess.DEVNULL, stderr=subprocess.STDOUT).returncode == 0
 
 
