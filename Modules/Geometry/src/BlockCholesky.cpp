@@ -86,12 +86,14 @@ std::vector<std::int32_t> postorderPlaces(const std::vector<std::int32_t>& paren
   return place;
 }
 
-/// Adds the lower triangle of a child's remainder, block by block, into its parent's front.
+/// Adds block columns first ... end - 1 of the lower triangle of a child's remainder, block by
+/// block, into its parent's front.
 template <int Size>
 void extendAdd(const Eigen::MatrixXd& update, std::span<const std::int32_t> parentRow,
-               Eigen::Index width, Panel& panel, Eigen::MatrixXd& rest) {
+               Eigen::Index first, Eigen::Index end, Eigen::Index width, Panel& panel,
+               Eigen::MatrixXd& rest) {
   const auto count = static_cast<Eigen::Index>(parentRow.size());
-  for (Eigen::Index j = 0; j < count; ++j) {
+  for (Eigen::Index j = first; j < end; ++j) {
     const Eigen::Index column = Size * static_cast<Eigen::Index>(parentRow[j]);
     for (int k = 0; k < Size; ++k) {
       const double* from = &update(0, Size * j + k);
@@ -158,6 +160,12 @@ void updateTrailing(const DenseBlock& trailing, const DenseBlock& under, bool ti
                              partOf(under, begin, 0, count, under.columns),
                              partOf(trailing, begin, begin, rows, count));
   });
+}
+
+/// Zeros in a column of a square matrix, as far up as updateTrailing() reads.
+void clearLower(Eigen::MatrixXd& square, std::ptrdiff_t column) {
+  const std::ptrdiff_t first = column - column % kTile;
+  square.col(column).tail(square.rows() - first).setZero();
 }
 
 /// Eliminates the columns of `panel` (height x width); `rest` becomes what remains for the parent.
@@ -362,8 +370,12 @@ void BlockCholesky<Size>::schedule() {
   constexpr double kSubtreeShare = 1.0 / 24;
   subtrees_.clear();
   top_.clear();
+  roots_.clear();
+  isTop_.assign(fronts_.size(), 0);
   for (std::size_t f = 0; f < fronts_.size(); ++f) {
+    if (fronts_[f].parent < 0) roots_.push_back(static_cast<std::int32_t>(f));
     if (fronts_[f].work > kSubtreeShare * operations_) {
+      isTop_[f] = 1;
       top_.push_back(static_cast<std::int32_t>(f));
     } else if (fronts_[f].parent < 0 ||
                fronts_[fronts_[f].parent].work > kSubtreeShare * operations_) {
@@ -377,9 +389,18 @@ bool BlockCholesky<Size>::eliminate(std::int32_t f, const BlockPattern& pattern,
                                     std::span<const Block> blocks, bool tiled) {
   const Front& front = fronts_[f];
   Panel panel(factor_.data() + front.factorBegin, front.height(), front.width());
-  panel.setZero();
   Eigen::MatrixXd& rest = updates_[f];
-  rest.setZero(Size * front.below(), Size * front.below());
+  rest.resize(Size * front.below(), Size * front.below());
+  inTiles(panel.cols() + rest.cols(), tiled, [&](std::ptrdiff_t first, std::ptrdiff_t count) {
+    const std::ptrdiff_t width = panel.cols(), end = first + count;
+    for (std::ptrdiff_t j = first; j < end; ++j) {
+      if (j < width) {
+        panel.col(j).setZero();
+      } else {
+        clearLower(rest, j - width);
+      }
+    }
+  });
   for (std::int32_t j = 0; j < front.columns; ++j) {
     std::int32_t at = front.rowsBegin;
     for (std::int32_t e = pattern.begin[front.first + j]; e < pattern.begin[front.first + j + 1];
@@ -396,10 +417,34 @@ bool BlockCholesky<Size>::eliminate(std::int32_t f, const BlockPattern& pattern,
   for (const std::int32_t child : children_[f]) {
     const std::span<const std::int32_t> parentRow(parentRow_.data() + fronts_[child].rowsBegin,
                                                   static_cast<std::size_t>(fronts_[child].below()));
-    extendAdd<Size>(updates_[child], parentRow, front.width(), panel, rest);
+    inTiles(fronts_[child].below(), tiled, [&](std::ptrdiff_t first, std::ptrdiff_t count) {
+      extendAdd<Size>(updates_[child], parentRow, first, first + count, front.width(), panel, rest);
+    });
     updates_[child].resize(0, 0);
   }
   return eliminateDense(panel, rest, tiled);
+}
+
+template <int Size>
+bool BlockCholesky<Size>::eliminateSubtree(std::int32_t root, const BlockPattern& pattern,
+                                           std::span<const Block> blocks) {
+  for (std::int32_t f = firstOfSubtree_[root]; f <= root; ++f) {
+    if (!eliminate(f, pattern, blocks, false)) return false;
+  }
+  return true;
+}
+
+/// A front and all below it; branches that are large run side by side.
+template <int Size>
+bool BlockCholesky<Size>::eliminateBranch(std::int32_t root, const BlockPattern& pattern,
+                                          std::span<const Block> blocks) {
+  if (!isTop_[root]) return eliminateSubtree(root, pattern, blocks);
+  const std::vector<std::int32_t>& below = children_[root];
+  std::atomic<bool> positive = true;
+  parallelFor(below.size(), 1, [&](std::size_t n) {
+    if (positive && !eliminateBranch(below[n], pattern, blocks)) positive = false;
+  });
+  return positive && eliminate(root, pattern, blocks, true);
 }
 
 template <int Size>
@@ -407,50 +452,90 @@ bool BlockCholesky<Size>::factorise(const BlockPattern& pattern, std::span<const
   factor_.resize(static_cast<std::size_t>(factorSize_));
   updates_.assign(fronts_.size(), Eigen::MatrixXd());
   std::atomic<bool> positive = true;
-  parallelFor(subtrees_.size(), 1, [&](std::size_t n) {
-    for (std::int32_t f = firstOfSubtree_[subtrees_[n]]; f <= subtrees_[n] && positive; ++f) {
-      if (!eliminate(f, pattern, blocks, false)) positive = false;
-    }
+  parallelFor(roots_.size(), 1, [&](std::size_t n) {
+    if (positive && !eliminateBranch(roots_[n], pattern, blocks)) positive = false;
   });
-  for (std::size_t n = 0; n < top_.size() && positive; ++n) {
-    if (!eliminate(top_[n], pattern, blocks, true)) positive = false;
-  }
   updates_.clear();
   return positive;
 }
 
+/// Solves for a front's own rows.
+/// @return what its columns take off the rows below
+template <int Size>
+void BlockCholesky<Size>::solveForward(const Front& front, Eigen::VectorXd& x,
+                                       Eigen::VectorXd& below) const {
+  const auto columns = columnsOf(front);
+  auto own = x.segment(Size * front.first, front.width());
+  columns.topRows(front.width()).template triangularView<Eigen::Lower>().solveInPlace(own);
+  below.noalias() = columns.bottomRows(Size * front.below()) * own;
+}
+
+template <int Size>
+void BlockCholesky<Size>::solveBackward(const Front& front, bool tiled, Eigen::VectorXd& x) const {
+  const auto columns = columnsOf(front);
+  Eigen::VectorXd below(Size * front.below());
+  for (std::int32_t n = 0; n < front.below(); ++n) {
+    below.template segment<Size>(Size * n) =
+        x.template segment<Size>(Size * rows_[front.rowsBegin + n]);
+  }
+  auto own = x.segment(Size * front.first, front.width());
+  inTiles(own.size(), tiled, [&](std::ptrdiff_t first, std::ptrdiff_t count) {
+    for (std::ptrdiff_t c = first; c < first + count; ++c)
+      own[c] -= columns.col(c).tail(below.size()).dot(below);
+  });
+  columns.topRows(front.width())
+      .template triangularView<Eigen::Lower>()
+      .transpose()
+      .solveInPlace(own);
+}
+
+/// Forward through a subtree; what it takes off rows above is left for later.
+template <int Size>
+void BlockCholesky<Size>::solveSubtree(std::int32_t root, Eigen::VectorXd& x,
+                                       std::vector<Taken>& above) const {
+  const std::int32_t end = fronts_[root].first + fronts_[root].columns;
+  Eigen::VectorXd below;
+  for (std::int32_t f = firstOfSubtree_[root]; f <= root; ++f) {
+    const Front& front = fronts_[f];
+    solveForward(front, x, below);
+    for (std::int32_t n = 0; n < front.below(); ++n) {
+      const std::int32_t row = rows_[front.rowsBegin + n];
+      const auto taken = below.template segment<Size>(Size * n);
+      if (row < end) {
+        x.template segment<Size>(Size * row) -= taken;
+      } else {
+        above.push_back({row, taken});
+      }
+    }
+  }
+}
+
+/// Right sides are taken off in the order of the fronts, whoever has found what is taken.
 template <int Size>
 void BlockCholesky<Size>::solve(Eigen::VectorXd& x) const {
+  std::vector<std::vector<Taken>> above(subtrees_.size());
+  parallelFor(subtrees_.size(), 1, [&](std::size_t n) { solveSubtree(subtrees_[n], x, above[n]); });
   Eigen::VectorXd below;
-  const auto columnsOf = [&](const Front& front) {
-    return Eigen::Map<const Eigen::MatrixXd>(factor_.data() + front.factorBegin, front.height(),
-                                             front.width());
-  };
-  for (const Front& front : fronts_) {
-    const auto columns = columnsOf(front);
-    auto own = x.segment(Size * front.first, front.width());
-    columns.topRows(front.width()).template triangularView<Eigen::Lower>().solveInPlace(own);
-    below.noalias() = columns.bottomRows(Size * front.below()) * own;
+  std::size_t next = 0;
+  for (const std::int32_t f : top_) {
+    for (; next < subtrees_.size() && subtrees_[next] < f; ++next) {
+      for (const Taken& taken : above[next]) {
+        x.template segment<Size>(Size * taken.row) -= taken.value;
+      }
+    }
+    const Front& front = fronts_[f];
+    solveForward(front, x, below);
     for (std::int32_t n = 0; n < front.below(); ++n) {
       x.template segment<Size>(Size * rows_[front.rowsBegin + n]) -=
           below.template segment<Size>(Size * n);
     }
   }
-  for (auto front = fronts_.rbegin(); front != fronts_.rend(); ++front) {
-    const auto columns = columnsOf(*front);
-    below.resize(Size * front->below());
-    for (std::int32_t n = 0; n < front->below(); ++n) {
-      below.template segment<Size>(Size * n) =
-          x.template segment<Size>(Size * rows_[front->rowsBegin + n]);
+  for (auto f = top_.rbegin(); f != top_.rend(); ++f) solveBackward(fronts_[*f], true, x);
+  parallelFor(subtrees_.size(), 1, [&](std::size_t n) {
+    for (std::int32_t f = subtrees_[n]; f >= firstOfSubtree_[subtrees_[n]]; --f) {
+      solveBackward(fronts_[f], false, x);
     }
-    auto own = x.segment(Size * front->first, front->width());
-    for (Eigen::Index c = 0; c < own.size(); ++c)
-      own[c] -= columns.col(c).tail(below.size()).dot(below);
-    columns.topRows(front->width())
-        .template triangularView<Eigen::Lower>()
-        .transpose()
-        .solveInPlace(own);
-  }
+  });
 }
 
 template class BlockCholesky<2>;

@@ -44,13 +44,14 @@ void BlockSystem::reset(std::int32_t pointCount, const Couplings& couplings) {
   if (pointCount != count_ || rows != rows_) {
     count_ = pointCount;
     rows_ = std::move(rows);
-    layOut();
+    ordered_ = false;
   }
   diagonal_.assign(static_cast<std::size_t>(count_), Eigen::Matrix3d::Zero());
   below_.assign(rows_.columns.size(), Eigen::Matrix3d::Zero());
 }
 
-void BlockSystem::layOut() {
+void BlockSystem::order() {
+  if (ordered_) return;
   Couplings couplings;
   couplings.reserve(rows_.columns.size());
   for (std::int32_t i = 0; i < count_; ++i) {
@@ -59,6 +60,11 @@ void BlockSystem::layOut() {
     }
   }
   place_ = geometry::eliminationPlaces(count_, couplings);
+  layOut(couplings);
+  ordered_ = true;
+}
+
+void BlockSystem::layOut(const Couplings& couplings) {
   pattern_.begin.assign(static_cast<std::size_t>(count_) + 1, 0);
   for (std::int32_t n = 0; n < count_; ++n) pattern_.begin[n + 1] = 1;
   for (const auto& [i, j] : couplings) ++pattern_.begin[std::min(place_[i], place_[j]) + 1];
@@ -93,6 +99,7 @@ void BlockSystem::addDiagonal(double value) {
 }
 
 bool BlockSystem::solve(const Positions& rightSide, Positions& solution) {
+  order();
   parallelFor(static_cast<std::size_t>(count_), kGrain, [&](std::size_t i) {
     const std::int32_t column = place_[i];
     blocks_[pattern_.begin[column]] = diagonal_[i];

@@ -24,6 +24,9 @@ class BlockSystem {
   /// Makes room for the couplings (any order, repetitions allowed) and sets all values to zero.
   void reset(std::int32_t pointCount, const Couplings& couplings);
 
+  /// Finds the elimination order, unless it is known: values may be added meanwhile.
+  void order();
+
   /// Adds `block` at (i, j), and with i != j its transpose at (j, i): call once per unordered pair.
   void add(std::int32_t i, std::int32_t j, const Eigen::Matrix3d& block) {
     if (i == j) {
@@ -51,7 +54,7 @@ class BlockSystem {
     bool operator==(const Rows&) const = default;
   };
   static Rows rowsOf(std::int32_t pointCount, const Couplings& couplings);
-  void layOut();
+  void layOut(const Couplings& couplings);
   /// Rows are short: a walk along one is faster than halving it.
   [[nodiscard]] std::size_t placeOf(std::int32_t row, std::int32_t column) const {
     std::int32_t n = rows_.begin[row];
@@ -61,6 +64,7 @@ class BlockSystem {
 
   std::int32_t count_ = 0;
   Rows rows_;
+  bool ordered_ = false;                   ///< place_ and pattern_ are those of rows_
   std::vector<Eigen::Matrix3d> diagonal_;  ///< of each unknown
   std::vector<Eigen::Matrix3d> below_;     ///< of each of rows_.columns
   std::vector<std::int32_t> place_;        ///< position of each point in the elimination order

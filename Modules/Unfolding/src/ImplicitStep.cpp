@@ -50,6 +50,10 @@ class ImplicitStep {
 
  private:
   bool attempt();
+  template <class Other>
+  void orderBeside(const Other& other);
+  void differentiate();
+  void fill();
   bool solve(Positions& direction);
   void addLock(const Pair& pair);
   void couple(const Pair& pair);
@@ -75,6 +79,7 @@ class ImplicitStep {
   Positions gradient_, rightSide_;
   Couplings couplings_;
   std::vector<Pair> locked_;
+  bool filled_ = false;    ///< the system holds the matrix of the next attempt
   bool relocked_ = false;  ///< pairs have been locked because they stopped this step
   Positions trial_;
 };
@@ -87,6 +92,31 @@ ImplicitStep::ImplicitStep(Unfolder::Implementation& unfolder)
     contacts_ = u_.contacts.within(state_.positions);
   }
   if (state_.separating) endSeparationIfDone();
+  couplings_ = u_.setup.couplings;
+  for (const Contact& contact : contacts_) couple(contact.vertices);
+  lockHeld();
+  orderBeside([this] { differentiate(); });
+  filled_ = true;
+}
+
+/// The order of elimination asks for couplings alone: it is found while `other` fills the system.
+template <class Other>
+void ImplicitStep::orderBeside(const Other& other) {
+  {
+    const PhaseClock clock(now_.phases.solve);
+    u_.system.reset(static_cast<std::int32_t>(u_.setup.moving.size()), couplings_);
+  }
+  parallelFor(2, 1, [&](std::size_t n) {
+    if (n == 0) {
+      u_.system.order();
+    } else {
+      other();
+    }
+  });
+}
+
+/// Objective and gradient at the start, and the matrix of the first attempt.
+void ImplicitStep::differentiate() {
   start_.emplace(u_.configurationAt(state_.positions, contacts_));
   now_.objectiveBefore = u_.objective.value(*start_, u_.strengths(), now_);
   gradient_ = u_.objective.gradient(*start_, u_.strengths(), now_);
@@ -95,9 +125,7 @@ ImplicitStep::ImplicitStep(Unfolder::Implementation& unfolder)
   for (std::size_t i = 0; i < moving.size(); ++i) {
     rightSide_.row(static_cast<Eigen::Index>(i)) = -gradient_.row(moving[i]);
   }
-  couplings_ = u_.setup.couplings;
-  for (const Contact& contact : contacts_) couple(contact.vertices);
-  lockHeld();
+  fill();
 }
 
 bool ImplicitStep::take() {
@@ -132,21 +160,31 @@ bool ImplicitStep::attempt() {
 }
 
 /// The matrix of the step: Gauss-Newton, contacts, locked pairs and the damping's metric.
-bool ImplicitStep::solve(Positions& direction) {
+void ImplicitStep::fill() {
   const PhaseClock clock(now_.phases.solve);
   BlockSystem& system = u_.system;
-  system.reset(static_cast<std::int32_t>(u_.setup.moving.size()), couplings_);
   for (const Pair& pair : locked_) addLock(pair);
   u_.objective.addStiffness(*start_, u_.strengths(), u_.setup.unknown, system);
-  const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
-  for (const auto& [i, j] : u_.setup.couplings) {
-    system.add(i, i, state_.damping * identity);
-    system.add(j, j, state_.damping * identity);
-    system.add(i, j, -state_.damping * identity);
-  }
+  const Patch& patch = u_.setup.patch;
+  const auto& unknown = u_.setup.unknown;
+  const Eigen::Matrix3d metric = state_.damping * Eigen::Matrix3d::Identity();
+  addBlocks(
+      patch.springsAround, 0, patch.springs.size(),
+      [&](std::int32_t s) { return patch.springs[s].vertices; }, unknown, system,
+      [&](std::int32_t s, int i, int j) -> Eigen::Matrix3d {
+        const auto& [a, b] = patch.springs[s].vertices;
+        if (unknown[a] < 0 || unknown[b] < 0) return Eigen::Matrix3d::Zero();
+        return i == j ? metric : Eigen::Matrix3d(-metric);
+      });
   system.addDiagonal(kMassShare * state_.damping + kLeastDiagonal);
+}
+
+bool ImplicitStep::solve(Positions& direction) {
+  if (!filled_) orderBeside([this] { fill(); });
+  filled_ = false;
   ++now_.solves;
-  return system.solve(rightSide_, direction);
+  const PhaseClock clock(now_.phases.solve);
+  return u_.system.solve(rightSide_, direction);
 }
 
 /// Stiff springs along the six lines that join a pair's four vertices, and along the one between

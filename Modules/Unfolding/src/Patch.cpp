@@ -25,17 +25,17 @@ Point centroidOf(const PatchFace& face, const Positions& x) {
          3;
 }
 
-CornerBlocks faceBlocks(const FaceShape& shape, double inPlane, double across) {
-  const Eigen::Matrix3d normal = across * shape.normal * shape.normal.transpose();
-  CornerBlocks blocks;
-  int n = 0;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j <= i; ++j) {
-      blocks[n++] = inPlane * shape.hat[i] * shape.hat[j].transpose() +
-                    shape.hat[i].dot(shape.hat[j]) * normal;
-    }
-  }
-  return blocks;
+void listAround(Patch& patch, const std::vector<std::int32_t>& unknown) {
+  patch.facesAround =
+      Around(patch.faces.size(), unknown, [&](std::size_t f) { return patch.faces[f].vertices; });
+  patch.springsAround = Around(patch.springs.size(), unknown,
+                               [&](std::size_t s) { return patch.springs[s].vertices; });
+}
+
+Eigen::Matrix3d faceBlock(const FaceShape& shape, const FaceStiffness& stiffness, int i, int j) {
+  const Eigen::Matrix3d normal = stiffness.across * shape.normal * shape.normal.transpose();
+  return stiffness.inPlane * shape.hat[i] * shape.hat[j].transpose() +
+         shape.hat[i].dot(shape.hat[j]) * normal;
 }
 
 void addForces(std::span<const PatchFace> faces, std::span<const CornerForces> forces,
@@ -45,18 +45,14 @@ void addForces(std::span<const PatchFace> faces, std::span<const CornerForces> f
   }
 }
 
-void addBlocks(std::span<const PatchFace> faces, std::span<const CornerBlocks> blocks,
-               const std::vector<std::int32_t>& unknown, BlockSystem& system) {
-  for (std::size_t f = 0; f < faces.size(); ++f) {
-    int n = 0;
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j <= i; ++j, ++n) {
-        const std::int32_t row = unknown[faces[f].vertices[i]];
-        const std::int32_t column = unknown[faces[f].vertices[j]];
-        if (row >= 0 && column >= 0) system.add(row, column, blocks[f][n]);
-      }
-    }
-  }
+void addFaceBlocks(const Patch& patch, std::span<const FaceShape> shapes, std::size_t firstFace,
+                   std::span<const FaceStiffness> stiffness,
+                   const std::vector<std::int32_t>& unknown, BlockSystem& system) {
+  const auto verticesOf = [&](std::int32_t f) { return patch.faces[f].vertices; };
+  addBlocks(patch.facesAround, firstFace, stiffness.size(), verticesOf, unknown, system,
+            [&](std::int32_t f, int i, int j) {
+              return faceBlock(shapes[f], stiffness[f - firstFace], i, j);
+            });
 }
 
 }  // namespace explica::unfolding

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "Around.h"
 #include "BlockSystem.h"
 
+#include "Explica/Core/Parallel.h"
 #include "Explica/Core/TriangleMesh.h"
 
 #include <array>
@@ -57,6 +59,8 @@ struct Patch {
   double yieldStrain = kInfinity;  ///< beyond it an edge's length costs less than its square
   PatchRoom room;
   PatchGuide guide;
+  Around facesAround;    ///< corners of `faces` at each unknown
+  Around springsAround;  ///< ends of `springs`
 
   [[nodiscard]] std::span<const PatchFace> ofRegion() const { return {faces.data(), regionFaces}; }
   [[nodiscard]] std::span<const PatchFace> ofCollar() const {
@@ -84,22 +88,64 @@ struct FaceShape {
   return (x.row(spring.vertices[1]) - x.row(spring.vertices[0])).norm();
 }
 
-/// One force or one 3 x 3 block per corner or pair of corners; pairs in the order 00, 10, 11, 20,
-/// 21, 22.
-using CornerForces = std::array<Vector, 3>;
-using CornerBlocks = std::array<Eigen::Matrix3d, 6>;
+/// Lists what lies around each unknown.
+/// @param unknown  V: row in the system, -1 for vertices that stay
+void listAround(Patch& patch, const std::vector<std::int32_t>& unknown);
 
-/// The stiffness of a face: inPlane * hat_i hat_j^T, and across * (hat_i . hat_j) n n^T for what
-/// its tension does against moves out of its plane.
-[[nodiscard]] CornerBlocks faceBlocks(const FaceShape& shape, double inPlane, double across);
+/// One force per corner.
+using CornerForces = std::array<Vector, 3>;
+
+/// How stiff a face is: inPlane * hat_i hat_j^T, and across * (hat_i . hat_j) n n^T for what its
+/// tension does against moves out of its plane.
+struct FaceStiffness {
+  double inPlane = 0;
+  double across = 0;
+};
+
+/// The 3 x 3 block of two of its corners.
+[[nodiscard]] Eigen::Matrix3d faceBlock(const FaceShape& shape, const FaceStiffness& stiffness,
+                                        int i, int j);
 
 /// Adds what faces contribute, in their order, to the gradient (V x 3).
 void addForces(std::span<const PatchFace> faces, std::span<const CornerForces> forces,
                Positions& gradient);
 
-/// Adds what faces contribute to the system.
-/// @param unknown  V: row in the system, -1 for vertices that stay
-void addBlocks(std::span<const PatchFace> faces, std::span<const CornerBlocks> blocks,
-               const std::vector<std::int32_t>& unknown, BlockSystem& system);
+/// Adds what items contribute to the system, on several threads.
+/// @param around      their corners
+/// @param verticesOf  verticesOf(item) gives its vertices
+/// @param unknown     V: row in the system, -1 for vertices that stay
+/// @param blockOf     blockOf(item, i, j) is the block of its corners i >= j
+template <class VerticesOf, class BlockOf>
+void addBlocks(const Around& around, std::size_t firstItem, std::size_t itemCount,
+               const VerticesOf& verticesOf, const std::vector<std::int32_t>& unknown,
+               BlockSystem& system, const BlockOf& blockOf) {
+  constexpr std::size_t kGrain = 256;  // rows a task
+  const auto first = static_cast<std::int32_t>(firstItem);
+  const auto end = static_cast<std::int32_t>(firstItem + itemCount);
+  parallelFor(around.rows(), kGrain, [&](std::size_t n) {
+    const auto row = static_cast<std::int32_t>(n);
+    for (const auto& [item, i] : around.at(n)) {
+      if (item < first) continue;
+      if (item >= end) break;
+      std::int32_t j = 0;
+      for (const std::int32_t vertex : verticesOf(item)) {
+        const std::int32_t column = unknown[vertex];
+        if (column >= 0 && column <= row) {
+          if (i >= j) {
+            system.add(row, column, blockOf(item, i, j));
+          } else {
+            system.add(row, column, blockOf(item, j, i).transpose());
+          }
+        }
+        ++j;
+      }
+    }
+  });
+}
+
+/// The same for faces, of which each has its stiffness: all of the region, or of the collar.
+void addFaceBlocks(const Patch& patch, std::span<const FaceShape> shapes, std::size_t firstFace,
+                   std::span<const FaceStiffness> stiffness,
+                   const std::vector<std::int32_t>& unknown, BlockSystem& system);
 
 }  // namespace explica::unfolding

@@ -223,6 +223,7 @@ PatchSetup setUpPatch(TriangleMesh mesh, Region region, const visibility::Viewpo
   if (isGuided(s, options)) s.patch.guide = makeGuide(s.mesh, s.region, s.patch.room);
   s.patch.yieldStrain = options.yieldStrain;
   listCouplings(s);
+  listAround(s.patch, s.unknown);
   return s;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "../src/AreaProjection.h"
+#include "../src/Around.h"
 #include "../src/Objective.h"
 
 #include "Meander.h"
@@ -53,6 +54,7 @@ struct Sample {
     multipliers = Eigen::VectorXd::LinSpaced(static_cast<Eigen::Index>(patch.regionFaces), -1, 2);
     unknown.resize(static_cast<std::size_t>(mesh.vertexCount()));
     std::iota(unknown.begin(), unknown.end(), 0);
+    listAround(patch, unknown);
     const auto last = static_cast<std::int32_t>(mesh.vertexCount()) - 1;
     contacts.push_back({{last, mesh.faces(0, 0), mesh.faces(0, 1), mesh.faces(0, 2)},
                         collision::PairKind::VertexFace,
@@ -123,6 +125,21 @@ Positions randomDirection(Eigen::Index count, unsigned seed) {
   Positions d(count, 3);
   for (Eigen::Index i = 0; i < d.size(); ++i) d.data()[i] = uniform(random);
   return d;
+}
+
+TEST(Around, ListsTheCornersOfEveryUnknownByItem) {
+  const std::vector<std::array<std::int32_t, 3>> items = {{0, 1, 2}, {2, 1, 3}, {4, 3, 1}};
+  const std::vector<std::int32_t> unknown = {-1, 2, 0, -1, 1};
+  const Around around(items.size(), unknown, [&](std::size_t n) { return items[n]; });
+  ASSERT_EQ(around.rows(), 3U);
+  const std::vector<std::vector<std::array<std::int32_t, 2>>> expected = {
+      {{0, 2}, {1, 0}}, {{2, 0}}, {{0, 1}, {1, 1}, {2, 2}}};
+  for (std::size_t row = 0; row < 3; ++row) {
+    std::vector<std::array<std::int32_t, 2>> found;
+    for (const auto& [item, place] : around.at(row)) found.push_back({item, place});
+    EXPECT_EQ(found, expected[row]) << row;
+  }
+  EXPECT_EQ(Around().rows(), 0U);
 }
 
 /// Each row of the table: E(x + h d) - E(x) - h g.d must fall as h^2.

@@ -41,14 +41,13 @@ class AreaEnergy final : public Energy {
   void addStiffness(const Configuration& now, double strength,
                     const std::vector<std::int32_t>& unknown, BlockSystem& system) const override {
     const auto faces = now.patch.ofRegion();
-    std::vector<CornerBlocks> blocks(faces.size());
+    std::vector<FaceStiffness> stiffness(faces.size());
     parallelFor(faces.size(), kAreaGrain, [&](std::size_t f) {
-      const FaceShape& shape = now.shapes[f];
-      const double ratio = shape.area / faces[f].restArea;
+      const double ratio = now.shapes[f].area / faces[f].restArea;
       const double inPlane = faces[f].weight * strength * ratio * ratio;
-      blocks[f] = faceBlocks(shape, inPlane, std::max(0.0, tensionOf(now, f, strength)));
+      stiffness[f] = {inPlane, std::max(0.0, tensionOf(now, f, strength))};
     });
-    addBlocks(faces, blocks, unknown, system);
+    addFaceBlocks(now.patch, now.shapes, 0, stiffness, unknown, system);
   }
 
  private:

@@ -72,16 +72,15 @@ class CollarEnergy final : public Energy {
   void addStiffness(const Configuration& now, double strength,
                     const std::vector<std::int32_t>& unknown, BlockSystem& system) const override {
     const auto faces = now.patch.ofCollar();
-    std::vector<CornerBlocks> blocks(faces.size());
+    std::vector<FaceStiffness> stiffness(faces.size());
     parallelFor(faces.size(), kCollarGrain, [&](std::size_t f) {
-      const FaceShape& shape = shapeAt(now, f);
-      const double ratio = shape.area / faces[f].restArea;
+      const double ratio = shapeAt(now, f).area / faces[f].restArea;
       const Stretching stretch = stretching(faces[f], ratio, strength);
       const double inPlane = stretch.curvature * ratio * ratio;
-      blocks[f] = faceBlocks(shape, inPlane, std::max(0.0, stretch.slope * ratio));
+      stiffness[f] = {inPlane, std::max(0.0, stretch.slope * ratio)};
     });
-    addBlocks(faces, blocks, unknown, system);
-    addSpringStiffness(now.patch.collarEdges(), now.patch.yieldStrain, now.x,
+    addFaceBlocks(now.patch, now.shapes, now.patch.regionFaces, stiffness, unknown, system);
+    addSpringStiffness(now.patch, now.patch.regionSprings, now.patch.collarEdges().size(), now.x,
                        strength * kCollarSpring, unknown, system);
   }
 

@@ -27,21 +27,18 @@ class ContactEnergy final : public Energy {
   void addStiffness(const Configuration& now, double strength,
                     const std::vector<std::int32_t>& unknown, BlockSystem& system) const override {
     const auto& forces = now.contactForces();
+    std::vector<std::size_t> acting;
     for (std::size_t n = 0; n < forces.size(); ++n) {
-      if (forces[n].curvature == 0) continue;
-      const double stiffness = strength * forces[n].curvature;
-      for (int i = 0; i < 4; ++i) {
-        const std::int32_t a = unknown[now.contacts[n].vertices[i]];
-        if (a < 0) continue;
-        for (int j = 0; j <= i; ++j) {
-          const std::int32_t b = unknown[now.contacts[n].vertices[j]];
-          if (b < 0) continue;
-          system.add(a, b,
-                     stiffness * forces[n].direction.segment<3>(3 * i) *
-                         forces[n].direction.segment<3>(3 * j).transpose());
-        }
-      }
+      if (forces[n].curvature != 0) acting.push_back(n);
     }
+    const auto verticesOf = [&](std::size_t a) { return now.contacts[acting[a]].vertices; };
+    const Around around(acting.size(), unknown, verticesOf);
+    addBlocks(around, 0, acting.size(), verticesOf, unknown, system,
+              [&](std::int32_t a, int i, int j) -> Eigen::Matrix3d {
+                const collision::ContactForce& force = forces[acting[a]];
+                return strength * force.curvature * force.direction.segment<3>(3 * i) *
+                       force.direction.segment<3>(3 * j).transpose();
+              });
   }
 
   [[nodiscard]] double PhaseSeconds::*phase() const override { return &PhaseSeconds::collision; }

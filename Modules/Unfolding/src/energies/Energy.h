@@ -82,8 +82,9 @@ class Energy {
                                  const Positions& x, double strength);
 void addSpringGradient(std::span<const PatchSpring> springs, double yield, const Positions& x,
                        double strength, Positions& gradient);
-void addSpringStiffness(std::span<const PatchSpring> springs, double yield, const Positions& x,
-                        double strength, const std::vector<std::int32_t>& unknown,
-                        BlockSystem& system);
+/// Of `count` of the patch's springs from `first` on.
+void addSpringStiffness(const Patch& patch, std::size_t first, std::size_t count,
+                        const Positions& x, double strength,
+                        const std::vector<std::int32_t>& unknown, BlockSystem& system);
 
 }  // namespace explica::unfolding

@@ -67,13 +67,13 @@ class GuideEnergy final : public Energy {
     const double scale = strength / (guide.radius * guide.radius);
     const Eigen::Matrix3d across =
         Eigen::Matrix3d::Identity() - guide.axis * guide.axis.transpose();
-    for (std::size_t n = 0; n < guide.vertices.size(); ++n) {
+    parallelFor(guide.vertices.size(), kGuideGrain, [&](std::size_t n) {
       const std::int32_t i = unknown[guide.vertices[n]];
       const double curvature = pullOn(guide, n, now.x).curvature;
       if (i >= 0 && curvature > 0) {
         system.add(i, i, scale * guide.weights[n] * curvature * across);
       }
-    }
+    });
   }
 };
 

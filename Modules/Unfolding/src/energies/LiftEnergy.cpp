@@ -66,13 +66,15 @@ class LiftEnergy final : public Energy {
     const auto faces = now.patch.ofRegion();
     const PatchRoom& room = now.patch.room;
     const Eigen::Matrix3d along = room.axis * room.axis.transpose();
-    std::vector<CornerBlocks> blocks(faces.size());
-    for (std::size_t f = 0; f < faces.size(); ++f) {
-      const double scale = strength * faces[f].weight / (9 * room.radius * room.radius) *
-                           shortfall(room, centroidOf(faces[f], now.x)).curvature;
-      blocks[f].fill(scale * along);
-    }
-    addBlocks(faces, blocks, unknown, system);
+    std::vector<double> scales(faces.size());
+    parallelFor(faces.size(), kLiftGrain, [&](std::size_t f) {
+      scales[f] = strength * faces[f].weight / (9 * room.radius * room.radius) *
+                  shortfall(room, centroidOf(faces[f], now.x)).curvature;
+    });
+    addBlocks(
+        now.patch.facesAround, 0, faces.size(), [&](std::int32_t f) { return faces[f].vertices; },
+        unknown, system,
+        [&](std::int32_t f, int, int) -> Eigen::Matrix3d { return scales[f] * along; });
   }
 };
 

@@ -48,16 +48,11 @@ class OverhangEnergy final : public Energy {
   void addStiffness(const Configuration& now, double strength,
                     const std::vector<std::int32_t>& unknown, BlockSystem& system) const override {
     const auto faces = now.patch.ofCollar();
-    std::vector<CornerBlocks> blocks(faces.size());
+    std::vector<FaceStiffness> stiffness(faces.size());
     parallelFor(faces.size(), kOverhangGrain, [&](std::size_t f) {
-      const double away = awayOf(now, f);
-      if (away > 0) {
-        blocks[f] = faceBlocks(shapeAt(now, f), 0, 2 * strength * faces[f].nearWeight * away);
-      } else {
-        blocks[f].fill(Eigen::Matrix3d::Zero());
-      }
+      stiffness[f].across = 2 * strength * faces[f].nearWeight * awayOf(now, f);
     });
-    addBlocks(faces, blocks, unknown, system);
+    addFaceBlocks(now.patch, now.shapes, now.patch.regionFaces, stiffness, unknown, system);
   }
 
  private:

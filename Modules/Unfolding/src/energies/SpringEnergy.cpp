@@ -33,8 +33,7 @@ class SpringEnergy final : public Energy {
   }
   void addStiffness(const Configuration& now, double strength,
                     const std::vector<std::int32_t>& unknown, BlockSystem& system) const override {
-    addSpringStiffness(now.patch.regionEdges(), now.patch.yieldStrain, now.x, strength, unknown,
-                       system);
+    addSpringStiffness(now.patch, 0, now.patch.regionSprings, now.x, strength, unknown, system);
   }
 };
 
@@ -66,25 +65,31 @@ void addSpringGradient(std::span<const PatchSpring> springs, double yield, const
   }
 }
 
-void addSpringStiffness(std::span<const PatchSpring> springs, double yield, const Positions& x,
-                        double strength, const std::vector<std::int32_t>& unknown,
-                        BlockSystem& system) {
-  for (const PatchSpring& spring : springs) {
+void addSpringStiffness(const Patch& patch, std::size_t first, std::size_t count,
+                        const Positions& x, double strength,
+                        const std::vector<std::int32_t>& unknown, BlockSystem& system) {
+  constexpr std::size_t kGrain = 256;  // elements a task
+  std::vector<Eigen::Matrix3d> blocks(count);
+  parallelFor(count, kGrain, [&](std::size_t s) {
+    const PatchSpring& spring = patch.springs[first + s];
     const Vector along = (x.row(spring.vertices[1]) - x.row(spring.vertices[0])).transpose();
     const double length = along.norm();
     const Vector unit = along / length;
-    const double soft = softening(length / spring.restLength - 1, yield);
+    const double soft = softening(length / spring.restLength - 1, patch.yieldStrain);
     const double secant =
         2 * strength * spring.weight * soft / (spring.restLength * spring.restLength);
     const double lateral = secant * std::max(0.0, 1 - spring.restLength / length);
     const double stiffness = secant * soft;
-    const Eigen::Matrix3d block =
+    blocks[s] =
         (stiffness - lateral) * unit * unit.transpose() + lateral * Eigen::Matrix3d::Identity();
-    const std::int32_t i = unknown[spring.vertices[0]], j = unknown[spring.vertices[1]];
-    if (i >= 0) system.add(i, i, block);
-    if (j >= 0) system.add(j, j, block);
-    if (i >= 0 && j >= 0) system.add(i, j, -block);
-  }
+  });
+  const auto verticesOf = [&](std::int32_t s) { return patch.springs[s].vertices; };
+  addBlocks(patch.springsAround, first, count, verticesOf, unknown, system,
+            [&](std::int32_t s, int i, int j) -> Eigen::Matrix3d {
+              const Eigen::Matrix3d& block = blocks[static_cast<std::size_t>(s) - first];
+              if (i == j) return block;
+              return -block.transpose();
+            });
 }
 
 std::unique_ptr<Energy> makeSpringEnergy() {

@@ -76,11 +76,9 @@ class VisibilityEnergy final : public Energy {
   void addStiffness(const Configuration& now, double strength,
                     const std::vector<std::int32_t>& unknown, BlockSystem& system) const override {
     const auto faces = now.patch.ofRegion();
-    std::vector<CornerBlocks> blocks(faces.size());
-    parallelFor(faces.size(), kVisibilityGrain, [&](std::size_t f) {
-      blocks[f] = faceBlocks(now.shapes[f], 0, strength * faces[f].weight);
-    });
-    addBlocks(faces, blocks, unknown, system);
+    std::vector<FaceStiffness> stiffness(faces.size());
+    for (std::size_t f = 0; f < faces.size(); ++f) stiffness[f].across = strength * faces[f].weight;
+    addFaceBlocks(now.patch, now.shapes, 0, stiffness, unknown, system);
   }
 };
 

@@ -31,7 +31,7 @@ struct BlockPattern {
 /// eliminated together in one dense front, and what remains of it is added to the front of their
 /// parent.
 ///
-/// Disjoint subtrees of fronts run on several threads, large fronts above them are cut into tiles.
+/// Disjoint branches of fronts run on several threads, large fronts above them are cut into tiles.
 /// Which number is added to which and when depends on the pattern only, so that results do not
 /// depend on the number of threads.
 template <int Size>
@@ -75,6 +75,22 @@ class BlockCholesky {
   void schedule();
   bool eliminate(std::int32_t f, const BlockPattern& pattern, std::span<const Block> blocks,
                  bool tiled);
+  bool eliminateSubtree(std::int32_t root, const BlockPattern& pattern,
+                        std::span<const Block> blocks);
+  bool eliminateBranch(std::int32_t root, const BlockPattern& pattern,
+                       std::span<const Block> blocks);
+
+  /// What a subtree takes off the right side of a row above it.
+  struct Taken {
+    std::int32_t row;
+    Eigen::Matrix<double, Size, 1> value;
+  };
+  [[nodiscard]] Eigen::Map<const Eigen::MatrixXd> columnsOf(const Front& front) const {
+    return {factor_.data() + front.factorBegin, front.height(), front.width()};
+  }
+  void solveForward(const Front& front, Eigen::VectorXd& x, Eigen::VectorXd& below) const;
+  void solveBackward(const Front& front, bool tiled, Eigen::VectorXd& x) const;
+  void solveSubtree(std::int32_t root, Eigen::VectorXd& x, std::vector<Taken>& above) const;
 
   std::vector<Front> fronts_;
   std::vector<std::int32_t> rows_;
@@ -83,6 +99,8 @@ class BlockCholesky {
   std::vector<std::int32_t> subtrees_;        ///< roots of those that run each on one thread
   std::vector<std::int32_t> firstOfSubtree_;  ///< of each front: its first descendant
   std::vector<std::int32_t> top_;             ///< the fronts above them, children first
+  std::vector<std::int32_t> roots_;           ///< fronts without a parent
+  std::vector<char> isTop_;                   ///< of each front: whether it is one of top_
   std::vector<double> factor_;
   std::vector<Eigen::MatrixXd> updates_;  ///< of fronts whose parent is still to come
   std::int64_t factorSize_ = 0;
