@@ -48,6 +48,7 @@ struct Settings {
   std::vector<std::string> participants;
   std::vector<pipeline::RunHemisphere> hemispheres = {pipeline::RunHemisphere::Left,
                                                       pipeline::RunHemisphere::Right};
+  std::optional<std::string> registrations;  ///< an earlier OUT_DIR
   bool skipValidator = true;
   bool reuse = true;
   Invocation run;  ///< whose options are taken over
@@ -95,6 +96,11 @@ void declare(Declaration& d, Settings& s) {
               s.participants)
       .severalWords("participant-label")
       .option("Study", Field{"hemispheres", "", "hemispheres to do"}, s.hemispheres)
+      .inputOption("registrations", FileKind::Folder,
+                   "an earlier OUT_DIR, of the same T1s: each one's template is placed as it was "
+                   "there (runs/*/segment/to_template.h5), where it is; how it fits is checked as "
+                   "ever",
+                   s.registrations, "Study")
       .option("Study", Field{"skip-bids-validator", "", "accepted; no validator is run"},
               s.skipValidator)
       .defaultOut(s.out)
@@ -149,6 +155,17 @@ void shareSegment(const fs::path& made, const fs::path& run) {
   if (fault) fs::remove_all(run / "segment", fault);  // no such links here: the run makes its own
 }
 
+/// How the template was placed in a participant's T1 by an earlier study.
+std::optional<fs::path> earlierRegistration(const Settings& s, const std::string& participant) {
+  if (!s.registrations) return {};
+  for (const char* side : {"_hemi-L", "_hemi-R"}) {
+    const fs::path file =
+        fs::path(*s.registrations) / "runs" / (participant + side) / "segment/to_template.h5";
+    if (fs::exists(file)) return file;
+  }
+  return {};
+}
+
 /// What a run's numbers say against it counts against the whole.
 void passFlagsOn(Context& context, const fs::path& run) {
   const Json summary = provenance::readJson(run / provenance::kSummaryName);
@@ -173,6 +190,9 @@ bool doHemisphere(Context& context, const Settings& s, const study::Participant&
     Json values = givenOptions(context, s.run.declaration);
     values["INPUT"] = participant.input.string();
     if (participant.atlas) values["atlas"] = participant.atlas->string();
+    if (const auto earlier = earlierRegistration(s, participant.name())) {
+      values["segment.template-transform"] = earlier->string();
+    }
     values["hemisphere"] = hemisphere;
     values["resume"] = true;
     const std::string other = hemisphere == "L" ? "R" : "L";

@@ -51,6 +51,7 @@ struct Settings {
   std::optional<std::string> atlas;
   std::optional<std::string> legend;
   std::optional<std::string> headTemplate;
+  std::optional<std::string> templateTransform;
   Stripped stripped = Stripped::Auto;
   io::VolumeReadOptions reading;
   segmentation::TissueOptions tissue;
@@ -111,6 +112,10 @@ void declare(Declaration& d, Settings& s) {
           "what the atlas's labels mean, one 'value name' a line (default: the .tsv or .nii.txt "
           "beside it; FreeSurfer's are known)",
           s.legend)
+      .inputOption("template-transform", FileKind::Any,
+                   "to_template.h5 of an earlier run on this T1 with the same template, taken "
+                   "instead of registering again; how it fits is checked as ever",
+                   s.templateTransform, "Head")
       .option("Head",
               Field{"template", "",
                     "colin27 (default) or inia19 (a macaque without skull), both of the package "
@@ -216,6 +221,18 @@ void writeTemplate(Context& context, const Boxes& boxes, const Atlas& atlas, Lab
   io::writeTransform(context.output("to_template.h5"), transform.affine, transform.displacement);
 }
 
+/// The template brought onto the image, or as an earlier run has brought it.
+registration::HeadRegistration registered(Context& context, const Settings& s,
+                                          const Volume<float>& image,
+                                          const registration::Template& head, bool stripped) {
+  if (!s.templateTransform) {
+    return registration::registerHead(image, head, stripped, {}, context.monitor());
+  }
+  io::StoredTransform stored = io::readTransform(*s.templateTransform);
+  return registration::reuseRegistration(image, head, stripped,
+                                         {stored.affine, std::move(stored.displacement)});
+}
+
 /// The template in the image's space: mask, atlas, and how well it fits.
 Head fitTemplate(Context& context, Judge& judge, const Settings& s, const LoadedTemplate& loaded,
                  const Boxes& boxes, const Volume<float>& image, Volume<Label> mask) {
@@ -225,9 +242,9 @@ Head fitTemplate(Context& context, Judge& judge, const Settings& s, const Loaded
   context.result("stripped", stripped);
   context.info(stripped ? "T1: without skull" : "T1: with skull, which is taken off");
   auto step = context.step("template");
-  const auto found = registration::registerHead(mask.size() != 0 ? within(image, mask) : image,
-                                                loaded.volumes, stripped, {}, context.monitor());
-  context.result("registration_information", found.information);
+  const auto found = registered(context, s, mask.size() != 0 ? within(image, mask) : image,
+                                loaded.volumes, stripped);
+  if (!s.templateTransform) context.result("registration_information", found.information);
   context.result("registration_correlation", found.agreement.correlation);
   context.result("registration_least_jacobian", found.agreement.leastJacobian);
   judge.flag("registration", found.agreement.correlation);
@@ -268,12 +285,16 @@ Head readHead(Context& context, Judge& judge, const Settings& s,
   std::optional<Atlas> atlas;
   if (s.atlas) atlas = readAtlas(context, s, reading, image.grid);
   const std::string name = s.headTemplate.value_or("colin27");
+  if (name == "none" && s.templateTransform) {
+    throw UsageError("--template-transform is for a template, and --template is none");
+  }
   // With an atlas in its space, an image is taken to be stripped unless it is said not to be.
-  const bool known = s.atlas && s.stripped != Stripped::No && !s.headTemplate;
+  const bool known =
+      s.atlas && s.stripped != Stripped::No && !s.headTemplate && !s.templateTransform;
   if (name == "none" || known) return {std::move(mask), std::move(atlas), {}, 1};
   const auto loaded = readTemplate(context, name);
   if (!loaded) {
-    if (s.headTemplate || s.stripped == Stripped::No) {
+    if (s.headTemplate || s.templateTransform || s.stripped == Stripped::No) {
       throw InvalidInput(
           "template: colin27 is not installed; install the package mricron-data, or give a folder");
     }

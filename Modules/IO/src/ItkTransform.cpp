@@ -24,6 +24,8 @@ namespace {
 
 using Path = std::filesystem::path;
 using Composite = itk::CompositeTransform<double, 3>;
+using Linear = itk::MatrixOffsetTransformBase<double, 3, 3>;
+using Warp = itk::DisplacementFieldTransform<double, 3>;
 using Transform = itk::Transform<double, 3, 3>;
 
 /// What a file says of one transform.
@@ -206,7 +208,7 @@ std::vector<Entry> entriesOf(const Path& path) {
   return entriesOfMatlab(path, bytes);
 }
 
-Transform::Pointer compositeOf(const Path& path) {
+Composite::Pointer compositeOf(const Path& path) {
   static std::once_flag once;
   std::call_once(once, [] { itk::TransformFactoryBase::RegisterDefaultTransforms(); });
   const Composite::Pointer composite = Composite::New();
@@ -216,7 +218,7 @@ Transform::Pointer compositeOf(const Path& path) {
     composite->AddTransform(transformOf(path, std::move(entry)));
   }
   if (composite->GetNumberOfTransforms() == 0) refuse(path, "holds no transform");
-  return composite.GetPointer();
+  return composite;
 }
 
 /// RAS to LPS and back.
@@ -237,9 +239,7 @@ itk::AffineTransform<double, 3>::Pointer affineInLps(const Eigen::Affine3d& affi
   return result;
 }
 
-itk::DisplacementFieldTransform<double, 3>::Pointer fieldInLps(
-    const Volume<Eigen::Vector3f>& displacement) {
-  using Warp = itk::DisplacementFieldTransform<double, 3>;
+Warp::Pointer fieldInLps(const Volume<Eigen::Vector3f>& displacement) {
   using Field = Warp::DisplacementFieldType;
   const Grid& grid = displacement.grid;
   auto field = Field::New();
@@ -267,12 +267,47 @@ itk::DisplacementFieldTransform<double, 3>::Pointer fieldInLps(
   return result;
 }
 
+Eigen::Affine3d affineInRas(const Path& path, const Linear& lps) {
+  Eigen::Affine3d affine;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      affine.linear()(row, column) = kTurned[row] * lps.GetMatrix()(row, column) * kTurned[column];
+    }
+    affine.translation()[row] = kTurned[row] * lps.GetOffset()[row];
+  }
+  const double size = affine.linear().norm();
+  if (!(std::abs(affine.linear().determinant()) > 1e-9 * size * size * size)) {
+    refuse(path, "its affine part cannot be inverted: it takes space to a plane");
+  }
+  return affine;
+}
+
+Volume<Eigen::Vector3f> fieldInRas(const Path& path, const Warp::DisplacementFieldType& field) {
+  Grid grid;
+  for (int a = 0; a < 3; ++a) {
+    grid.size[a] = static_cast<int>(field.GetLargestPossibleRegion().GetSize(a));
+    grid.spacing[a] = field.GetSpacing()[a];
+    grid.origin[a] = kTurned[a] * field.GetOrigin()[a];
+    for (int b = 0; b < 3; ++b) grid.direction(a, b) = kTurned[a] * field.GetDirection()(a, b);
+  }
+  const Eigen::Matrix3d product = grid.direction.transpose() * grid.direction;
+  if (!product.isIdentity(1e-6)) refuse(path, "the axes of its field are not at right angles");
+  Volume<Eigen::Vector3f> displacement(grid, Eigen::Vector3f::Zero());
+  const auto* voxel = field.GetBufferPointer();
+  for (std::size_t v = 0; v < displacement.size(); ++v) {
+    for (int a = 0; a < 3; ++a) {
+      displacement[v][a] = static_cast<float>(kTurned[a] * voxel[v][a]);
+    }
+  }
+  return displacement;
+}
+
 }  // namespace
 
 std::function<Point(const Point&)> readItkTransform(const Path& path, bool inverse) {
   Transform::Pointer transform;
   try {
-    transform = compositeOf(path);
+    transform = compositeOf(path).GetPointer();
     if (inverse) {
       const auto inverted = transform->GetInverseTransform();
       if (inverted.IsNull()) {
@@ -292,6 +327,28 @@ std::function<Point(const Point&)> readItkTransform(const Path& path, bool inver
     const auto there = transform->TransformPoint(lps);
     return {kTurned[0] * there[0], kTurned[1] * there[1], kTurned[2] * there[2]};
   };
+}
+
+StoredTransform readTransform(const Path& path) {
+  try {
+    const Composite::Pointer composite = compositeOf(path);
+    const auto count = composite->GetNumberOfTransforms();
+    const auto* linear = dynamic_cast<const Linear*>(composite->GetNthTransformConstPointer(0));
+    const auto* warp =
+        count == 2 ? dynamic_cast<const Warp*>(composite->GetNthTransformConstPointer(1)) : nullptr;
+    if (linear == nullptr || count > 2 || (count == 2 && warp == nullptr)) {
+      refuse(path,
+             "is not an affine transform after at most one displacement field, as explica segment "
+             "writes to_template.h5");
+    }
+    StoredTransform stored;
+    stored.affine = affineInRas(path, *linear);
+    if (warp != nullptr) stored.displacement = fieldInRas(path, *warp->GetDisplacementField());
+    return stored;
+  } catch (const itk::ExceptionObject& error) {
+    const std::string cause = error.GetDescription();
+    failToRead(path, "ITK does not take this transform: " + cause.substr(0, cause.find('\n')));
+  }
 }
 
 void writeTransform(const std::filesystem::path& path, const Eigen::Affine3d& affine,

@@ -273,6 +273,28 @@ double leastJacobian(const Field& u) {
   return least;
 }
 
+/// What the image and the template, brought by the field, have in common.
+Agreement agreementIn(const FieldLevel& level, const Field& u, int radius) {
+  const Windows windows = compare(level.image, displaced(level.moving, u), radius);
+  return {weightedMean(windows.correlation, level.weight), leastJacobian(u)};
+}
+
+/// The transform's displacement on a grid.
+Field fieldOf(const HeadTransform& transform, const Grid& grid) {
+  Field u = zeroField(grid);
+  const Eigen::Affine3d back = transform.affine.inverse();
+  forPlanes(grid, [&](int k) {
+    for (int j = 0; j < grid.size[1]; ++j) {
+      for (int i = 0; i < grid.size[0]; ++i) {
+        const Vector index(i, j, k);
+        const Vector there = grid.toIndex(back * transform(grid.toWorld(index))) - index;
+        for (int a = 0; a < 3; ++a) u[a](i, j, k) = static_cast<float>(there[a]);
+      }
+    }
+  });
+  return u;
+}
+
 /// Scaled so that the bright end of the values above 0 is about 1.
 Volume<float> normalised(Volume<float> volume) {
   std::vector<float> sorted;
@@ -308,9 +330,7 @@ DeformationResult registerDeformation(const Volume<float>& image, const Volume<f
     u = climb(level, std::move(u), options, monitor);
   }
   DeformationResult result;
-  result.agreement.correlation = weightedMean(
-      compare(level.image, displaced(level.moving, u), options.radius).correlation, level.weight);
-  result.agreement.leastJacobian = leastJacobian(u);
+  result.agreement = agreementIn(level, u, options.radius);
   result.transform.affine = imageToTemplate;
   result.transform.displacement = Volume<Eigen::Vector3f>(level.grid, Eigen::Vector3f::Zero());
   const Eigen::Matrix3f axes =
@@ -320,6 +340,14 @@ DeformationResult registerDeformation(const Volume<float>& image, const Volume<f
   });
   monitor.progress(1, "registration");
   return result;
+}
+
+Agreement agreementOf(const Volume<float>& image, const Volume<float>& inTemplate,
+                      const Volume<float>& region, const HeadTransform& transform,
+                      const DeformationOptions& options) {
+  const FieldLevel level = makeLevel(normalised(image), normalised(inTemplate), region,
+                                     transform.affine, options.spacing);
+  return agreementIn(level, fieldOf(transform, level.grid), options.radius);
 }
 
 }  // namespace explica::registration

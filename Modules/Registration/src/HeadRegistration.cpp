@@ -6,6 +6,8 @@
 #include "Explica/Registration/AffineRegistration.h"
 #include "Filters.h"
 
+#include <Eigen/SVD>
+
 #include <algorithm>
 #include <cmath>
 
@@ -15,6 +17,7 @@ namespace {
 constexpr double kHumanBrain = 1.7e6;   // mm^3, with fluid, as Colin27 has it
 constexpr double kAround = 12;          // mm of head around a human brain that affine maps look at
 constexpr double kNearby = 5;           // mm around it that the deformation looks at
+constexpr double kMostStretch = 10;     // of a transform that may bring a head onto another
 constexpr double kMostOfABrain = 1.55;  // times the template's brain: above, there is a skull
 
 Volume<float> maskOf(const Volume<float>& brain) {
@@ -38,6 +41,33 @@ double volumeAboveZero(const Volume<float>& image) {
   return static_cast<double>(inside) * image.grid.voxelVolume();
 }
 
+/// What of a template an image is compared with.
+struct Pattern {
+  const Volume<float>& like;
+  Volume<float> mask;
+  double size;  ///< of the template's brain, beside a human one
+
+  /// @throws InvalidInput  a head with skull for a template without
+  Pattern(const Template& head, bool stripped)
+      : like(stripped ? head.brain : head.head),
+        mask(maskOf(head.brain)),
+        size(std::cbrt(brainVolumeOf(head) / kHumanBrain)) {
+    if (like.size() == 0) {
+      throw InvalidInput(
+          "template: has no T1 with skull, as the image needs; give a skull-stripped image, or say "
+          "--stripped yes if it is one");
+    }
+  }
+
+  /// The brain and so many mm about it, of a human one.
+  [[nodiscard]] Volume<float> around(double by) const { return grown(mask, by * size); }
+
+  [[nodiscard]] DeformationOptions scaled(DeformationOptions options) const {
+    options.spacing *= size;
+    return options;
+  }
+};
+
 }  // namespace
 
 double brainVolumeOf(const Template& head) {
@@ -50,25 +80,35 @@ bool looksStripped(const Volume<float>& image, const Template& head) {
 
 HeadRegistration registerHead(const Volume<float>& image, const Template& head, bool stripped,
                               const DeformationOptions& options, const Monitor& monitor) {
-  if (!stripped && head.head.size() == 0) {
-    throw InvalidInput(
-        "template: has no T1 with skull, as the image needs; give a skull-stripped image, or say "
-        "--stripped yes if it is one");
-  }
-  const Volume<float>& like = stripped ? head.brain : head.head;
-  const Volume<float> mask = maskOf(head.brain);
-  const double size = std::cbrt(brainVolumeOf(head) / kHumanBrain);
+  const Pattern pattern(head, stripped);
   HeadRegistration found;
   const AffineRegistration affine =
-      registerAffine(image, like, grown(mask, kAround * size), monitor);
+      registerAffine(image, pattern.like, pattern.around(kAround), monitor);
   found.information = affine.information;
-  DeformationOptions scaled = options;
-  scaled.spacing *= size;
-  DeformationResult deformed = registerDeformation(
-      image, like, grown(mask, kNearby * size), affine.templateToImage.inverse(), scaled, monitor);
+  DeformationResult deformed =
+      registerDeformation(image, pattern.like, pattern.around(kNearby),
+                          affine.templateToImage.inverse(), pattern.scaled(options), monitor);
   found.transform = std::move(deformed.transform);
   found.agreement = deformed.agreement;
-  found.brain = pulled(mask, found.transform, image.grid);
+  found.brain = pulled(pattern.mask, found.transform, image.grid);
+  return found;
+}
+
+HeadRegistration reuseRegistration(const Volume<float>& image, const Template& head, bool stripped,
+                                   HeadTransform transform, const DeformationOptions& options) {
+  const Eigen::Vector3d stretches =
+      Eigen::JacobiSVD<Eigen::Matrix3d>(transform.affine.linear()).singularValues();
+  if (!(stretches[0] < kMostStretch && stretches[2] > 1 / kMostStretch)) {
+    throw InvalidInput(
+        "template transform: brings no head onto the template: it stretches some direction more "
+        "than ten times; give the to_template.h5 of an earlier run on this T1");
+  }
+  const Pattern pattern(head, stripped);
+  HeadRegistration found;
+  found.agreement =
+      agreementOf(image, pattern.like, pattern.around(kNearby), transform, pattern.scaled(options));
+  found.transform = std::move(transform);
+  found.brain = pulled(pattern.mask, found.transform, image.grid);
   return found;
 }
 

@@ -43,4 +43,10 @@ struct DeformationResult {
                                                     const DeformationOptions& options = {},
                                                     const Monitor& monitor = {});
 
+/// How a transform that is known already brings the template onto the image, compared as
+/// `registerDeformation` compares its own.
+[[nodiscard]] Agreement agreementOf(const Volume<float>& image, const Volume<float>& inTemplate,
+                                    const Volume<float>& region, const HeadTransform& transform,
+                                    const DeformationOptions& options = {});
+
 }  // namespace explica::registration

@@ -18,7 +18,7 @@ struct Template {
 /// How a template lies in an image.
 struct HeadRegistration {
   HeadTransform transform;
-  double information = 0;  ///< of the affine part, 1 to 2
+  double information = 0;  ///< of the affine part, 1 to 2; 0 if the transform was given
   Agreement agreement;     ///< of the whole
   Volume<float> brain;     ///< the template's brain mask on the image's grid, 0 to 1
 };
@@ -35,5 +35,14 @@ struct HeadRegistration {
 [[nodiscard]] HeadRegistration registerHead(const Volume<float>& image, const Template& head,
                                             bool stripped, const DeformationOptions& options = {},
                                             const Monitor& monitor = {});
+
+/// Takes a transform that an earlier registration has found, and compares as `registerHead` does.
+/// Whether it is this image's, the agreement tells.
+/// @throws InvalidInput  as `registerHead`, and a transform that makes a head of the template's
+/// size
+///                       more than ten times as long or as short
+[[nodiscard]] HeadRegistration reuseRegistration(const Volume<float>& image, const Template& head,
+                                                 bool stripped, HeadTransform transform,
+                                                 const DeformationOptions& options = {});
 
 }  // namespace explica::registration
