@@ -206,6 +206,69 @@ TEST_F(WholeHead, UpsideDownIsFlaggedByItsRegistrationAlone) {
   EXPECT_EQ(flag["value"], numberOf(folder_ / "segment", "registration_correlation"));
 }
 
+TEST_F(WholeHead, ARegistrationIsTakenAgainAndJudgedAnew) {
+  const fs::path image = folder_ / "t1.nii.gz";
+  writeCoarse(image, asItIs);
+  const auto first = patiently({"segment", image, "--out", folder_ / "first"});
+  ASSERT_EQ(first.exitCode, 0) << first;
+  const std::string made = folder_ / "first/to_template.h5";
+  const auto segmentation = [&](const char* out) {
+    std::array<std::string, 3> content;
+    for (int n = 0; n < 3; ++n) {
+      static constexpr std::array kNames = {"/seg.nii.gz", "/hemisphere.nii.gz", "/atlas.nii.gz"};
+      content[n] = readText(folder_ / out + kNames[n]);
+    }
+    return content;
+  };
+  const auto again = patiently({"run", image, "--segment.template-transform", made, "--steps",
+                                "segment", "--out", folder_ / "again"});
+  ASSERT_EQ(again.exitCode, 0) << again;
+  EXPECT_EQ(segmentation("again/segment"), segmentation("first"));
+  for (const char* number : {"registration_correlation", "registration_stretch"}) {
+    EXPECT_NEAR(numberOf(folder_ / "again/segment", number), numberOf(folder_ / "first", number),
+                1e-4);
+  }
+  EXPECT_FALSE(
+      readJson(folder_ / "again/segment/summary.json").contains("registration_information"));
+
+  // Of another image: the same head upside down.
+  writeCoarse(folder_ / "other.nii.gz", upsideDown);
+  const auto other = patiently({"segment", folder_ / "other.nii.gz", "--template-transform", made,
+                                "--out", folder_ / "other"});
+  EXPECT_EQ(other.exitCode, 3) << other;
+  EXPECT_TRUE(flagsOf(folder_ / "other").contains("registration")) << other;
+  EXPECT_NE(other.err.find("the agreement with the template"), std::string::npos) << other;
+
+  writeText(folder_ / "nonsense.h5", "no transform at all\n");
+  const auto refused = patiently({"segment", image, "--template-transform", folder_ / "nonsense.h5",
+                                  "--out", folder_ / "refused"});
+  EXPECT_EQ(refused.exitCode, 2) << refused;
+  EXPECT_NE(refused.err.find("nonsense.h5"), std::string::npos) << refused;
+  const auto none = explica({"segment", image, "--template-transform", made, "--template", "none",
+                             "--out", folder_ / "none"});
+  EXPECT_EQ(none.exitCode, 1) << none;
+}
+
+TEST_F(WholeHead, AStudyTakesTheRegistrationsOfAnEarlierOne) {
+  const fs::path image = folder_ / "data/sub-01/anat/sub-01_T1w.nii.gz";
+  writeCoarse(image, asItIs);
+  writeText(folder_ / "data/dataset_description.json", R"({"Name": "a", "BIDSVersion": "1.8.0"})");
+  const auto study = [&](const std::string& out, const std::vector<std::string>& more) {
+    return patiently(std::vector<std::string>{"bids", folder_ / "data", folder_ / out,
+                                              "participant", "--hemispheres", "L", "--steps",
+                                              "segment"} +
+                     more);
+  };
+  ASSERT_EQ(study("first", {}).exitCode, 0);
+  const auto second = study("second", {"--registrations", folder_ / "first"});
+  ASSERT_EQ(second.exitCode, 0) << second;
+  const std::string tissue = "/runs/sub-01_hemi-L/segment/";
+  EXPECT_FALSE(readJson(folder_ / ("second" + tissue + "summary.json"))
+                   .contains("registration_information"));
+  EXPECT_EQ(readText(folder_ / ("second" + tissue + "seg.nii.gz")),
+            readText(folder_ / ("first" + tissue + "seg.nii.gz")));
+}
+
 TEST_F(WholeHead, HalfABrainIsFlaggedByARunAndFailsItsRowOfAStudyAlone) {
   const auto image = [&](const std::string& subject) {
     return folder_ / ("data/sub-" + subject + "/anat/sub-" + subject + "_T1w.nii.gz");

@@ -4,6 +4,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/IO/PointTransformFile.h"
+#include "Explica/IO/TransformFile.h"
 #include "TemporaryFolder.h"
 
 #include <gtest/gtest.h>
@@ -150,6 +151,71 @@ TEST_F(ItkTransformFiles, AWarpHasNoInverseAndThatIsSaid) {
   const std::string complaint = complaintOf<InvalidInput>(
       [&] { static_cast<void>(readPointTransform(folder_ / "Composite.h5", sides_)); });
   EXPECT_NE(complaint.find("InverseComposite"), std::string::npos) << complaint;
+}
+
+TEST_F(ItkTransformFiles, ARegistrationIsReadBackNumberForNumber) {
+  Eigen::Affine3d affine(Eigen::AngleAxisd(0.3, Vector(1, 2, -1).normalized()));
+  affine.linear() *= 1.07;
+  affine.translation() = Vector(3.25, -7.1, 11.3);
+  Grid grid;
+  grid.size = {5, 4, 3};
+  grid.spacing = {2, 2.1, 1.9};
+  grid.direction = Eigen::AngleAxisd(0.4, Vector(0.2, -1, 0.5).normalized()).toRotationMatrix();
+  grid.origin = {-20.3, 14.7, 9.1};
+  Volume<Eigen::Vector3f> field(grid, Eigen::Vector3f::Zero());
+  for (std::size_t v = 0; v < field.size(); ++v) {
+    const auto x = static_cast<float>(v);
+    field[v] = {std::sin(x), 0.3F * std::cos(x), 0.01F * x};
+  }
+  writeTransform(folder_ / "to_template.h5", affine, field);
+  const StoredTransform read = readTransform(folder_ / "to_template.h5");
+  EXPECT_EQ(read.affine.matrix(), affine.matrix());
+  EXPECT_EQ(read.displacement.data, field.data);
+  EXPECT_EQ(read.displacement.grid.size, grid.size);
+  EXPECT_EQ(read.displacement.grid.spacing, grid.spacing);
+  EXPECT_EQ(read.displacement.grid.origin, grid.origin);
+  EXPECT_EQ(read.displacement.grid.direction, grid.direction);
+  writeTransform(folder_ / "affine.h5", affine, {});
+  EXPECT_EQ(readTransform(folder_ / "affine.h5").affine.matrix(), affine.matrix());
+  EXPECT_EQ(readTransform(folder_ / "affine.h5").displacement.size(), 0U);
+}
+
+TEST_F(ItkTransformFiles, ARegistrationOfAntsHasACentreOfItsOwn) {
+  const auto composite = Composite::New();
+  composite->AddTransform(affine());
+  composite->AddTransform(warp());
+  write(composite, folder_ / "Composite.h5");
+  const StoredTransform read = readTransform(folder_ / "Composite.h5");
+  // At a place of the lattice, where nothing is interpolated.
+  const Point ras = read.displacement.grid.toWorld(Vector(10, 11, 12));
+  Transform::InputPointType lps;
+  lps[0] = -ras[0];
+  lps[1] = -ras[1];
+  lps[2] = ras[2];
+  const auto there = composite->TransformPoint(lps);
+  const Point found = read.affine * (ras + read.displacement(10, 11, 12).cast<double>());
+  EXPECT_LT((found - Point(-there[0], -there[1], there[2])).norm(), 1e-5);
+}
+
+TEST_F(ItkTransformFiles, WhatIsNoRegistrationIsRefused) {
+  const auto complaintAbout = [&](const auto& parts) {
+    const auto composite = Composite::New();
+    for (const auto& part : parts) composite->AddTransform(part);
+    write(composite, folder_ / "other.h5");
+    return complaintOf<InvalidInput>(
+        [&] { static_cast<void>(readTransform(folder_ / "other.h5")); });
+  };
+  using Parts = std::vector<Transform::Pointer>;
+  const auto a = [] { return Transform::Pointer(affine().GetPointer()); };
+  const auto w = [] { return Transform::Pointer(warp().GetPointer()); };
+  for (const Parts& parts : {Parts{w()}, Parts{w(), a()}, Parts{a(), a()}, Parts{a(), w(), w()}}) {
+    EXPECT_NE(complaintAbout(parts).find("is not an affine transform after at most one"),
+              std::string::npos);
+  }
+  const auto flat = Affine::New();
+  flat->Scale(std::array<double, 3>{1, 1, 0}.data());
+  EXPECT_NE(complaintAbout(Parts{Transform::Pointer(flat.GetPointer())}).find("cannot be inverted"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -135,6 +135,29 @@ TEST(Deformation, StraightensWhatWasBentWithoutFolds) {
   EXPECT_GT(found.agreement.correlation, 0.8);
 }
 
+TEST(HeadRegistration, TakenAgainIsJudgedAsItWasWhenItWasFound) {
+  const Template phantom = phantomTemplate(6);
+  const auto image = [&](const Point& moved) {
+    return drawn(phantom.head.grid, [&](const Point& p) { return headAt(bent(p + moved)); });
+  };
+  DeformationOptions options;
+  options.spacing = 6;
+  const HeadRegistration found = registerHead(image(Point::Zero()), phantom, false, options);
+  const HeadRegistration again =
+      reuseRegistration(image(Point::Zero()), phantom, false, found.transform, options);
+  EXPECT_NEAR(again.agreement.correlation, found.agreement.correlation, 1e-5);
+  EXPECT_NEAR(again.agreement.leastJacobian, found.agreement.leastJacobian, 1e-4);
+  EXPECT_EQ(again.brain.data, found.brain.data);
+  EXPECT_EQ(again.information, 0);
+  // Of a head that lies elsewhere it is no registration, and that shows.
+  const HeadRegistration other =
+      reuseRegistration(image(Point(0, 25, 10)), phantom, false, found.transform, options);
+  EXPECT_LT(other.agreement.correlation, 0.5 * found.agreement.correlation);
+  HeadTransform flea = found.transform;
+  flea.affine.linear() *= 100;
+  EXPECT_THROW((void)reuseRegistration(phantom.head, phantom, false, flea, options), InvalidInput);
+}
+
 TEST(Deformation, DoesNotDependOnThreads) {
   const Template phantom = phantomTemplate(6);
   const Volume<float> image =
