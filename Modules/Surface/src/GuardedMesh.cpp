@@ -319,18 +319,54 @@ Box GuardedMesh::roomy(const Box& box) const {
           box[3] + slack_, box[4] + slack_, box[5] + slack_};
 }
 
+/// Which faces lie in which slab of cells: threads then fill a slab each, every cell in the order
+/// of the faces.
+class GuardedMesh::FacesOfSlabs {
+ public:
+  explicit FacesOfSlabs(const GuardedMesh& mesh)
+      : ranges_(mesh.boxes_.size()), slabs_((mesh.cellSize_[2] + kLayers - 1) / kLayers) {
+    parallelFor(ranges_.size(), 4096,
+                [&](std::size_t f) { ranges_[f] = mesh.cellsOf(mesh.boxes_[f]); });
+    for (std::size_t f = 0; f < ranges_.size(); ++f) {
+      for (int slab = ranges_[f][2] / kLayers; slab <= ranges_[f][5] / kLayers; ++slab) {
+        slabs_[slab].push_back(static_cast<std::int32_t>(f));
+      }
+    }
+  }
+
+  /// Calls visit(cells, face) with the cells of the face that lie in a slab, on several threads.
+  template <class Visit>
+  void forEach(const Visit& visit) const {
+    parallelFor(slabs_.size(), 1, [&](std::size_t slab) {
+      const int low = kLayers * static_cast<int>(slab);
+      for (const std::int32_t f : slabs_[slab]) {
+        CellRange range = ranges_[f];
+        range[2] = std::max(range[2], low);
+        range[5] = std::min(range[5], low + kLayers - 1);
+        visit(range, f);
+      }
+    });
+  }
+
+ private:
+  static constexpr int kLayers = 8;  // of cells a slab
+  std::vector<CellRange> ranges_;
+  std::vector<std::vector<std::int32_t>> slabs_;
+};
+
 void GuardedMesh::fillCells() {
   constexpr std::uint32_t kLanes = BoxLanes::kLanes;
   parallelFor(faces_.size(), 4096, [&](std::size_t f) {
     const Corners& c = faces_[f];
     boxes_[f] = roomy(boxOf({positions_[c[0]], positions_[c[1]], positions_[c[2]]}));
   });
-  for (const Box& box : boxes_) {
-    forCells(cellsOf(box), [&](std::size_t cell) {
+  const FacesOfSlabs slabs(*this);
+  slabs.forEach([&](const CellRange& range, std::int32_t /*face*/) {
+    forCells(range, [&](std::size_t cell) {
       ++cells_[cell].room;
       return true;
     });
-  }
+  });
   std::size_t entries = 0;
   for (Cell& cell : cells_) {
     if (cell.room > 0) cell.room = (cell.room + kSpare + kLanes - 1) / kLanes;
@@ -342,11 +378,15 @@ void GuardedMesh::fillCells() {
     cell.begin = next;
     next += cell.room;
   }
-  for (std::int32_t f = 0; f < faceSlots(); ++f) enter(f);
+  slabs.forEach([&](const CellRange& range, std::int32_t face) { enter(face, range); });
 }
 
 void GuardedMesh::enter(std::int32_t f) {
-  forCells(cellsOf(boxes_[f]), [&](std::size_t cell) {
+  enter(f, cellsOf(boxes_[f]));
+}
+
+void GuardedMesh::enter(std::int32_t f, const CellRange& range) {
+  forCells(range, [&](std::size_t cell) {
     if (cells_[cell].count == 0) {
       // Neighbouring slabs share words.
       std::atomic_ref(occupied_[cell / 64])

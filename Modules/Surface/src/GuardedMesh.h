@@ -216,6 +216,8 @@ class GuardedMesh {
   void fillCells();
   [[nodiscard]] Box roomy(const Box& box) const;
   void enter(std::int32_t f);
+  void enter(std::int32_t f, const CellRange& range);
+  class FacesOfSlabs;
   void leave(std::int32_t f);
   void rebox(std::int32_t f, const Box& box);
   /// Brings the cells up to date after all vertices may have moved.

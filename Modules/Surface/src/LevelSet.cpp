@@ -118,6 +118,43 @@ Volume<float> crop(const Volume<float>& volume, const VoxelBox& box, float outsi
   return cropped(volume, box, outside);
 }
 
+namespace {
+
+/// Where in each row of a grid there are crossings, so that nobody looks for them elsewhere.
+class CrossedRows {
+ public:
+  /// @param numberOf  per voxel; below 0 where there is no crossing
+  CrossedRows(const std::vector<std::int32_t>& numberOf, const std::array<int, 3>& size)
+      : size_(size), rows_(static_cast<std::size_t>(size[1]) * size[2], {size[0], -2}) {
+    parallelFor(rows_.size(), 256, [&](std::size_t row) {
+      for (int i = 0; i < size_[0]; ++i) {
+        if (numberOf[row * size_[0] + i] < 0) continue;
+        rows_[row][0] = std::min(rows_[row][0], i);
+        rows_[row][1] = i;
+      }
+    });
+  }
+
+  /// First and last voxel of a row that may have a crossing among its 26 neighbours or itself.
+  [[nodiscard]] std::array<int, 2> near(int j, int k) const {
+    std::array<int, 2> range = {size_[0], -2};
+    for (int z = std::max(k - 1, 0); z <= std::min(k + 1, size_[2] - 1); ++z) {
+      for (int y = std::max(j - 1, 0); y <= std::min(j + 1, size_[1] - 1); ++y) {
+        const auto& row = rows_[static_cast<std::size_t>(z) * size_[1] + y];
+        range[0] = std::min(range[0], row[0]);
+        range[1] = std::max(range[1], row[1]);
+      }
+    }
+    return {range[0] - 1, range[1] + 1};
+  }
+
+ private:
+  std::array<int, 3> size_;
+  std::vector<std::array<int, 2>> rows_;
+};
+
+}  // namespace
+
 LevelSet levelSetOf(const Volume<std::uint8_t>& mask) {
   const Grid& grid = mask.grid;
   const auto& n = grid.size;
@@ -143,11 +180,17 @@ LevelSet levelSetOf(const Volume<std::uint8_t>& mask) {
   const float scale = 1 / (kBand * spacing.maxCoeff());
   const float least = kLeastLevel * spacing.minCoeff() / spacing.maxCoeff();
   LevelSet level(grid);
+  const CrossedRows crossed(numberOf, n);
   parallelFor(n[2], 1, [&](std::size_t slice) {
     const int k = static_cast<int>(slice);
     for (int j = 0; j < n[1]; ++j) {
+      const auto [first, last] = crossed.near(j, k);
       for (int i = 0; i < n[0]; ++i) {
         const std::size_t v = grid.linear(i, j, k);
+        if (i < first || i > last) {
+          level[v] = side[v] ? 1.0F : -1.0F;
+          continue;
+        }
         float distance = 0, weightSum = 0;
         const auto add = [&](int x, int y, int z) {
           if (!grid.contains(x, y, z)) return;

@@ -171,6 +171,22 @@ void transformRow(std::vector<double>& f, double squaredStep, std::vector<int>& 
   f = out;
 }
 
+/// The same along a row of the mask itself.
+void transformFirstRow(const std::uint8_t* mask, std::uint8_t target, std::size_t length,
+                       double squaredStep, float* squared) {
+  const auto at = [&](double steps) { return static_cast<float>(squaredStep * steps * steps); };
+  double steps = kInfinity;  // since the last voxel of the target
+  for (std::size_t i = 0; i < length; ++i) {
+    steps = mask[i] == target ? 0 : steps + 1;
+    squared[i] = at(steps);
+  }
+  steps = kInfinity;
+  for (std::size_t i = length; i-- > 0;) {
+    steps = mask[i] == target ? 0 : steps + 1;
+    squared[i] = std::min(squared[i], at(steps));
+  }
+}
+
 Defect describeChange(const LevelSet& level, const std::vector<std::size_t>& voxels,
                       DefectKind kind) {
   Defect defect;
@@ -358,11 +374,15 @@ Volume<float> distanceTo(const Volume<std::uint8_t>& mask, std::uint8_t target) 
   const Grid& grid = mask.grid;
   const auto& n = grid.size;
   Volume<float> squared(grid);
-  parallelFor(mask.size(), 1 << 16, [&](std::size_t v) {
-    squared[v] = mask[v] == target ? 0.0F : static_cast<float>(kInfinity);
+  if (mask.size() == 0) return squared;
+  const auto length = static_cast<std::size_t>(n[0]);
+  parallelFor(mask.size() / length, 64, [&](std::size_t row) {
+    transformFirstRow(&mask[row * length], target, length, grid.spacing[0] * grid.spacing[0],
+                      &squared[row * length]);
   });
-  for (int axis = 0; axis < 3; ++axis) {
-    const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+  for (int axis = 1; axis < 3; ++axis) {
+    // Neighbours along the first axis one after another: they share lines of memory.
+    const int a = 0, b = 3 - axis;
     const std::size_t strides[3] = {1, static_cast<std::size_t>(n[0]),
                                     static_cast<std::size_t>(n[0]) * n[1]};
     const double squaredStep = grid.spacing[axis] * grid.spacing[axis];
