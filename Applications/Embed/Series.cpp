@@ -27,7 +27,7 @@ constexpr double kFramesPerSecond = 12;  // of the film
 constexpr int kFilmSteps = 24;           // of the film, from one shape to the other
 constexpr int kFilmGrid = 44;            // voxels per side for its surfaces
 constexpr report::Colour kLine = {0.007F, 0.10F, 0.46F};
-constexpr report::Colour kInk = {0.012F, 0.014F, 0.018F};
+using report::kInk;
 
 shapes::HarmonicShape between(const shapes::HarmonicShape& a, const shapes::HarmonicShape& b,
                               double share) {

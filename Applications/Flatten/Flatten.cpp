@@ -26,6 +26,7 @@
 #include "Explica/Report/FlatFigure.h"
 #include "Explica/Unfolding/Account.h"
 #include "Explica/Unfolding/Distortion.h"
+#include "Explica/Unfolding/TimeBudget.h"
 
 #include <nlohmann/json.hpp>
 
@@ -622,13 +623,9 @@ void writeFrames(Context& context, const Subject& subject, const flattening::Dis
   context.result("turned_over_frames_max", static_cast<long long>(turnedOver));
 }
 
-/// Seconds for cuts and map within the limit of the whole command: what comes after them measures
-/// and writes for about four times as long as the start took, and each frame for half as long.
-double timeToIterate(double limit, double start, int frames) {
-  constexpr double kOutputShare = 4, kFrameShare = 0.5;
-  constexpr double kLeast = 1e-3;  // s: the map as its first level gives it
-  return std::max(kLeast, limit - start * (kOutputShare + kFrameShare * frames));
-}
+// What comes after cuts and map measures and writes for about four times as long as the start took,
+// and each frame for half as long.
+constexpr unfolding::KeptTime kKept = {4, 0.5};
 
 /// The run from the opened surface on: its disc, its map, and what going on needs.
 struct Made {
@@ -680,7 +677,9 @@ Termination run(Context& context, const Settings& s) {
   flattening::FlattenOptions options = s.flatten;
   options.areaTolerance = s.areaTolerance.value_or(s.cuts ? kCutTolerance : kPatchTolerance);
   const double read = secondsSince(begin);
-  if (options.maxTime) options.maxTime = timeToIterate(*options.maxTime, read, options.frames);
+  if (options.maxTime) {
+    options.maxTime = unfolding::timeToIterate(*options.maxTime, read, options.frames, kKept);
+  }
   const Made made = make(context, s, subject, std::move(whole), options);
   const flattening::Disc& disc = made.disc;
   const flattening::FlatMap& map = made.map;

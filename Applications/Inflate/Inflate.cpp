@@ -15,6 +15,7 @@
 #include "Explica/Geometry/SelfIntersection.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/Unfolding/Account.h"
+#include "Explica/Unfolding/TimeBudget.h"
 
 #include <algorithm>
 #include <chrono>
@@ -123,13 +124,9 @@ std::vector<geometry::FacePair> checkStart(Context& context, const Settings& s,
   return repair.after;
 }
 
-/// Seconds for the iterations within the limit of the whole command: what comes after them tests,
-/// measures and writes for up to three times as long as the start took, and each frame a share.
-double timeToIterate(double limit, double start, const inflation::InflateOptions& options) {
-  constexpr double kFrameShare = 0.5;
-  constexpr double kLeast = 1e-3;  // s: one look at the state, and it ends
-  return std::max(kLeast, limit - start * (3 + kFrameShare * options.frames));
-}
+// What comes after the iterations has taken up to three times as long as the start; frames, which
+// are whole surfaces, half of it each.
+constexpr unfolding::KeptTime kKept = {3, 0.5};
 
 Termination run(Context& context, const Settings& s) {
   const auto begin = std::chrono::steady_clock::now();
@@ -153,7 +150,9 @@ Termination run(Context& context, const Settings& s) {
   {
     auto step = context.step("inflate");
     inflation::InflateOptions options = s.inflate;
-    if (options.maxTime) options.maxTime = timeToIterate(*options.maxTime, started, options);
+    if (options.maxTime) {
+      options.maxTime = unfolding::timeToIterate(*options.maxTime, started, options.frames, kKept);
+    }
     u.result = inflation::inflate(u.before, options, context.monitor(),
                                   checkpoint ? &*checkpoint : nullptr);
     step.iterations(u.result.history.back().step.iteration);

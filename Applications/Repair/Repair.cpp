@@ -17,7 +17,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <filesystem>
 #include <set>
 
 namespace explica::app {
@@ -58,19 +57,6 @@ void declare(Declaration& d, Settings& s) {
               "how far each vertex was moved, mm, a map a surface");
 }
 
-/// A file's name without the ending of its format: "lh.pial", "sub-01_hemi-L_pial".
-std::string nameOfSurface(const std::string& path) {
-  std::string name = std::filesystem::path(path).filename().string();
-  for (const std::string_view ending :
-       {".gz", ".surf.gii", ".gii", ".vtp", ".vtk", ".ply", ".obj", ".off", ".stl"}) {
-    if (name.size() > ending.size() && name.ends_with(ending)) {
-      name.resize(name.size() - ending.size());
-      if (ending != ".gz") break;
-    }
-  }
-  return name;
-}
-
 struct Inputs {
   std::vector<std::string> names;
   std::vector<io::LoadedSurface> loaded;
@@ -87,7 +73,7 @@ Inputs readInputs(Context& context, const Settings& s) {
     inputs.loaded.push_back(readSurface(context, "SURFACE", path, reading));
     inputs.meshes.push_back(inputs.loaded.back().mesh);
     geometry::requireManifold(inputs.meshes.back(), path);
-    inputs.names.push_back(nameOfSurface(path));
+    inputs.names.push_back(io::nameOfSurface(path));
     if (!names.insert(inputs.names.back()).second) {
       throw UsageError("two surfaces are called '" + inputs.names.back() +
                        "', and outputs follow their names; repair them into folders of their own");

@@ -214,7 +214,6 @@ void checkCollar(Context& context, Unfolded& u, const Measures& m) {
 
 /// A region that looks at the viewpoint but lies under something else is not unfolded either.
 void checkSeen(Context& context, Unfolded& u, const Measures& m, double goal) {
-  constexpr double kFar = 0.1;  // of the region's area, below the goal
   const double seen = m.seenAfter.of(u.result.mesh, u.result.region.faces);
   const Termination end = u.result.termination;
   const bool atRest = end == Termination::Converged || end == Termination::Finished;
@@ -226,7 +225,7 @@ void checkSeen(Context& context, Unfolded& u, const Measures& m, double goal) {
                   unfolding::kGoalSeen);
     context.warn(text);
   }
-  if (!(atRest || end == Termination::Stalled) || seen >= goal - kFar) return;
+  if (!(atRest || end == Termination::Stalled) || seen >= goal - unfolding::kHeldBelow) return;
   if (u.result.flag == unfolding::Flag::None) u.result.flag = unfolding::Flag::Held;
   u.result.termination = Termination::Stalled;
   std::snprintf(text, sizeof text,

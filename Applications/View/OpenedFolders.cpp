@@ -26,7 +26,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t kLargest = 200u << 20;  // bytes of a file whose maps are all read
 constexpr const char* kDistortion = "distortion.shape.gii";
 constexpr int kTileWidth = 260;  // pixels of a depth's picture, about
 
@@ -150,7 +149,7 @@ viewer::WindowStack windowStack(pipeline::FlatStack drawn) {
 /// there.
 void addMaps(const fs::path& file, const ShownSurface& surface, viewer::Opened& opened,
              const std::vector<bool>& on = {}) {
-  if (fs::file_size(file) > kLargest) return;
+  if (fs::file_size(file) > io::kMostShown) return;
   std::vector<io::VertexMap> maps = readMapsOn(surface, file);
   std::string stem = file.filename().string();
   for (const std::string_view ending : {".gii", ".func", ".shape"}) {

@@ -93,6 +93,17 @@ TEST(FuzzedFiles, OfEveryReaderAreGivenToACommand) {
   EXPECT_EQ(used, readers);
 }
 
+TEST(FuzzedFiles, AreThereForEveryFormatOfSurfaces) {
+  for (const std::string& ending : io::surfaceEndings()) {
+    const bool packed = ending.ends_with(".gz");  // the packing is fuzzed with volumes
+    const auto& all = fuzz::allReaders();
+    EXPECT_TRUE(packed ||
+                std::any_of(all.begin(), all.end(),
+                            [&](const fuzz::Reader& r) { return r.file.ends_with(ending); }))
+        << ending << ": add a row to Testing/fuzz/Readers.cpp";
+  }
+}
+
 /// One byte, one number or one piece is another, or the end is missing.
 std::string damaged(std::string text, std::mt19937& random) {
   const auto below = [&random](std::size_t count) {

@@ -137,7 +137,6 @@ struct Way {
 };
 
 std::optional<Way> wayTo(const TrajectoryTracer& tracer, const Point& start, double target) {
-  constexpr int kLegs = 5;
   Way way{{start}, {0.0}};
   for (int leg = 1; leg <= kLegs; ++leg) {
     const Trace trace = tracer.trace(way.points.back(), 0.5 + (target - 0.5) * leg / kLegs);

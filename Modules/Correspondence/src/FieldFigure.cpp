@@ -21,10 +21,10 @@ namespace {
 
 using planar::Point2;
 using planar::svg::format;
+using planar::svg::kMargin;
 using planar::svg::text;
 
 constexpr double kPanel = 460;                  // SVG units, of the longer side
-constexpr double kMargin = 18;                  // pixels
 constexpr double kTitle = 30;                   // pixels
 constexpr double kLegend = 44;                  // pixels
 constexpr int kBands = 10;                      // of u

@@ -16,9 +16,6 @@ namespace {
 
 using harmonic::Annulus;
 
-/// Distance from the edge, in thicknesses, within which a voxel's measures are not believed.
-constexpr double kReach = 1.25;
-
 /// A voxel's centre, mm along the grid's axes.
 Vector placeOf(const Annulus& annulus, std::int32_t n) {
   return annulus.index(n).cwiseProduct(annulus.grid.spacing);
@@ -112,7 +109,7 @@ std::size_t leaveOutCut(const Annulus& annulus, const std::array<bool, 3>& axes,
     };
     const double least = std::min(
         {way.norm(), from(correspondence.innerPoint[n]), from(correspondence.outerPoint[n])});
-    cut[n] = least < kReach * thickness;
+    cut[n] = least < kEdgeReach * thickness;
   });
   for (std::size_t n = 0; n < cut.size(); ++n) {
     if (!cut[n]) continue;

@@ -20,11 +20,9 @@ namespace {
 template <std::size_t N>
 bool clearlyBeside(const Point& a, const Point& b, const Point& c,
                    const std::array<Point, N>& points) {
-  // Many times the rounding of three products, each of a difference and a component of the normal.
-  constexpr double kBound = 1e-14;
   const Vector ab = b - a, ac = c - a;
   const Vector normal = ab.cross(ac);
-  const double size = kBound * ab.lpNorm<1>() * ac.lpNorm<1>();
+  const double size = kBesideRounding * ab.lpNorm<1>() * ac.lpNorm<1>();
   int above = 0, below = 0;
   for (const Point& p : points) {
     const Vector way = p - a;

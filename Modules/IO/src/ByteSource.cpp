@@ -298,13 +298,11 @@ Bytes inflateExactly(const std::filesystem::path& path, ByteView packed, std::ui
 }
 
 Bytes decodeBase64(const std::filesystem::path& path, std::string_view text) {
-  static constexpr std::string_view kAlphabet =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   static const std::array<std::int16_t, 256> kValues = [] {
     std::array<std::int16_t, 256> values;
     values.fill(-1);
-    for (std::size_t i = 0; i < kAlphabet.size(); ++i) {
-      values[static_cast<std::uint8_t>(kAlphabet[i])] = static_cast<std::int16_t>(i);
+    for (std::size_t i = 0; i < kBase64.size(); ++i) {
+      values[static_cast<std::uint8_t>(kBase64[i])] = static_cast<std::int16_t>(i);
     }
     for (const char blank : {' ', '\n', '\r', '\t'}) values[static_cast<std::uint8_t>(blank)] = -2;
     return values;

@@ -25,6 +25,10 @@ using ByteView = std::span<const std::uint8_t>;
 
 constexpr double kFarthest = 1e7;  ///< mm; beyond it differences of coordinates lose their digits
 
+/// The characters of base64 (RFC 4648), by the 6 bits that they stand for.
+inline constexpr std::string_view kBase64 =
+    "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
 inline std::string_view textOf(ByteView bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }

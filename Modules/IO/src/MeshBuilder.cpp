@@ -70,4 +70,12 @@ std::size_t checkedCount(const std::filesystem::path& path, std::int64_t count,
   return static_cast<std::size_t>(count);
 }
 
+std::int64_t wholeNumber(const std::filesystem::path& path, double value) {
+  constexpr double kLargest = 9e15;  // whole numbers that a double holds exactly
+  if (!(std::abs(value) <= kLargest) || std::trunc(value) != value) {
+    failToRead(path, "has a vertex number that is no whole number");
+  }
+  return static_cast<std::int64_t>(value);
+}
+
 }  // namespace explica::io

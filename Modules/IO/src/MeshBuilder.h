@@ -37,4 +37,8 @@ struct MeshBuilder {
                                        std::size_t bytesLeft, std::size_t bytesEach,
                                        const char* what);
 
+/// A vertex's number that a file keeps as a real one.
+/// @throws IOError  not whole, or beyond what a double holds exactly
+[[nodiscard]] std::int64_t wholeNumber(const std::filesystem::path& path, double value);
+
 }  // namespace explica::io

@@ -171,12 +171,9 @@ Bytes packZlib(ByteView bytes) {
 }
 
 void appendBase64(std::string& text, ByteView bytes) {
-  static constexpr char kAlphabet[] =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   static const auto kPairs = [] {  // 12 bits at once
     std::array<std::array<char, 2>, 4096> pairs{};
-    for (std::size_t n = 0; n < pairs.size(); ++n)
-      pairs[n] = {kAlphabet[n >> 6], kAlphabet[n & 63]};
+    for (std::size_t n = 0; n < pairs.size(); ++n) pairs[n] = {kBase64[n >> 6], kBase64[n & 63]};
     return pairs;
   }();
   const std::size_t before = text.size();
@@ -194,7 +191,7 @@ void appendBase64(std::string& text, ByteView bytes) {
   const std::uint32_t bits = static_cast<std::uint32_t>(bytes[i]) << 16 |
                              (two ? static_cast<std::uint32_t>(bytes[i + 1]) << 8 : 0);
   std::memcpy(to, kPairs[bits >> 12].data(), 2);
-  to[2] = two ? kAlphabet[bits >> 6 & 63] : '=';
+  to[2] = two ? kBase64[bits >> 6 & 63] : '=';
   to[3] = '=';
 }
 

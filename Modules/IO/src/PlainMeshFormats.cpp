@@ -96,15 +96,7 @@ class PlyValues {
     }
     return 0;
   }
-  std::int64_t takeWhole(PlyType type) {
-    const double value = take(type);
-    constexpr double kLargest = 9e15;  // whole numbers that a double holds exactly
-    if (!(std::abs(value) <= kLargest) ||
-        value != static_cast<double>(static_cast<std::int64_t>(value))) {
-      failToRead(path_, "has a vertex number that is no whole number");
-    }
-    return static_cast<std::int64_t>(value);
-  }
+  std::int64_t takeWhole(PlyType type) { return wholeNumber(path_, take(type)); }
 
  private:
   const std::filesystem::path& path_;

@@ -49,6 +49,22 @@ const SurfaceFormat& formatFor(const std::filesystem::path& path) {
   return *forAny;
 }
 
+/// Without the longest of a format's endings that it has.
+std::string withoutEnding(const std::string& name) {
+  const std::string lower = lowerCase(name);
+  std::size_t longest = 0;
+  const auto see = [&](const std::string& ending) {
+    if (lower.size() > ending.size() && lower.ends_with(ending)) {
+      longest = std::max(longest, ending.size());
+    }
+  };
+  for (const SurfaceFormat& format : surfaceFormats()) {
+    for (const char* ending : format.endings) see(ending);
+    for (const char* ending : format.others) see(ending);
+  }
+  return name.substr(0, name.size() - longest);
+}
+
 std::string allNames() {
   std::string names;
   for (const SurfaceFormat& format : surfaceFormats()) {
@@ -58,6 +74,19 @@ std::string allNames() {
 }
 
 }  // namespace
+
+std::string nameOfSurface(const std::filesystem::path& path) {
+  const std::string name = path.filename().string();
+  return withoutEnding(name.ends_with(".gz") ? name.substr(0, name.size() - 3) : name);
+}
+
+std::vector<std::string> surfaceEndings() {
+  std::vector<std::string> endings;
+  for (const SurfaceFormat& format : surfaceFormats()) {
+    endings.insert(endings.end(), format.endings.begin(), format.endings.end());
+  }
+  return endings;
+}
 
 LoadedSurface readSurface(const std::filesystem::path& path, const SurfaceReadOptions& options) {
   const Bytes bytes = ByteSource(path).rest();

@@ -52,14 +52,26 @@ bool looksLikeNothing(ByteView) {
 
 const std::vector<SurfaceFormat>& surfaceFormats() {
   static const std::vector<SurfaceFormat> all = {
-      {"GIFTI", {".gii", ".gii.gz"}, looksLikeGifti, false, readGiftiSurface, writeGiftiSurface},
-      {"VTK", {".vtp"}, looksLikeVtk, false, readVtkSurface, writeVtpMesh},
-      {"FreeSurfer", {}, looksLikeFreeSurfer, false, readFreeSurferSurface, writeFreeSurferMesh},
-      {"PLY", {".ply"}, looksLikePly, false, readPlaced<readPly>, writeMesh<writePly>},
-      {"OFF", {".off"}, looksLikeOff, false, readPlaced<readOff>, writeMesh<writeOff>},
-      {"MNI obj", {".mni.obj"}, looksLikeMniObj, false, readMniObj, writeMesh<writeMniObj>},
-      {"STL", {".stl"}, looksLikeStl, true, readPlaced<readStl>, writeMesh<writeStl>},
-      {"OBJ", {".obj"}, looksLikeNothing, true, readPlaced<readObj>, writeMesh<writeObj>}};
+      {"GIFTI",
+       {".gii", ".gii.gz"},
+       {".surf.gii"},
+       looksLikeGifti,
+       false,
+       readGiftiSurface,
+       writeGiftiSurface},
+      {"VTK", {".vtp"}, {".vtk"}, looksLikeVtk, false, readVtkSurface, writeVtpMesh},
+      {"FreeSurfer",
+       {},
+       {},
+       looksLikeFreeSurfer,
+       false,
+       readFreeSurferSurface,
+       writeFreeSurferMesh},
+      {"PLY", {".ply"}, {}, looksLikePly, false, readPlaced<readPly>, writeMesh<writePly>},
+      {"OFF", {".off"}, {}, looksLikeOff, false, readPlaced<readOff>, writeMesh<writeOff>},
+      {"MNI obj", {".mni.obj"}, {}, looksLikeMniObj, false, readMniObj, writeMesh<writeMniObj>},
+      {"STL", {".stl"}, {}, looksLikeStl, true, readPlaced<readStl>, writeMesh<writeStl>},
+      {"OBJ", {".obj"}, {}, looksLikeNothing, true, readPlaced<readObj>, writeMesh<writeObj>}};
   return all;
 }
 

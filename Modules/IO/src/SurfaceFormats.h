@@ -14,6 +14,7 @@ namespace explica::io {
 struct SurfaceFormat {
   const char* name;
   std::vector<const char*> endings;   ///< lower case; none: written under every other name
+  std::vector<const char*> others;    ///< endings that belong to its files' names beside those
   bool (*looksLike)(ByteView bytes);  ///< whether content is of this format
   bool nameTells;                     ///< content may not show it: the ending is believed, too
   LoadedSurface (*read)(const std::filesystem::path& path, ByteView bytes,

@@ -41,18 +41,10 @@ constexpr TypeRow kTypes[] = {{"float", "Float32", 4, loadReal<float>},
                               {"unsigned_char", "UInt8", 1, loadReal<std::uint8_t>},
                               {"vtktypeuint64", "UInt64", 8, loadReal<std::uint64_t>}};
 
-std::int64_t wholeOf(const std::filesystem::path& path, double value) {
-  constexpr double kLargest = 9e15;  // whole numbers that a double holds exactly
-  if (!(std::abs(value) <= kLargest) || std::trunc(value) != value) {
-    failToRead(path, "has a vertex number that is no whole number");
-  }
-  return static_cast<std::int64_t>(value);
-}
-
 std::vector<std::int64_t> wholeOf(const std::filesystem::path& path, std::vector<double> values) {
   std::vector<std::int64_t> whole;
   whole.reserve(values.size());
-  for (const double value : values) whole.push_back(wholeOf(path, value));
+  for (const double value : values) whole.push_back(wholeNumber(path, value));
   return whole;
 }
 

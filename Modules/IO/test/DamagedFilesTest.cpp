@@ -393,6 +393,26 @@ TEST(DamagedFile, PicturesThatLibpngWouldAbortOnAreRefused) {
   EXPECT_NE(said(renamed).find("is damaged"), std::string::npos);
 }
 
+/// A file of every kind that is read.
+const char* const kKinds[] = {
+    "volume.nii",    "volume.nii.gz", "volume.mgh",   "volume.mgz",    "volume.nrrd",
+    "volume.mha",    "volume.png",    "a.surf.gii",   "a.surf.gii.gz", "a.shape.gii",
+    "a.label.gii",   "lh.white",      "lh.curv",      "lh.a.annot",    "lh.a.label",
+    "a.vtp",         "base64.vtp",    "legacy.vtk",   "a.ply",         "text.ply",
+    "a.obj",         "a.off",         "a.stl",        "text.stl",      "polygon.csv",
+    "polygon.vtp",   "minc1.mnc",     "minc2.mnc",    "a.mni.obj",     "a.dscalar.nii",
+    "lh.a.patch.3d", "matrix.txt",    "itk.tfm",      "itk.mat",       "itk.h5",
+    "reg.lta",       "register.dat",  "matrices.xfm", "points.tsv",    "legend.tsv",
+};
+
+TEST(DamagedFilesList, HasAFileOfEverySurfaceFormat) {
+  for (const std::string& ending : io::surfaceEndings()) {
+    EXPECT_TRUE(std::any_of(std::begin(kKinds), std::end(kKinds), [&](const std::string kind) {
+      return kind.ends_with(ending);
+    })) << ending;
+  }
+}
+
 /// With EXPLICA_SEEDS set to a folder, writes one file of each format as fuzzers' first inputs.
 TEST_P(DamagedFiles, WholeOnesAreSeeds) {
   const char* seeds = std::getenv("EXPLICA_SEEDS");
@@ -402,19 +422,11 @@ TEST_P(DamagedFiles, WholeOnesAreSeeds) {
   EXPECT_EQ(contentOf(place / "seed"), whole_);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Formats, DamagedFiles,
-    testing::Values("volume.nii", "volume.nii.gz", "volume.mgh", "volume.mgz", "volume.nrrd",
-                    "volume.mha", "volume.png", "a.surf.gii", "a.surf.gii.gz", "a.shape.gii",
-                    "a.label.gii", "lh.white", "lh.curv", "lh.a.annot", "lh.a.label", "a.vtp",
-                    "base64.vtp", "legacy.vtk", "a.ply", "text.ply", "a.obj", "a.off", "a.stl",
-                    "text.stl", "polygon.csv", "polygon.vtp", "minc1.mnc", "minc2.mnc", "a.mni.obj",
-                    "a.dscalar.nii", "lh.a.patch.3d", "matrix.txt", "itk.tfm", "itk.mat", "itk.h5",
-                    "reg.lta", "register.dat", "matrices.xfm", "points.tsv", "legend.tsv"),
-    [](const auto& instance) {
-      std::string name = instance.param;
-      std::replace(name.begin(), name.end(), '.', '_');
-      return name;
-    });
+INSTANTIATE_TEST_SUITE_P(Formats, DamagedFiles, testing::ValuesIn(kKinds),
+                         [](const auto& instance) {
+                           std::string name = instance.param;
+                           std::replace(name.begin(), name.end(), '.', '_');
+                           return name;
+                         });
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <Eigen/Geometry>
 
 #include <cmath>
+#include <map>
 #include <string>
 
 namespace {
@@ -33,6 +34,26 @@ struct Format {
   bool exact;          ///< keeps doubles; else float32
   bool keepsVertices;  ///< numbers vertices as we do
 };
+
+TEST(SurfaceFormats, EveryEndingIsWrittenReadBackAndTakenOffNames) {
+  const TemporaryFolder folder;
+  const TriangleMesh mesh = someSurface();
+  std::map<std::string, std::string> formatBy;
+  for (const std::string& ending : io::surfaceEndings()) {
+    const fs::path file = folder / ("lh.pial" + ending);
+    io::writeSurface(file, mesh);
+    const io::LoadedSurface read = io::readSurface(file);
+    EXPECT_EQ(read.mesh.faceCount(), mesh.faceCount()) << ending;
+    formatBy[ending] = read.origin.format;
+    EXPECT_EQ(io::nameOfSurface(file), "lh.pial");
+  }
+  EXPECT_EQ(formatBy[".mni.obj"], "MNI obj");
+  EXPECT_EQ(formatBy[".obj"], "OBJ");
+  EXPECT_EQ(io::nameOfSurface("a/lh.pial"), "lh.pial");
+  EXPECT_EQ(io::nameOfSurface("lh.pial.surf.gii.gz"), "lh.pial");
+  EXPECT_EQ(io::nameOfSurface("lh.pial.VTK"), "lh.pial");
+  EXPECT_EQ(io::nameOfSurface(".ply"), ".ply");
+}
 
 class SurfaceContract : public testing::TestWithParam<Format> {
  protected:

@@ -4,7 +4,9 @@
 #include "Explica/Inflation/Inflate.h"
 
 #include "Explica/Unfolding/Account.h"
+#include "Explica/Unfolding/Terms.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <string_view>
@@ -13,17 +15,22 @@ namespace explica::inflation {
 namespace {
 
 /// Columns of an unfolding that mean nothing where there are neither surroundings nor a knot
-/// energy.
-constexpr std::array<std::string_view, 8> kWithout = {
-    "collar_stretch_mean", "collar_stretch_max", "energy_lift", "energy_guide",
-    "energy_collar",       "energy_overhang",    "energy_knot", "seconds_repulsion"};
+/// energy, beside those of terms that a closed surface does not feel.
+constexpr std::array<std::string_view, 3> kWithout = {"collar_stretch_mean", "collar_stretch_max",
+                                                      "seconds_repulsion"};
+
+bool hasMeaning(const std::string& column) {
+  if (std::find(kWithout.begin(), kWithout.end(), column) != kWithout.end()) return false;
+  return std::none_of(unfolding::kTerms.begin(), unfolding::kTerms.end(),
+                      [&](const unfolding::TermInfo& info) {
+                        return !info.closed && column == "energy_" + std::string(info.name);
+                      });
+}
 
 std::vector<unfolding::EvolutionColumn> columns() {
   std::vector<unfolding::EvolutionColumn> kept;
   for (const unfolding::EvolutionColumn& column : unfolding::evolutionColumns()) {
-    bool without = false;
-    for (const std::string_view name : kWithout) without = without || column.name == name;
-    if (!without) kept.push_back(column);
+    if (hasMeaning(column.name)) kept.push_back(column);
   }
   return kept;
 }

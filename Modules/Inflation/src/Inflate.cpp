@@ -26,9 +26,6 @@ constexpr double kLargestDrive = 4;  // lengths and contacts are outweighed up t
 constexpr double kSlowGain = 0.004;  // of visibility between two looks: slower is driven harder ...
 constexpr double kSettled = 0.001;   // ... and, once that ends, given up
 constexpr std::size_t kSettledLooks = 4;  // over which that is measured
-constexpr double kFar = 0.1;    // of visibility below the goal: a surface that ends there is held
-constexpr double kNear = 1000;  // mm: surfaces nearer to the origin lose no digits that count
-constexpr double kNoWorse = 1e-3;  // of visibility
 
 void requireUsable(const TriangleMesh& mesh, const InflateOptions& options) {
   geometry::requireClosedManifold(mesh, "surface");
@@ -69,7 +66,9 @@ unfolding::UnfolderOptions solverOptions(const InflateOptions& options) {
   solver.yieldStrain = kInfinity;  // strain is spread, so that curvature is
   solver.weights[unfolding::Term::Spring] = options.springWeight;
   solver.weights[unfolding::Term::Area] = options.areaWeight;
-  solver.weights[unfolding::Term::Guide] = 0;  // a closed surface has no flat map
+  for (const unfolding::TermInfo& info : unfolding::kTerms) {
+    if (!info.closed) solver.weights[info.term] = 0;
+  }
   return solver;
 }
 
@@ -218,12 +217,12 @@ class Inflation {
 void judge(const InflateOptions& options, const Monitor& monitor, InflateResult& result) {
   const InflateRecord &first = result.history.front(), &last = result.history.back();
   char text[240];
-  if (last.step.iteration > 0 && last.visibility < first.visibility - kNoWorse) {
+  if (last.step.iteration > 0 && last.visibility < first.visibility - unfolding::kNoWorse) {
     result.flag = unfolding::Flag::Worse;
     std::snprintf(text, sizeof text, "the visibility fell from %.3f to %.3f: nothing is opened",
                   first.visibility, last.visibility);
   } else if (result.termination == Termination::Stalled &&
-             last.visibility < options.targetSeen - kFar) {
+             last.visibility < options.targetSeen - unfolding::kHeldBelow) {
     result.flag = unfolding::Flag::Held;
     std::snprintf(text, sizeof text,
                   "the surface is held at a visibility of %.3f: areas and lengths kept, it does "
@@ -236,19 +235,12 @@ void judge(const InflateOptions& options, const Monitor& monitor, InflateResult&
   if (result.termination == Termination::TargetReached) result.termination = Termination::Stalled;
 }
 
-/// Where differences of positions would lose digits, the run works relative to the surface: a whole
-/// number of mm, so that single-precision positions lose nothing on the way there and back.
-Point originFor(const TriangleMesh& mesh) {
-  const Point middle = mesh.positions.colwise().mean().transpose();
-  return middle.norm() > kNear ? Point(middle.array().round()) : Point(Point::Zero());
-}
-
 }  // namespace
 
 InflateResult inflate(const TriangleMesh& mesh, const InflateOptions& options,
                       const Monitor& monitor, const unfolding::Checkpoint* resume) {
   requireUsable(mesh, options);
-  const Point origin = originFor(mesh);
+  const Point origin = unfolding::originNear(mesh.positions.colwise().mean().transpose());
   TriangleMesh work = mesh;
   work.positions.rowwise() -= origin.transpose();
   // Inside out, as the mirror image of a surface is: faces look outward while it is inflated.

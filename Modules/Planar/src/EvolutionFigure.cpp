@@ -16,14 +16,14 @@ namespace explica::planar {
 namespace {
 
 using svg::format;
+using svg::kMargin;
+using svg::kMostColumns;
 using svg::pair;
 using svg::text;
 
 constexpr double kPageWidth = 1180;   // SVG units
-constexpr double kMargin = 18;        // pixels
 constexpr double kTitleHeight = 46;   // pixels
 constexpr double kArrowRoom = 64;     // on the viewpoint's side
-constexpr int kMostColumns = 3;       // pictures beside each other
 constexpr double kLegendHeight = 44;  // pixels
 constexpr double kBarLength = 100;    // of the legend's colours
 

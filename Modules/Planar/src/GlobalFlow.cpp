@@ -4,6 +4,7 @@
 #include "Explica/Planar/GlobalFlow.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/GlobalFlow.h"
 #include "Explica/Planar/PolygonMeasures.h"
 
 #include <algorithm>
@@ -11,10 +12,6 @@
 
 namespace explica::planar {
 namespace {
-
-constexpr double kFarAway = 10;        // viewing radius over that of the farthest vertex
-constexpr double kGone = 1e-2;         // share of the mean edge at which one has shrunk to nothing
-constexpr double kNothingLeft = 1e-6;  // share of the start's measure that counts as none
 
 MeasureValue valueOf(const Curve& curve, GlobalMeasure measure, const ViewingCircle& circle) {
   return measure == GlobalMeasure::HiddenArc

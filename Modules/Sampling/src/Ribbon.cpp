@@ -5,6 +5,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
+#include "Known.h"
 
 #include <Eigen/Geometry>
 
@@ -17,7 +18,6 @@ namespace {
 constexpr int kLayers = 10;                 // between white and pial surface
 constexpr std::size_t kRibbonGrain = 4096;  // elements a task
 constexpr double kThinnest = 1e-3;  // mm: where the surfaces touch, places count a little still
-constexpr double kEnough = 0.5;     // of the volume about a vertex
 
 /// Centres of the four triangles into which the middles of its edges cut a face.
 constexpr std::array<std::array<double, 3>, 4> kPlaces = {{{2.0 / 3, 1.0 / 6, 1.0 / 6},

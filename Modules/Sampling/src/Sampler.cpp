@@ -5,6 +5,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
+#include "Known.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +20,6 @@ constexpr std::size_t kPointGrain = kChunk * kChunksATask;  // points a task
 constexpr std::size_t kVoxelGrain = 1 << 15;                // elements a task
 // Outside of the volume or mask.
 constexpr float kNotKnown = std::numeric_limits<float>::quiet_NaN();
-constexpr float kEnoughWeight = 0.5F;  // below, most of a value would be made up
 
 /// Frames voxel by voxel, and which voxels are known in each of them.
 struct Block {
@@ -182,7 +182,7 @@ void Sampler::linearOfKnown(const Corner& corner, const float* values, int frame
     }
   }
   for (int f = 0; f < frameCount; ++f) {
-    to[f] = weights[f] >= kEnoughWeight ? static_cast<float>(sum[f] / weights[f]) : kNotKnown;
+    to[f] = weights[f] >= kEnough ? static_cast<float>(sum[f] / weights[f]) : kNotKnown;
   }
 }
 
@@ -320,7 +320,7 @@ std::vector<Label> Sampler::sampleLabels(std::span<const Label> labels) const {
       votes[slot].weight += weight;
       votes[slot].largest = std::max(votes[slot].largest, weight);
     }
-    if (known < kEnoughWeight) return;
+    if (known < kEnough) return;
     result[p] =
         std::max_element(votes.begin(), votes.begin() + count, [](const Vote& a, const Vote& b) {
           return std::pair(a.weight, a.largest) < std::pair(b.weight, b.largest);

@@ -6,6 +6,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Geometry/FaceTree.h"
+#include "Known.h"
 
 #include <Eigen/Geometry>
 
@@ -70,7 +71,6 @@ Eigen::VectorXd carryOver(const NearestOnSurface& nearest, const Eigen::VectorXd
       sum += nearest.weights(p, k) * value;
       known += nearest.weights(p, k);
     }
-    constexpr double kEnough = 0.5;
     result[p] = known >= kEnough ? sum / known : kNaN;
   }
   return result;

@@ -14,12 +14,12 @@ namespace explica::shapes {
 namespace {
 
 using planar::svg::format;
+using planar::svg::kMargin;
+using planar::svg::kMostColumns;
 using planar::svg::text;
 
 constexpr double kPanel = 340;        // SVG units
-constexpr double kMargin = 18;        // pixels
 constexpr double kTitleHeight = 64;   // pixels
-constexpr int kMostColumns = 3;       // pictures beside each other
 constexpr double kLegendHeight = 64;  // pixels
 // The contour that is fitted.
 constexpr const char* kTargetStyle =

@@ -17,6 +17,7 @@
 #include "ImageBorder.h"
 #include "KeepRoom.h"
 #include "MendTogether.h"
+#include "OntoLevel.h"
 #include "PathProfile.h"
 #include "Relaxation.h"
 #include "RibbonField.h"
@@ -60,16 +61,12 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-/// Less than this is no shortfall, voxels: what the border itself is uncertain by.
-constexpr double kNoShortfall = 0.02;
 /// The image makes no face of the white surface less high than this, edges.
 constexpr double kLeastHeight = 0.1;
 /// Longest edge that is left, in mean ones: 4 mm where these are 1.29 mm.
 constexpr double kLongestEdge = 3.1;
 /// Farthest that smoothing may take a vertex across its surface in one sweep, voxels.
 constexpr double kRoughness = 0.2;
-/// Farthest that a sliding vertex is brought back to the border of the tissue in one sweep, voxels.
-constexpr double kNearBorder = 0.5;
 
 Point stayThere(std::int32_t, const Point& point, const Vector&) {
   return point;
@@ -79,13 +76,12 @@ Point stayThere(std::int32_t, const Point& point, const Vector&) {
 /// far as `most`, mm; nowhere if the level does not fall outward.
 Point towardsBorder(const LevelSet& level, double outside, const Point& from, const Vector& normal,
                     double most) {
-  constexpr double kFlat = 1e-8;  // squared change of the level per voxel: nothing to follow
   const double voxel = level.grid.spacing.minCoeff();
   Point p = from;
   for (int step = 0; step < 2; ++step) {
     const LevelSample s = sample(level, p);
     const double squared = s.gradient.squaredNorm();
-    if (squared * voxel * voxel < kFlat || s.gradient.dot(normal) > 0) return from;
+    if (squared * voxel * voxel < kFlatLevel || s.gradient.dot(normal) > 0) return from;
     p -= (s.value / squared + outside / std::sqrt(squared)) * s.gradient;
     const double way = (p - from).norm();
     if (way > most) return from + most / way * (p - from);

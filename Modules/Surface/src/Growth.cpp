@@ -4,6 +4,7 @@
 #include "Growth.h"
 
 #include "MoveTogether.h"
+#include "Turns.h"
 
 #include <cstdint>
 
@@ -15,8 +16,7 @@ namespace {
 constexpr int kSweeps = 7, kLastSweeps = 15;
 
 bool takesTurn(std::int32_t v, int sweep) {
-  constexpr std::uint32_t kMix = 2654435761U;  // Knuth's multiplicative hash
-  const std::uint32_t mixed = static_cast<std::uint32_t>(v) * kMix >> 16;
+  const std::uint32_t mixed = mixedBits(v);
   if (sweep == 0) return true;
   if (sweep < 3) return (mixed & 1U) == static_cast<std::uint32_t>(sweep - 1);
   if (sweep < 7) return (mixed >> 1 & 3U) == static_cast<std::uint32_t>(sweep - 3);

@@ -11,6 +11,9 @@
 
 namespace explica::surface {
 
+/// Less than this is no shortfall, voxels: what the border itself is uncertain by.
+inline constexpr double kNoShortfall = 0.02;
+
 /// Vertices on their trajectories, advancing together and never through each other.
 class Growth {
  public:

@@ -195,11 +195,9 @@ GuardedMesh::Placed GuardedMesh::place(const Corners& corners, std::int32_t move
 }
 
 int GuardedMesh::Placed::sideOf(const Point& p) const {
-  // Many times the rounding of three products, each of a difference and a component of the normal.
-  constexpr double kBound = 1e-14;
   const Vector way = p - points[0];
   const double height = normal.dot(way);
-  if (std::abs(height) <= kBound * magnitude * way.lpNorm<1>()) return 0;
+  if (std::abs(height) <= geometry::kBesideRounding * magnitude * way.lpNorm<1>()) return 0;
   return height > 0 ? 1 : -1;
 }
 

@@ -7,6 +7,7 @@
 #include "Explica/Collision/Proximity.h"
 #include "Explica/Core/Parallel.h"
 #include "MoveTogether.h"
+#include "Turns.h"
 
 #include <Eigen/Geometry>
 
@@ -36,9 +37,7 @@ constexpr std::array<double, 3> kRoomShares = {1.0, 0.4, 0.1};
 
 /// A quarter of the vertices, another one each sweep.
 bool isItsTurn(std::int32_t v, int sweep) {
-  constexpr std::uint32_t kMix = 2654435761U;  // Knuth's multiplicative hash
-  return (static_cast<std::uint32_t>(v) * kMix >> 16 & 3U) ==
-         (static_cast<std::uint32_t>(sweep) & 3U);
+  return (mixedBits(v) & 3U) == (static_cast<std::uint32_t>(sweep) & 3U);
 }
 
 /// Pushes on vertices.

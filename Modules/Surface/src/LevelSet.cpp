@@ -223,11 +223,8 @@ LevelSet levelSetOf(const Volume<std::uint8_t>& mask) {
 
 LevelSet levelSetOf(const Volume<float>& share) {
   LevelSet level(share.grid);
-  // A share of exactly one half counts as inside.
-  constexpr float kOffZero = 1e-3F;
   parallelFor(level.size(), 1 << 16, [&](std::size_t v) {
-    const float value = std::clamp(2 * share[v] - 1, -1.0F, 1.0F);
-    level[v] = value >= 0 ? std::max(value, kOffZero) : std::min(value, -kOffZero);
+    level[v] = offZero(std::clamp(2 * share[v] - 1, -1.0F, 1.0F));
   });
   return level;
 }

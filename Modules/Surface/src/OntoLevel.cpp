@@ -6,13 +6,12 @@
 namespace explica::surface {
 
 Point ontoLevel(const LevelSet& level, const Point& from, const Vector& normal, double most) {
-  constexpr double kFlat = 1e-8;  // squared change of the level per voxel: nothing to follow
   const double voxel = level.grid.spacing.minCoeff();
   Point p = from;
   for (int step = 0; step < 3; ++step) {
     const LevelSample s = sample(level, p);
     const double squared = s.gradient.squaredNorm();
-    if (squared * voxel * voxel < kFlat || s.gradient.dot(normal) > 0) return from;
+    if (squared * voxel * voxel < kFlatLevel || s.gradient.dot(normal) > 0) return from;
     p -= s.value / squared * s.gradient;
     if ((p - from).squaredNorm() > most * most) return from;
   }

@@ -20,8 +20,6 @@ constexpr float kHeadOn = -0.5F;
 constexpr float kAlongLink = 0.25F;
 /// Of the harmonic solve: directions, not thickness, are read off it.
 constexpr double kTolerance = 1e-6;
-/// The surface keeps this share of a voxel from the middle between two banks.
-constexpr double kMiddleGap = 0.1;
 /// Steps a voxel of a trajectory.
 constexpr double kStepsPerVoxel = 4;
 /// A path is cut where, over so many of its steps, its distance to white matter grows at less than

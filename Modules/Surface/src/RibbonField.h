@@ -13,6 +13,10 @@
 
 namespace explica::surface {
 
+/// What surfaces keep from the middle between two banks, voxels: trajectories of both end there, in
+/// one and the same place.
+inline constexpr double kMiddleGap = 0.1;
+
 /// What ended a trajectory.
 enum class TrajectoryEnd : std::uint8_t {
   Outer,    ///< the outer boundary

@@ -5,6 +5,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
+#include "Explica/Correspondence/ImageEdge.h"
 #include "Explica/Correspondence/Sulci.h"
 #include "Explica/Correspondence/Trajectory.h"
 #include "Explica/Geometry/MeshMeasures.h"
@@ -17,6 +18,7 @@
 #include "Growth.h"
 #include "KeepRoom.h"
 #include "Masks.h"
+#include "OntoLevel.h"
 #include "Relaxation.h"
 #include "SheetMesh.h"
 
@@ -43,17 +45,6 @@ enum : Label { kOuterRole = 0, kInnerRole = 1, kTissueRole = 2, kInsulatedRole =
 constexpr double kSmallPatch = 1, kSmallPiece = 2, kSmallHole = 0.75;
 /// Largest pocket in the tissue, as a share of it, that is filled.
 constexpr double kPocket = 0.02;
-/// Levels on the way from the sheet to a boundary at which a trajectory is remembered.
-constexpr int kLegs = 5;
-/// The image's edge counts so many thicknesses far (Correspondence's ImageEdge.h gives the reason).
-constexpr double kSheetReach = 1.25;
-/// Farthest that a sliding vertex is brought back to the border of the tissue in one sweep, voxels.
-constexpr double kNearSheet = 0.5;
-/// Less than this is no shortfall, voxels.
-constexpr double kNoSheetShortfall = 0.02;
-/// What an outer sheet keeps from the middle of a closed sulcus, voxels: both banks' trajectories
-/// end there, in one and the same place.
-constexpr double kSulcusGap = 0.1;
 
 double secondsSince(std::chrono::steady_clock::time_point& last) {
   const auto now = std::chrono::steady_clock::now();
@@ -143,7 +134,6 @@ struct SheetLevel {
 };
 
 SheetLevel levelOf(const Field& field) {
-  constexpr float kOffZero = 1e-3F;
   const Annulus& annulus = field.annulus;
   const Grid grid = gridOf(annulus.grid, {annulus.first, annulus.size});
   SheetLevel sheet{LevelSet(grid), Volume<std::uint8_t>(grid, 1), Volume<std::uint8_t>(grid, 0)};
@@ -158,7 +148,7 @@ SheetLevel levelOf(const Field& field) {
     } else {
       value = n == harmonic::kInner ? 1.0F : -1.0F;
     }
-    sheet.level[p] = value >= 0 ? std::max(value, kOffZero) : std::min(value, -kOffZero);
+    sheet.level[p] = offZero(value);
   });
   return sheet;
 }
@@ -251,8 +241,8 @@ Trajectory pathTo(const TrajectoryTracer& tracer, const Point& start, double tar
   path.points = {start};
   path.along = {0};
   Point at = start;
-  for (int leg = 1; leg <= kLegs; ++leg) {
-    const double level = 0.5 + (target - 0.5) * leg / kLegs;
+  for (int leg = 1; leg <= correspondence::kLegs; ++leg) {
+    const double level = 0.5 + (target - 0.5) * leg / correspondence::kLegs;
     const correspondence::Trace trace = tracer.trace(at, level);
     if (!trace.reached) {
       path.points.resize(1);
@@ -463,7 +453,7 @@ void markCut(const Grid& image, const TriangleMesh& sheet, const Eigen::VectorXd
     for (const TriangleMesh* mesh : {&made.white.mesh, &made.mid, &made.pial}) {
       least = std::min(least, (mesh->positions.row(row) - sheet.positions.row(nearest[v])).norm());
     }
-    if (least >= kSheetReach * thickness[row]) continue;
+    if (least >= correspondence::kEdgeReach * thickness[row]) continue;
     facts.known[v] = 0;
     ++facts.cutByImage;
   }
@@ -499,10 +489,10 @@ void growSheets(const TriangleMesh& sheet, const Ways& ways, const TrajectoryTra
   const auto backTo = [&](double target) {
     return [&tracer, &sulci, target, voxel](std::int32_t, const Point& point, const Vector&) {
       const correspondence::Trace trace = tracer.trace(point, target);
-      if (!trace.reached || (trace.point - point).norm() > kNearSheet * voxel) return point;
+      if (!trace.reached || (trace.point - point).norm() > kNearBorder * voxel) return point;
       if (target == 0 || !sulci.at(trace.point)) return trace.point;
       const auto outward = tracer.direction(point);
-      return outward ? Point(trace.point - kSulcusGap * voxel * *outward) : point;
+      return outward ? Point(trace.point - kMiddleGap * voxel * *outward) : point;
     };
   };
   const auto shortOf = [&](double target) -> Shortfall {
@@ -519,12 +509,12 @@ void growSheets(const TriangleMesh& sheet, const Ways& ways, const TrajectoryTra
   RelaxationOptions sliding = relaxation;
   sliding.bend = 0;
   sliding.sweeps = 4;
-  const double least = kNoSheetShortfall * voxel;
+  const double least = kNoShortfall * voxel;
   const int steps = std::max(2, options.steps / 2);
   Grown inner =
       grow(sheet, ways.inward, edge, steps, least, backTo(0), shortOf(0), room, relaxation);
   std::vector<Trajectory> outward = ways.outward;
-  keepFromMiddles(sulci, kSulcusGap * voxel, outward);
+  keepFromMiddles(sulci, kMiddleGap * voxel, outward);
   Grown outer = grow(sheet, outward, edge, steps, least, backTo(1), shortOf(1), room, relaxation);
   Grown middle = grow(sheet, waysToMiddle(ways), edge, 2, least, stay, unknown, room, sliding);
   made.white.mesh = std::move(inner.mesh);

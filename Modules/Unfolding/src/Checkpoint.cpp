@@ -4,11 +4,20 @@
 #include "Explica/Core/StateFile.h"
 #include "Explica/Unfolding/Unfold.h"
 
+#include <string>
+
 namespace explica::unfolding {
 namespace {
 
-constexpr char kMagic[] = "ExplicaUnfold10\n";  // the number counts changes of the format
+constexpr char kFormat[] = "ExplicaUnfold11";  // the number counts changes of what is stored
 static_assert(sizeof(HeldPair) == 20);
+
+/// A state holds a value a term: one with other terms is another format.
+std::string magic() {
+  std::string text = kFormat;
+  for (const TermInfo& info : kTerms) text += " " + std::string(info.name);
+  return text + "\n";
+}
 
 /// The members of a record, one list for writing and reading.
 template <class Record, class Visit>
@@ -65,11 +74,11 @@ void writeCheckpoint(const std::filesystem::path& path, const Checkpoint& checkp
     w.rows(s.directions);
     w.numbers(checkpoint.notes);
   }
-  w.commit(path, kMagic);
+  w.commit(path, magic());
 }
 
 Checkpoint readCheckpoint(const std::filesystem::path& path) {
-  StateReader r(path, kMagic, "an unfolding");
+  StateReader r(path, magic(), "an unfolding");
 
   Checkpoint c;
   c.state.positions = r.rows<Positions>();

@@ -17,10 +17,6 @@
 namespace explica::unfolding {
 namespace {
 
-constexpr double kFar = 0.1;  // of visibility below the goal: a region that ends there is held
-constexpr double kNoWorse =
-    1e-3;  // of visibility or strain: less than that is no reason to go back
-
 Positions rowsOf(const Positions& positions, const std::vector<std::int32_t>& vertices) {
   Positions rows(static_cast<Eigen::Index>(vertices.size()), 3);
   for (std::size_t i = 0; i < vertices.size(); ++i) {
@@ -161,7 +157,7 @@ void judge(const UnfoldOptions& options, double seen, const Monitor& monitor,
   if (last.iteration > start.iteration && kept.visibility <= start.visibility) {
     result.flag = Flag::Worse;
     monitor.warn("no state is better than the start, which is kept: nothing is unfolded");
-  } else if (byItself && kept.visibility < goal - kFar) {
+  } else if (byItself && kept.visibility < goal - kHeldBelow) {
     result.flag = Flag::Held;
     std::snprintf(text, sizeof text, "the region is held at a visibility of %.3f%s",
                   kept.visibility,
@@ -245,17 +241,18 @@ UnfoldResult unfoldHere(const TriangleMesh& mesh, const Region& region,
   return result;
 }
 
-/// Where differences of positions lose digits, the run works on positions relative to the region.
-/// A whole number of mm, so that single-precision positions lose nothing on the way there and back.
-Point originFor(const TriangleMesh& mesh, const Region& region) {
-  constexpr double kNear = 1000;  // mm: nearer regions lose nothing that counts
+Point middleOf(const TriangleMesh& mesh, const Region& region) {
   Point middle = Point::Zero();
   for (const std::int32_t v : region.vertices) middle += mesh.positions.row(v).transpose();
-  middle /= std::max<double>(1, static_cast<double>(region.vertices.size()));
-  return middle.norm() > kNear ? Point(middle.array().round()) : Point(Point::Zero());
+  return middle / std::max<double>(1, static_cast<double>(region.vertices.size()));
 }
 
 }  // namespace
+
+Point originNear(const Point& middle) {
+  constexpr double kNear = 1000;  // mm
+  return middle.norm() > kNear ? Point(middle.array().round()) : Point(Point::Zero());
+}
 
 double merit(double visibility, double strain, double seen) {
   const double spare = std::min(seenToSpare(visibility), lengthsToSpare(strain));
@@ -278,7 +275,7 @@ UnfolderOptions solverOptions(const UnfoldOptions& options) {
 UnfoldResult unfold(const TriangleMesh& mesh, const Region& region,
                     const visibility::Viewpoints& viewpoints, const UnfoldOptions& options,
                     const Monitor& monitor, const Checkpoint* resume) {
-  const Point origin = originFor(mesh, region);
+  const Point origin = originNear(middleOf(mesh, region));
   if (origin.isZero()) return unfoldHere(mesh, region, viewpoints, options, monitor, resume);
   TriangleMesh moved = mesh;
   moved.positions.rowwise() -= origin.transpose();

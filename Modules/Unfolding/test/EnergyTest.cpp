@@ -4,6 +4,7 @@
 #include "../src/AreaProjection.h"
 #include "../src/Around.h"
 #include "../src/Objective.h"
+#include "../src/Room.h"
 
 #include "Meander.h"
 
@@ -212,6 +213,81 @@ TEST(Energy, StiffnessIsTheHessianWhereAreasAndLengthsAreAtRest) {
     EXPECT_NEAR(flat.dot(hessian * flat), curvature, 1e-4 * curvature)
         << kTerms[static_cast<std::size_t>(term)].name;
   }
+}
+
+/// What "Add an energy" of the module's page asks for, and no more: a pull of the region's faces to
+/// a plane, strength/2 * sum of w (h / radius)^2, h the height of the centroid over the plane.
+class PlaneEnergy final : public Energy {
+ public:
+  [[nodiscard]] double value(const Configuration& now, double strength) const override {
+    double sum = 0;
+    for (const PatchFace& face : now.patch.ofRegion()) {
+      const double share = heightOf(face, now) / now.patch.room.radius;
+      sum += 0.5 * strength * face.weight * share * share;
+    }
+    return sum;
+  }
+
+  void addGradient(const Configuration& now, double strength, Positions& gradient) const override {
+    const PatchRoom& room = now.patch.room;
+    for (const PatchFace& face : now.patch.ofRegion()) {
+      const double pull =
+          strength * face.weight * heightOf(face, now) / (room.radius * room.radius);
+      for (const std::int32_t v : face.vertices) {
+        gradient.row(v) += pull / 3 * room.axis.transpose();
+      }
+    }
+  }
+
+  void addStiffness(const Configuration& now, double strength,
+                    const std::vector<std::int32_t>& unknown, BlockSystem& system) const override {
+    const auto faces = now.patch.ofRegion();
+    const PatchRoom& room = now.patch.room;
+    const Eigen::Matrix3d along = room.axis * room.axis.transpose();
+    std::vector<CornerBlocks> blocks(faces.size());
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      blocks[f].fill(strength * faces[f].weight / (9 * room.radius * room.radius) * along);
+    }
+    addBlocks(faces, blocks, unknown, system);
+  }
+
+ private:
+  static double heightOf(const PatchFace& face, const Configuration& now) {
+    return now.patch.room.axis.dot(centroidOf(face, now.x));
+  }
+};
+
+TEST(Energy, ANewOneIsAClassOfThreeFunctionsOfWhichTheLastLeadsToItsMinimum) {
+  Sample s;
+  const PlaneEnergy energy;
+  const Positions d = randomDirection(s.mesh.vertexCount(), 7);
+  const auto gradientAt = [&](const Positions& x) {
+    Positions gradient = Positions::Zero(x.rows(), 3);
+    energy.addGradient(s.at(x), 1.3, gradient);
+    return gradient;
+  };
+  const auto valueAt = [&](const Positions& x) { return energy.value(s.at(x), 1.3); };
+  const Positions& x = s.mesh.positions;
+  const double slope = (gradientAt(x).array() * d.array()).sum();
+  const auto remainder = [&](double h) {
+    return std::abs(valueAt(x + h * d) - valueAt(x) - h * slope);
+  };
+  EXPECT_NEAR(std::log10(remainder(1e-2) / remainder(1e-3)), 2, 0.05);
+  // It is quadratic: one step of its stiffness, hardly damped, ends where it is flat.
+  constexpr double kDamping = 1e-7;
+  BlockSystem system;
+  Couplings couplings;
+  for (std::int32_t i = 0; i < s.mesh.vertexCount(); ++i) {
+    for (std::int32_t j = 0; j < i; ++j) couplings.emplace_back(i, j);
+  }
+  system.reset(static_cast<std::int32_t>(s.mesh.vertexCount()), couplings);
+  energy.addStiffness(s.at(x), 1.3, s.unknown, system);
+  system.addDiagonal(kDamping);
+  Positions step;
+  ASSERT_TRUE(system.solve(-gradientAt(x), step));
+  EXPECT_GT(valueAt(x), 0);
+  EXPECT_LT(valueAt(x + step), 1e-6 * valueAt(x));
+  EXPECT_EQ(energy.phase(), &PhaseSeconds::visibility);
 }
 
 TEST(Energy, LiftPullsAlongItsAxisUpToItsHeightOnly) {

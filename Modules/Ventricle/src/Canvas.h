@@ -47,7 +47,7 @@ class Canvas {
 };
 
 // Linear light, as all colours here.
-inline constexpr report::Colour kInk = {0.012F, 0.014F, 0.018F};
+using report::kInk;
 inline constexpr report::Colour kPale = {0.78F, 0.79F, 0.80F};  // gridlines, and what is not known
 inline constexpr report::Colour kGrey = {0.21F, 0.22F, 0.23F};  // small print
 inline constexpr report::Colour kWhite = {1, 1, 1};             // paper

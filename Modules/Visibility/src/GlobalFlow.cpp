@@ -3,6 +3,7 @@
 #include "Explica/Visibility/GlobalFlow.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/GlobalFlow.h"
 #include "Explica/Core/Parallel.h"
 
 #include <Eigen/Geometry>
@@ -16,9 +17,6 @@ namespace explica::visibility {
 namespace {
 
 constexpr std::size_t kFlowGrain = 32;  // faces a task: each meets all others
-constexpr double kFarAway = 10;         // viewing radius over that of the farthest vertex
-constexpr double kGone = 1e-2;          // share of the mean edge at which one has shrunk to nothing
-constexpr double kNothingLeft = 1e-6;   // share of the start's measure that counts as none
 
 /// A face as the measure sees it.
 struct Faces {

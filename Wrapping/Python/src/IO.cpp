@@ -92,6 +92,8 @@ void bindIO(py::module_& m) {
         return std::make_pair(std::move(loaded.mesh.positions), std::move(loaded.mesh.faces));
       },
       "Surface: (positions (V, 3) scanner RAS mm, faces (F, 3)).", "path"_a);
+  std::string endings;
+  for (const std::string& ending : io::surfaceEndings()) endings += ending + ", ";
   m.def(
       "write_surface",
       [](const std::filesystem::path& path, const Eigen::Ref<const Positions>& positions,
@@ -103,7 +105,7 @@ void bindIO(py::module_& m) {
         io::writeSurface(path, meshOf(positions, faces), metadata);
       },
       "path"_a, "positions"_a, "faces"_a, "structure"_a = "Other", "secondary"_a = "",
-      "Write a surface; format by the name (.surf.gii, .vtp, .ply, .obj, .off, .stl, FreeSurfer).");
+      ("Write a surface; format by the name (" + endings + "FreeSurfer's for any other).").c_str());
   m.def(
       "read_vertex_maps",
       [](const std::filesystem::path& path) {

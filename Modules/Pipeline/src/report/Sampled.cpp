@@ -4,6 +4,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/IO/RegionFiles.h"
 #include "Explica/IO/SurfaceFile.h"
+#include "Explica/IO/VertexDataFile.h"
 #include "Explica/Report/Figure.h"
 #include "ReportParts.h"
 #include "StandardViews.h"
@@ -18,9 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostMaps = 8;             // drawn; each has several views
-constexpr std::uintmax_t kLargest = 200u << 20;  // bytes of a file whose maps are all read
-constexpr std::size_t kMostPoints = 60;          // rows of the table
+constexpr std::size_t kMostMaps = 8;     // drawn; each has several views
+constexpr std::size_t kMostPoints = 60;  // rows of the table
 
 /// The surface half way between white and pial, ready for pictures.
 struct Middle {
@@ -180,7 +180,7 @@ void showSampled(ResultFolder& results, const StepFolder& step) {
   if (files.size() > kMostMaps) files.resize(kMostMaps);
   for (const auto& [file, name] : files) {
     results.attempt("Pictures of " + name, [&, &file = file, &name = name] {
-      if (fs::file_size(file) > kLargest) {
+      if (fs::file_size(file) > io::kMostShown) {
         throw InvalidInput("the series is too long to be drawn; its profiles are shown");
       }
       showMaps(results, *middle, file, name);

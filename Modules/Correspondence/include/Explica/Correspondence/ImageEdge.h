@@ -16,6 +16,9 @@ enum class ImageEdge {
   Insulated  ///< trajectories slide along the edge, as if the tissue ended there
 };
 
+/// Distance from the edge, in thicknesses, within which measures are not believed: see leaveOutCut.
+inline constexpr double kEdgeReach = 1.25;
+
 /// Takes the measures of voxels away whose trajectories the image's edge bends or cuts.
 ///
 /// The interpolant is solved as if no flux crossed the edge.  Where tissue runs on, that is wrong

@@ -25,6 +25,10 @@ struct Trace {
   bool reached = false;                 ///< false: left the tissue or stagnated; the rest is where
 };
 
+/// Levels on the way from the middle of the tissue to a boundary at which a trajectory is
+/// remembered.
+inline constexpr int kLegs = 5;
+
 /// Follows trajectories of T = grad u / |grad u| through the tissue [thesis 3.1, Lagrangian].
 ///
 /// T is the trilinear interpolant of the voxels' gradients, and u that of their first-order Taylor

@@ -10,6 +10,11 @@ namespace explica::geometry {
 
 using Triangle = std::array<Point, 3>;
 
+/// A point is clearly beside a triangle's plane if |normal . way| exceeds this share of the product
+/// of the L1 norms of both edges and of the way: many times the rounding of three products, each of
+/// a difference and a component of the normal.
+inline constexpr double kBesideRounding = 1e-14;
+
 /// True if two triangles without common vertices share a point; touching counts.  Exact.
 [[nodiscard]] bool trianglesIntersect(const Triangle& s, const Triangle& t);
 

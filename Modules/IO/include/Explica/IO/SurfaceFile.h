@@ -114,6 +114,13 @@ void rewriteFreeSurferSurface(const std::filesystem::path& path,
 void writeSurface(const std::filesystem::path& path, const TriangleMesh& mesh,
                   const SurfaceMetadata& metadata = {});
 
+/// A file's name without what tells its format: "lh.pial" of lh.pial, lh.pial.surf.gii,
+/// lh.pial.ply.
+[[nodiscard]] std::string nameOfSurface(const std::filesystem::path& path);
+
+/// The endings by which writeSurface() tells formats: ".gii", ".gii.gz", ".vtp", ...
+[[nodiscard]] std::vector<std::string> surfaceEndings();
+
 /// "CortexLeft", "CortexRight" from names such as lh.white, sub-01_hemi-R_pial.surf.gii; else
 /// "Other".
 [[nodiscard]] std::string structureFromName(const std::filesystem::path& path);

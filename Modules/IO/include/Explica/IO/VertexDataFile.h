@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -36,6 +37,9 @@ struct LabelMap {
   Eigen::Matrix<Label, Eigen::Dynamic, 1> keys;  ///< V
   std::vector<LabelEntry> table;                 ///< ascending keys
 };
+
+/// Of a file of maps, bytes: larger ones are not read whole where they would only be shown.
+inline constexpr std::uintmax_t kMostShown = 200u << 20;
 
 /// Reads per-vertex values: GIFTI (.shape.gii, .func.gii and so on, any encoding, also .gz),
 /// FreeSurfer curv (old and new), MGH/MGZ with one value a vertex, point data of VTK files.

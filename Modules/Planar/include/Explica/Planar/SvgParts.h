@@ -8,6 +8,9 @@
 
 namespace explica::planar::svg {
 
+inline constexpr double kMargin = 18;   ///< of pages, pixels
+inline constexpr int kMostColumns = 3;  ///< pictures beside each other
+
 /// A number by a printf pattern with one double.
 [[nodiscard]] std::string format(const char* pattern, double value);
 

@@ -13,6 +13,8 @@ namespace explica::report {
 /// Linear light, each component in [0, 1].
 using Colour = std::array<float, 3>;
 
+inline constexpr Colour kInk = {0.012F, 0.014F, 0.018F};  ///< of text; linear light
+
 /// Pixels in sRGB, row by row from the top left, three bytes each.
 struct Picture {
   int width = 0;

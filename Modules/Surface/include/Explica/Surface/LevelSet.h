@@ -4,6 +4,7 @@
 
 #include "Explica/Core/Volume.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -44,6 +45,12 @@ struct VoxelBox {
 
 /// Level set of shares in [0, 1] whose 0.5 is the boundary: 2 p - 1, kept off zero.
 [[nodiscard]] LevelSet levelSetOf(const Volume<float>& share);
+
+/// A level's value so far from 0 that it has a side; 0 counts as inside.
+[[nodiscard]] inline float offZero(float value) {
+  constexpr float kOffZero = 1e-3F;
+  return value >= 0 ? std::max(value, kOffZero) : std::min(value, -kOffZero);
+}
 
 /// Trilinear value and gradient (per mm, world axes) of a level set; beyond the lattice the nearest
 /// border cell's.

@@ -26,14 +26,16 @@ enum class Term {
   Knot       ///< weight times the double integral of 1 / |x - y|^2, see KnotEnergy
 };
 
-/// What the program tells about a term.  Columns of evolution.tsv, options, checkpoints and
-/// Python's records follow from these rows.
+/// What the program tells about a term.  Columns of evolution.tsv, options, checkpoints, inflations
+/// and Python's records follow from these rows.
 struct TermInfo {
   Term term;
   std::string_view name;    ///< the account's: energy_NAME
   double weight;            ///< default of its strength, no unit
   std::string_view option;  ///< of the strength; empty for a term whose strength is the measure
   std::string_view help;    ///< one sentence
+  /// Whether a whole closed surface feels it, too (Inflation): it has no surroundings and no map.
+  bool closed = true;
 };
 
 inline constexpr std::array kTerms = {
@@ -43,15 +45,16 @@ inline constexpr std::array kTerms = {
     TermInfo{Term::Spring, "spring", 60, "spring-weight",
              "stiffness of edge lengths until it is weighed against what is seen"},
     TermInfo{Term::Lift, "lift", 60, "lift-weight",
-             "pull out of fixed or elastic surroundings, up to where the flat region has room"},
+             "pull out of fixed or elastic surroundings, up to where the flat region has room",
+             false},
     TermInfo{Term::Guide, "guide", 100, "guide-weight",
-             "pull of a large region without surroundings towards its flat map"},
+             "pull of a large region without surroundings towards its flat map", false},
     TermInfo{Term::Collar, "collar", 2e-4, "collar-weight",
-             "stiffness of an elastic collar beside the region's"},
+             "stiffness of an elastic collar beside the region's", false},
     TermInfo{Term::Overhang, "overhang", 0.3, "overhang-weight",
-             "pull on faces of the collar that lean over the region"},
+             "pull on faces of the collar that lean over the region", false},
     TermInfo{Term::Contact, "contact", 0.2, "contact-weight", "strength of the contact barrier"},
-    TermInfo{Term::Knot, "knot", 3e-4, "knot-weight", "strength of the knot energy"},
+    TermInfo{Term::Knot, "knot", 3e-4, "knot-weight", "strength of the knot energy", false},
 };
 inline constexpr std::size_t kTermCount = kTerms.size();
 static_assert(

@@ -7,16 +7,21 @@
 
 namespace explica::unfolding {
 
-/// Seconds for the iterations within the limit of a whole command.  Three times the start is kept:
-/// for itself, and twice as long for what comes after, which tests, measures and writes what the
-/// start read, tested and measured, and has taken 0.5 to 3.4 times as long; and for each frame,
-/// which is tested where it moved and written, a fifth of it.
+/// What a command keeps of its limit for what is no iteration, in times of its start.
+struct KeptTime {
+  /// For the start itself, and for what comes after: an unfolding tests, measures and writes then
+  /// what it read, tested and measured at the start, and has taken 0.5 to 3.4 times as long.
+  double whole = 3;
+  double frame = 0.2;  ///< for each frame: one of an unfolding is tested where it moved and written
+};
+
+/// Seconds for the iterations within the limit of a whole command.
 /// @param start  s, that reading and testing took
 /// @return > 0: one look at the state, and it ends
-[[nodiscard]] inline double timeToIterate(double limit, double start, int frames) {
-  constexpr double kKept = 3, kFrameShare = 0.2;
+[[nodiscard]] inline double timeToIterate(double limit, double start, int frames,
+                                          const KeptTime& kept = {}) {
   constexpr double kLeast = 1e-3;  // s
-  return std::max(kLeast, limit - start * (kKept + kFrameShare * frames));
+  return std::max(kLeast, limit - start * (kept.whole + kept.frame * frames));
 }
 
 /// Whether another step fits into what is left of a run's time: one as long as the last.

@@ -79,6 +79,16 @@ inline constexpr double kStrainWorth = 0.5;
   return kStrainWorth * (kStrained - strain);
 }
 
+/// Below its goal by this much, of visibility or of the share seen, a result is held.
+inline constexpr double kHeldBelow = 0.1;
+/// Of visibility or strain: less than that is no reason to go back to an earlier state.
+inline constexpr double kNoWorse = 1e-3;
+
+/// Where positions are counted from, so that their differences lose no digits: the origin for what
+/// lies about `middle` within 1 m of it, else a whole number of mm, so that single-precision
+/// positions lose nothing on the way there and back.
+[[nodiscard]] Point originNear(const Point& middle);
+
 /// Area ratios of a collar's faces, in the mean and at most, beyond which it has given way.
 inline constexpr double kCollarMean = 2, kCollarMost = 8;
 
