@@ -41,8 +41,7 @@ int take24(ByteCursor& cursor) {
 /// The `key = value` lines of a volume geometry, if valid.
 std::optional<Grid> volumeOf(const std::filesystem::path& path, ByteCursor& cursor) {
   std::map<std::string, std::string> fields;
-  constexpr int kLines = 8;  // of the geometry in a footer
-  for (int i = 0; i < kLines && cursor.left() > 0; ++i) {
+  for (int i = 0; i < kGeometryLines && cursor.left() > 0; ++i) {
     const std::string_view line = cursor.line();
     const std::size_t mark = line.find('=');
     if (mark == std::string_view::npos) break;

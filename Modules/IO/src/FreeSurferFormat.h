@@ -11,6 +11,9 @@
 
 namespace explica::io {
 
+/// Of a volume's geometry as FreeSurfer writes it, in the footers of surfaces and in LTA files.
+inline constexpr int kGeometryLines = 8;
+
 /// What the first bytes promise; old quad surfaces share a magic number with new curv files.
 enum class FreeSurferKind { None, Surface, Curv };
 [[nodiscard]] FreeSurferKind freeSurferKindOf(ByteView bytes);

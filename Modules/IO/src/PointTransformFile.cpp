@@ -4,6 +4,7 @@
 #include "Explica/IO/PointTransformFile.h"
 
 #include "ByteSource.h"
+#include "FreeSurferFormat.h"
 #include "ItkTransform.h"
 #include "SurfaceFrame.h"
 
@@ -147,8 +148,7 @@ std::optional<Grid> sideOf(const std::filesystem::path& path, std::string_view t
       false);
   static_cast<void>(lines.line());
   std::map<std::string, std::vector<double>> fields;
-  constexpr int kLines = 8;  // of a volume's description
-  for (int n = 0; n < kLines && lines.left() > 0; ++n) {
+  for (int n = 0; n < kGeometryLines && lines.left() > 0; ++n) {
     const std::string_view line = withoutComment(lines.line());
     const std::size_t mark = line.find('=');
     if (mark == std::string_view::npos) break;

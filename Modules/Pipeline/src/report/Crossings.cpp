@@ -38,8 +38,7 @@ Volume<float> blank() {
 
 void showCrossings(ResultFolder& results, const StepFolder& step,
                    const FolderReportOptions& options) {
-  constexpr double kEdges = 9;      // a tile's side in mean edges of the surface
-  constexpr std::size_t kMost = 7;  // places
+  constexpr double kEdges = 9;  // a tile's side in mean edges of the surface
   auto& mosaics = results.content().mosaics;
   const std::vector<CrossingPair> pairs = crossingPairs(step);
   const auto source = inputOf(step, "SURFACE");
@@ -65,7 +64,7 @@ void showCrossings(ResultFolder& results, const StepFolder& step,
        "intersections.tsv.",
        report::makeCloseUps(
            blank(), {{&mesh, "surface", "#ffd60a"}, {&crossing, "faces that cross", "#ff453a"}},
-           crossingPlaces(pairs, kMost), kEdges * geometry::meanEdgeLength(mesh), close)});
+           crossingPlaces(pairs, kMostPlaces), kEdges * geometry::meanEdgeLength(mesh), close)});
 }
 
 }  // namespace explica::pipeline

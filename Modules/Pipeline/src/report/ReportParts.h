@@ -23,6 +23,9 @@ inline constexpr const char* kProfilePlace = "profiles";
 inline constexpr const char* kSampledPlace = "sampled";
 inline constexpr const char* kFlatPlace = "flat";
 
+/// Close-ups of a kind on one page.
+inline constexpr std::size_t kMostPlaces = 7;
+
 /// Heading of the histograms of thickness, on surfaces or in voxels.
 inline constexpr const char* kThicknessCharts = "Thickness";
 

@@ -211,16 +211,15 @@ void showRegions(ResultFolder& results, const std::vector<const Hemisphere*>& al
 void showCloseUps(ResultFolder& results, const std::vector<Hemisphere>& all,
                   const Volume<float>& image, const std::vector<report::MosaicOutline>& outlines,
                   const report::MosaicOptions& options) {
-  constexpr double kWidth = 36;     // mm
-  constexpr double kNarrow = 12;    // mm, for faces
-  constexpr std::size_t kMost = 7;  // places of a kind
+  constexpr double kWidth = 36;   // mm
+  constexpr double kNarrow = 12;  // mm, for faces
   report::MosaicOptions close = options;
   close.tileHeight = 170;
-  const std::size_t each = all.size() == 1 ? kMost : kMost / 2 + 1;
+  const std::size_t each = all.size() == 1 ? kMostPlaces : kMostPlaces / 2 + 1;
   std::vector<report::CloseUp> corrected, unknown, crossing;
   const auto add = [&](std::vector<report::CloseUp>& to, std::vector<report::CloseUp> places) {
     for (report::CloseUp& place : places) {
-      if (to.size() < kMost) to.push_back(std::move(place));
+      if (to.size() < kMostPlaces) to.push_back(std::move(place));
     }
   };
   for (const Hemisphere& h : all) {
