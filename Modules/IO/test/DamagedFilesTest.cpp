@@ -394,7 +394,7 @@ TEST(DamagedFile, PicturesThatLibpngWouldAbortOnAreRefused) {
 }
 
 /// A file of every kind that is read.
-const char* const kKinds[] = {
+const std::string kKinds[] = {
     "volume.nii",    "volume.nii.gz", "volume.mgh",   "volume.mgz",    "volume.nrrd",
     "volume.mha",    "volume.png",    "a.surf.gii",   "a.surf.gii.gz", "a.shape.gii",
     "a.label.gii",   "lh.white",      "lh.curv",      "lh.a.annot",    "lh.a.label",
