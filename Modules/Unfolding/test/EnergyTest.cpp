@@ -244,11 +244,13 @@ class PlaneEnergy final : public Energy {
     const auto faces = now.patch.ofRegion();
     const PatchRoom& room = now.patch.room;
     const Eigen::Matrix3d along = room.axis * room.axis.transpose();
-    std::vector<CornerBlocks> blocks(faces.size());
-    for (std::size_t f = 0; f < faces.size(); ++f) {
-      blocks[f].fill(strength * faces[f].weight / (9 * room.radius * room.radius) * along);
-    }
-    addBlocks(faces, blocks, unknown, system);
+    const double scale = strength / (9 * room.radius * room.radius);
+    addBlocks(
+        now.patch.facesAround, 0, faces.size(), [&](std::int32_t f) { return faces[f].vertices; },
+        unknown, system,
+        [&](std::int32_t f, int, int) -> Eigen::Matrix3d {
+          return scale * faces[f].weight * along;
+        });
   }
 
  private:
