@@ -187,19 +187,36 @@ bool eliminateDense(Panel& columns, Eigen::MatrixXd& rest, bool tiled) {
   return true;
 }
 
+/// Symmetric, ones on the diagonal and where points are joined.
+Eigen::SparseMatrix<double> graphOf(std::int32_t count,
+                                    std::span<const std::pair<std::int32_t, std::int32_t>> edges) {
+  std::vector<std::int32_t> begin(static_cast<std::size_t>(count) + 1, 0);
+  for (std::int32_t n = 0; n < count; ++n) begin[n + 1] = 1;
+  for (const auto& [i, j] : edges) {
+    ++begin[i + 1];
+    ++begin[j + 1];
+  }
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  Eigen::SparseMatrix<double> graph(count, count);
+  graph.resizeNonZeros(begin.back());
+  std::copy(begin.begin(), begin.end(), graph.outerIndexPtr());
+  std::int32_t* const rows = graph.innerIndexPtr();
+  std::fill_n(graph.valuePtr(), begin.back(), 1.0);
+  std::vector<std::int32_t> at(begin.begin(), begin.end() - 1);
+  for (std::int32_t n = 0; n < count; ++n) rows[at[n]++] = n;
+  for (const auto& [i, j] : edges) {
+    rows[at[i]++] = j;
+    rows[at[j]++] = i;
+  }
+  for (std::int32_t n = 0; n < count; ++n) std::sort(rows + begin[n], rows + begin[n + 1]);
+  return graph;
+}
+
 }  // namespace
 
 std::vector<std::int32_t> eliminationPlaces(
     std::int32_t count, std::span<const std::pair<std::int32_t, std::int32_t>> edges) {
-  std::vector<Eigen::Triplet<double, std::int32_t>> entries;
-  entries.reserve(2 * edges.size() + static_cast<std::size_t>(count));
-  for (std::int32_t i = 0; i < count; ++i) entries.emplace_back(i, i, 1.0);
-  for (const auto& [i, j] : edges) {
-    entries.emplace_back(i, j, 1.0);
-    entries.emplace_back(j, i, 1.0);
-  }
-  Eigen::SparseMatrix<double> graph(count, count);
-  graph.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::SparseMatrix<double> graph = graphOf(count, edges);
   Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
   Eigen::AMDOrdering<int>()(graph, order);
   std::vector<std::int32_t> place(static_cast<std::size_t>(count));

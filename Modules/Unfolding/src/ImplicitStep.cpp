@@ -365,12 +365,13 @@ void ImplicitStep::updateMultipliers() {
   const auto faces = u_.setup.patch.ofRegion();
   const double slack = u_.options.areaSlack;
   const double largest = kLargestMultiplier * std::max(1.0, state_.drive);
-  for (std::size_t f = 0; f < faces.size(); ++f) {
+  constexpr std::size_t kGrain = 1024;  // faces a task
+  parallelFor(faces.size(), kGrain, [&](std::size_t f) {
     const double error = shapeOf(faces[f], state_.positions).area / faces[f].restArea - 1;
     const double excess = error - std::clamp(error, -slack, slack);
-    state_.multipliers[f] =
-        std::clamp(state_.multipliers[f] + state_.areaStiffness * excess, -largest, largest);
-  }
+    double& multiplier = state_.multipliers[static_cast<Eigen::Index>(f)];
+    multiplier = std::clamp(multiplier + state_.areaStiffness * excess, -largest, largest);
+  });
 }
 
 void ImplicitStep::endSeparationIfDone() {

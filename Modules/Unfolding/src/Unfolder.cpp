@@ -6,6 +6,7 @@
 #include "UnfolderImplementation.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Parallel.h"
 #include "Explica/Core/PhaseClock.h"
 #include "Explica/Visibility/AverageVisibility.h"
 #include "Explica/Visibility/VisibleFraction.h"
@@ -108,8 +109,13 @@ void Unfolder::Implementation::measure(IterationRecord& account) const {
           : visibility::AverageVisibility(setup.mesh.faces, setup.region.faces, viewpoints)
                 .value(state.positions);
   double sum = 0, largest = 0;
-  for (const PatchFace& face : setup.patch.ofRegion()) {
-    const double error = std::abs(shapeOf(face, state.positions).area / face.restArea - 1);
+  const auto faces = setup.patch.ofRegion();
+  constexpr std::size_t kGrain = 1024;  // faces a task
+  std::vector<double> errors(faces.size());
+  parallelFor(faces.size(), kGrain, [&](std::size_t f) {
+    errors[f] = std::abs(shapeOf(faces[f], state.positions).area / faces[f].restArea - 1);
+  });
+  for (const double error : errors) {
     sum += error;
     largest = std::max(largest, error);
   }
