@@ -23,6 +23,8 @@ constexpr double kFlat = 1e-9;
 constexpr double kTinyStep = 1e-6;
 // Nearer than this (in voxels) a wall's one-sided slope is round-off.
 constexpr double kTooClose = 0.02;
+// A step ends beyond the boundary by about this share of its length plus this many voxels.
+constexpr double kPastTarget = 1.1, kBeyondTarget = 0.02;
 // A step whose gain in u is below this share of |grad u| ds is inconsistent; the boundary is near
 // within this many voxels; and a walk may have so many such steps.
 constexpr double kEnough = 1e-5;  // voxels from the boundary at which a walk has arrived
@@ -687,10 +689,12 @@ bool TrajectoryTracer::Field::hop(Walk& walk, double target, int uphill) const {
   return false;
 }
 
-void TrajectoryTracer::Field::limitStep(Walk& walk) const {
+void TrajectoryTracer::Field::limitStep(Walk& walk, double target, int uphill) const {
   // Half a voxel at most where the side must be known: a step then never leaves its neighbourhood.
   const double longest = (walk.divided ? std::min(0.5, options.maxStep) : options.maxStep) * finest;
-  walk.step = std::min(walk.step, longest);
+  // Not far past the target either, where what is extended beyond the boundary bends.
+  const double rest = uphill * (target - walk.u) / walk.slope;
+  walk.step = std::min({walk.step, longest, kPastTarget * rest + kBeyondTarget * finest});
 }
 
 void TrajectoryTracer::Field::attempt(const Walk* walks, Attempt* tries, int count,
@@ -761,34 +765,31 @@ TrajectoryTracer::Field::Outcome TrajectoryTracer::Field::conclude(Walk& walk, c
 
 void TrajectoryTracer::Field::arrive(Walk& walk, const Attempt& made, double target,
                                      int uphill) const {
+  constexpr int kMostTries = 12;
   const double s = walk.step;
-  // On the step's cubic, by regula falsi (Illinois).
+  // On the step's cubic.
   const auto at = [&](double t) {
     const double t2 = t * t, t3 = t2 * t;
     return Vector((2 * t3 - 3 * t2 + 1) * walk.x + (t3 - 2 * t2 + t) * s * walk.velocity +
                   (-2 * t3 + 3 * t2) * made.end + (t3 - t2) * s * made.k4);
   };
-  double low = 0, high = 1;
-  double fLow = uphill * (walk.u - target), fHigh = uphill * (made.there.u - target);
-  double t = 1;
-  if (fLow >= 0) {
-    t = 0;
-  } else {
-    // First where the cubic through both ends' u and slopes crosses: mostly near enough.
-    const double first = crossingOf(fLow, s * walk.slope, fHigh, s * made.slope);
-    for (int k = 0; k < 12; ++k) {
-      t = k == 0 ? first : (low * fHigh - high * fLow) / (fHigh - fLow);
-      const double value = uphill * (sample(at(t), walk.home).u - target);
+  const auto along = [&](double t) {  // its derivative
+    return Vector(6 * (t * t - t) * (walk.x - made.end) +
+                  (3 * t * t - 4 * t + 1) * s * walk.velocity + (3 * t * t - 2 * t) * s * made.k4);
+  };
+  double low = 0, high = 1, t = 0;
+  const double fLow = uphill * (walk.u - target), fHigh = uphill * (made.there.u - target);
+  if (fLow < 0) {
+    // From where the cubic through both ends' u and slopes crosses, by Newton steps that stay
+    // between places before and behind the target.
+    t = crossingOf(fLow, s * walk.slope, fHigh, s * made.slope);
+    for (int k = 0; k < kMostTries; ++k) {
+      const Sample here = sample(at(t), walk.home);
+      const double value = uphill * (here.u - target);
       if (std::abs(value) < kEnough * walk.slope * finest) break;
-      if (value < 0) {
-        low = t;
-        fLow = value;
-        fHigh *= 0.5;
-      } else {
-        high = t;
-        fHigh = value;
-        fLow *= 0.5;
-      }
+      (value < 0 ? low : high) = t;
+      t -= value / (uphill * here.gradient.dot(along(t)));
+      if (!(t > low && t < high)) t = 0.5 * (low + high);
     }
   }
   walk.x = at(t);
@@ -798,7 +799,7 @@ void TrajectoryTracer::Field::arrive(Walk& walk, const Attempt& made, double tar
 }
 
 bool TrajectoryTracer::Field::advance(Walk& walk, double target, int uphill) const {
-  limitStep(walk);
+  limitStep(walk, target, uphill);
   Attempt made;
   Outcome outcome = Outcome::Again;
   while (outcome == Outcome::Again) {

@@ -125,7 +125,7 @@ struct TrajectoryTracer::Field {
   };
   enum class Outcome { Again, Advanced, Arrived };
   /// Makes walk.step no longer than it may be where the walk is.
-  void limitStep(Walk& walk) const;
+  void limitStep(Walk& walk, double target, int uphill) const;
   /// The next step of each walk, stage by stage beside each other.
   void attempt(const Walk* walks, Attempt* tries, int count, int uphill) const;
   /// Takes a step that was tried, or makes it shorter to be tried again.
@@ -167,7 +167,7 @@ void TrajectoryTracer::Field::followEach(double target, int uphill, const Next& 
       if (!done && !walks[w].stuck) break;
       ended(rank[w], walks[w], done);
     }
-    limitStep(walks[w]);
+    limitStep(walks[w], target, uphill);
     return true;
   };
   while (count < kBeside && beginNext(count)) ++count;
@@ -179,7 +179,7 @@ void TrajectoryTracer::Field::followEach(double target, int uphill, const Next& 
       const bool done =
           outcome == Outcome::Arrived || (walks[w].stuck && hop(walks[w], target, uphill));
       if (!done && !walks[w].stuck && ++steps[w] < kMaxSteps) {
-        limitStep(walks[w]);
+        limitStep(walks[w], target, uphill);
         continue;
       }
       ended(rank[w], walks[w], done);
