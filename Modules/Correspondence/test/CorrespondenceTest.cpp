@@ -275,14 +275,25 @@ TEST(Correspondence, HoldsForAnisotropicVoxelsAndObliqueAxes) {
 }
 
 TEST(Correspondence, DoesNotDependOnTheNumberOfThreads) {
-  const Solved s = eccentric();
-  setThreadCount(1);
-  const auto one = findCorrespondences(s.annulus, s.interpolant);
-  setThreadCount(4);
-  const auto four = findCorrespondences(s.annulus, s.interpolant);
+  for (const Solved& s : {eccentric(), spheroids()}) {
+    // A small lambda sends many trajectories past the first face, through several blocks.
+    for (const std::optional<double> lambda : {std::optional<double>{}, std::optional{0.5}}) {
+      const auto foundBy = [&](int threads) {
+        setThreadCount(threads);
+        return findCorrespondences(s.annulus, s.interpolant, with(Method::Hybrid, lambda));
+      };
+      const auto one = foundBy(1);
+      for (const int threads : {2, 4, 7}) {
+        const auto many = foundBy(threads);
+        EXPECT_EQ(one.innerDistance, many.innerDistance);
+        EXPECT_EQ(one.outerDistance, many.outerDistance);
+        EXPECT_EQ(one.innerPoint, many.innerPoint);
+        EXPECT_EQ(one.outerPoint, many.outerPoint);
+        EXPECT_EQ(one.traced, many.traced);
+      }
+    }
+  }
   setThreadCount(0);
-  EXPECT_EQ(one.innerDistance, four.innerDistance);
-  EXPECT_EQ(one.outerDistance, four.outerDistance);
 }
 
 TEST(Correspondence, EmbeddingServesAsWellAsSubvoxelBoundaries) {

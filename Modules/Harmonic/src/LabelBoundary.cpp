@@ -355,6 +355,10 @@ void LabelBoundary::relaxChains(Energy energy, int iterations) {
              beside[2 * chain] * ahead[near[link][2 * chain] >> 1] +
              beside[2 * chain + 1] * ahead[near[link][2 * chain + 1] >> 1];
     });
+    // As if the last step had gone downhill, which it nearly always has.
+    const double later = 0.5 * (1 + std::sqrt(1 + 4 * momentum * momentum));
+    const auto share = static_cast<float>((momentum - 1) / later);
+    momentum = later;
     const double uphill =
         parallelSum(count, kBoundaryGrain, 0.0, [&](std::size_t begin, std::size_t end) {
           double sum = 0;
@@ -371,16 +375,14 @@ void LabelBoundary::relaxChains(Energy energy, int iterations) {
             next[link] = std::max(below, kNearest);
             sum += static_cast<double>((ahead[link] - next[link]) * bound[link] *
                                        (next[link] - theta_[link]));
+            ahead[link] = next[link] + share * (next[link] - theta_[link]);
           }
           return sum;
         });
-    if (uphill > 0) momentum = 1;
-    const double later = 0.5 * (1 + std::sqrt(1 + 4 * momentum * momentum));
-    const auto share = static_cast<float>((momentum - 1) / later);
-    momentum = later;
-    parallelFor(count, kBoundaryGrain, [&](std::size_t link) {
-      ahead[link] = next[link] + share * (next[link] - theta_[link]);
-    });
+    if (uphill > 0) {
+      momentum = 0.5 * (1 + std::sqrt(5.0));  // what follows 1
+      ahead = next;
+    }
     theta_.swap(next);
   }
 }
