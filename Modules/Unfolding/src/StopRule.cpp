@@ -13,14 +13,15 @@
 namespace explica::unfolding {
 namespace {
 
-constexpr double kLargestDrive = 8;   // lengths and contacts are outweighed up to here
+constexpr double kLargestDrive = 8;   // lengths and contacts are outweighed up to here for a target
+constexpr double kLargestWeight = 4;  // ... and up to here where both are weighed
 constexpr double kLeastDrive = 0.1;   // ... and the visibility term down to here
 constexpr double kOpen = 0.9;         // visibility from which on seeing and lengths are weighed
 constexpr double kBalanced = 0.0008;  // of visibility
 constexpr double kEnough = 0.001;     // to spare of both: no iteration is spent on more
 constexpr int kLookEvery = 5;         // iterations from one look to the next, ...
 constexpr double kAppearing = 1e-3;   // ... in which so much more of the area has to be seen
-constexpr int kBalancing = 150;       // iterations at most that seeing and lengths are weighed
+constexpr int kBalancing = 142;       // iterations at most that seeing and lengths are weighed
 
 void requireUsable(const UnfoldOptions& options) {
   if (options.targetVisibility &&
@@ -66,7 +67,7 @@ Termination StopRule::weigh(Unfolder& unfolder, const std::vector<IterationRecor
   const IterationRecord& last = history.back();
   const auto [factor, nearGoal] = steer(history);
   const double drive = unfolder.state().drive;
-  const bool atLimit = factor > 1 ? drive >= kLargestDrive : drive <= kLeastDrive;
+  const bool atLimit = factor > 1 ? drive >= kLargestWeight : drive <= kLeastDrive;
   const bool balanced = std::abs(last.visibility - goalAt(last.edgeStrainMean)) < kBalanced;
   const bool atRest = isAtRest(history);
   const bool elastic = options_.unfolder.surround == Surround::Elastic;
@@ -78,8 +79,8 @@ Termination StopRule::weigh(Unfolder& unfolder, const std::vector<IterationRecor
   const bool appearing = ended && kept && isStillAppearing(unfolder);
   if (ended && kept && (longEnough || !appearing)) return Termination::Converged;
   if (static_cast<int>(history.size()) > options_.maxIterations) return Termination::MaxIterations;
-  unfolder.balance(std::clamp(drive * factor, kLeastDrive, kLargestDrive) / drive,
-                   !kept && (nearGoal || atLimit || atRest));
+  unfolder.balance(std::clamp(drive * factor, kLeastDrive, kLargestWeight) / drive,
+                   !kept && (nearGoal || (atLimit && !isGaining(history)) || atRest));
   return Termination::NotRun;
 }
 

@@ -57,6 +57,12 @@ Steering steer(const std::vector<IterationRecord>& history) {
   return {std::clamp(factor, 1 / kMostSteering, kMostSteering), visibility > goal - kNear};
 }
 
+bool isGaining(const std::vector<IterationRecord>& history) {
+  constexpr std::size_t kWindow = 5;
+  return history.size() > kWindow &&
+         history.back().visibility > history[history.size() - 1 - kWindow].visibility + kAim;
+}
+
 bool isAtRest(const std::vector<IterationRecord>& history) {
   constexpr std::size_t kWindow = 5;
   constexpr double kMove = 1e-4;

@@ -33,6 +33,9 @@ struct Steering {
 /// at least its inverse.
 [[nodiscard]] Steering steer(const std::vector<IterationRecord>& history);
 
+/// True if the last steps still opened the region, by more than tightening areas may cost.
+[[nodiscard]] bool isGaining(const std::vector<IterationRecord>& history);
+
 /// True if the last steps changed neither what is seen nor lengths by anything that counts.
 [[nodiscard]] bool isAtRest(const std::vector<IterationRecord>& history);
 

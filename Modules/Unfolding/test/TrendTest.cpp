@@ -41,6 +41,22 @@ TEST(Steering, BringsSpringsToTheGoalInOneStep) {
   EXPECT_NEAR(1 - deficit / (next * next), kAimed, 1e-12);
 }
 
+TEST(Gaining, IsWhatAreasHaveToWaitFor) {
+  const auto climbing = [](double step) {
+    std::vector<IterationRecord> history = resting(0.9, kSpared);
+    for (std::size_t n = 0; n < history.size(); ++n) {
+      history[n].visibility += step * static_cast<double>(n);
+    }
+    return history;
+  };
+  EXPECT_TRUE(isGaining(climbing(0.0007))) << "0.0035 in five iterations";
+  EXPECT_FALSE(isGaining(climbing(0.0005))) << "0.0025 in five iterations";
+  EXPECT_FALSE(isGaining(climbing(-0.01)));
+  std::vector<IterationRecord> young = climbing(0.01);
+  young.resize(5);
+  EXPECT_FALSE(isGaining(young)) << "nothing to compare with";
+}
+
 TEST(Steering, IsBounded) {
   EXPECT_DOUBLE_EQ(steer(resting(0.9, kSpared)).factor, 1.15);
   EXPECT_DOUBLE_EQ(steer(resting(0.999, kSpared)).factor, 1 / 1.15);
