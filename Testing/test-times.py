@@ -31,13 +31,18 @@ class Test:
     seconds: float
 
 
+def plain(name):
+    """A test's name without the value of its parameter, which may hold addresses of one build."""
+    return name.split("  # GetParam")[0]
+
+
 def labels_of(build):
     """Each test's first label, as CTest tells them."""
     told = subprocess.run(["ctest", "--test-dir", build, "--show-only=json-v1"], check=True, capture_output=True)
     labels = {}
     for test in json.loads(told.stdout)["tests"]:
         given = [p["value"] for p in test.get("properties", []) if p["name"] == "LABELS"]
-        labels[test["name"]] = given[0][0] if given else "none"
+        labels[plain(test["name"])] = given[0][0] if given else "none"
     return labels
 
 
@@ -45,8 +50,8 @@ def read(build):
     """The tests of the run, its seconds by the clock and its day."""
     suite = xml.parse(build / "times.xml").getroot()
     labels = labels_of(build)
-    tests = [Test(case.get("name"), labels[case.get("name")], case.get("status"), float(case.get("time")))
-             for case in suite.iter("testcase")]
+    tests = [Test(name, labels[name], case.get("status"), float(case.get("time")))
+             for case in suite.iter("testcase") for name in [plain(case.get("name"))]]
     return tests, float(suite.get("time")), suite.get("timestamp")[:10]
 
 

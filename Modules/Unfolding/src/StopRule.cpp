@@ -13,8 +13,8 @@
 namespace explica::unfolding {
 namespace {
 
-constexpr double kLargestDrive = 8;   // lengths and contacts are outweighed up to here for a target
-constexpr double kLargestWeight = 4;  // ... and up to here where both are weighed
+constexpr double kLargestDrive = 8;   // lengths and contacts are outweighed up to here
+constexpr double kUsualDrive = 4;     // ... weighed against lengths as stiff as by default
 constexpr double kLeastDrive = 0.1;   // ... and the visibility term down to here
 constexpr double kOpen = 0.9;         // visibility from which on seeing and lengths are weighed
 constexpr double kBalanced = 0.0008;  // of visibility
@@ -32,6 +32,13 @@ void requireUsable(const UnfoldOptions& options) {
   if (options.maxIterations <= 0) throw InvalidInput("max-iterations: must be positive");
   if (options.maxTime && !(*options.maxTime > 0)) throw InvalidInput("max-time: must be positive");
   if (options.frames < 0) throw InvalidInput("frames: must not be negative");
+}
+
+/// Up to where lengths are outweighed: stiffer ones farther.
+double largestDrive(const UnfoldOptions& options) {
+  const double usual = kTerms[static_cast<std::size_t>(Term::Spring)].weight;
+  const double stiffer = std::max(1.0, options.unfolder.weights[Term::Spring] / usual);
+  return std::min(kUsualDrive * stiffer, kLargestDrive);
 }
 
 }  // namespace
@@ -67,7 +74,8 @@ Termination StopRule::weigh(Unfolder& unfolder, const std::vector<IterationRecor
   const IterationRecord& last = history.back();
   const auto [factor, nearGoal] = steer(history);
   const double drive = unfolder.state().drive;
-  const bool atLimit = factor > 1 ? drive >= kLargestWeight : drive <= kLeastDrive;
+  const double most = largestDrive(options_);
+  const bool atLimit = factor > 1 ? drive >= most : drive <= kLeastDrive;
   const bool balanced = std::abs(last.visibility - goalAt(last.edgeStrainMean)) < kBalanced;
   const bool atRest = isAtRest(history);
   const bool elastic = options_.unfolder.surround == Surround::Elastic;
@@ -79,7 +87,7 @@ Termination StopRule::weigh(Unfolder& unfolder, const std::vector<IterationRecor
   const bool appearing = ended && kept && isStillAppearing(unfolder);
   if (ended && kept && (longEnough || !appearing)) return Termination::Converged;
   if (static_cast<int>(history.size()) > options_.maxIterations) return Termination::MaxIterations;
-  unfolder.balance(std::clamp(drive * factor, kLeastDrive, kLargestWeight) / drive,
+  unfolder.balance(std::clamp(drive * factor, kLeastDrive, most) / drive,
                    !kept && (nearGoal || (atLimit && !isGaining(history)) || atRest));
   return Termination::NotRun;
 }
