@@ -38,9 +38,7 @@ struct HeadRegistration {
 
 /// Takes a transform that an earlier registration has found, and compares as `registerHead` does.
 /// Whether it is this image's, the agreement tells.
-/// @throws InvalidInput  as `registerHead`, and a transform that makes a head of the template's
-/// size
-///                       more than ten times as long or as short
+/// @throws InvalidInput  as `registerHead`, and a transform that stretches a head tenfold
 [[nodiscard]] HeadRegistration reuseRegistration(const Volume<float>& image, const Template& head,
                                                  bool stripped, HeadTransform transform,
                                                  const DeformationOptions& options = {});
