@@ -6,6 +6,7 @@ import json
 import math
 import os
 import pathlib
+import shutil
 import subprocess
 import tempfile
 import unittest
@@ -329,6 +330,22 @@ class Window(unittest.TestCase):
             )
             self.assertEqual(result.returncode, 4)
             self.assertIn("--screenshot", result.stderr)
+
+    def test_only_the_window_needs_qt_and_vtk(self):
+        needed = subprocess.run(["ldd", EXECUTABLE], capture_output=True, text=True, check=True).stdout
+        for library in ("libvtk", "libQt5", "libX11", "libGL"):
+            self.assertNotIn(library, needed)
+
+    def test_without_the_window_beside_it_the_program_says_so(self):
+        program = self.folder / "bin" / "explica"
+        program.parent.mkdir()
+        shutil.copy(EXECUTABLE, program)
+        result = subprocess.run(
+            [program, "view", "ball.off"], cwd=self.folder, capture_output=True, text=True
+        )
+        self.assertEqual(result.returncode, 4)
+        self.assertIn("explica-window.so: the window is not installed", result.stderr)
+        self.assertIn("--screenshot", result.stderr)
 
     @unittest.skipUnless(virtual_display.SERVER, "skipped: Xvfb is not installed")
     def test_unknown_event_is_named(self):

@@ -115,9 +115,9 @@ class Slurm(unittest.TestCase):
 
     def test_before_the_time_limit_what_is_reached_is_written(self):
         study = small_study.make(self.folder)
-        # Minutes of work, whatever the machine: large patches in small steps.
+        # Minutes of work, whatever the machine: goals out of reach.
         study.write_text(study.read_text().replace(
-            "max-iterations: 12", "max-iterations: 100000, largest-move: 0.001, target-visibility: 1"))
+            "max-iterations: 12", "max-iterations: 100000, area-tolerance: 0.000000001, target-visibility: 1"))
         # Slurm counts in minutes and may give the signal up to one of them early.
         array, table = self.submit(study, "--per-task", "4", "--cpus-per-task=2", "--time=1",
                                    "--signal=B:USR1@40")

@@ -11,12 +11,11 @@
 #include <QSurfaceFormat>
 #include <array>
 
-namespace explica::viewer {
-bool hasWindow() {
-  return true;
-}
+using namespace explica::viewer;
 
-void showWindow(Session& session, const WindowCalls& calls, const WindowOptions& options) {
+/// What `showWindow` loads and calls.
+extern "C" void explicaShowWindow(Session& session, const WindowCalls& calls,
+                                  const WindowOptions& options) {
   requireDisplay();
   QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());
   std::string program = "explica";
@@ -32,5 +31,3 @@ void showWindow(Session& session, const WindowCalls& calls, const WindowOptions&
   QApplication::processEvents();
   playScript(window, *options.script);
 }
-
-}  // namespace explica::viewer

@@ -125,9 +125,6 @@ struct WindowOptions {
   std::optional<std::string> script;  ///< file of events to play; the window then closes
 };
 
-/// True if this build has the window (it needs Qt and VTK's Qt widget).
-[[nodiscard]] bool hasWindow();
-
 /// Opens a window on a session and returns when it is closed.
 ///
 /// Left drag rotates, right drag zooms, middle drag pans.  Everything that can be done stands in
@@ -140,8 +137,11 @@ struct WindowOptions {
 /// FILE`, `lookFrom FILE` (a surface of viewpoints), `wait N` (until N states exist or nothing
 /// runs), `saved` (until saving is over), `picture FILE.png`.
 ///
+/// The window itself is `explica-window.so`, which is loaded here: nothing else needs Qt and VTK.
+///
 /// @throws InvalidInput      a line of the script that is none of these
-/// @throws EnvironmentError  no display, or none that answers; a build without the window
+/// @throws EnvironmentError  no display, or none that answers; no `explica-window.so` where the
+///                           program's installation or build puts it
 void showWindow(Session& session, const WindowCalls& calls, const WindowOptions& options = {});
 
 }  // namespace explica::viewer
