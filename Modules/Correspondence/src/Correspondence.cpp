@@ -229,24 +229,15 @@ class Sweep {
       turn_[r] = onCut(static_cast<std::int32_t>(r)) ? kNever : ownTurn_[r];
     });
     traceBesideWall();
+    followToPlanes();
   }
 
   /// Follows the trajectories of a block's voxels, each after those at the corners that it meets.
   /// Blocks may be followed beside each other and in any order.
   void followBlock(std::span<const std::int32_t> ranks) {
-    std::size_t v = 0;
-    while (v < ranks.size()) {
-      std::int32_t open[kBeside];
-      int count = 0;
-      for (; v < ranks.size() && count < kBeside; ++v) {
-        const std::int32_t r = inner_ ? ranks[v] : ranks[ranks.size() - 1 - v];
-        if (state_[r].load(std::memory_order_relaxed) == State::Open) open[count++] = r;
-      }
-      Tracer::ToPlane first[kBeside];
-      tracer_.toPlane(open, first, count, uphill_);
-      for (int w = 0; w < count; ++w) {
-        if (take(open[w])) settle(open[w], first[w]);
-      }
+    for (std::size_t v = 0; v < ranks.size(); ++v) {
+      const std::int32_t r = inner_ ? ranks[v] : ranks[ranks.size() - 1 - v];
+      if (take(r)) settle(r, arrivals_[r]);
     }
   }
 
@@ -276,10 +267,13 @@ class Sweep {
   /// True for one thread only: it is to settle the voxel.
   [[nodiscard]] bool take(std::int32_t r) {
     State open = State::Open;
+    if (state_[r].load(std::memory_order_relaxed) != open) return false;
     return state_[r].compare_exchange_strong(open, State::Taken, std::memory_order_relaxed);
   }
 
-  void settle(std::int32_t r, const Tracer::ToPlane& first) {
+  /// @param first  way to the first grid plane, which is no longer in `arrivals_` then
+  void settle(std::int32_t r, const Arrival first) {
+    arrivals_[r][3] = static_cast<float>(kNaN);
     const bool onward = traceToFace(r, first, ownTurn_[r]);
     state_[r].store(onward ? State::Followed : State::Interpolated, std::memory_order_release);
   }
@@ -291,11 +285,7 @@ class Sweep {
       return state_[r].load(std::memory_order_acquire) >= State::Interpolated;
     };
     if (isSettled()) return;
-    if (take(r)) {
-      Tracer::ToPlane first;
-      tracer_.toPlane(&r, &first, 1, uphill_);
-      settle(r, first);
-    }
+    if (take(r)) settle(r, arrivals_[r]);
     while (!isSettled()) std::this_thread::yield();
   }
 
@@ -327,6 +317,24 @@ class Sweep {
                              tracer_.followEach(target_, uphill_, next, ended);
                              return sum;
                            });
+  }
+
+  /// Puts the ways to the first grid planes where the arrivals of what is still open will be.
+  void followToPlanes() {
+    parallelForBlocks(arrivals_.size(), 1 << 12, [&](std::size_t begin, std::size_t end) {
+      while (begin < end) {
+        std::int32_t open[kBeside];
+        Arrival first[kBeside];
+        int count = 0;
+        for (; begin < end && count < kBeside; ++begin) {
+          if (state_[begin].load(std::memory_order_relaxed) != State::Open) continue;
+          open[count++] = static_cast<std::int32_t>(begin);
+        }
+        if (count == 0) break;
+        tracer_.toPlane(open, first, count, uphill_);
+        for (int w = 0; w < count; ++w) arrivals_[open[w]] = first[w];
+      }
+    });
   }
 
   [[nodiscard]] bool isBesideWall(std::size_t r) const {
@@ -403,24 +411,36 @@ class Sweep {
   }
 
   bool traceToFace(std::int32_t r, std::uint16_t turn) {
-    Tracer::ToPlane first;
+    Arrival first;
     tracer_.toPlane(&r, &first, 1, uphill_);
     return traceToFace(r, first, turn);
   }
 
   /// Follows the trajectory to the first grid face whose corners have earlier turns and agree
   /// within lambda, else to the boundary.
+  /// @param first  way to the first grid plane, if it is known
   /// @return  whether it went past a face whose corners disagree, or to the boundary
-  bool traceToFace(std::int32_t r, const Tracer::ToPlane& first, std::uint16_t turn) {
+  bool traceToFace(std::int32_t r, const Arrival& first, std::uint16_t turn) {
     const std::int32_t place = tracer_.placeOf[r];
     const auto s = subscripts(place);
     bool disagreed = false;
-    if (first.made &&
-        fromFaceBetween(r, s, turn, first.start, first.end, 0, first.length, disagreed)) {
-      return false;
+    Tracer::Walk walk;
+    walk.stuck = true;
+    if (!std::isnan(first[3])) {
+      int axis = 0;
+      while (std::abs(first[axis]) != 1) ++axis;
+      const Vector x = Vector(s[0], s[1], s[2]) + first.head<3>().matrix().cast<double>();
+      if (fromFace(r, s, turn, axis, static_cast<int>(x[axis]), x, first[3], disagreed)) {
+        return false;
+      }
+      walk = tracer_.begin(x, annulus_.numberAt[place], uphill_);
+      walk.length = first[3];
     }
-    auto walk = tracer_.begin(place, uphill_);
     bool done = uphill_ * (walk.u - target_) >= 0;
+    if (walk.stuck || done) {  // the plane is not reached, or lies beyond the boundary
+      walk = tracer_.begin(place, uphill_);
+      done = uphill_ * (walk.u - target_) >= 0;
+    }
     for (int k = 0; !done && !walk.stuck && k < kMaxSteps; ++k) {
       const Vector before = walk.x;
       const double lengthBefore = walk.length;

@@ -16,7 +16,6 @@ using harmonic::kOuter;
 
 namespace {
 
-constexpr double kBeyondPlane = 1e-3;  // so that the plane lies within the step, whatever it bends
 // Slope (change of u per voxel) below which a trajectory's direction is round-off.
 constexpr double kFlat = 1e-9;
 // A walk may not be longer than this many voxels per step taken on average: it circles.
@@ -48,6 +47,10 @@ double crossingOf(double f0, double g0, double f1, double g1) {
   return t;
 }
 
+Vector vectorOf(const Lanes& lanes, int lane) {
+  return {lanes[0][lane], lanes[1][lane], lanes[2][lane]};
+}
+
 }  // namespace
 
 TrajectoryTracer::Field::Field(const harmonic::Annulus& a, const harmonic::Interpolant& i,
@@ -70,6 +73,24 @@ TrajectoryTracer::Field::Field(const harmonic::Annulus& a, const harmonic::Inter
   if (std::find(cut.begin(), cut.end(), 1) != cut.end()) onCut = std::move(cut);
   rankTissue();
   prepareCells();
+  view_.cellAt = cellAt_.data();
+  view_.rankAt = rankAt.data();
+  view_.node = node.data()->data();
+  view_.cells = cells_.data()->corner.data()->data();
+  view_.size = annulus.size;
+  view_.inverseSpacing = {inverseSpacing[0], inverseSpacing[1], flat ? 0 : inverseSpacing[2]};
+  view_.leastSlope = kFlat / finest;
+  view_.planar = flat;
+  view_.field = this;
+  view_.odd = [](const void* field, const double* x, std::int32_t home) {
+    const Sample sample = static_cast<const Field*>(field)->sample(Vector(x[0], x[1], x[2]), home);
+    FieldView::Odd odd;
+    for (int c = 0; c < 3; ++c) odd.value[c] = static_cast<float>(sample.gradient[c]);
+    odd.u = sample.u;
+    odd.home = sample.home;
+    odd.divided = sample.divided;
+    return odd;
+  };
 }
 
 Vector TrajectoryTracer::Field::toBox(const Point& world) const {
@@ -259,12 +280,6 @@ inline Vector TrajectoryTracer::Field::velocityOf(const Sample& sample, int uphi
 
 TrajectoryTracer::Field::Sample TrajectoryTracer::Field::sample(const Vector& x,
                                                                 std::int32_t home) const {
-  return sampleOf<true>(x, home);
-}
-
-template <bool kWithU>
-inline TrajectoryTracer::Field::Sample TrajectoryTracer::Field::sampleOf(const Vector& x,
-                                                                         std::int32_t home) const {
   std::array<int, 3> base{};
   float f[3];
   for (int a = 0; a < 3; ++a) {
@@ -291,10 +306,10 @@ inline TrajectoryTracer::Field::Sample TrajectoryTracer::Field::sampleOf(const V
       corner[c] = &node[rankAt[p + offset(c)]];
       corner[c + 1] = corner[c] + 1;  // ranks follow each other along a row
     }
-    result.home = kWithU ? annulus.numberAt[p + offset(nearest)] : 0;
+    result.home = annulus.numberAt[p + offset(nearest)];
   } else if (cell >= 0) {
     for (int c = 0; c < 8; ++c) corner[c] = &cells_[cell].corner[flat ? c & 3 : c];
-    result.home = kWithU ? annulus.numberAt[p + offset(nearest)] : 0;
+    result.home = annulus.numberAt[p + offset(nearest)];
     for (int c = 0; result.home < 0; ++c) result.home = annulus.numberAt[p + offset(c)];
   } else {
     std::int32_t number[8];
@@ -340,14 +355,12 @@ inline TrajectoryTracer::Field::Sample TrajectoryTracer::Field::sampleOf(const V
   const Corner bendZ = face[1] - face[0];
   const Corner value = face[0] + f[2] * bendZ;
   result.gradient = value.head<3>().matrix().cast<double>();
-  if constexpr (kWithU) {
-    const float lowX = bendX[0][0] + f[1] * (bendX[1][0] - bendX[0][0]);
-    const float highX = bendX[2][0] + f[1] * (bendX[3][0] - bendX[2][0]);
-    const float bend = f[0] * (1 - f[0]) * (lowX + f[2] * (highX - lowX)) +
-                       f[1] * (1 - f[1]) * (bendY[0][1] + f[2] * (bendY[1][1] - bendY[0][1])) +
-                       f[2] * (1 - f[2]) * bendZ[2];
-    result.u = static_cast<double>(value[3]) - 0.5 * static_cast<double>(bend);
-  }
+  const float lowX = bendX[0][0] + f[1] * (bendX[1][0] - bendX[0][0]);
+  const float highX = bendX[2][0] + f[1] * (bendX[3][0] - bendX[2][0]);
+  const float bend = f[0] * (1 - f[0]) * (lowX + f[2] * (highX - lowX)) +
+                     f[1] * (1 - f[1]) * (bendY[0][1] + f[2] * (bendY[1][1] - bendY[0][1])) +
+                     f[2] * (1 - f[2]) * bendZ[2];
+  result.u = static_cast<double>(value[3]) - 0.5 * static_cast<double>(bend);
   return result;
 }
 
@@ -587,38 +600,27 @@ std::int32_t TrajectoryTracer::Field::cellAhead(std::int32_t rank, int uphill) c
   return cell;
 }
 
-void TrajectoryTracer::Field::toPlane(const std::int32_t* ranks, ToPlane* steps, int count,
+void TrajectoryTracer::Field::toPlane(const std::int32_t* ranks, Corner* steps, int count,
                                       int uphill) const {
   const std::int32_t row = annulus.size[0], rows = annulus.size[1];
-  Vector k1[kBeside], k2[kBeside];
-  for (int w = 0; w < count; ++w) {
-    const std::int32_t place = placeOf[ranks[w]];
-    ToPlane& step = steps[w];
-    step.start = Vector(place % row, place / row % rows, place / row / rows);
-    Sample one;
-    one.gradient = node[ranks[w]].head<3>().matrix().cast<double>();
-    k1[w] = velocityOf(one, uphill);
-    step.length = (1 + kBeyondPlane) / k1[w].cwiseAbs().maxCoeff();
-    step.made = step.length <= 2 * options.maxStep * finest &&
-                cellAt_[cellAhead(ranks[w], uphill)] > kDivided;
+  PlaneLanes lanes;
+  lanes.count = count;
+  lanes.uphill = uphill;
+  lanes.longest = 2 * options.maxStep * finest;
+  lanes.tolerance = options.tolerance;
+  for (int w = 0; w < kBeside; ++w) {
+    const std::int32_t rank = ranks[std::min(w, count - 1)];
+    const std::int32_t place = placeOf[rank], line = place / row, slice = line / rows;
+    lanes.start[0][w] = place - line * row;
+    lanes.start[1][w] = line - slice * rows;
+    lanes.start[2][w] = slice;
+    for (int c = 0; c < 4; ++c) lanes.node[w][c] = node[rank][c];
+    lanes.made[w] = cellAt_[cellAhead(rank, uphill)] > kDivided;
   }
+  stepToPlane(view_, lanes);
   for (int w = 0; w < count; ++w) {
-    ToPlane& step = steps[w];
-    if (!step.made) continue;
-    const Sample two = sampleOf<false>(step.start + 0.5 * step.length * k1[w], -1);
-    step.made = two.home >= 0 && !two.divided;
-    k2[w] = velocityOf(two, uphill);
-  }
-  for (int w = 0; w < count; ++w) {
-    ToPlane& step = steps[w];
-    if (!step.made) continue;
-    const double s = step.length;
-    const Sample three = sampleOf<false>(step.start + 0.75 * s * k2[w], -1);
-    const Vector k3 = velocityOf(three, uphill);
-    // The third-order step of advance(); its difference from the midpoint rule's bounds the error.
-    const Vector way = s * (2.0 / 9 * k1[w] + 1.0 / 3 * k2[w] + 4.0 / 9 * k3);
-    step.made = three.home >= 0 && !three.divided && (way - s * k2[w]).norm() <= options.tolerance;
-    step.end = step.start + way;
+    const Vector way = vectorOf(lanes.way, w);
+    steps[w] << way.cast<float>(), static_cast<float>(lanes.made[w] ? lanes.length[w] : kNaN);
   }
 }
 
@@ -697,92 +699,93 @@ void TrajectoryTracer::Field::limitStep(Walk& walk, double target, int uphill) c
   walk.step = std::min({walk.step, longest, kPastTarget * rest + kBeyondTarget * finest});
 }
 
-void TrajectoryTracer::Field::attempt(const Walk* walks, Attempt* tries, int count,
+void TrajectoryTracer::Field::attempt(const Walk* walks, StepLanes& tries, int count,
                                       int uphill) const {
+  tries.count = count;
+  tries.uphill = uphill;
   for (int w = 0; w < count; ++w) {
-    const Walk& walk = walks[w];
-    const Sample two = sampleOf<false>(walk.x + 0.5 * walk.step * walk.velocity, walk.home);
-    tries[w].k2 = velocityOf(two, uphill);
-    tries[w].lost = two.home < 0;
+    for (int a = 0; a < 3; ++a) {
+      tries.x[a][w] = walks[w].x[a];
+      tries.velocity[a][w] = walks[w].velocity[a];
+    }
+    tries.step[w] = walks[w].step;
+    tries.home[w] = walks[w].home;
   }
-  for (int w = 0; w < count; ++w) {
-    const Walk& walk = walks[w];
-    const Sample three = sampleOf<false>(walk.x + 0.75 * walk.step * tries[w].k2, walk.home);
-    tries[w].k3 = velocityOf(three, uphill);
-    tries[w].lost = tries[w].lost || three.home < 0;
-  }
-  for (int w = 0; w < count; ++w) {
-    const Walk& walk = walks[w];
-    Attempt& made = tries[w];
-    const double s = walk.step;
-    made.end = walk.x + s * (2.0 / 9 * walk.velocity + 1.0 / 3 * made.k2 + 4.0 / 9 * made.k3);
-    made.there = sample(made.end, walk.home);
-    made.k4 = velocityOf(made.there, uphill, &made.slope);
-    made.lost = made.lost || made.there.home < 0 || made.k4.isZero(0);
-    made.error =
-        s * (-5.0 / 72 * walk.velocity + 1.0 / 12 * made.k2 + 1.0 / 9 * made.k3 - 1.0 / 8 * made.k4)
-                .norm();
-  }
+  tryStep(view_, tries);
 }
 
-TrajectoryTracer::Field::Outcome TrajectoryTracer::Field::conclude(Walk& walk, const Attempt& made,
+std::int32_t TrajectoryTracer::Field::homeAtEnd(const StepLanes& tries, int lane) const {
+  if (tries.endHome[lane] >= 0) return tries.endHome[lane];
+  const auto strides = annulus.strides();
+  const auto at = [&](int c) {
+    return annulus
+        .numberAt[tries.cell[lane] + (c & 1) + (c >> 1 & 1) * strides[1] + (c >> 2) * strides[2]];
+  };
+  std::int32_t home = at(tries.nearest[lane]);
+  for (int c = 0; home < 0 && c < 8; ++c) home = at(c);
+  return home;
+}
+
+TrajectoryTracer::Field::Outcome TrajectoryTracer::Field::conclude(Walk& walk,
+                                                                   const StepLanes& tries, int lane,
                                                                    double target,
                                                                    int uphill) const {
-  const double s = walk.step;
+  const double s = walk.step, error = tries.error[lane], u = tries.u[lane];
+  const bool lost = tries.lost[lane] || !(tries.slope[lane] > view_.leastSlope);
   const auto straight = [&] {
     return goStraight(walk, target, uphill) ? Outcome::Arrived : Outcome::Advanced;
   };
-  if (made.lost || made.error > options.tolerance) {
+  if (lost || error > options.tolerance) {
     // At the end of the cells that know the tissue: the boundary is there, or as near as the
     // extension beyond it is good.
     if (s < kTinyStep * finest) return straight();
-    walk.step =
-        made.lost ? 0.25 * s : s * std::max(0.2, 0.9 * std::cbrt(options.tolerance / made.error));
+    walk.step = lost ? 0.25 * s : s * std::max(0.2, 0.9 * std::cbrt(options.tolerance / error));
     return Outcome::Again;
   }
-  if (uphill * (made.there.u - target) >= 0) {
-    arrive(walk, made, target, uphill);
+  if (uphill * (u - target) >= 0) {
+    arrive(walk, tries, lane, target, uphill);
     return Outcome::Arrived;
   }
   // Where the tissue is thinner than the grid resolves, the extension beyond the boundary may
   // bend a trajectory along it.  Then u does not gain what its slope promises: if the boundary
   // is near, go straight to it.
-  if (uphill * (made.there.u - walk.u) < kPoorGain * walk.slope * s) {
+  if (uphill * (u - walk.u) < kPoorGain * walk.slope * s) {
     if (goStraight(walk, target, uphill)) return Outcome::Arrived;
     walk.stuck = ++walk.strikes > kStrikes;
     if (walk.stuck) return Outcome::Advanced;
   }
-  walk.x = made.end;
-  walk.velocity = made.k4;
-  walk.home = made.there.home;
-  walk.divided = made.there.divided;
-  walk.u = made.there.u;
-  walk.slope = made.slope;
+  walk.x = vectorOf(tries.end, lane);
+  walk.velocity = vectorOf(tries.k4, lane);
+  walk.home = homeAtEnd(tries, lane);
+  walk.divided = tries.divided[lane];
+  walk.u = u;
+  walk.slope = tries.slope[lane];
   walk.length += s;
-  walk.step = stepAfter(s, made.error);
+  walk.step = stepAfter(s, error);
   return Outcome::Advanced;
 }
 
-void TrajectoryTracer::Field::arrive(Walk& walk, const Attempt& made, double target,
+void TrajectoryTracer::Field::arrive(Walk& walk, const StepLanes& tries, int lane, double target,
                                      int uphill) const {
   constexpr int kMostTries = 12;
   const double s = walk.step;
+  const Vector end = vectorOf(tries.end, lane), k4 = vectorOf(tries.k4, lane);
   // On the step's cubic.
   const auto at = [&](double t) {
     const double t2 = t * t, t3 = t2 * t;
     return Vector((2 * t3 - 3 * t2 + 1) * walk.x + (t3 - 2 * t2 + t) * s * walk.velocity +
-                  (-2 * t3 + 3 * t2) * made.end + (t3 - t2) * s * made.k4);
+                  (-2 * t3 + 3 * t2) * end + (t3 - t2) * s * k4);
   };
   const auto along = [&](double t) {  // its derivative
-    return Vector(6 * (t * t - t) * (walk.x - made.end) +
-                  (3 * t * t - 4 * t + 1) * s * walk.velocity + (3 * t * t - 2 * t) * s * made.k4);
+    return Vector(6 * (t * t - t) * (walk.x - end) + (3 * t * t - 4 * t + 1) * s * walk.velocity +
+                  (3 * t * t - 2 * t) * s * k4);
   };
   double low = 0, high = 1, t = 0;
-  const double fLow = uphill * (walk.u - target), fHigh = uphill * (made.there.u - target);
+  const double fLow = uphill * (walk.u - target), fHigh = uphill * (tries.u[lane] - target);
   if (fLow < 0) {
     // From where the cubic through both ends' u and slopes crosses, by Newton steps that stay
     // between places before and behind the target.
-    t = crossingOf(fLow, s * walk.slope, fHigh, s * made.slope);
+    t = crossingOf(fLow, s * walk.slope, fHigh, s * tries.slope[lane]);
     for (int k = 0; k < kMostTries; ++k) {
       const Sample here = sample(at(t), walk.home);
       const double value = uphill * (here.u - target);
@@ -795,16 +798,15 @@ void TrajectoryTracer::Field::arrive(Walk& walk, const Attempt& made, double tar
   walk.x = at(t);
   walk.u = target;
   walk.length += t * s;
-  walk.home = made.there.home;
 }
 
 bool TrajectoryTracer::Field::advance(Walk& walk, double target, int uphill) const {
   limitStep(walk, target, uphill);
-  Attempt made;
+  StepLanes tries;
   Outcome outcome = Outcome::Again;
   while (outcome == Outcome::Again) {
-    attempt(&walk, &made, 1, uphill);
-    outcome = conclude(walk, made, target, uphill);
+    attempt(&walk, tries, 1, uphill);
+    outcome = conclude(walk, tries, 0, target, uphill);
   }
   return outcome == Outcome::Arrived || (walk.stuck && hop(walk, target, uphill));
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "Explica/Correspondence/Trajectory.h"
+#include "WalkKernels.h"
 
 #include <array>
 #include <cstdint>
@@ -12,11 +13,12 @@ namespace explica::correspondence {
 
 inline constexpr int kMaxSteps = 4000;  ///< of a trajectory, before it counts as lost
 
-inline constexpr int kBeside = 4;  ///< trajectories that are followed in turns
-
 /// u and its gradient between voxel centres.  Positions are continuous indices of the annulus' box;
 /// gradients are per voxel (index space), so that du = G . dx.
 struct TrajectoryTracer::Field {
+  /// Gradient per voxel and u.
+  using Corner = Eigen::Array4f;
+
   struct Sample {
     double u = kNaN;
     Vector gradient = Vector::Zero();
@@ -51,24 +53,18 @@ struct TrajectoryTracer::Field {
   /// One accepted step towards the target; true when it was reached (the walk then ends on it).
   bool advance(Walk& walk, double target, int uphill) const;
 
-  /// A step from a tissue voxel's centre to just beyond the first grid plane.
-  struct ToPlane {
-    Vector start, end;
-    double length = 0;  ///< mm
-    bool made = false;  ///< false if it leaves the tissue, or more than one side or a greater error
-                        ///< than the tolerance is in the way
-  };
-  /// Such steps, of third order, from the centres of at most kBeside voxels, in turns like
-  /// followEach.
-  void toPlane(const std::int32_t* ranks, ToPlane* steps, int count, int uphill) const;
+  /// From the centres of at most kBeside tissue voxels to the first grid plane, by a step of third
+  /// order: the way in voxels, 1 or -1 along the plane's axis, and its length in mm; NaN if it
+  /// leaves the tissue, or more than one side or a greater error than the tolerance is in the way.
+  void toPlane(const std::int32_t* ranks, Corner* steps, int count, int uphill) const;
 
   /// Cell that the trajectory through a tissue voxel's centre enters: its lowest corner in the box.
   [[nodiscard]] std::int32_t cellAhead(std::int32_t rank, int uphill) const;
 
   [[nodiscard]] Trace run(Walk walk, double target, int uphill) const;
 
-  /// Follows the trajectories through the centres of tissue voxels to the target, a few in turns,
-  /// so that one is worked on while another waits for what it reads; each goes as it would alone.
+  /// Follows the trajectories through the centres of tissue voxels to the target, a few beside each
+  /// other; each goes as it would alone.
   /// @param next   next() gives the rank of a voxel, or -1 after the last one
   /// @param ended  ended(rank, walk, done) takes each, in no particular order
   template <class Next, class Ended>
@@ -88,8 +84,6 @@ struct TrajectoryTracer::Field {
   bool flat = false;                ///< two-dimensional
   std::vector<std::uint8_t> onCut;  ///< per tissue voxel: a link to tissue is cut; empty if none is
 
-  /// Gradient per voxel and u.
-  using Corner = Eigen::Array4f;
   // Neighbours in space are neighbours in memory when tissue is ranked in the box's storage order.
   std::vector<std::int32_t> rankAt;   ///< per box voxel; -1: no tissue
   std::vector<std::int32_t> placeOf;  ///< per rank, the box voxel
@@ -105,33 +99,23 @@ struct TrajectoryTracer::Field {
     std::uint8_t corners = 0;  ///< its own, a bit each
     Cell cell;
   };
-  /// kDivided - n: the cell whose sides start at firstSide_[n].
-  enum : std::int32_t { kWhole = -1, kEmpty = -2, kDivided = -3 };
 
-  template <bool kWithU>
-  [[nodiscard]] Sample sampleOf(const Vector& x, std::int32_t home) const;
   void rankTissue();
   void prepareCells();
   /// Corners from the side of `seed`; a bit per corner that belongs to it.
   std::uint8_t extend(const std::int32_t* number, int seed, Corner* corner) const;
   void prepareSides();
-  /// A step that is tried: the pair's later stages and where it ends.
-  struct Attempt {
-    Vector k2, k3, k4, end;
-    Sample there;       ///< at the end
-    double slope = 0;   ///< |grad u| there, 1/mm
-    double error = 0;   ///< voxels
-    bool lost = false;  ///< it leaves the tissue, or u is flat where it ends
-  };
   enum class Outcome { Again, Advanced, Arrived };
   /// Makes walk.step no longer than it may be where the walk is.
   void limitStep(Walk& walk, double target, int uphill) const;
-  /// The next step of each walk, stage by stage beside each other.
-  void attempt(const Walk* walks, Attempt* tries, int count, int uphill) const;
-  /// Takes a step that was tried, or makes it shorter to be tried again.
-  Outcome conclude(Walk& walk, const Attempt& made, double target, int uphill) const;
+  /// Tries the next step of each walk.
+  void attempt(const Walk* walks, StepLanes& tries, int count, int uphill) const;
+  /// Takes a step that was tried in a lane, or makes it shorter to be tried again.
+  Outcome conclude(Walk& walk, const StepLanes& tries, int lane, double target, int uphill) const;
   /// Ends a walk at the target, which a step that was tried has passed.
-  void arrive(Walk& walk, const Attempt& made, double target, int uphill) const;
+  void arrive(Walk& walk, const StepLanes& tries, int lane, double target, int uphill) const;
+  /// Tissue voxel of the cell where a step ends: the nearest one if it is the side's.
+  [[nodiscard]] std::int32_t homeAtEnd(const StepLanes& tries, int lane) const;
   /// Takes a walk that is stuck straight to the boundary beside its voxel or to the neighbour
   /// towards which u gains most: a harmonic function has such a one everywhere, so that the walk
   /// gets on where the field between voxels leads nowhere, as it may at the edges of sheets.
@@ -148,13 +132,14 @@ struct TrajectoryTracer::Field {
   std::vector<Cell> cells_;
   std::vector<Side> sides_;
   std::vector<std::int32_t> firstSide_;  ///< of each divided cell, and the end
+  FieldView view_;
 };
 
 template <class Next, class Ended>
 void TrajectoryTracer::Field::followEach(double target, int uphill, const Next& next,
                                          const Ended& ended) const {
   std::array<Walk, kBeside> walks;
-  std::array<Attempt, kBeside> tries;
+  StepLanes tries;
   std::array<std::int32_t, kBeside> rank{}, steps{};
   int count = 0;
   const auto beginNext = [&](int w) {
@@ -172,9 +157,9 @@ void TrajectoryTracer::Field::followEach(double target, int uphill, const Next& 
   };
   while (count < kBeside && beginNext(count)) ++count;
   while (count > 0) {
-    attempt(walks.data(), tries.data(), count, uphill);
+    attempt(walks.data(), tries, count, uphill);
     for (int w = count - 1; w >= 0; --w) {
-      const Outcome outcome = conclude(walks[w], tries[w], target, uphill);
+      const Outcome outcome = conclude(walks[w], tries, w, target, uphill);
       if (outcome == Outcome::Again) continue;
       const bool done =
           outcome == Outcome::Arrived || (walks[w].stuck && hop(walks[w], target, uphill));

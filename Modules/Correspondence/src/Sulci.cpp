@@ -49,6 +49,13 @@ double distanceOf(Reach reach) {
 std::int32_t footOf(Reach reach) {
   return static_cast<std::int32_t>(reach & 0xffffffffU);
 }
+/// A settled voxel's reach has the distance zero, so that nothing is nearer.
+Reach settled(Reach reach) {
+  return reach & 0xffffffffU;
+}
+bool isSettled(Reach reach) {
+  return reach >> 32 == 0;
+}
 
 /// Foot of the perpendicular on the boundary's plane through its crossings of the axes, relative to
 /// the voxel's centre: 1/d^2 = sum 1/d_a^2.  Zero if the voxel is not beside the inner boundary.
@@ -63,6 +70,21 @@ Vector footBeside(const Annulus& annulus, std::int32_t n) {
   }
   const double squared = inverse.squaredNorm();
   return squared > 0 ? Vector(inverse / squared) : inverse;
+}
+
+/// Has what a front's next voxels read brought from memory: they lie all over the tissue.
+void askFor(const Annulus& annulus, const std::vector<Reach>& reach,
+            const std::vector<std::int32_t>& front, std::size_t k) {
+  constexpr std::size_t kLinksAhead = 16, kReachAhead = 8;
+  if (k + kLinksAhead < front.size()) {
+    __builtin_prefetch(annulus.links[front[k + kLinksAhead]].data());
+    __builtin_prefetch(&annulus.place[front[k + kLinksAhead]]);
+  }
+  if (k + kReachAhead < front.size()) {
+    for (const std::int32_t m : annulus.links[front[k + kReachAhead]]) {
+      if (m >= 0) __builtin_prefetch(&reach[m]);
+    }
+  }
 }
 
 Fronts frontsFromInside(const Annulus& annulus) {
@@ -87,14 +109,15 @@ Fronts frontsFromInside(const Annulus& annulus) {
     fronts.feet.emplace_back(centre(annulus.boxSubscripts(n)) + foot);
     wait(n);
   }
-  std::vector<std::uint8_t> done(annulus.count(), 0);
   std::vector<std::int32_t> front;
   std::vector<std::vector<std::int32_t>> nearer;
   while (shell < waiting.size()) {
     // Voxels of a shell are settled together; those that they bring into it are the next front.
     front.clear();
     for (const std::int32_t n : waiting[shell]) {
-      if (std::exchange(done[n], 1) == 0) front.push_back(n);
+      if (isSettled(reach[n])) continue;
+      reach[n] = settled(reach[n]);
+      front.push_back(n);
     }
     waiting[shell].clear();
     if (front.empty()) {
@@ -107,17 +130,21 @@ Fronts frontsFromInside(const Annulus& annulus) {
     parallelForBlocks(front.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       std::vector<std::int32_t>& own = nearer[begin / kGrain];
       for (std::size_t k = begin; k < end; ++k) {
+        askFor(annulus, reach, front, k);
         const std::int32_t n = front[k];
         const auto at = annulus.boxSubscripts(n);
         const std::int32_t foot = footOf(reach[n]);
+        const Vector here = centre(at), from = fronts.feet[foot];
         for (int d = 0; d < 6; ++d) {
           const std::int32_t m = annulus.links[n][d];
-          if (m < 0 || done[m]) continue;
-          auto there = at;
-          there[harmonic::axisOf(d)] += harmonic::signOf(d);
-          const Reach offered = reachOf((centre(there) - fronts.feet[foot]).norm(), foot);
+          if (m < 0) continue;
           const std::atomic_ref<Reach> held(reach[m]);
           Reach known = held.load(std::memory_order_relaxed);
+          if (isSettled(known)) continue;
+          const int a = harmonic::axisOf(d);
+          Vector there = here;
+          there[a] = (at[a] + harmonic::signOf(d)) * h[a];
+          const Reach offered = reachOf((there - from).norm(), foot);
           while (offered < known &&
                  !held.compare_exchange_weak(known, offered, std::memory_order_relaxed)) {
           }

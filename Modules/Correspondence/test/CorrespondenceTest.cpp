@@ -12,8 +12,11 @@
 #include <Eigen/Geometry>
 
 #include <gtest/gtest.h>
+#include <hwy/targets.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 
 using namespace explica;
 using namespace explica::correspondence;
@@ -22,6 +25,10 @@ using harmonic::ExactAnnulus;
 using harmonic::Interpolant;
 
 namespace {
+
+bool sameBytes(const Eigen::Vector3f& one, const Eigen::Vector3f& other) {
+  return std::memcmp(one.data(), other.data(), sizeof(float) * 3) == 0;
+}
 
 struct Solved {
   ExactAnnulus exact;
@@ -367,6 +374,33 @@ Volume<Label> banksThatTouch() {
     }
   }
   return labels;
+}
+
+TEST(Correspondence, DoesNotDependOnTheInstructionSet) {
+  const Annulus cortex =
+      recoverSulci(harmonic::annulusFromLabels(banksThatTouch(), {{1}, {2}, {}, {}})).annulus;
+  const Solved shells = eccentric();
+  const auto foundWith = [](std::int64_t targets, const Annulus& annulus, Method method) {
+    hwy::SetSupportedTargetsForTest(targets);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    auto found =
+        findCorrespondences(annulus, harmonic::solveInterpolant(annulus), with(method, {}));
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    return found;
+  };
+  for (const Method method : {Method::Lagrangian, Method::Hybrid}) {
+    for (const Annulus* annulus : {&cortex, &shells.annulus}) {
+      const auto best = foundWith(0, *annulus, method);
+      std::int64_t left = hwy::SupportedTargets();
+      for (; left != 0; left &= left - 1) {
+        const auto one = foundWith(left & -left, *annulus, method);
+        EXPECT_TRUE(std::ranges::equal(best.innerPoint, one.innerPoint, sameBytes));
+        EXPECT_TRUE(std::ranges::equal(best.outerPoint, one.outerPoint, sameBytes));
+        EXPECT_EQ(best.traced, one.traced);
+      }
+    }
+  }
 }
 
 TEST(Correspondence, EachTrajectoryGoesAsItWouldAlone) {

@@ -353,9 +353,12 @@ void checkGrid(const Grid& grid) {
   }
 }
 
-/// A volume made of the box's voxels: `valueAt(box place, voxel of the grid)`, `outside` beyond it.
-template <class T, class ValueAt>
-VolumeOnDemand<T> onGrid(const Annulus& annulus, T outside, const ValueAt& valueAt) {
+/// A volume made of the box's voxels, `outside` beyond it: `inTissue(j, k)` gives for a row of the
+/// grid the function of a tissue voxel's number and i, `offTissue(code)` the value elsewhere.
+template <class T, class InTissue, class OffTissue>
+VolumeOnDemand<T> onGrid(const Annulus& annulus, T outside, const InTissue& inTissue,
+                         const OffTissue& offTissue) {
+  constexpr int kTogether = 16;  // voxels of a row
   VolumeOnDemand<T> values;
   values.grid = annulus.grid;
   values.elsewhere = outside;
@@ -376,12 +379,27 @@ VolumeOnDemand<T> onGrid(const Annulus& annulus, T outside, const ValueAt& value
       if (at[1] >= first[1] && at[1] < last[1] && at[2] >= first[2] && at[2] < last[2]) {
         const int rowBegin = at[0];
         at[0] = std::max(rowBegin, first[0]);
-        std::size_t p =
+        const std::size_t p =
             at[0] - first[0] +
             static_cast<std::size_t>(annulus.size[0]) *
                 (at[1] - first[1] + static_cast<std::size_t>(annulus.size[1]) * (at[2] - first[2]));
-        for (; at[0] < std::min(rowEnd, last[0]); ++at[0], ++p) {
-          to[at[0] - rowBegin] = valueAt(p, at);
+        const std::int32_t* number = annulus.numberAt.data() + p;
+        const auto value = inTissue(at[1], at[2]);
+        const int rowLast = std::min(rowEnd, last[0]);
+        for (int i = at[0]; i < rowLast;) {
+          const int together = std::min(kTogether, rowLast - i);
+          std::int32_t all = -1;  // negative while every number is
+          for (int t = 0; t < together; ++t) all &= number[t];
+          T* here = to + (i - rowBegin);
+          if (all < 0) {
+            for (int t = 0; t < together; ++t) here[t] = offTissue(number[t]);
+          } else {
+            for (int t = 0; t < together; ++t) {
+              here[t] = number[t] < 0 ? offTissue(number[t]) : value(number[t], i + t);
+            }
+          }
+          i += together;
+          number += together;
         }
       }
       voxel += length;
@@ -448,17 +466,27 @@ class RoleTable {
   std::vector<std::pair<Label, Code>> table_;
 };
 
+/// Where the run of equal labels that begins at `from` ends.
+std::size_t runEnd(const Label* labels, std::size_t from, std::size_t end) {
+  constexpr std::size_t kAtOnce = 16;
+  const Label value = labels[from];
+  for (; from + kAtOnce <= end; from += kAtOnce) {
+    Label change = 0;
+    for (std::size_t k = 0; k < kAtOnce; ++k) change |= labels[from + k] ^ value;
+    if (change != 0) break;
+  }
+  while (from < end && labels[from] == value) ++from;
+  return from;
+}
+
 std::set<Label> labelsIn(const Volume<Label>& labels) {
   const Grid& grid = labels.grid;
   const std::size_t sliceSize = static_cast<std::size_t>(grid.size[0]) * grid.size[1];
   std::vector<std::set<Label>> bySlice(grid.size[2]);
   parallelFor(grid.size[2], 1, [&](std::size_t k) {
-    Label last = labels[k * sliceSize];
-    bySlice[k].insert(last);
-    for (std::size_t v = k * sliceSize; v < (k + 1) * sliceSize; ++v) {
-      if (labels[v] == last) continue;
-      last = labels[v];
-      bySlice[k].insert(last);
+    const std::size_t end = (k + 1) * sliceSize;
+    for (std::size_t v = k * sliceSize; v < end; v = runEnd(labels.data.data(), v, end)) {
+      bySlice[k].insert(labels[v]);
     }
   });
   std::set<Label> present;
@@ -470,17 +498,13 @@ Box boxAroundTissue(const Volume<Label>& labels, const RoleTable& roles) {
   const Grid& grid = labels.grid;
   return boxAround(grid, kLabelMargin, [&](std::size_t row, int& low, int& high) {
     const Label* line = labels.data.data() + row * grid.size[0];
-    Label last = line[0];
-    bool tissue = roles.roleOf(last) == kTissueCode;
+    const std::size_t length = grid.size[0];
     low = grid.size[0];
-    for (int i = 0; i < grid.size[0]; ++i) {
-      if (line[i] != last) {
-        last = line[i];
-        tissue = roles.roleOf(last) == kTissueCode;
-      }
-      if (!tissue) continue;
-      low = std::min(low, i);
-      high = i;
+    for (std::size_t i = 0, end = 0; i < length; i = end) {
+      end = runEnd(line, i, length);
+      if (roles.roleOf(line[i]) != kTissueCode) continue;
+      low = std::min(low, static_cast<int>(i));
+      high = static_cast<int>(end) - 1;
     }
   });
 }
@@ -494,17 +518,13 @@ std::vector<Code> sitesIn(const Box& box, const Volume<Label>& labels, const Rol
     for (int j = 0; j < box.size[1]; ++j) {
       const int gj = j + box.first[1], gk = k + box.first[2];
       if (gj < 0 || gk < 0 || gj >= grid.size[1] || gk >= grid.size[2]) continue;
-      Label last = 0;
-      Code code = roles.roleOf(last);
-      for (int i = 0; i < box.size[0]; ++i) {
-        const int gi = i + box.first[0];
-        if (gi < 0 || gi >= grid.size[0]) continue;
-        const Label value = labels(gi, gj, gk);
-        if (value != last) {
-          last = value;
-          code = roles.roleOf(value);
-        }
-        sites[box.linear(i, j, k)] = code;
+      const Label* line = labels.data.data() + grid.linear(0, gj, gk);
+      Code* to = sites.data() + box.linear(0, j, k);
+      const std::size_t first = std::max(box.first[0], 0);
+      const std::size_t length = std::min(box.first[0] + box.size[0], grid.size[0]);
+      for (std::size_t i = first, end = 0; i < length; i = end) {
+        end = runEnd(line, i, length);
+        std::fill(to + i - box.first[0], to + end - box.first[0], roles.roleOf(line[i]));
       }
     }
   });
@@ -746,21 +766,22 @@ VolumeOnDemand<float> spread(const Annulus& annulus, std::vector<double> values,
                              std::optional<float> innerValue, std::optional<float> outerValue) {
   const auto kept = std::make_shared<const std::vector<double>>(std::move(values));
   const float inner = innerValue.value_or(elsewhere), outer = outerValue.value_or(elsewhere);
-  return onGrid(annulus, outer, [=, &annulus](std::size_t p, const std::array<int, 3>&) {
-    const std::int32_t n = annulus.numberAt[p];
-    if (n == kInner) return inner;
-    if (n == kOuter) return outer;
-    const double value = n < 0 ? kNaN : (*kept)[n];
-    return std::isnan(value) ? elsewhere : static_cast<float>(value);
+  const auto inTissue = [=](int, int) {
+    return [=, of = kept->data()](std::int32_t n, int) {
+      return std::isnan(of[n]) ? elsewhere : static_cast<float>(of[n]);
+    };
+  };
+  return onGrid(annulus, outer, inTissue, [=](std::int32_t code) {
+    return code == kInner ? inner : code == kOuter ? outer : elsewhere;
   });
 }
 
 VolumeOnDemand<Label> spreadLabels(const Annulus& annulus, std::vector<int> values) {
   const auto kept = std::make_shared<const std::vector<int>>(std::move(values));
-  return onGrid(annulus, Label{0}, [=, &annulus](std::size_t p, const std::array<int, 3>&) {
-    const std::int32_t n = annulus.numberAt[p];
-    return n < 0 ? Label{0} : static_cast<Label>((*kept)[n]);
-  });
+  const auto inTissue = [=](int, int) {
+    return [of = kept->data()](std::int32_t n, int) { return static_cast<Label>(of[n]); };
+  };
+  return onGrid(annulus, Label{0}, inTissue, [](std::int32_t) { return Label{0}; });
 }
 
 VectorsOnDemand spreadPoints(const Annulus& annulus, std::vector<Eigen::Vector3f> offsets) {
@@ -770,13 +791,15 @@ VectorsOnDemand spreadPoints(const Annulus& annulus, std::vector<Eigen::Vector3f
     const double origin = annulus.grid.origin[c];
     const Vector step =
         annulus.grid.direction.row(c).transpose().cwiseProduct(annulus.grid.spacing);
-    components[c] =
-        onGrid(annulus, 0.0F, [=, &annulus](std::size_t p, const std::array<int, 3>& at) {
-          const std::int32_t n = annulus.numberAt[p];
-          if (n < 0 || !(*kept)[n].allFinite()) return 0.0F;
-          const double centre = origin + step[0] * at[0] + step[1] * at[1] + step[2] * at[2];
-          return static_cast<float>(centre + static_cast<double>((*kept)[n][c]));
-        });
+    const auto inTissue = [=](int j, int k) {
+      const double row = origin + step[1] * j + step[2] * k;
+      return [=, of = kept->data(), along = step[0]](std::int32_t n, int i) {
+        const Eigen::Vector3f& offset = of[n];
+        if (!std::isfinite(offset[0] + offset[1] + offset[2])) return 0.0F;
+        return static_cast<float>(row + along * i + static_cast<double>(offset[c]));
+      };
+    };
+    components[c] = onGrid(annulus, 0.0F, inTissue, [](std::int32_t) { return 0.0F; });
   }
   return components;
 }

@@ -9,11 +9,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace explica::harmonic {
 
 namespace {
 
+constexpr std::int32_t kFewInRow = 64;  // links: counting those before is faster than halving
 constexpr std::size_t kBoundaryGrain = 1 << 12;  // elements a task
 // Nearest that the surface may come to a voxel's centre, in voxels.
 constexpr float kNearest = 0.01F;
@@ -24,9 +26,18 @@ constexpr int kRoughnessSmoothings = 8;  // averages it over about three voxels
 // Crossings of neighbouring links may coincide; their distance is not taken for less than this.
 constexpr float kShortest = 0.5F;
 // Normals of the staircase are those of its steps until averaged over a few neighbours; they are
-// taken again once the steps are nearly gone.  A wave number q needs about 8 / q^2 iterations.
-constexpr int kFirstSmoothings = 3, kFirstIterations = 20;
-constexpr int kSecondSmoothings = 1, kSecondIterations = 60, kLastIterations = 30;
+// taken again once the steps are nearly gone.  A wave number q needs about 4 / q^2 iterations.
+constexpr int kFirstSmoothings = 3, kFirstIterations = 10;
+constexpr int kSecondSmoothings = 1, kSecondIterations = 28, kLastIterations = 12;
+// Iterations times the root of the least eigenvalue that is damped fully, to 1 / cosh(2 kDamped).
+constexpr double kDamped = 1.35;
+
+using LinkPlace = std::array<std::int32_t, 4>;  // subscripts of the lower end, axis
+using Quad = std::array<float, 4>;
+
+float squareOf(const Quad& v) {
+  return v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+}
 
 }  // namespace
 
@@ -48,30 +59,32 @@ LabelBoundary::LabelBoundary(const std::vector<std::uint8_t>& side, const std::a
   relax(Energy::Variation, kLastIterations);
 }
 
-double LabelBoundary::place(std::int32_t p, int axis) const {
-  const std::int32_t link = find(p, axis);
-  return link < 0 ? 0.5 : theta_[link];
-}
-
-Eigen::Vector3f LabelBoundary::normal(std::int32_t p, int axis) const {
-  const std::int32_t link = find(p, axis);
-  if (link < 0) return Eigen::Vector3f::Zero();
-  return Eigen::Map<const Eigen::Vector3f>(normal_[link].data());
-}
-
-std::int32_t LabelBoundary::find(std::int32_t p, int axis) const {
-  const std::int32_t row = p / size_[0];
-  const auto begin = low_.begin() + rowStart_[row], end = low_.begin() + rowStart_[row + 1];
-  for (auto at = std::lower_bound(begin, end, p); at != end && *at == p; ++at) {
-    if (axis_[at - low_.begin()] == axis) return static_cast<std::int32_t>(at - low_.begin());
+inline std::int32_t LabelBoundary::find(std::int32_t row, std::int32_t p, int axis) const {
+  const std::int32_t end = rowStart_[row + 1];
+  std::int32_t at = rowStart_[row];
+  if (end - at > kFewInRow) {
+    at = static_cast<std::int32_t>(std::lower_bound(low_.begin() + at, low_.begin() + end, p) -
+                                   low_.begin());
+  } else {
+    std::int32_t before = 0;
+    for (std::int32_t link = at; link < end; ++link) before += low_[link] < p;
+    at += before;
+  }
+  for (; at < end && low_[at] == p; ++at) {
+    if (axisAt(at) == axis) return at;
   }
   return -1;
 }
 
-Eigen::Vector3f LabelBoundary::offset(std::size_t link, std::size_t other) const {
-  const auto &from = at_[link], &to = at_[other];
-  return {static_cast<float>(to[0] - from[0]), static_cast<float>(to[1] - from[1]),
-          static_cast<float>(to[2] - from[2])};
+double LabelBoundary::place(std::int32_t p, int axis) const {
+  const std::int32_t link = find(p / size_[0], p, axis);
+  return link < 0 ? 0.5 : theta_[link];
+}
+
+Eigen::Vector3f LabelBoundary::normal(std::int32_t p, int axis) const {
+  const std::int32_t link = find(p / size_[0], p, axis);
+  if (link < 0) return Eigen::Vector3f::Zero();
+  return Eigen::Map<const Eigen::Vector3f>(normal_[link].data());
 }
 
 void LabelBoundary::collect(const std::vector<std::uint8_t>& side) {
@@ -79,161 +92,176 @@ void LabelBoundary::collect(const std::vector<std::uint8_t>& side) {
   const auto forLinks = [&](int row, const auto& body) {
     const int j = row % size_[1], k = row / size_[1];
     bool more[3] = {true, j + 1 < size_[1], axes_ == 3 && k + 1 < size_[2]};
-    std::int32_t p = row * size_[0];
-    for (int i = 0; i < size_[0]; ++i, ++p) {
-      if (side[p] > 1) continue;
-      more[0] = i + 1 < size_[0];
-      for (int a = 0; a < 3; ++a) {
-        if (more[a] && side[p] + side[p + strides_[a]] == 1) body({i, j, k}, p, a);
+    const auto eightFrom = [&](std::int32_t p) {
+      std::uint64_t eight;
+      std::memcpy(&eight, side.data() + p, sizeof eight);
+      return eight;
+    };
+    // Eight voxels that are as their neighbours along each axis have no link.
+    const auto eightAlike = [&](std::int32_t p) {
+      const std::uint64_t own = eightFrom(p);
+      std::uint64_t change = own ^ eightFrom(p + 1);
+      if (more[1]) change |= own ^ eightFrom(p + strides_[1]);
+      if (more[2]) change |= own ^ eightFrom(p + strides_[2]);
+      return change == 0;
+    };
+    const std::int32_t first = row * size_[0];
+    for (int i = 0; i < size_[0];) {
+      if (i + 8 < size_[0] && eightAlike(first + i)) {
+        i += 8;
+        continue;
+      }
+      for (const int end = std::min(i + 8, size_[0]); i < end; ++i) {
+        const std::int32_t p = first + i;
+        if (side[p] > 1) continue;
+        more[0] = i + 1 < size_[0];
+        for (int a = 0; a < 3; ++a) {
+          if (more[a] && side[p] + side[p + strides_[a]] == 1) body(LinkPlace{i, j, k, a}, p);
+        }
       }
     }
   };
   rowStart_.assign(rows + 1, 0);
   parallelFor(rows, 256, [&](std::size_t row) {
-    forLinks(static_cast<int>(row),
-             [&](const std::array<std::int32_t, 3>&, std::int32_t, int) { ++rowStart_[row + 1]; });
+    std::int32_t count = 0;
+    forLinks(static_cast<int>(row), [&](const LinkPlace&, std::int32_t) { ++count; });
+    rowStart_[row + 1] = count;
   });
   for (int row = 0; row < rows; ++row) rowStart_[row + 1] += rowStart_[row];
   low_.resize(rowStart_[rows]);
   at_.resize(low_.size());
-  axis_.resize(low_.size());
   parallelFor(rows, 256, [&](std::size_t row) {
     std::int32_t next = rowStart_[row];
-    forLinks(static_cast<int>(row),
-             [&](const std::array<std::int32_t, 3>& at, std::int32_t p, int a) {
-               low_[next] = p;
-               at_[next] = at;
-               axis_[next++] = static_cast<std::uint8_t>(a);
-             });
+    if (next == rowStart_[row + 1]) return;
+    forLinks(static_cast<int>(row), [&](const LinkPlace& at, std::int32_t p) {
+      low_[next] = p;
+      at_[next++] = at;
+    });
   });
   theta_.assign(low_.size(), 0.5F);
 }
 
 void LabelBoundary::join(const std::vector<std::uint8_t>& side) {
-  back_.resize(low_.size());
+  back_.assign(low_.size(), {-1, -1, -1, -1});
   const auto secondAxis = [&](int a, int chain) {
     return axes_ == 2 ? 1 - a : (a + 1 + chain) % 3;
   };
+  const std::array<std::int32_t, 3> rowStride = {0, 1, size_[1]};
+  // Of two links whose chains meet in a face, the one with the lower axis writes for both, of equal
+  // ones the lower.
   parallelFor(low_.size(), kBoundaryGrain, [&](std::size_t link) {
     const std::int32_t p = low_[link];
-    const int a = axis_[link];
-    const std::array<std::int32_t, 3>& at = at_[link];
-    back_[link] = {-1, -1, -1, -1};
+    const LinkPlace& at = at_[link];
+    const int a = at[3];
     for (int chain = 0; chain < axes_ - 1; ++chain) {
       const int b = secondAxis(a, chain);
       for (int s = 0; s < 2; ++s) {
-        const int to = at[b] + (s == 0 ? -1 : 1);
+        const int step = s == 0 ? -1 : 1;
+        const int to = at[b] + step;
         if (to < 0 || to >= size_[b]) continue;
         // The face p, p + a, q, q + a: the chain leaves it through one of the other three links.
-        const std::int32_t q = p + (s == 0 ? -1 : 1) * strides_[b];
+        const std::int32_t q = p + step * strides_[b];
         const std::uint8_t here = side[p], near = side[q], far = side[q + strides_[a]];
         if (near > 1 || far > 1) continue;
-        const std::int32_t lower = s == 0 ? q : p;
-        std::int32_t out = 0;
-        int outAxis = b;
-        if (near != far && near == here) {
-          out = q;
-          outAxis = a;
-        } else if (near == far) {
-          out = near != here ? lower : lower + strides_[a];
-        } else {  // all four are crossed: around the corner that is inside
-          out = here == 1 ? lower : lower + strides_[a];
+        const bool straight = near != far && near == here;
+        if (straight ? s == 0 : a > b) continue;
+        // Around a corner along b from the lower or the upper ends of a; if all four links are
+        // crossed, around the one that is inside.
+        const bool upper = near == far ? near == here : here == 0;
+        std::int32_t out = straight || s == 0 ? q : p, row = at[1] + size_[1] * at[2];
+        if (straight || s == 0) row += step * rowStride[b];
+        if (!straight && upper) {
+          out += strides_[a];
+          row += rowStride[a];
         }
+        const int outAxis = straight ? a : b;
+        const int outSide = straight || upper ? 0 : 1;
         // The neighbour's chain in the same plane of the grid.
-        const int outChain = axes_ == 2 ? 0 : (secondAxis(outAxis, 0) == a + b - outAxis ? 0 : 1);
-        back_[link][2 * chain + s] = 4 * find(out, outAxis) + 2 * outChain;
+        const int outChain = axes_ == 2 || secondAxis(outAxis, 0) == a + b - outAxis ? 0 : 1;
+        const std::int32_t other = find(row, out, outAxis);
+        back_[link][2 * chain + s] = 4 * other + 2 * outChain + outSide;
+        back_[other][2 * outChain + outSide] = static_cast<std::int32_t>(4 * link) + 2 * chain + s;
       }
-    }
-  });
-  // Which side of the neighbour points back; only the lowest bit of own slots is written, and only
-  // the others are read.
-  const auto made = back_;
-  parallelFor(low_.size(), kBoundaryGrain, [&](std::size_t link) {
-    for (int slot = 0; slot < 4; ++slot) {
-      const std::int32_t code = made[link][slot];
-      if (code < 0) continue;
-      const auto own = static_cast<std::int32_t>(4 * link + (slot & 2));
-      back_[link][slot] = code + (made[code >> 2][code & 2] == own ? 0 : 1);
     }
   });
 }
 
 void LabelBoundary::findNormals(const std::vector<std::uint8_t>& side, int smoothings) {
-  normal_.resize(low_.size());
-  // Position of a neighbour relative to a link's own crossing.
-  const auto towards = [&](std::size_t link, std::int32_t code) {
-    const std::int32_t m = code >> 2;
-    Eigen::Vector3f d = offset(link, m);
-    d[axis_[m]] += theta_[m];
-    d[axis_[link]] -= theta_[link];
-    return d;
-  };
-  parallelFor(low_.size(), kBoundaryGrain, [&](std::size_t link) {
-    Eigen::Vector3f along[2] = {Eigen::Vector3f::Zero(), Eigen::Vector3f::Unit(2)};
-    const int a = axis_[link];
+  const std::size_t count = low_.size();
+  step_.assign(count, {0, 0, 0, 0});
+  normal_.resize(count);
+  parallelFor(count, kBoundaryGrain,
+              [&](std::size_t link) { step_[link][axisAt(link)] = theta_[link]; });
+  parallelFor(count, kBoundaryGrain, [&](std::size_t link) {
+    const int a = axisAt(link);
+    Quad along[2] = {{0, 0, 0, 0}, {0, 0, axes_ == 2 ? 1.0F : 0.0F, 0}};
     for (int chain = 0; chain < axes_ - 1; ++chain) {
-      along[chain].setZero();
       for (int s = 0; s < 2; ++s) {
         const std::int32_t code = back_[link][2 * chain + s];
-        if (code >= 0) along[chain] += (s == 0 ? -1.0F : 1.0F) * towards(link, code);
+        if (code < 0) continue;
+        const Quad way = between(link, code >> 2);
+        for (int c = 0; c < 4; ++c) along[chain][c] += s == 0 ? -way[c] : way[c];
       }
     }
-    Eigen::Vector3f n = along[0].cross(along[1]);
-    if (!(n.squaredNorm() > 1e-6F)) n = Eigen::Vector3f::Unit(a);
-    n.normalize();
+    Quad n = {along[0][1] * along[1][2] - along[0][2] * along[1][1],
+              along[0][2] * along[1][0] - along[0][0] * along[1][2],
+              along[0][0] * along[1][1] - along[0][1] * along[1][0], 0};
+    float square = squareOf(n);
+    if (!(square > 1e-6F)) {
+      n = {0, 0, 0, 0};
+      n[a] = square = 1;
+    }
     // Outward: from the end that is inside to the other.
     const bool flip = (n[a] < 0) == (side[low_[link]] == 1);
-    for (int c = 0; c < 3; ++c) normal_[link][c] = flip ? -n[c] : n[c];
+    const float scale = (flip ? -1 : 1) / std::sqrt(square);
+    for (int c = 0; c < 4; ++c) normal_[link][c] = scale * n[c];
   });
+  std::vector<Quad> before(count);
   for (int pass = 0; pass < smoothings; ++pass) {
-    const auto before = normal_;
-    parallelFor(low_.size(), kBoundaryGrain, [&](std::size_t link) {
-      Eigen::Vector3f n = Eigen::Map<const Eigen::Vector3f>(before[link].data());
+    before.swap(normal_);
+    parallelFor(count, kBoundaryGrain, [&](std::size_t link) {
+      Quad n = before[link];
       for (const std::int32_t code : back_[link]) {
-        if (code >= 0) n += Eigen::Map<const Eigen::Vector3f>(before[code >> 2].data());
+        if (code < 0) continue;
+        const Quad& other = before[code >> 2];
+        for (int c = 0; c < 4; ++c) n[c] += other[c];
       }
-      const float norm = n.norm();
-      if (!(norm > 1e-6F)) return;
-      for (int c = 0; c < 3; ++c) normal_[link][c] = n[c] / norm;
+      const float square = squareOf(n);
+      if (!(square > 1e-12F)) n = before[link];
+      const float scale = square > 1e-12F ? 1 / std::sqrt(square) : 1;
+      for (int c = 0; c < 4; ++c) normal_[link][c] = scale * n[c];
     });
   }
 }
 
 void LabelBoundary::findCurvatures() {
-  own_.assign(low_.size(), {0, 0});
-  constant_.assign(low_.size(), {0, 0});
-  beside_.assign(low_.size(), {0, 0, 0, 0});
-  length_.assign(low_.size(), {0, 0});
-  stiffness_.assign(low_.size(), {0, 0, 0, 0});
+  bend_.resize(low_.size());
   parallelFor(low_.size(), kBoundaryGrain, [&](std::size_t link) {
-    const auto& n = normal_[link];
-    const float ownNormal = n[axis_[link]];
+    const Quad& n = normal_[link];
+    const float ownNormal = n[axisAt(link)];
     for (int chain = 0; chain < axes_ - 1; ++chain) {
-      if (back_[link][2 * chain] < 0 || back_[link][2 * chain + 1] < 0) continue;
+      Bend& bend = bend_[link][chain];
+      bend = {};
+      const std::int32_t* code = &back_[link][2 * chain];
+      if (code[0] < 0 || code[1] < 0) continue;
       float along[2], distance[2], fixed[2];
       for (int s = 0; s < 2; ++s) {
-        const std::int32_t m = back_[link][2 * chain + s] >> 2;
-        Eigen::Vector3f d = offset(link, m);
-        fixed[s] = d[0] * n[0] + d[1] * n[1] + d[2] * n[2];
-        along[s] = n[axis_[m]];
-        d[axis_[m]] += theta_[m];
-        d[axis_[link]] -= theta_[link];
-        distance[s] = std::max(kShortest, std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]));
+        const std::int32_t m = code[s] >> 2;
+        const Quad way = between(link, m);
+        distance[s] = std::max(kShortest, std::sqrt(squareOf(way)));
+        along[s] = n[axisAt(m)];
+        fixed[s] = 0;
+        for (int c = 0; c < 4; ++c) fixed[s] += static_cast<float>(at_[m][c] - at_[link][c]) * n[c];
       }
       // Curvature 2 / (d0 + d1) (x0 . n / d0 + x1 . n / d1).
-      length_[link][chain] = 0.5F * (distance[0] + distance[1]);
-      const float scale = 1 / length_[link][chain];
-      const float w0 = scale / distance[0], w1 = scale / distance[1];
-      beside_[link][2 * chain] = w0 * along[0];
-      beside_[link][2 * chain + 1] = w1 * along[1];
-      own_[link][chain] = -(w0 + w1) * ownNormal;
-      constant_[link][chain] = w0 * fixed[0] + w1 * fixed[1];
+      bend.length = 0.5F * (distance[0] + distance[1]);
+      const float inverse = 1 / bend.length;
       for (int s = 0; s < 2; ++s) {
-        const std::int32_t code = back_[link][2 * chain + s];
-        const auto& other = back_[code >> 2];
-        if (other[code & 2] >= 0 && other[(code & 2) + 1] >= 0) {
-          stiffness_[link][2 * chain + s] = 1 / distance[s];
-        }
+        bend.nearer[s] = 1 / distance[s];
+        const float weight = bend.nearer[s] * inverse;
+        bend.beside[s] = weight * along[s];
+        bend.own -= weight * ownNormal;
+        bend.constant += weight * fixed[s];
       }
     }
   });
@@ -243,25 +271,27 @@ void LabelBoundary::findPull(const LabelTrust& trust) {
   std::vector<std::array<float, 2>> curvature(low_.size());
   parallelFor(low_.size(), kBoundaryGrain, [&](std::size_t link) {
     for (int chain = 0; chain < axes_ - 1; ++chain) {
-      curvature[link][chain] = curvatureOf(link, chain, theta_);
+      curvature[link][chain] = curvatureOf(link, chain);
     }
   });
-  std::vector<float> roughness(low_.size()), before;
+  std::vector<float> roughness(low_.size()), before(low_.size());
   parallelFor(low_.size(), kBoundaryGrain, [&](std::size_t link) {
     float sum = 0;
     int found = 0;
-    for (int slot = 0; slot < 4; ++slot) {
-      const float stiffness = stiffness_[link][slot];
-      if (stiffness == 0) continue;
+    for (int slot = 0; slot < 2 * (axes_ - 1); ++slot) {
       const std::int32_t code = back_[link][slot];
-      const float change = curvature[link][slot >> 1] - curvature[code >> 2][code >> 1 & 1];
-      sum += stiffness * change * change;
+      const Bend& own = bend_[link][slot >> 1];
+      if (code < 0 || own.length == 0) continue;
+      const int chain = code >> 1 & 1;
+      if (bend_[code >> 2][chain].length == 0) continue;
+      const float change = curvature[link][slot >> 1] - curvature[code >> 2][chain];
+      sum += own.nearer[slot & 1] * change * change;
       ++found;
     }
     roughness[link] = found > 0 ? sum / static_cast<float>(found) : 0;
   });
   for (int pass = 0; pass < kRoughnessSmoothings; ++pass) {
-    before = roughness;
+    before.swap(roughness);
     parallelFor(low_.size(), kBoundaryGrain, [&](std::size_t link) {
       float sum = before[link], count = 1;
       for (const std::int32_t code : back_[link]) {
@@ -278,120 +308,147 @@ void LabelBoundary::findPull(const LabelTrust& trust) {
   });
 }
 
-float LabelBoundary::curvatureOf(std::size_t link, int chain,
-                                 const std::vector<float>& theta) const {
-  float sum = constant_[link][chain] + own_[link][chain] * theta[link];
-  for (int slot = 2 * chain; slot < 2 * chain + 2; ++slot) {
-    const std::int32_t code = back_[link][slot];
-    if (code >= 0) sum += beside_[link][slot] * theta[code >> 2];
+float LabelBoundary::curvatureOf(std::size_t link, int chain) const {
+  const Bend& bend = bend_[link][chain];
+  float sum = bend.constant + bend.own * theta_[link];
+  for (int s = 0; s < 2; ++s) {
+    const std::int32_t code = back_[link][2 * chain + s];
+    if (code >= 0) sum += bend.beside[s] * theta_[code >> 2];
   }
   return sum;
 }
 
-/// Accelerated projected gradients with restart [BeckTeboulle2009; ODonoghueCandes2015], each
-/// unknown with a bound of its own on the row sums of the Hessian.
-template <int kChains>
-void LabelBoundary::relaxChains(Energy energy, int iterations) {
-  const std::size_t count = low_.size();
-  // Per slot, twice the neighbour plus its chain, and the weight of the own theta in that chain's
-  // curvature; where a chain ends the link itself without weight, so that loops need not ask.
-  std::vector<std::array<std::int32_t, 4>> near(count);
-  std::vector<std::array<float, 4>> weight(count);
-  parallelFor(count, kBoundaryGrain, [&](std::size_t link) {
-    for (int slot = 0; slot < 4; ++slot) {
-      const std::int32_t code = back_[link][slot];
-      near[link][slot] = code < 0 ? static_cast<std::int32_t>(2 * link) : code >> 1;
-      weight[link][slot] = code < 0 ? 0 : beside_[code >> 2][code & 3];
-    }
-  });
-  std::vector<float> curvature(2 * count), bending(2 * count);
-  std::vector<float> bound(count), pull(count);
-  // Derivative of half the energy by the curvatures, or with sign 1 a bound on its row sums.
-  const auto bend = [&](float sign, const auto& curvatureAt) {
-    if (energy == Energy::Curvature) {
-      parallelFor(count, kBoundaryGrain, [&](std::size_t link) {
-        for (int chain = 0; chain < kChains; ++chain) {
-          bending[2 * link + chain] = length_[link][chain] * curvatureAt(link, chain);
-        }
-      });
-      return;
-    }
-    parallelFor(count, kBoundaryGrain, [&](std::size_t link) {
-      for (int chain = 0; chain < kChains; ++chain) {
-        curvature[2 * link + chain] = curvatureAt(link, chain);
-      }
-    });
-    parallelFor(count, kBoundaryGrain, [&](std::size_t link) {
-      for (int chain = 0; chain < kChains; ++chain) {
-        const float own = curvature[2 * link + chain];
-        bending[2 * link + chain] =
-            stiffness_[link][2 * chain] * (own + sign * curvature[near[link][2 * chain]]) +
-            stiffness_[link][2 * chain + 1] * (own + sign * curvature[near[link][2 * chain + 1]]);
-      }
-    });
-  };
-  bend(1, [&](std::size_t link, int chain) {
-    return std::abs(own_[link][chain]) + std::abs(beside_[link][2 * chain]) +
-           std::abs(beside_[link][2 * chain + 1]);
-  });
-  parallelFor(count, kBoundaryGrain, [&](std::size_t link) {
-    const float across = normal_[link][axis_[link]];
-    pull[link] = pull_[link] * std::max(across * across, 0.01F);
-    float sum = pull[link];
-    for (int chain = 0; chain < kChains; ++chain) {
-      sum += std::abs(own_[link][chain]) * bending[2 * link + chain];
-    }
-    for (int slot = 0; slot < 2 * kChains; ++slot) {
-      sum += std::abs(weight[link][slot]) * bending[near[link][slot]];
-    }
-    bound[link] = sum;
-  });
-  std::vector<float> ahead = theta_, next(count);
-  double momentum = 1;
-  for (int iteration = 0; iteration < iterations; ++iteration) {
-    bend(-1, [&](std::size_t link, int chain) {
-      const auto& beside = beside_[link];
-      return constant_[link][chain] + own_[link][chain] * ahead[link] +
-             beside[2 * chain] * ahead[near[link][2 * chain] >> 1] +
-             beside[2 * chain + 1] * ahead[near[link][2 * chain + 1] >> 1];
-    });
-    // As if the last step had gone downhill, which it nearly always has.
-    const double later = 0.5 * (1 + std::sqrt(1 + 4 * momentum * momentum));
-    const auto share = static_cast<float>((momentum - 1) / later);
-    momentum = later;
-    const double uphill =
-        parallelSum(count, kBoundaryGrain, 0.0, [&](std::size_t begin, std::size_t end) {
-          double sum = 0;
-          for (std::size_t link = begin; link < end; ++link) {
-            float slope = pull[link] * (ahead[link] - 0.5F);
-            for (int chain = 0; chain < kChains; ++chain) {
-              slope += own_[link][chain] * bending[2 * link + chain];
-            }
-            for (int slot = 0; slot < 2 * kChains; ++slot) {
-              slope += weight[link][slot] * bending[near[link][slot]];
-            }
-            // Not std::clamp, which jumps, and no processor foresees where.
-            const float below = std::min(ahead[link] - slope / bound[link], 1 - kNearest);
-            next[link] = std::max(below, kNearest);
-            sum += static_cast<double>((ahead[link] - next[link]) * bound[link] *
-                                       (next[link] - theta_[link]));
-            ahead[link] = next[link] + share * (next[link] - theta_[link]);
-          }
-          return sum;
-        });
-    if (uphill > 0) {
-      momentum = 0.5 * (1 + std::sqrt(5.0));  // what follows 1
-      ahead = next;
-    }
-    theta_.swap(next);
+/// What lies on one side of a link along a chain: up to three links, and the bends at the nearer
+/// two.  Where the chain has ended, the link itself and bends of zero.
+struct LabelBoundary::Strip {
+  std::array<std::int32_t, 3> link;
+  std::array<float, 2> own, constant, length;
+  std::array<float, 2> inward, outward;  ///< derivative of the bend by the next link in, out
+  std::array<float, 2> stiffness;        ///< between the link and the first bend; first and second
+};
+
+template <int kReach>
+inline LabelBoundary::Strip LabelBoundary::stripFrom(std::size_t link, int chain, int side) const {
+  static constexpr Bend kNone;
+  Strip strip;
+  float nearer = bend_[link][chain].nearer[side];
+  std::int32_t code = back_[link][2 * chain + side];
+  for (int k = 0; k + 1 < kReach; ++k) {
+    strip.link[k] = code < 0 ? static_cast<std::int32_t>(link) : code >> 2;
+    const Bend& bend = code < 0 ? kNone : bend_[code >> 2][code >> 1 & 1];
+    const int inward = code & 1;
+    strip.own[k] = bend.own;
+    strip.constant[k] = bend.constant;
+    strip.length[k] = bend.length;
+    strip.inward[k] = bend.beside[inward];
+    strip.outward[k] = bend.beside[1 - inward];
+    strip.stiffness[k] = bend.length > 0 ? nearer : 0;
+    nearer = bend.nearer[1 - inward];
+    if (code >= 0) code = back_[code >> 2][(code & 3) ^ 1];
   }
+  strip.link[kReach - 1] = code < 0 ? static_cast<std::int32_t>(link) : code >> 2;
+  return strip;
+}
+
+/// Where a step of the gradient leads from the links' places x: by constant + own x(own link) + sum
+/// over terms of weight x(link).
+template <int kTerms>
+struct LabelBoundary::Row {
+  struct Term {
+    float weight;
+    std::int32_t link;
+  };
+  float constant, own;
+  std::array<Term, kTerms> term;
+};
+
+/// A row of half the energy's gradient over minus a bound on the sum of the Hessian's row.
+template <int kChains, int kReach>
+LabelBoundary::Row<2 * kChains * kReach> LabelBoundary::rowOf(std::size_t link) const {
+  const float across = normal_[link][axisAt(link)];
+  const float pull = pull_[link] * std::max(across * across, 0.01F);
+  Row<2 * kChains * kReach> row{-0.5F * pull, pull, {}};
+  for (int chain = 0; chain < kChains; ++chain) {
+    const Bend& bend = bend_[link][chain];
+    const Strip strip[2] = {stripFrom<kReach>(link, chain, 0), stripFrom<kReach>(link, chain, 1)};
+    // Half the energy's derivative by the bends, times theirs by the own place.
+    float atOwn = 0, atFirst[2], atSecond[2] = {0, 0};
+    for (int s = 0; s < 2; ++s) {
+      const Strip& t = strip[s];
+      if constexpr (kReach == 2) {
+        atFirst[s] = t.length[0] * t.inward[0];
+      } else {
+        atOwn += t.stiffness[0] * (bend.own - t.inward[0]);
+        atFirst[s] = t.stiffness[0] * (t.inward[0] - bend.own) + t.stiffness[1] * t.inward[0];
+        atSecond[s] = -t.stiffness[1] * t.inward[0];
+      }
+    }
+    if constexpr (kReach == 2) atOwn = bend.length * bend.own;
+    row.constant += atOwn * bend.constant;
+    row.own += atOwn * bend.own;
+    for (int s = 0; s < 2; ++s) {
+      const Strip& t = strip[s];
+      row.constant += atFirst[s] * t.constant[0];
+      row.own += atFirst[s] * t.inward[0];
+      auto* term = &row.term[kReach * (2 * chain + s)];
+      term[0] = {atOwn * bend.beside[s] + atFirst[s] * t.own[0], t.link[0]};
+      term[1] = {atFirst[s] * t.outward[0], t.link[1]};
+      if constexpr (kReach == 3) {
+        row.constant += atSecond[s] * t.constant[1];
+        term[0].weight += atSecond[s] * t.inward[1];
+        term[1].weight += atSecond[s] * t.own[1];
+        term[2] = {atSecond[s] * t.outward[1], t.link[2]};
+      }
+    }
+  }
+  float bound = row.own;
+  for (const auto& term : row.term) bound += std::abs(term.weight);
+  const float scale = -1 / bound;
+  row.constant *= scale;
+  row.own *= scale;
+  for (auto& term : row.term) term.weight *= scale;
+  return row;
+}
+
+/// Chebyshev's semi-iteration [GolubVarga1961] for eigenvalues up to 1, which the rows' bounds see
+/// to; each step ends within the links.  A last step without momentum smooths what is shortest.
+template <int kChains, int kReach>
+void LabelBoundary::relaxRows(int iterations) {
+  const std::size_t count = low_.size();
+  constexpr int kTerms = 2 * kChains * kReach;
+  std::vector<Row<kTerms>> rows(count);
+  parallelFor(count, kBoundaryGrain,
+              [&](std::size_t link) { rows[link] = rowOf<kChains, kReach>(link); });
+  std::vector<float> before = theta_;
+  const auto step = [&](float length, float momentum) {
+    parallelFor(count, kBoundaryGrain, [&](std::size_t link) {
+      const Row<kTerms>& row = rows[link];
+      const float from = theta_[link];
+      float way[2] = {row.constant, row.own * from};
+      for (int k = 0; k < kTerms; ++k) {
+        way[k & 1] += row.term[k].weight * theta_[row.term[k].link];
+      }
+      const float to = from + length * (way[0] + way[1]) + momentum * (from - before[link]);
+      // Not std::clamp, which jumps, and no processor foresees where.
+      before[link] = std::max(std::min(to, 1 - kNearest), kNearest);
+    });
+    theta_.swap(before);
+  };
+  const double least = std::pow(kDamped / iterations, 2);
+  const double spread = (1 - least) / (1 + least);
+  double omega = 1;
+  for (int iteration = 0; iteration < iterations; ++iteration) {
+    if (iteration > 0) omega = 1 / (1 - (iteration == 1 ? 0.5 : 0.25 * omega) * spread * spread);
+    step(static_cast<float>(2 * omega / (1 + least)), static_cast<float>(omega - 1));
+  }
+  step(1, 0);
 }
 
 void LabelBoundary::relax(Energy energy, int iterations) {
   if (axes_ == 3) {
-    relaxChains<2>(energy, iterations);
+    energy == Energy::Curvature ? relaxRows<2, 2>(iterations) : relaxRows<2, 3>(iterations);
   } else {
-    relaxChains<1>(energy, iterations);
+    energy == Energy::Curvature ? relaxRows<1, 2>(iterations) : relaxRows<1, 3>(iterations);
   }
 }
 

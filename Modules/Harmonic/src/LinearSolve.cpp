@@ -4,6 +4,7 @@
 
 #include "Explica/Core/Parallel.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace explica::harmonic {
@@ -44,10 +45,11 @@ void apply(const Annulus& annulus, const Stencil& stencil, const std::vector<flo
     applyTo(strand, weight, x, y.data() + strand.begin);
   };
   const auto ofIrregular = [&](std::size_t n, std::size_t row) {
+    const auto& links = annulus.links[n];
+    const auto& weights = stencil.linked[row];
     double sum = x[n];
     for (int d = 0; d < 6; ++d) {
-      const std::int32_t m = annulus.links[n][d];
-      if (m >= 0) sum -= static_cast<double>(stencil.weights[row][d]) * x[m];
+      sum -= static_cast<double>(weights[d]) * static_cast<double>(x[std::max(links[d], 0)]);
     }
     y[n] = sum;
   };
@@ -69,13 +71,15 @@ double dot(const std::vector<double>& a, const std::vector<double>& b) {
   });
 }
 
-/// a . b and a . a in one pass.
-Pair dotAndSquare(const std::vector<double>& a, const std::vector<double>& b) {
-  return parallelSum(a.size(), kSolveGrain, Pair{}, [&](std::size_t begin, std::size_t end) {
+/// Two sums in one pass: termsAt(k) gives both terms.
+template <class TermsAt>
+Pair sumsOf(std::size_t count, const TermsAt& termsAt) {
+  return parallelSum(count, kSolveGrain, Pair{}, [&](std::size_t begin, std::size_t end) {
     Pair sum;
     for (std::size_t k = begin; k < end; ++k) {
-      sum.first += a[k] * b[k];
-      sum.second += a[k] * a[k];
+      const Pair terms = termsAt(k);
+      sum.first += terms.first;
+      sum.second += terms.second;
     }
     return sum;
   });
@@ -119,56 +123,62 @@ class BiCGStab {
         single_(r_.size()),
         phat_(r_.size()),
         shat_(r_.size()),
-        norm_(std::sqrt(dot(r_, r_))) {}
+        norm_(std::sqrt(dot(r_, r_))),
+        rhoNext_(norm_ * norm_) {}
 
   [[nodiscard]] double residual() const { return norm_; }
 
   /// One iteration; false if it broke down, so that a further one would bring nothing.
   [[nodiscard]] bool iterate() {
-    chooseDirection();
-    const double pScale = precondition(p_, phat_);
+    // What goes into the cycle has single precision, whose smallest normal numbers residuals fall
+    // far below: it is scaled to order one, and what comes out by `scale`.
+    const double scale = norm_ > 0 ? norm_ : 1, factor = 1 / scale;
+    chooseDirection(factor);
+    multigrid_.cycle(single_, phat_);
     apply(annulus_, stencil_, phat_, v_);
-    forAll(v_.size(), [&](std::size_t k) { v_[k] *= pScale; });
-    alpha_ = rho_ / dot(shadow_, v_);
-    forAll(r_.size(), [&](std::size_t k) { r_[k] -= alpha_ * v_[k]; });  // now s
-    norm_ = std::sqrt(dot(r_, r_));
+    vScale_ = scale;
+    alpha_ = rho_ / (scale * dot(shadow_, v_));
+    const double along = alpha_ * scale;
+    norm_ = std::sqrt(sumsOf(r_.size(), [&](std::size_t k) {
+                        r_[k] -= along * v_[k];  // now s
+                        single_[k] = static_cast<float>(r_[k] * factor);
+                        return Pair{r_[k] * r_[k], 0};
+                      }).first);
     if (!std::isfinite(norm_)) return false;
-    const double sScale = precondition(r_, shat_);
+    multigrid_.cycle(single_, shat_);
     apply(annulus_, stencil_, shat_, t_);
-    const Pair dots = dotAndSquare(t_, r_);
-    omega_ = dots.second > 0 ? dots.first / dots.second : 0;  // of the unscaled s-hat
-    forAll(u_.size(), [&](std::size_t k) {
-      u_[k] += alpha_ * pScale * phat_[k] + omega_ * shat_[k];
-      r_[k] -= omega_ * t_[k];
+    const Pair dots = sumsOf(t_.size(), [&](std::size_t k) {
+      return Pair{t_[k] * r_[k], t_[k] * t_[k]};
     });
-    omega_ /= sScale;
-    norm_ = std::sqrt(dot(r_, r_));
+    const double shift = dots.second > 0 ? dots.first / dots.second : 0;  // of the unscaled s-hat
+    const Pair next = sumsOf(u_.size(), [&](std::size_t k) {
+      u_[k] += along * phat_[k] + shift * shat_[k];
+      r_[k] -= shift * t_[k];
+      return Pair{r_[k] * r_[k], shadow_[k] * r_[k]};
+    });
+    omega_ = shift / scale;
+    norm_ = std::sqrt(next.first);
+    rhoNext_ = next.second;
     return omega_ != 0;
   }
 
  private:
-  void chooseDirection() {
-    double rhoNext = dot(shadow_, r_);
-    if (std::abs(rhoNext) < 1e-14 * norm_ * std::sqrt(dot(shadow_, shadow_))) {
+  /// @param factor  of the direction, for the cycle
+  void chooseDirection(double factor) {
+    if (std::abs(rhoNext_) < 1e-14 * norm_ * std::sqrt(dot(shadow_, shadow_))) {
       // Breakdown: begin again from here.
       shadow_ = r_;
-      rhoNext = norm_ * norm_;
+      rhoNext_ = norm_ * norm_;
       std::fill(p_.begin(), p_.end(), 0);
       std::fill(v_.begin(), v_.end(), 0);
       rho_ = alpha_ = omega_ = 1;
     }
-    const double beta = rhoNext / rho_ * alpha_ / omega_;
-    rho_ = rhoNext;
-    forAll(p_.size(), [&](std::size_t k) { p_[k] = r_[k] + beta * (p_[k] - omega_ * v_[k]); });
-  }
-
-  /// Puts the cycle's answer to `from`, scaled, into `to`; returns what it is to be scaled by.
-  double precondition(const std::vector<double>& from, std::vector<float>& to) {
-    // Residuals shrink far below single precision's smallest normal numbers: scale to order one.
-    const double factor = norm_ > 0 ? 1 / norm_ : 1;
-    forAll(from.size(), [&](std::size_t k) { single_[k] = static_cast<float>(from[k] * factor); });
-    multigrid_.cycle(single_, to);
-    return 1 / factor;
+    const double beta = rhoNext_ / rho_ * alpha_ / omega_, back = omega_ * vScale_;
+    rho_ = rhoNext_;
+    forAll(p_.size(), [&](std::size_t k) {
+      p_[k] = r_[k] + beta * (p_[k] - back * v_[k]);
+      single_[k] = static_cast<float>(p_[k] * factor);
+    });
   }
 
   const Annulus& annulus_;
@@ -178,7 +188,9 @@ class BiCGStab {
   std::vector<double> r_, shadow_, p_, v_, t_;
   std::vector<float> single_, phat_, shat_;
   double rho_ = 1, alpha_ = 1, omega_ = 1;
+  double vScale_ = 1;  ///< v_ is to be multiplied by this
   double norm_;
+  double rhoNext_;  ///< shadow_ . r_
 };
 
 }  // namespace

@@ -36,12 +36,9 @@ void MultigridHierarchy::smoothCoarse(MultigridLevel& l, bool fromZero) const {
 void MultigridHierarchy::prolong(int level, std::vector<float>& x) const {
   const MultigridTransfer& t = transfers[level];
   const std::vector<float>& e = coarse[level].x;
-  parallelFor(x.size(), kGrain, [&](std::size_t n) {
-    float sum = t.ownWeight * e[t.aggregate[n]];
-    for (int a = 0; a < 3; ++a) {
-      if (t.toward[n][a] >= 0) sum += 0.25F * e[t.toward[n][a]];
-    }
-    x[n] += sum;
+  parallelFor(t.aggregate.size(), kGrain, [&](std::size_t n) {
+    const auto& toward = t.toward[n];
+    x[n] += t.ownWeight * e[t.aggregate[n]] + 0.25F * (e[toward[0]] + e[toward[1]] + e[toward[2]]);
   });
 }
 

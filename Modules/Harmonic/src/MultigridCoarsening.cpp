@@ -68,6 +68,7 @@ class Coarsener {
   [[nodiscard]] Subscripts parentOf(Subscripts block) const;
   [[nodiscard]] std::int32_t towardAt(std::int32_t n, int axis) const;
   void sortByBlock();
+  [[nodiscard]] bool isWhole(std::int32_t first, std::int32_t cells) const;
   void piecesOf(std::size_t block, std::vector<std::int32_t>& root,
                 std::vector<std::int32_t>& order);
   void findPieces();
@@ -129,12 +130,27 @@ void Coarsener::sortByBlock() {
   for (std::int32_t n = 0; n < fineCount_; ++n) blocks_.sorted[cursor[blocks_.of[n]]++] = n;
 }
 
+/// Whether cells of one block plainly hang together: all eight are there and no link of theirs
+/// ends.
+bool Coarsener::isWhole(std::int32_t first, std::int32_t cells) const {
+  if (level_ > 0 || cells != 8) return false;
+  for (std::int32_t s = first; s < first + cells; ++s) {
+    if (h_.annulus.irregular(blocks_.sorted[s]) >= 0) return false;
+  }
+  return true;
+}
+
 /// Joins the block's cells along uncut links (union-find in `root`) and numbers what hangs
 /// together.
 void Coarsener::piecesOf(std::size_t block, std::vector<std::int32_t>& root,
                          std::vector<std::int32_t>& order) {
   const std::int32_t first = blocks_.start[block], cells = blocks_.start[block + 1] - first;
   if (cells == 0) return;
+  if (isWhole(first, cells)) {
+    std::fill_n(pieces_.of.begin() + first, cells, 0);
+    pieces_.count[block] = 1;
+    return;
+  }
   root.resize(cells);
   for (std::int32_t c = 0; c < cells; ++c) root[c] = c;
   const auto find = [&](std::int32_t c) {
@@ -209,13 +225,13 @@ void Coarsener::gatherChildren() {
 }
 
 /// The coarser cell beside finer cell n, on the side of the block that n is on; n's own where the
-/// side is insulated, -1 at a boundary.
+/// side is insulated, the one after the last at a boundary.
 std::int32_t Coarsener::towardAt(std::int32_t n, int axis) const {
   const Subscripts b = h_.blockOf(level_, n);
   const int side = 2 * axis + (b[axis] & 1);
   if (level_ == 0) {
     const std::int32_t m = h_.annulus.links[n][side];
-    return m >= 0 ? t_.aggregate[m] : m == kInsulated ? t_.aggregate[n] : -1;
+    return m >= 0 ? t_.aggregate[m] : m == kInsulated ? t_.aggregate[n] : next_.count;
   }
   std::int32_t found = -1;
   h_.forEachLink(level_, n, [&](std::int32_t m, int along, float) {
@@ -224,7 +240,7 @@ std::int32_t Coarsener::towardAt(std::int32_t n, int axis) const {
   });
   if (found >= 0) return found;
   // No neighbour and no boundary along this axis means insulation.
-  return h_.coarse[level_ - 1].boundaryFaces[n][axis] == 0 ? t_.aggregate[n] : -1;
+  return h_.coarse[level_ - 1].boundaryFaces[n][axis] == 0 ? t_.aggregate[n] : next_.count;
 }
 
 /// Where linear interpolation looks, per coarsened axis.
@@ -235,7 +251,7 @@ void Coarsener::placeInterpolation() {
   t_.toward.resize(fineCount_);
   parallelFor(fineCount_, kCoarseningGrain, [&](std::size_t index) {
     const auto n = static_cast<std::int32_t>(index);
-    for (int a = 0; a < 3; ++a) t_.toward[n][a] = t_.coarsened[a] ? towardAt(n, a) : -1;
+    for (int a = 0; a < 3; ++a) t_.toward[n][a] = t_.coarsened[a] ? towardAt(n, a) : next_.count;
   });
 }
 
@@ -260,30 +276,31 @@ void Coarsener::gatherRow(std::int32_t c, std::vector<Link>& row) const {
 }
 
 void Coarsener::sumLinks() {
+  constexpr std::size_t kRowsGrain = 1 << 11;  // cells a task
   const std::int32_t number = next_.count;
   next_.start.assign(number + 1, 0);
-  parallelForBlocks(number, 1 << 11, [&](std::size_t begin, std::size_t end) {
+  std::vector<std::vector<Link>> rowsOf((number + kRowsGrain - 1) /
+                                        kRowsGrain);  // of each task's cells
+  parallelForBlocks(number, kRowsGrain, [&](std::size_t begin, std::size_t end) {
+    std::vector<Link>& rows = rowsOf[begin / kRowsGrain];
     std::vector<Link> row;
     for (std::size_t c = begin; c < end; ++c) {
       gatherRow(static_cast<std::int32_t>(c), row);
       next_.start[c + 1] = static_cast<std::int32_t>(row.size());
+      rows.insert(rows.end(), row.begin(), row.end());
     }
   });
   for (std::int32_t c = 0; c < number; ++c) next_.start[c + 1] += next_.start[c];
   next_.column.resize(next_.start[number]);
   next_.axis.resize(next_.start[number]);
   next_.coefficient.resize(next_.start[number]);
-  parallelForBlocks(number, 1 << 11, [&](std::size_t begin, std::size_t end) {
-    std::vector<Link> row;
-    for (std::size_t c = begin; c < end; ++c) {
-      gatherRow(static_cast<std::int32_t>(c), row);
-      std::int32_t e = next_.start[c];
-      for (const Link& link : row) {
-        next_.column[e] = link.column;
-        next_.axis[e] = link.axis;
-        next_.coefficient[e] = link.coefficient;
-        ++e;
-      }
+  parallelFor(rowsOf.size(), 1, [&](std::size_t task) {
+    std::int32_t e = next_.start[task * kRowsGrain];
+    for (const Link& link : rowsOf[task]) {
+      next_.column[e] = link.column;
+      next_.axis[e] = link.axis;
+      next_.coefficient[e] = link.coefficient;
+      ++e;
     }
   });
 }
@@ -316,7 +333,7 @@ void Coarsener::sumBoundary() {
   next_.inverseDiagonal.resize(number);
   next_.boundaryFaces.assign(number, {0, 0, 0});
   next_.boundaryConductance.assign(number, {0, 0, 0});
-  next_.x.resize(number);
+  next_.x.resize(number + 1);
   next_.b.resize(number);
   parallelFor(number, 1 << 11, [&](std::size_t c) {
     double diagonal = 0;

@@ -5,6 +5,7 @@
 #include "Explica/Harmonic/Interpolant.h"
 #include "Stencil.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -20,13 +21,14 @@ struct MultigridLevel {
   std::vector<std::uint8_t> axis;
   std::vector<float> coefficient, inverseDiagonal;
   std::vector<std::array<float, 3>> boundaryFaces, boundaryConductance;  // per axis
-  std::vector<float> x, b;
+  std::vector<float> x, b;  // x has one element more, which is 0
 };
 
 /// How a level is joined to the next coarser one.
 struct MultigridTransfer {
   std::vector<std::int32_t> aggregate;              // finer -> coarser
-  std::vector<std::array<std::int32_t, 3>> toward;  // coarser cell beside, per axis; -1: boundary
+  std::vector<std::array<std::int32_t, 3>> toward;  // coarser cell beside, per axis; at a boundary
+                                                    // the one after the last, whose x is 0
   std::vector<std::int32_t> childStart, child;      // coarser -> finer
   std::array<bool, 3> coarsened{};
   float ownWeight = 1;
@@ -79,11 +81,11 @@ struct MultigridHierarchy {
   void restrictEven(const std::vector<float>& r, const std::vector<float>& e);
   [[nodiscard]] float irregularSum(std::size_t n, std::size_t row,
                                    const std::vector<float>& e) const {
+    const auto& links = annulus.links[n];
+    const auto& weights = stencil.linked[row];
     float sum = 0;
-    for (int d = 0; d < 6; ++d) {
-      const std::int32_t m = annulus.links[n][d];
-      if (m >= 0) sum += stencil.weights[row][d] * e[m];
-    }
+    // Without weight any voxel serves; to ask would cost more, as no processor foresees the answer.
+    for (int d = 0; d < 6; ++d) sum += weights[d] * e[std::max(links[d], 0)];
     return sum;
   }
   void smoothCoarse(MultigridLevel& l, bool fromZero) const;

@@ -41,6 +41,7 @@ Stencil::Stencil(const Annulus& annulus) {
   for (int a = 0; a < 3; ++a) regular[a] = static_cast<float>(inverseSquare[a] / regularDiagonal);
 
   weights.resize(annulus.fractions.size());
+  linked.resize(annulus.fractions.size());
   diagonal.resize(annulus.fractions.size());
   share.resize(annulus.fractions.size());
   for (int colour = 0; colour < 2; ++colour) {
@@ -66,7 +67,10 @@ Stencil::Stencil(const Annulus& annulus) {
             sum += coefficient[d];
           }
         }
-        for (int d = 0; d < 6; ++d) weights[row][d] = static_cast<float>(coefficient[d] / sum);
+        for (int d = 0; d < 6; ++d) {
+          weights[row][d] = static_cast<float>(coefficient[d] / sum);
+          linked[row][d] = links[d] < 0 ? 0 : weights[row][d];
+        }
         diagonal[row] = static_cast<float>(sum);
         share[row] = static_cast<float>(cell);
       });

@@ -23,6 +23,7 @@ struct Stencil {
   std::array<float, 3> regular{};  ///< weight of each neighbour along an axis at regular voxels
   double regularDiagonal = 0;      ///< 1/mm^2
   std::vector<std::array<float, 6>> weights;  ///< per irregular voxel, boundary links included
+  std::vector<std::array<float, 6>> linked;   ///< the same, but 0 where a link ends
   std::vector<float> diagonal;                ///< per irregular voxel, 1/mm^2
   std::vector<float> share;                   ///< per irregular voxel: volume of its cell in voxels
   std::array<std::vector<Strand>, 2> strands;  ///< all regular voxels, per colour

@@ -3,6 +3,8 @@
 
 #include "ByteSource.h"
 
+#include "VectorState.h"
+
 #include <fcntl.h>
 #include <isa-l/igzip_lib.h>
 #include <sys/stat.h>
@@ -46,6 +48,7 @@ class Inflater {
     state_.next_out = room > 0 ? out.data() : &none;
     state_.avail_out = room;
     const int status = isal_inflate(&state_);
+    endVectorCode();
     const std::uint32_t taken = input - state_.avail_in, made = room - state_.avail_out;
     in = in.subspan(taken);
     out = out.subspan(made);

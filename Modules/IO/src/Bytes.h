@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "Explica/Core/Base64.h"
 #include "Explica/Core/Errors.h"
 
 #include <algorithm>
@@ -24,10 +25,6 @@ using Bytes = std::vector<std::uint8_t>;
 using ByteView = std::span<const std::uint8_t>;
 
 constexpr double kFarthest = 1e7;  ///< mm; beyond it differences of coordinates lose their digits
-
-/// The characters of base64 (RFC 4648), by the 6 bits that they stand for.
-inline constexpr std::string_view kBase64 =
-    "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
 inline std::string_view textOf(ByteView bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};

@@ -3,6 +3,8 @@
 
 #include "PackedFile.h"
 
+#include "VectorState.h"
+
 #include "Explica/Core/Parallel.h"
 
 #include <isa-l/crc.h>
@@ -12,15 +14,17 @@
 #include <array>
 #include <cstring>
 #include <limits>
+#include <numeric>
 
 namespace explica::io {
 namespace {
 
 constexpr std::size_t kBlock = std::size_t{1} << 18;  // 8 windows: costs 1 % of size, feeds threads
 constexpr std::size_t kBlocksAtOnce = 128;            // bounds the memory of a batch
-// A Huffman code is made of a quarter of a block, piece by piece: costs 0.1 % of size, saves a
-// third of the packing's time.
+// A Huffman code is made of pieces of what is packed: a quarter of a block, or so many of a body,
+// which are looked for at so many places.
 constexpr std::size_t kLook = std::size_t{1} << 14, kLooksEvery = 4 * kLook;
+constexpr std::size_t kLooks = 128, kTries = 16 * kLooks;
 constexpr std::uint32_t kCrcPolynomial = 0xedb88320;  // of gzip, x^31 in the lowest bit
 
 struct Packed {
@@ -29,34 +33,67 @@ struct Packed {
   std::size_t size = 0;
 };
 
+/// Raises small counts, so that what was not seen in the pieces gets no long word: the files are
+/// 1 to 7 % smaller.
+template <class Counts>
+void smooth(Counts& counts) {
+  constexpr std::uint64_t kMostTimes = 1 << 9;  // the sum over the least count
+  const auto sum = std::accumulate(std::begin(counts), std::end(counts), std::uint64_t{0});
+  const std::uint64_t least = std::max<std::uint64_t>(1, sum / kMostTimes);
+  for (std::uint64_t& count : counts) count = std::max(count, least);
+}
+
+/// Counts what packing pieces of a sequence needs, and makes a Huffman code of it that has a word
+/// for whatever else comes.
+class CodeMaker {
+ public:
+  CodeMaker() { std::memset(&histogram_, 0, sizeof(histogram_)); }
+  void look(ByteView piece) {
+    isal_update_histogram(const_cast<std::uint8_t*>(piece.data()), static_cast<int>(piece.size()),
+                          &histogram_);
+    endVectorCode();
+  }
+  [[nodiscard]] isal_hufftables codes() {
+    smooth(histogram_.lit_len_histogram);
+    smooth(histogram_.dist_histogram);
+    isal_hufftables made;
+    std::memset(&made, 0, sizeof(made));
+    if (isal_create_hufftables(&made, &histogram_) != 0) {
+      throw EnvironmentError("a block cannot be packed");
+    }
+    return made;
+  }
+
+ private:
+  isal_huff_histogram histogram_;
+};
+
+/// The code of a block's own.
+isal_hufftables codesOf(ByteView block) {
+  CodeMaker maker;
+  for (std::size_t at = 0; at < block.size(); at += kLooksEvery) {
+    maker.look(block.subspan(at, std::min(kLook, block.size() - at)));
+  }
+  return maker.codes();
+}
+
 /// Room of each thread: larger than a block.
 struct Workspace {
-  isal_huff_histogram histogram;
-  isal_hufftables codes;
   isal_zstream stream;
   Bytes packed;
 };
 
 /// Deflate data of a block with zlib's wrapper, or raw, ended at a byte border and not marked as
-/// last.  ISA-L's fastest level with a Huffman code of the block's own: as small as zlib's level 1
+/// last.  ISA-L's fastest level with a Huffman code made for the data: as small as zlib's level 1
 /// on maps and labels, at a quarter of its time.  The higher levels give other bytes now and then,
 /// depending on where the stream lies in memory.
-Bytes deflated(ByteView block, bool zlib) {
+Bytes deflated(ByteView block, isal_hufftables& codes, bool zlib) {
   if (block.size() > std::numeric_limits<std::int32_t>::max()) {
     throw EnvironmentError("a block of more than 2 GB cannot be packed");
   }
   static thread_local Workspace workspace;
-  auto& [histogram, codes, stream, packed] = workspace;
+  auto& [stream, packed] = workspace;
   auto* bytes = const_cast<std::uint8_t*>(block.data());
-  std::memset(&histogram, 0, sizeof(histogram));
-  std::memset(&codes, 0, sizeof(codes));
-  for (std::size_t at = 0; at < block.size(); at += kLooksEvery) {
-    isal_update_histogram(bytes + at, static_cast<int>(std::min(kLook, block.size() - at)),
-                          &histogram);
-  }
-  if (isal_create_hufftables(&codes, &histogram) != 0) {
-    throw EnvironmentError("a block cannot be packed");
-  }
   std::memset(static_cast<void*>(&stream), 0, sizeof(stream));
   isal_deflate_stateless_init(&stream);
   stream.hufftables = &codes;
@@ -68,14 +105,60 @@ Bytes deflated(ByteView block, bool zlib) {
   stream.avail_in = static_cast<std::uint32_t>(block.size());
   stream.next_out = packed.data();
   stream.avail_out = static_cast<std::uint32_t>(packed.size());
-  if (isal_deflate_stateless(&stream) != COMP_OK) {
+  const int status = isal_deflate_stateless(&stream);
+  endVectorCode();
+  if (status != COMP_OK) {
     throw EnvironmentError("a block cannot be packed");
   }
   return Bytes(packed.data(), stream.next_out);
 }
 
+Packed packBlock(ByteView block, isal_hufftables& codes) {
+  const std::uint32_t checksum = crc32_gzip_refl(0, block.data(), block.size());
+  endVectorCode();
+  return {deflated(block, codes, false), checksum, block.size()};
+}
+
 Packed packBlock(ByteView block) {
-  return {deflated(block, false), crc32_gzip_refl(0, block.data(), block.size()), block.size()};
+  isal_hufftables codes = codesOf(block);
+  return packBlock(block, codes);
+}
+
+/// One value over and over, as outside the tissue.
+bool isUniform(ByteView bytes) {
+  constexpr std::size_t kPeriod = 16;  // bytes: of no fewer than a voxel of any type
+  return bytes.size() <= kPeriod ||
+         std::memcmp(bytes.data(), bytes.data() + kPeriod, bytes.size() - kPeriod) == 0;
+}
+
+/// A stride by which each early part of 0, 1, 2, ... times it, modulo `count`, is spread over all
+/// numbers below it: about the golden section, and without a common divisor, so that none comes
+/// twice.
+std::size_t goldenStride(std::size_t count) {
+  auto stride = static_cast<std::size_t>(0.6180339887498949 * static_cast<double>(count));
+  while (std::gcd(stride, count) != 1) ++stride;
+  return stride;
+}
+
+/// One code for the blocks of a body, of pieces spread over it that are not uniform.  What is known
+/// to be so is passed over as what turns out to be: the code goes by the bytes alone.
+isal_hufftables codesOfBody(const Content& content) {
+  const std::size_t pieces = (content.bodySize + kLook - 1) / kLook;
+  const std::size_t stride = goldenStride(pieces);
+  CodeMaker maker;
+  Bytes piece(kLook);
+  std::size_t looks = 0;
+  for (std::size_t k = 0; k < std::min(pieces, kTries) && looks < kLooks; ++k) {
+    const std::size_t begin = k * stride % pieces * kLook;
+    const std::size_t size = std::min(kLook, content.bodySize - begin);
+    if (content.isBlank && content.isBlank(begin, size)) continue;
+    content.body(begin, piece.data(), size);
+    const ByteView made(piece.data(), size);
+    if (isUniform(made)) continue;
+    maker.look(made);
+    ++looks;
+  }
+  return maker.codes();
 }
 
 /// Product of two polynomials over GF(2) modulo the checksum's.
@@ -147,6 +230,7 @@ void writeGzip(WholeFile& file, const Content& content) {
               blank.begin() + static_cast<std::ptrdiff_t>(at));
   }
   const Packed packedBlank = packBlock(blank);
+  isal_hufftables codes = codesOfBody(content);
   std::vector<Packed> batch(std::min(blocks, kBlocksAtOnce));
   for (std::size_t first = 0; first < blocks; first += kBlocksAtOnce) {
     const std::size_t count = std::min(kBlocksAtOnce, blocks - first);
@@ -158,7 +242,8 @@ void writeGzip(WholeFile& file, const Content& content) {
       static thread_local Bytes block;
       block.resize(size);
       content.body(begin, block.data(), size);
-      if (block != blank) batch[b] = packBlock(block);
+      if (block == blank) return;
+      batch[b] = isUniform(block) ? packBlock(block) : packBlock(block, codes);
     });
     for (std::size_t b = 0; b < count; ++b) member.add(batch[b].size > 0 ? batch[b] : packedBlank);
   }
@@ -167,7 +252,8 @@ void writeGzip(WholeFile& file, const Content& content) {
 }
 
 Bytes packZlib(ByteView bytes) {
-  return deflated(bytes, true);
+  isal_hufftables codes = codesOf(bytes);
+  return deflated(bytes, codes, true);
 }
 
 void appendBase64(std::string& text, ByteView bytes) {

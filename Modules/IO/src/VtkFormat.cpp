@@ -440,8 +440,7 @@ class XmlReader {
   /// Base64 encodes the header of packed data for itself; that of plain data may go with them.
   Bytes base64Block(std::string_view text) const {
     const auto charactersFor = [](std::size_t bytes) { return (bytes + 2) / 3 * 4; };
-    text = text.substr(0, text.find_first_not_of(
-                              "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/="));
+    text = text.substr(0, text.find_first_not_of(std::string(kBase64) + "="));
     if (!packed_) {
       const std::string_view start = text.substr(0, charactersFor(headerWidth()));
       const Bytes header = decodeBase64(path_, start);

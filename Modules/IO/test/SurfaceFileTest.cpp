@@ -33,6 +33,10 @@ struct Format {
   std::string name;
   bool exact;          ///< keeps doubles; else float32
   bool keepsVertices;  ///< numbers vertices as we do
+
+  friend std::ostream& operator<<(std::ostream& out, const Format& format) {
+    return out << format.name;
+  }
 };
 
 TEST(SurfaceFormats, EveryEndingIsWrittenReadBackAndTakenOffNames) {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Encoding.h"
 
+#include "Explica/Core/Base64.h"
+
 #include <zlib.h>
 
 #include <algorithm>
@@ -9,8 +11,6 @@
 namespace explica::report {
 
 std::string base64(std::string_view bytes) {
-  static constexpr char kDigits[] =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;
   text.reserve((bytes.size() + 2) / 3 * 4);
   for (std::size_t at = 0; at < bytes.size(); at += 3) {
@@ -20,7 +20,7 @@ std::string base64(std::string_view bytes) {
       group = group << 8 | (b < left ? static_cast<std::uint8_t>(bytes[at + b]) : 0u);
     }
     for (std::size_t d = 0; d < 4; ++d) {
-      text.push_back(d <= left ? kDigits[(group >> (18 - 6 * d)) & 63] : '=');
+      text.push_back(d <= left ? kBase64[(group >> (18 - 6 * d)) & 63] : '=');
     }
   }
   return text;

@@ -159,6 +159,17 @@ TEST(ColourMaps, GrowLighterStepByStep) {
   }
 }
 
+TEST(ColourMaps, AreWithoutStepsBetweenTheEntriesOfTheirTable) {
+  constexpr int kFine = 4096;  // eight an entry
+  double last = -1;
+  for (int s = 0; s <= kFine; ++s) {
+    const Colour c = colourAt(ColourMap::Sequential, static_cast<double>(s) / kFine);
+    const double light = 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
+    EXPECT_GT(light, last) << s;
+    last = light;
+  }
+}
+
 TEST(ColourMaps, DivergingIsLightestInTheMiddle) {
   const auto luminance = [](double t) {
     const Colour c = colourAt(ColourMap::Diverging, t);
@@ -250,6 +261,31 @@ TEST(FlatFigure, OutlinesCarryTheColoursOfTheRegionsOnTheirSides) {
   EXPECT_GE(blues, 1);
   EXPECT_LT(lastRed, firstBlue);
   for (int y = 0; y < 430; ++y) EXPECT_GT(picture.pixel(0, y)[0], 60) << "a name is cut off";
+}
+
+/// Red pixels of some rows.
+int redsIn(const Picture& picture, int firstRow, int lastRow) {
+  int count = 0;
+  for (int y = firstRow; y < lastRow; ++y) {
+    for (int x = 0; x < picture.width; ++x) {
+      const std::uint8_t* p = picture.pixel(x, y);
+      count += p[0] > 200 && p[2] < 60;
+    }
+  }
+  return count;
+}
+
+TEST(FlatFigure, OutlinesLieWhereTheSurfaceDoesNotUpsideDown) {
+  const TriangleMesh plane = geometry::makeRectangle(40, 40, 40, 40);
+  SurfacePaint paint;
+  paint.values = Eigen::VectorXd::Zero(plane.vertexCount());
+  paint.scale = {ColourMap::Grey, -1, 0.2, "x", ""};
+  FlatMarks marks;
+  const Colour red = {1, 0, 0};
+  marks.lines.push_back({{20, 25, 0}, {20, 38, 0}, red, red});  // in the upper half
+  const Picture picture = flatFigure(plane, paint, marks, 450);
+  EXPECT_GT(redsIn(picture, 0, 225), 20);
+  EXPECT_EQ(redsIn(picture, 225, 450), 0);
 }
 
 TEST(Ticks, HaveTheDigitsThatTheRangeNeeds) {

@@ -49,21 +49,46 @@ class LabelBoundary {
   [[nodiscard]] Eigen::Vector3f normal(std::int32_t p, int axis) const;
 
  private:
-  [[nodiscard]] std::int32_t find(std::int32_t p, int axis) const;
-  /// From the lower end of a link to that of another, in voxels.
-  [[nodiscard]] Eigen::Vector3f offset(std::size_t link, std::size_t other) const;
+  /// One of a link's two chains there: its curvature is own theta + beside[0] theta(0) +
+  /// beside[1] theta(1) + constant; all 0 where the chain ends.
+  struct Bend {
+    std::array<float, 2> beside{};
+    std::array<float, 2> nearer{};  ///< 1 / distance to the neighbour
+    float own = 0, constant = 0;
+    float length = 0;  ///< of arc around the link
+  };
+  using Bends = std::array<Bend, 2>;
+  struct Strip;
+  template <int kTerms>
+  struct Row;
+  enum class Energy { Curvature, Variation };
+
+  [[nodiscard]] std::int32_t find(std::int32_t row, std::int32_t p, int axis) const;
+  [[nodiscard]] int axisAt(std::size_t link) const { return at_[link][3]; }
+  /// From a link's crossing to that of another, in voxels.
+  [[nodiscard]] std::array<float, 4> between(std::size_t link, std::size_t other) const {
+    std::array<float, 4> way;
+    for (int c = 0; c < 4; ++c) {
+      way[c] =
+          static_cast<float>(at_[other][c] - at_[link][c]) + (step_[other][c] - step_[link][c]);
+    }
+    return way;
+  }
   void collect(const std::vector<std::uint8_t>& side);
   void join(const std::vector<std::uint8_t>& side);
   void findNormals(const std::vector<std::uint8_t>& side, int smoothings);
   void findCurvatures();
   void findPull(const LabelTrust& trust);
-  [[nodiscard]] float curvatureOf(std::size_t link, int chain,
-                                  const std::vector<float>& theta) const;
-  enum class Energy { Curvature, Variation };
+  [[nodiscard]] float curvatureOf(std::size_t link, int chain) const;
+  template <int kReach>
+  [[nodiscard]] Strip stripFrom(std::size_t link, int chain, int side) const;
   void relax(Energy energy, int iterations);
   /// @tparam kChains  on which a crossing lies
-  template <int kChains>
-  void relaxChains(Energy energy, int iterations);
+  /// @tparam kReach  of a row of the energy's Hessian along a chain, in links each way
+  template <int kChains, int kReach>
+  void relaxRows(int iterations);
+  template <int kChains, int kReach>
+  [[nodiscard]] Row<2 * kChains * kReach> rowOf(std::size_t link) const;
 
   std::array<int, 3> size_;
   std::array<std::int32_t, 3> strides_;
@@ -71,20 +96,16 @@ class LabelBoundary {
   // Links are sorted by voxel, then axis.
   std::vector<std::int32_t> rowStart_;           ///< first link of each row of voxels
   std::vector<std::int32_t> low_;                ///< per link: voxel at its lower end
-  std::vector<std::array<std::int32_t, 3>> at_;  ///< its subscripts
-  std::vector<std::uint8_t> axis_;               ///< per link
+  std::vector<std::array<std::int32_t, 4>> at_;  ///< its subscripts, then the link's axis
   std::vector<float> theta_;                     ///< per link: place from the lower end
   /// Per link, chain (2) and side (2): the slot of the neighbour that points back, that is
   /// (4 neighbour + 2 chain + side); -1 where the chain ends.
   std::vector<std::array<std::int32_t, 4>> back_;
-  std::vector<std::array<float, 3>> normal_;  ///< per link, outward, unit length in index space
-  // Curvature = own theta + beside(0) theta(0) + beside(1) theta(1) + constant, per link and chain;
-  // all 0 where the chain ends.
-  std::vector<std::array<float, 2>> own_, constant_;
-  std::vector<std::array<float, 4>> beside_;
-  std::vector<std::array<float, 2>> length_;  ///< of arc around the link; 0 where the chain ends
-  /// Per link, chain and side: 1 / distance to the neighbour; 0 if either has no curvature.
-  std::vector<std::array<float, 4>> stiffness_;
+  /// Per link: from its lower end to its crossing.
+  std::vector<std::array<float, 4>> step_;
+  /// Per link, outward, unit length in index space, then 0.
+  std::vector<std::array<float, 4>> normal_;
+  std::vector<Bends> bend_;  ///< per link and chain
   std::vector<float> pull_;  ///< per link, to its middle
 };
 
