@@ -233,6 +233,13 @@ registration::HeadRegistration registered(Context& context, const Settings& s,
                                          {stored.affine, std::move(stored.displacement)});
 }
 
+/// Where the brain of an image without skull is.
+Volume<Label> aboveZero(const Volume<float>& image) {
+  Volume<Label> brain(image.grid, 0);
+  for (std::size_t v = 0; v < image.size(); ++v) brain[v] = image[v] > 0 ? 1 : 0;
+  return brain;
+}
+
 /// The template in the image's space: mask, atlas, and how well it fits.
 Head fitTemplate(Context& context, Judge& judge, const Settings& s, const LoadedTemplate& loaded,
                  const Boxes& boxes, const Volume<float>& image, Volume<Label> mask) {
@@ -254,11 +261,8 @@ Head fitTemplate(Context& context, Judge& judge, const Settings& s, const Loaded
   Head head;
   head.mask = std::move(mask);
   if (!stripped) head.mask = registration::stripSkull(image, found.brain);
-  if (head.mask.size() == 0) {
-    head.mask = Volume<Label>(image.grid, 0);
-    for (std::size_t v = 0; v < image.size(); ++v) head.mask[v] = image[v] > 0 ? 1 : 0;
-  }
-  const double halves = halvesOf(head.mask, found.transform);
+  const double halves =
+      halvesOf(head.mask.size() != 0 ? head.mask : aboveZero(image), found.transform);
   context.result("left_over_right", halves);
   judge.flag("half-head", halves);
   head.atlas =

@@ -6,6 +6,7 @@
 #include "Explica/Registration/Deformation.h"
 #include "Explica/Registration/HeadRegistration.h"
 #include "Explica/Registration/SkullStripping.h"
+#include "Filters.h"
 
 #include <gtest/gtest.h>
 
@@ -56,6 +57,27 @@ Template phantomTemplate(double spacing = 3) {
       drawn(phantom.head.grid, [](const Point& p) { return inBrain(p) ? headAt(p) : 0; });
   phantom.atlas = Volume<Label>(phantom.head.grid, 0);
   return phantom;
+}
+
+// An impulse becomes as wide along every axis, in millimetres, whatever the voxels.
+TEST(Filters, SmoothByMillimetresAlongEveryAxis) {
+  Grid grid = cube(41, 1);
+  grid.spacing = Vector(1, 2, 0.7);
+  Volume<float> impulse(grid, 0.0f);
+  impulse(20, 20, 20) = 1;
+  constexpr double kSigma = 2;
+  const Volume<float> wide = smoothed(impulse, kSigma);
+  Vector variance = Vector::Zero();
+  double sum = 0;
+  for (std::size_t v = 0; v < wide.size(); ++v) {
+    const auto [i, j, k] = grid.subscripts(v);
+    const Vector d = Vector(i - 20, j - 20, k - 20).cwiseProduct(grid.spacing);
+    variance += wide[v] * d.cwiseAbs2();
+    sum += wide[v];
+  }
+  EXPECT_NEAR(sum, 1, 1e-5);
+  // The kernel ends at three standard deviations or a little later.
+  for (int a = 0; a < 3; ++a) EXPECT_NEAR(variance[a], kSigma * kSigma, 0.05 * kSigma * kSigma);
 }
 
 /// Where the points of an image of the moved head lie in the template.

@@ -34,6 +34,8 @@ constexpr int kEdgeRounds = 10;         // after which levels move no more
 constexpr float kBeyondDoubt = 0.9F;
 constexpr int kPriorRounds = 4;     // for the neighbours to agree
 constexpr double kLocalBlocks = 2;  // of the local windows' width
+constexpr double kDark = 1.0 / 3;   // of the darkest class, in which fluid and grey matter mix
+constexpr std::int32_t kNone = -1, kDarkRemains = -2;  // neighbours that are not in the brain
 
 /// Fluid, grey, white, and the voxels where two of them meet.
 enum Component { kPureCsf, kPureGrey, kPureWhite, kCsfGrey, kGreyWhite, kComponents };
@@ -51,7 +53,7 @@ struct Mixture {
   std::array<double, kComponents> share{};
 };
 
-/// The brain's voxels, packed, with the packed indices of their six neighbours (-1 outside).
+/// The brain's voxels, packed, with the packed indices of their six neighbours (kNone outside).
 struct Brain {
   std::vector<std::size_t> voxel;
   std::vector<std::array<std::int32_t, 6>> neighbours;
@@ -85,7 +87,7 @@ Brain packBrain(const Volume<float>& image, const Volume<Label>& mask) {
       next[n / 2] += n % 2 == 0 ? -1 : 1;
       brain.neighbours[b][n] = grid.contains(next[0], next[1], next[2])
                                    ? packed[grid.linear(next[0], next[1], next[2])]
-                                   : -1;
+                                   : kNone;
     }
   }
   return brain;
@@ -182,6 +184,57 @@ Mixture firstGuess(Brain& brain) {
   return guessFrom(brain.intensity);
 }
 
+/// Dark remains at the rim of an image without skull: darker than a third of its fluid, and
+/// connected by such voxels to what is not above 0.  Resampling blends the brain with the zeros
+/// around it, and stripping leaves bone.  How dark fluid is, is the darkest of three classes away
+/// from the rim.
+/// @return for each of the brain's voxels, whether it is one
+std::vector<std::uint8_t> darkRemains(const Grid& grid, Brain& brain) {
+  std::vector<std::uint8_t> dark(brain.size(), 0);
+  if (brain.size() < kFewestInCore) return dark;
+  markRim(grid, brain);
+  const double darkest = kDark * firstGuess(brain).mean[0];
+  std::vector<std::int32_t> front;
+  const auto reach = [&](std::int32_t b) {
+    if (b < 0 || dark[b] != 0 || !(brain.intensity[b] < darkest)) return;
+    dark[b] = 1;
+    front.push_back(b);
+  };
+  for (std::size_t b = 0; b < brain.size(); ++b) {
+    const auto& near = brain.neighbours[b];
+    if (std::find(near.begin(), near.end(), kNone) != near.end()) reach(static_cast<int>(b));
+  }
+  while (!front.empty()) {
+    const std::int32_t b = front.back();
+    front.pop_back();
+    for (const std::int32_t next : brain.neighbours[b]) reach(next);
+  }
+  return dark;
+}
+
+/// Takes dark remains out of the brain; to their neighbours they are fluid.
+/// @return their voxels
+std::vector<std::size_t> takeOut(const std::vector<std::uint8_t>& dark, Brain& brain) {
+  std::vector<std::size_t> taken;
+  std::vector<std::int32_t> now(brain.size(), kDarkRemains);
+  Brain rest;
+  for (std::size_t b = 0; b < brain.size(); ++b) {
+    if (dark[b] != 0) {
+      taken.push_back(brain.voxel[b]);
+      continue;
+    }
+    now[b] = static_cast<std::int32_t>(rest.size());
+    rest.voxel.push_back(brain.voxel[b]);
+    rest.neighbours.push_back(brain.neighbours[b]);
+    rest.intensity.push_back(brain.intensity[b]);
+  }
+  for (auto& neighbours : rest.neighbours) {
+    for (std::int32_t& other : neighbours) other = other < 0 ? kNone : now[other];
+  }
+  brain = std::move(rest);
+  return taken;
+}
+
 /// Logarithm of each component's weighted density between the outer means, tabulated.
 /// A mixed voxel's intensity is uniform between two means, blurred by the noise [Santago1993]:
 /// (Phi((y - a) / s) - Phi((y - b) / s)) / (b - a).
@@ -261,6 +314,7 @@ void expect(const Brain& brain, const std::vector<float>& corrected, const Mixtu
         Shares around = {};
         for (int n = 0; n < 6; ++n) {
           const std::int32_t other = brain.neighbours[b][n];
+          if (other == kDarkRemains) around[kPureCsf] += weights[n];
           if (other < 0) continue;
           for (int k = 0; k < kClasses; ++k) around[k] += weights[n] * before[other][k];
         }
@@ -452,7 +506,8 @@ class Classifier {
     return *middle;
   }
 
-  void write(TissueSegmentation& result) const {
+  /// @param dark  voxels that are fluid without being looked at
+  void write(const std::vector<std::size_t>& dark, TissueSegmentation& result) const {
     result.deepFluid = deepFluid();
     for (int k = 0; k < kClasses; ++k) {
       result.classes[k] = {mixture_.mean[k], mixture_.deviation[k], 0};
@@ -464,12 +519,18 @@ class Classifier {
       const std::size_t v = brain_.voxel[b];
       for (int k = 0; k < kClasses; ++k) {
         result.probability[k][v] = shares_[b][k];
-        result.classes[k].share += shares_[b][k] / static_cast<double>(brain_.size());
+        result.classes[k].share += shares_[b][k] / static_cast<double>(result.brainVoxels);
       }
       const auto likeliest = std::max_element(shares_[b].begin(), shares_[b].end());
       result.labels[v] = static_cast<Label>(likeliest - shares_[b].begin()) + kCsf;
       result.bias[v] = shading_[b] * field_[b];
     }
+    for (const std::size_t v : dark) {
+      result.probability[kPureCsf][v] = 1;
+      result.labels[v] = kCsf;
+    }
+    result.classes[kPureCsf].share +=
+        static_cast<double>(dark.size()) / static_cast<double>(result.brainVoxels);
   }
 
  private:
@@ -510,6 +571,8 @@ TissueSegmentation segmentTissue(const Volume<float>& intensity, const Volume<La
   TissueSegmentation result;
   result.brainVoxels = static_cast<std::int64_t>(brain.size());
   result.termination = Termination::MaxIterations;
+  std::vector<std::size_t> dark;
+  if (mask.size() == 0) dark = takeOut(darkRemains(intensity.grid, brain), brain);
   Classifier classifier(intensity.grid, std::move(brain), options);
   while (result.iterations < options.maxIterations) {
     if (monitor.shouldStop()) {
@@ -525,7 +588,7 @@ TissueSegmentation segmentTissue(const Volume<float>& intensity, const Volume<La
     }
   }
   if (options.localWidth > 0 && !monitor.shouldStop()) classifier.followEdges();
-  classifier.write(result);
+  classifier.write(dark, result);
   monitor.progress(1, "tissue classes");
   return result;
 }

@@ -106,6 +106,35 @@ TEST(Hemisphere, LeavesTheStemOutAndMarksTheCut) {
             kCut);
 }
 
+/// A ball as bright as white matter, joined to it by a single row of voxels, and what is about it.
+void hangBall(HeadPhantom& p, Label about) {
+  const Point middle(-12.5, 16, 10);
+  for (std::size_t v = 0; v < p.atlas.size(); ++v) {
+    const auto [i, j, k] = p.atlas.grid.subscripts(v);
+    const Point w = p.atlas.grid.toWorld(Vector(i, j, k));
+    const double r = (w - middle).norm();
+    if (r > 8) continue;
+    const bool thread = std::abs(w.x() - middle.x()) < 0.5 && std::abs(w.z() - middle.z()) < 0.5 &&
+                        w.y() < middle.y();
+    const Label tissue = r < 5.5 || thread ? Label{kWhite} : about;
+    p.tissue.labels[v] = tissue;
+    for (auto& q : p.tissue.probability) q[v] = 0;
+    if (tissue != 0) p.tissue.probability[tissue - 1][v] = 1;
+  }
+}
+
+TEST(Hemisphere, LeavesOutWhatHangsByAThreadWithoutCortexAboutIt) {
+  const auto whiteWith = [](Label about) {
+    HeadPhantom p = makeHeadPhantom(false);
+    hangBall(p, about);
+    return extractHemisphere(p.tissue, p.atlas, p.legend).whiteVoxels;
+  };
+  // Within cortex it is white matter's, however thin the bridge.
+  const auto kept = static_cast<double>(whiteWith(kGrey));
+  const double ball = 4.0 / 3 * kPi * std::pow(5.5, 3);
+  EXPECT_NEAR(kept - static_cast<double>(whiteWith(0)), ball, 0.1 * ball);  // with the thread
+}
+
 TEST(Hemisphere, LeftAndRightShareNoVoxel) {
   const HeadPhantom p = makeHeadPhantom(false);
   HemisphereOptions options;

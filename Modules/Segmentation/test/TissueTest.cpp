@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <random>
@@ -208,6 +209,39 @@ TEST(TissueSegmentation, DarkRemainsAtTheBrainsEdgeAreNotFluid) {
     if (r > 26.8 && phantom.image[v] > 0) phantom.image[v] = 2;
   }
   EXPECT_NEAR(segmentTissue(phantom.image).classes[0].mean, 35, 4);
+}
+
+/// The phantom moved by half a voxel along each axis: each voxel the mean of eight.
+Volume<float> movedByHalf(const Volume<float>& image) {
+  Volume<float> moved(image.grid, 0.0f);
+  for (std::size_t v = 0; v < image.size(); ++v) {
+    const auto [i, j, k] = image.grid.subscripts(v);
+    for (int c = 0; c < 8; ++c) {
+      const int a = i + (c & 1), b = j + (c >> 1 & 1), d = k + (c >> 2);
+      if (image.grid.contains(a, b, d)) moved[v] += image(a, b, d) / 8;
+    }
+  }
+  return moved;
+}
+
+TEST(TissueSegmentation, EmptySpaceThatResamplingBlendsInDoesNotDarkenFluid) {
+  const Phantom phantom = makePhantom(3, 0);
+  const Volume<float> moved = movedByHalf(phantom.image);
+  const TissueSegmentation found = segmentTissue(moved);
+  EXPECT_NEAR(found.classes[0].mean, 35, 2);
+  std::int64_t brain = 0, named = 0;
+  double shares = 0;
+  for (std::size_t v = 0; v < moved.size(); ++v) {
+    brain += moved[v] > 0 ? 1 : 0;
+    named += found.labels[v] != 0 ? 1 : 0;
+    if (moved[v] > 0 && moved[v] < 10) {
+      EXPECT_EQ(found.labels[v], kCsf);
+    }
+  }
+  for (const auto& tissue : found.classes) shares += tissue.share;
+  EXPECT_EQ(named, brain);  // nothing is dropped
+  EXPECT_EQ(found.brainVoxels, brain);
+  EXPECT_NEAR(shares, 1, 1e-5);
 }
 
 TEST(TissueSegmentation, DoesNotDependOnThreads) {

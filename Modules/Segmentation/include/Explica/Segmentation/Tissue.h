@@ -76,7 +76,9 @@ struct TissueSegmentation {
 /// border.
 /// Classes are ordered by their means, so the image must be T1-weighted.
 ///
-/// @param intensity  I x J x K; the brain is where it is > 0
+/// @param intensity  I x J x K; the brain is where it is > 0;
+///                   dark remains at its rim, as resampling and stripping leave them, are fluid
+///                   from which nothing is learnt
 /// @param mask       empty, or on the same grid: the brain is where it is != 0
 /// @throws InvalidInput  a non-finite voxel, no voxel > 0, fewer than three distinct values, a mask
 /// on
