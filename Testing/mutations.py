@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The Explica developers
 # SPDX-License-Identifier: Apache-2.0
-"""Breaks the code in some thirty places, one at a time, and asks whether a test notices.
+"""Breaks the code in some fifty places, one at a time, and asks whether a test notices.
 
     mutations.py [--only WORD]      needs a configured build/; leaves the sources as they were; EXPLICA_JOBS bounds
                                     the compilers at once
@@ -140,6 +140,48 @@ ALL = [
     Mutation("Modules/Provenance/src/Verify.cpp",
              """found.sha256 == entry["sha256"] &&""", """true &&""",
              "ExplicaProvenanceUnitTests"),
+    Mutation("Modules/Core/src/Grid.cpp",
+             "m.topLeftCorner<3, 3>() = direction * spacing.asDiagonal();",
+             "m.topLeftCorner<3, 3>() = spacing.asDiagonal() * direction;", "ExplicaCoreUnitTests"),
+    Mutation("Modules/Core/include/Explica/Core/TimeBudget.h",
+             "return !limit_ || elapsed + last_ <= *limit_;", "return !limit_ || elapsed <= *limit_;",
+             "ExplicaCoreUnitTests"),
+    Mutation("Modules/Inflation/src/DirectionField.cpp",
+             "= reach * reach * geometry::cotangentLaplacian(mesh);",
+             "= reach * geometry::cotangentLaplacian(mesh);",
+             "ExplicaInflationUnitTests", "DirectionField.*"),
+    Mutation("Modules/Phantom/src/BeatingVentricle.cpp",
+             "const double angle = kPi + kRightHalf;", "const double angle = kPi - kRightHalf;",
+             "ExplicaPhantomUnitTests", "BeatingVentricle.*"),
+    Mutation("Modules/Phantom/src/Shell.cpp",
+             "(1 / a - 1 / r) / (1 / a - 1 / b)", "(r - a) / (b - a)",
+             "ExplicaPhantomUnitTests", "ShellPhantom.*"),
+    Mutation("Modules/Registration/src/Filters.cpp",
+             "const double inVoxels = sigma / volume.grid.spacing[axis];",
+             "const double inVoxels = sigma / volume.grid.spacing[0];", "ExplicaRegistrationUnitTests"),
+    Mutation("Modules/Registration/src/Filters.cpp",
+             "if (s - radius - 1 >= 0) sum -= in[s - radius - 1];",
+             "if (s - radius >= 0) sum -= in[s - radius];", "ExplicaRegistrationUnitTests"),
+    Mutation("Modules/Report/src/FlatFigure.cpp",
+             "options.height / 2.0 - scale * (p.y() - camera.target.y())",
+             "options.height / 2.0 + scale * (p.y() - camera.target.y())",
+             "ExplicaReportUnitTests", "FlatFigure.*"),
+    Mutation("Modules/Report/src/ColourMap.cpp",
+             "(1 - f) * table_[e][c] + f * table_[e + 1][c]", "f * table_[e][c] + (1 - f) * table_[e + 1][c]",
+             "ExplicaReportUnitTests", "Colour*"),
+    Mutation("Modules/Shapes/src/HarmonicAnnulus.cpp",
+             "row[n + k] = angular[k] * radial.outer;", "row[n + k] = -angular[k] * radial.outer;",
+             "ExplicaShapesUnitTests"),
+    Mutation("Modules/Shapes/src/HarmonicAnnulus.cpp",
+             "box.halfSide = (high - low).maxCoeff() / 2;", "box.halfSide = (high - low).minCoeff() / 2;",
+             "ExplicaShapesUnitTests"),
+    Mutation("Modules/Viewer/src/Session.cpp",
+             """options.emplace_back("max-iterations", std::to_string(number));""",
+             """options.emplace_back("max-iterations", std::to_string(number + 1));""",
+             "ExplicaViewerUnitTests"),
+    Mutation("Modules/Viewer/src/Session.cpp",
+             "checkpoint.history = self_->history(number);",
+             "checkpoint.history = self_->history(number + 1);", "ExplicaViewerUnitTests"),
 ]
 
 

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-FileCopyrightText: The Explica developers
 # SPDX-License-Identifier: Apache-2.0
-# Breaks the code in some thirty places, one at a time, and fails where no test notices (Testing/mutations.py).
+# Breaks the code in some fifty places, one at a time, and fails where no test notices (Testing/mutations.py).
 #   Testing/mutations.sh [--only WORD]
 set -eu
 cd "$(dirname "$0")/.."

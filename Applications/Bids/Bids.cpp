@@ -166,15 +166,6 @@ std::optional<fs::path> earlierRegistration(const Settings& s, const std::string
   return {};
 }
 
-/// What a run's numbers say against it counts against the whole.
-void passFlagsOn(Context& context, const fs::path& run) {
-  const Json summary = provenance::readJson(run / provenance::kSummaryName);
-  for (Json flag : summary.value("flags", Json::array())) {
-    flag["run"] = run.filename().string();
-    context.flag(flag);
-  }
-}
-
 /// Takes one hemisphere through the run and names its results.
 /// @return false if it failed: the reason is then in problem.txt beside the run
 bool doHemisphere(Context& context, const Settings& s, const study::Participant& participant,

@@ -7,6 +7,7 @@
 #include "Explica/Application/Command.h"
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/TimeBudget.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Flattening/Comparison.h"
 #include "Explica/Flattening/Disc.h"
@@ -26,7 +27,6 @@
 #include "Explica/Report/FlatFigure.h"
 #include "Explica/Unfolding/Account.h"
 #include "Explica/Unfolding/Distortion.h"
-#include "Explica/Unfolding/TimeBudget.h"
 
 #include <nlohmann/json.hpp>
 
@@ -146,7 +146,7 @@ With --surfaces the map becomes a stack of depths: grid.nii.gz gives each cell i
       .option("Flattening",
               Field{"frames", "",
                     "states to write on the way, evenly spaced along the way that vertices go", 0,
-                    flattening::kMostFrames},
+                    kMostFrames},
               s.flatten.frames)
       .option("Flattening", Field{"max-time", "s", "stop after this time", kAboveZero},
               s.flatten.maxTime)
@@ -625,7 +625,7 @@ void writeFrames(Context& context, const Subject& subject, const flattening::Dis
 
 // What comes after cuts and map measures and writes for about four times as long as the start took,
 // and each frame for half as long.
-constexpr unfolding::KeptTime kKept = {4, 0.5};
+constexpr KeptTime kKept = {4, 0.5};
 
 /// The run from the opened surface on: its disc, its map, and what going on needs.
 struct Made {
@@ -678,7 +678,7 @@ Termination run(Context& context, const Settings& s) {
   options.areaTolerance = s.areaTolerance.value_or(s.cuts ? kCutTolerance : kPatchTolerance);
   const double read = secondsSince(begin);
   if (options.maxTime) {
-    options.maxTime = unfolding::timeToIterate(*options.maxTime, read, options.frames, kKept);
+    options.maxTime = timeToIterate(*options.maxTime, read, options.frames, kKept);
   }
   const Made made = make(context, s, subject, std::move(whole), options);
   const flattening::Disc& disc = made.disc;

@@ -10,12 +10,12 @@
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Collision/Untangling.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/TimeBudget.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Geometry/SelfIntersection.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/Unfolding/Account.h"
-#include "Explica/Unfolding/TimeBudget.h"
 
 #include <algorithm>
 #include <chrono>
@@ -126,7 +126,7 @@ std::vector<geometry::FacePair> checkStart(Context& context, const Settings& s,
 
 // What comes after the iterations has taken up to three times as long as the start; frames, which
 // are whole surfaces, half of it each.
-constexpr unfolding::KeptTime kKept = {3, 0.5};
+constexpr KeptTime kKept = {3, 0.5};
 
 Termination run(Context& context, const Settings& s) {
   const auto begin = std::chrono::steady_clock::now();
@@ -151,7 +151,7 @@ Termination run(Context& context, const Settings& s) {
     auto step = context.step("inflate");
     inflation::InflateOptions options = s.inflate;
     if (options.maxTime) {
-      options.maxTime = unfolding::timeToIterate(*options.maxTime, started, options.frames, kKept);
+      options.maxTime = timeToIterate(*options.maxTime, started, options.frames, kKept);
     }
     u.result = inflation::inflate(u.before, options, context.monitor(),
                                   checkpoint ? &*checkpoint : nullptr);

@@ -3,6 +3,7 @@
 
 #include "Explica/Application/Command.h"
 #include "Explica/Application/Execute.h"
+#include "Explica/Application/ManyRuns.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Study/StudyState.h"
@@ -33,7 +34,7 @@ void declare(Declaration& d, Settings& s) {
           "Several of these commands may work on one OUT_DIR at a time, on different subjects. "
           "SIGUSR1 or SIGTERM ends it with what was reached: exit code 3, and to be done again. "
           "Exit "
-          "code 3, too, if some runs failed, and 2 if all did.")
+          "code 3, too, if some runs failed or have implausible numbers, and 2 if all failed.")
       .example("explica study participant study.yaml results --participant-label 01 02",
                "Two subjects")
       .input("STUDY", FileKind::Any, "study file, YAML or JSON", s.study)
@@ -94,6 +95,7 @@ bool doRun(Context& context, const fs::path& folder, const study::Participant& p
     const Outcome outcome = context.runApart(*findCommand("run"), folder, values);
     fs::remove(problem);
     if (!reachedGoal(outcome.termination)) account.worst = outcome.termination;
+    if (!outcome.plausible) passFlagsOn(context, folder);
     return !endedFromOutside(outcome.termination);
   } catch (const EnvironmentError& fault) {
     account.environmentFault = fault.what();

@@ -10,6 +10,7 @@
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Collision/Untangling.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/TimeBudget.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Geometry/SelfIntersection.h"
@@ -19,7 +20,6 @@
 #include "Explica/Repulsion/KnotEnergy.h"
 #include "Explica/Unfolding/Account.h"
 #include "Explica/Unfolding/Region.h"
-#include "Explica/Unfolding/TimeBudget.h"
 
 #include <malloc.h>
 
@@ -309,7 +309,7 @@ Termination run(Context& context, const Settings& s) {
     auto step = context.step("unfold");
     unfolding::UnfoldOptions options = s.unfold;
     if (options.maxTime) {
-      options.maxTime = unfolding::timeToIterate(*options.maxTime, u.secondsStart, options.frames);
+      options.maxTime = timeToIterate(*options.maxTime, u.secondsStart, options.frames);
     }
     u.result = unfolding::unfold(u.before, u.chosen, u.view, options, context.monitor(),
                                  checkpoint ? &*checkpoint : nullptr);

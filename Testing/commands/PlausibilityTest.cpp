@@ -193,6 +193,10 @@ struct Beyond {
   bool refused;  ///< else flagged
   std::function<Volume<float>()> input;
   std::vector<std::string> words;  ///< of the command, {input} for the file
+
+  friend std::ostream& operator<<(std::ostream& out, const Beyond& beyond) {
+    return out << beyond.limit;
+  }
 };
 
 std::vector<Beyond> beyondEachLimit() {

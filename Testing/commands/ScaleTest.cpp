@@ -13,6 +13,7 @@
 
 #include <cmath>
 #include <functional>
+#include <map>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -59,7 +60,20 @@ class Scale : public ::testing::TestWithParam<Work> {
   }
 };
 
+TEST_P(Scale, ByAPowerOfTwoChangesNoCount) {
+  const nlohmann::ordered_json here = summaryAt(1);
+  for (const double unit : {0x1p-10, 0x1p10}) {  // every length is scaled without rounding
+    const nlohmann::ordered_json there = summaryAt(unit);
+    for (const std::string& name : GetParam().counts) {
+      if (name == "peak_memory_bytes") continue;
+      EXPECT_EQ(there.at(name), here.at(name)) << name << " at " << unit;
+    }
+  }
+}
+
 TEST_P(Scale, ByAThousandChangesNeitherWorkNorMemoryByMoreThanATenth) {
+  // Rounding decides where two ways are alike, for the ball's eight mirror images at once.
+  const std::map<std::string, double> within = {{"trajectories_shortened", 0.2}};
   constexpr double kTenth = 0.1;
   const nlohmann::ordered_json here = summaryAt(1);
   for (const double unit : {1e-3, 1e3}) {
@@ -67,7 +81,8 @@ TEST_P(Scale, ByAThousandChangesNeitherWorkNorMemoryByMoreThanATenth) {
     for (const std::string& name : GetParam().counts) {
       const double expected = here.at(name);
       EXPECT_GT(expected, 0) << name;
-      EXPECT_NEAR(there.at(name), expected, kTenth * expected) << name << " at " << unit;
+      const double share = within.contains(name) ? within.at(name) : kTenth;
+      EXPECT_NEAR(there.at(name), expected, share * expected) << name << " at " << unit;
     }
   }
 }

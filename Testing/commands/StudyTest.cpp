@@ -137,6 +137,22 @@ TEST_F(Study, ABrokenInputIsARowAndStaysToDo) {
   EXPECT_NE(cell("sub-c", "state").find("absent.nii.gz does not exist"), std::string::npos);
 }
 
+TEST_F(Study, ImplausibleNumbersEndWithThreeAndAreDone) {
+  ASSERT_EQ(explica({"phantom", "cortex", "--size", "64", "--depth", "0.1", "--waves", "3",
+                     "--thickness", "6", "--out", folder_ / "thick"})
+                .exitCode,
+            0);
+  writeText(folder_ / "study.yaml",
+            "hemispheres: [L]\nparameters: {surface.faces: 1000, steps: [surface]}\n"
+            "subjects:\n  a: {input: phantom/labels.nii.gz}\n  b: {input: thick/labels.nii.gz}\n");
+  const auto made = participant();
+  EXPECT_EQ(made.exitCode, 3) << made;
+  EXPECT_EQ(todo(), "") << made;
+  EXPECT_EQ(cell("sub-a", "state"), "done");
+  EXPECT_EQ(cell("sub-b", "state").rfind("implausible", 0), 0u) << cell("sub-b", "state");
+  EXPECT_EQ(participant().exitCode, 3) << "what was kept is as implausible as before";
+}
+
 TEST_F(Study, AFaultInTheFileStopsBeforeAnythingRuns) {
   writeText(folder_ / "study.yaml",
             "input: phantom/labels.nii.gz\nsubjects: [1]\nparameters: {unfold: {radus: 3}}\n");

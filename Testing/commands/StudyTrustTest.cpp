@@ -106,9 +106,9 @@ TEST(StudyTrust, LimitsHoldForCommandsOfManyRunsRecordsAndPictures) {
       }
     }
     std::vector<std::string> limited = words;
-    limited.insert(limited.end(), {"--max-time", "0.001"});
+    limited.insert(limited.end(), {"--max-time", "1e-9"});
     const CommandResult ended = explica(limited);
-    EXPECT_TRUE(ended.exitCode == 0 || ended.exitCode == 3) << words[0] << ended;
+    EXPECT_TRUE(ended.exitCode == 0 || ended.exitCode == 3 || overran(ended)) << words[0] << ended;
     for (const std::string& name : folder.entries()) {
       EXPECT_EQ(name.find("explica-stage"), std::string::npos) << name;
     }

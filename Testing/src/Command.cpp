@@ -97,6 +97,11 @@ CommandResult runProgram(const std::vector<std::string>& words, const CommandSet
   return result;
 }
 
+bool overran(const CommandResult& result) {
+  return result.exitCode == 4 &&
+         result.err.find("did not come to a stop after --max-time") != std::string::npos;
+}
+
 CommandResult explica(const std::vector<std::string>& words, const CommandSetting& setting) {
   std::vector<std::string> all = {EXPLICA_EXECUTABLE};
   all.insert(all.end(), words.begin(), words.end());

@@ -24,6 +24,7 @@ from harness import DATA, ROOT
 PAGE = pathlib.Path(__file__).parent / "options" / "README.md"
 FACTOR = 4  # from the default to the lower and the higher value
 
+SMALL = DATA / "fsaverage5" / "fsaverage3_fs_binary"
 PIAL, WHITE = DATA / "fsaverage5" / "pial_left.gii.gz", DATA / "fsaverage5" / "white_left.gii.gz"
 SIDE = ["--direction=-1,0.2,0.2"]
 THESIS = ["--surround", "none", "--method", "thesis", "--knot", "tree", "--knot-weight", "0.2", "--time-step", "0.02",
@@ -40,6 +41,26 @@ SUBJECTS = {
         ("guided", [str(PIAL), "--vertex", "4530", "--radius", "40", *SIDE, "--surround", "none",
                     "--guide-faces", "1000"]),
         ("thesis", [str(PIAL), "--vertex", "4530", "--radius", "20", *SIDE, *THESIS]),
+    ],
+    "flatten": [
+        ("unfolded patch", ["{folder}/patch/unfolded.surf.gii", "--reference", str(PIAL)]),
+        ("folded patch", [str(PIAL), "--label", "{folder}/patch/region.label.gii"]),
+        ("cut hemisphere", [str(SMALL / "lh.white"), "--cuts", "auto"]),
+    ],
+    "inflate": [
+        ("left pial", [str(SMALL / "lh.pial")]),
+        ("left white", [str(SMALL / "lh.white")]),
+        ("right white", [str(SMALL / "rh.white")]),
+    ],
+    "polygon": [
+        ("19 edges", ["--phantom", "polygon19"]),
+        ("34 edges", ["--phantom", "polygon34"]),
+        ("elastic", ["--phantom", "polygon34", "--surround", "elastic"]),
+        ("thesis", ["--phantom", "polygon19", "--method", "thesis", "--max-iterations", "2000"]),
+    ],
+    "repair": [
+        ("right pial", [str(DATA / "fsaverage5" / "pial_right.gii.gz")]),
+        ("right white", [str(DATA / "fsaverage5" / "white_right.gii.gz")]),
     ],
     "thickness": [
         ("spheroid", ["{folder}/spheroid/labels.nii.gz", "--inner", "1", "--tissue", "2"]),
@@ -61,6 +82,7 @@ PHANTOMS = {
     "noisy": ["phantom", "cortex", "--size", "64", "--spacing", "1.5", "--noise", "10", "--bias", "0.4"],
     "spheroid": ["phantom", "spheroid", "--size", "64", "--spacing", "2"],
     "shell": ["phantom", "shell", "--size", "40"],
+    "patch": ["unfold", str(PIAL), "--vertex", "4530", "--radius", "25", *SIDE, "--surround", "none"],
 }
 
 # What is measured: heading, how it is shown, and where it comes from (result folder, its summary, the subject's words).
@@ -69,6 +91,19 @@ MEASURES = {
                ("strain, %", "{:+.2f}", lambda s: 100 * s["edge_strain_mean"]),
                ("area error, %", "{:+.3f}", lambda s: 100 * s["area_error_mean"]),
                ("iterations", "{:+d}", "iterations")],
+    "flatten": [("area error, %", "{:+.3f}", lambda s: 100 * s["area_error_mean"]),
+                ("strain, %", "{:+.2f}", lambda s: 100 * s["edge_strain_mean"]),
+                ("distances, %", "{:+.2f}", lambda s: 100 * s["geodesic_error_all"]),
+                ("iterations", "{:+d}", "iterations")],
+    "inflate": [("visibility", "{:+.4f}", "visibility_final"),
+                ("strain, %", "{:+.2f}", lambda s: 100 * s["edge_strain_mean"]),
+                ("area error, %", "{:+.3f}", lambda s: 100 * s["area_error_mean"]),
+                ("iterations", "{:+d}", "iterations")],
+    "polygon": [("visibility", "{:+.4f}", "visibility_final"), ("flux variance", "{:+.5f}", "flux_variance_final"),
+                ("length error, %", "{:+.3f}", lambda s: 100 * (s["length_error_max"] or 0)),
+                ("crossings", "{:+d}", "self_intersections_final"), ("iterations", "{:+d}", "iterations")],
+    "repair": [("pairs left", "{:+d}", "pairs_after"), ("vertices moved", "{:+d}", "vertices_moved"),
+               ("farthest, mm", "{:+.4f}", "move_max")],
     "thickness": [("mean, mm", "{:+.4f}", "thickness_mean"),
                   ("off exact, mm", "{:+.4f}", "off"), ("traced share", "{:+.3f}", "traced_fraction")],
     "surface": [("white, mm^2", "{:+.1f}", "area_white"), ("pial, mm^2", "{:+.1f}", "area_pial"),
@@ -82,8 +117,13 @@ VALUES = {
     "unfold": {"collar-width": [6, 40], "time-step": [0.005, 0.05], "distance": [100, 10000], "cone": [],
                "target-visibility": [0.9, 0.99], "max-iterations": [10, 2000], "guide-faces": [250, 120000],
                "frames": [3], "knot": ["tree"]},  # the other two sum the same pairs, for minutes
+    "flatten": {"cut.strain": [0.08, 0.2], "cut.most": [3, 48], "area-tolerance": [0.0025, 0.04], "frames": [3],
+                "grid": [0.25, 2]},
+    "inflate": {"target-seen": [0.9, 0.99], "max-iterations": [10, 1200], "frames": [3]},
+    "polygon": {"target-visibility": [0.9, 0.9999], "max-iterations": [10, 80000], "frames": [3], "stages": [2, 12]},
+    "repair": {"max-move": [0.05, 3]},
     "thickness": {"lambda": [0.2, 2], "grid": [3], "level": [-0.5, 0.5], "facing": [60, 140]},
-    "surface": {"fluid": [0.5], "steps": [2, 12]},
+    "surface": {"fluid": [0.5]},
     "segment": {"max-iterations": [5, 240], "smooth": [0, 0.4], "bias-width": [0, 12, 50]},
 }
 
@@ -99,6 +139,10 @@ NOT_TRIED = {
     "stripped": SPECIES, "open-ends": SPECIES, "per-slice": SPECIES, "along": "more output", "figure": "more output",
     "figure-slice": "more output", "aha": SPECIES, "rv-insertion": PLACE, "rv-insertion-image-axis": PLACE,
     "image-edge": SPECIES, "surface level": INPUT, "close-edges": SPECIES,
+    "nearest": INPUT, "depths": "more output", "global-measures": "more output",
+    "global-flow": "another flow", "viewing-radius": "another flow",
+    "phantom": INPUT, "label": INPUT, "slice": INPUT, "contour": INPUT, "edges": INPUT, "polygon smooth": INPUT,
+    "polygon distance": PLACE, "region": PLACE,
 }
 
 

@@ -44,6 +44,14 @@ void sayProblem(Context& context, const std::string& name, const std::filesystem
           "\n");
 }
 
+void passFlagsOn(Context& context, const std::filesystem::path& run) {
+  const provenance::Json summary = provenance::readJson(run / provenance::kSummaryName);
+  for (provenance::Json flag : summary.value("flags", provenance::Json::array())) {
+    flag["run"] = run.filename().string();
+    context.flag(flag);
+  }
+}
+
 std::string listed(const std::vector<std::string>& names) {
   std::string all;
   for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;

@@ -5,6 +5,7 @@
 #include "Explica/Core/Errors.h"
 
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -42,6 +43,25 @@ TEST(BeatingVentricle, WallThickensAsItsVolumeDemands) {
   // At the equator the thickness is the difference of the short half axes.
   const auto answer = beat.frames[0].exact.answer(Point(30, 0, 0));
   EXPECT_NEAR(answer.thickness(), 40 * (0.9 - 0.6), 0.5);
+}
+
+// Seen from the apex, angles from the anterior insertion to the septum run clockwise about +z: the
+// right ventricle touches the wall where the angle about +z is smaller.
+TEST(BeatingVentricle, TheRightVentricleBeginsAtTheAnteriorInsertion) {
+  const auto beat = beatingVentricle({90, 1.4}, {.frames = 1, .tiltDeg = 20});
+  const Volume<Label>& labels = beat.frames[0].labels;
+  const auto labelBeside = [&](double degrees) {
+    const Point insertion = beat.toHeart(beat.anteriorInsertion);
+    const Point turned =
+        Eigen::AngleAxisd(degrees * kPi / 180, Vector::UnitZ()) * (1.1 * insertion);
+    const Vector at = labels.grid.toIndex(beat.toWorld * turned);
+    return labels(static_cast<int>(std::lround(at.x())), static_cast<int>(std::lround(at.y())),
+                  static_cast<int>(std::lround(at.z())));
+  };
+  EXPECT_EQ(labelBeside(-15), 3);
+  EXPECT_EQ(labelBeside(-105), 3);
+  EXPECT_EQ(labelBeside(-135), 0);
+  EXPECT_EQ(labelBeside(15), 0);
 }
 
 TEST(BeatingVentricle, RefusesNonsense) {

@@ -54,6 +54,21 @@ TEST(ShellPhantom, HarmonicMeetsItsBoundaries) {
   }
 }
 
+TEST(ShellPhantom, TheHarmonicFunctionFallsAsOneOverTheRadius) {
+  const Shell shell = makeShell();
+  const double a = shell.innerRadius, b = shell.outerRadius;
+  const Grid& grid = shell.harmonic.grid;
+  int count = 0;
+  for (std::size_t v = 0; v < shell.harmonic.size(); ++v) {
+    const auto [i, j, k] = grid.subscripts(v);
+    const double r = grid.toWorld(Vector(i, j, k)).norm();
+    if (r <= a || r >= b) continue;
+    EXPECT_NEAR(shell.harmonic[v], b * (r - a) / (r * (b - a)), 1e-6);
+    ++count;
+  }
+  EXPECT_GT(count, 100);
+}
+
 TEST(ShellPhantom, RefusesShellsThatCannotBe) {
   ShellOptions options;
   options.innerRadius = 0.9;

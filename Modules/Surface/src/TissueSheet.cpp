@@ -45,6 +45,8 @@ enum : Label { kOuterRole = 0, kInnerRole = 1, kTissueRole = 2, kInsulatedRole =
 constexpr double kSmallPatch = 1, kSmallPiece = 2, kSmallHole = 0.75;
 /// Largest pocket in the tissue, as a share of it, that is filled.
 constexpr double kPocket = 0.02;
+/// In which a sheet grows from the middle to either side.
+constexpr int kSheetSteps = 3;
 
 double secondsSince(std::chrono::steady_clock::time_point& last) {
   const auto now = std::chrono::steady_clock::now();
@@ -483,7 +485,7 @@ Eigen::VectorXd curvatureOfSheet(const TriangleMesh& mesh) {
 
 /// Inner, middle and outer surface out of the sheet.
 void growSheets(const TriangleMesh& sheet, const Ways& ways, const TrajectoryTracer& tracer,
-                const ClosedSulci& sulci, const SurfaceOptions& options, CorticalSurfaces& made) {
+                const ClosedSulci& sulci, CorticalSurfaces& made) {
   const double edge = made.white.edgeLength;
   const double voxel = tracer.annulus().grid.spacing.minCoeff();
   const auto backTo = [&](double target) {
@@ -510,12 +512,12 @@ void growSheets(const TriangleMesh& sheet, const Ways& ways, const TrajectoryTra
   sliding.bend = 0;
   sliding.sweeps = 4;
   const double least = kNoShortfall * voxel;
-  const int steps = std::max(2, options.steps / 2);
   Grown inner =
-      grow(sheet, ways.inward, edge, steps, least, backTo(0), shortOf(0), room, relaxation);
+      grow(sheet, ways.inward, edge, kSheetSteps, least, backTo(0), shortOf(0), room, relaxation);
   std::vector<Trajectory> outward = ways.outward;
   keepFromMiddles(sulci, kMiddleGap * voxel, outward);
-  Grown outer = grow(sheet, outward, edge, steps, least, backTo(1), shortOf(1), room, relaxation);
+  Grown outer =
+      grow(sheet, outward, edge, kSheetSteps, least, backTo(1), shortOf(1), room, relaxation);
   Grown middle = grow(sheet, waysToMiddle(ways), edge, 2, least, stay, unknown, room, sliding);
   made.white.mesh = std::move(inner.mesh);
   made.pial = std::move(outer.mesh);
@@ -574,7 +576,7 @@ CorticalSurfaces buildSheets(const TissueMasks& masks, const SurfaceOptions& opt
   made.seconds.trajectories = secondsSince(last);
   monitor.progress(0.7, "growing the surfaces");
   const ClosedSulci sulci(field);
-  growSheets(sheet, ways, tracer, sulci, options, made);
+  growSheets(sheet, ways, tracer, sulci, made);
   made.seconds.growing = secondsSince(last);
 
   monitor.progress(0.95, "curvature");

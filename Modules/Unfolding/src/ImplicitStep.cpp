@@ -20,6 +20,7 @@ constexpr double kSeparated = 0.25;  // of their range: pairs that start nearer 
 constexpr double kStillSeparating = 0.6;   // of the contact energy before: above it the rest ...
 constexpr int kSeparatingIterations = 60;  // ... or after these goes on beside the unfolding
 constexpr double kLargestMultiplier = 20;  // times the pull of the visibility term
+constexpr double kLargestMove = 3;         // mean edges that a vertex goes in a step at most
 constexpr double kLeastDamping = 0.1;      // below it steps overshoot the quadratic model
 constexpr double kMassShare = 0.01;        // of the damping: the rest is the graph Laplacian
 constexpr double kLeastDiagonal = 1e-9;    // keeps the matrix definite whatever the damping is
@@ -234,7 +235,7 @@ void ImplicitStep::couple(const std::array<std::int32_t, 4>& vertices) {
 /// The direction (one row per unknown) on all vertices (V x 3), none farther than it may go.
 Positions ImplicitStep::cappedMotion(const Positions& direction) const {
   const double largest = std::sqrt(direction.rowwise().squaredNorm().maxCoeff());
-  const double cap = u_.options.largestMove * u_.setup.edge;
+  const double cap = kLargestMove * u_.setup.edge;
   const double share = largest > cap ? cap / largest : 1;
   Positions motion = Positions::Zero(state_.positions.rows(), 3);
   const auto& moving = u_.setup.moving;

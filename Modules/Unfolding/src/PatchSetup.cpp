@@ -33,7 +33,6 @@ constexpr double kCollarShare = 0.6;
 void requireUsable(const UnfolderOptions& options, const Region& region) {
   if (!(options.contactRange > 0)) throw InvalidInput("contactRange: must be positive");
   if (!(options.yieldStrain > 0)) throw InvalidInput("yield-strain: must be positive");
-  if (!(options.largestMove > 0)) throw InvalidInput("largestMove: must be positive");
   if (options.timeStep && !(*options.timeStep > 0)) {
     throw InvalidInput("time-step: must be positive");
   }

@@ -6,8 +6,8 @@
 #include "Frames.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/TimeBudget.h"
 #include "Explica/Unfolding/StopRule.h"
-#include "Explica/Unfolding/TimeBudget.h"
 
 #include <algorithm>
 #include <chrono>

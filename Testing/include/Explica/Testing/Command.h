@@ -22,6 +22,11 @@ struct CommandResult {
 };
 std::ostream& operator<<(std::ostream& stream, const CommandResult& result);
 
+/// Whether --max-time ended the program before it came to a stop by itself: exit code 4 with the
+/// sentence that says so.  On a busy machine any command may end so: the grace that it has is time
+/// of the clock.
+[[nodiscard]] bool overran(const CommandResult& result);
+
 /// How to run a program.
 struct CommandSetting {
   std::filesystem::path directory;                 ///< working directory; empty: this process's

@@ -27,6 +27,9 @@ namespace explica::app {
 void sayProblem(Context& context, const std::string& name, const std::filesystem::path& folder,
                 const std::string& why);
 
+/// What a run's numbers say against it counts against the whole, too.
+void passFlagsOn(Context& context, const std::filesystem::path& run);
+
 /// "a, b, c".
 [[nodiscard]] std::string listed(const std::vector<std::string>& names);
 

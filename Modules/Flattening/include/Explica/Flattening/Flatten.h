@@ -5,6 +5,7 @@
 #include "Explica/Core/Describe.h"
 #include "Explica/Core/Monitor.h"
 #include "Explica/Core/Termination.h"
+#include "Explica/Core/TimeBudget.h"
 #include "Explica/Flattening/Disc.h"
 #include "Explica/Flattening/MapEnergy.h"
 
@@ -26,8 +27,6 @@ struct FlattenOptions {
   std::optional<double> maxTime;  ///< s, of this run
   int frames = 0;                 ///< states to keep, evenly spaced along the way of the vertices
 };
-
-constexpr int kMostFrames = 1000;  ///< of FlattenOptions::frames
 
 template <class Visitor>
 void describe(FlattenOptions& options, Visitor&& visit) {

@@ -5,6 +5,7 @@
 #include "Explica/Core/Describe.h"
 #include "Explica/Core/Monitor.h"
 #include "Explica/Core/Termination.h"
+#include "Explica/Core/TimeBudget.h"
 #include "Explica/Unfolding/Unfold.h"
 
 #include <optional>
@@ -40,7 +41,7 @@ void describe(InflateOptions& options, Visitor&& visit) {
               kAboveZero, 1},
         options.areaTolerance);
   visit(Field{"frames", "", "states to write on the way, evenly spaced in visibility", 0,
-              unfolding::kMostFrames},
+              kMostFrames},
         options.frames);
   visit(Field{"max-iterations", "", "iterations at most", 1, unfolding::kMostIterations},
         options.maxIterations);

@@ -17,7 +17,6 @@ namespace explica::surface {
 struct SurfaceOptions {
   GenusRule genus = GenusRule::Zero;
   int faces = 150000;  ///< of each surface
-  int steps = 6;       ///< in which the outer surface grows out of the white one, even
   double fluid = 0;    ///< brightness of pure fluid in the image, of that of white matter; 0: not
                        ///< known, and the outer border lies too far in where fluid is narrow
 };
@@ -135,8 +134,6 @@ template <class Visitor>
 void describe(SurfaceOptions& options, Visitor&& visit) {
   visit(Field{"genus", "", "whether handles and tunnels are removed"}, options.genus);
   visit(Field{"faces", "", "faces of each surface", 100, 1e8}, options.faces);
-  visit(Field{"steps", "", "in which the outer surface grows out of the white one", 2, 1000},
-        options.steps);
   visit(Field{"fluid", "",
               "brightness of pure fluid in --image, of that of white matter (fluid_of_white of "
               "segment); tells the outer border where fluid is narrower than voxels; 0: not known"},

@@ -4,6 +4,7 @@
 
 #include "Explica/Core/Monitor.h"
 #include "Explica/Core/Termination.h"
+#include "Explica/Core/TimeBudget.h"
 #include "Explica/Unfolding/Unfolder.h"
 
 #include <array>
@@ -15,7 +16,6 @@
 namespace explica::unfolding {
 
 inline constexpr int kMostIterations = 100000;
-inline constexpr int kMostFrames = 1000;  ///< a whole surface each
 
 /// How to unfold and when to stop.
 struct UnfoldOptions {

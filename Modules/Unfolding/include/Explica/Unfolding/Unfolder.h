@@ -40,7 +40,6 @@ struct UnfolderOptions {
   double yieldStrain = 0.015;  ///< strain beyond which an edge costs less than its square, > 0
   double areaSlack = 0;    ///< relative area error that needs no mending; unfold() sets it, >= 0
   int guideFaces = 30000;  ///< a region alone of so many faces is pulled towards its flat map, >= 0
-  double largestMove = 3;  ///< mean edge lengths that a vertex goes per iteration at most, > 0
   repulsion::KnotMethod knot = repulsion::KnotMethod::Off;
   bool keepAreas = true;           ///< thesis method: project; without it the region shrinks
   std::optional<double> timeStep;  ///< thesis method: fixed step, mm per mm; else adaptive
@@ -73,9 +72,6 @@ void describe(UnfolderOptions& options, Visitor&& visit) {
               "flat map",
               0, 1e9},
         options.guideFaces);
-  visit(Field{"largest-move", "", "mean edge lengths that a vertex goes per iteration at most",
-              kAboveZero, 1000},
-        options.largestMove);
   visit(Field{"method", "", "implicit steps, or the thesis's gradient flow as the baseline"},
         options.method);
   visit(Field{"knot", "", "who evaluates the knot energy"}, options.knot);

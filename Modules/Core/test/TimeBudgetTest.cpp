@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
-#include "Explica/Unfolding/TimeBudget.h"
+#include "Explica/Core/TimeBudget.h"
 
 #include <gtest/gtest.h>
 
-namespace explica::unfolding {
+namespace explica {
 namespace {
 
 /// Seconds of a whole command whose steps and output take as long as said: no clock is asked.
@@ -45,4 +45,4 @@ TEST(TimeBudget, LeavesTheFirstLookWhereTheStartUsedAllUp) {
 }
 
 }  // namespace
-}  // namespace explica::unfolding
+}  // namespace explica

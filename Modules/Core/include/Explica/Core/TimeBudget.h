@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <optional>
 
-namespace explica::unfolding {
+namespace explica {
+
+/// Frames of a run at most: each holds a whole surface.
+inline constexpr int kMostFrames = 1000;
 
 /// What a command keeps of its limit for what is no iteration, in times of its start.
 struct KeptTime {
@@ -39,4 +42,4 @@ class TimeBudget {
   double last_ = 0;
 };
 
-}  // namespace explica::unfolding
+}  // namespace explica
