@@ -49,10 +49,11 @@ class Inflater {
     state_.avail_out = room;
     const int status = isal_inflate(&state_);
     endVectorCode();
+    // Of damaged data ISA-L can say that it took more than there is.
+    if (status < 0 || status == ISAL_NEED_DICT || state_.avail_in > input) return Progress::Damaged;
     const std::uint32_t taken = input - state_.avail_in, made = room - state_.avail_out;
     in = in.subspan(taken);
     out = out.subspan(made);
-    if (status < 0 || status == ISAL_NEED_DICT) return Progress::Damaged;
     if (state_.block_state == ISAL_BLOCK_FINISH) return Progress::Done;
     return taken > 0 || made > 0 ? Progress::Some : Progress::None;
   }
