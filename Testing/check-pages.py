@@ -41,9 +41,7 @@ def programs():
             made.update(f"Explica{module}{kind}Tests" for kind in ("Unit", "Property", "Slow"))
             made.update(f"Explica{module}{name}" for name in
                         re.findall(r"benchmark/(\w+Benchmark)\.cpp", body))
-        made.update(re.findall(r"explica_add_test_executable\((\w+)", text))
-        if path.parent.name == "commands":
-            made.update(f"Explica{name}CommandTests" for name in re.findall(r"^    (\w+)\)?$", text, re.M))
+        made.update(re.findall(r"explica_add_(?:test_executable|command_tests)\((\w+)", text))
     return made
 
 

@@ -10,8 +10,8 @@ set -eu
 cd "$(dirname "$0")/.."
 Modules/CMake/dependencies.py --update
 export EXPLICA_UPDATE_PAGES=1
-cmake --build build ${EXPLICA_JOBS:+-j "$EXPLICA_JOBS"} --target descriptors ExplicaReferencePagesCommandTests
-build/bin/ExplicaReferencePagesCommandTests --gtest_brief=1
+cmake --build build ${EXPLICA_JOBS:+-j "$EXPLICA_JOBS"} --target descriptors ExplicaCommandTests
+build/bin/ExplicaCommandTests --gtest_brief=1 --gtest_filter='ReferencePages*'
 ctest --test-dir build -R '^Descriptors$' --output-on-failure
 if [ "${1:-}" = python ]; then
   cmake --build build ${EXPLICA_JOBS:+-j "$EXPLICA_JOBS"} --target _explica

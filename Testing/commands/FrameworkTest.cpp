@@ -25,10 +25,6 @@ std::vector<std::string> shell(const std::string& out, std::vector<std::string> 
   return words;
 }
 
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
 TEST(Framework, EveryCommandHelpsFromItsDeclaration) {
   const auto all = nlohmann::ordered_json::parse(explica({"--describe"}).out);
   ASSERT_GE(all.size(), 3u);

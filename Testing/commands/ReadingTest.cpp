@@ -14,10 +14,6 @@
 namespace explica::testing {
 namespace {
 
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
 /// A shell of tissue whose sform lies 5 mm beside its qform.
 void writeTornPlacement(const std::string& path) {
   Grid grid;

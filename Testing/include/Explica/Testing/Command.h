@@ -67,6 +67,9 @@ class TemporaryFolder {
 [[nodiscard]] nlohmann::ordered_json readJson(const std::filesystem::path& path);
 [[nodiscard]] std::string readText(const std::filesystem::path& path);
 void writeText(const std::filesystem::path& path, const std::string& text);
+[[nodiscard]] inline bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
 
 /// SHA-256 of every file under a folder whose bytes must be equal between equal runs, by name:
 /// without provenance.json and the outputs that it calls varying.
