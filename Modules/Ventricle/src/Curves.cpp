@@ -15,7 +15,8 @@ namespace explica::ventricle {
 namespace {
 
 constexpr double kWidth = 460, kTall = 320, kNotes = 96;  // of one curve, and of the lines below
-constexpr double kLeft = 70, kRight = 24, kTop = 56, kBottom = 58;  // pixels, margins
+constexpr double kMarginLeft = 70, kMarginRight = 24, kMarginTop = 56,
+                 kMarginBottom = 58;  // pixels, margins
 
 /// The range of healthy adults at one frame.
 struct Range {
@@ -42,8 +43,10 @@ struct Axes {
   double x0, x1, y0, y1;
   Point2 corner;
   [[nodiscard]] Point2 at(double x, double y) const {
-    return corner + Point2(kLeft + (x - x0) / (x1 - x0) * (kWidth - kLeft - kRight),
-                           kTall - kBottom - (y - y0) / (y1 - y0) * (kTall - kTop - kBottom));
+    return corner +
+           Point2(
+               kMarginLeft + (x - x0) / (x1 - x0) * (kWidth - kMarginLeft - kMarginRight),
+               kTall - kMarginBottom - (y - y0) / (y1 - y0) * (kTall - kMarginTop - kMarginBottom));
   }
 };
 
@@ -75,10 +78,10 @@ void drawAxes(Canvas& canvas, const Axes& axes, const Curve& curve) {
   }
   canvas.stroke({axes.at(axes.x0, axes.y1), axes.at(axes.x0, 0), axes.at(axes.x1, 0)}, kInk, 1);
   canvas.text(axes.corner + Point2(0.5 * kWidth, 26), curve.title, 10, kInk);
-  canvas.text(axes.corner + Point2(kLeft - 8, 44), curve.unit, 7.5, kGrey,
+  canvas.text(axes.corner + Point2(kMarginLeft - 8, 44), curve.unit, 7.5, kGrey,
               report::TextAnchor::Right);
-  canvas.text(axes.corner + Point2(0.5 * (kLeft + kWidth - kRight), kTall - 18), "frame", 7.5,
-              kGrey);
+  canvas.text(axes.corner + Point2(0.5 * (kMarginLeft + kWidth - kMarginRight), kTall - 18),
+              "frame", 7.5, kGrey);
 }
 
 /// Women's range and men's beside the frame's mark: mean and 2 SD.
@@ -88,7 +91,7 @@ void drawRanges(Canvas& canvas, const Beat& beat, const Curve& curve, const Axes
   for (const Range& range : curve.ranges) {
     const Reference& healthy = referenceOf(range.quantity);
     const double frame = beat.frames[range.frame].number;
-    const bool last = axes.at(frame, 0)[0] > axes.corner[0] + kWidth - kRight - 3 * kApart;
+    const bool last = axes.at(frame, 0)[0] > axes.corner[0] + kWidth - kMarginRight - 3 * kApart;
     double shift = last ? -kNear - kApart : kNear + (range.frame == 0 ? kLabel : 0);
     for (const auto& [spread, letter] :
          {std::pair{healthy.women, "w"}, std::pair{healthy.men, "m"}}) {

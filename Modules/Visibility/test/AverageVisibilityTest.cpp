@@ -113,10 +113,18 @@ TEST(AverageVisibility, RefusesWhatItCannotMeasure) {
 }
 
 TEST(Viewpoints, LineQuadratureIsExactForPolynomials) {
-  const Viewpoints line = viewLine(Point(0, 0, 0), Point(1, 0, 0), 5);
-  double sum = 0;
-  for (std::size_t i = 0; i < 5; ++i) sum += line.weights[i] * std::pow(line.points[i].x(), 9);
-  EXPECT_NEAR(sum, 0.1, 1e-14);
+  for (int count = 1; count <= 64; ++count) {
+    const Viewpoints line = viewLine(Point(0, 0, 0), Point(1, 0, 0), count);
+    for (int degree = 0; degree < 2 * count; ++degree) {
+      double sum = 0;
+      for (std::size_t i = 0; i < line.points.size(); ++i) {
+        sum += line.weights[i] * std::pow(line.points[i].x(), degree);
+      }
+      EXPECT_NEAR(sum, 1.0 / (degree + 1), 1e-14) << count << " points, degree " << degree;
+    }
+    EXPECT_TRUE(std::is_sorted(line.points.begin(), line.points.end(),
+                               [](const Point& a, const Point& b) { return a.x() < b.x(); }));
+  }
 }
 
 TEST(Viewpoints, WindingNumberTellsInsideFromOutside) {
