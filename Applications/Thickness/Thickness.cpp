@@ -179,7 +179,8 @@ harmonic::Annulus readAnnulus(Context& context, const Settings& s) {
   }
   auto step = context.step("boundary");
   if (!s.innerLevel) {
-    return harmonic::annulusFromLabels(labels, s.roles, s.measurement.annulus, context.monitor());
+    return harmonic::annulusFromLabels(std::move(labels), s.roles, s.measurement.annulus,
+                                       context.monitor());
   }
   Volume<std::uint8_t> insulated;
   if (s.labels) insulated = harmonic::maskOf(labels, s.roles.insulated);

@@ -15,6 +15,7 @@ void keepFreedMemory() {
 #ifdef __GLIBC__
   mallopt(M_MMAP_MAX, 0);  // mapped arrays go back to the system when they are freed
   mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
+  mallopt(M_ARENA_MAX, 1);  // what one thread freed would not serve another one
 #endif
 }
 

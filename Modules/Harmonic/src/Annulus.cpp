@@ -4,6 +4,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
+#include "Explica/Core/Runs.h"
 #include "Explica/Harmonic/LabelBoundary.h"
 
 #include <algorithm>
@@ -353,12 +354,41 @@ void checkGrid(const Grid& grid) {
   }
 }
 
+/// Goes through the tissue in the order of the box's voxels.
+class TissueCursor {
+ public:
+  /// Stands at the first tissue voxel from box voxel p on.
+  TissueCursor(const Annulus& annulus, std::int32_t p) : annulus_(annulus) {
+    const auto place = annulus.place.begin();
+    for (int run = 0; run < 4; ++run) {
+      const std::int32_t begin = run == 0 ? 0 : annulus.runEnd[run - 1];
+      next_[run] = static_cast<std::int32_t>(
+          std::lower_bound(place + begin, place + annulus.runEnd[run], p) - place);
+    }
+  }
+  /// Calls visit(number, box voxel) for what comes before box voxel p, run by run.
+  template <class Visit>
+  void upTo(std::int32_t p, const Visit& visit) {
+    for (int run = 0; run < 4; ++run) {
+      std::int32_t n = next_[run];
+      for (; n < annulus_.runEnd[run] && annulus_.place[n] < p; ++n) visit(n, annulus_.place[n]);
+      next_[run] = n;
+    }
+  }
+
+ private:
+  const Annulus& annulus_;
+  std::array<std::int32_t, 4> next_{};
+};
+
 /// A volume made of the box's voxels, `outside` beyond it: `inTissue(j, k)` gives for a row of the
 /// grid the function of a tissue voxel's number and i, `offTissue(code)` the value elsewhere.
+///
+/// Tissue is a small part of the box, and its numbers come in four runs in storage order: each row
+/// takes from every run what is its own, and no other voxel is looked at.
 template <class T, class InTissue, class OffTissue>
 VolumeOnDemand<T> onGrid(const Annulus& annulus, T outside, const InTissue& inTissue,
                          const OffTissue& offTissue) {
-  constexpr int kTogether = 16;  // voxels of a row
   VolumeOnDemand<T> values;
   values.grid = annulus.grid;
   values.elsewhere = outside;
@@ -368,42 +398,34 @@ VolumeOnDemand<T> onGrid(const Annulus& annulus, T outside, const InTissue& inTi
                                    std::min(first[2] + annulus.size[2], annulus.grid.size[2])};
   values.begin = annulus.grid.linear(0, 0, std::max(first[2], 0));
   values.end = annulus.grid.linear(0, 0, last[2]);
+  const bool blankOffTissue = offTissue(kInner) == outside && offTissue(kOuter) == outside &&
+                              offTissue(kInsulated) == outside;
   values.fill = [=, &annulus](std::size_t voxel, std::size_t count, T* to) {
+    std::fill_n(to, count, outside);
+    std::optional<TissueCursor> cursor;
     const std::size_t end = voxel + count;
     while (voxel < end) {
-      std::array<int, 3> at = annulus.grid.subscripts(voxel);
+      const std::array<int, 3> at = annulus.grid.subscripts(voxel);
       const int rowEnd =
           static_cast<int>(std::min<std::size_t>(annulus.grid.size[0], at[0] + (end - voxel)));
-      const int length = rowEnd - at[0];
-      std::fill_n(to, length, outside);
-      if (at[1] >= first[1] && at[1] < last[1] && at[2] >= first[2] && at[2] < last[2]) {
-        const int rowBegin = at[0];
-        at[0] = std::max(rowBegin, first[0]);
-        const std::size_t p =
-            at[0] - first[0] +
-            static_cast<std::size_t>(annulus.size[0]) *
-                (at[1] - first[1] + static_cast<std::size_t>(annulus.size[1]) * (at[2] - first[2]));
-        const std::int32_t* number = annulus.numberAt.data() + p;
-        const auto value = inTissue(at[1], at[2]);
-        const int rowLast = std::min(rowEnd, last[0]);
-        for (int i = at[0]; i < rowLast;) {
-          const int together = std::min(kTogether, rowLast - i);
-          std::int32_t all = -1;  // negative while every number is
-          for (int t = 0; t < together; ++t) all &= number[t];
-          T* here = to + (i - rowBegin);
-          if (all < 0) {
-            for (int t = 0; t < together; ++t) here[t] = offTissue(number[t]);
-          } else {
-            for (int t = 0; t < together; ++t) {
-              here[t] = number[t] < 0 ? offTissue(number[t]) : value(number[t], i + t);
-            }
-          }
-          i += together;
-          number += together;
+      const int rowBegin = std::max(at[0], first[0]), rowLast = std::min(rowEnd, last[0]);
+      if (rowBegin < rowLast && at[1] >= first[1] && at[1] < last[1] && at[2] >= first[2] &&
+          at[2] < last[2]) {
+        const std::int32_t row =  // box voxel of the grid's i = 0, which may lie before the box
+            annulus.size[0] * (at[1] - first[1] + annulus.size[1] * (at[2] - first[2])) - first[0];
+        if (!blankOffTissue) {
+          const std::int32_t* number = annulus.numberAt.data() + (row + rowBegin);
+          T* const here = to + (rowBegin - at[0]);
+          for (int t = 0; t < rowLast - rowBegin; ++t) here[t] = offTissue(number[t]);
         }
+        if (!cursor) cursor.emplace(annulus, row + rowBegin);
+        const auto value = inTissue(at[1], at[2]);
+        cursor->upTo(row + rowLast, [&](std::int32_t n, std::int32_t p) {
+          to[p - row - at[0]] = value(n, p - row);
+        });
       }
-      voxel += length;
-      to += length;
+      voxel += rowEnd - at[0];
+      to += rowEnd - at[0];
     }
   };
   return values;
@@ -465,19 +487,6 @@ class RoleTable {
   Code rest_;
   std::vector<std::pair<Label, Code>> table_;
 };
-
-/// Where the run of equal labels that begins at `from` ends.
-std::size_t runEnd(const Label* labels, std::size_t from, std::size_t end) {
-  constexpr std::size_t kAtOnce = 16;
-  const Label value = labels[from];
-  for (; from + kAtOnce <= end; from += kAtOnce) {
-    Label change = 0;
-    for (std::size_t k = 0; k < kAtOnce; ++k) change |= labels[from + k] ^ value;
-    if (change != 0) break;
-  }
-  while (from < end && labels[from] == value) ++from;
-  return from;
-}
 
 std::set<Label> labelsIn(const Volume<Label>& labels) {
   const Grid& grid = labels.grid;
@@ -547,14 +556,25 @@ LabelBoundary boundaryOf(const std::vector<Code>& sites, const Box& box, bool ou
 
 }  // namespace
 
-Annulus annulusFromLabels(const Volume<Label>& labels, const LabelRoles& roles,
-                          const AnnulusOptions& options, const Monitor& monitor) {
+namespace {
+
+/// The box around the tissue and what its voxels are.
+struct BoxOfSites {
+  Grid grid;  ///< of the whole volume
+  Box box;
+  std::vector<Code> sites;
+};
+
+BoxOfSites sitesOf(const Volume<Label>& labels, const LabelRoles& roles) {
   checkGrid(labels.grid);
   const RoleTable table(roles);
   table.requirePresent(labelsIn(labels));
-  const Grid& grid = labels.grid;
   const Box box = boxAroundTissue(labels, table);
-  std::vector<Code> sites = sitesIn(box, labels, table);
+  return {labels.grid, box, sitesIn(box, labels, table)};
+}
+
+Annulus annulusOf(BoxOfSites found, const AnnulusOptions& options, const Monitor& monitor) {
+  const auto& [grid, box, sites] = found;
   std::optional<LabelBoundary> innerBoundary, outerBoundary;
   if (options.boundary != BoundaryModel::Staircase) {
     const int axes = options.perSlice ? 2 : grid.dimension();
@@ -569,7 +589,21 @@ Annulus annulusFromLabels(const Volume<Label>& labels, const LabelRoles& roles,
     const int a = axisOf(d);
     return signOf(d) > 0 ? boundary.place(p, a) : 1 - boundary.place(p - strides[a], a);
   };
-  return assemble(grid, box, std::move(sites), placeOnLink, options, monitor);
+  return assemble(grid, box, std::move(found.sites), placeOnLink, options, monitor);
+}
+
+}  // namespace
+
+Annulus annulusFromLabels(const Volume<Label>& labels, const LabelRoles& roles,
+                          const AnnulusOptions& options, const Monitor& monitor) {
+  return annulusOf(sitesOf(labels, roles), options, monitor);
+}
+
+Annulus annulusFromLabels(Volume<Label>&& labels, const LabelRoles& roles,
+                          const AnnulusOptions& options, const Monitor& monitor) {
+  BoxOfSites found = sitesOf(labels, roles);
+  std::vector<Label>().swap(labels.data);
+  return annulusOf(std::move(found), options, monitor);
 }
 
 Annulus annulusFromSites(const Volume<Site>& sites, const Volume<float>& innerLevel,

@@ -15,6 +15,7 @@
 #include <cstring>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 namespace explica::io {
 namespace {
@@ -113,15 +114,17 @@ Bytes deflated(ByteView block, isal_hufftables& codes, bool zlib) {
   return Bytes(packed.data(), stream.next_out);
 }
 
-Packed packBlock(ByteView block, isal_hufftables& codes) {
-  const std::uint32_t checksum = crc32_gzip_refl(0, block.data(), block.size());
+/// CRC-32 of what went before, by its own, and the block.
+std::uint32_t checksumOf(ByteView block, std::uint32_t before = 0) {
+  const std::uint32_t checksum = crc32_gzip_refl(before, block.data(), block.size());
   endVectorCode();
-  return {deflated(block, codes, false), checksum, block.size()};
+  return checksum;
 }
 
+/// By a Huffman code of the block's own.
 Packed packBlock(ByteView block) {
   isal_hufftables codes = codesOf(block);
-  return packBlock(block, codes);
+  return {deflated(block, codes, false), checksumOf(block), block.size()};
 }
 
 /// One value over and over, as outside the tissue.
@@ -171,15 +174,64 @@ std::uint32_t product(std::uint32_t a, std::uint32_t b) {
   return sum;
 }
 
-/// CRC-32 of two sequences in a row: the first one's times x^8 for each byte of the second, plus
-/// the second one's.
-std::uint32_t joinedChecksum(std::uint32_t first, std::uint32_t second, std::size_t secondSize) {
-  std::uint32_t power = 1U << (31 - 8);
-  for (; secondSize != 0; secondSize >>= 1, power = product(power, power)) {
-    if (secondSize & 1) first = product(power, first);
+/// x^8 to the power of `size`, by which a CRC-32 is multiplied when so many bytes follow.
+std::uint32_t powerOf(std::size_t size) {
+  std::uint32_t power = 1U << (31 - 8), result = 1U << 31;
+  for (; size != 0; size >>= 1, power = product(power, power)) {
+    if (size & 1) result = product(power, result);
   }
-  return first ^ second;
+  return result;
 }
+
+/// CRC-32 of two sequences in a row.
+/// @param power  powerOf the second one's size
+std::uint32_t joinedChecksum(std::uint32_t first, std::uint32_t second, std::uint32_t power) {
+  return product(power, first) ^ second;
+}
+
+/// A block of one value over and over, as most of a medical volume, packed once; and the checksums
+/// of its beginnings, so that those of blocks that begin and end like it are not computed again.
+class BlankBlock {
+ public:
+  explicit BlankBlock(const Bytes& value) : bytes_(kBlock) {
+    for (std::size_t at = 0; at < kBlock; at += value.size()) {
+      std::copy(value.begin(), value.end(), bytes_.begin() + static_cast<std::ptrdiff_t>(at));
+    }
+    const std::uint32_t power = powerOf(kPiece);
+    checksums_[0] = 0;
+    powers_[0] = powerOf(0);
+    for (std::size_t n = 1; n <= kPieces; ++n) {
+      checksums_[n] = checksumOf({bytes_.data(), kPiece}, checksums_[n - 1]);
+      powers_[n] = product(power, powers_[n - 1]);
+    }
+    packed_ = packBlock(bytes_);
+  }
+  [[nodiscard]] const Packed& packed() const { return packed_; }
+  /// powerOf a block's size.
+  [[nodiscard]] std::uint32_t power() const { return powers_[kPieces]; }
+  /// CRC-32 of a block; nothing if it is this one.
+  [[nodiscard]] std::optional<std::uint32_t> checksumUnlessBlank(ByteView block) const {
+    if (block.size() != kBlock) return checksumOf(block);
+    std::size_t begin = 0, after = 0;  // pieces that are like this block's
+    while (begin < kPieces && isBlank(block, begin)) ++begin;
+    if (begin == kPieces) return {};
+    while (isBlank(block, kPieces - 1 - after)) ++after;
+    const ByteView between = block.subspan(begin * kPiece, (kPieces - begin - after) * kPiece);
+    const std::uint32_t found = checksumOf(between, checksums_[begin]);
+    return joinedChecksum(found, checksums_[after], powers_[after]);
+  }
+
+ private:
+  static constexpr std::size_t kPiece = std::size_t{1} << 11, kPieces = kBlock / kPiece;
+
+  [[nodiscard]] bool isBlank(ByteView block, std::size_t piece) const {
+    return std::memcmp(block.data() + piece * kPiece, bytes_.data(), kPiece) == 0;
+  }
+
+  Bytes bytes_;
+  Packed packed_;
+  std::array<std::uint32_t, kPieces + 1> checksums_{}, powers_{};
+};
 
 class GzipMember {
  public:
@@ -188,9 +240,10 @@ class GzipMember {
     static constexpr std::uint8_t kHeader[10] = {0x1f, 0x8b, 8, 0, 0, 0, 0, 0, 0, 255};
     file_.write(kHeader, sizeof(kHeader));
   }
-  void add(const Packed& packed) {
+  /// @param power  powerOf the unpacked block's size
+  void add(const Packed& packed, std::uint32_t power) {
     file_.write(packed.bytes.data(), packed.bytes.size());
-    checksum_ = joinedChecksum(checksum_, packed.checksum, packed.size);
+    checksum_ = joinedChecksum(checksum_, packed.checksum, power);
     size_ += packed.size;
   }
   void finish() {
@@ -221,15 +274,9 @@ void writePlain(WholeFile& file, const Content& content) {
 
 void writeGzip(WholeFile& file, const Content& content) {
   GzipMember member(file);
-  if (!content.head.empty()) member.add(packBlock(content.head));
+  if (!content.head.empty()) member.add(packBlock(content.head), powerOf(content.head.size()));
   const std::size_t blocks = (content.bodySize + kBlock - 1) / kBlock;
-  // Most of a medical volume is empty: such blocks are packed once.
-  Bytes blank(kBlock);
-  for (std::size_t at = 0; at < kBlock; at += content.blank.size()) {
-    std::copy(content.blank.begin(), content.blank.end(),
-              blank.begin() + static_cast<std::ptrdiff_t>(at));
-  }
-  const Packed packedBlank = packBlock(blank);
+  const BlankBlock blank(content.blank);
   isal_hufftables codes = codesOfBody(content);
   std::vector<Packed> batch(std::min(blocks, kBlocksAtOnce));
   for (std::size_t first = 0; first < blocks; first += kBlocksAtOnce) {
@@ -242,12 +289,17 @@ void writeGzip(WholeFile& file, const Content& content) {
       static thread_local Bytes block;
       block.resize(size);
       content.body(begin, block.data(), size);
-      if (block == blank) return;
-      batch[b] = isUniform(block) ? packBlock(block) : packBlock(block, codes);
+      const std::optional<std::uint32_t> checksum = blank.checksumUnlessBlank(block);
+      if (!checksum) return;
+      batch[b] = isUniform(block) ? packBlock(block)
+                                  : Packed{deflated(block, codes, false), *checksum, size};
     });
-    for (std::size_t b = 0; b < count; ++b) member.add(batch[b].size > 0 ? batch[b] : packedBlank);
+    for (std::size_t b = 0; b < count; ++b) {
+      const Packed& packed = batch[b].size > 0 ? batch[b] : blank.packed();
+      member.add(packed, packed.size == kBlock ? blank.power() : powerOf(packed.size));
+    }
   }
-  if (!content.tail.empty()) member.add(packBlock(content.tail));
+  if (!content.tail.empty()) member.add(packBlock(content.tail), powerOf(content.tail.size()));
   member.finish();
 }
 

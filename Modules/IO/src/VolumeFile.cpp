@@ -12,8 +12,10 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <span>
 #include <sstream>
 #include <type_traits>
@@ -22,6 +24,8 @@ namespace explica::io {
 namespace {
 
 constexpr std::size_t kGrain = 1 << 18;  // voxels a task
+constexpr std::size_t kPiece =
+    1 << 14;  // voxels that are converted at once: they stay in the caches
 
 std::string sizeText(const std::vector<int>& size) {
   std::string text;
@@ -266,10 +270,13 @@ VolumeToWrite stored(std::span<const VolumeOnDemand<In>> components, StoredType 
     if constexpr (std::is_same_v<In, Out>) {
       components[component].fill(first, count, reinterpret_cast<In*>(to));
     } else {
-      std::vector<In> made(count);
-      components[component].fill(first, count, made.data());
-      for (std::size_t v = 0; v < count; ++v) {
-        store(to + v * sizeof(Out), static_cast<Out>(made[v]), false);
+      const auto made = std::make_unique_for_overwrite<In[]>(std::min(count, kPiece));
+      for (std::size_t begin = 0; begin < count; begin += kPiece) {
+        const std::size_t length = std::min(kPiece, count - begin);
+        components[component].fill(first + begin, length, made.get());
+        for (std::size_t v = 0; v < length; ++v) {
+          store(to + (begin + v) * sizeof(Out), static_cast<Out>(made[v]), false);
+        }
       }
     }
   };
@@ -302,10 +309,19 @@ LabelRange rangeOf(const VolumeOnDemand<Label>& volume) {
   const LabelRange outside{std::min(volume.elsewhere, 0), std::max(volume.elsewhere, 0)};
   return parallelSum(volume.end - volume.begin, kGrain, outside,
                      [&](std::size_t begin, std::size_t end) {
-                       std::vector<Label> labels(end - begin);
-                       volume.fill(volume.begin + begin, labels.size(), labels.data());
-                       const auto [low, high] = std::minmax_element(labels.begin(), labels.end());
-                       return LabelRange{*low, *high};
+                       const auto labels = std::make_unique_for_overwrite<Label[]>(kPiece);
+                       LabelRange range = outside;
+                       for (; begin < end; begin += kPiece) {
+                         const std::size_t count = std::min(kPiece, end - begin);
+                         volume.fill(volume.begin + begin, count, labels.get());
+                         Label lowest = range.lowest, highest = range.highest;
+                         for (std::size_t v = 0; v < count; ++v) {
+                           lowest = std::min(lowest, labels[v]);
+                           highest = std::max(highest, labels[v]);
+                         }
+                         range = {lowest, highest};
+                       }
+                       return range;
                      });
 }
 
@@ -448,10 +464,34 @@ LoadedVolume<float> readScalars(const std::filesystem::path& path,
   return loaded;
 }
 
+namespace {
+
+bool holdsByteLabels(const StoredVolume& stored) {
+  return stored.type == StoredType::UInt8 && stored.slope == 1 && stored.intercept == 0 &&
+         (!stored.interleaved || stored.valuesPerVoxel == 1);
+}
+
+/// Labels as most files have them: each array is gone through once, and none is filled beforehand.
+LoadedVolume<Label> byteLabels(const StoredVolume& stored, const VolumeReadOptions& options) {
+  const std::size_t voxels = stored.grid.voxelCount();
+  const std::uint8_t* from = stored.values.data() + options.frame.value_or(0) * voxels;
+  LoadedVolume<Label> loaded;
+  loaded.volume.grid = stored.grid;
+  loaded.volume.data.assign(from, from + voxels);
+  loaded.origin = stored.origin;
+  Survey survey;
+  survey.nonZero = std::any_of(from, from + voxels, [](std::uint8_t v) { return v != 0; }) ? 1 : 0;
+  checkValues(stored, survey, options, "every voxel has label 0");
+  return loaded;
+}
+
+}  // namespace
+
 LoadedVolume<Label> readLabels(const std::filesystem::path& path,
                                const VolumeReadOptions& options) {
   const StoredVolume stored = readStored(path, options, Extent::Everything);
   checkFrameAndDimension(stored, options, 1);
+  if (holdsByteLabels(stored)) return byteLabels(stored, options);
   LoadedVolume<Label> loaded{Volume<Label>(stored.grid), stored.origin};
   Label* to = loaded.volume.data.data();
   const auto take = [to](auto value, std::size_t v, Survey& survey) {

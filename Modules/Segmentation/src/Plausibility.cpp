@@ -4,6 +4,8 @@
 
 #include "VoxelSets.h"
 
+#include "Explica/Core/Runs.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -150,11 +152,8 @@ double equalNeighbours(const Volume<Label>& labels) {
 
 bool looksLikeImage(const Volume<Label>& labels) {
   std::set<Label> found;
-  const Label* last = nullptr;  // voxels come in runs of one value
-  for (const Label& value : labels.data) {
-    if (last != nullptr && value == *last) continue;
-    last = &value;
-    found.insert(value);
+  for (std::size_t v = 0; v < labels.size(); v = runEnd(labels.data.data(), v, labels.size())) {
+    found.insert(labels[v]);
     if (found.size() > kFewestGreyValues) return equalNeighbours(labels) < kMostEqualInImage;
   }
   return false;

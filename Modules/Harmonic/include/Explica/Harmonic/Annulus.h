@@ -159,6 +159,12 @@ struct LevelOptions {
                                         const AnnulusOptions& options = {},
                                         const Monitor& monitor = {});
 
+/// The same, which frees the labels as soon as they are read: they are the largest array of a
+/// measurement, and the boundaries are made in their place.
+[[nodiscard]] Annulus annulusFromLabels(Volume<Label>&& labels, const LabelRoles& roles,
+                                        const AnnulusOptions& options = {},
+                                        const Monitor& monitor = {});
+
 /// Annulus of two level sets: the tissue is inside the outer and outside the inner one.
 /// @param insulated  1 where no flux may enter; empty grid: nowhere
 /// @throws InvalidInput  grids differ, a level that is nowhere crossed, or as annulusFromLabels
