@@ -815,7 +815,12 @@ VolumeOnDemand<Label> spreadLabels(const Annulus& annulus, std::vector<int> valu
   const auto inTissue = [=](int, int) {
     return [of = kept->data()](std::int32_t n, int) { return static_cast<Label>(of[n]); };
   };
-  return onGrid(annulus, Label{0}, inTissue, [](std::int32_t) { return Label{0}; });
+  auto labels = onGrid(annulus, Label{0}, inTissue, [](std::int32_t) { return Label{0}; });
+  labels.range = {0, 0};
+  for (const Label value : *kept) {
+    labels.range = {std::min((*labels.range)[0], value), std::max((*labels.range)[1], value)};
+  }
+  return labels;
 }
 
 VectorsOnDemand spreadPoints(const Annulus& annulus, std::vector<Eigen::Vector3f> offsets) {

@@ -227,6 +227,80 @@ TEST(Annulus, RefusesTissueThatTouchesOneSideOnly) {
   EXPECT_THROW((void)annulusFromLabels(labels, {{1}, {2}, {}, {}}), InvalidInput);
 }
 
+/// A ball in a ball, both cut by the image's edge.
+Volume<Label> ballsAtTheEdge() {
+  Grid grid;
+  grid.size = {23, 17, 13};
+  grid.spacing = {0.5, 1, 1.5};
+  grid.origin = {3, -4, 5};
+  Volume<Label> labels(grid, 0);
+  for (std::size_t v = 0; v < labels.size(); ++v) {
+    const auto s = grid.subscripts(v);
+    const double distance = (Vector(s[0], s[1], s[2]) - Vector(16, 9, 3)).norm();
+    labels[v] = distance < 4 ? 1 : distance < 8 ? 2 : 0;
+  }
+  return labels;
+}
+
+TEST(Annulus, FieldsOfTheTissueStandAtTheirVoxelsInWhateverPiecesTheyAreAskedFor) {
+  const Volume<Label> labels = ballsAtTheEdge();
+  const Annulus annulus = annulusFromLabels(labels, {{1}, {2}, {}, {}});
+  std::vector<double> values(annulus.count());
+  std::vector<int> numbers(annulus.count());
+  std::vector<Eigen::Vector3f> offsets(annulus.count(), Eigen::Vector3f(0.125F, -0.25F, 0.5F));
+  for (std::size_t n = 0; n < values.size(); ++n) {
+    values[n] = n % 7 == 0 ? kNaN : 0.5 * static_cast<double>(n);
+    numbers[n] = static_cast<int>(n % 90) - 30;
+  }
+  const auto blank = spread(annulus, values), sides = spread(annulus, values, -3, -1, -2);
+  const auto whole = spreadLabels(annulus, numbers);
+  const auto points = spreadPoints(annulus, offsets);
+  EXPECT_EQ(*whole.range, (std::array<Label, 2>{-30, 59}));
+  for (const std::size_t piece : {std::size_t{1}, std::size_t{7}, std::size_t{400}}) {
+    for (std::size_t first = 0; first < labels.size(); first += piece) {
+      const std::size_t count = std::min(piece, labels.size() - first);
+      std::vector<float> a(count), b(count), x(count), z(count);
+      std::vector<Label> c(count);
+      blank.fill(first, count, a.data());
+      sides.fill(first, count, b.data());
+      whole.fill(first, count, c.data());
+      points[0].fill(first, count, x.data());
+      points[2].fill(first, count, z.data());
+      for (std::size_t t = 0; t < count; ++t) {
+        const auto s = labels.grid.subscripts(first + t);
+        const auto* at = annulus.numberAt.data();
+        std::int32_t n = kOuter;
+        bool inBox = true;
+        std::array<std::int32_t, 3> inside{};
+        for (int axis = 0; axis < 3; ++axis) {
+          inside[axis] = s[axis] - annulus.first[axis];
+          inBox = inBox && inside[axis] >= 0 && inside[axis] < annulus.size[axis];
+        }
+        if (inBox) {
+          n = at[inside[0] + annulus.size[0] * (inside[1] + annulus.size[1] * inside[2])];
+        }
+        const bool tissue = n >= 0, known = tissue && !std::isnan(values[n]);
+        const float side = n == kInner ? -1 : n == kOuter ? -2 : -3;
+        ASSERT_EQ(a[t], known ? static_cast<float>(values[n]) : 0) << first + t;
+        ASSERT_EQ(b[t], known ? static_cast<float>(values[n]) : tissue ? -3 : side) << first + t;
+        ASSERT_EQ(c[t], tissue ? numbers[n] : 0) << first + t;
+        ASSERT_EQ(x[t], tissue ? static_cast<float>(3 + 0.5 * s[0] + 0.125) : 0) << first + t;
+        ASSERT_EQ(z[t], tissue ? static_cast<float>(5 + 1.5 * s[2] + 0.5) : 0) << first + t;
+      }
+    }
+  }
+}
+
+TEST(Annulus, LabelsThatAreGivenAwayAreFreedAndGiveTheSame) {
+  Volume<Label> labels = ballsAtTheEdge();
+  const Annulus kept = annulusFromLabels(labels, {{1}, {2}, {}, {}});
+  const Annulus given = annulusFromLabels(std::move(labels), {{1}, {2}, {}, {}});
+  EXPECT_EQ(labels.data.capacity(), 0U);  // NOLINT(bugprone-use-after-move): what it promises
+  EXPECT_EQ(given.numberAt, kept.numberAt);
+  EXPECT_EQ(given.links, kept.links);
+  EXPECT_EQ(given.fractions, kept.fractions);
+}
+
 TEST(Annulus, RefusesAVoxelSizeOfZero) {
   Volume<Label> labels(centredGrid({4, 4, 4}, Vector::Ones()), 0);
   labels.grid.spacing[1] = 0;

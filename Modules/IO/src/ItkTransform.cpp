@@ -12,9 +12,10 @@
 #include <itkAffineTransform.h>
 #include <itkCompositeTransform.h>
 #include <itkDisplacementFieldTransform.h>
-#include <itkHDF5TransformIO.h>
 #include <itkTransformFactoryBase.h>
 #include <itkTransformFileWriter.h>
+
+#include <dlfcn.h>
 
 #include <cmath>
 #include <mutex>
@@ -302,6 +303,22 @@ Volume<Eigen::Vector3f> fieldInRas(const Path& path, const Warp::DisplacementFie
   return displacement;
 }
 
+/// Makes ITK's HDF5 files known to its writer.  Their library brings HDF5 and 35 others, which take
+/// every start of the program 15 ms, and serves writing a transform only: so it is loaded here.
+void loadHdf5Writer() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    void* const library = dlopen(EXPLICA_HDF5_TRANSFORMS, RTLD_NOW);
+    void* const add =
+        library ? dlsym(library, "_ZN3itk39HDF5TransformIOFactoryRegister__PrivateEv") : nullptr;
+    if (add == nullptr) {
+      throw EnvironmentError("ITK's library for HDF5 transforms could not be loaded: " +
+                             std::string(dlerror()));
+    }
+    reinterpret_cast<void (*)()>(add)();
+  });
+}
+
 }  // namespace
 
 std::function<Point(const Point&)> readItkTransform(const Path& path, bool inverse) {
@@ -353,13 +370,13 @@ StoredTransform readTransform(const Path& path) {
 
 void writeTransform(const std::filesystem::path& path, const Eigen::Affine3d& affine,
                     const Volume<Eigen::Vector3f>& displacement) {
+  loadHdf5Writer();
   try {
     // The transform that is added last is applied first.
     auto composite = itk::CompositeTransform<double, 3>::New();
     composite->AddTransform(affineInLps(affine));
     if (displacement.size() != 0) composite->AddTransform(fieldInLps(displacement));
     auto writer = itk::TransformFileWriterTemplate<double>::New();
-    writer->SetTransformIO(itk::HDF5TransformIOTemplate<double>::New());
     writer->SetUseCompression(true);
     writer->SetFileName(path.string());
     writer->SetInput(composite);

@@ -306,6 +306,7 @@ struct LabelRange {
 };
 
 LabelRange rangeOf(const VolumeOnDemand<Label>& volume) {
+  if (volume.range) return {(*volume.range)[0], (*volume.range)[1]};
   const LabelRange outside{std::min(volume.elsewhere, 0), std::max(volume.elsewhere, 0)};
   return parallelSum(volume.end - volume.begin, kGrain, outside,
                      [&](std::size_t begin, std::size_t end) {

@@ -400,6 +400,24 @@ TEST_F(NiftiHeader, HeaderAndImageInTwoFilesAreUnderstood) {
   EXPECT_THROW(static_cast<void>(io::readScalars(folder_ / "pair.hdr")), IOError);
 }
 
+TEST(VolumeFile, ChecksumsHoldWhereverABlockCeasesToBeBlank) {
+  const TemporaryFolder folder;
+  Grid grid;
+  grid.size = {64, 64, 129};  // two blocks of the compressor and a part of one
+  constexpr std::size_t kBlock = std::size_t{1} << 18;
+  for (const std::size_t first : {std::size_t{0}, std::size_t{1}, kBlock / 2, kBlock - 1, kBlock,
+                                  2 * kBlock - 4000, 2 * kBlock, 2 * kBlock + 4095}) {
+    for (const std::size_t count : {std::size_t{1}, std::size_t{2048}, std::size_t{5000}}) {
+      Volume<Label> labels(grid, 0);
+      const std::size_t end = std::min(first + count, labels.size());
+      for (std::size_t v = first; v < end; ++v) labels[v] = static_cast<Label>(1 + v % 3);
+      io::writeVolume(folder / "labels.nii.gz", labels);
+      EXPECT_EQ(io::readLabels(folder / "labels.nii.gz").volume.data, labels.data)
+          << count << " voxels from " << first << " on";
+    }
+  }
+}
+
 TEST(VolumeFile, SeveralGzipMembersInARowAreOneFile) {
   const TemporaryFolder folder;
   const Volume<float> written = numbered(obliqueGrid());

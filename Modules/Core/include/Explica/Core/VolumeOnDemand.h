@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <optional>
 
 namespace explica {
 
@@ -20,6 +21,7 @@ struct VolumeOnDemand {
   std::size_t begin = 0, end = 0;  ///< places in the storage order
   /// Puts voxels [first, first + count) of the storage order; called from several threads.
   std::function<void(std::size_t first, std::size_t count, T* to)> fill;
+  std::optional<std::array<T, 2>> range = {};  ///< least and greatest value, where it is known
 };
 
 /// Vectors by their components.
