@@ -76,6 +76,17 @@ SUBJECTS = {
         ("cortex", ["{folder}/cortex/t1.nii.gz", "--template", "none", "--accept", "brain-volume"]),
         ("noisy", ["{folder}/noisy/t1.nii.gz", "--template", "none", "--accept", "brain-volume"]),
     ],
+    "embed": [
+        ("ring", ["{folder}/shell/labels.nii.gz", "--label", "1"]),
+        ("folds", ["{folder}/cortex/labels.nii.gz", "--label", "3"]),
+        ("band", ["{folder}/cortex/labels.nii.gz", "--label", "3", "--band", "4"]),
+        ("closed surface", ["{folder}/sheets/white.surf.gii", "--order", "8", "--samples", "800"]),
+    ],
+    "compare": [
+        ("white and pial", [str(SMALL / "lh.white"), str(SMALL / "lh.pial")]),
+        ("unfolded patch", [str(PIAL), "{folder}/placed/unfolded.surf.gii",
+                            "--label", "{folder}/placed/region.label.gii"]),
+    ],
 }
 PHANTOMS = {
     "cortex": ["phantom", "cortex", "--size", "64", "--spacing", "1.5"],
@@ -83,6 +94,8 @@ PHANTOMS = {
     "spheroid": ["phantom", "spheroid", "--size", "64", "--spacing", "2"],
     "shell": ["phantom", "shell", "--size", "40"],
     "patch": ["unfold", str(PIAL), "--vertex", "4530", "--radius", "25", *SIDE, "--surround", "none"],
+    "placed": ["unfold", str(PIAL), "--vertex", "4530", "--radius", "25", *SIDE],
+    "sheets": ["surface", "{folder}/shell/labels.nii.gz", "--white", "1", "--grey", "2", "--faces", "1000"],
 }
 
 # What is measured: heading, how it is shown, and where it comes from (result folder, its summary, the subject's words).
@@ -110,6 +123,10 @@ MEASURES = {
                 ("thickness, mm", "{:+.4f}", "thickness_mean"), ("crossings", "{:+d}", "self_intersections")],
     "segment": [("Dice grey", "{:+.4f}", "dice_2"), ("Dice white", "{:+.4f}", "dice_3"),
                 ("iterations", "{:+d}", "iterations")],
+    "embed": [("off, mm", "{:+.4f}", "distance_mean"), ("farthest, mm", "{:+.4f}", "distance_max"),
+              ("coefficients", "{:+d}", "coefficients")],
+    "compare": [("distances nearby, %", "{:+.2f}", lambda s: 100 * s["geodesic_error_local"]),
+                ("all distances, %", "{:+.2f}", lambda s: 100 * s["geodesic_error_all"])],
 }
 
 # Values other than a quarter and four times the default.
@@ -125,6 +142,8 @@ VALUES = {
     "thickness": {"lambda": [0.2, 2], "grid": [3], "level": [-0.5, 0.5], "facing": [60, 140]},
     "surface": {"fluid": [0.5]},
     "segment": {"max-iterations": [5, 240], "smooth": [0, 0.4], "bias-width": [0, 12, 50]},
+    "embed": {"order": [4, 32], "inner-radius": [3], "outer-radius": [60], "band": [2, 8], "fit-start": [0.1, 0.9],
+              "fit-step": [0.25, 1], "frames": [3]},
 }
 
 # Why an option is not tried here; by command and name, or by name alone.
@@ -143,6 +162,8 @@ NOT_TRIED = {
     "global-flow": "another flow", "viewing-radius": "another flow",
     "phantom": INPUT, "label": INPUT, "slice": INPUT, "contour": INPUT, "edges": INPUT, "polygon smooth": INPUT,
     "polygon distance": PLACE, "region": PLACE,
+    "fit": "another result", "average": "another result", "combine": "another result", "series": "another result",
+    "annulus": INPUT, "centre": PLACE, "fs-volume": INPUT,
 }
 
 
@@ -202,6 +223,7 @@ class Runs:
     def phantoms(self):
         for name, words in PHANTOMS.items():
             if not (self.folder / name / "summary.json").exists():
+                words = [w.replace("{folder}", str(self.folder)) for w in words]
                 subprocess.run([self.program, *words, "--quiet", "--force", "--out", str(self.folder / name)],
                                check=True)
 

@@ -84,8 +84,10 @@ struct MultigridHierarchy {
     const auto& links = annulus.links[n];
     const auto& weights = stencil.linked[row];
     float sum = 0;
-    // Without weight any voxel serves; to ask would cost more, as no processor foresees the answer.
-    for (int d = 0; d < 6; ++d) sum += weights[d] * e[std::max(links[d], 0)];
+    // Without weight any voxel serves that no other thread writes, so its own; a branch would cost
+    // more, as no processor foresees the answer.
+    const auto own = static_cast<std::int32_t>(n);
+    for (int d = 0; d < 6; ++d) sum += weights[d] * e[links[d] < 0 ? own : links[d]];
     return sum;
   }
   void smoothCoarse(MultigridLevel& l, bool fromZero) const;

@@ -303,9 +303,9 @@ Volume<Eigen::Vector3f> fieldInRas(const Path& path, const Warp::DisplacementFie
   return displacement;
 }
 
-/// Makes ITK's HDF5 files known to its writer.  Their library and the 32 that it brings cost a
-/// third of the time in which the program starts, and serve writing a transform only: they are
-/// loaded here.
+/// Makes ITK's HDF5 files known to its writer, by itk::HDF5TransformIOFactoryRegister__Private().
+/// Their library and the 32 that it brings cost a third of the time in which the program starts,
+/// and serve writing a transform only: they are loaded here.
 void loadHdf5Writer() {
   static std::once_flag once;
   std::call_once(once, [] {
