@@ -4,7 +4,7 @@
 # Unit tests under the address and undefined-behaviour sanitizers (build-sanitize/), under that for threads
 # (build-tsan/) or in Debug (build-debug/); the assertions of Eigen and of the standard library hold in each:
 #   Testing/check-sanitizers.sh [MODULE...]             default: every module whose unit tests are fast
-#   Testing/check-sanitizers.sh --threads [MODULE...]   default: Repulsion, Correspondence, Unfolding
+#   Testing/check-sanitizers.sh --threads [MODULE...]   default: Harmonic, Repulsion, Correspondence, Unfolding
 #   Testing/check-sanitizers.sh --debug [MODULE...]     default: every module
 # Any finding ends a test with a failure and the place.  EXPLICA_JOBS bounds the compilers at once.
 set -eu
@@ -14,7 +14,7 @@ case "${1:-}" in
   --threads)
     preset=tsan
     shift
-    [ $# -gt 0 ] || set -- Repulsion Correspondence Unfolding
+    [ $# -gt 0 ] || set -- Harmonic Repulsion Correspondence Unfolding
     ;;
   --debug)
     preset=debug
