@@ -143,7 +143,7 @@ VALUES = {
     "surface": {"fluid": [0.5]},
     "segment": {"max-iterations": [5, 240], "smooth": [0, 0.4], "bias-width": [0, 12, 50]},
     "embed": {"order": [4, 32], "inner-radius": [3], "outer-radius": [60], "band": [2, 8], "fit-start": [0.1, 0.9],
-              "fit-step": [0.25, 1], "frames": [3]},
+              "fit-step": [0.25, 1], "frames": [3], "grid": [24, 192]},
 }
 
 # Why an option is not tried here; by command and name, or by name alone.
