@@ -14,6 +14,9 @@
 #include <itkDisplacementFieldTransform.h>
 #include <itkTransformFactoryBase.h>
 #include <itkTransformFileWriter.h>
+#ifndef EXPLICA_HDF5_TRANSFORMS
+#include <itkHDF5TransformIOFactory.h>
+#endif
 
 #include <dlfcn.h>
 
@@ -303,21 +306,28 @@ Volume<Eigen::Vector3f> fieldInRas(const Path& path, const Warp::DisplacementFie
   return displacement;
 }
 
-/// Makes ITK's HDF5 files known to its writer, by itk::HDF5TransformIOFactoryRegister__Private().
-/// Their library and the 32 that it brings cost a third of the time in which the program starts,
-/// and serve writing a transform only: they are loaded here.
-void loadHdf5Writer() {
+/// The function of ITK that makes HDF5 files known to its writer.  Where ITK is shared, the library
+/// and the 32 that it brings are loaded here, and its
+/// itk::HDF5TransformIOFactoryRegister__Private() looked up: linked, they cost a third of the time
+/// in which the program starts.
+void (*hdf5Registration())() {
+#ifdef EXPLICA_HDF5_TRANSFORMS
+  void* const library = dlopen(EXPLICA_HDF5_TRANSFORMS, RTLD_NOW);
+  void* const add =
+      library ? dlsym(library, "_ZN3itk39HDF5TransformIOFactoryRegister__PrivateEv") : nullptr;
+  if (add == nullptr) {
+    throw EnvironmentError("ITK's library for HDF5 transforms could not be loaded: " +
+                           std::string(dlerror()));
+  }
+  return reinterpret_cast<void (*)()>(add);
+#else
+  return itk::HDF5TransformIOFactory::RegisterOneFactory;
+#endif
+}
+
+void registerHdf5Writer() {
   static std::once_flag once;
-  std::call_once(once, [] {
-    void* const library = dlopen(EXPLICA_HDF5_TRANSFORMS, RTLD_NOW);
-    void* const add =
-        library ? dlsym(library, "_ZN3itk39HDF5TransformIOFactoryRegister__PrivateEv") : nullptr;
-    if (add == nullptr) {
-      throw EnvironmentError("ITK's library for HDF5 transforms could not be loaded: " +
-                             std::string(dlerror()));
-    }
-    reinterpret_cast<void (*)()>(add)();
-  });
+  std::call_once(once, [] { hdf5Registration()(); });
 }
 
 }  // namespace
@@ -371,7 +381,7 @@ StoredTransform readTransform(const Path& path) {
 
 void writeTransform(const std::filesystem::path& path, const Eigen::Affine3d& affine,
                     const Volume<Eigen::Vector3f>& displacement) {
-  loadHdf5Writer();
+  registerHdf5Writer();
   try {
     // The transform that is added last is applied first.
     auto composite = itk::CompositeTransform<double, 3>::New();

@@ -32,7 +32,8 @@ def turn():
 
 
 def turned_grid(image, spacing):
-    """Size and affine of a grid around the turned head, and the places of its voxels in the image."""
+    """Size and affine of a grid around the turned head, its motion (RAS mm), and the places of its
+    voxels in the image."""
     voxels = np.argwhere(image.get_fdata() > 0)
     centre = nib.affines.apply_affine(image.affine, (voxels.min(0) + voxels.max(0)) / 2)
     shift = np.array([4.3, -7.1, 3.6])
@@ -44,7 +45,7 @@ def turned_grid(image, spacing):
     motion[:3, 3] = shift - turn() @ centre
     index = np.indices(size).reshape(3, -1).T
     back = np.linalg.inv(image.affine) @ np.linalg.inv(motion) @ affine
-    return size, affine, nib.affines.apply_affine(back, index).T
+    return size, affine, motion, nib.affines.apply_affine(back, index).T
 
 
 def segmented(program, image, out, *options):
@@ -64,7 +65,7 @@ def dice(a, b):
 
 def compare(program, path, work, spacing, options):
     image = nib.load(path)
-    size, affine, places = turned_grid(image, spacing)
+    size, affine, _, places = turned_grid(image, spacing)
     name = "turned-" + "x".join(f"{s:g}" for s in spacing)
     file = work / (name + ".nii.gz")
     if not file.exists():
@@ -125,4 +126,5 @@ def main():
         compare(program, path, work, spacing, rest[first:])
 
 
-main()
+if __name__ == "__main__":
+    main()
