@@ -3,6 +3,7 @@
 """The measurements: each returns its numbers, and draws its figure beside the page if it has one."""
 
 import pathlib
+from dataclasses import dataclass
 
 import nibabel as nib
 import numpy as np
@@ -109,33 +110,50 @@ def distance_to_triangles(p, t):
     return np.where(inside, np.abs(height), sides)
 
 
-def beside_freesurfer(explica, page, made, side, kind):
-    """Numbers of one hemisphere of bert against FreeSurfer's, vertex by vertex and by region."""
-    on = f"bert, {'left' if side == 'l' else 'right'}, from {kind}"
+@dataclass
+class Comparison:
+    """One hemisphere beside FreeSurfer's: at the points whose thickness its files state (all, and
+    where ours is known), and the regions that both name."""
+    apart: np.ndarray  # of the points from our white surface, mm
+    points: np.ndarray  # ours and theirs, mm
+    regions: np.ndarray  # ours and theirs, mean thickness, mm
+    names: tuple  # of the regions
+
+
+def compare_with_freesurfer(made, side, motion=np.eye(4)):
+    """What a surface step made of bert's head, or of that head moved by motion (RAS mm)."""
     white = nib.load(made / "white.surf.gii")
     positions, faces = white.agg_data("pointset").astype(float), white.agg_data("triangle")
     thickness = nib.load(made / "thickness.shape.gii").darrays[0].data.astype(float)
     points, reference = known_points(side)
+    points = nib.affines.apply_affine(motion, points)
     apart, face = nearest_faces(points, positions, faces)
     at = at_points(points, positions, faces[face], thickness)
-    known = at > 0
     theirs = freesurfer_regions(side)
-    pairs = [(row["name"], theirs[row["name"]], float(row["thickness_mean_mm"]))
-             for row in made.table("regions.tsv") if row["name"] in theirs]
-    names, a, b = zip(*pairs)
-    a, b = np.array(a), np.array(b)
-    figures.scatter_and_bland_altman(page / f"bert-{side}h-{kind.replace(' ', '-')}.svg", names, a,
-                                     b, on)
+    rows = [row for row in made.table("regions.tsv") if row["name"] in theirs]
+    return Comparison(apart, np.stack([at, reference])[:, at > 0],
+                      np.array([(float(row["thickness_mean_mm"]), theirs[row["name"]])
+                                for row in rows]).T, tuple(row["name"] for row in rows))
+
+
+def beside_freesurfer(explica, page, made, side, kind):
+    """Numbers of one hemisphere of bert against FreeSurfer's, vertex by vertex and by region."""
+    on = f"bert, {'left' if side == 'l' else 'right'}, from {kind}"
+    found = compare_with_freesurfer(made, side)
+    at, reference = found.points
+    b, a = found.regions
+    figures.scatter_and_bland_altman(page / f"bert-{side}h-{kind.replace(' ', '-')}.svg",
+                                     found.names, a, b, on)
     command = made.command
     return [
-        Measured("known points to white surface, mean distance", on, float(apart.mean()), "mm",
+        Measured("known points to white surface, mean distance", on, float(found.apart.mean()), "mm",
                  0.02, command),
         Measured("thickness at known points, correlation", on,
-                 float(np.corrcoef(at[known], reference[known])[0, 1]), "", 0.01, command),
+                 float(np.corrcoef(at, reference)[0, 1]), "", 0.01, command),
         Measured("thickness at known points, mean absolute difference", on,
-                 float(np.abs(at - reference)[known].mean()), "mm", 0.02, command),
+                 float(np.abs(at - reference).mean()), "mm", 0.02, command),
         Measured("thickness at known points, mean difference", on,
-                 float((at - reference)[known].mean()), "mm", 0.03, command),
+                 float((at - reference).mean()), "mm", 0.03, command),
         Measured("regional mean thickness, correlation", on, float(np.corrcoef(a, b)[0, 1]), "",
                  0.01, command),
         Measured("regional mean thickness, mean difference", on, float((b - a).mean()), "mm", 0.03,

@@ -310,7 +310,7 @@ Volume<Eigen::Vector3f> fieldInRas(const Path& path, const Warp::DisplacementFie
 /// and the 32 that it brings are loaded here, and its
 /// itk::HDF5TransformIOFactoryRegister__Private() looked up: linked, they cost a third of the time
 /// in which the program starts.
-void (*hdf5Registration())() {
+auto hdf5Registration() -> void (*)() {
 #ifdef EXPLICA_HDF5_TRANSFORMS
   void* const library = dlopen(EXPLICA_HDF5_TRANSFORMS, RTLD_NOW);
   void* const add =

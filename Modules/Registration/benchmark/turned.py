@@ -48,6 +48,13 @@ def turned_grid(image, spacing):
     return size, affine, motion, nib.affines.apply_affine(back, index).T
 
 
+def resample(image, places, size, affine, file, order=1, kind=np.float32):
+    """Writes the image's values at places (order 0: of the nearest voxels) on a grid, unless they are there."""
+    if not file.exists():
+        values = map_coordinates(np.asarray(image.dataobj), places, order=order, output=kind)
+        nib.save(nib.Nifti1Image(values.reshape(size), affine), file)
+
+
 def segmented(program, image, out, *options):
     if not (out / "summary.json").exists():
         subprocess.run([program, "segment", image, "--out", out, "--force", "--quiet", *options],
@@ -68,9 +75,7 @@ def compare(program, path, work, spacing, options):
     size, affine, _, places = turned_grid(image, spacing)
     name = "turned-" + "x".join(f"{s:g}" for s in spacing)
     file = work / (name + ".nii.gz")
-    if not file.exists():
-        values = map_coordinates(image.get_fdata(), places, order=1).reshape(size)
-        nib.save(nib.Nifti1Image(values.astype(np.float32), affine), file)
+    resample(image, places, size, affine, file)
     plain = segmented(program, path, work / "plain", *options)
     turned = segmented(program, file, work / name, *options)
 

@@ -15,12 +15,11 @@ import sys
 
 import nibabel as nib
 import numpy as np
-from scipy.ndimage import map_coordinates
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "Testing/validation"))
-import measures  # noqa: E402
 from harness import Explica, real  # noqa: E402
-from turned import turned_grid  # noqa: E402
+from measures import compare_with_freesurfer  # noqa: E402
+from turned import resample, turned_grid  # noqa: E402
 
 
 def turned_files(work, name, spacing):
@@ -28,28 +27,16 @@ def turned_files(work, name, spacing):
     image = nib.load(real("bert_freesurfer", "mri", "brain.mgz"))
     atlas = nib.load(real("bert_freesurfer", "mri", "aparc+aseg.mgz"))
     size, affine, motion, places = turned_grid(image, spacing)
-    for file, source, order, kind in ((work / f"{name}.nii.gz", image, 1, np.float32),
-                                      (work / f"{name}-atlas.nii.gz", atlas, 0, np.int32)):
-        values = map_coordinates(np.asarray(source.dataobj), places, order=order, output=kind)
-        nib.save(nib.Nifti1Image(values.reshape(size), affine), file)
+    resample(image, places, size, affine, work / f"{name}.nii.gz")
+    resample(atlas, places, size, affine, work / f"{name}-atlas.nii.gz", 0, np.int32)
     return work / f"{name}.nii.gz", work / f"{name}-atlas.nii.gz", motion
 
 
-def tell(name, made, side, motion):
-    white = nib.load(made / "white.surf.gii")
-    positions, faces = white.agg_data("pointset").astype(float), white.agg_data("triangle")
-    thickness = nib.load(made / "thickness.shape.gii").darrays[0].data.astype(float)
-    points, reference = measures.known_points(side)
-    points = nib.affines.apply_affine(motion, points)
-    apart, face = measures.nearest_faces(points, positions, faces)
-    at = measures.at_points(points, positions, faces[face], thickness)
-    known = at > 0
-    theirs = measures.freesurfer_regions(side)
-    a, b = np.array([(theirs[row["name"]], float(row["thickness_mean_mm"]))
-                     for row in made.table("regions.tsv") if row["name"] in theirs]).T
-    print(f"{name}, {side}h: points {apart.mean():.3f} mm off, thickness r "
-          f"{np.corrcoef(at[known], reference[known])[0, 1]:.3f}, {(at - reference)[known].mean():+.3f} mm; "
-          f"regions r {np.corrcoef(a, b)[0, 1]:.3f}, {(b - a).mean():+.3f} mm", flush=True)
+def tell(on, found):
+    r = [np.corrcoef(pair)[0, 1] for pair in (found.points, found.regions)]
+    more = [(pair[0] - pair[1]).mean() for pair in (found.points, found.regions)]
+    print(f"{on}: points {found.apart.mean():.3f} mm off, thickness r {r[0]:.3f}, {more[0]:+.3f} mm; "
+          f"regions r {r[1]:.3f}, {more[1]:+.3f} mm", flush=True)
 
 
 def main():
@@ -62,7 +49,8 @@ def main():
         made = explica("run", image, "--atlas", atlas, "--steps", "segment,thickness,surface",
                        out=f"{name}-run", done=(0, 3))
         for side in "lr":
-            tell(name, made.step(f"surface-{side.upper()}"), side, motion)
+            tell(f"{name}, {side}h",
+                 compare_with_freesurfer(made.step(f"surface-{side.upper()}"), side, motion))
 
 
 main()
