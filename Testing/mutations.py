@@ -223,6 +223,8 @@ def main():
     parser.add_argument("--check", action="store_true", help="whether the code still has the places")
     words = parser.parse_args()
     chosen = [m for m in ALL if words.only in m.file]
+    if not chosen:
+        parser.error(f"--only {words.only}: no mutation is of a file whose path has it")
     moved = [m for m in chosen if places(m) != 1]
     for mutation in moved:
         print(f"{mutation.file}: '{mutation.right}' stands {places(mutation)} times: follow the code with the mutation")

@@ -260,7 +260,7 @@ def same(default, now):
     return all(now[name] == digest for name, digest in default.items() if name in now)
 
 
-def table(runs, command, parameters):
+def table(runs, command, chosen):
     subjects = SUBJECTS[command]
     defaults = {name: runs(command, name, words) for name, words in subjects}
     for name, (values, said) in defaults.items():
@@ -268,7 +268,7 @@ def table(runs, command, parameters):
             sys.exit(f"{command}, {name}: {said}")
     heads = [head for head, _, _ in MEASURES[command]]
     rows = [f"| option | value | changes | {' | '.join(heads)} |", "|---" * (3 + len(heads)) + "|"]
-    for option, value, extra in settings(command, parameters):
+    for option, value, extra in chosen:
         changed, refused, differences = [], [], [[] for _ in heads]
         for name, words in subjects:
             if extra[0] in words:  # the subject's own setting gives way
@@ -308,13 +308,18 @@ def main():
     parser.add_argument("--only", default="", help="options whose name matches this expression")
     parser.add_argument("--write", action="store_true")
     given = parser.parse_args()
+    if given.only and given.write:
+        parser.error("--write replaces whole tables, --only measures a part of one: give one of them")
     given.folder.mkdir(parents=True, exist_ok=True)
     runs = Runs(given.program, given.folder)
     runs.phantoms()
     commands = described(given.program)
-    for command in given.command or list(SUBJECTS):
-        parameters = [p for p in commands[command] if re.search(given.only, p["name"])]
-        text = table(runs, command, parameters)
+    chosen = {command: list(settings(command, [p for p in commands[command] if re.search(given.only, p["name"])]))
+              for command in given.command or SUBJECTS}
+    if not any(chosen.values()):
+        parser.error(f"--only {given.only}: no option that is tried has such a name")
+    for command in (c for c in chosen if chosen[c]):
+        text = table(runs, command, chosen[command])
         if given.write:
             write(command, text)
 

@@ -74,6 +74,10 @@ def main():
     parser.add_argument("--only", default="")
     parser.add_argument("--work", type=pathlib.Path, help="folder for results, kept for a next run")
     words = parser.parse_args()
+    chosen = [(title, measure) for title, measure in measures.ALL if words.only.lower() in title.lower()]
+    if not chosen:
+        parser.error(f"--only {words.only}: no section of the page has it in its title; there are "
+                     + "; ".join(title for title, _ in measures.ALL))
     page = PAGE.read_text(encoding="utf-8")
     blocks = dict(MARK.findall(page))
     faults, skipped = [], 0
@@ -82,9 +86,7 @@ def main():
         folder.mkdir(parents=True, exist_ok=True)
         explica = Explica(words.explica.resolve(), folder.resolve())
         figures = PAGE.parent if words.write else folder
-        for title, measure in measures.ALL:
-            if words.only.lower() not in title.lower():
-                continue
+        for title, measure in chosen:
             try:
                 rows = measure(explica, figures)
             except NoRealData as missing:
@@ -104,7 +106,7 @@ def main():
         PAGE.write_text(page, encoding="utf-8")
     for fault in faults:
         print(fault)
-    return 1 if faults or (skipped == len(measures.ALL)) else 0
+    return 1 if faults or (skipped == len(chosen)) else 0
 
 
 sys.exit(main())
