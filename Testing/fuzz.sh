@@ -7,12 +7,19 @@
 # A file that crashes, takes 20 s or 2.5 GB is kept in Testing/fuzz/regressions/READER, where every
 # later test run tries it: mend the reader, then commit both.  EXPLICA_JOBS bounds the compilers at
 # once, EXPLICA_RUNS the executions of each reader, which are printed; EXPLICA_SEED makes the inputs
-# of one run those of another.
+# of one run those of another, and is printed.  A reader that is executed less often than 50 times a
+# second of its time, or not as often as EXPLICA_RUNS says, fails: nothing was tried.
 set -eu
 cd "$(dirname "$0")/.."
 seconds=${1:-60}
 [ $# -gt 0 ] && shift
 readers=$(sed -n 's/^ *{"\([a-z0-9-]*\)", "\([^"]*\)", read.*/\1:\2/p' Testing/fuzz/Readers.cpp)
+for name in "$@"; do
+  case "$(printf ' %s' $readers)" in
+    *" $name:"*) ;;
+    *) echo "fuzz: no reader '$name'; readers are$(printf ' %s' $readers | sed 's/:[^ ]*//g')" >&2; exit 1 ;;
+  esac
+done
 [ -f build-fuzz/build.ninja ] || cmake --preset fuzz
 cmake --build build-fuzz ${EXPLICA_JOBS:+-j "$EXPLICA_JOBS"} --target ExplicaFuzz
 cmake --build build ${EXPLICA_JOBS:+-j "$EXPLICA_JOBS"} --target explica ExplicaIOPropertyTests
@@ -31,6 +38,9 @@ export LSAN_OPTIONS="suppressions=$PWD/build-fuzz/leaks.supp:print_suppressions=
 # A third more executions a second; where a faulty block came from is told by its first callers.
 export ASAN_OPTIONS=malloc_context_size=4:quarantine_size_mb=16
 export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
+seed=${EXPLICA_SEED:-$(date +%Y%m%d)}
+echo "fuzz: seed $seed (EXPLICA_SEED)"
+least=${EXPLICA_RUNS:-$((50 * seconds))}
 failed=""
 for reader in $readers; do
   name=${reader%%:*} file=${reader#*:}
@@ -43,11 +53,15 @@ for reader in $readers; do
   EXPLICA_FUZZ_READER=$name build-fuzz/bin/ExplicaFuzz "$corpus" "$seeds/$file" \
     $([ -d "$kept" ] && echo "$kept") -max_total_time="$seconds" -timeout=20 -rss_limit_mb=2560 \
     -max_len=65536 -print_final_stats=1 -artifact_prefix="$crashes/" \
-    -entropic=0 -runs="${EXPLICA_RUNS:--1}" -seed="${EXPLICA_SEED:-0}" \
+    -entropic=0 -runs="${EXPLICA_RUNS:--1}" -seed="$seed" \
     >"build-fuzz/$name.log" 2>&1 || found=1
   runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "build-fuzz/$name.log")
   took=$(sed -n 's/^Done [0-9]* runs in \([0-9]*\) second.*/\1/p' "build-fuzz/$name.log")
   echo "$name: ${runs:-?} executions in ${took:-?} s$([ $found = 0 ] || echo ', CRASH: see build-fuzz/'"$name.log")"
+  if [ "${runs:-0}" -lt "$least" ] && [ $found = 0 ]; then
+    echo "$name: at least $least executions were to be made; see build-fuzz/$name.log"
+    failed="$failed $name"
+  fi
   [ $found = 0 ] && continue
   failed="$failed $name"
   for artifact in "$crashes"/*; do

@@ -5,6 +5,7 @@
 #include "Explica/Application/Execute.h"
 #include "Explica/Application/ManyRuns.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/StopScope.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Pipeline/Plan.h"
 #include "Explica/Provenance/Digest.h"
@@ -166,15 +167,17 @@ std::optional<fs::path> earlierRegistration(const Settings& s, const std::string
   return {};
 }
 
-/// Takes one hemisphere through the run and names its results.
-/// @return false if it failed: the reason is then in problem.txt beside the run
-bool doHemisphere(Context& context, const Settings& s, const study::Participant& participant,
-                  pipeline::RunHemisphere side, Termination& worst) {
+enum class Ended { Done, Failed, Interrupted };
+
+/// Takes one hemisphere through the run and names its results.  Why it failed is in problem.txt
+/// beside the run.
+Ended doHemisphere(Context& context, const Settings& s, const study::Participant& participant,
+                   pipeline::RunHemisphere side, Termination& worst) {
   const std::string hemisphere(nameOf(side));
   const std::string name = participant.name() + "_hemi-" + hemisphere;
   const fs::path folder = context.outputFolder() / "runs" / name;
   const fs::path problem = folder / "problem.txt";
-  bool good = false;
+  Ended ended = Ended::Done;
   try {
     if (!participant.problem.empty()) throw InvalidInput(participant.problem);
     requireSides(s, participant);
@@ -191,45 +194,50 @@ bool doHemisphere(Context& context, const Settings& s, const study::Participant&
     const Outcome outcome = context.runCommand(*findCommand("run"), "runs/" + name, values);
     if (!reachedGoal(outcome.termination)) worst = outcome.termination;
     if (!outcome.plausible) passFlagsOn(context, folder);
-    fs::remove(problem);
-    good = true;
+    outcome.abandoned ? sayInterrupted(folder) : static_cast<void>(fs::remove(problem));
+    if (!reachedGoal(outcome.termination) && context.monitor().shouldStop()) {
+      ended = Ended::Interrupted;
+    }
   } catch (const EnvironmentError&) {
     throw;  // a full disk, or another run at work here: no fault of the participant
   } catch (const Error& fault) {
     if (!participant.problem.empty()) dropSteps(context, "runs/" + name);
     context.dropCommand("runs/" + name);  // an earlier run's account of itself
     sayProblem(context, name, folder, fault.what());
+    ended = Ended::Failed;
   }
   const study::DerivativeOrigin origin{s.dataset, !context.isPrivate()};
   study::exportRun(folder, context.outputFolder(), participant, hemisphere, origin);
-  return good;
+  return ended;
 }
 
 /// All that can be done is done; exit code 3 if some failed, 2 if all did.
 Termination doParticipants(Context& context, const Settings& s) {
+  const StopScope kept(nullptr);  // what is reached is written
   const auto participants = study::findParticipants(s.dataset, s.participants);
   study::describeDerivatives(context.outputFolder(), {s.dataset, !context.isPrivate()},
                              provenance::software().version);
   Termination worst = Termination::NotRun;
   int done = 0;
-  std::vector<std::string> failed;
+  std::vector<std::string> failed, interrupted;
   for (const study::Participant& participant : participants) {
     for (const pipeline::RunHemisphere side : sidesOf(s)) {
       if (context.monitor().shouldStop()) {
         worst = Termination::Interrupted;
         break;
       }
-      if (doHemisphere(context, s, participant, side, worst)) {
-        ++done;
-      } else {
-        failed.push_back(participant.name() + "_hemi-" + std::string(nameOf(side)));
-      }
+      const std::string name = participant.name() + "_hemi-" + std::string(nameOf(side));
+      const Ended ended = doHemisphere(context, s, participant, side, worst);
+      done += ended == Ended::Done;
+      if (ended == Ended::Failed) failed.push_back(name);
+      if (ended == Ended::Interrupted) interrupted.push_back(name);
     }
   }
   context.result("hemispheres_done", done);
   context.result("hemispheres_failed", failed.size());
   context.result("failed", Json(failed));
-  if (done == 0 && !failed.empty()) {
+  context.result("interrupted", Json(interrupted));
+  if (done == 0 && interrupted.empty() && !failed.empty()) {
     throw InvalidInput(s.dataset + ": all " + std::to_string(failed.size()) +
                        " hemispheres failed; each run's problem.txt says why");
   }

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "Explica/Application/Command.h"
+#include "Explica/Application/Describing.h"
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/StopScope.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Flattening/Comparison.h"
 #include "Explica/Flattening/Seen.h"
@@ -94,6 +96,27 @@ Row measure(const TriangleMesh& reference, const TriangleMesh& after,
   return row;
 }
 
+/// One row a surface; those before an end was asked for, one at least.
+std::vector<Row> measureAll(Context& context, const Settings& s, const TriangleMesh& reference,
+                            const std::vector<TriangleMesh>& surfaces,
+                            const std::vector<std::int32_t>& faces) {
+  auto step = context.step("compare");
+  const auto pairs = flattening::drawPairs(reference, faces, s.distances);
+  std::vector<Row> rows;
+  for (std::size_t n = 0; n < surfaces.size(); ++n) {
+    context.monitor().progress(static_cast<double>(n) / static_cast<double>(surfaces.size()),
+                               s.after[n]);
+    try {
+      rows.push_back(measure(reference, surfaces[n], faces, pairs));
+    } catch (const Interrupted&) {
+      if (rows.empty()) throw;
+      break;
+    }
+    rows.back().name = std::filesystem::path(s.after[n]).filename().string();
+  }
+  return rows;
+}
+
 std::string tableOf(const std::vector<Row>& rows) {
   std::string text =
       "surface\tarea_error_mean\tarea_error_max\tedge_strain_mean\tedge_strain_p95\t"
@@ -181,23 +204,17 @@ Termination run(Context& context, const Settings& s) {
   if (faces.empty()) throw InvalidInput("the surfaces have no face in common");
   sayHowRead(context, reference.origin);
 
-  std::vector<Row> rows;
-  {
-    auto step = context.step("compare");
-    const auto pairs = flattening::drawPairs(reference.mesh, faces, s.distances);
-    for (std::size_t n = 0; n < surfaces.size(); ++n) {
-      if (n > 0 && context.monitor().shouldStop()) break;
-      context.monitor().progress(static_cast<double>(n) / static_cast<double>(surfaces.size()),
-                                 s.after[n]);
-      rows.push_back(measure(reference.mesh, surfaces[n], faces, pairs));
-      rows.back().name = std::filesystem::path(s.after[n]).filename().string();
-    }
-  }
+  const std::vector<Row> rows = measureAll(context, s, reference.mesh, surfaces, faces);
+  const StopScope kept(nullptr);  // what is reached is written
   auto step = context.step("write");
   writeTextFile(context.output("comparison.tsv"), tableOf(rows));
+  Termination end =
+      rows.size() < surfaces.size() ? Termination::Interrupted : Termination::Finished;
   for (std::size_t n = 0; n < rows.size(); ++n) {
-    draw(context.output("comparison-" + std::to_string(n + 1) + ".png"), reference.mesh,
-         surfaces[n], faces, rows[n]);
+    describing(context, end, [&] {
+      draw(context.output("comparison-" + std::to_string(n + 1) + ".png"), reference.mesh,
+           surfaces[n], faces, rows[n]);
+    });
   }
   const Row& first = rows.front();
   context.result("faces", faces.size());
@@ -209,7 +226,7 @@ Termination run(Context& context, const Settings& s) {
   context.result("surfaces", listOf(rows));
   context.result("seconds",
                  std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-  return rows.size() < surfaces.size() ? Termination::Interrupted : Termination::NotRun;
+  return end;
 }
 
 }  // namespace

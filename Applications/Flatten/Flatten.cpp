@@ -7,6 +7,7 @@
 #include "Explica/Application/Command.h"
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/StopScope.h"
 #include "Explica/Core/TimeBudget.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Flattening/Comparison.h"
@@ -670,6 +671,7 @@ Made make(Context& context, const Settings& s, const Subject& subject, flattenin
 }
 
 Termination run(Context& context, const Settings& s) {
+  const StopScope kept(nullptr);  // what is reached is written
   const auto begin = Clock::now();
   const Subject subject = subjectOf(context, s);
   flattening::Disc whole = flattening::discOf(subject.reference.mesh, subject.faces);

@@ -10,6 +10,7 @@
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Collision/Untangling.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/StopScope.h"
 #include "Explica/Core/TimeBudget.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Geometry/MeshTopology.h"
@@ -147,6 +148,7 @@ Termination run(Context& context, const Settings& s) {
   if (s.resume) checkpoint = unfolding::readCheckpoint(context.outputFolder() / kInflationState);
   u.crossings = checkStart(context, s, u.before);
   const double started = seconds();
+  const StopScope kept(nullptr);  // what is reached is written
   {
     auto step = context.step("inflate");
     inflation::InflateOptions options = s.inflate;

@@ -3,6 +3,7 @@
 
 #include "Outputs.h"
 
+#include "Explica/Application/Describing.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Flattening/Comparison.h"
 #include "Explica/Geometry/MeshMeasures.h"
@@ -170,10 +171,12 @@ Termination writeInflated(Context& context, Inflated& u, const inflation::Inflat
   io::writeFreeSurferSurface(context.output(right ? "rh.inflated" : "lh.inflated"), u.result.mesh);
   writeTextFile(context.output("evolution.tsv"), inflation::evolutionTable(u.result.history));
   unfolding::writeCheckpoint(context.output(kInflationState), u.result.checkpoint);
-  writeVisibility(context, u, options);
-  if (u.globalMeasures) reportGlobalMeasures(context, u);
-  writeDistortion(context, u);
-  reportDistances(context, u);
+  describing(context, u.result.termination, [&] {
+    writeVisibility(context, u, options);
+    if (u.globalMeasures) reportGlobalMeasures(context, u);
+    writeDistortion(context, u);
+    reportDistances(context, u);
+  });
   writeFrames(context, u);
   reportRun(context, u);
   checkWritten(context, u);

@@ -4,6 +4,7 @@
 #include "Explica/Application/Command.h"
 #include "Explica/Application/ReadPolygon.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/StopScope.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/IO/PolygonFile.h"
 #include "Explica/Planar/AngularSweep.h"
@@ -278,6 +279,7 @@ std::string tableOf(const std::vector<planar::GlobalFlowStep>& history) {
 /// The flow of a global measure, and what became of the region on the way.
 Termination runGlobalFlow(Context& context, const Settings& s, const Task& task) {
   auto step = context.step("descend");
+  const StopScope kept(nullptr);  // what is reached is written
   planar::GlobalFlowOptions options;
   options.measure = *s.flow;
   options.viewingRadius = s.viewingRadius;
@@ -368,6 +370,7 @@ Termination run(Context& context, const Settings& s) {
   if (s.flow) return runGlobalFlow(context, s, task);
   sayHowLongUnfoldingIs(context, s, task);
   auto step = context.step("unfold");
+  const StopScope kept(nullptr);  // what is reached is written
   const planar::PolygonUnfolding result = planar::unfoldPolygon(
       curve, region, *view, s.unfolding, context.monitor(), state ? &*state : nullptr);
   const planar::PolygonIteration& start = result.history.front();

@@ -6,6 +6,7 @@
 #include "Explica/Application/Command.h"
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/StopScope.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Geometry/FaceCrossing.h"
 #include "Explica/Geometry/MeshTopology.h"
@@ -151,6 +152,7 @@ void report(Context& context, const Inputs& inputs,
 }
 
 Termination run(Context& context, const Settings& s) {
+  const StopScope kept(nullptr);  // what is reached is written
   const auto begin = std::chrono::steady_clock::now();
   const Inputs inputs = readInputs(context, s);
   std::vector<collision::RepairedSurface> repaired;

@@ -4,6 +4,7 @@
 #include "Explica/Application/Command.h"
 #include "Explica/Application/Execute.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/StopScope.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/Pipeline/Asymmetry.h"
@@ -187,7 +188,9 @@ void runStep(Context& context, const Settings& s, const pipeline::PlannedStep& s
   }
   note.state = outcome->exitCode == kDone || reachedGoal(outcome->termination)
                    ? report::StepState::Done
-                   : report::StepState::StoppedEarly;
+               : context.monitor().shouldStop() ? report::StepState::Interrupted
+                                                : report::StepState::StoppedEarly;
+  if (outcome->abandoned) context.dropCommand(step.name);  // what an earlier run left
   if (!outcome->plausible) passFlagsOn(context, step.name);
   if (!reachedGoal(outcome->termination)) worst = outcome->termination;
 }
@@ -250,6 +253,7 @@ void sayWhatIsUsed(Context& context, const Settings& s, const pipeline::Plan& pl
 }
 
 Termination run(Context& context, const Settings& s) {
+  const StopScope kept(nullptr);  // what is reached is written
   const fs::path out = context.outputFolder();
   const pipeline::Plan whole = planOrTakeBack(context, s);
   const std::vector<pipeline::PlannedStep>& plan = whole.steps;
@@ -271,6 +275,7 @@ Termination run(Context& context, const Settings& s) {
       continue;
     }
     if (context.monitor().shouldStop()) {
+      notes[n].state = report::StepState::Interrupted;
       notes[n].message = "the run was stopped before it";
       worst = Termination::Interrupted;
       continue;
@@ -295,7 +300,9 @@ Termination run(Context& context, const Settings& s) {
   }
   pipeline::writeRunState(state, notes);
   for (const auto& note : notes) {
-    context.result(note.name, note.state == report::StepState::Done ? "done" : "stopped early");
+    const bool done = note.state == report::StepState::Done;
+    const bool interrupted = note.state == report::StepState::Interrupted;
+    context.result(note.name, done ? "done" : interrupted ? "interrupted" : "stopped early");
   }
   writeAsymmetry(context, out);
   if (withReport) {

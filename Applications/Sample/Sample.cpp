@@ -8,6 +8,7 @@
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
+#include "Explica/Core/StopScope.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/IO/LabelNames.h"
 #include "Explica/IO/RegionFiles.h"
@@ -196,15 +197,22 @@ class SurfaceSampling {
     }
     auto step = context_.step("sample");
     if (!ribbon_) at_ = positionsAtDepths(cortex_, depths_, s_.depthKind);
-    for (const std::string& path : s_.volumes) {
-      sampleSeries(path);
-      if (context_.monitor().shouldStop()) {
-        context_.warn("stopped before every volume was sampled; outputs are of those that were");
-        return finish(Termination::Interrupted);
+    std::size_t done = 0, rows = 0;
+    try {
+      for (; done < s_.volumes.size(); ++done) {
+        rows = profiles_.size();
+        sampleSeries(s_.volumes[done]);
       }
+      rows = profiles_.size();
+      for (const std::string& path : s_.labelVolumes) sampleLabels(path);
+      carryOver();
+    } catch (const Interrupted&) {
+      if (done == 0) throw;
+      const StopScope kept(nullptr);
+      profiles_.resize(rows);
+      context_.warn("stopped before every volume was sampled; outputs are of those that were");
+      return finish(Termination::Interrupted);
     }
-    for (const std::string& path : s_.labelVolumes) sampleLabels(path);
-    carryOver();
     return finish(Termination::NotRun);
   }
 
@@ -271,7 +279,7 @@ class SurfaceSampling {
       writeMaps(writers, values, frame, series.frames());
       frame += static_cast<int>(frames);
       context_.monitor().progress(static_cast<double>(frame) / series.frames(), name);
-      if (context_.monitor().shouldStop() && frame < series.frames()) return;
+      checkpoint();
     }
     for (io::GiftiMapsWriter& writer : writers) writer.finish();
     addValid(path, name, known);

@@ -317,8 +317,6 @@ Head readHead(Context& context, Judge& judge, const Settings& s,
 /// What a segmentation of a T1 cannot be.
 void judgeTissue(Context& context, Judge& judge, const segmentation::TissueSegmentation& tissue,
                  double brainShare) {
-  // Classes that were stopped on the way are marked so; they say nothing of the image.
-  if (tissue.termination == Termination::Interrupted) return;
   const double contrast = segmentation::rimContrast(tissue.labels);
   context.result("rim_contrast", contrast);
   judge.require("contrast", contrast);
@@ -333,7 +331,7 @@ void judgeTissue(Context& context, Judge& judge, const segmentation::TissueSegme
 /// Where template and image show different tissues, the image is believed, and the reader told.
 void compareWithTemplate(Context& context, const segmentation::TissueSegmentation& tissue,
                          const Head& head) {
-  if (head.expected.size() == 0 || tissue.termination == Termination::Interrupted) return;
+  if (head.expected.size() == 0) return;
   const auto found = segmentation::whiteDisagreement(tissue.labels, head.expected);
   context.result("template_white_not_white_share", found.share);
   context.result("template_white_not_white_ml", found.largest / 1000);

@@ -5,6 +5,7 @@
 #include "Explica/Application/Execute.h"
 #include "Explica/Application/ManyRuns.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/StopScope.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Provenance/Json.h"
 #include "Explica/Provenance/Software.h"
@@ -85,6 +86,7 @@ bool doHeart(Context& context, const Settings& s, const study::HeartSubject& sub
       outcome = context.runCommand(heart, name, values);
     }
     if (!reachedGoal(outcome->termination)) worst = outcome->termination;
+    if (outcome->abandoned) sayInterrupted(folder);
     return true;
   } catch (const EnvironmentError&) {
     throw;  // a full disk, or another run at work here: no fault of the heart
@@ -117,6 +119,7 @@ void writeTables(Context& context, const Settings& s, const study::HeartLayout& 
 }
 
 Termination run(Context& context, const Settings& s) {
+  const StopScope kept(nullptr);  // what is reached is written
   study::HeartLayout layout;
   if (!s.endings.empty()) layout.endings = s.endings;
   const auto subjects = study::findHearts(s.dataset, s.participants, layout);

@@ -5,6 +5,7 @@
 #include "Explica/Application/Execute.h"
 #include "Explica/Application/ManyRuns.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/StopScope.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Study/StudyState.h"
 #include "StudyInput.h"
@@ -93,7 +94,7 @@ bool doRun(Context& context, const fs::path& folder, const study::Participant& p
     values["hemisphere"] = run.hemisphere;
     values["resume"] = true;
     const Outcome outcome = context.runApart(*findCommand("run"), folder, values);
-    fs::remove(problem);
+    outcome.abandoned ? sayInterrupted(folder) : static_cast<void>(fs::remove(problem));
     if (!reachedGoal(outcome.termination)) account.worst = outcome.termination;
     if (!outcome.plausible) passFlagsOn(context, folder);
     return !endedFromOutside(outcome.termination);
@@ -109,6 +110,7 @@ bool doRun(Context& context, const fs::path& folder, const study::Participant& p
 }
 
 Termination run(Context& context, const Settings& s) {
+  const StopScope kept(nullptr);  // what is reached is written
   const study::StudyFile file = readCheckedStudy(s.study);
   const study::PathOptions paths = studyPathOptions();
   const study::Study study = study::planStudy(file, paths, s.participants);

@@ -857,7 +857,7 @@ Termination run(Context& context, const Settings& s) {
     context.warn("the surfaces meet themselves at " + std::to_string(meetings) + " pairs of faces");
     return Termination::Stalled;
   }
-  return context.monitor().shouldStop() ? Termination::Interrupted : Termination::Finished;
+  return Termination::Finished;
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Collision/Untangling.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/StopScope.h"
 #include "Explica/Core/TimeBudget.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Geometry/MeshTopology.h"
@@ -305,6 +306,7 @@ Termination run(Context& context, const Settings& s) {
   u.crossings = checkStart(context, s, u.chosen, u.view, u.before);
   u.secondsStart = seconds();
   sayHowLong(context, s, u);
+  const StopScope kept(nullptr);  // what is reached is written
   {
     auto step = context.step("unfold");
     unfolding::UnfoldOptions options = s.unfold;

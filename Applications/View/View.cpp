@@ -8,6 +8,7 @@
 
 #include "Explica/Application/Command.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/StopScope.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/IO/VolumeFile.h"
@@ -209,6 +210,7 @@ void openWindow(Context& context, const Settings& s) {
 
 Termination run(Context& context, const Settings& s) {
   if (!s.screenshot && !s.film) {
+    const StopScope window(nullptr);  // its user ends it; no exception may pass its library
     openWindow(context, s);
     return Termination::NotRun;
   }

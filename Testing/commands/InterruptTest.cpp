@@ -117,6 +117,22 @@ TEST_P(Interrupt, AComparisonHoldsTheSurfacesThatItHasMeasured) {
   EXPECT_EQ(explica({"verify", folder / "a"}).exitCode, 0);
 }
 
+/// A pipe that nobody reads any more is no request to end.
+TEST(Interrupts, EverySignalThatAsksForAnEndIsHeard) {
+  TemporaryFolder folder;
+  writeFoldedSphere(folder);
+  for (const int number : {SIGTERM, SIGHUP, SIGQUIT}) {
+    CommandSetting setting;
+    setting.signal = number;
+    setting.signalWhen = "iteration 1";
+    const auto stopped = explica({"inflate", folder / "sphere.surf.gii", "--max-iterations", "2000",
+                                  "--target-seen", "1", "--out", folder / "a", "--force"},
+                                 setting);
+    EXPECT_EQ(stopped.exitCode, 3) << number << stopped;
+    EXPECT_EQ(readJson(folder / "a/summary.json")["termination"], "interrupted");
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Signals, Interrupt, ::testing::Values(SIGINT, SIGUSR1),
                          [](const auto& row) { return "Signal" + std::to_string(row.param); });
 

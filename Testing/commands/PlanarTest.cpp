@@ -88,9 +88,12 @@ void writeWavyRing(const std::string& file, Eigen::Index vertices) {
 TEST(Polygon, SaysHowLongWorkTakesThatGrowsWithTheSquare) {
   const TemporaryFolder folder;
   writeWavyRing(folder / "ring.csv", 6000);
-  const auto told =
-      explica({"polygon", folder / "ring.csv", "--region", "100:2900", "--direction", "0,1",
-               "--knot", "all-pairs", "--max-time", "0.001", "--out", folder / "out"});
+  CommandSetting setting;
+  setting.signal = SIGTERM;
+  setting.signalWhen = "--knot auto or tree";
+  const auto told = explica({"polygon", folder / "ring.csv", "--region", "100:2900", "--direction",
+                             "0,1", "--knot", "all-pairs", "--out", folder / "out"},
+                            setting);
   EXPECT_EQ(told.exitCode, 3) << told;
   EXPECT_NE(told.err.find("pairs of edges, about "), std::string::npos) << told;
   EXPECT_NE(told.err.find("--knot auto or tree sums it in n log n"), std::string::npos) << told;

@@ -5,6 +5,7 @@
 
 #include "Explica/Testing/KillMoments.h"
 #include "Explica/Testing/SmallDisk.h"
+#include "Explica/Testing/Stops.h"
 #include "Explica/Testing/WholeFiles.h"
 #include "SmallStudy.h"
 
@@ -46,29 +47,48 @@ TEST(StudyTrust, AKillAtAnyMomentLeavesWholeFilesAndTheRerunGivesTheSameBytes) {
   }
 }
 
-/// Whatever ends it: only what is whole, and no stage or lock of a process that is no more.
-TEST(StudyTrust, ASignalAtAnyMomentLeavesNeitherStageNorLock) {
+/// A table of what was interrupted calls nobody's data bad.
+TEST(StudyTrust, AStopAtAnyCheckIsInterruptedInTheTablesToo) {
   const TemporaryFolder folder;
   const SmallStudy study(folder.path(), {"01"});
-  ASSERT_EQ(explica(study.participants(folder / "undisturbed")).exitCode, 0);
+  const long checks = checksFor(study.participants(folder / "undisturbed"));
   const Hashes expected = stableHashes(folder / "undisturbed");
-  const std::pair<int, double> moments[] = {{SIGHUP, 0.05}, {SIGQUIT, 0.1}, {SIGPIPE, 0.2},
-                                            {SIGTERM, 0.3}, {SIGHUP, 0.4},  {SIGQUIT, 0.6}};
-  for (const auto& [number, seconds] : moments) {
-    SCOPED_TRACE("signal " + std::to_string(number) + " after " + std::to_string(seconds) + " s");
-    CommandSetting setting;
-    setting.signal = number;
-    setting.signalAfter = seconds;
-    const CommandResult ended = explica(study.participants(study.out()), setting);
-    EXPECT_TRUE(ended.exitCode == 0 || ended.exitCode == 3 || ended.exitCode == 128 + number)
-        << ended;
+  for (const long check : tenMoments(checks)) {
+    SCOPED_TRACE("check " + std::to_string(check) + " of " + std::to_string(checks));
+    const CommandResult ended =
+        explica(study.participants(study.out(), {"--force"}), stopAtCheck(check));
+    ASSERT_TRUE(isInterrupted(ended)) << ended;
     for (const std::string& name : folder.entries()) {
       EXPECT_EQ(name.find("explica-stage"), std::string::npos) << name;
       EXPECT_EQ(name.find("explica-lock"), std::string::npos) << name;
     }
-    ASSERT_EQ(explica(study.participants(study.out())).exitCode, 0);
-    EXPECT_EQ(differences(stableHashes(study.out()), expected), std::vector<std::string>());
+    ASSERT_EQ(explica(study.group(study.out())).exitCode, 0);
+    const std::string table = readText(study.out() + "/study.tsv");
+    EXPECT_EQ(table.find("failed"), std::string::npos) << table;
+    EXPECT_NE(table.find("interrupted"), std::string::npos) << table;
     fs::remove_all(study.out());
+  }
+  ASSERT_EQ(explica(study.participants(study.out())).exitCode, 0);
+  EXPECT_EQ(differences(stableHashes(study.out()), expected), std::vector<std::string>());
+}
+
+TEST(StudyTrust, AStopAtAnyCheckIsInterruptedInTheTableOfHeartsToo) {
+  const TemporaryFolder folder;
+  const auto made = explica({"phantom", "ventricle", "--size", "48", "--spacing", "2.7", "--slice",
+                             "8", "--out", folder / "beat"});
+  ASSERT_EQ(made.exitCode, 0) << made;
+  fs::create_directories(folder / "data/sub-1");
+  fs::copy_file(folder / "beat/labels.nii.gz", folder / "data/sub-1/a_dseg.nii.gz");
+  const std::vector<std::string> words = {"study", "hearts", folder / "data", folder / "out"};
+  const long checks = checksFor(words);
+  fs::remove_all(folder / "out");
+  for (const long check : tenMoments(checks)) {
+    SCOPED_TRACE("check " + std::to_string(check) + " of " + std::to_string(checks));
+    const CommandResult ended = explica(words, stopAtCheck(check));
+    ASSERT_TRUE(isInterrupted(ended)) << ended;
+    const std::string table = readText(folder / "out/hearts.tsv");
+    EXPECT_NE(table.find("interrupted"), std::string::npos) << table;
+    fs::remove_all(folder / "out");
   }
 }
 

@@ -16,6 +16,8 @@
 
 #include <gtest/gtest.h>
 
+#include <csignal>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -92,9 +94,13 @@ std::vector<std::string> onFoldedSphere(const TemporaryFolder& folder) {
 TEST(UnfoldCommand, SaysHowLongTheExactKnotEnergyTakes) {
   const TemporaryFolder folder;
   writeFoldedSphere(folder);
-  const auto told = explica({"unfold", folder / "sphere.surf.gii", "--center", "0,0,30", "--radius",
-                             "12", "--direction", "0,0,1", "--knot", "all-pairs", "--max-time",
-                             "0.001", "--out", folder / "out"});
+  CommandSetting setting;
+  setting.signal = SIGTERM;
+  setting.signalWhen = "pairs of faces, about ";
+  const auto told =
+      explica({"unfold", folder / "sphere.surf.gii", "--center", "0,0,30", "--radius", "12",
+               "--direction", "0,0,1", "--knot", "all-pairs", "--out", folder / "out"},
+              setting);
   EXPECT_EQ(told.exitCode, 3) << told;
   EXPECT_NE(told.err.find("pairs of faces, about "), std::string::npos) << told;
 }

@@ -124,6 +124,10 @@ void report(const Run& run, const Outcome& outcome, Console& console) {
     console.info("dry run: inputs and options are usable; nothing was written");
     return;
   }
+  if (outcome.abandoned) {
+    console.warning("stopped (" + std::string(nameOf(outcome.termination)) +
+                    ") before there was a result; nothing was written");
+  }
   if (outcome.record.empty()) return;
   const std::string where = outcome.record.parent_path().string();
   if (!outcome.plausible && reachedGoal(outcome.termination)) {
@@ -150,6 +154,14 @@ void writeReport(const Run& run, const Outcome& outcome, Console& console) {
   page.given = parseWords(page.invocation.declaration, page.common, {"--", folder});
   page.common.threads = run.common.threads;
   execute(page, console);
+}
+
+/// --max-time, of all commands or the command's own.
+std::optional<double> maxTimeOf(const Run& run) {
+  const Parameter* own = run.invocation.declaration.find("max-time");
+  if (own == nullptr) return run.common.maxTime;
+  const Json value = provenance::valueOf(own->option);
+  return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
 }
 
 int runCommandLine(std::vector<std::string> words, const std::vector<std::string>& argv,
@@ -189,10 +201,12 @@ int runCommandLine(std::vector<std::string> words, const std::vector<std::string
 
   if (run.common.maxMemory) limitMemory(*run.common.maxMemory);
   std::optional<TimeLimit> limit;
-  if (run.common.maxTime) run.limit = &limit.emplace(*run.common.maxTime);
+  if (const auto seconds = maxTimeOf(run)) run.limit = &limit.emplace(*seconds);
   const Outcome outcome = execute(run, console);
   report(run, outcome, console);
   writeReport(run, outcome, console);
+  if (const auto checks = checksMade())
+    console.info(std::to_string(*checks) + " checks for a stop");
   return outcome.exitCode;
 }
 

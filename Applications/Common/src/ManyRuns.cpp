@@ -44,6 +44,11 @@ void sayProblem(Context& context, const std::string& name, const std::filesystem
           "\n");
 }
 
+void sayInterrupted(const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  writeTextFile(folder / "problem.txt", "interrupted\n");
+}
+
 void passFlagsOn(Context& context, const std::filesystem::path& run) {
   const provenance::Json summary = provenance::readJson(run / provenance::kSummaryName);
   for (provenance::Json flag : summary.value("flags", provenance::Json::array())) {

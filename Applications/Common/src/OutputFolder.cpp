@@ -156,6 +156,18 @@ void removeRecorded(const fs::path& folder, const std::vector<std::string>& keep
   fs::remove(folder, ignored);
 }
 
+void requirePlaceFor(const fs::path& folder) {
+  std::error_code fault;
+  auto parent = fs::absolute(folder);
+  while (!fs::exists(parent, fault) && parent.has_relative_path()) parent = parent.parent_path();
+  if (!fs::is_directory(parent, fault)) {
+    cannot("the output folder cannot be made", folder, parent.string() + " is a file");
+  }
+  if (access(parent.c_str(), W_OK) != 0) {
+    cannot("the output folder cannot be made", folder, std::strerror(errno));
+  }
+}
+
 OutputFolder::OutputFolder(fs::path folder, const OutputRules& rules,
                            const std::function<void(const std::string&)>& warn)
     : folder_(std::move(folder)), inPlace_(rules.inPlace), replaceEarlier_(rules.replaceEarlier) {
@@ -187,14 +199,7 @@ OutputFolder::OutputFolder(fs::path folder, const OutputRules& rules,
     }
   }
   if (rules.checkOnly) {
-    auto parent = fs::absolute(folder_);
-    while (!fs::exists(parent, fault) && parent.has_relative_path()) parent = parent.parent_path();
-    if (!fs::is_directory(parent, fault)) {
-      cannot("the output folder cannot be made", folder_, parent.string() + " is a file");
-    }
-    if (access(parent.c_str(), W_OK) != 0) {
-      cannot("the output folder cannot be made", folder_, std::strerror(errno));
-    }
+    requirePlaceFor(folder_);
     published_ = true;
     return;
   }

@@ -27,6 +27,10 @@ struct OutputRules {
 /// record, and the folder if nothing else is in it.  Names in `keep` stay.
 void removeRecorded(const std::filesystem::path& folder, const std::vector<std::string>& keep = {});
 
+/// Before any work: whether a folder is there, or can be made, and may be written.
+/// @throws EnvironmentError  it cannot
+void requirePlaceFor(const std::filesystem::path& folder);
+
 /// The results of one run, which appear together or not at all.
 ///
 /// Files are written into a hidden staging folder: beside the output folder if that does not exist

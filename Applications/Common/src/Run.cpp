@@ -6,6 +6,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Core/PortableMath.h"
+#include "Explica/Core/StopScope.h"
 #include "Explica/IO/ItkFormats.h"
 #include "Explica/Provenance/Doubts.h"
 #include "Explica/Provenance/Record.h"
@@ -72,6 +73,7 @@ Context::Step::Step(Context& context, std::string name)
 Context::Step::~Step() {
   auto& entry = context_.state_->record.steps[entry_];
   entry.seconds = secondsNow() - begin_;
+  if (entry.termination == Termination::NotRun) entry.termination = Termination::Finished;
   context_.state_->console.endProgress();
 }
 
@@ -126,6 +128,7 @@ fs::path Context::outputFolder() const {
 
 Context::Step Context::step(std::string name) {
   if (state_->run.common.dryRun) throw DryRunEnds{};
+  checkpoint();
   return Step(*this, std::move(name));
 }
 
@@ -326,7 +329,9 @@ Outcome Context::runThrough(const Command& command, const Json& options) {
     throw std::logic_error("runThrough: the command must be declared writesThrough()");
   }
   Run nested = nestedRun(command, options, state_->run, state_->monitor);
-  return execute(nested, state_->console);
+  Outcome outcome = execute(nested, state_->console);
+  if (outcome.abandoned) throw Interrupted{};
+  return outcome;
 }
 
 namespace {
@@ -420,8 +425,8 @@ Monitor monitorOf(Run& run, Console& console, provenance::Record& record, std::m
     console.progress(fraction, run.prefix + std::string(activity));
   };
   monitor.stopWanted = [&] {
-    return signalled() || (run.limit && run.limit->passed()) ||
-           (run.parent && run.parent->shouldStop());
+    return run.parent ? run.parent->shouldStop()
+                      : endWanted() || (run.limit && run.limit->passed());
   };
   return monitor;
 }
@@ -442,6 +447,11 @@ void openFolder(Run& run, Context::State& state) {
                        [&](const std::string& message) { state.monitor.warn(message); });
   std::error_code ignored;
   state.record.out = fs::absolute(*run.common.out, ignored);
+  for (const Parameter& parameter : declaration.parameters) {
+    if (!parameter.namesOutput) continue;
+    const Json value = provenance::valueOf(parameter.option);
+    if (value.is_string() && fs::path(value).is_absolute()) requirePlaceFor(value);
+  }
 }
 
 /// How the command ended, as its exit code says it.
@@ -529,15 +539,20 @@ Outcome execute(Run& run, Console& console) {
   state.monitor = monitorOf(run, console, record, warnings);
 
   if (!declaration.parameters.empty()) context.doubt(provenance::kInputsChanged, 0);
-  noteDeclaredInputs(context, declaration);
-  recordValues(declaration, record);
-  openFolder(run, state);
-
   Termination termination = Termination::NotRun;
   try {
+    const StopScope abandoned(&state.monitor);
+    noteDeclaredInputs(context, declaration);
+    recordValues(declaration, record);
+    openFolder(run, state);
     termination = run.invocation.run(context);
   } catch (const DryRunEnds&) {
     return {};
+  } catch (const Interrupted&) {
+    console.endProgress();
+    Outcome outcome = outcomeOf(Termination::Interrupted, run, state);
+    outcome.abandoned = true;
+    return outcome;
   } catch (const InvalidInput& error) {
     throw InvalidInput(withInputNames(error.what(), record));
   }

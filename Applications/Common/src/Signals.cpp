@@ -9,12 +9,16 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <atomic>
+#include <cstdlib>
 #include <thread>
 
 namespace explica::app {
 namespace {
 
 volatile sig_atomic_t signalCount = 0;
+std::optional<long> stopAt;  ///< EXPLICA_STOP_AT_CHECK
+std::atomic<long> checks = 0;
 int endings[2] = {-1, -1};  ///< pipe by which the handler wakes the thread that ends the process
 
 void endBySignal(int number) {
@@ -44,7 +48,19 @@ bool signalled() {
   return signalCount > 0;
 }
 
+bool endWanted() {
+  if (stopAt && ++checks == *stopAt) signalCount = signalCount + 1;
+  return signalled();
+}
+
+std::optional<long> checksMade() {
+  return stopAt ? std::optional(checks.load()) : std::nullopt;
+}
+
 void catchSignals() {
+  if (const char* number = std::getenv("EXPLICA_STOP_AT_CHECK")) {
+    stopAt = std::strtol(number, nullptr, 10);
+  }
   if (pipe2(endings, O_CLOEXEC) == 0) {
     std::thread(awaitEnding).detach();
   }

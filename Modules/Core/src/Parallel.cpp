@@ -3,6 +3,8 @@
 
 #include "Explica/Core/Parallel.h"
 
+#include "Explica/Core/StopScope.h"
+
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
@@ -71,6 +73,7 @@ void parallelForBlocks(std::size_t count, std::size_t grain,
   grain = std::max<std::size_t>(grain, 1);
   const std::size_t blocks = (count + grain - 1) / grain;
   const auto runBlock = [&](std::size_t block) {
+    checkpoint();
     body(block * grain, std::min(count, (block + 1) * grain));
   };
   if (blocks == 1) {
@@ -79,9 +82,11 @@ void parallelForBlocks(std::size_t count, std::size_t grain,
   }
   Promise promise;
   promise.given();
+  const Monitor* const monitor = StopScope::current();
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, blocks, 1),
                     [&](const tbb::blocked_range<std::size_t>& range) {
                       promise.taken();
+                      const StopScope scope(monitor);
                       for (std::size_t b = range.begin(); b < range.end(); ++b) runBlock(b);
                       promise.kept();
                     });

@@ -387,6 +387,7 @@ class Sweep {
       Eigen::Array4d there = Eigen::Array4d::Zero();
       if (links[d] >= 0) {
         const std::int32_t m = tracer_.rankAt[place + signOf(d) * strides[a]];
+        if (!found(m) && appendixA_) return false;  // half of the upwind points test nothing
         if (!found(m)) continue;
         there = arrivals_[m].cast<double>();
       } else if (links[d] != wall_ || appendixA_) {

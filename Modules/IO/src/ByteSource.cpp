@@ -3,6 +3,7 @@
 
 #include "ByteSource.h"
 
+#include "Explica/Core/StopScope.h"
 #include "VectorState.h"
 
 #include <fcntl.h>
@@ -20,6 +21,7 @@ namespace {
 
 constexpr std::uint64_t kLargestInflation = 1032;  // deflate packs at most 258 bytes into 2 bits
 constexpr std::size_t kLongestStep = std::size_t{1} << 30;  // ISA-L counts in 32 bits
+constexpr std::size_t kReadAtOnce = std::size_t{1} << 26;   // bytes between checkpoints
 
 bool isGzip(ByteView bytes) {
   return bytes.size() > 2 && bytes[0] == 0x1f && bytes[1] == 0x8b;
@@ -102,8 +104,9 @@ class ByteSource::OpenFile {
   std::size_t read(std::uint8_t* to, std::size_t count) {
     std::size_t filled = 0;
     while (filled < count) {
+      checkpoint();
       const ssize_t got =
-          ::read(descriptor_, to + filled, std::min<std::size_t>(count - filled, kLongestStep));
+          ::read(descriptor_, to + filled, std::min<std::size_t>(count - filled, kReadAtOnce));
       if (got < 0 && errno == EINTR) continue;
       if (got < 0) failToRead(path_, std::generic_category().message(errno));
       if (got == 0) break;

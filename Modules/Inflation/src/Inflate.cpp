@@ -6,6 +6,7 @@
 #include "Looks.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/StopScope.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Inflation/DirectionField.h"
@@ -111,11 +112,19 @@ class Inflation {
     const double earlier = history_.back().seconds;
     while ((termination_ = reasonToStop()) == Termination::NotRun) {
       const double before = elapsed();
-      if (!unfolder_.step()) {
-        termination_ = Termination::Stalled;
+      const unfolding::UnfoldState last = unfolder_.state();
+      try {
+        const StopScope abandoned(&monitor_);
+        if (!unfolder_.step()) {
+          termination_ = Termination::Stalled;
+          break;
+        }
+        if (unfolder_.state().iteration % options_.lookEvery == 0) look();
+      } catch (const Interrupted&) {
+        unfolder_.restore(last);
+        termination_ = Termination::Interrupted;
         break;
       }
-      if (unfolder_.state().iteration % options_.lookEvery == 0) look();
       latest_ = elapsed() - before;
       history_.push_back(unfolder_.record());
       history_.back().seconds = earlier + elapsed();
@@ -124,7 +133,10 @@ class Inflation {
     }
     // What is given back is looked at, too; the run goes on, if it is resumed, from its own looks.
     ending_ = looks_;
-    if (ending_.back().iteration != unfolder_.state().iteration) ending_.push_back(lookNow().first);
+    if (ending_.back().iteration != unfolder_.state().iteration &&
+        termination_ != Termination::Interrupted) {
+      ending_.push_back(lookNow().first);
+    }
   }
 
   InflateResult result() const {
@@ -245,12 +257,14 @@ InflateResult inflate(const TriangleMesh& mesh, const InflateOptions& options,
   work.positions.rowwise() -= origin.transpose();
   // Inside out, as the mirror image of a surface is: faces look outward while it is inflated.
   if (geometry::enclosedVolume(work) < 0) work.faces.col(1).swap(work.faces.col(2));
+  const StopScope abandoned(&monitor);  // until there is a state
   Inflation inflation(work, options, monitor);
   if (resume != nullptr) {
     inflation.resume(*resume);
   } else {
     inflation.begin();
   }
+  const StopScope kept(nullptr);
   inflation.run();
   InflateResult result = inflation.result();
   judge(options, monitor, result);

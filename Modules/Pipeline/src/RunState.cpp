@@ -10,7 +10,7 @@ namespace explica::pipeline {
 namespace {
 
 /// By the value of StepState.
-constexpr std::array kWords = {"done", "stopped", "failed", "missing"};
+constexpr std::array kWords = {"done", "stopped", "interrupted", "failed", "missing"};
 
 report::StepState stateOf(const std::string& word) {
   for (std::size_t s = 0; s < kWords.size(); ++s) {

@@ -5,6 +5,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/GlobalFlow.h"
+#include "Explica/Core/StopScope.h"
 #include "Explica/Planar/PolygonMeasures.h"
 
 #include <algorithm>
@@ -51,6 +52,7 @@ GlobalFlow descendGlobalMeasure(const Curve& curve, const Region& region, const 
   GlobalFlow flow;
   flow.curve = curve;
   flow.termination = Termination::MaxIterations;
+  const StopScope abandoned(&monitor);
   MeasureValue now = valueOf(curve, options.measure, circle);
   const double start = now.value;
   const auto record = [&](int iteration) {
@@ -71,9 +73,16 @@ GlobalFlow descendGlobalMeasure(const Curve& curve, const Region& region, const 
     // Steps shrink to nothing: the second measure has kinks, at which a search along the gradient
     // would end.
     const double left = 1 - (iteration - 1.0) / options.maxIterations;
+    const Positions2 last = flow.curve.positions;
     flow.curve.positions -= options.step * meanEdge * left / steepest * now.gradient;
-    now = valueOf(flow.curve, options.measure, circle);
-    record(iteration);
+    try {
+      now = valueOf(flow.curve, options.measure, circle);
+      record(iteration);
+    } catch (const Interrupted&) {
+      flow.curve.positions = last;
+      flow.termination = Termination::Interrupted;
+      break;
+    }
     if (edgeLengths(flow.curve).minCoeff() < kGone * meanEdge) {
       flow.termination = Termination::Stalled;
       break;

@@ -4,6 +4,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
+#include "Explica/Core/StopScope.h"
 #include "Filters.h"
 
 #include <algorithm>
@@ -235,7 +236,7 @@ Field climb(const FieldLevel& level, Field u, const DeformationOptions& options,
   int since = 0;
   Field bestField = u;
   for (int n = 0; n < options.maxIterations && step >= kSmallestStep; ++n) {
-    if (monitor.shouldStop()) break;
+    checkpoint(monitor);
     const Volume<float> moved = displaced(level.moving, u);
     const Windows windows = compare(level.image, moved, options.radius);
     const double value = weightedMean(windows.correlation, level.weight);

@@ -26,6 +26,8 @@ Word wordFor(StepState state) {
       return {"good", "done"};
     case StepState::StoppedEarly:
       return {"notice", "stopped early"};
+    case StepState::Interrupted:
+      return {"notice", "interrupted"};
     case StepState::Failed:
       return {"bad", "failed"};
     default:

@@ -158,7 +158,7 @@ HeartRow rowOf(const fs::path& out, const HeartSubject& subject) {
     std::istringstream problem(fileText(folder / "problem.txt"));
     std::string why;
     std::getline(problem, why);
-    row.state = "failed: " + why;
+    row.state = why == "interrupted" ? why : "failed: " + why;
     return row;
   }
   if (!fs::exists(folder / "summary.json")) return row;

@@ -109,9 +109,10 @@ void addState(StudyRow& row, const fs::path& run) {
     std::string state = textOf(step["state"]);
     if (state == "done") continue;
     if (state == "stopped") state = "stopped early";
+    if (state != "failed" && row.state != "done") continue;  // the first explains the rest
     const std::string message = step.contains("message") ? textOf(step["message"]) : "";
     row.state = state + " (" + textOf(step["name"]) + ")" + (message.empty() ? "" : ": " + message);
-    if (state == "failed") return;  // the first fault explains the rest
+    if (state == "failed") return;
   }
 }
 
@@ -153,7 +154,7 @@ StudyRow rowOf(const fs::path& out, const fs::path& run) {
     std::istringstream file(fileText(run / "problem.txt"));
     std::string problem;
     std::getline(file, problem);
-    row.state = "failed: " + problem;
+    row.state = problem == "interrupted" ? problem : "failed: " + problem;
   }
   if (fs::exists(run / "report.html")) row.report = fs::relative(run / "report.html", out);
   if (fs::exists(run / "thumbnail.png")) row.thumbnail = fs::relative(run / "thumbnail.png", out);

@@ -5,6 +5,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
+#include "Explica/Core/StopScope.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "GuardedMesh.h"
@@ -274,7 +275,8 @@ RemeshResult remesh(const TriangleMesh& mesh, const LevelSet& level, const Remes
   const double area = geometry::totalArea(mesh);
   const std::int64_t wanted = facesWanted(options, area, level.grid.spacing.minCoeff(), monitor);
   Remesher remesher(mesh, level, edgeFor(area, wanted));
-  for (int round = 0; round < options.rounds && !monitor.shouldStop(); ++round) {
+  for (int round = 0; round < options.rounds; ++round) {
+    checkpoint(monitor);
     monitor.progress(static_cast<double>(round) / options.rounds, "remeshing");
     remesher.splitLong();
     if (round == 0) {

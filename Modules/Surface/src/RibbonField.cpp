@@ -4,6 +4,7 @@
 #include "RibbonField.h"
 
 #include "Explica/Core/Parallel.h"
+#include "Explica/Core/StopScope.h"
 #include "Explica/Harmonic/Interpolant.h"
 
 #include <Eigen/Geometry>
@@ -106,6 +107,7 @@ RibbonField::RibbonField(const CorticalTissue& tissue, const TriangleMesh& white
   Monitor stoppable = monitor;
   stoppable.onProgress = nullptr;
   slope_ = harmonic::solveInterpolant(annulus_, options, stoppable).gradient;
+  checkpoint(monitor);
   const float flat = kFlat / static_cast<float>(grid_.spacing.minCoeff());
   parallelFor(slope_.size(), 8192, [&](std::size_t n) {
     const float length = slope_[n].norm();

@@ -5,6 +5,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
+#include "Explica/Core/StopScope.h"
 #include "Explica/Correspondence/ImageEdge.h"
 #include "Explica/Correspondence/Sulci.h"
 #include "Explica/Correspondence/Trajectory.h"
@@ -125,6 +126,7 @@ Field solve(const Volume<Label>& roles, const Monitor& monitor) {
   field.annulus = std::move(recovered.annulus);
   field.sulcal = std::move(recovered.voxels);
   field.interpolant = harmonic::solveInterpolant(field.annulus, {}, stoppable);
+  checkpoint(monitor);
   return field;
 }
 

@@ -4,6 +4,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
+#include "Explica/Core/StopScope.h"
 #include "Obliquity.h"
 
 #include <Eigen/Eigenvalues>
@@ -95,6 +96,7 @@ void solve(WallThickness& wall, const Volume<Label>& heart, const Monitor& monit
   wall.interpolant = harmonic::solveInterpolant(wall.annulus, {}, silent);
   wall.correspondence =
       correspondence::findCorrespondences(wall.annulus, wall.interpolant, {}, silent);
+  checkpoint(monitor);  // half a solution is no wall
   wall.plain = correspondence::thicknessOf(wall.correspondence);
   wall.thickness = wall.plain;
   wall.leftOut.assign(wall.plain.size(), LeftOut::None);

@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "Explica/Core/Monitor.h"
+#include "Explica/Core/StopScope.h"
 
 #include <pybind11/pybind11.h>
 
+#include <atomic>
 #include <chrono>
 #include <memory>
 #include <mutex>
@@ -37,9 +38,15 @@ class Watch {
   template <class Work>
   auto run(const Work& work) {
     const Monitor monitor = makeMonitor();
-    auto result = unlocked([&] { return work(monitor); });
-    raisePending();
-    return result;
+    try {
+      auto result = unlocked([&] { return work(monitor); });
+      raisePending();
+      return result;
+    } catch (const Interrupted&) {  // in work that is worth nothing half done
+      raisePending();
+      PyErr_SetNone(PyExc_KeyboardInterrupt);
+      throw py::error_already_set();
+    }
   }
 
  private:
@@ -59,6 +66,8 @@ class Watch {
       warnings_.push_back(message);
     };
     monitor.stopWanted = [this] {
+      const std::unique_lock<std::mutex> alone(asking_, std::try_to_lock);
+      if (!alone) return stop_.load();  // another thread is asking
       const auto now = std::chrono::steady_clock::now();
       if (!stop_ && now - checked_ > kSignalInterval) {
         checked_ = now;
@@ -67,7 +76,7 @@ class Watch {
           if (PyErr_CheckSignals() != 0) throw py::error_already_set();
         });
       }
-      return stop_;
+      return stop_.load();
     };
     return monitor;
   }
@@ -93,7 +102,8 @@ class Watch {
 
   static constexpr std::chrono::milliseconds kSignalInterval{50};  // unnoticed by a person
   py::object callback_;
-  bool stop_ = false;
+  std::atomic<bool> stop_ = false;
+  std::mutex asking_;
   std::chrono::steady_clock::time_point checked_{};
   std::mutex mutex_;
   std::vector<std::string> warnings_;

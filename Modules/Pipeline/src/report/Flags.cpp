@@ -387,6 +387,8 @@ void flagSteps(ResultFolder& results) {
       content.flags.push_back({FlagLevel::Bad, step.name + " failed:", step.message});
     if (step.state == report::StepState::StoppedEarly)
       content.flags.push_back({FlagLevel::Notice, step.name + " stopped early:", step.message});
+    if (step.state == report::StepState::Interrupted)
+      content.flags.push_back({FlagLevel::Notice, step.name + " was interrupted:", step.message});
     if (step.state == report::StepState::Missing)
       content.flags.push_back({FlagLevel::Notice, step.name + " was not run:", step.message});
     for (const std::string& warning : step.warnings)

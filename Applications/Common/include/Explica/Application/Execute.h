@@ -56,6 +56,7 @@ void describe(CommonOptions& o, Visitor&& visit) {
 struct Outcome {
   int exitCode = kDone;
   Termination termination = Termination::NotRun;
+  bool abandoned = false;        ///< asked to end while there was nothing worth writing
   bool plausible = true;         ///< false if a number lies outside of its limits
   std::filesystem::path record;  ///< its provenance.json; empty if it writes none
 };

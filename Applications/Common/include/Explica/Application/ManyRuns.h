@@ -27,6 +27,10 @@ namespace explica::app {
 void sayProblem(Context& context, const std::string& name, const std::filesystem::path& folder,
                 const std::string& why);
 
+/// Writes into problem.txt that a run was interrupted before it had results: tables do not call
+/// that a failure.
+void sayInterrupted(const std::filesystem::path& folder);
+
 /// What a run's numbers say against it counts against the whole, too.
 void passFlagsOn(Context& context, const std::filesystem::path& run);
 

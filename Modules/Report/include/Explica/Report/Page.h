@@ -16,7 +16,7 @@
 namespace explica::report {
 
 /// How a step of the work went.
-enum class StepState { Done, StoppedEarly, Failed, Missing };
+enum class StepState { Done, StoppedEarly, Interrupted, Failed, Missing };
 
 /// What one command did.
 struct ReportStep {

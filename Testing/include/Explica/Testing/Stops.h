@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Testing/Command.h"
+
+#include <string>
+#include <vector>
+
+namespace explica::testing {
+
+/// A request to end at the n-th time that the program asks for one, whatever the clock says.
+inline CommandSetting stopAtCheck(long n) {
+  CommandSetting setting;
+  setting.environment["EXPLICA_STOP_AT_CHECK"] = std::to_string(n);
+  return setting;
+}
+
+/// How often a command asks whether it should end, if it never should.
+inline long checksFor(const std::vector<std::string>& words) {
+  const std::string said = explica(words, stopAtCheck(0)).err;
+  const auto end = said.find(" checks for a stop");
+  return end == std::string::npos ? 0 : std::stol(said.substr(said.rfind('\n', end) + 1));
+}
+
+/// Ten of so many checks, evenly spread; fewer where there are not as many.
+inline std::vector<long> tenMoments(long checks) {
+  std::vector<long> moments;
+  for (int m = 0; m < 10; ++m) {
+    const long check = 1 + (2 * m + 1) * checks / 20;
+    if (check <= checks && (moments.empty() || check > moments.back())) moments.push_back(check);
+  }
+  return moments;
+}
+
+/// Whether it ended as one that was asked to end, and says nothing else.
+inline bool isInterrupted(const CommandResult& result) {
+  return result.exitCode == 3 && contains(result.err, "interrupted") &&
+         !contains(result.err, "failed") && !contains(result.err, "error:");
+}
+
+}  // namespace explica::testing
