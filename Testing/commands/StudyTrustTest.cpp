@@ -75,10 +75,10 @@ TEST(StudyTrust, AStopAtAnyCheckIsInterruptedInTheTablesToo) {
 TEST(StudyTrust, AStopAtAnyCheckIsInterruptedInTheTableOfHeartsToo) {
   const TemporaryFolder folder;
   const auto made = explica({"phantom", "ventricle", "--size", "48", "--spacing", "2.7", "--slice",
-                             "8", "--out", folder / "beat"});
+                             "8", "--frames", "2", "--out", folder / "beat"});
   ASSERT_EQ(made.exitCode, 0) << made;
   fs::create_directories(folder / "data/sub-1");
-  fs::copy_file(folder / "beat/labels.nii.gz", folder / "data/sub-1/a_dseg.nii.gz");
+  fs::copy_file(folder / "beat/frame-0000.nii.gz", folder / "data/sub-1/a_dseg.nii.gz");
   const std::vector<std::string> words = {"study", "hearts", folder / "data", folder / "out"};
   const long checks = checksFor(words);
   fs::remove_all(folder / "out");
