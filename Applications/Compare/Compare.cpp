@@ -7,21 +7,14 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/StopScope.h"
 #include "Explica/Core/WholeFile.h"
-#include "Explica/Flattening/Comparison.h"
-#include "Explica/Flattening/Seen.h"
 #include "Explica/Flattening/Selection.h"
 #include "Explica/Geometry/MeshTopology.h"
-#include "Explica/Geometry/SelfIntersection.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/Report/Figure.h"
 #include "Explica/Unfolding/Account.h"
-#include "Explica/Unfolding/Distortion.h"
+#include "Explica/Unfolding/Comparison.h"
 
-#include <nlohmann/json.hpp>
-
-#include <chrono>
-#include <cstdio>
 #include <numeric>
 
 namespace explica::app {
@@ -60,17 +53,9 @@ A run that is stopped holds the surfaces that it has measured, the first at any 
       .option("Distances", Field{"local-limit", "mm", "pairs nearer than this are 'local'"},
               s.distances.localLimit)
       .output("comparison.tsv", FileKind::Table, "one row a surface")
-      .output("comparison-*.png", FileKind::Picture, "each surface, coloured by its area ratio");
+      .output("comparison-*.png", FileKind::Picture, "each surface, coloured by its area ratio")
+      .results<unfolding::Comparison>();
 }
-
-struct Row {
-  std::string name;
-  unfolding::Distortion distortion;
-  flattening::DistanceError local, all;
-  std::int64_t turnedOver = 0;
-  std::size_t crossings = 0;
-  double seen = kNaN;
-};
 
 std::vector<std::int32_t> everyFace(const TriangleMesh& mesh) {
   std::vector<std::int32_t> faces(static_cast<std::size_t>(mesh.faceCount()));
@@ -78,71 +63,13 @@ std::vector<std::int32_t> everyFace(const TriangleMesh& mesh) {
   return faces;
 }
 
-Row measure(const TriangleMesh& reference, const TriangleMesh& after,
-            const std::vector<std::int32_t>& faces, const flattening::DistancePairs& pairs) {
-  Row row;
-  unfolding::DistortionOptions plain;
-  plain.geodesicSources = 0;
-  row.distortion = unfolding::measureDistortion(reference, after.positions, faces, plain);
-  const TriangleMesh whole{after.positions, reference.faces};
-  const bool flat = flattening::isFlatMap(whole, faces);
-  const auto kind = flat ? flattening::DistanceKind::Straight : flattening::DistanceKind::Surface;
-  row.local = flattening::distanceError(pairs.local, whole, faces, kind);
-  row.all = flattening::distanceError(pairs.all, whole, faces, kind);
-  row.turnedOver = flattening::turnedOver(whole, faces);
-  const TriangleMesh part = geometry::extractFaces(whole, faces).mesh;
-  row.crossings = geometry::findSelfIntersections(part).size();
-  row.seen = flattening::seenShare(part);
-  return row;
-}
-
-/// One row a surface; those before an end was asked for, one at least.
-std::vector<Row> measureAll(Context& context, const Settings& s, const TriangleMesh& reference,
-                            const std::vector<TriangleMesh>& surfaces,
-                            const std::vector<std::int32_t>& faces) {
-  auto step = context.step("compare");
-  const auto pairs = flattening::drawPairs(reference, faces, s.distances);
-  std::vector<Row> rows;
-  for (std::size_t n = 0; n < surfaces.size(); ++n) {
-    context.monitor().progress(static_cast<double>(n) / static_cast<double>(surfaces.size()),
-                               s.after[n]);
-    try {
-      rows.push_back(measure(reference, surfaces[n], faces, pairs));
-    } catch (const Interrupted&) {
-      if (rows.empty()) throw;
-      break;
-    }
-    rows.back().name = std::filesystem::path(s.after[n]).filename().string();
-  }
-  return rows;
-}
-
-std::string tableOf(const std::vector<Row>& rows) {
-  std::string text =
-      "surface\tarea_error_mean\tarea_error_max\tedge_strain_mean\tedge_strain_p95\t"
-      "angle_error_mean_deg\tgeodesic_error_local\tgeodesic_error_all\tscale_local\tscale_all\t"
-      "turned_over\tcrossings\tseen\n";
-  for (const Row& row : rows) {
-    char line[512];
-    std::snprintf(line, sizeof line,
-                  "%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%lld\t%zu\t%.6g\n",
-                  row.distortion.areaErrorMean, row.distortion.areaErrorMax,
-                  row.distortion.edgeStrainMean, row.distortion.edgeStrainP95,
-                  row.distortion.angleErrorMeanRad * 180 / kPi, row.local.error, row.all.error,
-                  row.local.scale, row.all.scale, static_cast<long long>(row.turnedOver),
-                  row.crossings, row.seen);
-    text += row.name + "\t" + line;
-  }
-  return text;
-}
-
 /// The surface coloured by the logarithm of its area ratio.
 void draw(const std::filesystem::path& path, const TriangleMesh& reference,
-          const TriangleMesh& after, const std::vector<std::int32_t>& faces, const Row& row) {
+          const TriangleMesh& after, const std::vector<std::int32_t>& faces,
+          const unfolding::Distortion& distortion) {
   const TriangleMesh whole{after.positions, reference.faces};
   const geometry::SubMesh part = geometry::extractFaces(whole, faces);
-  const Eigen::VectorXd means =
-      unfolding::vertexMeans(reference, faces, row.distortion.areaRatio, 1);
+  const Eigen::VectorXd means = unfolding::vertexMeans(reference, faces, distortion.areaRatio, 1);
   report::SurfacePaint paint;
   paint.values.resize(part.mesh.vertexCount());
   for (Eigen::Index v = 0; v < part.mesh.vertexCount(); ++v) {
@@ -164,24 +91,7 @@ void draw(const std::filesystem::path& path, const TriangleMesh& reference,
       path, report::surfaceFigure(part.mesh, paint, views, static_cast<int>(views.size()), size));
 }
 
-nlohmann::ordered_json listOf(const std::vector<Row>& rows) {
-  auto list = nlohmann::ordered_json::array();
-  for (const Row& row : rows) {
-    list.push_back({{"surface", row.name},
-                    {"area_error_mean", row.distortion.areaErrorMean},
-                    {"edge_strain_mean", row.distortion.edgeStrainMean},
-                    {"angle_error_mean_deg", row.distortion.angleErrorMeanRad * 180 / kPi},
-                    {"geodesic_error_local", row.local.error},
-                    {"geodesic_error_all", row.all.error},
-                    {"turned_over", row.turnedOver},
-                    {"crossings", row.crossings},
-                    {"seen", row.seen}});
-  }
-  return list;
-}
-
 Termination run(Context& context, const Settings& s) {
-  const auto begin = std::chrono::steady_clock::now();
   const auto reference = readSurface(context, "BEFORE", s.before, s.reading);
   geometry::requireManifold(reference.mesh, s.before);
   std::vector<TriangleMesh> surfaces;
@@ -204,28 +114,28 @@ Termination run(Context& context, const Settings& s) {
   if (faces.empty()) throw InvalidInput("the surfaces have no face in common");
   sayHowRead(context, reference.origin);
 
-  const std::vector<Row> rows = measureAll(context, s, reference.mesh, surfaces, faces);
+  std::vector<std::string> names;
+  for (const std::string& path : s.after) {
+    names.push_back(std::filesystem::path(path).filename().string());
+  }
+  unfolding::Comparison compared;
+  {
+    auto step = context.step("compare");
+    compared = unfolding::compareSurfaces(reference.mesh, surfaces, names, faces, s.distances,
+                                          context.monitor());
+  }
   const StopScope kept(nullptr);  // what is reached is written
   auto step = context.step("write");
-  writeTextFile(context.output("comparison.tsv"), tableOf(rows));
-  Termination end =
-      rows.size() < surfaces.size() ? Termination::Interrupted : Termination::Finished;
-  for (std::size_t n = 0; n < rows.size(); ++n) {
+  writeTextFile(context.output("comparison.tsv"), tableOf(compared.surfaces));
+  const bool all = compared.surfaces.size() == surfaces.size();
+  Termination end = all ? Termination::Finished : Termination::Interrupted;
+  for (std::size_t n = 0; n < compared.surfaces.size(); ++n) {
     describing(context, end, [&] {
       draw(context.output("comparison-" + std::to_string(n + 1) + ".png"), reference.mesh,
-           surfaces[n], faces, rows[n]);
+           surfaces[n], faces, compared.surfaces[n].distortion);
     });
   }
-  const Row& first = rows.front();
-  context.result("faces", faces.size());
-  context.result("area_error_mean", first.distortion.areaErrorMean);
-  context.result("edge_strain_mean", first.distortion.edgeStrainMean);
-  context.result("geodesic_error_local", first.local.error);
-  context.result("geodesic_error_all", first.all.error);
-  context.result("turned_over", static_cast<long long>(first.turnedOver));
-  context.result("surfaces", listOf(rows));
-  context.result("seconds",
-                 std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  context.results(compared);
   return end;
 }
 

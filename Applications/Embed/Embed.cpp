@@ -15,6 +15,7 @@
 #include "Explica/Shapes/FitFigure.h"
 #include "Explica/Shapes/ShapeFit.h"
 #include "Explica/Shapes/ShapeLevel.h"
+#include "Explica/Shapes/Summary.h"
 #include "Series.h"
 
 #include <algorithm>
@@ -103,7 +104,8 @@ void declare(Declaration& d, Settings& s) {
       .output("series.svg", FileKind::Picture,
               "with --series: the combinations side by side; in 3D their sections")
       .output("series.png", FileKind::Picture, "with --series, in 3D: the surfaces side by side")
-      .output("series.gif", FileKind::Picture, "with --series: from one shape to the other");
+      .output("series.gif", FileKind::Picture, "with --series: from one shape to the other")
+      .results<shapes::EmbedSummary>();
 }
 
 /// A target as it was read: one of the three.
@@ -229,8 +231,8 @@ void writeEvolution(Context& context, const Settings& s, const shapes::ShapeFit&
 }
 
 /// Distances both ways between the fitted shape and its target.
-void reportDistance(Context& context, const shapes::HarmonicShape& shape, const Target& target,
-                    int grid) {
+void measureDistance(const shapes::HarmonicShape& shape, const Target& target, int grid,
+                     shapes::EmbedSummary& summary) {
   shapes::LevelDistance there;
   shapes::LevelDistance back;
   if (target.curve) {
@@ -244,8 +246,8 @@ void reportDistance(Context& context, const shapes::HarmonicShape& shape, const 
   } else {
     return;
   }
-  context.result("distance_mean", std::max(there.mean, back.mean));
-  context.result("distance_max", std::max(there.max, back.max));
+  summary.distanceMean = std::max(there.mean, back.mean);
+  summary.distanceMax = std::max(there.max, back.max);
 }
 
 /// What the targets become in the annulus, and how well, iteration by iteration, as a table.
@@ -253,6 +255,7 @@ struct Fits {
   std::vector<shapes::HarmonicShape> shapes;
   std::string table = "target\titeration\tsymmetric_difference\tdistance_mean\tdistance_max\n";
   Termination termination = Termination::NotRun;  ///< of the last, or the first that fell short
+  Change symmetricDifference;                     ///< of the first target, if it was fitted
 };
 
 void appendRows(std::string& table, std::size_t target, const shapes::ShapeFit& fit) {
@@ -286,8 +289,8 @@ Fits fitAll(Context& context, const Settings& s, const std::vector<Target>& targ
     appendRows(fits.table, k, fit);
     if (k > 0) continue;
     if (s.frames > 0) writeEvolution(context, s, fit, targets[k]);
-    context.result("symmetric_difference_initial", fit.history.front().symmetricDifference);
-    context.result("symmetric_difference_final", fit.history.back().symmetricDifference);
+    fits.symmetricDifference = {fit.history.front().symmetricDifference,
+                                fit.history.back().symmetricDifference};
   }
   step.termination(fits.termination);
   return fits;
@@ -323,17 +326,21 @@ Termination run(Context& context, const Settings& s) {
   if (annulus.dimension == 3) {
     io::writeVolume(context.output("field.nii.gz"), shapes::fieldOf(shape, s.grid));
   }
-  context.result("dimension", annulus.dimension);
-  context.result("targets", targets.size());
-  context.result("coefficients", 2 * annulus.perBoundary());
-  context.result("inner_radius", annulus.innerRadius);
-  context.result("outer_radius", annulus.outerRadius);
-  context.result("order", annulus.order);
-  context.result("annulus_width", shapes::widthOf(annulus));
-  context.result("voxel", 2 * shapes::boxOf(annulus).halfSide / (s.grid - 1));
-  context.result("boundary_margin", shapes::boundaryMargin(shape));
+  shapes::EmbedSummary summary;
+  summary.dimension = annulus.dimension;
+  summary.targets = targets.size();
+  summary.coefficients = 2 * annulus.perBoundary();
+  summary.innerRadius = annulus.innerRadius;
+  summary.outerRadius = annulus.outerRadius;
+  summary.order = annulus.order;
+  summary.width = shapes::widthOf(annulus);
+  summary.voxel = 2 * shapes::boxOf(annulus).halfSide / (s.grid - 1);
+  summary.boundaryMargin = shapes::boundaryMargin(shape);
+  summary.symmetricDifference = fits.symmetricDifference;
+  summary.distanceMean = summary.distanceMax = std::nullopt;
   if (s.series) writeSeries(context, fits.shapes[0], fits.shapes[1], *s.series, s.grid);
-  if (targets.size() == 1) reportDistance(context, shape, targets.front(), s.grid);
+  if (targets.size() == 1) measureDistance(shape, targets.front(), s.grid, summary);
+  context.results(summary);
   return fits.termination;
 }
 

@@ -109,16 +109,8 @@ io::LabelMap labelsOf(const flattening::Disc& disc, const std::vector<flattening
 
 void report(Context& context, const flattening::CutPlan& plan,
             const flattening::CutOptions& options) {
-  double length = 0, depth = 0;
-  for (const flattening::Cut& cut : plan.cuts) {
-    length += cut.length;
-    depth += cut.length * cut.depth;
-  }
-  context.result("cuts", plan.cuts.size());
-  context.result("cut_length", length);
-  context.result("cut_depth", length > 0 ? depth / length : kNaN);
-  context.result("cut_strain_before", plan.strainBefore);
-  context.result("cut_strain", plan.edgeStrain);
+  const double length = plan.length();
+  context.results(plan);
   char line[200];
   if (plan.termination == Termination::Interrupted) {
     std::snprintf(line, sizeof line,

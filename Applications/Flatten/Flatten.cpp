@@ -27,9 +27,7 @@
 #include "Explica/Provenance/Record.h"
 #include "Explica/Report/FlatFigure.h"
 #include "Explica/Unfolding/Account.h"
-#include "Explica/Unfolding/Distortion.h"
-
-#include <nlohmann/json.hpp>
+#include "Explica/Unfolding/FlatSummary.h"
 
 #include <algorithm>
 #include <chrono>
@@ -91,7 +89,9 @@ void declareOutputs(Declaration& d) {
       .output("flat.png", FileKind::Picture, "the map with outlines, scale bar and colour bar")
       .output("frames/frame-*.surf.gii", FileKind::Surface,
               "--frames states on the way, vertices and faces as in flat.surf.gii")
-      .varyingOutput(kStateFile, FileKind::Any, "what --resume needs");
+      .varyingOutput(kStateFile, FileKind::Any, "what --resume needs")
+      .results<flattening::CutPlan>()
+      .results<unfolding::FlatSummary>();
 }
 
 void declare(Declaration& d, Settings& s) {
@@ -368,7 +368,7 @@ Eigen::VectorXd onWhole(const Eigen::VectorXd& part, const flattening::Disc& dis
 /// Distortion and distance errors, into the summary and distortion.shape.gii.
 /// @return area ratio at the patch's vertices
 Eigen::VectorXd measure(Context& context, const Subject& subject, const flattening::Disc& disc,
-                        const TriangleMesh& flat) {
+                        const TriangleMesh& flat, unfolding::FlatSummary& summary) {
   const TriangleMesh& before = disc.mesh;
   const auto all = everyFace(flat.faces);
   unfolding::DistortionOptions plain;
@@ -390,15 +390,9 @@ Eigen::VectorXd measure(Context& context, const Subject& subject, const flatteni
       std::clamp(kDistanceWork / static_cast<double>(flat.faceCount() / 2 + 1), 20.0, 100.0));
   const auto pairs = flattening::drawPairs(before, all, options);
   const auto straight = flattening::DistanceKind::Straight;
-  context.result("area_error_mean", distortion.areaErrorMean);
-  context.result("area_error_max", distortion.areaErrorMax);
-  context.result("angle_error_mean_deg", distortion.angleErrorMeanRad * 180 / kPi);
-  context.result("edge_strain_mean", distortion.edgeStrainMean);
-  context.result("edge_strain_p95", distortion.edgeStrainP95);
-  context.result("geodesic_error_local",
-                 flattening::distanceError(pairs.local, flat, all, straight).error);
-  context.result("geodesic_error_all",
-                 flattening::distanceError(pairs.all, flat, all, straight).error);
+  summary.distances = {flattening::distanceError(pairs.local, flat, all, straight),
+                       flattening::distanceError(pairs.all, flat, all, straight)};
+  summary.distortion = distortion;
   return ratio;
 }
 
@@ -605,9 +599,11 @@ void warnOf(Context& context, const flattening::Disc& disc, const flattening::Fl
 }
 
 /// Writes the states on the way, and says whether they are one-to-one as they are written.
-void writeFrames(Context& context, const Subject& subject, const flattening::Disc& disc,
-                 const std::vector<flattening::FlatPositions>& frames) {
-  if (frames.empty()) return;
+/// @return faces turned over in a frame, at most
+std::optional<std::int64_t> writeFrames(Context& context, const Subject& subject,
+                                        const flattening::Disc& disc,
+                                        const std::vector<flattening::FlatPositions>& frames) {
+  if (frames.empty()) return {};
   io::SurfaceMetadata metadata = subject.reference.metadata;
   metadata.topologicalType = "Open";
   metadata.geometricType = "Flat";
@@ -620,8 +616,7 @@ void writeFrames(Context& context, const Subject& subject, const flattening::Dis
     io::writeGiftiSurface(context.output(name), wholeMap(subject.reference.mesh, disc, frames[n]),
                           metadata);
   }
-  context.result("frames", frames.size());
-  context.result("turned_over_frames_max", static_cast<long long>(turnedOver));
+  return turnedOver;
 }
 
 // What comes after cuts and map measures and writes for about four times as long as the start took,
@@ -691,26 +686,20 @@ Termination run(Context& context, const Settings& s) {
   flattening::writeCheckpoint(context.output(kStateFile), made.state);
   const TriangleMesh flat{patchPositions(map), disc.mesh.faces};
   writeSurfaces(context, subject, disc, map, wholeMap(subject.reference.mesh, disc, map.positions));
-  writeFrames(context, subject, disc, map.frames);
-  const Eigen::VectorXd areaRatio = measure(context, subject, disc, flat);
+  unfolding::FlatSummary summary;
+  summary.disc = &disc;
+  summary.map = &map;
+  summary.area = geometry::totalArea(disc.mesh);
+  summary.areaTolerance = options.areaTolerance;
+  summary.turnedOverInFrames = writeFrames(context, subject, disc, map.frames);
+  const Eigen::VectorXd areaRatio = measure(context, subject, disc, flat, summary);
   writePatchTable(context, s, subject, disc, map, areaRatio);
   writeGrid(context, s, subject, disc, flat);
-  context.result("faces", flat.faceCount());
-  context.result("vertices", disc.vertexOrigin.size());
-  context.result("faces_trimmed", disc.trimmedFaces);
-  context.result("faces_raised", map.raisedFaces);
-  context.result("holes", disc.holes.size());
-  context.result("area", geometry::totalArea(disc.mesh));
-  context.result("area_tolerance", options.areaTolerance);
-  context.result("turned_over", static_cast<long long>(map.turnedOver));
-  context.result("rim_crossings", static_cast<long long>(map.rimCrossings));
-  context.result("iterations", map.iterations);
-  context.result("stop_reason", std::string(nameOf(map.termination)));
+  context.results(summary);
   context.result("seconds_start", read);
   context.result("seconds_cut", made.secondsCut);
   context.result("seconds_flatten", flattened - read - made.secondsCut);
   context.result("seconds_output", secondsSince(begin) - flattened);
-  context.result("seconds", secondsSince(begin));
   const bool folded = map.turnedOver > 0 || map.rimCrossings > 0;
   return folded ? Termination::Stalled : map.termination;
 }

@@ -10,6 +10,7 @@
 #include "Explica/Ventricle/Pictures.h"
 #include "Explica/Ventricle/Reference.h"
 #include "Explica/Ventricle/Slices.h"
+#include "Explica/Ventricle/Summary.h"
 
 #include <nlohmann/json.hpp>
 
@@ -92,7 +93,8 @@ void declare(Declaration& d, Settings& s) {
               "wall voxels at ED that do not count: 1 opening, 2 valve plane, 3 apical cap, 4 "
               "trajectory does not arrive")
       .output("thickness_frame-*.nii.gz", FileKind::Volume,
-              "thickness per voxel and frame, mm; 0 off the wall and where it does not count");
+              "thickness per voxel and frame, mm; 0 off the wall and where it does not count")
+      .results<ventricle::HeartSummary>();
 }
 
 /// One frame of a series of labels.
@@ -203,12 +205,12 @@ std::string degrees(double value) {
 }
 
 /// A wall without an opening encloses no ventricle: a flag.
-void judgeOpening(Context& context, const ventricle::Beat& beat) {
+/// @return the share of the cavity's surface that is open
+double judgeOpening(Context& context, const ventricle::Beat& beat) {
   constexpr double kLeastOpening = 0.01;  // of the cavity's area; a base alone takes a tenth
   const double open = ventricle::openShareOf(beat.atDiastole().heart);
   context.judged();
-  context.result("open_share_ed", open);
-  if (!(open < kLeastOpening)) return;
+  if (!(open < kLeastOpening)) return open;
   char sentence[200];
   std::snprintf(
       sentence, sizeof sentence,
@@ -221,6 +223,7 @@ void judgeOpening(Context& context, const ventricle::Beat& beat) {
                 {"high", nullptr},
                 {"accepted", false},
                 {"message", sentence}});
+  return open;
 }
 
 /// What a reader must know before trusting the numbers.
@@ -246,54 +249,6 @@ void sayWhatIsOdd(Context& context, const ventricle::Beat& beat) {
   if (septum < kLowSeptum || septum > kHighSeptum) {
     context.warn("the right ventricle touches the wall over " + degrees(septum) +
                  " around the axis; 90 to 150 are usual: check segments.nii.gz");
-  }
-}
-
-std::size_t countOf(const ventricle::WallThickness& wall, ventricle::LeftOut why) {
-  return static_cast<std::size_t>(std::count(wall.reasons.data.begin(), wall.reasons.data.end(),
-                                             static_cast<std::uint8_t>(why)));
-}
-
-/// A number, or null where it is not known.
-void result(Context& context, const std::string& key, double value) {
-  if (std::isfinite(value)) context.result(key, value);
-}
-
-void report(Context& context, const ventricle::HeartRoles& roles, const ventricle::Beat& beat) {
-  const ventricle::Frame &ed = beat.atDiastole(), &es = beat.atSystole();
-  context.result("labels", roles.how);
-  context.result("frames", beat.frames.size());
-  context.result("frames_with_wall",
-                 static_cast<std::size_t>(std::count_if(
-                     beat.frames.begin(), beat.frames.end(),
-                     [](const ventricle::Frame& f) { return f.segments.has_value(); })));
-  context.result("frame_ed", static_cast<long>(ed.number));
-  result(context, "cavity_volume_ed_ml", ed.cavity);
-  if (beat.frames.size() > 1) {
-    context.result("frame_es", static_cast<long>(es.number));
-    result(context, "cavity_volume_es_ml", es.cavity);
-    result(context, "stroke_volume_ml", ed.cavity - es.cavity);
-    result(context, "ejection_fraction_percent", *beat.ejectionFraction);
-    result(context, "thickness_mean_es", es.thickness);
-    result(context, "thickening_percent", es.thickening);
-  }
-  result(context, "wall_volume_ed_ml", ed.wall);
-  result(context, "mass_ed_g", ed.mass);
-  result(context, "thickness_mean_ed", ed.thickness);
-  result(context, "thickness_plain_ed", ed.plain);
-  result(context, "axis_angle_deg", ed.axis.stackAngleDeg);
-  result(context, "axis_spread_mm", ed.axis.spreadMm);
-  context.result("orientation", std::string(nameOf(beat.orientation.source)));
-  result(context, "septum_deg", beat.orientation.septumDeg);
-  context.result("measured", ed.measures->bySlice ? "by slice" : "in space");
-  context.result("papillary_muscles", "belong to whatever label they have");
-  for (const auto why :
-       {ventricle::LeftOut::None, ventricle::LeftOut::Opening, ventricle::LeftOut::Valve,
-        ventricle::LeftOut::Cap, ventricle::LeftOut::Unreached}) {
-    context.result(why == ventricle::LeftOut::None
-                       ? std::string("voxels_counted_ed")
-                       : "voxels_left_out_" + std::string(nameOf(why)) + "_ed",
-                   countOf(*ed.measures, why));
   }
 }
 
@@ -355,8 +310,7 @@ Termination run(Context& context, const Settings& s) {
                                   context.monitor());
   }
   sayWhatIsOdd(context, beat);
-  judgeOpening(context, beat);
-  report(context, roles, beat);
+  context.results(ventricle::HeartSummary{roles.how, &beat, judgeOpening(context, beat)});
   auto step = context.step("write");
   writeOutputs(context, beat);
   return Termination::Finished;

@@ -26,14 +26,6 @@ std::string tableOf(const visibility::GlobalFlow& flow) {
   return table;
 }
 
-void reportVisibility(Context& context, const TriangleMesh& mesh, int viewpoints,
-                      const std::string& when) {
-  const visibility::SphereView view =
-      visibility::lookFromSphere(mesh, visibility::enclosingSphere(mesh, viewpoints));
-  context.result("visibility_" + when, view.visibility);
-  context.result("seen_" + when, view.seenShare);
-}
-
 }  // namespace
 
 Termination runGlobalFlow(Context& context, TriangleMesh mesh, io::SurfaceMetadata metadata,
@@ -54,19 +46,17 @@ Termination runGlobalFlow(Context& context, TriangleMesh mesh, io::SurfaceMetada
   metadata.topologicalType = "Closed";
   io::writeGiftiSurface(context.output("inflated.surf.gii"), written, metadata);
   writeTextFile(context.output("evolution.tsv"), tableOf(flow));
-  const visibility::GlobalFlowStep &start = flow.history.front(), &end = flow.history.back();
-  context.result("viewing_radius", flow.radius);
-  context.result("measure_initial", start.measure);
-  context.result("measure_final", end.measure);
-  context.result("area_initial", start.area);
-  context.result("area_final", end.area);
-  context.result("volume_initial", start.volume);
-  context.result("volume_final", end.volume);
-  reportVisibility(context, mesh, viewpoints, "initial");
-  reportVisibility(context, flow.mesh, viewpoints, "final");
-  context.result("self_intersections_final", geometry::findSelfIntersections(flow.mesh).size());
-  context.result("iterations", end.iteration);
-  context.result("stop_reason", std::string(nameOf(flow.termination)));
+  const auto before =
+      visibility::lookFromSphere(mesh, visibility::enclosingSphere(mesh, viewpoints));
+  const auto after =
+      visibility::lookFromSphere(flow.mesh, visibility::enclosingSphere(flow.mesh, viewpoints));
+  context.results(visibility::GlobalFlowSummary{flow.radius,
+                                                flow.history.front(),
+                                                flow.history.back(),
+                                                {before.visibility, after.visibility},
+                                                {before.seenShare, after.seenShare},
+                                                geometry::findSelfIntersections(flow.mesh).size(),
+                                                flow.termination});
   return flow.termination;
 }
 

@@ -16,6 +16,7 @@
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Geometry/SelfIntersection.h"
 #include "Explica/IO/SurfaceFile.h"
+#include "Explica/Inflation/Summary.h"
 #include "Explica/Unfolding/Account.h"
 
 #include <algorithm>
@@ -78,7 +79,10 @@ What is written is tested once more: faces that cross in it and did not at the s
       .output("intersections.tsv", FileKind::Table,
               "pairs of faces that intersect at the start, where, and whether they were parted")
       .output("frames/frame-*.surf.gii", FileKind::Surface, "--frames states on the way")
-      .varyingOutput(kInflationState, FileKind::Any, "what --resume needs");
+      .varyingOutput(kInflationState, FileKind::Any, "what --resume needs")
+      .results<unfolding::StartSummary>()
+      .results<inflation::InflateSummary>()
+      .results<visibility::GlobalFlowSummary>();
 }
 
 TriangleMesh readUsable(Context& context, const Settings& s, io::SurfaceMetadata& metadata) {
@@ -110,10 +114,8 @@ std::vector<geometry::FacePair> checkStart(Context& context, const Settings& s,
   const auto list = unfolding::listCrossings(mesh, repair.before, repair.after, {});
   writeTextFile(context.output("intersections.tsv"), unfolding::crossingTable(mesh, list));
   const std::size_t parted = repair.before.size() - repair.after.size();
-  context.result("self_intersections_initial", list.size());
-  context.result("self_intersections_repaired", parted);
-  context.result("repair_vertices_moved", repair.moved.size());
-  context.result("repair_move_max", repair.moveMax);
+  context.results(unfolding::StartSummary{list.size(), std::nullopt, parted, repair.moved.size(),
+                                          repair.moveMax, repair.moveMean});
   if (!list.empty()) {
     char text[240];
     std::snprintf(text, sizeof text,
@@ -163,7 +165,6 @@ Termination run(Context& context, const Settings& s) {
   const double inflated = seconds();
   auto step = context.step("measure and write");
   const Termination end = writeInflated(context, u, s.inflate);
-  context.result("seconds", seconds());
   context.result("seconds_start", started);
   context.result("seconds_inflate", inflated - started);
   context.result("seconds_output", seconds() - inflated);

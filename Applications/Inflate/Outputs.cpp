@@ -8,12 +8,11 @@
 #include "Explica/Flattening/Comparison.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/IO/VertexDataFile.h"
+#include "Explica/Inflation/Summary.h"
 #include "Explica/Unfolding/Account.h"
 #include "Explica/Unfolding/Distortion.h"
 #include "Explica/Visibility/GlobalMeasures.h"
 #include "Explica/Visibility/SphereView.h"
-
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cstdio>
@@ -36,8 +35,8 @@ visibility::SphereView lookAt(TriangleMesh mesh, const inflation::InflateOptions
   return visibility::lookFromSphere(mesh, visibility::enclosingSphere(mesh, options.viewpoints));
 }
 
-void writeVisibility(Context& context, const Inflated& u,
-                     const inflation::InflateOptions& options) {
+void writeVisibility(Context& context, const Inflated& u, const inflation::InflateOptions& options,
+                     inflation::InflateSummary& summary) {
   const visibility::SphereView before = lookAt(u.before, options);
   const visibility::SphereView after = lookAt(u.result.mesh, options);
   const auto all = everyFace(u.before);
@@ -50,15 +49,14 @@ void writeVisibility(Context& context, const Inflated& u,
                        {"seen before", "", means(u.before, before.seen)},
                        {"seen after", "", means(u.result.mesh, after.seen)}},
                       u.metadata.structure);
-  context.result("viewpoints", options.viewpoints);
-  context.result("visibility_initial", before.visibility);
-  context.result("visibility_final", after.visibility);
-  context.result("seen_initial", before.seenShare);
-  context.result("seen_final", after.seenShare);
+  summary.viewpoints = options.viewpoints;
+  summary.target = options.targetSeen;
+  summary.visibility = {before.visibility, after.visibility};
+  summary.seen = {before.seenShare, after.seenShare};
 }
 
 /// The thesis's own global measures (4.6) and (4.7), before and after; a sphere for both.
-void reportGlobalMeasures(Context& context, const Inflated& u) {
+inflation::GlobalMeasures globalMeasuresOf(const Inflated& u) {
   constexpr double kAway = 10;  // of the farthest vertex: the radius of the viewing sphere
   const auto outward = [](TriangleMesh mesh) {
     if (geometry::enclosedVolume(mesh) < 0) mesh.faces.col(1).swap(mesh.faces.col(2));
@@ -72,33 +70,29 @@ void reportGlobalMeasures(Context& context, const Inflated& u) {
         farthest, (mesh->positions.rowwise() - centre.transpose()).rowwise().norm().maxCoeff());
   }
   const double radius = kAway * farthest;
-  context.result("viewing_radius", radius);
-  context.result("hidden_viewing_area_initial",
-                 visibility::hiddenViewingArea(before, centre, radius));
-  context.result("hidden_viewing_area_final", visibility::hiddenViewingArea(after, centre, radius));
-  context.result("self_occlusion_initial", visibility::selfOcclusion(before));
-  context.result("self_occlusion_final", visibility::selfOcclusion(after));
+  return {radius,
+          {visibility::hiddenViewingArea(before, centre, radius),
+           visibility::hiddenViewingArea(after, centre, radius)},
+          {visibility::selfOcclusion(before), visibility::selfOcclusion(after)}};
 }
 
-void reportDistances(Context& context, const Inflated& u) {
+void measureDistances(const Inflated& u, inflation::InflateSummary& summary) {
   const auto all = everyFace(u.before);
   flattening::DistanceOptions options;
   options.sources = options.farSources = static_cast<int>(
       std::clamp(kDistanceWork / static_cast<double>(u.before.vertexCount() + 1), 10.0, 20.0));
   const auto pairs = flattening::drawPairs(u.before, all, options);
   const auto along = flattening::DistanceKind::Surface;
-  context.result("geodesic_error_local",
-                 flattening::distanceError(pairs.local, u.result.mesh, all, along).error);
-  context.result("geodesic_error_all",
-                 flattening::distanceError(pairs.all, u.result.mesh, all, along).error);
-  context.result("turned_over", static_cast<long long>(flattening::turnedOver(u.result.mesh, all)));
+  summary.distances = {flattening::distanceError(pairs.local, u.result.mesh, all, along),
+                       flattening::distanceError(pairs.all, u.result.mesh, all, along)};
+  summary.turnedOver = flattening::turnedOver(u.result.mesh, all);
 }
 
-void writeDistortion(Context& context, const Inflated& u) {
+unfolding::Distortion writeDistortion(Context& context, const Inflated& u) {
   const auto all = everyFace(u.before);
   unfolding::DistortionOptions plain;
   plain.geodesicSources = 0;
-  const auto d = unfolding::measureDistortion(u.before, u.result.mesh.positions, all, plain);
+  auto d = unfolding::measureDistortion(u.before, u.result.mesh.positions, all, plain);
   const Eigen::VectorXd angleDeg = d.angleErrorRad * (180 / kPi);
   io::writeGiftiShape(
       context.output("distortion.shape.gii"),
@@ -106,15 +100,11 @@ void writeDistortion(Context& context, const Inflated& u) {
        {"angle change", "degrees", unfolding::vertexMeans(u.before, all, angleDeg, 0)},
        {"edge strain", "", unfolding::vertexStrains(u.before, u.result.mesh.positions, all)}},
       u.metadata.structure);
-  context.result("area_error_mean", d.areaErrorMean);
-  context.result("area_error_max", d.areaErrorMax);
-  context.result("angle_error_mean_deg", d.angleErrorMeanRad * 180 / kPi);
-  context.result("edge_strain_mean", d.edgeStrainMean);
-  context.result("edge_strain_p95", d.edgeStrainP95);
+  return d;
 }
 
-void writeFrames(Context& context, const Inflated& u) {
-  if (u.result.frames.empty()) return;
+unfolding::FrameSummary writeFrames(Context& context, const Inflated& u) {
+  if (u.result.frames.empty()) return {std::nullopt, std::nullopt};
   std::size_t most = 0;
   std::vector<double> visibilities;
   for (std::size_t n = 0; n < u.result.frames.size(); ++n) {
@@ -126,33 +116,30 @@ void writeFrames(Context& context, const Inflated& u) {
     std::snprintf(name, sizeof name, "frames/frame-%04zu.surf.gii", n);
     io::writeGiftiSurface(context.output(name), frame, u.metadata);
   }
-  context.result("frame_visibilities", visibilities);
-  context.result("self_intersections_frames_max", most);
+  return {visibilities, most};
 }
 
-void reportRun(Context& context, const Inflated& u) {
+/// What is known without another look at the surface.
+void describeRun(const Inflated& u, inflation::InflateSummary& s) {
   const inflation::InflateRecord& last = u.result.history.back();
-  unfolding::PhaseSeconds phases;
-  for (const inflation::InflateRecord& row : u.result.history) phases += row.step.phases;
-  context.result("faces", u.before.faceCount());
-  context.result("vertices", u.before.vertexCount());
-  context.result("area", geometry::totalArea(u.before));
-  context.result("volume_initial", std::abs(geometry::enclosedVolume(u.before)));
-  context.result("volume_final", std::abs(geometry::enclosedVolume(u.result.mesh)));
-  context.result("iterations", last.step.iteration);
-  context.result("drive", u.result.checkpoint.state.drive);
-  context.result("seconds_collision", phases.collision);
-  context.result("seconds_solve", phases.solve);
+  for (const inflation::InflateRecord& row : u.result.history) s.phases += row.step.phases;
+  s.faces = u.before.faceCount();
+  s.vertices = u.before.vertexCount();
+  s.area = geometry::totalArea(u.before);
+  s.volume = {std::abs(geometry::enclosedVolume(u.before)),
+              std::abs(geometry::enclosedVolume(u.result.mesh))};
+  s.end.iterations = last.step.iteration;
+  s.drive = u.result.checkpoint.state.drive;
 }
 
 /// What the file holds against what the method promises.
-void checkWritten(Context& context, Inflated& u) {
+void checkWritten(Context& context, Inflated& u, inflation::InflateSummary& summary) {
   const auto after = geometry::findSelfIntersections(u.result.mesh);
   std::vector<geometry::FacePair> added;
   std::set_difference(after.begin(), after.end(), u.crossings.begin(), u.crossings.end(),
                       std::back_inserter(added));
-  context.result("self_intersections_final", after.size());
-  context.result("self_intersections_new", added.size());
+  summary.crossings = after.size();
+  summary.crossingsNew = added.size();
   if (added.empty()) return;
   u.result.flag = unfolding::Flag::Crossing;
   if (reachedGoal(u.result.termination)) u.result.termination = Termination::Stalled;
@@ -171,17 +158,20 @@ Termination writeInflated(Context& context, Inflated& u, const inflation::Inflat
   io::writeFreeSurferSurface(context.output(right ? "rh.inflated" : "lh.inflated"), u.result.mesh);
   writeTextFile(context.output("evolution.tsv"), inflation::evolutionTable(u.result.history));
   unfolding::writeCheckpoint(context.output(kInflationState), u.result.checkpoint);
+  inflation::InflateSummary summary;
+  summary.globalMeasures.reset();
   describing(context, u.result.termination, [&] {
-    writeVisibility(context, u, options);
-    if (u.globalMeasures) reportGlobalMeasures(context, u);
-    writeDistortion(context, u);
-    reportDistances(context, u);
+    writeVisibility(context, u, options, summary);
+    if (u.globalMeasures) summary.globalMeasures = globalMeasuresOf(u);
+    summary.distortion = writeDistortion(context, u);
+    measureDistances(u, summary);
   });
-  writeFrames(context, u);
-  reportRun(context, u);
-  checkWritten(context, u);
-  context.result("flag", std::string(nameOf(u.result.flag)));
-  context.result("stop_reason", std::string(nameOf(u.result.termination)));
+  summary.frames = writeFrames(context, u);
+  describeRun(u, summary);
+  checkWritten(context, u, summary);
+  summary.end.flag = u.result.flag;
+  summary.end.stopReason = u.result.termination;
+  context.results(summary);
   return u.result.termination;
 }
 

@@ -14,10 +14,9 @@
 #include "Explica/Planar/PolygonPhantoms.h"
 #include "Explica/Planar/PolygonUnfolding.h"
 #include "Explica/Planar/PolygonVisibility.h"
+#include "Explica/Planar/Summary.h"
 #include "Explica/Visibility/Viewpoints.h"
 #include "State.h"
-
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
@@ -127,7 +126,10 @@ void declare(Declaration& d, Settings& s) {
       .output("evolution.svg", FileKind::Picture,
               "start, stages and end, with the direction of view")
       .output("frames/frame-*.csv", FileKind::Polygon, "states on the way")
-      .varyingOutput(kStateFile, FileKind::Any, "what --resume needs");
+      .varyingOutput(kStateFile, FileKind::Any, "what --resume needs")
+      .results<planar::PolygonSummary>()
+      .results<planar::PolygonUnfoldSummary>()
+      .results<planar::GlobalFlowSummary>();
 }
 
 /// What is asked for: from FILE and options, or from a phantom where options do not say otherwise.
@@ -276,6 +278,12 @@ std::string tableOf(const std::vector<planar::GlobalFlowStep>& history) {
   return table;
 }
 
+std::vector<double> coordinatesOf(const planar::Viewpoints& view) {
+  std::vector<double> all;
+  for (const planar::Point2& point : view.points) all.insert(all.end(), point.begin(), point.end());
+  return all;
+}
+
 /// The flow of a global measure, and what became of the region on the way.
 Termination runGlobalFlow(Context& context, const Settings& s, const Task& task) {
   auto step = context.step("descend");
@@ -294,14 +302,8 @@ Termination runGlobalFlow(Context& context, const Settings& s, const Task& task)
   io::writePolygonVtp(context.output("unfolded.vtp"), flow.curve.positions, {}, {});
   writeTextFile(context.output("evolution.tsv"), tableOf(flow.history));
   writeStages(context, s, flow.history, flow.path, true, *task.view);
-  context.result("measure_initial", start.measure);
-  context.result("measure_final", end.measure);
-  context.result("length_final", end.length);
-  context.result("visibility_initial", start.visibility);
-  context.result("visibility_final", end.visibility);
-  context.result("self_intersections_final", end.crossings);
-  context.result("iterations", end.iteration);
-  context.result("stop_reason", std::string(nameOf(flow.termination)));
+  context.results(planar::GlobalFlowSummary{coordinatesOf(*task.view), task.view->weights, start,
+                                            end, flow.termination});
   return flow.termination;
 }
 
@@ -331,17 +333,14 @@ void sayHowLongUnfoldingIs(Context& context, const Settings& s, const Task& task
 void reportPolygon(Context& context, const Settings& s, const Task& task) {
   const planar::Curve& curve = task.curve;
   const planar::ViewingCircle circle = planar::viewingCircle(curve, s.viewingRadius);
-  context.result("region_edges", task.region.edgeCount);
-  context.result("length_initial", planar::lengthOf(curve, task.region));
-  context.result("area", planar::signedArea(curve.positions));
   const double edges = curve.edgeCount();
   constexpr double kPairsPerSecond = 5e8;
   sayHowLong(context, "self occlusion", edges * edges / 2, kPairsPerSecond);
-  context.result("self_occlusion", planar::selfOcclusion(curve));
-  context.result("hidden_viewing_arc",
-                 planar::hiddenViewingArc(curve, circle.centre, circle.radius));
-  context.result("viewing_radius", circle.radius);
-  context.result("self_intersections_initial", planar::intersectingEdges(curve).size());
+  context.results(
+      planar::PolygonSummary{task.region.edgeCount, planar::lengthOf(curve, task.region),
+                             planar::signedArea(curve.positions), planar::selfOcclusion(curve),
+                             planar::hiddenViewingArc(curve, circle.centre, circle.radius),
+                             circle.radius, planar::intersectingEdges(curve).size()});
 }
 
 Termination run(Context& context, const Settings& s) {
@@ -362,42 +361,22 @@ Termination run(Context& context, const Settings& s) {
   if (s.flow && !view) throw UsageError("--global-flow needs a viewpoint, from which it is judged");
   if (!view) return Termination::NotRun;
 
-  std::vector<double> eyes;
-  for (const planar::Point2& point : view->points)
-    eyes.insert(eyes.end(), point.begin(), point.end());
-  context.result("viewpoint", eyes);
-  context.result("viewpoint_weights", view->weights);
   if (s.flow) return runGlobalFlow(context, s, task);
   sayHowLongUnfoldingIs(context, s, task);
   auto step = context.step("unfold");
   const StopScope kept(nullptr);  // what is reached is written
   const planar::PolygonUnfolding result = planar::unfoldPolygon(
       curve, region, *view, s.unfolding, context.monitor(), state ? &*state : nullptr);
-  const planar::PolygonIteration& start = result.history.front();
-  const planar::PolygonIteration& end = result.history.back();
-  step.iterations(end.iteration);
+  step.iterations(result.history.back().iteration);
   step.termination(result.termination);
   writeUnfolding(context, s, result, *view);
 
-  context.result("length_final", end.length);
-  context.result("length_error_max", s.unfolding.noLength ? kNaN : end.lengthError);
-  context.result("visibility_initial", start.visibility);
-  context.result("visibility_final", end.visibility);
-  context.result("flux_variance_initial", start.variance);
-  context.result("flux_variance_final", end.variance);
-  const planar::VisiblePart before = planar::visiblePart(curve, region, *view);
-  const planar::VisiblePart after = planar::visiblePart(result.curve, result.region, *view);
-  context.result("seen_initial", before.fraction);
-  context.result("seen_final", after.fraction);
-  context.result("real_visibility_initial", before.realVisibility);
-  context.result("real_visibility_final", after.realVisibility);
-  context.result("self_intersections_final", result.intersectionsFinal.size());
-  context.result("first_crossing", result.firstCrossing);
-  context.result("vertices_merged", result.verticesMerged);
-  context.result("iterations", end.iteration);
-  context.result("seconds", result.seconds);
-  context.result("seconds_topology", result.secondsTopology);
-  context.result("stop_reason", std::string(nameOf(result.termination)));
+  context.results(planar::PolygonUnfoldSummary{
+      coordinatesOf(*view), view->weights, s.unfolding.targetVisibility, !s.unfolding.noLength,
+      result.history.front(), result.history.back(), planar::visiblePart(curve, region, *view),
+      planar::visiblePart(result.curve, result.region, *view), result.intersectionsFinal.size(),
+      result.firstCrossing, result.verticesMerged, result.seconds, result.secondsTopology,
+      result.termination});
   return result.termination;
 }
 

@@ -13,10 +13,7 @@
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VertexDataFile.h"
 
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <set>
 
@@ -55,7 +52,8 @@ void declare(Declaration& d, Settings& s) {
       .output("intersections.tsv", FileKind::Table,
               "surface, the faces of each pair at the start, where, and whether it was parted")
       .output("moved.shape.gii", FileKind::VertexData,
-              "how far each vertex was moved, mm, a map a surface");
+              "how far each vertex was moved, mm, a map a surface")
+      .results<collision::RepairSummary>();
 }
 
 struct Inputs {
@@ -113,34 +111,15 @@ void write(Context& context, const std::string& path, const std::string& name,
   }
 }
 
-void report(Context& context, const Inputs& inputs,
-            const std::vector<collision::RepairedSurface>& repaired) {
-  std::size_t before = 0, after = 0, moved = 0, far = 0, other = 0;
-  double sum = 0, largest = 0;
-  nlohmann::ordered_json each = nlohmann::ordered_json::array();
-  for (std::size_t n = 0; n < repaired.size(); ++n) {
-    const collision::RepairedSurface& r = repaired[n];
-    before += r.before.size();
-    after += r.after.size();
-    moved += r.moved.size();
-    far += r.putBackFar;
-    other += r.putBackOther;
-    sum += r.moveMean * static_cast<double>(r.moved.size());
-    largest = std::max(largest, r.moveMax);
-    each.push_back({{"surface", inputs.names[n]},
-                    {"pairs_before", r.before.size()},
-                    {"pairs_after", r.after.size()},
-                    {"vertices_moved", r.moved.size()},
-                    {"move_mean", r.moveMean},
-                    {"move_max", r.moveMax}});
+/// Why crossings are left.
+void warnOfRest(Context& context, const std::vector<collision::RepairedSurface>& repaired) {
+  std::size_t before = 0, after = 0, far = 0, other = 0;
+  for (const collision::RepairedSurface& surface : repaired) {
+    before += surface.before.size();
+    after += surface.after.size();
+    far += surface.putBackFar;
+    other += surface.putBackOther;
   }
-  context.result("pairs_before", before);
-  context.result("pairs_after", after);
-  context.result("vertices_moved", moved);
-  context.result("move_mean", moved > 0 ? sum / static_cast<double>(moved) : 0.0);
-  context.result("move_max", largest);
-  context.result("groups_put_back", far + other);
-  context.result("surfaces", each);
   if (after == 0) return;
   std::string message = std::to_string(after) + " of " + std::to_string(before) +
                         " crossing pairs of faces could not be parted (intersections.tsv)";
@@ -153,7 +132,6 @@ void report(Context& context, const Inputs& inputs,
 
 Termination run(Context& context, const Settings& s) {
   const StopScope kept(nullptr);  // what is reached is written
-  const auto begin = std::chrono::steady_clock::now();
   const Inputs inputs = readInputs(context, s);
   std::vector<collision::RepairedSurface> repaired;
   {
@@ -163,22 +141,20 @@ Termination run(Context& context, const Settings& s) {
   auto step = context.step("write");
   std::string rows = "surface\tface\tother_face\tx\ty\tz\tparted\n";
   std::vector<io::VertexMap> moves;
-  std::size_t left = 0;
   for (std::size_t n = 0; n < repaired.size(); ++n) {
     const TriangleMesh& mesh = inputs.meshes[n];
     rows += rowsOf(inputs.names[n], mesh, repaired[n]);
     moves.push_back(
         {inputs.names[n], "mm", (repaired[n].positions - mesh.positions).rowwise().norm()});
     write(context, s.surfaces[n], inputs.names[n], inputs.loaded[n], repaired[n]);
-    left += repaired[n].after.size();
   }
   writeTextFile(context.output("intersections.tsv"), rows);
   io::writeGiftiShape(context.output("moved.shape.gii"), moves,
                       inputs.loaded.front().metadata.structure);
-  report(context, inputs, repaired);
-  context.result("seconds",
-                 std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-  if (left == 0) return Termination::Converged;
+  const collision::RepairSummary summary = collision::summaryOf(repaired, inputs.names);
+  context.results(summary);
+  warnOfRest(context, repaired);
+  if (summary.all.after == 0) return Termination::Converged;
   return context.monitor().shouldStop() ? Termination::Interrupted : Termination::Stalled;
 }
 

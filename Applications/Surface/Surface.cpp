@@ -22,6 +22,7 @@
 #include "Explica/Surface/GivenSurfaces.h"
 #include "Explica/Surface/Measures.h"
 #include "Explica/Surface/Regions.h"
+#include "Explica/Surface/Summary.h"
 #include "Explica/Surface/TissueSheet.h"
 
 #include <nlohmann/json.hpp>
@@ -219,6 +220,7 @@ void declare(Declaration& d, Settings& s) {
                    s.fsVolume, "Output");
   declareAccept(d, s.accept);
   declareOutputs(d);
+  d.results<surface::SurfaceSummary>();
 }
 
 std::string defectTable(const std::vector<surface::Defect>& defects) {
@@ -394,8 +396,10 @@ surface::VertexKeys regionKeys(const Regions& regions, const surface::CorticalSu
       });
 }
 
-void writeRegions(Context& context, const Regions& regions, const surface::CorticalSurfaces& made,
-                  const std::string& structure, std::vector<io::SpecEntry>& spec) {
+/// @return how many there are
+std::size_t writeRegions(Context& context, const Regions& regions,
+                         const surface::CorticalSurfaces& made, const std::string& structure,
+                         std::vector<io::SpecEntry>& spec) {
   const surface::VertexKeys keys = regionKeys(regions, made, structure);
   const Eigen::VectorXd areas = geometry::vertexAreas(made.white.mesh);
   const auto measured = surface::measureRegions(keys, made.thickness, areas);
@@ -419,7 +423,7 @@ void writeRegions(Context& context, const Regions& regions, const surface::Corti
   writeTextFile(context.output("regions.tsv"), table.str());
   io::writeGiftiLabel(context.output("regions.label.gii"), labels, structure);
   spec.push_back({structure, "regions.label.gii"});
-  context.result("regions", measured.size());
+  return measured.size();
 }
 
 /// Whether the tissue is a sheet; says so where nobody asked.
@@ -481,18 +485,6 @@ Inputs readTissue(Context& context, const Settings& s) {
   return inputs;
 }
 
-/// What every surface must be; reported, so that nobody has to believe it.
-struct Checked {
-  std::int64_t selfIntersections = 0;
-  geometry::MeshCondition condition;
-  surface::Evenness evenness;
-};
-
-Checked check(const TriangleMesh& mesh) {
-  return {static_cast<std::int64_t>(geometry::findSelfIntersections(mesh).size()),
-          geometry::inspectMesh(mesh), surface::evennessOf(mesh)};
-}
-
 io::SurfaceMetadata metadataOf(const std::string& structure, const std::string& secondary) {
   io::SurfaceMetadata metadata;
   metadata.structure = structure;
@@ -520,43 +512,6 @@ std::vector<Named> namedSurfaces(const surface::CorticalSurfaces& made, bool has
   return surfaces;
 }
 
-void reportEvenness(Context& context, const std::string& key, const surface::Evenness& found) {
-  context.result("dihedral_above_60_" + key, found.dihedralAbove60);
-  if (key == "pial") context.result("dihedral_above_60", found.dihedralAbove60);
-  context.result("longest_edge_" + key, found.longestEdge);
-  context.result("least_face_area_" + key, found.leastFace);
-  context.result("highest_spike_" + key, found.highestSpike);
-}
-
-/// Topology, areas and intersections of the surfaces.
-/// @return pairs of faces that meet
-std::int64_t checkSurfaces(Context& context, const std::vector<Named>& surfaces) {
-  auto step = context.step("check");
-  std::vector<Checked> all(surfaces.size());
-  parallelFor(all.size(), 1, [&](std::size_t n) { all[n] = check(*surfaces[n].mesh); });
-  std::int64_t selfIntersections = 0;
-  for (const Named& surface : surfaces) {
-    const Checked& checked = all[&surface - surfaces.data()];
-    selfIntersections += checked.selfIntersections;
-    if (&surface == &surfaces.front()) {
-      context.result("vertices", checked.condition.vertices);
-      context.result("faces", checked.condition.faces);
-      context.result("euler_characteristic", checked.condition.eulerCharacteristic);
-      context.result("components", checked.condition.components);
-      context.result("closed_manifold", checked.condition.closedManifold());
-      context.result("manifold", checked.condition.manifold());
-      context.result("rim_edges", checked.condition.boundaryEdges);
-    }
-    context.result("area_" + std::string(surface.key), geometry::totalArea(*surface.mesh));
-    if (checked.condition.boundaryEdges == 0) {
-      context.result("volume_" + std::string(surface.key), geometry::enclosedVolume(*surface.mesh));
-    }
-    reportEvenness(context, surface.key, checked.evenness);
-  }
-  context.result("self_intersections", selfIntersections);
-  return selfIntersections;
-}
-
 std::vector<io::VertexMap> areasOf(const std::vector<Named>& surfaces) {
   std::vector<io::VertexMap> areas;
   for (const Named& surface : surfaces) {
@@ -575,15 +530,6 @@ std::vector<io::VertexMap> thicknessMaps(const surface::CorticalSurfaces& made,
   return maps;
 }
 
-/// 1 where the thickness is defined and known.
-Eigen::VectorXd validOf(const surface::CorticalSurfaces& made) {
-  Eigen::VectorXd valid = (made.thickness.array() > 0).cast<double>().matrix();
-  for (std::size_t v = 0; v < made.sheet.known.size(); ++v) {
-    if (!made.sheet.known[v]) valid[static_cast<Eigen::Index>(v)] = 0;
-  }
-  return valid;
-}
-
 bool hasSulcalDepth(const Settings& s, const surface::CorticalSurfaces& made) {
   return !surfacesGiven(s) && !made.sheet.open;
 }
@@ -591,7 +537,8 @@ bool hasSulcalDepth(const Settings& s, const surface::CorticalSurfaces& made) {
 std::vector<io::SpecEntry> writeMaps(Context& context, const Settings& s,
                                      const surface::CorticalSurfaces& made,
                                      const surface::CorticalTissue& tissue,
-                                     const std::vector<Named>& surfaces, const Regions& regions) {
+                                     const std::vector<Named>& surfaces, const Regions& regions,
+                                     surface::SurfaceSummary& summary) {
   std::vector<io::SpecEntry> spec;
   for (const Named& surface : surfaces) {
     io::writeGiftiSurface(context.output(surface.file), *surface.mesh,
@@ -606,10 +553,10 @@ std::vector<io::SpecEntry> writeMaps(Context& context, const Settings& s,
   writeShape("area.shape.gii", areasOf(surfaces));
   if (!tissue.hasGrey) return spec;
   writeShape("thickness.shape.gii", thicknessMaps(made, s.thicknessMeasure));
-  writeShape("valid.shape.gii", {{"valid", "", validOf(made)}});
+  writeShape("valid.shape.gii", {{"valid", "", surface::validOf(made)}});
   if (hasSulcalDepth(s, made)) writeShape("sulc.shape.gii", {{"sulc", "mm", made.sulcalDepth}});
   if (regions.atlas || regions.parcellation) {
-    writeRegions(context, regions, made, tissue.structure, spec);
+    summary.regions = writeRegions(context, regions, made, tissue.structure, spec);
   }
   return spec;
 }
@@ -638,73 +585,19 @@ void writeFreeSurfer(Context& context, const Settings& s, const surface::Cortica
   io::writeFreeSurferCurv(place("area.pial"), areas.back().values, faces);
 }
 
-void reportThickness(Context& context, const Settings& s, const surface::CorticalSurfaces& made) {
-  const double trajectory = surface::meanThickness(made.white.mesh, made.thickness);
-  const double nearest = surface::meanThickness(made.white.mesh, made.nearestThickness);
-  const bool asked = s.thicknessMeasure == ThicknessMeasure::Nearest;
-  context.result("thickness_mean", asked ? nearest : trajectory);
-  const Eigen::VectorXd& taken = asked ? made.nearestThickness : made.thickness;
-  context.result("thickness_sd", surface::thicknessDeviation(made.white.mesh, taken));
-  context.result("thickness_measure", std::string(nameOf(s.thicknessMeasure)));
-  context.result("thickness_mean_trajectory", trajectory);
-  context.result("thickness_mean_nearest", nearest);
-  context.result("vertices_without_grey", made.noRibbon);
-}
-
-void reportMaking(Context& context, const surface::CorticalSurfaces& made, bool hasGrey) {
-  context.result("genus", made.white.genus);
-  context.result("edge_length", made.white.edgeLength);
-  if (hasGrey) {
-    context.result("vertices_ended_at_bank", made.endedAtBank);
-    context.result("trajectories_shortened", made.shortened);
-    context.result("sulcal_links_recovered", made.cutLinks);
-    context.result("vertices_held_back_mid", made.heldBackMid);
-    context.result("vertices_held_back_pial", made.heldBackPial);
-    context.result("held_back_mean", made.heldBackMean);
-    context.result("held_back_most", made.heldBackMost);
-  }
-  context.result("seconds_topology", made.seconds.topology);
-  context.result("seconds_extraction", made.seconds.extraction);
-  context.result("seconds_remeshing", made.seconds.remeshing);
-  context.result("seconds_interpolant", made.seconds.interpolant);
-  context.result("seconds_trajectories", made.seconds.trajectories);
-  context.result("seconds_image", made.seconds.image);
-  context.result("seconds_growing", made.seconds.growing);
-  context.result("seconds_measures", made.seconds.measures);
-}
-
-/// What a sheet is, and a warning where its thickness hangs on how the image cuts it.
-void reportSheet(Context& context, const surface::CorticalSurfaces& made) {
-  const surface::SheetFacts& sheet = made.sheet;
-  context.result("sheet", sheet.open);
-  if (!sheet.open) return;
-  context.result("rims", sheet.rims);
-  context.result("pockets_filled", sheet.pocketsFilled);
-  context.result("holes_closed", sheet.holesClosed);
-  context.result("pieces_left_out", sheet.piecesLeftOut);
-  context.result("vertices_interpolated", sheet.interpolated);
-  context.result("vertices_cut_by_image", sheet.cutByImage);
-  const Eigen::VectorXd known = validOf(made).array() * made.thickness.array();
-  context.result("thickness_mean_known", surface::meanThickness(made.white.mesh, known));
-  if (sheet.cutByImage > 0) {
-    context.warn(std::to_string(sheet.cutByImage) + " of " + std::to_string(made.thickness.size()) +
+/// What a reader must know of a sheet, and of an image that shows too little to be the labels'.
+void warnOf(Context& context, const surface::CorticalSurfaces& made, bool hasImage) {
+  const std::int64_t cut = made.sheet.cutByImage;
+  if (cut > 0) {
+    context.warn(std::to_string(cut) + " of " + std::to_string(made.thickness.size()) +
                  " vertices lie so near to the image's edge that their thickness holds only if it "
                  "cuts the tissue at right angles (0 in valid.shape.gii)");
   }
-}
-
-/// What the image has done, and a warning where it shows too little to be the labels' image.
-void reportImage(Context& context, const surface::CorticalSurfaces& made) {
-  const auto vertices = static_cast<double>(made.thickness.size() - made.noRibbon);
-  const surface::ImagePlacement& image = made.image;
-  context.result("vertices_without_white_edge", image.missingWhite);
-  context.result("vertices_without_outer_edge", image.missingOuter);
-  context.result("moved_by_image_white", image.movedWhite);
-  context.result("moved_by_image_outer", image.movedOuter);
   constexpr double kFewest = 0.5;  // share of vertices with an edge
-  if (static_cast<double>(image.missingWhite - made.noRibbon) > (1 - kFewest) * vertices) {
-    context.warn("the image shows no edge of white matter at " +
-                 std::to_string(image.missingWhite - made.noRibbon) +
+  const auto vertices = static_cast<double>(made.thickness.size() - made.noRibbon);
+  const std::int64_t missing = made.image.missingWhite - made.noRibbon;
+  if (hasImage && static_cast<double>(missing) > (1 - kFewest) * vertices) {
+    context.warn("the image shows no edge of white matter at " + std::to_string(missing) +
                  " vertices: is it the image of these labels?");
   }
 }
@@ -731,28 +624,34 @@ void doubtLabels(Context& context, const surface::TissueFacts& tissue, bool shee
                     unknown + "; taken to lie outside the tissue");
 }
 
-void report(Context& context, const Settings& s, const surface::CorticalTissue& tissue,
-            const surface::CorticalSurfaces& made) {
-  const bool given = surfacesGiven(s);
-  context.result("structure", tissue.structure);
-  context.result("surfaces", given ? "given" : "made");
-  if (!given) {
-    context.result("preset", std::string(nameOf(tissue.preset)));
-    context.result("white_voxels", tissue.whiteVoxels);
-    context.result("filled_voxels", tissue.filledVoxels);
-    context.result("grey_voxels", tissue.greyVoxels);
-    doubtLabels(context, tissue, made.sheet.open);
-  }
-  context.result("defects_corrected", made.white.defects.size());
-  context.result("voxels_changed", made.white.voxelsChanged);
+surface::SurfaceSummary summaryOf(const Settings& s, const surface::CorticalTissue& tissue,
+                                  const surface::CorticalSurfaces& made) {
+  surface::SurfaceSummary summary;
+  summary.regions.reset();
+  summary.cerebrumVolume.reset();
+  summary.given = surfacesGiven(s);
+  summary.tissue = &tissue;
+  summary.made = &made;
+  summary.hasGrey = tissue.hasGrey;
+  summary.hasImage = s.image.has_value();
+  const std::array meshes = {&made.white.mesh, &made.mid, &made.pial};
+  parallelFor(tissue.hasGrey ? 3 : 1, 1,
+              [&](std::size_t n) { summary.checks[n] = surface::checkOf(*meshes[n]); });
   const Eigen::VectorXd angles = geometry::smallestAnglesRad(made.white.mesh);
   std::vector<double> sorted(angles.begin(), angles.end());
   std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 20, sorted.end());
-  context.result("smallest_angle_p05_deg", sorted[sorted.size() / 20] * 180 / kPi);
-  if (tissue.hasGrey) reportThickness(context, s, made);
-  if (s.image && tissue.hasGrey) reportImage(context, made);
-  if (!given) reportMaking(context, made, tissue.hasGrey);
-  reportSheet(context, made);
+  summary.smallestAngleDeg = sorted[sorted.size() / 20] * 180 / kPi;
+  summary.thickness.reset();
+  if (tissue.hasGrey) {
+    summary.thickness =
+        surface::thicknessMeansOf(made, s.thicknessMeasure == ThicknessMeasure::Nearest);
+  }
+  summary.thicknessKnown.reset();
+  if (made.sheet.open) {
+    const Eigen::VectorXd known = surface::validOf(made).array() * made.thickness.array();
+    summary.thicknessKnown = surface::meanThickness(made.white.mesh, known);
+  }
+  return summary;
 }
 
 surface::CorticalSurfaces makeSurfaces(Context& context, const Settings& s, const Inputs& inputs,
@@ -776,19 +675,17 @@ surface::CorticalSurfaces makeSurfaces(Context& context, const Settings& s, cons
 
 /// Of human labels: says so where the cerebrum's volume is not a human's.
 void checkVolume(Context& context, const surface::CorticalSurfaces& made,
-                 const surface::CorticalTissue& tissue) {
+                 const surface::CorticalTissue& tissue, surface::SurfaceSummary& summary) {
   using surface::LabelPreset;
   const LabelPreset preset = tissue.preset;
   const bool human = preset == LabelPreset::Aseg || preset == LabelPreset::Ribbon ||
                      preset == LabelPreset::Dhcp || preset == LabelPreset::Dhcp87;
   if (!human || made.sheet.open || !tissue.hasGrey) return;
-  // Millilitres: from a newborn's to the largest adult's (Gilmore et al. 2007, J. Neurosci.
-  // 27:1255).
-  constexpr double kLeast = 250, kMost = 2000, kUsual = 1100;
+  constexpr double kUsual = 1100;  // ml
   const double sides = tissue.structure == "Cortex" ? 1 : 2;
   const double volume = sides * geometry::enclosedVolume(made.pial) / 1000;
-  context.result("cerebrum_volume_ml", volume);
-  if (volume >= kLeast && volume <= kMost) return;
+  summary.cerebrumVolume = volume;
+  if (volume >= surface::kLeastCerebrum && volume <= surface::kMostCerebrum) return;
   std::ostringstream text;
   text.precision(3);
   text << "the cerebrum holds " << volume << " ml" << (sides == 2 ? " (twice this hemisphere)" : "")
@@ -838,21 +735,31 @@ Termination run(Context& context, const Settings& s) {
   const std::optional<Grid> fsGrid = freeSurferGrid(s, inputs);
   if (!given) made = makeSurfaces(context, s, inputs, readImage(context, s));
   const std::vector<Named> surfaces = namedSurfaces(made, tissue.hasGrey);
-  const std::int64_t meetings = checkSurfaces(context, surfaces);
+  surface::SurfaceSummary summary;
+  {
+    auto step = context.step("check");
+    summary = summaryOf(s, tissue, made);
+  }
   {
     auto step = context.step("write");
-    const std::vector<io::SpecEntry> spec = writeMaps(context, s, made, tissue, surfaces, regions);
+    const std::vector<io::SpecEntry> spec =
+        writeMaps(context, s, made, tissue, surfaces, regions, summary);
     io::writeSpec(context.output("surface.spec"), spec);
     writeTextFile(context.output("topology.tsv"), defectTable(made.white.defects));
     if (s.freeSurfer) writeFreeSurfer(context, s, made, tissue, surfaces, fsGrid);
   }
-  report(context, s, tissue, made);
-  if (!given) checkVolume(context, made, tissue);
+  if (!given) {
+    doubtLabels(context, tissue, made.sheet.open);
+    checkVolume(context, made, tissue, summary);
+  }
+  warnOf(context, made, summary.hasImage && tissue.hasGrey);
+  context.results(summary);
   judge.flag("defects", static_cast<double>(made.white.defects.size()));
   // Labels named by hand need not be a cortex's.
   if (tissue.hasGrey && s.tissue.white.empty()) {
     judge.flag("thickness-mean", surface::meanThickness(made.white.mesh, made.thickness));
   }
+  const std::int64_t meetings = summary.meetings();
   if (!given && meetings > 0) {
     context.warn("the surfaces meet themselves at " + std::to_string(meetings) + " pairs of faces");
     return Termination::Stalled;

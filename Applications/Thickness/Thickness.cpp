@@ -154,6 +154,7 @@ void declare(Declaration& d, Settings& s) {
       .options("Heart", s.orientation);
   declareAccept(d, s.accept);
   declareOutputs(d);
+  d.results<correspondence::Measurement>();
 }
 
 double seconds() {
@@ -212,13 +213,7 @@ correspondence::Measurement measure(Context& context, harmonic::Annulus annulus,
 
 void report(Context& context, Judge& judge, const correspondence::Measurement& m) {
   const correspondence::Correspondence& found = m.correspondence;
-  context.result("sulci", m.sulciRecovered ? "recover" : "ignore");
-  context.result("sulcal_voxels_recovered", m.sulcalVoxels.size());
-  context.result("residual", m.interpolant.relativeResidual);
-  context.result("iterations", m.interpolant.iterations);
-  context.result("traced_fraction", static_cast<double>(found.traced) /
-                                        (2.0 * static_cast<double>(m.annulus.count())));
-  context.result("voxels_without_thickness", found.missing);
+  context.results(m);
   if (found.missing > 0) {
     context.warn(std::to_string(found.missing) +
                  " voxels have no thickness: their trajectory does not reach both boundaries");
@@ -227,24 +222,10 @@ void report(Context& context, Judge& judge, const correspondence::Measurement& m
   const double leftOut = m.annulus.planar ? 0 : static_cast<double>(m.annulus.droppedVoxels);
   judge.flag("without-thickness", (static_cast<double>(found.missing) + leftOut) /
                                       (static_cast<double>(m.annulus.count()) + leftOut));
-  context.result("voxels_cut_by_image", m.cutVoxels);
   if (m.cutVoxels > 0) {
     context.warn(std::to_string(m.cutVoxels) +
                  " voxels lie where tissue runs out of the image: their thickness is not known "
                  "(--image-edge insulated measures them as if it ended there)");
-  }
-  const correspondence::ThicknessSummary t = correspondence::summaryOf(found);
-  context.result("thickness_mean_columns", t.meanOfColumns);
-  context.result("thickness_mean", t.mean);
-  context.result("thickness_mean_voxels", t.mean);
-  context.result("thickness_median", t.median);
-  context.result("thickness_p05", t.p05);
-  context.result("thickness_p95", t.p95);
-  if (m.grid) {
-    context.result("grid_trajectories", m.grid->trajectories);
-    context.result("grid_cells", static_cast<std::size_t>(m.grid->cells.rows()));
-    context.result("grid_trajectories_lost", m.grid->lost);
-    context.result("grid_cells_degenerate", m.grid->degenerate);
   }
 }
 
@@ -382,10 +363,6 @@ Termination run(Context& context, const Settings& s) {
   keepFreedMemory();
   Judge judge(context, s.accept);
   harmonic::Annulus annulus = readAnnulus(context, s);
-  context.result("voxels", annulus.count());
-  context.result("components", annulus.components);
-  context.result("direct_contacts", annulus.directContacts);
-  context.result("voxels_left_out", annulus.droppedVoxels);
   const std::size_t atBorder = harmonic::countAtImageBorder(annulus);
   context.doubt(provenance::kTissueAtImageBorder, atBorder,
                 std::to_string(atBorder) + " of " + std::to_string(annulus.count()) +

@@ -11,11 +11,10 @@
 #include "Explica/Unfolding/Account.h"
 #include "Explica/Unfolding/Crossings.h"
 #include "Explica/Unfolding/Distortion.h"
+#include "Explica/Unfolding/Summary.h"
 #include "Explica/Visibility/AverageVisibility.h"
 #include "Explica/Visibility/FluxVariance.h"
 #include "Explica/Visibility/VisibleFraction.h"
-
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cstdio>
@@ -112,9 +111,9 @@ void writeFiles(Context& context, const Unfolded& u, const Measures& m) {
 }
 
 /// @param before  pairs that cross at the start, among the faces that are written
-void writeFrames(Context& context, const Unfolded& u, const Measures& m,
-                 const std::vector<geometry::FacePair>& before) {
-  if (u.result.frames.empty()) return;
+unfolding::FrameSummary writeFrames(Context& context, const Unfolded& u, const Measures& m,
+                                    const std::vector<geometry::FacePair>& before) {
+  if (u.result.frames.empty()) return {std::nullopt, std::nullopt};
   std::vector<bool> moved(static_cast<std::size_t>(u.result.mesh.faceCount()), false);
   for (const std::int32_t f : m.moved) moved[f] = true;
   std::size_t most = 0;
@@ -128,66 +127,49 @@ void writeFrames(Context& context, const Unfolded& u, const Measures& m,
     std::snprintf(name, sizeof name, "frames/frame-%04zu.surf.gii", n);
     io::writeGiftiSurface(context.output(name), frame, u.metadata);
   }
-  context.result("frame_visibilities", visibilities);
-  context.result("self_intersections_frames_max", most);
+  return {visibilities, most};
 }
 
-void reportRegion(Context& context, const Unfolded& u, const Measures& m) {
+/// The unfolding in numbers, but for frames, crossings and end.
+unfolding::UnfoldSummary summaryOf(const Unfolded& u, const Measures& m) {
   const TriangleMesh& after = u.result.mesh;
   const unfolding::Region& region = u.result.region;
   const auto& faces = region.faces;
   const auto visibilityOf = [&](const TriangleMesh& mesh) {
     return visibility::AverageVisibility(mesh.faces, faces, u.view).value(mesh.positions);
   };
-  std::vector<double> eyes;
-  for (const Point& eye : u.view.points) eyes.insert(eyes.end(), eye.begin(), eye.end());
-  context.result("viewpoint", eyes);
-  context.result("viewpoint_weights", u.view.weights);
-  context.result("region_faces", faces.size());
-  context.result("region_vertices", region.vertices.size());
-  context.result("region_pieces", region.pieces);
-  context.result("region_holes", region.holes);
-  context.result("region_area",
-                 geometry::totalArea(geometry::extractFaces(m.reference, faces).mesh));
-  context.result("visibility_initial", visibilityOf(m.reference));
-  context.result("visibility_final", visibilityOf(after));
-  context.result("flux_variance_initial", visibility::fluxVariance(m.reference, faces, u.view));
-  context.result("flux_variance_final", visibility::fluxVariance(after, faces, u.view));
-  context.result("seen_initial", m.seenBefore.of(u.before, u.chosen.faces));
-  context.result("seen_final", m.seenAfter.of(after, faces));
-  context.result("real_visibility_initial", m.seenBefore.realOf(u.before, u.chosen.faces));
-  context.result("real_visibility_final", m.seenAfter.realOf(after, faces));
-  context.result("backfacing_initial", unfolding::backfacingShare(m.reference, faces, u.view));
-  context.result("backfacing_final", unfolding::backfacingShare(after, faces, u.view));
-  context.result("area_error_mean", m.distortion.areaErrorMean);
-  context.result("area_error_max", m.distortion.areaErrorMax);
-  context.result("angle_error_mean_deg", m.distortion.angleErrorMeanRad * 180 / kPi);
-  context.result("edge_strain_mean", m.distortion.edgeStrainMean);
-  context.result("edge_strain_p95", m.distortion.edgeStrainP95);
-  context.result("geodesic_error_mean", m.distortion.geodesicErrorMean);
-}
-
-/// The faces that moved outside the region.
-void reportCollar(Context& context, const Unfolded& u, const Measures& m) {
+  unfolding::UnfoldSummary s;
+  s.surround = u.surround;
+  s.view = u.view;
+  s.target = u.goal;
+  s.regionFaces = faces.size();
+  s.regionVertices = region.vertices.size();
+  s.regionPieces = region.pieces;
+  s.regionHoles = region.holes;
+  s.regionArea = geometry::totalArea(geometry::extractFaces(m.reference, faces).mesh);
+  s.visibility = {visibilityOf(m.reference), visibilityOf(after)};
+  s.fluxVariance = {visibility::fluxVariance(m.reference, faces, u.view),
+                    visibility::fluxVariance(after, faces, u.view)};
+  s.seen = {m.seenBefore.of(u.before, u.chosen.faces), m.seenAfter.of(after, faces)};
+  s.realVisibility = {m.seenBefore.realOf(u.before, u.chosen.faces),
+                      m.seenAfter.realOf(after, faces)};
+  s.backfacing = {unfolding::backfacingShare(m.reference, faces, u.view),
+                  unfolding::backfacingShare(after, faces, u.view)};
+  s.distortion = m.distortion;
   const auto& collar = u.result.collar;
-  context.result("collar_faces", collar.size());
-  if (collar.empty()) return;
-  const Eigen::VectorXd stretch = m.areaRatio(collar);
-  context.result("collar_stretch_mean", stretch.mean());
-  context.result("collar_stretch_max", stretch.maxCoeff());
-}
-
-void reportRun(Context& context, const Unfolded& u) {
+  s.collarFaces = collar.size();
+  s.collarStretchMean = s.collarStretchMax = std::nullopt;
+  if (!collar.empty()) {
+    const Eigen::VectorXd stretch = m.areaRatio(collar);
+    s.collarStretchMean = stretch.mean();
+    s.collarStretchMax = stretch.maxCoeff();
+  }
   const auto& last = u.result.history.back();
-  unfolding::PhaseSeconds phases;
-  for (const unfolding::IterationRecord& row : u.result.history) phases += row.phases;
-  context.result("iterations", last.iteration);
-  context.result("iteration_written", u.result.iteration);
-  context.result("seconds_visibility", phases.visibility);
-  context.result("seconds_repulsion", phases.repulsion);
-  context.result("seconds_collision", phases.collision);
-  context.result("seconds_solve", phases.solve);
-  context.result("seconds_per_iteration", last.iteration > 0 ? last.seconds / last.iteration : 0);
+  for (const unfolding::IterationRecord& row : u.result.history) s.phases += row.phases;
+  s.iterationWritten = u.result.iteration;
+  s.secondsPerIteration = last.iteration > 0 ? last.seconds / last.iteration : 0;
+  s.end.iterations = last.iteration;
+  return s;
 }
 
 /// What the surroundings had to give for the region to be seen.
@@ -235,9 +217,6 @@ void checkSeen(Context& context, Unfolded& u, const Measures& m, double goal) {
 
 /// What the file holds against what the method promises.
 void checkWritten(Context& context, Unfolded& u, const unfolding::CrossingAccount& crossings) {
-  context.result("self_intersections_final", crossings.after.size());
-  context.result("self_intersections_new", crossings.added);
-  context.result("crossings_with_rest", crossings.withRest);
   if (crossings.added == 0) return;
   u.result.flag = unfolding::Flag::Crossing;
   if (reachedGoal(u.result.termination)) u.result.termination = Termination::Stalled;
@@ -254,16 +233,18 @@ Termination writeUnfolded(Context& context, Unfolded& u) {
   const auto crossings = unfolding::countCrossings(u.before, u.chosen, u.result, u.crossings);
   writeFiles(context, u, m);
   const bool whole = u.result.mesh.faceCount() == u.before.faceCount();
-  writeFrames(context, u, m, whole ? u.crossings : std::vector<geometry::FacePair>{});
-  context.result("surround", std::string(nameOf(u.surround)));
-  reportRegion(context, u, m);
-  reportCollar(context, u, m);
-  reportRun(context, u);
+  unfolding::UnfoldSummary summary = summaryOf(u, m);
+  summary.frames =
+      writeFrames(context, u, m, whole ? u.crossings : std::vector<geometry::FacePair>{});
+  summary.crossings = crossings.after.size();
+  summary.crossingsNew = crossings.added;
+  summary.crossingsWithRest = crossings.withRest;
   checkSeen(context, u, m, u.goal);
   checkCollar(context, u, m);
   checkWritten(context, u, crossings);
-  context.result("flag", std::string(nameOf(u.result.flag)));
-  context.result("stop_reason", std::string(nameOf(u.result.termination)));
+  summary.end.flag = u.result.flag;
+  summary.end.stopReason = u.result.termination;
+  context.results(summary);
   return u.result.termination;
 }
 

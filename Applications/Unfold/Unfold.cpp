@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "Explica/Unfolding/Unfold.h"
+#include "Explica/Unfolding/Summary.h"
 
 #include "Outputs.h"
 #include "View.h"
@@ -111,7 +112,9 @@ void declare(Declaration& d, Settings& s) {
       .output("intersections.tsv", FileKind::Table,
               "pairs of faces that intersect at the start, where, and whether --repair parted them")
       .output("frames/frame-*.surf.gii", FileKind::Surface, "--frames states on the way")
-      .varyingOutput(kStateFile, FileKind::Any, "what --resume needs");
+      .varyingOutput(kStateFile, FileKind::Any, "what --resume needs")
+      .results<unfolding::StartSummary>()
+      .results<unfolding::UnfoldSummary>();
 }
 
 visibility::Viewpoints viewOf(const Settings& s, const TriangleMesh& mesh, const Point& about) {
@@ -192,13 +195,9 @@ std::vector<geometry::FacePair> checkStart(Context& context, const Settings& s,
   writeTextFile(context.output("intersections.tsv"), unfolding::crossingTable(mesh, list));
   std::size_t inRegion = 0;
   for (const unfolding::Crossing& c : list) inRegion += c.facesInRegion > 0;
-  context.result("self_intersections_initial", list.size());
-  context.result("self_intersections_initial_region", inRegion);
-  context.result("self_intersections_file", "intersections.tsv");
-  context.result("self_intersections_repaired", repair.before.size() - repair.after.size());
-  context.result("repair_vertices_moved", repair.moved.size());
-  context.result("repair_move_max", repair.moveMax);
-  context.result("repair_move_mean", repair.moveMean);
+  context.results(unfolding::StartSummary{list.size(), inRegion,
+                                          repair.before.size() - repair.after.size(),
+                                          repair.moved.size(), repair.moveMax, repair.moveMean});
   if (!list.empty()) context.warn(crossingsInWords(list, inRegion, repair));
   return repair.after;
 }
@@ -321,7 +320,6 @@ Termination run(Context& context, const Settings& s) {
   const double unfolded = seconds();
   auto step = context.step("measure and write");
   const Termination end = writeUnfolded(context, u);
-  context.result("seconds", seconds());
   context.result("seconds_start", u.secondsStart);
   context.result("seconds_output", seconds() - unfolded);
   return end;

@@ -36,6 +36,11 @@ TEST(Repair, PartsAFreeSurferSurfaceInItsOwnFile) {
   const auto summary = readJson(folder / "out/summary.json");
   EXPECT_GT(summary["pairs_before"], 0);
   EXPECT_EQ(summary["pairs_after"], 0);
+  EXPECT_EQ(summary["verdict"], "right");
+  EXPECT_TRUE(summary["reasons"].empty());
+  const auto meaning = readJson(folder / "out/provenance.json")["meanings"]["pairs_after"];
+  EXPECT_EQ(meaning["judgement"], "good");
+  EXPECT_EQ(meaning["limits"][0]["most"], 0);
   const TriangleMesh repaired = io::readSurface(folder / "out/lh.white").mesh,
                      gifti = io::readSurface(folder / "out/lh.white.surf.gii").mesh;
   EXPECT_TRUE(geometry::findSelfIntersections(repaired).empty());
@@ -65,6 +70,9 @@ TEST(Repair, SaysWhatItCannotMend) {
   EXPECT_NE(result.err.find("--max-move"), std::string::npos) << result;
   const auto summary = readJson(folder / "out/summary.json");
   EXPECT_EQ(summary["pairs_after"], summary["pairs_before"]);
+  EXPECT_EQ(summary["verdict"], "stopped");
+  ASSERT_EQ(summary["reasons"].size(), 2U);
+  EXPECT_NE(summary["reasons"][1].get<std::string>().find("expected 0"), std::string::npos);
   const TriangleMesh before = io::readSurface(folder / "a.surf.gii").mesh,
                      after = io::readSurface(folder / "out/a.surf.gii").mesh;
   EXPECT_EQ(before.positions, after.positions);

@@ -240,7 +240,7 @@ TEST(Report, OfAFlatMapShowsItFoldedAndLayerByLayer) {
   ASSERT_EQ(made.exitCode, 0) << made;
   ASSERT_EQ(explica({"report", folder / "f"}).exitCode, 0);
   const std::string words = wordsOf(readText(folder / "f/report.html"));
-  EXPECT_NE(words.find("One-to-one"), std::string::npos);
+  EXPECT_NE(words.find("expected 0 (one-to-one)"), std::string::npos);
   EXPECT_NE(words.find("t1, depth 0.5 on the surface and flat"), std::string::npos);
   EXPECT_NE(words.find("t1, layer by layer"), std::string::npos);
   EXPECT_EQ(countOf(words, "class='view'"), 2u + 4u);

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
+#include "Explica/Provenance/Results.h"
 #include "FirstHelp.h"
 #include "Parse.h"
 #include "Wording.h"
@@ -70,6 +71,12 @@ Json describeJson(const Declaration& d) {
                                {"file", nameOf(slot.kind)},
                                {"help", slot.help},
                                {"varies", slot.varies}});
+  }
+  json["results"] = Json::array();
+  for (const Result& result : d.stageResults) {
+    Json entry = {{"key", result.key}};
+    entry.update(provenance::meaningOf(result));
+    json["results"].push_back(entry);
   }
   return json;
 }

@@ -33,6 +33,22 @@ void stepTable(std::ostringstream& out, const Declaration& d) {
   }
 }
 
+/// The keys of summary.json, with what is expected of them.
+void resultTable(std::ostringstream& out, const Results& results) {
+  if (results.begin() == results.end()) return;
+  out << "\n| Results in summary.json | |\n|---|---|\n";
+  for (const Result& result : results) {
+    out << "| `" << escapeCell(result.key) << "` | " << escapeCell(result.title);
+    if (!result.unit.empty()) out << " (" << result.unit << ")";
+    if (!result.meaning.empty()) out << ". " << escapeCell(result.meaning);
+    for (const Limit& limit : result.limits) {
+      out << " " << escapeCell(result.expectation(limit)) << ", otherwise " << nameOf(limit.outside)
+          << ".";
+    }
+    out << " |\n";
+  }
+}
+
 }  // namespace
 
 std::string referencePage(const Declaration& d) {
@@ -65,6 +81,7 @@ std::string referencePage(const Declaration& d) {
       out << "| `" << slot.pattern << "` | " << escapeCell(slot.help) << " (" << nameOf(slot.kind)
           << ") |\n";
     }
+    resultTable(out, d.stageResults);
   }
   for (const auto& example : d.examples) {
     out << "\n" << example.what << ":\n\n    " << example.commandLine << "\n";

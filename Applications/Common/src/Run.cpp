@@ -10,6 +10,7 @@
 #include "Explica/IO/ItkFormats.h"
 #include "Explica/Provenance/Doubts.h"
 #include "Explica/Provenance/Record.h"
+#include "Explica/Provenance/Results.h"
 #include "Explica/Provenance/Software.h"
 #include "Explica/Provenance/Verify.h"
 #include "JsonNumber.h"
@@ -59,7 +60,22 @@ struct Context::State {
   std::vector<std::pair<std::string, fs::path>> nestedRecords;
   std::optional<Json> flags;  ///< numbers outside of their limits; nothing if none was judged
   bool plausible = true;
+  std::vector<std::pair<Judgement, std::string>> reasons;  ///< of results that are not good
 
+  [[nodiscard]] bool doubtful() const {
+    return !plausible || std::any_of(reasons.begin(), reasons.end(), [](const auto& reason) {
+      return reason.first == Judgement::Doubt;
+    });
+  }
+  /// What a step's summary says against its results is said of the whole, too.
+  void adoptReasons(const std::string& step, const fs::path& recordPath) {
+    const Json results = provenance::readRecord(recordPath)["results"];
+    const bool doubtful = results.value("verdict", "") == "doubtful";
+    for (const Json& reason : results.value("reasons", Json::array())) {
+      reasons.emplace_back(doubtful ? Judgement::Doubt : Judgement::Look,
+                           step + ": " + reason.get<std::string>());
+    }
+  }
   [[nodiscard]] const Declaration& declaration() const { return run.invocation.declaration; }
   void setResult(const std::string& key, Json value) { summary[key] = std::move(value); }
 };
@@ -130,6 +146,19 @@ Context::Step Context::step(std::string name) {
   if (state_->run.common.dryRun) throw DryRunEnds{};
   checkpoint();
   return Step(*this, std::move(name));
+}
+
+void Context::results(const Results& listed) {
+  for (const Result& result : listed) {
+    if (!state_->declaration().stageResults.find(result.key)) {
+      throw std::logic_error("undeclared result " + result.key);
+    }
+    if (std::holds_alternative<std::monostate>(result.value)) continue;
+    state_->setResult(result.key, provenance::valueOf(result.value));
+    state_->record.meanings[result.key] = provenance::meaningOf(result);
+    const Judgement judgement = result.judgement().value_or(Judgement::Good);
+    if (judgement != Judgement::Good) state_->reasons.emplace_back(judgement, result.sentence());
+  }
 }
 
 void Context::result(const std::string& key, double value) {
@@ -253,6 +282,7 @@ Outcome Context::runCommand(const Command& command, const std::string& name, con
   timing.termination(outcome.termination);
   if (!outcome.record.empty()) {
     state_->nestedRecords.emplace_back(name + "/" + provenance::kRecordName, outcome.record);
+    state_->adoptReasons(name, outcome.record);
   }
   return outcome;
 }
@@ -262,7 +292,9 @@ Outcome Context::runApart(const Command& command, const fs::path& out, const Jso
   nested.common.out = out.string();
   nested.name = out.filename().string() + ": ";
   nested.prefix = state_->run.prefix + nested.name;
-  return execute(nested, state_->console);
+  Outcome outcome = execute(nested, state_->console);
+  if (!outcome.record.empty()) state_->adoptReasons(out.filename().string(), outcome.record);
+  return outcome;
 }
 
 std::optional<Outcome> Context::reuseCommand(const Command& command, const std::string& name,
@@ -307,9 +339,10 @@ std::optional<Outcome> Context::reuseCommand(const Command& command, const std::
     Outcome outcome;
     outcome.termination = ended;
     outcome.exitCode = record["exit_code"];
-    outcome.plausible = record["results"].value("plausible", true);
+    outcome.plausible = record["results"].value("verdict", "") != "doubtful";
     outcome.record = path;
     state_->nestedRecords.emplace_back(name + "/" + provenance::kRecordName, path);
+    state_->adoptReasons(name, path);
     return outcome;
   } catch (const Error&) {
     return {};  // a record or file that cannot be read proves nothing
@@ -462,15 +495,46 @@ Outcome outcomeOf(Termination termination, const Run& run, const Context::State&
   }
   Outcome outcome;
   outcome.termination = termination;
-  outcome.plausible = state.plausible;
-  outcome.exitCode = reachedGoal(termination) && state.plausible ? kDone : kStoppedEarly;
+  outcome.plausible = !state.doubtful();
+  outcome.exitCode = reachedGoal(termination) && outcome.plausible ? kDone : kStoppedEarly;
   return outcome;
+}
+
+/// Why the verdict is not "right", in sentences.
+Json reasonsOf(const Context::State& state) {
+  Json reasons = Json::array();
+  if (!reachedGoal(state.record.termination)) {
+    reasons.push_back("stopped before its goal: " + std::string(nameOf(state.record.termination)));
+  }
+  for (const auto& [judgement, sentence] : state.reasons) reasons.push_back(sentence);
+  for (const Json& flag : state.flags.value_or(Json::array())) {
+    if (!flag.contains("step")) reasons.push_back(flag["message"]);  // else the step's own reason
+  }
+  for (const provenance::Doubt& doubt : provenance::kDoubts) {
+    const auto count = state.summary.value(doubt.key, std::size_t{0});
+    if (count > 0) {
+      reasons.push_back(std::string(doubt.what) + ": " + std::to_string(count) + " " +
+                        doubt.meaning);
+    }
+  }
+  return reasons;
+}
+
+/// "right", "look", "doubtful" or "stopped": the worst of what can be said.
+const char* verdictOf(const Context::State& state, const Json& reasons) {
+  if (!reachedGoal(state.record.termination)) return "stopped";
+  if (state.doubtful()) return "doubtful";
+  return reasons.empty() ? "right" : "look";
 }
 
 /// summary.json: the command's numbers, then what every command states.
 Json summaryOf(const Context::State& state) {
   const provenance::Record& record = state.record;
-  Json summary = {{"command", record.command}, {"termination", nameOf(record.termination)}};
+  const Json reasons = reasonsOf(state);
+  Json summary = {{"command", record.command},
+                  {"termination", nameOf(record.termination)},
+                  {"verdict", verdictOf(state, reasons)},
+                  {"reasons", reasons}};
   summary.update(state.summary);
   if (state.flags) {
     summary["plausible"] = state.plausible;
@@ -529,7 +593,7 @@ Outcome execute(Run& run, Console& console) {
   portable::fixBlocksOfProducts();
   io::setItkThreadCount(threads.count);  // Embree runs on TBB and follows it
 
-  Context::State state{run, console, {}, Json::object(), {}, {}, {}, {}, {}, true};
+  Context::State state{run, console, {}, Json::object(), {}, {}, {}, {}, {}, true, {}};
   Context context(state);
   provenance::Record& record = state.record;
   record = beginRecord(run, threads);

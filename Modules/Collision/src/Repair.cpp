@@ -311,4 +311,28 @@ std::vector<RepairedSurface> repairSurfaces(std::span<const TriangleMesh> surfac
   return results;
 }
 
+RepairCounts countsOf(const RepairedSurface& surface) {
+  return {surface.before.size(), surface.after.size(),
+          surface.moved.size(),  surface.putBackFar + surface.putBackOther,
+          surface.moveMean,      surface.moveMax};
+}
+
+RepairSummary summaryOf(std::span<const RepairedSurface> surfaces,
+                        std::span<const std::string> names) {
+  RepairSummary summary;
+  RepairCounts& all = summary.all;
+  for (std::size_t n = 0; n < surfaces.size(); ++n) {
+    const RepairCounts one = countsOf(surfaces[n]);
+    summary.surfaces.push_back({names[n], one});
+    all.before += one.before;
+    all.after += one.after;
+    all.moved += one.moved;
+    all.putBack += one.putBack;
+    all.moveMean += one.moveMean * static_cast<double>(one.moved);
+    all.moveMax = std::max(all.moveMax, one.moveMax);
+  }
+  all.moveMean /= static_cast<double>(std::max<std::size_t>(all.moved, 1));
+  return summary;
+}
+
 }  // namespace explica::collision

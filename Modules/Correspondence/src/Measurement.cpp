@@ -72,4 +72,57 @@ Measurement measure(harmonic::Annulus annulus, const MeasurementOptions& options
   return m;
 }
 
+void describe(Results& t, const Measurement& m) {
+  const Correspondence& found = m.correspondence;
+  const ThicknessSummary thickness = summaryOf(found);
+  const auto grid = [&](auto value) {
+    return m.grid ? std::optional<std::int64_t>(value(*m.grid)) : std::nullopt;
+  };
+  t.count("voxels", "Voxels of tissue", "", m.annulus.count()).inHead();
+  t.count("components", "Pieces of tissue", "Connected through voxel faces.", m.annulus.components);
+  t.count("direct_contacts", "Contacts of inner and outer region",
+          "Voxel faces where both touch, without tissue between them.", m.annulus.directContacts);
+  t.count("voxels_left_out", "Voxels of tissue left out", "Pieces that miss one of the boundaries.",
+          m.annulus.droppedVoxels);
+  t.text("sulci", "Buried sulci", "Whether the outer boundary was put where banks touch.",
+         std::string(m.sulciRecovered ? "recover" : "ignore"));
+  t.count("sulcal_voxels_recovered", "Voxels beside recovered sulci",
+          "Tissue where banks touch, taken for what lies between them.", m.sulcalVoxels.size())
+      .inHead();
+  t.number("residual", "Relative residual", "", "Of the linear system of the harmonic function.",
+           m.interpolant.relativeResidual);
+  t.count("iterations", "Iterations", "Of the solver of that system.", m.interpolant.iterations);
+  t.share("traced_fraction", "Trajectories followed",
+          "The others come from the transport equation.",
+          static_cast<double>(found.traced) / (2.0 * static_cast<double>(m.annulus.count())));
+  t.count("voxels_without_thickness", "Voxels without thickness",
+          "Their trajectory does not reach both boundaries.", found.missing)
+      .inHead();
+  t.count("voxels_cut_by_image", "Voxels cut by the image",
+          "Tissue runs out of the image there, and its thickness is not known.", m.cutVoxels);
+  t.number(
+       "thickness_mean_columns", "Mean thickness over columns", "mm",
+       "n / sum(1/t) over the tissue's voxels: each column counts once. The mean over voxels is "
+       "greater: a thick column holds more voxels.",
+       thickness.meanOfColumns)
+      .inHead()
+      .compared();
+  t.number("thickness_mean", "Mean thickness over voxels", "mm", "Thick columns count more.",
+           thickness.mean);
+  t.number("thickness_mean_voxels", "Mean thickness over voxels", "mm", "", thickness.mean);
+  t.number("thickness_median", "Median thickness", "mm", "Over voxels.", thickness.median);
+  t.number("thickness_p05", "Thickness, 5th percentile", "mm", "Over voxels.", thickness.p05)
+      .inHead();
+  t.number("thickness_p95", "Thickness, 95th percentile", "mm", "Over voxels.", thickness.p95)
+      .inHead();
+  t.count("grid_trajectories", "Trajectories of the grid", "",
+          grid([](const auto& g) { return g.trajectories; }));
+  t.count("grid_cells", "Cells of the grid", "",
+          grid([](const auto& g) { return g.cells.rows(); }));
+  t.count("grid_trajectories_lost", "Trajectories of the grid that end nowhere", "",
+          grid([](const auto& g) { return g.lost; }));
+  t.count("grid_cells_degenerate", "Cells of the grid without volume", "",
+          grid([](const auto& g) { return g.degenerate; }));
+}
+
 }  // namespace explica::correspondence

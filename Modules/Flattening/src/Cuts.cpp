@@ -341,4 +341,24 @@ CutPlan findCuts(const Disc& disc, const Eigen::VectorXd& depth, const CutOption
   return plan;
 }
 
+double CutPlan::length() const {
+  double sum = 0;
+  for (const Cut& cut : cuts) sum += cut.length;
+  return sum;
+}
+
+void describe(Results& t, const CutPlan& plan) {
+  double depth = 0;
+  for (const Cut& cut : plan.cuts) depth += cut.length * cut.depth;
+  const double length = plan.length();
+  t.count("cuts", "Relief cuts", "Along sulci where that is not much longer.", plan.cuts.size())
+      .inHead();
+  t.number("cut_length", "Length of the cuts", "mm", "", length).inHead();
+  t.number("cut_depth", "Mean fold depth along the cuts", "", "1 is a standard deviation inwards.",
+           length > 0 ? depth / length : kNaN);
+  t.share("cut_strain_before", "Change of lengths without the cuts",
+          "Mean over edges of the map of a coarse disc.", plan.strainBefore);
+  t.share("cut_strain", "Change of lengths with the cuts", "", plan.edgeStrain);
+}
+
 }  // namespace explica::flattening

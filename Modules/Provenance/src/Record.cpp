@@ -179,6 +179,7 @@ Json toJson(const Record& r) {
   json["termination"] = nameOf(r.termination);
   json["exit_code"] = r.exitCode;
   json["results"] = told(r.results);
+  json["meanings"] = told(r.meanings);
   json["notes"] = told(r.notes);
 
   Json execution = Json::object();

@@ -54,6 +54,7 @@ std::string_view recordSchema() {
                              "max-time", "interrupted", "stalled"]},
     "exit_code": {"enum": [0, 3]},
     "results": {"type": "object"},
+    "meanings": {"type": "object", "additionalProperties": {"type": "object"}},
     "notes": {"type": "object"},
     "execution": {
       "type": "object",

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 
 namespace explica::pipeline {
 namespace {
@@ -30,122 +31,11 @@ constexpr std::array kFindings = {
             "Shares of the brain's volume."},
     Finding{"segment", "grey_share", "", "Grey matter in it", "", Shown::Percent, ""},
     Finding{"segment", "csf_share", "", "Fluid in it", "", Shown::Percent, ""},
-    Finding{
-        "surface", "thickness_mean", "", "Cortical thickness, mean", "mm", Shown::Plain,
-        "Length of the paths from the white to the pial surface that follow the gradient of "
-        "the harmonic function between them, averaged over the surface's area. The mean over the "
-        "tissue's voxels is greater: a thick column holds more voxels."},
-    Finding{"surface", "thickness_sd", "", "Cortical thickness, standard deviation", "mm",
-            Shown::Plain, ""},
-    Finding{"thickness", "thickness_mean_columns", "", "Thickness, mean over columns", "mm",
-            Shown::Plain,
-            "n / sum(1/t) over the tissue's voxels: each column counts once, however thick. The "
-            "plain mean is greater: a thick column holds more voxels."},
-    Finding{"thickness", "thickness_p95", "thickness_p05", "Thickness, 5th to 95th percentile",
-            "mm", Shown::Range, "Over voxels."},
-    Finding{"thickness", "voxels", "", "Voxels of tissue", "", Shown::Plain, ""},
-    Finding{"thickness", "voxels_without_thickness", "", "Voxels without thickness", "",
-            Shown::Plain, "No path leads from them to both boundaries."},
-    Finding{"thickness", "sulcal_voxels_recovered", "", "Voxels of hidden sulci recovered", "",
-            Shown::Plain, "Tissue where banks touch, taken for what lies between them."},
-    Finding{"surface", "area_white", "", "Area of the white surface", "cm\u00b2",
-            Shown::SquareCentimetres, ""},
-    Finding{"surface", "area_pial", "", "Area of the pial surface", "cm\u00b2",
-            Shown::SquareCentimetres, ""},
-    Finding{"surface", "defects_corrected", "", "Topological defects corrected", "", Shown::Plain,
-            "Handles that were cut and tunnels that were filled before the surface was made."},
-    Finding{
-        "heart", "cavity_volume_ed_ml", "", "Cavity at end-diastole", "ml", Shown::Plain,
-        "Voxels of the left ventricle's cavity in the frame where they are most; healthy women "
-        "135 \u00b1 26, men 160 \u00b1 29 (Hudsmith et al. 2005, J Cardiovasc Magn Reson 7:775)."},
-    Finding{"heart", "cavity_volume_es_ml", "", "Cavity at end-systole", "ml", Shown::Plain,
-            "Healthy women 42 \u00b1 12, men 50 \u00b1 16 (the same)."},
-    Finding{"heart", "ejection_fraction_percent", "", "Ejection fraction", "%", Shown::Plain,
-            "Share of the end-diastolic volume that leaves the cavity; healthy women 61 \u00b1 5, "
-            "men 58 \u00b1 5 (Petersen et al. 2017, J Cardiovasc Magn Reson 19:18)."},
-    Finding{"heart", "mass_ed_g", "", "Mass of the wall", "g", Shown::Plain,
-            "Volume of the wall at end-diastole times 1.05 g/ml; papillary muscles belong to "
-            "whatever label they have; healthy women 98 \u00b1 21, men 134 \u00b1 21 where they "
-            "are part of "
-            "the wall (Kawel-Boehm et al. 2015, J Cardiovasc Magn Reson 17:29)."},
-    Finding{"heart", "thickness_mean_ed", "", "Wall thickness at end-diastole, mean", "mm",
-            Shown::Plain, "Over the columns of the wall that count (see the slices below)."},
-    Finding{"heart", "thickening_percent", "", "Thickening, mean", "%", Shown::Plain,
-            "Of that mean, from end-diastole to end-systole."},
-    Finding{"heart", "axis_angle_deg", "", "Long axis to the slices' normal", "\u00b0",
-            Shown::Plain, ""},
-    Finding{"unfold", "region_area", "", "Area of the patch", "cm\u00b2", Shown::SquareCentimetres,
-            ""},
-    Finding{"unfold", "visibility_final", "visibility_initial", "Average visibility", "",
-            Shown::Plain,
-            "Mean cosine under which the patch's faces look at the viewpoint, before and after."},
-    Finding{"unfold", "seen_final", "seen_initial", "Seen from the viewpoint", "", Shown::Percent,
-            "Share of the patch's area that nothing hides, before and after."},
-    Finding{"unfold", "area_error_mean", "", "Error of areas, mean", "", Shown::Percent,
-            "Of the patch's faces."},
-    Finding{"unfold", "edge_strain_mean", "", "Change of lengths, mean", "", Shown::Percent,
-            "Of the patch's edges."},
-    Finding{"flatten", "area", "", "Area of the patch", "cm\u00b2", Shown::SquareCentimetres,
-            "On the surface where areas and lengths count."},
-    Finding{"flatten", "area_error_mean", "", "Error of areas in the flat map, mean", "",
-            Shown::Percent, "Of the patch's faces."},
-    Finding{"flatten", "edge_strain_mean", "", "Change of lengths, mean", "", Shown::Percent,
-            "Of the patch's edges."},
-    Finding{"flatten", "geodesic_error_local", "", "Error of distances up to 30 mm, mean", "",
-            Shown::Percent,
-            "Straight on the map against along the surface, at the scale that suits all best."},
-    Finding{"flatten", "geodesic_error_all", "", "Error of all distances, mean", "", Shown::Percent,
-            ""},
-    Finding{"flatten", "cuts", "", "Relief cuts", "", Shown::Plain,
-            "Found by the program, along sulci where that is not much longer."},
-    Finding{"flatten", "cut_length", "", "Length of the cuts", "mm", Shown::Plain, ""},
-    Finding{"repair", "pairs_after", "pairs_before", "Pairs of faces that cross", "", Shown::Plain,
-            "Before and after, by an exact test."},
-    Finding{"repair", "vertices_moved", "", "Vertices moved", "", Shown::Plain,
-            "All others keep every bit."},
-    Finding{"repair", "move_mean", "", "Their move, mean", "mm", Shown::Plain, ""},
-    Finding{"repair", "move_max", "", "Their move, largest", "mm", Shown::Plain, ""},
     Finding{"sample", "vertices", "", "Vertices", "", Shown::Plain, ""},
     Finding{"sample", "layers", "", "Layers", "", Shown::Plain, ""},
     Finding{"sample", "points", "", "Points", "", Shown::Plain, ""},
     Finding{"sample", "points_distance_max", "", "Farthest point from the cortex", "mm",
             Shown::Plain, "Of its nearest column from white to pial."},
-    Finding{"polygon", "visibility_final", "visibility_initial", "Average visibility", "",
-            Shown::Plain,
-            "Mean cosine under which the region's edges look at the viewpoint, before and after."},
-    Finding{"polygon", "seen_final", "seen_initial", "Seen from the viewpoint", "", Shown::Percent,
-            "Share of the region's length that nothing hides, before and after."},
-    Finding{"polygon", "region_edges", "", "Edges of the region", "", Shown::Plain, ""},
-    Finding{"polygon", "length_final", "length_initial", "Length of the region", "", Shown::Plain,
-            "In the units of the file, before and after."},
-    Finding{"polygon", "length_error_max", "", "Error of an edge's length, largest", "",
-            Shown::Percent, ""},
-    Finding{"polygon", "iterations", "", "Iterations", "", Shown::Plain, ""},
-    Finding{"embed", "distance_mean", "", "Distance from the target, mean", "mm", Shown::Plain, ""},
-    Finding{"embed", "distance_max", "", "Distance from the target, largest", "mm", Shown::Plain,
-            ""},
-    Finding{"embed", "symmetric_difference_final", "symmetric_difference_initial",
-            "Symmetric difference", "", Shown::Plain,
-            "What one of shape and target holds and the other does not, before and after the fit: "
-            "mm\u00b2 of a plane, mm\u00b3 of space."},
-    Finding{"embed", "targets", "", "Targets", "", Shown::Plain, ""},
-    Finding{"embed", "order", "", "Highest angular frequency", "", Shown::Plain, ""},
-    Finding{"embed", "inner_radius", "", "Inner radius of the annulus", "mm", Shown::Plain, ""},
-    Finding{"embed", "outer_radius", "", "Outer radius of the annulus", "mm", Shown::Plain, ""},
-    Finding{"inflate", "visibility_final", "visibility_initial", "Global visibility", "",
-            Shown::Plain,
-            "Share of the view from all around that reaches the surface, each place weighing the "
-            "viewpoints before it by the cosine, before and after; 1 for convex surfaces only."},
-    Finding{"inflate", "seen_final", "seen_initial", "Seen from somewhere", "", Shown::Percent,
-            "Share of the area that any viewpoint of the enclosing sphere sees, before and after."},
-    Finding{"inflate", "area_error_mean", "", "Error of areas, mean", "", Shown::Percent,
-            "Of the surface's faces."},
-    Finding{"inflate", "edge_strain_mean", "", "Change of lengths, mean", "", Shown::Percent,
-            "Of the surface's edges."},
-    Finding{"inflate", "angle_error_mean_deg", "", "Change of angles, mean", "\u00b0", Shown::Plain,
-            "Largest of each face."},
-    Finding{"inflate", "geodesic_error_local", "", "Error of distances within 30 mm", "",
-            Shown::Percent, "Along the surface, at the scale that suits it best."},
 };
 
 std::string shownAs(Shown shown, double value) {
@@ -165,6 +55,40 @@ std::string valueIn(const StepFolder& step, const Finding& finding) {
   const auto start = *finding.start != '\0' ? step.number(finding.start) : std::nullopt;
   const char* between = finding.shown == Shown::Range ? " to " : " \u2192 ";
   return (start ? shownAs(finding.shown, *start) + between : "") + shownAs(finding.shown, *value);
+}
+
+/// A value of a summary as people read it, without its unit.
+std::string textOf(const Json& value, const std::string& unit) {
+  return value.is_number() ? shown(value.get<double>(), unit).text : readable(value);
+}
+
+/// What the record says of the numbers that belong at the head of a page.
+void listDescribed(const ResultFolder& results, const std::vector<std::string>& sides,
+                   report::ReportFindings& findings) {
+  std::map<std::pair<std::string, std::string>, std::size_t> rows;  // by command and key
+  for (const StepFolder& step : results.steps()) {
+    // The thickness is stated once: that of the surfaces where there are any.
+    if (step.command == "thickness" && !results.stepsOf("surface").empty()) continue;
+    const Json meanings = step.record.value("meanings", Json::object());
+    for (const auto& [key, meaning] : meanings.items()) {
+      if (!meaning.value("head", false) || !step.summary.contains(key)) continue;
+      const std::string unit = meaning.value("unit", ""), start = meaning.value("start", "");
+      const auto [row, isNew] = rows.try_emplace({step.command, key}, findings.rows.size());
+      if (isNew) {
+        findings.rows.push_back({meaning.value("title", key), shown(0, unit).unit,
+                                 std::vector<std::string>(sides.size()),
+                                 meaning.value("meaning", "")});
+      }
+      std::string text = textOf(step.summary[key], unit);
+      if (step.summary.contains(start)) {
+        text = textOf(step.summary[start], unit) + " \u2192 " + text;
+      }
+      for (std::size_t n = 0; n < sides.size(); ++n) {
+        const bool here = sides[n].empty() || step.side().empty() || step.side() == sides[n];
+        if (here) findings.rows[row->second].values[n] = text;
+      }
+    }
+  }
 }
 
 /// Numbers of a command that has no rows of its own in the table.
@@ -190,6 +114,7 @@ void findNumbers(ResultFolder& results) {
   std::sort(sides.begin(), sides.end());
   if (sides.size() < 2) sides = {""};
   findings.columns = sides;
+  listDescribed(results, sides, findings);
   for (const Finding& finding : kFindings) {
     report::ReportFindings::Row row{finding.what, finding.unit, {}, finding.meaning};
     for (const std::string& side : sides) {
@@ -200,10 +125,6 @@ void findNumbers(ResultFolder& results) {
         }
       }
       row.values.push_back(value);
-    }
-    // The thickness is stated once: that of the surfaces where there are any.
-    if (finding.command == std::string_view("thickness") && !results.stepsOf("surface").empty()) {
-      continue;
     }
     const bool known =
         std::any_of(row.values.begin(), row.values.end(), [](const auto& v) { return !v.empty(); });

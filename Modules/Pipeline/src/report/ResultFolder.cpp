@@ -169,23 +169,6 @@ std::optional<io::VertexMap> mapNamed(const fs::path& file, Eigen::Index vertexC
   return {};
 }
 
-std::string readable(double value) {
-  std::array<char, 40> text{};
-  if (!std::isfinite(value)) return "not known";
-  constexpr double kLongest = 1e12;  // what is written out, and not as a power of ten
-  if (std::abs(value) >= kLongest) {
-    std::snprintf(text.data(), text.size(), "%.3g", value);
-  } else if (value == std::round(value)) {
-    std::snprintf(text.data(), text.size(), "%.0f", value);  // a count
-  } else {
-    std::snprintf(text.data(), text.size(), "%.3g", value);
-    if (std::abs(value) >= 999.5) {
-      std::snprintf(text.data(), text.size(), "%.0f", std::strtod(text.data(), nullptr));
-    }
-  }
-  return text.data();
-}
-
 std::string percent(double share) {
   return readable(100 * share) + " %";
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "Explica/Core/Monitor.h"
+#include "Explica/Core/Results.h"
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/Pipeline/RunState.h"
 #include "Explica/Provenance/Json.h"
@@ -78,8 +79,7 @@ class ResultFolder {
                                                     Eigen::Index vertexCount,
                                                     std::string_view name = {});
 
-/// A number as people read it: three significant digits, whole numbers in full.
-[[nodiscard]] std::string readable(double value);
+using explica::readable;
 /// A share as a percentage.
 [[nodiscard]] std::string percent(double share);
 /// A value of a summary or of the options, as people read it.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "Explica/Core/Monitor.h"
+#include "Explica/Core/Results.h"
 #include "Explica/Core/Termination.h"
 
 #include <nlohmann/json_fwd.hpp>
@@ -56,8 +57,19 @@ class Context {
   /// before the first step.
   [[nodiscard]] Step step(std::string name);
 
-  /// A number or text for summary.json; NaN becomes null.  A key that starts with "seconds" is a
-  /// time.
+  /// What a stage has measured, as its `describe(Results&, const Stage&)` lists it: values for
+  /// summary.json, meanings for the record, judgements for verdict and exit code.  The stage is
+  /// declared by `d.results<Stage>()`.
+  template <class Stage>
+  void results(const Stage& stage) {
+    Results listed;
+    describe(listed, stage);
+    results(listed);
+  }
+  void results(const Results& listed);
+
+  /// A number or text for summary.json that no stage describes; NaN becomes null.  A key that
+  /// starts with "seconds" is a time.
   void result(const std::string& key, double value);
   void result(const std::string& key, int value);
   void result(const std::string& key, long value);

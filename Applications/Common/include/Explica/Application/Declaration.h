@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "Explica/Core/Results.h"
 #include "Explica/Provenance/Options.h"
 
 #include <functional>
@@ -147,6 +148,15 @@ class Declaration {
   Declaration& output(std::string pattern, FileKind kind, std::string help);
   /// As output(), for a file whose bytes hold times or the like.
   Declaration& varyingOutput(std::string pattern, FileKind kind, std::string help);
+  /// What `context.results(stage)` will say: the results that `describe(Results&, const Stage&)`
+  /// lists (Core/Results.h), here of a default-constructed one.
+  template <class Stage>
+  Declaration& results() {
+    Results listed;
+    describe(listed, Stage{});
+    stageResults.include(listed);
+    return *this;
+  }
   /// The command writes no directory: no --out, no summary, no record.
   Declaration& withoutOutput();
   /// Outputs go straight into --out, which may hold files already: for commands made of steps that
@@ -176,6 +186,7 @@ class Declaration {
   std::vector<Example> examples;
   std::vector<Parameter> parameters;  ///< in order of declaration
   std::vector<OutputSlot> outputs;
+  Results stageResults;
   bool writesOutput = true;
   bool writesInPlace = false;
   bool handsOutputOn = false;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "Explica/Core/Results.h"
 #include "Explica/Correspondence/AnatomicalGrid.h"
 #include "Explica/Correspondence/Correspondence.h"
 #include "Explica/Correspondence/ImageEdge.h"
@@ -67,6 +68,8 @@ struct Measurement {
   std::vector<std::int32_t> sulcalVoxels;  ///< beside a recovered boundary
   std::optional<AnatomicalGrid> grid;
 };
+
+void describe(Results& t, const Measurement& m);
 
 /// Called as each part of the work begins: "sulci", "harmonic", "correspondence", "layers", "grid";
 /// with what is known by then.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "Explica/Core/Results.h"
 #include "Explica/Core/TriangleMesh.h"
 
 #include <span>
@@ -39,6 +40,21 @@ struct DistanceError {
   double scale = kNaN;
   std::size_t pairs = 0;
 };
+
+/// Errors of near and of all distances.
+struct DistanceErrors {
+  DistanceError local, all;
+};
+
+inline void describe(Results& t, const DistanceErrors& d) {
+  t.share("geodesic_error_local", "Error of near distances",
+          "Mean relative error up to the local limit, at the scale that makes it least.",
+          d.local.error)
+      .inHead();
+  t.share("geodesic_error_all", "Error of all distances", "The same between vertices anywhere.",
+          d.all.error)
+      .inHead();
+}
 
 /// How distances are measured on the surface that is compared.
 enum class DistanceKind {

@@ -4,6 +4,7 @@
 
 #include "Explica/Core/Describe.h"
 #include "Explica/Core/Monitor.h"
+#include "Explica/Core/Results.h"
 #include "Explica/Core/Termination.h"
 #include "Explica/Flattening/Opening.h"
 
@@ -41,7 +42,11 @@ struct CutPlan {
   /// TargetReached: the strain asked for; MaxIterations: as many cuts as allowed; Stalled: no
   /// further cut relieves anything; Interrupted: as many as were found until then.
   Termination termination = Termination::NotRun;
+
+  [[nodiscard]] double length() const;  ///< of all cuts, mm
 };
+
+void describe(Results& t, const CutPlan& plan);
 
 /// Relief cuts of a disc that is curved too much to be laid flat as it is.
 ///

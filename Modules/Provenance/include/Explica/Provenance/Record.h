@@ -61,8 +61,9 @@ struct Record {
   std::vector<std::string> warnings;
   Termination termination = Termination::NotRun;
   int exitCode = 0;
-  Json results = Json::object();  ///< summary.json without times
-  Json notes = Json::object();    ///< how each input was understood (affine used, ...)
+  Json results = Json::object();   ///< summary.json without times
+  Json meanings = Json::object();  ///< title, unit, meaning and judgement of each result, by key
+  Json notes = Json::object();     ///< how each input was understood (affine used, ...)
 
   std::vector<std::string> argv;
   std::filesystem::path directory;  ///< working directory

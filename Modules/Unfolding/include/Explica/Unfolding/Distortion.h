@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "Explica/Core/Results.h"
 #include "Explica/Core/TriangleMesh.h"
 
 #include <span>
@@ -33,5 +34,29 @@ struct Distortion {
 [[nodiscard]] Distortion measureDistortion(const TriangleMesh& reference, const Positions& deformed,
                                            std::span<const std::int32_t> faces,
                                            const DistortionOptions& options = {});
+
+inline void describe(Results& t, const Distortion& d) {
+  t.share("area_error_mean", "Mean area error", "Mean of |area ratio - 1| over faces.",
+          d.areaErrorMean)
+      .inHead()
+      .compared();
+  t.share("area_error_max", "Largest area error", "", d.areaErrorMax);
+  t.share("edge_strain_mean", "Mean change of lengths", "Mean of |length ratio - 1| over edges.",
+          d.edgeStrainMean)
+      .inHead()
+      .compared();
+  t.share("edge_strain_p95", "Change of lengths, 95th percentile", "", d.edgeStrainP95);
+  t.number("angle_error_mean_deg", "Mean change of angles", "degrees",
+           "Largest change of a face's three angles, mean over faces.",
+           d.angleErrorMeanRad * 180 / kPi)
+      .inHead();
+}
+
+/// Areas that a deformation is meant to keep.
+inline void expectAreasKept(Results& t) {
+  t["area_error_mean"]
+      .atMost(0.02, Judgement::Look, "areas on a printed map are read to a few per cent")
+      .atMost(0.10, Judgement::Doubt, "more is seen by eye");
+}
 
 }  // namespace explica::unfolding

@@ -4,6 +4,7 @@
 
 #include "Explica/Core/Describe.h"
 #include "Explica/Core/Monitor.h"
+#include "Explica/Core/Results.h"
 #include "Explica/Core/Termination.h"
 #include "Explica/Core/TriangleMesh.h"
 
@@ -63,6 +64,28 @@ struct GlobalFlow {
   /// MaxIterations.
   Termination termination = Termination::NotRun;
 };
+
+/// A flow in numbers.
+struct GlobalFlowSummary {
+  double radius = kNaN;  ///< of the viewing sphere, mm
+  GlobalFlowStep start, end;
+  Change visibility, seen;    ///< from all around, lookFromSphere()
+  std::size_t crossings = 0;  ///< pairs of faces
+  Termination stopReason = Termination::NotRun;
+};
+
+inline void describe(Results& t, const GlobalFlowSummary& s) {
+  t.number("viewing_radius", "Radius of the viewing sphere", "mm", "", s.radius);
+  t.change("measure", "Global measure", "mm^4", "What the flow descends on.",
+           {s.start.measure, s.end.measure});
+  t.change("area", "Area", "mm^2", "", {s.start.area, s.end.area});
+  t.change("volume", "Enclosed volume", "mm^3", "", {s.start.volume, s.end.volume});
+  t.change("visibility", "Global visibility", "", "", s.visibility);
+  t.change("seen", "Seen from somewhere", "share", "", s.seen);
+  t.count("self_intersections_final", "Self-intersections", "", s.crossings);
+  t.count("iterations", "Iterations", "", s.end.iteration);
+  t.text("stop_reason", "Stop reason", "", s.stopReason);
+}
 
 /// Descends on a global measure by explicit steps along its gradient over each vertex's area, which
 /// shrink to nothing; areas are free and faces may cross.

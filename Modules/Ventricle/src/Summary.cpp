@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Ventricle/Summary.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace explica::ventricle {
+namespace {
+
+/// A number, or nothing where it is not known.
+std::optional<double> known(double value) {
+  return std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+std::int64_t countOf(const Frame& frame, LeftOut why) {
+  if (!frame.measures) return 0;
+  const auto& reasons = frame.measures->reasons.data;
+  return std::count(reasons.begin(), reasons.end(), static_cast<std::uint8_t>(why));
+}
+
+void describeVolumes(Results& t, const Frame& ed, const Frame& es, double ejection, bool beats) {
+  const auto later = [&](double value) { return beats ? known(value) : std::nullopt; };
+  t.number(
+       "cavity_volume_ed_ml", "Cavity at end-diastole", "ml",
+       "Voxels of the left ventricle's cavity in the frame where they are most; healthy women "
+       "135 \u00b1 26, men 160 \u00b1 29 (Hudsmith et al. 2005, J Cardiovasc Magn Reson 7:775).",
+       known(ed.cavity))
+      .inHead();
+  t.number("cavity_volume_es_ml", "Cavity at end-systole", "ml",
+           "Healthy women 42 \u00b1 12, men 50 \u00b1 16 (the same).", later(es.cavity))
+      .inHead();
+  t.number("stroke_volume_ml", "Stroke volume", "ml", "", later(ed.cavity - es.cavity));
+  t.number("ejection_fraction_percent", "Ejection fraction", "%",
+           "Share of the end-diastolic volume that leaves the cavity; healthy women 61 \u00b1 5, "
+           "men 58 \u00b1 5 (Petersen et al. 2017, J Cardiovasc Magn Reson 19:18).",
+           later(ejection))
+      .inHead();
+  t.number("wall_volume_ed_ml", "Volume of the wall", "ml", "At end-diastole.", known(ed.wall));
+  t.number("mass_ed_g", "Mass of the wall", "g",
+           "Volume of the wall at end-diastole times 1.05 g/ml; papillary muscles belong to "
+           "whatever label they have; healthy women 98 \u00b1 21, men 134 \u00b1 21 where they are "
+           "part of the wall (Kawel-Boehm et al. 2015, J Cardiovasc Magn Reson 17:29).",
+           known(ed.mass))
+      .inHead();
+}
+
+void describeThickness(Results& t, const Frame& ed, const Frame& es, bool beats) {
+  const auto later = [&](double value) { return beats ? known(value) : std::nullopt; };
+  t.number("thickness_mean_ed", "Mean wall thickness at end-diastole", "mm",
+           "Over the columns of the wall that count.", known(ed.thickness))
+      .inHead();
+  t.number("thickness_mean_es", "Mean wall thickness at end-systole", "mm", "",
+           later(es.thickness));
+  t.number("thickening_percent", "Mean thickening", "%",
+           "Of that mean, from end-diastole to end-systole.", later(es.thickening))
+      .inHead();
+  t.number("thickness_plain_ed", "Mean wall thickness over voxels", "mm", "At end-diastole.",
+           known(ed.plain));
+  constexpr std::array kLeftOut = {std::pair{LeftOut::Opening, "voxels_left_out_opening_ed"},
+                                   std::pair{LeftOut::Valve, "voxels_left_out_valve_ed"},
+                                   std::pair{LeftOut::Cap, "voxels_left_out_cap_ed"},
+                                   std::pair{LeftOut::Unreached, "voxels_left_out_unreached_ed"}};
+  t.count("voxels_counted_ed", "Voxels of the wall that count", "At end-diastole.",
+          countOf(ed, LeftOut::None));
+  for (const auto& [why, key] : kLeftOut) {
+    t.count(key, "Voxels of the wall left out: " + std::string(nameOf(why)), "At end-diastole.",
+            countOf(ed, why));
+  }
+}
+
+}  // namespace
+
+void describe(Results& t, const HeartSummary& s) {
+  static const Beat none{{Frame{}}, 0, 0, {}, kNaN};
+  const Beat& beat = s.beat ? *s.beat : none;
+  const Frame &ed = beat.atDiastole(), &es = beat.atSystole();
+  const bool beats = beat.frames.size() > 1;
+  t.text("labels", "Labels", "The convention that they follow.", s.labels);
+  t.share("open_share_ed", "Open at the base",
+          "Share of the cavity's surface at end-diastole that has no wall.", s.openShare);
+  t.count("frames", "Frames", "", beat.frames.size());
+  t.count("frames_with_wall", "Frames with a wall", "",
+          std::count_if(beat.frames.begin(), beat.frames.end(),
+                        [](const Frame& f) { return f.segments.has_value(); }));
+  t.count("frame_ed", "Frame at end-diastole", "", ed.number);
+  t.count("frame_es", "Frame at end-systole", "",
+          beats ? std::optional<std::int64_t>(es.number) : std::nullopt);
+  describeVolumes(t, ed, es, beat.ejectionFraction.value_or(kNaN), beats);
+  describeThickness(t, ed, es, beats);
+  t.number("axis_angle_deg", "Long axis to the slices' normal", "degrees", "",
+           known(ed.axis.stackAngleDeg))
+      .inHead();
+  t.number("axis_spread_mm", "Spread of the slices' centres about the axis", "mm", "",
+           known(ed.axis.spreadMm));
+  t.text("orientation", "Orientation of the segments", "What it is known by.",
+         beat.orientation.source);
+  t.number("septum_deg", "Direction of the septum", "degrees", "",
+           known(beat.orientation.septumDeg));
+  t.text("measured", "Thickness measured", "By slice or in space.",
+         std::string(ed.measures && ed.measures->bySlice ? "by slice" : "in space"));
+  t.text("papillary_muscles", "Papillary muscles", "",
+         std::string("belong to whatever label they have"));
+}
+
+}  // namespace explica::ventricle
