@@ -6,6 +6,7 @@
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/IO/PolygonFile.h"
 #include "Explica/IO/SurfaceFile.h"
+#include "Explica/IO/VertexDataFile.h"
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Testing/Command.h"
 
@@ -63,6 +64,18 @@ inline void writeCortexAndMap(const TemporaryFolder& folder) {
   writeText(folder / "points.tsv", "x\ty\tz\n0\t1\t12\n");
 }
 
+/// White and pial surface, a map and regions of the left hemisphere.
+inline void writeMapAndRegions(const TemporaryFolder& folder) {
+  writeCortexAndMap(folder);
+  const Positions places = geometry::makeIcosphere(3, 10.0).positions;
+  io::writeGiftiShape(folder / "thickness.shape.gii", {{"thickness", "mm", places.col(0)}},
+                      "CortexLeft");
+  io::LabelMap regions{"regions", {}, {{0, "unknown"}, {1, "front"}, {2, "back"}}};
+  regions.keys =
+      (places.col(1).array() > 3).cast<Label>() + 2 * (places.col(1).array() < -3).cast<Label>();
+  io::writeGiftiLabel(folder / "lh.regions.label.gii", regions, "CortexLeft");
+}
+
 /// An ellipse about the origin, mm.
 inline void writeEllipse(const std::string& file, double a, double b) {
   Positions2 polygon(120, 2);
@@ -113,6 +126,20 @@ inline const std::vector<QuickRun>& quickRuns() {
       {"Polygon",
        {{"phantom", "polygon19", "--out", "{folder}/p19"}},
        {"polygon", "{folder}/p19/polygon.csv", "--region", "0:19", "--viewpoint", "50.5,4000"}},
+      {"Regions",
+       {},
+       {"regions", "{folder}", "--atlas", "{folder}/lh.regions.label.gii"},
+       writeMapAndRegions},
+      {"Resample",
+       {},
+       {"resample", "{folder}/thickness.shape.gii", "{folder}/lh.regions.label.gii", "--from",
+        "{folder}/white.surf.gii", "--to", "fsaverage3"},
+       writeMapAndRegions},
+      {"Smooth",
+       {},
+       {"smooth", "{folder}/thickness.shape.gii", "--surface", "{folder}/white.surf.gii", "--fwhm",
+        "6"},
+       writeMapAndRegions},
       {"Repair", {}, {"repair", "{folder}/crossed.surf.gii", "--max-move", "5"}, writeCortexAndMap},
       {"Sample",
        {},

@@ -127,6 +127,15 @@ explica thickness shell/labels.nii.gz --inner 1 --tissue 2 --out thickness)"},
         "target-visibility", "max-iterations", "frames", "resume"},
        R"(explica phantom polygon34 --out p34
 explica polygon p34/polygon.csv --region 0:34 --viewpoint 80.9,4000 --out flat)"},
+      {"regions",
+       "a folder with surfaces or maps, and an annotation of their vertices",
+       "area, volume, thickness, curvature and any map by region: FreeSurfer's table and a long "
+       "one",
+       {"atlas", "map", "hemisphere", "person"},
+       R"(explica phantom shell --size 32 --out shell
+explica surface shell/labels.nii.gz --white 1 --grey 2 --faces 2000 --atlas shell/labels.nii.gz \
+  --out surfaces
+explica regions surfaces --atlas surfaces/regions.label.gii --hemisphere L --out tables)"},
       {"repair",
        "a triangulated surface, or several with the same faces",
        "the surface with crossing faces parted, the same vertices and faces",
@@ -147,6 +156,14 @@ explica replay shell/provenance.json --out again)"},
        R"(explica phantom shell --size 32 --out shell
 explica thickness shell/labels.nii.gz --inner 1 --tissue 2 --out thickness
 explica report thickness)"},
+      {"resample",
+       "per-vertex maps, labels or surfaces, and the sphere of their vertices",
+       "the same at the vertices of another sphere in register, such as fsaverage5's",
+       {"from", "to", "template", "method", "areas"},
+       R"(explica phantom shell --size 32 --out shell
+explica surface shell/labels.nii.gz --white 1 --grey 2 --faces 2000 --out surfaces
+explica resample surfaces/thickness.shape.gii --from surfaces/white.surf.gii --to fsaverage3 \
+  --out on-fsaverage3)"},
       {"run",
        "a T1, a label volume, a FreeSurfer subject or an anat folder of fMRIPrep",
        "tissues, thickness, surfaces, an unfolded patch, and a report on all of them",
@@ -168,6 +185,13 @@ explica sample shell/harmonic.nii.gz --surfaces surfaces --depths 5 --out sample
        {"mask", "atlas", "hemisphere", "smooth", "bias-width", "max-iterations"},
        R"(explica phantom cortex --size 48 --out cortex
 explica segment cortex/t1.nii.gz --out tissue)"},
+      {"smooth",
+       "per-vertex maps, and the surface of their vertices",
+       "the maps diffused along the surface, and how smooth they are",
+       {"surface", "fwhm", "mask"},
+       R"(explica phantom shell --size 32 --out shell
+explica surface shell/labels.nii.gz --white 1 --grey 2 --faces 2000 --out surfaces
+explica smooth surfaces/thickness.shape.gii --surface surfaces/mid.surf.gii --fwhm 5 --out smooth)"},
       {"study check",
        "a study file",
        "what each run would do, or the first fault with its line and remedy",
