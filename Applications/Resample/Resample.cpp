@@ -9,6 +9,8 @@
 #include "Explica/Maps/Icosphere.h"
 #include "Explica/Maps/Resampling.h"
 
+#include <algorithm>
+#include <cctype>
 #include <optional>
 #include <set>
 
@@ -23,7 +25,7 @@ struct Settings {
   std::string to;
   std::optional<std::string> templateFolder;
   maps::ResamplingMethod method = maps::ResamplingMethod::Adaptive;
-  std::vector<std::string> areas;
+  std::optional<std::string> areas;
 };
 
 void declare(Declaration& d, Settings& s) {
@@ -62,7 +64,7 @@ void declare(Declaration& d, Settings& s) {
       .option("Weights",
               Field{"areas", "",
                     "surfaces whose vertex areas count, of the maps' and of the target's vertices "
-                    "(SURF,SURF; those left out: the spheres)"},
+                    "(SURF,SURF; one left out: its sphere)"},
               s.areas)
       .output("*_space-*", FileKind::Any,
               "NAME_space-SPACE_den-DENSITY: each file, in its own format");
@@ -102,9 +104,7 @@ Target readTarget(Context& context, const Settings& s, const std::string& struct
   context.input(file, "to");
   target.sphere = readSurface(context, "to", file, reading);
   target.space = fsLR ? "fsLR" : io::nameOfSurface(file);
-  for (char& letter : target.space) {
-    if (!std::isalnum(static_cast<unsigned char>(letter))) letter = '+';
-  }
+  std::erase_if(target.space, [](unsigned char letter) { return !std::isalnum(letter); });
   return target;
 }
 
@@ -115,8 +115,10 @@ std::string densityOf(Eigen::Index vertices) {
 
 Eigen::VectorXd areasOf(Context& context, const Settings& s, std::size_t place,
                         const TriangleMesh& sphere) {
-  if (place >= s.areas.size() || s.areas[place].empty()) return geometry::vertexAreas(sphere);
-  const std::string& path = s.areas[place];
+  const std::string both = s.areas.value_or(""), first = both.substr(0, both.find(','));
+  const std::string path =
+      place == 0 ? first : both.substr(std::min(first.size() + 1, both.size()));
+  if (path.empty()) return geometry::vertexAreas(sphere);
   context.input(path, "areas");
   io::SurfaceReadOptions reading;
   reading.space = io::SurfaceSpace::Scanner;
@@ -205,7 +207,6 @@ void carry(const std::filesystem::path& path, CarriedFile file, const Weights& w
 }
 
 Termination run(Context& context, const Settings& s) {
-  if (s.areas.size() > 2) throw UsageError("--areas takes two surfaces, SURF,SURF");
   io::SurfaceReadOptions reading;
   reading.space = io::SurfaceSpace::Scanner;
   const io::LoadedSurface from = readSurface(context, "from", *s.from, reading);

@@ -74,6 +74,7 @@ inline void writeMapAndRegions(const TemporaryFolder& folder) {
   regions.keys =
       (places.col(1).array() > 3).cast<Label>() + 2 * (places.col(1).array() < -3).cast<Label>();
   io::writeGiftiLabel(folder / "lh.regions.label.gii", regions, "CortexLeft");
+  io::writeSurface(folder / "sphere.reg.surf.gii", geometry::makeIcosphere(3, 10.0));
 }
 
 /// An ellipse about the origin, mm.
@@ -126,6 +127,10 @@ inline const std::vector<QuickRun>& quickRuns() {
       {"Polygon",
        {{"phantom", "polygon19", "--out", "{folder}/p19"}},
        {"polygon", "{folder}/p19/polygon.csv", "--region", "0:19", "--viewpoint", "50.5,4000"}},
+      {"Parcellate",
+       {},
+       {"parcellate", "{folder}", "--atlas", "{folder}/lh.regions.label.gii"},
+       writeMapAndRegions},
       {"Regions",
        {},
        {"regions", "{folder}", "--atlas", "{folder}/lh.regions.label.gii"},

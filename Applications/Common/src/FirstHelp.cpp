@@ -76,6 +76,15 @@ explica history shell/labels.nii.gz)"},
        R"(explica phantom cortex --size 32 --spacing 2 --out cortex
 explica surface cortex/labels.nii.gz --white 3 --grey 2 --faces 2000 --out surfaces
 explica inflate surfaces/white.surf.gii --out inflated)"},
+      {"parcellate",
+       "a folder with a sphere in register with a template, and the template's labels",
+       "regions at the surface's vertices, and how sure they are",
+       {"atlas", "hemisphere"},
+       R"(explica phantom shell --size 32 --out shell
+explica surface shell/labels.nii.gz --white 1 --grey 2 --faces 2000 --atlas shell/labels.nii.gz \
+  --out surfaces
+cp surfaces/white.surf.gii surfaces/sphere.reg.surf.gii
+explica parcellate surfaces --atlas surfaces/regions.label.gii --hemisphere L --out regions)"},
       {"phantom cortex",
        "sizes",
        "a folded ribbon: labels, T1-like image and exact white surface",
