@@ -4,12 +4,15 @@
 #include "Explica/Application/Command.h"
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/IO/LabelNames.h"
 #include "Explica/IO/VertexFile.h"
 #include "Explica/Maps/Icosphere.h"
 #include "Explica/Maps/Parcellation.h"
 
+#include <array>
 #include <map>
 #include <optional>
+#include <set>
 
 namespace explica::app {
 namespace {
@@ -136,6 +139,15 @@ void numberAlike(std::vector<io::LabelMap>& files) {
   }
 }
 
+/// The table with other colours where two labels share one: annot files tell labels by colour.
+std::vector<io::LabelEntry> toldByColour(std::vector<io::LabelEntry> table) {
+  std::set<std::array<float, 4>> colours;
+  for (const io::LabelEntry& entry : table) colours.insert(entry.colour);
+  if (colours.size() == table.size()) return table;
+  for (io::LabelEntry& entry : table) entry.colour = io::distinctColour(entry.key);
+  return table;
+}
+
 Termination run(Context& context, const Settings& s) {
   const std::string prefix = prefixOf(s);
   const std::string structure = prefix == "rh." ? "CortexRight" : "CortexLeft";
@@ -161,7 +173,7 @@ Termination run(Context& context, const Settings& s) {
   }
   auto step = context.step("parcellate");
   const maps::Parcellation found = maps::parcellate(sphere, folding, atlases);
-  const io::LabelMap result{"regions", found.keys, labels.front().table};
+  const io::LabelMap result{"regions", found.keys, toldByColour(labels.front().table)};
   std::string name = fs::path(s.atlases.front()).filename().string();
   name = name.starts_with(prefix) ? name.substr(3) : name;
   name = name.substr(0, name.rfind(name.ends_with(".label.gii") ? ".label.gii" : "."));

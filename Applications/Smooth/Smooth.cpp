@@ -35,7 +35,7 @@ void declare(Declaration& d, Settings& s) {
           "whose distances count, usually the middle surface of the same person.\n\n"
           "summary.json says how smooth each file is before and after (fwhm_before, fwhm_after): "
           "the width of the kernel that would give white noise the same differences between "
-          "neighbours; of files with several maps, of their residuals about the mean map.")
+          "neighbours; of files with five maps or more, of their residuals about the mean map.")
       .reference("Worsley et al. 1999, Human Brain Mapping 8:98-101")
       .example("explica smooth lh.thickness --surface lh.white --fwhm 10 --out smoothed",
                "Thickness smoothed by 10 mm, as smoothed/lh.thickness_fwhm-10")

@@ -4,12 +4,11 @@
 #include "Explica/Maps/Smoothing.h"
 
 #include "Explica/Core/Errors.h"
-#include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Maps/HeatFlow.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
 
 namespace explica::maps {
 namespace {
@@ -32,6 +31,33 @@ void requireSizes(const TriangleMesh& mesh, const Eigen::MatrixXd& values,
     throw InvalidInput("maps and mask need one value for each of the surface's " +
                        std::to_string(mesh.vertexCount()) + " vertices");
   }
+}
+
+/// Fewest maps of which residuals scaled to one length at each vertex are used: with four, their
+/// width comes out 3 % too large, with three 17 %.
+constexpr Eigen::Index kFewest = 5;
+
+/// Area of a triangle of these squared sides.
+double triangleArea(double ab, double ac, double bc) {
+  return std::sqrt(std::max(0.0, 4 * ab * ac - (ab + ac - bc) * (ab + ac - bc))) / 4;
+}
+
+/// Residuals of each vertex as columns: about the mean map, of length 1 at each vertex; of fewer
+/// maps than kFewest about the mean of each map.
+Eigen::MatrixXd residualsOf(const Eigen::MatrixXd& values, const std::vector<bool>& known) {
+  Eigen::MatrixXd residuals = values.transpose();
+  if (values.cols() >= kFewest) {
+    residuals.rowwise() -= residuals.colwise().mean().eval();
+    return residuals.colwise().normalized();
+  }
+  for (Eigen::Index map = 0; map < residuals.rows(); ++map) {
+    double sum = 0, count = 0;
+    for (Eigen::Index v = 0; v < residuals.cols(); ++v) {
+      if (known[v]) sum += residuals(map, v), ++count;
+    }
+    residuals.row(map).array() -= sum / count;
+  }
+  return residuals;
 }
 
 }  // namespace
@@ -71,43 +97,28 @@ double estimateFwhm(const TriangleMesh& mesh, const Eigen::MatrixXd& values,
                     const std::vector<bool>& mask) {
   requireSizes(mesh, values, mask);
   const std::vector<bool> known = knownWithin(values, mask);
-  const geometry::MeshTopology topology = geometry::buildTopology(mesh.faces, mesh.vertexCount());
-  double mean = 0, count = 0;
-  for (Eigen::Index v = 0; v < values.rows(); ++v) {
-    if (known[v]) mean += values(v, 0), ++count;
+  const Eigen::MatrixXd residuals = residualsOf(values, known);
+  double resels = 0, area = 0, differences = 0, lengths = 0, squares = 0, faces = 0;
+  const auto squared = [](const auto& a, const auto& b) { return (a - b).squaredNorm(); };
+  for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
+    const std::int32_t a = mesh.faces(f, 0), b = mesh.faces(f, 1), c = mesh.faces(f, 2);
+    if (!known[a] || !known[b] || !known[c]) continue;
+    const auto &x = residuals.col(a), &y = residuals.col(b), &z = residuals.col(c);
+    resels += triangleArea(squared(x, y), squared(x, z), squared(y, z));
+    const Positions& places = mesh.positions;
+    const double ab = squared(places.row(a), places.row(b)),
+                 ac = squared(places.row(a), places.row(c)),
+                 bc = squared(places.row(b), places.row(c));
+    area += triangleArea(ab, ac, bc);
+    differences += squared(x, y) + squared(x, z) + squared(y, z);
+    lengths += ab + ac + bc;
+    squares += (x.squaredNorm() + y.squaredNorm() + z.squaredNorm()) / 3;
+    ++faces;
   }
-  mean /= count;
-  const auto residual = [&](Eigen::Index v) -> Eigen::RowVectorXd {
-    return values.row(v).array() - (values.cols() == 1 ? mean : values.row(v).mean());
-  };
-  double variance = 0, difference = 0;
-  std::vector<double> squaredLengths;
-  for (Eigen::Index e = 0; e < topology.edges.rows(); ++e) {
-    const std::int32_t a = topology.edges(e, 0), b = topology.edges(e, 1);
-    if (!known[a] || !known[b]) continue;
-    const Eigen::RowVectorXd x = residual(a), y = residual(b);
-    variance += 0.5 * (x.squaredNorm() + y.squaredNorm());
-    difference += 0.5 * (x - y).squaredNorm();
-    squaredLengths.push_back((mesh.positions.row(a) - mesh.positions.row(b)).squaredNorm());
-  }
-  if (!(variance > 0)) return kNaN;
-  // Decorrelation of all edges, 1 - rho, falls with the width: bisection in its logarithm.
-  const double wanted = difference / variance * static_cast<double>(squaredLengths.size());
-  const auto decorrelation = [&](double fwhm) {
-    double sum = 0;
-    for (const double d : squaredLengths) {
-      sum -= std::expm1(-2 * std::numbers::ln2 * d / (fwhm * fwhm));
-    }
-    return sum;
-  };
-  double low = 1e-3, high = 1e3;
-  const double edge = std::sqrt(squaredLengths.empty() ? 1 : squaredLengths.front());
-  if (wanted >= decorrelation(low * edge)) return 0;
-  for (int halving = 0; halving < 50; ++halving) {
-    const double middle = std::sqrt(low * high);
-    (decorrelation(middle * edge) > wanted ? low : high) = middle;
-  }
-  return low * edge;
+  if (!(squares > 0 && differences > 0)) return kNaN;
+  const double squaredWidth =
+      values.cols() < kFewest ? squares / faces * lengths / differences : area / resels;
+  return std::sqrt(4 * std::numbers::ln2 * squaredWidth);
 }
 
 }  // namespace explica::maps

@@ -25,15 +25,15 @@ namespace explica::maps {
                                          const Monitor& monitor = {});
 
 /// Smoothness of noise on a surface: the full width at half maximum, mm, of the Gaussian kernel
-/// that gives white noise the mean squared difference across edges that the maps have.
+/// that would give it to white noise.
 ///
-/// With one map its values about their mean are taken, with several the residuals about the mean
-/// map.  A noise of correlation rho(d) = exp(-2 ln 2 d^2 / fwhm^2) has the mean squared difference
-/// 2 (1 - rho(d)) of its variance across an edge of length d [Worsley1999]; the sum over edges is
-/// solved for fwhm as it is, without the limit d -> 0.
+/// Of five maps or more: the residuals about the mean map, scaled to length 1 at each vertex, span
+/// a triangle for each face; the sum of these triangles' areas over 4 ln 2 is the number of resels,
+/// and the surface's area over it the squared width [Worsley1999], as SurfStat and BrainStat have
+/// it.  Of fewer maps: the mean squared slope along edges over the variance about each map's mean.
 ///
 /// @param values  V x n; a vertex counts where it is marked and all maps are finite
-/// @return NaN where nothing varies; 0 where neighbours are not correlated
+/// @return NaN where nothing varies
 [[nodiscard]] double estimateFwhm(const TriangleMesh& mesh, const Eigen::MatrixXd& values,
                                   const std::vector<bool>& mask = {});
 
