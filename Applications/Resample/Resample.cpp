@@ -4,6 +4,7 @@
 #include "Explica/Application/Command.h"
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/StopScope.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/IO/VertexFile.h"
 #include "Explica/Maps/Icosphere.h"
@@ -223,7 +224,7 @@ Termination run(Context& context, const Settings& s) {
   const Weights weights{weightsBy(s.method), weightsBy(maps::ResamplingMethod::Barycentric)};
   std::size_t count = 0;
   for (const CarriedFile& file : files) {
-    if (context.monitor().shouldStop()) return Termination::Interrupted;
+    checkpoint(context.monitor());
     context.monitor().progress(static_cast<double>(count) / static_cast<double>(files.size()),
                                file.output);
     carry(context.output(file.output), file, weights, target.sphere.mesh.faces);

@@ -122,7 +122,6 @@ Termination run(Context& context, const Settings& s) {
   for (const MapFile& file : files) {
     const Eigen::MatrixXd before = file.values();
     const Eigen::MatrixXd after = maps::smoothMaps(mesh, before, s.fwhm, mask, context.monitor());
-    if (context.monitor().shouldStop()) return Termination::Interrupted;
     std::vector<io::VertexMap> written = file.maps;
     for (std::size_t m = 0; m < written.size(); ++m) {
       written[m].values = after.col(static_cast<Eigen::Index>(m));

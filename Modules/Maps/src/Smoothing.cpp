@@ -4,6 +4,7 @@
 #include "Explica/Maps/Smoothing.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/StopScope.h"
 #include "Explica/Maps/HeatFlow.h"
 
 #include <algorithm>
@@ -78,7 +79,8 @@ Eigen::MatrixXd smoothMaps(const TriangleMesh& mesh, Eigen::MatrixXd values, dou
       if (!known[v]) block.row(static_cast<Eigen::Index>(v)).setZero();
     }
     const HeatFlow flow(mesh, time / kSteps, known);
-    for (int step = 0; step < kSteps && !monitor.shouldStop(); ++step) {
+    for (int step = 0; step < kSteps; ++step) {
+      checkpoint(monitor);
       monitor.progress(
           (static_cast<double>(first) + static_cast<double>((last - first) * step) / kSteps) /
               static_cast<double>(values.cols()),

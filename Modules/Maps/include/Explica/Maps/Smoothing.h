@@ -20,6 +20,7 @@ namespace explica::maps {
 /// @param values  V x n
 /// @param mask    V marks, or empty for all
 /// @throws InvalidInput  sizes that do not match, or fwhm not above 0
+/// @throws Interrupted   the monitor asks for an end
 [[nodiscard]] Eigen::MatrixXd smoothMaps(const TriangleMesh& mesh, Eigen::MatrixXd values,
                                          double fwhm, const std::vector<bool>& mask = {},
                                          const Monitor& monitor = {});
