@@ -177,6 +177,8 @@ std::string historyOf(const fs::path& file) {
   const Digest digest = digestOf(file);
   const auto found = findRecordOf(file, digest);
   if (!found) {
+    const fs::path beside = fs::absolute(file).parent_path() / kRecordName;
+    if (fs::exists(beside)) static_cast<void>(readRecord(beside));  // one that cannot be read
     throw InvalidInput(file.string() + ": no " + kRecordName +
                        " beside it or above names it; it was not made by explica, or was moved "
                        "without its record");
