@@ -16,6 +16,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 
 # What CMake looks for: Debian's package, conda-forge's.
 LIBRARIES = {
+    "Boost": ("libboost-dev", "libboost-headers"),
     "CLI11": ("libcli11-dev", "cli11"),
     "EXPAT": ("libexpat1-dev", "expat"),
     "Eigen3": ("libeigen3-dev", "eigen"),

@@ -47,6 +47,27 @@ inline void writeFoldedCap(const TemporaryFolder& folder) {
   io::writeSurface(folder / "cap.surf.gii", geometry::extractFaces(sphere, faces).mesh);
 }
 
+/// Maps of ten people on a sphere, and what is known of them.
+inline void writePeoplesMaps(const TemporaryFolder& folder) {
+  const TriangleMesh sphere = geometry::makeIcosphere(2, 30.0);
+  io::writeSurface(folder / "sphere.surf.gii", sphere);
+  std::string maps = "participant_id\tfile\n", people = "participant_id\tage\tgroup\n";
+  for (int person = 0; person < 10; ++person) {
+    const std::string name = "sub-" + std::to_string(person);
+    Eigen::VectorXd values(sphere.vertexCount());
+    for (Eigen::Index v = 0; v < values.size(); ++v) {
+      const double place = sphere.positions.row(v).sum() / 20 + person * 2.4;
+      values[v] = 2.5 + 0.2 * std::sin(place * (1 + person % 3)) + (v < 12 ? 0.1 * person : 0);
+    }
+    io::writeGiftiShape(folder / (name + ".shape.gii"), {{"thickness", "mm", values}},
+                        "CortexLeft");
+    maps += name + "\t" + name + ".shape.gii\n";
+    people += name + "\t" + std::to_string(20 + 5 * person) + (person % 2 == 0 ? "\ta\n" : "\tb\n");
+  }
+  writeText(folder / "maps.tsv", maps);
+  writeText(folder / "people.tsv", people);
+}
+
 /// White and pial surface, a map and an electrode; two spheres that pass through each other.
 inline void writeCortexAndMap(const TemporaryFolder& folder) {
   io::writeSurface(folder / "white.surf.gii", geometry::makeIcosphere(3, 10.0));
@@ -185,6 +206,12 @@ inline const std::vector<QuickRun>& quickRuns() {
        {"compare", "{folder}/sphere.surf.gii", "{folder}/sphere.surf.gii", "--pairs", "400",
         "--sources", "10"},
        writeFoldedSphere},
+      {"Glm",
+       {},
+       {"glm", "{folder}/maps.tsv", "--table", "{folder}/people.tsv", "--model",
+        "thickness ~ age + group", "--surface", "{folder}/sphere.surf.gii", "--permutations", "200",
+        "--tfce", "--threshold", "0.05"},
+       writePeoplesMaps},
       {"Inflate",
        {},
        {"inflate", "{folder}/sphere.surf.gii", "--max-iterations", "3", "--frames", "2"},

@@ -57,6 +57,13 @@ explica embed shell/labels.nii.gz --label 1 --order 8 --out fit)"},
 explica surface shell/labels.nii.gz --white 1 --grey 2 --faces 2000 --out surfaces
 explica unfold surfaces/pial.surf.gii --center 0,0,12 --radius 8 --direction 0,0,1 --surround none --out unfolded
 explica flatten unfolded/unfolded.surf.gii --surfaces surfaces --volumes shell/level.nii.gz --out flat)"},
+      {"glm",
+       "people's maps or a table of regions, and what is known of the people",
+       "where an effect is, how large, and whether it is real: maps, tables and a page",
+       {"maps", "table", "model", "contrast", "surface", "mask", "site", "permutations", "tfce",
+        "threshold"},
+       R"(printf 'participant_id,age,thickness\ns1,20,2.6\ns2,30,2.5\ns3,40,2.5\ns4,50,2.3\ns5,60,2.2\n' > people.csv
+explica glm people.csv --model 'thickness ~ age' --permutations 100 --out glm)"},
       {"heart",
        "label volumes of the left ventricle: 4-D, or one a frame",
        "segments, volumes and masses over time, thickness and thickening, a bullseye",

@@ -112,7 +112,11 @@ namespace {
 
 /// Whether --report may be asked for: not where pages are among the results already.
 bool mayBeReported(const Declaration& declaration) {
-  return declaration.writesOutput && !declaration.writesInPlace && !declaration.handsOutputOn;
+  const bool ownPage =
+      std::any_of(declaration.outputs.begin(), declaration.outputs.end(),
+                  [](const OutputSlot& output) { return output.pattern == "report.html"; });
+  return declaration.writesOutput && !declaration.writesInPlace && !declaration.handsOutputOn &&
+         !ownPage;
 }
 
 }  // namespace
