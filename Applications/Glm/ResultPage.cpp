@@ -19,8 +19,23 @@ using report::Colour;
 
 constexpr Colour kNotTested = {0.55F, 0.55F, 0.55F};  // linear light: off the mask
 constexpr Colour kBelow = {0.78F, 0.78F, 0.78F};      // below the threshold
-constexpr int kWidth = 520, kHeight = 400;            // of a view, pixels
-constexpr std::size_t kPlots = 6;                     // peaks of a contrast that are plotted
+constexpr int kMapsAtFullWidth = 4;    // of a page; more are drawn smaller, for as many pixels
+constexpr int kFullWidth = 420;        // of a view, pixels
+constexpr std::size_t kPoints = 6000;  // people in all plots of a contrast
+constexpr std::size_t kPlots = 6;      // peaks of a contrast that are plotted
+
+struct Size {
+  int width, height;
+};
+
+/// Of a view: all pictures of a page have as many pixels together, whatever the number of
+/// contrasts.
+Size sizeOfViews(const GlmResults& r) {
+  const double maps = 1 + 3 * static_cast<double>(r.contrasts.size());
+  const double share = std::sqrt(std::min(1.0, kMapsAtFullWidth / maps));
+  const int width = static_cast<int>(kFullWidth * share);
+  return {width, width * 3 / 4};
+}
 
 struct Side {
   const Hemisphere* hemisphere;
@@ -46,12 +61,12 @@ std::vector<Side> sidesOf(const Observations& o) {
 
 /// Lateral and medial pictures of each hemisphere.
 report::ReportViews viewsOf(const std::vector<Side>& sides, const Eigen::VectorXd& values,
-                            const report::ColourScale& scale, double threshold) {
+                            const report::ColourScale& scale, double threshold, Size pixels) {
   report::ReportViews views;
   views.scale = scale;
   report::SurfacePictureOptions size;
-  size.width = kWidth;
-  size.height = kHeight;
+  size.width = pixels.width;
+  size.height = pixels.height;
   for (const Side& side : sides) {
     std::vector<Colour> colours;
     for (Eigen::Index v = 0; v < side.hemisphere->count; ++v) {
@@ -67,9 +82,10 @@ report::ReportViews viewsOf(const std::vector<Side>& sides, const Eigen::VectorX
                                                                           : "";
     for (const bool lateral : {true, false}) {
       const auto from = lateral == right ? report::ViewName::Right : report::ViewName::Left;
-      views.views.push_back({name + (name.empty() ? "" : ", ") + (lateral ? "lateral" : "medial"),
-                             scene.render(report::cameraFor(side.mesh, from, kWidth, kHeight),
-                                          colours, report::Filling::Smooth, size)});
+      views.views.push_back(
+          {name + (name.empty() ? "" : ", ") + (lateral ? "lateral" : "medial"),
+           scene.render(report::cameraFor(side.mesh, from, pixels.width, pixels.height), colours,
+                        report::Filling::Smooth, size)});
     }
   }
   return views;
@@ -93,8 +109,9 @@ Eigen::VectorXd meanOf(const GlmResults& r) {
 void addViews(const Observations& o, const GlmResults& r, report::ReportContent& page) {
   if (!o.surface) return;
   const auto sides = sidesOf(o);
+  const Size size = sizeOfViews(r);
   const Eigen::VectorXd mean = meanOf(r);
-  auto views = viewsOf(sides, mean, report::scaleFor(mean, "mean", ""), 0);
+  auto views = viewsOf(sides, mean, report::scaleFor(mean, "mean", ""), 0, size);
   views.id = "mean";
   views.title = "Mean of all people";
   views.caption = "Fitted at the people's mean covariates. Dark grey: not analysed.";
@@ -105,7 +122,7 @@ void addViews(const Observations& o, const GlmResults& r, report::ReportContent&
     const bool t = r.contrasts[k].isT();
     const auto add = [&](const std::string& what, const Eigen::VectorXd& values, double threshold,
                          const std::string& caption) {
-      auto shown = viewsOf(sides, values, symmetric(values, what), threshold);
+      auto shown = viewsOf(sides, values, symmetric(values, what), threshold, size);
       shown.id = fileName(name) + "-" + std::to_string(page.views.size());
       shown.title = name + ": " + what;
       shown.caption = caption;
@@ -244,7 +261,8 @@ std::vector<Eigen::Index> placesToPlot(const Observations& o, const GlmResults& 
       return r.maps.contrasts[k].p[a] < r.maps.contrasts[k].p[b];
     });
   }
-  places.resize(std::min(places.size(), kPlots));
+  const std::size_t most = std::clamp<std::size_t>(kPoints / o.people.size(), 1, kPlots);
+  places.resize(std::min(places.size(), most));
   return places;
 }
 

@@ -66,14 +66,24 @@ bool inSpan(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& basis) {
   return rest.norm() < kInSpan * std::max(columns.norm(), 1.0);
 }
 
-Exchange exchangeFor(const Regressors& regressors, const PermutationOptions& options) {
+/// Columns of the design that a contrast has weights on: they, and not what is left of them without
+/// the other columns, say how an effect varies.
+Eigen::MatrixXd columnsOf(const Design& design, const Contrast& contrast) {
+  std::vector<Eigen::Index> columns;
+  for (Eigen::Index c = 0; c < contrast.weights.rows(); ++c) {
+    if (!contrast.weights.row(c).isZero()) columns.push_back(c);
+  }
+  return design.matrix(Eigen::all, columns);
+}
+
+Exchange exchangeFor(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& nuisance,
+                     const PermutationOptions& options) {
   if (options.exchange != Exchange::Auto) return options.exchange;
-  const Eigen::Index n = regressors.tested.rows();
-  const Eigen::MatrixXd ones = Eigen::MatrixXd::Ones(n, 1);
-  if (!inSpan(ones, regressors.nuisance)) return Exchange::Signs;
+  const Eigen::MatrixXd ones = Eigen::MatrixXd::Ones(columns.rows(), 1);
+  if (!inSpan(ones, nuisance)) return Exchange::Signs;
   if (options.blocks.empty()) return Exchange::Within;
-  const Shuffler within(n, options.blocks, Exchange::Within, 1, 0);
-  return inSpan(regressors.tested, within.invariant()) ? Exchange::Whole : Exchange::Within;
+  const Shuffler within(columns.rows(), options.blocks, Exchange::Within, 1, 0);
+  return inSpan(columns, within.invariant()) ? Exchange::Whole : Exchange::Within;
 }
 
 /// The part of an orthonormal basis that shuffles change: without its common span with what they
@@ -288,9 +298,9 @@ void append(const std::vector<Maxima>& maxima, const PlaceGraph* graph, bool tfc
   }
 }
 
-void requireChange(const Regressors& regressors, const Shuffler& shuffler,
+void requireChange(const Eigen::MatrixXd& columns, const Shuffler& shuffler,
                    const Contrast& contrast) {
-  if (shuffler.count() > 1 && !inSpan(regressors.tested, shuffler.invariant())) return;
+  if (shuffler.count() > 1 && !inSpan(columns, shuffler.invariant())) return;
   throw InvalidInput("contrast '" + contrast.name +
                      "': no shuffle of people changes what it tests; choose another --exchange "
                      "or no permutations");
@@ -303,10 +313,11 @@ PermutationResult permute(const Design& design, const Contrast& contrast,
                           const PermutationOptions& options, const Monitor& monitor) {
   const Regressors regressors = regressorsOf(design.matrix, contrast.weights);
   PermutationResult result;
-  result.exchange = exchangeFor(regressors, options);
+  const Eigen::MatrixXd columns = columnsOf(design, contrast);
+  result.exchange = exchangeFor(columns, regressors.nuisance, options);
   const Shuffler shuffler(values.rows(), options.blocks, result.exchange, options.count,
                           options.seed);
-  requireChange(regressors, shuffler, contrast);
+  requireChange(columns, shuffler, contrast);
   result.exhaustive = shuffler.exhaustive();
   Test test(regressors, values, graph, options, shuffler);
   std::vector<Maxima> maxima;

@@ -151,8 +151,12 @@ TEST(Oracles, AWholeBrainsResidualsAreAsRoughAlongEveryEdge) {
   const Eigen::VectorXd resl = in.at("out.resl").vector();
   ASSERT_EQ(rough.size(), resl.size());
   // Differences of vectors of length 1, to whose round-off the smallest are known.
-  for (Eigen::Index e = 0; e < resl.size(); ++e)
-    EXPECT_NEAR(rough[e], resl[e], 1e-6 * resl[e] + 1e-14);
+  for (Eigen::Index e = 0; e < resl.size(); ++e) {
+    if (std::isnan(resl[e]))
+      EXPECT_TRUE(std::isnan(rough[e]));  // where all thicknesses are 0
+    else
+      EXPECT_NEAR(rough[e], resl[e], kTolerance * resl[e]);
+  }
 }
 
 /// What they start from: coefficients, residual sums of squares and degrees of freedom.  People
@@ -210,18 +214,18 @@ TEST(Oracles, FOfNestedModels) {
   EXPECT_GT(compared, 60);
 }
 
+/// statq_09 is left out: of one degree of freedom, where their table of the tail ends at t = 100
+/// and so lacks a P of 0.003.
 TEST(Oracles, FalseDiscoveryRate) {
   NEEDS_ORACLES();
-  for (const char* name : {"statq_01", "statq_05", "statq_07", "statq_09", "statq_13"}) {
+  for (const char* name : {"statq_01", "statq_05", "statq_07", "statq_13"}) {
     const Arrays in = oracle(name);
     const Eigen::VectorXd t = in.at("in.t").vector(), theirs = in.at("out.Q").vector();
     const std::vector<bool> mask = maskOf(in, t.size());
     const double df = dfOf(in, mask);
-    // Their table of the tail ends at t = 100: what is beyond counts for nothing with them.
-    const double beyond = tTail(100, df);
     Eigen::VectorXd p(t.size());
     for (Eigen::Index v = 0; v < t.size(); ++v) {
-      p[v] = mask[static_cast<std::size_t>(v)] ? tTail(t[v], df) - beyond : kNaN;
+      p[v] = mask[static_cast<std::size_t>(v)] ? tTail(t[v], df) : kNaN;
     }
     const Eigen::VectorXd q = falseDiscoveryRate(p);
     double worst = 0;
@@ -332,6 +336,7 @@ TEST(Oracles, PeaksAndClusters) {
 TEST(Oracles, EulerCharacteristicDensities) {
   NEEDS_ORACLES();
   const double perResel = std::sqrt(4 * std::log(2.0));
+  constexpr double kCancelled = 1e-14;  // theirs are differences of terms of order one
   for (const char* name : {"thresh_17", "thresh_41"}) {
     const Arrays in = oracle(name);
     const Array& rho = in.at("out.rho");
@@ -342,10 +347,11 @@ TEST(Oracles, EulerCharacteristicDensities) {
     for (Eigen::Index i = 0; i < t.size(); ++i) {
       if (t[i] <= 0) continue;
       const auto ours = eulerDensities(t[i], kind);
-      EXPECT_NEAR(ours[1] / perResel, theirs(i, 1), 1e-9 * std::abs(theirs(i, 1)) + 1e-30)
+      EXPECT_NEAR(ours[1] / perResel, theirs(i, 1),
+                  kTolerance * std::abs(theirs(i, 1)) + kCancelled)
           << name << t[i];
       EXPECT_NEAR(ours[2] / perResel / perResel, theirs(i, 2),
-                  1e-9 * std::abs(theirs(i, 2)) + 1e-30)
+                  kTolerance * std::abs(theirs(i, 2)) + kCancelled)
           << name << t[i];
       // Theirs is Simpson's rule on the table; beyond its end nothing counts.
       EXPECT_NEAR(ours[0], theirs(i, 0), 2e-5) << name << t[i];
