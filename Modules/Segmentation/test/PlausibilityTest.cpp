@@ -120,8 +120,18 @@ TEST(Plausibility, FluidLiesAtTheRimUnlessTheContrastIsInverted) {
     if (label != 0) label = kCsf + kWhite - label;
   }
   EXPECT_LT(rimContrast(tissues), 0.1);
-  std::replace(tissues.data.begin(), tissues.data.end(), kCsf, kGrey);
+  std::replace(tissues.data.begin(), tissues.data.end(), kWhite, kGrey);
   EXPECT_TRUE(std::isnan(rimContrast(tissues)));
+}
+
+TEST(Plausibility, ABrainStrippedTightlyHasGreyMatterAtItsRim) {
+  Volume<Label> tissues = ball();
+  for (std::size_t v = 0; v < tissues.size(); ++v) {
+    const auto [i, j, k] = tissues.grid.subscripts(v);
+    if (tissues[v] == kCsf) tissues[v] = 0;
+    if ((Vector(i, j, k) - Vector::Constant(19.5)).norm() < 3) tissues[v] = kCsf;
+  }
+  EXPECT_GT(rimContrast(tissues), 10) << "its only fluid is deep inside";
 }
 
 TEST(FreeSurferAtlas, IsNotAnAtlasThatCountsFromOne) {

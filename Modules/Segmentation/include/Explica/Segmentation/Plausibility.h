@@ -64,9 +64,10 @@ struct Flag {
 [[nodiscard]] double airInHounsfieldUnits(const Volume<float>& image);
 
 /// Whether the dark tissue lies outside and the bright one inside: how often the voxels of the rim
-/// are fluid, against all of the brain, over the same of white matter.  The rim is what lies within
-/// 5 % of the radius of a ball of the brain's volume.  Far above 1 in a T1, far below where the
-/// contrast is inverted.  NaN if there is no fluid or no white matter.
+/// are fluid or grey matter, against all of the brain, over the same of white matter: a brain may
+/// be stripped so tightly that its only fluid lies deep.  The rim is what lies within 5 % of the
+/// radius of a ball of the brain's volume.  Far above 1 in a T1, far below where the contrast is
+/// inverted. NaN if there is no white matter or nothing else.
 [[nodiscard]] double rimContrast(const Volume<Label>& tissues);
 
 }  // namespace explica::segmentation
