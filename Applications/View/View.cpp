@@ -1,10 +1,12 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
+#include "View.h"
 #include "Film.h"
 #include "OpenedFiles.h"
 #include "OpenedFolders.h"
 #include "Steer.h"
+#include "WindowProgram.h"
 
 #include "Explica/Application/Command.h"
 #include "Explica/Core/Errors.h"
@@ -182,7 +184,7 @@ report::Picture drawSurfaces(const Settings& s) {
 }
 
 /// The first file is a surface or an unfolding; the others are opened on it.
-void openWindow(Context& context, const Settings& s) {
+void openWindow(Context& context, const Settings& s, const ShowWindow& show) {
   if (isVolume(s.files.front())) {
     throw UsageError(
         "the window shows a surface, and volumes beside it: name the surface first; or write a "
@@ -194,6 +196,7 @@ void openWindow(Context& context, const Settings& s) {
     throw UsageError("'" + s.files.front() +
                      "': is no folder of explica unfold, flatten or sample");
   }
+  if (!show) startWindowProgram();
   const ShownSurface start =
       found ? *found
             : ShownSurface{io::readSurface(s.files.front(), s.reading).mesh, s.files.front()};
@@ -205,13 +208,13 @@ void openWindow(Context& context, const Settings& s) {
     if (file) opened.push_back(openForWindow(*file, start));
   }
   const Vector direction = s.direction.value_or(start.direction.value_or(Vector(-1, 0, 0)));
-  steer(context, start, s.reading, direction, std::move(opened), s.window);
+  steer(context, start, s.reading, direction, std::move(opened), s.window, show);
 }
 
-Termination run(Context& context, const Settings& s) {
+Termination run(Context& context, const Settings& s, const ShowWindow& show) {
   if (!s.screenshot && !s.film) {
     const StopScope window(nullptr);  // its user ends it; no exception may pass its library
-    openWindow(context, s);
+    openWindow(context, s, show);
     return Termination::NotRun;
   }
   if (s.screenshot && std::filesystem::path(*s.screenshot).extension() != ".png") {
@@ -237,8 +240,19 @@ Termination run(Context& context, const Settings& s) {
 
 }  // namespace
 
+Command viewCommandShowing(ShowWindow show) {
+  return Command("view", [show] {
+    auto settings = std::make_shared<Settings>();
+    Invocation invocation;
+    declare(invocation.declaration, *settings);
+    invocation.run = [settings, show](Context& context) { return run(context, *settings, show); };
+    invocation.settings = settings;
+    return invocation;
+  });
+}
+
 Command viewCommand() {
-  return makeCommand<Settings>("view", declare, run);
+  return viewCommandShowing({});
 }
 
 }  // namespace explica::app

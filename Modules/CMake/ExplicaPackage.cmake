@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: The Explica developers
 # SPDX-License-Identifier: Apache-2.0
 # Debian packages by `cpack --config build/CPackConfig.cmake`: explica (program, pages, completion, schedulers' scripts),
-# explica-window (what `explica view` loads), python3-explica, and libexplica-dev (headers, static libraries, CMake files).
+# explica-window (what `explica view` starts), python3-explica, and libexplica-dev (headers, static libraries, CMake files).
 # Testing/check-package.sh makes, unpacks and runs them.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME explica)

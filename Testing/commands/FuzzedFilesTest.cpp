@@ -69,7 +69,7 @@ std::vector<Use> allUses() {
   const auto add = [&uses](const Words& readers, const std::vector<Words>& commands) {
     for (const auto& reader : readers) uses.push_back({reader, commands});
   };
-  add({"nifti", "nifti-gz", "mgh", "nrrd", "metaimage", "png", "minc1", "minc2"}, volume);
+  add({"nifti", "nifti-gz", "mgh", "nrrd", "metaimage", "png"}, volume);
   add({"gifti", "freesurfer-surface", "vtk", "vtp", "ply", "ply-text", "obj", "off", "stl",
        "stl-text", "mni-obj"},
       surface);
