@@ -2,12 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Heads of full size: out of the skull, to a thickness, through a study; of a macaque.
 
-#include "Explica/Geometry/FaceTree.h"
-#include "Explica/IO/SurfaceFile.h"
-#include "Explica/IO/VertexDataFile.h"
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Testing/Command.h"
-#include "Explica/Testing/FreeSurferSubject.h"
 #include "Explica/Testing/Grids.h"
 #include "QuickRuns.h"
 
@@ -86,41 +82,6 @@ TEST_F(WholeHead, Colin27IsAsThickAsOthers) {
   std::printf("mean thickness %.3f mm\n", mean);
   EXPECT_GT(mean, 2.3);
   EXPECT_LT(mean, 2.9);
-}
-
-TEST_F(WholeHead, BertIsAsThickAsFreeSurferSays) {
-  const fs::path bert = fs::path(EXPLICA_REAL_DATA) / "bert_freesurfer";
-  if (!fs::exists(bert)) GTEST_SKIP() << "skipped: no real data";
-  const fs::path image = bert / "mri/brain.mgz";
-  const auto run = patiently({"segment", image, "--out", folder_ / "segment"});
-  ASSERT_EQ(run.exitCode, 0) << run;
-  const auto made = surface(image);
-  ASSERT_EQ(made.exitCode, 0) << made;
-  const auto white = io::readSurface(folder_ / "surface/white.surf.gii").mesh;
-  const auto thickness = io::readVertexMaps(folder_ / "surface/thickness.shape.gii").front().values;
-  const geometry::FaceTree tree(white);
-  ThicknessComparison comparison;
-  double distance = 0, points = 0;
-  for (const auto& vertex : knownVertices(bert / "lh.thickness_at_known_vertices.csv.gz")) {
-    const auto nearest = tree.closestPoint(vertex.place);
-    double sum = 0;
-    for (int c = 0; c < 3; ++c) sum += thickness[white.faces(nearest.face, c)];
-    distance += std::sqrt(nearest.squaredDistance);
-    points += 1;
-    if (sum > 0) comparison.add(vertex, sum / 3);
-  }
-  const double mean = numberOf(folder_ / "surface", "thickness_mean");
-  const auto regions = comparison.regions(bert / "stats/lh.aparc.stats");
-  std::printf(
-      "mean %.3f mm (FreeSurfer 2.603); known points %.3f mm from the white surface, thickness r "
-      "%.3f, difference %.3f mm; %zu regions r %.3f\n",
-      mean, distance / points, comparison.vertexCorrelation(), comparison.difference(),
-      regions.count, regions.correlation);
-  EXPECT_NEAR(mean, 2.603, 0.15);
-  EXPECT_LT(distance / points, 0.31);
-  EXPECT_GT(comparison.vertexCorrelation(), 0.81);
-  EXPECT_LT(comparison.difference(), 0.36);
-  EXPECT_GT(regions.correlation, 0.95);
 }
 
 /// Which numbers of a head were implausible.
