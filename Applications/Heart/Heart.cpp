@@ -283,6 +283,9 @@ void report(Context& context, const ventricle::HeartRoles& roles, const ventricl
   result(context, "thickness_plain_ed", ed.plain);
   result(context, "axis_angle_deg", ed.axis.stackAngleDeg);
   result(context, "axis_spread_mm", ed.axis.spreadMm);
+  result(context, "slice_shift_rms_mm", beat.alignment.rms);
+  result(context, "slice_shift_max_mm", beat.alignment.largest);
+  result(context, "slope_error_deg", beat.alignment.slopeErrorDeg);
   context.result("orientation", std::string(nameOf(beat.orientation.source)));
   result(context, "septum_deg", beat.orientation.septumDeg);
   context.result("measured", ed.measures->bySlice ? "by slice" : "in space");
