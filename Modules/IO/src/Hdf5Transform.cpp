@@ -51,14 +51,15 @@ void writeGroup(const std::filesystem::path& path, hid_t file, const std::string
 void writeText(const std::filesystem::path& path, hid_t file, const std::string& name,
                const std::string& text) {
   const Handle type(path, H5Tcopy(H5T_C_S1), H5Tclose);
-  check(path, H5Tset_size(type, text.size() + 1));
+  check(path, H5Tset_size(type, H5T_VARIABLE));  // ITK reads no other
   const hsize_t one = 1;
   const Handle space(path, H5Screate_simple(1, &one, nullptr), H5Sclose);
   const Handle properties = timeless(path, H5P_DATASET_CREATE);
   const Handle data(
       path, H5Dcreate2(file, name.c_str(), type, space, H5P_DEFAULT, properties, H5P_DEFAULT),
       H5Dclose);
-  check(path, H5Dwrite(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.c_str()));
+  const char* const begin = text.c_str();
+  check(path, H5Dwrite(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, &begin));
 }
 
 void writeNumbers(const std::filesystem::path& path, hid_t file, const std::string& name,
