@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Segmentation/Plausibility.h"
 
-#include "VoxelSets.h"
+#include "Explica/Core/VoxelSets.h"
 
 #include "Explica/Core/Runs.h"
 
@@ -23,6 +23,18 @@ constexpr Limit kLimits[] = {
     {"labels", "the share of neighbours of equal value in an image of whole numbers", "", 0, 0.5,
      "the image looks like a map of labels; give the T1 itself",
      "measured: T1s 0.00 to 0.24, anatomical label maps 0.85 to 0.95"},
+    {"thick-slices", "the longest edge of a voxel", "mm", 0, 5,
+     "the image looks like a stack of thick slices, as of a heart; give a T1 of a head in voxels "
+     "of "
+     "about 1 mm",
+     "cortex is 2.5 mm thick; stacks of hearts have 6 to 10 mm"},
+    {"bright-fluid", "the skewness of brightness deep in the head", "", -1, 0.2,
+     "the fluid is bright, so the image looks like a T2; give the T1 of the same person",
+     "measured: nine T1s -0.68 to 0.12; T2s simulated from three label maps 0.30 to 0.75"},
+    {"bright-vessels", "the brightest thousandth deep in the head over the median", "", 0, 2.3,
+     "a few voxels are far brighter than the rest, so the image looks like an angiogram, or like "
+     "one with contrast agent in vessels; give a T1 without",
+     "measured: nine T1s 1.1 to 2.0; angiograms simulated from three label maps 2.6 to 2.9"},
     {"contrast", "how much rather dark than bright tissue lies at the brain's rim", "", 1,
      kInfinity,
      "white matter should be bright and lie deep, fluid dark and outside; the contrast is inverted "
@@ -41,6 +53,11 @@ constexpr Limit kLimits[] = {
      "in the report, or give --atlas",
      "breadth over length of heads is 0.7 to 0.9; measured: heads 1.00 to 1.20, half a brain 1.92 "
      "(Modules/Registration/README.md)"},
+    {"brain-border", "the share of the brain's border beyond which tissue goes on", "", 0, 0.02,
+     "the mask may cut through cortex; look at brain_mask.nii.gz, or give --mask",
+     "measured: 0.001 to 0.005 in simulated heads whose brain is whole, and in Colin27, where it "
+     "is "
+     "the spinal cord (Modules/Registration/README.md)"},
     {"brain-volume", "the brain's volume", "ml", 300, 2500,
      "skull or neck may be left in the brain, or parts of it missing; another species needs "
      "--template",

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
-#include "VoxelSets.h"
+#include "Explica/Core/VoxelSets.h"
 
 #include "Explica/Core/Parallel.h"
 
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-namespace explica::segmentation {
+namespace explica {
 namespace {
 
 constexpr float kFar = std::numeric_limits<float>::infinity();  // no voxel of the set anywhere
@@ -109,4 +109,4 @@ Components componentsOf(const VoxelSet& set) {
   return components;
 }
 
-}  // namespace explica::segmentation
+}  // namespace explica

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace explica::segmentation {
+namespace explica {
 
 using VoxelSet = Volume<std::uint8_t>;  ///< nonzero: in the set
 
@@ -24,4 +24,4 @@ struct Components {
 };
 [[nodiscard]] Components componentsOf(const VoxelSet& set);
 
-}  // namespace explica::segmentation
+}  // namespace explica
