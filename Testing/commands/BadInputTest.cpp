@@ -155,6 +155,7 @@ const VolumeCommand kSurfaceCommands[] = {
     {"Compare", {"compare", "{file}", "{file}"}},
     {"Inflate", {"inflate", "{file}"}},
     {"Smooth", {"smooth", "{file}", "--surface", "{file}", "--fwhm", "3"}},
+    {"Sphere", {"sphere", "{file}"}},
 };
 
 const BadSurface kBadPolygons[] = {

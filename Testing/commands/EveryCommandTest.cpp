@@ -59,6 +59,7 @@ std::string endOf(const std::string& name) {
       {"PolygonPhantom", "target-reached"},
       {"Repair", "converged"},
       {"Segment", "max-iterations"},
+      {"Sphere", "converged"},
       {"Thickness", "converged"},
       {"Unfold", "max-iterations"},
   };

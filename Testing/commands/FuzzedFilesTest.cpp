@@ -39,7 +39,8 @@ std::vector<Use> allUses() {
                                      map + Words{"--mask", "{file}"}};
   const std::vector<Words> surface = {{"compare", "{file}", "{file}", "--pairs", "10"},
                                       {"inflate", "{file}", "--max-iterations", "1"},
-                                      {"repair", "{file}"}};
+                                      {"repair", "{file}"},
+                                      {"sphere", "{file}", "--max-iterations", "1"}};
   const std::vector<Words> maps = {{"cifti", "--left", "{file}"}};
   const Words region = {"unfold",           "{folder}/white.off",
                         "--direction",      "0,0,1",

@@ -35,6 +35,16 @@ inline void writeFoldedSphere(const TemporaryFolder& folder) {
   io::writeSurface(folder / "sphere.surf.gii", geometry::makeFoldedSphere(3, 30.0));
 }
 
+/// A sphere with two folding maps beside it, named as FreeSurfer's.
+inline void writeSphereWithFolds(const TemporaryFolder& folder) {
+  const TriangleMesh sphere = geometry::makeIcosphere(3, 100.0);
+  io::writeFreeSurferSurface(folder / "lh.sphere", sphere);
+  const auto x = sphere.positions.col(0).array() / 100, y = sphere.positions.col(1).array() / 100,
+             z = sphere.positions.col(2).array() / 100;
+  io::writeFreeSurferCurv(folder / "lh.sulc", ((5 * x).sin() + 2 * y * z).matrix(), 1280);
+  io::writeFreeSurferCurv(folder / "lh.curv", ((9 * z + x).cos() + y).matrix(), 1280);
+}
+
 /// The upper part of it, with a rim.
 inline void writeFoldedCap(const TemporaryFolder& folder) {
   const TriangleMesh sphere = geometry::makeFoldedSphere(3, 30.0);
@@ -216,6 +226,11 @@ inline const std::vector<QuickRun>& quickRuns() {
        {},
        {"inflate", "{folder}/sphere.surf.gii", "--max-iterations", "3", "--frames", "2"},
        writeFoldedSphere},
+      {"Register",
+       {},
+       {"register", "{folder}/lh.sphere", "--to", "{folder}/lh.sphere", "--level", "3"},
+       writeSphereWithFolds},
+      {"Sphere", {}, {"sphere", "{folder}/sphere.surf.gii"}, writeFoldedSphere},
       {"Run",
        {kShell},
        {"run", "{folder}/shell/labels.nii.gz", "--kind", "labels", "--steps", "thickness,report",

@@ -152,6 +152,15 @@ explica polygon p34/polygon.csv --region 0:34 --viewpoint 80.9,4000 --out flat)"
 explica surface shell/labels.nii.gz --white 1 --grey 2 --faces 2000 --atlas shell/labels.nii.gz \
   --out surfaces
 explica regions surfaces --atlas surfaces/regions.label.gii --hemisphere L --out tables)"},
+      {"register",
+       "a sphere with sulcal depth and curvature beside it, and a template or another person",
+       "the sphere in the template's frame: equal places have equal folds, one to one",
+       {"template", "to", "sulc", "curvature", "surfaces", "mirror", "smoothness", "max-areal"},
+       R"(explica phantom cortex --size 32 --spacing 2 --out cortex
+explica surface cortex/labels.nii.gz --white 3 --grey 2 --faces 2000 --out surfaces
+explica sphere surfaces/white.surf.gii --out sphere
+explica register sphere/sphere.surf.gii --surfaces surfaces --to sphere/sphere.surf.gii \
+  --to-sulc surfaces/sulc.shape.gii --to-curvature surfaces/curvature.shape.gii --out registered)"},
       {"repair",
        "a triangulated surface, or several with the same faces",
        "the surface with crossing faces parted, the same vertices and faces",
@@ -208,6 +217,13 @@ explica segment cortex/t1.nii.gz --out tissue)"},
        R"(explica phantom shell --size 32 --out shell
 explica surface shell/labels.nii.gz --white 1 --grey 2 --faces 2000 --out surfaces
 explica smooth surfaces/thickness.shape.gii --surface surfaces/mid.surf.gii --fwhm 5 --out smooth)"},
+      {"sphere",
+       "a closed surface, such as a hemisphere's white surface",
+       "the surface one to one on a sphere, and what that does to areas and shapes",
+       {"balance", "tolerance", "max-iterations"},
+       R"(explica phantom cortex --size 32 --spacing 2 --out cortex
+explica surface cortex/labels.nii.gz --white 3 --grey 2 --faces 2000 --out surfaces
+explica sphere surfaces/white.surf.gii --out sphere)"},
       {"study check",
        "a study file",
        "what each run would do, or the first fault with its line and remedy",

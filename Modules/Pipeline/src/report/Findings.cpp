@@ -146,6 +146,13 @@ constexpr std::array kFindings = {
             "Largest of each face."},
     Finding{"inflate", "geodesic_error_local", "", "Error of distances within 30 mm", "",
             Shown::Percent, "Along the surface, at the scale that suits it best."},
+    Finding{"sphere", "turned_over", "", "Faces turned over", "", Shown::Plain, ""},
+    Finding{"sphere", "areal_log2_mean", "", "Change of areas, mean of |log2|", "", Shown::Plain,
+            "Over the surface's area."},
+    Finding{"sphere", "stretch_median", "", "Largest over smallest stretch, median", "",
+            Shown::Plain, "Over the surface's area; 1 where angles are kept."},
+    Finding{"sphere", "stretch_p95", "", "Largest over smallest stretch, 95th percentile", "",
+            Shown::Plain, ""},
 };
 
 std::string shownAs(Shown shown, double value) {

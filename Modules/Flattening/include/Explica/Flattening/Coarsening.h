@@ -26,12 +26,14 @@ struct CoarseningLevel {
   std::vector<Removal> removals;  ///< in order, between this level and the next coarser one
 };
 
-/// Takes vertices out of a disc without holes, evenly, until about `smallest` are left.
+/// Takes vertices out of a disc without holes or of a closed surface of genus 0, evenly, until
+/// about `smallest` are left; a closed surface can be taken down to 4.
 ///
 /// The surface is treated as its edge lengths alone: the length of a new edge is that of the
 /// straight way through the faces about the removed vertex, unfolded.  So a coarse level keeps the
 /// distances of the folds which its vertices can no longer show [Shen2019 insert vertices again in
 /// the reverse order, which a one-to-one map always allows].
+/// @param rim       empty for a closed surface
 /// @param anyShape  do not stop short of `smallest` where only needles would be left
 /// @return levels from the finest on; the last has no removals
 [[nodiscard]] std::vector<CoarseningLevel> coarsen(const IntrinsicMesh& mesh, const Loop& rim,
