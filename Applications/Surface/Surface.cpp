@@ -218,6 +218,13 @@ void declare(Declaration& d, Settings& s) {
                    "volume (orig.mgz) whose surface RAS FreeSurfer files use, read or written "
                    "(default: the labels, if FreeSurfer's)",
                    s.fsVolume, "Output");
+  d.excludes("parcellation", {"atlas", "atlas-legend"})
+      .excludes("no-fill", {"fill"})
+      .excludes("outer-level", {"grey-share"})
+      .needs({"outer-level", "grey-share", "insulated-mask", "level"}, {"inner-level"})
+      .needs({"atlas-legend"}, {"atlas"})
+      .needs({"fluid"}, {"image"})
+      .needs({"surface-space"}, {"white-surface"});
   declareAccept(d, s.accept);
   declareOutputs(d);
 }

@@ -62,6 +62,8 @@ TEST_P(BadVolumeInput, IsRefusedInOneSentence) {
   std::replace(words.begin(), words.end(), std::string("{file}"), file);
   const auto result = explica(words + std::vector<std::string>{"--out", folder / "out"});
   EXPECT_EQ(faultOfRefusal(result, file, volume.message), "") << result;
+  const auto dry = explica(words + std::vector<std::string>{"--dry-run", "--out", folder / "out"});
+  EXPECT_EQ(faultOfRefusal(dry, file, volume.message), "") << dry;
   EXPECT_EQ(folder.entries(), before);
 }
 

@@ -79,6 +79,15 @@ TEST(Framework, WrongUseIsExitCodeOneWithAHint) {
       {{"verfy", "x"}, "did you mean 'verify'?"},
       {{"phantom", "cube"}, "unknown kind 'cube'"},
       {{"phantom", "shell"}, "--out is missing"},
+      {{"thickness"}, "nothing is given to work on; usage: explica thickness [SEG] --out DIR"},
+      {{"run", "T1.nii.gz", "--hemi", "L", "--out", folder / "a"}, "did you mean --hemisphere?"},
+      {{"bids", "in", "out", "group", "--hemisphere", "L"}, "did you mean --hemispheres?"},
+      {{"run", "T1.nii.gz", "--hemispheres", "L"}, "did you mean --hemisphere?"},
+      {{"flatten", "a.gii", "--overlay", "b.gii"}, "did you mean --map?"},
+      {{"unfold", "a.gii", "--overwrite"}, "did you mean --force?"},
+      {{"surface", "a.nii", "--faces", "9"}, "100 to 100,000,000"},
+      {{"view", folder.path().string(), "--screenshot", folder / "a.png"},
+       "is a folder: --screenshot draws surfaces"},
       {{"verify"}, "PROVENANCE is missing"},
       {shell(folder / "a", {"--sizes", "3"}), "did you mean --size?"},
       {shell(folder / "a", {"--size", "9"}), "--size"},
@@ -99,6 +108,18 @@ TEST(Framework, WrongUseIsExitCodeOneWithAHint) {
     EXPECT_TRUE(result.out.empty()) << result;
   }
   EXPECT_TRUE(folder.entries().empty());
+}
+
+TEST(Framework, AFolderWithoutARecordIsSaidSo) {
+  const TemporaryFolder folder;
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"verify"}, {"history"}, {"replay", "--out", folder / "a"}}) {
+    auto all = words;
+    all.insert(all.begin() + 1, folder.path().string());
+    const auto result = explica(all);
+    EXPECT_EQ(result.exitCode, 2) << result;
+    EXPECT_TRUE(contains(result.err, "holds no provenance.json; name a folder")) << result;
+  }
 }
 
 TEST(Framework, OptionsAreJudgedBeforeAnyFileIsOpened) {

@@ -14,7 +14,8 @@ const std::vector<FirstHelp>& allFirstHelp() {
       {"bids",
        "a BIDS data set: segmentations, FreeSurfer subjects or T1 images",
        "a derivative with surfaces, thickness and unfolded patches, and a table of the study",
-       {"participant-label", "hemispheres", "steps", "unfold-surface", "given-surfaces"},
+       {"participant-label", "hemispheres", "steps", "unfold-surface", "given-surfaces",
+        "unfold.center", "unfold.direction", "unfold.radius"},
        R"(explica phantom cortex --size 32 --spacing 2 --out phantom
 mkdir -p data/sub-01/anat
 cp phantom/labels.nii.gz data/sub-01/anat/sub-01_dseg.nii.gz
@@ -192,7 +193,8 @@ explica resample surfaces/thickness.shape.gii --from surfaces/white.surf.gii --t
       {"run",
        "a T1, a label volume, a FreeSurfer subject or an anat folder of fMRIPrep",
        "tissues, thickness, surfaces, an unfolded patch, and a report on all of them",
-       {"atlas", "kind", "hemisphere", "unfold-surface", "given-surfaces", "steps", "resume"},
+       {"atlas", "kind", "hemisphere", "unfold-surface", "given-surfaces", "steps", "resume",
+        "unfold.center", "unfold.direction", "unfold.radius"},
        R"(explica phantom cortex --size 32 --spacing 2 --out cortex
 explica run cortex/labels.nii.gz --surface.faces 2000 --unfold.max-iterations 5 --out result \
   || [ $? -eq 3 ])"},

@@ -138,7 +138,10 @@ bool Verification::allSame() const {
 
 fs::path recordAt(const fs::path& place) {
   std::error_code ignored;
-  return fs::is_directory(place, ignored) ? place / kRecordName : place;
+  if (!fs::is_directory(place, ignored)) return place;
+  if (fs::exists(place / kRecordName, ignored)) return place / kRecordName;
+  throw InvalidInput(place.string() + ": holds no " + kRecordName +
+                     "; name a folder that explica has written, or a record");
 }
 
 fs::path locateInput(const Json& record, std::size_t input, const fs::path& recordPath) {

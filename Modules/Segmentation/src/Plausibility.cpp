@@ -18,10 +18,10 @@ namespace {
 // What an image must be within to be believed, and where the limit comes from.
 constexpr Limit kLimits[] = {
     {"hounsfield", "the share of voxels below -500", "", 0, 0.05,
-     "the image looks like a CT; give a T1-weighted one",
+     "this looks like a CT; give a T1-weighted image",
      "air is -1000 in a CT and 0 or noise in a magnitude image"},
-    {"labels", "the share of neighbours of equal value in an image of whole numbers", "", 0, 0.5,
-     "the image looks like a map of labels; give the T1 itself",
+    {"labels", "the share of neighbouring voxels of equal value", "", 0, 0.5,
+     "this looks like a label image; give the T1 itself",
      "measured: T1s 0.00 to 0.24, anatomical label maps 0.85 to 0.95"},
     {"thick-slices", "the longest edge of a voxel", "mm", 0, 5,
      "the image looks like a stack of thick slices, as of a heart; give a T1 of a head in voxels "
@@ -35,10 +35,9 @@ constexpr Limit kLimits[] = {
      "a few voxels are far brighter than the rest, so the image looks like an angiogram, or like "
      "one with contrast agent in vessels; give a T1 without",
      "measured: nine T1s 1.1 to 2.0; angiograms simulated from three label maps 2.6 to 2.9"},
-    {"contrast", "how much rather dark than bright tissue lies at the brain's rim", "", 1,
-     kInfinity,
-     "white matter should be bright and lie deep, fluid dark and outside; the contrast is inverted "
-     "or the image is not T1-weighted",
+    {"contrast", "the ratio of dark to bright tissue at the brain's surface", "", 1, kInfinity,
+     "this does not look like a T1-weighted brain, whose white matter is bright and deep and whose "
+     "fluid is dark and outside",
      "a T1 without fluid at its rim, stripped along the folds, has 3, bert 26; below 1 bright "
      "tissue "
      "lies outside"},
@@ -79,8 +78,8 @@ constexpr Limit kLimits[] = {
     {"without-thickness", "the share of grey voxels without thickness", "", 0, 0.02,
      "the tissue does not lie between its two borders there",
      "measured: 0 to 0.3 % in whole hemispheres"},
-    {"defects", "the number of topological defects", "", 0, 300,
-     "the white matter is full of holes or bridges",
+    {"defects", "the number of handles and holes", "", 0, 300,
+     "poor segmentation of the white matter",
      "measured: 15 to 120 in good segmentations of a hemisphere; FreeSurfer's 'surface holes' of "
      "more than 200 are taken for failures (Rosen et al. 2018, NeuroImage 169:407)"},
 };
@@ -103,8 +102,10 @@ std::string rangeOf(const Limit& limit) {
 
 std::string sentenceOf(const Limit& limit, double value) {
   const std::string unit = limit.unit.empty() ? "" : " " + std::string(limit.unit);
-  return std::string(limit.what) + " is " + shortNumber(value) + unit + ", expected " +
-         rangeOf(limit) + ": " + std::string(limit.remedy);
+  const std::string found =
+      std::isnan(value) ? " cannot be computed" : " is " + shortNumber(value) + unit;
+  return std::string(limit.remedy) + " (" + std::string(limit.what) + found + ", expected " +
+         rangeOf(limit) + ")";
 }
 
 template <class T>
