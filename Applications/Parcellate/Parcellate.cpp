@@ -5,6 +5,7 @@
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/IO/LabelNames.h"
+#include "Explica/IO/StatedHemisphere.h"
 #include "Explica/IO/VertexFile.h"
 #include "Explica/Maps/Icosphere.h"
 #include "Explica/Maps/Parcellation.h"
@@ -55,7 +56,7 @@ std::string prefixOf(const Settings& s) {
   if (s.hemisphere && *s.hemisphere != "L" && *s.hemisphere != "R") {
     throw UsageError("--hemisphere must be L or R");
   }
-  const std::string said = io::vertexDataStructure(s.atlases.front());
+  const std::string said = io::statedStructure(s.atlases.front());
   if (!s.hemisphere && said.empty()) {
     throw UsageError("'" + s.atlases.front() +
                      "' does not say of which hemisphere it is; say it with --hemisphere L or R");

@@ -9,6 +9,7 @@
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/IO/RegionFiles.h"
+#include "Explica/IO/StatedHemisphere.h"
 #include "Explica/IO/VertexFile.h"
 #include "Explica/Maps/Folding.h"
 #include "Explica/Maps/Regions.h"
@@ -73,7 +74,7 @@ std::string sideOf(const Settings& s) {
     }
     return *s.hemisphere;
   }
-  const std::string structure = io::vertexDataStructure(s.atlases.front());
+  const std::string structure = io::statedStructure(s.atlases.front());
   if (structure.empty()) {
     throw UsageError("'" + s.atlases.front() +
                      "' does not say of which hemisphere it is; say it with --hemisphere L or R");

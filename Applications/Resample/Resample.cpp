@@ -6,6 +6,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/StopScope.h"
 #include "Explica/Geometry/MeshMeasures.h"
+#include "Explica/IO/StatedHemisphere.h"
 #include "Explica/IO/VertexFile.h"
 #include "Explica/Maps/Icosphere.h"
 #include "Explica/Maps/Resampling.h"
@@ -153,7 +154,7 @@ CarriedFile readFile(const std::string& path, const io::LoadedSurface& from,
                        std::to_string(from.mesh.vertexCount()));
   }
   io::requireSameHemisphere(path, from.metadata.structure);
-  file.structure = io::vertexDataStructure(path);
+  file.structure = io::statedStructure(path);
   if (file.structure.empty()) file.structure = from.metadata.structure;
   if (file.kind == io::VertexFileKind::Labels) {
     file.labels = io::readVertexLabels(path, from.mesh.vertexCount());

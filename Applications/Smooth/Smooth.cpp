@@ -6,6 +6,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
+#include "Explica/IO/StatedHemisphere.h"
 #include "Explica/IO/VertexFile.h"
 #include "Explica/Maps/Smoothing.h"
 
@@ -95,8 +96,7 @@ std::vector<MapFile> readMapFiles(const Settings& s, const io::LoadedSurface& su
     }
     io::requireSameHemisphere(path, surface.metadata.structure);
     MapFile file{path, io::nameWithEntity(path, "fwhm-" + shortNumber(s.fwhm)),
-                 io::vertexDataStructure(path),
-                 io::readVertexMaps(path, surface.mesh.vertexCount())};
+                 io::statedStructure(path), io::readVertexMaps(path, surface.mesh.vertexCount())};
     if (file.structure.empty()) file.structure = surface.metadata.structure;
     if (!names.insert(file.output).second) {
       throw UsageError("two maps would be written to '" + file.output +

@@ -45,4 +45,10 @@ std::optional<Hemisphere> statedHemisphere(const std::filesystem::path& file) {
   return hemisphereOf(structureFromName(file));
 }
 
+std::string statedStructure(const std::filesystem::path& file) {
+  const std::optional<Hemisphere> stated = statedHemisphere(file);
+  if (!stated) return {};
+  return *stated == Hemisphere::Left ? "CortexLeft" : "CortexRight";
+}
+
 }  // namespace explica::io

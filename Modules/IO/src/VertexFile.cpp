@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "Explica/IO/VertexFile.h"
+#include "Explica/IO/StatedHemisphere.h"
 
 #include "Explica/Core/Errors.h"
 
@@ -77,7 +78,7 @@ void writeVertexMaps(const std::filesystem::path& path, const std::vector<Vertex
 }
 
 void requireSameHemisphere(const std::filesystem::path& path, const std::string& structure) {
-  const std::string said = vertexDataStructure(path);
+  const std::string said = statedStructure(path);
   const bool known = structure == "CortexLeft" || structure == "CortexRight";
   if (said.empty() || !known || said == structure) return;
   throw InvalidInput(
