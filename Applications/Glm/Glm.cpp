@@ -34,11 +34,11 @@ Maps are best smoothed before (explica smooth): random field theory assumes a sm
           "--contrast 'thinner=group[patient] - group[control]' --surface lh.pial "
           "--permutations 10000 --tfce --out thinner",
           "Where patients' cortex is thinner")
-      .input("MAPS", FileKind::Table,
+      .input("LIST", FileKind::Table,
              "list of maps (a row a person, columns file, or left and right), or table of regions",
              s.regions)
-      .inputOption("maps", FileKind::Table, "list of maps, instead of MAPS", s.maps)
-      .inputOption("table", FileKind::Table, "what is known of people (default: MAPS itself)",
+      .inputOption("maps", FileKind::Table, "list of maps, instead of LIST", s.maps)
+      .inputOption("table", FileKind::Table, "what is known of people (default: LIST itself)",
                    s.table)
       .inputOption("surface", FileKind::Surface,
                    "surface whose vertices the maps are on; left and right if there are two",

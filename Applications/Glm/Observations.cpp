@@ -257,7 +257,7 @@ void observeMaps(Context& context, const GlmSettings& s, const Table& list, Obse
 
 Observations readObservations(Context& context, const GlmSettings& s) {
   if (s.regions.has_value() == s.maps.has_value()) {
-    throw UsageError("give a list of maps or a table of regions: MAPS, or --maps");
+    throw UsageError("give a list of maps or a table of regions: LIST, or --maps");
   }
   const Table list = readTable(s.maps ? *s.maps : *s.regions);
   if (list.rows.empty()) throw InvalidInput("'" + list.name + "': holds nobody");
