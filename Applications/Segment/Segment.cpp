@@ -346,6 +346,9 @@ void judgeTissue(Context& context, Judge& judge, const segmentation::TissueSegme
   const double contrast = segmentation::rimContrast(tissue.labels);
   context.result("rim_contrast", contrast);
   judge.require("contrast", contrast);
+  const double edge = segmentation::greyAtMaskEdge(tissue.labels);
+  context.result("grey_at_mask_edge", edge);
+  judge.flag("mask-edge", edge);
   const double volume =
       static_cast<double>(tissue.brainVoxels) * tissue.labels.grid.voxelVolume() / 1000;
   context.result("brain_volume_ml", volume);
