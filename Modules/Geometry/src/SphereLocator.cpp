@@ -14,8 +14,8 @@
 namespace explica::geometry {
 namespace {
 
-constexpr double kUnitRounding = 1e-14;  // of unit vectors and of boxes about them
-constexpr int kLongestWalk = 64;         // faces crossed before the tree is asked
+constexpr double kUnitRounding = 1e-14;    // of unit vectors and of boxes about them
+constexpr int kLongestWalk = 64;           // faces crossed before the tree is asked
 constexpr std::size_t kFacesATask = 4096;  // some 0.1 ms of work
 
 /// Box of a spherical triangle of unit corners.  A point p of the flat triangle has |p|^2 >= 1 -

@@ -63,7 +63,7 @@ class Slurm(unittest.TestCase):
         self.assertEqual(list(rows), ["sub-01", "sub-02", "sub-03", "sub-04"])
         self.assertIn("stopped early (unfold)", rows["sub-01"])  # its two iterations
         self.assertIn("failed: ended from outside", rows["sub-02"])
-        self.assertIn("stopped early (unfold)", rows["sub-03"])
+        self.assertIn("interrupted (unfold)", rows["sub-03"])
         self.assertIn("04.nii.gz", rows["sub-04"])
         # The partial result is whole and says what it is.
         stopped = small_study.record(self.out, "03", "unfold")

@@ -49,7 +49,7 @@ inline constexpr const char* kNotPlaced = "none";
 /// Where a volume came from and how its file was understood; goes into the provenance record.
 struct VolumeOrigin {
   std::filesystem::path path;
-  std::string format;  ///< "NIfTI-1", "NIfTI-2", "MGH", "NRRD", "MetaImage", "PNG"
+  std::string format;           ///< "NIfTI-1", "NIfTI-2", "MGH", "NRRD", "MetaImage", "PNG"
   std::string storedType;       ///< "uint8", "float32", ...
   std::vector<int> storedSize;  ///< as the file has it, all dimensions
   std::string placement;        ///< "sform", "qform", "sform and qform agree", "none", "header"
