@@ -59,15 +59,6 @@ TEST(Framework, VersionNamesTheCommitAndWhatItWasBuiltWith) {
   }
 }
 
-TEST(Framework, StartsWithoutTheLibrariesThatWritingATransformNeeds) {
-  // By this the dynamic linker lists the libraries instead of starting the program.
-  CommandSetting listing;
-  listing.environment["LD_TRACE_LOADED_OBJECTS"] = "1";
-  const std::string libraries = explica({"--version"}, listing).out;
-  EXPECT_TRUE(contains(libraries, "libITKCommon")) << libraries;
-  EXPECT_FALSE(contains(libraries, "hdf5")) << libraries;
-}
-
 TEST(Framework, WrongUseIsExitCodeOneWithAHint) {
   TemporaryFolder folder;
   const struct {
