@@ -149,7 +149,8 @@ TEST_P(WholeHemisphere, CutByItselfKeepsDistancesAsWellAsWithCutsMadeByHand) {
   stays.keys.setZero(10242);
   stays.table = {{0, "out", {}}, {1, "in", {}}};
   for (const auto v : io::readPatch(folder / ("auto/" + name)).vertices) stays.keys[v] = 1;
-  io::writeGiftiLabel(folder / "stays.label.gii", stays, "CortexLeft");
+  io::writeGiftiLabel(folder / "stays.label.gii", stays,
+                      side == "right" ? "CortexRight" : "CortexLeft");
   const auto labelled =
       explica({"flatten", mid, "--cuts", folder / "stays.label.gii", "--out", folder / "label"});
   ASSERT_EQ(labelled.exitCode, 0) << labelled;
