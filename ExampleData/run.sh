@@ -1,25 +1,26 @@
 #!/bin/sh
 # SPDX-FileCopyrightText: The Explica developers
 # SPDX-License-Identifier: Apache-2.0
-# The worked example: installs what is needed, builds, and takes Colin27 (a real 1 mm T1 of Debian's
+# The worked example: installs what building takes, builds the program, and takes Colin27 (a real 1 mm T1 of Debian's
 # mricron-data, skull-stripped, with the AAL atlas in its space) from T1 to unfolded patches of both
 # hemispheres.  Safe to run again: steps that are still true are kept.
 #   ExampleData/run.sh [options of explica run]
 set -eu
 cd "$(dirname "$0")/.."
-Testing/setup.sh
+echo "1 of 3: packages (ExampleData/packages.txt) and the program"
+Testing/setup.sh --program
 
 templates=/usr/share/mricron/templates
 out=build/colin27
+echo "2 of 3: from T1 to unfolded patches; steps that an earlier run has done are kept"
 build/bin/explica run "$templates/ch2bet.nii.gz" --atlas "$templates/aal.nii.gz" --out "$out" --resume "$@" || status=$?
 # 3: stopped before its goal, with results.
 if [ "${status:-0}" != 0 ] && [ "${status:-0}" != 3 ]; then
   exit "$status"
 fi
-echo "Look at $PWD/$out/report.html in a browser"
-
 # The image on the patch of the left hemisphere, with AAL's regions: over the depth of the cortex, and flat.
 left=$out/surface-L
+echo "3 of 3: the T1 over the depth of the cortex, and on a flat map"
 if [ -d "$left" ] && [ -d "$out/unfold-L" ]; then
   sample="build/bin/explica sample $templates/ch2bet.nii.gz --surfaces $left --force --quiet"
   $sample --depths 11 --labels "$left/regions.label.gii" --out "$out-profiles"
@@ -29,6 +30,9 @@ if [ -d "$left" ] && [ -d "$out/unfold-L" ]; then
     --regions "$left/regions.label.gii" --out "$out-flat" --force --quiet
   for folder in "$out-profiles" "$out-flat"; do
     build/bin/explica report "$folder" --quiet
-    echo "and at $PWD/$folder/report.html"
   done
 fi
+echo "Look at $PWD/$out/report.html in a browser"
+for folder in "$out-profiles" "$out-flat"; do
+  if [ -f "$folder/report.html" ]; then echo "and at $PWD/$folder/report.html"; fi
+done

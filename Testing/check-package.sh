@@ -18,7 +18,7 @@ for package in $packages; do
   echo "$(basename "$package"): $(dpkg-deb --field "$package" Installed-Size) kB, depends on $(dpkg-deb --field "$package" Depends)"
   dpkg-deb --extract "$package" "$work/tree"
 done
-for file in bin/explica lib/explica/explica-window.so share/man/man1/explica.1 share/man/man1/explica-unfold.1 \
+for file in bin/explica lib/explica/explica-window share/man/man1/explica.1 share/man/man1/explica-unfold.1 \
   share/bash-completion/completions/explica share/zsh/vendor-completions/_explica \
   share/explica/study.schema.json share/explica/slurm/explica-study-slurm; do
   [ -e "$work/tree/usr/$file" ] || { echo "missing: /usr/$file"; exit 1; }

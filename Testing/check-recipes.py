@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-FileCopyrightText: The Explica developers
 # SPDX-License-Identifier: Apache-2.0
-"""Holds the lists of packages (Testing/packages.txt with the Containerfile, the conda recipe, and what libexplica-dev
+"""Holds the lists of packages (ExampleData/packages.txt, Testing/packages.txt, the Containerfile, the conda recipe, and what libexplica-dev
 depends on) to what CMake looks for, and the versions to CMake's: a library that is found by a build but not listed
 fails here, and so does one that is listed and not looked for.
 
@@ -16,6 +16,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 
 # What CMake looks for: Debian's package, conda-forge's.
 LIBRARIES = {
+    "Boost": ("libboost-dev", "libboost-headers"),
     "CLI11": ("libcli11-dev", "cli11"),
     "EXPAT": ("libexpat1-dev", "expat"),
     "Eigen3": ("libeigen3-dev", "eigen"),
@@ -53,7 +54,8 @@ def looked_for():
 
 
 def debian_packages():
-    lines = (ROOT / "Testing/packages.txt").read_text().splitlines()
+    lists = ("ExampleData/packages.txt", "Testing/packages.txt")
+    lines = [line for name in lists for line in (ROOT / name).read_text().splitlines()]
     return {line.split("#")[0].strip() for line in lines} - {""}
 
 
@@ -101,7 +103,7 @@ def main():
         if name not in found:
             wrong.append(f"nothing looks for {name} any more: take it off the lists")
         if LIBRARIES[name][0] not in debian:
-            wrong.append(f"Testing/packages.txt lacks {LIBRARIES[name][0]} ({name})")
+            wrong.append(f"the lists of packages lack {LIBRARIES[name][0]} ({name})")
         if LIBRARIES[name][1] not in conda:
             wrong.append(f"Wrapping/Conda/meta.yaml lacks {LIBRARIES[name][1]} ({name})")
     known = {pair[1] for pair in LIBRARIES.values()} | NOT_LIBRARIES

@@ -1,13 +1,26 @@
 #!/bin/sh
 # SPDX-FileCopyrightText: The Explica developers
 # SPDX-License-Identifier: Apache-2.0
-# Installs what Testing/packages.txt lists, if anything is missing, and builds Release into build/.
-# Safe to run again.  EXPLICA_PRESET=ci makes warnings errors.
+# Installs packages, where some are missing, and builds Release into build/.  Safe to run again.
+#   Testing/setup.sh              all: ExampleData/packages.txt, Testing/packages.txt; tests, window, Python module
+#   Testing/setup.sh --program    ExampleData/packages.txt and the program alone, as ExampleData/run.sh does
+# EXPLICA_PRESET=ci makes warnings errors.
 set -eu
 cd "$(dirname "$0")/.."
+lists="ExampleData/packages.txt Testing/packages.txt"
+target=all
+options="-DEXPLICA_BUILD_TESTS=ON -DEXPLICA_BUILD_PYTHON=ON -DEXPLICA_WITH_WINDOW=ON"
+if [ "${1:-}" = --program ]; then
+  lists=ExampleData/packages.txt
+  target=explica
+  options="-DEXPLICA_BUILD_TESTS=OFF -DEXPLICA_BUILD_PYTHON=OFF -DEXPLICA_WITH_WINDOW=OFF"
+  # A folder that is set up for tests stays so: only the program is built in it.
+  if grep -q '^EXPLICA_BUILD_TESTS:BOOL=ON' build/CMakeCache.txt 2>/dev/null; then options=""; fi
+fi
 
 missing=""
-for package in $(sed 's/#.*//' Testing/packages.txt); do
+# shellcheck disable=SC2086  # one word per list is meant
+for package in $(sed 's/#.*//' $lists); do
   if [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)" != installed ]; then
     missing="$missing $package"
   fi
@@ -25,6 +38,23 @@ if [ -n "$missing" ]; then
 fi
 
 # Debian's packages for Python belong to Debian's python3, whichever comes first in PATH.
-cmake --preset "${EXPLICA_PRESET:-release}" -DPython_EXECUTABLE=/usr/bin/python3
-cmake --build build
+# shellcheck disable=SC2086
+cmake --preset "${EXPLICA_PRESET:-release}" -DPython_EXECUTABLE=/usr/bin/python3 $options
+# A line for each minute less that is left, at the pace so far; all else as it comes.
+status=$(mktemp)
+{ NINJA_STATUS="built %f of %t files in %e s: " cmake --build build --target "$target" || echo $? >"$status"; } | awk '
+  /^built [0-9]+ of / {
+    left = $2 > 0 ? int($7 * ($4 - $2) / $2 / 60 + 0.99) : 0
+    if (!shown || left < said || $2 == $4) {
+      shown = 1
+      said = left
+      printf "setup: %d of %d files built, about %d min left\n", $2, $4, left
+      fflush()
+    }
+    next
+  }
+  { print; fflush() }'
+failed=$(cat "$status")
+rm -f "$status"
+[ -z "$failed" ] || exit "$failed"
 echo "setup: built build/bin/explica"

@@ -177,6 +177,7 @@ Ended doHemisphere(Context& context, const Settings& s, const study::Participant
   const std::string name = participant.name() + "_hemi-" + hemisphere;
   const fs::path folder = context.outputFolder() / "runs" / name;
   const fs::path problem = folder / "problem.txt";
+  const bool dry = context.given("dry-run");
   Ended ended = Ended::Done;
   try {
     if (!participant.problem.empty()) throw InvalidInput(participant.problem);
@@ -190,10 +191,11 @@ Ended doHemisphere(Context& context, const Settings& s, const study::Participant
     values["hemisphere"] = hemisphere;
     values["resume"] = true;
     const std::string other = hemisphere == "L" ? "R" : "L";
-    shareSegment(folder.parent_path() / (participant.name() + "_hemi-" + other), folder);
+    if (!dry) shareSegment(folder.parent_path() / (participant.name() + "_hemi-" + other), folder);
     const Outcome outcome = context.runCommand(*findCommand("run"), "runs/" + name, values);
     if (!reachedGoal(outcome.termination)) worst = outcome.termination;
     if (!outcome.plausible) passFlagsOn(context, folder);
+    if (dry) return ended;
     outcome.abandoned ? sayInterrupted(folder) : static_cast<void>(fs::remove(problem));
     if (!reachedGoal(outcome.termination) && context.monitor().shouldStop()) {
       ended = Ended::Interrupted;
@@ -206,6 +208,7 @@ Ended doHemisphere(Context& context, const Settings& s, const study::Participant
     sayProblem(context, name, folder, fault.what());
     ended = Ended::Failed;
   }
+  if (dry) return ended;
   const study::DerivativeOrigin origin{s.dataset, !context.isPrivate()};
   study::exportRun(folder, context.outputFolder(), participant, hemisphere, origin);
   return ended;
@@ -215,8 +218,10 @@ Ended doHemisphere(Context& context, const Settings& s, const study::Participant
 Termination doParticipants(Context& context, const Settings& s) {
   const StopScope kept(nullptr);  // what is reached is written
   const auto participants = study::findParticipants(s.dataset, s.participants);
-  study::describeDerivatives(context.outputFolder(), {s.dataset, !context.isPrivate()},
-                             provenance::software().version);
+  if (!context.given("dry-run")) {
+    study::describeDerivatives(context.outputFolder(), {s.dataset, !context.isPrivate()},
+                               provenance::software().version);
+  }
   Termination worst = Termination::NotRun;
   int done = 0;
   std::vector<std::string> failed, interrupted;

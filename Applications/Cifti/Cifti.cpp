@@ -44,6 +44,10 @@ void declare(Declaration& d, Settings& s) {
                    s.leftCortex)
       .inputOption("right-cortex", FileKind::VertexData, "not 0 where the right cortex is",
                    s.rightCortex)
+      .ofSide("left", Hemisphere::Left)
+      .ofSide("left-cortex", Hemisphere::Left)
+      .ofSide("right", Hemisphere::Right)
+      .ofSide("right-cortex", Hemisphere::Right)
       .option("Output", Field{"name", "", "name of the file, without its ending"}, s.name)
       .option("Output", Field{"seconds", "s", "time between maps that are a series"}, s.seconds)
       .output("*.dscalar.nii", FileKind::Any, "maps of both hemispheres")

@@ -44,6 +44,7 @@ A run that is stopped holds the surfaces that it has measured, the first at any 
                    s.label, "Region")
       .option("Region", Field{"label-key", "", "compare only where --label has this key"},
               s.labelKey)
+      .needs({"label-key"}, {"label"})
       .option("Distances",
               Field{"pairs", "", "pairs of vertices in each of the two groups", 0, 1e8},
               s.distances.pairs)

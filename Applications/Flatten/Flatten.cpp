@@ -28,11 +28,16 @@
 #include "Explica/Report/FlatFigure.h"
 #include "Explica/Unfolding/Account.h"
 #include "Explica/Unfolding/FlatSummary.h"
+#include "Explica/Unfolding/Distortion.h"
+
+#include <fnmatch.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <numeric>
+#include <set>
 
 namespace explica::app {
 namespace {
@@ -127,7 +132,7 @@ With --surfaces the map becomes a stack of depths: grid.nii.gz gives each cell i
                     "what stays of a hemisphere: FreeSurfer patch, label (not 0), flat map, or "
                     "auto: cuts are found"},
               s.cuts)
-      .inputOption("cortex", FileKind::Any,
+      .inputOption("cortex", FileKind::VertexData,
                    "for --cuts auto, where there is cortex: label, annot, or map (not 0)", s.cortex,
                    "Region")
       .options("Region", s.cut, "cut.")
@@ -161,7 +166,9 @@ With --surfaces the map becomes a stack of depths: grid.nii.gz gives each cell i
                     1, 1000},
               s.depths)
       .option("Grid",
-              Field{"surfaces", "", "folder with the white and pial surface of the same vertices"},
+              Field{"surfaces", "",
+                    "folder with the white and pial surface of the same vertices, named as explica "
+                    "surface, FreeSurfer, fMRIPrep, the HCP or pycortex do"},
               s.surfaces)
       .inputOption("volumes", FileKind::Volume, "volumes to resample into the grid, 3-D or 4-D",
                    s.volumes, "Grid")
@@ -173,7 +180,11 @@ With --surfaces the map becomes a stack of depths: grid.nii.gz gives each cell i
                    "Patch")
       .inputOption("regions", FileKind::VertexLabel,
                    "regions for patch.tsv, their outlines in their own colours for flat.png",
-                   s.regions, "Patch");
+                   s.regions, "Patch")
+      .needs({"label-key"}, {"label"})
+      .needs({"cortex", "cut.strain", "cut.most"}, {"cuts=auto"})
+      .needs({"depths"}, {"surfaces"})
+      .needs({"nearest"}, {"volumes"});
   declareOutputs(d);
 }
 
@@ -495,29 +506,69 @@ void writePatchTable(Context& context, const Settings& s, const Subject& subject
   report::writePng(context.output("flat.png"), report::flatFigure(flat, paint, marks));
 }
 
-/// The white and pial surface in a folder, by the names of `explica surface` or FreeSurfer's.
-std::array<Positions, 2> sheetSurfaces(Context& context, const Settings& s,
-                                       const Subject& subject) {
-  std::array<Positions, 2> sheet;
+/// The names of a hemisphere's white or pial surface: of explica surface, FreeSurfer, fMRIPrep, the
+/// HCP and pycortex.
+std::vector<std::string> namesOf(const std::string& surface, bool right) {
+  const std::string side = right ? "R" : "L", prefix = right ? "rh" : "lh";
+  const std::string pycortex = surface == "white" ? "wm" : "pia";
+  return {surface + ".surf.gii",
+          prefix + "." + surface,
+          prefix + "." + surface + ".surf.gii",
+          "*hemi-" + side + "_*" + surface + ".surf.gii",
+          "*." + side + "." + surface + ".*surf.gii",
+          pycortex + "_" + prefix + ".gii"};
+}
+
+/// The first file of a folder, or of its surf, whose name is one of these.
+std::optional<std::filesystem::path> fileNamed(const std::filesystem::path& folder,
+                                               const std::vector<std::string>& names) {
+  namespace fs = std::filesystem;
+  std::error_code absent;
+  for (const fs::path& place : {folder, folder / "surf"}) {
+    for (const std::string& name : names) {
+      std::set<fs::path> found;
+      for (const fs::directory_entry& entry : fs::directory_iterator(place, absent)) {
+        const std::string file = entry.path().filename().string();
+        if (fnmatch(name.c_str(), file.c_str(), 0) == 0) found.insert(entry.path());
+      }
+      if (!found.empty()) return *found.begin();
+    }
+  }
+  return {};
+}
+
+using Sheet = std::array<Positions, 2>;  // white and pial, each V x 3
+
+Sheet sheetSurfaces(Context& context, const Settings& s, const Subject& subject) {
+  Sheet sheet;
   const bool right = subject.reference.metadata.structure == "CortexRight";
-  const std::string side = right ? "rh." : "lh.";
-  for (int n = 0; n < 2; ++n) {
+  for (std::size_t n = 0; n < sheet.size(); ++n) {
     const std::string name = n == 0 ? "white" : "pial";
-    const std::filesystem::path folder = *s.surfaces;
-    std::filesystem::path found;
-    for (const std::string& candidate :
-         {name + ".surf.gii", side + name, side + name + ".surf.gii"}) {
-      if (found.empty() && std::filesystem::exists(folder / candidate)) found = folder / candidate;
+    const auto names = namesOf(name, right);
+    const auto found = fileNamed(*s.surfaces, names);
+    if (!found) {
+      std::string tried;
+      for (const std::string& one : names) tried += (tried.empty() ? "" : ", ") + one;
+      throw InvalidInput("surfaces: '" + *s.surfaces + "' has no " + name +
+                         " surface (looked for " + tried + ")");
     }
-    if (found.empty()) {
-      throw InvalidInput("surfaces: '" + folder.string() + "' has neither " + name +
-                         ".surf.gii nor " + side + name);
-    }
-    const auto loaded = readSurface(context, name, context.input(found, name).string(), s.reading);
-    requireSameVertices(loaded.mesh, subject.reference.mesh, found.string());
-    sheet[static_cast<std::size_t>(n)] = loaded.mesh.positions;
+    const auto loaded = readSurface(context, name, context.input(*found, name).string(), s.reading);
+    requireSameVertices(loaded.mesh, subject.reference.mesh, found->string());
+    sheet[n] = loaded.mesh.positions;
   }
   return sheet;
+}
+
+/// Reads what is written beside the map once, so that its faults are said before the long part.
+std::optional<Sheet> checkBeside(Context& context, const Settings& s, const Subject& subject) {
+  const Eigen::Index vertices = subject.reference.mesh.vertexCount();
+  for (const std::string& file : s.maps) static_cast<void>(io::readVertexMaps(file, vertices));
+  static_cast<void>(io::readRegions({s.regions.begin(), s.regions.end()}, vertices));
+  io::VolumeReadOptions first;
+  first.frame = 0;
+  for (const std::string& file : s.volumes) static_cast<void>(io::readGrid(file, first));
+  if (!s.surfaces) return {};
+  return sheetSurfaces(context, s, subject);
 }
 
 std::string volumeName(const std::string& path) {
@@ -554,13 +605,12 @@ std::vector<VolumeOnDemand<float>> framesOnGrid(const Settings& s, const std::st
   return frames;
 }
 
-void writeGrid(Context& context, const Settings& s, const Subject& subject,
+void writeGrid(Context& context, const Settings& s, const std::optional<Sheet>& surfaces,
                const flattening::Disc& disc, const TriangleMesh& flat) {
   flattening::FlatSheet sheet{flat.faces, flat.positions, disc.mesh.positions, disc.mesh.positions};
-  if (s.surfaces) {
-    const auto surfaces = sheetSurfaces(context, s, subject);
-    sheet.inner = surfaces[0](disc.vertexOrigin, Eigen::all);
-    sheet.outer = surfaces[1](disc.vertexOrigin, Eigen::all);
+  if (surfaces) {
+    sheet.inner = surfaces->front()(disc.vertexOrigin, Eigen::all);
+    sheet.outer = surfaces->back()(disc.vertexOrigin, Eigen::all);
   }
   flattening::FlatGridOptions options;
   options.cell = s.grid;
@@ -669,6 +719,7 @@ Termination run(Context& context, const Settings& s) {
   const StopScope kept(nullptr);  // what is reached is written
   const auto begin = Clock::now();
   const Subject subject = subjectOf(context, s);
+  const std::optional<Sheet> surfaces = checkBeside(context, s, subject);
   flattening::Disc whole = flattening::discOf(subject.reference.mesh, subject.faces);
   sayHowRead(context, subject.reference.origin);
   flattening::FlattenOptions options = s.flatten;
@@ -694,7 +745,7 @@ Termination run(Context& context, const Settings& s) {
   summary.turnedOverInFrames = writeFrames(context, subject, disc, map.frames);
   const Eigen::VectorXd areaRatio = measure(context, subject, disc, flat, summary);
   writePatchTable(context, s, subject, disc, map, areaRatio);
-  writeGrid(context, s, subject, disc, flat);
+  writeGrid(context, s, surfaces, disc, flat);
   context.results(summary);
   context.result("seconds_start", read);
   context.result("seconds_cut", made.secondsCut);

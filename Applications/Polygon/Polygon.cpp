@@ -119,6 +119,7 @@ void declare(Declaration& d, Settings& s) {
       .option("Output", Field{"frames", "", "write this many states on the way", 0, 100000},
               s.frames)
       .option("Output", Field{"stages", "", "panels of evolution.svg", 1, 1000}, s.stages)
+      .needs({"distance"}, {"direction"})
       .output("polygon.csv", FileKind::Polygon, "the polygon as it was understood")
       .output("unfolded.csv", FileKind::Polygon, "the unfolded polygon")
       .output("unfolded.vtp", FileKind::Polygon, "the same with flux and seen share of each edge")

@@ -43,6 +43,8 @@ void declare(Declaration& d, Settings& s) {
                    "vertex data (of explica sample, say) to show on the surfaces, on the unfolding "
                    "and flat, wherever it fits",
                    s.show.maps, "Page")
+      .oneByOne("map")
+      .excludes("out", {"page"})
       .inputOption(
           "reference", FileKind::Folder,
           "folder of others' results, of a person or a study or a FreeSurfer subject, whose "
@@ -54,7 +56,6 @@ void declare(Declaration& d, Settings& s) {
 
 std::filesystem::path pageOf(const Settings& s) {
   namespace fs = std::filesystem;
-  if (s.out && s.page) throw UsageError("--out and --page both say where the page goes; give one");
   if (s.page) return *s.page;
   if (!s.out) return fs::path(s.folder) / "report.html";
   if (fs::exists(*s.out)) {

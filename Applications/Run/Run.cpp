@@ -1,12 +1,15 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
+#include "Ending.h"
+
 #include "Explica/Application/Command.h"
 #include "Explica/Application/Execute.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/StopScope.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/IO/SurfaceFile.h"
+#include "Explica/IO/VolumeFile.h"
 #include "Explica/Pipeline/Asymmetry.h"
 #include "Explica/Pipeline/FolderReport.h"
 #include "Explica/Pipeline/Plan.h"
@@ -252,13 +255,34 @@ void sayWhatIsUsed(Context& context, const Settings& s, const pipeline::Plan& pl
                Json{{"kind", nameOf(plan.kind)}, {"used", used}, {"remarks", plan.remarks}});
 }
 
+/// Says what is used, and refuses what can be refused before the work; in a dry run also what the
+/// steps check of files that are there.
+void checkBeforehand(Context& context, const Settings& s, const pipeline::Plan& plan) {
+  context.judged();
+  sayWhatIsUsed(context, s, plan);
+  if (s.atlas) static_cast<void>(io::readGrid(*s.atlas));
+  if (!context.given("dry-run")) return;
+  for (const pipeline::PlannedStep& step : plan.steps) {
+    Json values = valuesOf(context, s, step);
+    if (step.command == "unfold") {
+      if (!fs::exists(values["SURFACE"].get<std::string>())) continue;
+      settleView(context, step, values);
+    }
+    context.runCommand(*findCommand(step.command), step.name, values);
+  }
+}
+
+void sayWhatCameOut(Context& context, const fs::path& out, bool withReport) {
+  for (const std::string& line : whatCameOut(out)) context.info(line);
+  if (withReport) context.info("report: " + (out / "report.html").string());
+}
+
 Termination run(Context& context, const Settings& s) {
   const StopScope kept(nullptr);  // what is reached is written
   const fs::path out = context.outputFolder();
   const pipeline::Plan whole = planOrTakeBack(context, s);
   const std::vector<pipeline::PlannedStep>& plan = whole.steps;
-  context.judged();
-  sayWhatIsUsed(context, s, whole);
+  checkBeforehand(context, s, whole);
 
   std::vector<pipeline::StepNote> notes;
   for (const auto& step : plan)
@@ -310,6 +334,7 @@ Termination run(Context& context, const Settings& s) {
     writeReport(context, out);
   }
   if (failure) std::rethrow_exception(failure);
+  sayWhatCameOut(context, out, withReport);
   return worst;
 }
 

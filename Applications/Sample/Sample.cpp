@@ -34,6 +34,14 @@ namespace {
 
 constexpr const char* kDefaultDepths = "0.5";
 
+/// Which options need or exclude each other.
+void declareRelations(Declaration& d) {
+  d.find("VOLUME")->required = false;
+  d.onSurface("vertex-map", "vertex-surface")
+      .excludes("surfaces", {"white", "pial"})
+      .needs({"hemisphere"}, {"surfaces"});
+}
+
 void declare(Declaration& d, SampleSettings& s) {
   d.synopsis("values of volumes on the cortex: at depths between surfaces, or layer by layer")
       .description(
@@ -131,7 +139,7 @@ void declare(Declaration& d, SampleSettings& s) {
       .output(
           "*_layers.tsv", FileKind::Table,
           "with --thickness NAME_layers.tsv: mean, sd, voxels, volume in mm^3, mean of columns");
-  d.find("VOLUME")->required = false;
+  declareRelations(d);
 }
 
 std::string stemOfMap(std::string name) {

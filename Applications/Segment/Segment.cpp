@@ -12,6 +12,7 @@
 #include "Explica/Registration/HeadRegistration.h"
 #include "Explica/Registration/SkullStripping.h"
 #include "Explica/Segmentation/Disagreement.h"
+#include "Explica/Segmentation/HeadContrast.h"
 #include "Explica/Segmentation/Hemisphere.h"
 #include "Explica/Segmentation/Plausibility.h"
 #include "Explica/Segmentation/Tissue.h"
@@ -61,7 +62,8 @@ struct Settings {
 
 constexpr const char* kDescription =
     "Brings a template (Colin27) into the image's space: an affine map by mutual information, then "
-    "a deformation. Its brain mask, corrected by the image, takes a head out of its skull; its "
+    "a deformation. From its brain mask the border of the brain is sought in the image, up to the "
+    "skull; its "
     "atlas says which voxels make a hemisphere. Three tissues are found by "
     "expectation-maximisation of a mixture of pure and mixed voxels with a Markov prior, while a "
     "smooth bias field is estimated and divided out. Each hemisphere's white matter is filled with "
@@ -77,6 +79,8 @@ void declareOutputs(Declaration& d) {
       .output("wm.nii.gz", FileKind::Volume, "share of white matter in each voxel")
       .output("bias.nii.gz", FileKind::Volume, "multiplicative bias field")
       .output("brain_mask.nii.gz", FileKind::LabelVolume, "1 in the brain")
+      .output("brain_doubt.nii.gz", FileKind::Volume,
+              "of an image with skull: standard deviation of the border of the brain, mm, near it")
       .output("atlas.nii.gz", FileKind::LabelVolume,
               "with a template: its labels in the image's space")
       .output("atlas.tsv", FileKind::Table, "with a template: what they are called")
@@ -159,6 +163,16 @@ void refuseOtherImages(Judge& judge, const Volume<float>& image) {
   judge.require("hounsfield", segmentation::airInHounsfieldUnits(image));
   judge.require("labels",
                 segmentation::looksLikeLabels(image) ? segmentation::equalNeighbours(image) : 0.0);
+  const segmentation::HeadContrast contrast = segmentation::measureContrast(image);
+  judge.require("thick-slices", contrast.thickest);
+  if (contrast.spread == 0) return;
+  // Fluid is many voxels in any head, vessels are few.
+  constexpr double kFluid = 0.05;
+  if (contrast.brightShare >= kFluid) {
+    judge.require("bright-fluid", contrast.skewness);
+  } else {
+    judge.require("bright-vessels", contrast.brightest);
+  }
 }
 
 /// The image where the mask is not 0.
@@ -240,6 +254,18 @@ Volume<Label> aboveZero(const Volume<float>& image) {
   return brain;
 }
 
+/// The brain of a head with skull, and what its border leaves in doubt.
+Volume<Label> takeOutOfSkull(Context& context, Judge& judge, const Boxes& boxes,
+                             const Volume<float>& image, const Volume<float>& carried) {
+  registration::BrainMask brain = registration::stripSkull(image, carried);
+  context.result("brain_border_offset", brain.meanOffset);
+  context.result("brain_border_deviation", brain.deviation);
+  context.result("brain_border_open_share", brain.openShare);
+  judge.flag("brain-border", brain.openShare);
+  writeWhole(context, "brain_doubt.nii.gz", boxes, std::move(brain.doubt));
+  return std::move(brain.mask);
+}
+
 /// The template in the image's space: mask, atlas, and how well it fits.
 Head fitTemplate(Context& context, Judge& judge, const Settings& s, const LoadedTemplate& loaded,
                  const Boxes& boxes, const Volume<float>& image, Volume<Label> mask) {
@@ -260,7 +286,7 @@ Head fitTemplate(Context& context, Judge& judge, const Settings& s, const Loaded
   judge.flag("stretch", stretch);
   Head head;
   head.mask = std::move(mask);
-  if (!stripped) head.mask = registration::stripSkull(image, found.brain);
+  if (!stripped) head.mask = takeOutOfSkull(context, judge, boxes, image, found.brain);
   const double halves =
       halvesOf(head.mask.size() != 0 ? head.mask : aboveZero(image), found.transform);
   context.result("left_over_right", halves);
@@ -320,6 +346,9 @@ void judgeTissue(Context& context, Judge& judge, const segmentation::TissueSegme
   const double contrast = segmentation::rimContrast(tissue.labels);
   context.result("rim_contrast", contrast);
   judge.require("contrast", contrast);
+  const double edge = segmentation::greyAtMaskEdge(tissue.labels);
+  context.result("grey_at_mask_edge", edge);
+  judge.flag("mask-edge", edge);
   const double volume =
       static_cast<double>(tissue.brainVoxels) * tissue.labels.grid.voxelVolume() / 1000;
   context.result("brain_volume_ml", volume);

@@ -3,6 +3,7 @@
 
 #include "Explica/Application/Command.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Pipeline/Plan.h"
 #include "StudyInput.h"
 
 namespace explica::app {
@@ -22,15 +23,35 @@ void declare(Declaration& d, Settings& s) {
       .withoutOutput();
 }
 
+/// Why a subject's runs would be refused at once; empty if they would not.
+std::string problemOf(const study::PlannedSubject& subject) {
+  const study::Participant& participant = subject.participant;
+  if (!participant.problem.empty() || subject.runs.empty()) return participant.problem;
+  std::optional<std::string> atlas;
+  if (participant.atlas) atlas = participant.atlas->string();
+  pipeline::PlanOptions options;
+  const auto& values = subject.runs.front().values;
+  try {
+    if (values.contains("kind")) {
+      options.kind = valueOf<pipeline::InputKind>(values["kind"].get<std::string>());
+    }
+    static_cast<void>(pipeline::planRun(participant.input, {}, atlas, options));
+  } catch (const Error& fault) {
+    return participant.name() + ": " + fault.what();
+  }
+  return {};
+}
+
 Termination run(Context& context, const Settings& s) {
   const study::StudyFile file = readCheckedStudy(s.study);
   const study::Study study = study::planStudy(file, studyPathOptions());
   std::size_t runs = 0, problems = 0;
   for (const study::PlannedSubject& subject : study.subjects) {
     runs += subject.runs.size();
-    if (subject.participant.problem.empty()) continue;
+    const std::string problem = problemOf(subject);
+    if (problem.empty()) continue;
     ++problems;
-    context.warn(subject.participant.problem);
+    context.warn(problem);
   }
   if (problems > 0) {
     throw InvalidInput(s.study + ": " + std::to_string(problems) + " of " +

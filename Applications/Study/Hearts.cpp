@@ -82,7 +82,7 @@ bool doHeart(Context& context, const Settings& s, const study::HeartSubject& sub
     auto outcome = context.reuseCommand(heart, name, values);
     if (!outcome) {
       context.dropCommand(name);
-      fs::remove(folder / "problem.txt");
+      if (!context.given("dry-run")) fs::remove(folder / "problem.txt");
       outcome = context.runCommand(heart, name, values);
     }
     if (!reachedGoal(outcome->termination)) worst = outcome->termination;
@@ -124,7 +124,8 @@ Termination run(Context& context, const Settings& s) {
   if (!s.endings.empty()) layout.endings = s.endings;
   const auto subjects = study::findHearts(s.dataset, s.participants, layout);
   (void)study::aboutParticipants(s.dataset);  // its faults are said before the work
-  describeDerivative(context.outputFolder());
+  const bool dry = context.given("dry-run");
+  if (!dry) describeDerivative(context.outputFolder());
   Termination worst = Termination::NotRun;
   std::vector<std::string> failed;
   for (const study::HeartSubject& subject : subjects) {
@@ -134,7 +135,7 @@ Termination run(Context& context, const Settings& s) {
     }
     if (!doHeart(context, s, subject, worst)) failed.push_back(subject.name);
   }
-  writeTables(context, s, layout);
+  if (!dry) writeTables(context, s, layout);
   context.result("hearts", subjects.size());
   context.result("hearts_failed", failed.size());
   context.result("failed", Json(failed));

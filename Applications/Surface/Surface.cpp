@@ -15,6 +15,7 @@
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/IO/VolumeFile.h"
+#include "Explica/Maps/Folding.h"
 #include "Explica/Provenance/Doubts.h"
 #include "Explica/Segmentation/Atlas.h"
 #include "Explica/Surface/CorticalSurface.h"
@@ -101,7 +102,7 @@ void declareOutputs(Declaration& d) {
       .output("curvature.shape.gii", FileKind::VertexData,
               "mean curvature of the white surface, 1/mm, positive in sulci")
       .output("sulc.shape.gii", FileKind::VertexData,
-              "depth of the middle surface below the hull, mm")
+              "sulcal depth: distance travelled outwards as the white surface is inflated, mm")
       .output("area.shape.gii", FileKind::VertexData,
               "area at each vertex of the white, middle and outer surface, mm^2")
       .output("topology.tsv", FileKind::Table, "one row for each corrected defect")
@@ -218,6 +219,13 @@ void declare(Declaration& d, Settings& s) {
                    "volume (orig.mgz) whose surface RAS FreeSurfer files use, read or written "
                    "(default: the labels, if FreeSurfer's)",
                    s.fsVolume, "Output");
+  d.excludes("parcellation", {"atlas", "atlas-legend"})
+      .excludes("no-fill", {"fill"})
+      .excludes("outer-level", {"grey-share"})
+      .needs({"outer-level", "grey-share", "insulated-mask", "level"}, {"inner-level"})
+      .needs({"atlas-legend"}, {"atlas"})
+      .needs({"fluid"}, {"image"})
+      .needs({"surface-space"}, {"white-surface"});
   declareAccept(d, s.accept);
   declareOutputs(d);
   d.results<surface::SurfaceSummary>();
@@ -530,10 +538,6 @@ std::vector<io::VertexMap> thicknessMaps(const surface::CorticalSurfaces& made,
   return maps;
 }
 
-bool hasSulcalDepth(const Settings& s, const surface::CorticalSurfaces& made) {
-  return !surfacesGiven(s) && !made.sheet.open;
-}
-
 std::vector<io::SpecEntry> writeMaps(Context& context, const Settings& s,
                                      const surface::CorticalSurfaces& made,
                                      const surface::CorticalTissue& tissue,
@@ -554,7 +558,7 @@ std::vector<io::SpecEntry> writeMaps(Context& context, const Settings& s,
   if (!tissue.hasGrey) return spec;
   writeShape("thickness.shape.gii", thicknessMaps(made, s.thicknessMeasure));
   writeShape("valid.shape.gii", {{"valid", "", surface::validOf(made)}});
-  if (hasSulcalDepth(s, made)) writeShape("sulc.shape.gii", {{"sulc", "mm", made.sulcalDepth}});
+  if (made.sulcalDepth.size() > 0) writeShape("sulc.shape.gii", {{"sulc", "mm", made.sulcalDepth}});
   if (regions.atlas || regions.parcellation) {
     summary.regions = writeRegions(context, regions, made, tissue.structure, spec);
   }
@@ -581,7 +585,7 @@ void writeFreeSurfer(Context& context, const Settings& s, const surface::Cortica
   if (!tissue.hasGrey) return;
   io::writeFreeSurferCurv(place("thickness"), thicknessMaps(made, s.thicknessMeasure)[0].values,
                           faces);
-  if (hasSulcalDepth(s, made)) io::writeFreeSurferCurv(place("sulc"), made.sulcalDepth, faces);
+  if (made.sulcalDepth.size() > 0) io::writeFreeSurferCurv(place("sulc"), made.sulcalDepth, faces);
   io::writeFreeSurferCurv(place("area.pial"), areas.back().values, faces);
 }
 
@@ -669,7 +673,8 @@ surface::CorticalSurfaces makeSurfaces(Context& context, const Settings& s, cons
   surface::CorticalSurfaces made;
   made.white = surface::extractWhite(tissue, s.surface, context.monitor());
   made.seconds = made.white.seconds;
-  made.curvature = surface::meanCurvature(made.white.mesh);
+  made.curvature = maps::meanCurvature(made.white.mesh);
+  made.sulcalDepth = maps::sulcalDepth(made.white.mesh);
   return made;
 }
 

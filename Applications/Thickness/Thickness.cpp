@@ -151,7 +151,9 @@ void declare(Declaration& d, Settings& s) {
           "Heart",
           Field{"aha", "", "the left ventricle's 17 segments, as 'explica heart' measures them"},
           s.aha)
-      .options("Heart", s.orientation);
+      .options("Heart", s.orientation)
+      .excludes("inner-level", {"inner", "tissue", "outer"})
+      .needs({"level", "level-inside"}, {"inner-level"});
   declareAccept(d, s.accept);
   declareOutputs(d);
   d.results<correspondence::Measurement>();
@@ -215,8 +217,8 @@ void report(Context& context, Judge& judge, const correspondence::Measurement& m
   const correspondence::Correspondence& found = m.correspondence;
   context.results(m);
   if (found.missing > 0) {
-    context.warn(std::to_string(found.missing) +
-                 " voxels have no thickness: their trajectory does not reach both boundaries");
+    context.warn("thickness could not be measured in " + std::to_string(found.missing) +
+                 " voxels: no trajectory through them reaches both boundaries");
   }
   // Slices on their own always leave out what lies beyond the inner region's ends.
   const double leftOut = m.annulus.planar ? 0 : static_cast<double>(m.annulus.droppedVoxels);

@@ -91,6 +91,12 @@ void declare(Declaration& d, Settings& s) {
           "Region",
           Field{"adjust-region", "", "grow or shrink the region until its visibility is positive"},
           s.adjustRegion)
+      .excludes("label", {"map", "center", "vertex", "radius", "metric", "cone"})
+      .excludes("map", {"center", "vertex", "radius", "metric", "cone"})
+      .excludes("center", {"vertex"})
+      .excludes("cone", {"metric"})
+      .needs({"label-key"}, {"label"})
+      .needs({"distance"}, {"direction"})
       .option("Unfolding",
               Field{"repair", "",
                     "part faces that intersect at the start, by small moves where that goes: those "
@@ -98,6 +104,10 @@ void declare(Declaration& d, Settings& s) {
                     "the result is compared with the surface so repaired"},
               s.repair)
       .options("Unfolding", s.unfold)
+      .needs({"keep-areas", "time-step"}, {"method=thesis"})
+      .needs({"knot-weight"}, {"knot"})
+      .needs({"collar-width", "collar-weight", "overhang-weight"}, {"surround=elastic"})
+      .needs({"guide-faces", "guide-weight"}, {"surround=none"})
       .option("Unfolding", Field{"resume", "", "continue the run whose outputs are in --out"},
               s.resume)
       .reuseOutputIf(s.resume)
@@ -144,8 +154,6 @@ unfolding::Region regionOf(const TriangleMesh& mesh, const Settings& s,
   if (s.map.has_value() != s.above.has_value()) {
     throw UsageError("--map and --above belong together; one of them is missing");
   }
-  if (s.map && !s.labels.empty())
-    throw UsageError("the region is given by --label or by --map, not by both");
   if (s.map) return unfolding::regionOfMarked(mesh, markedByMap(mesh, s));
   if (!s.labels.empty())
     return unfolding::regionOfMarked(mesh, io::markedByLabels({s.labels.begin(), s.labels.end()},

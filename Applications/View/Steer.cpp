@@ -6,6 +6,7 @@
 #include "Explica/Unfolding/Region.h"
 #include "Explica/Viewer/Window.h"
 #include "OpenedFiles.h"
+#include "WindowProgram.h"
 
 #include <spawn.h>
 #include <sys/wait.h>
@@ -19,14 +20,15 @@
 namespace explica::app {
 namespace {
 
-/// Runs this program with other words and waits for its end.
+/// Runs explica with these words and waits for its end.
 /// @return its exit code, or -1 if it could not be started
-int runSelf(std::vector<std::string> words) {
+int runExplica(std::vector<std::string> words) {
+  const std::string program = mainProgram();
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   pid_t child = 0;
-  if (posix_spawn(&child, "/proc/self/exe", nullptr, nullptr, argv.data(), environ) != 0) return -1;
+  if (posix_spawn(&child, program.c_str(), nullptr, nullptr, argv.data(), environ) != 0) return -1;
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
@@ -72,7 +74,7 @@ std::future<std::string> saveState(Context& context, const std::string& surface,
   unfolding::writeCheckpoint(std::filesystem::path(out) / "unfolding.state", *checkpoint);
   words.insert(words.end(), {"--resume", "--quiet"});
   return std::async(std::launch::async, [words, out] {
-    const int code = runSelf(words);
+    const int code = runExplica(words);
     // 3 says that the limit of iterations was reached first, which is what is asked for.
     return code == 0 || code == 3 ? "saved in " + out
                                   : "not saved: explica unfold ended with " + std::to_string(code);
@@ -82,8 +84,8 @@ std::future<std::string> saveState(Context& context, const std::string& surface,
 }  // namespace
 
 void steer(Context& context, const ShownSurface& surface, const io::SurfaceReadOptions& reading,
-           const Vector& direction, std::vector<viewer::Opened> opened,
-           const SteerOptions& options) {
+           const Vector& direction, std::vector<viewer::Opened> opened, const SteerOptions& options,
+           const ShowWindow& show) {
   const std::string& path = surface.file;
   viewer::Session session(surface.mesh);
   viewer::Choice choice;
@@ -108,7 +110,7 @@ void steer(Context& context, const ShownSurface& surface, const io::SurfaceReadO
   calls.save = [&](const viewer::Session& shown, std::size_t state) {
     return saveState(context, path, window.reading, options.save, shown, state);
   };
-  viewer::showWindow(session, calls, window);
+  show(session, calls, window);
 }
 
 }  // namespace explica::app

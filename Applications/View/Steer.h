@@ -9,6 +9,7 @@
 #include "Explica/Viewer/Window.h"
 #include "ShownSurface.h"
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -42,13 +43,17 @@ void describe(SteerOptions& o, Visitor&& visit) {
   visit(Field{"script", "", "file of events to play instead of waiting for the user's"}, o.script);
 }
 
+/// What shows the window: viewer::showWindow where there is one.
+using ShowWindow =
+    std::function<void(viewer::Session&, const viewer::WindowCalls&, const viewer::WindowOptions&)>;
+
 /// Opens the window on a surface.  A saved state is what `explica unfold` writes when it runs with
 /// the same choices: the same surfaces and maps, from a process of its own.
 /// @param reading    how the surface was read
 /// @param direction  from the surface to the viewer
 /// @param opened     what else to show
 void steer(Context& context, const ShownSurface& surface, const io::SurfaceReadOptions& reading,
-           const Vector& direction, std::vector<viewer::Opened> opened,
-           const SteerOptions& options);
+           const Vector& direction, std::vector<viewer::Opened> opened, const SteerOptions& options,
+           const ShowWindow& show);
 
 }  // namespace explica::app

@@ -1,10 +1,12 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
+#include "View.h"
 #include "Film.h"
 #include "OpenedFiles.h"
 #include "OpenedFolders.h"
 #include "Steer.h"
+#include "WindowProgram.h"
 
 #include "Explica/Application/Command.h"
 #include "Explica/Core/Errors.h"
@@ -42,6 +44,10 @@ struct Settings {
   SteerOptions window;
 };
 
+/// Options that pictures and films do not look at.
+const std::vector<std::string> kOfWindow = {
+    "vertex", "radius", "distance", "surround", "target-visibility", "save", "script"};
+
 void declare(Declaration& d, Settings& s) {
   d.synopsis("choose and steer an unfolding in a window; pictures and films without one")
       .description(
@@ -59,6 +65,7 @@ void declare(Declaration& d, Settings& s) {
              "surfaces; or a volume and surfaces; or a folder of `explica unfold`, `flatten` or "
              "`sample`",
              s.files)
+      .oneByOne("FILE")
       .option("Picture", Field{"screenshot", "", "PNG file to write"}, s.screenshot)
       .option(
           "Picture",
@@ -89,6 +96,15 @@ void declare(Declaration& d, Settings& s) {
       .options("Picture", s.picture)
       .options("Window", s.window)
       .options("Reading", s.reading)
+      .excludes("screenshot", kOfWindow)
+      .excludes("film", kOfWindow)
+      .needs({"region", "views", "columns", "colours", "range", "width", "height", "samples",
+              "occlusion"},
+             {"screenshot", "film"})
+      .needs({"slices"}, {"screenshot"})
+      .needs({"map-name"}, {"map"})
+      .needs({"focus"}, {"region"})
+      .needs({"fps"}, {"film"})
       .withoutOutput();
 }
 
@@ -102,6 +118,9 @@ void paintLabels(const ShownSurface& surface, const std::string& file,
 }
 
 report::SurfacePaint readPaint(const Settings& s, const ShownSurface& surface) {
+  if (s.map && s.labels) {
+    throw UsageError("a picture shows --map or --labels: leave one of them out");
+  }
   report::SurfacePaint paint;
   if (s.map && isLabelFile(*s.map)) {
     paintLabels(surface, *s.map, paint);
@@ -147,7 +166,6 @@ std::vector<report::FigureView> viewsOf(const Settings& s, const report::Surface
     views.push_back(view);
   }
   if (s.focus) {
-    if (paint.region.size() == 0) throw UsageError("--focus needs --region");
     for (report::FigureView& view : views) {
       for (Eigen::Index v = 0; v < paint.region.size(); ++v) {
         if (paint.region[v] != 0) view.focus.push_back(static_cast<std::int32_t>(v));
@@ -173,6 +191,11 @@ report::Picture drawSlices(const Settings& s) {
 report::Picture drawSurfaces(const Settings& s) {
   std::vector<report::Picture> figures;
   for (const std::string& file : s.files) {
+    if (std::filesystem::is_directory(file)) {
+      throw UsageError("'" + file +
+                       "' is a folder: --screenshot draws surfaces, or a volume with surfaces; a "
+                       "folder of explica unfold is shown by --film or in the window");
+    }
     const ShownSurface surface{io::readSurface(file, s.reading).mesh, file};
     const report::SurfacePaint paint = readPaint(s, surface);
     figures.push_back(
@@ -182,7 +205,7 @@ report::Picture drawSurfaces(const Settings& s) {
 }
 
 /// The first file is a surface or an unfolding; the others are opened on it.
-void openWindow(Context& context, const Settings& s) {
+void openWindow(Context& context, const Settings& s, const ShowWindow& show) {
   if (isVolume(s.files.front())) {
     throw UsageError(
         "the window shows a surface, and volumes beside it: name the surface first; or write a "
@@ -194,6 +217,12 @@ void openWindow(Context& context, const Settings& s) {
     throw UsageError("'" + s.files.front() +
                      "': is no folder of explica unfold, flatten or sample");
   }
+  if (found) context.input(found->file, "surface");
+  for (std::size_t n = 1; n < s.files.size(); ++n) {
+    // Opened on the first one: all are of one hemisphere.
+    if (!std::filesystem::is_directory(s.files[n])) context.input(s.files[n], "opened");
+  }
+  if (!show) startWindowProgram();
   const ShownSurface start =
       found ? *found
             : ShownSurface{io::readSurface(s.files.front(), s.reading).mesh, s.files.front()};
@@ -205,13 +234,13 @@ void openWindow(Context& context, const Settings& s) {
     if (file) opened.push_back(openForWindow(*file, start));
   }
   const Vector direction = s.direction.value_or(start.direction.value_or(Vector(-1, 0, 0)));
-  steer(context, start, s.reading, direction, std::move(opened), s.window);
+  steer(context, start, s.reading, direction, std::move(opened), s.window, show);
 }
 
-Termination run(Context& context, const Settings& s) {
+Termination run(Context& context, const Settings& s, const ShowWindow& show) {
   if (!s.screenshot && !s.film) {
     const StopScope window(nullptr);  // its user ends it; no exception may pass its library
-    openWindow(context, s);
+    openWindow(context, s, show);
     return Termination::NotRun;
   }
   if (s.screenshot && std::filesystem::path(*s.screenshot).extension() != ".png") {
@@ -237,8 +266,19 @@ Termination run(Context& context, const Settings& s) {
 
 }  // namespace
 
+Command viewCommandShowing(ShowWindow show) {
+  return Command("view", [show] {
+    auto settings = std::make_shared<Settings>();
+    Invocation invocation;
+    declare(invocation.declaration, *settings);
+    invocation.run = [settings, show](Context& context) { return run(context, *settings, show); };
+    invocation.settings = settings;
+    return invocation;
+  });
+}
+
 Command viewCommand() {
-  return makeCommand<Settings>("view", declare, run);
+  return viewCommandShowing({});
 }
 
 }  // namespace explica::app

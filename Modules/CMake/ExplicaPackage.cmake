@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: The Explica developers
 # SPDX-License-Identifier: Apache-2.0
 # Debian packages by `cpack --config build/CPackConfig.cmake`: explica (program, pages, completion, schedulers' scripts),
-# explica-window (what `explica view` loads), python3-explica, and libexplica-dev (headers, static libraries, CMake files).
+# explica-window (what `explica view` starts), python3-explica, and libexplica-dev (headers, static libraries, CMake files).
 # Testing/check-package.sh makes, unpacks and runs them.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME explica)
@@ -30,7 +30,7 @@ set(CPACK_DEBIAN_WINDOW_PACKAGE_DEPENDS "explica (= ${PROJECT_VERSION})")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libexplica-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 # What a consumer's find_package(Explica) looks for (FIND of the modules).
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libeigen3-dev, libtbb-dev, libhwy-dev, libinsighttoolkit5-dev, \
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libeigen3-dev, libboost-dev, libtbb-dev, libhwy-dev, libinsighttoolkit5-dev, \
 libisal-dev, libexpat1-dev, nlohmann-json3-dev, libssl-dev, libyaml-cpp-dev, libembree-dev, zlib1g-dev")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-explica)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)

@@ -62,6 +62,8 @@ TEST_P(BadVolumeInput, IsRefusedInOneSentence) {
   std::replace(words.begin(), words.end(), std::string("{file}"), file);
   const auto result = explica(words + std::vector<std::string>{"--out", folder / "out"});
   EXPECT_EQ(faultOfRefusal(result, file, volume.message), "") << result;
+  const auto dry = explica(words + std::vector<std::string>{"--dry-run", "--out", folder / "out"});
+  EXPECT_EQ(faultOfRefusal(dry, file, volume.message), "") << dry;
   EXPECT_EQ(folder.entries(), before);
 }
 
@@ -154,6 +156,8 @@ const VolumeCommand kSurfaceCommands[] = {
     {"Flatten", {"flatten", "{file}"}},
     {"Compare", {"compare", "{file}", "{file}"}},
     {"Inflate", {"inflate", "{file}"}},
+    {"Smooth", {"smooth", "{file}", "--surface", "{file}", "--fwhm", "3"}},
+    {"Sphere", {"sphere", "{file}"}},
 };
 
 const BadSurface kBadPolygons[] = {
@@ -291,6 +295,42 @@ const Unsuitable kUnsuitable[] = {
      [](const TemporaryFolder& folder) {
        writeFoldedSphere(folder);
        writeText(folder / "lh.label", "#!ascii label\n2\n0 0 0 0 0\n9999 1 1 1 0\n");
+     }},
+    {"LabelsToSmooth",
+     {},
+     {"smooth", "{folder}/lh.regions.label.gii", "--surface", "{folder}/white.surf.gii", "--fwhm",
+      "3"},
+     "{folder}/lh.regions.label.gii",
+     {"not labels"},
+     writeMapAndRegions},
+    {"MapOfAnotherSphere",
+     {},
+     {"resample", "{folder}/lh.regions.label.gii", "--from", "{folder}/crossed.surf.gii", "--to",
+      "fsaverage3"},
+     "{folder}/lh.regions.label.gii",
+     {"642", "1284"},
+     writeMapAndRegions},
+    {"NeitherTargetNorFile",
+     {},
+     {"resample", "{folder}/thickness.shape.gii", "--from", "{folder}/white.surf.gii", "--to",
+      "fsaverage9"},
+     "fsaverage9",
+     {"fsaverage3"},
+     writeMapAndRegions},
+    {"RegionsOfTheOtherHemisphere",
+     {},
+     {"regions", "{folder}", "--hemisphere", "R", "--atlas", "{folder}/lh.regions.label.gii"},
+     "{folder}/lh.regions.label.gii",
+     {"left", "right"},
+     writeMapAndRegions},
+    {"FolderWithoutAreas",
+     {},
+     {"regions", "{folder}/empty", "--atlas", "{folder}/lh.regions.label.gii"},
+     "{folder}/empty",
+     {"?h.white", "?h.area"},
+     [](const TemporaryFolder& folder) {
+       writeMapAndRegions(folder);
+       std::filesystem::create_directory(folder / "empty");
      }},
     {"LegendWithoutNames",
      {kShell},

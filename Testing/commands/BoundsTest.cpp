@@ -3,6 +3,7 @@
 // The bounds that commands declare for their numbers are held, whatever the command and the option:
 // both are taken from `explica --describe`, so that a new one is tried by itself.
 
+#include "DescribedCommands.h"
 #include "QuickRuns.h"
 
 #include <gtest/gtest.h>
@@ -11,27 +12,12 @@
 #include <cmath>
 #include <limits>
 #include <set>
-#include <sstream>
 
 namespace explica::testing {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-Json allCommands() {
-  static const Json all = Json::parse(explica({"--describe"}).out);
-  return all;
-}
-
 bool isNumber(const Json& parameter) {
   return parameter["type"] == "integer" || parameter["type"] == "number";
-}
-
-std::vector<std::string> wordsOf(const Json& command) {
-  std::istringstream name(command["command"].get<std::string>());
-  std::vector<std::string> words;
-  for (std::string word; name >> word;) words.push_back(word);
-  return words;
 }
 
 /// The numbers closest to the declared range that lie outside of it.
@@ -62,7 +48,7 @@ constexpr std::size_t kParts = 8;
 class Bounds : public ::testing::TestWithParam<std::size_t> {};
 
 TEST_P(Bounds, OfEveryNumberAreHeld) {
-  const Json commands = allCommands();
+  const Json commands = describedCommands();
   std::size_t tried = 0;
   for (std::size_t c = GetParam(); c < commands.size(); c += kParts) {
     for (const Json& parameter : commands[c]["parameters"]) {
@@ -87,7 +73,7 @@ TEST(Bounds, AreDeclaredForEveryCount) {
   const std::set<std::string> names = {"inner", "tissue",    "outer",  "insulated", "white",
                                        "grey",  "fill",      "cavity", "wall",      "rv",
                                        "label", "label-key", "vertex", "seed"};
-  for (const Json& command : allCommands()) {
+  for (const Json& command : describedCommands()) {
     for (const Json& parameter : command["parameters"]) {
       if (parameter["type"] != "integer") continue;
       const std::string name = parameter["name"];
@@ -105,7 +91,7 @@ TEST(EveryCommandThatWrites, IsKilledAndLimitedInATest) {
     tried.insert(run.words[0]);
     tried.insert(run.words[0] + " " + run.words[1]);
   }
-  for (const Json& command : allCommands()) {
+  for (const Json& command : describedCommands()) {
     if (!command["writes_folder"].get<bool>()) continue;
     EXPECT_TRUE(tried.contains(command["command"])) << command["command"];
   }

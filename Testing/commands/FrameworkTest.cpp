@@ -59,15 +59,6 @@ TEST(Framework, VersionNamesTheCommitAndWhatItWasBuiltWith) {
   }
 }
 
-TEST(Framework, StartsWithoutTheLibrariesThatWritingATransformNeeds) {
-  // By this the dynamic linker lists the libraries instead of starting the program.
-  CommandSetting listing;
-  listing.environment["LD_TRACE_LOADED_OBJECTS"] = "1";
-  const std::string libraries = explica({"--version"}, listing).out;
-  EXPECT_TRUE(contains(libraries, "libITKCommon")) << libraries;
-  EXPECT_FALSE(contains(libraries, "hdf5")) << libraries;
-}
-
 TEST(Framework, WrongUseIsExitCodeOneWithAHint) {
   TemporaryFolder folder;
   const struct {
@@ -79,6 +70,15 @@ TEST(Framework, WrongUseIsExitCodeOneWithAHint) {
       {{"verfy", "x"}, "did you mean 'verify'?"},
       {{"phantom", "cube"}, "unknown kind 'cube'"},
       {{"phantom", "shell"}, "--out is missing"},
+      {{"thickness"}, "nothing is given to work on; usage: explica thickness [SEG] --out DIR"},
+      {{"run", "T1.nii.gz", "--hemi", "L", "--out", folder / "a"}, "did you mean --hemisphere?"},
+      {{"bids", "in", "out", "group", "--hemisphere", "L"}, "did you mean --hemispheres?"},
+      {{"run", "T1.nii.gz", "--hemispheres", "L"}, "did you mean --hemisphere?"},
+      {{"flatten", "a.gii", "--overlay", "b.gii"}, "did you mean --map?"},
+      {{"unfold", "a.gii", "--overwrite"}, "did you mean --force?"},
+      {{"surface", "a.nii", "--faces", "9"}, "100 to 100,000,000"},
+      {{"view", folder.path().string(), "--screenshot", folder / "a.png"},
+       "is a folder: --screenshot draws surfaces"},
       {{"verify"}, "PROVENANCE is missing"},
       {shell(folder / "a", {"--sizes", "3"}), "did you mean --size?"},
       {shell(folder / "a", {"--size", "9"}), "--size"},
@@ -99,6 +99,18 @@ TEST(Framework, WrongUseIsExitCodeOneWithAHint) {
     EXPECT_TRUE(result.out.empty()) << result;
   }
   EXPECT_TRUE(folder.entries().empty());
+}
+
+TEST(Framework, AFolderWithoutARecordIsSaidSo) {
+  const TemporaryFolder folder;
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"verify"}, {"history"}, {"replay", "--out", folder / "a"}}) {
+    auto all = words;
+    all.insert(all.begin() + 1, folder.path().string());
+    const auto result = explica(all);
+    EXPECT_EQ(result.exitCode, 2) << result;
+    EXPECT_TRUE(contains(result.err, "holds no provenance.json; name a folder")) << result;
+  }
 }
 
 TEST(Framework, OptionsAreJudgedBeforeAnyFileIsOpened) {

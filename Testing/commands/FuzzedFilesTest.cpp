@@ -39,7 +39,8 @@ std::vector<Use> allUses() {
                                      map + Words{"--mask", "{file}"}};
   const std::vector<Words> surface = {{"compare", "{file}", "{file}", "--pairs", "10"},
                                       {"inflate", "{file}", "--max-iterations", "1"},
-                                      {"repair", "{file}"}};
+                                      {"repair", "{file}"},
+                                      {"sphere", "{file}", "--max-iterations", "1"}};
   const std::vector<Words> maps = {{"cifti", "--left", "{file}"}};
   const Words region = {"unfold",           "{folder}/white.off",
                         "--direction",      "0,0,1",
@@ -69,7 +70,7 @@ std::vector<Use> allUses() {
   const auto add = [&uses](const Words& readers, const std::vector<Words>& commands) {
     for (const auto& reader : readers) uses.push_back({reader, commands});
   };
-  add({"nifti", "nifti-gz", "mgh", "nrrd", "metaimage", "png", "minc1", "minc2"}, volume);
+  add({"nifti", "nifti-gz", "mgh", "nrrd", "metaimage", "png"}, volume);
   add({"gifti", "freesurfer-surface", "vtk", "vtp", "ply", "ply-text", "obj", "off", "stl",
        "stl-text", "mni-obj"},
       surface);

@@ -2,12 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Heads of full size: out of the skull, to a thickness, through a study; of a macaque.
 
-#include "Explica/Geometry/FaceTree.h"
-#include "Explica/IO/SurfaceFile.h"
-#include "Explica/IO/VertexDataFile.h"
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Testing/Command.h"
-#include "Explica/Testing/FreeSurferSubject.h"
 #include "Explica/Testing/Grids.h"
 #include "QuickRuns.h"
 
@@ -17,6 +13,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <optional>
 #include <random>
 #include <set>
@@ -57,6 +54,15 @@ class WholeHead : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
+/// Voxels twice as large along every axis.
+Grid halved(const Grid& grid) {
+  Grid half = grid;
+  half.origin = grid.toWorld(Vector::Constant(0.5));
+  half.spacing *= 2;
+  for (int& n : half.size) n = (n + 1) / 2;
+  return half;
+}
+
 TEST_F(WholeHead, IsTakenOutOfItsSkull) {
   const auto run = patiently({"segment", kTemplates / "ch2.nii.gz", "--out", folder_ / "segment"});
   ASSERT_EQ(run.exitCode, 0) << run;
@@ -66,13 +72,74 @@ TEST_F(WholeHead, IsTakenOutOfItsSkull) {
   const auto ours = io::readLabels(folder_ / "segment/brain_mask.nii.gz").volume;
   const auto known = io::readScalars(kTemplates / "ch2bet.nii.gz").volume;
   ASSERT_EQ(ours.size(), known.size());
-  double both = 0, sum = 0;
+  // ch2bet ends at the cortex, the mask at the skull: it has all of the brain, and fluid beside it.
+  const auto tissue = io::readLabels(folder_ / "segment/seg.nii.gz").volume;
+  double both = 0, sum = 0, brain = 0, lost = 0;
   for (std::size_t v = 0; v < ours.size(); ++v) {
-    both += ours[v] != 0 && known[v] > 0;
-    sum += (ours[v] != 0) + (known[v] > 0);
+    const bool inBrain = known[v] > 0;
+    const bool kept = ours[v] != 0 && (tissue[v] != 1 || inBrain);
+    brain += inBrain;
+    lost += inBrain && ours[v] == 0;
+    both += kept && inBrain;
+    sum += kept + inBrain;
   }
-  std::printf("Dice with ch2bet %.4f\n", 2 * both / sum);
+  std::printf("of ch2bet lost %.4f, Dice without the fluid beside it %.4f\n", lost / brain,
+              2 * both / sum);
+  EXPECT_LT(lost / brain, 0.005);
   EXPECT_GT(2 * both / sum, 0.96);
+}
+
+/// T1 of a label map in voxels of 2 mm, by the means of real T1s by label (white matter is 160);
+/// shaded, with noise of 3 %.
+Volume<float> simulatedHead(const Volume<Label>& labels) {
+  static const std::map<Label, float> kMean = {
+      {0, 3},    {2, 160},   {3, 96},   {4, 44},   {5, 44},    {7, 136},  {8, 88},    {10, 130},
+      {11, 100}, {12, 124},  {13, 152}, {14, 44},  {15, 44},   {16, 130}, {17, 96},   {18, 96},
+      {24, 44},  {26, 96},   {28, 142}, {41, 160}, {42, 96},   {43, 44},  {44, 44},   {46, 136},
+      {47, 88},  {49, 130},  {50, 100}, {51, 124}, {52, 152},  {53, 96},  {54, 96},   {58, 96},
+      {60, 142}, {502, 126}, {506, 18}, {507, 94}, {508, 117}, {509, 70}, {511, 114}, {512, 68},
+      {514, 48}, {515, 30},  {516, 94}, {530, 144}};
+  std::mt19937 random(9);
+  std::normal_distribution<float> noise(0, 0.03F * 160);
+  Volume<float> head(halved(labels.grid), 0.0F);
+  for (std::size_t v = 0; v < labels.size(); ++v) {
+    const auto [i, j, k] = labels.grid.subscripts(v);
+    const auto mean = kMean.find(labels[v]);
+    head(i / 2, j / 2, k / 2) += 0.125F * (mean == kMean.end() ? 80.0F : mean->second);
+  }
+  for (std::size_t v = 0; v < head.size(); ++v) {
+    const auto [i, j, k] = head.grid.subscripts(v);
+    const float shaded = head[v] * std::exp(0.2F * std::sin(0.03F * static_cast<float>(i + j)));
+    head[v] = std::hypot(shaded + noise(random), noise(random));
+  }
+  return head;
+}
+
+// Cut by the mask of a template, 8 to 12 % of the cortex was lost without a word.
+TEST_F(WholeHead, KeepsTheCortexOfAPersonOfKnownTissue) {
+  const fs::path person = fs::path(EXPLICA_REAL_DATA) / "synthseg_people/training_seg_04.nii.gz";
+  if (!fs::exists(person)) GTEST_SKIP() << "skipped: no real data";
+  const auto labels = io::readLabels(person).volume;
+  io::writeVolume(folder_ / "T1.nii.gz", simulatedHead(labels));
+  const auto run = patiently({"segment", folder_ / "T1.nii.gz", "--out", folder_ / "segment"});
+  ASSERT_EQ(run.exitCode, 0) << run;
+  const auto mask = io::readLabels(folder_ / "segment/brain_mask.nii.gz").volume;
+  double cortex = 0, lost = 0, both = 0, sum = 0;
+  for (std::size_t v = 0; v < labels.size(); ++v) {
+    const auto [i, j, k] = labels.grid.subscripts(v);
+    const bool kept = mask(i / 2, j / 2, k / 2) != 0;
+    const bool brain = labels[v] > 0 && labels[v] < 500;
+    if (labels[v] == 3 || labels[v] == 42) {
+      cortex += 1;
+      lost += kept ? 0 : 1;
+    }
+    both += kept && brain;
+    sum += kept + brain;
+  }
+  std::printf("cortex lost %.4f, Dice %.4f\n", lost / cortex, 2 * both / sum);
+  EXPECT_LT(lost / cortex, 0.005);
+  EXPECT_GT(2 * both / sum, 0.94);
+  EXPECT_LT(numberOf(folder_ / "segment", "brain_border_open_share"), 0.01);
 }
 
 TEST_F(WholeHead, Colin27IsAsThickAsOthers) {
@@ -86,41 +153,6 @@ TEST_F(WholeHead, Colin27IsAsThickAsOthers) {
   std::printf("mean thickness %.3f mm\n", mean);
   EXPECT_GT(mean, 2.3);
   EXPECT_LT(mean, 2.9);
-}
-
-TEST_F(WholeHead, BertIsAsThickAsFreeSurferSays) {
-  const fs::path bert = fs::path(EXPLICA_REAL_DATA) / "bert_freesurfer";
-  if (!fs::exists(bert)) GTEST_SKIP() << "skipped: no real data";
-  const fs::path image = bert / "mri/brain.mgz";
-  const auto run = patiently({"segment", image, "--out", folder_ / "segment"});
-  ASSERT_EQ(run.exitCode, 0) << run;
-  const auto made = surface(image);
-  ASSERT_EQ(made.exitCode, 0) << made;
-  const auto white = io::readSurface(folder_ / "surface/white.surf.gii").mesh;
-  const auto thickness = io::readVertexMaps(folder_ / "surface/thickness.shape.gii").front().values;
-  const geometry::FaceTree tree(white);
-  ThicknessComparison comparison;
-  double distance = 0, points = 0;
-  for (const auto& vertex : knownVertices(bert / "lh.thickness_at_known_vertices.csv.gz")) {
-    const auto nearest = tree.closestPoint(vertex.place);
-    double sum = 0;
-    for (int c = 0; c < 3; ++c) sum += thickness[white.faces(nearest.face, c)];
-    distance += std::sqrt(nearest.squaredDistance);
-    points += 1;
-    if (sum > 0) comparison.add(vertex, sum / 3);
-  }
-  const double mean = numberOf(folder_ / "surface", "thickness_mean");
-  const auto regions = comparison.regions(bert / "stats/lh.aparc.stats");
-  std::printf(
-      "mean %.3f mm (FreeSurfer 2.603); known points %.3f mm from the white surface, thickness r "
-      "%.3f, difference %.3f mm; %zu regions r %.3f\n",
-      mean, distance / points, comparison.vertexCorrelation(), comparison.difference(),
-      regions.count, regions.correlation);
-  EXPECT_NEAR(mean, 2.603, 0.15);
-  EXPECT_LT(distance / points, 0.31);
-  EXPECT_GT(comparison.vertexCorrelation(), 0.81);
-  EXPECT_LT(comparison.difference(), 0.36);
-  EXPECT_GT(regions.correlation, 0.95);
 }
 
 /// Which numbers of a head were implausible.

@@ -37,6 +37,22 @@ std::string helpOf(const Json& command, const std::string& option) {
   return said.out;
 }
 
+TEST(Overview, NamesEveryCommandUnderATaskAndPhantomsInOneLine) {
+  const std::string text = explica({"--help"}).out;
+  EXPECT_EQ(text.find("\nOther\n"), std::string::npos)
+      << "name the command in Applications/Common/src/Overview.cpp\n"
+      << text;
+  std::size_t phantoms = 0;
+  for (const Json& command : declarations()) {
+    const std::string name = command["command"];
+    const bool phantom = name.starts_with("phantom ");
+    phantoms += phantom;
+    EXPECT_NE(text.find(phantom ? name.substr(8) : "\n  " + name + " "), std::string::npos) << name;
+  }
+  EXPECT_GT(phantoms, 4U);
+  EXPECT_NE(text.find("phantom KIND"), std::string::npos);
+}
+
 TEST(EveryCommandHelp, HasARowInTheTableOfWhatIsShownAtFirst) {
   for (const Json& command : declarations()) {
     const app::FirstHelp* row = app::firstHelpOf(command["command"].get<std::string>());
@@ -84,8 +100,9 @@ TEST(EveryCommandHelp, StepsAreNamedByTheirPrefix) {
   for (const std::string command : {"run", "bids"}) {
     const std::string first = explica({command, "--help"}).out;
     EXPECT_NE(first.find("--unfold.NAME"), std::string::npos);
-    EXPECT_EQ(first.find("--unfold.radius"), std::string::npos);
-    EXPECT_NE(explica({command, "--help-all"}).out.find("--unfold.radius"), std::string::npos);
+    EXPECT_NE(first.find("--unfold.radius"), std::string::npos) << "where the patch goes";
+    EXPECT_EQ(first.find("--unfold.knot"), std::string::npos);
+    EXPECT_NE(explica({command, "--help-all"}).out.find("--unfold.knot"), std::string::npos);
   }
 }
 

@@ -105,7 +105,7 @@ TEST_P(Interrupt, AComparisonHoldsTheSurfacesThatItHasMeasured) {
   }
   CommandSetting setting;
   setting.signal = GetParam();
-  setting.signalWhen = "first.surf.gii: ";
+  setting.signalWhen = "second.surf.gii: ";
   const auto stopped = explica(words + std::vector<std::string>{"--out", folder / "a"}, setting);
   ASSERT_EQ(stopped.exitCode, 3) << stopped;
   const auto summary = readJson(folder / "a/summary.json");

@@ -6,6 +6,7 @@
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/IO/PolygonFile.h"
 #include "Explica/IO/SurfaceFile.h"
+#include "Explica/IO/VertexDataFile.h"
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Testing/Command.h"
 
@@ -34,6 +35,16 @@ inline void writeFoldedSphere(const TemporaryFolder& folder) {
   io::writeSurface(folder / "sphere.surf.gii", geometry::makeFoldedSphere(3, 30.0));
 }
 
+/// A sphere with two folding maps beside it, named as FreeSurfer's.
+inline void writeSphereWithFolds(const TemporaryFolder& folder) {
+  const TriangleMesh sphere = geometry::makeIcosphere(3, 100.0);
+  io::writeFreeSurferSurface(folder / "lh.sphere", sphere);
+  const auto x = sphere.positions.col(0).array() / 100, y = sphere.positions.col(1).array() / 100,
+             z = sphere.positions.col(2).array() / 100;
+  io::writeFreeSurferCurv(folder / "lh.sulc", ((5 * x).sin() + 2 * y * z).matrix(), 1280);
+  io::writeFreeSurferCurv(folder / "lh.curv", ((9 * z + x).cos() + y).matrix(), 1280);
+}
+
 /// The upper part of it, with a rim.
 inline void writeFoldedCap(const TemporaryFolder& folder) {
   const TriangleMesh sphere = geometry::makeFoldedSphere(3, 30.0);
@@ -44,6 +55,27 @@ inline void writeFoldedCap(const TemporaryFolder& folder) {
     }
   }
   io::writeSurface(folder / "cap.surf.gii", geometry::extractFaces(sphere, faces).mesh);
+}
+
+/// Maps of ten people on a sphere, and what is known of them.
+inline void writePeoplesMaps(const TemporaryFolder& folder) {
+  const TriangleMesh sphere = geometry::makeIcosphere(2, 30.0);
+  io::writeSurface(folder / "sphere.surf.gii", sphere);
+  std::string maps = "participant_id\tfile\n", people = "participant_id\tage\tgroup\n";
+  for (int person = 0; person < 10; ++person) {
+    const std::string name = "sub-" + std::to_string(person);
+    Eigen::VectorXd values(sphere.vertexCount());
+    for (Eigen::Index v = 0; v < values.size(); ++v) {
+      const double place = sphere.positions.row(v).sum() / 20 + person * 2.4;
+      values[v] = 2.5 + 0.2 * std::sin(place * (1 + person % 3)) + (v < 12 ? 0.1 * person : 0);
+    }
+    io::writeGiftiShape(folder / (name + ".shape.gii"), {{"thickness", "mm", values}},
+                        "CortexLeft");
+    maps += name + "\t" + name + ".shape.gii\n";
+    people += name + "\t" + std::to_string(20 + 5 * person) + (person % 2 == 0 ? "\ta\n" : "\tb\n");
+  }
+  writeText(folder / "maps.tsv", maps);
+  writeText(folder / "people.tsv", people);
 }
 
 /// White and pial surface, a map and an electrode; two spheres that pass through each other.
@@ -61,6 +93,19 @@ inline void writeCortexAndMap(const TemporaryFolder& folder) {
   for (std::size_t v = 0; v < map.size(); ++v) map[v] = static_cast<float>(v % 101);
   io::writeVolume(folder / "map.nii.gz", map);
   writeText(folder / "points.tsv", "x\ty\tz\n0\t1\t12\n");
+}
+
+/// White and pial surface, a map and regions of the left hemisphere.
+inline void writeMapAndRegions(const TemporaryFolder& folder) {
+  writeCortexAndMap(folder);
+  const Positions places = geometry::makeIcosphere(3, 10.0).positions;
+  io::writeGiftiShape(folder / "thickness.shape.gii", {{"thickness", "mm", places.col(0)}},
+                      "CortexLeft");
+  io::LabelMap regions{"regions", {}, {{0, "unknown"}, {1, "front"}, {2, "back"}}};
+  regions.keys =
+      (places.col(1).array() > 3).cast<Label>() + 2 * (places.col(1).array() < -3).cast<Label>();
+  io::writeGiftiLabel(folder / "lh.regions.label.gii", regions, "CortexLeft");
+  io::writeSurface(folder / "sphere.reg.surf.gii", geometry::makeIcosphere(3, 10.0));
 }
 
 /// An ellipse about the origin, mm.
@@ -113,6 +158,24 @@ inline const std::vector<QuickRun>& quickRuns() {
       {"Polygon",
        {{"phantom", "polygon19", "--out", "{folder}/p19"}},
        {"polygon", "{folder}/p19/polygon.csv", "--region", "0:19", "--viewpoint", "50.5,4000"}},
+      {"Parcellate",
+       {},
+       {"parcellate", "{folder}", "--atlas", "{folder}/lh.regions.label.gii"},
+       writeMapAndRegions},
+      {"Regions",
+       {},
+       {"regions", "{folder}", "--atlas", "{folder}/lh.regions.label.gii"},
+       writeMapAndRegions},
+      {"Resample",
+       {},
+       {"resample", "{folder}/thickness.shape.gii", "{folder}/lh.regions.label.gii", "--from",
+        "{folder}/white.surf.gii", "--to", "fsaverage3"},
+       writeMapAndRegions},
+      {"Smooth",
+       {},
+       {"smooth", "{folder}/thickness.shape.gii", "--surface", "{folder}/white.surf.gii", "--fwhm",
+        "6"},
+       writeMapAndRegions},
       {"Repair", {}, {"repair", "{folder}/crossed.surf.gii", "--max-move", "5"}, writeCortexAndMap},
       {"Sample",
        {},
@@ -153,10 +216,21 @@ inline const std::vector<QuickRun>& quickRuns() {
        {"compare", "{folder}/sphere.surf.gii", "{folder}/sphere.surf.gii", "--pairs", "400",
         "--sources", "10"},
        writeFoldedSphere},
+      {"Glm",
+       {},
+       {"glm", "{folder}/maps.tsv", "--table", "{folder}/people.tsv", "--model",
+        "thickness ~ age + group", "--surface", "{folder}/sphere.surf.gii", "--permutations", "200",
+        "--tfce", "--threshold", "0.05"},
+       writePeoplesMaps},
       {"Inflate",
        {},
        {"inflate", "{folder}/sphere.surf.gii", "--max-iterations", "3", "--frames", "2"},
        writeFoldedSphere},
+      {"Register",
+       {},
+       {"register", "{folder}/lh.sphere", "--to", "{folder}/lh.sphere", "--level", "3"},
+       writeSphereWithFolds},
+      {"Sphere", {}, {"sphere", "{folder}/sphere.surf.gii"}, writeFoldedSphere},
       {"Run",
        {kShell},
        {"run", "{folder}/shell/labels.nii.gz", "--kind", "labels", "--steps", "thickness,report",

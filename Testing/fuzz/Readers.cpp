@@ -112,8 +112,6 @@ const std::vector<Reader>& allReaders() {
       {"off", "a.off", readSurface},
       {"stl", "a.stl", readSurface},
       {"stl-text", "text.stl", readSurface},
-      {"minc1", "minc1.mnc", readVolume},
-      {"minc2", "minc2.mnc", readVolume},
       {"mni-obj", "a.mni.obj", readSurface},
       {"cifti", "a.dscalar.nii", readCifti},
       {"patch", "lh.a.patch.3d", readPatch},

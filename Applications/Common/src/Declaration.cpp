@@ -58,25 +58,53 @@ Declaration& Declaration::inputOption(const std::string& optionName, FileKind ki
 }
 
 Declaration& Declaration::severalWords(std::string_view wanted) {
-  Parameter* parameter = find(wanted);
-  if (!parameter || !parameter->option.isList()) {
+  Parameter& parameter = get(wanted);
+  if (!parameter.option.isList()) {
     throw std::logic_error("severalWords: no list option " + std::string(wanted));
   }
-  parameter->severalWords = true;
+  parameter.severalWords = true;
   return *this;
 }
 
 Declaration& Declaration::namesOutput(std::string_view wanted) {
-  Parameter* parameter = find(wanted);
-  if (!parameter) throw std::logic_error("namesOutput: no option " + std::string(wanted));
-  parameter->namesOutput = true;
+  get(wanted).namesOutput = true;
+  return *this;
+}
+
+Declaration& Declaration::ofSide(std::string_view wanted, Hemisphere side) {
+  get(wanted).side = side;
+  return *this;
+}
+
+Declaration& Declaration::oneByOne(std::string_view wanted) {
+  get(wanted).oneByOne = true;
+  return *this;
+}
+
+Declaration& Declaration::onSurface(std::string_view wanted, std::string_view surface) {
+  get(wanted).surface = get(surface).option.name;
+  return *this;
+}
+
+Declaration& Declaration::excludes(const std::string& one, const std::vector<std::string>& others) {
+  for (const std::string& other : others) {
+    get(one).excludes.push_back(get(other).option.name);
+    get(other).excludes.push_back(one);
+  }
+  return *this;
+}
+
+Declaration& Declaration::needs(const std::vector<std::string>& names,
+                                const std::vector<std::string>& conditions) {
+  for (const std::string& condition : conditions) {
+    static_cast<void>(get(condition.substr(0, condition.find('='))));
+  }
+  for (const std::string& one : names) get(one).needs = conditions;
   return *this;
 }
 
 Declaration& Declaration::require(std::string_view wanted) {
-  Parameter* parameter = find(wanted);
-  if (!parameter) throw std::logic_error("require: no option " + std::string(wanted));
-  parameter->required = true;
+  get(wanted).required = true;
   return *this;
 }
 
@@ -94,6 +122,9 @@ Declaration& Declaration::include(const Declaration& other, std::string_view pre
     if (copy.stepCommand.empty()) copy.stepCommand = other.name;
     copy.stepPrefix = std::string(prefix) + copy.stepPrefix;
     copy.required = false;
+    copy.needs.clear();  // who takes the options over may see to it by itself
+    for (std::string& beside : copy.excludes) beside = std::string(prefix) + beside;
+    if (!copy.surface.empty()) copy.surface = std::string(prefix) + copy.surface;
     if (find(copy.option.name)) throw std::logic_error("declared twice: " + copy.option.name);
     parameters.push_back(std::move(copy));
   }
@@ -148,6 +179,12 @@ Parameter* Declaration::find(std::string_view wanted) {
 
 const Parameter* Declaration::find(std::string_view wanted) const {
   return const_cast<Declaration*>(this)->find(wanted);
+}
+
+Parameter& Declaration::get(std::string_view wanted) {
+  Parameter* parameter = find(wanted);
+  if (!parameter) throw std::logic_error("no option or positional " + std::string(wanted));
+  return *parameter;
 }
 
 Declaration& Declaration::add(provenance::Option option, const std::string& category,

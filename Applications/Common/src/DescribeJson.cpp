@@ -3,6 +3,7 @@
 
 #include "Explica/Provenance/Results.h"
 #include "FirstHelp.h"
+#include "Meeting.h"
 #include "Parse.h"
 #include "Wording.h"
 
@@ -58,6 +59,10 @@ Json describeJson(const Declaration& d) {
     entry["category"] = p.option.category;
     entry["help"] = p.option.help;
     entry["file"] = p.file ? Json(nameOf(*p.file)) : Json(nullptr);
+    entry["side"] = p.side ? Json(nameOf(*p.side)) : Json(nullptr);
+    entry["one_by_one"] = p.oneByOne;
+    entry["excludes"] = p.excludes;
+    entry["needs"] = p.needs;
     entry["choices"] = p.option.choices();
     entry["default"] = p.positional ? Json(nullptr) : provenance::valueOf(p.option);
     entry["first"] = shownAtFirst(d, p);
@@ -65,6 +70,7 @@ Json describeJson(const Declaration& d) {
     json["parameters"].push_back(entry);
   }
   json["writes_folder"] = d.writesOutput;
+  json["files_meet"] = filesMeet(d);
   json["outputs"] = Json::array();
   for (const auto& slot : allOutputs(d)) {
     json["outputs"].push_back({{"pattern", slot.pattern},

@@ -14,7 +14,8 @@ const std::vector<FirstHelp>& allFirstHelp() {
       {"bids",
        "a BIDS data set: segmentations, FreeSurfer subjects or T1 images",
        "a derivative with surfaces, thickness and unfolded patches, and a table of the study",
-       {"participant-label", "hemispheres", "steps", "unfold-surface", "given-surfaces"},
+       {"participant-label", "hemispheres", "steps", "unfold-surface", "given-surfaces",
+        "unfold.center", "unfold.direction", "unfold.radius"},
        R"(explica phantom cortex --size 32 --spacing 2 --out phantom
 mkdir -p data/sub-01/anat
 cp phantom/labels.nii.gz data/sub-01/anat/sub-01_dseg.nii.gz
@@ -57,6 +58,13 @@ explica embed shell/labels.nii.gz --label 1 --order 8 --out fit)"},
 explica surface shell/labels.nii.gz --white 1 --grey 2 --faces 2000 --out surfaces
 explica unfold surfaces/pial.surf.gii --center 0,0,12 --radius 8 --direction 0,0,1 --surround none --out unfolded
 explica flatten unfolded/unfolded.surf.gii --surfaces surfaces --volumes shell/level.nii.gz --out flat)"},
+      {"glm",
+       "people's maps or a table of regions, and what is known of the people",
+       "where an effect is, how large, and whether it is real: maps, tables and a page",
+       {"maps", "table", "model", "contrast", "surface", "mask", "site", "permutations", "tfce",
+        "threshold"},
+       R"(printf 'participant_id,age,thickness\ns1,20,2.6\ns2,30,2.5\ns3,40,2.5\ns4,50,2.3\ns5,60,2.2\n' > people.csv
+explica glm people.csv --model 'thickness ~ age' --permutations 100 --out glm)"},
       {"heart",
        "label volumes of the left ventricle: 4-D, or one a frame",
        "segments, volumes and masses over time, thickness and thickening, a bullseye",
@@ -76,6 +84,15 @@ explica history shell/labels.nii.gz)"},
        R"(explica phantom cortex --size 32 --spacing 2 --out cortex
 explica surface cortex/labels.nii.gz --white 3 --grey 2 --faces 2000 --out surfaces
 explica inflate surfaces/white.surf.gii --out inflated)"},
+      {"parcellate",
+       "a folder with a sphere in register with a template, and the template's labels",
+       "regions at the surface's vertices, and how sure they are",
+       {"atlas", "hemisphere"},
+       R"(explica phantom shell --size 32 --out shell
+explica surface shell/labels.nii.gz --white 1 --grey 2 --faces 2000 --atlas shell/labels.nii.gz \
+  --out surfaces
+cp surfaces/white.surf.gii surfaces/sphere.reg.surf.gii
+explica parcellate surfaces --atlas surfaces/regions.label.gii --hemisphere L --out regions)"},
       {"phantom cortex",
        "sizes",
        "a folded ribbon: labels, T1-like image and exact white surface",
@@ -127,6 +144,24 @@ explica thickness shell/labels.nii.gz --inner 1 --tissue 2 --out thickness)"},
         "target-visibility", "max-iterations", "frames", "resume"},
        R"(explica phantom polygon34 --out p34
 explica polygon p34/polygon.csv --region 0:34 --viewpoint 80.9,4000 --out flat)"},
+      {"regions",
+       "a folder with surfaces or maps, and an annotation of their vertices",
+       "area, volume, thickness, curvature and any map by region: FreeSurfer's table and a long "
+       "one",
+       {"atlas", "map", "hemisphere", "person"},
+       R"(explica phantom shell --size 32 --out shell
+explica surface shell/labels.nii.gz --white 1 --grey 2 --faces 2000 --atlas shell/labels.nii.gz \
+  --out surfaces
+explica regions surfaces --atlas surfaces/regions.label.gii --hemisphere L --out tables)"},
+      {"register",
+       "a sphere with sulcal depth and curvature beside it, and a template or another person",
+       "the sphere in the template's frame: equal places have equal folds, one to one",
+       {"template", "to", "sulc", "curvature", "surfaces", "mirror", "smoothness", "max-areal"},
+       R"(explica phantom cortex --size 32 --spacing 2 --out cortex
+explica surface cortex/labels.nii.gz --white 3 --grey 2 --faces 2000 --out surfaces
+explica sphere surfaces/white.surf.gii --out sphere
+explica register sphere/sphere.surf.gii --surfaces surfaces --to sphere/sphere.surf.gii \
+  --to-sulc surfaces/sulc.shape.gii --to-curvature surfaces/curvature.shape.gii --out registered)"},
       {"repair",
        "a triangulated surface, or several with the same faces",
        "the surface with crossing faces parted, the same vertices and faces",
@@ -147,10 +182,19 @@ explica replay shell/provenance.json --out again)"},
        R"(explica phantom shell --size 32 --out shell
 explica thickness shell/labels.nii.gz --inner 1 --tissue 2 --out thickness
 explica report thickness)"},
+      {"resample",
+       "per-vertex maps, labels or surfaces, and the sphere of their vertices",
+       "the same at the vertices of another sphere in register, such as fsaverage5's",
+       {"from", "to", "template", "method", "areas"},
+       R"(explica phantom shell --size 32 --out shell
+explica surface shell/labels.nii.gz --white 1 --grey 2 --faces 2000 --out surfaces
+explica resample surfaces/thickness.shape.gii --from surfaces/white.surf.gii --to fsaverage3 \
+  --out on-fsaverage3)"},
       {"run",
        "a T1, a label volume, a FreeSurfer subject or an anat folder of fMRIPrep",
        "tissues, thickness, surfaces, an unfolded patch, and a report on all of them",
-       {"atlas", "kind", "hemisphere", "unfold-surface", "given-surfaces", "steps", "resume"},
+       {"atlas", "kind", "hemisphere", "unfold-surface", "given-surfaces", "steps", "resume",
+        "unfold.center", "unfold.direction", "unfold.radius"},
        R"(explica phantom cortex --size 32 --spacing 2 --out cortex
 explica run cortex/labels.nii.gz --surface.faces 2000 --unfold.max-iterations 5 --out result \
   || [ $? -eq 3 ])"},
@@ -168,6 +212,20 @@ explica sample shell/harmonic.nii.gz --surfaces surfaces --depths 5 --out sample
        {"mask", "atlas", "hemisphere", "smooth", "bias-width", "max-iterations"},
        R"(explica phantom cortex --size 48 --out cortex
 explica segment cortex/t1.nii.gz --out tissue)"},
+      {"smooth",
+       "per-vertex maps, and the surface of their vertices",
+       "the maps diffused along the surface, and how smooth they are",
+       {"surface", "fwhm", "mask"},
+       R"(explica phantom shell --size 32 --out shell
+explica surface shell/labels.nii.gz --white 1 --grey 2 --faces 2000 --out surfaces
+explica smooth surfaces/thickness.shape.gii --surface surfaces/mid.surf.gii --fwhm 5 --out smooth)"},
+      {"sphere",
+       "a closed surface, such as a hemisphere's white surface",
+       "the surface one to one on a sphere, and what that does to areas and shapes",
+       {"balance", "tolerance", "max-iterations"},
+       R"(explica phantom cortex --size 32 --spacing 2 --out cortex
+explica surface cortex/labels.nii.gz --white 3 --grey 2 --faces 2000 --out surfaces
+explica sphere surfaces/white.surf.gii --out sphere)"},
       {"study check",
        "a study file",
        "what each run would do, or the first fault with its line and remedy",

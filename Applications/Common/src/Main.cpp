@@ -24,20 +24,6 @@ namespace {
 
 using provenance::Json;
 
-std::string overview() {
-  std::string text =
-      "Explica measures folded annular tissue and unfolds it for a chosen viewpoint.\n\n"
-      "Usage: explica COMMAND [arguments] [options]\n\nCommands:\n";
-  for (const Command& command : allCommands()) {
-    const std::string& name = command.name();
-    text += "  " + name + std::string(name.size() < 20 ? 20 - name.size() : 1, ' ') +
-            command.begin().declaration.synopsisText + "\n";
-  }
-  return text +
-         "\nexplica COMMAND --help says more.  Exit codes: 0 done, 1 usage, 2 bad input,\n"
-         "3 stopped before its goal (outputs written and marked), 4 environment.\n";
-}
-
 /// Commands whose names start with `verb `: the kinds of a verb.
 std::vector<const Command*> kindsOf(const std::string& verb) {
   std::vector<const Command*> kinds;
@@ -57,7 +43,7 @@ bool answerAboutProgram(const std::string& word) {
   if (word == "--version") {
     std::cout << provenance::softwareText() << "\n" << provenance::builtWithText() << "\n";
   } else if (word == "--help" || word == "--help-all" || word == "-h") {
-    std::cout << overview();
+    std::cout << overviewText();
   } else if (word == "--describe") {
     std::cout << provenance::textOf(describeAllCommands(), 2) << "\n";
   } else {
@@ -121,7 +107,11 @@ void report(const Run& run, const Outcome& outcome, Console& console) {
       options[parameter.option.name] = provenance::valueOf(parameter.option);
     }
     std::cout << provenance::textOf(options, 2) << "\n";
-    console.info("dry run: inputs and options are usable; nothing was written");
+    if (outcome.exitCode == kDone) {
+      console.info("dry run: inputs and options are usable; nothing was written");
+    } else {
+      console.warning("dry run: not all can be done, see above; nothing was written");
+    }
     return;
   }
   if (outcome.abandoned) {
@@ -131,10 +121,10 @@ void report(const Run& run, const Outcome& outcome, Console& console) {
   if (outcome.record.empty()) return;
   const std::string where = outcome.record.parent_path().string();
   if (!outcome.plausible && reachedGoal(outcome.termination)) {
-    console.warning("done, but not to be believed as it is; results in " + where);
+    console.warning("finished; check the results in " + where + " before using them");
   } else if (outcome.exitCode == kStoppedEarly) {
-    console.warning("stopped before its goal (" + std::string(nameOf(outcome.termination)) +
-                    "); what was reached is in " + where);
+    console.warning("ended before its goal (" + std::string(nameOf(outcome.termination)) +
+                    "); the results so far are in " + where);
   } else {
     console.info("done: results in " + where);
   }
@@ -167,7 +157,7 @@ std::optional<double> maxTimeOf(const Run& run) {
 int runCommandLine(std::vector<std::string> words, const std::vector<std::string>& argv,
                    Console& console, std::string& commandName) {
   if (words.empty()) {
-    std::cerr << overview();
+    std::cerr << overviewText();
     return kUsage;
   }
   if (words[0] == "help") words.erase(words.begin()), words.push_back("--help");
@@ -194,6 +184,8 @@ int runCommandLine(std::vector<std::string> words, const std::vector<std::string
   if (answerAboutCommand(declaration, words)) return kDone;
   run.given = parseWords(declaration, run.common, words);
   requireGiven(declaration, run.given);
+  requireSomething(declaration, run.given);
+  refuseIgnored(declaration, run.given);
   run.argv = argv;
   if (run.common.quiet) console.setLevel(Console::Level::Quiet);
   if (run.common.verbose) console.setLevel(Console::Level::Verbose);

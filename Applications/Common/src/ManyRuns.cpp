@@ -37,6 +37,7 @@ provenance::Json givenOptions(const Context& context, const Declaration& declara
 void sayProblem(Context& context, const std::string& name, const std::filesystem::path& folder,
                 const std::string& why) {
   context.warn(name + ": " + why);
+  if (context.given("dry-run")) return;
   std::filesystem::create_directories(folder);
   writeTextFile(
       folder / "problem.txt",

@@ -17,7 +17,8 @@ std::string nipypeName(const Json& p) {
   std::string name = identifier(word(p["name"]));
   std::transform(name.begin(), name.end(), name.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return name == "lambda" ? "lambda_" : name;  // the one option that is a word of Python's own
+  // Words of Python's own; a name that ends with "_" would be a wildcard of Traits.
+  return name == "lambda" || name == "from" ? "option_" + name : name;
 }
 
 std::string nipypeTrait(const Json& p) {

@@ -3,12 +3,16 @@
 
 #include "Parse.h"
 
+#include "Meeting.h"
+#include "Wording.h"
+
 #include "Explica/Core/Errors.h"
 
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <charconv>
+#include <map>
 #include <numeric>
 
 namespace explica::app {
@@ -85,8 +89,52 @@ void refuseNumbersBetweenSpaces(const std::vector<Parameter*>& parameters,
 
 }  // namespace
 
+namespace {
+
+/// Words of other programs for what an option does here.
+const std::map<std::string, std::vector<std::string>> kSynonyms = {
+    {"--side", {"--hemisphere", "--hemispheres"}},
+    {"--jobs", {"--threads"}},
+    {"--nthreads", {"--threads"}},
+    {"--n-threads", {"--threads"}},
+    {"--openmp", {"--threads"}},
+    {"--overwrite", {"--force"}},
+    {"--clobber", {"--force"}},
+    {"--output", {"--out"}},
+    {"--subject", {"--participant-label"}},
+    {"--subjects", {"--participant-label"}},
+    {"--annot", {"--labels", "--parcellation", "--regions", "--atlas"}},
+    {"--overlay", {"--map"}},
+    {"--size", {"--radius"}},
+    {"--steps-max", {"--max-iterations"}},
+    {"--iterations", {"--max-iterations"}},
+    {"--timeout", {"--max-time"}},
+    {"--memory", {"--max-memory"}}};
+
+/// The candidate that the word abbreviates or means; empty if there is none.
+std::string meantBy(const std::string& word, const std::vector<std::string>& candidates) {
+  constexpr std::size_t kTelling = 5;  // "--" and three letters
+  std::string shortest;
+  for (const auto& candidate : candidates) {
+    if (word.size() < kTelling || !candidate.starts_with(word)) continue;
+    if (shortest.empty() || candidate.size() < shortest.size()) shortest = candidate;
+  }
+  if (!shortest.empty()) return shortest;
+  const auto synonyms = kSynonyms.find(word);
+  if (synonyms == kSynonyms.end()) return {};
+  for (const auto& synonym : synonyms->second) {
+    if (std::find(candidates.begin(), candidates.end(), synonym) != candidates.end()) {
+      return synonym;
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
 std::string nearestWord(const std::string& word, const std::vector<std::string>& candidates) {
-  std::string best;
+  std::string best = meantBy(word, candidates);
+  if (!best.empty()) return best;
   std::size_t bestDistance = word.size() / 3 + 2;
   for (const auto& candidate : candidates) {
     std::vector<std::size_t> row(candidate.size() + 1);
@@ -112,7 +160,11 @@ namespace {
 
 /// Whether --report may be asked for: not where pages are among the results already.
 bool mayBeReported(const Declaration& declaration) {
-  return declaration.writesOutput && !declaration.writesInPlace && !declaration.handsOutputOn;
+  const bool ownPage =
+      std::any_of(declaration.outputs.begin(), declaration.outputs.end(),
+                  [](const OutputSlot& output) { return output.pattern == "report.html"; });
+  return declaration.writesOutput && !declaration.writesInPlace && !declaration.handsOutputOn &&
+         !ownPage;
 }
 
 }  // namespace
@@ -120,9 +172,11 @@ bool mayBeReported(const Declaration& declaration) {
 std::vector<Parameter> commonParameters(const Declaration& declaration, CommonOptions& common) {
   std::vector<Parameter> parameters;
   for (auto& option : provenance::listOptions(common)) {
+    if (option.name == "out" && declaration.fallbackOut) continue;  // a positional: OUT_DIR
     const bool concernsOutput = option.name == "out" || option.name == "force" ||
                                 option.name == "dry-run" || option.name == "private";
     if (concernsOutput && !declaration.writesOutput) continue;
+    if (option.name == "accept" && !filesMeet(declaration)) continue;
     if (option.name == "report" && !mayBeReported(declaration)) continue;
     if (declaration.find(option.name) != nullptr) continue;  // a command's own --max-time
     Parameter parameter;
@@ -204,6 +258,9 @@ std::set<std::string> parseWords(Declaration& declaration, CommonOptions& common
     const std::string extra = parser.remaining().empty() ? "" : parser.remaining().front();
     const std::string word = extra.substr(0, extra.find('='));
     if (word.rfind('-', 0) != 0) throw UsageError("'" + extra + "' was not expected");
+    if (word == "--out" && declaration.fallbackOut) {
+      throw UsageError("--out is not an option of this command: OUT_DIR says where the results go");
+    }
     const std::string near = nearestWord(word, known);
     throw UsageError("unknown option " + word +
                      (near.empty() ? "; see --help" : "; did you mean " + near + "?"));
@@ -231,6 +288,63 @@ std::set<std::string> parseWords(Declaration& declaration, CommonOptions& common
     given.insert(option.name);
   }
   return given;
+}
+
+namespace {
+
+/// Whether a condition of Declaration::needs holds: "label" is given, "method=thesis" is its value.
+bool holds(const Declaration& declaration, const std::set<std::string>& given,
+           const std::string& condition) {
+  const auto equals = condition.find('=');
+  if (equals == std::string::npos) return given.count(condition) > 0;
+  const Parameter* parameter = declaration.find(condition.substr(0, equals));
+  return parameter && parameter->option.text() == condition.substr(equals + 1);
+}
+
+/// "--method thesis" of "method=thesis".
+std::string conditionText(const Declaration& declaration, const std::string& condition) {
+  const auto equals = condition.find('=');
+  const Parameter* parameter = declaration.find(condition.substr(0, equals));
+  if (equals == std::string::npos) return dashed(*parameter);
+  return dashed(*parameter) + " " + condition.substr(equals + 1);
+}
+
+}  // namespace
+
+std::string needsText(const Declaration& declaration, const Parameter& parameter) {
+  std::string text;
+  for (const std::string& condition : parameter.needs) {
+    text += (text.empty() ? "" : " or ") + conditionText(declaration, condition);
+  }
+  return text;
+}
+
+void requireSomething(const Declaration& declaration, const std::set<std::string>& given) {
+  const bool reads = std::any_of(declaration.parameters.begin(), declaration.parameters.end(),
+                                 [](const Parameter& p) { return p.file.has_value(); });
+  if (!reads || !given.empty()) return;
+  throw UsageError("nothing is given to work on; usage: " + usageLine(declaration) +
+                   " (see --help)");
+}
+
+void refuseIgnored(const Declaration& declaration, const std::set<std::string>& given) {
+  for (const Parameter& parameter : declaration.parameters) {
+    if (!given.count(parameter.option.name)) continue;
+    for (const std::string& other : parameter.excludes) {
+      const Parameter* beside = declaration.find(other);
+      if (!beside || !given.count(other)) continue;
+      throw UsageError(dashed(parameter) + " and " + dashed(*beside) +
+                       " exclude each other: leave one of them out");
+    }
+    const bool effective =
+        parameter.needs.empty() ||
+        std::any_of(parameter.needs.begin(), parameter.needs.end(),
+                    [&](const auto& condition) { return holds(declaration, given, condition); });
+    if (!effective) {
+      throw UsageError(dashed(parameter) + " has no effect without " +
+                       needsText(declaration, parameter) + ": leave it out, or add that");
+    }
+  }
 }
 
 void requireGiven(const Declaration& declaration, const std::set<std::string>& given) {

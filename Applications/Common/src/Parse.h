@@ -31,6 +31,17 @@ std::set<std::string> applyJson(std::vector<Parameter*> parameters, const proven
 /// @throws UsageError  names it
 void requireGiven(const Declaration& declaration, const std::set<std::string>& given);
 
+/// A command that reads files, called without any word.
+/// @throws UsageError  shows how it is used
+void requireSomething(const Declaration& declaration, const std::set<std::string>& given);
+/// An option that has no effect beside another one, or without one.
+/// @throws UsageError  says which to leave out
+void refuseIgnored(const Declaration& declaration, const std::set<std::string>& given);
+/// What an option needs to have an effect: "--label or --method thesis"; empty if nothing.
+[[nodiscard]] std::string needsText(const Declaration& declaration, const Parameter& parameter);
+
+/// The text of `explica --help`: the commands by task.
+[[nodiscard]] std::string overviewText();
 /// The text of --help: what goes in and out, the options that most people need, an example.
 [[nodiscard]] std::string firstHelpText(const Declaration& declaration);
 /// The text of --help-all.

@@ -6,6 +6,9 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Segmentation/Plausibility.h"
 #include "JsonNumber.h"
+#include "Meeting.h"
+
+#include <algorithm>
 
 namespace explica::app {
 void declareAccept(Declaration& d, std::vector<std::string>& accepted) {
@@ -14,15 +17,17 @@ void declareAccept(Declaration& d, std::vector<std::string>& accepted) {
     for (const auto& limit : segmentation::limits()) {
       names += (names.empty() ? "" : ", ") + std::string(limit.name);
     }
-    return "go on although this number is implausible; may be repeated: " + names;
+    return "go on although this number is implausible; may be repeated: " + names +
+           "; or although files are of two hemispheres (hemisphere) or meshes (mesh)";
   }();
   d.option("Plausibility", Field{"accept", "", help}, accepted);
 }
 
-Judge::Judge(Context& context, const std::vector<std::string>& accepted)
-    : context_(context), accepted_(accepted) {
+Judge::Judge(Context& context, std::vector<std::string> accepted)
+    : context_(context), accepted_(std::move(accepted)) {
+  for (const char* ofFiles : {kAcceptHemisphere, kAcceptMesh}) std::erase(accepted_, ofFiles);
   try {
-    segmentation::checkAccepted(accepted);
+    segmentation::checkAccepted(accepted_);
   } catch (const InvalidInput& fault) {
     throw UsageError(fault.what());
   }

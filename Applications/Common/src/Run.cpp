@@ -14,6 +14,7 @@
 #include "Explica/Provenance/Software.h"
 #include "Explica/Provenance/Verify.h"
 #include "JsonNumber.h"
+#include "Meeting.h"
 #include "OutputFolder.h"
 #include "Parse.h"
 #include "Signals.h"
@@ -61,6 +62,7 @@ struct Context::State {
   std::optional<Json> flags;  ///< numbers outside of their limits; nothing if none was judged
   bool plausible = true;
   std::vector<std::pair<Judgement, std::string>> reasons;  ///< of results that are not good
+  std::optional<Meeting> meeting = {};  ///< the files read so far
 
   [[nodiscard]] bool doubtful() const {
     return !plausible || std::any_of(reasons.begin(), reasons.end(), [](const auto& reason) {
@@ -113,7 +115,12 @@ fs::path Context::input(const fs::path& path, std::string_view role) {
     return other.absolute == file.absolute && other.role == file.role;
   });
   if (known) return path;
-  if (const auto found = provenance::findRecordOf(path, file.digest)) {
+  const auto found = provenance::findRecordOf(path, file.digest);
+  for (const std::string& sentence :
+       state_->meeting->add(file.role, path, file.digest.sha256, found)) {
+    doubt(provenance::kInputsContradict, 1, sentence + "; accepted");
+  }
+  if (found) {
     if (found->sameContent) {
       file.parent = provenance::Parent{found->record["id"],
                                        provenance::digestOf(found->path).sha256, found->path};
@@ -238,6 +245,7 @@ void Context::warn(const std::string& message) {
 }
 
 bool Context::given(std::string_view name) const {
+  if (name == "dry-run") return state_->run.common.dryRun;  // of steps, too
   return state_->run.given.count(std::string(name)) > 0;
 }
 int Context::threads() const {
@@ -265,10 +273,22 @@ Run nestedRun(const Command& command, const Json& options, const Run& outer,
   return nested;
 }
 
+/// Whether all files that a run names are there: what an earlier step would make is not.
+bool filesExist(const Declaration& declaration) {
+  for (const Parameter& parameter : declaration.parameters) {
+    if (!parameter.file) continue;
+    const Json value = provenance::valueOf(parameter.option);
+    for (const Json& name : value.is_array() ? value : Json::array({value})) {
+      std::error_code ignored;
+      if (name.is_string() && !fs::exists(name.get<std::string>(), ignored)) return false;
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 Outcome Context::runCommand(const Command& command, const std::string& name, const Json& options) {
-  if (state_->run.common.dryRun) throw DryRunEnds{};
   if (!state_->folder || !state_->declaration().writesInPlace) {
     throw std::logic_error("runCommand: the command must be declared inPlace()");
   }
@@ -277,6 +297,10 @@ Outcome Context::runCommand(const Command& command, const std::string& name, con
   nested.common.force = true;
   nested.name = name + ": ";
   nested.prefix = state_->run.prefix + nested.name;
+  if (nested.common.dryRun) {
+    const bool ready = filesExist(nested.invocation.declaration);
+    return ready ? execute(nested, state_->console) : Outcome{};
+  }
   Step timing = step(name);
   Outcome outcome = execute(nested, state_->console);
   timing.termination(outcome.termination);
@@ -299,7 +323,7 @@ Outcome Context::runApart(const Command& command, const fs::path& out, const Jso
 
 std::optional<Outcome> Context::reuseCommand(const Command& command, const std::string& name,
                                              const Json& options) {
-  if (state_->run.common.dryRun) throw DryRunEnds{};
+  if (state_->run.common.dryRun) return {};  // what would be done is checked
   const fs::path path = outputFolder() / name / provenance::kRecordName;
   std::error_code ignored;
   if (!fs::exists(path, ignored)) return {};
@@ -350,6 +374,7 @@ std::optional<Outcome> Context::reuseCommand(const Command& command, const std::
 }
 
 void Context::dropCommand(const std::string& name) {
+  if (state_->run.common.dryRun) return;
   removeRecorded(outputFolder() / name);
   auto& records = state_->nestedRecords;
   std::erase_if(records, [&](const auto& entry) {
@@ -390,6 +415,13 @@ void noteDeclaredInputs(Context& context, const Declaration& declaration) {
   }
 }
 
+/// What the user accepts, by the command's own option or by that of all commands.
+std::vector<std::string> acceptedOf(const Run& run) {
+  const Parameter* own = run.invocation.declaration.find("accept");
+  if (!own) return run.common.accept;
+  return provenance::valueOf(own->option).get<std::vector<std::string>>();
+}
+
 std::uint64_t peakMemory() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -417,12 +449,15 @@ void recordValues(const Declaration& declaration, provenance::Record& record) {
   }
 }
 
-/// A sentence that names no input file gets the files named: modules see values, not paths.
-std::string withInputNames(const std::string& message, const provenance::Record& record) {
+/// A sentence that names no input file gets those named that were given: modules see values, not
+/// paths.
+std::string withInputNames(const std::string& message, const provenance::Record& record,
+                           const std::set<std::string>& given) {
   std::string names;
   for (const auto& input : record.inputs) {
     const std::string path = input.given.string();
     if (message.find(path) != std::string::npos) return message;
+    if (!given.count(input.role)) continue;
     names += (names.empty() ? "" : ", ") + input.role + " is " + path;
   }
   return names.empty() ? message : message + " (" + names + ")";
@@ -602,6 +637,7 @@ Outcome execute(Run& run, Console& console) {
   std::mutex warnings;
   state.monitor = monitorOf(run, console, record, warnings);
 
+  state.meeting.emplace(declaration, run.given, acceptedOf(run));
   if (!declaration.parameters.empty()) context.doubt(provenance::kInputsChanged, 0);
   Termination termination = Termination::NotRun;
   try {
@@ -611,19 +647,18 @@ Outcome execute(Run& run, Console& console) {
     openFolder(run, state);
     termination = run.invocation.run(context);
   } catch (const DryRunEnds&) {
-    return {};
+    return outcomeOf(Termination::NotRun, run, state);
   } catch (const Interrupted&) {
     console.endProgress();
     Outcome outcome = outcomeOf(Termination::Interrupted, run, state);
     outcome.abandoned = true;
     return outcome;
   } catch (const InvalidInput& error) {
-    throw InvalidInput(withInputNames(error.what(), record));
+    throw InvalidInput(withInputNames(error.what(), record, run.given));
   }
   console.endProgress();
-  if (run.common.dryRun) return {};
-
   Outcome outcome = outcomeOf(termination, run, state);
+  if (run.common.dryRun) return outcome;
   if (!state.folder) return outcome;
   record.termination = outcome.termination;
   record.exitCode = outcome.exitCode;

@@ -124,7 +124,7 @@ std::string usageLine(const Declaration& d) {
   for (const Parameter& p : d.parameters) {
     if (!p.positional && p.required) line += " " + leftColumn(p);
   }
-  if (d.writesOutput) line += " --out DIR";
+  if (d.writesOutput && !d.fallbackOut) line += " --out DIR";
   return line + " [options]";
 }
 

@@ -344,7 +344,7 @@ class Window(unittest.TestCase):
             [program, "view", "ball.off"], cwd=self.folder, capture_output=True, text=True
         )
         self.assertEqual(result.returncode, 4)
-        self.assertIn("explica-window.so: the window is not installed", result.stderr)
+        self.assertIn("explica-window: the window is not installed", result.stderr)
         self.assertIn("--screenshot", result.stderr)
 
     @unittest.skipUnless(virtual_display.SERVER, "skipped: Xvfb is not installed")

@@ -5,6 +5,7 @@
 
 #include "CrossingLength.h"
 
+#include "Explica/Core/DisjointSets.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Geometry/FaceTree.h"
 #include "Explica/Geometry/MeshTopology.h"
@@ -49,27 +50,21 @@ std::vector<std::int32_t> withRings(const geometry::MeshTopology& topology,
 std::vector<Group> groupsOf(const TriangleMesh& mesh, const geometry::MeshTopology& topology,
                             const std::vector<FacePair>& pairs, int rings) {
   std::vector<std::vector<std::int32_t>> free;
-  std::vector<std::size_t> parent(pairs.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](std::size_t n) {
-    while (parent[n] != n) n = parent[n] = parent[parent[n]];
-    return n;
-  };
-  std::map<std::int32_t, std::size_t> owner;
+  DisjointSets sets(pairs.size());
+  std::map<std::int32_t, std::int32_t> owner;
   for (std::size_t n = 0; n < pairs.size(); ++n) {
+    const auto pair = static_cast<std::int32_t>(n);
     std::vector<std::int32_t> corners;
     for (const std::int32_t f : pairs[n]) {
       for (int k = 0; k < 3; ++k) corners.push_back(mesh.faces(f, k));
     }
     free.push_back(withRings(topology, corners, rings));
-    for (const std::int32_t v : free.back()) {
-      const std::size_t a = root(owner.try_emplace(v, n).first->second), b = root(n);
-      parent[std::max(a, b)] = std::min(a, b);
-    }
+    for (const std::int32_t v : free.back())
+      sets.join(owner.try_emplace(v, pair).first->second, pair);
   }
-  std::map<std::size_t, Group> groups;
+  std::map<std::int32_t, Group> groups;
   for (std::size_t n = 0; n < pairs.size(); ++n) {
-    Group& group = groups[root(n)];
+    Group& group = groups[sets.root(static_cast<std::int32_t>(n))];
     group.pairs.push_back(pairs[n]);
     group.free.insert(group.free.end(), free[n].begin(), free[n].end());
   }

@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "HalfwaySurface.h"
 
+#include "Explica/Core/DisjointSets.h"
+
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <utility>
 
 namespace explica::correspondence {
@@ -21,25 +22,6 @@ struct Crossing {
   int axis = 0;
   int sign = 1;    ///< from the inner to the outer side along the axis
   Doubled centre;  ///< of the voxel face
-};
-
-/// Which sheet of the surface a crossing belongs to at each corner of its voxel face.
-class Sheets {
- public:
-  explicit Sheets(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), 0U);
-  }
-  std::size_t of(std::size_t k) {
-    while (parent_[k] != k) k = parent_[k] = parent_[parent_[k]];
-    return k;
-  }
-  void unite(std::size_t a, std::size_t b) {
-    a = of(a), b = of(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::size_t> parent_;
 };
 
 std::vector<Crossing> crossingsOf(const harmonic::Annulus& annulus, const std::vector<double>& u) {
@@ -105,11 +87,12 @@ class FaceCorners {
   int count_;
 };
 
-/// Joins crossings that share a side of their voxel faces.  Where four meet at a side, those of the
-/// same inner voxel belong together.
-Sheets sheetsOf(const std::vector<Crossing>& crossings, const FaceCorners& face) {
-  const auto corners = static_cast<std::size_t>(face.count());
-  Sheets sheets(crossings.size() * corners);
+/// Which sheet of the surface a crossing belongs to at each corner of its voxel face.  Joins
+/// crossings that share a side of their voxel faces.  Where four meet at a side, those of the same
+/// inner voxel belong together.
+DisjointSets sheetsOf(const std::vector<Crossing>& crossings, const FaceCorners& face) {
+  const auto corners = static_cast<std::int32_t>(face.count());
+  DisjointSets sheets(crossings.size() * corners);
   std::map<Doubled, std::vector<std::pair<std::size_t, int>>> atSide;
   for (std::size_t f = 0; f < crossings.size(); ++f) {
     for (int k = 0; k < face.count(); ++k) atSide[face.side(crossings[f], k)].emplace_back(f, k);
@@ -120,7 +103,8 @@ Sheets sheetsOf(const std::vector<Crossing>& crossings, const FaceCorners& face)
       for (int q = 0; q < ends; ++q) {
         const int i = (a.second + p) % face.count(), j = (b.second + q) % face.count();
         if (face.corner(crossings[a.first], i) != face.corner(crossings[b.first], j)) continue;
-        sheets.unite(a.first * corners + i, b.first * corners + j);
+        sheets.join(static_cast<std::int32_t>(a.first) * corners + i,
+                    static_cast<std::int32_t>(b.first) * corners + j);
       }
     }
   };
@@ -157,17 +141,17 @@ Vector placeOf(const Gathered& g, const Doubled& corner, bool planar) {
 HalfwaySurface halfwaySurface(const harmonic::Annulus& annulus, const std::vector<double>& u) {
   const std::vector<Crossing> crossings = crossingsOf(annulus, u);
   const FaceCorners face(annulus.planar);
-  Sheets sheets = sheetsOf(crossings, face);
+  DisjointSets sheets = sheetsOf(crossings, face);
   HalfwaySurface surface;
   std::vector<Gathered> gathered;
   std::vector<Doubled> cornerOf;
-  std::map<std::size_t, std::int32_t> vertexOf;
+  std::map<std::int32_t, std::int32_t> vertexOf;
   for (std::size_t f = 0; f < crossings.size(); ++f) {
     const Crossing& c = crossings[f];
     std::array<std::int32_t, 4> corners = {-1, -1, -1, -1};
     for (int k = 0; k < face.count(); ++k) {
       const Doubled corner = face.corner(c, k);
-      const std::size_t sheet = sheets.of(f * face.count() + k);
+      const std::int32_t sheet = sheets.root(static_cast<std::int32_t>(f) * face.count() + k);
       const auto [at, isNew] =
           vertexOf.try_emplace(sheet, static_cast<std::int32_t>(surface.vertices.size()));
       if (isNew) {

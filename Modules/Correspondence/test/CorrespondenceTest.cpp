@@ -244,6 +244,25 @@ TEST(Correspondence, LambdaDialsAppendixAFromTheLagrangianToTheSweep) {
   EXPECT_LT(before.first, eulerian);
 }
 
+/// A copy of one upwind neighbour where the other is not solved would not know of lambda.
+TEST(Correspondence, TheLargestErrorOfAppendixAFollowsLambda) {
+  const Solved s = solve(harmonic::exactEccentric(10, 25, 5),
+                         harmonic::centredGrid({128, 128, 1}, {0.5, 0.5, 1}));
+  const auto largest = [&](double lambda) {
+    const auto found =
+        findCorrespondences(s.annulus, s.interpolant, with(Method::AppendixA, lambda));
+    double most = 0;
+    for (std::int32_t n = 0; n < static_cast<std::int32_t>(s.annulus.count()); ++n) {
+      const Point x = s.annulus.world(n);
+      const Point there = x + found.innerPoint[n].cast<double>();
+      most = std::max(most, (there - s.exact.answer(x).innerPoint).norm());
+    }
+    return most;
+  };
+  EXPECT_LE(largest(0.1), 0.01);  // mm
+  EXPECT_LE(largest(0.1), 0.5 * largest(0.3));
+}
+
 TEST(Correspondence, AppendixAIsOfFirstOrderAndTheHybridOfSecond) {
   const ExactAnnulus exact = harmonic::exactEccentric(10, 25, 5);
   double appendix[2], ours[2];

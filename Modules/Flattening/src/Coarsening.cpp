@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
-#include "Coarsening.h"
+#include "Explica/Flattening/Coarsening.h"
 
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Geometry/Predicates.h"
@@ -98,6 +98,7 @@ class Shrinking {
       level.mesh.faces.row(next) = faces_.row(static_cast<Eigen::Index>(f));
       level.mesh.lengths.row(next++) = lengths_.row(static_cast<Eigen::Index>(f));
     }
+    if (rimSize_ == 0) return level;
     std::int32_t first = 0;
     while (nextOnRim_[first] < 0) ++first;
     std::int32_t v = first;
@@ -359,7 +360,6 @@ std::vector<Plane> kernelOf(const std::vector<Plane>& ring) {
 /// beside the vertex that the removed one merged with.  The faces that join this one to the ring
 /// are positive, so that the exact test finds a place on the way to any vertex across, near enough.
 std::optional<Plane> placeBeside(const std::vector<Plane>& ring, bool open, std::size_t centre) {
-  constexpr int kHalvings = 50;  // down to the rounding of the coordinates
   const std::size_t size = ring.size();
   const Plane& from = ring[centre];
   const Plane to = open        ? ring[size - 1 - centre]
@@ -412,8 +412,13 @@ std::vector<CoarseningLevel> coarsen(const IntrinsicMesh& mesh, const Loop& rim,
     list.insert(list.end(), removals.begin(), removals.end());
     // Where few vertices can go, poorer shapes are allowed, and then it is enough.
     if (static_cast<Eigen::Index>(removals.size()) * 25 < shrinking.count()) {
+      // Some vertex of a closed surface can always go, if only with a face of no area.
+      const bool last = rim.empty() && anyShape && leastQuality > 0;
       leastQuality /= 2;
-      if (leastQuality < (anyShape ? 1e-6 : 0.03)) break;
+      if (leastQuality < (anyShape ? 1e-6 : 0.03)) {
+        if (!last) break;
+        leastQuality = 0;
+      }
     }
     if (static_cast<double>(shrinking.count()) * kLevelRatio < static_cast<double>(levelCount)) {
       levels.push_back(shrinking.snapshot());

@@ -3,6 +3,7 @@
 
 #include "Explica/Flattening/Disc.h"
 
+#include "Explica/Core/DisjointSets.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Geometry/MeshTopology.h"
 
@@ -13,28 +14,21 @@
 namespace explica::flattening {
 namespace {
 
-std::int32_t rootOf(std::vector<std::int32_t>& parent, std::int32_t i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
 /// Number of the edge-connected part of each face, and the size of each part.
 std::vector<std::int32_t> edgeParts(const geometry::MeshTopology& topology, Eigen::Index faceCount,
                                     std::vector<std::size_t>& sizes) {
-  std::vector<std::int32_t> parent(static_cast<std::size_t>(faceCount));
-  std::iota(parent.begin(), parent.end(), 0);
+  DisjointSets sets(static_cast<std::size_t>(faceCount));
   for (Eigen::Index e = 0; e < topology.edgeFaces.rows(); ++e) {
     if (topology.edgeFaces(e, 1) < 0) continue;
-    const std::int32_t a = rootOf(parent, topology.edgeFaces(e, 0));
-    const std::int32_t b = rootOf(parent, topology.edgeFaces(e, 1));
-    if (a != b) parent[std::max(a, b)] = std::min(a, b);
+    sets.join(topology.edgeFaces(e, 0), topology.edgeFaces(e, 1));
   }
-  sizes.assign(parent.size(), 0);
-  for (std::size_t f = 0; f < parent.size(); ++f) {
-    parent[f] = rootOf(parent, static_cast<std::int32_t>(f));
-    ++sizes[parent[f]];
+  std::vector<std::int32_t> part(static_cast<std::size_t>(faceCount));
+  sizes.assign(part.size(), 0);
+  for (std::size_t f = 0; f < part.size(); ++f) {
+    part[f] = sets.root(static_cast<std::int32_t>(f));
+    ++sizes[part[f]];
   }
-  return parent;
+  return part;
 }
 
 /// Fans of faces about a vertex: groups joined by edges at it.

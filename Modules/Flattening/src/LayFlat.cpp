@@ -3,8 +3,8 @@
 
 #include "LayFlat.h"
 
-#include "Coarsening.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Flattening/Coarsening.h"
 #include "MapSolver.h"
 
 #include <Eigen/SparseCholesky>

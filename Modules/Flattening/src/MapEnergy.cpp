@@ -50,18 +50,6 @@ Complex unit(Complex z, double size) {
   return size > 0 ? z / size : Complex(1, 0);
 }
 
-/// The smallest root in (0, 1] of a + b t + c t^2 with a > 0, or infinity.
-double firstRoot(double a, double b, double c) {
-  const double discriminant = b * b - 4 * a * c;
-  if (discriminant < 0) return kInfinity;
-  const double w = -(b + std::copysign(std::sqrt(discriminant), b)) / 2;
-  double first = kInfinity;
-  for (const double t : {c != 0 ? w / c : kInfinity, w != 0 ? a / w : kInfinity}) {
-    if (t > 0 && t < first) first = t;
-  }
-  return first;
-}
-
 }  // namespace
 
 IntrinsicMesh intrinsicOf(const TriangleMesh& mesh) {
@@ -105,6 +93,17 @@ Density mapDensity(double p, double q, double areaWeight) {
   density.dPQ = -4 * p * q * bend;
   density.dQQ = 4 - 2 * slope + 4 * q * q * bend;
   return density;
+}
+
+double firstRoot(double a, double b, double c) {
+  const double discriminant = b * b - 4 * a * c;
+  if (discriminant < 0) return kInfinity;
+  const double w = -(b + std::copysign(std::sqrt(discriminant), b)) / 2;
+  double first = kInfinity;
+  for (const double t : {c != 0 ? w / c : kInfinity, w != 0 ? a / w : kInfinity}) {
+    if (t > 0 && t < first) first = t;
+  }
+  return first;
 }
 
 MapEnergy::MapEnergy(const IntrinsicMesh& mesh, double areaWeight, double smallestHeight,
@@ -180,7 +179,6 @@ FlatPositions MapEnergy::gradient(const FlatPositions& flat) const {
 }
 
 double MapEnergy::largestStep(const FlatPositions& flat, const FlatPositions& step) const {
-  constexpr double kShare = 0.8;  // of the way to the first face without area
   std::vector<double> least((rest_.size() + kGrain - 1) / kGrain, kInfinity);
   parallelForBlocks(rest_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     double first = kInfinity;
@@ -196,7 +194,7 @@ double MapEnergy::largestStep(const FlatPositions& flat, const FlatPositions& st
     }
     least[begin / kGrain] = first;
   });
-  return std::min(1.0, kShare * *std::min_element(least.begin(), least.end()));
+  return std::min(1.0, kShareOfWay * *std::min_element(least.begin(), least.end()));
 }
 
 }  // namespace explica::flattening

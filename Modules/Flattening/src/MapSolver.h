@@ -6,9 +6,8 @@
 #include "Explica/Core/Termination.h"
 #include "Explica/Flattening/MapEnergy.h"
 #include "Explica/Flattening/RimContact.h"
-#include "Explica/Geometry/BlockCholesky.h"
+#include "Explica/Geometry/FaceSystem.h"
 
-#include <array>
 #include <functional>
 #include <vector>
 
@@ -37,26 +36,12 @@ class MapSolver {
   void setAreaWeight(double weight) { energy_.setAreaWeight(weight); }
 
  private:
-  /// Where a face's six blocks lie in the matrix: corners 00, 11, 22, 10, 20, 21.
-  struct FaceBlocks {
-    std::array<std::int32_t, 6> at;
-    std::array<bool, 6> turned;  ///< the block's transpose belongs there
-  };
-
-  void buildPattern();
-  [[nodiscard]] std::int32_t slot(std::int32_t row, std::int32_t column) const;
-  void assemble(const FlatPositions& flat, Eigen::VectorXd& gradient);
-  void addFaces(const FlatPositions& flat, Eigen::VectorXd& gradient);
-  void addContacts(const FlatPositions& flat, Eigen::VectorXd& gradient);
+  void assemble(const FlatPositions& flat);
+  void addContacts(const FlatPositions& flat);
 
   MapEnergy energy_;
   RimContact contact_;
-  std::vector<std::int32_t> used_;   ///< vertices of this level, ascending
-  std::vector<std::int32_t> place_;  ///< of each vertex in the elimination order, or -1
-  geometry::BlockPattern pattern_;
-  std::vector<Eigen::Matrix2d> blocks_;  ///< of the pattern's entries
-  std::vector<FaceBlocks> faceBlocks_;
-  geometry::BlockCholesky<2> cholesky_;
+  geometry::FaceSystem system_;
 };
 
 }  // namespace explica::flattening

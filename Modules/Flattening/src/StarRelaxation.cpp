@@ -100,12 +100,11 @@ double starEnergy(const std::vector<StarFace>& star, double areaWeight, const Pl
 
 Plane relaxedPlace(const std::vector<StarFace>& star, double areaWeight, Plane place,
                    int maxSteps) {
-  constexpr double kEnough = 1e-2;  // of the energy: neighbours will move it again
   for (int n = 0; n < maxSteps; ++n) {
     const Terms terms = evaluate(star, areaWeight, place, true);
     const Plane step = -(terms.hessian.inverse() * terms.gradient);
     const double promised = -terms.gradient.dot(step);
-    if (!(promised > kEnough * terms.value)) break;
+    if (!(promised > kEnoughOfStar * terms.value)) break;
     double share = 1;
     bool moved = false;
     for (int halving = 0; halving < 20 && !moved; ++halving, share /= 2) {

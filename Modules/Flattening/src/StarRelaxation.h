@@ -23,8 +23,4 @@ struct StarFace {
 [[nodiscard]] Eigen::Vector2d relaxedPlace(const std::vector<StarFace>& star, double areaWeight,
                                            Eigen::Vector2d place, int maxSteps = 10);
 
-/// Rest shape of one face from its edge lengths, the first from corner 0 to corner 1.
-[[nodiscard]] RestFace restFace(const std::array<double, 3>& lengths, double smallestHeight,
-                                bool* raised = nullptr);
-
 }  // namespace explica::flattening

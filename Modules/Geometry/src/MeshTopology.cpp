@@ -3,6 +3,7 @@
 
 #include "Explica/Geometry/MeshTopology.h"
 
+#include "Explica/Core/DisjointSets.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Geometry/Predicates.h"
@@ -65,26 +66,6 @@ void forEachEdge(const std::vector<HalfEdge>& sides, const Visit& visit) {
     begin = end;
   }
 }
-
-/// Union-find without ranks: roots are the smallest members, so that numbering is canonical.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-  }
-  std::int32_t root(std::int32_t x) {
-    while (parent_[x] != x) x = parent_[x] = parent_[parent_[x]];
-    return x;
-  }
-  void join(std::int32_t a, std::int32_t b) {
-    a = root(a);
-    b = root(b);
-    if (a != b) parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::int32_t> parent_;
-};
 
 /// Lists of the values that each key has, from pairs in any order; lists come out ascending.
 IndexLists groupByKey(std::size_t keys, const std::vector<std::array<std::int32_t, 2>>& pairs) {

@@ -20,10 +20,8 @@ enum MessageType {
   kLink = 0x6,
   kLayout = 0x8,
   kFilters = 0xB,
-  kAttribute = 0xC,
   kContinuation = 0x10,
-  kSymbolTable = 0x11,
-  kAttributeInfo = 0x15
+  kSymbolTable = 0x11
 };
 
 enum FilterNumber { kDeflate = 1, kShuffle = 2, kChecksum = 3 };
@@ -45,7 +43,7 @@ struct ElementType {
 [[noreturn]] void failAsUnknown(const std::filesystem::path& path, const std::string& what) {
   failToRead(path, "is HDF5 with " + what +
                        ", which is not read here; write it anew with the program that made "
-                       "it (MINC: mincreshape) or h5repack");
+                       "it, or h5repack");
 }
 
 std::vector<std::int64_t> dataspaceOf(const std::filesystem::path& path, ByteView message) {
@@ -372,154 +370,6 @@ void Hdf5File::readFilters(ByteView message, Hdf5Array& array) const {
   }
 }
 
-void Hdf5File::readAttribute(ByteView message, Hdf5Array& array) const {
-  ByteCursor cursor(path_, message, false);
-  const auto version = cursor.take<std::uint8_t>();
-  static_cast<void>(cursor.take<std::uint8_t>());
-  const auto nameSize = cursor.take<std::uint16_t>();
-  const auto typeSize = cursor.take<std::uint16_t>();
-  const auto spaceSize = cursor.take<std::uint16_t>();
-  if (version == 3) static_cast<void>(cursor.take<std::uint8_t>());
-  if (version < 1 || version > 3) failAsUnknown(path_, "an unknown attribute");
-  const auto view = [&](std::size_t size) {
-    const ByteView taken = cursor.view(size);
-    if (version == 1) static_cast<void>(cursor.view((8 - size % 8) % 8));
-    return taken;
-  };
-  const std::string_view name = textOf(view(nameSize));
-  const ElementType element = elementOf(path_, view(typeSize));
-  const std::vector<std::int64_t> size = dataspaceOf(path_, view(spaceSize));
-  Hdf5Attribute& attribute = array.attributes[std::string(name.substr(0, name.find('\0')))];
-  if (element.kind == ElementType::Class::Other) return;  // links between dimensions and arrays
-  const std::uint64_t bytes = byteCountOf(path_, size, element.width);
-  if (bytes > cursor.left()) failTruncated(path_, "an attribute is longer than its header");
-  const ByteView values = cursor.view(bytes);
-  if (element.kind == ElementType::Class::Text) {
-    attribute.text = textOf(values).substr(0, textOf(values).find('\0'));
-    return;
-  }
-  withType(element.number, [&]<class In>(const In*) {
-    for (std::size_t n = 0; n < values.size(); n += sizeof(In)) {
-      attribute.numbers.push_back(
-          static_cast<double>(load<In>(values.data() + n, element.bigEndian)));
-    }
-  });
-}
-
-/// Where objects without places of their own stand: in blocks, counted through from the first.
-struct Hdf5File::FractalHeap {
-  std::uint64_t root = kNowhere;  ///< of the one direct block, or the block of blocks
-  int rows = 0;                   ///< of the block of blocks; 0: there is one direct block
-  int columns = 0;
-  std::uint64_t firstSize = 0;  ///< of the blocks in rows 0 and 1; then it doubles by row
-  std::size_t offsetBytes = 0, lengthBytes = 0;
-};
-
-namespace {
-
-/// A number of up to 8 bytes, the lowest first.
-std::uint64_t wholeOf(ByteView bytes) {
-  std::uint64_t number = 0;
-  for (std::size_t b = std::min<std::size_t>(bytes.size(), 8); b-- > 0;) {
-    number = number << 8 | bytes[b];
-  }
-  return number;
-}
-
-std::size_t bytesFor(std::uint64_t largest) {
-  std::size_t bytes = 1;
-  while ((largest >>= 8) != 0) ++bytes;
-  return bytes;
-}
-
-}  // namespace
-
-Hdf5File::FractalHeap Hdf5File::heapAt(std::uint64_t address) const {
-  ByteCursor cursor = at(address);
-  if (textOf(cursor.view(4)) != "FRHP") failToRead(path_, "is damaged: there is no heap");
-  static_cast<void>(cursor.view(3));  // version, length of names
-  if (cursor.take<std::uint16_t>() != 0) failAsUnknown(path_, "packed attributes");
-  static_cast<void>(cursor.take<std::uint8_t>());
-  const auto largest = cursor.take<std::uint32_t>();
-  static_cast<void>(cursor.view(12 * 8));  // what is free, huge or tiny
-  FractalHeap heap;
-  heap.columns = cursor.take<std::uint16_t>();
-  heap.firstSize = cursor.take<std::uint64_t>();
-  const auto largestBlock = cursor.take<std::uint64_t>();
-  const auto bits = cursor.take<std::uint16_t>();
-  static_cast<void>(cursor.take<std::uint16_t>());
-  heap.root = cursor.take<std::uint64_t>();
-  heap.rows = cursor.take<std::uint16_t>();
-  heap.offsetBytes = (bits + std::size_t{7}) / 8;
-  heap.lengthBytes = bytesFor(std::min<std::uint64_t>(largest, largestBlock));
-  return heap;
-}
-
-ByteView Hdf5File::inHeap(const FractalHeap& heap, ByteView id) const {
-  constexpr int kKinds = 0x30;  // bits of the first byte: 0 for what stands in blocks
-  if (id.size() < 1 + heap.offsetBytes + heap.lengthBytes || (id[0] & kKinds) != 0) {
-    failAsUnknown(path_, "very long attributes");
-  }
-  std::uint64_t offset = wholeOf(id.subspan(1, heap.offsetBytes));
-  const std::uint64_t length = wholeOf(id.subspan(1 + heap.offsetBytes, heap.lengthBytes));
-  std::uint64_t block = heap.root;
-  if (heap.rows > 0) {
-    ByteCursor blocks = at(heap.root);
-    if (textOf(blocks.view(4)) != "FHIB") failToRead(path_, "is damaged: a heap has no blocks");
-    static_cast<void>(blocks.view(9 + heap.offsetBytes));
-    block = kNowhere;
-    std::uint64_t size = heap.firstSize;
-    for (int row = 0; row < heap.rows && block == kNowhere; ++row) {
-      if (row > 1) size *= 2;
-      for (int column = 0; column < heap.columns; ++column) {
-        const auto address = blocks.take<std::uint64_t>();
-        if (offset < size) {
-          block = address;
-          break;
-        }
-        offset -= size;
-      }
-    }
-  }
-  if (block == kNowhere) failToRead(path_, "is damaged: an attribute is not where it should");
-  ByteCursor cursor = at(block);
-  if (textOf(cursor.view(4)) != "FHDB") failToRead(path_, "is damaged: a heap has no blocks");
-  return at(block + offset).view(length);
-}
-
-std::vector<ByteView> Hdf5File::recordsOf(std::uint64_t tree) const {
-  ByteCursor cursor = at(tree);
-  if (textOf(cursor.view(4)) != "BTHD") failToRead(path_, "is damaged: there is no index");
-  static_cast<void>(cursor.view(6));  // version, kind, size of nodes
-  const auto width = cursor.take<std::uint16_t>();
-  if (cursor.take<std::uint16_t>() != 0) failAsUnknown(path_, "hundreds of attributes");
-  static_cast<void>(cursor.view(2));
-  const auto root = cursor.take<std::uint64_t>();
-  const auto count = cursor.take<std::uint16_t>();
-  std::vector<ByteView> records;
-  if (root == kNowhere) return records;
-  ByteCursor leaf = at(root);
-  if (textOf(leaf.view(4)) != "BTLF") failToRead(path_, "is damaged: an index has no entries");
-  static_cast<void>(leaf.view(2));
-  for (int n = 0; n < count; ++n) records.push_back(leaf.view(width));
-  return records;
-}
-
-void Hdf5File::readDenseAttributes(ByteView message, Hdf5Array& array) const {
-  ByteCursor cursor(path_, message, false);
-  static_cast<void>(cursor.take<std::uint8_t>());
-  if ((cursor.take<std::uint8_t>() & 1) != 0) static_cast<void>(cursor.view(2));
-  const auto address = cursor.take<std::uint64_t>();
-  const auto index = cursor.take<std::uint64_t>();
-  if (address == kNowhere || index == kNowhere) return;
-  constexpr std::size_t kIdBytes = 8;
-  const FractalHeap heap = heapAt(address);
-  for (const ByteView record : recordsOf(index)) {
-    if (record.size() < kIdBytes) failToRead(path_, "is damaged: an index has no entries");
-    readAttribute(inHeap(heap, record.first(kIdBytes)), array);
-  }
-}
-
 std::optional<std::uint64_t> Hdf5File::addressOf(const std::string& place) const {
   std::uint64_t address = root_;
   for (std::size_t begin = 1; begin < place.size();) {
@@ -612,12 +462,6 @@ std::optional<Hdf5Array> Hdf5File::find(const std::string& place) const {
         break;
       case kFilters:
         readFilters(message.data, array);
-        break;
-      case kAttribute:
-        if (!shared) readAttribute(message.data, array);
-        break;
-      case kAttributeInfo:
-        readDenseAttributes(message.data, array);
         break;
       default:
         break;

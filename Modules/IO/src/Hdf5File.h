@@ -6,24 +6,17 @@
 #include "StoredVolume.h"
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace explica::io {
 
-struct Hdf5Attribute {
-  std::string text;
-  std::vector<double> numbers;
-};
-
 /// An array of an HDF5 file: what it is and where its values stand.
 struct Hdf5Array {
   std::vector<std::int64_t> size;  ///< slowest dimension first; empty: one value
   StoredType type = StoredType::Float64;
   bool bigEndian = false;
-  std::map<std::string, Hdf5Attribute> attributes;
 
   enum class Layout { Compact, Contiguous, Chunked };
   Layout layout = Layout::Contiguous;
@@ -33,11 +26,10 @@ struct Hdf5Array {
   std::vector<int> filters;         ///< by HDF5's numbers, as they were applied
 };
 
-/// Numeric arrays with their attributes, and texts, from an HDF5 file, as far as MINC's library,
-/// ITK and h5py by default write them: superblocks 0 to 3, groups as symbol tables, contiguous or
-/// chunked values, packed by deflate with or without shuffle and checksum [HDF5 file format
-/// specification, version 3].  Every address and size is checked against the file; HDF5's own
-/// library is not, and damaged files bring it down.
+/// Numeric arrays and texts from an HDF5 file, as far as ITK and h5py by default write them:
+/// superblocks 0 to 3, groups as symbol tables, contiguous or chunked values, packed by deflate
+/// with or without shuffle and checksum [HDF5 file format specification, version 3].  Every address
+/// and size is checked against the file; HDF5's own library does not, and crashes on damaged files.
 class Hdf5File {
  public:
   /// @param bytes  the whole file; must outlive this object
@@ -76,12 +68,6 @@ class Hdf5File {
   [[nodiscard]] std::optional<std::uint64_t> inLink(ByteView message, std::string_view name) const;
   void readLayout(ByteView message, Hdf5Array& array) const;
   void readFilters(ByteView message, Hdf5Array& array) const;
-  void readAttribute(ByteView message, Hdf5Array& array) const;
-  void readDenseAttributes(ByteView message, Hdf5Array& array) const;
-  struct FractalHeap;
-  [[nodiscard]] FractalHeap heapAt(std::uint64_t address) const;
-  [[nodiscard]] ByteView inHeap(const FractalHeap& heap, ByteView id) const;
-  [[nodiscard]] std::vector<ByteView> recordsOf(std::uint64_t tree) const;
   struct Chunk;
   [[nodiscard]] std::vector<Chunk> chunksOf(const Hdf5Array& array) const;
   [[nodiscard]] Bytes unpacked(const Hdf5Array& array, const Chunk& chunk,

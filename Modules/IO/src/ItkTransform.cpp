@@ -5,6 +5,7 @@
 
 #include "ByteSource.h"
 #include "Hdf5File.h"
+#include "Hdf5Transform.h"
 #include "MeshBuilder.h"
 
 #include "Explica/IO/TransformFile.h"
@@ -13,12 +14,6 @@
 #include <itkCompositeTransform.h>
 #include <itkDisplacementFieldTransform.h>
 #include <itkTransformFactoryBase.h>
-#include <itkTransformFileWriter.h>
-#ifndef EXPLICA_HDF5_TRANSFORMS
-#include <itkHDF5TransformIOFactory.h>
-#endif
-
-#include <dlfcn.h>
 
 #include <cmath>
 #include <mutex>
@@ -32,15 +27,9 @@ using Linear = itk::MatrixOffsetTransformBase<double, 3, 3>;
 using Warp = itk::DisplacementFieldTransform<double, 3>;
 using Transform = itk::Transform<double, 3, 3>;
 
-/// What a file says of one transform.
-struct Entry {
-  std::string type;  ///< "AffineTransform_double_3_3"
-  std::vector<double> parameters, fixed;
-};
-
 constexpr std::size_t kMostTransforms = 1000;  // in a row; a pipeline's have a dozen
 
-void add(const Path& path, std::vector<Entry>& entries, Entry entry) {
+void add(const Path& path, std::vector<TransformEntry>& entries, TransformEntry entry) {
   if (entries.size() == kMostTransforms) {
     refuse(path, "holds more than " + std::to_string(kMostTransforms) + " transforms");
   }
@@ -48,8 +37,8 @@ void add(const Path& path, std::vector<Entry>& entries, Entry entry) {
 }
 
 /// `Transform:`, `Parameters:` and `FixedParameters:`, a line each.
-std::vector<Entry> entriesOfText(const Path& path, ByteView bytes) {
-  std::vector<Entry> entries;
+std::vector<TransformEntry> entriesOfText(const Path& path, ByteView bytes) {
+  std::vector<TransformEntry> entries;
   ByteCursor lines(path, bytes, false);
   while (lines.left() > 0) {
     const std::string_view line = lines.line();
@@ -72,8 +61,8 @@ std::vector<Entry> entriesOfText(const Path& path, ByteView bytes) {
 
 /// Matrices of Matlab's level 4, two for each transform: one of its type's name, one called
 /// "fixed".
-std::vector<Entry> entriesOfMatlab(const Path& path, ByteView bytes) {
-  std::vector<Entry> entries;
+std::vector<TransformEntry> entriesOfMatlab(const Path& path, ByteView bytes) {
+  std::vector<TransformEntry> entries;
   ByteCursor cursor(path, bytes, false);
   while (cursor.left() > 0) {
     constexpr std::int32_t kDouble = 0, kFloat = 10;  // little-endian, full
@@ -123,14 +112,14 @@ std::vector<double> doublesOf(const Path& path, const Hdf5File& file, const std:
 }
 
 /// Groups /TransformGroup/0, 1, ...; older versions of ITK misspelt two names.
-std::vector<Entry> entriesOfHdf5(const Path& path, ByteView bytes) {
+std::vector<TransformEntry> entriesOfHdf5(const Path& path, ByteView bytes) {
   const Hdf5File file(path, bytes);
-  std::vector<Entry> entries;
+  std::vector<TransformEntry> entries;
   while (true) {
     const std::string group = "/TransformGroup/" + std::to_string(entries.size()) + "/";
     const std::optional<std::string> type = file.textAt(group + "TransformType");
     if (!type) return entries;
-    Entry entry{*type, {}, {}};
+    TransformEntry entry{*type, {}, {}};
     if (!type->starts_with("CompositeTransform")) {
       entry.parameters =
           doublesOf(path, file, group + "TransformParameters", group + "TranformParameters");
@@ -142,7 +131,7 @@ std::vector<Entry> entriesOfHdf5(const Path& path, ByteView bytes) {
 }
 
 /// Refuses numbers that ITK would take memory for, or divide by, before it asks.
-void checkLattice(const Path& path, const Entry& entry) {
+void checkLattice(const Path& path, const TransformEntry& entry) {
   constexpr std::size_t kFixed = 18;  // size, origin, spacing and direction of a lattice
   if (entry.fixed.size() != kFixed) {
     failToRead(path, "has a lattice of " + std::to_string(entry.fixed.size()) +
@@ -163,7 +152,7 @@ void checkLattice(const Path& path, const Entry& entry) {
   }
 }
 
-Transform::Pointer transformOf(const Path& path, Entry entry) {
+Transform::Pointer transformOf(const Path& path, TransformEntry entry) {
   constexpr double kLargest = 1e9;  // mm or of a matrix; beyond it sums lose their digits
   for (const std::vector<double>* numbers : {&entry.parameters, &entry.fixed}) {
     for (const double number : *numbers) {
@@ -204,7 +193,7 @@ Transform::Pointer transformOf(const Path& path, Entry entry) {
   return transform;
 }
 
-std::vector<Entry> entriesOf(const Path& path) {
+std::vector<TransformEntry> entriesOf(const Path& path) {
   const Bytes bytes = ByteSource(path).rest();
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   if (looksLikeHdf5(bytes)) return entriesOfHdf5(path, bytes);
@@ -216,8 +205,8 @@ Composite::Pointer compositeOf(const Path& path) {
   static std::once_flag once;
   std::call_once(once, [] { itk::TransformFactoryBase::RegisterDefaultTransforms(); });
   const Composite::Pointer composite = Composite::New();
-  std::vector<Entry> entries = entriesOf(path);
-  for (Entry& entry : entries) {
+  std::vector<TransformEntry> entries = entriesOf(path);
+  for (TransformEntry& entry : entries) {
     if (entry.type.starts_with("CompositeTransform")) continue;  // of those that follow
     composite->AddTransform(transformOf(path, std::move(entry)));
   }
@@ -228,47 +217,34 @@ Composite::Pointer compositeOf(const Path& path) {
 /// RAS to LPS and back.
 const Eigen::Vector3d kTurned(-1, -1, 1);
 
-itk::AffineTransform<double, 3>::Pointer affineInLps(const Eigen::Affine3d& affine) {
-  auto result = itk::AffineTransform<double, 3>::New();
-  itk::AffineTransform<double, 3>::MatrixType matrix;
-  itk::AffineTransform<double, 3>::OutputVectorType offset;
+TransformEntry affineInLps(const Eigen::Affine3d& affine) {
+  TransformEntry entry{"AffineTransform_double_3_3", {}, {0, 0, 0}};  // fixed: its centre
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) {
-      matrix(row, column) = kTurned[row] * affine.linear()(row, column) * kTurned[column];
+      entry.parameters.push_back(kTurned[row] * affine.linear()(row, column) * kTurned[column]);
     }
-    offset[row] = kTurned[row] * affine.translation()[row];
   }
-  result->SetMatrix(matrix);
-  result->SetOffset(offset);
-  return result;
+  for (int row = 0; row < 3; ++row) {
+    entry.parameters.push_back(kTurned[row] * affine.translation()[row]);
+  }
+  return entry;
 }
 
-Warp::Pointer fieldInLps(const Volume<Eigen::Vector3f>& displacement) {
-  using Field = Warp::DisplacementFieldType;
+/// Fixed parameters are the lattice's size, origin, spacing and direction (by rows).
+TransformEntry fieldInLps(const Volume<Eigen::Vector3f>& displacement) {
   const Grid& grid = displacement.grid;
-  auto field = Field::New();
-  Field::RegionType region;
-  Field::SpacingType spacing;
-  Field::PointType origin;
-  Field::DirectionType direction;
+  TransformEntry entry{"DisplacementFieldTransform_double_3_3", {}, {}};
+  for (int a = 0; a < 3; ++a) entry.fixed.push_back(grid.size[a]);
+  for (int a = 0; a < 3; ++a) entry.fixed.push_back(kTurned[a] * grid.origin[a]);
+  for (int a = 0; a < 3; ++a) entry.fixed.push_back(grid.spacing[a]);
   for (int a = 0; a < 3; ++a) {
-    region.SetSize(a, static_cast<itk::SizeValueType>(grid.size[a]));
-    spacing[a] = grid.spacing[a];
-    origin[a] = kTurned[a] * grid.origin[a];
-    for (int b = 0; b < 3; ++b) direction(a, b) = kTurned[a] * grid.direction(a, b);
+    for (int b = 0; b < 3; ++b) entry.fixed.push_back(kTurned[a] * grid.direction(a, b));
   }
-  field->SetRegions(region);
-  field->SetSpacing(spacing);
-  field->SetOrigin(origin);
-  field->SetDirection(direction);
-  field->Allocate();
-  auto* voxel = field->GetBufferPointer();
+  entry.parameters.reserve(3 * displacement.size());
   for (std::size_t v = 0; v < displacement.size(); ++v) {
-    for (int a = 0; a < 3; ++a) voxel[v][a] = kTurned[a] * displacement[v][a];
+    for (int a = 0; a < 3; ++a) entry.parameters.push_back(kTurned[a] * displacement[v][a]);
   }
-  auto result = Warp::New();
-  result->SetDisplacementField(field);
-  return result;
+  return entry;
 }
 
 Eigen::Affine3d affineInRas(const Path& path, const Linear& lps) {
@@ -304,30 +280,6 @@ Volume<Eigen::Vector3f> fieldInRas(const Path& path, const Warp::DisplacementFie
     }
   }
   return displacement;
-}
-
-/// The function of ITK that makes HDF5 files known to its writer.  Where ITK is shared, the library
-/// and the 32 that it brings are loaded here, and its
-/// itk::HDF5TransformIOFactoryRegister__Private() looked up: linked, they cost a third of the time
-/// in which the program starts.
-auto hdf5Registration() -> void (*)() {
-#ifdef EXPLICA_HDF5_TRANSFORMS
-  void* const library = dlopen(EXPLICA_HDF5_TRANSFORMS, RTLD_NOW);
-  void* const add =
-      library ? dlsym(library, "_ZN3itk39HDF5TransformIOFactoryRegister__PrivateEv") : nullptr;
-  if (add == nullptr) {
-    throw EnvironmentError("ITK's library for HDF5 transforms could not be loaded: " +
-                           std::string(dlerror()));
-  }
-  return reinterpret_cast<void (*)()>(add);
-#else
-  return itk::HDF5TransformIOFactory::RegisterOneFactory;
-#endif
-}
-
-void registerHdf5Writer() {
-  static std::once_flag once;
-  std::call_once(once, [] { hdf5Registration()(); });
 }
 
 }  // namespace
@@ -381,20 +333,11 @@ StoredTransform readTransform(const Path& path) {
 
 void writeTransform(const std::filesystem::path& path, const Eigen::Affine3d& affine,
                     const Volume<Eigen::Vector3f>& displacement) {
-  registerHdf5Writer();
-  try {
-    // The transform that is added last is applied first.
-    auto composite = itk::CompositeTransform<double, 3>::New();
-    composite->AddTransform(affineInLps(affine));
-    if (displacement.size() != 0) composite->AddTransform(fieldInLps(displacement));
-    auto writer = itk::TransformFileWriterTemplate<double>::New();
-    writer->SetUseCompression(true);
-    writer->SetFileName(path.string());
-    writer->SetInput(composite);
-    writer->Update();
-  } catch (const itk::ExceptionObject& fault) {
-    throw EnvironmentError(path.string() + ": cannot be written: " + fault.GetDescription());
-  }
+  // The transform that stands last is applied first.
+  std::vector<TransformEntry> entries = {{"CompositeTransform_double_3_3", {}, {}},
+                                         affineInLps(affine)};
+  if (displacement.size() != 0) entries.push_back(fieldInLps(displacement));
+  writeHdf5Transform(path, entries);
 }
 
 }  // namespace explica::io

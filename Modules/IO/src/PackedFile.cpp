@@ -237,8 +237,8 @@ class GzipMember {
  public:
   explicit GzipMember(WholeFile& file) : file_(file) {
     // Magic, deflate, no flags, no time, no extra flags, unknown system.
-    static constexpr std::uint8_t kHeader[10] = {0x1f, 0x8b, 8, 0, 0, 0, 0, 0, 0, 255};
-    file_.write(kHeader, sizeof(kHeader));
+    static constexpr std::uint8_t kGzipHead[10] = {0x1f, 0x8b, 8, 0, 0, 0, 0, 0, 0, 255};
+    file_.write(kGzipHead, sizeof(kGzipHead));
   }
   /// @param power  powerOf the unpacked block's size
   void add(const Packed& packed, std::uint32_t power) {

@@ -19,10 +19,12 @@ namespace explica::io {
 std::string structureFromName(const std::filesystem::path& path) {
   const std::string name = path.filename().string();
   const auto has = [&name](const char* word) { return name.find(word) != std::string::npos; };
-  if (name.starts_with("lh.") || has("hemi-L") || has("_left.") || has(".L.") || has("_lh.")) {
+  if (name.starts_with("lh.") || has("hemi-L") || has("_left.") || has("_left_") || has(".L.") ||
+      has("_lh.")) {
     return "CortexLeft";
   }
-  if (name.starts_with("rh.") || has("hemi-R") || has("_right.") || has(".R.") || has("_rh.")) {
+  if (name.starts_with("rh.") || has("hemi-R") || has("_right.") || has("_right_") || has(".R.") ||
+      has("_rh.")) {
     return "CortexRight";
   }
   return "Other";

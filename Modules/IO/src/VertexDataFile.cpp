@@ -77,18 +77,6 @@ std::vector<VertexMap> readVertexMaps(const std::filesystem::path& path,
   return maps;
 }
 
-std::string vertexDataStructure(const std::filesystem::path& path) {
-  std::string structure;
-  const Bytes bytes = ByteSource(path).rest();
-  if (looksLikeGifti(bytes)) {
-    const Metadata metadata = parseGifti(path, bytes).metadata;
-    const auto said = metadata.find("AnatomicalStructurePrimary");
-    if (said != metadata.end()) structure = said->second;
-  }
-  if (structure.empty()) structure = structureFromName(path);
-  return structure == "CortexLeft" || structure == "CortexRight" ? structure : "";
-}
-
 LabelMap readVertexLabels(const std::filesystem::path& path,
                           std::optional<Eigen::Index> vertexCount) {
   const Bytes bytes = ByteSource(path).rest();

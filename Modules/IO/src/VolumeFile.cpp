@@ -450,6 +450,7 @@ StoredVolume readStored(ByteSource& source, const std::filesystem::path& path,
   }
   std::string names;
   for (const VolumeFormat& format : volumeFormats()) {
+    if (format.name == std::string_view("MINC")) continue;  // known only to be refused
     names += (names.empty() ? "" : ", ") + std::string(format.name);
   }
   failToRead(path, "is not an image of a known format (" + names + ")");

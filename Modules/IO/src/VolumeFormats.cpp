@@ -6,7 +6,6 @@
 #include "ItkHeaders.h"
 #include "ItkVolume.h"
 #include "MghFormat.h"
-#include "MincFormat.h"
 #include "NiftiFormat.h"
 
 namespace explica::io {
@@ -23,9 +22,10 @@ StoredVolume readMghFile(ByteSource& source, const Path&, const VolumeReadOption
   return readMgh(source, extent);
 }
 
-StoredVolume readMincFile(ByteSource& source, const Path& path, const VolumeReadOptions&,
-                          Extent extent) {
-  return readMinc(source, path, extent);
+[[noreturn]] StoredVolume refuseMinc(ByteSource&, const Path& path, const VolumeReadOptions&,
+                                     Extent) {
+  refuse(path,
+         "is a MINC file (netCDF or HDF5), which is not read; convert it: mnc2nii IN.mnc OUT.nii");
 }
 
 /// ITK opens the file itself.
@@ -47,6 +47,10 @@ bool looksLikeNrrd(ByteView bytes) {
 
 bool looksLikePng(ByteView bytes) {
   return begins(bytes, "\x89PNG\r\n\x1a\n");
+}
+
+bool looksLikeMinc(ByteView bytes) {
+  return begins(bytes, "CDF\1") || begins(bytes, "CDF\2") || begins(bytes, "\x89HDF\r\n\x1a\n");
 }
 
 bool looksLikeMetaImage(ByteView bytes) {
@@ -73,7 +77,7 @@ const std::vector<VolumeFormat>& volumeFormats() {
        readByItk<ItkFormat::MetaImage>,
        {{".mha", false}},
        VolumeLayout{.head = metaHeader, .componentsTogether = true}},
-      {"MINC", looksLikeMinc, readMincFile},
+      {"MINC", looksLikeMinc, refuseMinc},
       {"MGH",
        looksLikeMgh,
        readMghFile,

@@ -17,7 +17,6 @@
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/IO/VtkFile.h"
-#include "MincFiles.h"
 #include "RawFiles.h"
 #include "TemporaryFolder.h"
 
@@ -169,10 +168,6 @@ void write(const fs::path& path) {
                "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
   } else if (name == "volume.png") {
     putContent(path, pngWith(""));
-  } else if (name == "minc1.mnc") {
-    putContent(path, minc1Bytes());
-  } else if (name == "minc2.mnc") {
-    writeMinc2(path);
   } else if (name.starts_with("volume.")) {
     io::writeVolume(path, smallVolume());
   } else {
@@ -395,14 +390,14 @@ TEST(DamagedFile, PicturesThatLibpngWouldAbortOnAreRefused) {
 
 /// A file of every kind that is read.
 const std::string kKinds[] = {
-    "volume.nii",    "volume.nii.gz", "volume.mgh",   "volume.mgz",    "volume.nrrd",
-    "volume.mha",    "volume.png",    "a.surf.gii",   "a.surf.gii.gz", "a.shape.gii",
-    "a.label.gii",   "lh.white",      "lh.curv",      "lh.a.annot",    "lh.a.label",
-    "a.vtp",         "base64.vtp",    "legacy.vtk",   "a.ply",         "text.ply",
-    "a.obj",         "a.off",         "a.stl",        "text.stl",      "polygon.csv",
-    "polygon.vtp",   "minc1.mnc",     "minc2.mnc",    "a.mni.obj",     "a.dscalar.nii",
-    "lh.a.patch.3d", "matrix.txt",    "itk.tfm",      "itk.mat",       "itk.h5",
-    "reg.lta",       "register.dat",  "matrices.xfm", "points.tsv",    "legend.tsv",
+    "volume.nii",   "volume.nii.gz", "volume.mgh",    "volume.mgz",    "volume.nrrd",
+    "volume.mha",   "volume.png",    "a.surf.gii",    "a.surf.gii.gz", "a.shape.gii",
+    "a.label.gii",  "lh.white",      "lh.curv",       "lh.a.annot",    "lh.a.label",
+    "a.vtp",        "base64.vtp",    "legacy.vtk",    "a.ply",         "text.ply",
+    "a.obj",        "a.off",         "a.stl",         "text.stl",      "polygon.csv",
+    "polygon.vtp",  "a.mni.obj",     "a.dscalar.nii", "lh.a.patch.3d", "matrix.txt",
+    "itk.tfm",      "itk.mat",       "itk.h5",        "reg.lta",       "register.dat",
+    "matrices.xfm", "points.tsv",    "legend.tsv",
 };
 
 TEST(DamagedFilesList, HasAFileOfEverySurfaceFormat) {

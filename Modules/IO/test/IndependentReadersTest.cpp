@@ -173,34 +173,6 @@ TEST(Nibabel, WritesVolumesThatWeReadWithEqualValuesAndPlaces) {
   EXPECT_EQ(files, 5 + 40 + 1);
 }
 
-TEST(Nibabel, AgreesOnItsMincFiles) {
-  const TemporaryFolder folder;
-  nibabelAgrees("their_minc", folder);
-  int files = 0;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder.path())) {
-    const fs::path& path = entry.path();
-    if (path.extension() != ".mnc") continue;
-    ++files;
-    const Expected expected = getExpected(path);
-    io::VolumeReadOptions options;
-    options.allowAllZero = true;
-    std::vector<double> values;
-    const std::size_t voxels = static_cast<std::size_t>(expected.size[0]) * expected.size[1] *
-                               static_cast<std::size_t>(expected.size[2]);
-    for (std::size_t frame = 0; frame < expected.values.size() / voxels; ++frame) {
-      options.frame = static_cast<int>(frame);
-      const io::LoadedVolume<float> read = io::readScalars(path, options);
-      EXPECT_EQ(read.volume.grid.size, expected.size) << path;
-      EXPECT_LT((read.volume.grid.affine() - expected.affine).cwiseAbs().maxCoeff(), 1e-6) << path;
-      for (std::size_t v = 0; v < voxels; ++v) {
-        const double wanted = expected.values[frame * voxels + v];
-        ASSERT_NEAR(read.volume[v], wanted, 1e-6 * std::max(1.0, std::abs(wanted))) << path;
-      }
-    }
-  }
-  EXPECT_GE(files, 8) << "python3-nibabel brings its test data";
-}
-
 /// A sphere that lies well inside obliqueGrid.
 TriangleMesh sphereInside(const Grid& grid) {
   const Point centre =

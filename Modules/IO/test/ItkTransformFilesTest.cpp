@@ -16,10 +16,13 @@
 #include <itkHDF5TransformIOFactory.h>
 #include <itkMatlabTransformIOFactory.h>
 #include <itkTransformFactoryBase.h>
+#include <itkTransformFileReader.h>
 #include <itkTransformFileWriter.h>
 #include <itkTxtTransformIOFactory.h>
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
 
 namespace explica::io {
 namespace {
@@ -88,6 +91,19 @@ class ItkTransformFiles : public ::testing::Test {
     writer->SetInput(transform);
     writer->SetFileName(path.string());
     writer->Update();
+  }
+
+  /// What ITK itself makes of a file.
+  static Transform::Pointer readByItk(const std::filesystem::path& path) {
+    const auto reader = itk::TransformFileReaderTemplate<double>::New();
+    reader->SetFileName(path.string());
+    reader->Update();
+    return dynamic_cast<Transform*>(reader->GetTransformList()->front().GetPointer());
+  }
+
+  static std::string bytesOf(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
   }
 
   /// The file takes points where ITK's object does, LPS on both sides.
@@ -175,6 +191,9 @@ TEST_F(ItkTransformFiles, ARegistrationIsReadBackNumberForNumber) {
   EXPECT_EQ(read.displacement.grid.spacing, grid.spacing);
   EXPECT_EQ(read.displacement.grid.origin, grid.origin);
   EXPECT_EQ(read.displacement.grid.direction, grid.direction);
+  expectMapsAs(folder_ / "to_template.h5", *readByItk(folder_ / "to_template.h5"));
+  writeTransform(folder_ / "again.h5", affine, field);
+  EXPECT_EQ(bytesOf(folder_ / "again.h5"), bytesOf(folder_ / "to_template.h5"));
   writeTransform(folder_ / "affine.h5", affine, {});
   EXPECT_EQ(readTransform(folder_ / "affine.h5").affine.matrix(), affine.matrix());
   EXPECT_EQ(readTransform(folder_ / "affine.h5").displacement.size(), 0U);

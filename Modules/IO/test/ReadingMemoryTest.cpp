@@ -17,7 +17,6 @@
 #include "Explica/IO/TransformFile.h"
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/IO/VolumeFile.h"
-#include "MincFiles.h"
 #include "RawFiles.h"
 #include "TemporaryFolder.h"
 
@@ -230,21 +229,6 @@ std::vector<Row> honest() {
       {"FreeSurferLabel", "lh.a.label", atlas, vertexLabels},
       {"PolygonTable", "a.csv", outline, polygon},
       {"PolygonVtp", "a.vtp", outline, polygon},
-      {"Minc1Volume", "a.mnc",
-       [](const fs::path& path) {
-         std::ofstream(path, std::ios::binary) << minc1Bytes("regular__", {200, 200, 200});
-       },
-       scalars},
-      {"Minc2Volume", "a.mnc",
-       [](const fs::path& path) {
-         writeMinc2(path, false, {200, 200, 200});
-       },
-       scalars},
-      {"PackedMinc2Volume", "a.mnc",
-       [](const fs::path& path) {
-         writeMinc2(path, true, {200, 200, 200});
-       },
-       scalars},
       {"PngPicture", "a.png",
        [](const fs::path& path) { std::ofstream(path, std::ios::binary) << plainPng(4000, 4000); },
        scalars},

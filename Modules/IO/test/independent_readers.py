@@ -101,21 +101,6 @@ def their_volumes(folder):
     put_expected(folder, "scaled.nii", affine, nib.load(folder / "scaled.nii").get_fdata())
 
 
-def their_minc(folder):
-    """nibabel's own MINC files, our axes being theirs in reverse: fastest first."""
-    data = Path(nib.__file__).parent / "tests" / "data"
-    for path in sorted(data.glob("*.mnc")):
-        image = nib.load(path)
-        values = np.asarray(image.dataobj)
-        frames = values.ndim == 4
-        space = np.moveaxis(values, 0, -1) if frames else values
-        order = [2, 1, 0, 3] if frames else [2, 1, 0]
-        affine = image.affine.copy()
-        affine[:, :3] = affine[:, 2::-1]
-        (folder / path.name).write_bytes(path.read_bytes())
-        put_expected(folder, path.name, affine, space.transpose(order))
-
-
 def our_surfaces(folder):
     positions = np.fromfile(folder / "positions.raw", dtype="<f8").reshape(-1, 3)
     faces = np.fromfile(folder / "faces.raw", dtype="<i4").reshape(-1, 3)

@@ -6,6 +6,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Core/PortableMath.h"
+#include "Explica/Core/StopScope.h"
 
 #include <algorithm>
 #include <array>
@@ -165,6 +166,7 @@ MeasureValue selfOcclusionGradient(const Curve& curve) {
   requireClosed(curve);
   MeasureValue result{0, Positions2::Zero(curve.vertexCount(), 2)};
   for (int i = 0; i < curve.edgeCount(); ++i) {
+    checkpoint();
     for (int j = i + 1; j < curve.edgeCount(); ++j) {
       const std::array<int, 4> vertex = {i, curve.next(i), j, curve.next(j)};
       std::array<Point2, 4> ends;

@@ -4,6 +4,7 @@
 #include "Explica/Provenance/Digest.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/StopScope.h"
 
 #include <openssl/evp.h>
 
@@ -42,6 +43,7 @@ class Sha256 {
 };
 
 constexpr std::size_t kLargestBlock = std::size_t{1} << 20;  // bytes read at a time
+constexpr std::size_t kCheckEvery = 64 * kLargestBlock;      // a tenth of a second's work
 
 }  // namespace
 
@@ -67,6 +69,7 @@ Digest digestOf(const std::filesystem::path& file) {
   while ((count = std::fread(block.data(), 1, block.size(), stream.get())) > 0) {
     hash.add(block.data(), count);
     digest.size += count;
+    if (digest.size % kCheckEvery == 0) checkpoint();
   }
   if (std::ferror(stream.get()))
     refuse(std::string("cannot be read (") + std::strerror(errno) + ")");

@@ -189,12 +189,27 @@ std::vector<std::string> Option::choices() const {
   return choice ? choice->choices : std::vector<std::string>{};
 }
 
+namespace {
+
+/// A bound as people write it: 100,000,000 for 1e+08.
+std::string boundText(double value) {
+  constexpr double kLong = 1e5, kMostWritten = 1e12;  // in between, digits in groups of three
+  const double size = std::abs(value);
+  if (value != std::floor(value) || size < kLong || size > kMostWritten) return numberText(value);
+  std::string digits = std::to_string(static_cast<long long>(value));
+  const int first = value < 0 ? 1 : 0;
+  for (int at = static_cast<int>(digits.size()) - 3; at > first; at -= 3) digits.insert(at, ",");
+  return digits;
+}
+
+}  // namespace
+
 std::string Option::range() const {
-  const std::string from = least == kAboveZero ? "above 0" : "at least " + numberText(least);
+  const std::string from = least == kAboveZero ? "above 0" : "at least " + boundText(least);
   if (std::isinf(most)) return std::isinf(least) ? "" : from;
-  const std::string to = numberText(most);
+  const std::string to = boundText(most);
   if (std::isinf(least)) return "at most " + to;
-  return least == kAboveZero ? from + ", at most " + to : numberText(least) + " to " + to;
+  return least == kAboveZero ? from + ", at most " + to : boundText(least) + " to " + to;
 }
 
 std::string Option::text() const {

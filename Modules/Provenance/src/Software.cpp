@@ -83,7 +83,8 @@ Json describeLibraries() {
                                std::to_string(NLOHMANN_JSON_VERSION_PATCH);
   libraries["TBB"] = TBB_VERSION_STRING;
   libraries["ITK"] = EXPLICA_ITK_VERSION;
-  libraries["VTK"] = EXPLICA_VTK_VERSION;
+  const std::string vtk = EXPLICA_VTK_VERSION;  // empty without a window
+  if (!vtk.empty()) libraries["VTK"] = vtk;
   libraries["Embree"] = EXPLICA_EMBREE_VERSION;
   return libraries;
 }

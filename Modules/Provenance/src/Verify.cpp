@@ -138,7 +138,10 @@ bool Verification::allSame() const {
 
 fs::path recordAt(const fs::path& place) {
   std::error_code ignored;
-  return fs::is_directory(place, ignored) ? place / kRecordName : place;
+  if (!fs::is_directory(place, ignored)) return place;
+  if (fs::exists(place / kRecordName, ignored)) return place / kRecordName;
+  throw InvalidInput(place.string() + ": holds no " + kRecordName +
+                     "; name a folder that explica has written, or a record");
 }
 
 fs::path locateInput(const Json& record, std::size_t input, const fs::path& recordPath) {
@@ -177,6 +180,8 @@ std::string historyOf(const fs::path& file) {
   const Digest digest = digestOf(file);
   const auto found = findRecordOf(file, digest);
   if (!found) {
+    const fs::path beside = fs::absolute(file).parent_path() / kRecordName;
+    if (fs::exists(beside)) static_cast<void>(readRecord(beside));  // one that cannot be read
     throw InvalidInput(file.string() + ": no " + kRecordName +
                        " beside it or above names it; it was not made by explica, or was moved "
                        "without its record");

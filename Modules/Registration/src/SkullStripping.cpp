@@ -2,127 +2,132 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Registration/SkullStripping.h"
 
+#include "BrainBorder.h"
+#include "BrainBrightness.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/VoxelSets.h"
 #include "Filters.h"
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 namespace explica::registration {
 namespace {
 
-constexpr double kCoreDepth = 4;       // mm below the mask's border: brain beyond doubt
-constexpr double kNeighbourhood = 20;  // mm: bias fields are smoother
+constexpr double kLeastSpacing = 1.5;  // mm of the grid that the border is sought on
+constexpr double kNormals = 3;         // mm: smoothing of the distance whose gradient normals are
+constexpr double kSpreading = 4;       // mm: window in which offsets of places become a field
+constexpr float kFarWeight = 1e-3f;    // weight of a window three times as wide, between far places
 
-using Set = Volume<std::uint8_t>;
-
-/// Voxels whose nearest voxel outside of the set is further than about so many mm.
-Set eroded(const Set& set, double by) {
-  Volume<float> soft(set.grid);
-  std::transform(set.data.begin(), set.data.end(), soft.data.begin(),
-                 [](std::uint8_t in) { return static_cast<float>(in); });
-  const int radius = std::max(1, static_cast<int>(std::lround(by / set.grid.spacing.mean())));
-  soft = boxMean(std::move(soft), radius);
-  Set result(set.grid, 0);
-  for (std::size_t v = 0; v < set.size(); ++v) result[v] = soft[v] > 0.999f ? 1 : 0;
-  return result;
+/// A grid of cubes around the mask, wide enough for the profiles beyond it.
+Grid gridAround(const Volume<float>& brain, double margin) {
+  Vector low = Vector::Constant(kInfinity);
+  Vector high = Vector::Constant(-kInfinity);
+  for (std::size_t v = 0; v < brain.size(); ++v) {
+    if (!(brain[v] > 0.5f)) continue;
+    const auto [i, j, k] = brain.grid.subscripts(v);
+    low = low.cwiseMin(Vector(i, j, k));
+    high = high.cwiseMax(Vector(i, j, k));
+  }
+  if (!(low.x() <= high.x())) {
+    throw InvalidInput("T1: the template's brain lies outside of the image");
+  }
+  const Vector around = margin * brain.grid.spacing.cwiseInverse();
+  const double spacing = std::max(kLeastSpacing, std::cbrt(brain.grid.voxelVolume()));
+  return cubicGrid(brain.grid, low - around, high + around, spacing);
 }
 
-/// Voxels within about so many mm of the set.
-Set dilated(const Set& set, double by) {
-  Set outside(set.grid);
-  std::transform(set.data.begin(), set.data.end(), outside.data.begin(),
-                 [](std::uint8_t in) -> std::uint8_t { return in != 0 ? 0 : 1; });
-  Set result = eroded(outside, by);
-  for (auto& in : result.data) in = in != 0 ? 0 : 1;
-  return result;
+/// 1 further than so many mm from the set.
+VoxelSet beyond(const VoxelSet& set, double distance) {
+  const Volume<float> squared = squaredDistanceTo(set);
+  VoxelSet far(set.grid, 0);
+  for (std::size_t v = 0; v < set.size(); ++v) far[v] = squared[v] > distance * distance ? 1 : 0;
+  return far;
 }
 
-/// The voxels of the set that faces connect with a seed.
-Set reached(const Set& set, const Set& seeds) {
-  Set result(set.grid, 0);
-  std::vector<std::size_t> stack;
-  for (std::size_t v = 0; v < set.size(); ++v) {
-    if (set[v] == 0 || seeds[v] == 0) continue;
-    result[v] = 1;
-    stack.push_back(v);
+/// Signed distance to the border of the mask closed by a ball, mm, negative inside, smoothed.
+Volume<float> distanceToHull(const Volume<float>& brain, double closing) {
+  VoxelSet inside(brain.grid, 0);
+  for (std::size_t v = 0; v < brain.size(); ++v) inside[v] = brain[v] > 0.5f ? 1 : 0;
+  const VoxelSet hull = beyond(beyond(inside, closing), closing);
+  VoxelSet outside(brain.grid, 0);
+  for (std::size_t v = 0; v < hull.size(); ++v) outside[v] = hull[v] == 0 ? 1 : 0;
+  const Volume<float> toHull = squaredDistanceTo(hull);
+  const Volume<float> toOutside = squaredDistanceTo(outside);
+  const auto half = static_cast<float>(0.5 * brain.grid.spacing.x());
+  Volume<float> distance(brain.grid);
+  for (std::size_t v = 0; v < hull.size(); ++v) {
+    distance[v] = hull[v] != 0 ? half - std::sqrt(toOutside[v]) : std::sqrt(toHull[v]) - half;
   }
-  while (!stack.empty()) {
-    const auto at = set.grid.subscripts(stack.back());
-    stack.pop_back();
-    for (int n = 0; n < 6; ++n) {
-      auto next = at;
-      next[n / 2] += n % 2 == 0 ? -1 : 1;
-      if (!set.grid.contains(next[0], next[1], next[2])) continue;
-      const std::size_t w = set.grid.linear(next[0], next[1], next[2]);
-      if (set[w] == 0 || result[w] != 0) continue;
-      result[w] = 1;
-      stack.push_back(w);
-    }
-  }
-  return result;
+  return smoothed(std::move(distance), kNormals);
 }
 
-/// Brightness relative to the brain nearby.
-Volume<float> relativeBrightness(const Volume<float>& image, const Set& core) {
-  Volume<float> sum(image.grid), weight(image.grid);
-  for (std::size_t v = 0; v < image.size(); ++v) {
-    weight[v] = core[v];
-    sum[v] = core[v] != 0 ? image[v] : 0;
+/// What is known at places, everywhere on a grid: the mean within a window.
+Volume<float> spread(const std::vector<BorderPlace>& places, const Grid& grid,
+                     double BorderPlace::*value) {
+  Volume<float> weight(grid, 0.0f), sum(grid, 0.0f);
+  double mean = 0;
+  for (const BorderPlace& place : places) {
+    const Vector at = grid.toIndex(place.foot);
+    const std::size_t v =
+        grid.linear(static_cast<int>(std::lround(at.x())), static_cast<int>(std::lround(at.y())),
+                    static_cast<int>(std::lround(at.z())));
+    weight[v] += 1;
+    sum[v] += static_cast<float>(place.*value);
+    mean += place.*value / static_cast<double>(places.size());
   }
-  // Averages over tens of millimetres need no fine grid.
-  const auto& n = image.grid.size;
-  const Grid coarse = cubicGrid(image.grid, Vector::Zero(), Vector(n[0] - 1, n[1] - 1, n[2] - 1),
-                                0.3 * kNeighbourhood);
-  sum = smoothed(resampled(sum, coarse), kNeighbourhood);
-  weight = smoothed(resampled(weight, coarse), kNeighbourhood);
-  Volume<float> relative(image.grid, 0.0f);
-  forPlanes(image.grid, [&](int k) {
-    for (int j = 0; j < n[1]; ++j) {
-      for (int i = 0; i < n[0]; ++i) {
-        Vector at = coarse.toIndex(image.grid.toWorld(Vector(i, j, k)));
-        for (int a = 0; a < 3; ++a) at[a] = std::clamp(at[a], 0.0, coarse.size[a] - 1.0);
-        const float mean = valueAt(sum, at);
-        if (mean > 0) relative(i, j, k) = image(i, j, k) * valueAt(weight, at) / mean;
-      }
-    }
-  });
-  return relative;
+  const Volume<float> wideWeight = smoothed(weight, 3 * kSpreading);
+  const Volume<float> wideSum = smoothed(sum, 3 * kSpreading);
+  weight = smoothed(std::move(weight), kSpreading);
+  sum = smoothed(std::move(sum), kSpreading);
+  for (std::size_t v = 0; v < sum.size(); ++v) {
+    const float faint = kFarWeight * kFarWeight * kFarWeight;
+    sum[v] = (sum[v] + kFarWeight * wideSum[v] + faint * static_cast<float>(mean)) /
+             (weight[v] + kFarWeight * wideWeight[v] + faint);
+  }
+  return sum;
+}
+
+void summarise(const std::vector<BorderPlace>& places, BrainMask& result) {
+  const auto count = static_cast<double>(places.size());
+  double squared = 0;
+  for (const BorderPlace& place : places) {
+    result.meanOffset += place.offset / count;
+    squared += place.deviation * place.deviation / count;
+    result.openShare += place.open ? 1 / count : 0;
+  }
+  result.deviation = std::sqrt(squared);
 }
 
 }  // namespace
 
-Volume<Label> stripSkull(const Volume<float>& image, const Volume<float>& brain,
-                         const StrippingOptions& options) {
-  Set mask(image.grid, 0);
-  for (std::size_t v = 0; v < mask.size(); ++v) mask[v] = brain[v] > 0.5f ? 1 : 0;
-  if (std::find(mask.data.begin(), mask.data.end(), 1) == mask.data.end()) {
-    throw InvalidInput("T1: the template's brain lies outside of the image");
-  }
-  const Set core = eroded(mask, kCoreDepth);
-  const Volume<float> relative = relativeBrightness(image, core);
-  const Set wide = dilated(mask, options.reach);
-  Set tissue(image.grid, 0);
-  for (std::size_t v = 0; v < mask.size(); ++v) {
-    const bool bright = relative[v] >= options.dimmest && relative[v] <= options.brightest;
-    tissue[v] = core[v] != 0 || (wide[v] != 0 && bright) ? 1 : 0;
-  }
-  // Opened, so that dura and vessels do not lead out; then as far back as tissue goes.
-  const Set solid = reached(eroded(tissue, 0.5 * options.opening), core);
-  const Set grown = dilated(solid, 0.5 * options.opening);
-  Set beyond(image.grid, 0);
-  for (std::size_t v = 0; v < mask.size(); ++v) {
-    beyond[v] = mask[v] == 0 && grown[v] != 0 && tissue[v] != 0 ? 1 : 0;
-  }
-  // With the voxels about them that are partly tissue.
-  const Set rim = dilated(beyond, image.grid.spacing.mean());
-  Volume<Label> result(image.grid, 0);
-  for (std::size_t v = 0; v < mask.size(); ++v) {
-    const bool outside = beyond[v] != 0 || (rim[v] != 0 && relative[v] < options.dimmest);
-    const bool inside = core[v] != 0 || relative[v] <= options.brightest;
-    result[v] = mask[v] != 0 ? (inside ? 1 : 0) : (outside ? 1 : 0);
-  }
+BrainMask stripSkull(const Volume<float>& image, const Volume<float>& brain,
+                     const StrippingOptions& options) {
+  const Grid grid = gridAround(brain, 2 * options.reach);
+  Volume<float> distance = distanceToHull(resampled(brain, grid), options.closing);
+  const BrainBrightness brightness = measureBrightness(resampled(image, grid), distance);
+  const std::vector<BorderPlace> places =
+      findBorder(brightness, distance, {.reach = options.reach});
+  if (places.empty()) throw InvalidInput("T1: the template's brain is too small to be one");
+  BrainMask result;
+  summarise(places, result);
+  const Volume<float> offset = spread(places, grid, &BorderPlace::offset);
+  for (std::size_t v = 0; v < distance.size(); ++v) distance[v] -= offset[v];
+  const Volume<float> deviation = spread(places, grid, &BorderPlace::deviation);
+  result.mask = Volume<Label>(image.grid, 0);
+  result.doubt = Volume<float>(image.grid, 0.0f);
+  constexpr float kOutside = 1e6f;
+  const auto& n = image.grid.size;
+  forPlanes(image.grid, [&](int k) {
+    for (int j = 0; j < n[1]; ++j) {
+      for (int i = 0; i < n[0]; ++i) {
+        const Vector at = grid.toIndex(image.grid.toWorld(Vector(i, j, k)));
+        const float here = valueAt(distance, at, kOutside);
+        result.mask(i, j, k) = here < 0 ? 1 : 0;
+        if (std::abs(here) < kSpreading) result.doubt(i, j, k) = valueAt(deviation, at);
+      }
+    }
+  });
   return result;
 }
 

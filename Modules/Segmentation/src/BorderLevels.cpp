@@ -106,7 +106,7 @@ void BorderFinder::improve() {
     const bool fluid = least_[v]<low, grey = most_[v]> low && least_[v] < high;
     const bool bright = most_[v] > high;
     outer[v] = counts && fluid && grey && !bright ? slope_[v] : 0;
-    white[v] = counts && !fluid && grey && bright ? slope_[v] : 0;
+    white[v] = !fluid && grey && bright ? slope_[v] : 0;
   });
   updateLevel(levels_.outer, outer);
   updateLevel(levels_.white, white);

@@ -15,7 +15,7 @@ namespace explica::segmentation {
 struct EdgeSamples {
   const std::vector<std::size_t>* voxel = nullptr;                       ///< linear indices
   const std::vector<std::array<std::int32_t, 6>>* neighbours = nullptr;  ///< packed; -1: none
-  const std::vector<std::uint8_t>* rim = nullptr;  ///< 1 where the brain's own edge is near
+  const std::vector<std::uint8_t>* rim = nullptr;  ///< 1 where a mask's edge may look like fluid's
   const std::vector<float>* intensity = nullptr;   ///< without bias
   Vector spacing = Vector::Ones();                 ///< mm
   std::vector<std::uint8_t> pure;  ///< 1 in white matter beyond doubt: its slopes are noise

@@ -3,8 +3,8 @@
 #include "Explica/Segmentation/Disagreement.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/VoxelSets.h"
 #include "Explica/Segmentation/Tissue.h"
-#include "VoxelSets.h"
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Segmentation/Hemisphere.h"
 
-#include "VoxelSets.h"
+#include "Explica/Core/VoxelSets.h"
 
 #include <algorithm>
 #include <array>

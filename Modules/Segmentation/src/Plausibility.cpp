@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Segmentation/Plausibility.h"
 
-#include "VoxelSets.h"
+#include "Explica/Core/VoxelSets.h"
 
 #include "Explica/Core/Runs.h"
 
@@ -18,16 +18,29 @@ namespace {
 // What an image must be within to be believed, and where the limit comes from.
 constexpr Limit kLimits[] = {
     {"hounsfield", "the share of voxels below -500", "", 0, 0.05,
-     "the image looks like a CT; give a T1-weighted one",
+     "this looks like a CT; give a T1-weighted image",
      "air is -1000 in a CT and 0 or noise in a magnitude image"},
-    {"labels", "the share of neighbours of equal value in an image of whole numbers", "", 0, 0.5,
-     "the image looks like a map of labels; give the T1 itself",
+    {"labels", "the share of neighbouring voxels of equal value", "", 0, 0.5,
+     "this looks like a label image; give the T1 itself",
      "measured: T1s 0.00 to 0.24, anatomical label maps 0.85 to 0.95"},
-    {"contrast", "how much rather dark than bright tissue lies at the brain's rim", "", 1,
-     kInfinity,
-     "white matter should be bright and lie deep, fluid dark and outside; the contrast is inverted "
-     "or the image is not T1-weighted",
-     "measured: four T1s, one a macaque's, 7 to 150; three of them inverted 0.01 to 0.14"},
+    {"thick-slices", "the longest edge of a voxel", "mm", 0, 5,
+     "the image looks like a stack of thick slices, as of a heart; give a T1 of a head in voxels "
+     "of "
+     "about 1 mm",
+     "cortex is 2.5 mm thick; stacks of hearts have 6 to 10 mm"},
+    {"bright-fluid", "the skewness of brightness deep in the head", "", -1, 0.2,
+     "the fluid is bright, so the image looks like a T2; give the T1 of the same person",
+     "measured: nine T1s -0.68 to 0.12; T2s simulated from three label maps 0.30 to 0.75"},
+    {"bright-vessels", "the brightest thousandth deep in the head over the median", "", 0, 2.3,
+     "a few voxels are far brighter than the rest, so the image looks like an angiogram, or like "
+     "one with contrast agent in vessels; give a T1 without",
+     "measured: nine T1s 1.1 to 2.0; angiograms simulated from three label maps 2.6 to 2.9"},
+    {"contrast", "the ratio of dark to bright tissue at the brain's surface", "", 1, kInfinity,
+     "this does not look like a T1-weighted brain, whose white matter is bright and deep and whose "
+     "fluid is dark and outside",
+     "a T1 without fluid at its rim, stripped along the folds, has 3, bert 26; below 1 bright "
+     "tissue "
+     "lies outside"},
     {"registration", "the agreement with the template", "", 0.6, 1,
      "the template did not reach the head; look at the outlines in the report, or give --atlas and "
      "--mask",
@@ -39,6 +52,18 @@ constexpr Limit kLimits[] = {
      "in the report, or give --atlas",
      "breadth over length of heads is 0.7 to 0.9; measured: heads 1.00 to 1.20, half a brain 1.92 "
      "(Modules/Registration/README.md)"},
+    {"brain-border", "the share of the brain's border beyond which tissue goes on", "", 0, 0.02,
+     "the mask may cut through cortex; look at brain_mask.nii.gz, or give --mask",
+     "measured: 0.001 to 0.005 in simulated heads whose brain is whole, and in Colin27, where it "
+     "is "
+     "the spinal cord (Modules/Registration/README.md)"},
+    {"mask-edge", "the share of the cortex's outer border at the edge of the mask", "", 0, 0.5,
+     "the image does not show where the cortex ends: the pial surface follows the mask and "
+     "thickness "
+     "may be too small; give the T1 with the fluid around the brain, or with its skull",
+     "more than half of the border rests on the mask alone; measured: heads with fluid 0.01 to "
+     "0.27, "
+     "brains stripped along their folds 0.73 to 0.93"},
     {"brain-volume", "the brain's volume", "ml", 300, 2500,
      "skull or neck may be left in the brain, or parts of it missing; another species needs "
      "--template",
@@ -60,8 +85,8 @@ constexpr Limit kLimits[] = {
     {"without-thickness", "the share of grey voxels without thickness", "", 0, 0.02,
      "the tissue does not lie between its two borders there",
      "measured: 0 to 0.3 % in whole hemispheres"},
-    {"defects", "the number of topological defects", "", 0, 300,
-     "the white matter is full of holes or bridges",
+    {"defects", "the number of handles and holes", "", 0, 300,
+     "poor segmentation of the white matter",
      "measured: 15 to 120 in good segmentations of a hemisphere; FreeSurfer's 'surface holes' of "
      "more than 200 are taken for failures (Rosen et al. 2018, NeuroImage 169:407)"},
 };
@@ -84,8 +109,10 @@ std::string rangeOf(const Limit& limit) {
 
 std::string sentenceOf(const Limit& limit, double value) {
   const std::string unit = limit.unit.empty() ? "" : " " + std::string(limit.unit);
-  return std::string(limit.what) + " is " + shortNumber(value) + unit + ", expected " +
-         rangeOf(limit) + ": " + std::string(limit.remedy);
+  const std::string found =
+      std::isnan(value) ? " cannot be computed" : " is " + shortNumber(value) + unit;
+  return std::string(limit.remedy) + " (" + std::string(limit.what) + found + ", expected " +
+         rangeOf(limit) + ")";
 }
 
 template <class T>
@@ -171,6 +198,25 @@ double airInHounsfieldUnits(const Volume<float>& image) {
   return static_cast<double>(air) / static_cast<double>(image.size());
 }
 
+double greyAtMaskEdge(const Volume<Label>& tissues) {
+  const Grid& grid = tissues.grid;
+  double outside = 0, fluid = 0;  // mm^2 of voxel faces
+  for (std::size_t v = 0; v < tissues.size(); ++v) {
+    if (tissues[v] != kGrey) continue;
+    const auto at = grid.subscripts(v);
+    for (int d = 0; d < 6; ++d) {
+      auto next = at;
+      next[d / 2] += d % 2 == 0 ? -1 : 1;
+      const bool inside = grid.contains(next[0], next[1], next[2]);
+      const Label other = inside ? tissues(next[0], next[1], next[2]) : Label{0};
+      const double area = grid.voxelVolume() / grid.spacing[d / 2];
+      if (other == 0) outside += area;
+      if (other == kCsf) fluid += area;
+    }
+  }
+  return outside + fluid > 0 ? outside / (outside + fluid) : kNaN;
+}
+
 double rimContrast(const Volume<Label>& tissues) {
   VoxelSet outside(tissues.grid, 0);
   std::array<double, 4> all{};
@@ -187,9 +233,10 @@ double rimContrast(const Volume<Label>& tissues) {
     if (tissues[v] < kCsf || tissues[v] > kWhite || squared[v] > most * most) continue;
     ++rim[tissues[v]];
   }
-  if (all[kCsf] == 0 || all[kWhite] == 0) return kNaN;
+  const double dark = all[kCsf] + all[kGrey];
+  if (dark == 0 || all[kWhite] == 0) return kNaN;
   const double half = 0.5;  // of a voxel, for a class that the rim does not have at all
-  return ((rim[kCsf] + half) / all[kCsf]) / ((rim[kWhite] + half) / all[kWhite]);
+  return ((rim[kCsf] + rim[kGrey] + half) / dark) / ((rim[kWhite] + half) / all[kWhite]);
 }
 
 }  // namespace explica::segmentation

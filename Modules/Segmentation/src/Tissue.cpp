@@ -5,7 +5,7 @@
 #include "BiasField.h"
 #include "BorderLevels.h"
 #include "Explica/Core/Parallel.h"
-#include "VoxelSets.h"
+#include "Explica/Core/VoxelSets.h"
 
 #include <algorithm>
 #include <cmath>

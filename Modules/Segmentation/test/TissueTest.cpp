@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Segmentation/Tissue.h"
 
+#include "../src/BorderLevels.h"
 #include "Explica/Core/Parallel.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <random>
@@ -199,6 +201,38 @@ TEST(TissueSegmentation, BordersFollowTissueThatIsBrighterInPlaces) {
   const double followed = worst(4), everywhere = worst(0);
   EXPECT_LT(followed, 0.1);
   EXPECT_GT(everywhere, 2 * followed);
+}
+
+TEST(BorderFinder, LearnsTheWhiteBordersLevelNearAMasksEdge) {
+  // White matter of 120 beside cortex of 84, blurred by 0.6 voxels; means are 116 and 80 elsewhere.
+  Grid grid;
+  grid.size = {12, 12, 12};
+  std::vector<std::size_t> voxel(grid.voxelCount());
+  std::vector<std::array<std::int32_t, 6>> neighbours(voxel.size());
+  std::vector<float> intensity(voxel.size());
+  const std::vector<std::uint8_t> rim(voxel.size(), 1);  // a mask follows the cortex
+  for (std::size_t v = 0; v < voxel.size(); ++v) {
+    voxel[v] = v;
+    const auto at = grid.subscripts(v);
+    for (int n = 0; n < 6; ++n) {
+      auto next = at;
+      next[n / 2] += n % 2 == 0 ? -1 : 1;
+      neighbours[v][n] = grid.contains(next[0], next[1], next[2])
+                             ? static_cast<std::int32_t>(grid.linear(next[0], next[1], next[2]))
+                             : -1;
+    }
+    const double way = (at[0] - 5.5) / (0.6 * std::sqrt(2.0));
+    intensity[v] = static_cast<float>(102 + 18 * std::erf(way));
+  }
+  const EdgeSamples samples{&voxel,     &neighbours,  &rim,
+                            &intensity, grid.spacing, std::vector<std::uint8_t>(voxel.size(), 0)};
+  const BlockWindow window(grid, voxel, 4, 2);
+  BorderFinder finder(window, samples, {20, 80, 116});
+  for (int round = 0; round < 10; ++round) finder.improve();
+  double sum = 0;
+  for (const float level : finder.levels().white) sum += level;
+  EXPECT_NEAR(sum / static_cast<double>(voxel.size()), 102, 1) << "half way between the means: 98";
+  for (const float level : finder.levels().outer) EXPECT_EQ(level, 50) << "no fluid is seen";
 }
 
 TEST(TissueSegmentation, DarkRemainsAtTheBrainsEdgeAreNotFluid) {

@@ -6,6 +6,7 @@
 #include "AngularBasis.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/PortableMath.h"
+#include "Explica/Core/StopScope.h"
 
 #include <algorithm>
 #include <cmath>
@@ -99,6 +100,7 @@ void descend(const Eigen::MatrixXd& gram, const Eigen::VectorXd& right,
              const Eigen::VectorXd& least, Eigen::VectorXd& x) {
   Eigen::VectorXd residual = gram * x - right;
   for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+    checkpoint();
     double largest = 0;
     for (Eigen::Index k = 0; k < x.size(); ++k) {
       const double change = std::max(least[k], x[k] - residual[k] / gram(k, k)) - x[k];
@@ -137,6 +139,7 @@ Eigen::VectorXd leastWithBound(const Eigen::MatrixXd& gram, const Eigen::VectorX
   int patience = kPatience;
   Eigen::VectorXd x;
   for (int round = 0; round < kMostExchanges; ++round) {
+    checkpoint();
     x = withOpen(gram, right, least, atBound);
     const Eigen::VectorXd slope = gram * x - right;
     std::vector<std::size_t> wrong;

@@ -40,7 +40,7 @@ constexpr Export kExports[] = {
     {"surface", "curvature.shape.gii", "_curv.shape.gii", "mm^-1",
      "mean curvature of the white surface, positive in sulci"},
     {"surface", "sulc.shape.gii", "_sulc.shape.gii", "mm",
-     "depth of the middle surface below the hull"},
+     "sulcal depth: distance travelled outwards as the white surface is inflated"},
     {"surface", "area.shape.gii", "_area.shape.gii", "mm^2",
      "area at each vertex of the white, middle and outer surface"},
     {"surface", "valid.shape.gii", "_desc-valid_mask.shape.gii", "",

@@ -8,6 +8,7 @@
 #include "Explica/Core/Parallel.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
+#include "Explica/Maps/Folding.h"
 #include "Explica/Surface/GivenSurfaces.h"
 #include "Explica/Surface/IsoSurface.h"
 #include "Explica/Surface/Measures.h"
@@ -368,9 +369,9 @@ CorticalSurfaces build(const CorticalTissue& tissue, const Volume<float>* image,
 
   monitor.progress(0.96, "curvature and depth");
   const std::array<std::function<void()>, 3> measures = {
-      [&] { result.curvature = meanCurvature(result.white.mesh); },
+      [&] { result.curvature = maps::meanCurvature(result.white.mesh); },
       [&] { result.nearestThickness = distanceThickness(result.white.mesh, result.pial); },
-      [&] { result.sulcalDepth = depthBelowHull(ribbon.tissue.tissue, result.mid.positions); }};
+      [&] { result.sulcalDepth = maps::sulcalDepth(result.white.mesh); }};
   parallelFor(measures.size(), 1, [&](std::size_t n) { measures[n](); });
   result.nearestThickness = (result.thickness.array() > 0).select(result.nearestThickness, 0.0);
   result.seconds.measures = watch.lap();

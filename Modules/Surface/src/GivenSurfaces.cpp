@@ -6,7 +6,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Geometry/FaceTree.h"
-#include "Explica/Surface/Measures.h"
+#include "Explica/Maps/Folding.h"
 
 #include <array>
 #include <cmath>
@@ -55,7 +55,8 @@ CorticalSurfaces adoptSurfaces(TriangleMesh white, TriangleMesh pial,
   surfaces.thickness = distanceThickness(white, pial);
   surfaces.nearestThickness = surfaces.thickness;
   surfaces.noRibbon = (surfaces.thickness.array() == 0).count();
-  surfaces.curvature = meanCurvature(white);
+  surfaces.curvature = maps::meanCurvature(white);
+  surfaces.sulcalDepth = maps::sulcalDepth(white);
   surfaces.mid =
       mid ? std::move(*mid) : TriangleMesh{0.5 * (white.positions + pial.positions), white.faces};
   surfaces.white.mesh = std::move(white);

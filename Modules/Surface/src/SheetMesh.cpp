@@ -3,6 +3,7 @@
 
 #include "SheetMesh.h"
 
+#include "Explica/Core/DisjointSets.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Geometry/SelfIntersection.h"
@@ -57,30 +58,25 @@ std::vector<double> areasOf(const TriangleMesh& mesh, const std::vector<std::int
 bool markSmallFans(const MeshTopology& topology, std::int32_t v,
                    std::vector<std::uint8_t>& marked) {
   const auto faces = topology.vertexFaces[v];
-  std::vector<std::int32_t> fan(faces.size());
-  std::iota(fan.begin(), fan.end(), 0);
-  const auto rootOf = [&](std::int32_t k) {
-    while (fan[k] != k) k = fan[k];
-    return k;
-  };
+  DisjointSets fans(faces.size());
   for (std::size_t a = 0; a < faces.size(); ++a) {
     for (int k = 0; k < 3; ++k) {
       const std::int32_t edge = topology.faceEdges(faces[a], k);
       if (topology.edges(edge, 0) != v && topology.edges(edge, 1) != v) continue;
       for (std::size_t b = 0; b < a; ++b) {
         if ((topology.edgeFaces.row(edge).array() == faces[b]).any()) {
-          fan[rootOf(static_cast<std::int32_t>(a))] = rootOf(static_cast<std::int32_t>(b));
+          fans.join(static_cast<std::int32_t>(a), static_cast<std::int32_t>(b));
         }
       }
     }
   }
   std::vector<int> sizes(faces.size(), 0);
-  for (std::size_t a = 0; a < faces.size(); ++a) ++sizes[rootOf(static_cast<std::int32_t>(a))];
+  for (std::size_t a = 0; a < faces.size(); ++a) ++sizes[fans.root(static_cast<std::int32_t>(a))];
   const auto largest =
       static_cast<std::int32_t>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
   bool any = false;
   for (std::size_t a = 0; a < faces.size(); ++a) {
-    if (rootOf(static_cast<std::int32_t>(a)) == largest) continue;
+    if (fans.root(static_cast<std::int32_t>(a)) == largest) continue;
     marked[faces[a]] = 1;
     any = true;
   }

@@ -12,6 +12,7 @@
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Harmonic/Interpolant.h"
+#include "Explica/Maps/Folding.h"
 #include "Explica/Surface/GivenSurfaces.h"
 #include "Explica/Surface/IsoSurface.h"
 #include "Explica/Surface/Measures.h"
@@ -463,28 +464,6 @@ void markCut(const Grid& image, const TriangleMesh& sheet, const Eigen::VectorXd
   }
 }
 
-/// The cotangent formula fails on rims: their vertices take the mean of their inner neighbours.
-Eigen::VectorXd curvatureOfSheet(const TriangleMesh& mesh) {
-  Eigen::VectorXd curvature = meanCurvature(mesh);
-  const auto topology = geometry::buildTopology(mesh.faces, mesh.vertexCount());
-  std::vector<std::uint8_t> rim(mesh.vertexCount(), 0);
-  for (const auto& line : rimsOf(mesh)) {
-    for (const std::int32_t v : line) rim[v] = 1;
-  }
-  for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
-    if (!rim[v]) continue;
-    double sum = 0;
-    int count = 0;
-    for (const std::int32_t w : topology.vertexVertices[v]) {
-      if (rim[w]) continue;
-      sum += curvature[w];
-      ++count;
-    }
-    curvature[v] = count > 0 ? sum / count : 0;
-  }
-  return curvature;
-}
-
 /// Inner, middle and outer surface out of the sheet.
 void growSheets(const TriangleMesh& sheet, const Ways& ways, const TrajectoryTracer& tracer,
                 const ClosedSulci& sulci, CorticalSurfaces& made) {
@@ -582,9 +561,8 @@ CorticalSurfaces buildSheets(const TissueMasks& masks, const SurfaceOptions& opt
   made.seconds.growing = secondsSince(last);
 
   monitor.progress(0.95, "curvature");
-  made.curvature = curvatureOfSheet(made.white.mesh);
+  made.curvature = maps::meanCurvature(made.white.mesh);
   made.nearestThickness = distanceThickness(made.white.mesh, made.pial);
-  made.sulcalDepth = Eigen::VectorXd::Zero(sheet.vertexCount());
   markCut(masks.white.grid, sheet, made.thickness, made);
   made.thickness = meanOverSurroundings(sheet, made.thickness);
   made.noRibbon = (made.thickness.array() == 0).count();

@@ -671,17 +671,5 @@ TEST(CorticalTissue, CutsTwoHemispheresAtTheirBridge) {
   }
 }
 
-TEST(DepthBelowHull, IsTheDepthOfAGroove) {
-  const Grid grid = lattice(50, Vector::Constant(1));
-  const auto level = levelSetOf(volumeOf(grid, [](const Point& p) -> std::uint8_t {
-    return p.norm() < 18 && !(std::abs(p.x()) < 2 && p.z() > 5) ? 1 : 0;
-  }));
-  Positions points(2, 3);
-  points << 0, 0, 8, -12, 0, 0;
-  const auto depth = depthBelowHull(level, points);
-  EXPECT_NEAR(depth[0], 9.5, 1.2);
-  EXPECT_NEAR(depth[1], 6, 1.2);
-}
-
 }  // namespace
 }  // namespace explica::surface

@@ -47,7 +47,7 @@ void measureFrame(Frame& frame, const Beat& beat, const HeartOptions& options,
     return;
   }
   try {
-    frame.measures = measureWall(frame.heart, frame.axis, options.wall, monitor);
+    frame.measures = measureWall(frame.heart, frame.axis, beat.alignment, options.wall, monitor);
   } catch (const InvalidInput& error) {
     frame.why = error.what();
     return;
@@ -114,6 +114,7 @@ Beat measureBeat(std::vector<Volume<Label>> hearts, const std::vector<int>& numb
     throw InvalidInput("end-diastole, frame " + std::to_string(numbers[beat.diastole]) +
                        ", has no wall; thickness needs one there (choose frames with --frames)");
   }
+  beat.alignment = alignSlices(hearts, axis);
   beat.orientation = findOrientation(hearts[beat.diastole], axis, options.orientation);
   for (std::size_t f = 0; f < hearts.size(); ++f) {
     beat.frames.push_back(volumesOf(std::move(hearts[f]), numbers[f]));

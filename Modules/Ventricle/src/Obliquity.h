@@ -19,13 +19,16 @@ class BoundaryProfile {
  public:
   /// @param enclosed  true for the labels that the boundary encloses
   /// @param usable    per slice: the boundary there can be believed
+  /// @param shift     per slice: how far it was moved within its plane, mm; points are given
+  /// without
   template <class Enclosed>
-  BoundaryProfile(const Volume<Label>& heart, const std::vector<bool>& usable, Enclosed enclosed);
+  BoundaryProfile(const Volume<Label>& heart, const std::vector<bool>& usable,
+                  const std::vector<Eigen::Vector2d>& shift, Enclosed enclosed);
 
   /// Distance of a place within slice k from the boundary, in the plane that the slice's normal
   /// spans with a direction.
   /// @param k       where it is not usable, the nearest slice's parabola is continued to it
-  /// @param point   of the boundary in slice k, mm along i and j
+  /// @param point   of the boundary in slice k, mm along i and j, less the slice's shift
   /// @param normal  unit, within the slice, outward
   /// @param gap     of `point` from the place along `normal`, mm, signed
   /// @return mm; |gap| if fewer than two slices are usable
@@ -62,7 +65,7 @@ class BoundaryProfile {
 
 template <class Enclosed>
 BoundaryProfile::BoundaryProfile(const Volume<Label>& heart, const std::vector<bool>& usable,
-                                 Enclosed enclosed)
+                                 const std::vector<Eigen::Vector2d>& shift, Enclosed enclosed)
     : pixel_(heart.grid.spacing.head<2>()),
       slice_(heart.grid.spacing[2]),
       shapes_(static_cast<std::size_t>(heart.grid.size[2])) {
@@ -73,6 +76,7 @@ BoundaryProfile::BoundaryProfile(const Volume<Label>& heart, const std::vector<b
     Mask mask(pixels);
     for (std::size_t p = 0; p < pixels; ++p) mask[p] = enclosed(heart[k * pixels + p]) ? 1 : 0;
     shapes_[k] = shapeOf(mask, size);
+    shapes_[k].centre -= shift[k];
   }
 }
 

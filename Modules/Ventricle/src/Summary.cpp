@@ -56,7 +56,8 @@ void describeThickness(Results& t, const Frame& ed, const Frame& es, bool beats)
   t.number("thickening_percent", "Mean thickening", "%",
            "Of that mean, from end-diastole to end-systole.", later(es.thickening))
       .inHead();
-  t.number("thickness_plain_ed", "Mean wall thickness over voxels", "mm", "At end-diastole.",
+  t.number("thickness_plain_ed", "Mean wall thickness within slices", "mm",
+           "At end-diastole, before the wall's slope to the slices is taken into account.",
            known(ed.plain));
   constexpr std::array kLeftOut = {std::pair{LeftOut::Opening, "voxels_left_out_opening_ed"},
                                    std::pair{LeftOut::Valve, "voxels_left_out_valve_ed"},
@@ -73,7 +74,11 @@ void describeThickness(Results& t, const Frame& ed, const Frame& es, bool beats)
 }  // namespace
 
 void describe(Results& t, const HeartSummary& s) {
-  static const Beat none{{Frame{}}, 0, 0, {}, kNaN};
+  static const Beat none = [] {
+    Beat beat;
+    beat.frames.resize(1);
+    return beat;
+  }();
   const Beat& beat = s.beat ? *s.beat : none;
   const Frame &ed = beat.atDiastole(), &es = beat.atSystole();
   const bool beats = beat.frames.size() > 1;
@@ -94,6 +99,12 @@ void describe(Results& t, const HeartSummary& s) {
       .inHead();
   t.number("axis_spread_mm", "Spread of the slices' centres about the axis", "mm", "",
            known(ed.axis.spreadMm));
+  t.number("slice_shift_rms_mm", "Shift of slices, root mean square", "mm",
+           "By which slices were aligned within their planes.", known(beat.alignment.rms));
+  t.number("slice_shift_max_mm", "Shift of slices, largest", "mm", "",
+           known(beat.alignment.largest));
+  t.number("slope_error_deg", "Uncertainty of the wall's slope", "degrees",
+           "From what the alignment leaves.", known(beat.alignment.slopeErrorDeg));
   t.text("orientation", "Orientation of the segments", "What it is known by.",
          beat.orientation.source);
   t.number("septum_deg", "Direction of the septum", "degrees", "",

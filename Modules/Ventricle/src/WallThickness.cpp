@@ -5,6 +5,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Core/StopScope.h"
+#include "IntactSlices.h"
 #include "Obliquity.h"
 
 #include <Eigen/Eigenvalues>
@@ -24,12 +25,6 @@ constexpr double kSteepestDeg = 60;
 // A free end of the wall changes the harmonic function by exp(-pi d / t) at the distance d along a
 // wall of thickness t: by 4 % at one thickness.
 constexpr double kEndReach = 1;
-
-/// True beyond the basal end of the cavity and less than a quarter of a slice below it: whole
-/// slices of a stack across the axis end half a slice below.
-bool atBase(const Point& x, const Grid& grid, const LongAxis& axis) {
-  return axis.share(x) * axis.length() < 0.25 * grid.spacing[2];
-}
 
 double median(std::vector<double> values) {
   std::erase_if(values, [](double v) { return std::isnan(v); });
@@ -111,22 +106,6 @@ Eigen::Vector2d inSlice(const harmonic::Annulus& annulus, std::int32_t n,
   return at.head<2>();
 }
 
-/// Slices that the base may cut: open ones, and those next to a slice towards the base that holds
-/// part of a ring only.  A stack that ends with a closed ring shows no cut.
-std::vector<bool> cutSlices(const WallThickness& wall, const Grid& grid, const LongAxis& axis) {
-  const int towardsBase = grid.direction.col(2).dot(axis.direction) > 0 ? -1 : 1;
-  const auto whole = [&](int k) {
-    if (k < 0 || k >= static_cast<int>(wall.slices.size())) return true;
-    const SliceKind kind = wall.slices[static_cast<std::size_t>(k)].kind;
-    return kind == SliceKind::Ring || kind == SliceKind::Empty;
-  };
-  std::vector<bool> cut;
-  for (int k = 0; k < static_cast<int>(wall.slices.size()); ++k) {
-    cut.push_back(!whole(k) || !whole(k + towardsBase));
-  }
-  return cut;
-}
-
 /// In thick slices the base is the plane across the axis at the cavity's end: what lies beyond it
 /// in slices that it may cut is insulated.
 void insulateAtBase(Volume<Label>& heart, const std::vector<bool>& cut, const LongAxis& axis) {
@@ -139,27 +118,11 @@ void insulateAtBase(Volume<Label>& heart, const std::vector<bool>& cut, const Lo
   });
 }
 
-/// True for slices of which nothing lies at or beyond the base: their outlines are boundaries of
-/// the wall all around.
-std::vector<bool> intactSlices(const WallThickness& wall, const Volume<Label>& heart,
-                               const LongAxis& axis) {
-  std::vector<bool> intact(static_cast<std::size_t>(heart.grid.size[2]), true);
-  const std::vector<bool> cut = cutSlices(wall, heart.grid, axis);
-  for (std::size_t v = 0; v < heart.size(); ++v) {
-    if (heart[v] != kCavity && heart[v] != kWall) continue;
-    const auto s = heart.grid.subscripts(v);
-    const auto k = static_cast<std::size_t>(s[2]);
-    if (cut[k] && atBase(heart.grid.toWorld(Vector(s[0], s[1], s[2])), heart.grid, axis)) {
-      intact[k] = false;
-    }
-  }
-  return intact;
-}
-
 /// Replaces lengths within the slice by the sum of the distances to the boundaries in the plane
 /// through the trajectory's ends and the slice's normal.
-void correctObliquity(WallThickness& wall, const Volume<Label>& heart, const LongAxis& axis) {
-  const std::vector<bool> intact = intactSlices(wall, heart, axis);
+void correctObliquity(WallThickness& wall, const Volume<Label>& heart, const LongAxis& axis,
+                      const SliceAlignment& alignment) {
+  const std::vector<bool> intact = intactSlices(wall.slices, heart, axis);
   std::vector<bool> inner, outer;
   int rings = 0;
   for (std::size_t k = 0; k < wall.slices.size(); ++k) {
@@ -175,8 +138,9 @@ void correctObliquity(WallThickness& wall, const Volume<Label>& heart, const Lon
       outer[k] = outer[k] || wall.slices[k].whole();
     }
   }
-  const BoundaryProfile innerProfile(heart, inner, [](Label l) { return l == kCavity; });
-  const BoundaryProfile outerProfile(heart, outer,
+  const BoundaryProfile innerProfile(heart, inner, alignment.shift,
+                                     [](Label l) { return l == kCavity; });
+  const BoundaryProfile outerProfile(heart, outer, alignment.shift,
                                      [](Label l) { return l == kCavity || l == kWall; });
   parallelFor(wall.plain.size(), 256, [&](std::size_t n) {
     const auto number = static_cast<std::int32_t>(n);
@@ -184,10 +148,10 @@ void correctObliquity(WallThickness& wall, const Volume<Label>& heart, const Lon
     const int k = static_cast<int>(wall.annulus.index(number)[2]);
     const Eigen::Vector2d from = inSlice(wall.annulus, number, wall.correspondence.innerPoint[n]);
     const Eigen::Vector2d to = inSlice(wall.annulus, number, wall.correspondence.outerPoint[n]);
-    const Eigen::Vector2d normal = (to - from).normalized();
+    const Eigen::Vector2d normal = (to - from).normalized(), shift = alignment.shift[k];
     const double length =
-        innerProfile.distance(k, from, normal, -wall.correspondence.innerDistance[n]) +
-        outerProfile.distance(k, to, normal, wall.correspondence.outerDistance[n]);
+        innerProfile.distance(k, from - shift, normal, -wall.correspondence.innerDistance[n]) +
+        outerProfile.distance(k, to - shift, normal, wall.correspondence.outerDistance[n]);
     wall.thickness[n] = length;
     if (length < std::cos(kSteepestDeg * kPi / 180) * wall.plain[n]) wall.leftOut[n] = LeftOut::Cap;
   });
@@ -196,7 +160,7 @@ void correctObliquity(WallThickness& wall, const Volume<Label>& heart, const Lon
 /// Trajectories that come to the base.
 void leaveOutAtBase(WallThickness& wall, const LongAxis& axis) {
   const Grid& grid = wall.annulus.grid;
-  const std::vector<bool> cut = cutSlices(wall, grid, axis);
+  const std::vector<bool> cut = cutSlices(wall.slices, grid, axis);
   parallelFor(wall.plain.size(), 256, [&](std::size_t n) {
     const auto number = static_cast<std::int32_t>(n);
     if (!cut[static_cast<std::size_t>(wall.annulus.index(number)[2])]) return;
@@ -307,7 +271,8 @@ Volume<std::uint8_t> reasonsOf(const WallThickness& wall, const Volume<Label>& h
 }  // namespace
 
 WallThickness measureWall(const Volume<Label>& heart, const LongAxis& axis,
-                          const WallOptions& options, const Monitor& monitor) {
+                          const SliceAlignment& alignment, const WallOptions& options,
+                          const Monitor& monitor) {
   if (!has(heart, kWall)) throw InvalidInput("the frame has no wall");
   WallThickness wall;
   wall.slices = slicesOf(heart);
@@ -315,10 +280,10 @@ WallThickness measureWall(const Volume<Label>& heart, const LongAxis& axis,
                  (options.method == WallMethod::Automatic && hasThickSlices(heart.grid));
   Volume<Label> marked = heart;
   if (wall.bySlice) {
-    insulateAtBase(marked, cutSlices(wall, heart.grid, axis), axis);
+    insulateAtBase(marked, cutSlices(wall.slices, heart.grid, axis), axis);
     solve(wall, marked, monitor);
-    correctObliquity(wall, heart, axis);
-    leaveOutBySlice(wall, marked, intactSlices(wall, heart, axis));
+    correctObliquity(wall, heart, axis, alignment);
+    leaveOutBySlice(wall, marked, intactSlices(wall.slices, heart, axis));
     leaveOutAtBase(wall, axis);
   } else {
     insulateBeyondBase(marked, axis);

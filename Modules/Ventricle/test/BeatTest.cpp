@@ -13,6 +13,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <random>
 
 using namespace explica;
 using namespace explica::ventricle;
@@ -91,6 +92,89 @@ TEST_P(TiltedSlices, GiveTheSegmentsTheirExactThickness) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Degrees, TiltedSlices, ::testing::Values(0, 10, 20));
+
+/// The same stack with each slice moved within its plane by whole pixels, the same in all frames.
+void moveSlices(std::vector<Volume<Label>>& hearts, const std::vector<Eigen::Vector2i>& pixels) {
+  for (Volume<Label>& heart : hearts) {
+    const Volume<Label> before = heart;
+    for (std::size_t v = 0; v < heart.size(); ++v) {
+      const auto [i, j, k] = heart.grid.subscripts(v);
+      const int p = i - pixels[k][0], q = j - pixels[k][1];
+      heart[v] = heart.grid.contains(p, q, k) ? before(p, q, k) : kOutside;
+    }
+  }
+}
+
+/// Less their line of least squares over those slices: a trend along the stack cannot be told from
+/// a tilted axis.
+void removeTrend(std::vector<Eigen::Vector2i>& pixels, const std::vector<int>& slices) {
+  const auto count = static_cast<double>(slices.size());
+  double middle = 0, squares = 0;
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero(), slope = mean;
+  for (const int k : slices) middle += k / count, mean += pixels[k].cast<double>() / count;
+  for (const int k : slices) {
+    slope += (k - middle) * pixels[k].cast<double>();
+    squares += (k - middle) * (k - middle);
+  }
+  for (const int k : slices) {
+    const Eigen::Vector2d rest = pixels[k].cast<double>() - mean - (k - middle) / squares * slope;
+    pixels[k] = rest.array().round().cast<int>();
+  }
+}
+
+/// Of the segments that both have a mean of, mm.
+double greatestChange(const Segments& before, const Segments& after) {
+  double greatest = 0;
+  for (int s = 0; s < 16; ++s) {
+    const double change = std::abs(after.rows[s].thickness - before.rows[s].thickness);
+    if (!std::isnan(change)) greatest = std::max(greatest, change);
+  }
+  return greatest;
+}
+
+class JumpingSlices : public ::testing::TestWithParam<int> {};
+
+/// Breath holds of different depth move slices; that is no slope of the wall.
+TEST_P(JumpingSlices, LeaveTheWallAsThickAsItWas) {
+  const int most = GetParam();  // pixels of 1.4 mm
+  const auto phantom =
+      phantom::beatingVentricle({90, 1.4}, {.frames = 4, .slice = 8, .tiltDeg = 10});
+  const Beat still = beatOf(phantom);
+  std::vector<Volume<Label>> hearts;
+  std::vector<int> numbers;
+  for (const auto& frame : phantom.frames) {
+    hearts.push_back(frame.labels);
+    numbers.push_back(static_cast<int>(numbers.size()));
+  }
+  std::mt19937 random(7);
+  std::uniform_int_distribution<int> jump(-most, most);
+  std::vector<Eigen::Vector2i> pixels;
+  for (int k = 0; k < hearts[0].grid.size[2]; ++k) pixels.emplace_back(jump(random), jump(random));
+  std::vector<int> aligned;
+  for (int k = 0; k < hearts[0].grid.size[2]; ++k) {
+    if (still.alignment.shift[k].norm() > 0) aligned.push_back(k);
+  }
+  removeTrend(pixels, aligned);
+  moveSlices(hearts, pixels);
+  const Beat moved = measureBeat(hearts, numbers);
+  const Segments& before = *still.atDiastole().segments;
+  const double change = greatestChange(before, *moved.atDiastole().segments);
+  SliceAlignment none = moved.alignment;
+  for (Eigen::Vector2d& shift : none.shift) shift.setZero();
+  const Frame& frame = moved.atDiastole();
+  const double without =
+      greatestChange(before, segmentsOf(frame.heart, measureWall(frame.heart, frame.axis, none),
+                                        frame.axis, moved.orientation));
+  EXPECT_LE(change, most <= 2 ? 0.25 : 0.3 * without);
+  EXPECT_GE(moved.alignment.largest, most > 1 ? 1.4 : 0);
+  std::printf(
+      "up to %.1f mm: shifts found %.2f mm rms, slope +- %.1f degrees, greatest change of a "
+      "segment "
+      "%.2f mm, not aligned %.2f mm\n",
+      1.4 * most, moved.alignment.rms, moved.alignment.slopeErrorDeg, change, without);
+}
+
+INSTANTIATE_TEST_SUITE_P(Pixels, JumpingSlices, ::testing::Values(0, 1, 2, 3, 4));
 
 TEST(Beat, VolumesAndThickeningOfAnIncompressibleWallAreExact) {
   const auto phantom = phantom::beatingVentricle({90, 1.4}, {.frames = 6, .slice = 1.4});

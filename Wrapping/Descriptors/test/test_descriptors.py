@@ -406,7 +406,7 @@ class Nipype(unittest.TestCase):
                 if p["required"] or p["name"] == "out"
             }
             mandatory = {
-                t.rstrip("_").replace("_", "-")
+                t.removeprefix("option_").replace("_", "-")
                 for t, trait in interface.input_spec().traits().items()
                 if trait.mandatory
             }

@@ -74,6 +74,7 @@ from ._surfaces import (
     knot_energy,
     largest_safe_step,
     mean_curvature,
+    sulcal_depth,
     mean_edge_length,
     mesh_edges,
     near_pairs,

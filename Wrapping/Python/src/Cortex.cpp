@@ -6,11 +6,11 @@
 #include "Options.h"
 #include "Watch.h"
 
+#include "Explica/Maps/Folding.h"
 #include "Explica/Segmentation/Atlas.h"
 #include "Explica/Segmentation/Hemisphere.h"
 #include "Explica/Surface/CorticalSurface.h"
 #include "Explica/Surface/IsoSurface.h"
-#include "Explica/Surface/Measures.h"
 #include "Explica/Surface/TissueSheet.h"
 
 namespace explica::python {
@@ -104,14 +104,23 @@ void bindParts(py::module_& m) {
   m.def(
       "mean_curvature",
       [](const Eigen::Ref<const Positions>& positions, const Eigen::Ref<const Faces>& faces,
-         int smoothing) {
+         std::optional<double> fwhm) {
         const TriangleMesh mesh = meshOf(positions, faces);
-        return unlocked([&] { return surface::meanCurvature(mesh, smoothing); });
+        return unlocked([&] { return maps::meanCurvature(mesh, fwhm); });
       },
-      "positions"_a, "faces"_a, "smoothing"_a = 3,
-      "Mean curvature at vertices (V,), mm^-1, averaged over neighbours `smoothing` times: "
-      "positive\n"
-      "in sulci, -1/R on a sphere.");
+      "positions"_a, "faces"_a, "fwhm"_a = py::none(),
+      "Mean curvature at vertices (V,), mm^-1, diffused by `fwhm` mm (None: 0.0188 of the square\n"
+      "root of the area, 5 mm for a human hemisphere): positive in sulci, -1/R on a sphere.");
+  m.def(
+      "sulcal_depth",
+      [](const Eigen::Ref<const Positions>& positions, const Eigen::Ref<const Faces>& faces) {
+        const TriangleMesh mesh = meshOf(positions, faces);
+        return unlocked([&] { return maps::sulcalDepth(mesh); });
+      },
+      "positions"_a, "faces"_a,
+      "Signed distance (V,), mm, that vertices travel outwards while a closed surface is "
+      "inflated:\n"
+      "positive in sulci, mean 0 over the area.");
   defWithOptions<ShareOptions>(
       m, "surfaces_of_shares",
       [](const py::array& whiteShare, const py::array& tissueShare, const Eigen::Matrix4d& affine,

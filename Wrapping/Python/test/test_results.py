@@ -208,6 +208,7 @@ class Surfaces(unittest.TestCase):
     def test_sphere_is_curved_by_its_radius(self):
         curvature = explica.mean_curvature(explica.icosphere(4, 20.0))
         self.assertAlmostEqual(curvature.mean(), -1 / 20, delta=1e-3)
+        self.assertLess(np.abs(explica.sulcal_depth(explica.icosphere(4, 20.0))).max(), 0.02)
 
     def test_laplacian_of_a_linear_function_is_its_energy(self):
         p, f = explica.rectangle(6, 4, 3.0, 2.0)

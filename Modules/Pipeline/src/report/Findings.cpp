@@ -36,6 +36,13 @@ constexpr std::array kFindings = {
     Finding{"sample", "points", "", "Points", "", Shown::Plain, ""},
     Finding{"sample", "points_distance_max", "", "Farthest point from the cortex", "mm",
             Shown::Plain, "Of its nearest column from white to pial."},
+    Finding{"sphere", "turned_over", "", "Faces turned over", "", Shown::Plain, ""},
+    Finding{"sphere", "areal_log2_mean", "", "Change of areas, mean of |log2|", "", Shown::Plain,
+            "Over the surface's area."},
+    Finding{"sphere", "stretch_median", "", "Largest over smallest stretch, median", "",
+            Shown::Plain, "Over the surface's area; 1 where angles are kept."},
+    Finding{"sphere", "stretch_p95", "", "Largest over smallest stretch, 95th percentile", "",
+            Shown::Plain, ""},
 };
 
 std::string shownAs(Shown shown, double value) {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "GivenMaps.h"
 
+#include "Explica/IO/StatedHemisphere.h"
+
 #include <array>
 #include <string_view>
 
@@ -27,10 +29,8 @@ std::vector<GivenMap> readGivenMaps(ResultFolder& results, const std::vector<std
   std::vector<GivenMap> all;
   for (const std::string& file : files) {
     results.attempt("Map " + file, [&] {
-      const std::string structure = io::vertexDataStructure(file);
-      const std::string side = structure == "CortexLeft"    ? "left"
-                               : structure == "CortexRight" ? "right"
-                                                            : "";
+      const auto stated = io::statedHemisphere(file);
+      const std::string side = stated ? std::string(nameOf(*stated)) : std::string();
       for (io::VertexMap& map : io::readVertexMaps(file)) {
         all.push_back({nameBesideOthers(file, map.name), map.unit, side, std::move(map.values)});
       }

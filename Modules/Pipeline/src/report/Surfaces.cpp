@@ -332,8 +332,9 @@ void showSurfaces(ResultFolder& results, const FolderReportOptions& options,
             "Grey: not measured, as on the medial wall.", kThicknessPlace, 6, Drawn::Pial);
   });
   results.attempt("Depth map", [&] {
-    showMap(results, shown, "sulc.shape.gii", "depth", "Depth on the white surface",
-            "How far the middle surface lies below its hull.", "depth-maps", 2, Drawn::White);
+    showMap(results, shown, "sulc.shape.gii", "sulcal depth", "Sulcal depth on the white surface",
+            "Distance travelled outwards as the surface is inflated; sulci positive.", "depth-maps",
+            2, Drawn::White);
   });
   results.attempt("Curvature map", [&] {
     showMap(results, shown, "curvature.shape.gii", "mean curvature",

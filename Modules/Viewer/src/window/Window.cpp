@@ -11,11 +11,9 @@
 #include <QSurfaceFormat>
 #include <array>
 
-using namespace explica::viewer;
+namespace explica::viewer {
 
-/// What `showWindow` loads and calls.
-extern "C" void explicaShowWindow(Session& session, const WindowCalls& calls,
-                                  const WindowOptions& options) {
+void showWindow(Session& session, const WindowCalls& calls, const WindowOptions& options) {
   requireDisplay();
   QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());
   std::string program = "explica";
@@ -31,3 +29,5 @@ extern "C" void explicaShowWindow(Session& session, const WindowCalls& calls,
   QApplication::processEvents();
   playScript(window, *options.script);
 }
+
+}  // namespace explica::viewer

@@ -9,8 +9,8 @@
       '--force[write into a folder that is not empty, replacing earlier results]' \
       '--config[JSON file with option values; the command line wins]:config:_files' \
       '--threads[processors to use (default\: all that this process may) (1 to 4096)]:threads: ' \
-      '--max-time[ask for an end after this time, with what was reached (s; above 0, at most 1e+09)]:max-time: ' \
-      '--max-memory[memory at most (MB; 64 to 1073741824)]:max-memory: ' \
+      '--max-time[ask for an end after this time, with what was reached (s; above 0, at most 1,000,000,000)]:max-time: ' \
+      '--max-memory[memory at most (MB; 64 to 1,073,741,824)]:max-memory: ' \
       '--dry-run[resolve and check everything, print the options, write nothing]' \
       '--quiet[say nothing but warnings and errors]' \
       '--verbose[say more]' \

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "Explica/Core/Results.h"
+#include "Explica/Core/Hemisphere.h"
 #include "Explica/Provenance/Options.h"
 
 #include <functional>
@@ -62,11 +63,17 @@ struct Parameter {
   std::optional<FileKind> file;  ///< the value is a path that is read (hashed and recorded)
   bool positional = false;
   bool required = false;
-  bool namesOutput = false;   ///< the value says where something is written, beside --out
-  bool severalWords = false;  ///< a list option that takes all words up to the next option
-  std::string defaultText;    ///< the default as a user would write it; empty if none
-  std::string stepCommand;    ///< the command that include() took it over from; empty: its own
-  std::string stepPrefix;     ///< what stands before that command's name of it: "unfold."
+  bool namesOutput = false;           ///< the value says where something is written, beside --out
+  bool severalWords = false;          ///< a list option that takes all words up to the next option
+  bool oneByOne = false;              ///< its files meet those of other options, but not each other
+  std::optional<Hemisphere> side;     ///< of its files, whatever the other options' are of
+  std::vector<std::string> excludes;  ///< options beside which it has no effect, or they have none
+  std::vector<std::string>
+      needs;            ///< it has no effect without one of these: "label", "method=thesis"
+  std::string surface;  ///< the option with the surface of these vertex data; empty: any other's
+  std::string defaultText;  ///< the default as a user would write it; empty if none
+  std::string stepCommand;  ///< the command that include() took it over from; empty: its own
+  std::string stepPrefix;   ///< what stands before that command's name of it: "unfold."
 };
 
 /// A file that a command writes into its output directory.
@@ -137,6 +144,19 @@ class Declaration {
   /// Says that an option declared before names a place where something is written, so that a
   /// stranger's record cannot set it to any file of this machine.
   Declaration& namesOutput(std::string_view name);
+  /// Says that the files of an option are of this side of the brain: --left.
+  Declaration& ofSide(std::string_view name, Hemisphere side);
+  /// Says that each of an option's files stands for itself, so that they may be of both sides.
+  Declaration& oneByOne(std::string_view name);
+  /// Says which option gives the surface that an option's vertex data are of, where there are
+  /// several.
+  Declaration& onSurface(std::string_view name, std::string_view surface);
+  /// Says that an option and any of the others would leave one of the two without effect.
+  Declaration& excludes(const std::string& name, const std::vector<std::string>& others);
+  /// Says that each of the options has no effect unless one of the conditions holds: an option that
+  /// is given ("label"), or one that has a value ("method=thesis").
+  Declaration& needs(const std::vector<std::string>& names,
+                     const std::vector<std::string>& conditions);
   /// Says that an option or positional declared before must be given.
   Declaration& require(std::string_view name);
   /// Leaves out options declared before, e.g. one of a struct that makes no sense here.
@@ -195,6 +215,8 @@ class Declaration {
   const std::string* fallbackOut = nullptr;
 
  private:
+  /// @throws std::logic_error  there is no option or positional of that name
+  Parameter& get(std::string_view name);
   Declaration& add(provenance::Option option, const std::string& category, bool positional,
                    bool required, std::optional<FileKind> file = {});
 };

@@ -22,6 +22,7 @@ struct CommonOptions {
   std::optional<int> threads;
   std::optional<double> maxTime;
   std::optional<int> maxMemory;
+  std::vector<std::string> accept;
   bool dryRun = false;
   bool quiet = false;
   bool verbose = false;
@@ -42,6 +43,10 @@ void describe(CommonOptions& o, Visitor&& visit) {
               1e9},
         o.maxTime);
   visit(Field{"max-memory", "MB", "memory at most", 64, 1 << 30}, o.maxMemory);
+  visit(Field{"accept", "",
+              "go on although files contradict each other: hemisphere (left and right together), "
+              "mesh (data of another surface)"},
+        o.accept);
   visit(Field{"dry-run", "", "resolve and check everything, print the options, write nothing"},
         o.dryRun);
   visit(Field{"quiet", "", "say nothing but warnings and errors"}, o.quiet);

@@ -20,7 +20,7 @@ void declareAccept(Declaration& d, std::vector<std::string>& accepted);
 class Judge {
  public:
   /// @throws UsageError  an accepted name that is no limit's
-  Judge(Context& context, const std::vector<std::string>& accepted);
+  Judge(Context& context, std::vector<std::string> accepted);
 
   /// For what makes further work pointless.
   /// @throws InvalidInput  the value lies outside and is not accepted
@@ -30,7 +30,7 @@ class Judge {
 
  private:
   Context& context_;
-  const std::vector<std::string>& accepted_;
+  std::vector<std::string> accepted_;
 };
 
 }  // namespace explica::app

@@ -13,8 +13,8 @@ void setThreadCount(int count);
 [[nodiscard]] int threadCount();
 
 /// Calls body(begin, end) for consecutive blocks of [0, count), at most `grain` long, in any order
-/// and on several threads.  Block borders depend on `count` and `grain` only.
-/// An exception in a body reaches the caller.
+/// and on several threads.  Block borders depend on `count` and `grain` only.  Each block begins
+/// with a checkpoint of the caller's StopScope.  An exception in a body reaches the caller.
 void parallelForBlocks(std::size_t count, std::size_t grain,
                        const std::function<void(std::size_t begin, std::size_t end)>& body);
 

@@ -12,6 +12,12 @@ namespace explica::flattening {
 
 using FlatPositions = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;  ///< V x 2, mm
 
+// What searches for better maps, of the plane and of the sphere, have in common.
+inline constexpr double kSufficient = 1e-4;    ///< of the decrease that is promised [Armijo1966]
+inline constexpr double kShareOfWay = 0.8;     ///< to the first face without area, in one step
+inline constexpr double kEnoughOfStar = 1e-2;  ///< of its energy: neighbours will move it again
+inline constexpr int kHalvings = 50;           ///< down to the rounding of the coordinates
+
 /// A triangulated surface known by its edge lengths alone.
 struct IntrinsicMesh {
   Faces faces;        ///< F x 3
@@ -27,6 +33,10 @@ struct RestFace {
   double area = 0;
   std::array<std::complex<double>, 3> gradient;
 };
+
+/// Rest shape of one face from its edge lengths, the first from corner 0 to corner 1.
+[[nodiscard]] RestFace restFace(const std::array<double, 3>& lengths, double smallestHeight,
+                                bool* raised = nullptr);
 
 /// Rest shapes of all faces.  A face lower than `smallestHeight` mm is given that height, so that
 /// needles have a shape at all; `raised`, if given, receives their number.
@@ -55,6 +65,9 @@ struct Density {
 /// @param areaWeight  w >= 0
 /// @return value +infinity where D <= 0
 [[nodiscard]] Density mapDensity(double p, double q, double areaWeight);
+
+/// The smallest positive root of a + b t + c t^2 with a > 0, or infinity: when a face vanishes.
+[[nodiscard]] double firstRoot(double a, double b, double c);
 
 /// Sum over faces of area times density, over the total area; without unit.
 class MapEnergy {

@@ -58,11 +58,6 @@ inline constexpr std::uintmax_t kMostShown = 200u << 20;
 [[nodiscard]] LabelMap readVertexLabels(const std::filesystem::path& path,
                                         std::optional<Eigen::Index> vertexCount = {});
 
-/// Which surface a file's values belong to, "CortexLeft" or "CortexRight", as GIFTI metadata or
-/// the file's name say; empty if neither does.
-/// @throws as readVertexMaps
-[[nodiscard]] std::string vertexDataStructure(const std::filesystem::path& path);
-
 /// Writes GIFTI metric data: FLOAT32, gzip-base64, one array a map; Workbench wants `.shape.gii` or
 /// `.func.gii`.  Not-a-number, which Workbench's statistics cannot bear, is written as 0 (the
 /// reader of the map needs a mask of where it holds).

@@ -49,7 +49,7 @@ inline constexpr const char* kNotPlaced = "none";
 /// Where a volume came from and how its file was understood; goes into the provenance record.
 struct VolumeOrigin {
   std::filesystem::path path;
-  std::string format;  ///< "NIfTI-1", "NIfTI-2", "MGH", "MINC 1", ..., "NRRD", "MetaImage", "PNG"
+  std::string format;           ///< "NIfTI-1", "NIfTI-2", "MGH", "NRRD", "MetaImage", "PNG"
   std::string storedType;       ///< "uint8", "float32", ...
   std::vector<int> storedSize;  ///< as the file has it, all dimensions
   std::string placement;        ///< "sform", "qform", "sform and qform agree", "none", "header"
@@ -68,7 +68,7 @@ struct LoadedVolume {
   VolumeOrigin origin;
 };
 
-/// Reads a file of scalars: NIfTI-1/2 (.nii, .nii.gz, .hdr/.img), MGH/MGZ, MINC 1 and 2, NRRD,
+/// Reads a file of scalars: NIfTI-1/2 (.nii, .nii.gz, .hdr/.img), MGH/MGZ, NRRD,
 /// MetaImage, 8- or 16-bit grey PNG (2D).  The format is told by content, not by name.  Stored
 /// values are scaled by the header's slope and intercept.
 ///

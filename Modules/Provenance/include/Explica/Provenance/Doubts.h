@@ -22,6 +22,7 @@ inline constexpr const char* kHeadersDisagree = "headers_disagree";
 inline constexpr const char* kPlacementsAssumed = "placements_assumed";
 inline constexpr const char* kFramesNotStated = "frames_not_stated";
 inline constexpr const char* kInputsChanged = "inputs_changed";
+inline constexpr const char* kInputsContradict = "inputs_contradict";
 inline constexpr const char* kWhiteUnlikeTemplate = "white_unlike_template";
 
 inline constexpr std::array kDoubts = {
@@ -40,6 +41,8 @@ inline constexpr std::array kDoubts = {
         "surfaces whose file does not say in which frame its coordinates are, used as they stand"},
     Doubt{kInputsChanged, "Input changed since it was made",
           "files that differ from what the record beside them says was written"},
+    Doubt{kInputsContradict, "Inputs contradict each other",
+          "pairs of files of two hemispheres or meshes, accepted by the user"},
     Doubt{
         kWhiteUnlikeTemplate, "Tissue unlike the template's",
         "voxels of pieces of at least 0.5 ml that are deep white matter in the template and other "

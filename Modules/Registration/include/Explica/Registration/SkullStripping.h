@@ -8,19 +8,29 @@ namespace explica::registration {
 
 /// How a brain is told from what surrounds it.
 struct StrippingOptions {
-  double reach = 4;       ///< mm beyond the template's mask that may be brain
-  double opening = 3;     ///< mm: what is connected by less is no brain
-  double dimmest = 0.75;  ///< tissue, of the mean brightness of the brain nearby
-  double brightest = 1.5;
+  double closing = 10;  ///< mm: radius of the fissures that the dura spans
+  double reach = 15;    ///< mm: how far the template's border may be from the brain's
 };
 
-/// The brain in the image of a head, from a template's brain mask brought there: the mask, what is
-/// as bright as brain within the reach of its border and connected with it by more than thin
-/// bridges, without what is too bright within its outer millimetres.
+/// A brain with its fluid, up to the skull.
+struct BrainMask {
+  Volume<Label> mask;     ///< 1 in the brain
+  Volume<float> doubt;    ///< mm: standard deviation of the border's place within some mm of it
+  double meanOffset = 0;  ///< mm from the template's border outward to the one found, in the mean
+  double deviation = 0;   ///< mm: root mean square of `doubt` along the border
+  double openShare = 0;   ///< of the border, where tissue goes on beyond it
+};
+
+/// The brain and its fluid in the image of a head.
+///
+/// The template's mask, brought there, is closed over the fissures and says roughly where the
+/// border is; how far from it the border is along its normals, the image says: fluid, grey and
+/// white matter up to it, bone beyond it, both as bright as they are in this image.  So the mask is
+/// nowhere the template's own.
 ///
 /// @param brain  the template's mask on the image's grid, 0 to 1
 /// @throws InvalidInput  the mask lies outside of the image
-[[nodiscard]] Volume<Label> stripSkull(const Volume<float>& image, const Volume<float>& brain,
-                                       const StrippingOptions& options = {});
+[[nodiscard]] BrainMask stripSkull(const Volume<float>& image, const Volume<float>& brain,
+                                   const StrippingOptions& options = {});
 
 }  // namespace explica::registration

@@ -64,9 +64,16 @@ struct Flag {
 [[nodiscard]] double airInHounsfieldUnits(const Volume<float>& image);
 
 /// Whether the dark tissue lies outside and the bright one inside: how often the voxels of the rim
-/// are fluid, against all of the brain, over the same of white matter.  The rim is what lies within
-/// 5 % of the radius of a ball of the brain's volume.  Far above 1 in a T1, far below where the
-/// contrast is inverted.  NaN if there is no fluid or no white matter.
+/// are fluid or grey matter, against all of the brain, over the same of white matter: a brain may
+/// be stripped so tightly that its only fluid lies deep.  The rim is what lies within 5 % of the
+/// radius of a ball of the brain's volume.  Far above 1 in a T1, far below where the contrast is
+/// inverted. NaN if there is no white matter or nothing else.
 [[nodiscard]] double rimContrast(const Volume<Label>& tissues);
+
+/// Share of the outer border of grey matter, by the area of voxel faces, that is the edge of the
+/// brain mask or of the image and not fluid: there the image does not show where the cortex ends.
+/// @param tissues  1 fluid, 2 grey, 3 white matter, 0 outside
+/// @return NaN if grey matter touches neither
+[[nodiscard]] double greyAtMaskEdge(const Volume<Label>& tissues);
 
 }  // namespace explica::segmentation

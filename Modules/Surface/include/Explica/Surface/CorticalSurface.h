@@ -75,11 +75,11 @@ struct CorticalSurfaces {
                               ///< where there is no ribbon
   Eigen::VectorXd nearestThickness;  ///< as distanceThickness(), mm; 0 where there is no ribbon
   Eigen::VectorXd curvature;         ///< mean, of the white surface, mm^-1; positive in sulci
-  Eigen::VectorXd sulcalDepth;       ///< of the middle surface below the closed hull, mm
-  std::int64_t noRibbon = 0;         ///< vertices without grey matter: all three surfaces coincide
-  std::int64_t endedAtBank = 0;      ///< trajectories that end in the middle of a buried sulcus
-  std::int64_t shortened = 0;        ///< trajectories far longer than all around: not followed
-  std::int64_t cutLinks = 0;         ///< grid links that buried sulci cut
+  Eigen::VectorXd sulcalDepth;    ///< of the white surface, maps::sulcalDepth, mm; empty of sheets
+  std::int64_t noRibbon = 0;      ///< vertices without grey matter: all three surfaces coincide
+  std::int64_t endedAtBank = 0;   ///< trajectories that end in the middle of a buried sulcus
+  std::int64_t shortened = 0;     ///< trajectories far longer than all around: not followed
+  std::int64_t cutLinks = 0;      ///< grid links that buried sulci cut
   std::int64_t heldBackMid = 0;   ///< vertices kept short of half their way, so that faces do not
   std::int64_t heldBackPial = 0;  ///< meet; or of their whole way
   double heldBackMean = 0;        ///< mean distance that pial ones among them fall short, mm

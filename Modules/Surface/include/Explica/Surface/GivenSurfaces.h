@@ -16,8 +16,8 @@ namespace explica::surface {
                                                 const TriangleMesh& pial);
 
 /// Takes over surfaces that another program made: positions and faces stay as they are, the middle
-/// surface (half way on the straight line, if none is given), thickness and curvature are added.
-/// What only our own extraction knows (defects, sulcal depth, times) stays empty.
+/// surface (half way on the straight line, if none is given), thickness, curvature and
+/// sulcal depth are added.  What only our own extraction knows (defects, times) stays empty.
 /// @throws InvalidInput  the surfaces have different faces
 [[nodiscard]] CorticalSurfaces adoptSurfaces(TriangleMesh white, TriangleMesh pial,
                                              std::optional<TriangleMesh> mid = {});

@@ -2,18 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "Explica/Core/Grid.h"
 #include "Explica/Core/TriangleMesh.h"
-#include "Explica/Surface/LevelSet.h"
 
 #include <cstdint>
-#include <optional>
 
 namespace explica::surface {
-
-/// Mean curvature at vertices, mm^-1: half the cotangent Laplacian's outward part, averaged over
-/// neighbours `smoothing` times.  Negative where the surface bulges (gyri, a sphere: -1/R),
-/// positive in sulci, as FreeSurfer has it.
-[[nodiscard]] Eigen::VectorXd meanCurvature(const TriangleMesh& mesh, int smoothing = 3);
 
 /// What belongs to a vertex of a quantity known at vertices: its mean over the faces around, linear
 /// within each, weighted by the function that falls from 1 at the vertex to 0 at the others (the
@@ -36,11 +30,5 @@ struct Evenness {
 
 /// Radius of the ball that has the volume of so many voxels, mm.
 [[nodiscard]] double radiusOfVoxels(std::int64_t count, const Grid& grid);
-
-/// Depth of points below the hull of a tissue, mm, >= 0: the hull is the tissue closed by a ball of
-/// `radius` mm; unset: a fifth of the radius of the ball that has the tissue's volume, 10 mm for a
-/// human hemisphere.
-[[nodiscard]] Eigen::VectorXd depthBelowHull(const LevelSet& tissue, const Positions& points,
-                                             std::optional<double> radius = {});
 
 }  // namespace explica::surface

@@ -49,6 +49,7 @@ struct Beat {
   std::vector<Frame> frames;
   std::size_t diastole = 0, systole = 0;  ///< places in `frames`
   Orientation orientation;
+  SliceAlignment alignment;                ///< of all frames together
   std::optional<double> ejectionFraction;  ///< percent; with two frames or more
 
   [[nodiscard]] const Frame& atDiastole() const { return frames[diastole]; }

@@ -6,6 +6,7 @@
 #include "Explica/Harmonic/Annulus.h"
 #include "Explica/Harmonic/Interpolant.h"
 #include "Explica/Ventricle/LongAxis.h"
+#include "Explica/Ventricle/SliceAlignment.h"
 
 #include <array>
 #include <string>
@@ -63,13 +64,16 @@ struct WallThickness {
 /// By slice: trajectories of the two-dimensional harmonic function say which places of the two
 /// boundaries face a voxel; the thickness there is the sum of its distances from both boundaries as
 /// they go on across the neighbouring slices (Obliquity.h), which for parallel straight boundaries
-/// is the length within the slice times the cosine of their slope.  In space: trajectories of the
-/// three-dimensional function; what lies beyond the plane through the cavity's contacts with the
-/// outside (the valve plane) is insulated.
+/// is the length within the slice times the cosine of their slope.  Slices are aligned first: a
+/// jump between breath holds is no slope.  In space: trajectories of the three-dimensional
+/// function; what lies beyond the plane through the cavity's contacts with the outside (the valve
+/// plane) is insulated.
 /// @param heart  with this module's labels
 /// @param axis   with the ends of this frame's cavity
+/// @param alignment  of the slices, from all frames (alignSlices)
 /// @throws InvalidInput  no wall, or none that lies between cavity and outside
 [[nodiscard]] WallThickness measureWall(const Volume<Label>& heart, const LongAxis& axis,
+                                        const SliceAlignment& alignment,
                                         const WallOptions& options = {},
                                         const Monitor& monitor = {});
 

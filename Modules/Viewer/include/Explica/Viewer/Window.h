@@ -137,11 +137,10 @@ struct WindowOptions {
 /// FILE`, `lookFrom FILE` (a surface of viewpoints), `wait N` (until N states exist or nothing
 /// runs), `saved` (until saving is over), `picture FILE.png`.
 ///
-/// The window itself is `explica-window.so`, which is loaded here: nothing else needs Qt and VTK.
+/// Defined in the library Explica::Window, which needs Qt and VTK; the rest of the module does not.
 ///
 /// @throws InvalidInput      a line of the script that is none of these
-/// @throws EnvironmentError  no display, or none that answers; no `explica-window.so` where the
-///                           program's installation or build puts it
+/// @throws EnvironmentError  no display, or none that answers
 void showWindow(Session& session, const WindowCalls& calls, const WindowOptions& options = {});
 
 }  // namespace explica::viewer

@@ -1,0 +1,297 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Explica/Application/Command.h"
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/WholeFile.h"
+#include "Explica/Statistics/Combat.h"
+#include "Explica/Statistics/PlaceBlocks.h"
+#include "Observations.h"
+#include "ResultPage.h"
+#include "Results.h"
+#include "Settings.h"
+
+#include <algorithm>
+
+namespace explica::app {
+namespace {
+
+void declare(Declaration& d, GlmSettings& s) {
+  d.synopsis("linear models of many people at every vertex or region, and which effects are real")
+      .description(
+          R"(Fits y = X b + e at every vertex of people's maps, or for every column of a table of regions, and tests contrasts of b by t or F. The model is a formula as in R: 'thickness ~ group * age + sex' has main effects and their interaction, columns with words are categorical (their first level by alphabet is what others are compared with), numbers are centred, C(scanner) takes numbers for names, 0 + leaves the intercept out, (1 | person) is a random intercept for repeated measures. Without --contrast each term is tested.
+
+A vertex where somebody has no value (NaN) is fitted to the others. Multiple comparisons: q is the false discovery rate; with a surface, p_field is family-wise by random field theory, peaks and clusters; with --permutations, p_fwe is family-wise by shuffling the residuals of the model without the effect (Freedman and Lane), of peaks, cluster extents and masses and, with --tfce, of threshold-free cluster enhancement. Vertices with a missing value are left out of permutations.
+
+Maps are best smoothed before (explica smooth): random field theory assumes a smooth field.)")
+      .reference(
+          "Worsley, Marrett, Neelin, Vandal, Friston, Evans 1996, Human Brain Mapping 4:58-73")
+      .reference("Winkler, Ridgway, Webster, Smith, Nichols 2014, NeuroImage 92:381-397")
+      .reference("Smith, Nichols 2009, NeuroImage 44:83-98")
+      .reference("Johnson, Li, Rabinovic 2007, Biostatistics 8:118-127")
+      .example(
+          "explica glm --maps maps.tsv --table participants.tsv --model 'thickness ~ group + age + "
+          "sex' "
+          "--contrast 'thinner=group[patient] - group[control]' --surface lh.pial "
+          "--permutations 10000 --tfce --out thinner",
+          "Where patients' cortex is thinner")
+      .input("LIST", FileKind::Table,
+             "list of maps (a row a person, columns file, or left and right), or table of regions",
+             s.regions)
+      .inputOption("maps", FileKind::Table, "list of maps, instead of LIST", s.maps)
+      .inputOption("table", FileKind::Table, "what is known of people (default: LIST itself)",
+                   s.table)
+      .inputOption("surface", FileKind::Surface,
+                   "surface whose vertices the maps are on; left and right if there are two",
+                   s.surfaces)
+      .inputOption("mask", FileKind::VertexData, "vertices to analyse: not 0; one a surface",
+                   s.masks)
+      .inputOption("atlas", FileKind::VertexLabel, "names of the regions of peaks; one a surface",
+                   s.atlases)
+      .option("Model", Field{"model", "", "formula: 'thickness ~ group * age + sex'"}, s.model)
+      .require("model")
+      .option("Model",
+              Field{"contrast", "",
+                    "NAME=EXPRESSION of columns, as 'x=group[b] - group[a]'; ';' between several "
+                    "is an F test"},
+              s.contrasts)
+      .option("Model",
+              Field{"columns", "", "columns of the table to analyse; * stands for any characters"},
+              s.columns)
+      .option("Model", Field{"person", "", "column that names people (default, too: the first)"},
+              s.person)
+      .option("Model",
+              Field{"subset", "", "leave out people of one list only, instead of refusing them"},
+              s.subset)
+      .option("Model",
+              Field{"site", "",
+                    "differences between sites: columns of the model, random intercepts, or taken "
+                    "off before by ComBat"},
+              s.site)
+      .option("Model", Field{"site-column", "", "column that names sites"}, s.siteColumn)
+      .option("Inference",
+              Field{"threshold", "", "two-sided P of single vertices that forms clusters",
+                    kAboveZero, 0.5},
+              s.threshold)
+      .option("Inference", Field{"permutations", "", "shuffles for family-wise P; 0: none", 0, 1e7},
+              s.permutations)
+      .option("Inference", Field{"tfce", "", "threshold-free cluster enhancement, by permutations"},
+              s.tfce)
+      .option("Inference", Field{"seed", "", "of the shuffles", 0, 2147483647}, s.seed)
+      .option("Inference",
+              Field{"blocks", "",
+                    "column of people who may take each other's place only (default: that of the "
+                    "random intercept)"},
+              s.blocks)
+      .option("Inference",
+              Field{"exchange", "",
+                    "what is shuffled: people within blocks, whole blocks of one size, or signs"},
+              s.exchange)
+      .option(
+          "Reading",
+          Field{"block-memory", "MB",
+                "of people's values at a time; permutations and ComBat need all at once", 1, 1e6},
+          s.blockMegabytes)
+      .output("*.shape.gii", FileKind::VertexData,
+              "of each contrast: effect, t or f, p, q, ci95, d, partial_r, p_field, p_fwe, tfce, "
+              "tfce_p_fwe")
+      .output("clusters.tsv", FileKind::Table, "with a surface: clusters with peak, size and P")
+      .output("regions.tsv", FileKind::Table, "of a table of regions: each one's numbers")
+      .output("design.tsv", FileKind::Table, "the design matrix, a row a person")
+      .output("report.html", FileKind::Report, "the results as a page");
+}
+
+/// The formula with what --site adds to it.
+statistics::Formula formulaOf(const GlmSettings& s) {
+  auto formula = statistics::parseFormula(s.model);
+  if (s.site == SiteModel::Fixed) {
+    formula.categorical.insert(s.siteColumn);
+    const statistics::Term term = {s.siteColumn};
+    if (std::find(formula.terms.begin(), formula.terms.end(), term) == formula.terms.end()) {
+      formula.terms.push_back(term);
+    }
+  } else if (s.site == SiteModel::Random) {
+    if (formula.randomIntercept) {
+      throw UsageError("--site random: the model has the random intercept of '" +
+                       *formula.randomIntercept + "' already; use --site fixed");
+    }
+    formula.randomIntercept = s.siteColumn;
+  }
+  return formula;
+}
+
+std::vector<statistics::Contrast> contrastsOf(const GlmSettings& s,
+                                              const statistics::Design& design) {
+  std::vector<statistics::Contrast> contrasts;
+  for (const std::string& text : s.contrasts) {
+    contrasts.push_back(statistics::parseContrast(text, design));
+  }
+  if (!contrasts.empty()) return contrasts;
+  for (auto& contrast : statistics::contrastsOfTerms(design)) {
+    if (s.site != SiteModel::Fixed || contrast.name != s.siteColumn) contrasts.push_back(contrast);
+  }
+  return contrasts;
+}
+
+std::vector<int> blocksOf(const GlmSettings& s, const Observations& o,
+                          const statistics::Design& design) {
+  if (!s.blocks) return design.groups;
+  std::vector<std::size_t> rows(o.people.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = i;
+  return statistics::levelsOf(o.about, *s.blocks, rows).of;
+}
+
+/// ComBat keeps what the model's own columns explain.
+void harmonise(const GlmSettings& s, const Observations& o, const statistics::Design& design,
+               Eigen::MatrixXd& values) {
+  if (s.site != SiteModel::Combat) return;
+  std::vector<std::size_t> rows(o.people.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = i;
+  Eigen::MatrixXd covariates(values.rows(), 0);
+  for (std::size_t c = 0; c < design.columns.size(); ++c) {
+    if (design.columns[c] == "intercept") continue;
+    covariates.conservativeResize(Eigen::NoChange, covariates.cols() + 1);
+    covariates.rightCols(1) = design.matrix.col(static_cast<Eigen::Index>(c));
+  }
+  statistics::combat(values, covariates, statistics::levelsOf(o.about, s.siteColumn, rows).of);
+}
+
+statistics::PlaceBlocks planBlocks(const GlmSettings& s, const Observations& o) {
+  const statistics::PlaceBlocks blocks{static_cast<Eigen::Index>(o.people.size()), o.places,
+                                       static_cast<std::size_t>(s.blockMegabytes) << 20};
+  if (blocks.single() || (s.permutations == 0 && s.site != SiteModel::Combat)) return blocks;
+  const auto needed = static_cast<std::size_t>(blocks.people * blocks.places) * 8 / (1 << 20) + 1;
+  throw InvalidInput("permutations and ComBat need all values at once: " + std::to_string(needed) +
+                     " MB; give --block-memory " + std::to_string(needed));
+}
+
+void sayWhoIsLeftOut(Context& context, const Observations& o, const statistics::Design& design) {
+  std::string names;
+  for (const std::size_t row : design.dropped) names += (names.empty() ? "" : ", ") + o.people[row];
+  if (!names.empty()) {
+    context.warn(std::to_string(design.dropped.size()) +
+                 " people have no value in a column of the model and are left out: " + names);
+  }
+  names.clear();
+  for (const std::string& person : o.leftOut) names += (names.empty() ? "" : ", ") + person;
+  if (!names.empty()) context.warn("in one list only, left out: " + names);
+}
+
+struct Fitted {
+  Eigen::MatrixXd values;  ///< N x V, if all fit into a block
+  bool complete = true;
+};
+
+Fitted fit(Context& context, const GlmSettings& s, const Observations& o,
+           const statistics::PlaceBlocks& blocks, GlmResults& results) {
+  const statistics::PlaceModel model(results.design, results.contrasts);
+  Fitted fitted;
+  fitted.complete = statistics::forEachBlock(
+      blocks, o.reader,
+      [&](Eigen::Index first, Eigen::MatrixXd& values) {
+        harmonise(s, o, results.design, values);
+        model.fit(values, first, results.maps);
+        if (blocks.single()) fitted.values = std::move(values);
+      },
+      context.monitor());
+  return fitted;
+}
+
+void measureSmoothness(const Observations& o, const Fitted& fitted, GlmResults& results) {
+  if (!o.surface) return;
+  const auto stored = [&](std::size_t person, std::span<double> values) {
+    const Eigen::VectorXd row = fitted.values.row(static_cast<Eigen::Index>(person));
+    std::copy(row.begin(), row.end(), values.begin());
+  };
+  const statistics::PersonReader reader =
+      fitted.values.size() > 0 ? statistics::PersonReader(stored) : o.reader;
+  const auto roughness = statistics::edgeRoughness(results.design.matrix, results.maps.coefficients,
+                                                   o.surface->topology.edges, reader);
+  results.smoothness = statistics::smoothnessOf(*o.surface, roughness);
+}
+
+bool inferAll(Context& context, const GlmSettings& s, const Observations& o, const Fitted& fitted,
+              GlmResults& results) {
+  statistics::InferenceOptions options;
+  options.clusterP = s.threshold;
+  options.permutations = s.permutations;
+  options.seed = static_cast<std::uint64_t>(s.seed);
+  options.tfce = s.tfce;
+  options.exchange = s.exchange;
+  options.blocks = blocksOf(s, o, results.design);
+  bool complete = true;
+  for (std::size_t k = 0; k < results.contrasts.size(); ++k) {
+    results.inferences.push_back(statistics::infer(
+        results.design, results.contrasts[k], results.maps.contrasts[k],
+        fitted.values.size() > 0 ? &fitted.values : nullptr, o.surface ? &*o.surface : nullptr,
+        results.smoothness ? &*results.smoothness : nullptr, options, context.monitor()));
+    complete = complete && !results.inferences.back().interrupted;
+  }
+  return complete;
+}
+
+void writeAll(Context& context, const GlmSettings& s, const Observations& o, const Fitted& fitted,
+              const GlmResults& results) {
+  auto step = context.step("write");
+  writeTextFile(context.output("design.tsv"), designTable(o, results));
+  if (o.placeNames.empty())
+    writeMaps(context, o, results);
+  else
+    writeTextFile(context.output("regions.tsv"), regionTable(o, results));
+  if (o.surface) writeTextFile(context.output("clusters.tsv"), clusterTable(o, results));
+  writeTextFile(context.output("report.html"),
+                resultPage(s, o, results, fitted.values.size() > 0 ? &fitted.values : nullptr));
+  std::size_t clusters = 0;
+  for (const auto& inference : results.inferences) clusters += inference.clusters.size();
+  context.result("people", o.people.size());
+  context.result(o.placeNames.empty() ? "vertices" : "regions", static_cast<long long>(o.places));
+  context.result("df",
+                 static_cast<double>(results.design.matrix.rows() - results.design.matrix.cols()));
+  if (results.smoothness) context.result("fwhm", results.smoothness->fwhm);
+  if (o.surface) context.result("clusters", clusters);
+  if (s.permutations > 0) {
+    context.result("shuffles", static_cast<long long>(results.inferences.front().shuffles));
+    context.result("exchange", std::string(nameOf(results.inferences.front().exchange)));
+  }
+}
+
+Termination run(Context& context, const GlmSettings& s) {
+  if (s.tfce && (s.permutations == 0 || s.surfaces.empty())) {
+    throw UsageError("--tfce needs --permutations and --surface");
+  }
+  Observations o = readObservations(context, s);
+  auto design = statistics::buildDesign(formulaOf(s), o.about);
+  auto contrasts = contrastsOf(s, design);
+  if (contrasts.empty()) throw UsageError("the model has nothing to test");
+  sayWhoIsLeftOut(context, o, design);
+  keepPeople(o, design.rows);
+  const auto blocks = planBlocks(s, o);
+  const Eigen::Index columns = design.matrix.cols();
+  const std::size_t count = contrasts.size();
+  GlmResults results{std::move(design),
+                     std::move(contrasts),
+                     statistics::ModelMaps(columns, o.places, count),
+                     {},
+                     {}};
+  bool complete = true;
+  Fitted fitted;
+  {
+    auto step = context.step("fit");
+    fitted = fit(context, s, o, blocks, results);
+    if (!fitted.complete) return Termination::Interrupted;  // nothing is known yet
+    measureSmoothness(o, fitted, results);
+  }
+  {
+    auto step = context.step("inference");
+    complete = inferAll(context, s, o, fitted, results);
+  }
+  writeAll(context, s, o, fitted, results);
+  return complete ? Termination::NotRun : Termination::Interrupted;
+}
+
+}  // namespace
+
+Command glmCommand() {
+  return makeCommand<GlmSettings>("glm", declare, run);
+}
+
+}  // namespace explica::app

@@ -1,0 +1,288 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Observations.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/FileText.h"
+#include "Explica/Core/Types.h"
+#include "Explica/Geometry/Fixtures.h"
+#include "Explica/IO/SurfaceFile.h"
+#include "Explica/IO/VertexDataFile.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+namespace explica::app {
+namespace {
+
+namespace fs = std::filesystem;
+using statistics::Table;
+
+Table readTable(const std::string& path) {
+  return statistics::parseTable(fileText(path), path);
+}
+
+/// The column that names people: as asked for, or the first one.
+std::size_t personColumn(const Table& table, const GlmSettings& s) {
+  return table.find(s.person).value_or(0);
+}
+
+std::vector<std::string> peopleOf(const Table& table, const GlmSettings& s) {
+  std::vector<std::string> people;
+  for (const auto& row : table.rows) people.push_back(row[personColumn(table, s)]);
+  return people;
+}
+
+/// Files of each person, one for each hemisphere.
+using MapFiles = std::vector<std::vector<fs::path>>;
+
+std::vector<std::string> fileColumns(const Table& list) {
+  if (list.find("file")) return {"file"};
+  std::vector<std::string> columns;
+  for (const char* side : {"left", "right"}) {
+    if (list.find(side)) columns.emplace_back(side);
+  }
+  if (columns.empty()) {
+    throw InvalidInput("'" + list.name +
+                       "': a list of maps has a column file, or columns left and right");
+  }
+  return columns;
+}
+
+/// Paths in a list are relative to the list's folder.
+MapFiles filesOf(const Table& list, const std::vector<std::size_t>& rows) {
+  MapFiles files;
+  const fs::path folder = fs::path(list.name).parent_path();
+  for (const std::size_t row : rows) {
+    files.emplace_back();
+    for (const std::string& column : fileColumns(list)) {
+      files.back().push_back(folder / list.rows[row][list.at(column)]);
+    }
+  }
+  return files;
+}
+
+/// Reads one person's maps one after the other.
+void readMaps(const std::vector<fs::path>& files, const std::vector<Hemisphere>& hemispheres,
+              const std::vector<bool>& mask, std::span<double> values) {
+  for (std::size_t h = 0; h < hemispheres.size(); ++h) {
+    const auto maps = io::readVertexMaps(files[h], hemispheres[h].count);
+    if (maps.size() != 1) {
+      throw InvalidInput("'" + files[h].string() + "': holds " + std::to_string(maps.size()) +
+                         " maps; one a person is needed");
+    }
+    std::copy(maps.front().values.begin(), maps.front().values.end(),
+              values.begin() + hemispheres[h].first);
+  }
+  for (std::size_t v = 0; v < values.size(); ++v) {
+    if (!mask[v]) values[v] = kNaN;
+  }
+}
+
+std::string sideOf(const std::string& column, const std::string& structure) {
+  if (column == "left") return "CortexLeft";
+  if (column == "right") return "CortexRight";
+  return structure;
+}
+
+/// Vertices of each hemisphere: of its surface, or of the first person's map.
+void layOut(Context& context, const GlmSettings& s, const Table& list, const MapFiles& files,
+            Observations& o) {
+  const auto columns = fileColumns(list);
+  if (!s.surfaces.empty() && s.surfaces.size() != columns.size()) {
+    throw UsageError("--surface is to be given " + std::to_string(columns.size()) +
+                     " times, once for each column of maps of '" + list.name + "'");
+  }
+  TriangleMesh whole;
+  for (std::size_t h = 0; h < columns.size(); ++h) {
+    Hemisphere side;
+    side.first = o.places;
+    if (s.surfaces.empty()) {
+      side.count = io::readVertexMaps(files.front()[h]).front().values.size();
+    } else {
+      const auto loaded = io::readSurface(s.surfaces[h]);
+      side.count = loaded.mesh.vertexCount();
+      side.structure = loaded.metadata.structure;
+      whole = h == 0 ? loaded.mesh : geometry::joined(whole, loaded.mesh);
+    }
+    side.structure = sideOf(columns[h], side.structure.empty() ? "Other" : side.structure);
+    if (columns.size() > 1) side.prefix = columns[h] == "left" ? "hemi-L_" : "hemi-R_";
+    o.places += side.count;
+    o.hemispheres.push_back(std::move(side));
+  }
+  if (!s.surfaces.empty()) o.surface = statistics::placeSurface(whole);
+  for (const auto& person : files) {
+    for (const fs::path& file : person) context.input(file, "map");
+  }
+}
+
+void requireOneEach(const std::vector<std::string>& files, const char* option,
+                    const Observations& o) {
+  if (!files.empty() && files.size() != o.hemispheres.size()) {
+    throw UsageError(std::string("--") + option + " is to be given once for each surface");
+  }
+}
+
+void readMask(const GlmSettings& s, Observations& o) {
+  requireOneEach(s.masks, "mask", o);
+  o.mask.assign(static_cast<std::size_t>(o.places), true);
+  for (std::size_t h = 0; h < s.masks.size(); ++h) {
+    const Hemisphere& side = o.hemispheres[h];
+    const bool labels = s.masks[h].ends_with(".label") || s.masks[h].ends_with(".annot") ||
+                        s.masks[h].ends_with(".label.gii");
+    const Eigen::VectorXd inside =
+        labels ? Eigen::VectorXd(io::readVertexLabels(s.masks[h], side.count).keys.cast<double>())
+               : io::readVertexMaps(s.masks[h], side.count).front().values;
+    for (Eigen::Index v = 0; v < side.count; ++v) {
+      o.mask[static_cast<std::size_t>(side.first + v)] = inside[v] != 0;
+    }
+  }
+}
+
+void readAtlases(const GlmSettings& s, Observations& o) {
+  requireOneEach(s.atlases, "atlas", o);
+  for (std::size_t h = 0; h < s.atlases.size(); ++h) {
+    const auto labels = io::readVertexLabels(s.atlases[h], o.hemispheres[h].count);
+    std::map<Label, std::string> names;
+    for (const auto& entry : labels.table) names[entry.key] = entry.name;
+    for (const Label key : labels.keys) o.hemispheres[h].regions.push_back(names[key]);
+  }
+}
+
+/// Whether a name is that of a pattern, in which '*' stands for any characters.
+bool matches(std::string_view pattern, std::string_view name) {
+  const std::size_t star = pattern.find('*');
+  if (star == pattern.npos) return pattern == name;
+  if (!name.starts_with(pattern.substr(0, star))) return false;
+  const std::string_view rest = pattern.substr(star + 1);
+  for (std::size_t i = star; i <= name.size(); ++i) {
+    if (matches(rest, name.substr(i))) return true;
+  }
+  return false;
+}
+
+bool isNumeric(const Table& table, std::size_t column) {
+  return std::all_of(table.rows.begin(), table.rows.end(), [&](const auto& row) {
+    return statistics::isMissing(row[column]) || statistics::numberIn(row[column]);
+  });
+}
+
+/// Columns of regions: those that --columns names, else the model's response, else all numbers that
+/// the model does not use.
+std::vector<std::size_t> regionColumns(const Table& table, const GlmSettings& s) {
+  const auto formula = statistics::parseFormula(s.model);
+  std::vector<std::size_t> columns;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    const std::string& name = table.columns[c];
+    const auto is = [&](const std::string& pattern) { return matches(pattern, name); };
+    bool wanted = false;
+    if (!s.columns.empty()) {
+      wanted = std::any_of(s.columns.begin(), s.columns.end(), is);
+    } else if (table.find(formula.response)) {
+      wanted = name == formula.response;
+    } else {
+      wanted = c != personColumn(table, s) && isNumeric(table, c) &&
+               std::none_of(formula.terms.begin(), formula.terms.end(), [&](const auto& term) {
+                 return std::find(term.begin(), term.end(), name) != term.end();
+               });
+    }
+    if (wanted) columns.push_back(c);
+  }
+  if (columns.empty()) {
+    throw InvalidInput("'" + table.name +
+                       "': no column holds what is to be analysed; name some "
+                       "with --columns");
+  }
+  return columns;
+}
+
+Eigen::MatrixXd valuesOf(const Table& table, const std::vector<std::size_t>& rows,
+                         const std::vector<std::size_t>& columns) {
+  Eigen::MatrixXd values(static_cast<Eigen::Index>(rows.size()),
+                         static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      const std::string& cell = table.rows[rows[i]][columns[c]];
+      const auto number = statistics::numberIn(cell);
+      if (!number && !statistics::isMissing(cell)) {
+        throw InvalidInput("'" + table.name + "': '" + cell + "' in column '" +
+                           table.columns[columns[c]] + "' is no number");
+      }
+      values(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)) = number.value_or(kNaN);
+    }
+  }
+  return values;
+}
+
+/// The people of a list with their rows of participants.tsv; which rows of the list they are.
+std::vector<std::size_t> findPeople(const Table& list, const GlmSettings& s, Observations& o) {
+  const auto all = peopleOf(list, s);
+  const Table about = s.table ? readTable(*s.table) : list;
+  auto joined = statistics::joinPeople(all, list.name, about, about.columns[personColumn(about, s)],
+                                       s.subset);
+  for (const std::size_t row : joined.used) o.people.push_back(all[row]);
+  if (o.people.empty())
+    throw InvalidInput("'" + list.name + "': holds nobody of '" + about.name + "'");
+  o.about = std::move(joined.table);
+  o.leftOut = std::move(joined.leftOut);
+  return joined.used;
+}
+
+void observeRegions(const GlmSettings& s, const Table& table, Observations& o) {
+  const auto rows = findPeople(table, s, o);
+  const auto columns = regionColumns(table, s);
+  for (const std::size_t c : columns) o.placeNames.push_back(table.columns[c]);
+  o.places = static_cast<Eigen::Index>(columns.size());
+  o.mask.assign(columns.size(), true);
+  o.reader = [values = valuesOf(table, rows, columns)](std::size_t person, std::span<double> out) {
+    const Eigen::VectorXd row = values.row(static_cast<Eigen::Index>(person));
+    std::copy(row.begin(), row.end(), out.begin());
+  };
+}
+
+void observeMaps(Context& context, const GlmSettings& s, const Table& list, Observations& o) {
+  const auto files = filesOf(list, findPeople(list, s, o));
+  layOut(context, s, list, files, o);
+  readMask(s, o);
+  readAtlases(s, o);
+  o.reader = [files, hemispheres = o.hemispheres, mask = o.mask](std::size_t person,
+                                                                 std::span<double> values) {
+    readMaps(files[person], hemispheres, mask, values);
+  };
+}
+
+}  // namespace
+
+Observations readObservations(Context& context, const GlmSettings& s) {
+  if (s.regions.has_value() == s.maps.has_value()) {
+    throw UsageError("give a list of maps or a table of regions: LIST, or --maps");
+  }
+  const Table list = readTable(s.maps ? *s.maps : *s.regions);
+  if (list.rows.empty()) throw InvalidInput("'" + list.name + "': holds nobody");
+  Observations o;
+  if (s.maps || list.find("file") || list.find("left") || list.find("right")) {
+    observeMaps(context, s, list, o);
+  } else {
+    observeRegions(s, list, o);
+  }
+  return o;
+}
+
+void keepPeople(Observations& o, const std::vector<std::size_t>& rows) {
+  if (rows.size() == o.people.size()) return;
+  Observations kept = o;
+  kept.people.clear();
+  kept.about.rows.clear();
+  for (const std::size_t row : rows) {
+    kept.people.push_back(o.people[row]);
+    kept.about.rows.push_back(o.about.rows[row]);
+  }
+  kept.reader = [reader = o.reader, rows](std::size_t person, std::span<double> values) {
+    reader(rows[person], values);
+  };
+  o = std::move(kept);
+}
+
+}  // namespace explica::app

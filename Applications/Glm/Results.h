@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Statistics/Inference.h"
+#include "Observations.h"
+
+#include <string>
+#include <vector>
+
+namespace explica::app {
+
+/// All that was found of the contrasts of one model.
+struct GlmResults {
+  statistics::Design design;
+  std::vector<statistics::Contrast> contrasts;
+  statistics::ModelMaps maps;
+  std::vector<statistics::Inference> inferences;  ///< as many as contrasts
+  std::optional<statistics::Smoothness> smoothness;
+};
+
+/// A contrast's name as files have it: letters, digits, '.', '_' and '-'.
+[[nodiscard]] std::string fileName(const std::string& contrast);
+
+/// Writes each contrast's maps, hemisphere by hemisphere.
+void writeMaps(Context& context, const Observations& observations, const GlmResults& results);
+
+/// A row a cluster.
+[[nodiscard]] std::string clusterTable(const Observations& observations, const GlmResults& results);
+/// A row a person: the design as it was used.
+[[nodiscard]] std::string designTable(const Observations& observations, const GlmResults& results);
+/// A row a region and contrast.
+[[nodiscard]] std::string regionTable(const Observations& observations, const GlmResults& results);
+
+/// The region of a vertex, "" where there is no atlas, and the hemisphere that it is on.
+[[nodiscard]] std::string regionOf(const Observations& observations, Eigen::Index place);
+[[nodiscard]] const Hemisphere& hemisphereOf(const Observations& observations, Eigen::Index place);
+
+/// "0.0123", "n/a" of what is not known.
+[[nodiscard]] std::string numberText(double value, int digits = 6);
+
+}  // namespace explica::app

@@ -1,0 +1,195 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Application/Command.h"
+#include "Explica/Application/ReadInputs.h"
+#include "Explica/Core/Errors.h"
+#include "Explica/IO/LabelNames.h"
+#include "Explica/IO/StatedHemisphere.h"
+#include "Explica/IO/VertexFile.h"
+#include "Explica/Maps/Icosphere.h"
+#include "Explica/Maps/Parcellation.h"
+
+#include <array>
+#include <map>
+#include <optional>
+#include <set>
+
+namespace explica::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Settings {
+  std::string folder;
+  std::vector<std::string> atlases;
+  std::optional<std::string> hemisphere;
+};
+
+void declare(Declaration& d, Settings& s) {
+  d.synopsis("regions of an atlas, or of labelled people, on a person's surfaces")
+      .description(
+          "Carries labels over to a person's surfaces through spheres in register, such as "
+          "FreeSurfer's sphere.reg. Several atlases vote: where sulcal depth is known of all, the "
+          "votes of those whose folds are like the person's around a vertex count more. The sphere "
+          "of an atlas is ?h.sphere.reg beside its file or in ../surf, as in FreeSurfer's "
+          "subjects, "
+          "with ?h.sulc; files on fsaverage3 to fsaverage need none.")
+      .reference(
+          "Artaechevarria, Munoz-Barrutia, Ortiz-de-Solorzano 2009, IEEE Trans. Medical "
+          "Imaging 28(8):1266-1277")
+      .example("explica parcellate bert/surf --atlas fsaverage/label/lh.aparc.annot --out regions",
+               "fsaverage's Desikan-Killiany regions on a FreeSurfer subject")
+      .input("SURFACES", FileKind::Folder,
+             "folder with the person's ?h.sphere.reg or sphere.reg.surf.gii (and sulc)", s.folder)
+      .inputOption("atlas", FileKind::VertexLabel, "labels of a template or of a labelled person",
+                   s.atlases)
+      .require("atlas")
+      .option("Input", Field{"hemisphere", "", "L or R, where the atlas' name does not say"},
+              s.hemisphere)
+      .output("regions.label.gii", FileKind::VertexLabel, "region of each vertex")
+      .output("?h.*.annot", FileKind::VertexLabel, "the same as FreeSurfer's annotation")
+      .output("doubt.shape.gii", FileKind::VertexData, "share of the votes against the region");
+}
+
+std::string prefixOf(const Settings& s) {
+  if (s.hemisphere && *s.hemisphere != "L" && *s.hemisphere != "R") {
+    throw UsageError("--hemisphere must be L or R");
+  }
+  const std::string said = io::statedStructure(s.atlases.front());
+  if (!s.hemisphere && said.empty()) {
+    throw UsageError("'" + s.atlases.front() +
+                     "' does not say of which hemisphere it is; say it with --hemisphere L or R");
+  }
+  return (s.hemisphere ? *s.hemisphere == "R" : said == "CortexRight") ? "rh." : "lh.";
+}
+
+TriangleMesh readSphere(Context& context, const fs::path& path) {
+  io::SurfaceReadOptions reading;
+  reading.space = io::SurfaceSpace::Scanner;
+  TriangleMesh sphere =
+      readSurface(context, "sphere", context.input(path, "sphere").string(), reading).mesh;
+  maps::requireSphere(sphere, "'" + path.string() + "'");
+  return sphere;
+}
+
+/// The first of the names that is in one of the folders.
+std::optional<fs::path> findIn(const std::vector<fs::path>& folders,
+                               const std::vector<std::string>& names) {
+  for (const fs::path& folder : folders) {
+    for (const std::string& name : names) {
+      if (fs::exists(folder / name)) return folder / name;
+    }
+  }
+  return {};
+}
+
+/// fsaverage's sphere of so many vertices.
+std::optional<TriangleMesh> fsaverageOf(Eigen::Index vertices) {
+  for (int level = 3; level <= 7; ++level) {
+    if (10 * (Eigen::Index{1} << (2 * level)) + 2 == vertices) return maps::fsaverageSphere(level);
+  }
+  return {};
+}
+
+maps::LabelledSphere readAtlas(Context& context, const std::string& file, const std::string& prefix,
+                               const io::LabelMap& labels) {
+  const fs::path own = fs::path(file).parent_path();
+  const std::vector<fs::path> folders = {own, own / "../surf"};
+  maps::LabelledSphere atlas{{}, labels.keys, {}};
+  const auto sphere = findIn(folders, {prefix + "sphere.reg", "sphere.reg.surf.gii"});
+  const auto known = sphere ? std::nullopt : fsaverageOf(labels.keys.size());
+  if (!sphere && !known) {
+    throw InvalidInput("'" + file + "': no " + prefix +
+                       "sphere.reg is beside it or in ../surf, and "
+                       "fsaverage's spheres have other numbers of vertices than its " +
+                       std::to_string(labels.keys.size()));
+  }
+  atlas.sphere = sphere ? readSphere(context, *sphere) : *known;
+  if (atlas.sphere.vertexCount() != labels.keys.size()) {
+    throw InvalidInput("'" + file + "': has " + std::to_string(labels.keys.size()) +
+                       " labels, its sphere " + std::to_string(atlas.sphere.vertexCount()) +
+                       " vertices");
+  }
+  const auto sulc = findIn(folders, {prefix + "sulc", "sulc.shape.gii"});
+  if (!sulc) return atlas;
+  atlas.folding =
+      io::readVertexMaps(context.input(*sulc, "sulc"), labels.keys.size()).front().values;
+  return atlas;
+}
+
+/// Numbers labels by their names as the first file does, so that files with other tables agree;
+/// names that it lacks are added.
+void numberAlike(std::vector<io::LabelMap>& files) {
+  std::map<std::string, Label> keyOf;
+  std::vector<io::LabelEntry>& table = files.front().table;
+  for (const io::LabelEntry& entry : table) keyOf.try_emplace(entry.name, entry.key);
+  for (std::size_t f = 1; f < files.size(); ++f) {
+    std::map<Label, Label> changed;
+    for (io::LabelEntry entry : files[f].table) {
+      const Label next = table.back().key + 1;
+      const auto [at, added] = keyOf.try_emplace(entry.name, next);
+      changed[entry.key] = at->second;
+      if (!added) continue;
+      entry.key = next;
+      table.push_back(entry);
+    }
+    for (Label& key : files[f].keys) {
+      if (const auto at = changed.find(key); at != changed.end()) key = at->second;
+    }
+  }
+}
+
+/// The table with other colours where two labels share one: annot files tell labels by colour.
+std::vector<io::LabelEntry> toldByColour(std::vector<io::LabelEntry> table) {
+  std::set<std::array<float, 4>> colours;
+  for (const io::LabelEntry& entry : table) colours.insert(entry.colour);
+  if (colours.size() == table.size()) return table;
+  for (io::LabelEntry& entry : table) entry.colour = io::distinctColour(entry.key);
+  return table;
+}
+
+Termination run(Context& context, const Settings& s) {
+  const std::string prefix = prefixOf(s);
+  const std::string structure = prefix == "rh." ? "CortexRight" : "CortexLeft";
+  const auto place = findIn({s.folder}, {prefix + "sphere.reg", "sphere.reg.surf.gii"});
+  if (!place) {
+    throw InvalidInput("'" + s.folder + "': holds no " + prefix +
+                       "sphere.reg and no sphere.reg.surf.gii");
+  }
+  const TriangleMesh sphere = readSphere(context, *place);
+  Eigen::VectorXd folding;
+  if (const auto sulc = findIn({s.folder}, {prefix + "sulc", "sulc.shape.gii"})) {
+    folding = io::readVertexMaps(context.input(*sulc, "sulc"), sphere.vertexCount()).front().values;
+  }
+  std::vector<io::LabelMap> labels;
+  for (const std::string& file : s.atlases) {
+    io::requireSameHemisphere(file, structure);
+    labels.push_back(io::readVertexLabels(file));
+  }
+  numberAlike(labels);
+  std::vector<maps::LabelledSphere> atlases;
+  for (std::size_t a = 0; a < labels.size(); ++a) {
+    atlases.push_back(readAtlas(context, s.atlases[a], prefix, labels[a]));
+  }
+  auto step = context.step("parcellate");
+  const maps::Parcellation found = maps::parcellate(sphere, folding, atlases);
+  const io::LabelMap result{"regions", found.keys, toldByColour(labels.front().table)};
+  std::string name = fs::path(s.atlases.front()).filename().string();
+  name = name.starts_with(prefix) ? name.substr(3) : name;
+  name = name.substr(0, name.rfind(name.ends_with(".label.gii") ? ".label.gii" : "."));
+  io::writeGiftiLabel(context.output("regions.label.gii"), result, structure);
+  io::writeFreeSurferAnnot(context.output(prefix + name + ".annot"), result);
+  io::writeGiftiShape(context.output("doubt.shape.gii"), {{"doubt", "", found.doubt}}, structure);
+  context.result("vertices", static_cast<long>(found.keys.size()));
+  context.result("doubt_mean", found.doubt.mean());
+  return Termination::NotRun;
+}
+
+}  // namespace
+
+Command parcellateCommand() {
+  return makeCommand<Settings>("parcellate", declare, run);
+}
+
+}  // namespace explica::app

@@ -1,0 +1,149 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Sphere/Register.h"
+
+#include "Explica/Application/Command.h"
+#include "Explica/Core/Errors.h"
+#include "Explica/IO/SurfaceFile.h"
+#include "Explica/IO/VertexDataFile.h"
+#include "Folding.h"
+
+#include <chrono>
+
+namespace explica::app {
+namespace {
+
+struct Settings {
+  std::string sphere;
+  std::optional<std::string> sulc, curvature, surfaces;
+  std::optional<std::string> templateName;
+  std::optional<std::string> to, toSulc, toCurvature;
+  bool mirror = false;
+  sphere::RegisterOptions registration;
+};
+
+void declare(Declaration& d, Settings& s) {
+  d.synopsis("a sphere brought onto a template's, or another person's, by the folds")
+      .description(
+          R"(Registers a hemisphere's sphere to a template by sulcal depth and mean curvature: a rotation is searched among all, then an icosphere on the template moves over the sphere, from coarse to fine, to where the folds agree. No face of it turns over and no area changes by more than --max-areal doublings, so that the map is one to one; the sphere's vertices follow, and what is written is tested exactly. The template is a folder with lh.sphere.reg, lh.sulc and lh.curv (rh. for a right hemisphere; lh.sulc_sd and lh.curv_sd beside them weigh the maps), or --to another person's sphere. A right hemisphere goes onto a left one with --mirror, and the other way round.)")
+      .reference("Yeo et al. 2010, Spherical Demons, IEEE Trans. Med. Imaging 29(3):650-668")
+      .reference("Alexa 2022, Super-Fibonacci spirals, CVPR")
+      .example("explica register lh.sphere --template fsaverage --out registered",
+               "A FreeSurfer subject's sphere onto $SUBJECTS_DIR/fsaverage")
+      .input("SPHERE", FileKind::Surface, "sphere about the origin", s.sphere)
+      .inputOption("sulc", FileKind::VertexData, "sulcal depth (default: beside the sphere)",
+                   s.sulc, "Folds")
+      .inputOption("curvature", FileKind::VertexData, "mean curvature (default: beside the sphere)",
+                   s.curvature, "Folds")
+      .option("Folds", Field{"surfaces", "", "folder with the folding maps"}, s.surfaces)
+      .option("Target",
+              Field{"template", "", "folder, or name of a subject in $SUBJECTS_DIR (fsaverage)"},
+              s.templateName)
+      .inputOption("to", FileKind::Surface, "another person's sphere instead of a template", s.to,
+                   "Target")
+      .inputOption("to-sulc", FileKind::VertexData, "its sulcal depth (default: beside it)",
+                   s.toSulc, "Target")
+      .inputOption("to-curvature", FileKind::VertexData, "its mean curvature (default: beside it)",
+                   s.toCurvature, "Target")
+      .option("Target", Field{"mirror", "", "register to the other hemisphere, mirrored"}, s.mirror)
+      .options("Registration", s.registration)
+      .output("sphere.reg.surf.gii", FileKind::Surface, "the sphere in the template's frame")
+      .output("?h.sphere.reg", FileKind::Surface, "the same as FreeSurfer writes it")
+      .output("areal.shape.gii", FileKind::VertexData, "log2 of the map's change of areas")
+      .output("folding.shape.gii", FileKind::VertexData,
+              "sulcal depth and curvature of the sphere and of the template there");
+}
+
+std::string otherSide(const std::string& structure) {
+  return structure == "CortexRight" ? "CortexLeft" : "CortexRight";
+}
+
+FoldingFiles targetFiles(const Settings& s, const std::string& structure) {
+  if (s.to && s.templateName) throw UsageError("--to and --template are two targets; give one");
+  const std::string side = s.mirror ? otherSide(structure) : structure;
+  if (s.to) {
+    const std::string known = io::structureFromName(*s.to);
+    if (known != "Other" && known != side) {
+      throw InvalidInput("'" + *s.to + "' and '" + s.sphere + "' are " +
+                         (s.mirror ? "the same hemisphere" : "of different hemispheres") +
+                         (s.mirror ? "; leave --mirror out" : "; add --mirror"));
+    }
+    return subjectFiles(*s.to, side, s.toSulc, s.toCurvature, {});
+  }
+  if (!s.templateName) {
+    throw UsageError("give --template DIR (a folder with lh.sphere.reg, lh.sulc, lh.curv) or --to");
+  }
+  return templateFiles(*s.templateName, side);
+}
+
+void write(Context& context, const sphere::FoldingSphere& moving,
+           const sphere::SphereRegistration& result, const std::string& structure) {
+  io::SurfaceMetadata metadata;
+  metadata.structure = structure;
+  metadata.geometricType = "Spherical";
+  metadata.topologicalType = "Closed";
+  const TriangleMesh sphere{result.positions, moving.sphere.faces};
+  io::writeGiftiSurface(context.output("sphere.reg.surf.gii"), sphere, metadata);
+  const bool right = structure == "CortexRight";
+  io::writeFreeSurferSurface(context.output(right ? "rh.sphere.reg" : "lh.sphere.reg"), sphere);
+  io::writeGiftiShape(context.output("areal.shape.gii"), {{"areal log2", "", result.arealLog2}},
+                      structure);
+  io::writeGiftiShape(context.output("folding.shape.gii"),
+                      {{"sulc", "", moving.sulc},
+                       {"template's sulc", "", result.sulc},
+                       {"curvature", "", moving.curvature},
+                       {"template's curvature", "", result.curvature}},
+                      structure);
+}
+
+void report(Context& context, const sphere::SphereRegistration& result) {
+  const Eigen::ArrayXd areal = result.arealLog2.array().abs();
+  const Eigen::AngleAxisd rotation(result.rotation);
+  context.result("folding_correlation_before", result.before.sulc);
+  context.result("folding_correlation_after", result.after.sulc);
+  context.result("curvature_correlation_before", result.before.curvature);
+  context.result("curvature_correlation_after", result.after.curvature);
+  context.result("turned_over", static_cast<long long>(result.rounding.turnedAfter));
+  context.result("faces_mended", static_cast<long long>(result.rounding.turnedBefore));
+  context.result("vertices_mended", result.rounding.moved.size());
+  context.result("areal_log2_mean", areal.mean());
+  context.result("areal_log2_max", areal.maxCoeff());
+  context.result("rotation_degrees", rotation.angle() * 180 / kPi);
+  context.result("iterations", result.iterations);
+  if (result.rounding.turnedAfter > 0) {
+    context.warn(std::to_string(result.rounding.turnedAfter) +
+                 " faces are turned over: the registered sphere is not one to one there");
+  }
+}
+
+Termination run(Context& context, const Settings& s) {
+  const auto begin = std::chrono::steady_clock::now();
+  std::string structure = io::readSurface(s.sphere).metadata.structure;
+  if (structure == "Other") structure = "CortexLeft";
+  const FoldingFiles files = subjectFiles(s.sphere, structure, s.sulc, s.curvature, s.surfaces);
+  sphere::FoldingSphere moving = readFolding(context, files);
+  const sphere::FoldingSphere target = readFolding(context, targetFiles(s, structure));
+  if (s.mirror) moving.sphere = sphere::mirrored(std::move(moving.sphere));
+  sphere::SphereRegistration result;
+  {
+    auto step = context.step("register");
+    result = sphere::registerSphere(moving, target, s.registration, context.monitor());
+    step.iterations(result.iterations);
+    step.termination(result.termination);
+  }
+  auto step = context.step("write");
+  write(context, moving, result, structure);
+  report(context, result);
+  context.result("seconds",
+                 std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  return result.rounding.turnedAfter > 0 ? Termination::Stalled : result.termination;
+}
+
+}  // namespace
+
+Command registerCommand() {
+  return makeCommand<Settings>("register", declare, run);
+}
+
+}  // namespace explica::app

@@ -1,0 +1,246 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Application/Command.h"
+#include "Explica/Application/ReadInputs.h"
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/StopScope.h"
+#include "Explica/Geometry/MeshMeasures.h"
+#include "Explica/IO/StatedHemisphere.h"
+#include "Explica/IO/VertexFile.h"
+#include "Explica/Maps/Icosphere.h"
+#include "Explica/Maps/Resampling.h"
+
+#include <algorithm>
+#include <cctype>
+#include <optional>
+#include <set>
+
+namespace explica::app {
+namespace {
+
+constexpr const char* kFsLR = "fs_LR-32k";
+
+struct Settings {
+  std::vector<std::string> maps;
+  std::optional<std::string> from;
+  std::string to;
+  std::optional<std::string> templateFolder;
+  maps::ResamplingMethod method = maps::ResamplingMethod::Adaptive;
+  std::optional<std::string> areas;
+};
+
+void declare(Declaration& d, Settings& s) {
+  d.synopsis("maps, labels and surfaces brought from one sphere to another in register with it")
+      .description(
+          "Carries what is known at the vertices of one surface over to the vertices of another, "
+          "through two spheres in register: a person's sphere.reg and a template's, or two of one "
+          "template. Maps and series by adaptive barycentric weights with the vertices' areas (as "
+          "Workbench's ADAP_BARY_AREA), so that every vertex counts and integrals stay; labels by "
+          "the largest weight; surfaces always by barycentric weights. NaN is left out while at "
+          "least half of a vertex's weight is known.\n\n"
+          "--to takes a sphere, or the name of one: fsaverage3 to fsaverage6 and fsaverage are "
+          "made "
+          "(vertices in fsaverage's order, so that those of a coarser one are the first of a finer "
+          "one; FreeSurfer's folder fsaverage3 numbers the same vertices in another way). "
+          "fs_LR-32k "
+          "is read: --template names the folder with the HCP's "
+          "fs_LR-deformed_to-fsaverage.L.sphere.32k_fs_LR.surf.gii, which is in register with "
+          "fsaverage.")
+      .reference("Glasser et al. 2013, NeuroImage 80:105-124")
+      .example(
+          "explica resample lh.thickness lh.aparc.annot --from lh.sphere.reg --to fsaverage5 "
+          "--areas lh.white --out on-fsaverage5",
+          "Thickness and labels of a person at fsaverage5's 10,242 vertices")
+      .input("MAP", FileKind::Any, "per-vertex maps, series, labels or surfaces", s.maps)
+      .inputOption("from", FileKind::Surface, "sphere with the maps' vertices", s.from)
+      .require("from")
+      .option("Target",
+              Field{"to", "",
+                    "sphere in register, or fsaverage3 ... fsaverage6, fsaverage, "
+                    "fs_LR-32k"},
+              s.to)
+      .require("to")
+      .option("Target", Field{"template", "", "folder with fs_LR's spheres"}, s.templateFolder)
+      .option("Weights", Field{"method", "", "how maps are weighted"}, s.method)
+      .option("Weights",
+              Field{"areas", "",
+                    "surfaces whose vertex areas count, of the maps' and of the target's vertices "
+                    "(SURF,SURF; one left out: its sphere)"},
+              s.areas)
+      .output("*_space-*", FileKind::Any,
+              "NAME_space-SPACE_den-DENSITY: each file, in its own format");
+}
+
+struct Target {
+  io::LoadedSurface sphere;
+  std::string space;
+};
+
+/// The HCP's fs_LR sphere of a hemisphere at its place on fsaverage.
+std::string fsLRFile(const Settings& s, const std::string& structure) {
+  const std::string side = structure == "CortexRight" ? "R" : "L";
+  const std::string name = "fs_LR-deformed_to-fsaverage." + side + ".sphere.32k_fs_LR.surf.gii";
+  if (!s.templateFolder) {
+    throw UsageError("--to fs_LR-32k needs --template DIR with the HCP's " + name);
+  }
+  return (std::filesystem::path(*s.templateFolder) / name).string();
+}
+
+Target readTarget(Context& context, const Settings& s, const std::string& structure) {
+  Target target;
+  io::SurfaceReadOptions reading;
+  reading.space = io::SurfaceSpace::Scanner;
+  if (const auto level = maps::fsaverageLevel(s.to)) {
+    target.sphere.mesh = maps::fsaverageSphere(*level);
+    target.sphere.metadata.structure = structure;
+    target.space = "fsaverage";
+    return target;
+  }
+  const bool fsLR = s.to == kFsLR;
+  const std::string file = fsLR ? fsLRFile(s, structure) : s.to;
+  if (!std::filesystem::exists(file) && !fsLR) {
+    throw InvalidInput("--to: '" + s.to +
+                       "' is no file, and none of fsaverage3 ... fsaverage6, fsaverage, fs_LR-32k");
+  }
+  context.input(file, "to");
+  target.sphere = readSurface(context, "to", file, reading);
+  target.space = fsLR ? "fsLR" : io::nameOfSurface(file);
+  std::erase_if(target.space, [](unsigned char letter) { return !std::isalnum(letter); });
+  return target;
+}
+
+/// "10k" of 10,242 vertices, "642" of 642.
+std::string densityOf(Eigen::Index vertices) {
+  return vertices < 1000 ? std::to_string(vertices) : std::to_string((vertices + 500) / 1000) + "k";
+}
+
+Eigen::VectorXd areasOf(Context& context, const Settings& s, std::size_t place,
+                        const TriangleMesh& sphere) {
+  const std::string both = s.areas.value_or(""), first = both.substr(0, both.find(','));
+  const std::string path =
+      place == 0 ? first : both.substr(std::min(first.size() + 1, both.size()));
+  if (path.empty()) return geometry::vertexAreas(sphere);
+  context.input(path, "areas");
+  io::SurfaceReadOptions reading;
+  reading.space = io::SurfaceSpace::Scanner;
+  const TriangleMesh mesh = readSurface(context, "areas", path, reading).mesh;
+  if (mesh.vertexCount() != sphere.vertexCount()) {
+    throw InvalidInput("'" + path + "': has " + std::to_string(mesh.vertexCount()) +
+                       " vertices, its sphere " + std::to_string(sphere.vertexCount()));
+  }
+  return geometry::vertexAreas(mesh);
+}
+
+/// A file to be carried over, and what it holds.
+struct CarriedFile {
+  std::string output, structure;
+  io::VertexFileKind kind = io::VertexFileKind::Maps;
+  std::vector<io::VertexMap> maps;
+  io::LabelMap labels;
+  io::LoadedSurface surface;
+};
+
+CarriedFile readFile(const std::string& path, const io::LoadedSurface& from,
+                     const std::string& entity) {
+  CarriedFile file;
+  file.kind = io::vertexFileKind(path);
+  file.output = io::nameWithEntity(path, entity);
+  if (file.kind == io::VertexFileKind::Surface) {
+    file.surface = io::readSurface(path);
+    if (file.surface.mesh.vertexCount() == from.mesh.vertexCount()) return file;
+    throw InvalidInput("'" + path + "': has " + std::to_string(file.surface.mesh.vertexCount()) +
+                       " vertices, the sphere of --from " +
+                       std::to_string(from.mesh.vertexCount()));
+  }
+  io::requireSameHemisphere(path, from.metadata.structure);
+  file.structure = io::statedStructure(path);
+  if (file.structure.empty()) file.structure = from.metadata.structure;
+  if (file.kind == io::VertexFileKind::Labels) {
+    file.labels = io::readVertexLabels(path, from.mesh.vertexCount());
+  } else {
+    file.maps = io::readVertexMaps(path, from.mesh.vertexCount());
+  }
+  return file;
+}
+
+std::vector<CarriedFile> readFiles(const Settings& s, const io::LoadedSurface& from,
+                                   const Target& target) {
+  const std::string entity =
+      "space-" + target.space + "_den-" + densityOf(target.sphere.mesh.vertexCount());
+  std::vector<CarriedFile> files;
+  std::set<std::string> names;
+  for (const std::string& path : s.maps) {
+    files.push_back(readFile(path, from, entity));
+    if (!names.insert(files.back().output).second) {
+      throw UsageError("two files would be written to '" + files.back().output +
+                       "'; resample them into folders of their own");
+    }
+  }
+  return files;
+}
+
+/// Weights of maps and labels, and those of surfaces.
+struct Weights {
+  maps::ResamplingWeights maps, surfaces;
+};
+
+void carry(const std::filesystem::path& path, CarriedFile file, const Weights& weights,
+           const Faces& faces) {
+  switch (file.kind) {
+    case io::VertexFileKind::Surface:
+      file.surface.mesh = {maps::resampleMaps(weights.surfaces, file.surface.mesh.positions),
+                           faces};
+      io::writeSurface(path, file.surface.mesh, file.surface.metadata);
+      break;
+    case io::VertexFileKind::Labels:
+      file.labels.keys = maps::resampleLabels(weights.maps, file.labels.keys);
+      if (path.extension() == ".annot") {
+        io::writeFreeSurferAnnot(path, file.labels);
+      } else {
+        io::writeGiftiLabel(path, file.labels, file.structure);
+      }
+      break;
+    case io::VertexFileKind::Maps:
+      for (io::VertexMap& map : file.maps)
+        map.values = maps::resampleMaps(weights.maps, map.values);
+      io::writeVertexMaps(path, file.maps, file.structure, faces.rows());
+  }
+}
+
+Termination run(Context& context, const Settings& s) {
+  io::SurfaceReadOptions reading;
+  reading.space = io::SurfaceSpace::Scanner;
+  const io::LoadedSurface from = readSurface(context, "from", *s.from, reading);
+  const Target target = readTarget(context, s, from.metadata.structure);
+  const std::vector<CarriedFile> files = readFiles(s, from, target);
+  maps::requireSphere(from.mesh, "'" + *s.from + "'");
+  maps::requireSphere(target.sphere.mesh, "'" + s.to + "'");
+  const Eigen::VectorXd fromAreas = areasOf(context, s, 0, from.mesh);
+  const Eigen::VectorXd toAreas = areasOf(context, s, 1, target.sphere.mesh);
+  auto step = context.step("resample");
+  const auto weightsBy = [&](maps::ResamplingMethod method) {
+    return maps::resamplingWeights(from.mesh, target.sphere.mesh, method, fromAreas, toAreas);
+  };
+  const Weights weights{weightsBy(s.method), weightsBy(maps::ResamplingMethod::Barycentric)};
+  std::size_t count = 0;
+  for (const CarriedFile& file : files) {
+    checkpoint(context.monitor());
+    context.monitor().progress(static_cast<double>(count) / static_cast<double>(files.size()),
+                               file.output);
+    carry(context.output(file.output), file, weights, target.sphere.mesh.faces);
+    ++count;
+  }
+  context.result("files", count);
+  context.result("vertices_from", static_cast<long>(from.mesh.vertexCount()));
+  context.result("vertices_to", static_cast<long>(target.sphere.mesh.vertexCount()));
+  return Termination::NotRun;
+}
+
+}  // namespace
+
+Command resampleCommand() {
+  return makeCommand<Settings>("resample", declare, run);
+}
+
+}  // namespace explica::app

@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Explica/Core/VoxelSets.h"
+
+#include "Explica/Core/Parallel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace explica {
+namespace {
+
+constexpr float kFar = std::numeric_limits<float>::infinity();  // no voxel of the set anywhere
+
+/// Lower envelope of the parabolas f[q] + (h (p - q))^2 along one line, in place.
+void envelope(std::vector<float>& f, double h, std::vector<int>& site,
+              std::vector<double>& border) {
+  const int n = static_cast<int>(f.size());
+  int count = 0;
+  for (int q = 0; q < n; ++q) {
+    if (f[q] == kFar) continue;
+    double from = -std::numeric_limits<double>::infinity();
+    while (count > 0) {
+      const int s = site[count - 1];
+      from = (static_cast<double>(f[q]) - f[s] +
+              h * h * (static_cast<double>(q) * q - static_cast<double>(s) * s)) /
+             (2 * h * h * (q - s));
+      if (from > border[count - 1]) break;
+      --count;
+      from = -std::numeric_limits<double>::infinity();
+    }
+    site[count] = q;
+    border[count] = from;
+    ++count;
+  }
+  if (count == 0) return;
+  std::vector<float> out(f.size());
+  int current = 0;
+  for (int p = 0; p < n; ++p) {
+    while (current + 1 < count && border[current + 1] <= p) ++current;
+    const double d = h * (p - site[current]);
+    out[p] = static_cast<float>(f[site[current]] + d * d);
+  }
+  f.swap(out);
+}
+
+}  // namespace
+
+Volume<float> squaredDistanceTo(const VoxelSet& set) {
+  const Grid& grid = set.grid;
+  Volume<float> squared(grid, kFar);
+  for (std::size_t v = 0; v < set.size(); ++v) {
+    if (set[v] != 0) squared[v] = 0;
+  }
+  std::size_t stride = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int length = grid.size[axis];
+    const std::size_t lines = grid.voxelCount() / static_cast<std::size_t>(length);
+    parallelForBlocks(lines, 512, [&](std::size_t begin, std::size_t end) {
+      std::vector<float> line(length);
+      std::vector<int> site(length);
+      std::vector<double> border(length);
+      for (std::size_t l = begin; l < end; ++l) {
+        const std::size_t start = (l / stride) * stride * length + l % stride;
+        for (int p = 0; p < length; ++p) line[p] = squared[start + p * stride];
+        envelope(line, grid.spacing[axis], site, border);
+        for (int p = 0; p < length; ++p) squared[start + p * stride] = line[p];
+      }
+    });
+    stride *= static_cast<std::size_t>(length);
+  }
+  return squared;
+}
+
+std::int32_t Components::largest() const {
+  if (size.empty()) return -1;
+  return static_cast<std::int32_t>(std::max_element(size.begin(), size.end()) - size.begin());
+}
+
+Components componentsOf(const VoxelSet& set) {
+  const Grid& grid = set.grid;
+  Components components;
+  components.number = Volume<std::int32_t>(grid, -1);
+  std::vector<std::size_t> stack;
+  for (std::size_t seed = 0; seed < set.size(); ++seed) {
+    if (set[seed] == 0 || components.number[seed] >= 0) continue;
+    const auto number = static_cast<std::int32_t>(components.size.size());
+    std::int64_t size = 0;
+    components.number[seed] = number;
+    stack.push_back(seed);
+    while (!stack.empty()) {
+      const std::size_t v = stack.back();
+      stack.pop_back();
+      ++size;
+      const auto at = grid.subscripts(v);
+      for (int n = 0; n < 6; ++n) {
+        auto next = at;
+        next[n / 2] += n % 2 == 0 ? -1 : 1;
+        if (!grid.contains(next[0], next[1], next[2])) continue;
+        const std::size_t w = grid.linear(next[0], next[1], next[2]);
+        if (set[w] == 0 || components.number[w] >= 0) continue;
+        components.number[w] = number;
+        stack.push_back(w);
+      }
+    }
+    components.size.push_back(size);
+  }
+  return components;
+}
+
+}  // namespace explica

@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/IO/VertexFile.h"
+#include "Explica/IO/StatedHemisphere.h"
+
+#include "Explica/Core/Errors.h"
+
+#include <algorithm>
+#include <array>
+
+namespace explica::io {
+namespace {
+
+/// The ending that tells a per-vertex file's format: ".shape.gii", ".annot"; "" of FreeSurfer's
+/// curv files.
+std::string vertexFileEnding(const std::string& name) {
+  constexpr std::array<std::string_view, 12> kEndings = {
+      ".shape.gii", ".func.gii", ".label.gii", ".surf.gii", ".gii", ".annot",
+      ".label",     ".mgz",      ".mgh",       ".vtp",      ".vtk", ".ply"};
+  for (const std::string_view ending : kEndings) {
+    for (const std::string_view packed : {"", ".gz"}) {
+      const std::string whole = std::string(ending) + std::string(packed);
+      if (name.ends_with(whole)) return whole;
+    }
+  }
+  return "";
+}
+
+}  // namespace
+
+VertexFileKind vertexFileKind(const std::filesystem::path& path) {
+  const std::string ending = vertexFileEnding(path.filename().string());
+  if (ending.starts_with(".surf")) return VertexFileKind::Surface;
+  if (ending.starts_with(".label") || ending == ".annot") return VertexFileKind::Labels;
+  try {
+    (void)readVertexMaps(path);
+    return VertexFileKind::Maps;
+  } catch (const Error&) {
+    try {
+      (void)readSurface(path);
+      return VertexFileKind::Surface;
+    } catch (const Error&) {
+    }
+    throw;
+  }
+}
+
+std::string nameWithEntity(const std::filesystem::path& path, std::string_view entity) {
+  const std::string name = path.filename().string();
+  std::string ending = vertexFileEnding(name);
+  const std::string stem = name.substr(0, name.size() - ending.size());
+  if (ending.ends_with(".gz")) ending.resize(ending.size() - 3);
+  if (ending == ".label") ending = ".label.gii";
+  if (!ending.empty() && ending != ".annot" && !ending.ends_with(".gii")) ending = ".shape.gii";
+  const std::size_t suffix = stem.rfind('_');
+  const std::string with = "_" + std::string(entity);
+  const bool bids = stem.find("hemi-") < suffix && suffix != std::string::npos;
+  return bids ? stem.substr(0, suffix) + with + stem.substr(suffix) + ending : stem + with + ending;
+}
+
+void writeVertexMaps(const std::filesystem::path& path, const std::vector<VertexMap>& maps,
+                     const std::string& structure, Eigen::Index faceCount) {
+  if (path.extension() != ".gii") {
+    if (maps.size() != 1) {
+      throw InvalidInput("'" + path.string() + "': FreeSurfer's curv files hold one map, not " +
+                         std::to_string(maps.size()));
+    }
+    writeFreeSurferCurv(path, maps.front().values, faceCount);
+    return;
+  }
+  GiftiMapsWriter writer(path, structure.empty() ? "Other" : structure, maps.size());
+  for (const VertexMap& map : maps) {
+    const Eigen::VectorXf values = map.values.cast<float>();
+    writer.add(map.name, map.unit, {values.data(), static_cast<std::size_t>(values.size())});
+  }
+  writer.finish();
+}
+
+void requireSameHemisphere(const std::filesystem::path& path, const std::string& structure) {
+  const std::string said = statedStructure(path);
+  const bool known = structure == "CortexLeft" || structure == "CortexRight";
+  if (said.empty() || !known || said == structure) return;
+  throw InvalidInput(
+      "'" + path.string() + "': is of the " + (said == "CortexLeft" ? "left" : "right") +
+      " hemisphere, the surface of the " + (structure == "CortexLeft" ? "left" : "right") + " one");
+}
+
+}  // namespace explica::io

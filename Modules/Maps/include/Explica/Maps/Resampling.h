@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Core/Describe.h"
+#include "Explica/Core/TriangleMesh.h"
+
+#include <Eigen/SparseCore>
+
+#include <array>
+#include <string_view>
+#include <utility>
+
+namespace explica::maps {
+
+enum class ResamplingMethod {
+  Adaptive,     ///< adaptive barycentric weights by area: every source vertex counts
+  Barycentric,  ///< linear within the source's faces
+  Nearest       ///< the corner of the largest barycentric weight
+};
+
+/// Weights W, target vertices x source vertices: rows that sum to 1, ascending columns.
+using ResamplingWeights = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+
+/// @throws InvalidInput  vertices of very different distances from the origin; starts with `name`
+void requireSphere(const TriangleMesh& mesh, std::string_view name);
+
+/// Weights between two spheres in register, whatever their radii.
+///
+/// Barycentric weights are those of the nearest point of the other sphere's faces.  The adaptive
+/// ones are Connectome Workbench's ADAP_BARY_AREA: a target vertex takes its own weights of source
+/// vertices unless a source vertex beyond these has it as a corner; then it takes the weights that
+/// source vertices give it.  Each weight is multiplied by the target's area and the column scaled
+/// to the source's, so that every source vertex hands on its area; then rows are scaled to 1.
+///
+/// @param fromAreas, toAreas  one a vertex, mm^2; for Adaptive, usually of middle surfaces
+/// @throws InvalidInput  as requireSphere, or areas of other length
+[[nodiscard]] ResamplingWeights resamplingWeights(const TriangleMesh& from, const TriangleMesh& to,
+                                                  ResamplingMethod method,
+                                                  const Eigen::VectorXd& fromAreas,
+                                                  const Eigen::VectorXd& toAreas);
+
+/// W times each column of `values`; NaN is left out while at least half of the weight is known,
+/// else the result is NaN.
+[[nodiscard]] Eigen::MatrixXd resampleMaps(const ResamplingWeights& weights,
+                                           const Eigen::MatrixXd& values);
+
+using VertexKeys = Eigen::Matrix<Label, Eigen::Dynamic, 1>;  ///< V
+
+/// The key of the largest weight at each target vertex; of equal ones the smallest key.
+[[nodiscard]] VertexKeys resampleLabels(const ResamplingWeights& weights, const VertexKeys& keys);
+
+}  // namespace explica::maps
+
+template <>
+struct explica::EnumNames<explica::maps::ResamplingMethod> {
+  using Method = explica::maps::ResamplingMethod;
+  static constexpr std::array table = {std::pair{Method::Adaptive, "adaptive"},
+                                       std::pair{Method::Barycentric, "barycentric"},
+                                       std::pair{Method::Nearest, "nearest"}};
+};

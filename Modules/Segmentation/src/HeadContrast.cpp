@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Explica/Segmentation/HeadContrast.h"
+
+#include "Explica/Core/VoxelSets.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace explica::segmentation {
+namespace {
+
+constexpr double kCube = 3;           // mm: noise and thin tissue matter less
+constexpr float kTissue = 0.25f;      // of the mean of what is brighter than the mean
+constexpr double kInner = 0.5;        // of the deepest point's distance to the air
+constexpr double kBright = 1.8;       // medians
+constexpr std::size_t kFewest = 800;  // cubes: what is smaller is no head, and not judged
+
+/// Means over blocks of whole voxels, about so many mm a side, with a border of air.
+Volume<float> inBlocks(const Volume<float>& image, double side) {
+  std::array<int, 3> step;
+  Grid grid = image.grid;
+  for (int a = 0; a < 3; ++a) {
+    step[a] = std::max(1, static_cast<int>(std::lround(side / grid.spacing[a])));
+    grid.size[a] = grid.size[a] / step[a] + 2;
+    grid.spacing[a] *= step[a];
+  }
+  Volume<float> blocks(grid, 0.0f);
+  const float share = 1.0f / static_cast<float>(step[0] * step[1] * step[2]);
+  for (std::size_t v = 0; v < image.size(); ++v) {
+    const auto [i, j, k] = image.grid.subscripts(v);
+    const int bi = i / step[0] + 1, bj = j / step[1] + 1, bk = k / step[2] + 1;
+    if (bi + 1 < grid.size[0] && bj + 1 < grid.size[1] && bk + 1 < grid.size[2]) {
+      blocks(bi, bj, bk) += share * image[v];
+    }
+  }
+  return blocks;
+}
+
+float meanAbove(const Volume<float>& image, float least) {
+  double sum = 0, count = 0;
+  for (const float value : image.data) {
+    if (!(value > least)) continue;
+    sum += value;
+    count += 1;
+  }
+  return count > 0 ? static_cast<float>(sum / count) : least;
+}
+
+/// The dark that is connected with the grid's corner.
+VoxelSet airOf(const Volume<float>& blocks) {
+  const float tissue = kTissue * meanAbove(blocks, meanAbove(blocks, -kInfinity));
+  VoxelSet dark(blocks.grid, 0);
+  for (std::size_t v = 0; v < dark.size(); ++v) dark[v] = blocks[v] > tissue ? 0 : 1;
+  const Components parts = componentsOf(dark);
+  VoxelSet air(blocks.grid, 0);
+  for (std::size_t v = 0; v < air.size(); ++v) {
+    air[v] = parts.number[v] >= 0 && parts.number[v] == parts.number[0] ? 1 : 0;
+  }
+  return air;
+}
+
+}  // namespace
+
+HeadContrast measureContrast(const Volume<float>& image) {
+  HeadContrast found;
+  found.thickest = image.grid.spacing.maxCoeff();
+  const Volume<float> blocks = inBlocks(image, kCube);
+  const Volume<float> squared = squaredDistanceTo(airOf(blocks));
+  const float deepest = *std::max_element(squared.data.begin(), squared.data.end());
+  std::vector<float> deep;
+  for (std::size_t v = 0; v < blocks.size(); ++v) {
+    if (squared[v] > kInner * kInner * deepest) deep.push_back(blocks[v]);
+  }
+  if (deep.size() < kFewest) return found;
+  std::sort(deep.begin(), deep.end());
+  const auto at = [&](double share) {
+    return static_cast<double>(deep[static_cast<std::size_t>(share * (deep.size() - 1.0))]);
+  };
+  const double median = at(0.5), range = at(0.95) - at(0.05);
+  if (!(median > 0) || !(range > 0)) return found;
+  found.skewness = (at(0.95) + at(0.05) - 2 * median) / range;
+  found.spread = range / median;
+  found.brightest = at(0.999) / median;
+  const auto bright = std::count_if(deep.begin(), deep.end(),
+                                    [&](float value) { return value > kBright * median; });
+  found.brightShare = static_cast<double>(bright) / static_cast<double>(deep.size());
+  return found;
+}
+
+}  // namespace explica::segmentation

@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Explica/Segmentation/HeadContrast.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace explica::segmentation {
+namespace {
+
+/// A ball of 60 mm: fluid in the middle and at the rim, white matter, cortex, two vessels.
+Volume<float> brain(float fluid, float grey, float white, float vessel) {
+  Grid grid;
+  grid.size = {47, 47, 47};
+  grid.spacing = Vector::Constant(3);
+  Volume<float> image(grid, 0.0f);
+  for (std::size_t v = 0; v < image.size(); ++v) {
+    const auto [i, j, k] = grid.subscripts(v);
+    const Vector p = 3 * (Vector(i, j, k) - Vector::Constant(23));
+    const double r = p.norm();
+    if (r > 60) continue;
+    image[v] = r < 14 || r > 57 ? fluid : (r > 50 || p.x() > 20 ? grey : white);
+    const bool inVessel = std::abs(p.y() - 18) < 2 && std::abs(std::abs(p.z()) - 9) < 2;
+    if (inVessel && r < 40) image[v] = vessel;
+  }
+  return image;
+}
+
+TEST(HeadContrast, FluidIsTheDarkTailOfAT1AndTheBrightOneOfAT2) {
+  const HeadContrast t1 = measureContrast(brain(30, 70, 110, 60));
+  EXPECT_LT(t1.skewness, 0);
+  EXPECT_GT(t1.spread, 0.25);
+  EXPECT_LT(t1.brightest, 1.3);
+  EXPECT_EQ(t1.brightShare, 0);
+  const HeadContrast t2 = measureContrast(brain(200, 85, 60, 60));
+  EXPECT_GT(t2.skewness, 0.2);
+  EXPECT_GT(t2.brightShare, 0.05);
+}
+
+TEST(HeadContrast, VesselsAreFewAndFarBrighterThanTheRest) {
+  const HeadContrast angiogram = measureContrast(brain(60, 62, 64, 250));
+  EXPECT_GT(angiogram.brightest, 2.3);
+  EXPECT_LT(angiogram.brightShare, 0.05);
+}
+
+TEST(HeadContrast, AProtonDensityImageHasLittleOfIt) {
+  EXPECT_LT(measureContrast(brain(125, 128, 112, 115)).spread, 0.25);
+}
+
+TEST(HeadContrast, DoesNotDependOnTheUnitOfBrightness) {
+  const HeadContrast one = measureContrast(brain(30, 70, 110, 60));
+  const HeadContrast other = measureContrast(brain(3000, 7000, 11000, 6000));
+  EXPECT_NEAR(one.skewness, other.skewness, 1e-5);
+  EXPECT_NEAR(one.spread, other.spread, 1e-5);
+}
+
+TEST(HeadContrast, OfNothingIsNothing) {
+  Grid grid;
+  grid.size = {8, 8, 2};
+  grid.spacing = Vector(1, 1, 10);
+  const HeadContrast found = measureContrast(Volume<float>(grid, 0.0f));
+  EXPECT_EQ(found.thickest, 10);
+  EXPECT_EQ(found.spread, 0);
+}
+
+}  // namespace
+}  // namespace explica::segmentation

@@ -1,0 +1,222 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Sphere/Register.h"
+
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/Parallel.h"
+#include "Explica/Geometry/Fixtures.h"
+#include "Explica/Geometry/MeshMeasures.h"
+#include "FoldingPyramid.h"
+#include "RotationSearch.h"
+#include "SphereSolver.h"
+
+#include <cmath>
+#include <string>
+
+namespace explica::sphere {
+namespace {
+
+constexpr int kCoarsestLevel = 3;            // 642 vertices, 8 degrees apart
+constexpr int kIterations = 30;              // of a level
+constexpr double kTolerance = 1e-3;          // of the energy
+constexpr double kBarrier = 1e-2;            // b of MapWeights: felt near the bound only
+constexpr double kMarginALevel = 0.05;       // of the bound, kept on coarser levels for the finer
+constexpr std::size_t kVerticesATask = 512;  // some 0.1 ms a task
+
+/// Squared differences of the moving maps at the vertices' places and the target's at the vertices,
+/// each with its share of the sphere.
+class FoldingEnergy final : public VertexEnergy {
+ public:
+  FoldingEnergy(const FoldingLevel& moving, const FoldingLevel& target)
+      : moving_(moving),
+        target_(target),
+        share_(geometry::vertexAreas(target.grid->mesh())),
+        near_(static_cast<std::size_t>(share_.size()), 0) {
+    share_ /= share_.sum();
+  }
+
+  [[nodiscard]] double value(const Positions& sphere) const override {
+    const auto count = static_cast<std::size_t>(sphere.rows());
+    return parallelSum(count, kVerticesATask, 0.0, [&](std::size_t begin, std::size_t end) {
+      double sum = 0;
+      for (std::size_t v = begin; v < end; ++v) sum += at(sphere, v).value;
+      return sum;
+    });
+  }
+
+  void add(const Positions& sphere, const std::vector<TangentFrame>& frames,
+           geometry::FaceSystem& system) const override {
+    parallelFor(static_cast<std::size_t>(sphere.rows()), kVerticesATask, [&](std::size_t v) {
+      const Terms terms = at(sphere, v);
+      const auto vertex = static_cast<std::int32_t>(v);
+      for (std::size_t m = 0; m < 2; ++m) {
+        const Eigen::Vector2d slope = frames[v].transpose() * terms.slope[m];
+        system.gradientAt(vertex) += 2 * terms.weight[m] * terms.residual[m] * slope;
+        system.diagonalAt(vertex) += 2 * terms.weight[m] * slope * slope.transpose();
+      }
+    });
+  }
+
+ private:
+  struct Terms {
+    double value = 0;
+    std::array<double, 2> residual{}, weight{};
+    std::array<Vector, 2> slope;
+  };
+
+  /// A map that is linear on a face is s = (n . y) / (m . y) of directions y.
+  [[nodiscard]] Terms at(const Positions& sphere, std::size_t v) const {
+    const auto vertex = static_cast<Eigen::Index>(v);
+    const Point y = sphere.row(vertex).transpose();
+    const auto place = moving_.grid->locate(y, near_[v]);
+    near_[v] = place.face;
+    const TriangleMesh& mesh = moving_.grid->mesh();
+    std::array<Vector, 3> normals;
+    for (int k = 0; k < 3; ++k)
+      normals[k] = mesh.corner(place.face, (k + 1) % 3).cross(mesh.corner(place.face, (k + 2) % 3));
+    const Vector sum = normals[0] + normals[1] + normals[2];
+    Terms terms;
+    for (std::size_t m = 0; m < 2; ++m) {
+      Vector n = Vector::Zero();
+      for (int k = 0; k < 3; ++k) n += moving_.maps[m][mesh.faces(place.face, k)] * normals[k];
+      const double s = n.dot(y) / sum.dot(y);
+      terms.slope[m] = (n - s * sum) / sum.dot(y);
+      terms.residual[m] = s - target_.maps[m][vertex];
+      terms.weight[m] = share_[vertex] * target_.weights[m][vertex];
+      terms.value += terms.weight[m] * terms.residual[m] * terms.residual[m];
+    }
+    return terms;
+  }
+
+  const FoldingLevel& moving_;
+  const FoldingLevel& target_;
+  Eigen::VectorXd share_;
+  mutable std::vector<std::int32_t> near_;  ///< where each vertex was last; its own only
+};
+
+/// Rest shapes of an icosphere's faces on the unit sphere, with a weight on their energy.
+SphereEnergy regularity(const TriangleMesh& grid, double smoothness, double maxAreal) {
+  auto rest = restOnUnitSphere(flattening::intrinsicOf(grid));
+  return {grid.faces, std::move(rest), {1, maxAreal, kBarrier, smoothness}};
+}
+
+/// The map on the next finer icosphere: new vertices amid the ends of their edges.
+Positions refined(const TriangleMesh& coarse, const TriangleMesh& fine, const Positions& places) {
+  Positions result(fine.vertexCount(), 3);
+  result.topRows(coarse.vertexCount()) = places;
+  // A new vertex has two old neighbours; they are the ends of its edge.
+  std::vector<std::array<std::int32_t, 2>> ends(static_cast<std::size_t>(fine.vertexCount()),
+                                                {-1, -1});
+  for (Eigen::Index f = 0; f < fine.faceCount(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      const std::int32_t v = fine.faces(f, k), u = fine.faces(f, (k + 1) % 3);
+      for (const auto& [a, b] : {std::pair{v, u}, std::pair{u, v}}) {
+        if (a < coarse.vertexCount() || b >= coarse.vertexCount()) continue;
+        auto& pair = ends[static_cast<std::size_t>(a)];
+        if (pair[0] < 0 || pair[0] == b) {
+          pair[0] = b;
+        } else {
+          pair[1] = b;
+        }
+      }
+    }
+  }
+  for (Eigen::Index v = coarse.vertexCount(); v < fine.vertexCount(); ++v) {
+    const auto& [a, b] = ends[static_cast<std::size_t>(v)];
+    result.row(v) = (places.row(a) + places.row(b)).normalized();
+  }
+  return result;
+}
+
+double correlation(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  const Eigen::ArrayXd x = a.array() - a.mean(), y = b.array() - b.mean();
+  return (x * y).sum() / std::sqrt(x.square().sum() * y.square().sum());
+}
+
+/// Over the vertices of the target's finest icosphere, which are even.
+FoldingCorrelation correlationAt(const FoldingSphere& moving,
+                                 const geometry::SphereLocator& onMoving,
+                                 const FoldingLevel& target, const Positions& places) {
+  return {correlation(valuesAt(onMoving, moving.sulc, places), target.maps[0]),
+          correlation(valuesAt(onMoving, moving.curvature, places), target.maps[1])};
+}
+
+void requireFolding(const FoldingSphere& folding, const char* name) {
+  const Eigen::Index count = folding.sphere.vertexCount();
+  if (folding.sulc.size() != count || folding.curvature.size() != count) {
+    throw InvalidInput(std::string(name) + ": folding maps of " +
+                       std::to_string(folding.sulc.size()) + " and " +
+                       std::to_string(folding.curvature.size()) + " values, but the sphere has " +
+                       std::to_string(count) + " vertices");
+  }
+}
+
+/// Where the moving sphere's vertices come to: x at the place y of the same weights.
+void carry(const FoldingSphere& moving, const TriangleMesh& grid, const Positions& places,
+           SphereRegistration& result) {
+  const geometry::SphereLocator deformed(TriangleMesh{places, grid.faces});
+  const Eigen::VectorXd areas = geometry::faceAreas(grid);
+  const Eigen::VectorXd deformedAreas = geometry::faceAreas(deformed.mesh());
+  TriangleMesh sphere = moving.sphere;
+  result.arealLog2.resize(sphere.vertexCount());
+  parallelFor(static_cast<std::size_t>(sphere.vertexCount()), kVerticesATask, [&](std::size_t n) {
+    const auto v = static_cast<Eigen::Index>(n);
+    const auto place = deformed.locate(moving.sphere.positions.row(v).transpose());
+    Point sum = Point::Zero();
+    for (int k = 0; k < 3; ++k) sum += place.weights[k] * grid.corner(place.face, k);
+    sphere.positions.row(v) = sum.transpose();
+    result.arealLog2[v] = std::log2(areas[place.face] / deformedAreas[place.face]);
+  });
+  result.rounding = makeOneToOne(sphere);
+  result.positions = sphere.positions;
+}
+
+}  // namespace
+
+TriangleMesh mirrored(TriangleMesh sphere) {
+  sphere.positions.col(0) *= -1;
+  sphere.faces.col(1).swap(sphere.faces.col(2));
+  return sphere;
+}
+
+SphereRegistration registerSphere(const FoldingSphere& moving, const FoldingSphere& target,
+                                  const RegisterOptions& options, const Monitor& monitor) {
+  requireFolding(moving, "sphere");
+  requireFolding(target, "template");
+  const auto movingMaps = foldingPyramid(moving, options.level);
+  const auto targetMaps = foldingPyramid(target, options.level);
+  SphereRegistration result;
+  if (options.rotate) result.rotation = searchRotation(movingMaps, targetMaps, monitor);
+
+  const geometry::SphereLocator onMoving(moving.sphere);
+  const FoldingLevel& finest = targetMaps.back();
+  result.before = correlationAt(moving, onMoving, finest, finest.grid->mesh().positions);
+  int level = std::min(kCoarsestLevel, options.level);
+  const TriangleMesh* grid = &targetMaps[level].grid->mesh();
+  Positions places = grid->positions * result.rotation;  // y = R^T x
+  for (;; ++level) {
+    monitor.progress(0.2 + 0.7 * level / (options.level + 1),
+                     std::to_string(grid->vertexCount()) + " vertices");
+    const double bound = options.maxAreal * (1 - kMarginALevel * (options.level - level));
+    const SphereEnergy energy = regularity(*grid, options.smoothness, bound);
+    const FoldingEnergy folding(movingMaps[level], targetMaps[level]);
+    SphereSolver solver(energy, grid->vertexCount(), &folding);
+    const auto run = solver.lower(places, kIterations, kTolerance, monitor);
+    result.iterations += run.iterations;
+    result.termination = run.termination;
+    if (level == options.level) break;
+    const TriangleMesh* finer = &targetMaps[level + 1].grid->mesh();
+    places = refined(*grid, *finer, places);
+    grid = finer;
+  }
+  if (result.termination != Termination::Interrupted) result.termination = Termination::Finished;
+  result.after = correlationAt(moving, onMoving, finest, places);
+  carry(moving, *grid, places, result);
+  const geometry::SphereLocator onTarget(target.sphere);
+  result.sulc = valuesAt(onTarget, target.sulc, result.positions);
+  result.curvature = valuesAt(onTarget, target.curvature, result.positions);
+  return result;
+}
+
+}  // namespace explica::sphere

@@ -1,0 +1,180 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+// explica glm: what users type and what they get.
+
+#include "Explica/Geometry/Fixtures.h"
+#include "Explica/Geometry/MeshMeasures.h"
+#include "Explica/IO/SurfaceFile.h"
+#include "Explica/IO/VertexDataFile.h"
+#include "Explica/Testing/Command.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <sstream>
+
+namespace explica::testing {
+namespace {
+
+const char* const kPeople =
+    "participant_id\tage\tgroup\tsex\tcortex\tinsula\n"
+    "sub-1\t20\ta\tF\t2.6\t3.1\nsub-2\t30\tb\tF\t2.5\t3.0\nsub-3\t40\ta\tF\t2.5\t3.2\n"
+    "sub-4\t50\tb\tF\t2.3\t2.9\nsub-5\t60\ta\tF\t2.2\t3.0\nsub-6\t70\tb\tF\t2.2\t2.8\n";
+
+std::vector<std::string> cellsOf(const std::string& text, std::size_t line, char separator = '\t') {
+  std::istringstream lines(text);
+  std::string row, cell;
+  for (std::size_t n = 0; n <= line; ++n) std::getline(lines, row);
+  std::istringstream cells(row);
+  std::vector<std::string> found;
+  while (std::getline(cells, cell, separator)) found.push_back(cell);
+  return found;
+}
+
+TEST(Glm, OfATableHasTheSlopeOfEachRegion) {
+  TemporaryFolder folder;
+  writeText(folder / "people.tsv", kPeople);
+  const auto result = explica({"glm", folder / "people.tsv", "--model", "~ age", "--columns",
+                               "cortex", "--permutations", "1000", "--out", folder / "out"});
+  ASSERT_EQ(result.exitCode, 0) << result;
+  const auto row = cellsOf(readText(folder / "out/regions.tsv"), 1);
+  // Slope -153 / 17500 per year; residual sum of squares by hand.
+  const std::vector<double> age = {20, 30, 40, 50, 60, 70}, y = {2.6, 2.5, 2.5, 2.3, 2.2, 2.2};
+  double xy = 0, xx = 0, yy = 0, mean = 0;
+  for (const double v : y) mean += v / 6;
+  for (std::size_t i = 0; i < 6; ++i) {
+    xy += (age[i] - 45) * y[i];
+    xx += (age[i] - 45) * (age[i] - 45);
+    yy += (y[i] - mean) * (y[i] - mean);
+  }
+  const double slope = xy / xx, t = slope / std::sqrt((yy - slope * xy) / 4 / xx);
+  EXPECT_EQ(row[0], "cortex");
+  EXPECT_NEAR(std::stod(row[3]), slope, 1e-6);
+  EXPECT_NEAR(std::stod(row[6]), t, 1e-4);
+  // Of all 720 orders, those whose slope is as steep.
+  EXPECT_EQ(readJson(folder / "out/summary.json")["shuffles"], 720);
+  EXPECT_NEAR(std::stod(row[10]) * 720, std::round(std::stod(row[10]) * 720), 1e-2);
+}
+
+struct BadDesign {
+  std::string name, model, says;
+  std::vector<std::string> more = {};
+};
+
+class GlmRefuses : public ::testing::TestWithParam<BadDesign> {};
+
+TEST_P(GlmRefuses, InOneSentence) {
+  TemporaryFolder folder;
+  writeText(folder / "people.tsv", kPeople);
+  std::vector<std::string> words = {"glm",   folder / "people.tsv", "--model", GetParam().model,
+                                    "--out", folder / "out"};
+  words.insert(words.end(), GetParam().more.begin(), GetParam().more.end());
+  const auto result = explica(words);
+  EXPECT_EQ(result.exitCode, 2) << result;
+  EXPECT_NE(result.err.find(GetParam().says), std::string::npos) << result;
+  EXPECT_FALSE(std::filesystem::exists(folder / "out"));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Designs, GlmRefuses,
+    ::testing::Values(
+        BadDesign{"UnknownColumn", "~ weight", "no column 'weight'"},
+        BadDesign{"OneLevel", "~ sex", "column 'sex' has one value (F)"},
+        BadDesign{"Rank", "~ age + C(age)", "6 people"},
+        BadDesign{"NoSite", "~ age", "no column 'site'", {"--site", "fixed"}},
+        BadDesign{"Contrast", "~ group", "'group[c]' is no column", {"--contrast", "group[c]"}},
+        BadDesign{"Formula", "~ age +", "name of a column"}),
+    [](const auto& row) { return row.param.name; });
+
+TEST(Glm, NamesPeopleOfOneListOnlyAndMapsOfOtherSizes) {
+  TemporaryFolder folder;
+  const TriangleMesh sphere = geometry::makeIcosphere(1, 30);
+  io::writeSurface(folder / "sphere.surf.gii", sphere);
+  const Eigen::VectorXd values = Eigen::VectorXd::LinSpaced(sphere.vertexCount(), 2, 3);
+  std::string list = "participant_id\tfile\n";
+  for (int i = 1; i <= 6; ++i) {
+    const std::string name = "sub-" + std::to_string(i);
+    io::writeGiftiShape(folder / (name + ".shape.gii"), {{"t", "mm", values * (1 + 0.01 * i * i)}},
+                        "CortexLeft");
+    list += name + "\t" + name + ".shape.gii\n";
+  }
+  writeText(folder / "people.tsv", kPeople);
+  const auto run = [&](const std::string& maps) {
+    writeText(folder / "maps.tsv", maps);
+    return explica({"glm", folder / "maps.tsv", "--table", folder / "people.tsv", "--model",
+                    "t ~ age", "--surface", folder / "sphere.surf.gii", "--force", "--out",
+                    folder / "out"});
+  };
+  EXPECT_EQ(run(list).exitCode, 0);
+  EXPECT_NE(run(list + "sub-9\tsub-1.shape.gii\n").err.find("'sub-9'"), std::string::npos);
+  EXPECT_NE(run(list + "sub-2\tsub-2.shape.gii\n").err.find("'sub-2' is there twice"),
+            std::string::npos);
+  EXPECT_NE(run(list.substr(0, list.rfind("sub-6\t"))).err.find("'sub-6'"), std::string::npos);
+  io::writeGiftiShape(folder / "sub-4.shape.gii", {{"t", "mm", Eigen::VectorXd::Ones(7)}},
+                      "CortexLeft");
+  const auto wrong = run(list);
+  EXPECT_EQ(wrong.exitCode, 2);
+  EXPECT_NE(wrong.err.find("sub-4.shape.gii"), std::string::npos) << wrong;
+}
+
+/// Maps of forty people, smooth noise of 0.12 mm; 0.3 mm less within a cap in twenty of them.
+TEST(Glm, FindsALesionWhereItIs) {
+  TemporaryFolder folder;
+  const TriangleMesh sphere = geometry::makeIcosphere(3, 60);
+  io::writeSurface(folder / "lh.sphere.surf.gii", sphere);
+  const Vector centre = Vector(1, 2, 2).normalized();
+  std::mt19937 generator(5);
+  std::normal_distribution<double> normal;
+  std::string list = "participant_id\tleft\n", people = "participant_id\tgroup\tage\n";
+  const Eigen::MatrixXd unit = sphere.positions / 60;
+  double lesionArea = 0;
+  const Eigen::VectorXd areas = geometry::vertexAreas(sphere);
+  for (Eigen::Index v = 0; v < unit.rows(); ++v)
+    lesionArea += unit.row(v).dot(centre) > 0.85 ? areas[v] : 0;
+  for (int i = 0; i < 40; ++i) {
+    Eigen::VectorXd values = Eigen::VectorXd::Constant(unit.rows(), 2.5 + 0.02 * normal(generator));
+    for (int wave = 0; wave < 40; ++wave) {
+      const Vector direction = Vector(normal(generator), normal(generator), normal(generator)) * 3;
+      const double phase = normal(generator) * 10;
+      values.array() += 0.027 * ((unit * direction).array() + phase).sin();
+    }
+    const bool patient = i % 2 == 1;
+    for (Eigen::Index v = 0; v < unit.rows(); ++v) {
+      if (patient && unit.row(v).dot(centre) > 0.85) values[v] -= 0.3;
+    }
+    const std::string name = "sub-" + std::to_string(i);
+    io::writeGiftiShape(folder / (name + ".shape.gii"), {{"thickness", "mm", values}},
+                        "CortexLeft");
+    list += name + "\t" + name + ".shape.gii\n";
+    people += name + "\t" + (patient ? "patient\t" : "control\t") + std::to_string(20 + i) + "\n";
+  }
+  writeText(folder / "maps.tsv", list);
+  writeText(folder / "participants.tsv", people);
+  const auto result = explica({"glm", "--maps", folder / "maps.tsv", "--table",
+                               folder / "participants.tsv", "--model", "thickness ~ group + age",
+                               "--contrast", "thinner=group[patient] - group[control]", "--surface",
+                               folder / "lh.sphere.surf.gii", "--permutations", "500", "--tfce",
+                               "--out", folder / "out"});
+  ASSERT_EQ(result.exitCode, 0) << result;
+  const std::string table = readText(folder / "out/clusters.tsv");
+  const auto cluster = cellsOf(table, 1);
+  EXPECT_EQ(cluster[0], "thinner");
+  EXPECT_EQ(cluster[2], "-");
+  const Vector peak(std::stod(cluster[7]), std::stod(cluster[8]), std::stod(cluster[9]));
+  EXPECT_GT(peak.normalized().dot(centre), 0.85);
+  EXPECT_NEAR(std::stod(cluster[4]), lesionArea, 0.25 * lesionArea);
+  EXPECT_NEAR(std::stod(cluster[12]), -0.3, 0.12);
+  EXPECT_LE(std::stod(cluster[13]), 0.05);  // of the peak, by permutation
+  EXPECT_LE(std::stod(cluster[14]), 0.05);  // of the extent
+  EXPECT_LE(std::stod(cluster[16]), 0.05);  // of the peak, by random field theory
+  const auto p = io::readVertexMaps(folder / "out/thinner_tfce_p_fwe.shape.gii")[0].values;
+  int outside = 0;
+  for (Eigen::Index v = 0; v < unit.rows(); ++v)
+    outside += p[v] <= 0.05 && unit.row(v).dot(centre) < 0.6;
+  EXPECT_EQ(outside, 0);
+  EXPECT_GT(readJson(folder / "out/summary.json")["fwhm"], 10);
+  EXPECT_NE(readText(folder / "out/report.html").find("thinner: clusters"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace explica::testing
