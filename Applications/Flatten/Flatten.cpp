@@ -27,8 +27,8 @@
 #include "Explica/Provenance/Record.h"
 #include "Explica/Report/FlatFigure.h"
 #include "Explica/Unfolding/Account.h"
-#include "Explica/Unfolding/FlatSummary.h"
 #include "Explica/Unfolding/Distortion.h"
+#include "Explica/Unfolding/FlatSummary.h"
 
 #include <fnmatch.h>
 #include <nlohmann/json.hpp>

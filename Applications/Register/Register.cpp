@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "Explica/Sphere/Register.h"
+#include "Explica/Sphere/Summary.h"
 
 #include "Explica/Application/Command.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VertexDataFile.h"
 #include "Folding.h"
-
-#include <chrono>
 
 namespace explica::app {
 namespace {
@@ -52,7 +51,8 @@ void declare(Declaration& d, Settings& s) {
       .output("?h.sphere.reg", FileKind::Surface, "the same as FreeSurfer writes it")
       .output("areal.shape.gii", FileKind::VertexData, "log2 of the map's change of areas")
       .output("folding.shape.gii", FileKind::VertexData,
-              "sulcal depth and curvature of the sphere and of the template there");
+              "sulcal depth and curvature of the sphere and of the template there")
+      .results<sphere::SphereRegistration>();
 }
 
 std::string otherSide(const std::string& structure) {
@@ -97,28 +97,7 @@ void write(Context& context, const sphere::FoldingSphere& moving,
                       structure);
 }
 
-void report(Context& context, const sphere::SphereRegistration& result) {
-  const Eigen::ArrayXd areal = result.arealLog2.array().abs();
-  const Eigen::AngleAxisd rotation(result.rotation);
-  context.result("folding_correlation_before", result.before.sulc);
-  context.result("folding_correlation_after", result.after.sulc);
-  context.result("curvature_correlation_before", result.before.curvature);
-  context.result("curvature_correlation_after", result.after.curvature);
-  context.result("turned_over", static_cast<long long>(result.rounding.turnedAfter));
-  context.result("faces_mended", static_cast<long long>(result.rounding.turnedBefore));
-  context.result("vertices_mended", result.rounding.moved.size());
-  context.result("areal_log2_mean", areal.mean());
-  context.result("areal_log2_max", areal.maxCoeff());
-  context.result("rotation_degrees", rotation.angle() * 180 / kPi);
-  context.result("iterations", result.iterations);
-  if (result.rounding.turnedAfter > 0) {
-    context.warn(std::to_string(result.rounding.turnedAfter) +
-                 " faces are turned over: the registered sphere is not one to one there");
-  }
-}
-
 Termination run(Context& context, const Settings& s) {
-  const auto begin = std::chrono::steady_clock::now();
   std::string structure = io::readSurface(s.sphere).metadata.structure;
   if (structure == "Other") structure = "CortexLeft";
   const FoldingFiles files = subjectFiles(s.sphere, structure, s.sulc, s.curvature, s.surfaces);
@@ -134,9 +113,7 @@ Termination run(Context& context, const Settings& s) {
   }
   auto step = context.step("write");
   write(context, moving, result, structure);
-  report(context, result);
-  context.result("seconds",
-                 std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  context.results(result);
   return result.rounding.turnedAfter > 0 ? Termination::Stalled : result.termination;
 }
 

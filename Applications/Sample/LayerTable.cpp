@@ -9,6 +9,7 @@
 #include "Explica/Core/WholeFile.h"
 #include "Explica/IO/LabelNames.h"
 #include "Explica/IO/VolumeSeries.h"
+#include "Explica/Sampling/Summary.h"
 #include "Explica/Sampling/TissueLayers.h"
 
 #include <algorithm>
@@ -117,7 +118,7 @@ std::string rowsOf(const std::vector<sampling::LayerRow>& table, int layers,
 }
 
 void sampleVolume(Context& context, const SampleSettings& s, const Tissue& tissue,
-                  const std::string& path) {
+                  const std::string& path, sampling::SampleSummary& summary) {
   io::VolumeSeries series(path, s.reading);
   const auto mask = maskFor(series.grid(), s);
   const sampling::Sampler sampler(series.grid(),
@@ -146,8 +147,8 @@ void sampleVolume(Context& context, const SampleSettings& s, const Tissue& tissu
                        "': is known nowhere on the tissue; do both lie in the same space?");
   }
   const std::string name = stemOf(path);
-  context.result("known_fraction_" + name,
-                 static_cast<double>(known) / static_cast<double>(count * series.frames()));
+  summary.known.emplace_back(
+      name, static_cast<double>(known) / static_cast<double>(count * series.frames()));
   writeTextFile(context.output(name + "_layers.tsv"), text);
 }
 
@@ -167,10 +168,12 @@ Termination sampleLayers(Context& context, const SampleSettings& s) {
         "volume, without --depths here)");
   }
   const Tissue tissue = readTissue(context, s);
-  context.result("voxels", tissue.voxels.voxels.size());
-  context.result("layers", tissue.layers.layers);
+  sampling::SampleSummary summary;
+  summary.voxels = static_cast<std::int64_t>(tissue.voxels.voxels.size());
+  summary.layers = tissue.layers.layers;
   auto step = context.step("sample");
-  for (const std::string& volume : s.volumes) sampleVolume(context, s, tissue, volume);
+  for (const std::string& volume : s.volumes) sampleVolume(context, s, tissue, volume, summary);
+  context.results(summary);
   return Termination::NotRun;
 }
 

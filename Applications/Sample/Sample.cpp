@@ -16,6 +16,7 @@
 #include "Explica/IO/VolumeSeries.h"
 #include "Explica/Sampling/NearestColumn.h"
 #include "Explica/Sampling/Ribbon.h"
+#include "Explica/Sampling/Summary.h"
 #include "Explica/Sampling/Transfer.h"
 
 #include <nlohmann/json.hpp>
@@ -136,9 +137,9 @@ void declare(Declaration& d, SampleSettings& s) {
       .output("profiles.tsv", FileKind::Table, "volume, region, depth, mean, sd, n")
       .output("points.tsv", FileKind::Table,
               "with --points: nearest vertex, depth, distance in mm, region")
-      .output(
-          "*_layers.tsv", FileKind::Table,
-          "with --thickness NAME_layers.tsv: mean, sd, voxels, volume in mm^3, mean of columns");
+      .output("*_layers.tsv", FileKind::Table,
+              "with --thickness NAME_layers.tsv: mean, sd, voxels, volume in mm^3, mean of columns")
+      .results<sampling::SampleSummary>();
   declareRelations(d);
 }
 
@@ -358,7 +359,7 @@ class SurfaceSampling {
                          "same space? (--to-volume, --surface-space and --fs-volume say how)");
     }
     const double share = static_cast<double>(sum) / static_cast<double>(known.size());
-    context_.result("known_fraction_" + name, share);
+    summary_.known.emplace_back(name, share);
     constexpr double kFew = 0.5;
     if (share < kFew) {
       char text[160];
@@ -431,8 +432,8 @@ class SurfaceSampling {
         readSurface(context_, "vertex-surface", *s_.vertexSurface, reading).mesh;
     const sampling::NearestOnSurface nearest = sampling::nearestOn(theirs, cortex_.white.positions);
     const double mean = nearest.distance.mean();
-    context_.result("vertex_surface_distance_mean", mean);
-    context_.result("vertex_surface_distance_max", nearest.distance.maxCoeff());
+    summary_.surfaceDistance = mean;
+    summary_.surfaceDistanceMax = nearest.distance.maxCoeff();
     constexpr double kNear = 2;  // mm: white surfaces of one subject by two programs
     if (mean > kNear) {
       context_.warn(
@@ -455,8 +456,8 @@ class SurfaceSampling {
   }
 
   Termination finish(Termination termination) {
-    context_.result("vertices", count_);
-    if (!ribbon_) context_.result("depths", depths_);
+    summary_.vertices = static_cast<std::int64_t>(count_);
+    if (!ribbon_) summary_.depths = depths_;
     if (!valid_.empty()) {
       io::writeGiftiShape(context_.output("valid.shape.gii"), valid_, cortex_.structure);
     }
@@ -470,10 +471,11 @@ class SurfaceSampling {
       for (const sampling::ColumnPlace& place : places) {
         farthest = std::max(farthest, place.distance);
       }
-      context_.result("points", places.size());
-      context_.result("points_distance_max", farthest);
+      summary_.points = static_cast<std::int64_t>(places.size());
+      summary_.pointsDistance = farthest;
       writeTextFile(context_.output("points.tsv"), textOf(*points_, places, regions_));
     }
+    context_.results(summary_);
     return termination;
   }
 
@@ -489,6 +491,7 @@ class SurfaceSampling {
   Positions at_;  ///< depths x V
   std::vector<io::VertexMap> valid_;
   std::string profiles_;
+  sampling::SampleSummary summary_;
 };
 
 void requireDistinctNames(const SampleSettings& s) {

@@ -11,15 +11,15 @@
 #include "Explica/Provenance/Doubts.h"
 #include "Explica/Registration/HeadRegistration.h"
 #include "Explica/Registration/SkullStripping.h"
+#include "Explica/Registration/Summary.h"
 #include "Explica/Segmentation/Disagreement.h"
 #include "Explica/Segmentation/HeadContrast.h"
 #include "Explica/Segmentation/Hemisphere.h"
 #include "Explica/Segmentation/Plausibility.h"
+#include "Explica/Segmentation/Summary.h"
 #include "Explica/Segmentation/Tissue.h"
 #include "Explica/Segmentation/VoxelBox.h"
 #include "TemplateFiles.h"
-
-#include <nlohmann/json.hpp>
 
 #include <filesystem>
 #include <iomanip>
@@ -132,6 +132,7 @@ void declare(Declaration& d, Settings& s) {
       .options("Hemisphere", s.hemisphere);
   declareAccept(d, s.accept);
   declareOutputs(d);
+  d.results<registration::HeadSummary>().results<segmentation::TissueSummary>();
 }
 
 /// Labels in the image's space, and what they mean.
@@ -256,11 +257,12 @@ Volume<Label> aboveZero(const Volume<float>& image) {
 
 /// The brain of a head with skull, and what its border leaves in doubt.
 Volume<Label> takeOutOfSkull(Context& context, Judge& judge, const Boxes& boxes,
-                             const Volume<float>& image, const Volume<float>& carried) {
+                             const Volume<float>& image, const Volume<float>& carried,
+                             registration::HeadSummary& summary) {
   registration::BrainMask brain = registration::stripSkull(image, carried);
-  context.result("brain_border_offset", brain.meanOffset);
-  context.result("brain_border_deviation", brain.deviation);
-  context.result("brain_border_open_share", brain.openShare);
+  summary.borderOffset = brain.meanOffset;
+  summary.borderDeviation = brain.deviation;
+  summary.borderOpenShare = brain.openShare;
   judge.flag("brain-border", brain.openShare);
   writeWhole(context, "brain_doubt.nii.gz", boxes, std::move(brain.doubt));
   return std::move(brain.mask);
@@ -272,24 +274,26 @@ Head fitTemplate(Context& context, Judge& judge, const Settings& s, const Loaded
   const bool stripped =
       s.stripped == Stripped::Yes || mask.size() != 0 ||
       (s.stripped == Stripped::Auto && registration::looksStripped(image, loaded.volumes));
-  context.result("stripped", stripped);
+  registration::HeadSummary summary;
+  summary.stripped = stripped;
   context.info(stripped ? "T1: without skull" : "T1: with skull, which is taken off");
   auto step = context.step("template");
   const auto found = registered(context, s, mask.size() != 0 ? within(image, mask) : image,
                                 loaded.volumes, stripped);
-  if (!s.templateTransform) context.result("registration_information", found.information);
-  context.result("registration_correlation", found.agreement.correlation);
-  context.result("registration_least_jacobian", found.agreement.leastJacobian);
+  if (!s.templateTransform) summary.information = found.information;
+  summary.correlation = found.agreement.correlation;
+  summary.leastJacobian = found.agreement.leastJacobian;
   judge.flag("registration", found.agreement.correlation);
   const double stretch = registration::stretchOf(found.transform.affine);
-  context.result("registration_stretch", stretch);
+  summary.stretch = stretch;
   judge.flag("stretch", stretch);
   Head head;
   head.mask = std::move(mask);
-  if (!stripped) head.mask = takeOutOfSkull(context, judge, boxes, image, found.brain);
+  if (!stripped) head.mask = takeOutOfSkull(context, judge, boxes, image, found.brain, summary);
   const double halves =
       halvesOf(head.mask.size() != 0 ? head.mask : aboveZero(image), found.transform);
-  context.result("left_over_right", halves);
+  summary.leftOverRight = halves;
+  context.results(summary);
   judge.flag("half-head", halves);
   head.atlas =
       Atlas{registration::pulled(loaded.volumes.atlas, found.transform, image.grid), loaded.legend};
@@ -341,17 +345,14 @@ Head readHead(Context& context, Judge& judge, const Settings& s,
 }
 
 /// What a segmentation of a T1 cannot be.
-void judgeTissue(Context& context, Judge& judge, const segmentation::TissueSegmentation& tissue,
-                 double brainShare) {
-  const double contrast = segmentation::rimContrast(tissue.labels);
-  context.result("rim_contrast", contrast);
-  judge.require("contrast", contrast);
-  const double edge = segmentation::greyAtMaskEdge(tissue.labels);
-  context.result("grey_at_mask_edge", edge);
-  judge.flag("mask-edge", edge);
+void judgeTissue(Judge& judge, const segmentation::TissueSegmentation& tissue, double brainShare,
+                 segmentation::TissueSummary& summary) {
+  summary.rimContrast = segmentation::rimContrast(tissue.labels);
+  judge.require("contrast", *summary.rimContrast);
+  summary.greyAtMaskEdge = segmentation::greyAtMaskEdge(tissue.labels);
+  judge.flag("mask-edge", *summary.greyAtMaskEdge);
   const double volume =
       static_cast<double>(tissue.brainVoxels) * tissue.labels.grid.voxelVolume() / 1000;
-  context.result("brain_volume_ml", volume);
   judge.flag("brain-volume", volume / std::min(1.0, brainShare));
   judge.flag("grey-share", tissue.classes[1].share);
   judge.flag("white-share", tissue.classes[2].share);
@@ -359,16 +360,10 @@ void judgeTissue(Context& context, Judge& judge, const segmentation::TissueSegme
 
 /// Where template and image show different tissues, the image is believed, and the reader told.
 void compareWithTemplate(Context& context, const segmentation::TissueSegmentation& tissue,
-                         const Head& head) {
+                         const Head& head, segmentation::TissueSummary& summary) {
   if (head.expected.size() == 0) return;
   const auto found = segmentation::whiteDisagreement(tissue.labels, head.expected);
-  context.result("template_white_not_white_share", found.share);
-  context.result("template_white_not_white_ml", found.largest / 1000);
-  context.result("template_white_not_white_radius", found.deepest);
-  if (found.voxels > 0) {
-    context.result("template_white_not_white_at",
-                   nlohmann::ordered_json{found.middle.x(), found.middle.y(), found.middle.z()});
-  }
+  summary.template_ = found;
   std::ostringstream sentence;
   sentence << std::fixed << std::setprecision(0) << found.voxels << " voxels around "
            << found.middle.x() << ", " << found.middle.y() << ", " << found.middle.z()
@@ -385,15 +380,6 @@ segmentation::TissueSegmentation findTissue(Context& context, const Settings& s,
   auto tissue = segmentation::segmentTissue(image, mask, s.tissue, context.monitor());
   step.iterations(tissue.iterations);
   step.termination(tissue.termination);
-  context.result("brain_voxels", tissue.brainVoxels);
-  context.result("iterations", tissue.iterations);
-  constexpr std::array<const char*, 3> kNames = {"csf", "grey", "white"};
-  for (int k = 0; k < 3; ++k) {
-    context.result(std::string(kNames[k]) + "_mean", tissue.classes[k].mean);
-    context.result(std::string(kNames[k]) + "_deviation", tissue.classes[k].deviation);
-    context.result(std::string(kNames[k]) + "_share", tissue.classes[k].share);
-  }
-  context.result("fluid_of_white", tissue.deepFluid / tissue.classes[2].mean);
   return tissue;
 }
 
@@ -408,16 +394,6 @@ void writeHemisphere(Context& context, const Boxes& boxes, const std::string& fo
   write("cut.nii.gz", segmentation::maskOf(hemisphere.labels, segmentation::kCut));
 }
 
-void countHemisphere(Context& context, const std::string& side,
-                     const segmentation::Hemisphere& hemisphere) {
-  context.result("white_voxels" + side, hemisphere.whiteVoxels);
-  context.result("grey_voxels" + side, hemisphere.greyVoxels);
-  context.result("deep_voxels_filled" + side, hemisphere.deepVoxels);
-  context.result("ventricle_voxels_filled" + side, hemisphere.ventricleVoxels);
-  context.result("cavity_voxels_filled" + side, hemisphere.cavityVoxels);
-  context.result("stray_voxels_dropped" + side, hemisphere.strayVoxels);
-}
-
 /// Both sides in one volume, with the numbers of FreeSurfer's ribbon.
 void addSide(Volume<Label>& both, const segmentation::Hemisphere& hemisphere, Side side) {
   const Label shift = side == Side::Left ? 0 : 39;
@@ -428,10 +404,11 @@ void addSide(Volume<Label>& both, const segmentation::Hemisphere& hemisphere, Si
 }
 
 void makeHemispheres(Context& context, const Settings& s, const Boxes& boxes,
-                     const segmentation::TissueSegmentation& tissue, const Atlas& atlas) {
+                     const segmentation::TissueSegmentation& tissue, const Atlas& atlas,
+                     segmentation::TissueSummary& summary) {
   auto step = context.step("hemisphere");
   const bool both = s.hemisphere.side == Side::Both;
-  context.result("hemisphere", std::string(nameOf(s.hemisphere.side)));
+  summary.side = s.hemisphere.side;
   Volume<Label> merged;
   if (both) merged = Volume<Label>(tissue.labels.grid, 0);
   for (const Side side : {Side::Left, Side::Right}) {
@@ -441,7 +418,9 @@ void makeHemispheres(Context& context, const Settings& s, const Boxes& boxes,
     const auto hemisphere = segmentation::extractHemisphere(tissue, atlas.labels, atlas.legend,
                                                             options, context.monitor());
     const std::string folder = side == Side::Left ? "left/" : "right/";
-    countHemisphere(context, both ? (side == Side::Left ? "_left" : "_right") : "", hemisphere);
+    (!both                ? summary.one
+     : side == Side::Left ? summary.left
+                          : summary.right) = segmentation::countsOf(hemisphere);
     writeHemisphere(context, boxes, both ? folder : "", hemisphere);
     if (both) addSide(merged, hemisphere, side);
   }
@@ -486,10 +465,13 @@ Termination run(Context& context, const Settings& s) {
   }
   const segmentation::TissueSegmentation tissue = findTissue(context, s, image, head.mask);
   image = {};
-  judgeTissue(context, judge, tissue, head.brainShare);
-  compareWithTemplate(context, tissue, head);
+  segmentation::TissueSummary summary;
+  summary.tissue = &tissue;
+  judgeTissue(judge, tissue, head.brainShare, summary);
+  compareWithTemplate(context, tissue, head, summary);
   writeTissue(context, boxes, tissue);
-  if (head.atlas) makeHemispheres(context, s, boxes, tissue, *head.atlas);
+  if (head.atlas) makeHemispheres(context, s, boxes, tissue, *head.atlas, summary);
+  context.results(summary);
   return tissue.termination;
 }
 

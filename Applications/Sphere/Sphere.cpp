@@ -9,8 +9,8 @@
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/Sphere/SphereMap.h"
+#include "Explica/Sphere/Summary.h"
 
-#include <chrono>
 #include <cstdio>
 
 namespace explica::app {
@@ -36,7 +36,8 @@ void declare(Declaration& d, Settings& s) {
       .output("?h.sphere", FileKind::Surface, "the same as FreeSurfer writes it")
       .output("distortion.shape.gii", FileKind::VertexData,
               "log2 of the ratio of areas; largest over smallest stretch")
-      .output("evolution.tsv", FileKind::Table, "levels from coarse to fine: energy, iterations");
+      .output("evolution.tsv", FileKind::Table, "levels from coarse to fine: energy, iterations")
+      .results<sphere::SphereSummary>();
 }
 
 std::string tableOf(const std::vector<sphere::SphereLevel>& levels) {
@@ -66,23 +67,7 @@ void write(Context& context, const TriangleMesh& surface, const sphere::SphereMa
   writeTextFile(context.output("evolution.tsv"), tableOf(map.levels));
 }
 
-void report(Context& context, const sphere::SphereMap& map,
-            const sphere::SphereDistortion& distortion) {
-  context.result("turned_over", static_cast<long long>(distortion.turnedOver));
-  context.result("areal_log2_mean", distortion.arealMean);
-  context.result("areal_log2_max", distortion.arealMax);
-  context.result("stretch_median", distortion.stretchMedian);
-  context.result("stretch_p95", distortion.stretchP95);
-  context.result("vertices_moved_by_rounding", map.rounding.moved.size());
-  context.result("iterations", map.iterations);
-  if (distortion.turnedOver > 0) {
-    context.warn(std::to_string(distortion.turnedOver) +
-                 " faces are turned over in single precision: the map is not one to one there");
-  }
-}
-
 Termination run(Context& context, const Settings& s) {
-  const auto begin = std::chrono::steady_clock::now();
   const auto loaded = readSurface(context, "SURFACE", s.surface, s.reading);
   sphere::requireSphere(loaded.mesh, s.surface);
   sayHowRead(context, loaded.origin);
@@ -101,11 +86,9 @@ Termination run(Context& context, const Settings& s) {
   const auto distortion = sphere::sphereDistortion(surface, map.positions);
   if (inward) surface.faces.col(1).swap(surface.faces.col(2));
   write(context, surface, map, distortion, loaded.metadata);
-  report(context, map, distortion);
-  context.result("seconds",
-                 std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   const Termination end = distortion.turnedOver > 0 ? Termination::Stalled : map.termination;
-  context.result("stop_reason", std::string(nameOf(end)));
+  context.results(
+      sphere::SphereSummary{distortion, map.rounding.moved.size(), map.iterations, end});
   return end;
 }
 

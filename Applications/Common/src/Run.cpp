@@ -62,7 +62,7 @@ struct Context::State {
   std::optional<Json> flags;  ///< numbers outside of their limits; nothing if none was judged
   bool plausible = true;
   std::vector<std::pair<Judgement, std::string>> reasons;  ///< of results that are not good
-  std::optional<Meeting> meeting = {};  ///< the files read so far
+  std::optional<Meeting> meeting = {};                     ///< the files read so far
 
   [[nodiscard]] bool doubtful() const {
     return !plausible || std::any_of(reasons.begin(), reasons.end(), [](const auto& reason) {

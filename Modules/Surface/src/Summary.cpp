@@ -45,7 +45,7 @@ Eigen::VectorXd validOf(const CorticalSurfaces& made) {
 
 namespace {
 
-constexpr std::array kNames = {"white", "mid", "pial"};  // in keys
+constexpr std::array kNames = {"white", "mid", "pial"};                              // in keys
 constexpr std::array kTitles = {"white surface", "middle surface", "pial surface"};  // in titles
 
 /// The value where it applies, else nothing.

@@ -21,22 +21,6 @@ std::string sideWord(const StepFolder& step) {
   return step.side().empty() ? "" : " (" + step.side() + ")";
 }
 
-/// How much of each volume is known on the cortex.
-std::vector<ReportFlag> sampleFlags(const StepFolder& step) {
-  constexpr std::string_view kKey = "known_fraction_";
-  constexpr double kNearlyAll = 0.95;
-  std::vector<ReportFlag> flags;
-  for (const auto& [key, value] : step.summary.items()) {
-    if (key.rfind(kKey, 0) != 0 || !value.is_number()) continue;
-    const double share = value.get<double>();
-    flags.push_back({share >= kNearlyAll ? FlagLevel::Good : FlagLevel::Notice,
-                     key.substr(kKey.size()) + " is known" + sideWord(step) + ":",
-                     "at " + percent(share) + " of the places where it was asked for",
-                     step.has("profiles.tsv") ? kSampledPlace : ""});
-  }
-  return flags;
-}
-
 /// Where a heart is open, how its segments are oriented, and how much of its wall is left out.
 std::vector<ReportFlag> heartFlags(const StepFolder& step) {
   std::vector<ReportFlag> flags;
@@ -170,7 +154,6 @@ std::vector<ReportFlag> doubtFlags(const StepFolder& step) {
 }
 
 std::vector<ReportFlag> flagsOf(const StepFolder& step) {
-  if (step.command == "sample") return sampleFlags(step);
   if (step.command == "heart") return heartFlags(step);
   return {};
 }

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "Explica/Core/Results.h"
 #include "Explica/Core/Hemisphere.h"
+#include "Explica/Core/Results.h"
 #include "Explica/Provenance/Options.h"
 
 #include <functional>
