@@ -350,7 +350,7 @@ def appendix_a(work, page):
                   f"{1000 * r['seconds']:.0f}", f"{100 * r['traced']:.0f} %"] for v, r in found.items()]
     page.text("Confocal spheroids at 2 mm, whose correspondences are known exactly. Appendix A to the letter takes the "
               "Eulerian average where the upwind neighbours' boundary points are nearer than λ, else follows the "
-              "trajectory to the first grid face that agrees. Its error hangs on λ, from the Lagrangian's to that of "
+              "trajectory to the first grid face that agrees. Its error depends on λ, from the Lagrangian's to that of "
               "the Eulerian sweep with better boundary values. Ours follows every trajectory to the first face and "
               "interpolates there to second order: its error is near the Lagrangian's for every λ, with no jump at "
               "infinity.")

@@ -30,7 +30,7 @@ struct Settings {
 };
 
 void declare(Declaration& d, Settings& s) {
-  d.synopsis("surfaces with the same vertices beside a reference: what each keeps and what not")
+  d.synopsis("area, length, angle and distance distortion of surfaces against a reference")
       .description(
           R"(Compares flat maps, inflated surfaces, spheres and unfolded surfaces with the surface that they came from, on the faces that all of them have. Area error, edge strain and angle change are means over faces and edges. Distances are measured on the reference along the surface, between the same pairs of vertices for all; on flat maps straight, on other surfaces along them; each kind of surface at the scale that suits it best. 'Turned over' and 'crossings' are exact. 'Seen' is the share of the area that rays reach: straight from above for a flat map, from all sides of an enclosing sphere for any other.
 

@@ -102,7 +102,7 @@ void declareOutputs(Declaration& d) {
 void declare(Declaration& d, Settings& s) {
   d.synopsis("a patch, or a hemisphere with cuts, as a flat map that folds nowhere")
       .description(
-          R"(Lays a surface with a rim flat: exactly planar, no face turned over, nowhere one part on another, face areas kept closely and lengths as well as can be. Areas and lengths are those of --reference (same vertices); for an 'unfolded.surf.gii' of 'explica unfold' they are those of the surface that its record names, and the region is its own. Holes stay open; a part that hangs on the rest by a single vertex is left out.
+          R"(Lays a surface with a rim flat: exactly planar, no face turned over, nowhere one part on another, face areas kept closely and lengths as well as can be. Areas and lengths are those of --reference (same vertices); for an 'unfolded.surf.gii' of 'explica unfold' they are those of the surface that its record names, and the region is its own. Holes stay open; a part joined to the rest by a single vertex is left out.
 
 A closed surface needs --label (a patch) or --cuts (a hemisphere): a FreeSurfer patch or a label of the vertices that stay, or a flat map whose faces stay.
 

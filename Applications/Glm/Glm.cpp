@@ -97,7 +97,8 @@ Maps are best smoothed before (explica smooth): random field theory assumes a sm
       .output("clusters.tsv", FileKind::Table, "with a surface: clusters with peak, size and P")
       .output("regions.tsv", FileKind::Table, "of a table of regions: each one's numbers")
       .output("design.tsv", FileKind::Table, "the design matrix, a row a person")
-      .output("report.html", FileKind::Report, "the results as a page");
+      .output("report.html", FileKind::Report, "the results as a page")
+      .results<GlmSummary>();
 }
 
 /// The formula with what --site adds to it.
@@ -229,6 +230,26 @@ bool inferAll(Context& context, const GlmSettings& s, const Observations& o, con
   return complete;
 }
 
+GlmSummary summaryOf(const GlmSettings& s, const Observations& o, const GlmResults& results) {
+  GlmSummary summary;
+  summary.people = static_cast<std::int64_t>(o.people.size());
+  (o.placeNames.empty() ? summary.vertices : summary.regions) = o.places;
+  summary.degreesOfFreedom =
+      static_cast<double>(results.design.matrix.rows() - results.design.matrix.cols());
+  if (results.smoothness) summary.fwhm = results.smoothness->fwhm;
+  if (o.surface) {
+    summary.clusters = 0;
+    for (const auto& inference : results.inferences) {
+      *summary.clusters += static_cast<std::int64_t>(inference.clusters.size());
+    }
+  }
+  if (s.permutations > 0) {
+    summary.shuffles = static_cast<std::int64_t>(results.inferences.front().shuffles);
+    summary.exchange = std::string(nameOf(results.inferences.front().exchange));
+  }
+  return summary;
+}
+
 void writeAll(Context& context, const GlmSettings& s, const Observations& o, const Fitted& fitted,
               const GlmResults& results) {
   auto step = context.step("write");
@@ -240,18 +261,7 @@ void writeAll(Context& context, const GlmSettings& s, const Observations& o, con
   if (o.surface) writeTextFile(context.output("clusters.tsv"), clusterTable(o, results));
   writeTextFile(context.output("report.html"),
                 resultPage(s, o, results, fitted.values.size() > 0 ? &fitted.values : nullptr));
-  std::size_t clusters = 0;
-  for (const auto& inference : results.inferences) clusters += inference.clusters.size();
-  context.result("people", o.people.size());
-  context.result(o.placeNames.empty() ? "vertices" : "regions", static_cast<long long>(o.places));
-  context.result("df",
-                 static_cast<double>(results.design.matrix.rows() - results.design.matrix.cols()));
-  if (results.smoothness) context.result("fwhm", results.smoothness->fwhm);
-  if (o.surface) context.result("clusters", clusters);
-  if (s.permutations > 0) {
-    context.result("shuffles", static_cast<long long>(results.inferences.front().shuffles));
-    context.result("exchange", std::string(nameOf(results.inferences.front().exchange)));
-  }
+  context.results(summaryOf(s, o, results));
 }
 
 Termination run(Context& context, const GlmSettings& s) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "Explica/Core/Results.h"
 #include "Explica/Statistics/Inference.h"
 #include "Observations.h"
 
@@ -18,6 +19,28 @@ struct GlmResults {
   std::vector<statistics::Inference> inferences;  ///< as many as contrasts
   std::optional<statistics::Smoothness> smoothness;
 };
+
+/// A model in numbers.
+struct GlmSummary {
+  std::int64_t people = 0;
+  std::optional<std::int64_t> vertices, regions, clusters, shuffles;
+  double degreesOfFreedom = kNaN;
+  std::optional<double> fwhm;  ///< mm, of the residuals
+  std::optional<std::string> exchange;
+};
+
+inline void describe(Results& t, const GlmSummary& r) {
+  t.count("people", "People", "In the model.", r.people).inHead();
+  t.count("vertices", "Vertices", "Places with a model of their own.", r.vertices);
+  t.count("regions", "Regions", "Places with a model of their own.", r.regions);
+  t.number("df", "Degrees of freedom of the residuals", "", "Where all people have a value.",
+           r.degreesOfFreedom)
+      .inHead();
+  t.number("fwhm", "Smoothness of the residuals", "mm", "Full width at half maximum.", r.fwhm);
+  t.count("clusters", "Clusters", "Of all contrasts, beyond --threshold.", r.clusters).inHead();
+  t.count("shuffles", "Permutations done", "", r.shuffles);
+  t.text("exchange", "Exchanged", "", r.exchange);
+}
 
 /// A contrast's name as files have it: letters, digits, '.', '_' and '-'.
 [[nodiscard]] std::string fileName(const std::string& contrast);

@@ -21,7 +21,7 @@ struct Settings {
 };
 
 void declare(Declaration& d, Settings& s) {
-  d.synopsis("run again what a record describes, and compare the results with it")
+  d.synopsis("repeat an earlier run from its record and compare the results")
       .description(
           "Takes command, options and inputs from the record. Prints one line per output: "
           "identical, "

@@ -43,7 +43,7 @@ TemplatePaths pathsOf(const std::string& name) {
 
 /// Reads a volume of a template.  Where its header places the voxels in two ways, the sform counts:
 /// it is the one that leads to a stereotaxic frame; registration finds the rest, and only which
-/// side is left hangs on it.
+/// side is left depends on it.
 template <class Read>
 auto readPlaced(Context& context, const fs::path& path, const Read& read) {
   io::VolumeReadOptions reading{.dimension = 3};

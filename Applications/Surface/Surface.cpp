@@ -126,7 +126,9 @@ void declareVolumes(Declaration& d, Settings& s) {
                    "together reach one half",
                    s.greyShare)
       .inputOption("insulated-mask", FileKind::LabelVolume,
-                   "with --inner-level: not 0 where neither side is (a cut)", s.insulatedMask)
+                   "with --inner-level: nonzero where there is neither white matter nor outside, "
+                   "e.g. a cut through the callosum",
+                   s.insulatedMask)
       .inputOption("image", FileKind::Volume,
                    "image whose labels these are, such as a T1: white and outer border are placed "
                    "by it, within a voxel of the labels' border",

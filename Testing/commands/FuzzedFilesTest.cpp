@@ -195,7 +195,7 @@ class FuzzedFiles : public ::testing::TestWithParam<Use> {
 
 TEST_P(FuzzedFiles, AreTakenWhole) {
   const CommandResult result = answerTo(seed(), 0);
-  // Some volumes lie beside the surface, which is told after they have been read.
+  // Some volumes lie beside the surface, which is reported after they have been read.
   const bool taken = result.exitCode == 0 || result.exitCode == 3 ||
                      result.err.find("is known at no vertex") != std::string::npos;
   EXPECT_EQ(taken, GetParam().takesTheSeed) << result;

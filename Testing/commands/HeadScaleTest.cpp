@@ -393,7 +393,7 @@ TEST_F(WholeHead, ALesionIsNotDrowned) {
   double fluid = 0;
   for (const std::size_t v : lesion) fluid += found[v] == 1;
   EXPECT_GT(fluid, 0.9 * static_cast<double>(lesion.size()));
-  // It is told, too, and where it is: of its voxels those deep in the template's white matter.
+  // It is reported, too, and where it is: of its voxels those deep in the template's white matter.
   EXPECT_NE(run.err.find("deep white matter in the template"), std::string::npos) << run;
   const auto summary = readJson(folder_ / "segment/summary.json");
   EXPECT_GT(summary["white_unlike_template"].get<double>(), 3000);

@@ -334,7 +334,7 @@ TEST(ThicknessCommand, ASliceOfCortexGivesContoursLayersAndItsSulci) {
 
 TEST(ThicknessCommand, GreyMatterBeyondANeckIsCountedAndHarmsNothingElse) {
   TemporaryFolder folder;
-  // A shell of 4 mm, and a ball of grey matter that hangs on it by a neck of two voxels: what flows
+  // A shell of 4 mm, and a ball of grey matter joined to it by a neck of two voxels: what flows
   // into the ball leaves it on all sides, so that u is 1 there in nearly all its digits.
   const auto labelAt = [](const Point& p) -> Label {
     const Point x = p + Point(12, 0, 0);

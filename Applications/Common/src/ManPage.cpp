@@ -74,10 +74,10 @@ std::string manPageOf(const Json& command, const std::string& version) {
 }
 
 std::string overviewManPageOf(const Json& commands, const std::string& version) {
-  std::string text =
-      ".TH EXPLICA 1 \"\" \"Explica " + roff(version) +
-      "\" \"User Commands\"\n.SH NAME\nexplica \\- measures folded annular tissue and unfolds it\n"
-      ".SH SYNOPSIS\n.B explica\n.I COMMAND\n[arguments] [options]\n.SH COMMANDS\n";
+  std::string text = ".TH EXPLICA 1 \"\" \"Explica " + roff(version) +
+                     "\" \"User Commands\"\n.SH NAME\nexplica \\- measures layered tissue such as "
+                     "cortex or the heart wall, and unfolds it\n"
+                     ".SH SYNOPSIS\n.B explica\n.I COMMAND\n[arguments] [options]\n.SH COMMANDS\n";
   for (const Json& command : commands) {
     text += ".TP\n.BR explica\\-" + roff(identifier(word(command["command"]), '-')) + " (1)\n" +
             roff(word(command["synopsis"])) + "\n";

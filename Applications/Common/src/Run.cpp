@@ -394,7 +394,8 @@ Outcome Context::runThrough(const Command& command, const Json& options) {
 
 namespace {
 
-/// Hashes every file that a declared input names, so that a missing one is told before any work.
+/// Hashes every file that a declared input names, so that a missing one is reported before any
+/// work.
 void noteDeclaredInputs(Context& context, const Declaration& declaration) {
   for (const Parameter& parameter : declaration.parameters) {
     if (!parameter.file) continue;

@@ -11,7 +11,7 @@ first of these that holds: it is left out because it touches one boundary only; 
 from 1 (or 0) there by more than 1e-6, so that there is no direction to follow; it lies within two
 voxels of a recovered sulcus; the rest.  Prints for each the voxels, the clusters, the largest
 cluster and, of the clusters, the mean share of their surface's faces that meet tissue with
-thickness: what hangs on a neck has little.
+thickness: what is joined by a neck has little.
 """
 import argparse
 import pathlib

@@ -96,7 +96,7 @@ void describe(Results& t, const Measurement& m) {
           "The others come from the transport equation.",
           static_cast<double>(found.traced) / (2.0 * static_cast<double>(m.annulus.count())));
   t.count("voxels_without_thickness", "Voxels without thickness",
-          "Their trajectory does not reach both boundaries.", found.missing)
+          "Thickness could not be measured there.", found.missing)
       .inHead();
   t.count("voxels_cut_by_image", "Voxels cut by the image",
           "Tissue runs out of the image there, and its thickness is not known.", m.cutVoxels);

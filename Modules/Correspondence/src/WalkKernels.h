@@ -75,7 +75,7 @@ struct PlaneLanes {
   Lane length;  ///< mm
 };
 
-/// Of each lane that is taken, what the step does; no lane's result hangs on another's.  The same
+/// Of each lane that is taken, what the step does; no lane's result depends on another's.  The same
 /// numbers on every processor.
 void tryStep(const FieldView& view, StepLanes& lanes);
 void stepToPlane(const FieldView& view, PlaneLanes& lanes);

@@ -152,9 +152,9 @@ struct Coarsened {
   FlatPositions circle;
 };
 
-/// What hangs on the rest by a thin neck lands in a few faces of the circle, a neck behind a neck
-/// in a face of these, and so on until rounding turns faces over: such a disc is coarsened until it
-/// has no such necks any more.
+/// What is joined to the rest by a thin neck lands in a few faces of the circle, a neck behind a
+/// neck in a face of these, and so on until rounding turns faces over: such a disc is coarsened
+/// until it has no such necks any more.
 Coarsened coarsened(const IntrinsicDisc& disc) {
   Coarsened result;
   for (Eigen::Index smallest = kCoarsest; smallest >= kFewest; smallest /= 2) {

@@ -10,7 +10,7 @@
 
 namespace explica::io {
 
-/// A format of surfaces: how its files are told, read and written.
+/// A format of surfaces: how its files are recognised, read and written.
 struct SurfaceFormat {
   const char* name;
   std::vector<const char*> endings;   ///< lower case; none: written under every other name

@@ -9,7 +9,7 @@
 
 namespace explica::io {
 
-/// By so many bytes of a file, unpacked, its format is told.
+/// By so many bytes of a file, unpacked, its format is recognised.
 inline constexpr std::size_t kTellingBytes = 348;
 
 /// An ending under which a format is written.
@@ -27,7 +27,7 @@ struct VolumeLayout {
   bool headApart = false;           ///< stands before what is packed
 };
 
-/// A format of volumes: how its files are told, read and written.
+/// A format of volumes: how its files are recognised, read and written.
 struct VolumeFormat {
   const char* name;
   bool (*looksLike)(ByteView firstBytes);

@@ -13,7 +13,7 @@
 namespace explica::segmentation {
 namespace {
 
-// White matter that hangs on the rest by less than two voxels, and has no cortex about it.
+// White matter joined to the rest by less than two voxels, and has no cortex about it.
 constexpr double kThread = 1.1;        // voxels: what is left of it is further from its border
 constexpr double kReach = 1.1;         // voxels beyond that which belong to it again
 constexpr double kLeastPiece = 10;     // mm^3: fewer voxels tell nothing
@@ -291,8 +291,8 @@ std::int64_t dropUnlessInCortex(VoxelSet& white, const Volume<Label>& seg,
   return dropped;
 }
 
-/// Takes off what hangs on white matter by a thread and has no cortex about it, as fat of the orbit
-/// that stripping has left; how many voxels.
+/// Takes off what is joined to white matter by a thread and has no cortex about it, as fat of the
+/// orbit that stripping has left; how many voxels.
 std::int64_t dropHanging(VoxelSet& white, const Volume<Label>& seg) {
   const Grid& grid = white.grid;
   const double thread = kThread * std::cbrt(grid.voxelVolume());

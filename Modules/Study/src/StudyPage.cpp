@@ -114,7 +114,7 @@ Json rowJson(const StudyRow& row, const std::vector<StudyFlag>& flags, bool regi
 constexpr const char* kBody =
     R"(<noscript><p>Sorting and plots need JavaScript; study.tsv holds the same table.</p></noscript>
 <section id="failures" aria-label="what failed"></section>
-<section><h2>How the numbers lie</h2><p>A dot is a row; its name appears under the pointer, a click finds it in the table. Of many rows an area shows how many lie where, and dots are those far off. Yellow: far from the others, by a robust z above 3.5 (0.6745 (x - median) / MAD, over at least 8 rows). An axis holds what is within 4 robust deviations (1.4826 MAD) of the median; a triangle at its end is a row that lies beyond.</p><div id="strips"></div></section>
+<section><h2>Distribution across people</h2><p>A dot is a row; its name appears under the pointer, a click finds it in the table. Of many rows an area shows how many lie where, and dots are those far off. Yellow: far from the others, by a robust z above 3.5 (0.6745 (x - median) / MAD, over at least 8 rows). An axis holds what is within 4 robust deviations (1.4826 MAD) of the median; a triangle at its end is a row that lies beyond.</p><div id="strips"></div></section>
 <section><h2>All rows</h2>
 <form><input type="search" id="search" placeholder="participant, side or state" aria-label="filter rows">
 <label><input type="checkbox" id="flagged"> only those that need a look</label>

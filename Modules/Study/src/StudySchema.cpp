@@ -263,7 +263,7 @@ void checkStudyFile(const StudyFile& file, const Json& schema) {
   const std::vector<std::string> faults =
       provenance::schemaFaults(file.values, provenance::textOf(schema));
   if (faults.empty()) return;
-  // The innermost fault is told; those around it only follow from it.
+  // The innermost fault is reported; those around it only follow from it.
   Place place;
   std::string said = faults.front();
   for (const std::string& fault : faults) {

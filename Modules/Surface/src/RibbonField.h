@@ -47,7 +47,7 @@ class RibbonField {
   RibbonField(const CorticalTissue& tissue, const TriangleMesh& white, const Monitor& monitor);
 
   /// Trajectory from a point of the white surface with outward normal `normal`.
-  /// @param face  of the white surface, at the point: only the time hangs on it
+  /// @param face  of the white surface, at the point: only the time depends on it
   [[nodiscard]] Trajectory trace(const Point& start, const Vector& normal, std::int32_t face) const;
 
   [[nodiscard]] std::int64_t cutLinks() const { return cutLinks_; }

@@ -189,7 +189,7 @@ void describeSheet(Results& t, const SurfaceSummary& s, const SheetFacts& sheet)
   t.count("pieces_left_out", "Pieces left out", "Small beside the sheet's thickness.",
           where(open, sheet.piecesLeftOut));
   t.count("vertices_interpolated", "Vertices interpolated",
-          "Their trajectory does not reach both boundaries.", where(open, sheet.interpolated));
+          "Thickness could not be measured there.", where(open, sheet.interpolated));
   t.count("vertices_cut_by_image", "Vertices cut by the image",
           "The image's edge may change their thickness.", where(open, sheet.cutByImage));
   t.number("thickness_mean_known", "Mean thickness where it is known", "mm", "", s.thicknessKnown);

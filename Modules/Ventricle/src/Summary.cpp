@@ -49,7 +49,7 @@ void describeVolumes(Results& t, const Frame& ed, const Frame& es, double ejecti
 void describeThickness(Results& t, const Frame& ed, const Frame& es, bool beats) {
   const auto later = [&](double value) { return beats ? known(value) : std::nullopt; };
   t.number("thickness_mean_ed", "Mean wall thickness at end-diastole", "mm",
-           "Over the columns of the wall that count.", known(ed.thickness))
+           "Over the part of the wall included in the mean.", known(ed.thickness))
       .inHead();
   t.number("thickness_mean_es", "Mean wall thickness at end-systole", "mm", "",
            later(es.thickness));
@@ -63,7 +63,7 @@ void describeThickness(Results& t, const Frame& ed, const Frame& es, bool beats)
                                    std::pair{LeftOut::Valve, "voxels_left_out_valve_ed"},
                                    std::pair{LeftOut::Cap, "voxels_left_out_cap_ed"},
                                    std::pair{LeftOut::Unreached, "voxels_left_out_unreached_ed"}};
-  t.count("voxels_counted_ed", "Voxels of the wall that count", "At end-diastole.",
+  t.count("voxels_counted_ed", "Voxels of the wall included in the mean", "At end-diastole.",
           countOf(ed, LeftOut::None));
   for (const auto& [why, key] : kLeftOut) {
     t.count(key, "Voxels of the wall left out: " + std::string(nameOf(why)), "At end-diastole.",
@@ -94,7 +94,7 @@ void describe(Results& t, const HeartSummary& s) {
           beats ? std::optional<std::int64_t>(es.number) : std::nullopt);
   describeVolumes(t, ed, es, beat.ejectionFraction.value_or(kNaN), beats);
   describeThickness(t, ed, es, beats);
-  t.number("axis_angle_deg", "Long axis to the slices' normal", "degrees", "",
+  t.number("axis_angle_deg", "Tilt of the heart's axis", "degrees", "",
            known(ed.axis.stackAngleDeg))
       .inHead();
   t.number("axis_spread_mm", "Spread of the slices' centres about the axis", "mm", "",

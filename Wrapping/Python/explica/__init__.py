@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The Explica developers
 # SPDX-License-Identifier: Apache-2.0
-"""Explica: measure folded annular tissue, and unfold it for a chosen viewpoint.
+"""Explica: measure layered tissue such as cortex or the heart wall, and unfold it for a chosen viewpoint.
 
 Arrays go in and come out as numpy arrays.  Images are arrays of shape (I, J, K) with a 4 x 4 affine
 from index to RAS millimetres, as in nibabel; surfaces are positions (V, 3) in RAS millimetres and

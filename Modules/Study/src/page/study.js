@@ -59,7 +59,7 @@ function shapeOf(c, left, width, bottom, height) {
 function showFailures() {
   const failed = data.rows.filter((r) => r.cells[state] !== 'done');
   if (failed.length === 0) return;
-  make('h2', failed.length === 1 ? 'One row is not done' : failed.length + ' rows are not done', byId('failures'));
+  make('h2', failed.length === 1 ? 'One result needs review' : failed.length + ' results need review', byId('failures'));
   const list = make('div', undefined, byId('failures'));
   list.className = 'list';
   list.tabIndex = 0;

@@ -38,7 +38,7 @@ class CollisionScene {
 
   /// All pairs that come within `reach` mm of each other at some time in [0, 1] while every vertex
   /// goes straight from `start` to `start + motion`; a superset by little.  Sorted; threaded. Which
-  /// pairs are in it hangs on nothing but the arguments.  Fixed vertices must stand where they
+  /// pairs are in it depends on the arguments alone.  Fixed vertices must stand where they
   /// stood at construction.
   [[nodiscard]] std::vector<Meeting> findMeetings(const Positions& start, const Positions& motion,
                                                   double reach) const;

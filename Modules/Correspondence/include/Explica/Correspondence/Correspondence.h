@@ -63,7 +63,7 @@ struct Correspondence {
 /// that agree within lambda and interpolates linearly there. One sweep sorted by u stands for the
 /// heap: the unsolved point of least u always has a solved neighbour, so it is on the heap's top.
 /// Upwind neighbours are a voxel's diagonal apart, and so are their boundary points where
-/// trajectories run in parallel: the error hangs on lambda below that, and rises to the sweep's
+/// trajectories run in parallel: the error depends on lambda below that, and rises to the sweep's
 /// with better boundary values above it.
 ///
 /// Hybrid: never takes (3.1). Every trajectory is followed at least to the first grid face ahead,

@@ -51,8 +51,8 @@ struct PointTransform {
 ///   points of the fixed image to the moving one, so that the transform that resamples the volume
 ///   (moving) into the space of the surface's image (fixed), as ANTs and fMRIPrep's
 ///   `from-boldref_to-T1w` have it, is taken as it stands.
-/// - FreeSurfer LTA, voxel to voxel or RAS to RAS: the side whose geometry is the volume's is told
-/// by
+/// - FreeSurfer LTA, voxel to voxel or RAS to RAS: the side whose geometry is the volume's is
+/// recognised by
 ///   the file; inverted if that is its source (`bbregister --lta`).
 /// - FreeSurfer register.dat: surface RAS of the anatomy to that of the volume, as it stands.
 /// - pycortex's `matrices.xfm` (JSON): `coord` maps the surface file's coordinates to voxels.

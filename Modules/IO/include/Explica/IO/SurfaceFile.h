@@ -75,7 +75,8 @@ struct LoadedSurface {
 /// Reads a triangulated surface: GIFTI (any encoding, external data, .gz), FreeSurfer binary
 /// (triangles and quads), VTK legacy and XML polydata, PLY, OBJ, MNI's OBJ (CIVET), STL (equal
 /// corners merged), OFF.
-/// The format is told by content first, then by name.  Polygons are split into triangles, fan-wise.
+/// The format is recognised by content first, then by name.  Polygons are split into triangles,
+/// fan-wise.
 ///
 /// Positions come back in scanner RAS mm where the file allows it (see SurfaceSpace).
 ///

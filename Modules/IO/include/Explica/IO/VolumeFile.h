@@ -69,7 +69,7 @@ struct LoadedVolume {
 };
 
 /// Reads a file of scalars: NIfTI-1/2 (.nii, .nii.gz, .hdr/.img), MGH/MGZ, NRRD,
-/// MetaImage, 8- or 16-bit grey PNG (2D).  The format is told by content, not by name.  Stored
+/// MetaImage, 8- or 16-bit grey PNG (2D).  The format is recognised by content, not by name. Stored
 /// values are scaled by the header's slope and intercept.
 ///
 /// @return values on a grid in RAS mm, i fastest as in the file; a file of one slice gives a 2D

@@ -65,7 +65,7 @@ class PolygonKnotEnergy {
   [[nodiscard]] virtual PolygonKnotValue evaluate(const Positions2& positions) const = 0;
 };
 
-/// Who evaluates the knot energy.
+/// How the repulsive (knot) energy is evaluated.
 enum class PolygonKnot {
   Auto,      ///< every pair up to four million, the tree beyond, whose time grows as n log n
   Tree,      ///< far clusters by charge and second moments; errs by about openingRatio^3

@@ -6,7 +6,7 @@
 
 namespace explica::registration {
 
-/// How a brain is told from what surrounds it.
+/// How a brain is separated from what surrounds it.
 struct StrippingOptions {
   double closing = 10;  ///< mm: radius of the fissures that the dura spans
   double reach = 15;    ///< mm: how far the template's border may be from the brain's

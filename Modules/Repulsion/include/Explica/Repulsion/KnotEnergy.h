@@ -37,7 +37,7 @@ class KnotEnergy {
   }
 };
 
-/// Who evaluates the knot energy.
+/// How the repulsive (knot) energy is evaluated.
 enum class KnotMethod {
   Tree,        ///< multipole tree: fast, relative error about 1e-3
   ThesisTree,  ///< merging tree with recursion, [Thesis, section 5.4]

@@ -63,8 +63,7 @@ void describe(ShapeFitOptions& options, Visitor&& visit) {
               0.01, 0.99},
         options.start);
   visit(Field{"fit-step", "", "share of the way to each iteration's optimum"}, options.step);
-  visit(Field{"smoothness", "",
-              "weight of smooth boundary values, which settles what the target leaves open"},
+  visit(Field{"smoothness", "", "regularisation weight: smoothness of the boundary values"},
         options.smoothness);
 }
 

@@ -43,7 +43,7 @@ inline constexpr std::array kTerms = {
     TermInfo{Term::Area, "area", 20, "area-weight",
              "stiffness of face areas before it is tightened"},
     TermInfo{Term::Spring, "spring", 60, "spring-weight",
-             "stiffness of edge lengths until it is weighed against what is seen"},
+             "stiffness of edge lengths at the start; later weighed against visibility"},
     TermInfo{Term::Lift, "lift", 60, "lift-weight",
              "pull out of fixed or elastic surroundings, up to where the flat region has room",
              false},

@@ -74,7 +74,7 @@ void describe(UnfolderOptions& options, Visitor&& visit) {
         options.guideFaces);
   visit(Field{"method", "", "implicit steps, or the thesis's gradient flow as the baseline"},
         options.method);
-  visit(Field{"knot", "", "who evaluates the knot energy"}, options.knot);
+  visit(Field{"knot", "", "how the repulsive (knot) energy is evaluated"}, options.knot);
   visit(Field{"keep-areas", "", "thesis method: project onto kept areas"}, options.keepAreas);
   visit(Field{"time-step", "", "thesis method: fixed step instead of an adaptive one", kAboveZero},
         options.timeStep);
