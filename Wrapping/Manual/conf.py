@@ -18,6 +18,7 @@ exclude_patterns = ["build*/**"]
 myst_heading_anchors = 4
 html_theme = "furo"
 html_title = f"Explica {release}"
+smartquotes = False
 html_show_sourcelink = False
 html_extra_path = ["index.html"]
 autodoc_default_options = {"members": True, "imported-members": True}

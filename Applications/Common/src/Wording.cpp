@@ -87,7 +87,8 @@ void wrap(std::ostringstream& out, const std::string& text, std::size_t indent,
   std::size_t at = column;
   bool first = true;
   while (words >> word) {
-    if (!first && at + 1 + word.size() > kWidth) {
+    // Markdown takes a line that begins with an operator for an item of a list.
+    if (!first && word.size() > 1 && at + 1 + word.size() > kWidth) {
       out << '\n' << std::string(indent, ' ');
       at = indent;
     } else if (!first) {
