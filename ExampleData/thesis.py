@@ -304,7 +304,7 @@ def chapter_3_tissue(work, page, heart):
         work.run("ventricle", "phantom", "ventricle", "--size", 64, "--spacing", 1.8)
         words = [work.path("ventricle") / "labels.nii.gz", "--inner", 1, "--tissue", 2]
         whose = "the phantom of a left ventricle, as no heart was given"
-    measured = work.run("myocardium", "thickness", *words, "--per-slice", "--grid", 4, "--figure")
+    measured = work.run("myocardium", "thickness", *words, "--per-slice", "--cells", 4, "--figure")
     page.figure(["3.3"], f"A short-axis slice of {whose}: boundaries, tangent field, boundary correspondences of "
                          "selected points, and the generated grid. ",
                 work.path("myocardium") / "field.svg", command=work.commands["myocardium"], wide=True)
@@ -378,7 +378,7 @@ def appendix_a(work, page):
 
 def chapter_3_shapes(work, page):
     page.section("3.2 Harmonic embedding")
-    annulus = ["--centre", "0,0,0", "--inner-radius", 21, "--outer-radius", 40, "--order", 8, "--grid", 56]
+    annulus = ["--center", "0,0,0", "--inner-radius", 21, "--outer-radius", 40, "--order", 8, "--cells", 56]
     targets = {"cube": lambda x, y, z: 30 * (1 - 0.3 * (x ** 4 + y ** 4 + z ** 4 - 0.6)),
                "pear": lambda x, y, z: 30 * (1 + 0.13 * z + 0.12 * (x * x - y * y))}
     for name, number in (("cube", "3.4"), ("pear", "3.5")):
@@ -395,8 +395,8 @@ def chapter_3_shapes(work, page):
                     "not reported", fit["distance_max"] / fit["voxel"], f"{fit['distance_max'] / fit['voxel']:.2f}",
                     number)
     coefficients = [work.path(n) / "coefficients.json" for n in ("cube", "pear")]
-    series = work.run("series", "embed", *coefficients, "--series", 9, "--grid", 56)
-    work.run("average", "embed", *coefficients, "--average", "--grid", 56)
+    series = work.run("series", "embed", *coefficients, "--series", 9, "--cells", 56)
+    work.run("average", "embed", *coefficients, "--average", "--cells", 56)
     views = [work.picture(f"{n}.png", work.path(n) / "shape.surf.gii", "--direction", "0.5,-0.75,0.45", "--width", 320,
                           "--height", 320) for n in ("cube", "average", "pear")]
     page.figure(["3.6"], "The average of the two: the mean of their coefficients (middle). ", *views,
@@ -411,7 +411,7 @@ def chapter_3_shapes(work, page):
         for r in (a, b):
             write_curve(work.path(f"circle{r}.csv"), lambda t, r=r: r + 0 * t)
         work.run("circles", "embed", work.path(f"circle{a}.csv"), work.path(f"circle{b}.csv"), "--average",
-                 "--centre", "0,0,0", "--inner-radius", 12.5, "--outer-radius", 29)
+                 "--center", "0,0,0", "--inner-radius", 12.5, "--outer-radius", 29)
         r = numpy.linalg.norm(numpy.loadtxt(work.path("circles") / "shape.csv", delimiter=",", skiprows=1), axis=1)
         page.number(f"circles_{a}_{b}", f"average of circles of {a} and {b} mm: farthest from the circle of their "
                                         "geometric mean, mm", "not reported", float(abs(r - math.sqrt(a * b)).max()),
@@ -754,7 +754,7 @@ def chapter_5_cortex(work, page, fsaverage):
         regions = {"5.25": ((-1, 0.2, 0.2), 25), "5.26": ((-0.2, -1, 0.3), 25), "5.27": ((-0.2, 0.1, 1), 25)}
     else:
         work.run("cortex", "phantom", "cortex", "--size", 40, "--depth", 0.3, "--waves", 4)
-        work.run("cortex-surface", "surface", work.path("cortex") / "labels.nii.gz", "--white", 3, "--grey", 2,
+        work.run("cortex-surface", "surface", work.path("cortex") / "labels.nii.gz", "--white-label", 3, "--grey-label", 2,
                  "--faces", 12000)
         surface = work.path("cortex-surface") / "mid.surf.gii"
         whose = "the phantom of a cortex, as no real one was given"

@@ -96,7 +96,7 @@ void declare(Declaration& d, Settings& s) {
       .option("Study", Field{"participant-label", "", "participants to do, with or without sub-"},
               s.participants)
       .severalWords("participant-label")
-      .option("Study", Field{"hemispheres", "", "hemispheres to do"}, s.hemispheres)
+      .option("Study", Field{"hemisphere", "", "hemispheres to do"}, s.hemispheres)
       .inputOption("registrations", FileKind::Folder,
                    "an earlier OUT_DIR, of the same T1s: each one's template is placed as it was "
                    "there (runs/*/segment/to_template.h5), where it is; how it fits is checked as "
@@ -134,7 +134,7 @@ void requireSides(const Settings& s, const study::Participant& participant) {
   if (pipeline::labelsHaveSides(*files.labels)) return;
   throw InvalidInput(files.labels->string() +
                      ": its labels do not tell left from right; name the hemisphere that it holds "
-                     "(--hemispheres L), or give a segmentation with FreeSurfer's labels "
+                     "(--hemisphere L), or give a segmentation with FreeSurfer's labels "
                      "(*_desc-aseg_dseg.nii.gz)");
 }
 

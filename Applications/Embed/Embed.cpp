@@ -85,7 +85,7 @@ void declare(Declaration& d, Settings& s) {
       .option("Annulus", Field{"inner", "", "labels that a given annulus encloses"}, s.innerLabels)
       .option("Annulus", Field{"tissue", "", "labels of a given annulus itself"}, s.tissueLabels)
       .options("Fit", s.fitting)
-      .option("Output", Field{"grid", "", "voxels per side, for drawing the shape", 16, 1024},
+      .option("Output", Field{"cells", "", "voxels per side, for drawing the shape", 16, 1024},
               s.grid)
       .option("Output", Field{"frames", "", "states of the first target's fit", 0, 1000}, s.frames)
       .output("coefficients.json", FileKind::JsonFile, "the shape's coefficients")
@@ -301,7 +301,7 @@ Termination run(Context& context, const Settings& s) {
   if (asked > 1) throw UsageError("give one of --fit, --average and --combine");
   if (s.fit && s.targets.size() != 1) throw UsageError("--fit takes one target");
   if (s.grid < 16 || s.fitting.samples < 16 || s.frames < 0) {
-    throw UsageError("--grid and --samples need at least 16, --frames at least 0");
+    throw UsageError("--cells and --samples need at least 16, --frames at least 0");
   }
   if (s.series && s.targets.size() != 2) throw UsageError("--series takes two targets");
   std::vector<Target> targets;

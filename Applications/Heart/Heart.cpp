@@ -63,7 +63,7 @@ void declare(Declaration& d, Settings& s) {
              s.segmentations)
       .options("Labels", s.labels)
       .option("Frames",
-              Field{"frames", "",
+              Field{"phases", "",
                     "all; ED,ES: only these two, found as greatest and smallest cavity; or two "
                     "numbers counted from 0, as 0,9, which are taken for ED and ES"},
               s.frames)
@@ -179,12 +179,12 @@ Chosen chooseFrames(const std::string& wanted, const std::vector<Volume<Label>>&
   if (lower != "ed,es") {
     const auto numbers = twoNumbers(lower);
     if (!numbers) {
-      throw UsageError("--frames takes all, ED,ES or two numbers as 0,9; found '" + wanted + "'");
+      throw UsageError("--phases takes all, ED,ES or two numbers as 0,9; found '" + wanted + "'");
     }
     two = *numbers;
     for (const int n : two) {
       if (n < 0 || n >= count) {
-        throw UsageError("--frames " + wanted + ": there is no frame " + std::to_string(n) + "; " +
+        throw UsageError("--phases " + wanted + ": there is no frame " + std::to_string(n) + "; " +
                          std::to_string(count) + " were read, counted from 0");
       }
     }

@@ -160,8 +160,9 @@ void declare(Declaration& d, Settings& s) {
                "Left hemisphere of a FreeSurfer, FastSurfer or SynthSeg segmentation")
       .example("explica surface aseg.mgz --hemisphere L --image brain.mgz --out left",
                "Borders placed by the image, finer than labels do")
-      .example("explica surface seg.nii.gz --white 3 --grey 2 --faces 80000 --out brain",
-               "Labels by name")
+      .example(
+          "explica surface seg.nii.gz --white-label 3 --grey-label 2 --faces 80000 --out brain",
+          "Labels by name")
       .example("explica surface rim.nii.gz --preset laynii --out block",
                "A slab of cortex as LayNii has it, as sheets with a rim")
       .example("explica surface --inner-level wm.nii.gz --grey-share gm.nii.gz --out brain",

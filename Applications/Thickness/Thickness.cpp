@@ -124,7 +124,7 @@ void declare(Declaration& d, Settings& s) {
       .options("Correspondences", s.measurement.correspondence)
       .options("Layers", s.measurement.layers)
       .option("Layers",
-              Field{"grid", "", "write an anatomical grid with this many cells across", 1, 1000},
+              Field{"cells", "", "write an anatomical grid with this many cells across", 1, 1000},
               s.measurement.grid)
       .inputOption(
           "functions", FileKind::Volume,
@@ -360,7 +360,7 @@ void writeSegments(Context& context, const harmonic::Annulus& annulus, const Set
 
 Termination run(Context& context, const Settings& s) {
   if (!s.measurement.grid && (!s.functions.volumes.empty() || !s.functions.along.empty())) {
-    throw UsageError("--functions and --along need --grid N, on whose points they are taken");
+    throw UsageError("--functions and --along need --cells N, on whose points they are taken");
   }
   keepFreedMemory();
   Judge judge(context, s.accept);

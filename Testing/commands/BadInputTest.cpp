@@ -88,7 +88,7 @@ TEST_P(BadVolumeInStudy, IsAProblemInOneSentence) {
   const std::string file = anat / (packed ? "sub-01_dseg.nii.gz" : "sub-01_dseg.nii");
   volume.make(file);
   const auto result = explica({"bids", folder.path().string(), folder / "out", "participant",
-                               "--hemispheres", "L", "--quiet"});
+                               "--hemisphere", "L", "--quiet"});
   EXPECT_EQ(result.exitCode, 2) << result;
   const std::string problem = readText(folder / "out/runs/sub-01_hemi-L/problem.txt");
   EXPECT_EQ(std::count(problem.begin(), problem.end(), '\n'), 1) << problem;
@@ -237,7 +237,7 @@ const Unsuitable kUnsuitable[] = {
      {"9", "wall"}},
     {"WhiteLabelAbsent",
      {kShell},
-     {"surface", kLabels, "--white", "8", "--grey", "2"},
+     {"surface", kLabels, "--white-label", "8", "--grey-label", "2"},
      kLabels,
      {"8"}},
     {"FractionsAreNoLabels",
@@ -334,8 +334,8 @@ const Unsuitable kUnsuitable[] = {
      }},
     {"LegendWithoutNames",
      {kShell},
-     {"surface", kLabels, "--white", "1", "--grey", "2", "--faces", "1000", "--atlas", kLabels,
-      "--atlas-legend", "{folder}/legend.txt"},
+     {"surface", kLabels, "--white-label", "1", "--grey-label", "2", "--faces", "1000", "--atlas",
+      kLabels, "--atlas-legend", "{folder}/legend.txt"},
      "{folder}/legend.txt",
      {"line 2"},
      [](const TemporaryFolder& folder) {

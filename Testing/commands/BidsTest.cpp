@@ -25,7 +25,7 @@ class Bids : public ::testing::Test {
   }
 
   CommandResult participants() {
-    return explica({"bids", folder_ / "data", folder_ / "out", "participant", "--hemispheres", "L",
+    return explica({"bids", folder_ / "data", folder_ / "out", "participant", "--hemisphere", "L",
                     "--steps", "thickness,surface", "--surface.faces", "3000"});
   }
 

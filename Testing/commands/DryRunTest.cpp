@@ -85,7 +85,7 @@ TEST(DryRun, OfADataSetChecksEveryParticipantAndWritesNothing) {
     if (person == "02") writeText(file, "damaged");
   }
   const auto before = folder.entries();
-  const auto dry = explica({"bids", folder / "data", folder / "out", "participant", "--hemispheres",
+  const auto dry = explica({"bids", folder / "data", folder / "out", "participant", "--hemisphere",
                             "L", "--steps", "thickness", "--dry-run"});
   EXPECT_EQ(dry.exitCode, 3) << dry;
   EXPECT_TRUE(contains(dry.err, "sub-02_dseg.nii.gz")) << dry;

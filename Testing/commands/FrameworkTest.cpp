@@ -72,8 +72,8 @@ TEST(Framework, WrongUseIsExitCodeOneWithAHint) {
       {{"phantom", "shell"}, "--out is missing"},
       {{"thickness"}, "nothing is given to work on; usage: explica thickness [SEG] --out DIR"},
       {{"run", "T1.nii.gz", "--hemi", "L", "--out", folder / "a"}, "did you mean --hemisphere?"},
-      {{"bids", "in", "out", "group", "--hemisphere", "L"}, "did you mean --hemispheres?"},
-      {{"run", "T1.nii.gz", "--hemispheres", "L"}, "did you mean --hemisphere?"},
+      {{"bids", "in", "out", "group", "--hemisphere", "L"}, "did you mean --hemisphere?"},
+      {{"run", "T1.nii.gz", "--hemisphere", "L"}, "did you mean --hemisphere?"},
       {{"flatten", "a.gii", "--overlay", "b.gii"}, "did you mean --map?"},
       {{"unfold", "a.gii", "--overwrite"}, "did you mean --force?"},
       {{"surface", "a.nii", "--faces", "9"}, "100 to 100,000,000"},
@@ -130,6 +130,9 @@ TEST(Framework, OptionsAreJudgedBeforeAnyFileIsOpened) {
       {{"inflate", "rubbish.gii", "--max-iterations", "-1"},
        "max-iterations: '-1' is not a whole number"},
       {{"flatten", "rubbish.gii", "--grid", "-1"}, "grid: '-1' is not a number"},
+      {{"surface", "rubbish.nii", "--white", "3"}, "--white is called --white-label now"},
+      {{"run", "rubbish.nii", "--thickness.grid=3"},
+       "--thickness.grid is called --thickness.cells now"},
   };
   for (const auto& row : rows) {
     for (const bool exists : {false, true}) {

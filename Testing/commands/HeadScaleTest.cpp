@@ -290,7 +290,7 @@ TEST_F(WholeHead, AStudyTakesTheRegistrationsOfAnEarlierOne) {
   writeText(folder_ / "data/dataset_description.json", R"({"Name": "a", "BIDSVersion": "1.8.0"})");
   const auto study = [&](const std::string& out, const std::vector<std::string>& more) {
     return patiently(std::vector<std::string>{"bids", folder_ / "data", folder_ / out,
-                                              "participant", "--hemispheres", "L", "--steps",
+                                              "participant", "--hemisphere", "L", "--steps",
                                               "segment"} +
                      more);
   };
@@ -320,7 +320,7 @@ TEST_F(WholeHead, HalfABrainIsFlaggedByARunAndFailsItsRowOfAStudyAlone) {
   EXPECT_TRUE(flagsOf(folder_ / "run").contains("stretch")) << run;
   EXPECT_GT(numberOf(folder_ / "run/segment", "registration_stretch"), 1.5);
   const auto study = patiently(std::vector<std::string>{"bids", folder_ / "data", folder_ / "out",
-                                                        "participant", "--hemispheres", "L"} +
+                                                        "participant", "--hemisphere", "L"} +
                                small);
   EXPECT_EQ(study.exitCode, 3) << study;
   const auto flags = readJson(folder_ / "out/summary.json")["flags"];

@@ -129,7 +129,7 @@ TEST(HeartCommand, FindsTheFramesOrTakesThem) {
   std::vector<std::string> words = {"heart",
                                     folder / "beat/frame-0001.nii.gz",
                                     folder / "beat/frame-0000.nii.gz",
-                                    "--frames",
+                                    "--phases",
                                     "ED,ES",
                                     "--out",
                                     folder / "out"};
@@ -137,9 +137,9 @@ TEST(HeartCommand, FindsTheFramesOrTakesThem) {
   const auto frames = tableOf(folder / "out/frames.tsv");
   EXPECT_EQ(frames.at("frame"), (std::vector<std::string>{"1", "0"}));
   EXPECT_EQ(frames.at("phase"), (std::vector<std::string>{"ED", "ES"}));
-  EXPECT_EQ(explica(heart(folder, {"--frames", "0,5"})).exitCode, 1);
-  EXPECT_EQ(explica(heart(folder, {"--frames", "first"})).exitCode, 1);
-  EXPECT_EQ(explica(heart(folder, {"--frames", "1,1"})).exitCode, 0);
+  EXPECT_EQ(explica(heart(folder, {"--phases", "0,5"})).exitCode, 1);
+  EXPECT_EQ(explica(heart(folder, {"--phases", "first"})).exitCode, 1);
+  EXPECT_EQ(explica(heart(folder, {"--phases", "1,1"})).exitCode, 0);
 }
 
 TEST(HeartCommand, WithoutRightVentricleItIsNotOrientedAndSaysSo) {

@@ -35,10 +35,10 @@ TEST(Means, OfTheSurfaceAndOfColumnsLeadAndThatOfVoxelsIsNamed) {
   TemporaryFolder folder;
   io::writeVolume(folder / "seg.nii.gz", eccentricBalls(1));
   const fs::path run = fs::path(folder / "study/runs/sub-01_hemi-L");
-  const auto made = explica({"run", folder / "seg.nii.gz", "--kind", "labels", "--steps",
-                             "thickness,surface,report", "--thickness.inner", "3",
-                             "--thickness.tissue", "2", "--surface.white", "3", "--surface.grey",
-                             "2", "--surface.faces", "3000", "--out", run.string()});
+  const auto made = explica(
+      {"run", folder / "seg.nii.gz", "--kind", "labels", "--steps", "thickness,surface,report",
+       "--thickness.inner", "3", "--thickness.tissue", "2", "--surface.white-label", "3",
+       "--surface.grey-label", "2", "--surface.faces", "3000", "--out", run.string()});
   ASSERT_TRUE(made.exitCode == 0 || made.exitCode == 3) << made;
 
   const auto voxels = readJson(run / "thickness/summary.json");
@@ -80,8 +80,8 @@ TEST(Means, FreeSurfersDefinitionIsAnOptionAndAMap) {
   TemporaryFolder folder;
   io::writeVolume(folder / "seg.nii.gz", eccentricBalls(1));
   const auto made =
-      explica({"surface", folder / "seg.nii.gz", "--white", "3", "--grey", "2", "--faces", "3000",
-               "--thickness-measure", "nearest", "--out", folder / "out"});
+      explica({"surface", folder / "seg.nii.gz", "--white-label", "3", "--grey-label", "2",
+               "--faces", "3000", "--thickness-measure", "nearest", "--out", folder / "out"});
   ASSERT_EQ(made.exitCode, 0) << made;
   const auto summary = readJson(folder / "out/summary.json");
   EXPECT_EQ(summary["thickness_measure"], "nearest");
@@ -101,8 +101,8 @@ TEST(UnitOfLength, ChangesNeitherMemoryNorShape) {
     TemporaryFolder folder;
     io::writeVolume(folder / "seg.nii.gz", eccentricBalls(unit));
     const auto surface =
-        explica({"surface", folder / "seg.nii.gz", "--white", "3", "--grey", "2", "--faces", "3000",
-                 "--accept", "thickness-mean", "--out", folder / "surface"});
+        explica({"surface", folder / "seg.nii.gz", "--white-label", "3", "--grey-label", "2",
+                 "--faces", "3000", "--accept", "thickness-mean", "--out", folder / "surface"});
     ASSERT_EQ(surface.exitCode, 0) << surface;
     const auto thickness = explica({"thickness", folder / "seg.nii.gz", "--inner", "3", "--tissue",
                                     "2", "--out", folder / "thickness"});

@@ -218,8 +218,9 @@ TEST(Meeting, MapsOfAnotherMeshWithTheSameCountAreKnownByTheirRecord) {
   for (const char* size : {"20", "24"}) {
     const std::string name = std::string("shell") + size;
     ASSERT_EQ(explica({"phantom", "shell", "--size", size, "--out", folder / name}).exitCode, 0);
-    ASSERT_EQ(explica({"surface", folder / (name + "/labels.nii.gz"), "--white", "1", "--grey", "2",
-                       "--faces", "2000", "--out", folder / ("of" + std::string(size))})
+    ASSERT_EQ(explica({"surface", folder / (name + "/labels.nii.gz"), "--white-label", "1",
+                       "--grey-label", "2", "--faces", "2000", "--out",
+                       folder / ("of" + std::string(size))})
                   .exitCode,
               0);
   }

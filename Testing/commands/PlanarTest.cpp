@@ -232,8 +232,8 @@ TEST(Embed, BoundariesMayBePolygonsAndATargetALabelsContour) {
   writeEllipse(folder / "in.csv", 20, 17);
   writeEllipse(folder / "out.csv", 29, 27);
   const auto made =
-      explica({"embed", folder / "labels.nii.gz", "--label", "2", "--annulus", folder / "out.csv",
-               "--annulus", folder / "in.csv", "--out", folder / "a"});
+      explica({"embed", folder / "labels.nii.gz", "--label-key", "2", "--annulus",
+               folder / "out.csv", "--annulus", folder / "in.csv", "--out", folder / "a"});
   ASSERT_EQ(made.exitCode, 0) << made;
   const auto summary = readJson(folder / "a/summary.json");
   EXPECT_EQ(summary["slice"], 0);
@@ -252,7 +252,7 @@ TEST(Embed, AnnuliThatCannotBeAreRefused) {
     return result.exitCode;
   };
   EXPECT_EQ(code({"--annulus", folder / "small.csv"}), 1);
-  EXPECT_EQ(code({"--band", "2", "--centre", "0,0,0"}), 1);
+  EXPECT_EQ(code({"--band", "2", "--center", "0,0,0"}), 1);
   EXPECT_EQ(code({"--band", "2", "--annulus", folder / "small.csv"}), 1);
   EXPECT_EQ(code({"--band", "40"}), 2);
   EXPECT_EQ(code({"--annulus", folder / "small.csv", "--annulus", folder / "large.csv"}), 2)

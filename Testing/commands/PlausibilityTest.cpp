@@ -135,7 +135,7 @@ TEST(PlausibilityCommand, LabelsAreNoT1AndAT1IsNoLabels) {
   for (const std::vector<std::string>& words :
        {std::vector<std::string>{"thickness", folder / "t1.nii.gz", "--inner", "220", "--tissue",
                                  "160"},
-        std::vector<std::string>{"surface", folder / "t1.nii.gz", "--white", "220"}}) {
+        std::vector<std::string>{"surface", folder / "t1.nii.gz", "--white-label", "220"}}) {
     const auto result = explica(words + std::vector<std::string>{"--out", folder / "labels-out"});
     EXPECT_EQ(result.exitCode, 2) << result;
     EXPECT_NE(result.err.find("explica segment"), std::string::npos) << result;

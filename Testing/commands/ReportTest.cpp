@@ -139,8 +139,8 @@ TEST(Report, ShowsWhereFacesCrossAndTheFlagLeadsThere) {
 TEST(Report, ShowsSlicesInEitherConvention) {
   TemporaryFolder folder;
   ASSERT_EQ(explica({"phantom", "shell", "--size", "20", "--out", folder / "p"}).exitCode, 0);
-  ASSERT_EQ(explica({"surface", folder / "p/labels.nii.gz", "--white", "1", "--grey", "2",
-                     "--faces", "1000", "--out", folder / "s"})
+  ASSERT_EQ(explica({"surface", folder / "p/labels.nii.gz", "--white-label", "1", "--grey-label",
+                     "2", "--faces", "1000", "--out", folder / "s"})
                 .exitCode,
             0);
   for (const char* convention : {"neurological", "radiological"}) {
@@ -268,8 +268,9 @@ TEST(Report, ShowsGivenMapsOnTheUnfolding) {
 void makeSurface(const TemporaryFolder& folder, const std::string& size) {
   ASSERT_EQ(explica({"phantom", "cortex", "--size", size, "--out", folder / ("p" + size)}).exitCode,
             0);
-  const auto made = explica({"surface", folder / ("p" + size + "/labels.nii.gz"), "--white", "3",
-                             "--grey", "2", "--faces", "2000", "--out", folder / ("s" + size)});
+  const auto made =
+      explica({"surface", folder / ("p" + size + "/labels.nii.gz"), "--white-label", "3",
+               "--grey-label", "2", "--faces", "2000", "--out", folder / ("s" + size)});
   ASSERT_EQ(made.exitCode, 0) << made;
 }
 
@@ -311,7 +312,7 @@ TEST(Report, ShowsLayersAndTheGridOfThickness) {
   TemporaryFolder folder;
   ASSERT_EQ(explica({"phantom", "shell", "--size", "20", "--out", folder / "p"}).exitCode, 0);
   const auto made = explica({"thickness", folder / "p/labels.nii.gz", "--inner", "1", "--tissue",
-                             "2", "--layers", "2", "--grid", "3", "--out", folder / "t"});
+                             "2", "--layers", "2", "--cells", "3", "--out", folder / "t"});
   ASSERT_EQ(made.exitCode, 0) << made;
   ASSERT_EQ(explica({"report", folder / "t"}).exitCode, 0);
   const std::string page = readText(folder / "t/report.html");

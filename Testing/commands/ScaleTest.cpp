@@ -28,7 +28,8 @@ std::vector<std::string> thickness(const TemporaryFolder& folder, double unit) {
 
 std::vector<std::string> surface(const TemporaryFolder& folder, double unit) {
   io::writeVolume(folder / "ball.nii.gz", wavyBall(unit));
-  return {"surface", folder / "ball.nii.gz", "--white", "3", "--grey", "2", "--faces", "6000"};
+  return {"surface", folder / "ball.nii.gz", "--white-label", "3", "--grey-label", "2", "--faces",
+          "6000"};
 }
 
 std::vector<std::string> unfold(const TemporaryFolder& folder, double unit) {

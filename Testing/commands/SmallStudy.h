@@ -37,9 +37,9 @@ class SmallStudy {
   /// The command line of the participant level.
   [[nodiscard]] std::vector<std::string> participants(const std::string& out,
                                                       std::vector<std::string> more = {}) const {
-    std::vector<std::string> words = {"bids",          data(),    out,
-                                      "participant",   "--steps", "thickness,surface",
-                                      "--hemispheres", "L",       "--surface.faces",
+    std::vector<std::string> words = {"bids",         data(),    out,
+                                      "participant",  "--steps", "thickness,surface",
+                                      "--hemisphere", "L",       "--surface.faces",
                                       "1000"};
     words.insert(words.end(), more.begin(), more.end());
     return words;

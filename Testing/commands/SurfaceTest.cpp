@@ -82,11 +82,11 @@ TEST(SurfaceCommand, SaysWhatIsWrongWithTheNumbersFound) {
   TemporaryFolder folder;
   writeTorus(folder / "torus.nii.gz", 4);
   const auto absent =
-      explica({"surface", folder / "torus.nii.gz", "--white", "9", "--out", folder / "out"});
+      explica({"surface", folder / "torus.nii.gz", "--white-label", "9", "--out", folder / "out"});
   EXPECT_EQ(absent.exitCode, 2);
   EXPECT_NE(absent.err.find("label 9 absent (found 0, 2, 3)"), std::string::npos) << absent;
-  const auto edge = explica(
-      {"surface", folder / "torus.nii.gz", "--white", "0", "--grey", "2", "--out", folder / "out"});
+  const auto edge = explica({"surface", folder / "torus.nii.gz", "--white-label", "0",
+                             "--grey-label", "2", "--out", folder / "out"});
   EXPECT_EQ(edge.exitCode, 2);
   EXPECT_NE(edge.err.find("touches the edge of the field of view"), std::string::npos) << edge;
   EXPECT_FALSE(fs::exists(folder / "out"));
@@ -139,8 +139,9 @@ TEST(SurfaceCommand, MakesSheetsOfABlockAndSaysSo) {
     labels[v] = r < 8 ? 3 : (r < 13 ? 2 : 0);
   }
   io::writeVolume(folder / "block.nii.gz", labels);
-  const auto made = explica({"surface", folder / "block.nii.gz", "--white", "3", "--grey", "2",
-                             "--faces", "2000", "--freesurfer", "surf", "--out", folder / "out"});
+  const auto made =
+      explica({"surface", folder / "block.nii.gz", "--white-label", "3", "--grey-label", "2",
+               "--faces", "2000", "--freesurfer", "surf", "--out", folder / "out"});
   ASSERT_EQ(made.exitCode, 0) << made;
   EXPECT_NE(made.err.find("runs out of the image"), std::string::npos) << made;
   const auto summary = readJson(folder / "out/summary.json");

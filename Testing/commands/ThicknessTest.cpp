@@ -121,7 +121,7 @@ TEST(ThicknessCommand, DrawsTheFieldOfASlice) {
   const TemporaryFolder folder;
   ASSERT_EQ(explica({"phantom", "eccentric", "--size", "64", "--out", folder / "e"}).exitCode, 0);
   const auto made = explica({"thickness", folder / "e/labels.nii.gz", "--inner", "1", "--tissue",
-                             "2", "--grid", "4", "--figure", "--out", folder / "out"});
+                             "2", "--cells", "4", "--figure", "--out", folder / "out"});
   ASSERT_EQ(made.exitCode, 0) << made;
   const std::string svg = readText(folder / "out/field.svg");
   EXPECT_NE(svg.find("tangent field"), std::string::npos);
@@ -225,16 +225,16 @@ TEST(ThicknessCommand, LayersOfEqualVolumeHoldEquallyManyVoxels) {
 TEST(ThicknessCommand, GridFollowsTheTissueInTwoAndThreeDimensions) {
   TemporaryFolder folder;
   writeShell(folder / "shell.nii.gz");
-  ASSERT_EQ(explica(thickness(folder, "shell.nii.gz", {"--grid", "4"})).exitCode, 0);
+  ASSERT_EQ(explica(thickness(folder, "shell.nii.gz", {"--cells", "4"})).exitCode, 0);
   const auto summary = readJson(folder / "out/summary.json");
   EXPECT_GT(summary["grid_trajectories"], 1000);
   EXPECT_EQ(summary["grid_cells"].get<int>() % 4, 0);
   EXPECT_NE(readText(folder / "out/grid.vtu").find("thickness"), std::string::npos);
   writeLabels(folder / "ring.nii.gz", {36, 36, 1}, Vector::Ones(),
               [](const Point& x, int) { return tubeAt(x); });
-  ASSERT_EQ(explica(thickness(folder, "ring.nii.gz", {"--grid", "4"})).exitCode, 0);
+  ASSERT_EQ(explica(thickness(folder, "ring.nii.gz", {"--cells", "4"})).exitCode, 0);
   EXPECT_GT(readJson(folder / "out/summary.json")["grid_cells"], 100);
-  EXPECT_EQ(explica(thickness(folder, "ring.nii.gz", {"--grid", "0"})).exitCode, 1);
+  EXPECT_EQ(explica(thickness(folder, "ring.nii.gz", {"--cells", "0"})).exitCode, 1);
 }
 
 TEST(ThicknessCommand, FunctionsAreKnownOnTheGridByDepthAndAlongTrajectories) {
@@ -248,7 +248,7 @@ TEST(ThicknessCommand, FunctionsAreKnownOnTheGridByDepthAndAlongTrajectories) {
   io::writeVolume(folder / "radius.nii.gz", radius);
   const auto words = [&](const std::string& along) {
     return thickness(folder, "shell.nii.gz",
-                     {"--grid", "3", "--functions", folder / "radius.nii.gz", "--along", along});
+                     {"--cells", "3", "--functions", folder / "radius.nii.gz", "--along", along});
   };
   const auto made = explica(words("7,8,-6"));
   ASSERT_EQ(made.exitCode, 0) << made;
@@ -282,7 +282,7 @@ TEST(ThicknessCommand, FunctionsAreKnownOnTheGridByDepthAndAlongTrajectories) {
   const auto without =
       explica(thickness(folder, "shell.nii.gz", {"--functions", folder / "radius.nii.gz"}));
   EXPECT_EQ(without.exitCode, 1) << without;
-  EXPECT_NE(without.err.find("--grid"), std::string::npos);
+  EXPECT_NE(without.err.find("--cells"), std::string::npos);
 }
 
 TEST(ThicknessCommand, SulciAreRecoveredByDefaultButNotInHearts) {

@@ -757,8 +757,8 @@ TEST(UnfoldCentre, GivenInFreeSurfersOtherFrameIsNamed) {
     labels[n] = r < 20 ? 2 : (r < 24 ? 1 : 0);
   }
   io::writeVolume(folder / "seg.nii.gz", labels);
-  const auto made = explica({"surface", folder / "seg.nii.gz", "--white", "2", "--grey", "1",
-                             "--faces", "4000", "--out", folder / "s"});
+  const auto made = explica({"surface", folder / "seg.nii.gz", "--white-label", "2", "--grey-label",
+                             "1", "--faces", "4000", "--out", folder / "s"});
   ASSERT_TRUE(made.exitCode == 0 || made.exitCode == 3) << made;
   const auto unfold = [&](const std::string& center) {
     return explica({"unfold", folder / "s/pial.surf.gii", "--center", center, "--radius", "8",

@@ -70,16 +70,16 @@ SUBJECTS = {
     ],
     "surface": [
         ("cortex", ["{folder}/cortex/labels.nii.gz", "--faces", "6000"]),
-        ("shell", ["{folder}/shell/labels.nii.gz", "--white", "1", "--grey", "2", "--faces", "3000"]),
+        ("shell", ["{folder}/shell/labels.nii.gz", "--white-label", "1", "--grey-label", "2", "--faces", "3000"]),
     ],
     "segment": [
         ("cortex", ["{folder}/cortex/t1.nii.gz", "--template", "none", "--accept", "brain-volume"]),
         ("noisy", ["{folder}/noisy/t1.nii.gz", "--template", "none", "--accept", "brain-volume"]),
     ],
     "embed": [
-        ("ring", ["{folder}/shell/labels.nii.gz", "--label", "1"]),
-        ("folds", ["{folder}/cortex/labels.nii.gz", "--label", "3"]),
-        ("band", ["{folder}/cortex/labels.nii.gz", "--label", "3", "--band", "4"]),
+        ("ring", ["{folder}/shell/labels.nii.gz", "--label-key", "1"]),
+        ("folds", ["{folder}/cortex/labels.nii.gz", "--label-key", "3"]),
+        ("band", ["{folder}/cortex/labels.nii.gz", "--label-key", "3", "--band", "4"]),
         ("closed surface", ["{folder}/sheets/white.surf.gii", "--order", "8", "--samples", "800"]),
     ],
     "compare": [
@@ -95,7 +95,7 @@ PHANTOMS = {
     "shell": ["phantom", "shell", "--size", "40"],
     "patch": ["unfold", str(PIAL), "--vertex", "4530", "--radius", "25", *SIDE, "--surround", "none"],
     "placed": ["unfold", str(PIAL), "--vertex", "4530", "--radius", "25", *SIDE],
-    "sheets": ["surface", "{folder}/shell/labels.nii.gz", "--white", "1", "--grey", "2", "--faces", "1000"],
+    "sheets": ["surface", "{folder}/shell/labels.nii.gz", "--white-label", "1", "--grey-label", "2", "--faces", "1000"],
 }
 
 # What is measured: heading, how it is shown, and where it comes from (result folder, its summary, the subject's words).
@@ -139,11 +139,11 @@ VALUES = {
     "inflate": {"target-seen": [0.9, 0.99], "max-iterations": [10, 1200], "frames": [3]},
     "polygon": {"target-visibility": [0.9, 0.9999], "max-iterations": [10, 80000], "frames": [3], "stages": [2, 12]},
     "repair": {"max-move": [0.05, 3]},
-    "thickness": {"lambda": [0.2, 2], "grid": [3], "level": [-0.5, 0.5], "facing": [60, 140]},
+    "thickness": {"lambda": [0.2, 2], "cells": [3], "level": [-0.5, 0.5], "facing": [60, 140]},
     "surface": {"fluid": [0.5]},
     "segment": {"max-iterations": [5, 240], "smooth": [0, 0.4], "bias-width": [0, 12, 50]},
     "embed": {"order": [4, 32], "inner-radius": [3], "outer-radius": [60], "band": [2, 8], "fit-start": [0.1, 0.9],
-              "fit-step": [0.25, 1], "frames": [3], "grid": [24, 192]},
+              "fit-step": [0.25, 1], "frames": [3], "cells": [24, 192]},
 }
 
 # Why an option is not tried here; by command and name, or by name alone.
@@ -153,7 +153,7 @@ NOT_TRIED = {
     "viewpoint": PLACE, "direction": PLACE, "view-weights": PLACE, "view-line": PLACE, "center": PLACE,
     "vertex": PLACE, "radius": PLACE, "metric": PLACE, "cone": PLACE, "label-key": PLACE, "above": PLACE,
     "adjust-region": PLACE, "repair": "needs a surface that crosses itself", "max-time": "a limit", "resume": "goes on with a run",
-    "inner": PLACE, "tissue": PLACE, "outer": PLACE, "insulated": PLACE, "white": PLACE, "grey": PLACE,
+    "inner": PLACE, "tissue": PLACE, "outer": PLACE, "insulated": PLACE, "white-label": PLACE, "grey-label": PLACE,
     "fill": PLACE, "preset": PLACE, "hemisphere": PLACE, "no-fill": SPECIES, "core-depth": SPECIES,
     "stripped": SPECIES, "open-ends": SPECIES, "per-slice": SPECIES, "along": "more output", "figure": "more output",
     "figure-slice": "more output", "aha": SPECIES, "rv-insertion": PLACE, "rv-insertion-image-axis": PLACE,

@@ -14,20 +14,20 @@ const std::vector<FirstHelp>& allFirstHelp() {
       {"bids",
        "a BIDS data set: segmentations, FreeSurfer subjects or T1 images",
        "a derivative with surfaces, thickness and unfolded patches, and a table of the study",
-       {"participant-label", "hemispheres", "steps", "unfold-surface", "given-surfaces",
+       {"participant-label", "hemisphere", "steps", "unfold-surface", "given-surfaces",
         "unfold.center", "unfold.direction", "unfold.radius"},
        R"(explica phantom cortex --size 32 --spacing 2 --out phantom
 mkdir -p data/sub-01/anat
 cp phantom/labels.nii.gz data/sub-01/anat/sub-01_dseg.nii.gz
 echo '{"Name": "phantoms", "BIDSVersion": "1.8.0"}' > data/dataset_description.json
-explica bids data derived participant --hemispheres L --steps thickness,surface --surface.faces 2000
+explica bids data derived participant --hemisphere L --steps thickness,surface --surface.faces 2000
 explica bids data derived group)"},
       {"cifti",
        "vertex data of the left and the right hemisphere",
        "one CIFTI file: maps, a series or labels, the medial wall left out",
        {"left", "right", "left-cortex", "right-cortex", "name", "seconds"},
        R"(explica phantom shell --size 32 --out shell
-explica surface shell/labels.nii.gz --white 1 --grey 2 --faces 2000 --out surfaces
+explica surface shell/labels.nii.gz --white-label 1 --grey-label 2 --faces 2000 --out surfaces
 explica cifti --left surfaces/thickness.shape.gii --right surfaces/thickness.shape.gii \
   --name thickness --out cifti)"},
       {"compare",
@@ -35,7 +35,7 @@ explica cifti --left surfaces/thickness.shape.gii --right surfaces/thickness.sha
        "what each of them keeps of areas, lengths, angles and distances, as a table and pictures",
        {"label", "label-key", "pairs", "sources", "local-limit"},
        R"(explica phantom shell --size 32 --out shell
-explica surface shell/labels.nii.gz --white 1 --grey 2 --faces 2000 --out surfaces
+explica surface shell/labels.nii.gz --white-label 1 --grey-label 2 --faces 2000 --out surfaces
 explica compare surfaces/white.surf.gii surfaces/pial.surf.gii --out compared)"},
       {"descriptors",
        "the commands' own declarations",
@@ -45,17 +45,17 @@ explica compare surfaces/white.surf.gii surfaces/pial.surf.gii --out compared)"}
       {"embed",
        "closed contours (CSV, label images) or surfaces",
        "amplitudes in a common annulus, and the fitted, mean or combined shape",
-       {"fit", "average", "combine", "label", "slice", "order", "annulus", "band", "max-iterations",
-        "frames"},
+       {"fit", "average", "combine", "label-key", "slice", "order", "annulus", "band",
+        "max-iterations", "frames"},
        R"(explica phantom shell --size 32 --out shell
-explica embed shell/labels.nii.gz --label 1 --order 8 --out fit)"},
+explica embed shell/labels.nii.gz --label-key 1 --order 8 --out fit)"},
       {"flatten",
        "an unfolded patch, a surface with a rim, or a hemisphere with cuts",
        "a flat map that folds nowhere, as surface, table, picture and stack of depths",
        {"reference", "cuts", "cortex", "cut.strain", "label", "area-tolerance", "grid", "surfaces",
         "volumes", "map", "regions", "frames", "max-time", "resume"},
        R"(explica phantom shell --size 32 --out shell
-explica surface shell/labels.nii.gz --white 1 --grey 2 --faces 2000 --out surfaces
+explica surface shell/labels.nii.gz --white-label 1 --grey-label 2 --faces 2000 --out surfaces
 explica unfold surfaces/pial.surf.gii --center 0,0,12 --radius 8 --direction 0,0,1 --surround none --out unfolded
 explica flatten unfolded/unfolded.surf.gii --surfaces surfaces --volumes shell/level.nii.gz --out flat)"},
       {"glm",
@@ -68,7 +68,7 @@ explica glm people.csv --model 'thickness ~ age' --permutations 100 --out glm)"}
       {"heart",
        "label volumes of the left ventricle: 4-D, or one a frame",
        "segments, volumes and masses over time, thickness and thickening, a bullseye",
-       {"preset", "cavity", "wall", "rv", "frames", "rv-insertion"},
+       {"preset", "cavity", "wall", "rv", "phases", "rv-insertion"},
        R"(explica phantom ventricle --size 64 --spacing 2 --slice 8 --frames 2 --out beat
 explica heart beat/frame-0000.nii.gz beat/frame-0001.nii.gz --out heart)"},
       {"history",
@@ -82,14 +82,14 @@ explica history shell/labels.nii.gz)"},
        "the surface opened as a whole until its folds are seen, areas kept, nowhere through itself",
        {"target-seen", "area-tolerance", "frames", "max-time", "resume", "repair"},
        R"(explica phantom cortex --size 32 --spacing 2 --out cortex
-explica surface cortex/labels.nii.gz --white 3 --grey 2 --faces 2000 --out surfaces
+explica surface cortex/labels.nii.gz --white-label 3 --grey-label 2 --faces 2000 --out surfaces
 explica inflate surfaces/white.surf.gii --out inflated)"},
       {"parcellate",
        "a folder with a sphere in register with a template, and the template's labels",
        "regions at the surface's vertices, and how sure they are",
        {"atlas", "hemisphere"},
        R"(explica phantom shell --size 32 --out shell
-explica surface shell/labels.nii.gz --white 1 --grey 2 --faces 2000 --atlas shell/labels.nii.gz \
+explica surface shell/labels.nii.gz --white-label 1 --grey-label 2 --faces 2000 --atlas shell/labels.nii.gz \
   --out surfaces
 cp surfaces/white.surf.gii surfaces/sphere.reg.surf.gii
 explica parcellate surfaces --atlas surfaces/regions.label.gii --hemisphere L --out regions)"},
@@ -140,7 +140,7 @@ explica thickness shell/labels.nii.gz --inner 1 --tissue 2 --out thickness)"},
       {"polygon",
        "a closed polygon, or the contour of a label in a slice",
        "the polygon with its region unfolded, its stages as a picture, a table of the way",
-       {"region", "viewpoint", "direction", "label", "slice", "phantom", "surround", "method",
+       {"region", "viewpoint", "direction", "label-key", "slice", "phantom", "surround", "method",
         "target-visibility", "max-iterations", "frames", "resume"},
        R"(explica phantom polygon34 --out p34
 explica polygon p34/polygon.csv --region 0:34 --viewpoint 80.9,4000 --out flat)"},
@@ -150,7 +150,7 @@ explica polygon p34/polygon.csv --region 0:34 --viewpoint 80.9,4000 --out flat)"
        "one",
        {"atlas", "map", "hemisphere", "person"},
        R"(explica phantom shell --size 32 --out shell
-explica surface shell/labels.nii.gz --white 1 --grey 2 --faces 2000 --atlas shell/labels.nii.gz \
+explica surface shell/labels.nii.gz --white-label 1 --grey-label 2 --faces 2000 --atlas shell/labels.nii.gz \
   --out surfaces
 explica regions surfaces --atlas surfaces/regions.label.gii --hemisphere L --out tables)"},
       {"register",
@@ -158,7 +158,7 @@ explica regions surfaces --atlas surfaces/regions.label.gii --hemisphere L --out
        "the sphere in the template's frame: equal places have equal folds, one to one",
        {"template", "to", "sulc", "curvature", "surfaces", "mirror", "smoothness", "max-areal"},
        R"(explica phantom cortex --size 32 --spacing 2 --out cortex
-explica surface cortex/labels.nii.gz --white 3 --grey 2 --faces 2000 --out surfaces
+explica surface cortex/labels.nii.gz --white-label 3 --grey-label 2 --faces 2000 --out surfaces
 explica sphere surfaces/white.surf.gii --out sphere
 explica register sphere/sphere.surf.gii --surfaces surfaces --to sphere/sphere.surf.gii \
   --to-sulc surfaces/sulc.shape.gii --to-curvature surfaces/curvature.shape.gii --out registered)"},
@@ -167,7 +167,7 @@ explica register sphere/sphere.surf.gii --surfaces surfaces --to sphere/sphere.s
        "the surface with crossing faces parted, the same vertices and faces",
        {"max-move"},
        R"(explica phantom shell --size 32 --out shell
-explica surface shell/labels.nii.gz --white 1 --grey 2 --faces 2000 --out surfaces
+explica surface shell/labels.nii.gz --white-label 1 --grey-label 2 --faces 2000 --out surfaces
 explica repair surfaces/white.surf.gii surfaces/pial.surf.gii --out repaired)"},
       {"replay",
        "the record of a run",
@@ -187,7 +187,7 @@ explica report thickness)"},
        "the same at the vertices of another sphere in register, such as fsaverage5's",
        {"from", "to", "template", "method", "areas"},
        R"(explica phantom shell --size 32 --out shell
-explica surface shell/labels.nii.gz --white 1 --grey 2 --faces 2000 --out surfaces
+explica surface shell/labels.nii.gz --white-label 1 --grey-label 2 --faces 2000 --out surfaces
 explica resample surfaces/thickness.shape.gii --from surfaces/white.surf.gii --to fsaverage3 \
   --out on-fsaverage3)"},
       {"run",
@@ -204,7 +204,7 @@ explica run cortex/labels.nii.gz --surface.faces 2000 --unfold.max-iterations 5 
        {"surfaces", "hemisphere", "white", "pial", "thickness", "depths", "depth-kind", "across",
         "interpolate", "to-volume", "mask", "labels", "points"},
        R"(explica phantom shell --size 32 --out shell
-explica surface shell/labels.nii.gz --white 1 --grey 2 --faces 2000 --out surfaces
+explica surface shell/labels.nii.gz --white-label 1 --grey-label 2 --faces 2000 --out surfaces
 explica sample shell/harmonic.nii.gz --surfaces surfaces --depths 5 --out sampled)"},
       {"segment",
        "a T1-weighted image without skull; an atlas in its space tells hemispheres apart",
@@ -217,14 +217,14 @@ explica segment cortex/t1.nii.gz --out tissue)"},
        "the maps diffused along the surface, and how smooth they are",
        {"surface", "fwhm", "mask"},
        R"(explica phantom shell --size 32 --out shell
-explica surface shell/labels.nii.gz --white 1 --grey 2 --faces 2000 --out surfaces
+explica surface shell/labels.nii.gz --white-label 1 --grey-label 2 --faces 2000 --out surfaces
 explica smooth surfaces/thickness.shape.gii --surface surfaces/mid.surf.gii --fwhm 5 --out smooth)"},
       {"sphere",
        "a closed surface, such as a hemisphere's white surface",
        "the surface one to one on a sphere, and what that does to areas and shapes",
        {"balance", "tolerance", "max-iterations"},
        R"(explica phantom cortex --size 32 --spacing 2 --out cortex
-explica surface cortex/labels.nii.gz --white 3 --grey 2 --faces 2000 --out surfaces
+explica surface cortex/labels.nii.gz --white-label 3 --grey-label 2 --faces 2000 --out surfaces
 explica sphere surfaces/white.surf.gii --out sphere)"},
       {"study check",
        "a study file",
@@ -245,7 +245,7 @@ explica study group study.json results)"},
       {"study hearts",
        "a folder with a folder of label volumes for each person",
        "a table with a row a person, a page of bull's-eyes, each heart's results",
-       {"participant-label", "endings", "preset", "frames"},
+       {"participant-label", "endings", "preset", "phases"},
        R"(explica phantom ventricle --size 64 --spacing 2 --slice 8 --frames 2 --out beat
 mkdir -p data/sub-01
 cp beat/frame-0000.nii.gz data/sub-01/sub-01_frame-ED_dseg.nii.gz
@@ -274,10 +274,10 @@ explica study participant study.json results)"},
       {"surface",
        "labels of white and grey matter, or volumes that cross a level at their borders",
        "white, middle and pial surface with the same faces; thickness, curvature, depth of sulci",
-       {"preset", "white", "grey", "fill", "hemisphere", "genus", "faces", "inner-level",
-        "outer-level", "atlas", "white-surface", "pial-surface", "freesurfer"},
+       {"preset", "white-label", "grey-label", "fill", "hemisphere", "genus", "faces",
+        "inner-level", "outer-level", "atlas", "white-surface", "pial-surface", "freesurfer"},
        R"(explica phantom shell --size 48 --out shell
-explica surface shell/labels.nii.gz --white 1 --grey 2 --faces 4000 --out surfaces)"},
+explica surface shell/labels.nii.gz --white-label 1 --grey-label 2 --faces 4000 --out surfaces)"},
       {"thickness",
        "a label volume, or two volumes that cross a level at the boundaries",
        "thickness in every voxel of the tissue, depth, layers, points that correspond",
@@ -291,7 +291,7 @@ explica thickness shell/labels.nii.gz --inner 1 --tissue 2 --layers 3 --out thic
        {"center", "vertex", "radius", "label", "metric", "viewpoint", "direction", "surround",
         "target-visibility", "max-iterations", "max-time", "frames", "resume"},
        R"(explica phantom shell --size 32 --out shell
-explica surface shell/labels.nii.gz --white 1 --grey 2 --faces 2000 --out surfaces
+explica surface shell/labels.nii.gz --white-label 1 --grey-label 2 --faces 2000 --out surfaces
 explica unfold surfaces/pial.surf.gii --center 0,0,12 --radius 8 --direction 0,0,1 --out unfolded)"},
       {"verify",
        "the record of a run",

@@ -4,6 +4,7 @@
 #include "Parse.h"
 
 #include "Meeting.h"
+#include "Renamed.h"
 #include "Wording.h"
 
 #include "Explica/Core/Errors.h"
@@ -93,7 +94,7 @@ namespace {
 
 /// Words of other programs for what an option does here.
 const std::map<std::string, std::vector<std::string>> kSynonyms = {
-    {"--side", {"--hemisphere", "--hemispheres"}},
+    {"--side", {"--hemisphere"}},
     {"--jobs", {"--threads"}},
     {"--nthreads", {"--threads"}},
     {"--n-threads", {"--threads"}},
@@ -200,6 +201,9 @@ std::set<std::string> applyJson(std::vector<Parameter*> parameters, const proven
     if (found == parameters.end()) {
       std::vector<std::string> known;
       for (const Parameter* p : parameters) known.push_back(p->option.name);
+      if (const std::string now = nowCalled(declaration.name, key); !now.empty()) {
+        throw UsageError(source + ": option '" + key + "' is called '" + now + "' now");
+      }
       const std::string near = nearestWord(key, known);
       throw UsageError(source + ": unknown option '" + key + "'" +
                        (near.empty() ? "" : "; did you mean '" + near + "'?"));
@@ -260,6 +264,11 @@ std::set<std::string> parseWords(Declaration& declaration, CommonOptions& common
     if (word.rfind('-', 0) != 0) throw UsageError("'" + extra + "' was not expected");
     if (word == "--out" && declaration.fallbackOut) {
       throw UsageError("--out is not an option of this command: OUT_DIR says where the results go");
+    }
+    if (const std::string now =
+            nowCalled(declaration.name, word.substr(word.rfind("--", 0) == 0 ? 2 : 0));
+        !now.empty()) {
+      throw UsageError(word + " is called --" + now + " now");
     }
     const std::string near = nearestWord(word, known);
     throw UsageError("unknown option " + word +

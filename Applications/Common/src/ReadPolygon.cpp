@@ -15,7 +15,8 @@ namespace explica::app {
 
 void declarePolygonReading(Declaration& d, PolygonReading& r) {
   d.options("Reading", r.volume)
-      .option("Contour", Field{"label", "", "take the contour of this label of an image"}, r.label)
+      .option("Contour", Field{"label-key", "", "take the contour of this label of an image"},
+              r.label)
       .option("Contour",
               Field{"slice", "", "slice along the third axis; default: where the label is largest",
                     0, 1e6},

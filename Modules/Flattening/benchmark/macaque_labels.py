@@ -7,7 +7,7 @@
 
 Writes OUT/seg_L.nii.gz and seg_R.nii.gz (1 around, 2 grey, 3 white and what is filled), for
 
-    explica surface OUT/seg_L.nii.gz --white 3 --grey 2 --faces 80000 --out OUT/left
+    explica surface OUT/seg_L.nii.gz --white-label 3 --grey-label 2 --faces 80000 --out OUT/left
 
 The template's label volume has a number a structure and no names: white matter of the lobes is 2, 55, 151 and 193 (+ 1000 on
 the right); cortex is every other label most of which lies within 4 mm of it and is darker than white matter, but for the

@@ -187,14 +187,14 @@ Json surfaceValues(const fs::path& file, const NamedLabels& labels, bool left) {
     case Naming::ThreeClass:
       break;
     case Naming::BidsClasses:
-      json["white"] = {2};
-      json["grey"] = {1};
+      json["white-label"] = {2};
+      json["grey-label"] = {1};
       break;
     case Naming::FreeSurfer:
       if (labels.found.count(left ? kLeftCortex : kRightCortex) == 0 ||
           cortexOf(labels, left).size() > 1) {
         json["preset"] = "aseg";
-        json["grey"] = cortexOf(labels, left);
+        json["grey-label"] = cortexOf(labels, left);
       }
       [[fallthrough]];
     default:

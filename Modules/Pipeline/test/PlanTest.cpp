@@ -77,8 +77,8 @@ TEST_F(PlanOfLabels, GreyMatterIsTheClassBetweenTheOthers) {
   const Plan theirs = plan(write(shells(2, 1, 3)));
   EXPECT_EQ(valuesOf(theirs, "thickness")["inner"], Json({2}));
   EXPECT_EQ(valuesOf(theirs, "thickness")["tissue"], Json({1}));
-  EXPECT_EQ(valuesOf(theirs, "surface")["white"], Json({2}));
-  EXPECT_EQ(valuesOf(theirs, "surface")["grey"], Json({1}));
+  EXPECT_EQ(valuesOf(theirs, "surface")["white-label"], Json({2}));
+  EXPECT_EQ(valuesOf(theirs, "surface")["grey-label"], Json({1}));
 }
 
 TEST_F(PlanOfLabels, ARibbonTellsItsSides) {

@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A block of tissue cut out of a hemisphere's ribbon, as `explica surface` of blocks is measured on.
 
-    block_of_ribbon.py RIBBON OUT.nii.gz [--grey 760000]
+    block_of_ribbon.py RIBBON OUT.nii.gz [--grey-label 760000]
 
 RIBBON is FreeSurfer's ribbon.mgz.  The block is the middle of the left hemisphere's box, cut on all
 sides, each voxel split into eight; white matter is 2, grey matter 3.  It is as large as it must be

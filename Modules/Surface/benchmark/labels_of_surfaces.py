@@ -8,7 +8,7 @@ everywhere can be measured from labels.
 
 Writes the labels (2 white, 3 grey) and, at every third white vertex that has cortex, its place (RAS
 mm) and thickness by FreeSurfer's definition: mean of the nearest distances both ways, at most 5 mm.
-`explica surface LABELS.nii.gz --white 2 --grey 3` and thickness_errors.py then tell how much of the
+`explica surface LABELS.nii.gz --white-label 2 --grey-label 3` and thickness_errors.py then tell how much of the
 surfaces labels give back.
 """
 import argparse

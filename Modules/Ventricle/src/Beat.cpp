@@ -112,7 +112,7 @@ Beat measureBeat(std::vector<Volume<Label>> hearts, const std::vector<int>& numb
   const LongAxis axis = findLongAxis(hearts[beat.diastole]);
   if (countOf(hearts[beat.diastole], kWall) == 0) {
     throw InvalidInput("end-diastole, frame " + std::to_string(numbers[beat.diastole]) +
-                       ", has no wall; thickness needs one there (choose frames with --frames)");
+                       ", has no wall; thickness needs one there (choose frames with --phases)");
   }
   beat.alignment = alignSlices(hearts, axis);
   beat.orientation = findOrientation(hearts[beat.diastole], axis, options.orientation);

@@ -71,10 +71,10 @@ class Tissue(unittest.TestCase):
         labels, affine = shell()
         path = self.folder / "labels.nii.gz"
         explica.write_volume(path, labels, affine)
-        self.run_command("surface", path, "--white", 1, "--grey", 2, "--faces", 3000, "--out",
+        self.run_command("surface", path, "--white-label", 1, "--grey-label", 2, "--faces", 3000, "--out",
                          self.folder / "out")  # fmt: skip
         read = explica.read_labels(str(path))
-        result = explica.surfaces_of(*read, white=[1], grey=[2], faces=3000)
+        result = explica.surfaces_of(*read, white_label=[1], grey_label=[2], faces=3000)
         for name in ("white", "mid", "pial"):
             positions, faces = explica.read_surface(str(self.folder / "out" / f"{name}.surf.gii"))
             np.testing.assert_array_equal(result[name].astype(np.float32), positions)
@@ -90,8 +90,8 @@ class Tissue(unittest.TestCase):
         labels, affine = shell()
         # Inner bright, tissue grey, outside dark, and the outer border a little farther in.
         image = np.choose(labels, [10.0, 110.0, 70.0])
-        plain = explica.surfaces_of(labels, affine, white=[1], grey=[2], faces=2000)
-        placed = explica.surfaces_of(labels, affine, image, white=[1], grey=[2], faces=2000)
+        plain = explica.surfaces_of(labels, affine, white_label=[1], grey_label=[2], faces=2000)
+        placed = explica.surfaces_of(labels, affine, image, white_label=[1], grey_label=[2], faces=2000)
         self.assertEqual(plain["faces"].shape, placed["faces"].shape)
         self.assertFalse(np.array_equal(plain["white"], placed["white"]))
         self.assertLess(np.abs(placed["thickness"] - 6).mean(), 0.3)
@@ -99,7 +99,7 @@ class Tissue(unittest.TestCase):
     def test_a_block_of_tissue_gives_sheets(self):
         labels = np.zeros((24, 20, 20), np.int32)
         labels[:8], labels[8:14] = 1, 2
-        made = explica.surfaces_of(labels, white=[1], grey=[2], faces=800)
+        made = explica.surfaces_of(labels, white_label=[1], grey_label=[2], faces=800)
         condition = explica.inspect_mesh((made["mid"], made["faces"]))
         self.assertEqual(condition["euler_characteristic"], 1)
         self.assertGreater(condition["boundary_edges"], 0)

@@ -28,7 +28,7 @@ struct AnnulusOptions {
 
 template <class Visitor>
 void describe(AnnulusOptions& options, Visitor&& visit) {
-  visit(Field{"centre", "mm", "default: mean of the targets' points"}, options.centre);
+  visit(Field{"center", "mm", "default: mean of the targets' points"}, options.centre);
   visit(Field{"inner-radius", "mm", "default: 0.85 of the nearest target point"},
         options.innerRadius);
   visit(Field{"outer-radius", "mm", "default: 1.15 of the farthest target point"},

@@ -172,8 +172,8 @@ namespace surface {
 template <class Visitor>
 void describe(TissueOptions& options, Visitor&& visit) {
   visit(Field{"preset", "", "what the labels mean"}, options.preset);
-  visit(Field{"white", "", "labels of white matter (default: the preset's)"}, options.white);
-  visit(Field{"grey", "", "labels of grey matter (default: the preset's)"}, options.grey);
+  visit(Field{"white-label", "", "labels of white matter (default: the preset's)"}, options.white);
+  visit(Field{"grey-label", "", "labels of grey matter (default: the preset's)"}, options.grey);
   visit(Field{"fill", "",
               "labels joined to white matter, such as deep structures and ventricles "
               "(default: the preset's)"},
