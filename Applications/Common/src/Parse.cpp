@@ -88,9 +88,12 @@ void refuseNumbersBetweenSpaces(const std::vector<Parameter*>& parameters,
   }
 }
 
-}  // namespace
-
-namespace {
+/// nowCalled() of words with their dashes.
+std::string renamedWord(const std::string& word, std::vector<std::string> known) {
+  for (std::string& name : known) name.erase(0, 2);
+  const std::string now = nowCalled(word.substr(std::min(word.size(), std::size_t{2})), known);
+  return now.empty() ? "" : "--" + now;
+}
 
 /// Words of other programs for what an option does here.
 const std::map<std::string, std::vector<std::string>> kSynonyms = {
@@ -201,7 +204,7 @@ std::set<std::string> applyJson(std::vector<Parameter*> parameters, const proven
     if (found == parameters.end()) {
       std::vector<std::string> known;
       for (const Parameter* p : parameters) known.push_back(p->option.name);
-      if (const std::string now = nowCalled(declaration.name, key); !now.empty()) {
+      if (const std::string now = nowCalled(key, known); !now.empty()) {
         throw UsageError(source + ": option '" + key + "' is called '" + now + "' now");
       }
       const std::string near = nearestWord(key, known);
@@ -265,10 +268,8 @@ std::set<std::string> parseWords(Declaration& declaration, CommonOptions& common
     if (word == "--out" && declaration.fallbackOut) {
       throw UsageError("--out is not an option of this command: OUT_DIR says where the results go");
     }
-    if (const std::string now =
-            nowCalled(declaration.name, word.substr(word.rfind("--", 0) == 0 ? 2 : 0));
-        !now.empty()) {
-      throw UsageError(word + " is called --" + now + " now");
+    if (const std::string now = renamedWord(word, known); !now.empty()) {
+      throw UsageError(word + " is called " + now + " now");
     }
     const std::string near = nearestWord(word, known);
     throw UsageError("unknown option " + word +
