@@ -96,7 +96,6 @@ void declare(Declaration& d, Settings& s) {
       .option("Study", Field{"participant-label", "", "participants to do, with or without sub-"},
               s.participants)
       .severalWords("participant-label")
-      .option("Study", Field{"hemisphere", "", "hemispheres to do"}, s.hemispheres)
       .inputOption("registrations", FileKind::Folder,
                    "an earlier OUT_DIR, of the same T1s: each one's template is placed as it was "
                    "there (runs/*/segment/to_template.h5), where it is; how it fits is checked as "
@@ -123,6 +122,7 @@ void declare(Declaration& d, Settings& s) {
     d.include(s.run.declaration, "");
     for (const char* ours : {"atlas", "hemisphere", "resume", "kind"}) d.without(ours);
   }
+  d.option("Study", Field{"hemisphere", "", "hemispheres to do"}, s.hemispheres);
 }
 
 /// Both hemispheres of labels without sides would be the same volume, twice.
