@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Application/Command.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/StopScope.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Statistics/Combat.h"
 #include "Explica/Statistics/PlaceBlocks.h"
@@ -177,41 +178,37 @@ void sayWhoIsLeftOut(Context& context, const Observations& o, const statistics::
   if (!names.empty()) context.warn("in one list only, left out: " + names);
 }
 
-struct Fitted {
-  Eigen::MatrixXd values;  ///< N x V, if all fit into a block
-  bool complete = true;
-};
-
-Fitted fit(Context& context, const GlmSettings& s, const Observations& o,
-           const statistics::PlaceBlocks& blocks, GlmResults& results) {
+/// @return people's values, N x V, if all fit into a block
+Eigen::MatrixXd fit(Context& context, const GlmSettings& s, const Observations& o,
+                    const statistics::PlaceBlocks& blocks, GlmResults& results) {
   const statistics::PlaceModel model(results.design, results.contrasts);
-  Fitted fitted;
-  fitted.complete = statistics::forEachBlock(
+  Eigen::MatrixXd all;
+  statistics::forEachBlock(
       blocks, o.reader,
       [&](Eigen::Index first, Eigen::MatrixXd& values) {
         harmonise(s, o, results.design, values);
         model.fit(values, first, results.maps);
-        if (blocks.single()) fitted.values = std::move(values);
+        if (blocks.single()) all = std::move(values);
       },
       context.monitor());
-  return fitted;
+  return all;
 }
 
-void measureSmoothness(const Observations& o, const Fitted& fitted, GlmResults& results) {
+void measureSmoothness(const Observations& o, const Eigen::MatrixXd& fitted, GlmResults& results) {
   if (!o.surface) return;
   const auto stored = [&](std::size_t person, std::span<double> values) {
-    const Eigen::VectorXd row = fitted.values.row(static_cast<Eigen::Index>(person));
+    const Eigen::VectorXd row = fitted.row(static_cast<Eigen::Index>(person));
     std::copy(row.begin(), row.end(), values.begin());
   };
   const statistics::PersonReader reader =
-      fitted.values.size() > 0 ? statistics::PersonReader(stored) : o.reader;
+      fitted.size() > 0 ? statistics::PersonReader(stored) : o.reader;
   const auto roughness = statistics::edgeRoughness(results.design.matrix, results.maps.coefficients,
                                                    o.surface->topology.edges, reader);
   results.smoothness = statistics::smoothnessOf(*o.surface, roughness);
 }
 
-bool inferAll(Context& context, const GlmSettings& s, const Observations& o, const Fitted& fitted,
-              GlmResults& results) {
+bool inferAll(Context& context, const GlmSettings& s, const Observations& o,
+              const Eigen::MatrixXd& fitted, GlmResults& results) {
   statistics::InferenceOptions options;
   options.clusterP = s.threshold;
   options.permutations = s.permutations;
@@ -223,7 +220,7 @@ bool inferAll(Context& context, const GlmSettings& s, const Observations& o, con
   for (std::size_t k = 0; k < results.contrasts.size(); ++k) {
     results.inferences.push_back(statistics::infer(
         results.design, results.contrasts[k], results.maps.contrasts[k],
-        fitted.values.size() > 0 ? &fitted.values : nullptr, o.surface ? &*o.surface : nullptr,
+        fitted.size() > 0 ? &fitted : nullptr, o.surface ? &*o.surface : nullptr,
         results.smoothness ? &*results.smoothness : nullptr, options, context.monitor()));
     complete = complete && !results.inferences.back().interrupted;
   }
@@ -250,8 +247,8 @@ GlmSummary summaryOf(const GlmSettings& s, const Observations& o, const GlmResul
   return summary;
 }
 
-void writeAll(Context& context, const GlmSettings& s, const Observations& o, const Fitted& fitted,
-              const GlmResults& results) {
+void writeAll(Context& context, const GlmSettings& s, const Observations& o,
+              const Eigen::MatrixXd& fitted, const GlmResults& results) {
   auto step = context.step("write");
   writeTextFile(context.output("design.tsv"), designTable(o, results));
   if (o.placeNames.empty())
@@ -260,7 +257,7 @@ void writeAll(Context& context, const GlmSettings& s, const Observations& o, con
     writeTextFile(context.output("regions.tsv"), regionTable(o, results));
   if (o.surface) writeTextFile(context.output("clusters.tsv"), clusterTable(o, results));
   writeTextFile(context.output("report.html"),
-                resultPage(s, o, results, fitted.values.size() > 0 ? &fitted.values : nullptr));
+                resultPage(s, o, results, fitted.size() > 0 ? &fitted : nullptr));
   context.results(summaryOf(s, o, results));
 }
 
@@ -283,13 +280,13 @@ Termination run(Context& context, const GlmSettings& s) {
                      {},
                      {}};
   bool complete = true;
-  Fitted fitted;
+  Eigen::MatrixXd fitted;
   {
     auto step = context.step("fit");
     fitted = fit(context, s, o, blocks, results);
-    if (!fitted.complete) return Termination::Interrupted;  // nothing is known yet
     measureSmoothness(o, fitted, results);
   }
+  const StopScope kept(nullptr);  // models are written without the permutations, too
   {
     auto step = context.step("inference");
     complete = inferAll(context, s, o, fitted, results);

@@ -346,7 +346,8 @@ void addFindings(const GlmSettings& s, const Observations& o, const GlmResults& 
   }
 }
 
-void addFlags(const Observations& o, const GlmResults& r, report::ReportContent& page) {
+void addFlags(const GlmSettings& s, const Observations& o, const GlmResults& r,
+              report::ReportContent& page) {
   const auto say = [&](const std::string& what, const std::string& why) {
     page.flags.push_back({report::FlagLevel::Notice, what, why, {}});
   };
@@ -355,7 +356,13 @@ void addFlags(const Observations& o, const GlmResults& r, report::ReportContent&
                                                 std::to_string(r.contrasts.size()) +
                                                 " contrasts are not.");
   }
-  if (r.inferences.front().shuffles == 0) {
+  for (std::size_t k = 0; k < r.contrasts.size(); ++k) {
+    if (!r.inferences[k].interrupted) continue;
+    say(r.contrasts[k].name + ": permutations were interrupted",
+        std::to_string(r.inferences[k].shuffles) + " of " + std::to_string(s.permutations) +
+            " were made; family-wise P by permutation is coarse, or absent.");
+  }
+  if (s.permutations == 0) {
     say("No permutations were made",
         "Family-wise P is by random field theory, or absent; --permutations 10000 gives it without "
         "its assumptions.");
@@ -373,7 +380,7 @@ std::string resultPage(const GlmSettings& settings, const Observations& o, const
                        const Eigen::MatrixXd* values) {
   report::ReportContent page;
   page.title = "Group statistics: " + settings.model;
-  addFlags(o, r, page);
+  addFlags(settings, o, r, page);
   addFindings(settings, o, r, page);
   addTurnable(o, r, page);
   addViews(o, r, page);

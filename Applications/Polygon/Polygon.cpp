@@ -308,35 +308,24 @@ Termination runGlobalFlow(Context& context, const Settings& s, const Task& task)
   return flow.termination;
 }
 
-/// Says beforehand how long work takes that grows with the square of a polygon's size.
-/// @param pairs   of edges
-/// @param advice  what is faster, if anything
-void sayHowLong(Context& context, const std::string& what, double pairs, double pairsPerSecond,
-                const std::string& advice = {}) {
-  const double seconds = pairs / pairsPerSecond;
-  if (seconds < 1) return;
-  char text[160];
-  std::snprintf(text, sizeof text, ": %.2g pairs of edges, about %.0f s on one processor", pairs,
-                std::ceil(seconds));
-  context.info(what + text + advice);
-}
-
-/// Of unfolding, whose knot energy is summed several times an iteration.
+/// Says beforehand how long the exact knot energy takes, which grows with the square of the size.
 void sayHowLongUnfoldingIs(Context& context, const Settings& s, const Task& task) {
-  constexpr double kSumsPerIteration = 2.5, kPairsPerSecond = 1.2e7;  // of the exact integral
+  constexpr double kSumsPerIteration = 2.5, kPairsPerSecond = 1.2e7;
   if (s.unfolding.noTopology || s.unfolding.knot != planar::PolygonKnot::AllPairs) return;
-  sayHowLong(context, "knot energy, each iteration",
-             kSumsPerIteration * task.region.edgeCount * task.curve.edgeCount(), kPairsPerSecond,
-             "; --knot auto or tree sums it in n log n");
+  const double pairs = kSumsPerIteration * task.region.edgeCount * task.curve.edgeCount();
+  if (pairs < kPairsPerSecond) return;
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "knot energy, each iteration: %.2g pairs of edges, about %.0f s on one processor; "
+                "--knot auto or tree sums it in n log n",
+                pairs, std::ceil(pairs / kPairsPerSecond));
+  context.info(text);
 }
 
 /// The measures of the whole polygon, whatever the viewpoint.
 void reportPolygon(Context& context, const Settings& s, const Task& task) {
   const planar::Curve& curve = task.curve;
   const planar::ViewingCircle circle = planar::viewingCircle(curve, s.viewingRadius);
-  const double edges = curve.edgeCount();
-  constexpr double kPairsPerSecond = 5e8;
-  sayHowLong(context, "self occlusion", edges * edges / 2, kPairsPerSecond);
   context.results(
       planar::PolygonSummary{task.region.edgeCount, planar::lengthOf(curve, task.region),
                              planar::signedArea(curve.positions), planar::selfOcclusion(curve),

@@ -93,6 +93,7 @@ std::optional<LoadedTemplate> readTemplate(Context& context, const std::string& 
   loaded.legend =
       name == "inia19" ? segmentation::inia19Legend() : readAtlasLegend(context, paths.atlas, {});
   loaded.stem = segmentation::labelStem(loaded.volumes.atlas, loaded.legend);
+  segmentation::labelVentricles(loaded.volumes.brain, loaded.volumes.atlas, loaded.legend);
   return loaded;
 }
 

@@ -7,6 +7,7 @@
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/Testing/Command.h"
+#include "Explica/Testing/Stops.h"
 
 #include <gtest/gtest.h>
 
@@ -54,6 +55,33 @@ TEST(Glm, OfATableHasTheSlopeOfEachRegion) {
   // Of all 720 orders, those whose slope is as steep.
   EXPECT_EQ(readJson(folder / "out/summary.json")["shuffles"], 720);
   EXPECT_NEAR(std::stod(row[10]) * 720, std::round(std::stod(row[10]) * 720), 1e-2);
+}
+
+/// Stopped anywhere after the models are known, it has them, and says how many shuffles were made.
+TEST(Glm, StoppedInItsPermutationsHasTheModels) {
+  TemporaryFolder folder;
+  writeText(folder / "people.tsv", kPeople);
+  const std::vector<std::string> words = {
+      "glm", folder / "people.tsv", "--model", "~ age", "--permutations", "1000", "--seed",
+      "3",   "--threads",           "1",       "--out", folder / "out"};
+  const long checks = checksFor(words);
+  const auto whole = cellsOf(readText(folder / "out/regions.tsv"), 1);
+  int without = 0;
+  for (const long check : tenMoments(checks)) {
+    std::filesystem::remove_all(folder / "out");
+    const auto stopped = explica(words, stopAtCheck(check));
+    ASSERT_TRUE(isInterrupted(stopped)) << stopped;
+    if (!std::filesystem::exists(folder / "out")) continue;
+    auto row = cellsOf(readText(folder / "out/regions.tsv"), 1);
+    const auto summary = readJson(folder / "out/summary.json");
+    EXPECT_EQ(summary["termination"], "interrupted");
+    EXPECT_LT(summary["shuffles"], 720);
+    without += summary["shuffles"] == 0 ? 1 : 0;
+    EXPECT_EQ(row[10] == "n/a", summary["shuffles"] == 0);
+    row[10] = whole[10];  // its family-wise P
+    EXPECT_EQ(row, whole) << check;
+  }
+  EXPECT_GE(without, 5);
 }
 
 struct BadDesign {

@@ -8,10 +8,13 @@
 #include "Explica/Core/PortableMath.h"
 #include "Explica/Core/StopScope.h"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 namespace explica::planar {
@@ -80,13 +83,13 @@ struct EdgeLines {
   Positions2 normals;
 };
 
-/// What edge i and the edges after it hide of each other, counted once.
-double occlusionAfter(const EdgeLines& lines, int i) {
+/// What edge i and the edges [from, to) after it hide of each other, counted once.
+double occlusion(const EdgeLines& lines, int i, int from, int to) {
   const Curve& curve = lines.curve;
   const int i1 = curve.next(i);
   double sum = 0;
-  double atEnd = 0;  // of edge i's line: the start of j is the end of the edge before
-  for (int j = i + 1; j < curve.edgeCount(); ++j) {
+  double atEnd = lines.outward(i, from);  // the start of j is the end of the edge before
+  for (int j = from; j < to; ++j) {
     const int j1 = curve.next(j);
     // An end that lies on the other edge is on its line, whatever rounding says.
     const double yStart = j == i1 ? 0 : atEnd;
@@ -101,14 +104,87 @@ double occlusionAfter(const EdgeLines& lines, int i) {
   return lines.lengths[i] * sum;
 }
 
+/// A run of edges: the boxes of their ends and of their normals.
+struct EdgeRun {
+  Eigen::AlignedBox2d ends, normals;
+  double length = 0;
+
+  void add(const EdgeRun& other) {
+    ends.extend(other.ends);
+    normals.extend(other.normals);
+    length += other.length;
+  }
+};
+
+/// Bounds of the distances of b's ends from the lines of a's edges, outward positive.  Rounding is
+/// monotone: they hold for EdgeLines::outward to the last bit.
+std::pair<double, double> outwardBounds(const EdgeRun& a, const EdgeRun& b) {
+  const Eigen::Array2d least = b.ends.min() - a.ends.max();
+  const Eigen::Array2d most = b.ends.max() - a.ends.min();
+  const Eigen::Array2d low = a.normals.min(), high = a.normals.max();
+  const Eigen::Array2d p = low * least, q = low * most, r = high * least, s = high * most;
+  return {p.min(q).min(r.min(s)).sum(), p.max(q).max(r.max(s)).sum()};
+}
+
+/// Pairs of runs of edges of which all, or none, hide each other are counted at once.
+class OcclusionTree {
+ public:
+  static constexpr int kLeaf = 32;  ///< edges
+
+  explicit OcclusionTree(const EdgeLines& lines) : lines_(lines), levels_(1) {
+    const Curve& curve = lines.curve;
+    levels_[0].resize(static_cast<std::size_t>((curve.edgeCount() + kLeaf - 1) / kLeaf));
+    for (int e = 0; e < curve.edgeCount(); ++e) {
+      const Eigen::Vector2d normal = lines.normals.row(e);
+      EdgeRun edge{{}, {normal, normal}, lines.lengths[e]};
+      edge.ends.extend(curve.point(e)).extend(curve.point(curve.next(e)));
+      levels_[0][static_cast<std::size_t>(e / kLeaf)].add(edge);
+    }
+    while (levels_.back().size() > 1) {
+      std::vector<EdgeRun> pairs((levels_.back().size() + 1) / 2);
+      for (std::size_t b = 0; b < levels_.back().size(); ++b) pairs[b / 2].add(levels_.back()[b]);
+      levels_.push_back(std::move(pairs));
+    }
+  }
+
+  [[nodiscard]] std::size_t leaves() const { return levels_[0].size(); }
+
+  /// What a leaf's edges and those after them hide of each other, counted once.
+  [[nodiscard]] double after(std::size_t leaf) const { return of(leaf, levels_.size() - 1, 0); }
+
+ private:
+  [[nodiscard]] double of(std::size_t leaf, std::size_t level, std::size_t run) const {
+    if (run >= levels_[level].size() || ((run + 1) << level) <= leaf) return 0;
+    if (run << level > leaf) {
+      const EdgeRun& a = levels_[0][leaf];
+      const EdgeRun& b = levels_[level][run];
+      const auto [leastOfB, mostOfB] = outwardBounds(a, b);
+      const auto [leastOfA, mostOfA] = outwardBounds(b, a);
+      if (mostOfB <= 0 || mostOfA <= 0) return 0;
+      if (leastOfB > 0 && leastOfA > 0) return a.length * b.length;
+    }
+    if (level > 0) return of(leaf, level - 1, 2 * run) + of(leaf, level - 1, 2 * run + 1);
+    const int from = static_cast<int>(run) * kLeaf;
+    const int to = std::min(from + kLeaf, lines_.curve.edgeCount());
+    const int first = static_cast<int>(leaf) * kLeaf;
+    const int end = std::min(first + kLeaf, lines_.curve.edgeCount());
+    double sum = 0;
+    for (int i = first; i < end; ++i) sum += occlusion(lines_, i, std::max(from, i + 1), to);
+    return sum;
+  }
+
+  const EdgeLines& lines_;
+  std::vector<std::vector<EdgeRun>> levels_;  ///< leaves first, the root last
+};
+
 }  // namespace
 
 double selfOcclusion(const Curve& curve) {
   requireClosed(curve);
   const EdgeLines lines(curve);
-  std::vector<double> rows(static_cast<std::size_t>(curve.edgeCount()));
-  parallelFor(rows.size(), 64,
-              [&](std::size_t i) { rows[i] = occlusionAfter(lines, static_cast<int>(i)); });
+  const OcclusionTree tree(lines);
+  std::vector<double> rows(tree.leaves());
+  parallelFor(rows.size(), 16, [&](std::size_t leaf) { rows[leaf] = tree.after(leaf); });
   // The condition is the same for (i, j) and (j, i).
   return 2 * std::accumulate(rows.begin(), rows.end(), 0.0);
 }

@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 namespace explica::planar {
 namespace {
@@ -110,6 +111,36 @@ TEST(SelfOcclusion, EqualsSampling) {
     }
   }
   EXPECT_NEAR(selfOcclusion(curve) / sum, 1, 0.01);
+}
+
+/// A flower of seven petals.
+Curve flower(int n, double noise = 0) {
+  std::mt19937 generator(3);
+  std::uniform_real_distribution<double> uniform(-noise, noise);
+  Curve curve;
+  curve.positions.resize(n, 2);
+  for (int v = 0; v < n; ++v) {
+    const double t = 2 * kPi * v / n;
+    const double r = 30 + 12 * std::sin(7 * t) + uniform(generator);
+    curve.positions.row(v) << r * std::cos(t), r * std::sin(t);
+  }
+  return curve;
+}
+
+TEST(SelfOcclusion, OfRunsOfEdgesIsThatOfTheirPairs) {
+  for (const int n : {33, 64, 700}) {
+    for (const double noise : {0.0, 0.5}) {
+      const Curve curve = flower(n, noise);
+      EXPECT_NEAR(selfOcclusion(curve) / selfOcclusionGradient(curve).value, 1, 1e-12) << n;
+    }
+  }
+}
+
+/// 5e9 pairs: not one by one.  Of first order, as an edge is hidden up to where a line meets it.
+TEST(SelfOcclusion, OfAHundredThousandEdgesIsTheLimitOfAThousand) {
+  const double limit = selfOcclusion(flower(100000));
+  const double coarse = selfOcclusion(flower(1000)), fine = selfOcclusion(flower(4000));
+  EXPECT_NEAR((coarse - limit) / (fine - limit), 4, 0.5);
 }
 
 TEST(GlobalMeasures, GradientsEqualDifferences) {

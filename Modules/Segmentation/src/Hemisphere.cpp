@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace explica::segmentation {
@@ -19,6 +20,11 @@ constexpr double kReach = 1.1;         // voxels beyond that which belong to it 
 constexpr double kLeastPiece = 10;     // mm^3: fewer voxels tell nothing
 constexpr double kAround = 1;          // mm: cortex is twice as thick
 constexpr double kCortexAround = 0.6;  // measured: white matter from 0.74, fat up to 0.48
+
+// Ventricles of a template.
+constexpr double kFluidOverCortex = 0.7;  // of the brightness of cortical labels: darker is fluid
+constexpr double kDeepShare = 0.12;  // of the brain's radius, 8 mm in an adult: sulci open nearer
+constexpr double kOffCortex = 2;     // mm from cortical labels
 
 /// What the atlas says of each voxel.
 struct AtlasMap {
@@ -41,6 +47,17 @@ bool bordersStem(const std::string& name) {
     if (name.compare(0, beginning.size(), beginning) == 0) return true;
   }
   return false;
+}
+
+/// As labelVentricles names them.
+constexpr std::string_view kVentricleName = "Deep_ventricle";
+
+bool isVentricle(const std::string& name) {
+  return name.compare(0, kVentricleName.size(), kVentricleName) == 0;
+}
+
+std::int64_t voxelsIn(const VoxelSet& set) {
+  return std::count_if(set.data.begin(), set.data.end(), [](std::uint8_t v) { return v != 0; });
 }
 
 AtlasMap mapAtlas(const Volume<Label>& atlas, const AtlasLegend& legend) {
@@ -140,16 +157,21 @@ VoxelSet findStem(const AtlasMap& map, const AtlasLegend& legend, const Volume<L
   return stem;
 }
 
-bool touches(const Grid& grid, std::size_t v, const VoxelSet& set) {
+/// Visits the voxels that share a face with one.
+template <class Visit>
+void forNeighbours(const Grid& grid, std::size_t v, const Visit& visit) {
   const auto at = grid.subscripts(v);
   for (int n = 0; n < 6; ++n) {
     auto next = at;
     next[n / 2] += n % 2 == 0 ? -1 : 1;
-    if (grid.contains(next[0], next[1], next[2]) &&
-        set[grid.linear(next[0], next[1], next[2])] != 0)
-      return true;
+    if (grid.contains(next[0], next[1], next[2])) visit(grid.linear(next[0], next[1], next[2]));
   }
-  return false;
+}
+
+bool touches(const Grid& grid, std::size_t v, const VoxelSet& set) {
+  bool found = false;
+  forNeighbours(grid, v, [&](std::size_t w) { found = found || set[w] != 0; });
+  return found;
 }
 
 /// A hemisphere while it is put together.
@@ -194,24 +216,46 @@ std::int64_t takeDeep(const VoxelSet& deep, const Volume<Label>& seg, Draft& dra
   return added;
 }
 
-/// Fills the voids that border deep structures and do not open to the outside; how many voxels.
-std::int64_t fillVentricles(const VoxelSet& voidSet, const VoxelSet& deep, const Volume<Label>& seg,
-                            Draft& draft) {
+/// Fills voids that border deep structures and do not open to the outside, and those that the atlas
+/// says are ventricles, with all that is nearer to them, by steps through voids, than to what is
+/// none: choroid fissure and foramina join ventricles and cisterns.  How many voxels.
+std::int64_t fillVentricles(const VoxelSet& voidSet, const VoxelSet& deep,
+                            const VoxelSet& ventricle, const Volume<Label>& seg, Draft& draft) {
   const Grid& grid = seg.grid;
   const Components voids = componentsOf(voidSet);
   const VoxelSet outside = setWhere(grid, [&](std::size_t v) { return seg[v] == 0; });
+  const VoxelSet cortex = setWhere(grid, [&](std::size_t v) {
+    return draft.own[v] != 0 && seg[v] != kWhite && voidSet[v] == 0 && deep[v] == 0;
+  });
   std::vector<std::uint8_t> nearDeep(voids.size.size(), 0);
   std::vector<std::uint8_t> open(voids.size.size(), 0);
+  enum : std::uint8_t { kUnreached, kVentricle, kOther };
+  VoxelSet reached(grid, kUnreached);
+  std::vector<std::size_t> front;
   for (std::size_t v = 0; v < seg.size(); ++v) {
     const std::int32_t n = voids.number[v];
     if (n < 0) continue;
     if (touches(grid, v, deep)) nearDeep[n] = 1;
-    if (outside[v] != 0 || touches(grid, v, outside)) open[n] = 1;
+    const bool atOutside = outside[v] != 0 || touches(grid, v, outside);
+    if (atOutside) open[n] = 1;
+    if (atOutside || touches(grid, v, cortex)) {
+      reached[v] = kOther;
+    } else if (touches(grid, v, ventricle)) {
+      reached[v] = kVentricle;
+    }
+    if (reached[v] != kUnreached) front.push_back(v);
+  }
+  for (std::size_t next = 0; next < front.size(); ++next) {
+    forNeighbours(grid, front[next], [&](std::size_t w) {
+      if (voidSet[w] == 0 || reached[w] != kUnreached) return;
+      reached[w] = reached[front[next]];
+      front.push_back(w);
+    });
   }
   std::int64_t count = 0;
   for (std::size_t v = 0; v < seg.size(); ++v) {
     const std::int32_t n = voids.number[v];
-    if (n < 0 || nearDeep[n] == 0 || open[n] != 0) continue;
+    if (n < 0 || !(reached[v] == kVentricle || (nearDeep[n] != 0 && open[n] == 0))) continue;
     draft.white[v] = draft.filled[v] = 1;
     ++count;
   }
@@ -407,7 +451,9 @@ Hemisphere extractHemisphere(const TissueSegmentation& tissue, const Volume<Labe
   const VoxelSet voids = setWhere(grid, [&](std::size_t v) {
     return ours(v) && map.kind[v] == 0 && seg[v] != kWhite && to.cortex[v] >= leastSquared;
   });
-  result.ventricleVoxels = fillVentricles(voids, deep, seg, draft);
+  const VoxelSet ventricle = setWhere(
+      grid, [&](std::size_t v) { return deep[v] != 0 && isVentricle(legend.at(atlas[v]).name); });
+  result.ventricleVoxels = fillVentricles(voids, deep, ventricle, seg, draft) + voxelsIn(ventricle);
   if (result.ventricleVoxels == 0) {
     monitor.warn(
         "no ventricle was found next to the deep structures: where fluid borders white matter "
@@ -457,6 +503,49 @@ Label labelStem(Volume<Label>& atlas, AtlasLegend& legend) {
   if (!any) return 0;
   legend[label] = {"Brain_Stem", Side::Both, StructureKind::Stem};
   return label;
+}
+
+void labelVentricles(const Volume<float>& brain, Volume<Label>& atlas, AtlasLegend& legend) {
+  const Grid& grid = atlas.grid;
+  const AtlasMap map = mapAtlas(atlas, legend);
+  const auto isOf = [&](StructureKind kind) {
+    return [&map, kind](std::size_t v) { return map.kind[v] == kindCode(kind); };
+  };
+  const VoxelSet cortex = setWhere(grid, isOf(StructureKind::Cortex));
+  std::vector<float> values;
+  for (std::size_t v = 0; v < brain.size(); ++v) {
+    if (cortex[v] != 0 && brain[v] > 0) values.push_back(brain[v]);
+  }
+  if (values.empty()) return;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  const double dark = kFluidOverCortex * *middle;
+  const VoxelSet outside = setWhere(grid, [&](std::size_t v) { return !(brain[v] > 0); });
+  const auto inside = static_cast<double>(brain.size() - voxelsIn(outside));
+  const double depth = kDeepShare * std::cbrt(0.75 / kPi * inside * grid.voxelVolume());
+  const Volume<float> toOutside = squaredDistanceTo(outside), toCortex = squaredDistanceTo(cortex);
+  const Components voids = componentsOf(setWhere(grid, [&](std::size_t v) {
+    return map.kind[v] == 0 && brain[v] < dark && toOutside[v] > depth * depth &&
+           toCortex[v] >= kOffCortex * kOffCortex;
+  }));
+  const VoxelSet deep = setWhere(grid, isOf(StructureKind::Deep));
+  std::vector<std::uint8_t> nearDeep(voids.size.size(), 0);
+  for (std::size_t v = 0; v < deep.size(); ++v) {
+    if (voids.number[v] >= 0 && touches(grid, v, deep)) nearDeep[voids.number[v]] = 1;
+  }
+  std::array<Volume<float>, 2> to;
+  std::array<Label, 2> names;
+  for (const Side side : {Side::Left, Side::Right}) {
+    const bool right = side == Side::Right;
+    to[right] = squaredDistanceTo(
+        setWhere(grid, [&](std::size_t v) { return deep[v] && map.side[v] == sideCode(side); }));
+    names[right] = legend.empty() ? 1 : legend.rbegin()->first + 1;
+    legend[names[right]] = structureNamed(std::string(kVentricleName) + (right ? "_R" : "_L"));
+  }
+  for (std::size_t v = 0; v < atlas.size(); ++v) {
+    const std::int32_t n = voids.number[v];
+    if (n >= 0 && nearDeep[n] != 0) atlas[v] = names[to[1][v] < to[0][v]];
+  }
 }
 
 Volume<std::uint8_t> maskOf(const Volume<Label>& labels, Label label) {

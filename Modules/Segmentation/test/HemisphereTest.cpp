@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 namespace explica::segmentation {
@@ -91,6 +92,50 @@ TEST(Hemisphere, FillsDeepStructuresAndVentricles) {
   EXPECT_EQ(labelAt(Point(-24, 0, 0)), kGrey);
   EXPECT_GT(left.deepVoxels, 100);
   EXPECT_GT(left.ventricleVoxels, 30);
+}
+
+/// A T1 of the phantom.
+Volume<float> brightnessOf(const HeadPhantom& p) {
+  constexpr std::array<float, 4> kBrightness = {0, 30, 80, 110};
+  Volume<float> brain(p.atlas.grid);
+  for (std::size_t v = 0; v < brain.size(); ++v) brain[v] = kBrightness[p.tissue.labels[v]];
+  return brain;
+}
+
+/// Fluid leads from the ventricles to where the mask of the brain ends.
+void openVentricles(HeadPhantom& p) {
+  for (std::size_t v = 0; v < p.atlas.size(); ++v) {
+    const auto [i, j, k] = p.atlas.grid.subscripts(v);
+    const Point w = p.atlas.grid.toWorld(Vector(i, j, k));
+    const double off = std::hypot(std::abs(w.x()) - 6, w.z() - 6);
+    if (off > 1.2 || w.y() < 0) continue;
+    p.tissue.labels[v] = w.y() > 12 ? Label{0} : Label{kCsf};
+    for (auto& q : p.tissue.probability) q[v] = 0;
+    if (w.y() <= 12) p.tissue.probability[0][v] = 1;
+  }
+}
+
+TEST(Hemisphere, FillsAnOpenVentricleThatATemplateKnows) {
+  const HeadPhantom known = makeHeadPhantom(false);
+  Volume<Label> atlas = known.atlas;
+  AtlasLegend legend = known.legend;
+  labelVentricles(brightnessOf(known), atlas, legend);
+  HeadPhantom head = makeHeadPhantom(false);
+  openVentricles(head);
+  const auto labelAt = [](const Volume<Label>& labels, const Point& w) {
+    const Vector at = labels.grid.toIndex(w);
+    return labels(static_cast<int>(std::lround(at.x())), static_cast<int>(std::lround(at.y())),
+                  static_cast<int>(std::lround(at.z())));
+  };
+  EXPECT_EQ(legend.at(labelAt(atlas, Point(-6.5, 0, 6))).name, "Deep_ventricle_L");
+  EXPECT_EQ(legend.at(labelAt(atlas, Point(6.5, 0, 6))).name, "Deep_ventricle_R");
+  EXPECT_EQ(labelAt(atlas, Point(-6.5, 10, 6)), 0);
+  const Hemisphere without = extractHemisphere(head.tissue, known.atlas, known.legend);
+  EXPECT_EQ(labelAt(without.labels, Point(-6.5, 0, 6)), kCsf);
+  const Hemisphere left = extractHemisphere(head.tissue, atlas, legend);
+  EXPECT_EQ(labelAt(left.labels, Point(-6.5, 0, 6)), kWhite);
+  EXPECT_EQ(labelAt(left.labels, Point(-6.5, 5, 6)), kWhite) << "larger than the template's";
+  EXPECT_EQ(labelAt(left.labels, Point(-6.5, 11, 6)), kCsf) << "nearer to the outside";
 }
 
 TEST(Hemisphere, LeavesTheStemOutAndMarksTheCut) {

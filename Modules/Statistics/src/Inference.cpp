@@ -39,15 +39,16 @@ void makePermutations(const Design& design, const Contrast& contrast, const Eige
   permutation.tfce = options.tfce && surface != nullptr;
   result = permute(design, contrast, values, surface == nullptr ? nullptr : &surface->graph,
                    permutation, monitor);
+  inference.shuffles = static_cast<std::int64_t>(result.statistic.size());
+  inference.exchange = result.exchange;
+  inference.exhaustive = result.exhaustive;
+  inference.interrupted = result.interrupted;
+  if (result.statistic.empty()) return;
   inference.familyWise = familyWiseP(result.statistic, result.observed);
   if (permutation.tfce) {
     inference.enhanced = result.enhanced;
     inference.enhancedP = familyWiseP(result.tfce, result.enhanced);
   }
-  inference.shuffles = static_cast<std::int64_t>(result.statistic.size());
-  inference.exchange = result.exchange;
-  inference.exhaustive = result.exhaustive;
-  inference.interrupted = result.interrupted;
 }
 
 /// Clusters of one sign with their P.

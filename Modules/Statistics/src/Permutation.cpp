@@ -4,6 +4,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
+#include "Explica/Core/StopScope.h"
 #include "Explica/Core/Types.h"
 #include "Explica/Statistics/Clusters.h"
 #include "ProjectionKernel.h"
@@ -319,18 +320,20 @@ PermutationResult permute(const Design& design, const Contrast& contrast,
                           options.seed);
   requireChange(columns, shuffler, contrast);
   result.exhaustive = shuffler.exhaustive();
-  Test test(regressors, values, graph, options, shuffler);
-  std::vector<Maxima> maxima;
-  for (std::int64_t begin = 0; begin < shuffler.count(); begin += test.atOnce()) {
-    if (begin > 0 && monitor.shouldStop()) {
-      result.interrupted = true;
-      break;
+  try {
+    const StopScope within(&monitor);
+    Test test(regressors, values, graph, options, shuffler);
+    std::vector<Maxima> maxima;
+    for (std::int64_t begin = 0; begin < shuffler.count(); begin += test.atOnce()) {
+      monitor.progress(static_cast<double>(begin) / static_cast<double>(shuffler.count()),
+                       "permutations of " + contrast.name);
+      maxima.resize(static_cast<std::size_t>(std::min(test.atOnce(), shuffler.count() - begin)));
+      test.run(begin, maxima, result);
+      append(maxima, graph, options.tfce, result);
     }
-    monitor.progress(static_cast<double>(begin) / static_cast<double>(shuffler.count()),
-                     "permutations of " + contrast.name);
-    maxima.resize(static_cast<std::size_t>(std::min(test.atOnce(), shuffler.count() - begin)));
-    test.run(begin, maxima, result);
-    append(maxima, graph, options.tfce, result);
+  } catch (const Interrupted&) {
+    result.interrupted = true;
+    result.exhaustive = false;
   }
   return result;
 }

@@ -10,7 +10,7 @@
 namespace explica::statistics {
 namespace {
 
-constexpr std::size_t kPeopleAtOnce = 64;  // between looks at the monitor
+constexpr std::size_t kPeopleAtOnce = 64;  // between words of progress
 
 }  // namespace
 
@@ -20,14 +20,13 @@ Eigen::Index PlaceBlocks::atOnce() const {
                                   std::max<Eigen::Index>(places, 1));
 }
 
-bool forEachBlock(const PlaceBlocks& blocks, const PersonReader& reader,
+void forEachBlock(const PlaceBlocks& blocks, const PersonReader& reader,
                   const std::function<void(Eigen::Index, Eigen::MatrixXd&)>& body,
                   const Monitor& monitor) {
   const auto people = static_cast<std::size_t>(blocks.people);
   for (Eigen::Index first = 0; first < blocks.places; first += blocks.atOnce()) {
     Eigen::MatrixXd values(blocks.people, std::min(blocks.atOnce(), blocks.places - first));
     for (std::size_t begin = 0; begin < people; begin += kPeopleAtOnce) {
-      if (monitor.shouldStop()) return false;
       monitor.progress(
           (static_cast<double>(first) + static_cast<double>(begin) / static_cast<double>(people) *
                                             static_cast<double>(values.cols())) /
@@ -42,7 +41,6 @@ bool forEachBlock(const PlaceBlocks& blocks, const PersonReader& reader,
     }
     body(first, values);
   }
-  return true;
 }
 
 }  // namespace explica::statistics

@@ -7,6 +7,7 @@
 #include "EdgeSearch.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Geometry/MeshTopology.h"
+#include "MaskedImage.h"
 #include "NarrowFluid.h"
 #include "OuterSearch.h"
 #include "PathProfile.h"
@@ -32,6 +33,8 @@ constexpr double kOutsideReach = 2;
 constexpr int kOutsideSamples = 9;
 /// Fluid is as bright as white matter around says: deviation of the window, voxels.
 constexpr double kFluidSpread = 4.1;
+/// Farthest beyond the tissue that the image is looked at, voxels.
+constexpr double kBeyondMask = kOutsideReach + 1;
 
 /// Brightness of the tissues along each trajectory, averaged over neighbours; NaN where there is no
 /// ribbon or no image.
@@ -70,6 +73,13 @@ Tissues brightnessOf(const std::vector<Trajectory>& paths, const Volume<float>& 
     found.outside[static_cast<Eigen::Index>(v)] = least < kInfinity ? found.sign * least : kNaN;
   });
   return found;
+}
+
+/// Of grey matter and pure fluid, as most vertices have it; 0 if fluid's brightness is not known.
+double fluidContrast(const Tissues& tissues, double fluid) {
+  if (!(fluid > 0)) return 0;
+  const Eigen::VectorXd contrast = tissues.sign * (tissues.grey - fluid * tissues.white);
+  return median({contrast.begin(), contrast.end()});
 }
 
 /// How far a border may go outward and inward on a trajectory, in places.
@@ -132,8 +142,9 @@ std::vector<Profile> missesOf(const std::vector<Trajectory>& paths, bool outer,
 }  // namespace
 
 ImageBorders findBorders(const std::vector<Trajectory>& given, const TriangleMesh& white,
-                         const Volume<float>& image, double voxel,
+                         const Volume<float>& seen, double voxel,
                          const ImageBorderOptions& options) {
+  const Volume<float> image = beyondMask(seen, kBeyondMask * voxel);
   const auto topology = geometry::buildTopology(white.faces, white.vertexCount());
   const double step = options.reach * voxel / kSide;
   const double edgeLength = meanEdge(white);
@@ -149,8 +160,9 @@ ImageBorders findBorders(const std::vector<Trajectory>& given, const TriangleMes
       if (paths[v].end == TrajectoryEnd::NoRibbon) return;
       paths[v] = between(given[v], borders.white[static_cast<Eigen::Index>(v)], given[v].length());
     });
-    borders.outer = searchOuter(paths, topology, edgeLength, image, voxel,
-                                brightnessOf(paths, image, voxel).sign);
+    const Tissues tissues = brightnessOf(paths, image, voxel);
+    borders.outer = searchOuter(paths, topology, edgeLength, image, voxel, tissues.sign,
+                                fluidContrast(tissues, options.fluid));
     for (std::size_t v = 0; v < paths.size(); ++v) {
       const double way = borders.outer[static_cast<Eigen::Index>(v)];
       if (way == 0) continue;

@@ -114,7 +114,7 @@ class Search {
 Eigen::VectorXd searchOuter(const std::vector<Trajectory>& paths,
                             const geometry::MeshTopology& topology, double edge,
                             const Volume<float>& image, double voxel, double sign,
-                            const OuterSearchOptions& options) {
+                            double fluidContrast, const OuterSearchOptions& options) {
   const Search search(paths, image, voxel, sign, options);
   const auto n = static_cast<Eigen::Index>(paths.size());
   Eigen::MatrixXd seen(n, 2);
@@ -122,7 +122,7 @@ Eigen::VectorXd searchOuter(const std::vector<Trajectory>& paths,
               [&](std::size_t v) { seen.row(static_cast<Eigen::Index>(v)) = search.greyAt(v); });
   seen = averaged(std::move(seen), topology, timesFor(options.greySpread * voxel, edge));
   const Eigen::VectorXd grey = seen.col(0).cwiseQuotient(seen.col(1));
-  const double contrast = search.usualContrast(grey);
+  const double contrast = fluidContrast > 0 ? fluidContrast : search.usualContrast(grey);
   Eigen::VectorXd border(n);
   parallelFor(paths.size(), 256, [&](std::size_t v) {
     const auto row = static_cast<Eigen::Index>(v);

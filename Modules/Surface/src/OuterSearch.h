@@ -30,11 +30,15 @@ struct OuterSearchOptions {
 /// more than two voxels before its end.  Medians of a vertex and two rings tell noise from that.
 /// @param paths  from the white border
 /// @param edge   mean length of the edges, mm
+/// @param fluidContrast  of grey matter and pure fluid; 0: not known, and the usual contrast of
+/// what
+///               is seen takes its place, which is small in a brain that was cut out tightly
 /// @param sign   1 if white matter is brighter than grey matter, else -1
 /// @return per vertex, mm outward along the trajectory from its end: 0 or less
 [[nodiscard]] Eigen::VectorXd searchOuter(const std::vector<Trajectory>& paths,
                                           const geometry::MeshTopology& topology, double edge,
                                           const Volume<float>& image, double voxel, double sign,
+                                          double fluidContrast,
                                           const OuterSearchOptions& options = {});
 
 }  // namespace explica::surface

@@ -476,6 +476,25 @@ TEST(CorticalSurface, TheBorderBesideNarrowFluidIsRightOnVoxelsOfAnyShape) {
   }
 }
 
+TEST(CorticalSurface, AMaskThatEndsAtTheCortexIsNoFluid) {
+  // A brain that was cut out along its cortex: the image falls a little towards fluid, then to 0.
+  const Grid grid = lattice(54, Vector::Constant(1));
+  const auto image =
+      volumeOf(grid, [&](const Point& p) { return p.norm() < 17 ? brightness(p, 14, 17) : 0.0F; });
+  const CorticalTissue tissue =
+      tissueFromShares(volumeOf(grid, [&](const Point& p) { return shareOf(p, 14, 1); }),
+                       volumeOf(grid, [&](const Point& p) { return p.norm() < 17 ? 1.0F : 0.0F; }));
+  SurfaceOptions options;
+  options.faces = 6000;
+  options.fluid = 20.0 / 110;
+  const auto made = buildSurfaces(tissue, image, options);
+  const auto bounded = buildSurfaces(tissue, options);
+  const double off = (made.pial.positions.rowwise().norm().array() - 17).mean();
+  const double mask = (bounded.pial.positions.rowwise().norm().array() - 17).mean();
+  std::printf("pial surface %+.3f mm from the border, the mask's edge %+.3f\n", off, mask);
+  EXPECT_NEAR(off, mask, 0.03);
+}
+
 TEST(CorticalSurface, AnImageWithoutEdgesLeavesTheLabelsBorders) {
   const auto tissue = shell(14, 17, 1);
   SurfaceOptions options;

@@ -21,7 +21,8 @@ namespace explica::planar {
 
 /// Length by which a closed polygon hides itself, [Thesis, Eq. 4.7], mm^2: the measure of the pairs
 /// (x, y) where y lies on the outer side of x's edge and shows x its outer side.  0 for convex
-/// polygons.  Exact: for two edges the two conditions separate.  O(V^2).
+/// polygons.  Exact: for two edges the two conditions separate.  Pairs of runs of edges that are
+/// all alike are taken at once: O(V log V) for smooth curves, O(V^2) at worst.
 /// @throws InvalidInput  an open curve
 [[nodiscard]] double selfOcclusion(const Curve& curve);
 

@@ -63,7 +63,8 @@ struct Hemisphere {
 /// fusiform labels in the same coronal plane; so the image's axes must be near the atlas's (RAS
 /// within about 20 degrees), unless it is labelled. Ventricles are unlabelled non-white voxels at
 /// least `coreDepth` from cortical labels whose component touches a deep structure and not the
-/// brain's outside.
+/// brain's outside, or that are nearer to a ventricle of the atlas (labelVentricles) than to
+/// cortex and the outside, by steps through such voxels.
 ///
 /// @param atlas  labels on the segmentation's grid; 0 is unlabelled
 /// @throws InvalidInput  atlas on another grid, side Both, no white or no grey voxel found
@@ -76,6 +77,13 @@ struct Hemisphere {
 /// extractHemisphere), so that it stays known where the atlas is turned or bent.
 /// @return the label; 0 if there is none, because the atlas has no thalamus
 Label labelStem(Volume<Label>& atlas, AtlasLegend& legend);
+
+/// Gives the ventricles of a template whose atlas does not label them labels of their own, a deep
+/// structure on each side, so that they stay known where the template is bent onto a brain: what is
+/// unlabelled, as dark as fluid, off the brain's border and its cortex, and joined to deep
+/// structures.  After labelStem(), whose label the cisterns around the stem have.
+/// @param brain  the template's T1 without skull, on the atlas's grid
+void labelVentricles(const Volume<float>& brain, Volume<Label>& atlas, AtlasLegend& legend);
 
 /// 1 where a label is, 0 elsewhere.
 [[nodiscard]] Volume<std::uint8_t> maskOf(const Volume<Label>& labels, Label label);

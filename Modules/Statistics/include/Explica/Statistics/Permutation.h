@@ -40,7 +40,7 @@ struct PermutationResult {
   Eigen::VectorXd enhanced;            ///< V, its TFCE; empty unless asked for
   Exchange exchange = Exchange::Auto;  ///< what Auto came to
   bool exhaustive = false;             ///< every possible shuffle was made
-  bool interrupted = false;            ///< fewer than asked for
+  bool interrupted = false;            ///< fewer than asked for, perhaps none
 };
 
 /// The null distribution of a contrast's largest statistic by shuffling the residuals of the model

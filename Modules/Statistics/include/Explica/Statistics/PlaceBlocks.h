@@ -24,8 +24,7 @@ struct PlaceBlocks {
 
 /// Reads every person once for each block, several at a time, and calls body(first place, N x B
 /// values).
-/// @return false if the monitor asked to stop before the end
-bool forEachBlock(const PlaceBlocks& blocks, const PersonReader& reader,
+void forEachBlock(const PlaceBlocks& blocks, const PersonReader& reader,
                   const std::function<void(Eigen::Index first, Eigen::MatrixXd& values)>& body,
                   const Monitor& monitor = {});
 
