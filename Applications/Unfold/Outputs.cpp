@@ -73,6 +73,9 @@ void writeFiles(Context& context, const Unfolded& u, const Measures& m) {
   const auto& faces = u.result.region.faces;
   const std::string structure = u.metadata.structure;
   io::writeGiftiSurface(context.output("unfolded.surf.gii"), after, u.metadata);
+  if (u.reference == kReferenceFile) {
+    io::writeGiftiSurface(context.output(kReferenceFile), u.before, u.metadata);
+  }
 
   const std::vector<io::VertexMap> visibilityMaps = {
       {"flux before", "", visibility::vertexFlux(u.before, u.view)},
@@ -139,6 +142,7 @@ unfolding::UnfoldSummary summaryOf(const Unfolded& u, const Measures& m) {
     return visibility::AverageVisibility(mesh.faces, faces, u.view).value(mesh.positions);
   };
   unfolding::UnfoldSummary s;
+  s.reference = u.reference;
   s.surround = u.surround;
   s.view = u.view;
   s.target = u.goal;
@@ -173,45 +177,21 @@ unfolding::UnfoldSummary summaryOf(const Unfolded& u, const Measures& m) {
 }
 
 /// What the surroundings had to give for the region to be seen.
-void checkCollar(Context& context, Unfolded& u, const Measures& m) {
+void sayCollar(Context& context, const Unfolded& u, const Measures& m) {
   const auto& collar = u.result.collar;
   if (collar.empty()) return;
   const Eigen::VectorXd stretch = m.areaRatio(collar);
-  const double mean = stretch.mean(), most = stretch.maxCoeff();
-  if (most <= unfolding::kCollarMost) return;
-  const auto beyond = (stretch.array() > unfolding::kCollarMost).count();
-  const bool elastic = u.surround == unfolding::Surround::Elastic;
+  if (stretch.maxCoeff() <= unfolding::kCollarMost) return;
   char text[240];
   std::snprintf(
       text, sizeof text,
       "%lld of %zu faces around the region are stretched to more than %g times their area, "
       "one to %.1f times; %.2f times in the mean%s",
-      static_cast<long long>(beyond), collar.size(), unfolding::kCollarMost, most, mean,
-      elastic ? "" : ": with --surround elastic more of them follow, and stretch less");
-  context.warn(text);
-  if (!elastic || mean <= unfolding::kCollarMean) return;
-  if (u.result.flag == unfolding::Flag::None) u.result.flag = unfolding::Flag::Stretched;
-  if (reachedGoal(u.result.termination)) u.result.termination = Termination::Stalled;
-}
-
-/// A region that looks at the viewpoint but lies under something else is not unfolded either.
-void checkSeen(Context& context, Unfolded& u, const Measures& m, double goal) {
-  const double seen = m.seenAfter.of(u.result.mesh, u.result.region.faces);
-  const Termination end = u.result.termination;
-  const bool atRest = end == Termination::Converged || end == Termination::Finished;
-  char text[160];
-  if (end == Termination::Converged && seen < unfolding::kGoalSeen) {
-    u.result.termination = Termination::Finished;
-    std::snprintf(text, sizeof text,
-                  "%.4f of the region's area can be seen in what is written; the goal is %g", seen,
-                  unfolding::kGoalSeen);
-    context.warn(text);
-  }
-  if (!(atRest || end == Termination::Stalled) || seen >= goal - unfolding::kHeldBelow) return;
-  if (u.result.flag == unfolding::Flag::None) u.result.flag = unfolding::Flag::Held;
-  u.result.termination = Termination::Stalled;
-  std::snprintf(text, sizeof text,
-                "the region is held: only %.3f of its area can be seen from the viewpoint", seen);
+      static_cast<long long>((stretch.array() > unfolding::kCollarMost).count()), collar.size(),
+      unfolding::kCollarMost, stretch.maxCoeff(), stretch.mean(),
+      u.surround == unfolding::Surround::Elastic
+          ? ""
+          : ": with --surround elastic more of them follow, and stretch less");
   context.warn(text);
 }
 
@@ -239,8 +219,7 @@ Termination writeUnfolded(Context& context, Unfolded& u) {
   summary.crossings = crossings.after.size();
   summary.crossingsNew = crossings.added;
   summary.crossingsWithRest = crossings.withRest;
-  checkSeen(context, u, m, u.goal);
-  checkCollar(context, u, m);
+  sayCollar(context, u, m);
   checkWritten(context, u, crossings);
   summary.end.flag = u.result.flag;
   summary.end.stopReason = u.result.termination;

@@ -11,10 +11,12 @@
 
 namespace explica::app {
 
+inline constexpr char kReferenceFile[] = "reference.surf.gii";
 inline constexpr char kStateFile[] = "unfolding.state";
 
 /// A finished unfolding and what it came from.
 struct Unfolded {
+  std::string reference = "SURFACE";  ///< the file of `before`, if it was repaired its own
   TriangleMesh before;  ///< the whole surface, its crossings parted as far as that was asked for
   io::SurfaceMetadata metadata;
   visibility::Viewpoints view;

@@ -226,7 +226,10 @@ std::string writePierced(const TemporaryFolder& folder, const Point& about) {
   TriangleMesh mesh = geometry::makeFoldedSphere(4, 30.0);
   Eigen::Index nearest = 0;
   (void)(mesh.positions.rowwise() - about.transpose()).rowwise().squaredNorm().minCoeff(&nearest);
-  mesh.positions.row(nearest) += Eigen::RowVector3d(8, 5, about.z() > 0 ? -4 : 4);
+  const Vector up = about.normalized();
+  const auto across = [&](const Vector& axis) { return (axis - axis.dot(up) * up).normalized(); };
+  mesh.positions.row(nearest) +=
+      (8 * across(Vector::UnitX()) + 5 * across(Vector::UnitY()) - 4 * up).transpose();
   io::writeSurface(folder / "pierced.surf.gii", mesh);
   return folder / "pierced.surf.gii";
 }
@@ -278,6 +281,36 @@ TEST(UnfoldCommand, RepairPartsThemAndSaysHowFarVerticesMoved) {
     const auto record = readText(folder / "out/provenance.json");
     EXPECT_NE(record.find("\"repair\": true"), std::string::npos);
     EXPECT_NE(record.find("parted by moving"), std::string::npos);
+  }
+}
+
+TEST(UnfoldCommand, AReaderComputesTheSameNumbersFromTheFiles) {
+  // Nothing crosses; a face of the region does; one of the collar does.
+  for (const Point& about : {Point(0, 0, -30), Point(0, 0, 30), Point(19, 0, 23)}) {
+    const TemporaryFolder folder;
+    const bool crosses = about.z() > 0;
+    const std::string surface =
+        crosses ? writePierced(folder, about) : std::string(onFoldedSphere(folder)[1]);
+    const auto run =
+        explica({"unfold", surface, "--center", "0,0,30", "--radius", "15", "--direction", "0,0,1",
+                 "--max-iterations", "12", "--out", folder / "out"});
+    ASSERT_EQ(run.exitCode, 3) << run;
+    const auto check = [&] {
+      return runProgram({EXPLICA_PYTHON, EXPLICA_SOURCE_DIR "/Testing/commands/check_unfold.py",
+                         surface, folder / "out"});
+    };
+    const auto told = check();
+    EXPECT_EQ(told.exitCode, 0) << told;
+    auto summary = readJson(folder / "out/summary.json");
+    EXPECT_EQ(summary["reference"], crosses ? "reference.surf.gii" : "SURFACE");
+    EXPECT_EQ(fs::exists(folder / "out/reference.surf.gii"), crosses);
+    if (!crosses) continue;
+    EXPECT_TRUE(
+        geometry::findSelfIntersections(io::readSurface(folder / "out/reference.surf.gii").mesh)
+            .empty());
+    summary["reference"] = "SURFACE";
+    writeText(folder / "out/summary.json", summary.dump());
+    EXPECT_EQ(check().exitCode, 1) << "the surface as it was read is no reference";
   }
 }
 

@@ -19,14 +19,16 @@ def main():
     driver = start(1200)
     try:
         driver.get("file://" + sys.argv[1])
+        driver.execute_script("for (const d of document.querySelectorAll('details')) d.open = true;")
         boxes = driver.find_elements(By.CSS_SELECTOR, "input.to-other")
         check("%d pictures have two states" % len(boxes), len(boxes) > 0)
         for n, box in enumerate(boxes):
             figure = box.find_element(By.XPATH, "./ancestor::figure")
             tiles = figure.find_elements(By.CSS_SELECTOR, ".tiles")[1]
             name = figure.find_element(By.TAG_NAME, "b").text
-            driver.execute_script("arguments[0].scrollIntoView()", tiles)
+            driver.execute_script("arguments[0].scrollIntoView({block: 'center'})", figure)
             before = tiles.screenshot_as_png
+            driver.execute_script("arguments[0].scrollIntoView({block: 'center'})", box)
             box.click()
             after = tiles.screenshot_as_png
             check(name + " the other state is another picture", after != before)

@@ -225,6 +225,8 @@ class Inflation {
   Termination termination_ = Termination::NotRun;
 };
 
+constexpr double kHeldBelow = 0.1;  // of visibility: so far below what was to be seen it is held
+
 /// Says what a user must know about the result.
 void judge(const InflateOptions& options, const Monitor& monitor, InflateResult& result) {
   const InflateRecord &first = result.history.front(), &last = result.history.back();
@@ -234,7 +236,7 @@ void judge(const InflateOptions& options, const Monitor& monitor, InflateResult&
     std::snprintf(text, sizeof text, "the visibility fell from %.3f to %.3f: nothing is opened",
                   first.visibility, last.visibility);
   } else if (result.termination == Termination::Stalled &&
-             last.visibility < options.targetSeen - unfolding::kHeldBelow) {
+             last.visibility < options.targetSeen - kHeldBelow) {
     result.flag = unfolding::Flag::Held;
     std::snprintf(text, sizeof text,
                   "the surface is held at a visibility of %.3f: areas and lengths kept, it does "

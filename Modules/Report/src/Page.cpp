@@ -8,6 +8,7 @@
 #include "Explica/Report/Drawing.h"
 #include "PageParts.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <set>
@@ -38,11 +39,13 @@ Word wordFor(StepState state) {
 Word wordFor(FlagLevel level) {
   switch (level) {
     case FlagLevel::Good:
-      return {"good", "good"};
+      return {"good", "right"};
+    case FlagLevel::Remark:
+      return {"missing", "remark"};
     case FlagLevel::Notice:
-      return {"notice", "note"};
+      return {"notice", "look"};
     default:
-      return {"bad", "check"};
+      return {"bad", "wrong"};
   }
 }
 
@@ -126,36 +129,82 @@ std::string imageHtml(const Picture& picture, const std::string& words) {
          base64(encodePng(picture)) + "'>";
 }
 
-std::string captionHtml(const std::string& title, const std::string& caption) {
-  return "<figcaption><b>" + escapeHtml(title) + ".</b> " + escapeHtml(caption) + "</figcaption>";
+/// A figure under its title, which folds it away.
+std::string figureHtml(const std::string& id, const std::string& title, const std::string& caption,
+                       bool isOpen, const std::string& body) {
+  return "<figure" + (id.empty() ? "" : " id='" + escapeHtml(id) + "'") + "><details" +
+         (isOpen ? " open" : "") + "><summary><b>" + escapeHtml(title) + ".</b></summary>" +
+         (caption.empty() ? "" : "<p class='quiet'>" + escapeHtml(caption) + "</p>") + body +
+         "</details></figure>\n";
 }
 
-std::string figureOpen(const std::string& id) {
-  return "<figure" + (id.empty() ? "" : " id='" + escapeHtml(id) + "'") + ">";
+std::string flagHtml(const ReportFlag& flag) {
+  return "<li>" + badge(wordFor(flag.level)) + " <b>" + escapeHtml(flag.what) + "</b> " +
+         escapeHtml(flag.why) +
+         (flag.see.empty() ? "" : " <a href='#" + escapeHtml(flag.see) + "'>see</a>") + "</li>";
 }
 
-std::string flagsHtml(const std::vector<ReportFlag>& flags) {
-  std::string html = "<section><h2>Is it right?</h2><ul class='flags'>";
-  for (const ReportFlag& flag : flags) {
-    html += "<li>" + badge(wordFor(flag.level)) + " <b>" + escapeHtml(flag.what) + "</b> " +
-            escapeHtml(flag.why);
-    if (!flag.see.empty()) html += " <a href='#" + escapeHtml(flag.see) + "'>see</a>";
-    html += "</li>";
+/// The worst flag decides; the three worst are the reasons, the others are folded away.
+std::string verdictHtml(std::vector<ReportFlag> flags) {
+  constexpr std::size_t kReasons = 3;
+  if (flags.empty()) return "<p class='verdict'>Nothing was found that could be judged.</p>";
+  std::stable_sort(flags.begin(), flags.end(),
+                   [](const auto& a, const auto& b) { return a.level > b.level; });
+  const FlagLevel worst = std::max(flags.front().level, FlagLevel::Good);
+  const Word word = worst == FlagLevel::Bad      ? Word{"bad", "Do not use it as it is"}
+                    : worst == FlagLevel::Notice ? Word{"notice", "Look at it before you use it"}
+                                                 : Word{"good", "Right"};
+  const auto grave = std::count_if(flags.begin(), flags.end(), [](const ReportFlag& flag) {
+    return flag.level >= FlagLevel::Notice;
+  });
+  const auto good = std::count_if(flags.begin(), flags.end(), [](const ReportFlag& flag) {
+    return flag.level == FlagLevel::Good;
+  });
+  std::string reasons, others;
+  for (std::size_t n = 0; n < flags.size(); ++n) {
+    const bool isReason = n < kReasons && flags[n].level >= FlagLevel::Notice;
+    (isReason ? reasons : others) += flagHtml(flags[n]);
   }
-  if (flags.empty()) html += "<li>Nothing was found that could be judged.</li>";
-  return html + "</ul></section>\n";
+  std::string html = std::string("<p class='verdict ") + word.className + "'><b>" + word.text +
+                     ".</b> " + std::to_string(good) + " of " + std::to_string(good + grave) +
+                     " checks passed.</p>";
+  if (!reasons.empty()) html += "<ul class='flags'>" + reasons + "</ul>";
+  if (!others.empty()) {
+    html += "<details><summary>" + std::string(reasons.empty() ? "All" : "All other") +
+            " checks and remarks</summary><ul class='flags'>" + others + "</ul></details>";
+  }
+  return html;
+}
+
+std::string glanceHtml(const ReportGlance& glance);
+
+/// What a reader decides by.
+std::string headHtml(const ReportContent& content) {
+  std::string html = "<section id='verdict'><h2>Is it right?</h2><div class='head'><div>" +
+                     verdictHtml(content.flags);
+  if (!content.facts.empty()) html += table(content.facts);
+  html += "</div>";
+  if (!content.glance.empty()) {
+    html += "<div class='glance'>";
+    for (const ReportGlance& glance : content.glance) html += glanceHtml(glance);
+    html += "</div>";
+  }
+  return html + "</div></section>\n";
 }
 
 std::string findingsHtml(const ReportFindings& findings) {
   if (findings.rows.empty()) return {};
   std::string html =
-      "<section><h2>What was found</h2><div class='wide' tabindex='0' "
+      "<section id='numbers'><h2>What was found</h2><div class='wide' tabindex='0' "
       "role='region' aria-label='What was found'><table class='findings'>";
-  if (findings.columns.size() > 1) {
+  const bool isExpected = std::any_of(findings.rows.begin(), findings.rows.end(),
+                                      [](const auto& row) { return !row.expected.empty(); });
+  if (findings.columns.size() > 1 || isExpected) {
     html += "<thead><tr><td></td>";
     for (const std::string& column : findings.columns) {
-      html += "<th scope='col'>" + escapeHtml(column) + "</th>";
+      html += "<th scope='col'>" + escapeHtml(column.empty() ? "found" : column) + "</th>";
     }
+    if (isExpected) html += "<th scope='col'>expected</th>";
     html += "<td></td></tr></thead>";
   }
   html += "<tbody>";
@@ -164,6 +213,7 @@ std::string findingsHtml(const ReportFindings& findings) {
     if (!row.unit.empty()) html += " <span class='quiet'>" + escapeHtml(row.unit) + "</span>";
     html += "</th>";
     for (const std::string& value : row.values) html += "<td>" + escapeHtml(value) + "</td>";
+    if (isExpected) html += "<td class='expected'>" + escapeHtml(row.expected) + "</td>";
     html += "<td class='meaning'>" + escapeHtml(row.meaning) + "</td></tr>";
   }
   return html + "</tbody></table></div></section>\n";
@@ -201,20 +251,26 @@ std::string legendHtml(const std::vector<LegendEntry>& legend) {
   return html + "</ul>" + (legend.size() > kFew ? "</details>" : "");
 }
 
+std::string viewHtml(const std::string& name, const Picture& picture, const std::string& words) {
+  return "<div class='view'>" + imageHtml(picture, words) + "<span>" + escapeHtml(name) +
+         "</span></div>";
+}
+
 std::string viewsHtml(const ReportViews& views) {
-  std::string html = figureOpen(views.id) + "<div class='views'>";
+  std::string html = "<div class='views'>";
   for (const ReportViews::View& view : views.views) {
-    html += "<div class='view'>" + imageHtml(view.picture, views.title + ", " + view.title) +
-            "<span>" + escapeHtml(view.title) + "</span></div>";
+    html += viewHtml(view.title, view.picture, views.title + ", " + view.title);
   }
   html += "</div>";
   if (views.scale) html += barHtml(*views.scale);
   if (!views.legend.empty()) html += legendHtml(views.legend);
-  return html + captionHtml(views.title, views.caption) + "</figure>\n";
+  return figureHtml(views.id, views.title, views.caption, !views.detail, html);
 }
 
+using Outlines = std::vector<std::pair<std::string, std::string>>;
+
 /// @param after  the same slice of the other image, or nullptr
-std::string tileHtml(const MosaicTile& tile, const SliceMosaic& mosaic, const MosaicTile* after) {
+std::string tileHtml(const MosaicTile& tile, const Outlines& outlines, const MosaicTile* after) {
   std::string html = "<div class='tile'>" + imageHtml(tile.picture, "slice at " + tile.place);
   if (after) {
     html += "<div class='other'>" +
@@ -223,7 +279,7 @@ std::string tileHtml(const MosaicTile& tile, const SliceMosaic& mosaic, const Mo
   html += "<svg viewBox='0 0 " + std::to_string(tile.picture.width) + " " +
           std::to_string(tile.picture.height) + "' aria-hidden='true'>";
   for (std::size_t n = 0; n < tile.paths.size(); ++n) {
-    html += "<path stroke='" + mosaic.outlines[n].second + "' d='" + tile.paths[n] + "'/>";
+    html += "<path stroke='" + outlines[n].second + "' d='" + tile.paths[n] + "'/>";
   }
   html += "</svg>";
   constexpr std::array kSides = {"left", "right", "top", "bottom"};
@@ -233,14 +289,20 @@ std::string tileHtml(const MosaicTile& tile, const SliceMosaic& mosaic, const Mo
   return html + "<span class='place'>" + escapeHtml(tile.place) + "</span></div>";
 }
 
-std::string mosaicHtml(const ReportMosaic& mosaic) {
-  std::string html = figureOpen(mosaic.id) + "<p class='quiet'>";
-  std::set<std::string> named;  // both hemispheres' outlines have one name
-  for (const auto& [name, colour] : mosaic.slices.outlines) {
+/// Each outline's name beside its colour; both hemispheres' outlines have one name.
+std::string keyHtml(const Outlines& outlines) {
+  std::string html;
+  std::set<std::string> named;
+  for (const auto& [name, colour] : outlines) {
     if (!named.insert(name).second) continue;
     html += "<span class='swatch' style='background:" + colour + "'></span>" + escapeHtml(name) +
             " &nbsp; ";
   }
+  return html;
+}
+
+std::string mosaicHtml(const ReportMosaic& mosaic) {
+  std::string html = "<p class='quiet'>" + keyHtml(mosaic.slices.outlines);
   if (!mosaic.slices.outlines.empty()) {
     html += "<label><input type='checkbox' class='outlines' checked> outlines</label> &nbsp; ";
   }
@@ -258,11 +320,28 @@ std::string mosaicHtml(const ReportMosaic& mosaic) {
     const auto& row = mosaic.slices.rows[r];
     html += "<div class='tiles' style='--tiles:" + std::to_string(row.size()) + "'>";
     for (std::size_t n = 0; n < row.size(); ++n) {
-      html += tileHtml(row[n], mosaic.slices, mosaic.after ? &mosaic.after->rows[r][n] : nullptr);
+      html += tileHtml(row[n], mosaic.slices.outlines,
+                       mosaic.after ? &mosaic.after->rows[r][n] : nullptr);
     }
     html += "</div>";
   }
-  return html + captionHtml(mosaic.title, mosaic.caption) + "</figure>\n";
+  return figureHtml(mosaic.id, mosaic.title, mosaic.caption, !mosaic.detail, html);
+}
+
+std::string glanceHtml(const ReportGlance& glance) {
+  std::string html = "<div class='seen'><h3>";
+  html += glance.see.empty()
+              ? escapeHtml(glance.title)
+              : "<a href='#" + escapeHtml(glance.see) + "'>" + escapeHtml(glance.title) + "</a>";
+  html += "</h3><div class='beside'>";
+  for (const MosaicTile& tile : glance.tiles) html += tileHtml(tile, glance.outlines, nullptr);
+  for (const auto& [name, picture] : glance.views) {
+    html += viewHtml(name, picture, glance.title + ", " + name);
+  }
+  html += "</div>";
+  if (glance.scale) html += barHtml(*glance.scale);
+  if (!glance.outlines.empty()) html += "<p class='quiet'>" + keyHtml(glance.outlines) + "</p>";
+  return html + "<p class='quiet'>" + escapeHtml(glance.guide) + "</p></div>";
 }
 
 using Charts = std::vector<const ReportChart*>;
@@ -302,8 +381,7 @@ std::string chartsHtml(const std::vector<ReportChart>& charts) {
 }
 
 std::string tableHtml(const ReportTable& table) {
-  std::string html = figureOpen(table.id) +
-                     "<div class='wide' tabindex='0' role='region' aria-label='" +
+  std::string html = "<div class='wide' tabindex='0' role='region' aria-label='" +
                      escapeHtml(table.title) + "'><table class='rows'><thead><tr>";
   for (const std::string& column : table.columns) {
     html += "<th scope='col'>" + escapeHtml(column) + "</th>";
@@ -317,30 +395,61 @@ std::string tableHtml(const ReportTable& table) {
     }
     html += "</tr>";
   }
-  return html + "</tbody></table></div>" + captionHtml(table.title, table.caption) + "</figure>\n";
+  return figureHtml(table.id, table.title, table.caption, false, html + "</tbody></table></div>");
+}
+
+/// A heading over what follows, and its link in the table of contents.
+std::string heading(const std::string& id, const std::string& words) {
+  return "<h3 id='" + id + "'>" + words + "</h3>";
 }
 
 std::string lookHtml(const ReportContent& content) {
   std::string html;
   if (!content.evolutions.empty()) html += kViewHtml;
-  if (!content.mosaics.empty()) html += "<h3>Slices</h3>";
+  if (!content.mosaics.empty()) html += heading("slices", "Slices");
   for (const ReportMosaic& mosaic : content.mosaics) html += mosaicHtml(mosaic);
-  if (!content.views.empty()) html += "<h3>Surfaces</h3>";
+  if (!content.views.empty()) html += heading("surfaces", "Surfaces");
   for (const ReportViews& views : content.views) html += viewsHtml(views);
   for (const ReportPicture& picture : content.pictures) {
-    html += figureOpen(picture.id) + imageHtml(picture.picture, picture.title) +
-            captionHtml(picture.title, picture.caption) + "</figure>\n";
+    html += figureHtml(picture.id, picture.title, picture.caption, true,
+                       imageHtml(picture.picture, picture.title));
   }
   for (const ReportDrawing& drawing : content.drawings) {
     const std::string title = escapeHtml(drawing.title);
-    html += figureOpen(drawing.id) + "<div class='wide' tabindex='0' role='region' aria-label='" +
-            title + "'><img alt='" + title + "' class='drawing' src='data:" + drawing.mediaType +
-            ";base64," + base64(drawing.bytes) + "'></div>" +
-            captionHtml(drawing.title, drawing.caption) + "</figure>\n";
+    html +=
+        figureHtml(drawing.id, drawing.title, drawing.caption, true,
+                   "<div class='wide' tabindex='0' role='region' aria-label='" + title +
+                       "'><img alt='" + title + "' class='drawing' src='data:" + drawing.mediaType +
+                       ";base64," + base64(drawing.bytes) + "'></div>");
   }
+  if (!content.charts.empty()) html += heading("charts", "Distributions and curves");
   html += chartsHtml(content.charts);
-  for (const ReportTable& table : content.tables) html += tableHtml(table);
-  return html.empty() ? html : "<section><h2>See for yourself</h2>" + html + "</section>\n";
+  return html.empty() ? html
+                      : "<section id='look'><h2>See for yourself</h2>" + html + "</section>\n";
+}
+
+std::string tablesHtml(const std::vector<ReportTable>& tables) {
+  if (tables.empty()) return {};
+  std::string html = heading("tables", "Tables");
+  for (const ReportTable& table : tables) html += tableHtml(table);
+  return html;
+}
+
+/// Links to the parts of the page, which stay in sight.
+std::string contentsHtml(const std::string& page) {
+  constexpr std::array kParts = {
+      std::pair{"verdict", "Verdict"}, std::pair{"numbers", "Numbers"},
+      std::pair{"tables", "Tables"},   std::pair{"view3d", "3-D"},
+      std::pair{"slices", "Slices"},   std::pair{"surfaces", "Surfaces"},
+      std::pair{"charts", "Curves"},   std::pair{"made", "How it was made"}};
+  std::string html = "<nav aria-label='Contents'>";
+  for (const auto& [id, words] : kParts) {
+    const std::string name = id;
+    const bool isThere = page.find(" id='" + name + "'") != std::string::npos ||
+                         page.find(" id=\"" + name + "\"") != std::string::npos;
+    if (isThere) html += "<a href='#" + name + "'>" + words + "</a>";
+  }
+  return html + "</nav>\n";
 }
 
 }  // namespace
@@ -352,12 +461,12 @@ std::string reportPage(const ReportContent& content) {
       "<link rel=\"icon\" href=\"data:,\"><title>";
   html +=
       escapeHtml(content.title) + "</title>\n<style>\n" + kPageStyle + "</style></head><body>\n";
-  html += "<header><h1>" + escapeHtml(content.title) + "</h1></header><main>\n";
-
-  html += flagsHtml(content.flags) + findingsHtml(content.findings) + lookHtml(content);
-  html += "<section><h2>How it was made</h2>";
-  for (const ReportStep& step : content.steps) html += stepHtml(step);
-  html += "</section></main>\n";
+  html += "<header><h1>" + escapeHtml(content.title) + "</h1></header>";
+  std::string made = "<section id='made'><h2>How it was made</h2>";
+  for (const ReportStep& step : content.steps) made += stepHtml(step);
+  const std::string parts = headHtml(content) + findingsHtml(content.findings) +
+                            tablesHtml(content.tables) + lookHtml(content) + made + "</section>";
+  html += contentsHtml(parts) + "<main>\n" + parts + "</main>\n";
   for (const Evolution& evolution : content.evolutions) {
     html += "<script type=\"application/json\" class=\"evolution\" data-title=\"" +
             escapeHtml(evolution.title) + "\">" + scriptSafe(evolutionJson(evolution)) +

@@ -121,6 +121,43 @@ TEST(ReportPage, ShowsAFailedStepAndEscapesItsWords) {
   EXPECT_EQ(page.find("<no>"), std::string::npos);
 }
 
+/// What stands at the head before the checks that are folded away.
+std::string verdictOf(const std::vector<FlagLevel>& levels) {
+  ReportContent content;
+  for (const FlagLevel level : levels) content.flags.push_back({level, "what", "why"});
+  const std::string page = reportPage(content);
+  const std::size_t begin = page.find("class='verdict");
+  return page.substr(begin, page.find("<details>", begin) - begin);
+}
+
+TEST(ReportPage, SaysTheWorstAsVerdictWithThreeReasonsAtMost) {
+  using enum FlagLevel;
+  EXPECT_NE(verdictOf({Good, Remark, Good}).find("Right.</b> 2 of 2 checks"), std::string::npos);
+  EXPECT_EQ(verdictOf({Good, Remark, Remark}).find("<li>"), std::string::npos)
+      << "a remark is no reason";
+  EXPECT_NE(verdictOf({Remark}).find("Right."), std::string::npos);
+  const std::string look = verdictOf({Good, Notice, Remark});
+  EXPECT_NE(look.find("Look at it before you use it.</b> 1 of 2"), std::string::npos);
+  const std::string bad = verdictOf({Notice, Notice, Good, Notice, Bad});
+  EXPECT_NE(bad.find("Do not use it as it is"), std::string::npos);
+  EXPECT_LT(bad.find("badge bad"), bad.find("badge notice")) << "the worst first";
+  std::size_t reasons = 0;
+  for (std::size_t at = bad.find("<li>"); at != std::string::npos; at = bad.find("<li>", at + 1)) {
+    ++reasons;
+  }
+  EXPECT_EQ(reasons, 3u);
+  EXPECT_EQ(reportPage({}).find("Right."), std::string::npos) << "nothing judged is not right";
+}
+
+TEST(ReportPage, ListsItsPartsAndNoneThatIsNotThere) {
+  ReportContent content;
+  content.findings = {{""}, {{"Mean thickness", "mm", {"2.6"}, "", "1 to 5 mm (Fischl 2000)"}}};
+  const std::string page = reportPage(content);
+  EXPECT_NE(page.find("<a href='#numbers'>"), std::string::npos);
+  EXPECT_EQ(page.find("<a href='#slices'>"), std::string::npos);
+  EXPECT_NE(page.find("<td class='expected'>1 to 5 mm (Fischl 2000)"), std::string::npos);
+}
+
 TEST(ReportPage, NamesNothingToFetch) {
   ReportContent content;
   content.title = "page";

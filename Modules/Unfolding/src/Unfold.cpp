@@ -8,6 +8,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/TimeBudget.h"
 #include "Explica/Unfolding/StopRule.h"
+#include "Explica/Visibility/VisibleFraction.h"
 
 #include <algorithm>
 #include <chrono>
@@ -86,39 +87,48 @@ void considerLook(const Unfolder& unfolder, bool isFirst, BestState& best) {
 }
 
 /// The state to give back: the last, or the best seen if the last is worse.
-/// @return the share seen of its region's area; NaN if nobody looked
-double chooseState(const Unfolder& unfolder, const BestState& best, bool towardsTarget,
-                   UnfoldResult& result) {
+/// @return the share seen of its region's area
+double chooseState(const Unfolder& unfolder, const visibility::Viewpoints& viewpoints,
+                   const BestState& best, bool towardsTarget, UnfoldResult& result) {
   result.mesh = unfolder.current();
   result.iteration = unfolder.state().iteration;
-  const double seen = seenIfAsked(unfolder);
-  if (!isWorse(unfolder.record(), best, towardsTarget, seen)) return seen;
+  const double seen = unfolder.seenShare();
+  if (!isWorse(unfolder.record(), best, towardsTarget, seenIfAsked(unfolder))) return seen;
   const auto& moving = unfolder.movingVertices();
   for (std::size_t i = 0; i < moving.size(); ++i) {
     result.mesh.positions.row(moving[i]) = best.moving.row(static_cast<Eigen::Index>(i));
   }
   result.iteration = best.iteration;
-  return best.seen;
+  return visibility::seenShare(result.mesh, unfolder.region().faces, viewpoints);
 }
 
-/// A run that has come to rest a little short of a goal has not converged.
-void sayWhatIsShort(const IterationRecord& kept, double seen, const Monitor& monitor,
-                    UnfoldResult& result) {
-  char text[160];
-  if (kept.visibility < kGoalVisibility) {
-    std::snprintf(text, sizeof text, "the visibility is %.4f, %.4f short of its goal of %g",
-                  kept.visibility, kGoalVisibility - kept.visibility, kGoalVisibility);
+/// The visibility that counts as reached.
+double goalOf(const UnfoldOptions& options) {
+  return std::min(kGoalVisibility, options.targetVisibility.value_or(1.0));
+}
+
+/// Says which goals are missed, and by how much.
+void sayWhatIsShort(const UnfoldOptions& options, const IterationRecord& kept, double seen,
+                    const Monitor& monitor) {
+  char text[240];
+  const double goal = goalOf(options);
+  if (kept.visibility < goal) {
+    std::snprintf(text, sizeof text, "the visibility is %.4f, %.4f short of its goal of %g%s",
+                  kept.visibility, goal - kept.visibility, goal,
+                  options.unfolder.surround == Surround::Fixed
+                      ? ": fixed surroundings leave the region no room; with --surround elastic a "
+                        "collar follows, and it opens further"
+                      : "");
     monitor.warn(text);
-    result.termination = Termination::Finished;
   }
-  if (seen < kGoalSeen) {
+  const double toSee = std::min(goal, kGoalSeen);
+  if (seen < toSee) {
     std::snprintf(
         text, sizeof text,
         "%.4f of the region's area can be seen from the viewpoint, %.4f short of its goal "
         "of %g",
-        seen, kGoalSeen - seen, kGoalSeen);
+        seen, toSee - seen, toSee);
     monitor.warn(text);
-    result.termination = Termination::Finished;
   }
   if (kept.edgeStrainMean > kGoalStrain) {
     std::snprintf(text, sizeof text,
@@ -126,18 +136,34 @@ void sayWhatIsShort(const IterationRecord& kept, double seen, const Monitor& mon
                   100 * kept.edgeStrainMean, 100 * (kept.edgeStrainMean - kGoalStrain),
                   100 * kGoalStrain);
     monitor.warn(text);
-    result.termination = Termination::Finished;
   }
 }
 
+/// What the result is not, of the state that is kept.
+Flag flagOf(const UnfoldOptions& options, const UnfoldResult& result, const IterationRecord& kept,
+            double seen) {
+  const IterationRecord& start = result.history.front();
+  if (result.history.back().iteration > start.iteration && kept.visibility <= start.visibility) {
+    return Flag::Worse;
+  }
+  if (!reachedGoal(result.termination) && result.termination != Termination::Stalled) {
+    return Flag::None;  // it was stopped on the way
+  }
+  if (options.unfolder.surround == Surround::Elastic && kept.collarStretchMax > kCollarMost &&
+      kept.collarStretchMean > kCollarMean) {
+    return Flag::Stretched;
+  }
+  const double missed = shortfall(goalOf(options), kept.visibility, seen, kept.edgeStrainMean);
+  if (missed > kMissed) return Flag::Held;
+  return missed > 0 ? Flag::Short : Flag::None;
+}
+
 /// Says what a user must know about the result, and does not call it what it is not.
-/// @param seen  share of the region's area, as far as somebody looked
+/// @param seen  share of the region's area
 void judge(const UnfoldOptions& options, double seen, const Monitor& monitor,
            UnfoldResult& result) {
-  const IterationRecord& start = result.history.front();
   const IterationRecord& kept = result.history[static_cast<std::size_t>(result.iteration)];
   const IterationRecord& last = result.history.back();
-  const double goal = options.targetVisibility.value_or(1.0);
   char text[240];
   if (result.termination == Termination::TargetReached &&
       last.areaErrorMean > options.areaTolerance) {
@@ -152,25 +178,15 @@ void judge(const UnfoldOptions& options, double seen, const Monitor& monitor,
         last.visibility, result.iteration, kept.visibility);
     monitor.warn(text);
   }
-  const bool byItself =
-      result.termination == Termination::Converged || result.termination == Termination::Stalled;
-  if (last.iteration > start.iteration && kept.visibility <= start.visibility) {
-    result.flag = Flag::Worse;
+  result.flag = flagOf(options, result, kept, seen);
+  if (result.flag == Flag::Worse) {
     monitor.warn("no state is better than the start, which is kept: nothing is unfolded");
-  } else if (byItself && kept.visibility < goal - kHeldBelow) {
-    result.flag = Flag::Held;
-    std::snprintf(text, sizeof text, "the region is held at a visibility of %.3f%s",
-                  kept.visibility,
-                  options.unfolder.surround == Surround::Fixed
-                      ? ": fixed surroundings leave it no room; with --surround elastic a collar "
-                        "follows, and it opens further"
-                      : "");
-    monitor.warn(text);
+  } else if (result.flag != Flag::None) {
+    sayWhatIsShort(options, kept, seen, monitor);
   }
-  if (result.flag != Flag::None && result.termination == Termination::Converged) {
-    result.termination = Termination::Stalled;
+  if (result.flag != Flag::None && reachedGoal(result.termination)) {
+    result.termination = result.flag == Flag::Short ? Termination::Finished : Termination::Stalled;
   }
-  if (result.termination == Termination::Converged) sayWhatIsShort(kept, seen, monitor, result);
 }
 
 UnfoldResult unfoldHere(const TriangleMesh& mesh, const Region& region,
@@ -230,7 +246,8 @@ UnfoldResult unfoldHere(const TriangleMesh& mesh, const Region& region,
     consider(unfolder, options, best);
     tellProgress(monitor, unfolder.record(), initial, goal);
   }
-  const double seen = chooseState(unfolder, best, options.targetVisibility.has_value(), result);
+  const double seen =
+      chooseState(unfolder, viewpoints, best, options.targetVisibility.has_value(), result);
   judge(options, seen, monitor, result);
   std::vector<Positions> whole = path;
   if (options.frames > 0) path.resize(static_cast<std::size_t>(result.iteration) + 1);
@@ -257,6 +274,12 @@ Point originNear(const Point& middle) {
 double merit(double visibility, double strain, double seen) {
   const double spare = std::min(seenToSpare(visibility), lengthsToSpare(strain));
   return seen < kGoalSeen ? std::min(spare, seen - kGoalSeen) : spare;
+}
+
+double shortfall(double goal, double visibility, double seen, double strain) {
+  const double missed =
+      std::max(goal - visibility, kStrainWorth * std::max(0.0, strain - kGoalStrain));
+  return std::isnan(seen) ? missed : std::max(missed, std::min(goal, kGoalSeen) - seen);
 }
 
 bool isBetter(const IterationRecord& state, const BestState& than, bool towardsTarget,

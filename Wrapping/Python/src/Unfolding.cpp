@@ -149,9 +149,9 @@ void bindUnfolding(py::module_& m) {
         }));
       },
       "Unfold the region (its vertices) of a surface for viewpoints, RAS mm.  Returns positions\n"
-      "(V, 3), faces, termination, flag ('', 'held' or 'worse'), iteration (whose state it is), "
-      "collar\n"
-      "(faces that moved outside the region), history (one dict an iteration) and frames\n"
+      "(V, 3), faces, termination, flag ('', 'short', 'held', 'worse' or 'stretched'),\n"
+      "iteration (whose state it is), collar (faces that moved outside the region), history (one\n"
+      "dict an iteration) and frames\n"
       "[(visibility, positions)].  `progress(fraction, activity)` may return False to stop.",
       "positions"_a, "faces"_a, "region"_a, "viewpoints"_a, "progress"_a = py::none());
   m.def(

@@ -13,6 +13,13 @@ std::string textOf(const Json& value, const std::string& unit) {
   return value.is_number() ? shown(value.get<double>(), unit).text : readable(value);
 }
 
+/// "1 to 5 mm (Fischl 2000)", of "Mean thickness: 2.6 mm; expected 1 to 5 mm (Fischl 2000)".
+std::string expectedIn(const std::string& sentence) {
+  const std::string before = "; expected ";
+  const std::size_t at = sentence.rfind(before);
+  return at == std::string::npos ? "" : sentence.substr(at + before.size());
+}
+
 /// What the record says of the numbers that belong at the head of a page.
 void listDescribed(const ResultFolder& results, const std::vector<std::string>& sides,
                    report::ReportFindings& findings) {
@@ -28,7 +35,8 @@ void listDescribed(const ResultFolder& results, const std::vector<std::string>& 
       if (isNew) {
         findings.rows.push_back({meaning.value("title", key), shown(0, unit).unit,
                                  std::vector<std::string>(sides.size()),
-                                 meaning.value("meaning", "")});
+                                 meaning.value("meaning", ""),
+                                 expectedIn(meaning.value("sentence", ""))});
       }
       std::string text = textOf(step.summary[key], unit);
       if (step.summary.contains(start)) {

@@ -200,7 +200,7 @@ void flagSteps(ResultFolder& results) {
     if (step.state == report::StepState::Missing)
       content.flags.push_back({FlagLevel::Notice, step.name + " was not run:", step.message});
     for (const std::string& warning : step.warnings)
-      content.flags.push_back({FlagLevel::Notice, step.name + ":", warning, placeOf(step.name)});
+      content.flags.push_back({FlagLevel::Remark, step.name + ":", warning, placeOf(step.name)});
   }
   for (const StepFolder& step : results.steps()) {
     results.attempt("Flags of " + titleOf(step.name), [&] {

@@ -75,11 +75,7 @@ report::ReportStep reportStep(const StepFolder& step) {
   const Json execution = step.record.value("execution", Json::object());
   out.seconds = execution.value("seconds", 0.0);
   out.commandLine = commandLineOf(execution);
-  if (step.record.contains("software")) {
-    const Json& software = step.record["software"];
-    out.version =
-        "explica " + software.value("version", "") + ", commit " + software.value("commit", "");
-  }
+  out.version = versionOf(step);
   // An implausible result is complete: its flags say what is wrong.
   const bool implausible = !step.summary.value("plausible", true);
   const auto termination = step.record.value("termination", std::string("not-run"));
@@ -153,6 +149,14 @@ void showStep(ResultFolder& results, const StepFolder& step, const std::vector<G
 
 }  // namespace
 
+std::string versionOf(const StepFolder& step) {
+  if (!step.record.contains("software")) return {};
+  constexpr std::size_t kShort = 10;  // characters of a commit that tell it from others
+  const Json& software = step.record["software"];
+  return "explica " + software.value("version", "") + ", commit " +
+         software.value("commit", "").substr(0, kShort);
+}
+
 report::ReportContent collectReport(const fs::path& folder, const FolderReportOptions& options,
                                     const Monitor& monitor) {
   if (options.slices < 1 || options.slices > kMostSlices) {
@@ -161,7 +165,7 @@ report::ReportContent collectReport(const fs::path& folder, const FolderReportOp
   requireThickness(options.references);
   if (!fs::is_directory(folder)) throw InvalidInput(folder.string() + ": no such folder");
   report::ReportContent content;
-  content.title = "Explica: " + fs::weakly_canonical(folder).filename().string();
+  content.title = fs::weakly_canonical(folder).filename().string();
   ResultFolder results(folder, monitor, content);
   listSteps(results);
   results.attempt("Tissues", [&] { showTissues(results, options); });
@@ -178,6 +182,7 @@ report::ReportContent collectReport(const fs::path& folder, const FolderReportOp
   }
   for (const StepFolder& step : results.steps()) showStep(results, step, maps, options);
   results.attempt("Numbers", [&] { findNumbers(results); });
+  results.attempt("Head", [&] { showHead(results); });
   flagSteps(results);
   monitor.progress(1, "report");
   return content;

@@ -32,6 +32,12 @@ inline constexpr const char* kThicknessCharts = "Thickness";
 /// What a reader must know before trusting the results, the worst first.
 void flagSteps(ResultFolder& results);
 
+/// Input, date and version, and the pictures beside the verdict; after all else is collected.
+void showHead(ResultFolder& results);
+
+/// "explica 0.1.0, commit 77527f6"
+[[nodiscard]] std::string versionOf(const StepFolder& step);
+
 /// The table of a dozen numbers.
 void findNumbers(ResultFolder& results);
 

@@ -130,7 +130,7 @@ report::ReportViews drawMap(const std::vector<const Hemisphere*>& all,
 /// @param word  what it is called at its colours
 void showMap(ResultFolder& results, const std::vector<const Hemisphere*>& all, const char* file,
              const std::string& word, const std::string& title, const std::string& caption,
-             const char* id, std::size_t count, Drawn drawn) {
+             const char* id, std::size_t count, Drawn drawn, bool detail) {
   std::vector<Eigen::VectorXd> values;
   std::string unit;
   for (const Hemisphere* h : all) {
@@ -145,6 +145,7 @@ void showMap(ResultFolder& results, const std::vector<const Hemisphere*>& all, c
   views.id = id;
   views.title = title;
   views.caption = caption;
+  views.detail = detail;
   results.content().views.push_back(std::move(views));
 }
 
@@ -203,6 +204,7 @@ void showRegions(ResultFolder& results, const std::vector<const Hemisphere*>& al
   views.title = "Regions";
   views.caption = "Each region in the colour that its own table gives it.";
   for (const auto& [key, entry] : legend) views.legend.push_back(entry);
+  views.detail = true;
   results.content().views.push_back(std::move(views));
 }
 
@@ -272,6 +274,18 @@ void showOutlines(ResultFolder& results, const std::vector<Hemisphere>& all,
   mosaic.perRow = options.slices;
   mosaic.convention = options.convention;
   const std::vector<report::MosaicOutline> surfaces = outlines;
+  report::MosaicOptions large = mosaic;
+  large.perRow = 1;
+  large.tileHeight = 380;
+  report::SliceMosaic middle = report::makeMosaic(volume, outlines, large);
+  results.content().glance.push_back(
+      {kOutlinePlace,
+       "Surfaces on the image",
+       "Right: red between white and grey matter, yellow between grey matter and fluid, on every "
+       "gyrus. Wrong: a line within one tissue, gyri cut off, skull or vessels included. Then: "
+       "correct the segmentation there and run again.",
+       {std::move(middle.rows[0][0]), std::move(middle.rows[1][0])},
+       std::move(middle.outlines)});
   if (brain.faceCount() > 0) outlines.push_back({&brain, "brain", "#5ac8fa"});
   results.content().mosaics.push_back({kOutlinePlace,
                                        "White and pial surface on " + image->filename().string(),
@@ -329,17 +343,17 @@ void showSurfaces(ResultFolder& results, const FolderReportOptions& options,
   for (const Hemisphere& h : all) shown.push_back(&h);
   results.attempt("Thickness map", [&] {
     showMap(results, shown, "thickness.shape.gii", "thickness", "Thickness on the pial surface",
-            "Grey: not measured, as on the medial wall.", kThicknessPlace, 6, Drawn::Pial);
+            "Grey: not measured, as on the medial wall.", kThicknessPlace, 6, Drawn::Pial, false);
   });
   results.attempt("Depth map", [&] {
     showMap(results, shown, "sulc.shape.gii", "sulcal depth", "Sulcal depth on the white surface",
             "Distance travelled outwards as the surface is inflated; sulci positive.", "depth-maps",
-            2, Drawn::White);
+            2, Drawn::White, true);
   });
   results.attempt("Curvature map", [&] {
     showMap(results, shown, "curvature.shape.gii", "mean curvature",
             "Curvature on the white surface", "Gyri blue, sulci brown.", "curvature-maps", 2,
-            Drawn::White);
+            Drawn::White, true);
   });
   results.attempt("Regions", [&] { showRegions(results, shown); });
   results.attempt("Given maps", [&] { showGiven(results, shown, maps); });

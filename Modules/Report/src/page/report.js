@@ -3,6 +3,16 @@
 // Plays the evolution in the report page.  Needs THREE, inlined before it.
 (function () {
   'use strict';
+  // A link into what is folded unfolds it.
+  const unfold = () => {
+    const place = location.hash.length > 1 && document.getElementById(decodeURIComponent(location.hash.slice(1)));
+    if (!place) return;
+    for (const inside of place.querySelectorAll(':scope > details')) inside.open = true;
+    for (let fold = place.closest('details'); fold; fold = fold.parentElement.closest('details')) fold.open = true;
+    place.scrollIntoView();
+  };
+  window.addEventListener('hashchange', unfold);
+  unfold();
   for (const box of document.querySelectorAll('input.outlines')) {
     box.addEventListener('change', () => box.closest('figure').classList.toggle('no-outlines', !box.checked));
   }

@@ -32,12 +32,28 @@ struct ReportStep {
 };
 
 /// Something that a reader must know before trusting the result.
-enum class FlagLevel { Good, Notice, Bad };
+enum class FlagLevel {
+  Good,
+  Remark,  ///< said on the way, of no weight for the verdict
+  Notice,  ///< the verdict is "look at"
+  Bad      ///< the verdict is "do not use"
+};
 struct ReportFlag {
   FlagLevel level = FlagLevel::Good;
   std::string what;
   std::string why;
   std::string see = {};  ///< id of the picture, mosaic or chart that shows it; may be empty
+};
+
+/// Pictures by which a reader sees in a moment what the verdict says.
+struct ReportGlance {
+  std::string see;                                            ///< id of the figure with more of it
+  std::string title;                                          ///< "Surfaces on the image"
+  std::string guide;                                          ///< what right and wrong look like
+  std::vector<MosaicTile> tiles = {};                         ///< slices, beside each other
+  std::vector<std::pair<std::string, std::string>> outlines;  ///< name and colour, of the tiles
+  std::vector<std::pair<std::string, Picture>> views = {};    ///< surfaces, each with its name
+  std::optional<ColourScale> scale = {};
 };
 
 /// What was measured: a table of few numbers, a column for each hemisphere or for the one result.
@@ -47,6 +63,7 @@ struct ReportFindings {
     std::string unit;                 ///< "mm"; may be empty
     std::vector<std::string> values;  ///< one a column, as they are to be read
     std::string meaning = {};         ///< one sentence of definition; may be empty
+    std::string expected = {};        ///< "1 to 5 mm (Fischl 2000)"; may be empty
   };
   std::vector<std::string> columns;
   std::vector<Row> rows;
@@ -81,6 +98,7 @@ struct ReportViews {
   std::vector<View> views;
   std::optional<ColourScale> scale;
   std::vector<LegendEntry> legend;
+  bool detail = false;  ///< folded away until somebody asks for it
 };
 
 /// Slices of a volume with outlines that can be switched off; where there is an `after`, the reader
@@ -92,6 +110,7 @@ struct ReportMosaic {
   SliceMosaic slices;
   std::optional<SliceMosaic> after = {};         ///< the same slices of another image
   std::array<std::string, 2> states = {"", ""};  ///< what the two images are
+  bool detail = false;                           ///< folded away until somebody asks for it
 };
 
 /// An SVG element of Chart.h.
@@ -114,7 +133,9 @@ struct ReportTable {
 /// Everything that a page shows, in the order in which it is shown.
 struct ReportContent {
   std::string title;
-  std::vector<ReportFlag> flags;
+  std::vector<std::pair<std::string, std::string>> facts;  ///< "Input", "T1.mgz"; for the head
+  std::vector<ReportFlag> flags;                           ///< in any order
+  std::vector<ReportGlance> glance;                        ///< four at most
   ReportFindings findings;
   std::vector<Evolution> evolutions;  ///< the reader chooses among several by their titles
   std::vector<ReportMosaic> mosaics;
@@ -127,8 +148,8 @@ struct ReportContent {
 };
 
 /// One self-contained HTML page: styles, script, pictures and 3D data inside; opens from the file
-/// system without any network request.  It answers in this order: is it right, what was found, see
-/// for yourself, how it was made.  Contains neither the time of day nor random numbers.
+/// system without any network request.  It answers in this order: is it right (a verdict, by the
+/// worst flag, and at most three reasons), what was found, see for yourself, how it was made.
 [[nodiscard]] std::string reportPage(const ReportContent& content);
 
 }  // namespace explica::report

@@ -34,6 +34,7 @@ struct EndSummary {
 
 /// An unfolding in numbers, of the surface as files hold it.
 struct UnfoldSummary {
+  std::string reference = "SURFACE";  ///< the file of the surface that this compares with
   Surround surround = Surround::Elastic;
   visibility::Viewpoints view;
   double target = 1;  ///< visibility that was asked for

@@ -79,8 +79,11 @@ inline constexpr double kStrainWorth = 0.5;
   return kStrainWorth * (kStrained - strain);
 }
 
-/// Below its goal by this much, of visibility or of the share seen, a result is held.
-inline constexpr double kHeldBelow = 0.1;
+/// A goal missed by no more than this, of visibility or of what it is worth, is worth a look; a
+/// result that misses one by more is held: one per cent, the unit of the trade between them.
+inline constexpr double kMissed = 0.01;
+/// ... the same of strain.
+inline constexpr double kMissedStrain = kMissed / kStrainWorth;
 /// Of visibility or strain: less than that is no reason to go back to an earlier state.
 inline constexpr double kNoWorse = 1e-3;
 
@@ -96,6 +99,10 @@ inline constexpr double kCollarMean = 2, kCollarMost = 8;
 /// more.
 /// @param seen  NaN: nobody looked, and nothing is known to lack
 [[nodiscard]] double merit(double visibility, double strain, double seen = kNaN);
+/// By how much the goals are missed, in visibility, at most; not above 0 where all are met.
+/// @param goal  visibility that is asked for
+/// @param seen  NaN: not known, and taken for enough
+[[nodiscard]] double shortfall(double goal, double visibility, double seen, double strain);
 /// More merit; on the way to a target, the higher visibility.
 /// @param seen  of the state
 [[nodiscard]] bool isBetter(const IterationRecord& state, const BestState& than,
@@ -115,7 +122,8 @@ struct Checkpoint {
 /// What keeps a result from being what it seems.
 enum class Flag {
   None,
-  Held,      ///< the region stays far from its goal
+  Short,     ///< a goal is missed, by kMissed at most
+  Held,      ///< ... by more
   Worse,     ///< no state was better than the start
   Crossing,  ///< faces cross that did not at the start
   Stretched  ///< an elastic collar gave way: see kCollarMean and kCollarMost
@@ -142,10 +150,10 @@ struct UnfoldResult {
 /// @throws InvalidInput  as Unfolder; average visibility of the start not above zero; option out of
 ///                       range
 ///
-/// A run never ends worse than the best state it has seen that keeps its areas.  A target that is
-/// out of reach, and a region that is held far from full visibility, end as Stalled.  Converged is
-/// said of what reaches its goals (kGoalVisibility, kGoalSeen, kGoalStrain) only; a run that comes
-/// to rest a little short of one ends as Finished, with a warning.
+/// A run never ends worse than the best state it has seen that keeps its areas.  Converged and
+/// TargetReached are said of what reaches its goals (kGoalVisibility or the target, kGoalSeen,
+/// kGoalStrain) only; a run that comes to rest short of one by kMissed at most ends as Finished,
+/// flag Short, and otherwise as Stalled, flag Held, each with a warning.
 [[nodiscard]] UnfoldResult unfold(const TriangleMesh& mesh, const Region& region,
                                   const visibility::Viewpoints& viewpoints,
                                   const UnfoldOptions& options = {}, const Monitor& monitor = {},
@@ -163,6 +171,7 @@ void writeCheckpoint(const std::filesystem::path& path, const Checkpoint& checkp
 template <>
 struct explica::EnumNames<explica::unfolding::Flag> {
   static constexpr std::array table = {std::pair{explica::unfolding::Flag::None, ""},
+                                       std::pair{explica::unfolding::Flag::Short, "short"},
                                        std::pair{explica::unfolding::Flag::Held, "held"},
                                        std::pair{explica::unfolding::Flag::Worse, "worse"},
                                        std::pair{explica::unfolding::Flag::Crossing, "crossing"},

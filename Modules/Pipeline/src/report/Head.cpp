@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "ReportParts.h"
+
+#include <algorithm>
+#include <set>
+
+namespace explica::pipeline {
+namespace {
+
+/// The last three words of a path, which name a person and a file: "bert/mri/ribbon.mgz".
+std::string endOf(const std::filesystem::path& path) {
+  const std::filesystem::path folder = path.parent_path();
+  return (folder.parent_path().filename() / folder.filename() / path.filename()).string();
+}
+
+/// Files that no step has made; the first few.
+std::string inputsOf(const ResultFolder& results) {
+  constexpr std::size_t kMost = 3;
+  std::vector<std::string> names;
+  for (const StepFolder& step : results.steps()) {
+    const Json execution = step.record.value("execution", Json::object());
+    for (const Json& input : execution.value("inputs", Json::array())) {
+      if (input.contains("parent_record")) continue;
+      const std::string name = endOf(input.value("given", ""));
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    }
+  }
+  std::string words;
+  for (std::size_t n = 0; n < std::min(kMost, names.size()); ++n) {
+    words += (n == 0 ? "" : ", ") + names[n];
+  }
+  if (names.size() > kMost) words += " and " + std::to_string(names.size() - kMost) + " more";
+  return words;
+}
+
+/// Where a patch was unfolded: its label or the point that it was chosen about.
+std::string patchWords(const StepFolder& step) {
+  const Json options = step.record.value("options", Json::object());
+  const auto words = [&](const char* key) {
+    return options.contains(key) && !options[key].is_null() ? readable(options[key]) : "";
+  };
+  const std::string centre = words("center"), radius = words("radius");
+  if (centre.empty()) return words("label");
+  return radius + " mm about (" + centre + ") mm" + (step.side().empty() ? "" : ", " + step.side());
+}
+
+void listFacts(const ResultFolder& results, report::ReportContent& content) {
+  const auto add = [&](const char* name, const std::string& value) {
+    if (!value.empty()) content.facts.emplace_back(name, value);
+  };
+  add("Input", inputsOf(results));
+  for (const StepFolder* step : results.stepsOf("unfold")) add("Patch", patchWords(*step));
+  if (results.steps().empty()) return;
+  const StepFolder& first = results.steps().front();
+  const std::string started =
+      first.record.value("execution", Json::object()).value("started", std::string());
+  add("Date", started.substr(0, started.find('T')));
+  add("Version", versionOf(first));
+}
+
+/// The views of those titles, or all where none of them is there.
+void glanceAt(report::ReportContent& content, const char* id, const std::string& title,
+              const std::string& guide, const std::set<std::string>& titles) {
+  for (const report::ReportViews& figure : content.views) {
+    if (figure.id != id) continue;
+    report::ReportGlance glance{id, title, guide};
+    for (const auto& view : figure.views) {
+      if (titles.contains(view.title)) glance.views.emplace_back(view.title, view.picture);
+    }
+    glance.scale = figure.scale;
+    if (!glance.views.empty()) content.glance.push_back(std::move(glance));
+    return;
+  }
+}
+
+}  // namespace
+
+void showHead(ResultFolder& results) {
+  report::ReportContent& content = results.content();
+  listFacts(results, content);
+  glanceAt(content, kThicknessPlace, "Thickness",
+           "Right: 2 to 3 mm, crowns of gyri thicker than the floors of sulci, primary sensory and "
+           "visual cortex thinnest. Wrong: stripes or spots thinner than 1 mm or thicker than 5 "
+           "mm. Then: look at the slices there.",
+           {"lateral", "left, lateral", "right, lateral"});
+  glanceAt(content, kPatchViewsPlace, "Patch before and after",
+           "Right: the sulci's floors face the reader, the rim joins the surroundings. Wrong: "
+           "sulci still folded, a torn or twisted rim. Then: more iterations or a smaller patch.",
+           {"before, from the viewpoint", "after, from the viewpoint"});
+}
+
+}  // namespace explica::pipeline
