@@ -272,6 +272,17 @@ void makeSurface(const TemporaryFolder& folder, const std::string& size) {
   ASSERT_EQ(made.exitCode, 0) << made;
 }
 
+TEST(Report, HasSlicesToScrollThroughAndToRate) {
+  if (!std::filesystem::exists("/usr/bin/chromium")) GTEST_SKIP() << "no chromium";
+  TemporaryFolder folder;
+  makeSurface(folder, "40");
+  ASSERT_EQ(explica({"report", folder / "s40"}).exitCode, 0);
+  const auto browser =
+      runProgram({"/usr/bin/python3", EXPLICA_SOURCE_DIR "/Testing/commands/report_slices.py",
+                  folder / "s40/report.html"});
+  EXPECT_EQ(browser.exitCode, 0) << browser;
+}
+
 TEST(Report, DrawsTheThicknessOfOthersBehind) {
   TemporaryFolder folder;
   makeSurface(folder, "40");

@@ -7,6 +7,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <array>
 
 namespace explica::report {
 
@@ -55,6 +56,19 @@ std::string packIntegers(const std::vector<std::int32_t>& values, int stride) {
   }
   return "{\"n\":" + std::to_string(values.size()) + ",\"s\":" + std::to_string(stride) +
          ",\"p\":" + std::to_string(planes) + ",\"d\":\"" + base64(deflated(bytes)) + "\"}";
+}
+
+std::vector<std::int32_t> facesInOrder(const Faces& faces) {
+  std::vector<std::array<std::int32_t, 3>> sorted;
+  for (Eigen::Index f = 0; f < faces.rows(); ++f) {
+    std::array<std::int32_t, 3> face = {faces(f, 0), faces(f, 1), faces(f, 2)};
+    std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
+    sorted.push_back(face);
+  }
+  std::sort(sorted.begin(), sorted.end());
+  std::vector<std::int32_t> corners;
+  for (const auto& face : sorted) corners.insert(corners.end(), face.begin(), face.end());
+  return corners;
 }
 
 }  // namespace explica::report

@@ -62,21 +62,6 @@ std::string mapJson(const EvolutionMap& map) {
          "}";
 }
 
-/// Corners of the faces, each face turned to begin with its least and all in ascending order, which
-/// deflates a quarter better.
-std::vector<std::int32_t> facesInOrder(const Faces& faces) {
-  std::vector<std::array<std::int32_t, 3>> sorted;
-  for (Eigen::Index f = 0; f < faces.rows(); ++f) {
-    std::array<std::int32_t, 3> face = {faces(f, 0), faces(f, 1), faces(f, 2)};
-    std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
-    sorted.push_back(face);
-  }
-  std::sort(sorted.begin(), sorted.end());
-  std::vector<std::int32_t> corners;
-  for (const auto& face : sorted) corners.insert(corners.end(), face.begin(), face.end());
-  return corners;
-}
-
 std::string labelsJson(const EvolutionLabels& labels) {
   std::vector<std::string> names;
   std::vector<Colour> colours;

@@ -36,24 +36,6 @@ Extent extentOf(const WorldBox& tissue, const std::vector<MosaicOutline>& outlin
   return {lines.empty() ? tissue : lines, tissue.empty() ? lines : tissue};
 }
 
-/// Black below 0, white at the brightest of the subject but for the last half per cent.
-ColourScale greyScale(const Volume<float>& image, const Volume<float>* subject) {
-  if (subject && subject->grid.size != image.grid.size) {
-    throw InvalidInput("subject: is of another size than the image");
-  }
-  std::vector<float> values;
-  for (std::size_t n = 0; n < image.size(); ++n) {
-    const float v = image[n];
-    if (v > 0 && std::isfinite(v) && (!subject || (*subject)[n] > 0)) values.push_back(v);
-  }
-  ColourScale grey{ColourMap::Grey, 0, 1, "", ""};
-  if (values.empty()) return grey;
-  const auto bright = values.end() - 1 - static_cast<std::ptrdiff_t>(values.size() / 200);
-  std::nth_element(values.begin(), bright, values.end());
-  grey.high = 1.05 * *bright;
-  return grey;
-}
-
 /// Of a line's points those that lie apart by what can be seen, and its ends; from one to the next
 /// in tenths of a pixel, since pages hold hundreds of such lines.
 std::string pathData(const TriangleMesh& mesh, const SliceFrame& frame) {
@@ -157,6 +139,23 @@ SliceMosaic mosaicOf(const Extent& extent, const std::vector<MosaicOutline>& out
 }
 
 }  // namespace
+
+ColourScale greyScale(const Volume<float>& image, const Volume<float>* subject) {
+  if (subject && subject->grid.size != image.grid.size) {
+    throw InvalidInput("subject: is of another size than the image");
+  }
+  std::vector<float> values;
+  for (std::size_t n = 0; n < image.size(); ++n) {
+    const float v = image[n];
+    if (v > 0 && std::isfinite(v) && (!subject || (*subject)[n] > 0)) values.push_back(v);
+  }
+  ColourScale grey{ColourMap::Grey, 0, 1, "", ""};
+  if (values.empty()) return grey;
+  const auto bright = values.end() - 1 - static_cast<std::ptrdiff_t>(values.size() / 200);
+  std::nth_element(values.begin(), bright, values.end());
+  grey.high = 1.05 * *bright;
+  return grey;
+}
 
 SliceMosaic makeMosaic(const Volume<float>& image, const std::vector<MosaicOutline>& outlines,
                        const MosaicOptions& options) {

@@ -116,6 +116,20 @@ constexpr const char* kViewHtml = R"(<section id="view3d"><h3>In three dimension
 <p class="quiet">Drag to rotate, wheel or two fingers to zoom, right drag to move; the value under the pointer is shown. Keys: arrows rotate, + and - zoom, space plays, comma and full stop step, B before/after, R resets the view.<span class="of-part"> The dark line is the rim of the region.</span></p></section>
 )";
 
+// What the script of the slices fills.
+constexpr const char* kSlicesHtml =
+    R"(<div id="cut-controls"><label>Place <select id="cut-places"></select></label>
+<button id="cut-back" type="button">Previous</button><button id="cut-next" type="button">Next</button>
+<button type="button" data-rating="right">1 Right</button><button type="button" data-rating="unsure">2 Unsure</button><button type="button" data-rating="wrong">3 Wrong</button>
+<button id="cut-save" type="button">Save rating</button><output id="cut-state"></output>
+<label><input id="cut-outlines" type="checkbox" checked> outlines</label>
+<label>black at <input id="cut-dark" type="range" min="0" max="254" value="0"></label>
+<label>white at <input id="cut-bright" type="range" min="1" max="255" value="255"></label>
+<output id="cut-at"></output></div>
+<div id="cuts"><canvas id="cut-0" tabindex="0" role="img" aria-label="Axial slice"></canvas><canvas id="cut-1" tabindex="0" role="img" aria-label="Coronal slice"></canvas><canvas id="cut-2" tabindex="0" role="img" aria-label="Sagittal slice"></canvas></div>
+<p class="quiet">Click: the other slices and the surface in three dimensions go there, and a click on the surface leads here. Wheel or Page up and down: next slice; Ctrl and wheel, + and -: zoom; Shift and drag: move; double click: all. Keys: arrows move, O outlines, N and P next and previous place, 1 right, 2 unsure, 3 wrong, S saves the rating.</p>
+)";
+
 std::string hex(const Colour& colour) {
   std::array<char, 8> text{};
   std::snprintf(text.data(), text.size(), "#%02x%02x%02x", encodeSrgb(colour[0]),
@@ -406,7 +420,12 @@ std::string heading(const std::string& id, const std::string& words) {
 std::string lookHtml(const ReportContent& content) {
   std::string html;
   if (!content.evolutions.empty()) html += kViewHtml;
-  if (!content.mosaics.empty()) html += heading("slices", "Slices");
+  if (content.slices || !content.mosaics.empty()) html += heading("slices", "Slices");
+  if (content.slices) {
+    html +=
+        figureHtml(content.slices->id, content.slices->title, content.slices->caption, true,
+                   "<p class='quiet'>" + keyHtml(content.slices->outlines) + "</p>" + kSlicesHtml);
+  }
   for (const ReportMosaic& mosaic : content.mosaics) html += mosaicHtml(mosaic);
   if (!content.views.empty()) html += heading("surfaces", "Surfaces");
   for (const ReportViews& views : content.views) html += viewsHtml(views);
@@ -471,6 +490,10 @@ std::string reportPage(const ReportContent& content) {
     html += "<script type=\"application/json\" class=\"evolution\" data-title=\"" +
             escapeHtml(evolution.title) + "\">" + scriptSafe(evolutionJson(evolution)) +
             "</script>\n";
+  }
+  if (content.slices) {
+    html += "<script type=\"application/json\" id=\"slice-data\">" +
+            scriptSafe(content.slices->json) + "</script>\n";
   }
   if (!content.evolutions.empty()) {
     html += "<script>\n" + std::string(kThreeScript) + "\n</script>\n";

@@ -6,6 +6,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Geometry/Fixtures.h"
 #include "Explica/Report/Chart.h"
+#include "Explica/Report/SliceStack.h"
 
 #include <gtest/gtest.h>
 
@@ -63,6 +64,66 @@ TEST(PackedIntegers, ComeBack) {
   for (const int stride : {0, 1, 3}) {
     EXPECT_EQ(unpack(nlohmann::json::parse(packIntegers(values, stride))), values);
   }
+}
+
+/// The place of the brightest voxel of a stack, and how many are as bright.
+std::pair<Point, int> brightestOf(const nlohmann::json& stack) {
+  const std::vector<std::int32_t> grey = unpack(stack["grey"]);
+  const int nx = stack["size"][0], ny = stack["size"][1];
+  const auto most = std::max_element(grey.begin(), grey.end());
+  const int at = static_cast<int>(most - grey.begin());
+  Point place(at % nx, at / nx % ny, at / (nx * ny));
+  for (int a = 0; a < 3; ++a) {
+    place[a] = stack["low"][a].get<double>() + stack["voxel"].get<double>() * place[a];
+  }
+  return {place, static_cast<int>(std::count(grey.begin(), grey.end(), *most))};
+}
+
+TEST(SliceStack, HoldsTheImagesOwnVoxelsWhicheverWayItsAxesGo) {
+  const TriangleMesh mesh = geometry::makeIcosphere(2, 9, Point(20, 22, 24));
+  for (const bool turned : {false, true}) {
+    Grid grid;
+    grid.size = {30, 34, 32};
+    grid.spacing = Vector::Constant(1.5);
+    grid.origin = turned ? Vector(44.2, -1.3, 46.1) : Vector(-1.1, -1.3, 0.4);
+    if (turned) grid.direction = Vector(-1, 1, -1).asDiagonal();  // left, anterior, inferior
+    Volume<float> image(grid, 10.0F);
+    const Point place = grid.toWorld(Vector(12, 16, 15));
+    image(12, 16, 15) = 100;
+    const auto stack = nlohmann::json::parse(sliceStackJson(image, {{&mesh, "white", "#f00"}}, {}));
+    EXPECT_EQ(stack["voxel"], 1.5);
+    const auto [found, count] = brightestOf(stack);
+    EXPECT_EQ(count, 1) << "no voxel is smeared over two";
+    EXPECT_NEAR((found - place).norm(), 0, 1e-9);
+  }
+}
+
+TEST(SliceStack, KeepsSurfacesToAHundredthOfAMillimetre) {
+  const TriangleMesh white = geometry::makeIcosphere(3, 9.123),
+                     pial = geometry::makeIcosphere(3, 11);
+  Grid grid;
+  grid.size = {40, 40, 40};
+  grid.origin = Vector::Constant(-20);
+  const Volume<float> image(grid, 1.0F);
+  const auto stack = nlohmann::json::parse(sliceStackJson(
+      image, {{&white, "white", "#f00"}, {&pial, "pial", "#ff0"}}, {{Point(1, 2, 3), "here"}}));
+  EXPECT_EQ(stack["places"][0]["at"], nlohmann::json({1.0, 2.0, 3.0}));
+  EXPECT_TRUE(stack["surfaces"][0].contains("faces"));
+  EXPECT_FALSE(stack["surfaces"][1].contains("faces")) << "they are those of the first";
+  std::vector<std::int32_t> steps(3 * static_cast<std::size_t>(white.vertexCount()), 0);
+  for (const TriangleMesh* mesh : {&white, &pial}) {
+    const auto shift = unpack(stack["surfaces"][mesh == &white ? 0 : 1]["positions"]);
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+      steps[i] += shift[i];
+      const double x = stack["low"][i % 3].get<double>() + stack["step"].get<double>() * steps[i];
+      ASSERT_NEAR(x, mesh->positions(static_cast<Eigen::Index>(i / 3), i % 3), 0.00501);
+    }
+  }
+}
+
+TEST(SliceStack, RefusesSurfacesWithoutVertices) {
+  const TriangleMesh none;
+  EXPECT_THROW((void)sliceStackJson(Volume<float>(Grid{}), {{&none, "", ""}}, {}), InvalidInput);
 }
 
 Evolution movingSphere() {

@@ -93,7 +93,7 @@ std::vector<ReportFlag> ownFlags(const StepFolder& step) {
 /// Where a reader sees what a step warns of.
 std::string placeOf(const std::string& step) {
   constexpr std::array kPlaces = {std::pair{"Segment", kTissuePlace},
-                                  std::pair{"Thickness", kUnknownPlace},
+                                  std::pair{"Thickness", kOutlinePlace},
                                   std::pair{"Surface", kOutlinePlace},
                                   std::pair{"Unfold", kPatchPlace}, std::pair{"Flat", kFlatPlace}};
   for (const auto& [name, place] : kPlaces) {
@@ -162,6 +162,7 @@ std::vector<ReportFlag> flagsOf(const StepFolder& step) {
 void dropIdleLinks(report::ReportContent& content) {
   std::set<std::string> places;
   if (!content.evolutions.empty()) places.insert(kPatchPlace);
+  if (content.slices) places.insert(content.slices->id);
   for (const auto& shown : content.mosaics) places.insert(shown.id);
   for (const auto& shown : content.views) places.insert(shown.id);
   for (const auto& shown : content.pictures) places.insert(shown.id);

@@ -11,8 +11,6 @@ namespace explica::pipeline {
 /// Places on the page that flags lead to.
 inline constexpr const char* kTissuePlace = "tissues";
 inline constexpr const char* kOutlinePlace = "surfaces-on-image";
-inline constexpr const char* kCorrectedPlace = "corrected-places";
-inline constexpr const char* kUnknownPlace = "places-without-thickness";
 inline constexpr const char* kCrossingPlace = "crossing-places";
 inline constexpr const char* kLayerPlace = "layers";
 inline constexpr const char* kThicknessPlace = "thickness-maps";

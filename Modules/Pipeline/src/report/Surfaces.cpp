@@ -5,6 +5,7 @@
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Report/Chart.h"
 #include "Explica/Report/Figure.h"
+#include "Explica/Report/SliceStack.h"
 #include "MaskBorder.h"
 #include "References.h"
 #include "ReportParts.h"
@@ -208,46 +209,27 @@ void showRegions(ResultFolder& results, const std::vector<const Hemisphere*>& al
   results.content().views.push_back(std::move(views));
 }
 
-/// Tiles about places that a reader must judge: where the surface was corrected, where there is no
-/// thickness, where faces cross.
-void showCloseUps(ResultFolder& results, const std::vector<Hemisphere>& all,
-                  const Volume<float>& image, const std::vector<report::MosaicOutline>& outlines,
-                  const report::MosaicOptions& options) {
-  constexpr double kWidth = 36;   // mm
-  constexpr double kNarrow = 12;  // mm, for faces
-  report::MosaicOptions close = options;
-  close.tileHeight = 170;
-  const std::size_t each = all.size() == 1 ? kMostPlaces : kMostPlaces / 2 + 1;
-  std::vector<report::CloseUp> corrected, unknown, crossing;
-  const auto add = [&](std::vector<report::CloseUp>& to, std::vector<report::CloseUp> places) {
-    for (report::CloseUp& place : places) {
-      if (to.size() < kMostPlaces) to.push_back(std::move(place));
+/// Places that a reader must judge: where the surface was corrected, where there is no thickness,
+/// where faces cross.
+std::vector<report::CloseUp> placesToJudge(const ResultFolder& results,
+                                           const std::vector<Hemisphere>& all) {
+  std::vector<report::CloseUp> places;
+  const auto add = [&](const Hemisphere& h, const char* what, std::vector<report::CloseUp> found) {
+    for (report::CloseUp& place : found) {
+      place.words = (h.side.empty() ? "" : h.side + ", ") + what + place.words;
+      places.push_back(std::move(place));
     }
   };
   for (const Hemisphere& h : all) {
-    add(corrected, correctedPlaces(*h.step, each));
-    if (const auto* thickness = results.beside(*h.step, "thickness")) {
-      add(unknown, unknownPlaces(*thickness, each));
-    }
     if (const auto* unfold = results.beside(*h.step, "unfold")) {
-      add(crossing, crossingPlaces(crossingPairs(*unfold), each));
+      add(h, "self-intersection: ", crossingPlaces(crossingPairs(*unfold), kMostPlaces));
+    }
+    add(h, "topology corrected: ", correctedPlaces(*h.step, kMostPlaces));
+    if (const auto* thickness = results.beside(*h.step, "thickness")) {
+      add(h, "no thickness: ", unknownPlaces(*thickness, kMostPlaces));
     }
   }
-  const auto show = [&](const std::vector<report::CloseUp>& places, const char* id,
-                        const char* title, const char* caption, double width) {
-    if (places.empty()) return;
-    results.content().mosaics.push_back(
-        {id, title, caption, report::makeCloseUps(image, outlines, places, width, close)});
-  };
-  show(corrected, kCorrectedPlace, "Where the surface was corrected",
-       "The largest of the defects of the white surface that were cut or filled: the outline must "
-       "be right there, too.",
-       kWidth);
-  show(unknown, kUnknownPlace, "Where there is no thickness",
-       "Places with the most voxels of the ribbon from which no path leads to both of its sides.",
-       kWidth);
-  show(crossing, kCrossingPlace, "Where faces cross", "At the start; listed in intersections.tsv.",
-       kNarrow);
+  return places;
 }
 
 void showOutlines(ResultFolder& results, const std::vector<Hemisphere>& all,
@@ -285,13 +267,35 @@ void showOutlines(ResultFolder& results, const std::vector<Hemisphere>& all,
        "gyrus. Wrong: a line within one tissue, gyri cut off, skull or vessels included. Then: "
        "correct the segmentation there and run again.",
        {std::move(middle.rows[0][0]), std::move(middle.rows[1][0])},
-       std::move(middle.outlines)});
+       middle.outlines});
+  const std::vector<report::CloseUp> places = placesToJudge(results, all);
+  results.content().slices = {
+      kOutlinePlace, "White and pial surface on " + image->filename().string(),
+      "Lines between the voxels: the very surfaces, cut. Right, wrong and what to do: as at the "
+      "head of the page.",
+      middle.outlines, report::sliceStackJson(volume, outlines, places, mosaic)};
   if (brain.faceCount() > 0) outlines.push_back({&brain, "brain", "#5ac8fa"});
-  results.content().mosaics.push_back({kOutlinePlace,
-                                       "White and pial surface on " + image->filename().string(),
+  results.content().mosaics.push_back({"",
+                                       "The same for print",
                                        "The outlines must follow the borders of the grey ribbon.",
-                                       report::makeMosaic(volume, outlines, mosaic)});
-  showCloseUps(results, all, volume, surfaces, mosaic);
+                                       report::makeMosaic(volume, outlines, mosaic),
+                                       {},
+                                       {},
+                                       true});
+  if (places.empty()) return;
+  constexpr double kWidth = 36;  // mm
+  report::MosaicOptions close = mosaic;
+  close.tileHeight = 260;
+  report::SliceMosaic doubted =
+      report::makeCloseUps(volume, surfaces, {places.front()}, kWidth, close);
+  results.content().glance.push_back(
+      {kOutlinePlace,
+       "First of " + std::to_string(places.size()) + " places to judge",
+       "Right: the lines keep to the borders within the ring, too. Wrong: a bridge between two "
+       "gyri, a hole, a cut through white matter. Then: step through all places in the slices "
+       "and rate them.",
+       {std::move(doubted.rows[0][0]), std::move(doubted.rows[1][0])},
+       std::move(doubted.outlines)});
 }
 
 void chartSurfaceThickness(ResultFolder& results, const std::vector<Hemisphere>& all,

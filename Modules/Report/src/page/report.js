@@ -1,6 +1,26 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 // Plays the evolution in the report page.  Needs THREE, inlined before it.
+async function inflate(text) {
+  const binary = atob(text);
+  const bytes = new Uint8Array(binary.length);
+  for (let i = 0; i < bytes.length; ++i) bytes[i] = binary.charCodeAt(i);
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate'));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+// The inverse of packIntegers in Encoding.cpp.
+async function unpackIntegers(packed) {
+  const bytes = await inflate(packed.d);
+  const values = new Int32Array(packed.n);
+  for (let p = 0; p < packed.p; ++p) {
+    const offset = p * packed.n;
+    for (let i = 0; i < packed.n; ++i) values[i] |= bytes[offset + i] << (8 * p);
+  }
+  for (let i = 0; i < packed.n; ++i) values[i] = (values[i] >>> 1) ^ -(values[i] & 1);
+  if (packed.s > 0) for (let i = packed.s; i < packed.n; ++i) values[i] += values[i - packed.s];
+  return values;
+}
 (function () {
   'use strict';
   // A link into what is folded unfolds it.
@@ -59,27 +79,6 @@ async function showEvolution(source, isStopped, onStop) {
   const message = byId('stage-message');
   const canvas = byId('canvas');
 
-  async function inflate(text) {
-    const binary = atob(text);
-    const bytes = new Uint8Array(binary.length);
-    for (let i = 0; i < bytes.length; ++i) bytes[i] = binary.charCodeAt(i);
-    const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate'));
-    return new Uint8Array(await new Response(stream).arrayBuffer());
-  }
-
-  // The inverse of packIntegers in Encoding.cpp.
-  async function unpack(packed) {
-    const bytes = await inflate(packed.d);
-    const values = new Int32Array(packed.n);
-    for (let p = 0; p < packed.p; ++p) {
-      const offset = p * packed.n;
-      for (let i = 0; i < packed.n; ++i) values[i] |= bytes[offset + i] << (8 * p);
-    }
-    for (let i = 0; i < packed.n; ++i) values[i] = (values[i] >>> 1) ^ -(values[i] & 1);
-    if (packed.s > 0) for (let i = packed.s; i < packed.n; ++i) values[i] += values[i - packed.s];
-    return values;
-  }
-
   let data;
   let renderer;
   try {
@@ -92,17 +91,17 @@ async function showEvolution(source, isStopped, onStop) {
   }
   onStop(() => renderer.dispose());
 
-  const start = await unpack(data.positions);
-  const faces = await unpack(data.faces);
-  const openness = await unpack(data.openness);
-  const moved = await unpack(data.moved);
+  const start = await unpackIntegers(data.positions);
+  const faces = await unpackIntegers(data.faces);
+  const openness = await unpackIntegers(data.openness);
+  const moved = await unpackIntegers(data.moved);
   const vertexCount = start.length / 3;
   const frames = [];
   {
     let before = new Int32Array(moved.length * 3);
     for (let m = 0; m < moved.length; ++m) for (let c = 0; c < 3; ++c) before[3 * m + c] = start[3 * moved[m] + c];
     for (const packed of data.frames) {
-      const change = await unpack(packed);
+      const change = await unpackIntegers(packed);
       const now = new Int32Array(before.length);
       for (let i = 0; i < now.length; ++i) now[i] = before[i] + change[i];
       frames.push(now);
@@ -113,13 +112,13 @@ async function showEvolution(source, isStopped, onStop) {
   const maps = [];
   for (const map of data.maps) {
     maps.push({ name: map.name, unit: map.unit, low: map.low, high: map.high, least: map.least, step: map.step,
-                values: await unpack(map.values), colours: bytesOf(map.colours) });
+                values: await unpackIntegers(map.values), colours: bytesOf(map.colours) });
   }
   const labelMaps = [];
   for (const map of data.labels) {
-    labelMaps.push({ name: map.name, names: map.names, entries: await unpack(map.entries), colours: bytesOf(map.colours) });
+    labelMaps.push({ name: map.name, names: map.names, entries: await unpackIntegers(map.entries), colours: bytesOf(map.colours) });
   }
-  const region = await unpack(data.region);
+  const region = await unpackIntegers(data.region);
 
   if (isStopped()) return;
 
@@ -336,6 +335,7 @@ async function showEvolution(source, isStopped, onStop) {
   const alone = byId('alone');
   let frame = 0;
   let playing = null;
+  let followMark = () => {};
 
   const linear = (byte) => Math.pow(byte / 255, 2.2);
   function paint() {
@@ -397,6 +397,7 @@ async function showEvolution(source, isStopped, onStop) {
     }
     computeNormals();
     followRim();
+    followMark();
     // What unfolds comes out of the shade.
     const share = frames.length > 1 ? frame / (frames.length - 1) : 0;
     for (let v = 0; v < vertexCount; ++v) {
@@ -423,7 +424,7 @@ async function showEvolution(source, isStopped, onStop) {
     }, 100);
   }
 
-  const facingMap = { name: 'faces the viewpoint', unit: '', low: -1, high: 1, colours: new Uint8Array(3 * 256) };
+  const facingMap = { name: 'facing the viewpoint (1 = directly)', unit: '', low: -1, high: 1, colours: new Uint8Array(3 * 256) };
   for (let e = 0; e < 256; ++e) {
     const t = e / 254;
     const mix = (a, b, s) => Math.round(a + (b - a) * s);
@@ -437,7 +438,7 @@ async function showEvolution(source, isStopped, onStop) {
     chooser.appendChild(option);
   };
   addChoice('none', moved.length > 0 && !isWhole ? 'region' : 'plain');
-  addChoice('facing', 'faces the viewpoint');
+  addChoice('facing', 'facing the viewpoint (1 = directly)');
   maps.forEach((map, m) => addChoice(String(m), map.name));
   labelMaps.forEach((map, m) => addChoice('label' + m, map.name));
   slider.max = String(Math.max(0, frames.length - 1));
@@ -473,7 +474,7 @@ async function showEvolution(source, isStopped, onStop) {
     const known = map.values[v] <= 65534;
     return map.name + ': ' + (known ? readable(map.least + map.step * map.values[v]) + (map.unit ? ' ' + map.unit : '') : 'not known');
   }
-  let asked = false;
+  let asked = false, pointedAt = -1;
   function readUnder(x, y) {
     if (asked) return;
     asked = true;
@@ -486,24 +487,57 @@ async function showEvolution(source, isStopped, onStop) {
       mesh.visible = true;
       const hit = caster.intersectObject(mesh)[0];
       mesh.visible = wasVisible;
+      pointedAt = -1;
       if (!hit) { reading.textContent = ''; return; }
       let nearest = hit.face.a, least = Infinity;
       for (const v of [hit.face.a, hit.face.b, hit.face.c]) {
         const far = Math.hypot(...[0, 1, 2].map((c) => positions[3 * v + c] - hit.point.getComponent(c)));
         if (far < least) { least = far; nearest = v; }
       }
+      pointedAt = nearest;
       reading.textContent = valueAt(nearest) + ' (vertex ' + nearest + ')';
     });
   }
+  // The place where the slices are, marked on the surface, and the other way round.
+  const mark = new THREE.Points(new THREE.BufferGeometry(),
+    new THREE.PointsMaterial({ color: 0x00a5cf, size: 11, sizeAttenuation: false, depthTest: false }));
+  mark.geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(3), 3));
+  mark.frustumCulled = false;
+  mark.visible = false;
+  mark.renderOrder = 1;
+  scene.add(mark);
+  let marked = -1;
+  const firstPlace = (v) => [0, 1, 2].map((c) => data.low[c] + data.unit * start[3 * v + c]);
+  followMark = () => {
+    mark.visible = marked >= 0;
+    if (marked < 0) return;
+    for (let c = 0; c < 3; ++c) mark.geometry.attributes.position.array[c] = positions[3 * marked + c];
+    mark.geometry.attributes.position.needsUpdate = true;
+  };
+  function markPlace(event) {
+    const farthest = 15;  // mm; beyond, the slices are off this surface
+    let least = farthest;
+    marked = -1;
+    for (let v = 0; v < vertexCount; ++v) {
+      const far = Math.hypot(...firstPlace(v).map((x, c) => x - event.detail.at[c]));
+      if (far < least) { least = far; marked = v; }
+    }
+    followMark();
+    draw();
+  }
+  document.addEventListener('place', markPlace);
   const pointers = new Map();
+  let wasDragged = false;
   canvas.addEventListener('pointerdown', (event) => {
     canvas.setPointerCapture(event.pointerId);
     pointers.set(event.pointerId, { x: event.clientX, y: event.clientY, button: event.button });
+    wasDragged = false;
   });
   canvas.addEventListener('pointermove', (event) => {
     const before = pointers.get(event.pointerId);
     if (!before) { readUnder(event.clientX, event.clientY); return; }
     const dx = event.clientX - before.x, dy = event.clientY - before.y;
+    wasDragged = wasDragged || Math.hypot(dx, dy) > 2;
     if (pointers.size === 2) {
       const other = [...pointers.entries()].find(([id]) => id !== event.pointerId)[1];
       const was = Math.hypot(before.x - other.x, before.y - other.y) || 1;
@@ -518,6 +552,9 @@ async function showEvolution(source, isStopped, onStop) {
     before.y = event.clientY;
   });
   for (const name of ['pointerup', 'pointercancel']) canvas.addEventListener(name, (event) => pointers.delete(event.pointerId));
+  canvas.addEventListener('click', () => {
+    if (!wasDragged && pointedAt >= 0) document.dispatchEvent(new CustomEvent('place', { detail: { at: firstPlace(pointedAt), from: 'surface' } }));
+  });
   canvas.addEventListener('contextmenu', (event) => event.preventDefault());
   canvas.addEventListener('wheel', (event) => { event.preventDefault(); zoom(Math.exp(0.001 * event.deltaY)); }, { passive: false });
   canvas.addEventListener('keydown', (event) => {
@@ -536,6 +573,7 @@ async function showEvolution(source, isStopped, onStop) {
   onStop(() => {
     clearInterval(playing);
     window.removeEventListener('resize', draw);
+    document.removeEventListener('place', markPlace);
     renderer.dispose();
     renderer.forceContextLoss();
   });
@@ -546,5 +584,230 @@ async function showEvolution(source, isStopped, onStop) {
   paint();
   resetView();
   canvas.dataset.ready = 'true';
+}
+})();
+// Slices through a volume with the surfaces' cut lines, linked with each other and with the view in
+// three dimensions by the event "place" (RAS mm) of the document.
+(function () {
+  'use strict';
+  const source = document.getElementById('slice-data');
+  if (!source) return;
+  const byId = (id) => document.getElementById(id);
+  showSlices(JSON.parse(source.textContent));
+
+async function showSlices(data) {
+  const [nx, ny] = data.size;
+  const grey = Uint8Array.from(await unpackIntegers(data.grey));
+  const surfaces = [];
+  let before = null;
+  for (const packed of data.surfaces) {
+    const steps = await unpackIntegers(packed.positions);
+    const faces = packed.faces ? await unpackIntegers(packed.faces) : before.faces;
+    if (!packed.faces) for (let i = 0; i < steps.length; ++i) steps[i] += before.steps[i];
+    before = { faces, steps };
+    surfaces.push({ faces, colour: packed.colour, at: Float32Array.from(steps, (s, i) => data.low[i % 3] + data.step * s) });
+  }
+  const side = data.leftOnRight ? -1 : 1;
+  // Axes across, up and through, and which way the first goes.
+  const views = [[0, 1, 2, side], [0, 2, 1, side], [1, 2, 0, -1]].map(([h, v, n, sign], i) =>
+    ({ h, v, n, sign, canvas: byId('cut-' + i), image: document.createElement('canvas'), shown: NaN, lines: [] }));
+  const high = data.size.map((size, a) => data.low[a] + data.voxel * (size - 1));
+  const middle = data.low.map((low, a) => 0.5 * (low + high[a]));
+  const snapped = (at) => at.map((x, a) => data.low[a] + data.voxel *
+    Math.min(data.size[a] - 1, Math.max(0, Math.round((x - data.low[a]) / data.voxel))));
+  let at = snapped(middle), centre = middle.slice(), zoom = 1;
+  const outlines = byId('cut-outlines'), darkest = byId('cut-dark'), brightest = byId('cut-bright');
+
+  // Millimetres to pixels of the screen: of one size in all views.
+  const scale = () => zoom * Math.min(...views.map((view) => Math.min(
+    view.canvas.width / (data.voxel * data.size[view.h]), view.canvas.height / (data.voxel * data.size[view.v]))));
+  function cut(view) {
+    const index = at.map((x, a) => Math.round((x - data.low[a]) / data.voxel));
+    const width = data.size[view.h], height = data.size[view.v];
+    const stride = [1, nx, nx * ny], pen = view.image.getContext('2d');
+    view.image.width = width;
+    view.image.height = height;
+    const pixels = pen.createImageData(width, height);
+    const low = Number(darkest.value), range = Math.max(1, Number(brightest.value) - low);
+    for (let y = 0; y < height; ++y) {
+      for (let x = 0; x < width; ++x) {
+        const i = view.sign > 0 ? x : width - 1 - x;
+        const value = grey[index[view.n] * stride[view.n] + i * stride[view.h] + (height - 1 - y) * stride[view.v]];
+        const shown = 255 * (value - low) / range, to = 4 * (y * width + x);
+        pixels.data[to] = pixels.data[to + 1] = pixels.data[to + 2] = shown;
+        pixels.data[to + 3] = 255;
+      }
+    }
+    pen.putImageData(pixels, 0, 0);
+    if (view.shown === at[view.n]) return;
+    view.shown = at[view.n];
+    view.lines = surfaces.map((surface) => linesOf(surface, view));
+  }
+  // Where a surface's faces meet the plane: ends of lines, in millimetres.
+  function linesOf(surface, view) {
+    const lines = [], p = surface.at, f = surface.faces, plane = view.shown + 1e-4;
+    for (let k = 0; k < f.length; k += 3) {
+      const a = 3 * f[k], b = 3 * f[k + 1], c = 3 * f[k + 2];
+      const x = p[a + view.n] - plane, y = p[b + view.n] - plane, z = p[c + view.n] - plane;
+      if ((x >= 0) === (y >= 0) && (y >= 0) === (z >= 0)) continue;
+      for (const [i, j, s, t] of [[a, b, x, y], [b, c, y, z], [c, a, z, x]]) {
+        if ((s >= 0) === (t >= 0)) continue;
+        const share = s / (s - t);
+        for (const axis of [view.h, view.v]) lines.push(p[i + axis] + share * (p[j + axis] - p[i + axis]));
+      }
+    }
+    return lines;
+  }
+  function paint(view) {
+    const { canvas, h, v, sign } = view, pen = canvas.getContext('2d');
+    const k = scale(), half = 0.5 * data.voxel;
+    const toX = (x) => 0.5 * canvas.width + k * sign * (x - centre[h]);
+    const toY = (y) => 0.5 * canvas.height - k * (y - centre[v]);
+    pen.fillStyle = '#000';
+    pen.fillRect(0, 0, canvas.width, canvas.height);
+    pen.drawImage(view.image, toX(sign > 0 ? data.low[h] - half : high[h] + half), toY(high[v] + half),
+                  k * data.voxel * data.size[h], k * data.voxel * data.size[v]);
+    if (outlines.checked) {
+      pen.lineWidth = Math.max(1, 1.2 * (window.devicePixelRatio || 1));
+      view.lines.forEach((lines, s) => {
+        pen.strokeStyle = surfaces[s].colour;
+        pen.beginPath();
+        for (let i = 0; i < lines.length; i += 4) {
+          pen.moveTo(toX(lines[i]), toY(lines[i + 1]));
+          pen.lineTo(toX(lines[i + 2]), toY(lines[i + 3]));
+        }
+        pen.stroke();
+      });
+    }
+    const x = toX(at[h]), y = toY(at[v]), gap = 12 * (window.devicePixelRatio || 1);
+    pen.strokeStyle = '#32d7ff';
+    pen.lineWidth = 1;
+    pen.beginPath();
+    for (const [x0, y0, x1, y1] of [[0, y, x - gap, y], [x + gap, y, canvas.width, y], [x, 0, x, y - gap], [x, y + gap, x, canvas.height]]) {
+      pen.moveTo(x0, y0);
+      pen.lineTo(x1, y1);
+    }
+    pen.stroke();
+  }
+  let pending = false;
+  function draw() {
+    if (pending) return;
+    pending = true;
+    requestAnimationFrame(() => {
+      pending = false;
+      for (const { canvas } of views) {
+        const ratio = window.devicePixelRatio || 1;
+        const width = Math.round(canvas.clientWidth * ratio), height = Math.round(canvas.clientHeight * ratio);
+        if (canvas.width !== width) canvas.width = width;
+        if (canvas.height !== height) canvas.height = height;
+      }
+      for (const view of views) { cut(view); paint(view); }
+      byId('cut-at').textContent = at.map((x, a) => 'xyz'[a] + ' = ' + x.toFixed(1)).join(', ') + ' mm';
+      byId('cuts').dataset.ready = 'true';
+    });
+  }
+  // `tell` is false where the place comes from the view in three dimensions.
+  function go(place, tell = true) {
+    at = snapped(place);
+    if (zoom > 1) centre = at.slice();
+    if (tell) document.dispatchEvent(new CustomEvent('place', { detail: { at, from: 'slices' } }));
+    draw();
+  }
+  const moved = (axis, by) => go(at.map((x, a) => a === axis ? x + by * data.voxel : x));
+  function enlarge(factor) {
+    zoom = Math.min(20, Math.max(1, zoom * factor));
+    centre = zoom > 1 ? at.slice() : middle.slice();
+    draw();
+  }
+  document.addEventListener('place', (event) => { if (event.detail.from !== 'slices') go(event.detail.at, false); });
+
+  // Places to judge, the whole first.
+  const list = byId('cut-places'), state = byId('cut-state');
+  const ratings = data.places.map(() => '');
+  data.places.forEach((place, n) => list.add(new Option((n + 1) + '. ' + place.words, String(n))));
+  function choose(number) {
+    const count = data.places.length;
+    if (count === 0) return;
+    list.value = String((number + count) % count);
+    if (zoom === 1) zoom = 4;
+    go(data.places[list.value].at);
+    state.textContent = ratings[list.value];
+  }
+  function rate(word) {
+    if (data.places.length === 0) return;
+    const n = Number(list.value);
+    ratings[n] = word;
+    list.options[n].text = (n + 1) + '. ' + data.places[n].words + ': ' + word;
+    state.textContent = word;
+  }
+  function save() {
+    const rated = data.places.map((place, n) => ({ what: place.words, place_mm: place.at, rating: ratings[n] || null }));
+    const json = { format: 'explica-rating', format_version: 1, person: document.title, ratings: rated };
+    const link = document.createElement('a');
+    link.href = URL.createObjectURL(new Blob([JSON.stringify(json, null, 2) + '\n'], { type: 'application/json' }));
+    link.download = document.title + '_rating.json';
+    link.click();
+    URL.revokeObjectURL(link.href);
+  }
+  list.addEventListener('change', () => choose(Number(list.value)));
+  byId('cut-next').addEventListener('click', () => choose(Number(list.value) + 1));
+  byId('cut-back').addEventListener('click', () => choose(Number(list.value) - 1));
+  for (const button of document.querySelectorAll('#cut-controls [data-rating]')) {
+    button.addEventListener('click', () => rate(button.dataset.rating));
+  }
+  byId('cut-save').addEventListener('click', save);
+  for (const input of [outlines, darkest, brightest]) input.addEventListener('input', draw);
+  window.addEventListener('resize', draw);
+
+  for (const view of views) {
+    const { canvas, h, v, n, sign } = view;
+    const placeOf = (event) => {
+      const box = canvas.getBoundingClientRect(), k = scale() / (canvas.width / box.width);
+      const place = at.slice();
+      place[h] = centre[h] + sign * (event.clientX - box.left - 0.5 * box.width) / k;
+      place[v] = centre[v] - (event.clientY - box.top - 0.5 * box.height) / k;
+      return place;
+    };
+    let drag = null;
+    canvas.addEventListener('pointerdown', (event) => {
+      canvas.setPointerCapture(event.pointerId);
+      drag = { pan: event.button === 2 || event.shiftKey, from: placeOf(event) };
+      if (!drag.pan) { at = snapped(placeOf(event)); draw(); }
+    });
+    canvas.addEventListener('pointermove', (event) => {
+      if (!drag) return;
+      const place = placeOf(event);
+      if (drag.pan) for (const a of [h, v]) centre[a] += drag.from[a] - place[a];
+      else at = snapped(place);
+      draw();
+    });
+    canvas.addEventListener('pointerup', () => {
+      if (drag && !drag.pan) document.dispatchEvent(new CustomEvent('place', { detail: { at, from: 'slices' } }));
+      drag = null;
+    });
+    canvas.addEventListener('contextmenu', (event) => event.preventDefault());
+    canvas.addEventListener('dblclick', () => enlarge(0));
+    canvas.addEventListener('wheel', (event) => {
+      event.preventDefault();
+      if (event.ctrlKey || event.metaKey) enlarge(Math.exp(-0.002 * event.deltaY));
+      else moved(n, event.deltaY < 0 ? 1 : -1);
+    }, { passive: false });
+    canvas.addEventListener('keydown', (event) => {
+      const actions = {
+        PageUp: () => moved(n, 1), PageDown: () => moved(n, -1),
+        ArrowUp: () => moved(v, 1), ArrowDown: () => moved(v, -1),
+        ArrowRight: () => moved(h, sign), ArrowLeft: () => moved(h, -sign),
+        '+': () => enlarge(1.25), '=': () => enlarge(1.25), '-': () => enlarge(0.8),
+        o: () => { outlines.checked = !outlines.checked; draw(); },
+        n: () => choose(Number(list.value) + 1), p: () => choose(Number(list.value) - 1),
+        1: () => rate('right'), 2: () => rate('unsure'), 3: () => rate('wrong'), s: save
+      };
+      const action = actions[event.key] || actions[event.key.toLowerCase()];
+      if (!action || event.ctrlKey || event.metaKey) return;
+      event.preventDefault();
+      action();
+    });
+  }
+  draw();
 }
 })();

@@ -54,6 +54,11 @@ struct MosaicOptions {
   const Volume<float>* subject = nullptr;
 };
 
+/// Black below 0, white at the brightest of the subject (above 0; nullptr: of all voxels) but for
+/// the last half per cent.
+/// @throws InvalidInput  the subject is of another size than the image
+[[nodiscard]] ColourScale greyScale(const Volume<float>& image, const Volume<float>* subject);
+
 /// Evenly spaced slices over the box of the outlines, or else of the voxels above 0, in three
 /// directions.
 /// @throws InvalidInput  nothing to show, an option out of range, or a subject of another size

@@ -113,6 +113,15 @@ struct ReportMosaic {
   bool detail = false;                           ///< folded away until somebody asks for it
 };
 
+/// Slices to scroll through; sliceStackJson of SliceStack.h makes the data.
+struct ReportSlices {
+  std::string id;
+  std::string title;
+  std::string caption;
+  std::vector<std::pair<std::string, std::string>> outlines;  ///< name and colour
+  std::string json;
+};
+
 /// An SVG element of Chart.h.
 struct ReportChart {
   std::string id;
@@ -138,6 +147,7 @@ struct ReportContent {
   std::vector<ReportGlance> glance;                        ///< four at most
   ReportFindings findings;
   std::vector<Evolution> evolutions;  ///< the reader chooses among several by their titles
+  std::optional<ReportSlices> slices;
   std::vector<ReportMosaic> mosaics;
   std::vector<ReportViews> views;
   std::vector<ReportPicture> pictures;

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Report/Mosaic.h"
+
+#include <string>
+#include <vector>
+
+namespace explica::report {
+
+/// What a page's viewer of slices needs: an image at full resolution, the surfaces whose cut lines
+/// are drawn at any slice, and the places to step through.
+///
+/// The image is sampled trilinearly on a lattice along the head's axes with the image's least
+/// spacing, through the centre of its first voxel: for an image along the axes these are its own
+/// voxels.  It reaches 10 mm beyond the outlines.  Above 12 million voxels the lattice is coarser,
+/// so that the page stays below 15 MB; `"voxel"` states it.  Vertices are rounded to 0.01 mm.
+/// @return a JSON object
+/// @throws InvalidInput  no outline with vertices, or a subject of another size than the image
+[[nodiscard]] std::string sliceStackJson(const Volume<float>& image,
+                                         const std::vector<MosaicOutline>& outlines,
+                                         const std::vector<CloseUp>& places,
+                                         const MosaicOptions& options = {});
+
+}  // namespace explica::report

@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Explica/Report/SliceStack.h"
+
+#include "Encoding.h"
+#include "Explica/Core/Errors.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace explica::report {
+namespace {
+
+constexpr double kAround = 10;        // mm around the outlines
+constexpr double kMostVoxels = 12e6;  // about 8 MB in a page
+constexpr double kVertexStep = 0.01;  // mm, a hundredth of a voxel
+
+/// Points low + step (i, j, k).
+struct Lattice {
+  Point low = Point::Zero();
+  double step = 1;
+  std::array<int, 3> size{};
+};
+
+Lattice latticeOf(const Grid& grid, const std::vector<MosaicOutline>& outlines) {
+  WorldBox box;
+  for (const MosaicOutline& outline : outlines) {
+    if (outline.mesh->vertexCount() == 0) continue;
+    box.low = box.low.cwiseMin(outline.mesh->positions.colwise().minCoeff().transpose());
+    box.high = box.high.cwiseMax(outline.mesh->positions.colwise().maxCoeff().transpose());
+  }
+  if (box.empty()) throw InvalidInput("outlines: none has vertices");
+  const Vector extent = box.high - box.low + Vector::Constant(2 * kAround);
+  Lattice lattice;
+  lattice.step = std::max(grid.spacing.minCoeff(), std::cbrt(extent.prod() / kMostVoxels));
+  const Point first = grid.toWorld(Vector::Zero());
+  for (int a = 0; a < 3; ++a) {
+    const double steps = std::ceil((box.low[a] - kAround - first[a]) / lattice.step);
+    lattice.low[a] = first[a] + lattice.step * steps;
+    lattice.size[a] = 1 + static_cast<int>(extent[a] / lattice.step);
+  }
+  return lattice;
+}
+
+/// Grey of each point, x fastest, then y, then z.
+std::vector<std::int32_t> greyOf(const Volume<float>& image, const Lattice& lattice,
+                                 const ColourScale& scale) {
+  SliceFrame frame;
+  frame.axis = SliceAxis::Axial;
+  frame.pixel = lattice.step;
+  frame.width = lattice.size[0];
+  frame.height = lattice.size[1];
+  for (int a = 0; a < 2; ++a) {
+    frame.centre[a] = lattice.low[a] + 0.5 * (lattice.size[a] - 1) * lattice.step;
+  }
+  std::vector<std::int32_t> grey;
+  for (int k = 0; k < lattice.size[2]; ++k) {
+    frame.position = lattice.low[2] + k * lattice.step;
+    const Picture slice = renderSlice(image, frame, scale);
+    for (int y = slice.height - 1; y >= 0; --y) {
+      for (int x = 0; x < slice.width; ++x) grey.push_back(slice.pixel(x, y)[0]);
+    }
+  }
+  return grey;
+}
+
+std::vector<std::int32_t> quantised(const TriangleMesh& mesh, const Point& low) {
+  std::vector<std::int32_t> steps;
+  for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
+    for (int c = 0; c < 3; ++c) {
+      steps.push_back(
+          static_cast<std::int32_t>(std::lround((mesh.positions(v, c) - low[c]) / kVertexStep)));
+    }
+  }
+  return steps;
+}
+
+/// A surface with the faces of the one before it is told by how far its vertices are from that.
+std::string surfacesJson(const std::vector<MosaicOutline>& outlines, const Point& low) {
+  std::string json;
+  std::vector<std::int32_t> before;
+  for (std::size_t n = 0; n < outlines.size(); ++n) {
+    const TriangleMesh& mesh = *outlines[n].mesh;
+    const bool alike = n > 0 && mesh.vertexCount() == outlines[n - 1].mesh->vertexCount() &&
+                       mesh.faceCount() == outlines[n - 1].mesh->faceCount() &&
+                       mesh.faces == outlines[n - 1].mesh->faces;
+    const std::vector<std::int32_t> now = quantised(mesh, low);
+    std::vector<std::int32_t> shift = now;
+    for (std::size_t i = 0; alike && i < now.size(); ++i) shift[i] -= before[i];
+    json += (n == 0 ? "" : ",") + std::string("{\"name\":") +
+            nlohmann::json(outlines[n].name).dump() +
+            ",\"colour\":" + nlohmann::json(outlines[n].colour).dump() +
+            ",\"positions\":" + packIntegers(shift, 3) +
+            (alike ? "" : ",\"faces\":" + packIntegers(facesInOrder(mesh.faces), 3)) + "}";
+    before = now;
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string sliceStackJson(const Volume<float>& image, const std::vector<MosaicOutline>& outlines,
+                           const std::vector<CloseUp>& places, const MosaicOptions& options) {
+  const Lattice lattice = latticeOf(image.grid, outlines);
+  nlohmann::json listed = nlohmann::json::array();
+  for (const CloseUp& place : places) {
+    listed.push_back(
+        {{"words", place.words}, {"at", {place.place.x(), place.place.y(), place.place.z()}}});
+  }
+  const nlohmann::json head = {{"low", {lattice.low.x(), lattice.low.y(), lattice.low.z()}},
+                               {"voxel", lattice.step},
+                               {"size", lattice.size},
+                               {"step", kVertexStep},
+                               {"leftOnRight", options.convention == SideConvention::Radiological},
+                               {"places", listed}};
+  std::string json = head.dump();
+  json.back() = ',';
+  return json + "\"surfaces\":[" + surfacesJson(outlines, lattice.low) + "],\"grey\":" +
+         packIntegers(greyOf(image, lattice, greyScale(image, options.subject)), 1) + "}";
+}
+
+}  // namespace explica::report
