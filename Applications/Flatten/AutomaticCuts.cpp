@@ -4,6 +4,7 @@
 #include "AutomaticCuts.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/StopScope.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Flattening/FoldDepth.h"
 #include "Explica/IO/VertexDataFile.h"
@@ -174,9 +175,13 @@ Opened openedByItself(Context& context, const Monitor& monitor, const io::Loaded
   }
   Opened opened;
   if (known) opened.plan = *resume->cuts;
-  if (!known || opened.plan.termination == Termination::Interrupted) {
-    Eigen::VectorXd depth = Eigen::VectorXd::Zero(disc.mesh.vertexCount());
-    if (!monitor.shouldStop()) depth = flattening::foldDepth(reference.mesh)(disc.vertexOrigin);
+  const bool wanted = !known || opened.plan.termination == Termination::Interrupted;
+  Eigen::VectorXd depth = Eigen::VectorXd::Zero(disc.mesh.vertexCount());
+  if (wanted && !monitor.shouldStop()) {
+    depth = flattening::foldDepth(reference.mesh)(disc.vertexOrigin);
+  }
+  const StopScope kept(nullptr);  // the cuts found so far
+  if (wanted) {
     opened.plan =
         flattening::findCuts(disc, depth, options, monitor, known ? &*resume->cuts : nullptr);
   }

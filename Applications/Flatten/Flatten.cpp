@@ -5,6 +5,7 @@
 
 #include "AutomaticCuts.h"
 #include "Explica/Application/Command.h"
+#include "Explica/Application/Describing.h"
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/StopScope.h"
@@ -379,7 +380,8 @@ Eigen::VectorXd onWhole(const Eigen::VectorXd& part, const flattening::Disc& dis
 /// Distortion and distance errors, into the summary and distortion.shape.gii.
 /// @return area ratio at the patch's vertices
 Eigen::VectorXd measure(Context& context, const Subject& subject, const flattening::Disc& disc,
-                        const TriangleMesh& flat, unfolding::FlatSummary& summary) {
+                        const TriangleMesh& flat, unfolding::FlatSummary& summary,
+                        Termination& termination) {
   const TriangleMesh& before = disc.mesh;
   const auto all = everyFace(flat.faces);
   unfolding::DistortionOptions plain;
@@ -399,10 +401,12 @@ Eigen::VectorXd measure(Context& context, const Subject& subject, const flatteni
   flattening::DistanceOptions options;
   options.farSources = static_cast<int>(
       std::clamp(kDistanceWork / static_cast<double>(flat.faceCount() / 2 + 1), 20.0, 100.0));
-  const auto pairs = flattening::drawPairs(before, all, options);
-  const auto straight = flattening::DistanceKind::Straight;
-  summary.distances = {flattening::distanceError(pairs.local, flat, all, straight),
-                       flattening::distanceError(pairs.all, flat, all, straight)};
+  describing(context, termination, [&] {
+    const auto pairs = flattening::drawPairs(before, all, options);
+    const auto straight = flattening::DistanceKind::Straight;
+    summary.distances = {flattening::distanceError(pairs.local, flat, all, straight),
+                         flattening::distanceError(pairs.all, flat, all, straight)};
+  });
   summary.distortion = distortion;
   return ratio;
 }
@@ -702,6 +706,7 @@ Made make(Context& context, const Settings& s, const Subject& subject, flattenin
     made.state.cuts = std::move(opened.plan);
     disc = std::move(opened.disc);
   }
+  const StopScope kept(nullptr);  // the map is whole at any moment
   made.secondsCut = secondsSince(begin);
   constexpr double kAtOnce = 1e-9;  // s
   if (options.maxTime) options.maxTime = std::max(kAtOnce, *options.maxTime - made.secondsCut);
@@ -716,7 +721,6 @@ Made make(Context& context, const Settings& s, const Subject& subject, flattenin
 }
 
 Termination run(Context& context, const Settings& s) {
-  const StopScope kept(nullptr);  // what is reached is written
   const auto begin = Clock::now();
   const Subject subject = subjectOf(context, s);
   const std::optional<Sheet> surfaces = checkBeside(context, s, subject);
@@ -729,6 +733,7 @@ Termination run(Context& context, const Settings& s) {
     options.maxTime = timeToIterate(*options.maxTime, read, options.frames, kKept);
   }
   const Made made = make(context, s, subject, std::move(whole), options);
+  const StopScope kept(nullptr);  // what is reached is written
   const flattening::Disc& disc = made.disc;
   const flattening::FlatMap& map = made.map;
   const double flattened = secondsSince(begin);
@@ -743,7 +748,8 @@ Termination run(Context& context, const Settings& s) {
   summary.area = geometry::totalArea(disc.mesh);
   summary.areaTolerance = options.areaTolerance;
   summary.turnedOverInFrames = writeFrames(context, subject, disc, map.frames);
-  const Eigen::VectorXd areaRatio = measure(context, subject, disc, flat, summary);
+  Termination termination = map.termination;
+  const Eigen::VectorXd areaRatio = measure(context, subject, disc, flat, summary, termination);
   writePatchTable(context, s, subject, disc, map, areaRatio);
   writeGrid(context, s, surfaces, disc, flat);
   context.results(summary);
@@ -752,7 +758,7 @@ Termination run(Context& context, const Settings& s) {
   context.result("seconds_flatten", flattened - read - made.secondsCut);
   context.result("seconds_output", secondsSince(begin) - flattened);
   const bool folded = map.turnedOver > 0 || map.rimCrossings > 0;
-  return folded ? Termination::Stalled : map.termination;
+  return folded ? Termination::Stalled : termination;
 }
 
 }  // namespace

@@ -63,6 +63,12 @@ try:
         URL.createObjectURL = (blob) => { blob.text().then((text) => done(JSON.parse(text))); return make(blob); };
         document.getElementById('cut-save').click();""")
     check("the rating is saved", saved["format"] == "explica-rating" and "ratings" in saved)
+    driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
+                           {"width": 390, "height": 800, "deviceScaleFactor": 1, "mobile": False})
+    ask("byId('cut-places').add(new Option('a place of many words '.repeat(5)))")
+    time.sleep(0.5)
+    width = driver.execute_script("return document.documentElement.scrollWidth")
+    check("a phone's width holds the page (%d pixels)" % width, width <= 390)
     for entry in driver.get_log("browser"):
         check("console: " + entry["message"][:200], entry["level"] != "SEVERE")
 finally:

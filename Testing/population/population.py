@@ -15,15 +15,23 @@ import time
 
 import nibabel as nib
 import numpy as np
-from scipy.ndimage import affine_transform, gaussian_filter
+from scipy.ndimage import affine_transform, distance_transform_edt, gaussian_filter
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "validation"))
+from labelled_cortex import areas_of, surface_of, voxels_inside  # noqa: E402
+from measures import signed_offset  # noqa: E402
 
 SHARED = pathlib.Path(__file__).resolve().parents[3] / "shared"
 # Noise in per cent of white matter, field, contrast of grey and white, voxels in mm.
 VARIANTS = {1: (3, 0.2, 1.0, (1, 1, 1)), 2: (6, 0.4, 0.85, (1, 1, 1)), 3: (2, 0.3, 1.15, (0.7, 0.7, 0.7)),
             4: (4, 0.2, 1.0, (1.3, 1.3, 1.3)), 5: (3, 0.3, 1.0, (1, 1, 2))}
 COLUMNS = ["person", "half", "variant", "exit", "flags", "seconds", "mask_dice", "cortex_outside_mask", "missing_ml", "extra_ml",
-           "grey_dice", "white_dice", "agreement", "open_share", "thickness_left", "thickness_right", "truth_left", "truth_right",
-           "defects_left", "defects_right"]
+           "grey_dice", "white_dice", "agreement", "open_share"]
+OF_A_SIDE = ["thickness", "truth", "region_r", "region_slope", "region_largest", "white_border", "pial_border", "cortex_between",
+             "cortex_beyond_pial", "middle_inside", "defects"]
+COLUMNS += [f"{name}_{side}" for name in OF_A_SIDE for side in ("left", "right")]
+# The larger, the better.
+RISING = {"mask_dice", "grey_dice", "white_dice", "agreement", "region_r", "cortex_between", "middle_inside"}
 
 
 def canonical(path):
@@ -78,15 +86,55 @@ def summary(folder):
     return json.loads(path.read_text()) if path.exists() else {}
 
 
+def regions_of(surfaces, atlas, side):
+    """Mean thickness and area of each cortical region of AAL, by the label nearest to the middle surface within 3 mm."""
+    image = nib.load(atlas)
+    names = dict(line.split("\t") for line in atlas.with_name("atlas.tsv").read_text().splitlines()[1:])
+    cortical = [int(key) for key, name in names.items() if name.endswith(f"_{side}") and not name.startswith(
+        ("Cerebel", "Vermis", "Caudate", "Putamen", "Pallidum", "Thalamus", "Hippocampus", "Amygdala", "Deep_"))]
+    data = np.asarray(image.dataobj).astype(int)
+    apart, nearest = distance_transform_edt(~np.isin(data, cortical), return_indices=True)
+    middle, faces = surface_of(surfaces, "mid")
+    thickness = nib.load(surfaces / "thickness.shape.gii").darrays[0].data.astype(float)
+    area = areas_of(middle, faces) * (thickness > 0)
+    at = np.rint(nib.affines.apply_affine(np.linalg.inv(image.affine), middle)).astype(int)
+    at = tuple(np.clip(at, 0, np.array(image.shape) - 1).T)
+    label = np.where(apart[at] <= 3, data[tuple(n[at] for n in nearest)], 0)
+    sums = np.bincount(label, area * thickness, max(cortical) + 1)
+    areas = np.bincount(label, area, max(cortical) + 1)
+    return {key: (sums[key] / areas[key], areas[key]) for key in cortical if areas[key] > 200}
+
+
+def of_side(labels, made, truth, atlas, side):
+    """Borders, thickness by region and lost cortex of one hemisphere beside the surfaces of its labels."""
+    ours, known = regions_of(made, atlas, side), regions_of(truth, atlas, side)
+    a, b = np.array([(ours[key][0], known[key][0]) for key in ours if key in known]).T
+    image = nib.load(labels)
+    cortex = np.asarray(image.dataobj) == {"L": 3, "R": 42}[side]
+    white, pial = (voxels_inside(*surface_of(made, name), image.affine, image.shape) for name in ("white", "pial"))
+    middle, faces = surface_of(made, "mid")
+    area = areas_of(middle, faces) * (nib.load(made / "thickness.shape.gii").darrays[0].data > 0)
+    at = np.rint(nib.affines.apply_affine(np.linalg.inv(image.affine), middle)).astype(int)
+    return {"region_r": np.corrcoef(a, b)[0, 1], "region_slope": np.polyfit(b, a, 1)[0],
+            "region_largest": np.abs(a - b).max(), "white_border": signed_offset(made, truth, "white"),
+            "pial_border": signed_offset(made, truth, "pial"), "cortex_between": (pial & ~white)[cortex].mean(),
+            "cortex_beyond_pial": (~pial)[cortex].mean(), "middle_inside": area[cortex[tuple(at.T)]].sum() / area.sum()}
+
+
 def surfaces(program, labels, folder, row):
     for side, name in (("L", "left"), ("R", "right")):
-        found = summary(folder / f"run/surface-{side}")
+        made = folder / f"run/surface-{side}"
+        found = summary(made)
         row[f"thickness_{name}"], row[f"defects_{name}"] = found.get("thickness_mean"), found.get("defects_corrected")
         truth = folder.parent / f"truth-{side}"
         if not (truth / "summary.json").exists():
             subprocess.run([program, "surface", labels, "--preset", "aseg", "--hemisphere", side, "--out", truth, "--force"],
                            capture_output=True)
         row[f"truth_{name}"] = summary(truth).get("thickness_mean")
+        if not (made / "pial.surf.gii").exists():
+            continue
+        beside = of_side(labels, made, truth, folder / "run/segment/atlas.nii.gz", side)
+        row.update({f"{key}_{name}": float(value) for key, value in beside.items()})
 
 
 def row_of(program, path, variant, work, with_surfaces):
@@ -120,6 +168,13 @@ def text_of(value):
     return "" if value is None else f"{value:.4f}" if isinstance(value, float) else str(value)
 
 
+def worst_of(column, rows):
+    """The value farthest from what it should be: 1 of a slope, large of a Dice, else 0."""
+    stem = column.removesuffix("_left").removesuffix("_right")
+    bad = {"region_slope": lambda value: abs(value - 1)}.get(stem, (lambda value: -value) if stem in RISING else abs)
+    return max((row[column] for row in rows), key=bad)
+
+
 def write_table(rows, path):
     lines = ["\t".join(COLUMNS)] + ["\t".join(text_of(row.get(c)) for c in COLUMNS) for row in rows]
     for half in ("settled", "held out"):
@@ -127,8 +182,7 @@ def write_table(rows, path):
         for name, pick in (("median", np.median), ("worst", None)):
             if not of_half:
                 continue
-            worst = {"mask_dice": min, "grey_dice": min, "white_dice": min, "agreement": min}
-            values = [text_of(float((pick or worst.get(c, max))([row[c] for row in of_half])))
+            values = [text_of(float(pick([row[c] for row in of_half]) if pick else worst_of(c, of_half)))
                       if all(isinstance(row.get(c), (int, float)) for row in of_half) and c not in ("person", "variant") else ""
                       for c in COLUMNS[2:]]
             lines.append("\t".join([name, half, *values]))

@@ -21,14 +21,14 @@ namespace {
 constexpr double kLevel = 1e-4;
 
 /// A polyline in box indices with arc lengths, mm.
-struct Path {
+struct BoxPath {
   std::vector<Vector> points;
   std::vector<double> lengths;
 };
 
 /// Points of a trajectory from a vertex to a boundary; false if it does not get there.
 bool follow(const TrajectoryTracer::Field& field, const HalfwaySurface::Vertex& start, int uphill,
-            Path& path) {
+            BoxPath& path) {
   auto walk = field.begin(start.x, start.home, uphill);
   path.points.assign(1, walk.x);
   path.lengths.assign(1, 0.0);
@@ -43,8 +43,8 @@ bool follow(const TrajectoryTracer::Field& field, const HalfwaySurface::Vertex& 
 }
 
 /// The two halves as one path from the inner to the outer boundary.
-Path joined(const Path& down, const Path& up) {
-  Path whole;
+BoxPath joined(const BoxPath& down, const BoxPath& up) {
+  BoxPath whole;
   for (std::size_t q = down.points.size(); q-- > 0;) {
     whole.points.push_back(down.points[q]);
     whole.lengths.push_back(down.lengths.back() - down.lengths[q]);
@@ -57,7 +57,7 @@ Path joined(const Path& down, const Path& up) {
 }
 
 /// The point at an arc length; `segment` is where the search begins and ends.
-Vector pointAt(const Path& path, double length, std::size_t& segment) {
+Vector pointAt(const BoxPath& path, double length, std::size_t& segment) {
   if (path.points.size() == 1) return path.points[0];
   while (segment + 2 < path.lengths.size() && path.lengths[segment + 1] < length) ++segment;
   const double span = path.lengths[segment + 1] - path.lengths[segment];
@@ -76,12 +76,12 @@ std::vector<std::uint8_t> followAll(const TrajectoryTracer::Field& field,
   grid.thickness.resize(grid.points.rows());
   std::vector<std::uint8_t> whole(grid.trajectories, 0);
   parallelForBlocks(grid.trajectories, 256, [&](std::size_t begin, std::size_t end) {
-    Path down, up;
+    BoxPath down, up;
     for (std::size_t k = begin; k < end; ++k) {
       const bool inner = follow(field, surface.vertices[k], -1, down);
       const bool outer = follow(field, surface.vertices[k], 1, up);
       whole[k] = inner && outer;
-      const Path path = joined(down, up);
+      const BoxPath path = joined(down, up);
       std::size_t segment = 0;
       for (int row = 0; row < rows; ++row) {
         const auto at = static_cast<Eigen::Index>(k) * rows + row;

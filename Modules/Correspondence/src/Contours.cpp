@@ -130,39 +130,14 @@ class SliceMarcher {
   std::vector<std::array<std::int32_t, 2>> joined_;
 };
 
-/// Points at even steps of u from the middle level to one of the boundaries, with their distances.
-struct Way {
-  std::vector<Point> points;
-  std::vector<double> along;
-};
-
-std::optional<Way> wayTo(const TrajectoryTracer& tracer, const Point& start, double target) {
-  Way way{{start}, {0.0}};
-  for (int leg = 1; leg <= kLegs; ++leg) {
-    const Trace trace = tracer.trace(way.points.back(), 0.5 + (target - 0.5) * leg / kLegs);
-    if (!trace.reached) return {};
-    way.points.push_back(trace.point);
-    way.along.push_back(way.along.back() + trace.length);
-  }
-  return way;
-}
-
-Point pointAt(const Way& way, double length) {
-  std::size_t k = 1;
-  while (k + 1 < way.along.size() && way.along[k] < length) ++k;
-  const double span = way.along[k] - way.along[k - 1];
-  const double t = span > 0 ? (length - way.along[k - 1]) / span : 0;
-  return way.points[k - 1] + t * (way.points[k] - way.points[k - 1]);
-}
-
 void addPoint(const TrajectoryTracer& tracer, const Point& start, Contour& contour) {
-  const auto inward = wayTo(tracer, start, 0), outward = wayTo(tracer, start, 1);
+  const auto inward = tracer.path(start, 0), outward = tracer.path(start, 1);
   if (!inward || !outward) return;
-  const double off = 0.5 * (outward->along.back() - inward->along.back());
+  const double off = 0.5 * (outward->length() - inward->length());
   contour.inner.push_back(inward->points.back());
-  contour.middle.push_back(off > 0 ? pointAt(*outward, off) : pointAt(*inward, -off));
+  contour.middle.push_back(off > 0 ? outward->at(off) : inward->at(-off));
   contour.outer.push_back(outward->points.back());
-  contour.thickness.push_back(inward->along.back() + outward->along.back());
+  contour.thickness.push_back(inward->length() + outward->length());
 }
 
 }  // namespace

@@ -867,31 +867,72 @@ Trace TrajectoryTracer::trace(std::int32_t number, double target) const {
   return field_->run(field_->begin(annulus().place[number], uphill), target, uphill);
 }
 
-Trace TrajectoryTracer::trace(const Point& start, double target) const {
-  Trace result;
-  result.point = start;
-  Vector x = field_->toBox(start);
-  if (field_->flat) x[2] = std::round(x[2]);
-  const std::int32_t home = field_->homeOf(x);
-  if (home < 0) return result;
-  Field::Sample here = field_->sample(x, home);
-  double lead = 0;  // straight way to the tissue's cell, if the point's own has no tissue
+std::optional<TrajectoryTracer::Field::Start> TrajectoryTracer::Field::startAt(
+    const Point& point, double target) const {
+  Vector x = toBox(point);
+  if (flat) x[2] = std::round(x[2]);
+  const std::int32_t home = homeOf(x);
+  if (home < 0) return {};
+  Sample here = sample(x, home);
+  Start start;
   if (here.home < 0) {
-    const auto s = field_->annulus.boxSubscripts(home);
+    const auto s = annulus.boxSubscripts(home);
     const Vector goal(s[0], s[1], s[2]);
     const Vector origin = x;
     double t = 0;
     while (here.home < 0 && t < 1) {
       t = std::min(1.0, t + 0.125);
       x = origin + t * (goal - origin);
-      here = field_->sample(x, home);
+      here = sample(x, home);
     }
-    lead = (x - origin).cwiseProduct(field_->annulus.grid.spacing).norm();
+    start.lead = (x - origin).cwiseProduct(annulus.grid.spacing).norm();
   }
-  const int uphill = here.u < target ? 1 : -1;
-  result = field_->run(field_->begin(x, here.home, uphill), target, uphill);
-  result.length += lead;
+  start.uphill = here.u < target ? 1 : -1;
+  start.walk = begin(x, here.home, start.uphill);
+  return start;
+}
+
+Trace TrajectoryTracer::trace(const Point& start, double target) const {
+  Trace result;
+  result.point = start;
+  const auto from = field_->startAt(start, target);
+  if (!from) return result;
+  result = field_->run(from->walk, target, from->uphill);
+  result.length += from->lead;
   return result;
+}
+
+Point Path::at(double arc) const {
+  if (points.size() == 1 || arc <= 0) return points.front();
+  const auto next = std::upper_bound(along.begin(), along.end(), static_cast<float>(arc));
+  if (next == along.end()) return points.back();
+  const std::size_t k = next - along.begin();
+  const double span = along[k] - along[k - 1];
+  const double t = span > 0 ? (arc - along[k - 1]) / span : 0;
+  return points[k - 1] + t * (points[k] - points[k - 1]);
+}
+
+std::optional<Path> TrajectoryTracer::path(const Point& start, double target) const {
+  const auto from = field_->startAt(start, target);
+  if (!from) return {};
+  constexpr double kStep = 0.25;  // voxels, so that the polyline has the trajectory's bends
+  Path path{{start}, {0}};
+  Field::Walk walk = from->walk;
+  bool done = from->uphill * (walk.u - target) >= 0;
+  for (int k = 0; !done && !walk.stuck && k < kMaxSteps; ++k) {
+    walk.step = std::min(walk.step, kStep * field_->finest);
+    done = field_->advance(walk, target, from->uphill);
+    path.points.push_back(field_->toWorld(walk.x));
+    path.along.push_back(static_cast<float>(from->lead + walk.length));
+  }
+  if (!done) return {};
+  return path;
+}
+
+std::optional<double> TrajectoryTracer::thickness(const Point& point) const {
+  const Trace inward = trace(point, 0), outward = trace(point, 1);
+  if (!inward.reached || !outward.reached) return {};
+  return inward.length + outward.length;
 }
 
 std::optional<double> TrajectoryTracer::value(const Point& point) const {

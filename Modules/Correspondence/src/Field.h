@@ -63,6 +63,15 @@ struct TrajectoryTracer::Field {
 
   [[nodiscard]] Trace run(Walk walk, double target, int uphill) const;
 
+  /// Where a walk from any point begins.
+  struct Start {
+    Walk walk;
+    int uphill = 1;
+    double lead = 0;  ///< mm of straight way to it, if the point's own cell has no tissue
+  };
+  /// Nothing if no tissue is within two voxels.
+  [[nodiscard]] std::optional<Start> startAt(const Point& point, double target) const;
+
   /// Follows the trajectories through the centres of tissue voxels to the target, a few beside each
   /// other; each goes as it would alone.
   /// @param next   next() gives the rank of a voxel, or -1 after the last one

@@ -39,20 +39,14 @@ Measurement measure(harmonic::Annulus annulus, const MeasurementOptions& options
   // Before the work, not after it.
   if (options.layers.layers < 1) throw InvalidInput("there must be at least one layer");
   Measurement m;
-  m.annulus = std::move(annulus);
   const auto begin = [&](const char* part) {
     if (onPart) onPart(part, m);
   };
-  const double folding = foldingOf(m.annulus);
+  const double folding = foldingOf(annulus);
   m.sulciRecovered = options.sulciMode(folding) == SulciMode::Recover;
-  if (m.sulciRecovered) {
-    begin("sulci");
-    SulcalRecovery recovered = recoverSulci(std::move(m.annulus), options.sulcus, monitor);
-    m.annulus = std::move(recovered.annulus);
-    m.sulcalVoxels = std::move(recovered.voxels);
-  }
-  begin("harmonic");
-  m.interpolant = harmonic::solveInterpolant(m.annulus, options.interpolant, monitor);
+  static_cast<Ribbon&>(m) = solveRibbon(
+      std::move(annulus), m.sulciRecovered ? std::optional(options.sulcus) : std::nullopt,
+      options.interpolant, monitor, begin);
   begin("correspondence");
   m.correspondence = findCorrespondences(m.annulus, m.interpolant, options.correspondence, monitor);
   if (options.imageEdgeMode(folding) == ImageEdge::Open) {

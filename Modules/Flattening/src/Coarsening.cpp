@@ -3,6 +3,7 @@
 
 #include "Explica/Flattening/Coarsening.h"
 
+#include "Explica/Core/StopScope.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Geometry/Predicates.h"
 #include "StarRelaxation.h"
@@ -407,6 +408,7 @@ std::vector<CoarseningLevel> coarsen(const IntrinsicMesh& mesh, const Loop& rim,
   Eigen::Index levelCount = shrinking.count();
   double leastQuality = 0.25;
   while (shrinking.count() > smallest) {
+    checkpoint();
     const auto removals = shrinking.pass(smallest, leastQuality);
     auto& list = levels.back().removals;
     list.insert(list.end(), removals.begin(), removals.end());

@@ -4,6 +4,7 @@
 #include "Explica/Flattening/FoldDepth.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/StopScope.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
 
@@ -34,6 +35,7 @@ Positions smoothed(const TriangleMesh& mesh, const Positions& field) {
   solver.compute(system);
   Positions result(field.rows(), 3);
   for (int k = 0; k < 3; ++k) {
+    checkpoint();
     const Eigen::VectorXd start = field.col(k);
     result.col(k) = solver.solveWithGuess(mass.cwiseProduct(start), start);
   }

@@ -565,6 +565,19 @@ struct BoxOfSites {
   std::vector<Code> sites;
 };
 
+/// visit(place in the box, i, j, k of the grid) for each of its voxels, slices beside each other.
+template <class Visit>
+void forVoxels(const Box& box, const Visit& visit) {
+  parallelFor(box.size[2], 1, [&](std::size_t k) {
+    std::size_t p = box.linear(0, 0, static_cast<int>(k));
+    for (int j = 0; j < box.size[1]; ++j) {
+      for (int i = 0; i < box.size[0]; ++i, ++p) {
+        visit(p, i + box.first[0], j + box.first[1], static_cast<int>(k) + box.first[2]);
+      }
+    }
+  });
+}
+
 BoxOfSites sitesOf(const Volume<Label>& labels, const LabelRoles& roles) {
   checkGrid(labels.grid);
   const RoleTable table(roles);
@@ -606,15 +619,12 @@ Annulus annulusFromLabels(Volume<Label>&& labels, const LabelRoles& roles,
   return annulusOf(std::move(found), options, monitor);
 }
 
-Annulus annulusFromSites(const Volume<Site>& sites, const Volume<float>& innerLevel,
-                         const Volume<float>& outerLevel, const AnnulusOptions& options,
-                         const Monitor& monitor) {
+namespace {
+
+BoxOfSites boxOf(const Volume<Site>& sites, int margin) {
   checkGrid(sites.grid);
-  if (!sameGrid(sites.grid, innerLevel.grid) || !sameGrid(sites.grid, outerLevel.grid)) {
-    throw InvalidInput("the sites and the two level sets lie on different grids");
-  }
   const Grid& grid = sites.grid;
-  const Box box = boxAround(grid, 2, [&](std::size_t row, int& low, int& high) {
+  const Box box = boxAround(grid, margin, [&](std::size_t row, int& low, int& high) {
     const Site* line = sites.data.data() + row * grid.size[0];
     low = grid.size[0];
     for (int i = 0; i < grid.size[0]; ++i) {
@@ -625,28 +635,35 @@ Annulus annulusFromSites(const Volume<Site>& sites, const Volume<float>& innerLe
   });
   if (box.count() == 0) throw InvalidInput("no tissue voxel was found");
   std::vector<Code> codes(box.count(), codeOf(Site::Insulated));
+  forVoxels(box, [&](std::size_t p, int i, int j, int k) {
+    if (grid.contains(i, j, k)) codes[p] = codeOf(sites(i, j, k));
+  });
+  return {grid, box, std::move(codes)};
+}
+
+}  // namespace
+
+Annulus annulusFromSites(const Volume<Site>& sites, const AnnulusOptions& options,
+                         const Monitor& monitor) {
+  return annulusOf(boxOf(sites, kLabelMargin), options, monitor);
+}
+
+Annulus annulusFromSites(const Volume<Site>& sites, const Volume<float>& innerLevel,
+                         const Volume<float>& outerLevel, const AnnulusOptions& options,
+                         const Monitor& monitor) {
+  if (!sameGrid(sites.grid, innerLevel.grid) || !sameGrid(sites.grid, outerLevel.grid)) {
+    throw InvalidInput("the sites and the two level sets lie on different grids");
+  }
+  constexpr int kMargin = 2;
+  auto [grid, box, codes] = boxOf(sites, kMargin);
   std::vector<float> inner(box.count(), 0), outer(box.count(), 0);
-  parallelFor(box.size[2], 1, [&](std::size_t kk) {
-    const int k = static_cast<int>(kk);
-    for (int j = 0; j < box.size[1]; ++j) {
-      for (int i = 0; i < box.size[0]; ++i) {
-        const int gi = i + box.first[0], gj = j + box.first[1], gk = k + box.first[2];
-        const std::size_t p = box.linear(i, j, k);
-        if (grid.contains(gi, gj, gk)) {
-          const std::size_t v = grid.linear(gi, gj, gk);
-          codes[p] = codeOf(sites[v]);
-          inner[p] = innerLevel[v];
-          outer[p] = outerLevel[v];
-        } else {
-          // Nearest voxel of the volume, so that the crossing's curvature sees no jump.
-          const std::size_t v =
-              grid.linear(std::clamp(gi, 0, grid.size[0] - 1), std::clamp(gj, 0, grid.size[1] - 1),
-                          std::clamp(gk, 0, grid.size[2] - 1));
-          inner[p] = innerLevel[v];
-          outer[p] = outerLevel[v];
-        }
-      }
-    }
+  forVoxels(box, [&](std::size_t p, int i, int j, int k) {
+    // Beyond the volume its nearest voxel, so that the crossing's curvature sees no jump.
+    const std::size_t v =
+        grid.linear(std::clamp(i, 0, grid.size[0] - 1), std::clamp(j, 0, grid.size[1] - 1),
+                    std::clamp(k, 0, grid.size[2] - 1));
+    inner[p] = innerLevel[v];
+    outer[p] = outerLevel[v];
   });
   const std::array<int, 3> strides = {1, box.size[0], box.size[0] * box.size[1]};
   const auto placeOnLink = [&](std::int32_t p, const std::array<int, 3>& s, int d, bool isInner) {

@@ -97,21 +97,15 @@ struct Parser {
     throw UsageError(optionName + ": '" + std::string(text) + "' is not " + std::string(expected));
   }
 
-  template <class T>
-  T number(std::string_view text, std::string_view expected) const {
+  double real(std::string_view text, std::string_view expected) const {
     std::string_view digits = text;
     if (!digits.empty() && digits.front() == '+') digits.remove_prefix(1);
-    T value{};
+    double value = 0;
     const auto end = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (digits.empty() || end.ec != std::errc() || end.ptr != digits.data() + digits.size()) {
+    if (digits.empty() || end.ec != std::errc() || end.ptr != digits.data() + digits.size() ||
+        std::isnan(value)) {
       refuse(text, expected);
     }
-    return value;
-  }
-
-  double real(std::string_view text, std::string_view expected) const {
-    const double value = number<double>(text, expected);
-    if (std::isnan(value)) refuse(text, expected);
     return value;
   }
 
@@ -125,8 +119,13 @@ struct Parser {
     }
   }
   void element(std::string_view text, int& value) const {
-    value = number<int>(text, inRange("a whole number"));
-    if (value < least || value > most) refuse(text, inRange("a whole number"));
+    const double whole = real(text, inRange("a whole number"));  // 1e6, too
+    constexpr double kMost = std::numeric_limits<int>::max();
+    if (whole != std::floor(whole) || whole < std::max(least, -kMost) ||
+        whole > std::min(most, kMost)) {
+      refuse(text, inRange("a whole number"));
+    }
+    value = static_cast<int>(whole);
   }
   void element(std::string_view text, double& value) const {
     value = real(text, inRange("a number"));

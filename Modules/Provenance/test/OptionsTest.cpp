@@ -95,6 +95,8 @@ TEST(Options, NumbersOutOfRangeAreRefusedWhereTheyAreSet) {
   };
   EXPECT_EQ(refusal("count", "0"), "count: '0' is not a whole number, 1 to 1000");
   EXPECT_EQ(refusal("count", "1001"), "count: '1001' is not a whole number, 1 to 1000");
+  EXPECT_EQ(refusal("count", "1e12"), "count: '1e12' is not a whole number, 1 to 1000");
+  EXPECT_EQ(refusal("count", "2.5"), "count: '2.5' is not a whole number, 1 to 1000");
   EXPECT_EQ(refusal("length", "0"), "length: '0' is not a number, above 0");
   EXPECT_EQ(refusal("length", "1e-300"), "accepted");
   EXPECT_EQ(refusal("length", "inf"), "accepted");
@@ -102,6 +104,8 @@ TEST(Options, NumbersOutOfRangeAreRefusedWhereTheyAreSet) {
   EXPECT_EQ(refusal("numbers", "3,-1"), "numbers: '-1' is not a whole number, at least 0");
   EXPECT_THROW(setValue(options[0], 2000), UsageError);
   EXPECT_EQ(bounded.count, 3);
+  EXPECT_EQ(refusal("count", "1e3"), "accepted");
+  EXPECT_EQ(bounded.count, 1000);
   EXPECT_TRUE(bounded.numbers.empty());
 }
 

@@ -168,11 +168,11 @@ Eigen::VectorXd valuesAt(const HarmonicShape& shape, const Positions& points) {
   return values;
 }
 
-Eigen::MatrixXd boundarySamples(const HarmonicAnnulus& annulus, int perOrder) {
+SampleRows boundarySamples(const HarmonicAnnulus& annulus, int perOrder) {
   const int samples = samplesOf(annulus, perOrder);
   const int n = annulus.perBoundary();
   const int rings = annulus.dimension == 2 ? 1 : samples / 2;
-  Eigen::MatrixXd rows(n, static_cast<Eigen::Index>(samples) * rings);
+  SampleRows rows(static_cast<Eigen::Index>(samples) * rings, n);
   parallelFor(static_cast<std::size_t>(samples), 8, [&](std::size_t k) {
     const double phi = 2 * kPi * static_cast<double>(k) / samples;
     for (int j = 0; j < rings; ++j) {
@@ -181,14 +181,14 @@ Eigen::MatrixXd boundarySamples(const HarmonicAnnulus& annulus, int perOrder) {
       const Vector direction(portable::sin(theta) * portable::cos(phi),
                              portable::sin(theta) * portable::sin(phi), portable::cos(theta));
       angularBasis(annulus.dimension, annulus.order, direction,
-                   rows.col(static_cast<Eigen::Index>(k) * rings + j).data());
+                   rows.row(static_cast<Eigen::Index>(k) * rings + j).data());
     }
   });
-  return rows.transpose();
+  return rows;
 }
 
 double boundaryMargin(const HarmonicShape& shape) {
-  const Eigen::MatrixXd samples = boundarySamples(shape.annulus, kSamplesPerOrder);
+  const SampleRows samples = boundarySamples(shape.annulus, kSamplesPerOrder);
   const double growth = rangeGrowth(shape.annulus);
   const auto leastOf = [&](const Eigen::VectorXd& v) {
     const double middle = (v.minCoeff() + v.maxCoeff()) / 2;

@@ -4,6 +4,7 @@
 #include "Explica/Study/BidsDataset.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Provenance/Document.h"
 #include "Explica/Study/SubjectFiles.h"
 
 #include <algorithm>
@@ -68,9 +69,13 @@ std::string Participant::name() const {
 std::vector<Participant> findParticipants(const fs::path& dataset,
                                           const std::vector<std::string>& labels) {
   if (!fs::is_directory(dataset)) throw InvalidInput(dataset.string() + ": is not a folder");
-  if (!fs::exists(dataset / "dataset_description.json")) {
+  const fs::path description = dataset / "dataset_description.json";
+  if (!fs::exists(description)) {
     throw InvalidInput(dataset.string() +
                        ": is not a BIDS data set: dataset_description.json is missing");
+  }
+  if (!provenance::readJson(description).is_object()) {
+    throw InvalidInput(description.string() + ": is no JSON object, such as {\"Name\": \"study\"}");
   }
   std::vector<Participant> participants;
   for (const fs::path& folder : foldersOf(dataset, "sub-")) {

@@ -140,6 +140,15 @@ TEST_F(Study, WantedParticipantsMustExist) {
   EXPECT_EQ(findParticipants(folder_, {"sub-02"}).size(), 1u);
   EXPECT_EQ(findParticipants(folder_, {"02"})[0].label, "02");
   EXPECT_THROW((void)findParticipants(folder_, {"07"}), InvalidInput);
+  for (const char* broken : {"{not json", "[]"}) {
+    put("dataset_description.json", broken);
+    try {
+      (void)findParticipants(folder_);
+      ADD_FAILURE() << broken;
+    } catch (const std::runtime_error& fault) {
+      EXPECT_NE(std::string(fault.what()).find("dataset_description.json"), std::string::npos);
+    }
+  }
   fs::remove(folder_ / "dataset_description.json");
   EXPECT_THROW((void)findParticipants(folder_), InvalidInput);
 }

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "Explica/Core/TriangleMesh.h"
-#include "RibbonField.h"
+#include "RibbonPaths.h"
 
 #include <cstdint>
 #include <vector>

@@ -6,6 +6,8 @@
 #include "AstrayPaths.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
+#include "Explica/Core/StopScope.h"
+#include "Explica/Geometry/FaceTree.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Maps/Folding.h"
@@ -22,6 +24,7 @@
 #include "PathProfile.h"
 #include "Relaxation.h"
 #include "RibbonField.h"
+#include "RibbonPaths.h"
 
 #include <Eigen/Geometry>
 
@@ -31,6 +34,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 
 namespace explica::surface {
@@ -110,36 +114,112 @@ void requirePrecision(const Grid& grid) {
                      std::to_string(voxel) + " mm); move its origin nearer");
 }
 
-/// What is known of the ribbon once its white surface is.
-struct Ribbon {
+/// Columns of tissue upon the white surface.
+struct Columns {
   CorticalTissue tissue;  ///< corrected
   std::vector<Trajectory> paths;
   Eigen::VectorXd outside;  ///< of the outer border beyond that of the labels, mm; 0 without image
 };
 
-Ribbon traceRibbon(const CorticalTissue& tissue, CorticalSurfaces& result, const Monitor& monitor) {
-  Stopwatch watch;
-  Ribbon ribbon;
-  ribbon.tissue = tissue;
-  ribbon.tissue.white = result.white.level;
-  for (std::size_t v = 0; v < ribbon.tissue.white.size(); ++v) {
-    ribbon.tissue.tissue[v] = std::max(ribbon.tissue.tissue[v], ribbon.tissue.white[v]);
-  }
-  const TriangleMesh& white = result.white.mesh;
-  const RibbonField field(ribbon.tissue, white, partOf(monitor, 0, 0.7));
-  result.cutLinks = field.cutLinks();
-  result.seconds.interpolant = watch.lap();
+/// The tissue between white matter, as its topology was corrected, and what lies outside.
+harmonic::Annulus annulusOf(const CorticalTissue& tissue, const Monitor& monitor) {
+  using harmonic::Site;
+  const Grid& grid = tissue.white.grid;
+  Volume<Site> sites(grid);
+  parallelFor(sites.size(), 1 << 16, [&](std::size_t v) {
+    sites[v] = tissue.white[v] > 0    ? Site::Inner
+               : tissue.insulated[v]  ? Site::Insulated
+               : tissue.tissue[v] > 0 ? Site::Tissue
+                                      : Site::Outer;
+  });
+  return harmonic::annulusFromSites(sites, {}, monitor);
+}
 
-  monitor.progress(0.7, "trajectories");
+correspondence::Ribbon solve(const CorticalTissue& tissue, const Monitor& monitor) {
+  monitor.progress(0, "harmonic interpolant");
+  Monitor silent = monitor;
+  silent.onProgress = nullptr;
+  correspondence::Ribbon ribbon = correspondence::solveRibbon(
+      annulusOf(tissue, silent), correspondence::SulcusOptions{}, {}, silent);
+  checkpoint(monitor);
+  return ribbon;
+}
+
+/// Ends a path where it no longer leaves white matter behind: from there surfaces that grew along
+/// it would crowd on the floor of a sulcus, or pass into the other bank's columns.
+void endWhereItStalls(const geometry::FaceTree& white, std::int32_t face, double voxel,
+                      Trajectory& path) {
+  // Along the middle between fronts that meet at 120 degrees, distance grows at half the rate of
+  // the way.
+  constexpr double kRate = 0.5;
+  constexpr double kWindow = 0.5;  // voxels
+  const auto distanceAt = [&](double arc) {
+    const auto nearest = white.closestPoint(path.at(arc), face);
+    face = nearest.face;
+    return std::sqrt(nearest.squaredDistance);
+  };
+  const double window = kWindow * voxel, length = path.length();
+  if (length - distanceAt(length) < 0.5 * (1 - kRate) * window) return;  // what it need not look at
+  for (double from = 0.5 * window; from < length; from += 0.5 * window) {
+    const double to = std::min(from + window, length);
+    if (to - from < 0.5 * window || distanceAt(to) - distanceAt(from) >= kRate * (to - from)) {
+      continue;
+    }
+    cut(path, from);
+    path.end = TrajectoryEnd::Bank;
+    return;
+  }
+}
+
+/// Trajectories from the white vertices that have tissue upon them.
+void takePaths(const TriangleMesh& white, const RibbonPaths& ribbon, Columns& columns) {
+  const LevelSet& tissue = columns.tissue.tissue;
+  constexpr double kOff = 0.125;  // voxels: so far outward tissue begins, or there is none
+  const double off = kOff * tissue.grid.spacing.minCoeff();
   const Positions normals = geometry::vertexNormals(white);
   const std::vector<std::int32_t> faceAt = geometry::faceOfEachVertex(white);
-  ribbon.paths.resize(white.vertexCount());
-  parallelFor(ribbon.paths.size(), 256, [&](std::size_t v) {
-    ribbon.paths[v] = field.trace(white.positions.row(v), normals.row(v), faceAt[v]);
+  const geometry::FaceTree tree(white);
+  std::vector<Trajectory>& paths = columns.paths;
+  paths.resize(white.vertexCount());
+  columns.outside = Eigen::VectorXd::Zero(white.vertexCount());
+  parallelFor(paths.size(), 256, [&](std::size_t v) {
+    const auto row = static_cast<Eigen::Index>(v);
+    const Point start = white.positions.row(row);
+    const Vector normal = normals.row(row);
+    Trajectory& path = paths[v];
+    path = sample(tissue, start + off * normal).value > 0 ? ribbon.outwardFrom(start, normal)
+                                                          : ribbon.none(start);
+    if (path.end == TrajectoryEnd::NoRibbon) return;
+    // Beside a bank's sheet there may be fluid, too.
+    if (sample(tissue, along(path, path.length() + 4 * off)).value <= 0) {
+      path.end = TrajectoryEnd::Outer;
+    }
+    endWhereItStalls(tree, faceAt[v], tissue.grid.spacing.minCoeff(), path);
   });
-  ribbon.outside = Eigen::VectorXd::Zero(white.vertexCount());
-  result.seconds.trajectories = watch.lap();
-  return ribbon;
+  keepFromMiddles(middleGap(tissue.grid), paths);
+}
+
+/// The same between level sets, for the search for borders in an image, too.
+void takePathsOfLevels(const TriangleMesh& white, Columns& columns, CorticalSurfaces& result,
+                       const Monitor& monitor) {
+  const RibbonField field(columns.tissue, white, monitor);
+  result.cutLinks = field.cutLinks();
+  const Positions normals = geometry::vertexNormals(white);
+  const std::vector<std::int32_t> faceAt = geometry::faceOfEachVertex(white);
+  columns.paths.resize(white.vertexCount());
+  columns.outside = Eigen::VectorXd::Zero(white.vertexCount());
+  parallelFor(columns.paths.size(), 256, [&](std::size_t v) {
+    columns.paths[v] = field.trace(white.positions.row(v), normals.row(v), faceAt[v]);
+  });
+}
+
+/// The tissue with its white matter's topology corrected.
+CorticalTissue corrected(CorticalTissue tissue, const LevelSet& white) {
+  tissue.white = white;
+  for (std::size_t v = 0; v < white.size(); ++v) {
+    tissue.tissue[v] = std::max(tissue.tissue[v], white[v]);
+  }
+  return tissue;
 }
 
 /// What the surfaces keep clear of themselves.
@@ -166,7 +246,7 @@ bool flattens(const GuardedMesh& mesh, std::int32_t v, const Point& to, double l
 }
 
 /// Moves the white surface and the trajectories' ends to where an image changes most steeply.
-void placeByImage(const Volume<float>& image, double fluid, Ribbon& ribbon,
+void placeByImage(const Volume<float>& image, double fluid, Columns& ribbon,
                   CorticalSurfaces& result) {
   Stopwatch watch;
   const Grid& grid = ribbon.tissue.white.grid;
@@ -211,18 +291,34 @@ void placeByImage(const Volume<float>& image, double fluid, Ribbon& ribbon,
   result.seconds.image = watch.lap();
 }
 
-void takeThickness(const std::vector<Trajectory>& paths, CorticalSurfaces& result) {
+Eigen::VectorXd lengthsOf(const std::vector<Trajectory>& paths) {
   Eigen::VectorXd lengths(static_cast<Eigen::Index>(paths.size()));
   for (std::size_t v = 0; v < paths.size(); ++v) {
     lengths[static_cast<Eigen::Index>(v)] = paths[v].length();
-    result.noRibbon += paths[v].end == TrajectoryEnd::NoRibbon;
-    result.endedAtBank += paths[v].end == TrajectoryEnd::Bank;
   }
-  result.thickness = meanOverSurroundings(result.white.mesh, lengths);
+  return lengths;
+}
+
+/// Lengths of the trajectories through the middle vertices, or, without a field, of those from the
+/// white ones.
+/// @param lengths  of the latter, mm
+void takeThickness(const Columns& columns, const RibbonPaths* field, Eigen::VectorXd lengths,
+                   CorticalSurfaces& result) {
+  const TriangleMesh& at = field ? result.mid : result.white.mesh;
+  parallelFor(field ? columns.paths.size() : 0, 256, [&](std::size_t v) {
+    const auto row = static_cast<Eigen::Index>(v);
+    if (columns.paths[v].end == TrajectoryEnd::NoRibbon) return;
+    lengths[row] = field->tracer().thickness(at.positions.row(row)).value_or(lengths[row]);
+  });
+  for (const Trajectory& path : columns.paths) {
+    result.noRibbon += path.end == TrajectoryEnd::NoRibbon;
+    result.endedAtBank += path.end == TrajectoryEnd::Bank;
+  }
+  result.thickness = meanOverSurroundings(at, lengths);
 }
 
 /// Vertices that waited on their trajectory and have not come to the outer border by sliding.
-void noteHeldBack(const Ribbon& ribbon, const Growth& growth, double least,
+void noteHeldBack(const Columns& ribbon, const Growth& growth, double least,
                   CorticalSurfaces& result) {
   double sum = 0;
   for (std::size_t v = 0; v < ribbon.paths.size(); ++v) {
@@ -249,7 +345,7 @@ void noteHeldBack(const Ribbon& ribbon, const Growth& growth, double least,
 }
 
 /// Middle and outer surface out of the white one.
-void growSurfaces(const Ribbon& ribbon, CorticalSurfaces& result, const Monitor& monitor) {
+void growSurfaces(const Columns& ribbon, CorticalSurfaces& result, const Monitor& monitor) {
   const double voxel = ribbon.tissue.white.grid.spacing.minCoeff();
   const double edge = result.white.edgeLength;
   std::vector<std::uint8_t> moves(ribbon.paths.size());
@@ -357,13 +453,28 @@ CorticalSurfaces build(const CorticalTissue& tissue, const Volume<float>* image,
   CorticalSurfaces result;
   result.white = extractWhite(tissue, options, partOf(monitor, 0, 0.5));
   result.seconds = result.white.seconds;
-  Ribbon ribbon = traceRibbon(tissue, result, partOf(monitor, 0.5, 0.7));
+  Stopwatch watch;
+  Columns ribbon;
+  ribbon.tissue = corrected(tissue, result.white.level);
+  std::optional<correspondence::Ribbon> solved;
+  std::optional<RibbonPaths> field;
+  if (image != nullptr || !tissue.ofLabels) {
+    takePathsOfLevels(result.white.mesh, ribbon, result, partOf(monitor, 0.5, 0.7));
+  } else {
+    solved = solve(ribbon.tissue, partOf(monitor, 0.5, 0.65));
+    result.cutLinks = static_cast<std::int64_t>(solved->sulcalVoxels.size());
+    result.seconds.interpolant = watch.lap();
+    field.emplace(*solved);
+    takePaths(result.white.mesh, *field, ribbon);
+  }
+  result.seconds.trajectories = watch.lap();
   if (image != nullptr) placeByImage(*image, options.fluid, ribbon, result);
-  takeThickness(ribbon.paths, result);
+  const Eigen::VectorXd lengths = lengthsOf(ribbon.paths);
   result.shortened =
       shortenAstray(result.white.mesh, tissue.white.grid.spacing.minCoeff(), ribbon.paths);
-  Stopwatch watch;
+  watch.lap();
   growSurfaces(ribbon, result, partOf(monitor, 0.7, 0.96));
+  takeThickness(ribbon, field ? &*field : nullptr, lengths, result);
   mendTriangles(result);
   result.seconds.growing = watch.lap();
 

@@ -341,6 +341,7 @@ CorticalTissue tissueFromMasks(const TissueMasks& masks, bool closeEdges, const 
   CorticalTissue result = assemble(masks.white, tissue, masks.insulated);
   static_cast<TissueFacts&>(result) = masks;
   result.hasGrey = masks.greyVoxels > 0;
+  result.ofLabels = true;
   monitor.progress(1.0, "level sets");
   return result;
 }

@@ -4,7 +4,7 @@
 
 #include "Explica/Core/Volume.h"
 #include "Explica/Geometry/MeshTopology.h"
-#include "RibbonField.h"
+#include "RibbonPaths.h"
 
 #include <Eigen/Core>
 

@@ -4,7 +4,7 @@
 
 #include "Explica/Core/Monitor.h"
 #include "Explica/Core/TriangleMesh.h"
-#include "RibbonField.h"
+#include "RibbonPaths.h"
 
 #include <cstdint>
 #include <vector>

@@ -5,7 +5,7 @@
 #include "BorderChooser.h"
 #include "Explica/Core/TriangleMesh.h"
 #include "Explica/Core/Volume.h"
-#include "RibbonField.h"
+#include "RibbonPaths.h"
 
 #include <Eigen/Core>
 

@@ -5,7 +5,7 @@
 #include "Explica/Core/TriangleMesh.h"
 #include "Explica/Core/Volume.h"
 #include "Explica/Geometry/MeshTopology.h"
-#include "RibbonField.h"
+#include "RibbonPaths.h"
 
 #include <Eigen/Core>
 

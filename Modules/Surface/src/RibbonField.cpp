@@ -78,16 +78,6 @@ class StallSearch {
 
 }  // namespace
 
-Point Trajectory::at(double arc) const {
-  if (points.size() == 1 || arc <= 0) return points.front();
-  const auto next = std::upper_bound(along.begin(), along.end(), static_cast<float>(arc));
-  if (next == along.end()) return points.back();
-  const std::size_t k = next - along.begin();
-  const double span = along[k] - along[k - 1];
-  const double t = span > 0 ? (arc - along[k - 1]) / span : 0;
-  return points[k - 1] + t * (points[k] - points[k - 1]);
-}
-
 RibbonField::RibbonField(const CorticalTissue& tissue, const TriangleMesh& white,
                          const Monitor& monitor)
     : tissue_(tissue),
@@ -269,7 +259,7 @@ Trajectory RibbonField::trace(const Point& start, const Vector& normal, std::int
     return grid_.direction.transpose() * world;
   };
   const auto outside = [&](const Point& p) { return sample(tissue_.tissue, p).value <= 0; };
-  const double gap = kMiddleGap * grid_.spacing.minCoeff();
+  const double gap = middleGap(grid_);
   const auto checked = [&](const Point& p) {
     const Vector index = grid_.toIndex(p);
     const int i = static_cast<int>(std::lround(index[0])),

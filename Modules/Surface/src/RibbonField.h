@@ -6,6 +6,7 @@
 #include "Explica/Geometry/FaceTree.h"
 #include "Explica/Harmonic/Annulus.h"
 #include "Explica/Surface/CorticalTissue.h"
+#include "RibbonPaths.h"
 
 #include <array>
 #include <cstdint>
@@ -13,30 +14,8 @@
 
 namespace explica::surface {
 
-/// What surfaces keep from the middle between two banks, voxels: trajectories of both end there, in
-/// one and the same place.
-inline constexpr double kMiddleGap = 0.1;
-
-/// What ended a trajectory.
-enum class TrajectoryEnd : std::uint8_t {
-  Outer,    ///< the outer boundary
-  Bank,     ///< the middle between the banks of a buried sulcus
-  Image,    ///< a border that an image shows far inside of the outer boundary
-  NoRibbon  ///< there is no tissue at the start
-};
-
-/// From a point of the white surface along the gradient of the harmonic interpolant.
-struct Trajectory {
-  std::vector<Point> points;  ///< start first; one point only if there is no ribbon
-  std::vector<float> along;   ///< arc length at each point, mm
-  TrajectoryEnd end = TrajectoryEnd::NoRibbon;
-
-  [[nodiscard]] double length() const { return along.empty() ? 0 : along.back(); }
-  /// Point at an arc length, held to the ends.
-  [[nodiscard]] Point at(double arc) const;
-};
-
-/// The harmonic interpolant of the ribbon, with the hidden outer boundary of buried sulci.
+/// The harmonic interpolant of the ribbon, with the hidden outer boundary of buried sulci: for
+/// surfaces of shares, or whose borders an image places, until these are settled on RibbonPaths.
 ///
 /// Where fronts from two banks of white matter meet head-on between neighbouring grey voxels, the
 /// link between them is cut at the place of equal distance, and u = 1 there: as in anatomically

@@ -7,11 +7,9 @@
 #include "Explica/Core/Parallel.h"
 #include "Explica/Core/StopScope.h"
 #include "Explica/Correspondence/ImageEdge.h"
-#include "Explica/Correspondence/Sulci.h"
-#include "Explica/Correspondence/Trajectory.h"
+#include "Explica/Correspondence/Ribbon.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
-#include "Explica/Harmonic/Interpolant.h"
 #include "Explica/Maps/Folding.h"
 #include "Explica/Surface/GivenSurfaces.h"
 #include "Explica/Surface/IsoSurface.h"
@@ -22,6 +20,7 @@
 #include "Masks.h"
 #include "OntoLevel.h"
 #include "Relaxation.h"
+#include "RibbonPaths.h"
 #include "SheetMesh.h"
 
 #include <algorithm>
@@ -35,11 +34,10 @@
 namespace explica::surface {
 namespace {
 
+using correspondence::Ribbon;
 using correspondence::TrajectoryTracer;
 using harmonic::Annulus;
-
-/// What a voxel is, as labels for Harmonic.
-enum : Label { kOuterRole = 0, kInnerRole = 1, kTissueRole = 2, kInsulatedRole = 3 };
+using harmonic::Site;
 
 /// Lengths beside the tissue's thickness t: patches without tissue and pieces of the sheet with
 /// less area than that of a disc of this radius are small, and so are holes whose rim is shorter
@@ -56,18 +54,18 @@ double secondsSince(std::chrono::steady_clock::time_point& last) {
 }
 
 /// Pieces of one role that only tissue surrounds become tissue: vessels, specks, lost voxels.
-std::int64_t fillPockets(Volume<Label>& roles) {
+std::int64_t fillPockets(Volume<Site>& roles) {
   const Grid& grid = roles.grid;
   const std::array<std::ptrdiff_t, 3> strides = {
       1, grid.size[0], static_cast<std::ptrdiff_t>(grid.size[0]) * grid.size[1]};
-  const auto tissue = std::count(roles.data.begin(), roles.data.end(), kTissueRole);
+  const auto tissue = std::count(roles.data.begin(), roles.data.end(), Site::Tissue);
   const auto most = static_cast<std::size_t>(kPocket * static_cast<double>(tissue));
   std::vector<std::uint8_t> seen(roles.size(), 0);
   std::vector<std::size_t> piece;
   std::int64_t filled = 0;
   for (std::size_t start = 0; start < roles.size(); ++start) {
-    if (seen[start] || roles[start] == kTissueRole) continue;
-    const Label role = roles[start];
+    if (seen[start] || roles[start] == Site::Tissue) continue;
+    const Site role = roles[start];
     bool enclosed = true;
     piece.assign(1, start);
     seen[start] = 1;
@@ -84,51 +82,40 @@ std::int64_t fillPockets(Volume<Label>& roles) {
           seen[w] = 1;
           piece.push_back(w);
         }
-        enclosed = enclosed && (roles[w] == role || roles[w] == kTissueRole);
+        enclosed = enclosed && (roles[w] == role || roles[w] == Site::Tissue);
       }
     }
     if (!enclosed || piece.size() > most) continue;
-    for (const std::size_t v : piece) roles[v] = kTissueRole;
+    for (const std::size_t v : piece) roles[v] = Site::Tissue;
     ++filled;
   }
   return filled;
 }
 
-Volume<Label> rolesOf(const TissueMasks& masks) {
-  Volume<Label> roles(masks.white.grid, kOuterRole);
-  for (std::size_t v = 0; v < roles.size(); ++v) {
-    roles[v] = masks.white[v]       ? kInnerRole
-               : masks.grey[v]      ? kTissueRole
-               : masks.insulated[v] ? kInsulatedRole
-                                    : kOuterRole;
+Volume<Site> sitesOf(const TissueMasks& masks) {
+  Volume<Site> sites(masks.white.grid, Site::Outer);
+  for (std::size_t v = 0; v < sites.size(); ++v) {
+    if (masks.white[v]) {
+      sites[v] = Site::Inner;
+    } else if (masks.grey[v]) {
+      sites[v] = Site::Tissue;
+    } else if (masks.insulated[v]) {
+      sites[v] = Site::Insulated;
+    }
   }
-  return roles;
+  return sites;
 }
 
-/// The tissue with the hidden boundary of buried sulci, and its interpolant.
-struct Field {
-  Annulus annulus;
-  harmonic::Interpolant interpolant;
-  std::vector<std::int32_t> sulcal;  ///< voxels beside the middle of a closed sulcus
-};
-
-Field solve(const Volume<Label>& roles, const Monitor& monitor) {
-  const auto has = [&](Label role) {
-    return std::find(roles.data.begin(), roles.data.end(), role) != roles.data.end();
-  };
-  if (!has(kOuterRole)) throw InvalidInput("labels: nothing lies outside of the tissue");
-  harmonic::LabelRoles named{{kInnerRole}, {kTissueRole}, {kOuterRole}, {}};
-  if (has(kInsulatedRole)) named.insulated = {kInsulatedRole};
+Ribbon solve(const Volume<Site>& sites, const Monitor& monitor) {
+  if (std::find(sites.data.begin(), sites.data.end(), Site::Outer) == sites.data.end()) {
+    throw InvalidInput("labels: nothing lies outside of the tissue");
+  }
   Monitor stoppable = monitor;
   stoppable.onProgress = nullptr;
-  Field field;
-  correspondence::SulcalRecovery recovered = correspondence::recoverSulci(
-      harmonic::annulusFromLabels(roles, named, {}, stoppable), {}, stoppable);
-  field.annulus = std::move(recovered.annulus);
-  field.sulcal = std::move(recovered.voxels);
-  field.interpolant = harmonic::solveInterpolant(field.annulus, {}, stoppable);
+  Ribbon ribbon = correspondence::solveRibbon(harmonic::annulusFromSites(sites, {}, stoppable),
+                                              correspondence::SulcusOptions{}, {}, stoppable);
   checkpoint(monitor);
-  return field;
+  return ribbon;
 }
 
 /// The interpolant on a box, as a level set whose zero is the sheet; positive inside of it.
@@ -138,7 +125,7 @@ struct SheetLevel {
   Volume<std::uint8_t> tissue;  ///< 1 in tissue
 };
 
-SheetLevel levelOf(const Field& field) {
+SheetLevel levelOf(const Ribbon& field) {
   const Annulus& annulus = field.annulus;
   const Grid grid = gridOf(annulus.grid, {annulus.first, annulus.size});
   SheetLevel sheet{LevelSet(grid), Volume<std::uint8_t>(grid, 1), Volume<std::uint8_t>(grid, 0)};
@@ -219,7 +206,7 @@ bool onImageEdge(const Grid& image, const Point& point) {
 }
 
 /// The sheet before it is remeshed.
-TriangleMesh extractSheet(const Field& field, const SheetLevel& sheet, SheetFacts& facts) {
+TriangleMesh extractSheet(const Ribbon& field, const SheetLevel& sheet, SheetFacts& facts) {
   TriangleMesh mesh = extractIsoSurface(sheet.level, sheet.known);
   const double thickness = static_cast<double>(field.annulus.count()) *
                            field.annulus.grid.voxelVolume() / geometry::totalArea(mesh);
@@ -240,41 +227,19 @@ TriangleMesh extractSheet(const Field& field, const SheetLevel& sheet, SheetFact
   return std::move(closed.mesh);
 }
 
-/// From the sheet to one of the boundaries; one point only if the way does not get there.
-Trajectory pathTo(const TrajectoryTracer& tracer, const Point& start, double target) {
-  Trajectory path;
-  path.points = {start};
-  path.along = {0};
-  Point at = start;
-  for (int leg = 1; leg <= correspondence::kLegs; ++leg) {
-    const double level = 0.5 + (target - 0.5) * leg / correspondence::kLegs;
-    const correspondence::Trace trace = tracer.trace(at, level);
-    if (!trace.reached) {
-      path.points.resize(1);
-      path.along.resize(1);
-      return path;
-    }
-    at = trace.point;
-    path.points.push_back(at);
-    path.along.push_back(path.along.back() + static_cast<float>(trace.length));
-  }
-  path.end = TrajectoryEnd::Outer;
-  return path;
-}
-
 /// The ways from each vertex of the sheet to both boundaries.
 struct Ways {
   std::vector<Trajectory> inward, outward;
 };
 
-Ways traceWays(const TrajectoryTracer& tracer, const TriangleMesh& sheet) {
+Ways traceWays(const RibbonPaths& ribbon, const TriangleMesh& sheet) {
   Ways ways;
   ways.inward.resize(sheet.vertexCount());
   ways.outward.resize(sheet.vertexCount());
   parallelFor(ways.inward.size(), 256, [&](std::size_t v) {
     const Point start = sheet.positions.row(static_cast<Eigen::Index>(v));
-    ways.inward[v] = pathTo(tracer, start, 0);
-    ways.outward[v] = pathTo(tracer, start, 1);
+    ways.inward[v] = ribbon.from(start, 0);
+    ways.outward[v] = ribbon.from(start, 1);
     if (ways.inward[v].end == TrajectoryEnd::NoRibbon) ways.outward[v] = ways.inward[v];
     if (ways.outward[v].end == TrajectoryEnd::NoRibbon) ways.inward[v] = ways.outward[v];
   });
@@ -320,59 +285,6 @@ std::int64_t interpolateWays(const TriangleMesh& sheet, Ways& ways,
     std::erase_if(missing, [&](std::int32_t v) { return has[v] != 0; });
   }
   return count;
-}
-
-/// Where the outer boundary is the middle between two banks.
-class ClosedSulci {
- public:
-  explicit ClosedSulci(const Field& field)
-      : annulus_(field.annulus), beside_(field.annulus.numberAt.size(), 0) {
-    const auto strides = annulus_.strides();
-    std::vector<std::uint8_t> isSulcal(static_cast<std::size_t>(annulus_.count()), 0);
-    for (const std::int32_t n : field.sulcal) isSulcal[n] = 1;
-    for (std::size_t p = 0; p < beside_.size(); ++p) {
-      const std::int32_t n = annulus_.numberAt[p];
-      if (n >= 0 && isSulcal[n]) beside_[p] = 1;
-    }
-    strides_ = {strides[0], strides[1], strides[2]};
-  }
-
-  /// True if a corner of the point's cell lies beside a middle.
-  [[nodiscard]] bool at(const Point& point) const {
-    const Vector index = annulus_.grid.toIndex(point);
-    for (int c = 0; c < 8; ++c) {
-      std::ptrdiff_t place = 0;
-      bool within = true;
-      for (int a = 0; a < 3; ++a) {
-        const int along = static_cast<int>(std::floor(index[a])) + (c >> a & 1) - annulus_.first[a];
-        within = within && along >= 0 && along < annulus_.size[a];
-        place += along * strides_[a];
-      }
-      if (within && beside_[place]) return true;
-    }
-    return false;
-  }
-
- private:
-  const Annulus& annulus_;
-  std::array<std::ptrdiff_t, 3> strides_ = {};
-  std::vector<std::uint8_t> beside_;
-};
-
-/// Ends ways that lead to the middle of a closed sulcus a little before it.
-void keepFromMiddles(const ClosedSulci& sulci, double gap, std::vector<Trajectory>& paths) {
-  parallelFor(paths.size(), 1024, [&](std::size_t v) {
-    Trajectory& path = paths[v];
-    if (path.length() <= gap || !sulci.at(path.points.back())) return;
-    const double end = path.length() - gap;
-    const Point last = path.at(end);
-    while (path.along.size() > 1 && path.along[path.along.size() - 2] >= end) {
-      path.along.pop_back();
-      path.points.pop_back();
-    }
-    path.points.back() = last;
-    path.along.back() = static_cast<float>(end);
-  });
 }
 
 /// The way to half depth.
@@ -465,17 +377,18 @@ void markCut(const Grid& image, const TriangleMesh& sheet, const Eigen::VectorXd
 }
 
 /// Inner, middle and outer surface out of the sheet.
-void growSheets(const TriangleMesh& sheet, const Ways& ways, const TrajectoryTracer& tracer,
-                const ClosedSulci& sulci, CorticalSurfaces& made) {
+void growSheets(const TriangleMesh& sheet, const Ways& ways, const RibbonPaths& ribbon,
+                CorticalSurfaces& made) {
+  const TrajectoryTracer& tracer = ribbon.tracer();
   const double edge = made.white.edgeLength;
   const double voxel = tracer.annulus().grid.spacing.minCoeff();
   const auto backTo = [&](double target) {
-    return [&tracer, &sulci, target, voxel](std::int32_t, const Point& point, const Vector&) {
+    return [&ribbon, &tracer, target, voxel](std::int32_t, const Point& point, const Vector&) {
       const correspondence::Trace trace = tracer.trace(point, target);
       if (!trace.reached || (trace.point - point).norm() > kNearBorder * voxel) return point;
-      if (target == 0 || !sulci.at(trace.point)) return trace.point;
+      if (target == 0 || !ribbon.isBank(trace.point)) return trace.point;
       const auto outward = tracer.direction(point);
-      return outward ? Point(trace.point - kMiddleGap * voxel * *outward) : point;
+      return outward ? Point(trace.point - middleGap(tracer.annulus().grid) * *outward) : point;
     };
   };
   const auto shortOf = [&](double target) -> Shortfall {
@@ -496,7 +409,7 @@ void growSheets(const TriangleMesh& sheet, const Ways& ways, const TrajectoryTra
   Grown inner =
       grow(sheet, ways.inward, edge, kSheetSteps, least, backTo(0), shortOf(0), room, relaxation);
   std::vector<Trajectory> outward = ways.outward;
-  keepFromMiddles(sulci, kMiddleGap * voxel, outward);
+  keepFromMiddles(middleGap(tracer.annulus().grid), outward);
   Grown outer =
       grow(sheet, outward, edge, kSheetSteps, least, backTo(1), shortOf(1), room, relaxation);
   Grown middle = grow(sheet, waysToMiddle(ways), edge, 2, least, stay, unknown, room, sliding);
@@ -521,12 +434,12 @@ CorticalSurfaces buildSheets(const TissueMasks& masks, const SurfaceOptions& opt
   facts.open = true;
   auto last = std::chrono::steady_clock::now();
   monitor.progress(0, "pockets in the tissue");
-  Volume<Label> roles = rolesOf(masks);
-  facts.pocketsFilled = fillPockets(roles);
+  Volume<Site> sites = sitesOf(masks);
+  facts.pocketsFilled = fillPockets(sites);
   made.seconds.topology = secondsSince(last);
   monitor.progress(0.05, "harmonic interpolant");
-  const Field field = solve(roles, monitor);
-  made.cutLinks = static_cast<std::int64_t>(field.sulcal.size());
+  const Ribbon field = solve(sites, monitor);
+  made.cutLinks = static_cast<std::int64_t>(field.sulcalVoxels.size());
   made.seconds.interpolant = secondsSince(last);
 
   monitor.progress(0.25, "extracting the sheet");
@@ -546,8 +459,8 @@ CorticalSurfaces buildSheets(const TissueMasks& masks, const SurfaceOptions& opt
   made.seconds.remeshing = secondsSince(last);
 
   monitor.progress(0.6, "trajectories");
-  const TrajectoryTracer tracer(field.annulus, field.interpolant);
-  Ways ways = traceWays(tracer, sheet);
+  const RibbonPaths ribbon(field);
+  Ways ways = traceWays(ribbon, sheet);
   facts.interpolated = interpolateWays(sheet, ways, facts.known);
   made.thickness.resize(sheet.vertexCount());
   for (std::size_t v = 0; v < ways.inward.size(); ++v) {
@@ -556,8 +469,7 @@ CorticalSurfaces buildSheets(const TissueMasks& masks, const SurfaceOptions& opt
   }
   made.seconds.trajectories = secondsSince(last);
   monitor.progress(0.7, "growing the surfaces");
-  const ClosedSulci sulci(field);
-  growSheets(sheet, ways, tracer, sulci, made);
+  growSheets(sheet, ways, ribbon, made);
   made.seconds.growing = secondsSince(last);
 
   monitor.progress(0.95, "curvature");

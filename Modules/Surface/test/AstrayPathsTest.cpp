@@ -40,7 +40,7 @@ TEST(AstrayPaths, OneFarLongerThanAllAroundEndsAtTheirMedian) {
   constexpr std::size_t kMiddle = 40;
   paths[kMiddle] = upTo(white.positions.row(kMiddle), 9);
   paths[kMiddle + 1] = upTo(white.positions.row(kMiddle + 1), 3.8);  // by less than a third
-  paths[3] = Trajectory{{white.positions.row(3)}, {0}, TrajectoryEnd::NoRibbon};
+  paths[3] = Trajectory{{{white.positions.row(3)}, {0}}, TrajectoryEnd::NoRibbon};
   EXPECT_EQ(shortenAstray(white, 1, paths), 1);
   EXPECT_NEAR(paths[kMiddle].length(), 3, 1e-6);
   EXPECT_LT((paths[kMiddle].points.back() - Point(4, 4, 3)).norm(), 1e-6);

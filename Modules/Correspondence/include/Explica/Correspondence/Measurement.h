@@ -7,8 +7,7 @@
 #include "Explica/Correspondence/Correspondence.h"
 #include "Explica/Correspondence/ImageEdge.h"
 #include "Explica/Correspondence/Layers.h"
-#include "Explica/Correspondence/Sulci.h"
-#include "Explica/Harmonic/Interpolant.h"
+#include "Explica/Correspondence/Ribbon.h"
 
 #include <functional>
 #include <optional>
@@ -57,15 +56,12 @@ struct MeasurementOptions {
 [[nodiscard]] double foldingOf(const harmonic::Annulus& annulus);
 
 /// Tissue and everything that is measured on it, per tissue number of `annulus`.
-struct Measurement {
-  harmonic::Annulus annulus;  ///< with the sheets of buried sulci as boundary
-  harmonic::Interpolant interpolant;
+struct Measurement : Ribbon {
   Correspondence correspondence;
-  std::size_t cutVoxels = 0;               ///< left out because tissue runs out of the image there
-  std::vector<double> depth;               ///< L0 / thickness
-  std::vector<int> layers;                 ///< from 1 at the inner boundary; 0: unknown
-  bool sulciRecovered = false;             ///< or at least looked for
-  std::vector<std::int32_t> sulcalVoxels;  ///< beside a recovered boundary
+  std::size_t cutVoxels = 0;    ///< left out because tissue runs out of the image there
+  std::vector<double> depth;    ///< L0 / thickness
+  std::vector<int> layers;      ///< from 1 at the inner boundary; 0: unknown
+  bool sulciRecovered = false;  ///< or at least looked for
   std::optional<AnatomicalGrid> grid;
 };
 

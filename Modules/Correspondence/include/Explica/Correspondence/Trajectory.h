@@ -7,6 +7,7 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 namespace explica::correspondence {
 
@@ -25,9 +26,15 @@ struct Trace {
   bool reached = false;                 ///< false: left the tissue or stagnated; the rest is where
 };
 
-/// Levels on the way from the middle of the tissue to a boundary at which a trajectory is
-/// remembered.
-inline constexpr int kLegs = 5;
+/// A trajectory as a polyline.
+struct Path {
+  std::vector<Point> points;  ///< RAS mm, start first
+  std::vector<float> along;   ///< arc length at each point, mm
+
+  [[nodiscard]] double length() const { return along.empty() ? 0 : along.back(); }
+  /// Point at an arc length, held to the ends.
+  [[nodiscard]] Point at(double arc) const;
+};
 
 /// Follows trajectories of T = grad u / |grad u| through the tissue [thesis 3.1, Lagrangian].
 ///
@@ -50,8 +57,15 @@ class TrajectoryTracer {
   /// comes back to it, its length counted positive.
   [[nodiscard]] Trace trace(const Point& start, double target) const;
 
+  /// The same with a point for each step; nothing if it does not get there.
+  [[nodiscard]] std::optional<Path> path(const Point& start, double target) const;
+
   /// From a tissue voxel's centre.
   [[nodiscard]] Trace trace(std::int32_t number, double target) const;
+
+  /// Length of the trajectory through a point between the two boundaries, mm; nothing if it does
+  /// not reach both.
+  [[nodiscard]] std::optional<double> thickness(const Point& point) const;
 
   /// Interpolated u, extended past the boundary; nothing if no tissue is within two voxels.
   [[nodiscard]] std::optional<double> value(const Point& point) const;

@@ -174,6 +174,11 @@ struct LevelOptions {
                                         const Volume<std::uint8_t>& insulated = {},
                                         const Monitor& monitor = {});
 
+/// The same of sites.
+[[nodiscard]] Annulus annulusFromSites(const Volume<Site>& sites,
+                                       const AnnulusOptions& options = {},
+                                       const Monitor& monitor = {});
+
 /// Annulus of sites and two level sets in mm, negative inside.  The sites decide; where a level's
 /// sign disagrees with a site, the boundary is put halfway along the link.
 [[nodiscard]] Annulus annulusFromSites(const Volume<Site>& sites, const Volume<float>& innerLevel,

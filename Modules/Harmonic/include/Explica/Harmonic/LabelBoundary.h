@@ -10,14 +10,16 @@
 
 namespace explica::harmonic {
 
-/// How far the steps of a mask are believed to be shape.
+/// How far the steps of a mask are believed to be shape.  Chosen so that generated shells and
+/// spheroids keep their thickness, which a weak pull does, and that known points of a real cortex
+/// have theirs, which wants a strong one.
 struct LabelTrust {
-  float pull = 3;         ///< to the middle of a link where the boundary is rough, against squared
+  float pull = 10;        ///< to the middle of a link where the boundary is rough, against squared
                           ///< change of curvature in voxels; 3 flattens waves under five voxels
-  float smooth = 0.002F;  ///< mean squared change of curvature per voxel from which the pull grows:
-                          ///< the steps of a surface with slowly varying curvature leave so much
-  float rough = 0.01F;    ///< and at which it is full: from a radius of ten voxels to flat within a
-                          ///< voxel
+  float smooth = 0.006F;  ///< mean squared change of curvature per voxel from which the pull grows:
+                          ///< the steps of a surface with slowly varying curvature leave a third
+  float rough = 0.03F;    ///< and at which it is full: three times that from a radius of ten voxels
+                          ///< to flat within a voxel
 };
 
 /// The smoothest surface between two sides of a voxel mask: where it crosses the grid's links.

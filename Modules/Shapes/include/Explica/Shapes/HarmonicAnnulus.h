@@ -78,9 +78,11 @@ void requireUsable(const HarmonicAnnulus& annulus);
 /// u at points; threaded.
 [[nodiscard]] Eigen::VectorXd valuesAt(const HarmonicShape& shape, const Positions& points);
 
+using SampleRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
 /// Angular functions on a lattice of directions, `perOrder` times `order` of them on each great
 /// circle through the poles: S x perBoundary().
-[[nodiscard]] Eigen::MatrixXd boundarySamples(const HarmonicAnnulus& annulus, int perOrder);
+[[nodiscard]] SampleRows boundarySamples(const HarmonicAnnulus& annulus, int perOrder);
 
 /// A lower bound of 1/2 - u on the inner and u - 1/2 on the outer boundary, whichever is less.
 ///

@@ -71,6 +71,7 @@ struct CorticalTissue : TissueFacts {
   LevelSet tissue;                 ///< positive in white and grey matter
   Volume<std::uint8_t> insulated;  ///< 1 where neither side is; same box
   bool hasGrey = true;
+  bool ofLabels = false;      ///< the boundaries come of labels: signs say all
   bool byBrightness = false;  ///< the boundaries come of shares, not of labels
 };
 
