@@ -40,7 +40,7 @@ class StudyGroup : public ::testing::Test {
               "participant_id\tage\nsub-1\t20\nsub-2\t31\nsub-3\t42\nsub-4\t50\nsub-5\t61\n");
     makeTemplate(study.labels("1"));
     made_ = new CommandResult(explica(
-        {"bids", study.data(), study.out(), "participant", "--hemispheres", "L", "--steps",
+        {"bids", study.data(), study.out(), "participant", "--hemisphere", "L", "--steps",
          "surface,sphere,register,parcellate", "--surface.faces", "1000", "--register.level", "3",
          "--template", *folder_ / "made", "--resample.to", "fsaverage3"}));
     doubt("sub-5");

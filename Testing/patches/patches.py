@@ -53,7 +53,7 @@ def make(program, work):
         script = pathlib.Path(__file__).resolve().parents[2] / "Modules/Flattening/benchmark/macaque_labels.py"
         subprocess.run([sys.executable, script, made / "labels"], check=True)
     for side in ("L", "R"):
-        once(f"macaque-{side}", "surface", made / f"labels/seg_{side}.nii.gz", "--white", "3", "--grey", "2", "--faces", "80000")
+        once(f"macaque-{side}", "surface", made / f"labels/seg_{side}.nii.gz", "--white-label", "3", "--grey-label", "2", "--faces", "80000")
     if not (made / "Colin27-R/summary.json").exists():
         once("colin27", "run", templates / "ch2.nii.gz", "--steps", "segment,surface")
         for side in ("L", "R"):
