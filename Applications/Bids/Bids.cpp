@@ -15,9 +15,11 @@
 #include "Explica/Provenance/Software.h"
 #include "Explica/Study/BidsDataset.h"
 #include "Explica/Study/Derivatives.h"
+#include "Explica/Study/HeartStudy.h"
 #include "Explica/Study/StudyPage.h"
 #include "Explica/Study/StudyTable.h"
 #include "Explica/Study/SubjectFiles.h"
+#include "GroupStage.h"
 
 #include <algorithm>
 #include <array>
@@ -52,6 +54,7 @@ struct Settings {
   std::optional<std::string> registrations;  ///< an earlier OUT_DIR
   bool skipValidator = true;
   bool reuse = true;
+  GroupSettings group;
   Invocation run;  ///< whose options are taken over
 };
 
@@ -83,7 +86,9 @@ void declare(Declaration& d, Settings& s) {
           "content, "
           "are kept. A participant that fails, or whose numbers are implausible, does not stop the "
           "others: exit code 3, or 2 if all failed. group: writes from all "
-          "runs, failed ones too, study.tsv and index.html, and exports their records as BIDS-Prov "
+          "runs, failed ones too, study.tsv and index.html, puts the people who are on a template "
+          "together there, below group/ (who failed or is doubted is left out and named), and "
+          "exports their records as BIDS-Prov "
           "and RO-Crate. Several of these commands may work on one OUT_DIR at a time, as in a job "
           "array, on different participants.")
       .example("explica bids data derivatives/explica participant --participant-label 01 02",
@@ -118,6 +123,7 @@ void declare(Declaration& d, Settings& s) {
       .varyingOutput("prov/prov-explica_*.json", FileKind::JsonFile,
                      "how everything came about, as BIDS-Prov")
       .varyingOutput("ro-crate-metadata.json", FileKind::JsonFile, "the same as an RO-Crate");
+  declareGroup(d, s.group);
   if (const Command* command = findCommand("run")) {
     s.run = command->begin();
     d.include(s.run.declaration, "");
@@ -140,7 +146,8 @@ void requireSides(const Settings& s, const study::Participant& participant) {
 
 /// What an earlier run made of an input that is there no more.
 void dropSteps(Context& context, const std::string& run) {
-  for (const char* step : {"segment", "thickness", "surface", "unfold"}) {
+  for (const char* step : {"segment", "thickness", "surface", "sphere", "register", "resample",
+                           "parcellate", "regions", "unfold"}) {
     context.dropCommand(run + "/" + step);
   }
 }
@@ -287,9 +294,10 @@ void writeExports(Context& context, const Settings& s, const std::vector<study::
 
 Termination doGroup(Context& context, const Settings& s) {
   const fs::path out = context.outputFolder();
-  const auto rows = study::collectRows(out);
+  auto rows = study::collectRows(out);
+  const std::string part = writeGroup(context, s.group, study::aboutParticipants(s.dataset), rows);
   writeTextFile(context.output("study.tsv"), study::tableText(rows));
-  writeTextFile(context.output("index.html"), study::indexPage(rows, "Explica study"));
+  writeTextFile(context.output("index.html"), study::indexPage(rows, "Explica study", part));
   writeExports(context, s, rows);
   context.result("rows", rows.size());
   return Termination::NotRun;

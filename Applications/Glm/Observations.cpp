@@ -242,8 +242,31 @@ void observeRegions(const GlmSettings& s, const Table& table, Observations& o) {
   };
 }
 
+/// "space-X_den-Y" of a file's name; empty where it does not say.
+std::string spaceIn(const fs::path& file) {
+  const std::string name = file.filename().string();
+  const std::size_t at = name.find("_space-");
+  if (at == std::string::npos) return {};
+  std::size_t end = name.find_first_of("_.", at + 1);
+  if (name.compare(end, 5, "_den-") == 0) end = name.find_first_of("_.", end + 1);
+  return name.substr(at + 1, end - at - 1);
+}
+
+/// Vertices of two templates mean different places, even if they are as many.
+void requireOneSpace(const MapFiles& files, const std::vector<std::string>& people) {
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    for (std::size_t h = 0; h < files[i].size(); ++h) {
+      const std::string here = spaceIn(files[i][h]), first = spaceIn(files[0][h]);
+      if (here.empty() || first.empty() || here == first) continue;
+      throw InvalidInput("'" + files[i][h].string() + "' of " + people[i] + " is on " + here +
+                         ", that of " + people[0] + " on " + first);
+    }
+  }
+}
+
 void observeMaps(Context& context, const GlmSettings& s, const Table& list, Observations& o) {
   const auto files = filesOf(list, findPeople(list, s, o));
+  requireOneSpace(files, o.people);
   layOut(context, s, list, files, o);
   readMask(s, o);
   readAtlases(s, o);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "Explica/Application/Command.h"
+#include "Explica/Application/CortexTemplate.h"
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/IO/LabelNames.h"
@@ -23,7 +24,12 @@ namespace fs = std::filesystem;
 struct Settings {
   std::string folder;
   std::vector<std::string> atlases;
-  std::optional<std::string> hemisphere;
+  std::optional<std::string> templateName, hemisphere;
+};
+
+/// Labels that are carried over, with what else is known of those who have them.
+struct Atlas {
+  std::string file, sphere, sulc;  ///< empty: to be looked for beside the file
 };
 
 void declare(Declaration& d, Settings& s) {
@@ -34,7 +40,9 @@ void declare(Declaration& d, Settings& s) {
           "votes of those whose folds are like the person's around a vertex count more. The sphere "
           "of an atlas is ?h.sphere.reg beside its file or in ../surf, as in FreeSurfer's "
           "subjects, "
-          "with ?h.sulc; files on fsaverage3 to fsaverage need none.")
+          "with ?h.sulc; files on fsaverage3 to fsaverage need none. Without --atlas the regions "
+          "are "
+          "those of the template.")
       .reference(
           "Artaechevarria, Munoz-Barrutia, Ortiz-de-Solorzano 2009, IEEE Trans. Medical "
           "Imaging 28(8):1266-1277")
@@ -44,9 +52,14 @@ void declare(Declaration& d, Settings& s) {
              "folder with the person's ?h.sphere.reg or sphere.reg.surf.gii (and sulc)", s.folder)
       .inputOption("atlas", FileKind::VertexLabel, "labels of a template or of a labelled person",
                    s.atlases)
-      .require("atlas")
-      .option("Input", Field{"hemisphere", "", "L or R, where the atlas' name does not say"},
+      .option("Input",
+              Field{"template", "",
+                    "as of register: whose regions they are without --atlas (default: colin27)"},
+              s.templateName)
+      .option("Input",
+              Field{"hemisphere", "", "L or R, where neither the atlas' name nor the sphere says"},
               s.hemisphere)
+      .results<maps::Parcellation>()
       .output("regions.label.gii", FileKind::VertexLabel, "region of each vertex")
       .output("?h.*.annot", FileKind::VertexLabel, "the same as FreeSurfer's annotation")
       .output("doubt.shape.gii", FileKind::VertexData, "share of the votes against the region");
@@ -56,9 +69,13 @@ std::string prefixOf(const Settings& s) {
   if (s.hemisphere && *s.hemisphere != "L" && *s.hemisphere != "R") {
     throw UsageError("--hemisphere must be L or R");
   }
-  const std::string said = io::statedStructure(s.atlases.front());
+  const fs::path sphere = fs::path(s.folder) / "sphere.reg.surf.gii";
+  const std::string asked = !s.atlases.empty()   ? s.atlases.front()
+                            : fs::exists(sphere) ? sphere.string()
+                                                 : "";
+  const std::string said = asked.empty() ? "" : io::statedStructure(asked);
   if (!s.hemisphere && said.empty()) {
-    throw UsageError("'" + s.atlases.front() +
+    throw UsageError("'" + (asked.empty() ? s.folder : asked) +
                      "' does not say of which hemisphere it is; say it with --hemisphere L or R");
   }
   return (s.hemisphere ? *s.hemisphere == "R" : said == "CortexRight") ? "rh." : "lh.";
@@ -73,17 +90,6 @@ TriangleMesh readSphere(Context& context, const fs::path& path) {
   return sphere;
 }
 
-/// The first of the names that is in one of the folders.
-std::optional<fs::path> findIn(const std::vector<fs::path>& folders,
-                               const std::vector<std::string>& names) {
-  for (const fs::path& folder : folders) {
-    for (const std::string& name : names) {
-      if (fs::exists(folder / name)) return folder / name;
-    }
-  }
-  return {};
-}
-
 /// fsaverage's sphere of so many vertices.
 std::optional<TriangleMesh> fsaverageOf(Eigen::Index vertices) {
   for (int level = 3; level <= 7; ++level) {
@@ -92,12 +98,17 @@ std::optional<TriangleMesh> fsaverageOf(Eigen::Index vertices) {
   return {};
 }
 
-maps::LabelledSphere readAtlas(Context& context, const std::string& file, const std::string& prefix,
+/// Sphere and folding of an atlas, found beside its file where they are not named.
+maps::LabelledSphere readAtlas(Context& context, const Atlas& named, const std::string& prefix,
                                const io::LabelMap& labels) {
+  const std::string& file = named.file;
   const fs::path own = fs::path(file).parent_path();
-  const std::vector<fs::path> folders = {own, own / "../surf"};
+  const std::vector<std::string> folders = {own.string(), (own / "../surf").string()};
+  const auto find = [&](const std::string& given, const std::vector<std::string>& names) {
+    return given.empty() ? findFile(folders, names) : std::optional(given);
+  };
   maps::LabelledSphere atlas{{}, labels.keys, {}};
-  const auto sphere = findIn(folders, {prefix + "sphere.reg", "sphere.reg.surf.gii"});
+  const auto sphere = find(named.sphere, {prefix + "sphere.reg", "sphere.reg.surf.gii"});
   const auto known = sphere ? std::nullopt : fsaverageOf(labels.keys.size());
   if (!sphere && !known) {
     throw InvalidInput("'" + file + "': no " + prefix +
@@ -111,11 +122,30 @@ maps::LabelledSphere readAtlas(Context& context, const std::string& file, const 
                        " labels, its sphere " + std::to_string(atlas.sphere.vertexCount()) +
                        " vertices");
   }
-  const auto sulc = findIn(folders, {prefix + "sulc", "sulc.shape.gii"});
+  const auto sulc = find(named.sulc, {prefix + "sulc", "sulc.shape.gii"});
   if (!sulc) return atlas;
   atlas.folding =
       io::readVertexMaps(context.input(*sulc, "sulc"), labels.keys.size()).front().values;
   return atlas;
+}
+
+/// The labels that the user names, else the template's.
+std::vector<Atlas> atlasesOf(Context& context, const Settings& s, const std::string& structure) {
+  std::vector<Atlas> atlases;
+  for (const std::string& file : s.atlases) {
+    io::requireSameHemisphere(file, structure);
+    atlases.push_back({file, "", ""});
+  }
+  if (!atlases.empty()) return atlases;
+  const std::string name = s.templateName.value_or(kDefaultTemplate);
+  const CortexTemplate known = findTemplate(context, name, structure);
+  if (known.atlas.empty()) {
+    throw InvalidInput("template '" + name +
+                       "': has no regions (?h.aparc.annot); name some with "
+                       "--atlas");
+  }
+  context.input(known.atlas, "atlas");
+  return {{known.atlas, known.sphere, known.sulc}};
 }
 
 /// Numbers labels by their names as the first file does, so that files with other tables agree;
@@ -152,37 +182,34 @@ std::vector<io::LabelEntry> toldByColour(std::vector<io::LabelEntry> table) {
 Termination run(Context& context, const Settings& s) {
   const std::string prefix = prefixOf(s);
   const std::string structure = prefix == "rh." ? "CortexRight" : "CortexLeft";
-  const auto place = findIn({s.folder}, {prefix + "sphere.reg", "sphere.reg.surf.gii"});
+  const auto place = findFile({s.folder}, {prefix + "sphere.reg", "sphere.reg.surf.gii"});
   if (!place) {
     throw InvalidInput("'" + s.folder + "': holds no " + prefix +
                        "sphere.reg and no sphere.reg.surf.gii");
   }
   const TriangleMesh sphere = readSphere(context, *place);
   Eigen::VectorXd folding;
-  if (const auto sulc = findIn({s.folder}, {prefix + "sulc", "sulc.shape.gii"})) {
+  if (const auto sulc = findFile({s.folder}, {prefix + "sulc", "sulc.shape.gii"})) {
     folding = io::readVertexMaps(context.input(*sulc, "sulc"), sphere.vertexCount()).front().values;
   }
+  const std::vector<Atlas> named = atlasesOf(context, s, structure);
   std::vector<io::LabelMap> labels;
-  for (const std::string& file : s.atlases) {
-    io::requireSameHemisphere(file, structure);
-    labels.push_back(io::readVertexLabels(file));
-  }
+  for (const Atlas& atlas : named) labels.push_back(io::readVertexLabels(atlas.file));
   numberAlike(labels);
   std::vector<maps::LabelledSphere> atlases;
   for (std::size_t a = 0; a < labels.size(); ++a) {
-    atlases.push_back(readAtlas(context, s.atlases[a], prefix, labels[a]));
+    atlases.push_back(readAtlas(context, named[a], prefix, labels[a]));
   }
   auto step = context.step("parcellate");
   const maps::Parcellation found = maps::parcellate(sphere, folding, atlases);
   const io::LabelMap result{"regions", found.keys, toldByColour(labels.front().table)};
-  std::string name = fs::path(s.atlases.front()).filename().string();
+  std::string name = fs::path(named.front().file).filename().string();
   name = name.starts_with(prefix) ? name.substr(3) : name;
   name = name.substr(0, name.rfind(name.ends_with(".label.gii") ? ".label.gii" : "."));
   io::writeGiftiLabel(context.output("regions.label.gii"), result, structure);
   io::writeFreeSurferAnnot(context.output(prefix + name + ".annot"), result);
   io::writeGiftiShape(context.output("doubt.shape.gii"), {{"doubt", "", found.doubt}}, structure);
-  context.result("vertices", static_cast<long>(found.keys.size()));
-  context.result("doubt_mean", found.doubt.mean());
+  context.results(found);
   return Termination::NotRun;
 }
 

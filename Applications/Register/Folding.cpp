@@ -8,8 +8,6 @@
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/Sphere/SphereMap.h"
 
-#include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <vector>
 
@@ -22,38 +20,10 @@ bool isRight(const std::string& structure) {
   return structure == "CortexRight";
 }
 
-/// The first of the names that is a file of the folder or of its folder `surf`.
-std::optional<std::string> findFile(const fs::path& folder, const std::vector<std::string>& names) {
-  for (const std::string& name : names) {
-    for (const fs::path& place : {folder / name, folder / "surf" / name}) {
-      if (fs::is_regular_file(place)) return place.string();
-    }
-  }
-  return {};
-}
-
 std::vector<std::string> namesOf(const std::string& structure, const std::string& freeSurfer,
                                  const std::string& gifti) {
   const bool right = isRight(structure);
   return {(right ? "rh." : "lh.") + freeSurfer, (right ? "hemi-R_" : "hemi-L_") + gifti};
-}
-
-std::vector<std::string> sphereNames(const std::string& structure) {
-  auto names = namesOf(structure, "sphere.reg", "sphere.surf.gii");
-  // The 164k sphere as Human Connectome Project's pipelines distribute it.
-  const std::string side = isRight(structure) ? "R" : "L";
-  names.push_back("fsaverage_std_sphere." + side + ".164k_fsavg_" + side + ".surf.gii");
-  return names;
-}
-
-fs::path templateFolder(const std::string& name) {
-  if (fs::is_directory(name)) return name;
-  const char* subjects = std::getenv("SUBJECTS_DIR");
-  if (subjects != nullptr && fs::is_directory(fs::path(subjects) / name))
-    return fs::path(subjects) / name;
-  throw InvalidInput("template '" + name +
-                     "': neither a folder nor a subject in $SUBJECTS_DIR; name a folder with "
-                     "lh.sphere.reg, lh.sulc and lh.curv");
 }
 
 Eigen::VectorXd readMap(Context& context, const std::string& path, Eigen::Index count) {
@@ -82,31 +52,17 @@ FoldingFiles subjectFiles(const std::string& sphere, const std::string& structur
     if (named) return *named;
     auto names = namesOf(structure, freeSurfer, gifti);
     names.push_back(gifti);
-    if (const auto found = findFile(place, names)) return *found;
+    if (const auto found = findFile({place.string(), (place / "surf").string()}, names)) {
+      return *found;
+    }
     throw InvalidInput("'" + sphere + "': no " + names[0] + " or " + gifti + " in '" +
                        place.string() + "'; name the map by --" + option +
                        " or its folder by --surfaces");
   };
-  return {sphere,
-          find(sulc, "sulc", "sulc.shape.gii", "sulc"),
-          find(curvature, "curv", "curvature.shape.gii", "curvature"),
-          {},
-          {}};
-}
-
-FoldingFiles templateFiles(const std::string& name, const std::string& structure) {
-  const fs::path folder = templateFolder(name);
-  const auto find = [&](const std::vector<std::string>& names) {
-    if (const auto found = findFile(folder, names)) return *found;
-    throw InvalidInput("template '" + folder.string() + "': no " + names.front() + " in it");
-  };
   FoldingFiles files;
-  files.sphere = find(sphereNames(structure));
-  files.sulc = find(namesOf(structure, "sulc", "sulc.shape.gii"));
-  files.curvature = find(namesOf(structure, "curv", "curvature.shape.gii"));
-  files.sulcSd = findFile(folder, namesOf(structure, "sulc_sd", "sulc_sd.shape.gii")).value_or("");
-  files.curvatureSd =
-      findFile(folder, namesOf(structure, "curv_sd", "curvature_sd.shape.gii")).value_or("");
+  files.sphere = sphere;
+  files.sulc = find(sulc, "sulc", "sulc.shape.gii", "sulc");
+  files.curvature = find(curvature, "curv", "curvature.shape.gii", "curvature");
   return files;
 }
 

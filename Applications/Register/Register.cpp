@@ -25,7 +25,7 @@ struct Settings {
 void declare(Declaration& d, Settings& s) {
   d.synopsis("a sphere brought onto a template's, or another person's, by the folds")
       .description(
-          R"(Registers a hemisphere's sphere to a template by sulcal depth and mean curvature: a rotation is searched among all, then an icosphere on the template moves over the sphere, from coarse to fine, to where the folds agree. No face of it turns over and no area changes by more than --max-areal doublings, so that the map is one to one; the sphere's vertices follow, and what is written is tested exactly. The template is a folder with lh.sphere.reg, lh.sulc and lh.curv (rh. for a right hemisphere; lh.sulc_sd and lh.curv_sd beside them weigh the maps), or --to another person's sphere. A right hemisphere goes onto a left one with --mirror, and the other way round.)")
+          R"(Registers a hemisphere's sphere to a template by sulcal depth and mean curvature: a rotation is searched among all, then an icosphere on the template moves over the sphere, from coarse to fine, to where the folds agree. No face of it turns over and no area changes by more than --max-areal doublings, so that the map is one to one; the sphere's vertices follow, and what is written is tested exactly. The template is a folder with lh.sphere.reg, lh.sulc and lh.curv (rh. for a right hemisphere; lh.sulc_sd and lh.curv_sd beside them weigh the maps), what explica run has left of a person, or --to another person's sphere. A right hemisphere goes onto a left one with --mirror, and the other way round.)")
       .reference("Yeo et al. 2010, Spherical Demons, IEEE Trans. Med. Imaging 29(3):650-668")
       .reference("Alexa 2022, Super-Fibonacci spirals, CVPR")
       .example("explica register lh.sphere --template fsaverage --out registered",
@@ -37,7 +37,9 @@ void declare(Declaration& d, Settings& s) {
                    s.curvature, "Folds")
       .option("Folds", Field{"surfaces", "", "folder with the folding maps"}, s.surfaces)
       .option("Target",
-              Field{"template", "", "folder, or name of a subject in $SUBJECTS_DIR (fsaverage)"},
+              Field{"template", "",
+                    "folder, name of a subject in $SUBJECTS_DIR (fsaverage), or colin27 (also if "
+                    "none is named): made once from Colin27 of mricron-data"},
               s.templateName)
       .inputOption("to", FileKind::Surface, "another person's sphere instead of a template", s.to,
                    "Target")
@@ -59,7 +61,7 @@ std::string otherSide(const std::string& structure) {
   return structure == "CortexRight" ? "CortexLeft" : "CortexRight";
 }
 
-FoldingFiles targetFiles(const Settings& s, const std::string& structure) {
+FoldingFiles targetFiles(Context& context, const Settings& s, const std::string& structure) {
   if (s.to && s.templateName) throw UsageError("--to and --template are two targets; give one");
   const std::string side = s.mirror ? otherSide(structure) : structure;
   if (s.to) {
@@ -71,10 +73,7 @@ FoldingFiles targetFiles(const Settings& s, const std::string& structure) {
     }
     return subjectFiles(*s.to, side, s.toSulc, s.toCurvature, {});
   }
-  if (!s.templateName) {
-    throw UsageError("give --template DIR (a folder with lh.sphere.reg, lh.sulc, lh.curv) or --to");
-  }
-  return templateFiles(*s.templateName, side);
+  return findTemplate(context, s.templateName.value_or(kDefaultTemplate), side);
 }
 
 void write(Context& context, const sphere::FoldingSphere& moving,
@@ -102,7 +101,7 @@ Termination run(Context& context, const Settings& s) {
   if (structure == "Other") structure = "CortexLeft";
   const FoldingFiles files = subjectFiles(s.sphere, structure, s.sulc, s.curvature, s.surfaces);
   sphere::FoldingSphere moving = readFolding(context, files);
-  const sphere::FoldingSphere target = readFolding(context, targetFiles(s, structure));
+  const sphere::FoldingSphere target = readFolding(context, targetFiles(context, s, structure));
   if (s.mirror) moving.sphere = sphere::mirrored(std::move(moving.sphere));
   sphere::SphereRegistration result;
   {

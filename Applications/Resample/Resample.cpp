@@ -27,7 +27,8 @@ struct Settings {
   std::string to;
   std::optional<std::string> templateFolder;
   maps::ResamplingMethod method = maps::ResamplingMethod::Adaptive;
-  std::optional<std::string> areas;
+  std::optional<std::string> areas, space;
+  std::vector<std::string> amounts;
 };
 
 void declare(Declaration& d, Settings& s) {
@@ -68,6 +69,15 @@ void declare(Declaration& d, Settings& s) {
                     "surfaces whose vertex areas count, of the maps' and of the target's vertices "
                     "(SURF,SURF; one left out: its sphere)"},
               s.areas)
+      .inputOption("amounts", FileKind::VertexData,
+                   "maps of amounts at vertices, such as areas and volumes: their sums stay",
+                   s.amounts, "Weights")
+      .option(
+          "Target",
+          Field{"space", "",
+                "name of the space in file names, or folder of the template, where --from is in "
+                "register with another one than the target's name says"},
+          s.space)
       .output("*_space-*", FileKind::Any,
               "NAME_space-SPACE_den-DENSITY: each file, in its own format");
 }
@@ -87,14 +97,24 @@ std::string fsLRFile(const Settings& s, const std::string& structure) {
   return (std::filesystem::path(*s.templateFolder) / name).string();
 }
 
+/// Letters and digits of a name, or of the last part of a path, as file names have them.
+std::string spaceOf(const std::string& name) {
+  std::filesystem::path path = std::filesystem::path(name).lexically_normal();
+  if (path.filename().empty()) path = path.parent_path();
+  std::string space = path.filename().string();
+  std::erase_if(space, [](unsigned char letter) { return std::isalnum(letter) == 0; });
+  return space;
+}
+
 Target readTarget(Context& context, const Settings& s, const std::string& structure) {
   Target target;
   io::SurfaceReadOptions reading;
   reading.space = io::SurfaceSpace::Scanner;
+  if (s.space) target.space = spaceOf(*s.space);
   if (const auto level = maps::fsaverageLevel(s.to)) {
     target.sphere.mesh = maps::fsaverageSphere(*level);
     target.sphere.metadata.structure = structure;
-    target.space = "fsaverage";
+    if (!s.space) target.space = "fsaverage";
     return target;
   }
   const bool fsLR = s.to == kFsLR;
@@ -105,8 +125,7 @@ Target readTarget(Context& context, const Settings& s, const std::string& struct
   }
   context.input(file, "to");
   target.sphere = readSurface(context, "to", file, reading);
-  target.space = fsLR ? "fsLR" : io::nameOfSurface(file);
-  std::erase_if(target.space, [](unsigned char letter) { return !std::isalnum(letter); });
+  if (!s.space) target.space = fsLR ? "fsLR" : spaceOf(io::nameOfSurface(file));
   return target;
 }
 
@@ -135,6 +154,7 @@ Eigen::VectorXd areasOf(Context& context, const Settings& s, std::size_t place,
 /// A file to be carried over, and what it holds.
 struct CarriedFile {
   std::string output, structure;
+  bool amounts = false;
   io::VertexFileKind kind = io::VertexFileKind::Maps;
   std::vector<io::VertexMap> maps;
   io::LabelMap labels;
@@ -170,8 +190,14 @@ std::vector<CarriedFile> readFiles(const Settings& s, const io::LoadedSurface& f
       "space-" + target.space + "_den-" + densityOf(target.sphere.mesh.vertexCount());
   std::vector<CarriedFile> files;
   std::set<std::string> names;
-  for (const std::string& path : s.maps) {
+  std::vector<std::string> all = s.maps;
+  all.insert(all.end(), s.amounts.begin(), s.amounts.end());
+  for (const std::string& path : all) {
     files.push_back(readFile(path, from, entity));
+    files.back().amounts = files.size() > s.maps.size();
+    if (files.back().amounts && files.back().kind != io::VertexFileKind::Maps) {
+      throw InvalidInput("'" + path + "': holds no amounts at vertices, but a surface or labels");
+    }
     if (!names.insert(files.back().output).second) {
       throw UsageError("two files would be written to '" + files.back().output +
                        "'; resample them into folders of their own");
@@ -183,6 +209,7 @@ std::vector<CarriedFile> readFiles(const Settings& s, const io::LoadedSurface& f
 /// Weights of maps and labels, and those of surfaces.
 struct Weights {
   maps::ResamplingWeights maps, surfaces;
+  Eigen::VectorXd toAreas;  ///< mm^2, of the target's vertices
 };
 
 void carry(const std::filesystem::path& path, CarriedFile file, const Weights& weights,
@@ -202,8 +229,13 @@ void carry(const std::filesystem::path& path, CarriedFile file, const Weights& w
       }
       break;
     case io::VertexFileKind::Maps:
-      for (io::VertexMap& map : file.maps)
-        map.values = maps::resampleMaps(weights.maps, map.values);
+      for (io::VertexMap& map : file.maps) {
+        if (file.amounts) {
+          map.values = maps::resampleAmounts(weights.maps, weights.toAreas, map.values);
+        } else {
+          map.values = maps::resampleMaps(weights.maps, map.values);
+        }
+      }
       io::writeVertexMaps(path, file.maps, file.structure, faces.rows());
   }
 }
@@ -222,7 +254,8 @@ Termination run(Context& context, const Settings& s) {
   const auto weightsBy = [&](maps::ResamplingMethod method) {
     return maps::resamplingWeights(from.mesh, target.sphere.mesh, method, fromAreas, toAreas);
   };
-  const Weights weights{weightsBy(s.method), weightsBy(maps::ResamplingMethod::Barycentric)};
+  const Weights weights{weightsBy(s.method), weightsBy(maps::ResamplingMethod::Barycentric),
+                        toAreas};
   std::size_t count = 0;
   for (const CarriedFile& file : files) {
     checkpoint(context.monitor());

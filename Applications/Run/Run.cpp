@@ -4,6 +4,7 @@
 #include "Ending.h"
 
 #include "Explica/Application/Command.h"
+#include "Explica/Application/CortexTemplate.h"
 #include "Explica/Application/Execute.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/StopScope.h"
@@ -30,7 +31,8 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr std::array kStepCommands = {"segment", "thickness", "surface", "unfold"};
+constexpr std::array kStepCommands = {"segment",  "thickness",  "surface", "sphere", "register",
+                                      "resample", "parcellate", "regions", "unfold"};
 
 struct Settings {
   std::string input;
@@ -51,7 +53,9 @@ void declare(Declaration& d, Settings& s) {
           "anat folders; a T1, with or without skull, or a label volume. Surfaces that are there "
           "are taken over (unless "
           "--given-surfaces remake), others are made, from a FreeSurfer subject's labels with its "
-          "brain.mgz to place their borders. Runs segment, thickness, surface and unfold "
+          "brain.mgz to place their borders. Runs segment, thickness, surface, sphere, register "
+          "(with resample, to the template's 10,242 vertices; --resample.to fsaverage6 for more), "
+          "parcellate (with regions, their table) and unfold "
           "in order, each into its own folder with its "
           "own "
           "summary and record, and writes a report on all of them. A run that fails leaves "
@@ -95,6 +99,11 @@ void declare(Declaration& d, Settings& s) {
               "harmonic interpolant, correspondences, thickness; -L and -R where both hemispheres "
               "are done, as in the next two")
       .output("surface*", FileKind::Folder, "white, middle and pial surface")
+      .output("sphere*", FileKind::Folder, "the white surface on a sphere")
+      .output("register*", FileKind::Folder, "that sphere in the template's frame")
+      .output("resample*", FileKind::Folder, "thickness, sulcal depth and areas on the template")
+      .output("parcellate*", FileKind::Folder, "the template's regions on the surface")
+      .output("regions*", FileKind::Folder, "area, volume, thickness and curvature by region")
       .output("unfold*", FileKind::Folder, "the unfolded patch and its evolution")
       .output("asymmetry.tsv", FileKind::Table,
               "of both hemispheres: thickness and area of each region, left and right");
@@ -227,10 +236,30 @@ void writeReport(Context& context, const fs::path& out) {
   }
 }
 
+/// The template to register to; none where the image has another one than Colin27, or none.
+std::string templateOf(Context& context, const Settings& s) {
+  const auto asked = [&](pipeline::RunStep step) {
+    return std::count(s.plan.steps.begin(), s.plan.steps.end(), step) > 0;
+  };
+  const bool needed = asked(pipeline::RunStep::Register) || asked(pipeline::RunStep::Parcellate);
+  if (needed && s.plan.cortexTemplate == kNoTemplate) {
+    throw UsageError(
+        "--template none leaves nothing to register to; leave it out, or the steps "
+        "register and parcellate");
+  }
+  if (needed || context.given("template")) return s.plan.cortexTemplate;
+  if (context.given("segment.template")) return kNoTemplate;
+  if (hasTemplate(s.plan.cortexTemplate)) return s.plan.cortexTemplate;
+  context.info("mricron-data is not installed: hemispheres are not registered to a template");
+  return kNoTemplate;
+}
+
 /// The plan.  If the input does not allow one, what an earlier run made of another input goes.
 pipeline::Plan planOrTakeBack(Context& context, const Settings& s) {
   try {
-    return pipeline::planRun(s.input, context.outputFolder(), s.atlas, s.plan);
+    pipeline::PlanOptions options = s.plan;
+    options.cortexTemplate = templateOf(context, s);
+    return pipeline::planRun(s.input, context.outputFolder(), s.atlas, options);
   } catch (const Error&) {
     if (s.resume) {
       for (const std::string step : kStepCommands) {

@@ -3,8 +3,10 @@
 
 #include "Explica/Application/Command.h"
 #include "Explica/Core/WholeFile.h"
+#include "Explica/Study/HeartStudy.h"
 #include "Explica/Study/StudyPage.h"
 #include "Explica/Study/StudyTable.h"
+#include "GroupStage.h"
 #include "StudyInput.h"
 
 #include <filesystem>
@@ -19,13 +21,17 @@ struct Settings {
   std::string study;
   std::string out;
   bool reuse = true;
+  GroupSettings group;
 };
 
 void declare(Declaration& d, Settings& s) {
   d.synopsis("the table of a study and its page")
       .description(
           "Writes a row for every run that the study file asks for, whatever became of it: done, "
-          "stopped early, failed and why, not begun.")
+          "stopped early, failed and why, not begun. Those whose runs have brought them to a "
+          "template are put together there, below OUT_DIR/group; who failed or is doubted is left "
+          "out and named, unless the study file (group: include) or --include says otherwise; "
+          "outliers are named and stay. The columns of participants.tsv go into every table.")
       .example("explica study group study.yaml results", "results/study.tsv, results/index.html")
       .input("STUDY", FileKind::Any, "study file, YAML or JSON", s.study)
       .argument(Field{"OUT_DIR", "", "folder of the results"}, s.out)
@@ -34,6 +40,25 @@ void declare(Declaration& d, Settings& s) {
       .inPlace()
       .varyingOutput("study.tsv", FileKind::Table, "one row a subject, hemisphere and region")
       .varyingOutput("index.html", FileKind::Report, "the same, to sort and click");
+  declareGroup(d, s.group);
+}
+
+/// What the study file says of the group, where the command line does not.
+GroupSettings groupOf(const Context& context, const study::StudyFile& file, GroupSettings group) {
+  const provenance::Json said = file.values.value("group", provenance::Json::object());
+  if (!context.given("include")) group.include = said.value("include", group.include);
+  if (!context.given("model") && said.contains("model")) {
+    group.model = said["model"].get<std::string>();
+  }
+  if (!context.given("fwhm")) group.fwhm = said.value("fwhm", group.fwhm);
+  return group;
+}
+
+/// participants.tsv of the study's data set, or beside the study file.
+AboutPeople aboutOf(const study::StudyFile& file) {
+  fs::path dataset = file.values.value("dataset", std::string("."));
+  if (dataset.is_relative()) dataset = file.path.parent_path() / dataset;
+  return study::aboutParticipants(dataset);
 }
 
 /// A row a planned run, in the order of the study file.
@@ -68,9 +93,11 @@ std::vector<study::StudyRow> rowsOf(const study::Study& study, const fs::path& o
 Termination run(Context& context, const Settings& s) {
   const study::StudyFile file = readCheckedStudy(s.study);
   const study::Study study = study::planStudy(file, studyPathOptions());
-  const std::vector<study::StudyRow> rows = rowsOf(study, s.out);
+  const AboutPeople about = aboutOf(file);
+  std::vector<study::StudyRow> rows = rowsOf(study, s.out);
+  const std::string part = writeGroup(context, groupOf(context, file, s.group), about, rows);
   writeTextFile(context.output("study.tsv"), study::tableText(rows));
-  writeTextFile(context.output("index.html"), study::indexPage(rows, study.name));
+  writeTextFile(context.output("index.html"), study::indexPage(rows, study.name, part));
   std::map<std::string, int> states;
   for (const study::StudyRow& row : rows)
     ++states[row.state.substr(0, row.state.find_first_of(" :("))];

@@ -63,7 +63,8 @@ bool endedFromOutside(Termination termination) {
 /// region's run has made are linked, and found true by their content.
 void shareSteps(const fs::path& made, const fs::path& run) {
   std::error_code fault;
-  for (const char* step : {"segment", "thickness", "surface"}) {
+  for (const char* step : {"segment", "thickness", "surface", "sphere", "register", "resample",
+                           "parcellate", "regions"}) {
     if (!fs::exists(made / step / "provenance.json") || fs::exists(run / step)) continue;
     fs::create_directories(run, fault);
     fs::copy(made / step, run / step,

@@ -138,6 +138,16 @@ TEST(Glm, NamesPeopleOfOneListOnlyAndMapsOfOtherSizes) {
   EXPECT_NE(run(list + "sub-2\tsub-2.shape.gii\n").err.find("'sub-2' is there twice"),
             std::string::npos);
   EXPECT_NE(run(list.substr(0, list.rfind("sub-6\t"))).err.find("'sub-6'"), std::string::npos);
+  // As many vertices of another template are other places.
+  std::string mixed = list;
+  for (const std::string name : {"sub-1", "sub-3"}) {
+    const std::string other =
+        name + "_space-" + (name == "sub-1" ? "a" : "b") + "_den-42_t.shape.gii";
+    std::filesystem::copy_file(folder / (name + ".shape.gii"), folder / other);
+    mixed.replace(mixed.find(name + ".shape.gii"), name.size() + 10, other);
+  }
+  EXPECT_NE(run(mixed).err.find("of sub-3 is on space-b_den-42, that of sub-1 on space-a_den-42"),
+            std::string::npos);
   io::writeGiftiShape(folder / "sub-4.shape.gii", {{"t", "mm", Eigen::VectorXd::Ones(7)}},
                       "CortexLeft");
   const auto wrong = run(list);

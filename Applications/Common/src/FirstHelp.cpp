@@ -14,8 +14,8 @@ const std::vector<FirstHelp>& allFirstHelp() {
       {"bids",
        "a BIDS data set: segmentations, FreeSurfer subjects or T1 images",
        "a derivative with surfaces, thickness and unfolded patches, and a table of the study",
-       {"participant-label", "hemispheres", "steps", "unfold-surface", "given-surfaces",
-        "unfold.center", "unfold.direction", "unfold.radius"},
+       {"participant-label", "hemispheres", "steps", "template", "include", "model",
+        "unfold-surface", "given-surfaces", "unfold.center", "unfold.direction", "unfold.radius"},
        R"(explica phantom cortex --size 32 --spacing 2 --out phantom
 mkdir -p data/sub-01/anat
 cp phantom/labels.nii.gz data/sub-01/anat/sub-01_dseg.nii.gz
@@ -87,7 +87,7 @@ explica inflate surfaces/white.surf.gii --out inflated)"},
       {"parcellate",
        "a folder with a sphere in register with a template, and the template's labels",
        "regions at the surface's vertices, and how sure they are",
-       {"atlas", "hemisphere"},
+       {"atlas", "template", "hemisphere"},
        R"(explica phantom shell --size 32 --out shell
 explica surface shell/labels.nii.gz --white 1 --grey 2 --faces 2000 --atlas shell/labels.nii.gz \
   --out surfaces
@@ -185,16 +185,16 @@ explica report thickness)"},
       {"resample",
        "per-vertex maps, labels or surfaces, and the sphere of their vertices",
        "the same at the vertices of another sphere in register, such as fsaverage5's",
-       {"from", "to", "template", "method", "areas"},
+       {"from", "to", "template", "space", "method", "areas", "amounts"},
        R"(explica phantom shell --size 32 --out shell
 explica surface shell/labels.nii.gz --white 1 --grey 2 --faces 2000 --out surfaces
 explica resample surfaces/thickness.shape.gii --from surfaces/white.surf.gii --to fsaverage3 \
   --out on-fsaverage3)"},
       {"run",
        "a T1, a label volume, a FreeSurfer subject or an anat folder of fMRIPrep",
-       "tissues, thickness, surfaces, an unfolded patch, and a report on all of them",
-       {"atlas", "kind", "hemisphere", "unfold-surface", "given-surfaces", "steps", "resume",
-        "unfold.center", "unfold.direction", "unfold.radius"},
+       "tissues, thickness, surfaces, their place on a template, an unfolded patch, and a report",
+       {"atlas", "template", "kind", "hemisphere", "unfold-surface", "given-surfaces", "steps",
+        "resume", "unfold.center", "unfold.direction", "unfold.radius"},
        R"(explica phantom cortex --size 32 --spacing 2 --out cortex
 explica run cortex/labels.nii.gz --surface.faces 2000 --unfold.max-iterations 5 --out result \
   || [ $? -eq 3 ])"},
@@ -235,8 +235,8 @@ echo '{"hemispheres": ["L"], "input": "cortex/labels.nii.gz", "subjects": ["01"]
 explica study check study.json)"},
       {"study group",
        "a study file, and the folder of its results",
-       "a table and a page with a row for every run",
-       {},
+       "a table and a page with a row for every run; people together on their template",
+       {"include", "model", "fwhm"},
        R"(explica phantom cortex --size 32 --spacing 2 --out cortex
 echo '{"hemispheres": ["L"], "input": "cortex/labels.nii.gz", "subjects": ["01"],
   "parameters": {"steps": ["thickness"]}}' > study.json

@@ -8,6 +8,7 @@
 #include "Explica/Sampling/Transfer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <vector>
 
@@ -132,6 +133,16 @@ Eigen::MatrixXd resampleMaps(const ResamplingWeights& weights, const Eigen::Matr
     }
   });
   return result;
+}
+
+Eigen::VectorXd resampleAmounts(const ResamplingWeights& weights, const Eigen::VectorXd& toAreas,
+                                const Eigen::VectorXd& amounts) {
+  Eigen::VectorXd handedOn = weights.transpose() * toAreas;
+  for (Eigen::Index v = 0; v < handedOn.size(); ++v) {
+    const bool known = handedOn[v] > 0 && std::isfinite(amounts[v]);
+    handedOn[v] = known ? amounts[v] / handedOn[v] : 0;
+  }
+  return toAreas.cwiseProduct(weights * handedOn);
 }
 
 VertexKeys resampleLabels(const ResamplingWeights& weights, const VertexKeys& keys) {

@@ -84,6 +84,24 @@ TEST(Resampling, AdaptiveWeightsUseEveryVertexAndKeepIntegrals) {
   EXPECT_GT(off(ResamplingMethod::Barycentric), 3 * off(ResamplingMethod::Adaptive));
 }
 
+TEST(Resampling, AmountsKeepTheirSum) {
+  const TriangleMesh from = fsaverageSphere(4), to = turned(fsaverageSphere(3), 0.3);
+  const Eigen::VectorXd toAreas = geometry::vertexAreas(to);
+  Eigen::VectorXd amounts = geometry::vertexAreas(from);
+  for (Eigen::Index v = 0; v < amounts.size(); ++v) amounts[v] *= 1 + from.positions(v, 0) / 150;
+  const Eigen::VectorXd there =
+      resampleAmounts(weightsOf(from, to, ResamplingMethod::Adaptive), toAreas, amounts);
+  EXPECT_NEAR(there.sum() / amounts.sum(), 1, 1e-12);
+  // As a density they are the same function of the place.
+  const Eigen::VectorXd expected = 1 + to.positions.col(0).array() / 150;
+  EXPECT_LT((there.cwiseQuotient(toAreas) - expected).norm() / expected.norm(), 0.02);
+  Eigen::VectorXd unknown = amounts;
+  unknown[7] = kNaN;
+  EXPECT_NEAR(
+      resampleAmounts(weightsOf(from, to, ResamplingMethod::Adaptive), toAreas, unknown).sum(),
+      amounts.sum() - amounts[7], 1e-9 * amounts.sum());
+}
+
 TEST(Resampling, RadiiDoNotMatter) {
   const TriangleMesh from = fsaverageSphere(3);
   TriangleMesh to = turned(fsaverageSphere(2), 0.2);

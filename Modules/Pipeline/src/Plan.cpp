@@ -263,6 +263,7 @@ class Planner {
     }
     if (wanted(options_, RunStep::Thickness)) planThickness();
     if (wanted(options_, RunStep::Surface)) planSurface(given);
+    planTemplate(given);
     if (wanted(options_, RunStep::Unfold)) planUnfold();
     return std::move(plan_);
   }
@@ -343,6 +344,58 @@ class Planner {
       json["atlas"] = (out_ / "segment" / "atlas.nii.gz").string();
     }
     plan_.steps.push_back({"surface" + ending_, "surface", needs, values(json)});
+  }
+
+  /// True if the step is asked for; or if nothing is, and the input is a person's hemisphere.
+  [[nodiscard]] bool onTemplate(RunStep step, bool given) const {
+    if (!options_.steps.empty()) return wanted(options_, step);
+    const bool named = labels_.naming == Naming::FreeSurfer || labels_.naming == Naming::Ribbon;
+    return options_.cortexTemplate != "none" && (given || files_.t1 || named);
+  }
+
+  void add(const std::string& name, const std::string& command,
+           const std::vector<std::string>& needs, Json json) {
+    std::vector<std::string> all;
+    for (const std::string& need : needs) all.push_back(need + ending_);
+    plan_.steps.push_back({name + ending_, command, all, values(std::move(json))});
+  }
+
+  /// From one person to others: a sphere, its place on the template, maps there, regions.
+  void planTemplate(bool given) {
+    const auto folder = [&](const char* step) { return out_ / (step + ending_); };
+    const fs::path surface = folder("surface");
+    if (onTemplate(RunStep::Sphere, given)) {
+      add("sphere", "sphere", {"surface"}, {{"SURFACE", (surface / "white.surf.gii").string()}});
+    }
+    const std::string side = left_ ? "L" : "R";
+    const std::string sphere = (folder("register") / "sphere.reg.surf.gii").string();
+    if (onTemplate(RunStep::Register, given)) {
+      add("register", "register", {"surface", "sphere"},
+          {{"SPHERE", (folder("sphere") / "sphere.surf.gii").string()},
+           {"surfaces", surface.string()},
+           {"template", options_.cortexTemplate}});
+      Json maps = Json::array();
+      for (const char* map : {"thickness", "sulc"}) {
+        maps.push_back((surface / (std::string(map) + ".shape.gii")).string());
+      }
+      add("resample", "resample", {"surface", "register"},
+          {{"MAP", maps},
+           {"amounts", {(surface / "area.shape.gii").string()}},
+           {"from", sphere},
+           {"to", "fsaverage5"},
+           {"space", options_.cortexTemplate}});
+    }
+    if (onTemplate(RunStep::Parcellate, given)) {
+      add("parcellate", "parcellate", {"register"},
+          {{"SURFACES", folder("register").string()},
+           {"template", options_.cortexTemplate},
+           {"hemisphere", side}});
+      add("regions", "regions", {"surface", "parcellate"},
+          {{"SURFACES", surface.string()},
+           {"atlas", {(folder("parcellate") / "regions.label.gii").string()}},
+           {"hemisphere", side},
+           {"person", out_.lexically_normal().filename().string()}});
+    }
   }
 
   void planUnfold() {

@@ -89,7 +89,7 @@ TEST_F(PlanOfLabels, ARibbonTellsItsSides) {
   EXPECT_TRUE(labelsHaveSides(ribbon));
   PlanOptions options;
   const Plan both = plan(ribbon, options);
-  EXPECT_EQ(both.steps.size(), 6u) << "each step for each side";
+  EXPECT_EQ(both.steps.size(), 16u) << "each step for each side";
   EXPECT_EQ(valuesOf(both, "surface-R")["hemisphere"], "R");
   const Json left = valuesOf(both, "thickness-L");
   EXPECT_EQ(left["inner"], Json({2}));
@@ -135,6 +135,27 @@ TEST_F(PlanOfLabels, FewWholeNumbersAreLabelsOthersAreAnImage) {
   EXPECT_EQ(detectKind(write(shells(3, 2, 1))), InputKind::Labels);
   EXPECT_EQ(detectKind(write([](double radius, bool) { return static_cast<Label>(60 * radius); })),
             InputKind::T1);
+}
+
+TEST_F(PlanOfLabels, AHemisphereGoesToTheTemplateAndOtherTissueDoesNot) {
+  const auto ribbon = [](double radius, bool left) -> Label {
+    return radius < 5 ? (left ? 2 : 41) : radius < 8 ? (left ? 3 : 42) : 0;
+  };
+  const auto namesOf = [](const Plan& plan) {
+    std::set<std::string> names;
+    for (const PlannedStep& step : plan.steps) names.insert(step.name);
+    return names;
+  };
+  const Plan person = plan(write(ribbon));
+  EXPECT_EQ(namesOf(person).count("parcellate-R"), 1);
+  EXPECT_EQ(valuesOf(person, "register-L")["template"], "colin27");
+  EXPECT_EQ(valuesOf(person, "resample-L")["space"], "colin27");
+  PlanOptions without;
+  without.cortexTemplate = "none";
+  EXPECT_EQ(namesOf(plan(write(ribbon), without)).count("sphere-L"), 0);
+  EXPECT_EQ(namesOf(plan(write(shells(3, 2, 1)))).count("sphere"), 0);
+  without.steps = {RunStep::Sphere};
+  EXPECT_EQ(namesOf(plan(write(shells(3, 2, 1)), without)), std::set<std::string>{"sphere"});
 }
 
 TEST_F(PlanOfLabels, StepsNeedWhatTheyReadAndOthersAreLeftOut) {

@@ -23,15 +23,16 @@ using provenance::Json;
 
 /// An output of a run, and what it is called in BIDS.
 struct Export {
-  const char* step;
-  const char* file;
-  const char* suffix;  ///< after "sub-01_hemi-L"
-  const char* units;   ///< empty if none
-  const char* description;
+  std::string step;
+  std::string file;
+  std::string suffix;  ///< after "sub-01_hemi-L"
+  std::string units;   ///< empty if none
+  std::string description;
+  std::string space = {};  ///< of a template; empty: the person's own
 };
 
 // Names after BIDS derivatives: surfaces and maps of a hemisphere.
-constexpr Export kExports[] = {
+const std::vector<Export> kExports = {
     {"surface", "white.surf.gii", "_white.surf.gii", "mm", "white surface"},
     {"surface", "mid.surf.gii", "_midthickness.surf.gii", "mm", "surface at half depth"},
     {"surface", "pial.surf.gii", "_pial.surf.gii", "mm", "outer surface"},
@@ -49,6 +50,13 @@ constexpr Export kExports[] = {
     {"surface", "regions.tsv", "_desc-regions_morph.tsv", "",
      "area and thickness of each cortical region"},
     {"surface", "topology.tsv", "_defects.tsv", "", "one row for each corrected defect"},
+    {"sphere", "sphere.surf.gii", "_sphere.surf.gii", "mm", "white surface on a sphere"},
+    {"register", "sphere.reg.surf.gii", "_desc-reg_sphere.surf.gii", "mm",
+     "that sphere in register with the template's"},
+    {"parcellate", "regions.label.gii", "_desc-template_dseg.label.gii", "",
+     "the template's regions"},
+    {"regions", "regions.tsv", "_desc-template_morph.tsv", "",
+     "area, volume, thickness and curvature of each of the template's regions"},
     {"unfold", "unfolded.surf.gii", "_desc-unfold_midthickness.surf.gii", "mm",
      "patch unfolded for a viewpoint"},
     {"unfold", "region.label.gii", "_desc-unfold_roi.label.gii", "", "1 in the unfolded patch"},
@@ -61,6 +69,31 @@ constexpr Export kExports[] = {
     {"thickness", "layers.nii.gz", "_desc-layers_dseg.nii.gz", "",
      "layers, counted from the white matter"},
 };
+
+/// The fixed ones, and maps on the template: "thickness_space-X_den-Y.shape.gii" becomes
+/// "_space-X_den-Y_thickness.shape.gii".
+std::vector<Export> exportsOf(const fs::path& run) {
+  constexpr std::string_view kSpace = "_space-", kDensity = "_den-", kEnding = ".shape.gii";
+  std::vector<Export> all = kExports;
+  std::error_code none;
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(run / "resample", none)) {
+    names.insert(entry.path().filename().string());
+  }
+  for (const std::string& name : names) {
+    const std::size_t at = name.find(kSpace), density = name.find(kDensity);
+    if (at == std::string::npos || density == std::string::npos || !name.ends_with(kEnding)) {
+      continue;
+    }
+    const std::string measure = name.substr(0, at);
+    const std::string entity = name.substr(at, name.size() - at - kEnding.size());
+    const std::size_t begin = at + kSpace.size();
+    all.push_back({"resample", name, entity + "_" + measure + std::string(kEnding),
+                   measure == "area" ? "mm^2" : "mm", measure + " at the template's vertices",
+                   name.substr(begin, density - begin)});
+  }
+  return all;
+}
 
 /// Writes unless the file holds the same already: names and dates of unchanged files stay.
 void writeIfDifferent(const fs::path& path, const std::string& text) {
@@ -101,10 +134,11 @@ class Sources {
   Sources(const fs::path& run, const Participant& participant, const fs::path& stem,
           const DerivativeOrigin& origin)
       : run_(run), origin_(origin), inputs_(filesOf(participant.input)) {
-    for (const Export& item : kExports) {
-      exported_[item.file] = "bids::" + stem.generic_string() + item.suffix;
+    for (const Export& item : exportsOf(run)) {
+      exported_[item.step + "/" + item.file] = "bids::" + stem.generic_string() + item.suffix;
     }
-    for (const char* step : {"segment", "thickness", "surface", "unfold"}) {
+    for (const char* step : {"segment", "thickness", "surface", "sphere", "register", "resample",
+                             "parcellate", "regions", "unfold"}) {
       const fs::path record = run_ / step / provenance::kRecordName;
       if (fs::exists(record)) records_[step] = provenance::readRecord(record);
     }
@@ -151,7 +185,7 @@ class Sources {
       }
       for (const auto& [other, made] : records_) {
         if (other == step || !fs::exists(run_ / other / name)) continue;
-        const auto exported = exported_.find(name);
+        const auto exported = exported_.find(other + "/" + name);
         if (exported != exported_.end()) {
           uris.insert(exported->second);
         } else {
@@ -175,13 +209,18 @@ class Sources {
   fs::path run_;
   const DerivativeOrigin& origin_;
   std::vector<fs::path> inputs_;
-  std::map<std::string, std::string> exported_;  ///< file of a step to its URI
+  std::map<std::string, std::string> exported_;  ///< STEP/FILE to its URI
   std::map<std::string, Json> records_;          ///< by step
 };
 
 /// What the columns of a table mean, as BIDS wants it beside the table.
-void describeColumns(Json& sidecar, const std::string& file) {
-  if (file == "regions.tsv") {
+void describeColumns(Json& sidecar, const std::string& step, const std::string& file) {
+  if (step == "regions") {
+    for (const char* column : {"person", "hemisphere", "atlas", "region", "measure", "unit"}) {
+      sidecar[column] = {{"Description", std::string("the row's ") + column}};
+    }
+    sidecar["value"] = {{"Description", "of the measure in the region, in the row's unit"}};
+  } else if (file == "regions.tsv") {
     sidecar["index"] = {{"Description", "label of the region"}};
     sidecar["name"] = {{"Description", "its name"}};
     sidecar["vertices"] = {{"Description", "vertices in it"}};
@@ -236,6 +275,8 @@ void describeDerivatives(const fs::path& out, const DerivativeOrigin& origin,
                    "distortion\tarea, angle and length changes of the unfolded patch\n"
                    "valid\twhere a measure is defined\n"
                    "regions\tcortical regions of the atlas that came with the input\n"
+                   "template\tcortical regions of the template, by registration\n"
+                   "reg\tin register with the template\n"
                    "harmonic\talong trajectories of the harmonic interpolant\n"
                    "layers\tlayers of the cortex, counted from the white matter\n");
   writeIfDifferent(out / ".bidsignore",
@@ -249,12 +290,13 @@ std::vector<fs::path> exportRun(const fs::path& run, const fs::path& out,
   std::vector<fs::path> written;
   const fs::path stem = anatOf(participant) / (participant.name() + "_hemi-" + hemisphere);
   const auto nameOf = [&](const Export& item) {
-    const bool ofPatch = std::string_view(item.step) == "unfold" && !region.empty();
+    const bool ofPatch = item.step == "unfold" && !region.empty();
     return stem.generic_string() + (ofPatch ? "_label-" + region : "") + item.suffix;
   };
   const auto sidecarOf = [](const std::string& name) { return withoutExtensions(name) + ".json"; };
+  const std::vector<Export> exports = exportsOf(run);
   std::vector<const Export*> items;
-  for (const Export& item : kExports) {
+  for (const Export& item : exports) {
     if (fs::exists(run / item.step / item.file)) {
       items.push_back(&item);
     } else {
@@ -276,13 +318,13 @@ std::vector<fs::path> exportRun(const fs::path& run, const fs::path& out,
     Json sidecar = Json::object();
     sidecar["Description"] = item.description;
     sidecar["Sources"] = sources.of(item.step);
-    sidecar["SpatialReference"] = sources.space();
-    if (*item.units) sidecar["Units"] = item.units;
+    sidecar["SpatialReference"] = item.space.empty() ? sources.space() : item.space;
+    if (!item.units.empty()) sidecar["Units"] = item.units;
     if (surface.contains("euler_characteristic")) {
       sidecar["EulerNumber"] = surface["euler_characteristic"];
       sidecar["NumberOfDefects"] = surface["defects_corrected"];
     }
-    describeColumns(sidecar, item.file);
+    describeColumns(sidecar, item.step, item.file);
     sidecar["Digest"] = {{"sha256", provenance::sha256Of(content)}};
     const std::string activity = sources.activity(item.step);
     if (!activity.empty()) sidecar["GeneratedBy"] = "bids::prov#" + activity;

@@ -126,7 +126,8 @@ constexpr const char* kBody =
 
 }  // namespace
 
-std::string indexPage(const std::vector<StudyRow>& rows, const std::string& title) {
+std::string indexPage(const std::vector<StudyRow>& rows, const std::string& title,
+                      const std::string& part) {
   const std::vector<std::string> columns = columnsOf(rows);
   const auto flags = flagsOf(rows);
   const bool regions = hasRegions(rows);
@@ -149,7 +150,7 @@ std::string indexPage(const std::vector<StudyRow>& rows, const std::string& titl
          escapeHtml(title) + "</h1>\n<p>" + std::to_string(done) + " of " +
          std::to_string(rows.size()) + " hemispheres are done; " + std::to_string(marked) +
          " need a look. The numbers in full are in <a href=\"study.tsv\">study.tsv</a>.</p>\n" +
-         kBody + "</main><script type=\"application/json\" id=\"data\">" + scriptText(data) +
+         part + kBody + "</main><script type=\"application/json\" id=\"data\">" + scriptText(data) +
          "</script>\n<script>" + kStudyScript + "</script>\n</body></html>\n";
 }
 

@@ -44,7 +44,7 @@ constexpr const char* kFirstColumns[] = {"surface.thickness_mean",
                                          "unfold.stop_reason"};
 
 /// Steps whose numbers make a row.
-constexpr const char* kSteps[] = {"segment", "thickness", "surface", "unfold"};
+constexpr const char* kSteps[] = {"segment", "thickness", "surface", "register", "unfold"};
 
 /// Numbers that should be alike in all rows.
 constexpr const char* kComparedColumns[] = {"thickness.thickness_mean_columns",
@@ -58,7 +58,11 @@ constexpr const char* kComparedColumns[] = {"thickness.thickness_mean_columns",
                                             "unfold.visibility_final",
                                             "unfold.seen_final",
                                             "thickness.traced_fraction",
-                                            "surface.volume_white"};
+                                            "surface.volume_white",
+                                            "register.folding_correlation_after",
+                                            "group.distance_thickness",
+                                            "group.distance_sulc",
+                                            "group.distance_area"};
 
 constexpr double kFar = 3.5;            // robust z [IglewiczHoaglin1993]
 constexpr std::size_t kFewestRows = 8;  // below, a median and its spread say little
@@ -118,12 +122,15 @@ void addState(StudyRow& row, const fs::path& run) {
 
 /// A step whose numbers cannot be believed fails the row; what failed before explains more.
 void addFlags(StudyRow& row, const std::string& step, const Json& summary) {
-  if (summary.value("plausible", true) || row.state != "done") return;
+  if (row.state != "done") return;
   for (const Json& flag : summary.value("flags", Json::array())) {
-    if (flag.value("accepted", false)) continue;
+    if (summary.value("plausible", true) || flag.value("accepted", false)) continue;
     row.state = "implausible (" + step + "): " + textOf(flag.value("message", Json("")));
     return;
   }
+  const Json reasons = summary.value("reasons", Json::array());
+  if (summary.value("verdict", "") != "doubtful" || reasons.empty()) return;
+  row.state = "implausible (" + step + "): " + textOf(reasons.front());
 }
 
 StudyRow rowOf(const fs::path& out, const fs::path& run) {

@@ -77,6 +77,9 @@ void chartUnfolding(ResultFolder& results, const StepFolder& step);
 /// Sampled maps and labels on the surface, and the table of points.
 void showSampled(ResultFolder& results, const StepFolder& step);
 
+/// The template's regions on a person's surface.
+void showRegions(ResultFolder& results, const StepFolder& step);
+
 /// Profiles over depth or layers, by region, and their course over time.
 void showProfiles(ResultFolder& results, const StepFolder& step);
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "Explica/Core/Results.h"
 #include "Explica/Maps/Resampling.h"
 
 #include <vector>
@@ -21,6 +22,13 @@ struct Parcellation {
   Eigen::VectorXd doubt;  ///< V, share of the votes against the key: 0 within regions, more at
                           ///< borders and where labelled people disagree
 };
+
+inline void describe(Results& t, const Parcellation& p) {
+  t.count("vertices", "Vertices", "", p.keys.size());
+  t.number("doubt_mean", "Mean doubt of the regions", "share",
+           "Share of the votes against a vertex's region, over the vertices.",
+           p.doubt.size() > 0 ? p.doubt.mean() : 0);
+}
 
 /// Labels of a surface by the votes of labelled ones in register with it.
 ///

@@ -45,6 +45,14 @@ void requireSphere(const TriangleMesh& mesh, std::string_view name);
 [[nodiscard]] Eigen::MatrixXd resampleMaps(const ResamplingWeights& weights,
                                            const Eigen::MatrixXd& values);
 
+/// Amounts at source vertices (areas, volumes), each shared among the target's vertices in
+/// proportion to weight times area, so that sums stay; of a vertex that no target takes from
+/// nothing is left, which Adaptive weights do not have.  NaN counts as 0.
+/// @param toAreas  mm^2, as given to resamplingWeights()
+[[nodiscard]] Eigen::VectorXd resampleAmounts(const ResamplingWeights& weights,
+                                              const Eigen::VectorXd& toAreas,
+                                              const Eigen::VectorXd& amounts);
+
 using VertexKeys = Eigen::Matrix<Label, Eigen::Dynamic, 1>;  ///< V
 
 /// The key of the largest weight at each target vertex; of equal ones the smallest key.

@@ -38,7 +38,7 @@ enum class RunHemisphere { Left, Right, Both };
 enum class UnfoldedSurface { White, Mid, Pial };
 
 /// The commands of a run, in their order.
-enum class RunStep { Segment, Thickness, Surface, Unfold, Report };
+enum class RunStep { Segment, Thickness, Surface, Sphere, Register, Parcellate, Unfold, Report };
 
 /// How a run is put together; the steps' own options come on top.
 struct PlanOptions {
@@ -46,7 +46,9 @@ struct PlanOptions {
   RunHemisphere hemisphere = RunHemisphere::Both;
   UnfoldedSurface unfolded = UnfoldedSurface::Mid;
   GivenSurfaces given = GivenSurfaces::Use;
-  std::vector<RunStep> steps;  ///< those to do; empty for all that the input allows
+  std::vector<RunStep> steps;              ///< those to do; empty for all that the input allows
+  std::string cortexTemplate = "colin27";  ///< to register to; "none": the steps after `sphere`
+                                           ///< are not among those that are done by themselves
 };
 
 template <class Visitor>
@@ -59,6 +61,11 @@ void describe(PlanOptions& options, Visitor&& visit) {
   visit(Field{"given-surfaces", "", "what to do with white and pial surfaces found in the input"},
         options.given);
   visit(Field{"steps", "", "steps to do (default: all that the input allows)"}, options.steps);
+  visit(
+      Field{"template", "",
+            "cortex that hemispheres are registered to, and whose regions they get; see register; "
+            "none: neither"},
+      options.cortexTemplate);
 }
 
 /// One command of a run.
@@ -148,6 +155,9 @@ struct EnumNames<pipeline::RunStep> {
   static constexpr std::array table = {std::pair{pipeline::RunStep::Segment, "segment"},
                                        std::pair{pipeline::RunStep::Thickness, "thickness"},
                                        std::pair{pipeline::RunStep::Surface, "surface"},
+                                       std::pair{pipeline::RunStep::Sphere, "sphere"},
+                                       std::pair{pipeline::RunStep::Register, "register"},
+                                       std::pair{pipeline::RunStep::Parcellate, "parcellate"},
                                        std::pair{pipeline::RunStep::Unfold, "unfold"},
                                        std::pair{pipeline::RunStep::Report, "report"}};
 };

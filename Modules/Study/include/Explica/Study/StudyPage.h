@@ -14,6 +14,8 @@ namespace explica::study {
 ///
 /// One file, no request but for the small pictures of the runs, which lie beside it; 200 rows are
 /// shown at a time, so that it stays quick with 100,000.
-[[nodiscard]] std::string indexPage(const std::vector<StudyRow>& rows, const std::string& title);
+/// @param part  HTML to stand before the distributions; may be empty
+[[nodiscard]] std::string indexPage(const std::vector<StudyRow>& rows, const std::string& title,
+                                    const std::string& part = {});
 
 }  // namespace explica::study
