@@ -23,7 +23,7 @@ std::string manPageOf(const Json& command, const std::string& version) {
   std::transform(title.begin(), title.end(), title.begin(),
                  [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
   std::string text = ".TH " + roff(title) + " 1 \"\" \"Explica " + roff(version) +
-                     "\" \"User Commands\"\n.SH NAME\n" + roff(name) + " \\- " +
+                     "\" \"User Commands\"\n.ad l\n.SH NAME\n" + roff(name) + " \\- " +
                      roff(word(command["synopsis"])) + "\n.SH SYNOPSIS\n.B " +
                      roff(word(command["usage"])) + "\n";
   if (!word(command["description"]).empty()) {
