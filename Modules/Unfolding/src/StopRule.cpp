@@ -3,8 +3,6 @@
 
 #include "Explica/Unfolding/StopRule.h"
 
-#include "Trend.h"
-
 #include "Explica/Core/Errors.h"
 
 #include <algorithm>
@@ -13,15 +11,10 @@
 namespace explica::unfolding {
 namespace {
 
-constexpr double kLargestDrive = 8;   // lengths and contacts are outweighed up to here
-constexpr double kUsualDrive = 4;     // ... weighed against lengths as stiff as by default
-constexpr double kLeastDrive = 0.1;   // ... and the visibility term down to here
-constexpr double kOpen = 0.9;         // visibility from which on seeing and lengths are weighed
-constexpr double kBalanced = 0.0008;  // of visibility
-constexpr double kEnough = 0.001;     // to spare of both: no iteration is spent on more
-constexpr int kLookEvery = 5;         // iterations from one look to the next, ...
-constexpr double kAppearing = 1e-3;   // ... in which so much more of the area has to be seen
-constexpr int kBalancing = 142;       // iterations at most that seeing and lengths are weighed
+constexpr double kAccuracy = 1e-3;      // of visibility: what differs by less is the same
+constexpr int kWindow = 10;             // iterations in which a run at rest changes by half of that
+constexpr double kOpen = 0.9;           // visibility below which folds are closed: no model holds
+constexpr double kMostSteering = 1.15;  // factor of the visibility term a step
 
 void requireUsable(const UnfoldOptions& options) {
   if (options.targetVisibility &&
@@ -29,93 +22,126 @@ void requireUsable(const UnfoldOptions& options) {
     throw InvalidInput("target-visibility: must be above 0 and at most 1");
   }
   if (!(options.areaTolerance > 0)) throw InvalidInput("area-tolerance: must be positive");
+  if (!(options.trade > 0)) throw InvalidInput("trade: must be positive");
   if (options.maxIterations <= 0) throw InvalidInput("max-iterations: must be positive");
   if (options.maxTime && !(*options.maxTime > 0)) throw InvalidInput("max-time: must be positive");
   if (options.frames < 0) throw InvalidInput("frames: must not be negative");
 }
 
-/// Up to where lengths are outweighed: stiffer ones farther.
+/// Where a quantity leads to whose steps shrink as the last two did [Aitken], by a quarter at
+/// least.
+double limitOf(const std::vector<IterationRecord>& history, double IterationRecord::*quantity) {
+  constexpr double kSlowest = 0.75;
+  const auto back = [&](std::size_t n) { return history[history.size() - 1 - n].*quantity; };
+  if (history.size() < 3) return back(0);
+  const double step = back(0) - back(1), before = back(1) - back(2);
+  const double ratio = before == 0 ? 0 : std::clamp(step / before, 0.0, kSlowest);
+  return back(0) + ratio / (1 - ratio) * step;
+}
+
+/// The most that visibility, or strain by what it is worth, has changed over the window; by how
+/// much the visibility has risen where nothing else is sought (the thesis's flow); infinity if it
+/// is not that long ago that the run was changed from outside.
+double changeOver(const std::vector<IterationRecord>& history, int since,
+                  const UnfoldOptions& options) {
+  const IterationRecord& last = history.back();
+  if (last.iteration - since < kWindow || history.size() <= kWindow) return kInfinity;
+  const IterationRecord& then = history[history.size() - 1 - kWindow];
+  const double rise = last.visibility - then.visibility;
+  if (options.unfolder.method == Method::Thesis) return rise;
+  return std::max(std::abs(rise),
+                  std::abs(last.edgeStrainMean - then.edgeStrainMean) / options.trade);
+}
+
+/// True if a face of the collar is stretched beyond what it should be and is still giving way back:
+/// one that is caught in a contact stays as it is, and is no reason to go on.
+bool isTorn(const std::vector<IterationRecord>& history) {
+  const double now = history.back().collarStretchMax;
+  if (history.size() <= kWindow) return now > kCollarMost;
+  return now > kCollarMost && now < history[history.size() - 1 - kWindow].collarStretchMax;
+}
+
+/// Strength of the visibility term at which one per cent of visibility costs the strain that it is
+/// worth: trade times the slope, by strain, of what lengths cost at their goal.
 double largestDrive(const UnfoldOptions& options) {
-  const double usual = kTerms[static_cast<std::size_t>(Term::Spring)].weight;
-  const double stiffer = std::max(1.0, options.unfolder.weights[Term::Spring] / usual);
-  return std::min(kUsualDrive * stiffer, kLargestDrive);
+  const double share = kGoalStrain / options.unfolder.yieldStrain;
+  const double slope = 2 * kGoalStrain / std::sqrt(1 + share * share);
+  return options.trade * options.unfolder.weights[Term::Spring] * slope;
+}
+
+/// True if too little of the region is seen, but more from one look to the next.
+bool isStillAppearing(Unfolder& unfolder) {
+  const Look before = unfolder.state().look;
+  const bool looked = before.iteration >= 0;
+  if (looked && unfolder.state().iteration - before.iteration < kWindow / 2) {
+    return before.seen < kGoalSeen;
+  }
+  const double seen = unfolder.look();
+  return seen < kGoalSeen && (!looked || seen > before.seen + kAccuracy);
 }
 
 }  // namespace
+
+double aimAt(const UnfoldOptions& options, double strain) {
+  if (options.targetVisibility) return *options.targetVisibility + kAccuracy;
+  return kGoalVisibility + std::min(3 * kAccuracy, (kGoalStrain - strain) / options.trade);
+}
+
+double steering(double visibility, double aim) {
+  if (!(aim < 1)) return kMostSteering;
+  return std::clamp(std::sqrt(std::max(0.0, 1 - visibility) / (1 - aim)), 1 / kMostSteering,
+                    kMostSteering);
+}
 
 StopRule::StopRule(const UnfoldOptions& options) : options_(options) {
   requireUsable(options);
 }
 
-bool StopRule::targetHolds(const std::vector<IterationRecord>& history) const {
-  constexpr int kPolish = 100;  // iterations for the areas once the visibility is reached
-  const double goal = *options_.targetVisibility;
-  if (history.back().visibility < goal) return false;
-  const auto atGoal = std::count_if(history.begin(), history.end(),
-                                    [goal](const auto& row) { return row.visibility >= goal; });
-  const bool settled = history.back().areaErrorMean <= options_.areaTolerance &&
-                       (options_.unfolder.method == Method::Thesis || isRelaxed(history));
-  return settled || atGoal > kPolish;
-}
-
-/// True if too little of the region is seen, but more from one look to the next.
-bool StopRule::isStillAppearing(Unfolder& unfolder) {
-  const Look before = unfolder.state().look;
-  const bool looked = before.iteration >= 0;
-  if (looked && unfolder.state().iteration - before.iteration < kLookEvery) {
-    return before.seen < kGoalSeen;
-  }
-  const double seen = unfolder.look();
-  return seen < kGoalSeen && (!looked || seen > before.seen + kAppearing);
-}
-
-/// Soft areas as long as what is seen is far from its goal, then stiff ones.
-Termination StopRule::weigh(Unfolder& unfolder, const std::vector<IterationRecord>& history) const {
+Termination StopRule::steer(Unfolder& unfolder, const std::vector<IterationRecord>& history,
+                            double change) const {
   const IterationRecord& last = history.back();
-  const auto [factor, nearGoal] = steer(history);
-  const double drive = unfolder.state().drive;
-  const double most = largestDrive(options_);
-  const bool atLimit = factor > 1 ? drive >= most : drive <= kLeastDrive;
-  const bool balanced = std::abs(last.visibility - goalAt(last.edgeStrainMean)) < kBalanced;
-  const bool atRest = isAtRest(history);
-  const bool elastic = options_.unfolder.surround == Surround::Elastic;
-  const bool torn = elastic && isTorn(history);
-  const bool enough = merit(last.visibility, last.edgeStrainMean) > kEnough && !torn;
-  const bool longEnough = last.iteration - unfolder.state().driveIteration > kBalancing;
-  const bool ended = enough || longEnough || ((balanced || atLimit) && atRest);
+  const auto& target = options_.targetVisibility;
+  const bool rests = change < kAccuracy / 2;
   const bool kept = last.areaErrorMean <= options_.areaTolerance;
-  const bool appearing = ended && kept && isStillAppearing(unfolder);
-  if (ended && kept && (longEnough || !appearing)) return Termination::Converged;
+  const bool torn = options_.unfolder.surround == Surround::Elastic && isTorn(history);
+  const bool enough = !target && !torn &&
+                      merit(last.visibility, last.edgeStrainMean, kNaN, options_.trade) > kAccuracy;
+  if (kept && (enough || rests)) {
+    if (target) {
+      return last.visibility >= *target ? Termination::TargetReached : Termination::Stalled;
+    }
+    if (!isStillAppearing(unfolder)) return Termination::Converged;
+  }
   if (static_cast<int>(history.size()) > options_.maxIterations) return Termination::MaxIterations;
-  unfolder.balance(std::clamp(drive * factor, kLeastDrive, most) / drive,
-                   !kept && (nearGoal || (atLimit && !isGaining(history)) || atRest));
+  const double visibility = limitOf(history, &IterationRecord::visibility);
+  const double aim = aimAt(options_, limitOf(history, &IterationRecord::edgeStrainMean));
+  const double drive = unfolder.state().drive, most = std::max(drive, largestDrive(options_));
+  const bool slow = rests || (drive >= most && change < 3 * kAccuracy);
+  unfolder.balance(std::min(most, drive * steering(visibility, aim)) / drive,
+                   !kept && (slow || visibility > aim - 2 * kAccuracy));
   return Termination::NotRun;
 }
 
 Termination StopRule::check(Unfolder& unfolder, const std::vector<IterationRecord>& history) const {
   const IterationRecord& last = history.back();
   const bool thesis = options_.unfolder.method == Method::Thesis;
-  const double goal = options_.targetVisibility.value_or(1.0);
-  const bool atGoal = options_.targetVisibility && last.visibility >= goal;
-  const bool kept = last.areaErrorMean <= options_.areaTolerance;
-  if (atGoal && targetHolds(history)) return Termination::TargetReached;
   const bool started = thesis || !unfolder.state().separating;
-  const int since = unfolder.state().driveIteration;
-  const bool settled = !atGoal && started && isSettled(history, since);
-  const bool limit = static_cast<int>(history.size()) > options_.maxIterations;
-  if (!thesis && !options_.targetVisibility) unfolder.balance(1, false);  // areas are soft at first
-  if (!thesis && started && unfolder.isHeldBelow()) {
-    if (settled) unfolder.makeWay();
-  } else if (thesis || options_.targetVisibility) {
-    if (settled && (kept || thesis)) {
-      if (!options_.targetVisibility) return Termination::Converged;
-      if (thesis || unfolder.state().drive >= kLargestDrive) return Termination::Stalled;
-      unfolder.raiseDrive(driveFactor(last.visibility, goal));
+  const double change =
+      started ? changeOver(history, unfolder.state().driveIteration, options_) : kInfinity;
+  const bool rests = change < kAccuracy / 2;
+  const double goal = options_.targetVisibility.value_or(1);
+  if (thesis) {
+    if (last.visibility >= goal) return Termination::TargetReached;
+    if (rests) return options_.targetVisibility ? Termination::Stalled : Termination::Converged;
+  } else {
+    unfolder.balance(1, false);  // areas are soft at first
+    if (started && unfolder.isHeldBelow()) {
+      if (change < 2 * kAccuracy) unfolder.makeWay();  // it hardly opens any more
+    } else if (started && (rests || last.visibility > std::min(kOpen, goal))) {
+      return steer(unfolder, history, change);
     }
-  } else if (started && (settled || last.visibility > kOpen)) {
-    const Termination end = weigh(unfolder, history);
-    if (end != Termination::NotRun) return end;
   }
+  const bool limit = static_cast<int>(history.size()) > options_.maxIterations;
   return limit ? Termination::MaxIterations : Termination::NotRun;
 }
 

@@ -55,10 +55,11 @@ void tellProgress(const Monitor& monitor, const IterationRecord& now, double ini
 }
 
 /// Whether it pays to go back from a state.
-bool isWorse(const IterationRecord& state, const BestState& than, bool towardsTarget, double seen) {
-  if (towardsTarget) return state.visibility < than.visibility - kNoWorse;
-  return merit(state.visibility, state.edgeStrainMean, seen) <
-         merit(than.visibility, than.strain, than.seen) - kNoWorse;
+bool isWorse(const IterationRecord& state, const BestState& than, const UnfoldOptions& options,
+             double seen) {
+  if (options.targetVisibility) return state.visibility < than.visibility - kNoWorse;
+  return merit(state.visibility, state.edgeStrainMean, seen, options.trade) <
+         merit(than.visibility, than.strain, than.seen, options.trade) - kNoWorse;
 }
 
 /// Share of the region that is seen in the present state, if the stop rule has begun to ask.
@@ -73,7 +74,7 @@ void consider(const Unfolder& unfolder, const UnfoldOptions& options, BestState&
   const IterationRecord& now = unfolder.record();
   if (now.areaErrorMean > options.areaTolerance) return;
   const double seen = seenIfAsked(unfolder);
-  if (!isBetter(now, best, options.targetVisibility.has_value(), seen)) return;
+  if (!isBetter(now, best, options.targetVisibility.has_value(), seen, options.trade)) return;
   best = {now.iteration, now.visibility, now.edgeStrainMean, movingOnly(unfolder), seen};
 }
 
@@ -89,11 +90,11 @@ void considerLook(const Unfolder& unfolder, bool isFirst, BestState& best) {
 /// The state to give back: the last, or the best seen if the last is worse.
 /// @return the share seen of its region's area
 double chooseState(const Unfolder& unfolder, const visibility::Viewpoints& viewpoints,
-                   const BestState& best, bool towardsTarget, UnfoldResult& result) {
+                   const BestState& best, const UnfoldOptions& options, UnfoldResult& result) {
   result.mesh = unfolder.current();
   result.iteration = unfolder.state().iteration;
   const double seen = unfolder.seenShare();
-  if (!isWorse(unfolder.record(), best, towardsTarget, seenIfAsked(unfolder))) return seen;
+  if (!isWorse(unfolder.record(), best, options, seenIfAsked(unfolder))) return seen;
   const auto& moving = unfolder.movingVertices();
   for (std::size_t i = 0; i < moving.size(); ++i) {
     result.mesh.positions.row(moving[i]) = best.moving.row(static_cast<Eigen::Index>(i));
@@ -246,8 +247,7 @@ UnfoldResult unfoldHere(const TriangleMesh& mesh, const Region& region,
     consider(unfolder, options, best);
     tellProgress(monitor, unfolder.record(), initial, goal);
   }
-  const double seen =
-      chooseState(unfolder, viewpoints, best, options.targetVisibility.has_value(), result);
+  const double seen = chooseState(unfolder, viewpoints, best, options, result);
   judge(options, seen, monitor, result);
   std::vector<Positions> whole = path;
   if (options.frames > 0) path.resize(static_cast<std::size_t>(result.iteration) + 1);
@@ -271,22 +271,21 @@ Point originNear(const Point& middle) {
   return middle.norm() > kNear ? Point(middle.array().round()) : Point(Point::Zero());
 }
 
-double merit(double visibility, double strain, double seen) {
-  const double spare = std::min(seenToSpare(visibility), lengthsToSpare(strain));
+double merit(double visibility, double strain, double seen, double trade) {
+  const double spare = std::min(visibility - kGoalVisibility, (kGoalStrain - strain) / trade);
   return seen < kGoalSeen ? std::min(spare, seen - kGoalSeen) : spare;
 }
 
 double shortfall(double goal, double visibility, double seen, double strain) {
-  const double missed =
-      std::max(goal - visibility, kStrainWorth * std::max(0.0, strain - kGoalStrain));
+  const double missed = std::max(goal - visibility, std::max(0.0, strain - kGoalStrain) / kTrade);
   return std::isnan(seen) ? missed : std::max(missed, std::min(goal, kGoalSeen) - seen);
 }
 
-bool isBetter(const IterationRecord& state, const BestState& than, bool towardsTarget,
-              double seen) {
+bool isBetter(const IterationRecord& state, const BestState& than, bool towardsTarget, double seen,
+              double trade) {
   if (towardsTarget) return state.visibility > than.visibility;
-  return merit(state.visibility, state.edgeStrainMean, seen) >
-         merit(than.visibility, than.strain, than.seen);
+  return merit(state.visibility, state.edgeStrainMean, seen, trade) >
+         merit(than.visibility, than.strain, than.seen, trade);
 }
 
 UnfolderOptions solverOptions(const UnfoldOptions& options) {

@@ -17,10 +17,19 @@ namespace explica::unfolding {
 
 inline constexpr int kMostIterations = 100000;
 
+/// Goals: a result that misses one is not called converged.
+inline constexpr double kGoalVisibility = 0.98;
+inline constexpr double kGoalSeen = 0.98;    ///< share of the region's area that is seen
+inline constexpr double kGoalStrain = 0.09;  ///< mean edge strain, at most
+
+/// Strain that a visibility of 1 is worth.
+inline constexpr double kTrade = 2;
+
 /// How to unfold and when to stop.
 struct UnfoldOptions {
   UnfolderOptions unfolder;
   std::optional<double> targetVisibility;  ///< stop once the average visibility reaches it
+  double trade = kTrade;                   ///< strain that a visibility of 1 is worth, > 0
   double areaTolerance = 0.002;            ///< ... and the mean relative area error is below this
   int maxIterations = 500;                 ///< > 0
   std::optional<double> maxTime;           ///< s, of this run
@@ -34,6 +43,12 @@ void describe(UnfoldOptions& options, Visitor&& visit) {
               "stop once the average visibility reaches this; without it, once it no longer rises",
               kAboveZero, 1},
         options.targetVisibility);
+  visit(
+      Field{"trade", "",
+            "strain, in per cent, that one per cent of visibility is worth: where both goals (0.98 "
+            "and 9 %) cannot be met, they are missed in this proportion",
+            kAboveZero, 1000},
+      options.trade);
   visit(Field{"area-tolerance", "", "mean relative area error of faces that a goal asks for",
               kAboveZero},
         options.areaTolerance);
@@ -60,30 +75,11 @@ struct BestState {
   double seen = kNaN;    ///< share of the region's area that is seen; NaN if nobody looked
 };
 
-/// Goals: a result that misses one is not called converged.
-inline constexpr double kGoalVisibility = 0.98;
-inline constexpr double kGoalSeen = 0.98;    ///< share of the region's area that is seen
-inline constexpr double kGoalStrain = 0.09;  ///< mean edge strain, at most
-
-inline constexpr double kSeen = 0.9805;      ///< visibility that a run aims at ...
-inline constexpr double kStrained = 0.0893;  ///< ... at a mean edge strain of this at most
-/// Visibility that a mean edge strain of 1 is worth.
-inline constexpr double kStrainWorth = 0.5;
-
-/// What a visibility has to spare; negative: it lacks.
-[[nodiscard]] inline double seenToSpare(double visibility) {
-  return visibility - kSeen;
-}
-/// What lengths have to spare, in visibility; negative: they are strained too far.
-[[nodiscard]] inline double lengthsToSpare(double strain) {
-  return kStrainWorth * (kStrained - strain);
-}
-
 /// A goal missed by no more than this, of visibility or of what it is worth, is worth a look; a
 /// result that misses one by more is held: one per cent, the unit of the trade between them.
 inline constexpr double kMissed = 0.01;
 /// ... the same of strain.
-inline constexpr double kMissedStrain = kMissed / kStrainWorth;
+inline constexpr double kMissedStrain = kMissed * kTrade;
 /// Of visibility or strain: less than that is no reason to go back to an earlier state.
 inline constexpr double kNoWorse = 1e-3;
 
@@ -98,7 +94,8 @@ inline constexpr double kCollarMean = 2, kCollarMost = 8;
 /// The lesser of what seeing and lengths have to spare, or what the share seen lacks if that is
 /// more.
 /// @param seen  NaN: nobody looked, and nothing is known to lack
-[[nodiscard]] double merit(double visibility, double strain, double seen = kNaN);
+[[nodiscard]] double merit(double visibility, double strain, double seen = kNaN,
+                           double trade = kTrade);
 /// By how much the goals are missed, in visibility, at most; not above 0 where all are met.
 /// @param goal  visibility that is asked for
 /// @param seen  NaN: not known, and taken for enough
@@ -106,7 +103,7 @@ inline constexpr double kCollarMean = 2, kCollarMost = 8;
 /// More merit; on the way to a target, the higher visibility.
 /// @param seen  of the state
 [[nodiscard]] bool isBetter(const IterationRecord& state, const BestState& than,
-                            bool towardsTarget = false, double seen = kNaN);
+                            bool towardsTarget = false, double seen = kNaN, double trade = kTrade);
 /// How a driver of its own sets up an Unfolder that ends where unfold() does.
 [[nodiscard]] UnfolderOptions solverOptions(const UnfoldOptions& options);
 
