@@ -141,7 +141,7 @@ UnfoldOptions inTheFlask() {
 }
 
 TEST(Unfold, SurroundingsThatHoldTheRegionBelowArePartedFurther) {
-  const Flask flask;
+  const Flask flask(6, 0.3);
   const Region region = regionOfMarked(flask.mesh, flask.bottom);
   const auto view = visibility::viewpoint(Point(0, 0, 1000));
   const UnfoldResult result = unfold(flask.mesh, region, view, inTheFlask());
@@ -163,7 +163,7 @@ TEST(Unfold, SurroundingsThatHoldTheRegionBelowArePartedFurther) {
 }
 
 TEST(Unfold, ResumesAcrossAPartingOfTheSurroundings) {
-  const Flask flask;
+  const Flask flask(6, 0.3);
   const Region region = regionOfMarked(flask.mesh, flask.bottom);
   const auto view = visibility::viewpoint(Point(0, 0, 1000));
   UnfoldOptions options = inTheFlask();

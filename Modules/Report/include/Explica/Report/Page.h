@@ -47,12 +47,13 @@ struct ReportFlag {
 
 /// Pictures by which a reader sees in a moment what the verdict says.
 struct ReportGlance {
-  std::string see;                                            ///< id of the figure with more of it
-  std::string title;                                          ///< "Surfaces on the image"
-  std::string guide;                                          ///< what right and wrong look like
-  std::vector<MosaicTile> tiles = {};                         ///< slices, beside each other
-  std::vector<std::pair<std::string, std::string>> outlines;  ///< name and colour, of the tiles
-  std::vector<std::pair<std::string, Picture>> views = {};    ///< surfaces, each with its name
+  std::string see;                     ///< id of the figure with more of it
+  std::string title;                   ///< "Surfaces on the image"
+  std::string guide;                   ///< what right and wrong look like
+  std::vector<MosaicTile> tiles = {};  ///< slices, beside each other
+  std::vector<std::pair<std::string, std::string>> outlines =
+      {};                                                   ///< name and colour, of the tiles
+  std::vector<std::pair<std::string, Picture>> views = {};  ///< surfaces, each with its name
   std::optional<ColourScale> scale = {};
 };
 
@@ -118,7 +119,7 @@ struct ReportSlices {
   std::string id;
   std::string title;
   std::string caption;
-  std::vector<std::pair<std::string, std::string>> outlines;  ///< name and colour
+  std::vector<std::pair<std::string, std::string>> outlines = {};  ///< name and colour
   std::string json;
 };
 
