@@ -7,6 +7,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Geometry/FaceTree.h"
 #include "Explica/Geometry/MeshTopology.h"
+#include "Explica/Unfolding/Account.h"
 #include "Explica/Unfolding/StopRule.h"
 #include "Explica/Visibility/AverageVisibility.h"
 
@@ -159,7 +160,10 @@ struct Session::Implementation {
     monitor.stopWanted = [this] { return pauseWanted.load(); };
     const collision::Untangling start = collision::untangle(surface, concerned, monitor);
     if (pauseWanted) return false;
-    unfolder = std::make_unique<unfolding::Unfolder>(TriangleMesh{start.positions, surface.faces},
+    // What is parted is compared with what a file holds of it, as by the command.
+    const Positions parted =
+        start.moved.empty() ? start.positions : unfolding::roundedToSingle(start.positions);
+    unfolder = std::make_unique<unfolding::Unfolder>(TriangleMesh{parted, surface.faces},
                                                      preview.region, view, options);
     Kept kept = keep(surface.positions, unfolder->state(), unfolder->record());
     const std::lock_guard<std::mutex> hold(mutex);
