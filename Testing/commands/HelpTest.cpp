@@ -121,8 +121,8 @@ TEST(EveryCommandHelp, ExampleWorksAsPasted) {
 /// Values of labels, seeds and numbers of vertices: not how many of something there shall be.
 bool isNoCount(const std::string& name) {
   static const std::vector<std::string> kNames = {
-      "cavity", "fill", "grey", "inner",  "insulated", "label", "label-key",
-      "outer",  "rv",   "seed", "tissue", "vertex",    "wall",  "white"};
+      "cavity", "fill", "grey-label", "inner",  "insulated", "label-key",  "outer",
+      "rv",     "seed", "tissue",     "vertex", "wall",      "white-label"};
   return std::find(kNames.begin(), kNames.end(), name.substr(name.rfind('.') + 1)) != kNames.end();
 }
 

@@ -32,7 +32,7 @@ class StrangersRecord : public ::testing::Test {
   [[nodiscard]] Json surfaceRecord() const {
     Json record = honest_;
     record["command"] = "surface";
-    record["options"] = {{"white", {1}}, {"grey", {2}}, {"faces", 400}};
+    record["options"] = {{"white-label", {1}}, {"grey-label", {2}}, {"faces", 400}};
     const std::string labels = folder_ / "a/labels.nii.gz";
     for (const Json& output : honest_["outputs"]) {
       if (output["path"] != "labels.nii.gz") continue;

@@ -39,11 +39,11 @@ class Unfolding(unittest.TestCase):
         np.testing.assert_array_equal(seen["face"] > 0.5, flux > 0)
 
     def test_one_shot_equals_steps(self):
-        """Towards a target; without one, `unfold` weighs areas and lengths between the steps."""
-        options = dict(max_iterations=6, target_visibility=1.0)
+        """As long as folds are closed; then `unfold` weighs visibility against lengths between the steps."""
+        options = dict(max_iterations=2, target_visibility=1.0)
         once = explica.unfold(self.surface, self.region["vertices"], self.view, **options)
         stepper = explica.Unfolder(self.surface, self.region["vertices"], self.view)
-        self.assertTrue(stepper.step(6))
+        self.assertTrue(stepper.step(2))
         np.testing.assert_array_equal(stepper.positions, once["positions"])
         self.assertEqual(once["history"][-1]["visibility"], stepper.record["visibility"])
         self.assertGreater(once["history"][-1]["visibility"], once["history"][0]["visibility"])
