@@ -70,9 +70,9 @@ INSTANTIATE_TEST_SUITE_P(Commands, Bounds, ::testing::Range(std::size_t{0}, kPar
 
 TEST(Bounds, AreDeclaredForEveryCount) {
   // Numbers of labels and vertices are held against the file; every seed is as good as another.
-  const std::set<std::string> names = {"inner", "tissue",    "outer",  "insulated", "white",
-                                       "grey",  "fill",      "cavity", "wall",      "rv",
-                                       "label", "label-key", "vertex", "seed"};
+  const std::set<std::string> names = {
+      "inner",  "tissue", "outer", "insulated", "white-label", "grey-label", "fill",
+      "cavity", "wall",   "rv",    "label",     "label-key",   "vertex",     "seed"};
   for (const Json& command : describedCommands()) {
     for (const Json& parameter : command["parameters"]) {
       if (parameter["type"] != "integer") continue;
