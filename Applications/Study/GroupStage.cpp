@@ -34,6 +34,7 @@ using provenance::Json;
 using statistics::GroupMaps;
 
 constexpr std::array kMeasures = {"thickness", "sulc", "area"};
+constexpr std::size_t kThickness = 0;  // among them
 constexpr std::array kUnits = {"mm", "mm", "mm^2"};
 constexpr std::size_t kSmoothedAtOnce = 256;  // people; bounds memory
 
@@ -122,10 +123,14 @@ std::string commonEntity(const std::vector<Member>& members) {
   return first == nullptr ? "" : first->entity;
 }
 
-/// A person's map: the first of its file (the thickness; the white surface's area).
+/// A person's map: the first of its file (the thickness; the white surface's area); NaN where the
+/// thickness is not known.
 Eigen::VectorXd readMap(const Member& member, std::size_t measure,
                         std::optional<Eigen::Index> count) {
-  return io::readVertexMaps(member.map(measure), count).front().values;
+  Eigen::VectorXd values = io::readVertexMaps(member.map(measure), count).front().values;
+  // A thickness of 0 was not measured, as on the medial wall.
+  if (measure == kThickness) values = (values.array() > 0).select(values, kNaN);
+  return values;
 }
 
 std::string structureOf(const std::string& hemisphere) {
