@@ -72,7 +72,7 @@ std::vector<Use> allUses() {
   };
   add({"nifti", "nifti-gz", "mgh", "nrrd", "metaimage", "png"}, volume);
   add({"gifti", "freesurfer-surface", "vtk", "vtp", "ply", "ply-text", "obj", "off", "stl",
-       "stl-text", "mni-obj"},
+       "stl-text"},
       surface);
   add({"gifti-maps", "freesurfer-curv"}, maps);
   add({"gifti-labels", "freesurfer-annot", "freesurfer-label"}, labels);

@@ -150,11 +150,11 @@ const std::vector<Hostile>& hostileFiles() {
        "x,y\n9e6,0\n1,0\n0.25,1\n",
        {"embed", "{file}", "--order", "4", "--max-iterations", "2"},
        "so thin that it falls between the points of a grid"},
-      {"MniObjOfManyPoints",
+      {"ObjOfMinc",
        "a.obj",
-       "P 0.3 0.3 0.4 10 1 4000000000\n0 0 0\n",
+       "P 0.3 0.3 0.4 10 1 4\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n",
        {"inflate", "{file}"},
-       "more than it can hold"},
+       "which is not read; convert it"},
   };
   return all;
 }

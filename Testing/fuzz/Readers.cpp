@@ -112,7 +112,6 @@ const std::vector<Reader>& allReaders() {
       {"off", "a.off", readSurface},
       {"stl", "a.stl", readSurface},
       {"stl-text", "text.stl", readSurface},
-      {"mni-obj", "a.mni.obj", readSurface},
       {"cifti", "a.dscalar.nii", readCifti},
       {"patch", "lh.a.patch.3d", readPatch},
       {"matrix", "matrix.txt", readTransform},

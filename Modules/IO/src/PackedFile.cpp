@@ -15,7 +15,6 @@
 #include <cstring>
 #include <limits>
 #include <numeric>
-#include <optional>
 
 namespace explica::io {
 namespace {
@@ -114,9 +113,8 @@ Bytes deflated(ByteView block, isal_hufftables& codes, bool zlib) {
   return Bytes(packed.data(), stream.next_out);
 }
 
-/// CRC-32 of what went before, by its own, and the block.
-std::uint32_t checksumOf(ByteView block, std::uint32_t before = 0) {
-  const std::uint32_t checksum = crc32_gzip_refl(before, block.data(), block.size());
+std::uint32_t checksumOf(ByteView block) {
+  const std::uint32_t checksum = crc32_gzip_refl(0, block.data(), block.size());
   endVectorCode();
   return checksum;
 }
@@ -189,48 +187,23 @@ std::uint32_t joinedChecksum(std::uint32_t first, std::uint32_t second, std::uin
   return product(power, first) ^ second;
 }
 
-/// A block of one value over and over, as most of a medical volume, packed once; and the checksums
-/// of its beginnings, so that those of blocks that begin and end like it are not computed again.
+/// A block of one value over and over, as most of a medical volume, packed once.
 class BlankBlock {
  public:
   explicit BlankBlock(const Bytes& value) : bytes_(kBlock) {
     for (std::size_t at = 0; at < kBlock; at += value.size()) {
       std::copy(value.begin(), value.end(), bytes_.begin() + static_cast<std::ptrdiff_t>(at));
     }
-    const std::uint32_t power = powerOf(kPiece);
-    checksums_[0] = 0;
-    powers_[0] = powerOf(0);
-    for (std::size_t n = 1; n <= kPieces; ++n) {
-      checksums_[n] = checksumOf({bytes_.data(), kPiece}, checksums_[n - 1]);
-      powers_[n] = product(power, powers_[n - 1]);
-    }
     packed_ = packBlock(bytes_);
   }
   [[nodiscard]] const Packed& packed() const { return packed_; }
-  /// powerOf a block's size.
-  [[nodiscard]] std::uint32_t power() const { return powers_[kPieces]; }
-  /// CRC-32 of a block; nothing if it is this one.
-  [[nodiscard]] std::optional<std::uint32_t> checksumUnlessBlank(ByteView block) const {
-    if (block.size() != kBlock) return checksumOf(block);
-    std::size_t begin = 0, after = 0;  // pieces that are like this block's
-    while (begin < kPieces && isBlank(block, begin)) ++begin;
-    if (begin == kPieces) return {};
-    while (isBlank(block, kPieces - 1 - after)) ++after;
-    const ByteView between = block.subspan(begin * kPiece, (kPieces - begin - after) * kPiece);
-    const std::uint32_t found = checksumOf(between, checksums_[begin]);
-    return joinedChecksum(found, checksums_[after], powers_[after]);
+  [[nodiscard]] bool is(ByteView block) const {
+    return block.size() == kBlock && std::memcmp(block.data(), bytes_.data(), kBlock) == 0;
   }
 
  private:
-  static constexpr std::size_t kPiece = std::size_t{1} << 11, kPieces = kBlock / kPiece;
-
-  [[nodiscard]] bool isBlank(ByteView block, std::size_t piece) const {
-    return std::memcmp(block.data() + piece * kPiece, bytes_.data(), kPiece) == 0;
-  }
-
   Bytes bytes_;
   Packed packed_;
-  std::array<std::uint32_t, kPieces + 1> checksums_{}, powers_{};
 };
 
 class GzipMember {
@@ -277,6 +250,7 @@ void writeGzip(WholeFile& file, const Content& content) {
   if (!content.head.empty()) member.add(packBlock(content.head), powerOf(content.head.size()));
   const std::size_t blocks = (content.bodySize + kBlock - 1) / kBlock;
   const BlankBlock blank(content.blank);
+  const std::uint32_t blockPower = powerOf(kBlock);
   isal_hufftables codes = codesOfBody(content);
   std::vector<Packed> batch(std::min(blocks, kBlocksAtOnce));
   for (std::size_t first = 0; first < blocks; first += kBlocksAtOnce) {
@@ -289,14 +263,13 @@ void writeGzip(WholeFile& file, const Content& content) {
       static thread_local Bytes block;
       block.resize(size);
       content.body(begin, block.data(), size);
-      const std::optional<std::uint32_t> checksum = blank.checksumUnlessBlank(block);
-      if (!checksum) return;
+      if (blank.is(block)) return;
       batch[b] = isUniform(block) ? packBlock(block)
-                                  : Packed{deflated(block, codes, false), *checksum, size};
+                                  : Packed{deflated(block, codes, false), checksumOf(block), size};
     });
     for (std::size_t b = 0; b < count; ++b) {
       const Packed& packed = batch[b].size > 0 ? batch[b] : blank.packed();
-      member.add(packed, packed.size == kBlock ? blank.power() : powerOf(packed.size));
+      member.add(packed, packed.size == kBlock ? blockPower : powerOf(packed.size));
     }
   }
   if (!content.tail.empty()) member.add(packBlock(content.tail), powerOf(content.tail.size()));

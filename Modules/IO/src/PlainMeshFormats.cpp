@@ -246,6 +246,9 @@ void writePly(const std::filesystem::path& path, const TriangleMesh& mesh) {
 }
 
 LoadedSurface readObj(const std::filesystem::path& path, ByteView bytes) {
+  if (textOf(bytes).starts_with("P ")) {
+    refuse(path, "is an MNI object file (CIVET), which is not read; convert it to GIFTI");
+  }
   ByteCursor cursor(path, bytes, false);
   MeshBuilder builder;
   std::vector<std::int64_t> corners;

@@ -5,7 +5,6 @@
 
 #include "FreeSurferFormat.h"
 #include "GiftiFormat.h"
-#include "MniObjFormat.h"
 #include "PlainMeshFormats.h"
 #include "SurfaceFrame.h"
 #include "VtkFormat.h"
@@ -69,7 +68,6 @@ const std::vector<SurfaceFormat>& surfaceFormats() {
        writeFreeSurferMesh},
       {"PLY", {".ply"}, {}, looksLikePly, false, readPlaced<readPly>, writeMesh<writePly>},
       {"OFF", {".off"}, {}, looksLikeOff, false, readPlaced<readOff>, writeMesh<writeOff>},
-      {"MNI obj", {".mni.obj"}, {}, looksLikeMniObj, false, readMniObj, writeMesh<writeMniObj>},
       {"STL", {".stl"}, {}, looksLikeStl, true, readPlaced<readStl>, writeMesh<writeStl>},
       {"OBJ", {".obj"}, {}, looksLikeNothing, true, readPlaced<readObj>, writeMesh<writeObj>}};
   return all;

@@ -168,9 +168,9 @@ NamedLayout layoutFor(const std::filesystem::path& path) {
                      " from its name; end it in one of " + allEndings());
 }
 
-/// Puts bytes [begin, begin + count) of the values component by component.
-void fillPlanar(const VolumeToWrite& volume, std::size_t begin, std::uint8_t* to,
-                std::size_t count) {
+/// Puts bytes [begin, begin + count) of the values, component by component.
+void fillBytes(const VolumeToWrite& volume, std::size_t begin, std::uint8_t* to,
+               std::size_t count) {
   const std::size_t width = volume.elsewhere.size(), voxels = volume.grid.voxelCount();
   for (std::size_t value = begin / width, end = (begin + count) / width; value < end;) {
     const std::size_t voxel = value % voxels, run = std::min(end - value, voxels - voxel);
@@ -180,39 +180,12 @@ void fillPlanar(const VolumeToWrite& volume, std::size_t begin, std::uint8_t* to
   }
 }
 
-/// Puts bytes [begin, begin + count) of the values voxel by voxel.
-void fillInterleaved(const VolumeToWrite& volume, std::size_t begin, std::uint8_t* to,
-                     std::size_t count) {
-  const std::size_t width = volume.elsewhere.size();
-  const auto perVoxel = static_cast<std::size_t>(volume.valuesPerVoxel);
-  const std::size_t value = begin / width, end = (begin + count) / width;
-  const std::size_t voxel = value / perVoxel, voxels = (end + perVoxel - 1) / perVoxel - voxel;
-  Bytes component(voxels * width);
-  for (std::size_t c = 0; c < perVoxel; ++c) {
-    volume.fill(static_cast<int>(c), voxel, voxels, component.data());
-    for (std::size_t v = 0; v < voxels; ++v) {
-      const std::size_t at = (voxel + v) * perVoxel + c;
-      if (at >= value && at < end) {
-        std::memcpy(to + (at - value) * width, component.data() + v * width, width);
-      }
-    }
-  }
-}
-
 /// True if bytes [begin, begin + count) of the values lie where the volume has one value only.
-bool repeatsBlank(const VolumeToWrite& volume, bool interleaved, std::size_t begin,
-                  std::size_t count) {
+bool repeatsBlank(const VolumeToWrite& volume, std::size_t begin, std::size_t count) {
   const std::size_t width = volume.elsewhere.size(), voxels = volume.grid.voxelCount();
-  std::size_t first = begin / width, last = (begin + count) / width - 1;
-  if (interleaved) {
-    first /= volume.valuesPerVoxel;
-    last /= volume.valuesPerVoxel;
-  } else {
-    if (first / voxels != last / voxels) return false;
-    first %= voxels;
-    last %= voxels;
-  }
-  return last < volume.begin || first >= volume.end;
+  const std::size_t first = begin / width, last = (begin + count) / width - 1;
+  if (first / voxels != last / voxels) return false;
+  return last % voxels < volume.begin || first % voxels >= volume.end;
 }
 
 void writeValues(const std::filesystem::path& path, const VolumeToWrite& volume) {
@@ -221,32 +194,21 @@ void writeValues(const std::filesystem::path& path, const VolumeToWrite& volume)
   if (volume.grid.voxelCount() == 0) {
     throw InvalidInput("volume for " + quoted(path) + ": it has no voxels");
   }
-  if (volume.valuesPerVoxel > 1 && !volume.vectors && layout.componentsTogether) {
-    throw InvalidInput("volume for " + quoted(path) +
-                       ": several frames are written as .nii.gz, .nii, .mgz or .mgh only");
-  }
-  const bool interleaved = volume.valuesPerVoxel > 1 && layout.componentsTogether;
   const bool bigEndian = layout.bigEndian;
   const std::size_t width = volume.elsewhere.size();
   Content content;
   content.bodySize = volume.grid.voxelCount() * volume.valuesPerVoxel * width;
-  content.body = [&, interleaved, bigEndian, width](std::size_t begin, std::uint8_t* to,
-                                                    std::size_t count) {
-    (interleaved ? fillInterleaved : fillPlanar)(volume, begin, to, count);
+  content.body = [&, bigEndian, width](std::size_t begin, std::uint8_t* to, std::size_t count) {
+    fillBytes(volume, begin, to, count);
     if (bigEndian) swapBytes(to, count / width, width);
   };
   content.blank = volume.elsewhere;
   if (bigEndian) swapBytes(content.blank.data(), 1, width);
-  content.isBlank = [&, interleaved](std::size_t begin, std::size_t count) {
-    return repeatsBlank(volume, interleaved, begin, count);
+  content.isBlank = [&](std::size_t begin, std::size_t count) {
+    return repeatsBlank(volume, begin, count);
   };
   WholeFile file(path);
-  Bytes head = layout.head(volume);
-  if (layout.headApart) {
-    file.write(head.data(), head.size());
-  } else {
-    content.head = std::move(head);
-  }
+  content.head = layout.head(volume);
   if (layout.tail != nullptr) content.tail = layout.tail();
   (packed ? writeGzip : writePlain)(file, content);
   file.commit();

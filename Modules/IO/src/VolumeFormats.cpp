@@ -3,7 +3,6 @@
 
 #include "VolumeFormats.h"
 
-#include "ItkHeaders.h"
 #include "ItkVolume.h"
 #include "MghFormat.h"
 #include "NiftiFormat.h"
@@ -66,17 +65,9 @@ const std::vector<VolumeFormat>& volumeFormats() {
        readNiftiFile,
        {{".nii.gz", true}, {".nii", false}},
        VolumeLayout{.head = niftiHeader}},
-      {"NRRD",
-       looksLikeNrrd,
-       readByItk<ItkFormat::Nrrd>,
-       {{".nrrd", true}},
-       VolumeLayout{.head = nrrdHeader, .componentsTogether = true, .headApart = true}},
+      {"NRRD", looksLikeNrrd, readByItk<ItkFormat::Nrrd>},
       {"PNG", looksLikePng, readByItk<ItkFormat::Png>},
-      {"MetaImage",
-       looksLikeMetaImage,
-       readByItk<ItkFormat::MetaImage>,
-       {{".mha", false}},
-       VolumeLayout{.head = metaHeader, .componentsTogether = true}},
+      {"MetaImage", looksLikeMetaImage, readByItk<ItkFormat::MetaImage>},
       {"MINC", looksLikeMinc, refuseMinc},
       {"MGH",
        looksLikeMgh,

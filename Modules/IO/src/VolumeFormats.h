@@ -23,8 +23,6 @@ struct VolumeLayout {
   Bytes (*head)(const VolumeToWrite& volume);
   Bytes (*tail)() = nullptr;
   bool bigEndian = false;
-  bool componentsTogether = false;  ///< of a voxel; there are no frames then
-  bool headApart = false;           ///< stands before what is packed
 };
 
 /// A format of volumes: how its files are recognised, read and written.

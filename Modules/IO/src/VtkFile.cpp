@@ -9,8 +9,6 @@
 
 #include "Explica/Core/WholeFile.h"
 
-#include <numeric>
-
 namespace explica::io {
 namespace {
 
@@ -18,12 +16,8 @@ int vtkTypeOf(CellKind kind) {
   switch (kind) {
     case CellKind::Line:
       return 3;
-    case CellKind::Triangle:
-      return 5;
     case CellKind::Quad:
       return 9;
-    case CellKind::Tetrahedron:
-      return 10;
     case CellKind::Hexahedron:
       return 12;
   }
@@ -34,10 +28,7 @@ Eigen::Index cornersOf(CellKind kind) {
   switch (kind) {
     case CellKind::Line:
       return 2;
-    case CellKind::Triangle:
-      return 3;
     case CellKind::Quad:
-    case CellKind::Tetrahedron:
       return 4;
     case CellKind::Hexahedron:
       return 8;
@@ -173,23 +164,6 @@ void writeVtu(const std::filesystem::path& path, const Positions& points,
           offsetsOf(arrays, offsets) + arrays.add("types", "UInt8", 1, types.data(), types.size()) +
           "</Cells>\n</Piece>\n";
   writeDocument(path, "UnstructuredGrid", body, arrays);
-}
-
-void writePvd(const std::filesystem::path& path, const std::vector<SeriesFrame>& frames) {
-  std::string text =
-      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
-      "byte_order=\"LittleEndian\">\n<Collection>\n";
-  for (const SeriesFrame& frame : frames) {
-    text += "<DataSet timestep=\"";
-    appendNumber(text, frame.time);
-    const std::filesystem::path relative =
-        frame.file.is_absolute()
-            ? std::filesystem::absolute(frame.file)
-                  .lexically_relative(std::filesystem::absolute(path).parent_path())
-            : frame.file;
-    text += "\" group=\"\" part=\"0\" file=\"" + escapedXml(relative.generic_string()) + "\"/>\n";
-  }
-  writeTextFile(path, text + "</Collection>\n</VTKFile>\n");
 }
 
 }  // namespace explica::io

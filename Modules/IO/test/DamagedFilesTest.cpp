@@ -168,6 +168,8 @@ void write(const fs::path& path) {
                "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
   } else if (name == "volume.png") {
     putContent(path, pngWith(""));
+  } else if (name == "volume.nrrd" || name == "volume.mha") {
+    putContent(path, itkImage(name == "volume.nrrd", {4, 3, 3}, smallVolume().data));
   } else if (name.starts_with("volume.")) {
     io::writeVolume(path, smallVolume());
   } else {
@@ -366,8 +368,7 @@ TEST(ImplausibleCoordinates, AreRefused) {
   EXPECT_EQ(said("9e6"), "accepted");
 }
 
-/// libpng, as ITK calls it, ends the program on these.
-TEST(DamagedFile, PicturesThatLibpngWouldAbortOnAreRefused) {
+TEST(DamagedFile, PicturesAreRefused) {
   const TemporaryFolder folder;
   const fs::path path = folder / "a.png";
   const auto said = [&](const std::string& bytes) {
@@ -377,12 +378,11 @@ TEST(DamagedFile, PicturesThatLibpngWouldAbortOnAreRefused) {
   EXPECT_EQ(said(pngWith("")), "accepted");
   EXPECT_EQ(said(pngWith(pngChunk("teXt", "what no reader needs"))), "accepted");
   const std::string header = pngWith("").substr(8, 25);
-  for (const std::string& chunk :
-       {header, pngChunk("ABCD", "must be understood"), pngChunk("PLTE", std::string(7, '\1'))}) {
+  for (const std::string& chunk : {header, pngChunk("ABCD", "must be understood")}) {
     EXPECT_NE(said(pngWith(chunk)).find("is damaged"), std::string::npos) << chunk.substr(4, 4);
   }
-  EXPECT_NE(said(pngWith("", 3)).find("lacks its palette"), std::string::npos);
-  EXPECT_NE(said(pngWith("", 5)).find("values that do not exist"), std::string::npos);
+  EXPECT_NE(said(pngWith("", 3)).find("is damaged"), std::string::npos);
+  EXPECT_NE(said(pngWith("", 5)).find("is damaged"), std::string::npos);
   std::string renamed = pngWith("");
   renamed[37] = '\3';
   EXPECT_NE(said(renamed).find("is damaged"), std::string::npos);
@@ -390,14 +390,13 @@ TEST(DamagedFile, PicturesThatLibpngWouldAbortOnAreRefused) {
 
 /// A file of every kind that is read.
 const std::string kKinds[] = {
-    "volume.nii",   "volume.nii.gz", "volume.mgh",    "volume.mgz",    "volume.nrrd",
-    "volume.mha",   "volume.png",    "a.surf.gii",    "a.surf.gii.gz", "a.shape.gii",
-    "a.label.gii",  "lh.white",      "lh.curv",       "lh.a.annot",    "lh.a.label",
-    "a.vtp",        "base64.vtp",    "legacy.vtk",    "a.ply",         "text.ply",
-    "a.obj",        "a.off",         "a.stl",         "text.stl",      "polygon.csv",
-    "polygon.vtp",  "a.mni.obj",     "a.dscalar.nii", "lh.a.patch.3d", "matrix.txt",
-    "itk.tfm",      "itk.mat",       "itk.h5",        "reg.lta",       "register.dat",
-    "matrices.xfm", "points.tsv",    "legend.tsv",
+    "volume.nii",  "volume.nii.gz", "volume.mgh",    "volume.mgz",    "volume.nrrd",  "volume.mha",
+    "volume.png",  "a.surf.gii",    "a.surf.gii.gz", "a.shape.gii",   "a.label.gii",  "lh.white",
+    "lh.curv",     "lh.a.annot",    "lh.a.label",    "a.vtp",         "base64.vtp",   "legacy.vtk",
+    "a.ply",       "text.ply",      "a.obj",         "a.off",         "a.stl",        "text.stl",
+    "polygon.csv", "polygon.vtp",   "a.dscalar.nii", "lh.a.patch.3d", "matrix.txt",   "itk.tfm",
+    "itk.mat",     "itk.h5",        "reg.lta",       "register.dat",  "matrices.xfm", "points.tsv",
+    "legend.tsv",
 };
 
 TEST(DamagedFilesList, HasAFileOfEverySurfaceFormat) {

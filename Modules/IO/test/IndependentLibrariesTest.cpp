@@ -84,7 +84,7 @@ TEST(Itk, ReadsOurVolumesThroughItsFactories) {
   const TemporaryFolder folder;
   for (const bool leftHanded : {false, true}) {
     const Volume<float> volume = someVolume(leftHanded);
-    for (const char* name : {"a.nii", "a.nii.gz", "a.nrrd", "a.mha"}) {
+    for (const char* name : {"a.nii", "a.nii.gz"}) {
       io::writeVolume(folder / name, volume);
       const auto reader = itk::ImageFileReader<Image>::New();
       reader->SetFileName((folder / name).string());
@@ -98,9 +98,9 @@ TEST(Itk, WritesVolumesThatWeRead) {
   registerFormats();
   const TemporaryFolder folder;
   const Volume<float> volume = someVolume(true);
-  io::writeVolume(folder / "a.mha", volume);
+  io::writeVolume(folder / "a.nii", volume);
   const auto reader = itk::ImageFileReader<Image>::New();
-  reader->SetFileName((folder / "a.mha").string());
+  reader->SetFileName((folder / "a.nii").string());
   for (const char* name : {"b.nii.gz", "b.nrrd", "b.nhdr", "b.mha", "b.mhd"}) {
     for (const bool packed : {false, true}) {
       const auto writer = itk::ImageFileWriter<Image>::New();

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -64,4 +65,27 @@ inline void appendMatlab(std::string& bytes, const std::string& name,
   add(header, sizeof header);
   add(name.c_str(), name.size() + 1);
   add(values.data(), values.size() * sizeof(double));
+}
+
+/// An image along the axes with voxels of 1 mm, values as they are in memory: NRRD or MetaImage.
+/// @param values  one or three for each voxel
+inline std::string itkImage(bool nrrd, const std::array<int, 3>& size,
+                            const std::vector<float>& values) {
+  std::string sizes;
+  for (const int n : size) sizes += " " + std::to_string(n);
+  const bool vectors = values.size() > std::size_t(size[0]) * size[1] * size[2];
+  const std::string raw(reinterpret_cast<const char*>(values.data()),
+                        values.size() * sizeof(float));
+  if (nrrd) {
+    return std::string("NRRD0004\ntype: float\nspace: right-anterior-superior\n") +
+           (vectors ? "dimension: 4\nsizes: 3" : "dimension: 3\nsizes:") + sizes +
+           (vectors ? "\nkinds: vector domain domain domain\nspace directions: none"
+                    : "\nspace directions:") +
+           " (1,0,0) (0,1,0) (0,0,1)\nspace origin: (0,0,0)\nendian: little\nencoding: raw\n\n" +
+           raw;
+  }
+  return "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\n"
+         "TransformMatrix = 1 0 0 0 1 0 0 0 1\nOffset = 0 0 0\nElementSpacing = 1 1 1\nDimSize =" +
+         sizes + (vectors ? "\nElementNumberOfChannels = 3" : "") +
+         "\nElementType = MET_FLOAT\nElementDataFile = LOCAL\n" + raw;
 }

@@ -176,6 +176,11 @@ void PrintTo(const Row& row, std::ostream* stream) {
 
 std::vector<Row> honest() {
   const auto volume = [](const fs::path& path) { io::writeVolume(path, volumeOf(200)); };
+  const auto itk = [](const fs::path& path) {
+    const std::vector<float> values = volumeOf(200).data;
+    std::ofstream(path, std::ios::binary)
+        << itkImage(path.extension() == ".nrrd", {200, 200, 200}, values);
+  };
   const auto segmentation = [](const fs::path& path) {
     Grid grid;
     grid.size = {200, 200, 200};
@@ -211,15 +216,14 @@ std::vector<Row> honest() {
       {"PackedNiftiLabels", "a.nii.gz", segmentation, labels},
       {"MghVolume", "a.mgh", volume, scalars},
       {"PackedMghVolume", "a.mgz", volume, scalars},
-      {"NrrdVolume", "a.nrrd", volume, scalars},
-      {"MetaImageVolume", "a.mha", volume, scalars},
+      {"NrrdVolume", "a.nrrd", itk, scalars},
+      {"MetaImageVolume", "a.mha", itk, scalars},
       {"GiftiSurface", "a.surf.gii", mesh, surface},
       {"PackedGiftiSurface", "a.surf.gii.gz", mesh, surface},
       {"FreeSurferSurface", "lh.white", mesh, surface},
       {"VtpSurface", "a.vtp", mesh, surface},
       {"PlySurface", "a.ply", mesh, surface},
       {"ObjSurface", "a.obj", mesh, surface},
-      {"MniObjSurface", "a.mni.obj", mesh, surface},
       {"OffSurface", "a.off", mesh, surface},
       {"StlSurface", "a.stl", mesh, surface},
       {"GiftiMap", "a.shape.gii", shape, maps},

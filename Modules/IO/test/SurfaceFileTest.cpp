@@ -51,7 +51,6 @@ TEST(SurfaceFormats, EveryEndingIsWrittenReadBackAndTakenOffNames) {
     formatBy[ending] = read.origin.format;
     EXPECT_EQ(io::nameOfSurface(file), "lh.pial");
   }
-  EXPECT_EQ(formatBy[".mni.obj"], "MNI obj");
   EXPECT_EQ(formatBy[".obj"], "OBJ");
   EXPECT_EQ(io::nameOfSurface("a/lh.pial"), "lh.pial");
   EXPECT_EQ(io::nameOfSurface("lh.pial.surf.gii.gz"), "lh.pial");

@@ -5,6 +5,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/IO/VertexDataFile.h"
+#include "RawFiles.h"
 #include "TemporaryFolder.h"
 
 #include <gtest/gtest.h>
@@ -87,10 +88,13 @@ TEST(VolumeSeries, ThatEndsTooEarlyIsRefused) {
 
 TEST(VolumeSeries, OfOtherFormatsIsHeldWhole) {
   const TemporaryFolder folder;
-  Volume<Eigen::Vector3f> vectors(smallGrid(), Eigen::Vector3f(1, 2, 3));
-  for (const char* name : {"a.nrrd", "a.mha"}) {
-    io::writeVolume(folder / name, vectors);
-    io::VolumeSeries series(folder / name);
+  std::vector<float> values;
+  for (std::size_t v = 0; v < smallGrid().voxelCount(); ++v) {
+    values.insert(values.end(), {1, 2, 3});
+  }
+  for (const bool nrrd : {true, false}) {
+    putContent(folder / "a", itkImage(nrrd, smallGrid().size, values));
+    io::VolumeSeries series(folder / "a");
     ASSERT_EQ(series.frames(), 3);
     EXPECT_EQ(series.next(1)[0], 1.0F);
     EXPECT_EQ(series.next(2).back(), 3.0F);

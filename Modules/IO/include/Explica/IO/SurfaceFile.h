@@ -58,7 +58,7 @@ inline constexpr const char* kFrameNotStatedNote =
 /// Where a surface came from and how its file was understood; goes into the provenance record.
 struct SurfaceOrigin {
   std::filesystem::path path;
-  std::string format;  ///< "GIFTI", "FreeSurfer", "VTK", "VTP", "PLY", "OBJ", "MNI obj", "STL",
+  std::string format;  ///< "GIFTI", "FreeSurfer", "VTK", "VTP", "PLY", "OBJ", "STL",
                        ///< "OFF"
   std::string space;   ///< "scanner", "tkr, moved to scanner", "MNI", "not stated", ...
   Eigen::Matrix4d applied = Eigen::Matrix4d::Identity();  ///< from the file's coordinates to ours
@@ -109,7 +109,7 @@ void rewriteFreeSurferSurface(const std::filesystem::path& path,
                               const std::filesystem::path& original, const Positions& positions,
                               std::span<const std::int32_t> moved);
 
-/// Writes by the name's extension: .gii, .vtp, .ply (binary, double), .mni.obj, .obj, .off (all
+/// Writes by the name's extension: .gii, .vtp, .ply (binary, double), .obj, .off (all
 /// text that gives back every double exactly), .stl (binary, float32); FreeSurfer for any other or
 /// no extension.
 void writeSurface(const std::filesystem::path& path, const TriangleMesh& mesh,

@@ -20,7 +20,7 @@ void writeVtp(const std::filesystem::path& path, const TriangleMesh& mesh,
               const std::vector<VertexMap>& faceMaps = {});
 
 /// The shape of a cell of an unstructured grid.
-enum class CellKind { Line, Triangle, Quad, Tetrahedron, Hexahedron };
+enum class CellKind { Line, Quad, Hexahedron };
 
 /// Cells of one kind: each row lists the vertices in VTK's order.
 struct Cells {
@@ -32,14 +32,5 @@ struct Cells {
 void writeVtu(const std::filesystem::path& path, const Positions& points,
               const std::vector<Cells>& cells, const std::vector<VertexMap>& pointMaps = {},
               const std::vector<VertexMap>& cellMaps = {});
-
-/// A file of a series and the time that it shows.
-struct SeriesFrame {
-  double time = 0;
-  std::filesystem::path file;  ///< written relative to the collection's folder
-};
-
-/// Writes a ParaView collection (.pvd) that plays the frames.
-void writePvd(const std::filesystem::path& path, const std::vector<SeriesFrame>& frames);
 
 }  // namespace explica::io
