@@ -23,6 +23,7 @@ LIBRARIES = {
     "HDF5": ("libinsighttoolkit5-dev", "hdf5"),  # Debian's ITK brings it
     "ISAL": ("libisal-dev", "isa-l"),
     "ITK": ("libinsighttoolkit5-dev", "libitk-devel"),
+    "PNG": ("libpng-dev", "libpng"),
     "OpenSSL": ("libssl-dev", "openssl"),
     "Python": ("python3-dev", "python"),
     "Qt5": ("qtbase5-dev", "qt-main"),

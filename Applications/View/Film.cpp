@@ -105,8 +105,7 @@ void encodeByFfmpeg(const fs::path& path, const std::vector<report::Picture>& fr
   waitpid(child, &status, 0);
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   if (code == 127) {
-    throw EnvironmentError(
-        "film: ffmpeg is not installed; write a .gif or .png, or install ffmpeg");
+    throw EnvironmentError("film: ffmpeg is not installed; write a .gif, or install ffmpeg");
   }
   if (code != 0) throw EnvironmentError("film: ffmpeg could not write " + path.string());
 }
@@ -194,13 +193,11 @@ void writeFilm(const fs::path& path, const std::vector<report::Picture>& frames,
     }
     return;
   }
-  if (ending != ".gif" && ending != ".png" && ending != ".apng") {
-    throw UsageError("--film " + path.string() +
-                     ": expected a name ending in .gif, .png, .apng, .mp4 or .webm");
+  if (ending != ".gif") {
+    throw UsageError("--film " + path.string() + ": expected a name ending in .gif, .mp4 or .webm");
   }
   WholeFile file(path);
-  file.write(ending == ".gif" ? report::encodeGif(frames, framesPerSecond)
-                              : report::encodeAnimatedPng(frames, framesPerSecond));
+  file.write(report::encodeGif(frames, framesPerSecond));
   file.commit();
 }
 

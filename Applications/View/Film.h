@@ -32,7 +32,7 @@ struct FilmView {
     const std::filesystem::path& folder, const std::optional<report::SurfacePaint>& paint,
     const std::vector<FilmView>& views, int columns, const report::SurfacePictureOptions& options);
 
-/// Writes .gif, .png, .apng; .mp4 and .webm by ffmpeg.  Whole or not at all.
+/// Writes .gif; .mp4 and .webm by ffmpeg.  Whole or not at all.
 /// @throws UsageError        another ending
 /// @throws EnvironmentError  ffmpeg is not installed or failed
 void writeFilm(const std::filesystem::path& path, const std::vector<report::Picture>& frames,

@@ -67,13 +67,11 @@ void declare(Declaration& d, Settings& s) {
              s.files)
       .oneByOne("FILE")
       .option("Picture", Field{"screenshot", "", "PNG file to write"}, s.screenshot)
-      .option(
-          "Picture",
-          Field{
-              "film", "",
-              "film to write of a folder of `explica unfold`: .gif or .png, or .mp4 or .webm where "
-              "ffmpeg is installed"},
-          s.film)
+      .option("Picture",
+              Field{"film", "",
+                    "film to write of a folder of `explica unfold`: .gif, or .mp4 or .webm where "
+                    "ffmpeg is installed"},
+              s.film)
       .inputOption("map", FileKind::VertexData, "per-vertex values to colour the surface by", s.map)
       .option("Picture", Field{"map-name", "", "which of the map file's maps (default: the first)"},
               s.mapName)

@@ -31,7 +31,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libexplica-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 # What a consumer's find_package(Explica) looks for (FIND of the modules).
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libeigen3-dev, libboost-dev, libtbb-dev, libhwy-dev, libinsighttoolkit5-dev, \
-libisal-dev, libexpat1-dev, nlohmann-json3-dev, libssl-dev, libyaml-cpp-dev, libembree-dev, zlib1g-dev")
+libisal-dev, libexpat1-dev, nlohmann-json3-dev, libssl-dev, libyaml-cpp-dev, libembree-dev, libpng-dev, zlib1g-dev")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-explica)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 # A compiled module fits one version of Python.

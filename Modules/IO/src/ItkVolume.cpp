@@ -4,11 +4,9 @@
 #include "ItkVolume.h"
 
 #include "ByteSource.h"
-#include "PngStructure.h"
 
 #include <itkMetaImageIO.h>
 #include <itkNrrdImageIO.h>
-#include <itkPNGImageIO.h>
 
 #include <Eigen/Geometry>
 
@@ -355,12 +353,6 @@ StoredVolume readWithItk(const std::filesystem::path& path, ItkFormat format, Ex
         volume.origin.format = "MetaImage";
         reader = itk::MetaImageIO::New();
         break;
-      case ItkFormat::Png:
-        checkPng(path, bytes);
-        volume.origin.format = "PNG";
-        volume.origin.placement = kNotPlaced;
-        reader = itk::PNGImageIO::New();
-        break;
     }
   }
   try {
@@ -383,9 +375,6 @@ StoredVolume readWithItk(const std::filesystem::path& path, ItkFormat format, Ex
     if (components > 1) volume.origin.storedSize.push_back(static_cast<int>(components));
     std::int64_t frames = 1;
     for (std::size_t i = 3; i < sizes.size(); ++i) frames *= sizes[i];
-    if (format == ItkFormat::Png && components > 2) {
-      refuse(path, "is a picture in colour; a grey one is needed");
-    }
     if (components > 1 && frames > 1) {
       refuse(path, "holds several volumes of several components each; store one of them alone");
     }

@@ -6,7 +6,7 @@
 
 namespace explica::io {
 
-enum class ItkFormat { Nrrd, MetaImage, Png };
+enum class ItkFormat { Nrrd, MetaImage };
 
 /// Reads through ITK's own ImageIO of the format, and turns its LPS into RAS.  The header is
 /// checked before ITK sees it, because ITK trusts the sizes it finds there.

@@ -6,6 +6,7 @@
 #include "ItkVolume.h"
 #include "MghFormat.h"
 #include "NiftiFormat.h"
+#include "PngImage.h"
 
 namespace explica::io {
 namespace {
@@ -31,6 +32,10 @@ StoredVolume readMghFile(ByteSource& source, const Path&, const VolumeReadOption
 template <ItkFormat format>
 StoredVolume readByItk(ByteSource&, const Path& path, const VolumeReadOptions&, Extent extent) {
   return readWithItk(path, format, extent);
+}
+
+StoredVolume readPngFile(ByteSource&, const Path& path, const VolumeReadOptions&, Extent extent) {
+  return readPng(path, extent);
 }
 
 /// Whether a file begins with these bytes.
@@ -66,7 +71,7 @@ const std::vector<VolumeFormat>& volumeFormats() {
        {{".nii.gz", true}, {".nii", false}},
        VolumeLayout{.head = niftiHeader}},
       {"NRRD", looksLikeNrrd, readByItk<ItkFormat::Nrrd>},
-      {"PNG", looksLikePng, readByItk<ItkFormat::Png>},
+      {"PNG", looksLikePng, readPngFile},
       {"MetaImage", looksLikeMetaImage, readByItk<ItkFormat::MetaImage>},
       {"MINC", looksLikeMinc, refuseMinc},
       {"MGH",

@@ -5,103 +5,14 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/WholeFile.h"
 
-#include <zlib.h>
+#include <png.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
-#include <limits>
 
 namespace explica::report {
 namespace {
-
-void appendBigEndian(std::string& bytes, std::uint32_t value) {
-  for (int shift = 24; shift >= 0; shift -= 8) bytes.push_back(static_cast<char>(value >> shift));
-}
-
-void appendChunk(std::string& file, const char* type, const std::string& data) {
-  appendBigEndian(file, static_cast<std::uint32_t>(data.size()));
-  const std::string body = type + data;
-  file += body;
-  appendBigEndian(file,
-                  static_cast<std::uint32_t>(crc32(0, reinterpret_cast<const Bytef*>(body.data()),
-                                                   static_cast<uInt>(body.size()))));
-}
-
-/// What a filter of PNG expects at a byte, from those to the left, above, and above to the left.
-int expectedBy(int filter, int left, int above, int corner) {
-  switch (filter) {
-    case 1:
-      return left;
-    case 2:
-      return above;
-    case 3:
-      return (left + above) / 2;
-    case 4: {
-      const int toLeft = std::abs(above - corner), toAbove = std::abs(left - corner),
-                toCorner = std::abs(left + above - 2 * corner);
-      if (toLeft <= toAbove && toLeft <= toCorner) return left;
-      return toAbove <= toCorner ? above : corner;
-    }
-    default:
-      return 0;
-  }
-}
-
-/// A row as the filter leaves it, the filter's number first.
-/// @param before  the row above, or nullptr
-std::string filteredRow(int filter, const std::uint8_t* row, const std::uint8_t* before,
-                        std::size_t stride) {
-  std::string out(1, static_cast<char>(filter));
-  out.reserve(stride + 1);
-  for (std::size_t b = 0; b < stride; ++b) {
-    const int left = b < 3 ? 0 : row[b - 3];
-    const int above = before == nullptr ? 0 : before[b];
-    const int corner = b < 3 || before == nullptr ? 0 : before[b - 3];
-    out.push_back(static_cast<char>(row[b] - expectedBy(filter, left, above, corner)));
-  }
-  return out;
-}
-
-/// Rows, each under the filter that leaves the smallest sum of differences, deflated.
-std::string compressRows(const Picture& picture) {
-  constexpr int kFilters = 5;
-  const std::size_t stride = static_cast<std::size_t>(picture.width) * 3;
-  std::string rows;
-  rows.reserve((stride + 1) * picture.height);
-  for (int y = 0; y < picture.height; ++y) {
-    const std::uint8_t* row = picture.rgb.data() + y * stride;
-    std::string best;
-    long least = std::numeric_limits<long>::max();
-    for (int filter = 0; filter < kFilters; ++filter) {
-      std::string tried = filteredRow(filter, row, y == 0 ? nullptr : row - stride, stride);
-      long sum = 0;
-      for (std::size_t b = 1; b < tried.size(); ++b)
-        sum += std::abs(static_cast<signed char>(tried[b]));
-      if (sum >= least) continue;
-      least = sum;
-      best = std::move(tried);
-    }
-    rows += best;
-  }
-  uLongf size = compressBound(static_cast<uLong>(rows.size()));
-  std::string packed(size, '\0');
-  compress2(reinterpret_cast<Bytef*>(packed.data()), &size,
-            reinterpret_cast<const Bytef*>(rows.data()), static_cast<uLong>(rows.size()), 7);
-  packed.resize(size);
-  return packed;
-}
-
-std::string pngHead(const Picture& picture) {
-  std::string file = "\x89PNG\r\n\x1a\n";
-  std::string header;
-  appendBigEndian(header, static_cast<std::uint32_t>(picture.width));
-  appendBigEndian(header, static_cast<std::uint32_t>(picture.height));
-  header += std::string("\x08\x02\x00\x00\x00", 5);
-  appendChunk(file, "IHDR", header);
-  return file;
-}
 
 void requireFrames(const std::vector<Picture>& frames) {
   if (frames.empty()) throw InvalidInput("film: no frames");
@@ -222,42 +133,18 @@ float decodeSrgb(std::uint8_t byte) {
 }
 
 std::string encodePng(const Picture& picture) {
-  std::string file = pngHead(picture);
-  appendChunk(file, "IDAT", compressRows(picture));
-  appendChunk(file, "IEND", "");
-  return file;
-}
-
-std::string encodeAnimatedPng(const std::vector<Picture>& frames, double framesPerSecond) {
-  requireFrames(frames);
-  std::string file = pngHead(frames[0]);
-  std::string control;
-  appendBigEndian(control, static_cast<std::uint32_t>(frames.size()));
-  appendBigEndian(control, 0);
-  appendChunk(file, "acTL", control);
-  std::uint32_t sequence = 0;
-  for (std::size_t f = 0; f < frames.size(); ++f) {
-    std::string frame;
-    appendBigEndian(frame, sequence++);
-    appendBigEndian(frame, static_cast<std::uint32_t>(frames[f].width));
-    appendBigEndian(frame, static_cast<std::uint32_t>(frames[f].height));
-    appendBigEndian(frame, 0);
-    appendBigEndian(frame, 0);
-    const auto milliseconds = static_cast<std::uint32_t>(std::lround(1000 / framesPerSecond));
-    frame.push_back(static_cast<char>(milliseconds >> 8));
-    frame.push_back(static_cast<char>(milliseconds & 0xff));
-    frame += std::string("\x03\xe8\x00\x00", 4);  // of 1000 ms; replace what was there
-    appendChunk(file, "fcTL", frame);
-    const std::string rows = compressRows(frames[f]);
-    if (f == 0) {
-      appendChunk(file, "IDAT", rows);
-    } else {
-      std::string numbered;
-      appendBigEndian(numbered, sequence++);
-      appendChunk(file, "fdAT", numbered + rows);
-    }
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  image.width = static_cast<png_uint_32>(picture.width);
+  image.height = static_cast<png_uint_32>(picture.height);
+  image.format = PNG_FORMAT_RGB;
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
+  std::string file(size, '\0');
+  if (png_image_write_to_memory(&image, file.data(), &size, 0, picture.rgb.data(), 0, nullptr) ==
+      0) {
+    throw EnvironmentError(std::string("picture: ") + image.message);
   }
-  appendChunk(file, "IEND", "");
+  file.resize(size);
   return file;
 }
 

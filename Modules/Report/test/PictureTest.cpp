@@ -144,7 +144,7 @@ TEST(Gif, DecodesToColoursNearThePicture) {
 
 TEST(Films, RefuseFramesOfDifferentSize) {
   EXPECT_THROW((void)encodeGif({gradient(4, 4), gradient(5, 4)}, 10), InvalidInput);
-  EXPECT_THROW((void)encodeAnimatedPng({}, 10), InvalidInput);
+  EXPECT_THROW((void)encodeGif({}, 10), InvalidInput);
 }
 
 TEST(ColourMaps, GrowLighterStepByStep) {

@@ -38,11 +38,6 @@ struct Picture {
 /// The picture as a PNG file's bytes.  The same pixels give the same bytes.
 [[nodiscard]] std::string encodePng(const Picture& picture);
 
-/// Several pictures of one size as an animated PNG; a viewer without animation shows the first.
-/// @throws InvalidInput  no picture, or pictures of different sizes
-[[nodiscard]] std::string encodeAnimatedPng(const std::vector<Picture>& frames,
-                                            double framesPerSecond);
-
 /// Several pictures of one size as an endless animated GIF of 252 fixed colours, ordered dither.
 /// @throws InvalidInput  no picture, or pictures of different sizes
 [[nodiscard]] std::string encodeGif(const std::vector<Picture>& frames, double framesPerSecond);
