@@ -4,8 +4,8 @@
 #include "Run.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Memory.h"
 #include "Explica/Core/Parallel.h"
-#include "Explica/Core/PortableMath.h"
 #include "Explica/Core/StopScope.h"
 #include "Explica/IO/ItkFormats.h"
 #include "Explica/Provenance/Doubts.h"
@@ -626,7 +626,7 @@ Outcome execute(Run& run, Console& console) {
   const ThreadChoice threads = chooseThreads(run.common.threads);
   setThreadCount(threads.count);
   Eigen::setNbThreads(threads.count);
-  portable::fixBlocksOfProducts();
+  fixBlocksOfProducts();
   io::setItkThreadCount(threads.count);  // Embree runs on TBB and follows it
 
   Context::State state{run, console, {}, Json::object(), {}, {}, {}, {}, {}, true, {}};

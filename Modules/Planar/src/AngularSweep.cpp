@@ -4,7 +4,6 @@
 #include "Explica/Planar/AngularSweep.h"
 
 #include "Explica/Core/Errors.h"
-#include "Explica/Core/PortableMath.h"
 
 #include <algorithm>
 #include <cmath>
@@ -38,7 +37,7 @@ struct Span {
 };
 
 Point2 unit(double angle) {
-  return {portable::cos(angle), portable::sin(angle)};
+  return {std::cos(angle), std::sin(angle)};
 }
 
 /// What is seen of each edge of the curve, mm.
@@ -72,8 +71,8 @@ Seen seenOf(const Curve& curve, const Point2& viewpoint) {
     const bool front = crossProduct(a, b) < 0;
     if (front) std::swap(a, b);
     const double length = (b - a).norm();
-    const double begin = portable::atan2(a.y(), a.x());
-    const double end = portable::atan2(b.y(), b.x());
+    const double begin = std::atan2(a.y(), a.x());
+    const double end = std::atan2(b.y(), b.x());
     if (begin <= end) {
       addSpan(e, a, b, begin, end, front, length);
     } else {  // across the cut at pi

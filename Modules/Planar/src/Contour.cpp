@@ -4,7 +4,6 @@
 #include "Explica/Planar/Contour.h"
 
 #include "Explica/Core/Errors.h"
-#include "Explica/Core/PortableMath.h"
 
 #include <Eigen/Geometry>
 
@@ -168,8 +167,7 @@ std::vector<Curve> contoursOfLabels(const Volume<Label>& labels, const std::vect
         double sum = 0;
         double weights = 0;
         for (int d = -reach; d <= reach; ++d) {
-          const double weight =
-              portable::exp(-0.5 * d * d / (options.smoothing * options.smoothing));
+          const double weight = std::exp(-0.5 * d * d / (options.smoothing * options.smoothing));
           const int ii = i + (axis == 0 ? d : 0);
           const int jj = j + (axis == 1 ? d : 0);
           weights += weight;

@@ -3,7 +3,6 @@
 
 #include "Explica/Planar/PolygonCollision.h"
 
-#include "Explica/Core/PortableMath.h"
 #include "Segment.h"
 
 #include <algorithm>
@@ -158,7 +157,7 @@ double largestSafeStep(const Curve& curve, const Positions2& target,
 BarrierValue barrier(double distance, double range) {
   if (distance >= range) return {};
   const double s = distance / range;
-  const double log = portable::log(s);
+  const double log = std::log(s);
   const double below = s - 1;
   BarrierValue result;
   result.value = -below * below * log;

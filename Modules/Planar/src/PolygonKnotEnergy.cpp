@@ -6,7 +6,6 @@
 #include "EdgeTree.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
-#include "Explica/Core/PortableMath.h"
 #include "Segment.h"
 
 #include <algorithm>
@@ -30,7 +29,7 @@ Point2 turnedLeft(const Point2& v) {
 
 /// Potential at `ra`, `rb` from the ends of a uniform unit charge of length l.
 double potential(double ra, double rb, double l) {
-  return portable::log((ra + rb + l) / (ra + rb - l));
+  return std::log((ra + rb + l) / (ra + rb - l));
 }
 
 /// Ten-point Gauss rule on [-1, 1]: positive nodes and weights.
@@ -155,8 +154,8 @@ class Summation {
   void addSelf(int e, EdgeSum& sum) const {
     const Point2 t = curve_.point(curve_.next(e)) - curve_.point(e);
     const double length = t.norm();
-    sum.value += length * portable::log(length) - length;
-    const Point2 gradient = portable::log(length) * t / length;
+    sum.value += length * std::log(length) - length;
+    const Point2 gradient = std::log(length) * t / length;
     sum.byStart -= gradient;
     sum.byEnd += gradient;
   }
@@ -316,8 +315,8 @@ EdgePairIntegral joinedEdgesIntegral(const Point2& a, const Point2& b, const Poi
     withT = product / withS;
   }
   EdgePairIntegral result;
-  const double logS = portable::log(all / withS);
-  const double logT = portable::log(all / withT);
+  const double logS = std::log(all / withS);
+  const double logT = std::log(all / withT);
   result.value = s * logS + t * logT;
   const double byS = logS + s * (1 / all - 1 / withS) + t * (1 / all + 1 / withT);
   const double byT = logT + t * (1 / all - 1 / withT) + s * (1 / all + 1 / withS);

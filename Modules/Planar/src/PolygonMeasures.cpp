@@ -5,7 +5,6 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
-#include "Explica/Core/PortableMath.h"
 #include "Explica/Core/StopScope.h"
 
 #include <Eigen/Geometry>
@@ -51,7 +50,7 @@ MeasureValue hiddenViewingArcGradient(const Curve& curve, const Point2& centre, 
     const double length = (b - a).norm();
     const Point2 tangent = (b - a) / length;
     const double h = (b.y() * a.x() - b.x() * a.y()) / length;
-    const double arc = 2 * kPi - 2 * portable::acos(h / radius);
+    const double arc = 2 * kPi - 2 * std::acos(h / radius);
     result.value += radius * length * arc;
     // d(L arc) = arc dL + 2 (d(L h) - h dL) / sqrt(r^2 - h^2), and L h is the cross product.
     const double turn = 2 / std::sqrt(radius * radius - h * h);

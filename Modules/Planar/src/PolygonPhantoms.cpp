@@ -3,8 +3,6 @@
 
 #include "Explica/Planar/PolygonPhantoms.h"
 
-#include "Explica/Core/PortableMath.h"
-
 #include <cmath>
 #include <initializer_list>
 
@@ -64,7 +62,7 @@ Curve makeEllipse(int edges, double a, double b) {
   ellipse.positions.resize(edges, 2);
   for (int k = 0; k < edges; ++k) {
     const double angle = 2 * kPi * k / edges;
-    ellipse.positions.row(k) << a * portable::cos(angle), b * portable::sin(angle);
+    ellipse.positions.row(k) << a * std::cos(angle), b * std::sin(angle);
   }
   return ellipse;
 }

@@ -4,7 +4,6 @@
 #include "Explica/Planar/PolygonVisibility.h"
 
 #include "Explica/Core/Errors.h"
-#include "Explica/Core/PortableMath.h"
 
 #include <cmath>
 
@@ -25,9 +24,9 @@ EdgeFlux edgeFlux(const Point2& a, const Point2& b, const Point2& viewpoint) {
   EdgeFlux result;
   // On the edge itself the flux is zero: h vanishes faster than the logarithm grows.
   if (gap <= 0) return result;
-  const double potential = portable::log1p(2 * length * (sum + length) / gap);
+  const double potential = std::log1p(2 * length * (sum + length) / gap);
   result.flux = h * potential;
-  result.squareFlux = std::abs(h) * std::abs(portable::atan2(gamma, p.dot(q)));
+  result.squareFlux = std::abs(h) * std::abs(std::atan2(gamma, p.dot(q)));
 
   // d potential = 2 (sum dLength - length dSum) / gap.
   const Point2 tangent = t / length;

@@ -3,8 +3,6 @@
 
 #include "AngularBasis.h"
 
-#include "Explica/Core/PortableMath.h"
-
 #include <cmath>
 #include <vector>
 
@@ -13,7 +11,7 @@ namespace {
 
 /// sinh(a x) / sinh(a) for x in [0, 1], without overflow.
 double sinhRatio(double a, double x) {
-  return portable::exp(a * (x - 1)) * portable::expm1(-2 * a * x) / portable::expm1(-2 * a);
+  return std::exp(a * (x - 1)) * std::expm1(-2 * a * x) / std::expm1(-2 * a);
 }
 
 }  // namespace
@@ -24,8 +22,8 @@ int degreeOf(int dimension, int k) {
 }
 
 RadialFactors radialFactors(int dimension, int degree, double r, double r0, double r1) {
-  const double whole = portable::log(r1 / r0);
-  const double x = portable::log(r / r0) / whole;
+  const double whole = std::log(r1 / r0);
+  const double x = std::log(r / r0) / whole;
   if (dimension == 2) {
     if (degree == 0) return {1 - x, x};
     return {sinhRatio(degree * whole, 1 - x), sinhRatio(degree * whole, x)};
@@ -36,23 +34,23 @@ RadialFactors radialFactors(int dimension, int degree, double r, double r0, doub
 
 void angularBasis(int dimension, int order, const Vector& d, double* values) {
   if (dimension == 2) {
-    const double angle = portable::atan2(d.y(), d.x());
+    const double angle = std::atan2(d.y(), d.x());
     values[0] = 1;
     for (int n = 1; n <= order; ++n) {
-      values[2 * n - 1] = portable::cos(n * angle);
-      values[2 * n] = portable::sin(n * angle);
+      values[2 * n - 1] = std::cos(n * angle);
+      values[2 * n] = std::sin(n * angle);
     }
     return;
   }
   // Associated Legendre functions scaled to a mean square of 1 over the sphere, upward in l.
   const double z = d.z();
   const double s = std::hypot(d.x(), d.y());
-  const double phi = s > 0 ? portable::atan2(d.y(), d.x()) : 0;
+  const double phi = s > 0 ? std::atan2(d.y(), d.x()) : 0;
   double diagonal = 1;  // P_mm
   for (int m = 0; m <= order; ++m) {
     if (m > 0) diagonal *= s * std::sqrt((2.0 * m + 1) / (2.0 * m)) * (m == 1 ? std::sqrt(2.0) : 1);
-    const double cosine = portable::cos(m * phi);
-    const double sine = portable::sin(m * phi);
+    const double cosine = std::cos(m * phi);
+    const double sine = std::sin(m * phi);
     double before = 0;
     double at = diagonal;
     for (int l = m; l <= order; ++l) {

@@ -5,7 +5,6 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
-#include "Explica/Core/PortableMath.h"
 
 #include <Eigen/LU>
 
@@ -146,9 +145,9 @@ AnnulusMap::Complex AnnulusMap::logarithmOf(const Piece& piece, Complex z) const
     series = 1 / 3.0 + product(q, series);
     return 2.0 * (d + product(d, product(q, series)));
   }
-  return {0.5 * portable::log(std::norm(b) / std::norm(a)),
-          portable::atan2(a.real() * b.imag() - a.imag() * b.real(),
-                          a.real() * b.real() + a.imag() * b.imag())};
+  return {0.5 * std::log(std::norm(b) / std::norm(a)),
+          std::atan2(a.real() * b.imag() - a.imag() * b.real(),
+                     a.real() * b.real() + a.imag() * b.imag())};
 }
 
 AnnulusMap::Weights AnnulusMap::weightsOf(const Piece& piece, Complex z) const {
@@ -169,7 +168,7 @@ void AnnulusMap::solve() {
   const auto n = static_cast<Eigen::Index>(nodes_.size());
   Eigen::VectorXd u(n);
   for (Eigen::Index k = 0; k < n; ++k) {
-    u[k] = portable::log(outerRadius_) - portable::log(std::abs(nodes_[k] - centre_));
+    u[k] = std::log(outerRadius_) - std::log(std::abs(nodes_[k] - centre_));
   }
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n + 1, n + 1);
   Eigen::VectorXd right = Eigen::VectorXd::Zero(n + 1);
@@ -210,7 +209,7 @@ void AnnulusMap::solve() {
     throw InvalidInput("annulus: its boundaries are too near to each other for " +
                        std::to_string(n) + " nodes");
   }
-  innerRadius_ = outerRadius_ * portable::exp(rise);
+  innerRadius_ = outerRadius_ * std::exp(rise);
   values_.resize(nodes_.size());
   for (std::size_t k = 0; k < nodes_.size(); ++k) {
     const auto at = static_cast<Eigen::Index>(k);
@@ -260,8 +259,8 @@ planar::Point2 AnnulusMap::operator()(const planar::Point2& point) const {
   }
   // The weights add up to 2 pi i inside and to 0 elsewhere.
   const Complex f = !atNode && weight.imag() > kPi ? sum / weight : nearestValue(z, z);
-  const Complex turn = {portable::cos(f.imag()), portable::sin(f.imag())};
-  const Complex w = (z - centre_) * (portable::exp(f.real()) * turn);
+  const Complex turn = {std::cos(f.imag()), std::sin(f.imag())};
+  const Complex w = (z - centre_) * (std::exp(f.real()) * turn);
   return {w.real(), w.imag()};
 }
 

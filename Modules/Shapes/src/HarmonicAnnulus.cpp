@@ -6,7 +6,6 @@
 #include "AngularBasis.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
-#include "Explica/Core/PortableMath.h"
 
 #include <algorithm>
 #include <cmath>
@@ -28,7 +27,7 @@ int samplesOf(const HarmonicAnnulus& annulus, int perOrder) {
 
 /// How much the half range of a boundary's values may exceed that of its samples.
 double rangeGrowth(const HarmonicAnnulus& annulus) {
-  const double once = 1 / portable::cos(kPi / kSamplesPerOrder);
+  const double once = 1 / std::cos(kPi / kSamplesPerOrder);
   return annulus.dimension == 2 ? once : once * once;
 }
 
@@ -88,7 +87,7 @@ HarmonicAnnulus givenAnnulus(const planar::Curve& inner, const planar::Curve& ou
   annulus.innerRadius = annulus.map->innerRadius();
   annulus.outerRadius = annulus.map->outerRadius();
   // In the middle, frequency n has fallen to exp(-n ln(R/r) / 2).
-  const double reach = 2 * kFading / portable::log(annulus.outerRadius / annulus.innerRadius);
+  const double reach = 2 * kFading / std::log(annulus.outerRadius / annulus.innerRadius);
   annulus.order = order.value_or(std::clamp(static_cast<int>(std::ceil(reach)), 16, 256));
   requireUsable(annulus);
   return annulus;
@@ -178,8 +177,8 @@ SampleRows boundarySamples(const HarmonicAnnulus& annulus, int perOrder) {
     for (int j = 0; j < rings; ++j) {
       // Meridian circles have equally spaced samples on both their halves.
       const double theta = annulus.dimension == 2 ? kPi / 2 : 2 * kPi * (j + 0.5) / samples;
-      const Vector direction(portable::sin(theta) * portable::cos(phi),
-                             portable::sin(theta) * portable::sin(phi), portable::cos(theta));
+      const Vector direction(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
+                             std::cos(theta));
       angularBasis(annulus.dimension, annulus.order, direction,
                    rows.row(static_cast<Eigen::Index>(k) * rings + j).data());
     }

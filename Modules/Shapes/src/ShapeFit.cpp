@@ -5,7 +5,6 @@
 
 #include "AngularBasis.h"
 #include "Explica/Core/Errors.h"
-#include "Explica/Core/PortableMath.h"
 #include "Explica/Core/StopScope.h"
 
 #include <algorithm>
@@ -47,7 +46,7 @@ std::vector<double> kernelFactors(int dimension, int order) {
   std::vector<double> legendre(static_cast<std::size_t>(order) + 1);
   for (int k = 0; k < samples; ++k) {
     const double g = kPi * (k + 0.5) / samples;
-    const double c = portable::cos(g);
+    const double c = std::cos(g);
     double root = 0;
     for (int l = 0; l <= order; ++l) {
       legendre[l] = l == 0   ? 1
@@ -55,7 +54,7 @@ std::vector<double> kernelFactors(int dimension, int order) {
                              : ((2 * l - 1) * c * legendre[l - 1] - (l - 1) * legendre[l - 2]) / l;
       if (l <= order / 2) root += (2 * l + 1) * legendre[l];
     }
-    for (int l = 0; l <= order; ++l) factors[l] += portable::sin(g) * root * root * legendre[l];
+    for (int l = 0; l <= order; ++l) factors[l] += std::sin(g) * root * root * legendre[l];
   }
   for (int l = order; l >= 0; --l) factors[l] /= factors[0];
   return factors;
@@ -75,11 +74,11 @@ Eigen::MatrixXd bumps(const HarmonicAnnulus& annulus) {
     Vector direction;
     if (annulus.dimension == 2) {
       const double angle = 2 * kPi * b / count;
-      direction = {portable::cos(angle), portable::sin(angle), 0};
+      direction = {std::cos(angle), std::sin(angle), 0};
     } else {  // Fibonacci's lattice
       const double z = 1 - (2.0 * b + 1) / count;
       const double s = std::sqrt(1 - z * z);
-      direction = {s * portable::cos(golden * b), s * portable::sin(golden * b), z};
+      direction = {s * std::cos(golden * b), s * std::sin(golden * b), z};
     }
     angularBasis(annulus.dimension, annulus.order, direction, coefficients.col(b).data());
   }

@@ -3,11 +3,11 @@
 
 #include "Bindings.h"
 
-#include "Explica/Core/PortableMath.h"
+#include "Explica/Core/Memory.h"
 
 PYBIND11_MODULE(_explica, m) {
   m.doc() = "Explica's compiled functions; import `explica` instead.";
-  explica::portable::fixBlocksOfProducts();
+  explica::fixBlocksOfProducts();
   explica::python::bindCore(m);
   explica::python::bindGeometry(m);
   explica::python::bindIO(m);

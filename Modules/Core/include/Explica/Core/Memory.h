@@ -9,4 +9,9 @@ namespace explica {
 /// where the C library is not glibc.
 void keepFreedMemory();
 
+/// Eigen cuts products of matrices into blocks that suit the processor's caches and adds up block
+/// by block, so that the last digits depend on the processor; after this call the blocks suit
+/// caches of one size, in the whole program.
+void fixBlocksOfProducts();
+
 }  // namespace explica
