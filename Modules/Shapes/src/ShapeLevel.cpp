@@ -6,6 +6,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Geometry/FaceTree.h"
+#include "Explica/Geometry/IsoSurface.h"
 #include "Explica/Planar/Contour.h"
 
 #include <Eigen/Geometry>
@@ -109,8 +110,9 @@ std::vector<planar::Curve> levelCurves(const HarmonicShape& shape, int voxels) {
 
 TriangleMesh levelSurface(const HarmonicShape& shape, int voxels) {
   if (shape.annulus.dimension != 3) throw InvalidInput("level surface: the shape is in the plane");
-  const Volume<float> field = fieldOf(shape, voxels);
-  TriangleMesh mesh = levelSurfaceOf(field, 0.5);
+  Volume<float> field = fieldOf(shape, voxels);
+  for (float& value : field.data) value = 0.5F - value;  // the surface runs around high values
+  TriangleMesh mesh = geometry::extractIsoSurface(field);
   if (mesh.faceCount() == 0) refuseThinShape(voxels);
   moveOntoLevel(shape, field.grid.spacing.x(), mesh.positions);
   return mesh;

@@ -8,11 +8,11 @@
 #include "Explica/Core/Parallel.h"
 #include "Explica/Core/StopScope.h"
 #include "Explica/Geometry/FaceTree.h"
+#include "Explica/Geometry/IsoSurface.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Maps/Folding.h"
 #include "Explica/Surface/GivenSurfaces.h"
-#include "Explica/Surface/IsoSurface.h"
 #include "Explica/Surface/Measures.h"
 #include "Explica/Surface/Remesh.h"
 #include "Growth.h"
@@ -409,7 +409,7 @@ WhiteSurface extractWhite(const CorticalTissue& tissue, const SurfaceOptions& op
   white.voxelsChanged = topology.voxelsChanged;
   white.genus = topology.handlesLeft;
   white.seconds.topology = watch.lap();
-  const TriangleMesh raw = extractIsoSurface(white.level);
+  const TriangleMesh raw = geometry::extractIsoSurface(white.level);
   white.seconds.extraction = watch.lap();
   RemeshOptions remeshing;
   remeshing.faces = options.faces;

@@ -8,11 +8,11 @@
 #include "Explica/Core/StopScope.h"
 #include "Explica/Correspondence/ImageEdge.h"
 #include "Explica/Correspondence/Ribbon.h"
+#include "Explica/Geometry/IsoSurface.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Maps/Folding.h"
 #include "Explica/Surface/GivenSurfaces.h"
-#include "Explica/Surface/IsoSurface.h"
 #include "Explica/Surface/Measures.h"
 #include "Explica/Surface/Remesh.h"
 #include "Growth.h"
@@ -207,7 +207,7 @@ bool onImageEdge(const Grid& image, const Point& point) {
 
 /// The sheet before it is remeshed.
 TriangleMesh extractSheet(const Ribbon& field, const SheetLevel& sheet, SheetFacts& facts) {
-  TriangleMesh mesh = extractIsoSurface(sheet.level, sheet.known);
+  TriangleMesh mesh = geometry::extractIsoSurface(sheet.level, sheet.known);
   const double thickness = static_cast<double>(field.annulus.count()) *
                            field.annulus.grid.voxelVolume() / geometry::totalArea(mesh);
   const auto disc = [&](double radii) { return kPi * std::pow(radii * thickness, 2); };

@@ -6,12 +6,12 @@
 #include "Explica/Correspondence/Correspondence.h"
 #include "Explica/Correspondence/Sulci.h"
 #include "Explica/Geometry/Fixtures.h"
+#include "Explica/Geometry/IsoSurface.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Geometry/SelfIntersection.h"
 #include "Explica/Harmonic/Interpolant.h"
 #include "Explica/Surface/CorticalSurface.h"
-#include "Explica/Surface/IsoSurface.h"
 #include "Explica/Surface/Measures.h"
 #include "Explica/Surface/Remesh.h"
 #include "NearestToItself.h"
@@ -101,7 +101,8 @@ TEST(LevelSet, OfABallsMaskIsASphere) {
       return p.norm() < radius ? 1 : 0;
     });
     const auto level = levelSetOf(ball);
-    const Eigen::VectorXd off = offSphere(extractIsoSurface(level), radius) / spacing.maxCoeff();
+    const Eigen::VectorXd off =
+        offSphere(geometry::extractIsoSurface(level), radius) / spacing.maxCoeff();
     EXPECT_LE(std::sqrt(off.squaredNorm() / static_cast<double>(off.size())), meanSquared);
     EXPECT_LE(off.cwiseAbs().maxCoeff(), most);
     for (std::size_t v = 0; v < ball.size(); ++v) {
@@ -155,7 +156,7 @@ TEST(LevelSet, KeepsASheetOfOneVoxelAsThickAsAVoxel) {
 
 TEST(Remesh, MakesEvenTrianglesAndMeetsTheCount) {
   const auto tissue = shell(12, 15, 1);
-  const auto iso = extractIsoSurface(tissue.white);
+  const auto iso = geometry::extractIsoSurface(tissue.white);
   for (const std::int64_t faces : {1000, 8000, 20000}) {
     SCOPED_TRACE(faces);
     RemeshOptions options;
@@ -177,7 +178,7 @@ TEST(Remesh, MakesEvenTrianglesAndMeetsTheCount) {
 TEST(Remesh, MakesNoMoreTrianglesThanTheVolumeCanTell) {
   // A ball of nine voxels across: what 150,000 faces would have in their way took minutes.
   const auto tissue = shell(4.5, 7, 1);
-  const auto iso = extractIsoSurface(tissue.white);
+  const auto iso = geometry::extractIsoSurface(tissue.white);
   std::vector<std::string> warnings;
   Monitor monitor;
   monitor.onWarning = [&](const std::string& message) { warnings.push_back(message); };
@@ -197,7 +198,7 @@ TEST(Remesh, ConvergesToTheSphereAtSecondOrder) {
     const auto tissue = shell(12.13, 15, h);
     RemeshOptions options;
     options.faces = 1000 << (2 * s);
-    const auto mesh = remesh(extractIsoSurface(tissue.white), tissue.white, options).mesh;
+    const auto mesh = remesh(geometry::extractIsoSurface(tissue.white), tissue.white, options).mesh;
     error[s] = std::abs(geometry::enclosedVolume(mesh) / (4.0 / 3 * kPi * std::pow(12.13, 3)) - 1);
   }
   EXPECT_NEAR(0.5 * std::log2(error[0] / error[2]), 2, 0.4);

@@ -4,10 +4,10 @@
 #include "../src/Thinning.h"
 
 #include "Explica/Core/Parallel.h"
+#include "Explica/Geometry/IsoSurface.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Geometry/SelfIntersection.h"
-#include "Explica/Surface/IsoSurface.h"
 
 #include <gtest/gtest.h>
 
@@ -46,7 +46,7 @@ LevelSet torus() {
 
 /// Chords cut a volume off that grows as the square of their length.
 void expectThinned(const LevelSet& level, double edge, std::int64_t characteristic) {
-  const TriangleMesh mesh = extractIsoSurface(level);
+  const TriangleMesh mesh = geometry::extractIsoSurface(level);
   const TriangleMesh thin = thinned(mesh, level, edge);
   const auto condition = geometry::requireClosedManifold(thin, "thinned");
   EXPECT_EQ(condition.eulerCharacteristic, characteristic);
@@ -67,7 +67,7 @@ TEST(Thinning, LeavesTheTopologyAndNoFacesThatMeet) {
 
 TEST(Thinning, IsTheSameForAnyNumberOfThreads) {
   const LevelSet level = slit();
-  const TriangleMesh mesh = extractIsoSurface(level);
+  const TriangleMesh mesh = geometry::extractIsoSurface(level);
   const TriangleMesh several = thinned(mesh, level, 2);
   setThreadCount(1);
   const TriangleMesh one = thinned(mesh, level, 2);
@@ -84,7 +84,7 @@ TEST(Thinning, LeavesRimsAsTheyAre) {
       for (int i = 0; i < 20; ++i) known(i, j, k) = 0;
     }
   }
-  const TriangleMesh mesh = extractIsoSurface(level, known);
+  const TriangleMesh mesh = geometry::extractIsoSurface(level, known);
   const TriangleMesh thin = thinned(mesh, level, 2);
   const auto before = geometry::requireManifold(mesh, "mesh");
   const auto after = geometry::requireManifold(thin, "thinned");

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Geometry/IsoSurface.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Geometry/SelfIntersection.h"
-#include "Explica/Surface/IsoSurface.h"
 #include "Explica/Surface/TopologyCorrection.h"
 
 #include <gtest/gtest.h>
@@ -40,7 +40,7 @@ double torus(const Point& p, double major, double minor) {
 }
 
 std::int64_t eulerOfMesh(const LevelSet& level) {
-  return geometry::inspectMesh(extractIsoSurface(level)).eulerCharacteristic;
+  return geometry::inspectMesh(geometry::extractIsoSurface(level)).eulerCharacteristic;
 }
 
 TEST(TopologyCorrection, LeavesABallAlone) {
@@ -99,7 +99,7 @@ TEST(TopologyCorrection, MakesASphereOfNoise) {
     }
     const auto result = correctTopology(level);
     EXPECT_EQ(boundaryEulerCharacteristic(result.level), 2);
-    const auto mesh = extractIsoSurface(result.level);
+    const auto mesh = geometry::extractIsoSurface(result.level);
     const auto condition = geometry::inspectMesh(mesh);
     EXPECT_TRUE(condition.closedManifold());
     EXPECT_EQ(condition.eulerCharacteristic, 2);
@@ -125,7 +125,7 @@ TEST(IsoSurface, HasTheTopologyOfItsLattice) {
     }
   }
   EXPECT_EQ(eulerOfMesh(level), boundaryEulerCharacteristic(level));
-  EXPECT_TRUE(geometry::inspectMesh(extractIsoSurface(level)).closedManifold());
+  EXPECT_TRUE(geometry::inspectMesh(geometry::extractIsoSurface(level)).closedManifold());
 }
 
 TEST(IsoSurface, PointsOutwardOnMirroredAndObliqueGrids) {
@@ -137,7 +137,7 @@ TEST(IsoSurface, PointsOutwardOnMirroredAndObliqueGrids) {
         1;
     grid.origin = -(grid.toWorld(Vector::Constant(9.5)) - grid.origin);
     const auto level = levelFrom(grid, [](const Point& p) { return (6 - p.norm()) / 2; });
-    const double volume = geometry::enclosedVolume(extractIsoSurface(level));
+    const double volume = geometry::enclosedVolume(geometry::extractIsoSurface(level));
     EXPECT_NEAR(volume, 4.0 / 3 * kPi * 216, 20);
   }
 }
@@ -150,7 +150,7 @@ TEST(IsoSurface, ConvergesAtSecondOrder) {
     for (const double radius : {8.1, 8.43, 8.77, 9.2, 9.61}) {
       const auto level = levelFrom(cube(24 << s, h),
                                    [&](const Point& p) { return (radius - p.norm()) / (4 * h); });
-      const auto mesh = extractIsoSurface(level);
+      const auto mesh = geometry::extractIsoSurface(level);
       const double volume = 4.0 / 3 * kPi * std::pow(radius, 3), area = 4 * kPi * radius * radius;
       volumeError[s] += std::pow(geometry::enclosedVolume(mesh) / volume - 1, 2);
       areaError[s] += std::pow(geometry::totalArea(mesh) / area - 1, 2);

@@ -6,11 +6,11 @@
 #include "Options.h"
 #include "Watch.h"
 
+#include "Explica/Geometry/IsoSurface.h"
 #include "Explica/Maps/Folding.h"
 #include "Explica/Segmentation/Atlas.h"
 #include "Explica/Segmentation/Hemisphere.h"
 #include "Explica/Surface/CorticalSurface.h"
-#include "Explica/Surface/IsoSurface.h"
 #include "Explica/Surface/TissueSheet.h"
 
 namespace explica::python {
@@ -94,7 +94,7 @@ void bindParts(py::module_& m) {
       "iso_surface",
       [](const py::array& level, const Eigen::Matrix4d& affine) {
         const Volume<float> volume = scalarVolume(level, affine);
-        auto mesh = unlocked([&] { return surface::extractIsoSurface(volume); });
+        auto mesh = unlocked([&] { return geometry::extractIsoSurface(volume); });
         return std::make_pair(std::move(mesh.positions), std::move(mesh.faces));
       },
       "level"_a, "affine"_a,

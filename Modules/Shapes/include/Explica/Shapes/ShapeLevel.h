@@ -25,10 +25,6 @@ namespace explica::shapes {
 /// @throws InvalidInput  a shape in the plane, or one too thin for such a grid
 [[nodiscard]] TriangleMesh levelSurface(const HarmonicShape& shape, int voxels);
 
-/// The surface where a field equals `level`, lower values inside: marching tetrahedra on the
-/// Freudenthal division, closed and manifold unless it meets the grid's rim.
-[[nodiscard]] TriangleMesh levelSurfaceOf(const Volume<float>& field, double level);
-
 /// Samples of a closed polygon, `count` pieces of equal length.
 [[nodiscard]] TargetSamples samplesOf(const planar::Curve& target, int count);
 

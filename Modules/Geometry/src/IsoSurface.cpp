@@ -1,31 +1,27 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
-#include "Explica/Surface/IsoSurface.h"
+#include "Explica/Geometry/IsoSurface.h"
 
 #include "Explica/Core/Errors.h"
-#include "Freudenthal.h"
 
 #include <Eigen/LU>
 
 #include <algorithm>
 #include <array>
 
-namespace explica::surface {
+namespace explica::geometry {
 namespace {
 
 /// Corners of a cell are numbered by bits: 1 along i, 2 along j, 4 along k.
 constexpr std::array<std::array<int, 4>, 6> kTetrahedra = {
     {{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}}};
 
-/// Step number of the difference of two corners, higher less lower.
-constexpr std::array<int, 8> kStepOfBits = {-1, 0, 1, 3, 2, 4, 5, 6};
-
 /// Walks cells slice by slice and remembers the vertices on the edges of two slices.
 class Marcher {
  public:
   /// @param known  1 where the level is known; empty: everywhere
-  Marcher(const LevelSet& level, const Volume<std::uint8_t>& known)
+  Marcher(const Volume<float>& level, const Volume<std::uint8_t>& known)
       : level_(level), known_(known), size_(level.grid.size) {
     for (auto& slice : vertexOnEdge_) slice.assign(7ul * size_[0] * size_[1], -1);
     turned_ = level.grid.direction.determinant() < 0;
@@ -103,21 +99,21 @@ class Marcher {
 
   int vertexOn(int a, int b) {
     if (a > b) std::swap(a, b);
-    const int step = kStepOfBits[b ^ a];
+    const int step = b ^ a;  // a bit an axis, as of corners
     const int i = corner_[0] + (a & 1), j = corner_[1] + (a >> 1 & 1), up = a >> 2;
-    int& vertex = vertexOnEdge_[up][7ul * (i + static_cast<std::size_t>(size_[0]) * j) + step];
+    int& vertex = vertexOnEdge_[up][7ul * (i + static_cast<std::size_t>(size_[0]) * j) + step - 1];
     if (vertex < 0) {
       const double t = std::clamp(static_cast<double>(value_[a]) / (value_[a] - value_[b]),
                                   kLeastFraction, 1 - kLeastFraction);
       const Vector low(i, j, corner_[2] + up);
-      const Vector way(kSteps[step][0], kSteps[step][1], kSteps[step][2]);
+      const Vector way(step & 1, step >> 1 & 1, step >> 2);
       vertex = static_cast<int>(points_.size());
       points_.push_back(level_.grid.toWorld(low + t * way));
     }
     return vertex;
   }
 
-  const LevelSet& level_;
+  const Volume<float>& level_;
   const Volume<std::uint8_t>& known_;
   std::array<int, 3> size_;
   bool turned_ = false;
@@ -128,7 +124,7 @@ class Marcher {
   std::vector<std::array<int, 3>> faces_;
 };
 
-void requireNegativeBorder(const LevelSet& level) {
+void requireNegativeBorder(const Volume<float>& level) {
   const auto& n = level.grid.size;
   for (int k = 0; k < n[2]; ++k) {
     for (int j = 0; j < n[1]; ++j) {
@@ -145,14 +141,14 @@ void requireNegativeBorder(const LevelSet& level) {
 
 }  // namespace
 
-TriangleMesh extractIsoSurface(const LevelSet& level) {
+TriangleMesh extractIsoSurface(const Volume<float>& level) {
   requireNegativeBorder(level);
   const Volume<std::uint8_t> everywhere;
   return Marcher(level, everywhere).run();
 }
 
-TriangleMesh extractIsoSurface(const LevelSet& level, const Volume<std::uint8_t>& known) {
+TriangleMesh extractIsoSurface(const Volume<float>& level, const Volume<std::uint8_t>& known) {
   return Marcher(level, known).run();
 }
 
-}  // namespace explica::surface
+}  // namespace explica::geometry
