@@ -379,6 +379,7 @@ def appendix_a(work, page):
 def chapter_3_shapes(work, page):
     page.section("3.2 Harmonic embedding")
     annulus = ["--center", "0,0,0", "--inner-radius", 21, "--outer-radius", 40, "--order", 8, "--cells", 56]
+    look = ["--direction", "0.5,-0.75,0.45", "--width", 320, "--height", 320]
     targets = {"cube": lambda x, y, z: 30 * (1 - 0.3 * (x ** 4 + y ** 4 + z ** 4 - 0.6)),
                "pear": lambda x, y, z: 30 * (1 + 0.13 * z + 0.12 * (x * x - y * y))}
     for name, number in (("cube", "3.4"), ("pear", "3.5")):
@@ -386,27 +387,29 @@ def chapter_3_shapes(work, page):
         write_surface(surface, targets[name])
         fit = work.run(name, "embed", surface, "--fit", *annulus, "--samples", 1000,
                        "--fit-start", 0.15 if name == "cube" else 0.85)
-        page.figure([number], f"Evolution from an initial estimate to the minimum of the set-symmetric difference: "
-                              f"sections of the surface (blue) and its target (orange); at the end "
-                              f"{fit['distance_max']:.2f} mm away at most, where half a voxel is "
-                              f"{fit['voxel'] / 2:.2f} mm. ",
-                    work.path(name) / "evolution.svg", command=work.commands[name], wide=True)
+        frames = sorted((work.path(name) / "frames").glob("*.surf.gii"))
+        views = [work.picture(f"{name}-{n}.png", frame, *look) for n, frame in enumerate(frames)]
+        page.figure([number], f"Evolution from an initial estimate to the minimum of the set-symmetric difference, "
+                              f"and the target (last); the fit ends {fit['distance_max']:.2f} mm away at most, where "
+                              f"half a voxel is {fit['voxel'] / 2:.2f} mm. ",
+                    *views, work.picture(f"{name}-target.png", surface, *look), command=work.commands[name])
         page.number(f"fit_{name}", f"largest distance of the fit from its target, in voxels (figure {number})",
                     "not reported", fit["distance_max"] / fit["voxel"], f"{fit['distance_max'] / fit['voxel']:.2f}",
                     number)
     coefficients = [work.path(n) / "coefficients.json" for n in ("cube", "pear")]
-    series = work.run("series", "embed", *coefficients, "--series", 9, "--cells", 56)
+    steps = [k / 8 for k in range(9)]
+    series = [work.run(f"series{k}", "embed", *coefficients, "--combine", f"{1 - share},{share}", "--cells", 56)
+              for k, share in enumerate(steps)]
     work.run("average", "embed", *coefficients, "--average", "--cells", 56)
-    views = [work.picture(f"{n}.png", work.path(n) / "shape.surf.gii", "--direction", "0.5,-0.75,0.45", "--width", 320,
-                          "--height", 320) for n in ("cube", "average", "pear")]
+    views = [work.picture(f"{n}.png", work.path(n) / "shape.surf.gii", *look) for n in ("cube", "average", "pear")]
     page.figure(["3.6"], "The average of the two: the mean of their coefficients (middle). ", *views,
                 command=work.commands["average"])
-    page.figure(["3.7"], "Convex combinations of the two, from the first to the second; the film runs to and fro. ",
-                work.path("series") / "series.png", work.path("series") / "series.gif",
-                command=work.commands["series"])
+    views = [work.picture(f"series{k}.png", work.path(f"series{k}") / "shape.surf.gii", *look) for k in range(9)]
+    page.figure(["3.7"], "Convex combinations of the two, from the first to the second. ", *views,
+                command=work.commands["series4"])
     page.number("series_margin", "least distance of boundary values from 1/2 over the series: above 0 every "
                                  "combination is one closed surface", "one surface",
-                series["series_boundary_margin_min"], f"{series['series_boundary_margin_min']:.3f}", "3.7")
+                min(s["boundary_margin"] for s in series), f"{min(s['boundary_margin'] for s in series):.3f}", "3.7")
     for a, b in ((18, 22), (15, 25)):
         for r in (a, b):
             write_curve(work.path(f"circle{r}.csv"), lambda t, r=r: r + 0 * t)

@@ -12,11 +12,9 @@
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Provenance/Document.h"
 #include "Explica/Shapes/AnnulusBoundaries.h"
-#include "Explica/Shapes/FitFigure.h"
 #include "Explica/Shapes/ShapeFit.h"
 #include "Explica/Shapes/ShapeLevel.h"
 #include "Explica/Shapes/Summary.h"
-#include "Series.h"
 
 #include <algorithm>
 #include <cmath>
@@ -38,7 +36,6 @@ struct Settings {
   shapes::AnnulusOptions annulus;
   int grid = 96;
   int frames = 6;
-  std::optional<int> series;
   shapes::ShapeFitOptions fitting;
 };
 
@@ -57,8 +54,6 @@ void declare(Declaration& d, Settings& s) {
       .example("explica embed a.csv b.csv --average --out mean", "Mean shape of two contours")
       .example("explica embed a.surf.gii b.surf.gii --combine 0.3,0.7 --out mix",
                "Between two surfaces")
-      .example("explica embed a.csv b.csv --series 9 --out series",
-               "Nine shapes from one contour to the other, side by side and as a film")
       .example("explica embed ED_label.nii.gz --label 2 --band 3 --out band",
                "The outer contour of the heart muscle, in a band of 3 mm about it")
       .example("explica embed mid.csv --annulus ED_label.nii.gz --inner 1 --tissue 2 --out muscle",
@@ -68,12 +63,6 @@ void declare(Declaration& d, Settings& s) {
       .option("Shape", Field{"fit", "", "fit a single target (default for one target)"}, s.fit)
       .option("Shape", Field{"average", "", "mean of the targets (default for several)"}, s.average)
       .option("Shape", Field{"combine", "", "weights of the targets, one each"}, s.weights);
-  d.option("Shape",
-           Field{"series", "",
-                 "of two targets: this many convex combinations from the first to the second, as "
-                 "files, figure and film",
-                 2, 1000},
-           s.series);
   declarePolygonReading(d, s.reading);
   d.options("Annulus", s.annulus)
       .option("Annulus",
@@ -93,18 +82,9 @@ void declare(Declaration& d, Settings& s) {
       .output("shape.csv", FileKind::Polygon, "in 2D: the shape")
       .output("shape.surf.gii", FileKind::Surface, "in 3D: the shape")
       .output("fit.tsv", FileKind::Table, "one row a target and iteration")
-      .output("evolution.svg", FileKind::Picture,
-              "the same states in one figure with the target; in 3D: the section through the "
-              "annulus' centre")
       .output("frames/frame-*.csv", FileKind::Polygon,
               "in 2D: from the initial estimate to the fit")
       .output("frames/frame-*.surf.gii", FileKind::Surface, "in 3D: the same")
-      .output("series/shape-*.csv", FileKind::Polygon, "with --series, in 2D: the combinations")
-      .output("series/shape-*.surf.gii", FileKind::Surface, "with --series, in 3D: the same")
-      .output("series.svg", FileKind::Picture,
-              "with --series: the combinations side by side; in 3D their sections")
-      .output("series.png", FileKind::Picture, "with --series, in 3D: the surfaces side by side")
-      .output("series.gif", FileKind::Picture, "with --series: from one shape to the other")
       .results<shapes::EmbedSummary>();
 }
 
@@ -193,41 +173,29 @@ shapes::HarmonicAnnulus annulusFor(Context& context, const Settings& s,
   return shapes::givenAnnulus(boundaries.inner, boundaries.outer, s.annulus.order);
 }
 
-/// Writes the shape and returns its outline, in 3D where it meets the plane through the centre.
-shapes::Outline writeShape(Context& context, const std::string& stem,
-                           const shapes::HarmonicShape& shape, int grid) {
+void writeShape(Context& context, const std::string& stem, const shapes::HarmonicShape& shape,
+                int grid) {
   if (shape.annulus.dimension == 2) {
-    const planar::Curve curve = shapes::levelCurves(shape, grid).front();
-    io::writePolygonCsv(context.output(stem + ".csv"), curve.positions);
-    return shapes::outlineOf(curve);
+    io::writePolygonCsv(context.output(stem + ".csv"),
+                        shapes::levelCurves(shape, grid).front().positions);
+  } else {
+    io::writeGiftiSurface(context.output(stem + ".surf.gii"), shapes::levelSurface(shape, grid));
   }
-  const TriangleMesh mesh = shapes::levelSurface(shape, grid);
-  io::writeGiftiSurface(context.output(stem + ".surf.gii"), mesh);
-  return shapes::sectionOf(mesh, shape.annulus.centre.z());
 }
 
-/// Writes `frames` states of a fit, from the initial estimate on, and the figure of them.
-void writeEvolution(Context& context, const Settings& s, const shapes::ShapeFit& fit,
-                    const Target& target) {
-  const shapes::HarmonicAnnulus& annulus = fit.shape.annulus;
-  const double z = annulus.centre.z();
+/// Writes `frames` states of a fit, from the initial estimate on.
+void writeEvolution(Context& context, const Settings& s, const shapes::ShapeFit& fit) {
   const std::size_t last = fit.path.size() - 1;
   const std::size_t count = std::min<std::size_t>(static_cast<std::size_t>(s.frames), last + 1);
-  std::vector<shapes::FitStage> stages;
   for (std::size_t f = 0; f < count; ++f) {
     // Early iterations move most: their frames lie closer together.
     const double share = count > 1 ? static_cast<double>(f) / static_cast<double>(count - 1) : 1;
     const auto even =
         static_cast<std::size_t>(std::lround(share * share * static_cast<double>(last)));
     const std::size_t at = std::max(even, std::min(f, last));
-    const int grid = annulus.dimension == 2 ? s.grid : std::max(16, s.grid / 2);
-    stages.push_back({at == 0 ? "start" : "iteration " + std::to_string(at),
-                      writeShape(context, frameName(f, ""), fit.path[at], grid),
-                      fit.history[at].symmetricDifference, fit.history[at].distanceMax});
+    const int grid = fit.shape.annulus.dimension == 2 ? s.grid : std::max(16, s.grid / 2);
+    writeShape(context, frameName(f, ""), fit.path[at], grid);
   }
-  const shapes::Outline outline =
-      target.curve ? shapes::outlineOf(*target.curve) : shapes::sectionOf(*target.mesh, z);
-  writeTextFile(context.output("evolution.svg"), shapes::drawFit(annulus, z, outline, stages));
 }
 
 /// Distances both ways between the fitted shape and its target.
@@ -288,7 +256,7 @@ Fits fitAll(Context& context, const Settings& s, const std::vector<Target>& targ
     }
     appendRows(fits.table, k, fit);
     if (k > 0) continue;
-    if (s.frames > 0) writeEvolution(context, s, fit, targets[k]);
+    if (s.frames > 0) writeEvolution(context, s, fit);
     fits.symmetricDifference = {fit.history.front().symmetricDifference,
                                 fit.history.back().symmetricDifference};
   }
@@ -303,7 +271,6 @@ Termination run(Context& context, const Settings& s) {
   if (s.grid < 16 || s.fitting.samples < 16 || s.frames < 0) {
     throw UsageError("--cells and --samples need at least 16, --frames at least 0");
   }
-  if (s.series && s.targets.size() != 2) throw UsageError("--series takes two targets");
   std::vector<Target> targets;
   std::vector<shapes::TargetSamples> samples;
   for (const std::string& path : s.targets) {
@@ -338,7 +305,6 @@ Termination run(Context& context, const Settings& s) {
   summary.boundaryMargin = shapes::boundaryMargin(shape);
   summary.symmetricDifference = fits.symmetricDifference;
   summary.distanceMean = summary.distanceMax = std::nullopt;
-  if (s.series) writeSeries(context, fits.shapes[0], fits.shapes[1], *s.series, s.grid);
   if (targets.size() == 1) measureDistance(shape, targets.front(), s.grid, summary);
   context.results(summary);
   return fits.termination;
