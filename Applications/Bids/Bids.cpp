@@ -88,8 +88,8 @@ void declare(Declaration& d, Settings& s) {
           "others: exit code 3, or 2 if all failed. group: writes from all "
           "runs, failed ones too, study.tsv and index.html, puts the people who are on a template "
           "together there, below group/ (who failed or is doubted is left out and named), and "
-          "exports their records as BIDS-Prov "
-          "and RO-Crate. Several of these commands may work on one OUT_DIR at a time, as in a job "
+          "exports their records as BIDS-Prov. Several of these commands may work on one OUT_DIR "
+          "at a time, as in a job "
           "array, on different participants.")
       .example("explica bids data derivatives/explica participant --participant-label 01 02",
                "Two participants")
@@ -120,8 +120,7 @@ void declare(Declaration& d, Settings& s) {
       .varyingOutput("study.tsv", FileKind::Table, "one row a participant and hemisphere")
       .varyingOutput("index.html", FileKind::Report, "the same, to sort and click")
       .varyingOutput("prov/prov-explica_*.json", FileKind::JsonFile,
-                     "how everything came about, as BIDS-Prov")
-      .varyingOutput("ro-crate-metadata.json", FileKind::JsonFile, "the same as an RO-Crate");
+                     "how everything came about, as BIDS-Prov");
   declareGroup(d, s.group);
   if (const Command* command = findCommand("run")) {
     s.run = command->begin();
@@ -259,37 +258,13 @@ Termination doParticipants(Context& context, const Settings& s) {
   return !reachedGoal(worst) ? worst : Termination::Stalled;
 }
 
-/// How the study came about, in the words of BIDS-Prov and RO-Crate.
-void writeExports(Context& context, const Settings& s, const std::vector<study::StudyRow>& rows) {
+/// How the study came about, in the words of BIDS-Prov.
+void writeExports(Context& context) {
   const fs::path out = context.outputFolder();
-  auto records = provenance::recordsBelow(out / "runs");
+  const auto records = provenance::recordsBelow(out / "runs");
   for (const auto& [name, content] : provenance::toBidsProv(records, out)) {
     writeTextFile(context.output("prov/" + name), provenance::textOf(content, 1) + "\n");
   }
-  provenance::CrateDescription crate;
-  crate.name = "Explica study";
-  crate.description = "Cortical surfaces, thickness and unfolded patches of " +
-                      std::to_string(rows.size()) + " hemispheres";
-  const fs::path source = fs::path(s.dataset) / "dataset_description.json";
-  crate.license = "not stated by the source data set";
-  if (fs::exists(source)) {
-    const Json described = provenance::readJson(source);
-    if (described.is_object() && described.contains("License") &&
-        described["License"].is_string()) {
-      crate.license = described["License"].get<std::string>();
-    }
-  }
-  for (const char* name :
-       {"dataset_description.json", "descriptions.tsv", "study.tsv", "index.html"}) {
-    if (fs::exists(out / name)) crate.files.emplace_back(name);
-  }
-  for (const auto& entry : fs::recursive_directory_iterator(out)) {
-    const std::string name = entry.path().lexically_relative(out).generic_string();
-    if (entry.is_regular_file() && name.rfind("sub-", 0) == 0) crate.files.push_back(name);
-  }
-  std::sort(crate.files.begin(), crate.files.end());
-  writeTextFile(context.output("ro-crate-metadata.json"),
-                provenance::textOf(provenance::toRoCrate(records, out, crate), 1) + "\n");
 }
 
 Termination doGroup(Context& context, const Settings& s) {
@@ -298,7 +273,7 @@ Termination doGroup(Context& context, const Settings& s) {
   const std::string part = writeGroup(context, s.group, study::aboutParticipants(s.dataset), rows);
   writeTextFile(context.output("study.tsv"), study::tableText(rows));
   writeTextFile(context.output("index.html"), study::indexPage(rows, "Explica study", part));
-  writeExports(context, s, rows);
+  writeExports(context);
   context.result("rows", rows.size());
   return Termination::NotRun;
 }

@@ -120,23 +120,6 @@ void setValue(Option& option, const Json& value) {
   }
 }
 
-void setOptions(std::vector<Option>& options, const Json& object) {
-  for (const auto& [key, value] : object.items()) {
-    bool known = false;
-    for (Option& option : options) {
-      if (option.name == key) {
-        setValue(option, value);
-        known = true;
-      }
-    }
-    if (!known) {
-      std::string names;
-      for (const Option& option : options) names += (names.empty() ? "" : ", ") + option.name;
-      throw UsageError("unknown option '" + key + "'; known are " + names);
-    }
-  }
-}
-
 Json flattenKeys(const Json& object) {
   Json flat = Json::object();
   for (const auto& [key, value] : object.items()) {

@@ -281,7 +281,7 @@ void describeDerivatives(const fs::path& out, const DerivativeOrigin& origin,
                    "layers\tlayers of the cortex, counted from the white matter\n");
   writeIfDifferent(out / ".bidsignore",
                    "*_hemi-*\ndescriptions.tsv\nruns/\nprov/\nstudy.tsv\nindex.html\n"
-                   "summary.json\nprovenance.json\nro-crate-metadata.json\n");
+                   "summary.json\nprovenance.json\n");
 }
 
 std::vector<fs::path> exportRun(const fs::path& run, const fs::path& out,

@@ -39,18 +39,4 @@ struct LocatedRecord {
 [[nodiscard]] std::map<std::string, Json> toBidsProv(const std::vector<LocatedRecord>& records,
                                                      const std::filesystem::path& root);
 
-/// What a study says of itself in its RO-Crate.
-struct CrateDescription {
-  std::string name;
-  std::string description;
-  std::string license;             ///< identifier or sentence
-  std::vector<std::string> files;  ///< of the study that no record lists, by path below it
-};
-
-/// RO-Crate 1.1 metadata (Process Run Crate profile): one CreateAction a record.
-/// @param root  of the study
-[[nodiscard]] Json toRoCrate(const std::vector<LocatedRecord>& records,
-                             const std::filesystem::path& root,
-                             const CrateDescription& description);
-
 }  // namespace explica::provenance

@@ -17,25 +17,6 @@ namespace explica::provenance {
 /// @throws UsageError  names the option, what was found and what is expected
 void setValue(Option& option, const Json& value);
 
-/// All values of a struct that has a `describe` function, as an object.
-template <class Options>
-[[nodiscard]] Json optionsToJson(const Options& options) {
-  Options copy = options;
-  Json object = Json::object();
-  for (const Option& option : listOptions(copy)) object[option.name] = valueOf(option);
-  return object;
-}
-
-/// Sets the members that an object names; the others keep their defaults.
-/// @throws UsageError  unknown key, or a value of the wrong type
-void setOptions(std::vector<Option>& options, const Json& object);
-
-template <class Options>
-void optionsFromJson(const Json& object, Options& options) {
-  auto listed = listOptions(options);
-  setOptions(listed, object);
-}
-
 /// {"unfold": {"radius": 30}} becomes {"unfold.radius": 30}.
 [[nodiscard]] Json flattenKeys(const Json& object);
 
