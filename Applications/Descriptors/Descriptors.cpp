@@ -14,15 +14,13 @@ namespace {
 struct Settings {};
 
 void declare(Declaration& d, Settings&) {
-  d.synopsis(
-       "descriptions of every command for other tools: Boutiques, nipype, Slicer, shells, man")
+  d.synopsis("descriptions of every command for other tools: Boutiques, nipype, shells, man")
       .description(
           "All files are generated from the commands' own declarations, the same that parse the "
           "command line, so they cannot disagree with it.")
       .example("explica descriptors --out descriptors",
                "Everything that lets other tools call Explica")
       .output("boutiques/explica-*.json", FileKind::JsonFile, "Boutiques descriptors, schema 0.5")
-      .output("slicer/explica-*.xml", FileKind::Any, "3D Slicer command descriptions")
       .output("nipype/explica_nipype.py", FileKind::Any, "nipype interfaces, one a command")
       .output("completion/explica.bash", FileKind::Any, "completion for bash")
       .output("completion/_explica", FileKind::Any, "completion for zsh")
@@ -37,7 +35,6 @@ Termination run(Context& context, const Settings&) {
     std::replace(name.begin(), name.end(), ' ', '-');
     writeTextFile(context.output("boutiques/" + name + ".json"),
                   boutiquesOf(command, version).dump(2) + "\n");
-    writeTextFile(context.output("slicer/" + name + ".xml"), slicerXmlOf(command, version));
     writeTextFile(context.output("man/" + name + ".1"), manPageOf(command, version));
   }
   writeTextFile(context.output("man/explica.1"), overviewManPageOf(commands, version));

@@ -62,8 +62,6 @@ bool answerAboutCommand(const Declaration& declaration, const std::vector<std::s
     std::cout << provenance::softwareText() << "\n" << provenance::builtWithText() << "\n";
   } else if (has(words, "--describe")) {
     std::cout << provenance::textOf(describeJson(declaration), 2) << "\n";
-  } else if (has(words, "--xml")) {
-    std::cout << slicerXmlOf(describeJson(declaration), provenance::software().version);
   } else if (has(words, "--describe=page")) {
     std::cout << referencePage(declaration);
   } else {

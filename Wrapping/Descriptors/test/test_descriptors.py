@@ -15,7 +15,6 @@ import subprocess
 import tempfile
 import time
 import unittest
-import xml.etree.ElementTree
 
 import jsonschema
 
@@ -50,7 +49,6 @@ def samples():
     name = "explica-phantom-shell"
     return {
         f"{name}.json": (FOLDER / "boutiques" / f"{name}.json").read_text(),
-        f"{name}.xml": (FOLDER / "slicer" / f"{name}.xml").read_text(),
         f"{name}.1": (FOLDER / "man" / f"{name}.1").read_text(),
         f"{name}.py": part(
             "nipype/explica_nipype.py", "class PhantomShellInputSpec", "        return outputs\n"
@@ -164,89 +162,6 @@ class Boutiques(unittest.TestCase):
                 self.run_line(f"phantom polygon{name[1:]}", out=f"{folder}/{name}", quiet=True)
             self.run_line("embed", TARGET=[f"{folder}/{n}/polygon.csv" for n in ("p19", "p34")],
                           combine=[0.3, 0.7], order=8, max_iterations=2, out=both, quiet=True)  # fmt: skip
-
-
-class Slicer(unittest.TestCase):
-    # The grammar of https://slicer.readthedocs.io, "Slicer execution model".
-    HEAD = ["category", "title", "description", "version", "documentation-url", "license", "contributor"]
-    SCALARS = {"integer": int, "double": float}
-    VECTORS = {"integer-vector": int, "double-vector": float}
-    FILES = {"file", "directory", "image", "geometry"}
-    OTHERS = {"boolean", "string", "string-vector", "string-enumeration"}
-    INSIDE = ["name", "label", "description", "index", "longflag", "channel", "default", "element"]
-
-    def roots(self):
-        for command in declarations():
-            text = (FOLDER / "slicer" / (file_name(command) + ".xml")).read_text()
-            yield command, text, xml.etree.ElementTree.fromstring(text.encode())
-
-    def test_command_prints_its_description(self):
-        for command, text, _ in self.roots():
-            words = [EXECUTABLE, *command["command"].split(), "--xml"]
-            self.assertEqual(text, subprocess.check_output(words, text=True))
-
-    def check_parameter(self, node):
-        tags = [child.tag for child in node]
-        self.assertEqual(tags, sorted(tags, key=self.INSIDE.index), "order")
-        for tag in set(tags) - {"element"}:
-            self.assertEqual(tags.count(tag), 1, tag)
-        self.assertLessEqual({"name", "label", "description"}, set(tags))
-        self.assertRegex(node.findtext("name"), r"^[A-Za-z_][A-Za-z0-9_]*$")
-        self.assertEqual(("index" in tags) + ("longflag" in tags), 1)
-        self.assertEqual("element" in tags, node.tag == "string-enumeration")
-        self.assertEqual("channel" in tags, node.tag in self.FILES)
-        if "channel" in tags:
-            self.assertIn(node.findtext("channel"), ("input", "output"))
-        default = node.findtext("default")
-        if node.tag in self.SCALARS:
-            self.SCALARS[node.tag](default)  # Slicer passes every number: it must have one
-        elif node.tag in self.VECTORS and default:
-            [self.VECTORS[node.tag](part) for part in default.split(",")]
-        elif node.tag == "boolean":
-            self.assertIn(default, (None, "true", "false"))
-        elif node.tag == "string-enumeration":
-            self.assertIn(default, [e.text for e in node.iter("element")])
-        elif node.tag == "string":
-            self.assertIsNone(default)  # what is empty is not passed
-
-    def test_descriptions_obey_the_grammar(self):
-        for command, _, root in self.roots():
-            with self.subTest(command=command["command"]):
-                self.assertEqual(root.tag, "executable")
-                tags = [child.tag for child in root]
-                self.assertEqual(tags[: len(self.HEAD)], self.HEAD)
-                self.assertEqual(set(tags[len(self.HEAD) :]), {"parameters"})
-                names, indices, flags = [], [], []
-                for group in root.iter("parameters"):
-                    self.assertEqual([c.tag for c in group][:2], ["label", "description"])
-                    for node in list(group)[2:]:
-                        known = set(self.SCALARS) | set(self.VECTORS) | self.FILES | self.OTHERS
-                        self.assertIn(node.tag, known)
-                        self.check_parameter(node)
-                        names.append(node.findtext("name"))
-                        flags.append(node.findtext("longflag"))
-                        indices.append(node.findtext("index"))
-                self.assertEqual(len(names), len(set(names)))
-                flags = [f for f in flags if f]
-                indices = [int(i) for i in indices if i]
-                self.assertEqual(len(flags), len(set(flags)))
-                self.assertEqual(indices, list(range(len(indices))))
-                labels = {n.text for n in root.iter("label")}
-                self.assertLessEqual({p["name"] for p in command["parameters"]}, labels)
-
-    def test_what_slicer_would_run_runs(self):
-        """Slicer passes every number, vector and choice, set by the user or not."""
-        for command, _, root in self.roots():
-            if command["command"] != "phantom shell":
-                continue
-            words = []
-            for node in root.iter():
-                flag, default = node.findtext("longflag"), node.findtext("default")
-                if flag and default is not None and node.tag != "boolean":
-                    words += [flag, "16" if flag == "--size" else default]
-            with tempfile.TemporaryDirectory() as folder:
-                subprocess.run([EXECUTABLE, "phantom", "shell", *words, "--quiet",
-                                "--out", f"{folder}/out"], check=True)  # fmt: skip
 
 
 class Shell:

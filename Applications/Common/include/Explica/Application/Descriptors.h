@@ -17,9 +17,6 @@ using provenance::Json;
 /// Boutiques descriptor, schema 0.5.
 [[nodiscard]] Json boutiquesOf(const Json& command, const std::string& version);
 
-/// Command description of 3D Slicer's execution model, as XML.
-[[nodiscard]] std::string slicerXmlOf(const Json& command, const std::string& version);
-
 /// A Python module with one nipype CommandLine interface a command.
 [[nodiscard]] std::string nipypeOf(const Json& commands, const std::string& version);
 
