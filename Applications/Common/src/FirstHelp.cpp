@@ -39,7 +39,7 @@ explica surface shell/labels.nii.gz --white-label 1 --grey-label 2 --faces 2000 
 explica compare surfaces/white.surf.gii surfaces/pial.surf.gii --out compared)"},
       {"descriptors",
        "the commands' own declarations",
-       "descriptions for Boutiques, nipype, Slicer, bash, zsh and man",
+       "descriptions for Boutiques, nipype, bash, zsh and man",
        {},
        "explica descriptors --out descriptors"},
       {"embed",
@@ -80,7 +80,7 @@ explica history shell/labels.nii.gz)"},
       {"inflate",
        "a closed surface, such as a hemisphere",
        "the surface opened as a whole until its folds are seen, areas kept, nowhere through itself",
-       {"target-seen", "area-tolerance", "frames", "max-time", "resume", "repair"},
+       {"target-seen", "frames", "max-time", "resume", "repair"},
        R"(explica phantom cortex --size 32 --spacing 2 --out cortex
 explica surface cortex/labels.nii.gz --white-label 3 --grey-label 2 --faces 2000 --out surfaces
 explica inflate surfaces/white.surf.gii --out inflated)"},

@@ -23,7 +23,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kLargestDrive = 4;  // lengths and contacts are outweighed up to here
+constexpr double kLargestDrive = 4;       // lengths and contacts are outweighed up to here
+constexpr double kAreaTolerance = 0.008;  // mean relative error of faces at the goal
 constexpr double kSlowGain = 0.004;  // of visibility between two looks: slower is driven harder ...
 constexpr double kSettled = 0.001;   // ... and, once that ends, given up
 constexpr std::size_t kSettledLooks = 4;  // over which that is measured
@@ -39,7 +40,6 @@ void requireUsable(const TriangleMesh& mesh, const InflateOptions& options) {
   if (!(options.targetSeen > 0 && options.targetSeen <= 1)) {
     throw InvalidInput("target-seen: must be above 0 and at most 1");
   }
-  if (!(options.areaTolerance > 0)) throw InvalidInput("area-tolerance: must be positive");
   if (!(options.smoothing > 0)) throw InvalidInput("smoothing: must be positive");
   if (options.lookEvery < 1) throw InvalidInput("look-every: must be positive");
   if (options.viewpoints < 1) throw InvalidInput("viewpoints: must be positive");
@@ -181,7 +181,7 @@ class Inflation {
 
   [[nodiscard]] Termination reasonToStop() const {
     const int iteration = unfolder_.state().iteration;
-    const bool kept = unfolder_.record().areaErrorMean <= options_.areaTolerance;
+    const bool kept = unfolder_.record().areaErrorMean <= kAreaTolerance;
     if (looks_.back().iteration == iteration && kept) {
       if (looks_.back().visibility >= options_.targetSeen) return Termination::TargetReached;
       if (isSettled()) return Termination::Stalled;

@@ -171,7 +171,6 @@ TEST(Inflate, RefusesWhatItCannotInflate) {
   };
   refused([](InflateOptions& o) { o.targetSeen = 0; });
   refused([](InflateOptions& o) { o.targetSeen = 1.1; });
-  refused([](InflateOptions& o) { o.areaTolerance = -1; });
   refused([](InflateOptions& o) { o.smoothing = 0; });
   refused([](InflateOptions& o) { o.lookEvery = 0; });
   refused([](InflateOptions& o) { o.viewpoints = 0; });

@@ -16,15 +16,14 @@ namespace explica::inflation {
 
 /// How to inflate and when to stop.
 struct InflateOptions {
-  double targetSeen = 0.98;      ///< global visibility to reach, see visibility::lookFromSphere()
-  double areaTolerance = 0.008;  ///< ... with a mean relative area error not above this
-  double smoothing = 0.15;       ///< reach of DirectionField, of the radius of a sphere of the area
-  int lookEvery = 4;             ///< iterations between two looks from the enclosing sphere, > 0
-  int viewpoints = 64;           ///< on the enclosing sphere
-  double springWeight = 2.4;     ///< stiffness of edge lengths, see unfolding::kTerms
-  double areaWeight = 20;        ///< stiffness of face areas before it is tightened
-  double contactRange = 0.25;    ///< of the mean edge length: the contact barrier acts below it
-  int maxIterations = 300;       ///< > 0
+  double targetSeen = 0.98;    ///< global visibility to reach, see visibility::lookFromSphere()
+  double smoothing = 0.15;     ///< reach of DirectionField, of the radius of a sphere of the area
+  int lookEvery = 4;           ///< iterations between two looks from the enclosing sphere, > 0
+  int viewpoints = 64;         ///< on the enclosing sphere
+  double springWeight = 2.4;   ///< stiffness of edge lengths, see unfolding::kTerms
+  double areaWeight = 20;      ///< stiffness of face areas before it is tightened
+  double contactRange = 0.25;  ///< of the mean edge length: the contact barrier acts below it
+  int maxIterations = 300;     ///< > 0
   std::optional<double> maxTime;  ///< s, of this run
   int frames = 0;                 ///< states to keep, evenly spaced in visibility
 };
@@ -37,9 +36,6 @@ void describe(InflateOptions& options, Visitor&& visit) {
             "reaches it; so much of the area, and more, is then seen from somewhere",
             kAboveZero, 1},
       options.targetSeen);
-  visit(Field{"area-tolerance", "", "mean relative area error of faces that the goal asks for",
-              kAboveZero, 1},
-        options.areaTolerance);
   visit(Field{"frames", "", "states to write on the way, evenly spaced in visibility", 0,
               kMostFrames},
         options.frames);
