@@ -63,17 +63,13 @@ Grid halved(const Grid& grid) {
   return half;
 }
 
-TEST_F(WholeHead, IsTakenOutOfItsSkull) {
-  const auto run = patiently({"segment", kTemplates / "ch2.nii.gz", "--out", folder_ / "segment"});
-  ASSERT_EQ(run.exitCode, 0) << run;
-  ASSERT_EQ(explica({"report", folder_ / "segment"}).exitCode, 0);
-  EXPECT_NE(readText(folder_ / "segment/report.html").find("Template on ch2.nii.gz"),
-            std::string::npos);
-  const auto ours = io::readLabels(folder_ / "segment/brain_mask.nii.gz").volume;
+/// Compares a mask of the template's head with that of another program.
+void expectTheBrainOfColin27(const fs::path& segment) {
+  const auto ours = io::readLabels(segment / "brain_mask.nii.gz").volume;
   const auto known = io::readScalars(kTemplates / "ch2bet.nii.gz").volume;
   ASSERT_EQ(ours.size(), known.size());
   // ch2bet ends at the cortex, the mask at the skull: it has all of the brain, and fluid beside it.
-  const auto tissue = io::readLabels(folder_ / "segment/seg.nii.gz").volume;
+  const auto tissue = io::readLabels(segment / "seg.nii.gz").volume;
   double both = 0, sum = 0, brain = 0, lost = 0;
   for (std::size_t v = 0; v < ours.size(); ++v) {
     const bool inBrain = known[v] > 0;
@@ -218,6 +214,7 @@ TEST_F(WholeHead, HalvesOfAHeadAreFlagged) {
     const auto flags = flagsOf(folder_ / "segment");
     EXPECT_TRUE(flags.contains("registration")) << run;
     EXPECT_EQ(flags.contains("half-head"), half == leftHalf) << run;
+    if (half != leftHalf) continue;
     std::vector<std::string> words = {"segment",
                                       image,
                                       "--template-transform",
@@ -405,7 +402,7 @@ TEST_F(WholeHead, ALesionIsNotDrowned) {
   EXPECT_LT((Point(at[0], at[1], at[2]) - middle).norm(), 8);
 }
 
-TEST_F(WholeHead, GoesThroughAStudyAsTheScannerGivesIt) {
+TEST_F(WholeHead, IsTakenOutOfItsSkullInAStudyAsTheScannerGivesIt) {
   fs::create_directories(folder_ / "data/sub-01/anat");
   fs::copy_file(kTemplates / "ch2.nii.gz", folder_ / "data/sub-01/anat/sub-01_T1w.nii.gz");
   writeText(folder_ / "data/dataset_description.json", R"({"Name": "a", "BIDSVersion": "1.8.0"})");
@@ -413,18 +410,18 @@ TEST_F(WholeHead, GoesThroughAStudyAsTheScannerGivesIt) {
   for (float& value : ct.data) value = value < 10 ? -1000 : value;
   fs::create_directories(folder_ / "data/sub-02/anat");
   io::writeVolume(folder_ / "data/sub-02/anat/sub-02_T1w.nii.gz", ct);
-  const auto run = patiently({"bids", folder_ / "data", folder_ / "out", "participant", "--steps",
-                              "segment,surface", "--surface.faces", "20000"});
+  const auto run =
+      patiently({"bids", folder_ / "data", folder_ / "out", "participant", "--hemisphere", "L",
+                 "--steps", "segment,surface", "--surface.faces", "20000"});
   ASSERT_EQ(run.exitCode, 3) << run;  // the second is no T1: its row says so, the first is done
-  const fs::path anat = folder_ / "out/sub-01/anat";
-  for (const char* side : {"L", "R"}) {
-    const fs::path surface = anat / ("sub-01_hemi-" + std::string(side) + "_pial.surf.gii");
-    EXPECT_TRUE(fs::exists(surface)) << surface;
-  }
+  EXPECT_TRUE(fs::exists(folder_ / "out/sub-01/anat/sub-01_hemi-L_pial.surf.gii"));
+  const fs::path segment = folder_ / "out/runs/sub-01_hemi-L/segment";
+  expectTheBrainOfColin27(segment);
+  ASSERT_EQ(explica({"report", segment.string()}).exitCode, 0);
+  EXPECT_NE(readText(segment / "report.html").find("Template on"), std::string::npos);
   ASSERT_EQ(explica({"bids", folder_ / "data", folder_ / "out", "group"}).exitCode, 0);
   const std::string table = readText(folder_ / "out/study.tsv");
   EXPECT_NE(table.find("sub-01\tL\tdone\t"), std::string::npos) << table;
-  EXPECT_NE(table.find("sub-01\tR\tdone\t"), std::string::npos) << table;
   EXPECT_NE(table.find("sub-02\tL\tfailed: "), std::string::npos) << table;
 }
 

@@ -118,37 +118,5 @@ TEST(EveryCommandHelp, ExampleWorksAsPasted) {
   }
 }
 
-/// Values of labels, seeds and numbers of vertices: not how many of something there shall be.
-bool isNoCount(const std::string& name) {
-  static const std::vector<std::string> kNames = {
-      "cavity", "fill", "grey-label", "inner",  "insulated", "label-key",  "outer",
-      "rv",     "seed", "tissue",     "vertex", "wall",      "white-label"};
-  return std::find(kNames.begin(), kNames.end(), name.substr(name.rfind('.') + 1)) != kNames.end();
-}
-
-TEST(EveryCommandHelp, NoCountIsWithoutAnUpperBound) {
-  int counts = 0;
-  for (const Json& command : declarations()) {
-    for (const Json& option : command["parameters"]) {
-      const auto name = option["name"].get<std::string>();
-      if (option["type"] != "integer" || isNoCount(name)) continue;
-      ++counts;
-      EXPECT_TRUE(option["most"].is_number())
-          << command["command"] << " " << name << ": give its Field a least and a most";
-    }
-  }
-  EXPECT_GT(counts, 100);
-}
-
-TEST(EveryCommandHelp, ACountBeyondItsBoundIsRefusedWithTheBound) {
-  const CommandResult said =
-      explica({"thickness", "x.nii.gz", "--threads", "1000000000", "--out", "x"});
-  EXPECT_EQ(said.exitCode, 1) << said;
-  EXPECT_NE(said.err.find("1 to 4096"), std::string::npos) << said;
-  const CommandResult none = explica({"thickness", "x.nii.gz", "--layers", "0", "--out", "x"});
-  EXPECT_EQ(none.exitCode, 1) << none;
-  EXPECT_NE(none.err.find("1 to 1000"), std::string::npos) << none;
-}
-
 }  // namespace
 }  // namespace explica::testing

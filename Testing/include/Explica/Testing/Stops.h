@@ -23,11 +23,11 @@ inline long checksFor(const std::vector<std::string>& words) {
   return end == std::string::npos ? 0 : std::stol(said.substr(said.rfind('\n', end) + 1));
 }
 
-/// Ten of so many checks, evenly spread; fewer where there are not as many.
-inline std::vector<long> tenMoments(long checks) {
+/// A number of so many checks, evenly spread; fewer where there are not as many.
+inline std::vector<long> momentsOf(long checks, int number) {
   std::vector<long> moments;
-  for (int m = 0; m < 10; ++m) {
-    const long check = 1 + (2 * m + 1) * checks / 20;
+  for (int m = 0; m < number; ++m) {
+    const long check = 1 + (2 * m + 1) * checks / (2 * number);
     if (check <= checks && (moments.empty() || check > moments.back())) moments.push_back(check);
   }
   return moments;
