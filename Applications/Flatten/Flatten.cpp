@@ -55,9 +55,9 @@ void declareOutputs(Declaration& d) {
 }
 
 void declare(Declaration& d, FlattenSettings& s) {
-  d.synopsis("a patch, or a hemisphere with cuts, as a flat map that folds nowhere")
+  d.synopsis("a patch, or a hemisphere with cuts, as a flat map without folds")
       .description(
-          R"(Lays a surface with a rim flat: exactly planar, no face turned over, nowhere one part on another, face areas kept closely and lengths as well as can be. Areas and lengths are those of --reference (same vertices); for an 'unfolded.surf.gii' of 'explica unfold' they are those of the surface that its record names, and the region is its own. Holes stay open; a part joined to the rest by a single vertex is left out, and so are, said with their area, all pieces but the one with more than half of the area.
+          R"(Flattens a surface with a rim: exactly planar, without folds or overlaps; face areas are kept closely, lengths as well as possible. Areas and lengths are those of --reference (same vertices); for an 'unfolded.surf.gii' of 'explica unfold' they are those of the surface that its record names, and the region is its own. Holes stay open; a part joined to the rest by a single vertex is left out, and so are, said with their area, all pieces but the one with more than half of the area.
 
 A closed surface needs --label (a patch) or --cuts (a hemisphere): a FreeSurfer patch or a label of the vertices that stay, or a flat map whose faces stay.
 

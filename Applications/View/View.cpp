@@ -14,6 +14,7 @@
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/IO/VolumeFile.h"
+#include "Explica/Maps/Folding.h"
 #include "Explica/Report/Figure.h"
 #include "Explica/Report/Picture.h"
 
@@ -86,7 +87,10 @@ void declare(Declaration& d, Settings& s) {
               Field{"direction", "",
                     "look from this side instead: a direction from the surface to the eye"},
               s.direction)
-      .option("Picture", Field{"focus", "", "fill the picture with the --region"}, s.focus)
+      .option(
+          "Picture",
+          Field{"focus", "", "fill the picture with the --region, a film with the unfolded patch"},
+          s.focus)
       .option("Picture", Field{"colours", "", "colour map (default: by the values)"}, s.colours)
       .option("Picture", Field{"range", "", "values of the first and last colour"}, s.range)
       .option("Picture", Field{"columns", "", "views in a row", 0, 100}, s.columns)
@@ -103,7 +107,7 @@ void declare(Declaration& d, Settings& s) {
              {"screenshot", "film"})
       .needs({"slices"}, {"screenshot"})
       .needs({"map-name"}, {"map"})
-      .needs({"focus"}, {"region"})
+      .needs({"focus"}, {"region", "film"})
       .needs({"fps"}, {"film"})
       .withoutOutput();
 }
@@ -233,6 +237,12 @@ void openWindow(Context& context, const Settings& s, const ShowWindow& show) {
   for (const auto& file : {s.map, s.labels}) {
     if (file) opened.push_back(openForWindow(*file, start));
   }
+  viewer::Opened first;
+  first.maps.push_back({"curvature", "mm^-1", maps::meanCurvature(start.mesh), ""});
+  first.what =
+      "1: press C over the middle of a fold. 2: turn the surface, V takes the view as viewpoint. "
+      "3: Space unfolds. F1 shows every key.";
+  opened.push_back(std::move(first));
   const Vector direction = s.direction.value_or(start.direction.value_or(Vector(-1, 0, 0)));
   steer(context, start, s.reading, direction, std::move(opened), s.window, show);
 }
@@ -254,7 +264,8 @@ Termination run(Context& context, const Settings& s, const ShowWindow& show) {
     if (s.direction || !s.views.empty()) {
       for (const report::FigureView& view : viewsOf(s, {})) views.push_back(filmView(view));
     }
-    writeFilm(*s.film, drawFilm(folder, paint, views, s.columns, s.picture), s.framesPerSecond);
+    writeFilm(*s.film, drawFilm(folder, paint, views, s.columns, s.focus, s.picture),
+              s.framesPerSecond);
     context.info("wrote " + *s.film);
   }
   if (s.screenshot) {

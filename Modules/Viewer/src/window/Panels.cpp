@@ -52,9 +52,10 @@ QGroupBox* viewGroup(Panels& p) {
   column->addWidget(p.view);
   auto* form = new QFormLayout;
   p.surround = named(new QComboBox, "surround", "What becomes of the surface around the region");
-  p.target =
-      numberField("target", "Average visibility at which to stop; 0: where it no longer pays",
-                  {0, 1, 0.01, 3, ""});
+  p.target = numberField(
+      "target", "Average visibility at which to stop; none: where more of it costs too much",
+      {0, 1, 0.01, 3, ""});
+  p.target->setSpecialValueText("none");
   form->addRow("Surroundings", p.surround);
   form->addRow("Target", p.target);
   column->addLayout(form);
