@@ -156,7 +156,7 @@ TEST_F(Doubts, SurfacesThatStateNoFrameAreCounted) {
                                     "20"};
   };
   EXPECT_EQ(numberAfter(compare("a.off"), provenance::kFramesNotStated), 1);
-  EXPECT_TRUE(warned("coordinate system not stated")) << last_;
+  EXPECT_TRUE(warned("does not say in which frame")) << last_;
   EXPECT_EQ(numberAfter(compare("b.surf.gii"), provenance::kFramesNotStated), 0);
 }
 

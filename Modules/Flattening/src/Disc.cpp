@@ -141,6 +141,10 @@ void keepLargest(Disc& disc) {
 }
 
 void requireDiscWithHoles(const Disc& disc) {
+  const auto parts = geometry::faceComponents(disc.mesh.faces, disc.mesh.vertexCount());
+  if (*std::max_element(parts.begin(), parts.end()) > 0) {
+    throw InvalidInput("surface: the cuts take it apart");
+  }
   const auto topology = geometry::buildTopology(disc.mesh.faces, disc.mesh.vertexCount());
   const auto euler = disc.mesh.vertexCount() - topology.edges.rows() + disc.mesh.faceCount();
   const auto handles = (2 - static_cast<std::int64_t>(disc.holes.size()) - 1 - euler) / 2;

@@ -34,14 +34,14 @@ struct Bin {
 };
 
 /// Bins that share a colour of the palette, and how far they spread.
-struct Box {
+struct ColourBox {
   std::size_t begin = 0, end = 0;
   int axis = 0;
   double spread = 0;  ///< sum over pixels of the squared distance from the mean along the axis
 };
 
-Box boxOf(const std::vector<Bin>& bins, std::size_t begin, std::size_t end) {
-  Box box{begin, end, 0, 0};
+ColourBox colourBoxOf(const std::vector<Bin>& bins, std::size_t begin, std::size_t end) {
+  ColourBox box{begin, end, 0, 0};
   for (int c = 0; c < 3; ++c) {
     double n = 0, first = 0, second = 0;
     for (std::size_t b = begin; b < end; ++b) {
@@ -79,12 +79,13 @@ Palette paletteOf(const std::vector<Picture>& frames) {
     all[b].number = b;
     if (all[b].count > 0) bins.push_back(all[b]);
   }
-  std::vector<Box> boxes = {boxOf(bins, 0, bins.size())};
+  std::vector<ColourBox> boxes = {colourBoxOf(bins, 0, bins.size())};
   while (boxes.size() < kColours) {
     const auto widest = std::max_element(
-        boxes.begin(), boxes.end(), [](const Box& a, const Box& b) { return a.spread < b.spread; });
+        boxes.begin(), boxes.end(),
+        [](const ColourBox& a, const ColourBox& b) { return a.spread < b.spread; });
     if (!(widest->spread > 0)) break;
-    const Box box = *widest;
+    const ColourBox box = *widest;
     double n = 0, sum = 0;
     for (std::size_t b = box.begin; b < box.end; ++b) {
       n += static_cast<double>(bins[b].count);
@@ -99,8 +100,8 @@ Palette paletteOf(const std::vector<Picture>& frames) {
       widest->spread = 0;  // one colour up to rounding
       continue;
     }
-    *widest = boxOf(bins, box.begin, parted);
-    boxes.push_back(boxOf(bins, parted, box.end));
+    *widest = colourBoxOf(bins, box.begin, parted);
+    boxes.push_back(colourBoxOf(bins, parted, box.end));
   }
   Palette palette;
   for (std::size_t n = 0; n < boxes.size(); ++n) {

@@ -15,30 +15,30 @@
 namespace explica::report {
 namespace {
 
-constexpr double kBarShare = 0.13;      // of the width that the colour bar takes
+constexpr double kLegendShare = 0.13;   // of the width that the colour bar takes
 constexpr double kSurfaceShape = 0.75;  // height over width of a panel
 constexpr double kFlatShare = 0.6;      // of the width that a flat map is high at most
 constexpr int kTicks = 5;
 
 template <class... Values>
-std::string format(const char* pattern, Values... values) {
+std::string formatted(const char* pattern, Values... values) {
   std::array<char, 400> text{};
   std::snprintf(text.data(), text.size(), pattern, values...);
   return text.data();
 }
 
-std::string hexOf(const Colour& colour) {
-  return format("#%02x%02x%02x", encodeSrgb(colour[0]), encodeSrgb(colour[1]),
-                encodeSrgb(colour[2]));
+std::string hexText(const Colour& colour) {
+  return formatted("#%02x%02x%02x", encodeSrgb(colour[0]), encodeSrgb(colour[1]),
+                   encodeSrgb(colour[2]));
 }
 
 std::string svgText(double x, double y, double size, const std::string& text) {
-  return format("<text x='%.1f' y='%.1f' font-size='%.1f'>", x, y, size) + escapeHtml(text) +
+  return formatted("<text x='%.1f' y='%.1f' font-size='%.1f'>", x, y, size) + escapeHtml(text) +
          "</text>\n";
 }
 
 std::string layer(const char* name, const std::string& content) {
-  return format("<g id='%s' inkscape:groupmode='layer' inkscape:label='%s'>\n", name, name) +
+  return formatted("<g id='%s' inkscape:groupmode='layer' inkscape:label='%s'>\n", name, name) +
          content + "</g>\n";
 }
 
@@ -62,8 +62,8 @@ struct Sheet {
 
   void add(const Picture& part, int x, int y, const std::string& title) {
     pastePicture(picture, part, x, y);
-    images += format("<image x='%d' y='%d' width='%d' height='%d' href='data:image/png;base64,", x,
-                     y, part.width, part.height) +
+    images += formatted("<image x='%d' y='%d' width='%d' height='%d' href='data:image/png;base64,",
+                        x, y, part.width, part.height) +
               base64(encodePng(part)) + "'/>\n";
     if (title.empty()) return;
     drawText(picture, title, {x + letters, y + 1.5 * letters}, letters, kInk);
@@ -76,12 +76,12 @@ std::string svgBar(const ColourScale& scale, double x, double top, double height
   std::string svg = "<defs><linearGradient id='colours' x1='0' y1='1' x2='0' y2='0'>";
   for (int n = 0; n < kStops; ++n) {
     const double t = static_cast<double>(n) / (kStops - 1);
-    svg +=
-        format("<stop offset='%.4f' stop-color='%s'/>", t, hexOf(colourAt(scale.map, t)).c_str());
+    svg += formatted("<stop offset='%.4f' stop-color='%s'/>", t,
+                     hexText(colourAt(scale.map, t)).c_str());
   }
   svg += "</linearGradient></defs>\n";
-  svg += format("<rect x='%.1f' y='%.1f' width='%.1f' height='%.1f' fill='url(#colours)'/>\n", x,
-                top, 1.2 * letters, height);
+  svg += formatted("<rect x='%.1f' y='%.1f' width='%.1f' height='%.1f' fill='url(#colours)'/>\n", x,
+                   top, 1.2 * letters, height);
   for (int n = 0; n < kTicks; ++n) {
     const double t = static_cast<double>(n) / (kTicks - 1);
     svg += svgText(x + 1.8 * letters, top + (1 - t) * height + 0.5 * letters, 1.4 * letters,
@@ -115,7 +115,7 @@ PanelFigure panelFigure(const std::vector<std::vector<Panel>>& rows,
   std::size_t columns = 0;
   for (const auto& row : rows) columns = std::max(columns, row.size());
   if (columns == 0) throw InvalidInput("figure: no panel");
-  const int content = scale ? static_cast<int>((1 - kBarShare) * width) : width;
+  const int content = scale ? static_cast<int>((1 - kLegendShare) * width) : width;
   std::vector<int> heights;
   for (const auto& row : rows) {
     heights.push_back(heightOf(row, content / static_cast<int>(row.size()), content));
@@ -156,7 +156,7 @@ PanelFigure panelFigure(const std::vector<std::vector<Panel>>& rows,
                   width - content, static_cast<int>(tall + 4 * sheet.letters));
     bar = svgBar(*scale, content, top, tall, sheet.letters);
   }
-  const std::string head = format(
+  const std::string head = formatted(
       "<svg xmlns='http://www.w3.org/2000/svg' "
       "xmlns:inkscape='http://www.inkscape.org/namespaces/inkscape' width='%d' height='%d' "
       "viewBox='0 0 %d %d' font-family='Helvetica, Arial, sans-serif'>\n",

@@ -38,7 +38,7 @@ inline constexpr std::array kDoubts = {
           "volumes whose header does not say where the voxels lie"},
     Doubt{
         kFramesNotStated, "Frame of a surface not stated",
-        "surfaces whose file does not state a coordinate system; scanner mm assumed"},
+        "surfaces whose file does not say in which frame its coordinates are, used as they stand"},
     Doubt{kInputsChanged, "Input changed since it was made",
           "files that differ from what the record beside them says was written"},
     Doubt{kInputsContradict, "Inputs contradict each other",
