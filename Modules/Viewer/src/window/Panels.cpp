@@ -122,21 +122,6 @@ Panels buildPanels(QMainWindow& window) {
   p.slices->setMinimumWidth(240);
   window.addDockWidget(Qt::RightDockWidgetArea, p.slicesDock);
   p.slicesDock->hide();
-
-  p.profiles = new DepthPanel;
-  p.profilesDock = new QDockWidget("Over the depth", &window);
-  p.profilesDock->setObjectName("profilesDock");
-  p.profilesDock->setWidget(p.profiles);
-  p.stack = new StackPanel;
-  p.stackDock = new QDockWidget("Flat map, depth by depth", &window);
-  p.stackDock->setObjectName("stackDock");
-  p.stackDock->setWidget(p.stack);
-  window.setCorner(Qt::BottomLeftCorner, Qt::LeftDockWidgetArea);
-  for (QDockWidget* below : {p.profilesDock, p.stackDock}) {
-    window.addDockWidget(Qt::BottomDockWidgetArea, below);
-    below->hide();
-  }
-  window.splitDockWidget(p.profilesDock, p.stackDock, Qt::Horizontal);
   return p;
 }
 
@@ -145,13 +130,6 @@ void showField(QWidget* field, bool shown) {
   const auto* form = qobject_cast<QFormLayout*>(field->parentWidget()->layout());
   if (form == nullptr) return;
   if (QWidget* name = form->labelForField(field)) name->setVisible(shown);
-}
-
-void shareRoomBelow(QMainWindow& window, const Panels& panels) {
-  constexpr int kHeight = 320;  // pixels, of a window of 900
-  const QList<QDockWidget*> docks = {panels.profilesDock, panels.stackDock};
-  window.resizeDocks(docks, {kHeight, kHeight}, Qt::Vertical);
-  window.resizeDocks(docks, {1, 1}, Qt::Horizontal);
 }
 
 }  // namespace explica::viewer
