@@ -114,7 +114,9 @@ void declare(Declaration& d, Settings& s) {
       .shareOfWork([&s] { return shareOf(s); })
       .output("dataset_description.json", FileKind::JsonFile, "what this derivative is")
       .output("descriptions.tsv", FileKind::Table, "what each desc- means")
-      .output(".bidsignore", FileKind::Any, "files that BIDS does not know yet")
+      .output("README.md", FileKind::Any, "what is where")
+      .output(".bidsignore", FileKind::Any, "kinds of files that BIDS does not know yet")
+      .varyingOutput("sub-*.html", FileKind::Report, "leads to the reports on a participant")
       .output("sub-*", FileKind::Folder, "results by BIDS names")
       .output("runs", FileKind::Folder, "the runs themselves, with records and reports")
       .varyingOutput("study.tsv", FileKind::Table, "one row a participant and hemisphere")
@@ -220,6 +222,13 @@ Ended doHemisphere(Context& context, const Settings& s, const study::Participant
   return ended;
 }
 
+/// The page that leads to the reports on a participant's runs.
+void writePage(Context& context, const study::Participant& participant) {
+  const std::string subject = "sub-" + participant.label;
+  const auto rows = study::collectRows(context.outputFolder(), subject);
+  writeTextFile(context.output(subject + ".html"), study::indexPage(rows, subject));
+}
+
 /// All that can be done is done; exit code 3 if some failed, 2 if all did.
 Termination doParticipants(Context& context, const Settings& s) {
   const StopScope kept(nullptr);  // what is reached is written
@@ -243,6 +252,7 @@ Termination doParticipants(Context& context, const Settings& s) {
       if (ended == Ended::Failed) failed.push_back(name);
       if (ended == Ended::Interrupted) interrupted.push_back(name);
     }
+    if (!context.given("dry-run")) writePage(context, participant);
   }
   context.result("hemispheres_done", done);
   context.result("hemispheres_failed", failed.size());

@@ -49,6 +49,13 @@ explica compare surfaces/white.surf.gii surfaces/pial.surf.gii --out compared)"}
         "max-iterations", "frames"},
        R"(explica phantom shell --size 32 --out shell
 explica embed shell/labels.nii.gz --label-key 1 --order 8 --out fit)"},
+      {"figure",
+       "surfaces of one or both hemispheres, flat maps, per-vertex maps and annotations",
+       "one figure for print, as PNG and as SVG in layers",
+       {"views", "layout", "size", "colours", "range"},
+       R"(explica phantom cortex --size 32 --spacing 2 --out cortex
+explica surface cortex/labels.nii.gz --white-label 3 --grey-label 2 --faces 2000 --out surfaces
+explica figure surfaces/pial.surf.gii surfaces/thickness.shape.gii --size 800 --out figure)"},
       {"flatten",
        "an unfolded patch, a surface with a rim, or a hemisphere with cuts",
        "a flat map that folds nowhere, as surface, table, picture and stack of depths",

@@ -219,7 +219,7 @@ void flagOutliers(const std::vector<StudyRow>& rows, const std::vector<std::size
 
 }  // namespace
 
-std::vector<StudyRow> collectRows(const fs::path& out) {
+std::vector<StudyRow> collectRows(const fs::path& out, const std::string& subject) {
   const fs::path runs = out / "runs";
   if (!fs::is_directory(runs)) {
     throw InvalidInput(out.string() + ": holds no runs; do the participant level first");
@@ -228,6 +228,7 @@ std::vector<StudyRow> collectRows(const fs::path& out) {
   for (const auto& entry : fs::directory_iterator(runs)) {
     const std::string name = entry.path().filename().string();
     if (entry.is_directory() && name.rfind("sub-", 0) == 0 &&
+        (subject.empty() || name.starts_with(subject + "_")) &&
         name.find("_hemi-") != std::string::npos) {
       folders.push_back(entry.path());
     }

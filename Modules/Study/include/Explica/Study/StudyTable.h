@@ -29,7 +29,9 @@ struct StudyFlag {
 };
 
 /// Rows of all runs below `out/runs`, in the order of their names, whatever became of them.
-[[nodiscard]] std::vector<StudyRow> collectRows(const std::filesystem::path& out);
+/// @param subject  "sub-01": only those of this one
+[[nodiscard]] std::vector<StudyRow> collectRows(const std::filesystem::path& out,
+                                                const std::string& subject = "");
 
 /// What is wrong or unusual in each row: a run that failed or stopped early, a surface that is no
 /// sphere or meets itself, and numbers far from the other rows'.
