@@ -17,9 +17,12 @@
 #include "Explica/Study/Derivatives.h"
 #include "Explica/Study/HeartStudy.h"
 #include "Explica/Study/StudyPage.h"
+#include "Explica/Study/StudyState.h"
 #include "Explica/Study/StudyTable.h"
 #include "Explica/Study/SubjectFiles.h"
 #include "GroupStage.h"
+#include "KeptRun.h"
+#include "StudyInput.h"
 
 #include <algorithm>
 #include <array>
@@ -55,6 +58,7 @@ struct Settings {
   bool skipValidator = true;
   bool reuse = true;
   GroupSettings group;
+  Keep keep = Keep::All;
   Invocation run;  ///< whose options are taken over
 };
 
@@ -106,6 +110,7 @@ void declare(Declaration& d, Settings& s) {
                    "there (runs/*/segment/to_template.h5), where it is; how it fits is checked as "
                    "ever",
                    s.registrations, "Study")
+      .option("Study", keepField(), s.keep)
       .option("Study", Field{"skip-bids-validator", "", "accepted; no validator is run"},
               s.skipValidator)
       .defaultOut(s.out)
@@ -198,6 +203,9 @@ Ended doHemisphere(Context& context, const Settings& s, const study::Participant
     }
     values["hemisphere"] = hemisphere;
     values["resume"] = true;
+    const std::string key =
+        study::keyOf({participant, {{name, hemisphere, "", values}}}, studyPathOptions());
+    if (s.keep == Keep::Group && !dry && isKept(folder, key)) return ended;
     const std::string other = hemisphere == "L" ? "R" : "L";
     if (!dry) shareSegment(folder.parent_path() / (participant.name() + "_hemi-" + other), folder);
     const Outcome outcome = context.runCommand(*findCommand("run"), "runs/" + name, values);
@@ -207,6 +215,10 @@ Ended doHemisphere(Context& context, const Settings& s, const study::Participant
     outcome.abandoned ? sayInterrupted(folder) : static_cast<void>(fs::remove(problem));
     if (!reachedGoal(outcome.termination) && context.monitor().shouldStop()) {
       ended = Ended::Interrupted;
+    }
+    if (s.keep == Keep::Group && ended == Ended::Done) {
+      keepForGroup(folder, key);
+      return ended;
     }
   } catch (const EnvironmentError&) {
     throw;  // a full disk, or another run at work here: no fault of the participant

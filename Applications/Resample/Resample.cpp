@@ -175,7 +175,6 @@ CarriedFile readFile(const std::string& path, const io::LoadedSurface& from,
                        " vertices, the sphere of --from " +
                        std::to_string(from.mesh.vertexCount()));
   }
-  io::requireSameHemisphere(path, from.metadata.structure);
   file.structure = io::statedStructure(path);
   if (file.structure.empty()) file.structure = from.metadata.structure;
   if (file.kind == io::VertexFileKind::Labels) {

@@ -16,6 +16,7 @@
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Maps/Folding.h"
+#include "Explica/Maps/Regions.h"
 #include "Explica/Provenance/Doubts.h"
 #include "Explica/Segmentation/Atlas.h"
 #include "Explica/Surface/CorticalSurface.h"
@@ -32,6 +33,8 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <set>
+#include <span>
 #include <sstream>
 #include <utility>
 
@@ -413,28 +416,38 @@ std::size_t writeRegions(Context& context, const Regions& regions,
                          std::vector<io::SpecEntry>& spec) {
   const surface::VertexKeys keys = regionKeys(regions, made, structure);
   const Eigen::VectorXd areas = geometry::vertexAreas(made.white.mesh);
-  const auto measured = surface::measureRegions(keys, made.thickness, areas);
-  const auto nearest = surface::measureRegions(keys, made.nearestThickness, areas);
+  std::set<Label> used(keys.begin(), keys.end());
+  used.erase(0);
+  const std::vector<Label> all(used.begin(), used.end());
+  const auto moments = [&](const Eigen::VectorXd& values) {
+    const std::span<const Label> of(keys.data(), static_cast<std::size_t>(keys.size()));
+    return maps::regionMoments(of, values, areas, all);
+  };
+  // A thickness of 0 is not known.
+  const auto known = [](const Eigen::VectorXd& thickness) -> Eigen::VectorXd {
+    return (thickness.array() > 0).select(thickness, kNaN);
+  };
+  const auto sizes = moments(areas), measured = moments(known(made.thickness)),
+             nearest = moments(known(made.nearestThickness));
   std::ostringstream table;
   table << "index\tname\tvertices\tarea_white_mm2\tthickness_mean_mm\tthickness_sd_mm\t"
            "thickness_nearest_mean_mm\n";
   io::LabelMap labels{"regions", keys, {{0, "???", {0, 0, 0, 0}}}};
-  for (std::size_t r = 0; r < measured.size(); ++r) {
-    const surface::RegionMeasure& region = measured[r];
-    const std::string name = regionName(regions, region.key);
-    table << region.key << '\t' << name << '\t' << region.vertices << '\t' << region.area;
-    if (std::isfinite(region.thicknessMean)) {
-      table << '\t' << region.thicknessMean << '\t' << region.thicknessDeviation << '\t'
-            << nearest[r].thicknessMean << '\n';
+  for (std::size_t r = 0; r < all.size(); ++r) {
+    const std::string name = regionName(regions, all[r]);
+    table << all[r] << '\t' << name << '\t' << sizes[r].count << '\t' << sizes[r].sum;
+    if (measured[r].count > 0) {
+      table << '\t' << measured[r].meanOverArea << '\t' << measured[r].deviationOverArea << '\t'
+            << nearest[r].meanOverArea << '\n';
     } else {
       table << "\tn/a\tn/a\tn/a\n";
     }
-    labels.table.push_back({region.key, name, regionColour(regions, region.key)});
+    labels.table.push_back({all[r], name, regionColour(regions, all[r])});
   }
   writeTextFile(context.output("regions.tsv"), table.str());
   io::writeGiftiLabel(context.output("regions.label.gii"), labels, structure);
   spec.push_back({structure, "regions.label.gii"});
-  return measured.size();
+  return all.size();
 }
 
 /// Whether the tissue is a sheet; says so where nobody asked.

@@ -94,7 +94,7 @@ explica inflate surfaces/white.surf.gii --out inflated)"},
       {"parcellate",
        "a folder with a sphere in register with a template, and the template's labels",
        "regions at the surface's vertices, and how sure they are",
-       {"atlas", "template", "hemisphere"},
+       {"atlas", "template", "hemisphere", "volume", "like", "surfaces"},
        R"(explica phantom shell --size 32 --out shell
 explica surface shell/labels.nii.gz --white-label 1 --grey-label 2 --faces 2000 --atlas shell/labels.nii.gz \
   --out surfaces
@@ -285,6 +285,16 @@ explica study participant study.json results)"},
         "inner-level", "outer-level", "atlas", "white-surface", "pial-surface", "freesurfer"},
        R"(explica phantom shell --size 48 --out shell
 explica surface shell/labels.nii.gz --white-label 1 --grey-label 2 --faces 4000 --out surfaces)"},
+      {"template",
+       "two people or more: folders of run, FreeSurfer subjects, or a study's",
+       "their mean folds, surfaces and regions, for --template of register and parcellate",
+       {"density", "iterations"},
+       R"(explica phantom cortex --size 32 --spacing 2 --out cortex
+explica phantom cortex --size 36 --spacing 2 --out other
+for one in cortex other; do
+  explica run $one/labels.nii.gz --hemisphere L --steps surface,sphere --surface.faces 2000 --out run-$one
+done
+explica template run-cortex run-other --density fsaverage3 --level 3 --out template || [ $? -eq 3 ])"},
       {"thickness",
        "a label volume, or two volumes that cross a level at the boundaries",
        "thickness in every voxel of the tissue, depth, layers, points that correspond",
