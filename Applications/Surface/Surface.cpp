@@ -99,6 +99,9 @@ void declareOutputs(Declaration& d) {
               "thickness by both measures, mm, the one asked for first; 0 where there is no grey "
               "matter")
       .output("valid.shape.gii", FileKind::VertexData, "1 where the thickness is defined, else 0")
+      .output("doubt.shape.gii", FileKind::VertexData,
+              "with --image: standard deviation of the white and of the outer border's place, mm; a "
+              "voxel where the image shows no border")
       .output("curvature.shape.gii", FileKind::VertexData,
               "mean curvature of the white surface, 1/mm, positive in sulci")
       .output("sulc.shape.gii", FileKind::VertexData,
@@ -415,9 +418,16 @@ std::size_t writeRegions(Context& context, const Regions& regions,
   const Eigen::VectorXd areas = geometry::vertexAreas(made.white.mesh);
   const auto measured = surface::measureRegions(keys, made.thickness, areas);
   const auto nearest = surface::measureRegions(keys, made.nearestThickness, areas);
+  const Eigen::VectorXd doubtful = surface::doubtfulOf(made);
+  std::vector<surface::RegionMeasure> doubt;  // of 1 and 2, as 0 counts for no mean
+  if (doubtful.size() > 0) {
+    const Eigen::VectorXd cortex = (made.thickness.array() > 0).cast<double>();
+    doubt = surface::measureRegions(keys, cortex.array() * (1 + doubtful.array()), areas);
+  }
   std::ostringstream table;
   table << "index\tname\tvertices\tarea_white_mm2\tthickness_mean_mm\tthickness_sd_mm\t"
-           "thickness_nearest_mean_mm\n";
+           "thickness_nearest_mean_mm"
+        << (doubtful.size() > 0 ? "\tdoubtful_share\n" : "\n");
   io::LabelMap labels{"regions", keys, {{0, "???", {0, 0, 0, 0}}}};
   for (std::size_t r = 0; r < measured.size(); ++r) {
     const surface::RegionMeasure& region = measured[r];
@@ -425,10 +435,12 @@ std::size_t writeRegions(Context& context, const Regions& regions,
     table << region.key << '\t' << name << '\t' << region.vertices << '\t' << region.area;
     if (std::isfinite(region.thicknessMean)) {
       table << '\t' << region.thicknessMean << '\t' << region.thicknessDeviation << '\t'
-            << nearest[r].thicknessMean << '\n';
+            << nearest[r].thicknessMean;
+      if (doubtful.size() > 0) table << '\t' << doubt[r].thicknessMean - 1;
     } else {
-      table << "\tn/a\tn/a\tn/a\n";
+      table << (doubtful.size() > 0 ? "\tn/a\tn/a\tn/a\tn/a" : "\tn/a\tn/a\tn/a");
     }
+    table << '\n';
     labels.table.push_back({region.key, name, regionColour(regions, region.key)});
   }
   writeTextFile(context.output("regions.tsv"), table.str());
@@ -561,6 +573,10 @@ std::vector<io::SpecEntry> writeMaps(Context& context, const Settings& s,
   if (!tissue.hasGrey) return spec;
   writeShape("thickness.shape.gii", thicknessMaps(made, s.thicknessMeasure));
   writeShape("valid.shape.gii", {{"valid", "", surface::validOf(made)}});
+  if (made.image.doubt.size() > 0) {
+    writeShape("doubt.shape.gii", {{"doubt_white", "mm", made.image.doubt.col(0)},
+                                   {"doubt_outer", "mm", made.image.doubt.col(1)}});
+  }
   if (made.sulcalDepth.size() > 0) writeShape("sulc.shape.gii", {{"sulc", "mm", made.sulcalDepth}});
   if (regions.atlas || regions.parcellation) {
     summary.regions = writeRegions(context, regions, made, tissue.structure, spec);
