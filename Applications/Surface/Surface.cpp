@@ -99,9 +99,10 @@ void declareOutputs(Declaration& d) {
               "thickness by both measures, mm, the one asked for first; 0 where there is no grey "
               "matter")
       .output("valid.shape.gii", FileKind::VertexData, "1 where the thickness is defined, else 0")
-      .output("doubt.shape.gii", FileKind::VertexData,
-              "with --image: standard deviation of the white and of the outer border's place, mm; a "
-              "voxel where the image shows no border")
+      .output(
+          "doubt.shape.gii", FileKind::VertexData,
+          "with --image: standard deviation of the white and of the outer border's place, mm; a "
+          "voxel where the image shows no border")
       .output("curvature.shape.gii", FileKind::VertexData,
               "mean curvature of the white surface, 1/mm, positive in sulci")
       .output("sulc.shape.gii", FileKind::VertexData,

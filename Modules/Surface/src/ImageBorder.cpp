@@ -41,7 +41,7 @@ constexpr double kBeyondMask = kOutsideReach + 1;
 struct Tissues {
   Eigen::VectorXd white, grey, outside;
   Eigen::VectorXd covered;  ///< share of the outside that the image's mask has not cut away
-  double sign = 1;  ///< 1 if white matter is brighter than grey matter
+  double sign = 1;          ///< 1 if white matter is brighter than grey matter
 };
 
 Tissues brightnessOf(const std::vector<Trajectory>& paths, const MaskedImage& masked,
@@ -49,8 +49,7 @@ Tissues brightnessOf(const std::vector<Trajectory>& paths, const MaskedImage& ma
   const Volume<float>& image = masked.image;
   const auto n = static_cast<Eigen::Index>(paths.size());
   Tissues found;
-  found.white = found.grey = found.outside = found.covered =
-      Eigen::VectorXd::Constant(n, kNaN);
+  found.white = found.grey = found.outside = found.covered = Eigen::VectorXd::Constant(n, kNaN);
   parallelFor(paths.size(), 256, [&](std::size_t v) {
     const Trajectory& path = paths[v];
     if (path.end == TrajectoryEnd::NoRibbon) return;
@@ -187,7 +186,7 @@ ImageBorders findBorders(const std::vector<Trajectory>& given, const TriangleMes
       paths[v] = between(given[v], borders.white[static_cast<Eigen::Index>(v)], given[v].length());
     });
     const Tissues tissues = brightnessOf(paths, masked, voxel);
-    borders.outer = searchOuter(paths, topology, edgeLength, image, voxel, tissues.sign,
+    borders.outer = searchOuter(paths, topology, edgeLength, masked, voxel, tissues.sign,
                                 fluidContrast(tissues, options.fluid));
     for (std::size_t v = 0; v < paths.size(); ++v) {
       const double way = borders.outer[static_cast<Eigen::Index>(v)];

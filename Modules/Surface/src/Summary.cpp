@@ -177,8 +177,8 @@ void describeMaking(Results& t, const SurfaceSummary& s, const CorticalSurfaces&
 double doubtfulShare(const CorticalSurfaces& made) {
   const Eigen::VectorXd doubtful = doubtfulOf(made);
   if (doubtful.size() == 0) return kNaN;
-  const Eigen::VectorXd areas = (made.thickness.array() > 0)
-                                    .select(geometry::vertexAreas(made.white.mesh), 0.0);
+  const Eigen::VectorXd areas =
+      (made.thickness.array() > 0).select(geometry::vertexAreas(made.white.mesh), 0.0);
   return areas.sum() > 0 ? areas.dot(doubtful) / areas.sum() : kNaN;
 }
 

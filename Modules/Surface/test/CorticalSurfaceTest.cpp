@@ -545,11 +545,10 @@ TEST(CorticalSurface, AMaskThatEndsAtTheCortexIsItsBorder) {
   const auto image =
       volumeOf(grid, [&](const Point& p) { return p.norm() < 17 ? brightness(p, 14, 17) : 0.0F; });
   const auto tissue = [&](float atEdge) {
-    return tissueFromShares(
-        volumeOf(grid, [&](const Point& p) { return shareOf(p, 14, 1); }),
-        volumeOf(grid, [&](const Point& p) {
-          return p.norm() < 16 ? 1.0F : (p.norm() < 17 ? atEdge : 0.0F);
-        }));
+    return tissueFromShares(volumeOf(grid, [&](const Point& p) { return shareOf(p, 14, 1); }),
+                            volumeOf(grid, [&](const Point& p) {
+                              return p.norm() < 16 ? 1.0F : (p.norm() < 17 ? atEdge : 0.0F);
+                            }));
   };
   SurfaceOptions options;
   options.faces = 6000;
