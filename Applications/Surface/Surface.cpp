@@ -102,6 +102,10 @@ void declareOutputs(Declaration& d) {
               "thickness by both measures, mm, the one asked for first; 0 where there is no grey "
               "matter")
       .output("valid.shape.gii", FileKind::VertexData, "1 where the thickness is defined, else 0")
+      .output(
+          "doubt.shape.gii", FileKind::VertexData,
+          "with --image: standard deviation of the white and of the outer border's place, mm; a "
+          "voxel where the image shows no border")
       .output("curvature.shape.gii", FileKind::VertexData,
               "mean curvature of the white surface, 1/mm, positive in sulci")
       .output("sulc.shape.gii", FileKind::VertexData,
@@ -429,19 +433,26 @@ std::size_t writeRegions(Context& context, const Regions& regions,
   };
   const auto sizes = moments(areas), measured = moments(known(made.thickness)),
              nearest = moments(known(made.nearestThickness));
+  const Eigen::VectorXd doubtful = surface::doubtfulOf(made);
+  const bool isDoubted = doubtful.size() > 0;
+  const auto doubt = isDoubted ? moments((made.thickness.array() > 0).select(doubtful, kNaN))
+                               : std::vector<maps::RegionMoments>();
   std::ostringstream table;
   table << "index\tname\tvertices\tarea_white_mm2\tthickness_mean_mm\tthickness_sd_mm\t"
-           "thickness_nearest_mean_mm\n";
+           "thickness_nearest_mean_mm"
+        << (isDoubted ? "\tdoubtful_share\n" : "\n");
   io::LabelMap labels{"regions", keys, {{0, "???", {0, 0, 0, 0}}}};
   for (std::size_t r = 0; r < all.size(); ++r) {
     const std::string name = regionName(regions, all[r]);
     table << all[r] << '\t' << name << '\t' << sizes[r].count << '\t' << sizes[r].sum;
     if (measured[r].count > 0) {
       table << '\t' << measured[r].meanOverArea << '\t' << measured[r].deviationOverArea << '\t'
-            << nearest[r].meanOverArea << '\n';
+            << nearest[r].meanOverArea;
+      if (isDoubted) table << '\t' << doubt[r].meanOverArea;
     } else {
-      table << "\tn/a\tn/a\tn/a\n";
+      table << (isDoubted ? "\tn/a\tn/a\tn/a\tn/a" : "\tn/a\tn/a\tn/a");
     }
+    table << '\n';
     labels.table.push_back({all[r], name, regionColour(regions, all[r])});
   }
   writeTextFile(context.output("regions.tsv"), table.str());
@@ -574,6 +585,10 @@ std::vector<io::SpecEntry> writeMaps(Context& context, const Settings& s,
   if (!tissue.hasGrey) return spec;
   writeShape("thickness.shape.gii", thicknessMaps(made, s.thicknessMeasure));
   writeShape("valid.shape.gii", {{"valid", "", surface::validOf(made)}});
+  if (made.image.doubt.size() > 0) {
+    writeShape("doubt.shape.gii", {{"doubt_white", "mm", made.image.doubt.col(0)},
+                                   {"doubt_outer", "mm", made.image.doubt.col(1)}});
+  }
   if (made.sulcalDepth.size() > 0) writeShape("sulc.shape.gii", {{"sulc", "mm", made.sulcalDepth}});
   if (regions.atlas || regions.parcellation) {
     summary.regions = writeRegions(context, regions, made, tissue.structure, spec);

@@ -60,6 +60,8 @@ const std::vector<Export> kExports = {
      "area at each vertex of the white, middle and outer surface"},
     {"surface", "valid.shape.gii", "_desc-valid_mask.shape.gii", "",
      "1 where the thickness is defined"},
+    {"surface", "doubt.shape.gii", "_desc-doubt_measure.shape.gii", "mm",
+     "standard deviation of the white and of the outer border's place"},
     {"surface", "regions.label.gii", "_desc-regions_dseg.label.gii", "", "cortical regions"},
     {"surface", "regions.tsv", "_desc-regions_morph.tsv", "",
      "area and thickness of each cortical region"},
@@ -299,6 +301,8 @@ void describeColumns(Json& sidecar, const std::string& step, const std::string& 
     sidecar["thickness_nearest_mean_mm"] = {
         {"Description", "mean of FreeSurfer's thickness: nearest distances, both ways"},
         {"Units", "mm"}};
+    sidecar["doubtful_share"] = {
+        {"Description", "share of the area where the image leaves a border more than half a voxel"}};
   } else if (file == "topology.tsv") {
     sidecar["kind"] = {{"Description", "island, cavity, handle or tunnel"}};
     for (const char* axis : {"x_mm", "y_mm", "z_mm"}) {
