@@ -137,7 +137,6 @@ With --surfaces, or --white and --pial, the map becomes a stack of depths: grid.
       .needs({"label-key"}, {"label"})
       .needs({"cortex", "cut.strain", "cut.most"}, {"cuts=auto"})
       .needs({"depths"}, {"surfaces", "white"})
-      .needs({"to-volume"}, {"volumes"})
       .needs({"nearest"}, {"volumes"});
   declareOutputs(d);
 }
