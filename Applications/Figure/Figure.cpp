@@ -270,6 +270,7 @@ Termination run(Context& context, const Settings& s) {
   std::vector<Shown> all = readFiles(s);
   const auto scale = scaleOf(s, all);
   for (Shown& shown : all) paint(shown, scale);
+  auto step = context.step("draw");
   const report::PanelFigure figure = report::panelFigure(rowsOf(s, all), scale, s.size);
   report::writePng(context.output("figure.png"), figure.picture);
   writeTextFile(context.output("figure.svg"), figure.svg);
