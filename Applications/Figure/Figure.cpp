@@ -5,6 +5,7 @@
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/WholeFile.h"
+#include "Explica/Flattening/Comparison.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/IO/StatedHemisphere.h"
 #include "Explica/IO/VertexDataFile.h"
@@ -57,7 +58,7 @@ void declare(Declaration& d, Settings& s) {
           "Each map or annotation colours the surfaces of its hemisphere with as many vertices, in "
           "any order; of several maps the first. A map named curv or sulc is drawn beneath as "
           "light "
-          "gyri and dark sulci. On flat maps (z = 0) annotations are outlines with names. All "
+          "gyri and dark sulci. On flat maps (one z) annotations are outlines with names. All "
           "surfaces have one scale, all maps one colour bar. figure.svg has a layer for the "
           "pictures, one for the titles and one for the colour bar, whose text can be edited.")
       .example(
@@ -98,10 +99,9 @@ struct Shown {
 Shown shownOf(const io::LoadedSurface& loaded, const std::string& file) {
   Shown shown;
   shown.side = io::statedHemisphere(file);
-  const Positions& p = loaded.mesh.positions;
-  shown.flat = (p.col(2).array() == 0).all();
   std::vector<std::int32_t> all(static_cast<std::size_t>(loaded.mesh.faceCount()));
   std::iota(all.begin(), all.end(), 0);
+  shown.flat = flattening::isFlatMap(loaded.mesh, all);
   geometry::SubMesh part = geometry::extractFaces(loaded.mesh, all);
   shown.surface.mesh = std::move(part.mesh);
   shown.surface.file = file;
@@ -177,6 +177,12 @@ std::vector<Shown> readFiles(const Settings& s) {
   return all;
 }
 
+/// The map's name without folder and hemisphere: FreeSurfer's "lh.thickness" is thickness.
+std::string titleOf(const io::VertexMap& map) {
+  const std::string name = std::filesystem::path(map.name).filename().string();
+  return name.starts_with("lh.") || name.starts_with("rh.") ? name.substr(3) : name;
+}
+
 /// One scale for all maps; none without maps.
 std::optional<report::ColourScale> scaleOf(const Settings& s, const std::vector<Shown>& all) {
   std::vector<double> pooled;
@@ -189,7 +195,7 @@ std::optional<report::ColourScale> scaleOf(const Settings& s, const std::vector<
   if (!first) return {};
   report::ColourScale scale = report::scaleFor(
       Eigen::Map<const Eigen::VectorXd>(pooled.data(), static_cast<Eigen::Index>(pooled.size())),
-      std::filesystem::path(first->name).filename().string(), first->unit, s.colours);
+      titleOf(*first), first->unit, s.colours);
   if (s.range) {
     scale.low = s.range->x();
     scale.high = s.range->y();
@@ -264,6 +270,7 @@ Termination run(Context& context, const Settings& s) {
   std::vector<Shown> all = readFiles(s);
   const auto scale = scaleOf(s, all);
   for (Shown& shown : all) paint(shown, scale);
+  auto step = context.step("draw");
   const report::PanelFigure figure = report::panelFigure(rowsOf(s, all), scale, s.size);
   report::writePng(context.output("figure.png"), figure.picture);
   writeTextFile(context.output("figure.svg"), figure.svg);

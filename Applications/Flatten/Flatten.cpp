@@ -137,7 +137,6 @@ With --surfaces, or --white and --pial, the map becomes a stack of depths: grid.
       .needs({"label-key"}, {"label"})
       .needs({"cortex", "cut.strain", "cut.most"}, {"cuts=auto"})
       .needs({"depths"}, {"surfaces", "white"})
-      .needs({"to-volume"}, {"volumes"})
       .needs({"nearest"}, {"volumes"});
   declareOutputs(d);
 }
@@ -169,6 +168,21 @@ void warnOf(Context& context, const flattening::Disc& disc, const flattening::Fl
                  std::to_string(map.rimCrossings) +
                  " pairs of rim edges meet in single precision: the map is not one-to-one there");
   }
+}
+
+/// Whether the map can be used, and how well it keeps areas and lengths.
+void sayHowGood(Context& context, const flattening::FlatMap& map,
+                const unfolding::Distortion& distortion) {
+  const bool folded = map.turnedOver > 0 || map.rimCrossings > 0;
+  char text[240];
+  std::snprintf(text, sizeof text,
+                "flat map: %s; mean area error %.1f %%, mean change of lengths %.1f %%%s",
+                folded ? "not usable, it folds or overlaps" : "usable, one-to-one",
+                100 * distortion.areaErrorMean, 100 * distortion.edgeStrainMean,
+                map.termination == Termination::MaxIterations
+                    ? "; ended at its limit of iterations (--solver.max-iterations)"
+                    : "");
+  context.info(text);
 }
 
 // What comes after cuts and map measures and writes for about four times as long as the start took,
@@ -251,6 +265,7 @@ Termination run(Context& context, const FlattenSettings& s) {
   writePatchTable(context, s, subject, disc, map, areaRatio);
   writeGrid(context, s, surfaces, disc, flat);
   context.results(summary);
+  sayHowGood(context, map, summary.distortion);
   context.result("seconds_start", read);
   context.result("seconds_cut", made.secondsCut);
   context.result("seconds_flatten", flattened - read - made.secondsCut);

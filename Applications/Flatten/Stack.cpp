@@ -118,7 +118,10 @@ std::optional<Cortex> checkBeside(Context& context, const FlattenSettings& s,
   for (const std::string& file : s.maps) static_cast<void>(io::readVertexMaps(file, vertices));
   static_cast<void>(io::readRegions({s.regions.begin(), s.regions.end()}, vertices));
   std::optional<Cortex> cortex = cortexFor(context, s, subject);
-  if (s.volumes.empty()) return cortex;
+  if (s.volumes.empty()) {
+    if (s.place.file) throw UsageError("--to-volume is for --volumes: leave it out, or add that");
+    return cortex;
+  }
   std::set<std::int32_t> corners;
   for (const std::int32_t f : subject.faces) {
     for (int k = 0; k < 3; ++k) corners.insert(subject.reference.mesh.faces(f, k));

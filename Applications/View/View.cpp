@@ -69,7 +69,7 @@ void declare(Declaration& d, Settings& s) {
       .option("Picture",
               Field{"film", "",
                     "film to write of a folder of `explica unfold`: .gif, or .mp4 or .webm where "
-                    "ffmpeg is installed"},
+                    "ffmpeg is installed; 800 x 600 pixels if --width and --height do not say"},
               s.film)
       .inputOption("map", FileKind::VertexData, "per-vertex values to colour the surface by", s.map)
       .option("Picture", Field{"map-name", "", "which of the map file's maps (default: the first)"},
@@ -254,13 +254,16 @@ Termination run(Context& context, const Settings& s, const ShowWindow& show) {
   }
   if (s.film) {
     const std::filesystem::path folder = s.files.front();
+    report::SurfacePictureOptions picture = s.picture;
+    if (!context.given("width")) picture.width = 800;
+    if (!context.given("height")) picture.height = 600;
     std::optional<report::SurfacePaint> paint;
     if (s.map || s.labels) paint = readPaint(s, {firstFrame(folder), folder.string()});
     std::vector<FilmView> views;
     if (s.direction || !s.views.empty()) {
       for (const report::FigureView& view : viewsOf(s, {})) views.push_back(filmView(view));
     }
-    writeFilm(*s.film, drawFilm(folder, paint, views, s.columns, s.focus, s.picture),
+    writeFilm(*s.film, drawFilm(folder, paint, views, s.columns, s.focus, picture),
               s.framesPerSecond);
     context.info("wrote " + *s.film);
   }

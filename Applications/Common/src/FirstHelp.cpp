@@ -58,9 +58,9 @@ explica surface cortex/labels.nii.gz --white-label 3 --grey-label 2 --faces 2000
 explica figure surfaces/pial.surf.gii surfaces/thickness.shape.gii --size 800 --out figure)"},
       {"flatten",
        "an unfolded patch, a surface with a rim, or a hemisphere with cuts",
-       "a flat map that folds nowhere, as surface, table, picture and stack of depths",
+       "a flat map without folds, as surface, table, picture and stack of depths",
        {"reference", "cuts", "cortex", "cut.strain", "label", "area-tolerance", "grid", "surfaces",
-        "volumes", "map", "regions", "frames", "max-time", "resume"},
+        "volumes", "to-volume", "map", "regions", "max-time", "resume"},
        R"(explica phantom shell --size 32 --out shell
 explica surface shell/labels.nii.gz --white-label 1 --grey-label 2 --faces 2000 --out surfaces
 explica unfold surfaces/pial.surf.gii --center 0,0,12 --radius 8 --direction 0,0,1 --surround none --out unfolded

@@ -108,54 +108,69 @@ int heightOf(const std::vector<Panel>& row, int cell, int width) {
   return static_cast<int>(height);
 }
 
+using Scenes = std::map<const TriangleMesh*, SurfaceScene>;
+
+/// Where a panel goes, pixels.
+struct Cell {
+  int left = 0, top = 0, width = 0, height = 0;
+};
+
+void drawPanel(Sheet& sheet, Scenes& scenes, const Panel& panel, const Cell& cell,
+               double halfHeight) {
+  if (panel.marks) {
+    const Picture flat = flatPanel(*panel.mesh, panel.paint, *panel.marks, cell.height);
+    sheet.add(flat, cell.left + std::max(0, (cell.width - flat.width) / 2), cell.top, panel.title);
+    return;
+  }
+  SurfacePictureOptions size;
+  size.width = cell.width;
+  size.height = cell.height;
+  Camera camera = cameraFor(*panel.mesh, panel.view, cell.width, cell.height);
+  camera.halfHeight = halfHeight;
+  const SurfaceScene& scene = scenes.try_emplace(panel.mesh, *panel.mesh).first->second;
+  const bool discrete = panel.paint.values.size() == 0 && panel.paint.labels.size() != 0;
+  sheet.add(scene.render(camera, coloursOf(panel.paint, panel.mesh->vertexCount()),
+                         discrete ? Filling::Discrete : Filling::Smooth, size),
+            cell.left, cell.top, panel.title);
+}
+
+/// The colour bar right of the panels, in the picture and as SVG.
+std::string drawBar(Sheet& sheet, const ColourScale& scale, int left) {
+  const double width = sheet.picture.width, height = sheet.picture.height;
+  const double tall = std::min(0.6 * height, 0.3 * width), top = (height - tall) / 2;
+  drawColourBar(sheet.picture, scale, left, static_cast<int>(top - 3 * sheet.letters),
+                sheet.picture.width - left, static_cast<int>(tall + 4 * sheet.letters));
+  return svgBar(scale, left, top, tall, sheet.letters);
+}
+
 }  // namespace
 
 PanelFigure panelFigure(const std::vector<std::vector<Panel>>& rows,
                         const std::optional<ColourScale>& scale, int width) {
-  std::size_t columns = 0;
-  for (const auto& row : rows) columns = std::max(columns, row.size());
-  if (columns == 0) throw InvalidInput("figure: no panel");
+  if (rows.empty()) throw InvalidInput("figure: no panel");
   const int content = scale ? static_cast<int>((1 - kLegendShare) * width) : width;
   std::vector<int> heights;
-  for (const auto& row : rows) {
-    heights.push_back(heightOf(row, content / static_cast<int>(row.size()), content));
-  }
   int height = 0;
-  for (const int one : heights) height += one;
+  for (const auto& row : rows) {
+    if (row.empty()) throw InvalidInput("figure: a row without panels");
+    heights.push_back(heightOf(row, content / static_cast<int>(row.size()), content));
+    height += heights.back();
+  }
   Sheet sheet{Picture(width, height), "", "", std::clamp(width / 140.0, 8.0, 30.0)};
-  std::map<const TriangleMesh*, SurfaceScene> scenes;
-  int y = 0;
+  Scenes scenes;
+  Cell cell;
   for (std::size_t r = 0; r < rows.size(); ++r) {
-    const int cell = content / static_cast<int>(rows[r].size());
-    const double half = commonHalfHeight(rows, cell, heights[r]);
-    for (std::size_t c = 0; c < rows[r].size(); ++c) {
-      const Panel& panel = rows[r][c];
-      const int left = static_cast<int>(c) * cell;
-      if (panel.marks) {
-        const Picture flat = flatPanel(*panel.mesh, panel.paint, *panel.marks, heights[r]);
-        sheet.add(flat, left + std::max(0, (cell - flat.width) / 2), y, panel.title);
-        continue;
-      }
-      SurfacePictureOptions size;
-      size.width = cell;
-      size.height = heights[r];
-      Camera camera = cameraFor(*panel.mesh, panel.view, cell, heights[r]);
-      camera.halfHeight = half;
-      const auto scene = scenes.try_emplace(panel.mesh, *panel.mesh).first;
-      const bool discrete = panel.paint.values.size() == 0 && panel.paint.labels.size() != 0;
-      sheet.add(scene->second.render(camera, coloursOf(panel.paint, panel.mesh->vertexCount()),
-                                     discrete ? Filling::Discrete : Filling::Smooth, size),
-                left, y, panel.title);
+    cell.width = content / static_cast<int>(rows[r].size());
+    cell.height = heights[r];
+    cell.left = 0;
+    const double half = commonHalfHeight(rows, cell.width, cell.height);
+    for (const Panel& panel : rows[r]) {
+      drawPanel(sheet, scenes, panel, cell, half);
+      cell.left += cell.width;
     }
-    y += heights[r];
+    cell.top += cell.height;
   }
-  std::string bar;
-  if (scale) {
-    const double tall = std::min(0.6 * height, 0.3 * width), top = (height - tall) / 2;
-    drawColourBar(sheet.picture, *scale, content, static_cast<int>(top - 3 * sheet.letters),
-                  width - content, static_cast<int>(tall + 4 * sheet.letters));
-    bar = svgBar(*scale, content, top, tall, sheet.letters);
-  }
+  const std::string bar = scale ? drawBar(sheet, *scale, content) : "";
   const std::string head = formatted(
       "<svg xmlns='http://www.w3.org/2000/svg' "
       "xmlns:inkscape='http://www.inkscape.org/namespaces/inkscape' width='%d' height='%d' "

@@ -144,7 +144,9 @@ TEST(Gif, DecodesToColoursNearThePicture) {
           std::abs(static_cast<std::uint8_t>(gif[kTable + 3 * indices[i] + c]) - p.rgb[3 * i + c]);
     }
   }
-  EXPECT_LT(sum / 180000, 8);
+  // 256 colours for a box of three even components: 256^(1/3) steps of 40 levels, 10 off in the
+  // mean.
+  EXPECT_LT(sum / 180000, 12);
 }
 
 TEST(Gif, KeepsFewColoursAsTheyAreAndWithoutPatterns) {
