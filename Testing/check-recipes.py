@@ -1,8 +1,7 @@
 #!/usr/bin/python3
 # SPDX-FileCopyrightText: The Explica developers
 # SPDX-License-Identifier: Apache-2.0
-"""Holds the lists of packages (ExampleData/packages.txt, Testing/packages.txt, the Containerfile, the conda recipe, and what libexplica-dev
-depends on) to what CMake looks for, and the versions to CMake's: a library that is found by a build but not listed
+"""Holds the lists of packages (ExampleData/packages.txt, Testing/packages.txt, the Containerfile, and what libexplica-dev depends on) to what CMake looks for, and the versions to CMake's: a library that is found by a build but not listed
 fails here, and so does one that is listed and not looked for.
 
     Testing/check-recipes.py
@@ -14,32 +13,31 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 
-# What CMake looks for: Debian's package, conda-forge's.
+# What CMake looks for: Debian's package.
 LIBRARIES = {
-    "Boost": ("libboost-dev", "libboost-headers"),
-    "CLI11": ("libcli11-dev", "cli11"),
-    "EXPAT": ("libexpat1-dev", "expat"),
-    "Eigen3": ("libeigen3-dev", "eigen"),
-    "HDF5": ("libinsighttoolkit5-dev", "hdf5"),  # Debian's ITK brings it
-    "ISAL": ("libisal-dev", "isa-l"),
-    "ITK": ("libinsighttoolkit5-dev", "libitk-devel"),
-    "PNG": ("libpng-dev", "libpng"),
-    "OpenSSL": ("libssl-dev", "openssl"),
-    "Python": ("python3-dev", "python"),
-    "Qt5": ("qtbase5-dev", "qt-main"),
-    "TBB": ("libtbb-dev", "tbb-devel"),
-    "VTK": ("libvtk9-dev", "vtk"),
-    "X11": ("libx11-dev", "xorg-libx11"),
-    "ZLIB": ("zlib1g-dev", "zlib"),
-    "embree": ("libembree-dev", "embree"),
-    "hwy": ("libhwy-dev", "libhwy"),
-    "nlohmann_json": ("nlohmann-json3-dev", "nlohmann_json"),
-    "pybind11": ("pybind11-dev", "pybind11"),
-    "valijson": ("libvalijson-dev", "valijson"),
-    "yaml-cpp": ("libyaml-cpp-dev", "yaml-cpp"),
+    "Boost": "libboost-dev",
+    "CLI11": "libcli11-dev",
+    "EXPAT": "libexpat1-dev",
+    "Eigen3": "libeigen3-dev",
+    "HDF5": "libinsighttoolkit5-dev",  # Debian's ITK brings it
+    "ISAL": "libisal-dev",
+    "ITK": "libinsighttoolkit5-dev",
+    "PNG": "libpng-dev",
+    "OpenSSL": "libssl-dev",
+    "Python": "python3-dev",
+    "Qt5": "qtbase5-dev",
+    "TBB": "libtbb-dev",
+    "VTK": "libvtk9-dev",
+    "X11": "libx11-dev",
+    "ZLIB": "zlib1g-dev",
+    "embree": "libembree-dev",
+    "hwy": "libhwy-dev",
+    "nlohmann_json": "nlohmann-json3-dev",
+    "pybind11": "pybind11-dev",
+    "valijson": "libvalijson-dev",
+    "yaml-cpp": "libyaml-cpp-dev",
 }
 FOR_TESTS = {"Explica", "GTest", "benchmark", "Threads"}  # or of the compiler
-NOT_LIBRARIES = {"numpy"}  # in the recipe for the Python module
 
 
 def looked_for():
@@ -60,19 +58,13 @@ def debian_packages():
     return {line.split("#")[0].strip() for line in lines} - {""}
 
 
-def conda_packages():
-    text = (ROOT / "Wrapping/Conda/meta.yaml").read_text()
-    host = re.search(r"\n  host:\n((?:    - .*\n)+)", text)[1]
-    return {line.split()[1] for line in host.splitlines()}
-
-
 def consumers_look_for():
     """Debian's packages of what the modules' FIND names: what find_package(Explica) looks for elsewhere."""
     names = set()
     for path in ROOT.glob("Modules/*/CMakeLists.txt"):
         for line in re.findall(r"^ *FIND (.*)$", path.read_text(), re.MULTILINE):
             names.update(word.split()[0] for word in re.findall(r'"([^"]+)"', line))
-    return {LIBRARIES[name][0] for name in names}
+    return {LIBRARIES[name] for name in names}
 
 
 def development_packages():
@@ -84,7 +76,6 @@ def versions():
     """The version wherever it is written."""
     places = {
         "CMakeLists.txt": r"project\(\s*Explica\s+VERSION\s+([\d.]+)",
-        "Wrapping/Conda/meta.yaml": r'set version = "([\d.]+)"',
         "Wrapping/Python/pyproject.toml": r'\nversion = "([\d.]+)"',
         "CITATION.cff": r'\nversion: "?([\d.]+)"?',
     }
@@ -96,19 +87,15 @@ def versions():
 def main():
     wrong = []
     found = looked_for()
-    debian, conda = debian_packages(), conda_packages()
+    debian = debian_packages()
     for name in sorted(found | set(LIBRARIES)):
         if name not in LIBRARIES:
             wrong.append(f"CMake looks for {name}, which Testing/check-recipes.py does not know")
             continue
         if name not in found:
             wrong.append(f"nothing looks for {name} any more: take it off the lists")
-        if LIBRARIES[name][0] not in debian:
-            wrong.append(f"the lists of packages lack {LIBRARIES[name][0]} ({name})")
-        if LIBRARIES[name][1] not in conda:
-            wrong.append(f"Wrapping/Conda/meta.yaml lacks {LIBRARIES[name][1]} ({name})")
-    known = {pair[1] for pair in LIBRARIES.values()} | NOT_LIBRARIES
-    wrong += [f"Wrapping/Conda/meta.yaml: nothing looks for {p}" for p in sorted(conda - known)]
+        if LIBRARIES[name] not in debian:
+            wrong.append(f"the lists of packages lack {LIBRARIES[name]} ({name})")
     needed, given = consumers_look_for(), development_packages()
     wrong += [f"ExplicaPackage.cmake: libexplica-dev does not depend on {p}" for p in sorted(needed - given)]
     wrong += [f"ExplicaPackage.cmake: no module's FIND needs {p}" for p in sorted(given - needed)]

@@ -17,9 +17,12 @@
 #include "Explica/Study/Derivatives.h"
 #include "Explica/Study/HeartStudy.h"
 #include "Explica/Study/StudyPage.h"
+#include "Explica/Study/StudyState.h"
 #include "Explica/Study/StudyTable.h"
 #include "Explica/Study/SubjectFiles.h"
 #include "GroupStage.h"
+#include "KeptRun.h"
+#include "StudyInput.h"
 
 #include <algorithm>
 #include <array>
@@ -55,6 +58,7 @@ struct Settings {
   bool skipValidator = true;
   bool reuse = true;
   GroupSettings group;
+  Keep keep = Keep::All;
   Invocation run;  ///< whose options are taken over
 };
 
@@ -106,6 +110,7 @@ void declare(Declaration& d, Settings& s) {
                    "there (runs/*/segment/to_template.h5), where it is; how it fits is checked as "
                    "ever",
                    s.registrations, "Study")
+      .option("Study", keepField(), s.keep)
       .option("Study", Field{"skip-bids-validator", "", "accepted; no validator is run"},
               s.skipValidator)
       .defaultOut(s.out)
@@ -114,7 +119,9 @@ void declare(Declaration& d, Settings& s) {
       .shareOfWork([&s] { return shareOf(s); })
       .output("dataset_description.json", FileKind::JsonFile, "what this derivative is")
       .output("descriptions.tsv", FileKind::Table, "what each desc- means")
-      .output(".bidsignore", FileKind::Any, "files that BIDS does not know yet")
+      .output("README.md", FileKind::Any, "what is where")
+      .output(".bidsignore", FileKind::Any, "kinds of files that BIDS does not know yet")
+      .varyingOutput("sub-*.html", FileKind::Report, "leads to the reports on a participant")
       .output("sub-*", FileKind::Folder, "results by BIDS names")
       .output("runs", FileKind::Folder, "the runs themselves, with records and reports")
       .varyingOutput("study.tsv", FileKind::Table, "one row a participant and hemisphere")
@@ -196,6 +203,9 @@ Ended doHemisphere(Context& context, const Settings& s, const study::Participant
     }
     values["hemisphere"] = hemisphere;
     values["resume"] = true;
+    const std::string key =
+        study::keyOf({participant, {{name, hemisphere, "", values}}}, studyPathOptions());
+    if (s.keep == Keep::Group && !dry && isKept(folder, key)) return ended;
     const std::string other = hemisphere == "L" ? "R" : "L";
     if (!dry) shareSegment(folder.parent_path() / (participant.name() + "_hemi-" + other), folder);
     const Outcome outcome = context.runCommand(*findCommand("run"), "runs/" + name, values);
@@ -205,6 +215,10 @@ Ended doHemisphere(Context& context, const Settings& s, const study::Participant
     outcome.abandoned ? sayInterrupted(folder) : static_cast<void>(fs::remove(problem));
     if (!reachedGoal(outcome.termination) && context.monitor().shouldStop()) {
       ended = Ended::Interrupted;
+    }
+    if (s.keep == Keep::Group && ended == Ended::Done) {
+      keepForGroup(folder, key);
+      return ended;
     }
   } catch (const EnvironmentError&) {
     throw;  // a full disk, or another run at work here: no fault of the participant
@@ -218,6 +232,13 @@ Ended doHemisphere(Context& context, const Settings& s, const study::Participant
   const study::DerivativeOrigin origin{s.dataset, !context.isPrivate()};
   study::exportRun(folder, context.outputFolder(), participant, hemisphere, origin);
   return ended;
+}
+
+/// The page that leads to the reports on a participant's runs.
+void writePage(Context& context, const study::Participant& participant) {
+  const std::string subject = "sub-" + participant.label;
+  const auto rows = study::collectRows(context.outputFolder(), subject);
+  writeTextFile(context.output(subject + ".html"), study::indexPage(rows, subject));
 }
 
 /// All that can be done is done; exit code 3 if some failed, 2 if all did.
@@ -243,6 +264,7 @@ Termination doParticipants(Context& context, const Settings& s) {
       if (ended == Ended::Failed) failed.push_back(name);
       if (ended == Ended::Interrupted) interrupted.push_back(name);
     }
+    if (!context.given("dry-run")) writePage(context, participant);
   }
   context.result("hemispheres_done", done);
   context.result("hemispheres_failed", failed.size());

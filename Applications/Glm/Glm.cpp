@@ -92,6 +92,9 @@ Maps are best smoothed before (explica smooth): random field theory assumes a sm
           Field{"block-memory", "MB",
                 "of people's values at a time; permutations and ComBat need all at once", 1, 1e6},
           s.blockMegabytes)
+      .needs({"seed", "exchange", "blocks", "tfce"}, {"permutations"})
+      .needs({"threshold", "atlas"}, {"surface"})
+      .needs({"site-column"}, {"site=fixed", "site=random", "site=combat"})
       .output("*.shape.gii", FileKind::VertexData,
               "of each contrast: effect, t or f, p, q, ci95, d, partial_r, p_field, p_fwe, tfce, "
               "tfce_p_fwe")

@@ -4,9 +4,10 @@
 #include "ResultPage.h"
 
 #include "Explica/Core/Html.h"
-#include "Explica/Geometry/MeshTopology.h"
+#include "Explica/Maps/Folding.h"
 #include "Explica/Report/Page.h"
 #include "Explica/Report/SurfacePicture.h"
+#include "Plots.h"
 
 #include <algorithm>
 #include <cmath>
@@ -40,6 +41,7 @@ Size sizeOfViews(const GlmResults& r) {
 struct Side {
   const Hemisphere* hemisphere;
   TriangleMesh mesh;
+  TriangleMesh inflated = {};
 };
 
 std::vector<Side> sidesOf(const Observations& o) {
@@ -54,6 +56,7 @@ std::vector<Side> sidesOf(const Observations& o) {
       }
     }
     side.mesh.faces = (all(mine, Eigen::all).array() - static_cast<std::int32_t>(h.first)).matrix();
+    side.inflated = maps::inflated(side.mesh);
     sides.push_back(std::move(side));
   }
   return sides;
@@ -75,7 +78,7 @@ report::ReportViews viewsOf(const std::vector<Side>& sides, const Eigen::VectorX
                         : std::abs(value) < threshold ? kBelow
                                                       : scale(value));
     }
-    const report::SurfaceScene scene(side.mesh);
+    const report::SurfaceScene scene(side.inflated);
     const bool right = side.hemisphere->structure == "CortexRight";
     const std::string name = right                                        ? "right"
                              : side.hemisphere->structure == "CortexLeft" ? "left"
@@ -84,7 +87,7 @@ report::ReportViews viewsOf(const std::vector<Side>& sides, const Eigen::VectorX
       const auto from = lateral == right ? report::ViewName::Right : report::ViewName::Left;
       views.views.push_back(
           {name + (name.empty() ? "" : ", ") + (lateral ? "lateral" : "medial"),
-           scene.render(report::cameraFor(side.mesh, from, pixels.width, pixels.height), colours,
+           scene.render(report::cameraFor(side.inflated, from, pixels.width, pixels.height), colours,
                         report::Filling::Smooth, size)});
     }
   }
@@ -106,9 +109,8 @@ Eigen::VectorXd meanOf(const GlmResults& r) {
   return (r.design.matrix.colwise().mean() * r.maps.coefficients).transpose();
 }
 
-void addViews(const Observations& o, const GlmResults& r, report::ReportContent& page) {
-  if (!o.surface) return;
-  const auto sides = sidesOf(o);
+void addViews(const std::vector<Side>& sides, const GlmResults& r, report::ReportContent& page) {
+  if (sides.empty()) return;
   const Size size = sizeOfViews(r);
   const Eigen::VectorXd mean = meanOf(r);
   auto views = viewsOf(sides, mean, report::scaleFor(mean, "mean", ""), 0, size);
@@ -137,11 +139,11 @@ void addViews(const Observations& o, const GlmResults& r, report::ReportContent&
   }
 }
 
-/// A surface that turns, with the maps of all contrasts.
-void addTurnable(const Observations& o, const GlmResults& r, report::ReportContent& page) {
-  if (!o.surface) return;
-  for (const Side& side : sidesOf(o)) {
-    report::Evolution view = report::evolutionOf({side.mesh});
+/// A surface that turns, inflated and as it is, with the maps of all contrasts.
+void addTurnable(const std::vector<Side>& sides, const GlmResults& r, report::ReportContent& page) {
+  for (const Side& side : sides) {
+    report::Evolution view = report::evolutionOf({side.inflated, side.mesh});
+    view.frameTitles = {"inflated", "as it is"};
     view.title = side.hemisphere->structure;
     const auto part = [&](const Eigen::VectorXd& values) {
       return Eigen::VectorXd(values.segment(side.hemisphere->first, side.hemisphere->count));
@@ -156,96 +158,6 @@ void addTurnable(const Observations& o, const GlmResults& r, report::ReportConte
     }
     page.evolutions.push_back(std::move(view));
   }
-}
-
-/// What stands on a plot's horizontal axis: the first column of the contrast's terms.
-struct Axis {
-  std::string name;
-  std::vector<double> x;
-  std::vector<std::string> levels;  ///< of a categorical column
-};
-
-Axis axisOf(const Observations& o, const GlmResults& r, const statistics::Contrast& contrast) {
-  const statistics::Factor* factor = nullptr;
-  for (std::size_t c = 0; c < r.design.columns.size(); ++c) {
-    if (contrast.weights.row(static_cast<Eigen::Index>(c)).isZero()) continue;
-    for (const std::string& name : r.design.terms[static_cast<std::size_t>(r.design.termOf[c])]) {
-      for (const auto& f : r.design.factors) {
-        if (f.name == name && (factor == nullptr || f.levels.empty())) factor = &f;
-      }
-    }
-  }
-  Axis axis;
-  if (factor == nullptr) {
-    axis.name = "people";
-    for (std::size_t i = 0; i < o.people.size(); ++i) axis.x.push_back(static_cast<double>(i));
-    return axis;
-  }
-  axis.name = factor->name;
-  axis.levels = factor->levels;
-  for (const auto& row : o.about.rows) {
-    const std::string& cell = row[o.about.at(factor->name)];
-    if (factor->levels.empty()) {
-      axis.x.push_back(statistics::numberIn(cell).value_or(std::nan("")));
-    } else {
-      const auto level = std::find(factor->levels.begin(), factor->levels.end(), cell);
-      axis.x.push_back(static_cast<double>(level - factor->levels.begin()));
-    }
-  }
-  return axis;
-}
-
-/// Each person at one place, as an SVG element; a point says who it is.
-std::string scatterSvg(const Observations& o, const Axis& axis, const Eigen::VectorXd& y,
-                       const std::string& title) {
-  constexpr double kPlotWidth = 420, kPlotHeight = 260, kLeft = 56, kBottom = 42, kTop = 26;
-  double x0 = *std::min_element(axis.x.begin(), axis.x.end()),
-         x1 = *std::max_element(axis.x.begin(), axis.x.end());
-  double y0 = std::nan(""), y1 = std::nan("");
-  for (const double v : y) {
-    y0 = std::fmin(y0, v);
-    y1 = std::fmax(y1, v);
-  }
-  const double margin = axis.levels.empty() ? (x1 - x0) * 0.03 : 0.5;
-  x0 -= margin;
-  x1 += margin;
-  const auto px = [&](double x) {
-    return kLeft + (x - x0) / (x1 - x0) * (kPlotWidth - kLeft - 10);
-  };
-  const auto py = [&](double v) {
-    return kPlotHeight - kBottom -
-           (v - y0) / std::max(y1 - y0, 1e-12) * (kPlotHeight - kBottom - kTop);
-  };
-  std::string svg = "<svg viewBox='0 0 420 260' role='img' aria-label='" + escapeHtml(title) +
-                    "' xmlns='http://www.w3.org/2000/svg' font-family='sans-serif' font-size='12'>"
-                    "<text x='10' y='16' font-weight='600'>" +
-                    escapeHtml(title) + "</text>";
-  const auto label = [&](double x, double yy, const std::string& text, const char* anchor) {
-    svg += "<text x='" + numberText(x, 5) + "' y='" + numberText(yy, 5) + "' text-anchor='" +
-           anchor + "'>" + escapeHtml(text) + "</text>";
-  };
-  label(kLeft - 6, py(y0) + 4, numberText(y0, 3), "end");
-  label(kLeft - 6, py(y1) + 4, numberText(y1, 3), "end");
-  if (axis.levels.empty()) {
-    label(px(x0 + margin), kPlotHeight - kBottom + 16, numberText(x0 + margin, 4), "middle");
-    label(px(x1 - margin), kPlotHeight - kBottom + 16, numberText(x1 - margin, 4), "middle");
-  }
-  for (std::size_t l = 0; l < axis.levels.size(); ++l) {
-    label(px(static_cast<double>(l)), kPlotHeight - kBottom + 16, axis.levels[l], "middle");
-  }
-  label(kPlotWidth / 2 + kLeft / 2, kPlotHeight - 8, axis.name, "middle");
-  svg += "<path d='M56 26V218H410' fill='none' stroke='#888'/>";
-  for (std::size_t i = 0; i < o.people.size(); ++i) {
-    const double value = y[static_cast<Eigen::Index>(i)];
-    if (!std::isfinite(value) || !std::isfinite(axis.x[i])) continue;
-    // Of a level, people are spread in the order of the table.
-    const double aside =
-        axis.levels.empty() ? 0 : (static_cast<double>(i * 37 % 61) / 61 - 0.5) * 0.5;
-    svg += "<circle cx='" + numberText(px(axis.x[i] + aside), 5) + "' cy='" +
-           numberText(py(value), 5) + "' r='2.6' fill='#145ab4' fill-opacity='0.6'><title>" +
-           escapeHtml(o.people[i]) + ": " + numberText(value, 4) + "</title></circle>";
-  }
-  return svg + "</svg>";
 }
 
 /// Places to plot: peaks of the largest clusters, or the regions of the smallest P.
@@ -382,13 +294,19 @@ std::string resultPage(const GlmSettings& settings, const Observations& o, const
   page.title = "Group statistics: " + settings.model;
   addFlags(settings, o, r, page);
   addFindings(settings, o, r, page);
-  addTurnable(o, r, page);
-  addViews(o, r, page);
+  const std::vector<Side> sides = o.surface ? sidesOf(o) : std::vector<Side>();
+  addTurnable(sides, r, page);
+  addViews(sides, r, page);
   addPlots(o, r, values, page);
   for (std::size_t k = 0; k < r.contrasts.size(); ++k) {
     page.tables.push_back(o.surface ? clustersOf(o, r, k) : regionsOf(o, r, k));
   }
-  return report::reportPage(page);
+  std::string html = report::reportPage(page);
+  // Beside the surface that turns, which says where it is clicked.
+  const std::size_t view = html.find("<section id=\"view3d\"");
+  const std::string ending = "</section>";
+  if (values == nullptr || sides.empty() || view == std::string::npos) return html;
+  return html.insert(html.find(ending, view) + ending.size(), placePlot(o, r, *values));
 }
 
 }  // namespace explica::app

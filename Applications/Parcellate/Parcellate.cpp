@@ -5,10 +5,13 @@
 #include "Explica/Application/CortexTemplate.h"
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/WholeFile.h"
 #include "Explica/IO/LabelNames.h"
+#include "Explica/IO/RegionFiles.h"
 #include "Explica/IO/StatedHemisphere.h"
 #include "Explica/IO/VertexFile.h"
 #include "Explica/Maps/Icosphere.h"
+#include "Explica/Maps/LabelVolume.h"
 #include "Explica/Maps/Parcellation.h"
 
 #include <array>
@@ -25,6 +28,8 @@ struct Settings {
   std::string folder;
   std::vector<std::string> atlases;
   std::optional<std::string> templateName, hemisphere;
+  bool volume = false;
+  std::optional<std::string> surfaces, like;
 };
 
 /// Labels that are carried over, with what else is known of those who have them.
@@ -59,10 +64,26 @@ void declare(Declaration& d, Settings& s) {
       .option("Input",
               Field{"hemisphere", "", "L or R, where neither the atlas' name nor the sphere says"},
               s.hemisphere)
+      .option("Volume",
+              Field{"volume", "",
+                    "also label the voxels of which at least half lies between white and pial "
+                    "surface"},
+              s.volume)
+      .option("Volume",
+              Field{"surfaces", "", "folder with white and pial surface, where SURFACES has none"},
+              s.surfaces)
+      .inputOption("like", FileKind::Volume,
+                   "image whose voxels they are (default: 1 mm, about the surfaces)", s.like,
+                   "Volume")
+      .needs({"surfaces", "like"}, {"volume"})
       .results<maps::Parcellation>()
       .output("regions.label.gii", FileKind::VertexLabel, "region of each vertex")
       .output("?h.*.annot", FileKind::VertexLabel, "the same as FreeSurfer's annotation")
-      .output("doubt.shape.gii", FileKind::VertexData, "share of the votes against the region");
+      .output("doubt.shape.gii", FileKind::VertexData, "share of the votes against the region")
+      .output("aparc.nii.gz", FileKind::LabelVolume,
+              "with --volume: the regions between white and pial surface, with the keys of "
+              "FreeSurfer's aparc+aseg where all are its regions")
+      .output("aparc.tsv", FileKind::Table, "with --volume: key and name of each region");
 }
 
 std::string prefixOf(const Settings& s) {
@@ -133,7 +154,6 @@ maps::LabelledSphere readAtlas(Context& context, const Atlas& named, const std::
 std::vector<Atlas> atlasesOf(Context& context, const Settings& s, const std::string& structure) {
   std::vector<Atlas> atlases;
   for (const std::string& file : s.atlases) {
-    io::requireSameHemisphere(file, structure);
     atlases.push_back({file, "", ""});
   }
   if (!atlases.empty()) return atlases;
@@ -148,28 +168,6 @@ std::vector<Atlas> atlasesOf(Context& context, const Settings& s, const std::str
   return {{known.atlas, known.sphere, known.sulc}};
 }
 
-/// Numbers labels by their names as the first file does, so that files with other tables agree;
-/// names that it lacks are added.
-void numberAlike(std::vector<io::LabelMap>& files) {
-  std::map<std::string, Label> keyOf;
-  std::vector<io::LabelEntry>& table = files.front().table;
-  for (const io::LabelEntry& entry : table) keyOf.try_emplace(entry.name, entry.key);
-  for (std::size_t f = 1; f < files.size(); ++f) {
-    std::map<Label, Label> changed;
-    for (io::LabelEntry entry : files[f].table) {
-      const Label next = table.back().key + 1;
-      const auto [at, added] = keyOf.try_emplace(entry.name, next);
-      changed[entry.key] = at->second;
-      if (!added) continue;
-      entry.key = next;
-      table.push_back(entry);
-    }
-    for (Label& key : files[f].keys) {
-      if (const auto at = changed.find(key); at != changed.end()) key = at->second;
-    }
-  }
-}
-
 /// The table with other colours where two labels share one: annot files tell labels by colour.
 std::vector<io::LabelEntry> toldByColour(std::vector<io::LabelEntry> table) {
   std::set<std::array<float, 4>> colours;
@@ -177,6 +175,63 @@ std::vector<io::LabelEntry> toldByColour(std::vector<io::LabelEntry> table) {
   if (colours.size() == table.size()) return table;
   for (io::LabelEntry& entry : table) entry.colour = io::distinctColour(entry.key);
   return table;
+}
+
+/// White and pial surface of the person.
+std::array<TriangleMesh, 2> readRibbon(Context& context, const Settings& s,
+                                       const std::string& prefix, Eigen::Index vertices) {
+  std::array<TriangleMesh, 2> ribbon;
+  io::SurfaceReadOptions reading;
+  reading.space = io::SurfaceSpace::Scanner;
+  for (std::size_t n = 0; n < 2; ++n) {
+    const std::string name = n == 0 ? "white" : "pial";
+    const auto file =
+        findFile({s.folder, s.surfaces.value_or(s.folder)}, {prefix + name, name + ".surf.gii"});
+    if (!file) {
+      throw InvalidInput("'" + s.surfaces.value_or(s.folder) + "': no " + prefix + name + " or " +
+                         name + ".surf.gii in it, which --volume needs; name their folder by "
+                         "--surfaces");
+    }
+    ribbon[n] = readSurface(context, name, context.input(*file, name).string(), reading).mesh;
+    if (ribbon[n].vertexCount() == vertices) continue;
+    throw InvalidInput("'" + *file + "': has " + std::to_string(ribbon[n].vertexCount()) +
+                       " vertices, the person's sphere " + std::to_string(vertices));
+  }
+  return ribbon;
+}
+
+/// The labels of a volume: FreeSurfer's of aparc+aseg where all regions are its own, else those of
+/// the atlas; what is no region becomes 0.
+std::map<Label, io::LabelEntry> volumeLabels(const io::LabelMap& labels, bool left) {
+  std::map<std::string, Label> freeSurfer;
+  for (Label n = 1; n < 100; ++n) freeSurfer[io::freeSurferRegion(1000 + n)] = n;
+  std::map<Label, io::LabelEntry> result;
+  bool own = true;
+  for (const io::LabelEntry& entry : labels.table) {
+    if (io::meansNoRegion(entry.name)) continue;
+    result[entry.key] = entry;
+    own = own && freeSurfer.count(entry.name) > 0;
+  }
+  for (auto& [key, entry] : result) {
+    if (own) entry.key = (left ? 1000 : 2000) + freeSurfer[entry.name];
+  }
+  return result;
+}
+
+void writeVolume(Context& context, const std::array<TriangleMesh, 2>& ribbon, const Grid& grid,
+                 const io::LabelMap& regions, bool left) {
+  const auto named = volumeLabels(regions, left);
+  maps::VertexKeys keys = maps::VertexKeys::Zero(regions.keys.size());
+  for (Eigen::Index v = 0; v < keys.size(); ++v) {
+    if (const auto at = named.find(regions.keys[v]); at != named.end()) keys[v] = at->second.key;
+  }
+  io::writeVolume(context.output("aparc.nii.gz"),
+                  maps::labelsBetween(grid, ribbon[0], ribbon[1], keys));
+  std::string legend = "index\tname\n";
+  for (const auto& [key, entry] : named) {
+    legend += std::to_string(entry.key) + "\t" + entry.name + "\n";
+  }
+  writeTextFile(context.output("aparc.tsv"), legend);
 }
 
 Termination run(Context& context, const Settings& s) {
@@ -187,6 +242,10 @@ Termination run(Context& context, const Settings& s) {
     throw InvalidInput("'" + s.folder + "': holds no " + prefix +
                        "sphere.reg and no sphere.reg.surf.gii");
   }
+  if (const std::string said = io::statedStructure(*place); !said.empty() && said != structure) {
+    throw InvalidInput("'" + *place + "': is of the other hemisphere than the regions asked for (" +
+                       prefix.substr(0, 2) + ")");
+  }
   const TriangleMesh sphere = readSphere(context, *place);
   Eigen::VectorXd folding;
   if (const auto sulc = findFile({s.folder}, {prefix + "sulc", "sulc.shape.gii"})) {
@@ -195,10 +254,16 @@ Termination run(Context& context, const Settings& s) {
   const std::vector<Atlas> named = atlasesOf(context, s, structure);
   std::vector<io::LabelMap> labels;
   for (const Atlas& atlas : named) labels.push_back(io::readVertexLabels(atlas.file));
-  numberAlike(labels);
+  io::numberAlike(labels);
   std::vector<maps::LabelledSphere> atlases;
   for (std::size_t a = 0; a < labels.size(); ++a) {
     atlases.push_back(readAtlas(context, named[a], prefix, labels[a]));
+  }
+  std::array<TriangleMesh, 2> ribbon;
+  Grid grid;
+  if (s.volume) {
+    ribbon = readRibbon(context, s, prefix, sphere.vertexCount());
+    grid = s.like ? io::readGrid(*s.like) : maps::gridAround(ribbon[1].positions, 1);
   }
   auto step = context.step("parcellate");
   const maps::Parcellation found = maps::parcellate(sphere, folding, atlases);
@@ -209,6 +274,7 @@ Termination run(Context& context, const Settings& s) {
   io::writeGiftiLabel(context.output("regions.label.gii"), result, structure);
   io::writeFreeSurferAnnot(context.output(prefix + name + ".annot"), result);
   io::writeGiftiShape(context.output("doubt.shape.gii"), {{"doubt", "", found.doubt}}, structure);
+  if (s.volume) writeVolume(context, ribbon, grid, result, structure == "CortexLeft");
   context.results(found);
   return Termination::NotRun;
 }

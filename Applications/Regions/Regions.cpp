@@ -131,7 +131,6 @@ Hemisphere readHemisphere(Context& context, const Settings& s, const std::string
   if (found.volumes.size() == 0) found.volumes = mapOf(file("volume", "volume.shape.gii"), count);
   found.thickness = mapOf(file("thickness", "thickness.shape.gii"), count);
   for (const std::string& path : s.maps) {
-    io::requireSameHemisphere(path, found.structure);
     for (io::VertexMap& map : io::readVertexMaps(path, count)) found.maps.push_back(std::move(map));
   }
   return found;
@@ -261,9 +260,6 @@ Termination run(Context& context, const Settings& s) {
   const std::string side = sideOf(s);
   const Hemisphere hemisphere = readHemisphere(context, s, side);
   std::vector<fs::path> atlases(s.atlases.begin(), s.atlases.end());
-  for (const fs::path& atlas : atlases) {
-    io::requireSameHemisphere(atlas, hemisphere.structure);
-  }
   const auto labels = io::readRegions(atlases, hemisphere.areas.size());
   auto step = context.step("regions");
   std::string text = "person\themisphere\tatlas\tregion\tmeasure\tvalue\tunit\n";

@@ -49,6 +49,8 @@ void declare(Declaration& d, Settings& s) {
                    s.toCurvature, "Target")
       .option("Target", Field{"mirror", "", "register to the other hemisphere, mirrored"}, s.mirror)
       .options("Registration", s.registration)
+      .excludes("to", {"template"})
+      .needs({"to-sulc", "to-curvature"}, {"to"})
       .output("sphere.reg.surf.gii", FileKind::Surface, "the sphere in the template's frame")
       .output("?h.sphere.reg", FileKind::Surface, "the same as FreeSurfer writes it")
       .output("areal.shape.gii", FileKind::VertexData, "log2 of the map's change of areas")
@@ -62,7 +64,6 @@ std::string otherSide(const std::string& structure) {
 }
 
 FoldingFiles targetFiles(Context& context, const Settings& s, const std::string& structure) {
-  if (s.to && s.templateName) throw UsageError("--to and --template are two targets; give one");
   const std::string side = s.mirror ? otherSide(structure) : structure;
   if (s.to) {
     const std::string known = io::structureFromName(*s.to);

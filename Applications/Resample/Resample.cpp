@@ -78,6 +78,8 @@ void declare(Declaration& d, Settings& s) {
                 "name of the space in file names, or folder of the template, where --from is in "
                 "register with another one than the target's name says"},
           s.space)
+      .needs({"template"}, {"to=fs_LR-32k"})
+      .needs({"areas"}, {"method=adaptive", "amounts"})
       .output("*_space-*", FileKind::Any,
               "NAME_space-SPACE_den-DENSITY: each file, in its own format");
 }
@@ -173,7 +175,6 @@ CarriedFile readFile(const std::string& path, const io::LoadedSurface& from,
                        " vertices, the sphere of --from " +
                        std::to_string(from.mesh.vertexCount()));
   }
-  io::requireSameHemisphere(path, from.metadata.structure);
   file.structure = io::statedStructure(path);
   if (file.structure.empty()) file.structure = from.metadata.structure;
   if (file.kind == io::VertexFileKind::Labels) {

@@ -134,7 +134,12 @@ Json valuesOf(const Context& context, const Settings& s, const pipeline::Planned
 void settleView(const Context& context, const pipeline::PlannedStep& step, Json& values) {
   const auto given = [&](const char* name) { return context.given("unfold." + std::string(name)); };
   if (given("viewpoint") || given("view-line") || given("view-surface")) values.erase("direction");
-  if (given("center") || given("vertex") || given("label")) return;
+  if (given("region") && !given("atlas")) {
+    const std::string ending = step.name.substr(step.command.size());
+    values["atlas"] =
+        (context.outputFolder() / ("parcellate" + ending) / "regions.label.gii").string();
+  }
+  if (given("center") || given("vertex") || given("label") || given("region")) return;
   Vector direction(-1, 0, 0);
   if (values.contains("direction")) {
     const Json& all = values["direction"];

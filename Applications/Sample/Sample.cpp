@@ -19,8 +19,6 @@
 #include "Explica/Sampling/Summary.h"
 #include "Explica/Sampling/Transfer.h"
 
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -38,9 +36,7 @@ constexpr const char* kDefaultDepths = "0.5";
 /// Which options need or exclude each other.
 void declareRelations(Declaration& d) {
   d.find("VOLUME")->required = false;
-  d.onSurface("vertex-map", "vertex-surface")
-      .excludes("surfaces", {"white", "pial"})
-      .needs({"hemisphere"}, {"surfaces"});
+  d.onSurface("vertex-map", "vertex-surface");
 }
 
 void declare(Declaration& d, SampleSettings& s) {
@@ -65,16 +61,9 @@ void declare(Declaration& d, SampleSettings& s) {
                "Twenty layers along the trajectories of explica thickness")
       .input("VOLUME", FileKind::Volume, "volumes to sample, of one or several frames", s.volumes)
       .inputOption("label-volume", FileKind::LabelVolume,
-                   "volume of labels, which go to the majority; may be repeated", s.labelVolumes)
-      .inputOption("surfaces", FileKind::Folder,
-                   "folder with the surfaces: of explica surface, FreeSurfer, fMRIPrep or the HCP",
-                   s.cortex.folder, "Surfaces")
-      .option("Surfaces", Field{"hemisphere", "", "L or R, where the folder holds both"},
-              s.cortex.hemisphere)
-      .inputOption("white", FileKind::Surface, "white surface", s.cortex.white, "Surfaces")
-      .inputOption("pial", FileKind::Surface, "its pial surface, same faces", s.cortex.pial,
-                   "Surfaces")
-      .options("Surfaces", s.cortex.reading)
+                   "volume of labels, which go to the majority; may be repeated", s.labelVolumes);
+  declareCortex(d, s.cortex, "Surfaces");
+  d.options("Surfaces", s.cortex.reading)
       .inputOption("thickness", FileKind::Folder,
                    "output folder of explica thickness: sample its layers instead of surfaces",
                    s.thickness, "Trajectories")
@@ -100,17 +89,12 @@ void declare(Declaration& d, SampleSettings& s) {
               s.interpolate)
       .inputOption("mask", FileKind::Volume,
                    "where it is 0, on the volumes' grid, nothing is known", s.mask, "Values")
-      .options("Values", s.reading)
-      .inputOption("to-volume", FileKind::Any,
-                   "transform from the surface to the volumes: 4 x 4 matrix as text (RAS mm), ITK "
-                   "(text, .mat, .h5), FreeSurfer LTA or register.dat, pycortex xfm",
-                   s.toVolume, "Place")
-      .option("Place", Field{"to-volume-sense", "", "which way the transform is taken"}, s.sense)
-      .inputOption(
-          "labels", FileKind::VertexLabel,
-          "regions on the surface (GIFTI, annot, .label; several files may overlap), or with "
-          "--thickness one label volume: writes a profile for each",
-          s.labels, "Regions")
+      .options("Values", s.reading);
+  declarePlace(d, s.place, "Place");
+  d.inputOption("labels", FileKind::VertexLabel,
+                "regions on the surface (GIFTI, annot, .label; several files may overlap), or with "
+                "--thickness one label volume: writes a profile for each",
+                s.labels, "Regions")
       .inputOption("points", FileKind::Table,
                    "table with columns x, y, z (RAS mm): finds vertex, depth, distance, region",
                    s.points, "Regions")
@@ -241,7 +225,8 @@ class SurfaceSampling {
     }
     auto mask = std::make_shared<std::optional<Volume<std::uint8_t>>>(maskFor(grid, s_));
     std::function<Positions(const Positions&)> toVolume;
-    if (const auto transform = transformTo(context_, grid, s_, &cortex_)) toVolume = *transform;
+    if (const auto transform = transformTo(context_, grid, s_.place, &cortex_))
+      toVolume = *transform;
     const sampling::RibbonSampler sampler(grid, cortex_.white, cortex_.pial, s_.interpolate,
                                           toVolume, *mask ? &**mask : nullptr);
     return [sampler, mask](std::span<const float> frames) { return sampler.sample(frames); };
@@ -521,47 +506,15 @@ Termination run(Context& context, const SampleSettings& s) {
         "--across ribbon takes values over the whole depth: leave --depths out, and sample label "
         "volumes with --across mean");
   }
-  if (s.sense != io::TransformSense::Auto && !s.toVolume) {
-    throw UsageError("--to-volume-sense is for --to-volume");
-  }
   if (s.thickness) return sampleLayers(context, s);
   return SurfaceSampling(context, s).run();
 }
 
 }  // namespace
 
-std::string stemOf(const std::string& path) {
-  std::string name = std::filesystem::path(path).filename().string();
-  for (const std::string_view ending : {".nii.gz", ".nii", ".mgz", ".mgh.gz", ".mgh", ".nrrd",
-                                        ".nhdr", ".mha", ".mhd", ".hdr", ".img"}) {
-    if (name.size() > ending.size() && name.ends_with(ending)) {
-      name.resize(name.size() - ending.size());
-      break;
-    }
-  }
-  return name;
-}
-
-std::optional<io::PointTransform> transformTo(Context& context, const Grid& volume,
-                                              const SampleSettings& s, const Cortex* cortex) {
-  if (!s.toVolume) return {};
-  io::TransformSides sides;
-  sides.volume = volume;
-  sides.sense = s.sense;
-  if (cortex != nullptr) {
-    sides.scannerFromFile = cortex->origin.applied;
-    sides.scannerFromTkr = cortex->scannerFromTkr;
-  }
-  io::PointTransform transform = io::readPointTransform(*s.toVolume, sides);
-  context.note("to-volume",
-               nlohmann::ordered_json{{"format", transform.format}, {"sense", transform.sense}});
-  context.detail("'" + *s.toVolume + "': " + transform.format + ", " + transform.sense);
-  return transform;
-}
-
 Positions placesIn(Context& context, const Grid& volume, const SampleSettings& s,
                    const Cortex* cortex, const Positions& points) {
-  const auto transform = transformTo(context, volume, s, cortex);
+  const auto transform = transformTo(context, volume, s.place, cortex);
   return transform ? (*transform)(points) : points;
 }
 

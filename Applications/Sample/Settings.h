@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "Surfaces.h"
-
-#include "Explica/IO/PointTransformFile.h"
+#include "Explica/Application/CortexFiles.h"
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Sampling/Depth.h"
 #include "Explica/Sampling/Sampler.h"
@@ -26,8 +24,7 @@ struct SampleSettings {
   sampling::DepthKind depthKind = sampling::DepthKind::Depth;
   sampling::Interpolation interpolate = sampling::Interpolation::Linear;
   sampling::Across across = sampling::Across::None;
-  std::optional<std::string> toVolume;
-  io::TransformSense sense = io::TransformSense::Auto;
+  VolumePlace place;
   std::optional<std::string> mask;
   std::vector<std::string> labels;
   std::optional<std::string> points;
@@ -35,14 +32,6 @@ struct SampleSettings {
   std::optional<std::string> vertexSurface;
   io::VolumeReadOptions reading;
 };
-
-/// Name of a volume's outputs: its file name without endings such as .nii.gz.
-[[nodiscard]] std::string stemOf(const std::string& path);
-
-/// The transform of --to-volume, if it is given.
-[[nodiscard]] std::optional<io::PointTransform> transformTo(Context& context, const Grid& volume,
-                                                            const SampleSettings& s,
-                                                            const Cortex* cortex);
 
 /// Places of surface points in a volume's world: through --to-volume, or as they are.
 [[nodiscard]] Positions placesIn(Context& context, const Grid& volume, const SampleSettings& s,

@@ -94,7 +94,6 @@ std::vector<MapFile> readMapFiles(const Settings& s, const io::LoadedSurface& su
                          "': only maps of numbers can be smoothed, not labels or "
                          "surfaces");
     }
-    io::requireSameHemisphere(path, surface.metadata.structure);
     MapFile file{path, io::nameWithEntity(path, "fwhm-" + shortNumber(s.fwhm)),
                  io::statedStructure(path), io::readVertexMaps(path, surface.mesh.vertexCount())};
     if (file.structure.empty()) file.structure = surface.metadata.structure;

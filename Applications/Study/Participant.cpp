@@ -8,8 +8,10 @@
 #include "Explica/Core/StopScope.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Study/StudyState.h"
+#include "KeptRun.h"
 #include "StudyInput.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <new>
 
@@ -23,6 +25,7 @@ struct Settings {
   std::string study;
   std::string out;
   std::vector<std::string> participants;
+  Keep keep = Keep::All;
 };
 
 void declare(Declaration& d, Settings& s) {
@@ -43,6 +46,7 @@ void declare(Declaration& d, Settings& s) {
       .option("Study", Field{"participant-label", "", "subjects to do, with or without sub-"},
               s.participants)
       .severalWords("participant-label")
+      .option("Study", keepField(), s.keep)
       .withoutOutput();
 }
 
@@ -110,6 +114,17 @@ bool doRun(Context& context, const fs::path& folder, const study::Participant& p
   }
 }
 
+fs::path folderOf(const Settings& s, const study::PlannedRun& run) {
+  return fs::path(s.out) / "runs" / run.folder;
+}
+
+/// What was kept of a subject is what doing it again would give.
+bool allKept(const Settings& s, const study::PlannedSubject& subject, const std::string& key) {
+  return std::all_of(subject.runs.begin(), subject.runs.end(), [&](const study::PlannedRun& run) {
+    return isKept(folderOf(s, run), key);
+  });
+}
+
 Termination run(Context& context, const Settings& s) {
   const StopScope kept(nullptr);  // what is reached is written
   const study::StudyFile file = readCheckedStudy(s.study);
@@ -118,6 +133,10 @@ Termination run(Context& context, const Settings& s) {
   Account account;
   for (const study::PlannedSubject& subject : study.subjects) {
     const std::string key = study::keyOf(subject, paths);
+    if (s.keep == Keep::Group && allKept(s, subject, key)) {
+      account.runs += static_cast<int>(subject.runs.size());
+      continue;
+    }
     study::unsettle(s.out, subject);
     bool settled = true;
     std::map<std::string, fs::path> first;  // a hemisphere's first run, whose steps others share
@@ -127,12 +146,16 @@ Termination run(Context& context, const Settings& s) {
         settled = false;
         break;
       }
-      const fs::path folder = fs::path(s.out) / "runs" / run.folder;
+      const fs::path folder = folderOf(s, run);
       if (first.count(run.hemisphere)) shareSteps(first[run.hemisphere], folder);
       settled = doRun(context, folder, subject.participant, run, account) && settled;
       first.emplace(run.hemisphere, folder);
     }
-    if (settled) study::settle(s.out, subject, key);
+    if (!settled) continue;
+    if (s.keep == Keep::Group) {
+      for (const study::PlannedRun& run : subject.runs) keepForGroup(folderOf(s, run), key);
+    }
+    study::settle(s.out, subject, key);
   }
   if (!account.environmentFault.empty()) throw EnvironmentError(account.environmentFault);
   if (account.failed.empty()) return account.worst;

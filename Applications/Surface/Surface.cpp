@@ -16,6 +16,7 @@
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Maps/Folding.h"
+#include "Explica/Maps/Regions.h"
 #include "Explica/Provenance/Doubts.h"
 #include "Explica/Segmentation/Atlas.h"
 #include "Explica/Surface/CorticalSurface.h"
@@ -32,6 +33,8 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <set>
+#include <span>
 #include <sstream>
 #include <utility>
 
@@ -99,6 +102,10 @@ void declareOutputs(Declaration& d) {
               "thickness by both measures, mm, the one asked for first; 0 where there is no grey "
               "matter")
       .output("valid.shape.gii", FileKind::VertexData, "1 where the thickness is defined, else 0")
+      .output(
+          "doubt.shape.gii", FileKind::VertexData,
+          "with --image: standard deviation of the white and of the outer border's place, mm; a "
+          "voxel where the image shows no border")
       .output("curvature.shape.gii", FileKind::VertexData,
               "mean curvature of the white surface, 1/mm, positive in sulci")
       .output("sulc.shape.gii", FileKind::VertexData,
@@ -413,28 +420,45 @@ std::size_t writeRegions(Context& context, const Regions& regions,
                          std::vector<io::SpecEntry>& spec) {
   const surface::VertexKeys keys = regionKeys(regions, made, structure);
   const Eigen::VectorXd areas = geometry::vertexAreas(made.white.mesh);
-  const auto measured = surface::measureRegions(keys, made.thickness, areas);
-  const auto nearest = surface::measureRegions(keys, made.nearestThickness, areas);
+  std::set<Label> used(keys.begin(), keys.end());
+  used.erase(0);
+  const std::vector<Label> all(used.begin(), used.end());
+  const auto moments = [&](const Eigen::VectorXd& values) {
+    const std::span<const Label> of(keys.data(), static_cast<std::size_t>(keys.size()));
+    return maps::regionMoments(of, values, areas, all);
+  };
+  // A thickness of 0 is not known.
+  const auto known = [](const Eigen::VectorXd& thickness) -> Eigen::VectorXd {
+    return (thickness.array() > 0).select(thickness, kNaN);
+  };
+  const auto sizes = moments(areas), measured = moments(known(made.thickness)),
+             nearest = moments(known(made.nearestThickness));
+  const Eigen::VectorXd doubtful = surface::doubtfulOf(made);
+  const bool isDoubted = doubtful.size() > 0;
+  const auto doubt = isDoubted ? moments((made.thickness.array() > 0).select(doubtful, kNaN))
+                               : std::vector<maps::RegionMoments>();
   std::ostringstream table;
   table << "index\tname\tvertices\tarea_white_mm2\tthickness_mean_mm\tthickness_sd_mm\t"
-           "thickness_nearest_mean_mm\n";
+           "thickness_nearest_mean_mm"
+        << (isDoubted ? "\tdoubtful_share\n" : "\n");
   io::LabelMap labels{"regions", keys, {{0, "???", {0, 0, 0, 0}}}};
-  for (std::size_t r = 0; r < measured.size(); ++r) {
-    const surface::RegionMeasure& region = measured[r];
-    const std::string name = regionName(regions, region.key);
-    table << region.key << '\t' << name << '\t' << region.vertices << '\t' << region.area;
-    if (std::isfinite(region.thicknessMean)) {
-      table << '\t' << region.thicknessMean << '\t' << region.thicknessDeviation << '\t'
-            << nearest[r].thicknessMean << '\n';
+  for (std::size_t r = 0; r < all.size(); ++r) {
+    const std::string name = regionName(regions, all[r]);
+    table << all[r] << '\t' << name << '\t' << sizes[r].count << '\t' << sizes[r].sum;
+    if (measured[r].count > 0) {
+      table << '\t' << measured[r].meanOverArea << '\t' << measured[r].deviationOverArea << '\t'
+            << nearest[r].meanOverArea;
+      if (isDoubted) table << '\t' << doubt[r].meanOverArea;
     } else {
-      table << "\tn/a\tn/a\tn/a\n";
+      table << (isDoubted ? "\tn/a\tn/a\tn/a\tn/a" : "\tn/a\tn/a\tn/a");
     }
-    labels.table.push_back({region.key, name, regionColour(regions, region.key)});
+    table << '\n';
+    labels.table.push_back({all[r], name, regionColour(regions, all[r])});
   }
   writeTextFile(context.output("regions.tsv"), table.str());
   io::writeGiftiLabel(context.output("regions.label.gii"), labels, structure);
   spec.push_back({structure, "regions.label.gii"});
-  return measured.size();
+  return all.size();
 }
 
 /// Whether the tissue is a sheet; says so where nobody asked.
@@ -561,6 +585,10 @@ std::vector<io::SpecEntry> writeMaps(Context& context, const Settings& s,
   if (!tissue.hasGrey) return spec;
   writeShape("thickness.shape.gii", thicknessMaps(made, s.thicknessMeasure));
   writeShape("valid.shape.gii", {{"valid", "", surface::validOf(made)}});
+  if (made.image.doubt.size() > 0) {
+    writeShape("doubt.shape.gii", {{"doubt_white", "mm", made.image.doubt.col(0)},
+                                   {"doubt_outer", "mm", made.image.doubt.col(1)}});
+  }
   if (made.sulcalDepth.size() > 0) writeShape("sulc.shape.gii", {{"sulc", "mm", made.sulcalDepth}});
   if (regions.atlas || regions.parcellation) {
     summary.regions = writeRegions(context, regions, made, tissue.structure, spec);

@@ -116,8 +116,8 @@ void declare(Declaration& d, Settings& s) {
               s.measurement.sulci)
       .option("Boundary",
               Field{"image-edge", "",
-                    "what tissue does at the edge of the image: runs on, so that voxels beside it "
-                    "are left out, or ends there (default: open; insulated where sulci are "
+                    "tissue cut by the image's edge: open gives it no thickness, insulated takes "
+                    "the edge for the tissue's end (default: open; insulated where sulci are "
                     "ignored by default)"},
               s.measurement.imageEdge)
       .options("Boundary", s.measurement.sulcus)

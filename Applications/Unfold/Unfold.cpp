@@ -42,6 +42,8 @@ struct Settings {
   unfolding::RegionOptions region;
   std::vector<std::string> labels;
   std::vector<int> labelKeys;
+  std::vector<std::string> regionNames;
+  std::optional<std::string> atlas;
   std::optional<std::string> map;
   std::optional<double> above;
   bool adjustRegion = false;
@@ -84,6 +86,11 @@ void declare(Declaration& d, Settings& s) {
                    "Region")
       .option("Region", Field{"label-key", "", "the region is where --label has one of these keys"},
               s.labelKeys)
+      .option("Region", Field{"region", "", "names of regions of --atlas: the region is all of them"},
+              s.regionNames)
+      .inputOption("atlas", FileKind::VertexLabel,
+                   "annotation of the surface's vertices that --region names a region of", s.atlas,
+                   "Region")
       .inputOption("map", FileKind::VertexData, "the region is where this map is above --above",
                    s.map, "Region")
       .option("Region", Field{"above", "", "value of --map beyond which a vertex is in the region"},
@@ -93,10 +100,12 @@ void declare(Declaration& d, Settings& s) {
           Field{"adjust-region", "", "grow or shrink the region until its visibility is positive"},
           s.adjustRegion)
       .excludes("label", {"map", "center", "vertex", "radius", "metric", "cone"})
+      .excludes("region", {"label", "map", "center", "vertex", "radius", "metric", "cone"})
       .excludes("map", {"center", "vertex", "radius", "metric", "cone"})
       .excludes("center", {"vertex"})
       .excludes("cone", {"metric"})
       .needs({"label-key"}, {"label"})
+      .needs({"atlas"}, {"region"})
       .needs({"distance"}, {"direction"})
       .option("Unfolding",
               Field{"repair", "",
@@ -158,6 +167,11 @@ unfolding::Region regionOf(const TriangleMesh& mesh, const Settings& s,
     throw UsageError("--map and --above belong together; one of them is missing");
   }
   if (s.map) return unfolding::regionOfMarked(mesh, markedByMap(mesh, s));
+  if (!s.regionNames.empty()) {
+    if (!s.atlas) throw UsageError("--region names a region of --atlas, which is missing");
+    return unfolding::regionOfMarked(
+        mesh, io::markedByNames(*s.atlas, s.regionNames, mesh.vertexCount()));
+  }
   if (!s.labels.empty())
     return unfolding::regionOfMarked(mesh, io::markedByLabels({s.labels.begin(), s.labels.end()},
                                                               s.labelKeys, mesh.vertexCount()));

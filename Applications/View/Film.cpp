@@ -136,7 +136,7 @@ TriangleMesh firstFrame(const fs::path& folder) {
 
 std::vector<report::Picture> drawFilm(const fs::path& folder,
                                       const std::optional<report::SurfacePaint>& paint,
-                                      const std::vector<FilmView>& views, int columns,
+                                      const std::vector<FilmView>& views, int columns, bool focus,
                                       const report::SurfacePictureOptions& options) {
   const Json summary = summaryOf(folder);
   const std::vector<fs::path> files = framesOf(folder);
@@ -146,21 +146,22 @@ std::vector<report::Picture> drawFilm(const fs::path& folder,
   }
   const Eigen::Index vertices = frames.front().mesh.vertexCount();
   report::FilmLook look;
-  look.focus = pipeline::unfoldedRegion(folder, vertices);
+  const std::vector<std::int32_t> region = pipeline::unfoldedRegion(folder, vertices);
+  if (focus) look.focus = region;
   if (paint) {
     look.colours = report::coloursOf(*paint, vertices);
     look.filling = paint->values.size() == 0 ? report::Filling::Discrete : report::Filling::Smooth;
-  } else if (!look.focus.empty()) {
+  } else if (!region.empty()) {
     look.colours.assign(static_cast<std::size_t>(vertices), kOutside);
     look.keys.assign(static_cast<std::size_t>(vertices), 0);
-    for (const std::int32_t v : look.focus) {
+    for (const std::int32_t v : region) {
       look.colours[v] = kInside;
       look.keys[v] = 1;
     }
     look.filling = report::Filling::Discrete;
   }
   std::vector<FilmView> chosen = views;
-  if (chosen.empty()) chosen = {fromViewpoint(summary, frames.front().mesh, look.focus)};
+  if (chosen.empty()) chosen = {fromViewpoint(summary, frames.front().mesh, region)};
   std::vector<std::vector<report::Picture>> bySide;
   for (const FilmView& view : chosen) {
     look.towards = view.towards;

@@ -23,14 +23,15 @@ struct FilmView {
 /// @throws InvalidInput  no frames
 [[nodiscard]] TriangleMesh firstFrame(const std::filesystem::path& folder);
 
-/// The frames of an unfolding: its region in colour and filling the picture, how far it is seen
-/// below.
+/// The frames of an unfolding: its region in colour, how far it is seen below.
 /// @param paint  in place of the region's colour
 /// @param views  side by side; empty: from the viewpoint of the unfolding
+/// @param focus  the region fills the picture; else all of the surface is seen
 /// @throws InvalidInput  no frames, or a map that does not fit
 [[nodiscard]] std::vector<report::Picture> drawFilm(
     const std::filesystem::path& folder, const std::optional<report::SurfacePaint>& paint,
-    const std::vector<FilmView>& views, int columns, const report::SurfacePictureOptions& options);
+    const std::vector<FilmView>& views, int columns, bool focus,
+    const report::SurfacePictureOptions& options);
 
 /// Writes .gif; .mp4 and .webm by ffmpeg.  Whole or not at all.
 /// @throws UsageError        another ending

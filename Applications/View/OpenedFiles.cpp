@@ -137,8 +137,9 @@ viewer::Opened openForWindow(const fs::path& path, const ShownSurface& surface) 
   return opened;
 }
 
-viewer::Scale scaleFrom(const report::ColourScale& chosen) {
+viewer::Scale scaleOf(const Eigen::VectorXd& values) {
   constexpr int kColours = 256;
+  const report::ColourScale chosen = report::scaleFor(values, "", "");
   viewer::Scale scale;
   scale.low = chosen.low;
   scale.high = chosen.high;
@@ -148,10 +149,6 @@ viewer::Scale scaleFrom(const report::ColourScale& chosen) {
   }
   scale.unknown = bytesOf(report::colourAt(chosen.map, kNaN));
   return scale;
-}
-
-viewer::Scale scaleOf(const Eigen::VectorXd& values) {
-  return scaleFrom(report::scaleFor(values, "", ""));
 }
 
 }  // namespace explica::app

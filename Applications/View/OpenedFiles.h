@@ -29,6 +29,5 @@ namespace explica::app {
 
 /// Colours as in the pictures of `explica view --screenshot`.
 [[nodiscard]] viewer::Scale scaleOf(const Eigen::VectorXd& values);
-[[nodiscard]] viewer::Scale scaleFrom(const report::ColourScale& scale);
 
 }  // namespace explica::app

@@ -5,8 +5,6 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VertexDataFile.h"
-#include "Explica/Pipeline/DepthProfiles.h"
-#include "Explica/Pipeline/FlatStack.h"
 #include "Explica/Pipeline/UnfoldingFolder.h"
 #include "Explica/Provenance/Json.h"
 #include "Explica/Provenance/Record.h"
@@ -18,7 +16,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
 
 namespace explica::app {
@@ -27,7 +24,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kDistortion = "distortion.shape.gii";
-constexpr int kTileWidth = 260;  // pixels of a depth's picture, about
 
 /// Files that a folder's record names under a role, where they lie now and if they are there.
 std::vector<fs::path> inputsOf(const fs::path& folder, std::string_view role) {
@@ -133,18 +129,6 @@ viewer::Finished readFlattening(const fs::path& folder, const TriangleMesh& patc
   return finished;
 }
 
-viewer::WindowStack windowStack(pipeline::FlatStack drawn) {
-  viewer::WindowStack stack;
-  stack.name = drawn.name;
-  stack.pixelsPerMillimetre = drawn.pixelsPerCell / drawn.cell;
-  if (drawn.scale) stack.scale = scaleFrom(*drawn.scale);
-  for (pipeline::FlatStack::Tile& tile : drawn.tiles) {
-    stack.tiles.push_back(
-        {tile.depth, tile.picture.width, tile.picture.height, std::move(tile.picture.rgb)});
-  }
-  return stack;
-}
-
 /// Maps of a file under its name; of a series their mean.  Where `on` is given, they are known only
 /// there.
 void addMaps(const fs::path& file, const ShownSurface& surface, viewer::Opened& opened,
@@ -191,9 +175,6 @@ ShownSurface patchOf(const fs::path& folder) {
 void openFlattening(const fs::path& folder, const ShownSurface& surface, viewer::Opened& opened) {
   const bool isPatch = fs::path(surface.file) == folder / "patch.surf.gii";
   if (isPatch) opened.finished = readFlattening(folder, surface.mesh);
-  for (const fs::path& file : pipeline::flatStackFiles(folder)) {
-    opened.stacks.push_back(windowStack(pipeline::drawFlatStack(file, {kTileWidth})));
-  }
   if (isPatch) {
     for (const fs::path& file : inputsOf(folder, "map")) addMaps(file, surface, opened);
     for (const fs::path& file : inputsOf(folder, "regions")) {
@@ -208,43 +189,14 @@ void openFlattening(const fs::path& folder, const ShownSurface& surface, viewer:
   }
 }
 
-using RegionColours = std::map<std::string, viewer::Rgb>;
-
-viewer::DepthCurve curveOf(const pipeline::DepthProfile& profile, const RegionColours& colours) {
-  viewer::DepthCurve curve;
-  curve.region = profile.region;
-  for (const auto& [depth, at] : profile.depths) {
-    curve.depth.push_back(depth);
-    curve.mean.push_back(at.average());
-    curve.deviation.push_back(at.spread());
-  }
-  const auto found = colours.find(profile.region);
-  if (found != colours.end()) curve.colour = found->second;
-  return curve;
-}
-
 void openSampling(const fs::path& folder, const ShownSurface& surface, viewer::Opened& opened) {
-  RegionColours colours;
   const bool onSurface = !filesEnding(folder, ".func.gii").empty();
   for (const fs::path& file : onSurface ? inputsOf(folder, "labels") : std::vector<fs::path>{}) {
     opened.labels.push_back(windowLabels(surface, file));
-    const viewer::WindowLabels& labels = opened.labels.back();
-    const std::map<std::int32_t, std::string> names(labels.names.begin(), labels.names.end());
-    for (const auto& [key, colour] : labels.colours) colours[names.at(key)] = colour;
   }
   for (const fs::path& file : filesEnding(folder, ".func.gii")) addMaps(file, surface, opened);
   for (const fs::path& file : filesEnding(folder, ".label.gii")) {
     opened.labels.push_back(windowLabels(surface, file));
-  }
-  constexpr std::size_t kEvery = 10000;
-  for (const pipeline::VolumeProfiles& read : pipeline::readDepthProfiles(folder)) {
-    viewer::WindowProfiles profiles;
-    profiles.name = read.volume;
-    if (const auto* all = read.all()) profiles.all = curveOf(*all, {});
-    for (const auto* region : read.largest(kEvery)) {
-      profiles.regions.push_back(curveOf(*region, colours));
-    }
-    opened.profiles.push_back(std::move(profiles));
   }
 }
 
@@ -305,11 +257,10 @@ viewer::Opened openFolder(const fs::path& folder, const ShownSurface& surface) {
     opened.what = name + counted(opened.finished->moments.size(), "state");
   } else if (isFlattening(folder)) {
     openFlattening(folder, surface, opened);
-    opened.what = name + counted(opened.stacks.size(), "stack of depth") + "s";
+    opened.what = name + counted(opened.maps.size(), "map");
   } else if (isSampling(folder)) {
     openSampling(folder, surface, opened);
-    opened.what = name + counted(opened.maps.size(), "map") + ", profiles of " +
-                  counted(opened.profiles.size(), "volume");
+    opened.what = name + counted(opened.maps.size(), "map");
   } else {
     throw InvalidInput(folder.string() + ": is no folder of explica unfold, flatten or sample");
   }

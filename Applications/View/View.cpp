@@ -14,6 +14,7 @@
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/IO/VolumeFile.h"
+#include "Explica/Maps/Folding.h"
 #include "Explica/Report/Figure.h"
 #include "Explica/Report/Picture.h"
 
@@ -51,16 +52,14 @@ const std::vector<std::string> kOfWindow = {
 void declare(Declaration& d, Settings& s) {
   d.synopsis("choose and steer an unfolding in a window; pictures and films without one")
       .description(
-          R"(Without --screenshot or --film a window opens on a surface, or on a folder of `explica unfold`, `flatten` or `sample`: pick a centre (C), take the view as viewpoint (V), add it to those taken (Shift+V), or look from a line (L) or a surface (S); set the radius, run and pause (Space), step back and forth, save (W); F1 shows every key. Maps, labels, volumes and folders named after the surface are shown with it: of a folder of `explica sample` the maps and their curves over the depth of the cortex, region by region; of `explica flatten` the flat map, and each volume on it depth by depth. Where a map was not measured (off the valid.shape.gii beside it, thickness 0) it is grey. Surfaces are drawn with a map or labels on their vertices, from one or more sides; a volume is shown in slices with the cut lines of the surfaces named after it (the first red, the second yellow); a folder of `explica unfold` is shown as its evolution with --film. Pictures and films are drawn on the processor, without a display.)")
+          R"(Without --screenshot or --film a window opens on a surface, or on a folder of `explica unfold`, `flatten` or `sample`: pick a centre (C), take the view as viewpoint (V), add it to those taken (Shift+V), or look from a line (L) or a surface (S); set the radius, run and pause (Space), step back and forth, save (W); F1 shows every key. Maps, labels, volumes and folders named after the surface are shown with it: of a folder of `explica sample` the maps, of `explica flatten` the patch and its flat map (`explica report` shows curves over the depth, and volumes on the flat map depth by depth). Where a map was not measured (off the valid.shape.gii beside it, thickness 0) it is grey. Surfaces are drawn with a map or labels on their vertices, from one or more sides; a volume is shown in slices with the cut lines of the surfaces named after it (the first red, the second yellow); a folder of `explica unfold` is shown as its evolution with --film. Pictures and films are drawn on the processor, without a display.)")
       .example(
           "explica view pial.surf.gii --map thickness.shape.gii --views left,right --screenshot "
           "pial.png",
           "Thickness on the pial surface, from both sides")
       .example("explica view T1.nii.gz white.surf.gii pial.surf.gii --screenshot slices.png",
                "White and pial surface on the T1")
-      .example(
-          "explica view flat sampled",
-          "A flat map, its stack of depths, and sampled maps with their profiles, in the window")
+      .example("explica view flat sampled", "A flat map and sampled maps in the window")
       .input("FILE", FileKind::Any,
              "surfaces; or a volume and surfaces; or a folder of `explica unfold`, `flatten` or "
              "`sample`",
@@ -84,7 +83,10 @@ void declare(Declaration& d, Settings& s) {
               Field{"direction", "",
                     "look from this side instead: a direction from the surface to the eye"},
               s.direction)
-      .option("Picture", Field{"focus", "", "fill the picture with the --region"}, s.focus)
+      .option(
+          "Picture",
+          Field{"focus", "", "fill the picture with the --region, a film with the unfolded patch"},
+          s.focus)
       .option("Picture", Field{"colours", "", "colour map (default: by the values)"}, s.colours)
       .option("Picture", Field{"range", "", "values of the first and last colour"}, s.range)
       .option("Picture", Field{"columns", "", "views in a row", 0, 100}, s.columns)
@@ -101,7 +103,7 @@ void declare(Declaration& d, Settings& s) {
              {"screenshot", "film"})
       .needs({"slices"}, {"screenshot"})
       .needs({"map-name"}, {"map"})
-      .needs({"focus"}, {"region"})
+      .needs({"focus"}, {"region", "film"})
       .needs({"fps"}, {"film"})
       .withoutOutput();
 }
@@ -231,6 +233,12 @@ void openWindow(Context& context, const Settings& s, const ShowWindow& show) {
   for (const auto& file : {s.map, s.labels}) {
     if (file) opened.push_back(openForWindow(*file, start));
   }
+  viewer::Opened first;
+  first.maps.push_back({"curvature", "mm^-1", maps::meanCurvature(start.mesh), ""});
+  first.what =
+      "1: press C over the middle of a fold. 2: turn the surface, V takes the view as viewpoint. "
+      "3: Space unfolds. F1 shows every key.";
+  opened.push_back(std::move(first));
   const Vector direction = s.direction.value_or(start.direction.value_or(Vector(-1, 0, 0)));
   steer(context, start, s.reading, direction, std::move(opened), s.window, show);
 }
@@ -252,7 +260,8 @@ Termination run(Context& context, const Settings& s, const ShowWindow& show) {
     if (s.direction || !s.views.empty()) {
       for (const report::FigureView& view : viewsOf(s, {})) views.push_back(filmView(view));
     }
-    writeFilm(*s.film, drawFilm(folder, paint, views, s.columns, s.picture), s.framesPerSecond);
+    writeFilm(*s.film, drawFilm(folder, paint, views, s.columns, s.focus, s.picture),
+              s.framesPerSecond);
     context.info("wrote " + *s.film);
   }
   if (s.screenshot) {

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+
 namespace explica::testing {
 namespace {
 
@@ -50,6 +52,37 @@ TEST_F(Bids, GoodParticipantsAreExportedAndFailedOnesAreRows) {
   EXPECT_NE(table.find("sub-01\tL\tdone\t"), std::string::npos);
   EXPECT_NE(table.find("sub-02\tL\tfailed: "), std::string::npos);
   EXPECT_NE(readText(folder_ / "out/index.html").find("1 of 2 hemispheres"), std::string::npos);
+}
+
+TEST_F(Bids, IsADerivativeThatMovesAndThatReadersFindTheirWayIn) {
+  ASSERT_EQ(participants().exitCode, 3);
+  const auto description = readJson(folder_ / "out/dataset_description.json");
+  EXPECT_EQ(description["SourceDatasets"][0]["URL"], "bids:raw:.");
+  EXPECT_EQ(description["DatasetLinks"]["raw"], "../data");
+  const std::string page = readText(folder_ / "out/sub-01.html");
+  EXPECT_NE(page.find("runs/sub-01_hemi-L/report.html"), std::string::npos);
+  EXPECT_EQ(page.find("sub-02"), std::string::npos);
+  EXPECT_TRUE(fs::exists(folder_ / "out/sub-02.html"));
+  EXPECT_NE(readText(folder_ / "out/README.md").find("sub-XX.html"), std::string::npos);
+  const std::string ignored = readText(folder_ / "out/.bidsignore");
+  EXPECT_NE(ignored.find("*_white.*\n"), std::string::npos) << ignored;
+  for (const char* known : {"hemi", "dseg", "probseg", "brain_mask"}) {
+    EXPECT_EQ(ignored.find(known), std::string::npos) << ignored;
+  }
+}
+
+TEST_F(Bids, TheValidatorFindsNoError) {
+  const char* validator = std::getenv("EXPLICA_BIDS_VALIDATOR");
+  if (!validator) GTEST_SKIP() << "skipped: EXPLICA_BIDS_VALIDATOR names no folder of the package";
+  ASSERT_EQ(participants().exitCode, 3);
+  ASSERT_EQ(explica({"bids", folder_ / "data", folder_ / "out", "group"}).exitCode, 0);
+  const std::string script = EXPLICA_SOURCE_DIR "/Testing/commands/bids_validator.mjs";
+  const CommandResult judged = runProgram({"node", script, validator, folder_ / "out"});
+  EXPECT_EQ(judged.exitCode, 0) << judged;
+  EXPECT_NE(judged.out.find("0 errors"), std::string::npos) << judged;
+  // It can fail.
+  writeText(folder_ / "out/sub-01/anat/sub-01_hemi-L_nonsense.nii.gz", "");
+  EXPECT_EQ(runProgram({"node", script, validator, folder_ / "out"}).exitCode, 1);
 }
 
 TEST_F(Bids, UnchangedStepsAreKeptByContent) {

@@ -323,6 +323,89 @@ TEST_F(RealStack, VoxelsComeBackWithinATenthOfAVoxel) {
   EXPECT_LT(errors[errors.size() * 99 / 100], 0.3);
 }
 
+/// A functional image of pycortex's example subject on a patch of its cortex.
+class FunctionalImage : public FlattenCommand {
+ protected:
+  void SetUp() override {
+    FlattenCommand::SetUp();
+    if (IsSkipped()) return;
+    const TriangleMesh mesh = io::readSurface(individual()).mesh;
+    Eigen::Index back = 0;
+    (void)mesh.positions.col(1).minCoeff(&back);
+    const Vector behind = mesh.positions.row(back);
+    const auto near =
+        ((mesh.positions.rowwise() - behind.transpose()).rowwise().norm().array() < 9);
+    io::LabelMap ball{"ball", near.cast<Label>(), {{0, "rest", {}}, {1, "ball", {1, 0, 0, 1}}}};
+    io::writeGiftiLabel(folder_ / "ball.label.gii", ball, "CortexLeft");
+  }
+
+  [[nodiscard]] CommandResult flatten(const std::vector<std::string>& more) const {
+    std::vector<std::string> words = {"flatten",  individual().string(),
+                                      "--label",  folder_ / "ball.label.gii",
+                                      "--grid",   "1",
+                                      "--depths", "3",
+                                      "--out",    folder_ / "flat"};
+    words.insert(words.end(), more.begin(), more.end());
+    return explica(words);
+  }
+
+  static std::string given(const std::string& name) {
+    return (data() / "s1_pycortex_lh" / name).string();
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(FunctionalImage, ComesOntoTheFlatMapThroughItsTransform) {
+  const auto made =
+      flatten({"--surfaces", given(""), "--volumes", given("transforms/fullhead_reference.nii.gz"),
+               "--to-volume", given("transforms/fullhead_matrices.xfm")});
+  ASSERT_EQ(made.exitCode, 0) << made;
+  io::VolumeReadOptions withNaN;
+  withNaN.allowNonFinite = true;
+  const auto places = io::readVectors(folder_ / "flat/grid.nii.gz", withNaN).volume;
+  const auto values =
+      io::readScalars(folder_ / "flat/flat_fullhead_reference.nii.gz", withNaN).volume;
+  const auto image = io::readScalars(given("transforms/fullhead_reference.nii.gz")).volume;
+  const auto rows = readJson(given("transforms/fullhead_matrices.xfm"))["coord"];
+  std::size_t known = 0;
+  for (std::size_t n = 0; n < places.size(); ++n) {
+    if (!places[n].allFinite()) continue;
+    Eigen::Array3d at;
+    for (int r = 0; r < 3; ++r) {
+      at[r] = double(rows[r][3]);
+      for (int c = 0; c < 3; ++c) at[r] += double(rows[r][c]) * places[n][c];
+    }
+    const Eigen::Array3d low = at.floor(), share = at - low;
+    double expected = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+      const Eigen::Array3d up(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
+      const Eigen::Array3d p = low + up, weight = up * share + (1 - up) * (1 - share);
+      expected += weight.prod() * image(int(p[0]), int(p[1]), int(p[2]));
+    }
+    EXPECT_NEAR(values[n], expected, 0.01 * (1 + expected));
+    ++known;
+  }
+  EXPECT_GT(known, 300U);
+}
+
+TEST_F(FunctionalImage, IsRefusedBeforeTheMapIsMadeWhereThePatchLiesOutsideIt) {
+  const std::string slab = given("transforms/retinotopy_reference.nii.gz");
+  const auto elsewhere =
+      flatten({"--surfaces", given(""), "--volumes", slab, "--to-volume",
+               given("transforms/fullhead_matrices.xfm"), "--to-volume-sense", "inverse"});
+  EXPECT_EQ(elsewhere.exitCode, 2) << elsewhere;
+  writeText(folder_ / "far.txt", "1 0 0 500\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+  const auto far =
+      flatten({"--surfaces", given(""), "--volumes", slab, "--to-volume", folder_ / "far.txt"});
+  EXPECT_EQ(far.exitCode, 2) << far;
+  EXPECT_NE(far.err.find("no vertex of the patch lies in it"), std::string::npos) << far;
+  const auto nameless = flatten({"--surfaces", given("transforms")});
+  EXPECT_EQ(nameless.exitCode, 2) << nameless;
+  EXPECT_NE(nameless.err.find("wm_lh.gii"), std::string::npos) << nameless;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "flat"));
+}
+
 TEST_F(FlattenCommand, ClosedSurfacesAndStrangersAreRefusedWithARemedy) {
   TemporaryFolder folder;
   const std::string mid = middle(folder, "left");

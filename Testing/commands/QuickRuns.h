@@ -45,6 +45,13 @@ inline void writeSphereWithFolds(const TemporaryFolder& folder) {
   io::writeFreeSurferCurv(folder / "lh.curv", ((9 * z + x).cos() + y).matrix(), 1280);
 }
 
+/// A person as FreeSurfer has one: a folded surface with its sphere and folding maps.
+inline void writePerson(const TemporaryFolder& folder) {
+  writeSphereWithFolds(folder);
+  io::writeSurface(folder / "white.surf.gii", geometry::makeFoldedSphere(3, 30.0));
+  io::writeSurface(folder / "pial.surf.gii", geometry::makeFoldedSphere(3, 33.0));
+}
+
 /// The upper part of it, with a rim.
 inline void writeFoldedCap(const TemporaryFolder& folder) {
   const TriangleMesh sphere = geometry::makeFoldedSphere(3, 30.0);
@@ -160,7 +167,7 @@ inline const std::vector<QuickRun>& quickRuns() {
        {"polygon", "{folder}/p19/polygon.csv", "--region", "0:19", "--viewpoint", "50.5,4000"}},
       {"Parcellate",
        {},
-       {"parcellate", "{folder}", "--atlas", "{folder}/lh.regions.label.gii"},
+       {"parcellate", "{folder}", "--atlas", "{folder}/lh.regions.label.gii", "--volume"},
        writeMapAndRegions},
       {"Regions",
        {},
@@ -231,6 +238,10 @@ inline const std::vector<QuickRun>& quickRuns() {
        {"register", "{folder}/lh.sphere", "--to", "{folder}/lh.sphere", "--level", "3"},
        writeSphereWithFolds},
       {"Sphere", {}, {"sphere", "{folder}/sphere.surf.gii"}, writeFoldedSphere},
+      {"Template",
+       {},
+       {"template", "{folder}", "{folder}", "--density", "fsaverage3", "--level", "3"},
+       writePerson},
       {"Run",
        {kShell},
        {"run", "{folder}/shell/labels.nii.gz", "--kind", "labels", "--steps", "thickness,report",

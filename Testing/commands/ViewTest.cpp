@@ -181,5 +181,75 @@ TEST(View, SaysWhichMapIsMissing) {
   EXPECT_NE(view.err.find("height"), std::string::npos) << view;
 }
 
+/// Both hemispheres with a map each, and the left one as a flat map with a region.
+class Figure : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    TriangleMesh mesh = geometry::makeFoldedSphere(3, 40);
+    for (const std::string side : {"L", "R"}) {
+      const std::string structure = side == "L" ? "CortexLeft" : "CortexRight";
+      io::SurfaceMetadata metadata;
+      metadata.structure = structure;
+      io::writeGiftiSurface(folder_ / (side + ".surf.gii"), mesh, metadata);
+      io::writeGiftiShape(folder_ / (side + ".shape.gii"),
+                          {{"height", "mm", mesh.positions.col(2)}}, structure);
+    }
+    io::LabelMap areas{"areas", (mesh.positions.col(0).array() > 0).cast<Label>(), {}};
+    areas.table = {{0, "???", {0, 0, 0, 0}}, {1, "V1", {1, 0, 0, 1}}};
+    io::writeGiftiLabel(folder_ / "L.label.gii", areas, "CortexLeft");
+    std::vector<std::int32_t> upper;
+    for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
+      if (mesh.corner(f, 0).z() > 20) upper.push_back(static_cast<std::int32_t>(f));
+    }
+    mesh.faces = mesh.faces(upper, Eigen::all).eval();
+    mesh.positions.col(2).setZero();
+    io::SurfaceMetadata flat;
+    flat.structure = "CortexLeft";
+    io::writeGiftiSurface(folder_ / "flat.surf.gii", mesh, flat);
+  }
+
+  CommandResult draw(std::vector<std::string> files, const std::string& out,
+                     const std::vector<std::string>& more = {}) {
+    for (std::string& file : files) file = folder_ / file;
+    files.insert(files.begin(), "figure");
+    files.insert(files.end(), {"--size", "400", "--out", folder_ / out});
+    files.insert(files.end(), more.begin(), more.end());
+    return explica(files, kNoDisplay);
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Figure, HasBothHemispheresFlatMapsAndOneColourBarInLayers) {
+  const auto made = draw(
+      {"R.surf.gii", "L.surf.gii", "L.shape.gii", "R.shape.gii", "flat.surf.gii", "L.label.gii"},
+      "a");
+  ASSERT_EQ(made.exitCode, 0) << made;
+  const std::string svg = readText(folder_ / "a/figure.svg");
+  for (const char* text : {"id='surfaces'", "id='titles'", "id='colour-bar'", ">left, lateral<",
+                           ">right, medial<", ">height (mm)<"}) {
+    EXPECT_NE(svg.find(text), std::string::npos) << text;
+  }
+  EXPECT_LT(svg.find(">left, lateral<"), svg.find(">right, lateral<"));
+  const auto again = draw(
+      {"L.surf.gii", "L.shape.gii", "R.surf.gii", "R.shape.gii", "flat.surf.gii", "L.label.gii"},
+      "b", {"--threads", "1"});
+  ASSERT_EQ(again.exitCode, 0) << again;
+  EXPECT_EQ(readText(folder_ / "a/figure.png"), readText(folder_ / "b/figure.png"));
+  const auto without =
+      draw({"L.surf.gii", "L.shape.gii", "R.surf.gii", "R.shape.gii", "flat.surf.gii"}, "c");
+  EXPECT_NE(readText(folder_ / "a/figure.png"), readText(folder_ / "c/figure.png"));
+}
+
+TEST_F(Figure, RefusesMapsOfTheOtherSideAndWhatIsNoSurface) {
+  const auto swapped = draw({"L.surf.gii", "R.shape.gii"}, "a");
+  EXPECT_EQ(swapped.exitCode, 2) << swapped;
+  EXPECT_NE(swapped.err.find("right hemisphere"), std::string::npos) << swapped;
+  const auto none = draw({"L.shape.gii"}, "a");
+  EXPECT_EQ(none.exitCode, 2) << none;
+  EXPECT_NE(none.err.find("is no surface"), std::string::npos) << none;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "a"));
+}
+
 }  // namespace
 }  // namespace explica::testing

@@ -76,8 +76,8 @@ for path in sorted(out.glob("sub-*/**/anat/*")):
         continue
     sidecar = load(path.parent / (path.name.split(".")[0] + ".json"))
     sidecars += 1
-    check(re.fullmatch(r"sub-[A-Za-z0-9]+(_ses-[A-Za-z0-9]+)?_hemi-[LR](_label-[A-Za-z0-9]+)?"
-                       r"(_desc-[A-Za-z0-9]+)?_[A-Za-z]+(\.[a-z]+)+", path.name),
+    check(re.fullmatch(r"sub-[A-Za-z0-9]+(_ses-[A-Za-z0-9]+)?(_hemi-[LR])?(_(space|den|label|desc|from|to|mode)"
+                       r"-[A-Za-z0-9]+)*_[A-Za-z]+(\.[a-z0-9]+)+", path.name),
           f"{path.name}: is no BIDS name")
     desc = re.search(r"_desc-([A-Za-z0-9]+)", path.name)
     check(not desc or desc[1] in described, f"{path.name}: desc is not in descriptions.tsv")
@@ -87,7 +87,7 @@ for path in sorted(out.glob("sub-*/**/anat/*")):
     space = sidecar["SpatialReference"]
     check(space == "orig" or resolves(space), f"{path.name}: SpatialReference {space}")
     for key in ("EulerNumber", "NumberOfDefects"):
-        check(key in sidecar, f"{path.name}: {key}")
+        check(key in sidecar or "_hemi-" not in path.name, f"{path.name}: {key}")
     if path.name.endswith((".surf.gii", "_thickness.shape.gii", "_thickness.nii.gz")):
         check(sidecar["Units"] == "mm", f"{path.name}: Units")
     check(sidecar["Digest"]["sha256"] == sha256(path), f"{path.name}: digest")

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-FileCopyrightText: The Explica developers
 # SPDX-License-Identifier: Apache-2.0
-"""The T1 route on simulated heads of many people, beside the truth; called by population.sh.
+"""The T1 route on many people beside the truth: simulated heads, and brains whose cortex was labelled by hand; called by population.sh.
 
 A head is made of a label map by ../shared/referee/simulate_head.py, then resampled to the variant's voxels (trilinear after a blur
 of half the gain in spacing).  The odd half of the people is the one constants are settled on, the even half is held out.
@@ -15,10 +15,12 @@ import time
 
 import nibabel as nib
 import numpy as np
+from scipy.spatial import cKDTree
+from scipy.stats import spearmanr
 from scipy.ndimage import affine_transform, distance_transform_edt, gaussian_filter
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "validation"))
-from labelled_cortex import areas_of, surface_of, voxels_inside  # noqa: E402
+from labelled_cortex import areas_of, beside_labels, surface_of, voxels_inside  # noqa: E402
 from measures import signed_offset  # noqa: E402
 
 SHARED = pathlib.Path(__file__).resolve().parents[3] / "shared"
@@ -28,7 +30,7 @@ VARIANTS = {1: (3, 0.2, 1.0, (1, 1, 1)), 2: (6, 0.4, 0.85, (1, 1, 1)), 3: (2, 0.
 COLUMNS = ["person", "half", "variant", "exit", "flags", "seconds", "mask_dice", "cortex_outside_mask", "missing_ml", "extra_ml",
            "grey_dice", "white_dice", "agreement", "open_share"]
 OF_A_SIDE = ["thickness", "truth", "region_r", "region_slope", "region_largest", "white_border", "pial_border", "cortex_between",
-             "cortex_beyond_pial", "middle_inside", "defects"]
+             "cortex_beyond_pial", "middle_inside", "defects", "doubtful", "doubt_rank"]
 COLUMNS += [f"{name}_{side}" for name in OF_A_SIDE for side in ("left", "right")]
 # The larger, the better.
 RISING = {"mask_dice", "grey_dice", "white_dice", "agreement", "region_r", "cortex_between", "middle_inside"}
@@ -105,6 +107,20 @@ def regions_of(surfaces, atlas, side):
     return {key: (sums[key] / areas[key], areas[key]) for key in cortical if areas[key] > 200}
 
 
+def doubt_rank(made, truth):
+    """Spearman's correlation of the error of thickness with doubt, both in the mean of 15 mm around 400 places of the cortex."""
+    doubt = np.sqrt(sum(d.data.astype(float) ** 2 for d in nib.load(made / "doubt.shape.gii").darrays))
+    middle, _ = surface_of(made, "mid")
+    theirs, _ = surface_of(truth, "mid")
+    ours, known = (nib.load(f / "thickness.shape.gii").darrays[0].data.astype(float) for f in (made, truth))
+    apart, nearest = cKDTree(theirs).query(middle)
+    error = np.hypot(ours - known[nearest], apart)
+    good = (ours > 0) & (known[nearest] > 0)
+    middle, doubt, error = middle[good], doubt[good], error[good]
+    near = cKDTree(middle).query_ball_point(middle[:: max(1, len(middle) // 400)], 15)
+    return spearmanr([doubt[n].mean() for n in near], [error[n].mean() for n in near])[0]
+
+
 def of_side(labels, made, truth, atlas, side):
     """Borders, thickness by region and lost cortex of one hemisphere beside the surfaces of its labels."""
     ours, known = regions_of(made, atlas, side), regions_of(truth, atlas, side)
@@ -118,14 +134,20 @@ def of_side(labels, made, truth, atlas, side):
     return {"region_r": np.corrcoef(a, b)[0, 1], "region_slope": np.polyfit(b, a, 1)[0],
             "region_largest": np.abs(a - b).max(), "white_border": signed_offset(made, truth, "white"),
             "pial_border": signed_offset(made, truth, "pial"), "cortex_between": (pial & ~white)[cortex].mean(),
-            "cortex_beyond_pial": (~pial)[cortex].mean(), "middle_inside": area[cortex[tuple(at.T)]].sum() / area.sum()}
+            "cortex_beyond_pial": (~pial)[cortex].mean(), "middle_inside": area[cortex[tuple(at.T)]].sum() / area.sum(),
+            "doubt_rank": doubt_rank(made, truth)}
+
+
+def take(found, name, row):
+    for key, column in (("thickness_mean", "thickness"), ("defects_corrected", "defects"), ("doubtful_share", "doubtful")):
+        row[f"{column}_{name}"] = found.get(key)
 
 
 def surfaces(program, labels, folder, row):
     for side, name in (("L", "left"), ("R", "right")):
         made = folder / f"run/surface-{side}"
         found = summary(made)
-        row[f"thickness_{name}"], row[f"defects_{name}"] = found.get("thickness_mean"), found.get("defects_corrected")
+        take(found, name, row)
         truth = folder.parent / f"truth-{side}"
         if not (truth / "summary.json").exists():
             subprocess.run([program, "surface", labels, "--preset", "aseg", "--hemisphere", side, "--out", truth, "--force"],
@@ -137,6 +159,15 @@ def surfaces(program, labels, folder, row):
         row.update({f"{key}_{name}": float(value) for key, value in beside.items()})
 
 
+def run_on(program, image, out, row, words=("run", "--steps", "segment,surface")):
+    start = time.monotonic()
+    done = subprocess.run([program, *words, image, "--out", out, "--force", "--quiet"], capture_output=True, text=True)
+    row["seconds"], row["exit"] = time.monotonic() - start, done.returncode
+    found = summary(out / "segment" if words[0] == "run" else out)
+    row["flags"] = ",".join(flag["name"] for flag in found.get("flags", [])) or "none"
+    row["agreement"], row["open_share"] = found.get("registration_correlation"), found.get("brain_border_open_share")
+
+
 def row_of(program, path, variant, work, with_surfaces):
     person = int(path.name.split("_")[-1][:2])
     folder = work / f"{person:02d}" / f"variant-{variant}"
@@ -146,21 +177,37 @@ def row_of(program, path, variant, work, with_surfaces):
     folder.mkdir(parents=True, exist_ok=True)
     labels = simulate(path, person, variant, folder)
     row = {"person": person, "half": "settled" if person % 2 else "held out", "variant": variant}
-    words = ["run", folder / "T1.nii.gz", "--steps", "segment,surface", "--out", folder / "run"] if with_surfaces else [
-        "segment", folder / "T1.nii.gz", "--out", folder / "segment"]
-    start = time.monotonic()
-    done = subprocess.run([program, *words, "--force", "--quiet"], capture_output=True, text=True)
-    row["seconds"], row["exit"] = time.monotonic() - start, done.returncode
+    if with_surfaces:
+        run_on(program, folder / "T1.nii.gz", folder / "run", row)
+    else:
+        run_on(program, folder / "T1.nii.gz", folder / "segment", row, ("segment",))
     segment = folder / ("run/segment" if with_surfaces else "segment")
-    found = summary(segment)
-    row["flags"] = ",".join(flag["name"] for flag in found.get("flags", [])) or "none"
-    row["agreement"], row["open_share"] = found.get("registration_correlation"), found.get("brain_border_open_share")
     if (segment / "seg.nii.gz").exists():
         compare(labels, segment, row)
     if with_surfaces:
         surfaces(program, path, folder, row)
     (folder / "T1.nii.gz").unlink()
     kept.write_text(json.dumps(row, default=float))
+    return row
+
+
+def labelled_row(program, person, work):
+    """The T1 of a person of oasis_trt, stripped along the folds, beside cortex labelled by hand."""
+    data, folder = SHARED / f"data/oasis_trt/{person}", work / f"trt-{person}"
+    if (folder / "row.json").exists():
+        return json.loads((folder / "row.json").read_text())
+    folder.mkdir(parents=True, exist_ok=True)
+    row = {"person": f"trt-{person}", "half": "settled" if person % 2 else "held out", "variant": "T1"}
+    run_on(program, data / "t1weighted_brain.nii.gz", folder / "run", row)
+    for side, name in (("L", "left"), ("R", "right")):
+        made = folder / f"run/surface-{side}"
+        take(summary(made), name, row)
+        if not (made / "pial.surf.gii").exists():
+            continue
+        found = beside_labels(data / "labels.DKT31.manual.nii.gz", side, made)
+        row.update({f"cortex_between_{name}": found["between"], f"cortex_beyond_pial_{name}": found["beyond_pial"],
+                    f"middle_inside_{name}": found["middle"], f"truth_{name}": row[f"thickness_{name}"] - found["thickness"]})
+    (folder / "row.json").write_text(json.dumps(row, default=float))
     return row
 
 
@@ -177,15 +224,15 @@ def worst_of(column, rows):
 
 def write_table(rows, path):
     lines = ["\t".join(COLUMNS)] + ["\t".join(text_of(row.get(c)) for c in COLUMNS) for row in rows]
-    for half in ("settled", "held out"):
-        of_half = [row for row in rows if row["half"] == half and row.get("mask_dice") is not None]
+    for half, labelled in ((h, k) for k in (False, True) for h in ("settled", "held out")):
+        of_half = [row for row in rows if row["half"] == half and (row["variant"] == "T1") == labelled]
         for name, pick in (("median", np.median), ("worst", None)):
             if not of_half:
                 continue
             values = [text_of(float(pick([row[c] for row in of_half]) if pick else worst_of(c, of_half)))
                       if all(isinstance(row.get(c), (int, float)) for row in of_half) and c not in ("person", "variant") else ""
                       for c in COLUMNS[2:]]
-            lines.append("\t".join([name, half, *values]))
+            lines.append("\t".join([f"{name} of {'labelled by hand' if labelled else 'simulated'}", half, *values]))
     path.write_text("\n".join(lines) + "\n")
     print("\n".join(lines))
 
@@ -196,6 +243,7 @@ def main():
     parser.add_argument("work", type=pathlib.Path)
     parser.add_argument("--surfaces", action="store_true")
     parser.add_argument("--people", default="")
+    parser.add_argument("--labelled", default="", help="people of oasis_trt, such as 1,2")
     parser.add_argument("--variants", default="1,2,3,4,5")
     asked = parser.parse_args()
     people = [f"{int(p):02d}" for p in asked.people.split(",") if p]
@@ -203,7 +251,8 @@ def main():
     if not maps:
         sys.exit("population: no label maps in ../shared/data/synthseg_people")
     rows = [row_of(asked.program.resolve(), path, int(variant), asked.work, asked.surfaces)
-            for variant in asked.variants.split(",") for path in maps]
+            for variant in asked.variants.split(",") if variant for path in maps]
+    rows += [labelled_row(asked.program.resolve(), int(person), asked.work) for person in asked.labelled.split(",") if person]
     write_table(rows, asked.work / "population.tsv")
 
 

@@ -49,6 +49,13 @@ explica compare surfaces/white.surf.gii surfaces/pial.surf.gii --out compared)"}
         "max-iterations", "frames"},
        R"(explica phantom shell --size 32 --out shell
 explica embed shell/labels.nii.gz --label-key 1 --order 8 --out fit)"},
+      {"figure",
+       "surfaces of one or both hemispheres, flat maps, per-vertex maps and annotations",
+       "one figure for print, as PNG and as SVG in layers",
+       {"views", "layout", "size", "colours", "range"},
+       R"(explica phantom cortex --size 32 --spacing 2 --out cortex
+explica surface cortex/labels.nii.gz --white-label 3 --grey-label 2 --faces 2000 --out surfaces
+explica figure surfaces/pial.surf.gii surfaces/thickness.shape.gii --size 800 --out figure)"},
       {"flatten",
        "an unfolded patch, a surface with a rim, or a hemisphere with cuts",
        "a flat map that folds nowhere, as surface, table, picture and stack of depths",
@@ -87,7 +94,7 @@ explica inflate surfaces/white.surf.gii --out inflated)"},
       {"parcellate",
        "a folder with a sphere in register with a template, and the template's labels",
        "regions at the surface's vertices, and how sure they are",
-       {"atlas", "template", "hemisphere"},
+       {"atlas", "template", "hemisphere", "volume", "like", "surfaces"},
        R"(explica phantom shell --size 32 --out shell
 explica surface shell/labels.nii.gz --white-label 1 --grey-label 2 --faces 2000 --atlas shell/labels.nii.gz \
   --out surfaces
@@ -278,6 +285,16 @@ explica study participant study.json results)"},
         "inner-level", "outer-level", "atlas", "white-surface", "pial-surface", "freesurfer"},
        R"(explica phantom shell --size 48 --out shell
 explica surface shell/labels.nii.gz --white-label 1 --grey-label 2 --faces 4000 --out surfaces)"},
+      {"template",
+       "two people or more: folders of run, FreeSurfer subjects, or a study's",
+       "their mean folds, surfaces and regions, for --template of register and parcellate",
+       {"density", "iterations"},
+       R"(explica phantom cortex --size 32 --spacing 2 --out cortex
+explica phantom cortex --size 36 --spacing 2 --out other
+for one in cortex other; do
+  explica run $one/labels.nii.gz --hemisphere L --steps surface,sphere --surface.faces 2000 --out run-$one
+done
+explica template run-cortex run-other --density fsaverage3 --level 3 --out template || [ $? -eq 3 ])"},
       {"thickness",
        "a label volume, or two volumes that cross a level at the boundaries",
        "thickness in every voxel of the tissue, depth, layers, points that correspond",

@@ -446,7 +446,9 @@ void recordValues(const Declaration& declaration, provenance::Record& record) {
     // The folder for the results, by position, is a path like --out.
     const bool isOut =
         parameter.positional && declaration.fallbackOut && value == *declaration.fallbackOut;
-    if (!parameter.file && !isOut) record.options[parameter.option.name] = value;
+    if (!parameter.file && !isOut && !value.is_null()) {
+      record.options[parameter.option.name] = value;
+    }
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include "Explica/Core/DisjointSets.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
 
 #include <algorithm>
@@ -108,14 +109,43 @@ void requireOriented(const TriangleMesh& mesh) {
   }
 }
 
-void requireDiscWithHoles(const Disc& disc) {
-  const auto topology = geometry::buildTopology(disc.mesh.faces, disc.mesh.vertexCount());
+/// Leaves the piece that has more than half of the area.
+void keepLargest(Disc& disc) {
   const auto parts = geometry::faceComponents(disc.mesh.faces, disc.mesh.vertexCount());
-  const auto pieces = *std::max_element(parts.begin(), parts.end()) + 1;
-  if (pieces > 1) {
-    throw InvalidInput("surface: the part to be laid flat has " + std::to_string(pieces) +
-                       " pieces; give one of them, by --label or --cuts");
+  const auto pieces = static_cast<std::size_t>(*std::max_element(parts.begin(), parts.end())) + 1;
+  if (pieces == 1) return;
+  const Eigen::VectorXd faceAreas = geometry::faceAreas(disc.mesh);
+  std::vector<double> areas(pieces, 0.0);
+  for (std::size_t f = 0; f < parts.size(); ++f) {
+    areas[parts[f]] += faceAreas[static_cast<Eigen::Index>(f)];
   }
+  const auto largest = std::max_element(areas.begin(), areas.end()) - areas.begin();
+  const double all = std::accumulate(areas.begin(), areas.end(), 0.0);
+  if (!(areas[largest] > all / 2)) {
+    throw InvalidInput("surface: the part to be laid flat has " + std::to_string(pieces) +
+                       " pieces, none with more than half of the area; give one of them, by "
+                       "--label or --cuts");
+  }
+  std::vector<std::int32_t> kept;
+  for (std::size_t f = 0; f < parts.size(); ++f) {
+    if (parts[f] == largest) kept.push_back(static_cast<std::int32_t>(f));
+  }
+  geometry::SubMesh part = geometry::extractFaces(disc.mesh, kept);
+  for (std::int32_t& v : part.vertexOrigin) v = disc.vertexOrigin[v];
+  for (std::int32_t& f : part.faceOrigin) f = disc.faceOrigin[f];
+  disc.mesh = std::move(part.mesh);
+  disc.vertexOrigin = std::move(part.vertexOrigin);
+  disc.faceOrigin = std::move(part.faceOrigin);
+  disc.otherPieces = pieces - 1;
+  disc.areaOfOthers = 1 - areas[largest] / all;
+}
+
+void requireDiscWithHoles(const Disc& disc) {
+  const auto parts = geometry::faceComponents(disc.mesh.faces, disc.mesh.vertexCount());
+  if (*std::max_element(parts.begin(), parts.end()) > 0) {
+    throw InvalidInput("surface: the cuts take it apart");
+  }
+  const auto topology = geometry::buildTopology(disc.mesh.faces, disc.mesh.vertexCount());
   const auto euler = disc.mesh.vertexCount() - topology.edges.rows() + disc.mesh.faceCount();
   const auto handles = (2 - static_cast<std::int64_t>(disc.holes.size()) - 1 - euler) / 2;
   if (handles > 0) {
@@ -183,6 +213,7 @@ Disc discOf(const TriangleMesh& mesh, std::span<const std::int32_t> faces) {
   disc.mesh = std::move(part.mesh);
   disc.vertexOrigin = std::move(part.vertexOrigin);
   disc.faceOrigin = std::move(part.faceOrigin);
+  keepLargest(disc);
   findLoops(disc);
   return disc;
 }

@@ -356,6 +356,17 @@ TEST(Disc, WhatHangsOnByOneVertexIsLeftOutAndCounted) {
   EXPECT_EQ(disc.trimmedFaces, 8U);
 }
 
+TEST(Disc, TheLargestPieceIsTakenWhereItHasMoreThanHalfOfTheArea) {
+  const TriangleMesh small = geometry::makeRectangle(2, 2, 2, 2);
+  const TriangleMesh both = geometry::joined(small, geometry::makeRectangle(4, 4, 4, 4));
+  const Disc disc = wholeDisc(both);
+  EXPECT_EQ(disc.mesh.faceCount(), 32);
+  EXPECT_EQ(disc.otherPieces, 1U);
+  EXPECT_NEAR(disc.areaOfOthers, 0.2, 1e-12);
+  for (const std::int32_t f : disc.faceOrigin) EXPECT_GE(f, small.faceCount());
+  for (const std::int32_t v : disc.vertexOrigin) EXPECT_GE(v, small.vertexCount());
+}
+
 TEST(Disc, RefusesWhatNoPlaneCanHold) {
   EXPECT_THROW((void)wholeDisc(geometry::makeIcosphere(2)), InvalidInput);
   EXPECT_THROW((void)discOf(geometry::makeIcosphere(2), {}), InvalidInput);

@@ -91,6 +91,48 @@ std::vector<LabelMap> readRegions(const std::vector<std::filesystem::path>& file
   return all;
 }
 
+void numberAlike(std::vector<LabelMap>& files) {
+  std::map<std::string, Label> keyOf;
+  std::vector<LabelEntry>& table = files.front().table;
+  for (const LabelEntry& entry : table) keyOf.try_emplace(entry.name, entry.key);
+  for (std::size_t f = 1; f < files.size(); ++f) {
+    std::map<Label, Label> changed;
+    for (LabelEntry entry : files[f].table) {
+      const Label next = table.back().key + 1;
+      const auto [at, added] = keyOf.try_emplace(entry.name, next);
+      changed[entry.key] = at->second;
+      if (!added) continue;
+      entry.key = next;
+      table.push_back(entry);
+    }
+    for (Label& key : files[f].keys) {
+      if (const auto at = changed.find(key); at != changed.end()) key = at->second;
+    }
+  }
+}
+
+std::vector<bool> markedByNames(const std::filesystem::path& file,
+                                const std::vector<std::string>& names, Eigen::Index vertexCount) {
+  const LabelMap regions = readRegions({file}, vertexCount).front();
+  std::vector<bool> marked(static_cast<std::size_t>(vertexCount));
+  for (const std::string& name : names) {
+    const auto named = std::find_if(regions.table.begin(), regions.table.end(),
+                                    [&](const LabelEntry& entry) { return entry.name == name; });
+    if (named == regions.table.end()) {
+      std::string known;
+      for (const LabelEntry& entry : regions.table) {
+        known += (known.empty() ? "" : ", ") + entry.name;
+      }
+      throw InvalidInput("'" + file.string() + "': has no region '" + name +
+                         "'; its regions are " + known);
+    }
+    for (Eigen::Index v = 0; v < vertexCount; ++v) {
+      if (regions.keys[v] == named->key) marked[static_cast<std::size_t>(v)] = true;
+    }
+  }
+  return marked;
+}
+
 std::vector<bool> markedByLabels(const std::vector<std::filesystem::path>& files,
                                  const std::vector<int>& keys, Eigen::Index vertexCount) {
   std::vector<bool> marked(static_cast<std::size_t>(vertexCount));

@@ -77,13 +77,4 @@ void writeVertexMaps(const std::filesystem::path& path, const std::vector<Vertex
   writer.finish();
 }
 
-void requireSameHemisphere(const std::filesystem::path& path, const std::string& structure) {
-  const std::string said = statedStructure(path);
-  const bool known = structure == "CortexLeft" || structure == "CortexRight";
-  if (said.empty() || !known || said == structure) return;
-  throw InvalidInput(
-      "'" + path.string() + "': is of the " + (said == "CortexLeft" ? "left" : "right") +
-      " hemisphere, the surface of the " + (structure == "CortexLeft" ? "left" : "right") + " one");
-}
-
 }  // namespace explica::io

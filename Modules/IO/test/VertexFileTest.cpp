@@ -33,8 +33,6 @@ TEST(VertexFile, WritesWhatItReads) {
   EXPECT_TRUE(std::isnan(back[1].values[2]));
   EXPECT_EQ(back[0].values[3], 4);
   EXPECT_EQ(vertexFileKind(folder / "vf.func.gii"), VertexFileKind::Maps);
-  EXPECT_NO_THROW(requireSameHemisphere(folder / "vf.func.gii", "CortexLeft"));
-  EXPECT_THROW(requireSameHemisphere(folder / "vf.func.gii", "CortexRight"), InvalidInput);
   writeVertexMaps(folder / "lh.vf", {map}, "", 2);
   EXPECT_EQ(readVertexMaps(folder / "lh.vf", 4).front().values[0], 1);
   EXPECT_THROW(writeVertexMaps(folder / "lh.vf", {map, map}, "", 2), InvalidInput);

@@ -79,4 +79,18 @@ Eigen::VectorXd sulcalDepth(const TriangleMesh& mesh) {
   return travelled.array() - areas.dot(travelled) / areas.sum();
 }
 
+TriangleMesh inflated(const TriangleMesh& mesh) {
+  constexpr double kShown = 3;  // times the depth's inflation: sulci are open to the eye
+  const double area = geometry::totalArea(mesh);
+  const HeatFlow flow(mesh, kShown * kInflationTime / kInflationSteps * area);
+  TriangleMesh result = mesh;
+  const Eigen::RowVector3d centre = mesh.positions.colwise().mean();
+  Eigen::MatrixXd positions = mesh.positions.rowwise() - centre;
+  for (int step = 0; step < kInflationSteps; ++step) flow.advance(positions);
+  result.positions = positions;
+  result.positions *= std::sqrt(area / geometry::totalArea(result));
+  result.positions.rowwise() += centre;
+  return result;
+}
+
 }  // namespace explica::maps

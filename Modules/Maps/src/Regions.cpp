@@ -54,7 +54,8 @@ std::vector<RegionMoments> regionMoments(std::span<const Label> keys, const Eige
                                          const Eigen::VectorXd& areas,
                                          std::span<const Label> regions) {
   std::vector<RegionMoments> moments(regions.size());
-  std::vector<double> area(regions.size()), weighted(regions.size()), squares(regions.size());
+  std::vector<double> area(regions.size()), weighted(regions.size()), squares(regions.size()),
+      weightedSquares(regions.size());
   const auto places = placesOf(keys, regions);
   const auto forKnown = [&](const auto& visit) {
     for (std::size_t v = 0; v < places.size(); ++v) {
@@ -73,12 +74,15 @@ std::vector<RegionMoments> regionMoments(std::span<const Label> keys, const Eige
       moments[r].mean = moments[r].sum / static_cast<double>(moments[r].count);
     if (area[r] > 0) moments[r].meanOverArea = weighted[r] / area[r];
   }
-  forKnown([&](std::size_t r, double value, double) {
-    squares[r] += (value - moments[r].mean) * (value - moments[r].mean);
+  forKnown([&](std::size_t r, double value, double vertexArea) {
+    const double from = value - moments[r].mean, fromWeighted = value - moments[r].meanOverArea;
+    squares[r] += from * from;
+    weightedSquares[r] += vertexArea * fromWeighted * fromWeighted;
   });
   for (std::size_t r = 0; r < regions.size(); ++r) {
     if (moments[r].count == 0) continue;
     moments[r].deviation = std::sqrt(squares[r] / static_cast<double>(moments[r].count));
+    moments[r].deviationOverArea = std::sqrt(weightedSquares[r] / area[r]);
   }
   return moments;
 }

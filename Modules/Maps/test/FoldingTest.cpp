@@ -97,6 +97,14 @@ TEST(Folding, ScalesWithTheSurface) {
   EXPECT_LT((2 * meanCurvature(twice) - meanCurvature(folded)).cwiseAbs().maxCoeff(), 1e-9);
 }
 
+TEST(Folding, InflatedSurfacesKeepTheirAreaAndLoseTheirFolds) {
+  const TriangleMesh folded = geometry::makeFoldedSphere(4, 50.0);
+  const TriangleMesh open = inflated(folded);
+  EXPECT_NEAR(geometry::totalArea(open), geometry::totalArea(folded), 1e-6 * 31416);
+  EXPECT_LT(meanCurvature(open, 0).cwiseAbs().mean(),
+            0.8 * meanCurvature(folded, 0).cwiseAbs().mean());
+}
+
 TEST(Folding, AgreesWithFreeSurfersDepth) {
   const auto folder = std::filesystem::path(EXPLICA_REAL_DATA) / "fsaverage5/fs_binary";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "skipped: no real data";

@@ -55,6 +55,7 @@ TEST(Regions, MomentsAreThoseOfTheRegionsVertices) {
   EXPECT_EQ(found[1].mean, 3);
   EXPECT_NEAR(found[1].deviation, std::sqrt(14.0 / 3), 1e-15);
   EXPECT_EQ(found[1].meanOverArea, 15.0 / 4);
+  EXPECT_NEAR(found[1].deviationOverArea, std::sqrt(20.75 / 4), 1e-15);
   EXPECT_EQ(found[2].count, 0);
   EXPECT_TRUE(std::isnan(found[2].mean));
 }

@@ -386,10 +386,15 @@ class Planner {
            {"space", options_.cortexTemplate}});
     }
     if (onTemplate(RunStep::Parcellate, given)) {
-      add("parcellate", "parcellate", {"register"},
-          {{"SURFACES", folder("register").string()},
-           {"template", options_.cortexTemplate},
-           {"hemisphere", side}});
+      Json json = {{"SURFACES", folder("register").string()},
+                   {"template", options_.cortexTemplate},
+                   {"hemisphere", side}};
+      if (const auto image = files_.t1 ? files_.t1 : files_.labels) {
+        json["volume"] = true;
+        json["like"] = image->string();
+        json["surfaces"] = surface.string();
+      }
+      add("parcellate", "parcellate", {"surface", "register"}, json);
       add("regions", "regions", {"surface", "parcellate"},
           {{"SURFACES", surface.string()},
            {"atlas", {(folder("parcellate") / "regions.label.gii").string()}},

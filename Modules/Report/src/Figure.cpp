@@ -13,6 +13,23 @@ namespace {
 
 constexpr float kPale = 0.72f;  // share of light grey in what lies off the region
 
+/// Grey gyri and darker sulci beneath colours, or alone where there are none.
+void shadeFolds(const SurfacePaint& paint, std::vector<Colour>& colours) {
+  constexpr float kGyrus = 0.55F, kSulcusAlone = 0.65F, kSulcusBeneath = 0.25F;  // darkening
+  const double typical =
+      std::sqrt(paint.folding.squaredNorm() /
+                static_cast<double>(std::max<Eigen::Index>(paint.folding.size(), 1)));
+  const bool plain = colours.empty();
+  if (plain) colours.resize(static_cast<std::size_t>(paint.folding.size()));
+  for (Eigen::Index v = 0; v < paint.folding.size(); ++v) {
+    const bool alone = plain || (paint.values.size() != 0 && std::isnan(paint.values[v]));
+    if (alone) colours[v] = {kGyrus, kGyrus, kGyrus};
+    const auto sulcus = static_cast<float>(
+        std::clamp(0.5 + 0.5 * paint.folding[v] / std::max(typical, 1e-12), 0.0, 1.0));
+    for (float& c : colours[v]) c *= 1 - (alone ? kSulcusAlone : kSulcusBeneath) * sulcus;
+  }
+}
+
 template <class Values>
 void requireLength(const Values& values, Eigen::Index vertexCount, const char* what) {
   if (values.size() != 0 && values.size() != vertexCount) {
@@ -28,6 +45,7 @@ std::vector<Colour> coloursOf(const SurfacePaint& paint, Eigen::Index vertexCoun
   requireLength(paint.values, vertexCount, "map");
   requireLength(paint.labels, vertexCount, "labels");
   requireLength(paint.region, vertexCount, "region");
+  requireLength(paint.folding, vertexCount, "folding");
   std::vector<Colour> colours;
   if (paint.values.size() != 0) {
     colours = coloursOf(paint.values, paint.scale);
@@ -37,6 +55,7 @@ std::vector<Colour> coloursOf(const SurfacePaint& paint, Eigen::Index vertexCoun
       colours.push_back(own == paint.labelColours.end() ? colourOfLabel(label) : own->second);
     }
   }
+  if (paint.folding.size() != 0) shadeFolds(paint, colours);
   if (paint.region.size() != 0 && !colours.empty()) {
     for (Eigen::Index v = 0; v < vertexCount; ++v) {
       if (paint.region[v] != 0) continue;
@@ -61,9 +80,9 @@ Camera cameraOf(const TriangleMesh& mesh, const FigureView& view, int width, int
   return camera;
 }
 
-Picture surfaceFigure(const TriangleMesh& mesh, const SurfacePaint& paint,
-                      const std::vector<FigureView>& views, int columns,
-                      const SurfacePictureOptions& options) {
+std::vector<Picture> surfaceViews(const TriangleMesh& mesh, const SurfacePaint& paint,
+                                  const std::vector<FigureView>& views,
+                                  const SurfacePictureOptions& options) {
   const SurfaceScene scene(mesh);
   const std::vector<Colour> colours = coloursOf(paint, mesh.vertexCount());
   const bool discrete = paint.values.size() == 0 && paint.labels.size() != 0;
@@ -72,7 +91,16 @@ Picture surfaceFigure(const TriangleMesh& mesh, const SurfacePaint& paint,
     pictures.push_back(scene.render(cameraOf(mesh, view, options.width, options.height), colours,
                                     discrete ? Filling::Discrete : Filling::Smooth, options));
   }
-  Picture tiled = tilePictures(pictures, columns);
+  return pictures;
+}
+
+Picture surfaceFigure(const TriangleMesh& mesh, const SurfacePaint& paint,
+                      const std::vector<FigureView>& views, int columns,
+                      const SurfacePictureOptions& options) {
+  return withColourBar(tilePictures(surfaceViews(mesh, paint, views, options), columns), paint);
+}
+
+Picture withColourBar(Picture tiled, const SurfacePaint& paint) {
   if (paint.values.size() == 0) return tiled;
   constexpr int kGap = 10;  // pixels
   const int barHeight = std::min(std::max(tiled.height * 3 / 5, 120), tiled.height);

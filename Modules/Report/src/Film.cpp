@@ -6,6 +6,7 @@
 #include "Explica/Report/Drawing.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace explica::report {
 namespace {
@@ -13,20 +14,35 @@ namespace {
 constexpr double kLetters = 0.026;  // height of the caption's capitals, of the picture's
 constexpr int kCaptionRows = 3;     // height of the caption's strip, in capitals
 
-/// All positions of the focus in all frames, as a mesh that a camera can be fitted to.
+/// All places of the focus, as a mesh that a camera can be fitted to.
 TriangleMesh placesOf(const std::vector<FilmFrame>& frames,
                       const std::vector<std::int32_t>& focus) {
-  TriangleMesh all;
-  const auto each = static_cast<Eigen::Index>(
-      focus.empty() ? static_cast<std::size_t>(frames.front().mesh.vertexCount()) : focus.size());
-  all.positions.resize(each * static_cast<Eigen::Index>(frames.size()), 3);
-  Eigen::Index row = 0;
+  const Positions& first = frames.front().mesh.positions;
+  std::vector<std::int32_t> shown = focus;
+  if (focus.empty()) {
+    shown.resize(static_cast<std::size_t>(first.rows()));
+    std::iota(shown.begin(), shown.end(), 0);
+  }
+  std::vector<Point> places;
   for (const FilmFrame& frame : frames) {
-    for (Eigen::Index n = 0; n < each; ++n) {
-      all.positions.row(row++) = frame.mesh.positions.row(focus.empty() ? n : focus[n]);
+    for (const std::int32_t v : shown) {
+      const auto place = frame.mesh.positions.row(v);
+      if (&frame == &frames.front() || place != first.row(v)) places.emplace_back(place);
     }
   }
+  TriangleMesh all;
+  all.positions.resize(static_cast<Eigen::Index>(places.size()), 3);
+  for (std::size_t n = 0; n < places.size(); ++n) {
+    all.positions.row(static_cast<Eigen::Index>(n)) = places[n].transpose();
+  }
   return all;
+}
+
+/// How far the film has come, along the picture's lower rim.
+void drawProgress(Picture& picture, std::size_t frame, std::size_t count, double letters) {
+  const double y = picture.height - letters / 5;
+  const double share = static_cast<double>(frame + 1) / static_cast<double>(count);
+  drawSegments(picture, {{{0, y}, {share * picture.width, y}}}, {0.35F, 0.35F, 0.35F}, letters / 4);
 }
 
 }  // namespace
@@ -53,6 +69,7 @@ std::vector<Picture> filmPictures(const std::vector<FilmFrame>& frames, const Fi
         SurfaceScene(frame.mesh)
             .render(camera, look.colours, look.filling, drawn, look.keys, Border::AroundFaces),
         0, 0);
+    drawProgress(whole, pictures.size(), frames.size(), letters);
     drawText(whole, frame.caption, Eigen::Vector2d(0.5 * options.width, options.height - letters),
              letters, {0.02F, 0.02F, 0.02F}, TextAnchor::Middle);
     pictures.push_back(std::move(whole));

@@ -99,6 +99,11 @@ double roundLength(double length) {
 
 Picture flatFigure(const TriangleMesh& mesh, const SurfacePaint& paint, const FlatMarks& marks,
                    int height) {
+  return withColourBar(flatPanel(mesh, paint, marks, height), paint);
+}
+
+Picture flatPanel(const TriangleMesh& mesh, const SurfacePaint& paint, const FlatMarks& marks,
+                  int height) {
   FigureView above;
   above.towards = Vector(0, 0, -1);
   above.up = Vector(0, 1, 0);
@@ -109,7 +114,7 @@ Picture flatFigure(const TriangleMesh& mesh, const SurfacePaint& paint, const Fl
   options.width = static_cast<int>(
       std::clamp(height * size.x() / std::max(size.y(), 1e-9), height / 2.0, 2.0 * height));
   options.occlusion = 0;
-  Picture picture = surfaceFigure(mesh, paint, {above}, 1, options);
+  Picture picture = surfaceViews(mesh, paint, {above}, options).front();
   const Camera camera = cameraOf(mesh, above, options.width, options.height);
   const double scale = options.height / (2 * camera.halfHeight);  // pixels a millimetre
   const auto pixelOf = [&](const Point& p) {

@@ -133,13 +133,32 @@ std::vector<int> firstGifFrame(const std::string& gif, std::size_t pixels) {
 
 TEST(Gif, DecodesToColoursNearThePicture) {
   const Picture p = gradient(300, 200);  // long enough for the code table to fill and be cleared
-  const std::vector<int> indices = firstGifFrame(encodeGif({p, p}, 10), 60000);
+  const std::string gif = encodeGif({p, p}, 10);
+  const std::vector<int> indices = firstGifFrame(gif, 60000);
   ASSERT_EQ(indices.size(), 60000u);
+  constexpr std::size_t kTable = 13;  // where the colours begin
   double sum = 0;
   for (std::size_t i = 0; i < indices.size(); ++i) {
-    sum += std::abs(indices[i] / 42 * 51 - p.rgb[3 * i]);
+    for (std::size_t c = 0; c < 3; ++c) {
+      sum +=
+          std::abs(static_cast<std::uint8_t>(gif[kTable + 3 * indices[i] + c]) - p.rgb[3 * i + c]);
+    }
   }
-  EXPECT_LT(sum / 60000, 30);
+  EXPECT_LT(sum / 180000, 8);
+}
+
+TEST(Gif, KeepsFewColoursAsTheyAreAndWithoutPatterns) {
+  Picture p(40, 30);
+  for (int x = 0; x < 20; ++x) {
+    for (int y = 0; y < 30; ++y) p.pixel(x, y)[1] = 77;
+  }
+  const std::string gif = encodeGif({p}, 10);
+  const std::vector<int> indices = firstGifFrame(gif, 1200);
+  ASSERT_EQ(indices.size(), 1200u);
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    EXPECT_EQ(static_cast<std::uint8_t>(gif[13 + 3 * indices[i] + 1]), p.rgb[3 * i + 1]);
+    EXPECT_EQ(indices[i], indices[i % 40 < 20 ? 0 : 20]);
+  }
 }
 
 TEST(Films, RefuseFramesOfDifferentSize) {

@@ -146,8 +146,16 @@ VoxelSet findStem(const AtlasMap& map, const AtlasLegend& legend, const Volume<L
     if (map.side[v] == sideCode(Side::Left)) leftBorder[plane] = std::max(leftBorder[plane], x);
     if (map.side[v] == sideCode(Side::Right)) rightBorder[plane] = std::min(rightBorder[plane], x);
   }
+  const auto near = [&](bool beside) {
+    return squaredDistanceTo(setWhere(grid, [&](std::size_t v) {
+      if (map.kind[v] == kindCode(StructureKind::Cortex))
+        return (map.medialTemporal[v] != 0) == beside;
+      return beside && map.kind[v] != 0;
+    }));
+  };
+  const Volume<float> toNeighbours = near(true), toOthers = near(false);
   for (std::size_t v = 0; v < atlas.size(); ++v) {
-    if (map.kind[v] != 0) continue;
+    if (map.kind[v] != 0 || toOthers[v] < toNeighbours[v]) continue;
     const auto at = grid.subscripts(v);
     const int plane = at[front.axis];
     if (leftBorder[plane] < 0 || rightBorder[plane] == grid.size[right.axis]) continue;

@@ -5,6 +5,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
+#include "Explica/Flattening/Coarsening.h"
 #include "Explica/Geometry/Fixtures.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/SphereLocator.h"
@@ -87,6 +88,47 @@ TEST(SphereMap, OfRandomFoldedSurfacesIsOneToOneAndTheBalanceIsATradeOff) {
     const auto ofArea = sphereDistortion(mesh, area.positions);
     EXPECT_LT(ofArea.arealMean, ofShape.arealMean) << "seed " << seed;
     EXPECT_LT(ofShape.stretchMedian, ofArea.stretchMedian) << "seed " << seed;
+  }
+}
+
+/// Every second or third vertex is left, with the faces that coarsening gives it.
+TriangleMesh decimated(const TriangleMesh& mesh) {
+  const auto levels = flattening::coarsen(flattening::intrinsicOf(mesh), {}, 4, true);
+  const Faces& faces = levels[1].mesh.faces;
+  std::vector<std::int32_t> number(static_cast<std::size_t>(mesh.vertexCount()), -1), kept;
+  TriangleMesh result;
+  result.faces.resize(faces.rows(), 3);
+  for (Eigen::Index f = 0; f < faces.rows(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      std::int32_t& at = number[static_cast<std::size_t>(faces(f, k))];
+      if (at < 0) {
+        at = static_cast<std::int32_t>(kept.size());
+        kept.push_back(faces(f, k));
+      }
+      result.faces(f, k) = at;
+    }
+  }
+  result.positions = mesh.positions(kept, Eigen::all);
+  return result;
+}
+
+TEST(SphereMap, OfFortyDeformedAndDecimatedSurfacesIsOneToOne) {
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> unit(0, 1);
+    TriangleMesh mesh =
+        geometry::makeFoldedSphere(4, 30, 0.1 + 0.4 * unit(random), 3 + static_cast<int>(seed % 6));
+    // Stretched, bent about the second axis, with vertices out of place.
+    const double length = 1 + 3 * unit(random), bend = 0.03 * unit(random), noise = unit(random);
+    for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
+      const double x = length * mesh.positions(v, 0), z = mesh.positions(v, 2) + 60;
+      mesh.positions.row(v) << z * std::sin(bend * x) + (1 - bend * z) * x, mesh.positions(v, 1),
+          z * std::cos(bend * x);
+      for (int a = 0; a < 3; ++a) mesh.positions(v, a) += noise * (unit(random) - 0.5);
+    }
+    if (seed % 2 == 0) mesh = decimated(mesh);
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    expectOneToOne(mesh, mapToSphere(mesh));
   }
 }
 

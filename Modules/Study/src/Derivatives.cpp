@@ -11,6 +11,7 @@
 #include "Explica/Study/SubjectFiles.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <optional>
 #include <set>
@@ -25,14 +26,27 @@ using provenance::Json;
 struct Export {
   std::string step;
   std::string file;
-  std::string suffix;  ///< after "sub-01_hemi-L"
+  std::string suffix;  ///< after "sub-01_hemi-L"; '@' stands for the hemisphere
   std::string units;   ///< empty if none
   std::string description;
   std::string space = {};  ///< of a template; empty: the person's own
+  bool ofPerson = false;   ///< the name has no hemisphere
 };
 
-// Names after BIDS derivatives: surfaces and maps of a hemisphere.
+// Names as sMRIPrep's: volumes of a person, surfaces and maps of a hemisphere.
 const std::vector<Export> kExports = {
+    {"segment", "brain_mask.nii.gz", "_desc-brain_mask.nii.gz", "", "brain", {}, true},
+    {"segment", "seg.nii.gz", "_dseg.nii.gz", "", "1 CSF, 2 grey matter, 3 white matter", {}, true},
+    {"segment", "gm.nii.gz", "_label-GM_probseg.nii.gz", "", "grey matter", {}, true},
+    {"segment", "wm.nii.gz", "_label-WM_probseg.nii.gz", "", "white matter", {}, true},
+    {"segment", "csf.nii.gz", "_label-CSF_probseg.nii.gz", "", "cerebrospinal fluid", {}, true},
+    {"segment",
+     "to_template.h5",
+     "_from-T1w_to-template_mode-image_xfm.h5",
+     "mm",
+     "ITK transform from points of the T1 to the template's",
+     {},
+     true},
     {"surface", "white.surf.gii", "_white.surf.gii", "mm", "white surface"},
     {"surface", "mid.surf.gii", "_midthickness.surf.gii", "mm", "surface at half depth"},
     {"surface", "pial.surf.gii", "_pial.surf.gii", "mm", "outer surface"},
@@ -46,6 +60,8 @@ const std::vector<Export> kExports = {
      "area at each vertex of the white, middle and outer surface"},
     {"surface", "valid.shape.gii", "_desc-valid_mask.shape.gii", "",
      "1 where the thickness is defined"},
+    {"surface", "doubt.shape.gii", "_desc-doubt_measure.shape.gii", "mm",
+     "standard deviation of the white and of the outer border's place"},
     {"surface", "regions.label.gii", "_desc-regions_dseg.label.gii", "", "cortical regions"},
     {"surface", "regions.tsv", "_desc-regions_morph.tsv", "",
      "area and thickness of each cortical region"},
@@ -66,9 +82,47 @@ const std::vector<Export> kExports = {
      "area ratio, angle change in degrees, edge strain"},
     {"thickness", "thickness.nii.gz", "_desc-harmonic_thickness.nii.gz", "mm",
      "length of the trajectory through each voxel"},
-    {"thickness", "layers.nii.gz", "_desc-layers_dseg.nii.gz", "",
-     "layers, counted from the white matter"},
+    {"thickness",
+     "layers.nii.gz",
+     "_desc-layers@_dseg.nii.gz",
+     "",
+     "layers, counted from the white matter",
+     {},
+     true},
 };
+
+/// Whether the BIDS schema has names such as an export's; surfaces and maps are not yet in it.
+bool isInSchema(const Export& item) {
+  constexpr std::array kEndings = {"_dseg.nii.gz", "_dseg.label.gii", "_mask.nii.gz",
+                                   "_probseg.nii.gz"};
+  return std::any_of(kEndings.begin(), kEndings.end(),
+                     [&](const char* ending) { return item.suffix.ends_with(ending); });
+}
+
+/// What a validator passes over: each kind of file that the schema lacks, by name.
+std::string ignoredText() {
+  std::set<std::string> lines;
+  for (const Export& item : kExports) {
+    if (!isInSchema(item)) lines.insert("*" + item.suffix.substr(0, item.suffix.find('.')) + ".*");
+  }
+  std::string text;
+  for (const std::string& line : lines) text += line + "\n";
+  return text +
+         "sub-*.html\ndescriptions.tsv\nruns/\ngroup/\nprov/\nstudy.tsv\nindex.html\n"
+         "summary.json\nprovenance.json\n";
+}
+
+constexpr const char* kReadMe =
+    "# Cortical surfaces, thickness and unfolded patches\n\n"
+    "Made by Explica (`explica bids`). `sub-XX.html` leads to the reports on a person, "
+    "`index.html` "
+    "(after the group level) to those on all. In `sub-XX/anat`: tissues and brain mask of the T1; "
+    "of each hemisphere white, middle and pial surface, thickness, sulcal depth, curvature and "
+    "areas at their vertices, and the same at the vertices of a template; an unfolded patch. Each "
+    "file has a sidecar with its sources, unit and SHA-256. `descriptions.tsv` says what each "
+    "`desc-` means. `runs` holds every run with its records. Surfaces and maps have names as "
+    "sMRIPrep's, which the BIDS schema does not contain yet: `.bidsignore` lists these kinds of "
+    "file.\n";
 
 /// The fixed ones, and maps on the template: "thickness_space-X_den-Y.shape.gii" becomes
 /// "_space-X_den-Y_thickness.shape.gii".
@@ -112,6 +166,21 @@ fs::path anatOf(const Participant& participant) {
   return folder / "anat";
 }
 
+/// Whether both hemispheres' runs have the same file.
+bool isShared(const Export& item) {
+  return item.ofPerson && item.suffix.find('@') == std::string::npos;
+}
+
+/// An export's path in the derivative.
+std::string nameIn(const Participant& participant, const std::string& hemisphere,
+                   const Export& item, const std::string& label) {
+  std::string name =
+      participant.name() + (item.ofPerson ? "" : "_hemi-" + hemisphere) + label + item.suffix;
+  const std::size_t side = name.find('@');
+  if (side != std::string::npos) name.replace(side, 1, hemisphere);
+  return (anatOf(participant) / name).generic_string();
+}
+
 /// Everything in a subject's folder that a step may have read.
 std::vector<fs::path> filesOf(const fs::path& input) {
   std::vector<fs::path> all;
@@ -131,11 +200,11 @@ std::vector<fs::path> filesOf(const fs::path& input) {
 /// Finds what the outputs of one run were made from.
 class Sources {
  public:
-  Sources(const fs::path& run, const Participant& participant, const fs::path& stem,
+  Sources(const fs::path& run, const Participant& participant, const std::string& hemisphere,
           const DerivativeOrigin& origin)
       : run_(run), origin_(origin), inputs_(filesOf(participant.input)) {
     for (const Export& item : exportsOf(run)) {
-      exported_[item.step + "/" + item.file] = "bids::" + stem.generic_string() + item.suffix;
+      exported_[item.step + "/" + item.file] = "bids::" + nameIn(participant, hemisphere, item, "");
     }
     for (const char* step : {"segment", "thickness", "surface", "sphere", "register", "resample",
                              "parcellate", "regions", "unfold"}) {
@@ -232,6 +301,8 @@ void describeColumns(Json& sidecar, const std::string& step, const std::string& 
     sidecar["thickness_nearest_mean_mm"] = {
         {"Description", "mean of FreeSurfer's thickness: nearest distances, both ways"},
         {"Units", "mm"}};
+    sidecar["doubtful_share"] = {
+        {"Description", "share of the area where the image leaves a border more than half a voxel"}};
   } else if (file == "topology.tsv") {
     sidecar["kind"] = {{"Description", "island, cavity, handle or tunnel"}};
     for (const char* axis : {"x_mm", "y_mm", "z_mm"}) {
@@ -263,9 +334,7 @@ void describeDerivatives(const fs::path& out, const DerivativeOrigin& origin,
       {"Name", "Explica"},
       {"Version", version},
       {"Description", "explica bids: thickness, surfaces and unfolding of each hemisphere"}}});
-  // BIDS wants a URI here; without names the link stands for the place.
-  const std::string uri = origin.withNames ? "file://" + source.string() : "bids:raw:.";
-  description["SourceDatasets"] = Json::array({Json{{"URL", uri}}});
+  description["SourceDatasets"] = Json::array({Json{{"URL", "bids:raw:."}}});
   description["DatasetLinks"] = Json{{"raw", link}};
   writeIfDifferent(out / "dataset_description.json", provenance::textOf(description, 2) + "\n");
   writeIfDifferent(out / "descriptions.tsv",
@@ -278,35 +347,37 @@ void describeDerivatives(const fs::path& out, const DerivativeOrigin& origin,
                    "template\tcortical regions of the template, by registration\n"
                    "reg\tin register with the template\n"
                    "harmonic\talong trajectories of the harmonic interpolant\n"
-                   "layers\tlayers of the cortex, counted from the white matter\n");
-  writeIfDifferent(out / ".bidsignore",
-                   "*_hemi-*\ndescriptions.tsv\nruns/\nprov/\nstudy.tsv\nindex.html\n"
-                   "summary.json\nprovenance.json\n");
+                   "brain\twhat is brain\n"
+                   "layersL\tlayers of the left cortex, counted from the white matter\n"
+                   "layersR\tlayers of the right cortex, counted from the white matter\n");
+  writeIfDifferent(out / ".bidsignore", ignoredText());
+  writeIfDifferent(out / "README.md", kReadMe);
 }
 
 std::vector<fs::path> exportRun(const fs::path& run, const fs::path& out,
                                 const Participant& participant, const std::string& hemisphere,
                                 const DerivativeOrigin& origin, const std::string& region) {
   std::vector<fs::path> written;
-  const fs::path stem = anatOf(participant) / (participant.name() + "_hemi-" + hemisphere);
   const auto nameOf = [&](const Export& item) {
     const bool ofPatch = item.step == "unfold" && !region.empty();
-    return stem.generic_string() + (ofPatch ? "_label-" + region : "") + item.suffix;
+    return nameIn(participant, hemisphere, item, ofPatch ? "_label-" + region : "");
   };
+  const fs::path other =
+      run.parent_path() / (participant.name() + "_hemi-" + (hemisphere == "L" ? "R" : "L"));
   const auto sidecarOf = [](const std::string& name) { return withoutExtensions(name) + ".json"; };
   const std::vector<Export> exports = exportsOf(run);
   std::vector<const Export*> items;
   for (const Export& item : exports) {
     if (fs::exists(run / item.step / item.file)) {
       items.push_back(&item);
-    } else {
+    } else if (!isShared(item) || !fs::exists(other / item.step / item.file)) {
       fs::remove(out / sidecarOf(nameOf(item)));
       fs::remove(out / nameOf(item));
     }
   }
   if (items.empty()) return written;
-  const Sources sources(run, participant, stem, origin);
-  fs::create_directories(out / stem.parent_path());
+  const Sources sources(run, participant, hemisphere, origin);
+  fs::create_directories(out / anatOf(participant));
   Json surface = Json::object();
   if (fs::exists(run / "surface" / provenance::kSummaryName)) {
     surface = provenance::readJson(run / "surface" / provenance::kSummaryName);
@@ -320,7 +391,7 @@ std::vector<fs::path> exportRun(const fs::path& run, const fs::path& out,
     sidecar["Sources"] = sources.of(item.step);
     sidecar["SpatialReference"] = item.space.empty() ? sources.space() : item.space;
     if (!item.units.empty()) sidecar["Units"] = item.units;
-    if (surface.contains("euler_characteristic")) {
+    if (!isShared(item) && surface.contains("euler_characteristic")) {
       sidecar["EulerNumber"] = surface["euler_characteristic"];
       sidecar["NumberOfDefects"] = surface["defects_corrected"];
     }

@@ -23,7 +23,7 @@ using Place = std::vector<std::string>;
 /// Ways to say one thing: who gives one of them leaves the others.
 const std::vector<std::vector<std::string>> kAlternatives = {
     {"unfold.viewpoint", "unfold.direction", "unfold.view-line", "unfold.view-surface"},
-    {"unfold.center", "unfold.vertex", "unfold.label"}};
+    {"unfold.center", "unfold.vertex", "unfold.label", "unfold.region"}};
 
 std::string withoutPrefix(const std::string& label) {
   return label.rfind("sub-", 0) == 0 ? label.substr(4) : label;

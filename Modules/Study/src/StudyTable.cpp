@@ -86,10 +86,8 @@ void addSummary(StudyRow& row, const std::string& step, const Json& summary) {
 }
 
 /// Mean thickness of each region, from the table that `explica surface --atlas` writes.
-void addRegions(StudyRow& row, const fs::path& file) {
-  std::error_code fault;
-  if (!fs::exists(file, fault)) return;
-  std::istringstream table(fileText(file));
+void addRegions(StudyRow& row, const std::string& text) {
+  std::istringstream table(text);
   std::string line;
   std::getline(table, line);  // headings: index name vertices area mean sd
   while (std::getline(table, line)) {
@@ -104,11 +102,10 @@ void addRegions(StudyRow& row, const fs::path& file) {
   }
 }
 
-void addState(StudyRow& row, const fs::path& run) {
+void addState(StudyRow& row, const Json& account) {
   row.state = "failed: it did not begin";
-  if (!fs::exists(run / "run.json")) return;
+  if (account.is_null()) return;
   row.state = "done";
-  const Json account = provenance::readJson(run / "run.json");
   for (const Json& step : account["steps"]) {
     std::string state = textOf(step["state"]);
     if (state == "done") continue;
@@ -133,6 +130,22 @@ void addFlags(StudyRow& row, const std::string& step, const Json& summary) {
   row.state = "implausible (" + step + "): " + textOf(reasons.front());
 }
 
+/// A run's folder as it is, in the form of kKeptName; or what was kept of it.
+Json accountOf(const fs::path& run) {
+  if (fs::exists(run / kKeptName)) return provenance::readJson(run / kKeptName);
+  const auto read = [](const fs::path& file) {
+    return fs::exists(file) ? provenance::readJson(file) : Json();
+  };
+  Json all = {{"run", read(run / "run.json")}, {"steps", Json::object()}};
+  for (const char* step : kSteps) {
+    Json summary = read(run / step / "summary.json");
+    if (!summary.is_null()) all["steps"][step] = std::move(summary);
+  }
+  const fs::path regions = run / "surface" / "regions.tsv";
+  if (fs::exists(regions)) all["surface_regions"] = fileText(regions);
+  return all;
+}
+
 StudyRow rowOf(const fs::path& out, const fs::path& run) {
   StudyRow row;
   const std::string name = run.filename().string();
@@ -145,15 +158,14 @@ StudyRow rowOf(const fs::path& out, const fs::path& run) {
     row.hemisphere.resize(at);
   }
   try {
-    addState(row, run);
+    const Json account = accountOf(run);
+    addState(row, account["run"]);
     for (const char* step : kSteps) {
-      const fs::path summary = run / step / "summary.json";
-      if (!fs::exists(summary)) continue;
-      const Json numbers = provenance::readJson(summary);
-      addSummary(row, step, numbers);
-      addFlags(row, step, numbers);
+      if (!account["steps"].contains(step)) continue;
+      addSummary(row, step, account["steps"][step]);
+      addFlags(row, step, account["steps"][step]);
     }
-    addRegions(row, run / "surface" / "regions.tsv");
+    addRegions(row, account.value("surface_regions", std::string()));
   } catch (const std::exception& fault) {  // a damaged file is a fact of the study, not its end
     row.state = std::string("failed: ") + fault.what();
   }
@@ -219,7 +231,7 @@ void flagOutliers(const std::vector<StudyRow>& rows, const std::vector<std::size
 
 }  // namespace
 
-std::vector<StudyRow> collectRows(const fs::path& out) {
+std::vector<StudyRow> collectRows(const fs::path& out, const std::string& subject) {
   const fs::path runs = out / "runs";
   if (!fs::is_directory(runs)) {
     throw InvalidInput(out.string() + ": holds no runs; do the participant level first");
@@ -228,6 +240,7 @@ std::vector<StudyRow> collectRows(const fs::path& out) {
   for (const auto& entry : fs::directory_iterator(runs)) {
     const std::string name = entry.path().filename().string();
     if (entry.is_directory() && name.rfind("sub-", 0) == 0 &&
+        (subject.empty() || name.starts_with(subject + "_")) &&
         name.find("_hemi-") != std::string::npos) {
       folders.push_back(entry.path());
     }

@@ -5,6 +5,7 @@
 
 #include "Explica/Core/Parallel.h"
 #include "Explica/Core/Types.h"
+#include "PathProfile.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +16,8 @@ namespace {
 
 /// An edge is there if brightness comes so near to its level, in contrasts.
 constexpr float kNear = 0.3F;
+/// Places on each side over which a slope is taken, and how often it is averaged over neighbours.
+constexpr int kSlope = 3, kSlopeRings = 3;
 
 }  // namespace
 
@@ -44,6 +47,26 @@ Eigen::VectorXd BorderChooser::choose(int rounds) const {
     chosen = std::move(next);
   }
   return chosen;
+}
+
+Eigen::VectorXd BorderChooser::deviations(const Eigen::VectorXd& chosen,
+                                          const Eigen::VectorXd& noise, double most) const {
+  Eigen::VectorXd slopes(chosen.size()), left(chosen.size());
+  parallelFor(misses_.size(), 512, [&](std::size_t v) {
+    const auto row = static_cast<Eigen::Index>(v);
+    const int place = std::clamp(kSide + static_cast<int>(std::lround(chosen[row] / step_)), kSlope,
+                                 kPlaces - 1 - kSlope);
+    left[row] = misses_[v][place];
+    slopes[row] = (misses_[v][place - kSlope] - misses_[v][place + kSlope]) / (2 * kSlope * step_);
+  });
+  slopes = averaged(slopes, topology_, kSlopeRings);
+  Eigen::VectorXd result(chosen.size());
+  parallelFor(misses_.size(), 512, [&](std::size_t v) {
+    const auto row = static_cast<Eigen::Index>(v);
+    const double deviation = std::hypot(noise[row], left[row]) / slopes[row];
+    result[row] = has_[v] && deviation > 0 ? std::min(deviation, most) : most;
+  });
+  return result;
 }
 
 std::int64_t BorderChooser::missing() const {

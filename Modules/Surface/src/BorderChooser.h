@@ -43,6 +43,12 @@ class BorderChooser {
   /// Per vertex, mm outward from where the border was; 0 where the level is not met.
   [[nodiscard]] Eigen::VectorXd choose(int rounds) const;
 
+  /// Standard deviation of each chosen place, mm: noise, and what is left of the level, over the
+  /// slope of the profiles around; `most` at most, and where the level is not met.
+  /// @param noise  of brightness along the profiles, in contrasts
+  [[nodiscard]] Eigen::VectorXd deviations(const Eigen::VectorXd& chosen,
+                                           const Eigen::VectorXd& noise, double most) const;
+
   /// Vertices where brightness comes nowhere near the level.
   [[nodiscard]] std::int64_t missing() const;
 

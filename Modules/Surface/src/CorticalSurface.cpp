@@ -258,6 +258,8 @@ void placeByImage(const Volume<float>& image, double fluid, Columns& ribbon,
   const ImageBorders borders = findBorders(ribbon.paths, white, image, voxel, options);
   result.image.missingWhite = borders.missingWhite;
   result.image.missingOuter = borders.missingOuter;
+  result.image.voxel = voxel;
+  result.image.doubt = borders.doubt;
 
   GuardedMesh mesh(white, result.white.edgeLength);
   Eigen::VectorXd moved = Eigen::VectorXd::Zero(white.vertexCount());
@@ -388,10 +390,15 @@ void mendTriangles(CorticalSurfaces& result) {
   const Room room = roomOf(result.white);
   const MendingLimits limits{room.leastArea, kLongestEdge * edge};
   const std::array<TriangleMesh*, 3> surfaces = {&result.white.mesh, &result.mid, &result.pial};
+  Eigen::MatrixXd values(result.thickness.size(), 1 + result.image.doubt.cols());
+  values.col(0) = result.thickness;
+  if (result.image.doubt.size() > 0) values.rightCols(2) = result.image.doubt;
   for (int round = 0; round < kRounds; ++round) {
-    const Mending mending = mendTogether(surfaces, result.thickness, limits, edge);
+    const Mending mending = mendTogether(surfaces, values, limits, edge);
     if (mending.removed + mending.inserted == 0) return;
     for (TriangleMesh* surface : surfaces) keepRoom(*surface, room);
+    result.thickness = values.col(0);
+    if (result.image.doubt.size() > 0) result.image.doubt = values.rightCols(2).eval();
     result.noRibbon = (result.thickness.array() == 0).count();
   }
 }

@@ -40,14 +40,16 @@ constexpr double kBeyondMask = kOutsideReach + 1;
 /// ribbon or no image.
 struct Tissues {
   Eigen::VectorXd white, grey, outside;
-  double sign = 1;  ///< 1 if white matter is brighter than grey matter
+  Eigen::VectorXd covered;  ///< share of the outside that the image's mask has not cut away
+  double sign = 1;          ///< 1 if white matter is brighter than grey matter
 };
 
-Tissues brightnessOf(const std::vector<Trajectory>& paths, const Volume<float>& image,
+Tissues brightnessOf(const std::vector<Trajectory>& paths, const MaskedImage& masked,
                      double voxel) {
+  const Volume<float>& image = masked.image;
   const auto n = static_cast<Eigen::Index>(paths.size());
   Tissues found;
-  found.white = found.grey = found.outside = Eigen::VectorXd::Constant(n, kNaN);
+  found.white = found.grey = found.outside = found.covered = Eigen::VectorXd::Constant(n, kNaN);
   parallelFor(paths.size(), 256, [&](std::size_t v) {
     const Trajectory& path = paths[v];
     if (path.end == TrajectoryEnd::NoRibbon) return;
@@ -65,11 +67,15 @@ Tissues brightnessOf(const std::vector<Trajectory>& paths, const Volume<float>& 
     const Trajectory& path = paths[v];
     if (path.end == TrajectoryEnd::NoRibbon) return;
     double least = kInfinity;  // vessels and meninges beside fluid must not hide it
+    int seen = 0;
     for (int k = 0; k < kOutsideSamples; ++k) {
       const double beyond = kOutsideReach * voxel * k / (kOutsideSamples - 1);
-      const double value = found.sign * valueAt(image, along(path, path.length() + beyond));
+      const Point at = along(path, path.length() + beyond);
+      const double value = found.sign * valueAt(image, at);
       if (value < least) least = value;
+      seen += masked.seenAt(at) > 0.5;
     }
+    found.covered[static_cast<Eigen::Index>(v)] = seen / static_cast<double>(kOutsideSamples);
     found.outside[static_cast<Eigen::Index>(v)] = least < kInfinity ? found.sign * least : kNaN;
   });
   return found;
@@ -95,30 +101,36 @@ Choice choiceOn(const Trajectory& path, bool outer, double step) {
 struct Edge {
   Eigen::VectorXd inside, outside, level;
   Eigen::VectorXd contrast;  ///< in which misses of the level count
+  Eigen::VectorXd covered;   ///< share of the outside that the image shows
 };
 
 /// Half way between what is seen on both sides, or where `share` says.
 Edge edgeBetween(const Eigen::VectorXd& inside, const Eigen::VectorXd& outside, double share) {
-  return {inside, outside, outside + share * (inside - outside), (inside - outside).cwiseAbs()};
+  return {inside, outside, outside + share * (inside - outside), (inside - outside).cwiseAbs(),
+          Eigen::VectorXd::Ones(inside.size())};
 }
 
 /// The outer border beside fluid that may be too narrow to be seen as dark as it is: there the
 /// slope is small against noise, too, so that misses count in the contrast that there would be.
+/// Where a mask has cut fluid away, how dark it is seen says nothing, and the border lies half way
+/// to pure fluid.
 Edge edgeBesideFluid(const Eigen::VectorXd& grey, const Eigen::VectorXd& darkest,
-                     const Eigen::VectorXd& fluid) {
-  Edge edge{grey, darkest, darkest, (grey - fluid).cwiseAbs()};
+                     const Eigen::VectorXd& fluid, const Eigen::VectorXd& covered) {
+  Edge edge{grey, darkest, darkest, (grey - fluid).cwiseAbs(), covered};
   for (Eigen::Index v = 0; v < grey.size(); ++v) {
     const double depth = (grey[v] - darkest[v]) / (grey[v] - fluid[v]);
     if (!std::isfinite(depth)) continue;
     edge.level[v] += levelBesideFluid(depth) * (grey[v] - darkest[v]);
+    edge.level[v] = covered[v] * edge.level[v] + (1 - covered[v]) * 0.5 * (grey[v] + fluid[v]);
   }
   return edge;
 }
 
 /// How far brightness is from the border's level at each place, in contrasts: positive inside.
+/// The edge of the image's mask is a border, too, if brightness shows none before it.
 std::vector<Profile> missesOf(const std::vector<Trajectory>& paths, bool outer,
-                              const Volume<float>& image, double step, double sign,
-                              const Edge& edge, double flat) {
+                              const MaskedImage& masked, double step, double sign, const Edge& edge,
+                              double flat) {
   std::vector<double> contrast(paths.size());
   for (std::size_t v = 0; v < paths.size(); ++v) {
     const auto row = static_cast<Eigen::Index>(v);
@@ -128,15 +140,26 @@ std::vector<Profile> missesOf(const std::vector<Trajectory>& paths, bool outer,
   std::vector<Profile> profiles(paths.size());
   parallelFor(paths.size(), 256, [&](std::size_t v) {
     profiles[v].fill(static_cast<float>(kNaN));
-    if (!(contrast[v] > least)) return;
     const auto row = static_cast<Eigen::Index>(v);
+    if (!(contrast[v] > least) && edge.covered[row] > 0.5) return;
     const double border = outer ? paths[v].length() : 0;
     for (int k = 0; k < kPlaces; ++k) {
-      const double value = valueAt(image, along(paths[v], border + (k - kSide) * step));
-      profiles[v][k] = static_cast<float>(sign * (value - edge.level[row]) / edge.contrast[row]);
+      const Point at = along(paths[v], border + (k - kSide) * step);
+      const double value = valueAt(masked.image, at);
+      const double miss = sign * (value - edge.level[row]) / edge.contrast[row];
+      profiles[v][k] = static_cast<float>(outer ? std::min(miss, 2 * masked.seenAt(at) - 1) : miss);
     }
   });
   return profiles;
+}
+
+/// Standard deviation of noise in white matter, along the trajectories' samples: what differs from
+/// the vertices around, by the median, which thin blades and vessels do not move.
+double noiseOf(const Eigen::VectorXd& white, const geometry::MeshTopology& topology) {
+  constexpr int kAround = 2;
+  constexpr double kOfMedian = 1.4826;  // of a normal distribution
+  const Eigen::VectorXd off = (white - averaged(white, topology, kAround)).cwiseAbs();
+  return kOfMedian * median({off.begin(), off.end()});
 }
 
 }  // namespace
@@ -144,7 +167,8 @@ std::vector<Profile> missesOf(const std::vector<Trajectory>& paths, bool outer,
 ImageBorders findBorders(const std::vector<Trajectory>& given, const TriangleMesh& white,
                          const Volume<float>& seen, double voxel,
                          const ImageBorderOptions& options) {
-  const Volume<float> image = beyondMask(seen, kBeyondMask * voxel);
+  const MaskedImage masked = beyondMask(seen, kBeyondMask * voxel);
+  const Volume<float>& image = masked.image;
   const auto topology = geometry::buildTopology(white.faces, white.vertexCount());
   const double step = options.reach * voxel / kSide;
   const double edgeLength = meanEdge(white);
@@ -153,6 +177,7 @@ ImageBorders findBorders(const std::vector<Trajectory>& given, const TriangleMes
   };
   ImageBorders borders;
   borders.white = borders.outer = Eigen::VectorXd::Zero(white.vertexCount());
+  borders.doubt = Eigen::MatrixXd::Zero(white.vertexCount(), 2);
   std::vector<Trajectory> paths = given;
   if (options.search) {
     borders.white = searchWhite(given, topology, edgeLength, image, voxel);
@@ -160,8 +185,8 @@ ImageBorders findBorders(const std::vector<Trajectory>& given, const TriangleMes
       if (paths[v].end == TrajectoryEnd::NoRibbon) return;
       paths[v] = between(given[v], borders.white[static_cast<Eigen::Index>(v)], given[v].length());
     });
-    const Tissues tissues = brightnessOf(paths, image, voxel);
-    borders.outer = searchOuter(paths, topology, edgeLength, image, voxel, tissues.sign,
+    const Tissues tissues = brightnessOf(paths, masked, voxel);
+    borders.outer = searchOuter(paths, topology, edgeLength, masked, voxel, tissues.sign,
                                 fluidContrast(tissues, options.fluid));
     for (std::size_t v = 0; v < paths.size(); ++v) {
       const double way = borders.outer[static_cast<Eigen::Index>(v)];
@@ -170,7 +195,8 @@ ImageBorders findBorders(const std::vector<Trajectory>& given, const TriangleMes
       paths[v].end = TrajectoryEnd::Outer;
     }
   }
-  const Tissues tissues = brightnessOf(paths, image, voxel);
+  const Tissues tissues = brightnessOf(paths, masked, voxel);
+  const double noise = noiseOf(tissues.white, topology);
   for (const bool outer : {false, true}) {
     const bool besideFluid = outer && options.fluid > 0;
     const EdgeOptions& chosen =
@@ -179,20 +205,24 @@ ImageBorders findBorders(const std::vector<Trajectory>& given, const TriangleMes
     const Eigen::VectorXd outside = over(outer ? tissues.outside : tissues.grey, chosen.spread);
     const Edge edge =
         besideFluid
-            ? edgeBesideFluid(inside, outside, options.fluid * over(tissues.white, kFluidSpread))
+            ? edgeBesideFluid(inside, outside, options.fluid * over(tissues.white, kFluidSpread),
+                              over(tissues.covered, chosen.spread))
             : edgeBetween(inside, outside, chosen.level);
     std::vector<Choice> choices(paths.size());
     for (std::size_t v = 0; v < paths.size(); ++v) choices[v] = choiceOn(paths[v], outer, step);
     const BorderChooser chooser(
-        missesOf(paths, outer, image, step, tissues.sign, edge, options.flat), std::move(choices),
+        missesOf(paths, outer, masked, step, tissues.sign, edge, options.flat), std::move(choices),
         topology, step, voxel, chosen.costs);
-    if (outer) {
-      borders.outer += chooser.choose(options.rounds);
-      borders.missingOuter = chooser.missing();
-    } else {
-      borders.white += chooser.choose(options.rounds);
-      borders.missingWhite = chooser.missing();
+    const Eigen::VectorXd ways = chooser.choose(options.rounds);
+    const Eigen::VectorXd deviations =
+        chooser.deviations(ways, noise * edge.contrast.cwiseInverse(), voxel);
+    for (Eigen::Index v = 0; v < ways.size(); ++v) {
+      if (paths[v].end == TrajectoryEnd::NoRibbon) continue;
+      const double unseen = (1 - edge.covered[v]) * voxel;
+      borders.doubt(v, outer) = std::min(voxel, std::hypot(deviations[v], unseen));
     }
+    (outer ? borders.outer : borders.white) += ways;
+    (outer ? borders.missingOuter : borders.missingWhite) = chooser.missing();
   }
   return borders;
 }

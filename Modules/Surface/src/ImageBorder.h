@@ -38,6 +38,7 @@ struct ImageBorderOptions {
 struct ImageBorders {
   Eigen::VectorXd white;          ///< per vertex, mm outward along the trajectory
   Eigen::VectorXd outer;          ///< per vertex, mm outward along the trajectory
+  Eigen::MatrixXd doubt;          ///< V x 2: standard deviation of their places, mm
   std::int64_t missingWhite = 0;  ///< vertices that show no such edge, or off the image: they stay
   std::int64_t missingOuter = 0;  ///< at the labels' border
 };

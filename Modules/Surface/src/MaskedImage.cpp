@@ -3,9 +3,12 @@
 
 #include "MaskedImage.h"
 
+#include "PathProfile.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace explica::surface {
@@ -52,22 +55,33 @@ std::vector<std::size_t> besides(const Volume<float>& image,
 
 }  // namespace
 
-Volume<float> beyondMask(Volume<float> image, double reach) {
+double MaskedImage::seenAt(const Point& p) const {
+  if (seen.size() == 0) return 1;
+  const double share = valueAt(seen, p);
+  return std::isfinite(share) ? share : 0;
+}
+
+MaskedImage beyondMask(Volume<float> image, double reach) {
+  MaskedImage result{std::move(image), {}};
+  Volume<float>& values = result.image;
+  if (std::find(values.data.begin(), values.data.end(), 0.0F) == values.data.end()) return result;
+  result.seen = Volume<float>(values.grid, 0.0F);
+  std::vector<std::size_t> known;
+  for (std::size_t v = 0; v < values.size(); ++v) {
+    if (values[v] == 0) continue;
+    result.seen[v] = 1;
+    known.push_back(v);
+  }
   // A place so far away diagonally is up to sqrt(3) times as many steps away.
   const int steps =
-      static_cast<int>(std::ceil(std::sqrt(3.0) * reach / image.grid.spacing.minCoeff()));
-  if (std::find(image.data.begin(), image.data.end(), 0.0F) == image.data.end()) return image;
-  std::vector<std::size_t> known;
-  for (std::size_t v = 0; v < image.size(); ++v) {
-    if (image[v] != 0) known.push_back(v);
-  }
+      static_cast<int>(std::ceil(std::sqrt(3.0) * reach / values.grid.spacing.minCoeff()));
   for (int step = 0; step < steps; ++step) {
-    known = besides(image, known);
-    std::vector<float> values(known.size());
-    for (std::size_t n = 0; n < known.size(); ++n) values[n] = meanOfKnown(image, known[n]);
-    for (std::size_t n = 0; n < known.size(); ++n) image[known[n]] = values[n];
+    known = besides(values, known);
+    std::vector<float> means(known.size());
+    for (std::size_t n = 0; n < known.size(); ++n) means[n] = meanOfKnown(values, known[n]);
+    for (std::size_t n = 0; n < known.size(); ++n) values[known[n]] = means[n];
   }
-  return image;
+  return result;
 }
 
 }  // namespace explica::surface

@@ -31,9 +31,10 @@ constexpr double kShareOfLongest = 0.5;
 /// Surfaces with the same faces, changed in step.
 class JointMesh {
  public:
-  JointMesh(const std::array<TriangleMesh*, 3>& surfaces, const Eigen::VectorXd& values,
+  JointMesh(const std::array<TriangleMesh*, 3>& surfaces, const Eigen::MatrixXd& values,
             const MendingLimits& limits, double cell)
-      : limits_(limits), values_(values.begin(), values.end()) {
+      : limits_(limits), columns_(values.cols()), values_(values.rows()) {
+    for (std::size_t v = 0; v < values_.size(); ++v) values_[v] = values.row(v);
     std::array<std::unique_ptr<GuardedMesh>, 3> made;
     parallelFor(made.size(), 1, [&](std::size_t n) {
       made[n] = std::make_unique<GuardedMesh>(*surfaces[n], cell);
@@ -78,19 +79,19 @@ class JointMesh {
     std::int32_t put = -1;
     for (GuardedMesh& mesh : meshes_) put = mesh.split(e[0], e[1]);
     if (put >= static_cast<std::int32_t>(values_.size())) values_.resize(put + 1);
-    const double a = values_[e[0]], b = values_[e[1]];
-    values_[put] = a == 0 || b == 0 ? 0 : 0.5 * (a + b);
+    values_[put] = between(values_[e[0]], values_[e[1]], 0.5);
     ++done_.inserted;
     return true;
   }
 
   /// Values at the vertices there are, in the order of toMesh().
-  [[nodiscard]] Eigen::VectorXd values() const {
-    std::vector<double> kept;
+  [[nodiscard]] Eigen::MatrixXd values() const {
+    Eigen::MatrixXd kept(static_cast<Eigen::Index>(values_.size()), columns_);
+    Eigen::Index count = 0;
     for (std::int32_t v = 0; v < first().vertexSlots(); ++v) {
-      if (first().hasVertex(v)) kept.push_back(values_[v]);
+      if (first().hasVertex(v)) kept.row(count++) = values_[v];
     }
-    return Eigen::Map<const Eigen::VectorXd>(kept.data(), static_cast<Eigen::Index>(kept.size()));
+    return kept.topRows(count);
   }
 
  private:
@@ -123,15 +124,21 @@ class JointMesh {
       if (!mesh.mayCollapse(gone, stays, place(mesh), limits)) return false;
     }
     for (GuardedMesh& mesh : meshes_) mesh.collapse(gone, stays, place(mesh), limits);
-    const double a = values_[gone], b = values_[stays];
-    values_[stays] = a == 0 || b == 0 ? 0 : share * a + (1 - share) * b;
+    values_[stays] = between(values_[gone], values_[stays], share);
     ++done_.removed;
     return true;
   }
 
+  /// What is not known at one of the ends is not known between them.
+  [[nodiscard]] static Eigen::RowVectorXd between(const Eigen::RowVectorXd& a,
+                                                  const Eigen::RowVectorXd& b, double share) {
+    return (a.array() == 0 || b.array() == 0).select(0.0, share * a + (1 - share) * b);
+  }
+
   MendingLimits limits_;
+  Eigen::Index columns_;
   std::vector<GuardedMesh> meshes_;
-  std::vector<double> values_;  ///< per slot
+  std::vector<Eigen::RowVectorXd> values_;  ///< per slot
   Mending done_;
 };
 
@@ -230,7 +237,7 @@ void meetCount(JointMesh& mesh, const MendingLimits& limits) {
 
 }  // namespace
 
-Mending mendTogether(const std::array<TriangleMesh*, 3>& surfaces, Eigen::VectorXd& values,
+Mending mendTogether(const std::array<TriangleMesh*, 3>& surfaces, Eigen::MatrixXd& values,
                      const MendingLimits& limits, double cell) {
   if (std::none_of(surfaces.begin(), surfaces.end(),
                    [&](const TriangleMesh* mesh) { return isBeyond(*mesh, limits); })) {

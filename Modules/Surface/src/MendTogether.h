@@ -29,9 +29,9 @@ struct Mending {
 /// long edges are split, or small faces joined, until as many were put in as taken out.  No step
 /// changes the topology of a surface or makes it meet itself; what none mends stays.
 /// @param surfaces  closed or with rims, each without self-intersection, the same faces in each
-/// @param values    per vertex; of a vertex put in: the mean of the ends, 0 (not known) if one is 0
+/// @param values    V x any; of a vertex put in: the mean of the ends, 0 (not known) if one is 0
 /// @param cell      about the length of an edge, mm
-Mending mendTogether(const std::array<TriangleMesh*, 3>& surfaces, Eigen::VectorXd& values,
+Mending mendTogether(const std::array<TriangleMesh*, 3>& surfaces, Eigen::MatrixXd& values,
                      const MendingLimits& limits, double cell);
 
 }  // namespace explica::surface

@@ -37,8 +37,8 @@ double medianAround(std::size_t v, const Eigen::VectorXd& values,
 
 class Search {
  public:
-  Search(const std::vector<Trajectory>& paths, const Volume<float>& image, double voxel,
-         double sign, const OuterSearchOptions& options)
+  Search(const std::vector<Trajectory>& paths, const MaskedImage& image, double voxel, double sign,
+         const OuterSearchOptions& options)
       : paths_(paths),
         image_(image),
         voxel_(voxel),
@@ -85,7 +85,7 @@ class Search {
   [[nodiscard]] double borderOf(std::size_t v, double grey, double contrast) const {
     const double length = paths_[v].length();
     const auto [darkest, place] = firstDarkest(v, options_.flat * contrast);
-    if (!(grey - darkest > options_.flat * contrast)) return length;
+    if (!(grey - darkest > options_.flat * contrast) || !isSeen(v, place)) return length;
     double at = place;
     while (at > 0.5 * depthOf(v) && smoothOf(v, at) < 0.5 * (grey + darkest)) at -= kFine * voxel_;
     return std::min(at, length);
@@ -100,11 +100,15 @@ class Search {
     return sum / 5;
   }
   [[nodiscard]] double valueOf(std::size_t v, double arc) const {
-    return sign_ * valueAt(image_, along(paths_[v], arc));
+    return sign_ * valueAt(image_.image, along(paths_[v], arc));
+  }
+  /// True if the image shows a voxel more than that place.
+  [[nodiscard]] bool isSeen(std::size_t v, double arc) const {
+    return image_.seenAt(along(paths_[v], arc + voxel_)) > 0.5;
   }
 
   const std::vector<Trajectory>& paths_;
-  const Volume<float>& image_;
+  const MaskedImage& image_;
   double voxel_, sign_, usual_;
   const OuterSearchOptions& options_;
 };
@@ -113,7 +117,7 @@ class Search {
 
 Eigen::VectorXd searchOuter(const std::vector<Trajectory>& paths,
                             const geometry::MeshTopology& topology, double edge,
-                            const Volume<float>& image, double voxel, double sign,
+                            const MaskedImage& image, double voxel, double sign,
                             double fluidContrast, const OuterSearchOptions& options) {
   const Search search(paths, image, voxel, sign, options);
   const auto n = static_cast<Eigen::Index>(paths.size());

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "Explica/Core/Volume.h"
 #include "Explica/Geometry/MeshTopology.h"
+#include "MaskedImage.h"
 #include "RibbonPaths.h"
 
 #include <Eigen/Core>
@@ -27,7 +27,9 @@ struct OuterSearchOptions {
 /// Cortex has the brightness of the cortex around.  So grey matter is looked at no deeper than a
 /// cortex is usually thick, and averaged over a neighbourhood; a trajectory that is darker than
 /// half way from there to the first darkest that it reaches has left the cortex there, if that is
-/// more than two voxels before its end.  Medians of a vertex and two rings tell noise from that.
+/// more than two voxels before its end.  Where a mask ends the image before it has become darkest,
+/// nothing is known to lie beyond, and nothing is searched.  Medians of a vertex and two rings tell
+/// noise from that.
 /// @param paths  from the white border
 /// @param edge   mean length of the edges, mm
 /// @param fluidContrast  of grey matter and pure fluid; 0: not known, and the usual contrast of
@@ -37,7 +39,7 @@ struct OuterSearchOptions {
 /// @return per vertex, mm outward along the trajectory from its end: 0 or less
 [[nodiscard]] Eigen::VectorXd searchOuter(const std::vector<Trajectory>& paths,
                                           const geometry::MeshTopology& topology, double edge,
-                                          const Volume<float>& image, double voxel, double sign,
+                                          const MaskedImage& image, double voxel, double sign,
                                           double fluidContrast,
                                           const OuterSearchOptions& options = {});
 

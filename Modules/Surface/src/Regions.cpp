@@ -4,7 +4,6 @@
 #include "Explica/Surface/Regions.h"
 
 #include <cmath>
-#include <map>
 
 namespace explica::surface {
 namespace {
@@ -33,35 +32,6 @@ VertexKeys labelsWithin(const Volume<Label>& atlas, const Positions& white, cons
     }
   }
   return keys;
-}
-
-std::vector<RegionMeasure> measureRegions(const VertexKeys& keys, const Eigen::VectorXd& thickness,
-                                          const Eigen::VectorXd& areas) {
-  struct Sums {
-    RegionMeasure region;
-    double weight = 0, first = 0, second = 0;
-  };
-  std::map<Label, Sums> all;
-  for (Eigen::Index v = 0; v < keys.size(); ++v) {
-    if (keys[v] == 0) continue;
-    Sums& sums = all[keys[v]];
-    sums.region.key = keys[v];
-    ++sums.region.vertices;
-    sums.region.area += areas[v];
-    if (!(thickness[v] > 0)) continue;
-    sums.weight += areas[v];
-    sums.first += areas[v] * thickness[v];
-    sums.second += areas[v] * thickness[v] * thickness[v];
-  }
-  std::vector<RegionMeasure> regions;
-  for (auto& [key, sums] : all) {
-    const double mean = sums.weight > 0 ? sums.first / sums.weight : kNaN;
-    sums.region.thicknessMean = mean;
-    sums.region.thicknessDeviation =
-        sums.weight > 0 ? std::sqrt(std::max(0.0, sums.second / sums.weight - mean * mean)) : kNaN;
-    regions.push_back(sums.region);
-  }
-  return regions;
 }
 
 }  // namespace explica::surface

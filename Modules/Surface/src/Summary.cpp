@@ -43,6 +43,13 @@ Eigen::VectorXd validOf(const CorticalSurfaces& made) {
   return valid;
 }
 
+Eigen::VectorXd doubtfulOf(const CorticalSurfaces& made) {
+  if (made.image.doubt.size() == 0) return {};
+  return (made.image.doubt.rowwise().maxCoeff().array() > 0.5 * made.image.voxel)
+      .cast<double>()
+      .matrix();
+}
+
 namespace {
 
 constexpr std::array kNames = {"white", "mid", "pial"};                              // in keys
@@ -166,8 +173,24 @@ void describeMaking(Results& t, const SurfaceSummary& s, const CorticalSurfaces&
            where(grown, made.heldBackMost));
 }
 
-void describeImage(Results& t, const SurfaceSummary& s, const ImagePlacement& image) {
+/// Of the white surface's area with grey matter upon it.
+double doubtfulShare(const CorticalSurfaces& made) {
+  const Eigen::VectorXd doubtful = doubtfulOf(made);
+  if (doubtful.size() == 0) return kNaN;
+  const Eigen::VectorXd areas =
+      (made.thickness.array() > 0).select(geometry::vertexAreas(made.white.mesh), 0.0);
+  return areas.sum() > 0 ? areas.dot(doubtful) / areas.sum() : kNaN;
+}
+
+void describeImage(Results& t, const SurfaceSummary& s, const CorticalSurfaces& made) {
+  const ImagePlacement& image = made.image;
   const bool placed = s.hasImage && s.hasGrey;
+  t.share("doubtful_share", "Cortex whose borders are in doubt",
+          "Where the image leaves the white or the outer border more than half a voxel of standard "
+          "deviation; doubt.shape.gii shows where.",
+          where(placed, doubtfulShare(made)))
+      .inHead()
+      .compared();
   t.count("vertices_without_white_edge", "Vertices without an edge of white matter",
           "The image shows none there, and the labels' border holds.",
           where(placed, image.missingWhite));
@@ -218,7 +241,7 @@ void describe(Results& t, const SurfaceSummary& s) {
   describeTissue(t, s);
   describeTopology(t, s, made);
   describeShape(t, s);
-  describeImage(t, s, made.image);
+  describeImage(t, s, made);
   describeMaking(t, s, made);
   describeSheet(t, s, made.sheet);
   t.number("cerebrum_volume_ml", "Volume of the cerebrum", "ml",

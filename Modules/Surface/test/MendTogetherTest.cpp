@@ -73,7 +73,7 @@ TEST(MendTogether, SmallFacesGoFromAllSurfacesAndTheCountStays) {
     shape.positions.row(a) = 0.98 * shape.positions.row(b) + 0.02 * shape.positions.row(a);
   }
   Nested surfaces = nested(shape);
-  Eigen::VectorXd values = valuesAt(surfaces.inner);
+  Eigen::MatrixXd values = valuesAt(surfaces.inner);
   const MendingLimits limits{0.1, 10};
   ASSERT_LT(geometry::faceAreas(surfaces.inner).minCoeff(), limits.leastArea);
   const Mending done = mendTogether(surfaces.all(), values, limits, 1.5);
@@ -86,7 +86,7 @@ TEST(MendTogether, SmallFacesGoFromAllSurfacesAndTheCountStays) {
 
 TEST(MendTogether, EdgesTooLongInOneSurfaceAreSplitInAll) {
   Nested surfaces = nested(geometry::makeIcosphere(3, 10));
-  Eigen::VectorXd values = valuesAt(surfaces.inner);
+  Eigen::MatrixXd values = valuesAt(surfaces.inner);
   const double most = 0.97 * longestEdge(surfaces.outer);
   ASSERT_LT(longestEdge(surfaces.inner), most);
   const Mending done = mendTogether(surfaces.all(), values, {0.01, most}, 1.5);
@@ -97,7 +97,7 @@ TEST(MendTogether, EdgesTooLongInOneSurfaceAreSplitInAll) {
 
 TEST(MendTogether, AVertexBetweenOneThatIsNotKnownAndAnotherIsNotKnown) {
   Nested surfaces = nested(geometry::makeIcosphere(2, 10));
-  Eigen::VectorXd values = Eigen::VectorXd::Constant(surfaces.inner.vertexCount(), 3);
+  Eigen::MatrixXd values = Eigen::VectorXd::Constant(surfaces.inner.vertexCount(), 3);
   values.head(40).setZero();
   mendTogether(surfaces.all(), values, {0.01, 0.9 * longestEdge(surfaces.outer)}, 3);
   ASSERT_GT(values.size(), 162);
@@ -107,7 +107,7 @@ TEST(MendTogether, AVertexBetweenOneThatIsNotKnownAndAnotherIsNotKnown) {
 TEST(MendTogether, WhatIsSoundStaysToTheBit) {
   Nested surfaces = nested(geometry::makeIcosphere(3, 10));
   const Nested before = surfaces;
-  Eigen::VectorXd values = valuesAt(surfaces.inner);
+  Eigen::MatrixXd values = valuesAt(surfaces.inner);
   const Mending done = mendTogether(surfaces.all(), values, {0.01, 10}, 1.5);
   EXPECT_EQ(done.removed + done.inserted, 0);
   EXPECT_EQ(surfaces.outer.positions, before.outer.positions);

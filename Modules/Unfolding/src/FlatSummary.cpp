@@ -25,8 +25,10 @@ void describe(Results& t, const FlatSummary& s) {
           s.turnedOverInFrames);
   t.count("faces", "Faces", "", disc.mesh.faceCount());
   t.count("vertices", "Vertices", "", disc.vertexOrigin.size());
-  t.count("faces_trimmed", "Faces left out", "They hung on the rest by a single vertex.",
+  t.count("faces_trimmed", "Faces left out", "Joined to the rest by a single vertex.",
           disc.trimmedFaces);
+  t.count("pieces_left_out", "Pieces left out", "All but the largest.", disc.otherPieces);
+  t.share("area_left_out", "Area of these", "Of all that was to be laid flat.", disc.areaOfOthers);
   t.count("faces_raised", "Needles raised", "Faces of the reference whose height was raised.",
           map.raisedFaces);
   t.count("holes", "Holes", "They stay open.", disc.holes.size());

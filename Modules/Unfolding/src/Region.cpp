@@ -41,8 +41,8 @@ void requireNear(const TriangleMesh& mesh, const Point& wanted, std::int32_t ver
   const Point nearest = mesh.positions.row(vertex);
   const double distance = (wanted - nearest).norm(), most = farthestCentre(extentOf(mesh));
   if (distance <= most) return;
-  throw InvalidInput("center: it lies " + text(distance) + " mm from the surface, at most " +
-                     text(most) + " mm make sense; the nearest vertex is " +
+  throw InvalidInput("center: is " + text(distance) + " mm from the surface (limit " + text(most) +
+                     " mm); nearest vertex " +
                      std::to_string(vertex) + " at " + text(nearest[0]) + "," + text(nearest[1]) +
                      "," + text(nearest[2]));
 }

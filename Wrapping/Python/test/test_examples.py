@@ -67,22 +67,6 @@ class Examples(unittest.TestCase):
         self.assert_picture("profile.png")
         self.assertEqual(np.loadtxt(self.out / "profile.tsv", skiprows=1).shape, (21, 4))
 
-    def test_flat_map_and_profile_of_the_phantom_are_exact(self):
-        said = self.run_example("flat_profile.py")
-        self.assertLess(float(re.findall(r"profile: (\S+)", said)[0]), 0.01)
-        self.assertRegex(said, r"\b[1-9]\d\d+ vertices, 0 faces turned over")
-        self.assert_picture("patch.png")
-        self.assertEqual(np.loadtxt(self.out / "profile.tsv", skiprows=1).shape, (21, 3))
-
-    @unittest.skipUnless(REAL.is_dir(), "skipped: no real data")
-    def test_flat_map_and_profile_of_real_cortex(self):
-        surfaces = [REAL / "fsaverage5" / f"{name}_left.gii.gz" for name in ("white", "pial")]
-        image = REAL / "mni152_tissue/mni_icbm152_t1_tal_nlin_sym_09a_converted.nii.gz"
-        said = self.run_example("flat_profile.py", image, *surfaces, "--center", -40, -20, 50,
-                                "--radius", 20)  # fmt: skip
-        self.assertRegex(said, r"\b[1-9]\d\d+ vertices, 0 faces turned over")
-        self.assert_picture("patch.png")
-
     def test_subject_without_data_says_so(self):
         self.assertEqual(
             self.run_example("thickness_of_subject.py", self.out), "skipped: no real data\n"

@@ -65,8 +65,8 @@ void judgeFiles(ResultFolder& results) {
       }
     }
   }
-  std::string why = readable(static_cast<double>(same)) + " files are what the records say";
-  if (others > 0) why += ", " + readable(static_cast<double>(others)) + " are not: " + names;
+  std::string why = readable(static_cast<double>(same)) + " files unchanged since the records";
+  if (others > 0) why += ", " + readable(static_cast<double>(others)) + " changed: " + names;
   if (others > kNamed) why += ", ...";
   results.content().flags.push_back(
       {others == 0 ? FlagLevel::Good : FlagLevel::Notice, "Inputs and outputs:", why});

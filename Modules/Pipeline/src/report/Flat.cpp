@@ -246,12 +246,17 @@ void showPicture(ResultFolder& results, const StepFolder& step) {
   const std::filesystem::path file = step.folder / "flat.png";
   std::error_code fault;
   if (!std::filesystem::exists(file, fault)) return;
-  const std::string bytes = fileText(file);
+  const std::filesystem::directory_iterator files(step.folder);
+  const bool outlined = std::any_of(begin(files), end(files), [](const auto& entry) {
+    const std::string name = entry.path().filename().string();
+    return name.starts_with("patch_") && name.ends_with(".label.gii");
+  });
   results.content().drawings.push_back(
       {"", "The flat map",
-       "Regions are outlined in their own colours; the scale bar holds everywhere up to the area "
-       "error.",
-       "image/png", bytes});
+       std::string("Sulci are darker than gyri. ") +
+           (outlined ? "Regions are outlined in their own colours. " : "") +
+           "The scale bar holds everywhere up to the area error.",
+       "image/png", fileText(file)});
 }
 
 /// The states on the way, looked at from above.

@@ -553,7 +553,7 @@ async function showEvolution(source, isStopped, onStop) {
   });
   for (const name of ['pointerup', 'pointercancel']) canvas.addEventListener(name, (event) => pointers.delete(event.pointerId));
   canvas.addEventListener('click', () => {
-    if (!wasDragged && pointedAt >= 0) document.dispatchEvent(new CustomEvent('place', { detail: { at: firstPlace(pointedAt), from: 'surface' } }));
+    if (!wasDragged && pointedAt >= 0) document.dispatchEvent(new CustomEvent('place', { detail: { at: firstPlace(pointedAt), from: 'surface', view: source.dataset.title, vertex: pointedAt } }));
   });
   canvas.addEventListener('contextmenu', (event) => event.preventDefault());
   canvas.addEventListener('wheel', (event) => { event.preventDefault(); zoom(Math.exp(0.001 * event.deltaY)); }, { passive: false });

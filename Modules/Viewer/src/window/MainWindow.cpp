@@ -191,9 +191,7 @@ void MainWindow::buildViewMenu() {
   });
   addAction(view, "measure", "&Distance along the surface, between two points under the pointer",
             QKeySequence("D"), underPointer(&MainWindow::measure));
-  for (QDockWidget* dock : {panels_.slicesDock, panels_.profilesDock, panels_.stackDock}) {
-    view->addAction(dock->toggleViewAction());
-  }
+  view->addAction(panels_.slicesDock->toggleViewAction());
 }
 
 void MainWindow::connectPanels() {
@@ -280,15 +278,6 @@ void MainWindow::take(Opened opened) {
     slices_ = std::move(opened.slices);
     panels_.slicesDock->show();
   }
-  if (!opened.profiles.empty()) {
-    panels_.profiles->add(std::move(opened.profiles));
-    panels_.profilesDock->show();
-  }
-  if (!opened.stacks.empty()) {
-    panels_.stack->add(std::move(opened.stacks));
-    panels_.stackDock->show();
-  }
-  shareRoomBelow(*this, panels_);
   statusBar()->showMessage(QString::fromStdString(opened.what));
 }
 

@@ -98,7 +98,6 @@ class MainWindow : public QMainWindow {
   void showSlices();
   void readUnder(const QPoint& at);
   /// Name of the label at a vertex, of the labels that were opened; "" if there is none.
-  [[nodiscard]] std::string regionAt(std::int32_t vertex) const;
   [[nodiscard]] std::string valueAt(std::int32_t vertex) const;
   [[nodiscard]] QPoint fromLowerLeft(const QPoint& at) const;
 

@@ -52,9 +52,10 @@ QGroupBox* viewGroup(Panels& p) {
   column->addWidget(p.view);
   auto* form = new QFormLayout;
   p.surround = named(new QComboBox, "surround", "What becomes of the surface around the region");
-  p.target =
-      numberField("target", "Average visibility at which to stop; 0: where it no longer pays",
-                  {0, 1, 0.01, 3, ""});
+  p.target = numberField(
+      "target", "Average visibility at which to stop; none: where more of it costs too much",
+      {0, 1, 0.01, 3, ""});
+  p.target->setSpecialValueText("none");
   form->addRow("Surroundings", p.surround);
   form->addRow("Target", p.target);
   column->addLayout(form);
@@ -121,21 +122,6 @@ Panels buildPanels(QMainWindow& window) {
   p.slices->setMinimumWidth(240);
   window.addDockWidget(Qt::RightDockWidgetArea, p.slicesDock);
   p.slicesDock->hide();
-
-  p.profiles = new DepthPanel;
-  p.profilesDock = new QDockWidget("Over the depth", &window);
-  p.profilesDock->setObjectName("profilesDock");
-  p.profilesDock->setWidget(p.profiles);
-  p.stack = new StackPanel;
-  p.stackDock = new QDockWidget("Flat map, depth by depth", &window);
-  p.stackDock->setObjectName("stackDock");
-  p.stackDock->setWidget(p.stack);
-  window.setCorner(Qt::BottomLeftCorner, Qt::LeftDockWidgetArea);
-  for (QDockWidget* below : {p.profilesDock, p.stackDock}) {
-    window.addDockWidget(Qt::BottomDockWidgetArea, below);
-    below->hide();
-  }
-  window.splitDockWidget(p.profilesDock, p.stackDock, Qt::Horizontal);
   return p;
 }
 
@@ -144,13 +130,6 @@ void showField(QWidget* field, bool shown) {
   const auto* form = qobject_cast<QFormLayout*>(field->parentWidget()->layout());
   if (form == nullptr) return;
   if (QWidget* name = form->labelForField(field)) name->setVisible(shown);
-}
-
-void shareRoomBelow(QMainWindow& window, const Panels& panels) {
-  constexpr int kHeight = 320;  // pixels, of a window of 900
-  const QList<QDockWidget*> docks = {panels.profilesDock, panels.stackDock};
-  window.resizeDocks(docks, {kHeight, kHeight}, Qt::Vertical);
-  window.resizeDocks(docks, {1, 1}, Qt::Horizontal);
 }
 
 }  // namespace explica::viewer

@@ -3,9 +3,7 @@
 #pragma once
 
 #include "Curves.h"
-#include "DepthPanel.h"
 #include "SlicePanel.h"
-#include "StackPanel.h"
 #include "ViewPanel.h"
 
 #include <QCheckBox>
@@ -44,11 +42,6 @@ struct Panels {
   // Slices
   SlicePanel* slices = nullptr;
   QDockWidget* slicesDock = nullptr;
-  // Depths
-  DepthPanel* profiles = nullptr;
-  QDockWidget* profilesDock = nullptr;
-  StackPanel* stack = nullptr;
-  QDockWidget* stackDock = nullptr;
 };
 
 /// Builds the panels into docks of the window.
@@ -56,8 +49,5 @@ struct Panels {
 
 /// Shows or hides a field of a form together with its name.
 void showField(QWidget* field, bool shown);
-
-/// Gives the docks below the picture equal widths and enough height.
-void shareRoomBelow(QMainWindow& window, const Panels& panels);
 
 }  // namespace explica::viewer

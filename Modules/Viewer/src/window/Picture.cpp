@@ -268,20 +268,10 @@ std::string MainWindow::valueAt(std::int32_t vertex) const {
   return QString("%1 %2").arg(value, 0, 'g', 3).arg(shownUnit_.c_str()).toStdString();
 }
 
-std::string MainWindow::regionAt(std::int32_t vertex) const {
-  for (const WindowLabels& labels : labels_) {
-    for (const auto& [key, name] : labels.names) {
-      if (key == labels.keys[vertex] && key != 0) return name;
-    }
-  }
-  return "";
-}
-
 void MainWindow::readUnder(const QPoint& at) {
   const QPoint pixel = fromLowerLeft(at);
   const auto picked = stage_->pick(pixel.x(), pixel.y());
   if (!picked) return;
-  panels_.profiles->emphasise(regionAt(picked->vertex));
   const Point p = session_.surface().positions.row(picked->vertex).transpose();
   statusBar()->showMessage(QString("%1: %2   vertex %3 at %4, %5, %6 mm on the folded surface")
                                .arg(panels_.map->currentText())

@@ -27,11 +27,22 @@ inline constexpr Label kNoRegion = std::numeric_limits<Label>::lowest();
 [[nodiscard]] std::vector<LabelMap> readRegions(const std::vector<std::filesystem::path>& files,
                                                 Eigen::Index vertexCount);
 
+/// Numbers labels by their names as the first map does, so that files with other tables agree;
+/// names that it lacks are added to its table.
+void numberAlike(std::vector<LabelMap>& files);
+
 /// Vertices that have one of the keys in any of the label files; without keys, any key but 0.
 /// @return V marks, at least one of them true
 /// @throws as readVertexLabels; InvalidInput also if no vertex is marked
 [[nodiscard]] std::vector<bool> markedByLabels(const std::vector<std::filesystem::path>& files,
                                                const std::vector<int>& keys,
                                                Eigen::Index vertexCount);
+
+/// Vertices in the regions of these names.
+/// @return V marks, at least one of them true
+/// @throws as readRegions; InvalidInput also for a name that no region has
+[[nodiscard]] std::vector<bool> markedByNames(const std::filesystem::path& file,
+                                              const std::vector<std::string>& names,
+                                              Eigen::Index vertexCount);
 
 }  // namespace explica::io

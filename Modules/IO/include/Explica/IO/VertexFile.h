@@ -31,9 +31,4 @@ enum class VertexFileKind { Maps, Labels, Surface };
 void writeVertexMaps(const std::filesystem::path& path, const std::vector<VertexMap>& maps,
                      const std::string& structure, Eigen::Index faceCount);
 
-/// Refuses data of one hemisphere for a surface of the other.
-/// @param structure  of the surface; "" or "Other" fits any
-/// @throws InvalidInput  the file says another hemisphere
-void requireSameHemisphere(const std::filesystem::path& path, const std::string& structure);
-
 }  // namespace explica::io

@@ -22,4 +22,8 @@ namespace explica::maps {
 /// a linear flow, for a time in proportion to the area.
 [[nodiscard]] Eigen::VectorXd sulcalDepth(const TriangleMesh& mesh);
 
+/// The surface inflated for pictures: its coordinates diffused along it three times as long as for
+/// sulcalDepth(), scaled about the centroid to the area that it had.
+[[nodiscard]] TriangleMesh inflated(const TriangleMesh& mesh);
+
 }  // namespace explica::maps

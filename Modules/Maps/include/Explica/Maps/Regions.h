@@ -23,6 +23,7 @@ struct RegionMoments {
   double mean = kNaN;          ///< over vertices, each counted once, as FreeSurfer does
   double deviation = kNaN;     ///< of the vertices from it, with n
   double meanOverArea = kNaN;  ///< weighted by area
+  double deviationOverArea = kNaN;
 };
 
 /// Moments of a map in regions; NaN is left out.

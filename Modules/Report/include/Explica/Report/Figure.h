@@ -22,6 +22,9 @@ struct SurfacePaint {
   Eigen::Matrix<Label, Eigen::Dynamic, 1> labels;  ///< V, or empty; used where there are no values
   std::map<Label, Colour> labelColours;            ///< of their table; others get colourOfLabel
   Eigen::Matrix<Label, Eigen::Dynamic, 1> region;  ///< V, or empty: what is 0 here is shown paler
+  /// V, or empty: mean curvature or sulcal depth, positive in sulci, which are drawn darker; where
+  /// a value is not known, this alone is seen.
+  Eigen::VectorXd folding;
 };
 
 /// Colours of a surface's vertices; empty if the paint is.
@@ -34,6 +37,14 @@ struct FigureView {
   Vector up = Vector(0, 0, 1);
   std::vector<std::int32_t> focus;  ///< vertices to fill the picture with; empty for all
 };
+
+/// A picture of each view, without a colour bar.
+[[nodiscard]] std::vector<Picture> surfaceViews(const TriangleMesh& mesh, const SurfacePaint& paint,
+                                                const std::vector<FigureView>& views,
+                                                const SurfacePictureOptions& options = {});
+
+/// A picture with the paint's colour bar at its right, if it has values.
+[[nodiscard]] Picture withColourBar(Picture picture, const SurfacePaint& paint);
 
 /// The views side by side in rows of `columns`, with one colour bar at the right if there are
 /// values.

@@ -32,6 +32,10 @@ struct FlatMarks {
 [[nodiscard]] Picture flatFigure(const TriangleMesh& mesh, const SurfacePaint& paint,
                                  const FlatMarks& marks, int height = 900);
 
+/// The same without the colour bar.
+[[nodiscard]] Picture flatPanel(const TriangleMesh& mesh, const SurfacePaint& paint,
+                                const FlatMarks& marks, int height);
+
 /// The largest of 1, 2, 5, 10, 20 ... that is no more than a length.
 [[nodiscard]] double roundLength(double length);
 

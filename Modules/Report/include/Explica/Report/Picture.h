@@ -38,7 +38,11 @@ struct Picture {
 /// The picture as a PNG file's bytes.  The same pixels give the same bytes.
 [[nodiscard]] std::string encodePng(const Picture& picture);
 
-/// Several pictures of one size as an endless animated GIF of 252 fixed colours, ordered dither.
+/// @throws InvalidInput  no picture, or pictures of different sizes
+void requireFrames(const std::vector<Picture>& frames);
+
+/// Several pictures of one size as an endless animated GIF of the 256 colours that suit them, by
+/// median cut.
 /// @throws InvalidInput  no picture, or pictures of different sizes
 [[nodiscard]] std::string encodeGif(const std::vector<Picture>& frames, double framesPerSecond);
 

@@ -15,8 +15,9 @@ struct DerivativeOrigin {
   bool withNames = true;          ///< false: folders of this machine are not told
 };
 
-/// Writes what makes a folder a BIDS derivative: dataset_description.json, descriptions.tsv and
-/// .bidsignore (surfaces are not yet part of BIDS).  Existing equal files stay as they are.
+/// Writes what makes a folder a BIDS derivative: dataset_description.json, descriptions.tsv,
+/// README.md and .bidsignore (the kinds of surfaces and maps that are not yet part of BIDS).
+/// Existing equal files stay as they are.
 void describeDerivatives(const std::filesystem::path& out, const DerivativeOrigin& origin,
                          const std::string& version);
 

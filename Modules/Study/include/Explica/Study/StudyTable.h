@@ -10,6 +10,11 @@
 
 namespace explica::study {
 
+/// What `--keep group` leaves of a run's folder, besides the maps on the template, the report and
+/// the record: the account run.json as "run", summaries by step as "steps", tables of regions as
+/// "surface_regions" and "regions", the template's name and a key of what it all depends on.
+inline constexpr const char* kKeptName = "kept.json";
+
 /// One row of the study table: a participant's hemisphere and its numbers by column.
 struct StudyRow {
   std::string participant;          ///< "sub-01" or "sub-01_ses-02"
@@ -29,7 +34,9 @@ struct StudyFlag {
 };
 
 /// Rows of all runs below `out/runs`, in the order of their names, whatever became of them.
-[[nodiscard]] std::vector<StudyRow> collectRows(const std::filesystem::path& out);
+/// @param subject  "sub-01": only those of this one
+[[nodiscard]] std::vector<StudyRow> collectRows(const std::filesystem::path& out,
+                                                const std::string& subject = "");
 
 /// What is wrong or unusual in each row: a run that failed or stopped early, a surface that is no
 /// sphere or meets itself, and numbers far from the other rows'.

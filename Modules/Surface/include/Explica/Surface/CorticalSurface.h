@@ -50,6 +50,10 @@ struct ImagePlacement {
   std::int64_t missingOuter = 0;  ///< that the labels' border holds
   double movedWhite = 0;          ///< mean way of the vertices, mm
   double movedOuter = 0;          ///< mean way of the trajectories' ends, mm
+  double voxel = 0;               ///< mm
+  /// V x 2: standard deviation of the white and of the outer border's place, mm, by how steep the
+  /// image is there beside its noise; a voxel where it shows no border, 0 without ribbon.
+  Eigen::MatrixXd doubt;
 };
 
 /// What is to be known of a sheet whose tissue runs out of the image.

@@ -6,7 +6,6 @@
 #include "Explica/Core/Volume.h"
 
 #include <functional>
-#include <vector>
 
 namespace explica::surface {
 
@@ -18,21 +17,5 @@ using VertexKeys = Eigen::Matrix<Label, Eigen::Dynamic, 1>;  ///< V
 [[nodiscard]] VertexKeys labelsWithin(const Volume<Label>& atlas, const Positions& white,
                                       const Positions& pial,
                                       const std::function<bool(Label)>& counts);
-
-/// One region of the cortex.
-struct RegionMeasure {
-  Label key = 0;
-  Eigen::Index vertices = 0;      ///< with this key
-  double area = 0;                ///< of the surface that `areas` belongs to, mm^2
-  double thicknessMean = 0;       ///< mm, weighted by area; NaN where no vertex has a thickness
-  double thicknessDeviation = 0;  ///< standard deviation, mm
-};
-
-/// Area and thickness of each region, ascending keys, 0 left out.  Vertices without thickness (0)
-/// count for the area, not for the mean.
-/// @param areas  V, mm^2
-[[nodiscard]] std::vector<RegionMeasure> measureRegions(const VertexKeys& keys,
-                                                        const Eigen::VectorXd& thickness,
-                                                        const Eigen::VectorXd& areas);
 
 }  // namespace explica::surface

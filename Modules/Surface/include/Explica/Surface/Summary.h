@@ -34,6 +34,10 @@ struct ThicknessMeans {
 /// 1 at vertices where the thickness is defined and known, else 0.
 [[nodiscard]] Eigen::VectorXd validOf(const CorticalSurfaces& made);
 
+/// 1 where the image leaves a border more than half a voxel of standard deviation, else 0; empty
+/// without image.
+[[nodiscard]] Eigen::VectorXd doubtfulOf(const CorticalSurfaces& made);
+
 /// Millilitres, from a newborn's to the largest adult's [Gilmore2007].
 inline constexpr double kLeastCerebrum = 250, kMostCerebrum = 2000;
 

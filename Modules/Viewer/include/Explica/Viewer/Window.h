@@ -58,36 +58,6 @@ struct SlicePixels {
 using DrawSlice =
     std::function<SlicePixels(int axis, const Point& through, const TriangleMesh& surface)>;
 
-/// A region's values over the depth of the cortex.
-struct DepthCurve {
-  std::string region;
-  std::vector<double> depth;      ///< ascending; 0 white, 1 pial
-  std::vector<double> mean;       ///< one a depth; not-a-number where not known
-  std::vector<double> deviation;  ///< one a depth: standard deviation
-  std::optional<Rgb> colour;      ///< the region's own, if it has one
-};
-
-/// What a volume holds over the depth of the cortex.
-struct WindowProfiles {
-  std::string name;                 ///< of the volume
-  std::optional<DepthCurve> all;    ///< of everything
-  std::vector<DepthCurve> regions;  ///< the largest first
-};
-
-/// A volume on the grid of a flat map: pictures of its depths.
-struct WindowStack {
-  struct Tile {
-    double depth = 0;  ///< 0 white, 1 pial
-    int width = 0;
-    int height = 0;
-    std::vector<unsigned char> rgb;  ///< width * height * 3, rows from the top
-  };
-  std::string name;  ///< of the volume
-  double pixelsPerMillimetre = 1;
-  std::optional<Scale> scale;  ///< none for labels
-  std::vector<Tile> tiles;     ///< from white to pial
-};
-
 /// What a file holds that the user opens.
 struct Opened {
   std::string what;  ///< for the status line: "thickness.shape.gii: 1 map"
@@ -95,8 +65,6 @@ struct Opened {
   std::vector<WindowLabels> labels;
   std::optional<Finished> finished;
   DrawSlice slices;  ///< of a volume; may be empty
-  std::vector<WindowProfiles> profiles;
-  std::vector<WindowStack> stacks;
 };
 /// Opens a file or folder for the window's surface; throws Error with a sentence for the user.
 using OpenFile = std::function<Opened(const std::string& path)>;

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Application/CortexFiles.h"
+#include "Explica/Flattening/Cuts.h"
+#include "Explica/Flattening/Flatten.h"
+#include "Explica/IO/SurfaceFile.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace explica::app {
+
+constexpr const char* kAutomatic = "auto";  // of --cuts
+
+/// What `explica flatten` is asked for.
+struct FlattenSettings {
+  std::string surface;
+  io::SurfaceReadOptions reading;
+  std::optional<std::string> reference;
+  std::optional<std::string> cuts;
+  std::optional<std::string> cortex;
+  flattening::CutOptions cut;
+  std::vector<std::string> labels;
+  std::vector<int> labelKeys;
+  std::optional<double> areaTolerance;
+  flattening::FlattenOptions flatten;
+  double grid = 0.5;
+  std::optional<int> depths;
+  CortexFiles sheet;
+  VolumePlace place;
+  std::vector<std::string> volumes;
+  bool nearest = false;
+  std::vector<std::string> maps;
+  std::vector<std::string> regions;
+  bool resume = false;
+};
+
+}  // namespace explica::app

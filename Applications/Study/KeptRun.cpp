@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "KeptRun.h"
+
+#include "Explica/Core/FileText.h"
+#include "Explica/Provenance/Json.h"
+#include "Explica/Provenance/Record.h"
+#include "Explica/Study/StudyTable.h"
+#include "GroupParts.h"
+
+#include <set>
+
+namespace explica::app {
+namespace {
+
+namespace fs = std::filesystem;
+using provenance::Json;
+
+constexpr const char* kTogether = "maps_";  // begins the name of the file of all maps
+
+/// "space-X_den-Y" of a file in the folder whose name begins so; empty if there is none.
+std::string entityIn(const fs::path& folder, const std::string& begin) {
+  const std::string end = ".shape.gii";
+  std::set<std::string> found;
+  std::error_code fault;
+  for (const auto& entry : fs::directory_iterator(folder, fault)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(begin + "space-") || !name.ends_with(end)) continue;
+    found.insert(name.substr(begin.size(), name.size() - begin.size() - end.size()));
+  }
+  return found.empty() ? "" : *found.begin();
+}
+
+/// Everything of the folder's steps that tables of a study are made of.
+Json accountOf(const fs::path& run, const std::string& key) {
+  Json kept = {{"key", key}, {"run", provenance::readJson(run / "run.json")}};
+  kept["steps"] = Json::object();
+  for (const auto& entry : fs::directory_iterator(run)) {
+    const fs::path summary = entry.path() / provenance::kSummaryName;
+    if (!entry.is_directory() || !fs::exists(summary)) continue;
+    kept["steps"][entry.path().filename().string()] = provenance::readJson(summary);
+  }
+  const Json record = provenance::readRecord(run / "register" / provenance::kRecordName);
+  kept["template"] = record["options"]["template"];
+  for (const auto& [name, file] : {std::pair{"surface_regions", "surface/regions.tsv"},
+                                   std::pair{"regions", "regions/regions.tsv"}}) {
+    if (fs::exists(run / file)) kept[name] = fileText(run / file);
+  }
+  return kept;
+}
+
+}  // namespace
+
+TemplateMaps templateMapsOf(const fs::path& run) {
+  TemplateMaps maps{entityIn(run / "resample", std::string(kMeasures[0]) + "_"), false};
+  if (maps.entity.empty()) maps = {entityIn(run, kTogether), true};
+  return maps;
+}
+
+bool isKept(const fs::path& run, const std::string& key) {
+  const fs::path kept = run / study::kKeptName;
+  return fs::exists(kept) && provenance::readJson(kept).value("key", "") == key;
+}
+
+void keepForGroup(const fs::path& run, const std::string& key) {
+  const TemplateMaps maps = templateMapsOf(run);
+  if (maps.entity.empty() || maps.together) return;
+  std::vector<io::VertexMap> all;
+  for (const char* measure : kMeasures) {
+    all.push_back(
+        io::readVertexMaps(run / "resample" / (measure + ("_" + maps.entity) + ".shape.gii"))
+            .front());
+    all.back().name = measure;
+  }
+  const std::string name = run.filename().string();
+  const bool right = name.find("_hemi-R") != std::string::npos;
+  const fs::path together = run / (kTogether + maps.entity + ".shape.gii");
+  io::writeGiftiShape(together, all, right ? "CortexRight" : "CortexLeft");
+  provenance::writeJson(run / study::kKeptName, accountOf(run, key));
+  const std::set<std::string> stays = {study::kKeptName, together.filename().string(),
+                                       "report.html", provenance::kRecordName, "problem.txt"};
+  std::vector<fs::path> goes;
+  for (const auto& entry : fs::directory_iterator(run)) {
+    if (!stays.count(entry.path().filename().string())) goes.push_back(entry.path());
+  }
+  for (const fs::path& path : goes) fs::remove_all(path);
+}
+
+}  // namespace explica::app

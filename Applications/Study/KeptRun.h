@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Core/Describe.h"
+
+#include <array>
+#include <filesystem>
+#include <string>
+#include <utility>
+
+namespace explica::app {
+
+/// What of a run stays once its group-level results are there.
+enum class Keep {
+  All,
+  Group  ///< what `study group` and `bids ... group` read, the report and the record
+};
+
+[[nodiscard]] inline Field keepField() {
+  return {"keep", "",
+          "all files of a run, or what the group's numbers need: four files a hemisphere at most"};
+}
+
+/// Leaves four files of a run at most: kept.json, its maps on the template as one file, report.html
+/// and provenance.json.  A run that is not on a template stays as it is.
+/// @param key  of what the results depend on
+void keepForGroup(const std::filesystem::path& run, const std::string& key);
+
+/// True if keepForGroup() was done with this key.
+[[nodiscard]] bool isKept(const std::filesystem::path& run, const std::string& key);
+
+/// The maps on the template that a run has: the measure's own file, or the one for all of them.
+struct TemplateMaps {
+  std::string entity;  ///< "space-colin27_den-10k"; empty if there are none
+  bool together = false;
+};
+[[nodiscard]] TemplateMaps templateMapsOf(const std::filesystem::path& run);
+
+}  // namespace explica::app
+
+template <>
+struct explica::EnumNames<explica::app::Keep> {
+  static constexpr std::array table = {std::pair{app::Keep::All, "all"},
+                                       std::pair{app::Keep::Group, "group"}};
+};

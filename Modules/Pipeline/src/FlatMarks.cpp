@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Explica/Pipeline/FlatMarks.h"
+
+#include "Explica/Flattening/PatchTable.h"
+#include "Explica/IO/VertexDataFile.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+
+namespace explica::pipeline {
+
+void markRegions(const io::LabelMap& regions, const TriangleMesh& flat, report::FlatMarks& marks) {
+  std::map<Label, report::Colour> colours;
+  for (const io::LabelEntry& entry : regions.table) {
+    colours[entry.key] = report::colourOfLabel(entry.key, entry.colour);
+  }
+  const auto colourOf = [&](Label key) {
+    const auto found = colours.find(key);
+    return found == colours.end() ? std::nullopt : std::optional(found->second);
+  };
+  for (const auto& piece : flattening::outlines(flat.faces, flat.positions, regions.keys)) {
+    marks.lines.push_back(
+        {piece.from, piece.to, colourOf(piece.sides[0]), colourOf(piece.sides[1])});
+  }
+  const auto places = flattening::regionPlaces(flat, regions.keys);
+  std::vector<std::pair<std::ptrdiff_t, const io::LabelEntry*>> bySize;
+  for (const io::LabelEntry& entry : regions.table) {
+    bySize.emplace_back(-std::count(regions.keys.begin(), regions.keys.end(), entry.key), &entry);
+  }
+  std::stable_sort(bySize.begin(), bySize.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (const auto& [size, entry] : bySize) {
+    if (places.contains(entry->key)) marks.names.emplace_back(places.at(entry->key), entry->name);
+  }
+}
+
+}  // namespace explica::pipeline

@@ -1,0 +1,170 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "Explica/Report/Panels.h"
+
+#include "Encoding.h"
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/Html.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <map>
+
+namespace explica::report {
+namespace {
+
+constexpr double kLegendShare = 0.13;   // of the width that the colour bar takes
+constexpr double kSurfaceShape = 0.75;  // height over width of a panel
+constexpr double kFlatShare = 0.6;      // of the width that a flat map is high at most
+constexpr int kTicks = 5;
+
+template <class... Values>
+std::string formatted(const char* pattern, Values... values) {
+  std::array<char, 400> text{};
+  std::snprintf(text.data(), text.size(), pattern, values...);
+  return text.data();
+}
+
+std::string hexText(const Colour& colour) {
+  return formatted("#%02x%02x%02x", encodeSrgb(colour[0]), encodeSrgb(colour[1]),
+                   encodeSrgb(colour[2]));
+}
+
+std::string svgText(double x, double y, double size, const std::string& text) {
+  return formatted("<text x='%.1f' y='%.1f' font-size='%.1f'>", x, y, size) + escapeHtml(text) +
+         "</text>\n";
+}
+
+std::string layer(const char* name, const std::string& content) {
+  return formatted("<g id='%s' inkscape:groupmode='layer' inkscape:label='%s'>\n", name, name) +
+         content + "</g>\n";
+}
+
+/// Half the height that every surface's picture shows, mm.
+double commonHalfHeight(const std::vector<std::vector<Panel>>& rows, int width, int height) {
+  double half = 0;
+  for (const auto& row : rows) {
+    for (const Panel& panel : row) {
+      if (panel.marks) continue;
+      half = std::max(half, cameraFor(*panel.mesh, panel.view, width, height).halfHeight);
+    }
+  }
+  return half;
+}
+
+/// Where pictures go, and what the SVG has of them.
+struct Sheet {
+  Picture picture;
+  std::string images, titles;
+  double letters = 10;
+
+  void add(const Picture& part, int x, int y, const std::string& title) {
+    pastePicture(picture, part, x, y);
+    images += formatted("<image x='%d' y='%d' width='%d' height='%d' href='data:image/png;base64,",
+                        x, y, part.width, part.height) +
+              base64(encodePng(part)) + "'/>\n";
+    if (title.empty()) return;
+    drawText(picture, title, {x + letters, y + 1.5 * letters}, letters, kInk);
+    titles += svgText(x + letters, y + 1.5 * letters, 1.4 * letters, title);
+  }
+};
+
+std::string svgBar(const ColourScale& scale, double x, double top, double height, double letters) {
+  constexpr int kStops = 33;
+  std::string svg = "<defs><linearGradient id='colours' x1='0' y1='1' x2='0' y2='0'>";
+  for (int n = 0; n < kStops; ++n) {
+    const double t = static_cast<double>(n) / (kStops - 1);
+    svg += formatted("<stop offset='%.4f' stop-color='%s'/>", t,
+                     hexText(colourAt(scale.map, t)).c_str());
+  }
+  svg += "</linearGradient></defs>\n";
+  svg += formatted("<rect x='%.1f' y='%.1f' width='%.1f' height='%.1f' fill='url(#colours)'/>\n", x,
+                   top, 1.2 * letters, height);
+  for (int n = 0; n < kTicks; ++n) {
+    const double t = static_cast<double>(n) / (kTicks - 1);
+    svg += svgText(x + 1.8 * letters, top + (1 - t) * height + 0.5 * letters, 1.4 * letters,
+                   tickText(scale.low + t * (scale.high - scale.low), scale.high - scale.low));
+  }
+  const std::string unit = scale.unit.empty() ? "" : " (" + unitText(scale.unit) + ")";
+  return svg + svgText(x, top - letters, 1.4 * letters, scale.title + unit);
+}
+
+/// Height of a row of panels, pixels.
+int heightOf(const std::vector<Panel>& row, int cell, int width) {
+  double height = 0;
+  for (const Panel& panel : row) {
+    if (!panel.marks) {
+      height = std::max(height, kSurfaceShape * cell);
+      continue;
+    }
+    const Vector size =
+        (panel.mesh->positions.colwise().maxCoeff() - panel.mesh->positions.colwise().minCoeff())
+            .transpose();
+    const double shape = std::clamp(size.x() / std::max(size.y(), 1e-9), 0.5, 2.0);
+    height = std::max(height, std::min(kFlatShare * width, cell / shape));
+  }
+  return static_cast<int>(height);
+}
+
+}  // namespace
+
+PanelFigure panelFigure(const std::vector<std::vector<Panel>>& rows,
+                        const std::optional<ColourScale>& scale, int width) {
+  std::size_t columns = 0;
+  for (const auto& row : rows) columns = std::max(columns, row.size());
+  if (columns == 0) throw InvalidInput("figure: no panel");
+  const int content = scale ? static_cast<int>((1 - kLegendShare) * width) : width;
+  std::vector<int> heights;
+  for (const auto& row : rows) {
+    heights.push_back(heightOf(row, content / static_cast<int>(row.size()), content));
+  }
+  int height = 0;
+  for (const int one : heights) height += one;
+  Sheet sheet{Picture(width, height), "", "", std::clamp(width / 140.0, 8.0, 30.0)};
+  std::map<const TriangleMesh*, SurfaceScene> scenes;
+  int y = 0;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const int cell = content / static_cast<int>(rows[r].size());
+    const double half = commonHalfHeight(rows, cell, heights[r]);
+    for (std::size_t c = 0; c < rows[r].size(); ++c) {
+      const Panel& panel = rows[r][c];
+      const int left = static_cast<int>(c) * cell;
+      if (panel.marks) {
+        const Picture flat = flatPanel(*panel.mesh, panel.paint, *panel.marks, heights[r]);
+        sheet.add(flat, left + std::max(0, (cell - flat.width) / 2), y, panel.title);
+        continue;
+      }
+      SurfacePictureOptions size;
+      size.width = cell;
+      size.height = heights[r];
+      Camera camera = cameraFor(*panel.mesh, panel.view, cell, heights[r]);
+      camera.halfHeight = half;
+      const auto scene = scenes.try_emplace(panel.mesh, *panel.mesh).first;
+      const bool discrete = panel.paint.values.size() == 0 && panel.paint.labels.size() != 0;
+      sheet.add(scene->second.render(camera, coloursOf(panel.paint, panel.mesh->vertexCount()),
+                                     discrete ? Filling::Discrete : Filling::Smooth, size),
+                left, y, panel.title);
+    }
+    y += heights[r];
+  }
+  std::string bar;
+  if (scale) {
+    const double tall = std::min(0.6 * height, 0.3 * width), top = (height - tall) / 2;
+    drawColourBar(sheet.picture, *scale, content, static_cast<int>(top - 3 * sheet.letters),
+                  width - content, static_cast<int>(tall + 4 * sheet.letters));
+    bar = svgBar(*scale, content, top, tall, sheet.letters);
+  }
+  const std::string head = formatted(
+      "<svg xmlns='http://www.w3.org/2000/svg' "
+      "xmlns:inkscape='http://www.inkscape.org/namespaces/inkscape' width='%d' height='%d' "
+      "viewBox='0 0 %d %d' font-family='Helvetica, Arial, sans-serif'>\n",
+      width, height, width, height);
+  return {std::move(sheet.picture), head + "<rect width='100%' height='100%' fill='white'/>\n" +
+                                        layer("surfaces", sheet.images) +
+                                        layer("titles", sheet.titles) + layer("colour-bar", bar) +
+                                        "</svg>\n"};
+}
+
+}  // namespace explica::report

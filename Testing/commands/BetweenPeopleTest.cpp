@@ -1,0 +1,216 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+// explica register, parcellate, template, unfold --region: what users type and what they get.
+
+#include "Explica/Geometry/MeshMeasures.h"
+#include "QuickRuns.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+namespace explica::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kSharedData = EXPLICA_REAL_DATA;
+
+TriangleMesh sphereIn(const std::string& file) {
+  io::SurfaceReadOptions reading;
+  reading.space = io::SurfaceSpace::Scanner;
+  TriangleMesh mesh = io::readSurface(file, reading).mesh;
+  mesh.positions.rowwise().normalize();
+  return mesh;
+}
+
+/// Degrees between directions.
+Eigen::VectorXd anglesBetween(const Positions& a, const Positions& b) {
+  return (a - b).rowwise().norm() * 180 / kPi;
+}
+
+/// Registers a left hemisphere's sphere onto a target given by the further words.
+std::string registered(const TemporaryFolder& folder, const std::string& name,
+                       const std::string& sphere, const std::vector<std::string>& target) {
+  const auto result =
+      explica(std::vector<std::string>{"register", sphere, "--out", folder / name} + target);
+  EXPECT_EQ(result.exitCode, 0) << result;
+  return folder / (name + "/sphere.reg.surf.gii");
+}
+
+TEST(RegisterPeople, FsaverageFiveOntoFsaverageIsTheIdentity) {
+  const fs::path five = kSharedData / "fsaverage5/fs_binary";
+  if (!fs::exists(five)) GTEST_SKIP() << "skipped: no real data";
+  TemporaryFolder folder;
+  const auto moved = registered(folder, "moved", (five / "lh.sphere").string(),
+                                {"--template", (kSharedData / "fsaverage").string()});
+  const Eigen::VectorXd angles = anglesBetween(sphereIn(moved).positions,
+                                               sphereIn((five / "lh.sphere").string()).positions);
+  EXPECT_LT(angles.mean(), 0.1);
+  EXPECT_LT(angles.maxCoeff(), 0.5);
+}
+
+TEST(RegisterPeople, ThereAndBackAgainIsTheIdentity) {
+  const fs::path people = kSharedData / "oasis_sd";
+  if (!fs::exists(people)) GTEST_SKIP() << "skipped: no real data";
+  TemporaryFolder folder;
+  const std::string a = (people / "OAS1_0001/lh.sphere").string(),
+                    b = (people / "OAS1_0003/lh.sphere").string();
+  const TriangleMesh aOnB = sphereIn(registered(folder, "ab", a, {"--to", b, "--level", "5"}));
+  const auto bOnA = registered(folder, "ba", b, {"--to", a, "--level", "5"});
+  // Places of A taken to B, and there to where B's vertices come to on A.
+  io::writeSurface(folder / "ab.surf.gii", aOnB);
+  io::writeSurface(folder / "b.surf.gii", sphereIn(b));
+  io::writeSurface(folder / "bOnA.surf.gii", sphereIn(bOnA));
+  const auto carried =
+      explica({"resample", folder / "bOnA.surf.gii", "--from", folder / "b.surf.gii", "--to",
+               folder / "ab.surf.gii", "--space", "back", "--out", folder / "back"});
+  ASSERT_EQ(carried.exitCode, 0) << carried;
+  std::string file;
+  for (const auto& entry : fs::directory_iterator(folder / "back")) {
+    if (entry.path().string().ends_with(".surf.gii")) file = entry.path().string();
+  }
+  const Eigen::VectorXd angles =
+      anglesBetween(sphereIn(file).positions, sphereIn(a).positions);
+  EXPECT_LT(angles.mean(), 1);
+}
+
+TEST(Parcellate, LabelsTheVoxelsBetweenTheSurfaces) {
+  TemporaryFolder folder;
+  writeMapAndRegions(folder);
+  const auto result =
+      explica({"parcellate", folder.path().string(), "--atlas", folder / "lh.regions.label.gii",
+               "--volume", "--out", folder / "out"});
+  ASSERT_EQ(result.exitCode, 0) << result;
+  const auto volume = io::readLabels(folder / "out/aparc.nii.gz").volume;
+  std::array<double, 3> voxels{};
+  for (const Label label : volume.data) voxels.at(static_cast<std::size_t>(label)) += 1;
+  // Zones of height 7 and 11 between spheres of 10 and 14 mm: y beyond 3 of 10 at the inner one.
+  const double zone = 0.35 * 4 * kPi / 3 * (14 * 14 * 14 - 10 * 10 * 10);
+  EXPECT_NEAR(voxels[1], zone, 0.06 * zone);
+  EXPECT_NEAR(voxels[2], zone, 0.06 * zone);
+  EXPECT_EQ(readText(folder / "out/aparc.tsv"), "index\tname\n1\tfront\n2\tback\n");
+  const auto bare = explica({"parcellate", folder.path().string(), "--atlas",
+                             folder / "lh.regions.label.gii", "--volume", "--like",
+                             folder / "map.nii.gz", "--out", folder / "like"});
+  ASSERT_EQ(bare.exitCode, 0) << bare;
+  EXPECT_EQ(io::readLabels(folder / "like/aparc.nii.gz").volume.grid.size,
+            (std::array<int, 3>{24, 24, 24}));
+}
+
+TEST(Parcellate, SaysThatAVolumeNeedsSurfaces) {
+  TemporaryFolder folder;
+  writeMapAndRegions(folder);
+  fs::remove(folder / "pial.surf.gii");
+  const auto result =
+      explica({"parcellate", folder.path().string(), "--atlas", folder / "lh.regions.label.gii",
+               "--volume", "--out", folder / "out"});
+  EXPECT_EQ(result.exitCode, 2);
+  EXPECT_NE(result.err.find("no lh.pial or pial.surf.gii"), std::string::npos) << result;
+  EXPECT_FALSE(fs::exists(folder / "out"));
+}
+
+TEST(UnfoldRegion, IsTakenByItsName) {
+  TemporaryFolder folder;
+  writeMapAndRegions(folder);
+  const std::vector<std::string> words = {"unfold",  folder / "white.surf.gii",
+                                          "--atlas", folder / "lh.regions.label.gii",
+                                          "--direction", "0,1,0", "--max-iterations", "1"};
+  auto result = explica(words + std::vector<std::string>{"--region", "front", "--out",
+                                                         folder / "out"});
+  EXPECT_TRUE(result.exitCode == 0 || result.exitCode == 3) << result;
+  const auto region = io::readVertexLabels(folder / "out/region.label.gii").keys;
+  const Positions places = geometry::makeIcosphere(3, 10.0).positions;
+  for (Eigen::Index v = 0; v < region.size(); ++v) EXPECT_EQ(region[v] == 1, places(v, 1) > 3) << v;
+  result = explica(words + std::vector<std::string>{"--region", "insula", "--out", folder / "no"});
+  EXPECT_EQ(result.exitCode, 2);
+  EXPECT_NE(result.err.find("has no region 'insula'; its regions are front, back"),
+            std::string::npos)
+      << result;
+}
+
+TEST(Template, OfOnePersonTwiceIsThePerson) {
+  TemporaryFolder folder;
+  writePerson(folder);
+  const auto result = explica({"template", folder.path().string(), folder.path().string(),
+                               "--density", "fsaverage3", "--level", "3", "--out", folder / "out"});
+  ASSERT_EQ(result.exitCode, 0) << result;
+  const auto summary = readJson(folder / "out/summary.json");
+  EXPECT_EQ(summary["people"], 2);
+  EXPECT_LT(summary["mean_deformation"], 0.1);
+  const TriangleMesh white = io::readSurface(folder / "out/hemi-L_white.surf.gii").mesh;
+  EXPECT_NEAR(geometry::totalArea(white),
+              geometry::totalArea(geometry::makeFoldedSphere(3, 30.0)), 150);
+  // And it is a template.
+  const auto found = explica({"register", folder / "lh.sphere", "--template", folder / "out",
+                              "--level", "3", "--out", folder / "on"});
+  ASSERT_EQ(found.exitCode, 0) << found;
+  EXPECT_GT(readJson(folder / "on/summary.json")["folding_correlation_after"], 0.99);
+}
+
+TEST(Template, OfOnePersonIsRefused) {
+  TemporaryFolder folder;
+  writePerson(folder);
+  const auto result = explica({"template", folder.path().string(), "--out", folder / "out"});
+  EXPECT_EQ(result.exitCode, 2);
+  EXPECT_NE(result.err.find("fewer than two people"), std::string::npos) << result;
+}
+
+struct Refusal {
+  std::string name;
+  std::vector<std::string> words;
+  std::string says;
+};
+
+class BetweenPeopleRefuses : public ::testing::TestWithParam<Refusal> {};
+
+TEST_P(BetweenPeopleRefuses, InOneSentence) {
+  TemporaryFolder folder;
+  writePerson(folder);
+  writeFoldedCap(folder);
+  io::writeSurface(folder / "torus.surf.gii", geometry::makeTorus(24, 12, 20.0, 6.0));
+  io::writeSurface(folder / "pieces.surf.gii",
+                   geometry::joined(geometry::makeIcosphere(2, 10.0),
+                                    geometry::makeIcosphere(2, 10.0, Point(30, 0, 0))));
+  for (const char* made : {"empty", "bare"}) fs::create_directory(folder / made);
+  fs::copy_file(folder / "lh.sphere", folder / "bare/lh.sphere.reg");
+  for (const char* map : {"sphere", "sulc", "curv"}) {
+    fs::copy_file(folder / (std::string("lh.") + map), folder / (std::string("rh.") + map));
+  }
+  io::writeFreeSurferCurv(folder / "lh.short", Eigen::VectorXd::Ones(42), 80);
+  std::vector<std::string> words = filled(GetParam().words, folder);
+  const auto result = explica(words + std::vector<std::string>{"--out", folder / "out"});
+  EXPECT_EQ(result.exitCode, 2) << result;
+  EXPECT_NE(result.err.find(GetParam().says), std::string::npos) << result;
+  EXPECT_FALSE(fs::exists(folder / "out"));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Inputs, BetweenPeopleRefuses,
+    ::testing::Values(
+        Refusal{"OpenSurface", {"sphere", "{folder}/cap.surf.gii"}, "boundary"},
+        Refusal{"Torus", {"sphere", "{folder}/torus.surf.gii"}, "1 handles (genus)"},
+        Refusal{"TwoPieces", {"sphere", "{folder}/pieces.surf.gii"}, "2 pieces"},
+        Refusal{"NoTemplate",
+                {"register", "{folder}/lh.sphere", "--template", "{folder}/empty"},
+                "no lh.sphere.reg in it"},
+        Refusal{"TemplateWithoutSulc",
+                {"register", "{folder}/lh.sphere", "--template", "{folder}/bare"},
+                "no lh.sulc in it"},
+        Refusal{"OtherHemisphere",
+                {"register", "{folder}/lh.sphere", "--to", "{folder}/rh.sphere"},
+                "hemisphere"},
+        Refusal{"SulcOfAnotherMesh",
+                {"register", "{folder}/lh.sphere", "--sulc", "{folder}/lh.short", "--to",
+                 "{folder}/lh.sphere"},
+                "42"},
+        Refusal{"NoSphere",
+                {"register", "{folder}/cap.surf.gii", "--surfaces", "{folder}", "--to",
+                 "{folder}/lh.sphere"},
+                "cap.surf.gii"}),
+    [](const auto& row) { return row.param.name; });
+
+}  // namespace
+}  // namespace explica::testing
