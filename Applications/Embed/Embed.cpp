@@ -44,7 +44,7 @@ void declare(Declaration& d, Settings& s) {
       .description(
           "A closed curve or surface in an annulus is the 1/2 level of a harmonic function, and "
           "its coefficients can be averaged and combined: every convex combination is again one "
-          "closed shape. Targets are polygons (CSV), label images (with --label), surfaces, or "
+          "closed shape. Targets are polygons (CSV), label images (with --label-key), surfaces, or "
           "coefficients.json of an earlier run; all share one annulus. It lies between circles or "
           "spheres around the targets, or, in the plane, between two given curves (--annulus) or "
           "within a distance of the targets (--band). Details finer than the distance to its "
@@ -54,7 +54,7 @@ void declare(Declaration& d, Settings& s) {
       .example("explica embed a.csv b.csv --average --out mean", "Mean shape of two contours")
       .example("explica embed a.surf.gii b.surf.gii --combine 0.3,0.7 --out mix",
                "Between two surfaces")
-      .example("explica embed ED_label.nii.gz --label 2 --band 3 --out band",
+      .example("explica embed ED_label.nii.gz --label-key 2 --band 3 --out band",
                "The outer contour of the heart muscle, in a band of 3 mm about it")
       .example("explica embed mid.csv --annulus ED_label.nii.gz --inner 1 --tissue 2 --out muscle",
                "A curve between the contours of the muscle's inside and outside")

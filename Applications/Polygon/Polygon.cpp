@@ -73,7 +73,7 @@ void declare(Declaration& d, Settings& s) {
                "Unfold a polygon of 34 edges from its viewpoint; evolution.svg shows the stages")
       .example("explica polygon contour.csv --region 10:60 --direction 0,1 --resume --out open",
                "Go on with a run on edges 10 to 60 that was stopped")
-      .example("explica polygon ED_label.nii.gz --label 2 --slice 4 --out contour",
+      .example("explica polygon ED_label.nii.gz --label-key 2 --slice 4 --out contour",
                "Outer contour of a label, RAS mm")
       .input("FILE", FileKind::Any, "polygon (CSV, VTK polydata), or label image", s.file)
       .option("Contour",

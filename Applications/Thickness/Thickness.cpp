@@ -62,13 +62,13 @@ void declareOutputs(Declaration& d) {
               "phi1: corresponding point of the outer boundary, RAS mm")
       .output("layers.nii.gz", FileKind::LabelVolume, "layer, 1 at the inner boundary")
       .output("grid.vtu", FileKind::Grid,
-              "with --grid: points at equal depths along trajectories, with depth and thickness")
+              "with --cells: points at equal depths along trajectories, with depth and thickness")
       .output("grid_functions.tsv", FileKind::Table,
               "with --functions: mean, deviation and count of each at each depth of the grid")
       .output("grid_trajectories.tsv", FileKind::Table,
               "with --along: points, thickness and functions along chosen trajectories")
       .output("field.svg", FileKind::Picture,
-              "with --figure or --grid: u, tangent field, trajectories and grid in a slice")
+              "with --figure or --cells: u, tangent field, trajectories and grid in a slice")
       .output(
           "contours.tsv", FileKind::Table,
           "of a 2-D image or with --per-slice: inner, middle and outer contours, point by point")
@@ -128,18 +128,19 @@ void declare(Declaration& d, Settings& s) {
               s.measurement.grid)
       .inputOption(
           "functions", FileKind::Volume,
-          "with --grid: volumes, 3-D or 4-D, whose values at the grid's points are written "
+          "with --cells: volumes, 3-D or 4-D, whose values at the grid's points are written "
           "into it and by depth into a table",
           s.functions.volumes, "Layers")
-      .option("Layers",
-              Field{"along", "mm",
-                    "with --grid: list the trajectory nearest to this point of the tissue with the "
-                    "values of --functions"},
-              s.functions.along)
+      .option(
+          "Layers",
+          Field{"along", "mm",
+                "with --cells: list the trajectory nearest to this point of the tissue with the "
+                "values of --functions"},
+          s.functions.along)
       .option("Figure",
               Field{"figure", "",
                     "draw a slice: harmonic interpolant, tangent field, selected trajectories, and "
-                    "with --grid, which draws it too, its cells"},
+                    "with --cells, which draws it too, its cells"},
               s.figure)
       .option("Figure",
               Field{"figure-slice", "",

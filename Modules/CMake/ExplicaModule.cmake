@@ -99,7 +99,8 @@ function(explica_add_module name)
 endfunction()
 
 # explica_add_test_executable(<target> LABEL unit|property|slow|command SOURCES ... LINKS ...)
-# One GoogleTest executable whose tests appear in CTest one by one.
+# One GoogleTest executable. Its command and slow tests appear in CTest one by one; unit and property tests, most of
+# which last less than a start of the executable, as one test.
 function(explica_add_test_executable target)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "LABEL" "SOURCES;LINKS")
   add_executable(${target} ${arg_SOURCES})
@@ -109,6 +110,11 @@ function(explica_add_test_executable target)
   explica_set_flags(${target})
   explica_compile_quickly(${target})
   explica_use_precompiled_headers(${target} Tests)
+  if(arg_LABEL MATCHES "unit|property")
+    add_test(NAME ${target} COMMAND ${target} --gtest_brief=1)
+    set_tests_properties(${target} PROPERTIES LABELS ${arg_LABEL} TIMEOUT 600)
+    return()
+  endif()
   set(timeout 120)
   if(arg_LABEL STREQUAL "slow")
     set(timeout 600)

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 #include <sstream>
 
 namespace explica::testing {
@@ -103,6 +104,20 @@ TEST(EveryCommandHelp, StepsAreNamedByTheirPrefix) {
     EXPECT_NE(first.find("--unfold.radius"), std::string::npos) << "where the patch goes";
     EXPECT_EQ(first.find("--unfold.knot"), std::string::npos);
     EXPECT_NE(explica({command, "--help-all"}).out.find("--unfold.knot"), std::string::npos);
+  }
+}
+
+TEST(EveryCommandHelp, ExamplesNameItsOptions) {
+  for (const Json& command : declarations()) {
+    std::set<std::string> names;
+    for (const Json& p : command["parameters"]) names.insert("--" + p["name"].get<std::string>());
+    for (const Json& example : command["examples"]) {
+      std::istringstream line(example["command"].get<std::string>());
+      for (std::string word; line >> word;) {
+        if (!word.starts_with("--")) continue;
+        EXPECT_TRUE(names.contains(word.substr(0, word.find('=')))) << word << " in " << line.str();
+      }
+    }
   }
 }
 
