@@ -9,6 +9,7 @@ of half the gain in spacing).  The odd half of the people is the one constants a
 import argparse
 import json
 import pathlib
+import shutil
 import subprocess
 import sys
 import time
@@ -237,6 +238,11 @@ def write_table(rows, path):
     print("\n".join(lines))
 
 
+def reaches(row):
+    """What the T1 route must reach on a simulated head: its brain found whole, grey matter as labelled."""
+    return row["exit"] == 0 and row["mask_dice"] >= 0.95 and row["cortex_outside_mask"] <= 0.005 and row["grey_dice"] >= 0.93
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("program", type=pathlib.Path)
@@ -244,16 +250,23 @@ def main():
     parser.add_argument("--surfaces", action="store_true")
     parser.add_argument("--people", default="")
     parser.add_argument("--labelled", default="", help="people of oasis_trt, such as 1,2")
+    parser.add_argument("--check", action="store_true", help="make all rows anew and fail if one is beyond what a run must reach")
     parser.add_argument("--variants", default="1,2,3,4,5")
     asked = parser.parse_args()
+    if asked.check:
+        shutil.rmtree(asked.work, ignore_errors=True)
+    asked.work.mkdir(parents=True, exist_ok=True)
     people = [f"{int(p):02d}" for p in asked.people.split(",") if p]
     maps = [m for m in sorted((SHARED / "data/synthseg_people").glob("*.nii.gz")) if not people or m.name[-9:-7] in people]
     if not maps:
-        sys.exit("population: no label maps in ../shared/data/synthseg_people")
+        print("population: no label maps in ../shared/data/synthseg_people")
+        sys.exit(77 if asked.check else 1)
     rows = [row_of(asked.program.resolve(), path, int(variant), asked.work, asked.surfaces)
             for variant in asked.variants.split(",") if variant for path in maps]
     rows += [labelled_row(asked.program.resolve(), int(person), asked.work) for person in asked.labelled.split(",") if person]
     write_table(rows, asked.work / "population.tsv")
+    if asked.check and not all(reaches(row) for row in rows):
+        sys.exit("population: a row is beyond its limits")
 
 
 if __name__ == "__main__":

@@ -151,6 +151,25 @@ TEST(Hemisphere, LeavesTheStemOutAndMarksTheCut) {
             kCut);
 }
 
+TEST(Hemisphere, TheUnlabelledRimOfOtherCortexIsNoStem) {
+  HeadPhantom p = makeHeadPhantom(false);
+  const auto linear = [&](const Point& w) {
+    const Vector at = p.atlas.grid.toIndex(w);
+    return p.atlas.grid.linear(static_cast<int>(std::lround(at.x())),
+                               static_cast<int>(std::lround(at.y())),
+                               static_cast<int>(std::lround(at.z())));
+  };
+  for (std::size_t v = 0; v < p.atlas.size(); ++v) {
+    const auto [i, j, k] = p.atlas.grid.subscripts(v);
+    if (p.atlas.grid.toWorld(Vector(i, j, k)).norm() >= 25) p.atlas[v] = 0;
+  }
+  const Point rim(-2.5, 0, -25);  // below the thalamus, between the hippocampi
+  ASSERT_EQ(p.atlas[linear(rim)], 0);
+  const Hemisphere left = extractHemisphere(p.tissue, p.atlas, p.legend);
+  EXPECT_EQ(left.labels[linear(rim)], kGrey);
+  EXPECT_EQ(left.labels[linear(Point(-2.5, 0, -10))], kCut);
+}
+
 /// A ball as bright as white matter, joined to it by a single row of voxels, and what is about it.
 void hangBall(HeadPhantom& p, Label about) {
   const Point middle(-12.5, 16, 10);

@@ -147,7 +147,10 @@ std::vector<Profile> missesOf(const std::vector<Trajectory>& paths, bool outer,
       const Point at = along(paths[v], border + (k - kSide) * step);
       const double value = valueAt(masked.image, at);
       const double miss = sign * (value - edge.level[row]) / edge.contrast[row];
-      profiles[v][k] = static_cast<float>(outer ? std::min(miss, 2 * masked.seenAt(at) - 1) : miss);
+      const double within = outer ? 2 * masked.seenAt(at) - 1 : 1;
+      // What is brighter than fluid up to the mask's edge is tissue, however little brighter.
+      const bool cutOff = edge.covered[row] < 0.5 && miss > 0;
+      profiles[v][k] = static_cast<float>(cutOff ? within : std::min(miss, within));
     }
   });
   return profiles;

@@ -98,10 +98,10 @@ TEST(MendTogether, EdgesTooLongInOneSurfaceAreSplitInAll) {
 TEST(MendTogether, AVertexBetweenOneThatIsNotKnownAndAnotherIsNotKnown) {
   Nested surfaces = nested(geometry::makeIcosphere(2, 10));
   Eigen::MatrixXd values = Eigen::VectorXd::Constant(surfaces.inner.vertexCount(), 3);
-  values.head(40).setZero();
+  values.topRows(40).setZero();
   mendTogether(surfaces.all(), values, {0.01, 0.9 * longestEdge(surfaces.outer)}, 3);
   ASSERT_GT(values.size(), 162);
-  for (const double value : values) EXPECT_TRUE(value == 0 || value == 3) << value;
+  for (const double value : values.reshaped()) EXPECT_TRUE(value == 0 || value == 3) << value;
 }
 
 TEST(MendTogether, WhatIsSoundStaysToTheBit) {

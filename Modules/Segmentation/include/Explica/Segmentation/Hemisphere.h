@@ -60,12 +60,12 @@ struct Hemisphere {
 /// A brain voxel belongs to the side (or to the cerebellum) of the nearest labelled voxel.  The
 /// brain stem, which AAL does not label, is what lies unlabelled below the thalamus and between the
 /// medial borders of the left and right hippocampus, amygdala, parahippocampal, lingual and
-/// fusiform labels in the same coronal plane, and not nearer to other cortex, whose rim an atlas may
-/// leave unlabelled; so the image's axes must be near the atlas's (RAS
-/// within about 20 degrees), unless it is labelled. Ventricles are unlabelled non-white voxels at
-/// least `coreDepth` from cortical labels whose component touches a deep structure and not the
-/// brain's outside, or that are nearer to a ventricle of the atlas (labelVentricles) than to
-/// cortex and the outside, by steps through such voxels.
+/// fusiform labels in the same coronal plane, and not nearer to other cortex, whose rim an atlas
+/// may leave unlabelled; so the image's axes must be near the atlas's (RAS within about 20
+/// degrees), unless it is labelled. Ventricles are unlabelled non-white voxels at least `coreDepth`
+/// from cortical labels whose component touches a deep structure and not the brain's outside, or
+/// that are nearer to a ventricle of the atlas (labelVentricles) than to cortex and the outside, by
+/// steps through such voxels.
 ///
 /// @param atlas  labels on the segmentation's grid; 0 is unlabelled
 /// @throws InvalidInput  atlas on another grid, side Both, no white or no grey voxel found
