@@ -21,6 +21,12 @@ struct AdjacentPair {
   std::array<std::int32_t, 3> cornersT{};
 };
 
+/// A corner of the k-th moving face.
+struct FaceCorner {
+  std::int32_t face = 0;
+  std::int32_t corner = 0;
+};
+
 /// Which faces move, and who touches whom: all that the evaluators need besides positions.
 class MovingSet {
  public:
@@ -35,9 +41,17 @@ class MovingSet {
   std::vector<AdjacentPair> edgePairs;  ///< each unordered pair once, at least one face moving
   std::vector<AdjacentPair> vertexPairs;
 
+  std::vector<std::int32_t> involved;  ///< the moving faces, then the fixed ones that touch them
+
   /// Faces that share a corner with the k-th moving face, ascending; itself included.
   [[nodiscard]] std::span<const std::int32_t> touching(std::size_t k) const {
     return {touching_.data() + touchingBegin_[k], touching_.data() + touchingBegin_[k + 1]};
+  }
+
+  /// Where moving faces have vertex `v`, in their order.
+  [[nodiscard]] std::span<const FaceCorner> movingAround(std::size_t v) const {
+    return {movingAround_.data() + movingAroundBegin_[v],
+            movingAround_.data() + movingAroundBegin_[v + 1]};
   }
 
   void requireVertexCount(const Positions& positions) const;
@@ -45,6 +59,8 @@ class MovingSet {
  private:
   std::vector<std::size_t> touchingBegin_;
   std::vector<std::int32_t> touching_;
+  std::vector<std::size_t> movingAroundBegin_;
+  std::vector<FaceCorner> movingAround_;
 };
 
 [[nodiscard]] inline Corners cornersOf(const Positions& positions, const Faces& faces,
@@ -57,6 +73,18 @@ class MovingSet {
                                        const std::array<std::int32_t, 3>& v) {
   return {positions.row(v[0]).transpose(), positions.row(v[1]).transpose(),
           positions.row(v[2]).transpose()};
+}
+
+/// Area of a face and its unit normal by the right-hand rule; zero normal for zero area.
+struct FaceArea {
+  double area = 0;
+  Vector normal = Vector::Zero();
+};
+[[nodiscard]] FaceArea faceArea(const Corners& corners);
+
+/// Derivative of the area by corner k.
+[[nodiscard]] inline Vector areaByCorner(const Vector& normal, const Corners& c, int k) {
+  return normal.cross(c[(k + 2) % 3] - c[(k + 1) % 3]) / 2;
 }
 
 /// Area of a face and its derivatives by the corners; zero derivatives for zero area.

@@ -3,138 +3,590 @@
 
 #include "Explica/Repulsion/MultipoleTree.h"
 
+#include "AdjacentChunks.h"
 #include "Assembly.h"
 #include "ClusterTree.h"
-#include "MovingSet.h"
-#include "Quadrature.h"
-
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
+#include "Kernels.h"
+#include "MovingSet.h"
+
+#include <Eigen/Geometry>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
-#include <string>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <utility>
+#include <vector>
 
 namespace explica::repulsion {
 namespace {
 
-/// What clusters do at a point: phi, the integral of 1/|x - y|^2 dS(y), and its gradient.
-struct Field {
-  double phi = 0;
-  Vector gradient = Vector::Zero();
-};
+constexpr int kLanes = kernels::kLanes;  // faces taken at once
 
-/// With r from the centre to the point, s = 1/r^2, m the area, Q its second moments, q = r . Q r:
-///   phi = s (m + s (4 q s - tr Q)),
-///   grad phi = s^2 ((-2 m + s (4 tr Q - 24 q s)) r + 8 s Q r).
-Field fieldOf(const Cluster& cluster, const Point& x) {
-  const Vector r = x - cluster.centre;
-  const double s = 1 / r.squaredNorm(), trace = cluster.second.trace();
-  const Vector turned = cluster.second * r;
-  const double qs = turned.dot(r) * s;
-  return {s * (cluster.area + s * (4 * qs - trace)),
-          s * s * ((-2 * cluster.area + s * (4 * trace - 24 * qs)) * r + 8 * s * turned)};
-}
+// Distances of centroids, in sums of radii, from which seven and twelve points a face are enough;
+// faces nearer than the last are halved.
+constexpr float kSevenRatio = 0.9F;
+constexpr float kTwelveRatio = 0.5F;
+// Distance beyond a node's own reach, in radii of a target group, from which one expansion serves
+// all faces of the group.
+constexpr float kLocal = 0.5F;
+constexpr int kHalvings = 8;  // at most: then the faces touch
 
-/// A moving face and what acts on it.
-class Target {
- public:
-  Target(const MovingSet& set, const Positions& positions, std::size_t k)
-      : set_(set),
-        positions_(positions),
-        touching_(set.touching(k)),
-        corners_(cornersOf(positions, set.faces, set.moving[k])),
-        area_(areaGradient(corners_)),
-        centre_((corners_[0] + corners_[1] + corners_[2]) / 3) {
-    for (const Point& c : corners_) radius_ = std::max(radius_, (c - centre_).norm());
-    int q = 0;
-    for (const RulePoint& p : triangleRule3()) {
-      points_[q++] =
-          p.lambda[0] * corners_[0] + p.lambda[1] * corners_[1] + p.lambda[2] * corners_[2];
-    }
+/// A face or a part of it, single precision, relative to the target leaf's centre.
+struct EnergyPart {
+  std::array<Eigen::Vector3f, 3> corner;
+  std::array<Eigen::Vector3f, 3> lambda;  // of the corners, in the whole face
+  Eigen::Vector3f centre;
+  float radius = 0;
+  float share = 1;
+  bool whole = true;
+
+  void measure() {
+    centre = (corner[0] + corner[1] + corner[2]) / 3;
+    radius = 0;
+    for (const auto& c : corner) radius = std::max(radius, (c - centre).squaredNorm());
+    radius = std::sqrt(radius);
   }
 
-  /// @param weight  of the value: 2 for faces that do not move, since both orders of a pair count
-  void add(const ClusterTree& tree, double opening, double weight) {
-    std::array<Field, 3> fields;
-    tree.visit(
-        centre_, radius_, opening,
-        [&](const Cluster& cluster) {
-          for (int q = 0; q < 3; ++q) {
-            const Field field = fieldOf(cluster, points_[q]);
-            fields[q].phi += field.phi;
-            fields[q].gradient += field.gradient;
-          }
-        },
-        [&](std::int32_t face) { addNear(face, weight); });
-    int q = 0;
-    for (const RulePoint& p : triangleRule3()) {
-      const Field& field = fields[q++];
-      force_.value += weight * p.weight * area_.area * field.phi;
-      for (int k = 0; k < 3; ++k) {
-        force_.byCorner[k] +=
-            2 * p.weight *
-            (area_.area * p.lambda[k] * field.gradient + field.phi * area_.byCorner[k]);
+  void halve(EnergyPart& left, EnergyPart& right) const {
+    int from = 0;
+    for (int k = 1; k < 3; ++k) {
+      if ((corner[k] - corner[(k + 1) % 3]).squaredNorm() >
+          (corner[from] - corner[(from + 1) % 3]).squaredNorm()) {
+        from = k;
       }
     }
+    const int to = (from + 1) % 3;
+    left = right = *this;
+    left.corner[to] = right.corner[from] = (corner[from] + corner[to]) / 2;
+    left.lambda[to] = right.lambda[from] = (lambda[from] + lambda[to]) / 2;
+    for (EnergyPart* part : {&left, &right}) {
+      part->share = share / 2;
+      part->whole = false;
+      part->measure();
+    }
+  }
+};
+
+/// Corners of the faces of a leaf, in units and relative to the target leaf's centre.
+struct LeafCorners {
+  float at[9][kLanes];
+};
+
+/// Second moments of each face about its centroid, over its area.
+void setSecondMoments(const LeafCorners& corners, kernels::TargetLeaf& target) {
+  constexpr std::array<std::pair<int, int>, 6> kAxes = {
+      {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}};
+  for (std::size_t m = 0; m < kAxes.size(); ++m) {
+    const auto [a, b] = kAxes[m];
+    for (int lane = 0; lane < kLanes; ++lane) {
+      float sum = 0;
+      for (int k = 0; k < 3; ++k) {
+        sum += (corners.at[3 * k + a][lane] - target.centroid[a][lane]) *
+               (corners.at[3 * k + b][lane] - target.centroid[b][lane]);
+      }
+      target.second[m][lane] = sum / 12;
+    }
+  }
+}
+
+EnergyPart wholePart(const std::array<float, 9>& corners) {
+  EnergyPart part;
+  for (int k = 0; k < 3; ++k) {
+    part.corner[k] = Eigen::Vector3f(corners[3 * k], corners[3 * k + 1], corners[3 * k + 2]);
+    part.lambda[k] = Eigen::Vector3f::Unit(k);
+  }
+  part.measure();
+  return part;
+}
+
+/// Means over the pairs of one target leaf that three points a face do not resolve.
+class NearPairs {
+ public:
+  explicit NearPairs(const LeafCorners& targets) : targets_(targets) {}
+
+  /// @param ratio   distance of the centroids in sums of radii
+  /// @param source  corners of the source face
+  void add(int lane, float ratio, const std::array<float, 9>& source, int set, float areaT) {
+    if (ratio >= kTwelveRatio) {
+      Batch& batch = ratio < kSevenRatio ? fine_ : coarse_;
+      const int slot = batch.filled++;
+      for (int row = 0; row < 9; ++row) {
+        batch.data.s[row][slot] = targets_.at[row][lane];
+        batch.data.t[row][slot] = source[row];
+      }
+      finish(batch, slot, lane, set, areaT, nullptr);
+      return;
+    }
+    std::array<float, 9> own;
+    for (int row = 0; row < 9; ++row) own[row] = targets_.at[row][lane];
+    divide(wholePart(own), wholePart(source), lane, set, areaT, 0);
   }
 
-  [[nodiscard]] const FaceForce& force() const { return force_; }
+  void flush() {
+    flushBatch(coarse_);
+    flushBatch(fine_);
+  }
+
+  /// Area of the sources times mean of 1/r^2, for each face of the target leaf.
+  [[nodiscard]] double phi(int set, int lane) const { return phi_[set][lane]; }
+  /// Its derivative by the face's corner k, in units.
+  [[nodiscard]] Vector by(int lane, int k) const {
+    return {by_[lane][3 * k], by_[lane][3 * k + 1], by_[lane][3 * k + 2]};
+  }
 
  private:
-  void addNear(std::int32_t face, double weight) {
-    if (std::binary_search(touching_.begin(), touching_.end(), face)) return;
-    const PairIntegral pair =
-        integrateApart(corners_, cornersOf(positions_, set_.faces, face), PairAccuracy::Coarse);
-    force_.value += weight * pair.value;
-    for (int k = 0; k < 3; ++k) force_.byCorner[k] += 2 * pair.byS[k];
+  struct Batch {
+    kernels::ApartBatch data;
+    int filled = 0;
+    int lane[kLanes];
+    int set[kLanes];
+    float weight[kLanes];
+    bool whole[kLanes];
+    Eigen::Vector3f lambda[kLanes][3];
+  };
+
+  void divide(const EnergyPart& s, const EnergyPart& t, int lane, int set, float areaT, int depth) {
+    const float ratio = (s.centre - t.centre).norm() / (s.radius + t.radius);
+    if (ratio < kTwelveRatio && depth < 2 * kHalvings) {
+      EnergyPart left;
+      EnergyPart right;
+      if (s.radius >= t.radius) {
+        s.halve(left, right);
+        divide(left, t, lane, set, areaT, depth + 1);
+        divide(right, t, lane, set, areaT, depth + 1);
+      } else {
+        t.halve(left, right);
+        divide(s, left, lane, set, areaT, depth + 1);
+        divide(s, right, lane, set, areaT, depth + 1);
+      }
+      return;
+    }
+    Batch& batch = ratio < kSevenRatio ? fine_ : coarse_;
+    const int slot = batch.filled++;
+    for (int k = 0; k < 3; ++k) {
+      for (int a = 0; a < 3; ++a) {
+        batch.data.s[3 * k + a][slot] = s.corner[k][a];
+        batch.data.t[3 * k + a][slot] = t.corner[k][a];
+      }
+    }
+    finish(batch, slot, lane, set, areaT * s.share * t.share, s.whole ? nullptr : s.lambda.data());
   }
 
-  const MovingSet& set_;
-  const Positions& positions_;
-  std::span<const std::int32_t> touching_;
-  Corners corners_;
-  AreaGradient area_;
-  Point centre_;
-  double radius_ = 0;
-  std::array<Point, 3> points_;
-  FaceForce force_;
+  void finish(Batch& batch, int slot, int lane, int set, float weight,
+              const Eigen::Vector3f* lambda) {
+    batch.lane[slot] = lane;
+    batch.set[slot] = set;
+    batch.weight[slot] = weight;
+    batch.whole[slot] = lambda == nullptr;
+    if (lambda) std::copy(lambda, lambda + 3, batch.lambda[slot]);
+    if (batch.filled == kLanes) flushBatch(batch);
+  }
+
+  void flushBatch(Batch& batch) {
+    if (batch.filled == 0) return;
+    for (int row = 0; row < 9; ++row) {
+      std::fill(batch.data.s[row] + batch.filled, batch.data.s[row] + kLanes, batch.data.s[row][0]);
+      std::fill(batch.data.t[row] + batch.filled, batch.data.t[row] + kLanes, batch.data.t[row][0]);
+    }
+    kernels::integrateApart(batch.data, &batch == &fine_);
+    for (int slot = 0; slot < batch.filled; ++slot) {
+      const int lane = batch.lane[slot];
+      const double w = batch.weight[slot];
+      phi_[batch.set[slot]][lane] += w * batch.data.value[slot];
+      double* by = by_[lane];
+      for (int k = 0; k < 3; ++k) {
+        for (int a = 0; a < 3; ++a) {
+          const double g = w * batch.data.byS[3 * k + a][slot];
+          if (batch.whole[slot]) {
+            by[3 * k + a] += g;
+          } else {
+            for (int c = 0; c < 3; ++c) by[3 * c + a] += batch.lambda[slot][k][c] * g;
+          }
+        }
+      }
+    }
+    batch.filled = 0;
+  }
+
+  const LeafCorners& targets_;
+  double phi_[2][kLanes] = {};
+  double by_[kLanes][9] = {};
+  Batch coarse_;
+  Batch fine_;
 };
+
+/// Far nodes as columns, for an expansion that serves a whole group.
+class Columns {
+ public:
+  void clear() {
+    for (auto& column : columns_) column.clear();
+  }
+  void add(const kernels::FarNode& n) {
+    const std::array<float, 10> row = {n.centre[0], n.centre[1], n.centre[2], n.mass, n.xx,
+                                       n.yy,        n.zz,        n.xy,        n.xz,   n.yz};
+    for (std::size_t k = 0; k < row.size(); ++k) columns_[k].push_back(row[k]);
+  }
+  /// Adds weightless nodes up to a full vector.
+  void pad() {
+    constexpr kernels::FarNode kNothing = {{1e4F, 1e4F, 1e4F}, 0, 0, 0, 0, 0, 0, 0};
+    while (columns_[0].size() % kLanes != 0) add(kNothing);
+  }
+  [[nodiscard]] kernels::FarColumns view() const {
+    kernels::FarColumns view{};
+    for (std::size_t k = 0; k < columns_.size(); ++k) view.column[k] = columns_[k].data();
+    view.count = columns_[0].size();
+    return view;
+  }
+
+ private:
+  std::array<std::vector<float>, 10> columns_;
+};
+
+/// What a block of four target groups shares of one tree of sources.
+struct Shared {
+  std::vector<kernels::FarNode> far;  // seen from the block's centre
+  Columns distant;                    // far from all groups: serve expansions
+  std::vector<std::int32_t> close;    // groups
+  std::vector<std::int32_t> candidates;
+  std::vector<std::int32_t> next;
+};
+
+/// Scratch of one thread's blocks.
+struct Lists {
+  std::array<Shared, 2> shared;  // moving sources, fixed sources
+  std::vector<kernels::CloseGroup> close;
+  std::vector<kernels::FarNode> nodes;
+  std::vector<kernels::OpenLeaf> leaves;
+  std::vector<kernels::MaskedFace> masked;
+  std::vector<kernels::NearHit> hits;
+  std::vector<std::uint16_t> targetsAt;  // of each vertex: the group's faces that have it
+};
+
+/// Things that tasks take in turns, for their memory.
+template <class T>
+class Pool {
+ public:
+  [[nodiscard]] std::unique_ptr<T> take() {
+    const std::scoped_lock lock(mutex_);
+    if (idle_.empty()) return std::make_unique<T>();
+    std::unique_ptr<T> thing = std::move(idle_.back());
+    idle_.pop_back();
+    return thing;
+  }
+  void giveBack(std::unique_ptr<T> thing) {
+    const std::scoped_lock lock(mutex_);
+    idle_.push_back(std::move(thing));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<T>> idle_;
+};
+
+/// What an evaluation writes besides its result.
+struct Workspace {
+  ClusterTree movingTree;
+  std::vector<FaceArea> areas;
+  std::vector<FaceForce> forces;
+  std::vector<AdjacentChunks::Sum> adjacent;
+  Pool<Lists> lists;
+};
+
+std::array<float, 3> difference(const std::array<double, 3>& a, const std::array<double, 3>& b) {
+  return {static_cast<float>(a[0] - b[0]), static_cast<float>(a[1] - b[1]),
+          static_cast<float>(a[2] - b[2])};
+}
 
 }  // namespace
 
 struct MultipoleTree::State {
+  State(const TriangleMesh& mesh, const std::vector<bool>& vertexMoves) : set(mesh, vertexMoves) {}
+
   MovingSet set;
-  double opening;
-  ClusterTree fixed;
+  MultipoleTreeOptions options;
+  double unit = 1;  // mm, a power of two next to the mean face size
+  ClusterTree fixedTree;
+  AdjacentChunks adjacent;
+  mutable Pool<Workspace> workspaces;
+
+  /// What `nearRatio` adds to the radius of the largest of some targets, in units.
+  [[nodiscard]] float marginOf(const ClusterTree::Node& targets) const {
+    return static_cast<float>((options.nearRatio - 1) * targets.largestFace / unit);
+  }
+
+  void addNear(const kernels::TargetLeaf& target, const ClusterTree::Node& leaf,
+               const kernels::NearHit& hit, int which, const ClusterTree& tree,
+               NearPairs& nearPairs) const;
+  void gatherShared(const ClusterTree& targets, std::int32_t block, const ClusterTree& tree,
+                    Shared& shared) const;
+  void sumBlock(const Positions& positions, const std::vector<FaceArea>& areas,
+                const ClusterTree& movingTree, std::int32_t block, Lists& lists,
+                std::vector<FaceForce>& forces) const;
+  void sumLeaf(const Positions& positions, const std::vector<FaceArea>& areas,
+               const ClusterTree& movingTree, std::int32_t group, std::int32_t block, Lists& lists,
+               std::vector<FaceForce>& forces) const;
 };
 
 MultipoleTree::MultipoleTree(const TriangleMesh& mesh, const std::vector<bool>& vertexMoves,
-                             double opening) {
-  if (!(opening > 0 && opening < 1)) {
-    throw InvalidInput("knot energy: opening is " + std::to_string(opening) +
+                             const MultipoleTreeOptions& options) {
+  if (!(options.opening > 0 && options.opening < 1)) {
+    throw InvalidInput("knot energy: opening is " + std::to_string(options.opening) +
                        "; it must lie between 0 and 1");
   }
-  MovingSet set(mesh, vertexMoves);
-  ClusterTree fixed(mesh.positions, mesh.faces, set.fixed);
-  state_ = std::make_unique<State>(State{std::move(set), opening, std::move(fixed)});
+  if (!(options.nearRatio >= 1)) {
+    throw InvalidInput("knot energy: near ratio is " + std::to_string(options.nearRatio) +
+                       "; it must be at least 1");
+  }
+  auto state = std::make_unique<State>(mesh, vertexMoves);
+  state->options = options;
+  double area = 0;
+  for (const std::int32_t f : state->set.moving) {
+    area += areaGradient(cornersOf(mesh.positions, mesh.faces, f)).area;
+  }
+  if (area > 0) {
+    const double size = std::sqrt(area / static_cast<double>(state->set.moving.size()));
+    state->unit = std::exp2(std::round(std::log2(size)));
+  }
+  state->fixedTree.build(mesh.positions, mesh.faces, state->set.fixed, state->unit, options.opening,
+                         options.nearRatio);
+  ClusterTree movingTree;
+  movingTree.build(mesh.positions, mesh.faces, state->set.moving, state->unit, options.opening,
+                   options.nearRatio);
+  std::vector<std::int32_t> rank(static_cast<std::size_t>(mesh.faceCount()), 0);
+  for (std::size_t i = 0; i < movingTree.order().size(); ++i) {
+    rank[state->set.moving[movingTree.order()[i]]] = static_cast<std::int32_t>(i);
+  }
+  state->adjacent = AdjacentChunks(state->set, rank);
+  state_ = std::move(state);
 }
 
 MultipoleTree::~MultipoleTree() = default;
 
+const char* MultipoleTree::instructionSet() {
+  return kernels::instructionSet();
+}
+
+void MultipoleTree::State::gatherShared(const ClusterTree& targets, std::int32_t block,
+                                        const ClusterTree& tree, Shared& shared) const {
+  shared.far.clear();
+  shared.distant.clear();
+  shared.close.clear();
+  if (tree.empty()) return;
+  const auto& origin = targets.moments()[block].centre;
+  const std::array<float, 3> centre = difference(origin, tree.moments()[0].centre);
+  // Its groups: how far from its centre, and how large.
+  const ClusterTree::Node& node = targets.nodes()[block];
+  float away = 0;
+  float radius = 0;
+  for (std::int32_t first = node.first; first < node.first + node.count; first += kLanes) {
+    const std::int32_t group = targets.groups()[first / kLanes];
+    const std::array<float, 3> d = difference(targets.moments()[group].centre, origin);
+    away = std::max(away, std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]));
+    radius = std::max(radius, static_cast<float>(targets.nodes()[group].radius / unit));
+  }
+  const auto spread = static_cast<float>(node.radius / unit);
+  const float distant = away + (1 + kLocal) * radius;
+  const auto margin = static_cast<float>((options.nearRatio - 1) * node.largestFace / unit);
+
+  shared.candidates.assign(1, 0);
+  while (!shared.candidates.empty()) {
+    shared.next.clear();
+    for (const std::int32_t number : shared.candidates) {
+      const ClusterTree::Ball& source = tree.balls()[number];
+      const float dx = source.x - centre[0];
+      const float dy = source.y - centre[1];
+      const float dz = source.z - centre[2];
+      const float squared = dx * dx + dy * dy + dz * dz;
+      const float clear = std::max(source.reach, source.margin + margin);
+      if (squared > (spread + clear) * (spread + clear)) {
+        const kernels::FarNode far = farNode(tree.moments()[number], origin);
+        if (squared > (distant + clear) * (distant + clear)) {
+          shared.distant.add(far);
+        } else {
+          shared.far.push_back(far);
+        }
+      } else if (source.left >= 0) {
+        shared.next.push_back(source.left);
+        shared.next.push_back(source.left + 1);
+      } else {
+        shared.close.push_back(tree.nodes()[number].first / kLanes);
+      }
+    }
+    shared.candidates.swap(shared.next);
+  }
+  shared.distant.pad();
+}
+
+void MultipoleTree::State::addNear(const kernels::TargetLeaf& target, const ClusterTree::Node& leaf,
+                                   const kernels::NearHit& hit, int which, const ClusterTree& tree,
+                                   NearPairs& nearPairs) const {
+  const kernels::SourceFace& source = tree.sources()[hit.face];
+  const Vector offset = (tree.groupOf(hit.face).centre - leaf.centre) / unit;
+  const std::array<float, 3> shift = {static_cast<float>(offset[0]), static_cast<float>(offset[1]),
+                                      static_cast<float>(offset[2])};
+  std::array<float, 9> corners;
+  for (int row = 0; row < 9; ++row) corners[row] = tree.corners()[hit.face][row] + shift[row % 3];
+  const std::uint32_t present = (1U << leaf.count) - 1;
+  for (std::uint32_t left = hit.targets & present; left != 0; left &= left - 1) {
+    const int lane = std::countr_zero(left);
+    float squared = 0;
+    for (int a = 0; a < 3; ++a) {
+      const float d = target.centroid[a][lane] - source.centroid[a] - shift[a];
+      squared += d * d;
+    }
+    const float ratio = std::sqrt(squared) / (target.radius[lane] + source.radius);
+    nearPairs.add(lane, ratio, corners, which, 3 * source.point[0][3]);
+  }
+}
+
+void MultipoleTree::State::sumBlock(const Positions& positions, const std::vector<FaceArea>& areas,
+                                    const ClusterTree& movingTree, std::int32_t block, Lists& lists,
+                                    std::vector<FaceForce>& forces) const {
+  gatherShared(movingTree, block, movingTree, lists.shared[0]);
+  gatherShared(movingTree, block, fixedTree, lists.shared[1]);
+  const ClusterTree::Node& node = movingTree.nodes()[block];
+  for (std::int32_t first = node.first; first < node.first + node.count; first += kLanes) {
+    sumLeaf(positions, areas, movingTree, movingTree.groups()[first / kLanes], block, lists,
+            forces);
+  }
+}
+
+void MultipoleTree::State::sumLeaf(const Positions& positions, const std::vector<FaceArea>& areas,
+                                   const ClusterTree& movingTree, std::int32_t group,
+                                   std::int32_t block, Lists& lists,
+                                   std::vector<FaceForce>& forces) const {
+  const ClusterTree::Node& leaf = movingTree.nodes()[group];
+  const std::array<float, 3> shift =
+      difference(movingTree.moments()[group].centre, movingTree.moments()[block].centre);
+  kernels::TargetLeaf target{};
+  LeafCorners corners;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const std::int32_t k = leaf.first + std::min(lane, leaf.count - 1);
+    const kernels::SourceFace& face = movingTree.sources()[k];
+    const auto& own = movingTree.corners()[k];
+    for (int a = 0; a < 3; ++a) {
+      target.centroid[a][lane] = face.centroid[a];
+      for (int q = 0; q < 3; ++q) target.point[q][a][lane] = face.point[q][a];
+    }
+    target.radius[lane] = face.radius;
+    for (int row = 0; row < 9; ++row) corners.at[row][lane] = own[row];
+  }
+  setSecondMoments(corners, target);
+
+  // The faces' vertices, marked while the group is summed.
+  const auto* vertices = movingTree.vertices().data() + leaf.first;
+  for (int lane = 0; lane < leaf.count; ++lane) {
+    for (const std::int32_t v : vertices[lane]) {
+      lists.targetsAt[v] = static_cast<std::uint16_t>(lists.targetsAt[v] | (1U << lane));
+    }
+  }
+
+  NearPairs nearPairs(corners);
+  for (int which = 0; which < 2; ++which) {
+    const ClusterTree& tree = which == 0 ? movingTree : fixedTree;
+    const Shared& shared = lists.shared[which];
+    kernels::addLocalExpansion(target, which, shared.distant.view(), shift.data());
+    kernels::addFarNodes(target, which, shared.far.data(), shared.far.size(), shift.data());
+    lists.close.clear();
+    for (const std::int32_t g : shared.close) {
+      const std::array<float, 3> offset =
+          difference(tree.moments()[tree.groups()[g]].centre, movingTree.moments()[group].centre);
+      lists.close.push_back({&tree.groupPacks()[g], {offset[0], offset[1], offset[2], 0}});
+    }
+    const std::size_t room = lists.close.size() * kLanes + 1;
+    if (lists.nodes.size() < room) {
+      lists.nodes.resize(room);
+      lists.leaves.resize(room);
+      lists.masked.resize(room);
+      lists.hits.resize(2 * room);
+    }
+    const std::size_t hitCount = kernels::addCloseGroups(
+        target, which, lists.close.data(), lists.close.size(),
+        {tree.leafPacks().data(), tree.sources().data(), tree.vertices().data(),
+         lists.targetsAt.data()},
+        static_cast<float>(options.nearRatio),
+        {lists.nodes.data(), lists.leaves.data(), lists.masked.data(), lists.hits.data()});
+    for (std::size_t h = 0; h < hitCount; ++h) {
+      addNear(target, leaf, lists.hits[h], which, tree, nearPairs);
+    }
+  }
+  nearPairs.flush();
+  for (int lane = 0; lane < leaf.count; ++lane) {
+    for (const std::int32_t v : vertices[lane]) lists.targetsAt[v] = 0;
+  }
+
+  for (int lane = 0; lane < leaf.count; ++lane) {
+    const std::int32_t slot = movingTree.order()[leaf.first + lane];
+    const FaceArea& area = areas[slot];
+    const Corners own = cornersOf(positions, set.faces, set.moving[slot]);
+    constexpr double kThird = 1.0 / 3;
+    std::array<double, 2> phi = {nearPairs.phi(0, lane), nearPairs.phi(1, lane)};
+    Vector total = Vector::Zero();
+    std::array<Vector, 3> g;
+    for (int q = 0; q < 3; ++q) {
+      for (int which = 0; which < 2; ++which) {
+        phi[which] += kThird * static_cast<double>(target.phi[which][q][lane]);
+      }
+      g[q] = kThird * Vector(target.g[q][0][lane], target.g[q][1][lane], target.g[q][2][lane]);
+      total += g[q];
+    }
+    FaceForce& force = forces[slot];
+    force.value = area.area * (phi[0] + 2 * phi[1]);
+    const double byShape = 2 * area.area / unit;
+    const double byArea = 2 * (phi[0] + phi[1]);
+    for (int k = 0; k < 3; ++k) {
+      force.byCorner[k] = byShape * (total / 6 + g[k] / 2 + nearPairs.by(lane, k)) +
+                          byArea * areaByCorner(area.normal, own, k);
+    }
+  }
+}
+
 KnotValue MultipoleTree::evaluate(const Positions& positions) const {
-  const MovingSet& set = state_->set;
-  set.requireVertexCount(positions);
-  const ClusterTree moving(positions, set.faces, set.moving);
-  std::vector<FaceForce> forces(set.moving.size());
-  constexpr std::size_t kGrain = 16;  // faces a task
-  parallelFor(forces.size(), kGrain, [&](std::size_t k) {
-    Target target(set, positions, k);
-    target.add(moving, state_->opening, 1);
-    target.add(state_->fixed, state_->opening, 2);
-    forces[k] = target.force();
+  const State& state = *state_;
+  state.set.requireVertexCount(positions);
+  std::unique_ptr<Workspace> work = state.workspaces.take();
+  work->movingTree.build(positions, state.set.faces, state.set.moving, state.unit,
+                         state.options.opening, state.options.nearRatio);
+  work->areas.resize(state.set.involved.size());
+  parallelFor(work->areas.size(), 1024, [&](std::size_t i) {
+    work->areas[i] = faceArea(cornersOf(positions, state.set.faces, state.set.involved[i]));
   });
-  return assemble(set, positions, forces, adjacentPairs(set, positions, PairAccuracy::Coarse));
+  work->forces.resize(state.set.moving.size());
+  const std::vector<std::int32_t>& blocks = work->movingTree.blocks();
+  parallelForBlocks(blocks.size(), std::clamp<std::size_t>(blocks.size() / 64, 1, 8),
+                    [&](std::size_t begin, std::size_t end) {
+                      std::unique_ptr<Lists> lists = work->lists.take();
+                      lists->targetsAt.resize(state.set.vertexMoves.size(), 0);
+                      for (std::size_t b = begin; b < end; ++b) {
+                        state.sumBlock(positions, work->areas, work->movingTree, blocks[b], *lists,
+                                       work->forces);
+                      }
+                      work->lists.giveBack(std::move(lists));
+                    });
+
+  KnotValue result;
+  result.gradient.setZero(positions.rows(), 3);
+  state.adjacent.add(positions, work->areas, state.unit, work->adjacent, result.value,
+                     result.gradient);
+  for (const FaceForce& force : work->forces) result.value += force.value;
+  parallelFor(state.set.vertexMoves.size(), 4096, [&](std::size_t v) {
+    auto row = result.gradient.row(static_cast<Eigen::Index>(v));
+    if (!state.set.vertexMoves[v]) {
+      row.setZero();
+      return;
+    }
+    for (const FaceCorner& at : state.set.movingAround(v)) {
+      row += work->forces[at.face].byCorner[at.corner].transpose();
+    }
+  });
+  state.workspaces.giveBack(std::move(work));
+  return result;
 }
 
 }  // namespace explica::repulsion

@@ -76,7 +76,7 @@ struct Ladder {
   double sixteen;  // degree 8; below it the larger simplex is halved
   int depth;       // halvings at most
 };
-constexpr Ladder kCoarse = {2.5, 1.2, 0.65, 12};   // relative error about 1e-3
+constexpr Ladder kCoarse = {4.0, 1.5, 0.8, 12};   // relative error about 1e-3
 constexpr Ladder kStandard = {14, 4.5, 2.0, 20};  // 1e-6, except needles
 constexpr Ladder kFine = {200, 14, 4.0, 28};      // 1e-9
 
@@ -152,10 +152,9 @@ void addMean(const Simplex& a, const Simplex& b, const Ladder& ladder, int depth
       const Vector z = nodesA[i].x - nodesB[j].x;
       const double squared = z.squaredNorm();
       if (squared == 0) continue;  // only where faces touch and the subdivision has ended
-      const double inverse = 1 / squared;
-      const double term = nodesA[i].weight * nodesB[j].weight * inverse;
+      const double term = nodesA[i].weight * nodesB[j].weight / squared;
       mean.value += term;
-      const Vector force = (-2 * term * inverse) * z;
+      const Vector force = (-2 * term / squared) * z;
       onA += force;
       onB[j] -= force;
     }

@@ -7,6 +7,7 @@
 #include "Explica/Core/Parallel.h"
 #include "Explica/Geometry/Fixtures.h"
 #include "Explica/Repulsion/AllPairs.h"
+#include "Explica/Testing/InstructionSets.h"
 #include "Explica/Testing/Selections.h"
 
 #include <gtest/gtest.h>
@@ -66,7 +67,10 @@ TEST(MultipoleTree, ErrorFallsWithTheOpening) {
   for (std::size_t v = 0; v < moves.size(); v += 20) moves[v] = true;
   const KnotValue exact = AllPairs(sphere, moves).evaluate(sphere.positions);
   const auto error = [&](double opening) {
-    const KnotValue v = MultipoleTree(sphere, moves, opening).evaluate(sphere.positions);
+    MultipoleTreeOptions options;
+    options.opening = opening;
+    options.nearRatio = 1.3;  // so that near pairs do not hide it
+    const KnotValue v = MultipoleTree(sphere, moves, options).evaluate(sphere.positions);
     return (v.gradient - exact.gradient).norm() / exact.gradient.norm();
   };
   const double coarse = error(0.8);
@@ -74,7 +78,19 @@ TEST(MultipoleTree, ErrorFallsWithTheOpening) {
   EXPECT_LT(error(0.3), 1e-3);
 }
 
-TEST(MultipoleTree, DependsOnNoEarlierEvaluation) {
+TEST(MultipoleTree, ErrorFallsWithTheNearRatio) {
+  const TriangleMesh sphere = geometry::makeIcosphere(3);
+  const KnotValue exact = AllPairs(sphere, everyVertex(sphere)).evaluate(sphere.positions);
+  const auto error = [&](double nearRatio) {
+    const KnotValue v =
+        MultipoleTree(sphere, everyVertex(sphere), {0.25, nearRatio}).evaluate(sphere.positions);
+    return (v.gradient - exact.gradient).norm() / exact.gradient.norm();
+  };
+  EXPECT_LT(error(2), 0.6 * error(1));
+  EXPECT_LT(error(MultipoleTreeOptions().nearRatio), 2e-3);
+}
+
+TEST(MultipoleTree, GivesTheSameWhenItsMemoryIsUsedAgain) {
   const TriangleMesh folded = geometry::makeFoldedSphere(3);
   const MultipoleTree tree(folded, cap(folded, 0.3));
   const KnotValue first = tree.evaluate(folded.positions);
@@ -141,6 +157,17 @@ TEST(MultipoleTree, DoesNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(one.gradient, four.gradient);
 }
 
+TEST(MultipoleTree, InstructionSetsDifferByTheRoundingOfSinglePrecision) {
+  const TriangleMesh folded = geometry::makeFoldedSphere(3);
+  const MultipoleTree tree(folded, everyVertex(folded));
+  const KnotValue widest = tree.evaluate(folded.positions);
+  testing::forEachNarrowerInstructionSet([&](std::int64_t target) {
+    const KnotValue narrow = tree.evaluate(folded.positions);
+    EXPECT_NEAR(narrow.value, widest.value, 1e-6 * widest.value) << target;
+    EXPECT_LT((narrow.gradient - widest.gradient).norm(), 1e-5 * widest.gradient.norm()) << target;
+  });
+}
+
 TEST(MultipoleTree, StaysFiniteForFacesWithoutAreaAndSheetsInContact) {
   TriangleMesh sheet = geometry::makeRectangle(4, 4, 1, 1);
   sheet.positions.row(7) = sheet.positions.row(6);  // two vertices in one place
@@ -161,10 +188,11 @@ TEST(MultipoleTree, StaysFiniteForFacesWithoutAreaAndSheetsInContact) {
   EXPECT_TRUE(contact.gradient.allFinite());
 }
 
-TEST(MultipoleTree, RefusesAnOpeningOutOfRange) {
+TEST(MultipoleTree, RefusesOptionsOutOfRange) {
   const TriangleMesh sphere = geometry::makeIcosphere(0);
-  EXPECT_THROW(MultipoleTree(sphere, everyVertex(sphere), 1.0), InvalidInput);
-  EXPECT_THROW(MultipoleTree(sphere, everyVertex(sphere), 0.0), InvalidInput);
+  EXPECT_THROW(MultipoleTree(sphere, everyVertex(sphere), {1.0, 2.0}), InvalidInput);
+  EXPECT_THROW(MultipoleTree(sphere, everyVertex(sphere), {0.0, 2.0}), InvalidInput);
+  EXPECT_THROW(MultipoleTree(sphere, everyVertex(sphere), {0.5, 0.5}), InvalidInput);
 }
 
 TEST(MultipoleTree, OfNothingThatMovesIsZero) {

@@ -41,8 +41,11 @@ double segmentError(Rule rule, int degree) {
 }
 
 TEST(Quadrature, TriangleRulesAreExactToTheirDegreeAndNoFurther) {
-  const std::array<std::pair<Rule, int>, 3> rules = {
-      {{triangleRule3(), 2}, {triangleRule7(), 5}, {triangleRule16(), 8}}};
+  const std::array<std::pair<Rule, int>, 5> rules = {{{triangleRule3(), 2},
+                                                      {triangleRule6(), 4},
+                                                      {triangleRule7(), 5},
+                                                      {triangleRule12(), 6},
+                                                      {triangleRule16(), 8}}};
   for (const auto& [rule, degree] : rules) {
     EXPECT_LT(triangleError(rule, degree), 1e-14) << degree;
     EXPECT_GT(triangleError(rule, degree + 1), 1e-9) << degree;
@@ -50,8 +53,8 @@ TEST(Quadrature, TriangleRulesAreExactToTheirDegreeAndNoFurther) {
 }
 
 TEST(Quadrature, SegmentRulesAreExactToTheirDegreeAndNoFurther) {
-  const std::array<std::pair<Rule, int>, 3> rules = {
-      {{segmentRule2(), 3}, {segmentRule3(), 5}, {segmentRule5(), 9}}};
+  const std::array<std::pair<Rule, int>, 4> rules = {
+      {{segmentRule2(), 3}, {segmentRule3(), 5}, {segmentRule4(), 7}, {segmentRule5(), 9}}};
   for (const auto& [rule, degree] : rules) {
     EXPECT_LT(segmentError(rule, degree), 1e-15) << degree;
     EXPECT_GT(segmentError(rule, degree + 1), 1e-7) << degree;
