@@ -62,11 +62,13 @@ void declare(Declaration& d, Settings& s) {
           "parted first where the region or its collar is concerned; the thesis's method promises "
           "nothing of the kind. What is written is tested once more: faces that cross in it and "
           "did "
-          "not at the start, a visibility or a seen share below 0.97 or a mean edge strain above "
-          "11 %, a collar that gives way (twice its area in the mean, a face at more than eight "
-          "times), and a run that never got better than its start end with a warning, a 'flag' in "
-          "the summary and exit code 3; a goal (0.98, 0.98, 9 %) that is missed by less with the "
-          "verdict 'look'. A run can be stopped at any time and continued with --resume into the "
+          "not at the start, a goal that is missed (visibility 0.98 or --target-visibility, as "
+          "much "
+          "seen, mean edge strain 9 %), a collar that gives way (twice its area in the mean, a "
+          "face "
+          "at more than eight times), and a run that never got better than its start end with a "
+          "warning that says which, a 'flag' in the summary and exit code 3. A run can be stopped "
+          "at any time and continued with --resume into the "
           "same --out.")
       .reference(
           "Lopez Perez 2010, Two- and three-dimensional annular tissues and unfolding, thesis")
@@ -114,10 +116,9 @@ void declare(Declaration& d, Settings& s) {
                     "the result is compared with the surface so repaired"},
               s.repair)
       .options("Unfolding", s.unfold)
-      .needs({"keep-areas", "time-step"}, {"method=thesis"})
+      .needs({"time-step"}, {"method=thesis"})
       .needs({"knot-weight"}, {"knot"})
-      .needs({"collar-width", "collar-weight", "overhang-weight"}, {"surround=elastic"})
-      .needs({"guide-faces", "guide-weight"}, {"surround=none"})
+      .needs({"collar-width"}, {"surround=elastic"})
       .option("Unfolding", Field{"resume", "", "continue the run whose outputs are in --out"},
               s.resume)
       .reuseOutputIf(s.resume)

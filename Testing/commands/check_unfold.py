@@ -44,10 +44,11 @@ def cosines(points, faces, eye):
 
 
 def seen(points, faces, listed, eye):
-    """Share of the area of the listed faces from whose middles no other face hides the eye [Moller and Trumbore 1997]."""
+    """Share of the area of the listed faces from whose middles no other face hides the eye [Moller and Trumbore 1997], and the
+    same times the cosine."""
     cosine, size = cosines(points, faces[listed], eye)
     corner, side, other = points[faces[:, 0]], points[faces[:, 1]] - points[faces[:, 0]], points[faces[:, 2]] - points[faces[:, 0]]
-    free = 0.0
+    free = real = 0.0
     for n in np.flatnonzero(cosine > 0):
         origin = points[faces[listed[n]]].mean(axis=0)
         way, to = eye - origin, origin - corner
@@ -57,8 +58,31 @@ def seen(points, faces, listed, eye):
             u, v, t = (x / (side * p).sum(axis=1) for x in (u, v, t))
         hit = (u >= 0) & (v >= 0) & (u + v <= 1) & (t > 0) & (t < 1)
         hit[listed[n]] = False
-        free += 0 if hit.any() else size[n]
-    return free / size.sum()
+        if not hit.any():
+            free += size[n]
+            real += size[n] * cosine[n]
+    return free / size.sum(), real / size.sum()
+
+
+def pieces_and_holes(faces):
+    """Parts that share vertices, and loops of edges of a single face beyond one a part."""
+
+    def parts(links):
+        first = {}
+
+        def root(v):
+            while first.setdefault(v, v) != v:
+                v = first[v]
+            return v
+
+        for link in links:
+            for v in link[1:]:
+                first[root(v)] = root(link[0])
+        return len({root(v) for link in links for v in link})
+
+    sides, uses = np.unique(np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1), axis=0, return_counts=True)
+    pieces = parts(faces.tolist())
+    return pieces, parts(sides[uses == 1].tolist()) - pieces
 
 
 before, all_faces = read(surface if summary["reference"] == "SURFACE" else out / summary["reference"])
@@ -73,6 +97,9 @@ length0, length1 = (np.linalg.norm(p[edges[:, 0]] - p[edges[:, 1]], axis=1) for 
 strain = np.abs(length1 / length0 - 1)
 again = {
     "region_faces": inside.sum(),
+    "region_vertices": len(np.unique(region)),
+    "region_pieces": pieces_and_holes(region)[0],
+    "region_holes": pieces_and_holes(region)[1],
     "region_area": size0[inside].sum(),
     "area_error_mean": np.abs(ratio[inside] - 1).mean(),
     "area_error_max": np.abs(ratio[inside] - 1).max(),
@@ -88,13 +115,18 @@ for name, points in (("initial", before), ("final", after)):
     again["visibility_" + name] = mean
     again["backfacing_" + name] = size[cosine < 0].sum() / size.sum()
 faults = [f"{key}: {summary[key]}, from the files {value:.6g}" for key, value in again.items() if abs(summary[key] - value) > 1e-5 * max(1, abs(value))]
+for name, points in (("initial", before), ("final", after)):
+    cosine, size = cosines(points, region, eye)
+    variance = (cosine**2 * size).sum() / size.sum() - again["visibility_" + name] ** 2
+    if abs(summary["flux_variance_" + name] - variance) > 1e-3:  # by the middles of the faces
+        faults.append(f"flux_variance_{name}: {summary['flux_variance_' + name]}, from the files {variance:.5f}")
 # One ray a face instead of nine: what lies at the edge of a shadow may differ.
 for name, points in (("initial", before), ("final", after)):
     whole = all_faces if name == "initial" else faces
     listed = np.flatnonzero(inside) if len(whole) == len(inside) else None
     if listed is not None:
-        share = seen(points, whole, listed, eye)
-        if abs(summary["seen_" + name] - share) > 0.01:
-            faults.append(f"seen_{name}: {summary['seen_' + name]}, from the files {share:.4f}")
+        for key, share in zip(("seen_", "real_visibility_"), seen(points, whole, listed, eye)):
+            if abs(summary[key + name] - share) > 0.01:
+                faults.append(f"{key}{name}: {summary[key + name]}, from the files {share:.4f}")
 print("\n".join(faults))
 sys.exit(bool(faults))

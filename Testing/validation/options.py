@@ -38,8 +38,6 @@ SUBJECTS = {
         ("white pole", [str(WHITE), "--vertex", "7057", "--radius", "20", "--direction=-0.5,0.8,-0.4"]),
         ("cut out", [str(PIAL), "--vertex", "4530", "--radius", "25", *SIDE, "--surround", "none"]),
         ("fixed", [str(PIAL), "--vertex", "4530", "--radius", "25", *SIDE, "--surround", "fixed"]),
-        ("guided", [str(PIAL), "--vertex", "4530", "--radius", "40", *SIDE, "--surround", "none",
-                    "--guide-faces", "1000"]),
         ("thesis", [str(PIAL), "--vertex", "4530", "--radius", "20", *SIDE, *THESIS]),
     ],
     "flatten": [
@@ -132,7 +130,7 @@ MEASURES = {
 # Values other than a quarter and four times the default.
 VALUES = {
     "unfold": {"collar-width": [6, 40], "time-step": [0.005, 0.05], "distance": [100, 10000], "cone": [],
-               "target-visibility": [0.9, 0.99], "max-iterations": [10, 2000], "guide-faces": [250, 120000],
+               "target-visibility": [0.9, 0.99], "max-iterations": [10, 2000],
                "frames": [3], "knot": ["tree"]},  # the other two sum the same pairs, for minutes
     "flatten": {"cut.strain": [0.08, 0.2], "cut.most": [3, 48], "area-tolerance": [0.0025, 0.04], "frames": [3],
                 "grid": [0.25, 2]},

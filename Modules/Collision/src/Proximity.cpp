@@ -4,7 +4,6 @@
 #include "Explica/Collision/Proximity.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
@@ -19,12 +18,10 @@ Vector combine(const Weights& w, const FourPoints& x) {
   return w[1] * (x[1] - x[0]) + w[2] * (x[2] - x[0]) + w[3] * (x[3] - x[0]);
 }
 
-void keepNearer(Proximity& best, const FourPoints& x, const Weights& weights, int freedom,
-                const Weights& rate0 = {}, const Weights& rate1 = {}) {
+void keepNearer(Proximity& best, const FourPoints& x, const Weights& weights) {
   const Vector difference = combine(weights, x);
   const double squared = difference.squaredNorm();
-  if (squared < best.squaredDistance)
-    best = {weights, freedom, {rate0, rate1}, difference, squared};
+  if (squared < best.squaredDistance) best = {weights, difference, squared};
 }
 
 /// Parameter in [0, 1] of the point of segment a + t (b - a) next to q; 0 for a degenerate segment.
@@ -45,18 +42,16 @@ Proximity vertexFace(const FourPoints& x) {
     const double u = aq.cross(ac).dot(normal) / squaredNormal;
     const double v = ab.cross(aq).dot(normal) / squaredNormal;
     if (u > 0 && v > 0 && u + v < 1) {
-      keepNearer(best, x, {1, u + v - 1, -u, -v}, 2, {0, 1, -1, 0}, {0, 1, 0, -1});
+      keepNearer(best, x, {1, u + v - 1, -u, -v});
     }
   }
   for (int k = 0; k < 3; ++k) {
     const int a = 1 + k, b = 1 + (k + 1) % 3;
     const double t = segmentParameter(x[0], x[a], x[b]);
-    Weights weights = {1, 0, 0, 0}, rate = {};
+    Weights weights = {1, 0, 0, 0};
     weights[a] = t - 1;
     weights[b] = -t;
-    rate[a] = 1;
-    rate[b] = -1;
-    keepNearer(best, x, weights, t > 0 && t < 1 ? 1 : 0, rate);
+    keepNearer(best, x, weights);
   }
   return best;
 }
@@ -70,18 +65,18 @@ Proximity edgeEdge(const FourPoints& x) {
     const double s = w.cross(v).dot(normal) / squaredNormal;
     const double t = w.cross(u).dot(normal) / squaredNormal;
     if (s > 0 && s < 1 && t > 0 && t < 1) {
-      keepNearer(best, x, {1 - s, s, t - 1, -t}, 2, {-1, 1, 0, 0}, {0, 0, 1, -1});
+      keepNearer(best, x, {1 - s, s, t - 1, -t});
     }
   }
   for (int end = 0; end < 2; ++end) {
     const double t = segmentParameter(x[end], x[2], x[3]);
     Weights weights = {0, 0, t - 1, -t};
     weights[end] = 1;
-    keepNearer(best, x, weights, t > 0 && t < 1 ? 1 : 0, {0, 0, 1, -1});
+    keepNearer(best, x, weights);
     const double s = segmentParameter(x[2 + end], x[0], x[1]);
     weights = {1 - s, s, 0, 0};
     weights[2 + end] = -1;
-    keepNearer(best, x, weights, s > 0 && s < 1 ? 1 : 0, {-1, 1, 0, 0});
+    keepNearer(best, x, weights);
   }
   return best;
 }
@@ -102,36 +97,6 @@ Vector12 squaredDistanceGradient(const Proximity& proximity) {
     gradient.segment<3>(3 * i) = 2 * proximity.weights[i] * proximity.difference;
   }
   return gradient;
-}
-
-Matrix12 squaredDistanceHessian(const Proximity& proximity, const FourPoints& x) {
-  const auto& w = proximity.weights;
-  Matrix12 hessian = Matrix12::Zero();
-  for (int i = 0; i < 4; ++i) {
-    for (int j = 0; j < 4; ++j)
-      hessian.block<3, 3>(3 * i, 3 * j).diagonal().setConstant(2 * w[i] * w[j]);
-  }
-  const int k = proximity.freedom;
-  if (k == 0) return hessian;
-
-  // Parameters p follow the points: f_xx - f_xp f_pp^-1 f_px.
-  Eigen::Matrix<double, 3, 2> tangents = Eigen::Matrix<double, 3, 2>::Zero();
-  Eigen::Matrix<double, 12, 2> mixed = Eigen::Matrix<double, 12, 2>::Zero();
-  for (int p = 0; p < k; ++p) tangents.col(p) = combine(proximity.weightRates[p], x);
-  for (int p = 0; p < k; ++p) {
-    for (int i = 0; i < 4; ++i) {
-      mixed.block<3, 1>(3 * i, p) =
-          2 * (proximity.weightRates[p][i] * proximity.difference + w[i] * tangents.col(p));
-    }
-  }
-  if (k == 1) {
-    const double curvature = 2 * tangents.col(0).squaredNorm();
-    hessian -= mixed.col(0) * mixed.col(0).transpose() / curvature;
-  } else {
-    const Eigen::Matrix2d curvature = 2 * tangents.transpose() * tangents;
-    hessian -= mixed * curvature.inverse() * mixed.transpose();
-  }
-  return hessian;
 }
 
 double distanceBound(PairKind kind, const FourPoints& x) {

@@ -71,40 +71,25 @@ TEST(Proximity, DegenerateFeaturesActAsWhatTheyAre) {
       4);
 }
 
-/// Remainders of a Taylor expansion must fall by the next power when the step halves.
-TEST(Proximity, GradientAndHessianPassTheTaylorTest) {
+/// What a Taylor expansion leaves is the step times what the gradient changes on it, at most.
+TEST(Proximity, GradientPassesTheTaylorTest) {
   std::mt19937 random(3);
-  std::array<int, 3> tested = {};
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  constexpr double h = 1e-5;
   for (const PairKind kind : kKinds) {
     for (int n = 0; n < 400; ++n) {
       const FourPoints x = randomPoints(random);
       const Proximity p = findProximity(kind, x);
       const Vector12 gradient = squaredDistanceGradient(p);
-      const Matrix12 hessian = squaredDistanceHessian(p, x);
-      EXPECT_NEAR((hessian - hessian.transpose()).norm(), 0, 1e-12 * hessian.norm());
       Vector12 direction;
-      std::uniform_real_distribution<double> uniform(-1, 1);
       for (int i = 0; i < 12; ++i) direction[i] = uniform(random);
-      const auto remainders = [&](double h) {
-        const double value = squaredDistance(kind, moved(x, direction, h));
-        const double first = value - p.squaredDistance - h * gradient.dot(direction);
-        return std::pair{first, first - 0.5 * h * h * direction.dot(hessian * direction)};
-      };
-      constexpr double h = 1e-4;
-      if (findProximity(kind, moved(x, direction, h)).freedom != p.freedom ||
-          findProximity(kind, moved(x, direction, h)).weightRates != p.weightRates) {
-        continue;  // across a border of the cases the second derivative jumps
-      }
-      ++tested[p.freedom];
-      const auto [first, second] = remainders(h);
-      const double scale = 1 + hessian.norm();
-      EXPECT_LE(std::abs(first), 20 * h * h * scale);
-      if (hessian.norm() < 100) {
-        EXPECT_LE(std::abs(second), 1e4 * h * h * h) << "freedom " << p.freedom;
-      }
+      const Proximity next = findProximity(kind, moved(x, direction, h));
+      const double change = (squaredDistanceGradient(next) - gradient).norm();
+      EXPECT_LE(std::abs(next.squaredDistance - p.squaredDistance - h * gradient.dot(direction)),
+                h * change * direction.norm() + 1e-14);
+      EXPECT_LE(change, 0.01 * (1 + gradient.norm())) << "the bound tells something";
     }
   }
-  for (const int count : tested) EXPECT_GT(count, 20);
 }
 
 TEST(Proximity, GradientIsExactNextToCaseBorders) {

@@ -173,7 +173,7 @@ class Summation {
   std::vector<bool> moves_;
 };
 
-/// Sums what each moving edge has with all others, given by addOthers(summation, edge, sum).
+/// Sums what each moving edge has with all others, given by addOthers(edge, sum).
 template <class AddOthers>
 PolygonKnotValue sumOverEdges(const Curve& curve, const std::vector<bool>& moving,
                               const Summation& summation, const AddOthers& addOthers) {
@@ -201,26 +201,7 @@ PolygonKnotValue sumOverEdges(const Curve& curve, const std::vector<bool>& movin
   return result;
 }
 
-class PairSum final : public PolygonKnotEnergy {
- public:
-  PairSum(const Curve& curve, const std::vector<bool>& moving)
-      : closed_(curve.closed), moving_(moving) {}
-
-  [[nodiscard]] PolygonKnotValue evaluate(const Positions2& positions) const override {
-    const Curve curve{positions, closed_};
-    const Summation summation(curve, moving_);
-    return sumOverEdges(curve, moving_, summation, [&](int i, EdgeSum& sum) {
-      for (int j = 0; j < curve.edgeCount(); ++j) {
-        if (j != i) summation.addPair(i, j, sum);
-      }
-    });
-  }
-
- private:
-  bool closed_;
-  std::vector<bool> moving_;
-};
-
+/// @param openingRatio  0: every pair by itself
 class ClusterSum final : public PolygonKnotEnergy {
  public:
   ClusterSum(const Curve& curve, const std::vector<bool>& moving, double openingRatio)
@@ -342,13 +323,12 @@ std::unique_ptr<PolygonKnotEnergy> makePolygonKnotEnergy(PolygonKnot method, con
       constexpr double kMostPairs = 4e6;  // a third of a second on one processor
       const auto movers = static_cast<double>(std::count(moving.begin(), moving.end(), true));
       const bool few = movers * curve.edgeCount() <= kMostPairs;
-      return makePolygonKnotEnergy(few ? PolygonKnot::AllPairs : PolygonKnot::Tree, curve, moving,
-                                   openingRatio);
+      return std::make_unique<ClusterSum>(curve, moving, few ? 0 : openingRatio);
     }
     case PolygonKnot::Tree:
       return std::make_unique<ClusterSum>(curve, moving, openingRatio);
     case PolygonKnot::AllPairs:
-      return std::make_unique<PairSum>(curve, moving);
+      return std::make_unique<ClusterSum>(curve, moving, 0);
     case PolygonKnot::Off:
       break;
   }

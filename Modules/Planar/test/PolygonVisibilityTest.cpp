@@ -3,7 +3,6 @@
 
 #include "Explica/Planar/PolygonVisibility.h"
 
-#include "Explica/Planar/ContinuousFlow.h"
 #include "Explica/Planar/PolygonPhantoms.h"
 #include "FiniteDifference.h"
 
@@ -14,6 +13,12 @@
 
 namespace explica::planar {
 namespace {
+
+/// Velocity of a smooth curve's point under the differentiable flow [Thesis, Eq. 4.9].
+Point2 continuousFlow(const Point2& point, const Point2& inwardNormal, double curvature,
+                      double average, double length, const Point2& viewpoint) {
+  return (curvature * average + 1 / (point - viewpoint).norm()) / length * inwardNormal;
+}
 
 TEST(EdgeFlux, EqualsQuadrature) {
   const Point2 a(2, 1);

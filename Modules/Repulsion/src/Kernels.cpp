@@ -309,152 +309,6 @@ void FarNodes(TargetLeaf& target, int set, const FarNode* HWY_RESTRICT nodes, st
   }
 }
 
-// Of an expansion: the value 0, the gradient 1 ... 3, second derivatives 4 ... 9 (xx, yy, zz, xy,
-// xz, yz) and third ones 10 ... 19 (xxx, yyy, zzz, xxy, xxz, yyx, yyz, zzx, zzy, xyz).
-constexpr int kExpansionTerms = 20;
-
-/// A source as seen from the centre of an expansion, and what all derivatives share.
-struct Seen {
-  Vec rx, ry, rz, mass;            // from the source to the centre
-  Vec xx, yy, zz, xy, xz, yz;      // Q, its second moments
-  Vec ux, uy, uz;                  // Q r
-  Vec s, s2, s3, trace, qs, turn;  // s = 1 / r^2, trace of Q, q s with q = r . Q r, 8 s^3
-};
-
-HWY_INLINE Seen LookAt(Tag d, const FarColumns& nodes, std::size_t i, const float* shift) {
-  const auto load = [&](int k) HWY_ATTR { return hn::LoadU(d, nodes.column[k] + i); };
-  Seen n;
-  n.rx = hn::Sub(hn::Set(d, shift[0]), load(0));
-  n.ry = hn::Sub(hn::Set(d, shift[1]), load(1));
-  n.rz = hn::Sub(hn::Set(d, shift[2]), load(2));
-  n.mass = load(3);
-  n.xx = load(4), n.yy = load(5), n.zz = load(6), n.xy = load(7), n.xz = load(8), n.yz = load(9);
-  n.s = reciprocal(d, squaredNorm(d, n.rx, n.ry, n.rz));
-  n.trace = hn::Add(n.xx, hn::Add(n.yy, n.zz));
-  n.ux = hn::MulAdd(n.xx, n.rx, hn::MulAdd(n.xy, n.ry, hn::Mul(n.xz, n.rz)));
-  n.uy = hn::MulAdd(n.xy, n.rx, hn::MulAdd(n.yy, n.ry, hn::Mul(n.yz, n.rz)));
-  n.uz = hn::MulAdd(n.xz, n.rx, hn::MulAdd(n.yz, n.ry, hn::Mul(n.zz, n.rz)));
-  n.qs = hn::Mul(n.s, hn::MulAdd(n.ux, n.rx, hn::MulAdd(n.uy, n.ry, hn::Mul(n.uz, n.rz))));
-  n.s2 = hn::Mul(n.s, n.s);
-  n.s3 = hn::Mul(n.s2, n.s);
-  n.turn = hn::Mul(n.s3, hn::Set(d, 8.0F));
-  return n;
-}
-
-/// -2 m s^2 + 4 trace s^3 - 24 q s^4: the gradient along r, and the second derivative's multiple of
-/// I.
-HWY_INLINE Vec Radial(Tag d, const Seen& n) {
-  return hn::Mul(
-      n.s2,
-      hn::MulAdd(n.s, hn::MulAdd(hn::Set(d, 4.0F), n.trace, hn::Mul(hn::Set(d, -24.0F), n.qs)),
-                 hn::Mul(hn::Set(d, -2.0F), n.mass)));
-}
-
-HWY_INLINE void AddGradient(Tag d, const Seen& n, Vec radial, Vec* sum) {
-  sum[0] =
-      hn::MulAdd(n.s, hn::MulAdd(n.s, hn::MulSub(hn::Set(d, 4.0F), n.qs, n.trace), n.mass), sum[0]);
-  sum[1] = hn::MulAdd(radial, n.rx, hn::MulAdd(n.turn, n.ux, sum[1]));
-  sum[2] = hn::MulAdd(radial, n.ry, hn::MulAdd(n.turn, n.uy, sum[2]));
-  sum[3] = hn::MulAdd(radial, n.rz, hn::MulAdd(n.turn, n.uz, sum[3]));
-}
-
-/// Second derivatives = radial I + 8 s^3 Q + outer r r^T + mixed (u r^T + r u^T).
-HWY_INLINE void AddSecond(Tag d, const Seen& n, Vec radial, Vec mixed, Vec* sum) {
-  const Vec outer = hn::Mul(
-      n.s3,
-      hn::MulAdd(n.s, hn::MulAdd(hn::Set(d, 192.0F), n.qs, hn::Mul(hn::Set(d, -24.0F), n.trace)),
-                 hn::Mul(hn::Set(d, 8.0F), n.mass)));
-  const Vec px = hn::MulAdd(outer, n.rx, hn::Mul(mixed, n.ux));
-  const Vec py = hn::MulAdd(outer, n.ry, hn::Mul(mixed, n.uy));
-  const Vec pz = hn::MulAdd(outer, n.rz, hn::Mul(mixed, n.uz));
-  const Vec mx = hn::Mul(mixed, n.rx), my = hn::Mul(mixed, n.ry), mz = hn::Mul(mixed, n.rz);
-  const auto second = [&](Vec q, Vec p, Vec r, Vec m, Vec u, Vec to) HWY_ATTR {
-    return hn::MulAdd(n.turn, q, hn::MulAdd(p, r, hn::MulAdd(m, u, to)));
-  };
-  sum[4] = second(n.xx, px, n.rx, mx, n.ux, hn::Add(sum[4], radial));
-  sum[5] = second(n.yy, py, n.ry, my, n.uy, hn::Add(sum[5], radial));
-  sum[6] = second(n.zz, pz, n.rz, mz, n.uz, hn::Add(sum[6], radial));
-  sum[7] = second(n.xy, px, n.ry, mx, n.uy, sum[7]);
-  sum[8] = second(n.xz, px, n.rz, mx, n.uz, sum[8]);
-  sum[9] = second(n.yz, py, n.rz, my, n.uz, sum[9]);
-}
-
-/// Third derivatives of the monopole = 8 m s^3 (delta r, three of them) - 48 m s^4 r r r.
-HWY_INLINE void AddThird(Tag d, const Seen& n, Vec mixed, Vec* sum) {
-  const Vec delta = hn::Mul(n.turn, n.mass);
-  const Vec cube = hn::Mul(mixed, n.mass);
-  const Vec cxx = hn::Mul(hn::Mul(cube, n.rx), n.rx);
-  const Vec cyy = hn::Mul(hn::Mul(cube, n.ry), n.ry);
-  const Vec czz = hn::Mul(hn::Mul(cube, n.rz), n.rz);
-  const Vec three = hn::Mul(hn::Set(d, 3.0F), delta);
-  sum[10] = hn::MulAdd(hn::Add(cxx, three), n.rx, sum[10]);
-  sum[11] = hn::MulAdd(hn::Add(cyy, three), n.ry, sum[11]);
-  sum[12] = hn::MulAdd(hn::Add(czz, three), n.rz, sum[12]);
-  sum[13] = hn::MulAdd(hn::Add(cxx, delta), n.ry, sum[13]);
-  sum[14] = hn::MulAdd(hn::Add(cxx, delta), n.rz, sum[14]);
-  sum[15] = hn::MulAdd(hn::Add(cyy, delta), n.rx, sum[15]);
-  sum[16] = hn::MulAdd(hn::Add(cyy, delta), n.rz, sum[16]);
-  sum[17] = hn::MulAdd(hn::Add(czz, delta), n.rx, sum[17]);
-  sum[18] = hn::MulAdd(hn::Add(czz, delta), n.ry, sum[18]);
-  sum[19] = hn::MulAdd(hn::Mul(hn::Mul(cube, n.rx), n.ry), n.rz, sum[19]);
-}
-
-/// Adds an expansion about the centre to the targets of some lanes.
-HWY_INLINE void Expand(Tag d, const float (&at)[kExpansionTerms], TargetLeaf& target, int set,
-                       int lane) {
-  const auto term = [&](int k) HWY_ATTR { return hn::Set(d, at[k]); };
-  const Vec half = hn::Set(d, 0.5F);
-  const Vec third = hn::Set(d, 1.0F / 3);
-  const Vec x = hn::Load(d, target.centroid[0] + lane);
-  const Vec y = hn::Load(d, target.centroid[1] + lane);
-  const Vec z = hn::Load(d, target.centroid[2] + lane);
-  const auto dot = [&](Vec ax, Vec ay, Vec az)
-                       HWY_ATTR { return hn::MulAdd(ax, x, hn::MulAdd(ay, y, hn::Mul(az, z))); };
-  // t = third derivatives along the offset, h = second derivatives there
-  const Vec t[6] = {dot(term(10), term(13), term(14)), dot(term(15), term(11), term(16)),
-                    dot(term(17), term(18), term(12)), dot(term(13), term(15), term(19)),
-                    dot(term(14), term(19), term(17)), dot(term(19), term(16), term(18))};
-  const auto along = [&](Vec xx, Vec yy, Vec zz, Vec xy, Vec xz, Vec yz, Vec* to) HWY_ATTR {
-    to[0] = dot(xx, xy, xz);
-    to[1] = dot(xy, yy, yz);
-    to[2] = dot(xz, yz, zz);
-  };
-  Vec h1[3], t1[3];
-  along(term(4), term(5), term(6), term(7), term(8), term(9), h1);
-  along(t[0], t[1], t[2], t[3], t[4], t[5], t1);
-  const Vec phi =
-      hn::Add(hn::Add(term(0), dot(term(1), term(2), term(3))),
-              hn::Mul(half, hn::MulAdd(third, dot(t1[0], t1[1], t1[2]), dot(h1[0], h1[1], h1[2]))));
-  Vec g[3];
-  for (int a = 0; a < 3; ++a) {
-    g[a] = hn::Add(term(1 + a), hn::MulAdd(half, t1[a], h1[a]));
-  }
-  Carry(d, target, set, lane, phi, {g[0], g[1], g[2]},
-        {hn::Add(term(4), t[0]), hn::Add(term(5), t[1]), hn::Add(term(6), t[2]),
-         hn::Add(term(7), t[3]), hn::Add(term(8), t[4]), hn::Add(term(9), t[5])});
-}
-
-/// Derivatives of 1/r^2 fields, summed over sources: value, gradient, second and third ones.
-void LocalExpansion(TargetLeaf& target, int set, const FarColumns& nodes, const float* shift) {
-  const Tag d;
-  const std::size_t lanes = hn::Lanes(d);
-  Vec sum[kExpansionTerms];
-  for (Vec& v : sum) v = hn::Zero(d);
-  for (std::size_t i = 0; i < nodes.count; i += lanes) {
-    const Seen n = LookAt(d, nodes, i, shift);
-    const Vec radial = Radial(d, n);
-    const Vec mixed = hn::Mul(hn::Mul(n.s2, n.s2), hn::Set(d, -48.0F));
-    AddGradient(d, n, radial, sum);
-    AddSecond(d, n, radial, mixed, sum);
-    AddThird(d, n, mixed, sum);
-  }
-  float at[kExpansionTerms];
-  for (int k = 0; k < kExpansionTerms; ++k) at[k] = hn::GetLane(hn::SumOfLanes(d, sum[k]));
-  for (int lane = 0; lane < kLanes; lane += static_cast<int>(lanes)) {
-    Expand(d, at, target, set, lane);
-  }
-}
-
 /// Lanes of a mask, one bit each.
 template <class D, class M>
 HWY_INLINE std::uint32_t bitsOf(D d, M mask) {
@@ -937,53 +791,6 @@ void ChooseVertexRules(const VertexBatch& batch, std::int32_t* rules) {
   }
 }
 
-template <class T, class D, class Invert>
-HWY_INLINE void AllCentroids(D d, const Invert& invert, const CentroidSum<T>& sum,
-                             std::size_t begin, std::size_t end) {
-  using V = hn::Vec<D>;
-  for (std::size_t i = begin; i < end; i += hn::Lanes(d)) {
-    const V xi = hn::LoadU(d, sum.x + i);
-    const V yi = hn::LoadU(d, sum.y + i);
-    const V zi = hn::LoadU(d, sum.z + i);
-    V phi = hn::Zero(d), ax = hn::Zero(d), ay = hn::Zero(d), az = hn::Zero(d);
-    for (std::size_t j = 0; j < sum.count; ++j) {
-      const V rx = hn::Sub(xi, hn::Set(d, sum.x[j]));
-      const V ry = hn::Sub(yi, hn::Set(d, sum.y[j]));
-      const V rz = hn::Sub(zi, hn::Set(d, sum.z[j]));
-      const V squared = hn::MulAdd(rx, rx, hn::MulAdd(ry, ry, hn::Mul(rz, rz)));
-      const V s = hn::IfThenZeroElse(hn::Eq(squared, hn::Zero(d)), invert(squared));
-      const V term = hn::Mul(hn::Set(d, sum.w[j]), s);
-      phi = hn::Add(phi, term);
-      const V pull = hn::Mul(term, s);
-      ax = hn::MulAdd(pull, rx, ax);
-      ay = hn::MulAdd(pull, ry, ay);
-      az = hn::MulAdd(pull, rz, az);
-    }
-    const V factor = hn::Set(d, T{-2});
-    hn::StoreU(phi, d, sum.phi + i);
-    hn::StoreU(hn::Mul(factor, ax), d, sum.gx + i);
-    hn::StoreU(hn::Mul(factor, ay), d, sum.gy + i);
-    hn::StoreU(hn::Mul(factor, az), d, sum.gz + i);
-  }
-}
-
-void CentroidsSingle(const CentroidSum<float>& sum, std::size_t begin, std::size_t end) {
-  const Tag d;
-  AllCentroids(
-      d, [d](Vec x) HWY_ATTR { return reciprocal(d, x); }, sum, begin, end);
-}
-
-#if HWY_HAVE_FLOAT64
-void CentroidsDouble(const CentroidSum<double>& sum, std::size_t begin, std::size_t end) {
-  const hn::CappedTag<double, kLanes> d;
-  using V = hn::Vec<decltype(d)>;
-  AllCentroids(
-      d, [d](V x) HWY_ATTR { return hn::Div(hn::Set(d, 1.0), x); }, sum, begin, end);
-}
-#else
-void CentroidsDouble(const CentroidSum<double>&, std::size_t, std::size_t) {}
-#endif
-
 const char* InstructionSet() {
   return hwy::TargetName(HWY_TARGET);
 }
@@ -995,24 +802,17 @@ HWY_AFTER_NAMESPACE();
 namespace explica::repulsion::kernels {
 
 HWY_EXPORT(FarNodes);
-HWY_EXPORT(LocalExpansion);
 HWY_EXPORT(CloseGroups);
 HWY_EXPORT(IntegrateApart);
 HWY_EXPORT(IntegrateEdge);
 HWY_EXPORT(IntegrateVertex);
 HWY_EXPORT(ChooseEdgeRules);
 HWY_EXPORT(ChooseVertexRules);
-HWY_EXPORT(CentroidsSingle);
-HWY_EXPORT(CentroidsDouble);
 HWY_EXPORT(InstructionSet);
 
 void addFarNodes(TargetLeaf& target, int set, const FarNode* nodes, std::size_t count,
                  const float* shift) {
   HWY_DYNAMIC_DISPATCH(FarNodes)(target, set, nodes, count, shift);
-}
-
-void addLocalExpansion(TargetLeaf& target, int set, const FarColumns& nodes, const float* shift) {
-  HWY_DYNAMIC_DISPATCH(LocalExpansion)(target, set, nodes, shift);
 }
 
 std::size_t addCloseGroups(TargetLeaf& target, int set, const CloseGroup* groups, std::size_t count,
@@ -1038,14 +838,6 @@ void integrateEdge(EdgeBatch& batch, int rule) {
 
 void integrateVertex(VertexBatch& batch, int rule) {
   HWY_DYNAMIC_DISPATCH(IntegrateVertex)(batch, rule);
-}
-
-void sumCentroids(const CentroidSum<float>& sum, std::size_t begin, std::size_t end) {
-  HWY_DYNAMIC_DISPATCH(CentroidsSingle)(sum, begin, end);
-}
-
-void sumCentroids(const CentroidSum<double>& sum, std::size_t begin, std::size_t end) {
-  HWY_DYNAMIC_DISPATCH(CentroidsDouble)(sum, begin, end);
 }
 
 const char* instructionSet() {

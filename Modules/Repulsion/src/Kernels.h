@@ -109,15 +109,6 @@ struct CloseRoom {
 void addFarNodes(TargetLeaf& target, int set, const FarNode* nodes, std::size_t count,
                  const float* shift);
 
-/// Nodes so far that one expansion serves all targets: columns, padded with weightless ones.
-struct FarColumns {
-  const float* column[10];  ///< centre x, y, z, mass, xx, yy, zz, xy, xz, yz
-  std::size_t count;        ///< a multiple of 16
-};
-
-/// Adds what distant nodes contribute by a third-order expansion about the target's centre.
-void addLocalExpansion(TargetLeaf& target, int set, const FarColumns& nodes, const float* shift);
-
 /// Adds near sources: nodes and single faces by their moments where they are enough for all
 /// targets, three by three quadrature points for faces nearer than that whose centroids are at
 /// least `nearRatio` sums of radii apart; lists the other pairs.
@@ -157,17 +148,6 @@ struct alignas(64) VertexBatch {
 };
 void chooseVertexRules(const VertexBatch& batch, std::int32_t* rules);
 void integrateVertex(VertexBatch& batch, int rule);
-
-/// The plain all-pairs sum that tree codes are compared with: sums of w_j / d^2 over all other
-/// centroids, and their gradients.  Arrays of `count`, a multiple of 16.
-template <class T>
-struct CentroidSum {
-  const T *x, *y, *z, *w;
-  std::size_t count;
-  T *phi, *gx, *gy, *gz;
-};
-void sumCentroids(const CentroidSum<float>& sum, std::size_t begin, std::size_t end);
-void sumCentroids(const CentroidSum<double>& sum, std::size_t begin, std::size_t end);
 
 /// Name of the instruction set in use.
 [[nodiscard]] const char* instructionSet();

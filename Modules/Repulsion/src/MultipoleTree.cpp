@@ -32,9 +32,6 @@ constexpr int kLanes = kernels::kLanes;  // faces taken at once
 // faces nearer than the last are halved.
 constexpr float kSevenRatio = 0.9F;
 constexpr float kTwelveRatio = 0.5F;
-// Distance beyond a node's own reach, in radii of a target group, from which one expansion serves
-// all faces of the group.
-constexpr float kLocal = 0.5F;
 constexpr int kHalvings = 8;  // at most: then the faces touch
 
 /// A face or a part of it, single precision, relative to the target leaf's centre.
@@ -221,37 +218,9 @@ class NearPairs {
   Batch fine_;
 };
 
-/// Far nodes as columns, for an expansion that serves a whole group.
-class Columns {
- public:
-  void clear() {
-    for (auto& column : columns_) column.clear();
-  }
-  void add(const kernels::FarNode& n) {
-    const std::array<float, 10> row = {n.centre[0], n.centre[1], n.centre[2], n.mass, n.xx,
-                                       n.yy,        n.zz,        n.xy,        n.xz,   n.yz};
-    for (std::size_t k = 0; k < row.size(); ++k) columns_[k].push_back(row[k]);
-  }
-  /// Adds weightless nodes up to a full vector.
-  void pad() {
-    constexpr kernels::FarNode kNothing = {{1e4F, 1e4F, 1e4F}, 0, 0, 0, 0, 0, 0, 0};
-    while (columns_[0].size() % kLanes != 0) add(kNothing);
-  }
-  [[nodiscard]] kernels::FarColumns view() const {
-    kernels::FarColumns view{};
-    for (std::size_t k = 0; k < columns_.size(); ++k) view.column[k] = columns_[k].data();
-    view.count = columns_[0].size();
-    return view;
-  }
-
- private:
-  std::array<std::vector<float>, 10> columns_;
-};
-
 /// What a block of four target groups shares of one tree of sources.
 struct Shared {
   std::vector<kernels::FarNode> far;  // seen from the block's centre
-  Columns distant;                    // far from all groups: serve expansions
   std::vector<std::int32_t> close;    // groups
   std::vector<std::int32_t> candidates;
   std::vector<std::int32_t> next;
@@ -375,23 +344,12 @@ const char* MultipoleTree::instructionSet() {
 void MultipoleTree::State::gatherShared(const ClusterTree& targets, std::int32_t block,
                                         const ClusterTree& tree, Shared& shared) const {
   shared.far.clear();
-  shared.distant.clear();
   shared.close.clear();
   if (tree.empty()) return;
   const auto& origin = targets.moments()[block].centre;
   const std::array<float, 3> centre = difference(origin, tree.moments()[0].centre);
-  // Its groups: how far from its centre, and how large.
   const ClusterTree::Node& node = targets.nodes()[block];
-  float away = 0;
-  float radius = 0;
-  for (std::int32_t first = node.first; first < node.first + node.count; first += kLanes) {
-    const std::int32_t group = targets.groups()[first / kLanes];
-    const std::array<float, 3> d = difference(targets.moments()[group].centre, origin);
-    away = std::max(away, std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]));
-    radius = std::max(radius, static_cast<float>(targets.nodes()[group].radius / unit));
-  }
   const auto spread = static_cast<float>(node.radius / unit);
-  const float distant = away + (1 + kLocal) * radius;
   const auto margin = static_cast<float>((options.nearRatio - 1) * node.largestFace / unit);
 
   shared.candidates.assign(1, 0);
@@ -405,12 +363,7 @@ void MultipoleTree::State::gatherShared(const ClusterTree& targets, std::int32_t
       const float squared = dx * dx + dy * dy + dz * dz;
       const float clear = std::max(source.reach, source.margin + margin);
       if (squared > (spread + clear) * (spread + clear)) {
-        const kernels::FarNode far = farNode(tree.moments()[number], origin);
-        if (squared > (distant + clear) * (distant + clear)) {
-          shared.distant.add(far);
-        } else {
-          shared.far.push_back(far);
-        }
+        shared.far.push_back(farNode(tree.moments()[number], origin));
       } else if (source.left >= 0) {
         shared.next.push_back(source.left);
         shared.next.push_back(source.left + 1);
@@ -420,7 +373,6 @@ void MultipoleTree::State::gatherShared(const ClusterTree& targets, std::int32_t
     }
     shared.candidates.swap(shared.next);
   }
-  shared.distant.pad();
 }
 
 void MultipoleTree::State::addNear(const kernels::TargetLeaf& target, const ClusterTree::Node& leaf,
@@ -491,7 +443,6 @@ void MultipoleTree::State::sumLeaf(const Positions& positions, const std::vector
   for (int which = 0; which < 2; ++which) {
     const ClusterTree& tree = which == 0 ? movingTree : fixedTree;
     const Shared& shared = lists.shared[which];
-    kernels::addLocalExpansion(target, which, shared.distant.view(), shift.data());
     kernels::addFarNodes(target, which, shared.far.data(), shared.far.size(), shift.data());
     lists.close.clear();
     for (const std::int32_t g : shared.close) {

@@ -111,11 +111,11 @@ Eigen::VectorXd vertexStrains(const TriangleMesh& reference, const Positions& de
 }
 
 std::string evolutionTable(const std::vector<IterationRecord>& history) {
-  std::string table = "iteration";
+  std::string table = "iteration\tphase";
   for (const EvolutionColumn& column : evolutionColumns()) table += "\t" + column.name;
   table += "\n";
   for (const IterationRecord& row : history) {
-    table += std::to_string(row.iteration);
+    table += std::to_string(row.iteration) + "\t" + std::string(nameOf(row.phase));
     for (const EvolutionColumn& column : evolutionColumns()) {
       char text[40];
       std::snprintf(text, sizeof text, column.format, column.of(row));

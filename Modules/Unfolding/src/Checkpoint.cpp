@@ -5,12 +5,12 @@
 #include "Explica/Unfolding/Unfold.h"
 
 #include <string>
+#include <type_traits>
 
 namespace explica::unfolding {
 namespace {
 
-constexpr char kFormat[] = "ExplicaUnfold11";  // the number counts changes of what is stored
-static_assert(sizeof(HeldPair) == 20);
+constexpr char kFormat[] = "ExplicaUnfold12";  // the number counts changes of what is stored
 
 /// A state holds a value a term: one with other terms is another format.
 std::string magic() {
@@ -19,107 +19,101 @@ std::string magic() {
   return text + "\n";
 }
 
-/// The members of a record, one list for writing and reading.
-template <class Record, class Visit>
-void visitNumbers(Record& r, const Visit& visit) {
-  for (auto* member :
+/// Whole numbers are -1 at least.
+struct Writing {
+  StateWriter& file;
+  template <class Number>
+  void operator()(const Number& value) const {
+    if constexpr (std::is_floating_point_v<Number>) {
+      file.number(value);
+    } else {
+      file.count(static_cast<std::int64_t>(value) + 1);
+    }
+  }
+  void operator()(const Positions& rows) const { file.rows(rows); }
+  void operator()(const Eigen::VectorXd& list) const { file.rows(list); }
+  template <class Item>
+  void size(const std::vector<Item>& list) const {
+    file.count(static_cast<std::int64_t>(list.size()));
+  }
+};
+
+struct Reading {
+  StateReader& file;
+  template <class Number>
+  void operator()(Number& value) const {
+    if constexpr (std::is_floating_point_v<Number>) {
+      value = file.number();
+    } else {
+      value = static_cast<Number>(file.count() - 1);
+    }
+  }
+  void operator()(Positions& rows) const { rows = file.rows<Positions>(); }
+  void operator()(Eigen::VectorXd& list) const { list = file.rows<Eigen::VectorXd>(); }
+  template <class Item>
+  void size(std::vector<Item>& list) const {
+    list.resize(static_cast<std::size_t>(file.count()));
+  }
+};
+
+template <class Access, class Record>
+void visitRecord(const Access& access, Record& r) {
+  for (auto* number : {&r.iteration, &r.contacts, &r.solves}) access(*number);
+  access(r.phase);
+  for (auto* number :
        {&r.visibility, &r.areaErrorMean, &r.areaErrorMax, &r.edgeStrainMean, &r.collarStretchMean,
         &r.collarStretchMax, &r.objectiveBefore, &r.objectiveAfter, &r.nearestContact, &r.safeStep,
         &r.step, &r.largestMove, &r.damping, &r.phases.visibility, &r.phases.repulsion,
         &r.phases.collision, &r.phases.solve, &r.seconds}) {
-    visit(*member);
+    access(*number);
   }
-  for (auto& energy : r.energies.values) visit(energy);
+  for (auto& energy : r.energies.values) access(energy);
+}
+
+/// All of a checkpoint but for what only faces with directions of their own have: one list for
+/// writing and reading.
+template <class Access, class Run>
+void visitRun(const Access& access, Run& run) {
+  auto& s = run.state;
+  access(s.positions);
+  access(s.multipliers);
+  for (auto* number : {&s.damping, &s.areaStiffness, &s.drive, &s.lift, &s.collarWidth,
+                       &s.separatingEnergy, &s.look.seen}) {
+    access(*number);
+  }
+  for (auto* number : {&s.driveIteration, &s.ways, &s.iteration, &s.look.iteration})
+    access(*number);
+  for (auto* flag : {&s.separating, &s.stalled}) access(*flag);
+  access(run.best.iteration);
+  for (auto* number : {&run.best.visibility, &run.best.strain, &run.best.seen}) access(*number);
+  access(run.best.moving);
+  access.size(run.history);
+  for (auto& record : run.history) visitRecord(access, record);
+  access.size(run.path);
+  for (auto& positions : run.path) access(positions);
 }
 
 }  // namespace
 
 void writeCheckpoint(const std::filesystem::path& path, const Checkpoint& checkpoint) {
-  StateWriter w;
-  const UnfoldState& s = checkpoint.state;
-  w.rows(s.positions);
-  w.count(s.multipliers.size());
-  w.raw(s.multipliers.data(), static_cast<std::size_t>(s.multipliers.size()) * sizeof(double));
-  w.number(s.damping);
-  w.number(s.areaStiffness);
-  w.number(s.drive);
-  w.count(s.driveIteration);
-  w.number(s.lift);
-  w.number(s.collarWidth);
-  w.count(s.ways);
-  w.number(s.contactStiffness);
-  w.count(s.iteration);
-  w.count(s.separating);
-  w.number(s.separatingEnergy);
-  w.count(s.stalled);
-  w.count(static_cast<std::int64_t>(s.held.size()));
-  for (const HeldPair& held : s.held) w.raw(&held, sizeof held);
-  w.count(s.look.iteration + 1);
-  w.number(s.look.seen);
-  w.count(checkpoint.best.iteration);
-  w.number(checkpoint.best.visibility);
-  w.number(checkpoint.best.strain);
-  w.number(checkpoint.best.seen);
-  w.rows(checkpoint.best.moving);
-  w.count(static_cast<std::int64_t>(checkpoint.history.size()));
-  for (const IterationRecord& r : checkpoint.history) {
-    w.count(r.iteration);
-    w.count(r.contacts);
-    w.count(r.solves);
-    visitNumbers(r, [&](const double& value) { w.number(value); });
+  StateWriter file;
+  visitRun(Writing{file}, checkpoint);
+  if (checkpoint.state.directions.rows() > 0) {
+    file.rows(checkpoint.state.directions);
+    file.numbers(checkpoint.notes);
   }
-  w.count(static_cast<std::int64_t>(checkpoint.path.size()));
-  for (const Positions& p : checkpoint.path) w.rows(p);
-  if (s.directions.rows() > 0) {  // of an unfolding towards viewpoints there is no more to say
-    w.rows(s.directions);
-    w.numbers(checkpoint.notes);
-  }
-  w.commit(path, magic());
+  file.commit(path, magic());
 }
 
 Checkpoint readCheckpoint(const std::filesystem::path& path) {
-  StateReader r(path, magic(), "an unfolding");
-
-  Checkpoint c;
-  c.state.positions = r.rows<Positions>();
-  c.state.multipliers.resize(r.count());
-  r.raw(c.state.multipliers.data(),
-        static_cast<std::size_t>(c.state.multipliers.size()) * sizeof(double));
-  c.state.damping = r.number();
-  c.state.areaStiffness = r.number();
-  c.state.drive = r.number();
-  c.state.driveIteration = static_cast<int>(r.count());
-  c.state.lift = r.number();
-  c.state.collarWidth = r.number();
-  c.state.ways = static_cast<int>(r.count());
-  c.state.contactStiffness = r.number();
-  c.state.iteration = static_cast<int>(r.count());
-  c.state.separating = r.count() != 0;
-  c.state.separatingEnergy = r.number();
-  c.state.stalled = r.count() != 0;
-  c.state.held.resize(static_cast<std::size_t>(r.count()));
-  for (HeldPair& held : c.state.held) r.raw(&held, sizeof held);
-  c.state.look.iteration = static_cast<int>(r.count()) - 1;
-  c.state.look.seen = r.number();
-  c.best.iteration = static_cast<int>(r.count());
-  c.best.visibility = r.number();
-  c.best.strain = r.number();
-  c.best.seen = r.number();
-  c.best.moving = r.rows<Positions>();
-  c.history.resize(static_cast<std::size_t>(r.count()));
-  for (IterationRecord& row : c.history) {
-    row.iteration = static_cast<int>(r.count());
-    row.contacts = static_cast<int>(r.count());
-    row.solves = static_cast<int>(r.count());
-    visitNumbers(row, [&](double& value) { value = r.number(); });
+  StateReader file(path, magic(), "an unfolding");
+  Checkpoint checkpoint;
+  visitRun(Reading{file}, checkpoint);
+  if (!file.atEnd()) {
+    checkpoint.state.directions = file.rows<Positions>();
+    checkpoint.notes = file.numbers();
   }
-  c.path.resize(static_cast<std::size_t>(r.count()));
-  for (Positions& p : c.path) p = r.rows<Positions>();
-  if (!r.atEnd()) {
-    c.state.directions = r.rows<Positions>();
-    c.notes = r.numbers();
-  }
-  return c;
+  return checkpoint;
 }
 
 }  // namespace explica::unfolding

@@ -6,6 +6,8 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 

@@ -3,41 +3,13 @@
 
 #include "Objective.h"
 
-#include "Explica/Core/Errors.h"
 #include "Explica/Core/PhaseClock.h"
 
 namespace explica::unfolding {
 
-namespace {
-
-std::unique_ptr<Energy> makeEnergy(Term term) {
-  switch (term) {
-    case Term::Visibility:
-      return makeVisibilityEnergy();
-    case Term::Area:
-      return makeAreaEnergy();
-    case Term::Spring:
-      return makeSpringEnergy();
-    case Term::Lift:
-      return makeLiftEnergy();
-    case Term::Guide:
-      return makeGuideEnergy();
-    case Term::Collar:
-      return makeCollarEnergy();
-    case Term::Overhang:
-      return makeOverhangEnergy();
-    case Term::Contact:
-      return makeContactEnergy();
-    case Term::Knot:
-      return makeKnotTerm();
-  }
-  throw InvalidInput("term: not one of kTerms");
-}
-
-}  // namespace
-
 Objective::Objective() {
-  for (std::size_t n = 0; n < kTermCount; ++n) energies_[n] = makeEnergy(kTerms[n].term);
+  makeFaceTerms(energies_);
+  makeOtherTerms(energies_);
 }
 
 double Objective::value(const Configuration& now, const TermValues& strengths,

@@ -4,9 +4,6 @@
 
 #include "energies/Energy.h"
 
-#include <array>
-#include <memory>
-
 namespace explica::unfolding {
 
 /// The sum of all terms: one Energy for each row of kTerms.
@@ -28,7 +25,7 @@ class Objective {
                     const std::vector<std::int32_t>& unknown, BlockSystem& system) const;
 
  private:
-  std::array<std::unique_ptr<Energy>, kTermCount> energies_;
+  Terms energies_;
 };
 
 }  // namespace explica::unfolding

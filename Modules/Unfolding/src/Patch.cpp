@@ -32,27 +32,4 @@ void listAround(Patch& patch, const std::vector<std::int32_t>& unknown) {
                                [&](std::size_t s) { return patch.springs[s].vertices; });
 }
 
-Eigen::Matrix3d faceBlock(const FaceShape& shape, const FaceStiffness& stiffness, int i, int j) {
-  const Eigen::Matrix3d normal = stiffness.across * shape.normal * shape.normal.transpose();
-  return stiffness.inPlane * shape.hat[i] * shape.hat[j].transpose() +
-         shape.hat[i].dot(shape.hat[j]) * normal;
-}
-
-void addForces(std::span<const PatchFace> faces, std::span<const CornerForces> forces,
-               Positions& gradient) {
-  for (std::size_t f = 0; f < faces.size(); ++f) {
-    for (int k = 0; k < 3; ++k) gradient.row(faces[f].vertices[k]) += forces[f][k].transpose();
-  }
-}
-
-void addFaceBlocks(const Patch& patch, std::span<const FaceShape> shapes, std::size_t firstFace,
-                   std::span<const FaceStiffness> stiffness,
-                   const std::vector<std::int32_t>& unknown, BlockSystem& system) {
-  const auto verticesOf = [&](std::int32_t f) { return patch.faces[f].vertices; };
-  addBlocks(patch.facesAround, firstFace, stiffness.size(), verticesOf, unknown, system,
-            [&](std::int32_t f, int i, int j) {
-              return faceBlock(shapes[f], stiffness[f - firstFace], i, j);
-            });
-}
-
 }  // namespace explica::unfolding

@@ -103,12 +103,23 @@ struct FaceStiffness {
 };
 
 /// The 3 x 3 block of two of its corners.
-[[nodiscard]] Eigen::Matrix3d faceBlock(const FaceShape& shape, const FaceStiffness& stiffness,
-                                        int i, int j);
+[[nodiscard]] inline Eigen::Matrix3d blockOf(const FaceShape& shape, const FaceStiffness& stiffness,
+                                             int i, int j) {
+  const Eigen::Matrix3d normal = stiffness.across * shape.normal * shape.normal.transpose();
+  return stiffness.inPlane * shape.hat[i] * shape.hat[j].transpose() +
+         shape.hat[i].dot(shape.hat[j]) * normal;
+}
+/// ... of a face whose blocks are all the same.
+[[nodiscard]] inline const Eigen::Matrix3d& blockOf(const FaceShape& /*shape*/,
+                                                    const Eigen::Matrix3d& block, int /*i*/,
+                                                    int /*j*/) {
+  return block;
+}
 
-/// Adds what faces contribute, in their order, to the gradient (V x 3).
-void addForces(std::span<const PatchFace> faces, std::span<const CornerForces> forces,
-               Positions& gradient);
+/// A tension in its plane as forces on its corners.
+[[nodiscard]] inline CornerForces inPlaneForces(const FaceShape& shape, double tension) {
+  return {tension * shape.hat[0], tension * shape.hat[1], tension * shape.hat[2]};
+}
 
 /// Adds what items contribute to the system, on several threads.
 /// @param around      their corners
@@ -142,10 +153,5 @@ void addBlocks(const Around& around, std::size_t firstItem, std::size_t itemCoun
     }
   });
 }
-
-/// The same for faces, of which each has its stiffness: all of the region, or of the collar.
-void addFaceBlocks(const Patch& patch, std::span<const FaceShape> shapes, std::size_t firstFace,
-                   std::span<const FaceStiffness> stiffness,
-                   const std::vector<std::int32_t>& unknown, BlockSystem& system);
 
 }  // namespace explica::unfolding

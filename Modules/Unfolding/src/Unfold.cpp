@@ -7,7 +7,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/TimeBudget.h"
-#include "Explica/Unfolding/StopRule.h"
+#include "Explica/Unfolding/Continuation.h"
 #include "Explica/Visibility/VisibleFraction.h"
 
 #include <algorithm>
@@ -62,7 +62,7 @@ bool isWorse(const IterationRecord& state, const BestState& than, const UnfoldOp
          merit(than.visibility, than.strain, than.seen, options.trade) - kNoWorse;
 }
 
-/// Share of the region that is seen in the present state, if the stop rule has begun to ask.
+/// Share of the region that is seen in the present state, if anybody has begun to ask.
 double seenIfAsked(const Unfolder& unfolder) {
   const Look& look = unfolder.state().look;
   if (look.iteration < 0) return kNaN;
@@ -154,9 +154,8 @@ Flag flagOf(const UnfoldOptions& options, const UnfoldResult& result, const Iter
       kept.collarStretchMean > kCollarMean) {
     return Flag::Stretched;
   }
-  const double missed = shortfall(goalOf(options), kept.visibility, seen, kept.edgeStrainMean);
-  if (missed > kMissed) return Flag::Held;
-  return missed > 0 ? Flag::Short : Flag::None;
+  const bool met = meetsGoals(goalOf(options), kept.visibility, seen, kept.edgeStrainMean);
+  return met ? Flag::None : Flag::Held;
 }
 
 /// Says what a user must know about the result, and does not call it what it is not.
@@ -186,14 +185,14 @@ void judge(const UnfoldOptions& options, double seen, const Monitor& monitor,
     sayWhatIsShort(options, kept, seen, monitor);
   }
   if (result.flag != Flag::None && reachedGoal(result.termination)) {
-    result.termination = result.flag == Flag::Short ? Termination::Finished : Termination::Stalled;
+    result.termination = Termination::Stalled;
   }
 }
 
 UnfoldResult unfoldHere(const TriangleMesh& mesh, const Region& region,
                         const visibility::Viewpoints& viewpoints, const UnfoldOptions& options,
                         const Monitor& monitor, const Checkpoint* resume) {
-  const StopRule rule(options);
+  const Continuation continuation(options);
   const auto begin = std::chrono::steady_clock::now();
   const auto elapsed = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -223,12 +222,12 @@ UnfoldResult unfoldHere(const TriangleMesh& mesh, const Region& region,
   const double goal = options.targetVisibility.value_or(1.0);
   TimeBudget budget(options.maxTime);
   const auto reason = [&] {
-    // Before the rule, which steers: a run that goes on from here is steered once.
+    // Before the continuation, which steers: a run that goes on from here is steered once.
     if (monitor.shouldStop()) return Termination::Interrupted;
     if (!budget.fits(elapsed())) return Termination::MaxTime;
     const std::vector<std::int32_t> movedThen = unfolder.movingVertices();
     const bool isFirstLook = unfolder.state().look.iteration < 0;
-    const Termination byItself = rule.check(unfolder, result.history);
+    const Termination byItself = continuation.next(unfolder, result.history);
     considerLook(unfolder, isFirstLook, best);
     if (unfolder.movingVertices().size() != movedThen.size()) {
       addStanding(unfolder, movedThen, best.moving);
@@ -276,9 +275,8 @@ double merit(double visibility, double strain, double seen, double trade) {
   return seen < kGoalSeen ? std::min(spare, seen - kGoalSeen) : spare;
 }
 
-double shortfall(double goal, double visibility, double seen, double strain) {
-  const double missed = std::max(goal - visibility, std::max(0.0, strain - kGoalStrain) / kTrade);
-  return std::isnan(seen) ? missed : std::max(missed, std::min(goal, kGoalSeen) - seen);
+bool meetsGoals(double goal, double visibility, double seen, double strain) {
+  return visibility >= goal && seen >= std::min(goal, kGoalSeen) && strain <= kGoalStrain;
 }
 
 bool isBetter(const IterationRecord& state, const BestState& than, bool towardsTarget, double seen,

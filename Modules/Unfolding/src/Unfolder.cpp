@@ -17,13 +17,10 @@
 namespace explica::unfolding {
 namespace {
 
-constexpr double kSunk = 0.01;      // of the region's area: less than that below is no reason
-constexpr int kMostWays = 3;        // times that surroundings are asked to part further ...
-constexpr double kWiden = 1.5;      // ... by this factor of the collar's width ...
-constexpr double kStronger = 2;     // ... and this one of the lift
-constexpr double kSoft = 0.3;       // share of the lengths' strength up to a visibility ...
-constexpr double kSoftUntil = 0.8;  // ... of this, ...
-constexpr double kFirmFrom = 0.98;  // ... which rises to all of it at this one
+constexpr double kSunk = 0.01;   // of the region's area: less than that below is no reason
+constexpr int kMostWays = 3;     // times that surroundings are asked to part further ...
+constexpr double kWiden = 1.5;   // ... by this factor of the collar's width ...
+constexpr double kStronger = 2;  // ... and this one of the lift
 
 }  // namespace
 
@@ -61,25 +58,14 @@ void Unfolder::Implementation::makeKnot(const Positions& positions) {
   knot = repulsion::makeKnotEnergy(options.knot, standing, moves);
 }
 
-/// Beside surroundings lengths are soft as long as folds have to open, and as firm as asked for
-/// once the region is seen: firm ones keep pleats there that no later step gets out of.  A region
-/// alone opens as well with firm ones, a large one better.
-double Unfolder::Implementation::firmnessOnTheWay() const {
-  if (options.surround == Surround::None) return 1;
-  const double way = (record.visibility - kSoftUntil) / (kFirmFrom - kSoftUntil);
-  return kSoft + (1 - kSoft) * std::clamp(way, 0.0, 1.0);
-}
-
 TermValues Unfolder::Implementation::strengths() const {
   TermValues strengths = options.weights;
   strengths[Term::Visibility] = state.separating ? 0 : state.drive;
   strengths[Term::Area] = state.areaStiffness;
-  strengths[Term::Spring] *= firmnessOnTheWay();
   strengths[Term::Lift] *= state.lift;
   if (state.separating || options.surround == Surround::None) strengths[Term::Lift] = 0;
-  if (state.separating) strengths[Term::Guide] = 0;
-  if (state.separating) strengths[Term::Overhang] = 0;
-  strengths[Term::Contact] *= state.contactStiffness * setup.edge * setup.edge;
+  if (state.separating) strengths[Term::Guide] = strengths[Term::Overhang] = 0;
+  strengths[Term::Contact] *= setup.edge * setup.edge;
   return strengths;
 }
 
@@ -148,16 +134,16 @@ Unfolder& Unfolder::operator=(Unfolder&&) noexcept = default;
 
 bool Unfolder::step() {
   const bool moved = self_->step();
-  self_->areasTighten.reset();
+  self_->asked.reset();
   return moved;
 }
 void Unfolder::raiseDrive(double factor) {
   self_->state.drive *= factor;
   self_->state.driveIteration = self_->state.iteration;
 }
-void Unfolder::balance(double factor, bool tightenAreas) {
+void Unfolder::steer(Phase phase, double factor) {
+  self_->asked = phase;
   self_->state.drive *= factor;
-  self_->areasTighten = tightenAreas;
 }
 bool Unfolder::isHeldBelow() const {
   return self_->options.surround == Surround::Elastic && self_->state.ways < kMostWays &&

@@ -27,7 +27,7 @@ struct Unfolder::Implementation {
   BlockSystem system;
   UnfoldState state;
   IterationRecord record;
-  std::optional<bool> areasTighten;  ///< in the next step, if who steers has said so
+  std::optional<Phase> asked;  ///< of the next step, by whoever steers
 
   /// Fixed vertices stand at these positions from now on: as obstacles, and for the knot energy.
   void standAt(const Positions& positions);
@@ -35,7 +35,6 @@ struct Unfolder::Implementation {
   /// Sets up once more with another collar, the state as it is.
   void setUpCollar(double width);
 
-  [[nodiscard]] double firmnessOnTheWay() const;
   /// Strengths of the terms in the present state.
   [[nodiscard]] TermValues strengths() const;
   [[nodiscard]] Configuration configurationAt(const Positions& x,

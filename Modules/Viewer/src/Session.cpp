@@ -8,7 +8,7 @@
 #include "Explica/Geometry/FaceTree.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Unfolding/Account.h"
-#include "Explica/Unfolding/StopRule.h"
+#include "Explica/Unfolding/Continuation.h"
 #include "Explica/Visibility/AverageVisibility.h"
 
 #include <algorithm>
@@ -186,9 +186,9 @@ struct Session::Implementation {
 
   /// Only this thread adds moments while it runs, so that it may read them without the mutex.
   void iterate() {
-    const unfolding::StopRule rule(choice.unfold);
+    const unfolding::Continuation continuation(choice.unfold);
     while (!pauseWanted) {
-      Termination reason = rule.check(*unfolder, history(moments.size() - 1));
+      Termination reason = continuation.next(*unfolder, history(moments.size() - 1));
       if (reason == Termination::NotRun && !unfolder->step()) reason = Termination::Stalled;
       if (reason != Termination::NotRun) {
         const std::lock_guard<std::mutex> hold(mutex);

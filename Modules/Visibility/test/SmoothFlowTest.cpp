@@ -1,8 +1,6 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
-#include "Explica/Visibility/SmoothFlow.h"
-
 #include "Explica/Geometry/Fixtures.h"
 #include "Explica/Visibility/AverageVisibility.h"
 
@@ -14,6 +12,22 @@
 
 namespace explica::visibility {
 namespace {
+
+/// A point of a smooth surface.
+struct SurfacePoint {
+  Point position;
+  Vector inwardNormal;       ///< unit
+  double meanCurvature = 0;  ///< 1/mm, half the sum of the principal ones; positive on a sphere
+};
+
+/// The differentiable flow of a whole surface of this area, [Thesis, Eq. 5.25] with its missing
+/// factor 2.
+Vector smoothVisibilityVelocity(const SurfacePoint& point, const Point& viewpoint,
+                                double averageVisibility, double area) {
+  const double bracket =
+      point.meanCurvature * averageVisibility + 1 / (point.position - viewpoint).norm();
+  return 2 / area * bracket * point.inwardNormal;
+}
 
 /// Mean curvature of x^2/a^2 + y^2/b^2 + z^2/c^2 = 1, positive.
 double ellipsoidCurvature(const Point& p, const Vector& axes) {

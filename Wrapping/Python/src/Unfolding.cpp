@@ -30,6 +30,7 @@ py::dict recordOf(const IterationRecord& r) {
   for (const char* count : {"contacts", "solves"}) {
     record[count] = static_cast<int>(record[count].cast<double>());
   }
+  record["phase"] = std::string(nameOf(r.phase));
   return record;
 }
 
@@ -149,7 +150,7 @@ void bindUnfolding(py::module_& m) {
         }));
       },
       "Unfold the region (its vertices) of a surface for viewpoints, RAS mm.  Returns positions\n"
-      "(V, 3), faces, termination, flag ('', 'short', 'held', 'worse' or 'stretched'),\n"
+      "(V, 3), faces, termination, flag ('', 'held', 'worse' or 'stretched'),\n"
       "iteration (whose state it is), collar (faces that moved outside the region), history (one\n"
       "dict an iteration) and frames\n"
       "[(visibility, positions)].  `progress(fraction, activity)` may return False to stop.",

@@ -9,6 +9,7 @@
 #include "Explica/Unfolding/Unfolder.h"
 #include "Explica/Visibility/Viewpoints.h"
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -63,16 +64,10 @@ class Energy {
   [[nodiscard]] virtual double PhaseSeconds::*phase() const { return &PhaseSeconds::visibility; }
 };
 
-// The terms, each made in the file of its name.
-[[nodiscard]] std::unique_ptr<Energy> makeVisibilityEnergy();
-[[nodiscard]] std::unique_ptr<Energy> makeAreaEnergy();
-[[nodiscard]] std::unique_ptr<Energy> makeSpringEnergy();
-[[nodiscard]] std::unique_ptr<Energy> makeLiftEnergy();
-[[nodiscard]] std::unique_ptr<Energy> makeGuideEnergy();
-[[nodiscard]] std::unique_ptr<Energy> makeCollarEnergy();
-[[nodiscard]] std::unique_ptr<Energy> makeOverhangEnergy();
-[[nodiscard]] std::unique_ptr<Energy> makeContactEnergy();
-[[nodiscard]] std::unique_ptr<Energy> makeKnotTerm();
+/// One for each row of kTerms, at the same place.
+using Terms = std::array<std::unique_ptr<Energy>, kTermCount>;
+void makeFaceTerms(Terms& terms);   ///< sums over faces
+void makeOtherTerms(Terms& terms);  ///< of edges, vertices and pairs
 
 // What springs contribute: a part of two terms, strength * sum of e r(l / l0 - 1), with
 // r(s) = 2 s^2 / (1 + sqrt(1 + (s / d)^2)), d the strain of yielding: s^2 for strains far below d,

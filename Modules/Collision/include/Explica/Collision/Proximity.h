@@ -10,8 +10,7 @@
 namespace explica::collision {
 
 using FourPoints = std::array<Point, 4>;
-using Vector12 = Eigen::Matrix<double, 12, 1>;   ///< four points, x y z each
-using Matrix12 = Eigen::Matrix<double, 12, 12>;  ///< second derivatives by four points
+using Vector12 = Eigen::Matrix<double, 12, 1>;  ///< four points, x y z each
 
 /// The two ways in which triangulated surfaces first touch.
 enum class PairKind : std::uint8_t {
@@ -21,13 +20,9 @@ enum class PairKind : std::uint8_t {
 
 /// Nearest points of a pair as one linear combination of its four points.
 ///
-/// difference = sum_i weights[i] x_i joins them.  On its way to the minimum the combination has
-/// `freedom` free parameters (0 to 2: corner, edge or interior), and weightRates holds the
-/// derivatives of the weights by them.
+/// difference = sum_i weights[i] x_i joins them.
 struct Proximity {
   std::array<double, 4> weights = {0, 0, 0, 0};
-  int freedom = 0;
-  std::array<std::array<double, 4>, 2> weightRates = {};
   Vector difference = Vector::Zero();  ///< mm
   double squaredDistance = kInfinity;  ///< mm^2
 };
@@ -42,10 +37,6 @@ struct Proximity {
 
 /// Gradient of the squared distance, mm: 2 w_i r for r the difference (envelope theorem).
 [[nodiscard]] Vector12 squaredDistanceGradient(const Proximity& proximity);
-
-/// Hessian of the squared distance, symmetric, in general indefinite; valid off the borders between
-/// the cases of Proximity::freedom, where the gradient has kinks.
-[[nodiscard]] Matrix12 squaredDistanceHessian(const Proximity& proximity, const FourPoints& x);
 
 /// A distance, mm, that the true one is not below; 0 if the pair may touch.
 ///

@@ -26,35 +26,26 @@ enum class Term {
   Knot       ///< weight times the double integral of 1 / |x - y|^2, see KnotEnergy
 };
 
-/// What the program tells about a term.  Columns of evolution.tsv, options, checkpoints, inflations
-/// and Python's records follow from these rows.
+/// What the program tells about a term.  Columns of evolution.tsv, checkpoints, inflations and
+/// Python's records follow from these rows.
 struct TermInfo {
   Term term;
-  std::string_view name;    ///< the account's: energy_NAME
-  double weight;            ///< default of its strength, no unit
-  std::string_view option;  ///< of the strength; empty for a term whose strength is the measure
-  std::string_view help;    ///< one sentence
+  std::string_view name;  ///< the account's: energy_NAME
+  double weight;          ///< its strength where nothing else is said, no unit
   /// Whether a whole closed surface feels it, too (Inflation): it has no surroundings and no map.
   bool closed = true;
 };
 
 inline constexpr std::array kTerms = {
-    TermInfo{Term::Visibility, "visibility", 1, "", ""},
-    TermInfo{Term::Area, "area", 20, "area-weight",
-             "stiffness of face areas before it is tightened"},
-    TermInfo{Term::Spring, "spring", 60, "spring-weight",
-             "stiffness of edge lengths at the start; later weighed against visibility"},
-    TermInfo{Term::Lift, "lift", 60, "lift-weight",
-             "pull out of fixed or elastic surroundings, up to where the flat region has room",
-             false},
-    TermInfo{Term::Guide, "guide", 100, "guide-weight",
-             "pull of a large region without surroundings towards its flat map", false},
-    TermInfo{Term::Collar, "collar", 2e-4, "collar-weight",
-             "stiffness of an elastic collar beside the region's", false},
-    TermInfo{Term::Overhang, "overhang", 0.3, "overhang-weight",
-             "pull on faces of the collar that lean over the region", false},
-    TermInfo{Term::Contact, "contact", 0.2, "contact-weight", "strength of the contact barrier"},
-    TermInfo{Term::Knot, "knot", 3e-4, "knot-weight", "strength of the knot energy", false},
+    TermInfo{Term::Visibility, "visibility", 1},
+    TermInfo{Term::Area, "area", 20},
+    TermInfo{Term::Spring, "spring", 60},
+    TermInfo{Term::Lift, "lift", 60, false},
+    TermInfo{Term::Guide, "guide", 100, false},
+    TermInfo{Term::Collar, "collar", 2e-4, false},
+    TermInfo{Term::Overhang, "overhang", 0.3, false},
+    TermInfo{Term::Contact, "contact", 0.2},
+    TermInfo{Term::Knot, "knot", 3e-4, false},
 };
 inline constexpr std::size_t kTermCount = kTerms.size();
 static_assert(
@@ -90,11 +81,13 @@ struct UnfoldWeights : TermValues {
   }
 };
 
+/// The two that change what comes out by more than the terms' balance evens out again.
 template <class Visitor>
 void describe(UnfoldWeights& weights, Visitor&& visit) {
-  for (const TermInfo& info : kTerms) {
-    if (!info.option.empty()) visit(Field{info.option, "", info.help}, weights[info.term]);
-  }
+  visit(Field{"spring-weight", "",
+              "stiffness of edge lengths at the start; later weighed against visibility"},
+        weights[Term::Spring]);
+  visit(Field{"knot-weight", "", "strength of the knot energy"}, weights[Term::Knot]);
 }
 
 }  // namespace explica::unfolding

@@ -75,11 +75,6 @@ struct BestState {
   double seen = kNaN;    ///< share of the region's area that is seen; NaN if nobody looked
 };
 
-/// A goal missed by no more than this, of visibility or of what it is worth, is worth a look; a
-/// result that misses one by more is held: one per cent, the unit of the trade between them.
-inline constexpr double kMissed = 0.01;
-/// ... the same of strain.
-inline constexpr double kMissedStrain = kMissed * kTrade;
 /// Of visibility or strain: less than that is no reason to go back to an earlier state.
 inline constexpr double kNoWorse = 1e-3;
 
@@ -96,10 +91,9 @@ inline constexpr double kCollarMean = 2, kCollarMost = 8;
 /// @param seen  NaN: nobody looked, and nothing is known to lack
 [[nodiscard]] double merit(double visibility, double strain, double seen = kNaN,
                            double trade = kTrade);
-/// By how much the goals are missed, in visibility, at most; not above 0 where all are met.
-/// @param goal  visibility that is asked for
-/// @param seen  NaN: not known, and taken for enough
-[[nodiscard]] double shortfall(double goal, double visibility, double seen, double strain);
+/// Whether a result has what an unfolding is to have: `goal` of visibility, no less seen than that
+/// or kGoalSeen, and edges strained by kGoalStrain at most.
+[[nodiscard]] bool meetsGoals(double goal, double visibility, double seen, double strain);
 /// More merit; on the way to a target, the higher visibility.
 /// @param seen  of the state
 [[nodiscard]] bool isBetter(const IterationRecord& state, const BestState& than,
@@ -119,8 +113,7 @@ struct Checkpoint {
 /// What keeps a result from being what it seems.
 enum class Flag {
   None,
-  Short,     ///< a goal is missed, by kMissed at most
-  Held,      ///< ... by more
+  Held,      ///< a goal is missed
   Worse,     ///< no state was better than the start
   Crossing,  ///< faces cross that did not at the start
   Stretched  ///< an elastic collar gave way: see kCollarMean and kCollarMost
@@ -148,9 +141,8 @@ struct UnfoldResult {
 ///                       range
 ///
 /// A run never ends worse than the best state it has seen that keeps its areas.  Converged and
-/// TargetReached are said of what reaches its goals (kGoalVisibility or the target, kGoalSeen,
-/// kGoalStrain) only; a run that comes to rest short of one by kMissed at most ends as Finished,
-/// flag Short, and otherwise as Stalled, flag Held, each with a warning.
+/// TargetReached are said of what meetsGoals() only; a run that comes to rest short of a goal ends
+/// as Stalled, flag Held, with a warning that names it.
 [[nodiscard]] UnfoldResult unfold(const TriangleMesh& mesh, const Region& region,
                                   const visibility::Viewpoints& viewpoints,
                                   const UnfoldOptions& options = {}, const Monitor& monitor = {},
@@ -168,7 +160,6 @@ void writeCheckpoint(const std::filesystem::path& path, const Checkpoint& checkp
 template <>
 struct explica::EnumNames<explica::unfolding::Flag> {
   static constexpr std::array table = {std::pair{explica::unfolding::Flag::None, ""},
-                                       std::pair{explica::unfolding::Flag::Short, "short"},
                                        std::pair{explica::unfolding::Flag::Held, "held"},
                                        std::pair{explica::unfolding::Flag::Worse, "worse"},
                                        std::pair{explica::unfolding::Flag::Crossing, "crossing"},

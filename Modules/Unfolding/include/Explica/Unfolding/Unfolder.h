@@ -59,23 +59,14 @@ void describe(UnfolderOptions& options, Visitor&& visit) {
             "--collar-rings)",
             kAboveZero, 1000},
       options.collarWidth);
-  visit(Field{"contact-range", "", "reach of the contact barrier in mean edge lengths", kAboveZero,
-              10},
-        options.contactRange);
   visit(Field{"yield-strain", "",
               "strain beyond which a length costs less than its square, so that few edges give way "
               "where the surface cannot be laid flat otherwise",
               kAboveZero, 1e6},
         options.yieldStrain);
-  visit(Field{"guide-faces", "",
-              "a region without surroundings that has so many faces or more is pulled towards its "
-              "flat map",
-              0, 1e9},
-        options.guideFaces);
   visit(Field{"method", "", "implicit steps, or the thesis's gradient flow as the baseline"},
         options.method);
   visit(Field{"knot", "", "how the repulsive (knot) energy is evaluated"}, options.knot);
-  visit(Field{"keep-areas", "", "thesis method: project onto kept areas"}, options.keepAreas);
   visit(Field{"time-step", "", "thesis method: fixed step instead of an adaptive one", kAboveZero},
         options.timeStep);
   describe(options.weights, visit);
@@ -97,9 +88,18 @@ struct PhaseSeconds {
   }
 };
 
+/// What a step is for.
+enum class Phase {
+  Parting,   ///< pairs that start almost in contact are parted, nothing else
+  Opening,   ///< folds open; the visibility term keeps its strength
+  Weighing,  ///< ... and is weighed against lengths
+  Settling   ///< ... while areas tighten
+};
+
 /// One iteration's account: a row of evolution.tsv.
 struct IterationRecord {
   int iteration = 0;
+  Phase phase = Phase::Opening;
   double visibility = kNaN;     ///< average flux density of the region, [-1, 1]
   double areaErrorMean = kNaN;  ///< mean |A / A0 - 1| over the region's faces
   double areaErrorMax = kNaN;
@@ -120,14 +120,6 @@ struct IterationRecord {
   double seconds = 0;  ///< wall time since the run began, set by unfold()
 };
 
-/// Two features of the surface that stopped a step: they are solved for as rigid for a while.
-struct HeldPair {
-  std::array<std::int32_t, 3> pair = {};  ///< kind, first and second of a collision::Pair
-  std::int32_t hold = 0;   ///< iterations that it is held for, more each time that it stops a step
-  std::int32_t until = 0;  ///< the iteration that solves without holding it again
-  friend bool operator==(const HeldPair&, const HeldPair&) = default;
-};
-
 /// What rays to the viewpoints told of a state.
 struct Look {
   int iteration = -1;  ///< whose state it was; -1: there was no look
@@ -140,18 +132,16 @@ struct UnfoldState {
   Eigen::VectorXd multipliers;  ///< one per kept face
   Positions directions;  ///< R x 3, see Unfolder::setDirections(); no rows: towards the viewpoints
   double damping = 1;
-  double areaStiffness = 0;     ///< current, >= weights.area
-  double drive = 1;             ///< strength of the visibility term against the others
-  int driveIteration = 0;       ///< when it was raised last, or way was made
-  double lift = 1;              ///< factor of weights.lift, raised where way was made
-  double collarWidth = 0;       ///< mm along the surface; wider where way was made
-  int ways = 0;                 ///< how often that was
-  double contactStiffness = 1;  ///< factor of weights.contact, raised where pairs are pressed close
+  double areaStiffness = 0;  ///< current, >= weights.area
+  double drive = 1;          ///< strength of the visibility term against the others
+  int driveIteration = 0;    ///< when it was raised last, or way was made
+  double lift = 1;           ///< factor of weights.lift, raised where way was made
+  double collarWidth = 0;    ///< mm along the surface; wider where way was made
+  int ways = 0;              ///< how often that was
   int iteration = 0;
   bool separating = true;               ///< pairs that start almost in contact are parted first
   double separatingEnergy = kInfinity;  ///< of their contacts before the last such step
   bool stalled = false;                 ///< no step lowered the objective
-  std::vector<HeldPair> held;           ///< in the order in which they stopped steps
   Look look;                            ///< the last
 };
 
@@ -164,8 +154,7 @@ struct UnfoldState {
 /// with a moving vertex, and backtracks until the objective does not rise.  So no state has an
 /// intersection that the start did not have, and crossings of the start stay as they are.
 ///
-/// Results are the same for any number of threads; with a knot energy, on the same kind of
-/// processor.
+/// Results are the same for any number of threads.
 ///
 /// The thesis's method has none of this: it follows the flow of visibility and knot energy with its
 /// areas kept to first order, and may intersect.
@@ -183,13 +172,11 @@ class Unfolder {
   /// stalled and unchanged).
   bool step();
 
-  /// Strengthens the visibility term, for a target that the present balance does not reach.
+  /// Says what the next step is for (Opening, Weighing or Settling), and strengthens or weakens the
+  /// visibility term a little.  Without it areas tighten once the visibility rises slowly.
+  void steer(Phase phase, double factor);
+  /// Strengthens the visibility term for good: what follows has to be waited for.
   void raiseDrive(double factor);
-
-  /// Strengthens or weakens the visibility term a little, without waiting for what follows, and
-  /// says whether areas tighten in the next step; without it they do once the visibility rises
-  /// slowly.
-  void balance(double factor, bool tightenAreas);
 
   /// Whether a part of the region that counts is held below its elastic surroundings, which can
   /// still be asked to part further.
@@ -243,6 +230,14 @@ class Unfolder {
                                             const UnfolderOptions& options);
 
 }  // namespace explica::unfolding
+
+template <>
+struct explica::EnumNames<explica::unfolding::Phase> {
+  static constexpr std::array table = {std::pair{explica::unfolding::Phase::Parting, "parting"},
+                                       std::pair{explica::unfolding::Phase::Opening, "opening"},
+                                       std::pair{explica::unfolding::Phase::Weighing, "weighing"},
+                                       std::pair{explica::unfolding::Phase::Settling, "settling"}};
+};
 
 template <>
 struct explica::EnumNames<explica::unfolding::Method> {

@@ -17,7 +17,8 @@ namespace explica::unfolding {
 /// @param visibility  that the run is bound for
 [[nodiscard]] double steering(double visibility, double aim);
 
-/// Drives an unfolding and says when it is over: for batch runs and for a window alike.
+/// Drives an unfolding to the solution that its goals define, for batch runs and for a window
+/// alike.
 ///
 /// Of visibility v and mean edge strain s, with goals v* and s*, it seeks the least g for which
 ///
@@ -25,27 +26,29 @@ namespace explica::unfolding {
 ///
 /// (goal attainment, [Gembicki1975]).  For a given strength m of the visibility term the steps
 /// minimise S + m (1 - v); both v and s of such minima rise with m, so that the m at which both
-/// constraints hold alike is found by steering m alone.  It stops where one per cent of visibility
-/// would cost more strain than it is worth (trade).
-class StopRule {
+/// constraints hold alike is found by steering m alone (Phase says what a step is for).  m ends
+/// where one per cent of visibility would cost more strain than it is worth (trade).
+class Continuation {
  public:
   /// @throws InvalidInput  an option out of range
-  explicit StopRule(const UnfoldOptions& options);
+  explicit Continuation(const UnfoldOptions& options);
 
-  /// Looks at the account so far, the start's row included.
+  /// Says whether a run is over and, if it is not, steers its next step.
   ///
-  /// A run ends where both goals are met with something to spare, or where it is at rest: neither
+  /// It is over where both goals are met with something to spare, or where it is at rest: neither
   /// visibility nor strain changes although the visibility term is steered.  Then areas have to be
-  /// kept, and what is seen has to increase no more.  Where a part of the region is held below its
-  /// surroundings, these are parted further.
+  /// kept, and what is seen has to increase no more.
+  /// @param history  the account so far, the start's row included
   /// @return NotRun as long as another iteration pays
-  [[nodiscard]] Termination check(Unfolder& unfolder,
-                                  const std::vector<IterationRecord>& history) const;
+  [[nodiscard]] Termination next(Unfolder& unfolder,
+                                 const std::vector<IterationRecord>& history) const;
 
  private:
-  /// @param change  of the last iterations
-  [[nodiscard]] Termination steer(Unfolder& unfolder, const std::vector<IterationRecord>& history,
-                                  double change) const;
+  struct Outlook;
+  [[nodiscard]] Outlook outlook(const Unfolder& unfolder,
+                                const std::vector<IterationRecord>& history) const;
+  [[nodiscard]] Termination endOf(Unfolder& unfolder, const Outlook& now) const;
+  void steer(Unfolder& unfolder, const Outlook& now) const;
 
   UnfoldOptions options_;
 };

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
-#include "Explica/Unfolding/StopRule.h"
+#include "Explica/Unfolding/Continuation.h"
 
 #include "Explica/Core/Errors.h"
 
@@ -53,14 +53,6 @@ double changeOver(const std::vector<IterationRecord>& history, int since,
                   std::abs(last.edgeStrainMean - then.edgeStrainMean) / options.trade);
 }
 
-/// True if a face of the collar is stretched beyond what it should be and is still giving way back:
-/// one that is caught in a contact stays as it is, and is no reason to go on.
-bool isTorn(const std::vector<IterationRecord>& history) {
-  const double now = history.back().collarStretchMax;
-  if (history.size() <= kWindow) return now > kCollarMost;
-  return now > kCollarMost && now < history[history.size() - 1 - kWindow].collarStretchMax;
-}
-
 /// Strength of the visibility term at which one per cent of visibility costs the strain that it is
 /// worth: trade times the slope, by strain, of what lengths cost at their goal.
 double largestDrive(const UnfoldOptions& options) {
@@ -93,56 +85,74 @@ double steering(double visibility, double aim) {
                     kMostSteering);
 }
 
-StopRule::StopRule(const UnfoldOptions& options) : options_(options) {
+Continuation::Continuation(const UnfoldOptions& options) : options_(options) {
   requireUsable(options);
 }
 
-Termination StopRule::steer(Unfolder& unfolder, const std::vector<IterationRecord>& history,
-                            double change) const {
-  const IterationRecord& last = history.back();
-  const auto& target = options_.targetVisibility;
-  const bool rests = change < kAccuracy / 2;
-  const bool kept = last.areaErrorMean <= options_.areaTolerance;
-  const bool torn = options_.unfolder.surround == Surround::Elastic && isTorn(history);
-  const bool enough = !target && !torn &&
-                      merit(last.visibility, last.edgeStrainMean, kNaN, options_.trade) > kAccuracy;
-  if (kept && (enough || rests)) {
-    if (target) {
-      return last.visibility >= *target ? Termination::TargetReached : Termination::Stalled;
-    }
-    if (!isStillAppearing(unfolder)) return Termination::Converged;
+/// Where a run is and where it leads.
+struct Continuation::Outlook {
+  const IterationRecord& last;
+  double change = kInfinity;  ///< over the window, of visibility or what strain is worth
+  double visibility = kNaN;   ///< that the run is bound for
+  double strain = kNaN;       ///< ...
+  [[nodiscard]] bool rests() const { return change < kAccuracy / 2; }
+};
+
+Continuation::Outlook Continuation::outlook(const Unfolder& unfolder,
+                                            const std::vector<IterationRecord>& history) const {
+  Outlook now{history.back()};
+  if (options_.unfolder.method == Method::Thesis || !unfolder.state().separating) {
+    now.change = changeOver(history, unfolder.state().driveIteration, options_);
   }
-  if (static_cast<int>(history.size()) > options_.maxIterations) return Termination::MaxIterations;
-  const double visibility = limitOf(history, &IterationRecord::visibility);
-  const double aim = aimAt(options_, limitOf(history, &IterationRecord::edgeStrainMean));
-  const double drive = unfolder.state().drive, most = std::max(drive, largestDrive(options_));
-  const bool slow = rests || (drive >= most && change < 3 * kAccuracy);
-  unfolder.balance(std::min(most, drive * steering(visibility, aim)) / drive,
-                   !kept && (slow || visibility > aim - 2 * kAccuracy));
-  return Termination::NotRun;
+  now.visibility = limitOf(history, &IterationRecord::visibility);
+  now.strain = limitOf(history, &IterationRecord::edgeStrainMean);
+  return now;
 }
 
-Termination StopRule::check(Unfolder& unfolder, const std::vector<IterationRecord>& history) const {
-  const IterationRecord& last = history.back();
-  const bool thesis = options_.unfolder.method == Method::Thesis;
-  const bool started = thesis || !unfolder.state().separating;
-  const double change =
-      started ? changeOver(history, unfolder.state().driveIteration, options_) : kInfinity;
-  const bool rests = change < kAccuracy / 2;
-  const double goal = options_.targetVisibility.value_or(1);
-  if (thesis) {
-    if (last.visibility >= goal) return Termination::TargetReached;
-    if (rests) return options_.targetVisibility ? Termination::Stalled : Termination::Converged;
-  } else {
-    unfolder.balance(1, false);  // areas are soft at first
-    if (started && unfolder.isHeldBelow()) {
-      if (change < 2 * kAccuracy) unfolder.makeWay();  // it hardly opens any more
-    } else if (started && (rests || last.visibility > std::min(kOpen, goal))) {
-      return steer(unfolder, history, change);
-    }
+Termination Continuation::endOf(Unfolder& unfolder, const Outlook& now) const {
+  const auto& target = options_.targetVisibility;
+  const IterationRecord& last = now.last;
+  const bool reached = target && last.visibility >= *target;
+  if (options_.unfolder.method == Method::Thesis) {
+    if (reached) return Termination::TargetReached;
+    if (!now.rests()) return Termination::NotRun;
+    return target ? Termination::Stalled : Termination::Converged;
   }
-  const bool limit = static_cast<int>(history.size()) > options_.maxIterations;
-  return limit ? Termination::MaxIterations : Termination::NotRun;
+  if (unfolder.state().separating || unfolder.isHeldBelow()) return Termination::NotRun;
+  const bool enough =
+      !target && merit(last.visibility, last.edgeStrainMean, kNaN, options_.trade) > kAccuracy;
+  const bool kept = last.areaErrorMean <= options_.areaTolerance;
+  if (!kept || !(enough || now.rests())) return Termination::NotRun;
+  if (target) return reached ? Termination::TargetReached : Termination::Stalled;
+  return isStillAppearing(unfolder) ? Termination::NotRun : Termination::Converged;
+}
+
+void Continuation::steer(Unfolder& unfolder, const Outlook& now) const {
+  unfolder.steer(Phase::Opening, 1);
+  if (unfolder.state().separating || options_.unfolder.method == Method::Thesis) return;
+  if (unfolder.isHeldBelow()) {
+    if (now.change < 2 * kAccuracy) unfolder.makeWay();  // it hardly opens any more
+    return;
+  }
+  const double open = std::min(kOpen, options_.targetVisibility.value_or(1));
+  if (!now.rests() && now.last.visibility <= open) return;
+  const double aim = aimAt(options_, now.strain);
+  const double drive = unfolder.state().drive, most = std::max(drive, largestDrive(options_));
+  const bool slow = now.rests() || (drive >= most && now.change < 3 * kAccuracy);
+  const bool kept = now.last.areaErrorMean <= options_.areaTolerance;
+  const bool settles = !kept && (slow || now.visibility > aim - 2 * kAccuracy);
+  unfolder.steer(settles ? Phase::Settling : Phase::Weighing,
+                 std::min(most, drive * steering(now.visibility, aim)) / drive);
+}
+
+Termination Continuation::next(Unfolder& unfolder,
+                               const std::vector<IterationRecord>& history) const {
+  const Outlook now = outlook(unfolder, history);
+  const Termination end = endOf(unfolder, now);
+  if (end != Termination::NotRun) return end;
+  if (static_cast<int>(history.size()) > options_.maxIterations) return Termination::MaxIterations;
+  steer(unfolder, now);
+  return Termination::NotRun;
 }
 
 }  // namespace explica::unfolding

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
-#include "Explica/Unfolding/StopRule.h"
+#include "Explica/Unfolding/Continuation.h"
 
 #include <gtest/gtest.h>
 
