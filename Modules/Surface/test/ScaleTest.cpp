@@ -24,11 +24,17 @@ CorticalSurfaces surfacesAt(double unit) {
   return buildSurfaces(tissueFromLabels(testing::wavyBall(unit), labels), options);
 }
 
+const CorticalSurfaces& inMillimetres() {
+  static const CorticalSurfaces made = surfacesAt(1);
+  return made;
+}
+
 class Scale : public ::testing::TestWithParam<int> {};
 
 TEST_P(Scale, ByAPowerOfTwoChangesNoBitOfTheResult) {
   const double unit = std::ldexp(1.0, GetParam());
-  const CorticalSurfaces here = surfacesAt(1), there = surfacesAt(unit);
+  const CorticalSurfaces& here = inMillimetres();
+  const CorticalSurfaces there = surfacesAt(unit);
   EXPECT_EQ(there.white.mesh.faces, here.white.mesh.faces);
   EXPECT_EQ(there.white.mesh.positions, unit * here.white.mesh.positions);
   EXPECT_EQ(there.mid.positions, unit * here.mid.positions);
@@ -41,10 +47,10 @@ TEST_P(Scale, ByAPowerOfTwoChangesNoBitOfTheResult) {
   EXPECT_EQ(there.heldBackPial, here.heldBackPial);
 }
 
-INSTANTIATE_TEST_SUITE_P(VoxelSizes, Scale, ::testing::Values(-20, -10, 10, 20));
+INSTANTIATE_TEST_SUITE_P(VoxelSizes, Scale, ::testing::Values(-20, 20));
 
 TEST(Scale, ByAThousandChangesTheResultByRounding) {
-  const CorticalSurfaces here = surfacesAt(1);
+  const CorticalSurfaces& here = inMillimetres();
   const double thickness = meanThickness(here.white.mesh, here.thickness),
                white = geometry::totalArea(here.white.mesh), pial = geometry::totalArea(here.pial);
   // Rounding makes another mesh of the same surface.  Its vertices start elsewhere beside the
