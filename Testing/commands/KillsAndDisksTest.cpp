@@ -72,7 +72,7 @@ TEST_P(KillsAndDisks, AStopAtAnyCheckIsInterruptedAndNothingElse) {
   const long checks = checksFor(into(out));
   ASSERT_GT(checks, 0);
   fs::remove_all(out);
-  for (const long check : momentsOf(checks, 4)) {
+  for (const long check : momentsOf(checks, 10)) {
     SCOPED_TRACE("check " + std::to_string(check) + " of " + std::to_string(checks));
     const CommandResult ended = explica(into(out), stopAtCheck(check));
     ASSERT_TRUE(isInterrupted(ended)) << ended;

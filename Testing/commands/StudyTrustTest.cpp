@@ -53,7 +53,7 @@ TEST(StudyTrust, AStopAtAnyCheckIsInterruptedInTheTablesToo) {
   const SmallStudy study(folder.path(), {"01"});
   const long checks = checksFor(study.participants(folder / "undisturbed"));
   const Hashes expected = stableHashes(folder / "undisturbed");
-  for (const long check : momentsOf(checks, 5)) {
+  for (const long check : momentsOf(checks, 10)) {
     SCOPED_TRACE("check " + std::to_string(check) + " of " + std::to_string(checks));
     const CommandResult ended =
         explica(study.participants(study.out(), {"--force"}), stopAtCheck(check));
@@ -82,7 +82,7 @@ TEST(StudyTrust, AStopAtAnyCheckIsInterruptedInTheTableOfHeartsToo) {
   const std::vector<std::string> words = {"study", "hearts", folder / "data", folder / "out"};
   const long checks = checksFor(words);
   fs::remove_all(folder / "out");
-  for (const long check : momentsOf(checks, 5)) {
+  for (const long check : momentsOf(checks, 10)) {
     SCOPED_TRACE("check " + std::to_string(check) + " of " + std::to_string(checks));
     const CommandResult ended = explica(words, stopAtCheck(check));
     ASSERT_TRUE(isInterrupted(ended)) << ended;
