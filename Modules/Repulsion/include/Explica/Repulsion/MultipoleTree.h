@@ -19,9 +19,8 @@ struct MultipoleTreeOptions {
 /// Knot energy by a tree code; time O(n log N) for n moving faces among N.
 ///
 /// E = sum over quadrature points of w_q phi(x_q), phi(x) the integral of 1/|x - y|^2 dS(y). Moving
-/// faces are grouped by sixteen.  For each group, distant clusters of sources act through one
-/// third-order expansion, nearer ones on each face by the second moments of both sides, close faces
-/// by three by three points, near ones by product Gauss rules on subdivided faces, faces with
+/// faces are grouped by sixteen.  Far clusters of sources act on each face by the second moments of
+/// both sides, close faces by three by three points, near ones by product Gauss rules on subdivided faces, faces with
 /// common corners by the regular integrals that remain once the singularity is integrated exactly
 /// (PairIntegral.h).  The tree of the fixed faces is built once, that of the moving faces at every
 /// evaluation.
