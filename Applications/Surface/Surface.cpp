@@ -412,9 +412,9 @@ std::size_t writeRegions(Context& context, const Regions& regions,
                          const surface::CorticalSurfaces& made, const std::string& structure,
                          std::vector<io::SpecEntry>& spec) {
   const surface::VertexKeys keys = regionKeys(regions, made, structure);
-  const Eigen::VectorXd areas = geometry::vertexAreas(made.white.mesh);
-  const auto measured = surface::measureRegions(keys, made.thickness, areas);
-  const auto nearest = surface::measureRegions(keys, made.nearestThickness, areas);
+  const Eigen::VectorXd white = geometry::vertexAreas(made.white.mesh);
+  const auto measured = surface::measureRegions(keys, made.columnThickness, white, made.columnArea);
+  const auto nearest = surface::measureRegions(keys, made.nearestThickness, white, made.columnArea);
   std::ostringstream table;
   table << "index\tname\tvertices\tarea_white_mm2\tthickness_mean_mm\tthickness_sd_mm\t"
            "thickness_nearest_mean_mm\n";
@@ -655,8 +655,8 @@ surface::SurfaceSummary summaryOf(const Settings& s, const surface::CorticalTiss
   }
   summary.thicknessKnown.reset();
   if (made.sheet.open) {
-    const Eigen::VectorXd known = surface::validOf(made).array() * made.thickness.array();
-    summary.thicknessKnown = surface::meanThickness(made.white.mesh, known);
+    const Eigen::VectorXd known = surface::validOf(made).array() * made.columnThickness.array();
+    summary.thicknessKnown = surface::meanThickness(made.columnArea, known);
   }
   return summary;
 }
@@ -765,7 +765,7 @@ Termination run(Context& context, const Settings& s) {
   judge.flag("defects", static_cast<double>(made.white.defects.size()));
   // Labels named by hand need not be a cortex's.
   if (tissue.hasGrey && s.tissue.white.empty()) {
-    judge.flag("thickness-mean", surface::meanThickness(made.white.mesh, made.thickness));
+    judge.flag("thickness-mean", surface::meanThickness(made.columnArea, made.columnThickness));
   }
   const std::int64_t meetings = summary.meetings();
   if (!given && meetings > 0) {

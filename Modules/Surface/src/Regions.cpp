@@ -36,7 +36,8 @@ VertexKeys labelsWithin(const Volume<Label>& atlas, const Positions& white, cons
 }
 
 std::vector<RegionMeasure> measureRegions(const VertexKeys& keys, const Eigen::VectorXd& thickness,
-                                          const Eigen::VectorXd& areas) {
+                                          const Eigen::VectorXd& areas,
+                                          const Eigen::VectorXd& weights) {
   struct Sums {
     RegionMeasure region;
     double weight = 0, first = 0, second = 0;
@@ -49,9 +50,9 @@ std::vector<RegionMeasure> measureRegions(const VertexKeys& keys, const Eigen::V
     ++sums.region.vertices;
     sums.region.area += areas[v];
     if (!(thickness[v] > 0)) continue;
-    sums.weight += areas[v];
-    sums.first += areas[v] * thickness[v];
-    sums.second += areas[v] * thickness[v] * thickness[v];
+    sums.weight += weights[v];
+    sums.first += weights[v] * thickness[v];
+    sums.second += weights[v] * thickness[v] * thickness[v];
   }
   std::vector<RegionMeasure> regions;
   for (auto& [key, sums] : all) {

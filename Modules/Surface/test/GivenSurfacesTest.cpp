@@ -75,7 +75,7 @@ TEST(Regions, AreasAddUpAndMeansAreOfTheirVertices) {
     ASSERT_EQ(keys[v], x < 0 ? 7 : (white.positions(v, 2) < 0 ? 9 : keys[v])) << v;
     thickness[v] = x < 0 ? 2 : (v % 3 == 0 ? 0 : 4);  // some vertices without grey matter
   }
-  const auto regions = measureRegions(keys, thickness, areas);
+  const auto regions = measureRegions(keys, thickness, areas, areas);
   ASSERT_EQ(regions.size(), 2u);
   EXPECT_EQ(regions[0].key, 7);
   EXPECT_NEAR(regions[0].area, areas.sum() / 2, 0.05 * areas.sum());

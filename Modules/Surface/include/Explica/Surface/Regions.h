@@ -23,16 +23,18 @@ using VertexKeys = Eigen::Matrix<Label, Eigen::Dynamic, 1>;  ///< V
 struct RegionMeasure {
   Label key = 0;
   Eigen::Index vertices = 0;      ///< with this key
-  double area = 0;                ///< of the surface that `areas` belongs to, mm^2
-  double thicknessMean = 0;       ///< mm, weighted by area; NaN where no vertex has a thickness
+  double area = 0;                ///< mm^2
+  double thicknessMean = 0;       ///< mm, weighted; NaN where no vertex has a thickness
   double thicknessDeviation = 0;  ///< standard deviation, mm
 };
 
 /// Area and thickness of each region, ascending keys, 0 left out.  Vertices without thickness (0)
 /// count for the area, not for the mean.
-/// @param areas  V, mm^2
+/// @param areas    V, mm^2
+/// @param weights  V, of the thickness: areas of the middle surface
 [[nodiscard]] std::vector<RegionMeasure> measureRegions(const VertexKeys& keys,
                                                         const Eigen::VectorXd& thickness,
-                                                        const Eigen::VectorXd& areas);
+                                                        const Eigen::VectorXd& areas,
+                                                        const Eigen::VectorXd& weights);
 
 }  // namespace explica::surface
