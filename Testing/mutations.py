@@ -128,7 +128,7 @@ ALL = [
              "outcome == Outcome::Arrived;",
              "ExplicaCorrespondenceUnitTests", "Measurement.*"),
     Mutation("Modules/Correspondence/src/ImageEdge.cpp",
-             "correspondence.missing -= leaving;", "static_cast<void>(leaving);",
+             "if (correspondence.missing > 0) markLeaving(", "if (false) markLeaving(",
              "ExplicaCorrespondenceUnitTests"),
     Mutation("Modules/Provenance/src/Verify.cpp",
              """found.sha256 == entry["sha256"] &&""", """true &&""",

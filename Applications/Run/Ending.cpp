@@ -47,7 +47,7 @@ std::string thicknessOf(const fs::path& out, const char* ending, const char* sid
   }
   const Json volume = readIfThere(out / ("thickness" + std::string(ending)) / "summary.json");
   const auto mean = number(volume, "thickness_mean");
-  return mean ? format("%s%.2f mm (mean over voxels)", side, *mean) : std::string();
+  return mean ? format("%s%.2f mm", side, *mean) : std::string();
 }
 
 std::string placeOf(const fs::path& folder) {

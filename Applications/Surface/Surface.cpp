@@ -419,19 +419,19 @@ std::size_t writeRegions(Context& context, const Regions& regions,
                          const surface::CorticalSurfaces& made, const std::string& structure,
                          std::vector<io::SpecEntry>& spec) {
   const surface::VertexKeys keys = regionKeys(regions, made, structure);
-  const Eigen::VectorXd areas = geometry::vertexAreas(made.white.mesh);
   std::set<Label> used(keys.begin(), keys.end());
   used.erase(0);
   const std::vector<Label> all(used.begin(), used.end());
   const auto moments = [&](const Eigen::VectorXd& values) {
     const std::span<const Label> of(keys.data(), static_cast<std::size_t>(keys.size()));
-    return maps::regionMoments(of, values, areas, all);
+    return maps::regionMoments(of, values, made.columnArea, all);
   };
   // A thickness of 0 is not known.
   const auto known = [](const Eigen::VectorXd& thickness) -> Eigen::VectorXd {
     return (thickness.array() > 0).select(thickness, kNaN);
   };
-  const auto sizes = moments(areas), measured = moments(known(made.thickness)),
+  const auto sizes = moments(geometry::vertexAreas(made.white.mesh)),
+             measured = moments(known(made.columnThickness)),
              nearest = moments(known(made.nearestThickness));
   const Eigen::VectorXd doubtful = surface::doubtfulOf(made);
   const bool isDoubted = doubtful.size() > 0;
@@ -683,8 +683,8 @@ surface::SurfaceSummary summaryOf(const Settings& s, const surface::CorticalTiss
   }
   summary.thicknessKnown.reset();
   if (made.sheet.open) {
-    const Eigen::VectorXd known = surface::validOf(made).array() * made.thickness.array();
-    summary.thicknessKnown = surface::meanThickness(made.white.mesh, known);
+    const Eigen::VectorXd known = surface::validOf(made).array() * made.columnThickness.array();
+    summary.thicknessKnown = surface::meanThickness(made.columnArea, known);
   }
   return summary;
 }
@@ -793,7 +793,7 @@ Termination run(Context& context, const Settings& s) {
   judge.flag("defects", static_cast<double>(made.white.defects.size()));
   // Labels named by hand need not be a cortex's.
   if (tissue.hasGrey && s.tissue.white.empty()) {
-    judge.flag("thickness-mean", surface::meanThickness(made.white.mesh, made.thickness));
+    judge.flag("thickness-mean", surface::meanThickness(made.columnArea, made.columnThickness));
   }
   const std::int64_t meetings = summary.meetings();
   if (!given && meetings > 0) {

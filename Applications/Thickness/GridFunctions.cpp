@@ -4,7 +4,9 @@
 #include "GridFunctions.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/WholeFile.h"
 #include "Explica/IO/VolumeSeries.h"
+#include "Explica/IO/VtkFile.h"
 #include "Explica/Sampling/Sampler.h"
 
 #include <nlohmann/json.hpp>
@@ -75,8 +77,7 @@ Eigen::Index nearestTrajectory(const AnatomicalGrid& grid, const Eigen::Vector3d
   return nearest / rows;
 }
 
-}  // namespace
-
+/// Values of every frame of the volumes at the grid's points, NaN where a volume is not known.
 std::vector<io::VertexMap> functionsOnGrid(Context& context, const GridFunctions& functions,
                                            const io::VolumeReadOptions& reading,
                                            const AnatomicalGrid& grid) {
@@ -99,6 +100,7 @@ std::vector<io::VertexMap> functionsOnGrid(Context& context, const GridFunctions
   return maps;
 }
 
+/// Mean, deviation and count of each function at each depth, over whole trajectories.
 std::string depthTable(const std::vector<io::VertexMap>& functions, const AnatomicalGrid& grid) {
   const std::vector<bool> whole = wholeTrajectories(grid);
   const Eigen::Index rows = rowsOf(grid);
@@ -120,6 +122,7 @@ std::string depthTable(const std::vector<io::VertexMap>& functions, const Anatom
   return text;
 }
 
+/// The functions along the trajectories nearest to points, from the inner to the outer boundary.
 std::string trajectoryTable(const std::vector<io::VertexMap>& functions, const AnatomicalGrid& grid,
                             const std::vector<Eigen::Vector3d>& along) {
   std::string text = "trajectory\tdepth\tx\ty\tz\tthickness";
@@ -137,6 +140,27 @@ std::string trajectoryTable(const std::vector<io::VertexMap>& functions, const A
     }
   }
   return text;
+}
+
+}  // namespace
+
+void writeGrid(Context& context, const GridFunctions& wanted, const io::VolumeReadOptions& reading,
+               const AnatomicalGrid& grid) {
+  auto step = context.step("grid");
+  const auto functions = functionsOnGrid(context, wanted, reading, grid);
+  std::vector<io::VertexMap> maps = {{"depth", "", grid.depth},
+                                     {"thickness", "mm", grid.thickness}};
+  maps.insert(maps.end(), functions.begin(), functions.end());
+  const auto kind = grid.cells.cols() == 8 ? io::CellKind::Hexahedron : io::CellKind::Quad;
+  io::writeVtu(context.output("grid.vtu"), grid.points, {{kind, grid.cells}}, maps);
+  if (!functions.empty()) {
+    writeTextFile(context.output("grid_functions.tsv"), depthTable(functions, grid));
+    context.result("grid_functions", functions.size());
+  }
+  if (!wanted.along.empty()) {
+    writeTextFile(context.output("grid_trajectories.tsv"),
+                  trajectoryTable(functions, grid, wanted.along));
+  }
 }
 
 }  // namespace explica::app

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
+#include "ContourFiles.h"
 #include "GridFunctions.h"
 
 #include "Explica/Application/Command.h"
@@ -10,21 +11,16 @@
 #include "Explica/Core/Memory.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Core/WholeFile.h"
-#include "Explica/Correspondence/Contours.h"
 #include "Explica/Correspondence/FieldFigure.h"
 #include "Explica/Correspondence/Measurement.h"
 #include "Explica/Harmonic/Annulus.h"
 #include "Explica/IO/VolumeFile.h"
-#include "Explica/IO/VtkFile.h"
 #include "Explica/Provenance/Doubts.h"
 #include "Explica/Ventricle/Pictures.h"
 
-#include <array>
 #include <chrono>
-#include <filesystem>
 #include <functional>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -77,6 +73,8 @@ void declareOutputs(Declaration& d) {
       .output("bullseye.png", FileKind::Picture, "with --aha: bullseye.svg in pixels")
       .output("segments.nii.gz", FileKind::LabelVolume, "with --aha: segment of each voxel")
       .output("bullseye.svg", FileKind::Picture, "with --aha: the segments' mean thickness, mm")
+      .output("valid.nii.gz", FileKind::LabelVolume,
+              "1 where thickness is known and the image's edge does not reach it")
       .output("sulci.nii.gz", FileKind::LabelVolume,
               "where sulci are recovered: 1 beside a boundary that was put between banks");
 }
@@ -114,12 +112,6 @@ void declare(Declaration& d, Settings& s) {
                     "--open-ends or --aha, which are for hearts, and with --per-slice where the "
                     "inner region is not folded as a cortex's)"},
               s.measurement.sulci)
-      .option("Boundary",
-              Field{"image-edge", "",
-                    "tissue cut by the image's edge: open gives it no thickness, insulated takes "
-                    "the edge for the tissue's end (default: open; insulated where sulci are "
-                    "ignored by default)"},
-              s.measurement.imageEdge)
       .options("Boundary", s.measurement.sulcus)
       .options("Correspondences", s.measurement.correspondence)
       .options("Layers", s.measurement.layers)
@@ -215,20 +207,15 @@ correspondence::Measurement measure(Context& context, harmonic::Annulus annulus,
 }
 
 void report(Context& context, Judge& judge, const correspondence::Measurement& m) {
-  const correspondence::Correspondence& found = m.correspondence;
   context.results(m);
-  if (found.missing > 0) {
-    context.warn("thickness could not be measured in " + std::to_string(found.missing) +
-                 " voxels: no trajectory through them reaches both boundaries");
-  }
   // Slices on their own always leave out what lies beyond the inner region's ends.
   const double leftOut = m.annulus.planar ? 0 : static_cast<double>(m.annulus.droppedVoxels);
-  judge.flag("without-thickness", (static_cast<double>(found.missing) + leftOut) /
+  judge.flag("without-thickness", (static_cast<double>(m.lost) + leftOut) /
                                       (static_cast<double>(m.annulus.count()) + leftOut));
   if (m.cutVoxels > 0) {
     context.warn(std::to_string(m.cutVoxels) +
-                 " voxels lie where tissue runs out of the image: their thickness is not known "
-                 "(--image-edge insulated measures them as if it ended there)");
+                 " voxels lie so near to the image's edge that their thickness holds only if it "
+                 "cuts the tissue at right angles (0 in valid.nii.gz)");
   }
 }
 
@@ -249,27 +236,9 @@ void writeOutputs(Context& context, const correspondence::Measurement& m, bool s
   write("inner_point.nii.gz", harmonic::spreadPoints(m.annulus, found.innerPoint));
   write("outer_point.nii.gz", harmonic::spreadPoints(m.annulus, found.outerPoint));
   write("layers.nii.gz", harmonic::spreadLabels(m.annulus, m.layers));
+  write("valid.nii.gz", harmonic::spreadLabels(m.annulus, correspondence::validOf(m)));
   if (sulci) write("sulci.nii.gz", harmonic::maskOf(m.annulus, m.sulcalVoxels));
   parallelFor(files.size(), 1, [&](std::size_t f) { files[f](); });
-}
-
-/// The anatomical grid with the functions that were asked for.
-void writeGrid(Context& context, const correspondence::AnatomicalGrid& grid, const Settings& s) {
-  auto step = context.step("grid");
-  const auto functions = functionsOnGrid(context, s.functions, s.reading, grid);
-  std::vector<io::VertexMap> maps = {{"depth", "", grid.depth},
-                                     {"thickness", "mm", grid.thickness}};
-  maps.insert(maps.end(), functions.begin(), functions.end());
-  const auto kind = grid.cells.cols() == 8 ? io::CellKind::Hexahedron : io::CellKind::Quad;
-  io::writeVtu(context.output("grid.vtu"), grid.points, {{kind, grid.cells}}, maps);
-  if (!functions.empty()) {
-    writeTextFile(context.output("grid_functions.tsv"), depthTable(functions, grid));
-    context.result("grid_functions", functions.size());
-  }
-  if (!s.functions.along.empty()) {
-    writeTextFile(context.output("grid_trajectories.tsv"),
-                  trajectoryTable(functions, grid, s.functions.along));
-  }
 }
 
 /// The figure of a slice.
@@ -281,65 +250,6 @@ void writeFigure(Context& context, const correspondence::Measurement& m,
                 correspondence::drawField(m.annulus, m.interpolant, m.correspondence, slice,
                                           m.grid ? &*m.grid : nullptr));
   context.result("figure_slice", slice);
-}
-
-std::string contourTable(const std::vector<correspondence::Contour>& contours) {
-  std::ostringstream table;
-  table << "slice\tcontour\tclosed\tpoint\tinner_x_mm\tinner_y_mm\tinner_z_mm\tmiddle_x_mm\t"
-           "middle_y_mm\tmiddle_z_mm\touter_x_mm\touter_y_mm\touter_z_mm\tthickness_mm\n";
-  for (std::size_t c = 0; c < contours.size(); ++c) {
-    const correspondence::Contour& contour = contours[c];
-    for (std::size_t k = 0; k < contour.inner.size(); ++k) {
-      table << contour.slice << '\t' << c + 1 << '\t' << (contour.closed ? "yes" : "no") << '\t'
-            << k + 1;
-      for (const Point& p : {contour.inner[k], contour.middle[k], contour.outer[k]}) {
-        table << '\t' << p.x() << '\t' << p.y() << '\t' << p.z();
-      }
-      table << '\t' << contour.thickness[k] << '\n';
-    }
-  }
-  return table.str();
-}
-
-/// Three lines for each contour, at depth 0, 0.5 and 1.
-void writeContourLines(const std::filesystem::path& path,
-                       const std::vector<correspondence::Contour>& contours) {
-  std::vector<Point> points;
-  std::vector<double> depth, thickness;
-  std::vector<std::array<std::int32_t, 2>> lines;
-  for (const correspondence::Contour& contour : contours) {
-    for (const auto& [line, at] :
-         {std::pair{&contour.inner, 0.0}, {&contour.middle, 0.5}, {&contour.outer, 1.0}}) {
-      const auto first = static_cast<std::int32_t>(points.size());
-      for (std::size_t k = 0; k < line->size(); ++k) {
-        const auto here = static_cast<std::int32_t>(points.size());
-        if (k > 0) lines.push_back({here - 1, here});
-        points.push_back((*line)[k]);
-        depth.push_back(at);
-        thickness.push_back(contour.thickness[k]);
-      }
-      if (contour.closed) lines.push_back({static_cast<std::int32_t>(points.size()) - 1, first});
-    }
-  }
-  Positions positions(static_cast<Eigen::Index>(points.size()), 3);
-  for (std::size_t p = 0; p < points.size(); ++p) positions.row(p) = points[p];
-  io::Cells cells{io::CellKind::Line, {}};
-  cells.vertices.resize(static_cast<Eigen::Index>(lines.size()), 2);
-  for (std::size_t l = 0; l < lines.size(); ++l) cells.vertices.row(l) << lines[l][0], lines[l][1];
-  const auto column = [](const std::vector<double>& values) {
-    return Eigen::VectorXd(Eigen::VectorXd::Map(values.data(), values.size()));
-  };
-  io::writeVtu(path, positions, {cells},
-               {{"depth", "", column(depth)}, {"thickness", "mm", column(thickness)}});
-}
-
-void writeContours(Context& context, const correspondence::Measurement& m) {
-  auto step = context.step("contours");
-  const auto contours = correspondence::contoursOf(m.annulus, m.interpolant);
-  context.result("contours", contours.size());
-  if (contours.empty()) return;
-  writeTextFile(context.output("contours.tsv"), contourTable(contours));
-  writeContourLines(context.output("contours.vtu"), contours);
 }
 
 /// Table, volume and picture of the 17 segments.
@@ -375,7 +285,7 @@ Termination run(Context& context, const Settings& s) {
   const correspondence::Measurement m = measure(context, std::move(annulus), options);
   report(context, judge, m);
   writeOutputs(context, m, m.sulciRecovered);
-  if (m.grid) writeGrid(context, *m.grid, s);
+  if (m.grid) writeGrid(context, s.functions, s.reading, *m.grid);
   if (m.annulus.planar) writeContours(context, m);
   if (s.figure || s.figureSlice || m.grid) writeFigure(context, m, s.figureSlice);
   if (s.aha) writeSegments(context, m.annulus, s);

@@ -439,7 +439,7 @@ TEST(SampleLayers, AgreeWithLayNiisOnRealActivation) {
   io::writeVolume(folder / "rim.nii.gz", rim);
   const CommandResult made =
       explica({"thickness", folder / "rim.nii.gz", "--inner", "1", "--tissue", "2", "--outer", "3",
-               "--insulated", "0", "--sulci", "ignore", "--image-edge", "insulated", "--out",
+               "--insulated", "0", "--sulci", "ignore", "--out",
                folder / "thickness"});
   ASSERT_EQ(made.exitCode, 0) << made;
   const Volume<float> thickness = io::readScalars(folder / "thickness/thickness.nii.gz").volume;

@@ -155,7 +155,7 @@ NOT_TRIED = {
     "fill": PLACE, "preset": PLACE, "hemisphere": PLACE, "no-fill": SPECIES, "core-depth": SPECIES,
     "stripped": SPECIES, "open-ends": SPECIES, "per-slice": SPECIES, "along": "more output", "figure": "more output",
     "figure-slice": "more output", "aha": SPECIES, "rv-insertion": PLACE, "rv-insertion-image-axis": PLACE,
-    "image-edge": SPECIES, "surface level": INPUT, "close-edges": SPECIES,
+    "surface level": INPUT, "close-edges": SPECIES,
     "nearest": INPUT, "depths": "more output", "global-measures": "more output",
     "global-flow": "another flow", "viewing-radius": "another flow",
     "phantom": INPUT, "label": INPUT, "slice": INPUT, "contour": INPUT, "edges": INPUT, "polygon smooth": INPUT,

@@ -153,6 +153,28 @@ double lowestCorner(const AnatomicalGrid& grid, Eigen::Index cell) {
   return lowest;
 }
 
+/// Six times the volume between the origin and a bilinear face: the mean of both its triangulations.
+double beneath(const Vector& a, const Vector& b, const Vector& c, const Vector& d) {
+  const auto det = [](const Vector& p, const Vector& q, const Vector& r) {
+    return p.dot(q.cross(r));
+  };
+  return 0.5 * (det(a, b, c) + det(a, c, d) + det(a, b, d) + det(b, c, d));
+}
+
+/// mm^3 of a hexahedron, mm^2 of a quadrilateral.
+double volumeOf(const AnatomicalGrid& grid, Eigen::Index cell) {
+  const Vector origin = grid.points.row(grid.cells(cell, 0)).transpose();
+  const auto at = [&](int c) -> Vector {
+    return grid.points.row(grid.cells(cell, c)).transpose() - origin;
+  };
+  if (grid.cells.cols() == 4) return 0.5 * at(2).cross(at(3) - at(1)).norm();
+  constexpr std::array<std::array<int, 4>, 6> kFaces = {
+      {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}};
+  double sum = 0;
+  for (const auto& f : kFaces) sum += beneath(at(f[0]), at(f[1]), at(f[2]), at(f[3]));
+  return sum / 6;
+}
+
 /// Takes out the cells that are turned over or flat at a corner.
 void leaveOutDegenerate(AnatomicalGrid& grid) {
   std::vector<std::uint8_t> good(static_cast<std::size_t>(grid.cells.rows()));
@@ -190,6 +212,7 @@ AnatomicalGrid anatomicalGrid(const harmonic::Annulus& annulus,
   }
   stackCells(surface.faces, corners, levels, !right, grid);
   leaveOutDegenerate(grid);
+  for (Eigen::Index c = 0; c < grid.cells.rows(); ++c) grid.volume += volumeOf(grid, c);
   return grid;
 }
 

@@ -685,18 +685,54 @@ std::vector<double> thicknessOf(const Correspondence& correspondence) {
   return thickness;
 }
 
+std::optional<double> thicknessAt(const Annulus& annulus, const Correspondence& correspondence,
+                                  const Point& point) {
+  constexpr double kEnough = 0.25;  // of the weight
+  const Vector index = annulus.grid.toIndex(point);
+  const auto strides = annulus.strides();
+  double sum = 0, weights = 0;
+  for (int c = 0; c < 8; ++c) {
+    double weight = 1;
+    std::ptrdiff_t place = 0;
+    bool within = true;
+    for (int a = 0; a < 3; ++a) {
+      const double low = std::floor(index[a]), upper = index[a] - low;
+      const int at = static_cast<int>(low) + (c >> a & 1) - annulus.first[a];
+      within = within && at >= 0 && at < annulus.size[a];
+      weight *= (c >> a & 1) ? upper : 1 - upper;
+      place += static_cast<std::ptrdiff_t>(at) * strides[a];
+    }
+    const std::int32_t n = within ? annulus.numberAt[place] : -1;
+    if (n < 0 || std::isnan(correspondence.thickness(n))) continue;
+    sum += weight * correspondence.thickness(n);
+    weights += weight;
+  }
+  if (!(weights > kEnough)) return {};
+  return sum / weights;
+}
+
+double columnWeight(const Correspondence& correspondence, std::size_t n) {
+  const double thickness = correspondence.thickness(n);
+  if (!(thickness > 0)) return 0;
+  return 4 * std::min(correspondence.innerDistance[n], correspondence.outerDistance[n]) /
+         (thickness * thickness);
+}
+
 ThicknessSummary summaryOf(const Correspondence& correspondence) {
   std::vector<double> known = thicknessOf(correspondence);
-  std::erase_if(known, [](double t) { return std::isnan(t); });
+  double sum = 0, weighted = 0, weights = 0;
+  for (std::size_t n = 0; n < known.size(); ++n) {
+    if (!(known[n] > 0)) continue;
+    const double weight = columnWeight(correspondence, n);
+    sum += known[n];
+    weighted += weight * known[n];
+    weights += weight;
+  }
+  std::erase_if(known, [](double t) { return !(t > 0); });
   ThicknessSummary summary;
   if (known.empty()) return summary;
-  double sum = 0, inverse = 0;
-  for (const double t : known) {
-    sum += t;
-    inverse += 1 / t;
-  }
-  summary.mean = sum / static_cast<double>(known.size());
-  summary.meanOfColumns = static_cast<double>(known.size()) / inverse;
+  summary.meanOfVoxels = sum / static_cast<double>(known.size());
+  summary.mean = weights > 0 ? weighted / weights : kNaN;
   const auto quantile = [&](double q) {
     const auto at = known.begin() + std::lround(q * static_cast<double>(known.size() - 1));
     std::nth_element(known.begin(), at, known.end());

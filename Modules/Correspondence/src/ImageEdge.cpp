@@ -64,10 +64,9 @@ std::vector<std::int32_t> nearestOf(const Annulus& annulus, const IsSource& isSo
   return nearest;
 }
 
-/// Counts voxels without thickness that are nearer to the edge than to one of the two boundaries:
-/// the way there leaves the image before it arrives.  They no longer count as missing.
-std::size_t countLeaving(const Annulus& annulus, const std::vector<std::int32_t>& onEdgeNearest,
-                         Correspondence& correspondence) {
+/// Marks voxels without thickness that are nearer to the edge than to one of the two boundaries.
+void markLeaving(const Annulus& annulus, const std::vector<std::int32_t>& onEdgeNearest,
+                 const Correspondence& correspondence, std::vector<std::uint8_t>& marked) {
   const auto beside = [&](std::int32_t wall) {
     return nearestOf(annulus, [&annulus, wall](std::int32_t n) {
       const auto& links = annulus.links[n];
@@ -79,26 +78,22 @@ std::size_t countLeaving(const Annulus& annulus, const std::vector<std::int32_t>
   const auto wayTo = [&](std::int32_t n, std::int32_t m) {
     return m < 0 ? kInfinity : (placeOf(annulus, n) - placeOf(annulus, m)).norm();
   };
-  std::size_t leaving = 0;
   for (std::int32_t n = 0; n < static_cast<std::int32_t>(annulus.count()); ++n) {
     if (!std::isnan(correspondence.thickness(n)) || onEdgeNearest[n] < 0) continue;
-    leaving += wayTo(n, onEdgeNearest[n]) < std::max(wayTo(n, inner[n]), wayTo(n, outer[n]));
+    marked[n] = wayTo(n, onEdgeNearest[n]) < std::max(wayTo(n, inner[n]), wayTo(n, outer[n]));
   }
-  correspondence.missing -= leaving;
-  return leaving;
 }
 
 }  // namespace
 
-std::size_t leaveOutCut(const Annulus& annulus, const std::array<bool, 3>& axes,
-                        Correspondence& correspondence) {
+std::vector<std::uint8_t> nearImageEdge(const Annulus& annulus, const std::array<bool, 3>& axes,
+                                        const Correspondence& correspondence) {
   const std::vector<std::int32_t> nearest =
       nearestOf(annulus, [&](std::int32_t n) { return onEdge(annulus, n, axes); });
-  if (std::all_of(nearest.begin(), nearest.end(), [](std::int32_t n) { return n < 0; })) return 0;
-  const std::size_t leaving =
-      correspondence.missing > 0 ? countLeaving(annulus, nearest, correspondence) : 0;
+  if (std::all_of(nearest.begin(), nearest.end(), [](std::int32_t n) { return n < 0; })) return {};
+  std::vector<std::uint8_t> marked(annulus.count(), 0);
+  if (correspondence.missing > 0) markLeaving(annulus, nearest, correspondence, marked);
   const Eigen::Matrix3d toAxes = annulus.grid.direction.transpose();
-  std::vector<std::uint8_t> cut(annulus.count(), 0);
   parallelFor(annulus.count(), 1 << 12, [&](std::size_t index) {
     const auto n = static_cast<std::int32_t>(index);
     const double thickness = correspondence.thickness(n);
@@ -109,15 +104,9 @@ std::size_t leaveOutCut(const Annulus& annulus, const std::array<bool, 3>& axes,
     };
     const double least = std::min(
         {way.norm(), from(correspondence.innerPoint[n]), from(correspondence.outerPoint[n])});
-    cut[n] = least < kEdgeReach * thickness;
+    marked[n] = least < kEdgeReach * thickness;
   });
-  for (std::size_t n = 0; n < cut.size(); ++n) {
-    if (!cut[n]) continue;
-    correspondence.innerDistance[n] = correspondence.outerDistance[n] = kNaN;
-    correspondence.innerPoint[n].setConstant(static_cast<float>(kNaN));
-    correspondence.outerPoint[n].setConstant(static_cast<float>(kNaN));
-  }
-  return leaving + static_cast<std::size_t>(std::count(cut.begin(), cut.end(), std::uint8_t{1}));
+  return marked;
 }
 
 }  // namespace explica::correspondence

@@ -5,7 +5,9 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -34,6 +36,52 @@ double foldingOf(const harmonic::Annulus& annulus) {
   return area > 0 ? sum / area : 0;
 }
 
+namespace {
+
+/// Counts voxels without thickness and says once how many there are, why and where.
+void noteGaps(Measurement& m, const Monitor& monitor) {
+  const harmonic::Annulus& annulus = m.annulus;
+  std::int32_t first = -1;
+  std::size_t leaving = 0;
+  for (std::size_t n = 0; n < annulus.count(); ++n) {
+    if (!std::isnan(m.correspondence.thickness(n))) continue;
+    if (!m.nearEdge.empty() && m.nearEdge[n]) {
+      ++leaving;
+    } else if (m.lost++ == 0) {
+      first = static_cast<std::int32_t>(n);
+    }
+  }
+  // Slices on their own always leave out what lies beyond the inner region's ends.
+  const std::size_t dropped = annulus.planar ? 0 : annulus.droppedVoxels;
+  std::string reasons;
+  const auto add = [&](std::size_t voxels, const char* why, const std::string& place) {
+    if (voxels > 0) {
+      reasons += (reasons.empty() ? ": " : "; ") + std::to_string(voxels) + why + place;
+    }
+  };
+  const auto firstAt = [](const std::array<int, 3>& voxel) {
+    return " (the first at voxel " + harmonic::voxelText(voxel) + ")";
+  };
+  add(dropped, " in pieces that touch only one of the two boundaries",
+      firstAt(annulus.firstDropped));
+  add(m.lost, " whose trajectory does not reach both boundaries",
+      first < 0 ? "" : firstAt(annulus.voxel(first)));
+  add(leaving, " whose trajectory leaves the image", "");
+  if (reasons.empty()) return;
+  monitor.warn(std::to_string(m.lost + leaving + dropped) +
+               " voxels of tissue have no thickness" + reasons);
+}
+
+}  // namespace
+
+std::vector<int> validOf(const Measurement& m) {
+  std::vector<int> valid(m.annulus.count());
+  for (std::size_t n = 0; n < valid.size(); ++n) {
+    valid[n] = !std::isnan(m.correspondence.thickness(n)) && (m.nearEdge.empty() || !m.nearEdge[n]);
+  }
+  return valid;
+}
+
 Measurement measure(harmonic::Annulus annulus, const MeasurementOptions& options,
                     const Monitor& monitor, const OnPart& onPart) {
   // Before the work, not after it.
@@ -49,10 +97,13 @@ Measurement measure(harmonic::Annulus annulus, const MeasurementOptions& options
       options.interpolant, monitor, begin);
   begin("correspondence");
   m.correspondence = findCorrespondences(m.annulus, m.interpolant, options.correspondence, monitor);
-  if (options.imageEdgeMode(folding) == ImageEdge::Open) {
+  if (!options.isWall(folding)) {
     const bool flat = m.annulus.planar || m.annulus.grid.dimension() == 2;
-    m.cutVoxels = leaveOutCut(m.annulus, {true, true, !flat}, m.correspondence);
+    m.nearEdge = nearImageEdge(m.annulus, {true, true, !flat}, m.correspondence);
   }
+  m.cutVoxels = static_cast<std::size_t>(
+      std::count(m.nearEdge.begin(), m.nearEdge.end(), std::uint8_t{1}));
+  noteGaps(m, monitor);
   begin("layers");
   m.depth = depthOf(m.correspondence);
   m.layers = layersOf(options.layers.layerKind == LayerKind::Depth
@@ -76,6 +127,11 @@ void describe(Results& t, const Measurement& m) {
   t.count("components", "Pieces of tissue", "Connected through voxel faces.", m.annulus.components);
   t.count("direct_contacts", "Contacts of inner and outer region",
           "Voxel faces where both touch, without tissue between them.", m.annulus.directContacts);
+  t.count("tissue_ends", "Ends of the tissue",
+          "Places wider than it is thick where both touch: a hemisphere's cortex ends once, around "
+          "the medial wall.",
+          m.annulus.ends);
+  t.count("holes", "Holes in the tissue", "Smaller places where both touch.", m.annulus.holes);
   t.count("voxels_left_out", "Voxels of tissue left out", "Pieces that miss one of the boundaries.",
           m.annulus.droppedVoxels);
   t.text("sulci", "Buried sulci", "Whether the outer boundary was put where banks touch.",
@@ -90,20 +146,22 @@ void describe(Results& t, const Measurement& m) {
           "The others come from the transport equation.",
           static_cast<double>(found.traced) / (2.0 * static_cast<double>(m.annulus.count())));
   t.count("voxels_without_thickness", "Voxels without thickness",
-          "Thickness could not be measured there.", found.missing)
+          "No trajectory through them reaches both boundaries.", m.lost)
       .inHead();
-  t.count("voxels_cut_by_image", "Voxels cut by the image",
-          "Tissue runs out of the image there, and its thickness is not known.", m.cutVoxels);
-  t.number(
-       "thickness_mean_columns", "Mean thickness over columns", "mm",
-       "n / sum(1/t) over the tissue's voxels: each column counts once. The mean over voxels is "
-       "greater: a thick column holds more voxels.",
-       thickness.meanOfColumns)
+  t.count("voxels_cut_by_image", "Voxels near the image's edge",
+          "Their thickness holds if the edge cuts the tissue at a right angle (0 in "
+          "valid.nii.gz).",
+          m.cutVoxels);
+  t.number("thickness_mean", "Mean thickness", "mm",
+           "Over the area of the middle surface, of columns of voxels. The mean over voxels is "
+           "greater: a thick column holds more voxels.",
+           thickness.mean)
       .inHead()
       .compared();
-  t.number("thickness_mean", "Mean thickness over voxels", "mm", "Thick columns count more.",
+  t.number("thickness_mean_columns", "Mean thickness over columns", "mm", "The same number.",
            thickness.mean);
-  t.number("thickness_mean_voxels", "Mean thickness over voxels", "mm", "", thickness.mean);
+  t.number("thickness_mean_voxels", "Mean thickness over voxels", "mm",
+           "Thick columns count more.", thickness.meanOfVoxels);
   t.number("thickness_median", "Median thickness", "mm", "Over voxels.", thickness.median);
   t.number("thickness_p05", "Thickness, 5th percentile", "mm", "Over voxels.", thickness.p05)
       .inHead();
@@ -117,6 +175,12 @@ void describe(Results& t, const Measurement& m) {
           grid([](const auto& g) { return g.lost; }));
   t.count("grid_cells_degenerate", "Cells of the grid without volume", "",
           grid([](const auto& g) { return g.degenerate; }));
+  const Vector& h = m.annulus.grid.spacing;
+  const double tissue =
+      static_cast<double>(m.annulus.count()) * (m.annulus.planar ? h[0] * h[1] : h.prod());
+  t.number("grid_coverage", "Volume of the grid over that of the tissue", "",
+           "Cells between trajectories that do not reach both boundaries are missing.",
+           m.grid ? std::optional(m.grid->volume / tissue) : std::nullopt);
 }
 
 }  // namespace explica::correspondence

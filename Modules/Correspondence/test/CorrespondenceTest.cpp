@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <random>
 
 using namespace explica;
 using namespace explica::correspondence;
@@ -87,7 +88,7 @@ Solved spheroids() {
                harmonic::centredGrid({64, 64, 88}, Vector::Constant(1)));
 }
 
-TEST(ThicknessSummary, AMeanOverColumnsCountsEachColumnOnce) {
+TEST(ThicknessSummary, AMeanOverTheMiddleSurfaceCountsEachColumnByItsCrossSection) {
   // Columns of 2 and 6 voxels of 1 mm, as many of one kind as of the other.
   Correspondence found;
   for (const int t : {2, 6}) {
@@ -97,8 +98,35 @@ TEST(ThicknessSummary, AMeanOverColumnsCountsEachColumnOnce) {
     }
   }
   const ThicknessSummary summary = summaryOf(found);
-  EXPECT_NEAR(summary.meanOfColumns, 4, 1e-12);
-  EXPECT_NEAR(summary.mean, 5, 1e-12);
+  EXPECT_NEAR(summary.mean, 4, 1e-12);
+  EXPECT_NEAR(summary.meanOfVoxels, 5, 1e-12);
+}
+
+/// Mean of a measure over the surface at half depth, by many random points of the tissue: those
+/// within a tenth of half depth, each by 1 / thickness.
+double exactMean(const ExactAnnulus& exact, double reach) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(-reach, reach);
+  double sum = 0, weights = 0;
+  for (int n = 0; n < 1000000; ++n) {
+    const Point x(uniform(random), uniform(random), uniform(random));
+    if (exact.innerLevel(x) <= 0 || exact.outerLevel(x) >= 0) continue;
+    const auto answer = exact.answer(x);
+    if (std::abs(answer.innerDistance / answer.thickness() - 0.5) > 0.1) continue;
+    sum += 1;
+    weights += 1 / answer.thickness();
+  }
+  return sum / weights;
+}
+
+TEST(ThicknessSummary, HasTheMeanOverTheMiddleSurfaceOfATissueOfUnevenThickness) {
+  const Solved s = spheroids();
+  const ThicknessSummary summary = summaryOf(findCorrespondences(s.annulus, s.interpolant));
+  const double exact = exactMean(s.exact, 44);
+  std::printf("mean over the middle surface %.3f mm, of voxels %.3f mm, exact %.3f mm\n",
+              summary.mean, summary.meanOfVoxels, exact);
+  EXPECT_NEAR(summary.mean, exact, 0.02);
+  EXPECT_GT(std::abs(summary.meanOfVoxels - exact), 0.1);
 }
 
 /// A shell of 15 and 20 voxels whose centre is off the grid's middle, so that the image's faces cut
@@ -116,40 +144,35 @@ Volume<Label> cutShell(const Vector& spacing) {
   return labels;
 }
 
-TEST(ImageEdge, TissueThatRunsOutOfTheImageIsLeftOutWhereItsThicknessIsNotKnown) {
+TEST(ImageEdge, TissueThatRunsOutOfTheImageIsMeasuredAndMarkedWhereTheEdgeReaches) {
   harmonic::LabelRoles roles;
   roles.inner = {1};
   roles.tissue = {2};
   for (const Vector& spacing : {Vector(1, 1, 1), Vector(1, 1, 0.7)}) {
-    const auto labels = cutShell(spacing);
-    MeasurementOptions options;
-    const Measurement open = measure(harmonic::annulusFromLabels(labels, roles), options);
-    options.imageEdge = ImageEdge::Insulated;
-    const Measurement insulated = measure(harmonic::annulusFromLabels(labels, roles), options);
-    double sum = 0, worstKnown = 0, worstCut = 0;
-    std::size_t known = 0;
-    for (std::size_t n = 0; n < open.annulus.count(); ++n) {
-      const double t = open.correspondence.thickness(n);
-      if (std::isnan(t)) {
-        worstCut = std::max(worstCut, std::abs(insulated.correspondence.thickness(n) - 5));
-        continue;
-      }
+    const Measurement m = measure(harmonic::annulusFromLabels(cutShell(spacing), roles));
+    double sum = 0, worstFree = 0, worstMarked = 0;
+    std::size_t free = 0;
+    ASSERT_EQ(m.nearEdge.size(), m.annulus.count());
+    EXPECT_EQ(m.correspondence.missing, 0U);
+    for (std::size_t n = 0; n < m.annulus.count(); ++n) {
+      const double t = m.correspondence.thickness(n);
+      EXPECT_GT(m.layers[n], 0);
+      double& worst = m.nearEdge[n] ? worstMarked : worstFree;
+      worst = std::max(worst, std::abs(t - 5));
+      if (m.nearEdge[n]) continue;
       sum += t;
-      worstKnown = std::max(worstKnown, std::abs(t - 5));
-      ++known;
+      ++free;
     }
-    EXPECT_EQ(known + open.cutVoxels, open.annulus.count());
-    EXPECT_GT(known, open.annulus.count() / 5);
-    EXPECT_NEAR(sum / static_cast<double>(known), 5, 0.05);
-    // What was left out is what was wrong.
-    EXPECT_LT(worstKnown, 0.5);
-    EXPECT_GT(worstCut, 2 * worstKnown);
-    EXPECT_EQ(insulated.cutVoxels, 0U);
+    EXPECT_EQ(free + m.cutVoxels, m.annulus.count());
+    EXPECT_GT(free, m.annulus.count() / 5);
+    EXPECT_NEAR(sum / static_cast<double>(free), 5, 0.05);
+    EXPECT_LT(worstFree, 0.5);
+    EXPECT_GT(worstMarked, 2 * worstFree);
   }
 }
 
 /// A layer that runs on far beyond the region under it, whose other side lies below the image.
-TEST(ImageEdge, WhatLeavesTheImageBeforeItsBoundaryIsCutAndNotMissing) {
+TEST(ImageEdge, WhatLeavesTheImageBeforeItsBoundaryIsNotLost) {
   Grid grid;
   grid.size = {120, 8, 12};
   Volume<Label> labels(grid);
@@ -160,18 +183,34 @@ TEST(ImageEdge, WhatLeavesTheImageBeforeItsBoundaryIsCutAndNotMissing) {
   harmonic::LabelRoles roles;
   roles.inner = {1};
   roles.tissue = {2};
-  MeasurementOptions options;
-  options.imageEdge = ImageEdge::Insulated;
-  const Measurement insulated = measure(harmonic::annulusFromLabels(labels, roles), options);
-  EXPECT_GT(insulated.correspondence.missing, 100U);
-  options.imageEdge = ImageEdge::Open;
-  const Measurement open = measure(harmonic::annulusFromLabels(labels, roles), options);
-  std::size_t known = 0;
-  for (std::size_t n = 0; n < open.annulus.count(); ++n) {
-    known += !std::isnan(open.correspondence.thickness(n));
-  }
-  EXPECT_EQ(open.correspondence.missing, 0U);
-  EXPECT_EQ(known + open.cutVoxels, open.annulus.count());
+  std::vector<std::string> warnings;
+  Monitor monitor;
+  monitor.onWarning = [&](const std::string& text) { warnings.push_back(text); };
+  const Measurement m = measure(harmonic::annulusFromLabels(labels, roles), {}, monitor);
+  EXPECT_GT(m.correspondence.missing, 100U);
+  EXPECT_EQ(m.lost, 0U);
+  EXPECT_EQ(m.cutVoxels, m.annulus.count());
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].find(std::to_string(m.correspondence.missing) +
+                             " whose trajectory leaves the image"),
+            std::string::npos)
+      << warnings[0];
+}
+
+/// A speck of tissue within the inner region.
+TEST(Measurement, SaysOnceWhyTissueHasNoThicknessAndWhere) {
+  auto labels = harmonic::makePhantom(harmonic::PhantomKind::Shell, {64, 1}).labels;
+  labels(32, 32, 32) = labels(33, 32, 32) = 2;
+  std::vector<std::string> warnings;
+  Monitor monitor;
+  monitor.onWarning = [&](const std::string& text) { warnings.push_back(text); };
+  const Measurement m =
+      measure(harmonic::annulusFromLabels(labels, {{1}, {2}, {}, {}}, {}, monitor), {}, monitor);
+  EXPECT_EQ(m.annulus.droppedVoxels, 2U);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_EQ(warnings[0],
+            "2 voxels of tissue have no thickness: 2 in pieces that touch only one of the two "
+            "boundaries (the first at voxel (32, 32, 32))");
 }
 
 }  // namespace

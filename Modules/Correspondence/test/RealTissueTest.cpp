@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Correspondence/Correspondence.h"
 #include "Explica/Correspondence/Layers.h"
+#include "Explica/Correspondence/Measurement.h"
 #include "Explica/Correspondence/Sulci.h"
 #include "Explica/Harmonic/Phantoms.h"
 #include "Explica/IO/VolumeFile.h"
@@ -208,6 +209,73 @@ TEST(RealTissue, OpenSlabOfCortexHasDepthNearTheEquidistantLayers) {
   const auto parted = recoverSulci(annulus).annulus;
   expectMidGreyAtHalfDepth(folder, depthEverywhere(parted, harmonic::solveInterpolant(parted)),
                            equidistant);
+}
+
+TEST(RealTissue, ABlockIsMeasuredUpToItsEdge) {
+  const auto folder = kData / "laynii_sc";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "skipped: no real data";
+  const Measurement m = measure(harmonic::annulusFromLabels(
+      io::readLabels(folder / "sc_rim.nii.gz").volume, {{2}, {3}, {1}, {}}));
+  const auto theirs = io::readScalars(folder / "sc_layers.nii.gz").volume;
+  std::vector<double> depth, layers;
+  for (std::int32_t n = 0; n < static_cast<std::int32_t>(m.annulus.count()); ++n) {
+    if (std::isnan(m.depth[n]) || theirs[m.annulus.linear(n)] <= 0) continue;
+    EXPECT_GT(m.layers[n], 0);
+    depth.push_back(m.depth[n]);
+    layers.push_back(theirs[m.annulus.linear(n)]);
+  }
+  const auto share = [&](std::size_t voxels) {
+    return static_cast<double>(voxels) / static_cast<double>(m.annulus.count());
+  };
+  const double r = correlation(depth, layers);
+  std::printf("block: depth of %.2f %% of the voxels, r %.4f with LayNii's layers, near the edge "
+              "%.2f %%, lost %.3f %%, ends %d, holes %d\n",
+              100 * share(depth.size()), r, 100 * share(m.cutVoxels), 100 * share(m.lost),
+              m.annulus.ends, m.annulus.holes);
+  EXPECT_GT(share(depth.size()), 0.97);
+  EXPECT_LT(share(m.lost), 0.02);
+  EXPECT_GT(share(m.cutVoxels), 0.9);
+  EXPECT_GE(r, 0.98);
+}
+
+/// Voxels of a hexahedron, by six tetrahedra.
+double voxelsIn(const AnatomicalGrid& grid, Eigen::Index cell, double voxel) {
+  constexpr int kTetrahedra[6][4] = {{0, 1, 2, 6}, {0, 2, 3, 6}, {0, 3, 7, 6},
+                                     {0, 7, 4, 6}, {0, 4, 5, 6}, {0, 5, 1, 6}};
+  const auto at = [&](int c) -> Vector { return grid.points.row(grid.cells(cell, c)).transpose(); };
+  double sum = 0;
+  for (const auto& t : kTetrahedra) {
+    const Vector a = at(t[0]);
+    sum += (at(t[1]) - a).cross(at(t[2]) - a).dot(at(t[3]) - a) / 6;
+  }
+  return sum / voxel;
+}
+
+TEST(RealTissue, TheGridSaysHowMuchOfAVentriclesWallItCovers) {
+  const auto folder = kData / "lv_sunnybrook_SCD0000101";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "skipped: no real data";
+  const auto labels = io::readLabels(folder / "ED_label.nii.gz").volume;
+  const auto gridOf = [&](const harmonic::AnnulusOptions& annulus) {
+    MeasurementOptions options;
+    options.annulus = annulus;
+    options.grid = 4;
+    return measure(harmonic::annulusFromLabels(labels, {{1}, {2}, {}, {}}, annulus), options);
+  };
+  const Vector& h = labels.grid.spacing;
+  const Measurement slices = gridOf({.perSlice = true});
+  EXPECT_NEAR(slices.grid->volume / (static_cast<double>(slices.annulus.count()) * h[0] * h[1]), 1,
+              0.002);
+  // Slices of 10 mm make terraces of a slanting wall, whose corners no trajectory enters.
+  const Measurement space = gridOf({.openEnds = true});
+  const auto tissue = static_cast<double>(space.annulus.count());
+  double voxels = 0;
+  for (Eigen::Index c = 0; c < space.grid->cells.rows(); ++c) {
+    voxels += voxelsIn(*space.grid, c, h.prod());
+  }
+  std::printf("grid over tissue: %.4f in space\n", space.grid->volume / h.prod() / tissue);
+  EXPECT_NEAR(space.grid->volume / h.prod(), voxels, 0.005 * tissue);
+  EXPECT_GT(voxels / tissue, 0.94);
+  EXPECT_EQ(space.grid->lost, 0U);
 }
 
 TEST(RealTissue, ShortAxisStackIsMeasuredThoughItsBasalRingIsOpen) {

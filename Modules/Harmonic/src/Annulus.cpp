@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Harmonic/Annulus.h"
 
+#include "Explica/Core/DisjointSets.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Core/Runs.h"
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <memory>
 #include <set>
 #include <sstream>
@@ -165,8 +167,16 @@ void number(Annulus& annulus, const std::vector<Code>& sites,
   annulus.fractions.assign(irregulars, {1, 1, 1, 1, 1, 1});
 }
 
+/// A box voxel's subscripts in the whole volume.
+std::array<int, 3> voxelAt(const Annulus& annulus, std::size_t p) {
+  const std::size_t row = p / annulus.size[0];
+  return {static_cast<int>(p % annulus.size[0]) + annulus.first[0],
+          static_cast<int>(row % annulus.size[1]) + annulus.first[1],
+          static_cast<int>(row / annulus.size[1]) + annulus.first[2]};
+}
+
 /// Removes pieces of tissue that miss one side (they become insulated); counts what remains.
-void keepSpanningPieces(Annulus& annulus, std::vector<Code>& sites, const Monitor& monitor) {
+void keepSpanningPieces(Annulus& annulus, std::vector<Code>& sites) {
   const std::array<std::int32_t, 3> strides = annulus.strides();
   std::vector<std::uint8_t> seen(sites.size(), 0);
   std::vector<std::int32_t> piece;
@@ -204,6 +214,7 @@ void keepSpanningPieces(Annulus& annulus, std::vector<Code>& sites, const Monito
       continue;
     }
     for (const std::int32_t p : piece) sites[p] = codeOf(Site::Insulated);
+    if (annulus.droppedComponents == 0) annulus.firstDropped = voxelAt(annulus, start);
     annulus.droppedVoxels += piece.size();
     ++annulus.droppedComponents;
   }
@@ -219,71 +230,125 @@ void keepSpanningPieces(Annulus& annulus, std::vector<Code>& sites, const Monito
                                    : "insulated") +
                        " region; it must lie between an inner and an outer one");
   }
-  if (annulus.droppedComponents > 0) {
-    std::ostringstream text;
-    text << annulus.droppedComponents << " piece(s) of tissue (" << annulus.droppedVoxels
-         << " voxels) touch only one side and are left out";
-    monitor.warn(text.str());
-  }
 }
 
-void countContacts(Annulus& annulus, const std::vector<Code>& sites, const Monitor& monitor) {
+/// Voxel faces between the inner and the outer region.
+struct Contacts {
+  std::vector<std::size_t> inner;  ///< of each face the box voxel on the inner side, ascending
+  std::size_t boundary = 0;        ///< voxel faces between tissue and either region
+};
+
+Contacts contactsOf(const Annulus& annulus, const std::vector<Code>& sites) {
+  constexpr Code kIn = codeOf(Site::Inner), kOut = codeOf(Site::Outer);
   const auto strides = annulus.strides();
-  const std::size_t sliceSize = strides[2];
-  struct Found {
-    std::size_t count = 0;
-    std::size_t inPlane = 0;  ///< of them within the slice: the ring is open there
-    std::size_t at = 0;
-    Found& operator+=(const Found& other) {
-      if (count == 0) at = other.at;
-      count += other.count;
-      return *this;
+  std::vector<Contacts> bySlice(annulus.size[2]);
+  const auto look = [&](std::size_t p, std::size_t q, Contacts& found) {
+    const Code s = sites[p], t = sites[q];
+    if (s == t) return;
+    if ((s == kIn && t == kOut) || (s == kOut && t == kIn)) {
+      found.inner.push_back(s == kIn ? p : q);
+    } else {
+      found.boundary += (s == kTissueCode && (t == kIn || t == kOut)) ||
+                        (t == kTissueCode && (s == kIn || s == kOut));
     }
   };
-  // Per slice, so that the warning can say where the ring is open.
-  std::vector<Found> bySlice(annulus.size[2]);
-  parallelFor(annulus.size[2] - 1, 1, [&](std::size_t k) {
-    for (int j = 0; j + 1 < annulus.size[1]; ++j) {
-      for (int i = 0; i + 1 < annulus.size[0]; ++i) {
-        const std::size_t p = i + static_cast<std::size_t>(strides[1]) * j + sliceSize * k;
-        for (int a = 0; a < (annulus.planar ? 2 : 3); ++a) {
-          const Code s = sites[p], t = sites[p + strides[a]];
-          if ((s == codeOf(Site::Inner) && t == codeOf(Site::Outer)) ||
-              (s == codeOf(Site::Outer) && t == codeOf(Site::Inner))) {
-            if (bySlice[k].count++ == 0) bySlice[k].at = p;
-            bySlice[k].inPlane += a < 2;
-          }
-        }
+  parallelFor(bySlice.size(), 1, [&](std::size_t k) {
+    std::size_t p = k * strides[2];
+    for (int j = 0; j < annulus.size[1]; ++j) {
+      for (int i = 0; i < annulus.size[0]; ++i, ++p) {
+        if (i + 1 < annulus.size[0]) look(p, p + 1, bySlice[k]);
+        if (j + 1 < annulus.size[1]) look(p, p + strides[1], bySlice[k]);
+        if (!annulus.planar && k + 1 < bySlice.size()) look(p, p + strides[2], bySlice[k]);
       }
     }
   });
-  Found all;
-  std::vector<int> slices;
-  for (std::size_t k = 0; k < bySlice.size(); ++k) {
-    if (bySlice[k].count == 0) continue;
-    all += bySlice[k];
-    if (bySlice[k].inPlane > 0) slices.push_back(static_cast<int>(k) + annulus.first[2]);
+  Contacts all;
+  for (const Contacts& some : bySlice) {
+    all.inner.insert(all.inner.end(), some.inner.begin(), some.inner.end());
+    all.boundary += some.boundary;
   }
-  annulus.directContacts = all.count;
-  if (all.count == 0) return;
-  const std::int32_t row = static_cast<std::int32_t>(all.at) / annulus.size[0];
-  annulus.firstContact = {{static_cast<int>(all.at % annulus.size[0]) + annulus.first[0],
-                           row % annulus.size[1] + annulus.first[1],
-                           row / annulus.size[1] + annulus.first[2]}};
+  std::sort(all.inner.begin(), all.inner.end());
+  return all;
+}
+
+/// Places where they touch: faces and first voxel of each piece of the contacts' inner voxels that
+/// hangs together by faces, edges or corners; largest first.
+std::vector<std::pair<std::size_t, std::size_t>> placesOf(const Annulus& annulus,
+                                                          const std::vector<std::size_t>& inner) {
+  std::vector<std::size_t> voxels = inner;
+  voxels.erase(std::unique(voxels.begin(), voxels.end()), voxels.end());
+  const auto strides = annulus.strides();
+  const auto find = [&](std::size_t p) {
+    const auto at = std::lower_bound(voxels.begin(), voxels.end(), p);
+    return at != voxels.end() && *at == p ? static_cast<std::int32_t>(at - voxels.begin()) : -1;
+  };
+  DisjointSets pieces(voxels.size());
+  for (std::size_t v = 0; v < voxels.size(); ++v) {
+    for (int n = 14; n < 27; ++n) {  // the later half of the neighbours
+      const std::int32_t beside =
+          find(voxels[v] + (n % 3 - 1) + (n / 3 % 3 - 1) * strides[1] + (n / 9 - 1) * strides[2]);
+      if (beside >= 0) pieces.join(static_cast<std::int32_t>(v), beside);
+    }
+  }
+  std::map<std::int32_t, std::size_t> faces;
+  for (const std::size_t p : inner) ++faces[pieces.root(find(p))];
+  std::vector<std::pair<std::size_t, std::size_t>> places;
+  for (const auto& [root, count] : faces) places.emplace_back(count, voxels[root]);
+  std::stable_sort(places.begin(), places.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  return places;
+}
+
+constexpr const char* kTouches =
+    "the inner region touches the outer one without tissue between them at ";
+
+/// Says in which slices a ring is open.
+void warnOfOpenRings(const Annulus& annulus, const Contacts& contacts, const Monitor& monitor) {
+  constexpr std::size_t kMost = 12;  // slices that are listed
+  std::set<int> slices;
+  for (const std::size_t p : contacts.inner) {
+    slices.insert(static_cast<int>(p / annulus.strides()[2]) + annulus.first[2]);
+  }
   std::ostringstream text;
-  text << "the inner region touches the outer one without tissue between them at " << all.count
-       << " voxel faces, first at voxel (" << (*annulus.firstContact)[0] << ", "
-       << (*annulus.firstContact)[1] << ", " << (*annulus.firstContact)[2] << ")";
-  if (slices.empty()) {
-    text << ", between slices";
-  } else if (slices.size() <= 12) {
-    text << ": the ring is open in slice";
-    if (slices.size() > 1) text << "s";
-    for (std::size_t k = 0; k < slices.size(); ++k) text << (k ? ", " : " ") << slices[k];
+  text << kTouches << contacts.inner.size() << " voxel faces, first at voxel "
+       << voxelText(voxelAt(annulus, contacts.inner[0])) << ": the ring is open in slice"
+       << (slices.size() > 1 ? "s" : "");
+  if (slices.size() > kMost) {
+    text << ' ' << *slices.begin() << " to " << *slices.rbegin();
   } else {
-    text << ", in slices " << slices.front() << " to " << slices.back();
+    for (const int k : slices) text << (k == *slices.begin() ? " " : ", ") << k;
   }
   monitor.warn(text.str());
+}
+
+/// Tells holes in the tissue from its ends.  Where a sheet of tissue ends, as cortex does around
+/// the medial wall and a ventricle at its base, the regions touch on more area than that of a disc
+/// whose radius is the tissue's thickness.
+void noteContacts(Annulus& annulus, const std::vector<Code>& sites, const Monitor& monitor) {
+  const Contacts contacts = contactsOf(annulus, sites);
+  annulus.directContacts = contacts.inner.size();
+  if (contacts.inner.empty()) return;
+  if (annulus.planar) return warnOfOpenRings(annulus, contacts, monitor);
+  // Voxel faces have 3/2 of the area of a surface that has all directions; two boundaries.
+  constexpr double kStaircase = 1.5;
+  const auto tissue = static_cast<double>(std::count(sites.begin(), sites.end(), kTissueCode));
+  const double thickness = 2 * kStaircase * tissue / static_cast<double>(contacts.boundary);
+  const double disc = kPi * thickness * thickness;  // voxel faces
+  std::size_t faces = 0;
+  std::string largest;
+  for (const auto& [count, first] : placesOf(annulus, contacts.inner)) {
+    if (static_cast<double>(count) >= kStaircase * disc) {
+      ++annulus.ends;
+      continue;
+    }
+    if (annulus.holes++ == 0) largest = voxelText(voxelAt(annulus, first));
+    faces += count;
+  }
+  if (annulus.holes == 0) return;
+  monitor.warn("the tissue has " + std::to_string(annulus.holes) +
+               (annulus.holes == 1 ? " hole: " : " holes: ") + kTouches + std::to_string(faces) +
+               " voxel face" + (faces == 1 ? "" : "s") + ", " +
+               (annulus.holes == 1 ? "" : "most of them ") + "at voxel " + largest);
 }
 
 /// Where a boundary lies on the link from box voxel p, s its subscripts, in direction d: fraction
@@ -318,8 +383,8 @@ Annulus assemble(const Grid& grid, const Box& box, std::vector<Code> sites,
                   codeOf(Site::Insulated));
     }
   }
-  countContacts(annulus, sites, monitor);
-  keepSpanningPieces(annulus, sites, monitor);
+  noteContacts(annulus, sites, monitor);
+  keepSpanningPieces(annulus, sites);
   number(annulus, sites, {});
   if (options.boundary == BoundaryModel::Staircase) return annulus;
 
@@ -791,6 +856,12 @@ Annulus withCuts(const Annulus& annulus, const std::vector<Cut>& cuts) {
     result.fractions[result.irregular(result.numberAt[q])][2 * cut.axis] = static_cast<float>(rest);
   }
   return result;
+}
+
+std::string voxelText(const std::array<int, 3>& voxel) {
+  std::ostringstream text;
+  text << '(' << voxel[0] << ", " << voxel[1] << ", " << voxel[2] << ')';
+  return text.str();
 }
 
 std::size_t countAtImageBorder(const Annulus& annulus) {

@@ -317,6 +317,25 @@ TEST(Annulus, ReportsAHoleThatJoinsInsideAndOutside) {
   monitor.onWarning = [&](const std::string& text) { warnings.push_back(text); };
   const Annulus annulus = annulusFromLabels(labels, {{1}, {2}, {}, {}}, {}, monitor);
   EXPECT_EQ(annulus.directContacts, 1U);
+  EXPECT_EQ(annulus.holes, 1);
+  EXPECT_EQ(annulus.ends, 0);
   ASSERT_EQ(warnings.size(), 1U);
-  EXPECT_NE(warnings[0].find("slice 32"), std::string::npos) << warnings[0];
+  EXPECT_NE(warnings[0].find("1 voxel face, at voxel ("), std::string::npos) << warnings[0];
+  EXPECT_NE(warnings[0].find(", 32, 32)"), std::string::npos) << warnings[0];
+}
+
+/// As cortex ends around the medial wall.
+TEST(Annulus, ATissueThatEndsHasNoHole) {
+  auto labels = makePhantom(PhantomKind::Shell, {64, 1}).labels;
+  for (std::size_t v = 0; v < labels.size(); ++v) {
+    if (labels[v] == 2 && labels.grid.subscripts(v)[2] > 38) labels[v] = 0;
+  }
+  bool warned = false;
+  Monitor monitor;
+  monitor.onWarning = [&](const std::string&) { warned = true; };
+  const Annulus annulus = annulusFromLabels(labels, {{1}, {2}, {}, {}}, {}, monitor);
+  EXPECT_GT(annulus.directContacts, 500U);
+  EXPECT_EQ(annulus.holes, 0);
+  EXPECT_EQ(annulus.ends, 1);
+  EXPECT_FALSE(warned);
 }

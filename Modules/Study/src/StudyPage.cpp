@@ -23,8 +23,7 @@ struct ColumnWords {
 
 // Columns that the page calls by words; others by their own name.
 constexpr std::array kWords = {
-    ColumnWords{"thickness.thickness_mean", "Thickness, mean over voxels", "mm"},
-    ColumnWords{"thickness.thickness_mean_columns", "Thickness, mean over columns", "mm"},
+    ColumnWords{"thickness.thickness_mean", "Thickness of the volume, mean", "mm"},
     ColumnWords{"thickness.thickness_median", "Thickness, median of voxels", "mm"},
     ColumnWords{"thickness.sulcal_voxels_recovered", "Sulcal voxels recovered", ""},
     ColumnWords{"surface.thickness_mean", "Cortical thickness, mean", "mm"},

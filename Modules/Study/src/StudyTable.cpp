@@ -23,7 +23,7 @@ using provenance::Json;
 
 /// Columns that come first, in this order; others follow by name.
 constexpr const char* kFirstColumns[] = {"surface.thickness_mean",
-                                         "thickness.thickness_mean_columns",
+                                         "thickness.thickness_mean",
                                          "thickness.sulcal_voxels_recovered",
                                          "surface.faces",
                                          "surface.euler_characteristic",
@@ -47,7 +47,7 @@ constexpr const char* kFirstColumns[] = {"surface.thickness_mean",
 constexpr const char* kSteps[] = {"segment", "thickness", "surface", "register", "unfold"};
 
 /// Numbers that should be alike in all rows.
-constexpr const char* kComparedColumns[] = {"thickness.thickness_mean_columns",
+constexpr const char* kComparedColumns[] = {"thickness.thickness_mean",
                                             "surface.thickness_mean",
                                             "surface.area_white",
                                             "surface.area_pial",

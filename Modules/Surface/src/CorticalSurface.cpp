@@ -4,9 +4,11 @@
 #include "Explica/Surface/CorticalSurface.h"
 
 #include "AstrayPaths.h"
+#include "ColumnMeasures.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Core/StopScope.h"
+#include "Explica/Correspondence/Correspondence.h"
 #include "Explica/Geometry/FaceTree.h"
 #include "Explica/Geometry/IsoSurface.h"
 #include "Explica/Geometry/MeshMeasures.h"
@@ -36,6 +38,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace explica::surface {
 namespace {
@@ -83,7 +86,7 @@ Point stayThere(std::int32_t, const Point& point, const Vector&) {
 /// far as `most`, mm; nowhere if the level does not fall outward.
 Point towardsBorder(const LevelSet& level, double outside, const Point& from, const Vector& normal,
                     double most) {
-  const double voxel = level.grid.spacing.minCoeff();
+  const double voxel = voxelSize(level.grid);
   Point p = from;
   for (int step = 0; step < 2; ++step) {
     const LevelSample s = sample(level, p);
@@ -106,7 +109,7 @@ void requirePrecision(const Grid& grid) {
     farthest = std::max(farthest, grid.toWorld(corner).cwiseAbs().maxCoeff());
   }
   const double step = farthest * std::numeric_limits<float>::epsilon();
-  const double voxel = grid.spacing.minCoeff();
+  const double voxel = voxelSize(grid);
   if (step <= kShare * voxel) return;
   throw InvalidInput("volume: it lies " + std::to_string(farthest) +
                      " mm from the origin, where the 32-bit numbers of surface files are " +
@@ -115,13 +118,14 @@ void requirePrecision(const Grid& grid) {
 }
 
 /// Columns of tissue upon the white surface.
-struct Columns {
+struct GrowingColumns {
   CorticalTissue tissue;  ///< corrected
   std::vector<Trajectory> paths;
   Eigen::VectorXd outside;  ///< of the outer border beyond that of the labels, mm; 0 without image
 };
 
-/// The tissue between white matter, as its topology was corrected, and what lies outside.
+/// The tissue between white matter, as its topology was corrected, and what lies outside.  Its
+/// boundaries are those of the labels, or where shares are one half.
 harmonic::Annulus annulusOf(const CorticalTissue& tissue, const Monitor& monitor) {
   using harmonic::Site;
   const Grid& grid = tissue.white.grid;
@@ -132,7 +136,12 @@ harmonic::Annulus annulusOf(const CorticalTissue& tissue, const Monitor& monitor
                : tissue.tissue[v] > 0 ? Site::Tissue
                                       : Site::Outer;
   });
-  return harmonic::annulusFromSites(sites, {}, monitor);
+  if (tissue.ofLabels) return harmonic::annulusFromSites(sites, {}, monitor);
+  LevelSet inner = tissue.white, outer = tissue.tissue;  // negative inside, as an annulus has them
+  for (LevelSet* level : {&inner, &outer}) {
+    for (float& value : level->data) value = -value;
+  }
+  return harmonic::annulusFromSites(sites, inner, outer, {}, monitor);
 }
 
 correspondence::Ribbon solve(const CorticalTissue& tissue, const Monitor& monitor) {
@@ -144,6 +153,13 @@ correspondence::Ribbon solve(const CorticalTissue& tissue, const Monitor& monito
   checkpoint(monitor);
   return ribbon;
 }
+
+/// A ribbon, and the thickness of its voxels.
+struct RibbonVoxels {
+  explicit RibbonVoxels(correspondence::Ribbon&& solved) : ribbon(std::move(solved)) {}
+  correspondence::Ribbon ribbon;
+  correspondence::Correspondence found;
+};
 
 /// Ends a path where it no longer leaves white matter behind: from there surfaces that grew along
 /// it would crowd on the floor of a sulcus, or pass into the other bank's columns.
@@ -172,10 +188,10 @@ void endWhereItStalls(const geometry::FaceTree& white, std::int32_t face, double
 }
 
 /// Trajectories from the white vertices that have tissue upon them.
-void takePaths(const TriangleMesh& white, const RibbonPaths& ribbon, Columns& columns) {
+void takePaths(const TriangleMesh& white, const RibbonPaths& ribbon, GrowingColumns& columns) {
   const LevelSet& tissue = columns.tissue.tissue;
   constexpr double kOff = 0.125;  // voxels: so far outward tissue begins, or there is none
-  const double off = kOff * tissue.grid.spacing.minCoeff();
+  const double off = kOff * voxelSize(tissue.grid);
   const Positions normals = geometry::vertexNormals(white);
   const std::vector<std::int32_t> faceAt = geometry::faceOfEachVertex(white);
   const geometry::FaceTree tree(white);
@@ -194,13 +210,13 @@ void takePaths(const TriangleMesh& white, const RibbonPaths& ribbon, Columns& co
     if (sample(tissue, along(path, path.length() + 4 * off)).value <= 0) {
       path.end = TrajectoryEnd::Outer;
     }
-    endWhereItStalls(tree, faceAt[v], tissue.grid.spacing.minCoeff(), path);
+    endWhereItStalls(tree, faceAt[v], voxelSize(tissue.grid), path);
   });
   keepFromMiddles(middleGap(tissue.grid), paths);
 }
 
-/// The same between level sets, for the search for borders in an image, too.
-void takePathsOfLevels(const TriangleMesh& white, Columns& columns, CorticalSurfaces& result,
+/// The same for the search for borders in an image.
+void takePathsForImage(const TriangleMesh& white, GrowingColumns& columns, CorticalSurfaces& result,
                        const Monitor& monitor) {
   const RibbonField field(columns.tissue, white, monitor);
   result.cutLinks = field.cutLinks();
@@ -224,7 +240,7 @@ CorticalTissue corrected(CorticalTissue tissue, const LevelSet& white) {
 
 /// What the surfaces keep clear of themselves.
 Room roomOf(const WhiteSurface& white) {
-  return roomFor(white.level.grid.spacing.minCoeff(), white.edgeLength);
+  return roomFor(voxelSize(white.level.grid), white.edgeLength);
 }
 
 /// Height of a triangle over its longest edge.
@@ -246,11 +262,11 @@ bool flattens(const GuardedMesh& mesh, std::int32_t v, const Point& to, double l
 }
 
 /// Moves the white surface and the trajectories' ends to where an image changes most steeply.
-void placeByImage(const Volume<float>& image, double fluid, Columns& ribbon,
+void placeByImage(const Volume<float>& image, double fluid, GrowingColumns& ribbon,
                   CorticalSurfaces& result) {
   Stopwatch watch;
   const Grid& grid = ribbon.tissue.white.grid;
-  const double voxel = std::cbrt(grid.voxelVolume());
+  const double voxel = voxelSize(grid);
   TriangleMesh& white = result.white.mesh;
   ImageBorderOptions options;
   options.fluid = fluid;
@@ -301,26 +317,25 @@ Eigen::VectorXd lengthsOf(const std::vector<Trajectory>& paths) {
   return lengths;
 }
 
-/// Lengths of the trajectories through the middle vertices, or, without a field, of those from the
-/// white ones.
-/// @param lengths  of the latter, mm
-void takeThickness(const Columns& columns, const RibbonPaths* field, Eigen::VectorXd lengths,
-                   CorticalSurfaces& result) {
-  const TriangleMesh& at = field ? result.mid : result.white.mesh;
-  parallelFor(field ? columns.paths.size() : 0, 256, [&](std::size_t v) {
-    const auto row = static_cast<Eigen::Index>(v);
-    if (columns.paths[v].end == TrajectoryEnd::NoRibbon) return;
-    lengths[row] = field->tracer().thickness(at.positions.row(row)).value_or(lengths[row]);
-  });
+/// That of the ribbon's voxels; without them, where an image has placed the ends of trajectories,
+/// that of these.
+/// @param lengths  of the trajectories from the white vertices, mm
+void takeThickness(const GrowingColumns& columns, const RibbonVoxels* voxels,
+                   const Eigen::VectorXd& lengths, CorticalSurfaces& result) {
+  result.thickness = voxels ? thicknessAtVertices(voxels->ribbon.annulus, voxels->found, result.mid)
+                            : meanOverSurroundings(result.white.mesh, lengths);
+  for (Eigen::Index v = 0; v < lengths.size(); ++v) {
+    const bool none = columns.paths[v].end == TrajectoryEnd::NoRibbon;
+    if (none || !(result.thickness[v] > 0)) result.thickness[v] = 0;
+  }
+  result.noRibbon = (result.thickness.array() == 0).count();
   for (const Trajectory& path : columns.paths) {
-    result.noRibbon += path.end == TrajectoryEnd::NoRibbon;
     result.endedAtBank += path.end == TrajectoryEnd::Bank;
   }
-  result.thickness = meanOverSurroundings(at, lengths);
 }
 
 /// Vertices that waited on their trajectory and have not come to the outer border by sliding.
-void noteHeldBack(const Columns& ribbon, const Growth& growth, double least,
+void noteHeldBack(const GrowingColumns& ribbon, const Growth& growth, double least,
                   CorticalSurfaces& result) {
   double sum = 0;
   for (std::size_t v = 0; v < ribbon.paths.size(); ++v) {
@@ -347,8 +362,8 @@ void noteHeldBack(const Columns& ribbon, const Growth& growth, double least,
 }
 
 /// Middle and outer surface out of the white one.
-void growSurfaces(const Columns& ribbon, CorticalSurfaces& result, const Monitor& monitor) {
-  const double voxel = ribbon.tissue.white.grid.spacing.minCoeff();
+void growSurfaces(const GrowingColumns& ribbon, CorticalSurfaces& result, const Monitor& monitor) {
+  const double voxel = voxelSize(ribbon.tissue.white.grid);
   const double edge = result.white.edgeLength;
   std::vector<std::uint8_t> moves(ribbon.paths.size());
   for (std::size_t v = 0; v < moves.size(); ++v) moves[v] = ribbon.paths[v].length() > 0;
@@ -428,17 +443,15 @@ WhiteSurface extractWhite(const CorticalTissue& tissue, const SurfaceOptions& op
   return white;
 }
 
-double meanThickness(const TriangleMesh& white, const Eigen::VectorXd& thickness) {
-  const Eigen::VectorXd areas = geometry::vertexAreas(white);
+double meanThickness(const Eigen::VectorXd& areas, const Eigen::VectorXd& thickness) {
   const Eigen::VectorXd counted = (thickness.array() > 0).select(areas, 0.0);
   const double weight = counted.sum();
   return weight > 0 ? counted.dot(thickness) / weight : 0;
 }
 
-double thicknessDeviation(const TriangleMesh& white, const Eigen::VectorXd& thickness) {
-  const Eigen::VectorXd areas = geometry::vertexAreas(white);
+double thicknessDeviation(const Eigen::VectorXd& areas, const Eigen::VectorXd& thickness) {
   const Eigen::VectorXd counted = (thickness.array() > 0).select(areas, 0.0);
-  const double weight = counted.sum(), mean = meanThickness(white, thickness);
+  const double weight = counted.sum(), mean = meanThickness(areas, thickness);
   const Eigen::ArrayXd off = thickness.array() - mean;
   return weight > 0 ? std::sqrt(counted.dot((off * off).matrix()) / weight) : 0;
 }
@@ -461,28 +474,37 @@ CorticalSurfaces build(const CorticalTissue& tissue, const Volume<float>* image,
   result.white = extractWhite(tissue, options, partOf(monitor, 0, 0.5));
   result.seconds = result.white.seconds;
   Stopwatch watch;
-  Columns ribbon;
+  GrowingColumns ribbon;
   ribbon.tissue = corrected(tissue, result.white.level);
-  std::optional<correspondence::Ribbon> solved;
-  std::optional<RibbonPaths> field;
-  if (image != nullptr || !tissue.ofLabels) {
-    takePathsOfLevels(result.white.mesh, ribbon, result, partOf(monitor, 0.5, 0.7));
+  std::optional<RibbonVoxels> voxels;
+  if (image != nullptr) {
+    takePathsForImage(result.white.mesh, ribbon, result, partOf(monitor, 0.5, 0.7));
+    result.seconds.trajectories = watch.lap();
+    placeByImage(*image, options.fluid, ribbon, result);
   } else {
-    solved = solve(ribbon.tissue, partOf(monitor, 0.5, 0.65));
-    result.cutLinks = static_cast<std::int64_t>(solved->sulcalVoxels.size());
+    voxels.emplace(solve(ribbon.tissue, partOf(monitor, 0.5, 0.65)));
+    result.cutLinks = static_cast<std::int64_t>(voxels->ribbon.sulcalVoxels.size());
     result.seconds.interpolant = watch.lap();
-    field.emplace(*solved);
-    takePaths(result.white.mesh, *field, ribbon);
+    takePaths(result.white.mesh, RibbonPaths(voxels->ribbon), ribbon);
+    voxels->found = correspondence::findCorrespondences(voxels->ribbon.annulus,
+                                                        voxels->ribbon.interpolant);
+    result.seconds.trajectories = watch.lap();
   }
-  result.seconds.trajectories = watch.lap();
-  if (image != nullptr) placeByImage(*image, options.fluid, ribbon, result);
   const Eigen::VectorXd lengths = lengthsOf(ribbon.paths);
   result.shortened =
-      shortenAstray(result.white.mesh, tissue.white.grid.spacing.minCoeff(), ribbon.paths);
+      shortenAstray(result.white.mesh, voxelSize(tissue.white.grid), ribbon.paths);
   watch.lap();
   growSurfaces(ribbon, result, partOf(monitor, 0.7, 0.96));
-  takeThickness(ribbon, field ? &*field : nullptr, lengths, result);
+  takeThickness(ribbon, voxels ? &*voxels : nullptr, lengths, result);
   mendTriangles(result);
+  if (voxels) {
+    Columns around = columnsAround(voxels->ribbon.annulus, voxels->found, result.mid);
+    result.columnArea = std::move(around.area);
+    result.columnThickness = std::move(around.thickness);
+  } else {
+    result.columnArea = geometry::vertexAreas(result.mid);
+    result.columnThickness = result.thickness;
+  }
   result.seconds.growing = watch.lap();
 
   monitor.progress(0.96, "curvature and depth");

@@ -6,6 +6,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Geometry/FaceTree.h"
+#include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Maps/Folding.h"
 
 #include <array>
@@ -53,12 +54,13 @@ CorticalSurfaces adoptSurfaces(TriangleMesh white, TriangleMesh pial,
   if (mid) requireSameFaces(white, *mid, "middle");
   CorticalSurfaces surfaces;
   surfaces.thickness = distanceThickness(white, pial);
-  surfaces.nearestThickness = surfaces.thickness;
+  surfaces.nearestThickness = surfaces.columnThickness = surfaces.thickness;
   surfaces.noRibbon = (surfaces.thickness.array() == 0).count();
   surfaces.curvature = maps::meanCurvature(white);
   surfaces.sulcalDepth = maps::sulcalDepth(white);
   surfaces.mid =
       mid ? std::move(*mid) : TriangleMesh{0.5 * (white.positions + pial.positions), white.faces};
+  surfaces.columnArea = geometry::vertexAreas(surfaces.mid);
   surfaces.white.mesh = std::move(white);
   surfaces.pial = std::move(pial);
   return surfaces;

@@ -5,6 +5,7 @@
 
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
+#include "Explica/Surface/LevelSet.h"
 
 #include <Eigen/Geometry>
 
@@ -15,7 +16,7 @@ namespace explica::surface {
 
 double radiusOfVoxels(std::int64_t count, const Grid& grid) {
   // Counted in the finest spacing, so that the unit of length changes no bit.
-  const double unit = grid.spacing.minCoeff();
+  const double unit = voxelSize(grid);
   const double volume = static_cast<double>(count) * (grid.spacing / unit).prod();
   return unit * std::cbrt(3 * volume / (4 * kPi));
 }

@@ -46,7 +46,7 @@ class Remesher {
       : mesh_(thinned(inSpatialOrder(mesh, kBlock * edge), level, edge), edge),
         level_(level),
         edge_(edge),
-        voxel_(level.grid.spacing.minCoeff()),
+        voxel_(voxelSize(level.grid)),
         stored_(mesh_.faceCount()) {}
 
   void setEdge(double edge) { edge_ = edge; }
@@ -273,7 +273,7 @@ RemeshResult remesh(const TriangleMesh& mesh, const LevelSet& level, const Remes
   // An equilateral mesh of edge a has edges from 4/5 to 4/3 of it; their mean area is a little less
   // than that of the aim, which the rounds correct.
   const double area = geometry::totalArea(mesh);
-  const std::int64_t wanted = facesWanted(options, area, level.grid.spacing.minCoeff(), monitor);
+  const std::int64_t wanted = facesWanted(options, area, voxelSize(level.grid), monitor);
   Remesher remesher(mesh, level, edgeFor(area, wanted));
   for (int round = 0; round < options.rounds; ++round) {
     checkpoint(monitor);

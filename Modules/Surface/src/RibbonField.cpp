@@ -83,7 +83,7 @@ RibbonField::RibbonField(const CorticalTissue& tissue, const TriangleMesh& white
     : tissue_(tissue),
       white_(white),
       grid_(tissue.white.grid),
-      step_(grid_.spacing.minCoeff() / kStepsPerVoxel) {
+      step_(voxelSize(grid_) / kStepsPerVoxel) {
   monitor.progress(0.0, "buried sulci");
   const harmonic::Annulus open = ribbon();
   const std::vector<Bank> banks = banksOf(open);
@@ -98,7 +98,7 @@ RibbonField::RibbonField(const CorticalTissue& tissue, const TriangleMesh& white
   stoppable.onProgress = nullptr;
   slope_ = harmonic::solveInterpolant(annulus_, options, stoppable).gradient;
   checkpoint(monitor);
-  const float flat = kFlat / static_cast<float>(grid_.spacing.minCoeff());
+  const float flat = kFlat / static_cast<float>(voxelSize(grid_));
   parallelFor(slope_.size(), 8192, [&](std::size_t n) {
     const float length = slope_[n].norm();
     slope_[n] = length > flat ? Eigen::Vector3f(slope_[n] / length) : Eigen::Vector3f::Zero();

@@ -15,7 +15,7 @@
 namespace explica::surface {
 
 /// The harmonic interpolant of the ribbon, with the hidden outer boundary of buried sulci: for
-/// surfaces of shares, or whose borders an image places, until these are settled on RibbonPaths.
+/// surfaces whose borders an image places.
 ///
 /// Where fronts from two banks of white matter meet head-on between neighbouring grey voxels, the
 /// link between them is cut at the place of equal distance, and u = 1 there: as in anatomically

@@ -4,6 +4,7 @@
 #include "RibbonPaths.h"
 
 #include "Explica/Core/Parallel.h"
+#include "Explica/Surface/LevelSet.h"
 
 #include <array>
 #include <cmath>
@@ -20,7 +21,7 @@ RibbonPaths::RibbonPaths(const correspondence::Ribbon& ribbon)
 
 double middleGap(const Grid& grid) {
   constexpr double kGap = 0.1;  // voxels
-  return kGap * grid.spacing.minCoeff();
+  return kGap * voxelSize(grid);
 }
 
 Trajectory RibbonPaths::none(const Point& start) {
@@ -39,7 +40,7 @@ Trajectory RibbonPaths::from(const Point& start, double target) const {
 Trajectory RibbonPaths::outwardFrom(const Point& start, const Vector& normal) const {
   // A little outward, so that a thin sheet's other side is not the nearest tissue.
   constexpr double kOff = 0.125;  // voxels
-  const double off = kOff * annulus_.grid.spacing.minCoeff();
+  const double off = kOff * voxelSize(annulus_.grid);
   Trajectory path = from(start + off * normal, 1);
   path.points.front() = start;
   for (std::size_t k = 1; k < path.along.size(); ++k) path.along[k] += static_cast<float>(off);

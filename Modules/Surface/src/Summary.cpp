@@ -22,10 +22,10 @@ SurfaceCheck checkOf(const TriangleMesh& mesh) {
 ThicknessMeans thicknessMeansOf(const CorticalSurfaces& made, bool nearest) {
   ThicknessMeans means;
   means.measure = nearest ? "nearest" : "trajectory";
-  means.trajectory = meanThickness(made.white.mesh, made.thickness);
-  means.nearest = meanThickness(made.white.mesh, made.nearestThickness);
+  means.trajectory = meanThickness(made.columnArea, made.columnThickness);
+  means.nearest = meanThickness(made.columnArea, made.nearestThickness);
   means.mean = nearest ? means.nearest : means.trajectory;
-  means.sd = thicknessDeviation(made.white.mesh, nearest ? made.nearestThickness : made.thickness);
+  means.sd = thicknessDeviation(made.columnArea, nearest ? made.nearestThickness : made.thickness);
   return means;
 }
 
@@ -134,8 +134,8 @@ void describeThickness(Results& t, const SurfaceSummary& s, const CorticalSurfac
   const bool known = s.thickness.has_value();
   const ThicknessMeans means = s.thickness.value_or(ThicknessMeans{});
   t.number("thickness_mean", "Mean thickness", "mm",
-           "Over the area of the white surface. The mean over the tissue's voxels is greater: a "
-           "thick column holds more voxels.",
+           "Over the area of the tissue's middle surface, whatever the number of faces. The mean over "
+           "the tissue's voxels is greater: a thick column holds more voxels.",
            where(known, means.mean))
       .inHead()
       .compared();

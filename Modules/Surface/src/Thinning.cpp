@@ -49,7 +49,7 @@ class Thinner {
         rings_(mesh.vertexCount()),
         joined_(mesh.vertexCount()),
         faces_(mesh.faceCount()) {
-    most_ = 0.5 * std::min(edge, 2 * level.grid.spacing.minCoeff());
+    most_ = 0.5 * std::min(edge, 2 * voxelSize(level.grid));
     std::iota(joined_.begin(), joined_.end(), 0);
     parallelFor(positions_.size(), 4096, [&](std::size_t v) {
       positions_[v] = mesh.positions.row(static_cast<Eigen::Index>(v));

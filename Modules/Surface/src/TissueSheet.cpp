@@ -3,9 +3,11 @@
 
 #include "Explica/Surface/TissueSheet.h"
 
+#include "ColumnMeasures.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Core/StopScope.h"
+#include "Explica/Correspondence/Correspondence.h"
 #include "Explica/Correspondence/ImageEdge.h"
 #include "Explica/Correspondence/Ribbon.h"
 #include "Explica/Geometry/IsoSurface.h"
@@ -381,7 +383,7 @@ void growSheets(const TriangleMesh& sheet, const Ways& ways, const RibbonPaths& 
                 CorticalSurfaces& made) {
   const TrajectoryTracer& tracer = ribbon.tracer();
   const double edge = made.white.edgeLength;
-  const double voxel = tracer.annulus().grid.spacing.minCoeff();
+  const double voxel = voxelSize(tracer.annulus().grid);
   const auto backTo = [&](double target) {
     return [&ribbon, &tracer, target, voxel](std::int32_t, const Point& point, const Vector&) {
       const correspondence::Trace trace = tracer.trace(point, target);
@@ -476,7 +478,12 @@ CorticalSurfaces buildSheets(const TissueMasks& masks, const SurfaceOptions& opt
   made.curvature = maps::meanCurvature(made.white.mesh);
   made.nearestThickness = distanceThickness(made.white.mesh, made.pial);
   markCut(masks.white.grid, sheet, made.thickness, made);
-  made.thickness = meanOverSurroundings(sheet, made.thickness);
+  const auto found = correspondence::findCorrespondences(field.annulus, field.interpolant);
+  const Eigen::VectorXd ofVoxels = thicknessAtVertices(field.annulus, found, made.mid);
+  made.thickness = ofVoxels.array().isNaN().select(made.thickness, ofVoxels);
+  Columns around = columnsAround(field.annulus, found, made.mid);
+  made.columnArea = std::move(around.area);
+  made.columnThickness = std::move(around.thickness);
   made.noRibbon = (made.thickness.array() == 0).count();
   made.seconds.measures = secondsSince(last);
   monitor.progress(1, "surfaces");

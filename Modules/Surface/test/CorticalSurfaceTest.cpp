@@ -3,19 +3,17 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
-#include "Explica/Correspondence/Correspondence.h"
-#include "Explica/Correspondence/Sulci.h"
 #include "Explica/Geometry/Fixtures.h"
 #include "Explica/Geometry/IsoSurface.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Geometry/SelfIntersection.h"
-#include "Explica/Harmonic/Interpolant.h"
 #include "Explica/Surface/CorticalSurface.h"
 #include "Explica/Surface/Measures.h"
 #include "Explica/Surface/Remesh.h"
 #include "Explica/Surface/Summary.h"
 #include "NearestToItself.h"
+#include "VoxelAndVertex.h"
 
 #include <gtest/gtest.h>
 
@@ -289,58 +287,77 @@ TEST(CorticalSurface, TrajectoriesEndWhereTheFloorOfABuriedSulcusBegins) {
   EXPECT_NEAR(way / bottom, 3.25, 0.35);
 }
 
-/// Thickness of the voxels around a point, by nearness; NaN if less than a quarter is tissue.
-double thicknessAround(const Point& point, const harmonic::Annulus& annulus,
-                       const correspondence::Correspondence& found) {
-  const Vector index = annulus.grid.toIndex(point);
-  const auto strides = annulus.strides();
-  double sum = 0, weights = 0;
-  for (int c = 0; c < 8; ++c) {
-    double weight = 1;
-    std::ptrdiff_t place = 0;
-    for (int a = 0; a < 3; ++a) {
-      const double low = std::floor(index[a]);
-      weight *= (c >> a & 1) ? index[a] - low : 1 - (index[a] - low);
-      place += (static_cast<int>(low) + (c >> a & 1) - annulus.first[a]) * strides[a];
-    }
-    const std::int32_t n = annulus.numberAt[static_cast<std::size_t>(place)];
-    if (n < 0 || std::isnan(found.thickness(static_cast<std::size_t>(n)))) continue;
-    sum += weight * found.thickness(static_cast<std::size_t>(n));
-    weights += weight;
-  }
-  return weights > 0.25 ? sum / weights : kNaN;
-}
-
 TEST(CorticalSurface, HasTheThicknessOfTheVoxelMap) {
-  const Volume<Label> labels = groovedLabels(19 * kPi / 180);
   TissueOptions options;
   options.white = {3};
   options.grey = {2};
   SurfaceOptions few;
   few.faces = 12000;
-  const auto made = buildSurfaces(tissueFromLabels(labels, options), few);
-  const auto annulus =
-      correspondence::recoverSulci(harmonic::annulusFromLabels(labels, {{3}, {2}, {}, {}})).annulus;
-  const auto found =
-      correspondence::findCorrespondences(annulus, harmonic::solveInterpolant(annulus));
-  Eigen::Index n = 0;
-  double off = 0, absolute = 0, x = 0, y = 0, xx = 0, yy = 0, xy = 0;
-  for (Eigen::Index v = 0; v < made.mid.vertexCount(); ++v) {
-    const double a = thicknessAround(made.mid.positions.row(v), annulus, found);
-    const double b = made.thickness[v];
-    if (std::isnan(a) || b == 0) continue;
-    ++n;
-    off += a - b, absolute += std::abs(a - b);
-    x += a, y += b, xx += a * a, yy += b * b, xy += a * b;
+  const TissueMasks masks = masksFromLabels(groovedLabels(19 * kPi / 180), options);
+  const auto both = compare("groove", masks, buildSurfaces(tissueFromMasks(masks), few));
+  EXPECT_GT(both.share, 0.9);
+  EXPECT_GE(both.r, 0.98);
+  EXPECT_LE(std::abs(both.mean), 0.01);
+  EXPECT_LE(both.absolute, 0.05);
+  EXPECT_NEAR(both.meanOfVoxels, both.meanOfVertices, 0.02);
+}
+
+/// Turned by 90 degrees about an axis.
+Volume<Label> turned(const Volume<Label>& labels, int axis) {
+  const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+  Grid grid = labels.grid;
+  std::swap(grid.size[a], grid.size[b]);
+  std::swap(grid.spacing[a], grid.spacing[b]);
+  Volume<Label> result(grid);
+  for (std::size_t v = 0; v < labels.size(); ++v) {
+    auto at = labels.grid.subscripts(v);
+    const int low = at[b], high = labels.grid.size[a] - 1 - at[a];
+    at[a] = low;
+    at[b] = high;
+    result(at[0], at[1], at[2]) = labels[v];
   }
-  const auto count = static_cast<double>(n);
-  const double r = (count * xy - x * y) / std::sqrt((count * xx - x * x) * (count * yy - y * y));
-  std::printf("voxel and vertex: r %.3f, mean %+.4f mm, absolute %.3f mm\n", r, off / count,
-              absolute / count);
-  EXPECT_GT(n, made.mid.vertexCount() * 9 / 10);
-  EXPECT_GE(r, 0.98);
-  EXPECT_LE(std::abs(off / count), 0.01);
-  EXPECT_LE(absolute / count, 0.05);
+  return result;
+}
+
+/// On voxels of half the size, its borders where the labels' level sets have them.
+Volume<Label> finer(const Volume<Label>& labels, Label white, Label grey) {
+  const auto levelOf = [&](const std::vector<Label>& of) {
+    return levelSetOf(harmonic::maskOf(labels, of));
+  };
+  const LevelSet inner = levelOf({white}), outer = levelOf({white, grey});
+  Grid grid = labels.grid;
+  grid.origin -= 0.25 * (grid.direction * grid.spacing);
+  grid.spacing *= 0.5;
+  for (int& n : grid.size) n *= 2;
+  Volume<Label> result(grid);
+  for (std::size_t v = 0; v < result.size(); ++v) {
+    const auto at = grid.subscripts(v);
+    const Point x = grid.toWorld(Vector(at[0], at[1], at[2]));
+    result[v] = sample(inner, x).value > 0 ? white : sample(outer, x).value > 0 ? grey : Label{0};
+  }
+  return result;
+}
+
+TEST(CorticalSurface, MeanThicknessIsFreeOfSampling) {
+  TissueOptions options;
+  options.white = {3};
+  options.grey = {2};
+  const auto meanOf = [&](const Volume<Label>& labels, int faces) {
+    SurfaceOptions many;
+    many.faces = faces;
+    const auto made = buildSurfaces(tissueFromLabels(labels, options), many);
+    const double mean = meanThickness(made.columnArea, made.columnThickness);
+    std::printf("%d faces, voxels of %g mm: mean thickness %.4f mm\n", faces,
+                labels.grid.spacing[0], mean);
+    return mean;
+  };
+  const Volume<Label> labels = groovedLabels(19 * kPi / 180);
+  const double mean = meanOf(labels, 12000);
+  for (const int faces : {5000, 40000}) EXPECT_NEAR(meanOf(labels, faces), mean, 0.01) << faces;
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_NEAR(meanOf(turned(labels, axis), 12000), mean, 0.02) << axis;
+  }
+  EXPECT_NEAR(meanOf(finer(labels, 3, 2), 12000), mean, 0.02);
 }
 
 /// Brightness of a shell seen through a point spread: white, grey, dark, and a bright vessel
@@ -576,7 +593,8 @@ TEST(CorticalSurface, AnImageWithoutEdgesLeavesTheLabelsBorders) {
   EXPECT_EQ(made.image.missingWhite, made.thickness.size());
   EXPECT_EQ(made.image.missingOuter, made.thickness.size());
   EXPECT_EQ(made.white.mesh.positions, plain.white.mesh.positions);
-  EXPECT_LT((made.pial.positions - plain.pial.positions).cwiseAbs().maxCoeff(), 1e-4);
+  // The two follow trajectories of their own.
+  EXPECT_LT((made.pial.positions - plain.pial.positions).rowwise().norm().maxCoeff(), 0.1);
 }
 
 TEST(CorticalSurface, HoldsFoldsApart) {

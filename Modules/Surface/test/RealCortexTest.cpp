@@ -8,7 +8,9 @@
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Surface/CorticalSurface.h"
 #include "Explica/Surface/Measures.h"
+#include "Explica/Surface/TissueSheet.h"
 #include "Explica/Testing/FreeSurferSubject.h"
+#include "VoxelAndVertex.h"
 
 #include <gtest/gtest.h>
 
@@ -16,6 +18,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numeric>
+#include <string>
 #include <tuple>
 #include <vector>
 
@@ -130,6 +133,49 @@ CorticalTissue leftOf(const std::filesystem::path& folder) {
   TissueOptions tissue;
   tissue.hemisphere = Side::Left;
   return tissueFromLabels(io::readLabels(folder / "mri/ribbon.mgz").volume, tissue);
+}
+
+/// Every second slice along k.
+Volume<Label> thickSlices(const Volume<Label>& labels) {
+  Grid grid = labels.grid;
+  grid.size[2] /= 2;
+  grid.spacing[2] *= 2;
+  Volume<Label> thick(grid);
+  for (int k = 0; k < grid.size[2]; ++k) {
+    for (int j = 0; j < grid.size[1]; ++j) {
+      for (int i = 0; i < grid.size[0]; ++i) thick(i, j, k) = labels(i, j, 2 * k);
+    }
+  }
+  return thick;
+}
+
+TEST(RealCortex, HasOneThicknessInVoxelsAndAtVertices) {
+  const std::filesystem::path data(EXPLICA_REAL_DATA);
+  if (!std::filesystem::exists(data / "bert_freesurfer")) GTEST_SKIP() << "skipped: no real data";
+  const auto bert = io::readLabels(data / "bert_freesurfer/mri/ribbon.mgz").volume;
+  const auto person = [&](const char* number) {
+    return io::readLabels(data / "synthseg_people" / ("training_seg_" + std::string(number) +
+                                                      ".nii.gz")).volume;
+  };
+  SurfaceOptions few;
+  few.faces = 40000;
+  const auto expectSame = [&](const char* name, const Volume<Label>& labels, TissueOptions tissue) {
+    const TissueMasks masks = masksFromLabels(labels, tissue);
+    const auto both = compare(name, masks,
+                              isBlock(masks) ? buildSheets(masks, few)
+                                             : buildSurfaces(tissueFromMasks(masks), few));
+    EXPECT_GT(both.share, 0.99) << name;
+    EXPECT_GE(both.r, 0.98) << name;
+    EXPECT_LE(std::abs(both.mean), 0.01) << name;
+    EXPECT_LE(both.absolute, 0.05) << name;
+    EXPECT_NEAR(both.meanOfVoxels, both.meanOfVertices, 0.02) << name;
+  };
+  TissueOptions left;
+  left.hemisphere = Side::Left;
+  expectSame("bert, left", bert, left);
+  expectSame("bert, left, slices of 2 mm", thickSlices(bert), left);
+  expectSame("person 03, left", person("03"), left);
+  expectSame("block", io::readLabels(data / "laynii_sc/sc_rim.nii.gz").volume, {});
 }
 
 TEST(RealCortex, LiesWhereFreeSurferPutsItAndIsAsThick) {

@@ -87,8 +87,9 @@ void solve(WallThickness& wall, const Volume<Label>& heart, const Monitor& monit
   if (has(heart, kBeyondBase)) roles.insulated = {kBeyondBase};
   Monitor silent = monitor;
   silent.onWarning = nullptr;  // gaps are this module's subject: it finds and tells them itself
-  wall.annulus = harmonic::annulusFromLabels(heart, roles, {.perSlice = wall.bySlice}, silent);
-  wall.interpolant = harmonic::solveInterpolant(wall.annulus, {}, silent);
+  static_cast<correspondence::Ribbon&>(wall) = correspondence::solveRibbon(
+      harmonic::annulusFromLabels(heart, roles, {.perSlice = wall.bySlice}, silent), std::nullopt,
+      {}, silent);
   wall.correspondence =
       correspondence::findCorrespondences(wall.annulus, wall.interpolant, {}, silent);
   checkpoint(monitor);  // half a solution is no wall

@@ -65,20 +65,23 @@ py::dict arraysOf(const correspondence::Measurement& m) {
       "outer_point"_a =
           arrayOf(volumeOf(harmonic::spreadPoints(m.annulus, m.correspondence.outerPoint))),
       "layers"_a = arrayOf(volumeOf(harmonic::spreadLabels(m.annulus, m.layers))),
+      "valid"_a =
+          arrayOf(volumeOf(harmonic::spreadLabels(m.annulus, correspondence::validOf(m)))),
       "affine"_a = m.annulus.grid.affine(),
       "summary"_a =
           py::dict("voxels"_a = m.annulus.count(), "thickness_mean"_a = summary.mean,
-                   "thickness_mean_columns"_a = summary.meanOfColumns,
+                   "thickness_mean_columns"_a = summary.mean,
+                   "thickness_mean_voxels"_a = summary.meanOfVoxels,
                    "thickness_median"_a = summary.median, "thickness_p05"_a = summary.p05,
                    "thickness_p95"_a = summary.p95, "residual"_a = m.interpolant.relativeResidual,
                    "sulcal_voxels_recovered"_a = m.sulcalVoxels.size(),
-                   "voxels_without_thickness"_a = m.correspondence.missing));
+                   "voxels_without_thickness"_a = m.lost));
 }
 
 constexpr const char* kReturns =
     "\n\nReturns a dict of arrays (I, J, K): harmonic (u), thickness, inner_distance and\n"
-    "outer_distance (L0, L1, mm), depth, layers; inner_point and outer_point (I, J, K, 3), RAS "
-    "mm;\n"
+    "outer_distance (L0, L1, mm), depth, layers, valid; inner_point and outer_point\n"
+    "(I, J, K, 3), RAS mm;\n"
     "affine; and summary, the numbers of summary.json.";
 
 }  // namespace

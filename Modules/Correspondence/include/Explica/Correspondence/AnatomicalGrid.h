@@ -17,6 +17,7 @@ struct AnatomicalGrid {
               ///< VTK's order, each with a positive Jacobian at all of its corners
   Vector normal = Vector::Zero();  ///< planar tissue: quadrilaterals run counter-clockwise seen
                                    ///< from its tip; its greatest component is positive
+  double volume = 0;               ///< of all cells, mm^3; their area, mm^2, of planar tissue
   std::size_t trajectories = 0;
   std::size_t lost = 0;  ///< trajectories that did not reach both boundaries; their cells lack
   std::size_t degenerate = 0;  ///< cells left out because they are flat or turned over at a corner

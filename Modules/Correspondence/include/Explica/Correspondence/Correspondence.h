@@ -81,13 +81,24 @@ struct Correspondence {
 /// L0 + L1 per tissue voxel.
 [[nodiscard]] std::vector<double> thicknessOf(const Correspondence& correspondence);
 
-/// Of the voxels whose thickness is known, mm.
+/// Thickness at a point, mm: trilinear in that of the voxels around; nothing if those with thickness
+/// have less than a quarter of the weight.
+[[nodiscard]] std::optional<double> thicknessAt(const harmonic::Annulus& annulus,
+                                                const Correspondence& correspondence,
+                                                const Point& point);
+
+/// What a voxel counts in a sum over the middle surface, 1/mm: 2 (1 - |2 d - 1|) / t at the depth d
+/// in [0, 1]; 0 where t is not known.
 ///
-/// A mean over voxels weighs each column of tissue by its thickness, for a thick column holds more
-/// voxels; the mean over columns, n / sum(1/t), weighs all columns alike, as a surface does.
+/// Its integral along a column of thickness t is the column's cross-section at half depth, as long
+/// as that changes evenly.
+[[nodiscard]] double columnWeight(const Correspondence& correspondence, std::size_t n);
+
+/// Of the voxels whose thickness is known, mm.  A mean over voxels weighs each column of tissue by
+/// its volume, that over the middle surface by its cross-section there.
 struct ThicknessSummary {
-  double meanOfColumns = kNaN;
-  double mean = kNaN, median = kNaN, p05 = kNaN, p95 = kNaN;
+  double mean = kNaN;  ///< over the middle surface
+  double meanOfVoxels = kNaN, median = kNaN, p05 = kNaN, p95 = kNaN;
 };
 [[nodiscard]] ThicknessSummary summaryOf(const Correspondence& correspondence);
 

@@ -34,18 +34,12 @@ struct MeasurementOptions {
   std::optional<int> grid;  ///< cells across of an anatomical grid; unset: none
   bool heart = false;       ///< the tissue is a ventricle's wall
 
-  std::optional<ImageEdge> imageEdge;  ///< unset: open, but insulated in a wall: a stack cuts a
-                                       ///< heart across it
-
   /// @param folding  foldingOf() the tissue
   [[nodiscard]] bool isWall(double folding) const {
     return heart || annulus.openEnds || (annulus.perSlice && folding < kCortex);
   }
   [[nodiscard]] SulciMode sulciMode(double folding) const {
     return sulci.value_or(isWall(folding) ? SulciMode::Ignore : SulciMode::Recover);
-  }
-  [[nodiscard]] ImageEdge imageEdgeMode(double folding) const {
-    return imageEdge.value_or(isWall(folding) ? ImageEdge::Insulated : ImageEdge::Open);
   }
   /// Folding that no cavity of a heart has, and every slice of a folded cortex.
   static constexpr double kCortex = 2.5;
@@ -58,12 +52,18 @@ struct MeasurementOptions {
 /// Tissue and everything that is measured on it, per tissue number of `annulus`.
 struct Measurement : Ribbon {
   Correspondence correspondence;
-  std::size_t cutVoxels = 0;    ///< left out because tissue runs out of the image there
-  std::vector<double> depth;    ///< L0 / thickness
+  std::vector<std::uint8_t> nearEdge;  ///< nearImageEdge(); empty for a ventricle's wall, which a
+                                       ///< stack cuts across, and where no tissue meets the edge
+  std::size_t cutVoxels = 0;           ///< marked there
+  std::size_t lost = 0;                ///< without thickness for no such reason
+  std::vector<double> depth;           ///< L0 / thickness
   std::vector<int> layers;      ///< from 1 at the inner boundary; 0: unknown
   bool sulciRecovered = false;  ///< or at least looked for
   std::optional<AnatomicalGrid> grid;
 };
+
+/// 1 at voxels whose thickness is known and which the image's edge does not reach.
+[[nodiscard]] std::vector<int> validOf(const Measurement& m);
 
 void describe(Results& t, const Measurement& m);
 

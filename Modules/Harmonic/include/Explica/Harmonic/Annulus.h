@@ -66,9 +66,11 @@ struct Annulus {
   bool planar = false;            ///< slices stand alone: no links along k
   std::size_t droppedVoxels = 0;  ///< tissue that misses one side, left out
   int droppedComponents = 0;
-  int components = 0;              ///< 6-connected pieces of tissue that are solved for
-  std::size_t directContacts = 0;  ///< voxel faces where inner and outer region touch
-  std::optional<std::array<int, 3>> firstContact;  ///< a voxel of `grid` where they do
+  std::array<int, 3> firstDropped{};  ///< a voxel of `grid` in the first of these pieces
+  int components = 0;                 ///< 6-connected pieces of tissue that are solved for
+  std::size_t directContacts = 0;     ///< voxel faces where inner and outer region touch
+  int holes = 0;  ///< in the tissue, where they do on less area than the tissue is thick
+  int ends = 0;   ///< of the tissue, where they do on more: a medial wall, a ventricle's base
 
   [[nodiscard]] std::size_t count() const { return place.size(); }
   [[nodiscard]] std::array<int, 3> boxSubscripts(std::int32_t number) const {
@@ -76,16 +78,21 @@ struct Annulus {
     const std::int32_t row = p / size[0];
     return {p % size[0], row % size[1], row / size[1]};
   }
+  /// Subscripts in `grid` of a tissue voxel.
+  [[nodiscard]] std::array<int, 3> voxel(std::int32_t number) const {
+    const auto s = boxSubscripts(number);
+    return {s[0] + first[0], s[1] + first[1], s[2] + first[2]};
+  }
   /// Continuous index in `grid` of a tissue voxel's centre.
   [[nodiscard]] Vector index(std::int32_t number) const {
-    const auto s = boxSubscripts(number);
-    return Vector(s[0] + first[0], s[1] + first[1], s[2] + first[2]);
+    const auto s = voxel(number);
+    return Vector(s[0], s[1], s[2]);
   }
   [[nodiscard]] Point world(std::int32_t number) const { return grid.toWorld(index(number)); }
   /// Position of a tissue voxel in the storage order of the whole volume.
   [[nodiscard]] std::size_t linear(std::int32_t number) const {
-    const auto s = boxSubscripts(number);
-    return grid.linear(s[0] + first[0], s[1] + first[1], s[2] + first[2]);
+    const auto s = voxel(number);
+    return grid.linear(s[0], s[1], s[2]);
   }
   /// Row of `fractions`, or -1 for a voxel with six uncut links.
   [[nodiscard]] std::int32_t irregular(std::int32_t number) const {
@@ -98,6 +105,9 @@ struct Annulus {
     return {1, size[0], size[0] * size[1]};
   }
 };
+
+/// "(1, 2, 3)"
+[[nodiscard]] std::string voxelText(const std::array<int, 3>& voxel);
 
 /// Tissue voxels in the outermost layer of the image, along axes with more than one voxel; of
 /// planar tissue within its slices.

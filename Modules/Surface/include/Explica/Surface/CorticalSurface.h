@@ -75,8 +75,13 @@ struct CorticalSurfaces {
   WhiteSurface white;
   TriangleMesh mid;  ///< at half the way
   TriangleMesh pial;
-  Eigen::VectorXd thickness;  ///< arc length of the trajectories, meanOverSurroundings(), mm; 0
-                              ///< where there is no ribbon
+  Eigen::VectorXd thickness;  ///< of the ribbon's voxels at the middle surface, or where an image
+                              ///< has placed borders the length of the trajectories between them,
+                              ///< meanOverSurroundings(), mm; 0 where there is no ribbon
+  Eigen::VectorXd columnArea;        ///< of the tissue's middle surface nearest to each middle
+                                     ///< vertex, mm^2; of borders that an image has placed, and of
+                                     ///< surfaces that were given, that of the mesh
+  Eigen::VectorXd columnThickness;   ///< mean there, mm; in those cases `thickness`
   Eigen::VectorXd nearestThickness;  ///< as distanceThickness(), mm; 0 where there is no ribbon
   Eigen::VectorXd curvature;         ///< mean, of the white surface, mm^-1; positive in sulci
   Eigen::VectorXd sulcalDepth;    ///< of the white surface, maps::sulcalDepth, mm; empty of sheets
@@ -126,12 +131,13 @@ struct CorticalSurfaces {
                                              const SurfaceOptions& options = {},
                                              const Monitor& monitor = {});
 
-/// Mean over the white surface where there is grey matter, weighted by area, mm.
+/// Mean over the middle surface where there is grey matter, mm.
+/// @param areas      of the middle surface, per vertex: CorticalSurfaces::columnArea
 /// @param thickness  per vertex, mm; 0 where there is no grey matter
-[[nodiscard]] double meanThickness(const TriangleMesh& white, const Eigen::VectorXd& thickness);
+[[nodiscard]] double meanThickness(const Eigen::VectorXd& areas, const Eigen::VectorXd& thickness);
 
 /// Its standard deviation over that surface, mm.
-[[nodiscard]] double thicknessDeviation(const TriangleMesh& white,
+[[nodiscard]] double thicknessDeviation(const Eigen::VectorXd& areas,
                                         const Eigen::VectorXd& thickness);
 
 template <class Visitor>

@@ -19,6 +19,11 @@ using LevelSet = Volume<float>;
 /// an edge whose other end has level 1.
 inline constexpr float kLeastLevel = 0.05F;
 
+/// What lengths are counted in where they are given in voxels: the finest spacing, mm.
+[[nodiscard]] inline double voxelSize(const Grid& grid) {
+  return grid.spacing.minCoeff();
+}
+
 /// Voxels of the smallest box that holds every voxel of `mask` that is not 0, widened by `margin`
 /// voxels; the box may reach beyond the volume.
 struct VoxelBox {

@@ -23,7 +23,7 @@ struct SurfaceCheck {
 };
 [[nodiscard]] SurfaceCheck checkOf(const TriangleMesh& mesh);
 
-/// Thickness by both measures over the area of the white surface, mm.
+/// Thickness by both measures over the area of the middle surface, mm.
 struct ThicknessMeans {
   std::string measure;  ///< that mean and sd are of: "trajectory" or "nearest"
   double mean = kNaN, sd = kNaN;

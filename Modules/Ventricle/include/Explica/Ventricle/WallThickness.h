@@ -3,8 +3,7 @@
 #pragma once
 
 #include "Explica/Correspondence/Correspondence.h"
-#include "Explica/Harmonic/Annulus.h"
-#include "Explica/Harmonic/Interpolant.h"
+#include "Explica/Correspondence/Ribbon.h"
 #include "Explica/Ventricle/LongAxis.h"
 #include "Explica/Ventricle/SliceAlignment.h"
 
@@ -45,9 +44,7 @@ void describe(WallOptions& options, Visitor&& visit) {
 }
 
 /// Thickness of a frame's wall, per tissue number of `annulus`.
-struct WallThickness {
-  harmonic::Annulus annulus;
-  harmonic::Interpolant interpolant;
+struct WallThickness : correspondence::Ribbon {
   correspondence::Correspondence correspondence;
   bool bySlice = false;
   std::vector<double> plain;      ///< mm, length of the trajectory: within the slice if by slice
