@@ -169,11 +169,8 @@ void refuseOtherImages(Judge& judge, const Volume<float>& image) {
   if (contrast.spread == 0) return;
   // Fluid is many voxels in any head, vessels are few.
   constexpr double kFluid = 0.05;
-  if (contrast.brightShare >= kFluid) {
-    judge.require("bright-fluid", contrast.skewness);
-  } else {
-    judge.require("bright-vessels", contrast.brightest);
-  }
+  if (contrast.brightShare < kFluid) judge.require("bright-vessels", contrast.brightest);
+  judge.require("bright-fluid", contrast.skewness);
 }
 
 /// The image where the mask is not 0.

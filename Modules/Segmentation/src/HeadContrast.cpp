@@ -4,6 +4,8 @@
 
 #include "Explica/Core/VoxelSets.h"
 
+#include <Eigen/Cholesky>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -62,6 +64,29 @@ VoxelSet airOf(const Volume<float>& blocks) {
   return air;
 }
 
+/// Divides by the exponential of the plane that fits the logarithms best: a coil on one side of the
+/// head looks like a tail of brightness.
+void divideByTrend(const Grid& grid, const std::vector<std::size_t>& voxels,
+                   std::vector<float>& values) {
+  Eigen::Matrix4d products = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d sums = Eigen::Vector4d::Zero();
+  const auto placeOf = [&](std::size_t v) {
+    const auto [i, j, k] = grid.subscripts(v);
+    return Eigen::Vector4d(1, i, j, k);
+  };
+  for (std::size_t n = 0; n < values.size(); ++n) {
+    if (!(values[n] > 0)) continue;
+    const Eigen::Vector4d place = placeOf(voxels[n]);
+    products += place * place.transpose();
+    sums += std::log(values[n]) * place;
+  }
+  const Eigen::Vector4d trend = products.ldlt().solve(sums);
+  if (!trend.allFinite()) return;
+  for (std::size_t n = 0; n < values.size(); ++n) {
+    values[n] *= static_cast<float>(std::exp(-trend.dot(placeOf(voxels[n]))));
+  }
+}
+
 }  // namespace
 
 HeadContrast measureContrast(const Volume<float>& image) {
@@ -71,10 +96,14 @@ HeadContrast measureContrast(const Volume<float>& image) {
   const Volume<float> squared = squaredDistanceTo(airOf(blocks));
   const float deepest = *std::max_element(squared.data.begin(), squared.data.end());
   std::vector<float> deep;
+  std::vector<std::size_t> voxels;
   for (std::size_t v = 0; v < blocks.size(); ++v) {
-    if (squared[v] > kInner * kInner * deepest) deep.push_back(blocks[v]);
+    if (!(squared[v] > kInner * kInner * deepest)) continue;
+    deep.push_back(blocks[v]);
+    voxels.push_back(v);
   }
   if (deep.size() < kFewest) return found;
+  divideByTrend(blocks.grid, voxels, deep);
   std::sort(deep.begin(), deep.end());
   const auto at = [&](double share) {
     return static_cast<double>(deep[static_cast<std::size_t>(share * (deep.size() - 1.0))]);

@@ -44,8 +44,22 @@ TEST(HeadContrast, VesselsAreFewAndFarBrighterThanTheRest) {
   EXPECT_LT(angiogram.brightShare, 0.05);
 }
 
-TEST(HeadContrast, AProtonDensityImageHasLittleOfIt) {
-  EXPECT_LT(measureContrast(brain(125, 128, 112, 115)).spread, 0.25);
+TEST(HeadContrast, AProtonDensityImageHasLittleOfItAndNoDarkTail) {
+  const HeadContrast found = measureContrast(brain(125, 128, 112, 115));
+  EXPECT_LT(found.spread, 0.25);
+  EXPECT_GT(found.skewness, 0.1);
+}
+
+TEST(HeadContrast, AT1WhoseCoilIsOnOneSideIsNoT2) {
+  Volume<float> image = brain(30, 70, 110, 60);
+  for (std::size_t v = 0; v < image.size(); ++v) {
+    const double across = image.grid.subscripts(v)[0] - 23.0;
+    image[v] *= static_cast<float>(std::exp(0.08 * across));
+  }
+  const HeadContrast even = measureContrast(brain(30, 70, 110, 60)), found = measureContrast(image);
+  EXPECT_LT(found.skewness, 0);
+  EXPECT_NEAR(found.skewness, even.skewness, 0.15);
+  EXPECT_LT(found.brightest, 1.3);
 }
 
 TEST(HeadContrast, DoesNotDependOnTheUnitOfBrightness) {
