@@ -48,6 +48,9 @@ Maps are best smoothed before (explica smooth): random field theory assumes a sm
                    s.masks)
       .inputOption("atlas", FileKind::VertexLabel, "names of the regions of peaks; one a surface",
                    s.atlases)
+      .oneByOne("surface")
+      .oneByOne("mask")
+      .oneByOne("atlas")
       .option("Model", Field{"model", "", "formula: 'thickness ~ group * age + sex'"}, s.model)
       .require("model")
       .option("Model",

@@ -7,6 +7,7 @@
 #include "Explica/Core/FileText.h"
 #include "Explica/Core/Types.h"
 #include "Explica/Geometry/Fixtures.h"
+#include "Explica/IO/StatedHemisphere.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VertexDataFile.h"
 
@@ -105,6 +106,12 @@ void layOut(Context& context, const GlmSettings& s, const Table& list, const Map
       const auto loaded = io::readSurface(s.surfaces[h]);
       side.count = loaded.mesh.vertexCount();
       side.structure = loaded.metadata.structure;
+      const std::string wanted = sideOf(columns[h], side.structure);
+      if (side.structure.starts_with("Cortex") && side.structure != wanted) {
+        throw InvalidInput("'" + s.surfaces[h] + "' is of the other hemisphere than the column '" +
+                           columns[h] + "' of '" + list.name + "'; give --surface in the order " +
+                           "left, right");
+      }
       whole = h == 0 ? loaded.mesh : geometry::joined(whole, loaded.mesh);
     }
     side.structure = sideOf(columns[h], side.structure.empty() ? "Other" : side.structure);
@@ -114,7 +121,13 @@ void layOut(Context& context, const GlmSettings& s, const Table& list, const Map
   }
   if (!s.surfaces.empty()) o.surface = statistics::placeSurface(whole);
   for (const auto& person : files) {
-    for (const fs::path& file : person) context.input(file, "map");
+    for (std::size_t h = 0; h < person.size(); ++h) {
+      const std::string said = io::statedStructure(context.input(person[h], "person"));
+      const std::string& wanted = o.hemispheres[h].structure;
+      if (said.empty() || !wanted.starts_with("Cortex") || said == wanted) continue;
+      throw InvalidInput("'" + person[h].string() + "' is of the other hemisphere than its column '" +
+                         columns[h] + "' or the surface");
+    }
   }
 }
 

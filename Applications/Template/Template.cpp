@@ -88,7 +88,11 @@ std::optional<Person> personIn(const fs::path& folder, const std::string& struct
     return findFile(folders, {own, prefix + freeSurfer});
   };
   const auto sphere = find("sphere", "sphere.surf.gii");
-  if (!sphere || io::statedStructure(*sphere) == (right ? "CortexLeft" : "CortexRight")) return {};
+  if (!sphere) return {};
+  const std::string said = io::statedStructure(*sphere);
+  const bool isRight = said.empty() ? folder.filename().string().ends_with("_hemi-R")
+                                    : said == "CortexRight";
+  if (isRight != right) return {};
   Person person;
   person.name = folder.lexically_normal().string();
   person.sphere = *sphere;

@@ -142,7 +142,8 @@ TEST(Template, OfOnePersonTwiceIsThePerson) {
   EXPECT_LT(summary["mean_deformation"], 0.1);
   const TriangleMesh white = io::readSurface(folder / "out/hemi-L_white.surf.gii").mesh;
   EXPECT_NEAR(geometry::totalArea(white),
-              geometry::totalArea(geometry::makeFoldedSphere(3, 30.0)), 150);
+              geometry::totalArea(geometry::makeFoldedSphere(3, 30.0)),
+              300);  // faces over the chords of bends
   // And it is a template.
   const auto found = explica({"register", folder / "lh.sphere", "--template", folder / "out",
                               "--level", "3", "--out", folder / "on"});

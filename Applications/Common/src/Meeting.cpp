@@ -16,6 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using provenance::Json;
 
+constexpr const char* kOfOnePerson = "person";  // role of a file of one of many people
 constexpr int kFurthestBack = 8;  // commands from a surface to the one that it was made from
 
 bool isSurface(const Parameter* p) {
@@ -112,6 +113,15 @@ std::string Meeting::meshesOf(const File& one, const File& other) {
   return one.name + " was not made for the mesh of " + other.name + ", as their records tell";
 }
 
+bool Meeting::hasBothSides(const std::string& role) const {
+  std::set<Hemisphere> sides;
+  for (const File& file : files_) {
+    const bool counts = file.role == role && file.parameter && file.parameter->oneByOne;
+    if (counts && file.side) sides.insert(*file.side);
+  }
+  return sides.size() == 2;
+}
+
 void Meeting::contradict(const char* name, const std::string& sentence,
                          std::vector<std::string>& sentences) const {
   if (sentence.empty()) return;
@@ -129,7 +139,7 @@ std::vector<std::string> Meeting::add(const std::string& role, const fs::path& p
   const bool declared =
       isSurface(parameter) || isVertexData(parameter) || (parameter && parameter->oneByOne);
   const bool otherFile = parameter && parameter->file && !declared;
-  if (!filesMeet(declaration_) || otherFile) return sentences;
+  if (!filesMeet(declaration_) || otherFile || role == kOfOnePerson) return sentences;
   File file{role,
             "'" + path.string() + "'" + optionText(role, parameter),
             io::statedHemisphere(path),
@@ -151,6 +161,7 @@ std::vector<std::string> Meeting::add(const std::string& role, const fs::path& p
     return sentences;
   }
   for (const File& other : files_) {
+    if (other.role != role && hasBothSides(other.role)) continue;
     contradict(kAcceptHemisphere, sidesOf(other, file), sentences);
     contradict(kAcceptMesh, meshesOf(other, file), sentences);
   }

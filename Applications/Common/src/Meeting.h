@@ -25,7 +25,8 @@ inline constexpr const char* kAcceptMesh = "mesh";
 /// Left is left: the hemisphere that a surface or a file of vertex data states must be that of the
 /// others, of --hemisphere and of the option's own side (--left).  Vertex data must be of the
 /// surface's mesh: where records tell which surfaces either was made with or beside, they must
-/// share one.
+/// share one.  Files of the role "person", of one of many people, are compared with no other: the
+/// command knows of which side each should be.
 class Meeting {
  public:
   /// @param given     options that the user set
@@ -52,6 +53,9 @@ class Meeting {
 
   [[nodiscard]] static std::string sidesOf(const File& one, const File& other);
   [[nodiscard]] static std::string meshesOf(const File& one, const File& other);
+  /// True if an option's files, each of which stands for itself, are of both sides: they do not tell
+  /// of which the others should be.
+  [[nodiscard]] bool hasBothSides(const std::string& role) const;
   void contradict(const char* name, const std::string& sentence,
                   std::vector<std::string>& sentences) const;
 
