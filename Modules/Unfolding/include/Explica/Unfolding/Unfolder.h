@@ -55,8 +55,7 @@ void describe(UnfolderOptions& options, Visitor&& visit) {
   visit(
       Field{"collar-width", "mm",
             "how far an elastic collar reaches from the region along the surface (default 0.6 of "
-            "the radius of a disc of the region's area, or of its depth if that is more; replaces "
-            "--collar-rings)",
+            "the radius of a disc of the region's area, or of its depth if that is more)",
             kAboveZero, 1000},
       options.collarWidth);
   visit(Field{"yield-strain", "",
