@@ -37,6 +37,11 @@ Places placesOn(const TriangleMesh& sphere, const Positions& directions) {
   return places;
 }
 
+Eigen::Matrix3d rotationOnto(const FoldingSphere& person, const SphereRegistration& found) {
+  return bestRotation(person.sphere.positions, found.positions,
+                      geometry::vertexAreas(person.sphere));
+}
+
 /// Means over the people at each vertex of the grid.
 struct Means {
   Eigen::VectorXd sulc, curvature, sulcSquares, curvatureSquares;
@@ -55,9 +60,9 @@ struct Means {
     curvature += c;
     sulcSquares += s.cwiseAbs2();
     curvatureSquares += c.cwiseAbs2();
-    const Eigen::Matrix3d rotation =
-        bestRotation(person.sphere.positions, found.positions, geometry::vertexAreas(person.sphere));
-    places += Positions(at * person.sphere.positions * rotation.transpose()).rowwise().normalized();
+    places += Positions(at * person.sphere.positions * rotationOnto(person, found).transpose())
+                  .rowwise()
+                  .normalized();
   }
 };
 
@@ -94,12 +99,13 @@ double meanAngle(const Positions& a, const Positions& b) {
 
 }  // namespace
 
-SphereAverage averageSpheres(const std::vector<FoldingSphere>& people, const TriangleMesh& grid,
+SphereAverage averageSpheres(std::vector<FoldingSphere> people, const TriangleMesh& grid,
                              const AverageOptions& options, const Monitor& monitor) {
   if (people.size() < 2) throw InvalidInput("people: a mean is of two at least");
   const auto count = static_cast<double>(people.size());
   SphereAverage average;
   FoldingSphere target = people.front();
+  RegisterOptions registration = options.registration;
   for (int n = 0; n < options.iterations; ++n) {
     Means means(grid.vertexCount());
     average.registered.clear();
@@ -107,16 +113,19 @@ SphereAverage averageSpheres(const std::vector<FoldingSphere>& people, const Tri
     for (std::size_t p = 0; p < people.size(); ++p) {
       monitor.progress((n + static_cast<double>(p) / count) / options.iterations,
                        "iteration " + std::to_string(n + 1) + ", person " + std::to_string(p + 1));
-      const auto found = registerSphere(people[p], target, options.registration, monitor);
+      const auto found = registerSphere(people[p], target, registration, monitor);
       if (found.termination == Termination::Interrupted) {
         average.termination = Termination::Interrupted;
         return average;
       }
       means.add(people[p], found,
                 placesOn({found.positions, people[p].sphere.faces}, grid.positions));
+      // From here on the person's sphere is turned as the template is.
+      people[p].sphere.positions *= rotationOnto(people[p], found).transpose();
       average.registered.push_back(found.positions);
       average.correlation += found.after.sulc / count;
     }
+    registration.rotate = false;
     const FoldingSphere mean = meanOf(means, grid.faces, count);
     average.deformation.push_back(meanAngle(mean.sphere.positions, grid.positions));
     target = onGrid(mean, grid);

@@ -11,7 +11,7 @@ namespace explica::sphere {
 
 /// How people are averaged.
 struct AverageOptions {
-  int iterations = 4;  ///< at most
+  int iterations = 10;  ///< at most
   RegisterOptions registration;
 };
 
@@ -45,7 +45,7 @@ struct SphereAverage {
 /// @param people  two at least
 /// @param grid    a sphere about the origin, of the template's vertices
 /// @throws InvalidInput  fewer than two people; as registerSphere()
-[[nodiscard]] SphereAverage averageSpheres(const std::vector<FoldingSphere>& people,
+[[nodiscard]] SphereAverage averageSpheres(std::vector<FoldingSphere> people,
                                            const TriangleMesh& grid,
                                            const AverageOptions& options = {},
                                            const Monitor& monitor = {});
