@@ -125,8 +125,9 @@ void layOut(Context& context, const GlmSettings& s, const Table& list, const Map
       const std::string said = io::statedStructure(context.input(person[h], "person"));
       const std::string& wanted = o.hemispheres[h].structure;
       if (said.empty() || !wanted.starts_with("Cortex") || said == wanted) continue;
-      throw InvalidInput("'" + person[h].string() + "' is of the other hemisphere than its column '" +
-                         columns[h] + "' or the surface");
+      throw InvalidInput("'" + person[h].string() +
+                         "' is of the other hemisphere than its column '" + columns[h] +
+                         "' or the surface");
     }
   }
 }

@@ -13,7 +13,7 @@ namespace {
 
 using provenance::Json;
 
-constexpr double kCharacters = 2.5e6;      // of a page, for values: one each
+constexpr double kCharacters = 2.5e6;        // of a page, for values: one each
 constexpr Eigen::Index kMostPlaces = 10242;  // of a hemisphere
 // Digits of values: what a script element and JSON take as it is.  A value that is not known has
 // a space.

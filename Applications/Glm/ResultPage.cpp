@@ -87,8 +87,8 @@ report::ReportViews viewsOf(const std::vector<Side>& sides, const Eigen::VectorX
       const auto from = lateral == right ? report::ViewName::Right : report::ViewName::Left;
       views.views.push_back(
           {name + (name.empty() ? "" : ", ") + (lateral ? "lateral" : "medial"),
-           scene.render(report::cameraFor(side.inflated, from, pixels.width, pixels.height), colours,
-                        report::Filling::Smooth, size)});
+           scene.render(report::cameraFor(side.inflated, from, pixels.width, pixels.height),
+                        colours, report::Filling::Smooth, size)});
     }
   }
   return views;

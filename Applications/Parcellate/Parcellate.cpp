@@ -29,7 +29,7 @@ struct Settings {
   std::vector<std::string> atlases;
   std::optional<std::string> templateName, hemisphere;
   bool volume = false;
-  std::optional<std::string> surfaces, like;
+  std::optional<std::string> ribbon, like;
 };
 
 /// Labels that are carried over, with what else is known of those who have them.
@@ -70,12 +70,12 @@ void declare(Declaration& d, Settings& s) {
                     "surface"},
               s.volume)
       .option("Volume",
-              Field{"surfaces", "", "folder with white and pial surface, where SURFACES has none"},
-              s.surfaces)
+              Field{"ribbon", "", "folder with white and pial surface, where SURFACES has none"},
+              s.ribbon)
       .inputOption("like", FileKind::Volume,
                    "image whose voxels they are (default: 1 mm, about the surfaces)", s.like,
                    "Volume")
-      .needs({"surfaces", "like"}, {"volume"})
+      .needs({"ribbon", "like"}, {"volume"})
       .results<maps::Parcellation>()
       .output("regions.label.gii", FileKind::VertexLabel, "region of each vertex")
       .output("?h.*.annot", FileKind::VertexLabel, "the same as FreeSurfer's annotation")
@@ -186,10 +186,11 @@ std::array<TriangleMesh, 2> readRibbon(Context& context, const Settings& s,
   for (std::size_t n = 0; n < 2; ++n) {
     const std::string name = n == 0 ? "white" : "pial";
     const auto file =
-        findFile({s.folder, s.surfaces.value_or(s.folder)}, {prefix + name, name + ".surf.gii"});
+        findFile({s.folder, s.ribbon.value_or(s.folder)}, {prefix + name, name + ".surf.gii"});
     if (!file) {
-      throw InvalidInput("'" + s.surfaces.value_or(s.folder) + "': no " + prefix + name + " or " +
-                         name + ".surf.gii in it, which --volume needs; name their folder by "
+      throw InvalidInput("'" + s.ribbon.value_or(s.folder) + "': no " + prefix + name + " or " +
+                         name +
+                         ".surf.gii in it, which --volume needs; name their folder by "
                          "--surfaces");
     }
     ribbon[n] = readSurface(context, name, context.input(*file, name).string(), reading).mesh;

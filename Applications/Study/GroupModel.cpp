@@ -34,8 +34,7 @@ void smoothSide(Context& context, const Side& side, const People& people, double
     const std::size_t count = std::min(kSmoothedAtOnce, all.size() - first);
     Eigen::MatrixXd maps(side.vertices, count);
     for (std::size_t n = 0; n < count; ++n) {
-      maps.col(static_cast<Eigen::Index>(n)) =
-          readMap(*all[first + n], kThickness, side.vertices);
+      maps.col(static_cast<Eigen::Index>(n)) = readMap(*all[first + n], kThickness, side.vertices);
     }
     maps = maps::smoothMaps(*side.surface, std::move(maps), fwhm, {}, context.monitor());
     for (std::size_t n = 0; n < count; ++n) {
@@ -61,8 +60,7 @@ void writeLists(Context& context, const std::vector<Side>& sides, const People& 
     for (const Side& side : sides) list += "\t" + smoothName(*found.at(side.hemisphere));
     list += "\n";
     const study::StudyRow& row = *found.begin()->second->row;
-    table += name + "\t" +
-             (row.report.empty() ? "n/a" : "../../" + row.report.generic_string()) +
+    table += name + "\t" + (row.report.empty() ? "n/a" : "../../" + row.report.generic_string()) +
              cellsOf(about, columns, personOf(row)) + "\n";
   }
   writeTextFile(context.output("group/maps.tsv"), list);

@@ -58,8 +58,7 @@ void drawGroup(Context& context, const std::vector<Side>& sides);
 
 /// Names of what is known of people, and the cells of one of them.
 [[nodiscard]] std::vector<std::string> columnsOf(const AboutPeople& about);
-[[nodiscard]] std::string cellsOf(const AboutPeople& about,
-                                  const std::vector<std::string>& columns,
+[[nodiscard]] std::string cellsOf(const AboutPeople& about, const std::vector<std::string>& columns,
                                   const std::string& person);
 
 /// Fits the model to the smoothed thickness of people with all sides.

@@ -29,11 +29,10 @@ void readTemplate(Context& context, const Member& member, Side& side) {
   while (level < 7 && 10 * (Eigen::Index{1} << (2 * level)) + 2 < side.vertices) ++level;
   const TriangleMesh sphere = maps::fsaverageSphere(level);
   if (sphere.vertexCount() != side.vertices) return;
-  const Json name =
-      member.maps.together
-          ? provenance::readJson(member.run / study::kKeptName)["template"]
-          : provenance::readRecord(member.run / "register" / provenance::kRecordName)["options"]
-                                  ["template"];
+  const Json name = member.maps.together
+                        ? provenance::readJson(member.run / study::kKeptName)["template"]
+                        : provenance::readRecord(member.run / "register" /
+                                                 provenance::kRecordName)["options"]["template"];
   const CortexTemplate known =
       findTemplate(context, name.is_string() ? name.get<std::string>() : kDefaultTemplate,
                    structureOf(side.hemisphere));
@@ -49,16 +48,14 @@ void readTemplate(Context& context, const Member& member, Side& side) {
     return maps::resamplingWeights(from, sphere, method, fromAreas, toAreas);
   };
   if (!known.white.empty() && !known.pial.empty()) {
-    const Positions middle =
-        0.5 * (read(known.white).positions + read(known.pial).positions);
+    const Positions middle = 0.5 * (read(known.white).positions + read(known.pial).positions);
     side.surface = TriangleMesh{
         maps::resampleMaps(weightsBy(maps::ResamplingMethod::Barycentric), middle), sphere.faces};
   }
   if (!known.atlas.empty()) {
-    side.regions =
-        io::readVertexLabels(context.input(known.atlas, "template"), from.vertexCount());
-    side.regions->keys = maps::resampleLabels(weightsBy(maps::ResamplingMethod::Adaptive),
-                                              side.regions->keys);
+    side.regions = io::readVertexLabels(context.input(known.atlas, "template"), from.vertexCount());
+    side.regions->keys =
+        maps::resampleLabels(weightsBy(maps::ResamplingMethod::Adaptive), side.regions->keys);
   }
 }
 
@@ -75,8 +72,9 @@ Eigen::VectorXd readMap(const Member& member, std::size_t measure,
                         std::optional<Eigen::Index> count) {
   const std::string ending = member.maps.entity + ".shape.gii";
   const std::filesystem::path file =
-      member.maps.together ? member.run / ("maps_" + ending)
-                           : member.run / "resample" / (std::string(kMeasures[measure]) + "_" + ending);
+      member.maps.together
+          ? member.run / ("maps_" + ending)
+          : member.run / "resample" / (std::string(kMeasures[measure]) + "_" + ending);
   Eigen::VectorXd values =
       io::readVertexMaps(file, count).at(member.maps.together ? measure : 0).values;
   // A thickness of 0 was not measured, as on the medial wall.
@@ -99,8 +97,8 @@ Side gather(Context& context, const std::vector<Member>& members, const std::str
       }
       if (map.size() != side.vertices) {
         throw InvalidInput(member.label() + ": " + kMeasures[m] + " has " +
-                           std::to_string(map.size()) + " vertices, that of " +
-                           first->label() + " " + std::to_string(side.vertices));
+                           std::to_string(map.size()) + " vertices, that of " + first->label() +
+                           " " + std::to_string(side.vertices));
       }
       if (side.groups.size() == m) side.groups.emplace_back(side.vertices);
       side.groups[m].add(map);

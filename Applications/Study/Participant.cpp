@@ -120,9 +120,8 @@ fs::path folderOf(const Settings& s, const study::PlannedRun& run) {
 
 /// What was kept of a subject is what doing it again would give.
 bool allKept(const Settings& s, const study::PlannedSubject& subject, const std::string& key) {
-  return std::all_of(subject.runs.begin(), subject.runs.end(), [&](const study::PlannedRun& run) {
-    return isKept(folderOf(s, run), key);
-  });
+  return std::all_of(subject.runs.begin(), subject.runs.end(),
+                     [&](const study::PlannedRun& run) { return isKept(folderOf(s, run), key); });
 }
 
 Termination run(Context& context, const Settings& s) {

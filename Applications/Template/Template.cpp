@@ -39,14 +39,16 @@ void declare(Declaration& d, Settings& s) {
           "of positions after rigid alignment; regions, where all people have some, are those of "
           "the majority, by their names. A hemisphere that fewer than two people have is left "
           "out.")
-      .reference("Guimond, Meunier, Thirion 2000, Computer Vision and Image Understanding 77:192-210")
+      .reference(
+          "Guimond, Meunier, Thirion 2000, Computer Vision and Image Understanding 77:192-210")
       .example("explica template sub-01 sub-02 sub-03 --out ours",
                "Of three folders of explica run; then: explica register ... --template ours")
       .input("PEOPLE", FileKind::Folder,
              "folders of explica run, FreeSurfer subjects, or a study's OUT_DIR with all its runs",
              s.people)
       .option("Template",
-              Field{"density", "", "its vertices: fsaverage3 ... fsaverage6 or fsaverage"}, s.density)
+              Field{"density", "", "its vertices: fsaverage3 ... fsaverage6 or fsaverage"},
+              s.density)
       .options("Template", s.average)
       .output("hemi-*_sphere.surf.gii", FileKind::Surface, "fsaverage's sphere of that density")
       .output("hemi-*_sulc.shape.gii", FileKind::VertexData, "mean sulcal depth")
@@ -90,8 +92,8 @@ std::optional<Person> personIn(const fs::path& folder, const std::string& struct
   const auto sphere = find("sphere", "sphere.surf.gii");
   if (!sphere) return {};
   const std::string said = io::statedStructure(*sphere);
-  const bool isRight = said.empty() ? folder.filename().string().ends_with("_hemi-R")
-                                    : said == "CortexRight";
+  const bool isRight =
+      said.empty() ? folder.filename().string().ends_with("_hemi-R") : said == "CortexRight";
   if (isRight != right) return {};
   Person person;
   person.name = folder.lexically_normal().string();
@@ -136,8 +138,8 @@ std::array<TriangleMesh, 2> meanSurfaces(Context& context, const std::vector<Per
   std::vector<Positions> shapes;
   for (std::size_t p = 0; p < people.size(); ++p) {
     checkpoint(context.monitor());
-    const auto weights = maps::resamplingWeights(spheres[p], grid,
-                                                 maps::ResamplingMethod::Barycentric, {}, {});
+    const auto weights =
+        maps::resamplingWeights(spheres[p], grid, maps::ResamplingMethod::Barycentric, {}, {});
     Positions shape(2 * grid.vertexCount(), 3);
     shape << weights * readMesh(context, people[p].white).positions,
         weights * readMesh(context, people[p].pial).positions;
@@ -155,8 +157,8 @@ std::optional<io::LabelMap> majority(Context& context, const std::vector<Person>
   std::vector<io::LabelMap> files;
   for (std::size_t p = 0; p < people.size(); ++p) {
     if (people[p].labels.empty()) return {};
-    files.push_back(io::readVertexLabels(context.input(people[p].labels, "person"),
-                                         spheres[p].vertexCount()));
+    files.push_back(
+        io::readVertexLabels(context.input(people[p].labels, "person"), spheres[p].vertexCount()));
   }
   io::numberAlike(files);
   std::vector<maps::LabelledSphere> labelled;
@@ -230,8 +232,7 @@ std::vector<Side> readSides(Context& context, const Settings& s) {
     sides.push_back(std::move(side));
   }
   if (!sides.empty()) return sides;
-  throw InvalidInput("'" + s.people.front() + "'" +
-                     (s.people.size() > 1 ? " and the others" : "") +
+  throw InvalidInput("'" + s.people.front() + "'" + (s.people.size() > 1 ? " and the others" : "") +
                      ": fewer than two people with a sphere (?h.sphere, sphere.surf.gii) of one "
                      "hemisphere; explica run makes them");
 }

@@ -88,7 +88,8 @@ void declare(Declaration& d, Settings& s) {
                    "Region")
       .option("Region", Field{"label-key", "", "the region is where --label has one of these keys"},
               s.labelKeys)
-      .option("Region", Field{"region", "", "names of regions of --atlas: the region is all of them"},
+      .option("Region",
+              Field{"region", "", "names of regions of --atlas: the region is all of them"},
               s.regionNames)
       .inputOption("atlas", FileKind::VertexLabel,
                    "annotation of the surface's vertices that --region names a region of", s.atlas,

@@ -46,8 +46,8 @@ TEST(RegisterPeople, FsaverageFiveOntoFsaverageIsTheIdentity) {
   TemporaryFolder folder;
   const auto moved = registered(folder, "moved", (five / "lh.sphere").string(),
                                 {"--template", (kSharedData / "fsaverage").string()});
-  const Eigen::VectorXd angles = anglesBetween(sphereIn(moved).positions,
-                                               sphereIn((five / "lh.sphere").string()).positions);
+  const Eigen::VectorXd angles =
+      anglesBetween(sphereIn(moved).positions, sphereIn((five / "lh.sphere").string()).positions);
   EXPECT_LT(angles.mean(), 0.1);
   EXPECT_LT(angles.maxCoeff(), 0.5);
 }
@@ -72,8 +72,7 @@ TEST(RegisterPeople, ThereAndBackAgainIsTheIdentity) {
   for (const auto& entry : fs::directory_iterator(folder / "back")) {
     if (entry.path().string().ends_with(".surf.gii")) file = entry.path().string();
   }
-  const Eigen::VectorXd angles =
-      anglesBetween(sphereIn(file).positions, sphereIn(a).positions);
+  const Eigen::VectorXd angles = anglesBetween(sphereIn(file).positions, sphereIn(a).positions);
   EXPECT_LT(angles.mean(), 1);
 }
 
@@ -92,9 +91,9 @@ TEST(Parcellate, LabelsTheVoxelsBetweenTheSurfaces) {
   EXPECT_NEAR(voxels[1], zone, 0.06 * zone);
   EXPECT_NEAR(voxels[2], zone, 0.06 * zone);
   EXPECT_EQ(readText(folder / "out/aparc.tsv"), "index\tname\n1\tfront\n2\tback\n");
-  const auto bare = explica({"parcellate", folder.path().string(), "--atlas",
-                             folder / "lh.regions.label.gii", "--volume", "--like",
-                             folder / "map.nii.gz", "--out", folder / "like"});
+  const auto bare =
+      explica({"parcellate", folder.path().string(), "--atlas", folder / "lh.regions.label.gii",
+               "--volume", "--like", folder / "map.nii.gz", "--out", folder / "like"});
   ASSERT_EQ(bare.exitCode, 0) << bare;
   EXPECT_EQ(io::readLabels(folder / "like/aparc.nii.gz").volume.grid.size,
             (std::array<int, 3>{24, 24, 24}));
@@ -115,11 +114,12 @@ TEST(Parcellate, SaysThatAVolumeNeedsSurfaces) {
 TEST(UnfoldRegion, IsTakenByItsName) {
   TemporaryFolder folder;
   writeMapAndRegions(folder);
-  const std::vector<std::string> words = {"unfold",  folder / "white.surf.gii",
-                                          "--atlas", folder / "lh.regions.label.gii",
-                                          "--direction", "0,1,0", "--max-iterations", "1"};
-  auto result = explica(words + std::vector<std::string>{"--region", "front", "--out",
-                                                         folder / "out"});
+  const std::vector<std::string> words = {"unfold",           folder / "white.surf.gii",
+                                          "--atlas",          folder / "lh.regions.label.gii",
+                                          "--direction",      "0,1,0",
+                                          "--max-iterations", "1"};
+  auto result =
+      explica(words + std::vector<std::string>{"--region", "front", "--out", folder / "out"});
   EXPECT_TRUE(result.exitCode == 0 || result.exitCode == 3) << result;
   const auto region = io::readVertexLabels(folder / "out/region.label.gii").keys;
   const Positions places = geometry::makeIcosphere(3, 10.0).positions;
@@ -141,8 +141,7 @@ TEST(Template, OfOnePersonTwiceIsThePerson) {
   EXPECT_EQ(summary["people"], 2);
   EXPECT_LT(summary["mean_deformation"], 0.1);
   const TriangleMesh white = io::readSurface(folder / "out/hemi-L_white.surf.gii").mesh;
-  EXPECT_NEAR(geometry::totalArea(white),
-              geometry::totalArea(geometry::makeFoldedSphere(3, 30.0)),
+  EXPECT_NEAR(geometry::totalArea(white), geometry::totalArea(geometry::makeFoldedSphere(3, 30.0)),
               300);  // faces over the chords of bends
   // And it is a template.
   const auto found = explica({"register", folder / "lh.sphere", "--template", folder / "out",
@@ -190,27 +189,26 @@ TEST_P(BetweenPeopleRefuses, InOneSentence) {
 
 INSTANTIATE_TEST_SUITE_P(
     Inputs, BetweenPeopleRefuses,
-    ::testing::Values(
-        Refusal{"OpenSurface", {"sphere", "{folder}/cap.surf.gii"}, "boundary"},
-        Refusal{"Torus", {"sphere", "{folder}/torus.surf.gii"}, "1 handles (genus)"},
-        Refusal{"TwoPieces", {"sphere", "{folder}/pieces.surf.gii"}, "2 pieces"},
-        Refusal{"NoTemplate",
-                {"register", "{folder}/lh.sphere", "--template", "{folder}/empty"},
-                "no lh.sphere.reg in it"},
-        Refusal{"TemplateWithoutSulc",
-                {"register", "{folder}/lh.sphere", "--template", "{folder}/bare"},
-                "no lh.sulc in it"},
-        Refusal{"OtherHemisphere",
-                {"register", "{folder}/lh.sphere", "--to", "{folder}/rh.sphere"},
-                "hemisphere"},
-        Refusal{"SulcOfAnotherMesh",
-                {"register", "{folder}/lh.sphere", "--sulc", "{folder}/lh.short", "--to",
-                 "{folder}/lh.sphere"},
-                "42"},
-        Refusal{"NoSphere",
-                {"register", "{folder}/cap.surf.gii", "--surfaces", "{folder}", "--to",
-                 "{folder}/lh.sphere"},
-                "cap.surf.gii"}),
+    ::testing::Values(Refusal{"OpenSurface", {"sphere", "{folder}/cap.surf.gii"}, "boundary"},
+                      Refusal{"Torus", {"sphere", "{folder}/torus.surf.gii"}, "1 handles (genus)"},
+                      Refusal{"TwoPieces", {"sphere", "{folder}/pieces.surf.gii"}, "2 pieces"},
+                      Refusal{"NoTemplate",
+                              {"register", "{folder}/lh.sphere", "--template", "{folder}/empty"},
+                              "no lh.sphere.reg in it"},
+                      Refusal{"TemplateWithoutSulc",
+                              {"register", "{folder}/lh.sphere", "--template", "{folder}/bare"},
+                              "no lh.sulc in it"},
+                      Refusal{"OtherHemisphere",
+                              {"register", "{folder}/lh.sphere", "--to", "{folder}/rh.sphere"},
+                              "hemisphere"},
+                      Refusal{"SulcOfAnotherMesh",
+                              {"register", "{folder}/lh.sphere", "--sulc", "{folder}/lh.short",
+                               "--to", "{folder}/lh.sphere"},
+                              "42"},
+                      Refusal{"NoSphere",
+                              {"register", "{folder}/cap.surf.gii", "--surfaces", "{folder}",
+                               "--to", "{folder}/lh.sphere"},
+                              "cap.surf.gii"}),
     [](const auto& row) { return row.param.name; });
 
 }  // namespace

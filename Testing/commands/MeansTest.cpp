@@ -51,8 +51,7 @@ TEST(Means, OfTheMiddleSurfaceLeadAndThatOfVoxelsIsNamed) {
     ASSERT_NE(text.find(second), std::string::npos) << second;
     EXPECT_LT(text.find(first), text.find(second)) << first;
   };
-  before(readText(run / "thickness/summary.json"), "thickness_mean",
-         "thickness_mean_voxels");
+  before(readText(run / "thickness/summary.json"), "thickness_mean", "thickness_mean_voxels");
   // Where there are surfaces their mean leads, else that of the volume; both say why voxels' is
   // greater.
   ASSERT_EQ(explica({"report", (run / "thickness").string()}).exitCode, 0);

@@ -70,7 +70,14 @@ std::vector<std::string> wordsFor(const TemporaryFolder& folder, const Json& com
     if (isLeft || !isRight) append(words, p, givenFor(folder, p));
     if (isRight) append(words, p, fileOf(folder, p, "rh"));
   }
-  for (const Json* p : {&left, &right}) appendNeeds(words, command, *p, given);
+  for (const Json* p : {&left, &right}) {
+    for (const Json& name : (*p)["needs"]) {
+      const Json& needed = parameterOf(command, name);
+      if (needed.is_null() || needed["file"].is_null() || !given.insert(name).second) continue;
+      append(words, needed, fileOf(folder, needed, "lh"));
+    }
+    appendNeeds(words, command, *p, given);
+  }
   if (command["writes_folder"].get<bool>()) {
     words.push_back("--out");
     words.push_back(folder / "out");

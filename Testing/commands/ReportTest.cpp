@@ -243,7 +243,7 @@ TEST(Report, OfAFlatMapShowsItFoldedAndLayerByLayer) {
   EXPECT_NE(words.find("t1, layer by layer"), std::string::npos);
   EXPECT_EQ(countOf(words, "class='view'"), 2u + 4u);
   EXPECT_NE(words.find(">upper<"), std::string::npos);
-  EXPECT_EQ(words.find("left out"), std::string::npos);
+  EXPECT_EQ(words.find("left out:"), std::string::npos);
 }
 
 TEST(Report, ShowsGivenMapsOnTheUnfolding) {

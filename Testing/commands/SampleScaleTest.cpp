@@ -171,8 +171,7 @@ TEST(BesideLayNii, ProfilesOfASlab) {
   // At the open ends of the slab 2 % of the voxels reach one border only, and that is said.
   const CommandResult made =
       explica({"thickness", data / "sc_rim.nii.gz", "--inner", "2", "--tissue", "3", "--outer", "1",
-               "--insulated", "0", "--sulci", "ignore", "--out",
-               folder / "thickness"},
+               "--insulated", "0", "--sulci", "ignore", "--out", folder / "thickness"},
               patience());
   ASSERT_TRUE(made.exitCode == 0 || made.exitCode == 3) << made;
   const Volume<float> thickness = io::readScalars(folder / "thickness/thickness.nii.gz").volume;

@@ -359,7 +359,7 @@ TEST_F(Sample, SaysWhatCannotBeMeant) {
         "--to-volume");
   fs::create_directory(folder_ / "empty");
   fault({"sample", x, "--surfaces", folder_ / "empty", "--hemisphere", "L", "--out", out}, 2,
-        "_hemi-L_white.surf.gii");
+        "*hemi-L_*white.surf.gii");
   fault({"sample", x, "--thickness", folder_ / "empty", "--out", out}, 2, "thickness.nii.gz");
 }
 
@@ -439,8 +439,7 @@ TEST(SampleLayers, AgreeWithLayNiisOnRealActivation) {
   io::writeVolume(folder / "rim.nii.gz", rim);
   const CommandResult made =
       explica({"thickness", folder / "rim.nii.gz", "--inner", "1", "--tissue", "2", "--outer", "3",
-               "--insulated", "0", "--sulci", "ignore", "--out",
-               folder / "thickness"});
+               "--insulated", "0", "--sulci", "ignore", "--out", folder / "thickness"});
   ASSERT_EQ(made.exitCode, 0) << made;
   const Volume<float> thickness = io::readScalars(folder / "thickness/thickness.nii.gz").volume;
   for (const std::string name : {"lo_VASO_act", "lo_BOLD_act"}) {

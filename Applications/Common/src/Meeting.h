@@ -53,8 +53,8 @@ class Meeting {
 
   [[nodiscard]] static std::string sidesOf(const File& one, const File& other);
   [[nodiscard]] static std::string meshesOf(const File& one, const File& other);
-  /// True if an option's files, each of which stands for itself, are of both sides: they do not tell
-  /// of which the others should be.
+  /// True if an option's files, each of which stands for itself, are of both sides: they do not
+  /// tell of which the others should be.
   [[nodiscard]] bool hasBothSides(const std::string& role) const;
   void contradict(const char* name, const std::string& sentence,
                   std::vector<std::string>& sentences) const;

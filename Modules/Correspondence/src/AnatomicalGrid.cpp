@@ -153,7 +153,8 @@ double lowestCorner(const AnatomicalGrid& grid, Eigen::Index cell) {
   return lowest;
 }
 
-/// Six times the volume between the origin and a bilinear face: the mean of both its triangulations.
+/// Six times the volume between the origin and a bilinear face: the mean of both its
+/// triangulations.
 double beneath(const Vector& a, const Vector& b, const Vector& c, const Vector& d) {
   const auto det = [](const Vector& p, const Vector& q, const Vector& r) {
     return p.dot(q.cross(r));

@@ -68,8 +68,8 @@ void noteGaps(Measurement& m, const Monitor& monitor) {
       first < 0 ? "" : firstAt(annulus.voxel(first)));
   add(leaving, " whose trajectory leaves the image", "");
   if (reasons.empty()) return;
-  monitor.warn(std::to_string(m.lost + leaving + dropped) +
-               " voxels of tissue have no thickness" + reasons);
+  monitor.warn(std::to_string(m.lost + leaving + dropped) + " voxels of tissue have no thickness" +
+               reasons);
 }
 
 }  // namespace
@@ -101,8 +101,8 @@ Measurement measure(harmonic::Annulus annulus, const MeasurementOptions& options
     const bool flat = m.annulus.planar || m.annulus.grid.dimension() == 2;
     m.nearEdge = nearImageEdge(m.annulus, {true, true, !flat}, m.correspondence);
   }
-  m.cutVoxels = static_cast<std::size_t>(
-      std::count(m.nearEdge.begin(), m.nearEdge.end(), std::uint8_t{1}));
+  m.cutVoxels =
+      static_cast<std::size_t>(std::count(m.nearEdge.begin(), m.nearEdge.end(), std::uint8_t{1}));
   noteGaps(m, monitor);
   begin("layers");
   m.depth = depthOf(m.correspondence);
@@ -160,8 +160,8 @@ void describe(Results& t, const Measurement& m) {
       .compared();
   t.number("thickness_mean_columns", "Mean thickness over columns", "mm", "The same number.",
            thickness.mean);
-  t.number("thickness_mean_voxels", "Mean thickness over voxels", "mm",
-           "Thick columns count more.", thickness.meanOfVoxels);
+  t.number("thickness_mean_voxels", "Mean thickness over voxels", "mm", "Thick columns count more.",
+           thickness.meanOfVoxels);
   t.number("thickness_median", "Median thickness", "mm", "Over voxels.", thickness.median);
   t.number("thickness_p05", "Thickness, 5th percentile", "mm", "Over voxels.", thickness.p05)
       .inHead();

@@ -228,10 +228,11 @@ TEST(RealTissue, ABlockIsMeasuredUpToItsEdge) {
     return static_cast<double>(voxels) / static_cast<double>(m.annulus.count());
   };
   const double r = correlation(depth, layers);
-  std::printf("block: depth of %.2f %% of the voxels, r %.4f with LayNii's layers, near the edge "
-              "%.2f %%, lost %.3f %%, ends %d, holes %d\n",
-              100 * share(depth.size()), r, 100 * share(m.cutVoxels), 100 * share(m.lost),
-              m.annulus.ends, m.annulus.holes);
+  std::printf(
+      "block: depth of %.2f %% of the voxels, r %.4f with LayNii's layers, near the edge "
+      "%.2f %%, lost %.3f %%, ends %d, holes %d\n",
+      100 * share(depth.size()), r, 100 * share(m.cutVoxels), 100 * share(m.lost), m.annulus.ends,
+      m.annulus.holes);
   EXPECT_GT(share(depth.size()), 0.97);
   EXPECT_LT(share(m.lost), 0.02);
   EXPECT_GT(share(m.cutVoxels), 0.9);

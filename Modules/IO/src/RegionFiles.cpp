@@ -123,8 +123,8 @@ std::vector<bool> markedByNames(const std::filesystem::path& file,
       for (const LabelEntry& entry : regions.table) {
         known += (known.empty() ? "" : ", ") + entry.name;
       }
-      throw InvalidInput("'" + file.string() + "': has no region '" + name +
-                         "'; its regions are " + known);
+      throw InvalidInput("'" + file.string() + "': has no region '" + name + "'; its regions are " +
+                         known);
     }
     for (Eigen::Index v = 0; v < vertexCount; ++v) {
       if (regions.keys[v] == named->key) marked[static_cast<std::size_t>(v)] = true;

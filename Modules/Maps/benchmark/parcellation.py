@@ -144,7 +144,7 @@ def people(folder, persons, from_labels):
                     atlases += ["--atlas", folder / f"person-{other}/register-{side}/manual.label.gii"]
             out = folder / f"regions-{person}-{side}"
             explica("parcellate", run / f"register-{side}", *atlases, "--hemisphere", side, "--volume",
-                    "--surfaces", run / f"surface-{side}", "--like",
+                    "--ribbon", run / f"surface-{side}", "--like",
                     DATA / "oasis_trt" / person / "labels.DKT31.manual.nii.gz", out=out)
             legend = np.genfromtxt(out / "aparc.tsv", names=True, dtype=None, encoding="utf-8")
             volume = np.asarray(nib.load(out / "aparc.nii.gz").dataobj).astype(int)

@@ -60,8 +60,8 @@ struct Prism {
   [[nodiscard]] std::array<int, 2> counts(double apart) const {
     double edge = 0, across = 0;
     for (int k = 0; k < 3; ++k) {
-      edge = std::max({edge, (white[k] - white[(k + 1) % 3]).norm(),
-                       (pial[k] - pial[(k + 1) % 3]).norm()});
+      edge = std::max(
+          {edge, (white[k] - white[(k + 1) % 3]).norm(), (pial[k] - pial[(k + 1) % 3]).norm()});
       across = std::max(across, (pial[k] - white[k]).norm());
     }
     const auto count = [&](double length) {

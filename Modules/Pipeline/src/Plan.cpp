@@ -392,7 +392,7 @@ class Planner {
       if (const auto image = files_.t1 ? files_.t1 : files_.labels) {
         json["volume"] = true;
         json["like"] = image->string();
-        json["surfaces"] = surface.string();
+        json["ribbon"] = surface.string();
       }
       add("parcellate", "parcellate", {"surface", "register"}, json);
       add("regions", "regions", {"surface", "parcellate"},

@@ -57,14 +57,16 @@ std::optional<FoundRecord> listedIn(const std::filesystem::path& candidate,
 }
 
 /// A derivative's sub-01/.../sub-01_hemi-L_white.surf.gii is a copy of what a step of
-/// runs/sub-01_hemi-L* has written.
+/// runs/sub-01_hemi-L* has written, its sub-01_desc-brain_mask.nii.gz of a step of any run of
+/// sub-01.
 std::optional<FoundRecord> recordInRuns(const std::filesystem::path& study, const std::string& name,
                                         const Digest& digest) {
   const auto hemi = name.find("_hemi-");
   std::error_code fault;
   const std::filesystem::path runs = study / "runs";
-  if (hemi == std::string::npos || !std::filesystem::is_directory(runs, fault)) return std::nullopt;
-  const std::string beginning = name.substr(0, name.find('_', hemi + 1));
+  if (!name.starts_with("sub-") || !std::filesystem::is_directory(runs, fault)) return std::nullopt;
+  const auto end = name.find('_', hemi == std::string::npos ? 0 : hemi + 1);
+  const std::string beginning = name.substr(0, end);
   std::vector<std::filesystem::path> candidates;
   for (const auto& run : std::filesystem::directory_iterator(runs, fault)) {
     if (run.path().filename().string().rfind(beginning, 0) != 0) continue;

@@ -16,7 +16,7 @@
 namespace explica::sphere {
 namespace {
 
-constexpr double kAtRest = 0.05;  // degrees: half of what is called the identity
+constexpr double kAtRest = 0.05;      // degrees: half of what is called the identity
 constexpr double kEnoughPeople = 10;  // whose deviation is known to a quarter of itself
 constexpr int kAlignments = 3;        // of shapes: the mean moves by less than 0.01 mm after two
 

@@ -302,7 +302,8 @@ void describeColumns(Json& sidecar, const std::string& step, const std::string& 
         {"Description", "mean of FreeSurfer's thickness: nearest distances, both ways"},
         {"Units", "mm"}};
     sidecar["doubtful_share"] = {
-        {"Description", "share of the area where the image leaves a border more than half a voxel"}};
+        {"Description",
+         "share of the area where the image leaves a border more than half a voxel"}};
   } else if (file == "topology.tsv") {
     sidecar["kind"] = {{"Description", "island, cavity, handle or tunnel"}};
     for (const char* axis : {"x_mm", "y_mm", "z_mm"}) {

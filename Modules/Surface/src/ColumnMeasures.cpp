@@ -39,8 +39,8 @@ Eigen::VectorXd thicknessAtVertices(const harmonic::Annulus& annulus,
   return thickness;
 }
 
-Columns columnsAround(const harmonic::Annulus& annulus,
-                      const correspondence::Correspondence& found, const TriangleMesh& middle) {
+Columns columnsAround(const harmonic::Annulus& annulus, const correspondence::Correspondence& found,
+                      const TriangleMesh& middle) {
   const geometry::FaceTree tree(middle);
   std::vector<std::int32_t> nearest(annulus.count());
   parallelForBlocks(nearest.size(), 512, [&](std::size_t begin, std::size_t end) {
@@ -67,8 +67,8 @@ Columns columnsAround(const harmonic::Annulus& annulus,
     columns.area[nearest[n]] += area;
     columns.thickness[nearest[n]] += area * found.thickness(n);
   }
-  columns.thickness = (columns.area.array() > 0)
-                          .select(columns.thickness.array() / columns.area.array(), 0.0);
+  columns.thickness =
+      (columns.area.array() > 0).select(columns.thickness.array() / columns.area.array(), 0.0);
   return columns;
 }
 

@@ -486,13 +486,12 @@ CorticalSurfaces build(const CorticalTissue& tissue, const Volume<float>* image,
     result.cutLinks = static_cast<std::int64_t>(voxels->ribbon.sulcalVoxels.size());
     result.seconds.interpolant = watch.lap();
     takePaths(result.white.mesh, RibbonPaths(voxels->ribbon), ribbon);
-    voxels->found = correspondence::findCorrespondences(voxels->ribbon.annulus,
-                                                        voxels->ribbon.interpolant);
+    voxels->found =
+        correspondence::findCorrespondences(voxels->ribbon.annulus, voxels->ribbon.interpolant);
     result.seconds.trajectories = watch.lap();
   }
   const Eigen::VectorXd lengths = lengthsOf(ribbon.paths);
-  result.shortened =
-      shortenAstray(result.white.mesh, voxelSize(tissue.white.grid), ribbon.paths);
+  result.shortened = shortenAstray(result.white.mesh, voxelSize(tissue.white.grid), ribbon.paths);
   watch.lap();
   growSurfaces(ribbon, result, partOf(monitor, 0.7, 0.96));
   takeThickness(ribbon, voxels ? &*voxels : nullptr, lengths, result);

@@ -154,16 +154,17 @@ TEST(RealCortex, HasOneThicknessInVoxelsAndAtVertices) {
   if (!std::filesystem::exists(data / "bert_freesurfer")) GTEST_SKIP() << "skipped: no real data";
   const auto bert = io::readLabels(data / "bert_freesurfer/mri/ribbon.mgz").volume;
   const auto person = [&](const char* number) {
-    return io::readLabels(data / "synthseg_people" / ("training_seg_" + std::string(number) +
-                                                      ".nii.gz")).volume;
+    return io::readLabels(data / "synthseg_people" /
+                          ("training_seg_" + std::string(number) + ".nii.gz"))
+        .volume;
   };
   SurfaceOptions few;
   few.faces = 40000;
   const auto expectSame = [&](const char* name, const Volume<Label>& labels, TissueOptions tissue) {
     const TissueMasks masks = masksFromLabels(labels, tissue);
-    const auto both = compare(name, masks,
-                              isBlock(masks) ? buildSheets(masks, few)
-                                             : buildSurfaces(tissueFromMasks(masks), few));
+    const auto both = compare(
+        name, masks,
+        isBlock(masks) ? buildSheets(masks, few) : buildSurfaces(tissueFromMasks(masks), few));
     EXPECT_GT(both.share, 0.99) << name;
     EXPECT_GE(both.r, 0.98) << name;
     EXPECT_LE(std::abs(both.mean), 0.01) << name;

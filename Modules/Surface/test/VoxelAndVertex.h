@@ -39,8 +39,8 @@ inline double thicknessAround(const Point& point, const harmonic::Annulus& annul
 
 /// A voxel map beside a vertex map.
 struct VoxelAndVertex {
-  double r = 0, mean = 0, absolute = 0;         ///< voxel minus vertex, mm
-  double share = 0;                             ///< of the vertices, that are compared
+  double r = 0, mean = 0, absolute = 0;               ///< voxel minus vertex, mm
+  double share = 0;                                   ///< of the vertices, that are compared
   double meanOfVoxels = kNaN, meanOfVertices = kNaN;  ///< over the middle surface, mm
 };
 

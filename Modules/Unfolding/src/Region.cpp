@@ -42,9 +42,8 @@ void requireNear(const TriangleMesh& mesh, const Point& wanted, std::int32_t ver
   const double distance = (wanted - nearest).norm(), most = farthestCentre(extentOf(mesh));
   if (distance <= most) return;
   throw InvalidInput("center: is " + text(distance) + " mm from the surface (limit " + text(most) +
-                     " mm); nearest vertex " +
-                     std::to_string(vertex) + " at " + text(nearest[0]) + "," + text(nearest[1]) +
-                     "," + text(nearest[2]));
+                     " mm); nearest vertex " + std::to_string(vertex) + " at " + text(nearest[0]) +
+                     "," + text(nearest[1]) + "," + text(nearest[2]));
 }
 
 geometry::IndexLists neighboursOf(const TriangleMesh& mesh) {

@@ -65,8 +65,7 @@ py::dict arraysOf(const correspondence::Measurement& m) {
       "outer_point"_a =
           arrayOf(volumeOf(harmonic::spreadPoints(m.annulus, m.correspondence.outerPoint))),
       "layers"_a = arrayOf(volumeOf(harmonic::spreadLabels(m.annulus, m.layers))),
-      "valid"_a =
-          arrayOf(volumeOf(harmonic::spreadLabels(m.annulus, correspondence::validOf(m)))),
+      "valid"_a = arrayOf(volumeOf(harmonic::spreadLabels(m.annulus, correspondence::validOf(m)))),
       "affine"_a = m.annulus.grid.affine(),
       "summary"_a =
           py::dict("voxels"_a = m.annulus.count(), "thickness_mean"_a = summary.mean,

@@ -19,8 +19,9 @@ struct Contour {
 };
 
 /// Inner, middle and outer contours of tissue whose slices stand alone: where the interpolant is
-/// one half, with edges of about a voxel, and from there along the trajectories.  Lines end where the tissue does; points whose trajectory does not reach both
-/// boundaries are left out.  Contours of less than three points are none.  Ordered by slice.
+/// one half, with edges of about a voxel, and from there along the trajectories.  Lines end where
+/// the tissue does; points whose trajectory does not reach both boundaries are left out.  Contours
+/// of less than three points are none.  Ordered by slice.
 /// @param annulus  planar
 /// @throws InvalidInput  the annulus is not planar
 [[nodiscard]] std::vector<Contour> contoursOf(const harmonic::Annulus& annulus,

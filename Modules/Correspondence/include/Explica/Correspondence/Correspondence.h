@@ -81,8 +81,8 @@ struct Correspondence {
 /// L0 + L1 per tissue voxel.
 [[nodiscard]] std::vector<double> thicknessOf(const Correspondence& correspondence);
 
-/// Thickness at a point, mm: trilinear in that of the voxels around; nothing if those with thickness
-/// have less than a quarter of the weight.
+/// Thickness at a point, mm: trilinear in that of the voxels around; nothing if those with
+/// thickness have less than a quarter of the weight.
 [[nodiscard]] std::optional<double> thicknessAt(const harmonic::Annulus& annulus,
                                                 const Correspondence& correspondence,
                                                 const Point& point);

@@ -57,8 +57,8 @@ struct Measurement : Ribbon {
   std::size_t cutVoxels = 0;           ///< marked there
   std::size_t lost = 0;                ///< without thickness for no such reason
   std::vector<double> depth;           ///< L0 / thickness
-  std::vector<int> layers;      ///< from 1 at the inner boundary; 0: unknown
-  bool sulciRecovered = false;  ///< or at least looked for
+  std::vector<int> layers;             ///< from 1 at the inner boundary; 0: unknown
+  bool sulciRecovered = false;         ///< or at least looked for
   std::optional<AnatomicalGrid> grid;
 };
 

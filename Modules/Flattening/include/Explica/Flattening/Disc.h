@@ -18,9 +18,9 @@ struct Disc {
   std::vector<std::int32_t> faceOrigin;    ///< face of the whole for each face
   Loop rim;                                ///< the longest boundary loop
   std::vector<Loop> holes;                 ///< the other loops
-  std::size_t trimmedFaces = 0;  ///< left out: joined to the rest by a single vertex
-  std::size_t otherPieces = 0;   ///< left out: all but the largest
-  double areaOfOthers = 0;       ///< share of the area that these have, below one half
+  std::size_t trimmedFaces = 0;            ///< left out: joined to the rest by a single vertex
+  std::size_t otherPieces = 0;             ///< left out: all but the largest
+  double areaOfOthers = 0;                 ///< share of the area that these have, below one half
 };
 
 /// The listed faces as a disc, holes allowed.

@@ -20,10 +20,10 @@ struct MultipoleTreeOptions {
 ///
 /// E = sum over quadrature points of w_q phi(x_q), phi(x) the integral of 1/|x - y|^2 dS(y). Moving
 /// faces are grouped by sixteen.  Far clusters of sources act on each face by the second moments of
-/// both sides, close faces by three by three points, near ones by product Gauss rules on subdivided faces, faces with
-/// common corners by the regular integrals that remain once the singularity is integrated exactly
-/// (PairIntegral.h).  The tree of the fixed faces is built once, that of the moving faces at every
-/// evaluation.
+/// both sides, close faces by three by three points, near ones by product Gauss rules on subdivided
+/// faces, faces with common corners by the regular integrals that remain once the singularity is
+/// integrated exactly (PairIntegral.h).  The tree of the fixed faces is built once, that of the
+/// moving faces at every evaluation.
 ///
 /// Vectorised in single precision, added up in double: the value carries noise of about 1e-7 of
 /// itself. The gradient is that of the quadrature, but not of the choice of clusters.  Relative L2

@@ -17,7 +17,8 @@ struct HeadContrast {
   double brightShare = 0;  ///< of what is deep: above 1.8 medians
 };
 
-/// Measured on cubes of 3 mm, without the linear trend of their logarithms, in a second or less; all 0 but `thickest` where nothing lies deep.
+/// Measured on cubes of 3 mm, without the linear trend of their logarithms, in a second or less;
+/// all 0 but `thickest` where nothing lies deep.
 [[nodiscard]] HeadContrast measureContrast(const Volume<float>& image);
 
 }  // namespace explica::segmentation

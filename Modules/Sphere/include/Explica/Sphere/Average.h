@@ -27,8 +27,8 @@ void describe(AverageOptions& options, Visitor&& visit) {
 struct SphereAverage {
   FoldingSphere folding;  ///< on the grid: means, and of ten people or more deviations between them
   std::vector<Positions> registered;  ///< of each person: the sphere's vertices on the template, mm
-  std::vector<double> deformation;    ///< mean over the grid of the mean deformation, degrees, after
-                                      ///< each iteration
+  std::vector<double> deformation;  ///< mean over the grid of the mean deformation, degrees, after
+                                    ///< each iteration
   double correlation = kNaN;        ///< of sulcal depth with the mean, mean over the people
   Termination termination = Termination::NotRun;
 };

@@ -75,12 +75,12 @@ struct CorticalSurfaces {
   WhiteSurface white;
   TriangleMesh mid;  ///< at half the way
   TriangleMesh pial;
-  Eigen::VectorXd thickness;  ///< of the ribbon's voxels at the middle surface, or where an image
-                              ///< has placed borders the length of the trajectories between them,
-                              ///< meanOverSurroundings(), mm; 0 where there is no ribbon
-  Eigen::VectorXd columnArea;        ///< of the tissue's middle surface nearest to each middle
-                                     ///< vertex, mm^2; of borders that an image has placed, and of
-                                     ///< surfaces that were given, that of the mesh
+  Eigen::VectorXd thickness;   ///< of the ribbon's voxels at the middle surface, or where an image
+                               ///< has placed borders the length of the trajectories between them,
+                               ///< meanOverSurroundings(), mm; 0 where there is no ribbon
+  Eigen::VectorXd columnArea;  ///< of the tissue's middle surface nearest to each middle
+                               ///< vertex, mm^2; of borders that an image has placed, and of
+                               ///< surfaces that were given, that of the mesh
   Eigen::VectorXd columnThickness;   ///< mean there, mm; in those cases `thickness`
   Eigen::VectorXd nearestThickness;  ///< as distanceThickness(), mm; 0 where there is no ribbon
   Eigen::VectorXd curvature;         ///< mean, of the white surface, mm^-1; positive in sulci

@@ -52,12 +52,11 @@ void describe(UnfolderOptions& options, Visitor&& visit) {
               "the surface around the region stays, follows with a collar, or is "
               "left out"},
         options.surround);
-  visit(
-      Field{"collar-width", "mm",
-            "how far an elastic collar reaches from the region along the surface (default 0.6 of "
-            "the radius of a disc of the region's area, or of its depth if that is more)",
-            kAboveZero, 1000},
-      options.collarWidth);
+  visit(Field{"collar-width", "mm",
+              "how far an elastic collar reaches from the region along the surface (default 0.6 of "
+              "the radius of a disc of the region's area, or of its depth if that is more)",
+              kAboveZero, 1000},
+        options.collarWidth);
   visit(Field{"yield-strain", "",
               "strain beyond which a length costs less than its square, so that few edges give way "
               "where the surface cannot be laid flat otherwise",

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Application/Command.h"
+#include "Explica/Surface/Summary.h"
+#include "Explica/Surface/TissueSheet.h"
+#include "Settings.h"
+
+#include <optional>
+
+namespace explica::app {
+
+/// What surfaces are made of.
+struct TissueInputs {
+  surface::CorticalTissue tissue;             ///< boundaries empty for a sheet
+  std::optional<surface::TissueMasks> block;  ///< of a sheet
+  Grid grid;
+};
+
+[[nodiscard]] TissueInputs readTissue(Context& context, const SurfaceSettings& s);
+
+/// The image that places the borders, where one is given.
+[[nodiscard]] std::optional<Volume<float>> readImage(Context& context, const SurfaceSettings& s);
+
+[[nodiscard]] surface::CorticalSurfaces makeSurfaces(Context& context, const SurfaceSettings& s,
+                                                     const TissueInputs& inputs,
+                                                     const std::optional<Volume<float>>& image);
+
+/// Tells what of the labels is cut, guessed or not known.
+/// @param sheet  which is meant to end at the image's edge, and says which vertices it concerns
+void doubtLabels(Context& context, const surface::TissueFacts& tissue, bool sheet);
+
+/// Of human labels: says so where the cerebrum's volume is not a human's.
+void checkVolume(Context& context, const surface::CorticalSurfaces& made,
+                 const surface::CorticalTissue& tissue, surface::SurfaceSummary& summary);
+
+}  // namespace explica::app
