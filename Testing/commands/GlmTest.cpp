@@ -67,7 +67,7 @@ TEST(Glm, StoppedInItsPermutationsHasTheModels) {
   const long checks = checksFor(words);
   const auto whole = cellsOf(readText(folder / "out/regions.tsv"), 1);
   int without = 0;
-  for (const long check : momentsOf(checks, 5)) {
+  for (const long check : momentsOf(checks, 10)) {
     std::filesystem::remove_all(folder / "out");
     const auto stopped = explica(words, stopAtCheck(check));
     ASSERT_TRUE(isInterrupted(stopped)) << stopped;

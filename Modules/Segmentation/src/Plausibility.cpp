@@ -28,12 +28,13 @@ constexpr Limit kLimits[] = {
      "of "
      "about 1 mm",
      "cortex is 2.5 mm thick; stacks of hearts have 6 to 10 mm"},
-    {"bright-fluid", "the skewness of brightness deep in the head", "", -1, 0.1,
+    {"bright-fluid", "the skewness of brightness deep in the head", "", -1, 0.2,
      "the fluid is no darker than the rest, so the image looks like a T2 or a proton density "
      "image; "
      "give the T1 of the same person",
      "measured: three brains and eleven simulated heads with fields to 40 % -0.65 to 0.01; proton "
-     "density images simulated from two label maps 0.13 to 0.34, T2s 0.62 to 0.68"},
+     "density images simulated from two label maps 0.13 to 0.34, of which some pass, T2s 0.62 to "
+     "0.68"},
     {"bright-vessels", "the brightest thousandth deep in the head over the median", "", 0, 2.3,
      "a few voxels are far brighter than the rest, so the image looks like an angiogram, or like "
      "one with contrast agent in vessels; give a T1 without",

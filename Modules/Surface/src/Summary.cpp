@@ -190,7 +190,6 @@ void describeImage(Results& t, const SurfaceSummary& s, const CorticalSurfaces& 
           "Where the image leaves the white or the outer border more than half a voxel of standard "
           "deviation; doubt.shape.gii shows where.",
           where(placed, doubtfulShare(made)))
-      .atMost(0.5, Judgement::Doubt, "most of the borders should be seen in the image")
       .inHead()
       .compared();
   t.count("vertices_without_white_edge", "Vertices without an edge of white matter",
