@@ -124,6 +124,20 @@ TEST(Plausibility, FluidLiesAtTheRimUnlessTheContrastIsInverted) {
   EXPECT_TRUE(std::isnan(rimContrast(tissues)));
 }
 
+TEST(Plausibility, ACortexThatEndsAtTheMaskIsTold) {
+  Volume<Label> tissues(Grid{}, Label{0});
+  tissues.grid.size = {12, 6, 6};
+  tissues.grid.spacing = {1, 1, 2};
+  tissues.data.assign(12 * 6 * 6, 0);
+  for (int i = 2; i < 6; ++i) tissues(i, 3, 3) = 2;  // a rod: ends of 2 mm^2, four sides a voxel
+  EXPECT_EQ(greyAtMaskEdge(tissues), 1);
+  for (int i = 2; i < 6; ++i) tissues(i, 2, 3) = tissues(i, 4, 3) = 1;
+  // Fluid: 2 x 4 faces of 2 mm^2.  Outside: 2 x 4 of 1 mm^2 and 2 ends of 2 mm^2.
+  EXPECT_DOUBLE_EQ(greyAtMaskEdge(tissues), 12.0 / 28);
+  EXPECT_TRUE(judge("mask-edge", 0.49) == std::nullopt);
+  EXPECT_FALSE(judge("mask-edge", 0.8)->accepted);
+}
+
 TEST(Plausibility, ABrainStrippedTightlyHasGreyMatterAtItsRim) {
   Volume<Label> tissues = ball();
   for (std::size_t v = 0; v < tissues.size(); ++v) {

@@ -70,4 +70,10 @@ struct Flag {
 /// inverted. NaN if there is no white matter or nothing else.
 [[nodiscard]] double rimContrast(const Volume<Label>& tissues);
 
+/// Share of the outer border of grey matter, by the area of voxel faces, that is the edge of the
+/// brain mask or of the image and not fluid: there the image does not show where the cortex ends.
+/// @param tissues  1 fluid, 2 grey, 3 white matter, 0 outside
+/// @return NaN if grey matter touches neither
+[[nodiscard]] double greyAtMaskEdge(const Volume<Label>& tissues);
+
 }  // namespace explica::segmentation

@@ -19,6 +19,7 @@ struct HemisphereCounts {
 struct TissueSummary {
   const TissueSegmentation* tissue = nullptr;  ///< not owned
   std::optional<double> rimContrast;           ///< rimContrast()
+  std::optional<double> greyAtMaskEdge;        ///< greyAtMaskEdge()
   std::optional<Disagreement> template_;       ///< with a template
   std::optional<Side> side;
   std::optional<HemisphereCounts> one, left, right;  ///< `one` where only one side was asked for
