@@ -73,7 +73,8 @@ TEST_F(Bids, IsADerivativeThatMovesAndThatReadersFindTheirWayIn) {
 
 TEST_F(Bids, TheValidatorFindsNoError) {
   const char* validator = std::getenv("EXPLICA_BIDS_VALIDATOR");
-  if (!validator || !*validator) GTEST_SKIP() << "skipped: EXPLICA_BIDS_VALIDATOR names no folder of the package";
+  if (!validator || !*validator)
+    GTEST_SKIP() << "skipped: EXPLICA_BIDS_VALIDATOR names no folder of the package";
   ASSERT_EQ(participants().exitCode, 3);
   ASSERT_EQ(explica({"bids", folder_ / "data", folder_ / "out", "group"}).exitCode, 0);
   const std::string script = EXPLICA_SOURCE_DIR "/Testing/commands/bids_validator.mjs";

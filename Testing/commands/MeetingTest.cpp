@@ -92,6 +92,15 @@ bool exclude(const Json& one, const Json& other) {
   return false;
 }
 
+/// True if what one needs excludes the other.
+bool excludeByNeeds(const Json& command, const Json& one, const Json& other) {
+  for (const Json& name : one["needs"]) {
+    const Json& needed = parameterOf(command, name);
+    if (!needed.is_null() && (exclude(needed, other) || exclude(other, needed))) return true;
+  }
+  return false;
+}
+
 TEST(LeftIsLeft, ForEveryPairOfOptionsOfEveryCommand) {
   std::size_t tried = 0;
   for (const Json& command : describedCommands()) {
@@ -99,6 +108,7 @@ TEST(LeftIsLeft, ForEveryPairOfOptionsOfEveryCommand) {
     for (const Json& left : command["parameters"]) {
       for (const Json& right : command["parameters"]) {
         if (!isOnVertices(left) || !isOnVertices(right) || exclude(left, right)) continue;
+        if (excludeByNeeds(command, left, right) || excludeByNeeds(command, right, left)) continue;
         const bool same = left["name"] == right["name"];
         if (same && (!left["list"].get<bool>() || left["one_by_one"].get<bool>())) continue;
         if (!left["side"].is_null() || !right["side"].is_null()) continue;

@@ -201,8 +201,6 @@ struct Beyond {
 
 std::vector<Beyond> beyondEachLimit() {
   const std::vector<std::string> segment = {"segment", "{input}", "--template", "none"};
-  const std::vector<std::string> brightFluid = {"segment", "{input}",  "--template",
-                                                "none",    "--accept", "bright-fluid"};
   const std::vector<std::string> surface = {"surface",     "{input}", "--preset",
                                             "three-class", "--faces", "2000"};
   return {
@@ -225,7 +223,7 @@ std::vector<Beyond> beyondEachLimit() {
        },
        segment},
       {"grey-share", false, [] { return ballT1(54, 56, 70, 3); }, segment},
-      {"white-share", false, [] { return ballT1(28, 42, 70, 3); }, brightFluid},
+      {"white-share", false, [] { return ballT1(31, 53, 60, 3); }, segment},
       {"thickness-mean", false, [] { return ballLabels(36, 54, 60, 3); }, surface},
       {"without-thickness",
        false,

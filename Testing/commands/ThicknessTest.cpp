@@ -346,7 +346,8 @@ TEST(ThicknessCommand, GreyMatterBeyondANeckIsCountedAndHarmsNothingElse) {
               [&](const Point& x, int) { return labelAt(x); });
   const auto made = explica(thickness(folder, "neck.nii.gz", {}));
   EXPECT_EQ(made.exitCode, 3) << made;
-  EXPECT_NE(made.err.find("whose trajectory does not reach both boundaries"), std::string::npos) << made;
+  EXPECT_NE(made.err.find("whose trajectory does not reach both boundaries"), std::string::npos)
+      << made;
   const auto found = io::readScalars(folder / "out/thickness.nii.gz").volume;
   const auto labels = io::readLabels(folder / "neck.nii.gz").volume;
   std::size_t without = 0;
