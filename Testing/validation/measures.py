@@ -131,9 +131,13 @@ def compare_with_freesurfer(made, side, motion=np.eye(4)):
     at = at_points(points, positions, faces[face], thickness)
     theirs = freesurfer_regions(side)
     rows = [row for row in made.table("regions.tsv") if row["name"] in theirs]
+    # FreeSurfer's means are over white vertices, ours in regions.tsv over the tissue's middle surface.
+    labels = nib.load(made / "regions.label.gii").agg_data()
+    areas = nib.load(made / "area.shape.gii").darrays[0].data * (thickness > 0)
+    means = [np.average(thickness, weights=areas * (labels == int(row["index"]))) for row in rows]
     return Comparison(apart, np.stack([at, reference])[:, at > 0],
-                      np.array([(float(row["thickness_mean_mm"]), theirs[row["name"]])
-                                for row in rows]).T, tuple(row["name"] for row in rows))
+                      np.array([(mean, theirs[row["name"]]) for mean, row in zip(means, rows)]).T,
+                      tuple(row["name"] for row in rows))
 
 
 def beside_freesurfer(explica, page, made, side, kind):
