@@ -94,7 +94,7 @@ explica inflate surfaces/white.surf.gii --out inflated)"},
       {"parcellate",
        "a folder with a sphere in register with a template, and the template's labels",
        "regions at the surface's vertices, and how sure they are",
-       {"atlas", "template", "hemisphere", "volume", "like", "surfaces"},
+       {"atlas", "template", "hemisphere", "volume", "like", "ribbon"},
        R"(explica phantom shell --size 32 --out shell
 explica surface shell/labels.nii.gz --white-label 1 --grey-label 2 --faces 2000 --atlas shell/labels.nii.gz \
   --out surfaces
