@@ -13,7 +13,10 @@
 namespace explica::sphere {
 namespace {
 
-constexpr int kSmoothings = 2;    // of a level before every second vertex of an edge is left out
+/// Of a level before every second vertex of an edge is left out.  With 2 a coarse level still holds
+/// folds as narrow as its edges, and sulci are drawn to the wrong neighbour; with 20 too little is
+/// left of the coarsest for a rotation to be found.
+constexpr int kSmoothings = 8;
 constexpr double kOutlier = 3;    // standard deviations: maps of surfaces have heavy tails
 constexpr double kLeastSd = 0.3;  // of the mean: what a template is surest of must not rule alone
 

@@ -17,11 +17,11 @@
 namespace explica::sphere {
 namespace {
 
-constexpr int kCoarsestLevel = 3;            // 642 vertices, 8 degrees apart
-constexpr int kIterations = 30;              // of a level
-constexpr double kTolerance = 1e-3;          // of the energy
-constexpr double kBarrier = 1e-2;            // b of MapWeights: felt near the bound only
-constexpr double kMarginALevel = 0.05;       // of the bound, kept on coarser levels for the finer
+constexpr int kCoarsestLevel = 3;       // 642 vertices, 8 degrees apart
+constexpr int kIterations = 30;         // of a level
+constexpr double kTolerance = 1e-4;     // of the energy, of which most is what no map goes below
+constexpr double kBarrier = 1e-2;       // b of MapWeights: felt near the bound only
+constexpr double kMarginALevel = 0.05;  // of the bound, kept on coarser levels for the finer
 constexpr std::size_t kVerticesATask = 512;  // some 0.1 ms a task
 
 /// Squared differences of the moving maps at the vertices' places and the target's at the vertices,
