@@ -39,10 +39,7 @@ class StudyGroup : public ::testing::Test {
     writeText(*folder_ / "data/participants.tsv",
               "participant_id\tage\nsub-1\t20\nsub-2\t31\nsub-3\t42\nsub-4\t50\nsub-5\t61\n");
     makeTemplate(study.labels("1"));
-    made_ = new CommandResult(explica(
-        {"bids", study.data(), study.out(), "participant", "--hemisphere", "L", "--steps",
-         "surface,sphere,register,parcellate", "--surface.faces", "1000", "--register.level", "3",
-         "--template", *folder_ / "made", "--resample.to", "fsaverage3"}));
+    made_ = new CommandResult(participants(study.out()));
     doubt("sub-5");
   }
   static void TearDownTestSuite() {
@@ -64,6 +61,15 @@ class StudyGroup : public ::testing::Test {
 
   static fs::path run(const std::string& person) {
     return fs::path(*folder_ / "out/runs") / (person + "_hemi-L");
+  }
+
+  static CommandResult participants(const std::string& out, std::vector<std::string> more = {}) {
+    return explica(std::vector<std::string>{"bids", *folder_ / "data", out, "participant",
+                                            "--hemisphere", "L", "--steps",
+                                            "surface,sphere,register,parcellate", "--surface.faces",
+                                            "1000", "--register.level", "3", "--template",
+                                            *folder_ / "made", "--resample.to", "fsaverage3"} +
+                   more);
   }
 
   static void doubt(const std::string& person) {
@@ -144,6 +150,43 @@ TEST_F(StudyGroup, WhoIsDoubtedIsTakenInByName) {
   const CommandResult unknown = group({"--include", "sub-77"});
   EXPECT_EQ(unknown.exitCode, 2);
   EXPECT_NE(unknown.err.find("there is no sub-77"), std::string::npos) << unknown;
+}
+
+TEST_F(StudyGroup, OfWhatIsKeptForItComesTheSame) {
+  const std::string all = *folder_ / "all", few = *folder_ / "few";
+  const std::vector<std::string> two = {"--participant-label", "1", "2", "3"};
+  ASSERT_EQ(participants(all, two).exitCode, 0);
+  const CommandResult kept = participants(few, two + std::vector<std::string>{"--keep", "group"});
+  ASSERT_EQ(kept.exitCode, 0) << kept;
+  for (const char* person : {"sub-1", "sub-2", "sub-3"}) {
+    const fs::path run = fs::path(few) / "runs" / (std::string(person) + "_hemi-L");
+    int files = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(run))
+      files += entry.is_regular_file();
+    EXPECT_LE(files, 8) << person;
+    EXPECT_TRUE(fs::exists(run / "maps_space-made_den-642.shape.gii")) << person;
+    EXPECT_FALSE(fs::exists(run / "surface")) << person;
+  }
+  // What is kept is enough for the tables, the group's maps and a model of them.
+  for (const std::string& out : {all, few}) {
+    const CommandResult made =
+        explica({"bids", *folder_ / "data", out, "group", "--model", "thickness ~ age"});
+    ASSERT_EQ(made.exitCode, 0) << made;
+  }
+  int compared = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(fs::path(all) / "group")) {
+    const std::string name = entry.path().filename().string();
+    if (!name.ends_with(".tsv") && !name.ends_with(".gii")) continue;
+    const fs::path other = fs::path(few) / fs::relative(entry.path(), all);
+    EXPECT_EQ(readText(entry.path()), readText(other)) << other;
+    ++compared;
+  }
+  EXPECT_GT(compared, 5);
+  // Done again, nothing is: what was kept is of the same inputs and options.
+  const fs::path map = fs::path(few) / "runs/sub-1_hemi-L/maps_space-made_den-642.shape.gii";
+  const auto before = fs::last_write_time(map);
+  ASSERT_EQ(participants(few, two + std::vector<std::string>{"--keep", "group"}).exitCode, 0);
+  EXPECT_EQ(fs::last_write_time(map), before);
 }
 
 TEST_F(StudyGroup, AModelIsFittedToWhoIsIn) {

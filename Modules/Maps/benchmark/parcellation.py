@@ -3,7 +3,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Regions by `explica parcellate` beside a person's own.
 
-    parcellation.py bert FOLDER [L|R]      fsaverage's aparc on bert, beside his own at the known points
+    parcellation.py bert FOLDER [L|R]      fsaverage's aparc on bert, beside his own: at the points of FreeSurfer's
+                                           surface that are known, which leave out most of some regions, and at
+                                           all vertices by aparc+aseg
     parcellation.py people FOLDER 1 2 ...  OASIS-TRT, leave one out: each from the T1 alone, the others'
                                            manual DKT31 labels, beside the manual labels
 
@@ -66,6 +68,14 @@ def bert(folder, side):
     found = np.array([names[k] for k in labels.agg_data()])[cKDTree(white).query(points)[1]]
     cortex = ~np.isin(given, ["unknown", "corpuscallosum", "???", ""])
     say(f"bert {side}, {cortex.sum()} known points", dice(found[cortex], given[cortex]))
+    well = {name: value for name, value in dice(found[cortex], given[cortex]).items()
+            if (given == name).sum() >= 1000}
+    say(f"bert {side}, regions of which 1000 points or more are known", well)
+    keys = labels_at_vertices(nib.load(data / "mri/aparc+aseg.mgz"), run / "surface", side) % 1000
+    own = {name: key for key, name in np.genfromtxt(run / "parcellate/aparc.tsv", names=True, dtype=None,
+                                                    encoding="utf-8")}
+    all_found = np.array([own.get(names[k], 0) % 1000 for k in labels.agg_data()])
+    say(f"bert {side}, {(keys > 0).sum()} vertices", dice(all_found[keys > 0], keys[keys > 0]))
 
 
 def labels_at_vertices(image, surface, side):
