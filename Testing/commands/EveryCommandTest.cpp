@@ -36,12 +36,10 @@ TEST_P(EveryCommand, GivesTheSameBytesWithAnyNumberOfThreads) {
 std::string endOf(const std::string& name) {
   static const std::map<std::string, std::string> ends = {
       {"Embed", "max-iterations"},
-      {"EmbedBand", "max-iterations"},
       {"Flatten", "converged"},
       {"FlattenCut", "converged"},
       {"Inflate", "max-iterations"},
       {"Polygon", "target-reached"},
-      {"PolygonGlobalFlow", "max-iterations"},
       {"PolygonPhantom", "target-reached"},
       {"Repair", "converged"},
       {"Segment", "max-iterations"},
