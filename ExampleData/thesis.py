@@ -19,6 +19,7 @@ import nibabel
 import numpy
 
 import thesis_figures
+import thesis_flows
 
 
 class Work:
@@ -282,6 +283,14 @@ def write_off(path, v, f):
         file.writelines("3 %d %d %d\n" % tuple(t) for t in f)
 
 
+def read_off(path):
+    """Vertices (V, 3) and faces (F, 3) of a file of write_off()."""
+    numbers = path.read_text().split()
+    v, f = int(numbers[1]), int(numbers[2])
+    return (numpy.array(numbers[4:4 + 3 * v], float).reshape(v, 3),
+            numpy.array(numbers[4 + 3 * v:], int).reshape(f, 4)[:, 1:])
+
+
 def data(path):
     return numpy.asarray(nibabel.load(path).dataobj, dtype=float)
 
@@ -292,11 +301,11 @@ def chapter_3_tissue(work, page, heart):
     page.section("3.1 Correspondences in annular tissue")
     labels = work.path("ellipse.nii.gz")
     ellipse_and_circle(labels)
-    work.run("ellipse", "thickness", labels, "--inner", 1, "--tissue", 2, "--figure")
+    work.run("ellipse", "thickness", labels, "--inner", 1, "--tissue", 2)
     page.figure(["3.1", "3.2"],
                 "A region between an ellipse and a circle: the interpolant u, its tangent field, and correspondence "
                 "trajectories from the inner (red) to the outer boundary (blue). ",
-                work.path("ellipse") / "field.svg", command=work.commands["ellipse"], wide=True)
+                *thesis_figures.annular_field(work.path("ellipse")), command=work.commands["ellipse"], wide=True)
     if heart:
         words = [heart, "--inner", 1, "--tissue", 2]
         whose = "the heart that was given"
@@ -304,10 +313,11 @@ def chapter_3_tissue(work, page, heart):
         work.run("ventricle", "phantom", "ventricle", "--size", 64, "--spacing", 1.8)
         words = [work.path("ventricle") / "labels.nii.gz", "--inner", 1, "--tissue", 2]
         whose = "the phantom of a left ventricle, as no heart was given"
-    measured = work.run("myocardium", "thickness", *words, "--per-slice", "--cells", 4, "--figure")
+    measured = work.run("myocardium", "thickness", *words, "--per-slice", "--cells", 4)
     page.figure(["3.3"], f"A short-axis slice of {whose}: boundaries, tangent field, boundary correspondences of "
                          "selected points, and the generated grid. ",
-                work.path("myocardium") / "field.svg", command=work.commands["myocardium"], wide=True)
+                *thesis_figures.annular_field(work.path("myocardium"), work.path("myocardium") / "grid.vtu"),
+                command=work.commands["myocardium"], wide=True)
     page.number("grid_cells_degenerate", "cells of the grid with a Jacobian that is not positive", "not reported",
                 measured["grid_cells_degenerate"], f"{measured['grid_cells_degenerate']} kept out of "
                 f"{measured['grid_cells'] + measured['grid_cells_degenerate']}", "3.3")
@@ -474,43 +484,46 @@ def edges_and_rays(work, page):
 
 def chapter_4(work, page):
     page.section("4.1 Global measures")
-    arc = work.run("arc", "polygon", "--phantom", "polygon19", "--global-flow", "hidden-arc", "--max-iterations", 600)
-    page.figure(["4.8"], "The measure (4.6), how much of a viewing circle is hidden, and its flow: curve shortening, "
-                         "which smooths and does not unfold. ",
-                work.path("arc") / "evolution.svg", command=work.commands["arc"], wide=True)
-    hiding = work.run("hiding", "polygon", "--phantom", "polygon19", "--global-flow", "self-occlusion")
-    page.figure(["4.9"], "The measure (4.7), how much the polygon hides itself, and its flow: it ends nearly convex, "
-                         "with the length of the folds lost. ",
-                work.path("hiding") / "evolution.svg", command=work.commands["hiding"], wide=True)
-    for key, run, number in (("arc", arc, "4.8"), ("occlusion", hiding, "4.9")):
-        kept = run["length_final"] / run["length_initial"]
-        page.number(f"length_kept_{key}", f"length of the region that the flow of figure {number} keeps",
+    p19 = work.run("p19", "polygon", "--phantom", "polygon19")
+    polygon, edges = polygon_of(work, "p19")
+    for measure, number, most, caption in (
+            ("arc", "4.8", 600, "The measure (4.6), how much of a viewing circle is hidden, and its flow: curve "
+             "shortening, which smooths and does not unfold. "),
+            ("occlusion", "4.9", 2000, "The measure (4.7), how much the polygon hides itself, and its flow: it ends "
+             "nearly convex, with the length of the folds lost. ")):
+        states = thesis_flows.polygon_flow(polygon, measure, most)
+        page.figure([number], caption, *thesis_figures.flow_states(states, edges), wide=True)
+        kept = thesis_figures.length_of(states[-1], edges) / thesis_figures.length_of(polygon, edges)
+        page.number(f"length_kept_{measure}", f"length of the region that the flow of figure {number} keeps",
                     "does not unfold", kept, f"{100 * kept:.0f} %", number)
 
     surface = work.path("lobes.off")
     write_surface(surface, lambda x, y, z: 30 * (1 + 0.35 * (1 - z * z) * numpy.sin(5 * numpy.arctan2(y, x))), level=3)
     pictures, kept = [work.picture("lobes.png", surface, "--direction", "0.3,-0.6,0.75", "--width", 260, "--height", 260)], {}
-    for name in ("hidden-area", "self-occlusion"):
-        flow = work.run(name, "inflate", surface, "--global-flow", name, "--max-iterations", 120)
-        kept[name] = flow["area_final"] / flow["area_initial"]
-        pictures.append(work.picture(f"{name}.png", work.path(name) / "inflated.surf.gii", "--direction", "0.3,-0.6,0.75",
+    vertices, faces = read_off(surface)
+    area = thesis_flows.Faces(vertices, faces).area.sum()
+    for name in ("area", "occlusion"):
+        ended = thesis_flows.surface_flow(vertices, faces, name, 120)
+        kept[name] = thesis_flows.Faces(ended, faces).area.sum() / area
+        write_off(work.path(f"{name}.off"), ended, faces)
+        pictures.append(work.picture(f"{name}.png", work.path(f"{name}.off"), "--direction", "0.3,-0.6,0.75",
                                      "--width", 260, "--height", 260))
-    ours = work.run("lobes", "inflate", surface, "--global-measures")
+    ours = work.run("lobes", "inflate", surface)
     pictures.append(work.picture("lobes-ours.png", work.path("lobes") / "inflated.surf.gii", "--direction", "0.3,-0.6,0.75",
                                  "--width", 260, "--height", 260))
     page.figure([], f"<b>Both measures of a closed surface.</b> A lobed surface; after the flow of (4.6), which keeps "
-                    f"{100 * kept['hidden-area']:.0f} % of its area; after that of (4.7), which keeps "
-                    f"{100 * kept['self-occlusion']:.0f} %; and inflated by our steps to global visibility "
+                    f"{100 * kept['area']:.0f} % of its area; after that of (4.7), which keeps "
+                    f"{100 * kept['occlusion']:.0f} %; and inflated by our steps to global visibility "
                     f"{ours['visibility_final']:.3f} with areas kept to {100 * ours['area_error_mean']:.1f} %. ", *pictures,
-                command=work.commands["self-occlusion"])
+                command=work.commands["lobes"])
+    inflated = nibabel.load(work.path("lobes") / "inflated.surf.gii").agg_data("pointset").astype(float)
+    hides = [thesis_flows.occlusion_of_surface(v, faces) for v in (vertices, inflated)]
     page.number("area_kept_4.7", "area that the flow of (4.7) keeps of a lobed closed surface", "does not unfold",
-                kept["self-occlusion"], f"{100 * kept['self-occlusion']:.0f} %", "4.9")
+                kept["occlusion"], f"{100 * kept['occlusion']:.0f} %", "4.9")
     page.number("occlusion_inflated", "what hides itself (4.7) after our inflation, share of the start", "not reported",
-                ours["self_occlusion_final"] / ours["self_occlusion_initial"],
-                f"{ours['self_occlusion_final'] / ours['self_occlusion_initial']:.2g}", "4.9")
+                hides[1] / hides[0], f"{hides[1] / hides[0]:.2g}", "4.9")
 
     page.section("4.2 Unfolding of polygons")
-    p19 = work.run("p19", "polygon", "--phantom", "polygon19")
     p34 = work.run("p34", "polygon", "--phantom", "polygon34")
     t19 = work.run("thesis19", "polygon", "--phantom", "polygon19", "--method", "thesis", "--no-collision")
     t34 = work.run("thesis34", "polygon", "--phantom", "polygon34", "--method", "thesis", "--no-collision")

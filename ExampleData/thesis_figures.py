@@ -6,7 +6,9 @@ the numbers that its own geometry gives."""
 import base64
 import html
 import math
+import re
 
+import nibabel
 import numpy
 
 INK, GREY, PALE, BLUE, RED, GREEN = "#1a1d21", "#7a7f85", "#c9cdd2", "#145ab4", "#c0392b", "#2e8b57"
@@ -365,3 +367,142 @@ def draw_tree(tree, title, face=None, near=()):
                              f'<text x="{x:.1f}" y="{y + 5:.1f}" text-anchor="middle" font-size="13">{n}</text>')
     drawing.text([0.4, -0.62], title, anchor="start", size=14)
     return drawing.svg(), starts
+
+
+def length_of(polygon, edges):
+    ends = numpy.roll(polygon, -1, axis=0)
+    return sum(float(numpy.linalg.norm(ends[k] - polygon[k])) for k in edges)
+
+
+def flow_states(states, edges, count=6):
+    """A region on its way, at lengths that are evenly apart."""
+    lengths = [length_of(p, edges) for p in states]
+    wanted = numpy.linspace(lengths[0], lengths[-1], count)
+    low = numpy.min([p.min(axis=0) for p in states], axis=0) - [4, 24]
+    high = numpy.max([p.max(axis=0) for p in states], axis=0) + 4
+    drawings = []
+    for n in sorted({int(numpy.argmin(abs(numpy.array(lengths) - w))) for w in wanted}):
+        drawing, p = Drawing(low, high, 240), states[n]
+        drawing.line(p, GREY, 1, closed=True, fill="#f4f5f6")
+        drawing.line([p[edges[0]], *(p[(k + 1) % len(p)] for k in edges)], BLUE, 2)
+        drawing.text(low, f"iteration {n}, length {lengths[n]:.0f}", 8, -8, "start")
+        drawings.append(drawing.svg())
+    return drawings
+
+
+# ---- annular tissue -----------------------------------------------------------------------------
+
+def grid_cells(path):
+    """Points (P, 3) and cells (C, 4 or 8) of a .vtu of `explica thickness --cells`."""
+    content = path.read_bytes()
+    head, _, raw = content.partition(b'<AppendedData encoding="raw">\n_')
+    kinds = {"Int32": "<i4", "Float64": "<f8"}
+
+    def array(name):
+        kind, offset = re.search(rf'type="(\w+)" Name="{name}".*?offset="(\d+)"', head.decode()).groups()
+        start = int(offset) + 8
+        size = int.from_bytes(raw[start - 8 : start], "little")
+        return numpy.frombuffer(raw[start : start + size], kinds[kind])
+
+    offsets = array("offsets")
+    return array("Points").reshape(-1, 3), array("connectivity").reshape(len(offsets), -1)
+
+
+class Slice:
+    """One slice of the volumes of `explica thickness`, in mm along its own axes."""
+
+    def __init__(self, folder, k):
+        images = {name: nibabel.load(folder / f"{name}.nii.gz") for name in
+                  ("harmonic", "thickness", "inner_distance", "outer_distance", "inner_point", "outer_point")}
+        self.affine = images["harmonic"].affine
+        self.inverse = numpy.linalg.inv(self.affine)
+        self.spacing = numpy.linalg.norm(self.affine[:3, :3], axis=0)
+        self.k = k
+        self.data = {name: numpy.asarray(image.dataobj, float).squeeze() for name, image in images.items()}
+        if images["harmonic"].shape[2:] != (1,):
+            self.data = {name: values[:, :, k] for name, values in self.data.items()}
+        self.tissue = self.data["thickness"] > 0
+        gradient = numpy.stack(numpy.gradient(self.data["harmonic"], *self.spacing[:2]), axis=-1)
+        with numpy.errstate(invalid="ignore", divide="ignore"):
+            self.tangent = gradient / numpy.linalg.norm(gradient, axis=-1, keepdims=True)
+
+    def place(self, world):
+        """RAS mm (..., 3) as mm in the slice (..., 2)."""
+        return (world @ self.inverse[:3, :3].T + self.inverse[:3, 3])[..., :2] * self.spacing[:2]
+
+    def along(self, at):
+        """The unit tangent at a place: that of the nearest voxels, by distance."""
+        low = numpy.floor(at / self.spacing[:2]).astype(int)
+        share = at / self.spacing[:2] - low
+        total = numpy.zeros(2)
+        for i in (0, 1):
+            for j in (0, 1):
+                t = self.tangent[tuple(numpy.clip(low + (i, j), 0, numpy.array(self.tissue.shape) - 1))]
+                if numpy.all(numpy.isfinite(t)):
+                    total += (share[0] if i else 1 - share[0]) * (share[1] if j else 1 - share[1]) * t
+        return total / max(numpy.linalg.norm(total), 1e-12)
+
+    def path(self, voxel):
+        """The trajectory through a voxel's centre, from one boundary's point to the other's."""
+        step = 0.25 * self.spacing[:2].min()
+        halves = []
+        for sign, name in ((-1, "inner"), (1, "outer")):
+            half = [voxel * self.spacing[:2]]
+            for _ in range(int(self.data[f"{name}_distance"][tuple(voxel)] / step)):
+                middle = half[-1] + 0.5 * sign * step * self.along(half[-1])
+                half.append(half[-1] + sign * step * self.along(middle))
+            halves.append([*half, self.place(self.data[f"{name}_point"][tuple(voxel)])])
+        return [*halves[0][::-1], *halves[1][1:]]
+
+
+def apart(voxels, spacing, least):
+    """Those of the voxels that are `least` mm from those before."""
+    chosen, places = [], numpy.empty((0, 2))
+    for v in voxels:
+        if numpy.all(((v * spacing - places) ** 2).sum(axis=1) >= least ** 2):
+            chosen.append(v)
+            places = numpy.vstack([places, v * spacing])
+    return chosen
+
+
+def annular_field(folder, cells=None):
+    """The slice with most tissue, as SVGs: u, its tangent field, selected trajectories, and the grid's
+    cells where a .vtu is given."""
+    thickness = numpy.asarray(nibabel.load(folder / "thickness.nii.gz").dataobj)
+    k = int(numpy.argmax((thickness.reshape(*thickness.shape[:2], -1) > 0).sum(axis=(0, 1))))
+    cut = Slice(folder, k)
+    h, u = cut.spacing[:2], cut.data["harmonic"]
+    voxels = numpy.argwhere(cut.tissue)
+    low, high = (voxels.min(axis=0) - 1.5) * h, (voxels.max(axis=0) + 1.5) * h
+    ends = {name: cut.place(cut.data[f"{name}_point"][cut.tissue & (cut.data[f"{name}_distance"] < 1.2 * h.max())])
+            for name in ("inner", "outer")}
+    drawings = [Drawing(low, high, 330) for _ in range(4 if cells else 3)]
+    for panel, drawing in enumerate(drawings):
+        for v in voxels:
+            band = (math.floor(min(u[tuple(v)], 0.999) * 10) + 0.5) / 10
+            colour = "#%02x%02x%02x" % tuple(round(a + band * (b - a)) for a, b in ((250, 88), (226, 120), (190, 196)))
+            corners = [(v + d) * h for d in ((-0.52, -0.52), (0.52, -0.52), (0.52, 0.52), (-0.52, 0.52))]
+            drawing.line(corners, "none", 0, closed=True, fill=colour if panel == 0 else "#eef0f2")
+        for name, colour in (("inner", "#b01414"), ("outer", "#143c9c")):
+            for p in ends[name]:
+                drawing.dot(p, colour, 1.1)
+    longest = (high - low).max()
+    for v in apart(voxels, h, longest / 34):
+        half = 0.4 * longest / 34 * numpy.nan_to_num(cut.tangent[tuple(v)])
+        if half.any():
+            drawings[1].line([v * h - half, v * h + half], "#333", 0.9)
+            drawings[1].dot(v * h + half, "#333", 1.4)
+    for v in apart([v for v in voxels if abs(u[tuple(v)] - 0.5) < 0.15], h, longest / 16):
+        path = cut.path(v)
+        drawings[2].line(path, "#0f6b3a", 1.4)
+        drawings[2].dot(path[0], "#b01414", 2.4)
+        drawings[2].dot(path[-1], "#143c9c", 2.4)
+    if cells:
+        points, corners = grid_cells(cells)
+        near = abs(points @ cut.inverse[2, :3] + cut.inverse[2, 3] - k) <= 0.5
+        flat = cut.place(points)
+        sides = {tuple(sorted((c[a], c[(a + 1) % 4]))) for c in corners[:, :4] for a in range(4)}
+        for a, b in sorted(sides):
+            if near[a] and near[b]:
+                drawings[3].line([flat[a], flat[b]], "#333", 0.5)
+    return [drawing.svg() for drawing in drawings]

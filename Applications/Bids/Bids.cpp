@@ -82,19 +82,7 @@ std::string shareOf(const Settings& s) {
 void declare(Declaration& d, Settings& s) {
   d.synopsis("a BIDS data set, participant by participant, to a derivative and a study table")
       .description(
-          "participant: takes each participant's segmentation, FreeSurfer subject or "
-          "T1 (as the scanner gives it) "
-          "through `explica run`, a hemisphere at a time, into OUT_DIR/runs, and copies the "
-          "results "
-          "to BIDS names with sidecars. Steps whose inputs and options have not changed, by "
-          "content, "
-          "are kept. A participant that fails, or whose numbers are implausible, does not stop the "
-          "others: exit code 3, or 2 if all failed. group: writes from all "
-          "runs, failed ones too, study.tsv and index.html, puts the people who are on a template "
-          "together there, below group/ (who failed or is doubted is left out and named), and "
-          "exports their records as BIDS-Prov. Several of these commands may work on one OUT_DIR "
-          "at a time, as in a job "
-          "array, on different participants.")
+          R"(participant: takes each participant's segmentation, FreeSurfer subject or T1 (as the scanner gives it) through `explica run`, a hemisphere at a time, into OUT_DIR/runs, and copies the results to BIDS names with sidecars. Steps whose inputs and options have not changed, by content, are kept. A participant that fails, or whose numbers are implausible, does not stop the others: exit code 3, or 2 if all failed. group: writes from all runs, failed ones too, study.tsv and index.html, puts the people who are on a template together there, below group/ (who failed or is doubted is left out and named), and exports their records as BIDS-Prov. Several of these commands may work on one OUT_DIR at a time, as in a job array, on different participants.)")
       .example("explica bids data derivatives/explica participant --participant-label 01 02",
                "Two participants")
       .example("explica bids data derivatives/explica group", "The table of all")
@@ -105,11 +93,10 @@ void declare(Declaration& d, Settings& s) {
       .option("Study", Field{"participant-label", "", "participants to do, with or without sub-"},
               s.participants)
       .severalWords("participant-label")
-      .inputOption("registrations", FileKind::Folder,
-                   "an earlier OUT_DIR, of the same T1s: each one's template is placed as it was "
-                   "there (runs/*/segment/to_template.h5), where it is; how it fits is checked as "
-                   "ever",
-                   s.registrations, "Study")
+      .inputOption(
+          "registrations", FileKind::Folder,
+          R"(an earlier OUT_DIR, of the same T1s: each one's template is placed as it was there (runs/*/segment/to_template.h5), where it is; how it fits is checked as ever)",
+          s.registrations, "Study")
       .option("Study", keepField(), s.keep)
       .option("Study", Field{"skip-bids-validator", "", "accepted; no validator is run"},
               s.skipValidator)

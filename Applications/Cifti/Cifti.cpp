@@ -23,17 +23,7 @@ struct Settings {
 void declare(Declaration& d, Settings& s) {
   d.synopsis("maps or labels of both hemispheres in one CIFTI file")
       .description(
-          "Joins the vertex data of the left and the right hemisphere, the medial wall left out, "
-          "into "
-          "a file for Workbench and what else reads CIFTI-2: .dscalar.nii of maps, .dtseries.nii "
-          "of a "
-          "series if --seconds says how far apart its frames are, .dlabel.nii of labels (GIFTI "
-          "labels "
-          "and FreeSurfer's annot). The cortex is where --left-cortex and --right-cortex are not "
-          "0: "
-          "FreeSurfer's cortex.label, valid.shape.gii of explica sample, or any map; without them "
-          "all "
-          "vertices are in.")
+          R"(Joins the vertex data of the left and the right hemisphere, the medial wall left out, into a file for Workbench and what else reads CIFTI-2: .dscalar.nii of maps, .dtseries.nii of a series if --seconds says how far apart its frames are, .dlabel.nii of labels (GIFTI labels and FreeSurfer's annot). The cortex is where --left-cortex and --right-cortex are not 0: FreeSurfer's cortex.label, valid.shape.gii of explica sample, or any map; without them all vertices are in.)")
       .example(
           "explica cifti --left L/bold.func.gii --right R/bold.func.gii --left-cortex "
           "lh.cortex.label --right-cortex rh.cortex.label --seconds 2 --name bold --out cifti",

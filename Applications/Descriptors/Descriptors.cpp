@@ -14,14 +14,13 @@ namespace {
 struct Settings {};
 
 void declare(Declaration& d, Settings&) {
-  d.synopsis("descriptions of every command for other tools: Boutiques, nipype, shells, man")
+  d.synopsis("descriptions of every command for other tools: Boutiques, shells, man")
       .description(
           "All files are generated from the commands' own declarations, the same that parse the "
           "command line, so they cannot disagree with it.")
       .example("explica descriptors --out descriptors",
                "Everything that lets other tools call Explica")
       .output("boutiques/explica-*.json", FileKind::JsonFile, "Boutiques descriptors, schema 0.5")
-      .output("nipype/explica_nipype.py", FileKind::Any, "nipype interfaces, one a command")
       .output("completion/explica.bash", FileKind::Any, "completion for bash")
       .output("completion/_explica", FileKind::Any, "completion for zsh")
       .output("man/explica*.1", FileKind::Any, "manual pages");
@@ -38,7 +37,6 @@ Termination run(Context& context, const Settings&) {
     writeTextFile(context.output("man/" + name + ".1"), manPageOf(command, version));
   }
   writeTextFile(context.output("man/explica.1"), overviewManPageOf(commands, version));
-  writeTextFile(context.output("nipype/explica_nipype.py"), nipypeOf(commands, version));
   writeTextFile(context.output("completion/explica.bash"), bashCompletionOf(commands));
   writeTextFile(context.output("completion/_explica"), zshCompletionOf(commands));
   context.result("commands", commands.size());

@@ -11,7 +11,6 @@
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Provenance/Document.h"
-#include "Explica/Shapes/AnnulusBoundaries.h"
 #include "Explica/Shapes/ShapeFit.h"
 #include "Explica/Shapes/ShapeLevel.h"
 #include "Explica/Shapes/Summary.h"
@@ -29,10 +28,6 @@ struct Settings {
   bool average = false;
   std::vector<double> weights;
   PolygonReading reading;
-  std::vector<std::string> annulusFiles;
-  std::vector<int> innerLabels;
-  std::vector<int> tissueLabels;
-  std::optional<double> band;
   shapes::AnnulusOptions annulus;
   int grid = 96;
   int frames = 6;
@@ -42,22 +37,14 @@ struct Settings {
 void declare(Declaration& d, Settings& s) {
   d.synopsis("closed shapes as harmonic functions: fitted, averaged, combined")
       .description(
-          "A closed curve or surface in an annulus is the 1/2 level of a harmonic function, and "
-          "its coefficients can be averaged and combined: every convex combination is again one "
-          "closed shape. Targets are polygons (CSV), label images (with --label-key), surfaces, or "
-          "coefficients.json of an earlier run; all share one annulus. It lies between circles or "
-          "spheres around the targets, or, in the plane, between two given curves (--annulus) or "
-          "within a distance of the targets (--band). Details finer than the distance to its "
-          "boundaries cannot be met: a narrower annulus follows the targets more closely.")
+          R"(A closed curve or surface in an annulus is the 1/2 level of a harmonic function, and its coefficients can be averaged and combined: every convex combination is again one closed shape. Targets are polygons (CSV), label images (with --label-key), surfaces, or coefficients.json of an earlier run; all share one annulus between circles or spheres around the targets. Details finer than the distance to its boundaries cannot be met: a narrower annulus follows the targets more closely.)")
       .reference("Duci, Yezzi, Soatto, Rocha 2006, J. Mathematical Imaging and Vision 25:341-352")
       .example("explica embed contour.csv --fit --out fit", "Coefficients of a contour")
       .example("explica embed a.csv b.csv --average --out mean", "Mean shape of two contours")
       .example("explica embed a.surf.gii b.surf.gii --combine 0.3,0.7 --out mix",
                "Between two surfaces")
-      .example("explica embed ED_label.nii.gz --label-key 2 --band 3 --out band",
-               "The outer contour of the heart muscle, in a band of 3 mm about it")
-      .example("explica embed mid.csv --annulus ED_label.nii.gz --inner 1 --tissue 2 --out muscle",
-               "A curve between the contours of the muscle's inside and outside")
+      .example("explica embed ED_label.nii.gz --label-key 2 --out muscle",
+               "The outer contour of the heart muscle")
       .input("TARGET", FileKind::Any, "polygons, label images, surfaces or coefficients.json",
              s.targets)
       .option("Shape", Field{"fit", "", "fit a single target (default for one target)"}, s.fit)
@@ -65,14 +52,6 @@ void declare(Declaration& d, Settings& s) {
       .option("Shape", Field{"combine", "", "weights of the targets, one each"}, s.weights);
   declarePolygonReading(d, s.reading);
   d.options("Annulus", s.annulus)
-      .option("Annulus",
-              Field{"band", "mm", "in 2D: all within this distance of the targets instead"}, s.band)
-      .inputOption("annulus", FileKind::Any,
-                   "in 2D: its boundaries; two polygons, or one label image with --inner and "
-                   "--tissue",
-                   s.annulusFiles, "Annulus")
-      .option("Annulus", Field{"inner", "", "labels that a given annulus encloses"}, s.innerLabels)
-      .option("Annulus", Field{"tissue", "", "labels of a given annulus itself"}, s.tissueLabels)
       .options("Fit", s.fitting)
       .option("Output", Field{"cells", "", "voxels per side, for drawing the shape", 16, 1024},
               s.grid)
@@ -94,8 +73,6 @@ struct Target {
   std::optional<planar::Curve> curve;
   std::optional<TriangleMesh> mesh;
 
-  std::optional<int> slice;  ///< of the image that the curve is a contour of
-
   [[nodiscard]] int dimension() const { return shape ? shape->annulus.dimension : (curve ? 2 : 3); }
 };
 
@@ -104,73 +81,27 @@ Target readTarget(Context& context, const std::string& path, const PolygonReadin
   if (path.ends_with(".json")) {
     target.shape = readCoefficients(path);
   } else if (isPolygonTable(path)) {
-    target.curve = readCurve(context, "TARGET", path, {}).curve;
+    target.curve = readCurve(context, "TARGET", path, {});
   } else if (reading.label) {
-    const ReadCurve read = readCurve(context, "TARGET", path, reading);
-    target.curve = read.curve;
-    target.slice = read.slice;
+    target.curve = readCurve(context, "TARGET", path, reading);
   } else {
     target.mesh = io::readSurface(path).mesh;
   }
   return target;
 }
 
-/// Boundaries from --annulus.
-shapes::AnnulusBoundaries givenBoundaries(Context& context, const Settings& s,
-                                          std::optional<int> targetSlice) {
-  const std::vector<std::string>& files = s.annulusFiles;
-  if (files.size() == 2) {
-    planar::Curve a = readCurve(context, "annulus", files[0], {}).curve;
-    planar::Curve b = readCurve(context, "annulus", files[1], {}).curve;
-    const double areaA = std::abs(planar::signedArea(a.positions));
-    if (areaA > std::abs(planar::signedArea(b.positions))) std::swap(a, b);
-    return {std::move(a), std::move(b)};
-  }
-  if (files.size() != 1 || isPolygonTable(files[0])) {
-    throw UsageError("--annulus takes two polygons (give it twice) or one label image");
-  }
-  if (s.innerLabels.empty() || s.tissueLabels.empty()) {
-    throw UsageError("--annulus with a label image needs --inner and --tissue");
-  }
-  const Volume<Label> labels = readLabels(context, "annulus", files[0], s.reading.volume);
-  const std::vector<Label> inner(s.innerLabels.begin(), s.innerLabels.end());
-  const std::vector<Label> tissue(s.tissueLabels.begin(), s.tissueLabels.end());
-  int slice = s.reading.slice.value_or(targetSlice.value_or(-1));
-  if (slice < 0) slice = planar::largestSlice(labels, tissue);
-  if (slice < 0) throw InvalidInput(files[0] + ": none of the labels of --tissue is there");
-  return shapes::boundariesOfTissue(labels, inner, tissue, slice, s.reading.contours);
-}
-
-shapes::HarmonicAnnulus annulusFor(Context& context, const Settings& s,
-                                   const std::vector<Target>& targets,
+shapes::HarmonicAnnulus annulusFor(const Settings& s, const std::vector<Target>& targets,
                                    const std::vector<shapes::TargetSamples>& samples) {
   const int dimension = targets.front().dimension();
-  std::optional<int> slice;
-  std::vector<planar::Curve> curves;
   for (const Target& t : targets) {
     if (t.dimension() != dimension) {
       throw InvalidInput("targets in the plane and in space cannot be mixed");
     }
-    if (t.slice && !slice) slice = t.slice;
-    if (t.curve) curves.push_back(*t.curve);
-  }
-  const bool given = !s.annulusFiles.empty();
-  if (given && s.band) throw UsageError("give --annulus or --band, not both");
-  if ((given || s.band) && dimension == 3) {
-    throw UsageError("--annulus and --band are for targets in the plane");
   }
   for (const Target& t : targets) {
-    if (!t.shape) continue;
-    if (given || s.band) throw UsageError("coefficients.json fixes the annulus already");
-    return t.shape->annulus;  // for all
+    if (t.shape) return t.shape->annulus;  // for all
   }
-  if (!given && !s.band) return shapes::annulusAround(samples, dimension, s.annulus);
-  if (s.annulus.centre || s.annulus.innerRadius || s.annulus.outerRadius) {
-    throw UsageError("centre and radii belong to a circular annulus, not to --annulus or --band");
-  }
-  const shapes::AnnulusBoundaries boundaries =
-      given ? givenBoundaries(context, s, slice) : shapes::bandAround(curves, *s.band);
-  return shapes::givenAnnulus(boundaries.inner, boundaries.outer, s.annulus.order);
+  return shapes::annulusAround(samples, dimension, s.annulus);
 }
 
 void writeShape(Context& context, const std::string& stem, const shapes::HarmonicShape& shape,
@@ -279,7 +210,7 @@ Termination run(Context& context, const Settings& s) {
     if (t.curve) samples.push_back(shapes::samplesOf(*t.curve, s.fitting.samples));
     if (t.mesh) samples.push_back(shapes::samplesOf(*t.mesh, s.fitting.samples));
   }
-  const shapes::HarmonicAnnulus annulus = annulusFor(context, s, targets, samples);
+  const shapes::HarmonicAnnulus annulus = annulusFor(s, targets, samples);
   shapes::requireUsable(annulus);
 
   const Fits fits = fitAll(context, s, targets, samples, annulus);
@@ -301,7 +232,7 @@ Termination run(Context& context, const Settings& s) {
   summary.outerRadius = annulus.outerRadius;
   summary.order = annulus.order;
   summary.width = shapes::widthOf(annulus);
-  summary.voxel = 2 * shapes::boxOf(annulus).halfSide / (s.grid - 1);
+  summary.voxel = 2 * annulus.outerRadius / (s.grid - 1);
   summary.boundaryMargin = shapes::boundaryMargin(shape);
   summary.symmetricDifference = fits.symmetricDifference;
   summary.distanceMean = summary.distanceMax = std::nullopt;

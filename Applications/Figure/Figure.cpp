@@ -55,12 +55,7 @@ struct Settings {
 void declare(Declaration& d, Settings& s) {
   d.synopsis("a figure for print: surfaces of both hemispheres, flat maps, one colour bar")
       .description(
-          "Each map or annotation colours the surfaces of its hemisphere with as many vertices, in "
-          "any order; of several maps the first. A map named curv or sulc is drawn beneath as "
-          "light "
-          "gyri and dark sulci. On flat maps (one z) annotations are outlines with names. All "
-          "surfaces have one scale, all maps one colour bar. figure.svg has a layer for the "
-          "pictures, one for the titles and one for the colour bar, whose text can be edited.")
+          R"(Each map or annotation colours the surfaces of its hemisphere with as many vertices, in any order; of several maps the first. A map named curv or sulc is drawn beneath as light gyri and dark sulci. On flat maps (one z) annotations are outlines with names. All surfaces have one scale, all maps one colour bar. figure.svg has a layer for the pictures, one for the titles and one for the colour bar, whose text can be edited.)")
       .example(
           "explica figure lh.inflated rh.inflated lh.thickness rh.thickness lh.sulc rh.sulc --out "
           "figure",

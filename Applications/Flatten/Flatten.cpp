@@ -69,9 +69,7 @@ With --surfaces, or --white and --pial, the map becomes a stack of depths: grid.
       .reference("Tutte 1963, Proceedings of the London Mathematical Society 13:743-767")
       .reference("Shen, Jiang, Zorin, Panozzo 2019, ACM Transactions on Graphics 38(4):32")
       .example(
-          "explica flatten unfolded/unfolded.surf.gii --surfaces surfaces --volumes T1.nii.gz "
-          "--out "
-          "flat",
+          R"(explica flatten unfolded/unfolded.surf.gii --surfaces surfaces --volumes T1.nii.gz --out flat)",
           "The flat map of an unfolded patch, and a volume as a stack of depths")
       .example("explica flatten lh.pial --cuts lh.cortex.patch.3d --out flat",
                "A hemisphere with given cuts")

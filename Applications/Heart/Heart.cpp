@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
+#include "Frames.h"
+
 #include "Explica/Application/Command.h"
-#include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/IO/VolumeFile.h"
-#include "Explica/IO/VolumeSeries.h"
 #include "Explica/Ventricle/Pictures.h"
 #include "Explica/Ventricle/Reference.h"
 #include "Explica/Ventricle/Slices.h"
@@ -15,7 +15,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 
@@ -24,7 +23,6 @@ namespace {
 
 constexpr double kFarTiltDeg = 30;  // of the axis from the slices' normal: not short axis
 constexpr double kLowSeptum = 60, kHighSeptum = 200;  // degrees
-constexpr int kMostFrames = 1000;                     // of a beat; far beyond any scanner's
 
 struct Settings {
   std::vector<std::string> segmentations;
@@ -37,16 +35,7 @@ struct Settings {
 void declare(Declaration& d, Settings& s) {
   d.synopsis("the left ventricle's wall over time: thickness, 17 segments, volumes, pictures")
       .description(
-          "Reads short-axis label volumes, one file with all frames or a file a frame, and "
-          "measures "
-          "the wall of each. Where slices are much thicker than pixels, thickness is measured "
-          "slice "
-          "by slice and corrected for how obliquely each slice cuts the wall, by the neighbouring "
-          "slices; in isotropic volumes, in space. Places where the ring is open (outflow tract), "
-          "slices that the valve plane cuts and the apical cap are found, drawn and left out of "
-          "the "
-          "means, with a count. The right ventricle's label tells where the 17 segments begin. "
-          "Papillary muscles belong to whatever label they have.")
+          R"(Reads short-axis label volumes, one file with all frames or a file a frame, and measures the wall of each. Where slices are much thicker than pixels, thickness is measured slice by slice and corrected for how obliquely each slice cuts the wall, by the neighbouring slices; in isotropic volumes, in space. Places where the ring is open (outflow tract), slices that the valve plane cuts and the apical cap are found, drawn and left out of the means, with a count. The right ventricle's label tells where the 17 segments begin. Papillary muscles belong to whatever label they have.)")
       .reference("Cerqueira et al. 2002, Circulation 105(4):539-542 (17 segments)")
       .reference("Kawel et al. 2012, Circ Cardiovasc Imaging 5(4):500-508 (normal thickness)")
       .reference(
@@ -95,107 +84,6 @@ void declare(Declaration& d, Settings& s) {
       .output("thickness_frame-*.nii.gz", FileKind::Volume,
               "thickness per voxel and frame, mm; 0 off the wall and where it does not count")
       .results<ventricle::HeartSummary>();
-}
-
-/// One frame of a series of labels.
-Volume<Label> labelsOf(const std::vector<float>& values, const Grid& grid, const std::string& path,
-                       int frame) {
-  constexpr float kMostExact = 1 << 24;  // whole numbers beyond are not kept by single precision
-  Volume<Label> labels(grid);
-  for (std::size_t v = 0; v < values.size(); ++v) {
-    if (!(std::abs(values[v]) < kMostExact) || values[v] != std::round(values[v])) {
-      throw InvalidInput("'" + path + "': frame " + std::to_string(frame) +
-                         " holds values that are no labels, such as " + std::to_string(values[v]));
-    }
-    labels[v] = static_cast<Label>(values[v]);
-  }
-  return labels;
-}
-
-/// Frames of all files in order; each file is gone through once, whatever its number of frames.
-std::vector<Volume<Label>> readFrames(Context& context, const Settings& s) {
-  std::vector<Volume<Label>> frames;
-  for (std::size_t f = 0; f < s.segmentations.size(); ++f) {
-    const std::string& path = s.segmentations[f];
-    io::VolumeReadOptions options = s.reading;
-    options.allowAllZero = true;
-    options.frame = 0;
-    const io::LoadedVolume<Label> first = io::readLabels(path, options);
-    const auto& size = first.origin.storedSize;
-    const int count = size.size() > 3 ? size[3] : 1;
-    if (count > kMostFrames) {
-      throw InvalidInput("'" + path + "' holds " + std::to_string(count) + " frames; at most " +
-                         std::to_string(kMostFrames) + " are possible");
-    }
-    context.note("SEG " + std::to_string(f),
-                 nlohmann::ordered_json{{"format", first.origin.format},
-                                        {"stored_size", size},
-                                        {"placement", first.origin.placement},
-                                        {"notes", first.origin.notes}});
-    if (count == 1) {
-      frames.push_back(first.volume);
-      continue;
-    }
-    options.frame.reset();
-    io::VolumeSeries series(path, options);
-    for (int n = 0; n < count; ++n) {
-      frames.push_back(labelsOf(series.next(1), first.volume.grid, path, n));
-    }
-  }
-  return frames;
-}
-
-/// The numbers in "0,9"; nothing if the text is something else.
-std::optional<std::array<int, 2>> twoNumbers(const std::string& text) {
-  std::array<int, 2> numbers{};
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  for (std::size_t n = 0; n < 2; ++n) {
-    const auto [next, error] = std::from_chars(at, end, numbers[n]);
-    if (error != std::errc{} || (n == 0 ? next == end || *next != ',' : next != end)) return {};
-    at = next + 1;
-  }
-  return numbers;
-}
-
-/// Which frames are measured, and which of them are ED and ES.
-struct Chosen {
-  std::vector<int> numbers;
-  std::optional<ventricle::Phases> phases;
-};
-
-Chosen chooseFrames(const std::string& wanted, const std::vector<Volume<Label>>& hearts) {
-  const auto count = static_cast<int>(hearts.size());
-  Chosen chosen;
-  std::string lower = wanted;
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (lower == "all") {
-    for (int f = 0; f < count; ++f) chosen.numbers.push_back(f);
-    return chosen;
-  }
-  const ventricle::Phases found = ventricle::phasesOf(hearts);
-  std::array<int, 2> two = {static_cast<int>(found.diastole), static_cast<int>(found.systole)};
-  if (lower != "ed,es") {
-    const auto numbers = twoNumbers(lower);
-    if (!numbers) {
-      throw UsageError("--phases takes all, ED,ES or two numbers as 0,9; found '" + wanted + "'");
-    }
-    two = *numbers;
-    for (const int n : two) {
-      if (n < 0 || n >= count) {
-        throw UsageError("--phases " + wanted + ": there is no frame " + std::to_string(n) + "; " +
-                         std::to_string(count) + " were read, counted from 0");
-      }
-    }
-  }
-  chosen.numbers = {two[0]};
-  chosen.phases = ventricle::Phases{0, 0};
-  if (two[1] != two[0]) {
-    chosen.numbers.push_back(two[1]);
-    chosen.phases->systole = 1;
-  }
-  return chosen;
 }
 
 std::string degrees(double value) {
@@ -295,7 +183,7 @@ void writeOutputs(Context& context, const ventricle::Beat& beat) {
 }
 
 Termination run(Context& context, const Settings& s) {
-  std::vector<Volume<Label>> frames = readFrames(context, s);
+  std::vector<Volume<Label>> frames = readFrames(context, s.segmentations, s.reading);
   const ventricle::HeartRoles roles = ventricle::findRoles(frames, s.labels);
   for (Volume<Label>& frame : frames) frame = ventricle::relabelled(frame, roles);
   const Chosen chosen = chooseFrames(s.frames, frames);

@@ -3,7 +3,6 @@
 
 #include "Explica/Inflation/Inflate.h"
 
-#include "GlobalFlow.h"
 #include "Outputs.h"
 
 #include "Explica/Application/Command.h"
@@ -33,8 +32,6 @@ struct Settings {
   io::SurfaceReadOptions reading;
   bool repair = true;
   inflation::InflateOptions inflate;
-  bool globalMeasures = false;
-  std::optional<visibility::GlobalMeasure> flow;
   bool resume = false;
 };
 
@@ -55,16 +52,6 @@ What is written is tested once more: faces that cross in it and did not at the s
                     "result is compared with the surface so repaired"},
               s.repair)
       .options("Inflation", s.inflate)
-      .option("Inflation",
-              Field{"global-measures", "",
-                    "compute the thesis's global measures, too: area of a viewing sphere hidden "
-                    "(4.6), area that hides itself (4.7); time grows with the square of the faces"},
-              s.globalMeasures)
-      .option("Inflation",
-              Field{"global-flow", "",
-                    "instead of inflating: descend on one of the thesis's global measures, to see "
-                    "that it smooths and does not unfold; areas are free and faces may cross"},
-              s.flow)
       .option("Inflation", Field{"resume", "", "continue the run whose outputs are in --out"},
               s.resume)
       .reuseOutputIf(s.resume)
@@ -81,8 +68,7 @@ What is written is tested once more: faces that cross in it and did not at the s
       .output("frames/frame-*.surf.gii", FileKind::Surface, "--frames states on the way")
       .varyingOutput(kInflationState, FileKind::Any, "what --resume needs")
       .results<unfolding::StartSummary>()
-      .results<inflation::InflateSummary>()
-      .results<visibility::GlobalFlowSummary>();
+      .results<inflation::InflateSummary>();
 }
 
 TriangleMesh readUsable(Context& context, const Settings& s, io::SurfaceMetadata& metadata) {
@@ -136,16 +122,8 @@ Termination run(Context& context, const Settings& s) {
   const auto seconds = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   };
-  if (s.flow && s.resume) throw UsageError("--resume continues an inflation, not --global-flow");
   Inflated u;
-  u.globalMeasures = s.globalMeasures;
   u.before = readUsable(context, s, u.metadata);
-  if (s.flow) {
-    visibility::GlobalFlowOptions options;
-    options.measure = *s.flow;
-    options.maxIterations = s.inflate.maxIterations;
-    return runGlobalFlow(context, std::move(u.before), u.metadata, options, s.inflate.viewpoints);
-  }
   std::optional<unfolding::Checkpoint> checkpoint;
   if (s.resume) checkpoint = unfolding::readCheckpoint(context.outputFolder() / kInflationState);
   u.crossings = checkStart(context, s, u.before);

@@ -11,7 +11,6 @@
 #include "Explica/Inflation/Summary.h"
 #include "Explica/Unfolding/Account.h"
 #include "Explica/Unfolding/Distortion.h"
-#include "Explica/Visibility/GlobalMeasures.h"
 #include "Explica/Visibility/SphereView.h"
 
 #include <algorithm>
@@ -53,27 +52,6 @@ void writeVisibility(Context& context, const Inflated& u, const inflation::Infla
   summary.target = options.targetSeen;
   summary.visibility = {before.visibility, after.visibility};
   summary.seen = {before.seenShare, after.seenShare};
-}
-
-/// The thesis's own global measures (4.6) and (4.7), before and after; a sphere for both.
-inflation::GlobalMeasures globalMeasuresOf(const Inflated& u) {
-  constexpr double kAway = 10;  // of the farthest vertex: the radius of the viewing sphere
-  const auto outward = [](TriangleMesh mesh) {
-    if (geometry::enclosedVolume(mesh) < 0) mesh.faces.col(1).swap(mesh.faces.col(2));
-    return mesh;
-  };
-  const TriangleMesh before = outward(u.before), after = outward(u.result.mesh);
-  const Point centre = before.positions.colwise().mean();
-  double farthest = 0;
-  for (const TriangleMesh* mesh : {&before, &after}) {
-    farthest = std::max(
-        farthest, (mesh->positions.rowwise() - centre.transpose()).rowwise().norm().maxCoeff());
-  }
-  const double radius = kAway * farthest;
-  return {radius,
-          {visibility::hiddenViewingArea(before, centre, radius),
-           visibility::hiddenViewingArea(after, centre, radius)},
-          {visibility::selfOcclusion(before), visibility::selfOcclusion(after)}};
 }
 
 void measureDistances(const Inflated& u, inflation::InflateSummary& summary) {
@@ -159,10 +137,8 @@ Termination writeInflated(Context& context, Inflated& u, const inflation::Inflat
   writeTextFile(context.output("evolution.tsv"), inflation::evolutionTable(u.result.history));
   unfolding::writeCheckpoint(context.output(kInflationState), u.result.checkpoint);
   inflation::InflateSummary summary;
-  summary.globalMeasures.reset();
   describing(context, u.result.termination, [&] {
     writeVisibility(context, u, options, summary);
-    if (u.globalMeasures) summary.globalMeasures = globalMeasuresOf(u);
     summary.distortion = writeDistortion(context, u);
     measureDistances(u, summary);
   });

@@ -18,10 +18,7 @@ struct Settings {
 void declare(Declaration& d, Settings& s) {
   d.synopsis("folded grey ribbon of constant thickness, as labels and as a T1-weighted image")
       .description(
-          "A folded white surface with grey matter of one thickness all around it, and fluid "
-          "beyond. Label 3 is "
-          "white matter, 2 grey, 1 fluid, as explica segment writes them. The image has noise and "
-          "a bias field; with --dura, a sheet nearly as bright as grey matter lies in the fluid.")
+          R"(A folded white surface with grey matter of one thickness all around it, and fluid beyond. Label 3 is white matter, 2 grey, 1 fluid, as explica segment writes them. The image has noise and a bias field; with --dura, a sheet nearly as bright as grey matter lies in the fluid.)")
       .example("explica phantom cortex --size 48 --out cortex", "A ribbon in 48 voxels a side")
       .example("explica phantom cortex --dura 1 --noise 6 --out dura",
                "With a sheet of dura near it, noisy")

@@ -18,9 +18,7 @@ struct Settings {
 void declare(Declaration& d, Settings& s) {
   d.synopsis("sheet in overhanging folds that hide each other, with a region to unfold")
       .description(
-          "A sheet whose folds overhang and wind to and fro. Seen along --direction 0,0,1 of "
-          "'explica unfold' a fifth of its area is visible on average, and unfolded nearly all of "
-          "it: without winding it can be laid flat with every length kept.")
+          R"(A sheet whose folds overhang and wind to and fro. Seen along --direction 0,0,1 of 'explica unfold' a fifth of its area is visible on average, and unfolded nearly all of it: without winding it can be laid flat with every length kept.)")
       .example("explica phantom folds --out folds",
                "Then: explica unfold folds/folds.surf.gii --label folds/region.label.gii "
                "--direction 0,0,1 --out open")

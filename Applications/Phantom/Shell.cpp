@@ -21,10 +21,7 @@ struct Settings {
 void declare(Declaration& d, Settings& s) {
   d.synopsis("spherical shell of tissue with its exact thickness and harmonic function")
       .description(
-          "Concentric spheres about the middle of the grid. Label 1 is enclosed by the tissue, 2 "
-          "is "
-          "the tissue, 0 the rest. Every trajectory is a radius, so that the thickness is the "
-          "difference of the radii everywhere.")
+          R"(Concentric spheres about the middle of the grid. Label 1 is enclosed by the tissue, 2 is the tissue, 0 the rest. Every trajectory is a radius, so that the thickness is the difference of the radii everywhere.)")
       .example("explica phantom shell --size 48 --out shell", "A shell of 48 voxels a side")
       .options("Shell", s.shell)
       .output("labels.nii.gz", FileKind::LabelVolume, "1 inside, 2 tissue, 0 outside")

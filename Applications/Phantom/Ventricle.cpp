@@ -18,12 +18,7 @@ struct Settings : AnnulusKindSettings {
 void declare(Declaration& d, Settings& s) {
   d.synopsis("a left ventricle between confocal spheroids, cut at its base, with exact answers")
       .description(
-          "Focal distance 40 mm, sinh mu 0.6 and 0.9, the base 15 mm above the centre. "
-          "Label 3 is a right ventricle, 4 what lies beyond the base: give it to "
-          "--insulated. Near the base, which trajectories cross obliquely, the answers are "
-          "not exact. With --frames the ventricle beats: its wall keeps its volume, its cavity "
-          "ejects the share --ejection, slices may be thick and tilted as in cine MRI, labels are "
-          "1 cavity, 2 wall, 3 right ventricle, and the other outputs are tables.")
+          R"(Focal distance 40 mm, sinh mu 0.6 and 0.9, the base 15 mm above the centre. Label 3 is a right ventricle, 4 what lies beyond the base: give it to --insulated. Near the base, which trajectories cross obliquely, the answers are not exact. With --frames the ventricle beats: its wall keeps its volume, its cavity ejects the share --ejection, slices may be thick and tilted as in cine MRI, labels are 1 cavity, 2 wall, 3 right ventricle, and the other outputs are tables.)")
       .example("explica phantom ventricle --size 120 --out ventricle", "120 voxels a side")
       .example(
           "explica phantom ventricle --size 90 --spacing 1.4 --slice 8 --frames 6 --tilt 10 "

@@ -28,18 +28,7 @@ struct Settings {
 void declare(Declaration& d, Settings& s) {
   d.synopsis("faces of a surface that cross each other parted, by moving few vertices a little")
       .description(
-          "Finds every pair of faces that intersect, by an exact test, and parts them by small "
-          "moves "
-          "of the vertices about. Faces and the numbers of vertices stay, and vertices that do not "
-          "move keep every bit. A group of crossings that would need a longer move than --max-move "
-          "is "
-          "left as it is and said; so the result never crosses more than the input. Several "
-          "surfaces "
-          "with the same faces (white, pial) are repaired each by itself and never come to meet "
-          "each other where they did not. A run that is stopped writes what it has parted by then; "
-          "repair the result again to go on. A FreeSurfer file is also written in its own format, "
-          "to "
-          "take its place between recon-all and what follows.")
+          R"(Finds every pair of faces that intersect, by an exact test, and parts them by small moves of the vertices about. Faces and the numbers of vertices stay, and vertices that do not move keep every bit. A group of crossings that would need a longer move than --max-move is left as it is and said; so the result never crosses more than the input. Several surfaces with the same faces (white, pial) are repaired each by itself and never come to meet each other where they did not. A run that is stopped writes what it has parted by then; repair the result again to go on. A FreeSurfer file is also written in its own format, to take its place between recon-all and what follows.)")
       .reference("Volino, Magnenat-Thalmann 2006, ACM Trans. Graphics 25(3):1154-1159")
       .example("explica repair lh.white lh.pial --out repaired",
                "Both surfaces of a hemisphere, as repaired/lh.white, repaired/lh.pial and GIFTI")

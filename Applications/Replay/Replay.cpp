@@ -23,11 +23,7 @@ struct Settings {
 void declare(Declaration& d, Settings& s) {
   d.synopsis("repeat an earlier run from its record and compare the results")
       .description(
-          "Takes command, options and inputs from the record. Prints one line per output: "
-          "identical, "
-          "DIFFERENT or MISSING. Ends with exit code 3 if any output is not identical. Files that "
-          "hold times are compared by their numbers. The record may be a stranger's: what would "
-          "write outside --out, or read other files than the inputs that it names, is refused.")
+          R"(Takes command, options and inputs from the record. Prints one line per output: identical, DIFFERENT or MISSING. Ends with exit code 3 if any output is not identical. Files that hold times are compared by their numbers. The record may be a stranger's: what would write outside --out, or read other files than the inputs that it names, is refused.)")
       .example("explica replay shell/provenance.json --out again", "The same shell once more")
       .input("PROVENANCE", FileKind::Any, "a provenance.json, or the folder that holds it",
              s.record)

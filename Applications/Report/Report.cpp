@@ -22,12 +22,7 @@ struct Settings {
 void declare(Declaration& d, Settings& s) {
   d.synopsis("one self-contained web page on what a command or a whole run did")
       .description(
-          "Shows quality flags with reasons, slices, surfaces, distributions and curves, the "
-          "unfolding in an "
-          "interactive three-dimensional view, and for each step its command line, options and "
-          "results. The "
-          "page needs no network and no other file. Steps that failed or stopped are shown as "
-          "such.")
+          R"(Shows quality flags with reasons, slices, surfaces, distributions and curves, the unfolding in an interactive three-dimensional view, and for each step its command line, options and results. The page needs no network and no other file. Steps that failed or stopped are shown as such.)")
       .example("explica report colin", "Writes colin/report.html")
       .example("explica report colin --map sampled/bold.func.gii",
                "The same with a sampled map on the surfaces and on the opened patch")
@@ -47,9 +42,7 @@ void declare(Declaration& d, Settings& s) {
       .excludes("out", {"page"})
       .inputOption(
           "reference", FileKind::Folder,
-          "folder of others' results, of a person or a study or a FreeSurfer subject, whose "
-          "thickness is drawn behind this one's histograms (default: FreeSurfer's own of "
-          "the same subject)",
+          R"(folder of others' results, of a person or a study or a FreeSurfer subject, whose thickness is drawn behind this one's histograms (default: FreeSurfer's own of the same subject))",
           s.show.references, "Page")
       .withoutOutput();
 }

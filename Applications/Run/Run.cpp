@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "Ending.h"
+#include "Settings.h"
 
 #include "Explica/Application/Command.h"
 #include "Explica/Application/CortexTemplate.h"
@@ -31,92 +32,8 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr std::array kStepCommands = {"segment",  "thickness",  "surface", "sphere", "register",
-                                      "resample", "parcellate", "regions", "unfold"};
-
-struct Settings {
-  std::string input;
-  std::optional<std::string> atlas;
-  pipeline::PlanOptions plan;
-  bool resume = false;
-  std::vector<std::string> accept;
-  std::vector<Invocation> steps;  ///< whose options are included, prefixed
-};
-
-void declare(Declaration& d, Settings& s) {
-  d.synopsis(
-       "from a T1, label volume or FreeSurfer subject to an unfolded patch of cortex and a report")
-      .description(
-          "Both hemispheres, where the input tells them apart. Finds what there is to start from "
-          "and says so: a FreeSurfer subject's ribbon or aseg, "
-          "its white and pial surfaces and its regions; the same of fMRIPrep's and sMRIPrep's "
-          "anat folders; a T1, with or without skull, or a label volume. Surfaces that are there "
-          "are taken over (unless "
-          "--given-surfaces remake), others are made, from a FreeSurfer subject's labels with its "
-          "brain.mgz to place their borders. Runs segment, thickness, surface, sphere, register "
-          "(with resample, to the template's 10,242 vertices; --resample.to fsaverage6 for more), "
-          "parcellate (with regions, their table) and unfold "
-          "in order, each into its own folder with its "
-          "own "
-          "summary and record, and writes a report on all of them. A run that fails leaves "
-          "nothing; "
-          "with --resume the steps that were done stay, and so does the account of the failure. "
-          "Every option of a step can be "
-          "given with "
-          "the step's name before it: --unfold.radius 30. With --resume, steps whose inputs, "
-          "options and "
-          "outputs are what their records say are not done again.")
-      .example("explica run T1.nii.gz --out subject",
-               "Both hemispheres of a head as it comes from the scanner, all the way")
-      .example("explica run ch2bet.nii.gz --atlas aal.nii.gz --hemisphere L --out colin",
-               "Left hemisphere of a skull-stripped T1 with an atlas in its space")
-      .example("explica run derivatives/sub-01/anat --hemisphere L --out sub-01-left",
-               "What fMRIPrep has left of a subject")
-      .example("explica run bert --hemisphere R --out bert-right",
-               "A FreeSurfer subject's right hemisphere")
-      .input("INPUT", FileKind::Any,
-             "T1, label volume, FreeSurfer subject directory, or BIDS anat folder", s.input)
-      .inputOption(
-          "atlas", FileKind::LabelVolume,
-          "labels in the input's space, as AAL's: tell a T1's hemispheres apart instead of "
-          "a template's, and are the regions of regions.tsv",
-          s.atlas)
-      .options("Run", s.plan)
-      .option("Run",
-              Field{"resume", "", "keep steps of an earlier run into --out that are still true"},
-              s.resume)
-      .option("Run",
-              Field{"accept", "",
-                    "go on although this number is implausible, in whichever step; see segment"},
-              s.accept)
-      .reuseOutputIf(s.resume)
-      .inPlace()
-      .varyingOutput("report.html", FileKind::Report, "everything to look at")
-      .output("thumbnail.png", FileKind::Picture, "a small picture, for tables of many runs")
-      .varyingOutput(pipeline::kRunStateName, FileKind::Any, "how each step went")
-      .output("segment", FileKind::Folder, "tissues and hemisphere")
-      .output("thickness*", FileKind::Folder,
-              "harmonic interpolant, correspondences, thickness; -L and -R where both hemispheres "
-              "are done, as in the next two")
-      .output("surface*", FileKind::Folder, "white, middle and pial surface")
-      .output("sphere*", FileKind::Folder, "the white surface on a sphere")
-      .output("register*", FileKind::Folder, "that sphere in the template's frame")
-      .output("resample*", FileKind::Folder, "thickness, sulcal depth and areas on the template")
-      .output("parcellate*", FileKind::Folder, "the template's regions on the surface")
-      .output("regions*", FileKind::Folder, "area, volume, thickness and curvature by region")
-      .output("unfold*", FileKind::Folder, "the unfolded patch and its evolution")
-      .output("asymmetry.tsv", FileKind::Table,
-              "of both hemispheres: thickness and area of each region, left and right");
-  for (const char* name : kStepCommands) {
-    const Command* command = findCommand(name);
-    if (command == nullptr) continue;
-    s.steps.push_back(command->begin());
-    d.include(s.steps.back().declaration, std::string(name) + ".");
-  }
-}
-
 /// What the plan says, and on top what the user set with the step's prefix.
-Json valuesOf(const Context& context, const Settings& s, const pipeline::PlannedStep& step) {
+Json valuesOf(const Context& context, const RunSettings& s, const pipeline::PlannedStep& step) {
   Json values = *step.values;
   for (const Invocation& invocation : s.steps) {
     if (invocation.declaration.name != step.command) continue;
@@ -188,7 +105,7 @@ void passFlagsOn(Context& context, const std::string& step) {
   }
 }
 
-void runStep(Context& context, const Settings& s, const pipeline::PlannedStep& step,
+void runStep(Context& context, const RunSettings& s, const pipeline::PlannedStep& step,
              pipeline::StepNote& note, Termination& worst) {
   const Command* command = findCommand(step.command);
   if (command == nullptr)
@@ -242,7 +159,7 @@ void writeReport(Context& context, const fs::path& out) {
 }
 
 /// The template to register to; none where the image has another one than Colin27, or none.
-std::string templateOf(Context& context, const Settings& s) {
+std::string templateOf(Context& context, const RunSettings& s) {
   const auto asked = [&](pipeline::RunStep step) {
     return std::count(s.plan.steps.begin(), s.plan.steps.end(), step) > 0;
   };
@@ -260,7 +177,7 @@ std::string templateOf(Context& context, const Settings& s) {
 }
 
 /// The plan.  If the input does not allow one, what an earlier run made of another input goes.
-pipeline::Plan planOrTakeBack(Context& context, const Settings& s) {
+pipeline::Plan planOrTakeBack(Context& context, const RunSettings& s) {
   try {
     pipeline::PlanOptions options = s.plan;
     options.cortexTemplate = templateOf(context, s);
@@ -276,7 +193,7 @@ pipeline::Plan planOrTakeBack(Context& context, const Settings& s) {
 }
 
 /// What was found in the input and what it is taken for: to the user and into the record.
-void sayWhatIsUsed(Context& context, const Settings& s, const pipeline::Plan& plan) {
+void sayWhatIsUsed(Context& context, const RunSettings& s, const pipeline::Plan& plan) {
   context.info(s.input + ": taken as " + std::string(nameOf(plan.kind)));
   Json used = Json::object();
   for (const pipeline::SourceFile& source : plan.sources) {
@@ -291,7 +208,7 @@ void sayWhatIsUsed(Context& context, const Settings& s, const pipeline::Plan& pl
 
 /// Says what is used, and refuses what can be refused before the work; in a dry run also what the
 /// steps check of files that are there.
-void checkBeforehand(Context& context, const Settings& s, const pipeline::Plan& plan) {
+void checkBeforehand(Context& context, const RunSettings& s, const pipeline::Plan& plan) {
   context.judged();
   sayWhatIsUsed(context, s, plan);
   if (s.atlas) static_cast<void>(io::readGrid(*s.atlas));
@@ -311,7 +228,7 @@ void sayWhatCameOut(Context& context, const fs::path& out, bool withReport) {
   if (withReport) context.info("report: " + (out / "report.html").string());
 }
 
-Termination run(Context& context, const Settings& s) {
+Termination run(Context& context, const RunSettings& s) {
   const StopScope kept(nullptr);  // what is reached is written
   const fs::path out = context.outputFolder();
   const pipeline::Plan whole = planOrTakeBack(context, s);
@@ -375,7 +292,7 @@ Termination run(Context& context, const Settings& s) {
 }  // namespace
 
 Command runCommand() {
-  return makeCommand<Settings>("run", declare, run);
+  return makeCommand<RunSettings>("run", declareRun, run);
 }
 
 }  // namespace explica::app

@@ -155,8 +155,7 @@ void sampleVolume(Context& context, const SampleSettings& s, const Tissue& tissu
 }  // namespace
 
 Termination sampleLayers(Context& context, const SampleSettings& s) {
-  if (s.cortex.folder || s.cortex.white || s.points || !s.labelVolumes.empty() ||
-      !s.vertexMaps.empty()) {
+  if (s.cortex.folder || s.cortex.white || s.points || !s.labelVolumes.empty()) {
     throw UsageError(
         "--thickness takes volumes and --labels; surfaces, --points and --label-volume "
         "are for sampling on surfaces");

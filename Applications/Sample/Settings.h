@@ -28,8 +28,6 @@ struct SampleSettings {
   std::optional<std::string> mask;
   std::vector<std::string> labels;
   std::optional<std::string> points;
-  std::vector<std::string> vertexMaps;
-  std::optional<std::string> vertexSurface;
   io::VolumeReadOptions reading;
 };
 
@@ -41,6 +39,14 @@ struct SampleSettings {
 /// @throws InvalidInput  it is not on the volume's grid
 [[nodiscard]] std::optional<Volume<std::uint8_t>> maskFor(const Grid& volume,
                                                           const SampleSettings& s);
+
+/// Regions of --labels; without, all vertices are one.
+[[nodiscard]] sampling::Regions regionsOf(const SampleSettings& s, Eigen::Index vertexCount);
+
+void declareSample(Declaration& d, SampleSettings& s);
+
+/// Samples at depths between surfaces into one map a volume and depth, and profiles of regions.
+[[nodiscard]] Termination sampleSurfaces(Context& context, const SampleSettings& s);
 
 /// Samples along the trajectories of `explica thickness` into one table a volume.
 [[nodiscard]] Termination sampleLayers(Context& context, const SampleSettings& s);

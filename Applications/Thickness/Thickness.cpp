@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "ContourFiles.h"
-#include "GridFunctions.h"
 
 #include "Explica/Application/Command.h"
 #include "Explica/Application/Plausible.h"
@@ -10,13 +9,11 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Memory.h"
 #include "Explica/Core/Parallel.h"
-#include "Explica/Core/WholeFile.h"
-#include "Explica/Correspondence/FieldFigure.h"
 #include "Explica/Correspondence/Measurement.h"
 #include "Explica/Harmonic/Annulus.h"
 #include "Explica/IO/VolumeFile.h"
+#include "Explica/IO/VtkFile.h"
 #include "Explica/Provenance/Doubts.h"
-#include "Explica/Ventricle/Pictures.h"
 
 #include <chrono>
 #include <functional>
@@ -37,12 +34,7 @@ struct Settings {
   io::VolumeReadOptions reading;
   harmonic::LabelRoles roles;
   correspondence::MeasurementOptions measurement;
-  GridFunctions functions;
-  bool figure = false;
-  std::optional<int> figureSlice;
-  bool aha = false;
   std::vector<std::string> accept;
-  ventricle::OrientationOptions orientation;
 };
 
 void declareOutputs(Declaration& d) {
@@ -59,20 +51,10 @@ void declareOutputs(Declaration& d) {
       .output("layers.nii.gz", FileKind::LabelVolume, "layer, 1 at the inner boundary")
       .output("grid.vtu", FileKind::Grid,
               "with --cells: points at equal depths along trajectories, with depth and thickness")
-      .output("grid_functions.tsv", FileKind::Table,
-              "with --functions: mean, deviation and count of each at each depth of the grid")
-      .output("grid_trajectories.tsv", FileKind::Table,
-              "with --along: points, thickness and functions along chosen trajectories")
-      .output("field.svg", FileKind::Picture,
-              "with --figure or --cells: u, tangent field, trajectories and grid in a slice")
       .output(
           "contours.tsv", FileKind::Table,
           "of a 2-D image or with --per-slice: inner, middle and outer contours, point by point")
       .output("contours.vtu", FileKind::Grid, "the same as lines, with depth and thickness")
-      .output("segments.tsv", FileKind::Table, "with --aha: thickness of the 17 segments")
-      .output("bullseye.png", FileKind::Picture, "with --aha: bullseye.svg in pixels")
-      .output("segments.nii.gz", FileKind::LabelVolume, "with --aha: segment of each voxel")
-      .output("bullseye.svg", FileKind::Picture, "with --aha: the segments' mean thickness, mm")
       .output("valid.nii.gz", FileKind::LabelVolume,
               "1 where thickness is known and the image's edge does not reach it")
       .output("sulci.nii.gz", FileKind::LabelVolume,
@@ -82,10 +64,7 @@ void declareOutputs(Declaration& d) {
 void declare(Declaration& d, Settings& s) {
   d.synopsis("thickness, depth and layers of the tissue between two boundaries")
       .description(
-          "Solves Laplace's equation between the inner and the outer boundary of a tissue such as "
-          "cortex or heart muscle, follows the field lines that join the boundaries, and measures "
-          "along them. The boundary lies between voxel centres: where level sets cross, or where a "
-          "smooth surface fits the labels. Sulci whose banks touch are opened first.")
+          R"(Solves Laplace's equation between the inner and the outer boundary of a tissue such as cortex or heart muscle, follows the field lines that join the boundaries, and measures along them. The boundary lies between voxel centres: where level sets cross, or where a smooth surface fits the labels. Sulci whose banks touch are opened first.)")
       .reference("Jones, Buchbinder, Aharon 2000, Human Brain Mapping 11:12-32")
       .reference("Yezzi, Prince 2003, IEEE Trans. Med. Imaging 22(10):1332-1339")
       .reference("Rocha, Yezzi, Prince 2007, IEEE Trans. Image Processing 16(3):636-648")
@@ -106,45 +85,18 @@ void declare(Declaration& d, Settings& s) {
       .options("Reading", s.reading)
       .options("Labels", s.roles)
       .options("Boundary", s.measurement.annulus)
-      .option("Boundary",
-              Field{"sulci", "",
-                    "what to do where the banks of a sulcus touch (default: recover; ignore with "
-                    "--open-ends or --aha, which are for hearts, and with --per-slice where the "
-                    "inner region is not folded as a cortex's)"},
-              s.measurement.sulci)
+      .option(
+          "Boundary",
+          Field{
+              "sulci", "",
+              R"(what to do where the banks of a sulcus touch (default: recover; ignore with --open-ends, which is for hearts, and with --per-slice where the inner region is not folded as a cortex's))"},
+          s.measurement.sulci)
       .options("Boundary", s.measurement.sulcus)
       .options("Correspondences", s.measurement.correspondence)
       .options("Layers", s.measurement.layers)
       .option("Layers",
               Field{"cells", "", "write an anatomical grid with this many cells across", 1, 1000},
               s.measurement.grid)
-      .inputOption(
-          "functions", FileKind::Volume,
-          "with --cells: volumes, 3-D or 4-D, whose values at the grid's points are written "
-          "into it and by depth into a table",
-          s.functions.volumes, "Layers")
-      .option(
-          "Layers",
-          Field{"along", "mm",
-                "with --cells: list the trajectory nearest to this point of the tissue with the "
-                "values of --functions"},
-          s.functions.along)
-      .option("Figure",
-              Field{"figure", "",
-                    "draw a slice: harmonic interpolant, tangent field, selected trajectories, and "
-                    "with --cells, which draws it too, its cells"},
-              s.figure)
-      .option("Figure",
-              Field{"figure-slice", "",
-                    "draw this slice along the third axis, counted from 0 (default: that with most "
-                    "tissue)",
-                    0, 100000},
-              s.figureSlice)
-      .option(
-          "Heart",
-          Field{"aha", "", "the left ventricle's 17 segments, as 'explica heart' measures them"},
-          s.aha)
-      .options("Heart", s.orientation)
       .excludes("inner-level", {"inner", "tissue", "outer"})
       .needs({"level", "level-inside"}, {"inner-level"});
   declareAccept(d, s.accept);
@@ -162,9 +114,6 @@ harmonic::Annulus readAnnulus(Context& context, const Settings& s) {
   }
   if (!s.labels && !s.innerLevel) {
     throw UsageError("give a label volume, or --inner-level and --outer-level");
-  }
-  if ((s.orientation.insertion || s.orientation.imageAxis) && !s.aha) {
-    throw UsageError("--rv-insertion and --rv-insertion-image-axis are for --aha");
   }
   Volume<Label> labels;
   if (s.labels) labels = readTissueLabels(context, "SEG", *s.labels, s.reading);
@@ -241,38 +190,14 @@ void writeOutputs(Context& context, const correspondence::Measurement& m, bool s
   parallelFor(files.size(), 1, [&](std::size_t f) { files[f](); });
 }
 
-/// The figure of a slice.
-void writeFigure(Context& context, const correspondence::Measurement& m,
-                 std::optional<int> wanted) {
-  auto step = context.step("figure");
-  const int slice = wanted.value_or(correspondence::fullestSlice(m.annulus));
-  writeTextFile(context.output("field.svg"),
-                correspondence::drawField(m.annulus, m.interpolant, m.correspondence, slice,
-                                          m.grid ? &*m.grid : nullptr));
-  context.result("figure_slice", slice);
-}
-
-/// Table, volume and picture of the 17 segments.
-void writeSegments(Context& context, const harmonic::Annulus& annulus, const Settings& s) {
-  auto step = context.step("segments");
-  ventricle::HeartOptions options;
-  options.orientation = s.orientation;
-  const ventricle::Beat beat =
-      ventricle::measureBeat({ventricle::heartOf(annulus)}, {0}, options, {}, context.monitor());
-  if (!beat.oriented()) {
-    context.warn("without --rv-insertion or --rv-insertion-image-axis segments have no names");
-  }
-  writeTextFile(context.output("segments.tsv"), ventricle::segmentTable(beat));
-  const ventricle::Drawn picture = ventricle::bullseye(beat);
-  writeTextFile(context.output("bullseye.svg"), picture.svg);
-  report::writePng(context.output("bullseye.png"), picture.pixels);
-  io::writeVolume(context.output("segments.nii.gz"), beat.atDiastole().segments->segmentOf);
+void writeGrid(Context& context, const correspondence::AnatomicalGrid& grid) {
+  auto step = context.step("grid");
+  const auto kind = grid.cells.cols() == 8 ? io::CellKind::Hexahedron : io::CellKind::Quad;
+  io::writeVtu(context.output("grid.vtu"), grid.points, {{kind, grid.cells}},
+               {{"depth", "", grid.depth}, {"thickness", "mm", grid.thickness}});
 }
 
 Termination run(Context& context, const Settings& s) {
-  if (!s.measurement.grid && (!s.functions.volumes.empty() || !s.functions.along.empty())) {
-    throw UsageError("--functions and --along need --cells N, on whose points they are taken");
-  }
   keepFreedMemory();
   Judge judge(context, s.accept);
   harmonic::Annulus annulus = readAnnulus(context, s);
@@ -280,15 +205,11 @@ Termination run(Context& context, const Settings& s) {
   context.doubt(provenance::kTissueAtImageBorder, atBorder,
                 std::to_string(atBorder) + " of " + std::to_string(annulus.count()) +
                     " tissue voxels lie in the image's outermost layer, which may cut the tissue");
-  correspondence::MeasurementOptions options = s.measurement;
-  options.heart = s.aha;
-  const correspondence::Measurement m = measure(context, std::move(annulus), options);
+  const correspondence::Measurement m = measure(context, std::move(annulus), s.measurement);
   report(context, judge, m);
   writeOutputs(context, m, m.sulciRecovered);
-  if (m.grid) writeGrid(context, s.functions, s.reading, *m.grid);
+  if (m.grid) writeGrid(context, *m.grid);
   if (m.annulus.planar) writeContours(context, m);
-  if (s.figure || s.figureSlice || m.grid) writeFigure(context, m, s.figureSlice);
-  if (s.aha) writeSegments(context, m.annulus, s);
   return m.interpolant.termination;
 }
 

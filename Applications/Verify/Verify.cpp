@@ -21,9 +21,7 @@ struct Settings {
 void declare(Declaration& d, Settings& s) {
   d.synopsis("compare inputs and outputs of a run with the hashes in its record")
       .description(
-          "Prints one line per file: same, CHANGED or MISSING. Ends with exit code 2 if any file "
-          "is "
-          "not as recorded.")
+          R"(Prints one line per file: same, CHANGED or MISSING. Ends with exit code 2 if any file is not as recorded.)")
       .example("explica verify shell/provenance.json", "Is the shell still what was made?")
       .input("PROVENANCE", FileKind::Any, "a provenance.json, or the folder that holds it",
              s.record)

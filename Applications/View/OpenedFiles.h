@@ -16,8 +16,8 @@ namespace explica::app {
 /// A number of things in words: "1 map", "2 maps".
 [[nodiscard]] std::string counted(std::size_t count, const char* what);
 
-/// What the window shows of a file or folder on a surface: maps, labels, slices of a volume, the
-/// states of a finished unfolding, profiles and stacks of depths.
+/// What the window shows of a file or folder on a surface: maps, labels, the
+/// states of a finished unfolding.
 /// @throws InvalidInput, IOError  nothing that fits the surface
 [[nodiscard]] viewer::Opened openForWindow(const std::filesystem::path& path,
                                            const ShownSurface& surface);

@@ -91,7 +91,7 @@ void steer(Context& context, const ShownSurface& surface, const io::SurfaceReadO
   viewer::Choice choice;
   choice.centre = options.vertex.value_or(-1);
   choice.radius = options.radius;
-  choice.view.directions = {direction};
+  choice.view.direction = direction;
   choice.view.distance = options.distance.value_or(unfolding::usualDistance(surface.mesh));
   choice.unfold.unfolder.surround = options.surround;
   choice.unfold.targetVisibility = options.targetVisibility;
@@ -106,7 +106,6 @@ void steer(Context& context, const ShownSurface& surface, const io::SurfaceReadO
   viewer::WindowCalls calls;
   calls.scale = scaleOf;
   calls.open = [&](const std::string& file) { return openForWindow(file, surface); };
-  calls.readSurface = [&](const std::string& file) { return io::readSurface(file, reading).mesh; };
   calls.save = [&](const viewer::Session& shown, std::size_t state) {
     return saveState(context, path, window.reading, options.save, shown, state);
   };

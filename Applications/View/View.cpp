@@ -52,7 +52,7 @@ const std::vector<std::string> kOfWindow = {
 void declare(Declaration& d, Settings& s) {
   d.synopsis("choose and steer an unfolding in a window; pictures and films without one")
       .description(
-          R"(Without --screenshot or --film a window opens on a surface, or on a folder of `explica unfold`, `flatten` or `sample`: pick a centre (C), take the view as viewpoint (V), add it to those taken (Shift+V), or look from a line (L) or a surface (S); set the radius, run and pause (Space), step back and forth, save (W); F1 shows every key. Maps, labels, volumes and folders named after the surface are shown with it: of a folder of `explica sample` the maps, of `explica flatten` the patch and its flat map (`explica report` shows curves over the depth, and volumes on the flat map depth by depth). Where a map was not measured (off the valid.shape.gii beside it, thickness 0) it is grey. Surfaces are drawn with a map or labels on their vertices, from one or more sides; a volume is shown in slices with the cut lines of the surfaces named after it (the first red, the second yellow); a folder of `explica unfold` is shown as its evolution with --film. Pictures and films are drawn on the processor, without a display.)")
+          R"(Without --screenshot or --film a window opens on a surface, or on a folder of `explica unfold`, `flatten` or `sample`: pick a centre (C), take the view as viewpoint (V), set the radius, run and pause (Space), step back and forth, save (W); F1 shows every key. Maps, labels and folders named after the surface are shown with it: of a folder of `explica sample` the maps, of `explica flatten` the patch and its flat map (`explica report` shows curves over the depth, and volumes on the flat map depth by depth). Where a map was not measured (off the valid.shape.gii beside it, thickness 0) it is grey. Surfaces are drawn with a map or labels on their vertices, from one or more sides; a volume is shown in slices with the cut lines of the surfaces named after it (the first red, the second yellow); a folder of `explica unfold` is shown as its evolution with --film. Pictures and films are drawn on the processor, without a display.)")
       .example(
           "explica view pial.surf.gii --map thickness.shape.gii --views left,right --screenshot "
           "pial.png",
@@ -208,8 +208,9 @@ report::Picture drawSurfaces(const Settings& s) {
 void openWindow(Context& context, const Settings& s, const ShowWindow& show) {
   if (isVolume(s.files.front())) {
     throw UsageError(
-        "the window shows a surface, and volumes beside it: name the surface first; or write a "
-        "picture with --screenshot FILE.png");
+        "the window shows a surface: name one first; or write a picture of slices with "
+        "--screenshot "
+        "FILE.png");
   }
   const bool folder = std::filesystem::is_directory(s.files.front());
   const auto found = folder ? surfaceOfFolder(s.files.front()) : std::nullopt;

@@ -147,7 +147,6 @@ const BadSurface kBadSurfaces[] = {
 const VolumeCommand kPolygonCommands[] = {
     {"Polygon", {"polygon", "{file}", "--viewpoint", "0,100"}},
     {"Embed", {"embed", "{file}"}},
-    {"EmbedBand", {"embed", "{file}", "--band", "0.1"}},
 };
 
 const VolumeCommand kSurfaceCommands[] = {

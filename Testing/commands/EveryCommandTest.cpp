@@ -35,18 +35,11 @@ TEST_P(EveryCommand, GivesTheSameBytesWithAnyNumberOfThreads) {
 /// How the rows end that iterate; the limits are too small for those that have one.
 std::string endOf(const std::string& name) {
   static const std::map<std::string, std::string> ends = {
-      {"Embed", "max-iterations"},
-      {"EmbedBand", "max-iterations"},
-      {"Flatten", "converged"},
-      {"FlattenCut", "converged"},
-      {"Inflate", "max-iterations"},
-      {"Polygon", "target-reached"},
-      {"PolygonGlobalFlow", "max-iterations"},
-      {"PolygonPhantom", "target-reached"},
-      {"Repair", "converged"},
-      {"Segment", "max-iterations"},
-      {"Sphere", "converged"},
-      {"Thickness", "converged"},
+      {"Embed", "max-iterations"},   {"Flatten", "converged"},
+      {"FlattenCut", "converged"},   {"Inflate", "max-iterations"},
+      {"Polygon", "target-reached"}, {"PolygonPhantom", "target-reached"},
+      {"Repair", "converged"},       {"Segment", "max-iterations"},
+      {"Sphere", "converged"},       {"Thickness", "converged"},
       {"Unfold", "max-iterations"},
   };
   const auto found = ends.find(name);

@@ -54,43 +54,6 @@ TEST(InflateCommand, OpensAFoldedSurfaceAndSaysWhatItDid) {
   EXPECT_EQ(film.exitCode, 0) << film;
 }
 
-TEST(InflateCommand, TellsTheGlobalMeasuresOfTheThesisIfAsked) {
-  TemporaryFolder folder;
-  const TriangleMesh mesh = geometry::makeFoldedSphere(3, 30.0, 0.4, 7);
-  io::writeSurface(folder / "folded.surf.gii", mesh);
-  const auto run = explica({"inflate", folder / "folded.surf.gii", "--global-measures",
-                            "--max-iterations", "150", "--out", folder / "out"});
-  ASSERT_TRUE(run.exitCode == 0 || run.exitCode == 3) << run;
-  const auto summary = readJson(folder / "out/summary.json");
-  const auto number = [&](const std::string& key) { return summary.at(key).get<double>(); };
-  // What hides itself all but vanishes as the surface becomes round.
-  EXPECT_GT(number("self_occlusion_initial"), 0);
-  EXPECT_LT(number("self_occlusion_final"), 0.2 * number("self_occlusion_initial"));
-  // 2 pi r^2 A + 6 pi r V of a closed smooth surface: no measure of folding.
-  const double r = number("viewing_radius"), tau = 2 * 3.14159265358979;
-  for (const std::string when : {"initial", "final"}) {
-    const double closed = tau * r * r * number("area") + 3 * tau * r * number("volume_" + when);
-    EXPECT_NEAR(number("hidden_viewing_area_" + when) / closed, 1, 0.05) << when;
-  }
-}
-
-TEST(InflateCommand, FlowsOfTheGlobalMeasuresLoseAreaInsteadOfUnfolding) {
-  TemporaryFolder folder;
-  io::writeSurface(folder / "folded.surf.gii", geometry::makeFoldedSphere(2, 30.0, 0.4, 4));
-  for (const std::string measure : {"hidden-area", "self-occlusion"}) {
-    const auto run = explica({"inflate", folder / "folded.surf.gii", "--global-flow", measure,
-                              "--max-iterations", "120", "--out", folder / measure});
-    ASSERT_TRUE(run.exitCode == 0 || run.exitCode == 3) << run;
-    const auto summary = readJson(folder / (measure + "/summary.json"));
-    EXPECT_LT(summary["measure_final"], summary["measure_initial"]) << measure;
-    EXPECT_LT(summary["area_final"].get<double>(), 0.97 * summary["area_initial"].get<double>());
-    EXPECT_EQ(io::readSurface(folder / (measure + "/inflated.surf.gii")).mesh.faceCount(), 320);
-  }
-  const auto both = explica({"inflate", folder / "folded.surf.gii", "--global-flow", "hidden-area",
-                             "--resume", "--out", folder / "hidden-area"});
-  EXPECT_EQ(both.exitCode, 1) << both;
-}
-
 TEST(InflateCommand, OpensTheFoldsOfAGeneratedCortex) {
   TemporaryFolder folder;
   const auto made = explica({"phantom", "cortex", "--size", "40", "--spacing", "2", "--depth",

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
-// explica polygon and explica embed: stop and resume, given annuli, label images.
+// explica polygon and explica embed: stop and resume, coefficients.
 
-#include "Explica/IO/VolumeFile.h"
+#include "Explica/Core/WholeFile.h"
 #include "QuickRuns.h"
 
 #include <gtest/gtest.h>
@@ -146,27 +146,6 @@ TEST(Polygon, LooksFromSeveralPointsWithWeights) {
   EXPECT_NE(few.err.find("one positive number a viewpoint"), std::string::npos) << few;
 }
 
-TEST(Polygon, GlobalFlowsDoNotUnfold) {
-  const TemporaryFolder folder;
-  for (const std::string measure : {"hidden-arc", "self-occlusion"}) {
-    const auto made = explica({"polygon", "--phantom", "polygon19", "--global-flow", measure,
-                               "--max-iterations", "600", "--out", folder / measure});
-    ASSERT_TRUE(made.exitCode == 0 || made.exitCode == 3) << made;
-    const auto summary = readJson(folder / (measure + "/summary.json"));
-    EXPECT_LT(summary["measure_final"], summary["measure_initial"]);
-    EXPECT_LT(summary["length_final"].get<double>(), 0.8 * summary["length_initial"].get<double>());
-    const double stated =
-        summary[measure == "hidden-arc" ? "hidden_viewing_arc" : "self_occlusion"];
-    EXPECT_NEAR(summary["measure_initial"].get<double>() / stated, 1, 1e-12);
-  }
-  const auto without = explica({"polygon", folder / "hidden-arc/polygon.csv", "--global-flow",
-                                "hidden-arc", "--out", folder / "c"});
-  EXPECT_EQ(without.exitCode, 1) << without;
-  const auto small = explica({"polygon", "--phantom", "polygon19", "--global-flow", "hidden-arc",
-                              "--viewing-radius", "10", "--out", folder / "d"});
-  EXPECT_EQ(small.exitCode, 2) << small;
-}
-
 TEST(Polygon, TheKnotEnergyAloneKeepsTheThesisPolygonsFromCrossing) {
   const TemporaryFolder folder;
   const auto made = explica({"polygon", "--phantom", "polygon34", "--method", "thesis",
@@ -177,44 +156,21 @@ TEST(Polygon, TheKnotEnergyAloneKeepsTheThesisPolygonsFromCrossing) {
   EXPECT_EQ(summary["first_crossing"], -1);
 }
 
-/// A label image: 1 within an ellipse, 2 from there to a larger one with another centre.
-void writeEccentricLabels(const std::string& file) {
-  Grid grid;
-  grid.size = {120, 120, 1};
-  grid.spacing = {0.5, 0.5, 4};
-  grid.origin = {-30, -30, 0};
-  Volume<Label> labels(grid);
-  for (int j = 0; j < 120; ++j) {
-    for (int i = 0; i < 120; ++i) {
-      const Point p = grid.toWorld({double(i), double(j), 0.0});
-      const double inner = std::hypot((p.x() - 3) / 8, (p.y() - 1) / 6);
-      const double outer = std::hypot(p.x() / 25, p.y() / 22);
-      labels(i, j, 0) = inner < 1 ? 1 : (outer < 1 ? 2 : 0);
-    }
-  }
-  io::writeVolume(file, labels);
-}
-
-TEST(Embed, FitsInAnAnnulusGivenAsAnImageAndReadsItsCoefficientsBack) {
+TEST(Embed, ReadsItsCoefficientsBackAndAveragesThem) {
   const TemporaryFolder folder;
-  writeEccentricLabels(folder / "labels.nii.gz");
   writeEllipse(folder / "a.csv", 18, 13);
   writeEllipse(folder / "b.csv", 14, 17);
-  const std::vector<std::string> annulus = {
-      "--annulus", folder / "labels.nii.gz", "--inner", "1", "--tissue", "2"};
   for (const std::string name : {"a", "b"}) {
-    const auto made = explica(
-        std::vector<std::string>{"embed", folder / (name + ".csv"), "--out", folder / name} +
-        annulus);
+    const auto made =
+        explica({"embed", folder / (name + ".csv"), "--center", "0,0,0", "--inner-radius", "8",
+                 "--outer-radius", "26", "--out", folder / name});
     ASSERT_EQ(made.exitCode, 0) << made;
     const auto summary = readJson(folder / (name + "/summary.json"));
     EXPECT_LT(summary["distance_max"].get<double>(), 0.5 * summary["voxel"].get<double>());
     EXPECT_GT(summary["boundary_margin"], 0);
   }
   const auto json = readJson(folder / "a/coefficients.json");
-  EXPECT_EQ(json["kind"], "given annulus");
   EXPECT_EQ(json["inner"].size(), 2 * json["order"].get<std::size_t>() + 1);
-  EXPECT_GT(json["outer_polygon"].size(), 50U);
   const auto mean =
       explica({"embed", folder / "a/coefficients.json", folder / "b/coefficients.json", "--average",
                "--out", folder / "mean"});
@@ -226,38 +182,12 @@ TEST(Embed, FitsInAnAnnulusGivenAsAnImageAndReadsItsCoefficientsBack) {
               1e-14);
 }
 
-TEST(Embed, BoundariesMayBePolygonsAndATargetALabelsContour) {
+TEST(Embed, CoefficientsOfAnotherKindOfAnnulusAreRefused) {
   const TemporaryFolder folder;
-  writeEccentricLabels(folder / "labels.nii.gz");
-  writeEllipse(folder / "in.csv", 20, 17);
-  writeEllipse(folder / "out.csv", 29, 27);
-  const auto made =
-      explica({"embed", folder / "labels.nii.gz", "--label-key", "2", "--annulus",
-               folder / "out.csv", "--annulus", folder / "in.csv", "--out", folder / "a"});
-  ASSERT_EQ(made.exitCode, 0) << made;
-  const auto summary = readJson(folder / "a/summary.json");
-  EXPECT_EQ(summary["slice"], 0);
-  EXPECT_LT(summary["distance_max"].get<double>(), 0.5 * summary["voxel"].get<double>());
-}
-
-TEST(Embed, AnnuliThatCannotBeAreRefused) {
-  const TemporaryFolder folder;
-  writeEllipse(folder / "a.csv", 18, 13);
-  writeEllipse(folder / "small.csv", 5, 4);
-  writeEllipse(folder / "large.csv", 16, 22);
-  const auto code = [&](const std::vector<std::string>& more) {
-    const auto result =
-        explica(std::vector<std::string>{"embed", folder / "a.csv", "--out", folder / "x"} + more);
-    EXPECT_FALSE(fs::exists(folder / "x")) << result;
-    return result.exitCode;
-  };
-  EXPECT_EQ(code({"--annulus", folder / "small.csv"}), 1);
-  EXPECT_EQ(code({"--band", "2", "--center", "0,0,0"}), 1);
-  EXPECT_EQ(code({"--band", "2", "--annulus", folder / "small.csv"}), 1);
-  EXPECT_EQ(code({"--band", "40"}), 2);
-  EXPECT_EQ(code({"--annulus", folder / "small.csv", "--annulus", folder / "large.csv"}), 2)
-      << "the target leaves the annulus";
-  EXPECT_EQ(code({"--annulus", folder / "small.csv", "--annulus", folder / "small.csv"}), 2);
+  writeTextFile(folder / "old.json", R"({"kind": "given annulus", "order": 2})");
+  const auto made = explica({"embed", folder / "old.json", "--out", folder / "x"});
+  EXPECT_EQ(made.exitCode, 2) << made;
+  EXPECT_NE(made.err.find("'given annulus' found"), std::string::npos) << made;
 }
 
 }  // namespace

@@ -302,21 +302,6 @@ TEST_F(Sample, RegionsOfSeveralFilesMayOverlap) {
   EXPECT_EQ(count["all"], (upper.keys.array() + right.keys.array() > 0).count());
 }
 
-TEST_F(Sample, CarriesVertexDataOfAnotherProgramOver) {
-  const TriangleMesh theirs = geometry::makeIcosphere(4, 10.2);
-  io::writeFreeSurferSurface(folder_ / "lh.white", theirs);
-  io::writeFreeSurferCurv(folder_ / "lh.thickness", theirs.positions.col(2), theirs.faceCount());
-  const CommandResult result =
-      sample({"--vertex-map", folder_ / "lh.thickness", "--vertex-surface", folder_ / "lh.white"});
-  ASSERT_EQ(result.exitCode, 0) << result;
-  const auto got = maps("lh.thickness.shape.gii");
-  ASSERT_EQ(got.size(), 2U);
-  const TriangleMesh white = io::readSurface(folder_ / "white.surf.gii").mesh;
-  EXPECT_LT((got[0].values - 1.02 * white.positions.col(2)).cwiseAbs().maxCoeff(), 0.03);
-  EXPECT_EQ(got[1].name, "distance");
-  EXPECT_NEAR(got[1].values.mean(), 0.2, 0.02);
-}
-
 TEST_F(Sample, GoesIntoACiftiFileOfBothHemispheres) {
   writeX("x.nii.gz");
   ASSERT_EQ(sample({folder_ / "x.nii.gz", "--depths", "2"}).exitCode, 0);

@@ -117,22 +117,6 @@ INSTANTIATE_TEST_SUITE_P(Table, ThicknessOfShell,
                                            Choice{"staircase", "lagrangian", 1.2},
                                            Choice{"staircase", "eulerian", 1.2}));
 
-TEST(ThicknessCommand, DrawsTheFieldOfASlice) {
-  const TemporaryFolder folder;
-  ASSERT_EQ(explica({"phantom", "eccentric", "--size", "64", "--out", folder / "e"}).exitCode, 0);
-  const auto made = explica({"thickness", folder / "e/labels.nii.gz", "--inner", "1", "--tissue",
-                             "2", "--cells", "4", "--figure", "--out", folder / "out"});
-  ASSERT_EQ(made.exitCode, 0) << made;
-  const std::string svg = readText(folder / "out/field.svg");
-  EXPECT_NE(svg.find("tangent field"), std::string::npos);
-  EXPECT_NE(svg.find("(d) grid"), std::string::npos);
-  EXPECT_EQ(readJson(folder / "out/summary.json")["figure_slice"], 0);
-  const auto empty = explica({"thickness", folder / "e/labels.nii.gz", "--inner", "1", "--tissue",
-                              "2", "--figure-slice", "7", "--out", folder / "b"});
-  EXPECT_EQ(empty.exitCode, 2) << empty;
-  EXPECT_NE(empty.err.find("no tissue in slice 7"), std::string::npos) << empty;
-}
-
 TEST(ThicknessCommand, AppendixAIsDialledByLambda) {
   const TemporaryFolder folder;
   ASSERT_EQ(explica({"phantom", "eccentric", "--size", "64", "--out", folder / "e"}).exitCode, 0);
@@ -235,54 +219,6 @@ TEST(ThicknessCommand, GridFollowsTheTissueInTwoAndThreeDimensions) {
   ASSERT_EQ(explica(thickness(folder, "ring.nii.gz", {"--cells", "4"})).exitCode, 0);
   EXPECT_GT(readJson(folder / "out/summary.json")["grid_cells"], 100);
   EXPECT_EQ(explica(thickness(folder, "ring.nii.gz", {"--cells", "0"})).exitCode, 1);
-}
-
-TEST(ThicknessCommand, FunctionsAreKnownOnTheGridByDepthAndAlongTrajectories) {
-  TemporaryFolder folder;
-  writeShell(folder / "shell.nii.gz");
-  Volume<float> radius(io::readLabels(folder / "shell.nii.gz").volume.grid);
-  for (std::size_t v = 0; v < radius.size(); ++v) {
-    const auto s = radius.grid.subscripts(v);
-    radius[v] = static_cast<float>(radius.grid.toWorld(Vector(s[0], s[1], s[2])).norm());
-  }
-  io::writeVolume(folder / "radius.nii.gz", radius);
-  const auto words = [&](const std::string& along) {
-    return thickness(folder, "shell.nii.gz",
-                     {"--cells", "3", "--functions", folder / "radius.nii.gz", "--along", along});
-  };
-  const auto made = explica(words("7,8,-6"));
-  ASSERT_EQ(made.exitCode, 0) << made;
-  // Depth is a share of the length from 9 to 15 mm, so that the radius is 9 + 6 times it.
-  std::istringstream depths(readText(folder / "out/grid_functions.tsv"));
-  std::string head, name;
-  std::getline(depths, head);
-  EXPECT_EQ(head, "function\tdepth\tmean\tsd\tn");
-  double depth = 0, mean = 0, deviation = 0, count = 0;
-  int rows = 0;
-  for (; depths >> name >> depth >> mean >> deviation >> count; ++rows) {
-    EXPECT_EQ(name, "radius");
-    EXPECT_NEAR(mean, 9 + 6 * depth, 0.12);
-    EXPECT_LT(deviation, 0.25);
-    EXPECT_GT(count, 1000);
-  }
-  EXPECT_EQ(rows, 4);
-  std::istringstream line(readText(folder / "out/grid_trajectories.tsv"));
-  std::getline(line, head);
-  EXPECT_EQ(head, "trajectory\tdepth\tx\ty\tz\tthickness\tradius");
-  const Vector direction = Vector(7, 8, -6).normalized();
-  double number = 0, x = 0, y = 0, z = 0, length = 0, value = 0;
-  for (rows = 0; line >> number >> depth >> x >> y >> z >> length >> value; ++rows) {
-    const Vector place(x, y, z);
-    EXPECT_NEAR(value, place.norm(), 0.03);
-    EXPECT_LT((place.normalized() - direction).norm(), 0.1);
-  }
-  EXPECT_EQ(rows, 4);
-  EXPECT_NE(readText(folder / "out/grid.vtu").find("\"radius\""), std::string::npos);
-  EXPECT_EQ(explica(words("200,0,0")).exitCode, 2);
-  const auto without =
-      explica(thickness(folder, "shell.nii.gz", {"--functions", folder / "radius.nii.gz"}));
-  EXPECT_EQ(without.exitCode, 1) << without;
-  EXPECT_NE(without.err.find("--cells"), std::string::npos);
 }
 
 TEST(ThicknessCommand, SulciAreRecoveredByDefaultButNotInHearts) {
@@ -389,29 +325,6 @@ TEST(ThicknessCommand, AnOpenRingIsAWarningThatNamesItsSlice) {
   const auto summary = readJson(folder / "out/summary.json");
   EXPECT_GT(summary["direct_contacts"], 0);
   EXPECT_NEAR(summary["thickness_median"].get<double>(), 6, 0.2);
-}
-
-TEST(ThicknessCommand, TheHeartsSegmentsComeAsTableAndPicture) {
-  TemporaryFolder folder;
-  writeLabels(folder / "tube.nii.gz", {36, 36, 6}, Vector(1, 1, 8),
-              [](const Point& x, int) { return tubeAt(x); });
-  const auto made = explica(
-      thickness(folder, "tube.nii.gz", {"--per-slice", "--aha", "--rv-insertion", "15,0,0"}));
-  ASSERT_EQ(made.exitCode, 0) << made;
-  std::istringstream table(readText(folder / "out/segments.tsv"));
-  std::string line;
-  int rows = -1;  // a header
-  while (std::getline(table, line)) rows += !line.empty();
-  EXPECT_EQ(rows, 17);
-  EXPECT_EQ(readText(folder / "out/bullseye.svg").find("<svg"), 0U);
-  const auto segments = io::readLabels(folder / "out/segments.nii.gz").volume;
-  // A tube has no apex: segment 17 stays empty.
-  EXPECT_EQ(*std::max_element(segments.data.begin(), segments.data.end()), 16);
-  const auto far =
-      explica(thickness(folder, "tube.nii.gz", {"--aha", "--rv-insertion", "9999,0,0"}));
-  EXPECT_EQ(far.exitCode, 2);
-  EXPECT_NE(far.err.find("from the wall"), std::string::npos) << far;
-  EXPECT_EQ(explica(thickness(folder, "tube.nii.gz", {"--rv-insertion", "15,0,0"})).exitCode, 1);
 }
 
 TEST(ThicknessCommand, VentriclePhantomIsExactAwayFromItsBase) {

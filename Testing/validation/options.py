@@ -77,7 +77,6 @@ SUBJECTS = {
     "embed": [
         ("ring", ["{folder}/shell/labels.nii.gz", "--label-key", "1"]),
         ("folds", ["{folder}/cortex/labels.nii.gz", "--label-key", "3"]),
-        ("band", ["{folder}/cortex/labels.nii.gz", "--label-key", "3", "--band", "4"]),
         ("closed surface", ["{folder}/sheets/white.surf.gii", "--order", "8", "--samples", "800"]),
     ],
     "compare": [
@@ -140,8 +139,8 @@ VALUES = {
     "thickness": {"lambda": [0.2, 2], "cells": [3], "level": [-0.5, 0.5], "facing": [60, 140]},
     "surface": {"fluid": [0.5]},
     "segment": {"max-iterations": [5, 240], "smooth": [0, 0.4], "bias-width": [0, 12, 50]},
-    "embed": {"order": [4, 32], "inner-radius": [3], "outer-radius": [60], "band": [2, 8], "fit-start": [0.1, 0.9],
-              "fit-step": [0.25, 1], "frames": [3], "cells": [24, 192]},
+    "embed": {"order": [4, 32], "inner-radius": [3], "outer-radius": [60], "fit-start": [0.1, 0.9],
+              "frames": [3], "cells": [24, 192]},
 }
 
 # Why an option is not tried here; by command and name, or by name alone.
@@ -153,15 +152,13 @@ NOT_TRIED = {
     "adjust-region": PLACE, "repair": "needs a surface that crosses itself", "max-time": "a limit", "resume": "goes on with a run",
     "inner": PLACE, "tissue": PLACE, "outer": PLACE, "insulated": PLACE, "white-label": PLACE, "grey-label": PLACE,
     "fill": PLACE, "preset": PLACE, "hemisphere": PLACE, "no-fill": SPECIES, "core-depth": SPECIES,
-    "stripped": SPECIES, "open-ends": SPECIES, "per-slice": SPECIES, "along": "more output", "figure": "more output",
-    "figure-slice": "more output", "aha": SPECIES, "rv-insertion": PLACE, "rv-insertion-image-axis": PLACE,
+    "stripped": SPECIES, "open-ends": SPECIES, "per-slice": SPECIES, "rv-insertion": PLACE, "rv-insertion-image-axis": PLACE,
     "surface level": INPUT, "close-edges": SPECIES,
-    "nearest": INPUT, "depths": "more output", "global-measures": "more output",
-    "global-flow": "another flow", "viewing-radius": "another flow",
+    "nearest": INPUT, "depths": "more output",
     "phantom": INPUT, "label": INPUT, "slice": INPUT, "contour": INPUT, "edges": INPUT, "polygon smooth": INPUT,
     "polygon distance": PLACE, "region": PLACE,
     "fit": "another result", "average": "another result", "combine": "another result", "series": "another result",
-    "annulus": INPUT, "centre": PLACE, "fs-volume": INPUT,
+    "centre": PLACE, "fs-volume": INPUT,
 }
 
 

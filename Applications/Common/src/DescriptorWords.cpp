@@ -22,20 +22,6 @@ std::string identifier(const std::string& name, char joint) {
   return id;
 }
 
-std::string camelCase(const std::string& name) {
-  std::string camel;
-  bool start = true;
-  for (const char c : name) {
-    if (!std::isalnum(static_cast<unsigned char>(c))) {
-      start = true;
-    } else {
-      camel += start ? static_cast<char>(std::toupper(static_cast<unsigned char>(c))) : c;
-      start = false;
-    }
-  }
-  return camel;
-}
-
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
   for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size()) {
     text.replace(at, from.size(), to);

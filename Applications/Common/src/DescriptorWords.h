@@ -23,7 +23,6 @@ inline constexpr std::array<std::pair<int, const char*>, 5> kExitCodes = {
 /// Letters and digits of a name, words joined by one `joint`: "frames/frame-*.gii" becomes
 /// "frames_frame_gii".
 [[nodiscard]] std::string identifier(const std::string& name, char joint = '_');
-[[nodiscard]] std::string camelCase(const std::string& name);
 [[nodiscard]] std::string replaced(std::string text, const std::string& from,
                                    const std::string& to);
 [[nodiscard]] bool isFile(const Json& p);

@@ -29,13 +29,13 @@ void declarePolygonReading(Declaration& d, PolygonReading& r) {
               r.contours.smoothing);
 }
 
-ReadCurve readCurve(Context& context, const std::string& name, const std::string& path,
-                    const PolygonReading& reading) {
-  ReadCurve read;
+planar::Curve readCurve(Context& context, const std::string& name, const std::string& path,
+                        const PolygonReading& reading) {
+  planar::Curve curve;
   if (!reading.label) {
-    read.curve.positions = io::readPolygon(path);
-    planar::requireUsable(read.curve);
-    return read;
+    curve.positions = io::readPolygon(path);
+    planar::requireUsable(curve);
+    return curve;
   }
   const Volume<Label> labels = readLabels(context, name, path, reading.volume);
   const int slice = reading.slice.value_or(planar::largestSlice(labels, *reading.label));
@@ -48,12 +48,11 @@ ReadCurve readCurve(Context& context, const std::string& name, const std::string
                        std::to_string(contours.size()) + " contours of slice " +
                        std::to_string(slice));
   }
-  read.curve = contours[reading.contour];
-  read.slice = slice;
-  if (planar::signedArea(read.curve.positions) < 0) {  // a hole's rim: a polygon of its own
-    read.curve.positions = read.curve.positions.colwise().reverse().eval();
+  curve = contours[reading.contour];
+  if (planar::signedArea(curve.positions) < 0) {  // a hole's rim: a polygon of its own
+    curve.positions = curve.positions.colwise().reverse().eval();
   }
-  if (reading.edges) read.curve = planar::resampled(read.curve, *reading.edges);
+  if (reading.edges) curve = planar::resampled(curve, *reading.edges);
   const planar::PlaneFrame frame = planar::frameOfSlice(labels.grid, slice);
   const auto array = [](const Eigen::Vector3d& v) {
     return std::vector<double>{v.x(), v.y(), v.z()};
@@ -63,7 +62,7 @@ ReadCurve readCurve(Context& context, const std::string& name, const std::string
   context.result("plane_origin", array(frame.origin));
   context.result("plane_x", array(frame.axisX));
   context.result("plane_y", array(frame.axisY));
-  return read;
+  return curve;
 }
 
 bool isPolygonTable(const std::string& path) {

@@ -188,7 +188,8 @@ std::vector<Cut> meetingsOf(const Annulus& annulus, const Fronts& fronts, double
       // Where |x + t h e - p| = |x + t h e - q|.
       const double slope = 2 * h[a] * (q[a] - p[a]);
       const double t = slope > 0 ? ((x - q).squaredNorm() - (x - p).squaredNorm()) / slope : 0.5;
-      parts[number / kBlock].push_back({n, a, std::clamp(t, 0.02, 0.98)});
+      const double place = std::clamp(t, 0.02, 0.98);
+      parts[number / kBlock].push_back({n, a, place, 1 - place});
     }
   });
   std::vector<Cut> cuts;

@@ -71,23 +71,6 @@ std::vector<std::int32_t> turnedOver(const TriangleMesh& mesh) {
   return faces;
 }
 
-int timesCovered(const TriangleMesh& mesh) {
-  const auto count = static_cast<std::size_t>(mesh.faceCount());
-  const double angle =
-      parallelSum(count, kFacesATask, 0.0, [&](std::size_t begin, std::size_t end) {
-        double sum = 0;
-        for (std::size_t f = begin; f < end; ++f) {
-          const auto face = static_cast<Eigen::Index>(f);
-          const Point a = mesh.corner(face, 0).normalized(), b = mesh.corner(face, 1).normalized(),
-                      c = mesh.corner(face, 2).normalized();
-          // tan(angle / 2) [Oosterom1983, Eq. 8]
-          sum += 2 * std::atan2(a.dot(b.cross(c)), 1 + a.dot(b) + b.dot(c) + c.dot(a));
-        }
-        return sum;
-      });
-  return static_cast<int>(std::lround(angle / (4 * kPi)));
-}
-
 SphereLocator::SphereLocator(TriangleMesh mesh) : mesh_(std::move(mesh)) {
   if (!(mesh_.positions.rowwise().squaredNorm().minCoeff() > 0)) {
     throw InvalidInput("sphere: a vertex is at the origin, so that it has no direction");

@@ -4,6 +4,7 @@
 #include "Explica/Geometry/SphereLocator.h"
 
 #include "Explica/Geometry/Fixtures.h"
+#include "Explica/Testing/TimesCovered.h"
 
 #include <gtest/gtest.h>
 
@@ -63,7 +64,7 @@ TEST(SphereLocator, FindsAFaceOnFourFacesEachAQuarterOfTheSphere) {
   tetrahedron.faces.resize(4, 3);
   tetrahedron.faces << 0, 3, 1, 0, 1, 2, 0, 2, 3, 1, 3, 2;
   ASSERT_TRUE(turnedOver(tetrahedron).empty());
-  ASSERT_EQ(timesCovered(tetrahedron), 1);
+  ASSERT_EQ(testing::timesCovered(tetrahedron), 1);
   const SphereLocator locator(tetrahedron);
   for (const Vector& x :
        {Vector(1, 0, 0), Vector(0, -1, 0), Vector(-1, -1, -1), Vector(-1, 1, 1)}) {
@@ -76,7 +77,7 @@ TEST(SphereLocator, FindsAFaceOnFourFacesEachAQuarterOfTheSphere) {
 TEST(TurnedOver, FindsTheFacesOfAVertexBeyondItsRing) {
   TriangleMesh mesh = makeIcosphere(3);
   EXPECT_TRUE(turnedOver(mesh).empty());
-  EXPECT_EQ(timesCovered(mesh), 1);
+  EXPECT_EQ(testing::timesCovered(mesh), 1);
   const Eigen::RowVector3d beyond =
       mesh.positions.row(mesh.faces(0, 1)) + mesh.positions.row(mesh.faces(0, 2));
   mesh.positions.row(mesh.faces(0, 0)) =
@@ -86,7 +87,7 @@ TEST(TurnedOver, FindsTheFacesOfAVertexBeyondItsRing) {
   EXPECT_EQ(turned.front(), 0);
   mesh.faces.col(1).swap(mesh.faces.col(2));
   EXPECT_EQ(static_cast<Eigen::Index>(turnedOver(mesh).size()), mesh.faceCount() - 1);
-  EXPECT_EQ(timesCovered(mesh), -1);
+  EXPECT_EQ(testing::timesCovered(mesh), -1);
 }
 
 TEST(SphericalOrientation, IsExactWhereDeterminantsRound) {

@@ -91,8 +91,10 @@ double crossing(double before, double a, double b, double after) {
 }
 
 /// Numbers the tissue and makes its links; fractions stay 1.
+/// @param cutBits  per voxel and direction whether a boundary cuts that link, the inner one where
+///                 `innerBits` says so; both may be empty
 void number(Annulus& annulus, const std::vector<Code>& sites,
-            const std::vector<std::uint8_t>& cutBits) {
+            const std::vector<std::uint8_t>& cutBits, const std::vector<std::uint8_t>& innerBits) {
   const auto strides = annulus.strides();
   const std::size_t total = sites.size();
   const std::size_t sliceSize = static_cast<std::size_t>(annulus.size[0]) * annulus.size[1];
@@ -158,7 +160,7 @@ void number(Annulus& annulus, const std::vector<Code>& sites,
       const bool cut = !cutBits.empty() && (cutBits[p] >> d & 1);
       const bool leavesSlice = annulus.planar && axisOf(d) == 2;
       annulus.links[n][d] = leavesSlice ? kInsulated
-                            : cut       ? kOuter
+                            : cut       ? (innerBits[p] >> d & 1 ? kInner : kOuter)
                                         : annulus.numberAt[p + signOf(d) * strides[axisOf(d)]];
     }
   });
@@ -353,12 +355,12 @@ void noteContacts(Annulus& annulus, const std::vector<Code>& sites, const Monito
 
 /// Where a boundary lies on the link from box voxel p, s its subscripts, in direction d: fraction
 /// of the spacing.
-using PlaceOnLink =
+using PlaceInBox =
     std::function<double(std::int32_t p, const std::array<int, 3>& s, int d, bool inner)>;
 
 /// Sites of the box to the annulus.
 Annulus assemble(const Grid& grid, const Box& box, std::vector<Code> sites,
-                 const PlaceOnLink& placeOnLink, const AnnulusOptions& options,
+                 const PlaceInBox& placeOnLink, const AnnulusOptions& options,
                  const Monitor& monitor) {
   Annulus annulus;
   annulus.grid = grid;
@@ -385,7 +387,7 @@ Annulus assemble(const Grid& grid, const Box& box, std::vector<Code> sites,
   }
   noteContacts(annulus, sites, monitor);
   keepSpanningPieces(annulus, sites);
-  number(annulus, sites, {});
+  number(annulus, sites, {}, {});
   if (options.boundary == BoundaryModel::Staircase) return annulus;
 
   parallelFor(annulus.count(), 1 << 12, [&](std::size_t index) {
@@ -747,6 +749,16 @@ Annulus annulusFromSites(const Volume<Site>& sites, const Volume<float>& innerLe
   return assemble(grid, box, std::move(codes), placeOnLink, options, monitor);
 }
 
+Annulus annulusFromSites(const Volume<Site>& sites, const PlaceOnLink& placeOnLink,
+                         const AnnulusOptions& options, const Monitor& monitor) {
+  auto [grid, box, codes] = boxOf(sites, 1);
+  const auto inGrid = [&, first = box.first](std::int32_t, const std::array<int, 3>& s, int d,
+                                             bool inner) {
+    return placeOnLink({s[0] + first[0], s[1] + first[1], s[2] + first[2]}, d, inner);
+  };
+  return assemble(grid, box, std::move(codes), inGrid, options, monitor);
+}
+
 Annulus annulusFromLevels(const Volume<float>& inner, const Volume<float>& outer,
                           const LevelOptions& levels, const AnnulusOptions& options,
                           const Volume<std::uint8_t>& insulated, const Monitor& monitor) {
@@ -819,41 +831,48 @@ Annulus withCuts(const Annulus& annulus, const std::vector<Cut>& cuts) {
         break;
     }
   });
-  std::vector<std::uint8_t> cutBits(sites.size(), 0);
+  std::vector<std::uint8_t> cutBits(sites.size(), 0), innerBits(sites.size(), 0);
   // Cuts that the annulus has already.
   parallelFor(annulus.count(), 1 << 14, [&](std::size_t n) {
     const std::int32_t p = annulus.place[n];
     for (int d = 0; d < (annulus.planar ? 4 : 6); ++d) {
-      const std::int32_t q = p + signOf(d) * strides[axisOf(d)];
-      if (annulus.links[n][d] == kOuter && sites[q] == kTissueCode) cutBits[p] |= 1U << d;
+      const std::int32_t q = p + signOf(d) * strides[axisOf(d)], link = annulus.links[n][d];
+      if (sites[q] != kTissueCode || (link != kOuter && link != kInner)) continue;
+      cutBits[p] |= 1U << d;
+      if (link == kInner) innerBits[p] |= 1U << d;
     }
   });
-  for (const Cut& cut : cuts) {
+  const auto ends = [&](const Cut& cut) {
     const std::int32_t p = annulus.place[cut.number];
-    const std::int32_t q = p + strides[cut.axis];
+    return std::array<std::int32_t, 2>{p, p + strides[cut.axis]};
+  };
+  for (const Cut& cut : cuts) {
+    const auto [p, q] = ends(cut);
     if (sites[q] != kTissueCode) continue;
-    cutBits[p] |= 1U << (2 * cut.axis + 1);
-    cutBits[q] |= 1U << (2 * cut.axis);
+    const unsigned up = 1U << (2 * cut.axis + 1), down = 1U << (2 * cut.axis);
+    cutBits[p] |= up;
+    cutBits[q] |= down;
+    innerBits[p] = cut.inner ? innerBits[p] | up : innerBits[p] & ~up;
+    innerBits[q] = cut.inner ? innerBits[q] | down : innerBits[q] & ~down;
   }
   Annulus result = annulus;
-  number(result, sites, cutBits);
+  number(result, sites, cutBits, innerBits);
   parallelFor(annulus.count(), 1 << 14, [&](std::size_t n) {
     const std::int32_t old = annulus.irregular(static_cast<std::int32_t>(n));
     if (old < 0) return;
     result.fractions[result.irregular(result.numberAt[annulus.place[n]])] = annulus.fractions[old];
   });
   for (const Cut& cut : cuts) {
-    const std::int32_t p = annulus.place[cut.number];
-    const std::int32_t q = p + strides[cut.axis];
+    const auto [p, q] = ends(cut);
     if (sites[q] != kTissueCode) continue;
-    const double fraction =
-        annulus.model == BoundaryModel::Staircase
-            ? 1.0
-            : std::clamp(cut.fraction, kSmallestFraction, 1 - kSmallestFraction);
-    const double rest = annulus.model == BoundaryModel::Staircase ? 1.0 : 1 - fraction;
-    result.fractions[result.irregular(result.numberAt[p])][2 * cut.axis + 1] =
-        static_cast<float>(fraction);
-    result.fractions[result.irregular(result.numberAt[q])][2 * cut.axis] = static_cast<float>(rest);
+    const auto put = [&](std::int32_t voxel, int direction, double fraction) {
+      result.fractions[result.irregular(result.numberAt[voxel])][direction] =
+          annulus.model == BoundaryModel::Staircase
+              ? 1.0F
+              : static_cast<float>(std::clamp(fraction, kSmallestFraction, 1 - kSmallestFraction));
+    };
+    put(p, 2 * cut.axis + 1, cut.fraction);
+    put(q, 2 * cut.axis, cut.rest);
   }
   return result;
 }

@@ -4,18 +4,6 @@
 #include "Explica/Inflation/Summary.h"
 
 namespace explica::inflation {
-namespace {
-
-void describeMeasures(Results& t, const std::optional<GlobalMeasures>& measures) {
-  const GlobalMeasures m = measures.value_or(GlobalMeasures{std::nullopt, {}, {}});
-  t.number("viewing_radius", "Radius of the viewing sphere", "mm", "", m.radius);
-  t.change("hidden_viewing_area", "Hidden viewing area", "mm^4", "The thesis's measure (4.6).",
-           m.hiddenViewingArea);
-  t.change("self_occlusion", "Self-occlusion", "mm^4", "The thesis's measure (4.7).",
-           m.selfOcclusion);
-}
-
-}  // namespace
 
 void describe(Results& t, const InflateSummary& s) {
   t.count("faces", "Faces", "", s.faces);
@@ -32,7 +20,6 @@ void describe(Results& t, const InflateSummary& s) {
   t.change("seen", "Seen from somewhere", "share",
            "Share of the area that any point of the enclosing sphere sees.", s.seen)
       .inHead();
-  describeMeasures(t, s.globalMeasures);
   describe(t, s.distortion);
   unfolding::expectAreasKept(t);
   describe(t, s.distances);

@@ -43,16 +43,6 @@ Point2 crossing(const Slice& slice, const LatticeEdge& edge) {
   return {i + (axis == 0 ? t : 0), j + (axis == 1 ? t : 0)};
 }
 
-bool isAmong(const std::vector<Label>& chosen, Label label) {
-  return std::find(chosen.begin(), chosen.end(), label) != chosen.end();
-}
-
-std::string listOf(const std::vector<Label>& labels) {
-  std::string list;
-  for (const Label label : labels) list += (list.empty() ? "" : ", ") + std::to_string(label);
-  return list;
-}
-
 }  // namespace
 
 PlaneFrame frameOfSlice(const Grid& grid, int k) {
@@ -129,11 +119,6 @@ std::vector<Curve> contoursOfSlice(const Volume<float>& field, int k, double lev
 
 std::vector<Curve> contoursOfLabel(const Volume<Label>& labels, Label label, int k,
                                    const ContourOptions& options) {
-  return contoursOfLabels(labels, {label}, k, options);
-}
-
-std::vector<Curve> contoursOfLabels(const Volume<Label>& labels, const std::vector<Label>& chosen,
-                                    int k, const ContourOptions& options) {
   const Grid& grid = labels.grid;
   if (k < 0 || k >= grid.size[2]) {
     throw InvalidInput("slice " + std::to_string(k) + " is not among 0.." +
@@ -147,14 +132,15 @@ std::vector<Curve> contoursOfLabels(const Volume<Label>& labels, const std::vect
   bool any = false;
   for (int j = 0; j < grid.size[1]; ++j) {
     for (int i = 0; i < grid.size[0]; ++i) {
-      const bool in = isAmong(chosen, labels(i, j, k));
+      const bool in = labels(i, j, k) == label;
       mask(i, j, 0) = in ? 1.0F : 0.0F;
       any = any || in;
     }
   }
   if (!any) {
-    const int best = largestSlice(labels, chosen);
-    throw InvalidInput("label " + listOf(chosen) + " is absent from slice " + std::to_string(k) +
+    const int best = largestSlice(labels, label);
+    throw InvalidInput("label " + std::to_string(label) + " is absent from slice " +
+                       std::to_string(k) +
                        (best < 0 ? std::string(" and from the whole volume")
                                  : "; slice " + std::to_string(best) + " holds most of it"));
   }
@@ -181,25 +167,20 @@ std::vector<Curve> contoursOfLabels(const Volume<Label>& labels, const std::vect
   return contoursOfSlice(mask, 0, 0.5);
 }
 
-int largestSlice(const Volume<Label>& labels, const std::vector<Label>& chosen) {
+int largestSlice(const Volume<Label>& labels, Label label) {
   int best = -1;
   std::size_t most = 0;
   const std::size_t sliceSize = static_cast<std::size_t>(labels.grid.size[0]) * labels.grid.size[1];
   for (int k = 0; k < labels.grid.size[2]; ++k) {
     const auto first = labels.data.begin() + static_cast<std::ptrdiff_t>(k * sliceSize);
     const auto count = static_cast<std::size_t>(
-        std::count_if(first, first + static_cast<std::ptrdiff_t>(sliceSize),
-                      [&](Label label) { return isAmong(chosen, label); }));
+        std::count(first, first + static_cast<std::ptrdiff_t>(sliceSize), label));
     if (count > most) {
       most = count;
       best = k;
     }
   }
   return best;
-}
-
-int largestSlice(const Volume<Label>& labels, Label label) {
-  return largestSlice(labels, std::vector<Label>{label});
 }
 
 Curve resampled(const Curve& curve, int edges) {

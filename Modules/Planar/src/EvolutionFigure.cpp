@@ -5,7 +5,6 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Planar/PolygonVisibility.h"
-#include "Explica/Planar/SvgParts.h"
 
 #include <algorithm>
 #include <array>
@@ -15,17 +14,68 @@
 namespace explica::planar {
 namespace {
 
-using svg::format;
-using svg::kMargin;
-using svg::kMostColumns;
-using svg::pair;
-using svg::text;
-
+constexpr double kMargin = 18;        // of pages, pixels
+constexpr int kMostColumns = 3;       // pictures beside each other
+constexpr double kLongestBar = 100;   // SVG units
+constexpr double kLetterWidth = 7.5;  // of 14-unit text, about
 constexpr double kPageWidth = 1180;   // SVG units
 constexpr double kTitleHeight = 46;   // pixels
 constexpr double kArrowRoom = 64;     // on the viewpoint's side
 constexpr double kLegendHeight = 44;  // pixels
 constexpr double kBarLength = 100;    // of the legend's colours
+
+/// The largest of 1, 2, 5 times a power of ten that is not above a length.
+double roundLength(double most) {
+  const double decade = std::pow(10, std::floor(std::log10(most)));
+  for (const double step : {5.0, 2.0}) {
+    if (step * decade <= most) return step * decade;
+  }
+  return decade;
+}
+
+/// A number by a printf pattern with one double.
+std::string format(const char* pattern, double value) {
+  char text[64];
+  std::snprintf(text, sizeof text, pattern, value);
+  return text;
+}
+
+std::string pair(const Point2& page) {
+  return format("%.2f", page.x()) + "," + format("%.2f", page.y());
+}
+
+std::string text(double x, double y, const std::string& words, const std::string& style = "") {
+  return "<text x=\"" + format("%.1f", x) + "\" y=\"" + format("%.1f", y) + "\" " + style + ">" +
+         words + "</text>\n";
+}
+
+std::string pageBegin(double width, double height) {
+  const std::string w = format("%.0f", width);
+  const std::string h = format("%.0f", height);
+  return "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + w + "\" height=\"" + h +
+         "\" viewBox=\"0 0 " + w + " " + h +
+         "\" font-family=\"sans-serif\" font-size=\"14\">\n"
+         "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n";
+}
+
+std::string panelTitle(double x, double y, int panel, const std::string& title) {
+  return text(x, y, std::string("(") + static_cast<char>('a' + panel % 26) + ") " + title,
+              "font-weight=\"bold\"");
+}
+
+/// A bar of a round length and what it stands for; its width with its words, about.
+struct ScaleBar {
+  std::string drawn;
+  double width = 0;
+};
+ScaleBar scaleBar(double x, double y, double scale, const std::string& unit) {
+  const double length = roundLength(kLongestBar / scale);
+  const std::string words = format("%g", length) + " " + unit;
+  return {"<path d=\"M" + pair({x, y}) + " h" + format("%.2f", scale * length) +
+              "\" stroke=\"#222\" stroke-width=\"2.5\"/>\n" +
+              text(x + scale * length + 8, y + 5, words),
+          scale * length + 8 + kLetterWidth * static_cast<double>(words.size())};
+}
 
 /// Blue where an edge faces the viewpoint, grey across, orange where it faces away.
 std::string fluxColour(double flux) {
@@ -110,7 +160,7 @@ void drawLegend(std::string& page, double top, double scale, bool anyCrossing) {
   page += arrow({x, y}, {1, 0});
   page += text(x + 58, y + 5, "direction of view");
   x += 210;
-  const svg::ScaleBar bar = svg::scaleBar(x, y, scale, "units of length");
+  const ScaleBar bar = scaleBar(x, y, scale, "units of length");
   page += bar.drawn;
   if (!anyCrossing) return;
   x += bar.width + 30;
@@ -188,7 +238,7 @@ std::string drawEvolution(bool closed, const Viewpoints& view,
   const double rowHeight = kTitleHeight + roomAbove + drawn + roomBelow + kMargin;
   const double pageHeight = rows * rowHeight + kLegendHeight;
 
-  std::string page = svg::pageBegin(kPageWidth, pageHeight);
+  std::string page = pageBegin(kPageWidth, pageHeight);
   bool anyCrossing = false;
   for (int s = 0; s < count; ++s) {
     const int row = s / columns;
@@ -211,7 +261,7 @@ std::string drawEvolution(bool closed, const Viewpoints& view,
                                 format("%.2f", stage.length);
     const std::string crossed =
         crossings > 0 ? ", crossings " + std::to_string(crossings) : std::string();
-    page += svg::panelTitle(textX, textY, s, stage.title + crossed);
+    page += panelTitle(textX, textY, s, stage.title + crossed);
     page += text(textX, textY + 19, numbers, "fill=\"#444\"");
   }
   drawLegend(page, rows * rowHeight, scale, anyCrossing);

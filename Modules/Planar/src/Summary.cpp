@@ -19,10 +19,6 @@ void describe(Results& t, const PolygonSummary& s) {
   t.number("length_initial", "Length of the region at the start", "", "In the units of the file.",
            s.length);
   t.number("area", "Area of the polygon", "", "", s.area);
-  t.number("self_occlusion", "Self-occlusion", "", "The thesis's measure (4.7).", s.selfOcclusion);
-  t.number("hidden_viewing_arc", "Hidden viewing arc", "", "The thesis's measure (4.6).",
-           s.hiddenViewingArc);
-  t.number("viewing_radius", "Radius of the viewing circle", "", "", s.viewingRadius);
   t.count("self_intersections_initial", "Self-intersections at the start", "Pairs of edges.",
           s.crossings);
 }
@@ -57,17 +53,6 @@ void describe(Results& t, const PolygonUnfoldSummary& s) {
   t.number("seconds", "Time of the unfolding", "s", "", s.seconds);
   t.number("seconds_topology", "Time for knot energy, barrier and collision detection", "s", "",
            s.secondsTopology);
-  t.text("stop_reason", "Stop reason", "", s.stopReason);
-}
-
-void describe(Results& t, const GlobalFlowSummary& s) {
-  describeView(t, s.viewpoints, s.weights);
-  t.change("measure", "Global measure", "", "What the flow descends on.",
-           {s.start.measure, s.end.measure});
-  t.number("length_final", "Length of the region", "", "", s.end.length);
-  t.change("visibility", "Average visibility", "", "", {s.start.visibility, s.end.visibility});
-  t.count("self_intersections_final", "Self-intersections", "Pairs of edges.", s.end.crossings);
-  t.count("iterations", "Iterations", "", s.end.iteration);
   t.text("stop_reason", "Stop reason", "", s.stopReason);
 }
 

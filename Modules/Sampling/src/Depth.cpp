@@ -97,4 +97,15 @@ Positions positionsAtDepth(const TriangleMesh& white, const TriangleMesh& pial, 
       .eval();
 }
 
+Positions positionsAtDepths(const TriangleMesh& white, const TriangleMesh& pial,
+                            const std::vector<double>& depths, DepthKind kind) {
+  const Eigen::Index count = white.vertexCount();
+  Positions points(static_cast<Eigen::Index>(depths.size()) * count, 3);
+  for (std::size_t d = 0; d < depths.size(); ++d) {
+    points.middleRows(static_cast<Eigen::Index>(d) * count, count) =
+        positionsAtDepth(white, pial, depths[d], kind);
+  }
+  return points;
+}
+
 }  // namespace explica::sampling

@@ -6,7 +6,6 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Geometry/FaceTree.h"
-#include "Known.h"
 
 #include <Eigen/Geometry>
 
@@ -55,25 +54,6 @@ NearestOnSurface nearestOn(const TriangleMesh& surface, const Positions& points)
     nearest.distance[row] = std::sqrt(found.squaredDistance);
   });
   return nearest;
-}
-
-Eigen::VectorXd carryOver(const NearestOnSurface& nearest, const Eigen::VectorXd& values) {
-  if (nearest.corners.size() > 0 && nearest.corners.maxCoeff() >= values.size()) {
-    throw InvalidInput("values: there are " + std::to_string(values.size()) +
-                       ", fewer than the surface has vertices");
-  }
-  Eigen::VectorXd result(nearest.distance.size());
-  for (Eigen::Index p = 0; p < result.size(); ++p) {
-    double sum = 0, known = 0;
-    for (int k = 0; k < 3; ++k) {
-      const double value = values[nearest.corners(p, k)];
-      if (!std::isfinite(value)) continue;
-      sum += nearest.weights(p, k) * value;
-      known += nearest.weights(p, k);
-    }
-    result[p] = known >= kEnough ? sum / known : kNaN;
-  }
-  return result;
 }
 
 }  // namespace explica::sampling

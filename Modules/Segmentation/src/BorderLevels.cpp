@@ -100,12 +100,15 @@ void BorderFinder::updateLevel(std::vector<float>& level, const std::vector<floa
 
 void BorderFinder::improve() {
   std::vector<float> outer(slope_.size()), white(slope_.size());
+  // A level that asked its own darker side for fluid would climb through grey matter's noise where
+  // a tight mask has left hardly any.
+  const auto fluidAtMost = static_cast<float>(0.5 * (mean_[0] + mean_[1]));
   parallelFor(slope_.size(), kBorderGrain, [&](std::size_t v) {
     const float low = levels_.outer[v], high = levels_.white[v];
     const bool counts = (*samples_.rim)[v] == 0;
     const bool fluid = least_[v]<low, grey = most_[v]> low && least_[v] < high;
     const bool bright = most_[v] > high;
-    outer[v] = counts && fluid && grey && !bright ? slope_[v] : 0;
+    outer[v] = counts && least_[v] < fluidAtMost && grey && !bright ? slope_[v] : 0;
     white[v] = !fluid && grey && bright ? slope_[v] : 0;
   });
   updateLevel(levels_.outer, outer);

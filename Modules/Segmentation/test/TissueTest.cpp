@@ -69,6 +69,27 @@ TEST(TissueSegmentation, FindsThreeTissuesInNoise) {
   EXPECT_NEAR(found.classes[2].mean, 115, 2);
 }
 
+TEST(TissueSegmentation, ATightMaskMakesNoFluidOfGreyMattersNoise) {
+  // All fluid that is left is a ventricle's.
+  Phantom phantom = makePhantom(9, 0);
+  const Grid& grid = phantom.image.grid;
+  const auto share = [](double inside) { return std::clamp(0.5 + inside, 0.0, 1.0); };
+  std::size_t grey = 0, fluid = 0;
+  for (std::size_t v = 0; v < phantom.image.size(); ++v) {
+    const auto [i, j, k] = grid.subscripts(v);
+    const double r = (grid.toWorld(Vector(i, j, k)) - Point::Constant(30)).norm();
+    phantom.image[v] -= static_cast<float>(80 * share(3 - r));
+    if (r > 21) phantom.image[v] = 0;
+  }
+  const TissueSegmentation found = segmentTissue(phantom.image);
+  for (std::size_t v = 0; v < phantom.image.size(); ++v) {
+    if (phantom.image[v] <= 0 || phantom.truth[v] != kGrey) continue;
+    ++grey;
+    fluid += found.labels[v] == kCsf;
+  }
+  EXPECT_LT(static_cast<double>(fluid), 0.01 * static_cast<double>(grey));
+}
+
 TEST(TissueSegmentation, KnowsPureFluidByAVentricle) {
   Phantom phantom = makePhantom(4, 0.1);
   const Grid& grid = phantom.image.grid;

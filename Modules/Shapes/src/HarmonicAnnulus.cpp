@@ -17,7 +17,6 @@ namespace {
 // Of a great circle: between them a range grows by half a percent (one percent in space).
 constexpr int kSamplesPerOrder = 32;
 
-constexpr double kFading = 7;  // what has faded to exp(-7) of a boundary's values cannot be seen
 constexpr int kHighestOrderInPlane = 512;  // 1025 coefficients a boundary
 constexpr int kHighestOrderInSpace = 64;   // 4225 coefficients a boundary
 
@@ -31,10 +30,9 @@ double rangeGrowth(const HarmonicAnnulus& annulus) {
   return annulus.dimension == 2 ? once : once * once;
 }
 
-/// From the centre to a point, or to its image.
+/// From the centre to a point.
 Vector fromCentre(const HarmonicAnnulus& annulus, const Point& point) {
   Vector d = point - annulus.centre;
-  if (annulus.map) d.head<2>() = (*annulus.map)(point.head<2>());
   if (annulus.dimension == 2) d.z() = 0;
   return d;
 }
@@ -79,52 +77,19 @@ void requireUsable(const HarmonicAnnulus& annulus) {
   }
 }
 
-HarmonicAnnulus givenAnnulus(const planar::Curve& inner, const planar::Curve& outer,
-                             std::optional<int> order) {
-  HarmonicAnnulus annulus;
-  annulus.dimension = 2;
-  annulus.map = std::make_shared<const AnnulusMap>(inner, outer);
-  annulus.innerRadius = annulus.map->innerRadius();
-  annulus.outerRadius = annulus.map->outerRadius();
-  // In the middle, frequency n has fallen to exp(-n ln(R/r) / 2).
-  const double reach = 2 * kFading / std::log(annulus.outerRadius / annulus.innerRadius);
-  annulus.order = order.value_or(std::clamp(static_cast<int>(std::ceil(reach)), 16, 256));
-  requireUsable(annulus);
-  return annulus;
-}
-
 bool sameAnnulus(const HarmonicAnnulus& a, const HarmonicAnnulus& b) {
   if (a.dimension != b.dimension || a.order != b.order) return false;
-  if (!a.map != !b.map) return false;
-  if (a.map == b.map) {
-    return a.innerRadius == b.innerRadius && a.outerRadius == b.outerRadius && a.centre == b.centre;
-  }
-  const auto equal = [](const planar::Curve& one, const planar::Curve& other) {
-    return one.vertexCount() == other.vertexCount() && one.positions == other.positions;
-  };
-  return equal(a.map->inner(), b.map->inner()) && equal(a.map->outer(), b.map->outer());
+  return a.innerRadius == b.innerRadius && a.outerRadius == b.outerRadius && a.centre == b.centre;
 }
 
 AnnulusSide sideOf(const HarmonicAnnulus& annulus, const Point& point) {
-  if (annulus.map) return annulus.map->sideOf(point.head<2>());
   const double r = fromCentre(annulus, point).norm();
   if (r <= annulus.innerRadius) return AnnulusSide::Enclosed;
   return r < annulus.outerRadius ? AnnulusSide::Inside : AnnulusSide::Beyond;
 }
 
 double widthOf(const HarmonicAnnulus& annulus) {
-  return annulus.map ? annulus.map->meanWidth() : annulus.outerRadius - annulus.innerRadius;
-}
-
-AnnulusBox boxOf(const HarmonicAnnulus& annulus) {
-  if (!annulus.map) return {annulus.centre, annulus.outerRadius};
-  const Positions2& rim = annulus.map->outer().positions;
-  const planar::Point2 low = rim.colwise().minCoeff().transpose();
-  const planar::Point2 high = rim.colwise().maxCoeff().transpose();
-  AnnulusBox box;
-  box.centre.head<2>() = (low + high) / 2;
-  box.halfSide = (high - low).maxCoeff() / 2;
-  return box;
+  return annulus.outerRadius - annulus.innerRadius;
 }
 
 HarmonicShape concentricShape(const HarmonicAnnulus& annulus) {

@@ -297,14 +297,11 @@ ShapeFit fitShape(const HarmonicAnnulus& annulus, const TargetSamples& target,
                   "fit: the target's point (%.6g, %.6g, %.6g) mm lies outside the annulus",
                   point.x(), point.y(), point.z());
     std::string message = text;
-    if (!annulus.map) {
-      Vector d = point - annulus.centre;
-      if (annulus.dimension == 2) d.z() = 0;
-      std::snprintf(text, sizeof text, ": %.6g mm from its centre, with radii from %.6g to %.6g mm",
-                    d.norm(), annulus.innerRadius, annulus.outerRadius);
-      message += text;
-    }
-    throw InvalidInput(message);
+    Vector d = point - annulus.centre;
+    if (annulus.dimension == 2) d.z() = 0;
+    std::snprintf(text, sizeof text, ": %.6g mm from its centre, with radii from %.6g to %.6g mm",
+                  d.norm(), annulus.innerRadius, annulus.outerRadius);
+    throw InvalidInput(message + text);
   }
   const Fit fit(annulus, target, options);
   Eigen::VectorXd x = fit.initial(options.start);

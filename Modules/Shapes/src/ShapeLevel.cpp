@@ -47,9 +47,8 @@ Grid gridOf(const HarmonicAnnulus& annulus, int voxels) {
   if (voxels < 8) throw InvalidInput("grid: at least 8 voxels per side are needed");
   Grid grid;
   grid.size = {voxels, voxels, annulus.dimension == 2 ? 1 : voxels};
-  const AnnulusBox box = boxOf(annulus);
-  grid.spacing = Vector::Constant(2 * box.halfSide / (voxels - 1));
-  grid.origin = box.centre - Vector::Constant(box.halfSide);
+  grid.spacing = Vector::Constant(2 * annulus.outerRadius / (voxels - 1));
+  grid.origin = annulus.centre - Vector::Constant(annulus.outerRadius);
   if (annulus.dimension == 2) grid.origin.z() = 0;
   return grid;
 }

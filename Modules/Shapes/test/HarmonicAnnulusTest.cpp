@@ -33,15 +33,6 @@ double at(const HarmonicShape& shape, const Point& p) {
   return valuesAt(shape, one)[0];
 }
 
-TEST(HarmonicAnnulus, TheBoxOfOneThatIsGivenHoldsItsLongerAxis) {
-  planar::Curve outer = planar::makeCircle(200, 10, {0, 0});
-  outer.positions.col(1) *= 1.6;
-  outer.positions.rowwise() += Eigen::RowVector2d(3, 4);
-  const AnnulusBox box = boxOf(givenAnnulus(planar::makeCircle(200, 4, {3, 4}), outer));
-  EXPECT_NEAR(box.halfSide, 16, 0.01);
-  EXPECT_LT((box.centre - Point(3, 4, 0)).norm(), 0.01);
-}
-
 TEST(HarmonicAnnulus, FunctionsAreHarmonic) {
   for (const int dimension : {2, 3}) {
     const HarmonicShape shape = anyShape(dimension, 5);

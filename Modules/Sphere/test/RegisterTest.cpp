@@ -7,6 +7,7 @@
 #include "Explica/Core/Parallel.h"
 #include "Explica/Geometry/Fixtures.h"
 #include "Explica/Geometry/SphereLocator.h"
+#include "Explica/Testing/TimesCovered.h"
 
 #include <gtest/gtest.h>
 
@@ -79,7 +80,7 @@ TEST(RegisterSphere, FindsAWarpWithinItsBoundOfAreas) {
   EXPECT_EQ(result.rounding.turnedAfter, 0);
   const TriangleMesh registered{result.positions, moving.sphere.faces};
   EXPECT_TRUE(geometry::turnedOver(registered).empty());
-  EXPECT_EQ(geometry::timesCovered(registered), 1);
+  EXPECT_EQ(testing::timesCovered(registered), 1);
   options.maxAreal = 0.2;
   const auto bounded = registerSphere(moving, target, options);
   // The bound is on flat faces at their heights over the centre, some 0.02 less on this grid.

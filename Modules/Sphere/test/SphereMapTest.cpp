@@ -9,6 +9,7 @@
 #include "Explica/Geometry/Fixtures.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/SphereLocator.h"
+#include "Explica/Testing/TimesCovered.h"
 
 #include <gtest/gtest.h>
 
@@ -20,7 +21,7 @@ namespace {
 void expectOneToOne(const TriangleMesh& surface, const SphereMap& map) {
   const TriangleMesh image{map.positions, surface.faces};
   EXPECT_TRUE(geometry::turnedOver(image).empty());
-  EXPECT_EQ(geometry::timesCovered(image), 1);
+  EXPECT_EQ(testing::timesCovered(image), 1);
   const Positions rounded = map.positions.cast<float>().cast<double>();
   EXPECT_TRUE(map.positions == rounded);
   EXPECT_NEAR(map.positions.rowwise().norm().minCoeff(), kSphereRadius, 1e-4);

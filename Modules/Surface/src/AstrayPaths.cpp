@@ -33,9 +33,8 @@ std::int64_t shortenAstray(const TriangleMesh& white, double voxel,
   std::int64_t shortened = 0;
   for (std::size_t v = 0; v < paths.size(); ++v) {
     if (most[v] == kInfinity) continue;
-    const TrajectoryEnd end = paths[v].end;
     paths[v] = between(paths[v], 0, most[v]);
-    paths[v].end = end;
+    paths[v].end = TrajectoryEnd::Astray;
     ++shortened;
   }
   return shortened;

@@ -3,6 +3,7 @@
 
 #include "Explica/Surface/CorticalSurface.h"
 
+#include "AnnulusBetween.h"
 #include "AstrayPaths.h"
 #include "ColumnMeasures.h"
 #include "Explica/Core/Errors.h"
@@ -21,6 +22,7 @@
 #include "GuardedMesh.h"
 #include "ImageBorder.h"
 #include "KeepRoom.h"
+#include "LevelOfEnds.h"
 #include "MendTogether.h"
 #include "OntoLevel.h"
 #include "PathProfile.h"
@@ -36,7 +38,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <optional>
 #include <string>
 #include <utility>
 
@@ -77,22 +78,24 @@ constexpr double kLongestEdge = 3.1;
 constexpr double kRoughness = 0.2;
 /// In which the outer surface grows, even: 2 or 20 move the pial area of bert by 0.01 %.
 constexpr int kGrowthSteps = 6;
+/// Sweeps of each relaxation of the outer surface, which then grows again: a relaxation shrinks
+/// crowns and opens closed sulci where it slides vertices far.
+constexpr std::array kRelaxations = {16, 4, 4};
 
 Point stayThere(std::int32_t, const Point& point, const Vector&) {
   return point;
 }
 
-/// From a point towards the surface so far outside the zero of a level set, along its gradient, as
-/// far as `most`, mm; nowhere if the level does not fall outward.
-Point towardsBorder(const LevelSet& level, double outside, const Point& from, const Vector& normal,
-                    double most) {
+/// From a point towards the zero of a level set along its gradient, as far as `most`, mm; nowhere
+/// if the level does not fall outward.
+Point towardsBorder(const LevelSet& level, const Point& from, const Vector& normal, double most) {
   const double voxel = voxelSize(level.grid);
   Point p = from;
   for (int step = 0; step < 2; ++step) {
     const LevelSample s = sample(level, p);
     const double squared = s.gradient.squaredNorm();
     if (squared * voxel * voxel < kFlatLevel || s.gradient.dot(normal) > 0) return from;
-    p -= (s.value / squared + outside / std::sqrt(squared)) * s.gradient;
+    p -= s.value / squared * s.gradient;
     const double way = (p - from).norm();
     if (way > most) return from + most / way * (p - from);
   }
@@ -121,7 +124,6 @@ void requirePrecision(const Grid& grid) {
 struct GrowingColumns {
   CorticalTissue tissue;  ///< corrected
   std::vector<Trajectory> paths;
-  Eigen::VectorXd outside;  ///< of the outer border beyond that of the labels, mm; 0 without image
 };
 
 /// The tissue between white matter, as its topology was corrected, and what lies outside.  Its
@@ -144,27 +146,35 @@ harmonic::Annulus annulusOf(const CorticalTissue& tissue, const Monitor& monitor
   return harmonic::annulusFromSites(sites, inner, outer, {}, monitor);
 }
 
-correspondence::Ribbon solve(const CorticalTissue& tissue, const Monitor& monitor) {
+Monitor silent(Monitor monitor) {
+  monitor.onProgress = nullptr;
+  return monitor;
+}
+
+correspondence::Ribbon solve(harmonic::Annulus annulus, const Monitor& monitor) {
   monitor.progress(0, "harmonic interpolant");
-  Monitor silent = monitor;
-  silent.onProgress = nullptr;
   correspondence::Ribbon ribbon = correspondence::solveRibbon(
-      annulusOf(tissue, silent), correspondence::SulcusOptions{}, {}, silent);
+      std::move(annulus), correspondence::SulcusOptions{}, {}, silent(monitor));
   checkpoint(monitor);
   return ribbon;
 }
 
 /// A ribbon, and the thickness of its voxels.
 struct RibbonVoxels {
-  explicit RibbonVoxels(correspondence::Ribbon&& solved) : ribbon(std::move(solved)) {}
+  explicit RibbonVoxels(correspondence::Ribbon&& solved)
+      : ribbon(std::move(solved)),
+        found(correspondence::findCorrespondences(ribbon.annulus, ribbon.interpolant)) {}
   correspondence::Ribbon ribbon;
   correspondence::Correspondence found;
 };
 
-/// Ends a path where it no longer leaves white matter behind: from there surfaces that grew along
-/// it would crowd on the floor of a sulcus, or pass into the other bank's columns.
-void endWhereItStalls(const geometry::FaceTree& white, std::int32_t face, double voxel,
-                      Trajectory& path) {
+/// Where a path no longer leaves white matter behind: from there surfaces that grew along it would
+/// crowd on the floor of a sulcus, or pass into the other bank's columns.
+/// @param face   of the white surface near the path's start
+/// @param first  least arc length, mm
+/// @return arc length; the path's own if it leaves white matter behind everywhere
+double stallOf(const geometry::FaceTree& white, std::int32_t face, double voxel, double first,
+               const Trajectory& path) {
   // Along the middle between fronts that meet at 120 degrees, distance grows at half the rate of
   // the way.
   constexpr double kRate = 0.5;
@@ -175,29 +185,28 @@ void endWhereItStalls(const geometry::FaceTree& white, std::int32_t face, double
     return std::sqrt(nearest.squaredDistance);
   };
   const double window = kWindow * voxel, length = path.length();
-  if (length - distanceAt(length) < 0.5 * (1 - kRate) * window) return;  // what it need not look at
-  for (double from = 0.5 * window; from < length; from += 0.5 * window) {
+  const double gained = distanceAt(length) - distanceAt(0);
+  if (length - gained < 0.5 * (1 - kRate) * window) return length;  // what it need not look at
+  for (double from = first; from < length; from += 0.5 * window) {
     const double to = std::min(from + window, length);
     if (to - from < 0.5 * window || distanceAt(to) - distanceAt(from) >= kRate * (to - from)) {
       continue;
     }
-    cut(path, from);
-    path.end = TrajectoryEnd::Bank;
-    return;
+    return from;
   }
+  return length;
 }
 
 /// Trajectories from the white vertices that have tissue upon them.
 void takePaths(const TriangleMesh& white, const RibbonPaths& ribbon, GrowingColumns& columns) {
   const LevelSet& tissue = columns.tissue.tissue;
   constexpr double kOff = 0.125;  // voxels: so far outward tissue begins, or there is none
-  const double off = kOff * voxelSize(tissue.grid);
+  const double voxel = voxelSize(tissue.grid), off = kOff * voxel;
   const Positions normals = geometry::vertexNormals(white);
   const std::vector<std::int32_t> faceAt = geometry::faceOfEachVertex(white);
   const geometry::FaceTree tree(white);
   std::vector<Trajectory>& paths = columns.paths;
   paths.resize(white.vertexCount());
-  columns.outside = Eigen::VectorXd::Zero(white.vertexCount());
   parallelFor(paths.size(), 256, [&](std::size_t v) {
     const auto row = static_cast<Eigen::Index>(v);
     const Point start = white.positions.row(row);
@@ -210,20 +219,21 @@ void takePaths(const TriangleMesh& white, const RibbonPaths& ribbon, GrowingColu
     if (sample(tissue, along(path, path.length() + 4 * off)).value <= 0) {
       path.end = TrajectoryEnd::Outer;
     }
-    endWhereItStalls(tree, faceAt[v], voxelSize(tissue.grid), path);
+    const double stall = stallOf(tree, faceAt[v], voxel, 0.25 * voxel, path);
+    if (stall < path.length()) {
+      cut(path, stall);
+      path.end = TrajectoryEnd::Bank;
+    }
   });
   keepFromMiddles(middleGap(tissue.grid), paths);
 }
 
-/// The same for the search for borders in an image.
-void takePathsForImage(const TriangleMesh& white, GrowingColumns& columns, CorticalSurfaces& result,
-                       const Monitor& monitor) {
+/// Trajectories along which an image is searched for borders.
+void takePathsForImage(const TriangleMesh& white, const Monitor& monitor, GrowingColumns& columns) {
   const RibbonField field(columns.tissue, white, monitor);
-  result.cutLinks = field.cutLinks();
   const Positions normals = geometry::vertexNormals(white);
   const std::vector<std::int32_t> faceAt = geometry::faceOfEachVertex(white);
   columns.paths.resize(white.vertexCount());
-  columns.outside = Eigen::VectorXd::Zero(white.vertexCount());
   parallelFor(columns.paths.size(), 256, [&](std::size_t v) {
     columns.paths[v] = field.trace(white.positions.row(v), normals.row(v), faceAt[v]);
   });
@@ -261,12 +271,10 @@ bool flattens(const GuardedMesh& mesh, std::int32_t v, const Point& to, double l
   });
 }
 
-/// Moves the white surface and the trajectories' ends to where an image changes most steeply.
+/// Moves the white surface and the tissue's outer border to where an image changes most steeply.
 void placeByImage(const Volume<float>& image, double fluid, GrowingColumns& ribbon,
                   CorticalSurfaces& result) {
-  Stopwatch watch;
-  const Grid& grid = ribbon.tissue.white.grid;
-  const double voxel = voxelSize(grid);
+  const double voxel = voxelSize(ribbon.tissue.white.grid);
   TriangleMesh& white = result.white.mesh;
   ImageBorderOptions options;
   options.fluid = fluid;
@@ -295,36 +303,17 @@ void placeByImage(const Volume<float>& image, double fluid, GrowingColumns& ribb
   mending.sweeps = 0;
   white = relaxed(mesh.toMesh(), result.white.edgeLength, {}, stayThere, mending);
   keepRoom(white, roomOf(result.white));
-  for (std::size_t v = 0; v < ribbon.paths.size(); ++v) {
-    const auto row = static_cast<Eigen::Index>(v);
-    Trajectory& path = ribbon.paths[v];
-    if (path.end == TrajectoryEnd::NoRibbon) continue;
-    path = between(path, moved[row], path.length() + borders.outer[row]);
-    path.points.front() = white.positions.row(row);
-    if (borders.outer[row] < -voxel) path.end = TrajectoryEnd::Image;
-  }
-  ribbon.outside = borders.outer;
+  ribbon.tissue.tissue =
+      levelOfEnds(distanceLevelOf(ribbon.tissue.tissue), ribbon.paths, borders.outer);
   result.image.movedWhite = moved.cwiseAbs().mean();
   result.image.movedOuter = borders.outer.cwiseAbs().mean();
-  result.seconds.image = watch.lap();
 }
 
-Eigen::VectorXd lengthsOf(const std::vector<Trajectory>& paths) {
-  Eigen::VectorXd lengths(static_cast<Eigen::Index>(paths.size()));
-  for (std::size_t v = 0; v < paths.size(); ++v) {
-    lengths[static_cast<Eigen::Index>(v)] = paths[v].length();
-  }
-  return lengths;
-}
-
-/// That of the ribbon's voxels; without them, where an image has placed the ends of trajectories,
-/// that of these.
-/// @param lengths  of the trajectories from the white vertices, mm
-void takeThickness(const GrowingColumns& columns, const RibbonVoxels* voxels,
-                   const Eigen::VectorXd& lengths, CorticalSurfaces& result) {
-  result.thickness = voxels ? thicknessAtVertices(voxels->ribbon.annulus, voxels->found, result.mid)
-                            : meanOverSurroundings(result.white.mesh, lengths);
-  for (Eigen::Index v = 0; v < lengths.size(); ++v) {
+/// That of the ribbon's voxels around the middle vertices.
+void takeThickness(const GrowingColumns& columns, const RibbonVoxels& voxels,
+                   CorticalSurfaces& result) {
+  result.thickness = thicknessAtVertices(voxels.ribbon.annulus, voxels.found, result.mid);
+  for (Eigen::Index v = 0; v < result.thickness.size(); ++v) {
     const bool none = columns.paths[v].end == TrajectoryEnd::NoRibbon;
     if (none || !(result.thickness[v] > 0)) result.thickness[v] = 0;
   }
@@ -335,8 +324,8 @@ void takeThickness(const GrowingColumns& columns, const RibbonVoxels* voxels,
 }
 
 /// Vertices that waited on their trajectory and have not come to the outer border by sliding.
-void noteHeldBack(const GrowingColumns& ribbon, const Growth& growth, double least,
-                  CorticalSurfaces& result) {
+void noteHeldBack(const GrowingColumns& ribbon, const LevelSet& outer, const Growth& growth,
+                  double least, CorticalSurfaces& result) {
   double sum = 0;
   for (std::size_t v = 0; v < ribbon.paths.size(); ++v) {
     double missing = growth.missing(v);
@@ -344,9 +333,8 @@ void noteHeldBack(const GrowingColumns& ribbon, const Growth& growth, double lea
     const Point at = result.pial.positions.row(static_cast<Eigen::Index>(v));
     const Trajectory& path = ribbon.paths[v];
     if (path.end == TrajectoryEnd::Outer) {
-      const LevelSample border = sample(ribbon.tissue.tissue, at);
-      missing = std::min(missing, border.value / std::max(border.gradient.norm(), 1e-300) +
-                                      ribbon.outside[static_cast<Eigen::Index>(v)]);
+      const LevelSample border = sample(outer, at);
+      missing = std::min(missing, border.value / std::max(border.gradient.norm(), 1e-300));
     } else {
       const Vector way = path.points.back() - path.points[path.points.size() - 2];
       missing = std::min(missing, (path.points.back() - at).dot(way.normalized()));
@@ -361,8 +349,33 @@ void noteHeldBack(const GrowingColumns& ribbon, const Growth& growth, double lea
   }
 }
 
+/// Takes vertices that slid along their surface, and with it off the outer boundary, towards it
+/// again, a voxel at most.
+void growAgain(const GrowingColumns& ribbon, const RibbonPaths& along,
+               const geometry::FaceTree& white, TriangleMesh& pial) {
+  const std::vector<std::int32_t> faceAt = geometry::faceOfEachVertex(white.mesh());
+  const double gap = middleGap(ribbon.tissue.white.grid);
+  const double voxel = voxelSize(ribbon.tissue.white.grid);
+  std::vector<Trajectory> rest(ribbon.paths.size());
+  parallelFor(rest.size(), 256, [&](std::size_t v) {
+    const auto row = static_cast<Eigen::Index>(v);
+    const Point start = pial.positions.row(row);
+    rest[v] = RibbonPaths::none(start);
+    if (ribbon.paths[v].end == TrajectoryEnd::NoRibbon) return;
+    const Trajectory path = along.from(start, 1);
+    if (path.end == TrajectoryEnd::NoRibbon) return;
+    const double end = path.length() - (path.end == TrajectoryEnd::Bank ? gap : 0);
+    const double length = std::min(end, stallOf(white, faceAt[v], voxel, 0, path));
+    if (length > 0) rest[v] = between(path, 0, std::min(length, voxel));
+  });
+  Growth growth(pial, rest);
+  growth.goTo(1);
+  pial = growth.mesh();
+}
+
 /// Middle and outer surface out of the white one.
-void growSurfaces(const GrowingColumns& ribbon, CorticalSurfaces& result, const Monitor& monitor) {
+void growSurfaces(const GrowingColumns& ribbon, const RibbonPaths& along, CorticalSurfaces& result,
+                  const Monitor& monitor) {
   const double voxel = voxelSize(ribbon.tissue.white.grid);
   const double edge = result.white.edgeLength;
   std::vector<std::uint8_t> moves(ribbon.paths.size());
@@ -386,16 +399,24 @@ void growSurfaces(const GrowingColumns& ribbon, CorticalSurfaces& result, const 
     }
   }
   const LevelSet& border = ribbon.tissue.tissue;
-  result.pial = relaxed(
-      growth.mesh(), edge, moves,
-      [&](std::int32_t v, const Point& point, const Vector& normal) {
-        return ribbon.paths[v].end == TrajectoryEnd::Outer
-                   ? towardsBorder(border, ribbon.outside[v], point, normal, kNearBorder * voxel)
-                   : point;
-      },
-      relaxation);
+  const auto ontoBorder = [&](std::int32_t v, const Point& point, const Vector& normal) {
+    return ribbon.paths[v].end == TrajectoryEnd::Outer
+               ? towardsBorder(border, point, normal, kNearBorder * voxel)
+               : point;
+  };
+  const geometry::FaceTree white(result.white.mesh);
+  result.pial = growth.mesh();
+  for (const int sweeps : kRelaxations) {
+    relaxation.sweeps = sweeps;
+    result.pial = relaxed(result.pial, edge, moves, ontoBorder, relaxation);
+    growAgain(ribbon, along, white, result.pial);
+    relaxation.bend = 0;  // what has been evened only slides
+  }
+  RelaxationOptions mending;
+  mending.sweeps = 0;
+  result.pial = relaxed(result.pial, edge, moves, ontoBorder, mending);
   keepRoom(result.pial, roomOf(result.white));
-  noteHeldBack(ribbon, growth, kNoShortfall * voxel, result);
+  noteHeldBack(ribbon, border, growth, kNoShortfall * voxel, result);
 }
 
 /// Takes what is too small or too long out of all three surfaces together.
@@ -476,34 +497,27 @@ CorticalSurfaces build(const CorticalTissue& tissue, const Volume<float>* image,
   Stopwatch watch;
   GrowingColumns ribbon;
   ribbon.tissue = corrected(tissue, result.white.level);
-  std::optional<RibbonVoxels> voxels;
   if (image != nullptr) {
-    takePathsForImage(result.white.mesh, ribbon, result, partOf(monitor, 0.5, 0.7));
-    result.seconds.trajectories = watch.lap();
+    takePathsForImage(result.white.mesh, partOf(monitor, 0.5, 0.6), ribbon);
     placeByImage(*image, options.fluid, ribbon, result);
-  } else {
-    voxels.emplace(solve(ribbon.tissue, partOf(monitor, 0.5, 0.65)));
-    result.cutLinks = static_cast<std::int64_t>(voxels->ribbon.sulcalVoxels.size());
-    result.seconds.interpolant = watch.lap();
-    takePaths(result.white.mesh, RibbonPaths(voxels->ribbon), ribbon);
-    voxels->found =
-        correspondence::findCorrespondences(voxels->ribbon.annulus, voxels->ribbon.interpolant);
-    result.seconds.trajectories = watch.lap();
+    result.seconds.image = watch.lap();
   }
-  const Eigen::VectorXd lengths = lengthsOf(ribbon.paths);
+  const RibbonVoxels voxels(
+      solve(image != nullptr ? annulusBetween(result.white.mesh, ribbon.tissue, silent(monitor))
+                             : annulusOf(ribbon.tissue, silent(monitor)),
+            partOf(monitor, 0.6, 0.7)));
+  result.cutLinks = static_cast<std::int64_t>(voxels.ribbon.sulcalVoxels.size());
+  result.seconds.interpolant = watch.lap();
+  const RibbonPaths trajectories(voxels.ribbon);
+  takePaths(result.white.mesh, trajectories, ribbon);
+  result.seconds.trajectories = watch.lap();
   result.shortened = shortenAstray(result.white.mesh, voxelSize(tissue.white.grid), ribbon.paths);
-  watch.lap();
-  growSurfaces(ribbon, result, partOf(monitor, 0.7, 0.96));
-  takeThickness(ribbon, voxels ? &*voxels : nullptr, lengths, result);
+  growSurfaces(ribbon, trajectories, result, partOf(monitor, 0.7, 0.96));
+  takeThickness(ribbon, voxels, result);
   mendTriangles(result);
-  if (voxels) {
-    Columns around = columnsAround(voxels->ribbon.annulus, voxels->found, result.mid);
-    result.columnArea = std::move(around.area);
-    result.columnThickness = std::move(around.thickness);
-  } else {
-    result.columnArea = geometry::vertexAreas(result.mid);
-    result.columnThickness = result.thickness;
-  }
+  Columns around = columnsAround(voxels.ribbon.annulus, voxels.found, result.mid);
+  result.columnArea = std::move(around.area);
+  result.columnThickness = std::move(around.thickness);
   result.seconds.growing = watch.lap();
 
   monitor.progress(0.96, "curvature and depth");

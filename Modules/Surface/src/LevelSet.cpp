@@ -26,10 +26,47 @@ struct Seen {
   int crossings = 0;                                 ///< of the voxel's links; 0: not beside it
 };
 
+/// The zero of a level set as LabelBoundary describes that of labels: linear between voxel centres.
+class ZeroBoundary {
+ public:
+  explicit ZeroBoundary(const LevelSet& level) : level_(level) {}
+
+  /// From voxel p towards the next one along an axis, voxels.
+  [[nodiscard]] double place(std::int32_t p, int axis) const {
+    const double here = level_[p], there = level_[p + stride(axis)];
+    return here / (here - there);
+  }
+  /// Outward there, per voxel of each axis, of any length.
+  [[nodiscard]] Eigen::Vector3f normal(std::int32_t p, int axis) const {
+    Eigen::Vector3f rise;
+    for (int a = 0; a < 3; ++a) {
+      rise[a] = a == axis ? level_[p + stride(a)] - level_[p]
+                          : 0.5F * (slope(p, a) + slope(p + stride(axis), a));
+    }
+    return -rise;
+  }
+
+ private:
+  [[nodiscard]] std::int32_t stride(int axis) const {
+    const auto& n = level_.grid.size;
+    return axis == 0 ? 1 : axis == 1 ? n[0] : n[0] * n[1];
+  }
+  [[nodiscard]] float slope(std::int32_t p, int axis) const {
+    const int at = level_.grid.subscripts(static_cast<std::size_t>(p))[axis];
+    const std::int32_t before = at > 0 ? p - stride(axis) : p;
+    const std::int32_t after = at + 1 < level_.grid.size[axis] ? p + stride(axis) : p;
+    return after > before ? (level_[after] - level_[before]) /
+                                static_cast<float>((after - before) / stride(axis))
+                          : 0;
+  }
+  const LevelSet& level_;
+};
+
 /// Means over a voxel's crossed links of the distance to the tangent plane there, and of its
 /// normal.
+template <class Boundary>
 Seen seenFrom(const std::array<int, 3>& at, const Volume<std::uint8_t>& mask,
-              const harmonic::LabelBoundary& boundary) {
+              const Boundary& boundary) {
   const auto& n = mask.grid.size;
   const std::array<std::int32_t, 3> strides = {1, n[0], n[0] * n[1]};
   const auto p = static_cast<std::int32_t>(mask.grid.linear(at[0], at[1], at[2]));
@@ -153,15 +190,11 @@ class CrossedRows {
   std::vector<std::array<int, 2>> rows_;
 };
 
-}  // namespace
-
-LevelSet levelSetOf(const Volume<std::uint8_t>& mask) {
-  const Grid& grid = mask.grid;
+/// Distance to a boundary between voxels of two sides, 1 inside, in bands of it.
+template <class Boundary>
+LevelSet distanceTo(const Boundary& boundary, const Volume<std::uint8_t>& side) {
+  const Grid& grid = side.grid;
   const auto& n = grid.size;
-  Volume<std::uint8_t> side(grid);
-  parallelFor(side.size(), 1 << 16, [&](std::size_t v) { side[v] = mask[v] ? 1 : 0; });
-  const harmonic::LabelBoundary boundary(side.data, n, 3, kTrust);
-
   std::vector<std::vector<Seen>> seenIn(n[2]);
   std::vector<std::int32_t> numberOf(side.size(), -1);  // within the slice
   parallelFor(n[2], 1, [&](std::size_t slice) {
@@ -219,6 +252,21 @@ LevelSet levelSetOf(const Volume<std::uint8_t>& mask) {
     }
   });
   return level;
+}
+
+}  // namespace
+
+LevelSet levelSetOf(const Volume<std::uint8_t>& mask) {
+  Volume<std::uint8_t> side(mask.grid);
+  parallelFor(side.size(), 1 << 16, [&](std::size_t v) { side[v] = mask[v] ? 1 : 0; });
+  const harmonic::LabelBoundary boundary(side.data, mask.grid.size, 3, kTrust);
+  return distanceTo(boundary, side);
+}
+
+LevelSet distanceLevelOf(const LevelSet& level) {
+  Volume<std::uint8_t> side(level.grid);
+  parallelFor(side.size(), 1 << 16, [&](std::size_t v) { side[v] = level[v] > 0 ? 1 : 0; });
+  return distanceTo(ZeroBoundary(level), side);
 }
 
 LevelSet levelSetOf(const Volume<float>& share) {

@@ -3,7 +3,6 @@
 
 #include "Explica/Surface/Measures.h"
 
-#include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Surface/LevelSet.h"
 
@@ -19,21 +18,6 @@ double radiusOfVoxels(std::int64_t count, const Grid& grid) {
   const double unit = voxelSize(grid);
   const double volume = static_cast<double>(count) * (grid.spacing / unit).prod();
   return unit * std::cbrt(3 * volume / (4 * kPi));
-}
-
-Eigen::VectorXd meanOverSurroundings(const TriangleMesh& mesh, const Eigen::VectorXd& values) {
-  const Eigen::VectorXd areas = geometry::faceAreas(mesh);
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(values.size()), weight = sum;
-  for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
-    const Eigen::Vector3d at = values(mesh.faces.row(f));
-    if ((at.array() == 0).any()) continue;
-    // The integral of a linear function times the corner's hat function over that of the latter.
-    for (int c = 0; c < 3; ++c) {
-      sum[mesh.faces(f, c)] += areas[f] * (at.sum() + at[c]) / 4;
-      weight[mesh.faces(f, c)] += areas[f];
-    }
-  }
-  return (weight.array() > 0).select(sum.array() / weight.array(), values.array());
 }
 
 Evenness evennessOf(const TriangleMesh& mesh) {

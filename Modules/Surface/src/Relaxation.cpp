@@ -58,7 +58,7 @@ struct Limits {
 // Stricter than kUnsound: mended while surfaces grow.
 constexpr Limits kCrumpled{0.55, 2.7, 0.05, 1.2, 0.75};
 /// What must not be left: 4 mm, 0.02 mm^2 and 1.5 mm where edges are 1.16 mm.
-constexpr Limits kUnsound{0, 3.3, 0.02, 0.9, -1};
+constexpr Limits kUnsound{0, 3.3, 0.02, 1.2, -1};
 
 /// True if a face is too small, too long or too flat.
 bool isPoor(const GuardedMesh& mesh, std::int32_t f, double edge, const Limits& limits) {

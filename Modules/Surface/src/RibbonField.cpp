@@ -167,7 +167,8 @@ std::vector<harmonic::Cut> RibbonField::betweenBanks(const harmonic::Annulus& ri
       //   dn + f h cn = dm + (1 - f) h cm.
       const auto h = static_cast<float>(grid_.spacing[axis]);
       const float f = (there.distance - here.distance + h * cm) / (h * (cn + cm));
-      cuts.push_back({static_cast<std::int32_t>(n), axis, std::clamp(f, 0.05F, 0.95F)});
+      const float place = std::clamp(f, 0.05F, 0.95F);
+      cuts.push_back({static_cast<std::int32_t>(n), axis, place, 1 - place});
     }
   }
   return cuts;

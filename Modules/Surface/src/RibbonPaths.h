@@ -15,7 +15,7 @@ namespace explica::surface {
 enum class TrajectoryEnd : std::uint8_t {
   Outer,    ///< the outer boundary
   Bank,     ///< the middle between the banks of a buried sulcus
-  Image,    ///< a border that an image shows far inside of the outer boundary
+  Astray,   ///< where those around end, inside of the boundary
   NoRibbon  ///< there is no tissue at the start
 };
 

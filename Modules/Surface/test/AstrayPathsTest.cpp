@@ -44,7 +44,7 @@ TEST(AstrayPaths, OneFarLongerThanAllAroundEndsAtTheirMedian) {
   EXPECT_EQ(shortenAstray(white, 1, paths), 1);
   EXPECT_NEAR(paths[kMiddle].length(), 3, 1e-6);
   EXPECT_LT((paths[kMiddle].points.back() - Point(4, 4, 3)).norm(), 1e-6);
-  EXPECT_EQ(paths[kMiddle].end, TrajectoryEnd::Bank);
+  EXPECT_EQ(paths[kMiddle].end, TrajectoryEnd::Astray);
   EXPECT_NEAR(paths[kMiddle + 1].length(), 3.8, 1e-6);
   EXPECT_EQ(paths[3].end, TrajectoryEnd::NoRibbon);
 }

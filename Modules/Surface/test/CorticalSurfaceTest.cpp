@@ -593,8 +593,8 @@ TEST(CorticalSurface, AnImageWithoutEdgesLeavesTheLabelsBorders) {
   EXPECT_EQ(made.image.missingWhite, made.thickness.size());
   EXPECT_EQ(made.image.missingOuter, made.thickness.size());
   EXPECT_EQ(made.white.mesh.positions, plain.white.mesh.positions);
-  // The two follow trajectories of their own.
-  EXPECT_LT((made.pial.positions - plain.pial.positions).rowwise().norm().maxCoeff(), 0.1);
+  // The one's inner border is the mesh, the other's the level.
+  EXPECT_LT((made.pial.positions - plain.pial.positions).rowwise().norm().maxCoeff(), 0.15);
 }
 
 TEST(CorticalSurface, HoldsFoldsApart) {

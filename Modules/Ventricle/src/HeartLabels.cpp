@@ -135,21 +135,6 @@ HeartRoles findRoles(const std::vector<Volume<Label>>& frames, const HeartLabelO
   return roles;
 }
 
-Volume<Label> heartOf(const harmonic::Annulus& annulus) {
-  Volume<Label> heart(annulus.grid, kOutside);
-  const auto& size = annulus.size;
-  for (std::size_t p = 0; p < annulus.numberAt.size(); ++p) {
-    const std::size_t row = p / size[0];
-    const int i = static_cast<int>(p % size[0]) + annulus.first[0];
-    const int j = static_cast<int>(row % size[1]) + annulus.first[1];
-    const int k = static_cast<int>(row / size[1]) + annulus.first[2];
-    if (!heart.grid.contains(i, j, k)) continue;
-    if (annulus.numberAt[p] >= 0) heart(i, j, k) = kWall;
-    if (annulus.numberAt[p] == harmonic::kInner) heart(i, j, k) = kCavity;
-  }
-  return heart;
-}
-
 Volume<Label> relabelled(const Volume<Label>& frame, const HeartRoles& roles) {
   Volume<Label> heart(frame.grid, kOutside);
   parallelFor(frame.size(), 1 << 16, [&](std::size_t v) {

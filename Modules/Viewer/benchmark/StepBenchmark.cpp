@@ -24,7 +24,7 @@ void unfoldWatched(benchmark::State& state, const TriangleMesh& surface, const P
   Session session(surface);
   Choice choice;
   choice.centre = session.nearestVertex(centre);
-  choice.view.directions = {direction};
+  choice.view.direction = direction;
   choice.unfold.unfolder.surround = surround;
   const unfolding::Region region = session.choose(choice).region;
   if (!session.problem().empty()) {

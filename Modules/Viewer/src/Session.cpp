@@ -5,7 +5,6 @@
 
 #include "Explica/Collision/Untangling.h"
 #include "Explica/Core/Errors.h"
-#include "Explica/Geometry/FaceTree.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Unfolding/Account.h"
 #include "Explica/Unfolding/Continuation.h"
@@ -41,44 +40,15 @@ unfolding::Region regionOf(const TriangleMesh& surface, const Choice& choice) {
   return unfolding::selectRegion(surface, options);
 }
 
-bool countAlike(const std::vector<double>& weights) {
-  return std::adjacent_find(weights.begin(), weights.end(), std::not_equal_to<>()) == weights.end();
-}
-
-/// Where `explica unfold` puts them with the options of optionsOf().
+/// Where `explica unfold` puts it with the options of optionsOf().
 visibility::Viewpoints viewpointsOf(const View& view, const Point& centre) {
-  if (view.kind == ViewKind::Line) {
-    if (view.line[0] == view.line[1]) throw InvalidInput("the line to look from has no length");
-    return visibility::viewLine(view.line[0], view.line[1]);
-  }
-  if (view.kind == ViewKind::Surface) {
-    if (!view.surface) throw InvalidInput("no surface to look from is opened");
-    return visibility::viewSurface(view.surface->mesh);
-  }
-  std::vector<Point> points;
-  for (const Vector& d : view.directions) points.push_back(centre + view.distance / d.norm() * d);
-  return visibility::viewpoints(points,
-                                countAlike(view.weights) ? std::vector<double>{} : view.weights);
+  return visibility::viewpoint(centre + view.distance / view.direction.norm() * view.direction);
 }
 
 using CommandOptions = std::vector<std::pair<std::string, std::string>>;
 
 CommandOptions optionsOf(const View& view) {
-  if (view.kind == ViewKind::Line) {
-    return {{"view-line", exactText(view.line[0]) + "," + exactText(view.line[1])}};
-  }
-  if (view.kind == ViewKind::Surface) {
-    return {{"view-surface", view.surface ? view.surface->file : ""}};
-  }
-  CommandOptions options;
-  for (const Vector& d : view.directions) options.emplace_back("direction", exactText(d));
-  options.emplace_back("distance", exactText(view.distance));
-  if (!countAlike(view.weights)) {
-    std::string weights;
-    for (const double w : view.weights) weights += (weights.empty() ? "" : ",") + exactText(w);
-    options.emplace_back("view-weights", weights);
-  }
-  return options;
+  return {{"direction", exactText(view.direction)}, {"distance", exactText(view.distance)}};
 }
 
 /// A state, kept as what differs from the start: a region moves, the rest of a hemisphere does not.
@@ -111,10 +81,9 @@ Positions positionsOf(const Kept& kept, const Positions& start) {
 }  // namespace
 
 struct Session::Implementation {
-  explicit Implementation(TriangleMesh mesh) : surface(std::move(mesh)), tree(surface) {}
+  explicit Implementation(TriangleMesh mesh) : surface(std::move(mesh)) {}
 
   const TriangleMesh surface;
-  const geometry::FaceTree tree;
   Choice choice;
   Preview preview;
 
@@ -275,20 +244,6 @@ Point Session::centre() const {
 
 visibility::Viewpoints Session::viewpoints() const {
   return self_->viewpoints();
-}
-
-std::int32_t Session::nearestVertex(const Point& point) const {
-  const Implementation& s = *self_;
-  const geometry::ClosestPoint nearest = s.tree.closestPoint(point);
-  std::int32_t best = s.surface.faces(nearest.face, 0);
-  for (int k = 0; k < 3; ++k) {
-    const std::int32_t v = s.surface.faces(nearest.face, k);
-    if ((s.surface.positions.row(v).transpose() - point).norm() <
-        (s.surface.positions.row(best).transpose() - point).norm()) {
-      best = v;
-    }
-  }
-  return best;
 }
 
 void Session::run() {

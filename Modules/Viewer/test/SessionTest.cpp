@@ -20,7 +20,10 @@ namespace {
 /// A folded ball of 30 mm, its region at the side that faces -x.
 Choice sideChoice(const Session& session) {
   Choice choice;
-  choice.centre = session.nearestVertex(Point(-30, 0, 0));
+  (session.surface().positions.rowwise() - Eigen::RowVector3d(-30, 0, 0))
+      .rowwise()
+      .norm()
+      .minCoeff(&choice.centre);
   choice.radius = 12;
   choice.unfold.targetVisibility = 1;  // out of reach: it does not end while it is watched
   return choice;
@@ -46,30 +49,11 @@ TEST(Session, PreviewFollowsTheChoice) {
 TEST(Session, RegionSeenFromBehindIsAProblem) {
   Session session(geometry::makeFoldedSphere(3, 30));
   Choice choice = sideChoice(session);
-  choice.view.directions = {Vector(1, 0, 0)};
+  choice.view.direction = Vector(1, 0, 0);
   EXPECT_LT(session.choose(choice).visibility, 0);
   EXPECT_NE(session.preview().problem.find("not positive"), std::string::npos);
   session.run();
   EXPECT_EQ(session.activity(), Activity::Choosing);
-}
-
-TEST(Session, TheVisibilityFromSeveralViewpointsIsTheirMean) {
-  Session session(geometry::makeFoldedSphere(3, 30));
-  Choice choice = sideChoice(session);
-  const double one = session.choose(choice).visibility;
-  const Vector other(-1, 0.8, 0);
-  choice.view.directions = {other};
-  const double two = session.choose(choice).visibility;
-  choice.view.directions = {Vector(-1, 0, 0), other};
-  choice.view.weights = {1, 1};
-  EXPECT_NEAR(session.choose(choice).visibility, 0.5 * (one + two), 1e-12);
-  choice.view.weights = {3, 1};
-  EXPECT_NEAR(session.choose(choice).visibility, 0.75 * one + 0.25 * two, 1e-12);
-  ASSERT_EQ(session.viewpoints().points.size(), 2u);
-  const auto options = session.batchOptions(1);
-  EXPECT_EQ(std::count_if(options.begin(), options.end(),
-                          [](const auto& option) { return option.first == "direction"; }),
-            2);
 }
 
 TEST(Session, RunsPausesGoesOnAndKeepsEveryState) {
@@ -194,82 +178,6 @@ TEST(Session, StopsByItselfWhereABatchRunWould) {
   EXPECT_EQ(session.activity(), Activity::Over) << "what is over does not go on";
 }
 
-TEST(Session, SeveralViewpointsCountAlike) {
-  const TriangleMesh ball = geometry::makeFoldedSphere(3, 30);
-  Session session(ball);
-  Choice choice = sideChoice(session);
-  choice.unfold.maxIterations = 3;
-  choice.view.directions.emplace_back(choice.view.directions[0] + 0.4 * Vector::UnitY());
-  choice.view.weights = {1, 1};
-  session.choose(choice);
-  const auto& region = session.preview().region;
-  std::vector<Point> eyes;
-  for (const Vector& direction : choice.view.directions) {
-    eyes.emplace_back(unfolding::centroidOf(ball, region) + 1000 * direction.normalized());
-  }
-  session.run();
-  waitFor(session, 100);
-  const auto result =
-      unfolding::unfold(ball, region, visibility::viewpoints(eyes, {}), choice.unfold);
-  EXPECT_LT((result.mesh.positions - session.moment(3).positions).cwiseAbs().maxCoeff(), 1e-9);
-  int directions = 0;
-  for (const auto& [name, value] : session.batchOptions(3)) directions += name == "direction";
-  EXPECT_EQ(directions, 2);
-}
-
-/// What three iterations give from a view, and what unfold() gives from the same viewpoints.
-void expectSameAsUnfold(const View& view, const visibility::Viewpoints& points,
-                        const std::string& option) {
-  const TriangleMesh ball = geometry::makeFoldedSphere(3, 30);
-  Session session(ball);
-  Choice choice = sideChoice(session);
-  choice.unfold.maxIterations = 3;
-  choice.view = view;
-  session.choose(choice);
-  ASSERT_TRUE(session.preview().problem.empty()) << session.preview().problem;
-  session.run();
-  waitFor(session, 100);
-  const auto result = unfolding::unfold(ball, session.preview().region, points, choice.unfold);
-  EXPECT_EQ(result.mesh.positions, session.moment(3).positions);
-  int options = 0;
-  for (const auto& [name, value] : session.batchOptions(3)) {
-    options += name == option;
-    EXPECT_NE(name, "direction");
-    EXPECT_NE(name, "distance") << "it belongs to --direction";
-  }
-  EXPECT_EQ(options, 1);
-}
-
-TEST(Session, LooksFromALine) {
-  View view;
-  view.kind = ViewKind::Line;
-  view.line = {Point(-80, 0, -20), Point(-80, 10, 60)};
-  expectSameAsUnfold(view, visibility::viewLine(view.line[0], view.line[1]), "view-line");
-}
-
-TEST(Session, LooksFromASurface) {
-  TriangleMesh plate;
-  plate.positions.resize(4, 3);
-  plate.positions << -90, -20, -20, -90, 20, -20, -90, 20, 20, -90, -20, 20;
-  plate.faces.resize(2, 3);
-  plate.faces << 0, 1, 2, 0, 2, 3;
-  View view;
-  view.kind = ViewKind::Surface;
-  view.surface = std::make_shared<ViewSurface>(ViewSurface{"plate.off", plate});
-  expectSameAsUnfold(view, visibility::viewSurface(plate), "view-surface");
-}
-
-TEST(Session, AViewThatIsIncompleteIsAProblem) {
-  Session session(geometry::makeFoldedSphere(3, 30));
-  Choice choice = sideChoice(session);
-  choice.view.kind = ViewKind::Surface;
-  EXPECT_NE(session.choose(choice).problem.find("no surface"), std::string::npos);
-  choice.view.kind = ViewKind::Line;
-  EXPECT_NE(session.choose(choice).problem.find("no length"), std::string::npos);
-  choice.view.kind = ViewKind::Points;
-  EXPECT_TRUE(session.choose(choice).problem.empty());
-}
-
 TEST(Session, ACheckpointContinuesToTheSameStates) {
   const TriangleMesh ball = geometry::makeFoldedSphere(3, 30);
   Session session(ball);
@@ -285,7 +193,7 @@ TEST(Session, ACheckpointContinuesToTheSameStates) {
   EXPECT_EQ(checkpoint->history.size(), 4u);
   const auto& region = session.preview().region;
   const auto view = visibility::viewpoint(unfolding::centroidOf(ball, region) +
-                                          1000 * choice.view.directions[0].normalized());
+                                          1000 * choice.view.direction.normalized());
   const auto result = unfolding::unfold(ball, region, view, choice.unfold, {}, &*checkpoint);
   EXPECT_EQ(result.mesh.positions, session.moment(6).positions);
 }

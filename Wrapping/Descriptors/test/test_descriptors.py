@@ -50,9 +50,6 @@ def samples():
     return {
         f"{name}.json": (FOLDER / "boutiques" / f"{name}.json").read_text(),
         f"{name}.1": (FOLDER / "man" / f"{name}.1").read_text(),
-        f"{name}.py": part(
-            "nipype/explica_nipype.py", "class PhantomShellInputSpec", "        return outputs\n"
-        ),
         f"{name}.bash": part("completion/explica.bash", "    'phantom shell')\n", "\n      ;;\n"),
         f"{name}.zsh": part("completion/_explica", "  'phantom shell')\n", "\n    ;;\n"),
     }
@@ -288,44 +285,6 @@ class ManualPages(unittest.TestCase):
             )  # fmt: skip
             self.assertEqual((done.returncode, done.stderr), (0, ""), page.name)
             self.assertIn("SYNOPSIS", done.stdout)
-
-
-@unittest.skipUnless(importlib.util.find_spec("nipype"), "skipped: python3-nipype is not installed")
-class Nipype(unittest.TestCase):
-    def interfaces(self):
-        path = FOLDER / "nipype" / "explica_nipype.py"
-        spec = importlib.util.spec_from_file_location("explica_nipype", path)
-        module = importlib.util.module_from_spec(spec)
-        spec.loader.exec_module(module)
-        return module
-
-    def test_interface_runs_the_command_and_finds_its_outputs(self):
-        os.environ["PATH"] = f"{EXECUTABLE.parent}:{os.environ['PATH']}"
-        with tempfile.TemporaryDirectory() as folder:
-            shell = self.interfaces().PhantomShell(
-                size=16, aspect=(1.0, 1.0, 2.0), out=os.path.join(folder, "shell")
-            )
-            self.assertIn("--aspect 1.0,1.0,2.0", shell.cmdline)
-            outputs = shell.run().outputs
-            self.assertTrue(os.path.isfile(outputs.labels_nii_gz))
-            self.assertTrue(os.path.isfile(outputs.provenance_json))
-
-    def test_every_command_has_an_interface(self):
-        module = self.interfaces()
-        for command in declarations():
-            name = "".join(w.capitalize() for w in command["command"].split())
-            interface = getattr(module, name)
-            required = {
-                p["name"].lower().replace("_", "-")
-                for p in command["parameters"]
-                if p["required"] or p["name"] == "out"
-            }
-            mandatory = {
-                t.removeprefix("option_").replace("_", "-")
-                for t, trait in interface.input_spec().traits().items()
-                if trait.mandatory
-            }
-            self.assertEqual(mandatory, required)
 
 
 class StudySchema(unittest.TestCase):

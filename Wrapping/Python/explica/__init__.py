@@ -11,7 +11,7 @@ Options are keyword arguments with the names and defaults of the command line: `
 is `max_iterations=100`.
 """
 
-from . import phantoms, planar, provenance, report, shapes, study, types
+from . import phantoms, provenance, report, types
 from ._explica import (
     Error,
     FileError,
@@ -19,7 +19,6 @@ from ._explica import (
     MachineError,
     UsageError,
     Viewpoints,
-    contact_barrier,
     folded_sphere,
     icosphere,
     read_labels,
@@ -27,10 +26,8 @@ from ._explica import (
     read_surface,
     read_vertex_labels,
     read_vertex_maps,
-    rectangle,
     set_threads,
     threads,
-    torus,
     view_line,
     write_curv,
     write_label,
@@ -52,47 +49,31 @@ from ._images import (
 )
 from ._sampling import nearest_columns, positions_at_depth, sample
 from ._surfaces import (
-    KnotEnergy,
     Unfolder,
     average_visibility,
     backfacing_share,
-    closest_points,
-    cotangent_laplacian,
     distance_errors,
     distortion,
     enclosed_volume,
-    extract_faces,
     face_areas,
-    face_components,
     face_normals,
     flat_grid,
     flatten,
     geodesic_distances,
-    hidden_viewing_area,
     inflate,
     inspect_mesh,
-    knot_energy,
-    largest_safe_step,
     mean_curvature,
     sulcal_depth,
-    mean_edge_length,
-    mesh_edges,
-    near_pairs,
     relief_cuts,
     repair_surface,
     select_region,
     self_intersections,
-    self_occlusion,
-    smallest_angles,
     sphere_view,
-    subdivide,
     unfold,
     vertex_areas,
     vertex_flux,
     vertex_normals,
-    view_surface,
     visible_fraction,
-    winding_number,
     write_surface,
 )
 

@@ -1,9 +1,8 @@
 # SPDX-FileCopyrightText: The Explica developers
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures as arrays of pixels, drawn without a display, and the report on an output folder."""
+"""Pictures as arrays of pixels, drawn without a display."""
 
 from ._explica import report as _compiled
-from ._explica.report import encode_gif, page, write_png
 from ._images import of_image as _of_image
 from ._surfaces import as_mesh as _as_mesh
 from ._surfaces import of_mesh as _of_mesh
@@ -24,4 +23,4 @@ def slices(
 
 slices.__doc__ = _slices.__doc__
 
-__all__ = ["encode_gif", "page", "picture", "slices", "write_png"]
+__all__ = ["picture", "slices"]

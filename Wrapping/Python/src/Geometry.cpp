@@ -5,7 +5,6 @@
 #include "Bindings.h"
 #include "Watch.h"
 
-#include "Explica/Geometry/FaceTree.h"
 #include "Explica/Geometry/Fixtures.h"
 #include "Explica/Geometry/Geodesic.h"
 #include "Explica/Geometry/MeshMeasures.h"
@@ -38,7 +37,7 @@ py::dict conditionOf(const geometry::MeshCondition& c) {
       "closed_manifold"_a = c.closedManifold());
 }
 
-/// Areas, normals, angles, lengths and the Laplacian.
+/// Areas, normals and the volume.
 void bindMeasures(py::module_& m) {
   const auto p = py::arg("positions"), f = py::arg("faces");
   m.def(
@@ -71,37 +70,6 @@ void bindMeasures(py::module_& m) {
         return geometry::enclosedVolume(meshOf(positions, faces));
       },
       p, f, "Signed volume of a closed surface, mm^3; positive if faces are outward.");
-  m.def(
-      "smallest_angles",
-      [](const PositionsIn& positions, const FacesIn& faces) {
-        return geometry::smallestAnglesRad(meshOf(positions, faces));
-      },
-      p, f, "Smallest interior angle of each face, radians, shape (F,).");
-  m.def(
-      "mean_edge_length",
-      [](const PositionsIn& positions, const FacesIn& faces) {
-        return geometry::meanEdgeLength(meshOf(positions, faces));
-      },
-      p, f, "Mean length of the edges, mm, each counted once per face.");
-  m.def(
-      "cotangent_laplacian",
-      [](const PositionsIn& positions, const FacesIn& faces) {
-        const auto matrix = geometry::cotangentLaplacian(meshOf(positions, faces));
-        Eigen::VectorXi row(matrix.nonZeros()), column(matrix.nonZeros());
-        Eigen::VectorXd value(matrix.nonZeros());
-        Eigen::Index n = 0;
-        for (Eigen::Index outer = 0; outer < matrix.outerSize(); ++outer) {
-          for (Eigen::SparseMatrix<double>::InnerIterator it(matrix, outer); it; ++it, ++n) {
-            row[n] = static_cast<int>(it.row());
-            column[n] = static_cast<int>(it.col());
-            value[n] = it.value();
-          }
-        }
-        return std::make_tuple(std::move(value), std::move(row), std::move(column));
-      },
-      p, f,
-      "Cotangent Laplacian (V, V), symmetric positive semi-definite, without mass, as\n"
-      "(values, rows, columns): scipy.sparse.coo_matrix((values, (rows, columns))).");
 }
 
 /// What makes a surface usable or not.
@@ -123,7 +91,7 @@ void bindTests(py::module_& m) {
       p, f, "Pairs of faces that intersect, shape (N, 2); decided exactly.");
 }
 
-/// Distances on a surface and from it.
+/// Distances on a surface.
 void bindPlaces(py::module_& m) {
   const auto p = py::arg("positions"), f = py::arg("faces");
   m.def(
@@ -139,85 +107,10 @@ void bindPlaces(py::module_& m) {
       p, f, py::arg("sources"), py::arg("limit") = kInfinity,
       "Distance along the surface from the nearest source vertex, mm, shape (V,); inf beyond "
       "limit.");
-  m.def(
-      "closest_points",
-      [](const PositionsIn& positions, const FacesIn& faces, const PositionsIn& queries) {
-        const TriangleMesh mesh = meshOf(positions, faces);
-        Positions points(queries.rows(), 3);
-        Eigen::VectorXi face(queries.rows());
-        unlocked([&] {
-          const geometry::FaceTree tree(mesh);
-          for (Eigen::Index q = 0; q < queries.rows(); ++q) {
-            const auto nearest = tree.closestPoint(queries.row(q).transpose());
-            points.row(q) = nearest.point.transpose();
-            face[q] = nearest.face;
-          }
-        });
-        return std::make_tuple(std::move(points), std::move(face));
-      },
-      p, f, py::arg("queries"),
-      "Nearest surface points, shape (N, 3), and their faces, shape (N,), of query points (N, 3).");
-}
-
-/// Edges, pieces and parts.
-void bindTopology(py::module_& m) {
-  const auto p = py::arg("positions"), f = py::arg("faces");
-  m.def(
-      "mesh_edges",
-      [](const PositionsIn& positions, const FacesIn& faces) {
-        const TriangleMesh mesh = meshOf(positions, faces);
-        auto topology = geometry::buildTopology(mesh.faces, mesh.vertexCount());
-        return std::make_pair(std::move(topology.edges), std::move(topology.edgeFaces));
-      },
-      p, f,
-      "Edges (E, 2), smaller vertex first, and the faces at each (E, 2), the second -1 on the "
-      "boundary.");
-  m.def(
-      "face_components",
-      [](const PositionsIn& positions, const FacesIn& faces) {
-        const TriangleMesh mesh = meshOf(positions, faces);
-        return columnOf(geometry::faceComponents(mesh.faces, mesh.vertexCount()));
-      },
-      p, f, "Component of each face, (F,), from 0 in the order of their first faces.");
-  m.def(
-      "extract_faces",
-      [](const PositionsIn& positions, const FacesIn& faces,
-         const std::vector<std::int32_t>& wanted) {
-        const TriangleMesh mesh = meshOf(positions, faces);
-        requireFaces(mesh, wanted, "wanted");
-        auto part = geometry::extractFaces(mesh, wanted);
-        return std::make_tuple(std::move(part.mesh.positions), std::move(part.mesh.faces),
-                               columnOf(part.vertexOrigin));
-      },
-      p, f, py::arg("wanted"),
-      "The listed faces on their own vertices only: positions (v, 3), faces (f, 3), and the "
-      "vertex\n"
-      "of the whole that each vertex of the part is, (v,).");
-  m.def(
-      "subdivide",
-      [](const PositionsIn& positions, const FacesIn& faces) {
-        return meshPair(geometry::subdivide(meshOf(positions, faces)));
-      },
-      p, f, "Each face into four by its edges' midpoints; old vertices keep their numbers.");
 }
 
 /// Surfaces whose measures are known.
 void bindFixtures(py::module_& m) {
-  m.def(
-      "torus",
-      [](int majorSegments, int minorSegments, double major, double minor) {
-        return meshPair(geometry::makeTorus(majorSegments, minorSegments, major, minor));
-      },
-      py::arg("major_segments"), py::arg("minor_segments"), py::arg("major"), py::arg("minor"),
-      "Torus about the z axis, `major` mm to the tube's centre, `minor` mm the tube: positions\n"
-      "(V, 3), faces (F, 3).");
-  m.def(
-      "rectangle",
-      [](int columns, int rows, double width, double height) {
-        return meshPair(geometry::makeRectangle(columns, rows, width, height));
-      },
-      py::arg("columns"), py::arg("rows"), py::arg("width"), py::arg("height"),
-      "Flat rectangle [0, width] x [0, height] mm in z = 0: positions (V, 3), faces (F, 3).");
   m.def(
       "icosphere",
       [](int levels, double radius) { return meshPair(geometry::makeIcosphere(levels, radius)); },
@@ -238,7 +131,6 @@ void bindGeometry(py::module_& m) {
   bindMeasures(m);
   bindTests(m);
   bindPlaces(m);
-  bindTopology(m);
   bindFixtures(m);
 }
 

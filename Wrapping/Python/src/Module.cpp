@@ -15,16 +15,11 @@ PYBIND11_MODULE(_explica, m) {
   explica::python::bindHeart(m);
   explica::python::bindCortex(m);
   explica::python::bindVisibility(m);
-  explica::python::bindRepulsion(m);
-  explica::python::bindCollision(m);
   explica::python::bindSampling(m);
   explica::python::bindUnfolding(m);
   explica::python::bindFlattening(m);
   explica::python::bindInflation(m);
-  explica::python::bindPlanar(m);
-  explica::python::bindShapes(m);
   explica::python::bindReport(m);
   explica::python::bindPhantoms(m);
   explica::python::bindProvenance(m);
-  explica::python::bindStudy(m);
 }

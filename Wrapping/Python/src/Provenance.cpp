@@ -16,7 +16,7 @@ namespace {
 
 using namespace py::literals;
 
-const char* nameOf(provenance::FileState state) {
+const char* wordOf(provenance::FileState state) {
   switch (state) {
     case provenance::FileState::Same:
       return "same";
@@ -41,7 +41,7 @@ void bindProvenance(py::module_& parent) {
         py::list files;
         for (const auto& file : found.files) {
           files.append(py::dict("what"_a = file.what, "path"_a = file.path.string(),
-                                "state"_a = nameOf(file.state), "record"_a = file.record.string()));
+                                "state"_a = wordOf(file.state), "record"_a = file.record.string()));
         }
         return py::dict("all_same"_a = found.allSame(), "records"_a = found.records,
                         "files"_a = files);

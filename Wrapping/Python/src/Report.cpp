@@ -7,9 +7,7 @@
 #include "Watch.h"
 
 #include "Explica/Core/Errors.h"
-#include "Explica/Pipeline/FolderReport.h"
 #include "Explica/Report/Figure.h"
-#include "Explica/Report/Page.h"
 
 namespace explica::python {
 namespace {
@@ -24,15 +22,6 @@ py::array arrayOfPicture(Picture&& picture) {
   auto* kept = new std::vector<std::uint8_t>(std::move(picture.rgb));
   const py::capsule owner(kept, [](void* p) { delete static_cast<std::vector<std::uint8_t>*>(p); });
   return py::array_t<std::uint8_t>({picture.height, picture.width, 3}, kept->data(), owner);
-}
-
-Picture pictureOf(const py::array_t<std::uint8_t, py::array::c_style>& pixels) {
-  if (pixels.ndim() != 3 || pixels.shape(2) != 3) {
-    throw InvalidInput("pixels: an array (height, width, 3) of uint8 is needed");
-  }
-  Picture picture(static_cast<int>(pixels.shape(1)), static_cast<int>(pixels.shape(0)));
-  picture.rgb.assign(pixels.data(), pixels.data() + pixels.size());
-  return picture;
 }
 
 report::ColourScale scaleOf(const Eigen::VectorXd& values, const std::string& title,
@@ -130,24 +119,6 @@ void bindPictures(py::module_& m) {
       "Sagittal, coronal and axial slices, `count` of each and `height` pixels high, with the cut\n"
       "lines of surfaces [(positions (V, 3) RAS mm, faces (F, 3))]: pixels (height, width, 3), "
       "uint8.");
-  m.def(
-      "write_png",
-      [](const std::filesystem::path& path,
-         const py::array_t<std::uint8_t, py::array::c_style>& pixels) {
-        report::writePng(path, pictureOf(pixels));
-      },
-      "path"_a, "pixels"_a,
-      "Write pixels (height, width, 3), uint8 sRGB, as PNG, whole or not at all.");
-  m.def(
-      "encode_gif",
-      [](const std::vector<py::array_t<std::uint8_t, py::array::c_style>>& frames,
-         double framesPerSecond) {
-        std::vector<Picture> pictures;
-        for (const auto& frame : frames) pictures.push_back(pictureOf(frame));
-        return py::bytes(unlocked([&] { return report::encodeGif(pictures, framesPerSecond); }));
-      },
-      "frames"_a, "frames_per_second"_a = 10.0,
-      "An endless animated GIF, as bytes, of frames (height, width, 3), uint8 sRGB, of one size.");
 }
 
 }  // namespace
@@ -155,17 +126,6 @@ void bindPictures(py::module_& m) {
 void bindReport(py::module_& parent) {
   py::module_ m = parent.def_submodule("report");
   bindPictures(m);
-  m.def(
-      "page",
-      [](const std::filesystem::path& folder, const py::object& progress) {
-        return Watch(progress).run([&](const Monitor& monitor) {
-          return report::reportPage(pipeline::collectReport(folder, {}, monitor));
-        });
-      },
-      "folder"_a, "progress"_a = py::none(),
-      "The report on an output folder of a command or of a whole run: one self-contained HTML "
-      "page,\n"
-      "as text.");
 }
 
 }  // namespace explica::python

@@ -67,12 +67,6 @@ void bindViewpoints(py::module_& m) {
   m.def("view_line", &visibility::viewLine, "start"_a, "end"_a, "count"_a = 8,
         "Viewpoints on the segment from start to end (3,), RAS mm: Gauss-Legendre, exact for\n"
         "integrands of degree 2 * count - 1.");
-  m.def(
-      "view_surface",
-      [](const Eigen::Ref<const Positions>& positions, const Eigen::Ref<const Faces>& faces) {
-        return visibility::viewSurface(meshOf(positions, faces));
-      },
-      "positions"_a, "faces"_a, "Viewpoints all over a surface, by area: three on each face.");
 }
 
 }  // namespace explica::python

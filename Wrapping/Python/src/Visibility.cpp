@@ -7,7 +7,6 @@
 #include "Watch.h"
 
 #include "Explica/Visibility/AverageVisibility.h"
-#include "Explica/Visibility/GlobalMeasures.h"
 #include "Explica/Visibility/VisibleFraction.h"
 
 #include <numeric>
@@ -70,33 +69,6 @@ void bindVisibility(py::module_& m) {
       "subdivision"_a = visibility::VisibleFractionOptions{}.subdivision,
       "What is truly seen from viewpoints, RAS mm, by casting subdivision^2 rays a face: share of\n"
       "each face (F,), of the area around each vertex (V,), and of the whole (total).");
-  m.def(
-      "hidden_viewing_area",
-      [](const PositionsIn& positions, const FacesIn& faces, const Point& centre, double radius) {
-        const TriangleMesh mesh = meshOf(positions, faces);
-        return unlocked([&] { return visibility::hiddenViewingArea(mesh, centre, radius); });
-      },
-      "positions"_a, "faces"_a, "centre"_a, "radius"_a,
-      "Area of the viewing sphere that a closed surface hides from its own points, integrated "
-      "over\n"
-      "them, mm^4.  Takes time quadratic in the number of faces.");
-  m.def(
-      "self_occlusion",
-      [](const PositionsIn& positions, const FacesIn& faces) {
-        const TriangleMesh mesh = meshOf(positions, faces);
-        return unlocked([&] { return visibility::selfOcclusion(mesh); });
-      },
-      "positions"_a, "faces"_a,
-      "Area of the pairs of points that hide from each other, mm^4; 0 for a convex surface.  "
-      "Takes\n"
-      "time quadratic in the number of faces.");
-  m.def(
-      "winding_number",
-      [](const PositionsIn& positions, const FacesIn& faces, const Point& point) {
-        return visibility::windingNumber(meshOf(positions, faces), point);
-      },
-      "positions"_a, "faces"_a, "point"_a,
-      "Times that a closed surface winds around a point (3,), RAS mm: 1 inside, 0 outside.");
 }
 
 }  // namespace explica::python

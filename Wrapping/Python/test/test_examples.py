@@ -53,13 +53,6 @@ class Examples(unittest.TestCase):
         self.assert_picture("patch.png")
         nibabel.load(self.out / "unfolded.surf.gii")
 
-    def test_average_shape_is_one_curve(self):
-        said = self.run_example("average_shape.py", "--order", 16)
-        self.assertIn("one closed curve for certain: True", said)
-        self.assertLess(float(re.findall(r"fits are (\S+) mm", said)[0]), 0.5)
-        self.assert_picture("average.png")
-        self.assertEqual(np.loadtxt(self.out / "average.csv", delimiter=",", skiprows=1).shape[1], 2)
-
     def test_layer_profile_of_the_phantom_is_exact(self):
         said = self.run_example("layer_profile.py")
         self.assertLess(float(re.findall(r"profile: (\S+)", said)[0]), 0.01)

@@ -3,8 +3,6 @@
 #include "MainWindow.h"
 
 #include "Explica/Core/Errors.h"
-#include "Explica/Geometry/Geodesic.h"
-#include "Explica/Geometry/MeshTopology.h"
 
 #include <vtkGenericOpenGLRenderWindow.h>
 #include <vtkInteractorStyleTrackballCamera.h>
@@ -25,21 +23,6 @@ namespace explica::viewer {
 namespace {
 
 constexpr int kFrameMilliseconds = 40;  // the picture follows iterations 25 times a second
-/// The way from the vertex to where the distance is 0, from neighbour to neighbour.
-std::vector<std::int32_t> wayDown(const geometry::MeshTopology& topology,
-                                  const Eigen::VectorXd& distance, std::int32_t from) {
-  std::vector<std::int32_t> way = {from};
-  while (distance[way.back()] > 0) {
-    std::int32_t next = way.back();
-    for (const std::int32_t w : topology.vertexVertices[way.back()]) {
-      if (distance[w] < distance[next]) next = w;
-    }
-    if (next == way.back()) break;
-    way.push_back(next);
-  }
-  return way;
-}
-
 }  // namespace
 
 MainWindow::MainWindow(Session& session, WindowCalls calls, WindowOptions options)
@@ -67,7 +50,6 @@ MainWindow::MainWindow(Session& session, WindowCalls calls, WindowOptions option
   fillMaps();
   if (!maps_.empty()) panels_.map->setCurrentIndex(kOwnMaps);
   connectPanels();
-  crosshair_ = session_.surface().positions.colwise().mean().transpose();
   showChoice();
   refresh();
   lookFromViewpoint();
@@ -98,7 +80,7 @@ std::function<void()> MainWindow::underPointer(void (MainWindow::*work)(int, int
 
 void MainWindow::buildMenus() {
   QMenu* file = menuBar()->addMenu("&File");
-  addAction(file, "open", "&Open map, labels or volume ...", QKeySequence::Open, [this] {
+  addAction(file, "open", "&Open map or labels ...", QKeySequence::Open, [this] {
     const QString path = QFileDialog::getOpenFileName(this, "Open");
     if (!path.isEmpty()) open(path.toStdString());
   });
@@ -120,14 +102,6 @@ void MainWindow::buildMenus() {
             underPointer(&MainWindow::pickCentre));
   addAction(edit, "view", "Present &view is the viewpoint", QKeySequence("V"),
             [this] { takeView(); });
-  addAction(edit, "addView", "Present view is a &further viewpoint", QKeySequence("Shift+V"),
-            [this] { addView(); });
-  addAction(edit, "lineAlong", "&Line of viewpoints along the present view", QKeySequence("L"),
-            [this] { lineAlong(); });
-  addAction(edit, "lineTo", "Line from the viewpoint &to the present view", QKeySequence("Shift+L"),
-            [this] { lineTo(); });
-  addAction(edit, "viewSurface", "&Surface of viewpoints ...", QKeySequence("S"),
-            [this] { chooseViewSurface(); });
   addAction(edit, "undo", "&Undo the last choice", QKeySequence::Undo, [this] { undo(); });
   addAction(edit, "reset", "&Reset to choosing", QKeySequence("R"), [this] {
     session_.reset();
@@ -175,23 +149,9 @@ void MainWindow::buildViewMenu() {
     lookFromViewpoint();
     stage_->render();
   });
-  addAction(view, "all", "&All, with the viewpoints", QKeySequence("A"), [this] {
-    stage_->lookAtAll();
-    stage_->render();
-  });
-  QAction* eyes = addAction(view, "eyes", "Mark th&e viewpoints", QKeySequence("E"), [] {});
-  eyes->setCheckable(true);
-  eyes->setChecked(true);
-  QObject::connect(eyes, &QAction::toggled, this, [this](bool shown) {
-    stage_->setEyesShown(shown);
-    stage_->render();
-  });
   addAction(view, "nextMap", "Next &map", QKeySequence("M"), [this] {
     panels_.map->setCurrentIndex((panels_.map->currentIndex() + 1) % panels_.map->count());
   });
-  addAction(view, "measure", "&Distance along the surface, between two points under the pointer",
-            QKeySequence("D"), underPointer(&MainWindow::measure));
-  view->addAction(panels_.slicesDock->toggleViewAction());
 }
 
 void MainWindow::connectPanels() {
@@ -225,12 +185,9 @@ void MainWindow::connectPanels() {
     if (!filling_) takeRegion();
   });
   connect(panels_.takeAbove, &QPushButton::clicked, this, [this] { takeAbove(); });
-  panels_.view->calls = {[this](View view) { changeView(std::move(view)); },
-                         [this] { takeView(); },
-                         [this] { addView(); },
-                         [this] { lineAlong(); },
-                         [this] { lineTo(); },
-                         [this] { chooseViewSurface(); }};
+  connect(panels_.takeView, &QPushButton::clicked, this, [this] { takeView(); });
+  connect(panels_.distance, number, this,
+          changed([](Choice& c, double mm) { c.view.distance = mm; }));
   connect(panels_.run, &QPushButton::clicked, this, [this] { toggle(); });
   connect(panels_.state, &QSlider::valueChanged, this, [this](int state) {
     if (!filling_) step(static_cast<std::size_t>(state));
@@ -247,10 +204,6 @@ void MainWindow::connectPanels() {
       refresh();
     });
   }
-  panels_.slices->onPoint = [this](const Point& p) {
-    crosshair_ = p;
-    showSlices();
-  };
 }
 
 void MainWindow::open(const std::string& path) {
@@ -273,10 +226,6 @@ void MainWindow::take(Opened opened) {
   if (opened.finished) {
     session_.open(std::move(*opened.finished));
     shown_ = known_ = session_.momentCount() - 1;
-  }
-  if (opened.slices) {
-    slices_ = std::move(opened.slices);
-    panels_.slicesDock->show();
   }
   statusBar()->showMessage(QString::fromStdString(opened.what));
 }
@@ -324,13 +273,11 @@ void MainWindow::pickCentre(int x, int y) {
     statusBar()->showMessage("There is no surface under the pointer.");
     return;
   }
-  crosshair_ = picked->place;
   Choice choice = session_.choice();
-  choice.centre = picked->vertex;
+  choice.centre = *picked;
   choice.marked.clear();
   choice.markedOptions.clear();
   choose(std::move(choice));
-  showSlices();
 }
 
 void MainWindow::takeRegion() {
@@ -379,64 +326,10 @@ void MainWindow::takeAbove() {
   choose(std::move(choice));
 }
 
-void MainWindow::changeView(View view) {
-  Choice choice = session_.choice();
-  choice.view = std::move(view);
-  choose(std::move(choice));
-}
-
 void MainWindow::takeView() {
-  View view = session_.choice().view;
-  view.kind = ViewKind::Points;
-  view.directions = {stage_->direction()};
-  view.weights = {1};
-  changeView(std::move(view));
-}
-
-void MainWindow::addView() {
-  View view = session_.choice().view;
-  view.kind = ViewKind::Points;
-  view.directions.push_back(stage_->direction());
-  view.weights.push_back(1);
-  changeView(std::move(view));
-  statusBar()->showMessage(QString("%1 viewpoints; V leaves only the present one")
-                               .arg(session_.choice().view.directions.size()));
-}
-
-void MainWindow::lineAlong() {
-  constexpr double kNear = 0.1;  // of the distance, where the line begins
-  View view = session_.choice().view;
-  view.kind = ViewKind::Line;
-  const Vector far = view.distance * stage_->direction();
-  view.line = {session_.centre() + kNear * far, session_.centre() + far};
-  changeView(std::move(view));
-}
-
-void MainWindow::lineTo() {
-  View view = session_.choice().view;
-  const Point first =
-      view.kind == ViewKind::Line
-          ? view.line[0]
-          : Point(session_.centre() + view.distance * view.directions[0].normalized());
-  view.kind = ViewKind::Line;
-  view.line = {first, session_.centre() + view.distance * stage_->direction()};
-  changeView(std::move(view));
-}
-
-void MainWindow::chooseViewSurface() {
-  const QString path = QFileDialog::getOpenFileName(this, "Surface to look from");
-  if (!path.isEmpty()) lookFrom(path.toStdString());
-}
-
-void MainWindow::lookFrom(const std::string& path) {
-  try {
-    View view = session_.choice().view;
-    view.kind = ViewKind::Surface;
-    view.surface = std::make_shared<ViewSurface>(ViewSurface{path, calls_.readSurface(path)});
-    changeView(std::move(view));
-  } catch (const Error& fault) {
-    statusBar()->showMessage(QString::fromStdString(fault.what()));
-  }
+  Choice choice = session_.choice();
+  choice.view.direction = stage_->direction();
+  choose(std::move(choice));
 }
 
 void MainWindow::lookFromViewpoint() {
@@ -504,27 +397,6 @@ void MainWindow::help() {
   QMessageBox box(QMessageBox::NoIcon, "Keys", text + "</table>", QMessageBox::Close, this);
   box.setModal(false);
   box.exec();
-}
-
-void MainWindow::measure(int x, int y) {
-  const auto picked = stage_->pick(x, y);
-  if (!picked) return;
-  if (!measureFrom_) {
-    measureFrom_ = picked->vertex;
-    stage_->showPath({});
-    statusBar()->showMessage("Distance from here: now press D over the other point.");
-    return;
-  }
-  const auto topology =
-      geometry::buildTopology(session_.surface().faces, session_.surface().vertexCount());
-  const std::array<std::int32_t, 1> sources = {*measureFrom_};
-  const Eigen::VectorXd distance =
-      geometry::geodesicDistances(session_.surface(), topology, sources);
-  measureFrom_.reset();
-  stage_->showPath(wayDown(topology, distance, picked->vertex));
-  stage_->render();
-  statusBar()->showMessage(
-      QString("%1 mm along the folded surface").arg(distance[picked->vertex], 0, 'f', 1));
 }
 
 void MainWindow::savePicture(const QString& path) {

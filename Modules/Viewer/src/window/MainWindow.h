@@ -36,9 +36,7 @@ class MainWindow : public QMainWindow {
 
   // What menus, keys and scripts do.
   void open(const std::string& path);
-  void lookFrom(const std::string& path);  ///< a surface of viewpoints
-  void pickCentre(int x, int y);           ///< pixels of the view from its lower left
-  void measure(int x, int y);  ///< the first call begins, the second says the way between
+  void pickCentre(int x, int y);  ///< pixels of the view from its lower left
   void step(std::size_t state);
   void savePicture(const QString& path);
   /// @return false if there is no such action, or no such field
@@ -71,12 +69,7 @@ class MainWindow : public QMainWindow {
   void undo();
   void takeRegion();  ///< of the label or of the ball that the panel names
   void takeAbove();
-  void changeView(View view);
   void takeView();
-  void addView();    ///< as a further viewpoint
-  void lineAlong();  ///< of viewpoints, along the present view
-  void lineTo();     ///< of viewpoints, from the first one to the present view
-  void chooseViewSurface();
   void lookFromViewpoint();  ///< of several their mean
   void toggle();
   void saveState();
@@ -86,7 +79,6 @@ class MainWindow : public QMainWindow {
   void showChoice();  ///< whenever the choice is another
   void refresh();
   void showState(const unfolding::IterationRecord& record, std::size_t count);
-  void showCurves(std::size_t count);
   void showRegion();
   void paint();
   void paintLabels(const WindowLabels& labels);
@@ -95,7 +87,6 @@ class MainWindow : public QMainWindow {
   /// computed in another thread.
   std::optional<WindowMap> ownMap(int number);
   void fillMaps();
-  void showSlices();
   void readUnder(const QPoint& at);
   /// Name of the label at a vertex, of the labels that were opened; "" if there is none.
   [[nodiscard]] std::string valueAt(std::int32_t vertex) const;
@@ -112,7 +103,6 @@ class MainWindow : public QMainWindow {
   std::vector<Choice> earlier_;  ///< for undo
   std::vector<WindowMap> maps_;
   std::vector<WindowLabels> labels_;
-  DrawSlice slices_;
   TriangleMesh shownMesh_;
   Eigen::VectorXd shownValues_;  ///< of the map in the picture; empty for labels
   std::string shownUnit_;
@@ -121,8 +111,6 @@ class MainWindow : public QMainWindow {
   Activity activity_ = Activity::Choosing;
   bool newest_ = true;    ///< the picture goes with the newest state
   bool filling_ = false;  ///< fields are being set by the program
-  Point crosshair_ = Point::Zero();
-  std::optional<std::int32_t> measureFrom_;
   QPoint pointer_;
   bool pointerMoved_ = false;
   std::future<std::string> saving_;

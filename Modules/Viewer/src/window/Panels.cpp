@@ -47,19 +47,24 @@ QGroupBox* regionGroup(Panels& p) {
 }
 
 QGroupBox* viewGroup(Panels& p) {
-  auto* column = new QVBoxLayout;
-  p.view = new ViewPanel;
-  column->addWidget(p.view);
   auto* form = new QFormLayout;
+  p.direction = named(new QLabel, "direction", "From the region to the viewpoint, a unit vector");
+  p.takeView = named(new QPushButton("Take the view (V)"), "takeView",
+                     "The region is opened towards the side from which you look now");
+  p.takeView->setFocusPolicy(Qt::NoFocus);
+  p.distance = numberField("distance", "How far the viewpoint is from the region's centroid",
+                           {10, 1e6, 100, 0, " mm"});
   p.surround = named(new QComboBox, "surround", "What becomes of the surface around the region");
   p.target = numberField(
       "target", "Average visibility at which to stop; none: where more of it costs too much",
       {0, 1, 0.01, 3, ""});
   p.target->setSpecialValueText("none");
+  form->addRow("Look from", p.direction);
+  form->addRow(p.takeView);
+  form->addRow("Distance", p.distance);
   form->addRow("Surroundings", p.surround);
   form->addRow("Target", p.target);
-  column->addLayout(form);
-  return group("Viewpoints and surroundings", column);
+  return group("Viewpoint and surroundings", form);
 }
 
 QGroupBox* runGroup(Panels& p) {
@@ -69,9 +74,8 @@ QGroupBox* runGroup(Panels& p) {
   p.state->setEnabled(false);
   p.stateSays = named(new QLabel, "stateSays", "State that is shown");
   p.stateSays->setWordWrap(true);
-  p.curves = named(new Curves, "curves", "How the unfolding went");
   for (QWidget* w : {static_cast<QWidget*>(p.run), static_cast<QWidget*>(p.state),
-                     static_cast<QWidget*>(p.stateSays), static_cast<QWidget*>(p.curves)}) {
+                     static_cast<QWidget*>(p.stateSays)}) {
     column->addWidget(w);
   }
   return group("Run", column);
@@ -115,13 +119,6 @@ Panels buildPanels(QMainWindow& window) {
   dock->setWidget(scroll);
   window.addDockWidget(Qt::LeftDockWidgetArea, dock);
 
-  p.slices = new SlicePanel;
-  p.slicesDock = new QDockWidget("Slices", &window);
-  p.slicesDock->setObjectName("slicesDock");
-  p.slicesDock->setWidget(p.slices);
-  p.slices->setMinimumWidth(240);
-  window.addDockWidget(Qt::RightDockWidgetArea, p.slicesDock);
-  p.slicesDock->hide();
   return p;
 }
 

@@ -2,10 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "Curves.h"
-#include "SlicePanel.h"
-#include "ViewPanel.h"
-
 #include <QCheckBox>
 #include <QComboBox>
 #include <QDoubleSpinBox>
@@ -25,23 +21,21 @@ struct Panels {
   QDoubleSpinBox* above = nullptr;  ///< threshold of the map shown
   QPushButton* takeAbove = nullptr;
   QLabel* regionSays = nullptr;
-  // Viewpoints and surroundings
-  ViewPanel* view = nullptr;
+  // Viewpoint and surroundings
+  QLabel* direction = nullptr;
+  QPushButton* takeView = nullptr;
+  QDoubleSpinBox* distance = nullptr;
   QComboBox* surround = nullptr;
   QDoubleSpinBox* target = nullptr;  ///< 0: none
   // Run
   QPushButton* run = nullptr;
   QSlider* state = nullptr;
   QLabel* stateSays = nullptr;
-  Curves* curves = nullptr;
   // Maps
   QComboBox* map = nullptr;
   QDoubleSpinBox* low = nullptr;
   QDoubleSpinBox* high = nullptr;
   QCheckBox* automatic = nullptr;
-  // Slices
-  SlicePanel* slices = nullptr;
-  QDockWidget* slicesDock = nullptr;
 };
 
 /// Builds the panels into docks of the window.

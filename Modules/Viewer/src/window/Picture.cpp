@@ -105,8 +105,6 @@ void MainWindow::refresh() {
   showRegion();
   paint();
   showState(record, count);
-  showCurves(count);
-  showSlices();
   stage_->render();
 }
 
@@ -117,10 +115,14 @@ void MainWindow::showChoice() {
   panels_.target->setValue(choice.unfold.targetVisibility.value_or(0));
   panels_.surround->setCurrentIndex(
       panels_.surround->findData(static_cast<int>(choice.unfold.unfolder.surround)));
-  panels_.view->show(choice.view);
+  const Vector towards = choice.view.direction.normalized();
+  panels_.direction->setText(QString("%1, %2, %3")
+                                 .arg(towards.x(), 0, 'f', 2)
+                                 .arg(towards.y(), 0, 'f', 2)
+                                 .arg(towards.z(), 0, 'f', 2));
+  panels_.distance->setValue(choice.view.distance);
   filling_ = false;
   stage_->showRim(session_.preview().region.faces);
-  stage_->showEyes(choice.view, session_.viewpoints(), session_.centre());
 }
 
 void MainWindow::showRegion() {
@@ -156,19 +158,6 @@ void MainWindow::showState(const unfolding::IterationRecord& record, std::size_t
     if (const auto parting = session_.parting()) says += inWords(*parting);
   }
   panels_.stateSays->setText(says);
-}
-
-void MainWindow::showCurves(std::size_t count) {
-  Curves::Curve visibility{"average visibility", {}, QColor(0, 114, 178), false};
-  Curves::Curve area{"area error", {}, QColor(213, 94, 0), true};
-  Curves::Curve strain{"edge strain", {}, QColor(0, 158, 115), true};
-  for (std::size_t n = 0; n < count; ++n) {
-    const unfolding::IterationRecord record = session_.record(n);
-    visibility.values.push_back(record.visibility);
-    area.values.push_back(record.areaErrorMean);
-    strain.values.push_back(record.edgeStrainMean);
-  }
-  panels_.curves->show({visibility, area, strain}, shown_);
 }
 
 std::optional<WindowMap> MainWindow::ownMap(int number) {
@@ -246,12 +235,6 @@ void MainWindow::paintValues(const WindowMap& map) {
   shownUnit_ = map.unit;
 }
 
-void MainWindow::showSlices() {
-  if (slices_ && panels_.slicesDock->isVisible()) {
-    panels_.slices->show(slices_, crosshair_, session_.surface());
-  }
-}
-
 std::string MainWindow::valueAt(std::int32_t vertex) const {
   const int chosen = panels_.map->currentIndex();
   const int label = chosen - kOwnMaps - static_cast<int>(maps_.size());
@@ -272,11 +255,11 @@ void MainWindow::readUnder(const QPoint& at) {
   const QPoint pixel = fromLowerLeft(at);
   const auto picked = stage_->pick(pixel.x(), pixel.y());
   if (!picked) return;
-  const Point p = session_.surface().positions.row(picked->vertex).transpose();
+  const Point p = session_.surface().positions.row(*picked).transpose();
   statusBar()->showMessage(QString("%1: %2   vertex %3 at %4, %5, %6 mm on the folded surface")
                                .arg(panels_.map->currentText())
-                               .arg(QString::fromStdString(valueAt(picked->vertex)))
-                               .arg(picked->vertex)
+                               .arg(QString::fromStdString(valueAt(*picked)))
+                               .arg(*picked)
                                .arg(p.x(), 0, 'f', 1)
                                .arg(p.y(), 0, 'f', 1)
                                .arg(p.z(), 0, 'f', 1));

@@ -50,8 +50,6 @@ bool playEvent(MainWindow& window, const std::string& verb, std::istringstream& 
     return window.set(QString::fromStdString(name), QString::fromStdString(value));
   } else if (verb == "open" && words >> name) {
     window.open(name);
-  } else if (verb == "lookFrom" && words >> name) {
-    window.lookFrom(name);
   } else if (verb == "wait" && words >> states) {
     waitFor(window, states);
   } else if (verb == "saved") {
@@ -77,9 +75,8 @@ void playScript(MainWindow& window, const std::string& path) {
     std::string verb;
     if (!(words >> verb) || verb[0] == '#') continue;
     if (!playEvent(window, verb, words)) {
-      throw InvalidInput(
-          path + ": '" + line +
-          "' is no event (key, drag, turn, do, set, open, lookFrom, wait, saved, picture)");
+      throw InvalidInput(path + ": '" + line +
+                         "' is no event (key, drag, turn, do, set, open, wait, saved, picture)");
     }
   }
 }

@@ -83,7 +83,7 @@ std::vector<std::int32_t> rimOf(const Faces& faces, const std::vector<std::int32
 
 Stage::Stage(const TriangleMesh& surface) : surface_(surface), positions_(surface.positions) {
   buildSurface();
-  buildLines();
+  buildRim();
   renderer_->SetBackground(0.97, 0.975, 0.98);
   bar_->SetLookupTable(barColours_);
   bar_->SetPosition(0.93, 0.3);
@@ -139,21 +139,18 @@ void Stage::buildSurface() {
   place(surface_.positions);
 }
 
-void Stage::buildLines() {
-  for (const auto& [lines, width, red] :
-       {std::tuple{rimLines_.Get(), 3.0, 0.05}, std::tuple{pathLines_.Get(), 4.0, 0.85}}) {
-    vtkNew<vtkPolyDataMapper> mapper;
-    mapper->SetInputData(lines);
-    mapper->SetResolveCoincidentTopologyToPolygonOffset();
-    mapper->SetRelativeCoincidentTopologyLineOffsetParameters(0, -8);
-    vtkNew<vtkActor> actor;
-    actor->SetMapper(mapper);
-    actor->GetProperty()->SetColor(red, 0.06, 0.08);
-    actor->GetProperty()->SetLineWidth(static_cast<float>(width));
-    actor->GetProperty()->LightingOff();
-    actor->PickableOff();
-    renderer_->AddActor(actor);
-  }
+void Stage::buildRim() {
+  vtkNew<vtkPolyDataMapper> mapper;
+  mapper->SetInputData(rimLines_);
+  mapper->SetResolveCoincidentTopologyToPolygonOffset();
+  mapper->SetRelativeCoincidentTopologyLineOffsetParameters(0, -8);
+  vtkNew<vtkActor> actor;
+  actor->SetMapper(mapper);
+  actor->GetProperty()->SetColor(0.05, 0.06, 0.08);
+  actor->GetProperty()->SetLineWidth(3);
+  actor->GetProperty()->LightingOff();
+  actor->PickableOff();
+  renderer_->AddActor(actor);
 }
 
 void Stage::enter(vtkRenderWindow& window, vtkRenderWindowInteractor& interactor) {
@@ -216,8 +213,7 @@ void Stage::place(const Positions& positions) {
     points_->SetPoint(v, positions(v, 0), positions(v, 1), positions(v, 2));
   }
   points_->Modified();
-  follow(*rimLines_, rim_);
-  follow(*pathLines_, path_);
+  placeRim();
 }
 
 void Stage::paint(const std::vector<Rgb>& colours) {
@@ -257,31 +253,22 @@ void Stage::showScale(const std::optional<Scale>& scale, const std::string& titl
 
 void Stage::showRim(const std::vector<std::int32_t>& regionFaces) {
   rim_ = rimOf(surface_.faces, regionFaces);
-  follow(*rimLines_, rim_);
+  placeRim();
 }
 
-void Stage::showPath(const std::vector<std::int32_t>& vertices) {
-  path_.clear();
-  for (std::size_t n = 1; n < vertices.size(); ++n) {
-    path_.push_back(vertices[n - 1]);
-    path_.push_back(vertices[n]);
-  }
-  follow(*pathLines_, path_);
-}
-
-void Stage::follow(vtkPolyData& lines, const std::vector<std::int32_t>& vertices) {
+void Stage::placeRim() {
   vtkNew<vtkPoints> points;
   vtkNew<vtkCellArray> cells;
-  for (std::size_t n = 0; n + 1 < vertices.size(); n += 2) {
+  for (std::size_t n = 0; n + 1 < rim_.size(); n += 2) {
     vtkIdType ends[2];
     for (int k = 0; k < 2; ++k) {
-      const auto p = positions_.row(vertices[n + k]);
+      const auto p = positions_.row(rim_[n + k]);
       ends[k] = points->InsertNextPoint(p.x(), p.y(), p.z());
     }
     cells->InsertNextCell(2, ends);
   }
-  lines.SetPoints(points);
-  lines.SetLines(cells);
+  rimLines_->SetPoints(points);
+  rimLines_->SetLines(cells);
 }
 
 void Stage::look(const Vector& direction) {
@@ -303,42 +290,25 @@ void Stage::look(const Vector& direction) {
   renderer_->ResetCamera(bounds);
 }
 
-void Stage::lookAtAll() {
-  renderer_->ResetCamera();
-}
-
-void Stage::showEyes(const View& view, const visibility::Viewpoints& points, const Point& from) {
-  constexpr double kReach = 0.6;  // of the surface's diagonal: about as far as the picture goes
-  const Vector size =
-      (surface_.positions.colwise().maxCoeff() - surface_.positions.colwise().minCoeff())
-          .transpose();
-  eyes_.show(view, points, from, kReach * size.norm());
-}
-
-void Stage::setEyesShown(bool shown) {
-  eyes_.setShown(shown);
-}
-
 Vector Stage::direction() const {
   double towards[3];
   renderer_->GetActiveCamera()->GetDirectionOfProjection(towards);
   return -Vector(towards[0], towards[1], towards[2]);
 }
 
-std::optional<Picked> Stage::pick(int x, int y) {
+std::optional<std::int32_t> Stage::pick(int x, int y) {
   if (picker_->Pick(x, y, 0, renderer_) == 0) return {};
-  const double* at = picker_->GetPickPosition();
+  const Point place(picker_->GetPickPosition());
   const vtkIdType face = picker_->GetCellId();
   if (face < 0 || face >= surface_.faceCount()) return {};
-  Picked picked;
-  picked.place = Point(at[0], at[1], at[2]);
+  std::int32_t picked = -1;
   double nearest = kInfinity;
   for (int k = 0; k < 3; ++k) {
     const std::int32_t v = surface_.faces(face, k);
-    const double distance = (positions_.row(v).transpose() - picked.place).norm();
+    const double distance = (positions_.row(v).transpose() - place).norm();
     if (distance < nearest) {
       nearest = distance;
-      picked.vertex = v;
+      picked = v;
     }
   }
   return picked;

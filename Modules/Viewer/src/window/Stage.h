@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "Eyes.h"
-
 #include "Explica/Core/TriangleMesh.h"
 #include "Explica/Viewer/Window.h"
 
@@ -32,12 +30,6 @@ class vtkUnsignedCharArray;
 
 namespace explica::viewer {
 
-/// A point of the surface under the pointer.
-struct Picked {
-  std::int32_t vertex = -1;
-  Point place = Point::Zero();  ///< RAS mm
-};
-
 /// The three-dimensional picture: surface, colours, the region's rim, colour bar, cube of
 /// directions.  Knows no window but the one that it is put into.
 class Stage {
@@ -57,33 +49,25 @@ class Stage {
   void showScale(const std::optional<Scale>& scale, const std::string& title);
   /// Draws the edges of the region's faces that no other face of it has.
   void showRim(const std::vector<std::int32_t>& regionFaces);
-  /// A line along the surface, or none: V indices one after the other.
-  void showPath(const std::vector<std::int32_t>& vertices);
-
-  /// Marks from where the region is looked at.
-  void showEyes(const View& view, const visibility::Viewpoints& points, const Point& from);
-  void setEyesShown(bool shown);
 
   /// The surface fills the picture, seen from this side.
   void look(const Vector& direction);
-  /// The viewpoints are in the picture, too.
-  void lookAtAll();
   /// From the surface to the eye.
   [[nodiscard]] Vector direction() const;
+  /// The vertex of the surface under the pointer.
   /// @param x,y  pixels of the window from the lower left
-  [[nodiscard]] std::optional<Picked> pick(int x, int y);
+  [[nodiscard]] std::optional<std::int32_t> pick(int x, int y);
 
  private:
   void buildSurface();
-  void buildLines();
-  void follow(vtkPolyData& lines, const std::vector<std::int32_t>& vertices);
+  void buildRim();
+  void placeRim();
   void coarsenWhileTurning(vtkRenderWindowInteractor& interactor);
   void show(vtkPolyData& mesh);
 
   const TriangleMesh& surface_;
   Positions positions_;
-  std::vector<std::int32_t> rim_;   ///< ends of its edges, two by two
-  std::vector<std::int32_t> path_;  ///< ends of its pieces, two by two
+  std::vector<std::int32_t> rim_;  ///< ends of its edges, two by two
   vtkNew<vtkRenderer> renderer_;
   vtkNew<vtkPoints> points_;
   vtkNew<vtkPolyData> mesh_;
@@ -94,13 +78,11 @@ class Stage {
   vtkNew<vtkPolyDataMapper> coarseMapper_;
   vtkNew<vtkActor> actor_;
   vtkNew<vtkPolyData> rimLines_;
-  vtkNew<vtkPolyData> pathLines_;
   vtkNew<vtkScalarBarActor> bar_;
   vtkNew<vtkTextActor> barTitle_;
   vtkNew<vtkLookupTable> barColours_;
   vtkNew<vtkOrientationMarkerWidget> cube_;
   vtkNew<vtkCellPicker> picker_;
-  Eyes eyes_{*renderer_.Get()};  // goes before the renderer does
   vtkRenderWindow* window_ = nullptr;
 };
 

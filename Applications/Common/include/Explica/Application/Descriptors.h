@@ -17,9 +17,6 @@ using provenance::Json;
 /// Boutiques descriptor, schema 0.5.
 [[nodiscard]] Json boutiquesOf(const Json& command, const std::string& version);
 
-/// A Python module with one nipype CommandLine interface a command.
-[[nodiscard]] std::string nipypeOf(const Json& commands, const std::string& version);
-
 [[nodiscard]] std::string bashCompletionOf(const Json& commands);
 [[nodiscard]] std::string zshCompletionOf(const Json& commands);
 

@@ -25,17 +25,11 @@ struct PolygonReading {
 /// Declares --label, --slice, --contour, --edges, --smooth and how volumes are read.
 void declarePolygonReading(Declaration& d, PolygonReading& reading);
 
-/// A curve as it was understood.
-struct ReadCurve {
-  planar::Curve curve;  ///< counter-clockwise where it is a contour; in the slice's plane frame
-  std::optional<int> slice;  ///< of the image that it is a contour of
-};
-
-/// Reads a polygon or, where --label was given, a contour of a label image.  Slice, number of
-/// contours and plane go into the record under `name`.
+/// Reads a polygon or, where --label was given, a contour of a label image: counter-clockwise, in
+/// the slice's plane frame.  Slice, number of contours and plane go into the record under `name`.
 /// @throws InvalidInput  label absent, no such contour, an unusable polygon
-[[nodiscard]] ReadCurve readCurve(Context& context, const std::string& name,
-                                  const std::string& path, const PolygonReading& reading);
+[[nodiscard]] planar::Curve readCurve(Context& context, const std::string& name,
+                                      const std::string& path, const PolygonReading& reading);
 
 /// True for a name by which a polygon is read as a table of vertices.
 [[nodiscard]] bool isPolygonTable(const std::string& path);

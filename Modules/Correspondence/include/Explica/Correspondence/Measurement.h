@@ -25,18 +25,17 @@ enum class SulciMode {
 struct MeasurementOptions {
   harmonic::AnnulusOptions annulus;
   harmonic::InterpolantOptions interpolant;
-  std::optional<SulciMode> sulci;  ///< unset: recover, but ignore with openEnds or heart, and with
+  std::optional<SulciMode> sulci;  ///< unset: recover, but ignore with openEnds, and with
                                    ///< perSlice unless the inner region is folded as a cortex's:
                                    ///< the folds of a cavity (papillary muscles) are no sulci
   SulcusOptions sulcus;
   CorrespondenceOptions correspondence;
   LayerOptions layers;
   std::optional<int> grid;  ///< cells across of an anatomical grid; unset: none
-  bool heart = false;       ///< the tissue is a ventricle's wall
 
   /// @param folding  foldingOf() the tissue
   [[nodiscard]] bool isWall(double folding) const {
-    return heart || annulus.openEnds || (annulus.perSlice && folding < kCortex);
+    return annulus.openEnds || (annulus.perSlice && folding < kCortex);
   }
   [[nodiscard]] SulciMode sulciMode(double folding) const {
     return sulci.value_or(isWall(folding) ? SulciMode::Ignore : SulciMode::Recover);

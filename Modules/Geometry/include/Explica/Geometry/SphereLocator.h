@@ -17,10 +17,6 @@ namespace explica::geometry {
 /// @param mesh  a closed surface about the origin
 [[nodiscard]] std::vector<std::int32_t> turnedOver(const TriangleMesh& mesh);
 
-/// How often a closed mesh covers the sphere about the origin: its solid angle over 4 pi, an
-/// integer.  A mesh without faces turned over that covers the sphere once is one to one with it.
-[[nodiscard]] int timesCovered(const TriangleMesh& mesh);
-
 /// A place on a spherical mesh: a direction is a positive multiple of the weighted corners.
 struct SpherePlace {
   std::int32_t face = -1;

@@ -196,11 +196,25 @@ struct LevelOptions {
                                        const AnnulusOptions& options = {},
                                        const Monitor& monitor = {});
 
-/// A place where the outer boundary passes between two neighbouring tissue voxels.
+/// Where a boundary lies on the link from tissue voxel `voxel` of the grid to the neighbour along
+/// axis direction / 2, downwards if that is even: share of the spacing, (0, 1].
+/// @param inner  whether it is the inner boundary
+using PlaceOnLink =
+    std::function<double(const std::array<int, 3>& voxel, int direction, bool inner)>;
+
+/// Annulus of sites whose boundaries are known link by link.
+[[nodiscard]] Annulus annulusFromSites(const Volume<Site>& sites, const PlaceOnLink& placeOnLink,
+                                       const AnnulusOptions& options = {},
+                                       const Monitor& monitor = {});
+
+/// A place where a boundary passes between two neighbouring tissue voxels: what is beyond it is
+/// narrower than the link.
 struct Cut {
   std::int32_t number = 0;  ///< tissue voxel
   int axis = 0;             ///< the other one is its neighbour along +axis
   double fraction = 0.5;    ///< boundary's place from `number`, in (0, 1)
+  double rest = 0.5;        ///< its place from the other one, at most 1 - fraction
+  bool inner = false;       ///< whether it is the inner boundary
 };
 
 /// The same tissue with more boundary; the numbering changes.

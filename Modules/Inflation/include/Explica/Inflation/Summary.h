@@ -7,13 +7,6 @@
 
 namespace explica::inflation {
 
-/// The thesis's global measures (4.6) and (4.7).
-struct GlobalMeasures {
-  std::optional<double> radius = kNaN;  ///< of the viewing sphere, mm
-  Change hiddenViewingArea;             ///< mm^4
-  Change selfOcclusion;                 ///< mm^4
-};
-
 /// An inflation in numbers, of the surface as files hold it.
 struct InflateSummary {
   Eigen::Index faces = 0, vertices = 0;
@@ -22,7 +15,6 @@ struct InflateSummary {
   int viewpoints = 0;
   double target = 1;  ///< global visibility that was asked for
   Change visibility, seen;
-  std::optional<GlobalMeasures> globalMeasures = GlobalMeasures{};
   unfolding::Distortion distortion;
   flattening::DistanceErrors distances;
   std::int64_t turnedOver = 0;

@@ -45,13 +45,7 @@ struct ContourOptions {
 [[nodiscard]] std::vector<Curve> contoursOfLabel(const Volume<Label>& labels, Label label, int k,
                                                  const ContourOptions& options = {});
 
-/// The same of several labels taken as one.
-[[nodiscard]] std::vector<Curve> contoursOfLabels(const Volume<Label>& labels,
-                                                  const std::vector<Label>& chosen, int k,
-                                                  const ContourOptions& options = {});
-
-/// The slice that holds most voxels of the labels; -1 if none does.
-[[nodiscard]] int largestSlice(const Volume<Label>& labels, const std::vector<Label>& chosen);
+/// The slice that holds most voxels of the label; -1 if none does.
 [[nodiscard]] int largestSlice(const Volume<Label>& labels, Label label);
 
 /// The closed curve by `edges` edges of equal arc length along the given one.

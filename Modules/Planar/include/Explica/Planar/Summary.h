@@ -4,7 +4,6 @@
 
 #include "Explica/Core/Results.h"
 #include "Explica/Planar/AngularSweep.h"
-#include "Explica/Planar/GlobalFlow.h"
 #include "Explica/Planar/PolygonUnfolding.h"
 
 #include <vector>
@@ -14,12 +13,9 @@ namespace explica::planar {
 /// A polygon in numbers, whatever the viewpoint.
 struct PolygonSummary {
   int regionEdges = 0;
-  double length = kNaN;            ///< of the region, mm
-  double area = kNaN;              ///< signed, mm^2
-  double selfOcclusion = kNaN;     ///< mm^2
-  double hiddenViewingArc = kNaN;  ///< mm^2
-  double viewingRadius = kNaN;     ///< mm
-  std::size_t crossings = 0;       ///< pairs of edges
+  double length = kNaN;       ///< of the region, mm
+  double area = kNaN;         ///< signed, mm^2
+  std::size_t crossings = 0;  ///< pairs of edges
 };
 
 /// An unfolding of a polygon in numbers.
@@ -36,15 +32,7 @@ struct PolygonUnfoldSummary {
   Termination stopReason = Termination::NotRun;
 };
 
-/// A flow of a global measure in numbers.
-struct GlobalFlowSummary {
-  std::vector<double> viewpoints, weights;
-  GlobalFlowStep start, end;
-  Termination stopReason = Termination::NotRun;
-};
-
 void describe(Results& t, const PolygonSummary& s);
 void describe(Results& t, const PolygonUnfoldSummary& s);
-void describe(Results& t, const GlobalFlowSummary& s);
 
 }  // namespace explica::planar

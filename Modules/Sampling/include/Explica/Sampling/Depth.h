@@ -39,6 +39,10 @@ enum class DepthKind {
 [[nodiscard]] Positions positionsAtDepth(const TriangleMesh& white, const TriangleMesh& pial,
                                          double depth, DepthKind kind);
 
+/// The same at several depths, depth after depth: D V x 3.
+[[nodiscard]] Positions positionsAtDepths(const TriangleMesh& white, const TriangleMesh& pial,
+                                          const std::vector<double>& depths, DepthKind kind);
+
 /// Demands that both surfaces have the same faces, so that vertex i of one belongs to vertex i of
 /// the other.
 /// @throws InvalidInput  says how they differ

@@ -12,9 +12,8 @@ namespace explica::sampling {
 struct SampleSummary {
   std::optional<std::int64_t> vertices, voxels, layers, points;
   std::optional<std::vector<double>> depths;
-  std::optional<double> pointsDistance;                       ///< mm, largest
-  std::optional<double> surfaceDistance, surfaceDistanceMax;  ///< mm
-  std::vector<std::pair<std::string, double>> known;          ///< share, by a volume's name
+  std::optional<double> pointsDistance;               ///< mm, largest
+  std::vector<std::pair<std::string, double>> known;  ///< share, by a volume's name
 };
 
 inline void describe(Results& t, const SampleSummary& s) {
@@ -26,10 +25,6 @@ inline void describe(Results& t, const SampleSummary& s) {
   t.number("points_distance_max", "Farthest point from the cortex", "mm",
            "From its nearest column between white and pial.", s.pointsDistance)
       .inHead();
-  t.number("vertex_surface_distance_mean", "Mean distance to the maps' surface", "mm", "",
-           s.surfaceDistance);
-  t.number("vertex_surface_distance_max", "Largest distance to the maps' surface", "mm", "",
-           s.surfaceDistanceMax);
   const auto known = [&](const std::string& name, std::optional<double> share) {
     t.share("known_fraction_" + name, "Known of " + name,
             "Share of the places asked for at which the volume has a value.", share)

@@ -3,25 +3,24 @@
 #pragma once
 
 #include "Explica/Core/Types.h"
-#include "Explica/Shapes/AnnulusMap.h"
-
-#include <memory>
-#include <optional>
 
 namespace explica::shapes {
 
-/// The annulus between two concentric circles (dimension 2, in the plane z = 0) or spheres, or
-/// between two given polygons, and the harmonic functions on it that a finite number of boundary
-/// values determines.
-///
-/// Of a given annulus, radii and angles are those of its conformal image, and so is the centre, 0.
+/// Where a point lies with respect to an annulus.
+enum class AnnulusSide {
+  Enclosed,  ///< within the inner boundary
+  Inside,    ///< between both
+  Beyond     ///< outside the outer boundary
+};
+
+/// The annulus between two concentric circles (dimension 2, in the plane z = 0) or spheres, and the
+/// harmonic functions on it that a finite number of boundary values determines.
 struct HarmonicAnnulus {
   int dimension = 3;             ///< 2 or 3
   Point centre = Point::Zero();  ///< mm
   double innerRadius = 0;        ///< mm, > 0
   double outerRadius = 0;        ///< mm
   int order = 0;                 ///< highest angular frequency of a boundary's values
-  std::shared_ptr<const AnnulusMap> map = nullptr;  ///< of a given annulus, dimension 2
 
   /// Coefficients of one boundary: 2 order + 1 in the plane, (order + 1)^2 in space.
   [[nodiscard]] int perBoundary() const {
@@ -42,33 +41,20 @@ struct HarmonicShape {
   Eigen::VectorXd outer;  ///< values on the outer boundary, by Y_j; above 1/2 everywhere on it
 };
 
-/// The annulus between two polygons.
-/// @param order  unset: as fine as shapes in its middle can be
-/// @throws InvalidInput  polygons that AnnulusMap refuses, or an order out of range
-[[nodiscard]] HarmonicAnnulus givenAnnulus(const planar::Curve& inner, const planar::Curve& outer,
-                                           std::optional<int> order = {});
-
 /// True if harmonic functions of both have the same meaning: their coefficients may be added.
 [[nodiscard]] bool sameAnnulus(const HarmonicAnnulus& a, const HarmonicAnnulus& b);
 
 /// Where a point lies.
 [[nodiscard]] AnnulusSide sideOf(const HarmonicAnnulus& annulus, const Point& point);
 
-/// Distance between the boundaries, mm: of a given annulus the mean.
+/// Distance between the boundaries, mm.
 [[nodiscard]] double widthOf(const HarmonicAnnulus& annulus);
-
-/// The square or cube that just holds the annulus.
-struct AnnulusBox {
-  Point centre = Point::Zero();  ///< mm
-  double halfSide = 0;           ///< mm
-};
-[[nodiscard]] AnnulusBox boxOf(const HarmonicAnnulus& annulus);
 
 /// Throws unless the annulus makes sense.
 /// @throws InvalidInput  names the member, what was found and what is needed
 void requireUsable(const HarmonicAnnulus& annulus);
 
-/// 0 on the inner, 1 on the outer boundary: the harmonic interpolant; concentric in a circular one.
+/// 0 on the inner, 1 on the outer boundary: the harmonic interpolant.
 [[nodiscard]] HarmonicShape concentricShape(const HarmonicAnnulus& annulus);
 
 /// Basis functions at points: P x 2 perBoundary(), inner ones first.  Points off the annulus take

@@ -62,9 +62,6 @@ void describe(ShapeFitOptions& options, Visitor&& visit) {
               "hang on it",
               0.01, 0.99},
         options.start);
-  visit(Field{"fit-step", "", "share of the way to each iteration's optimum"}, options.step);
-  visit(Field{"smoothness", "", "regularisation weight: smoothness of the boundary values"},
-        options.smoothness);
 }
 
 struct ShapeFitIteration {

@@ -75,13 +75,11 @@ struct CorticalSurfaces {
   WhiteSurface white;
   TriangleMesh mid;  ///< at half the way
   TriangleMesh pial;
-  Eigen::VectorXd thickness;   ///< of the ribbon's voxels at the middle surface, or where an image
-                               ///< has placed borders the length of the trajectories between them,
-                               ///< meanOverSurroundings(), mm; 0 where there is no ribbon
-  Eigen::VectorXd columnArea;  ///< of the tissue's middle surface nearest to each middle
-                               ///< vertex, mm^2; of borders that an image has placed, and of
-                               ///< surfaces that were given, that of the mesh
-  Eigen::VectorXd columnThickness;   ///< mean there, mm; in those cases `thickness`
+  Eigen::VectorXd thickness;   ///< of the ribbon's voxels at the middle surface, mm; 0 where there
+                               ///< is no ribbon
+  Eigen::VectorXd columnArea;  ///< of the tissue's middle surface nearest to each middle vertex,
+                               ///< mm^2; of surfaces that were given, that of the mesh
+  Eigen::VectorXd columnThickness;   ///< mean there, mm; of given surfaces `thickness`
   Eigen::VectorXd nearestThickness;  ///< as distanceThickness(), mm; 0 where there is no ribbon
   Eigen::VectorXd curvature;         ///< mean, of the white surface, mm^-1; positive in sulci
   Eigen::VectorXd sulcalDepth;    ///< of the white surface, maps::sulcalDepth, mm; empty of sheets
@@ -108,11 +106,11 @@ struct CorticalSurfaces {
 /// harmonic interpolant that begin at the white vertices, those of the middle one at half the arc
 /// length.  Both grow out of the white surface by small moves, each checked exactly, so that
 /// neither intersects itself; a vertex whose faces would meet others waits on its trajectory. Where
-/// growth has left stretched, poor or folded triangles, vertices then slide along their surface;
-/// thickness stays that of the trajectories.  A trajectory ends where it no longer leaves white
-/// matter behind: from there it would only follow the floor of a sulcus.  Along one more than 1.3
-/// times as long as the median within two edges of its vertex, and by half a voxel, the surfaces
-/// stay at that median; thickness keeps its length.
+/// growth has left stretched, poor or folded triangles, vertices then slide along their surface,
+/// and what that takes off the outer boundary grows towards it again.  A trajectory ends where it
+/// no longer leaves white matter behind: from there it would only follow the floor of a sulcus.
+/// Along one more than 1.3 times as long as the median within two edges of its vertex, and by half
+/// a voxel, the surfaces stay at that median; thickness keeps its length.
 /// @throws InvalidInput  no grey matter
 [[nodiscard]] CorticalSurfaces buildSurfaces(const CorticalTissue& tissue,
                                              const SurfaceOptions& options = {},

@@ -9,13 +9,6 @@
 
 namespace explica::surface {
 
-/// What belongs to a vertex of a quantity known at vertices: its mean over the faces around, linear
-/// within each, weighted by the function that falls from 1 at the vertex to 0 at the others (the
-/// projection with lumped masses).  The integral over a surface without unknown values stays.
-/// @param values  per vertex; 0: not known, which stays, and whose faces have no say
-[[nodiscard]] Eigen::VectorXd meanOverSurroundings(const TriangleMesh& mesh,
-                                                   const Eigen::VectorXd& values);
-
 /// What tells an even surface from a crumpled one.
 struct Evenness {
   double dihedralAbove60 = 0;  ///< share of the edges whose faces' normals are more than 60 degrees

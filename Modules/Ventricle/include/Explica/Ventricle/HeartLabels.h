@@ -57,9 +57,6 @@ struct HeartRoles {
 [[nodiscard]] HeartRoles findRoles(const std::vector<Volume<Label>>& frames,
                                    const HeartLabelOptions& options = {});
 
-/// The tissue of an annulus as wall, what it encloses as cavity.
-[[nodiscard]] Volume<Label> heartOf(const harmonic::Annulus& annulus);
-
 /// A frame with this module's labels; what has no role is outside.
 [[nodiscard]] Volume<Label> relabelled(const Volume<Label>& frame, const HeartRoles& roles);
 

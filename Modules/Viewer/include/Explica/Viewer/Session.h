@@ -16,24 +16,10 @@
 
 namespace explica::viewer {
 
-/// A surface to look from.
-struct ViewSurface {
-  std::string file;  ///< for `explica unfold --view-surface`
-  TriangleMesh mesh;
-};
-
-/// What a region is looked at from: the three ways that `explica unfold` knows.
-enum class ViewKind { Points, Line, Surface };
-
-/// From where a region is to be seen well.  All that belongs to the other kinds is kept.
+/// From where a region is to be seen well.
 struct View {
-  ViewKind kind = ViewKind::Points;
-  /// From the region's centroid to each viewpoint, of any length > 0; at least one.
-  std::vector<Vector> directions = {Vector(-1, 0, 0)};
-  std::vector<double> weights = {1};  ///< of the viewpoints, one each, > 0
-  double distance = 1000;             ///< of every viewpoint from the region's centroid, mm
-  std::array<Point, 2> line = {Point::Zero(), Point::Zero()};  ///< its ends, RAS mm
-  std::shared_ptr<const ViewSurface> surface = {};             ///< none before one is opened
+  Vector direction = Vector(-1, 0, 0);  ///< from the region's centroid, of any length > 0
+  double distance = 1000;               ///< of the viewpoint from the region's centroid, mm
 };
 
 /// What the user has chosen so far; all that an unfolding depends on.
@@ -109,11 +95,7 @@ class Session {
   /// Centroid of the region, without one that of the surface; RAS mm.
   [[nodiscard]] Point centre() const;
   /// From where the region is looked at: as chosen, or as the unfolding that was opened says.
-  /// @throws InvalidInput  a view that is incomplete: no surface, or a line of no length
   [[nodiscard]] visibility::Viewpoints viewpoints() const;
-
-  /// Vertex nearest to a point of the surface.
-  [[nodiscard]] std::int32_t nearestVertex(const Point& point) const;
 
   /// Starts, or goes on from the last state.  Nothing happens if there is a problem().  Faces that
   /// cross at the start are parted first, as `explica unfold` does; no state exists until that is

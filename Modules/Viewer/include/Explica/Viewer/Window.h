@@ -44,33 +44,16 @@ struct Scale {
 /// The scale that suits a map's values.
 using MakeScale = std::function<Scale(const Eigen::VectorXd& values)>;
 
-/// A picture of a slice, rows from the top.
-struct SlicePixels {
-  int width = 0;
-  int height = 0;
-  std::vector<unsigned char> rgb;  ///< width * height * 3
-  Point topLeft = Point::Zero();   ///< RAS mm of the first pixel's centre
-  Vector right = Vector::Zero();   ///< RAS mm from a pixel to the next in its row
-  Vector down = Vector::Zero();    ///< RAS mm from a row to the next
-};
-/// A slice of a volume through a point, perpendicular to x, y or z (0, 1, 2), with the cut line of
-/// the surface.
-using DrawSlice =
-    std::function<SlicePixels(int axis, const Point& through, const TriangleMesh& surface)>;
-
 /// What a file holds that the user opens.
 struct Opened {
   std::string what;  ///< for the status line: "thickness.shape.gii: 1 map"
   std::vector<WindowMap> maps;
   std::vector<WindowLabels> labels;
   std::optional<Finished> finished;
-  DrawSlice slices;  ///< of a volume; may be empty
 };
 /// Opens a file or folder for the window's surface; throws Error with a sentence for the user.
 using OpenFile = std::function<Opened(const std::string& path)>;
 
-/// Reads a surface to look from; throws Error with a sentence for the user.
-using ReadSurface = std::function<TriangleMesh(const std::string& path)>;
 /// Saves a state; the text, shown when it is there, says what came of it.
 using Save = std::function<std::future<std::string>(const Session& session, std::size_t moment)>;
 
@@ -78,7 +61,6 @@ using Save = std::function<std::future<std::string>(const Session& session, std:
 struct WindowCalls {
   MakeScale scale;
   OpenFile open;
-  ReadSurface readSurface;
   Save save;
 };
 
@@ -102,8 +84,8 @@ struct WindowOptions {
 /// A script has one event a line, for tests and demonstrations; positions are pixels of the
 /// three-dimensional view from its lower left: `key KEY X Y` (space, Left, c, ...), `drag X0 Y0 X1
 /// Y1`, `turn PICTURES`, `do ACTION` (the name of a menu's action), `set PANEL_FIELD VALUE`, `open
-/// FILE`, `lookFrom FILE` (a surface of viewpoints), `wait N` (until N states exist or nothing
-/// runs), `saved` (until saving is over), `picture FILE.png`.
+/// FILE`, `wait N` (until N states exist or nothing runs), `saved` (until saving is over),
+/// `picture FILE.png`.
 ///
 /// Defined in the library Explica::Window, which needs Qt and VTK; the rest of the module does not.
 ///

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "Explica/Application/Command.h"
+#include "Explica/Pipeline/Plan.h"
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace explica::app {
+
+inline constexpr std::array kStepCommands = {"segment",    "thickness", "surface",
+                                             "sphere",     "register",  "resample",
+                                             "parcellate", "regions",   "unfold"};
+
+/// What `explica run` is asked for.
+struct RunSettings {
+  std::string input;
+  std::optional<std::string> atlas;
+  pipeline::PlanOptions plan;
+  bool resume = false;
+  std::vector<std::string> accept;
+  std::vector<Invocation> steps;  ///< whose options are included, prefixed
+};
+
+void declareRun(Declaration& d, RunSettings& s);
+
+}  // namespace explica::app
