@@ -3,7 +3,8 @@
 """Computes the numbers of an unfolding from its files, without any code of ours.  Usage: check_unfold.py SURFACE OUT
 
 Prints each number of summary.json that the files do not give, and ends with 1 if there is one.  The surface to compare with is
-the one that the summary names: SURFACE or OUT/reference.surf.gii."""
+the one that the summary names: SURFACE or OUT/reference.surf.gii.  A number that is neither computed here nor named in NOT_OF_FILES is
+a fault as well."""
 
 import json
 import pathlib
@@ -14,6 +15,8 @@ import numpy as np
 
 surface, out = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
 summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
+# What was given, what the machine took, and a mean over random sources along the surface.
+NOT_OF_FILES = {"inputs_changed", "frames_not_stated", "viewpoint", "viewpoint_weights", "peak_memory_bytes", "geodesic_error_mean"}
 
 
 def read(path):
@@ -64,6 +67,33 @@ def seen(points, faces, listed, eye):
     return free / size.sum(), real / size.sum()
 
 
+def crossings(points, faces):
+    """Pairs of faces of which an edge of one passes through the other, away from a common vertex."""
+    corners = points[faces]
+    low, high = corners.min(axis=1), corners.max(axis=1)
+    found = set()
+    for f in range(len(faces)):
+        near = np.flatnonzero((low <= high[f]).all(axis=1) & (high >= low[f]).all(axis=1))
+        near = near[np.isin(faces[near], faces[f]).sum(axis=1) < 2]
+        side, other = corners[near, 1] - corners[near, 0], corners[near, 2] - corners[near, 0]
+        for k in range(3):
+            origin, way = corners[f, k], corners[f, (k + 1) % 3] - corners[f, k]
+            to = origin - corners[near, 0]
+            p, q = np.cross(way, other), np.cross(to, side)
+            with np.errstate(divide="ignore", invalid="ignore"):
+                u, v, t = (x / (side * p).sum(axis=1) for x in ((to * p).sum(axis=1), q @ way, (other * q).sum(axis=1)))
+                hit = (u >= 0) & (v >= 0) & (u + v <= 1) & (t >= 0) & (t <= 1)
+            hit &= ~np.isin(faces[near], faces[f, [k, (k + 1) % 3]]).any(axis=1)
+            found |= {(min(f, int(g)), max(f, int(g))) for g in near[hit]}
+    return found
+
+
+def table(name):
+    """Rows of a table, each a dictionary."""
+    head, *rows = (line.split("\t") for line in (out / name).read_text(encoding="utf-8").splitlines())
+    return [dict(zip(head, row)) for row in rows]
+
+
 def pieces_and_holes(faces):
     """Parts that share vertices, and loops of edges of a single face beyond one a part."""
 
@@ -109,11 +139,28 @@ again = {
 }
 if collar.any():
     again |= {"collar_faces": collar.sum(), "collar_stretch_mean": ratio[collar].mean(), "collar_stretch_max": ratio[collar].max()}
+read_in = read(surface)[0]
+moves = np.linalg.norm(before - read_in, axis=1)
+again |= {"repair_vertices_moved": (moves > 0).sum(), "repair_move_max": moves.max(), "repair_move_mean": moves[moves > 0].mean() if moves.any() else 0}
+crossing_rows = table("intersections.tsv")
+start, reference, end = crossings(read_in, all_faces), crossings(before, all_faces), crossings(after, faces)
+again |= {
+    "self_intersections_initial": len(start),
+    "self_intersections_initial_region": sum(inside[list(pair)].any() for pair in start),
+    "self_intersections_repaired": len(start - reference),
+    "self_intersections_final": len(end),
+    "self_intersections_new": len(end - start),
+}
+evolution = table("evolution.tsv")
+again |= {"iterations": int(evolution[-1]["iteration"]), "visibility_final": float(evolution[summary["iteration_written"]]["visibility"])}
+of_evolution = again["visibility_final"] - summary["visibility_final"]
 for name, points in (("initial", before), ("final", after)):
     cosine, size = cosines(points, region, eye)
     mean = (cosine * size).sum() / size.sum()
     again["visibility_" + name] = mean
     again["backfacing_" + name] = size[cosine < 0].sum() / size.sum()
+if summary["surround"] != "none":  # nothing that moved crosses what stayed
+    again["crossings_with_rest"] = sum((inside | collar)[list(pair)].any() for pair in end - start)
 faults = [f"{key}: {summary[key]}, from the files {value:.6g}" for key, value in again.items() if abs(summary[key] - value) > 1e-5 * max(1, abs(value))]
 for name, points in (("initial", before), ("final", after)):
     cosine, size = cosines(points, region, eye)
@@ -128,5 +175,12 @@ for name, points in (("initial", before), ("final", after)):
         for key, share in zip(("seen_", "real_visibility_"), seen(points, whole, listed, eye)):
             if abs(summary[key + name] - share) > 0.01:
                 faults.append(f"{key}{name}: {summary[key + name]}, from the files {share:.4f}")
+if abs(of_evolution) > 1e-5:
+    faults.append(f"iteration_written: its visibility is {of_evolution:.6f} off")
+if {(int(row["face_1"]), int(row["face_2"])) for row in crossing_rows} != start:
+    faults.append("intersections.tsv: not the pairs that cross")
+told = {"seen_initial", "seen_final", "real_visibility_initial", "real_visibility_final", "flux_variance_initial", "flux_variance_final"}
+numbers = {key for key, value in summary.items() if isinstance(value, (int, float, list)) and not key.startswith("seconds")}
+faults += [f"{key}: not computed" for key in sorted(numbers - again.keys() - told - NOT_OF_FILES - {"iteration_written", "reasons", "warnings"})]
 print("\n".join(faults))
 sys.exit(bool(faults))
