@@ -347,7 +347,6 @@ void judgeTissue(Judge& judge, const segmentation::TissueSegmentation& tissue, d
   summary.rimContrast = segmentation::rimContrast(tissue.labels);
   judge.require("contrast", *summary.rimContrast);
   summary.greyAtMaskEdge = segmentation::greyAtMaskEdge(tissue.labels);
-  judge.flag("mask-edge", *summary.greyAtMaskEdge);
   const double volume =
       static_cast<double>(tissue.brainVoxels) * tissue.labels.grid.voxelVolume() / 1000;
   judge.flag("brain-volume", volume / std::min(1.0, brainShare));

@@ -61,13 +61,6 @@ constexpr Limit kLimits[] = {
      "measured: 0.001 to 0.005 in simulated heads whose brain is whole, and in Colin27, where it "
      "is "
      "the spinal cord (Modules/Registration/README.md)"},
-    {"mask-edge", "the share of the cortex's outer border at the edge of the mask", "", 0, 0.5,
-     "the image does not show where the cortex ends: the pial surface follows the mask and "
-     "thickness "
-     "may be too small; give the T1 with the fluid around the brain, or with its skull",
-     "more than half of the border rests on the mask alone; measured: heads with fluid 0.01 to "
-     "0.27, "
-     "brains stripped along their folds 0.73 to 0.93"},
     {"brain-volume", "the brain's volume", "ml", 300, 2500,
      "skull or neck may be left in the brain, or parts of it missing; another species needs "
      "--template",

@@ -83,7 +83,9 @@ void describe(Results& t, const TissueSummary& r) {
   t.number("rim_contrast", "Contrast at the white border", "",
            "Share of the border's voxels where white is brighter than grey.", r.rimContrast);
   t.share("grey_at_mask_edge", "Cortex at the edge of the mask",
-          "Share of its outer border that meets the mask's edge and no fluid.", r.greyAtMaskEdge);
+          "Share of its outer border that meets the mask's edge and no fluid.", r.greyAtMaskEdge)
+      .atMost(0.5, Judgement::Look,
+              "beyond one half the pial surface rests on the mask more than on the image");
   describeDisagreement(t, r.template_);
   t.text("hemisphere", "Hemispheres", "",
          r.side ? std::optional(std::string(nameOf(*r.side))) : std::nullopt);
