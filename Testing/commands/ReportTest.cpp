@@ -326,7 +326,6 @@ TEST(Report, ShowsLayersAndTheGridOfThickness) {
   ASSERT_EQ(explica({"report", folder / "t"}).exitCode, 0);
   const std::string page = readText(folder / "t/report.html");
   EXPECT_NE(page.find("<b>Layers.</b>"), std::string::npos);
-  EXPECT_NE(page.find("trajectories and grid in a slice"), std::string::npos);
   EXPECT_NE(page.find("Layer 2: "), std::string::npos);
   EXPECT_EQ(countOf(page, "all layers, median"), 2u);
 }

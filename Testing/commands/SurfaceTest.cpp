@@ -48,7 +48,7 @@ TEST(SurfaceCommand, MakesATorusASphereAndSaysWhere) {
     const auto condition = geometry::inspectMesh(mesh);
     EXPECT_TRUE(condition.closedManifold());
     EXPECT_EQ(condition.eulerCharacteristic, 2);
-    EXPECT_EQ(condition.faces, 4000);
+    EXPECT_NEAR(static_cast<double>(condition.faces), 4000, 40);  // long edges are split
     EXPECT_TRUE(geometry::findSelfIntersections(mesh).empty());
   }
   const auto summary = readJson(folder / "out/summary.json");
