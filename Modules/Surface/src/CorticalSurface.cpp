@@ -303,8 +303,15 @@ void placeByImage(const Volume<float>& image, double fluid, GrowingColumns& ribb
   mending.sweeps = 0;
   white = relaxed(mesh.toMesh(), result.white.edgeLength, {}, stayThere, mending);
   keepRoom(white, roomOf(result.white));
-  ribbon.tissue.tissue =
-      levelOfEnds(distanceLevelOf(ribbon.tissue.tissue), ribbon.paths, borders.outer);
+  CorticalTissue& tissue = ribbon.tissue;
+  const auto movedLevel = [&](const LevelSet& level, PathBorder border,
+                              const Eigen::VectorXd& ways) {
+    return levelOfEnds(distanceLevelOf(level), ribbon.paths, border, ways);
+  };
+  tissue.tissue = movedLevel(tissue.tissue, PathBorder::Outer, borders.outer);
+  const LevelSet inner = movedLevel(tissue.white, PathBorder::Inner, moved);
+  tissue = corrected(std::move(tissue), inner);
+  tissue.ofLabels = false;  // the levels say more than the labels
   result.image.movedWhite = moved.cwiseAbs().mean();
   result.image.movedOuter = borders.outer.cwiseAbs().mean();
 }
@@ -502,10 +509,13 @@ CorticalSurfaces build(const CorticalTissue& tissue, const Volume<float>* image,
     placeByImage(*image, options.fluid, ribbon, result);
     result.seconds.image = watch.lap();
   }
-  const RibbonVoxels voxels(
-      solve(image != nullptr ? annulusBetween(result.white.mesh, ribbon.tissue, silent(monitor))
-                             : annulusOf(ribbon.tissue, silent(monitor)),
-            partOf(monitor, 0.6, 0.7)));
+  // A mesh whose edges are longer cuts off what the grid shows.
+  constexpr double kFineEdge = 1.5;  // voxels
+  const bool isFine = result.white.edgeLength <= kFineEdge * voxelSize(tissue.white.grid);
+  const RibbonVoxels voxels(solve(
+      image != nullptr && isFine ? annulusBetween(result.white.mesh, ribbon.tissue, silent(monitor))
+                                 : annulusOf(ribbon.tissue, silent(monitor)),
+      partOf(monitor, 0.6, 0.7)));
   result.cutLinks = static_cast<std::int64_t>(voxels.ribbon.sulcalVoxels.size());
   result.seconds.interpolant = watch.lap();
   const RibbonPaths trajectories(voxels.ribbon);

@@ -21,23 +21,28 @@ constexpr float kKnown = 0.98F;
 /// A place along a trajectory, in voxels of the grid.
 struct Place {
   Eigen::Vector3f index;    ///< continuous
-  Eigen::Vector3f outward;  ///< fall of the distance to the end, mm per voxel of each axis
-  float rest = 0;           ///< way to the old end, mm; negative beyond it
-  float moved = 0;          ///< of the end, outward, mm
+  Eigen::Vector3f outward;  ///< fall of the distance to the border, mm per voxel of each axis
+  float rest = 0;           ///< way to the old border, mm; negative beyond it
+  float moved = 0;          ///< of the border, outward, mm
 };
 
-/// Places around the old end of a trajectory, and from the new one on, half a voxel apart.
-void addPlaces(const Trajectory& path, double moved, const Grid& grid, std::vector<Place>& places) {
-  constexpr double kAround = 2.5;  // voxels of both sides of the end: a level's band and a half
-  const double voxel = voxelSize(grid), step = 0.5 * voxel;
-  const double length = path.length();
-  const double first = length + std::min(0.0, moved) - kAround * voxel;
-  for (double arc = std::max(0.0, first); arc <= length + kAround * voxel; arc += step) {
+/// Places along a trajectory around its old border and its new one, half a voxel apart.
+void addPlaces(const Trajectory& path, PathBorder border, double moved, const Grid& grid,
+               std::vector<Place>& places) {
+  constexpr double kAround = 2.5;  // voxels of both sides: a level's band and a half
+  const double voxel = voxelSize(grid), step = 0.5 * voxel, around = kAround * voxel;
+  const double length = path.length(), old = border == PathBorder::Inner ? 0 : length;
+  // Nothing is said beyond the other border.
+  const double least = border == PathBorder::Inner ? -around + std::min(0.0, moved) : 0;
+  const double most = border == PathBorder::Inner ? length : length + around;
+  const double first = std::max(least, old + std::min(0.0, moved) - around);
+  const double last = std::min(most, old + around);
+  for (double arc = first; arc <= last; arc += step) {
     const Point at = along(path, arc);
     const Vector way = along(path, arc + 0.5 * step) - along(path, arc - 0.5 * step);
     const Vector axes = (grid.direction.transpose() * way.normalized()).cwiseProduct(grid.spacing);
     places.push_back({grid.toIndex(at).cast<float>(), axes.cast<float>(),
-                      static_cast<float>(length - arc), static_cast<float>(moved)});
+                      static_cast<float>(old - arc), static_cast<float>(moved)});
   }
 }
 
@@ -52,15 +57,17 @@ float saidOf(const Place& place, float old, float rest, float band, float voxel)
 }
 
 /// Places by the slice of their nearest voxel.
-std::vector<std::vector<Place>> bySlice(const std::vector<Trajectory>& paths,
+std::vector<std::vector<Place>> bySlice(const std::vector<Trajectory>& paths, PathBorder border,
                                         const Eigen::VectorXd& moved, const Grid& grid) {
   constexpr std::size_t kBlock = 1024;
   std::vector<std::vector<Place>> parts((paths.size() + kBlock - 1) / kBlock);
   parallelFor(parts.size(), 1, [&](std::size_t part) {
     const std::size_t end = std::min(paths.size(), (part + 1) * kBlock);
     for (std::size_t v = part * kBlock; v < end; ++v) {
-      if (paths[v].end != TrajectoryEnd::Outer) continue;
-      addPlaces(paths[v], moved[static_cast<Eigen::Index>(v)], grid, parts[part]);
+      const bool has = border == PathBorder::Inner ? paths[v].end != TrajectoryEnd::NoRibbon
+                                                   : paths[v].end == TrajectoryEnd::Outer;
+      if (!has) continue;
+      addPlaces(paths[v], border, moved[static_cast<Eigen::Index>(v)], grid, parts[part]);
     }
   });
   std::vector<std::vector<Place>> slices(grid.size[2]);
@@ -76,12 +83,12 @@ std::vector<std::vector<Place>> bySlice(const std::vector<Trajectory>& paths,
 }  // namespace
 
 LevelSet levelOfEnds(const LevelSet& distance, const std::vector<Trajectory>& paths,
-                     const Eigen::VectorXd& moved) {
+                     PathBorder border, const Eigen::VectorXd& moved) {
   const Grid& grid = distance.grid;
   const auto& n = grid.size;
   const auto voxel = static_cast<float>(voxelSize(grid));
   const float band = 2 * static_cast<float>(grid.spacing.maxCoeff());
-  const std::vector<std::vector<Place>> slices = bySlice(paths, moved, grid);
+  const std::vector<std::vector<Place>> slices = bySlice(paths, border, moved, grid);
   LevelSet level = distance;
   parallelFor(n[2], 1, [&](std::size_t slice) {
     const int k = static_cast<int>(slice);

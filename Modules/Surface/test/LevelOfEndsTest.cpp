@@ -72,7 +72,7 @@ TEST(LevelOfEnds, TheBorderGoesWithTheEnds) {
   for (const Vector& spacing : {Vector(1, 1, 1), Vector(0.8, 0.8, 1.6)}) {
     const LevelSet distance = distanceLevelOf(ballOf(cubeWith(spacing), kOuterRadius));
     for (const double moved : {-1.5, -0.4, 0.0, 0.5}) {
-      const LevelSet level = levelOfEnds(distance, radiiOf(ball),
+      const LevelSet level = levelOfEnds(distance, radiiOf(ball), PathBorder::Outer,
                                          Eigen::VectorXd::Constant(ball.vertexCount(), moved));
       double sum = 0, squares = 0;
       int count = 0;
@@ -95,8 +95,9 @@ TEST(LevelOfEnds, WhatOneBankSaysIsNotSaidOfTheOther) {
   for (Eigen::Index v = 0; v < moved.size(); ++v) {
     moved[v] = ball.positions(v, 0) > 0 ? -0.8 : 0;
   }
-  const LevelSet level = levelOfEnds(
-      distanceLevelOf(ballOf(cubeWith(Vector::Constant(1)), kOuterRadius)), radiiOf(ball), moved);
+  const LevelSet level =
+      levelOfEnds(distanceLevelOf(ballOf(cubeWith(Vector::Constant(1)), kOuterRadius)),
+                  radiiOf(ball), PathBorder::Outer, moved);
   for (Eigen::Index v = 0; v < moved.size(); v += 31) {
     if (std::abs(ball.positions(v, 0)) < 3) continue;
     EXPECT_NEAR(radiusAt(level, ball.positions.row(v)), kOuterRadius + moved[v], 0.12);
