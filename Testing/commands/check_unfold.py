@@ -12,6 +12,7 @@ import sys
 
 import nibabel
 import numpy as np
+from scipy.spatial import cKDTree
 
 surface, out = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
 summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
@@ -70,21 +71,23 @@ def seen(points, faces, listed, eye):
 def crossings(points, faces):
     """Pairs of faces of which an edge of one passes through the other, away from a common vertex."""
     corners = points[faces]
-    low, high = corners.min(axis=1), corners.max(axis=1)
+    centre = corners.mean(axis=1)
+    radius = np.linalg.norm(corners - centre[:, None], axis=2).max(axis=1)
+    near = cKDTree(centre).query_pairs(2 * radius.max(), output_type="ndarray")
+    near = near[np.linalg.norm(centre[near[:, 0]] - centre[near[:, 1]], axis=1) <= radius[near].sum(axis=1)]
     found = set()
-    for f in range(len(faces)):
-        near = np.flatnonzero((low <= high[f]).all(axis=1) & (high >= low[f]).all(axis=1))
-        near = near[np.isin(faces[near], faces[f]).sum(axis=1) < 2]
-        side, other = corners[near, 1] - corners[near, 0], corners[near, 2] - corners[near, 0]
+    for f, g in (near.T, near.T[::-1]):  # edges of f through g
+        side, other = corners[g, 1] - corners[g, 0], corners[g, 2] - corners[g, 0]
         for k in range(3):
             origin, way = corners[f, k], corners[f, (k + 1) % 3] - corners[f, k]
-            to = origin - corners[near, 0]
+            to = origin - corners[g, 0]
             p, q = np.cross(way, other), np.cross(to, side)
             with np.errstate(divide="ignore", invalid="ignore"):
-                u, v, t = (x / (side * p).sum(axis=1) for x in ((to * p).sum(axis=1), q @ way, (other * q).sum(axis=1)))
+                u, v, t = (x / (side * p).sum(axis=1) for x in ((to * p).sum(axis=1), (q * way).sum(axis=1), (other * q).sum(axis=1)))
                 hit = (u >= 0) & (v >= 0) & (u + v <= 1) & (t >= 0) & (t <= 1)
-            hit &= ~np.isin(faces[near], faces[f, [k, (k + 1) % 3]]).any(axis=1)
-            found |= {(min(f, int(g)), max(f, int(g))) for g in near[hit]}
+            ends = faces[f][:, [k, (k + 1) % 3]]
+            hit &= ~(faces[g][:, :, None] == ends[:, None, :]).any(axis=(1, 2))
+            found |= {(min(pair), max(pair)) for pair in zip(f[hit].tolist(), g[hit].tolist())}
     return found
 
 
