@@ -22,13 +22,13 @@ Grid cubeOf40() {
 }
 
 /// A ball of tissue, its outer border known as a distance.
-CorticalTissue ball() {
+CorticalTissue ball(const Grid& grid = cubeOf40()) {
   CorticalTissue tissue;
-  tissue.tissue = LevelSet(cubeOf40());
-  tissue.insulated = Volume<std::uint8_t>(cubeOf40(), 0);
+  tissue.tissue = LevelSet(grid);
+  tissue.insulated = Volume<std::uint8_t>(grid, 0);
   for (std::size_t v = 0; v < tissue.tissue.size(); ++v) {
     const auto s = tissue.tissue.grid.subscripts(v);
-    const double inside = kBallRadius - cubeOf40().toWorld(Vector(s[0], s[1], s[2])).norm();
+    const double inside = kBallRadius - grid.toWorld(Vector(s[0], s[1], s[2])).norm();
     tissue.tissue[v] = offZero(static_cast<float>(std::clamp(inside / 2, -1.0, 1.0)));
   }
   return tissue;
@@ -65,6 +65,16 @@ TEST(GridCrossings, TellInsideFromOutsideOnAnyVertex) {
 TEST(AnnulusBetween, HasTheThicknessOfAShell) {
   const auto annulus = annulusBetween(geometry::makeIcosphere(5, 12.3), ball(), {});
   EXPECT_NEAR(thicknessAt(annulus, Point(0, 8, 11)), kBallRadius - 12.3, 0.03);
+}
+
+TEST(AnnulusBetween, HasItOnAnObliqueMirroredGridOfOtherSpacing) {
+  Grid grid;
+  grid.size = {51, 41, 33};
+  grid.spacing = {0.8, 1, 1.25};
+  grid.direction << std::cos(0.3), std::sin(0.3), 0, std::sin(0.3), -std::cos(0.3), 0, 0, 0, 1;
+  grid.origin = -grid.direction * Vector(20, 20, 20);
+  const auto annulus = annulusBetween(geometry::makeIcosphere(5, 12.3), ball(grid), {});
+  EXPECT_NEAR(thicknessAt(annulus, Point(0, 8, 11)), kBallRadius - 12.3, 0.05);
 }
 
 TEST(AnnulusBetween, ABladeThinnerThanAVoxelParts) {
