@@ -111,7 +111,7 @@ TEST(Hemisphere, FillsWhatTheAtlasLeavesOfTheHippocampus) {
     return left.labels(static_cast<int>(std::lround(at.x())), static_cast<int>(std::lround(at.y())),
                        static_cast<int>(std::lround(at.z())));
   };
-  EXPECT_EQ(labelAt(hippocampus + 5.5 * outward), kWhite);
+  EXPECT_EQ(labelAt(hippocampus + 5 * outward), kWhite);
   EXPECT_EQ(labelAt(hippocampus + Vector(0, 7, 0)), kWhite);
   EXPECT_EQ(labelAt(23 * outward), kGrey) << "cortex";
 }
