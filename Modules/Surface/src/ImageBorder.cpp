@@ -23,7 +23,8 @@ namespace {
 /// Of a short trajectory each border takes this share at most, so that they do not pass each other.
 constexpr double kShortShare = 0.35;
 /// The middle between two banks is known to half a voxel.
-constexpr int kBeyondBank = kSide / 2;
+constexpr double kMiddleKnown = 0.5;
+constexpr int kBeyondBank = static_cast<int>(kMiddleKnown * kSide);
 
 /// White matter is looked at this far inside its border, the outside this far beyond the tissue,
 /// voxels; grey matter in the middle.
@@ -36,6 +37,10 @@ constexpr double kOutsideReach = 2;
 constexpr int kOutsideSamples = 9;
 /// Deviation of the window in which brightness of white matter is averaged, voxels.
 constexpr double kWhiteSpread = 4.1;
+/// Standard deviation of a border that a mask's edge gives, voxels: it is somewhere in its voxel.
+/// Where it leaves less of the usual thickness than a share, it may have cut cortex off.
+const double kUniform = 1 / std::sqrt(12.0);
+constexpr double kThinShare = 0.5;
 /// Farthest beyond the tissue that the image is looked at, voxels.
 constexpr double kBeyondMask = kOutsideReach + 1;
 
@@ -224,6 +229,7 @@ ImageBorders findBorders(const std::vector<Trajectory>& given, const TriangleMes
     }
   }
   const Tissues tissues = brightnessOf(paths, masked, inner, topology, edgeLength, voxel);
+  const double usual = usualLength(paths);
   for (const bool outer : {false, true}) {
     const bool besideFluid = outer && options.fluid > 0;
     const EdgeOptions& chosen =
@@ -243,8 +249,11 @@ ImageBorders findBorders(const std::vector<Trajectory>& given, const TriangleMes
         chooser.deviations(ways, tissues.noise * edge.contrast.cwiseInverse(), voxel);
     for (Eigen::Index v = 0; v < ways.size(); ++v) {
       if (paths[v].end == TrajectoryEnd::NoRibbon) continue;
-      const double unseen = (1 - edge.covered[v]) * voxel;
-      borders.doubt(v, outer) = std::min(voxel, std::hypot(deviations[v], unseen));
+      const bool isThin = paths[v].length() + ways[v] < kThinShare * usual;
+      const double unseen = (1 - edge.covered[v]) * (isThin ? 1 : kUniform) * voxel;
+      const bool isMiddle = outer && paths[v].end == TrajectoryEnd::Bank;
+      const double most = (isMiddle ? kMiddleKnown : 1) * voxel;
+      borders.doubt(v, outer) = std::min(most, std::hypot(deviations[v], unseen));
     }
     (outer ? borders.outer : borders.white) += ways;
     (outer ? borders.missingOuter : borders.missingWhite) = chooser.missing();
