@@ -159,10 +159,7 @@ SphereDistortion sphereDistortion(const TriangleMesh& surface, const Positions& 
   std::vector<Weighed> areal, stretch;
   double sum = 0;
   for (Eigen::Index f = 0; f < surface.faceCount(); ++f) {
-    if (!(areas[f] > 0) || !(onSphere[f] > 0)) {
-      ++result.facesWithoutArea;
-      continue;
-    }
+    if (!(areas[f] > 0) || !(onSphere[f] > 0)) continue;
     const Vector u = image.corner(f, 1) - image.corner(f, 0);
     const Vector v = image.corner(f, 2) - image.corner(f, 0);
     const auto& g = rest[f].gradient;
