@@ -156,19 +156,14 @@ Halfway halfwayOf(const std::array<Volume<float>, 2>& images, const Motion& moti
 }
 
 double correlationOf(const Halfway& halfway) {
-  double a = 0, b = 0, aa = 0, bb = 0, ab = 0;
-  for (const std::size_t v : halfway.head) {
-    a += halfway.a[v];
-    b += halfway.b[v];
+  Eigen::ArrayXd a(static_cast<Eigen::Index>(halfway.head.size())), b(a.size());
+  for (Eigen::Index n = 0; n < a.size(); ++n) {
+    a[n] = halfway.a[halfway.head[static_cast<std::size_t>(n)]];
+    b[n] = halfway.b[halfway.head[static_cast<std::size_t>(n)]];
   }
-  const auto n = static_cast<double>(halfway.head.size());
-  for (const std::size_t v : halfway.head) {
-    const double x = halfway.a[v] - a / n, y = halfway.b[v] - b / n;
-    aa += x * x;
-    bb += y * y;
-    ab += x * y;
-  }
-  return aa > 0 && bb > 0 ? ab / std::sqrt(aa * bb) : 0;
+  a -= a.mean();
+  b -= b.mean();
+  return (a * b).sum() / std::sqrt(a.square().sum() * b.square().sum());
 }
 
 /// Normal equations of a Gauss-Newton step.
