@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include "Explica/Application/Command.h"
 #include "Explica/Harmonic/Phantoms.h"
@@ -8,13 +9,14 @@
 #include <nlohmann/json.hpp>
 
 namespace explica::app {
-namespace {
 
-using Settings = harmonic::PhantomOptions;
+struct AnnulusKindSettings {
+  harmonic::PhantomOptions phantom;
+};
 
 /// What the kinds of annular tissue have in common.
-void declareTissue(Declaration& d, Settings& s) {
-  d.options("Phantom", s)
+inline void declareAnnulusKind(Declaration& d, AnnulusKindSettings& s) {
+  d.options("Phantom", s.phantom)
       .output("labels.nii.gz", FileKind::LabelVolume, "1 inner, 2 tissue, 0 outer")
       .output("inner_level.nii.gz", FileKind::Volume, "inner boundary at 0, mm, negative inside")
       .output("outer_level.nii.gz", FileKind::Volume, "outer boundary at 0, mm, negative inside")
@@ -27,12 +29,12 @@ void declareTissue(Declaration& d, Settings& s) {
 }
 
 template <harmonic::PhantomKind Kind>
-Termination run(Context& context, const Settings& s) {
+Termination runAnnulusKind(Context& context, const AnnulusKindSettings& s) {
   harmonic::Phantom phantom;
   harmonic::PhantomAnswers answers;
   {
     auto step = context.step("generate");
-    phantom = harmonic::makePhantom(Kind, s);
+    phantom = harmonic::makePhantom(Kind, s.phantom);
     answers = harmonic::answersOf(phantom);
   }
   auto step = context.step("write");
@@ -55,32 +57,6 @@ Termination run(Context& context, const Settings& s) {
                                                    {"inner_point", "inner_point.nii.gz"},
                                                    {"outer_point", "outer_point.nii.gz"}});
   return Termination::NotRun;
-}
-
-}  // namespace
-
-Command phantomEccentricCommand() {
-  const auto declare = [](Declaration& d, Settings& s) {
-    d.synopsis("two eccentric circles with their exact answers (bipolar coordinates)")
-        .description(
-            "One slice: circles of 10 and 25 mm whose centres are 5 mm apart. Trajectories "
-            "are circles, so that thickness varies and boundary points are known.")
-        .example("explica phantom eccentric --size 120 --out eccentric", "120 voxels a side");
-    declareTissue(d, s);
-  };
-  return makeCommand<Settings>("phantom eccentric", declare, run<harmonic::PhantomKind::Eccentric>);
-}
-
-Command phantomSpheroidCommand() {
-  const auto declare = [](Declaration& d, Settings& s) {
-    d.synopsis("confocal spheroids with their exact answers")
-        .description(
-            "Prolate spheroids of focal distance 30 mm, sinh mu 0.5 and 1. Trajectories are "
-            "hyperbolas.")
-        .example("explica phantom spheroid --size 120 --out spheroid", "120 voxels a side");
-    declareTissue(d, s);
-  };
-  return makeCommand<Settings>("phantom spheroid", declare, run<harmonic::PhantomKind::Spheroid>);
 }
 
 }  // namespace explica::app
