@@ -897,7 +897,7 @@ def errata(page):
         ["(5.44)", "last b, c are those of face i", "those of face j",
          "<code>PairIntegral.DerivativeOfSharedCornersNeedsTheOtherFacesOwnCorners</code>"],
         ["(5.45), (84)", "distance of sums of vertices", "of centroids",
-         "<code>PairIntegral.DividesByTheCentroidDistanceNotByThatOfSums</code>"],
+         "<code>ThesisTree.DividesByTheCentroidDistanceNotByThatOfSums</code>"],
         ["(5.46)", "+ μ<sub>R</sub>", "− μ<sub>R</sub>: descent on a repulsive energy",
          "<code>AllPairs.DescentOnTheEnergyNeedsTheMinusSign</code>"]])
 
