@@ -6,6 +6,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/FileText.h"
 #include "Explica/Core/Html.h"
+#include "Explica/Core/StopScope.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Provenance/Json.h"
 #include "GroupParts.h"
@@ -240,6 +241,7 @@ std::string writeGroup(Context& context, const GroupSettings& s, const AboutPeop
     writeSide(context, sides.back(), summary.space);
     for (const Member& member : members) {
       if (member.row->hemisphere != hemisphere || member.maps.entity.empty()) continue;
+      checkpoint();
       compare(context, member, sides.back());
     }
   }

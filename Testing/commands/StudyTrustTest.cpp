@@ -92,6 +92,29 @@ TEST(StudyTrust, AStopAtAnyCheckIsInterruptedInTheTableOfHeartsToo) {
   }
 }
 
+/// Of what KillsAndDisks does not stop: tables of people, records, pages and pictures.
+TEST(StudyTrust, AStopAtAnyCheckIsInterruptedInGroupsReplaysPagesAndPicturesToo) {
+  const TemporaryFolder folder;
+  const SmallStudy study(folder.path(), {"01", "02"});
+  ASSERT_EQ(explica(study.participants(folder / "done")).exitCode, 0);
+  const std::string run = folder / "done/runs/sub-01_hemi-L", surface = run + "/surface";
+  const std::vector<std::vector<std::string>> rows = {
+      study.group(folder / "done"),
+      {"replay", surface, "--force", "--out", folder / "again"},
+      {"report", run},
+      {"view", surface + "/white.surf.gii", "--width", "64", "--height", "48", "--screenshot",
+       folder / "a.png"},
+  };
+  for (const auto& words : rows) {
+    const long checks = checksFor(words);
+    EXPECT_GT(checks, 0) << words[0];
+    for (const long check : momentsOf(checks, 10)) {
+      const CommandResult ended = explica(words, stopAtCheck(check));
+      EXPECT_TRUE(isInterrupted(ended)) << check << " of " << checks << ended;
+    }
+  }
+}
+
 /// The commands that KillsAndDisks does not try: of many runs, of records, of pages and pictures.
 TEST(StudyTrust, LimitsHoldForCommandsOfManyRunsRecordsAndPictures) {
   const TemporaryFolder folder;

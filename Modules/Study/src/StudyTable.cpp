@@ -5,6 +5,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/FileText.h"
+#include "Explica/Core/StopScope.h"
 #include "Explica/Provenance/Doubts.h"
 #include "Explica/Provenance/Json.h"
 
@@ -247,7 +248,10 @@ std::vector<StudyRow> collectRows(const fs::path& out, const std::string& subjec
   }
   std::sort(folders.begin(), folders.end());
   std::vector<StudyRow> rows;
-  for (const fs::path& run : folders) rows.push_back(rowOf(out, run));
+  for (const fs::path& run : folders) {
+    checkpoint();
+    rows.push_back(rowOf(out, run));
+  }
   return rows;
 }
 
