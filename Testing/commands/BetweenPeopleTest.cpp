@@ -1,15 +1,21 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
-// explica register, parcellate, template, unfold --region: what users type and what they get.
+// explica register, parcellate, template, longitudinal, unfold --region: what users type and what
+// they get.
 
 #include "Explica/Geometry/MeshMeasures.h"
+#include "Explica/IO/VolumeFile.h"
 #include "QuickRuns.h"
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <sstream>
 
 namespace explica::testing {
 namespace {
@@ -158,6 +164,104 @@ TEST(Template, OfOnePersonIsRefused) {
   const auto result = explica({"template", folder.path().string(), "--out", folder / "out"});
   EXPECT_EQ(result.exitCode, 2);
   EXPECT_NE(result.err.find("fewer than two people"), std::string::npos) << result;
+}
+
+/// Two sessions of the phantom cortex as the scanner may have them: the second turned and shifted,
+/// with noise of its own; and regions of it, four a side.
+class Longitudinal : public ::testing::Test {
+ protected:
+  /// @param thinned  mm less in the second session
+  Json changeOf(const std::string& thinned) {
+    write("first", "2.5", "1", Eigen::Isometry3d::Identity());
+    Eigen::Isometry3d turned = Eigen::Isometry3d::Identity();
+    turned.linear() =
+        Eigen::AngleAxisd(8 * kPi / 180, Vector(1, -0.5, 0.3).normalized()).toRotationMatrix();
+    turned.translation() = Vector(3.3, -2.6, 1.4);
+    write("second", thinned, "2", turned);
+    writeRegions();
+    const auto result =
+        explica({"longitudinal", folder_ / "first.nii.gz", folder_ / "second.nii.gz", "--atlas",
+                 folder_ / "atlas.nii.gz", "--hemisphere", "L", "--template", "none",
+                 "--surface.faces", "8000", "--out", folder_ / "out"});
+    // The phantom's brain is smaller than a person's: doubtful.
+    EXPECT_EQ(result.exitCode, 3) << result;
+    return readJson(folder_ / "out/summary.json");
+  }
+
+  /// Mean change of each region of the left side, mm.
+  [[nodiscard]] std::vector<double> changes() const {
+    std::istringstream table(readText(folder_ / "out/regions/regions.tsv"));
+    std::vector<double> values;
+    for (std::string line; std::getline(table, line);) {
+      const std::size_t at = line.find("change_session-2_mean\t");
+      if (at != line.npos) values.push_back(std::stod(line.substr(at + 22)));
+    }
+    return values;
+  }
+
+  void write(const std::string& name, const std::string& thickness, const std::string& seed,
+             const Eigen::Isometry3d& motion) {
+    ASSERT_EQ(explica({"phantom", "cortex", "--size", "64", "--thickness", thickness, "--seed",
+                       seed, "--out", folder_ / name})
+                  .exitCode,
+              0);
+    Volume<float> image = io::readScalars(folder_ / (name + "/t1.nii.gz")).volume;
+    image.grid.direction = motion.linear() * image.grid.direction;
+    image.grid.origin = motion * image.grid.origin;
+    io::writeVolume(folder_ / (name + ".nii.gz"), image);
+  }
+
+  TemporaryFolder folder_;
+
+ private:
+  void writeRegions() {
+    const Volume<Label> labels = io::readLabels(folder_ / "first/labels.nii.gz").volume;
+    Volume<Label> atlas(labels.grid, 0);
+    for (std::size_t v = 0; v < labels.size(); ++v) {
+      const auto [i, j, k] = labels.grid.subscripts(v);
+      const Point at = labels.grid.toWorld(Vector(i, j, k));
+      if (labels[v] != 0) atlas[v] = 1 + (at.x() > 0) + 2 * (at.y() > 0) + 4 * (at.z() > 0);
+    }
+    io::writeVolume(folder_ / "atlas.nii.gz", atlas);
+    std::ofstream(folder_ / "atlas.nii.txt")
+        << "1 Occipital_Inf_L\n2 Occipital_Inf_R\n3 Frontal_Inf_L\n4 Frontal_Inf_R\n"
+           "5 Occipital_Sup_L\n6 Occipital_Sup_R\n7 Frontal_Sup_L\n8 Frontal_Sup_R\n";
+  }
+};
+
+TEST_F(Longitudinal, FindsTheThinningOfAPhantom) {
+  const Json summary = changeOf("2.3");
+  EXPECT_NEAR(summary["thickness_change_mean"].get<double>(), -0.2, 0.02);
+  EXPECT_GT(summary["thickness_change_known"].get<double>(), 0.6);
+  ASSERT_EQ(changes().size(), 4U);
+  for (const double change : changes()) EXPECT_NEAR(change, -0.2, 0.08);
+}
+
+TEST_F(Longitudinal, FindsNoChangeWhereThereIsNone) {
+  const Json summary = changeOf("2.5");
+  EXPECT_NEAR(summary["thickness_change_mean"].get<double>(), 0, 0.02);
+  EXPECT_GT(summary["session_correlation"].get<double>(), 0.95);
+  ASSERT_EQ(changes().size(), 4U);
+  double squares = 0;
+  for (const double change : changes()) squares += change * change / 4;
+  EXPECT_LT(std::sqrt(squares), 0.04);
+}
+
+TEST_F(Longitudinal, OfOneSessionIsRefused) {
+  write("first", "2.5", "1", Eigen::Isometry3d::Identity());
+  const auto result = explica({"longitudinal", folder_ / "first.nii.gz", "--out", folder_ / "out"});
+  EXPECT_EQ(result.exitCode, 1) << result;
+  EXPECT_NE(result.err.find("is one session"), std::string::npos) << result;
+}
+
+TEST_F(Longitudinal, LeavesNothingWhenAStepFails) {
+  write("first", "2.5", "1", Eigen::Isometry3d::Identity());
+  const auto result =
+      explica({"longitudinal", folder_ / "first.nii.gz", folder_ / "first.nii.gz", "--atlas",
+               folder_ / "first/labels.nii.gz", "--hemisphere", "L", "--out", folder_ / "out"});
+  EXPECT_EQ(result.exitCode, 2) << result;
+  EXPECT_NE(result.err.find("no legend"), std::string::npos) << result;
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
 }
 
 struct Refusal {

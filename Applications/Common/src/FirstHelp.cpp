@@ -90,6 +90,13 @@ explica history shell/labels.nii.gz)"},
        R"(explica phantom cortex --size 32 --spacing 2 --out cortex
 explica surface cortex/labels.nii.gz --white-label 3 --grey-label 2 --faces 2000 --out surfaces
 explica inflate surfaces/white.surf.gii --out inflated)"},
+      {"longitudinal",
+       "T1s of one person, in the order of time",
+       "thickness of each session at the same places of the person's own template, and its change",
+       {"hemisphere", "atlas", "template", "segment.template", "segment.stripped", "surface.faces"},
+       R"(explica phantom cortex --size 48 --out first
+explica phantom cortex --size 48 --seed 2 --out second
+explica longitudinal first/t1.nii.gz second/t1.nii.gz --hemisphere L --out change --dry-run)"},
       {"parcellate",
        "a folder with a sphere in register with a template, and the template's labels",
        "regions at the surface's vertices, and how sure they are",

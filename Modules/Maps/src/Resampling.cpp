@@ -159,4 +159,17 @@ VertexKeys resampleLabels(const ResamplingWeights& weights, const VertexKeys& ke
   return result;
 }
 
+Eigen::VectorXd mapNear(const TriangleMesh& surface, const Eigen::VectorXd& values,
+                        const Positions& points, double farthest) {
+  const sampling::NearestOnSurface nearest = sampling::nearestOn(surface, points);
+  Eigen::VectorXd result = Eigen::VectorXd::Constant(points.rows(), kNaN);
+  for (Eigen::Index p = 0; p < points.rows(); ++p) {
+    if (nearest.distance[p] > farthest) continue;
+    double sum = 0;
+    for (int k = 0; k < 3; ++k) sum += nearest.weights(p, k) * values[nearest.corners(p, k)];
+    result[p] = sum;
+  }
+  return result;
+}
+
 }  // namespace explica::maps

@@ -122,13 +122,6 @@ double information(const Level& level, const Eigen::Affine3d& map) {
   return (entropy(ofTemplate.data(), kBins, total) + entropy(ofImage.data(), kBins, total)) / joint;
 }
 
-/// The whole volume in cubes of this size.
-Volume<float> inCubes(const Volume<float>& volume, double spacing) {
-  const auto& n = volume.grid.size;
-  const Vector last(n[0] - 1, n[1] - 1, n[2] - 1);
-  return resampled(volume, cubicGrid(volume.grid, Vector::Zero(), last, spacing));
-}
-
 Level makeLevel(const Volume<float>& image, const Volume<float>& inTemplate,
                 const Volume<float>& region, double spacing) {
   Level level;

@@ -147,4 +147,10 @@ Volume<float> resampled(const Volume<float>& volume, const Grid& grid) {
   return result;
 }
 
+Volume<float> inCubes(const Volume<float>& volume, double spacing) {
+  const auto& n = volume.grid.size;
+  const Vector last(n[0] - 1, n[1] - 1, n[2] - 1);
+  return resampled(volume, cubicGrid(volume.grid, Vector::Zero(), last, spacing));
+}
+
 }  // namespace explica::registration

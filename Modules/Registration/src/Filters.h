@@ -29,4 +29,7 @@ void forPlanes(const Grid& grid, const std::function<void(int k)>& work);
 /// 0 outside.
 [[nodiscard]] Volume<float> resampled(const Volume<float>& volume, const Grid& grid);
 
+/// The whole volume in cubes of this size, as resampled().
+[[nodiscard]] Volume<float> inCubes(const Volume<float>& volume, double spacing);
+
 }  // namespace explica::registration

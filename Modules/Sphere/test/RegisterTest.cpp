@@ -88,6 +88,31 @@ TEST(RegisterSphere, FindsAWarpWithinItsBoundOfAreas) {
   EXPECT_GT(result.arealLog2.cwiseAbs().maxCoeff(), 0.3);
 }
 
+// Folds 15 degrees apart were moved by up to 14.  A coarse level that still shows them draws each
+// to its neighbour; what is broader than they leads them home.
+TEST(RegisterSphere, BringsFoldsHomePastTheirNeighbours) {
+  const TriangleMesh grid = geometry::makeIcosphere(5);
+  const auto foldedLike = [&](const Positions& places) {
+    FoldingSphere folding;
+    folding.sphere = geometry::makeIcosphere(5, 100);
+    const auto x = places.col(0).array(), y = places.col(1).array(), z = places.col(2).array();
+    const Eigen::VectorXd narrow = (24 * z + 2 * x).sin().matrix();
+    folding.sulc = ((5 * x).sin() + (4 * y + z).cos() + 2 * z * (1 + x)).matrix() + 2 * narrow;
+    folding.curvature = ((4 * z + x).cos() + (3 * y - 5 * x).sin()).matrix() + 2 * narrow;
+    return folding;
+  };
+  Positions places = grid.positions;
+  places.col(2).array() += 0.25 * (1 - places.col(2).array().square());
+  places.rowwise().normalize();
+  RegisterOptions options;
+  options.level = 5;
+  options.rotate = false;
+  options.smoothness = 0.5;
+  const auto result = registerSphere(foldedLike(places), foldedLike(grid.positions), options);
+  const auto angles = anglesBetween(result.positions, places);
+  EXPECT_LT(angles.second, 1) << "largest " << angles.first;
+}
+
 TEST(RegisterSphere, MirroredSpheresAgree) {
   const FoldingSphere target = folded();
   FoldingSphere moving = target;

@@ -58,6 +58,15 @@ using VertexKeys = Eigen::Matrix<Label, Eigen::Dynamic, 1>;  ///< V
 /// The key of the largest weight at each target vertex; of equal ones the smallest key.
 [[nodiscard]] VertexKeys resampleLabels(const ResamplingWeights& weights, const VertexKeys& keys);
 
+/// Values of a surface's map at its points nearest to others, such as vertices of a surface that
+/// lies almost in the same place: linear within faces.
+/// @param values    V; NaN: not known
+/// @param points    P x 3, in the surface's space, mm
+/// @param farthest  mm
+/// @return P; NaN where the nearest point is farther away, or has a corner that is not known
+[[nodiscard]] Eigen::VectorXd mapNear(const TriangleMesh& surface, const Eigen::VectorXd& values,
+                                      const Positions& points, double farthest);
+
 }  // namespace explica::maps
 
 template <>

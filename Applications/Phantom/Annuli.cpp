@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
-#pragma once
 
 #include "Explica/Application/Command.h"
 #include "Explica/Harmonic/Phantoms.h"
@@ -9,14 +8,13 @@
 #include <nlohmann/json.hpp>
 
 namespace explica::app {
+namespace {
 
-struct AnnulusKindSettings {
-  harmonic::PhantomOptions phantom;
-};
+using Settings = harmonic::PhantomOptions;
 
 /// What the kinds of annular tissue have in common.
-inline void declareAnnulusKind(Declaration& d, AnnulusKindSettings& s) {
-  d.options("Phantom", s.phantom)
+void declareTissue(Declaration& d, Settings& s) {
+  d.options("Phantom", s)
       .output("labels.nii.gz", FileKind::LabelVolume, "1 inner, 2 tissue, 0 outer")
       .output("inner_level.nii.gz", FileKind::Volume, "inner boundary at 0, mm, negative inside")
       .output("outer_level.nii.gz", FileKind::Volume, "outer boundary at 0, mm, negative inside")
@@ -29,12 +27,12 @@ inline void declareAnnulusKind(Declaration& d, AnnulusKindSettings& s) {
 }
 
 template <harmonic::PhantomKind Kind>
-Termination runAnnulusKind(Context& context, const AnnulusKindSettings& s) {
+Termination run(Context& context, const Settings& s) {
   harmonic::Phantom phantom;
   harmonic::PhantomAnswers answers;
   {
     auto step = context.step("generate");
-    phantom = harmonic::makePhantom(Kind, s.phantom);
+    phantom = harmonic::makePhantom(Kind, s);
     answers = harmonic::answersOf(phantom);
   }
   auto step = context.step("write");
@@ -57,6 +55,32 @@ Termination runAnnulusKind(Context& context, const AnnulusKindSettings& s) {
                                                    {"inner_point", "inner_point.nii.gz"},
                                                    {"outer_point", "outer_point.nii.gz"}});
   return Termination::NotRun;
+}
+
+}  // namespace
+
+Command phantomEccentricCommand() {
+  const auto declare = [](Declaration& d, Settings& s) {
+    d.synopsis("two eccentric circles with their exact answers (bipolar coordinates)")
+        .description(
+            "One slice: circles of 10 and 25 mm whose centres are 5 mm apart. Trajectories "
+            "are circles, so that thickness varies and boundary points are known.")
+        .example("explica phantom eccentric --size 120 --out eccentric", "120 voxels a side");
+    declareTissue(d, s);
+  };
+  return makeCommand<Settings>("phantom eccentric", declare, run<harmonic::PhantomKind::Eccentric>);
+}
+
+Command phantomSpheroidCommand() {
+  const auto declare = [](Declaration& d, Settings& s) {
+    d.synopsis("confocal spheroids with their exact answers")
+        .description(
+            "Prolate spheroids of focal distance 30 mm, sinh mu 0.5 and 1. Trajectories are "
+            "hyperbolas.")
+        .example("explica phantom spheroid --size 120 --out spheroid", "120 voxels a side");
+    declareTissue(d, s);
+  };
+  return makeCommand<Settings>("phantom spheroid", declare, run<harmonic::PhantomKind::Spheroid>);
 }
 
 }  // namespace explica::app

@@ -1,0 +1,341 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Application/Command.h"
+#include "Explica/Application/Execute.h"
+#include "Explica/Application/ManyRuns.h"
+#include "Explica/Application/ReadInputs.h"
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/FileText.h"
+#include "Explica/Core/StopScope.h"
+#include "Explica/Core/WholeFile.h"
+#include "Explica/Geometry/MeshMeasures.h"
+#include "Explica/IO/LabelNames.h"
+#include "Explica/IO/SurfaceFile.h"
+#include "Explica/IO/TransformFile.h"
+#include "Explica/IO/VertexDataFile.h"
+#include "Explica/IO/VolumeFile.h"
+#include "Explica/Maps/Resampling.h"
+#include "Explica/Pipeline/Plan.h"
+#include "Explica/Registration/HeadTransform.h"
+#include "Explica/Registration/Sessions.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+namespace explica::app {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+struct Settings {
+  std::vector<std::string> sessions;
+  std::optional<std::string> atlas;
+  pipeline::RunHemisphere hemisphere = pipeline::RunHemisphere::Both;
+  Invocation run;  ///< whose options are taken over
+};
+
+/// Sessions in a common space and what changed between the first and the last, in numbers.
+struct Change {
+  std::int64_t sessions = 0;
+  double correlation = kNaN, turn = kNaN, mean = kNaN, deviation = kNaN, known = kNaN;
+};
+
+void describe(Results& t, const Change& r) {
+  t.count("sessions", "Sessions", "Images of the same person.", r.sessions).inHead();
+  t.number("session_correlation", "Correlation of a session with the first", "",
+           "Of brightness within the head, both resampled halfway; the least.", r.correlation)
+      .atLeast(0.9, Judgement::Doubt, "images of one person and one contrast agree")
+      .inHead();
+  t.number("session_rotation", "Rotation from the template to a session", "degrees", "The largest.",
+           r.turn);
+  t.number("thickness_change_mean", "Mean change of thickness", "mm",
+           "Last session less the first, at the same places, mean over the middle surface's area.",
+           r.mean)
+      .inHead();
+  t.number("thickness_change_sd", "Standard deviation of the change of thickness", "mm",
+           "Over the same area.", r.deviation);
+  t.share("thickness_change_known", "Cortex with a change",
+          "Area of the middle surface where all sessions have a thickness.", r.known);
+}
+
+void declare(Declaration& d, Settings& s) {
+  d.synopsis("change of thickness between sessions of a person, on a template of their own")
+      .description(
+          "Brings the T1s of one person by rigid registration into a space halfway between them, "
+          "without favour for any, and takes their mean through explica run. In that space each "
+          "session's own image is segmented within the mean's brain mask, by the mean's place on "
+          "the head's template, and has its own surfaces: sessions are interpolated alike and cut "
+          "out alike. The thickness of each is given at the vertices of the mean's middle surface "
+          "and by its regions, with the change since the first session. Options of explica run and "
+          "of its steps are those of all of them.")
+      .reference("Reuter, Rosas, Fischl 2010, NeuroImage 53(4):1181-1196")
+      .reference("Reuter, Schmansky, Rosas, Fischl 2012, NeuroImage 61(4):1402-1418")
+      .example("explica longitudinal ses-1_T1w.nii.gz ses-2_T1w.nii.gz --out sub-01",
+               "Two sessions, in the order of time; sub-01/regions-L/regions.tsv has the change of "
+               "each region")
+      .input("SESSION", FileKind::Volume, "T1s of one person, in the order of time; two at least",
+             s.sessions)
+      .inPlace()
+      .output("template.nii.gz", FileKind::Volume, "mean of the sessions, halfway between them")
+      .output("session-*.nii.gz", FileKind::Volume,
+              "each session in that space, as bright as the first")
+      .output("to_session-*.h5", FileKind::Any,
+              "ITK transform from the template's points to a session's")
+      .output("atlas.nii.gz", FileKind::LabelVolume, "with --atlas: its labels in that space")
+      .output("atlas*.t*", FileKind::Any, "with --atlas: what they are called")
+      .output("template", FileKind::Folder, "explica run on the mean")
+      .output("session-*", FileKind::Folder, "explica run on each session in that space")
+      .output("hemi-*_thickness.shape.gii", FileKind::VertexData,
+              "thickness of each session at the template's vertices, mm, and its change since the "
+              "first; NaN where one is not known")
+      .output("regions*", FileKind::Folder,
+              "explica regions of these maps: regions.tsv has each region's change")
+      .results<Change>();
+  if (const Command* command = findCommand("run")) {
+    s.run = command->begin();
+    d.include(s.run.declaration, "");
+    for (const char* ours : {"atlas", "hemisphere", "resume", "kind", "steps", "given-surfaces",
+                             "unfold-surface", "segment.mask", "segment.template-transform"}) {
+      d.without(ours);
+    }
+    for (const Parameter& parameter : s.run.declaration.parameters) {
+      const std::string& name = parameter.option.name;
+      for (const char* step : {"thickness.", "resample.", "unfold."}) {
+        if (name.starts_with(step)) d.without(name);
+      }
+    }
+  }
+  d.option("Run", Field{"hemisphere", "", "which hemisphere to work on"}, s.hemisphere)
+      .inputOption("atlas", FileKind::LabelVolume,
+                   "labels in the space of the first session, as AAL's: tell hemispheres apart "
+                   "instead of a template's, and are the regions",
+                   s.atlas);
+}
+
+std::vector<Volume<float>> readSessions(Context& context, const Settings& s) {
+  if (s.sessions.size() < 2) {
+    throw UsageError("'" + s.sessions.front() +
+                     "' is one session; a change is between two or more of the same person");
+  }
+  io::VolumeReadOptions reading;
+  reading.dimension = 3;
+  std::vector<Volume<float>> sessions;
+  for (const std::string& path : s.sessions) {
+    sessions.push_back(readScalars(context, "SESSION", path, reading));
+  }
+  return sessions;
+}
+
+std::string numbered(const char* stem, std::size_t session) {
+  return stem + std::to_string(session + 1);
+}
+
+/// The atlas in the common space, with its legend.
+void writeAtlas(Context& context, const std::string& path, const Eigen::Isometry3d& toFirst,
+                const Grid& grid) {
+  io::VolumeReadOptions reading;
+  reading.dimension = 3;
+  registration::HeadTransform transform;
+  transform.affine = Eigen::Affine3d(toFirst.matrix());
+  const Volume<Label> atlas = readLabels(context, "atlas", path, reading);
+  io::writeVolume(context.output("atlas.nii.gz"), registration::pulled(atlas, transform, grid));
+  if (const auto legend = io::findLegend(path)) {
+    const char* name = legend->extension() == ".tsv" ? "atlas.tsv" : "atlas.nii.txt";
+    writeTextFile(context.output(name), fileText(context.input(*legend, "atlas-legend")));
+  }
+}
+
+/// @return the voxels' size, mm
+double writeCommonSpace(Context& context, const Settings& s,
+                        const std::vector<Volume<float>>& sessions, Change& change) {
+  const auto average = registration::averageSessions(sessions, context.monitor());
+  io::writeVolume(context.output("template.nii.gz"), average.mean);
+  change.sessions = static_cast<std::int64_t>(sessions.size());
+  change.correlation = average.leastCorrelation;
+  change.turn = 0;
+  for (std::size_t n = 0; n < sessions.size(); ++n) {
+    const Eigen::Isometry3d& motion = average.toSession[n];
+    io::writeVolume(context.output(numbered("session-", n) + ".nii.gz"), average.sessions[n]);
+    io::writeTransform(context.output(numbered("to_session-", n) + ".h5"),
+                       Eigen::Affine3d(motion.matrix()), {});
+    change.turn = std::max(change.turn, Eigen::AngleAxisd(motion.linear()).angle() * 180 / kPi);
+  }
+  if (s.atlas) writeAtlas(context, *s.atlas, average.toSession[0], average.mean.grid);
+  return average.mean.grid.spacing.maxCoeff();
+}
+
+/// One hemisphere, as the template's run has named it.
+struct Side {
+  std::string ending, letter;
+  [[nodiscard]] std::string structure() const {
+    return letter == "L" ? "CortexLeft" : "CortexRight";
+  }
+};
+
+std::vector<Side> sidesOf(const Settings& s) {
+  if (s.hemisphere == pipeline::RunHemisphere::Both) return {{"-L", "L"}, {"-R", "R"}};
+  return {{"", std::string(nameOf(s.hemisphere))}};
+}
+
+TriangleMesh readMid(Context& context, const fs::path& folder) {
+  return io::readSurface(context.input(folder / "mid.surf.gii", "middle surface")).mesh;
+}
+
+/// A session's thickness at the template's vertices; NaN where there is none.
+Eigen::VectorXd thicknessAt(Context& context, const fs::path& folder, const Positions& points,
+                            double farthest) {
+  const TriangleMesh mid = readMid(context, folder);
+  const Eigen::VectorXd own =
+      io::readVertexMaps(context.input(folder / "thickness.shape.gii", "thickness"),
+                         mid.vertexCount())
+          .front()
+          .values;
+  return maps::mapNear(mid, (own.array() > 0).select(own, kNaN), points, farthest);
+}
+
+void writeMaps(const fs::path& path, const std::vector<Eigen::VectorXd>& thickness,
+               const Side& side) {
+  io::GiftiMapsWriter writer(path, side.structure(), 2 * thickness.size() - 1);
+  const auto add = [&](const std::string& name, const Eigen::VectorXd& values) {
+    const Eigen::VectorXf single = values.cast<float>();
+    writer.add(name, "mm", {single.data(), static_cast<std::size_t>(single.size())});
+  };
+  for (std::size_t n = 0; n < thickness.size(); ++n) {
+    add(numbered("thickness_session-", n), thickness[n]);
+  }
+  for (std::size_t n = 1; n < thickness.size(); ++n) {
+    add(numbered("change_session-", n), thickness[n] - thickness[0]);
+  }
+  writer.finish();
+}
+
+/// Sums over the area of both hemispheres.
+struct Sums {
+  double all = 0, known = 0, first = 0, second = 0;
+
+  void add(const Eigen::VectorXd& areas, const Eigen::VectorXd& change) {
+    all += areas.sum();
+    for (Eigen::Index v = 0; v < change.size(); ++v) {
+      if (!std::isfinite(change[v])) continue;
+      known += areas[v];
+      first += areas[v] * change[v];
+      second += areas[v] * change[v] * change[v];
+    }
+  }
+};
+
+/// Maps and table of one hemisphere.
+void measure(Context& context, const Settings& s, const Side& side, double voxel, Sums& sums) {
+  const fs::path out = context.outputFolder(), surface = out / ("template/surface" + side.ending);
+  const TriangleMesh mid = readMid(context, surface);
+  // What is farther from the mean's surface is another bank, or cortex that one of them lacks.
+  const double farthest = 2 * voxel;
+  std::vector<Eigen::VectorXd> thickness;
+  for (std::size_t n = 0; n < s.sessions.size(); ++n) {
+    thickness.push_back(thicknessAt(context,
+                                    out / numbered("session-", n) / ("surface" + side.ending),
+                                    mid.positions, farthest));
+  }
+  Eigen::Array<bool, Eigen::Dynamic, 1> inAll = thickness.front().array().isFinite();
+  for (const Eigen::VectorXd& one : thickness) inAll = inAll && one.array().isFinite();
+  for (Eigen::VectorXd& one : thickness) one = inAll.select(one, kNaN).eval();
+  const fs::path maps = context.output("hemi-" + side.letter + "_thickness.shape.gii");
+  writeMaps(maps, thickness, side);
+  sums.add(geometry::vertexAreas(mid), thickness.back() - thickness.front());
+
+  const fs::path parcellated = out / ("template/parcellate" + side.ending) / "regions.label.gii";
+  const fs::path regions = fs::exists(parcellated) ? parcellated : surface / "regions.label.gii";
+  context.runCommand(*findCommand("regions"), "regions" + side.ending,
+                     {{"SURFACES", surface.string()},
+                      {"atlas", {regions.string()}},
+                      {"map", {maps.string()}},
+                      {"hemisphere", side.letter},
+                      {"person", out.lexically_normal().filename().string()}});
+}
+
+/// Takes the mean, then each session, through `explica run`.
+Termination runAll(Context& context, const Settings& s) {
+  const fs::path out = context.outputFolder();
+  Termination worst = Termination::Finished;
+  const auto take = [&](const std::string& name, Json values) {
+    values["INPUT"] = (out / (name + ".nii.gz")).string();
+    values["kind"] = "t1";
+    values["hemisphere"] = nameOf(s.hemisphere);
+    const Outcome outcome = context.runCommand(*findCommand("run"), name, values);
+    checkpoint(context.monitor());
+    if (!reachedGoal(outcome.termination)) worst = outcome.termination;
+  };
+  Json values = givenOptions(context, s.run.declaration);
+  if (s.atlas) values["atlas"] = (out / "atlas.nii.gz").string();
+  const bool registered = values.value("template", "colin27") != "none";
+  values["steps"] = {"segment", "surface", "sphere", "report"};
+  if (registered) values["steps"].insert(values["steps"].end(), {"register", "parcellate"});
+  take("template", values);
+  const fs::path segment = out / "template/segment";
+  values["steps"] = {"segment", "surface"};
+  values["segment.mask"] = (segment / "brain_mask.nii.gz").string();
+  if (fs::exists(segment / "to_template.h5")) {
+    values["segment.template-transform"] = (segment / "to_template.h5").string();
+  }
+  for (std::size_t n = 0; n < s.sessions.size(); ++n) take(numbered("session-", n), values);
+  return worst;
+}
+
+/// Half a comparison is of no use: what a failure leaves goes.
+void takeBack(Context& context, const Settings& s) {
+  std::vector<std::string> names = {"template"};
+  for (std::size_t n = 0; n < s.sessions.size(); ++n) names.push_back(numbered("session-", n));
+  std::error_code ignored;
+  for (const std::string& name : names) {
+    for (const char* step :
+         {"segment", "surface", "sphere", "register", "resample", "parcellate", "regions"}) {
+      for (const char* ending : {"", "-L", "-R"}) {
+        context.dropCommand(name + "/" + step + ending);
+      }
+    }
+    context.dropCommand(name);
+    fs::remove(context.outputFolder() / (name + ".nii.gz"), ignored);
+    fs::remove(context.outputFolder() / ("to_" + name + ".h5"), ignored);
+  }
+  for (const char* file : {"atlas.nii.gz", "atlas.tsv", "atlas.nii.txt"}) {
+    fs::remove(context.outputFolder() / file, ignored);
+  }
+}
+
+Termination run(Context& context, const Settings& s) {
+  const std::vector<Volume<float>> sessions = readSessions(context, s);
+  context.judged();
+  Change change;
+  double voxel = 0;
+  {
+    auto step = context.step("sessions");
+    voxel = writeCommonSpace(context, s, sessions, change);
+  }
+  Termination worst = Termination::Finished;
+  Sums sums;
+  try {
+    worst = runAll(context, s);
+    for (const Side& side : sidesOf(s)) measure(context, s, side, voxel, sums);
+  } catch (const Error&) {
+    takeBack(context, s);
+    throw;
+  }
+  change.known = sums.all > 0 ? sums.known / sums.all : kNaN;
+  change.mean = sums.known > 0 ? sums.first / sums.known : kNaN;
+  change.deviation = std::sqrt(std::max(0.0, sums.second / sums.known - change.mean * change.mean));
+  context.results(change);
+  return worst;
+}
+
+}  // namespace
+
+Command longitudinalCommand() {
+  return makeCommand<Settings>("longitudinal", declare, run);
+}
+
+}  // namespace explica::app
