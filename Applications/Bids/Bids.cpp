@@ -112,6 +112,8 @@ void declare(Declaration& d, Settings& s) {
       .output("sub-*", FileKind::Folder, "results by BIDS names")
       .output("runs", FileKind::Folder, "the runs themselves, with records and reports")
       .varyingOutput("study.tsv", FileKind::Table, "one row a participant and hemisphere")
+      .varyingOutput("study_regions.tsv", FileKind::Table, "one row a region and measure")
+      .varyingOutput("study_internals.tsv", FileKind::Table, "how each step went")
       .varyingOutput("index.html", FileKind::Report, "the same, to sort and click")
       .varyingOutput("prov/prov-explica_*.json", FileKind::JsonFile,
                      "how everything came about, as BIDS-Prov");
@@ -281,6 +283,8 @@ Termination doGroup(Context& context, const Settings& s) {
   auto rows = study::collectRows(out);
   const std::string part = writeGroup(context, s.group, study::aboutParticipants(s.dataset), rows);
   writeTextFile(context.output("study.tsv"), study::tableText(rows));
+  writeTextFile(context.output("study_regions.tsv"), study::regionsText(rows));
+  writeTextFile(context.output("study_internals.tsv"), study::internalsText(rows));
   writeTextFile(context.output("index.html"), study::indexPage(rows, "Explica study", part));
   writeExports(context);
   context.result("rows", rows.size());

@@ -81,6 +81,13 @@ io::CiftiPart mapsOf(const Side& side) {
   return part;
 }
 
+template <class Part>
+std::vector<Part> each(const std::vector<Side>& sides, Part (*read)(const Side&)) {
+  std::vector<Part> parts;
+  for (const Side& side : sides) parts.push_back(read(side));
+  return parts;
+}
+
 Termination run(Context& context, const Settings& s) {
   std::vector<Side> sides;
   if (s.left) sides.push_back({"CortexLeft", s.left, s.leftCortex});
@@ -97,30 +104,16 @@ Termination run(Context& context, const Settings& s) {
           "one hemisphere has labels and the other one maps; two of a kind are needed");
     }
   }
-  std::vector<io::CiftiLabels> labelParts;
-  std::vector<io::CiftiPart> parts;
-  std::size_t vertices = 0;
-  for (const Side& side : sides) {
-    if (labels) {
-      labelParts.push_back(labelsOf(side));
-      vertices += labelParts.back().where.vertices.size();
-    } else {
-      parts.push_back(mapsOf(side));
-      vertices += parts.back().where.vertices.size();
-    }
-  }
+  const std::vector<io::CiftiPart> parts =
+      labels ? std::vector<io::CiftiPart>() : each(sides, mapsOf);
+  const io::CiftiFile file = labels      ? io::ciftiLabels(each(sides, labelsOf))
+                             : s.seconds ? io::ciftiSeries(parts, *s.seconds)
+                                         : io::ciftiScalars(parts);
   auto step = context.step("write");
-  context.result("vertices", vertices);
-  if (labels) {
-    io::writeCiftiLabels(context.output(s.name + ".dlabel.nii"), labelParts);
-    return Termination::NotRun;
-  }
-  context.result("maps", parts.front().maps.size());
-  if (s.seconds) {
-    io::writeCiftiSeries(context.output(s.name + ".dtseries.nii"), parts, *s.seconds);
-  } else {
-    io::writeCiftiScalars(context.output(s.name + ".dscalar.nii"), parts);
-  }
+  const std::size_t maps = labels ? 1 : parts.front().maps.size();
+  context.result("vertices", file.values.size() / maps);
+  if (!labels) context.result("maps", maps);
+  file.write(context.output(s.name + file.ending));
   return Termination::NotRun;
 }
 

@@ -88,6 +88,11 @@ std::string sideOf(const std::string& column, const std::string& structure) {
   return structure;
 }
 
+/// "Cortex" alone says of neither hemisphere that it is the other one.
+bool statesSide(const std::string& structure) {
+  return structure == "CortexLeft" || structure == "CortexRight";
+}
+
 /// Vertices of each hemisphere: of its surface, or of the first person's map.
 void layOut(Context& context, const GlmSettings& s, const Table& list, const MapFiles& files,
             Observations& o) {
@@ -106,8 +111,9 @@ void layOut(Context& context, const GlmSettings& s, const Table& list, const Map
       const auto loaded = io::readSurface(s.surfaces[h]);
       side.count = loaded.mesh.vertexCount();
       side.structure = loaded.metadata.structure;
+      static_cast<void>(io::readVertexMaps(files.front()[h], side.count));  // one stands for all
       const std::string wanted = sideOf(columns[h], side.structure);
-      if (side.structure.starts_with("Cortex") && side.structure != wanted) {
+      if (statesSide(side.structure) && side.structure != wanted) {
         throw InvalidInput("'" + s.surfaces[h] + "' is of the other hemisphere than the column '" +
                            columns[h] + "' of '" + list.name + "'; give --surface in the order " +
                            "left, right");
@@ -124,7 +130,7 @@ void layOut(Context& context, const GlmSettings& s, const Table& list, const Map
     for (std::size_t h = 0; h < person.size(); ++h) {
       const std::string said = io::statedStructure(context.input(person[h], "person"));
       const std::string& wanted = o.hemispheres[h].structure;
-      if (said.empty() || !wanted.starts_with("Cortex") || said == wanted) continue;
+      if (!statesSide(said) || !statesSide(wanted) || said == wanted) continue;
       throw InvalidInput("'" + person[h].string() +
                          "' is of the other hemisphere than its column '" + columns[h] +
                          "' or the surface");

@@ -54,6 +54,7 @@ void declare(Declaration& d, Settings& s) {
           "--areas lh.white --out on-fsaverage5",
           "Thickness and labels of a person at fsaverage5's 10,242 vertices")
       .input("MAP", FileKind::Any, "per-vertex maps, series, labels or surfaces", s.maps)
+      .oneByOne("MAP")
       .inputOption("from", FileKind::Surface, "sphere with the maps' vertices", s.from)
       .require("from")
       .option("Target",

@@ -47,6 +47,25 @@ Json valuesOf(const Context& context, const RunSettings& s, const pipeline::Plan
   return values;
 }
 
+/// Refuses what is said to a step that --steps leaves out: it would have no effect.
+void requireStepsOfOptions(const Context& context, const RunSettings& s,
+                           const pipeline::Plan& plan) {
+  if (s.plan.steps.empty()) return;
+  for (const Invocation& invocation : s.steps) {
+    const std::string& name = invocation.declaration.name;
+    if (std::any_of(plan.steps.begin(), plan.steps.end(),
+                    [&](const auto& step) { return step.command == name; })) {
+      continue;
+    }
+    for (const Parameter& parameter : invocation.declaration.parameters) {
+      const std::string option = name + "." + parameter.option.name;
+      if (!context.given(option)) continue;
+      throw UsageError("--" + option + " has no effect, since --steps leaves " + name +
+                       " out: leave out one of them");
+    }
+  }
+}
+
 /// The user's choice of a place or viewpoint replaces the plan's.
 void settleView(const Context& context, const pipeline::PlannedStep& step, Json& values) {
   const auto given = [&](const char* name) { return context.given("unfold." + std::string(name)); };
@@ -233,6 +252,7 @@ Termination run(Context& context, const RunSettings& s) {
   const fs::path out = context.outputFolder();
   const pipeline::Plan whole = planOrTakeBack(context, s);
   const std::vector<pipeline::PlannedStep>& plan = whole.steps;
+  requireStepsOfOptions(context, s, whole);
   checkBeforehand(context, s, whole);
 
   std::vector<pipeline::StepNote> notes;

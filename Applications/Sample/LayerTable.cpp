@@ -166,6 +166,7 @@ Termination sampleLayers(Context& context, const SampleSettings& s) {
         "surfaces (layers of equal volume come from explica thickness --layer-kind "
         "volume, without --depths here)");
   }
+  requireUsable(context, s, nullptr);
   const Tissue tissue = readTissue(context, s);
   sampling::SampleSummary summary;
   summary.voxels = static_cast<std::int64_t>(tissue.voxels.voxels.size());

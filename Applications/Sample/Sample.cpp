@@ -6,6 +6,7 @@
 #include "Explica/Application/Command.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/IO/RegionFiles.h"
+#include "Explica/IO/VolumeSeries.h"
 
 #include <cmath>
 #include <set>
@@ -63,6 +64,16 @@ std::optional<Volume<std::uint8_t>> maskFor(const Grid& volume, const SampleSett
     mask[v] = read[v] != 0 && std::isfinite(read[v]);
   }
   return mask;
+}
+
+void requireUsable(Context& context, const SampleSettings& s, const Cortex* cortex) {
+  for (const auto* list : {&s.volumes, &s.labelVolumes}) {
+    for (const std::string& path : *list) {
+      const io::VolumeSeries series(path, s.reading);
+      static_cast<void>(maskFor(series.grid(), s));
+      static_cast<void>(transformTo(context, series.grid(), s.place, cortex));
+    }
+  }
 }
 
 sampling::Regions regionsOf(const SampleSettings& s, Eigen::Index vertexCount) {

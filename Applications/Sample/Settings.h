@@ -40,6 +40,11 @@ struct SampleSettings {
 [[nodiscard]] std::optional<Volume<std::uint8_t>> maskFor(const Grid& volume,
                                                           const SampleSettings& s);
 
+/// Reads what lies around the volumes' values, so that what cannot be used is refused before any
+/// work: headers, --mask and --to-volume.
+/// @throws InvalidInput  one of them cannot be read, or they do not fit each other
+void requireUsable(Context& context, const SampleSettings& s, const Cortex* cortex);
+
 /// Regions of --labels; without, all vertices are one.
 [[nodiscard]] sampling::Regions regionsOf(const SampleSettings& s, Eigen::Index vertexCount);
 

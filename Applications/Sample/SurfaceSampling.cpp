@@ -49,11 +49,7 @@ class SurfaceSampling {
   }
 
   Termination run() {
-    // Headers are read, and what cannot be used is refused, before any work.
-    for (const std::string& path : s_.volumes) {
-      const io::VolumeSeries series(path, s_.reading);
-      if (s_.mask) static_cast<void>(maskFor(series.grid(), s_));
-    }
+    requireUsable(context_, s_, &cortex_);
     auto step = context_.step("sample");
     if (!ribbon_)
       at_ = sampling::positionsAtDepths(cortex_.white, cortex_.pial, depths_, s_.depthKind);
@@ -136,7 +132,7 @@ class SurfaceSampling {
       const std::size_t frames = values.size() / known.size();
       noteKnown(values, known);
       addProfiles(name, values, frame, series.frames());
-      writeMaps(writers, values, frame, series.frames());
+      writeMaps(writers, name, values, frame, series.frames());
       frame += static_cast<int>(frames);
       context_.monitor().progress(static_cast<double>(frame) / series.frames(), name);
       checkpoint();
@@ -173,30 +169,34 @@ class SurfaceSampling {
     for (const std::string& text : texts) profiles_ += text;
   }
 
-  void writeMaps(std::vector<io::GiftiMapsWriter>& writers, const std::vector<float>& values,
-                 int firstFrame, int frames) {
+  /// Maps are called by their volume and what of it they are: "bold frame 3", "T1w depth 0.5".
+  void writeMaps(std::vector<io::GiftiMapsWriter>& writers, const std::string& volume,
+                 const std::vector<float>& values, int firstFrame, int frames) {
     const std::size_t depths = layers_, some = values.size() / (depths * count_);
     const auto at = [&](std::size_t frame, std::size_t depth) {
       return std::span(values).subspan((frame * depths + depth) * count_, count_);
     };
-    const auto frameName = [&](std::size_t f) { return "frame " + std::to_string(firstFrame + f); };
+    const auto frameName = [&](std::size_t f, std::string_view one) {
+      if (frames > 1) return volume + " frame " + std::to_string(firstFrame + f);
+      return volume + " " + std::string(one);
+    };
     if (ribbon_) {
       for (std::size_t f = 0; f < some; ++f) {
-        writers[0].add(frames > 1 ? frameName(f) : "ribbon", "", at(f, 0));
+        writers[0].add(frameName(f, "ribbon"), "", at(f, 0));
       }
     } else if (s_.across != sampling::Across::None) {
       for (std::size_t f = 0; f < some; ++f) {
         const auto all = std::span(values).subspan(f * depths * count_, depths * count_);
-        writers[0].add(frames > 1 ? frameName(f) : std::string(nameOf(s_.across)), "",
+        writers[0].add(frameName(f, nameOf(s_.across)), "",
                        sampling::acrossDepths(all, depths, s_.across));
       }
     } else if (frames == 1) {
       for (std::size_t d = 0; d < depths; ++d) {
-        writers[0].add("depth " + depthText(depths_[d]), "", at(0, d));
+        writers[0].add(volume + " depth " + depthText(depths_[d]), "", at(0, d));
       }
     } else {
       parallelFor(depths, 1, [&](std::size_t d) {
-        for (std::size_t f = 0; f < some; ++f) writers[d].add(frameName(f), "", at(f, d));
+        for (std::size_t f = 0; f < some; ++f) writers[d].add(frameName(f, ""), "", at(f, d));
       });
     }
   }

@@ -39,6 +39,8 @@ void declare(Declaration& d, Settings& s) {
       .reuseOutputIf(s.reuse)
       .inPlace()
       .varyingOutput("study.tsv", FileKind::Table, "one row a subject, hemisphere and region")
+      .varyingOutput("study_regions.tsv", FileKind::Table, "one row a region and measure")
+      .varyingOutput("study_internals.tsv", FileKind::Table, "how each step went")
       .varyingOutput("index.html", FileKind::Report, "the same, to sort and click");
   declareGroup(d, s.group);
 }
@@ -97,6 +99,8 @@ Termination run(Context& context, const Settings& s) {
   std::vector<study::StudyRow> rows = rowsOf(study, s.out);
   const std::string part = writeGroup(context, groupOf(context, file, s.group), about, rows);
   writeTextFile(context.output("study.tsv"), study::tableText(rows));
+  writeTextFile(context.output("study_regions.tsv"), study::regionsText(rows));
+  writeTextFile(context.output("study_internals.tsv"), study::internalsText(rows));
   writeTextFile(context.output("index.html"), study::indexPage(rows, study.name, part));
   std::map<std::string, int> states;
   for (const study::StudyRow& row : rows)

@@ -115,6 +115,8 @@ std::size_t writeRegions(Context& context, const CortexRegions& regions,
     return (thickness.array() > 0).select(thickness, kNaN);
   };
   const auto sizes = moments(geometry::vertexAreas(made.white.mesh)),
+             volumes = moments(maps::vertexVolumes(made.white.mesh,
+                                                   {made.pial.positions, made.white.mesh.faces})),
              measured = moments(known(made.columnThickness)),
              nearest = moments(known(made.nearestThickness));
   const Eigen::VectorXd doubtful = surface::doubtfulOf(made);
@@ -122,13 +124,14 @@ std::size_t writeRegions(Context& context, const CortexRegions& regions,
   const auto doubt = isDoubted ? moments((made.thickness.array() > 0).select(doubtful, kNaN))
                                : std::vector<maps::RegionMoments>();
   std::ostringstream table;
-  table << "index\tname\tvertices\tarea_white_mm2\tthickness_mean_mm\tthickness_sd_mm\t"
+  table << "index\tname\tvertices\tarea_white_mm2\tvolume_mm3\tthickness_mean_mm\tthickness_sd_mm\t"
            "thickness_nearest_mean_mm"
         << (isDoubted ? "\tdoubtful_share\n" : "\n");
   io::LabelMap labels{"regions", keys, {{0, "???", {0, 0, 0, 0}}}};
   for (std::size_t r = 0; r < all.size(); ++r) {
     const std::string name = regionName(regions, all[r]);
-    table << all[r] << '\t' << name << '\t' << sizes[r].count << '\t' << sizes[r].sum;
+    table << all[r] << '\t' << name << '\t' << sizes[r].count << '\t' << sizes[r].sum << '\t'
+          << volumes[r].sum;
     if (measured[r].count > 0) {
       table << '\t' << measured[r].meanOverArea << '\t' << measured[r].deviationOverArea << '\t'
             << nearest[r].meanOverArea;

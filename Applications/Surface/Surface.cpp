@@ -142,6 +142,9 @@ Termination run(Context& context, const SurfaceSettings& s) {
   const bool given = surfacesGiven(s);
   TissueInputs inputs;
   surface::CorticalSurfaces made;
+  for (const auto* file : {&s.image, &s.fsVolume}) {  // read later: whether it can be is said now
+    if (*file) static_cast<void>(io::readGrid(**file));
+  }
   if (given) made = readGivenSurfaces(context, s, inputs.tissue.structure);
   const CortexRegions regions = readRegions(context, s, made);
   if (!given) inputs = readTissue(context, s);

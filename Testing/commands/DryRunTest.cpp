@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // A dry run refuses what the run refuses before its first long step, and writes nothing.
 
+#include "DescribedCommands.h"
 #include "QuickRuns.h"
 
 #include <gtest/gtest.h>
+
+#include <utility>
 
 namespace explica::testing {
 namespace {
@@ -91,6 +94,68 @@ TEST(DryRun, OfADataSetChecksEveryParticipantAndWritesNothing) {
   EXPECT_TRUE(contains(dry.err, "sub-02_dseg.nii.gz")) << dry;
   EXPECT_EQ(folder.entries(), before);
 }
+
+/// A quick run of the command, as it is or with one file taken for another.
+class DryRunOf : public PreparedRun {
+ protected:
+  /// Whether a dry run refuses; if it does not, then the run does not either.
+  bool refuses(const std::vector<std::string>& words) {
+    const auto before = folder_.entries();
+    const auto dry = explica(words + std::vector<std::string>{"--dry-run", "--out", folder_ / "a"});
+    EXPECT_EQ(folder_.entries(), before) << dry;
+    if (dry.exitCode != 0) return true;
+    CommandSetting setting;
+    setting.timeout = 20;  // what is refused is refused at once
+    const auto run = explica(words + std::vector<std::string>{"--out", folder_ / "a"}, setting);
+    EXPECT_TRUE(run.exitCode != 1 && run.exitCode != 2) << "the dry run had nothing against\n"
+                                                        << run;
+    fs::remove_all(folder_ / "a");
+    return false;
+  }
+
+  /// Files of each kind: one of them is not what an argument asks for.
+  std::vector<std::string> strangers() {
+    writeText(folder_ / "damaged.nii.gz", "damaged");
+    writeText(folder_ / "damaged.gii", "damaged");
+    writeText(folder_ / "table.tsv", "a\tb\n1\t2\n");
+    const TriangleMesh four = geometry::makeIcosphere(0, 10.0);
+    io::writeSurface(folder_ / "four.surf.gii", four);
+    io::writeGiftiShape(folder_ / "four.shape.gii", {{"a", "", Eigen::VectorXd::Ones(12)}},
+                        "Other");
+    return {folder_ / "damaged.nii.gz", folder_ / "damaged.gii", folder_ / "table.tsv",
+            folder_ / "four.surf.gii", folder_ / "four.shape.gii"};
+  }
+};
+
+TEST_P(DryRunOf, RefusesEachFileThatTheRunRefuses) {
+  const auto others = strangers();
+  for (std::string& word : words_) {
+    if (!fs::is_regular_file(word)) continue;
+    for (const std::string& other : others) {
+      const std::string right = std::exchange(word, other);
+      refuses(words_);
+      word = right;
+    }
+  }
+}
+
+TEST_P(DryRunOf, RefusesADamagedFileForEachOption) {
+  const std::string damaged = folder_ / "damaged.nii.gz";
+  writeText(damaged, "damaged");
+  for (const Json& command : describedCommands()) {
+    const auto name = wordsOf(command);
+    if (!std::equal(name.begin(), name.end(), words_.begin())) continue;
+    for (const Json& parameter : command["parameters"]) {
+      const std::string option = "--" + parameter["name"].get<std::string>();
+      const bool given = std::find(words_.begin(), words_.end(), option) != words_.end();
+      if (parameter["file"].is_null() || parameter["positional"].get<bool>() || given) continue;
+      EXPECT_TRUE(refuses(words_ + std::vector<std::string>{option, damaged})) << option;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Quick, DryRunOf, ::testing::ValuesIn(quickRuns()),
+                         [](const auto& row) { return row.param.name; });
 
 TEST(StudyCheck, SaysWhoHasNoImage) {
   const TemporaryFolder folder;

@@ -195,6 +195,8 @@ const Swap kSwaps[] = {
       "--width", "60", "--height", "60"},
      false},
     {"Compare", {"compare", "{L}/pial.surf.gii", "{R}/white.surf.gii", "--pairs", "20"}},
+    {"Resample",
+     {"resample", "{L}/map.shape.gii", "--from", "{R}/white.surf.gii", "--to", "fsaverage3"}},
     {"FlattenCuts", {"flatten", "{L}/pial.surf.gii", "--cuts", "{R}/regions.label.gii"}},
 };
 

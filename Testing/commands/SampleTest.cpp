@@ -81,7 +81,7 @@ TEST_F(Sample, WritesAMapADepth) {
   ASSERT_EQ(result.exitCode, 0) << result;
   const auto got = maps("x.func.gii");
   ASSERT_EQ(got.size(), 3U);
-  EXPECT_EQ(got[1].name, "depth 0.5");
+  EXPECT_EQ(got[1].name, "x depth 0.5");
   const double radius[] = {10, 12, 14};
   const TriangleMesh white = io::readSurface(folder_ / "white.surf.gii").mesh;
   for (int d = 0; d < 3; ++d) {
@@ -183,7 +183,7 @@ TEST_F(Sample, SeriesKeepFramesAndMaskAndAcross) {
   ASSERT_EQ(sample({bold, "--depths", "0,1.0"}).exitCode, 0);
   ASSERT_EQ(maps("bold_depth-1.func.gii").size(), 20U);
   const auto white = maps("bold_depth-0.func.gii");
-  EXPECT_EQ(white[17].name, "frame 17");
+  EXPECT_EQ(white[17].name, "bold frame 17");
   EXPECT_NEAR(white[17].values.mean(), 18, 0.02);
   EXPECT_EQ(readTable(folder_ / "out/profiles.tsv").size(), 40U);
 
@@ -267,7 +267,7 @@ TEST_F(Sample, RibbonIsTheMeanOverTheTissueAboutAVertex) {
   ASSERT_EQ(result.exitCode, 0) << result;
   const auto got = maps("x.func.gii");
   ASSERT_EQ(got.size(), 1U);
-  EXPECT_EQ(got[0].name, "ribbon");
+  EXPECT_EQ(got[0].name, "x ribbon");
   const TriangleMesh white = io::readSurface(folder_ / "white.surf.gii").mesh;
   // Mean radius by volume of the shell from 10 to 14 mm.
   const double mean = 0.75 * (std::pow(14, 4) - 1e4) / (std::pow(14, 3) - 1e3);

@@ -69,6 +69,11 @@ try:
     time.sleep(0.5)
     width = driver.execute_script("return document.documentElement.scrollWidth")
     check("a phone's width holds the page (%d pixels)" % width, width <= 390)
+    driver.refresh()
+    time.sleep(1)
+    shown = ask("return [...document.querySelectorAll('figure > details[open]')]"
+                ".map((details) => details.querySelector('#cuts') !== null)")
+    check("of a phone's figures the slices are open, the others folded: %s" % shown, shown == [True])
     for entry in driver.get_log("browser"):
         check("console: " + entry["message"][:200], entry["level"] != "SEVERE")
 finally:

@@ -84,6 +84,20 @@ def words(driver):
     check("%d outliers are marked" % odd, odd > 0)
 
 
+def groups(driver):
+    offered = driver.execute_script("return [...document.getElementById('by').options].map((o) => o.text)")
+    check("colours by %s, not by what has many values" % offered, offered == ["nothing", "sex"])
+    shown = driver.execute_script("""const by = document.getElementById('by'), strips = document.getElementById('strips');
+        by.value = by.options[1].value;
+        by.dispatchEvent(new Event('change'));
+        const result = [strips.querySelectorAll('.strip:first-child .group').length, document.getElementById('groups').textContent,
+                        new Set([...strips.querySelectorAll('circle')].map((dot) => dot.style.fill)).size];
+        by.value = '';
+        by.dispatchEvent(new Event('change'));
+        return result;""")
+    check("two groups have outlines, names and dots of two colours %s" % shown, shown == [2, "FM", 2])
+
+
 def far_off(driver):
     """A row at a thousand times the others' value must leave them their axis."""
     ends, inside, words = driver.execute_script("""const strip = document.querySelector('.strip svg');
@@ -121,6 +135,7 @@ def main():
         timing(driver, page, limit)
         filter_and_sort(driver)
         words(driver)
+        groups(driver)
         far_off(driver)
         for width in (820, 390):
             driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",

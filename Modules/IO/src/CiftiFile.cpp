@@ -93,33 +93,28 @@ std::string labelTable(const std::vector<LabelEntry>& table) {
   return text + "</LabelTable>\n";
 }
 
-void check(const std::filesystem::path& path, Kind kind,
-           const std::vector<const CiftiStructure*>& structures) {
-  if (!path.filename().string().ends_with(rowOf(kind).ending)) {
-    throw InvalidInput("CIFTI file " + quoted(path) + ": its name must end in " +
-                       rowOf(kind).ending);
-  }
+void check(const std::vector<const CiftiStructure*>& structures) {
   std::set<std::string> seen;
   std::size_t vertices = 0;
   for (const CiftiStructure* s : structures) {
     if (!seen.insert(brainStructure(s->structure)).second) {
-      throw InvalidInput("CIFTI file " + quoted(path) + ": " + s->structure + " is there twice");
+      throw InvalidInput("CIFTI: " + s->structure + " is there twice");
     }
     vertices += s->vertices.size();
     for (std::size_t n = 0; n < s->vertices.size(); ++n) {
       const bool ascends = n == 0 || s->vertices[n] > s->vertices[n - 1];
       if (!ascends || s->vertices[n] < 0 || s->vertices[n] >= s->vertexCount) {
-        throw InvalidInput("CIFTI file " + quoted(path) + ": vertices of " + s->structure +
+        throw InvalidInput("CIFTI: vertices of " + s->structure +
                            " must ascend and be on the surface");
       }
     }
   }
-  if (vertices == 0) throw InvalidInput("CIFTI file " + quoted(path) + ": no vertex is in it");
+  if (vertices == 0) throw InvalidInput("CIFTI: no vertex is in it");
 }
 
 /// @param values  vertices x maps, the maps of a vertex together
-void write(const std::filesystem::path& path, Kind kind, std::size_t maps, std::string xml,
-           const std::vector<float>& values, double step) {
+CiftiFile fileOf(Kind kind, std::size_t maps, std::string xml, std::vector<float> values,
+                 double step) {
   Bytes head(kNifti2Header + 4);
   const auto put = [&head](std::size_t at, auto value) { store(head.data() + at, value, false); };
   put(0, static_cast<std::int32_t>(kNifti2Header));
@@ -150,10 +145,7 @@ void write(const std::filesystem::path& path, Kind kind, std::size_t maps, std::
   append(head, kExtensionCode, false);
   head.insert(head.end(), xml.begin(), xml.end());
   put(168, static_cast<std::int64_t>(head.size()));
-  WholeFile file(path);
-  file.write(head.data(), head.size());
-  file.write(values.data(), values.size() * sizeof(float));
-  file.commit();
+  return {rowOf(kind).ending, std::move(head), std::move(values)};
 }
 
 std::vector<const CiftiStructure*> structuresOf(const std::vector<CiftiPart>& parts) {
@@ -162,34 +154,32 @@ std::vector<const CiftiStructure*> structuresOf(const std::vector<CiftiPart>& pa
   return structures;
 }
 
-void writeMaps(const std::filesystem::path& path, Kind kind, const std::vector<CiftiPart>& parts,
-               const std::string& maps, double step) {
+CiftiFile mapsFile(Kind kind, const std::vector<CiftiPart>& parts, const std::string& maps,
+                   double step) {
   const auto structures = structuresOf(parts);
-  check(path, kind, structures);
+  check(structures);
   const std::size_t count = parts.front().maps.size();
   std::vector<float> values;
   for (const CiftiPart& part : parts) {
     if (part.maps.size() != count || count == 0) {
-      throw InvalidInput("CIFTI file " + quoted(path) + ": its hemispheres have " +
-                         std::to_string(count) + " and " + std::to_string(part.maps.size()) +
-                         " maps; the same ones are needed");
+      throw InvalidInput("CIFTI: its hemispheres have " + std::to_string(count) + " and " +
+                         std::to_string(part.maps.size()) + " maps; the same ones are needed");
     }
     for (const VertexMap& map : part.maps) {
       if (map.values.size() != part.where.vertexCount) {
-        throw InvalidInput("CIFTI file " + quoted(path) + ": '" + map.name + "' has " +
-                           std::to_string(map.values.size()) + " values for " +
-                           std::to_string(part.where.vertexCount) + " vertices");
+        throw InvalidInput("CIFTI: '" + map.name + "' has " + std::to_string(map.values.size()) +
+                           " values for " + std::to_string(part.where.vertexCount) + " vertices");
       }
     }
     for (const std::int32_t v : part.where.vertices) {
       for (const VertexMap& map : part.maps) values.push_back(static_cast<float>(map.values[v]));
     }
   }
-  write(path, kind, count, document(maps, brainModels(structures)), values, step);
+  return fileOf(kind, count, document(maps, brainModels(structures)), std::move(values), step);
 }
 
-void requireParts(const std::filesystem::path& path, bool empty) {
-  if (empty) throw InvalidInput("CIFTI file " + quoted(path) + ": there is no hemisphere");
+void requireParts(bool empty) {
+  if (empty) throw InvalidInput("CIFTI: there is no hemisphere");
 }
 
 }  // namespace
@@ -202,16 +192,15 @@ CiftiStructure ciftiStructure(const std::string& structure, const Eigen::VectorX
   return where;
 }
 
-void writeCiftiScalars(const std::filesystem::path& path, const std::vector<CiftiPart>& parts) {
-  requireParts(path, parts.empty());
+CiftiFile ciftiScalars(const std::vector<CiftiPart>& parts) {
+  requireParts(parts.empty());
   std::string maps = openMap(Kind::Scalars);
   for (const VertexMap& map : parts.front().maps) maps += namedMap(map.name);
-  writeMaps(path, Kind::Scalars, parts, maps + "</MatrixIndicesMap>\n", 1);
+  return mapsFile(Kind::Scalars, parts, maps + "</MatrixIndicesMap>\n", 1);
 }
 
-void writeCiftiSeries(const std::filesystem::path& path, const std::vector<CiftiPart>& parts,
-                      double secondsApart) {
-  requireParts(path, parts.empty());
+CiftiFile ciftiSeries(const std::vector<CiftiPart>& parts, double secondsApart) {
+  requireParts(parts.empty());
   if (!(secondsApart > 0)) throw InvalidInput("seconds between frames: must be positive");
   std::string step;
   appendNumber(step, secondsApart);
@@ -220,11 +209,11 @@ void writeCiftiSeries(const std::filesystem::path& path, const std::vector<Cifti
                                 "\" SeriesExponent=\"0\" SeriesStart=\"0\" SeriesStep=\"" + step +
                                 "\" SeriesUnit=\"SECOND\"") +
       "</MatrixIndicesMap>\n";
-  writeMaps(path, Kind::Series, parts, maps, secondsApart);
+  return mapsFile(Kind::Series, parts, maps, secondsApart);
 }
 
-void writeCiftiLabels(const std::filesystem::path& path, const std::vector<CiftiLabels>& parts) {
-  requireParts(path, parts.empty());
+CiftiFile ciftiLabels(const std::vector<CiftiLabels>& parts) {
+  requireParts(parts.empty());
   std::vector<const CiftiStructure*> structures;
   std::map<Label, LabelEntry> table;
   std::vector<float> values;
@@ -233,24 +222,24 @@ void writeCiftiLabels(const std::filesystem::path& path, const std::vector<Cifti
     for (const LabelEntry& entry : part.labels.table) {
       const auto [found, added] = table.emplace(entry.key, entry);
       if (!added && found->second.name != entry.name) {
-        throw InvalidInput("CIFTI file " + quoted(path) + ": key " + std::to_string(entry.key) +
-                           " is '" + found->second.name + "' in one hemisphere and '" + entry.name +
+        throw InvalidInput("CIFTI: key " + std::to_string(entry.key) + " is '" +
+                           found->second.name + "' in one hemisphere and '" + entry.name +
                            "' in the other; give them keys of their own");
       }
     }
     if (part.labels.keys.size() != part.where.vertexCount) {
-      throw InvalidInput("CIFTI file " + quoted(path) + ": there is not one label a vertex");
+      throw InvalidInput("CIFTI: there is not one label a vertex");
     }
     for (const std::int32_t v : part.where.vertices) {
       const Label key = part.labels.keys[v];
       if (!table.contains(key)) {
-        throw InvalidInput("CIFTI file " + quoted(path) + ": key " + std::to_string(key) +
-                           " at vertex " + std::to_string(v) + " is not in the table of names");
+        throw InvalidInput("CIFTI: key " + std::to_string(key) + " at vertex " + std::to_string(v) +
+                           " is not in the table of names");
       }
       values.push_back(static_cast<float>(key));
     }
   }
-  check(path, Kind::Labels, structures);
+  check(structures);
   table.emplace(0, LabelEntry{0, "???", {1, 1, 1, 0}});  // which every CIFTI table has
   std::vector<LabelEntry> entries;
   entries.reserve(table.size());
@@ -258,7 +247,17 @@ void writeCiftiLabels(const std::filesystem::path& path, const std::vector<Cifti
   const std::string maps = openMap(Kind::Labels) +
                            namedMap(parts.front().labels.name, labelTable(entries)) +
                            "</MatrixIndicesMap>\n";
-  write(path, Kind::Labels, 1, document(maps, brainModels(structures)), values, 1);
+  return fileOf(Kind::Labels, 1, document(maps, brainModels(structures)), std::move(values), 1);
+}
+
+void CiftiFile::write(const std::filesystem::path& path) const {
+  if (!path.filename().string().ends_with(ending)) {
+    throw InvalidInput("CIFTI file " + quoted(path) + ": its name must end in " + ending);
+  }
+  WholeFile file(path);
+  file.write(head.data(), head.size());
+  file.write(values.data(), values.size() * sizeof(float));
+  file.commit();
 }
 
 }  // namespace explica::io

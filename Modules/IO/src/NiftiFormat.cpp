@@ -451,20 +451,26 @@ Bytes niftiHeader(const VolumeToWrite& volume) {
   const bool qformHolds = disagreement(qform, affine, grid.size) < 0.5 * kAgreement;
   for (int i = 0; i < 12; ++i) real(280 + 4 * i, 400 + 8 * i, affine(i / 4, i % 4));
 
-  constexpr int kMillimetres = 2;      // NIfTI's code of the unit
-  constexpr int kScanner = 1;          // NIfTI's code of the frame
-  constexpr int kVectorIntent = 1007;  // NIfTI's code of vectors
+  constexpr int kMillimetres = 2;  // NIfTI's code of the unit
+  constexpr int kScanner = 1;      // NIfTI's code of the frame
+  // NIfTI's codes of what the values are.
+  constexpr int kLabelIntent = 1002, kVectorIntent = 1007;
+  const bool labels = volume.type != StoredType::Float32 && volume.type != StoredType::Float64;
+  const int intent = vectors ? kVectorIntent : labels ? kLabelIntent : 0;
+  constexpr std::size_t kNameLength = 15;  // bytes that NIfTI has for the name, and a zero
+  std::memcpy(bytes.data() + (one ? 328 : 508), volume.name.data(),
+              std::min(volume.name.size(), kNameLength));
   static constexpr char kDescription[] = "Explica";
   if (one) {
     bytes[123] = kMillimetres;
-    put(68, static_cast<std::int16_t>(vectors ? kVectorIntent : 0));
+    put(68, static_cast<std::int16_t>(intent));
     put(108, static_cast<float>(bytes.size()));
     put(252, static_cast<std::int16_t>(qformHolds ? kScanner : 0));
     put(254, static_cast<std::int16_t>(kScanner));
     std::memcpy(bytes.data() + 148, kDescription, sizeof(kDescription));
   } else {
     put(500, static_cast<std::int32_t>(kMillimetres));
-    put(504, static_cast<std::int32_t>(vectors ? kVectorIntent : 0));
+    put(504, static_cast<std::int32_t>(intent));
     put(168, static_cast<std::int64_t>(bytes.size()));
     put(344, static_cast<std::int32_t>(kScanner));
     put(348, static_cast<std::int32_t>(kScanner));

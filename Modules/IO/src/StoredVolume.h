@@ -104,6 +104,7 @@ void scaledFloats(const StoredVolume& stored, const std::uint8_t* from, float* t
 
 /// Values to be written, made on demand, component by component.
 struct VolumeToWrite {
+  std::string name;  ///< what it is: the file's name without its ending
   Grid grid;
   StoredType type = StoredType::Float32;
   int valuesPerVoxel = 1;

@@ -188,8 +188,10 @@ bool repeatsBlank(const VolumeToWrite& volume, std::size_t begin, std::size_t co
   return last % voxels < volume.begin || first % voxels >= volume.end;
 }
 
-void writeValues(const std::filesystem::path& path, const VolumeToWrite& volume) {
+void writeValues(const std::filesystem::path& path, VolumeToWrite volume) {
   const auto [format, packed] = layoutFor(path);
+  volume.name = path.filename().string();
+  volume.name.resize(volume.name.find('.', 1));
   const VolumeLayout& layout = *format.layout;
   if (volume.grid.voxelCount() == 0) {
     throw InvalidInput("volume for " + quoted(path) + ": it has no voxels");

@@ -112,7 +112,7 @@ bool writeOtherThanMaps(const fs::path& path) {
     putContent(path, "index\tname\n1\tleft\n2\tright\n");
   } else if (name.ends_with(".dscalar.nii")) {
     const Eigen::VectorXd values = Eigen::VectorXd::LinSpaced(12, 1, 2);
-    io::writeCiftiScalars(path, {{io::ciftiStructure("CortexLeft", values), {{"a", "", values}}}});
+    io::ciftiScalars({{io::ciftiStructure("CortexLeft", values), {{"a", "", values}}}}).write(path);
   } else if (name.ends_with(".patch.3d")) {
     io::writePatch(path, {{0, 1, 2, 5}, {true, false, true, false}, mesh.positions.topRows(4)});
   } else {

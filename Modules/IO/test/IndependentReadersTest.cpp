@@ -305,12 +305,12 @@ void writeCifti(const TemporaryFolder& folder) {
     map.keys.setConstant(642, key);
     labels.push_back({where[side], map});
   }
-  io::writeCiftiScalars(folder / "a.dscalar.nii", scalars);
-  io::writeCiftiSeries(folder / "a.dtseries.nii", series, 1.5);
-  io::writeCiftiLabels(folder / "a.dlabel.nii", labels);
-  EXPECT_THROW(io::writeCiftiScalars(folder / "b.nii", scalars), InvalidInput);
+  io::ciftiScalars(scalars).write(folder / "a.dscalar.nii");
+  io::ciftiSeries(series, 1.5).write(folder / "a.dtseries.nii");
+  io::ciftiLabels(labels).write(folder / "a.dlabel.nii");
+  EXPECT_THROW(io::ciftiScalars(scalars).write(folder / "b.nii"), InvalidInput);
   scalars[1].where.structure = "CortexLeft";
-  EXPECT_THROW(io::writeCiftiScalars(folder / "b.dscalar.nii", scalars), InvalidInput);
+  EXPECT_THROW(io::ciftiScalars(scalars).write(folder / "b.dscalar.nii"), InvalidInput);
 }
 
 TEST(Nibabel, ReadsOurCifti) {

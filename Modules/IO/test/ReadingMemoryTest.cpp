@@ -240,8 +240,8 @@ std::vector<Row> honest() {
       {"CiftiMap", "a.dscalar.nii",
        [](const fs::path& path) {
          const Eigen::VectorXd values = Eigen::VectorXd::LinSpaced(kValues, 1, 2);
-         io::writeCiftiScalars(path,
-                               {{io::ciftiStructure("CortexLeft", values), {{"a", "mm", values}}}});
+         io::ciftiScalars({{io::ciftiStructure("CortexLeft", values), {{"a", "mm", values}}}})
+             .write(path);
        },
        maps, true},
       {"FreeSurferPatch", "lh.a.patch.3d",

@@ -53,8 +53,9 @@ def our_volumes(folder):
             assert (int(qcode), int(scode)) == (1, 1), path
             assert np.abs(qform - sform).max() < 2e-5, (path, qform - sform)
             assert header.get_xyzt_units()[0] == "mm", path
-            intent = "vector" if path.name.startswith("vectors.") else "none"
-            assert header.get_intent()[0] == intent, (path, header.get_intent())
+            stem = path.name.split(".")[0]
+            intent = {"vectors": "vector", "labels": "label"}.get(stem, "none")
+            assert header.get_intent()[::2] == (intent, stem), (path, header.get_intent())
         if path.name.startswith("labels."):
             assert image.get_data_dtype().kind in "iu", (path, image.get_data_dtype())
 

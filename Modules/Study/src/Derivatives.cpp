@@ -108,7 +108,7 @@ std::string ignoredText() {
   std::string text;
   for (const std::string& line : lines) text += line + "\n";
   return text +
-         "sub-*.html\ndescriptions.tsv\nruns/\ngroup/\nprov/\nstudy.tsv\nindex.html\n"
+         "sub-*.html\ndescriptions.tsv\nruns/\nratings/\ngroup/\nprov/\nstudy*.tsv\nindex.html\n"
          "summary.json\nprovenance.json\n";
 }
 
@@ -294,6 +294,8 @@ void describeColumns(Json& sidecar, const std::string& step, const std::string& 
     sidecar["name"] = {{"Description", "its name"}};
     sidecar["vertices"] = {{"Description", "vertices in it"}};
     sidecar["area_white_mm2"] = {{"Description", "area of the white surface"}, {"Units", "mm^2"}};
+    sidecar["volume_mm3"] = {{"Description", "volume between white and pial surface"},
+                             {"Units", "mm^3"}};
     sidecar["thickness_mean_mm"] = {
         {"Description", "mean thickness, weighted by area, where there is grey matter"},
         {"Units", "mm"}};

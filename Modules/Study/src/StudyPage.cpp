@@ -41,11 +41,18 @@ constexpr std::array kWords = {
     ColumnWords{"unfold.area_error_mean", "Area error, mean", ""},
     ColumnWords{"unfold.edge_strain_mean", "Edge strain, mean", ""},
     ColumnWords{"unfold.self_intersections_final", "Patch crossings", ""},
+    ColumnWords{"rating.wrong", "Places rated wrong", ""},
+    ColumnWords{"rating.unsure", "Places rated unsure", ""},
+    ColumnWords{"rating.right", "Places rated right", ""},
 };
 
 struct Heading {
   std::string words, unit;
 };
+
+bool isAbout(const std::string& column) {
+  return column.starts_with(kAboutPrefix);
+}
 
 /// The words of a column; one without its own is named by its step and key.
 Heading headingOf(const std::string& column) {
@@ -55,6 +62,7 @@ Heading headingOf(const std::string& column) {
   const std::size_t dot = column.find('.');
   std::string words = column.substr(dot + 1);
   if (isRegion(column)) return {words, "mm"};
+  if (isAbout(column)) return {words, ""};
   std::replace(words.begin(), words.end(), '_', ' ');
   return {column.substr(0, dot) + ": " + words, ""};
 }
@@ -78,11 +86,13 @@ Json headingsOf(const std::vector<std::string>& fixed, const std::vector<std::st
   for (const std::string& name : fixed) headings.push_back({{"words", name}, {"kind", "fixed"}});
   for (const std::string& column : columns) {
     const Heading heading = headingOf(column);
-    headings.push_back(
-        {{"words", heading.words},
-         {"unit", heading.unit},
-         {"kind", isRegion(column) ? "region" : (isFirst(column) ? "first" : "other")},
-         {"compared", isCompared(column)}});
+    headings.push_back({{"words", heading.words},
+                        {"unit", heading.unit},
+                        {"kind", isRegion(column)  ? "region"
+                                 : isAbout(column) ? "about"
+                                 : isFirst(column) ? "first"
+                                                   : "other"},
+                        {"compared", isCompared(column)}});
   }
   return headings;
 }
@@ -111,9 +121,9 @@ Json rowJson(const StudyRow& row, const std::vector<StudyFlag>& flags, bool regi
 
 // What the script fills from the data.
 constexpr const char* kBody =
-    R"(<noscript><p>Sorting and plots need JavaScript; study.tsv holds the same table.</p></noscript>
+    R"(<noscript><p>Sorting and plots need JavaScript; study.tsv and study_internals.tsv hold the same table.</p></noscript>
 <section id="failures" aria-label="what failed"></section>
-<section><h2>Distribution across people</h2><p>A dot is a row; its name appears under the pointer, a click finds it in the table. Of many rows an area shows how many lie where, and dots are those far off. Yellow: far from the others, by a robust z above 3.5 (0.6745 (x - median) / MAD, over at least 8 rows). An axis holds what is within 4 robust deviations (1.4826 MAD) of the median; a triangle at its end is a row that lies beyond.</p><div id="strips"></div></section>
+<section id="distribution"><h2>Distribution across people</h2><p>A dot is a row; its name appears under the pointer, a click finds it in the table. Of many rows an area shows how many lie where, and dots are those far off. Yellow: far from the others, by a robust z above 3.5 (0.6745 (x - median) / MAD, over at least 8 rows). An axis holds what is within 4 robust deviations (1.4826 MAD) of the median; a triangle at its end is a row that lies beyond.</p><p><label>colour by <select id="by"><option value="">nothing</option></select></label> <span id="groups"></span></p><div id="strips"></div></section>
 <section><h2>All rows</h2>
 <form><input type="search" id="search" placeholder="participant, side or state" aria-label="filter rows">
 <label><input type="checkbox" id="flagged"> only those that need a look</label>
@@ -127,7 +137,9 @@ constexpr const char* kBody =
 
 std::string indexPage(const std::vector<StudyRow>& rows, const std::string& title,
                       const std::string& part) {
-  const std::vector<std::string> columns = columnsOf(rows);
+  std::vector<std::string> columns = columnsOf(rows);
+  std::erase_if(
+      columns, [](const std::string& column) { return isRegion(column) && !isRegionMean(column); });
   const auto flags = flagsOf(rows);
   const bool regions = hasRegions(rows);
   std::vector<std::string> fixed = {"participant", "hemisphere"};
@@ -148,7 +160,10 @@ std::string indexPage(const std::vector<StudyRow>& rows, const std::string& titl
          escapeHtml(title) + "</title><style>" + kStudyStyle + "</style></head><body>\n<main><h1>" +
          escapeHtml(title) + "</h1>\n<p>" + std::to_string(done) + " of " +
          std::to_string(rows.size()) + " hemispheres are done; " + std::to_string(marked) +
-         " need a look. The numbers in full are in <a href=\"study.tsv\">study.tsv</a>.</p>\n" +
+         " need a look. The numbers in full are in <a href=\"study.tsv\">study.tsv</a>, those of "
+         "regions in <a href=\"study_regions.tsv\">study_regions.tsv</a> too, how each step went "
+         "in "
+         "<a href=\"study_internals.tsv\">study_internals.tsv</a>.</p>\n" +
          part + kBody + "</main><script type=\"application/json\" id=\"data\">" + scriptText(data) +
          "</script>\n<script>" + kStudyScript + "</script>\n</body></html>\n";
 }

@@ -8,6 +8,7 @@
 #include "Explica/Core/StopScope.h"
 #include "Explica/Provenance/Doubts.h"
 #include "Explica/Provenance/Json.h"
+#include "RegionTables.h"
 
 #include <algorithm>
 #include <cmath>
@@ -42,7 +43,10 @@ constexpr const char* kFirstColumns[] = {"surface.thickness_mean",
                                          "unfold.edge_strain_mean",
                                          "unfold.self_intersections_final",
                                          "unfold.iterations",
-                                         "unfold.stop_reason"};
+                                         "unfold.stop_reason",
+                                         "rating.wrong",
+                                         "rating.unsure",
+                                         "rating.right"};
 
 /// Steps whose numbers make a row.
 constexpr const char* kSteps[] = {"segment", "thickness", "surface", "register", "unfold"};
@@ -86,23 +90,6 @@ void addSummary(StudyRow& row, const std::string& step, const Json& summary) {
   }
 }
 
-/// Mean thickness of each region, from the table that `explica surface --atlas` writes.
-void addRegions(StudyRow& row, const std::string& text) {
-  std::istringstream table(text);
-  std::string line;
-  std::getline(table, line);  // headings: index name vertices area mean sd
-  while (std::getline(table, line)) {
-    std::istringstream cells(line);
-    std::string index, name, vertices, area, mean;
-    std::getline(cells, index, '\t');
-    std::getline(cells, name, '\t');
-    std::getline(cells, vertices, '\t');
-    std::getline(cells, area, '\t');
-    std::getline(cells, mean, '\t');
-    if (!mean.empty()) row.values[std::string(kRegionPrefix) + name] = mean;
-  }
-}
-
 void addState(StudyRow& row, const Json& account) {
   row.state = "failed: it did not begin";
   if (account.is_null()) return;
@@ -131,6 +118,26 @@ void addFlags(StudyRow& row, const std::string& step, const Json& summary) {
   row.state = "implausible (" + step + "): " + textOf(reasons.front());
 }
 
+/// What somebody has judged of a run's places, as its page saves it: beside the page or in
+/// `out/ratings`.  A place that is wrong fails the row.
+void addRating(StudyRow& row, const fs::path& out, const fs::path& run) {
+  const std::string name = run.filename().string() + "_rating.json";
+  for (const fs::path& file : {run / name, out / "ratings" / name}) {
+    if (!fs::exists(file)) continue;
+    const Json rating = provenance::readJson(file);
+    if (rating.value("format", "") != "explica-rating" || !rating.contains("ratings")) {
+      throw InvalidInput(file.string() + ": is not a rating that the page of a run has saved");
+    }
+    std::map<std::string, int> counts = {{"wrong", 0}, {"unsure", 0}, {"right", 0}};
+    for (const Json& place : rating["ratings"]) ++counts[textOf(place["rating"])];
+    for (const char* word : {"wrong", "unsure", "right"}) {
+      row.values[std::string("rating.") + word] = std::to_string(counts[word]);
+    }
+    if (counts["wrong"] == 0 || row.state != "done") continue;
+    row.state = "implausible (rating): places rated wrong: " + row.values["rating.wrong"];
+  }
+}
+
 /// A run's folder as it is, in the form of kKeptName; or what was kept of it.
 Json accountOf(const fs::path& run) {
   if (fs::exists(run / kKeptName)) return provenance::readJson(run / kKeptName);
@@ -142,8 +149,11 @@ Json accountOf(const fs::path& run) {
     Json summary = read(run / step / "summary.json");
     if (!summary.is_null()) all["steps"][step] = std::move(summary);
   }
-  const fs::path regions = run / "surface" / "regions.tsv";
-  if (fs::exists(regions)) all["surface_regions"] = fileText(regions);
+  for (const auto& [name, step] :
+       {std::pair{"surface_regions", "surface"}, {"regions", "regions"}}) {
+    const fs::path regions = run / step / "regions.tsv";
+    if (fs::exists(regions)) all[name] = fileText(regions);
+  }
   return all;
 }
 
@@ -166,7 +176,9 @@ StudyRow rowOf(const fs::path& out, const fs::path& run) {
       addSummary(row, step, account["steps"][step]);
       addFlags(row, step, account["steps"][step]);
     }
-    addRegions(row, account.value("surface_regions", std::string()));
+    addRegions(row, account.value("surface_regions", std::string()),
+               account.value("regions", std::string()));
+    addRating(row, out, run);
   } catch (const std::exception& fault) {  // a damaged file is a fact of the study, not its end
     row.state = std::string("failed: ") + fault.what();
   }
@@ -255,13 +267,9 @@ std::vector<StudyRow> collectRows(const fs::path& out, const std::string& subjec
   return rows;
 }
 
-bool isRegion(const std::string& column) {
-  return column.rfind(kRegionPrefix, 0) == 0;
-}
-
 bool isCompared(const std::string& column) {
-  return isRegion(column) || std::find(std::begin(kComparedColumns), std::end(kComparedColumns),
-                                       column) != std::end(kComparedColumns);
+  return isRegionMean(column) || std::find(std::begin(kComparedColumns), std::end(kComparedColumns),
+                                           column) != std::end(kComparedColumns);
 }
 
 bool isFirst(const std::string& column) {
@@ -313,14 +321,17 @@ std::vector<std::vector<StudyFlag>> flagsOf(const std::vector<StudyRow>& rows) {
   return flags;
 }
 
-std::string tableText(const std::vector<StudyRow>& rows) {
-  const std::vector<std::string> columns = columnsOf(rows);
+namespace {
+
+/// The rows with some of their columns.
+std::string textOf(const std::vector<StudyRow>& rows, const std::vector<std::string>& columns,
+                   bool withFlags) {
   const auto flags = flagsOf(rows);
   const bool regions = std::any_of(rows.begin(), rows.end(),
                                    [](const StudyRow& row) { return !row.region.empty(); });
   std::string text = "participant_id\themisphere";
   if (regions) text += "\tregion";
-  text += "\tstate\tflags";
+  text += withFlags ? "\tstate\tflags" : "\tstate";
   for (const auto& column : columns) text += "\t" + column;
   text += "\n";
   for (std::size_t n = 0; n < rows.size(); ++n) {
@@ -331,7 +342,8 @@ std::string tableText(const std::vector<StudyRow>& rows) {
     for (const StudyFlag& flag : flags[n]) {
       marks += (marks.empty() ? "" : "; ") + flag.column + ": " + flag.reason;
     }
-    text += "\t" + row.state + "\t" + (marks.empty() ? "n/a" : marks);
+    text += "\t" + row.state;
+    if (withFlags) text += "\t" + (marks.empty() ? "n/a" : marks);
     for (const auto& column : columns) {
       const auto value = row.values.find(column);
       text += "\t" + (value == row.values.end() ? "n/a" : value->second);
@@ -339,6 +351,26 @@ std::string tableText(const std::vector<StudyRow>& rows) {
     text += "\n";
   }
   return text;
+}
+
+/// Numbers that a study is about; the others tell how the steps went.
+bool isInternal(const std::string& column) {
+  return !isFirst(column) && !isCompared(column) && !isRegion(column) &&
+         !column.starts_with(kAboutPrefix);
+}
+
+}  // namespace
+
+std::string tableText(const std::vector<StudyRow>& rows) {
+  std::vector<std::string> columns = columnsOf(rows);
+  std::erase_if(columns, isInternal);
+  return textOf(rows, columns, true);
+}
+
+std::string internalsText(const std::vector<StudyRow>& rows) {
+  std::vector<std::string> columns = columnsOf(rows);
+  std::erase_if(columns, [](const std::string& column) { return !isInternal(column); });
+  return textOf(rows, columns, false);
 }
 
 }  // namespace explica::study

@@ -25,6 +25,8 @@ std::vector<StudyRow> manyRows(int count) {
       row.state = n % 100 == 7 ? "failed (surface): sub-" + std::to_string(n) +
                                      "/T1.nii.gz: the file is truncated; copy or make it again"
                                : "done";
+      row.values["participant.sex"] = n / 2 % 2 == 0 ? "F" : "M";
+      row.values["participant.age"] = std::to_string(20 + n % 60);
       row.report = "runs/" + row.participant + "/report.html";
       row.thumbnail = "runs/" + row.participant + "/thumbnail.png";
       for (const char* column :

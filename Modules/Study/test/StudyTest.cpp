@@ -209,19 +209,76 @@ TEST_F(Study, FailedRunsAreRowsToo) {
 }
 
 TEST_F(Study, RegionsBecomeColumnsAndPatchesRows) {
-  put("runs/sub-01_hemi-L_region-hand/run.json",
-      R"({"steps": [{"name": "surface", "state": "done"}]})");
-  put("runs/sub-01_hemi-L_region-hand/surface/regions.tsv",
-      "index\tname\tvertices\tarea_white_mm2\tthickness_mean_mm\tthickness_sd_mm\n"
-      "1025\tprecuneus\t90\t88.5\t2.25\t0.5\n");
-  const auto rows = collectRows(folder_);
-  ASSERT_EQ(rows.size(), 1u);
+  for (const char* patch : {"hand", "face"}) {
+    const fs::path run = std::string("runs/sub-01_hemi-L_region-") + patch;
+    put(run / "run.json", R"({"steps": [{"name": "surface", "state": "done"}]})");
+    put(run / "surface/regions.tsv",
+        "index\tname\tvertices\tarea_white_mm2\tvolume_mm3\tthickness_mean_mm\tthickness_sd_mm\n"
+        "1025\tprecuneus\t90\t88.5\t200\t2.25\t0.5\n");
+    put(run / "regions/regions.tsv",
+        "person\themisphere\tatlas\tregion\tmeasure\tvalue\tunit\n"
+        "sub-01\tL\taparc\tcuneus\tthickness_mean\t2.5\tmm\n");
+  }
+  auto rows = collectRows(folder_);
+  ASSERT_EQ(rows.size(), 2u);
   EXPECT_EQ(rows[0].hemisphere, "L");
-  EXPECT_EQ(rows[0].region, "hand");
+  EXPECT_EQ(rows[1].region, "hand");
   EXPECT_EQ(rows[0].values.at("region.precuneus"), "2.25");
+  rows.resize(1);
+  rows[0].values["participant.age"] = "31";
   EXPECT_EQ(tableText(rows),
-            "participant_id\themisphere\tregion\tstate\tflags\tregion.precuneus\n"
-            "sub-01\tL\thand\tdone\tn/a\t2.25\n");
+            "participant_id\themisphere\tregion\tstate\tflags\tparticipant.age\tregion.precuneus\t"
+            "region.precuneus.area\tregion.precuneus.sd\tregion.precuneus.volume\n"
+            "sub-01\tL\tface\tdone\tn/a\t31\t2.25\t88.5\t0.5\t200\n");
+}
+
+TEST_F(Study, RegionsAreALongTableToo) {
+  for (const char* patch : {"face", "hand"}) {  // whose regions are the same
+    const fs::path run = std::string("runs/sub-01_hemi-L_region-") + patch;
+    put(run / "run.json", R"({"steps": [{"name": "surface", "state": "done"}]})");
+    put(run / "surface/regions.tsv", "index\tname\tarea_white_mm2\n1025\tprecuneus\t88.5\n");
+    put(run / "regions/regions.tsv",
+        "person\themisphere\tatlas\tregion\tmeasure\tvalue\tunit\n"
+        "sub-01\tL\taparc\tcuneus\tthickness_mean\t2.5\tmm\n");
+  }
+  auto rows = collectRows(folder_);
+  for (StudyRow& row : rows) row.values["participant.age"] = "31";
+  EXPECT_EQ(
+      regionsText(rows),
+      "participant_id\themisphere\tatlas\tregion\tmeasure\tvalue\tunit\tstate\tparticipant.age\n"
+      "sub-01\tL\tsurface\tprecuneus\tarea\t88.5\tmm^2\tdone\t31\n"
+      "sub-01\tL\ttemplate aparc\tcuneus\tthickness_mean\t2.5\tmm\tdone\t31\n");
+}
+
+TEST_F(Study, HowAStepWentIsATableOfItsOwn) {
+  StudyRow row{"sub-01", "L", "", "done", {}, {}, {}, {}};
+  row.values = {{"surface.area_white", "90000"}, {"surface.points_moved", "7"}};
+  EXPECT_EQ(tableText({row}),
+            "participant_id\themisphere\tstate\tflags\tsurface.area_white\nsub-01\tL\tdone\tn/"
+            "a\t90000\n");
+  EXPECT_EQ(internalsText({row}),
+            "participant_id\themisphere\tstate\tsurface.points_moved\nsub-01\tL\tdone\t7\n");
+}
+
+TEST_F(Study, ReadsWhatAPersonHasRated) {
+  const auto rated = [](const char* first, const char* second) {
+    return std::string(R"({"format": "explica-rating", "ratings": [{"rating": )") + first +
+           R"(}, {"rating": )" + second + "}, {\"rating\": null}]}";
+  };
+  for (const char* person : {"01", "02", "03", "04"}) {
+    put(std::string("runs/sub-") + person + "_hemi-L/run.json",
+        R"({"steps": [{"name": "surface", "state": "done"}]})");
+  }
+  put("ratings/sub-01_hemi-L_rating.json", rated(R"("wrong")", R"("right")"));
+  put("runs/sub-02_hemi-L/sub-02_hemi-L_rating.json", rated(R"("right")", R"("unsure")"));
+  put("ratings/sub-03_hemi-L_rating.json", "{}");
+  const auto rows = collectRows(folder_);
+  EXPECT_EQ(rows[0].state, "implausible (rating): places rated wrong: 1");
+  EXPECT_EQ(rows[0].values.at("rating.right"), "1");
+  EXPECT_EQ(rows[1].state, "done");
+  EXPECT_EQ(rows[1].values.at("rating.unsure"), "1");
+  EXPECT_NE(rows[2].state.find("is not a rating"), std::string::npos) << rows[2].state;
+  EXPECT_EQ(rows[3].values.count("rating.right"), 0u);
 }
 
 TEST_F(Study, OutliersAndBadSurfacesAreFlagged) {
@@ -258,8 +315,9 @@ TEST_F(Study, WhatIsCutGuessedOrContradictedIsAColumnAndAFlag) {
     ASSERT_EQ(flags[1].size(), 1u) << column;
     EXPECT_EQ(flags[1][0].column, column);
     EXPECT_EQ(flags[1][0].reason, doubt.meaning);
-    EXPECT_NE(tableText(rows).find("\t" + column + "\n"), std::string::npos);
-    EXPECT_NE(tableText(rows).find("\t12\n"), std::string::npos);
+    EXPECT_NE(internalsText(rows).find("\t" + column + "\n"), std::string::npos);
+    EXPECT_NE(internalsText(rows).find("\t12\n"), std::string::npos);
+    EXPECT_NE(tableText(rows).find(column + ": " + doubt.meaning), std::string::npos);
   }
 }
 

@@ -23,6 +23,12 @@ async function unpackIntegers(packed) {
 }
 (function () {
   'use strict';
+  // On a phone figures are folded, but for the slices to step through.
+  if (window.matchMedia('(max-width: 600px)').matches) {
+    for (const details of document.querySelectorAll('figure > details[open]')) {
+      details.open = details.querySelector('#cuts') !== null;
+    }
+  }
   // A link into what is folded unfolds it.
   const unfold = () => {
     const place = location.hash.length > 1 && document.getElementById(decodeURIComponent(location.hash.slice(1)));
@@ -281,7 +287,7 @@ async function showEvolution(source, isStopped, onStop) {
   }
   function lookAt(focus, share) {
     eye.target.set(...focus.middle);
-    eye.half = share * focus.size;
+    eye.half = share * focus.size * Math.max(1, canvas.clientHeight / canvas.clientWidth);
     const from = data.viewpoint ? new THREE.Vector3(...data.viewpoint).sub(eye.target) : new THREE.Vector3(-1, 0, 0);
     const up = Math.abs(from.clone().normalize().z) > 0.9 ? new THREE.Vector3(0, 1, 0) : new THREE.Vector3(0, 0, 1);
     const matrix = new THREE.Matrix4().lookAt(from, new THREE.Vector3(), up);
@@ -582,7 +588,7 @@ async function showEvolution(source, isStopped, onStop) {
   if (data.detached) { alone.checked = true; partOrAll(); }
   show(0);
   paint();
-  resetView();
+  (alone.checked ? resetView : wholeView)();
   canvas.dataset.ready = 'true';
 }
 })();

@@ -46,13 +46,13 @@ const outside = (c, value) => (value < spread[c].low ? -1 : value > spread[c].hi
 const placeOf = (c, value) => (spread[c] ? Math.min(1, Math.max(0, (value - spread[c].low) / (spread[c].high - spread[c].low))) : NaN);
 
 // How many rows lie where, as the outline of an area that stands on a line.
-function shapeOf(c, left, width, bottom, height) {
+function shapeOf(c, left, width, bottom, height, rows = data.rows) {
   const bins = 40, counts = new Array(bins).fill(0);
-  for (const row of data.rows) {
+  for (const row of rows) {
     const value = numberOf(row.cells[c]), place = placeOf(c, value);
     if (Number.isFinite(place) && !outside(c, value)) ++counts[Math.min(bins - 1, Math.floor(bins * place))];
   }
-  const most = Math.max(...counts), step = width / bins;
+  const most = Math.max(...counts, 1), step = width / bins;
   return 'M' + left + ' ' + bottom + counts.map((n) => 'V' + (bottom - height * n / most).toFixed(1) + 'h' + step).join('') + 'V' + bottom + 'Z';
 }
 
@@ -73,6 +73,27 @@ function showFailures() {
   if (failed.length > 50) make('p', 'The others are in the table below: sort by state.', byId('failures'));
 }
 
+// Groups by a column of participants.tsv that has few different values, in colours for the colour-blind.
+const groupColours = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9'];
+const groupsOf = (c) => [...new Set(data.rows.map((r) => cell(r, c)).filter((v) => v !== 'n/a'))].sort();
+const by = byId('by');
+function offerGroups() {
+  data.columns.forEach((column, c) => {
+    if (column.kind !== 'about') return;
+    const count = groupsOf(c).length;
+    if (count > 1 && count <= groupColours.length) by.add(new Option(column.words, c));
+  });
+  by.parentElement.hidden = by.options.length < 2;
+  by.addEventListener('change', showStrips);
+}
+function showStrips() {
+  byId('strips').textContent = byId('groups').textContent = '';
+  (by.value ? groupsOf(by.value) : []).forEach((group, n) => {
+    make('span', group, byId('groups')).style.borderColor = groupColours[n];
+  });
+  data.columns.forEach((column, c) => { if (column.compared && column.kind !== 'region' && spread[c]) showStrip(c); });
+}
+
 // One line of dots a number; dots that would cover each other move aside, always the same way.
 function showStrip(c) {
   const column = data.columns[c], box = make('div', undefined, byId('strips'));
@@ -90,6 +111,13 @@ function showStrip(c) {
   drawn('text', { x: 292, y: 59, 'text-anchor': 'end' }, svg).textContent = endOf(1, spread[c].high, spread[c].most);
   const taken = new Map(), crowded = spread[c].count > crowd;
   if (crowded) drawn('path', { class: 'spread', d: shapeOf(c, 8, 284, 46, 40) }, svg);
+  const groups = by.value ? groupsOf(by.value) : [];
+  if (crowded) {
+    groups.forEach((group, n) => {
+      const d = shapeOf(c, 8, 284, 46, 40, data.rows.filter((r) => cell(r, by.value) === group));
+      drawn('path', { class: 'group', d, style: 'stroke:' + groupColours[n] }, svg);
+    });
+  }
   for (const row of data.rows) {
     const value = numberOf(row.cells[c]);
     if (!Number.isFinite(value) || (crowded && !row.flags[c])) continue;
@@ -99,6 +127,8 @@ function showStrip(c) {
     const dot = beyond ? drawn('path', { class: 'beyond', d: 'M' + (x + beyond * 7) + ' ' + y + 'l' + -beyond * 8 + ' -4v8z' }, svg)
       : drawn('circle', { cx: x.toFixed(1), cy: y, r }, svg);
     if (row.flags[c]) dot.classList.add('odd');
+    const group = groups.indexOf(by.value ? cell(row, by.value) : '');
+    if (group >= 0) dot.style.fill = groupColours[group];
     drawn('title', {}, dot).textContent = nameOf(row) + ': ' + short(row.cells[c]) + (row.flags[c] ? ' (' + row.flags[c] + ')' : '');
     dot.addEventListener('click', () => { search.value = row.cells[0]; page = 0; draw(); search.scrollIntoView(); });
   }
@@ -236,6 +266,8 @@ showRegions();
 draw();
 // The plots come after the table is on the screen.
 requestAnimationFrame(() => setTimeout(() => {
-  data.columns.forEach((column, c) => { if (column.compared && column.kind !== 'region' && spread[c]) showStrip(c); });
+  const people = new Set(data.rows.map((r) => r.cells[0])).size, fewest = 5;
+  if (people < fewest) byId('distribution').remove();  // so few are read in the table
+  else { offerGroups(); showStrips(); }
   document.body.dataset.ready = 'true';
 }));

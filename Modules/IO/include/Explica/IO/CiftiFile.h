@@ -35,20 +35,27 @@ struct CiftiLabels {
 [[nodiscard]] CiftiStructure ciftiStructure(const std::string& structure,
                                             const Eigen::VectorXd& in);
 
-/// Writes maps of one or both hemispheres as CIFTI-2 `.dscalar.nii`: float32, NaN stays.
-/// @throws InvalidInput      parts with other maps or lengths, a hemisphere twice, no vertex, or a
-/// name
-///                           that does not end in .dscalar.nii
-/// @throws EnvironmentError  the file cannot be written
-void writeCiftiScalars(const std::filesystem::path& path, const std::vector<CiftiPart>& parts);
+/// A file that is made and checked, but not written.
+struct CiftiFile {
+  const char* ending;              ///< that its name must have
+  std::vector<std::uint8_t> head;  ///< header and XML
+  std::vector<float> values;       ///< vertices x maps, the maps of a vertex together
+
+  /// @throws InvalidInput      a name with another ending
+  /// @throws EnvironmentError  the file cannot be written
+  void write(const std::filesystem::path& path) const;
+};
+
+/// Maps of one or both hemispheres as CIFTI-2 `.dscalar.nii`: float32, NaN stays.
+/// @throws InvalidInput  parts with other maps or lengths, a hemisphere twice, or no vertex
+[[nodiscard]] CiftiFile ciftiScalars(const std::vector<CiftiPart>& parts);
 
 /// As above, maps as the frames of a series, `.dtseries.nii`.
 /// @param secondsApart  from frame to frame, > 0
-void writeCiftiSeries(const std::filesystem::path& path, const std::vector<CiftiPart>& parts,
-                      double secondsApart);
+[[nodiscard]] CiftiFile ciftiSeries(const std::vector<CiftiPart>& parts, double secondsApart);
 
 /// As above, labels with their names and colours, `.dlabel.nii`.  Entries of equal key in both
 /// hemispheres must have one name.
-void writeCiftiLabels(const std::filesystem::path& path, const std::vector<CiftiLabels>& parts);
+[[nodiscard]] CiftiFile ciftiLabels(const std::vector<CiftiLabels>& parts);
 
 }  // namespace explica::io

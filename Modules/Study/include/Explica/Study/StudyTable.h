@@ -15,6 +15,12 @@ namespace explica::study {
 /// "surface_regions" and "regions", the template's name and a key of what it all depends on.
 inline constexpr const char* kKeptName = "kept.json";
 
+/// One number of a region of a hemisphere.
+struct RegionNumber {
+  std::string atlas;  ///< "surface": that of `explica surface`; "template NAME": the template's
+  std::string region, measure, value, unit;
+};
+
 /// One row of the study table: a participant's hemisphere and its numbers by column.
 struct StudyRow {
   std::string participant;          ///< "sub-01" or "sub-01_ses-02"
@@ -25,6 +31,7 @@ struct StudyRow {
   std::filesystem::path thumbnail;  ///< a small picture of it, likewise
   std::map<std::string, std::string> values;  ///< "surface.euler_characteristic" and so on;
                                               ///< "region.precuneus": mean thickness, mm
+  std::vector<RegionNumber> regions;
 };
 
 /// Something in a row that a person should look at.
@@ -45,15 +52,26 @@ struct StudyFlag {
 /// rows of the same region, of which there must be 8 with the number.
 [[nodiscard]] std::vector<std::vector<StudyFlag>> flagsOf(const std::vector<StudyRow>& rows);
 
-/// Tab-separated, "n/a" where a row has no value (as BIDS wants it); columns in a fixed order.
+/// Tab-separated, "n/a" where a row has no value (as BIDS wants it); columns in a fixed order: the
+/// numbers that a study is about, what is known of people, and regions.
 [[nodiscard]] std::string tableText(const std::vector<StudyRow>& rows);
 
-/// Begins the name of a column that holds a region's mean thickness.
+/// All other numbers of the same rows: how each step went.
+[[nodiscard]] std::string internalsText(const std::vector<StudyRow>& rows);
+
+/// Regions as a long table, a row a person, hemisphere, region and measure, with what is known of
+/// people.
+[[nodiscard]] std::string regionsText(const std::vector<StudyRow>& rows);
+
+/// Begins the name of a column that holds a region's mean thickness, its .sd, .area or .volume.
 inline constexpr std::string_view kRegionPrefix = "region.";
+/// Begins the name of a column of participants.tsv.
+inline constexpr std::string_view kAboutPrefix = "participant.";
 
 /// Columns of all rows: those that come first, others by name, regions last.
 [[nodiscard]] std::vector<std::string> columnsOf(const std::vector<StudyRow>& rows);
 [[nodiscard]] bool isRegion(const std::string& column);
+[[nodiscard]] bool isRegionMean(const std::string& column);
 /// True of a number that should be alike in all rows, so that one far off is marked.
 [[nodiscard]] bool isCompared(const std::string& column);
 /// True of the columns that tell how good a run is.
