@@ -253,7 +253,8 @@ GlmSummary summaryOf(const GlmSettings& s, const Observations& o, const GlmResul
   return summary;
 }
 
-void writeAll(Context& context, const GlmSettings& s, const Observations& o,
+/// @return  whether all is written: without the page, whose pictures take seconds, after a stop
+bool writeAll(Context& context, const GlmSettings& s, const Observations& o,
               const Eigen::MatrixXd& fitted, const GlmResults& results) {
   auto step = context.step("write");
   writeTextFile(context.output("design.tsv"), designTable(o, results));
@@ -262,9 +263,15 @@ void writeAll(Context& context, const GlmSettings& s, const Observations& o,
   else
     writeTextFile(context.output("regions.tsv"), regionTable(o, results));
   if (o.surface) writeTextFile(context.output("clusters.tsv"), clusterTable(o, results));
-  writeTextFile(context.output("report.html"),
-                resultPage(s, o, results, fitted.size() > 0 ? &fitted : nullptr));
   context.results(summaryOf(s, o, results));
+  try {
+    const StopScope abandoned(&context.monitor());
+    const std::string page = resultPage(s, o, results, fitted.size() > 0 ? &fitted : nullptr);
+    writeTextFile(context.output("report.html"), page);
+  } catch (const Interrupted&) {
+    return false;
+  }
+  return true;
 }
 
 Termination run(Context& context, const GlmSettings& s) {
@@ -297,7 +304,7 @@ Termination run(Context& context, const GlmSettings& s) {
     auto step = context.step("inference");
     complete = inferAll(context, s, o, fitted, results);
   }
-  writeAll(context, s, o, fitted, results);
+  complete = writeAll(context, s, o, fitted, results) && complete;
   return complete ? Termination::NotRun : Termination::Interrupted;
 }
 

@@ -10,6 +10,7 @@
 #include "Explica/Collision/Untangling.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/StopScope.h"
+#include "Explica/Core/Stopwatch.h"
 #include "Explica/Core/TimeBudget.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Geometry/MeshTopology.h"
@@ -19,7 +20,6 @@
 #include "Explica/Unfolding/Account.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <optional>
 #include <utility>
@@ -118,10 +118,7 @@ std::vector<geometry::FacePair> checkStart(Context& context, const Settings& s,
 constexpr KeptTime kKept = {3, 0.5};
 
 Termination run(Context& context, const Settings& s) {
-  const auto begin = std::chrono::steady_clock::now();
-  const auto seconds = [&] {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  };
+  const Stopwatch seconds;
   Inflated u;
   u.before = readUsable(context, s, u.metadata);
   std::optional<unfolding::Checkpoint> checkpoint;

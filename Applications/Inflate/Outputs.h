@@ -19,7 +19,6 @@ struct Inflated {
   io::SurfaceMetadata metadata;
   std::vector<geometry::FacePair> crossings;  ///< of `before`, sorted
   inflation::InflateResult result;
-  bool globalMeasures = false;
 };
 
 /// Writes all files, and the numbers of the summary, about the surface as the files hold it.

@@ -23,7 +23,10 @@ void declarePolygon(Declaration& d, PolygonSettings& s) {
               Field{"phantom", "", "instead of FILE: a phantom with its region and viewpoint"},
               s.phantom);
   declarePolygonReading(d, s.reading);
-  d.option("Region", Field{"region", "", "first and last vertex, I:J; default: the whole polygon"},
+  d.option("Region",
+           Field{"region", "",
+                 "first and last vertex, I:J, or seen: between the extremities of the view; "
+                 "default: the whole polygon"},
            s.region)
       .option("Viewpoint",
               Field{"viewpoint", "mm", "point to look from; of several the weighted mean counts"},

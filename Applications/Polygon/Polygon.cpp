@@ -33,14 +33,16 @@ struct Task {
   std::optional<planar::Viewpoints> view;
 };
 
+const std::string kSeen = "seen";
+
 planar::Region regionOf(const planar::Curve& curve, const std::optional<std::string>& text) {
-  if (!text) return planar::wholeRegion(curve);
+  if (!text || *text == kSeen) return planar::wholeRegion(curve);
   int first = 0;
   int last = 0;
   int used = 0;
   if (std::sscanf(text->c_str(), "%d:%d%n", &first, &last, &used) != 2 ||
       used != static_cast<int>(text->size())) {
-    throw UsageError("--region '" + *text + "': expected I:J, first and last vertex");
+    throw UsageError("--region '" + *text + "': expected I:J, first and last vertex, or " + kSeen);
   }
   return planar::regionBetween(curve, first, last);
 }
@@ -74,6 +76,13 @@ std::optional<planar::Viewpoints> viewOf(const PolygonSettings& s, const planar:
   return inPlane(visibility::viewpoints(points, s.weights));
 }
 
+planar::Region regionSeen(const Task& task) {
+  if (!task.view || task.view->points.size() != 1) {
+    throw UsageError("--region " + kSeen + " needs one --viewpoint or --direction");
+  }
+  return planar::regionFacing(task.curve, task.view->points.front());
+}
+
 Task taskOf(Context& context, const PolygonSettings& s) {
   if (s.file.has_value() == s.phantom.has_value()) {
     throw UsageError("give FILE or --phantom, one of them");
@@ -83,6 +92,7 @@ Task taskOf(Context& context, const PolygonSettings& s) {
     task.curve = readCurve(context, "FILE", *s.file, s.reading);
     task.region = regionOf(task.curve, s.region);
     task.view = viewOf(s, task.curve, task.region);
+    if (s.region == kSeen) task.region = regionSeen(task);
     return task;
   }
   const planar::PolygonPhantom phantom =
@@ -92,6 +102,7 @@ Task taskOf(Context& context, const PolygonSettings& s) {
                          : planar::regionBetween(task.curve, phantom.first, phantom.last);
   task.view = viewOf(s, task.curve, task.region);
   if (!task.view) task.view = phantom.viewpoint;
+  if (s.region == kSeen) task.region = regionSeen(task);
   return task;
 }
 

@@ -9,13 +9,13 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Memory.h"
 #include "Explica/Core/Parallel.h"
+#include "Explica/Core/Stopwatch.h"
 #include "Explica/Correspondence/Measurement.h"
 #include "Explica/Harmonic/Annulus.h"
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/IO/VtkFile.h"
 #include "Explica/Provenance/Doubts.h"
 
-#include <chrono>
 #include <functional>
 #include <optional>
 #include <string>
@@ -104,10 +104,6 @@ void declare(Declaration& d, Settings& s) {
   d.results<correspondence::Measurement>();
 }
 
-double seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 harmonic::Annulus readAnnulus(Context& context, const Settings& s) {
   if (s.innerLevel.has_value() != s.outerLevel.has_value()) {
     throw UsageError("--inner-level and --outer-level belong together; one of them is missing");
@@ -137,6 +133,7 @@ harmonic::Annulus readAnnulus(Context& context, const Settings& s) {
 correspondence::Measurement measure(Context& context, harmonic::Annulus annulus,
                                     const correspondence::MeasurementOptions& options) {
   std::optional<Context::Step> step;
+  const Stopwatch seconds;
   double begin = 0;
   std::string current;
   const auto onPart = [&](const std::string& part, const correspondence::Measurement& sofar) {

@@ -1,32 +1,28 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
-#include "Explica/Unfolding/Unfold.h"
 #include "Explica/Unfolding/Summary.h"
 
 #include "Outputs.h"
-#include "View.h"
+#include "Settings.h"
 
-#include "Explica/Application/Command.h"
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Collision/Untangling.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/StopScope.h"
+#include "Explica/Core/Stopwatch.h"
 #include "Explica/Core/TimeBudget.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Geometry/SelfIntersection.h"
 #include "Explica/IO/RegionFiles.h"
-#include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/Repulsion/KnotEnergy.h"
 #include "Explica/Unfolding/Account.h"
-#include "Explica/Unfolding/Region.h"
 
 #include <malloc.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -34,119 +30,13 @@
 namespace explica::app {
 namespace {
 
-struct Settings {
-  std::string surface;
-  io::SurfaceReadOptions reading;
-  ViewSettings view;
-  std::optional<std::string> viewSurface;
-  unfolding::RegionOptions region;
-  std::vector<std::string> labels;
-  std::vector<int> labelKeys;
-  std::vector<std::string> regionNames;
-  std::optional<std::string> atlas;
-  std::optional<std::string> map;
-  std::optional<double> above;
-  bool adjustRegion = false;
-  bool repair = true;
-  unfolding::UnfoldOptions unfold;
-  bool resume = false;
-};
-
-void declare(Declaration& d, Settings& s) {
-  d.synopsis("a region of a folded surface opened towards a viewpoint, areas kept")
-      .description(
-          "Maximises the average visibility of the region: the mean cosine under which its faces "
-          "look at the viewpoint. Face areas are kept, edges keep their lengths as well as they "
-          "can, and a collar of the surface around the region follows. With the implicit method no "
-          "step lets the surface pass through itself, and faces that intersect at the start are "
-          "parted first where the region or its collar is concerned; the thesis's method promises "
-          "nothing of the kind. What is written is tested once more: faces that cross in it and "
-          "did "
-          "not at the start, a goal that is missed (visibility 0.98 or --target-visibility, as "
-          "much "
-          "seen, mean edge strain 9 %), a collar that gives way (twice its area in the mean, a "
-          "face "
-          "at more than eight times), and a run that never got better than its start end with a "
-          "warning that says which, a 'flag' in the summary and exit code 3. A run can be stopped "
-          "at any time and continued with --resume into the "
-          "same --out.")
-      .reference(
-          "Lopez Perez 2010, Two- and three-dimensional annular tissues and unfolding, thesis")
-      .example(
-          "explica unfold pial.surf.gii --center -60,10,20 --radius 25 --direction -1,0.2,0.2 "
-          "--out "
-          "unfolded",
-          "A patch of 25 mm about a point, seen from its side")
-      .input("SURFACE", FileKind::Surface, "triangulated surface", s.surface)
-      .options("Reading", s.reading)
-      .options("View", s.view)
-      .inputOption("view-surface", FileKind::Surface, "look from all points of this surface",
-                   s.viewSurface, "View")
-      .options("Region", s.region)
-      .inputOption("label", FileKind::VertexLabel,
-                   "the region is where this label, or one of several, is not 0", s.labels,
-                   "Region")
-      .option("Region", Field{"label-key", "", "the region is where --label has one of these keys"},
-              s.labelKeys)
-      .option("Region",
-              Field{"region", "", "names of regions of --atlas: the region is all of them"},
-              s.regionNames)
-      .inputOption("atlas", FileKind::VertexLabel,
-                   "annotation of the surface's vertices that --region names a region of", s.atlas,
-                   "Region")
-      .inputOption("map", FileKind::VertexData, "the region is where this map is above --above",
-                   s.map, "Region")
-      .option("Region", Field{"above", "", "value of --map beyond which a vertex is in the region"},
-              s.above)
-      .option(
-          "Region",
-          Field{"adjust-region", "", "grow or shrink the region until its visibility is positive"},
-          s.adjustRegion)
-      .excludes("label", {"map", "center", "vertex", "radius", "metric", "cone"})
-      .excludes("region", {"label", "map", "center", "vertex", "radius", "metric", "cone"})
-      .excludes("map", {"center", "vertex", "radius", "metric", "cone"})
-      .excludes("center", {"vertex"})
-      .excludes("cone", {"metric"})
-      .needs({"label-key"}, {"label"})
-      .needs({"atlas"}, {"region"})
-      .needs({"distance"}, {"direction"})
-      .option("Unfolding",
-              Field{"repair", "",
-                    "part faces that intersect at the start, by small moves where that goes: those "
-                    "of the region and its collar, if given explicitly those of all the surface; "
-                    "the result is compared with the surface so repaired"},
-              s.repair)
-      .options("Unfolding", s.unfold)
-      .needs({"time-step"}, {"method=thesis"})
-      .needs({"knot-weight"}, {"knot"})
-      .needs({"collar-width"}, {"surround=elastic"})
-      .option("Unfolding", Field{"resume", "", "continue the run whose outputs are in --out"},
-              s.resume)
-      .reuseOutputIf(s.resume)
-      .output("unfolded.surf.gii", FileKind::Surface, "the surface with its region unfolded")
-      .output(kReferenceFile, FileKind::Surface,
-              "the surface that the result is compared with, where faces that crossed were parted")
-      .output("unfolded.vtp", FileKind::Surface, "the same with all values of vertices and faces")
-      .output("region.label.gii", FileKind::VertexLabel, "1 in the region")
-      .output("visibility.shape.gii", FileKind::VertexData,
-              "flux before, flux after, seen before, seen after")
-      .output("distortion.shape.gii", FileKind::VertexData,
-              "area ratio (of all faces that move), angle change in degrees, edge strain")
-      .varyingOutput("evolution.tsv", FileKind::Table, "one row per iteration")
-      .output("intersections.tsv", FileKind::Table,
-              "pairs of faces that intersect at the start, where, and whether --repair parted them")
-      .output("frames/frame-*.surf.gii", FileKind::Surface, "--frames states on the way")
-      .varyingOutput(kStateFile, FileKind::Any, "what --resume needs")
-      .results<unfolding::StartSummary>()
-      .results<unfolding::UnfoldSummary>();
-}
-
-visibility::Viewpoints viewOf(const Settings& s, const TriangleMesh& mesh, const Point& about) {
+visibility::Viewpoints viewOf(const UnfoldSettings& s, const TriangleMesh& mesh,
+                              const Point& about) {
   return viewFrom(s.view, s.viewSurface, s.reading, mesh, about);
 }
 
 /// Vertices at which the map is above the value.
-std::vector<bool> markedByMap(const TriangleMesh& mesh, const Settings& s) {
+std::vector<bool> markedByMap(const TriangleMesh& mesh, const UnfoldSettings& s) {
   const Eigen::VectorXd values = io::readVertexMaps(*s.map, mesh.vertexCount()).front().values;
   std::vector<bool> marked(static_cast<std::size_t>(mesh.vertexCount()));
   double largest = -kInfinity;
@@ -163,7 +53,7 @@ std::vector<bool> markedByMap(const TriangleMesh& mesh, const Settings& s) {
   return marked;
 }
 
-unfolding::Region regionOf(const TriangleMesh& mesh, const Settings& s,
+unfolding::Region regionOf(const TriangleMesh& mesh, const UnfoldSettings& s,
                            const visibility::Viewpoints* view) {
   if (s.map.has_value() != s.above.has_value()) {
     throw UsageError("--map and --above belong together; one of them is missing");
@@ -202,7 +92,7 @@ std::string crossingsInWords(const std::vector<unfolding::Crossing>& list, std::
 
 /// Lists the start's intersections and parts in `mesh` those that stand in the way.
 /// @return the pairs that are left
-std::vector<geometry::FacePair> checkStart(Context& context, const Settings& s,
+std::vector<geometry::FacePair> checkStart(Context& context, const UnfoldSettings& s,
                                            const unfolding::Region& region,
                                            const visibility::Viewpoints& view, TriangleMesh& mesh) {
   collision::Untangling repair;
@@ -236,7 +126,7 @@ struct Aim {
   unfolding::Region region;
 };
 
-Aim chooseAim(Context& context, const TriangleMesh& mesh, const Settings& s) {
+Aim chooseAim(Context& context, const TriangleMesh& mesh, const UnfoldSettings& s) {
   Aim aim;
   if (s.region.cone) {
     unfolding::RegionOptions centre = s.region;
@@ -267,7 +157,7 @@ Aim chooseAim(Context& context, const TriangleMesh& mesh, const Settings& s) {
   return aim;
 }
 
-TriangleMesh readUsable(Context& context, const Settings& s, io::SurfaceMetadata& metadata) {
+TriangleMesh readUsable(Context& context, const UnfoldSettings& s, io::SurfaceMetadata& metadata) {
   const io::LoadedSurface loaded = readSurface(context, "SURFACE", s.surface, s.reading);
   const auto condition = geometry::requireManifold(loaded.mesh, s.surface);
   unfolding::requireFitsSingle(loaded.mesh, s.surface);
@@ -302,7 +192,7 @@ void keepFreedMemory() {
 
 /// Says beforehand how long the exact knot energy takes, which grows with the square of the
 /// surface.
-void sayHowLong(Context& context, const Settings& s, const Unfolded& u) {
+void sayHowLong(Context& context, const UnfoldSettings& s, const Unfolded& u) {
   if (s.unfold.unfolder.knot != repulsion::KnotMethod::AllPairs) return;
   constexpr double kPairsPerSecond = 1.4e5;  // an iteration sums several times along its step
   const double pairs = static_cast<double>(u.chosen.faces.size()) * u.before.faceCount();
@@ -314,12 +204,9 @@ void sayHowLong(Context& context, const Settings& s, const Unfolded& u) {
   context.info(text);
 }
 
-Termination run(Context& context, const Settings& s) {
+Termination run(Context& context, const UnfoldSettings& s) {
   keepFreedMemory();
-  const auto begin = std::chrono::steady_clock::now();
-  const auto seconds = [&] {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  };
+  const Stopwatch seconds;
   Unfolded u;
   u.before = readUsable(context, s, u.metadata);
   const Aim aim = chooseAim(context, u.before, s);
@@ -360,7 +247,7 @@ Termination run(Context& context, const Settings& s) {
 }  // namespace
 
 Command unfoldCommand() {
-  return makeCommand<Settings>("unfold", declare, run);
+  return makeCommand<UnfoldSettings>("unfold", declareUnfold, run);
 }
 
 }  // namespace explica::app

@@ -12,6 +12,7 @@
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Testing/Command.h"
+#include "Explica/Testing/FreeSurferLabel.h"
 #include "Explica/Testing/Stops.h"
 #include "RealSurfaces.h"
 
@@ -561,7 +562,8 @@ TEST_F(FlattenCommand, TheWallOfAutomaticCutsIsTakenFromWhatIsGivenOrFound) {
   EXPECT_EQ(areaWith({"--cortex", folder / "cortex.label.gii"}), byThickness);
   EXPECT_EQ(areaWith({"--cortex", folder / "lh.test.annot"}), byThickness);
   cortex.keys.array() -= 1;
-  io::writeFreeSurferLabel(folder / "lh.cortex.label", cortex, io::readSurface(mid).mesh.positions);
+  explica::test::writeFreeSurferLabel(folder / "lh.cortex.label", cortex,
+                                      io::readSurface(mid).mesh.positions);
   EXPECT_EQ(areaWith({"--cortex", folder / "lh.cortex.label"}), byThickness);
   io::writeGiftiShape(folder / "valid.shape.gii", {{"thickness", "mm", thickness}}, "CortexLeft");
   EXPECT_EQ(areaWith({}), byThickness);  // beside the surface

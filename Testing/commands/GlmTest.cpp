@@ -8,6 +8,7 @@
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/Testing/Command.h"
 #include "Explica/Testing/Stops.h"
+#include "QuickRuns.h"
 
 #include <gtest/gtest.h>
 
@@ -82,6 +83,26 @@ TEST(Glm, StoppedInItsPermutationsHasTheModels) {
     EXPECT_EQ(row, whole) << check;
   }
   EXPECT_GE(without, 5);
+}
+
+/// The page's pictures are drawn again by a run that is not stopped; the maps are worth something.
+TEST(Glm, StoppedInItsPageHasTheMaps) {
+  TemporaryFolder folder;
+  writePeoplesMaps(folder);
+  const std::vector<std::string> words = {"glm",       folder / "maps.tsv",
+                                          "--table",   folder / "people.tsv",
+                                          "--model",   "thickness ~ age",
+                                          "--surface", folder / "sphere.surf.gii",
+                                          "--threads", "1",
+                                          "--out",     folder / "out"};
+  const long checks = checksFor(words);
+  std::filesystem::remove_all(folder / "out");
+  const auto stopped = explica(words, stopAtCheck(checks));
+  ASSERT_TRUE(isInterrupted(stopped)) << stopped;
+  EXPECT_FALSE(std::filesystem::exists(folder / "out/report.html"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "out/clusters.tsv"));
+  EXPECT_EQ(readJson(folder / "out/summary.json")["termination"], "interrupted");
+  EXPECT_EQ(explica({"verify", folder / "out"}).exitCode, 0);
 }
 
 struct BadDesign {

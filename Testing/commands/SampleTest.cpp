@@ -8,6 +8,7 @@
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Testing/Command.h"
+#include "Explica/Testing/FreeSurferLabel.h"
 #include "Explica/Testing/FreeSurferSubject.h"
 #include "Explica/Testing/Grids.h"
 
@@ -286,7 +287,7 @@ TEST_F(Sample, RegionsOfSeveralFilesMayOverlap) {
   io::writeGiftiLabel(folder_ / "parts.label.gii", upper, "CortexLeft");
   io::LabelMap right = upper;
   right.keys = (mesh.positions.col(0).array() > 0).cast<Label>();
-  io::writeFreeSurferLabel(folder_ / "lh.right.label", right, mesh.positions);
+  explica::test::writeFreeSurferLabel(folder_ / "lh.right.label", right, mesh.positions);
   writeX("x.nii.gz");
   const CommandResult result =
       sample({folder_ / "x.nii.gz", "--labels", folder_ / "parts.label.gii", "--labels",

@@ -5,6 +5,7 @@
     validate.py EXPLICA                 fails where a number is off by more than its tolerance
     validate.py EXPLICA --write         writes the page and its figures anew
     validate.py EXPLICA --only WORD     only the sections whose title holds the word
+    validate.py EXPLICA --no-times      times are not judged: the machine has other work
 """
 
 import argparse
@@ -47,8 +48,8 @@ def stated(block):
     return found
 
 
-def compare(title, rows, block):
-    """Sentences on what differs between the page and the measurement."""
+def compare(title, rows, block, times):
+    """Sentences on what differs between the page and the measurement; of seconds if `times`."""
     page = stated(block)
     measured = {(row.on, row.what): row for row in rows}
     faults = [f"{title}: the page has no row '{what}' of {on}" for on, what in measured
@@ -56,7 +57,7 @@ def compare(title, rows, block):
     faults += [f"{title}: nothing measures '{what}' of {on}" for on, what in page
                if (on, what) not in measured]
     for key, row in measured.items():
-        if key not in page:
+        if key not in page or (row.unit == "s" and not times):
             continue
         value, tolerance = page[key]
         # What the page rounds away is no difference.
@@ -72,6 +73,7 @@ def main():
     parser.add_argument("explica", type=pathlib.Path)
     parser.add_argument("--write", action="store_true")
     parser.add_argument("--only", default="")
+    parser.add_argument("--no-times", dest="times", action="store_false")
     parser.add_argument("--work", type=pathlib.Path, help="folder for results, kept for a next run")
     words = parser.parse_args()
     chosen = [(title, measure) for title, measure in measures.ALL if words.only.lower() in title.lower()]
@@ -99,7 +101,7 @@ def main():
                 start = page.index("\n", start) + 1
                 page = page[:start] + table(rows) + page[end:]
             else:
-                found = compare(title, rows, blocks.get(title, ""))
+                found = compare(title, rows, blocks.get(title, ""), words.times)
                 faults += found
                 print(f"{title}: {len(rows)} numbers, {len(found)} differ")
     if words.write:

@@ -81,11 +81,6 @@ Declaration& Declaration::oneByOne(std::string_view wanted) {
   return *this;
 }
 
-Declaration& Declaration::onSurface(std::string_view wanted, std::string_view surface) {
-  get(wanted).surface = get(surface).option.name;
-  return *this;
-}
-
 Declaration& Declaration::excludes(const std::string& one, const std::vector<std::string>& others) {
   for (const std::string& other : others) {
     get(one).excludes.push_back(get(other).option.name);
@@ -124,7 +119,6 @@ Declaration& Declaration::include(const Declaration& other, std::string_view pre
     copy.required = false;
     copy.needs.clear();  // who takes the options over may see to it by itself
     for (std::string& beside : copy.excludes) beside = std::string(prefix) + beside;
-    if (!copy.surface.empty()) copy.surface = std::string(prefix) + copy.surface;
     if (find(copy.option.name)) throw std::logic_error("declared twice: " + copy.option.name);
     parameters.push_back(std::move(copy));
   }

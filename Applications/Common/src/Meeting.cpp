@@ -105,8 +105,6 @@ std::string Meeting::meshesOf(const File& one, const File& other) {
     return isVertexData(one.parameter) ? std::string() : meshesOf(other, one);
   }
   if (!isVertexData(one.parameter) || one.surfaces.empty() || other.surfaces.empty()) return {};
-  const std::string& own = one.parameter->surface;
-  if (!own.empty() && own != other.role) return {};
   const bool shared = std::any_of(one.surfaces.begin(), one.surfaces.end(),
                                   [&](const auto& hash) { return other.surfaces.count(hash) > 0; });
   if (shared) return {};

@@ -3,13 +3,11 @@
 
 #include "OutputFolder.h"
 
-#include "Console.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Provenance/Record.h"
 #include "Leavings.h"
+#include "LockFile.h"
 
-#include <fcntl.h>
-#include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -17,9 +15,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
-#include <fstream>
 #include <set>
-#include <sstream>
 
 namespace explica::app {
 namespace {
@@ -29,96 +25,6 @@ using provenance::Json;
 
 constexpr const char* kLockName = ".explica-lock";
 constexpr auto kHeartbeat = std::chrono::seconds(30);
-constexpr auto kSilence = std::chrono::minutes(10);  // a host silent for so long is taken for dead
-
-std::string hostName() {
-  char name[256] = {};
-  return gethostname(name, sizeof name - 1) == 0 ? name : "unknown";
-}
-
-/// Clock ticks at which a process began: tells a process from a later one of the same number.
-std::string processStart(long pid) {
-  std::ifstream stat("/proc/" + std::to_string(pid) + "/stat");
-  std::string text((std::istreambuf_iterator<char>(stat)), {});
-  const auto close = text.rfind(')');
-  if (close == std::string::npos) return "";
-  std::istringstream fields(text.substr(close + 1));
-  std::string field;
-  constexpr int kStartField = 20;  // 22nd of proc(5), counted after the command's name
-  for (int i = 0; i < kStartField; ++i) fields >> field;
-  return field;
-}
-
-std::string ownLock(const std::string& command) {
-  return provenance::textOf({{"host", hostName()},
-                             {"pid", static_cast<long>(getpid())},
-                             {"process_start", processStart(getpid())},
-                             {"started", timeNow()},
-                             {"command", command}}) +
-         "\n";
-}
-
-/// What came of an attempt to make a lock file.
-struct LockAttempt {
-  bool created = false;
-  int fault = 0;  ///< errno; EEXIST if there is one already
-};
-
-bool writeAll(int descriptor, const std::string& text) {
-  return write(descriptor, text.data(), text.size()) == static_cast<ssize_t>(text.size());
-}
-
-/// Makes the lock with its text in one stroke, so that a kill leaves it whole or not at all: a file
-/// without a name is written, then named.  File systems without such files (some network ones) get
-/// it by exclusive creation; a kill between that and the text leaves an empty lock, which ages out.
-LockAttempt makeLock(const fs::path& lock, const std::string& text) {
-  const int nameless = open(lock.parent_path().c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
-  if (nameless >= 0) {
-    LockAttempt attempt;
-    const std::string source = "/proc/self/fd/" + std::to_string(nameless);
-    attempt.created = writeAll(nameless, text) && linkat(AT_FDCWD, source.c_str(), AT_FDCWD,
-                                                         lock.c_str(), AT_SYMLINK_FOLLOW) == 0;
-    if (!attempt.created) attempt.fault = errno;
-    close(nameless);
-    if (attempt.created || attempt.fault == EEXIST || attempt.fault == ENOSPC) return attempt;
-  }
-  const int descriptor = open(lock.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
-  if (descriptor < 0) return {false, errno};
-  const LockAttempt attempt{true, writeAll(descriptor, text) ? 0 : errno};
-  close(descriptor);
-  return attempt;
-}
-
-/// Empty if the lock's owner is gone; else a sentence on who holds it.
-std::string holderOf(const fs::path& lock) {
-  Json held;
-  try {
-    held = provenance::readJson(lock);
-  } catch (const IOError&) {
-    // One that is just being written, or is gone.
-  }
-  std::error_code fault;
-  const auto touched = fs::last_write_time(lock, fault);
-  if (fault) return "";
-  const bool silent = fs::file_time_type::clock::now() - touched > kSilence;
-  const auto word = [&](const char* key) {
-    const auto found = held.find(key);
-    return found != held.end() && found->is_string() ? found->get<std::string>() : std::string();
-  };
-  if (!held.is_object() || !held.contains("pid") || !held["pid"].is_number_integer())
-    return silent ? "" : "a run that is just starting";
-  const std::string host = word("host");
-  const long pid = held["pid"].get<long>();
-  if (host == hostName()) {
-    if (kill(static_cast<pid_t>(pid), 0) != 0 && errno == ESRCH) return "";
-    const std::string start = processStart(pid);
-    if (!start.empty() && start != word("process_start")) return "";
-  } else if (silent) {
-    return "";
-  }
-  return "process " + std::to_string(pid) + " on " + host + " (explica " + word("command") +
-         ", since " + word("started") + ")";
-}
 
 [[noreturn]] void cannot(const std::string& what, const fs::path& path, const std::string& cause) {
   throw EnvironmentError(path.string() + ": " + what + " (" + cause + ")");

@@ -3,8 +3,8 @@
 
 #include "Parse.h"
 
+#include "FormerOptions.h"
 #include "Meeting.h"
-#include "Renamed.h"
 #include "Wording.h"
 
 #include "Explica/Core/Errors.h"
@@ -13,10 +13,12 @@
 
 #include <algorithm>
 #include <charconv>
-#include <map>
-#include <numeric>
 
 namespace explica::app {
+std::string dashed(const Parameter& parameter) {
+  return parameter.positional ? parameter.option.name : "--" + parameter.option.name;
+}
+
 namespace {
 
 /// Where CLI11 leaves the words of one parameter.
@@ -26,10 +28,6 @@ struct Words {
   int flagCount = 0;
   CLI::Option* handle = nullptr;
 };
-
-std::string dashed(const Parameter& parameter) {
-  return parameter.positional ? parameter.option.name : "--" + parameter.option.name;
-}
 
 /// `--viewpoint -10,2,3` would look like an option -1: binds a negative number to the option
 /// before.
@@ -88,80 +86,6 @@ void refuseNumbersBetweenSpaces(const std::vector<Parameter*>& parameters,
   }
 }
 
-/// nowCalled() of words with their dashes.
-std::string renamedWord(const std::string& word, std::vector<std::string> known) {
-  for (std::string& name : known) name.erase(0, 2);
-  const std::string now = nowCalled(word.substr(std::min(word.size(), std::size_t{2})), known);
-  return now.empty() ? "" : "--" + now;
-}
-
-/// Words of other programs for what an option does here.
-const std::map<std::string, std::vector<std::string>> kSynonyms = {
-    {"--side", {"--hemisphere"}},
-    {"--jobs", {"--threads"}},
-    {"--nthreads", {"--threads"}},
-    {"--n-threads", {"--threads"}},
-    {"--openmp", {"--threads"}},
-    {"--overwrite", {"--force"}},
-    {"--clobber", {"--force"}},
-    {"--output", {"--out"}},
-    {"--subject", {"--participant-label"}},
-    {"--subjects", {"--participant-label"}},
-    {"--annot", {"--labels", "--parcellation", "--regions", "--atlas"}},
-    {"--overlay", {"--map"}},
-    {"--size", {"--radius"}},
-    {"--steps-max", {"--max-iterations"}},
-    {"--iterations", {"--max-iterations"}},
-    {"--timeout", {"--max-time"}},
-    {"--memory", {"--max-memory"}}};
-
-/// The candidate that the word abbreviates or means; empty if there is none.
-std::string meantBy(const std::string& word, const std::vector<std::string>& candidates) {
-  constexpr std::size_t kTelling = 5;  // "--" and three letters
-  std::string shortest;
-  for (const auto& candidate : candidates) {
-    if (word.size() < kTelling || !candidate.starts_with(word)) continue;
-    if (shortest.empty() || candidate.size() < shortest.size()) shortest = candidate;
-  }
-  if (!shortest.empty()) return shortest;
-  const auto synonyms = kSynonyms.find(word);
-  if (synonyms == kSynonyms.end()) return {};
-  for (const auto& synonym : synonyms->second) {
-    if (std::find(candidates.begin(), candidates.end(), synonym) != candidates.end()) {
-      return synonym;
-    }
-  }
-  return {};
-}
-
-}  // namespace
-
-std::string nearestWord(const std::string& word, const std::vector<std::string>& candidates) {
-  std::string best = meantBy(word, candidates);
-  if (!best.empty()) return best;
-  std::size_t bestDistance = word.size() / 3 + 2;
-  for (const auto& candidate : candidates) {
-    std::vector<std::size_t> row(candidate.size() + 1);
-    std::iota(row.begin(), row.end(), 0);
-    for (std::size_t i = 1; i <= word.size(); ++i) {
-      std::size_t diagonal = row[0];
-      row[0] = i;
-      for (std::size_t j = 1; j <= candidate.size(); ++j) {
-        const std::size_t substituted = diagonal + (word[i - 1] == candidate[j - 1] ? 0 : 1);
-        diagonal = row[j];
-        row[j] = std::min({row[j] + 1, row[j - 1] + 1, substituted});
-      }
-    }
-    if (row.back() < bestDistance) {
-      bestDistance = row.back();
-      best = candidate;
-    }
-  }
-  return best;
-}
-
-namespace {
-
 /// Whether --report may be asked for: not where pages are among the results already.
 bool mayBeReported(const Declaration& declaration) {
   const bool ownPage =
@@ -192,7 +116,7 @@ std::vector<Parameter> commonParameters(const Declaration& declaration, CommonOp
 }
 
 std::set<std::string> applyJson(std::vector<Parameter*> parameters, const provenance::Json& values,
-                                const std::string& source) {
+                                const std::string& source, const std::string& command) {
   if (!values.is_object()) throw UsageError(source + ": must hold one JSON object");
   const provenance::Json flat = provenance::flattenKeys(values);
   std::set<std::string> names;
@@ -204,8 +128,8 @@ std::set<std::string> applyJson(std::vector<Parameter*> parameters, const proven
     if (found == parameters.end()) {
       std::vector<std::string> known;
       for (const Parameter* p : parameters) known.push_back(p->option.name);
-      if (const std::string now = nowCalled(key, known); !now.empty()) {
-        throw UsageError(source + ": option '" + key + "' is called '" + now + "' now");
+      if (const auto former = whatBecameOf(key, command, known, ""); !former.empty()) {
+        throw UsageError(source + ": option " + former);
       }
       const std::string near = nearestWord(key, known);
       throw UsageError(source + ": unknown option '" + key + "'" +
@@ -260,7 +184,7 @@ std::set<std::string> parseWords(Declaration& declaration, CommonOptions& common
   } catch (const CLI::ExtrasError&) {
     std::vector<std::string> known;
     for (const Parameter* p : all) {
-      if (!p->positional) known.push_back("--" + p->option.name);
+      if (!p->positional) known.push_back(p->option.name);
     }
     const std::string extra = parser.remaining().empty() ? "" : parser.remaining().front();
     const std::string word = extra.substr(0, extra.find('='));
@@ -268,9 +192,10 @@ std::set<std::string> parseWords(Declaration& declaration, CommonOptions& common
     if (word == "--out" && declaration.fallbackOut) {
       throw UsageError("--out is not an option of this command: OUT_DIR says where the results go");
     }
-    if (const std::string now = renamedWord(word, known); !now.empty()) {
-      throw UsageError(word + " is called " + now + " now");
-    }
+    const std::string name = word.substr(std::min(word.size(), std::size_t{2}));
+    const auto former = whatBecameOf(name, declaration.name, known, "--");
+    if (!former.empty()) throw UsageError(former);
+    for (std::string& option : known) option.insert(0, "--");
     const std::string near = nearestWord(word, known);
     throw UsageError("unknown option " + word +
                      (near.empty() ? "; see --help" : "; did you mean " + near + "?"));
@@ -284,7 +209,7 @@ std::set<std::string> parseWords(Declaration& declaration, CommonOptions& common
   for (const Words& binding : bindings) {
     if (binding.parameter->option.name == "config" && !binding.values.empty()) {
       const std::string& path = binding.values.back();
-      given = applyJson(all, provenance::readJson(path), path);
+      given = applyJson(all, provenance::readJson(path), path, declaration.name);
     }
   }
   for (Words& binding : bindings) {
@@ -298,71 +223,6 @@ std::set<std::string> parseWords(Declaration& declaration, CommonOptions& common
     given.insert(option.name);
   }
   return given;
-}
-
-namespace {
-
-/// Whether a condition of Declaration::needs holds: "label" is given, "method=thesis" is its value.
-bool holds(const Declaration& declaration, const std::set<std::string>& given,
-           const std::string& condition) {
-  const auto equals = condition.find('=');
-  if (equals == std::string::npos) return given.count(condition) > 0;
-  const Parameter* parameter = declaration.find(condition.substr(0, equals));
-  return parameter && parameter->option.text() == condition.substr(equals + 1);
-}
-
-/// "--method thesis" of "method=thesis".
-std::string conditionText(const Declaration& declaration, const std::string& condition) {
-  const auto equals = condition.find('=');
-  const Parameter* parameter = declaration.find(condition.substr(0, equals));
-  if (equals == std::string::npos) return dashed(*parameter);
-  return dashed(*parameter) + " " + condition.substr(equals + 1);
-}
-
-}  // namespace
-
-std::string needsText(const Declaration& declaration, const Parameter& parameter) {
-  std::string text;
-  for (const std::string& condition : parameter.needs) {
-    text += (text.empty() ? "" : " or ") + conditionText(declaration, condition);
-  }
-  return text;
-}
-
-void requireSomething(const Declaration& declaration, const std::set<std::string>& given) {
-  const bool reads = std::any_of(declaration.parameters.begin(), declaration.parameters.end(),
-                                 [](const Parameter& p) { return p.file.has_value(); });
-  if (!reads || !given.empty()) return;
-  throw UsageError("nothing is given to work on; usage: " + usageLine(declaration) +
-                   " (see --help)");
-}
-
-void refuseIgnored(const Declaration& declaration, const std::set<std::string>& given) {
-  for (const Parameter& parameter : declaration.parameters) {
-    if (!given.count(parameter.option.name)) continue;
-    for (const std::string& other : parameter.excludes) {
-      const Parameter* beside = declaration.find(other);
-      if (!beside || !given.count(other)) continue;
-      throw UsageError(dashed(parameter) + " and " + dashed(*beside) +
-                       " exclude each other: leave one of them out");
-    }
-    const bool effective =
-        parameter.needs.empty() ||
-        std::any_of(parameter.needs.begin(), parameter.needs.end(),
-                    [&](const auto& condition) { return holds(declaration, given, condition); });
-    if (!effective) {
-      throw UsageError(dashed(parameter) + " has no effect without " +
-                       needsText(declaration, parameter) + ": leave it out, or add that");
-    }
-  }
-}
-
-void requireGiven(const Declaration& declaration, const std::set<std::string>& given) {
-  for (const Parameter& parameter : declaration.parameters) {
-    if (parameter.required && !given.count(parameter.option.name)) {
-      throw UsageError(dashed(parameter) + " is missing: " + parameter.option.help);
-    }
-  }
 }
 
 }  // namespace explica::app

@@ -22,10 +22,11 @@ std::set<std::string> parseWords(Declaration& declaration, CommonOptions& common
                                  const std::vector<std::string>& words);
 
 /// Sets values from JSON with (possibly nested) option names as keys; `source` starts messages.
+/// @param command  whose options they are
 /// @return the names set
 /// @throws UsageError  unknown key or wrong value
 std::set<std::string> applyJson(std::vector<Parameter*> parameters, const provenance::Json& values,
-                                const std::string& source);
+                                const std::string& source, const std::string& command);
 
 /// A required value that neither came by words nor by JSON.
 /// @throws UsageError  names it
@@ -37,6 +38,8 @@ void requireSomething(const Declaration& declaration, const std::set<std::string
 /// An option that has no effect beside another one, or without one.
 /// @throws UsageError  says which to leave out
 void refuseIgnored(const Declaration& declaration, const std::set<std::string>& given);
+/// "--label", or a positional's name.
+[[nodiscard]] std::string dashed(const Parameter& parameter);
 /// What an option needs to have an effect: "--label or --method thesis"; empty if nothing.
 [[nodiscard]] std::string needsText(const Declaration& declaration, const Parameter& parameter);
 

@@ -41,7 +41,6 @@ void findMeetings(benchmark::State& state) {
     count = meetings.size();
     benchmark::DoNotOptimize(meetings.data());
   }
-  state.counters["edges"] = static_cast<double>(scene.movingEdges().size());
   state.counters["pairs"] = static_cast<double>(count);
 }
 BENCHMARK(findMeetings)->DenseRange(4, 7)->Unit(benchmark::kMillisecond)->UseRealTime();

@@ -188,8 +188,6 @@ void Cycle(benchmark::State& state) {
   harmonic::Multigrid multigrid(annulus);
   std::vector<float> r(annulus.count(), 1), e;
   for ([[maybe_unused]] auto _ : state) multigrid.cycle(r, e);
-  state.counters["bytes_per_s"] =
-      benchmark::Counter(multigrid.bytesPerCycle(), benchmark::Counter::kIsIterationInvariantRate);
 }
 BENCHMARK(Cycle)->UseRealTime()->Unit(benchmark::kMillisecond);
 

@@ -5,13 +5,13 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/StateFile.h"
+#include "Explica/Core/Stopwatch.h"
 #include "Explica/Flattening/RimContact.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/Predicates.h"
 #include "LayFlat.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <string>
 
@@ -73,7 +73,7 @@ class Limited {
   Limited(const Monitor& monitor, std::optional<double> seconds) : monitor_(monitor) {
     if (!seconds) return;
     monitor_.stopWanted = [this, &monitor, limit = *seconds] {
-      const double now = std::chrono::duration<double>(Clock::now() - begin_).count();
+      const double now = seconds_();
       const double next = asked_ > 0 ? now + (now - asked_) : now;
       asked_ = now;
       return monitor.shouldStop() || next > limit;
@@ -84,10 +84,8 @@ class Limited {
   [[nodiscard]] const Monitor& monitor() const { return monitor_; }
 
  private:
-  using Clock = std::chrono::steady_clock;
-
   Monitor monitor_;
-  Clock::time_point begin_ = Clock::now();
+  Stopwatch seconds_;
   double asked_ = 0;  ///< s: an iteration lies between two questions
 };
 

@@ -5,9 +5,8 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Flattening/Coarsening.h"
+#include "Explica/Geometry/StoppableLdlt.h"
 #include "MapSolver.h"
-
-#include <Eigen/SparseCholesky>
 
 #include <algorithm>
 #include <cmath>
@@ -109,7 +108,7 @@ FlatPositions circleMap(const IntrinsicMesh& mesh, const Loop& rim, double area)
   }
   Eigen::SparseMatrix<double> system(count, count);
   system.setFromTriplets(kept.begin(), kept.end());
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(system);
+  const geometry::StoppableLdlt solver(system);
   flat = solver.solve(right);
   return flat;
 }

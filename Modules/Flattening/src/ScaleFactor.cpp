@@ -3,7 +3,7 @@
 
 #include "ScaleFactor.h"
 
-#include <Eigen/SparseCholesky>
+#include "Explica/Geometry/StoppableLdlt.h"
 
 #include <algorithm>
 #include <cmath>
@@ -50,7 +50,7 @@ Eigen::VectorXd scaleFactor(const IntrinsicDisc& disc) {
   for (Eigen::Index v = 0; v < mesh.vertexCount; ++v) {
     if (row[v] >= 0) right[row[v]] = -missing[v];
   }
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(stiffness);
+  const geometry::StoppableLdlt solver(stiffness);
   const Eigen::VectorXd solved = solver.solve(right);
   Eigen::VectorXd u = Eigen::VectorXd::Zero(mesh.vertexCount);
   for (Eigen::Index v = 0; v < mesh.vertexCount; ++v) {

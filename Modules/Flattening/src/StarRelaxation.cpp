@@ -94,10 +94,6 @@ RestFace restFace(const std::array<double, 3>& lengths, double smallestHeight, b
   return face;
 }
 
-double starEnergy(const std::vector<StarFace>& star, double areaWeight, const Plane& place) {
-  return evaluate(star, areaWeight, place, false).value;
-}
-
 Plane relaxedPlace(const std::vector<StarFace>& star, double areaWeight, Plane place,
                    int maxSteps) {
   for (int n = 0; n < maxSteps; ++n) {

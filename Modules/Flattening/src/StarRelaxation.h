@@ -14,10 +14,6 @@ struct StarFace {
   Eigen::Vector2d second, third;  ///< the others, counter-clockwise after it
 };
 
-/// Sum over the star of area times mapDensity().
-[[nodiscard]] double starEnergy(const std::vector<StarFace>& star, double areaWeight,
-                                const Eigen::Vector2d& place);
-
 /// Moves the vertex downhill by damped Newton steps that keep every face positive.
 /// @param place  from where every face is positive
 [[nodiscard]] Eigen::Vector2d relaxedPlace(const std::vector<StarFace>& star, double areaWeight,

@@ -138,21 +138,4 @@ int Multigrid::levels() const {
   return static_cast<int>(hierarchy_->coarse.size()) + 1;
 }
 
-double Multigrid::bytesPerCycle() const {
-  // Per sweep: links, right-hand side read, values read and written.
-  const MultigridHierarchy& h = *hierarchy_;
-  const auto n = static_cast<double>(h.annulus.count());
-  double bytes = 0.5 * n * (4 + 4) + 0.5 * n * (24 + 4 + 8 + 4);  // from zero, then odd voxels
-  bytes += 0.5 * n * (24 + 8) + n * 4;                            // restriction
-  bytes += n * (16 + 8);                                          // prolongation
-  bytes += n * (24 + 4 + 8);                                      // last sweep
-  bytes += static_cast<double>(h.stencil.weights.size()) * 24 * 2;
-  for (std::size_t l = 0; l < h.coarse.size(); ++l) {
-    const auto cells = static_cast<double>(h.coarse[l].count);
-    const auto links = static_cast<double>(h.coarse[l].column.size());
-    bytes += cells * (16 + 12 + 12 + 24) + links * 8 * 2;
-  }
-  return bytes;
-}
-
 }  // namespace explica::harmonic

@@ -446,25 +446,4 @@ void writeFreeSurferAnnot(const std::filesystem::path& path, const LabelMap& lab
   write(path, bytes);
 }
 
-void writeFreeSurferLabel(const std::filesystem::path& path, const LabelMap& labels,
-                          const Positions& positions) {
-  if (labels.keys.size() != positions.rows()) {
-    throw InvalidInput("label for " + quoted(path) + ": it has " +
-                       std::to_string(labels.keys.size()) + " vertices and the surface " +
-                       std::to_string(positions.rows()));
-  }
-  std::string text = "#!ascii label, coordinates in scanner RAS, written by Explica\n" +
-                     std::to_string((labels.keys.array() != 0).count()) + "\n";
-  for (Eigen::Index v = 0; v < labels.keys.size(); ++v) {
-    if (labels.keys[v] == 0) continue;
-    text += std::to_string(v);
-    for (int axis = 0; axis < 3; ++axis) {
-      text += axis == 0 ? "  " : " ";
-      appendNumber(text, static_cast<float>(positions(v, axis)));
-    }
-    text += " 0\n";
-  }
-  writeTextFile(path, text);
-}
-
 }  // namespace explica::io

@@ -15,8 +15,4 @@ void setItkThreadCount(int count) {
   itk::MultiThreaderBase::SetGlobalDefaultNumberOfThreads(threads);
 }
 
-int itkThreadCount() {
-  return static_cast<int>(itk::MultiThreaderBase::GetGlobalDefaultNumberOfThreads());
-}
-
 }  // namespace explica::io

@@ -17,6 +17,7 @@
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/IO/VtkFile.h"
+#include "Explica/Testing/FreeSurferLabel.h"
 #include "RawFiles.h"
 #include "TemporaryFolder.h"
 
@@ -132,7 +133,7 @@ void write(const fs::path& path) {
   } else if (name.ends_with(".annot")) {
     io::writeFreeSurferAnnot(path, smallLabels());
   } else if (name.ends_with(".label")) {
-    io::writeFreeSurferLabel(path, smallLabels(), mesh.positions);
+    explica::test::writeFreeSurferLabel(path, smallLabels(), mesh.positions);
   } else if (name.ends_with(".curv")) {
     io::writeFreeSurferCurv(path, values, 20);
   } else if (name.starts_with("polygon.")) {

@@ -13,6 +13,7 @@
 #include "Explica/IO/SpecFile.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VolumeFile.h"
+#include "Explica/Testing/FreeSurferLabel.h"
 #include "TemporaryFolder.h"
 
 #include <gtest/gtest.h>
@@ -208,7 +209,7 @@ TEST(Nibabel, ReadsOurSurfacesMapsAndLabels) {
   io::writeFreeSurferSurface(folder / "lh.white", mesh);
   io::writeFreeSurferCurv(folder / "lh.thickness", values, mesh.faceCount());
   io::writeFreeSurferAnnot(folder / "lh.parts.annot", labels);
-  io::writeFreeSurferLabel(folder / "lh.part.label", labels, mesh.positions);
+  explica::test::writeFreeSurferLabel(folder / "lh.part.label", labels, mesh.positions);
   const auto marked = (labels.keys.array() != 0).eval();
   io::writePatch(folder / "lh.part.patch.3d", io::patchOf(mesh, {marked.begin(), marked.end()}));
   putRaw(folder / "positions.raw", mesh.positions.data(), mesh.positions.size());

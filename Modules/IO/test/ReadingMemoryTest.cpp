@@ -17,6 +17,7 @@
 #include "Explica/IO/TransformFile.h"
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/IO/VolumeFile.h"
+#include "Explica/Testing/FreeSurferLabel.h"
 #include "RawFiles.h"
 #include "TemporaryFolder.h"
 
@@ -201,7 +202,7 @@ std::vector<Row> honest() {
     if (path.extension() == ".gii") io::writeGiftiLabel(path, map, "Other");
     if (path.extension() == ".annot") io::writeFreeSurferAnnot(path, map);
     if (path.extension() == ".label") {
-      io::writeFreeSurferLabel(path, map, Positions::Random(kValues, 3));
+      explica::test::writeFreeSurferLabel(path, map, Positions::Random(kValues, 3));
     }
   };
   const auto outline = [](const fs::path& path) {

@@ -4,6 +4,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/IO/VolumeFile.h"
+#include "Explica/Testing/FreeSurferLabel.h"
 #include "TemporaryFolder.h"
 
 #include <gtest/gtest.h>
@@ -112,7 +113,7 @@ TEST(VertexLabels, GiftiAndAnnotKeepKeysNamesAndColours) {
 TEST(VertexLabels, AListOfVerticesNeedsTheirNumber) {
   const TemporaryFolder folder;
   Positions positions = Positions::Constant(5, 3, 1.0 / 3);
-  io::writeFreeSurferLabel(folder / "lh.part.label", someLabels(), positions);
+  explica::test::writeFreeSurferLabel(folder / "lh.part.label", someLabels(), positions);
   const io::LabelMap read = io::readVertexLabels(folder / "lh.part.label", 5);
   Eigen::Matrix<Label, 5, 1> expected;
   expected << 0, 1, 1, 1, 0;

@@ -7,21 +7,19 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/StopScope.h"
+#include "Explica/Core/Stopwatch.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Inflation/DirectionField.h"
 #include "Explica/Visibility/SphereView.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <numeric>
 
 namespace explica::inflation {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 constexpr double kLargestDrive = 4;       // lengths and contacts are outweighed up to here
 constexpr double kAreaTolerance = 0.008;  // mean relative error of faces at the goal
@@ -111,7 +109,7 @@ class Inflation {
   void run() {
     const double earlier = history_.back().seconds;
     while ((termination_ = reasonToStop()) == Termination::NotRun) {
-      const double before = elapsed();
+      const double before = elapsed_();
       const unfolding::UnfoldState last = unfolder_.state();
       try {
         const StopScope abandoned(&monitor_);
@@ -125,9 +123,9 @@ class Inflation {
         termination_ = Termination::Interrupted;
         break;
       }
-      latest_ = elapsed() - before;
+      latest_ = elapsed_() - before;
       history_.push_back(unfolder_.record());
-      history_.back().seconds = earlier + elapsed();
+      history_.back().seconds = earlier + elapsed_();
       keepPath();
       tellProgress();
     }
@@ -188,7 +186,7 @@ class Inflation {
     }
     if (iteration >= options_.maxIterations) return Termination::MaxIterations;
     if (monitor_.shouldStop()) return Termination::Interrupted;
-    if (options_.maxTime && elapsed() + latest_ > *options_.maxTime) return Termination::MaxTime;
+    if (options_.maxTime && elapsed_() + latest_ > *options_.maxTime) return Termination::MaxTime;
     return Termination::NotRun;
   }
 
@@ -209,13 +207,9 @@ class Inflation {
     monitor_.progress(std::clamp((last - first) / way, 0.0, 1.0), line);
   }
 
-  [[nodiscard]] double elapsed() const {
-    return std::chrono::duration<double>(Clock::now() - start_).count();
-  }
-
   const InflateOptions& options_;
   const Monitor& monitor_;
-  Clock::time_point start_ = Clock::now();
+  Stopwatch elapsed_;
   unfolding::Unfolder unfolder_;
   DirectionField field_;
   std::vector<unfolding::IterationRecord> history_;

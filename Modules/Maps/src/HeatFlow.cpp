@@ -6,8 +6,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Geometry/MeshMeasures.h"
-
-#include <Eigen/SparseCholesky>
+#include "Explica/Geometry/StoppableLdlt.h"
 
 #include <numbers>
 
@@ -33,7 +32,7 @@ TriangleMesh conducting(const TriangleMesh& mesh, const std::vector<bool>& domai
 struct HeatFlow::State {
   Eigen::VectorXd masses;
   Eigen::VectorXd weights;  ///< masses, and 1 where there is none: such a value stays
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
+  geometry::StoppableLdlt solver;
 };
 
 HeatFlow::HeatFlow(const TriangleMesh& mesh, double step, const std::vector<bool>& domain)

@@ -8,6 +8,7 @@
 #include "Segment.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <string>
 
@@ -82,6 +83,20 @@ Region regionBetween(const Curve& curve, int first, int last) {
 
 Region wholeRegion(const Curve& curve) {
   return {0, curve.edgeCount()};
+}
+
+Region regionFacing(const Curve& curve, const Point2& viewpoint) {
+  const Point2 ahead = curve.positions.colwise().mean().transpose() - viewpoint;
+  Eigen::VectorXd angles(curve.vertexCount());  // counter-clockwise of the view ahead
+  for (int v = 0; v < curve.vertexCount(); ++v) {
+    const Point2 ray = curve.point(v) - viewpoint;
+    angles[v] = std::atan2(ahead.x() * ray.y() - ahead.y() * ray.x(), ahead.dot(ray));
+  }
+  int first = 0, last = 0;
+  if (!curve.closed || !(angles.maxCoeff(&first) - angles.minCoeff(&last) < kPi)) {
+    throw InvalidInput("region: a viewpoint well outside a closed polygon is needed to find it");
+  }
+  return regionBetween(curve, first, last);
 }
 
 std::vector<int> edgesOf(const Curve& curve, const Region& region) {

@@ -4,13 +4,13 @@
 #include "Explica/Planar/PolygonUnfolding.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Stopwatch.h"
 #include "Explica/Planar/PolygonCollision.h"
 #include "Explica/Planar/PolygonKnotEnergy.h"
 #include "Explica/Planar/PolygonVisibility.h"
 #include "UnfoldingProblem.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -18,12 +18,6 @@
 
 namespace explica::planar {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// Visibility that rose by less than this in kStallWindow iterations will not rise any more.
 constexpr double kStallGain = 1e-5;
@@ -97,7 +91,7 @@ class PolygonRun {
  public:
   PolygonRun(PolygonUnfolding& result, const Viewpoints& view,
              const PolygonUnfoldingOptions& options, const PolygonCheckpoint* resume)
-      : result_(result), view_(view), options_(options), start_(Clock::now()) {
+      : result_(result), view_(view), options_(options) {
     const double length = lengthOf(result.curve, result.region);
     sizes_ = {length / result.region.edgeCount, length};
     if (resume == nullptr) {
@@ -126,7 +120,7 @@ class PolygonRun {
       return Termination::Stalled;
     }
     if (iteration > options_.maxIterations) return Termination::MaxIterations;
-    if (secondsSince(start_) > options_.maxTime) return Termination::MaxTime;
+    if (elapsed_() > options_.maxTime) return Termination::MaxTime;
     if (monitor.shouldStop()) return Termination::Interrupted;
     return {};
   }
@@ -154,7 +148,7 @@ class PolygonRun {
   void finish() {
     result_.curve = problem_->curve();
     result_.region = problem_->region();
-    result_.seconds = secondsBefore_ + secondsSince(start_);
+    result_.seconds = secondsBefore_ + elapsed_();
     result_.secondsTopology += problem_->secondsTopology();
     result_.intersectionsFinal = intersectingEdges(result_.curve);
     PolygonCheckpoint& checkpoint = result_.checkpoint;
@@ -179,7 +173,7 @@ class PolygonRun {
     PolygonIteration row = problem_->account();
     row.iteration = iteration;
     row.step = step;
-    row.seconds = secondsBefore_ + secondsSince(start_);
+    row.seconds = secondsBefore_ + elapsed_();
     result_.history.push_back(row);
     result_.path.push_back({problem_->curve().positions, problem_->region()});
   }
@@ -187,7 +181,7 @@ class PolygonRun {
   PolygonUnfolding& result_;
   const Viewpoints& view_;
   const PolygonUnfoldingOptions& options_;
-  Clock::time_point start_;
+  Stopwatch elapsed_;
   double secondsBefore_ = 0;
   StartSizes sizes_{};
   std::optional<UnfoldingProblem> problem_;

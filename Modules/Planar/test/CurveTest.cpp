@@ -37,6 +37,20 @@ TEST(Curve, RegionOutOfRangeIsRefused) {
   EXPECT_THROW((void)regionBetween(chain, 3, 1), InvalidInput);
 }
 
+TEST(Curve, WhatFacesAViewpointLiesBetweenTheTangentsFromIt) {
+  Positions2 circle(360, 2);
+  for (int v = 0; v < 360; ++v) circle.row(v) << std::cos(v * kPi / 180), std::sin(v * kPi / 180);
+  // From twice the radius the tangents meet the circle 60 degrees to either side.
+  for (const int towards : {0, 45, 90, 200, 330}) {
+    const Point2 eye = 2 * circle.row(towards).transpose();
+    const Region region = regionFacing({circle}, eye);
+    EXPECT_EQ(region.firstEdge, (towards + 300) % 360) << towards;
+    EXPECT_EQ(region.edgeCount, 120) << towards;
+  }
+  EXPECT_THROW((void)regionFacing({circle}, Point2(0.5, 0)), InvalidInput);
+  EXPECT_THROW((void)regionFacing({circle, false}, Point2(2, 0)), InvalidInput);
+}
+
 TEST(Curve, AreaIsPositiveCounterClockwise) {
   EXPECT_DOUBLE_EQ(signedArea(polygon({{5, 5}, {7, 5}, {7, 8}, {5, 8}}).positions), 6);
   EXPECT_DOUBLE_EQ(signedArea(polygon({{5, 5}, {5, 8}, {7, 8}, {7, 5}}).positions), -6);

@@ -243,15 +243,4 @@ PairIntegral integrateEdgeSharing(const Corners& s, const Corners& t, PairAccura
   return timesAreas(mean, s, t);
 }
 
-PairIntegral centroidPair(const Corners& s, const Point& centroidT, double areaT) {
-  const AreaGradient areaS = areaGradient(s);
-  const Vector z = (s[0] + s[1] + s[2]) / 3 - centroidT;
-  const double squared = z.squaredNorm();
-  PairIntegral result;
-  result.value = areaS.area * areaT / squared;
-  const Vector pull = (-2.0 / 3 * result.value / squared) * z;
-  for (int k = 0; k < 3; ++k) result.byS[k] = areaT / squared * areaS.byCorner[k] + pull;
-  return result;
-}
-
 }  // namespace explica::repulsion

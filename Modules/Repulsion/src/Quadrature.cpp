@@ -58,13 +58,6 @@ Rule triangleRule3() {
   return rule;
 }
 
-Rule triangleRule6() {
-  static const auto rule =
-      fromOrbits<6>({{0.445948490915965, 0.445948490915965, 0.223381589678011},
-                     {0.091576213509771, 0.091576213509771, 0.109951743655322}});
-  return rule;
-}
-
 Rule triangleRule7() {
   static const auto rule = fromOrbits<7>({{0.470142064105115, 0.470142064105115, 0.132394152788506},
                                           {0.101286507323456, 0.101286507323456, 0.125939180544827},

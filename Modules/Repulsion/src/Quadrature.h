@@ -16,7 +16,6 @@ using Rule = std::span<const RulePoint>;
 
 /// Symmetric rules on the triangle, weights sum to 1, by degree of exactness [Dunavant1985].
 [[nodiscard]] Rule triangleRule3();   ///< degree 2
-[[nodiscard]] Rule triangleRule6();   ///< degree 4
 [[nodiscard]] Rule triangleRule7();   ///< degree 5
 [[nodiscard]] Rule triangleRule12();  ///< degree 6
 [[nodiscard]] Rule triangleRule16();  ///< degree 8

@@ -214,14 +214,6 @@ class Recursion {
 
 }  // namespace
 
-std::vector<std::int32_t> recursionStarts(const MergingTree& tree, std::int32_t face,
-                                          const std::vector<std::int32_t>& exact) {
-  std::vector<std::int32_t> starts;
-  std::vector<char> visited;
-  forRecursionStarts(tree, face, exact, visited, [&](std::int32_t n) { starts.push_back(n); });
-  return starts;
-}
-
 ThesisTree::ThesisTree(const TriangleMesh& mesh, const std::vector<bool>& vertexMoves,
                        const ThesisTreeOptions& options)
     : set_(std::make_unique<MovingSet>(mesh, vertexMoves)), options_(options) {

@@ -128,36 +128,6 @@ TEST(PairIntegral, AddsUpOverParts) {
   EXPECT_NEAR(byQuarters(kS, t), value, 1e-9 * value);
 }
 
-TEST(PairIntegral, OfFarFacesIsThatOfTheirCentroids) {
-  const Corners t = {Point(40, 30, 20), Point(41, 30, 20), Point(40, 31, 20.5)};
-  const Point centroid = (t[0] + t[1] + t[2]) / 3;
-  const double areaT = (t[1] - t[0]).cross(t[2] - t[0]).norm() / 2;
-  const PairIntegral exact = integrateApart(kS, t);
-  const PairIntegral far = centroidPair(kS, centroid, areaT);
-  EXPECT_NEAR(far.value, exact.value, 1e-3 * exact.value);
-  for (int k = 0; k < 3; ++k) {
-    EXPECT_LT((far.byS[k] - exact.byS[k]).norm(), 2e-2 * exact.byS[k].norm());
-  }
-}
-
-TEST(PairIntegral, DividesByTheCentroidDistanceNotByThatOfSums) {
-  // Erratum 2: at distance D the area term is A_T / D^2 dA; as printed it would be a ninth of it.
-  const Corners s = {Point(0, 0, 0), Point(1, 0, 0), Point(0, 1, 0)};
-  const Point centroid(1.0 / 3, 1.0 / 3, 50);
-  const Positions at = (Positions(3, 3) << 0, 0, 0, 1, 0, 0, 0, 1, 0).finished();
-  const auto energy = [&](const Positions& x) {
-    return centroidPair({x.row(0).transpose(), x.row(1).transpose(), x.row(2).transpose()},
-                        centroid, 2)
-        .value;
-  };
-  const PairIntegral pair = centroidPair(s, centroid, 2);
-  Positions gradient(3, 3);
-  for (int k = 0; k < 3; ++k) gradient.row(k) = pair.byS[k].transpose();
-  EXPECT_NEAR(test::taylorSlope(energy, at, gradient, 1e-2), 2, 0.1);
-  const Vector areaTerm = pair.byS[1].cwiseProduct(Vector(1, 1, 0));
-  EXPECT_NEAR(areaTerm.x(), 0.5 * 2 / 2500, 1e-12);
-}
-
 TEST(PairIntegral, GradientsPassTheTaylorTest) {
   struct Case {
     Integrate integrate;

@@ -47,16 +47,6 @@ TEST(MergingTree, IsThatOfTheThesisForItsNineFaces) {
   EXPECT_NEAR(tree.nodes[10].centroid.x(), (4 + 5.2 + 6.8) / 3, 1e-12);
 }
 
-TEST(MergingTree, LeavesTheSubtreesThatTheThesisNames) {
-  const MergingTree tree = figureTree();
-  // Figure 5.23(b): face 1 has the one neighbour 2; the recursion starts with node 15, then 11.
-  EXPECT_EQ(recursionStarts(tree, 0, {1}), (List{14, 10}));
-  // Figure 5.23(c): face 4 with neighbours 3 and 5 leaves 15 and 10.
-  EXPECT_EQ(recursionStarts(tree, 3, {2, 4}), (List{14, 9}));
-  // Figure 5.23(d): face 6 with neighbours 5 and 7 leaves 13, 10 and the faces 4 and 3.
-  EXPECT_EQ(recursionStarts(tree, 5, {4, 6}), (List{12, 9, 3, 2}));
-}
-
 TEST(MergingTree, HoldsEveryFaceOnceAndItsArea) {
   const MergingTree tree = figureTree();
   std::vector<int> seen(9, 0);
@@ -88,6 +78,20 @@ TEST(ThesisTree, AgreesWithAllPairsToItsOwnAccuracy) {
       ThesisTree(folded, everyVertex(folded), careful).evaluate(folded.positions);
   EXPECT_LT((better.gradient - exact.gradient).norm(),
             0.5 * (tree.gradient - exact.gradient).norm());
+}
+
+TEST(ThesisTree, DividesByTheCentroidDistanceNotByThatOfSums) {
+  // Two faces 50 apart.  With [Thesis, Eq. 5.45] as printed, the gradient within a face, which is
+  // the term of its area, would be a ninth of the exact one.
+  TriangleMesh far;
+  far.positions = (Positions(6, 3) << 0, 0, 0, 1, 0, 0, 0, 1, 0,  //
+                   0, 0, 50, 2, 0, 50, 0, 2, 50)
+                      .finished();
+  far.faces = (Faces(2, 3) << 0, 1, 2, 3, 4, 5).finished();
+  const KnotValue exact = AllPairs(far, everyVertex(far)).evaluate(far.positions);
+  const KnotValue tree = ThesisTree(far, everyVertex(far)).evaluate(far.positions);
+  EXPECT_GT(exact.gradient(1, 0), 0);
+  EXPECT_NEAR(tree.gradient(1, 0), exact.gradient(1, 0), 0.01 * exact.gradient(1, 0));
 }
 
 TEST(ThesisTree, CountsFixedFacesTwice) {

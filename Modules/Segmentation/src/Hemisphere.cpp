@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,6 +22,10 @@ constexpr double kLeastPiece = 10;     // mm^3: fewer voxels tell nothing
 constexpr double kAround = 1;          // mm: cortex is twice as thick
 constexpr double kCortexAround = 0.6;  // measured: white matter from 0.74, fat up to 0.48
 
+// Grey matter beside hippocampus and amygdala.
+constexpr double kDeepestCortex = 4;  // mm to its outside: deeper is hardly any [von Economo 1925]
+constexpr double kRimReach = 8;       // mm: farther the atlas does not err
+
 // Ventricles of a template.
 constexpr double kFluidOverCortex = 0.7;  // of the brightness of cortical labels: darker is fluid
 constexpr double kDeepShare = 0.12;  // of the brain's radius, 8 mm in an adult: sulci open nearer
@@ -31,7 +36,8 @@ struct AtlasMap {
   Volume<std::uint8_t> kind;  ///< 0 unlabelled, else 1 + StructureKind
   Volume<std::uint8_t> side;  ///< 1 left, 2 right, 0 otherwise
   Volume<std::uint8_t>
-      medialTemporal;  ///< nonzero in structures that border the brain stem's cisterns
+      medialTemporal;   ///< nonzero in structures that border the brain stem's cisterns
+  VoxelSet mesialDeep;  ///< hippocampus and amygdala, which no white matter parts from cortex
 };
 
 constexpr std::uint8_t kindCode(StructureKind kind) {
@@ -41,12 +47,18 @@ constexpr std::uint8_t sideCode(Side side) {
   return static_cast<std::uint8_t>(side);
 }
 
+bool beginsWithAny(const std::string& name, std::initializer_list<std::string_view> beginnings) {
+  return std::any_of(beginnings.begin(), beginnings.end(), [&](std::string_view beginning) {
+    return name.compare(0, beginning.size(), beginning) == 0;
+  });
+}
+
+bool isMesialDeep(const std::string& name) {
+  return beginsWithAny(name, {"Hippocampus", "Amygdala"});
+}
+
 bool bordersStem(const std::string& name) {
-  for (const std::string_view beginning :
-       {"Hippocampus", "ParaHippocampal", "Amygdala", "Lingual", "Fusiform"}) {
-    if (name.compare(0, beginning.size(), beginning) == 0) return true;
-  }
-  return false;
+  return isMesialDeep(name) || beginsWithAny(name, {"ParaHippocampal", "Lingual", "Fusiform"});
 }
 
 /// As labelVentricles names them.
@@ -62,7 +74,7 @@ std::int64_t voxelsIn(const VoxelSet& set) {
 
 AtlasMap mapAtlas(const Volume<Label>& atlas, const AtlasLegend& legend) {
   AtlasMap map{Volume<std::uint8_t>(atlas.grid), Volume<std::uint8_t>(atlas.grid),
-               Volume<std::uint8_t>(atlas.grid)};
+               Volume<std::uint8_t>(atlas.grid), VoxelSet(atlas.grid, 0)};
   for (std::size_t v = 0; v < atlas.size(); ++v) {
     if (atlas[v] == 0) continue;
     const auto entry = legend.find(atlas[v]);
@@ -73,6 +85,7 @@ AtlasMap mapAtlas(const Volume<Label>& atlas, const AtlasLegend& legend) {
     map.kind[v] = kindCode(entry->second.kind);
     map.side[v] = sideCode(entry->second.side);
     map.medialTemporal[v] = bordersStem(entry->second.name) ? 1 : 0;
+    map.mesialDeep[v] = isMesialDeep(entry->second.name) ? 1 : 0;
   }
   return map;
 }
@@ -264,6 +277,34 @@ std::int64_t fillVentricles(const VoxelSet& voidSet, const VoxelSet& deep,
   for (std::size_t v = 0; v < seg.size(); ++v) {
     const std::int32_t n = voids.number[v];
     if (n < 0 || !(reached[v] == kVentricle || (nearDeep[n] != 0 && open[n] == 0))) continue;
+    draft.white[v] = draft.filled[v] = 1;
+    ++count;
+  }
+  return count;
+}
+
+/// Fills grey matter that is nearer to hippocampus and amygdala than to the outside, by ways
+/// through grey matter, and deeper than cortex is: what an atlas leaves of them would be cortex
+/// without an outside, and the surface would open a sulcus between them and the gyrus below.  How
+/// many voxels.
+std::int64_t takeMesialRim(const VoxelSet& mesialDeep, const Volume<Label>& seg, Draft& draft) {
+  const Grid& grid = seg.grid;
+  VoxelSet deep =
+      setWhere(grid, [&](std::size_t v) { return draft.own[v] != 0 && mesialDeep[v] != 0; });
+  const Volume<float> toDeep = squaredDistanceTo(deep);
+  const auto near = [&](std::size_t v) { return toDeep[v] <= kRimReach * kRimReach; };
+  const VoxelSet grey = setWhere(grid, [&](std::size_t v) {
+    return near(v) && draft.own[v] != 0 && draft.white[v] == 0 && seg[v] == kGrey;
+  });
+  VoxelSet outside = setWhere(grid, [&](std::size_t v) {
+    return near(v) && draft.white[v] == 0 && (seg[v] == kCsf || seg[v] == 0);
+  });
+  const Volume<float> fromDeep = spreadLabels(grey, deep),
+                      fromOutside = spreadLabels(grey, outside);
+  std::int64_t count = 0;
+  for (std::size_t v = 0; v < seg.size(); ++v) {
+    const bool isCortex = fromOutside[v] <= std::max<float>(fromDeep[v], kDeepestCortex);
+    if (grey[v] == 0 || isCortex || !std::isfinite(fromDeep[v])) continue;
     draft.white[v] = draft.filled[v] = 1;
     ++count;
   }
@@ -462,6 +503,7 @@ Hemisphere extractHemisphere(const TissueSegmentation& tissue, const Volume<Labe
   const VoxelSet ventricle = setWhere(
       grid, [&](std::size_t v) { return deep[v] != 0 && isVentricle(legend.at(atlas[v]).name); });
   result.ventricleVoxels = fillVentricles(voids, deep, ventricle, seg, draft) + voxelsIn(ventricle);
+  result.deepVoxels += takeMesialRim(map.mesialDeep, seg, draft);
   if (result.ventricleVoxels == 0) {
     monitor.warn(
         "no ventricle was found next to the deep structures: where fluid borders white matter "

@@ -94,6 +94,28 @@ TEST(Hemisphere, FillsDeepStructuresAndVentricles) {
   EXPECT_GT(left.ventricleVoxels, 30);
 }
 
+TEST(Hemisphere, FillsWhatTheAtlasLeavesOfTheHippocampus) {
+  HeadPhantom p = makeHeadPhantom(false);
+  const Point hippocampus(-11, 0, -10);
+  for (std::size_t v = 0; v < p.atlas.size(); ++v) {
+    const auto [i, j, k] = p.atlas.grid.subscripts(v);
+    if ((p.atlas.grid.toWorld(Vector(i, j, k)) - hippocampus).norm() >= 8) continue;
+    if (p.tissue.labels[v] != kWhite) continue;
+    p.tissue.labels[v] = kGrey;  // larger than the atlas knows, and in touch with cortex
+    std::swap(p.tissue.probability[1][v], p.tissue.probability[2][v]);
+  }
+  const Hemisphere left = extractHemisphere(p.tissue, p.atlas, p.legend);
+  const Vector outward = hippocampus.normalized();
+  const auto labelAt = [&](const Point& w) {
+    const Vector at = p.atlas.grid.toIndex(w);
+    return left.labels(static_cast<int>(std::lround(at.x())), static_cast<int>(std::lround(at.y())),
+                       static_cast<int>(std::lround(at.z())));
+  };
+  EXPECT_EQ(labelAt(hippocampus + 5 * outward), kWhite);
+  EXPECT_EQ(labelAt(hippocampus + Vector(0, 7, 0)), kWhite);
+  EXPECT_EQ(labelAt(23 * outward), kGrey) << "cortex";
+}
+
 /// A T1 of the phantom.
 Volume<float> brightnessOf(const HeadPhantom& p) {
   constexpr std::array<float, 4> kBrightness = {0, 30, 80, 110};

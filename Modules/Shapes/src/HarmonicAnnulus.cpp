@@ -92,14 +92,6 @@ double widthOf(const HarmonicAnnulus& annulus) {
   return annulus.outerRadius - annulus.innerRadius;
 }
 
-HarmonicShape concentricShape(const HarmonicAnnulus& annulus) {
-  requireUsable(annulus);
-  HarmonicShape shape{annulus, Eigen::VectorXd::Zero(annulus.perBoundary()),
-                      Eigen::VectorXd::Zero(annulus.perBoundary())};
-  shape.outer[0] = 1;
-  return shape;
-}
-
 Eigen::MatrixXd basisAt(const HarmonicAnnulus& annulus, const Positions& points) {
   const int n = annulus.perBoundary();
   Eigen::MatrixXd byColumn(2 * n, points.rows());

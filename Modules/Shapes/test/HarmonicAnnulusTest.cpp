@@ -17,6 +17,14 @@
 namespace explica::shapes {
 namespace {
 
+/// 0 on the inner, 1 on the outer boundary: the harmonic interpolant.
+HarmonicShape concentricShape(const HarmonicAnnulus& annulus) {
+  HarmonicShape shape{annulus, Eigen::VectorXd::Zero(annulus.perBoundary()),
+                      Eigen::VectorXd::Zero(annulus.perBoundary())};
+  shape.outer[0] = 1;
+  return shape;
+}
+
 HarmonicShape anyShape(int dimension, int order) {
   HarmonicShape shape =
       concentricShape({dimension, Point(1, -2, dimension == 2 ? 0 : 3), 4, 11, order});

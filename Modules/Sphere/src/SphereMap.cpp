@@ -4,6 +4,7 @@
 #include "Explica/Sphere/SphereMap.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Stopwatch.h"
 #include "Explica/Flattening/Coarsening.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
@@ -14,7 +15,6 @@
 #include <Eigen/SVD>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <string>
 
@@ -66,7 +66,7 @@ class Ascent {
 
   /// Puts back what was removed below `level` and lowers its energy.
   void raise(const CoarseningLevel& level, bool finest) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch seconds;
     const double scale = std::sqrt(4 * kPi / areaOf(level.mesh));
     for (auto removal = level.removals.rbegin(); removal != level.removals.rend(); ++removal) {
       if (!insert(*removal, scale, weights_, map_.positions)) {
@@ -82,9 +82,7 @@ class Ascent {
     map_.termination =
         run.termination == Termination::Stalled ? Termination::Finished : run.termination;
     map_.iterations += run.iterations;
-    map_.levels.push_back(
-        {level.mesh.faces.rows() / 2 + 2, run.iterations, run.energy,
-         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()});
+    map_.levels.push_back({level.mesh.faces.rows() / 2 + 2, run.iterations, run.energy, seconds()});
   }
 
   [[nodiscard]] SphereMap take() { return std::move(map_); }
@@ -161,10 +159,7 @@ SphereDistortion sphereDistortion(const TriangleMesh& surface, const Positions& 
   std::vector<Weighed> areal, stretch;
   double sum = 0;
   for (Eigen::Index f = 0; f < surface.faceCount(); ++f) {
-    if (!(areas[f] > 0) || !(onSphere[f] > 0)) {
-      ++result.facesWithoutArea;
-      continue;
-    }
+    if (!(areas[f] > 0) || !(onSphere[f] > 0)) continue;
     const Vector u = image.corner(f, 1) - image.corner(f, 0);
     const Vector v = image.corner(f, 2) - image.corner(f, 0);
     const auto& g = rest[f].gradient;

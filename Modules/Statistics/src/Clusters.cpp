@@ -56,20 +56,6 @@ std::vector<Cluster> findClusters(const geometry::IndexLists& neighbours,
   return clusters;
 }
 
-std::vector<std::int32_t> findPeaks(const geometry::IndexLists& neighbours,
-                                    const Eigen::VectorXd& values, double threshold) {
-  std::vector<std::int32_t> peaks;
-  for (std::int32_t v = 0; v < values.size(); ++v) {
-    const auto near = neighbours[static_cast<std::size_t>(v)];
-    const bool highest = std::none_of(near.begin(), near.end(),
-                                      [&](std::int32_t w) { return values[w] > values[v]; });
-    if (values[v] >= threshold && highest) peaks.push_back(v);
-  }
-  std::stable_sort(peaks.begin(), peaks.end(),
-                   [&](std::int32_t a, std::int32_t b) { return values[a] > values[b]; });
-  return peaks;
-}
-
 LargestClusterFinder::LargestClusterFinder(const geometry::IndexLists& neighbours,
                                            const std::vector<float>& areas)
     : neighbours_(neighbours), areas_(areas), side_(areas.size()) {}

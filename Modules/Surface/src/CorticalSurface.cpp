@@ -279,7 +279,8 @@ void placeByImage(const Volume<float>& image, double fluid, GrowingColumns& ribb
   ImageBorderOptions options;
   options.fluid = fluid;
   options.search = ribbon.tissue.byBrightness;
-  const ImageBorders borders = findBorders(ribbon.paths, white, image, voxel, options);
+  const LevelSet inner = distanceLevelOf(ribbon.tissue.white);
+  const ImageBorders borders = findBorders(ribbon.paths, white, inner, image, voxel, options);
   result.image.missingWhite = borders.missingWhite;
   result.image.missingOuter = borders.missingOuter;
   result.image.voxel = voxel;
@@ -304,13 +305,10 @@ void placeByImage(const Volume<float>& image, double fluid, GrowingColumns& ribb
   white = relaxed(mesh.toMesh(), result.white.edgeLength, {}, stayThere, mending);
   keepRoom(white, roomOf(result.white));
   CorticalTissue& tissue = ribbon.tissue;
-  const auto movedLevel = [&](const LevelSet& level, PathBorder border,
-                              const Eigen::VectorXd& ways) {
-    return levelOfEnds(distanceLevelOf(level), ribbon.paths, border, ways);
-  };
-  tissue.tissue = movedLevel(tissue.tissue, PathBorder::Outer, borders.outer);
-  const LevelSet inner = movedLevel(tissue.white, PathBorder::Inner, moved);
-  tissue = corrected(std::move(tissue), inner);
+  tissue.tissue =
+      levelOfEnds(distanceLevelOf(tissue.tissue), ribbon.paths, PathBorder::Outer, borders.outer);
+  const LevelSet moving = levelOfEnds(inner, ribbon.paths, PathBorder::Inner, moved);
+  tissue = corrected(std::move(tissue), moving);
   tissue.ofLabels = false;  // the levels say more than the labels
   result.image.movedWhite = moved.cwiseAbs().mean();
   result.image.movedOuter = borders.outer.cwiseAbs().mean();

@@ -23,41 +23,80 @@ namespace {
 /// Of a short trajectory each border takes this share at most, so that they do not pass each other.
 constexpr double kShortShare = 0.35;
 /// The middle between two banks is known to half a voxel.
-constexpr int kBeyondBank = kSide / 2;
+constexpr double kMiddleKnown = 0.5;
+constexpr int kBeyondBank = static_cast<int>(kMiddleKnown * kSide);
 
 /// White matter is looked at this far inside its border, the outside this far beyond the tissue,
 /// voxels; grey matter in the middle.
 constexpr std::array kWhiteDepths = {1.5, 2.0, 2.5};
+/// Least distance to any border over depth: where a blade's other side is nearer, grey matter mixes
+/// in, and would put the border outward.
+constexpr double kDeepShare = 0.75;
 constexpr std::array kGreyShares = {0.4, 0.5, 0.6};
 constexpr double kOutsideReach = 2;
 constexpr int kOutsideSamples = 9;
-/// Fluid is as bright as white matter around says: deviation of the window, voxels.
-constexpr double kFluidSpread = 4.1;
+/// Deviation of the window in which brightness of white matter is averaged, voxels.
+constexpr double kWhiteSpread = 4.1;
+/// Standard deviation of a border that a mask's edge gives, voxels: it is somewhere in its voxel.
+/// Where it leaves less of the usual thickness than a share, it may have cut cortex off.
+const double kUniform = 1 / std::sqrt(12.0);
+constexpr double kThinShare = 0.5;
 /// Farthest beyond the tissue that the image is looked at, voxels.
 constexpr double kBeyondMask = kOutsideReach + 1;
 
-/// Brightness of the tissues along each trajectory, averaged over neighbours; NaN where there is no
-/// ribbon or no image.
+/// Brightness of the tissues along each trajectory; NaN where there is no ribbon or no image.
 struct Tissues {
-  Eigen::VectorXd white, grey, outside;
+  Eigen::VectorXd white;  ///< mean of what lies deep, over neighbours
+  Eigen::VectorXd grey, outside;
+  double noise = 0;         ///< standard deviation in white matter
   Eigen::VectorXd covered;  ///< share of the outside that the image's mask has not cut away
   double sign = 1;          ///< 1 if white matter is brighter than grey matter
 };
 
+/// Sums and counts of white matter's brightness deep inside, along each trajectory.
+/// @param inner  as distanceLevelOf(): positive in white matter
+Eigen::MatrixXd deepWhite(const std::vector<Trajectory>& paths, const LevelSet& inner,
+                          const Volume<float>& image, double voxel) {
+  const double band = 2 * inner.grid.spacing.maxCoeff();  // of distanceLevelOf()
+  Eigen::MatrixXd found = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(paths.size()), 2);
+  parallelFor(paths.size(), 256, [&](std::size_t v) {
+    if (paths[v].end == TrajectoryEnd::NoRibbon) return;
+    for (const double depth : kWhiteDepths) {
+      const Point at = along(paths[v], -depth * voxel);
+      const double value = valueAt(image, at), least = kDeepShare * depth * voxel;
+      const bool isDeep = band * sample(inner, at).value >= std::min(least, kDeepShare * band);
+      if (!isDeep || !std::isfinite(value)) continue;
+      found.row(static_cast<Eigen::Index>(v)) += Eigen::RowVector2d(value, 1);
+    }
+  });
+  return found;
+}
+
+/// What differs from the vertices around, by the median, which vessels do not move.
+double noiseOf(const Eigen::VectorXd& white, const geometry::MeshTopology& topology) {
+  constexpr int kAround = 2;
+  constexpr double kOfMedian = 1.4826;  // of a normal distribution
+  const Eigen::VectorXd off = (white - averaged(white, topology, kAround)).cwiseAbs();
+  return kOfMedian * median({off.begin(), off.end()});
+}
+
 Tissues brightnessOf(const std::vector<Trajectory>& paths, const MaskedImage& masked,
+                     const LevelSet& inner, const geometry::MeshTopology& topology, double edge,
                      double voxel) {
   const Volume<float>& image = masked.image;
   const auto n = static_cast<Eigen::Index>(paths.size());
   Tissues found;
-  found.white = found.grey = found.outside = found.covered = Eigen::VectorXd::Constant(n, kNaN);
+  found.grey = found.outside = found.covered = Eigen::VectorXd::Constant(n, kNaN);
+  Eigen::MatrixXd white = deepWhite(paths, inner, image, voxel);
+  found.noise = noiseOf(white.col(0).cwiseQuotient(white.col(1)), topology);
+  white = averaged(std::move(white), topology, timesFor(kWhiteSpread * voxel, edge));
+  found.white = white.col(0).cwiseQuotient(white.col(1));
   parallelFor(paths.size(), 256, [&](std::size_t v) {
     const Trajectory& path = paths[v];
     if (path.end == TrajectoryEnd::NoRibbon) return;
-    double white = 0, grey = 0;
-    for (const double depth : kWhiteDepths) white += valueAt(image, along(path, -depth * voxel));
+    double grey = 0;
     for (const double share : kGreyShares)
       grey += valueAt(image, along(path, share * path.length()));
-    found.white[static_cast<Eigen::Index>(v)] = white / kWhiteDepths.size();
     found.grey[static_cast<Eigen::Index>(v)] = grey / kGreyShares.size();
   });
   std::vector<double> contrast(paths.size());
@@ -156,19 +195,10 @@ std::vector<Profile> missesOf(const std::vector<Trajectory>& paths, bool outer,
   return profiles;
 }
 
-/// Standard deviation of noise in white matter, along the trajectories' samples: what differs from
-/// the vertices around, by the median, which thin blades and vessels do not move.
-double noiseOf(const Eigen::VectorXd& white, const geometry::MeshTopology& topology) {
-  constexpr int kAround = 2;
-  constexpr double kOfMedian = 1.4826;  // of a normal distribution
-  const Eigen::VectorXd off = (white - averaged(white, topology, kAround)).cwiseAbs();
-  return kOfMedian * median({off.begin(), off.end()});
-}
-
 }  // namespace
 
 ImageBorders findBorders(const std::vector<Trajectory>& given, const TriangleMesh& white,
-                         const Volume<float>& seen, double voxel,
+                         const LevelSet& inner, const Volume<float>& seen, double voxel,
                          const ImageBorderOptions& options) {
   const MaskedImage masked = beyondMask(seen, kBeyondMask * voxel);
   const Volume<float>& image = masked.image;
@@ -188,7 +218,7 @@ ImageBorders findBorders(const std::vector<Trajectory>& given, const TriangleMes
       if (paths[v].end == TrajectoryEnd::NoRibbon) return;
       paths[v] = between(given[v], borders.white[static_cast<Eigen::Index>(v)], given[v].length());
     });
-    const Tissues tissues = brightnessOf(paths, masked, voxel);
+    const Tissues tissues = brightnessOf(paths, masked, inner, topology, edgeLength, voxel);
     borders.outer = searchOuter(paths, topology, edgeLength, masked, voxel, tissues.sign,
                                 fluidContrast(tissues, options.fluid));
     for (std::size_t v = 0; v < paths.size(); ++v) {
@@ -198,19 +228,17 @@ ImageBorders findBorders(const std::vector<Trajectory>& given, const TriangleMes
       paths[v].end = TrajectoryEnd::Outer;
     }
   }
-  const Tissues tissues = brightnessOf(paths, masked, voxel);
-  const double noise = noiseOf(tissues.white, topology);
+  const Tissues tissues = brightnessOf(paths, masked, inner, topology, edgeLength, voxel);
+  const double usual = usualLength(paths);
   for (const bool outer : {false, true}) {
     const bool besideFluid = outer && options.fluid > 0;
     const EdgeOptions& chosen =
         besideFluid ? options.besideFluid : (outer ? options.outer : options.white);
-    const Eigen::VectorXd inside = over(outer ? tissues.grey : tissues.white, chosen.spread);
+    const Eigen::VectorXd inside = outer ? over(tissues.grey, chosen.spread) : tissues.white;
     const Eigen::VectorXd outside = over(outer ? tissues.outside : tissues.grey, chosen.spread);
-    const Edge edge =
-        besideFluid
-            ? edgeBesideFluid(inside, outside, options.fluid * over(tissues.white, kFluidSpread),
-                              over(tissues.covered, chosen.spread))
-            : edgeBetween(inside, outside, chosen.level);
+    const Edge edge = besideFluid ? edgeBesideFluid(inside, outside, options.fluid * tissues.white,
+                                                    over(tissues.covered, chosen.spread))
+                                  : edgeBetween(inside, outside, chosen.level);
     std::vector<Choice> choices(paths.size());
     for (std::size_t v = 0; v < paths.size(); ++v) choices[v] = choiceOn(paths[v], outer, step);
     const BorderChooser chooser(
@@ -218,11 +246,14 @@ ImageBorders findBorders(const std::vector<Trajectory>& given, const TriangleMes
         topology, step, voxel, chosen.costs);
     const Eigen::VectorXd ways = chooser.choose(options.rounds);
     const Eigen::VectorXd deviations =
-        chooser.deviations(ways, noise * edge.contrast.cwiseInverse(), voxel);
+        chooser.deviations(ways, tissues.noise * edge.contrast.cwiseInverse(), voxel);
     for (Eigen::Index v = 0; v < ways.size(); ++v) {
       if (paths[v].end == TrajectoryEnd::NoRibbon) continue;
-      const double unseen = (1 - edge.covered[v]) * voxel;
-      borders.doubt(v, outer) = std::min(voxel, std::hypot(deviations[v], unseen));
+      const bool isThin = paths[v].length() + ways[v] < kThinShare * usual;
+      const double unseen = (1 - edge.covered[v]) * (isThin ? 1 : kUniform) * voxel;
+      const bool isMiddle = outer && paths[v].end == TrajectoryEnd::Bank;
+      const double most = (isMiddle ? kMiddleKnown : 1) * voxel;
+      borders.doubt(v, outer) = std::min(most, std::hypot(deviations[v], unseen));
     }
     (outer ? borders.outer : borders.white) += ways;
     (outer ? borders.missingOuter : borders.missingWhite) = chooser.missing();

@@ -5,6 +5,7 @@
 #include "BorderChooser.h"
 #include "Explica/Core/TriangleMesh.h"
 #include "Explica/Core/Volume.h"
+#include "Explica/Surface/LevelSet.h"
 #include "RibbonPaths.h"
 
 #include <Eigen/Core>
@@ -48,15 +49,18 @@ struct ImageBorders {
 /// The edge of two tissues seen through a point spread is steepest half way between their
 /// brightness; where it is steepest voxel by voxel, noise decides.  So brightness of white matter,
 /// grey matter and what is outside is taken along each trajectory, carried on straight beyond both
-/// ends, and averaged over neighbours; each vertex then looks for that level near the labels'
-/// border, and weighs how far it is missed against the distance from the labels' border and from
-/// its neighbours' choices.  Only a change of the usual sense counts, as most vertices have it
-/// between white and grey matter (in a T1 brightness falls outward at both borders): a vessel or
-/// meninges, where it rises, are no edge.  A trajectory that ends between two banks of a sulcus is
-/// carried on by half a voxel only, as well as their middle is known: the other bank's edge is not
-/// its own.
+/// ends, and averaged over neighbours; of white matter only what lies deep, since within a thin
+/// blade it is seen mixed with the cortex of the other side.  Each vertex then looks for that level
+/// near the labels' border, and weighs how far it is missed against the distance from the labels'
+/// border and from its neighbours' choices.  Only a change of the usual sense counts, as most
+/// vertices have it between white and grey matter (in a T1 brightness falls outward at both
+/// borders): a vessel or meninges, where it rises, are no edge.  A trajectory that ends between two
+/// banks of a sulcus is carried on by half a voxel only, as well as their middle is known: the
+/// other bank's edge is not its own.
+/// @param inner  white matter's level as distanceLevelOf()
 [[nodiscard]] ImageBorders findBorders(const std::vector<Trajectory>& paths,
-                                       const TriangleMesh& white, const Volume<float>& image,
-                                       double voxel, const ImageBorderOptions& options = {});
+                                       const TriangleMesh& white, const LevelSet& inner,
+                                       const Volume<float>& image, double voxel,
+                                       const ImageBorderOptions& options = {});
 
 }  // namespace explica::surface

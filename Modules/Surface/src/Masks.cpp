@@ -6,10 +6,6 @@
 #include "Explica/Core/Parallel.h"
 
 #include <algorithm>
-#include <functional>
-#include <limits>
-#include <queue>
-#include <utility>
 
 namespace explica::surface {
 
@@ -43,43 +39,6 @@ std::int64_t countOnEdge(const Mask& mask) {
     }
   }
   return count;
-}
-
-void spreadLabels(const Mask& through, Mask& labels) {
-  const Grid& grid = through.grid;
-  const auto& n = grid.size;
-  std::vector<float> arrival(through.size(), std::numeric_limits<float>::infinity());
-  using Entry = std::pair<float, std::uint32_t>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
-  for (std::size_t v = 0; v < through.size(); ++v) {
-    if (labels[v]) {
-      arrival[v] = 0;
-      front.emplace(0.0F, static_cast<std::uint32_t>(v));
-    }
-  }
-  while (!front.empty()) {
-    const auto [time, v] = front.top();
-    front.pop();
-    if (time > arrival[v]) continue;
-    const auto at = grid.subscripts(v);
-    for (int dk = -1; dk <= 1; ++dk) {
-      for (int dj = -1; dj <= 1; ++dj) {
-        for (int di = -1; di <= 1; ++di) {
-          const int i = at[0] + di, j = at[1] + dj, k = at[2] + dk;
-          if (i < 0 || j < 0 || k < 0 || i >= n[0] || j >= n[1] || k >= n[2]) continue;
-          const std::size_t w = grid.linear(i, j, k);
-          if (!through[w]) continue;
-          const float step =
-              static_cast<float>(Vector(di, dj, dk).cwiseProduct(grid.spacing).norm());
-          if (time + step < arrival[w]) {
-            arrival[w] = time + step;
-            labels[w] = labels[v];
-            front.emplace(arrival[w], static_cast<std::uint32_t>(w));
-          }
-        }
-      }
-    }
-  }
 }
 
 std::int64_t addNearer(const Mask& unsided, Mask& own, const Mask& other) {

@@ -4,13 +4,14 @@
 
 #include "Explica/Core/Parallel.h"
 #include "Explica/Core/Volume.h"
+#include "Explica/Core/VoxelSets.h"
 
 #include <cstdint>
 #include <vector>
 
 namespace explica::surface {
 
-using Mask = Volume<std::uint8_t>;
+using Mask = VoxelSet;
 
 /// 1 where a voxel has one of the labels.
 [[nodiscard]] Mask maskOf(const Volume<Label>& volume, const std::vector<Label>& labels);
@@ -31,10 +32,6 @@ template <class Condition>
 
 /// Those of them that lie on the edge of the image.
 [[nodiscard]] std::int64_t countOnEdge(const Mask& mask);
-
-/// Waves from labelled voxels through a mask, one label each, nearest first; distances in mm along
-/// the steps to the 26 neighbours.
-void spreadLabels(const Mask& through, Mask& labels);
 
 /// Adds the voxels without side that are nearer to `own` than to `other`.
 /// @return how many

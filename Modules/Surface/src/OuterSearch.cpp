@@ -19,14 +19,6 @@ constexpr double kTooLong = 1.5;  // of the usual length
 /// Of the usual depth: the middle, clear of both borders.
 constexpr std::array kGreyPlaces = {0.4, 0.5, 0.6};
 
-double usualLength(const std::vector<Trajectory>& paths) {
-  std::vector<double> lengths;
-  for (const Trajectory& path : paths) {
-    if (path.length() > 0) lengths.push_back(path.length());
-  }
-  return median(std::move(lengths));
-}
-
 /// Median over a vertex and two rings.
 double medianAround(std::size_t v, const Eigen::VectorXd& values,
                     const geometry::MeshTopology& topology) {

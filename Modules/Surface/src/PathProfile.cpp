@@ -67,6 +67,14 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
+double usualLength(const std::vector<Trajectory>& paths) {
+  std::vector<double> lengths;
+  for (const Trajectory& path : paths) {
+    if (path.length() > 0) lengths.push_back(path.length());
+  }
+  return median(std::move(lengths));
+}
+
 std::vector<std::int32_t> withinTwoEdges(std::size_t vertex,
                                          const geometry::MeshTopology& topology) {
   std::vector<std::int32_t> near = {static_cast<std::int32_t>(vertex)};

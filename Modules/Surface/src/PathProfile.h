@@ -28,6 +28,9 @@ namespace explica::surface {
 /// Median of the finite values; NaN if there is none.
 [[nodiscard]] double median(std::vector<double> values);
 
+/// Median length of the trajectories that have one, mm.
+[[nodiscard]] double usualLength(const std::vector<Trajectory>& paths);
+
 /// The vertices no more than two edges from one, itself among them, in order.
 [[nodiscard]] std::vector<std::int32_t> withinTwoEdges(std::size_t vertex,
                                                        const geometry::MeshTopology& topology);

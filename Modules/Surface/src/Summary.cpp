@@ -174,6 +174,8 @@ void describeMaking(Results& t, const SurfaceSummary& s, const CorticalSurfaces&
            where(grown, made.heldBackMost));
 }
 
+constexpr double kMostDoubtful = 0.1;
+
 /// Of the white surface's area with grey matter upon it.
 double doubtfulShare(const CorticalSurfaces& made) {
   const Eigen::VectorXd doubtful = doubtfulOf(made);
@@ -190,6 +192,7 @@ void describeImage(Results& t, const SurfaceSummary& s, const CorticalSurfaces& 
           "Where the image leaves the white or the outer border more than half a voxel of standard "
           "deviation; doubt.shape.gii shows where.",
           where(placed, doubtfulShare(made)))
+      .atMost(kMostDoubtful, Judgement::Look, "a tenth of the cortex")
       .inHead()
       .compared();
   t.count("vertices_without_white_edge", "Vertices without an edge of white matter",

@@ -3,10 +3,12 @@
 
 #include "Motion.h"
 
+#include "Explica/Core/DisjointSets.h"
 #include "Explica/Core/Parallel.h"
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -29,18 +31,19 @@ double safeShare(const Contacts& contacts, std::span<const collision::Meeting> m
 /// Groups of vertices that move as one.
 class Welds {
  public:
+  explicit Welds(Eigen::Index vertexCount) : groups_(static_cast<std::size_t>(vertexCount)) {}
+
   void join(std::int32_t a, std::int32_t b) {
-    a = rootOf(a);
-    b = rootOf(b);
-    parent_[std::max(a, b)] = std::min(a, b);
+    groups_.join(a, b);
+    members_.insert({a, b});
   }
 
   /// Each group takes the mean of its motions; none with a vertex that stays.
   /// @return the vertices of all groups that move at all
   std::vector<std::int32_t> moveAsOne(const std::vector<std::int32_t>& unknown, Positions& motion) {
     std::map<std::int32_t, std::pair<Vector, double>> groups;
-    for (const auto& [v, parent] : parent_) {
-      auto& [sum, members] = groups.try_emplace(rootOf(v), Vector::Zero(), 0.0).first->second;
+    for (const std::int32_t v : members_) {
+      auto& [sum, members] = groups.try_emplace(groups_.root(v), Vector::Zero(), 0.0).first->second;
       if (unknown[v] < 0) {
         members = kInfinity;
       } else {
@@ -49,8 +52,8 @@ class Welds {
       }
     }
     std::vector<std::int32_t> moved;
-    for (const auto& [v, parent] : parent_) {
-      const auto& [sum, members] = groups.at(rootOf(v));
+    for (const std::int32_t v : members_) {
+      const auto& [sum, members] = groups.at(groups_.root(v));
       motion.row(v) = (sum / members).transpose();
       if (unknown[v] >= 0) moved.push_back(v);
     }
@@ -58,16 +61,8 @@ class Welds {
   }
 
  private:
-  std::int32_t rootOf(std::int32_t v) {
-    std::int32_t parent = parent_.try_emplace(v, v).first->second;
-    while (parent != v) {
-      v = parent;
-      parent = parent_.at(v);
-    }
-    return v;
-  }
-
-  std::map<std::int32_t, std::int32_t> parent_;  ///< of each vertex that is in a group
+  DisjointSets groups_;
+  std::set<std::int32_t> members_;  ///< vertices that are in a group
 };
 
 }  // namespace
@@ -102,7 +97,7 @@ void weldBlocking(const Contacts& contacts, const Positions& x,
                   Motion& motion) {
   if (motion.safe >= kBlocked) return;
   constexpr int kMaxWeldings = 8;
-  Welds welds;
+  Welds welds(x.rows());
   const collision::CollisionScene& scene = contacts.scene();
   for (int welding = 0; welding < kMaxWeldings && motion.safe < kBlocked; ++welding) {
     const std::vector<Pair> blocking = blockingPairs(contacts, x, motion);

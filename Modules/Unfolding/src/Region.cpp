@@ -3,6 +3,7 @@
 
 #include "Explica/Unfolding/Region.h"
 
+#include "Explica/Core/DisjointSets.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Geometry/FaceTree.h"
 #include "Explica/Geometry/Geodesic.h"
@@ -14,6 +15,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 #include <string>
 
 namespace explica::unfolding {
@@ -51,21 +53,18 @@ geometry::IndexLists neighboursOf(const TriangleMesh& mesh) {
 }
 
 std::vector<bool> connectedWithin(const geometry::IndexLists& neighbours, std::int32_t centre,
-                                  const std::vector<bool>& allowed) {
-  std::vector<bool> reached(allowed.size(), false);
-  std::vector<std::int32_t> front = {centre};
-  reached[centre] = true;
-  while (!front.empty()) {
-    const std::int32_t v = front.back();
-    front.pop_back();
+                                  std::vector<bool> allowed) {
+  allowed[centre] = true;
+  DisjointSets pieces(allowed.size());
+  for (std::int32_t v = 0; v < static_cast<std::int32_t>(allowed.size()); ++v) {
     for (const std::int32_t w : neighbours[v]) {
-      if (allowed[w] && !reached[w]) {
-        reached[w] = true;
-        front.push_back(w);
-      }
+      if (allowed[v] && allowed[w]) pieces.join(v, w);
     }
   }
-  return reached;
+  for (std::int32_t v = 0; v < static_cast<std::int32_t>(allowed.size()); ++v) {
+    allowed[v] = allowed[v] && pieces.root(v) == pieces.root(centre);
+  }
+  return allowed;
 }
 
 /// Loops of edges that only one of the listed faces has, joined at vertices.
@@ -77,20 +76,16 @@ int boundaryLoops(const TriangleMesh& mesh, const std::vector<std::int32_t>& fac
       ++uses[{std::min(a, b), std::max(a, b)}];
     }
   }
-  std::map<std::int32_t, std::int32_t> parent;
-  const auto root = [&](std::int32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
+  DisjointSets loopOf(static_cast<std::size_t>(mesh.vertexCount()));
+  std::set<std::int32_t> onBoundary;
   for (const auto& [edge, count] : uses) {
     if (count != 1) continue;
-    parent.try_emplace(edge.first, edge.first);
-    parent.try_emplace(edge.second, edge.second);
-    parent[root(edge.first)] = root(edge.second);
+    loopOf.join(edge.first, edge.second);
+    onBoundary.insert({edge.first, edge.second});
   }
-  int loops = 0;
-  for (const auto& [v, p] : parent) loops += v == p;
-  return loops;
+  const auto loops = std::count_if(onBoundary.begin(), onBoundary.end(),
+                                   [&](std::int32_t v) { return loopOf.root(v) == v; });
+  return static_cast<int>(loops);
 }
 
 }  // namespace

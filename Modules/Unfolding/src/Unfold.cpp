@@ -6,12 +6,12 @@
 #include "Frames.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Stopwatch.h"
 #include "Explica/Core/TimeBudget.h"
 #include "Explica/Unfolding/Continuation.h"
 #include "Explica/Visibility/VisibleFraction.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 
@@ -193,10 +193,7 @@ UnfoldResult unfoldHere(const TriangleMesh& mesh, const Region& region,
                         const visibility::Viewpoints& viewpoints, const UnfoldOptions& options,
                         const Monitor& monitor, const Checkpoint* resume) {
   const Continuation continuation(options);
-  const auto begin = std::chrono::steady_clock::now();
-  const auto elapsed = [&] {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  };
+  const Stopwatch elapsed;
   Unfolder unfolder(mesh, region, viewpoints, solverOptions(options));
   UnfoldResult result;
   const double initial = unfolder.record().visibility;

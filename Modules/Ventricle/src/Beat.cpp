@@ -109,12 +109,18 @@ Beat measureBeat(std::vector<Volume<Label>> hearts, const std::vector<int>& numb
   Beat beat;
   beat.diastole = found.diastole;
   beat.systole = found.systole;
-  const LongAxis axis = findLongAxis(hearts[beat.diastole]);
+  LongAxis axis = findLongAxis(hearts[beat.diastole]);
   if (countOf(hearts[beat.diastole], kWall) == 0) {
     throw InvalidInput("end-diastole, frame " + std::to_string(numbers[beat.diastole]) +
                        ", has no wall; thickness needs one there (choose frames with --phases)");
   }
-  beat.alignment = alignSlices(hearts, axis);
+  // The axis of slices that jump says wrongly which of them the base cuts.
+  for (int round = 0; round < 2; ++round) {
+    beat.alignment = alignSlices(hearts, axis);
+    if (hasThickSlices(hearts[0].grid)) {
+      axis = findLongAxis(hearts[beat.diastole], beat.alignment.shift);
+    }
+  }
   beat.orientation = findOrientation(hearts[beat.diastole], axis, options.orientation);
   for (std::size_t f = 0; f < hearts.size(); ++f) {
     beat.frames.push_back(volumesOf(std::move(hearts[f]), numbers[f]));

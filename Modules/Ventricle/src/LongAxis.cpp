@@ -32,6 +32,12 @@ struct Line {
   double spread = 0;
 };
 
+/// How far slice k was moved, RAS mm.
+Vector moved(const Grid& grid, const SliceShifts& shift, int k) {
+  if (k < 0 || k >= static_cast<int>(shift.size())) return Vector::Zero();
+  return grid.direction.leftCols<2>() * shift[static_cast<std::size_t>(k)];
+}
+
 /// Main axis of weighted points.
 Line mainAxis(const std::vector<Centroid>& points) {
   Line line;
@@ -48,12 +54,13 @@ Line mainAxis(const std::vector<Centroid>& points) {
   return line;
 }
 
-std::vector<Point> cavityPoints(const Volume<Label>& heart) {
+/// Centres of the cavity's voxels with the slices put straight.
+std::vector<Point> cavityPoints(const Volume<Label>& heart, const SliceShifts& shift) {
   std::vector<Point> points;
   for (std::size_t v = 0; v < heart.size(); ++v) {
     if (heart[v] != kCavity) continue;
     const auto s = heart.grid.subscripts(v);
-    points.push_back(heart.grid.toWorld(Vector(s[0], s[1], s[2])));
+    points.push_back(heart.grid.toWorld(Vector(s[0], s[1], s[2])) - moved(heart.grid, shift, s[2]));
   }
   return points;
 }
@@ -66,7 +73,8 @@ Point meanOf(const std::vector<Point>& points) {
 
 /// Along the centroids of closed rings, or of open ones too where fewer than three are closed; the
 /// normal of the slices where fewer than two are left.
-Line axisOfSlices(const Volume<Label>& heart, const std::vector<Point>& cavity) {
+Line axisOfSlices(const Volume<Label>& heart, const SliceShifts& shift,
+                  const std::vector<Point>& cavity) {
   std::vector<Centroid> centroids;
   const std::vector<Slice> slices = slicesOf(heart);
   const auto closed = std::count_if(slices.begin(), slices.end(),
@@ -74,7 +82,8 @@ Line axisOfSlices(const Volume<Label>& heart, const std::vector<Point>& cavity) 
   for (std::size_t k = 0; k < slices.size(); ++k) {
     if (closed >= 3 ? slices[k].kind != SliceKind::Ring : !slices[k].whole()) continue;
     const Eigen::Vector2d index = slices[k].centre.cwiseQuotient(heart.grid.spacing.head<2>());
-    centroids.push_back({heart.grid.toWorld(Vector(index[0], index[1], static_cast<double>(k))),
+    centroids.push_back({heart.grid.toWorld(Vector(index[0], index[1], static_cast<double>(k))) -
+                             moved(heart.grid, shift, static_cast<int>(k)),
                          static_cast<double>(slices[k].cavity)});
   }
   if (centroids.size() < 2) return {meanOf(cavity), heart.grid.direction.col(2), 0};
@@ -124,8 +133,9 @@ Line axisOfSlabs(const std::vector<Point>& cavity, Line line) {
 }
 
 /// Where the search for the axis begins.
-Line firstAxis(const Volume<Label>& heart, const std::vector<Point>& cavity) {
-  if (hasThickSlices(heart.grid)) return axisOfSlices(heart, cavity);
+Line firstAxis(const Volume<Label>& heart, const SliceShifts& shift,
+               const std::vector<Point>& cavity) {
+  if (hasThickSlices(heart.grid)) return axisOfSlices(heart, shift, cavity);
   std::vector<Centroid> all;
   for (const Point& p : cavity) all.push_back({p, 1});
   return mainAxis(all);
@@ -157,8 +167,14 @@ bool hasThickSlices(const Grid& grid) {
   return grid.spacing[2] >= kThick * std::max(grid.spacing[0], grid.spacing[1]);
 }
 
+Vector LongAxis::shiftAt(const Point& x) const {
+  if (shift.empty()) return Vector::Zero();
+  const double slice = (x - grid.origin).dot(grid.direction.col(2)) / grid.spacing[2];
+  return moved(grid, shift, static_cast<int>(std::lround(slice)));
+}
+
 LongAxis withEndsOf(LongAxis axis, const Volume<Label>& heart) {
-  const std::vector<double> heights = heightsAlong(axis, cavityPoints(heart));
+  const std::vector<double> heights = heightsAlong(axis, cavityPoints(heart, axis.shift));
   if (heights.empty()) return axis;
   const auto count = static_cast<double>(heights.size());
   const double half =
@@ -168,11 +184,13 @@ LongAxis withEndsOf(LongAxis axis, const Volume<Label>& heart) {
   return axis;
 }
 
-LongAxis findLongAxis(const Volume<Label>& heart) {
-  const std::vector<Point> cavity = cavityPoints(heart);
+LongAxis findLongAxis(const Volume<Label>& heart, const SliceShifts& shift) {
+  const std::vector<Point> cavity = cavityPoints(heart, shift);
   if (cavity.empty()) throw InvalidInput("the left ventricle's cavity is empty");
-  const Line line = axisOfSlabs(filledCavity(heart, cavity), firstAxis(heart, cavity));
+  const Line line = axisOfSlabs(filledCavity(heart, cavity), firstAxis(heart, shift, cavity));
   LongAxis axis;
+  axis.grid = heart.grid;
+  axis.shift = shift;
   axis.centre = meanOf(cavity);
   axis.centre = line.centre + (axis.centre - line.centre).dot(line.direction) * line.direction;
   axis.direction = line.direction.normalized();

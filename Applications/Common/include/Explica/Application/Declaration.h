@@ -69,8 +69,7 @@ struct Parameter {
   std::optional<Hemisphere> side;     ///< of its files, whatever the other options' are of
   std::vector<std::string> excludes;  ///< options beside which it has no effect, or they have none
   std::vector<std::string>
-      needs;            ///< it has no effect without one of these: "label", "method=thesis"
-  std::string surface;  ///< the option with the surface of these vertex data; empty: any other's
+      needs;                ///< it has no effect without one of these: "label", "method=thesis"
   std::string defaultText;  ///< the default as a user would write it; empty if none
   std::string stepCommand;  ///< the command that include() took it over from; empty: its own
   std::string stepPrefix;   ///< what stands before that command's name of it: "unfold."
@@ -148,9 +147,6 @@ class Declaration {
   Declaration& ofSide(std::string_view name, Hemisphere side);
   /// Says that each of an option's files stands for itself, so that they may be of both sides.
   Declaration& oneByOne(std::string_view name);
-  /// Says which option gives the surface that an option's vertex data are of, where there are
-  /// several.
-  Declaration& onSurface(std::string_view name, std::string_view surface);
   /// Says that an option and any of the others would leave one of the two without effect.
   Declaration& excludes(const std::string& name, const std::vector<std::string>& others);
   /// Says that each of the options has no effect unless one of the conditions holds: an option that

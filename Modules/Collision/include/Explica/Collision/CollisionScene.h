@@ -62,7 +62,6 @@ class CollisionScene {
   [[nodiscard]] const Edges& edges() const { return edges_; }
   [[nodiscard]] const Faces& faces() const { return faces_; }
   [[nodiscard]] const std::vector<std::int32_t>& movingVertices() const { return movingVertices_; }
-  [[nodiscard]] const std::vector<std::int32_t>& movingEdges() const { return movingEdges_; }
   [[nodiscard]] const std::vector<std::int32_t>& movingFaces() const { return movingFaces_; }
 
  private:

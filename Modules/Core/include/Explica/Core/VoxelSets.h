@@ -24,4 +24,10 @@ struct Components {
 };
 [[nodiscard]] Components componentsOf(const VoxelSet& set);
 
+/// Waves from labelled voxels through a set, one label each, nearest first.
+/// @param labels  nonzero where a wave starts, in the set or beside it; takes those that arrive
+/// @return way of each voxel to the nearest start, mm along the steps to the 26 neighbours;
+///         infinite where none arrives
+Volume<float> spreadLabels(const VoxelSet& through, VoxelSet& labels);
+
 }  // namespace explica

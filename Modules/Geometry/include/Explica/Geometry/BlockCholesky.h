@@ -51,8 +51,6 @@ class BlockCholesky {
 
   /// Numbers in the factor, zeros of joined supernodes included.
   [[nodiscard]] std::int64_t factorSize() const { return factorSize_; }
-  /// Multiplications with additions of one factorisation.
-  [[nodiscard]] double operations() const { return operations_; }
 
  private:
   struct Front {

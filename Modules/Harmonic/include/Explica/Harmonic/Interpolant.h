@@ -70,8 +70,6 @@ class Multigrid {
   /// Approximate solution e of A e = r, where A has unit diagonal.
   void cycle(const std::vector<float>& r, std::vector<float>& e);
   [[nodiscard]] int levels() const;
-  /// Bytes that a cycle must move at least, counting each array once per sweep.
-  [[nodiscard]] double bytesPerCycle() const;
 
  private:
   std::unique_ptr<MultigridHierarchy> hierarchy_;

@@ -6,6 +6,5 @@ namespace explica::io {
 
 /// Limits every later use of ITK in this process to so many threads, whatever the environment says.
 void setItkThreadCount(int count);
-[[nodiscard]] int itkThreadCount();
 
 }  // namespace explica::io

@@ -102,8 +102,4 @@ void writeFreeSurferCurv(const std::filesystem::path& path, const Eigen::VectorX
 /// Writes FreeSurfer's annot format with its colour table; keys index the table's order.
 void writeFreeSurferAnnot(const std::filesystem::path& path, const LabelMap& labels);
 
-/// Writes FreeSurfer's label format: the vertices where `keys` is not 0, with their positions.
-void writeFreeSurferLabel(const std::filesystem::path& path, const LabelMap& labels,
-                          const Positions& positions);
-
 }  // namespace explica::io

@@ -3,8 +3,7 @@
 #pragma once
 
 #include "Explica/Core/TriangleMesh.h"
-
-#include <Eigen/SparseCholesky>
+#include "Explica/Geometry/StoppableLdlt.h"
 
 namespace explica::inflation {
 
@@ -31,7 +30,7 @@ class DirectionField {
  private:
   Faces faces_;
   Eigen::VectorXd areas_;
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver_;
+  geometry::StoppableLdlt solver_;
 };
 
 }  // namespace explica::inflation

@@ -40,6 +40,11 @@ struct Region {
 /// The whole curve.
 [[nodiscard]] Region wholeRegion(const Curve& curve);
 
+/// What of a closed curve faces a viewpoint: from the vertex that one extremity of the view meets
+/// to that of the other (4.2 of the thesis).
+/// @throws InvalidInput  an open curve, or a viewpoint that sees it over half a turn or more
+[[nodiscard]] Region regionFacing(const Curve& curve, const Point2& viewpoint);
+
 /// Edges of a region, in order.
 [[nodiscard]] std::vector<int> edgesOf(const Curve& curve, const Region& region);
 

@@ -49,9 +49,4 @@ enum class PairAccuracy {
 [[nodiscard]] PairIntegral integrateEdgeSharing(const Corners& s, const Corners& t,
                                                 PairAccuracy accuracy = PairAccuracy::Standard);
 
-/// Energy of two faces by their centroids and its derivatives by the corners of S,
-/// [Thesis, Eq. 5.45]: the first denominator there must be the squared distance of the centroids;
-/// as printed (sums of corners) it makes that term nine times too small.
-[[nodiscard]] PairIntegral centroidPair(const Corners& s, const Point& centroidT, double areaT);
-
 }  // namespace explica::repulsion

@@ -32,12 +32,6 @@ struct MergingTree {
     const std::vector<Point>& centroids, const std::vector<double>& areas,
     const std::vector<std::vector<std::int32_t>>& neighbours);
 
-/// The nodes from which the fast algorithm of [Thesis, section 5.4] starts its recursions for a
-/// face, in their order: step 4's unvisited nodes of highest number, once the faces listed in
-/// `exact` and all above them are visited.
-[[nodiscard]] std::vector<std::int32_t> recursionStarts(const MergingTree& tree, std::int32_t face,
-                                                        const std::vector<std::int32_t>& exact);
-
 struct ThesisTreeOptions {
   /// Faces whose centroids are nearer than this many mean edges are integrated by [Thesis,
   /// Eq. 5.43].

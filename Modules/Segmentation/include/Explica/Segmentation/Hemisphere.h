@@ -65,7 +65,9 @@ struct Hemisphere {
 /// degrees), unless it is labelled. Ventricles are unlabelled non-white voxels at least `coreDepth`
 /// from cortical labels whose component touches a deep structure and not the brain's outside, or
 /// that are nearer to a ventricle of the atlas (labelVentricles) than to cortex and the outside, by
-/// steps through such voxels.
+/// steps through such voxels.  Grey matter within 8 mm of hippocampus and amygdala is filled with
+/// them where they are nearer than the outside, by ways through grey matter, which is more than 4
+/// mm away.
 ///
 /// @param atlas  labels on the segmentation's grid; 0 is unlabelled
 /// @throws InvalidInput  atlas on another grid, side Both, no white or no grey voxel found

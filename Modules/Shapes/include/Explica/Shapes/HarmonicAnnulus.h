@@ -54,9 +54,6 @@ struct HarmonicShape {
 /// @throws InvalidInput  names the member, what was found and what is needed
 void requireUsable(const HarmonicAnnulus& annulus);
 
-/// 0 on the inner, 1 on the outer boundary: the harmonic interpolant.
-[[nodiscard]] HarmonicShape concentricShape(const HarmonicAnnulus& annulus);
-
 /// Basis functions at points: P x 2 perBoundary(), inner ones first.  Points off the annulus take
 /// the value of the nearest boundary.
 [[nodiscard]] Eigen::MatrixXd basisAt(const HarmonicAnnulus& annulus, const Positions& points);

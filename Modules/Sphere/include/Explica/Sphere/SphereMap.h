@@ -69,13 +69,13 @@ void requireSphere(const TriangleMesh& mesh, std::string_view name);
 /// What a map of a surface to a sphere does to areas and shapes.  Means and quantiles are over the
 /// surface's area.
 struct SphereDistortion {
-  /// F: log2 of a face's share of the sphere's area over its share of the surface's.
+  /// F: log2 of a face's share of the sphere's area over its share of the surface's; NaN without
+  /// area, as the stretch.
   Eigen::VectorXd arealLog2;
   Eigen::VectorXd stretch;                   ///< F: largest over smallest, >= 1
   double arealMean = kNaN, arealMax = kNaN;  ///< of |log2|
   double stretchMedian = kNaN, stretchP95 = kNaN;
-  std::int64_t turnedOver = 0;        ///< exact
-  std::int64_t facesWithoutArea = 0;  ///< of the surface, NaN above and counted nowhere else
+  std::int64_t turnedOver = 0;  ///< exact
 };
 [[nodiscard]] SphereDistortion sphereDistortion(const TriangleMesh& surface,
                                                 const Positions& sphere);

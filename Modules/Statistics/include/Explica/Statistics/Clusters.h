@@ -31,10 +31,6 @@ struct Cluster {
                                                 const Eigen::VectorXd& areas,
                                                 const Eigen::VectorXd& weights = {});
 
-/// Vertices with a value that no neighbour exceeds, at or above a threshold, the highest first.
-[[nodiscard]] std::vector<std::int32_t> findPeaks(const geometry::IndexLists& neighbours,
-                                                  const Eigen::VectorXd& values, double threshold);
-
 /// Largest extent and mass of one map's clusters.
 struct LargestCluster {
   float extent = 0;
