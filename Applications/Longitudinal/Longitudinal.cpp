@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
+#include "Change.h"
+
 #include "Explica/Application/Command.h"
 #include "Explica/Application/Execute.h"
 #include "Explica/Application/ManyRuns.h"
@@ -9,13 +11,9 @@
 #include "Explica/Core/FileText.h"
 #include "Explica/Core/StopScope.h"
 #include "Explica/Core/WholeFile.h"
-#include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/IO/LabelNames.h"
-#include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/TransformFile.h"
-#include "Explica/IO/VertexDataFile.h"
 #include "Explica/IO/VolumeFile.h"
-#include "Explica/Maps/Resampling.h"
 #include "Explica/Pipeline/Plan.h"
 #include "Explica/Registration/HeadTransform.h"
 #include "Explica/Registration/Sessions.h"
@@ -23,7 +21,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 
 namespace explica::app {
@@ -38,30 +35,6 @@ struct Settings {
   pipeline::RunHemisphere hemisphere = pipeline::RunHemisphere::Both;
   Invocation run;  ///< whose options are taken over
 };
-
-/// Sessions in a common space and what changed between the first and the last, in numbers.
-struct Change {
-  std::int64_t sessions = 0;
-  double correlation = kNaN, turn = kNaN, mean = kNaN, deviation = kNaN, known = kNaN;
-};
-
-void describe(Results& t, const Change& r) {
-  t.count("sessions", "Sessions", "Images of the same person.", r.sessions).inHead();
-  t.number("session_correlation", "Correlation of a session with the first", "",
-           "Of brightness within the head, both resampled halfway; the least.", r.correlation)
-      .atLeast(0.9, Judgement::Doubt, "images of one person and one contrast agree")
-      .inHead();
-  t.number("session_rotation", "Rotation from the template to a session", "degrees", "The largest.",
-           r.turn);
-  t.number("thickness_change_mean", "Mean change of thickness", "mm",
-           "Last session less the first, at the same places, mean over the middle surface's area.",
-           r.mean)
-      .inHead();
-  t.number("thickness_change_sd", "Standard deviation of the change of thickness", "mm",
-           "Over the same area.", r.deviation);
-  t.share("thickness_change_known", "Cortex with a change",
-          "Area of the middle surface where all sessions have a thickness.", r.known);
-}
 
 void declare(Declaration& d, Settings& s) {
   d.synopsis("change of thickness between sessions of a person, on a template of their own")
@@ -99,8 +72,9 @@ void declare(Declaration& d, Settings& s) {
   if (const Command* command = findCommand("run")) {
     s.run = command->begin();
     d.include(s.run.declaration, "");
-    for (const char* ours : {"atlas", "hemisphere", "resume", "kind", "steps", "given-surfaces",
-                             "unfold-surface", "segment.mask", "segment.template-transform"}) {
+    for (const char* ours :
+         {"atlas", "hemisphere", "resume", "kind", "steps", "given-surfaces", "unfold-surface",
+          "segment.atlas", "segment.mask", "segment.template-transform"}) {
       d.without(ours);
     }
     for (const Parameter& parameter : s.run.declaration.parameters) {
@@ -129,10 +103,6 @@ std::vector<Volume<float>> readSessions(Context& context, const Settings& s) {
     sessions.push_back(readScalars(context, "SESSION", path, reading));
   }
   return sessions;
-}
-
-std::string numbered(const char* stem, std::size_t session) {
-  return stem + std::to_string(session + 1);
 }
 
 /// The atlas in the common space, with its legend.
@@ -169,93 +139,9 @@ double writeCommonSpace(Context& context, const Settings& s,
   return average.mean.grid.spacing.maxCoeff();
 }
 
-/// One hemisphere, as the template's run has named it.
-struct Side {
-  std::string ending, letter;
-  [[nodiscard]] std::string structure() const {
-    return letter == "L" ? "CortexLeft" : "CortexRight";
-  }
-};
-
 std::vector<Side> sidesOf(const Settings& s) {
   if (s.hemisphere == pipeline::RunHemisphere::Both) return {{"-L", "L"}, {"-R", "R"}};
   return {{"", std::string(nameOf(s.hemisphere))}};
-}
-
-TriangleMesh readMid(Context& context, const fs::path& folder) {
-  return io::readSurface(context.input(folder / "mid.surf.gii", "middle surface")).mesh;
-}
-
-/// A session's thickness at the template's vertices; NaN where there is none.
-Eigen::VectorXd thicknessAt(Context& context, const fs::path& folder, const Positions& points,
-                            double farthest) {
-  const TriangleMesh mid = readMid(context, folder);
-  const Eigen::VectorXd own =
-      io::readVertexMaps(context.input(folder / "thickness.shape.gii", "thickness"),
-                         mid.vertexCount())
-          .front()
-          .values;
-  return maps::mapNear(mid, (own.array() > 0).select(own, kNaN), points, farthest);
-}
-
-void writeMaps(const fs::path& path, const std::vector<Eigen::VectorXd>& thickness,
-               const Side& side) {
-  io::GiftiMapsWriter writer(path, side.structure(), 2 * thickness.size() - 1);
-  const auto add = [&](const std::string& name, const Eigen::VectorXd& values) {
-    const Eigen::VectorXf single = values.cast<float>();
-    writer.add(name, "mm", {single.data(), static_cast<std::size_t>(single.size())});
-  };
-  for (std::size_t n = 0; n < thickness.size(); ++n) {
-    add(numbered("thickness_session-", n), thickness[n]);
-  }
-  for (std::size_t n = 1; n < thickness.size(); ++n) {
-    add(numbered("change_session-", n), thickness[n] - thickness[0]);
-  }
-  writer.finish();
-}
-
-/// Sums over the area of both hemispheres.
-struct Sums {
-  double all = 0, known = 0, first = 0, second = 0;
-
-  void add(const Eigen::VectorXd& areas, const Eigen::VectorXd& change) {
-    all += areas.sum();
-    for (Eigen::Index v = 0; v < change.size(); ++v) {
-      if (!std::isfinite(change[v])) continue;
-      known += areas[v];
-      first += areas[v] * change[v];
-      second += areas[v] * change[v] * change[v];
-    }
-  }
-};
-
-/// Maps and table of one hemisphere.
-void measure(Context& context, const Settings& s, const Side& side, double voxel, Sums& sums) {
-  const fs::path out = context.outputFolder(), surface = out / ("template/surface" + side.ending);
-  const TriangleMesh mid = readMid(context, surface);
-  // What is farther from the mean's surface is another bank, or cortex that one of them lacks.
-  const double farthest = 2 * voxel;
-  std::vector<Eigen::VectorXd> thickness;
-  for (std::size_t n = 0; n < s.sessions.size(); ++n) {
-    thickness.push_back(thicknessAt(context,
-                                    out / numbered("session-", n) / ("surface" + side.ending),
-                                    mid.positions, farthest));
-  }
-  Eigen::Array<bool, Eigen::Dynamic, 1> inAll = thickness.front().array().isFinite();
-  for (const Eigen::VectorXd& one : thickness) inAll = inAll && one.array().isFinite();
-  for (Eigen::VectorXd& one : thickness) one = inAll.select(one, kNaN).eval();
-  const fs::path maps = context.output("hemi-" + side.letter + "_thickness.shape.gii");
-  writeMaps(maps, thickness, side);
-  sums.add(geometry::vertexAreas(mid), thickness.back() - thickness.front());
-
-  const fs::path parcellated = out / ("template/parcellate" + side.ending) / "regions.label.gii";
-  const fs::path regions = fs::exists(parcellated) ? parcellated : surface / "regions.label.gii";
-  context.runCommand(*findCommand("regions"), "regions" + side.ending,
-                     {{"SURFACES", surface.string()},
-                      {"atlas", {regions.string()}},
-                      {"map", {maps.string()}},
-                      {"hemisphere", side.letter},
-                      {"person", out.lexically_normal().filename().string()}});
 }
 
 /// Takes the mean, then each session, through `explica run`.
@@ -286,7 +172,7 @@ Termination runAll(Context& context, const Settings& s) {
   return worst;
 }
 
-/// Half a comparison is of no use: what a failure leaves goes.
+/// Half a comparison is of no use: what a failure or a stop leaves goes.
 void takeBack(Context& context, const Settings& s) {
   std::vector<std::string> names = {"template"};
   for (std::size_t n = 0; n < s.sessions.size(); ++n) names.push_back(numbered("session-", n));
@@ -320,14 +206,12 @@ Termination run(Context& context, const Settings& s) {
   Sums sums;
   try {
     worst = runAll(context, s);
-    for (const Side& side : sidesOf(s)) measure(context, s, side, voxel, sums);
-  } catch (const Error&) {
+    for (const Side& side : sidesOf(s)) measureChange(context, sessions.size(), side, voxel, sums);
+  } catch (...) {
     takeBack(context, s);
     throw;
   }
-  change.known = sums.all > 0 ? sums.known / sums.all : kNaN;
-  change.mean = sums.known > 0 ? sums.first / sums.known : kNaN;
-  change.deviation = std::sqrt(std::max(0.0, sums.second / sums.known - change.mean * change.mean));
+  sums.settle(change);
   context.results(change);
   return worst;
 }

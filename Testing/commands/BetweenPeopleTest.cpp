@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -21,6 +22,7 @@ namespace explica::testing {
 namespace {
 
 namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
 
 const fs::path kSharedData = EXPLICA_REAL_DATA;
 
@@ -179,10 +181,13 @@ class Longitudinal : public ::testing::Test {
     turned.translation() = Vector(3.3, -2.6, 1.4);
     write("second", thinned, "2", turned);
     writeRegions();
+    CommandSetting patient;
+    patient.timeout = 1800;
     const auto result =
         explica({"longitudinal", folder_ / "first.nii.gz", folder_ / "second.nii.gz", "--atlas",
                  folder_ / "atlas.nii.gz", "--hemisphere", "L", "--template", "none",
-                 "--surface.faces", "8000", "--out", folder_ / "out"});
+                 "--surface.faces", "8000", "--out", folder_ / "out"},
+                patient);
     // The phantom's brain is smaller than a person's: doubtful.
     EXPECT_EQ(result.exitCode, 3) << result;
     return readJson(folder_ / "out/summary.json");
