@@ -164,6 +164,11 @@ Termination runAll(Context& context, const Settings& s) {
   take("template", values);
   const fs::path segment = out / "template/segment";
   values["steps"] = {"segment", "surface"};
+  for (auto value = values.begin(); value != values.end();) {  // of steps of the template alone
+    const std::string step = value.key().substr(0, value.key().find('.') + 1);
+    const bool taken = step.empty() || step == "segment." || step == "surface.";
+    value = taken ? std::next(value) : values.erase(value);
+  }
   values["segment.mask"] = (segment / "brain_mask.nii.gz").string();
   if (fs::exists(segment / "to_template.h5")) {
     values["segment.template-transform"] = (segment / "to_template.h5").string();

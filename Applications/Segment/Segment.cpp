@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "Explica/Application/ReadInputs.h"
+#include "Explica/Core/Errors.h"
 #include "Explica/Provenance/Doubts.h"
 #include "Explica/Segmentation/Disagreement.h"
 #include "Explica/Segmentation/HeadContrast.h"
@@ -138,6 +139,9 @@ Volume<float> readImage(Context& context, Judge& judge, const SegmentSettings& s
 }
 
 Termination run(Context& context, const SegmentSettings& s) {
+  if (s.legend && !s.atlas) {
+    throw UsageError("--atlas-legend says what labels of --atlas mean: give both, or neither");
+  }
   Judge judge(context, s.accept);
   io::VolumeReadOptions reading = s.reading;
   reading.dimension = 3;

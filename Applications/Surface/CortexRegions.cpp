@@ -124,14 +124,13 @@ std::size_t writeRegions(Context& context, const CortexRegions& regions,
   const auto doubt = isDoubted ? moments((made.thickness.array() > 0).select(doubtful, kNaN))
                                : std::vector<maps::RegionMoments>();
   std::ostringstream table;
-  table << "index\tname\tvertices\tarea_white_mm2\tvolume_mm3\tthickness_mean_mm\tthickness_sd_mm\t"
+  table << "index\tname\tvertices\tarea_white_mm2\tthickness_mean_mm\tthickness_sd_mm\t"
            "thickness_nearest_mean_mm"
-        << (isDoubted ? "\tdoubtful_share\n" : "\n");
+        << (isDoubted ? "\tdoubtful_share" : "") << "\tvolume_mm3\n";
   io::LabelMap labels{"regions", keys, {{0, "???", {0, 0, 0, 0}}}};
   for (std::size_t r = 0; r < all.size(); ++r) {
     const std::string name = regionName(regions, all[r]);
-    table << all[r] << '\t' << name << '\t' << sizes[r].count << '\t' << sizes[r].sum << '\t'
-          << volumes[r].sum;
+    table << all[r] << '\t' << name << '\t' << sizes[r].count << '\t' << sizes[r].sum;
     if (measured[r].count > 0) {
       table << '\t' << measured[r].meanOverArea << '\t' << measured[r].deviationOverArea << '\t'
             << nearest[r].meanOverArea;
@@ -139,7 +138,7 @@ std::size_t writeRegions(Context& context, const CortexRegions& regions,
     } else {
       table << (isDoubted ? "\tn/a\tn/a\tn/a\tn/a" : "\tn/a\tn/a\tn/a");
     }
-    table << '\n';
+    table << '\t' << volumes[r].sum << '\n';
     labels.table.push_back({all[r], name, regionColour(regions, all[r])});
   }
   writeTextFile(context.output("regions.tsv"), table.str());
