@@ -14,8 +14,8 @@
 namespace explica::sphere {
 namespace {
 
-constexpr int kMostRings = 20;  // about what is turned over: wider, a tangle is no rounding
-constexpr int kSweeps = 40;     // of each width, and as many again for each ring
+constexpr int kRounds = 400;       // at most: twenty rings wide, a tangle is no rounding
+constexpr int kRoundsAWidth = 20;  // before one more ring of neighbours takes part
 
 Eigen::RowVector3d asWritten(const Point& place) {
   Eigen::RowVector3d written = kSphereRadius * place.normalized().transpose();
@@ -44,7 +44,8 @@ Ring ringOf(const TriangleMesh& mesh, const geometry::MeshTopology& topology, st
   return ring;
 }
 
-Point meanOf(const Ring& ring) {
+Point betterPlace(const Ring& ring) {
+  if (const auto inside = placeInside(ring)) return *inside;
   Point mean = Point::Zero();
   for (const Point& p : ring) mean += p;
   return mean;
@@ -74,25 +75,17 @@ OneToOne makeOneToOne(TriangleMesh& sphere) {
     sphere.positions.row(v) = asWritten(sphere.positions.row(v).transpose());
   }
   OneToOne result;
-  const std::vector<std::int32_t> given = geometry::turnedOver(sphere);
-  result.turnedBefore = static_cast<std::int64_t>(given.size());
-  if (given.empty()) return result;
+  std::vector<std::int32_t> turned = geometry::turnedOver(sphere);
+  result.turnedBefore = static_cast<std::int64_t>(turned.size());
+  if (turned.empty()) return result;
   const auto topology = geometry::buildTopology(sphere.faces, sphere.vertexCount());
-  const Positions start = sphere.positions;
-  std::vector<std::int32_t> turned = given;
   std::set<std::int32_t> moved;
-  for (int rings = 0; rings <= kMostRings && !turned.empty(); ++rings) {
-    // Anew: what a narrower try has moved may be worse than what was given.
-    sphere.positions = start;
-    moved = verticesOf(sphere, topology, given, rings);
-    for (int sweep = 0; sweep < kSweeps * (1 + rings) && !turned.empty(); ++sweep) {
-      for (const std::int32_t v : moved) {
-        const Ring ring = ringOf(sphere, topology, v);
-        const auto inside = rings == 0 ? placeInside(ring) : std::nullopt;
-        sphere.positions.row(v) = asWritten(inside.value_or(meanOf(ring)));
-      }
-      turned = geometry::turnedOver(sphere);
+  for (int round = 0; round < kRounds && !turned.empty(); ++round) {
+    for (const std::int32_t v : verticesOf(sphere, topology, turned, round / kRoundsAWidth)) {
+      sphere.positions.row(v) = asWritten(betterPlace(ringOf(sphere, topology, v)));
+      moved.insert(v);
     }
+    turned = geometry::turnedOver(sphere);
   }
   result.turnedAfter = static_cast<std::int64_t>(turned.size());
   result.moved.assign(moved.begin(), moved.end());

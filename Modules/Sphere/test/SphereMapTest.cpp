@@ -175,26 +175,6 @@ TEST(SphereDistortion, OfAScaledSphereIsNoneAndOfASpheroidItsOwn) {
   EXPECT_NEAR(stretched.arealMax, 0, 1e-12);
 }
 
-// A patch twelve rings wide, folded over itself as tiny faces are where a map squeezes them.
-TEST(OneToOne, UntanglesAPatchThatWasFoldedOver) {
-  TriangleMesh mesh = geometry::makeIcosphere(5, 100);
-  for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
-    const Point p = mesh.positions.row(v) / 100;
-    const double off = std::acos(std::min(1.0, p.z()));
-    if (off > 0.2) continue;
-    // Mirrored in the middle, smooth towards the rim.
-    const double share = std::cos(kPi / 2 * off / 0.2), x = (1 - 2.5 * share) * p.x();
-    mesh.positions.row(v) << 100 * x, 100 * p.y(), 100 * p.z();
-  }
-  const Positions before = mesh.positions;
-  const OneToOne mended = makeOneToOne(mesh);
-  EXPECT_GT(mended.turnedBefore, 50);
-  EXPECT_EQ(mended.turnedAfter, 0);
-  EXPECT_TRUE(geometry::turnedOver(mesh).empty());
-  EXPECT_EQ(testing::timesCovered(mesh), 1);
-  EXPECT_LT(mended.moved.size(), 600U);
-}
-
 TEST(OneToOne, PutsBackVerticesThatCrossedTheirRings) {
   TriangleMesh mesh = geometry::makeIcosphere(4, 100);
   std::mt19937 random(3);

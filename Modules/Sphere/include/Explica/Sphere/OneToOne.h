@@ -21,10 +21,8 @@ struct OneToOne {
 /// and moves few of them until no face is turned over there.
 ///
 /// A vertex of a face turned over goes to the middle of the places that see all of its neighbours,
-/// or, where there is none, of its neighbours.  Where that does not help, all vertices some rings
-/// around go to the middle of their neighbours until they rest, while what is around them stays: in
-/// a patch with a convex rim no face is then turned over [Tutte1963].  The rings become more until
-/// it does.  What remains is counted.
+/// or, where there is none, of its neighbours; where that does not help, the neighbours move, too.
+/// What remains is counted.
 OneToOne makeOneToOne(TriangleMesh& sphere);
 
 }  // namespace explica::sphere
