@@ -47,9 +47,8 @@ Json valuesOf(const Context& context, const RunSettings& s, const pipeline::Plan
   return values;
 }
 
-/// Refuses what is said to a step that --steps leaves out: it would have no effect.
-void requireStepsOfOptions(const Context& context, const RunSettings& s,
-                           const pipeline::Plan& plan) {
+/// Warns of what is said to a step that --steps leaves out, as the file of a study may.
+void warnOfIdleOptions(const Context& context, const RunSettings& s, const pipeline::Plan& plan) {
   if (s.plan.steps.empty()) return;
   for (const Invocation& invocation : s.steps) {
     const std::string& name = invocation.declaration.name;
@@ -60,8 +59,8 @@ void requireStepsOfOptions(const Context& context, const RunSettings& s,
     for (const Parameter& parameter : invocation.declaration.parameters) {
       const std::string option = name + "." + parameter.option.name;
       if (!context.given(option)) continue;
-      throw UsageError("--" + option + " has no effect, since --steps leaves " + name +
-                       " out: leave out one of them");
+      context.monitor().warn("--" + option + " has no effect, since --steps leaves " + name +
+                             " out");
     }
   }
 }
@@ -252,7 +251,7 @@ Termination run(Context& context, const RunSettings& s) {
   const fs::path out = context.outputFolder();
   const pipeline::Plan whole = planOrTakeBack(context, s);
   const std::vector<pipeline::PlannedStep>& plan = whole.steps;
-  requireStepsOfOptions(context, s, whole);
+  warnOfIdleOptions(context, s, whole);
   checkBeforehand(context, s, whole);
 
   std::vector<pipeline::StepNote> notes;
