@@ -139,6 +139,9 @@ void addMaps(const fs::path& file, const ShownSurface& surface, viewer::Opened& 
   for (const std::string_view ending : {".gii", ".func", ".shape"}) {
     if (stem.ends_with(ending)) stem.resize(stem.size() - ending.size());
   }
+  for (io::VertexMap& map : maps) {  // which may begin with the volume's name
+    if (map.name.starts_with(stem + " ")) map.name.erase(0, stem.size() + 1);
+  }
   if (maps.size() > 1 && maps.front().name.starts_with("frame")) {
     for (std::size_t n = 1; n < maps.size(); ++n) maps.front().values += maps[n].values;
     maps.front().values /= static_cast<double>(maps.size());
