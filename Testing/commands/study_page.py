@@ -91,7 +91,7 @@ def groups(driver):
         by.value = by.options[1].value;
         by.dispatchEvent(new Event('change'));
         const result = [strips.querySelectorAll('.strip:first-child .group').length, document.getElementById('groups').textContent,
-                        new Set([...strips.querySelectorAll('circle')].map((dot) => dot.style.fill)).size];
+                        new Set([...strips.querySelectorAll('circle, .beyond')].map((dot) => dot.style.fill)).size];
         by.value = '';
         by.dispatchEvent(new Event('change'));
         return result;""")
