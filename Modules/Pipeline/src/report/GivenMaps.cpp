@@ -21,7 +21,8 @@ std::string nameBesideOthers(const std::filesystem::path& file, const std::strin
     }
   }
   // FreeSurfer's files name their maps with the folder they came from.
-  const std::string own = std::filesystem::path(map).filename().string();
+  std::string own = std::filesystem::path(map).filename().string();
+  if (own.starts_with(stem + " ")) own.erase(0, stem.size() + 1);  // "T1w depth 0.5"
   return own.empty() || own == stem ? stem : stem + ", " + own;
 }
 
