@@ -57,7 +57,7 @@ struct Tissues {
 /// @param inner  as distanceLevelOf(): positive in white matter
 Eigen::MatrixXd deepWhite(const std::vector<Trajectory>& paths, const LevelSet& inner,
                           const Volume<float>& image, double voxel) {
-  const double band = 2 * inner.grid.spacing.maxCoeff();  // of distanceLevelOf()
+  const double band = bandOf(inner.grid);
   Eigen::MatrixXd found = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(paths.size()), 2);
   parallelFor(paths.size(), 256, [&](std::size_t v) {
     if (paths[v].end == TrajectoryEnd::NoRibbon) return;

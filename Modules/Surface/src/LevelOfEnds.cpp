@@ -87,7 +87,7 @@ LevelSet levelOfEnds(const LevelSet& distance, const std::vector<Trajectory>& pa
   const Grid& grid = distance.grid;
   const auto& n = grid.size;
   const auto voxel = static_cast<float>(voxelSize(grid));
-  const float band = 2 * static_cast<float>(grid.spacing.maxCoeff());
+  const auto band = static_cast<float>(bandOf(grid));
   const std::vector<std::vector<Place>> slices = bySlice(paths, border, moved, grid);
   LevelSet level = distance;
   parallelFor(n[2], 1, [&](std::size_t slice) {

@@ -263,6 +263,10 @@ LevelSet levelSetOf(const Volume<std::uint8_t>& mask) {
   return distanceTo(boundary, side);
 }
 
+double bandOf(const Grid& grid) {
+  return kBand * grid.spacing.maxCoeff();
+}
+
 LevelSet distanceLevelOf(const LevelSet& level) {
   Volume<std::uint8_t> side(level.grid);
   parallelFor(side.size(), 1 << 16, [&](std::size_t v) { side[v] = level[v] > 0 ? 1 : 0; });

@@ -51,6 +51,9 @@ struct VoxelBox {
 /// Level set of shares in [0, 1] whose 0.5 is the boundary: 2 p - 1, kept off zero.
 [[nodiscard]] LevelSet levelSetOf(const Volume<float>& share);
 
+/// What 1 is of a level that is a distance: two of the longest spacings, mm.
+[[nodiscard]] double bandOf(const Grid& grid);
+
 /// The level set of the same zero that a mask's would be: the distance to it, 1 at two voxels of
 /// the coarsest axis and beyond.  Shares say nothing of how far their border is once they are 0
 /// or 1.
