@@ -90,6 +90,15 @@ TEST(TissueSegmentation, ATightMaskMakesNoFluidOfGreyMattersNoise) {
   EXPECT_LT(static_cast<double>(fluid), 0.01 * static_cast<double>(grey));
 }
 
+// Without fluid the darkest class has hardly a voxel of its own, and its mean comes to rest late.
+TEST(TissueSegmentation, ComesToRestWhereAMaskLeavesNoFluid) {
+  Phantom phantom = makePhantom(12, 0);
+  for (std::size_t v = 0; v < phantom.image.size(); ++v) {
+    if (phantom.truth[v] == kCsf) phantom.image[v] = 0;
+  }
+  EXPECT_EQ(segmentTissue(phantom.image).termination, Termination::Converged);
+}
+
 TEST(TissueSegmentation, KnowsPureFluidByAVentricle) {
   Phantom phantom = makePhantom(4, 0.1);
   const Grid& grid = phantom.image.grid;
