@@ -283,14 +283,35 @@ std::int64_t fillVentricles(const VoxelSet& voidSet, const VoxelSet& deep,
   return count;
 }
 
-/// Fills grey matter that is nearer to hippocampus and amygdala than to the outside, by ways
-/// through grey matter, and deeper than cortex is: what an atlas leaves of them would be cortex
-/// without an outside, and the surface would open a sulcus between them and the gyrus below.  How
-/// many voxels.
-std::int64_t takeMesialRim(const VoxelSet& mesialDeep, const Volume<Label>& seg, Draft& draft) {
+/// Fills fluid that borders what is filled, and that tissue closes off from the outside: what an
+/// atlas leaves of the ventricles, as temporal horns in the midst of cortical labels.  The voxels.
+VoxelSet fillClosedFluid(const Volume<Label>& seg, Draft& draft) {
   const Grid& grid = seg.grid;
-  VoxelSet deep =
-      setWhere(grid, [&](std::size_t v) { return draft.own[v] != 0 && mesialDeep[v] != 0; });
+  const Components fluid = componentsOf(setWhere(
+      grid, [&](std::size_t v) { return seg[v] == 0 || (seg[v] == kCsf && draft.white[v] == 0); }));
+  std::vector<std::uint8_t> beside(fluid.size.size(), 0), open(fluid.size.size(), 0);
+  for (std::size_t v = 0; v < seg.size(); ++v) {
+    const std::int32_t n = fluid.number[v];
+    if (n < 0) continue;
+    if (seg[v] == 0) open[n] = 1;
+    if (touches(grid, v, draft.filled)) beside[n] = 1;
+  }
+  VoxelSet closed = setWhere(grid, [&](std::size_t v) {
+    const std::int32_t n = fluid.number[v];
+    return draft.own[v] != 0 && n >= 0 && beside[n] != 0 && open[n] == 0;
+  });
+  for (std::size_t v = 0; v < seg.size(); ++v) {
+    if (closed[v] != 0) draft.white[v] = draft.filled[v] = 1;
+  }
+  return closed;
+}
+
+/// Fills grey matter that is nearer to deep structures than to the outside, by ways through grey
+/// matter, and deeper than cortex is: what an atlas leaves of hippocampus and amygdala would be
+/// cortex without an outside, and the surface would open a sulcus between them and the gyrus below.
+/// How many voxels.
+std::int64_t takeMesialRim(VoxelSet deep, const Volume<Label>& seg, Draft& draft) {
+  const Grid& grid = seg.grid;
   const Volume<float> toDeep = squaredDistanceTo(deep);
   const auto near = [&](std::size_t v) { return toDeep[v] <= kRimReach * kRimReach; };
   const VoxelSet grey = setWhere(grid, [&](std::size_t v) {
@@ -503,7 +524,12 @@ Hemisphere extractHemisphere(const TissueSegmentation& tissue, const Volume<Labe
   const VoxelSet ventricle = setWhere(
       grid, [&](std::size_t v) { return deep[v] != 0 && isVentricle(legend.at(atlas[v]).name); });
   result.ventricleVoxels = fillVentricles(voids, deep, ventricle, seg, draft) + voxelsIn(ventricle);
-  result.deepVoxels += takeMesialRim(map.mesialDeep, seg, draft);
+  VoxelSet mesial = fillClosedFluid(seg, draft);
+  result.ventricleVoxels += voxelsIn(mesial);
+  for (std::size_t v = 0; v < mesial.size(); ++v) {
+    mesial[v] = mesial[v] != 0 || (draft.own[v] != 0 && map.mesialDeep[v] != 0) ? 1 : 0;
+  }
+  result.deepVoxels += takeMesialRim(std::move(mesial), seg, draft);
   if (result.ventricleVoxels == 0) {
     monitor.warn(
         "no ventricle was found next to the deep structures: where fluid borders white matter "

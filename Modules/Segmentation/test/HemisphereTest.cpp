@@ -116,6 +116,31 @@ TEST(Hemisphere, FillsWhatTheAtlasLeavesOfTheHippocampus) {
   EXPECT_EQ(labelAt(23 * outward), kGrey) << "cortex";
 }
 
+// A horn of the ventricle and a pocket of a sulcus, both beside cortex and in the midst of what the
+// atlas calls cortex.
+TEST(Hemisphere, FillsClosedFluidBesideWhatIsFilled) {
+  HeadPhantom p = makeHeadPhantom(false);
+  const Point horn(-13, 4.5, -13), pocket(-14, 0, 13);
+  for (std::size_t v = 0; v < p.atlas.size(); ++v) {
+    const auto [i, j, k] = p.atlas.grid.subscripts(v);
+    const Point w = p.atlas.grid.toWorld(Vector(i, j, k));
+    if (p.tissue.labels[v] != kWhite || std::min((w - horn).norm(), (w - pocket).norm()) > 3) {
+      continue;
+    }
+    p.atlas[v] = 1;
+    p.tissue.labels[v] = kCsf;
+    std::swap(p.tissue.probability[0][v], p.tissue.probability[2][v]);
+  }
+  const Hemisphere left = extractHemisphere(p.tissue, p.atlas, p.legend);
+  const auto labelAt = [&](const Point& w) {
+    const Vector at = p.atlas.grid.toIndex(w);
+    return left.labels(static_cast<int>(std::lround(at.x())), static_cast<int>(std::lround(at.y())),
+                       static_cast<int>(std::lround(at.z())));
+  };
+  EXPECT_EQ(labelAt(horn), kWhite);
+  EXPECT_EQ(labelAt(pocket), kCsf);
+}
+
 /// A T1 of the phantom.
 Volume<float> brightnessOf(const HeadPhantom& p) {
   constexpr std::array<float, 4> kBrightness = {0, 30, 80, 110};
