@@ -40,15 +40,13 @@ fi
 # Debian's packages for Python belong to Debian's python3, whichever comes first in PATH.
 # shellcheck disable=SC2086
 cmake --preset "${EXPLICA_PRESET:-release}" -DPython_EXECUTABLE=/usr/bin/python3 $options
-# A line for each minute less that is left, at the pace so far; all else as it comes.
+# A line each half minute, with what is left at the pace so far; all else as it comes.
 status=$(mktemp)
 { NINJA_STATUS="built %f of %t files in %e s: " cmake --build build --target "$target" || echo $? >"$status"; } | awk '
   /^built [0-9]+ of / {
-    left = $2 > 0 ? int($7 * ($4 - $2) / $2 / 60 + 0.99) : 0
-    if (!shown || left < said || $2 == $4) {
-      shown = 1
-      said = left
-      printf "setup: %d of %d files built, about %d min left\n", $2, $4, left
+    if ($7 >= 30 * (lines + 1) || $2 == $4) {
+      lines = int($7 / 30)
+      printf "setup: %d of %d files built, about %d min left\n", $2, $4, int($7 * ($4 - $2) / $2 / 60 + 0.99)
       fflush()
     }
     next
