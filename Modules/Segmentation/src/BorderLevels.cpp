@@ -35,17 +35,17 @@ std::vector<float> among(const EdgeSamples& samples, const Choose& choose) {
   return values;
 }
 
-/// Takes away what noise adds to squared slopes, as voxels of one tissue show it.
-void removeNoise(const std::vector<std::uint8_t>& pure, std::vector<float>& squared) {
+/// Median of a value over voxels of one tissue, where only noise makes it; 0 if there are none.
+template <class Value>
+float medianOfPure(const std::vector<std::uint8_t>& pure, const Value& valueAt) {
   std::vector<float> noise;
   for (std::size_t v = 0; v < pure.size(); ++v) {
-    if (pure[v] != 0) noise.push_back(squared[v]);
+    if (pure[v] != 0) noise.push_back(valueAt(v));
   }
-  if (noise.empty()) return;
+  if (noise.empty()) return 0;
   const auto middle = noise.begin() + static_cast<std::ptrdiff_t>(noise.size() / 2);
   std::nth_element(noise.begin(), middle, noise.end());
-  const float mean = *middle / kMedianOverMean;
-  for (float& value : squared) value = std::max(0.0F, value - mean);
+  return *middle;
 }
 
 /// Length of the gradient, without noise.
@@ -63,8 +63,9 @@ std::vector<float> slopesOf(const EdgeSamples& samples) {
     }
     slopes[v] = static_cast<float>(squared);
   });
-  removeNoise(samples.pure, slopes);
-  for (float& slope : slopes) slope = std::sqrt(slope);
+  const float noise =
+      medianOfPure(samples.pure, [&](std::size_t v) { return slopes[v]; }) / kMedianOverMean;
+  for (float& slope : slopes) slope = std::sqrt(std::max(0.0F, slope - noise));
   return slopes;
 }
 
@@ -75,6 +76,12 @@ BorderFinder::BorderFinder(const BlockWindow& window, const EdgeSamples& samples
     : window_(window), samples_(samples), mean_(mean), slope_(slopesOf(samples)) {
   least_ = among(samples, [](float a, float b) { return std::min(a, b); });
   most_ = among(samples, [](float a, float b) { return std::max(a, b); });
+  // The extremes of many voxels lie off their tissue by noise, and a level that took them for
+  // another tissue would climb through it: by so much as white matter's brightest does.
+  const float off =
+      medianOfPure(samples.pure, [&](std::size_t v) { return most_[v] - (*samples.intensity)[v]; });
+  for (float& value : least_) value += off;
+  for (float& value : most_) value -= off;
   const auto middle = [&](int k) { return static_cast<float>(0.5 * (mean[k] + mean[k + 1])); };
   levels_.outer.assign(slope_.size(), middle(0));
   levels_.white.assign(slope_.size(), middle(1));
