@@ -6,6 +6,7 @@
 #include "Explica/Application/ManyRuns.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/StopScope.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Study/StudyState.h"
 #include "KeptRun.h"
@@ -158,11 +159,10 @@ Termination run(Context& context, const Settings& s) {
   }
   if (!account.environmentFault.empty()) throw EnvironmentError(account.environmentFault);
   if (account.failed.empty()) return account.worst;
-  std::string names;
-  for (const std::string& name : account.failed) names += (names.empty() ? "" : ", ") + name;
   const std::string said = std::to_string(account.failed.size()) + " of " +
-                           std::to_string(account.runs) + " runs failed (" + names +
-                           "), as said above and in each " + s.out + "/runs/sub-*/problem.txt";
+                           std::to_string(account.runs) + " runs failed (" +
+                           joined(account.failed) + "), as said above and in each " + s.out +
+                           "/runs/sub-*/problem.txt";
   if (account.failed.size() == static_cast<std::size_t>(account.runs)) {
     throw InvalidInput(s.study + ": " + said);
   }

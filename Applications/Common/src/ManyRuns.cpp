@@ -58,10 +58,4 @@ void passFlagsOn(Context& context, const std::filesystem::path& run) {
   }
 }
 
-std::string listed(const std::vector<std::string>& names) {
-  std::string all;
-  for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
-  return all;
-}
-
 }  // namespace explica::app

@@ -34,7 +34,4 @@ void sayInterrupted(const std::filesystem::path& folder);
 /// What a run's numbers say against it counts against the whole, too.
 void passFlagsOn(Context& context, const std::filesystem::path& run);
 
-/// "a, b, c".
-[[nodiscard]] std::string listed(const std::vector<std::string>& names);
-
 }  // namespace explica::app
