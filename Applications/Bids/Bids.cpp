@@ -194,7 +194,7 @@ Ended doHemisphere(Context& context, const Settings& s, const study::Participant
     if (!dry) shareSegment(folder.parent_path() / (participant.name() + "_hemi-" + other), folder);
     const Outcome outcome = context.runCommand(*findCommand("run"), "runs/" + name, values);
     if (!reachedGoal(outcome.termination)) worst = outcome.termination;
-    if (!outcome.plausible) passFlagsOn(context, folder);
+    if (!outcome.plausible) passFlagsOn(context, "run", folder);
     if (dry) return ended;
     outcome.abandoned ? sayInterrupted(folder) : static_cast<void>(fs::remove(problem));
     if (!reachedGoal(outcome.termination) && context.monitor().shouldStop()) {

@@ -102,7 +102,7 @@ bool doRun(Context& context, const fs::path& folder, const study::Participant& p
     const Outcome outcome = context.runApart(*findCommand("run"), folder, values);
     outcome.abandoned ? sayInterrupted(folder) : static_cast<void>(fs::remove(problem));
     if (!reachedGoal(outcome.termination)) account.worst = outcome.termination;
-    if (!outcome.plausible) passFlagsOn(context, folder);
+    if (!outcome.plausible) passFlagsOn(context, "run", folder);
     return !endedFromOutside(outcome.termination);
   } catch (const EnvironmentError& fault) {
     account.environmentFault = fault.what();
