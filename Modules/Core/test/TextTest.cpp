@@ -35,7 +35,9 @@ TEST(Text, HasTheCellsOfARow) {
 }
 
 TEST(Text, OfATableIsFoundByItsHeadings) {
-  const auto rows = tableRows("\xef\xbb\xbf" "name\tmm\r\na\t2.5\r\nb\n");
+  const auto rows = tableRows(
+      "\xef\xbb\xbf"
+      "name\tmm\r\na\t2.5\r\nb\n");
   ASSERT_EQ(rows.size(), 2U);
   EXPECT_EQ(rows[0].at("name"), "a");
   EXPECT_EQ(numberIn(rows[0], "mm"), 2.5);
