@@ -6,6 +6,7 @@
 #include "Explica/Application/ManyRuns.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/StopScope.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Pipeline/Plan.h"
 #include "Explica/Provenance/Digest.h"
@@ -27,21 +28,15 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <set>
 
 namespace explica::app {
 
 enum class BidsLevel { Participant, Group };
+constexpr auto enumWords(BidsLevel) {
+  using enum BidsLevel;
+  return std::to_array<EnumWord<BidsLevel>>({{Participant, "participant"}, {Group, "group"}});
+}
 
-}  // namespace explica::app
-
-template <>
-struct explica::EnumNames<explica::app::BidsLevel> {
-  static constexpr std::array table{std::pair{app::BidsLevel::Participant, "participant"},
-                                    std::pair{app::BidsLevel::Group, "group"}};
-};
-
-namespace explica::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -199,7 +194,7 @@ Ended doHemisphere(Context& context, const Settings& s, const study::Participant
     if (!dry) shareSegment(folder.parent_path() / (participant.name() + "_hemi-" + other), folder);
     const Outcome outcome = context.runCommand(*findCommand("run"), "runs/" + name, values);
     if (!reachedGoal(outcome.termination)) worst = outcome.termination;
-    if (!outcome.plausible) passFlagsOn(context, folder);
+    if (!outcome.plausible) passFlagsOn(context, "run", folder);
     if (dry) return ended;
     outcome.abandoned ? sayInterrupted(folder) : static_cast<void>(fs::remove(problem));
     if (!reachedGoal(outcome.termination) && context.monitor().shouldStop()) {
@@ -265,7 +260,7 @@ Termination doParticipants(Context& context, const Settings& s) {
   }
   if (failed.empty()) return worst;
   context.warn(std::to_string(failed.size()) + " of " + std::to_string(failed.size() + done) +
-               " hemispheres failed: " + listed(failed));
+               " hemispheres failed: " + joined(failed));
   return !reachedGoal(worst) ? worst : Termination::Stalled;
 }
 

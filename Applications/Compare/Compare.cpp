@@ -84,9 +84,7 @@ void draw(const std::filesystem::path& path, const TriangleMesh& reference,
   left.name = report::ViewName::Left;
   right.name = report::ViewName::Right;
   const bool flat = flattening::isFlatMap(whole, faces);
-  report::SurfacePictureOptions size;
-  size.width = flat ? 900 : 600;
-  size.height = flat ? 900 : 500;
+  report::SurfacePictureOptions size{.width = flat ? 900 : 600, .height = flat ? 900 : 500};
   const auto views = flat ? std::vector{above} : std::vector{left, right};
   report::writePng(
       path, report::surfaceFigure(part.mesh, paint, views, static_cast<int>(views.size()), size));

@@ -6,6 +6,7 @@
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Application/ReadPolygon.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/IO/PolygonFile.h"
 #include "Explica/IO/SurfaceFile.h"
@@ -17,7 +18,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace explica::app {
 namespace {
@@ -159,11 +159,8 @@ struct Fits {
 
 void appendRows(std::string& table, std::size_t target, const shapes::ShapeFit& fit) {
   for (std::size_t i = 0; i < fit.history.size(); ++i) {
-    char line[160];
-    std::snprintf(line, sizeof line, "%zu\t%zu\t%.9g\t%.9g\t%.9g\n", target, i,
-                  fit.history[i].symmetricDifference, fit.history[i].distanceMean,
-                  fit.history[i].distanceMax);
-    table += line;
+    table += printed("%zu\t%zu\t%.9g\t%.9g\t%.9g\n", target, i, fit.history[i].symmetricDifference,
+                     fit.history[i].distanceMean, fit.history[i].distanceMax);
   }
 }
 
@@ -224,17 +221,16 @@ Termination run(Context& context, const Settings& s) {
   if (annulus.dimension == 3) {
     io::writeVolume(context.output("field.nii.gz"), shapes::fieldOf(shape, s.grid));
   }
-  shapes::EmbedSummary summary;
-  summary.dimension = annulus.dimension;
-  summary.targets = targets.size();
-  summary.coefficients = 2 * annulus.perBoundary();
-  summary.innerRadius = annulus.innerRadius;
-  summary.outerRadius = annulus.outerRadius;
-  summary.order = annulus.order;
-  summary.width = shapes::widthOf(annulus);
-  summary.voxel = 2 * annulus.outerRadius / (s.grid - 1);
-  summary.boundaryMargin = shapes::boundaryMargin(shape);
-  summary.symmetricDifference = fits.symmetricDifference;
+  shapes::EmbedSummary summary{.dimension = annulus.dimension,
+                               .targets = targets.size(),
+                               .coefficients = 2 * annulus.perBoundary(),
+                               .innerRadius = annulus.innerRadius,
+                               .outerRadius = annulus.outerRadius,
+                               .order = annulus.order,
+                               .width = shapes::widthOf(annulus),
+                               .voxel = 2 * annulus.outerRadius / (s.grid - 1),
+                               .boundaryMargin = shapes::boundaryMargin(shape),
+                               .symmetricDifference = fits.symmetricDifference};
   summary.distanceMean = summary.distanceMax = std::nullopt;
   if (targets.size() == 1) measureDistance(shape, targets.front(), s.grid, summary);
   context.results(summary);

@@ -20,26 +20,21 @@
 namespace explica::app {
 
 enum class FigureSide { Lateral, Medial, Dorsal, Ventral, Frontal, Occipital };
+constexpr auto enumWords(FigureSide) {
+  using enum FigureSide;
+  return std::to_array<EnumWord<FigureSide>>({{Lateral, "lateral"},
+                                              {Medial, "medial"},
+                                              {Dorsal, "dorsal"},
+                                              {Ventral, "ventral"},
+                                              {Frontal, "frontal"},
+                                              {Occipital, "occipital"}});
+}
 enum class FigureLayout { Grid, Row, Column };
+constexpr auto enumWords(FigureLayout) {
+  using enum FigureLayout;
+  return std::to_array<EnumWord<FigureLayout>>({{Grid, "grid"}, {Row, "row"}, {Column, "column"}});
+}
 
-}  // namespace explica::app
-
-template <>
-struct explica::EnumNames<explica::app::FigureSide> {
-  using Side = explica::app::FigureSide;
-  static constexpr std::array table{
-      std::pair{Side::Lateral, "lateral"}, std::pair{Side::Medial, "medial"},
-      std::pair{Side::Dorsal, "dorsal"},   std::pair{Side::Ventral, "ventral"},
-      std::pair{Side::Frontal, "frontal"}, std::pair{Side::Occipital, "occipital"}};
-};
-template <>
-struct explica::EnumNames<explica::app::FigureLayout> {
-  using Layout = explica::app::FigureLayout;
-  static constexpr std::array table{std::pair{Layout::Grid, "grid"}, std::pair{Layout::Row, "row"},
-                                    std::pair{Layout::Column, "column"}};
-};
-
-namespace explica::app {
 namespace {
 
 struct Settings {

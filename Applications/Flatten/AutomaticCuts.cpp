@@ -5,6 +5,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/StopScope.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Flattening/FoldDepth.h"
 #include "Explica/IO/VertexDataFile.h"
@@ -12,7 +13,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <set>
 
@@ -74,11 +74,9 @@ std::string tableOf(const flattening::Disc& disc, const std::vector<flattening::
   for (std::size_t n = 0; n < cuts.size(); ++n) {
     const flattening::Cut& cut = cuts[n];
     const Point end = disc.mesh.positions.row(cut.path.back());
-    char row[256];
-    std::snprintf(row, sizeof row, "%zu\t%d\t%d\t%zu\t%.2f\t%.3f\t%.2f\t%.2f\t%.2f\n", n + 1,
-                  disc.vertexOrigin[cut.path.front()], disc.vertexOrigin[cut.path.back()],
-                  cut.path.size(), cut.length, cut.depth, end.x(), end.y(), end.z());
-    text += row;
+    text += printed("%zu\t%d\t%d\t%zu\t%.2f\t%.3f\t%.2f\t%.2f\t%.2f\n", n + 1,
+                    disc.vertexOrigin[cut.path.front()], disc.vertexOrigin[cut.path.back()],
+                    cut.path.size(), cut.length, cut.depth, end.x(), end.y(), end.z());
   }
   return text;
 }
@@ -112,26 +110,21 @@ void report(Context& context, const flattening::CutPlan& plan,
             const flattening::CutOptions& options) {
   const double length = plan.length();
   context.results(plan);
-  char line[200];
   if (plan.termination == Termination::Interrupted) {
-    std::snprintf(line, sizeof line,
-                  "stopped while cuts were sought: %zu so far, %.0f mm in all; --resume goes on "
-                  "from them",
-                  plan.cuts.size(), length);
-    context.info(line);
+    context.info(
+        printed("stopped while cuts were sought: %zu so far, %.0f mm in all; --resume goes on "
+                "from them",
+                plan.cuts.size(), length));
     return;
   }
-  std::snprintf(line, sizeof line, "%zu cuts, %.0f mm in all; edge strain %.3f without, %.3f with",
-                plan.cuts.size(), length, plan.strainBefore, plan.edgeStrain);
-  context.info(line);
+  context.info(printed("%zu cuts, %.0f mm in all; edge strain %.3f without, %.3f with",
+                       plan.cuts.size(), length, plan.strainBefore, plan.edgeStrain));
   if (plan.edgeStrain > options.edgeStrain) {
-    std::snprintf(line, sizeof line,
-                  "the cuts reach an edge strain of %.3f, not the %.3f of --cut.strain; %s",
-                  plan.edgeStrain, options.edgeStrain,
-                  plan.termination == Termination::Stalled
-                      ? "no further cut was found that relieves"
-                      : "more would need --cut.most");
-    context.warn(line);
+    context.warn(printed("the cuts reach an edge strain of %.3f, not the %.3f of --cut.strain; %s",
+                         plan.edgeStrain, options.edgeStrain,
+                         plan.termination == Termination::Stalled
+                             ? "no further cut was found that relieves"
+                             : "more would need --cut.most"));
   }
 }
 
@@ -154,12 +147,10 @@ std::vector<bool> cortexOf(Context& context, const std::string& surface, const T
     if (wall[v]) middle += mesh.positions.row(v).transpose();
   }
   middle /= static_cast<double>(std::count(wall.begin(), wall.end(), true));
-  char line[200];
-  std::snprintf(line, sizeof line,
-                "medial wall: taken to be the flattest fortieth of the surface, about %.0f, %.0f, "
-                "%.0f mm; --cortex would say",
-                middle.x(), middle.y(), middle.z());
-  context.info(line);
+  context.info(
+      printed("medial wall: taken to be the flattest fortieth of the surface, about %.0f, %.0f, "
+              "%.0f mm; --cortex would say",
+              middle.x(), middle.y(), middle.z()));
   context.note("cortex", "all but the flattest fortieth");
   std::vector<bool> inCortex(wall.size());
   for (std::size_t v = 0; v < wall.size(); ++v) inCortex[v] = !wall[v];

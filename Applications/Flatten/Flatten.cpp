@@ -7,6 +7,7 @@
 #include "Explica/Application/Command.h"
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/StopScope.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Core/TimeBudget.h"
 #include "Explica/Flattening/State.h"
 #include "Explica/Geometry/MeshMeasures.h"
@@ -15,7 +16,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 
 namespace explica::app {
 namespace {
@@ -151,12 +151,10 @@ void warnOf(Context& context, const flattening::Disc& disc, const flattening::Fl
                  " faces are joined to the rest by a single vertex only and were left out");
   }
   if (disc.otherPieces > 0) {
-    char text[160];
-    std::snprintf(text, sizeof text,
-                  "the region has %zu pieces; the largest is laid flat, the others (%.1f %% of the "
-                  "area) are left out",
-                  disc.otherPieces + 1, 100 * disc.areaOfOthers);
-    context.warn(text);
+    context.warn(
+        printed("the region has %zu pieces; the largest is laid flat, the others (%.1f %% of the "
+                "area) are left out",
+                disc.otherPieces + 1, 100 * disc.areaOfOthers));
   }
   if (!disc.holes.empty()) {
     context.warn("the surface has " + std::to_string(disc.holes.size()) + " holes; they stay open");
@@ -172,15 +170,12 @@ void warnOf(Context& context, const flattening::Disc& disc, const flattening::Fl
 void sayHowGood(Context& context, const flattening::FlatMap& map,
                 const unfolding::Distortion& distortion) {
   const bool folded = map.turnedOver > 0 || map.rimCrossings > 0;
-  char text[240];
-  std::snprintf(text, sizeof text,
-                "flat map: %s; mean area error %.1f %%, mean change of lengths %.1f %%%s",
-                folded ? "not usable, it folds or overlaps" : "usable, one-to-one",
-                100 * distortion.areaErrorMean, 100 * distortion.edgeStrainMean,
-                map.termination == Termination::MaxIterations
-                    ? "; ended at its limit of iterations (--solver.max-iterations)"
-                    : "");
-  context.info(text);
+  context.info(printed("flat map: %s; mean area error %.1f %%, mean change of lengths %.1f %%%s",
+                       folded ? "not usable, it folds or overlaps" : "usable, one-to-one",
+                       100 * distortion.areaErrorMean, 100 * distortion.edgeStrainMean,
+                       map.termination == Termination::MaxIterations
+                           ? "; ended at its limit of iterations (--solver.max-iterations)"
+                           : ""));
 }
 
 // What comes after cuts and map measures and writes for about four times as long as the start took,

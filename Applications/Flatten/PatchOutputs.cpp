@@ -4,6 +4,7 @@
 #include "PatchOutputs.h"
 
 #include "Explica/Application/Describing.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Flattening/Comparison.h"
 #include "Explica/Flattening/PatchTable.h"
@@ -19,7 +20,6 @@
 #include <Eigen/LU>
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <map>
 
@@ -171,8 +171,7 @@ Eigen::VectorXd measure(Context& context, const Subject& subject, const flatteni
                         Termination& termination) {
   const TriangleMesh& before = disc.mesh;
   const auto all = everyFace(flat.faces);
-  unfolding::DistortionOptions plain;
-  plain.geodesicSources = 0;
+  unfolding::DistortionOptions plain{.geodesicSources = 0};
   const auto distortion = unfolding::measureDistortion(before, flat.positions, all, plain);
   const Eigen::VectorXd angleDeg = distortion.angleErrorRad * (180 / kPi);
   const Eigen::VectorXd ratio = unfolding::vertexMeans(before, all, distortion.areaRatio, 1);
@@ -185,9 +184,9 @@ Eigen::VectorXd measure(Context& context, const Subject& subject, const flatteni
        {"angle change", "degrees", whole(unfolding::vertexMeans(before, all, angleDeg, 0), 0)},
        {"edge strain", "", whole(unfolding::vertexStrains(before, flat.positions, all), 0)}},
       subject.reference.metadata.structure);
-  flattening::DistanceOptions options;
-  options.farSources = static_cast<int>(
-      std::clamp(kDistanceWork / static_cast<double>(flat.faceCount() / 2 + 1), 20.0, 100.0));
+  flattening::DistanceOptions options{
+      .farSources = static_cast<int>(
+          std::clamp(kDistanceWork / static_cast<double>(flat.faceCount() / 2 + 1), 20.0, 100.0))};
   describing(context, termination, [&] {
     const auto pairs = flattening::drawPairs(before, all, options);
     const auto straight = flattening::DistanceKind::Straight;
@@ -235,10 +234,8 @@ std::optional<std::int64_t> writeFrames(Context& context, const Subject& subject
   std::int64_t turnedOver = 0;
   for (std::size_t n = 0; n < frames.size(); ++n) {
     turnedOver = std::max(turnedOver, flattening::countTurnedOver(disc.mesh.faces, frames[n]));
-    char name[64];
-    std::snprintf(name, sizeof name, "frames/frame-%04zu.surf.gii", n);
-    io::writeGiftiSurface(context.output(name), wholeMap(subject.reference.mesh, disc, frames[n]),
-                          metadata);
+    io::writeGiftiSurface(context.output(printed("frames/frame-%04zu.surf.gii", n)),
+                          wholeMap(subject.reference.mesh, disc, frames[n]), metadata);
   }
   return turnedOver;
 }

@@ -4,13 +4,13 @@
 #include "Stack.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Flattening/FlatGrid.h"
 #include "Explica/IO/RegionFiles.h"
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/IO/VolumeSeries.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <memory>
 #include <set>
 
@@ -18,9 +18,7 @@ namespace explica::app {
 namespace {
 
 Grid gridOf(const std::string& volume) {
-  io::VolumeReadOptions first;
-  first.frame = 0;
-  return io::readGrid(volume, first);
+  return io::readGrid(volume, {.frame = 0});
 }
 
 const Cortex* pointerTo(const std::optional<Cortex>& cortex) {
@@ -65,10 +63,8 @@ void checkPlace(Context& context, const FlattenSettings& s, const std::string& v
   }
   constexpr double kFew = 0.5;
   if (share >= kFew) return;
-  char text[160];
-  std::snprintf(text, sizeof text, "only %.1f %% of the patch lie in '%s'", 100 * share,
-                stemOf(volume).c_str());
-  context.warn(text);
+  context.warn(
+      printed("only %.1f %% of the patch lie in '%s'", 100 * share, stemOf(volume).c_str()));
 }
 
 /// Places of the tissue in a volume's world; NaN stays NaN.
@@ -141,9 +137,7 @@ void writeGrid(Context& context, const FlattenSettings& s, const std::optional<C
     sheet.inner = cortex->white.positions(disc.vertexOrigin, Eigen::all);
     sheet.outer = cortex->pial.positions(disc.vertexOrigin, Eigen::all);
   }
-  flattening::FlatGridOptions options;
-  options.cell = s.grid;
-  options.depths = s.depths.value_or(cortex ? 5 : 1);
+  flattening::FlatGridOptions options{.cell = s.grid, .depths = s.depths.value_or(cortex ? 5 : 1)};
   const auto points = flattening::flatGrid(sheet, options);
   io::writeVolume(context.output("grid.nii.gz"), points);
   for (const std::string& path : s.volumes) {

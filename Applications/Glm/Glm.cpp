@@ -215,13 +215,12 @@ void measureSmoothness(const Observations& o, const Eigen::MatrixXd& fitted, Glm
 
 bool inferAll(Context& context, const GlmSettings& s, const Observations& o,
               const Eigen::MatrixXd& fitted, GlmResults& results) {
-  statistics::InferenceOptions options;
-  options.clusterP = s.threshold;
-  options.permutations = s.permutations;
-  options.seed = static_cast<std::uint64_t>(s.seed);
-  options.tfce = s.tfce;
-  options.exchange = s.exchange;
-  options.blocks = blocksOf(s, o, results.design);
+  statistics::InferenceOptions options{.clusterP = s.threshold,
+                                       .permutations = s.permutations,
+                                       .seed = static_cast<std::uint64_t>(s.seed),
+                                       .tfce = s.tfce,
+                                       .exchange = s.exchange,
+                                       .blocks = blocksOf(s, o, results.design)};
   bool complete = true;
   for (std::size_t k = 0; k < results.contrasts.size(); ++k) {
     results.inferences.push_back(statistics::infer(

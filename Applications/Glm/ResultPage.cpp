@@ -3,7 +3,6 @@
 
 #include "ResultPage.h"
 
-#include "Explica/Core/Html.h"
 #include "Explica/Maps/Folding.h"
 #include "Explica/Report/Page.h"
 #include "Explica/Report/SurfacePicture.h"
@@ -11,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 namespace explica::app {
 namespace {
@@ -67,9 +65,7 @@ report::ReportViews viewsOf(const std::vector<Side>& sides, const Eigen::VectorX
                             const report::ColourScale& scale, double threshold, Size pixels) {
   report::ReportViews views;
   views.scale = scale;
-  report::SurfacePictureOptions size;
-  size.width = pixels.width;
-  size.height = pixels.height;
+  report::SurfacePictureOptions size{.width = pixels.width, .height = pixels.height};
   for (const Side& side : sides) {
     std::vector<Colour> colours;
     for (Eigen::Index v = 0; v < side.hemisphere->count; ++v) {

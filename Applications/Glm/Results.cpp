@@ -5,9 +5,10 @@
 
 #include "Explica/IO/VertexDataFile.h"
 
+#include "Explica/Core/Text.h"
+
 #include <cctype>
 #include <cmath>
-#include <cstdio>
 
 namespace explica::app {
 namespace {
@@ -42,9 +43,7 @@ double at(const Eigen::VectorXd& values, Eigen::Index v) {
 
 std::string numberText(double value, int digits) {
   if (!std::isfinite(value)) return "n/a";
-  char text[40];
-  std::snprintf(text, sizeof text, "%.*g", digits, value);
-  return text;
+  return printed("%.*g", digits, value);
 }
 
 std::string fileName(const std::string& contrast) {

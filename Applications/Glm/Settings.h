@@ -6,7 +6,6 @@
 #include "Explica/Statistics/Shuffler.h"
 
 #include <array>
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
@@ -16,6 +15,11 @@ namespace explica::app {
 
 /// What is done about differences between sites.
 enum class SiteModel { None, Fixed, Random, Combat };
+constexpr auto enumWords(SiteModel) {
+  using enum SiteModel;
+  return std::to_array<EnumWord<SiteModel>>(
+      {{None, "none"}, {Fixed, "fixed"}, {Random, "random"}, {Combat, "combat"}});
+}
 
 /// Options of `explica glm`.
 struct GlmSettings {
@@ -36,14 +40,3 @@ struct GlmSettings {
 };
 
 }  // namespace explica::app
-
-namespace explica {
-
-template <>
-struct EnumNames<app::SiteModel> {
-  static constexpr std::array table = {
-      std::pair{app::SiteModel::None, "none"}, std::pair{app::SiteModel::Fixed, "fixed"},
-      std::pair{app::SiteModel::Random, "random"}, std::pair{app::SiteModel::Combat, "combat"}};
-};
-
-}  // namespace explica

@@ -4,7 +4,7 @@
 #include "Frames.h"
 
 #include "Explica/Application/Command.h"
-#include "Explica/Core/Errors.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Ventricle/Pictures.h"
@@ -13,10 +13,6 @@
 #include "Explica/Ventricle/Summary.h"
 
 #include <nlohmann/json.hpp>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
 
 namespace explica::app {
 namespace {
@@ -87,9 +83,7 @@ void declare(Declaration& d, Settings& s) {
 }
 
 std::string degrees(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.0f degrees", value);
-  return text;
+  return printed("%.0f degrees", value);
 }
 
 /// A wall without an opening encloses no ventricle: a flag.
@@ -99,18 +93,16 @@ double judgeOpening(Context& context, const ventricle::Beat& beat) {
   const double open = ventricle::openShareOf(beat.atDiastole().heart);
   context.judged();
   if (!(open < kLeastOpening)) return open;
-  char sentence[200];
-  std::snprintf(
-      sentence, sizeof sentence,
-      "the wall encloses the cavity on all sides (%.1f %% of its area is open; a ventricle "
-      "is open at its base): this is no ventricle, or labels are wrong",
-      100 * open);
   context.flag({{"name", "closed-wall"},
                 {"value", open},
                 {"low", kLeastOpening},
                 {"high", nullptr},
                 {"accepted", false},
-                {"message", sentence}});
+                {"message",
+                 printed("the wall encloses the cavity on all sides (%.1f %% of its area is open; "
+                         "a ventricle is open at its base): this is no ventricle, or labels are "
+                         "wrong",
+                         100 * open)}});
   return open;
 }
 
@@ -147,9 +139,7 @@ void writePicture(Context& context, const std::string& name, const ventricle::Dr
 }
 
 std::string frameName(int number) {
-  char text[48];
-  std::snprintf(text, sizeof text, "thickness_frame-%04d.nii.gz", number);
-  return text;
+  return printed("thickness_frame-%04d.nii.gz", number);
 }
 
 void writeVolumes(Context& context, const ventricle::Beat& beat) {

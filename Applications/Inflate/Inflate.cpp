@@ -8,9 +8,9 @@
 #include "Explica/Application/Command.h"
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Collision/Untangling.h"
-#include "Explica/Core/Errors.h"
 #include "Explica/Core/StopScope.h"
 #include "Explica/Core/Stopwatch.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Core/TimeBudget.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Geometry/MeshTopology.h"
@@ -19,10 +19,7 @@
 #include "Explica/Inflation/Summary.h"
 #include "Explica/Unfolding/Account.h"
 
-#include <algorithm>
-#include <cstdio>
 #include <optional>
-#include <utility>
 
 namespace explica::app {
 namespace {
@@ -103,12 +100,10 @@ std::vector<geometry::FacePair> checkStart(Context& context, const Settings& s,
   context.results(unfolding::StartSummary{list.size(), std::nullopt, parted, repair.moved.size(),
                                           repair.moveMax, repair.moveMean});
   if (!list.empty()) {
-    char text[240];
-    std::snprintf(text, sizeof text,
-                  "%zu pairs of faces intersect at the start (intersections.tsv); %zu were parted "
-                  "by moving %zu vertices by %.3f mm at most, the others stay as they are",
-                  list.size(), parted, repair.moved.size(), repair.moveMax);
-    context.warn(text);
+    context.warn(
+        printed("%zu pairs of faces intersect at the start (intersections.tsv); %zu were parted "
+                "by moving %zu vertices by %.3f mm at most, the others stay as they are",
+                list.size(), parted, repair.moved.size(), repair.moveMax));
   }
   return repair.after;
 }

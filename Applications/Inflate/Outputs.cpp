@@ -4,6 +4,7 @@
 #include "Outputs.h"
 
 #include "Explica/Application/Describing.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Flattening/Comparison.h"
 #include "Explica/Geometry/MeshMeasures.h"
@@ -14,7 +15,6 @@
 #include "Explica/Visibility/SphereView.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <iterator>
 #include <numeric>
 
@@ -68,8 +68,7 @@ void measureDistances(const Inflated& u, inflation::InflateSummary& summary) {
 
 unfolding::Distortion writeDistortion(Context& context, const Inflated& u) {
   const auto all = everyFace(u.before);
-  unfolding::DistortionOptions plain;
-  plain.geodesicSources = 0;
+  unfolding::DistortionOptions plain{.geodesicSources = 0};
   auto d = unfolding::measureDistortion(u.before, u.result.mesh.positions, all, plain);
   const Eigen::VectorXd angleDeg = d.angleErrorRad * (180 / kPi);
   io::writeGiftiShape(
@@ -90,9 +89,8 @@ unfolding::FrameSummary writeFrames(Context& context, const Inflated& u) {
                              u.before.faces};
     most = std::max(most, geometry::findSelfIntersections(frame).size());
     visibilities.push_back(u.result.frames[n].visibility);
-    char name[64];
-    std::snprintf(name, sizeof name, "frames/frame-%04zu.surf.gii", n);
-    io::writeGiftiSurface(context.output(name), frame, u.metadata);
+    io::writeGiftiSurface(context.output(printed("frames/frame-%04zu.surf.gii", n)), frame,
+                          u.metadata);
   }
   return {visibilities, most};
 }

@@ -96,11 +96,9 @@ std::vector<Volume<float>> readSessions(Context& context, const Settings& s) {
     throw UsageError("'" + s.sessions.front() +
                      "' is one session; a change is between two or more of the same person");
   }
-  io::VolumeReadOptions reading;
-  reading.dimension = 3;
   std::vector<Volume<float>> sessions;
   for (const std::string& path : s.sessions) {
-    sessions.push_back(readScalars(context, "SESSION", path, reading));
+    sessions.push_back(readScalars(context, "SESSION", path, {.dimension = 3}));
   }
   return sessions;
 }
@@ -108,11 +106,9 @@ std::vector<Volume<float>> readSessions(Context& context, const Settings& s) {
 /// The atlas in the common space, with its legend.
 void writeAtlas(Context& context, const std::string& path, const Eigen::Isometry3d& toFirst,
                 const Grid& grid) {
-  io::VolumeReadOptions reading;
-  reading.dimension = 3;
   registration::HeadTransform transform;
   transform.affine = Eigen::Affine3d(toFirst.matrix());
-  const Volume<Label> atlas = readLabels(context, "atlas", path, reading);
+  const Volume<Label> atlas = readLabels(context, "atlas", path, {.dimension = 3});
   io::writeVolume(context.output("atlas.nii.gz"), registration::pulled(atlas, transform, grid));
   if (const auto legend = io::findLegend(path)) {
     const char* name = legend->extension() == ".tsv" ? "atlas.tsv" : "atlas.nii.txt";

@@ -9,7 +9,6 @@
 #include "Explica/IO/LabelNames.h"
 #include "Explica/IO/RegionFiles.h"
 #include "Explica/IO/StatedHemisphere.h"
-#include "Explica/IO/VertexFile.h"
 #include "Explica/Maps/Icosphere.h"
 #include "Explica/Maps/LabelVolume.h"
 #include "Explica/Maps/Parcellation.h"
@@ -103,10 +102,9 @@ std::string prefixOf(const Settings& s) {
 }
 
 TriangleMesh readSphere(Context& context, const fs::path& path) {
-  io::SurfaceReadOptions reading;
-  reading.space = io::SurfaceSpace::Scanner;
-  TriangleMesh sphere =
-      readSurface(context, "sphere", context.input(path, "sphere").string(), reading).mesh;
+  TriangleMesh sphere = readSurface(context, "sphere", context.input(path, "sphere").string(),
+                                    {.space = io::SurfaceSpace::Scanner})
+                            .mesh;
   maps::requireSphere(sphere, "'" + path.string() + "'");
   return sphere;
 }
@@ -181,8 +179,6 @@ std::vector<io::LabelEntry> toldByColour(std::vector<io::LabelEntry> table) {
 std::array<TriangleMesh, 2> readRibbon(Context& context, const Settings& s,
                                        const std::string& prefix, Eigen::Index vertices) {
   std::array<TriangleMesh, 2> ribbon;
-  io::SurfaceReadOptions reading;
-  reading.space = io::SurfaceSpace::Scanner;
   for (std::size_t n = 0; n < 2; ++n) {
     const std::string name = n == 0 ? "white" : "pial";
     const auto file =
@@ -193,7 +189,9 @@ std::array<TriangleMesh, 2> readRibbon(Context& context, const Settings& s,
                          ".surf.gii in it, which --volume needs; name their folder by "
                          "--surfaces");
     }
-    ribbon[n] = readSurface(context, name, context.input(*file, name).string(), reading).mesh;
+    ribbon[n] = readSurface(context, name, context.input(*file, name).string(),
+                            {.space = io::SurfaceSpace::Scanner})
+                    .mesh;
     if (ribbon[n].vertexCount() == vertices) continue;
     throw InvalidInput("'" + *file + "': has " + std::to_string(ribbon[n].vertexCount()) +
                        " vertices, the person's sphere " + std::to_string(vertices));

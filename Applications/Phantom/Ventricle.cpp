@@ -2,11 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "AnnulusKind.h"
 
+#include "Explica/Core/Text.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Phantom/BeatingVentricle.h"
-
-#include <array>
-#include <cstdio>
 
 namespace explica::app {
 namespace {
@@ -32,18 +30,12 @@ void declare(Declaration& d, Settings& s) {
   declareAnnulusKind(d, s);
 }
 
-std::string line(const char* format, auto... values) {
-  std::array<char, 128> text{};
-  std::snprintf(text.data(), text.size(), format, values...);
-  return text.data();
-}
-
 std::string frameTable(const phantom::BeatingVentricle& beat) {
   std::string text = "frame\tcavity_volume_ml\twall_volume_ml\tmass_g\n";
   for (std::size_t f = 0; f < beat.frames.size(); ++f) {
     const auto& frame = beat.frames[f];
-    text += line("%zu\t%.4f\t%.4f\t%.4f\n", f, 1e-3 * frame.cavity, 1e-3 * frame.wall,
-                 1.05e-3 * frame.wall);
+    text += printed("%zu\t%.4f\t%.4f\t%.4f\n", f, 1e-3 * frame.cavity, 1e-3 * frame.wall,
+                    1.05e-3 * frame.wall);
   }
   return text;
 }
@@ -55,7 +47,7 @@ std::string segmentTable(const phantom::BeatingVentricle& beat) {
     for (int segment = 1; segment <= 16; ++segment) {
       const auto third = static_cast<std::size_t>((segment - 1) / 6);
       const double t = beat.frames[f].thickness[third];
-      text += line("%d\t%zu\t%.4f\t%.2f\n", segment, f, t, 100 * (t / first[third] - 1));
+      text += printed("%d\t%zu\t%.4f\t%.2f\n", segment, f, t, 100 * (t / first[third] - 1));
     }
   }
   return text;
@@ -69,7 +61,7 @@ Termination runBeat(Context& context, const Settings& s) {
   }
   auto step = context.step("write");
   for (std::size_t f = 0; f < beat.frames.size(); ++f) {
-    io::writeVolume(context.output(line("frame-%04zu.nii.gz", f)), beat.frames[f].labels);
+    io::writeVolume(context.output(printed("frame-%04zu.nii.gz", f)), beat.frames[f].labels);
   }
   writeTextFile(context.output("frames_exact.tsv"), frameTable(beat));
   writeTextFile(context.output("segments_exact.tsv"), segmentTable(beat));

@@ -5,6 +5,7 @@
 #include "Explica/Application/ReadPolygon.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/StopScope.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/IO/PolygonFile.h"
 #include "Explica/Planar/AngularSweep.h"
@@ -17,10 +18,7 @@
 #include "Settings.h"
 #include "State.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 
 namespace explica::app {
 
@@ -111,11 +109,9 @@ std::string tableOf(const std::vector<planar::PolygonIteration>& history) {
       "iteration\tvisibility\tflux_variance\tlength\tlength_error\tleast_distance\tknot_energy\t"
       "step\tseconds\n";
   for (const planar::PolygonIteration& row : history) {
-    char line[320];
-    std::snprintf(line, sizeof line, "%d\t%.9g\t%.9g\t%.9g\t%.3g\t%.6g\t%.9g\t%.6g\t%.6f\n",
-                  row.iteration, row.visibility, row.variance, row.length, row.lengthError,
-                  row.leastDistance, row.knotEnergy, row.step, row.seconds);
-    table += line;
+    table += printed("%d\t%.9g\t%.9g\t%.9g\t%.3g\t%.6g\t%.9g\t%.6g\t%.6f\n", row.iteration,
+                     row.visibility, row.variance, row.length, row.lengthError, row.leastDistance,
+                     row.knotEnergy, row.step, row.seconds);
   }
   return table;
 }
@@ -180,12 +176,10 @@ void sayHowLongUnfoldingIs(Context& context, const PolygonSettings& s, const Tas
   if (s.unfolding.noTopology || s.unfolding.knot != planar::PolygonKnot::AllPairs) return;
   const double pairs = kSumsPerIteration * task.region.edgeCount * task.curve.edgeCount();
   if (pairs < kPairsPerSecond) return;
-  char text[160];
-  std::snprintf(text, sizeof text,
-                "knot energy, each iteration: %.2g pairs of edges, about %.0f s on one processor; "
-                "--knot auto or tree sums it in n log n",
-                pairs, std::ceil(pairs / kPairsPerSecond));
-  context.info(text);
+  context.info(
+      printed("knot energy, each iteration: %.2g pairs of edges, about %.0f s on one processor; "
+              "--knot auto or tree sums it in n log n",
+              pairs, std::ceil(pairs / kPairsPerSecond)));
 }
 
 /// The measures of the whole polygon, whatever the viewpoint.

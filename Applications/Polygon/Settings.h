@@ -14,17 +14,11 @@ namespace explica::app {
 
 /// A polygon that brings its region and viewpoint along.
 enum class PhantomPolygon { Polygon19, Polygon34 };
-
-}  // namespace explica::app
-
-template <>
-struct explica::EnumNames<explica::app::PhantomPolygon> {
-  using Kind = explica::app::PhantomPolygon;
-  static constexpr std::array table = {std::pair{Kind::Polygon19, "polygon19"},
-                                       std::pair{Kind::Polygon34, "polygon34"}};
-};
-
-namespace explica::app {
+constexpr auto enumWords(PhantomPolygon) {
+  using enum PhantomPolygon;
+  return std::to_array<EnumWord<PhantomPolygon>>(
+      {{Polygon19, "polygon19"}, {Polygon34, "polygon34"}});
+}
 
 inline constexpr char kStateFile[] = "polygon.state";
 

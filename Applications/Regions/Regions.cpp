@@ -6,17 +6,15 @@
 #include "Explica/Application/Command.h"
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/IO/RegionFiles.h"
 #include "Explica/IO/StatedHemisphere.h"
-#include "Explica/IO/VertexFile.h"
 #include "Explica/Maps/Folding.h"
 #include "Explica/Maps/Regions.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
 #include <optional>
 #include <span>
 
@@ -105,8 +103,7 @@ Hemisphere readHemisphere(Context& context, const Settings& s, const std::string
   const auto file = [&](const std::string& fsName, const std::string& ours) {
     return fileOf(context, s, side, fsName, ours);
   };
-  io::SurfaceReadOptions reading;
-  reading.space = io::SurfaceSpace::Scanner;
+  io::SurfaceReadOptions reading{.space = io::SurfaceSpace::Scanner};
   std::optional<Eigen::Index> count;
   const auto white = file("white", "white.surf.gii"), pial = file("pial", "pial.surf.gii");
   found.areas = white ? Eigen::VectorXd() : mapOf(file("area", "area.shape.gii"), count);
@@ -224,13 +221,9 @@ std::string longRows(const std::string& person, const std::string& side, const A
   std::string text;
   for (std::size_t r = 0; r < table.regions.size(); ++r) {
     for (const Measure& measure : table.measures) {
-      char value[40] = "n/a";
-      if (std::isfinite(measure.values[r])) {
-        std::snprintf(value, sizeof value, "%.7g", measure.values[r]);
-      }
       text += person + "\t" + side + "\t" + table.name + "\t" + table.regions[r] + "\t" +
-              measure.name + "\t" + value + "\t" + (measure.unit.empty() ? "n/a" : measure.unit) +
-              "\n";
+              measure.name + "\t" + cellText(measure.values[r], "%.7g") + "\t" +
+              (measure.unit.empty() ? "n/a" : measure.unit) + "\n";
     }
   }
   return text;

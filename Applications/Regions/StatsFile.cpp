@@ -3,9 +3,9 @@
 
 #include "StatsFile.h"
 
+#include "Explica/Core/Text.h"
+
 #include <array>
-#include <cstdarg>
-#include <cstdio>
 
 namespace explica::app {
 namespace {
@@ -22,15 +22,6 @@ constexpr std::array<StatsColumn, 7> kStatsColumns = {
      {"ThickAvg", "Average Thickness", "mm"},
      {"ThickStd", "Thickness StdDev", "mm"},
      {"MeanCurv", "Integrated Rectified Mean Curvature", "mm^-1"}}};
-
-__attribute__((format(printf, 1, 2))) std::string printed(const char* format, ...) {
-  std::array<char, 512> line{};
-  va_list values;
-  va_start(values, format);
-  std::vsnprintf(line.data(), line.size(), format, values);
-  va_end(values);
-  return line.data();
-}
 
 }  // namespace
 

@@ -68,10 +68,8 @@ FoldingFiles subjectFiles(const std::string& sphere, const std::string& structur
 
 sphere::FoldingSphere readFolding(Context& context, const FoldingFiles& files) {
   context.input(files.sphere);
-  io::SurfaceReadOptions reading;
-  reading.space = io::SurfaceSpace::Scanner;  // spheres have a frame of their own
-  sphere::FoldingSphere folding;
-  folding.sphere = io::readSurface(files.sphere, reading).mesh;
+  sphere::FoldingSphere folding;  // spheres have a frame of their own
+  folding.sphere = io::readSurface(files.sphere, {.space = io::SurfaceSpace::Scanner}).mesh;
   sphere::requireSphere(folding.sphere, files.sphere);
   requireAboutOrigin(folding.sphere, files.sphere);
   if (geometry::enclosedVolume(folding.sphere) < 0)

@@ -7,6 +7,7 @@
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/StopScope.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Geometry/FaceCrossing.h"
 #include "Explica/Geometry/MeshTopology.h"
@@ -14,7 +15,6 @@
 #include "Explica/IO/VertexDataFile.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <set>
 
 namespace explica::app {
@@ -56,9 +56,8 @@ Inputs readInputs(Context& context, const Settings& s) {
   Inputs inputs;
   std::set<std::string> names;
   for (const std::string& path : s.surfaces) {
-    io::SurfaceReadOptions reading;
-    reading.space = io::SurfaceSpace::Scanner;
-    inputs.loaded.push_back(readSurface(context, "SURFACE", path, reading));
+    inputs.loaded.push_back(
+        readSurface(context, "SURFACE", path, {.space = io::SurfaceSpace::Scanner}));
     inputs.meshes.push_back(inputs.loaded.back().mesh);
     geometry::requireManifold(inputs.meshes.back(), path);
     inputs.names.push_back(io::nameOfSurface(path));
@@ -76,10 +75,8 @@ std::string rowsOf(const std::string& name, const TriangleMesh& mesh,
   for (const geometry::FacePair& pair : repaired.before) {
     const Point place = geometry::placeOfCrossing(mesh, pair);
     const bool left = std::binary_search(repaired.after.begin(), repaired.after.end(), pair);
-    char row[200];
-    std::snprintf(row, sizeof row, "\t%d\t%d\t%.4f\t%.4f\t%.4f\t%s\n", pair[0], pair[1], place[0],
-                  place[1], place[2], left ? "no" : "yes");
-    text += name + row;
+    text += name + printed("\t%d\t%d\t%.4f\t%.4f\t%.4f\t%s\n", pair[0], pair[1], place[0], place[1],
+                           place[2], left ? "no" : "yes");
   }
   return text;
 }

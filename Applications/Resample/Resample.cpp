@@ -111,8 +111,6 @@ std::string spaceOf(const std::string& name) {
 
 Target readTarget(Context& context, const Settings& s, const std::string& structure) {
   Target target;
-  io::SurfaceReadOptions reading;
-  reading.space = io::SurfaceSpace::Scanner;
   if (s.space) target.space = spaceOf(*s.space);
   if (const auto level = maps::fsaverageLevel(s.to)) {
     target.sphere.mesh = maps::fsaverageSphere(*level);
@@ -127,7 +125,7 @@ Target readTarget(Context& context, const Settings& s, const std::string& struct
                        "' is no file, and none of fsaverage3 ... fsaverage6, fsaverage, fs_LR-32k");
   }
   context.input(file, "to");
-  target.sphere = readSurface(context, "to", file, reading);
+  target.sphere = readSurface(context, "to", file, {.space = io::SurfaceSpace::Scanner});
   if (!s.space) target.space = fsLR ? "fsLR" : spaceOf(io::nameOfSurface(file));
   return target;
 }
@@ -144,9 +142,8 @@ Eigen::VectorXd areasOf(Context& context, const Settings& s, std::size_t place,
       place == 0 ? first : both.substr(std::min(first.size() + 1, both.size()));
   if (path.empty()) return geometry::vertexAreas(sphere);
   context.input(path, "areas");
-  io::SurfaceReadOptions reading;
-  reading.space = io::SurfaceSpace::Scanner;
-  const TriangleMesh mesh = readSurface(context, "areas", path, reading).mesh;
+  const TriangleMesh mesh =
+      readSurface(context, "areas", path, {.space = io::SurfaceSpace::Scanner}).mesh;
   if (mesh.vertexCount() != sphere.vertexCount()) {
     throw InvalidInput("'" + path + "': has " + std::to_string(mesh.vertexCount()) +
                        " vertices, its sphere " + std::to_string(sphere.vertexCount()));
@@ -243,9 +240,8 @@ void carry(const std::filesystem::path& path, CarriedFile file, const Weights& w
 }
 
 Termination run(Context& context, const Settings& s) {
-  io::SurfaceReadOptions reading;
-  reading.space = io::SurfaceSpace::Scanner;
-  const io::LoadedSurface from = readSurface(context, "from", *s.from, reading);
+  const io::LoadedSurface from =
+      readSurface(context, "from", *s.from, {.space = io::SurfaceSpace::Scanner});
   const Target target = readTarget(context, s, from.metadata.structure);
   const std::vector<CarriedFile> files = readFiles(s, from, target);
   maps::requireSphere(from.mesh, "'" + *s.from + "'");

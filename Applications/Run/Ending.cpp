@@ -3,11 +3,11 @@
 
 #include "Ending.h"
 
+#include "Explica/Core/Text.h"
 #include "Explica/Provenance/Json.h"
 #include "Explica/Provenance/Record.h"
 
 #include <array>
-#include <cstdio>
 #include <optional>
 
 namespace explica::app {
@@ -30,24 +30,17 @@ std::optional<double> number(const Json& summary, const char* key) {
   return found->get<double>();
 }
 
-template <class... Values>
-std::string format(const char* pattern, Values... values) {
-  std::array<char, 200> text{};
-  std::snprintf(text.data(), text.size(), pattern, values...);
-  return text.data();
-}
-
 /// "left 2.61 mm (SD 0.62)", from the surfaces, else from the volume.
 std::string thicknessOf(const fs::path& out, const char* ending, const char* side) {
   const Json surface = readIfThere(out / ("surface" + std::string(ending)) / "summary.json");
   if (const auto mean = number(surface, "thickness_mean")) {
     const auto deviation = number(surface, "thickness_sd");
-    return format("%s%.2f mm", side, *mean) +
-           (deviation ? format(" (SD %.2f over the surface)", *deviation) : "");
+    return printed("%s%.2f mm", side, *mean) +
+           (deviation ? printed(" (SD %.2f over the surface)", *deviation) : "");
   }
   const Json volume = readIfThere(out / ("thickness" + std::string(ending)) / "summary.json");
   const auto mean = number(volume, "thickness_mean");
-  return mean ? format("%s%.2f mm", side, *mean) : std::string();
+  return mean ? printed("%s%.2f mm", side, *mean) : std::string();
 }
 
 std::string placeOf(const fs::path& folder) {
@@ -55,8 +48,8 @@ std::string placeOf(const fs::path& folder) {
   if (!record.contains("options") || !record["options"].contains("center")) return {};
   const Json& c = record["options"]["center"];
   if (!c.is_array() || c.size() != 3) return {};
-  return format(" about (%.0f, %.0f, %.0f)", c[0].get<double>(), c[1].get<double>(),
-                c[2].get<double>());
+  return printed(" about (%.0f, %.0f, %.0f)", c[0].get<double>(), c[1].get<double>(),
+                 c[2].get<double>());
 }
 
 std::string patchOf(const fs::path& out, const char* ending, const char* side) {
@@ -67,9 +60,9 @@ std::string patchOf(const fs::path& out, const char* ending, const char* side) {
   const auto after = number(summary, "visibility_final");
   const auto strain = number(summary, "edge_strain_mean");
   if (!area || !before || !after || !strain) return {};
-  return format("%spatch: %.0f mm^2", side, *area) + placeOf(folder) +
-         format(", visibility %.2f before, %.2f after, mean edge strain %.1f %%", *before, *after,
-                100 * *strain);
+  return printed("%spatch: %.0f mm^2", side, *area) + placeOf(folder) +
+         printed(", visibility %.2f before, %.2f after, mean edge strain %.1f %%", *before, *after,
+                 100 * *strain);
 }
 
 }  // namespace

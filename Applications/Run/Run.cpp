@@ -7,6 +7,7 @@
 #include "Explica/Application/Command.h"
 #include "Explica/Application/CortexTemplate.h"
 #include "Explica/Application/Execute.h"
+#include "Explica/Application/ManyRuns.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/StopScope.h"
 #include "Explica/Core/WholeFile.h"
@@ -103,24 +104,14 @@ void settleFluid(const Context& context, const pipeline::PlannedStep& step, Json
 /// The first step that this one needs and that has no outputs.
 const std::string* missingNeed(const pipeline::PlannedStep& step,
                                const std::vector<pipeline::StepNote>& notes) {
+  using report::StepState;
   for (const std::string& need : step.needs) {
-    for (const auto& note : notes) {
-      const bool present =
-          note.state == report::StepState::Done || note.state == report::StepState::StoppedEarly;
-      if (note.name == need && !present) return &need;
+    for (const auto& [name, command, state, message] : notes) {
+      if (name == need && state != StepState::Done && state != StepState::StoppedEarly)
+        return &need;
     }
   }
   return nullptr;
-}
-
-/// What a step's numbers say against it counts against the run.
-void passFlagsOn(Context& context, const std::string& step) {
-  const Json summary =
-      provenance::readJson(context.outputFolder() / step / provenance::kSummaryName);
-  for (Json flag : summary.value("flags", Json::array())) {
-    flag["step"] = step;
-    context.flag(flag);
-  }
 }
 
 void runStep(Context& context, const RunSettings& s, const pipeline::PlannedStep& step,
@@ -143,13 +134,8 @@ void runStep(Context& context, const RunSettings& s, const pipeline::PlannedStep
                : context.monitor().shouldStop() ? report::StepState::Interrupted
                                                 : report::StepState::StoppedEarly;
   if (outcome->abandoned) context.dropCommand(step.name);  // what an earlier run left
-  if (!outcome->plausible) passFlagsOn(context, step.name);
+  if (!outcome->plausible) passFlagsOn(context, "step", context.outputFolder() / step.name);
   if (!reachedGoal(outcome->termination)) worst = outcome->termination;
-}
-
-/// A run that fails leaves nothing, unless it is one that can be resumed.
-void takeBack(Context& context, const std::vector<pipeline::PlannedStep>& plan, std::size_t count) {
-  for (std::size_t n = 0; n < count; ++n) context.dropCommand(plan[n].name);
 }
 
 /// Left and right beside each other, once both have regions.
@@ -160,7 +146,6 @@ void writeAsymmetry(Context& context, const fs::path& out) {
   writeTextFile(context.output("asymmetry.tsv"), pipeline::asymmetryTable(left, right));
 }
 
-/// The report must not be lost to a fault of its own.
 /// The report; what cannot be shown is a warning, what cannot be written ends the run.
 void writeReport(Context& context, const fs::path& out) {
   try {
@@ -176,12 +161,14 @@ void writeReport(Context& context, const fs::path& out) {
   }
 }
 
+bool isNamed(const RunSettings& s, pipeline::RunStep step) {
+  return std::count(s.plan.steps.begin(), s.plan.steps.end(), step) > 0;
+}
+
 /// The template to register to; none where the image has another one than Colin27, or none.
 std::string templateOf(Context& context, const RunSettings& s) {
-  const auto asked = [&](pipeline::RunStep step) {
-    return std::count(s.plan.steps.begin(), s.plan.steps.end(), step) > 0;
-  };
-  const bool needed = asked(pipeline::RunStep::Register) || asked(pipeline::RunStep::Parcellate);
+  const bool needed =
+      isNamed(s, pipeline::RunStep::Register) || isNamed(s, pipeline::RunStep::Parcellate);
   if (needed && s.plan.cortexTemplate == kNoTemplate) {
     throw UsageError(
         "--template none leaves nothing to register to; leave it out, or the steps "
@@ -241,11 +228,6 @@ void checkBeforehand(Context& context, const RunSettings& s, const pipeline::Pla
   }
 }
 
-void sayWhatCameOut(Context& context, const fs::path& out, bool withReport) {
-  for (const std::string& line : whatCameOut(out)) context.info(line);
-  if (withReport) context.info("report: " + (out / "report.html").string());
-}
-
 Termination run(Context& context, const RunSettings& s) {
   const StopScope kept(nullptr);  // what is reached is written
   const fs::path out = context.outputFolder();
@@ -257,9 +239,7 @@ Termination run(Context& context, const RunSettings& s) {
   std::vector<pipeline::StepNote> notes;
   for (const auto& step : plan)
     notes.push_back({step.name, step.command, report::StepState::Missing, ""});
-  const bool withReport =
-      s.plan.steps.empty() || std::find(s.plan.steps.begin(), s.plan.steps.end(),
-                                        pipeline::RunStep::Report) != s.plan.steps.end();
+  const bool withReport = s.plan.steps.empty() || isNamed(s, pipeline::RunStep::Report);
   const std::string state = context.output(pipeline::kRunStateName).string();
   Termination worst = Termination::NotRun;
   std::exception_ptr failure;
@@ -279,8 +259,8 @@ Termination run(Context& context, const RunSettings& s) {
     } catch (const Error& fault) {
       // An earlier run's results of this step are of other inputs or options.
       context.dropCommand(plan[n].name);
-      if (!s.resume) {
-        takeBack(context, plan, n);
+      if (!s.resume) {  // a run that cannot be resumed leaves nothing
+        for (std::size_t m = 0; m < n; ++m) context.dropCommand(plan[m].name);
         throw;
       }
       // What does not depend on it goes on; the report says what failed, and so does the end.
@@ -304,7 +284,8 @@ Termination run(Context& context, const RunSettings& s) {
     writeReport(context, out);
   }
   if (failure) std::rethrow_exception(failure);
-  sayWhatCameOut(context, out, withReport);
+  for (const std::string& line : whatCameOut(out)) context.info(line);
+  if (withReport) context.info("report: " + (out / "report.html").string());
   return worst;
 }
 

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
-#include "PointTable.h"
 #include "Settings.h"
 
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/IO/LabelNames.h"
 #include "Explica/IO/VolumeSeries.h"
@@ -110,9 +110,9 @@ std::string rowsOf(const std::vector<sampling::LayerRow>& table, int layers,
   std::string text;
   for (const sampling::LayerRow& row : table) {
     text += row.region + "\t" + frame + std::to_string(row.layer) + "\t" +
-            cell((row.layer - 0.5) / layers) + "\t" + cell(row.mean) + "\t" + cell(row.deviation) +
-            "\t" + std::to_string(row.count) + "\t" + cell(row.volume) + "\t" +
-            cell(row.columnMean) + "\n";
+            cellText((row.layer - 0.5) / layers) + "\t" + cellText(row.mean) + "\t" +
+            cellText(row.deviation) + "\t" + std::to_string(row.count) + "\t" +
+            cellText(row.volume) + "\t" + cellText(row.columnMean) + "\n";
   }
   return text;
 }

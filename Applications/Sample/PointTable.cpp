@@ -3,17 +3,9 @@
 
 #include "PointTable.h"
 
-#include <cmath>
-#include <cstdio>
+#include "Explica/Core/Text.h"
 
 namespace explica::app {
-
-std::string cell(double value) {
-  if (!std::isfinite(value)) return "n/a";
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
 
 std::string textOf(const io::PointTable& table, const std::vector<sampling::ColumnPlace>& places,
                    const sampling::Regions& regions) {
@@ -21,8 +13,8 @@ std::string textOf(const io::PointTable& table, const std::vector<sampling::Colu
   for (std::size_t n = 0; n < places.size(); ++n) {
     const sampling::ColumnPlace& place = places[n];
     const std::string& region = regions.nameAt(static_cast<std::size_t>(place.vertex));
-    text += table.rows[n] + "\t" + std::to_string(place.vertex) + "\t" + cell(place.depth) + "\t" +
-            cell(place.distance) + "\t" + (region.empty() ? "n/a" : region) + "\n";
+    text += table.rows[n] + "\t" + std::to_string(place.vertex) + "\t" + cellText(place.depth) +
+            "\t" + cellText(place.distance) + "\t" + (region.empty() ? "n/a" : region) + "\n";
   }
   return text;
 }

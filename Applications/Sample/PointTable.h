@@ -16,7 +16,4 @@ namespace explica::app {
                                  const std::vector<sampling::ColumnPlace>& places,
                                  const sampling::Regions& regions);
 
-/// "%.6g", and "n/a" for what is not known, as BIDS has it.
-[[nodiscard]] std::string cell(double value);
-
 }  // namespace explica::app

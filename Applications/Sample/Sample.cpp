@@ -51,9 +51,7 @@ Positions placesIn(Context& context, const Grid& volume, const SampleSettings& s
 
 std::optional<Volume<std::uint8_t>> maskFor(const Grid& volume, const SampleSettings& s) {
   if (!s.mask) return {};
-  io::VolumeReadOptions reading;
-  reading.allowNonFinite = true;
-  const Volume<float> read = io::readScalars(*s.mask, reading).volume;
+  const Volume<float> read = io::readScalars(*s.mask, {.allowNonFinite = true}).volume;
   if (!sameGrid(read.grid, volume, 0.1)) {
     throw InvalidInput("'" + *s.mask +
                        "': its grid is not that of the volume it is to mask; resample "

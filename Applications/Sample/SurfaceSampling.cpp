@@ -10,6 +10,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Core/StopScope.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/IO/VolumeSeries.h"
@@ -162,8 +163,9 @@ class SurfaceSampling {
       const auto moments = regions_.momentsOf(std::span(values).subspan(row * count_, count_));
       for (std::size_t r = 0; r < moments.size(); ++r) {
         texts[row] += name + "\t" + regions_.names()[r] + "\t" + layerText(layer) + "\t" +
-                      (frames > 1 ? frame : "n/a") + "\t" + cell(moments[r].mean) + "\t" +
-                      cell(moments[r].deviation) + "\t" + std::to_string(moments[r].count) + "\n";
+                      (frames > 1 ? frame : "n/a") + "\t" + cellText(moments[r].mean) + "\t" +
+                      cellText(moments[r].deviation) + "\t" + std::to_string(moments[r].count) +
+                      "\n";
       }
     });
     for (const std::string& text : texts) profiles_ += text;
@@ -213,13 +215,10 @@ class SurfaceSampling {
     summary_.known.emplace_back(name, share);
     constexpr double kFew = 0.5;
     if (share < kFew) {
-      char text[160];
-      std::snprintf(
-          text, sizeof text,
-          "'%s' is known at %.1f %% of the vertices only: the others lie outside the field "
-          "of view, the mask or the map",
-          name.c_str(), 100 * share);
-      context_.warn(text);
+      context_.warn(
+          printed("'%s' is known at %.1f %% of the vertices only: the others lie outside the field "
+                  "of view, the mask or the map",
+                  name.c_str(), 100 * share));
     }
     for (std::size_t d = 0; d < layers_; ++d) {
       io::VertexMap map{name + (ribbon_ ? " ribbon" : " depth " + layerText(d)), "", {}};

@@ -15,15 +15,12 @@ namespace explica::app {
 
 /// Whether a T1 has its skull.
 enum class Stripped { Yes, No, Auto };
+constexpr auto enumWords(Stripped) {
+  using enum Stripped;
+  return std::to_array<EnumWord<Stripped>>({{Yes, "yes"}, {No, "no"}, {Auto, "auto"}});
+}
 
 }  // namespace explica::app
-
-template <>
-struct explica::EnumNames<explica::app::Stripped> {
-  static constexpr std::array table{std::pair{app::Stripped::Yes, "yes"},
-                                    std::pair{app::Stripped::No, "no"},
-                                    std::pair{app::Stripped::Auto, "auto"}};
-};
 
 namespace explica::app {
 

@@ -3,6 +3,7 @@
 
 #include "Explica/Application/Command.h"
 #include "Explica/Application/ReadInputs.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
@@ -10,8 +11,6 @@
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/Sphere/SphereMap.h"
 #include "Explica/Sphere/Summary.h"
-
-#include <cstdio>
 
 namespace explica::app {
 namespace {
@@ -43,11 +42,8 @@ void declare(Declaration& d, Settings& s) {
 std::string tableOf(const std::vector<sphere::SphereLevel>& levels) {
   std::string table = "level\tvertices\titerations\tenergy\n";
   for (std::size_t n = 0; n < levels.size(); ++n) {
-    char row[120];
-    std::snprintf(row, sizeof row, "%zu\t%lld\t%d\t%.9g\n", n,
-                  static_cast<long long>(levels[n].vertices), levels[n].iterations,
-                  levels[n].energy);
-    table += row;
+    table += printed("%zu\t%lld\t%d\t%.9g\n", n, static_cast<long long>(levels[n].vertices),
+                     levels[n].iterations, levels[n].energy);
   }
   return table;
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "Explica/Application/Command.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Study/HeartStudy.h"
 #include "Explica/Study/StudyPage.h"
@@ -105,11 +106,8 @@ Termination run(Context& context, const Settings& s) {
   std::map<std::string, int> states;
   for (const study::StudyRow& row : rows)
     ++states[row.state.substr(0, row.state.find_first_of(" :("))];
-  std::string account;
-  for (const auto& [state, count] : states) {
-    account += (account.empty() ? "" : ", ") + std::to_string(count) + " " + state;
-  }
-  context.info(account);
+  context.info(joined(
+      states, ", ", [](const auto& one) { return std::to_string(one.second) + " " + one.first; }));
   context.result("rows", rows.size());
   for (const auto& [state, count] : states) context.result("runs_" + state, count);
   return Termination::NotRun;

@@ -4,6 +4,7 @@
 #include "Explica/Application/CortexTemplate.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/StopScope.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/Maps/Folding.h"
@@ -15,7 +16,6 @@
 #include "GroupParts.h"
 
 #include <algorithm>
-#include <cstdio>
 
 namespace explica::app {
 namespace {
@@ -36,10 +36,9 @@ void readTemplate(Context& context, const Member& member, Side& side) {
   const CortexTemplate known =
       findTemplate(context, name.is_string() ? name.get<std::string>() : kDefaultTemplate,
                    structureOf(side.hemisphere));
-  io::SurfaceReadOptions reading;
-  reading.space = io::SurfaceSpace::Scanner;
   const auto read = [&](const std::string& file) {
-    return io::readSurface(context.input(file, "template"), reading).mesh;
+    return io::readSurface(context.input(file, "template"), {.space = io::SurfaceSpace::Scanner})
+        .mesh;
   };
   const TriangleMesh from = read(known.sphere);
   const Eigen::VectorXd fromAreas = geometry::vertexAreas(from),
@@ -57,13 +56,6 @@ void readTemplate(Context& context, const Member& member, Side& side) {
     side.regions->keys =
         maps::resampleLabels(weightsBy(maps::ResamplingMethod::Adaptive), side.regions->keys);
   }
-}
-
-std::string number(double value) {
-  if (!std::isfinite(value)) return "n/a";
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
 }
 
 }  // namespace
@@ -137,7 +129,7 @@ void compare(Context& context, const Member& member, const Side& side) {
     const Eigen::VectorXd map = readMap(member, m, side.vertices);
     const Eigen::VectorXd z = side.groups[m].distance(map, inGroup);
     member.row->values[std::string("group.distance_") + kMeasures[m]] =
-        number(statistics::typicalDistance(z, side.people - (inGroup ? 1 : 0)));
+        cellText(statistics::typicalDistance(z, side.people - (inGroup ? 1 : 0)), "%.4g");
     maps.push_back({std::string("z of ") + kMeasures[m], "", z});
   }
   io::writeGiftiShape(context.output("group/" + member.stem() + "_desc-z.shape.gii"), maps,
@@ -159,9 +151,7 @@ void drawGroup(Context& context, const std::vector<Side>& sides) {
       paint.values = mean ? thickness.mean() : thickness.deviation();
       if (!(paint.values.array().isFinite().any())) continue;
       paint.scale = report::scaleFor(paint.values, mean ? "mean" : "standard deviation", "mm");
-      report::SurfacePictureOptions size;
-      size.width = 480;
-      size.height = 360;
+      report::SurfacePictureOptions size{.width = 480, .height = 360};
       report::writePng(context.output("group/hemi-" + side.hemisphere +
                                       (mean ? "_mean" : "_deviation") + ".png"),
                        report::surfaceFigure(inflated, paint, views, 2, size));

@@ -3,9 +3,9 @@
 #pragma once
 
 #include "Explica/Application/Command.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Study/StudyTable.h"
 
-#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -21,7 +21,7 @@ struct GroupSettings {
 };
 
 /// What is known of people, by participant_id and column: participants.tsv.
-using AboutPeople = std::map<std::string, std::map<std::string, std::string>>;
+using AboutPeople = std::map<std::string, TableRow>;
 
 /// Who is in a group's numbers.
 struct GroupSummary {

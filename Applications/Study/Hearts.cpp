@@ -6,6 +6,7 @@
 #include "Explica/Application/ManyRuns.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/StopScope.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Provenance/Json.h"
 #include "Explica/Provenance/Software.h"
@@ -145,7 +146,7 @@ Termination run(Context& context, const Settings& s) {
                        " hearts failed; each one's problem.txt says why");
   }
   context.warn(std::to_string(failed.size()) + " of " + std::to_string(subjects.size()) +
-               " hearts failed: " + listed(failed));
+               " hearts failed: " + joined(failed));
   return reachedGoal(worst) ? Termination::Stalled : worst;
 }
 

@@ -4,6 +4,7 @@
 #include "KeptRun.h"
 
 #include "Explica/Core/FileText.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/Provenance/Json.h"
 #include "Explica/Provenance/Record.h"
 #include "Explica/Study/StudyTable.h"
@@ -22,24 +23,22 @@ constexpr const char* kTogether = "maps_";  // begins the name of the file of al
 /// "space-X_den-Y" of a file in the folder whose name begins so; empty if there is none.
 std::string entityIn(const fs::path& folder, const std::string& begin) {
   const std::string end = ".shape.gii";
-  std::set<std::string> found;
-  std::error_code fault;
-  for (const auto& entry : fs::directory_iterator(folder, fault)) {
-    const std::string name = entry.path().filename().string();
-    if (!name.starts_with(begin + "space-") || !name.ends_with(end)) continue;
-    found.insert(name.substr(begin.size(), name.size() - begin.size() - end.size()));
-  }
-  return found.empty() ? "" : *found.begin();
+  const auto found = entriesOf(folder, [&](const std::string& name) {
+    return name.starts_with(begin + "space-") && name.ends_with(end);
+  });
+  if (found.empty()) return "";
+  const std::string name = found.front().filename().string();
+  return name.substr(begin.size(), name.size() - begin.size() - end.size());
 }
 
 /// Everything of the folder's steps that tables of a study are made of.
 Json accountOf(const fs::path& run, const std::string& key) {
   Json kept = {{"key", key}, {"run", provenance::readJson(run / "run.json")}};
   kept["steps"] = Json::object();
-  for (const auto& entry : fs::directory_iterator(run)) {
-    const fs::path summary = entry.path() / provenance::kSummaryName;
-    if (!entry.is_directory() || !fs::exists(summary)) continue;
-    kept["steps"][entry.path().filename().string()] = provenance::readJson(summary);
+  for (const fs::path& step : foldersOf(run)) {
+    const fs::path summary = step / provenance::kSummaryName;
+    if (!fs::exists(summary)) continue;
+    kept["steps"][step.filename().string()] = provenance::readJson(summary);
   }
   const Json record = provenance::readRecord(run / "register" / provenance::kRecordName);
   kept["template"] = record["options"]["template"];
@@ -80,11 +79,10 @@ void keepForGroup(const fs::path& run, const std::string& key) {
   provenance::writeJson(run / study::kKeptName, accountOf(run, key));
   const std::set<std::string> stays = {study::kKeptName, together.filename().string(),
                                        "report.html", provenance::kRecordName, "problem.txt"};
-  std::vector<fs::path> goes;
-  for (const auto& entry : fs::directory_iterator(run)) {
-    if (!stays.count(entry.path().filename().string())) goes.push_back(entry.path());
+  for (const fs::path& path :
+       entriesOf(run, [&](const std::string& entry) { return !stays.count(entry); })) {
+    fs::remove_all(path);
   }
-  for (const fs::path& path : goes) fs::remove_all(path);
 }
 
 }  // namespace explica::app

@@ -7,7 +7,6 @@
 #include <array>
 #include <filesystem>
 #include <string>
-#include <utility>
 
 namespace explica::app {
 
@@ -16,6 +15,9 @@ enum class Keep {
   All,
   Group  ///< what `study group` and `bids ... group` read, the report and the record
 };
+constexpr auto enumWords(Keep) {
+  return std::to_array<EnumWord<Keep>>({{Keep::All, "all"}, {Keep::Group, "group"}});
+}
 
 [[nodiscard]] inline Field keepField() {
   return {"keep", "",
@@ -38,9 +40,3 @@ struct TemplateMaps {
 [[nodiscard]] TemplateMaps templateMapsOf(const std::filesystem::path& run);
 
 }  // namespace explica::app
-
-template <>
-struct explica::EnumNames<explica::app::Keep> {
-  static constexpr std::array table = {std::pair{app::Keep::All, "all"},
-                                       std::pair{app::Keep::Group, "group"}};
-};

@@ -6,6 +6,7 @@
 #include "Explica/Application/ManyRuns.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/StopScope.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Study/StudyState.h"
 #include "KeptRun.h"
@@ -101,7 +102,7 @@ bool doRun(Context& context, const fs::path& folder, const study::Participant& p
     const Outcome outcome = context.runApart(*findCommand("run"), folder, values);
     outcome.abandoned ? sayInterrupted(folder) : static_cast<void>(fs::remove(problem));
     if (!reachedGoal(outcome.termination)) account.worst = outcome.termination;
-    if (!outcome.plausible) passFlagsOn(context, folder);
+    if (!outcome.plausible) passFlagsOn(context, "run", folder);
     return !endedFromOutside(outcome.termination);
   } catch (const EnvironmentError& fault) {
     account.environmentFault = fault.what();
@@ -158,11 +159,10 @@ Termination run(Context& context, const Settings& s) {
   }
   if (!account.environmentFault.empty()) throw EnvironmentError(account.environmentFault);
   if (account.failed.empty()) return account.worst;
-  std::string names;
-  for (const std::string& name : account.failed) names += (names.empty() ? "" : ", ") + name;
   const std::string said = std::to_string(account.failed.size()) + " of " +
-                           std::to_string(account.runs) + " runs failed (" + names +
-                           "), as said above and in each " + s.out + "/runs/sub-*/problem.txt";
+                           std::to_string(account.runs) + " runs failed (" +
+                           joined(account.failed) + "), as said above and in each " + s.out +
+                           "/runs/sub-*/problem.txt";
   if (account.failed.size() == static_cast<std::size_t>(account.runs)) {
     throw InvalidInput(s.study + ": " + said);
   }

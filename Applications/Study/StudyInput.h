@@ -5,7 +5,6 @@
 #include "Explica/Study/StudyPlan.h"
 
 #include <string>
-#include <vector>
 
 namespace explica::app {
 

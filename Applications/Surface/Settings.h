@@ -11,7 +11,6 @@
 #include <array>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace explica {
@@ -22,6 +21,11 @@ enum class ThicknessMeasure {
   Trajectory,  ///< length of the trajectory that joins the two surfaces
   Nearest      ///< FreeSurfer's: mean of the nearest distances, both ways
 };
+constexpr auto enumWords(ThicknessMeasure) {
+  using enum ThicknessMeasure;
+  return std::to_array<EnumWord<ThicknessMeasure>>(
+      {{Trajectory, "trajectory"}, {Nearest, "nearest"}});
+}
 
 /// Whether the surfaces are a sheet that may end in rims.
 enum class Sheet {
@@ -29,21 +33,13 @@ enum class Sheet {
   Always,
   Never  ///< a closed surface, or a refusal
 };
+constexpr auto enumWords(Sheet) {
+  using enum Sheet;
+  return std::to_array<EnumWord<Sheet>>(
+      {{Automatic, "auto"}, {Always, "always"}, {Never, "never"}});
+}
 
 }  // namespace app
-
-template <>
-struct EnumNames<app::Sheet> {
-  static constexpr std::array table = {std::pair{app::Sheet::Automatic, "auto"},
-                                       std::pair{app::Sheet::Always, "always"},
-                                       std::pair{app::Sheet::Never, "never"}};
-};
-
-template <>
-struct EnumNames<app::ThicknessMeasure> {
-  static constexpr std::array table = {std::pair{app::ThicknessMeasure::Trajectory, "trajectory"},
-                                       std::pair{app::ThicknessMeasure::Nearest, "nearest"}};
-};
 
 namespace app {
 

@@ -50,11 +50,9 @@ void checkChoice(const SurfaceSettings& s) {
 /// Surfaces of another program, as they are; they must bound a volume, whatever their topology.
 surface::CorticalSurfaces readGivenSurfaces(Context& context, const SurfaceSettings& s,
                                             std::string& structure) {
-  io::SurfaceReadOptions reading;
-  reading.space = s.surfaceSpace;
-  reading.fsVolume = s.fsVolume;
   const auto read = [&](const char* name, const std::string& path) {
-    io::LoadedSurface loaded = readSurface(context, name, path, reading);
+    io::LoadedSurface loaded =
+        readSurface(context, name, path, {.space = s.surfaceSpace, .fsVolume = s.fsVolume});
     geometry::requireClosedManifold(loaded.mesh, path);
     if (structure == "Cortex" && loaded.metadata.structure != "Other") {
       structure = loaded.metadata.structure;

@@ -3,6 +3,7 @@
 #include "Tissue.h"
 
 #include "Explica/Application/ReadInputs.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Maps/Folding.h"
 #include "Explica/Provenance/Doubts.h"
@@ -117,10 +118,8 @@ void doubtLabels(Context& context, const surface::TissueFacts& tissue, bool shee
                       : std::to_string(tissue.atImageBorder) +
                             " voxels of white and grey matter lie in the image's outermost layer: "
                             "the surface ends where the image does");
-  std::string unknown;
-  for (const Label label : tissue.unknownLabels) {
-    unknown += (unknown.empty() ? "" : ", ") + std::to_string(label);
-  }
+  const std::string unknown =
+      joined(tissue.unknownLabels, ", ", [](Label label) { return std::to_string(label); });
   context.doubt(provenance::kLabelsUnknown, tissue.unknownLabels.size(),
                 "programs of preset '" + std::string(nameOf(tissue.preset)) + "' use no label " +
                     unknown + "; taken to lie outside the tissue");

@@ -5,6 +5,7 @@
 #include "Explica/Application/CortexTemplate.h"
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/Core/StopScope.h"
 #include "Explica/IO/RegionFiles.h"
 #include "Explica/IO/StatedHemisphere.h"
@@ -67,14 +68,9 @@ struct Person {
 };
 
 /// The runs of a study, or the folder itself.
-std::vector<fs::path> foldersOf(const std::string& given) {
-  if (!fs::is_directory(fs::path(given) / "runs")) return {given};
-  std::vector<fs::path> folders;
-  for (const auto& entry : fs::directory_iterator(fs::path(given) / "runs")) {
-    if (entry.is_directory()) folders.push_back(entry.path());
-  }
-  std::sort(folders.begin(), folders.end());
-  return folders;
+std::vector<fs::path> peopleIn(const std::string& given) {
+  const fs::path runs = fs::path(given) / "runs";
+  return fs::is_directory(runs) ? foldersOf(runs) : std::vector<fs::path>{given};
 }
 
 /// What a folder has of a hemisphere, if it has its sphere.
@@ -112,9 +108,9 @@ std::optional<Person> personIn(const fs::path& folder, const std::string& struct
 }
 
 TriangleMesh readMesh(Context& context, const std::string& file) {
-  io::SurfaceReadOptions reading;
-  reading.space = io::SurfaceSpace::Scanner;
-  return readSurface(context, "PEOPLE", context.input(file, "person").string(), reading).mesh;
+  return readSurface(context, "PEOPLE", context.input(file, "person").string(),
+                     {.space = io::SurfaceSpace::Scanner})
+      .mesh;
 }
 
 sphere::FoldingSphere readFolding(Context& context, const Person& person) {
@@ -211,7 +207,7 @@ void writeSide(Context& context, const Side& side, const sphere::SphereAverage& 
 std::vector<Person> peopleOf(const Settings& s, const std::string& structure) {
   std::vector<Person> people;
   for (const std::string& given : s.people) {
-    for (const fs::path& folder : foldersOf(given)) {
+    for (const fs::path& folder : peopleIn(given)) {
       if (auto person = personIn(folder, structure)) people.push_back(std::move(*person));
     }
   }

@@ -3,6 +3,7 @@
 
 #include "Outputs.h"
 
+#include "Explica/Core/Text.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
@@ -17,7 +18,6 @@
 #include "Explica/Visibility/VisibleFraction.h"
 
 #include <algorithm>
-#include <cstdio>
 
 namespace explica::app {
 namespace {
@@ -126,9 +126,8 @@ unfolding::FrameSummary writeFrames(Context& context, const Unfolded& u, const M
                              u.result.mesh.faces};
     most = std::max(most, unfolding::crossingsAfterMotion(frame, moved, before).size());
     visibilities.push_back(u.result.frames[n].visibility);
-    char name[64];
-    std::snprintf(name, sizeof name, "frames/frame-%04zu.surf.gii", n);
-    io::writeGiftiSurface(context.output(name), frame, u.metadata);
+    io::writeGiftiSurface(context.output(printed("frames/frame-%04zu.surf.gii", n)), frame,
+                          u.metadata);
   }
   return {visibilities, most};
 }
@@ -182,17 +181,14 @@ void sayCollar(Context& context, const Unfolded& u, const Measures& m) {
   if (collar.empty()) return;
   const Eigen::VectorXd stretch = m.areaRatio(collar);
   if (stretch.maxCoeff() <= unfolding::kCollarMost) return;
-  char text[240];
-  std::snprintf(
-      text, sizeof text,
-      "%lld of %zu faces around the region are stretched to more than %g times their area, "
-      "one to %.1f times; %.2f times in the mean%s",
-      static_cast<long long>((stretch.array() > unfolding::kCollarMost).count()), collar.size(),
-      unfolding::kCollarMost, stretch.maxCoeff(), stretch.mean(),
-      u.surround == unfolding::Surround::Elastic
-          ? ""
-          : ": with --surround elastic more of them follow, and stretch less");
-  context.warn(text);
+  context.warn(
+      printed("%lld of %zu faces around the region are stretched to more than %g times their area, "
+              "one to %.1f times; %.2f times in the mean%s",
+              static_cast<long long>((stretch.array() > unfolding::kCollarMost).count()),
+              collar.size(), unfolding::kCollarMost, stretch.maxCoeff(), stretch.mean(),
+              u.surround == unfolding::Surround::Elastic
+                  ? ""
+                  : ": with --surround elastic more of them follow, and stretch less"));
 }
 
 /// What the file holds against what the method promises.

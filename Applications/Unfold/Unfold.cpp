@@ -11,6 +11,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/StopScope.h"
 #include "Explica/Core/Stopwatch.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Core/TimeBudget.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Geometry/MeshTopology.h"
@@ -22,10 +23,7 @@
 
 #include <malloc.h>
 
-#include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <limits>
 
 namespace explica::app {
 namespace {
@@ -45,10 +43,8 @@ std::vector<bool> markedByMap(const TriangleMesh& mesh, const UnfoldSettings& s)
     if (values[v] > largest) largest = values[v];
   }
   if (!(largest > *s.above)) {
-    char text[120];
-    std::snprintf(text, sizeof text, "map: no vertex is above %g; its largest value is %g",
-                  *s.above, largest);
-    throw InvalidInput(text);
+    throw InvalidInput(
+        printed("map: no vertex is above %g; its largest value is %g", *s.above, largest));
   }
   return marked;
 }
@@ -73,21 +69,18 @@ unfolding::Region regionOf(const TriangleMesh& mesh, const UnfoldSettings& s,
 std::string crossingsInWords(const std::vector<unfolding::Crossing>& list, std::size_t inRegion,
                              const collision::Untangling& repair) {
   const unfolding::Crossing& first = list.front();
-  char text[320];
-  std::snprintf(
-      text, sizeof text,
+  const std::string message = printed(
       "%zu pairs of faces intersect at the start, %zu of them in the region (faces %d and "
       "%d near %.2f, %.2f, %.2f, ...; all in intersections.tsv)",
       list.size(), inRegion, first.faces[0], first.faces[1], first.place[0], first.place[1],
       first.place[2]);
-  std::string message = text;
   if (repair.moved.empty()) return message + "; they stay as they are";
-  std::snprintf(text, sizeof text,
-                "; %zu were parted by moving %zu vertices by %.3f mm on average and %.3f mm at "
-                "most%s",
-                repair.before.size() - repair.after.size(), repair.moved.size(), repair.moveMean,
-                repair.moveMax, repair.after.empty() ? "" : ", the others stay as they are");
-  return message + text;
+  return message +
+         printed(
+             "; %zu were parted by moving %zu vertices by %.3f mm on average and %.3f mm at "
+             "most%s",
+             repair.before.size() - repair.after.size(), repair.moved.size(), repair.moveMean,
+             repair.moveMax, repair.after.empty() ? "" : ", the others stay as they are");
 }
 
 /// Lists the start's intersections and parts in `mesh` those that stand in the way.
@@ -196,12 +189,10 @@ void sayHowLong(Context& context, const UnfoldSettings& s, const Unfolded& u) {
   if (s.unfold.unfolder.knot != repulsion::KnotMethod::AllPairs) return;
   constexpr double kPairsPerSecond = 1.4e5;  // an iteration sums several times along its step
   const double pairs = static_cast<double>(u.chosen.faces.size()) * u.before.faceCount();
-  char text[160];
-  std::snprintf(text, sizeof text,
-                "knot energy, each iteration: %.2g pairs of faces, about %.0f s on one processor; "
-                "--knot tree sums it in n log n",
-                pairs, std::ceil(pairs / kPairsPerSecond));
-  context.info(text);
+  context.info(
+      printed("knot energy, each iteration: %.2g pairs of faces, about %.0f s on one processor; "
+              "--knot tree sums it in n log n",
+              pairs, std::ceil(pairs / kPairsPerSecond)));
 }
 
 Termination run(Context& context, const UnfoldSettings& s) {

@@ -3,6 +3,7 @@
 #include "Film.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/Pipeline/UnfoldingFolder.h"
@@ -16,7 +17,6 @@
 #include <array>
 #include <cmath>
 #include <csignal>
-#include <cstdio>
 #include <string>
 
 namespace explica::app {
@@ -43,15 +43,11 @@ Json summaryOf(const fs::path& folder) {
 }
 
 std::string captionOf(const Json& summary, std::size_t frame, std::size_t count) {
-  std::array<char, 96> text{};
   const double visibility = pipeline::frameVisibility(summary, frame);
   if (!std::isfinite(visibility)) return "";
-  std::snprintf(text.data(), text.size(), "average visibility %.2f", visibility);
-  std::string caption = text.data();
+  std::string caption = printed("average visibility %.2f", visibility);
   if (frame + 1 == count && summary.contains("area_error_mean")) {
-    std::snprintf(text.data(), text.size(), "   areas kept to %.2g %%",
-                  100 * summary.value("area_error_mean", kNaN));
-    caption += text.data();
+    caption += printed("   areas kept to %.2g %%", 100 * summary.value("area_error_mean", kNaN));
   }
   return caption;
 }

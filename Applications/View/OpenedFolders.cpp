@@ -3,6 +3,7 @@
 #include "OpenedFolders.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/Pipeline/UnfoldingFolder.h"
@@ -14,8 +15,6 @@
 
 #include <Eigen/Geometry>
 
-#include <algorithm>
-#include <cmath>
 #include <numeric>
 
 namespace explica::app {
@@ -46,12 +45,7 @@ provenance::Json summaryOf(const fs::path& folder) {
 }
 
 std::vector<fs::path> filesEnding(const fs::path& folder, std::string_view ending) {
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.path().filename().string().ends_with(ending)) files.push_back(entry.path());
-  }
-  std::sort(files.begin(), files.end());
-  return files;
+  return entriesOf(folder, [&](const std::string& name) { return name.ends_with(ending); });
 }
 
 unfolding::Region regionOf(const fs::path& folder, const TriangleMesh& surface) {

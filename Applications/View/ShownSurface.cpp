@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ShownSurface.h"
 
-#include "Explica/Core/Errors.h"
-
 #include <algorithm>
 #include <array>
 #include <cctype>

@@ -3,6 +3,7 @@
 
 #include "Steer.h"
 
+#include "Explica/Core/Text.h"
 #include "Explica/Unfolding/Region.h"
 #include "Explica/Viewer/Window.h"
 #include "OpenedFiles.h"
@@ -66,9 +67,7 @@ std::future<std::string> saveState(Context& context, const std::string& surface,
       words.push_back(value);
     }
   }
-  std::string command;
-  for (const std::string& word : words) command += (command.empty() ? "" : " ") + word;
-  context.info("saving, the same as: " + command);
+  context.info("saving, the same as: " + joined(words, " "));
   std::filesystem::remove_all(out);
   std::filesystem::create_directories(out);
   unfolding::writeCheckpoint(std::filesystem::path(out) / "unfolding.state", *checkpoint);
@@ -97,12 +96,11 @@ void steer(Context& context, const ShownSurface& surface, const io::SurfaceReadO
   choice.unfold.targetVisibility = options.targetVisibility;
   session.choose(choice);
 
-  viewer::WindowOptions window;
-  window.title = "Explica: " + path;
-  window.surface = path;
-  window.reading = optionsOf(reading);
-  window.script = options.script;
-  window.opened = std::move(opened);
+  viewer::WindowOptions window{.title = "Explica: " + path,
+                               .surface = path,
+                               .reading = optionsOf(reading),
+                               .opened = std::move(opened),
+                               .script = options.script};
   viewer::WindowCalls calls;
   calls.scale = scaleOf;
   calls.open = [&](const std::string& file) { return openForWindow(file, surface); };

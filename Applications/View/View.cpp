@@ -11,6 +11,7 @@
 #include "Explica/Application/Command.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/StopScope.h"
+#include "Explica/Core/Text.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/IO/VolumeFile.h"
@@ -131,10 +132,8 @@ report::SurfacePaint readPaint(const Settings& s, const ShownSurface& surface) {
                                  [&](const io::VertexMap& m) { return m.name == *s.mapName; })
                   : maps.begin();
     if (chosen == maps.end()) {
-      std::string names;
-      for (const auto& m : maps) names += (names.empty() ? "" : ", ") + m.name;
       throw InvalidInput(*s.map + ": holds no map named '" + s.mapName.value_or("") + "' but " +
-                         names);
+                         joined(maps, ", ", [](const auto& m) { return m.name; }));
     }
     paint.values = chosen->values;
     paint.scale =

@@ -5,6 +5,7 @@
 
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/IO/VolumeFile.h"
+#include "Explica/Testing/Meshes.h"
 #include "QuickRuns.h"
 
 #include <gtest/gtest.h>

@@ -7,6 +7,7 @@
 #include "Explica/Geometry/SelfIntersection.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/Testing/Command.h"
+#include "Explica/Testing/Meshes.h"
 #include "QuickRuns.h"
 #include "RealSurfaces.h"
 

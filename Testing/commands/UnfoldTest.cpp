@@ -12,6 +12,7 @@
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Testing/Command.h"
 #include "Explica/Testing/DepthBuffer.h"
+#include "Explica/Testing/Meshes.h"
 #include "Explica/Unfolding/Region.h"
 
 #include <gtest/gtest.h>

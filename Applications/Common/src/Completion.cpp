@@ -3,6 +3,8 @@
 
 #include "DescriptorWords.h"
 
+#include "Explica/Core/Text.h"
+
 #include <algorithm>
 #include <map>
 
@@ -29,12 +31,6 @@ Verbs verbsOf(const Json& commands) {
     if (space != std::string::npos) verbs.kinds[verb] += " " + name.substr(space + 1);
   }
   return verbs;
-}
-
-std::string joined(const std::vector<std::string>& words, const char* separator) {
-  std::string all;
-  for (const auto& one : words) all += (all.empty() ? "" : separator) + one;
-  return all;
 }
 
 /// What may follow an option, as the shell function's `values`: words, or -f files, or -d folders.

@@ -5,6 +5,8 @@
 
 #include "Parse.h"
 
+#include "Explica/Core/Text.h"
+
 #include <algorithm>
 #include <cctype>
 
@@ -55,11 +57,7 @@ std::string word(const Json& value) {
 std::string valueText(const Json& value) {
   if (value.is_null()) return "";
   if (value.is_string()) return word(value);
-  if (value.is_array()) {
-    std::string joined;
-    for (const Json& item : value) joined += (joined.empty() ? "" : ",") + valueText(item);
-    return joined;
-  }
+  if (value.is_array()) return joined(value, ",", valueText);
   return value.dump();
 }
 

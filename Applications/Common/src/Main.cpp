@@ -3,6 +3,7 @@
 
 #include "Explica/Application/Descriptors.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Provenance/Software.h"
 #include "Limits.h"
 #include "Parse.h"
@@ -12,7 +13,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
-#include <filesystem>
 #include <iostream>
 #include <new>
 #include <optional>
@@ -83,10 +83,8 @@ std::string kindsText(const std::string& verb) {
 
 [[noreturn]] void refuseUnknown(const std::vector<std::string>& words) {
   if (const auto kinds = kindsOf(words[0]); !kinds.empty()) {
-    std::string names;
-    for (const Command* kind : kinds) {
-      names += (names.empty() ? "" : ", ") + kind->name().substr(words[0].size() + 1);
-    }
+    const std::string names = joined(
+        kinds, ", ", [&](const Command* kind) { return kind->name().substr(words[0].size() + 1); });
     throw UsageError((words.size() > 1 ? "unknown kind '" + words[1] + "' of " : "no kind of ") +
                      words[0] + "; kinds are " + names);
   }

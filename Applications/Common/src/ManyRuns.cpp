@@ -50,18 +50,12 @@ void sayInterrupted(const std::filesystem::path& folder) {
   writeTextFile(folder / "problem.txt", "interrupted\n");
 }
 
-void passFlagsOn(Context& context, const std::filesystem::path& run) {
-  const provenance::Json summary = provenance::readJson(run / provenance::kSummaryName);
+void passFlagsOn(Context& context, const char* kind, const std::filesystem::path& part) {
+  const provenance::Json summary = provenance::readJson(part / provenance::kSummaryName);
   for (provenance::Json flag : summary.value("flags", provenance::Json::array())) {
-    flag["run"] = run.filename().string();
+    flag[kind] = part.filename().string();
     context.flag(flag);
   }
-}
-
-std::string listed(const std::vector<std::string>& names) {
-  std::string all;
-  for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
-  return all;
 }
 
 }  // namespace explica::app

@@ -3,9 +3,10 @@
 
 #include "Parse.h"
 
+#include "Explica/Core/Text.h"
+
 #include <algorithm>
 #include <map>
-#include <numeric>
 
 namespace explica::app {
 namespace {
@@ -52,27 +53,8 @@ std::string meantBy(const std::string& word, const std::vector<std::string>& can
 }  // namespace
 
 std::string nearestWord(const std::string& word, const std::vector<std::string>& candidates) {
-  std::string best = meantBy(word, candidates);
-  if (!best.empty()) return best;
-  std::size_t bestDistance = word.size() / 3 + 2;
-  for (const auto& candidate : candidates) {
-    std::vector<std::size_t> row(candidate.size() + 1);
-    std::iota(row.begin(), row.end(), 0);
-    for (std::size_t i = 1; i <= word.size(); ++i) {
-      std::size_t diagonal = row[0];
-      row[0] = i;
-      for (std::size_t j = 1; j <= candidate.size(); ++j) {
-        const std::size_t substituted = diagonal + (word[i - 1] == candidate[j - 1] ? 0 : 1);
-        diagonal = row[j];
-        row[j] = std::min({row[j] + 1, row[j - 1] + 1, substituted});
-      }
-    }
-    if (row.back() < bestDistance) {
-      bestDistance = row.back();
-      best = candidate;
-    }
-  }
-  return best;
+  const std::string meant = meantBy(word, candidates);
+  return meant.empty() ? nearestOf(word, candidates, word.size() / 3 + 2) : meant;
 }
 
 }  // namespace explica::app

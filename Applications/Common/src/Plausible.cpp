@@ -4,22 +4,17 @@
 #include "Explica/Application/Plausible.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Segmentation/Plausibility.h"
 #include "JsonNumber.h"
 #include "Meeting.h"
 
-#include <algorithm>
-
 namespace explica::app {
 void declareAccept(Declaration& d, std::vector<std::string>& accepted) {
-  static const std::string help = [] {
-    std::string names;
-    for (const auto& limit : segmentation::limits()) {
-      names += (names.empty() ? "" : ", ") + std::string(limit.name);
-    }
-    return "go on although this number is implausible; may be repeated: " + names +
-           "; or although files are of two hemispheres (hemisphere) or meshes (mesh)";
-  }();
+  static const std::string help =
+      "go on although this number is implausible; may be repeated: " +
+      joined(segmentation::limits(), ", ", [](const auto& limit) { return limit.name; }) +
+      "; or although files are of two hemispheres (hemisphere) or meshes (mesh)";
   d.option("Plausibility", Field{"accept", "", help}, accepted);
 }
 

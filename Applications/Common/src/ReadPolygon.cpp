@@ -5,11 +5,10 @@
 
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Text.h"
 #include "Explica/IO/PolygonFile.h"
 
 #include <nlohmann/json.hpp>
-
-#include <cstdio>
 
 namespace explica::app {
 
@@ -70,9 +69,7 @@ bool isPolygonTable(const std::string& path) {
 }
 
 std::string frameName(std::size_t number, const std::string& extension) {
-  char name[40];
-  std::snprintf(name, sizeof name, "frames/frame-%04zu", number);
-  return name + extension;
+  return printed("frames/frame-%04zu", number) + extension;
 }
 
 }  // namespace explica::app

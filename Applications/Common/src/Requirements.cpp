@@ -3,6 +3,7 @@
 // Options that need, exclude or miss each other.
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Text.h"
 #include "Parse.h"
 #include "Wording.h"
 
@@ -31,11 +32,9 @@ std::string conditionText(const Declaration& declaration, const std::string& con
 }  // namespace
 
 std::string needsText(const Declaration& declaration, const Parameter& parameter) {
-  std::string text;
-  for (const std::string& condition : parameter.needs) {
-    text += (text.empty() ? "" : " or ") + conditionText(declaration, condition);
-  }
-  return text;
+  return joined(parameter.needs, " or ", [&](const std::string& condition) {
+    return conditionText(declaration, condition);
+  });
 }
 
 void requireSomething(const Declaration& declaration, const std::set<std::string>& given) {

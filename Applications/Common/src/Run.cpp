@@ -17,10 +17,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
-#include <cmath>
 #include <ctime>
-#include <iostream>
-#include <optional>
 
 namespace explica::app {
 namespace {

@@ -5,6 +5,8 @@
 
 #include "Parse.h"
 
+#include "Explica/Core/Text.h"
+
 #include <algorithm>
 
 namespace explica::app {
@@ -26,7 +28,7 @@ std::string placeholder(const Parameter& parameter) {
   if (parameter.file) {
     word = *parameter.file == FileKind::Folder ? "DIR" : "FILE";
   } else if (option.type() == "choice") {
-    for (const auto& choice : option.choices()) word += (word.empty() ? "" : "|") + choice;
+    word = joined(option.choices(), "|");
   } else if (option.type() == "point2") {
     word = "X,Y";
   } else if (option.type() == "point3") {

@@ -6,6 +6,7 @@
 #include "Explica/Core/Parallel.h"
 #include "Explica/Geometry/Fixtures.h"
 #include "Explica/Geometry/SelfIntersection.h"
+#include "Explica/Testing/Meshes.h"
 #include "Samples.h"
 
 #include <gtest/gtest.h>

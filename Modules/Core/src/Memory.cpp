@@ -5,7 +5,6 @@
 #include <Eigen/Core>
 
 #include <cstddef>
-#include <cstdlib>
 #include <limits>
 
 #ifdef __GLIBC__

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "Explica/Core/Results.h"
+#include "Explica/Core/Text.h"
 
 #include <fnmatch.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
 
 namespace explica {
@@ -196,9 +196,7 @@ std::string cellOf(const Result::Value& value) {
   if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "yes" : "no";
   if (const auto* count = std::get_if<std::int64_t>(&value)) return std::to_string(*count);
   const auto* number = std::get_if<double>(&value);
-  char text[40] = "";
-  if (number) std::snprintf(text, sizeof text, "%.6g", *number);
-  return text;
+  return number ? printed("%.6g", *number) : "";
 }
 
 }  // namespace
@@ -206,28 +204,20 @@ std::string cellOf(const Result::Value& value) {
 std::string tableText(const std::vector<Results>& rows) {
   std::string text;
   if (rows.empty()) return text;
-  for (const Result& result : rows.front()) text += (text.empty() ? "" : "\t") + result.key;
+  text += joined(rows.front(), "\t", [](const Result& result) { return result.key; });
   for (const Results& row : rows) {
-    std::string line;
-    for (const Result& result : row) line += (line.empty() ? "\n" : "\t") + cellOf(result.value);
-    text += line;
+    text += "\n" + joined(row, "\t", [](const Result& result) { return cellOf(result.value); });
   }
   return text + "\n";
 }
 
 std::string readable(double value) {
   constexpr double kLongest = 1e12;  // what is written out, and not as a power of ten
-  char text[40];
   if (!std::isfinite(value)) return "not known";
-  if (std::abs(value) < kLongest && value == std::round(value)) {
-    std::snprintf(text, sizeof text, "%.0f", value);  // a count
-    return text;
-  }
-  std::snprintf(text, sizeof text, "%.3g", value);
-  if (std::abs(value) < kLongest && std::abs(value) >= 999.5) {
-    std::snprintf(text, sizeof text, "%.0f", std::strtod(text, nullptr));
-  }
-  return text;
+  const bool written = std::abs(value) < kLongest;
+  if (written && value == std::round(value)) return printed("%.0f", value);  // a count
+  const std::string text = printed("%.3g", value);
+  return written && std::abs(value) >= 999.5 ? printed("%.0f", std::stod(text)) : text;
 }
 
 Shown shown(double value, std::string_view unit) {

@@ -5,7 +5,6 @@
 #include "Explica/Core/Parallel.h"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <limits>
 #include <queue>

@@ -9,14 +9,14 @@
 namespace explica {
 namespace {
 
-TEST(EnumNames, EveryNameRoundTrips) {
-  for (const auto& [value, name] : EnumNames<Termination>::table) {
+TEST(EnumWords, EveryNameRoundTrips) {
+  for (const auto& [value, name] : enumWords(Termination{})) {
     EXPECT_EQ(valueOf<Termination>(name), value);
     EXPECT_EQ(nameOf(value), name);
   }
 }
 
-TEST(EnumNames, UnknownWordListsTheChoices) {
+TEST(EnumWords, UnknownWordListsTheChoices) {
   try {
     (void)valueOf<Termination>("tired");
     FAIL() << "no exception";

@@ -425,8 +425,7 @@ class Sweep {
     const std::int32_t place = tracer_.placeOf[r];
     const auto s = subscripts(place);
     bool disagreed = false;
-    Tracer::Walk walk;
-    walk.stuck = true;
+    Tracer::Walk walk{.stuck = true};
     if (!std::isnan(first[3])) {
       int axis = 0;
       while (std::abs(first[axis]) != 1) ++axis;

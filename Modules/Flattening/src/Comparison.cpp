@@ -141,8 +141,7 @@ DistanceError distanceError(const std::vector<DistancePairs::Pair>& pairs,
     });
   }
   std::erase_if(ratios, [](double r) { return !std::isfinite(r); });
-  DistanceError result;
-  result.pairs = ratios.size();
+  DistanceError result{.pairs = ratios.size()};
   if (ratios.empty()) return result;
   result.scale = bestScale(ratios);
   double sum = 0;

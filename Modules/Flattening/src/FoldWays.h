@@ -5,7 +5,6 @@
 #include "Explica/Flattening/Opening.h"
 #include "LayFlat.h"
 
-#include <utility>
 #include <vector>
 
 namespace explica::flattening {

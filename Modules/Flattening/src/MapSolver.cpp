@@ -4,7 +4,6 @@
 #include "MapSolver.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace explica::flattening {
 namespace {

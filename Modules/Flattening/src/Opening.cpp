@@ -8,7 +8,6 @@
 #include "Explica/Geometry/MeshTopology.h"
 
 #include <algorithm>
-#include <numeric>
 #include <string>
 #include <unordered_set>
 

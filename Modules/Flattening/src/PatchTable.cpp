@@ -4,24 +4,17 @@
 #include "Explica/Flattening/PatchTable.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <set>
 
 namespace explica::flattening {
 namespace {
-
-std::string numberText(double value) {
-  if (!std::isfinite(value)) return "n/a";
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
 
 struct Moments {
   double mean = kNaN, deviation = kNaN;
@@ -71,11 +64,10 @@ class Rows {
       flatArea += flatAreas_[f];
     }
     std::string text = name + "\t" + key + "\t" + std::to_string(vertices) + "\t" +
-                       std::to_string(faces) + "\t" + numberText(area) + "\t" +
-                       numberText(flatArea);
+                       std::to_string(faces) + "\t" + cellText(area) + "\t" + cellText(flatArea);
     for (const PatchMap& map : maps_) {
       const Moments moments = momentsOf(map.values, weights_, take);
-      text += "\t" + numberText(moments.mean) + "\t" + numberText(moments.deviation);
+      text += "\t" + cellText(moments.mean) + "\t" + cellText(moments.deviation);
     }
     return text + "\n";
   }

@@ -41,8 +41,7 @@ double seenShare(const TriangleMesh& mesh, int viewpoints) {
     return visibility::visibleFraction(mesh, visibility::viewpoint(above)).total;
   }
   Eigen::VectorXd seen = Eigen::VectorXd::Zero(mesh.faceCount());
-  visibility::VisibleFractionOptions one;
-  one.subdivision = 1;
+  visibility::VisibleFractionOptions one{.subdivision = 1};
   for (int n = 0; n < viewpoints; ++n) {
     const auto view = visibility::viewpoint(centre + distance * onSphere(n, viewpoints));
     seen = seen.cwiseMax(visibility::visibleFraction(mesh, view, one).face);

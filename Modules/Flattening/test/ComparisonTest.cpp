@@ -6,6 +6,7 @@
 #include "Explica/Flattening/PatchTable.h"
 #include "Explica/Flattening/Seen.h"
 #include "Explica/Geometry/Fixtures.h"
+#include "Explica/Testing/Meshes.h"
 #include "Explica/Testing/Selections.h"
 
 #include <gtest/gtest.h>

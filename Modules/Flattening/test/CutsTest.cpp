@@ -12,6 +12,7 @@
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Geometry/SelfIntersection.h"
+#include "Explica/Testing/Meshes.h"
 
 #include <gtest/gtest.h>
 

@@ -7,6 +7,7 @@
 #include "Explica/Flattening/Flatten.h"
 #include "Explica/Geometry/Fixtures.h"
 #include "Explica/Geometry/MeshTopology.h"
+#include "Explica/Testing/Meshes.h"
 
 #include <gtest/gtest.h>
 

@@ -10,6 +10,7 @@
 #include "Explica/Geometry/Fixtures.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/SelfIntersection.h"
+#include "Explica/Testing/Meshes.h"
 #include "Explica/Testing/Selections.h"
 
 #include <gtest/gtest.h>

@@ -4,7 +4,7 @@
 #include "Explica/Flattening/MapEnergy.h"
 
 #include "Explica/Flattening/RimContact.h"
-#include "Explica/Geometry/Fixtures.h"
+#include "Explica/Testing/Meshes.h"
 
 #include <gtest/gtest.h>
 #include <Eigen/Eigenvalues>

@@ -5,7 +5,6 @@
 
 #include <Eigen/Geometry>
 
-#include <cmath>
 #include <vector>
 
 namespace explica::geometry {
@@ -14,9 +13,8 @@ namespace {
 /// Where the edge from corner k of face f pierces face g.
 std::optional<CrossingEnd> piercing(const TriangleMesh& mesh, std::int32_t f, int k,
                                     std::int32_t g) {
-  CrossingEnd end;
-  end.edge = {mesh.faces(f, k), mesh.faces(f, (k + 1) % 3)};
-  end.face = {mesh.faces(g, 0), mesh.faces(g, 1), mesh.faces(g, 2)};
+  CrossingEnd end{.edge = {mesh.faces(f, k), mesh.faces(f, (k + 1) % 3)},
+                  .face = {mesh.faces(g, 0), mesh.faces(g, 1), mesh.faces(g, 2)}};
   for (const std::int32_t v : end.edge) {
     for (const std::int32_t w : end.face) {
       if (v == w) return std::nullopt;
@@ -48,9 +46,8 @@ std::optional<CrossingSegment> crossingSegment(const TriangleMesh& mesh, const F
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
       if (mesh.faces(pair[0], i) != mesh.faces(pair[1], j)) continue;
-      CrossingEnd end;
-      end.point = mesh.corner(pair[0], i);
-      end.edge = {mesh.faces(pair[0], i), mesh.faces(pair[0], i)};
+      CrossingEnd end{.point = mesh.corner(pair[0], i),
+                      .edge = {mesh.faces(pair[0], i), mesh.faces(pair[0], i)}};
       ends.push_back(end);
     }
   }

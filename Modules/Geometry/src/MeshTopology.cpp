@@ -290,9 +290,7 @@ MeshTopology buildTopology(const Faces& faces, Eigen::Index vertexCount) {
 }
 
 MeshCondition inspectMesh(const TriangleMesh& mesh) {
-  MeshCondition condition;
-  condition.vertices = mesh.vertexCount();
-  condition.faces = mesh.faceCount();
+  MeshCondition condition{.vertices = mesh.vertexCount(), .faces = mesh.faceCount()};
   for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
     condition.nonFiniteVertices += !mesh.positions.row(v).allFinite();
   }

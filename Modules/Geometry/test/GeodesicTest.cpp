@@ -6,6 +6,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Geometry/Fixtures.h"
 #include "Explica/Geometry/MeshMeasures.h"
+#include "Explica/Testing/Meshes.h"
 
 #include <gtest/gtest.h>
 

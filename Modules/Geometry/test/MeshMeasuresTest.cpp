@@ -5,6 +5,7 @@
 
 #include "Explica/Geometry/Fixtures.h"
 #include "Explica/Geometry/MeshTopology.h"
+#include "Explica/Testing/Meshes.h"
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>

@@ -5,6 +5,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Geometry/Fixtures.h"
+#include "Explica/Testing/Meshes.h"
 
 #include <gtest/gtest.h>
 

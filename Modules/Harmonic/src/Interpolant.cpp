@@ -9,7 +9,6 @@
 #include "Stencil.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace explica::harmonic {
 

@@ -201,8 +201,7 @@ LinearOutcome solveLinear(const Annulus& annulus, const Stencil& stencil, Multig
   BiCGStab solver(annulus, stencil, multigrid, rhs, u);
   const double scale = std::sqrt(dot(rhs, rhs));
   const double start = solver.residual();
-  LinearOutcome outcome;
-  outcome.relativeResidual = scale > 0 ? start / scale : 0;
+  LinearOutcome outcome{.relativeResidual = scale > 0 ? start / scale : 0};
   if (outcome.relativeResidual <= relativeTolerance) {
     outcome.termination = Termination::Converged;
     return outcome;

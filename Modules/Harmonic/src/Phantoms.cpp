@@ -96,13 +96,11 @@ ExactAnnulus exactEccentric(double r0, double r1, double offset) {
       return Point(scale * std::sinh(t) - d1, scale * std::sin(sigma), p[2]);
     };
     const auto speed = [&](double t) { return a / (std::cosh(t) - std::cos(sigma)); };
-    ExactAnswer answer;
-    answer.u = (tau0 - tau) / (tau0 - tau1);
-    answer.innerDistance = integral(tau, tau0, speed);
-    answer.outerDistance = integral(tau1, tau, speed);
-    answer.innerPoint = at(tau0);
-    answer.outerPoint = at(tau1);
-    return answer;
+    return ExactAnswer{.u = (tau0 - tau) / (tau0 - tau1),
+                       .innerDistance = integral(tau, tau0, speed),
+                       .outerDistance = integral(tau1, tau, speed),
+                       .innerPoint = at(tau0),
+                       .outerPoint = at(tau1)};
   };
   (void)d0;
   return exact;
@@ -127,13 +125,11 @@ ExactAnnulus exactSpheroids(double focal, double innerSinh, double outerSinh) {
     const auto speed = [&](double xi) {
       return focal * std::sqrt((xi * xi - q.eta * q.eta) / (xi * xi - 1));
     };
-    ExactAnswer answer;
-    answer.u = (potential(q.xi) - potential(xi0)) / (potential(xi1) - potential(xi0));
-    answer.innerDistance = integral(xi0, q.xi, speed);
-    answer.outerDistance = integral(q.xi, xi1, speed);
-    answer.innerPoint = q.at(focal, xi0);
-    answer.outerPoint = q.at(focal, xi1);
-    return answer;
+    return ExactAnswer{.u = (potential(q.xi) - potential(xi0)) / (potential(xi1) - potential(xi0)),
+                       .innerDistance = integral(xi0, q.xi, speed),
+                       .outerDistance = integral(q.xi, xi1, speed),
+                       .innerPoint = q.at(focal, xi0),
+                       .outerPoint = q.at(focal, xi1)};
   };
   return exact;
 }

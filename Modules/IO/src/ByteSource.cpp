@@ -14,7 +14,6 @@
 #include <array>
 #include <cerrno>
 #include <system_error>
-#include <utility>
 
 namespace explica::io {
 namespace {

@@ -7,13 +7,12 @@
 #include "MeshBuilder.h"
 #include "SurfaceFrame.h"
 
+#include "Explica/Core/Text.h"
 #include "Explica/Core/WholeFile.h"
 
 #include <Eigen/LU>
 
 #include <cmath>
-#include <cstdio>
-#include <limits>
 #include <map>
 #include <set>
 #include <sstream>
@@ -262,9 +261,7 @@ LabelMap readFreeSurferAnnot(const std::filesystem::path& path, ByteView bytes) 
   }
   std::map<std::uint32_t, Label> keyOf;
   for (std::int32_t e = 0; e < entries; ++e) {
-    LabelEntry entry;
-    entry.key = old ? e : cursor.take<std::int32_t>();
-    entry.name = text();
+    LabelEntry entry{.key = old ? e : cursor.take<std::int32_t>(), .name = text()};
     for (int c = 0; c < 3; ++c) {
       entry.colour[c] = static_cast<float>(cursor.take<std::int32_t>() & 255) / 255.0F;
     }
@@ -346,9 +343,7 @@ void writeFreeSurferSurface(const std::filesystem::path& path, const TriangleMes
   append(bytes, std::int32_t{0}, true);
   append(bytes, std::int32_t{kTagVolumeGeometry}, true);
   const auto line = [&bytes](const char* key, const Vector& v) {
-    char text[128];
-    std::snprintf(text, sizeof(text), "%s = %.15e %.15e %.15e\n", key, v[0], v[1], v[2]);
-    appendText(bytes, text);
+    appendText(bytes, printed("%s = %.15e %.15e %.15e\n", key, v[0], v[1], v[2]));
   };
   appendText(bytes, "valid = 1  # volume info valid\nfilename = \nvolume = " +
                         std::to_string(geometry.size[0]) + " " + std::to_string(geometry.size[1]) +

@@ -7,7 +7,6 @@
 #include "MeshBuilder.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace explica::io {
 namespace {
@@ -69,9 +68,7 @@ ElementType elementOf(const std::filesystem::path& path, ByteView message) {
   const int kind = cursor.take<std::uint8_t>() & 0xF;
   const auto bits = cursor.take<std::uint8_t>();
   static_cast<void>(cursor.take<std::uint16_t>());
-  ElementType element;
-  element.width = cursor.take<std::uint32_t>();
-  element.bigEndian = (bits & 1) != 0;
+  ElementType element{.bigEndian = (bits & 1) != 0, .width = cursor.take<std::uint32_t>()};
   constexpr int kWhole = 0, kReal = 1, kText = 3;  // HDF5's numbers of classes
   const bool isSigned = (bits & 8) != 0;
   element.kind = ElementType::Class::Number;

@@ -7,8 +7,6 @@
 
 #include <hdf5.h>
 
-#include <utility>
-
 namespace explica::io {
 namespace {
 

@@ -12,7 +12,6 @@
 
 #include <cctype>
 #include <map>
-#include <new>
 #include <optional>
 #include <set>
 #include <sstream>

@@ -5,8 +5,6 @@
 
 #include "ByteSource.h"
 
-#include "Explica/Core/Errors.h"
-
 #include <algorithm>
 #include <array>
 #include <charconv>

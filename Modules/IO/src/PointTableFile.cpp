@@ -5,22 +5,14 @@
 
 #include "ByteSource.h"
 
+#include "Explica/Core/Text.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 namespace explica::io {
 namespace {
-
-std::vector<std::string_view> cellsOf(std::string_view line) {
-  std::vector<std::string_view> cells;
-  while (true) {
-    const std::size_t end = line.find('\t');
-    cells.push_back(line.substr(0, end));
-    if (end == std::string_view::npos) return cells;
-    line.remove_prefix(end + 1);
-  }
-}
 
 double coordinateOf(const std::filesystem::path& path, std::string_view word, std::size_t row) {
   double value = 0;
@@ -50,7 +42,7 @@ PointTable readPointTable(const std::filesystem::path& path) {
   table.heading = table.rows.front();
   table.rows.erase(table.rows.begin());
   if (table.rows.empty()) refuse(path, "holds no point");
-  const std::vector<std::string_view> names = cellsOf(table.heading);
+  const std::vector<std::string> names = cellsOf(table.heading);
   std::array<std::size_t, 3> column{};
   for (int axis = 0; axis < 3; ++axis) {
     const std::string wanted(1, "xyz"[axis]);
@@ -62,7 +54,7 @@ PointTable readPointTable(const std::filesystem::path& path) {
   }
   table.places.resize(static_cast<Eigen::Index>(table.rows.size()), 3);
   for (std::size_t n = 0; n < table.rows.size(); ++n) {
-    const std::vector<std::string_view> cells = cellsOf(table.rows[n]);
+    const std::vector<std::string> cells = cellsOf(table.rows[n]);
     for (int axis = 0; axis < 3; ++axis) {
       if (cells.size() <= column[axis]) {
         refuse(path, "row " + std::to_string(n + 1) + " is too short");

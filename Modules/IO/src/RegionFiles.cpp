@@ -4,6 +4,7 @@
 #include "Explica/IO/RegionFiles.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Text.h"
 
 #include <algorithm>
 #include <array>
@@ -119,12 +120,9 @@ std::vector<bool> markedByNames(const std::filesystem::path& file,
     const auto named = std::find_if(regions.table.begin(), regions.table.end(),
                                     [&](const LabelEntry& entry) { return entry.name == name; });
     if (named == regions.table.end()) {
-      std::string known;
-      for (const LabelEntry& entry : regions.table) {
-        known += (known.empty() ? "" : ", ") + entry.name;
-      }
-      throw InvalidInput("'" + file.string() + "': has no region '" + name + "'; its regions are " +
-                         known);
+      throw InvalidInput(
+          "'" + file.string() + "': has no region '" + name + "'; its regions are " +
+          joined(regions.table, ", ", [](const LabelEntry& entry) { return entry.name; }));
     }
     for (Eigen::Index v = 0; v < vertexCount; ++v) {
       if (regions.keys[v] == named->key) marked[static_cast<std::size_t>(v)] = true;
@@ -149,8 +147,7 @@ std::vector<bool> markedByLabels(const std::vector<std::filesystem::path>& files
     }
   }
   if (std::find(marked.begin(), marked.end(), true) != marked.end()) return marked;
-  std::string wanted;
-  for (const int key : keys) wanted += (wanted.empty() ? "" : " or ") + std::to_string(key);
+  const std::string wanted = joined(keys, " or ", [](int key) { return std::to_string(key); });
   throw InvalidInput(wanted.empty()
                          ? "label: it is 0 everywhere, so the region is empty"
                          : "label: no vertex has key " + wanted + ", keys go from " +

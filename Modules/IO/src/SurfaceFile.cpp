@@ -3,6 +3,8 @@
 
 #include "Explica/IO/SurfaceFile.h"
 
+#include "Explica/Core/Text.h"
+
 #include "ByteSource.h"
 #include "FreeSurferFormat.h"
 #include "SurfaceFormats.h"
@@ -66,11 +68,7 @@ std::string withoutEnding(const std::string& name) {
 }
 
 std::string allNames() {
-  std::string names;
-  for (const SurfaceFormat& format : surfaceFormats()) {
-    names += (names.empty() ? "" : ", ") + std::string(format.name);
-  }
-  return names;
+  return joined(surfaceFormats(), ", ", [](const SurfaceFormat& format) { return format.name; });
 }
 
 }  // namespace

@@ -8,11 +8,12 @@
 
 #include "Explica/IO/VolumeFile.h"
 
+#include "Explica/Core/Text.h"
+
 #include <Eigen/LU>
 
 #include <cctype>
 #include <cmath>
-#include <cstdio>
 
 namespace explica::io {
 
@@ -80,15 +81,12 @@ std::string frameMixUp(const Point& point, const Positions& positions,
   const bool wasTkr = distance(scanner) <= distance(tkr);
   const Point& meant = wasTkr ? scanner : tkr;
   if (!(distance(meant) <= far)) return {};
-  char text[400];
-  std::snprintf(
-      text, sizeof text,
+  return printed(
       "(%.2f, %.2f, %.2f) lies %.1f mm from the surface, but %.1f mm if it is %s: the surface "
       "is in the other frame, in which the point is %.2f,%.2f,%.2f",
       point[0], point[1], point[2], asGiven, distance(meant),
       wasTkr ? "FreeSurfer's surface RAS (tkregister)" : "scanner RAS", meant[0], meant[1],
       meant[2]);
-  return text;
 }
 
 Grid gridOfVolumeText(const std::filesystem::path& path, const VolumeText& text) {

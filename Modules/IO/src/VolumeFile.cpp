@@ -9,13 +9,13 @@
 #include "VolumeFormats.h"
 
 #include "Explica/Core/Parallel.h"
+#include "Explica/Core/Text.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <span>
 #include <sstream>
 #include <type_traits>
@@ -28,9 +28,7 @@ constexpr std::size_t kPiece =
     1 << 14;  // voxels that are converted at once: they stay in the caches
 
 std::string sizeText(const std::vector<int>& size) {
-  std::string text;
-  for (const int n : size) text += (text.empty() ? "" : " x ") + std::to_string(n);
-  return text;
+  return joined(size, " x ", [](int n) { return std::to_string(n); });
 }
 
 std::string voxelText(const Grid& grid, std::size_t voxel) {

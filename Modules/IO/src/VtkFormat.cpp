@@ -8,9 +8,6 @@
 #include "SurfaceFrame.h"
 #include "Xml.h"
 
-#include <cmath>
-#include <optional>
-
 namespace explica::io {
 namespace {
 

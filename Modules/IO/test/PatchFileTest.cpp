@@ -4,7 +4,7 @@
 #include "Explica/IO/PatchFile.h"
 
 #include "Explica/Core/Errors.h"
-#include "Explica/Geometry/Fixtures.h"
+#include "Explica/Testing/Meshes.h"
 #include "TemporaryFolder.h"
 
 #include <gtest/gtest.h>

@@ -5,6 +5,7 @@
 #include "Explica/Geometry/Fixtures.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VolumeFile.h"
+#include "Explica/Testing/Meshes.h"
 #include "TemporaryFolder.h"
 
 #include <gtest/gtest.h>

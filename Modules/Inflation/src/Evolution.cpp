@@ -3,12 +3,12 @@
 
 #include "Explica/Inflation/Inflate.h"
 
+#include "Explica/Core/Text.h"
 #include "Explica/Unfolding/Account.h"
 #include "Explica/Unfolding/Terms.h"
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <string_view>
 
 namespace explica::inflation {
@@ -45,13 +45,9 @@ std::string evolutionTable(const std::vector<InflateRecord>& history) {
   }
   table += "\n";
   for (const InflateRecord& row : history) {
-    char text[80];
-    std::snprintf(text, sizeof text, "%d\t%.6f\t%.6f", row.step.iteration, row.visibility,
-                  row.seen);
-    table += text;
+    table += printed("%d\t%.6f\t%.6f", row.step.iteration, row.visibility, row.seen);
     for (const unfolding::EvolutionColumn& column : kept) {
-      std::snprintf(text, sizeof text, column.format, column.of(row.step));
-      table += "\t" + std::string(text);
+      table += "\t" + printed(column.format, column.of(row.step));
     }
     table += "\n";
   }

@@ -8,6 +8,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/StopScope.h"
 #include "Explica/Core/Stopwatch.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Inflation/DirectionField.h"
@@ -15,7 +16,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 
 namespace explica::inflation {
@@ -198,13 +198,12 @@ class Inflation {
   }
 
   void tellProgress() const {
-    char line[120];
     const unfolding::IterationRecord& now = unfolder_.record();
     const double first = looks_.front().visibility, last = looks_.back().visibility;
-    std::snprintf(line, sizeof line, "iteration %d: visibility %.4f, area error %.2f %%",
-                  now.iteration, last, 100 * now.areaErrorMean);
     const double way = std::max(options_.targetSeen - first, 1e-6);
-    monitor_.progress(std::clamp((last - first) / way, 0.0, 1.0), line);
+    monitor_.progress(std::clamp((last - first) / way, 0.0, 1.0),
+                      printed("iteration %d: visibility %.4f, area error %.2f %%", now.iteration,
+                              last, 100 * now.areaErrorMean));
   }
 
   const InflateOptions& options_;
@@ -224,22 +223,20 @@ constexpr double kHeldBelow = 0.1;  // of visibility: so far below what was to b
 /// Says what a user must know about the result.
 void judge(const InflateOptions& options, const Monitor& monitor, InflateResult& result) {
   const InflateRecord &first = result.history.front(), &last = result.history.back();
-  char text[240];
   if (last.step.iteration > 0 && last.visibility < first.visibility - unfolding::kNoWorse) {
     result.flag = unfolding::Flag::Worse;
-    std::snprintf(text, sizeof text, "the visibility fell from %.3f to %.3f: nothing is opened",
-                  first.visibility, last.visibility);
+    monitor.warn(printed("the visibility fell from %.3f to %.3f: nothing is opened",
+                         first.visibility, last.visibility));
   } else if (result.termination == Termination::Stalled &&
              last.visibility < options.targetSeen - kHeldBelow) {
     result.flag = unfolding::Flag::Held;
-    std::snprintf(text, sizeof text,
-                  "the surface is held at a visibility of %.3f: areas and lengths kept, it does "
-                  "not open further",
-                  last.visibility);
+    monitor.warn(
+        printed("the surface is held at a visibility of %.3f: areas and lengths kept, it does "
+                "not open further",
+                last.visibility));
   } else {
     return;
   }
-  monitor.warn(text);
   if (result.termination == Termination::TargetReached) result.termination = Termination::Stalled;
 }
 

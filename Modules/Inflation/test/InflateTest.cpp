@@ -9,6 +9,7 @@
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/SelfIntersection.h"
 #include "Explica/Inflation/DirectionField.h"
+#include "Explica/Testing/Meshes.h"
 #include "Explica/Unfolding/Distortion.h"
 #include "Explica/Visibility/SphereView.h"
 

@@ -7,6 +7,7 @@
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VertexDataFile.h"
+#include "Explica/Testing/Meshes.h"
 
 #include <gtest/gtest.h>
 

@@ -4,9 +4,9 @@
 #include "Explica/Maps/Resampling.h"
 
 #include "Explica/Core/Errors.h"
-#include "Explica/Geometry/Fixtures.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Maps/Icosphere.h"
+#include "Explica/Testing/Meshes.h"
 
 #include <gtest/gtest.h>
 

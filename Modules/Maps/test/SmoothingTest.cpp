@@ -7,6 +7,7 @@
 #include "Explica/Geometry/Fixtures.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Maps/HeatFlow.h"
+#include "Explica/Testing/Meshes.h"
 
 #include <gtest/gtest.h>
 

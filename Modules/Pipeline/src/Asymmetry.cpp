@@ -4,16 +4,17 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/FileText.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Core/Types.h"
 
-#include <cmath>
-#include <cstdlib>
 #include <map>
-#include <sstream>
 #include <vector>
 
 namespace explica::pipeline {
 namespace {
+
+constexpr const char* kThickness = "thickness_mean_mm";
+constexpr const char* kArea = "area_white_mm2";
 
 struct Region {
   double thickness = kNaN;
@@ -30,50 +31,24 @@ std::string withoutSide(std::string name) {
   return name;
 }
 
-double numberIn(const std::string& cell) {
-  char* end = nullptr;
-  const double value = std::strtod(cell.c_str(), &end);
-  return end != cell.c_str() && *end == '\0' ? value : kNaN;
-}
-
-std::vector<std::string> cellsOf(const std::string& line) {
-  std::vector<std::string> cells;
-  std::istringstream text(line);
-  for (std::string cell; std::getline(text, cell, '\t');) cells.push_back(cell);
-  return cells;
-}
-
 std::map<std::string, Region> readRegions(const std::filesystem::path& path) {
-  std::istringstream file(fileText(path));
-  std::string line;
-  if (!std::getline(file, line)) throw IOError(path.string() + ": cannot be read");
-  const std::vector<std::string> heads = cellsOf(line);
-  const auto column = [&](const char* name) {
-    for (std::size_t c = 0; c < heads.size(); ++c) {
-      if (heads[c] == name) return c;
+  const std::string table = fileText(path);
+  const std::vector<std::string> headings = cellsOf(table.substr(0, table.find('\n')));
+  for (const char* heading : {"name", kThickness, kArea}) {
+    if (std::find(headings.begin(), headings.end(), heading) == headings.end()) {
+      throw IOError(path.string() + ": has no column " + heading);
     }
-    throw IOError(path.string() + ": has no column " + name);
-  };
-  const std::size_t name = column("name");
-  const std::size_t thickness = column("thickness_mean_mm");
-  const std::size_t area = column("area_white_mm2");
+  }
   std::map<std::string, Region> regions;
-  while (std::getline(file, line)) {
-    const std::vector<std::string> cells = cellsOf(line);
-    if (cells.size() < heads.size()) continue;
-    regions[withoutSide(cells[name])] = {numberIn(cells[thickness]), numberIn(cells[area])};
+  for (const TableRow& row : tableRows(table)) {
+    regions[withoutSide(row.at("name"))] = {numberIn(row, kThickness), numberIn(row, kArea)};
   }
   return regions;
 }
 
-void addPair(std::ostream& table, double left, double right) {
-  for (const double value : {left, right, (left - right) / (0.5 * (left + right))}) {
-    if (std::isfinite(value)) {
-      table << '\t' << value;
-    } else {
-      table << "\tn/a";
-    }
-  }
+std::string pairText(double left, double right) {
+  return "\t" + cellText(left) + "\t" + cellText(right) + "\t" +
+         cellText((left - right) / (0.5 * (left + right)));
 }
 
 }  // namespace
@@ -81,18 +56,16 @@ void addPair(std::ostream& table, double left, double right) {
 std::string asymmetryTable(const std::filesystem::path& left, const std::filesystem::path& right) {
   const auto ofLeft = readRegions(left);
   const auto ofRight = readRegions(right);
-  std::ostringstream table;
-  table << "name\tthickness_left_mm\tthickness_right_mm\tthickness_asymmetry\t"
-           "area_left_mm2\tarea_right_mm2\tarea_asymmetry\n";
+  std::string table =
+      "name\tthickness_left_mm\tthickness_right_mm\tthickness_asymmetry\t"
+      "area_left_mm2\tarea_right_mm2\tarea_asymmetry\n";
   for (const auto& [name, region] : ofLeft) {
     const auto other = ofRight.find(name);
     if (other == ofRight.end()) continue;
-    table << name;
-    addPair(table, region.thickness, other->second.thickness);
-    addPair(table, region.area, other->second.area);
-    table << '\n';
+    table += name + pairText(region.thickness, other->second.thickness) +
+             pairText(region.area, other->second.area) + "\n";
   }
-  return table.str();
+  return table;
 }
 
 }  // namespace explica::pipeline

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Pipeline/DepthProfiles.h"
 
+#include "Explica/Core/Folders.h"
 #include "Explica/Core/Types.h"
 #include "Table.h"
 
@@ -61,15 +62,6 @@ std::vector<std::string> namesIn(const Table& table, std::string_view column) {
   return names;
 }
 
-std::vector<fs::path> layerTables(const fs::path& folder) {
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.path().filename().string().ends_with(kLayers)) files.push_back(entry.path());
-  }
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
 }  // namespace
 
 double AtDepth::average() const {
@@ -106,7 +98,8 @@ std::vector<VolumeProfiles> readDepthProfiles(const fs::path& folder) {
       found.push_back({volume, "vertices", kProfiles, profilesOf(table, volume)});
     }
   }
-  for (const fs::path& file : layerTables(folder)) {
+  for (const fs::path& file :
+       entriesOf(folder, [](const std::string& name) { return name.ends_with(kLayers); })) {
     std::string volume = file.filename().string();
     volume.resize(volume.size() - kLayers.size());
     found.push_back(

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Pipeline/FlatStack.h"
 
+#include "Explica/Core/Folders.h"
 #include "Explica/IO/VolumeSeries.h"
 #include "Explica/Provenance/Json.h"
 #include "Explica/Provenance/Record.h"
@@ -76,13 +77,9 @@ report::ColourScale greyScaleOf(const Volume<float>& stack, const std::string& n
 }  // namespace
 
 std::vector<fs::path> flatStackFiles(const fs::path& folder) {
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with(kPrefix) && name.ends_with(kEnding)) files.push_back(entry.path());
-  }
-  std::sort(files.begin(), files.end());
-  return files;
+  return entriesOf(folder, [](const std::string& name) {
+    return name.starts_with(kPrefix) && name.ends_with(kEnding);
+  });
 }
 
 FlatStack drawFlatStack(const fs::path& file, const FlatStackOptions& options) {

@@ -96,11 +96,8 @@ struct NamedLabels {
 
 /// @param dimension  demanded, if given
 NamedLabels nameLabels(const fs::path& file, std::optional<int> dimension = std::nullopt) {
-  io::VolumeReadOptions reading;
-  reading.dimension = dimension;
-  const Volume<Label> labels = io::readLabels(file, reading).volume;
-  NamedLabels named;
-  named.found = {labels.data.begin(), labels.data.end()};
+  const Volume<Label> labels = io::readLabels(file, {.dimension = dimension}).volume;
+  NamedLabels named{.found = {labels.data.begin(), labels.data.end()}};
   const auto& found = named.found;
   const auto has = [&](Label label) { return found.count(label) != 0; };
   const auto hasCortex = [&](bool left) {

@@ -4,23 +4,12 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/FileText.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Core/Types.h"
 
 #include <sstream>
 
 namespace explica::pipeline {
-namespace {
-
-std::vector<std::string> cells(const std::string& line) {
-  std::vector<std::string> all;
-  std::istringstream stream(line);
-  std::string cell;
-  while (std::getline(stream, cell, '\t')) all.push_back(cell);
-  return all;
-}
-
-}  // namespace
-
 const std::vector<double>* Table::column(std::string_view name) const {
   for (std::size_t c = 0; c < names.size(); ++c) {
     if (names[c] == name) return &columns[c];
@@ -40,11 +29,11 @@ Table readTable(const std::filesystem::path& file) {
   std::string line;
   if (!std::getline(stream, line)) throw IOError(file.string() + ": no table can be read from it");
   Table table;
-  table.names = cells(line);
+  table.names = cellsOf(line);
   table.columns.resize(table.names.size());
   table.texts.resize(table.names.size());
   while (std::getline(stream, line)) {
-    const std::vector<std::string> row = cells(line);
+    const std::vector<std::string> row = cellsOf(line);
     if (row.size() != table.names.size()) continue;
     for (std::size_t c = 0; c < row.size(); ++c) {
       std::istringstream digits(row[c]);

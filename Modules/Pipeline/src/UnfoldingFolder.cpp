@@ -2,26 +2,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Pipeline/UnfoldingFolder.h"
 
+#include "Explica/Core/Folders.h"
 #include "Explica/IO/VertexDataFile.h"
 
 #include <nlohmann/json.hpp>
-
-#include <set>
 
 namespace explica::pipeline {
 
 namespace fs = std::filesystem;
 
 std::vector<fs::path> frameFiles(const fs::path& folder) {
-  std::set<fs::path> found;
-  const fs::path frames = folder / "frames";
-  if (!fs::is_directory(frames)) return {};
-  for (const auto& entry : fs::directory_iterator(frames)) {
-    const std::string name = entry.path().filename().string();
-    if (name.rfind("frame-", 0) == 0 && name.find(".surf.gii") != std::string::npos)
-      found.insert(entry.path());
-  }
-  return {found.begin(), found.end()};
+  return entriesOf(folder / "frames", [](const std::string& name) {
+    return name.starts_with("frame-") && name.find(".surf.gii") != std::string::npos;
+  });
 }
 
 std::vector<std::int32_t> unfoldedRegion(const fs::path& folder,

@@ -47,8 +47,7 @@ Point2 crossing(const Slice& slice, const LatticeEdge& edge) {
 
 PlaneFrame frameOfSlice(const Grid& grid, int k) {
   const Vector normal = grid.direction.col(0).cross(grid.direction.col(1)).normalized();
-  PlaneFrame frame;
-  frame.origin = normal * normal.dot(grid.toWorld({0, 0, static_cast<double>(k)}));
+  PlaneFrame frame{.origin = normal * normal.dot(grid.toWorld({0, 0, static_cast<double>(k)}))};
   // A plane seen from its side with the larger world coordinate shows x to the right.
   Eigen::Index main = 0;
   normal.cwiseAbs().maxCoeff(&main);

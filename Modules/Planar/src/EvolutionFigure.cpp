@@ -4,12 +4,12 @@
 #include "Explica/Planar/EvolutionFigure.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Planar/PolygonVisibility.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
 namespace explica::planar {
 namespace {
@@ -33,25 +33,18 @@ double roundLength(double most) {
   return decade;
 }
 
-/// A number by a printf pattern with one double.
-std::string format(const char* pattern, double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, pattern, value);
-  return text;
-}
-
 std::string pair(const Point2& page) {
-  return format("%.2f", page.x()) + "," + format("%.2f", page.y());
+  return printed("%.2f", page.x()) + "," + printed("%.2f", page.y());
 }
 
 std::string text(double x, double y, const std::string& words, const std::string& style = "") {
-  return "<text x=\"" + format("%.1f", x) + "\" y=\"" + format("%.1f", y) + "\" " + style + ">" +
+  return "<text x=\"" + printed("%.1f", x) + "\" y=\"" + printed("%.1f", y) + "\" " + style + ">" +
          words + "</text>\n";
 }
 
 std::string pageBegin(double width, double height) {
-  const std::string w = format("%.0f", width);
-  const std::string h = format("%.0f", height);
+  const std::string w = printed("%.0f", width);
+  const std::string h = printed("%.0f", height);
   return "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + w + "\" height=\"" + h +
          "\" viewBox=\"0 0 " + w + " " + h +
          "\" font-family=\"sans-serif\" font-size=\"14\">\n"
@@ -70,8 +63,8 @@ struct ScaleBar {
 };
 ScaleBar scaleBar(double x, double y, double scale, const std::string& unit) {
   const double length = roundLength(kLongestBar / scale);
-  const std::string words = format("%g", length) + " " + unit;
-  return {"<path d=\"M" + pair({x, y}) + " h" + format("%.2f", scale * length) +
+  const std::string words = printed("%g", length) + " " + unit;
+  return {"<path d=\"M" + pair({x, y}) + " h" + printed("%.2f", scale * length) +
               "\" stroke=\"#222\" stroke-width=\"2.5\"/>\n" +
               text(x + scale * length + 8, y + 5, words),
           scale * length + 8 + kLetterWidth * static_cast<double>(words.size())};
@@ -85,12 +78,9 @@ std::string fluxColour(double flux) {
   const std::array<double, 3> towards = {20, 90, 180};
   const std::array<double, 3> away = {214, 84, 10};
   const auto& end = t >= 0 ? towards : away;
-  char text[16];
-  std::snprintf(text, sizeof text, "#%02x%02x%02x",
-                static_cast<int>(neutral[0] + strength * (end[0] - neutral[0])),
-                static_cast<int>(neutral[1] + strength * (end[1] - neutral[1])),
-                static_cast<int>(neutral[2] + strength * (end[2] - neutral[2])));
-  return text;
+  return printed("#%02x%02x%02x", static_cast<int>(neutral[0] + strength * (end[0] - neutral[0])),
+                 static_cast<int>(neutral[1] + strength * (end[1] - neutral[1])),
+                 static_cast<int>(neutral[2] + strength * (end[2] - neutral[2])));
 }
 
 /// From the plane to one panel, y downward.
@@ -149,11 +139,12 @@ void drawLegend(std::string& page, double top, double scale, bool anyCrossing) {
   x += 62;
   page += "<linearGradient id=\"flux\">";
   for (const double flux : {-1.0, 0.0, 1.0}) {
-    page += "<stop offset=\"" + format("%g", (flux + 1) / 2) + "\" stop-color=\"" +
+    page += "<stop offset=\"" + printed("%g", (flux + 1) / 2) + "\" stop-color=\"" +
             fluxColour(flux) + "\"/>";
   }
-  page += "</linearGradient>\n<rect x=\"" + format("%.1f", x) + "\" y=\"" + format("%.1f", y - 5) +
-          "\" width=\"" + format("%.0f", kBarLength) + "\" height=\"10\" fill=\"url(#flux)\"/>\n";
+  page += "</linearGradient>\n<rect x=\"" + printed("%.1f", x) + "\" y=\"" +
+          printed("%.1f", y - 5) + "\" width=\"" + printed("%.0f", kBarLength) +
+          "\" height=\"10\" fill=\"url(#flux)\"/>\n";
   x += kBarLength + 6;
   page += text(x, y + 5, "1");
   x += 46;
@@ -164,7 +155,7 @@ void drawLegend(std::string& page, double top, double scale, bool anyCrossing) {
   page += bar.drawn;
   if (!anyCrossing) return;
   x += bar.width + 30;
-  page += "<circle cx=\"" + format("%.1f", x) + "\" cy=\"" + format("%.1f", y) + "\" r=\"7\"" +
+  page += "<circle cx=\"" + printed("%.1f", x) + "\" cy=\"" + printed("%.1f", y) + "\" r=\"7\"" +
           kRing + "/>\n";
   page += text(x + 14, y + 5, "edges cross");
 }
@@ -190,18 +181,18 @@ std::size_t drawStage(std::string& page, const Panel& panel, bool closed, const 
     const Point2 a = panel.place(curve.point(e));
     const Point2 b = panel.place(curve.point(curve.next(e)));
     page += "<path d=\"M" + pair(a) + " L" + pair(b) + "\" stroke=\"" +
-            fluxColour(visibility.edgeFlux[k]) + "\" stroke-width=\"" + format("%.2f", width) +
+            fluxColour(visibility.edgeFlux[k]) + "\" stroke-width=\"" + printed("%.2f", width) +
             "\" stroke-linecap=\"round\"/>\n";
   }
   for (int v : verticesOf(curve, region)) {
     const Point2 p = panel.place(curve.point(v));
-    page += "<circle cx=\"" + format("%.2f", p.x()) + "\" cy=\"" + format("%.2f", p.y()) +
-            "\" r=\"" + format("%.2f", 0.75 * width) + "\" fill=\"#222\"/>\n";
+    page += "<circle cx=\"" + printed("%.2f", p.x()) + "\" cy=\"" + printed("%.2f", p.y()) +
+            "\" r=\"" + printed("%.2f", 0.75 * width) + "\" fill=\"#222\"/>\n";
   }
   const auto crossings = intersectingEdges(curve);
   for (const auto& crossing : crossings) {
     const Point2 p = panel.place(crossingOf(curve, crossing));
-    page += "<circle cx=\"" + format("%.2f", p.x()) + "\" cy=\"" + format("%.2f", p.y()) +
+    page += "<circle cx=\"" + printed("%.2f", p.x()) + "\" cy=\"" + printed("%.2f", p.y()) +
             "\" r=\"7\"" + kRing + "/>\n";
   }
   return crossings.size();
@@ -256,9 +247,9 @@ std::string drawEvolution(bool closed, const Viewpoints& view,
     if (view.points.size() > 1) drawArrow(page, panel, view.points.back());
     const std::size_t crossings = drawStage(page, panel, closed, view, stage);
     anyCrossing = anyCrossing || crossings > 0;
-    const std::string numbers = "visibility " + format("%.3f", stage.visibility) +
-                                ", flux variance " + format("%.3f", stage.variance) + ", length " +
-                                format("%.2f", stage.length);
+    const std::string numbers = "visibility " + printed("%.3f", stage.visibility) +
+                                ", flux variance " + printed("%.3f", stage.variance) + ", length " +
+                                printed("%.2f", stage.length);
     const std::string crossed =
         crossings > 0 ? ", crossings " + std::to_string(crossings) : std::string();
     page += panelTitle(textX, textY, s, stage.title + crossed);

@@ -6,9 +6,6 @@
 
 #include <Eigen/SparseCholesky>
 
-#include <algorithm>
-#include <cmath>
-
 namespace explica::planar {
 namespace {
 

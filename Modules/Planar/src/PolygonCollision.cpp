@@ -94,8 +94,7 @@ VertexEdgeDistance vertexEdgeDistance(const Curve& curve, int vertex, int edge) 
   const Point2 a = curve.point(edge);
   const Point2 b = curve.point(curve.next(edge));
   const Point2 q = curve.point(vertex);
-  VertexEdgeDistance result;
-  result.parameter = nearestParameter(q, a, b);
+  VertexEdgeDistance result{.parameter = nearestParameter(q, a, b)};
   const Point2 d = q - a - result.parameter * (b - a);
   result.distance = d.norm();
   if (result.distance > 0) result.direction = d / result.distance;

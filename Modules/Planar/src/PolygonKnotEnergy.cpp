@@ -187,8 +187,7 @@ PolygonKnotValue sumOverEdges(const Curve& curve, const std::vector<bool>& movin
     summation.addSelf(i, sums[i]);
     addOthers(i, sums[i]);
   });
-  PolygonKnotValue result;
-  result.gradient = Positions2::Zero(curve.vertexCount(), 2);
+  PolygonKnotValue result{.gradient = Positions2::Zero(curve.vertexCount(), 2)};
   for (int e = 0; e < n; ++e) {
     result.value += sums[e].value;
     result.pairs += sums[e].pairs;
@@ -261,8 +260,7 @@ EdgePairIntegral apartEdgesIntegral(const Point2& a, const Point2& b, const Poin
   const double psiC = potential(rac, rbc, lengthS);
   const double psiD = potential(rad, rbd, lengthS);
 
-  EdgePairIntegral result;
-  result.value = sb * phiB - sa * phiA + td * psiD - tc * psiC;
+  EdgePairIntegral result{.value = sb * phiB - sa * phiA + td * psiD - tc * psiC};
 
   // dG/ds and dG/dt are the potentials at the ends; dG/d(u.w) = -R / sine^2 and terms that cancel.
   const double bySa = phiB - phiA;

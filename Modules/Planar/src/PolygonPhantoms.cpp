@@ -3,7 +3,6 @@
 
 #include "Explica/Planar/PolygonPhantoms.h"
 
-#include <cmath>
 #include <initializer_list>
 
 namespace explica::planar {
@@ -49,22 +48,6 @@ PolygonPhantom makePolygon34() {
                      {118.3, 68.8}, {96.5, 71.7},  {73.7, 70.1},  {51.6, 72.8},  {29.6, 70.7},
                      {13.3, 56.4},  {33.4, 52.4},  {50, 40},      {31.9, 28.8},  {14.2, 40.2},
                      {0.6, 24.3},   {20.5, 19.9},  {37.4, 7.6},   {25.7, -10.5}, {21.2, 10.3}});
-}
-
-Curve makeCircle(int edges, double radius, const Point2& centre) {
-  Curve circle = makeEllipse(edges, radius, radius);
-  circle.positions.rowwise() += centre.transpose();
-  return circle;
-}
-
-Curve makeEllipse(int edges, double a, double b) {
-  Curve ellipse;
-  ellipse.positions.resize(edges, 2);
-  for (int k = 0; k < edges; ++k) {
-    const double angle = 2 * kPi * k / edges;
-    ellipse.positions.row(k) << a * std::cos(angle), b * std::sin(angle);
-  }
-  return ellipse;
 }
 
 }  // namespace explica::planar

@@ -5,13 +5,10 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Stopwatch.h"
-#include "Explica/Planar/PolygonCollision.h"
 #include "Explica/Planar/PolygonKnotEnergy.h"
 #include "Explica/Planar/PolygonVisibility.h"
 #include "UnfoldingProblem.h"
 
-#include <algorithm>
-#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>

@@ -47,9 +47,8 @@ PolygonVisibility polygonVisibility(const Curve& curve, const Region& region,
     throw InvalidInput("visibility: viewpoints with one weight each are needed");
   }
   const auto edges = static_cast<Eigen::Index>(region.edgeCount);
-  PolygonVisibility result;
-  result.edgeFlux = Eigen::VectorXd::Zero(edges);
-  result.gradient = Positions2::Zero(curve.vertexCount(), 2);
+  PolygonVisibility result{.edgeFlux = Eigen::VectorXd::Zero(edges),
+                           .gradient = Positions2::Zero(curve.vertexCount(), 2)};
   Positions2 lengthGradient = Positions2::Zero(curve.vertexCount(), 2);
   std::vector<double> flux(view.points.size());
   std::vector<double> squareFlux(view.points.size());

@@ -119,10 +119,9 @@ std::optional<std::pair<Curve, Region>> UnfoldingProblem::merged() {
 
 PolygonIteration UnfoldingProblem::account() {
   const PolygonVisibility visibility = polygonVisibility(curve_, region_, view_);
-  PolygonIteration row;
-  row.visibility = visibility.average;
-  row.variance = visibility.variance;
-  row.length = visibility.length;
+  PolygonIteration row{.visibility = visibility.average,
+                       .variance = visibility.variance,
+                       .length = visibility.length};
   for (int e : edgesOf(curve_, region_)) {
     const double length = (curve_.point(curve_.next(e)) - curve_.point(e)).norm();
     row.lengthError = std::max(row.lengthError, std::abs(length / restLengths_[e] - 1));

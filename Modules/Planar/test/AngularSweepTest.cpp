@@ -5,6 +5,7 @@
 
 #include "Explica/Geometry/Predicates.h"
 #include "Explica/Planar/PolygonPhantoms.h"
+#include "Explica/Testing/Curves.h"
 #include "Polygon.h"
 
 #include <gtest/gtest.h>

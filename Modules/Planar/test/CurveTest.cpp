@@ -4,7 +4,7 @@
 #include "Explica/Planar/Curve.h"
 
 #include "Explica/Core/Errors.h"
-#include "Explica/Planar/PolygonPhantoms.h"
+#include "Explica/Testing/Curves.h"
 #include "Polygon.h"
 
 #include <gtest/gtest.h>

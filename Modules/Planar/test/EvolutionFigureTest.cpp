@@ -4,7 +4,7 @@
 #include "Explica/Planar/EvolutionFigure.h"
 
 #include "Explica/Core/Errors.h"
-#include "Explica/Planar/PolygonPhantoms.h"
+#include "Explica/Testing/Curves.h"
 
 #include <gtest/gtest.h>
 

@@ -6,6 +6,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Planar/PolygonPhantoms.h"
+#include "Explica/Testing/Curves.h"
 #include "FiniteDifference.h"
 
 #include <gtest/gtest.h>

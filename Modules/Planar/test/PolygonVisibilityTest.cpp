@@ -4,6 +4,7 @@
 #include "Explica/Planar/PolygonVisibility.h"
 
 #include "Explica/Planar/PolygonPhantoms.h"
+#include "Explica/Testing/Curves.h"
 #include "FiniteDifference.h"
 
 #include <gtest/gtest.h>

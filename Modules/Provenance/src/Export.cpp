@@ -7,7 +7,6 @@
 #include "Explica/Provenance/Verify.h"
 
 #include <algorithm>
-#include <optional>
 #include <set>
 
 namespace explica::provenance {

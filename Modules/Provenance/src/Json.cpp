@@ -4,6 +4,7 @@
 #include "Explica/Provenance/Json.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Core/WholeFile.h"
 
 #include <cmath>
@@ -48,9 +49,7 @@ std::string wordOf(const Json& value) {
 
 /// [1, 2, 3] as "1,2,3".
 std::string commaJoined(const Json& array) {
-  std::string joined;
-  for (const auto& element : array) joined += (joined.empty() ? "" : ",") + wordOf(element);
-  return joined;
+  return joined(array, ",", wordOf);
 }
 
 /// Empties an optional or a list.

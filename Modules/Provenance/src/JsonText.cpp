@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Provenance/Document.h"
 
 #include <algorithm>
@@ -141,8 +142,8 @@ class Builder : public nlohmann::json_sax<Json> {
     return line_;
   }
   [[noreturn]] void refuse(const std::string& what) const {
-    std::string field;
-    for (const Level& level : levels_) field += (field.empty() ? "" : ".") + keyOf(level);
+    const std::string field =
+        joined(levels_, ".", [this](const Level& level) { return keyOf(level); });
     throw IOError(name_ + ", line " + std::to_string(line()) + (field.empty() ? "" : ", " + field) +
                   ": " + what);
   }

@@ -6,7 +6,6 @@
 #include "Filters.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace explica::registration {

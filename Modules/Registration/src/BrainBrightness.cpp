@@ -5,7 +5,6 @@
 #include "Filters.h"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <vector>
 

@@ -3,6 +3,7 @@
 #include "Explica/Report/Chart.h"
 
 #include "Explica/Core/Html.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Core/Types.h"
 #include "Explica/Report/ColourMap.h"
 #include "Explica/Report/Drawing.h"
@@ -10,7 +11,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <optional>
 
@@ -27,27 +27,14 @@ constexpr int kBins = 48;          // of a histogram
 constexpr double kLegendRow = 16;  // pixels
 
 std::string number(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.2f", value);
-  return text.data();
-}
-
-std::string hexOf(const Colour& colour) {
-  std::array<char, 8> text{};
-  std::snprintf(text.data(), text.size(), "#%02x%02x%02x", encodeSrgb(colour[0]),
-                encodeSrgb(colour[1]), encodeSrgb(colour[2]));
-  return text.data();
+  return printed("%.2f", value);
 }
 
 /// Three digits, never as a power of ten below a million.
 std::string significant(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g", value);
-  const double rounded = std::strtod(text.data(), nullptr);
-  if (std::abs(rounded) >= 1000 && std::abs(rounded) < 1e6) {
-    std::snprintf(text.data(), text.size(), "%.0f", rounded);
-  }
-  return text.data();
+  const std::string text = printed("%.3g", value);
+  const double rounded = std::stod(text);
+  return std::abs(rounded) >= 1000 && std::abs(rounded) < 1e6 ? printed("%.0f", rounded) : text;
 }
 
 /// A step of 1, 2 or 5 times a power of ten that gives about five ticks.
@@ -103,9 +90,7 @@ std::vector<double> yTicksOf(const Axes& axes) {
 /// What a tick on the y axis says.
 std::string yTickText(const Axes& axes, double y) {
   if (!axes.logarithmic) return tickText(y, axes.y1 - axes.y0);
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g", std::pow(10, y));
-  return text.data();
+  return printed("%.3g", std::pow(10, y));
 }
 
 std::string head(const Axes& axes, const ChartText& titles, bool yTicks, double below = 0) {
@@ -253,7 +238,7 @@ std::optional<Axes> axesAround(const std::vector<Series>& series, bool logarithm
 constexpr std::array<Label, 5> kHues = {5, 6, 3, 7, 1};  // colour-blind readers can tell them
 
 std::string hueOf(std::size_t curve) {
-  return hexOf(colourOfLabel(kHues[curve % kHues.size()]));
+  return hexText(colourOfLabel(kHues[curve % kHues.size()]));
 }
 
 /// How a curve is drawn: hues, then dashes.

@@ -141,9 +141,7 @@ ColourScale scaleFor(const Eigen::VectorXd& values, std::string title, std::stri
   for (const double v : values) {
     if (std::isfinite(v)) sorted.push_back(v);
   }
-  ColourScale scale;
-  scale.title = std::move(title);
-  scale.unit = std::move(unit);
+  ColourScale scale{.title = std::move(title), .unit = std::move(unit)};
   if (sorted.empty()) return scale;
   std::sort(sorted.begin(), sorted.end());
   const std::size_t n = sorted.size();

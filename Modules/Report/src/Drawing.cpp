@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Report/Drawing.h"
 
+#include "Explica/Core/Text.h"
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
 
 namespace explica::report {
@@ -272,28 +273,22 @@ void drawTextWithRim(Picture& picture, std::string_view text, const Eigen::Vecto
 std::string tickText(double value, double range) {
   if (std::abs(value) < 1e-9 * std::abs(range)) value = 0;
   const double magnitude = std::max(std::abs(value), std::abs(range));
-  std::array<char, 32> text{};
-  if (value != 0 && (magnitude >= 1e5 || std::abs(range) < 1e-3)) {
-    std::snprintf(text.data(), text.size(), "%.2g", value);
-  } else {
-    int digits = std::clamp(
-        2 - static_cast<int>(std::floor(std::log10(std::max(std::abs(range), 1e-12)))), 0, 4);
-    // No more than three digits say anything, unless neighbours would then be the same.
-    constexpr double kFinest = 0.05;  // of the range: no ticks are nearer
-    const auto unit = [](int decimals) { return std::pow(10.0, -decimals); };
-    while (digits > 0 && std::abs(value) >= 1000 * unit(digits) &&
-           unit(digits - 1) <= kFinest * std::abs(range)) {
-      --digits;
-    }
-    std::snprintf(text.data(), text.size(), "%.*f", digits, value);
-    std::string trimmed = text.data();
-    if (trimmed.find('.') != std::string::npos) {
-      while (trimmed.back() == '0') trimmed.pop_back();
-      if (trimmed.back() == '.') trimmed.pop_back();
-    }
-    return trimmed;
+  if (value != 0 && (magnitude >= 1e5 || std::abs(range) < 1e-3)) return printed("%.2g", value);
+  int digits = std::clamp(
+      2 - static_cast<int>(std::floor(std::log10(std::max(std::abs(range), 1e-12)))), 0, 4);
+  // No more than three digits say anything, unless neighbours would then be the same.
+  constexpr double kFinest = 0.05;  // of the range: no ticks are nearer
+  const auto unit = [](int decimals) { return std::pow(10.0, -decimals); };
+  while (digits > 0 && std::abs(value) >= 1000 * unit(digits) &&
+         unit(digits - 1) <= kFinest * std::abs(range)) {
+    --digits;
   }
-  return text.data();
+  std::string text = printed("%.*f", digits, value);
+  if (text.find('.') != std::string::npos) {
+    while (text.back() == '0') text.pop_back();
+    if (text.back() == '.') text.pop_back();
+  }
+  return text;
 }
 
 std::string unitText(std::string_view unit) {

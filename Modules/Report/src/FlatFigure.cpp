@@ -109,11 +109,11 @@ Picture flatPanel(const TriangleMesh& mesh, const SurfacePaint& paint, const Fla
   above.up = Vector(0, 1, 0);
   const Vector size =
       (mesh.positions.colwise().maxCoeff() - mesh.positions.colwise().minCoeff()).transpose();
-  SurfacePictureOptions options;
-  options.height = height;
-  options.width = static_cast<int>(
-      std::clamp(height * size.x() / std::max(size.y(), 1e-9), height / 2.0, 2.0 * height));
-  options.occlusion = 0;
+  SurfacePictureOptions options{
+      .width = static_cast<int>(
+          std::clamp(height * size.x() / std::max(size.y(), 1e-9), height / 2.0, 2.0 * height)),
+      .height = height,
+      .occlusion = 0};
   Picture picture = surfaceViews(mesh, paint, {above}, options).front();
   const Camera camera = cameraOf(mesh, above, options.width, options.height);
   const double scale = options.height / (2 * camera.halfHeight);  // pixels a millimetre

@@ -3,11 +3,11 @@
 #include "Explica/Report/Mosaic.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Report/Figure.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 
 namespace explica::report {
@@ -41,7 +41,6 @@ Extent extentOf(const WorldBox& tissue, const std::vector<MosaicOutline>& outlin
 std::string pathData(const TriangleMesh& mesh, const SliceFrame& frame) {
   constexpr double kSeen = 1.1;  // pixels
   std::string path;
-  std::array<char, 40> text{};
   for (const auto& line : cutPolylines(mesh, frame)) {
     Eigen::Vector2i last(0, 0);  // tenths of a pixel
     for (std::size_t n = 0; n < line.size(); ++n) {
@@ -49,9 +48,7 @@ std::string pathData(const TriangleMesh& mesh, const SliceFrame& frame) {
       const bool seen = (at - last).cast<double>().norm() >= 10 * kSeen;
       if (n > 0 && n + 1 < line.size() && !seen) continue;
       const Eigen::Vector2i by = n == 0 ? at : Eigen::Vector2i(at - last);
-      std::snprintf(text.data(), text.size(), "%c%g %g", n == 0 ? 'M' : 'l', 0.1 * by.x(),
-                    0.1 * by.y());
-      path += text.data();
+      path += printed("%c%g %g", n == 0 ? 'M' : 'l', 0.1 * by.x(), 0.1 * by.y());
       last = at;
     }
   }
@@ -108,12 +105,9 @@ TriangleMesh partWithin(const TriangleMesh& mesh, const Point& low, const Point&
 
 /// A ring about the middle of a picture, as SVG path data.
 std::string ringPath(const Picture& picture, double radius) {
-  std::array<char, 120> text{};
   const double x = 0.5 * picture.width, y = 0.5 * picture.height;
-  std::snprintf(text.data(), text.size(),
-                "M%.1f %.1fa%.1f %.1f 0 1 0 %.1f 0a%.1f %.1f 0 1 0 %.1f 0", x - radius, y, radius,
-                radius, 2 * radius, radius, radius, -2 * radius);
-  return text.data();
+  return printed("M%.1f %.1fa%.1f %.1f 0 1 0 %.1f 0a%.1f %.1f 0 1 0 %.1f 0", x - radius, y, radius,
+                 radius, 2 * radius, radius, radius, -2 * radius);
 }
 
 SliceMosaic mosaicOf(const Extent& extent, const std::vector<MosaicOutline>& outlines,

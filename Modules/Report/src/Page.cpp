@@ -4,13 +4,13 @@
 
 #include "Encoding.h"
 #include "Explica/Core/Html.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Report/Chart.h"
 #include "Explica/Report/Drawing.h"
 #include "PageParts.h"
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <set>
 
 namespace explica::report {
@@ -63,12 +63,10 @@ std::string table(const std::vector<std::pair<std::string, std::string>>& rows) 
 }
 
 std::string stepHtml(const ReportStep& step) {
-  std::array<char, 32> seconds{};
-  std::snprintf(seconds.data(), seconds.size(), "%.1f s", step.seconds);
   std::string html = "<details class='step'><summary>" + badge(wordFor(step.state)) + " <b>" +
                      escapeHtml(step.name) + "</b>";
   if (step.state != StepState::Missing)
-    html += " <span class='quiet'>" + std::string(seconds.data()) + "</span>";
+    html += printed(" <span class='quiet'>%.1f s</span>", step.seconds);
   if (!step.message.empty())
     html += " <span class='message'>" + escapeHtml(step.message) + "</span>";
   html += "</summary>";
@@ -129,13 +127,6 @@ constexpr const char* kSlicesHtml =
 <div id="cuts"><canvas id="cut-0" tabindex="0" role="img" aria-label="Axial slice"></canvas><canvas id="cut-1" tabindex="0" role="img" aria-label="Coronal slice"></canvas><canvas id="cut-2" tabindex="0" role="img" aria-label="Sagittal slice"></canvas></div>
 <p class="quiet">Click: the other slices and the surface in three dimensions go there, and a click on the surface leads here. Wheel or Page up and down: next slice; Ctrl and wheel, + and -: zoom; Shift and drag: move; double click: all. Keys: arrows move, O outlines, N and P next and previous place, 1 right, 2 unsure, 3 wrong, S saves the rating.</p>
 )";
-
-std::string hex(const Colour& colour) {
-  std::array<char, 8> text{};
-  std::snprintf(text.data(), text.size(), "#%02x%02x%02x", encodeSrgb(colour[0]),
-                encodeSrgb(colour[1]), encodeSrgb(colour[2]));
-  return text.data();
-}
 
 std::string imageHtml(const Picture& picture, const std::string& words) {
   return "<img alt='" + escapeHtml(words) + "' width='" + std::to_string(picture.width) +
@@ -238,7 +229,7 @@ std::string barHtml(const ColourScale& scale) {
   constexpr int kStops = 16;  // of a scale's gradient
   std::string gradient;
   for (int s = 0; s <= kStops; ++s) {
-    gradient += (s == 0 ? "" : ",") + hex(colourAt(scale.map, static_cast<double>(s) / kStops));
+    gradient += (s == 0 ? "" : ",") + hexText(colourAt(scale.map, static_cast<double>(s) / kStops));
   }
   std::string html = "<div class='scale'><span class='scale-title'>" + escapeHtml(scale.title) +
                      (scale.unit.empty() ? "" : " [" + escapeHtml(unitText(scale.unit)) + "]") +
@@ -259,7 +250,7 @@ std::string legendHtml(const std::vector<LegendEntry>& legend) {
                                           : "";
   html += "<ul class='legend'>";
   for (const LegendEntry& entry : legend) {
-    html += "<li><span class='swatch' style='background:" + hex(entry.colour) + "'></span>" +
+    html += "<li><span class='swatch' style='background:" + hexText(entry.colour) + "'></span>" +
             escapeHtml(entry.name) + "</li>";
   }
   return html + "</ul>" + (legend.size() > kFew ? "</details>" : "");

@@ -5,11 +5,9 @@
 #include "Encoding.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Html.h"
+#include "Explica/Core/Text.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdio>
 #include <map>
 
 namespace explica::report {
@@ -20,25 +18,13 @@ constexpr double kSurfaceShape = 0.75;  // height over width of a panel
 constexpr double kFlatShare = 0.6;      // of the width that a flat map is high at most
 constexpr int kTicks = 5;
 
-template <class... Values>
-std::string formatted(const char* pattern, Values... values) {
-  std::array<char, 400> text{};
-  std::snprintf(text.data(), text.size(), pattern, values...);
-  return text.data();
-}
-
-std::string hexText(const Colour& colour) {
-  return formatted("#%02x%02x%02x", encodeSrgb(colour[0]), encodeSrgb(colour[1]),
-                   encodeSrgb(colour[2]));
-}
-
 std::string svgText(double x, double y, double size, const std::string& text) {
-  return formatted("<text x='%.1f' y='%.1f' font-size='%.1f'>", x, y, size) + escapeHtml(text) +
+  return printed("<text x='%.1f' y='%.1f' font-size='%.1f'>", x, y, size) + escapeHtml(text) +
          "</text>\n";
 }
 
 std::string layer(const char* name, const std::string& content) {
-  return formatted("<g id='%s' inkscape:groupmode='layer' inkscape:label='%s'>\n", name, name) +
+  return printed("<g id='%s' inkscape:groupmode='layer' inkscape:label='%s'>\n", name, name) +
          content + "</g>\n";
 }
 
@@ -62,8 +48,8 @@ struct Sheet {
 
   void add(const Picture& part, int x, int y, const std::string& title) {
     pastePicture(picture, part, x, y);
-    images += formatted("<image x='%d' y='%d' width='%d' height='%d' href='data:image/png;base64,",
-                        x, y, part.width, part.height) +
+    images += printed("<image x='%d' y='%d' width='%d' height='%d' href='data:image/png;base64,", x,
+                      y, part.width, part.height) +
               base64(encodePng(part)) + "'/>\n";
     if (title.empty()) return;
     drawText(picture, title, {x + letters, y + 1.5 * letters}, letters, kInk);
@@ -76,12 +62,12 @@ std::string svgBar(const ColourScale& scale, double x, double top, double height
   std::string svg = "<defs><linearGradient id='colours' x1='0' y1='1' x2='0' y2='0'>";
   for (int n = 0; n < kStops; ++n) {
     const double t = static_cast<double>(n) / (kStops - 1);
-    svg += formatted("<stop offset='%.4f' stop-color='%s'/>", t,
-                     hexText(colourAt(scale.map, t)).c_str());
+    svg += printed("<stop offset='%.4f' stop-color='%s'/>", t,
+                   hexText(colourAt(scale.map, t)).c_str());
   }
   svg += "</linearGradient></defs>\n";
-  svg += formatted("<rect x='%.1f' y='%.1f' width='%.1f' height='%.1f' fill='url(#colours)'/>\n", x,
-                   top, 1.2 * letters, height);
+  svg += printed("<rect x='%.1f' y='%.1f' width='%.1f' height='%.1f' fill='url(#colours)'/>\n", x,
+                 top, 1.2 * letters, height);
   for (int n = 0; n < kTicks; ++n) {
     const double t = static_cast<double>(n) / (kTicks - 1);
     svg += svgText(x + 1.8 * letters, top + (1 - t) * height + 0.5 * letters, 1.4 * letters,
@@ -122,9 +108,7 @@ void drawPanel(Sheet& sheet, Scenes& scenes, const Panel& panel, const Cell& cel
     sheet.add(flat, cell.left + std::max(0, (cell.width - flat.width) / 2), cell.top, panel.title);
     return;
   }
-  SurfacePictureOptions size;
-  size.width = cell.width;
-  size.height = cell.height;
+  SurfacePictureOptions size{.width = cell.width, .height = cell.height};
   Camera camera = cameraFor(*panel.mesh, panel.view, cell.width, cell.height);
   camera.halfHeight = halfHeight;
   const SurfaceScene& scene = scenes.try_emplace(panel.mesh, *panel.mesh).first->second;
@@ -171,7 +155,7 @@ PanelFigure panelFigure(const std::vector<std::vector<Panel>>& rows,
     cell.top += cell.height;
   }
   const std::string bar = scale ? drawBar(sheet, *scale, content) : "";
-  const std::string head = formatted(
+  const std::string head = printed(
       "<svg xmlns='http://www.w3.org/2000/svg' "
       "xmlns:inkscape='http://www.inkscape.org/namespaces/inkscape' width='%d' height='%d' "
       "viewBox='0 0 %d %d' font-family='Helvetica, Arial, sans-serif'>\n",

@@ -3,6 +3,7 @@
 #include "Explica/Report/Picture.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Core/WholeFile.h"
 
 #include <png.h>
@@ -27,6 +28,11 @@ std::uint8_t encodeSrgb(float linear) {
 float decodeSrgb(std::uint8_t byte) {
   const float x = byte / 255.0f;
   return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f);
+}
+
+std::string hexText(const Colour& colour) {
+  return printed("#%02x%02x%02x", encodeSrgb(colour[0]), encodeSrgb(colour[1]),
+                 encodeSrgb(colour[2]));
 }
 
 std::string encodePng(const Picture& picture) {

@@ -121,12 +121,12 @@ SliceFrame frameAround(SliceAxis axis, double position, const Point& low, const 
                        int height) {
   const PlaneAxes axes = axesOf(axis);
   constexpr double kMargin = 1.06;
-  SliceFrame frame;
-  frame.axis = axis;
-  frame.position = position;
-  frame.centre = {0.5 * (low[axes.right] + high[axes.right]), 0.5 * (low[axes.up] + high[axes.up])};
-  frame.height = height;
-  frame.pixel = kMargin * (high[axes.up] - low[axes.up]) / height;
+  SliceFrame frame{
+      .axis = axis,
+      .position = position,
+      .centre = {0.5 * (low[axes.right] + high[axes.right]), 0.5 * (low[axes.up] + high[axes.up])},
+      .pixel = kMargin * (high[axes.up] - low[axes.up]) / height,
+      .height = height};
   frame.width =
       static_cast<int>(std::lround(kMargin * (high[axes.right] - low[axes.right]) / frame.pixel));
   return frame;

@@ -47,11 +47,10 @@ Lattice latticeOf(const Grid& grid, const std::vector<MosaicOutline>& outlines) 
 /// Grey of each point, x fastest, then y, then z.
 std::vector<std::int32_t> greyOf(const Volume<float>& image, const Lattice& lattice,
                                  const ColourScale& scale) {
-  SliceFrame frame;
-  frame.axis = SliceAxis::Axial;
-  frame.pixel = lattice.step;
-  frame.width = lattice.size[0];
-  frame.height = lattice.size[1];
+  SliceFrame frame{.axis = SliceAxis::Axial,
+                   .pixel = lattice.step,
+                   .width = lattice.size[0],
+                   .height = lattice.size[1]};
   for (int a = 0; a < 2; ++a) {
     frame.centre[a] = lattice.low[a] + 0.5 * (lattice.size[a] - 1) * lattice.step;
   }

@@ -7,7 +7,7 @@
 #include "Explica/Report/ColourMap.h"
 #include "Explica/Report/Drawing.h"
 
-#include "Explica/Geometry/Fixtures.h"
+#include "Explica/Testing/Meshes.h"
 
 #include <gtest/gtest.h>
 #include <zlib.h>

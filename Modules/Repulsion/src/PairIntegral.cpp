@@ -7,7 +7,6 @@
 #include "Quadrature.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace explica::repulsion {
 namespace {

@@ -8,6 +8,7 @@
 #include "Explica/Geometry/Fixtures.h"
 #include "Explica/Repulsion/AllPairs.h"
 #include "Explica/Testing/InstructionSets.h"
+#include "Explica/Testing/Meshes.h"
 #include "Explica/Testing/Selections.h"
 
 #include <gtest/gtest.h>

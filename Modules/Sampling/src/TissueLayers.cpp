@@ -144,11 +144,10 @@ std::vector<LayerRow> layerTable(const TissueVoxels& tissue, const LayerShares& 
   for (std::size_t region = 0; region < regionNames.size(); ++region) {
     for (std::size_t layer = 0; layer < layers; ++layer) {
       const LayerSums& s = sums[region * layers + layer];
-      LayerRow row;
-      row.region = regionNames[region];
-      row.layer = static_cast<int>(layer) + 1;
-      row.count = s.count;
-      row.volume = s.weight * tissue.grid.voxelVolume();
+      LayerRow row{.region = regionNames[region],
+                   .layer = static_cast<int>(layer) + 1,
+                   .count = s.count,
+                   .volume = s.weight * tissue.grid.voxelVolume()};
       if (s.weight > 0) {
         row.mean = s.sum / s.weight;
         row.deviation = std::sqrt(std::max(0.0, s.squares / s.weight - row.mean * row.mean));

@@ -148,7 +148,7 @@ TEST(Sampler, DoesNotKnowWhatLiesOutsideOrIsNaN) {
       1.6, 1, 0,      // nearer to the unknown one
       kNaN, 0, 0;
   const bool known[] = {true, true, false, true, false, true, false, false};
-  for (const auto& [way, name] : EnumNames<Interpolation>::table) {
+  for (const auto& [way, name] : enumWords(Interpolation{})) {
     const std::vector<float> got = sampleVolume(volume, points, way);
     for (int p = 0; p < 8; ++p) {
       EXPECT_EQ(!std::isnan(got[p]), known[p]) << name << " point " << p;
@@ -186,7 +186,7 @@ TEST(Sampler, TakesAnyNumberOfFramesAtOnceWithAnyNumberOfThreads) {
   }
   Positions points = ball();
   points.row(0).setConstant(1000);
-  for (const auto& [way, name] : EnumNames<Interpolation>::table) {
+  for (const auto& [way, name] : enumWords(Interpolation{})) {
     const Sampler sampler(grid, points, way);
     std::vector<std::vector<float>> byThreads;
     for (const int threads : {1, 2, 4}) {

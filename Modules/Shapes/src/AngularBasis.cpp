@@ -4,7 +4,6 @@
 #include "AngularBasis.h"
 
 #include <cmath>
-#include <vector>
 
 namespace explica::shapes {
 namespace {

@@ -6,10 +6,10 @@
 #include "AngularBasis.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/StopScope.h"
+#include "Explica/Core/Text.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -292,16 +292,12 @@ ShapeFit fitShape(const HarmonicAnnulus& annulus, const TargetSamples& target,
   for (Eigen::Index p = 0; p < target.points.rows(); ++p) {
     const Point point = target.points.row(p).transpose();
     if (sideOf(annulus, point) == AnnulusSide::Inside) continue;
-    char text[200];
-    std::snprintf(text, sizeof text,
-                  "fit: the target's point (%.6g, %.6g, %.6g) mm lies outside the annulus",
-                  point.x(), point.y(), point.z());
-    std::string message = text;
     Vector d = point - annulus.centre;
     if (annulus.dimension == 2) d.z() = 0;
-    std::snprintf(text, sizeof text, ": %.6g mm from its centre, with radii from %.6g to %.6g mm",
-                  d.norm(), annulus.innerRadius, annulus.outerRadius);
-    throw InvalidInput(message + text);
+    throw InvalidInput(printed(
+        "fit: the target's point (%.6g, %.6g, %.6g) mm lies outside the annulus: %.6g mm from its "
+        "centre, with radii from %.6g to %.6g mm",
+        point.x(), point.y(), point.z(), d.norm(), annulus.innerRadius, annulus.outerRadius));
   }
   const Fit fit(annulus, target, options);
   Eigen::VectorXd x = fit.initial(options.start);
@@ -348,9 +344,8 @@ ShapeFit fitShape(const HarmonicAnnulus& annulus, const TargetSamples& target,
 HarmonicAnnulus annulusAround(const std::vector<TargetSamples>& targets, int dimension,
                               const AnnulusOptions& options) {
   if (targets.empty()) throw InvalidInput("targets: none; the annulus is taken from them");
-  HarmonicAnnulus annulus;
-  annulus.dimension = dimension;
-  annulus.order = options.order.value_or(dimension == 2 ? 64 : 14);
+  HarmonicAnnulus annulus{.dimension = dimension,
+                          .order = options.order.value_or(dimension == 2 ? 64 : 14)};
   Point sum = Point::Zero();
   for (const TargetSamples& target : targets) {
     sum += target.points.transpose() * target.weights / target.weights.sum();

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "Explica/Planar/PolygonPhantoms.h"
+#include "Explica/Testing/Curves.h"
 
 #include <cmath>
 

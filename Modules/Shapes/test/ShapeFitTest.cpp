@@ -4,8 +4,8 @@
 #include "Explica/Shapes/ShapeFit.h"
 
 #include "Explica/Geometry/Fixtures.h"
-#include "Explica/Planar/PolygonPhantoms.h"
 #include "Explica/Shapes/ShapeLevel.h"
+#include "Explica/Testing/Curves.h"
 #include "Lobed.h"
 
 #include <gtest/gtest.h>

@@ -7,7 +7,6 @@
 #include "Explica/Geometry/Fixtures.h"
 #include "Explica/Geometry/MeshTopology.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace explica::sphere {

@@ -7,7 +7,6 @@
 #include "Explica/Geometry/SphereLocator.h"
 #include "Star.h"
 
-#include <algorithm>
 #include <map>
 #include <set>
 

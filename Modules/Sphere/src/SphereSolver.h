@@ -6,8 +6,6 @@
 #include "Explica/Core/Termination.h"
 #include "Explica/Sphere/SphereEnergy.h"
 
-#include <functional>
-
 namespace explica::sphere {
 
 /// A further energy of positions on the sphere that is a sum over vertices.

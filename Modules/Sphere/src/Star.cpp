@@ -7,7 +7,6 @@
 
 #include <Eigen/LU>
 
-#include <algorithm>
 #include <cmath>
 
 namespace explica::sphere {

@@ -9,6 +9,7 @@
 #include "Explica/Geometry/Fixtures.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/SphereLocator.h"
+#include "Explica/Testing/Meshes.h"
 #include "Explica/Testing/TimesCovered.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
-#include "Explica/Core/Types.h"
 #include "Explica/Statistics/RandomField.h"
 
 #include <algorithm>

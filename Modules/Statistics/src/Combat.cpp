@@ -3,14 +3,12 @@
 #include "Explica/Statistics/Combat.h"
 
 #include "Explica/Core/Errors.h"
-#include "Explica/Core/Parallel.h"
 #include "Explica/Core/Types.h"
 
 #include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 namespace explica::statistics {
 namespace {

@@ -14,7 +14,6 @@
 #include <Eigen/SVD>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 namespace explica::statistics {

@@ -5,7 +5,6 @@
 #include "Explica/Core/Parallel.h"
 
 #include <algorithm>
-#include <vector>
 
 namespace explica::statistics {
 namespace {

@@ -4,6 +4,7 @@
 
 #include "Explica/Geometry/Fixtures.h"
 #include "Explica/Geometry/MeshMeasures.h"
+#include "Explica/Testing/Meshes.h"
 #include "RandomNumbers.h"
 
 #include <gtest/gtest.h>

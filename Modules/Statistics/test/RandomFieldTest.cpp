@@ -3,8 +3,8 @@
 #include "Explica/Statistics/RandomField.h"
 
 #include "Explica/Core/Types.h"
-#include "Explica/Geometry/Fixtures.h"
 #include "Explica/Statistics/Distributions.h"
+#include "Explica/Testing/Meshes.h"
 
 #include <gtest/gtest.h>
 

@@ -4,6 +4,7 @@
 #include "Explica/Study/BidsDataset.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/Provenance/Document.h"
 #include "Explica/Study/SubjectFiles.h"
 
@@ -15,15 +16,8 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Folders whose names start with `prefix`, by name.
-std::vector<fs::path> foldersOf(const fs::path& parent, std::string_view prefix) {
-  std::vector<fs::path> folders;
-  for (const auto& entry : fs::directory_iterator(parent)) {
-    if (entry.is_directory() && entry.path().filename().string().rfind(prefix, 0) == 0) {
-      folders.push_back(entry.path());
-    }
-  }
-  std::sort(folders.begin(), folders.end());
-  return folders;
+std::vector<fs::path> foldersFrom(const fs::path& parent, std::string_view prefix) {
+  return foldersOf(parent, [&](const std::string& name) { return name.starts_with(prefix); });
 }
 
 /// What a folder offers; empty if nothing, and then `problem` says why.
@@ -78,14 +72,14 @@ std::vector<Participant> findParticipants(const fs::path& dataset,
     throw InvalidInput(description.string() + ": is no JSON object, such as {\"Name\": \"study\"}");
   }
   std::vector<Participant> participants;
-  for (const fs::path& folder : foldersOf(dataset, "sub-")) {
+  for (const fs::path& folder : foldersFrom(dataset, "sub-")) {
     Participant participant;
     participant.label = folder.filename().string().substr(4);
     const auto wanted = [&](const std::string& label) {
       return label == participant.label || label == "sub-" + participant.label;
     };
     if (!labels.empty() && std::none_of(labels.begin(), labels.end(), wanted)) continue;
-    const std::vector<fs::path> sessions = foldersOf(folder, "ses-");
+    const std::vector<fs::path> sessions = foldersFrom(folder, "ses-");
     if (sessions.empty()) participants.push_back(participantIn(dataset, folder, participant));
     for (const fs::path& session : sessions) {
       participant.session = session.filename().string().substr(4);

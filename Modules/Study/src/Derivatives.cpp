@@ -3,8 +3,8 @@
 
 #include "Explica/Study/Derivatives.h"
 
-#include "Explica/Core/Errors.h"
 #include "Explica/Core/FileText.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Provenance/Export.h"
 #include "Explica/Provenance/Record.h"
@@ -129,12 +129,8 @@ constexpr const char* kReadMe =
 std::vector<Export> exportsOf(const fs::path& run) {
   constexpr std::string_view kSpace = "_space-", kDensity = "_den-", kEnding = ".shape.gii";
   std::vector<Export> all = kExports;
-  std::error_code none;
-  std::set<std::string> names;
-  for (const auto& entry : fs::directory_iterator(run / "resample", none)) {
-    names.insert(entry.path().filename().string());
-  }
-  for (const std::string& name : names) {
+  for (const fs::path& file : entriesOf(run / "resample")) {
+    const std::string name = file.filename().string();
     const std::size_t at = name.find(kSpace), density = name.find(kDensity);
     if (at == std::string::npos || density == std::string::npos || !name.ends_with(kEnding)) {
       continue;

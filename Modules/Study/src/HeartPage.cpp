@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "Explica/Core/Html.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Study/HeartStudy.h"
 #include "HeartColumns.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <cstdlib>
 #include <iterator>
 
@@ -27,9 +27,7 @@ std::string rounded(const std::string& text) {
   char* end = nullptr;
   const double number = std::strtod(text.c_str(), &end);
   if (end == text.c_str() || *end != '\0') return text;
-  char shown[48];
-  std::snprintf(shown, sizeof shown, "%.1f", number);
-  return shown;
+  return printed("%.1f", number);
 }
 
 // In addition to the style that all pages share.

@@ -5,12 +5,12 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/FileText.h"
+#include "Explica/Core/Folders.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Provenance/Json.h"
 #include "HeartColumns.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 #include <iterator>
 #include <set>
 #include <sstream>
@@ -29,14 +29,7 @@ bool isOther(const std::string& name) {
 }
 
 std::vector<fs::path> foldersIn(const fs::path& parent) {
-  std::vector<fs::path> folders;
-  for (const auto& entry : fs::directory_iterator(parent)) {
-    if (entry.is_directory() && !isOther(entry.path().filename().string())) {
-      folders.push_back(entry.path());
-    }
-  }
-  std::sort(folders.begin(), folders.end());
-  return folders;
+  return foldersOf(parent, [](const std::string& name) { return !isOther(name); });
 }
 
 /// Files below a folder, in the order of their names.
@@ -86,13 +79,6 @@ bool isWanted(const std::string& person, const std::vector<std::string>& wanted)
          });
 }
 
-std::vector<std::string> cellsOf(const std::string& line) {
-  std::vector<std::string> cells;
-  std::istringstream in(line.ends_with('\r') ? line.substr(0, line.size() - 1) : line);
-  for (std::string cell; std::getline(in, cell, '\t');) cells.push_back(cell);
-  return cells;
-}
-
 std::string cellOf(const Json& value) {
   if (value.is_null()) return "n/a";
   return value.is_string() ? value.get<std::string>() : provenance::textOf(value);
@@ -124,28 +110,19 @@ constexpr HeartColumn kColumns[] = {
 void addSegments(HeartRow& row, const fs::path& file, const Json& summary) {
   std::error_code fault;
   if (!fs::exists(file, fault)) return;
-  std::istringstream table(fileText(file));
-  std::string line;
-  std::getline(table, line);
-  const std::vector<std::string> head = cellsOf(line);
-  const auto at = [&](const char* name) {
-    return static_cast<std::size_t>(std::find(head.begin(), head.end(), name) - head.begin());
-  };
-  const std::size_t segment = at("segment"), frame = at("frame"), thickness = at("thickness"),
-                    thickening = at("thickening");
   const auto phase = [&](const char* key) {
     return summary.contains(key) ? cellOf(summary[key]) : std::string();
   };
   const std::string diastole = phase("frame_ed"), systole = phase("frame_es");
-  while (std::getline(table, line)) {
-    const std::vector<std::string> cells = cellsOf(line);
-    if (cells.size() < head.size() || cells[segment].empty()) continue;
+  for (TableRow& cells : tableRows(fileText(file))) {
+    const std::string& segment = cells["segment"];
+    if (segment.empty()) continue;
     const std::string name =
-        "segment_" + std::string(cells[segment].size() < 2 ? "0" : "") + cells[segment] + "_";
-    if (cells[frame] == diastole) row.values[name + "thickness_ed"] = cells[thickness];
-    if (cells[frame] != systole) continue;
-    row.values[name + "thickness_es"] = cells[thickness];
-    row.values[name + "thickening"] = cells[thickening];
+        "segment_" + std::string(segment.size() < 2 ? "0" : "") + segment + "_";
+    if (cells["frame"] == diastole) row.values[name + "thickness_ed"] = cells["thickness"];
+    if (cells["frame"] != systole) continue;
+    row.values[name + "thickness_es"] = cells["thickness"];
+    row.values[name + "thickening"] = cells["thickening"];
   }
 }
 
@@ -243,38 +220,23 @@ std::vector<HeartSubject> findHearts(const fs::path& dataset,
   return subjects;
 }
 
-std::map<std::string, std::map<std::string, std::string>> aboutParticipants(
-    const fs::path& dataset) {
-  std::map<std::string, std::map<std::string, std::string>> about;
+std::map<std::string, TableRow> aboutParticipants(const fs::path& dataset) {
+  std::map<std::string, TableRow> about;
   std::error_code fault;
   if (!fs::exists(dataset / "participants.tsv", fault)) return about;
-  std::istringstream table(fileText(dataset / "participants.tsv"));
-  std::string line;
-  if (!std::getline(table, line)) return about;
-  if (line.starts_with("\xef\xbb\xbf")) line.erase(0, 3);
-  const std::vector<std::string> head = cellsOf(line);
-  if (std::find(head.begin(), head.end(), "participant_id") == head.end()) {
-    throw InvalidInput((dataset / "participants.tsv").string() +
-                       ": has no column participant_id, which BIDS asks for");
-  }
-  while (std::getline(table, line)) {
-    const std::vector<std::string> cells = cellsOf(line);
-    std::map<std::string, std::string> row;
-    std::string id;
-    for (std::size_t c = 0; c < std::min(head.size(), cells.size()); ++c) {
-      if (head[c] == "participant_id")
-        id = cells[c];
-      else
-        row[head[c]] = cells[c];
+  for (TableRow& row : tableRows(fileText(dataset / "participants.tsv"))) {
+    const auto person = row.extract("participant_id");
+    if (person.empty()) {
+      throw InvalidInput((dataset / "participants.tsv").string() +
+                         ": has no column participant_id, which BIDS asks for");
     }
-    about[id] = std::move(row);
+    about[person.mapped()] = std::move(row);
   }
   return about;
 }
 
-std::vector<HeartRow> heartRows(
-    const fs::path& out, const std::vector<HeartSubject>& subjects,
-    const std::map<std::string, std::map<std::string, std::string>>& about) {
+std::vector<HeartRow> heartRows(const fs::path& out, const std::vector<HeartSubject>& subjects,
+                                const std::map<std::string, TableRow>& about) {
   std::vector<HeartRow> rows;
   for (const HeartSubject& subject : subjects) {
     rows.push_back(rowOf(out, subject));

@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "RegionTables.h"
 
+#include "Explica/Core/Text.h"
+
 #include <algorithm>
 #include <set>
-#include <sstream>
 
 namespace explica::study {
 namespace {
@@ -32,42 +33,17 @@ constexpr WideMeasure kWideMeasures[] = {{"thickness_mean", ""},
                                          {"area", ".area"},
                                          {"volume", ".volume"}};
 
-/// Rows of a tab-separated table by the headings of its columns.
-std::vector<std::map<std::string, std::string>> tableOf(const std::string& text) {
-  const auto cellsOf = [](const std::string& line) {
-    std::istringstream stream(line);
-    std::vector<std::string> cells;
-    for (std::string cell; std::getline(stream, cell, '\t');) cells.push_back(cell);
-    return cells;
-  };
-  std::istringstream lines(text);
-  std::vector<std::string> headings;
-  std::vector<std::map<std::string, std::string>> rows;
-  for (std::string line; std::getline(lines, line);) {
-    const auto cells = cellsOf(line);
-    if (headings.empty()) {
-      headings = cells;
-      continue;
-    }
-    auto& row = rows.emplace_back();
-    for (std::size_t n = 0; n < std::min(cells.size(), headings.size()); ++n) {
-      row[headings[n]] = cells[n];
-    }
-  }
-  return rows;
-}
-
 }  // namespace
 
 void addRegions(StudyRow& row, const std::string& fromSurface, const std::string& fromTemplate) {
-  for (auto& cells : tableOf(fromSurface)) {
+  for (auto& cells : tableRows(fromSurface)) {
     for (const SurfaceColumn& column : kSurfaceColumns) {
       if (!cells.contains(column.heading)) continue;
       row.regions.push_back(
           {"surface", cells["name"], column.measure, cells[column.heading], column.unit});
     }
   }
-  for (auto& cells : tableOf(fromTemplate)) {
+  for (auto& cells : tableRows(fromTemplate)) {
     row.regions.push_back({"template " + cells["atlas"], cells["region"], cells["measure"],
                            cells["value"], cells["unit"]});
   }

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Provenance/Json.h"
 #include "Explica/Study/StudyFile.h"
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <regex>
 
 namespace explica::study {
@@ -51,36 +51,10 @@ std::string shown(const Json& value) {
   return dumped.size() > 60 ? dumped.substr(0, 57) + "..." : dumped;
 }
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string all;
-  for (const auto& word : words) all += (all.empty() ? "" : ", ") + word;
-  return all;
-}
-
-/// Smallest number of letters to insert, drop or change.
-std::size_t lettersBetween(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), 0);
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t changed = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, changed});
-    }
-  }
-  return row.back();
-}
-
 /// "; did you mean 'faces'?", or which words there are.
 std::string hint(const std::string& word, const std::vector<std::string>& known) {
-  const auto nearest = std::min_element(known.begin(), known.end(), [&](auto& a, auto& b) {
-    return lettersBetween(word, a) < lettersBetween(word, b);
-  });
-  if (nearest != known.end() && lettersBetween(word, *nearest) <= word.size() / 3 + 1) {
-    return "; did you mean '" + *nearest + "'?";
-  }
+  const std::string nearest = nearestOf(word, known, word.size() / 3 + 2);
+  if (!nearest.empty()) return "; did you mean '" + nearest + "'?";
   constexpr std::size_t kListed = 12;  // names in a message
   return known.size() > kListed || known.empty() ? "" : "; known are " + joined(known);
 }
@@ -104,11 +78,8 @@ std::string typesOf(const Json& schema) {
       {"boolean", "true or false"}, {"array", "a list"},    {"object", "keys with values"},
       {"null", "nothing"}};
   const Json& type = schema["type"];
-  std::string all;
-  for (const auto& one : type.is_array() ? type : Json::array({type})) {
-    all += (all.empty() ? "" : " or ") + words.at(one.get<std::string>());
-  }
-  return all;
+  return joined(type.is_array() ? type : Json::array({type}), " or ",
+                [](const Json& one) { return words.at(one.get<std::string>()); });
 }
 
 bool hasType(const Json& value, const Json& schema) {
@@ -174,28 +145,28 @@ std::string faultOf(const Json& value, const Json& schema, Place& place) {
   return "";
 }
 
-/// valijson's place "<root>[subjects][01]: ..." as keys, followed through the value.
-Place placeOf(const std::string& fault, const Json& root) {
-  Place place;
-  const Json* at = &root;
-  std::string rest = fault.substr(std::min(fault.size(), std::string("<root>").size()));
-  while (rest.rfind('[', 0) == 0) {
-    const std::size_t close = rest.find(']');
-    if (close == std::string::npos) break;
-    const std::string key = rest.substr(1, close - 1);
-    if (at->is_object() && at->contains(key)) {
-      at = &(*at)[key];
-    } else if (at->is_array() && !key.empty() && key.size() < 9 &&
-               std::all_of(key.begin(), key.end(), [](char c) { return c >= '0' && c <= '9'; }) &&
-               std::stoul(key) < at->size()) {
-      at = &(*at)[std::stoul(key)];
-    } else {
-      break;
+/// Throws the first fault of a value or of a part of it.
+void check(const StudyFile& file, const Json& value, const Json& schema, const Place& at) {
+  if (schema.contains("anyOf")) {
+    for (const Json& one : schema["anyOf"]) {
+      const bool last = &one == &schema["anyOf"].back();
+      Place place = at;
+      if (last || faultOf(value, one, place).empty()) return check(file, value, one, at);
     }
-    place.push_back(key);
-    rest = rest.substr(close + 1);
   }
-  return place;
+  Place place = at;
+  const std::string fault = faultOf(value, schema, place);
+  if (!fault.empty()) throw InvalidInput(placeIn(file, place) + fault);
+  place.emplace_back();
+  for (std::size_t n = 0; value.is_array() && n < value.size(); ++n) {
+    place.back() = std::to_string(n);
+    if (schema.contains("items")) check(file, value[n], schema["items"], place);
+  }
+  if (!value.is_object()) return;
+  for (const auto& [key, part] : value.items()) {
+    place.back() = key;
+    if (const Json* below = schemaOfKey(schema, key)) check(file, part, *below, place);
+  }
 }
 
 }  // namespace
@@ -273,38 +244,7 @@ Json studySchema(const Json& parameters, const Json& region) {
 }
 
 void checkStudyFile(const StudyFile& file, const Json& schema) {
-  const std::vector<std::string> faults =
-      provenance::schemaFaults(file.values, provenance::textOf(schema));
-  if (faults.empty()) return;
-  // The innermost fault is reported; those around it only follow from it.
-  Place place;
-  std::string said = faults.front();
-  for (const std::string& fault : faults) {
-    Place candidate = placeOf(fault, file.values);
-    if (candidate.size() > place.size()) {
-      place = std::move(candidate);
-      said = fault;
-    }
-  }
-  const Json* value = &file.values;
-  const Json* below = &schema;
-  Place at;
-  std::string sentence = faultOf(*value, *below, at);
-  for (const std::string& key : place) {
-    if (!sentence.empty()) break;
-    at.push_back(key);
-    if (value->is_array()) {
-      value = &(*value)[std::stoul(key)];
-      below = below->contains("items") ? &(*below)["items"] : nullptr;
-    } else {
-      value = &(*value)[key];
-      below = schemaOfKey(*below, key);
-    }
-    if (!below) break;
-    sentence = faultOf(*value, *below, at);
-  }
-  if (sentence.empty()) sentence = said.substr(said.find(": ") + 2) + " See the schema";
-  throw InvalidInput(placeIn(file, at) + sentence);
+  check(file, file.values, schema, {});
 }
 
 }  // namespace explica::study

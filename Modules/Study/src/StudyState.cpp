@@ -3,6 +3,7 @@
 
 #include "Explica/Study/StudyState.h"
 
+#include "Explica/Core/Folders.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Provenance/Digest.h"
 #include "Explica/Provenance/Software.h"
@@ -67,13 +68,10 @@ fs::path stateFile(const fs::path& out, const PlannedSubject& subject, const std
 void unsettle(const fs::path& out, const PlannedSubject& subject) {
   const std::string begin = subject.participant.name() + "-";
   std::error_code fault;
-  std::vector<fs::path> stale;
-  for (const auto& entry : fs::directory_iterator(out / "state", fault)) {
-    const std::string name = entry.path().filename().string();
-    const bool ours = name.size() == begin.size() + kKeyDigits + 5 && name.rfind(begin, 0) == 0;
-    if (ours) stale.push_back(entry.path());
-  }
-  for (const fs::path& file : stale) fs::remove(file, fault);
+  const auto isOurs = [&](const std::string& name) {
+    return name.size() == begin.size() + kKeyDigits + 5 && name.starts_with(begin);
+  };
+  for (const fs::path& file : entriesOf(out / "state", isOurs)) fs::remove(file, fault);
 }
 
 void settle(const fs::path& out, const PlannedSubject& subject, const std::string& key) {

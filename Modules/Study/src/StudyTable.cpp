@@ -5,14 +5,15 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/FileText.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/Core/StopScope.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Provenance/Doubts.h"
 #include "Explica/Provenance/Json.h"
 #include "RegionTables.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -236,9 +237,7 @@ void flagOutliers(const std::vector<StudyRow>& rows, const std::vector<std::size
     if (!number) continue;
     const double z = 0.6745 * (*number - median) / spread;
     if (std::abs(z) <= kFar) continue;
-    char reason[64];
-    std::snprintf(reason, sizeof reason, "robust z %.1f", z);
-    flags[n].push_back({column, reason});
+    flags[n].push_back({column, printed("robust z %.1f", z)});
   }
 }
 
@@ -249,18 +248,12 @@ std::vector<StudyRow> collectRows(const fs::path& out, const std::string& subjec
   if (!fs::is_directory(runs)) {
     throw InvalidInput(out.string() + ": holds no runs; do the participant level first");
   }
-  std::vector<fs::path> folders;
-  for (const auto& entry : fs::directory_iterator(runs)) {
-    const std::string name = entry.path().filename().string();
-    if (entry.is_directory() && name.rfind("sub-", 0) == 0 &&
-        (subject.empty() || name.starts_with(subject + "_")) &&
-        name.find("_hemi-") != std::string::npos) {
-      folders.push_back(entry.path());
-    }
-  }
-  std::sort(folders.begin(), folders.end());
+  const auto isRun = [&](const std::string& name) {
+    return name.starts_with("sub-") && (subject.empty() || name.starts_with(subject + "_")) &&
+           name.find("_hemi-") != std::string::npos;
+  };
   std::vector<StudyRow> rows;
-  for (const fs::path& run : folders) {
+  for (const fs::path& run : foldersOf(runs, isRun)) {
     checkpoint();
     rows.push_back(rowOf(out, run));
   }

@@ -13,7 +13,6 @@
 #include <cmath>
 #include <map>
 #include <string>
-#include <utility>
 
 namespace explica::surface {
 namespace {

@@ -6,7 +6,6 @@
 #include "Explica/Core/TriangleMesh.h"
 #include "RibbonPaths.h"
 
-#include <cstdint>
 #include <vector>
 
 namespace explica::surface {

@@ -8,7 +8,6 @@
 #include "Explica/Surface/CorticalTissue.h"
 #include "RibbonPaths.h"
 
-#include <array>
 #include <cstdint>
 #include <vector>
 

@@ -6,7 +6,6 @@
 #include "Explica/Core/Parallel.h"
 #include "Explica/Surface/LevelSet.h"
 
-#include <array>
 #include <cmath>
 #include <utility>
 

@@ -9,7 +9,6 @@
 #include "Explica/Geometry/SelfIntersection.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace explica::surface {
 namespace {

@@ -8,6 +8,7 @@
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Geometry/SelfIntersection.h"
+#include "Explica/Testing/Meshes.h"
 #include "NearestToItself.h"
 
 #include <gtest/gtest.h>

@@ -6,7 +6,6 @@
 #include "Explica/Core/DisjointSets.h"
 #include "Explica/Core/Parallel.h"
 
-#include <algorithm>
 #include <map>
 #include <set>
 #include <span>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "Explica/Core/TriangleMesh.h"
-#include "Explica/Geometry/Fixtures.h"
+#include "Explica/Testing/Meshes.h"
 
 #include <cmath>
 #include <vector>

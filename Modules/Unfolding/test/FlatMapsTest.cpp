@@ -4,6 +4,7 @@
 
 #include "../benchmark/FlatMaps.h"
 #include "Explica/Geometry/Fixtures.h"
+#include "Explica/Testing/Meshes.h"
 
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Unfolding/Distortion.h"

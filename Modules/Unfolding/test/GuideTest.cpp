@@ -7,6 +7,7 @@
 #include "Meander.h"
 
 #include "Explica/Geometry/SelfIntersection.h"
+#include "Explica/Testing/Meshes.h"
 #include "Explica/Unfolding/Unfold.h"
 #include "Explica/Visibility/VisibleFraction.h"
 

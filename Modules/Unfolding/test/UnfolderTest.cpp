@@ -12,6 +12,7 @@
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/SelfIntersection.h"
 #include "Explica/Testing/InstructionSets.h"
+#include "Explica/Testing/Meshes.h"
 #include "Explica/Unfolding/Continuation.h"
 #include "Explica/Unfolding/Distortion.h"
 #include "Explica/Unfolding/Summary.h"

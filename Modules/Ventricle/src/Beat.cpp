@@ -158,12 +158,11 @@ std::vector<SliceRow> sliceRows(const Frame& frame) {
   }
   for (std::size_t k = 0; k < slices.size(); ++k) {
     if (slices[k].kind == SliceKind::Empty) continue;
-    SliceRow row;
-    row.slice = static_cast<int>(k);
-    row.kind = slices[k].kind;
-    row.cavityArea = pixel * static_cast<double>(slices[k].cavity);
-    row.wallArea = pixel * static_cast<double>(slices[k].wall);
-    row.openShare = slices[k].openShare;
+    SliceRow row{.slice = static_cast<int>(k),
+                 .kind = slices[k].kind,
+                 .cavityArea = pixel * static_cast<double>(slices[k].cavity),
+                 .wallArea = pixel * static_cast<double>(slices[k].wall),
+                 .openShare = slices[k].openShare};
     if (slices[k].cavity > 0 && slices[k].wall > 0) {
       row.areaEquivalent =
           std::sqrt((row.cavityArea + row.wallArea) / kPi) - std::sqrt(row.cavityArea / kPi);

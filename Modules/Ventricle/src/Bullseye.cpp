@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 #include "Canvas.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Report/ColourMap.h"
 #include "Explica/Ventricle/Pictures.h"
 #include "Explica/Ventricle/Reference.h"
 
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 
 namespace explica::ventricle {
@@ -31,12 +31,6 @@ struct Panel {
   std::vector<std::string> notes;  ///< below
   double normalLow = kNaN, normalHigh = kNaN;
 };
-
-std::string format(double value, int digits) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.*f", digits, value);
-  return text;
-}
 
 /// Point of the bull's-eye: share of its radius, degrees counter-clockwise from the right.
 Point2 place(double share, double degrees) {
@@ -79,7 +73,8 @@ void drawSegment(Canvas& canvas, const Point2& corner, const Panel& panel, const
                                                     : place(0.5 * (sector.inner + sector.outer),
                                                             sector.first + 0.5 * sector.width));
   const Colour ink = inkOn(ground);
-  canvas.text(middle + Point2(0, 1), known ? format(value, panel.digits) : "n/a", 9.5, ink);
+  canvas.text(middle + Point2(0, 1), known ? printed("%.*f", panel.digits, value) : "n/a", 9.5,
+              ink);
   canvas.text(middle + Point2(0, 13), std::to_string(row.number), 6.5, ink);
 }
 
@@ -181,7 +176,7 @@ std::string leftOutNote(const Frame& frame) {
 
 std::string here(const Beat& beat, Quantity quantity) {
   const double value = valueOf(beat, quantity);
-  return std::isfinite(value) ? format(value, 1) : "n/a";
+  return cellText(value, "%.1f");
 }
 
 /// Thickness of healthy adults and of this heart.

@@ -3,10 +3,10 @@
 #include "Canvas.h"
 
 #include "Explica/Core/Html.h"
+#include "Explica/Core/Text.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 namespace explica::ventricle {
@@ -17,25 +17,12 @@ using report::Colour;
 using report::Picture;
 using report::TextAnchor;
 
-std::string hex(const Colour& c) {
-  char text[8];
-  std::snprintf(text, sizeof text, "#%02x%02x%02x", report::encodeSrgb(c[0]),
-                report::encodeSrgb(c[1]), report::encodeSrgb(c[2]));
-  return text;
-}
-
 std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f", value);
-  return text;
+  return printed("%.2f", value);
 }
 
 std::string listOf(const std::vector<Point2>& points) {
-  std::string text;
-  for (const Point2& p : points) {
-    text += (text.empty() ? "" : " ") + number(p[0]) + ',' + number(p[1]);
-  }
-  return text;
+  return joined(points, " ", [](const Point2& p) { return printed("%.2f,%.2f", p[0], p[1]); });
 }
 
 /// Where a row of sub-pixels crosses an outline, sorted.
@@ -118,13 +105,14 @@ std::string Canvas::svg() const {
                                                             : "end";
       out += "<text x=\"" + number(s.points[0][0]) + "\" y=\"" + number(s.points[0][1]) +
              "\" font-size=\"" + number(s.width * kFontPerCapital) + "\" text-anchor=\"" + anchor +
-             "\" fill=\"" + hex(s.colour) + "\">" + escapeHtml(*s.words) + "</text>\n";
+             "\" fill=\"" + report::hexText(s.colour) + "\">" + escapeHtml(*s.words) + "</text>\n";
     } else if (s.width == 0) {
-      out += "<polygon points=\"" + listOf(s.points) + "\" fill=\"" + hex(s.colour) + "\"/>\n";
+      out += "<polygon points=\"" + listOf(s.points) + "\" fill=\"" + report::hexText(s.colour) +
+             "\"/>\n";
     } else {
       out += std::string(s.closed ? "<polygon" : "<polyline") + " points=\"" + listOf(s.points) +
-             "\" fill=\"none\" stroke=\"" + hex(s.colour) + "\" stroke-width=\"" + number(s.width) +
-             "\" stroke-linejoin=\"round\" stroke-linecap=\"round\"/>\n";
+             "\" fill=\"none\" stroke=\"" + report::hexText(s.colour) + "\" stroke-width=\"" +
+             number(s.width) + "\" stroke-linejoin=\"round\" stroke-linecap=\"round\"/>\n";
     }
   }
   return out + "</svg>\n";

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 #include "Canvas.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Report/ColourMap.h"
 #include "Explica/Ventricle/Pictures.h"
 #include "Explica/Ventricle/Reference.h"
 
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <utility>
 
@@ -137,10 +137,8 @@ std::vector<std::string> volumeNotes(const Beat& beat) {
   std::vector<std::string> notes = {"bars: healthy women (w) and men (m), mean and 2 SD",
                                     volume.source, volume.people};
   if (beat.ejectionFraction) {
-    char text[64];
-    std::snprintf(text, sizeof text, "ejection fraction here %.0f %%, healthy ",
-                  *beat.ejectionFraction);
-    notes.push_back(text + rangeText(ejection));
+    notes.push_back(printed("ejection fraction here %.0f %%, healthy ", *beat.ejectionFraction) +
+                    rangeText(ejection));
     notes.push_back(ejection.source);
   }
   return notes;

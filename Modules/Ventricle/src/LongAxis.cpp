@@ -188,10 +188,7 @@ LongAxis findLongAxis(const Volume<Label>& heart, const SliceShifts& shift) {
   const std::vector<Point> cavity = cavityPoints(heart, shift);
   if (cavity.empty()) throw InvalidInput("the left ventricle's cavity is empty");
   const Line line = axisOfSlabs(filledCavity(heart, cavity), firstAxis(heart, shift, cavity));
-  LongAxis axis;
-  axis.grid = heart.grid;
-  axis.shift = shift;
-  axis.centre = meanOf(cavity);
+  LongAxis axis{.centre = meanOf(cavity), .grid = heart.grid, .shift = shift};
   axis.centre = line.centre + (axis.centre - line.centre).dot(line.direction) * line.direction;
   axis.direction = line.direction.normalized();
   axis.spreadMm = line.spread;

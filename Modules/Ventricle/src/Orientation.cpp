@@ -3,12 +3,12 @@
 #include "Explica/Ventricle/Orientation.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Text.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <vector>
 
 namespace explica::ventricle {
@@ -21,9 +21,7 @@ constexpr int kBins = 120;      // around the axis, 3 degrees each
 constexpr int kGapBins = 10;    // of the septum that may lack
 
 std::string text(const Point& p) {
-  char buffer[96];
-  std::snprintf(buffer, sizeof buffer, "%.1f,%.1f,%.1f", p[0], p[1], p[2]);
-  return buffer;
+  return printed("%.1f,%.1f,%.1f", p[0], p[1], p[2]);
 }
 
 /// Unit vector across the axis; nothing if the vector runs along it.
@@ -127,10 +125,9 @@ Orientation fromPoint(const Volume<Label>& heart, const LongAxis& axis, const Po
   const auto direction = across(axis, insertion - axis.centre);
   const double offAxis = (insertion - axis.foot(insertion)).norm();
   if (nearest > kFarMm || !direction || offAxis < 2) {
-    char distance[48];
-    std::snprintf(distance, sizeof distance, "%.0f mm", nearest > kFarMm ? nearest : offAxis);
     throw InvalidInput(
-        "--rv-insertion " + text(insertion) + " lies " + distance +
+        "--rv-insertion " + text(insertion) + " lies " +
+        printed("%.0f mm", nearest > kFarMm ? nearest : offAxis) +
         (nearest > kFarMm ? " from the wall" : " from the long axis") +
         "; the middle of the cavity is at " + text(axis.centre) +
         ". To find the point, open the image in a viewer (ITK-SNAP, FSLeyes, 3D Slicer), go to a "
@@ -153,7 +150,7 @@ Vector directionOf(const Grid& grid, ImageAxis axis) {
 /// The image direction that points most to the front of the patient.
 Vector mostAnterior(const Grid& grid) {
   Vector best = grid.direction.col(0);
-  for (const auto& [axis, name] : EnumNames<ImageAxis>::table) {
+  for (const auto& [axis, name] : enumWords(ImageAxis{})) {
     const Vector v = directionOf(grid, axis);
     if (v[1] > best[1]) best = v;
   }

@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Ventricle/Reference.h"
 
+#include "Explica/Core/Text.h"
+
 #include <cmath>
-#include <cstdio>
 
 namespace explica::ventricle {
 
@@ -14,13 +15,6 @@ struct Ring {
   int first, last;
 };
 constexpr Ring kBasal{1, 6}, kMiddle{7, 12}, kApical{13, 16};  // AHA's numbers
-
-std::string number(const char* format, double value) {
-  if (!std::isfinite(value)) return "n/a";
-  char text[48];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
 
 /// Mean over the ring's segments that have a number.
 double ringMean(const Frame& frame, const Ring& ring) {
@@ -53,7 +47,7 @@ double ringThickening(const Beat& beat, const Ring& ring) {
 }
 
 std::string spreadText(const Spread& spread) {
-  return number("%g", spread.mean) + " (SD " + number("%g", spread.deviation) + ")";
+  return cellText(spread.mean, "%g") + " (SD " + cellText(spread.deviation, "%g") + ")";
 }
 
 }  // namespace
@@ -171,10 +165,10 @@ std::string referenceTable(const Beat& beat) {
       "papillary_muscles\tpeople\tsource\n";
   for (const Reference& r : references()) {
     const double here = valueOf(beat, r.quantity);
-    text += r.name + '\t' + r.unit + '\t' + number("%.3f", here);
+    text += r.name + '\t' + r.unit + '\t' + cellText(here, "%.3f");
     for (const Spread& s : {r.women, r.men}) {
-      text += '\t' + number("%g", s.mean) + '\t' + number("%g", s.deviation) + '\t' +
-              number("%.2f", (here - s.mean) / s.deviation);
+      text += '\t' + cellText(s.mean, "%g") + '\t' + cellText(s.deviation, "%g") + '\t' +
+              cellText((here - s.mean) / s.deviation, "%.2f");
     }
     text += '\t' + r.papillary + '\t' + r.people + '\t' + r.source + '\n';
   }

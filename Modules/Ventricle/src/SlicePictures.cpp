@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 #include "Canvas.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Correspondence/Trajectory.h"
 #include "Explica/Ventricle/Pictures.h"
 
@@ -9,7 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
 namespace explica::ventricle {
 
@@ -208,9 +208,8 @@ std::vector<SliceRow> shownRows(const Frame& frame) {
 }
 
 std::string captionOf(const SliceRow& row) {
-  char text[64];
-  std::snprintf(text, sizeof text, "slice %d: %.1f mm", row.slice, row.thickness);
-  return std::isfinite(row.thickness) ? text : "slice " + std::to_string(row.slice) + ": no ring";
+  return std::isfinite(row.thickness) ? printed("slice %d: %.1f mm", row.slice, row.thickness)
+                                      : "slice " + std::to_string(row.slice) + ": no ring";
 }
 
 std::string secondLine(const SliceRow& row) {

@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Ventricle/Beat.h"
 
+#include "Explica/Core/Text.h"
+
 #include <cmath>
-#include <cstdio>
 #include <initializer_list>
 
 namespace explica::ventricle {
@@ -11,16 +12,11 @@ namespace explica::ventricle {
 namespace {
 
 std::string number(double value, int digits = 3) {
-  if (!std::isfinite(value)) return "n/a";
-  char text[48];
-  std::snprintf(text, sizeof text, "%.*f", digits, value);
-  return text;
+  return std::isfinite(value) ? printed("%.*f", digits, value) : "n/a";
 }
 
 std::string line(std::initializer_list<std::string> cells) {
-  std::string text;
-  for (const std::string& cell : cells) text += (text.empty() ? "" : "\t") + cell;
-  return text + '\n';
+  return joined(cells, "\t") + "\n";
 }
 
 std::string phaseOf(const Beat& beat, std::size_t f) {

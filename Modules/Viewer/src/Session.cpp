@@ -10,10 +10,8 @@
 #include "Explica/Unfolding/Continuation.h"
 #include "Explica/Visibility/AverageVisibility.h"
 
-#include <algorithm>
 #include <atomic>
 #include <charconv>
-#include <functional>
 #include <mutex>
 #include <thread>
 #include <utility>

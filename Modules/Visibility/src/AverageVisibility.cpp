@@ -10,7 +10,6 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 
 namespace explica::visibility {
@@ -35,8 +34,7 @@ bool isFar(const Point& a, const Point& b, const Point& c, const Point& viewpoin
 /// Flux of a face, averaged over the viewpoints.
 FaceFlux meanFlux(const Point& a, const Point& b, const Point& c, const Viewpoints& viewpoints,
                   double farRatio) {
-  FaceFlux sum;
-  sum.gradient = {Vector::Zero(), Vector::Zero(), Vector::Zero()};
+  FaceFlux sum{.gradient = {Vector::Zero(), Vector::Zero(), Vector::Zero()}};
   for (std::size_t p = 0; p < viewpoints.points.size(); ++p) {
     const Point& from = viewpoints.points[p];
     const FaceFlux one =

@@ -68,8 +68,7 @@ FaceFlux faceFluxFar(const Point& a, const Point& b, const Point& c, const Point
   const std::array<Vector, 3> corner = {a - viewpoint, b - viewpoint, c - viewpoint};
   const Vector cross = (b - a).cross(c - a);
   Vector sum = Vector::Zero();  // of the unit rays
-  FaceFlux result;
-  result.gradient = {Vector::Zero(), Vector::Zero(), Vector::Zero()};
+  FaceFlux result{.gradient = {Vector::Zero(), Vector::Zero(), Vector::Zero()}};
   for (int q = 0; q < 3; ++q) {
     const Vector x = (corner[0] + corner[1] + corner[2]) / 6 + corner[q] / 2;
     const double r = x.norm();

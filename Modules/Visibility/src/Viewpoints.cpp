@@ -4,7 +4,6 @@
 #include "Explica/Visibility/Viewpoints.h"
 
 #include "Explica/Core/Errors.h"
-#include "Explica/Core/Parallel.h"
 
 #include <Eigen/Geometry>
 

@@ -6,6 +6,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Geometry/Fixtures.h"
+#include "Explica/Testing/Meshes.h"
 #include "Explica/Testing/Selections.h"
 #include "Explica/Testing/TaylorRemainder.h"
 

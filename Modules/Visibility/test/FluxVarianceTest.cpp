@@ -5,6 +5,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Geometry/Fixtures.h"
+#include "Explica/Testing/Meshes.h"
 #include "Explica/Testing/Selections.h"
 #include "Explica/Visibility/VisibleFraction.h"
 

@@ -7,6 +7,7 @@
 #include "Explica/Core/Parallel.h"
 #include "Explica/Geometry/Fixtures.h"
 #include "Explica/Testing/DepthBuffer.h"
+#include "Explica/Testing/Meshes.h"
 
 #include <gtest/gtest.h>
 

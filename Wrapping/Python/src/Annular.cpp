@@ -109,8 +109,7 @@ void bindAnnular(py::module_& m) {
         const auto options = optionsOf<LevelThicknessOptions>(keywords);
         const Volume<float> in = scalarVolume(inner, affine);
         const Volume<float> out = scalarVolume(outer, affine);
-        harmonic::LevelOptions levels;
-        levels.level = level;
+        harmonic::LevelOptions levels{.level = level};
         return arraysOf(Watch(progress).run([&](const Monitor& monitor) {
           return measure(harmonic::annulusFromLevels(in, out, levels, options.measurement.annulus,
                                                      {}, monitor),

@@ -19,6 +19,9 @@ namespace explica::python {
 
 namespace py = pybind11;
 
+using PositionsIn = Eigen::Ref<const Positions>;
+using FacesIn = Eigen::Ref<const Faces>;
+
 /// Grid of an array's shape, (I, J), (I, J, 1) or (I, J, K), and its 4 x 4 index-to-RAS affine.
 [[nodiscard]] Grid gridOf(const py::array& values, const Eigen::Matrix4d& affine);
 

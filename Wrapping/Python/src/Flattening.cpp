@@ -18,8 +18,6 @@ namespace explica::python {
 namespace {
 
 using namespace py::literals;
-using PositionsIn = Eigen::Ref<const Positions>;
-using FacesIn = Eigen::Ref<const Faces>;
 
 std::vector<std::int32_t> listed(const TriangleMesh& mesh,
                                  const std::optional<std::vector<std::int32_t>>& faces) {
@@ -106,10 +104,8 @@ void bindFlatMeasures(py::module_& m) {
         if (before.rows() != after.rows()) throw InvalidInput("after: as many vertices as before");
         const auto all = listed(reference, {});
         return unlocked([&] {
-          flattening::DistanceOptions options;
-          options.pairs = pairs;
-          options.sources = sources;
-          options.localLimit = local_limit;
+          flattening::DistanceOptions options{
+              .pairs = pairs, .sources = sources, .localLimit = local_limit};
           const auto drawn = flattening::drawPairs(reference, all, options);
           const auto kind = flattening::isFlatMap(deformed, all)
                                 ? flattening::DistanceKind::Straight

@@ -13,9 +13,6 @@
 
 namespace explica::python {
 
-using PositionsIn = Eigen::Ref<const Positions>;
-using FacesIn = Eigen::Ref<const Faces>;
-
 namespace {
 
 std::pair<Positions, Faces> meshPair(TriangleMesh mesh) {

@@ -13,8 +13,6 @@ namespace explica::python {
 namespace {
 
 using namespace py::literals;
-using PositionsIn = Eigen::Ref<const Positions>;
-using FacesIn = Eigen::Ref<const Faces>;
 
 }  // namespace
 

@@ -3,6 +3,8 @@
 
 #include "Options.h"
 
+#include "Explica/Core/Text.h"
+
 #include <pybind11/stl.h>
 
 #include <algorithm>
@@ -63,11 +65,10 @@ void setFromKeywords(std::vector<provenance::Option> options, const py::kwargs& 
       return pythonName(candidate.name) == name;
     });
     if (option == options.end()) {
-      std::string known;
-      for (const auto& candidate : options) {
-        known += (known.empty() ? "" : ", ") + pythonName(candidate.name);
-      }
-      throw py::type_error("unexpected keyword '" + name + "'; known: " + known);
+      throw py::type_error("unexpected keyword '" + name +
+                           "'; known: " + joined(options, ", ", [](const auto& one) {
+                             return pythonName(one.name);
+                           }));
     }
     provenance::setValue(*option, jsonOf(value));
   }

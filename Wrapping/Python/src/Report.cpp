@@ -13,8 +13,6 @@ namespace explica::python {
 namespace {
 
 using namespace py::literals;
-using PositionsIn = Eigen::Ref<const Positions>;
-using FacesIn = Eigen::Ref<const Faces>;
 using report::Picture;
 
 /// Array (height, width, 3) over the picture's own memory.
@@ -48,9 +46,7 @@ std::vector<report::FigureView> viewsOf(const std::vector<std::string>& names,
     return views;
   }
   for (const std::string& name : names) {
-    report::FigureView view;
-    view.name = valueOf<report::ViewName>(name);
-    view.focus = focus;
+    report::FigureView view{.name = valueOf<report::ViewName>(name), .focus = focus};
     views.push_back(view);
   }
   return views;

@@ -15,8 +15,6 @@ namespace explica::python {
 namespace {
 
 using namespace py::literals;
-using PositionsIn = Eigen::Ref<const Positions>;
-using FacesIn = Eigen::Ref<const Faces>;
 using FloatArray = py::array_t<float, py::array::f_style | py::array::forcecast>;
 
 /// Grid of an image's first three axes.

@@ -4,7 +4,6 @@
 #include "Arrays.h"
 #include "Bindings.h"
 #include "Options.h"
-#include "Viewpoints.h"
 #include "Watch.h"
 
 #include "Explica/Geometry/MeshTopology.h"
@@ -16,8 +15,6 @@ namespace explica::python {
 namespace {
 
 using namespace py::literals;
-using PositionsIn = Eigen::Ref<const Positions>;
-using FacesIn = Eigen::Ref<const Faces>;
 using unfolding::IterationRecord;
 using unfolding::Unfolder;
 using visibility::Viewpoints;

@@ -8,7 +8,6 @@
 #include "Explica/Core/Errors.h"
 
 #include <algorithm>
-#include <numeric>
 #include <optional>
 
 namespace explica::python {

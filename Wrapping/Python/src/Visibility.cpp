@@ -15,8 +15,6 @@ namespace explica::python {
 namespace {
 
 using namespace py::literals;
-using PositionsIn = Eigen::Ref<const Positions>;
-using FacesIn = Eigen::Ref<const Faces>;
 using visibility::Viewpoints;
 
 std::vector<std::int32_t> everyFace(const TriangleMesh& mesh) {

@@ -3,51 +3,21 @@
 #include "CloseUps.h"
 
 #include "Explica/Core/FileText.h"
+#include "Explica/Core/Text.h"
 #include "Explica/IO/VolumeFile.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <map>
-#include <sstream>
 
 namespace explica::pipeline {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Rows of a table of this program, by the names of its columns.
-std::vector<std::map<std::string, std::string>> rowsOf(const fs::path& file) {
-  std::vector<std::map<std::string, std::string>> rows;
+/// Rows of a table of this program; none if there is no such file.
+std::vector<TableRow> rowsOf(const fs::path& file) {
   std::error_code fault;
-  if (!fs::exists(file, fault)) return rows;
-  std::istringstream in(fileText(file));
-  std::string line;
-  std::vector<std::string> names;
-  while (std::getline(in, line)) {
-    std::istringstream words(line);
-    std::string word;
-    std::vector<std::string> values;
-    while (std::getline(words, word, '\t')) values.push_back(word);
-    if (names.empty()) {
-      names = values;
-      continue;
-    }
-    std::map<std::string, std::string> row;
-    for (std::size_t n = 0; n < std::min(names.size(), values.size()); ++n) {
-      row[names[n]] = values[n];
-    }
-    rows.push_back(std::move(row));
-  }
-  return rows;
-}
-
-double numberIn(const std::map<std::string, std::string>& row, const std::string& name) {
-  const auto found = row.find(name);
-  double value = kNaN;
-  if (found == row.end()) return value;
-  const char* end = found->second.data() + found->second.size();
-  return std::from_chars(found->second.data(), end, value).ec == std::errc() ? value : kNaN;
+  return fs::exists(file, fault) ? tableRows(fileText(file)) : std::vector<TableRow>();
 }
 
 /// A cube of the image, and what of its tissue has no thickness.
@@ -79,8 +49,7 @@ std::vector<report::CloseUp> correctedPlaces(const StepFolder& surface, std::siz
 
 std::vector<report::CloseUp> unknownPlaces(const StepFolder& thickness, std::size_t most) {
   if (!thickness.has("thickness.nii.gz") || !thickness.has("harmonic.nii.gz")) return {};
-  io::VolumeReadOptions reading;
-  reading.allowNonFinite = true;
+  io::VolumeReadOptions reading{.allowNonFinite = true};
   const Volume<float> known =
       io::readScalars(thickness.folder / "thickness.nii.gz", reading).volume;
   const Volume<float> harmonic =
@@ -116,8 +85,7 @@ std::vector<CrossingPair> crossingPairs(const StepFolder& step) {
   std::vector<CrossingPair> pairs;
   for (auto& row : rowsOf(step.folder / "intersections.tsv")) {
     const double first = numberIn(row, "face_1"), second = numberIn(row, "face_2");
-    CrossingPair pair;
-    pair.place = Point(numberIn(row, "x"), numberIn(row, "y"), numberIn(row, "z"));
+    CrossingPair pair{.place = Point(numberIn(row, "x"), numberIn(row, "y"), numberIn(row, "z"))};
     if (!pair.place.allFinite() || !(first >= 0) || !(second >= 0)) continue;
     pair.faces = {static_cast<std::int32_t>(first), static_cast<std::int32_t>(second)};
     pair.inRegion = numberIn(row, "faces_in_region") > 0;

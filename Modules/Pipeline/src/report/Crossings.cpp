@@ -55,9 +55,7 @@ void showCrossings(ResultFolder& results, const StepFolder& step,
   std::sort(faces.begin(), faces.end());
   faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
   const TriangleMesh crossing = geometry::extractFaces(mesh, faces).mesh;
-  report::MosaicOptions close;
-  close.convention = options.convention;
-  close.tileHeight = 170;
+  report::MosaicOptions close{.tileHeight = 170, .convention = options.convention};
   mosaics.push_back(
       {kCrossingPlace, "Where faces cross" + (step.side().empty() ? "" : ", " + step.side()),
        "Slices through the surface as it was at the start; every pair is listed in "

@@ -94,10 +94,9 @@ void chartMaps(ResultFolder& results, const StepFolder& step, const char* file, 
 }  // namespace
 
 void chartThickness(ResultFolder& results, const StepFolder& step) {
-  io::VolumeReadOptions reading;
-  reading.allowNonFinite = true;
-  reading.allowAllZero = true;
-  const Volume<float> thickness = io::readScalars(step.folder / "thickness.nii.gz", reading).volume;
+  const Volume<float> thickness = io::readScalars(step.folder / "thickness.nii.gz",
+                                                  {.allowNonFinite = true, .allowAllZero = true})
+                                      .volume;
   std::vector<double> values;
   for (const float t : thickness.data) {
     if (t > 0 && std::isfinite(t)) values.push_back(t);

@@ -114,9 +114,7 @@ class PatchShapes {
 
   [[nodiscard]] report::ReportViews draw(const std::string& name, const std::string& unit,
                                          const Eigen::VectorXd& values) const {
-    report::SurfacePictureOptions size;
-    size.width = 400;
-    size.height = 320;
+    report::SurfacePictureOptions size{.width = 400, .height = 320};
     const Eigen::VectorXd part = onPatch(patch_, values);
     report::SurfacePaint whole;
     whole.values = values;

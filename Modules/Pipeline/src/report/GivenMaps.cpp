@@ -4,7 +4,6 @@
 
 #include "Explica/IO/StatedHemisphere.h"
 
-#include <array>
 #include <string_view>
 
 namespace explica::pipeline {

@@ -1,11 +1,8 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
-#include "Explica/Core/Errors.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/Report/Figure.h"
 #include "ReportParts.h"
-
-#include <array>
 
 namespace explica::pipeline {
 namespace {
@@ -49,9 +46,7 @@ void drawBeforeAndAfter(ResultFolder& results, const StepFolder& step, const Sho
     paint.scale = {report::ColourMap::Grey, 0, 1, "view that arrived", ""};
   }
   const std::vector<report::Colour> colours = report::coloursOf(paint, count);
-  report::SurfacePictureOptions size;
-  size.width = 520;
-  size.height = 400;
+  report::SurfacePictureOptions size{.width = 520, .height = 400};
   report::ReportViews views;
   views.id = kPatchViewsPlace;
   views.title = "The surface before and after";

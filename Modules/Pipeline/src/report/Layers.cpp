@@ -7,7 +7,6 @@
 #include "ReportParts.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 namespace explica::pipeline {
@@ -17,10 +16,7 @@ constexpr int kShells = 5;              // of equal depth, where no layers were 
 constexpr std::size_t kMostCharts = 6;  // histograms of layers
 
 Volume<float> readMap(const StepFolder& step, const char* file) {
-  io::VolumeReadOptions reading;
-  reading.allowNonFinite = true;
-  reading.allowAllZero = true;
-  return io::readScalars(step.folder / file, reading).volume;
+  return io::readScalars(step.folder / file, {.allowNonFinite = true, .allowAllZero = true}).volume;
 }
 
 /// Layers as they were written, or else shells of equal depth.
@@ -69,9 +65,7 @@ void showLayers(ResultFolder& results, const StepFolder& step, const FolderRepor
   const bool written = step.has("layers.nii.gz");
   if (!written && !step.has("depth.nii.gz")) return;
   const Volume<Label> layers = layersOf(step);
-  report::MosaicOptions mosaic;
-  mosaic.perRow = options.slices;
-  mosaic.convention = options.convention;
+  report::MosaicOptions mosaic{.perRow = options.slices, .convention = options.convention};
   const std::string side = step.side().empty() ? "" : ", " + step.side();
   results.content().mosaics.push_back(
       {kLayerPlace, (written ? "Layers" : "Depth") + side,

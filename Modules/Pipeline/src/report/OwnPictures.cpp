@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "Explica/Core/FileText.h"
+#include "Explica/Core/Folders.h"
 #include "ReportParts.h"
 
-#include <algorithm>
 #include <array>
 
 namespace explica::pipeline {
@@ -39,15 +39,13 @@ std::string titleOfPicture(const std::string& stem) {
 
 void showOwnPictures(ResultFolder& results, const StepFolder& step) {
   std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(step.folder)) {
-    const fs::path& file = entry.path();
-    if (mediaTypeOf(file).empty() || !entry.is_regular_file()) continue;
+  for (const fs::path& file : entriesOf(step.folder)) {
+    if (mediaTypeOf(file).empty() || !fs::is_regular_file(file)) continue;
     // Of a picture in both forms the drawing is sharper.
     if (file.extension() == ".png" && fs::exists(fs::path(file).replace_extension(".svg")))
       continue;
-    if (entry.file_size() <= kLargestPicture) files.push_back(file);
+    if (fs::file_size(file) <= kLargestPicture) files.push_back(file);
   }
-  std::sort(files.begin(), files.end());
   if (files.size() > kMostPictures) files.resize(kMostPictures);
   for (const fs::path& file : files) {
     results.content().drawings.push_back({"", titleOfPicture(file.stem().string()),

@@ -5,8 +5,6 @@
 #include "ReportParts.h"
 
 #include <algorithm>
-#include <cmath>
-#include <map>
 #include <set>
 
 namespace explica::pipeline {

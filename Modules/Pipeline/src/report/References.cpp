@@ -3,6 +3,7 @@
 #include "References.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/Provenance/Record.h"
 
@@ -47,12 +48,9 @@ void search(const fs::path& folder, int depth, std::vector<ThicknessFile>& found
   for (ThicknessFile& own : freeSurfersOwn(folder)) found.push_back(std::move(own));
   if (auto result = resultIn(folder)) found.push_back(std::move(*result));
   if (depth == 0) return;
-  std::vector<fs::path> below;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.is_directory() && !entry.is_symlink()) below.push_back(entry.path());
+  for (const fs::path& next : foldersOf(folder)) {
+    if (!fs::is_symlink(next)) search(next, depth - 1, found);
   }
-  std::sort(below.begin(), below.end());
-  for (const fs::path& next : below) search(next, depth - 1, found);
 }
 
 /// The subject from whose labels a surface was made.

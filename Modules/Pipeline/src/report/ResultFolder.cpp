@@ -3,15 +3,14 @@
 #include "ResultFolder.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Folders.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Provenance/Record.h"
 #include "Explica/Provenance/Verify.h"
 
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <utility>
 
 namespace explica::pipeline {
@@ -152,12 +151,7 @@ std::optional<fs::path> inputOf(const StepFolder& step, std::string_view role) {
 }
 
 std::vector<fs::path> filesOf(const StepFolder& step, std::string_view ending) {
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(step.folder)) {
-    if (entry.path().filename().string().ends_with(ending)) files.push_back(entry.path());
-  }
-  std::sort(files.begin(), files.end());
-  return files;
+  return entriesOf(step.folder, [&](const std::string& name) { return name.ends_with(ending); });
 }
 
 std::optional<io::VertexMap> mapNamed(const fs::path& file, Eigen::Index vertexCount,
@@ -179,9 +173,7 @@ std::string readable(const Json& value) {
   if (value.is_number()) return readable(value.get<double>());
   if (value.is_null()) return "not set";
   if (!value.is_array()) return provenance::textOf(value);
-  std::string list;
-  for (const Json& entry : value) list += (list.empty() ? "" : ", ") + readable(entry);
-  return list;
+  return joined(value, ", ", [](const Json& entry) { return readable(entry); });
 }
 
 std::string titleOf(std::string_view step) {

@@ -17,10 +17,7 @@ std::vector<std::pair<std::string, ViewName>> standardViews(const std::string& s
 }
 
 report::SurfacePictureOptions viewSize() {
-  report::SurfacePictureOptions options;
-  options.width = 300;
-  options.height = 230;
-  return options;
+  return report::SurfacePictureOptions{.width = 300, .height = 230};
 }
 
 }  // namespace explica::pipeline

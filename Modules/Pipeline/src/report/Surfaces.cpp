@@ -12,7 +12,6 @@
 #include "StandardViews.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <map>
@@ -236,9 +235,7 @@ void showOutlines(ResultFolder& results, const std::vector<Hemisphere>& all,
                   const FolderReportOptions& options) {
   const auto image = imageOf(results, *all.front().step);
   if (!image) return;
-  io::VolumeReadOptions reading;
-  reading.allowNonFinite = true;
-  const Volume<float> volume = io::readScalars(*image, reading).volume;
+  const Volume<float> volume = io::readScalars(*image, {.allowNonFinite = true}).volume;
   std::vector<report::MosaicOutline> outlines;
   for (const Hemisphere& h : all) {
     outlines.push_back({&h.white, "white surface", "#ff453a"});
@@ -251,10 +248,9 @@ void showOutlines(ResultFolder& results, const std::vector<Hemisphere>& all,
     brain = borderOf(segment->folder / "brain_mask.nii.gz");
     inside = brainOf(*segment, volume.grid);
   }
-  report::MosaicOptions mosaic;
-  mosaic.subject = inside ? &*inside : nullptr;
-  mosaic.perRow = options.slices;
-  mosaic.convention = options.convention;
+  report::MosaicOptions mosaic{.perRow = options.slices,
+                               .convention = options.convention,
+                               .subject = inside ? &*inside : nullptr};
   const std::vector<report::MosaicOutline> surfaces = outlines;
   report::MosaicOptions large = mosaic;
   large.perRow = 1;

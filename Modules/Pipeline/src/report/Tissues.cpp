@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <vector>
 
 namespace explica::pipeline {
 namespace {
@@ -20,9 +19,7 @@ void showTemplate(ResultFolder& results, const StepFolder& step,
                   const report::MosaicOptions& options) {
   const auto image = inputOf(step, "T1");
   if (!step.has("atlas.nii.gz") || !image || !std::filesystem::exists(*image)) return;
-  io::VolumeReadOptions reading;
-  reading.dimension = 3;
-  const Volume<float> head = io::readScalars(*image, reading).volume;
+  const Volume<float> head = io::readScalars(*image, {.dimension = 3}).volume;
   const auto found = brainOf(step, head.grid);
   report::MosaicOptions drawing = options;
   drawing.subject = found ? &*found : nullptr;
@@ -42,8 +39,7 @@ void showPreparation(ResultFolder& results, const StepFolder& step,
                      const report::MosaicOptions& options) {
   const auto file = inputOf(step, "T1");
   if (!file || !std::filesystem::exists(*file)) return;
-  io::VolumeReadOptions reading;
-  reading.dimension = 3;
+  io::VolumeReadOptions reading{.dimension = 3};
   const Volume<float> image = io::readScalars(*file, reading).volume;
   report::MosaicOptions small = options;
   small.tileHeight = kSmallTile;
@@ -80,9 +76,7 @@ void showPreparation(ResultFolder& results, const StepFolder& step,
 }  // namespace
 
 void showTissues(ResultFolder& results, const FolderReportOptions& options) {
-  report::MosaicOptions mosaic;
-  mosaic.perRow = options.slices;
-  mosaic.convention = options.convention;
+  report::MosaicOptions mosaic{.perRow = options.slices, .convention = options.convention};
   for (const StepFolder* step : results.stepsOf("segment")) {
     showTemplate(results, *step, mosaic);
     results.attempt("Preparation of the image",

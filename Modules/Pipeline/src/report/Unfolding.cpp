@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
-#include "Explica/Core/Errors.h"
+#include "Explica/Core/Text.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/Pipeline/UnfoldingFolder.h"
 #include "Explica/Report/Figure.h"
@@ -9,9 +9,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <map>
 
 namespace explica::pipeline {
@@ -52,9 +50,7 @@ std::string titleOf(const fs::path& frame, const Json& summary) {
   }
   std::string title = "frame " + std::to_string(number);
   if (const double visibility = frameVisibility(summary, number); std::isfinite(visibility)) {
-    std::array<char, 40> text{};
-    std::snprintf(text.data(), text.size(), ", visibility %.3f", visibility);
-    title += text.data();
+    title += printed(", visibility %.3f", visibility);
   }
   return title;
 }
@@ -229,9 +225,7 @@ class PatchPictures {
     const auto colours = report::coloursOf(painted.paint, before_.vertexCount());
     const bool smooth = painted.paint.values.size() > 0;
     const std::vector<std::int32_t> rim(painted.paint.region.begin(), painted.paint.region.end());
-    report::SurfacePictureOptions size;
-    size.width = 360;
-    size.height = 280;
+    report::SurfacePictureOptions size{.width = 360, .height = 280};
     report::ReportViews views;
     views.id = painted.id;
     views.title = painted.title;

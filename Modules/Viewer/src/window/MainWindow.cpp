@@ -17,7 +17,6 @@
 #include <QStatusBar>
 
 #include <algorithm>
-#include <cmath>
 
 namespace explica::viewer {
 namespace {

@@ -3,7 +3,6 @@
 // The part of the window that shows: states, colours, curves, values under the pointer.
 #include "MainWindow.h"
 
-#include "Explica/Core/Errors.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Visibility/AverageVisibility.h"
 #include "Explica/Visibility/VisibleFraction.h"

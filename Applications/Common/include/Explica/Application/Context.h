@@ -9,7 +9,6 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>

@@ -7,7 +7,6 @@
 #include "Explica/IO/PointTransformFile.h"
 #include "Explica/IO/SurfaceFile.h"
 
-#include <filesystem>
 #include <optional>
 #include <string>
 

@@ -32,30 +32,24 @@ enum class FileKind {
   Folder,
   Any
 };
-
-}  // namespace explica::app
-
-template <>
-struct explica::EnumNames<explica::app::FileKind> {
-  using Kind = explica::app::FileKind;
-  static constexpr std::array table = {std::pair{Kind::Volume, "volume"},
-                                       std::pair{Kind::LabelVolume, "label volume"},
-                                       std::pair{Kind::PointVolume, "point volume"},
-                                       std::pair{Kind::Surface, "surface"},
-                                       std::pair{Kind::VertexData, "vertex data"},
-                                       std::pair{Kind::VertexLabel, "vertex labels"},
-                                       std::pair{Kind::Grid, "grid"},
-                                       std::pair{Kind::Polygon, "polygon"},
-                                       std::pair{Kind::Table, "table"},
-                                       std::pair{Kind::JsonFile, "JSON"},
-                                       std::pair{Kind::Picture, "picture"},
-                                       std::pair{Kind::Report, "report"},
-                                       std::pair{Kind::Record, "provenance record"},
-                                       std::pair{Kind::Folder, "folder"},
-                                       std::pair{Kind::Any, "file"}};
-};
-
-namespace explica::app {
+constexpr auto enumWords(FileKind) {
+  using enum FileKind;
+  return std::to_array<EnumWord<FileKind>>({{Volume, "volume"},
+                                            {LabelVolume, "label volume"},
+                                            {PointVolume, "point volume"},
+                                            {Surface, "surface"},
+                                            {VertexData, "vertex data"},
+                                            {VertexLabel, "vertex labels"},
+                                            {Grid, "grid"},
+                                            {Polygon, "polygon"},
+                                            {Table, "table"},
+                                            {JsonFile, "JSON"},
+                                            {Picture, "picture"},
+                                            {Report, "report"},
+                                            {Record, "provenance record"},
+                                            {Folder, "folder"},
+                                            {Any, "file"}});
+}
 
 /// One thing that the user may give: a positional argument or an option.
 struct Parameter {

@@ -5,7 +5,6 @@
 #include "Explica/Provenance/Json.h"
 
 #include <string>
-#include <vector>
 
 namespace explica::app {
 

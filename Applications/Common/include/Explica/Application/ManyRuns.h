@@ -31,10 +31,8 @@ void sayProblem(Context& context, const std::string& name, const std::filesystem
 /// that a failure.
 void sayInterrupted(const std::filesystem::path& folder);
 
-/// What a run's numbers say against it counts against the whole, too.
-void passFlagsOn(Context& context, const std::filesystem::path& run);
-
-/// "a, b, c".
-[[nodiscard]] std::string listed(const std::vector<std::string>& names);
+/// What a part's numbers say against it counts against the whole, too.
+/// @param kind  of the part, "run" or "step"
+void passFlagsOn(Context& context, const char* kind, const std::filesystem::path& part);
 
 }  // namespace explica::app

@@ -7,6 +7,7 @@
 #include <limits>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace explica {
 
@@ -32,23 +33,26 @@ struct Field {
 ///             options.maxIterations);
 ///     }
 ///
-/// Members may be bool, int, double, std::string, Eigen::Vector3d, an enum with EnumNames, and
+/// Members may be bool, int, double, std::string, Eigen::Vector3d, an enum with enumWords(), and
 /// std::optional or std::vector of these.
 
-/// Names of an enum's values, as users write them; specialise with `static constexpr std::array
-/// table` of std::pair{value, "name"}.
+/// A value of an enum and the word that users write for it.  Beside the enum stands
+///
+///     constexpr auto enumWords(Method) {
+///       return std::to_array<EnumWord<Method>>({{Method::Implicit, "implicit"}, ...});
+///     }
 template <class Enum>
-struct EnumNames;
+using EnumWord = std::pair<Enum, std::string_view>;
 
 template <class Enum>
 concept NamedEnum = requires {
-  EnumNames<Enum>::table;
+  enumWords(Enum{});
 };
 
 /// The user's word for a value.
 template <NamedEnum Enum>
 [[nodiscard]] constexpr std::string_view nameOf(Enum value) {
-  for (const auto& [candidate, name] : EnumNames<Enum>::table) {
+  for (const auto& [candidate, name] : enumWords(Enum{})) {
     if (candidate == value) return name;
   }
   return "unknown";
@@ -58,7 +62,7 @@ template <NamedEnum Enum>
 template <NamedEnum Enum>
 [[nodiscard]] std::string choicesOf(std::string_view separator = "|") {
   std::string joined;
-  for (const auto& [value, name] : EnumNames<Enum>::table) {
+  for (const auto& [value, name] : enumWords(Enum{})) {
     if (!joined.empty()) joined += separator;
     joined += name;
   }
@@ -69,7 +73,7 @@ template <NamedEnum Enum>
 /// @throws InvalidInput  no value has this name; lists the names
 template <NamedEnum Enum>
 [[nodiscard]] Enum valueOf(std::string_view word) {
-  for (const auto& [value, name] : EnumNames<Enum>::table) {
+  for (const auto& [value, name] : enumWords(Enum{})) {
     if (name == word) return value;
   }
   throw InvalidInput("'" + std::string(word) + "' is not one of " + choicesOf<Enum>(", "));

@@ -5,17 +5,14 @@
 #include "Explica/Core/Describe.h"
 
 #include <array>
-#include <utility>
 
 namespace explica {
 
 /// A side of the brain.
 enum class Hemisphere { Left, Right };
-
-template <>
-struct EnumNames<Hemisphere> {
-  static constexpr std::array table = {std::pair{Hemisphere::Left, "left"},
-                                       std::pair{Hemisphere::Right, "right"}};
-};
+constexpr auto enumWords(Hemisphere) {
+  using enum Hemisphere;
+  return std::to_array<EnumWord<Hemisphere>>({{Left, "left"}, {Right, "right"}});
+}
 
 }  // namespace explica

@@ -21,13 +21,10 @@ enum class Judgement {
   Look,  ///< worth a look: the verdict of the summary is "look"
   Doubt  ///< not to be believed as it is: the verdict is "doubtful", the exit code 3
 };
-
-template <>
-struct EnumNames<Judgement> {
-  static constexpr std::array table = {std::pair{Judgement::Good, "good"},
-                                       std::pair{Judgement::Look, "look"},
-                                       std::pair{Judgement::Doubt, "doubt"}};
-};
+constexpr auto enumWords(Judgement) {
+  using enum Judgement;
+  return std::to_array<EnumWord<Judgement>>({{Good, "good"}, {Look, "look"}, {Doubt, "doubt"}});
+}
 
 /// A range in which a value is expected, its ends included.  A flag counts as 0 or 1, a text as
 /// its length.

@@ -5,7 +5,6 @@
 #include "Explica/Core/Describe.h"
 
 #include <array>
-#include <utility>
 
 namespace explica {
 
@@ -20,18 +19,17 @@ enum class Termination {
   Interrupted,    ///< the user or the system asked to stop
   Stalled         ///< no further progress is possible
 };
-
-template <>
-struct EnumNames<Termination> {
-  static constexpr std::array table = {std::pair{Termination::NotRun, "not-run"},
-                                       std::pair{Termination::Finished, "finished"},
-                                       std::pair{Termination::Converged, "converged"},
-                                       std::pair{Termination::TargetReached, "target-reached"},
-                                       std::pair{Termination::MaxIterations, "max-iterations"},
-                                       std::pair{Termination::MaxTime, "max-time"},
-                                       std::pair{Termination::Interrupted, "interrupted"},
-                                       std::pair{Termination::Stalled, "stalled"}};
-};
+constexpr auto enumWords(Termination) {
+  using enum Termination;
+  return std::to_array<EnumWord<Termination>>({{NotRun, "not-run"},
+                                               {Finished, "finished"},
+                                               {Converged, "converged"},
+                                               {TargetReached, "target-reached"},
+                                               {MaxIterations, "max-iterations"},
+                                               {MaxTime, "max-time"},
+                                               {Interrupted, "interrupted"},
+                                               {Stalled, "stalled"}});
+}
 
 /// True if the method did what it was asked to do.
 [[nodiscard]] constexpr bool reachedGoal(Termination t) {

@@ -6,7 +6,6 @@
 
 #include <array>
 #include <optional>
-#include <utility>
 #include <vector>
 
 namespace explica::correspondence {
@@ -18,6 +17,13 @@ enum class Method {
   Eulerian,    ///< ordered sweep alone, boundary values at grid points [YezziPrince2003]
   Lagrangian,  ///< every trajectory followed to the boundary
 };
+constexpr auto enumWords(Method) {
+  using enum Method;
+  return std::to_array<EnumWord<Method>>({{Hybrid, "hybrid"},
+                                          {AppendixA, "appendix-a"},
+                                          {Eulerian, "eulerian"},
+                                          {Lagrangian, "lagrangian"}});
+}
 
 struct CorrespondenceOptions {
   Method method = Method::Hybrid;
@@ -103,15 +109,3 @@ struct ThicknessSummary {
 [[nodiscard]] ThicknessSummary summaryOf(const Correspondence& correspondence);
 
 }  // namespace explica::correspondence
-
-namespace explica {
-
-template <>
-struct EnumNames<correspondence::Method> {
-  static constexpr std::array table{std::pair{correspondence::Method::Hybrid, "hybrid"},
-                                    std::pair{correspondence::Method::AppendixA, "appendix-a"},
-                                    std::pair{correspondence::Method::Eulerian, "eulerian"},
-                                    std::pair{correspondence::Method::Lagrangian, "lagrangian"}};
-};
-
-}  // namespace explica

@@ -5,7 +5,6 @@
 #include "Explica/Correspondence/Correspondence.h"
 
 #include <array>
-#include <utility>
 #include <vector>
 
 namespace explica::correspondence {
@@ -15,6 +14,10 @@ enum class LayerKind {
   Depth,  ///< the same share of the thickness
   Volume  ///< the same share of the volume of the column that they lie in [Bok1929]
 };
+constexpr auto enumWords(LayerKind) {
+  using enum LayerKind;
+  return std::to_array<EnumWord<LayerKind>>({{Depth, "depth"}, {Volume, "volume"}});
+}
 
 struct LayerOptions {
   int layers = 3;  ///< number of layers, numbered from 1 at the inner boundary
@@ -46,13 +49,3 @@ void describe(LayerOptions& options, Visitor&& visit) {
 [[nodiscard]] std::vector<int> layersOf(const std::vector<double>& depth, int layers);
 
 }  // namespace explica::correspondence
-
-namespace explica {
-
-template <>
-struct EnumNames<correspondence::LayerKind> {
-  static constexpr std::array table{std::pair{correspondence::LayerKind::Depth, "depth"},
-                                    std::pair{correspondence::LayerKind::Volume, "volume"}};
-};
-
-}  // namespace explica

@@ -20,6 +20,10 @@ enum class SulciMode {
   Recover,  ///< put the outer boundary between them
   Ignore    ///< take the labels as they are
 };
+constexpr auto enumWords(SulciMode) {
+  using enum SulciMode;
+  return std::to_array<EnumWord<SulciMode>>({{Recover, "recover"}, {Ignore, "ignore"}});
+}
 
 /// Everything that is chosen between the labels and the measures.
 struct MeasurementOptions {
@@ -77,13 +81,3 @@ using OnPart = std::function<void(const std::string& part, const Measurement& so
                                   const Monitor& monitor = {}, const OnPart& onPart = {});
 
 }  // namespace explica::correspondence
-
-namespace explica {
-
-template <>
-struct EnumNames<correspondence::SulciMode> {
-  static constexpr std::array table{std::pair{correspondence::SulciMode::Recover, "recover"},
-                                    std::pair{correspondence::SulciMode::Ignore, "ignore"}};
-};
-
-}  // namespace explica

@@ -5,8 +5,6 @@
 #include "Explica/Core/TriangleMesh.h"
 #include "Explica/Core/Volume.h"
 
-#include <optional>
-
 namespace explica::flattening {
 
 /// A flat map and the sheet of tissue that it shows: the same faces three times.

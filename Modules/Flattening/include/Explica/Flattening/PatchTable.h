@@ -6,7 +6,6 @@
 #include "Explica/Flattening/Selection.h"
 
 #include <map>
-#include <span>
 #include <string>
 #include <vector>
 

@@ -11,13 +11,6 @@ namespace explica::geometry {
 [[nodiscard]] TriangleMesh makeIcosphere(int levels, double radius = 1.0,
                                          const Point& centre = Point::Zero());
 
-/// Torus about the z axis: `major` to the tube's centre, `minor` the tube; genus 1.
-[[nodiscard]] TriangleMesh makeTorus(int majorSegments, int minorSegments, double major,
-                                     double minor);
-
-/// Flat rectangle [0, width] x [0, height] in z = 0, normal +z, cells split in two.
-[[nodiscard]] TriangleMesh makeRectangle(int columns, int rows, double width, double height);
-
 /// A sphere whose radius is modulated by sin waves into folds as deep as `depth` (share of the
 /// radius): a small closed stand-in for cortex, without self-intersections.
 [[nodiscard]] TriangleMesh makeFoldedSphere(int levels, double radius = 1.0, double depth = 0.25,

@@ -5,7 +5,6 @@
 #include "Explica/Core/TriangleMesh.h"
 
 #include <array>
-#include <span>
 #include <vector>
 
 namespace explica::geometry {

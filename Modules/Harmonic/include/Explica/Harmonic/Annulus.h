@@ -10,7 +10,6 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace explica::harmonic {
@@ -32,6 +31,11 @@ enum class BoundaryModel {
   Staircase,  ///< at the first centre outside: the thesis's baseline
   Embedding   ///< grid values found so that u meets 0 and 1 on the level sets (thesis 3.2)
 };
+constexpr auto enumWords(BoundaryModel) {
+  using enum BoundaryModel;
+  return std::to_array<EnumWord<BoundaryModel>>(
+      {{Subvoxel, "subvoxel"}, {Staircase, "staircase"}, {Embedding, "embedding"}});
+}
 
 /// Directions of a voxel's six links: -i, +i, -j, +j, -k, +k.
 [[nodiscard]] constexpr int axisOf(int direction) {
@@ -152,6 +156,11 @@ enum class LevelInside {
   Above,      ///< values above the level, as in a probability map
   Below       ///< values below the level, as in a signed distance
 };
+constexpr auto enumWords(LevelInside) {
+  using enum LevelInside;
+  return std::to_array<EnumWord<LevelInside>>(
+      {{Automatic, "auto"}, {Above, "above"}, {Below, "below"}});
+}
 
 /// How a scalar volume describes a boundary.
 struct LevelOptions {
@@ -244,21 +253,3 @@ struct Cut {
                                           const std::vector<Label>& wanted);
 
 }  // namespace explica::harmonic
-
-namespace explica {
-
-template <>
-struct EnumNames<harmonic::BoundaryModel> {
-  static constexpr std::array table{std::pair{harmonic::BoundaryModel::Subvoxel, "subvoxel"},
-                                    std::pair{harmonic::BoundaryModel::Staircase, "staircase"},
-                                    std::pair{harmonic::BoundaryModel::Embedding, "embedding"}};
-};
-
-template <>
-struct EnumNames<harmonic::LevelInside> {
-  static constexpr std::array table{std::pair{harmonic::LevelInside::Automatic, "auto"},
-                                    std::pair{harmonic::LevelInside::Above, "above"},
-                                    std::pair{harmonic::LevelInside::Below, "below"}};
-};
-
-}  // namespace explica

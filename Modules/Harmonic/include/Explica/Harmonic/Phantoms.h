@@ -50,6 +50,13 @@ struct ExactAnnulus {
                                           double base);
 
 enum class PhantomKind { Shell, Eccentric, Spheroid, Ventricle };
+constexpr auto enumWords(PhantomKind) {
+  using enum PhantomKind;
+  return std::to_array<EnumWord<PhantomKind>>({{Shell, "shell"},
+                                               {Eccentric, "eccentric"},
+                                               {Spheroid, "spheroid"},
+                                               {Ventricle, "ventricle"}});
+}
 
 /// Size of a phantom; the radii are fixed in mm (see makePhantom).
 struct PhantomOptions {
@@ -93,15 +100,3 @@ struct PhantomAnswers {
                                     const std::function<double(const Point&)>& function);
 
 }  // namespace explica::harmonic
-
-namespace explica {
-
-template <>
-struct EnumNames<harmonic::PhantomKind> {
-  static constexpr std::array table{std::pair{harmonic::PhantomKind::Shell, "shell"},
-                                    std::pair{harmonic::PhantomKind::Eccentric, "eccentric"},
-                                    std::pair{harmonic::PhantomKind::Spheroid, "spheroid"},
-                                    std::pair{harmonic::PhantomKind::Ventricle, "ventricle"}};
-};
-
-}  // namespace explica

@@ -6,7 +6,6 @@
 #include "Explica/IO/VertexDataFile.h"
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 

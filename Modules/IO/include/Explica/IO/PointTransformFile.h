@@ -10,8 +10,6 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <utility>
-#include <vector>
 
 namespace explica::io {
 
@@ -21,6 +19,11 @@ enum class TransformSense {
   Forward,  ///< the file maps the surface's space to the volume's
   Inverse   ///< the file maps the volume's space to the surface's, so it is inverted
 };
+constexpr auto enumWords(TransformSense) {
+  using enum TransformSense;
+  return std::to_array<EnumWord<TransformSense>>(
+      {{Auto, "auto"}, {Forward, "forward"}, {Inverse, "inverse"}});
+}
 
 /// What is known about both sides of a transform.
 struct TransformSides {
@@ -65,11 +68,3 @@ struct PointTransform {
                                                 const TransformSides& sides);
 
 }  // namespace explica::io
-
-template <>
-struct explica::EnumNames<explica::io::TransformSense> {
-  using Sense = explica::io::TransformSense;
-  static constexpr std::array table = {std::pair{Sense::Auto, "auto"},
-                                       std::pair{Sense::Forward, "forward"},
-                                       std::pair{Sense::Inverse, "inverse"}};
-};

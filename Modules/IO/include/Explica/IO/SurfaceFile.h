@@ -13,7 +13,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace explica::io {
@@ -24,6 +23,11 @@ enum class SurfaceSpace {
   Scanner,  ///< scanner RAS, whatever the file says: coordinates are not changed
   Tkr,  ///< FreeSurfer's surface RAS: moved to scanner RAS by the file's or `fsVolume`'s geometry
 };
+constexpr auto enumWords(SurfaceSpace) {
+  using enum SurfaceSpace;
+  return std::to_array<EnumWord<SurfaceSpace>>(
+      {{Stated, "stated"}, {Scanner, "scanner"}, {Tkr, "tkr"}});
+}
 
 struct SurfaceReadOptions {
   SurfaceSpace space = SurfaceSpace::Stated;
@@ -139,14 +143,3 @@ void writeSurface(const std::filesystem::path& path, const TriangleMesh& mesh,
 [[nodiscard]] Eigen::Matrix4d scannerFromTkr(const Grid& volume);
 
 }  // namespace explica::io
-
-namespace explica {
-
-template <>
-struct EnumNames<io::SurfaceSpace> {
-  static constexpr std::array table{std::pair{io::SurfaceSpace::Stated, "stated"},
-                                    std::pair{io::SurfaceSpace::Scanner, "scanner"},
-                                    std::pair{io::SurfaceSpace::Tkr, "tkr"}};
-};
-
-}  // namespace explica

@@ -12,7 +12,6 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace explica::io {
@@ -24,6 +23,11 @@ enum class PlacementChoice {
   Sform,   ///< matrix
   None,    ///< neither: voxel (0, 0, 0) at 0 mm and axes along R, A, S
 };
+constexpr auto enumWords(PlacementChoice) {
+  using enum PlacementChoice;
+  return std::to_array<EnumWord<PlacementChoice>>(
+      {{Agreed, "agreed"}, {Qform, "qform"}, {Sform, "sform"}, {None, "none"}});
+}
 
 /// What readers do about files that leave something open, and which files they refuse.
 struct VolumeReadOptions {
@@ -123,15 +127,3 @@ void writeFrames(const std::filesystem::path& path,
                  const std::vector<VolumeOnDemand<float>>& frames);
 
 }  // namespace explica::io
-
-namespace explica {
-
-template <>
-struct EnumNames<io::PlacementChoice> {
-  static constexpr std::array table{std::pair{io::PlacementChoice::Agreed, "agreed"},
-                                    std::pair{io::PlacementChoice::Qform, "qform"},
-                                    std::pair{io::PlacementChoice::Sform, "sform"},
-                                    std::pair{io::PlacementChoice::None, "none"}};
-};
-
-}  // namespace explica

@@ -6,7 +6,6 @@
 #include "Explica/IO/VertexDataFile.h"
 
 #include <filesystem>
-#include <string>
 #include <vector>
 
 namespace explica::io {

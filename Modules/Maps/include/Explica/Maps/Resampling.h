@@ -9,7 +9,6 @@
 
 #include <array>
 #include <string_view>
-#include <utility>
 
 namespace explica::maps {
 
@@ -18,6 +17,11 @@ enum class ResamplingMethod {
   Barycentric,  ///< linear within the source's faces
   Nearest       ///< the corner of the largest barycentric weight
 };
+constexpr auto enumWords(ResamplingMethod) {
+  using enum ResamplingMethod;
+  return std::to_array<EnumWord<ResamplingMethod>>(
+      {{Adaptive, "adaptive"}, {Barycentric, "barycentric"}, {Nearest, "nearest"}});
+}
 
 /// Weights W, target vertices x source vertices: rows that sum to 1, ascending columns.
 using ResamplingWeights = Eigen::SparseMatrix<double, Eigen::RowMajor>;
@@ -68,11 +72,3 @@ using VertexKeys = Eigen::Matrix<Label, Eigen::Dynamic, 1>;  ///< V
                                       const Positions& points, double farthest);
 
 }  // namespace explica::maps
-
-template <>
-struct explica::EnumNames<explica::maps::ResamplingMethod> {
-  using Method = explica::maps::ResamplingMethod;
-  static constexpr std::array table = {std::pair{Method::Adaptive, "adaptive"},
-                                       std::pair{Method::Barycentric, "barycentric"},
-                                       std::pair{Method::Nearest, "nearest"}};
-};

@@ -12,7 +12,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace explica::pipeline {
@@ -25,20 +24,48 @@ enum class InputKind {
   FreeSurfer,  ///< subject directory of recon-all: mri, surf, label
   Bids         ///< anat folder of fMRIPrep, sMRIPrep or of segmentations
 };
+constexpr auto enumWords(InputKind) {
+  using enum InputKind;
+  return std::to_array<EnumWord<InputKind>>(
+      {{Auto, "auto"}, {T1, "t1"}, {Labels, "labels"}, {FreeSurfer, "freesurfer"}, {Bids, "bids"}});
+}
 
 /// What to do with white and pial surfaces that are there already.
 enum class GivenSurfaces {
   Use,    ///< take them over as they are
   Remake  ///< make our own from the labels
 };
+constexpr auto enumWords(GivenSurfaces) {
+  using enum GivenSurfaces;
+  return std::to_array<EnumWord<GivenSurfaces>>({{Use, "use"}, {Remake, "remake"}});
+}
 
 enum class RunHemisphere { Left, Right, Both };
+constexpr auto enumWords(RunHemisphere) {
+  using enum RunHemisphere;
+  return std::to_array<EnumWord<RunHemisphere>>({{Left, "L"}, {Right, "R"}, {Both, "both"}});
+}
 
 /// Which of the three surfaces is unfolded.
 enum class UnfoldedSurface { White, Mid, Pial };
+constexpr auto enumWords(UnfoldedSurface) {
+  using enum UnfoldedSurface;
+  return std::to_array<EnumWord<UnfoldedSurface>>({{White, "white"}, {Mid, "mid"}, {Pial, "pial"}});
+}
 
 /// The commands of a run, in their order.
 enum class RunStep { Segment, Thickness, Surface, Sphere, Register, Parcellate, Unfold, Report };
+constexpr auto enumWords(RunStep) {
+  using enum RunStep;
+  return std::to_array<EnumWord<RunStep>>({{Segment, "segment"},
+                                           {Thickness, "thickness"},
+                                           {Surface, "surface"},
+                                           {Sphere, "sphere"},
+                                           {Register, "register"},
+                                           {Parcellate, "parcellate"},
+                                           {Unfold, "unfold"},
+                                           {Report, "report"}});
+}
 
 /// How a run is put together; the steps' own options come on top.
 struct PlanOptions {
@@ -122,44 +149,3 @@ struct Plan {
 [[nodiscard]] Point outermostPoint(const TriangleMesh& mesh, const Vector& direction);
 
 }  // namespace explica::pipeline
-
-namespace explica {
-
-template <>
-struct EnumNames<pipeline::InputKind> {
-  static constexpr std::array table = {std::pair{pipeline::InputKind::Auto, "auto"},
-                                       std::pair{pipeline::InputKind::T1, "t1"},
-                                       std::pair{pipeline::InputKind::Labels, "labels"},
-                                       std::pair{pipeline::InputKind::FreeSurfer, "freesurfer"},
-                                       std::pair{pipeline::InputKind::Bids, "bids"}};
-};
-template <>
-struct EnumNames<pipeline::GivenSurfaces> {
-  static constexpr std::array table = {std::pair{pipeline::GivenSurfaces::Use, "use"},
-                                       std::pair{pipeline::GivenSurfaces::Remake, "remake"}};
-};
-template <>
-struct EnumNames<pipeline::RunHemisphere> {
-  static constexpr std::array table = {std::pair{pipeline::RunHemisphere::Left, "L"},
-                                       std::pair{pipeline::RunHemisphere::Right, "R"},
-                                       std::pair{pipeline::RunHemisphere::Both, "both"}};
-};
-template <>
-struct EnumNames<pipeline::UnfoldedSurface> {
-  static constexpr std::array table = {std::pair{pipeline::UnfoldedSurface::White, "white"},
-                                       std::pair{pipeline::UnfoldedSurface::Mid, "mid"},
-                                       std::pair{pipeline::UnfoldedSurface::Pial, "pial"}};
-};
-template <>
-struct EnumNames<pipeline::RunStep> {
-  static constexpr std::array table = {std::pair{pipeline::RunStep::Segment, "segment"},
-                                       std::pair{pipeline::RunStep::Thickness, "thickness"},
-                                       std::pair{pipeline::RunStep::Surface, "surface"},
-                                       std::pair{pipeline::RunStep::Sphere, "sphere"},
-                                       std::pair{pipeline::RunStep::Register, "register"},
-                                       std::pair{pipeline::RunStep::Parcellate, "parcellate"},
-                                       std::pair{pipeline::RunStep::Unfold, "unfold"},
-                                       std::pair{pipeline::RunStep::Report, "report"}};
-};
-
-}  // namespace explica

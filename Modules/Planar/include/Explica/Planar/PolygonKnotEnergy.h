@@ -8,7 +8,6 @@
 #include <array>
 #include <cstddef>
 #include <memory>
-#include <utility>
 #include <vector>
 
 namespace explica::planar {
@@ -72,6 +71,11 @@ enum class PolygonKnot {
   AllPairs,  ///< every pair of edges, exactly
   Off        ///< no knot energy
 };
+constexpr auto enumWords(PolygonKnot) {
+  using enum PolygonKnot;
+  return std::to_array<EnumWord<PolygonKnot>>(
+      {{Auto, "auto"}, {Tree, "tree"}, {AllPairs, "all-pairs"}, {Off, "off"}});
+}
 
 /// The evaluator of this name; null for Off.  Results do not depend on the number of threads.
 /// @param moving        V flags
@@ -82,15 +86,3 @@ enum class PolygonKnot {
     double openingRatio = 0.25);
 
 }  // namespace explica::planar
-
-namespace explica {
-
-template <>
-struct EnumNames<planar::PolygonKnot> {
-  static constexpr std::array table = {std::pair{planar::PolygonKnot::Auto, "auto"},
-                                       std::pair{planar::PolygonKnot::Tree, "tree"},
-                                       std::pair{planar::PolygonKnot::AllPairs, "all-pairs"},
-                                       std::pair{planar::PolygonKnot::Off, "off"}};
-};
-
-}  // namespace explica

@@ -22,10 +22,4 @@ struct PolygonPhantom {
 /// long, average visibility about 0.17, flux variance about 0.69.
 [[nodiscard]] PolygonPhantom makePolygon34();
 
-/// Circle by `edges` chords, counter-clockwise, vertices on the circle.
-[[nodiscard]] Curve makeCircle(int edges, double radius, const Point2& centre = Point2::Zero());
-
-/// Ellipse with semi-axes a (along x) and b, vertices at equal parameters.
-[[nodiscard]] Curve makeEllipse(int edges, double a, double b);
-
 }  // namespace explica::planar

@@ -10,7 +10,6 @@
 #include "Explica/Planar/PolygonVisibility.h"
 
 #include <array>
-#include <utility>
 #include <vector>
 
 namespace explica::planar {
@@ -20,6 +19,10 @@ enum class PolygonMethod {
   Implicit,  ///< constrained Newton steps with exact lengths, barrier and collision detection
   Thesis     ///< explicit flow with first-order length projection, [Thesis, Eq. 4.20 and 4.23]
 };
+constexpr auto enumWords(PolygonMethod) {
+  using enum PolygonMethod;
+  return std::to_array<EnumWord<PolygonMethod>>({{Implicit, "implicit"}, {Thesis, "thesis"}});
+}
 
 /// What happens to the polygon outside the region.
 enum class PolygonSurround {
@@ -27,6 +30,11 @@ enum class PolygonSurround {
   Elastic,  ///< a collar of some edges on both sides follows
   None      ///< absent: the region alone, an open chain
 };
+constexpr auto enumWords(PolygonSurround) {
+  using enum PolygonSurround;
+  return std::to_array<EnumWord<PolygonSurround>>(
+      {{Fixed, "fixed"}, {Elastic, "elastic"}, {None, "none"}});
+}
 
 struct PolygonUnfoldingOptions {
   PolygonMethod method = PolygonMethod::Implicit;
@@ -151,20 +159,3 @@ struct PolygonUnfolding {
                                              const PolygonCheckpoint* resume = nullptr);
 
 }  // namespace explica::planar
-
-namespace explica {
-
-template <>
-struct EnumNames<planar::PolygonMethod> {
-  static constexpr std::array table = {std::pair{planar::PolygonMethod::Implicit, "implicit"},
-                                       std::pair{planar::PolygonMethod::Thesis, "thesis"}};
-};
-
-template <>
-struct EnumNames<planar::PolygonSurround> {
-  static constexpr std::array table = {std::pair{planar::PolygonSurround::Fixed, "fixed"},
-                                       std::pair{planar::PolygonSurround::Elastic, "elastic"},
-                                       std::pair{planar::PolygonSurround::None, "none"}};
-};
-
-}  // namespace explica

@@ -70,7 +70,7 @@ namespace detail {
 template <NamedEnum Enum>
 std::vector<std::string> words() {
   std::vector<std::string> all;
-  for (const auto& [value, name] : EnumNames<Enum>::table) all.emplace_back(name);
+  for (const auto& [value, name] : enumWords(Enum{})) all.emplace_back(name);
   return all;
 }
 

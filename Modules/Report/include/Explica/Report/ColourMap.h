@@ -9,7 +9,6 @@
 #include <array>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace explica::report {
@@ -24,6 +23,11 @@ enum class ColourMap {
   Diverging,   ///< blue, light grey in the middle, brown
   Grey         ///< black to white
 };
+constexpr auto enumWords(ColourMap) {
+  using enum ColourMap;
+  return std::to_array<EnumWord<ColourMap>>(
+      {{Sequential, "sequential"}, {Heat, "heat"}, {Diverging, "diverging"}, {Grey, "grey"}});
+}
 
 /// The colour of t in [0, 1] (clamped); not-a-number is a middle grey.
 [[nodiscard]] Colour colourAt(ColourMap map, double t);
@@ -66,15 +70,3 @@ struct ColourScale {
                                             const ColourScale& scale);
 
 }  // namespace explica::report
-
-namespace explica {
-
-template <>
-struct EnumNames<report::ColourMap> {
-  static constexpr std::array table = {std::pair{report::ColourMap::Sequential, "sequential"},
-                                       std::pair{report::ColourMap::Heat, "heat"},
-                                       std::pair{report::ColourMap::Diverging, "diverging"},
-                                       std::pair{report::ColourMap::Grey, "grey"}};
-};
-
-}  // namespace explica

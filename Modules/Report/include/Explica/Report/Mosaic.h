@@ -16,6 +16,11 @@ enum class SideConvention {
   Neurological,  ///< left on the left, as seen from behind and above
   Radiological   ///< left on the right, as seen from the feet and from the front
 };
+constexpr auto enumWords(SideConvention) {
+  using enum SideConvention;
+  return std::to_array<EnumWord<SideConvention>>(
+      {{Neurological, "neurological"}, {Radiological, "radiological"}});
+}
 
 /// A surface whose cut line is drawn in every tile.
 struct MosaicOutline {
@@ -83,14 +88,3 @@ struct MosaicOptions {
                                      const MosaicOptions& options = {});
 
 }  // namespace explica::report
-
-namespace explica {
-
-template <>
-struct EnumNames<report::SideConvention> {
-  static constexpr std::array table = {
-      std::pair{report::SideConvention::Neurological, "neurological"},
-      std::pair{report::SideConvention::Radiological, "radiological"}};
-};
-
-}  // namespace explica

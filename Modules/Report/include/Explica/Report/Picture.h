@@ -34,6 +34,8 @@ struct Picture {
 /// sRGB byte of a linear component, and back.
 [[nodiscard]] std::uint8_t encodeSrgb(float linear);
 [[nodiscard]] float decodeSrgb(std::uint8_t byte);
+/// "#rrggbb", as SVG and CSS write it.
+[[nodiscard]] std::string hexText(const Colour& colour);
 
 /// The picture as a PNG file's bytes.  The same pixels give the same bytes.
 [[nodiscard]] std::string encodePng(const Picture& picture);

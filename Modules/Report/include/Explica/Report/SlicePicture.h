@@ -9,7 +9,6 @@
 #include "Explica/Report/Picture.h"
 
 #include <array>
-#include <utility>
 #include <vector>
 
 namespace explica::report {
@@ -20,6 +19,11 @@ enum class SliceAxis {
   Coronal,   ///< perpendicular to back-front; the patient's left on the left
   Axial      ///< perpendicular to feet-head; the patient's left on the left, anterior up
 };
+constexpr auto enumWords(SliceAxis) {
+  using enum SliceAxis;
+  return std::to_array<EnumWord<SliceAxis>>(
+      {{Sagittal, "sagittal"}, {Coronal, "coronal"}, {Axial, "axial"}});
+}
 
 /// A surface's cut line in a slice.
 struct Contour {
@@ -61,14 +65,3 @@ struct SliceFrame {
 [[nodiscard]] Picture renderLabelSlice(const Volume<Label>& labels, const SliceFrame& frame);
 
 }  // namespace explica::report
-
-namespace explica {
-
-template <>
-struct EnumNames<report::SliceAxis> {
-  static constexpr std::array table = {std::pair{report::SliceAxis::Sagittal, "sagittal"},
-                                       std::pair{report::SliceAxis::Coronal, "coronal"},
-                                       std::pair{report::SliceAxis::Axial, "axial"}};
-};
-
-}  // namespace explica

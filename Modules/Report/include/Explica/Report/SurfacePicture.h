@@ -9,13 +9,21 @@
 
 #include <array>
 #include <memory>
-#include <utility>
 #include <vector>
 
 namespace explica::report {
 
 /// From where a surface is seen, in the head's directions.
 enum class ViewName { Left, Right, Front, Back, Top, Bottom };
+constexpr auto enumWords(ViewName) {
+  using enum ViewName;
+  return std::to_array<EnumWord<ViewName>>({{Left, "left"},
+                                            {Right, "right"},
+                                            {Front, "front"},
+                                            {Back, "back"},
+                                            {Top, "top"},
+                                            {Bottom, "bottom"}});
+}
 
 /// Where the eye is and what it sees; parallel projection.
 struct Camera {
@@ -92,15 +100,3 @@ class SurfaceScene {
 };
 
 }  // namespace explica::report
-
-namespace explica {
-
-template <>
-struct EnumNames<report::ViewName> {
-  static constexpr std::array table = {
-      std::pair{report::ViewName::Left, "left"},   std::pair{report::ViewName::Right, "right"},
-      std::pair{report::ViewName::Front, "front"}, std::pair{report::ViewName::Back, "back"},
-      std::pair{report::ViewName::Top, "top"},     std::pair{report::ViewName::Bottom, "bottom"}};
-};
-
-}  // namespace explica

@@ -7,7 +7,6 @@
 
 #include <array>
 #include <memory>
-#include <utility>
 #include <vector>
 
 namespace explica::repulsion {
@@ -44,6 +43,11 @@ enum class KnotMethod {
   AllPairs,    ///< every pair of faces: slow, exact to about 1e-6
   Off          ///< no knot energy
 };
+constexpr auto enumWords(KnotMethod) {
+  using enum KnotMethod;
+  return std::to_array<EnumWord<KnotMethod>>(
+      {{Tree, "tree"}, {ThesisTree, "thesis-tree"}, {AllPairs, "all-pairs"}, {Off, "off"}});
+}
 
 /// The evaluator of this name with its default options; null for Off.
 /// @param mesh         positions of the fixed vertices count; those of moving ones may change later
@@ -56,11 +60,3 @@ enum class KnotMethod {
                                                          const std::vector<bool>& vertexMoves);
 
 }  // namespace explica::repulsion
-
-template <>
-struct explica::EnumNames<explica::repulsion::KnotMethod> {
-  static constexpr std::array table = {std::pair{repulsion::KnotMethod::Tree, "tree"},
-                                       std::pair{repulsion::KnotMethod::ThesisTree, "thesis-tree"},
-                                       std::pair{repulsion::KnotMethod::AllPairs, "all-pairs"},
-                                       std::pair{repulsion::KnotMethod::Off, "off"}};
-};

@@ -7,7 +7,6 @@
 
 #include <array>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 namespace explica::sampling {
@@ -17,6 +16,10 @@ enum class DepthKind {
   Depth,  ///< of the distance from the white vertex to its pial vertex
   Volume  ///< of the volume of the column between them, which grows towards the wider end [Bok1929]
 };
+constexpr auto enumWords(DepthKind) {
+  using enum DepthKind;
+  return std::to_array<EnumWord<DepthKind>>({{Depth, "depth"}, {Volume, "volume"}});
+}
 
 /// Depths from 0, white, to 1, pial: "0.2,0.5,0.8", or a whole number N for N depths at equal
 /// distances from 0 to 1 ("1" is the middle; the white surface is "0", the pial one "1.0").
@@ -49,9 +52,3 @@ enum class DepthKind {
 void requireCorresponding(const TriangleMesh& white, const TriangleMesh& pial);
 
 }  // namespace explica::sampling
-
-template <>
-struct explica::EnumNames<explica::sampling::DepthKind> {
-  static constexpr std::array table = {std::pair{explica::sampling::DepthKind::Depth, "depth"},
-                                       std::pair{explica::sampling::DepthKind::Volume, "volume"}};
-};

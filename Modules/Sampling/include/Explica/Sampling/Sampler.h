@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <limits>
 #include <span>
-#include <utility>
 #include <vector>
 
 namespace explica::sampling {
@@ -21,6 +20,11 @@ enum class Interpolation {
   Cubic     ///< cubic convolution with a = -1/2, from 64 voxels; exact for quadratic functions
             ///< [Keys1981]
 };
+constexpr auto enumWords(Interpolation) {
+  using enum Interpolation;
+  return std::to_array<EnumWord<Interpolation>>(
+      {{Nearest, "nearest"}, {Linear, "linear"}, {Cubic, "cubic"}});
+}
 
 /// The label of a point at which no label is known.
 inline constexpr Label kNoLabel = std::numeric_limits<Label>::lowest();
@@ -100,11 +104,3 @@ class Sampler {
                                               const Volume<std::uint8_t>* mask = nullptr);
 
 }  // namespace explica::sampling
-
-template <>
-struct explica::EnumNames<explica::sampling::Interpolation> {
-  using Way = explica::sampling::Interpolation;
-  static constexpr std::array table = {std::pair{Way::Nearest, "nearest"},
-                                       std::pair{Way::Linear, "linear"},
-                                       std::pair{Way::Cubic, "cubic"}};
-};

@@ -10,7 +10,6 @@
 #include <cstdint>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace explica::sampling {
@@ -22,6 +21,11 @@ enum class Across {
   Max,
   Ribbon  ///< over the volume of the faces about a vertex, see RibbonSampler
 };
+constexpr auto enumWords(Across) {
+  using enum Across;
+  return std::to_array<EnumWord<Across>>(
+      {{None, "none"}, {Mean, "mean"}, {Max, "max"}, {Ribbon, "ribbon"}});
+}
 
 /// One value a vertex from those at several depths.
 /// @param values  depths x V, depth after depth; NaN: not known
@@ -76,11 +80,3 @@ class Regions {
 };
 
 }  // namespace explica::sampling
-
-template <>
-struct explica::EnumNames<explica::sampling::Across> {
-  using Way = explica::sampling::Across;
-  static constexpr std::array table = {std::pair{Way::None, "none"}, std::pair{Way::Mean, "mean"},
-                                       std::pair{Way::Max, "max"},
-                                       std::pair{Way::Ribbon, "ribbon"}};
-};

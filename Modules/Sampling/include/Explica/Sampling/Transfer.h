@@ -4,9 +4,6 @@
 
 #include "Explica/Core/TriangleMesh.h"
 
-#include <span>
-#include <vector>
-
 namespace explica::sampling {
 
 /// Where points lie next to a surface.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "Explica/Core/Describe.h"
 #include "Explica/Core/Volume.h"
 
 #include <map>
@@ -12,6 +13,10 @@ namespace explica::segmentation {
 
 /// Which half of the brain a structure lies in.
 enum class Side { Both, Left, Right };
+constexpr auto enumWords(Side) {
+  using enum Side;
+  return std::to_array<EnumWord<Side>>({{Both, "both"}, {Left, "L"}, {Right, "R"}});
+}
 
 /// What a structure of an atlas is to the cortex.
 enum class StructureKind {

@@ -8,20 +8,7 @@
 #include "Explica/Segmentation/Atlas.h"
 #include "Explica/Segmentation/Tissue.h"
 
-#include <array>
 #include <cstdint>
-#include <utility>
-
-namespace explica {
-
-template <>
-struct EnumNames<segmentation::Side> {
-  static constexpr std::array table = {std::pair{segmentation::Side::Both, "both"},
-                                       std::pair{segmentation::Side::Left, "L"},
-                                       std::pair{segmentation::Side::Right, "R"}};
-};
-
-}  // namespace explica
 
 namespace explica::segmentation {
 

@@ -8,9 +8,6 @@
 #include "Explica/Core/TriangleMesh.h"
 #include "Explica/Sphere/OneToOne.h"
 
-#include <array>
-#include <vector>
-
 namespace explica::sphere {
 
 /// A spherical mesh with what is known of the folds at its vertices.

@@ -11,7 +11,6 @@
 #include <Eigen/Core>
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 namespace explica::statistics {

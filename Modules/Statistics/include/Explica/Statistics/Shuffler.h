@@ -22,6 +22,11 @@ enum class Exchange {
   Whole,   ///< whole blocks of one size
   Signs    ///< the sign of each person's, or each block's, residuals: they are symmetric about 0
 };
+constexpr auto enumWords(Exchange) {
+  using enum Exchange;
+  return std::to_array<EnumWord<Exchange>>(
+      {{Auto, "auto"}, {Within, "within"}, {Whole, "whole"}, {Signs, "signs"}});
+}
 
 /// The shuffles of people that leave a model without effect as likely as it was.
 ///
@@ -62,15 +67,3 @@ class Shuffler {
 };
 
 }  // namespace explica::statistics
-
-namespace explica {
-
-template <>
-struct EnumNames<statistics::Exchange> {
-  static constexpr std::array table = {std::pair{statistics::Exchange::Auto, "auto"},
-                                       std::pair{statistics::Exchange::Within, "within"},
-                                       std::pair{statistics::Exchange::Whole, "whole"},
-                                       std::pair{statistics::Exchange::Signs, "signs"}};
-};
-
-}  // namespace explica

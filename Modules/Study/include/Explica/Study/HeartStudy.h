@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "Explica/Core/Text.h"
+
 #include <filesystem>
 #include <map>
 #include <string>
@@ -46,13 +48,13 @@ struct HeartRow {
 
 /// One row a person, whatever became of the run in `out`/`folder`/heart.
 /// @param about  rows of participants.tsv by participant_id
-[[nodiscard]] std::vector<HeartRow> heartRows(
-    const std::filesystem::path& out, const std::vector<HeartSubject>& subjects,
-    const std::map<std::string, std::map<std::string, std::string>>& about = {});
+[[nodiscard]] std::vector<HeartRow> heartRows(const std::filesystem::path& out,
+                                              const std::vector<HeartSubject>& subjects,
+                                              const std::map<std::string, TableRow>& about = {});
 
 /// participants.tsv of a data set by participant_id; empty if it has none.
 /// @throws InvalidInput  without a column participant_id
-[[nodiscard]] std::map<std::string, std::map<std::string, std::string>> aboutParticipants(
+[[nodiscard]] std::map<std::string, TableRow> aboutParticipants(
     const std::filesystem::path& dataset);
 
 /// Tab-separated, "n/a" where a row has no value; columns in a fixed order, segments last.

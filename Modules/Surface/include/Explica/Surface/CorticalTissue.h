@@ -11,13 +11,15 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace explica::surface {
 
 /// Which half of the brain.
 enum class Side { Left, Right };
+constexpr auto enumWords(Side) {
+  return std::to_array<EnumWord<Side>>({{Side::Left, "L"}, {Side::Right, "R"}});
+}
 
 /// What the labels of a volume mean.
 enum class LabelPreset {
@@ -33,6 +35,24 @@ enum class LabelPreset {
   Wm,          ///< FreeSurfer's wm (5 and more are white) or filled (127 right, 255 left)
   None         ///< white and grey are named
 };
+constexpr auto enumWords(LabelPreset) {
+  using enum LabelPreset;
+  return std::to_array<EnumWord<LabelPreset>>({{Auto, "auto"},
+                                               {Aseg, "aseg"},
+                                               {Ribbon, "ribbon"},
+                                               {ThreeClass, "three-class"},
+                                               {Ants, "ants"},
+                                               {Dhcp, "dhcp"},
+                                               {Dhcp87, "dhcp-87"},
+                                               {Nmt, "nmt"},
+                                               {LayNii, "laynii"},
+                                               {Wm, "wm"},
+                                               {None, "none"},
+                                               // What people look for by the program's name.
+                                               {Aseg, "synthseg"},
+                                               {Aseg, "fastsurfer"},
+                                               {Ribbon, "hcp"}});
+}
 
 /// How labels become the inner and outer boundary of a cortical ribbon.
 struct TissueOptions {
@@ -144,29 +164,6 @@ struct CorticalTissue : TissueFacts {
 }  // namespace explica::surface
 
 namespace explica {
-
-template <>
-struct EnumNames<surface::Side> {
-  static constexpr std::array table = {std::pair{surface::Side::Left, "L"},
-                                       std::pair{surface::Side::Right, "R"}};
-};
-
-template <>
-struct EnumNames<surface::LabelPreset> {
-  static constexpr std::array table = {
-      std::pair{surface::LabelPreset::Auto, "auto"}, std::pair{surface::LabelPreset::Aseg, "aseg"},
-      std::pair{surface::LabelPreset::Ribbon, "ribbon"},
-      std::pair{surface::LabelPreset::ThreeClass, "three-class"},
-      std::pair{surface::LabelPreset::Ants, "ants"}, std::pair{surface::LabelPreset::Dhcp, "dhcp"},
-      std::pair{surface::LabelPreset::Dhcp87, "dhcp-87"},
-      std::pair{surface::LabelPreset::Nmt, "nmt"},
-      std::pair{surface::LabelPreset::LayNii, "laynii"}, std::pair{surface::LabelPreset::Wm, "wm"},
-      std::pair{surface::LabelPreset::None, "none"},
-      // What people look for by the program's name.
-      std::pair{surface::LabelPreset::Aseg, "synthseg"},
-      std::pair{surface::LabelPreset::Aseg, "fastsurfer"},
-      std::pair{surface::LabelPreset::Ribbon, "hcp"}};
-};
 
 namespace surface {
 

@@ -8,7 +8,6 @@
 
 #include <array>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 namespace explica::surface {
@@ -20,12 +19,20 @@ enum class DefectKind {
   Island,  ///< foreground that is not connected to the rest, removed
   Cavity   ///< background enclosed by foreground, filled
 };
+constexpr auto enumWords(DefectKind) {
+  using enum DefectKind;
+  return std::to_array<EnumWord<DefectKind>>(
+      {{Handle, "handle"}, {Tunnel, "tunnel"}, {Island, "island"}, {Cavity, "cavity"}});
+}
 
 /// Whether handles and tunnels are removed.
 enum class GenusRule {
   Zero,  ///< the surface becomes a sphere
   Keep   ///< handles and tunnels stay; islands and cavities do not
 };
+constexpr auto enumWords(GenusRule) {
+  return std::to_array<EnumWord<GenusRule>>({{GenusRule::Zero, "zero"}, {GenusRule::Keep, "keep"}});
+}
 
 /// One correction.
 struct Defect {
@@ -67,21 +74,3 @@ struct TopologyResult {
 [[nodiscard]] Volume<float> distanceTo(const Volume<std::uint8_t>& mask, std::uint8_t target);
 
 }  // namespace explica::surface
-
-namespace explica {
-
-template <>
-struct EnumNames<surface::DefectKind> {
-  static constexpr std::array table = {std::pair{surface::DefectKind::Handle, "handle"},
-                                       std::pair{surface::DefectKind::Tunnel, "tunnel"},
-                                       std::pair{surface::DefectKind::Island, "island"},
-                                       std::pair{surface::DefectKind::Cavity, "cavity"}};
-};
-
-template <>
-struct EnumNames<surface::GenusRule> {
-  static constexpr std::array table = {std::pair{surface::GenusRule::Zero, "zero"},
-                                       std::pair{surface::GenusRule::Keep, "keep"}};
-};
-
-}  // namespace explica

@@ -9,7 +9,6 @@
 
 #include <array>
 #include <optional>
-#include <utility>
 #include <vector>
 
 namespace explica::unfolding {
@@ -19,6 +18,10 @@ enum class RegionMetric {
   Euclidean,  ///< straight, connected to the centre through vertices within the radius
   Geodesic    ///< along the surface
 };
+constexpr auto enumWords(RegionMetric) {
+  using enum RegionMetric;
+  return std::to_array<EnumWord<RegionMetric>>({{Euclidean, "euclidean"}, {Geodesic, "geodesic"}});
+}
 
 /// Which part of a surface is to be unfolded.  Without a label, `center`, `vertex` or `cone` says
 /// where it is.
@@ -88,10 +91,3 @@ void requireViewFromOutside(const TriangleMesh& mesh, const visibility::Viewpoin
                             double clearance = 1e-3);
 
 }  // namespace explica::unfolding
-
-template <>
-struct explica::EnumNames<explica::unfolding::RegionMetric> {
-  static constexpr std::array table = {
-      std::pair{explica::unfolding::RegionMetric::Euclidean, "euclidean"},
-      std::pair{explica::unfolding::RegionMetric::Geodesic, "geodesic"}};
-};

@@ -10,7 +10,6 @@
 #include <array>
 #include <filesystem>
 #include <optional>
-#include <utility>
 #include <vector>
 
 namespace explica::unfolding {
@@ -118,6 +117,14 @@ enum class Flag {
   Crossing,  ///< faces cross that did not at the start
   Stretched  ///< an elastic collar gave way: see kCollarMean and kCollarMost
 };
+constexpr auto enumWords(Flag) {
+  using enum Flag;
+  return std::to_array<EnumWord<Flag>>({{None, ""},
+                                        {Held, "held"},
+                                        {Worse, "worse"},
+                                        {Crossing, "crossing"},
+                                        {Stretched, "stretched"}});
+}
 
 struct UnfoldResult {
   TriangleMesh mesh;                 ///< all vertices; the region's faces only with Surround::None
@@ -156,12 +163,3 @@ void writeCheckpoint(const std::filesystem::path& path, const Checkpoint& checkp
 [[nodiscard]] Checkpoint readCheckpoint(const std::filesystem::path& path);
 
 }  // namespace explica::unfolding
-
-template <>
-struct explica::EnumNames<explica::unfolding::Flag> {
-  static constexpr std::array table = {std::pair{explica::unfolding::Flag::None, ""},
-                                       std::pair{explica::unfolding::Flag::Held, "held"},
-                                       std::pair{explica::unfolding::Flag::Worse, "worse"},
-                                       std::pair{explica::unfolding::Flag::Crossing, "crossing"},
-                                       std::pair{explica::unfolding::Flag::Stretched, "stretched"}};
-};

@@ -12,8 +12,6 @@
 #include <array>
 #include <memory>
 #include <optional>
-#include <string>
-#include <utility>
 #include <vector>
 
 namespace explica::unfolding {
@@ -24,12 +22,21 @@ enum class Surround {
   Elastic,  ///< a collar follows, the rest stays
   None      ///< the region alone
 };
+constexpr auto enumWords(Surround) {
+  using enum Surround;
+  return std::to_array<EnumWord<Surround>>(
+      {{Fixed, "fixed"}, {Elastic, "elastic"}, {None, "none"}});
+}
 
 /// How a region is unfolded.
 enum class Method {
   Implicit,  ///< implicit steps on an incremental potential, guarded by collision detection
   Thesis     ///< explicit gradient flow with areas projected [Thesis, Eq. 5.46, 5.48]: the baseline
 };
+constexpr auto enumWords(Method) {
+  using enum Method;
+  return std::to_array<EnumWord<Method>>({{Implicit, "implicit"}, {Thesis, "thesis"}});
+}
 
 struct UnfolderOptions {
   Method method = Method::Implicit;
@@ -93,6 +100,11 @@ enum class Phase {
   Weighing,  ///< ... and is weighed against lengths
   Settling   ///< ... while areas tighten
 };
+constexpr auto enumWords(Phase) {
+  using enum Phase;
+  return std::to_array<EnumWord<Phase>>(
+      {{Parting, "parting"}, {Opening, "opening"}, {Weighing, "weighing"}, {Settling, "settling"}});
+}
 
 /// One iteration's account: a row of evolution.tsv.
 struct IterationRecord {
@@ -228,24 +240,3 @@ class Unfolder {
                                             const UnfolderOptions& options);
 
 }  // namespace explica::unfolding
-
-template <>
-struct explica::EnumNames<explica::unfolding::Phase> {
-  static constexpr std::array table = {std::pair{explica::unfolding::Phase::Parting, "parting"},
-                                       std::pair{explica::unfolding::Phase::Opening, "opening"},
-                                       std::pair{explica::unfolding::Phase::Weighing, "weighing"},
-                                       std::pair{explica::unfolding::Phase::Settling, "settling"}};
-};
-
-template <>
-struct explica::EnumNames<explica::unfolding::Method> {
-  static constexpr std::array table = {std::pair{explica::unfolding::Method::Implicit, "implicit"},
-                                       std::pair{explica::unfolding::Method::Thesis, "thesis"}};
-};
-
-template <>
-struct explica::EnumNames<explica::unfolding::Surround> {
-  static constexpr std::array table = {std::pair{explica::unfolding::Surround::Fixed, "fixed"},
-                                       std::pair{explica::unfolding::Surround::Elastic, "elastic"},
-                                       std::pair{explica::unfolding::Surround::None, "none"}};
-};

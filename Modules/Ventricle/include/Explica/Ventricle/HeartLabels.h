@@ -9,7 +9,6 @@
 #include <array>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace explica::ventricle {
@@ -25,6 +24,11 @@ enum class Preset {
   Ukbb,       ///< as Mms [Bai2018]
   None        ///< the labels are given
 };
+constexpr auto enumWords(Preset) {
+  using enum Preset;
+  return std::to_array<EnumWord<Preset>>(
+      {{Automatic, "auto"}, {Acdc, "acdc"}, {Mms, "mms"}, {Ukbb, "ukbb"}, {None, "none"}});
+}
 
 struct HeartLabelOptions {
   Preset preset = Preset::Automatic;
@@ -61,15 +65,3 @@ struct HeartRoles {
 [[nodiscard]] Volume<Label> relabelled(const Volume<Label>& frame, const HeartRoles& roles);
 
 }  // namespace explica::ventricle
-
-namespace explica {
-
-template <>
-struct EnumNames<ventricle::Preset> {
-  static constexpr std::array table{
-      std::pair{ventricle::Preset::Automatic, "auto"}, std::pair{ventricle::Preset::Acdc, "acdc"},
-      std::pair{ventricle::Preset::Mms, "mms"}, std::pair{ventricle::Preset::Ukbb, "ukbb"},
-      std::pair{ventricle::Preset::None, "none"}};
-};
-
-}  // namespace explica

@@ -6,13 +6,16 @@
 
 #include <array>
 #include <optional>
-#include <string>
-#include <utility>
 
 namespace explica::ventricle {
 
 /// A direction within the slices of the image.
 enum class ImageAxis { IPlus, IMinus, JPlus, JMinus };
+constexpr auto enumWords(ImageAxis) {
+  using enum ImageAxis;
+  return std::to_array<EnumWord<ImageAxis>>(
+      {{IPlus, "i+"}, {IMinus, "i-"}, {JPlus, "j+"}, {JMinus, "j-"}});
+}
 
 /// Where segments begin to be counted around the axis.
 struct OrientationOptions {
@@ -34,6 +37,13 @@ void describe(OrientationOptions& options, Visitor&& visit) {
 
 /// How the anterior insertion was found.
 enum class OrientationSource { RightVentricle, Point, ImageAxis, None };
+constexpr auto enumWords(OrientationSource) {
+  using enum OrientationSource;
+  return std::to_array<EnumWord<OrientationSource>>({{RightVentricle, "right ventricle"},
+                                                     {Point, "point"},
+                                                     {ImageAxis, "image axis"},
+                                                     {None, "none"}});
+}
 
 /// The direction from which the segments' angles are counted.
 struct Orientation {
@@ -56,22 +66,3 @@ struct Orientation {
                                           const OrientationOptions& options = {});
 
 }  // namespace explica::ventricle
-
-namespace explica {
-
-template <>
-struct EnumNames<ventricle::ImageAxis> {
-  using Axis = ventricle::ImageAxis;
-  static constexpr std::array table{std::pair{Axis::IPlus, "i+"}, std::pair{Axis::IMinus, "i-"},
-                                    std::pair{Axis::JPlus, "j+"}, std::pair{Axis::JMinus, "j-"}};
-};
-
-template <>
-struct EnumNames<ventricle::OrientationSource> {
-  using Source = ventricle::OrientationSource;
-  static constexpr std::array table{
-      std::pair{Source::RightVentricle, "right ventricle"}, std::pair{Source::Point, "point"},
-      std::pair{Source::ImageAxis, "image axis"}, std::pair{Source::None, "none"}};
-};
-
-}  // namespace explica

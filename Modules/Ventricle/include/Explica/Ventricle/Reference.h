@@ -4,7 +4,6 @@
 
 #include "Explica/Ventricle/Beat.h"
 
-#include <array>
 #include <string>
 #include <vector>
 

@@ -5,7 +5,6 @@
 #include "Explica/Ventricle/HeartLabels.h"
 
 #include <array>
-#include <utility>
 #include <vector>
 
 namespace explica::ventricle {
@@ -19,6 +18,15 @@ enum class SliceKind {
   Cap,         ///< wall without cavity
   CavityOnly,  ///< cavity without wall
 };
+constexpr auto enumWords(SliceKind) {
+  using enum SliceKind;
+  return std::to_array<EnumWord<SliceKind>>({{Empty, "empty"},
+                                             {Ring, "ring"},
+                                             {OpenRing, "open"},
+                                             {Valve, "valve"},
+                                             {Cap, "cap"},
+                                             {CavityOnly, "cavity-only"}});
+}
 
 /// A slice and where its ring is open.  Lengths in mm along the grid's axes i and j, from voxel
 /// (0, 0).
@@ -48,16 +56,3 @@ inline constexpr double kValveShare = 0.3;
 [[nodiscard]] double openShareOf(const Volume<Label>& heart);
 
 }  // namespace explica::ventricle
-
-namespace explica {
-
-template <>
-struct EnumNames<ventricle::SliceKind> {
-  using Kind = ventricle::SliceKind;
-  static constexpr std::array table{
-      std::pair{Kind::Empty, "empty"},   std::pair{Kind::Ring, "ring"},
-      std::pair{Kind::OpenRing, "open"}, std::pair{Kind::Valve, "valve"},
-      std::pair{Kind::Cap, "cap"},       std::pair{Kind::CavityOnly, "cavity-only"}};
-};
-
-}  // namespace explica

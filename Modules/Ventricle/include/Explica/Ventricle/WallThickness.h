@@ -8,8 +8,6 @@
 #include "Explica/Ventricle/SliceAlignment.h"
 
 #include <array>
-#include <string>
-#include <utility>
 #include <vector>
 
 namespace explica::ventricle {
@@ -22,6 +20,14 @@ enum class LeftOut : std::uint8_t {
   Cap,        ///< apical cap of thick slices: no cavity in the slice, or the wall lies too flat
   Unreached,  ///< its trajectory does not arrive
 };
+constexpr auto enumWords(LeftOut) {
+  using enum LeftOut;
+  return std::to_array<EnumWord<LeftOut>>({{None, "none"},
+                                           {Opening, "opening"},
+                                           {Valve, "valve"},
+                                           {Cap, "cap"},
+                                           {Unreached, "unreached"}});
+}
 
 /// How thickness is measured.
 enum class WallMethod {
@@ -29,6 +35,11 @@ enum class WallMethod {
   Slices,
   Space
 };
+constexpr auto enumWords(WallMethod) {
+  using enum WallMethod;
+  return std::to_array<EnumWord<WallMethod>>(
+      {{Automatic, "auto"}, {Slices, "slices"}, {Space, "space"}});
+}
 
 struct WallOptions {
   WallMethod method = WallMethod::Automatic;
@@ -92,23 +103,3 @@ class ColumnMean {
 };
 
 }  // namespace explica::ventricle
-
-namespace explica {
-
-template <>
-struct EnumNames<ventricle::LeftOut> {
-  using Why = ventricle::LeftOut;
-  static constexpr std::array table{std::pair{Why::None, "none"},
-                                    std::pair{Why::Opening, "opening"},
-                                    std::pair{Why::Valve, "valve"}, std::pair{Why::Cap, "cap"},
-                                    std::pair{Why::Unreached, "unreached"}};
-};
-
-template <>
-struct EnumNames<ventricle::WallMethod> {
-  static constexpr std::array table{std::pair{ventricle::WallMethod::Automatic, "auto"},
-                                    std::pair{ventricle::WallMethod::Slices, "slices"},
-                                    std::pair{ventricle::WallMethod::Space, "space"}};
-};
-
-}  // namespace explica

@@ -7,7 +7,6 @@
 #include "Explica/Unfolding/Unfold.h"
 #include "Explica/Visibility/Viewpoints.h"
 
-#include <array>
 #include <memory>
 #include <optional>
 #include <string>

@@ -5,9 +5,6 @@
 #include "Explica/Core/TriangleMesh.h"
 #include "Explica/Visibility/Viewpoints.h"
 
-#include <cstdint>
-#include <vector>
-
 namespace explica::visibility {
 
 /// Points spread evenly over a sphere, along a spiral of the golden angle, with equal weights.

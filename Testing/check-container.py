@@ -4,7 +4,7 @@
 """Carries out the run stage of the Containerfile where there is no container engine: its RUN and
 COPY lines in a clean Debian made by debootstrap, then its ENTRYPOINT on a phantom.
 
-    sudo Wrapping/Container/check.py BUILD_DIR WORK_DIR
+    sudo Testing/check-container.py BUILD_DIR WORK_DIR
 
 BUILD_DIR is a finished build; WORK_DIR is made, must not exist, and stays (delete it by hand).
 Nothing is mounted into the new system, so that deleting it is safe.
@@ -18,8 +18,7 @@ import shutil
 import subprocess
 import sys
 
-HERE = pathlib.Path(__file__).resolve().parent
-SOURCE = HERE.parent.parent
+SOURCE = pathlib.Path(__file__).resolve().parents[1]
 
 
 def last_stage(containerfile):
@@ -56,7 +55,7 @@ def main():
     tree, system = work / "tree", work / "system"
     run(["cmake", "--install", build, "--strip", "--prefix", tree / "opt/explica"],
         stdout=subprocess.DEVNULL)
-    stage = last_stage(HERE / "Containerfile")
+    stage = last_stage(SOURCE / "Wrapping/Container/Containerfile")
     run(["debootstrap", "--variant=minbase", "bookworm", system, "http://deb.debian.org/debian"],
         stdout=subprocess.DEVNULL)
 

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "Explica/Core/Folders.h"
+
+#include <algorithm>
+#include <system_error>
+
+namespace explica {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> entriesOf(const fs::path& folder,
+                                const std::function<bool(const std::string&)>& wanted) {
+  std::vector<fs::path> entries;
+  std::error_code absent;
+  for (const auto& entry : fs::directory_iterator(folder, absent)) {
+    if (!wanted || wanted(entry.path().filename().string())) entries.push_back(entry.path());
+  }
+  std::sort(entries.begin(), entries.end());
+  return entries;
+}
+
+std::vector<fs::path> foldersOf(const fs::path& folder,
+                                const std::function<bool(const std::string&)>& wanted) {
+  std::vector<fs::path> folders = entriesOf(folder, wanted);
+  std::erase_if(folders, [](const fs::path& entry) { return !fs::is_directory(entry); });
+  return folders;
+}
+
+}  // namespace explica
