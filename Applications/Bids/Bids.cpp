@@ -134,25 +134,6 @@ void requireSides(const Settings& s, const study::Participant& participant) {
                      "(*_desc-aseg_dseg.nii.gz)");
 }
 
-/// What an earlier run made of an input that is there no more.
-void dropSteps(Context& context, const std::string& run) {
-  for (const char* step : {"segment", "thickness", "surface", "sphere", "register", "resample",
-                           "parcellate", "regions", "unfold"}) {
-    context.dropCommand(run + "/" + step);
-  }
-}
-
-/// A T1's segmentation is the same for both hemispheres: what the other one's run has made is
-/// linked, and found true by its content.
-void shareSegment(const fs::path& made, const fs::path& run) {
-  std::error_code fault;
-  if (!fs::exists(made / "segment/provenance.json") || fs::exists(run / "segment")) return;
-  fs::create_directories(run, fault);
-  fs::copy(made / "segment", run / "segment",
-           fs::copy_options::recursive | fs::copy_options::create_hard_links, fault);
-  if (fault) fs::remove_all(run / "segment", fault);  // no such links here: the run makes its own
-}
-
 /// How the template was placed in a participant's T1 by an earlier study.
 std::optional<fs::path> earlierRegistration(const Settings& s, const std::string& participant) {
   if (!s.registrations) return {};
@@ -191,7 +172,10 @@ Ended doHemisphere(Context& context, const Settings& s, const study::Participant
         study::keyOf({participant, {{name, hemisphere, "", values}}}, studyPathOptions());
     if (s.keep == Keep::Group && !dry && isKept(folder, key)) return ended;
     const std::string other = hemisphere == "L" ? "R" : "L";
-    if (!dry) shareSegment(folder.parent_path() / (participant.name() + "_hemi-" + other), folder);
+    if (!dry) {  // a T1's segmentation is the same for both hemispheres
+      shareSteps(folder.parent_path() / (participant.name() + "_hemi-" + other), folder,
+                 {"segment"});
+    }
     const Outcome outcome = context.runCommand(*findCommand("run"), "runs/" + name, values);
     if (!reachedGoal(outcome.termination)) worst = outcome.termination;
     if (!outcome.plausible) passFlagsOn(context, "run", folder);

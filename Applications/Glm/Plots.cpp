@@ -45,6 +45,43 @@ Axis axisOf(const Observations& o, const GlmResults& r, const statistics::Contra
   return axis;
 }
 
+namespace {
+
+constexpr std::size_t kMostNamed = 1000;  // people whose points say who they are: 100 bytes each
+
+/// People's points; those of many are one path without names, which the plot of a clicked place
+/// has.
+/// @param px, py  from values to the picture
+template <class X, class Y>
+std::string pointsSvg(const Observations& o, const Axis& axis, const Eigen::VectorXd& y,
+                      const X& px, const Y& py) {
+  const bool named = o.people.size() <= kMostNamed;
+  std::string svg, path;
+  for (std::size_t i = 0; i < o.people.size(); ++i) {
+    const double value = y[static_cast<Eigen::Index>(i)];
+    if (!std::isfinite(value) || !std::isfinite(axis.x[i])) continue;
+    // Of a level, people are spread in the order of the table.
+    const double aside =
+        axis.levels.empty() ? 0 : (static_cast<double>(i * 37 % 61) / 61 - 0.5) * 0.5;
+    const std::string cx = numberText(px(axis.x[i] + aside), 5), cy = numberText(py(value), 5);
+    if (!named) {
+      path += "M" + cx + " " + cy + "h0";
+      continue;
+    }
+    const std::string link = reportOf(o, i);
+    if (!link.empty()) svg += "<a href='" + escapeHtml(link) + "'>";
+    svg += "<circle cx='" + cx + "' cy='" + cy +
+           "' r='2.6' fill='#145ab4' fill-opacity='0.6'><title>" + escapeHtml(o.people[i]) + ": " +
+           numberText(value, 4) + "</title></circle>" + (link.empty() ? "" : "</a>");
+  }
+  if (named) return svg;
+  return "<path class='people' fill='none' stroke='#145ab4' stroke-opacity='0.6' stroke-width='3' "
+         "stroke-linecap='round' d='" +
+         path + "'/>";
+}
+
+}  // namespace
+
 std::string scatterSvg(const Observations& o, const Axis& axis, const Eigen::VectorXd& y,
                        const std::string& title) {
   constexpr double kPlotWidth = 420, kPlotHeight = 260, kLeft = 56, kBottom = 42, kTop = 26;
@@ -84,20 +121,7 @@ std::string scatterSvg(const Observations& o, const Axis& axis, const Eigen::Vec
   }
   label(kPlotWidth / 2 + kLeft / 2, kPlotHeight - 8, axis.name, "middle");
   svg += "<path d='M56 26V218H410' fill='none' stroke='#888'/>";
-  for (std::size_t i = 0; i < o.people.size(); ++i) {
-    const double value = y[static_cast<Eigen::Index>(i)];
-    if (!std::isfinite(value) || !std::isfinite(axis.x[i])) continue;
-    // Of a level, people are spread in the order of the table.
-    const double aside =
-        axis.levels.empty() ? 0 : (static_cast<double>(i * 37 % 61) / 61 - 0.5) * 0.5;
-    const std::string link = reportOf(o, i);
-    if (!link.empty()) svg += "<a href='" + escapeHtml(link) + "'>";
-    svg += "<circle cx='" + numberText(px(axis.x[i] + aside), 5) + "' cy='" +
-           numberText(py(value), 5) + "' r='2.6' fill='#145ab4' fill-opacity='0.6'><title>" +
-           escapeHtml(o.people[i]) + ": " + numberText(value, 4) + "</title></circle>" +
-           (link.empty() ? "" : "</a>");
-  }
-  return svg + "</svg>";
+  return svg + pointsSvg(o, axis, y, px, py) + "</svg>";
 }
 
 }  // namespace explica::app

@@ -18,7 +18,7 @@ using report::Colour;
 
 constexpr Colour kNotTested = {0.55F, 0.55F, 0.55F};  // linear light: off the mask
 constexpr Colour kBelow = {0.78F, 0.78F, 0.78F};      // below the threshold
-constexpr int kMapsAtFullWidth = 4;    // of a page; more are drawn smaller, for as many pixels
+constexpr int kMapsAtFullWidth = 3;    // of a page; more are drawn smaller, for as many pixels
 constexpr int kFullWidth = 420;        // of a view, pixels
 constexpr std::size_t kPoints = 6000;  // people in all plots of a contrast
 constexpr std::size_t kPlots = 6;      // peaks of a contrast that are plotted

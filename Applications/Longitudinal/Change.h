@@ -41,8 +41,9 @@ struct Sums {
 
 /// Maps of a hemisphere's thickness at the vertices of the mean's middle surface, and the table of
 /// its regions.
-/// @param voxel  mm
-void measureChange(Context& context, std::size_t sessions, const Side& side, double voxel,
-                   Sums& sums);
+/// @param person  in the table
+/// @param voxel   mm
+void measureChange(Context& context, std::size_t sessions, const Side& side,
+                   const std::string& person, double voxel, Sums& sums);
 
 }  // namespace explica::app

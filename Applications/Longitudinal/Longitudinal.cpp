@@ -15,6 +15,7 @@
 #include "Explica/IO/TransformFile.h"
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Pipeline/Plan.h"
+#include "Explica/Provenance/Record.h"
 #include "Explica/Registration/HeadTransform.h"
 #include "Explica/Registration/Sessions.h"
 
@@ -103,12 +104,16 @@ std::vector<Volume<float>> readSessions(Context& context, const Settings& s) {
   return sessions;
 }
 
+std::optional<Volume<Label>> readAtlas(Context& context, const Settings& s) {
+  if (!s.atlas) return {};
+  return readLabels(context, "atlas", *s.atlas, {.dimension = 3});
+}
+
 /// The atlas in the common space, with its legend.
-void writeAtlas(Context& context, const std::string& path, const Eigen::Isometry3d& toFirst,
-                const Grid& grid) {
+void writeAtlas(Context& context, const Volume<Label>& atlas, const std::string& path,
+                const Eigen::Isometry3d& toFirst, const Grid& grid) {
   registration::HeadTransform transform;
   transform.affine = Eigen::Affine3d(toFirst.matrix());
-  const Volume<Label> atlas = readLabels(context, "atlas", path, {.dimension = 3});
   io::writeVolume(context.output("atlas.nii.gz"), registration::pulled(atlas, transform, grid));
   if (const auto legend = io::findLegend(path)) {
     const char* name = legend->extension() == ".tsv" ? "atlas.tsv" : "atlas.nii.txt";
@@ -118,7 +123,8 @@ void writeAtlas(Context& context, const std::string& path, const Eigen::Isometry
 
 /// @return the voxels' size, mm
 double writeCommonSpace(Context& context, const Settings& s,
-                        const std::vector<Volume<float>>& sessions, Change& change) {
+                        const std::vector<Volume<float>>& sessions,
+                        const std::optional<Volume<Label>>& atlas, Change& change) {
   const auto average = registration::averageSessions(sessions, context.monitor());
   io::writeVolume(context.output("template.nii.gz"), average.mean);
   change.sessions = static_cast<std::int64_t>(sessions.size());
@@ -131,7 +137,7 @@ double writeCommonSpace(Context& context, const Settings& s,
                        Eigen::Affine3d(motion.matrix()), {});
     change.turn = std::max(change.turn, Eigen::AngleAxisd(motion.linear()).angle() * 180 / kPi);
   }
-  if (s.atlas) writeAtlas(context, *s.atlas, average.toSession[0], average.mean.grid);
+  if (atlas) writeAtlas(context, *atlas, *s.atlas, average.toSession[0], average.mean.grid);
   return average.mean.grid.spacing.maxCoeff();
 }
 
@@ -173,19 +179,26 @@ Termination runAll(Context& context, const Settings& s) {
   return worst;
 }
 
+/// As given, or what the first session's file is called up to "_".
+std::string personOf(const Context& context, const Settings& s) {
+  const std::string file = fs::path(s.sessions.front()).filename().string();
+  const Json given = givenOptions(context, s.run.declaration);
+  return given.value("regions.person", file.substr(0, file.find_first_of("_.")));
+}
+
 /// Half a comparison is of no use: what a failure or a stop leaves goes.
 void takeBack(Context& context, const Settings& s) {
   std::vector<std::string> names = {"template"};
   for (std::size_t n = 0; n < s.sessions.size(); ++n) names.push_back(numbered("session-", n));
   std::error_code ignored;
   for (const std::string& name : names) {
-    for (const char* step :
-         {"segment", "surface", "sphere", "register", "resample", "parcellate", "regions"}) {
-      for (const char* ending : {"", "-L", "-R"}) {
-        context.dropCommand(name + "/" + step + ending);
-      }
-    }
+    dropSteps(context, name);
     context.dropCommand(name);
+    for (const char* account :
+         {"run.json", provenance::kSummaryName, "report.html", "thumbnail.png"}) {
+      fs::remove(context.outputFolder() / name / account, ignored);
+    }
+    fs::remove(context.outputFolder() / name, ignored);
     fs::remove(context.outputFolder() / (name + ".nii.gz"), ignored);
     fs::remove(context.outputFolder() / ("to_" + name + ".h5"), ignored);
   }
@@ -196,18 +209,21 @@ void takeBack(Context& context, const Settings& s) {
 
 Termination run(Context& context, const Settings& s) {
   const std::vector<Volume<float>> sessions = readSessions(context, s);
+  const std::optional<Volume<Label>> atlas = readAtlas(context, s);
   context.judged();
   Change change;
   double voxel = 0;
   {
     auto step = context.step("sessions");
-    voxel = writeCommonSpace(context, s, sessions, change);
+    voxel = writeCommonSpace(context, s, sessions, atlas, change);
   }
   Termination worst = Termination::Finished;
   Sums sums;
   try {
     worst = runAll(context, s);
-    for (const Side& side : sidesOf(s)) measureChange(context, sessions.size(), side, voxel, sums);
+    for (const Side& side : sidesOf(s)) {
+      measureChange(context, sessions.size(), side, personOf(context, s), voxel, sums);
+    }
   } catch (...) {
     takeBack(context, s);
     throw;

@@ -52,8 +52,11 @@ void declare(Declaration& d, Settings& s) {
           "Imaging 28(8):1266-1277")
       .example("explica parcellate bert/surf --atlas fsaverage/label/lh.aparc.annot --out regions",
                "fsaverage's Desikan-Killiany regions on a FreeSurfer subject")
-      .input("SURFACES", FileKind::Folder,
-             "folder with the person's ?h.sphere.reg or sphere.reg.surf.gii (and sulc)", s.folder)
+      .input(
+          "SURFACES", FileKind::Folder,
+          "folder with the person's ?h.sphere.reg or sphere.reg.surf.gii (and sulc), or a surface "
+          "folder of explica run with register's beside it",
+          s.folder)
       .inputOption("atlas", FileKind::VertexLabel, "labels of a template or of a labelled person",
                    s.atlases)
       .option("Input",
@@ -85,14 +88,24 @@ void declare(Declaration& d, Settings& s) {
       .output("aparc.tsv", FileKind::Table, "with --volume: key and name of each region");
 }
 
+/// SURFACES and, beside a `surface*` folder of explica run, the `register*` folder of that
+/// hemisphere.
+std::vector<std::string> foldersOf(const Settings& s) {
+  const fs::path surfaces = (fs::path(s.folder) / "").lexically_normal().parent_path();
+  const std::string name = surfaces.filename().string(), step = "surface";
+  std::vector<std::string> folders = {s.folder};
+  if (name.starts_with(step)) {
+    folders.push_back((surfaces.parent_path() / ("register" + name.substr(step.size()))).string());
+  }
+  return folders;
+}
+
 std::string prefixOf(const Settings& s) {
   if (s.hemisphere && *s.hemisphere != "L" && *s.hemisphere != "R") {
     throw UsageError("--hemisphere must be L or R");
   }
-  const fs::path sphere = fs::path(s.folder) / "sphere.reg.surf.gii";
-  const std::string asked = !s.atlases.empty()   ? s.atlases.front()
-                            : fs::exists(sphere) ? sphere.string()
-                                                 : "";
+  const auto sphere = findFile(foldersOf(s), {"sphere.reg.surf.gii"});
+  const std::string asked = !s.atlases.empty() ? s.atlases.front() : sphere.value_or("");
   const std::string said = asked.empty() ? "" : io::statedStructure(asked);
   if (!s.hemisphere && said.empty()) {
     throw UsageError("'" + (asked.empty() ? s.folder : asked) +
@@ -236,10 +249,10 @@ void writeVolume(Context& context, const std::array<TriangleMesh, 2>& ribbon, co
 Termination run(Context& context, const Settings& s) {
   const std::string prefix = prefixOf(s);
   const std::string structure = prefix == "rh." ? "CortexRight" : "CortexLeft";
-  const auto place = findFile({s.folder}, {prefix + "sphere.reg", "sphere.reg.surf.gii"});
+  const auto place = findFile(foldersOf(s), {prefix + "sphere.reg", "sphere.reg.surf.gii"});
   if (!place) {
     throw InvalidInput("'" + s.folder + "': holds no " + prefix +
-                       "sphere.reg and no sphere.reg.surf.gii");
+                       "sphere.reg and no sphere.reg.surf.gii, which explica register writes");
   }
   if (const std::string said = io::statedStructure(*place); !said.empty() && said != structure) {
     throw InvalidInput("'" + *place + "': is of the other hemisphere than the regions asked for (" +

@@ -85,4 +85,15 @@ void keepForGroup(const fs::path& run, const std::string& key) {
   }
 }
 
+void shareSteps(const fs::path& made, const fs::path& run, const std::vector<std::string>& steps) {
+  std::error_code fault;
+  for (const std::string& step : steps) {
+    if (!fs::exists(made / step / provenance::kRecordName) || fs::exists(run / step)) continue;
+    fs::create_directories(run, fault);
+    fs::copy(made / step, run / step,
+             fs::copy_options::recursive | fs::copy_options::create_hard_links, fault);
+    if (fault) fs::remove_all(run / step, fault);  // no such links here
+  }
+}
+
 }  // namespace explica::app

@@ -7,6 +7,7 @@
 #include <array>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace explica::app {
 
@@ -31,6 +32,11 @@ void keepForGroup(const std::filesystem::path& run, const std::string& key);
 
 /// True if keepForGroup() was done with this key.
 [[nodiscard]] bool isKept(const std::filesystem::path& run, const std::string& key);
+
+/// Links those steps that another run has made and this one has not; the run finds them true by
+/// their content, or makes its own.
+void shareSteps(const std::filesystem::path& made, const std::filesystem::path& run,
+                const std::vector<std::string>& steps);
 
 /// The maps on the template that a run has: the measure's own file, or the one for all of them.
 struct TemplateMaps {

@@ -64,34 +64,22 @@ bool endedFromOutside(Termination termination) {
   return termination == Termination::Interrupted || termination == Termination::MaxTime;
 }
 
-/// The steps before unfolding are the same for all regions of a hemisphere: those that another
-/// region's run has made are linked, and found true by their content.
-void shareSteps(const fs::path& made, const fs::path& run) {
-  std::error_code fault;
-  for (const char* step : {"segment", "thickness", "surface", "sphere", "register", "resample",
-                           "parcellate", "regions"}) {
-    if (!fs::exists(made / step / "provenance.json") || fs::exists(run / step)) continue;
-    fs::create_directories(run, fault);
-    fs::copy(made / step, run / step,
-             fs::copy_options::recursive | fs::copy_options::create_hard_links, fault);
-    if (fault) fs::remove_all(run / step, fault);  // no such links here: the run makes its own
-  }
-}
-
 /// @return true if the run ended by itself
 bool doRun(Context& context, const fs::path& folder, const study::Participant& participant,
            const study::PlannedRun& run, Account& account) {
   const fs::path problem = folder / "problem.txt";
+  const bool dry = context.given("dry-run");
   const auto fail = [&](const std::string& why) {
-    context.warn(run.folder + ": " + why);
     account.failed.push_back(run.folder);
-    writeTextFile(problem, why + "\n");
+    sayProblem(context, run.folder, folder, why);
     return false;
   };
   ++account.runs;
-  fs::create_directories(folder);
-  // What a killed process leaves: it cannot say so itself.
-  writeTextFile(problem, "ended from outside (killed, out of memory or time), or still running\n");
+  if (!dry) {  // what a killed process leaves: it cannot say so itself
+    fs::create_directories(folder);
+    writeTextFile(problem,
+                  "ended from outside (killed, out of memory or time), or still running\n");
+  }
   try {
     if (!participant.problem.empty()) throw InvalidInput(participant.problem);
     Json values = run.values;
@@ -100,6 +88,7 @@ bool doRun(Context& context, const fs::path& folder, const study::Participant& p
     values["hemisphere"] = run.hemisphere;
     values["resume"] = true;
     const Outcome outcome = context.runApart(*findCommand("run"), folder, values);
+    if (dry) return true;
     outcome.abandoned ? sayInterrupted(folder) : static_cast<void>(fs::remove(problem));
     if (!reachedGoal(outcome.termination)) account.worst = outcome.termination;
     if (!outcome.plausible) passFlagsOn(context, "run", folder);
@@ -127,6 +116,7 @@ bool allKept(const Settings& s, const study::PlannedSubject& subject, const std:
 
 Termination run(Context& context, const Settings& s) {
   const StopScope kept(nullptr);  // what is reached is written
+  const bool dry = context.given("dry-run");
   const study::StudyFile file = readCheckedStudy(s.study);
   const study::PathOptions paths = studyPathOptions();
   const study::Study study = study::planStudy(file, paths, s.participants);
@@ -137,7 +127,7 @@ Termination run(Context& context, const Settings& s) {
       account.runs += static_cast<int>(subject.runs.size());
       continue;
     }
-    study::unsettle(s.out, subject);
+    if (!dry) study::unsettle(s.out, subject);
     bool settled = true;
     std::map<std::string, fs::path> first;  // a hemisphere's first run, whose steps others share
     for (const study::PlannedRun& run : subject.runs) {
@@ -147,11 +137,15 @@ Termination run(Context& context, const Settings& s) {
         break;
       }
       const fs::path folder = folderOf(s, run);
-      if (first.count(run.hemisphere)) shareSteps(first[run.hemisphere], folder);
+      if (!dry && first.count(run.hemisphere)) {  // steps before unfolding are the same
+        shareSteps(first[run.hemisphere], folder,
+                   {"segment", "thickness", "surface", "sphere", "register", "resample",
+                    "parcellate", "regions"});
+      }
       settled = doRun(context, folder, subject.participant, run, account) && settled;
       first.emplace(run.hemisphere, folder);
     }
-    if (!settled) continue;
+    if (!settled || dry) continue;
     if (s.keep == Keep::Group) {
       for (const study::PlannedRun& run : subject.runs) keepForGroup(folderOf(s, run), key);
     }
@@ -160,9 +154,9 @@ Termination run(Context& context, const Settings& s) {
   if (!account.environmentFault.empty()) throw EnvironmentError(account.environmentFault);
   if (account.failed.empty()) return account.worst;
   const std::string said = std::to_string(account.failed.size()) + " of " +
-                           std::to_string(account.runs) + " runs failed (" +
-                           joined(account.failed) + "), as said above and in each " + s.out +
-                           "/runs/sub-*/problem.txt";
+                           std::to_string(account.runs) + " runs failed (" + joined(account.failed) +
+                           "), as said above" +
+                           (dry ? "" : " and in each " + s.out + "/runs/sub-*/problem.txt");
   if (account.failed.size() == static_cast<std::size_t>(account.runs)) {
     throw InvalidInput(s.study + ": " + said);
   }

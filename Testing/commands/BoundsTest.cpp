@@ -107,7 +107,7 @@ TEST(Bounds, AreDeclaredForEveryCount) {
 TEST(EveryCommandThatWrites, IsKilledAndLimitedInATest) {
   std::set<std::string> tried = {"bids",         "replay", "descriptors", "study group",
                                  "study hearts",   // StudyTrust
-                                 "longitudinal"};  // runs of `run`, which is tried
+                                 "longitudinal"};  // BetweenPeople
   for (const QuickRun& run : quickRuns()) {
     tried.insert(run.words[0]);
     tried.insert(run.words[0] + " " + run.words[1]);

@@ -58,6 +58,28 @@ TEST(Glm, OfATableHasTheSlopeOfEachRegion) {
   EXPECT_NEAR(std::stod(row[10]) * 720, std::round(std::stod(row[10]) * 720), 1e-2);
 }
 
+// A circle with a name for each of thousands is the largest part of a page.
+TEST(Glm, DrawsManyPeopleWithoutTheirNames) {
+  TemporaryFolder folder;
+  std::string table = "participant_id,age,cortex\n";
+  for (int person = 0; person < 1200; ++person) {
+    table += "s" + std::to_string(person) + "," + std::to_string(20 + person % 60) + "," +
+             std::to_string(2.5 + 0.01 * (person % 17)) + "\n";
+  }
+  writeText(folder / "people.csv", table);
+  const auto result =
+      explica({"glm", folder / "people.csv", "--model", "cortex ~ age", "--out", folder / "out"});
+  ASSERT_EQ(result.exitCode, 0) << result;
+  const std::string page = readText(folder / "out/report.html");
+  EXPECT_EQ(page.find("<title>s7: "), std::string::npos);
+  const std::size_t begin = page.find("<path class='people'");
+  ASSERT_NE(begin, std::string::npos);
+  const std::size_t end = page.find("/>", begin);
+  EXPECT_EQ(std::count(page.begin() + static_cast<std::ptrdiff_t>(begin),
+                       page.begin() + static_cast<std::ptrdiff_t>(end), 'M'),
+            1200);
+}
+
 /// Stopped anywhere after the models are known, it has them, and says how many shuffles were made.
 TEST(Glm, StoppedInItsPermutationsHasTheModels) {
   TemporaryFolder folder;

@@ -78,6 +78,19 @@ TEST_F(Study, TheExampleGoesFromFileToTable) {
             nlohmann::ordered_json::parse("[[100, 0, 900]]"));
 }
 
+TEST_F(Study, ADryRunOfItsParticipantsChecksEachAndWritesNothing) {
+  const auto before = folder_.entries();
+  const auto good = participant({"--dry-run"});
+  EXPECT_EQ(good.exitCode, 0) << good;
+  EXPECT_EQ(folder_.entries(), before);
+  writeText(folder_ / "phantom/labels.nii.gz", "damaged");
+  const auto none = participant({"--dry-run"});
+  EXPECT_EQ(none.exitCode, 2) << none;
+  EXPECT_NE(none.err.find("labels.nii.gz"), std::string::npos) << none;
+  EXPECT_EQ(none.err.find("problem.txt"), std::string::npos) << none;
+  EXPECT_EQ(folder_.entries(), before);
+}
+
 TEST_F(Study, OnlyWhatHasChangedByContentIsDoneAgain) {
   const auto first = participant();
   ASSERT_TRUE(first.exitCode == 0 || first.exitCode == 3) << first;

@@ -45,6 +45,13 @@ void sayProblem(Context& context, const std::string& name, const std::filesystem
           "\n");
 }
 
+void dropSteps(Context& context, const std::string& run) {
+  for (const char* step : {"segment", "thickness", "surface", "sphere", "register", "resample",
+                           "parcellate", "regions", "unfold"}) {
+    for (const char* ending : {"", "-L", "-R"}) context.dropCommand(run + "/" + step + ending);
+  }
+}
+
 void sayInterrupted(const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
   writeTextFile(folder / "problem.txt", "interrupted\n");

@@ -99,11 +99,13 @@ bool mayBeReported(const Declaration& declaration) {
 
 std::vector<Parameter> commonParameters(const Declaration& declaration, CommonOptions& common) {
   std::vector<Parameter> parameters;
+  const Parameter* elsewhere = declaration.find("OUT_DIR");  // which other commands write into
   for (auto& option : provenance::listOptions(common)) {
     if (option.name == "out" && declaration.fallbackOut) continue;  // a positional: OUT_DIR
     const bool concernsOutput = option.name == "out" || option.name == "force" ||
                                 option.name == "dry-run" || option.name == "private";
-    if (concernsOutput && !declaration.writesOutput) continue;
+    const bool looksOnly = option.name == "dry-run" && elsewhere != nullptr && elsewhere->required;
+    if (concernsOutput && !declaration.writesOutput && !looksOnly) continue;
     if (option.name == "accept" && !filesMeet(declaration)) continue;
     if (option.name == "report" && !mayBeReported(declaration)) continue;
     if (declaration.find(option.name) != nullptr) continue;  // a command's own --max-time

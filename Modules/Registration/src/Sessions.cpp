@@ -6,6 +6,7 @@
 #include "Explica/Core/Parallel.h"
 #include "Explica/Core/StopScope.h"
 #include "Explica/Registration/AffineRegistration.h"
+#include "Explica/Registration/HeadTransform.h"
 #include "Filters.h"
 
 #include <algorithm>
@@ -85,23 +86,8 @@ Grid commonGrid(const std::vector<Grid>& grids, const std::vector<Motion>& toSes
 }
 
 /// The image where the motion takes the grid's voxels.
-template <class ValueAt>
-Volume<float> moved(const Volume<float>& image, const Motion& motion, const Grid& grid,
-                    const ValueAt& valueOf) {
-  Volume<float> result(grid);
-  forPlanes(grid, [&](int k) {
-    for (int j = 0; j < grid.size[1]; ++j) {
-      for (int i = 0; i < grid.size[0]; ++i) {
-        const Point at = motion * grid.toWorld(Vector(i, j, k));
-        result(i, j, k) = valueOf(image, image.grid.toIndex(at));
-      }
-    }
-  });
-  return result;
-}
-
-float linearAt(const Volume<float>& image, const Vector& index) {
-  return valueAt(image, index);
+Volume<float> moved(const Volume<float>& image, const Motion& motion, const Grid& grid) {
+  return pulled(image, {Eigen::Affine3d(motion.matrix()), {}}, grid);
 }
 
 /// Cubic convolution with a = -1/2 [Keys1981]; what lies outside counts as the border's value, and
@@ -139,8 +125,7 @@ Halfway halfwayOf(const std::array<Volume<float>, 2>& images, const Motion& moti
   const Motion half = halfOf(motion);
   const Grid grid = commonGrid({images[0].grid, images[1].grid}, {half.inverse(), half},
                                images[0].grid.spacing[0]);
-  Halfway halfway{
-      moved(images[0], half.inverse(), grid, linearAt), moved(images[1], half, grid, linearAt), {}};
+  Halfway halfway{moved(images[0], half.inverse(), grid), moved(images[1], half, grid), {}};
   double sum = 0;
   for (std::size_t v = 0; v < halfway.a.size(); ++v) sum += halfway.a[v] + halfway.b[v];
   const auto mean = static_cast<float>(sum / static_cast<double>(halfway.a.size()));
@@ -302,12 +287,14 @@ SessionAverage averageSessions(const std::vector<Volume<float>>& sessions, const
   average.mean = Volume<float>(grid);
   for (std::size_t s = 0; s < sessions.size(); ++s) {
     checkpoint(monitor);
-    average.sessions.push_back(moved(sessions[s], average.toSession[s], grid, cubicAt));
-    Volume<float>& session = average.sessions.back();
-    parallelFor(session.size(), 1 << 16, [&](std::size_t v) {
-      session[v] *= gains[s];
+    Volume<float> session(grid);
+    parallelFor(session.size(), 1 << 14, [&](std::size_t v) {
+      const auto [i, j, k] = grid.subscripts(v);
+      const Point at = average.toSession[s] * grid.toWorld(Vector(i, j, k));
+      session[v] = gains[s] * cubicAt(sessions[s], sessions[s].grid.toIndex(at));
       average.mean[v] += session[v] / static_cast<float>(count);
     });
+    average.sessions.push_back(std::move(session));
   }
   return average;
 }

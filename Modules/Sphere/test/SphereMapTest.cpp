@@ -199,6 +199,28 @@ TEST(OneToOne, PutsBackVerticesThatCrossedTheirRings) {
   }
 }
 
+// Long needles, as flat parts of a surface have them, under a map that bends: a face is turned over
+// where a vertex crosses the way between two that are far from each other.  Each is mended where it
+// is, none is spread over its surroundings.
+TEST(OneToOne, MendsNeedlesThatAMapBendsWithoutMovingOthers) {
+  for (const double bend : {0.1, 0.2, 0.4}) {
+    TriangleMesh mesh = geometry::makeIcosphere(4);
+    mesh.positions.col(2) /= 100;  // a linear map turns no face over
+    mesh.positions.rowwise().normalize();
+    ASSERT_TRUE(geometry::turnedOver(mesh).empty());
+    for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
+      const double longitude = std::atan2(mesh.positions(v, 1), mesh.positions(v, 0));
+      mesh.positions(v, 2) +=
+          bend * std::sin(3 * longitude) * mesh.positions.row(v).head<2>().norm();
+    }
+    const OneToOne mended = makeOneToOne(mesh);
+    EXPECT_GT(mended.turnedBefore, 50);
+    EXPECT_EQ(mended.turnedAfter, 0);
+    EXPECT_EQ(testing::timesCovered(mesh), 1);
+    EXPECT_LT(mended.moved.size(), static_cast<std::size_t>(mended.turnedBefore)) << bend;
+  }
+}
+
 TEST(MeansAtVertices, LeaveOutWhatIsNotKnown) {
   const TriangleMesh mesh = geometry::makeIcosphere(1);
   Eigen::VectorXd values = Eigen::VectorXd::Constant(mesh.faceCount(), 2.0);

@@ -27,6 +27,9 @@ namespace explica::app {
 void sayProblem(Context& context, const std::string& name, const std::filesystem::path& folder,
                 const std::string& why);
 
+/// Takes back what the steps of an `explica run` below the output folder have left.
+void dropSteps(Context& context, const std::string& run);
+
 /// Writes into problem.txt that a run was interrupted before it had results: tables do not call
 /// that a failure.
 void sayInterrupted(const std::filesystem::path& folder);

@@ -20,9 +20,10 @@ struct OneToOne {
 /// Puts the vertices of a spherical mesh at kSphereRadius in single precision, as files hold them,
 /// and moves few of them until no face is turned over there.
 ///
-/// A vertex of a face turned over goes to the middle of the places that see all of its neighbours,
-/// or, where there is none, of its neighbours; where that does not help, the neighbours move, too.
-/// What remains is counted.
+/// Vertices of faces turned over are taken out, each merged with the neighbour that leaves the
+/// fewest such faces, until there is none, and put back in the reverse order: where they were if
+/// their ring is seen from there, else in the middle of the places that see it, which a ring taken
+/// out like this always has [Praun2003].  What single precision leaves no room for is counted.
 OneToOne makeOneToOne(TriangleMesh& sphere);
 
 }  // namespace explica::sphere

@@ -67,7 +67,7 @@ struct SphereRegistration {
 /// or 1; by Gauss-Newton steps on icospheres from coarse to fine, maps smoothed alike.  Faces keep
 /// their sides and areas change by less than `maxAreal` doublings there, so that the map is one to
 /// one.  The moving sphere's vertices follow by its inverse, linear on faces; the few faces that
-/// this turns over are mended by makeOneToOne().
+/// this turns over, needles over a bend, are mended by makeOneToOne().
 [[nodiscard]] SphereRegistration registerSphere(const FoldingSphere& moving,
                                                 const FoldingSphere& target,
                                                 const RegisterOptions& options = {},

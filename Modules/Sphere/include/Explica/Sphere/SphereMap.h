@@ -17,7 +17,7 @@ namespace explica::sphere {
 struct SphereMapOptions {
   double balance = 3;       ///< w of MapWeights: areas against angles
   double tolerance = 1e-4;  ///< a level ends where a step promises less, of the energy
-  int maxIterations = 40;   ///< of the finest level
+  int maxIterations = 100;  ///< of the finest level
 };
 
 template <class Visitor>
