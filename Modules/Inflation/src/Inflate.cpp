@@ -225,7 +225,7 @@ constexpr double kHeldBelow = 0.1;  // of visibility: so far below what was to b
 void judge(const InflateOptions& options, const Monitor& monitor, InflateResult& result) {
   const InflateRecord &first = result.history.front(), &last = result.history.back();
   char text[240];
-  if (last.step.iteration > 0 && last.visibility < first.visibility - unfolding::kNoWorse) {
+  if (last.step.iteration > 0 && last.visibility < first.visibility - unfolding::kAccuracy) {
     result.flag = unfolding::Flag::Worse;
     std::snprintf(text, sizeof text, "the visibility fell from %.3f to %.3f: nothing is opened",
                   first.visibility, last.visibility);
