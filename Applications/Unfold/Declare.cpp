@@ -24,31 +24,26 @@ void declareUnfold(Declaration& d, UnfoldSettings& s) {
                    s.viewSurface, "View")
       .options("Region", s.region)
       .inputOption("label", FileKind::VertexLabel,
-                   "the region is where this label, or one of several, is not 0", s.labels,
-                   "Region")
-      .option("Region", Field{"label-key", "", "the region is where --label has one of these keys"},
-              s.labelKeys)
+                   "the region is where this label, or one of several, is not 0; with --above, "
+                   "where this map is above that",
+                   s.labels, "Region")
       .option("Region",
-              Field{"region", "", "names of regions of --atlas: the region is all of them"},
-              s.regionNames)
-      .inputOption("atlas", FileKind::VertexLabel,
-                   "annotation of the surface's vertices that --region names a region of", s.atlas,
-                   "Region")
-      .inputOption("map", FileKind::VertexData, "the region is where this map is above --above",
-                   s.map, "Region")
-      .option("Region", Field{"above", "", "value of --map beyond which a vertex is in the region"},
+              Field{"label-key", "",
+                    "the region is where --label has one of these keys or, of an annotation, "
+                    "names (K,K,... or repeated)"},
+              s.labelKeys)
+      .option("Region", Field{"above", "", "value beyond which the map --label is in the region"},
               s.above)
       .option(
           "Region",
           Field{"adjust-region", "", "grow or shrink the region until its visibility is positive"},
           s.adjustRegion)
-      .excludes("label", {"map", "center", "vertex", "radius", "metric", "cone"})
-      .excludes("region", {"label", "map", "center", "vertex", "radius", "metric", "cone"})
-      .excludes("map", {"center", "vertex", "radius", "metric", "cone"})
+      .excludes("label", {"center", "vertex", "radius", "metric", "cone"})
+      .excludes("label-key", {"above"})
       .excludes("center", {"vertex"})
       .excludes("cone", {"metric"})
       .needs({"label-key"}, {"label"})
-      .needs({"atlas"}, {"region"})
+      .needs({"above"}, {"label"})
       .needs({"distance"}, {"direction"})
       .option("Unfolding",
               Field{"repair", "",

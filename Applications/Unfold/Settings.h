@@ -22,10 +22,7 @@ struct UnfoldSettings {
   std::optional<std::string> viewSurface;
   unfolding::RegionOptions region;
   std::vector<std::string> labels;
-  std::vector<int> labelKeys;
-  std::vector<std::string> regionNames;
-  std::optional<std::string> atlas;
-  std::optional<std::string> map;
+  std::vector<std::string> labelKeys;
   std::optional<double> above;
   bool adjustRegion = false;
   bool repair = true;

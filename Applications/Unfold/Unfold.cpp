@@ -23,7 +23,11 @@
 
 #include <malloc.h>
 
+#include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <limits>
+#include <sstream>
 
 namespace explica::app {
 namespace {
@@ -35,7 +39,9 @@ visibility::Viewpoints viewOf(const UnfoldSettings& s, const TriangleMesh& mesh,
 
 /// Vertices at which the map is above the value.
 std::vector<bool> markedByMap(const TriangleMesh& mesh, const UnfoldSettings& s) {
-  const Eigen::VectorXd values = io::readVertexMaps(*s.map, mesh.vertexCount()).front().values;
+  if (s.labels.size() != 1) throw UsageError("--above belongs to a single map (--label)");
+  const Eigen::VectorXd values =
+      io::readVertexMaps(s.labels.front(), mesh.vertexCount()).front().values;
   std::vector<bool> marked(static_cast<std::size_t>(mesh.vertexCount()));
   double largest = -kInfinity;
   for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
@@ -44,26 +50,38 @@ std::vector<bool> markedByMap(const TriangleMesh& mesh, const UnfoldSettings& s)
   }
   if (!(largest > *s.above)) {
     throw InvalidInput(
-        printed("map: no vertex is above %g; its largest value is %g", *s.above, largest));
+        printed("label: no vertex is above %g; its largest value is %g", *s.above, largest));
   }
   return marked;
 }
 
+/// Vertices of the keys, or names, in the label files.
+std::vector<bool> markedByKeys(const TriangleMesh& mesh, const UnfoldSettings& s) {
+  std::vector<std::string> keys;
+  std::vector<int> numbers;
+  for (const std::string& list : s.labelKeys) {
+    std::istringstream rest(list);
+    for (std::string key; std::getline(rest, key, ',');) {
+      int number = 0;
+      const char* end = key.data() + key.size();
+      const auto [after, error] = std::from_chars(key.data(), end, number);
+      if (error == std::errc() && after == end) numbers.push_back(number);
+      keys.push_back(key);
+    }
+  }
+  if (numbers.size() == keys.size()) {
+    return io::markedByLabels({s.labels.begin(), s.labels.end()}, numbers, mesh.vertexCount());
+  }
+  if (!numbers.empty() || s.labels.size() != 1) {
+    throw UsageError("--label-key: give keys, or names of the regions of one annotation (--label)");
+  }
+  return io::markedByNames(s.labels.front(), keys, mesh.vertexCount());
+}
+
 unfolding::Region regionOf(const TriangleMesh& mesh, const UnfoldSettings& s,
                            const visibility::Viewpoints* view) {
-  if (s.map.has_value() != s.above.has_value()) {
-    throw UsageError("--map and --above belong together; one of them is missing");
-  }
-  if (s.map) return unfolding::regionOfMarked(mesh, markedByMap(mesh, s));
-  if (!s.regionNames.empty()) {
-    if (!s.atlas) throw UsageError("--region names a region of --atlas, which is missing");
-    return unfolding::regionOfMarked(
-        mesh, io::markedByNames(*s.atlas, s.regionNames, mesh.vertexCount()));
-  }
-  if (!s.labels.empty())
-    return unfolding::regionOfMarked(mesh, io::markedByLabels({s.labels.begin(), s.labels.end()},
-                                                              s.labelKeys, mesh.vertexCount()));
-  return unfolding::selectRegion(mesh, s.region, view);
+  if (s.labels.empty()) return unfolding::selectRegion(mesh, s.region, view);
+  return unfolding::regionOfMarked(mesh, s.above ? markedByMap(mesh, s) : markedByKeys(mesh, s));
 }
 
 std::string crossingsInWords(const std::vector<unfolding::Crossing>& list, std::size_t inRegion,

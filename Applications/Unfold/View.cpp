@@ -18,10 +18,7 @@ visibility::Viewpoints viewFrom(const ViewSettings& view, const std::optional<st
         "viewpoint: give exactly one of --viewpoint, --direction, --view-line and --view-surface; "
         "--viewpoint and --direction may be repeated");
   }
-  if (!view.weights.empty() && (!view.line.empty() || surface)) {
-    throw InvalidInput("view-weights: they belong to --viewpoint or --direction");
-  }
-  if (!view.viewpoint.empty()) return visibility::viewpoints(view.viewpoint, view.weights);
+  if (!view.viewpoint.empty()) return visibility::viewpoints(view.viewpoint);
   if (!view.direction.empty()) {
     const double distance = view.distance ? *view.distance : unfolding::usualDistance(mesh);
     std::vector<Point> points;
@@ -30,7 +27,7 @@ visibility::Viewpoints viewFrom(const ViewSettings& view, const std::optional<st
       if (!(length > 0)) throw InvalidInput("direction: has no length");
       points.emplace_back(about + distance / length * direction);
     }
-    return visibility::viewpoints(points, view.weights);
+    return visibility::viewpoints(points);
   }
   if (!view.line.empty()) {
     if (view.line.size() != 6) throw InvalidInput("view-line: needs six numbers X,Y,Z,X,Y,Z");

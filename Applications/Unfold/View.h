@@ -17,14 +17,12 @@ struct ViewSettings {
   std::vector<Eigen::Vector3d> viewpoint;
   std::vector<Eigen::Vector3d> direction;
   std::optional<double> distance;
-  std::vector<double> weights;
   std::vector<double> line;
 };
 
 template <class Visitor>
 void describe(ViewSettings& view, Visitor&& visit) {
-  visit(Field{"viewpoint", "mm", "point to look from; of several the weighted mean counts"},
-        view.viewpoint);
+  visit(Field{"viewpoint", "mm", "point to look from; of several the mean counts"}, view.viewpoint);
   visit(Field{"direction", "", "look from the region's centroid plus --distance along this"},
         view.direction);
   visit(Field{"distance", "mm",
@@ -33,11 +31,6 @@ void describe(ViewSettings& view, Visitor&& visit) {
               "extent if that is more)",
               kAboveZero},
         view.distance);
-  visit(Field{"view-weights", "",
-              "weights of several viewpoints or directions, one each, in their order (default: "
-              "equal)",
-              kAboveZero},
-        view.weights);
   visit(Field{"view-line", "mm", "look from a segment: X,Y,Z of its start and of its end"},
         view.line);
 }

@@ -149,16 +149,17 @@ TEST(UnfoldRegion, IsTakenByItsName) {
   TemporaryFolder folder;
   writeMapAndRegions(folder);
   const std::vector<std::string> words = {"unfold",           folder / "white.surf.gii",
-                                          "--atlas",          folder / "lh.regions.label.gii",
+                                          "--label",          folder / "lh.regions.label.gii",
                                           "--direction",      "0,1,0",
                                           "--max-iterations", "1"};
   auto result =
-      explica(words + std::vector<std::string>{"--region", "front", "--out", folder / "out"});
+      explica(words + std::vector<std::string>{"--label-key", "front", "--out", folder / "out"});
   EXPECT_TRUE(result.exitCode == 0 || result.exitCode == 3) << result;
   const auto region = io::readVertexLabels(folder / "out/region.label.gii").keys;
   const Positions places = geometry::makeIcosphere(3, 10.0).positions;
   for (Eigen::Index v = 0; v < region.size(); ++v) EXPECT_EQ(region[v] == 1, places(v, 1) > 3) << v;
-  result = explica(words + std::vector<std::string>{"--region", "insula", "--out", folder / "no"});
+  result =
+      explica(words + std::vector<std::string>{"--label-key", "insula", "--out", folder / "no"});
   EXPECT_EQ(result.exitCode, 2);
   EXPECT_NE(result.err.find("has no region 'insula'; its regions are front, back"),
             std::string::npos)

@@ -457,16 +457,15 @@ TEST(UnfoldCommand, WhatTheThesisMethodLetsCrossIsSaid) {
   EXPECT_NE(result.err.find("intersect in what is written"), std::string::npos);
 }
 
-TEST(UnfoldCommand, LooksFromSeveralDirectionsWithWeights) {
+TEST(UnfoldCommand, LooksFromSeveralDirections) {
   const TemporaryFolder folder;
   auto words = onFoldedSphere(folder);
   const auto made =
-      explica(words + std::vector<std::string>{"--direction", "0,0.3,1", "--view-weights", "3,1",
-                                               "--out", folder / "out"});
+      explica(words + std::vector<std::string>{"--direction", "0,0.3,1", "--out", folder / "out"});
   ASSERT_EQ(made.exitCode, 0) << made;
   const auto summary = readJson(folder / "out/summary.json");
   EXPECT_EQ(summary["viewpoint"].size(), 6u);
-  EXPECT_EQ(summary["viewpoint_weights"], Json::parse("[0.75, 0.25]"));
+  EXPECT_EQ(summary["viewpoint_weights"], Json::parse("[0.5, 0.5]"));
   EXPECT_GT(summary["visibility_final"], summary["visibility_initial"]);
   EXPECT_LT(summary["flux_variance_final"], summary["flux_variance_initial"]);
   // What arrives is at most what is seen, and the flux estimates it.
@@ -572,11 +571,6 @@ const WrongInput kWrongInputs[] = {
      "belongs to no face"},
     {"NoView", nothing, kDisc, "exactly one of --viewpoint"},
     {"TwoViews", nothing, onDisc({"--direction", "0,0,1", "--viewpoint", "0,0,99"}), "exactly one"},
-    {"WeightsTooFew", nothing,
-     onDisc({"--direction", "0,0,1", "--direction", "0,1,1", "--view-weights", "1"}),
-     "one positive number a viewpoint"},
-    {"WeightsOfALine", nothing, onDisc({"--view-line", "0,0,99,1,0,99", "--view-weights", "1"}),
-     "view-weights"},
     {"DirectionZero", nothing, onDisc({"--direction", "0,0,0"}), "direction"},
     {"DistanceNegative", nothing, onDisc({"--direction", "0,0,1", "--distance", "-5"}), "above 0",
      ""},
@@ -650,8 +644,17 @@ const WrongInput kWrongInputs[] = {
      "values.shape.gii"},
     {"MapNowhereAbove",
      nothing,
-     {"--map", "{folder}/values.shape.gii", "--above", "1", "--direction", "0,0,1"},
+     {"--label", "{folder}/values.shape.gii", "--above", "1", "--direction", "0,0,1"},
      "its largest value is 0.5"},
+    {"KeysAndNames",
+     nothing,
+     {"--label", "{folder}/two.label.gii", "--label-key", "1,in", "--direction", "0,0,1"},
+     "give keys, or names",
+     ""},
+    {"NameAbsent",
+     nothing,
+     {"--label", "{folder}/two.label.gii", "--label-key", "insula", "--direction", "0,0,1"},
+     "insula"},
 };
 
 io::LabelMap labelsOf(Eigen::Index count, const std::function<bool(int, int)>& inside) {
@@ -736,7 +739,7 @@ const RegionKind kRegionKinds[] = {
     {"FreeSurferLabel", {"--label", "{folder}/left.label"}, 1, 0},
     {"SeveralFiles", {"--label", "{folder}/left.label", "--label", "{folder}/right.label"}, 2, 0},
     {"SeveralKeys", {"--label", "{folder}/two.label.gii", "--label-key", "9,1"}, 2, 0},
-    {"MapAboveAValue", {"--map", "{folder}/active.shape.gii", "--above", "2.5"}, 2, 0},
+    {"MapAboveAValue", {"--label", "{folder}/active.shape.gii", "--above", "2.5"}, 2, 0},
 };
 
 class UnfoldRegion : public ::testing::TestWithParam<RegionKind> {};

@@ -49,6 +49,7 @@ inline constexpr std::array kFormerOptions = std::to_array<FormerOption>(
      {"thickness", "image-edge", "", "valid.nii.gz marks where the image's edge may matter"},
      {"thickness", "rv-insertion", "", kByHeart},
      {"unfold", "area-weight", "", kTrade},
+     {"unfold", "atlas", "label"},
      {"unfold", "collar-weight", "", kTrade},
      {"unfold", "contact-range", "", kTrade},
      {"unfold", "contact-weight", "", kTrade},
@@ -56,7 +57,10 @@ inline constexpr std::array kFormerOptions = std::to_array<FormerOption>(
      {"unfold", "guide-weight", "", kTrade},
      {"unfold", "keep-areas", "", "areas are always kept"},
      {"unfold", "lift-weight", "", kTrade},
-     {"unfold", "overhang-weight", "", kTrade}});
+     {"unfold", "map", "label"},
+     {"unfold", "overhang-weight", "", kTrade},
+     {"unfold", "region", "label-key"},
+     {"unfold", "view-weights", "", "name a viewpoint several times for more weight"}});
 
 /// What became of a former option of a command, or of a step as "surface.white": "--grid is called
 /// --cells now".  Empty if it never was one.

@@ -223,7 +223,7 @@ constexpr double kHeldBelow = 0.1;  // of visibility: so far below what was to b
 /// Says what a user must know about the result.
 void judge(const InflateOptions& options, const Monitor& monitor, InflateResult& result) {
   const InflateRecord &first = result.history.front(), &last = result.history.back();
-  if (last.step.iteration > 0 && last.visibility < first.visibility - unfolding::kNoWorse) {
+  if (last.step.iteration > 0 && last.visibility < first.visibility - unfolding::kAccuracy) {
     result.flag = unfolding::Flag::Worse;
     monitor.warn(printed("the visibility fell from %.3f to %.3f: nothing is opened",
                          first.visibility, last.visibility));

@@ -27,12 +27,6 @@ constexpr double kAsNear = 0.5;     // ... or to this one of their distance
 // around which all pairs are as near as it is thin.  Parting them would have to blow it up.
 constexpr double kHair = 0.003;
 
-std::vector<bool> flags(Eigen::Index count, const std::vector<std::int32_t>& marked) {
-  std::vector<bool> result(static_cast<std::size_t>(count), false);
-  for (const std::int32_t i : marked) result[i] = true;
-  return result;
-}
-
 /// Height of the thinnest face at each vertex, mm.
 Eigen::VectorXd thinnestFaces(const TriangleMesh& mesh) {
   Eigen::VectorXd thinnest = Eigen::VectorXd::Constant(mesh.vertexCount(), kInfinity);
@@ -116,7 +110,7 @@ Contacts::Contacts(const PatchSetup& setup, const UnfolderOptions& options)
 
 void Contacts::standAt(const PatchSetup& setup, const Positions& positions) {
   scene_ = std::make_unique<collision::CollisionScene>(TriangleMesh{positions, setup.mesh.faces},
-                                                       flags(positions.rows(), setup.moving));
+                                                       markedOf(positions.rows(), setup.moving));
 }
 
 void Contacts::findRanges(const PatchSetup& setup, bool mayTouch) {

@@ -11,7 +11,6 @@
 namespace explica::unfolding {
 namespace {
 
-constexpr double kAccuracy = 1e-3;      // of visibility: what differs by less is the same
 constexpr int kWindow = 10;             // iterations in which a run at rest changes by half of that
 constexpr double kOpen = 0.9;           // visibility below which folds are closed: no model holds
 constexpr double kMostSteering = 1.15;  // factor of the visibility term a step

@@ -52,12 +52,6 @@ void isolate(TriangleMesh& mesh, Region& region) {
   mesh.faces = own;
 }
 
-std::vector<bool> markedOf(Eigen::Index count, const std::vector<std::int32_t>& marked) {
-  std::vector<bool> result(static_cast<std::size_t>(count), false);
-  for (const std::int32_t i : marked) result[i] = true;
-  return result;
-}
-
 /// Distance from the region along the surface, mm, of vertices that move: 0 in the region, below
 /// the collar's width in an elastic collar; infinity of those that stay.
 Eigen::VectorXd reachOf(const PatchSetup& s, Surround surround) {

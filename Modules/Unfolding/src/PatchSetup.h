@@ -26,6 +26,14 @@ struct PatchSetup {
   Couplings couplings;  ///< of the unknowns that share an edge
 };
 
+/// Flags, true at the places that are listed.
+[[nodiscard]] inline std::vector<bool> markedOf(Eigen::Index count,
+                                                const std::vector<std::int32_t>& marked) {
+  std::vector<bool> result(static_cast<std::size_t>(count), false);
+  for (const std::int32_t i : marked) result[i] = true;
+  return result;
+}
+
 /// Lists what moves and what it keeps.
 /// @throws InvalidInput  an option out of range, no face, or a face of zero area in the region
 [[nodiscard]] PatchSetup setUpPatch(TriangleMesh mesh, Region region,

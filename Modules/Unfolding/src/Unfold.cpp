@@ -57,9 +57,9 @@ void tellProgress(const Monitor& monitor, const IterationRecord& now, double ini
 /// Whether it pays to go back from a state.
 bool isWorse(const IterationRecord& state, const BestState& than, const UnfoldOptions& options,
              double seen) {
-  if (options.targetVisibility) return state.visibility < than.visibility - kNoWorse;
+  if (options.targetVisibility) return state.visibility < than.visibility - kAccuracy;
   return merit(state.visibility, state.edgeStrainMean, seen, options.trade) <
-         merit(than.visibility, than.strain, than.seen, options.trade) - kNoWorse;
+         merit(than.visibility, than.strain, than.seen, options.trade) - kAccuracy;
 }
 
 /// Share of the region that is seen in the present state, if anybody has begun to ask.

@@ -53,9 +53,8 @@ void Unfolder::Implementation::setUpCollar(double width) {
 
 void Unfolder::Implementation::makeKnot(const Positions& positions) {
   const TriangleMesh standing{positions, setup.mesh.faces};
-  std::vector<bool> moves(static_cast<std::size_t>(positions.rows()), false);
-  for (const std::int32_t v : setup.moving) moves[v] = true;
-  knot = repulsion::makeKnotEnergy(options.knot, standing, moves);
+  knot =
+      repulsion::makeKnotEnergy(options.knot, standing, markedOf(positions.rows(), setup.moving));
 }
 
 TermValues Unfolder::Implementation::strengths() const {

@@ -69,6 +69,10 @@ using Terms = std::array<std::unique_ptr<Energy>, kTermCount>;
 void makeFaceTerms(Terms& terms);   ///< sums over faces
 void makeOtherTerms(Terms& terms);  ///< of edges, vertices and pairs
 
+/// Of a radius: a pull to a height or a place grows with the way there as far as this, and no more,
+/// so that nothing is dragged through the rest before that has made way.
+inline constexpr double kFirm = 0.03;
+
 // What springs contribute: a part of two terms, strength * sum of e r(l / l0 - 1), with
 // r(s) = 2 s^2 / (1 + sqrt(1 + (s / d)^2)), d the strain of yielding: s^2 for strains far below d,
 // 2 d |s| far above, so that a few edges may give way where a surface cannot be laid flat

@@ -93,7 +93,6 @@ struct AreaOfFace {
 /// before the folds above have made way.
 struct LiftOfFace {
   static constexpr bool kOfCollar = false;
-  static constexpr double kFirm = 0.03;
 
   static double shareOf(const Configuration& now, std::size_t f) {
     return deficitOf(now.patch.room, centroidOf(now.patch.faces[f], now.x)) / now.patch.room.radius;
@@ -157,12 +156,12 @@ struct OverhangOfFace {
 
 constexpr double kCollarArea = 20;     // as the region's by default, so that the weight compares
 constexpr double kCollarSpring = 2.4;  // the collar with the region
-constexpr double kFree = 2;            // area ratio from which on stretching is held back ...
-constexpr double kFull = 8;            // ... and up to which it shall stay
-constexpr double kHold = 2;            // strength of that beside the visibility's, at kFull
+constexpr double kHold =
+    2;  // strength of what holds it back at kCollarMost, beside the visibility's
 
 /// What a face's area ratio costs: m(r) = strength k/2 (r - 1)^2 for each mm^2 of its weight, and
-/// b(r) = kHold t^5, t = max(0, (r - kFree) / (kFull - kFree)), of its hold weight.
+/// b(r) = kHold t^5, t = max(0, (r - kCollarMean) / (kCollarMost - kCollarMean)), of its hold
+/// weight.
 struct StretchOfFace {
   static constexpr bool kOfCollar = true;
 
@@ -173,12 +172,12 @@ struct StretchOfFace {
     double curvature = 0;  ///< by the ratio, >= 0
   };
   static Stretching stretching(const Configuration& now, std::size_t f, double strength) {
-    constexpr double kRate = 1 / (kFull - kFree);
+    constexpr double kRate = 1 / (kCollarMost - kCollarMean);
     const PatchFace& face = now.patch.faces[f];
     const double ratio = now.shapes[f].area / face.restArea;
     const double membrane = strength * kCollarArea * face.weight;
     const double hold = kHold * face.holdWeight;
-    const double t = std::max(0.0, (ratio - kFree) * kRate), t3 = t * t * t;
+    const double t = std::max(0.0, (ratio - kCollarMean) * kRate), t3 = t * t * t;
     return {ratio, 0.5 * membrane * (ratio - 1) * (ratio - 1) + hold * t3 * t * t,
             membrane * (ratio - 1) + 5 * hold * t3 * t * kRate,
             membrane + 20 * hold * t3 * kRate * kRate};

@@ -40,8 +40,8 @@ class SpringEnergy final : public Energy {
 };
 
 // Of the guide's radius: nearer to its place a vertex is at home, where lengths and areas say how
-// it lies; from the second on the pull grows no more, so that nothing is dragged through the rest.
-constexpr double kHome = 0.02, kGuideFirm = 0.05;
+// it lies.
+constexpr double kHome = 0.02;
 
 struct Pull {
   Vector towards = Vector::Zero();  ///< unit, normal to the axis; 0 at home
@@ -50,16 +50,15 @@ struct Pull {
   double curvature = 0;             ///< of the parabola that touches there from above
 };
 
-/// h(s) = (s - kHome)^2 / 2, 0 below, on a straight line from kGuideFirm on; s = |p - x| / R across
-/// the axis.
+/// h(s) = (s - kHome)^2 / 2, 0 below, on a straight line from kHome + kFirm on; s = |p - x| / R
+/// across the axis.
 Pull pullOn(const PatchGuide& guide, std::size_t n, const Positions& x) {
   Vector way =
       (guide.places.row(static_cast<Eigen::Index>(n)) - x.row(guide.vertices[n])).transpose();
   way -= guide.axis.dot(way) * guide.axis;
   const double s = way.norm() / guide.radius;
   if (!(s > kHome)) return {};
-  constexpr double kMost = kGuideFirm - kHome;
-  const double slope = std::min(s - kHome, kMost);
+  const double slope = std::min(s - kHome, kFirm);
   return {way.normalized(), slope * (s - kHome - 0.5 * slope), slope, slope / s};
 }
 

@@ -320,7 +320,7 @@ void MainWindow::takeAbove() {
   choice.marked.clear();
   for (const double v : values.values) choice.marked.push_back(v > panels_.above->value());
   choice.markedOptions = {
-      {"map", values.file},
+      {"label", values.file},
       {"above", QString::number(panels_.above->value(), 'g', 17).toStdString()}};
   choose(std::move(choice));
 }

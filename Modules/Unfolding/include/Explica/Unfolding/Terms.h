@@ -10,6 +10,10 @@
 
 namespace explica::unfolding {
 
+/// Area ratios of a collar's faces, in the mean and at most, beyond which it has given way; from
+/// the first on stretching is held back.
+inline constexpr double kCollarMean = 2, kCollarMost = 8;
+
 /// The terms of the objective that an unfolding lowers, mm^2.
 ///
 /// A0 is a face's area at the start, w(A0) the same but less for needles, c = A / A0 - 1 its area

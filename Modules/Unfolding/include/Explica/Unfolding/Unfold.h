@@ -74,16 +74,13 @@ struct BestState {
   double seen = kNaN;    ///< share of the region's area that is seen; NaN if nobody looked
 };
 
-/// Of visibility or strain: less than that is no reason to go back to an earlier state.
-inline constexpr double kNoWorse = 1e-3;
+/// Of visibility, or of strain by what it is worth: what differs by less is the same.
+inline constexpr double kAccuracy = 1e-3;
 
 /// Where positions are counted from, so that their differences lose no digits: the origin for what
 /// lies about `middle` within 1 m of it, else a whole number of mm, so that single-precision
 /// positions lose nothing on the way there and back.
 [[nodiscard]] Point originNear(const Point& middle);
-
-/// Area ratios of a collar's faces, in the mean and at most, beyond which it has given way.
-inline constexpr double kCollarMean = 2, kCollarMost = 8;
 
 /// The lesser of what seeing and lengths have to spare, or what the share seen lacks if that is
 /// more.
