@@ -23,10 +23,8 @@
 
 #include <malloc.h>
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <sstream>
 
 namespace explica::app {
