@@ -154,8 +154,8 @@ Termination run(Context& context, const Settings& s) {
   if (!account.environmentFault.empty()) throw EnvironmentError(account.environmentFault);
   if (account.failed.empty()) return account.worst;
   const std::string said = std::to_string(account.failed.size()) + " of " +
-                           std::to_string(account.runs) + " runs failed (" + joined(account.failed) +
-                           "), as said above" +
+                           std::to_string(account.runs) + " runs failed (" +
+                           joined(account.failed) + "), as said above" +
                            (dry ? "" : " and in each " + s.out + "/runs/sub-*/problem.txt");
   if (account.failed.size() == static_cast<std::size_t>(account.runs)) {
     throw InvalidInput(s.study + ": " + said);
