@@ -78,10 +78,8 @@ BorderFinder::BorderFinder(const BlockWindow& window, const EdgeSamples& samples
   most_ = among(samples, [](float a, float b) { return std::max(a, b); });
   // The extremes of many voxels lie off their tissue by noise, and a level that took them for
   // another tissue would climb through it: by so much as white matter's brightest does.
-  const float off =
+  noise_ =
       medianOfPure(samples.pure, [&](std::size_t v) { return most_[v] - (*samples.intensity)[v]; });
-  for (float& value : least_) value += off;
-  for (float& value : most_) value -= off;
   const auto middle = [&](int k) { return static_cast<float>(0.5 * (mean[k] + mean[k + 1])); };
   levels_.outer.assign(slope_.size(), middle(0));
   levels_.white.assign(slope_.size(), middle(1));
@@ -115,8 +113,9 @@ void BorderFinder::improve() {
     const bool counts = (*samples_.rim)[v] == 0;
     const bool fluid = least_[v]<low, grey = most_[v]> low && least_[v] < high;
     const bool bright = most_[v] > high;
+    const bool besideWhite = most_[v] - noise_ > high && least_[v] + noise_ < high;
     outer[v] = counts && least_[v] < fluidAtMost && grey && !bright ? slope_[v] : 0;
-    white[v] = !fluid && grey && bright ? slope_[v] : 0;
+    white[v] = !fluid && besideWhite ? slope_[v] : 0;
   });
   updateLevel(levels_.outer, outer);
   updateLevel(levels_.white, white);

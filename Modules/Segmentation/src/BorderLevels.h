@@ -53,6 +53,7 @@ class BorderFinder {
   EdgeSamples samples_;
   std::array<double, 3> mean_;
   std::vector<float> slope_, least_, most_;  ///< of each voxel and its neighbours
+  float noise_ = 0;  ///< by which it carries white matter's brightest neighbours away
   BorderLevels levels_;
 };
 
