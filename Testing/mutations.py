@@ -105,7 +105,7 @@ ALL = [
              "options.keptDistance = kTouching * contacts.range();", "options.keptDistance = 0;",
              "ExplicaUnfoldingUnitTests", "Motion.*"),
     Mutation("Modules/Unfolding/src/energies/OtherTerms.cpp",
-             "const double slope = std::min(s - kHome, kMost);", "const double slope = std::min(s - kHome, 100 * kMost);",
+             "const double slope = std::min(s - kHome, kFirm);", "const double slope = std::min(s - kHome, 100 * kFirm);",
              "ExplicaUnfoldingUnitTests", "Energy.AGuide*"),
     Mutation("Modules/Unfolding/src/Contacts.cpp",
              "constexpr double kHair = 0.003;", "constexpr double kHair = 0;",
