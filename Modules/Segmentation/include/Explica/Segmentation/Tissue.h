@@ -19,9 +19,9 @@ inline constexpr Label kWhite = 3;
 
 /// How three tissue classes are found in a skull-stripped T1.
 struct TissueOptions {
-  double smooth = 0.2;     ///< weight of the Markov prior; 0 looks at each voxel alone
-  double biasWidth = 25;   ///< standard deviation of the bias field's smoothing, mm; 0 for no field
-  double localWidth = 8;   ///< of the windows in which edges tell a border's brightness, mm
+  double smooth = 0.1;    ///< weight of the Markov prior; 0 looks at each voxel alone
+  double biasWidth = 25;  ///< standard deviation of the bias field's smoothing, mm; 0 for no field
+  double localWidth = 8;  ///< of the windows in which edges tell a border's brightness, mm
   int maxIterations = 200;  ///< of expectation and maximisation
   double tolerance = 5e-4;  ///< stop once no class mean moves by more than this share of the range
 };
