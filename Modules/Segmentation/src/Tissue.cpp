@@ -31,10 +31,10 @@ constexpr std::size_t kFewestDeep = 20;  // voxels of deep fluid whose median is
 constexpr double kDeepFluid = 0.002;  // of the voxels off the rim: fewer do not tell what fluid is
 constexpr double kFluidOverGrey = 0.7;  // what is brighter beside grey matter is no fluid
 constexpr int kEdgeRounds = 10;         // after which levels move no more
-constexpr float kBeyondDoubt = 0.9F;
-constexpr int kPriorRounds = 4;     // for the neighbours to agree
-constexpr double kLocalBlocks = 2;  // of the local windows' width
-constexpr double kDark = 1.0 / 3;   // of the darkest class, in which fluid and grey matter mix
+constexpr float kLikelyWhite = 0.5F;    // likelier than all else together
+constexpr int kPriorRounds = 4;         // for the neighbours to agree
+constexpr double kLocalBlocks = 2;      // of the local windows' width
+constexpr double kDark = 1.0 / 3;       // of the darkest class, in which fluid and grey matter mix
 constexpr std::int32_t kNone = -1, kDarkRemains = -2;  // neighbours that are not in the brain
 
 /// Fluid, grey, white, and the voxels where two of them meet.
@@ -469,7 +469,7 @@ class Classifier {
                         &brain_.rim,   &corrected_,
                         grid_.spacing, std::vector<std::uint8_t>(brain_.size())};
     forVoxels(
-        [&](std::size_t b) { samples.pure[b] = posterior_[b][kPureWhite] > kBeyondDoubt ? 1 : 0; });
+        [&](std::size_t b) { samples.pure[b] = posterior_[b][kPureWhite] > kLikelyWhite ? 1 : 0; });
     BorderFinder finder(window, samples, mean);
     // Two tissues of equal spread and share meet half way between their means.
     Mixture fair = mixture_;

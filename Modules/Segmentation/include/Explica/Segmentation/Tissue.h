@@ -19,7 +19,7 @@ inline constexpr Label kWhite = 3;
 
 /// How three tissue classes are found in a skull-stripped T1.
 struct TissueOptions {
-  double smooth = 0.2;    ///< weight of the Markov prior; 0 looks at each voxel alone
+  double smooth = 0.1;    ///< weight of the Markov prior; 0 looks at each voxel alone
   double biasWidth = 25;  ///< standard deviation of the bias field's smoothing, mm; 0 for no field
   double localWidth = 8;  ///< of the windows in which edges tell a border's brightness, mm
   int maxIterations = 200;  ///< of expectation and maximisation
