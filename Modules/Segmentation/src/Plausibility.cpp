@@ -58,9 +58,8 @@ constexpr Limit kLimits[] = {
      "(Modules/Registration/README.md)"},
     {"brain-border", "the share of the brain's border beyond which tissue goes on", "", 0, 0.1,
      "the skull was not found; look at brain_mask.nii.gz, or give --mask",
-     "measured: 0.000 to 0.025 in twelve simulated heads whose brain is whole; above 0.5 where "
-     "there "
-     "is no skull to find; what a cut does to the cortex of a place is told as its doubt"},
+     "measured: 0.000 to 0.025 in twelve simulated heads whose brain is whole, above 0.5 in a ball "
+     "of tissue without a skull; what a cut does to the cortex of a place is told as its doubt"},
     {"brain-volume", "the brain's volume", "ml", 300, 2500,
      "skull or neck may be left in the brain, or parts of it missing; another species needs "
      "--template",
