@@ -115,44 +115,109 @@ std::optional<std::pair<double, double>> GridCrossings::between(const std::array
   return std::pair<double, double>(*from - here, *std::prev(to) - here);
 }
 
+namespace {
+
+/// Of the first crossing on the link from a voxel to a neighbour, as a share of it.
+double placeOf(const GridCrossings& crossings, const std::array<int, 3>& voxel, int direction) {
+  const int axis = direction / 2;
+  const bool down = direction % 2 == 0;
+  std::array<int, 3> from = voxel;
+  from[axis] -= down ? 1 : 0;
+  const auto found = crossings.between(from, axis);
+  return !found ? 0.5 : down ? 1 - found->second : found->first;
+}
+
+/// Where a closed surface and what bounds the tissue outside cross the links of a grid.
+template <class Kind, class OuterPlace>
+harmonic::Annulus annulusOn(const Grid& grid, const GridCrossings& white, const Kind& siteOutside,
+                            const OuterPlace& outerPlace, const Monitor& monitor) {
+  Volume<harmonic::Site> sites(grid);
+  parallelFor(sites.size(), 1 << 14, [&](std::size_t v) {
+    const auto voxel = grid.subscripts(v);
+    sites[v] = white.inside(voxel) ? harmonic::Site::Inner : siteOutside(voxel);
+  });
+  const auto placeOnLink = [&](const std::array<int, 3>& voxel, int direction, bool inner) {
+    return inner ? placeOf(white, voxel, direction) : outerPlace(voxel, direction);
+  };
+  return harmonic::annulusFromSites(sites, placeOnLink, {}, monitor);
+}
+
+/// Cuts where a surface passes twice between neighbouring tissue voxels.
+void addCuts(const harmonic::Annulus& annulus, const GridCrossings& crossings, bool inner,
+             std::vector<harmonic::Cut>& cuts) {
+  for (std::size_t n = 0; n < annulus.count(); ++n) {
+    const auto voxel = annulus.voxel(static_cast<std::int32_t>(n));
+    for (int axis = 0; axis < 3; ++axis) {
+      if (annulus.links[n][2 * axis + 1] < 0) continue;
+      const auto sheet = crossings.between(voxel, axis);
+      if (!sheet) continue;
+      cuts.push_back({static_cast<std::int32_t>(n), axis, sheet->first, 1 - sheet->second, inner});
+    }
+  }
+}
+
+harmonic::Annulus cutBy(const std::vector<harmonic::Cut>& cuts, harmonic::Annulus annulus) {
+  return cuts.empty() ? annulus : harmonic::withCuts(annulus, cuts);
+}
+
+/// How often each axis of a grid goes into voxels as short as the shortest.
+Vector splitsOf(const Grid& grid) {
+  return (grid.spacing / grid.spacing.minCoeff()).array().round();
+}
+
+Grid split(Grid grid, const Vector& times) {
+  grid.origin = grid.toWorld(0.5 * (times.cwiseInverse() - Vector::Ones()));
+  grid.spacing = grid.spacing.cwiseQuotient(times);
+  for (int a = 0; a < 3; ++a) grid.size[a] *= static_cast<int>(times[a]);
+  return grid;
+}
+
+}  // namespace
+
 harmonic::Annulus annulusBetween(const TriangleMesh& white, const CorticalTissue& tissue,
                                  const Monitor& monitor) {
   using harmonic::Site;
   const LevelSet& outer = tissue.tissue;
   const Grid& grid = outer.grid;
   const GridCrossings crossings(white, grid);
-  Volume<Site> sites(grid);
-  parallelFor(sites.size(), 1 << 14, [&](std::size_t v) {
-    sites[v] = crossings.inside(grid.subscripts(v)) ? Site::Inner
-               : tissue.insulated[v]                ? Site::Insulated
-               : outer[v] > 0                       ? Site::Tissue
-                                                    : Site::Outer;
-  });
-  const auto placeOnLink = [&](const std::array<int, 3>& voxel, int direction, bool inner) {
-    const int axis = direction / 2;
-    const bool down = direction % 2 == 0;
-    std::array<int, 3> next = voxel;
-    next[axis] += down ? -1 : 1;
-    if (!inner) {
-      const double here = outer(voxel[0], voxel[1], voxel[2]);
-      const double there = outer(next[0], next[1], next[2]);
-      return there < 0 ? here / (here - there) : 0.5;
-    }
-    const auto found = crossings.between(down ? next : voxel, axis);
-    return !found ? 0.5 : down ? 1 - found->second : found->first;
+  const auto kind = [&](const std::array<int, 3>& at) {
+    const std::size_t v = grid.linear(at[0], at[1], at[2]);
+    return tissue.insulated[v] ? Site::Insulated : outer[v] > 0 ? Site::Tissue : Site::Outer;
   };
-  harmonic::Annulus annulus = harmonic::annulusFromSites(sites, placeOnLink, {}, monitor);
+  const auto outerPlace = [&](const std::array<int, 3>& voxel, int direction) {
+    std::array<int, 3> next = voxel;
+    next[direction / 2] += direction % 2 == 0 ? -1 : 1;
+    const double here = outer(voxel[0], voxel[1], voxel[2]);
+    const double there = outer(next[0], next[1], next[2]);
+    return there < 0 ? here / (here - there) : 0.5;
+  };
+  harmonic::Annulus annulus = annulusOn(grid, crossings, kind, outerPlace, monitor);
   std::vector<harmonic::Cut> cuts;
-  for (std::size_t n = 0; n < annulus.count(); ++n) {
-    const auto voxel = annulus.voxel(static_cast<std::int32_t>(n));
-    for (int axis = 0; axis < 3; ++axis) {
-      if (annulus.links[n][2 * axis + 1] < 0) continue;
-      const auto blade = crossings.between(voxel, axis);
-      if (!blade) continue;
-      cuts.push_back({static_cast<std::int32_t>(n), axis, blade->first, 1 - blade->second, true});
-    }
-  }
-  return cuts.empty() ? annulus : harmonic::withCuts(annulus, cuts);
+  addCuts(annulus, crossings, true, cuts);
+  return cutBy(cuts, std::move(annulus));
+}
+
+harmonic::Annulus annulusBetween(const TriangleMesh& white, const TriangleMesh& pial,
+                                 const Volume<std::uint8_t>& insulated, const Monitor& monitor) {
+  using harmonic::Site;
+  const Vector times = splitsOf(insulated.grid);
+  const Grid grid = split(insulated.grid, times);
+  const GridCrossings inner(white, grid), outer(pial, grid);
+  const auto kind = [&](const std::array<int, 3>& at) {
+    std::array<int, 3> whole;
+    for (int a = 0; a < 3; ++a) whole[a] = at[a] / static_cast<int>(times[a]);
+    return insulated(whole[0], whole[1], whole[2]) != 0 ? Site::Insulated
+           : outer.inside(at)                           ? Site::Tissue
+                                                        : Site::Outer;
+  };
+  const auto outerPlace = [&](const std::array<int, 3>& voxel, int direction) {
+    return placeOf(outer, voxel, direction);
+  };
+  harmonic::Annulus annulus = annulusOn(grid, inner, kind, outerPlace, monitor);
+  std::vector<harmonic::Cut> cuts;
+  addCuts(annulus, outer, false, cuts);
+  addCuts(annulus, inner, true, cuts);
+  return cutBy(cuts, std::move(annulus));
 }
 
 }  // namespace explica::surface

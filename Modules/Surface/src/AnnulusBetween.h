@@ -45,4 +45,12 @@ class GridCrossings {
                                                const CorticalTissue& tissue,
                                                const Monitor& monitor);
 
+/// The tissue between two closed surfaces, on a grid whose voxels are nearly cubes: long ones are
+/// split, since cortex is hardly thicker than they are long.  White matter and sulci thinner than a
+/// voxel cut the links across them.
+/// @param insulated  not 0 where neither side is; on the image's grid
+[[nodiscard]] harmonic::Annulus annulusBetween(const TriangleMesh& white, const TriangleMesh& pial,
+                                               const Volume<std::uint8_t>& insulated,
+                                               const Monitor& monitor);
+
 }  // namespace explica::surface

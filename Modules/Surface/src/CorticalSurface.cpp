@@ -38,6 +38,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -161,10 +162,10 @@ correspondence::Ribbon solve(harmonic::Annulus annulus, const Monitor& monitor) 
 
 /// A ribbon, and the thickness of its voxels.
 struct RibbonVoxels {
-  explicit RibbonVoxels(correspondence::Ribbon&& solved)
-      : ribbon(std::move(solved)),
-        found(correspondence::findCorrespondences(ribbon.annulus, ribbon.interpolant)) {}
-  correspondence::Ribbon ribbon;
+  explicit RibbonVoxels(const correspondence::Ribbon& ribbon)
+      : annulus(ribbon.annulus),
+        found(correspondence::findCorrespondences(annulus, ribbon.interpolant)) {}
+  const harmonic::Annulus& annulus;
   correspondence::Correspondence found;
 };
 
@@ -317,7 +318,7 @@ void placeByImage(const Volume<float>& image, double fluid, GrowingColumns& ribb
 /// That of the ribbon's voxels around the middle vertices.
 void takeThickness(const GrowingColumns& columns, const RibbonVoxels& voxels,
                    CorticalSurfaces& result) {
-  result.thickness = thicknessAtVertices(voxels.ribbon.annulus, voxels.found, result.mid);
+  result.thickness = thicknessAtVertices(voxels.annulus, voxels.found, result.mid);
   for (Eigen::Index v = 0; v < result.thickness.size(); ++v) {
     const bool none = columns.paths[v].end == TrajectoryEnd::NoRibbon;
     if (none || !(result.thickness[v] > 0)) result.thickness[v] = 0;
@@ -510,20 +511,29 @@ CorticalSurfaces build(const CorticalTissue& tissue, const Volume<float>* image,
   // A mesh whose edges are longer cuts off what the grid shows.
   constexpr double kFineEdge = 1.5;  // voxels
   const bool isFine = result.white.edgeLength <= kFineEdge * voxelSize(tissue.white.grid);
-  const RibbonVoxels voxels(solve(
-      image != nullptr && isFine ? annulusBetween(result.white.mesh, ribbon.tissue, silent(monitor))
-                                 : annulusOf(ribbon.tissue, silent(monitor)),
-      partOf(monitor, 0.6, 0.7)));
-  result.cutLinks = static_cast<std::int64_t>(voxels.ribbon.sulcalVoxels.size());
+  const bool byMesh = image != nullptr && isFine;
+  const correspondence::Ribbon first =
+      solve(byMesh ? annulusBetween(result.white.mesh, ribbon.tissue, silent(monitor))
+                   : annulusOf(ribbon.tissue, silent(monitor)),
+            partOf(monitor, 0.6, 0.7));
+  result.cutLinks = static_cast<std::int64_t>(first.sulcalVoxels.size());
   result.seconds.interpolant = watch.lap();
-  const RibbonPaths trajectories(voxels.ribbon);
+  const RibbonPaths trajectories(first);
   takePaths(result.white.mesh, trajectories, ribbon);
   result.seconds.trajectories = watch.lap();
   result.shortened = shortenAstray(result.white.mesh, voxelSize(tissue.white.grid), ribbon.paths);
   growSurfaces(ribbon, trajectories, result, partOf(monitor, 0.7, 0.96));
+  // What is measured is what is written: levels on long voxels join banks that the surfaces part.
+  std::optional<correspondence::Ribbon> between;
+  if (byMesh) {
+    between = solve(
+        annulusBetween(result.white.mesh, result.pial, ribbon.tissue.insulated, silent(monitor)),
+        silent(monitor));
+  }
+  const RibbonVoxels voxels(between ? *between : first);
   takeThickness(ribbon, voxels, result);
   mendTriangles(result);
-  Columns around = columnsAround(voxels.ribbon.annulus, voxels.found, result.mid);
+  Columns around = columnsAround(voxels.annulus, voxels.found, result.mid);
   result.columnArea = std::move(around.area);
   result.columnThickness = std::move(around.thickness);
   result.seconds.growing = watch.lap();

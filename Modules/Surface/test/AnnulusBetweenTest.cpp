@@ -77,30 +77,67 @@ TEST(AnnulusBetween, HasItOnAnObliqueMirroredGridOfOtherSpacing) {
   EXPECT_NEAR(thicknessAt(annulus, Point(0, 8, 11)), kBallRadius - 12.3, 0.05);
 }
 
-TEST(AnnulusBetween, ABladeThinnerThanAVoxelParts) {
-  // White matter is a disc of 0.3 mm between voxel centres: no centre lies in it.
+/// Two closed surfaces as one mesh.
+TriangleMesh together(const TriangleMesh& a, const TriangleMesh& b) {
+  TriangleMesh both = a;
+  both.positions.conservativeResize(a.vertexCount() + b.vertexCount(), 3);
+  both.positions.bottomRows(b.vertexCount()) = b.positions;
+  both.faces.conservativeResize(a.faceCount() + b.faceCount(), 3);
+  both.faces.bottomRows(b.faceCount()) =
+      b.faces.array() + static_cast<std::int32_t>(a.vertexCount());
+  return both;
+}
+
+/// A disc of 11 mm and of 0.3 mm between the voxel centres of two planes.
+TriangleMesh thinDisc() {
   TriangleMesh disc = geometry::makeIcosphere(5, 11);
   for (Eigen::Index v = 0; v < disc.vertexCount(); ++v) {
     disc.positions(v, 2) = 0.5 + 0.15 / 11 * disc.positions(v, 2);
   }
-  const TriangleMesh core = geometry::makeIcosphere(4, 5);
-  TriangleMesh both = core;  // the core has voxels of white matter
-  both.positions.conservativeResize(core.vertexCount() + disc.vertexCount(), 3);
-  both.positions.bottomRows(disc.vertexCount()) = disc.positions;
-  both.faces.conservativeResize(core.faceCount() + disc.faceCount(), 3);
-  both.faces.bottomRows(disc.faceCount()) =
-      disc.faces.array() + static_cast<std::int32_t>(core.vertexCount());
-  const auto annulus = annulusBetween(both, ball(), {});
+  return disc;
+}
+
+/// How many links across the disc end at a boundary, where the disc begins.
+std::size_t partedBy(const harmonic::Annulus& annulus, std::int32_t boundary) {
   std::size_t parted = 0;
   for (std::size_t n = 0; n < annulus.count(); ++n) {
     const auto s = annulus.voxel(static_cast<std::int32_t>(n));
     const double r = std::hypot(s[0] - 20, s[1] - 20);
     if (s[2] != 20 || r < 6 || r > 10) continue;
-    EXPECT_EQ(annulus.links[n][5], harmonic::kInner) << r;
+    EXPECT_EQ(annulus.links[n][5], boundary) << r;
     EXPECT_NEAR(annulus.fractions[annulus.irregular(static_cast<std::int32_t>(n))][5], 0.4, 0.07);
     ++parted;
   }
-  EXPECT_GT(parted, 100U);
+  return parted;
+}
+
+TEST(AnnulusBetween, ABladeThinnerThanAVoxelParts) {
+  // No voxel's centre lies in the blade; the core has voxels of white matter.
+  const auto annulus =
+      annulusBetween(together(geometry::makeIcosphere(4, 5), thinDisc()), ball(), {});
+  EXPECT_GT(partedBy(annulus, harmonic::kInner), 100U);
+}
+
+TEST(AnnulusBetween, ASulcusThinnerThanAVoxelParts) {
+  const auto annulus = annulusBetween(geometry::makeIcosphere(4, 5),
+                                      together(geometry::makeIcosphere(5, kBallRadius), thinDisc()),
+                                      ball().insulated, {});
+  EXPECT_GT(partedBy(annulus, harmonic::kOuter), 100U);
+}
+
+TEST(AnnulusBetween, TwoSurfacesHaveTheThicknessOfAShellOnLongVoxels) {
+  Grid grid;
+  grid.size = {41, 41, 21};
+  grid.spacing = {1, 1, 2};
+  grid.direction << std::cos(0.3), std::sin(0.3), 0, std::sin(0.3), -std::cos(0.3), 0, 0, 0, 1;
+  grid.origin = -grid.direction * Vector(20, 20, 20);
+  const auto annulus =
+      annulusBetween(geometry::makeIcosphere(5, 12.3), geometry::makeIcosphere(5, kBallRadius),
+                     Volume<std::uint8_t>(grid, 0), {});
+  EXPECT_EQ(annulus.grid.spacing, Vector::Ones());
+  for (const Point& at : {Point(0, 8, 11), Point(0, 0, 13.6), Point(13.6, 0, 0)}) {
+    EXPECT_NEAR(thicknessAt(annulus, at), kBallRadius - 12.3, 0.05) << at.transpose();
+  }
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
+#include "Explica/Core/VoxelSets.h"
 #include "Explica/Geometry/Fixtures.h"
 #include "Explica/Geometry/IsoSurface.h"
 #include "Explica/Geometry/MeshMeasures.h"
@@ -554,6 +555,64 @@ TEST(CorticalSurface, TheBorderBesideNarrowFluidIsRightOnVoxelsOfAnyShape) {
     EXPECT_LT(unknown, known - 0.02) << spacing.transpose();
     EXPECT_LT(std::abs(made.white.mesh.positions.rowwise().norm().mean() - kInner), 0.1);
   }
+}
+
+/// White matter in furrows about the third axis, cortex of 2.5 mm upon it, the banks almost
+/// touching: shares and image on voxels of 0.5 mm.
+struct Furrows {
+  Volume<float> white, tissue, image;
+};
+Furrows furrows() {
+  const Grid grid = lattice(88, Vector::Constant(0.5));
+  const auto white = volumeOf(grid, [](const Point& p) -> std::uint8_t {
+    return p.norm() < 13 + 2.5 * std::cos(8 * std::acos(p.z() / std::max(p.norm(), 1e-9)));
+  });
+  const Volume<float> squared = squaredDistanceTo(white);
+  Furrows made{Volume<float>(grid), Volume<float>(grid), Volume<float>(grid)};
+  for (std::size_t v = 0; v < white.size(); ++v) {
+    made.white[v] = white[v];
+    made.tissue[v] = squared[v] < 6.25 ? 1 : 0;
+    made.image[v] = white[v] != 0 ? 110 : made.tissue[v] != 0 ? 80 : 30;
+  }
+  return made;
+}
+
+/// Means over blocks of voxels.
+Volume<float> blocksOf(const Volume<float>& volume, const std::array<int, 3>& block) {
+  Grid grid = volume.grid;
+  for (int a = 0; a < 3; ++a) {
+    grid.size[a] /= block[a];
+    grid.spacing[a] *= block[a];
+    grid.origin += grid.direction.col(a) * (0.5 * (block[a] - 1) * volume.grid.spacing[a]);
+  }
+  Volume<float> result(grid, 0);
+  const float share = 1.0F / static_cast<float>(block[0] * block[1] * block[2]);
+  for (std::size_t v = 0; v < volume.size(); ++v) {
+    const auto at = volume.grid.subscripts(v);
+    result(at[0] / block[0], at[1] / block[1], at[2] / block[2]) += share * volume[v];
+  }
+  return result;
+}
+
+TEST(CorticalSurface, LongVoxelsDoNotLengthenTrajectoriesInFurrows) {
+  const Furrows fine = furrows();
+  SurfaceOptions options;
+  options.faces = 16000;
+  options.fluid = 30.0 / 110;
+  // By how much trajectories are longer than the surfaces are apart.
+  const auto excessOn = [&](const std::array<int, 3>& block) {
+    const auto made =
+        buildSurfaces(tissueFromShares(blocksOf(fine.white, block), blocksOf(fine.tissue, block)),
+                      blocksOf(fine.image, block), options);
+    const double mean = meanThickness(made.columnArea, made.columnThickness);
+    const double nearest = meanThickness(made.columnArea, made.nearestThickness);
+    std::printf("voxels of %d x %d x %d half mm: %.3f mm, nearest %.3f mm\n", block[0], block[1],
+                block[2], mean, nearest);
+    return mean - nearest;
+  };
+  const double cubes = excessOn({2, 2, 2});
+  EXPECT_LT(excessOn({2, 2, 4}), cubes + 0.02);
+  EXPECT_LT(excessOn({4, 2, 2}), cubes + 0.02);
 }
 
 TEST(CorticalSurface, AMaskThatEndsAtTheCortexIsItsBorder) {
