@@ -11,7 +11,7 @@ Options are keyword arguments with the names and defaults of the command line: `
 is `max_iterations=100`.
 """
 
-from . import phantoms, provenance, report, types
+from . import phantoms, provenance, types
 from ._explica import (
     Error,
     FileError,
@@ -37,7 +37,6 @@ from ._commands import command, executable
 from ._images import (
     anatomical_grid,
     correct_topology,
-    heart,
     iso_surface,
     segment,
     segment_hemisphere,
@@ -60,7 +59,6 @@ from ._surfaces import (
     flat_grid,
     flatten,
     geodesic_distances,
-    inflate,
     inspect_mesh,
     mean_curvature,
     sulcal_depth,
@@ -68,7 +66,6 @@ from ._surfaces import (
     repair_surface,
     select_region,
     self_intersections,
-    sphere_view,
     unfold,
     vertex_areas,
     vertex_flux,

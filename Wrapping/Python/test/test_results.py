@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The Explica developers
 # SPDX-License-Identifier: Apache-2.0
-"""Commands run from Python, their records, and pictures and reports of what they wrote."""
+"""Commands run from Python, their and their records."""
 
 import contextlib
 import hashlib
@@ -12,7 +12,7 @@ import unittest
 import numpy as np
 
 import explica
-from explica import phantoms, provenance, report
+from explica import phantoms, provenance
 
 
 class Commands(unittest.TestCase):
@@ -74,36 +74,6 @@ class Commands(unittest.TestCase):
             result.write_bytes(bytes_)
         with self.assertRaisesRegex(OSError, "nowhere"):
             provenance.verify("nowhere.json")
-
-
-class Pictures(unittest.TestCase):
-    def test_picture_shows_the_surface_in_its_colours(self):
-        ball = explica.icosphere(3, 10.0)
-        grey = report.picture(ball, width=120, height=90)
-        self.assertEqual((grey.shape, grey.dtype), ((90, 120, 3), np.uint8))
-        self.assertTrue(np.all(grey[0, 0] == 255))  # background
-        self.assertTrue(np.all(grey[45, 60] < 255))
-        height = ball[0][:, 2]
-        seen = report.picture(
-            ball, height, towards=[1, 0, 0], width=120, height=90, range=(-10, 10), colours="grey"
-        )
-        column = seen[:, 60].astype(int).sum(axis=1)
-        self.assertGreater(column[20], column[70])  # up is up: large values are light
-        self.assertEqual(report.picture(ball, views=["left", "top"], width=80, height=60).shape[1], 160)
-        with self.assertRaisesRegex(ValueError, "values: one a vertex"):
-            report.picture(ball, height[:5])
-        with self.assertRaisesRegex(ValueError, "left"):
-            report.picture(ball, views=["below"])
-
-    def test_slices_show_image_and_cut_lines(self):
-        made = phantoms.shell(size=24)
-        plain = report.slices(made["level"], made["affine"], count=2, height=80)
-        self.assertEqual(plain.shape[2], 3)
-        lined = report.slices(
-            made["level"], made["affine"], [explica.icosphere(3, made["inner_radius"])], 2, 80
-        )
-        self.assertEqual(lined.shape, plain.shape)
-        self.assertGreater(np.any(lined != plain, axis=2).sum(), 50)
 
 
 class Phantoms(unittest.TestCase):
