@@ -11,7 +11,7 @@ Options are keyword arguments with the names and defaults of the command line: `
 is `max_iterations=100`.
 """
 
-from . import phantoms, provenance, types
+from . import provenance, types
 from ._explica import (
     Error,
     FileError,
@@ -36,12 +36,7 @@ from ._explica import (
 from ._commands import command, executable
 from ._images import (
     anatomical_grid,
-    correct_topology,
-    iso_surface,
-    segment,
-    segment_hemisphere,
     surfaces_of,
-    surfaces_of_shares,
     thickness,
     thickness_of_levels,
     write_volume,

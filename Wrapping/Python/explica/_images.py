@@ -105,11 +105,6 @@ thickness = of_image("labels")(_explica.thickness)
 thickness_of_levels = of_image("inner", "outer")(_explica.thickness_of_levels)
 anatomical_grid = of_image("labels")(_explica.anatomical_grid)
 surfaces_of = of_image("labels", "image")(_explica.surfaces_of)
-surfaces_of_shares = of_image("white_share", "tissue_share")(_explica.surfaces_of_shares)
-segment = of_image("intensity", "mask")(_explica.segment)
-segment_hemisphere = of_image("intensity", "atlas")(_explica.segment_hemisphere)
-correct_topology = of_image("mask")(_explica.correct_topology)
-iso_surface = of_image("level")(_explica.iso_surface)
 
 
 def write_volume(path: "Path", image: "Image", affine: "Optional[ArrayLike]" = None) -> None:

@@ -17,6 +17,5 @@ PYBIND11_MODULE(_explica, m) {
   explica::python::bindSampling(m);
   explica::python::bindUnfolding(m);
   explica::python::bindFlattening(m);
-  explica::python::bindPhantoms(m);
   explica::python::bindProvenance(m);
 }
