@@ -14,13 +14,11 @@ namespace {
 struct Settings {};
 
 void declare(Declaration& d, Settings&) {
-  d.synopsis("descriptions of every command for other tools: Boutiques, shells, man")
+  d.synopsis("descriptions of every command for shells and man")
       .description(
           "All files are generated from the commands' own declarations, the same that parse the "
           "command line, so they cannot disagree with it.")
-      .example("explica descriptors --out descriptors",
-               "Everything that lets other tools call Explica")
-      .output("boutiques/explica-*.json", FileKind::JsonFile, "Boutiques descriptors, schema 0.5")
+      .example("explica descriptors --out descriptors", "Completion and manual pages")
       .output("completion/explica.bash", FileKind::Any, "completion for bash")
       .output("completion/_explica", FileKind::Any, "completion for zsh")
       .output("man/explica*.1", FileKind::Any, "manual pages");
@@ -32,8 +30,6 @@ Termination run(Context& context, const Settings&) {
   for (const Json& command : commands) {
     std::string name = "explica-" + command["command"].get<std::string>();
     std::replace(name.begin(), name.end(), ' ', '-');
-    writeTextFile(context.output("boutiques/" + name + ".json"),
-                  boutiquesOf(command, version).dump(2) + "\n");
     writeTextFile(context.output("man/" + name + ".1"), manPageOf(command, version));
   }
   writeTextFile(context.output("man/explica.1"), overviewManPageOf(commands, version));

@@ -3,6 +3,7 @@
 #include "Explica/Application/Command.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/StopScope.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Statistics/Combat.h"
 #include "Explica/Statistics/PlaceBlocks.h"
@@ -12,6 +13,7 @@
 #include "Settings.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace explica::app {
 namespace {
@@ -140,27 +142,29 @@ std::vector<statistics::Contrast> contrastsOf(const GlmSettings& s,
   return contrasts;
 }
 
+/// The number of each person's word in a column.
+std::vector<int> levelsIn(const std::string& column, const Observations& o) {
+  std::vector<std::size_t> rows(o.people.size());
+  std::iota(rows.begin(), rows.end(), 0);
+  return statistics::levelsOf(o.about, column, rows).of;
+}
+
 std::vector<int> blocksOf(const GlmSettings& s, const Observations& o,
                           const statistics::Design& design) {
-  if (!s.blocks) return design.groups;
-  std::vector<std::size_t> rows(o.people.size());
-  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = i;
-  return statistics::levelsOf(o.about, *s.blocks, rows).of;
+  return s.blocks ? levelsIn(*s.blocks, o) : design.groups;
 }
 
 /// ComBat keeps what the model's own columns explain.
 void harmonise(const GlmSettings& s, const Observations& o, const statistics::Design& design,
                Eigen::MatrixXd& values) {
   if (s.site != SiteModel::Combat) return;
-  std::vector<std::size_t> rows(o.people.size());
-  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = i;
   Eigen::MatrixXd covariates(values.rows(), 0);
   for (std::size_t c = 0; c < design.columns.size(); ++c) {
     if (design.columns[c] == "intercept") continue;
     covariates.conservativeResize(Eigen::NoChange, covariates.cols() + 1);
     covariates.rightCols(1) = design.matrix.col(static_cast<Eigen::Index>(c));
   }
-  statistics::combat(values, covariates, statistics::levelsOf(o.about, s.siteColumn, rows).of);
+  statistics::combat(values, covariates, levelsIn(s.siteColumn, o));
 }
 
 statistics::PlaceBlocks planBlocks(const GlmSettings& s, const Observations& o) {
@@ -173,15 +177,12 @@ statistics::PlaceBlocks planBlocks(const GlmSettings& s, const Observations& o) 
 }
 
 void sayWhoIsLeftOut(Context& context, const Observations& o, const statistics::Design& design) {
-  std::string names;
-  for (const std::size_t row : design.dropped) names += (names.empty() ? "" : ", ") + o.people[row];
-  if (!names.empty()) {
+  if (!design.dropped.empty()) {
     context.warn(std::to_string(design.dropped.size()) +
-                 " people have no value in a column of the model and are left out: " + names);
+                 " people have no value in a column of the model and are left out: " +
+                 joined(design.dropped, ", ", [&](std::size_t row) { return o.people[row]; }));
   }
-  names.clear();
-  for (const std::string& person : o.leftOut) names += (names.empty() ? "" : ", ") + person;
-  if (!names.empty()) context.warn("in one list only, left out: " + names);
+  if (!o.leftOut.empty()) context.warn("in one list only, left out: " + joined(o.leftOut));
 }
 
 /// @return people's values, N x V, if all fit into a block

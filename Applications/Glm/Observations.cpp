@@ -11,6 +11,8 @@
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VertexDataFile.h"
 
+#include <fnmatch.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <map>
@@ -171,18 +173,6 @@ void readAtlases(const GlmSettings& s, Observations& o) {
   }
 }
 
-/// Whether a name is that of a pattern, in which '*' stands for any characters.
-bool matches(std::string_view pattern, std::string_view name) {
-  const std::size_t star = pattern.find('*');
-  if (star == pattern.npos) return pattern == name;
-  if (!name.starts_with(pattern.substr(0, star))) return false;
-  const std::string_view rest = pattern.substr(star + 1);
-  for (std::size_t i = star; i <= name.size(); ++i) {
-    if (matches(rest, name.substr(i))) return true;
-  }
-  return false;
-}
-
 bool isNumeric(const Table& table, std::size_t column) {
   return std::all_of(table.rows.begin(), table.rows.end(), [&](const auto& row) {
     return statistics::isMissing(row[column]) || statistics::numberIn(row[column]);
@@ -196,7 +186,9 @@ std::vector<std::size_t> regionColumns(const Table& table, const GlmSettings& s)
   std::vector<std::size_t> columns;
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     const std::string& name = table.columns[c];
-    const auto is = [&](const std::string& pattern) { return matches(pattern, name); };
+    const auto is = [&](const std::string& pattern) {
+      return fnmatch(pattern.c_str(), name.c_str(), 0) == 0;
+    };
     bool wanted = false;
     if (!s.columns.empty()) {
       wanted = std::any_of(s.columns.begin(), s.columns.end(), is);

@@ -3,6 +3,7 @@
 
 #include "ResultPage.h"
 
+#include "Explica/Core/Text.h"
 #include "Explica/Maps/Folding.h"
 #include "Explica/Report/Page.h"
 #include "Explica/Report/SurfacePicture.h"
@@ -222,8 +223,7 @@ report::ReportTable regionsOf(const Observations& o, const GlmResults& r, std::s
   table.title = r.contrasts[k].name + ": regions of the smallest P";
   table.caption = "All regions are in regions.tsv.";
   table.columns = {"region", "effect", "standard error", "t or F", "P", "q"};
-  auto places = placesToPlot(o, r, k);
-  for (const Eigen::Index v : places) {
+  for (const Eigen::Index v : placesToPlot(o, r, k)) {
     const auto& m = r.maps.contrasts[k];
     table.rows.push_back({regionOf(o, v), numberText(m.effect[v], 4), numberText(m.error[v], 3),
                           numberText(m.statistic[v], 4), numberText(m.p[v], 3),
@@ -276,9 +276,7 @@ void addFlags(const GlmSettings& s, const Observations& o, const GlmResults& r,
         "its assumptions.");
   }
   if (!o.leftOut.empty()) {
-    std::string names;
-    for (const std::string& person : o.leftOut) names += (names.empty() ? "" : ", ") + person;
-    say(std::to_string(o.leftOut.size()) + " people were left out", names);
+    say(std::to_string(o.leftOut.size()) + " people were left out", joined(o.leftOut));
   }
 }
 

@@ -30,9 +30,7 @@ void writeMap(Context& context, const Observations& o, const std::string& name,
 }
 
 std::string row(const std::vector<std::string>& cells) {
-  std::string line;
-  for (const std::string& cell : cells) line += (line.empty() ? "" : "\t") + cell;
-  return line + "\n";
+  return joined(cells, "\t") + "\n";
 }
 
 double at(const Eigen::VectorXd& values, Eigen::Index v) {

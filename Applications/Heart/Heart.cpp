@@ -71,8 +71,6 @@ void declare(Declaration& d, Settings& s) {
       .output("slices_ed.png", FileKind::Picture, "the same in pixels")
       .output("slices_es.svg", FileKind::Picture, "slices at end-systole")
       .output("slices_es.png", FileKind::Picture, "the same in pixels")
-      .output("curves.svg", FileKind::Picture, "with several frames: volume, thickness, mass")
-      .output("curves.png", FileKind::Picture, "the same in pixels")
       .output("segments.nii.gz", FileKind::LabelVolume, "segment of each wall voxel at ED")
       .output("left_out.nii.gz", FileKind::LabelVolume,
               "wall voxels at ED that do not count: 1 opening, 2 valve plane, 3 apical cap, 4 "
@@ -168,7 +166,6 @@ void writeOutputs(Context& context, const ventricle::Beat& beat) {
   if (beat.systole != beat.diastole && beat.atSystole().measures) {
     writePicture(context, "slices_es", ventricle::slicePicture(beat, beat.systole));
   }
-  if (beat.frames.size() > 1) writePicture(context, "curves", ventricle::beatCurves(beat));
   writeVolumes(context, beat);
 }
 

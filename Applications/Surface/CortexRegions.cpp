@@ -100,8 +100,7 @@ CortexRegions readRegions(Context& context, const SurfaceSettings& s,
 }
 
 std::size_t writeRegions(Context& context, const CortexRegions& regions,
-                         const surface::CorticalSurfaces& made, const std::string& structure,
-                         std::vector<io::SpecEntry>& spec) {
+                         const surface::CorticalSurfaces& made, const std::string& structure) {
   const surface::VertexKeys keys = regionKeys(regions, made, structure);
   std::set<Label> used(keys.begin(), keys.end());
   used.erase(0);
@@ -143,7 +142,6 @@ std::size_t writeRegions(Context& context, const CortexRegions& regions,
   }
   writeTextFile(context.output("regions.tsv"), table.str());
   io::writeGiftiLabel(context.output("regions.label.gii"), labels, structure);
-  spec.push_back({structure, "regions.label.gii"});
   return all.size();
 }
 

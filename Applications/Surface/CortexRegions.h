@@ -4,7 +4,6 @@
 
 #include "Explica/Application/Command.h"
 #include "Explica/IO/LabelNames.h"
-#include "Explica/IO/SpecFile.h"
 #include "Explica/IO/VertexDataFile.h"
 #include "Settings.h"
 
@@ -29,7 +28,6 @@ struct CortexRegions {
 /// Writes regions.tsv and regions.label.gii.
 /// @return how many there are
 std::size_t writeRegions(Context& context, const CortexRegions& regions,
-                         const surface::CorticalSurfaces& made, const std::string& structure,
-                         std::vector<io::SpecEntry>& spec);
+                         const surface::CorticalSurfaces& made, const std::string& structure);
 
 }  // namespace explica::app

@@ -29,7 +29,6 @@ void declareOutputs(Declaration& d) {
       .output("topology.tsv", FileKind::Table, "one row for each corrected defect")
       .output("regions.tsv", FileKind::Table, "with --atlas: area and thickness of each region")
       .output("regions.label.gii", FileKind::VertexLabel, "with --atlas: region of each vertex")
-      .output("surface.spec", FileKind::Any, "opens everything in Workbench")
       .output("*lh.*", FileKind::Any, "with --freesurfer: FreeSurfer files, left")
       .output("*rh.*", FileKind::Any, "with --freesurfer: FreeSurfer files, right");
 }

@@ -50,25 +50,19 @@ std::vector<WrittenSurface> namedSurfaces(const surface::CorticalSurfaces& made,
   return surfaces;
 }
 
-std::vector<io::SpecEntry> writeMaps(Context& context, const SurfaceSettings& s,
-                                     const surface::CorticalSurfaces& made,
-                                     const surface::CorticalTissue& tissue,
-                                     const std::vector<WrittenSurface>& surfaces,
-                                     const CortexRegions& regions,
-                                     surface::SurfaceSummary& summary) {
-  std::vector<io::SpecEntry> spec;
+void writeMaps(Context& context, const SurfaceSettings& s, const surface::CorticalSurfaces& made,
+               const surface::CorticalTissue& tissue, const std::vector<WrittenSurface>& surfaces,
+               const CortexRegions& regions, surface::SurfaceSummary& summary) {
   for (const WrittenSurface& surface : surfaces) {
     io::writeGiftiSurface(context.output(surface.file), *surface.mesh,
                           metadataOf(tissue.structure, surface.secondary));
-    spec.push_back({tissue.structure, surface.file});
   }
   const auto writeShape = [&](const std::string& file, const std::vector<io::VertexMap>& maps) {
     io::writeGiftiShape(context.output(file), maps, tissue.structure);
-    spec.push_back({tissue.structure, file});
   };
   writeShape("curvature.shape.gii", {{"curvature", "mm^-1", made.curvature}});
   writeShape("area.shape.gii", areasOf(surfaces));
-  if (!tissue.hasGrey) return spec;
+  if (!tissue.hasGrey) return;
   writeShape("thickness.shape.gii", thicknessMaps(made, s.thicknessMeasure));
   writeShape("valid.shape.gii", {{"valid", "", surface::validOf(made)}});
   if (made.image.doubt.size() > 0) {
@@ -77,9 +71,8 @@ std::vector<io::SpecEntry> writeMaps(Context& context, const SurfaceSettings& s,
   }
   if (made.sulcalDepth.size() > 0) writeShape("sulc.shape.gii", {{"sulc", "mm", made.sulcalDepth}});
   if (regions.atlas || regions.parcellation) {
-    summary.regions = writeRegions(context, regions, made, tissue.structure, spec);
+    summary.regions = writeRegions(context, regions, made, tissue.structure);
   }
-  return spec;
 }
 
 void writeFreeSurfer(Context& context, const SurfaceSettings& s,

@@ -27,13 +27,9 @@ struct WrittenSurface {
                                                         bool hasGrey);
 
 /// Surfaces, maps and regions as GIFTI.
-/// @return what a spec file lists
-[[nodiscard]] std::vector<io::SpecEntry> writeMaps(Context& context, const SurfaceSettings& s,
-                                                   const surface::CorticalSurfaces& made,
-                                                   const surface::CorticalTissue& tissue,
-                                                   const std::vector<WrittenSurface>& surfaces,
-                                                   const CortexRegions& regions,
-                                                   surface::SurfaceSummary& summary);
+void writeMaps(Context& context, const SurfaceSettings& s, const surface::CorticalSurfaces& made,
+               const surface::CorticalTissue& tissue, const std::vector<WrittenSurface>& surfaces,
+               const CortexRegions& regions, surface::SurfaceSummary& summary);
 
 /// The same as FreeSurfer's files.
 /// @param fsGrid  voxels of the volume whose surface RAS they use; none: scanner RAS

@@ -10,7 +10,6 @@
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
-#include "Explica/IO/SpecFile.h"
 #include "Explica/Surface/GivenSurfaces.h"
 #include "Explica/Surface/Summary.h"
 #include "Files.h"
@@ -160,9 +159,7 @@ Termination run(Context& context, const SurfaceSettings& s) {
   }
   {
     auto step = context.step("write");
-    const std::vector<io::SpecEntry> spec =
-        writeMaps(context, s, made, tissue, surfaces, regions, summary);
-    io::writeSpec(context.output("surface.spec"), spec);
+    writeMaps(context, s, made, tissue, surfaces, regions, summary);
     writeTextFile(context.output("topology.tsv"), defectTable(made.white.defects));
     if (s.freeSurfer) writeFreeSurfer(context, s, made, tissue, surfaces, fsGrid);
   }

@@ -1,8 +1,6 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
-#include "ContourFiles.h"
-
 #include "Explica/Application/Command.h"
 #include "Explica/Application/Plausible.h"
 #include "Explica/Application/ReadInputs.h"
@@ -50,11 +48,8 @@ void declareOutputs(Declaration& d) {
               "phi1: corresponding point of the outer boundary, RAS mm")
       .output("layers.nii.gz", FileKind::LabelVolume, "layer, 1 at the inner boundary")
       .output("grid.vtu", FileKind::Grid,
-              "with --cells: points at equal depths along trajectories, with depth and thickness")
-      .output(
-          "contours.tsv", FileKind::Table,
-          "of a 2-D image or with --per-slice: inner, middle and outer contours, point by point")
-      .output("contours.vtu", FileKind::Grid, "the same as lines, with depth and thickness")
+              "with --cells: points at equal depths along trajectories, with depth and thickness; "
+              "of slices on their own their contours")
       .output("valid.nii.gz", FileKind::LabelVolume,
               "1 where thickness is known and the image's edge does not reach it")
       .output("sulci.nii.gz", FileKind::LabelVolume,
@@ -206,7 +201,6 @@ Termination run(Context& context, const Settings& s) {
   report(context, judge, m);
   writeOutputs(context, m, m.sulciRecovered);
   if (m.grid) writeGrid(context, *m.grid);
-  if (m.annulus.planar) writeContours(context, m);
   return m.interpolant.termination;
 }
 

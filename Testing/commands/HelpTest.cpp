@@ -59,7 +59,7 @@ TEST(EveryCommandHelp, HasARowInTheTableOfWhatIsShownAtFirst) {
     const app::FirstHelp* row = app::firstHelpOf(command["command"].get<std::string>());
     ASSERT_NE(row, nullptr) << command["command"]
                             << ": add a row to Applications/Common/src/FirstHelp.cpp";
-    EXPECT_FALSE(row->from.empty() || row->to.empty() || row->example.empty());
+    EXPECT_FALSE(row->last.empty());
     for (const auto name : row->options) {
       const auto& parameters = command["parameters"];
       EXPECT_TRUE(std::any_of(parameters.begin(), parameters.end(),
@@ -128,8 +128,8 @@ TEST(EveryCommandHelp, ExampleWorksAsPasted) {
   for (const app::FirstHelp& row : app::allFirstHelp()) {
     const TemporaryFolder folder;
     setting.directory = folder.path();
-    const auto result = runProgram({"sh", "-ec", std::string(row.example)}, setting);
-    EXPECT_TRUE(result.exitCode == 0 || result.exitCode == 3) << row.example << "\n" << result;
+    const auto result = runProgram({"sh", "-ec", row.example()}, setting);
+    EXPECT_TRUE(result.exitCode == 0 || result.exitCode == 3) << row.example() << "\n" << result;
   }
 }
 

@@ -242,7 +242,7 @@ TEST(ThicknessCommand, SulciAreRecoveredByDefaultButNotInHearts) {
   EXPECT_GT(recovered({"--per-slice", "--sulci", "recover"}), 50);
 }
 
-TEST(ThicknessCommand, ASliceOfCortexGivesContoursLayersAndItsSulci) {
+TEST(ThicknessCommand, ASliceOfCortexGivesItsGridLayersAndSulci) {
   TemporaryFolder folder;
   // A comb of white matter whose slots grey matter fills.
   writeLabels(folder / "slice.nii.gz", {130, 50, 1}, Vector(0.5, 0.5, 2), [](const Point& p, int) {
@@ -251,18 +251,15 @@ TEST(ThicknessCommand, ASliceOfCortexGivesContoursLayersAndItsSulci) {
     return x[1] > 10 || (std::abs(std::remainder(x[0], 12.0)) < 3 && x[1] > -14) ? 2 : 1;
   });
   for (const std::vector<std::string>& words :
-       {std::vector<std::string>{}, std::vector<std::string>{"--per-slice"}}) {
+       {std::vector<std::string>{"--cells", "2"},
+        std::vector<std::string>{"--cells", "2", "--per-slice"}}) {
     const auto made = explica(thickness(folder, "slice.nii.gz", words));
     ASSERT_EQ(made.exitCode, 0) << made;
     const auto summary = readJson(folder / "out/summary.json");
     EXPECT_EQ(summary["sulci"], "recover");
     EXPECT_GT(summary["sulcal_voxels_recovered"].get<int>(), 200);
-    EXPECT_GE(summary["contours"].get<int>(), 1);
     EXPECT_NEAR(summary["thickness_median"].get<double>(), 1.5, 0.15);
-    std::ifstream table(folder / "out/contours.tsv");
-    const auto lines = std::count(std::istreambuf_iterator<char>(table), {}, '\n');
-    EXPECT_GT(lines, 300);
-    EXPECT_TRUE(fs::exists(folder / "out/contours.vtu"));
+    EXPECT_TRUE(fs::exists(folder / "out/grid.vtu"));
     const auto layers = io::readLabels(folder / "out/layers.nii.gz").volume;
     EXPECT_EQ(*std::max_element(layers.data.begin(), layers.data.end()), 3);
   }

@@ -7,7 +7,6 @@
 #include "Explica/Provenance/Doubts.h"
 #include "Explica/Provenance/Results.h"
 #include "Explica/Provenance/Verify.h"
-#include "JsonNumber.h"
 #include "RunState.h"
 
 #include <fnmatch.h>
@@ -129,34 +128,8 @@ void Context::results(const Results& listed) {
   }
 }
 
-void Context::result(const std::string& key, double value) {
-  state_->setResult(key, numberOrNull(value));
-}
-void Context::result(const std::string& key, int value) {
-  state_->setResult(key, value);
-}
-void Context::result(const std::string& key, long value) {
-  state_->setResult(key, value);
-}
-void Context::result(const std::string& key, long long value) {
-  state_->setResult(key, value);
-}
-void Context::result(const std::string& key, std::size_t value) {
-  state_->setResult(key, value);
-}
-void Context::result(const std::string& key, bool value) {
-  state_->setResult(key, value);
-}
-void Context::result(const std::string& key, const std::string& value) {
-  state_->setResult(key, value);
-}
-void Context::result(const std::string& key, const char* value) {
-  state_->setResult(key, value);
-}
-void Context::result(const std::string& key, const std::vector<double>& values) {
-  Json array = Json::array();
-  for (const double value : values) array.push_back(numberOrNull(value));
-  state_->setResult(key, array);
+void Context::result(const std::string& key, const Result::Value& value) {
+  state_->setResult(key, provenance::valueOf(value));
 }
 void Context::result(const std::string& key, const Json& value) {
   state_->setResult(key, value);

@@ -31,9 +31,7 @@ Json describeJson(const Declaration& d) {
   json["description"] = d.descriptionText;
   json["usage"] = usageLine(d);
   if (const FirstHelp* first = firstHelpOf(d.name)) {
-    json["in"] = first->from;
-    json["out"] = first->to;
-    json["paste"] = first->example;
+    json["paste"] = first->example();
   }
   json["references"] = d.references;
   json["examples"] = Json::array();

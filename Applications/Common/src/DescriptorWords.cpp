@@ -11,18 +11,16 @@
 #include <cctype>
 
 namespace explica::app {
+namespace {
 
-std::string identifier(const std::string& name, char joint) {
-  std::string id;
-  for (const char c : name) {
-    if (std::isalnum(static_cast<unsigned char>(c))) {
-      id += c;
-    } else if (!id.empty() && id.back() != joint) {
-      id += joint;
-    }
-  }
-  return id;
+std::string valueText(const Json& value) {
+  if (value.is_null()) return "";
+  if (value.is_string()) return word(value);
+  if (value.is_array()) return joined(value, ",", valueText);
+  return value.dump();
 }
+
+}  // namespace
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
   for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size()) {
@@ -40,25 +38,8 @@ bool isFolder(const Json& p) {
 bool isFlag(const Json& p) {
   return p["type"] == "flag";
 }
-bool isPoint(const Json& p) {
-  return p["type"] == "point2" || p["type"] == "point3";
-}
-bool isNumber(const Json& p) {
-  return p["type"] == "number" || p["type"] == "integer";
-}
-bool isJoined(const Json& p) {
-  return p["list"] && p["file"].is_null() && p["type"] != "text" && !isPoint(p);
-}
-
 std::string word(const Json& value) {
   return value.get<std::string>();
-}
-
-std::string valueText(const Json& value) {
-  if (value.is_null()) return "";
-  if (value.is_string()) return word(value);
-  if (value.is_array()) return joined(value, ",", valueText);
-  return value.dump();
 }
 
 std::string helpOf(const Json& p) {
@@ -71,10 +52,6 @@ std::string helpOf(const Json& p) {
 std::string helpWithDefault(const Json& p) {
   const std::string value = isFlag(p) ? "" : valueText(p["default"]);
   return helpOf(p) + (value.empty() ? "" : " (default " + value + ")");
-}
-
-bool needed(const Json& p) {
-  return p["required"].get<bool>() || p["name"] == "out";
 }
 
 std::vector<std::string> categoriesOf(const Json& command) {

@@ -20,25 +20,16 @@ inline constexpr std::array<std::pair<int, const char*>, 5> kExitCodes = {
      {3, "stopped before its goal (outputs written and marked)"},
      {4, "environment"}}};
 
-/// Letters and digits of a name, words joined by one `joint`: "frames/frame-*.gii" becomes
-/// "frames_frame_gii".
-[[nodiscard]] std::string identifier(const std::string& name, char joint = '_');
 [[nodiscard]] std::string replaced(std::string text, const std::string& from,
                                    const std::string& to);
 [[nodiscard]] bool isFile(const Json& p);
 [[nodiscard]] bool isFolder(const Json& p);
 [[nodiscard]] bool isFlag(const Json& p);
-[[nodiscard]] bool isPoint(const Json& p);
-[[nodiscard]] bool isNumber(const Json& p);
-/// A list whose values are joined by commas on the command line.
-[[nodiscard]] bool isJoined(const Json& p);
 [[nodiscard]] std::string word(const Json& value);
-[[nodiscard]] std::string valueText(const Json& value);
 /// Help with unit, as one sentence.
 [[nodiscard]] std::string helpOf(const Json& p);
 /// The same with the default.
 [[nodiscard]] std::string helpWithDefault(const Json& p);
-[[nodiscard]] bool needed(const Json& p);
 [[nodiscard]] std::vector<std::string> categoriesOf(const Json& command);
 
 }  // namespace explica::app

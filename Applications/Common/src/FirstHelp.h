@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -10,10 +11,12 @@ namespace explica::app {
 /// What a command says of itself at first, by --help and completion; --help-all says the rest.
 struct FirstHelp {
   std::string_view command;
-  std::string_view from;                  ///< what goes in, in words
-  std::string_view to;                    ///< what comes out, in words
   std::vector<std::string_view> options;  ///< those that most people need: about a dozen
-  std::string_view example;               ///< lines that work as pasted into an empty folder
+  std::string_view before;                ///< first lines of the example
+  std::string_view last;                  ///< and what follows them
+
+  /// Lines that work as pasted into an empty folder.
+  [[nodiscard]] std::string example() const { return std::string(before) + std::string(last); }
 };
 
 /// The row of a command, or nullptr.

@@ -42,20 +42,6 @@ std::string filesOf(const Declaration& d) {
   return names + (d.outputs.size() > kNamed ? ", ..." : "");
 }
 
-/// What goes in and what comes out, in words.
-void picture(std::ostringstream& out, const FirstHelp& first, const Declaration& d) {
-  constexpr std::size_t kIndent = 9;  // columns
-  const auto line = [&](const char* word, const std::string& text) {
-    if (text.empty()) return;
-    out << word;
-    wrap(out, text, kIndent, kIndent);
-  };
-  out << '\n';
-  line("  in     ", std::string(first.from));
-  line("  out    ", std::string(first.to));
-  line("  files  ", filesOf(d));
-}
-
 void exampleLines(std::ostringstream& out, const std::string& lines) {
   out << "\nExample, works as pasted into an empty folder:\n";
   std::istringstream text(lines);
@@ -78,11 +64,14 @@ std::string firstHelpText(const Declaration& d) {
   std::ostringstream out;
   title(out, d);
   const FirstHelp* first = firstHelpOf(d.name);
-  if (first != nullptr) picture(out, *first, d);
   out << "\nUsage: " << usageLine(d) << "\n";
   arguments(out, d);
   CommonOptions common;
   const auto all = allParameters(d, common);
+  if (const std::string files = filesOf(d); !files.empty()) {
+    out << "\nWrites ";
+    wrap(out, files, 7, 7);
+  }
   out << "\nOptions that most people need:\n";
   for (const Parameter& p : all) {
     if (!p.positional && shownAtFirst(d, p)) row(out, leftColumn(p), rightColumn(p));
@@ -96,7 +85,7 @@ std::string firstHelpText(const Declaration& d) {
       row(out, "--" + step.prefix + "NAME", "those of explica " + step.command);
     }
   }
-  if (first != nullptr) exampleLines(out, std::string(first->example));
+  if (first != nullptr) exampleLines(out, first->example());
   return out.str();
 }
 
@@ -131,7 +120,7 @@ std::string helpText(const Declaration& d) {
       wrap(out, example.what, 6, 6);
     }
   }
-  if (const FirstHelp* first = firstHelpOf(d.name)) exampleLines(out, std::string(first->example));
+  if (const FirstHelp* first = firstHelpOf(d.name)) exampleLines(out, first->example());
   if (!d.references.empty()) {
     out << "\nReferences:\n";
     for (const auto& reference : d.references) {

@@ -18,7 +18,7 @@ std::string roff(std::string text) {
 }  // namespace
 
 std::string manPageOf(const Json& command, const std::string& version) {
-  const std::string name = "explica-" + identifier(word(command["command"]), '-');
+  const std::string name = "explica-" + replaced(word(command["command"]), " ", "-");
   std::string title = name;
   std::transform(title.begin(), title.end(), title.begin(),
                  [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
@@ -79,7 +79,7 @@ std::string overviewManPageOf(const Json& commands, const std::string& version) 
                      "cortex or the heart wall, and unfolds it\n"
                      ".SH SYNOPSIS\n.B explica\n.I COMMAND\n[arguments] [options]\n.SH COMMANDS\n";
   for (const Json& command : commands) {
-    text += ".TP\n.BR explica\\-" + roff(identifier(word(command["command"]), '-')) + " (1)\n" +
+    text += ".TP\n.BR explica\\-" + roff(replaced(word(command["command"]), " ", "-")) + " (1)\n" +
             roff(word(command["synopsis"])) + "\n";
   }
   text += ".SH \"EXIT STATUS\"\n";

@@ -5,8 +5,8 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Text.h"
+#include "Explica/Provenance/Results.h"
 #include "Explica/Segmentation/Plausibility.h"
-#include "JsonNumber.h"
 #include "Meeting.h"
 
 namespace explica::app {
@@ -45,9 +45,9 @@ void Judge::flag(std::string_view name, double value) {
   const auto flag = segmentation::judge(name, value, accepted_);
   if (!flag) return;
   context_.flag({{"name", flag->name},
-                 {"value", numberOrNull(flag->value)},
-                 {"low", numberOrNull(flag->low)},
-                 {"high", numberOrNull(flag->high)},
+                 {"value", provenance::valueOf(Result::Value(flag->value))},
+                 {"low", provenance::valueOf(Result::Value(flag->low))},
+                 {"high", provenance::valueOf(Result::Value(flag->high))},
                  {"accepted", flag->accepted},
                  {"message", flag->sentence}});
 }

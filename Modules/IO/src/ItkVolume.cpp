@@ -109,121 +109,53 @@ std::vector<std::int64_t> sizesIn(const std::filesystem::path& path, const std::
   return sizes;
 }
 
-int dimensionIn(const std::filesystem::path& path, const std::string& text) {
-  const int dimension = parseNumber<int>(path, text);
+void requireDimension(const std::filesystem::path& path, int dimension) {
   if (dimension < 2 || dimension > 5) {
-    failToRead(path, "its header announces " + text + " dimensions; 2 to 5 are understood");
+    failToRead(path, "its header announces " + std::to_string(dimension) +
+                         " dimensions; 2 to 5 are understood");
   }
-  return dimension;
 }
 
-std::optional<StoredType> metaType(const std::string& word) {
-  static const std::map<std::string, StoredType> kTypes = {
-      {"met_char", StoredType::Int8},       {"met_uchar", StoredType::UInt8},
-      {"met_short", StoredType::Int16},     {"met_ushort", StoredType::UInt16},
-      {"met_int", StoredType::Int32},       {"met_uint", StoredType::UInt32},
-      {"met_float", StoredType::Float32},   {"met_double", StoredType::Float64},
-      {"met_long_long", StoredType::Int64}, {"met_ulong_long", StoredType::UInt64}};
-  const auto found = kTypes.find(lower(word));
-  if (found == kTypes.end()) return {};
-  return found->second;
-}
-
-std::optional<StoredType> nrrdType(const std::string& word) {
-  static const std::map<std::string, StoredType> kTypes = {
-      {"signed char", StoredType::Int8},
-      {"int8", StoredType::Int8},
-      {"int8_t", StoredType::Int8},
-      {"uchar", StoredType::UInt8},
-      {"unsigned char", StoredType::UInt8},
-      {"uint8", StoredType::UInt8},
-      {"uint8_t", StoredType::UInt8},
-      {"short", StoredType::Int16},
-      {"short int", StoredType::Int16},
-      {"signed short", StoredType::Int16},
-      {"signed short int", StoredType::Int16},
-      {"int16", StoredType::Int16},
-      {"int16_t", StoredType::Int16},
-      {"ushort", StoredType::UInt16},
-      {"unsigned short", StoredType::UInt16},
-      {"unsigned short int", StoredType::UInt16},
-      {"uint16", StoredType::UInt16},
-      {"uint16_t", StoredType::UInt16},
-      {"int", StoredType::Int32},
-      {"signed int", StoredType::Int32},
-      {"int32", StoredType::Int32},
-      {"int32_t", StoredType::Int32},
-      {"uint", StoredType::UInt32},
-      {"unsigned int", StoredType::UInt32},
-      {"uint32", StoredType::UInt32},
-      {"uint32_t", StoredType::UInt32},
-      {"longlong", StoredType::Int64},
-      {"long long", StoredType::Int64},
-      {"int64", StoredType::Int64},
-      {"int64_t", StoredType::Int64},
-      {"ulonglong", StoredType::UInt64},
-      {"unsigned long long", StoredType::UInt64},
-      {"uint64", StoredType::UInt64},
-      {"uint64_t", StoredType::UInt64},
-      {"float", StoredType::Float32},
-      {"double", StoredType::Float64}};
-  const auto found = kTypes.find(lower(word));
-  if (found == kTypes.end()) return {};
-  return found->second;
-}
+/// How a file stores its values.
+struct StoredData {
+  std::string file;  ///< with the values; empty or "local": the file itself
+  bool packed = false, text = false;
+};
 
 /// Bytes that the file with the data can hold at most when unpacked.
-std::uint64_t dataLimit(const std::filesystem::path& path, const TextHeader& header,
-                        const std::string& dataFile, std::uint64_t fileSize, bool packed) {
-  std::uint64_t size = fileSize - header.size;
-  if (!dataFile.empty() && lower(dataFile) != "local") {
-    if (dataFile.find('%') != std::string::npos || lower(dataFile).starts_with("list")) {
+std::uint64_t dataLimit(const std::filesystem::path& path, std::uint64_t room,
+                        const StoredData& data) {
+  std::uint64_t size = room;
+  if (!data.file.empty() && lower(data.file) != "local") {
+    if (data.file.find('%') != std::string::npos || lower(data.file).starts_with("list")) {
       refuse(path, "spreads its data over several files; store it in one");
     }
-    const std::filesystem::path data = besideFile(path, dataFile);
+    const std::filesystem::path beside = besideFile(path, data.file);
     std::error_code error;
-    size =
-        std::filesystem::is_regular_file(data, error) ? std::filesystem::file_size(data, error) : 0;
-    if (error || size == 0) failToRead(path, "its data file '" + data.string() + "' is missing");
+    size = std::filesystem::is_regular_file(beside, error)
+               ? std::filesystem::file_size(beside, error)
+               : 0;
+    if (error || size == 0) failToRead(path, "its data file '" + beside.string() + "' is missing");
   }
-  return packed ? size * 1032 : size;
+  return data.packed ? size * 1032 : size;
 }
 
-void checkNrrd(const std::filesystem::path& path, ByteView bytes) {
-  const TextHeader header = parseHeader(path, bytes, ItkFormat::Nrrd);
-  const int dimension = dimensionIn(path, header["dimension"]);
-  const std::vector<std::int64_t> sizes = sizesIn(path, header["sizes"]);
-  if (static_cast<int>(sizes.size()) != dimension) {
-    failToRead(path, "its header gives " + std::to_string(sizes.size()) + " sizes for " +
-                         std::to_string(dimension) + " dimensions");
-  }
-  const std::optional<StoredType> type = nrrdType(header["type"]);
-  if (!type) refuse(path, "has NRRD type '" + header["type"] + "'; a type of numbers is needed");
+StoredData nrrdData(const TextHeader& header) {
   const std::string encoding = lower(header["encoding"]);
-  const bool packed = encoding == "gzip" || encoding == "gz";
-  const bool text = encoding == "ascii" || encoding == "text" || encoding == "txt";
-  if (!packed && !text && encoding != "raw") {
-    refuse(path, "has NRRD encoding '" + encoding + "'; raw, gzip and ascii are understood");
-  }
-  const std::string dataFile =
-      header["data file"].empty() ? header["datafile"] : header["data file"];
-  for (const char* skip : {"line skip", "byte skip", "lineskip", "byteskip"}) {
-    if (!header[skip].empty() && header[skip] != "0" && header[skip] != "-1") {
-      refuse(path, std::string("uses '") + skip + "', which is not supported; store it anew");
-    }
-  }
-  const std::uint64_t needed = checkedProduct(path, sizes) * (text ? 2 : widthOf(*type)) - text;
-  if (needed > dataLimit(path, header, dataFile, bytes.size(), packed)) {
-    failTruncated(path, "the data end too early for the sizes of the header");
-  }
+  StoredData data{header["data file"].empty() ? header["datafile"] : header["data file"]};
+  data.packed = encoding == "gzip" || encoding == "gz";
+  data.text = !data.packed && encoding != "raw";
+  return data;
 }
 
-void checkMetaImage(const std::filesystem::path& path, ByteView bytes) {
-  const TextHeader header = parseHeader(path, bytes, ItkFormat::MetaImage);
+/// ITK's reader looks for billions of numbers, or too few, if a header is damaged.
+StoredData metaImageData(const std::filesystem::path& path, const TextHeader& header,
+                         std::size_t room) {
   const std::string kind = lower(header["ObjectType"]);
   if (!kind.empty() && kind != "image")
     refuse(path, "is a MetaIO " + kind + "; an image is needed");
-  const auto dimension = static_cast<std::size_t>(dimensionIn(path, header["NDims"]));
+  const auto dimension = parseNumber<std::size_t>(path, header["NDims"]);
+  requireDimension(path, static_cast<int>(dimension));
   const std::vector<std::int64_t> sizes = sizesIn(path, header["DimSize"]);
   if (sizes.size() != dimension) {
     failToRead(path, "its header gives " + std::to_string(sizes.size()) + " sizes for " +
@@ -246,8 +178,7 @@ void checkMetaImage(const std::filesystem::path& path, ByteView bytes) {
                            " values for '" + key + "'; " + std::to_string(length) + " are needed");
     }
   }
-  const std::optional<StoredType> type = metaType(header["ElementType"]);
-  if (!type) {
+  if (!lower(header["ElementType"]).starts_with("met_")) {
     refuse(path, "has MetaImage type '" + header["ElementType"] + "'; a type of numbers is needed");
   }
   std::int64_t channels = 1;
@@ -264,23 +195,15 @@ void checkMetaImage(const std::filesystem::path& path, ByteView bytes) {
   if (packed && lower(header["BinaryData"]) == "false") {
     failToRead(path, "its header says compressed text");
   }
-  const bool text = lower(header["BinaryData"]) == "false";
-  const std::string dataFile = header["ElementDataFile"];
-  if (dataFile.empty()) failToRead(path, "its header does not name the data (ElementDataFile)");
-  const bool local = lower(dataFile) == "local";
+  const StoredData data{header["ElementDataFile"], packed, lower(header["BinaryData"]) == "false"};
+  if (data.file.empty()) failToRead(path, "its header does not name the data (ElementDataFile)");
   if (!header["CompressedDataSize"].empty()) {
     const auto size = parseNumber<std::int64_t>(path, header["CompressedDataSize"]);
-    const auto room = static_cast<std::int64_t>(bytes.size() - header.size);
-    if (size < 1 || (local && size > room)) {
+    if (size < 1 || (lower(data.file) == "local" && size > static_cast<std::int64_t>(room))) {
       failTruncated(path, "the packed data end too early");
     }
   }
-  std::vector<std::int64_t> all = sizes;
-  all.push_back(channels);
-  const std::uint64_t needed = checkedProduct(path, all) * (text ? 2 : widthOf(*type)) - text;
-  if (needed > dataLimit(path, header, dataFile, bytes.size(), packed)) {
-    failTruncated(path, "the data end too early for the sizes of the header");
-  }
+  return data;
 }
 
 std::optional<StoredType> typeOf(itk::IOComponentEnum type) {
@@ -338,21 +261,22 @@ StoredVolume readWithItk(const std::filesystem::path& path, ItkFormat format, Ex
   volume.origin.path = path;
   volume.origin.placement = "header";
   volume.interleaved = true;
-  itk::ImageIOBase::Pointer reader;
+  const bool nrrd = format == ItkFormat::Nrrd;
+  volume.origin.format = nrrd ? "NRRD" : "MetaImage";
+  StoredData data;
+  std::uint64_t most = 0;  // bytes of values
   {
     const Bytes bytes = readFile(path);
-    switch (format) {
-      case ItkFormat::Nrrd:
-        checkNrrd(path, bytes);
-        volume.origin.format = "NRRD";
-        reader = itk::NrrdImageIO::New();
-        break;
-      case ItkFormat::MetaImage:
-        checkMetaImage(path, bytes);
-        volume.origin.format = "MetaImage";
-        reader = itk::MetaImageIO::New();
-        break;
-    }
+    const TextHeader header = parseHeader(path, bytes, format);
+    const std::size_t room = bytes.size() - header.size;
+    data = nrrd ? nrrdData(header) : metaImageData(path, header, room);
+    most = dataLimit(path, room, data);
+  }
+  itk::ImageIOBase::Pointer reader;
+  if (nrrd) {
+    reader = itk::NrrdImageIO::New();
+  } else {
+    reader = itk::MetaImageIO::New();
   }
   try {
     reader->SetFileName(path.string());
@@ -362,6 +286,7 @@ StoredVolume readWithItk(const std::filesystem::path& path, ItkFormat format, Ex
     volume.type = *type;
     volume.origin.storedType = nameOf(*type);
     const unsigned dimensions = reader->GetNumberOfDimensions();
+    requireDimension(path, static_cast<int>(dimensions));
     std::vector<std::int64_t> sizes;
     itk::ImageIORegion region(dimensions);
     for (unsigned i = 0; i < dimensions; ++i) {
@@ -382,6 +307,10 @@ StoredVolume readWithItk(const std::filesystem::path& path, ItkFormat format, Ex
     sizes.resize(3, 1);
     sizes.push_back(volume.valuesPerVoxel);
     const std::int64_t valueCount = checkedProduct(path, sizes);
+    // Before room is made for them.
+    const std::uint64_t needed =
+        static_cast<std::uint64_t>(valueCount) * (data.text ? 2 : widthOf(volume.type)) - data.text;
+    if (needed > most) failTruncated(path, "the data end too early for the sizes of the header");
     volume.origin.affine = affineOf(path, *reader);
     volume.grid = gridOf(
         path, {static_cast<int>(sizes[0]), static_cast<int>(sizes[1]), static_cast<int>(sizes[2])},

@@ -9,6 +9,7 @@
 
 #include <isa-l/crc.h>
 #include <isa-l/igzip_lib.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <array>
@@ -25,7 +26,6 @@ constexpr std::size_t kBlocksAtOnce = 128;            // bounds the memory of a 
 // which are looked for at so many places.
 constexpr std::size_t kLook = std::size_t{1} << 14, kLooksEvery = 4 * kLook;
 constexpr std::size_t kLooks = 128, kTries = 16 * kLooks;
-constexpr std::uint32_t kCrcPolynomial = 0xedb88320;  // of gzip, x^31 in the lowest bit
 
 struct Packed {
   Bytes bytes;
@@ -162,31 +162,6 @@ isal_hufftables codesOfBody(const Content& content) {
   return maker.codes();
 }
 
-/// Product of two polynomials over GF(2) modulo the checksum's.
-std::uint32_t product(std::uint32_t a, std::uint32_t b) {
-  std::uint32_t sum = 0;
-  for (std::uint32_t bit = 1U << 31; bit != 0; bit >>= 1) {
-    if (a & bit) sum ^= b;
-    b = b & 1 ? b >> 1 ^ kCrcPolynomial : b >> 1;
-  }
-  return sum;
-}
-
-/// x^8 to the power of `size`, by which a CRC-32 is multiplied when so many bytes follow.
-std::uint32_t powerOf(std::size_t size) {
-  std::uint32_t power = 1U << (31 - 8), result = 1U << 31;
-  for (; size != 0; size >>= 1, power = product(power, power)) {
-    if (size & 1) result = product(power, result);
-  }
-  return result;
-}
-
-/// CRC-32 of two sequences in a row.
-/// @param power  powerOf the second one's size
-std::uint32_t joinedChecksum(std::uint32_t first, std::uint32_t second, std::uint32_t power) {
-  return product(power, first) ^ second;
-}
-
 /// A block of one value over and over, as most of a medical volume, packed once.
 class BlankBlock {
  public:
@@ -213,10 +188,10 @@ class GzipMember {
     static constexpr std::uint8_t kGzipHead[10] = {0x1f, 0x8b, 8, 0, 0, 0, 0, 0, 0, 255};
     file_.write(kGzipHead, sizeof(kGzipHead));
   }
-  /// @param power  powerOf the unpacked block's size
-  void add(const Packed& packed, std::uint32_t power) {
+  void add(const Packed& packed) {
     file_.write(packed.bytes.data(), packed.bytes.size());
-    checksum_ = joinedChecksum(checksum_, packed.checksum, power);
+    checksum_ = static_cast<std::uint32_t>(
+        crc32_combine(checksum_, packed.checksum, static_cast<z_off_t>(packed.size)));
     size_ += packed.size;
   }
   void finish() {
@@ -247,10 +222,9 @@ void writePlain(WholeFile& file, const Content& content) {
 
 void writeGzip(WholeFile& file, const Content& content) {
   GzipMember member(file);
-  if (!content.head.empty()) member.add(packBlock(content.head), powerOf(content.head.size()));
+  if (!content.head.empty()) member.add(packBlock(content.head));
   const std::size_t blocks = (content.bodySize + kBlock - 1) / kBlock;
   const BlankBlock blank(content.blank);
-  const std::uint32_t blockPower = powerOf(kBlock);
   isal_hufftables codes = codesOfBody(content);
   std::vector<Packed> batch(std::min(blocks, kBlocksAtOnce));
   for (std::size_t first = 0; first < blocks; first += kBlocksAtOnce) {
@@ -268,11 +242,10 @@ void writeGzip(WholeFile& file, const Content& content) {
                                   : Packed{deflated(block, codes, false), checksumOf(block), size};
     });
     for (std::size_t b = 0; b < count; ++b) {
-      const Packed& packed = batch[b].size > 0 ? batch[b] : blank.packed();
-      member.add(packed, packed.size == kBlock ? blockPower : powerOf(packed.size));
+      member.add(batch[b].size > 0 ? batch[b] : blank.packed());
     }
   }
-  if (!content.tail.empty()) member.add(packBlock(content.tail), powerOf(content.tail.size()));
+  if (!content.tail.empty()) member.add(packBlock(content.tail));
   member.finish();
 }
 

@@ -10,7 +10,6 @@
 #include "Explica/IO/CiftiFile.h"
 #include "Explica/IO/LabelNames.h"
 #include "Explica/IO/PatchFile.h"
-#include "Explica/IO/SpecFile.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Testing/FreeSurferLabel.h"
@@ -354,15 +353,6 @@ TEST(Workbench, AcceptsOurFilesWithStructureAndType) {
   EXPECT_NEAR(areas.sum(), total, 1e-5 * total);
   workbench("-metric-smoothing " + file("a.surf.gii") + " " + file("a.shape.gii") + " 2 " +
             file("smooth.shape.gii"));
-
-  io::writeSpec(
-      folder / "a.spec",
-      {{"CortexLeft", "a.surf.gii"}, {"CortexLeft", "a.shape.gii"}, {"CortexLeft", "a.label.gii"}});
-  workbench("-spec-file-merge " + file("a.spec") + " " + file("a.spec") + " " + file("b.spec"));
-  expectSays(contentOf(folder / "b.spec"), "a.label.gii");
-  const std::string spec = workbench("-file-information " + file("a.spec"));
-  EXPECT_EQ(spec.find("Invalid"), std::string::npos) << spec;
-  expectSays(spec, "CortexLeft");
 }
 
 TEST(Workbench, FindsEachVertexAtTheRasThatOurVolumesTell) {

@@ -3,7 +3,6 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/IO/PolygonFile.h"
-#include "Explica/IO/SpecFile.h"
 #include "TemporaryFolder.h"
 
 #include <gtest/gtest.h>
@@ -84,19 +83,6 @@ TEST(Polygon, BadTextIsNamedByItsLine) {
     putContent(folder / "a.csv", text);
     EXPECT_THROW(static_cast<void>(io::readPolygon(folder / "a.csv")), InvalidInput) << text;
   }
-}
-
-TEST(Spec, NamesEachFileOnce) {
-  const TemporaryFolder folder;
-  io::writeSpec(folder / "a.spec", {{"CortexLeft", "white.surf.gii"},
-                                    {"CortexLeft", folder / "thickness.shape.gii"},
-                                    {"Other", "u.nii.gz"}});
-  const std::string text = contentOf(folder / "a.spec");
-  EXPECT_NE(text.find("Structure=\"CortexLeft\" DataFileType=\"METRIC\" "
-                      "Selected=\"true\">thickness.shape.gii<"),
-            std::string::npos)
-      << text;
-  EXPECT_THROW(io::writeSpec(folder / "b.spec", {{"Other", "a.vtp"}}), InvalidInput);
 }
 
 }  // namespace

@@ -67,7 +67,7 @@ class UnfoldingProblem {
   std::vector<int> keptEdges_;
   std::vector<int> softEdges_;
   Eigen::VectorXd restLengths_;
-  std::unique_ptr<PolygonKnotEnergy> knot_;  ///< null if there is none
+  bool hasKnot_ = false;
   StartSizes start_;
   double lastKnot_ = 0;
   double lastLeastDistance_ = kInfinity;

@@ -126,29 +126,6 @@ struct alignas(64) ApartBatch {
 /// @param fine  twelve points a triangle instead of seven
 void integrateApart(ApartBatch& batch, bool fine);
 
-/// Rules of the reduced integrals over pairs with common corners, by how near the domain comes to
-/// the singularity; beyond the last, use PairIntegral.h.
-inline constexpr int kRules = 4;
-
-/// Means over pairs with a common edge: 1/|z|^2 over the six triangles of PairIntegral.h, summed.
-struct alignas(64) EdgeBatch {
-  float arm[9][kLanes];  ///< e, a, b seen from corner 0
-  float value[kLanes];
-  float byArm[9][kLanes];
-};
-/// Number of the rule that each pair needs, kRules if none is fine enough.
-void chooseEdgeRules(const EdgeBatch& batch, std::int32_t* rules);
-void integrateEdge(EdgeBatch& batch, int rule);
-
-/// Means over pairs with a common corner, summed: (edge of S) x T and S x (edge of T).
-struct alignas(64) VertexBatch {
-  float arm[12][kLanes];  ///< other corners of S and of T, seen from the common one
-  float value[kLanes];
-  float byArm[12][kLanes];
-};
-void chooseVertexRules(const VertexBatch& batch, std::int32_t* rules);
-void integrateVertex(VertexBatch& batch, int rule);
-
 /// Name of the instruction set in use.
 [[nodiscard]] const char* instructionSet();
 

@@ -65,21 +65,6 @@ MovingSet::MovingSet(const TriangleMesh& mesh, const std::vector<bool>& moves)
     (faceMoves[f] ? moving : fixed).push_back(f);
   }
 
-  movingAroundBegin_.assign(vertexCount + 1, 0);
-  for (const std::int32_t f : moving) {
-    for (int k = 0; k < 3; ++k) ++movingAroundBegin_[faces(f, k) + 1];
-  }
-  for (std::size_t v = 0; v < vertexCount; ++v) movingAroundBegin_[v + 1] += movingAroundBegin_[v];
-  movingAround_.resize(movingAroundBegin_.back());
-  std::vector<std::size_t> place(movingAroundBegin_.begin(), movingAroundBegin_.end() - 1);
-  for (std::size_t i = 0; i < moving.size(); ++i) {
-    for (int k = 0; k < 3; ++k) {
-      movingAround_[place[faces(moving[i], k)]++] = {static_cast<std::int32_t>(i), k};
-    }
-  }
-
-  involved = moving;
-  std::vector<bool> listed = faceMoves;
   touchingBegin_.push_back(0);
   std::vector<std::int32_t> found;
   for (const std::int32_t s : moving) {
@@ -94,8 +79,6 @@ MovingSet::MovingSet(const TriangleMesh& mesh, const std::vector<bool>& moves)
     touchingBegin_.push_back(touching_.size());
 
     for (const std::int32_t t : found) {
-      if (!listed[t]) involved.push_back(t);
-      listed[t] = true;
       if (t == s || (faceMoves[t] && t < s)) continue;
       AdjacentPair pair{s, t, rowOf(faces, s), rowOf(faces, t)};
       const auto cornersS = pair.cornersS;

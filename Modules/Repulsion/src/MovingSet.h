@@ -21,12 +21,6 @@ struct AdjacentPair {
   std::array<std::int32_t, 3> cornersT{};
 };
 
-/// A corner of the k-th moving face.
-struct FaceCorner {
-  std::int32_t face = 0;
-  std::int32_t corner = 0;
-};
-
 /// Which faces move, and who touches whom: all that the evaluators need besides positions.
 class MovingSet {
  public:
@@ -41,17 +35,9 @@ class MovingSet {
   std::vector<AdjacentPair> edgePairs;  ///< each unordered pair once, at least one face moving
   std::vector<AdjacentPair> vertexPairs;
 
-  std::vector<std::int32_t> involved;  ///< the moving faces, then the fixed ones that touch them
-
   /// Faces that share a corner with the k-th moving face, ascending; itself included.
   [[nodiscard]] std::span<const std::int32_t> touching(std::size_t k) const {
     return {touching_.data() + touchingBegin_[k], touching_.data() + touchingBegin_[k + 1]};
-  }
-
-  /// Where moving faces have vertex `v`, in their order.
-  [[nodiscard]] std::span<const FaceCorner> movingAround(std::size_t v) const {
-    return {movingAround_.data() + movingAroundBegin_[v],
-            movingAround_.data() + movingAroundBegin_[v + 1]};
   }
 
   void requireVertexCount(const Positions& positions) const;
@@ -59,8 +45,6 @@ class MovingSet {
  private:
   std::vector<std::size_t> touchingBegin_;
   std::vector<std::int32_t> touching_;
-  std::vector<std::size_t> movingAroundBegin_;
-  std::vector<FaceCorner> movingAround_;
 };
 
 [[nodiscard]] inline Corners cornersOf(const Positions& positions, const Faces& faces,

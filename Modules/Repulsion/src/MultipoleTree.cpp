@@ -3,7 +3,6 @@
 
 #include "Explica/Repulsion/MultipoleTree.h"
 
-#include "AdjacentChunks.h"
 #include "Assembly.h"
 #include "ClusterTree.h"
 #include "Explica/Core/Errors.h"
@@ -260,9 +259,7 @@ class Pool {
 /// What an evaluation writes besides its result.
 struct Workspace {
   ClusterTree movingTree;
-  std::vector<FaceArea> areas;
   std::vector<FaceForce> forces;
-  std::vector<AdjacentChunks::Sum> adjacent;
   Pool<Lists> lists;
 };
 
@@ -280,7 +277,6 @@ struct MultipoleTree::State {
   MultipoleTreeOptions options;
   double unit = 1;  // mm, a power of two next to the mean face size
   ClusterTree fixedTree;
-  AdjacentChunks adjacent;
   mutable Pool<Workspace> workspaces;
 
   /// What `nearRatio` adds to the radius of the largest of some targets, in units.
@@ -293,12 +289,10 @@ struct MultipoleTree::State {
                NearPairs& nearPairs) const;
   void gatherShared(const ClusterTree& targets, std::int32_t block, const ClusterTree& tree,
                     Shared& shared) const;
-  void sumBlock(const Positions& positions, const std::vector<FaceArea>& areas,
-                const ClusterTree& movingTree, std::int32_t block, Lists& lists,
-                std::vector<FaceForce>& forces) const;
-  void sumLeaf(const Positions& positions, const std::vector<FaceArea>& areas,
-               const ClusterTree& movingTree, std::int32_t group, std::int32_t block, Lists& lists,
-               std::vector<FaceForce>& forces) const;
+  void sumBlock(const Positions& positions, const ClusterTree& movingTree, std::int32_t block,
+                Lists& lists, std::vector<FaceForce>& forces) const;
+  void sumLeaf(const Positions& positions, const ClusterTree& movingTree, std::int32_t group,
+               std::int32_t block, Lists& lists, std::vector<FaceForce>& forces) const;
 };
 
 MultipoleTree::MultipoleTree(const TriangleMesh& mesh, const std::vector<bool>& vertexMoves,
@@ -323,14 +317,6 @@ MultipoleTree::MultipoleTree(const TriangleMesh& mesh, const std::vector<bool>& 
   }
   state->fixedTree.build(mesh.positions, mesh.faces, state->set.fixed, state->unit, options.opening,
                          options.nearRatio);
-  ClusterTree movingTree;
-  movingTree.build(mesh.positions, mesh.faces, state->set.moving, state->unit, options.opening,
-                   options.nearRatio);
-  std::vector<std::int32_t> rank(static_cast<std::size_t>(mesh.faceCount()), 0);
-  for (std::size_t i = 0; i < movingTree.order().size(); ++i) {
-    rank[state->set.moving[movingTree.order()[i]]] = static_cast<std::int32_t>(i);
-  }
-  state->adjacent = AdjacentChunks(state->set, rank);
   state_ = std::move(state);
 }
 
@@ -396,21 +382,19 @@ void MultipoleTree::State::addNear(const kernels::TargetLeaf& target, const Clus
   }
 }
 
-void MultipoleTree::State::sumBlock(const Positions& positions, const std::vector<FaceArea>& areas,
-                                    const ClusterTree& movingTree, std::int32_t block, Lists& lists,
+void MultipoleTree::State::sumBlock(const Positions& positions, const ClusterTree& movingTree,
+                                    std::int32_t block, Lists& lists,
                                     std::vector<FaceForce>& forces) const {
   gatherShared(movingTree, block, movingTree, lists.shared[0]);
   gatherShared(movingTree, block, fixedTree, lists.shared[1]);
   const ClusterTree::Node& node = movingTree.nodes()[block];
   for (std::int32_t first = node.first; first < node.first + node.count; first += kLanes) {
-    sumLeaf(positions, areas, movingTree, movingTree.groups()[first / kLanes], block, lists,
-            forces);
+    sumLeaf(positions, movingTree, movingTree.groups()[first / kLanes], block, lists, forces);
   }
 }
 
-void MultipoleTree::State::sumLeaf(const Positions& positions, const std::vector<FaceArea>& areas,
-                                   const ClusterTree& movingTree, std::int32_t group,
-                                   std::int32_t block, Lists& lists,
+void MultipoleTree::State::sumLeaf(const Positions& positions, const ClusterTree& movingTree,
+                                   std::int32_t group, std::int32_t block, Lists& lists,
                                    std::vector<FaceForce>& forces) const {
   const ClusterTree::Node& leaf = movingTree.nodes()[group];
   const std::array<float, 3> shift =
@@ -473,8 +457,8 @@ void MultipoleTree::State::sumLeaf(const Positions& positions, const std::vector
 
   for (int lane = 0; lane < leaf.count; ++lane) {
     const std::int32_t slot = movingTree.order()[leaf.first + lane];
-    const FaceArea& area = areas[slot];
     const Corners own = cornersOf(positions, set.faces, set.moving[slot]);
+    const FaceArea area = faceArea(own);
     constexpr double kThird = 1.0 / 3;
     std::array<double, 2> phi = {nearPairs.phi(0, lane), nearPairs.phi(1, lane)};
     Vector total = Vector::Zero();
@@ -503,10 +487,6 @@ KnotValue MultipoleTree::evaluate(const Positions& positions) const {
   std::unique_ptr<Workspace> work = state.workspaces.take();
   work->movingTree.build(positions, state.set.faces, state.set.moving, state.unit,
                          state.options.opening, state.options.nearRatio);
-  work->areas.resize(state.set.involved.size());
-  parallelFor(work->areas.size(), 1024, [&](std::size_t i) {
-    work->areas[i] = faceArea(cornersOf(positions, state.set.faces, state.set.involved[i]));
-  });
   work->forces.resize(state.set.moving.size());
   const std::vector<std::int32_t>& blocks = work->movingTree.blocks();
   parallelForBlocks(blocks.size(), std::clamp<std::size_t>(blocks.size() / 64, 1, 8),
@@ -514,27 +494,14 @@ KnotValue MultipoleTree::evaluate(const Positions& positions) const {
                       std::unique_ptr<Lists> lists = work->lists.take();
                       lists->targetsAt.resize(state.set.vertexMoves.size(), 0);
                       for (std::size_t b = begin; b < end; ++b) {
-                        state.sumBlock(positions, work->areas, work->movingTree, blocks[b], *lists,
+                        state.sumBlock(positions, work->movingTree, blocks[b], *lists,
                                        work->forces);
                       }
                       work->lists.giveBack(std::move(lists));
                     });
 
-  KnotValue result;
-  result.gradient.setZero(positions.rows(), 3);
-  state.adjacent.add(positions, work->areas, state.unit, work->adjacent, result.value,
-                     result.gradient);
-  for (const FaceForce& force : work->forces) result.value += force.value;
-  parallelFor(state.set.vertexMoves.size(), 4096, [&](std::size_t v) {
-    auto row = result.gradient.row(static_cast<Eigen::Index>(v));
-    if (!state.set.vertexMoves[v]) {
-      row.setZero();
-      return;
-    }
-    for (const FaceCorner& at : state.set.movingAround(v)) {
-      row += work->forces[at.face].byCorner[at.corner].transpose();
-    }
-  });
+  KnotValue result = assemble(state.set, positions, work->forces,
+                              adjacentPairs(state.set, positions, PairAccuracy::Coarse));
   state.workspaces.giveBack(std::move(work));
   return result;
 }

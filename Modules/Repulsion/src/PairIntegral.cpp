@@ -75,7 +75,7 @@ struct Ladder {
   double sixteen;  // degree 8; below it the larger simplex is halved
   int depth;       // halvings at most
 };
-constexpr Ladder kCoarse = {4.0, 1.5, 0.8, 12};   // relative error about 1e-3
+constexpr Ladder kCoarse = {4.0, 1.0, 0.6, 12};   // relative error about 1e-3
 constexpr Ladder kStandard = {14, 4.5, 2.0, 20};  // 1e-6, except needles
 constexpr Ladder kFine = {200, 14, 4.0, 28};      // 1e-9
 

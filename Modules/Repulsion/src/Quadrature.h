@@ -23,7 +23,6 @@ using Rule = std::span<const RulePoint>;
 /// Gauss-Legendre on the segment: coordinates (1 - s, s, 0); degree 2 n - 1.
 [[nodiscard]] Rule segmentRule2();
 [[nodiscard]] Rule segmentRule3();
-[[nodiscard]] Rule segmentRule4();
 [[nodiscard]] Rule segmentRule5();
 
 /// The point itself.

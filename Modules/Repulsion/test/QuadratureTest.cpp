@@ -50,8 +50,8 @@ TEST(Quadrature, TriangleRulesAreExactToTheirDegreeAndNoFurther) {
 }
 
 TEST(Quadrature, SegmentRulesAreExactToTheirDegreeAndNoFurther) {
-  const std::array<std::pair<Rule, int>, 4> rules = {
-      {{segmentRule2(), 3}, {segmentRule3(), 5}, {segmentRule4(), 7}, {segmentRule5(), 9}}};
+  const std::array<std::pair<Rule, int>, 3> rules = {
+      {{segmentRule2(), 3}, {segmentRule3(), 5}, {segmentRule5(), 9}}};
   for (const auto& [rule, degree] : rules) {
     EXPECT_LT(segmentError(rule, degree), 1e-15) << degree;
     EXPECT_GT(segmentError(rule, degree + 1), 1e-7) << degree;

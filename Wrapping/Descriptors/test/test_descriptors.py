@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The descriptions agree with the commands, and the tools that they are for can use them."""
 
-import importlib.util
 import json
 import os
 import pathlib
@@ -16,7 +15,6 @@ import tempfile
 import time
 import unittest
 
-import jsonschema
 
 HERE = pathlib.Path(__file__).resolve().parent
 FOLDER = pathlib.Path(os.environ["EXPLICA_DESCRIPTORS"])
@@ -31,13 +29,6 @@ def file_name(command):
     return "explica-" + command["command"].replace(" ", "-")
 
 
-def boutiques():
-    """(declaration, descriptor) of every command."""
-    for command in declarations():
-        file = FOLDER / "boutiques" / (file_name(command) + ".json")
-        yield command, json.loads(file.read_text())
-
-
 def samples():
     """What each format says of one small command, by file name."""
 
@@ -48,7 +39,6 @@ def samples():
 
     name = "explica-phantom-shell"
     return {
-        f"{name}.json": (FOLDER / "boutiques" / f"{name}.json").read_text(),
         f"{name}.1": (FOLDER / "man" / f"{name}.1").read_text(),
         f"{name}.bash": part("completion/explica.bash", "    'phantom shell')\n", "\n      ;;\n"),
         f"{name}.zsh": part("completion/_explica", "  'phantom shell')\n", "\n    ;;\n"),
@@ -67,98 +57,6 @@ class Golden(unittest.TestCase):
         for name, text in made.items():
             kept = (folder / name).read_text()
             self.assertEqual(kept.splitlines(), text.splitlines(), f"{name}: Testing/update-pages.sh")
-
-
-class Boutiques(unittest.TestCase):
-    def test_descriptors_obey_the_schema(self):
-        schema = json.loads((HERE / "boutiques.schema.json").read_text())
-        jsonschema.Draft7Validator.check_schema(schema)
-        for command, descriptor in boutiques():
-            with self.subTest(command=command["command"]):
-                jsonschema.validate(descriptor, schema)
-
-    def test_schema_refuses_mistakes(self):
-        schema = json.loads((HERE / "boutiques.schema.json").read_text())
-        _, right = next(boutiques())
-        for change in (
-            lambda d: d.pop("command-line"),
-            lambda d: d.update(colour="red"),
-            lambda d: d["inputs"][0].update(type="Integer"),
-            lambda d: d["inputs"].append(d["inputs"][0]),
-            lambda d: d["inputs"][0].update({"type": "File", "value-choices": ["a"]}),
-            lambda d: d["output-files"][0].pop("path-template"),
-        ):
-            wrong = json.loads(json.dumps(right))
-            change(wrong)
-            with self.assertRaises(jsonschema.ValidationError):
-                jsonschema.validate(wrong, schema)
-
-    @unittest.skipUnless(importlib.util.find_spec("boutiques"), "skipped: boutiques is not installed")
-    def test_descriptors_obey_the_schema_proper(self):
-        from boutiques.validator import validate_descriptor
-
-        for command in declarations():
-            validate_descriptor(str(FOLDER / "boutiques" / (file_name(command) + ".json")))
-
-    def test_rules_beyond_the_schema(self):
-        for command, d in boutiques():
-            with self.subTest(command=command["command"]):
-                for key in ("id", "value-key"):
-                    values = [i[key] for i in d["inputs"]]
-                    self.assertEqual(len(values), len(set(values)), "unique " + key)
-                ids = [o["id"] for o in d.get("output-files", [])]
-                self.assertEqual(len(ids), len(set(ids)))
-                keys = re.findall(r"\[[^\]]*\]", d["command-line"])
-                self.assertEqual(keys, [i["value-key"] for i in d["inputs"]])
-                for o in d.get("output-files", []):
-                    self.assertTrue(o["path-template"].startswith("[OUT]/"))
-                self.assertEqual([e["code"] for e in d["error-codes"]], [1, 2, 3, 4])
-
-    def test_every_option_of_the_command_is_there(self):
-        for command, d in boutiques():
-            self.assertEqual(
-                {i["name"] for i in d["inputs"]}, {p["name"] for p in command["parameters"]}
-            )
-
-    @staticmethod
-    def line(descriptor, values):
-        """The command line that Boutiques makes of a descriptor and an invocation."""
-        line = descriptor["command-line"]
-        for i in descriptor["inputs"]:
-            text = ""
-            if i["id"] in values:
-                value = values[i["id"]]
-                if i["type"] == "Flag":
-                    text = i["command-line-flag"] if value else ""
-                else:
-                    separator = i.get("list-separator", " ")
-                    given = separator.join(map(str, value)) if i.get("list") else str(value)
-                    flag = i.get("command-line-flag")
-                    text = flag + i.get("command-line-flag-separator", " ") + given if flag else given
-            elif not i["optional"]:
-                raise KeyError(i["id"])
-            line = line.replace(i["value-key"], text)
-        return line
-
-    def run_line(self, name, **values):
-        descriptor = dict((c["command"], d) for c, d in boutiques())[name]
-        words = shlex.split(self.line(descriptor, values))
-        self.assertEqual(words[0], "explica")
-        done = subprocess.run([EXECUTABLE, *words[1:]])
-        self.assertIn(done.returncode, (0, 3))
-
-    def test_invocations_run(self):
-        with tempfile.TemporaryDirectory() as folder:
-            shell, thick, both = (f"{folder}/{name}" for name in ("shell", "thick", "both"))
-            self.run_line("phantom shell", size=16, aspect="1,1,2", out=shell, quiet=True)
-            self.run_line("thickness", SEG=f"{shell}/labels.nii.gz", inner=[1], tissue=[2],
-                          layers=2, method="eulerian", out=thick, quiet=True)  # fmt: skip
-            record = json.loads(pathlib.Path(thick, "provenance.json").read_text())
-            self.assertEqual(record["options"]["method"], "eulerian")
-            for name in ("p19", "p34"):
-                self.run_line(f"phantom polygon{name[1:]}", out=f"{folder}/{name}", quiet=True)
-            self.run_line("embed", TARGET=[f"{folder}/{n}/polygon.csv" for n in ("p19", "p34")],
-                          combine=[0.3, 0.7], order=8, max_iterations=2, out=both, quiet=True)  # fmt: skip
 
 
 class Shell:

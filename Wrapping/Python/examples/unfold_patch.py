@@ -17,9 +17,9 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.collections import PolyCollection
 
 import explica
-from explica import report
 
 
 def view_of(surface, region, faces):
@@ -30,14 +30,21 @@ def view_of(surface, region, faces):
 
 
 def draw_patch(surface, region, viewpoint, title, ax):
-    marked = np.zeros(len(surface[0]))
-    marked[region] = 1
-    towards = surface[0][region].mean(axis=0) - viewpoint
-    pixels = report.picture(
-        surface, marked, towards=towards, focus=region, range=(-1.5, 1.5), colours="diverging",
-        width=500, height=500,
-    )  # fmt: skip
-    ax.imshow(pixels[:, :500])
+    """The patch as the viewpoint sees it: faces from back to front, light where they face it."""
+    towards = viewpoint - surface[0][region].mean(axis=0)
+    towards = towards / np.linalg.norm(towards)
+    right = np.cross([0.0, 0.0, 1.0], towards)
+    right /= np.linalg.norm(right)
+    axes = np.stack((right, np.cross(towards, right)), axis=1)
+    faces = surface[1][np.isin(surface[1], region).all(axis=1)]
+    corners = surface[0][faces]
+    normals = explica.face_normals((surface[0], faces))
+    light = normals @ towards / np.maximum(np.linalg.norm(normals, axis=1), 1e-12)
+    order = np.argsort(corners.mean(axis=1) @ towards)
+    colours = plt.get_cmap("copper")(0.15 + 0.85 * np.abs(light[order]))
+    ax.add_collection(PolyCollection(list((corners @ axes)[order]), facecolors=colours))
+    ax.autoscale()
+    ax.set_aspect("equal")
     ax.set_title(title)
     ax.set_axis_off()
 

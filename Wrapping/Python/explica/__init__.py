@@ -11,7 +11,7 @@ Options are keyword arguments with the names and defaults of the command line: `
 is `max_iterations=100`.
 """
 
-from . import phantoms, provenance, report, types
+from . import provenance, types
 from ._explica import (
     Error,
     FileError,
@@ -36,13 +36,7 @@ from ._explica import (
 from ._commands import command, executable
 from ._images import (
     anatomical_grid,
-    correct_topology,
-    heart,
-    iso_surface,
-    segment,
-    segment_hemisphere,
     surfaces_of,
-    surfaces_of_shares,
     thickness,
     thickness_of_levels,
     write_volume,
@@ -60,7 +54,6 @@ from ._surfaces import (
     flat_grid,
     flatten,
     geodesic_distances,
-    inflate,
     inspect_mesh,
     mean_curvature,
     sulcal_depth,
@@ -68,7 +61,6 @@ from ._surfaces import (
     repair_surface,
     select_region,
     self_intersections,
-    sphere_view,
     unfold,
     vertex_areas,
     vertex_flux,

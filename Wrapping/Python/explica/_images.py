@@ -101,59 +101,10 @@ def of_image(*images, module=_explica):
     return wrap
 
 
-def frames_of(frames):
-    """A list of 3-D images of one: a list already, an image or array of three axes, or of four."""
-    if isinstance(frames, (list, tuple)):
-        return list(frames)
-    values, _ = as_array(frames)
-    if values.ndim == 3:
-        return [frames]
-    if is_image(frames):
-        return [like(frames, values[..., n], frames.affine) for n in range(values.shape[3])]
-    return [values[..., n] for n in range(values.shape[3])]
-
-
-def of_frames(function):
-    """Lets a compiled function of `frames` and `affine` take images, 3-D, 4-D or several."""
-    compiled = signature_of(function.__doc__, _explica.keywords.get(function.__name__, []))
-    parameters = dict(compiled.parameters)
-    parameters["frames"] = parameters["frames"].replace(annotation="Union[Image, Sequence[Image]]")
-    parameters["affine"] = parameters["affine"].replace(
-        annotation="Optional[ArrayLike]", default=None
-    )
-
-    @functools.wraps(function)
-    def call(frames, affine=None, **keywords):
-        images = frames_of(frames)
-        if not images:
-            raise _explica.InvalidInput("frames: there is none")
-        values, matrix = as_array(images[0], affine)
-        arrays = [values] + [same_grid(i, matrix, "frames") for i in images[1:]]
-        result = function(frames=arrays, affine=matrix, **keywords)
-        result["segment_of"] = like(images[0], result["segment_of"], matrix)
-        result["thickness"] = [
-            None if t is None else like(images[0], t, matrix) for t in result["thickness"]
-        ]
-        return result
-
-    call.__doc__ = prose(function.__doc__)
-    call.__module__ = "explica"
-    call.__signature__ = inspect.Signature(
-        list(parameters.values()), return_annotation=compiled.return_annotation
-    )
-    return call
-
-
 thickness = of_image("labels")(_explica.thickness)
 thickness_of_levels = of_image("inner", "outer")(_explica.thickness_of_levels)
-heart = of_frames(_explica.heart)
 anatomical_grid = of_image("labels")(_explica.anatomical_grid)
 surfaces_of = of_image("labels", "image")(_explica.surfaces_of)
-surfaces_of_shares = of_image("white_share", "tissue_share")(_explica.surfaces_of_shares)
-segment = of_image("intensity", "mask")(_explica.segment)
-segment_hemisphere = of_image("intensity", "atlas")(_explica.segment_hemisphere)
-correct_topology = of_image("mask")(_explica.correct_topology)
-iso_surface = of_image("level")(_explica.iso_surface)
 
 
 def write_volume(path: "Path", image: "Image", affine: "Optional[ArrayLike]" = None) -> None:

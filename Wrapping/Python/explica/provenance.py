@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: The Explica developers
 # SPDX-License-Identifier: Apache-2.0
-"""Records of how results came about: checked, read, told."""
+"""What this module was built from; each folder's provenance.json tells how results came about."""
 
-from ._explica.provenance import history, prov_json, read_record, sha256, software, verify
+from ._explica.provenance import software
 
-__all__ = ["history", "prov_json", "read_record", "sha256", "software", "verify"]
+__all__ = ["software"]

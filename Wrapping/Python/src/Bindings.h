@@ -6,20 +6,16 @@
 
 namespace explica::python {
 
-// One function a module, each in a source of its own; from Report on, into a submodule.
+// One function a module, each in a source of its own; Provenance into a submodule.
 void bindCore(pybind11::module_& m);
 void bindGeometry(pybind11::module_& m);
 void bindIO(pybind11::module_& m);
 void bindAnnular(pybind11::module_& m);
-void bindHeart(pybind11::module_& m);
 void bindCortex(pybind11::module_& m);
 void bindVisibility(pybind11::module_& m);
 void bindSampling(pybind11::module_& m);
 void bindUnfolding(pybind11::module_& m);
 void bindFlattening(pybind11::module_& m);
-void bindInflation(pybind11::module_& m);
-void bindReport(pybind11::module_& m);
-void bindPhantoms(pybind11::module_& m);
 void bindProvenance(pybind11::module_& m);
 
 }  // namespace explica::python

@@ -12,14 +12,10 @@ PYBIND11_MODULE(_explica, m) {
   explica::python::bindGeometry(m);
   explica::python::bindIO(m);
   explica::python::bindAnnular(m);
-  explica::python::bindHeart(m);
   explica::python::bindCortex(m);
   explica::python::bindVisibility(m);
   explica::python::bindSampling(m);
   explica::python::bindUnfolding(m);
   explica::python::bindFlattening(m);
-  explica::python::bindInflation(m);
-  explica::python::bindReport(m);
-  explica::python::bindPhantoms(m);
   explica::python::bindProvenance(m);
 }

@@ -22,7 +22,7 @@ NAMES = {
     "typing": "Any Dict Iterable List Literal Optional Sequence Tuple Union".split(),
     "types": "Image Path Progress Surface Target".split(),
 }
-SUBMODULES = ("phantoms", "provenance", "report")
+SUBMODULES = ("provenance",)
 
 
 def written(value):

@@ -6,6 +6,7 @@
 #include "Explica/Report/Drawing.h"
 #include "ReportParts.h"
 
+#include <array>
 #include <cmath>
 
 namespace explica::pipeline {
@@ -116,6 +117,27 @@ void chartUnfolding(ResultFolder& results, const StepFolder& step) {
   results.attempt("Visibility maps", [&] { chartMaps(results, step, "visibility.shape.gii", ""); });
   results.attempt("Distortion maps",
                   [&] { chartMaps(results, step, "distortion.shape.gii", kDistortionPlace); });
+}
+
+void chartBeat(ResultFolder& results, const StepFolder& step) {
+  const Table table = readTable(step.folder / "frames.tsv");
+  const std::vector<double>* frames = table.column("frame");
+  if (frames == nullptr || frames->size() < 2) return;
+  std::vector<report::ChartMark> marks;
+  for (std::size_t f = 0; f < frames->size(); ++f) {
+    const std::string& phase = (*table.text("phase"))[f];
+    if (phase != "n/a") marks.push_back({(*frames)[f], phase});
+  }
+  for (const auto& [column, title, unit] :
+       {std::array{"cavity_volume_ml", "Volume of the cavity", "ml"},
+        {"thickness_mean", "Mean thickness of the wall", "mm"},
+        {"mass_g", "Mass of the wall", "g"}}) {
+    const std::vector<double>* values = table.column(column);
+    if (values == nullptr) continue;
+    results.content().charts.push_back(
+        {"", report::curvesSvg({{title, *frames, *values}}, {title, "frame", unit, false, marks}),
+         titleOf(step.name)});
+  }
 }
 
 }  // namespace explica::pipeline

@@ -148,6 +148,9 @@ void showStep(ResultFolder& results, const StepFolder& step, const std::vector<G
   }
   results.attempt("Where faces cross", [&] { showCrossings(results, step, options); });
   results.attempt("Pictures of " + titleOf(step.name), [&] { showOwnPictures(results, step); });
+  if (step.has("frames.tsv")) {
+    results.attempt("Curves of " + titleOf(step.name), [&] { chartBeat(results, step); });
+  }
 }
 
 }  // namespace

@@ -90,4 +90,7 @@ void showFlat(ResultFolder& results, const StepFolder& step, const std::vector<G
 /// Pictures that a command has drawn itself: SVG and PNG files of its folder.
 void showOwnPictures(ResultFolder& results, const StepFolder& step);
 
+/// Volume, thickness and mass of a heart over its frames.
+void chartBeat(ResultFolder& results, const StepFolder& step);
+
 }  // namespace explica::pipeline

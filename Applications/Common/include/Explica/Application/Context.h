@@ -8,10 +8,12 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 namespace explica::app {
@@ -69,15 +71,16 @@ class Context {
 
   /// A number or text for summary.json that no stage describes; NaN becomes null.  A key that
   /// starts with "seconds" is a time.
-  void result(const std::string& key, double value);
-  void result(const std::string& key, int value);
-  void result(const std::string& key, long value);
-  void result(const std::string& key, long long value);
-  void result(const std::string& key, std::size_t value);
-  void result(const std::string& key, bool value);
-  void result(const std::string& key, const std::string& value);
-  void result(const std::string& key, const char* value);
-  void result(const std::string& key, const std::vector<double>& values);
+  template <class T>
+  void result(const std::string& key, const T& value) {
+    using Number = std::conditional_t<std::is_same_v<T, bool>, bool, std::int64_t>;
+    if constexpr (std::is_integral_v<T>) {
+      result(key, Result::Value(static_cast<Number>(value)));
+    } else {
+      result(key, Result::Value(value));
+    }
+  }
+  void result(const std::string& key, const Result::Value& value);
   /// Any JSON (include <nlohmann/json.hpp>).
   void result(const std::string& key, const nlohmann::ordered_json& value);
 

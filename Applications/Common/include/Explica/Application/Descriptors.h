@@ -13,9 +13,6 @@ using provenance::Json;
 // Each function turns declarations, as `explica COMMAND --describe` prints them, into what another
 // tool reads.  `version` is the software's.
 
-/// Boutiques descriptor, schema 0.5.
-[[nodiscard]] Json boutiquesOf(const Json& command, const std::string& version);
-
 [[nodiscard]] std::string bashCompletionOf(const Json& commands);
 [[nodiscard]] std::string zshCompletionOf(const Json& commands);
 

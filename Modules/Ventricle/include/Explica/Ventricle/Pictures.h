@@ -26,8 +26,4 @@ struct Drawn {
 /// out of means.
 [[nodiscard]] Drawn slicePicture(const Beat& beat, std::size_t frame);
 
-/// Cavity volume, mean thickness and mass over the frames, with healthy adults' ranges of volumes
-/// and mass at end-diastole and end-systole (Reference.h).
-[[nodiscard]] Drawn beatCurves(const Beat& beat);
-
 }  // namespace explica::ventricle
