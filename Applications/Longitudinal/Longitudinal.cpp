@@ -74,12 +74,12 @@ void declare(Declaration& d, Settings& s) {
     s.run = command->begin();
     d.include(s.run.declaration, "");
     for (const char* ours :
-         {"atlas", "hemisphere", "resume", "kind", "steps", "given-surfaces", "unfold-surface",
-          "segment.atlas", "segment.mask", "segment.template-transform"}) {
+         {"hemisphere", "resume", "kind", "steps", "given-surfaces", "unfold-surface"}) {
       d.without(ours);
     }
     for (const Parameter& parameter : s.run.declaration.parameters) {
       const std::string& name = parameter.option.name;
+      if (parameter.file) d.without(name);  // of an image or a mesh that is made here
       for (const char* step : {"thickness.", "resample.", "unfold."}) {
         if (name.starts_with(step)) d.without(name);
       }
@@ -146,23 +146,39 @@ std::vector<Side> sidesOf(const Settings& s) {
   return {{"", std::string(nameOf(s.hemisphere))}};
 }
 
+/// `explica run` of the mean, but for its input and atlas.
+Json runOfTemplate(const Context& context, const Settings& s) {
+  Json values = givenOptions(context, s.run.declaration);
+  values["kind"] = "t1";
+  values["hemisphere"] = nameOf(s.hemisphere);
+  values["steps"] = {"segment", "surface", "sphere", "report"};
+  if (values.value("template", "colin27") != "none") {
+    values["steps"].insert(values["steps"].end(), {"register", "parcellate"});
+  }
+  return values;
+}
+
+/// In a dry run: what the runs would refuse is refused of the first session as it is.
+void checkBeforehand(Context& context, const Settings& s) {
+  if (!context.given("dry-run")) return;
+  Json values = runOfTemplate(context, s);
+  values["INPUT"] = s.sessions.front();
+  if (s.atlas) values["atlas"] = *s.atlas;
+  context.runCommand(*findCommand("run"), "template", values);
+}
+
 /// Takes the mean, then each session, through `explica run`.
 Termination runAll(Context& context, const Settings& s) {
   const fs::path out = context.outputFolder();
   Termination worst = Termination::Finished;
   const auto take = [&](const std::string& name, Json values) {
     values["INPUT"] = (out / (name + ".nii.gz")).string();
-    values["kind"] = "t1";
-    values["hemisphere"] = nameOf(s.hemisphere);
     const Outcome outcome = context.runCommand(*findCommand("run"), name, values);
     checkpoint(context.monitor());
     if (!reachedGoal(outcome.termination)) worst = outcome.termination;
   };
-  Json values = givenOptions(context, s.run.declaration);
+  Json values = runOfTemplate(context, s);
   if (s.atlas) values["atlas"] = (out / "atlas.nii.gz").string();
-  const bool registered = values.value("template", "colin27") != "none";
-  values["steps"] = {"segment", "surface", "sphere", "report"};
-  if (registered) values["steps"].insert(values["steps"].end(), {"register", "parcellate"});
   take("template", values);
   const fs::path segment = out / "template/segment";
   values["steps"] = {"segment", "surface"};
@@ -210,6 +226,7 @@ void takeBack(Context& context, const Settings& s) {
 Termination run(Context& context, const Settings& s) {
   const std::vector<Volume<float>> sessions = readSessions(context, s);
   const std::optional<Volume<Label>> atlas = readAtlas(context, s);
+  checkBeforehand(context, s);
   context.judged();
   Change change;
   double voxel = 0;

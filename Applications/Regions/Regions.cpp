@@ -263,7 +263,8 @@ Termination run(Context& context, const Settings& s) {
     table.name = stem.substr(3);
     text += longRows(personOf(s), side, table);
     regions += table.regions.size();
-    const StatsHead head{personOf(s), stem.substr(0, 2), s.atlases[a]};
+    const StatsHead head{personOf(s), stem.substr(0, 2),
+                         fs::path(s.atlases[a]).filename().string()};
     const StatsRow cortex = table.rows.back();
     table.rows.pop_back();
     writeTextFile(context.output(stem + ".stats"), statsText(head, cortex, table.rows));

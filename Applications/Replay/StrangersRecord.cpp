@@ -6,6 +6,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Provenance/Verify.h"
 
+#include <algorithm>
 #include <functional>
 #include <optional>
 
@@ -71,6 +72,13 @@ void forEachText(Json& value, const std::function<void(Json&)>& change) {
   }
 }
 
+/// A default is no choice of the user's: a command may choose better, for its steps above all.
+bool wasGiven(const Json& record, const Parameter& parameter, const Json& value) {
+  const Json given = record.value("given", Json::array());
+  return std::find(given.begin(), given.end(), parameter.option.name) != given.end() ||
+         value != provenance::valueOf(parameter.option);
+}
+
 bool looksLikeElsewhere(const std::string& text) {
   return !provenance::staysBelow(text) && text.find('/') != std::string::npos;
 }
@@ -87,15 +95,17 @@ void requireConfined(const Declaration& declaration, const fs::path& recordPath)
 Json confinedValues(Context& context, Declaration& declaration, const Json& record,
                     const fs::path& recordPath, const fs::path& out) {
   const Inputs inputs(context, record, recordPath);
-  Json values = record["options"];
-  values.update(record["execution"]["arguments"]);
-  for (auto& [name, value] : values.items()) {
+  Json recorded = record["options"];
+  recorded.update(record["execution"]["arguments"]);
+  Json values = Json::object();
+  for (auto& [name, value] : recorded.items()) {
     const auto refuse = [&, name = name](const std::string& text, const std::string& why) {
       throw InvalidInput(recordPath.string() + ": " + name + " is '" + provenance::printable(text) +
                          "', " + why);
     };
     Parameter* parameter = declaration.find(name);
     if (parameter == nullptr) refuse(provenance::textOf(value), "which this version does not know");
+    const bool given = wasGiven(record, *parameter, value);
     const bool file = parameter->file.has_value();
     const bool folder =
         file && (*parameter->file == FileKind::Folder || *parameter->file == FileKind::Any);
@@ -118,6 +128,7 @@ Json confinedValues(Context& context, Declaration& declaration, const Json& reco
       const auto* flag = std::get_if<bool*>(&parameter->option.target);
       if (flag != nullptr && *flag == declaration.reuse) value = false;
     }
+    if (given) values[name] = value;
     try {
       provenance::setValue(parameter->option, value);
     } catch (const UsageError& fault) {

@@ -5,10 +5,7 @@
 
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/IO/VolumeFile.h"
-#include "Explica/Testing/KillMoments.h"
 #include "Explica/Testing/Meshes.h"
-#include "Explica/Testing/Stops.h"
-#include "Explica/Testing/WholeFiles.h"
 #include "QuickRuns.h"
 
 #include <gtest/gtest.h>
@@ -275,62 +272,6 @@ TEST_F(Longitudinal, FindsNoChangeWhereThereIsNone) {
   double squares = 0;
   for (const double change : changes()) squares += change * change / 4;
   EXPECT_LT(std::sqrt(squares), 0.04);
-}
-
-// Half a comparison is of no use.
-TEST_F(Longitudinal, EndedAnywhereLeavesNothingAndRunsAgainToTheSameBytes) {
-  for (const std::string seed : {"1", "2"}) {
-    ASSERT_EQ(explica({"phantom", "cortex", "--size", "32", "--spacing", "2", "--seed", seed,
-                       "--out", folder_ / seed})
-                  .exitCode,
-              0);
-  }
-  writeText(folder_ / "sides.nii.txt", "1 Frontal_Inf_L\n2 Frontal_Inf_R\n");
-  Volume<Label> sides;
-  sides.grid.size = {2, 2, 2};
-  sides.grid.spacing = {60, 60, 60};
-  sides.grid.origin = {-30, -30, -30};
-  sides.data = {1, 2, 1, 2, 1, 2, 1, 2};
-  io::writeVolume(folder_ / "sides.nii.gz", sides);
-  const std::string out = folder_ / "out";
-  const std::vector<std::string> words = {"longitudinal",
-                                          folder_ / "1/t1.nii.gz",
-                                          folder_ / "2/t1.nii.gz",
-                                          "--atlas",
-                                          folder_ / "sides.nii.gz",
-                                          "--hemisphere",
-                                          "L",
-                                          "--template",
-                                          "none",
-                                          "--surface.faces",
-                                          "1000",
-                                          "--force",
-                                          "--out",
-                                          out};
-  const long checks = checksFor(words);
-  ASSERT_GT(checks, 100);
-  const auto whole = stableHashes(out);
-  ASSERT_TRUE(fs::exists(out + "/regions/regions.tsv"));
-  fs::remove_all(out);
-  for (const long check : momentsOf(checks, 4)) {
-    const CommandResult ended = explica(words, stopAtCheck(check));
-    EXPECT_TRUE(isInterrupted(ended)) << ended;
-    EXPECT_FALSE(fs::exists(out)) << "check " << check << " of " << checks;
-  }
-  KillMoments moments(20261126);
-  while (!moments.kill(words)) fs::remove_all(out);
-  const CommandResult again = explica(words);
-  EXPECT_EQ(again.exitCode, 3) << again;  // smaller than a person's brain
-  EXPECT_EQ(differences(stableHashes(out), whole), std::vector<std::string>());
-}
-
-TEST_F(Longitudinal, ADryRunLooksAtTheAtlas) {
-  write("first", "2.5", "1", Eigen::Isometry3d::Identity());
-  writeText(folder_ / "damaged.nii.gz", "damaged");
-  const auto result =
-      explica({"longitudinal", folder_ / "first.nii.gz", folder_ / "first.nii.gz", "--atlas",
-               folder_ / "damaged.nii.gz", "--dry-run", "--out", folder_ / "out"});
-  EXPECT_EQ(result.exitCode, 2) << result;
 }
 
 TEST_F(Longitudinal, OfOneSessionIsRefused) {

@@ -96,7 +96,7 @@ TEST(Framework, WrongUseIsExitCodeOneWithAHint) {
       {shell(folder / "a", {"--aspect", "1,", "1,", "-2"}), "without spaces: --aspect 1,1,-2"},
       {{"thickness", "x.nii", "--tissue", "2", "3", "--out", folder / "a"}, "--tissue 2,3"},
       {shell(folder / "a", {"surplus"}), "'surplus' was not expected"},
-      {shell(folder / "a", {"--threads", "0"}), "threads: '0' is not a whole number, 1 to 4096"},
+      {shell(folder / "a", {"--threads", "0"}), "threads: '0' is not within 1 to 4096"},
       {shell(folder / "a", {"--spacing"}), "--spacing"},
   };
   for (const auto& row : rows) {
@@ -129,14 +129,14 @@ TEST(Framework, OptionsAreJudgedBeforeAnyFileIsOpened) {
     std::string expected;
   } rows[] = {
       {{"thickness", "rubbish.nii", "--inner", "1", "--tissue", "2", "--layers", "0"},
-       "layers: '0' is not a whole number, 1 to 1000"},
+       "layers: '0' is not within 1 to 1000"},
       {{"unfold", "rubbish.gii", "--center", "0", "0", "19", "--radius", "5"},
        "--center: separate its numbers by commas, without spaces: --center 0,0,19"},
       {{"unfold", "rubbish.gii", "--center", "0,0,19", "--radius", "5", "--max-iterations", "-1"},
-       "max-iterations: '-1' is not a whole number"},
+       "max-iterations: '-1' is not within 1 to 100,000"},
       {{"inflate", "rubbish.gii", "--max-iterations", "-1"},
-       "max-iterations: '-1' is not a whole number"},
-      {{"flatten", "rubbish.gii", "--grid", "-1"}, "grid: '-1' is not a number"},
+       "max-iterations: '-1' is not within 1 to 100,000"},
+      {{"flatten", "rubbish.gii", "--grid", "-1"}, "grid: '-1' is not "},
       {{"surface", "rubbish.nii", "--white", "3"}, "--white is called --white-label now"},
       {{"run", "rubbish.nii", "--thickness.grid=3"},
        "--thickness.grid is called --thickness.cells now"},

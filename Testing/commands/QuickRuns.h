@@ -115,6 +115,17 @@ inline void writeMapAndRegions(const TemporaryFolder& folder) {
   io::writeSurface(folder / "sphere.reg.surf.gii", geometry::makeIcosphere(3, 10.0));
 }
 
+/// Labels of a left and a right side of the brain.
+inline void writeSides(const TemporaryFolder& folder) {
+  writeText(folder / "sides.nii.txt", "1 Frontal_Inf_L\n2 Frontal_Inf_R\n");
+  Volume<Label> sides;
+  sides.grid.size = {2, 2, 2};
+  sides.grid.spacing = {60, 60, 60};
+  sides.grid.origin = {-30, -30, -30};
+  sides.data = {1, 2, 1, 2, 1, 2, 1, 2};
+  io::writeVolume(folder / "sides.nii.gz", sides);
+}
+
 /// An ellipse about the origin, mm.
 inline void writeEllipse(const std::string& file, double a, double b) {
   Positions2 polygon(120, 2);
@@ -229,6 +240,14 @@ inline const std::vector<QuickRun>& quickRuns() {
        {},
        {"inflate", "{folder}/sphere.surf.gii", "--max-iterations", "3", "--frames", "2"},
        writeFoldedSphere},
+      {"Longitudinal",
+       {{"phantom", "cortex", "--size", "32", "--spacing", "2", "--out", "{folder}/1"},
+        {"phantom", "cortex", "--size", "32", "--spacing", "2", "--seed", "2", "--out",
+         "{folder}/2"}},
+       {"longitudinal", "{folder}/1/t1.nii.gz", "{folder}/2/t1.nii.gz", "--atlas",
+        "{folder}/sides.nii.gz", "--hemisphere", "L", "--template", "none", "--surface.faces",
+        "1000"},
+       writeSides},
       {"Register",
        {},
        {"register", "{folder}/lh.sphere", "--to", "{folder}/lh.sphere", "--level", "3"},

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
-// verify, replay and history, on the quickest command.
+// verify, replay and history.
 
-#include "Explica/Testing/Command.h"
+#include "QuickRuns.h"
 
 #include <gtest/gtest.h>
 
@@ -87,6 +87,30 @@ TEST_F(Replay, HistoryTellsTheCommandLine) {
   ASSERT_EQ(result.exitCode, 0) << result;
   EXPECT_TRUE(contains(result.out, "phantom shell --size 12")) << result;
   EXPECT_TRUE(contains(result.out, " s; done)")) << result;
+}
+
+/// What the run chose for its steps, and what the user said although it is the default.
+TEST_F(Replay, OfARunLeavesTheChoicesForItsStepsToTheRun) {
+  ASSERT_EQ(explica({"phantom", "cortex", "--size", "32", "--spacing", "2", "--out", folder_ / "p"})
+                .exitCode,
+            0);
+  writeSides(folder_);
+  std::vector<std::string> words = {"run",          folder_ / "p/t1.nii.gz",
+                                    "--atlas",      folder_ / "sides.nii.gz",
+                                    "--hemisphere", "L",
+                                    "--template",   "none",
+                                    "--steps",      "segment,surface"};
+  std::string pial;
+  for (const std::string out : {"chosen", "said"}) {
+    if (out == "said") words = words + std::vector<std::string>{"--surface.fluid", "0"};
+    // The phantom's brain is smaller than a person's: doubtful.
+    ASSERT_EQ(explica(words + std::vector<std::string>{"--out", folder_ / out}).exitCode, 3);
+    const auto result = explica({"replay", folder_ / out, "--out", folder_ / ("again-" + out)});
+    EXPECT_EQ(result.exitCode, 0) << result;
+    const std::string made = readText(folder_ / (out + "/surface/pial.surf.gii"));
+    EXPECT_NE(made, pial) << "the option has no effect";
+    pial = made;
+  }
 }
 
 }  // namespace

@@ -70,9 +70,11 @@ double cpuSeconds() {
 }
 
 /// The values of a declaration: those of files apart, because paths may differ between equal runs.
-void recordValues(const Declaration& declaration, provenance::Record& record) {
+void recordValues(const Declaration& declaration, const std::set<std::string>& given,
+                  provenance::Record& record) {
   for (const Parameter& parameter : declaration.parameters) {
     const Json value = provenance::valueOf(parameter.option);
+    if (given.count(parameter.option.name)) record.given.push_back(parameter.option.name);
     if (parameter.file || parameter.positional) {
       if (!value.is_null()) record.arguments[parameter.option.name] = value;
     }
@@ -251,7 +253,7 @@ Outcome execute(Run& run, Console& console) {
   try {
     const StopScope abandoned(&state.monitor);
     noteDeclaredInputs(context, declaration);
-    recordValues(declaration, record);
+    recordValues(declaration, run.given, record);
     openFolder(run, state);
     termination = run.invocation.run(context);
   } catch (const DryRunEnds&) {

@@ -156,6 +156,25 @@ TEST(ContinuousCollision, PairsNearerThanTheKeptDistanceHardlyComeNearer) {
   }
 }
 
+TEST(ContinuousCollision, PairsNeverPassTheLeastDistance) {
+  FourPoints x = kTriangleAndVertex;
+  FourPoints motion = {};
+  for (auto& m : motion) m.setZero();
+  AdvanceOptions options;
+  options.leastDistance = 1e-5;
+  double distance = 0.01;
+  for (int step = 0; step < 2000; ++step) {
+    x[0][2] = distance;
+    motion[0] = Vector(0, 0, -4 * distance);
+    distance *= 1 - 4 * safeTime(PairKind::VertexFace, x, motion, 1, options);
+    ASSERT_GT(distance, options.leastDistance) << step;
+  }
+  EXPECT_LT(distance, 3.1 * options.leastDistance);
+  x[0][2] = 1e-7;  // which starts nearer may come nearer still
+  motion[0] = Vector(0, 0, -4e-7);
+  EXPECT_GT(safeTime(PairKind::VertexFace, x, motion, 1, options), 0.2);
+}
+
 TEST(ContinuousCollision, WhatMovesAsOneIsSafeThoughItTouches) {
   const FourPoints x = {Point(0, 0, 0), Point(-1, -1, 0), Point(2, -1, 0), Point(-1, 2, 0)};
   const Vector along(0.3, 0.1, 0.7);

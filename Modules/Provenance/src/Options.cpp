@@ -93,6 +93,11 @@ struct Parser {
     return expected + (range.empty() ? "" : ", " + range);
   }
 
+  /// "within 1 to 1000", "at least 1".
+  [[nodiscard]] std::string within() const {
+    return (range.find(" to ") == std::string::npos ? "" : "within ") + range;
+  }
+
   [[noreturn]] void refuse(std::string_view text, std::string_view expected) const {
     throw UsageError(optionName + ": '" + std::string(text) + "' is not " + std::string(expected));
   }
@@ -120,16 +125,16 @@ struct Parser {
   }
   void element(std::string_view text, int& value) const {
     const double whole = real(text, inRange("a whole number"));  // 1e6, too
+    if (whole != std::floor(whole)) refuse(text, inRange("a whole number"));
     constexpr double kMost = std::numeric_limits<int>::max();
-    if (whole != std::floor(whole) || whole < std::max(least, -kMost) ||
-        whole > std::min(most, kMost)) {
-      refuse(text, inRange("a whole number"));
+    if (whole < std::max(least, -kMost) || whole > std::min(most, kMost)) {
+      refuse(text, range.empty() ? "within -2,147,483,647 to 2,147,483,647" : within());
     }
     value = static_cast<int>(whole);
   }
   void element(std::string_view text, double& value) const {
     value = real(text, inRange("a number"));
-    if (value < least || value > most) refuse(text, inRange("a number"));
+    if (value < least || value > most) refuse(text, within());
   }
   void element(std::string_view text, std::string& value) const { value = text; }
   template <int N>

@@ -146,6 +146,7 @@ Json toJson(const Record& r) {
   json["command"] = r.command;
   const auto told = [&](const Json& value) { return r.withNames ? value : withoutFolders(value); };
   json["options"] = told(r.options);
+  json["given"] = wordList(r.given);
 
   json["inputs"] = Json::array();
   for (const auto& input : r.inputs) {

@@ -29,6 +29,7 @@ std::string_view recordSchema() {
     },
     "command": {"type": "string", "minLength": 1},
     "options": {"type": "object"},
+    "given": {"type": "array", "items": {"type": "string"}},
     "inputs": {"type": "array", "items": {
       "type": "object",
       "required": ["role", "name", "size", "sha256"],

@@ -100,15 +100,15 @@ TEST(Options, NumbersOutOfRangeAreRefusedWhereTheyAreSet) {
     }
     return "accepted";
   };
-  EXPECT_EQ(refusal("count", "0"), "count: '0' is not a whole number, 1 to 1000");
-  EXPECT_EQ(refusal("count", "1001"), "count: '1001' is not a whole number, 1 to 1000");
-  EXPECT_EQ(refusal("count", "1e12"), "count: '1e12' is not a whole number, 1 to 1000");
+  EXPECT_EQ(refusal("count", "0"), "count: '0' is not within 1 to 1000");
+  EXPECT_EQ(refusal("count", "1001"), "count: '1001' is not within 1 to 1000");
+  EXPECT_EQ(refusal("count", "1e12"), "count: '1e12' is not within 1 to 1000");
   EXPECT_EQ(refusal("count", "2.5"), "count: '2.5' is not a whole number, 1 to 1000");
-  EXPECT_EQ(refusal("length", "0"), "length: '0' is not a number, above 0");
+  EXPECT_EQ(refusal("length", "0"), "length: '0' is not above 0");
   EXPECT_EQ(refusal("length", "1e-300"), "accepted");
   EXPECT_EQ(refusal("length", "inf"), "accepted");
-  EXPECT_EQ(refusal("share", "1.5"), "share: '1.5' is not a number, 0 to 1");
-  EXPECT_EQ(refusal("numbers", "3,-1"), "numbers: '-1' is not a whole number, at least 0");
+  EXPECT_EQ(refusal("share", "1.5"), "share: '1.5' is not within 0 to 1");
+  EXPECT_EQ(refusal("numbers", "3,-1"), "numbers: '-1' is not at least 0");
   EXPECT_THROW(setValue(options[0], 2000), UsageError);
   EXPECT_EQ(bounded.count, 3);
   EXPECT_EQ(refusal("count", "1e3"), "accepted");
@@ -156,6 +156,8 @@ TEST(Options, WrongTextIsRefusedWithNameAndExpectation) {
     return "accepted";
   };
   EXPECT_EQ(message("unfold.count", "3.5"), "unfold.count: '3.5' is not a whole number");
+  EXPECT_EQ(message("unfold.count", "1e12"),
+            "unfold.count: '1e12' is not within -2,147,483,647 to 2,147,483,647");
   EXPECT_EQ(message("unfold.weight", "nan"), "unfold.weight: 'nan' is not a number");
   EXPECT_EQ(message("unfold.weight", "1mm"), "unfold.weight: '1mm' is not a number");
   EXPECT_NE(message("unfold.viewpoint", "1,2").find("three numbers"), std::string::npos);

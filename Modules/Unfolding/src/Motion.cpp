@@ -6,6 +6,8 @@
 #include "Explica/Core/DisjointSets.h"
 #include "Explica/Core/Parallel.h"
 
+#include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 #include <span>
@@ -20,11 +22,21 @@ using collision::Pair;
 // Steps that use up nine tenths of it each time lead to gaps in which the barrier is noise.
 constexpr double kTouching = 1e-2;
 
-double safeShare(const Contacts& contacts, std::span<const collision::Meeting> meetings,
-                 const Positions& x, const Positions& motion, double limit = 1) {
+/// Files hold single precision: a coordinate is off by half of epsilon times its size at most, two
+/// points by sqrt(3) of that each.  What is farther apart does not cross once it is written.
+collision::AdvanceOptions advanceFrom(const Contacts& contacts, const Positions& x,
+                                      const Positions& motion) {
   collision::AdvanceOptions options;
   options.keptDistance = kTouching * contacts.range();
-  return collision::largestSafeStep(contacts.scene(), meetings, x, motion, limit, options);
+  options.leastDistance = std::sqrt(3.0) * std::numeric_limits<float>::epsilon() *
+                          (x.cwiseAbs() + motion.cwiseAbs()).maxCoeff();
+  return options;
+}
+
+double safeShare(const Contacts& contacts, std::span<const collision::Meeting> meetings,
+                 const Positions& x, const Positions& motion) {
+  return collision::largestSafeStep(contacts.scene(), meetings, x, motion, 1,
+                                    advanceFrom(contacts, x, motion));
 }
 
 /// Groups of vertices that move as one.
@@ -79,10 +91,12 @@ void findSafeStep(const Contacts& contacts, const Positions& x, Motion& motion) 
 
 std::vector<Pair> blockingPairs(const Contacts& contacts, const Positions& x,
                                 const Motion& motion) {
+  const collision::AdvanceOptions options = advanceFrom(contacts, x, motion.by);
   std::vector<char> blocks(motion.meetings.size(), 0);
   parallelFor(blocks.size(), 512, [&](std::size_t n) {
     const std::span<const collision::Meeting> one(&motion.meetings[n], 1);
-    blocks[n] = safeShare(contacts, one, x, motion.by, kBlocked) < kBlocked;
+    blocks[n] = collision::largestSafeStep(contacts.scene(), one, x, motion.by, kBlocked, options) <
+                kBlocked;
   });
   std::vector<Pair> blocking;
   for (std::size_t n = 0; n < blocks.size(); ++n) {

@@ -13,6 +13,7 @@
 #include "Explica/Geometry/SelfIntersection.h"
 #include "Explica/Testing/InstructionSets.h"
 #include "Explica/Testing/Meshes.h"
+#include "Explica/Unfolding/Account.h"
 #include "Explica/Unfolding/Continuation.h"
 #include "Explica/Unfolding/Distortion.h"
 #include "Explica/Unfolding/Summary.h"
@@ -25,6 +26,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <limits>
 #include <map>
 
 namespace explica::unfolding {
@@ -492,8 +494,8 @@ TEST(Unfold, AGoalOutOfReachEndsSoonAndSaysSo) {
 }
 
 /// The case's sheet and, at the middle of one of the region's faces, the tip of a small fixed face
-/// on each side asked for, 3e-8 mm off, as pial surfaces have them.
-TriangleMesh touched(const Case& c, const std::vector<double>& sides) {
+/// on each side asked for, `gap` mm off, as pial surfaces have them.
+TriangleMesh touched(const Case& c, const std::vector<double>& sides, double gap = 3e-8) {
   const TriangleMesh& sheet = c.mesh;
   const std::int32_t face = c.region.faces[c.region.faces.size() / 2];
   const Point middle = (sheet.corner(face, 0) + sheet.corner(face, 1) + sheet.corner(face, 2)) / 3;
@@ -505,7 +507,7 @@ TriangleMesh touched(const Case& c, const std::vector<double>& sides) {
     const Eigen::Index first = mesh.vertexCount(), last = mesh.faceCount();
     mesh.positions.conservativeResize(first + 3, 3);
     mesh.faces.conservativeResize(last + 1, 3);
-    mesh.positions.row(first) = (middle + side * 3e-8 * up).transpose();
+    mesh.positions.row(first) = (middle + side * gap * up).transpose();
     mesh.positions.row(first + 1) = (middle + side * 0.05 * up + Vector(0.02, 0, 0)).transpose();
     mesh.positions.row(first + 2) = (middle + side * 0.05 * up + Vector(0, 0.02, 0)).transpose();
     for (int k = 0; k < 3; ++k) mesh.faces(last, k) = static_cast<std::int32_t>(first + k);
@@ -529,6 +531,31 @@ TEST(Motion, APairThatAlmostTouchesBlocksAWayTowardsItself) {
   findSafeStep(contacts, mesh.positions, motion);
   EXPECT_LT(motion.safe, kBlocked);
   EXPECT_GT(motion.safe, 0.1);
+}
+
+TEST(Motion, HoweverOftenAPairIsPressedItDoesNotCrossInSinglePrecision) {
+  const Case c;
+  TriangleMesh mesh = touched(c, {1}, 1e-3);
+  mesh.positions.rowwise() += Eigen::RowVector3d(70, -50, 60);
+  const PatchSetup setup = setUpPatch(mesh, c.region, c.view, with(Surround::Fixed));
+  const Contacts contacts(setup, with(Surround::Fixed));
+  const auto tip = static_cast<std::int32_t>(c.mesh.vertexCount());
+  const Eigen::Index face = c.region.faces[c.region.faces.size() / 2];
+  double gap = 0;
+  for (int step = 0; step < 100; ++step) {
+    const Point middle = (mesh.corner(face, 0) + mesh.corner(face, 1) + mesh.corner(face, 2)) / 3;
+    const Vector way = 2 * (mesh.positions.row(tip).transpose() - middle);
+    Motion motion;
+    motion.by = Positions::Zero(mesh.vertexCount(), 3);
+    for (int k = 0; k < 3; ++k) motion.by.row(mesh.faces(face, k)) = way.transpose();
+    findSafeStep(contacts, mesh.positions, motion);
+    mesh.positions += motion.safe * motion.by;
+    gap = way.norm() * (0.5 - motion.safe);
+  }
+  EXPECT_GT(gap, 70 * std::numeric_limits<float>::epsilon());
+  EXPECT_LT(gap, 1e-4);
+  mesh.positions = roundedToSingle(mesh.positions);
+  EXPECT_TRUE(geometry::findSelfIntersections(mesh).empty());
 }
 
 TEST(Unfolder, APairThatStartsInContactHoldsUpNoStep) {

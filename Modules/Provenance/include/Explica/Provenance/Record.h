@@ -54,6 +54,7 @@ struct StepEntry {
 struct Record {
   std::string command;              ///< "thickness"
   Json options = Json::object();    ///< every option with its value, given or default; no paths
+  std::vector<std::string> given;   ///< names of those that were set: the others are defaults
   Json arguments = Json::object();  ///< paths and words as given, by argument or option name
   std::vector<InputFile> inputs;
   std::vector<OutputFile> outputs;
