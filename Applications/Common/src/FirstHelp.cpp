@@ -56,9 +56,9 @@ explica embed shell/labels.nii.gz --label-key 1 --order 8 --out fit)"},
 explica surface cortex/labels.nii.gz --white-label 3 --grey-label 2 --faces 2000 --out surfaces
 explica figure surfaces/pial.surf.gii surfaces/thickness.shape.gii --size 800 --out figure)"},
       {"flatten",
-       "an unfolded patch, a surface with a rim, or a hemisphere with cuts",
+       "an unfolded patch, a part of a surface, or a hemisphere with cuts",
        "a flat map without folds, as surface, table, picture and stack of depths",
-       {"reference", "cuts", "cortex", "cut.strain", "label", "area-tolerance", "grid", "surfaces",
+       {"vertex", "radius", "label", "cuts", "cortex", "area-tolerance", "grid", "surfaces",
         "volumes", "to-volume", "map", "regions", "max-time", "resume"},
        R"(explica phantom shell --size 32 --out shell
 explica surface shell/labels.nii.gz --white-label 1 --grey-label 2 --faces 2000 --out surfaces
