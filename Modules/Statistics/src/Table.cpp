@@ -137,7 +137,9 @@ JoinedPeople joinPeople(const std::vector<std::string>& people, std::string_view
       joined.leftOut.push_back(people[i]);
     } else {
       throw InvalidInput("'" + people[i] + "' of '" + std::string(listName) + "' has no row in '" +
-                         about.name + "'; add it, or analyse those in both lists with --subset");
+                         about.name + "', where column '" + std::string(key) +
+                         "' names people (participant_id, if there is one); add the row, or "
+                         "analyse those in both lists with --subset");
     }
   }
   for (const auto& row : about.rows) {
