@@ -67,8 +67,8 @@ explica flatten unfolded/unfolded.surf.gii --surfaces surfaces --volumes shell/l
       {"glm",
        "people's maps or a table of regions, and what is known of the people",
        "where an effect is, how large, and whether it is real: maps, tables and a page",
-       {"maps", "table", "model", "contrast", "surface", "mask", "site", "permutations", "tfce",
-        "threshold"},
+       {"maps", "table", "person", "model", "contrast", "surface", "mask", "site", "permutations",
+        "tfce", "threshold"},
        R"(printf 'participant_id,age,thickness\ns1,20,2.6\ns2,30,2.5\ns3,40,2.5\ns4,50,2.3\ns5,60,2.2\n' > people.csv
 explica glm people.csv --model 'thickness ~ age' --permutations 100 --out glm)"},
       {"heart",
