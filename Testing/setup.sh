@@ -37,9 +37,15 @@ if [ -n "$missing" ]; then
   $as_root apt-get install -q -y --no-install-recommends $missing
 fi
 
+# What CMake finds is of interest where it fails: Debian's ITK alone has it print a hundred lines.
+echo "setup: configuring"
+mkdir -p build
 # Debian's packages for Python belong to Debian's python3, whichever comes first in PATH.
 # shellcheck disable=SC2086
-cmake --preset "${EXPLICA_PRESET:-release}" -DPython_EXECUTABLE=/usr/bin/python3 $options
+cmake --preset "${EXPLICA_PRESET:-release}" -DPython_EXECUTABLE=/usr/bin/python3 $options >build/configure.log 2>&1 || {
+  cat build/configure.log
+  exit 1
+}
 # A line each half minute, with what is left at the pace so far; all else as it comes.
 status=$(mktemp)
 { NINJA_STATUS="built %f of %t files in %e s: " cmake --build build --target "$target" || echo $? >"$status"; } | awk '

@@ -59,7 +59,7 @@ void declare(Declaration& d, FlattenSettings& s) {
       .description(
           R"(Flattens a surface with a rim: exactly planar, without folds or overlaps; face areas are kept closely, lengths as well as possible. Areas and lengths are those of --reference (same vertices); for an 'unfolded.surf.gii' of 'explica unfold' they are those of the surface that its record names, and the region is its own. Holes stay open; a part joined to the rest by a single vertex is left out, and so are, said with their area, all pieces but the one with more than half of the area.
 
-A closed surface needs --label (a patch) or --cuts (a hemisphere): a FreeSurfer patch or a label of the vertices that stay, or a flat map whose faces stay.
+A closed surface needs --center or --vertex with --radius, or --label (a patch), or --cuts (a hemisphere): a FreeSurfer patch or a label of the vertices that stay, or a flat map whose faces stay.
 
 --cuts auto takes the medial wall out (--cortex; or lh.cortex.label or valid.shape.gii beside the surface; or the flattest fortieth of it) and finds relief cuts: each ends where a conformal map would change lengths most and comes along the sulci, where a way costs half as much for each standard deviation of depth; of five such cuts the one is taken that lowers the strain most for its length, until --cut.strain is reached. No face is lost: vertices along a cut become two, the second copies last in patch.surf.gii. Where a vertex has one place only, what touches a second copy is left out: of flat.surf.gii faces, of FreeSurfer's patches the vertices on cuts.
 
@@ -89,6 +89,8 @@ With --surfaces, or --white and --pial, the map becomes a stack of depths: grid.
                    "for --cuts auto, where there is cortex: label, annot, or map (not 0)", s.cortex,
                    "Region")
       .options("Region", s.cut, "cut.")
+      .options("Region", s.region)
+      .without("cone")
       .inputOption("label", FileKind::VertexLabel,
                    "lay flat only where this label, or one of several, is not 0", s.labels,
                    "Region")
@@ -132,6 +134,10 @@ With --surfaces, or --white and --pial, the map becomes a stack of depths: grid.
       .inputOption("regions", FileKind::VertexLabel,
                    "regions for patch.tsv, their outlines in their own colours for flat.png",
                    s.regions, "Patch")
+      .excludes("center", {"vertex"})
+      .excludes("label", {"center", "vertex"})
+      .excludes("cuts", {"center", "vertex"})
+      .needs({"radius", "metric"}, {"center", "vertex"})
       .needs({"label-key"}, {"label"})
       .needs({"cortex", "cut.strain", "cut.most"}, {"cuts=auto"})
       .needs({"depths"}, {"surfaces", "white"})

@@ -6,6 +6,7 @@
 #include "Explica/Flattening/Cuts.h"
 #include "Explica/Flattening/Flatten.h"
 #include "Explica/IO/SurfaceFile.h"
+#include "Explica/Unfolding/Region.h"
 
 #include <optional>
 #include <string>
@@ -23,6 +24,7 @@ struct FlattenSettings {
   std::optional<std::string> cuts;
   std::optional<std::string> cortex;
   flattening::CutOptions cut;
+  unfolding::RegionOptions region;
   std::vector<std::string> labels;
   std::vector<int> labelKeys;
   std::optional<double> areaTolerance;

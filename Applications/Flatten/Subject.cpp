@@ -96,6 +96,8 @@ Subject subjectOf(Context& context, const FlattenSettings& s) {
   }
   subject.faces = everyFace(mesh.faces);
   if (s.cuts) subject.faces = facesOfCuts(context, s, mesh);
+  const bool isBall = s.region.center || s.region.vertex;
+  if (isBall) subject.faces = unfolding::selectRegion(mesh, s.region).faces;
   if (!s.labels.empty()) {
     const auto marked =
         io::markedByLabels({s.labels.begin(), s.labels.end()}, s.labelKeys, mesh.vertexCount());
@@ -104,7 +106,7 @@ Subject subjectOf(Context& context, const FlattenSettings& s) {
     subject.faces = flattening::facesWithin(mesh.faces, subject.faces, keys);
   }
   const auto region = std::filesystem::path(s.surface).parent_path() / "region.label.gii";
-  if (recorded && s.labels.empty() && !s.cuts && std::filesystem::exists(region)) {
+  if (recorded && s.labels.empty() && !s.cuts && !isBall && std::filesystem::exists(region)) {
     const auto labels = io::readVertexLabels(context.input(region, "region"), mesh.vertexCount());
     subject.faces = flattening::facesWithin(mesh.faces, subject.faces, labels.keys);
   }

@@ -136,12 +136,13 @@ void addViews(const std::vector<Side>& sides, const GlmResults& r, report::Repor
   }
 }
 
-/// A surface that turns, inflated and as it is, with the maps of all contrasts.
+/// The hemispheres that turn, inflated or as they are, with the maps of all contrasts.
 void addTurnable(const std::vector<Side>& sides, const GlmResults& r, report::ReportContent& page) {
   for (const Side& side : sides) {
-    report::Evolution view = report::evolutionOf({side.inflated, side.mesh});
-    view.frameTitles = {"inflated", "as it is"};
+    report::Evolution view = report::evolutionOf({side.mesh});
+    view.shapes = {{"inflated", side.inflated.positions}, {"as it is", {}}};
     view.title = side.hemisphere->structure;
+    view.scene = "Cortex";
     const auto part = [&](const Eigen::VectorXd& values) {
       return Eigen::VectorXd(values.segment(side.hemisphere->first, side.hemisphere->count));
     };

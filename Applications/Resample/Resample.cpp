@@ -10,6 +10,10 @@
 #include "Explica/IO/VertexFile.h"
 #include "Explica/Maps/Icosphere.h"
 #include "Explica/Maps/Resampling.h"
+#include "Explica/Provenance/Digest.h"
+#include "Explica/Provenance/Record.h"
+
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cctype>
@@ -130,6 +134,26 @@ Target readTarget(Context& context, const Settings& s, const std::string& struct
   return target;
 }
 
+/// A sphere that explica has made says by its record what it is in register with.
+/// @throws InvalidInput  another template than --to names
+void requireRegister(const Settings& s) {
+  if (s.space || (!maps::fsaverageLevel(s.to) && s.to != kFsLR)) return;
+  const auto found = provenance::findRecordOf(*s.from, provenance::digestOf(*s.from));
+  if (!found || !found->sameContent) return;
+  const std::string command = found->record.value("command", "");
+  const auto& options = found->record["options"];
+  std::string to = "another sphere";
+  for (const char* option : {"template", "to"}) {
+    if (options.contains(option) && options[option].is_string()) to = options[option];
+  }
+  if (command != "sphere" && (command != "register" || to.find("fsaverage") != to.npos)) return;
+  throw InvalidInput("'" + *s.from + "' is " +
+                     (command == "sphere" ? "not registered" : "registered to " + to) +
+                     ", and --to " + s.to +
+                     " is fsaverage's: take the sphere of explica register --template fsaverage, "
+                     "or say with --space what this one is in register with");
+}
+
 /// "10k" of 10,242 vertices, "642" of 642.
 std::string densityOf(Eigen::Index vertices) {
   return vertices < 1000 ? std::to_string(vertices) : std::to_string((vertices + 500) / 1000) + "k";
@@ -242,6 +266,7 @@ void carry(const std::filesystem::path& path, CarriedFile file, const Weights& w
 Termination run(Context& context, const Settings& s) {
   const io::LoadedSurface from =
       readSurface(context, "from", *s.from, {.space = io::SurfaceSpace::Scanner});
+  requireRegister(s);
   const Target target = readTarget(context, s, from.metadata.structure);
   const std::vector<CarriedFile> files = readFiles(s, from, target);
   maps::requireSphere(from.mesh, "'" + *s.from + "'");

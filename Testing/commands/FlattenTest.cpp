@@ -490,6 +490,8 @@ TEST(FlattenRegions, SeveralLabelsAndKeysMakeOnePatch) {
             whole);
   EXPECT_EQ(facesOf({"--label", folder / "cap.label.gii", "--label-key", "1,2,3"}), whole);
   EXPECT_LT(facesOf({"--label", folder / "cap.label.gii", "--label-key", "1,3"}), 0.7 * whole);
+  // z > 10 of a sphere of 30 mm is what lies within sqrt(2 * 30 * 20) = 34.64 mm of its top.
+  EXPECT_EQ(facesOf({"--center", "0,0,30", "--radius", "34.64"}), whole);
   const auto none =
       explica({"flatten", folder / "mid.surf.gii", "--label", folder / "cap.label.gii",
                "--label-key", "7,8", "--out", folder / "none"});

@@ -283,6 +283,22 @@ TEST(Report, HasSlicesToScrollThroughAndToRate) {
   EXPECT_EQ(browser.exitCode, 0) << browser;
 }
 
+TEST(Report, MorphsASurfaceFromWhiteToFlatAndOpensThePatchOnIt) {
+  if (!std::filesystem::exists("/usr/bin/chromium")) GTEST_SKIP() << "no chromium";
+  TemporaryFolder folder;
+  ASSERT_EQ(explica({"phantom", "cortex", "--size", "32", "--spacing", "2", "--out", folder / "p"})
+                .exitCode,
+            0);
+  const auto run = explica({"run", folder / "p/labels.nii.gz", "--steps",
+                            "thickness,surface,sphere,unfold,report", "--surface.faces", "2000",
+                            "--unfold.max-iterations", "5", "--out", folder / "r"});
+  ASSERT_TRUE(run.exitCode == 0 || run.exitCode == 3) << run;
+  const auto browser =
+      runProgram({"/usr/bin/python3", EXPLICA_SOURCE_DIR "/Testing/commands/report_shapes.py",
+                  folder / "r/report.html"});
+  EXPECT_EQ(browser.exitCode, 0) << browser;
+}
+
 TEST(Report, DrawsTheThicknessOfOthersBehind) {
   TemporaryFolder folder;
   makeSurface(folder, "40");

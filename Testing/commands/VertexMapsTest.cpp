@@ -197,6 +197,21 @@ TEST(Resample, KeepsEachFilesFormat) {
   EXPECT_NEAR(pial.positions.rowwise().norm().mean(), 14, 0.1);
 }
 
+TEST(Resample, RefusesASphereThatIsNotInRegisterWithTheTargetsName) {
+  TemporaryFolder folder;
+  writeMapAndRegions(folder);
+  ASSERT_EQ(explica({"sphere", folder / "white.surf.gii", "--out", folder / "sphere"}).exitCode, 0);
+  const std::string sphere = folder / "sphere/sphere.surf.gii";
+  const auto refused = explica({"resample", folder / "thickness.shape.gii", "--from", sphere,
+                                "--to", "fsaverage4", "--out", folder / "out"});
+  EXPECT_EQ(refused.exitCode, 2) << refused;
+  EXPECT_NE(refused.err.find("is not registered"), std::string::npos) << refused;
+  EXPECT_FALSE(std::filesystem::exists(folder / "out"));
+  const auto named = explica({"resample", folder / "thickness.shape.gii", "--from", sphere, "--to",
+                              "fsaverage4", "--space", "own", "--out", folder / "out"});
+  EXPECT_EQ(named.exitCode, 0) << named;
+}
+
 TEST(Smooth, SaysHowSmoothTheMapsAre) {
   TemporaryFolder folder;
   const TriangleMesh ball = geometry::makeIcosphere(5, 40);

@@ -14,7 +14,7 @@
 namespace explica::report {
 namespace {
 
-constexpr double kSteps = 65535;  // of the box along each axis
+constexpr double kSteps = 8191;  // of the box along each axis: 0.03 mm of a brain
 
 std::string exactly(double value) {
   return nlohmann::json(value).dump();
@@ -104,28 +104,6 @@ Evolution evolutionOf(const std::vector<TriangleMesh>& frames) {
   return evolution;
 }
 
-void leaveOutSurroundings(Evolution& evolution) {
-  std::vector<bool> kept(static_cast<std::size_t>(evolution.mesh.vertexCount()), false);
-  for (const std::int32_t v : evolution.region) kept[v] = true;
-  for (const std::int32_t v : evolution.moved) kept[v] = true;
-  Faces& faces = evolution.mesh.faces;
-  Eigen::Index count = 0;
-  for (Eigen::Index f = 0; f < faces.rows(); ++f) {
-    if (kept[faces(f, 0)] && kept[faces(f, 1)] && kept[faces(f, 2)]) {
-      faces.row(count++) = faces.row(f).eval();
-    }
-  }
-  if (count == 0) return;
-  faces.conservativeResize(count, 3);
-  const Eigen::RowVector3d inside = evolution.mesh.positions.row(faces(0, 0));
-  for (Eigen::Index v = 0; v < evolution.mesh.vertexCount(); ++v) {
-    if (kept[v]) continue;
-    evolution.mesh.positions.row(v) = inside;
-    for (EvolutionMap& map : evolution.maps) map.values[v] = kNaN;
-    for (EvolutionLabels& labels : evolution.labels) labels.entries[v] = -1;
-  }
-}
-
 std::string evolutionJson(const Evolution& evolution) {
   const TriangleMesh& mesh = evolution.mesh;
   Point low = mesh.positions.colwise().minCoeff().transpose();
@@ -134,6 +112,11 @@ std::string evolutionJson(const Evolution& evolution) {
     if (frame.rows() == 0) continue;
     low = low.cwiseMin(frame.colwise().minCoeff().transpose());
     high = high.cwiseMax(frame.colwise().maxCoeff().transpose());
+  }
+  for (const EvolutionShape& shape : evolution.shapes) {
+    if (shape.positions.rows() == 0) continue;
+    low = low.cwiseMin(shape.positions.colwise().minCoeff().transpose());
+    high = high.cwiseMax(shape.positions.colwise().maxCoeff().transpose());
   }
   const double unit = std::max((high - low).maxCoeff(), 1e-9) / kSteps;
   const auto quantise = [&](double x, int axis) {
@@ -175,7 +158,18 @@ std::string evolutionJson(const Evolution& evolution) {
   json += "],\"titles\":" + nlohmann::json(evolution.frameTitles).dump();
   json += ",\"region\":" +
           packIntegers(evolution.region.empty() ? evolution.moved : evolution.region, 1);
-  json += std::string(",\"detached\":") + (evolution.detached ? "true" : "false");
+  json += ",\"shapes\":[";
+  for (const EvolutionShape& shape : evolution.shapes) {
+    std::vector<std::int32_t> shift;
+    for (Eigen::Index i = 0; i < shape.positions.size(); ++i) {
+      const int axis = static_cast<int>(i % 3);
+      shift.push_back(quantise(shape.positions(i / 3, axis), axis) -
+                      positions[static_cast<std::size_t>(i)]);
+    }
+    json += (&shape == evolution.shapes.data() ? "" : ",") + std::string("{\"name\":") +
+            nlohmann::json(shape.name).dump() + ",\"shift\":" + packIntegers(shift, 3) + "}";
+  }
+  json += std::string("],\"detached\":") + (evolution.detached ? "true" : "false");
   json += ",\"maps\":[";
   for (std::size_t m = 0; m < evolution.maps.size(); ++m) {
     json += (m == 0 ? "" : ",") + mapJson(evolution.maps[m]);

@@ -101,17 +101,20 @@ std::string scriptSafe(const std::string& json) {
 
 // What the script of the three-dimensional view fills.
 constexpr const char* kViewHtml = R"(<section id="view3d"><h3>In three dimensions</h3>
-<div id="stage"><canvas id="canvas" tabindex="0" aria-label="Surface in three dimensions. Arrow keys rotate, plus and minus zoom, space plays, comma and full stop step, B switches between first and last frame, R resets."></canvas><p id="stage-message">Preparing the surface ...</p><p id="under-pointer" aria-live="polite"></p><div id="bar" aria-hidden="true"><span id="bar-title"></span><span id="bar-high"></span><canvas id="bar-colours" width="14" height="128"></canvas><span id="bar-low"></span></div></div>
-<div id="controls"><label id="which-label">Patch <select id="which"></select></label>
-<button id="play" type="button" aria-label="Play or pause">&#9654;</button>
-<input id="frame" type="range" min="0" max="0" value="0" step="1" aria-label="Frame">
-<output id="frame-title"></output>
+<div id="stage"><canvas id="canvas" tabindex="0" aria-label="Surface in three dimensions. Arrow keys rotate, plus and minus zoom, space plays, comma and full stop step, B switches between first and last frame, square brackets change the shape, R shows the patch, W the whole."></canvas><p id="stage-message">Preparing the surface ...</p><p id="under-pointer" aria-live="polite"></p><div id="bar" aria-hidden="true"><span id="bar-title"></span><span id="bar-high"></span><canvas id="bar-colours" width="14" height="128"></canvas><span id="bar-low"></span></div></div>
+<div id="controls"><label id="which-label">Surface <select id="which"></select></label>
+<label class="of-shapes">Shape <input id="shape" type="range" min="0" max="0" value="0" step="0.02" aria-label="Shape"> <output id="shape-title"></output></label>
 <label>Map <select id="map"></select></label>
-<button id="before-after" type="button">Before / after</button>
+<label class="of-sides">Show <select id="sides"></select></label>
+<label class="of-shapes">from <select id="from"><option>above</option><option>left</option><option>right</option><option>front</option><option>back</option><option>below</option></select></label>
+<button id="whole" type="button">Whole surface</button>
+<button id="reset" type="button">To the patch</button>
 <label class="of-part"><input id="alone" type="checkbox"> patch alone</label>
-<button id="whole" class="of-part" type="button">Whole surface</button>
-<button id="reset" type="button">Back to the patch</button></div>
-<p class="quiet">Drag to rotate, wheel or two fingers to zoom, right drag to move; the value under the pointer is shown. Keys: arrows rotate, + and - zoom, space plays, comma and full stop step, B before/after, R resets the view.<span class="of-part"> The dark line is the rim of the region.</span></p></section>
+<span class="of-frames"><button id="play" type="button" aria-label="Play or pause">&#9654;</button>
+<input id="frame" type="range" min="0" max="0" value="0" step="1" aria-label="Frame">
+<button id="before-after" type="button">Before / after</button></span>
+<output id="frame-title"></output></div>
+<p class="quiet">Drag to rotate, wheel or two fingers to zoom, right drag to move; region and value under the pointer are shown, a click moves the slices there. Keys: arrows rotate, + and - zoom, W the whole, R the view of the patch<span class="of-shapes">, [ and ] the shape before and after</span><span class="of-frames">, space plays, comma and full stop step, B before/after</span>.<span class="of-part"> The dark line is the rim of the patch.</span><span class="of-shapes"> The flat shape is the sphere in an equal-area projection about its lateral side.</span></p></section>
 )";
 
 // What the script of the slices fills.
@@ -479,8 +482,8 @@ std::string reportPage(const ReportContent& content) {
   html += contentsHtml(parts) + "<main>\n" + parts + "</main>\n";
   for (const Evolution& evolution : content.evolutions) {
     html += "<script type=\"application/json\" class=\"evolution\" data-title=\"" +
-            escapeHtml(evolution.title) + "\">" + scriptSafe(evolutionJson(evolution)) +
-            "</script>\n";
+            escapeHtml(evolution.title) + "\" data-scene=\"" + escapeHtml(evolution.scene) + "\">" +
+            scriptSafe(evolutionJson(evolution)) + "</script>\n";
   }
   if (content.slices) {
     html += "<script type=\"application/json\" id=\"slice-data\">" +

@@ -15,7 +15,6 @@ namespace {
 
 constexpr double kAround = 10;        // mm around the outlines
 constexpr double kMostVoxels = 12e6;  // about 8 MB in a page
-constexpr double kVertexStep = 0.01;  // mm, a hundredth of a voxel
 
 /// Points low + step (i, j, k).
 struct Lattice {
@@ -65,39 +64,6 @@ std::vector<std::int32_t> greyOf(const Volume<float>& image, const Lattice& latt
   return grey;
 }
 
-std::vector<std::int32_t> quantised(const TriangleMesh& mesh, const Point& low) {
-  std::vector<std::int32_t> steps;
-  for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
-    for (int c = 0; c < 3; ++c) {
-      steps.push_back(
-          static_cast<std::int32_t>(std::lround((mesh.positions(v, c) - low[c]) / kVertexStep)));
-    }
-  }
-  return steps;
-}
-
-/// A surface with the faces of the one before it is told by how far its vertices are from that.
-std::string surfacesJson(const std::vector<MosaicOutline>& outlines, const Point& low) {
-  std::string json;
-  std::vector<std::int32_t> before;
-  for (std::size_t n = 0; n < outlines.size(); ++n) {
-    const TriangleMesh& mesh = *outlines[n].mesh;
-    const bool alike = n > 0 && mesh.vertexCount() == outlines[n - 1].mesh->vertexCount() &&
-                       mesh.faceCount() == outlines[n - 1].mesh->faceCount() &&
-                       mesh.faces == outlines[n - 1].mesh->faces;
-    const std::vector<std::int32_t> now = quantised(mesh, low);
-    std::vector<std::int32_t> shift = now;
-    for (std::size_t i = 0; alike && i < now.size(); ++i) shift[i] -= before[i];
-    json += (n == 0 ? "" : ",") + std::string("{\"name\":") +
-            nlohmann::json(outlines[n].name).dump() +
-            ",\"colour\":" + nlohmann::json(outlines[n].colour).dump() +
-            ",\"positions\":" + packIntegers(shift, 3) +
-            (alike ? "" : ",\"faces\":" + packIntegers(facesInOrder(mesh.faces), 3)) + "}";
-    before = now;
-  }
-  return json;
-}
-
 }  // namespace
 
 std::string sliceStackJson(const Volume<float>& image, const std::vector<MosaicOutline>& outlines,
@@ -108,16 +74,22 @@ std::string sliceStackJson(const Volume<float>& image, const std::vector<MosaicO
     listed.push_back(
         {{"words", place.words}, {"at", {place.place.x(), place.place.y(), place.place.z()}}});
   }
+  nlohmann::json surfaces = nlohmann::json::array();
+  for (const MosaicOutline& outline : outlines) {
+    surfaces.push_back(
+        {{"part", outline.part}, {"shape", outline.shape}, {"colour", outline.colour}});
+  }
   const nlohmann::json head = {{"low", {lattice.low.x(), lattice.low.y(), lattice.low.z()}},
                                {"voxel", lattice.step},
                                {"size", lattice.size},
-                               {"step", kVertexStep},
+                               {"surfaces", surfaces},
                                {"leftOnRight", options.convention == SideConvention::Radiological},
                                {"places", listed}};
   std::string json = head.dump();
   json.back() = ',';
-  return json + "\"surfaces\":[" + surfacesJson(outlines, lattice.low) + "],\"grey\":" +
-         packIntegers(greyOf(image, lattice, greyScale(image, options.subject)), 1) + "}";
+  return json +
+         "\"grey\":" + packIntegers(greyOf(image, lattice, greyScale(image, options.subject)), 1) +
+         "}";
 }
 
 }  // namespace explica::report

@@ -98,27 +98,17 @@ TEST(SliceStack, HoldsTheImagesOwnVoxelsWhicheverWayItsAxesGo) {
   }
 }
 
-TEST(SliceStack, KeepsSurfacesToAHundredthOfAMillimetre) {
-  const TriangleMesh white = geometry::makeIcosphere(3, 9.123),
-                     pial = geometry::makeIcosphere(3, 11);
+TEST(SliceStack, NamesItsPlacesAndTheShapesThatItCuts) {
+  const TriangleMesh white = geometry::makeIcosphere(3, 9.123);
   Grid grid;
   grid.size = {40, 40, 40};
   grid.origin = Vector::Constant(-20);
   const Volume<float> image(grid, 1.0F);
   const auto stack = nlohmann::json::parse(sliceStackJson(
-      image, {{&white, "white", "#f00"}, {&pial, "pial", "#ff0"}}, {{Point(1, 2, 3), "here"}}));
+      image, {{&white, "white surface", "#f00", "left", "white"}}, {{Point(1, 2, 3), "here"}}));
   EXPECT_EQ(stack["places"][0]["at"], nlohmann::json({1.0, 2.0, 3.0}));
-  EXPECT_TRUE(stack["surfaces"][0].contains("faces"));
-  EXPECT_FALSE(stack["surfaces"][1].contains("faces")) << "they are those of the first";
-  std::vector<std::int32_t> steps(3 * static_cast<std::size_t>(white.vertexCount()), 0);
-  for (const TriangleMesh* mesh : {&white, &pial}) {
-    const auto shift = unpack(stack["surfaces"][mesh == &white ? 0 : 1]["positions"]);
-    for (std::size_t i = 0; i < steps.size(); ++i) {
-      steps[i] += shift[i];
-      const double x = stack["low"][i % 3].get<double>() + stack["step"].get<double>() * steps[i];
-      ASSERT_NEAR(x, mesh->positions(static_cast<Eigen::Index>(i / 3), i % 3), 0.00501);
-    }
-  }
+  EXPECT_EQ(stack["surfaces"][0]["part"], "left");
+  EXPECT_EQ(stack["surfaces"][0]["shape"], "white");
 }
 
 TEST(SliceStack, RefusesSurfacesWithoutVertices) {
@@ -232,24 +222,20 @@ TEST(ReportPage, NamesNothingToFetch) {
   EXPECT_EQ(page, reportPage(content));
 }
 
-TEST(Evolution, WithoutSurroundingsKeepsThePatchAndItsNumbers) {
+TEST(Evolution, ShapesComeBackWithinAQuantisationStep) {
   Evolution evolution = movingSphere();
-  evolution.region = evolution.moved;
-  const Eigen::VectorXd values = evolution.mesh.positions.col(0);
-  evolution.maps.push_back({values, scaleFor(values, "x", "mm")});
-  const Evolution before = evolution;
-  const std::size_t size = evolutionJson(evolution).size();
-  leaveOutSurroundings(evolution);
-  EXPECT_LT(evolutionJson(evolution).size(), size);
-  ASSERT_GT(evolution.mesh.faceCount(), 0);
-  EXPECT_LT(evolution.mesh.faceCount(), before.mesh.faceCount());
-  EXPECT_EQ(evolution.mesh.vertexCount(), before.mesh.vertexCount());
-  for (const std::int32_t v : evolution.moved) {
-    EXPECT_EQ(evolution.mesh.positions.row(v), before.mesh.positions.row(v));
-    EXPECT_EQ(evolution.maps[0].values[v], values[v]);
-  }
-  for (const std::int32_t v : evolution.mesh.faces.reshaped()) {
-    EXPECT_TRUE(std::binary_search(evolution.moved.begin(), evolution.moved.end(), v));
+  const Positions larger = 1.3 * evolution.mesh.positions;
+  evolution.shapes = {{"as it is", {}}, {"larger", larger}};
+  const auto json = nlohmann::json::parse(evolutionJson(evolution));
+  EXPECT_TRUE(unpack(json["shapes"][0]["shift"]).empty());
+  const std::vector<std::int32_t> start = unpack(json["positions"]);
+  const std::vector<std::int32_t> shift = unpack(json["shapes"][1]["shift"]);
+  ASSERT_EQ(shift.size(), start.size());
+  const double unit = json["unit"];
+  for (std::size_t i = 0; i < shift.size(); ++i) {
+    const double x = json["low"][i % 3].get<double>() + unit * (start[i] + shift[i]);
+    ASSERT_NEAR(x, larger(static_cast<Eigen::Index>(i / 3), static_cast<Eigen::Index>(i % 3)),
+                0.51 * unit);
   }
 }
 

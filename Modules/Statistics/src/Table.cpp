@@ -49,16 +49,6 @@ void requireDistinct(const Table& table) {
   }
 }
 
-std::map<std::string, std::size_t> rowsByPerson(const Table& about, std::size_t key) {
-  std::map<std::string, std::size_t> rows;
-  for (std::size_t r = 0; r < about.rows.size(); ++r) {
-    if (!rows.emplace(about.rows[r][key], r).second) {
-      throw InvalidInput("'" + about.name + "': '" + about.rows[r][key] + "' has two rows");
-    }
-  }
-  return rows;
-}
-
 }  // namespace
 
 std::optional<std::size_t> Table::find(std::string_view column) const {
@@ -120,7 +110,8 @@ std::optional<double> numberIn(std::string_view cell) {
 
 JoinedPeople joinPeople(const std::vector<std::string>& people, std::string_view listName,
                         const Table& about, std::string_view key, bool allowMissing) {
-  const auto rows = rowsByPerson(about, about.at(key));
+  std::multimap<std::string_view, std::size_t> rows;
+  for (std::size_t r = 0; r < about.rows.size(); ++r) rows.emplace(about.rows[r][about.at(key)], r);
   JoinedPeople joined;
   joined.table.name = about.name;
   joined.table.columns = about.columns;
@@ -130,6 +121,9 @@ JoinedPeople joinPeople(const std::vector<std::string>& people, std::string_view
       throw InvalidInput("'" + std::string(listName) + "': '" + people[i] + "' is there twice");
     }
     const auto row = rows.find(people[i]);
+    if (rows.count(people[i]) > 1) {
+      throw InvalidInput("'" + about.name + "': '" + people[i] + "' has two rows");
+    }
     if (row != rows.end()) {
       joined.table.rows.push_back(about.rows[row->second]);
       joined.used.push_back(i);
@@ -137,12 +131,14 @@ JoinedPeople joinPeople(const std::vector<std::string>& people, std::string_view
       joined.leftOut.push_back(people[i]);
     } else {
       throw InvalidInput("'" + people[i] + "' of '" + std::string(listName) + "' has no row in '" +
-                         about.name + "'; add it, or analyse those in both lists with --subset");
+                         about.name + "', where column '" + std::string(key) +
+                         "' names people (--person chooses another); add the row, or "
+                         "analyse those in both lists with --subset");
     }
   }
   for (const auto& row : about.rows) {
     const std::string& person = row[about.at(key)];
-    if (seen.contains(person)) continue;
+    if (!seen.insert(person).second) continue;
     if (!allowMissing) {
       throw InvalidInput("'" + person + "' of '" + about.name + "' is not in '" +
                          std::string(listName) +

@@ -147,6 +147,13 @@ TEST(People, InOneListOnlyOrTwiceAreNamed) {
       joinPeople({"sub-3", "sub-2"}, "maps.tsv", about, "participant_id", true);
   EXPECT_EQ(joined.used, std::vector<std::size_t>{1});
   EXPECT_EQ(joined.leftOut, (Names{"sub-3", "sub-1"}));
+  // Two rows of one name matter where that person is asked for.
+  const Table twice = parseTable("id,age\nnone,20\nnone,30\nsub-1,40\n", "twice.csv");
+  EXPECT_EQ(joinPeople({"sub-1"}, "maps.tsv", twice, "id", true).used.size(), 1u);
+  EXPECT_NE(refusal([&] {
+              (void)joinPeople({"none"}, "maps.tsv", twice, "id", true);
+            }).find("'none' has two rows"),
+            std::string::npos);
 }
 
 TEST(Table, ReadsQuotesAndRefusesRaggedRows) {

@@ -201,7 +201,7 @@ void showStack(ResultFolder& results, const fs::path& file) {
   results.content().views.push_back(std::move(views));
 }
 
-void tabulateRegions(ResultFolder& results, const StepFolder& step) {
+void tabulatePatch(ResultFolder& results, const StepFolder& step) {
   const Table read = readTable(step.folder / "patch.tsv");
   report::ReportTable table{"",
                             "Regions of the patch",
@@ -287,7 +287,7 @@ void showFlat(ResultFolder& results, const StepFolder& step, const std::vector<G
     results.attempt(file.filename().string(), [&] { showStack(results, file); });
   }
   results.attempt("Distortion maps", [&] { chartDistortion(results, step); });
-  results.attempt("Regions of the patch", [&] { tabulateRegions(results, step); });
+  results.attempt("Regions of the patch", [&] { tabulatePatch(results, step); });
 }
 
 }  // namespace explica::pipeline

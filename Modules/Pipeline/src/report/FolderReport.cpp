@@ -135,8 +135,8 @@ void showStep(ResultFolder& results, const StepFolder& step, const std::vector<G
     results.attempt("Sampled maps", [&] { showSampled(results, step); });
     results.attempt("Profiles", [&] { showProfiles(results, step); });
   }
-  if (step.command == "parcellate") {
-    results.attempt("Regions", [&] { showRegions(results, step); });
+  if (step.command == "regions" && step.has("regions.tsv")) {
+    results.attempt("Table of regions", [&] { tabulateRegions(results, step); });
   }
   if (step.command == "flatten") {
     results.attempt("Flat map", [&] { showFlat(results, step, maps); });

@@ -42,7 +42,8 @@ void findNumbers(ResultFolder& results);
 /// Slices of tissue classes, or of the labels that a surface was made from.
 void showTissues(ResultFolder& results, const FolderReportOptions& options);
 
-/// White and pial outlines on the image, and maps on the surfaces from all sides.
+/// White and pial outlines on the image, thickness from all sides, and the hemispheres in all
+/// their shapes with their maps for the view in three dimensions.
 void showSurfaces(ResultFolder& results, const FolderReportOptions& options,
                   const std::vector<GivenMap>& maps);
 
@@ -77,8 +78,8 @@ void chartUnfolding(ResultFolder& results, const StepFolder& step);
 /// Sampled maps and labels on the surface, and the table of points.
 void showSampled(ResultFolder& results, const StepFolder& step);
 
-/// The template's regions on a person's surface.
-void showRegions(ResultFolder& results, const StepFolder& step);
+/// Thickness, area and volume of each region.
+void tabulateRegions(ResultFolder& results, const StepFolder& step);
 
 /// Profiles over depth or layers, by region, and their course over time.
 void showProfiles(ResultFolder& results, const StepFolder& step);

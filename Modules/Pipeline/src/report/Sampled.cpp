@@ -100,8 +100,7 @@ void showMaps(ResultFolder& results, const Middle& middle, const fs::path& file,
   results.content().views.push_back(std::move(views));
 }
 
-void showLabels(ResultFolder& results, const Middle& middle, const fs::path& file,
-                const std::string& name = {}) {
+void showLabels(ResultFolder& results, const Middle& middle, const fs::path& file) {
   const auto labels = io::readRegions({file}, middle.mesh.vertexCount()).front();
   std::map<Label, report::Colour> colourOf;
   report::ReportViews views;
@@ -114,7 +113,7 @@ void showLabels(ResultFolder& results, const Middle& middle, const fs::path& fil
     const auto found = colourOf.find(key);
     colours.push_back(found == colourOf.end() ? report::colourOfLabel(0) : found->second);
   }
-  views.title = (name.empty() ? labels.name : name) + " on the middle surface";
+  views.title = labels.name + " on the middle surface";
   views.caption = "Each vertex in the colour of its label; light grey: none.";
   addViews(middle, colours, report::Filling::Discrete, 4, "", views);
   results.content().views.push_back(std::move(views));
@@ -170,20 +169,6 @@ void tabulatePoints(ResultFolder& results, const StepFolder& step) {
 }
 
 }  // namespace
-
-void showRegions(ResultFolder& results, const StepFolder& step) {
-  const StepFolder* surface = results.beside(step, "surface");
-  if (surface == nullptr || !surface->has("mid.surf.gii")) return;
-  TriangleMesh mesh = io::readSurface(surface->folder / "mid.surf.gii").mesh;
-  report::SurfaceScene scene(mesh);
-  const Middle middle{std::move(mesh), std::move(scene), step.side()};
-  const Json options = step.record.value("options", Json::object());
-  const Json name = options.value("template", Json());
-  const std::string of = name.is_string() ? fs::path(name.get<std::string>()).filename().string()
-                                          : std::string("the template");
-  showLabels(results, middle, step.folder / "regions.label.gii",
-             "Regions of " + of + (step.side().empty() ? "" : ", " + step.side() + ","));
-}
 
 void showSampled(ResultFolder& results, const StepFolder& step) {
   if (step.has("points.tsv")) {

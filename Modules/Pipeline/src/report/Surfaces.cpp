@@ -3,7 +3,9 @@
 #include "CloseUps.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VolumeFile.h"
+#include "Explica/Maps/Folding.h"
 #include "Explica/Report/Chart.h"
+#include "Explica/Report/Evolution.h"
 #include "Explica/Report/Figure.h"
 #include "Explica/Report/SliceStack.h"
 #include "MaskBorder.h"
@@ -15,6 +17,7 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <utility>
 
 namespace explica::pipeline {
 namespace {
@@ -86,8 +89,7 @@ Eigen::VectorXd known(Eigen::VectorXd values, const Eigen::VectorXd& thickness) 
 /// One colour a vertex, `count` of the standard views of every hemisphere.
 report::ReportViews drawViews(const std::vector<const Hemisphere*>& all,
                               const std::vector<std::vector<report::Colour>>& colours,
-                              report::Filling filling, std::size_t count, Drawn drawn = Drawn::Pial,
-                              const std::vector<std::vector<std::int32_t>>& keys = {}) {
+                              std::size_t count, Drawn drawn) {
   const report::SurfacePictureOptions size = viewSize();
   report::ReportViews views;
   const double half = commonHalfHeight(all);
@@ -100,17 +102,15 @@ report::ReportViews drawViews(const std::vector<const Hemisphere*>& all,
           report::cameraFor(all[h]->pial, standard[n].second, size.width, size.height);
       camera.halfHeight = half;
       views.views.push_back({(all[h]->side.empty() ? "" : all[h]->side + ", ") + standard[n].first,
-                             scene.render(camera, colours[h], filling, size,
-                                          keys.empty() ? std::vector<std::int32_t>() : keys[h])});
+                             scene.render(camera, colours[h], report::Filling::Smooth, size)});
     }
   }
   return views;
 }
 
-/// A map of every hemisphere on one scale; the words are the caller's.
-report::ReportViews drawMap(const std::vector<const Hemisphere*>& all,
-                            const std::vector<Eigen::VectorXd>& values, const std::string& name,
-                            const std::string& unit, std::size_t count, Drawn drawn) {
+/// One scale for a map of every hemisphere.
+report::ColourScale commonScale(const std::vector<Eigen::VectorXd>& values, const std::string& name,
+                                const std::string& unit) {
   std::vector<double> pooled;
   for (const Eigen::VectorXd& one : values) {
     std::copy_if(one.begin(), one.end(), std::back_inserter(pooled),
@@ -118,34 +118,49 @@ report::ReportViews drawMap(const std::vector<const Hemisphere*>& all,
   }
   const Eigen::VectorXd pool =
       Eigen::Map<const Eigen::VectorXd>(pooled.data(), static_cast<Eigen::Index>(pooled.size()));
-  const report::ColourScale scale = report::scaleFor(pool, name, unit);
+  return report::scaleFor(pool, name, unit);
+}
+
+/// A map of every hemisphere on one scale; the words are the caller's.
+report::ReportViews drawMap(const std::vector<const Hemisphere*>& all,
+                            const std::vector<Eigen::VectorXd>& values,
+                            const report::ColourScale& scale, std::size_t count, Drawn drawn) {
   std::vector<std::vector<report::Colour>> colours;
   for (const auto& v : values) colours.push_back(report::coloursOf(v, scale));
-  report::ReportViews views = drawViews(all, colours, report::Filling::Smooth, count, drawn);
+  report::ReportViews views = drawViews(all, colours, count, drawn);
   views.scale = scale;
   return views;
 }
 
-/// A map of `explica surface`.
-/// @param word  what it is called at its colours
-void showMap(ResultFolder& results, const std::vector<const Hemisphere*>& all, const char* file,
-             const std::string& word, const std::string& title, const std::string& caption,
-             const char* id, std::size_t count, Drawn drawn, bool detail) {
+/// A map of `explica surface` for the view in three dimensions.
+/// @return its values and scale, or nothing where a hemisphere lacks it
+std::optional<std::pair<std::vector<Eigen::VectorXd>, report::ColourScale>> addMap(
+    ResultFolder& results, const std::vector<const Hemisphere*>& all, const char* file,
+    const std::string& word) {
   std::vector<Eigen::VectorXd> values;
   std::string unit;
   for (const Hemisphere* h : all) {
     const Eigen::Index n = h->pial.vertexCount();
     const auto map = mapNamed(h->step->folder / file, n);
-    if (!map) return;
+    if (!map) return {};
     const auto thickness = mapNamed(h->step->folder / "thickness.shape.gii", n);
     values.push_back(thickness ? known(map->values, thickness->values) : map->values);
     unit = map->unit;
   }
-  report::ReportViews views = drawMap(all, values, word, unit, count, drawn);
-  views.id = id;
-  views.title = title;
-  views.caption = caption;
-  views.detail = detail;
+  const report::ColourScale scale = commonScale(values, word, unit);
+  for (std::size_t h = 0; h < all.size(); ++h) {
+    results.content().evolutions[h].maps.push_back({values[h], scale});
+  }
+  return std::pair{std::move(values), scale};
+}
+
+void showThickness(ResultFolder& results, const std::vector<const Hemisphere*>& all) {
+  const auto map = addMap(results, all, "thickness.shape.gii", "thickness");
+  if (!map) return;
+  report::ReportViews views = drawMap(all, map->first, map->second, 6, Drawn::Pial);
+  views.id = kThicknessPlace;
+  views.title = "Thickness on the pial surface";
+  views.caption = "Grey: not measured, as on the medial wall.";
   results.content().views.push_back(std::move(views));
 }
 
@@ -170,42 +185,83 @@ void showGiven(ResultFolder& results, const std::vector<const Hemisphere*>& all,
       unit = map->unit;
     }
     if (shown.empty()) continue;
-    report::ReportViews views = drawMap(shown, values, name, unit, 4, Drawn::White);
+    const report::ColourScale scale = commonScale(values, name, unit);
+    for (std::size_t n = 0; n < shown.size(); ++n) {
+      const auto h = std::find(all.begin(), all.end(), shown[n]) - all.begin();
+      results.content().evolutions[static_cast<std::size_t>(h)].maps.push_back({values[n], scale});
+    }
+    report::ReportViews views = drawMap(shown, values, scale, 4, Drawn::White);
     views.title = name + " on the white surface";
     views.caption = "Dark grey: not known.";
     results.content().views.push_back(std::move(views));
   }
 }
 
-void showRegions(ResultFolder& results, const std::vector<const Hemisphere*>& all) {
-  std::vector<std::vector<report::Colour>> colours;
-  std::vector<std::vector<std::int32_t>> keys;
-  std::map<Label, report::LegendEntry> legend;
-  for (const Hemisphere* h : all) {
-    if (!h->step->has("regions.label.gii")) return;
-    const io::LabelMap labels =
-        io::readVertexLabels(h->step->folder / "regions.label.gii", h->pial.vertexCount());
-    std::map<Label, report::LegendEntry> entries;
-    for (const io::LabelEntry& entry : labels.table) {
-      entries[entry.key] = {entry.name, report::colourOfLabel(entry.key, entry.colour)};
-    }
-    colours.emplace_back();
-    keys.emplace_back(labels.keys.begin(), labels.keys.end());
-    for (const Label key : labels.keys) {
-      const auto found = entries.find(key);
-      const bool named = key != 0 && found != entries.end();
-      colours.back().push_back(named ? found->second.colour : report::colourOfLabel(0));
-      if (named) legend[key] = found->second;
+/// Regions for the view in three dimensions.
+void addLabels(report::Evolution& evolution, const std::string& title, const fs::path& file) {
+  if (!fs::exists(file)) return;
+  const io::LabelMap labels = io::readVertexLabels(file, evolution.mesh.vertexCount());
+  report::EvolutionLabels named{title, {}, {}};
+  std::map<Label, std::int32_t> entryOf;
+  for (const io::LabelEntry& entry : labels.table) {
+    if (entry.key == 0) continue;
+    entryOf[entry.key] = static_cast<std::int32_t>(named.legend.size());
+    named.legend.push_back({entry.name, report::colourOfLabel(entry.key, entry.colour)});
+  }
+  for (const Label key : labels.keys) {
+    const auto found = entryOf.find(key);
+    named.entries.push_back(found == entryOf.end() ? -1 : found->second);
+  }
+  evolution.labels.push_back(std::move(named));
+}
+
+/// The surface that the patch is of: its shape's name.
+std::string openedShape(const StepFolder* unfold) {
+  const auto file = unfold ? inputOf(*unfold, "SURFACE") : std::nullopt;
+  const std::string name = file ? file->filename().string() : "";
+  for (const char* shape : {"white", "pial"}) {
+    if (name.find(shape) != std::string::npos) return shape;
+  }
+  return "middle";
+}
+
+/// A hemisphere in all its shapes for the view in three dimensions.
+report::Evolution brainOf(ResultFolder& results, const Hemisphere& h) {
+  report::Evolution evolution;
+  evolution.title = h.side;
+  evolution.scene = "Cortex";
+  std::vector<report::EvolutionShape> shapes = {{"white", h.white.positions}};
+  if (h.step->has("mid.surf.gii")) {
+    const TriangleMesh middle = io::readSurface(h.step->folder / "mid.surf.gii").mesh;
+    if (middle.vertexCount() == h.white.vertexCount()) {
+      shapes.push_back({"middle", middle.positions});
     }
   }
-  report::ReportViews views =
-      drawViews(all, colours, report::Filling::Discrete, 2, Drawn::Pial, keys);
-  views.id = "regions";
-  views.title = "Regions";
-  views.caption = "Each region in the colour that its own table gives it.";
-  for (const auto& [key, entry] : legend) views.legend.push_back(entry);
-  views.detail = true;
-  results.content().views.push_back(std::move(views));
+  shapes.push_back({"pial", h.pial.positions});
+  const std::string opened = openedShape(results.beside(*h.step, "unfold"));
+  auto own = std::find_if(shapes.begin(), shapes.end(), [&](const report::EvolutionShape& shape) {
+    return shape.name == opened;
+  });
+  if (own == shapes.end()) own = shapes.begin();
+  evolution.mesh = {std::exchange(own->positions, {}), h.white.faces};
+  shapes.push_back({"inflated", maps::inflated(h.white).positions});
+  for (const auto& [command, file] :
+       {std::pair{"register", "sphere.reg.surf.gii"}, std::pair{"sphere", "sphere.surf.gii"}}) {
+    const StepFolder* step = results.beside(*h.step, command);
+    if (step == nullptr || !step->has(file)) continue;
+    const TriangleMesh sphere = io::readSurface(step->folder / file).mesh;
+    if (sphere.vertexCount() != h.white.vertexCount()) continue;
+    shapes.push_back({"sphere", sphere.positions});
+    break;
+  }
+  evolution.shapes = std::move(shapes);
+  results.attempt("Regions", [&] {
+    addLabels(evolution, "regions", h.step->folder / "regions.label.gii");
+    if (const StepFolder* parcellated = results.beside(*h.step, "parcellate")) {
+      addLabels(evolution, "the template's regions", parcellated->folder / "regions.label.gii");
+    }
+  });
+  return evolution;
 }
 
 /// Places that a reader must judge: where the surface was corrected, where there is no thickness,
@@ -238,8 +294,8 @@ void showOutlines(ResultFolder& results, const std::vector<Hemisphere>& all,
   const Volume<float> volume = io::readScalars(*image, {.allowNonFinite = true}).volume;
   std::vector<report::MosaicOutline> outlines;
   for (const Hemisphere& h : all) {
-    outlines.push_back({&h.white, "white surface", "#ff453a"});
-    outlines.push_back({&h.pial, "pial surface", "#ffd60a"});
+    outlines.push_back({&h.white, "white surface", "#ff453a", h.side, "white"});
+    outlines.push_back({&h.pial, "pial surface", "#ffd60a", h.side, "pial"});
   }
   TriangleMesh brain;
   std::optional<Volume<float>> inside;
@@ -338,24 +394,17 @@ void showSurfaces(ResultFolder& results, const FolderReportOptions& options,
     h.pialScene.emplace(h.pial);
     h.whiteScene.emplace(h.white);
   }
+  for (const Hemisphere& h : all) results.content().evolutions.push_back(brainOf(results, h));
   results.attempt("Outlines on the image", [&] { showOutlines(results, all, options); });
   std::vector<const Hemisphere*> shown;
   for (const Hemisphere& h : all) shown.push_back(&h);
-  results.attempt("Thickness map", [&] {
-    showMap(results, shown, "thickness.shape.gii", "thickness", "Thickness on the pial surface",
-            "Grey: not measured, as on the medial wall.", kThicknessPlace, 6, Drawn::Pial, false);
-  });
-  results.attempt("Depth map", [&] {
-    showMap(results, shown, "sulc.shape.gii", "sulcal depth", "Sulcal depth on the white surface",
-            "Distance travelled outwards as the surface is inflated; sulci positive.", "depth-maps",
-            2, Drawn::White, true);
-  });
-  results.attempt("Curvature map", [&] {
-    showMap(results, shown, "curvature.shape.gii", "mean curvature",
-            "Curvature on the white surface", "Gyri blue, sulci brown.", "curvature-maps", 2,
-            Drawn::White, true);
-  });
-  results.attempt("Regions", [&] { showRegions(results, shown); });
+  results.attempt("Thickness map", [&] { showThickness(results, shown); });
+  for (const auto& [file, word] : {std::pair{"curvature.shape.gii", "mean curvature"},
+                                   std::pair{"sulc.shape.gii", "sulcal depth"},
+                                   std::pair{"doubt.shape.gii", "doubt of the borders"}}) {
+    results.attempt(word,
+                    [&, file = file, word = word] { (void)addMap(results, shown, file, word); });
+  }
   results.attempt("Given maps", [&] { showGiven(results, shown, maps); });
   results.attempt("Thickness histogram", [&] { chartSurfaceThickness(results, all, options); });
 }

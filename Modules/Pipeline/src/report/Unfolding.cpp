@@ -10,15 +10,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace explica::pipeline {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostFrames = 26;  // in the interactive view: a page stays below 10 MB
-constexpr std::size_t kFewFrames = 16;   // of further patches on the same page
+constexpr std::size_t kMostFrames = 26;  // in the interactive view: a page stays below 15 MB
+constexpr std::size_t kFewFrames = 16;   // where several patches share the page
 
 /// An unfolding's surfaces: where it began, the states on the way, and the region.
 struct Unfolded {
@@ -72,12 +71,11 @@ std::optional<Point> viewpointOf(const StepFolder& step, const Unfolded& unfolde
          options.value("distance", 1000.0) * direction->normalized();
 }
 
-/// @param further  another patch is on the page already
-Unfolded readUnfolded(const StepFolder& step, bool further) {
+Unfolded readUnfolded(const StepFolder& step, std::size_t mostFrames) {
   Unfolded unfolded;
   const auto source = inputOf(step, "SURFACE");
   if (source && fs::exists(*source)) unfolded.whole = io::readSurface(*source).mesh;
-  ShownFrames frames = framesOf(step, further ? kFewFrames : kMostFrames);
+  ShownFrames frames = framesOf(step, mostFrames);
   unfolded.frames = std::move(frames.meshes);
   unfolded.titles = std::move(frames.titles);
   const TriangleMesh after = io::readSurface(step.folder / "unfolded.surf.gii").mesh;
@@ -129,28 +127,29 @@ void addOwnMaps(const StepFolder& step, const Unfolded& unfolded, report::Evolut
   }
 }
 
-void addSurfaceMaps(const StepFolder& surface, report::Evolution& evolution) {
-  const Eigen::Index n = evolution.mesh.vertexCount();
-  for (const char* file : {"thickness.shape.gii", "curvature.shape.gii", "sulc.shape.gii"}) {
-    if (!surface.has(file)) continue;
-    if (const auto map = mapNamed(surface.folder / file, n)) {
-      evolution.maps.push_back({map->values, report::scaleFor(map->values, map->name, map->unit)});
-    }
+/// The patch opens on its hemisphere, where the page shows that; else it is shown by itself.
+void joinTheBrain(std::vector<report::Evolution>& shown, const std::string& side,
+                  report::Evolution patch) {
+  const auto brain = std::find_if(shown.begin(), shown.end(), [&](const report::Evolution& one) {
+    return !one.shapes.empty() && one.title == side && one.frames.empty() && !patch.detached &&
+           one.mesh.faces.rows() == patch.mesh.faces.rows() &&
+           one.mesh.vertexCount() == patch.mesh.vertexCount();
+  });
+  if (brain == shown.end()) {
+    shown.push_back(std::move(patch));
+    return;
   }
-  if (!surface.has("regions.label.gii")) return;
-  const io::LabelMap labels = io::readVertexLabels(surface.folder / "regions.label.gii", n);
-  report::EvolutionLabels named{"regions", {}, {}};
-  std::map<Label, std::int32_t> entryOf;
-  for (const io::LabelEntry& entry : labels.table) {
-    if (entry.key == 0) continue;
-    entryOf[entry.key] = static_cast<std::int32_t>(named.legend.size());
-    named.legend.push_back({entry.name, report::colourOfLabel(entry.key, entry.colour)});
+  brain->moved = std::move(patch.moved);
+  brain->frames = std::move(patch.frames);
+  brain->frameTitles = std::move(patch.frameTitles);
+  brain->region = std::move(patch.region);
+  brain->viewpoint = patch.viewpoint;
+  for (report::EvolutionMap& map : patch.maps) {
+    const bool known = std::any_of(brain->maps.begin(), brain->maps.end(), [&](const auto& other) {
+      return other.scale.title == map.scale.title;
+    });
+    if (!known) brain->maps.push_back(std::move(map));
   }
-  for (const Label key : labels.keys) {
-    const auto found = entryOf.find(key);
-    named.entries.push_back(found == entryOf.end() ? -1 : found->second);
-  }
-  evolution.labels.push_back(std::move(named));
 }
 
 /// What the patch is coloured by in the pictures before and after, and what they are called.
@@ -288,7 +287,8 @@ ShownFrames framesOf(const StepFolder& step, std::size_t most) {
 
 void showUnfolding(ResultFolder& results, const StepFolder& step,
                    const std::vector<GivenMap>& maps) {
-  const Unfolded unfolded = readUnfolded(step, !results.content().evolutions.empty());
+  const std::size_t patches = results.stepsOf("unfold").size();
+  const Unfolded unfolded = readUnfolded(step, patches > 1 ? kFewFrames : kMostFrames);
   report::Evolution evolution = report::evolutionOf(unfolded.frames);
   evolution.frameTitles = unfolded.titles;
   evolution.region = unfolded.region;
@@ -300,9 +300,6 @@ void showUnfolding(ResultFolder& results, const StepFolder& step,
   }
   const StepFolder* surface = results.beside(step, "surface");
   results.attempt("Maps of the unfolding", [&] { addOwnMaps(step, unfolded, evolution); });
-  if (surface != nullptr) {
-    results.attempt("Maps of the surface", [&] { addSurfaceMaps(*surface, evolution); });
-  }
   std::vector<const GivenMap*> fitting;
   for (const GivenMap& map : maps) {
     if (!map.fits(evolution.mesh.vertexCount(), step.side())) continue;
@@ -314,12 +311,7 @@ void showUnfolding(ResultFolder& results, const StepFolder& step,
                     [&] { drawBeforeAndAfter(results, unfolded, surface, step.side(), fitting); });
   }
   evolution.title = titleOf(step.name);
-  if (!results.content().evolutions.empty()) {
-    report::leaveOutSurroundings(evolution);
-    evolution.title += ", the patch alone";
-    evolution.detached = false;
-  }
-  results.content().evolutions.push_back(std::move(evolution));
+  joinTheBrain(results.content().evolutions, step.side(), std::move(evolution));
 }
 
 }  // namespace explica::pipeline

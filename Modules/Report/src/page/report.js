@@ -58,244 +58,391 @@ async function unpackIntegers(packed) {
     });
   }
 })();
+// A hemisphere or patch of the page, unpacked once: its faces, its shapes in millimetres, its maps.
+const parts = new Map();
+function partOf(source) {
+  if (!parts.has(source)) parts.set(source, unpackPart(source));
+  return parts.get(source);
+}
+async function unpackPart(source) {
+  const data = JSON.parse(source.textContent);
+  const start = await unpackIntegers(data.positions);
+  const given = await unpackIntegers(data.faces);
+  const region = await unpackIntegers(data.region);
+  const count = start.length / 3;
+  const inRegion = new Uint8Array(count);
+  for (const v of region) inRegion[v] = 1;
+  // A face that is not of the region has its last corner outside: it is painted by that corner.
+  const faces = given.slice();
+  const partFaces = [];
+  for (let f = 0; f < faces.length; f += 3) {
+    const k = [0, 1, 2].find((i) => !inRegion[given[f + i]]);
+    if (k === undefined) partFaces.push(given[f], given[f + 1], given[f + 2]);
+    else for (let i = 0; i < 3; ++i) faces[f + i] = given[f + (k + 1 + i) % 3];
+  }
+  const inMillimetres = (steps) => Float32Array.from(steps, (s, i) => data.low[i % 3] + data.unit * s);
+  const shapes = [];
+  for (const shape of data.shapes) {
+    const shift = await unpackIntegers(shape.shift);
+    for (let i = 0; i < shift.length; ++i) shift[i] += start[i];
+    shapes.push({ name: shape.name, at: inMillimetres(shift.length > 0 ? shift : start) });
+  }
+  const base = Math.max(0, data.shapes.findIndex((shape) => shape.shift.n === 0));
+  if (shapes.length === 0) shapes.push({ name: '', at: inMillimetres(start) });
+  const moved = await unpackIntegers(data.moved);
+  const frames = [];
+  let before = new Int32Array(moved.length * 3);
+  for (let m = 0; m < moved.length; ++m) for (let c = 0; c < 3; ++c) before[3 * m + c] = start[3 * moved[m] + c];
+  for (const packed of data.frames) {
+    before = (await unpackIntegers(packed)).map((change, i) => change + before[i]);
+    frames.push(before);
+  }
+  const bytesOf = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+  const maps = [], labels = [];
+  for (const map of data.maps) maps.push({ ...map, values: await unpackIntegers(map.values), colours: bytesOf(map.colours) });
+  for (const map of data.labels) labels.push({ ...map, entries: await unpackIntegers(map.entries), colours: bytesOf(map.colours) });
+  const isWhole = region.length > 0 && partFaces.length === faces.length;
+  return { title: source.dataset.title, data, count, faces, partFaces, region, inRegion, isWhole, shapes, base, moved, frames,
+           titles: data.titles, maps, labels, openness: await unpackIntegers(data.openness), viewpoint: data.viewpoint };
+}
+function boxOf(at, filter = () => true) {
+  const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+  for (let i = 0; i < at.length; ++i) {
+    if (!filter(Math.floor(i / 3))) continue;
+    low[i % 3] = Math.min(low[i % 3], at[i]);
+    high[i % 3] = Math.max(high[i % 3], at[i]);
+  }
+  return { low, high, middle: low.map((x, c) => 0.5 * (x + high[c])), size: Math.hypot(...low.map((x, c) => high[c] - x)) };
+}
+function joined(boxes) {
+  const low = [0, 1, 2].map((c) => Math.min(...boxes.map((box) => box.low[c])));
+  const high = [0, 1, 2].map((c) => Math.max(...boxes.map((box) => box.high[c])));
+  return { low, high, middle: low.map((x, c) => 0.5 * (x + high[c])), size: Math.hypot(...low.map((x, c) => high[c] - x)) };
+}
+// Of all vertices, or of those of a mask in the normals given, from all faces about them.
+function normalsOf(at, faces, normals = new Float32Array(at.length), mask = null) {
+  if (mask) for (let v = 0; v < mask.length; ++v) if (mask[v]) normals.fill(0, 3 * v, 3 * v + 3);
+  for (let f = 0; f < faces.length; f += 3) {
+    const a = 3 * faces[f], b = 3 * faces[f + 1], c = 3 * faces[f + 2];
+    const ux = at[b] - at[a], uy = at[b + 1] - at[a + 1], uz = at[b + 2] - at[a + 2];
+    const vx = at[c] - at[a], vy = at[c + 1] - at[a + 1], vz = at[c + 2] - at[a + 2];
+    const nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
+    for (const v of [a, b, c]) {
+      if (mask && !mask[v / 3]) continue;
+      normals[v] += nx; normals[v + 1] += ny; normals[v + 2] += nz;
+    }
+  }
+  for (let v = 0; v < normals.length; v += 3) {
+    if (mask && !mask[v / 3]) continue;
+    const length = Math.hypot(normals[v], normals[v + 1], normals[v + 2]) || 1;
+    for (let c = 0; c < 3; ++c) normals[v + c] /= length;
+  }
+  return normals;
+}
+const openShapes = ['inflated', 'sphere', 'flat'];
+// Shapes that are no anatomy get a place of their own: a sphere has the area of the first shape, the flat map is that
+// sphere's equal-area projection (Lambert's, azimuthal) about the side away from the other hemisphere, and hemispheres
+// are moved apart.
+function placeShapes(scene) {
+  for (const part of scene) {
+    const sphere = part.shapes.find((shape) => shape.name === 'sphere');
+    if (!sphere) continue;
+    let area = 0;
+    const at = part.shapes[0].at;
+    for (let f = 0; f < part.faces.length; f += 3) {
+      const [a, b, c] = [0, 1, 2].map((i) => 3 * part.faces[f + i]);
+      const [ux, uy, uz, vx, vy, vz] = [at[b] - at[a], at[b + 1] - at[a + 1], at[b + 2] - at[a + 2],
+        at[c] - at[a], at[c + 1] - at[a + 1], at[c + 2] - at[a + 2]];
+      area += 0.5 * Math.hypot(uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx);
+    }
+    const radius = Math.sqrt(area / (4 * Math.PI)), middle = boxOf(part.shapes[part.base].at).middle;
+    const out = part.title.toLowerCase().includes('right') ? 1 : -1;
+    const flat = { name: 'flat', at: new Float32Array(sphere.at.length) };
+    part.far = new Uint8Array(part.count);  // of the flat map: beside the point from which all directions lead away
+    for (let i = 0; i < sphere.at.length; i += 3) {
+      const length = Math.hypot(sphere.at[i], sphere.at[i + 1], sphere.at[i + 2]) || 1;
+      const [x, y, z] = [0, 1, 2].map((c) => sphere.at[i + c] / length);
+      const stretch = radius * Math.sqrt(2 / Math.max(1e-6, 1 + out * x));
+      flat.at.set([out * y * stretch + middle[0], z * stretch + middle[1], middle[2]], i);
+      sphere.at.set([x * radius + middle[0], y * radius + middle[1], z * radius + middle[2]], i);
+      part.far[i / 3] = out * x < -0.97 ? 1 : 0;
+    }
+    part.shapes.push(flat);
+    part.flatFaces = [];
+    for (let f = 0; f < part.faces.length; f += 3) {
+      const corners = [0, 1, 2].map((i) => part.faces[f + i]);
+      if (!corners.some((v) => part.far[v])) part.flatFaces.push(...corners);
+    }
+  }
+  if (scene.length !== 2) return;
+  const [left, right] = boxOf(scene[0].shapes[0].at).middle[0] < boxOf(scene[1].shapes[0].at).middle[0] ? scene : [scene[1], scene[0]];
+  left.shapes.forEach((shape, n) => {
+    const other = right.shapes[n];
+    if (!openShapes.includes(shape.name) || !other) return;
+    const gap = 6;  // mm
+    const overlap = boxOf(shape.at).high[0] + gap - boxOf(other.at).low[0];
+    if (overlap <= 0) return;
+    for (let i = 0; i < shape.at.length; i += 3) shape.at[i] -= 0.5 * overlap;
+    for (let i = 0; i < other.at.length; i += 3) other.at[i] += 0.5 * overlap;
+  });
+}
 (function () {
   'use strict';
   const sources = [...document.querySelectorAll('script.evolution')];
   if (sources.length === 0) return;
+  // Those of one scene are shown together; one without is a scene by itself.
+  const scenes = [];
+  for (const source of sources) {
+    const name = source.dataset.scene || source.dataset.title;
+    const known = source.dataset.scene && scenes.find((scene) => scene.name === name);
+    if (known) known.sources.push(source); else scenes.push({ name, sources: [source] });
+  }
   const fresh = document.getElementById('view3d').cloneNode(true);
   let stop = () => {};
-  // Another patch gets elements of its own: nothing of the former listens to them.
+  // Another scene gets elements of its own: nothing of the former listens to them.
   function open(number) {
     stop();
     document.getElementById('view3d').replaceWith(fresh.cloneNode(true));
     const which = document.getElementById('which');
-    document.getElementById('which-label').hidden = sources.length < 2;
-    sources.forEach((source, n) => which.add(new Option(source.dataset.title || 'patch ' + (n + 1), String(n))));
+    document.getElementById('which-label').hidden = scenes.length < 2;
+    scenes.forEach((scene, n) => which.add(new Option(scene.name || 'surface ' + (n + 1), String(n))));
     which.value = String(number);
     which.addEventListener('change', () => open(Number(which.value)));
     let stopped = false;
     let dispose = () => {};
     stop = () => { stopped = true; dispose(); };
-    showEvolution(sources[number], () => stopped, (work) => { dispose = work; });
+    showScene(scenes[number], () => stopped, (work) => { const before = dispose; dispose = () => { before(); work(); }; });
   }
   open(0);
 
-async function showEvolution(source, isStopped, onStop) {
+async function showScene({ sources: ofScene }, isStopped, onStop) {
   const byId = (id) => document.getElementById(id);
   const message = byId('stage-message');
   const canvas = byId('canvas');
-
-  let data;
-  let renderer;
+  let renderer, scene;
   try {
-    data = JSON.parse(source.textContent);
-    renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
+    const context = canvas.getContext('webgl2', { antialias: true, preserveDrawingBuffer: true });
+    if (!context) throw new Error('no WebGL 2');
+    renderer = new THREE.WebGLRenderer({ canvas, context });
+    onStop(() => renderer.dispose());
+    scene = await Promise.all(ofScene.map(partOf));
   } catch (fault) {
     message.textContent = 'This browser cannot show the surface (' + fault.message + '); the pictures below show its views.';
     byId('controls').style.display = 'none';
     return;
   }
-  onStop(() => renderer.dispose());
-
-  const start = await unpackIntegers(data.positions);
-  const faces = await unpackIntegers(data.faces);
-  const openness = await unpackIntegers(data.openness);
-  const moved = await unpackIntegers(data.moved);
-  const vertexCount = start.length / 3;
-  const frames = [];
-  {
-    let before = new Int32Array(moved.length * 3);
-    for (let m = 0; m < moved.length; ++m) for (let c = 0; c < 3; ++c) before[3 * m + c] = start[3 * moved[m] + c];
-    for (const packed of data.frames) {
-      const change = await unpackIntegers(packed);
-      const now = new Int32Array(before.length);
-      for (let i = 0; i < now.length; ++i) now[i] = before[i] + change[i];
-      frames.push(now);
-      before = now;
-    }
-  }
-  const bytesOf = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
-  const maps = [];
-  for (const map of data.maps) {
-    maps.push({ name: map.name, unit: map.unit, low: map.low, high: map.high, least: map.least, step: map.step,
-                values: await unpackIntegers(map.values), colours: bytesOf(map.colours) });
-  }
-  const labelMaps = [];
-  for (const map of data.labels) {
-    labelMaps.push({ name: map.name, names: map.names, entries: await unpackIntegers(map.entries), colours: bytesOf(map.colours) });
-  }
-  const region = await unpackIntegers(data.region);
-
   if (isStopped()) return;
+  if (!scene[0].isPlaced) placeShapes(scene);
+  scene[0].isPlaced = true;
 
-  // Geometry in millimetres about the middle of what moves, or of everything.
-  const positions = new Float32Array(vertexCount * 3);
-  for (let i = 0; i < positions.length; ++i) positions[i] = data.low[i % 3] + data.unit * start[i];
-  const isMoved = new Uint8Array(vertexCount);
-  for (const v of moved) isMoved[v] = 1;
-  const inRegion = new Uint8Array(vertexCount);
-  for (const v of region) inRegion[v] = 1;
-  const faceInRegion = (f) => inRegion[faces[f]] && inRegion[faces[f + 1]] && inRegion[faces[f + 2]];
-  let isWhole = region.length > 0;
-  for (let f = 0; f < faces.length && isWhole; f += 3) isWhole = faceInRegion(f);
+  const names = scene[0].shapes.map((shape) => shape.name);
+  const hasShapes = names.length > 1;
+  const base = scene[0].base;
+  const folded = (name) => !openShapes.includes(name);
+  const patches = scene.filter((part) => part.region.length > 0 && !part.isWhole);
+  const isWhole = scene.length === 1 && scene[0].isWhole;
   // Where there is no patch, nothing speaks of one.
-  for (const element of document.querySelectorAll('#view3d .of-part')) element.style.display = isWhole ? 'none' : '';
-  byId('reset').textContent = isWhole ? 'Reset the view' : 'Back to the patch';
-  function boxOf(filter) {
-    const low = [Infinity, Infinity, Infinity];
-    const high = [-Infinity, -Infinity, -Infinity];
-    for (let v = 0; v < vertexCount; ++v) {
-      if (!filter(v)) continue;
-      for (let c = 0; c < 3; ++c) {
-        low[c] = Math.min(low[c], positions[3 * v + c]);
-        high[c] = Math.max(high[c], positions[3 * v + c]);
-      }
-    }
-    return { middle: low.map((x, c) => 0.5 * (x + high[c])), size: Math.hypot(...low.map((x, c) => high[c] - x)) };
-  }
-  const whole = boxOf(() => true);
+  const shown = (selector, is) => { for (const element of document.querySelectorAll('#view3d ' + selector)) element.style.display = is ? '' : 'none'; };
+  shown('.of-part', patches.length > 0);
+  shown('.of-shapes', hasShapes);
+  shown('.of-sides', scene.length > 1);
+  shown('.of-frames', scene.some((part) => part.frames.length > 1));
+  byId('reset').textContent = patches.length > 0 ? 'To the patch' : 'Reset the view';
 
-  const normals = new Float32Array(vertexCount * 3);
-  function computeNormals() {
-    normals.fill(0);
-    for (let f = 0; f < faces.length; f += 3) {
-      const a = 3 * faces[f], b = 3 * faces[f + 1], c = 3 * faces[f + 2];
-      const ux = positions[b] - positions[a], uy = positions[b + 1] - positions[a + 1], uz = positions[b + 2] - positions[a + 2];
-      const vx = positions[c] - positions[a], vy = positions[c + 1] - positions[a + 1], vz = positions[c + 2] - positions[a + 2];
-      const nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
-      for (const v of [a, b, c]) { normals[v] += nx; normals[v + 1] += ny; normals[v + 2] += nz; }
-    }
-    for (let v = 0; v < normals.length; v += 3) {
-      const length = Math.hypot(normals[v], normals[v + 1], normals[v + 2]) || 1;
-      normals[v] /= length; normals[v + 1] /= length; normals[v + 2] /= length;
-    }
-  }
-
-  const colours = new Float32Array(vertexCount * 3);
-  const open = new Float32Array(vertexCount);
-  const geometry = new THREE.BufferGeometry();
-  geometry.setAttribute('position', new THREE.BufferAttribute(positions, 3));
-  geometry.setAttribute('normal', new THREE.BufferAttribute(normals, 3));
-  geometry.setAttribute('tone', new THREE.BufferAttribute(colours, 3));
-  geometry.setAttribute('open', new THREE.BufferAttribute(open, 1));
-  const allFaces = new THREE.BufferAttribute(Uint32Array.from(faces), 1);
-  const partFaces = [];
-  for (let f = 0; f < faces.length; f += 3) {
-    if (faceInRegion(f)) partFaces.push(faces[f], faces[f + 1], faces[f + 2]);
-  }
-  const someFaces = new THREE.BufferAttribute(Uint32Array.from(partFaces), 1);
-  geometry.setIndex(allFaces);
+  // One mesh a part, which the graphics card morphs between two of its shapes.
+  const stage = new THREE.Scene();
+  stage.background = new THREE.Color(0xeef1f4);
+  const uniforms = { share: { value: 0 }, foldedNow: { value: 1 }, byFace: { value: 0 } };
   const material = new THREE.ShaderMaterial({
-    side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
-    vertexShader: 'attribute vec3 tone; attribute float open; varying vec3 vTone; varying float vOpen; varying vec3 vNormal;' +
-      'void main() { vTone = tone; vOpen = open; vNormal = normalMatrix * normal;' +
-      'gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }',
-    fragmentShader: 'varying vec3 vTone; varying float vOpen; varying vec3 vNormal;' +
+    side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1, uniforms,
+    vertexShader: 'attribute vec3 next; attribute vec3 nextNormal; attribute vec3 tone; attribute float open; uniform float share;' +
+      'varying vec3 vTone; flat varying vec3 fTone; varying float vOpen; varying vec3 vNormal;' +
+      'void main() { vTone = tone; fTone = tone; vOpen = open; vNormal = normalMatrix * mix(normal, nextNormal, share);' +
+      'gl_Position = projectionMatrix * modelViewMatrix * vec4(mix(position, next, share), 1.0); }',
+    fragmentShader: 'uniform float foldedNow; uniform float byFace; varying vec3 vTone; flat varying vec3 fTone; varying float vOpen; varying vec3 vNormal;' +
       'void main() { vec3 n = normalize(vNormal); float inside = gl_FrontFacing ? 0.0 : 1.0; n = gl_FrontFacing ? n : -n;' +
       'float light = 0.18 + 0.47 * max(0.0, dot(n, normalize(vec3(-0.45, 0.45, 1.0)))) + 0.40 * max(0.0, n.z);' +
-      'float dark = mix(1.0 - 0.9 * (1.0 - min(1.0, 1.25 * vOpen)), 0.5, inside);' +
-      'vec3 c = vTone * light * dark * mix(vec3(1.0), vec3(0.5, 0.5, 0.75), inside);' +
+      'float isOpen = mix(1.0, min(1.0, 1.25 * vOpen), foldedNow);' +
+      'float dark = mix(1.0 - 0.9 * (1.0 - isOpen), 0.5, inside);' +
+      'vec3 c = mix(vTone, fTone, byFace) * light * dark * mix(vec3(1.0), vec3(0.5, 0.5, 0.75), inside);' +
       'gl_FragColor = vec4(pow(c, vec3(1.0 / 2.2)), 1.0); }'
   });
-  const scene = new THREE.Scene();
-  scene.background = new THREE.Color(0xeef1f4);
-  const mesh = new THREE.Mesh(geometry, material);
-  mesh.frustumCulled = false;
-  scene.add(mesh);
-
-  // Labels fill whole faces, so that no colour lies between two of them: corners of its own for each face.
-  const corners = faces.length;
-  const flatGeometry = new THREE.BufferGeometry();
-  const flat = { position: new Float32Array(3 * corners), normal: new Float32Array(3 * corners),
-                 tone: new Float32Array(3 * corners), open: new Float32Array(corners) };
-  flatGeometry.setAttribute('position', new THREE.BufferAttribute(flat.position, 3));
-  flatGeometry.setAttribute('normal', new THREE.BufferAttribute(flat.normal, 3));
-  flatGeometry.setAttribute('tone', new THREE.BufferAttribute(flat.tone, 3));
-  flatGeometry.setAttribute('open', new THREE.BufferAttribute(flat.open, 1));
-  const flatWhole = new THREE.BufferAttribute(Uint32Array.from({ length: corners }, (_, i) => i), 1);
-  const flatPart = [];
-  for (let f = 0; f < faces.length; f += 3) if (faceInRegion(f)) flatPart.push(f, f + 1, f + 2);
-  const flatSome = new THREE.BufferAttribute(Uint32Array.from(flatPart), 1);
-  flatGeometry.setIndex(flatWhole);
-  const flatMesh = new THREE.Mesh(flatGeometry, material);
-  flatMesh.frustumCulled = false;
-  flatMesh.visible = false;
-  scene.add(flatMesh);
-  function followFlat() {
-    for (let i = 0; i < corners; ++i) {
-      const v = faces[i];
-      for (let c = 0; c < 3; ++c) {
-        flat.position[3 * i + c] = positions[3 * v + c];
-        flat.normal[3 * i + c] = normals[3 * v + c];
-      }
-      flat.open[i] = open[v];
+  const attribute = (values, size) => new THREE.BufferAttribute(values, size);
+  for (const part of scene) {
+    const geometry = part.geometry = new THREE.BufferGeometry();
+    part.at = part.shapes[base].at.slice();  // as frames and shapes have it now
+    for (const [name, size] of [['position', 3], ['normal', 3], ['next', 3], ['nextNormal', 3], ['tone', 3], ['open', 1]]) {
+      geometry.setAttribute(name, attribute(new Float32Array(size * part.count), size));
     }
-    for (const name of ['position', 'normal', 'open']) flatGeometry.attributes[name].needsUpdate = true;
-  }
-  // The colour of a face is that of two of its corners, else of the first.
-  function paintFaces(entryOf, colourOf) {
-    paintEach((f) => {
-      const a = entryOf(faces[f]), b = entryOf(faces[f + 1]), c = entryOf(faces[f + 2]);
-      return colourOf(b === c ? b : a);
-    });
-  }
-  function paintEach(colourOf) {
-    for (let f = 0; f < faces.length; f += 3) {
-      const colour = colourOf(f);
-      for (let k = 0; k < 3; ++k) for (let i = 0; i < 3; ++i) flat.tone[3 * (f + k) + i] = colour[i];
-    }
-    flatGeometry.attributes.tone.needsUpdate = true;
-  }
-
-  // The region's rim: edges of its faces that no other face of it has.
-  const rimEnds = [];
-  {
+    part.index = { all: attribute(Uint32Array.from(part.faces), 1), alone: attribute(Uint32Array.from(part.partFaces), 1),
+                   flat: part.flatFaces && attribute(Uint32Array.from(part.flatFaces), 1) };
+    part.mesh = new THREE.Mesh(geometry, material);
+    part.mesh.frustumCulled = false;
+    stage.add(part.mesh);
+    // The region's rim: edges of its faces that no other face of it has.
+    const moves = new Uint8Array(part.count);
+    for (const v of part.moved) moves[v] = 1;
+    part.turns = new Uint8Array(part.count);  // its normal changes from frame to frame
+    const touched = (mask) => { const found = []; for (let f = 0; f < part.faces.length; f += 3) if (mask[part.faces[f]] || mask[part.faces[f + 1]] || mask[part.faces[f + 2]]) found.push(part.faces[f], part.faces[f + 1], part.faces[f + 2]); return found; };
+    for (const v of touched(moves)) part.turns[v] = 1;
+    part.turning = touched(part.turns);
     const edges = new Map();
-    for (let f = 0; f < faces.length; f += 3) {
-      if (!faceInRegion(f)) continue;
+    for (let f = 0; f < part.partFaces.length && !part.isWhole; f += 3) {
       for (let k = 0; k < 3; ++k) {
-        const a = faces[f + k], b = faces[f + (k + 1) % 3];
-        const key = Math.min(a, b) * vertexCount + Math.max(a, b);
+        const a = part.partFaces[f + k], b = part.partFaces[f + (k + 1) % 3];
+        const key = Math.min(a, b) * part.count + Math.max(a, b);
         edges.set(key, (edges.get(key) || 0) + 1);
       }
     }
-    for (const [key, count] of edges) if (count === 1) rimEnds.push(Math.floor(key / vertexCount), key % vertexCount);
+    part.rimEnds = [];
+    for (const [key, times] of edges) if (times === 1) part.rimEnds.push(Math.floor(key / part.count), key % part.count);
+    part.rim = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: 0x101418 }));
+    part.rim.geometry.setAttribute('position', attribute(new Float32Array(3 * part.rimEnds.length), 3));
+    part.rim.frustumCulled = false;
+    stage.add(part.rim);
   }
-  const rimPositions = new Float32Array(3 * rimEnds.length);
-  const rimGeometry = new THREE.BufferGeometry();
-  rimGeometry.setAttribute('position', new THREE.BufferAttribute(rimPositions, 3));
-  const rim = new THREE.LineSegments(rimGeometry, new THREE.LineBasicMaterial({ color: 0x101418 }));
-  rim.frustumCulled = false;
-  scene.add(rim);
-  function followRim() {
-    rimEnds.forEach((v, i) => { for (let c = 0; c < 3; ++c) rimPositions[3 * i + c] = positions[3 * v + c]; });
-    rimGeometry.attributes.position.needsUpdate = true;
+  // The place where the slices are, marked on the surface.
+  const mark = new THREE.Points(new THREE.BufferGeometry(),
+    new THREE.PointsMaterial({ color: 0x00a5cf, size: 11, sizeAttenuation: false, depthTest: false }));
+  mark.geometry.setAttribute('position', attribute(new Float32Array(3), 3));
+  mark.frustumCulled = false;
+  mark.visible = false;
+  mark.renderOrder = 1;
+  stage.add(mark);
+  let marked = null;
+
+  const frameSlider = byId('frame'), shapeSlider = byId('shape'), chooser = byId('map'), alone = byId('alone'), sides = byId('sides');
+  const play = byId('play');
+  const isShown = (part) => sides.value === 'all' || sides.value === part.title;
+  let frame = 0, place = base, playing = null;
+  const last = Math.max(0, ...scene.map((part) => part.frames.length - 1));
+
+  const set = (part, name, values) => { part.geometry.attributes[name].array.set(values); part.geometry.attributes[name].needsUpdate = true; };
+  const shapeNormals = (part, n) => part.shapes[n].normals || (part.shapes[n].normals = normalsOf(part.shapes[n].at, part.faces));
+  // What lines, marks and the pointer follow.
+  function follow() {
+    const share = uniforms.share.value;
+    for (const part of scene) {
+      const now = part.geometry.attributes.position.array, next = part.geometry.attributes.next.array;
+      for (let i = 0; i < part.at.length; ++i) part.at[i] = now[i] + share * (next[i] - now[i]);
+      const rim = part.rim.geometry.attributes.position;
+      part.rimEnds.forEach((v, i) => { for (let c = 0; c < 3; ++c) rim.array[3 * i + c] = part.at[3 * v + c]; });
+      rim.needsUpdate = true;
+      part.mesh.visible = isShown(part);
+      part.rim.visible = isShown(part);
+      part.geometry.setIndex(alone.checked && part.partFaces.length > 0 ? part.index.alone
+        : part.index.flat && place > names.length - 2 ? part.index.flat : part.index.all);
+    }
+    mark.visible = marked !== null && isShown(marked.part);
+    if (marked) for (let c = 0; c < 3; ++c) mark.geometry.attributes.position.array[c] = marked.part.at[3 * marked.vertex + c];
+    mark.geometry.attributes.position.needsUpdate = true;
+  }
+  let from = -1;
+  function morph(to) {
+    place = Math.max(0, Math.min(names.length - 1, to));
+    const n = Math.min(Math.floor(place), Math.max(0, names.length - 2)), m = Math.min(n + 1, names.length - 1);
+    frame = 0;
+    if (from !== n) {
+      for (const part of scene) {
+        set(part, 'position', part.shapes[n].at);
+        set(part, 'normal', shapeNormals(part, n));
+        set(part, 'next', part.shapes[m].at);
+        set(part, 'nextNormal', shapeNormals(part, m));
+        set(part, 'open', Float32Array.from(part.openness, (o) => o / 255));
+      }
+      from = n;
+    }
+    uniforms.share.value = place - n;
+    uniforms.foldedNow.value = (folded(names[n]) ? 1 - (place - n) : 0) + (folded(names[m]) ? place - n : 0);
+    shapeSlider.value = String(place);
+    const near = Math.abs(place - Math.round(place)) < 0.02;
+    byId('shape-title').textContent = near ? names[Math.round(place)] : names[n] + ' to ' + names[m];
+    frameSlider.value = String(frame);
+    titleFrames();
+    follow();
+    if (chooser.value === 'facing') paint(); else draw();
+  }
+  // Where a patch opens, its surface has the shape from which it does.
+  function show(number) {
+    if (place !== base) toShape(base); else if (from === -1) morph(base);
+    const n = Math.min(base, Math.max(0, names.length - 2));
+    if (n !== base) {  // the base is the last shape: it is what is drawn
+      for (const part of scene) { set(part, 'position', part.shapes[base].at); set(part, 'normal', shapeNormals(part, base)); }
+      uniforms.share.value = 0;
+      uniforms.foldedNow.value = 1;
+      from = -2;
+    }
+    frame = Math.max(0, Math.min(last, number));
+    for (const part of scene) {
+      if (part.frames.length === 0) continue;
+      const f = Math.round(frame / Math.max(1, last) * (part.frames.length - 1));
+      const share = part.frames.length > 1 ? f / (part.frames.length - 1) : 0;
+      const { position, normal, open } = part.geometry.attributes;
+      part.moved.forEach((v, m) => {
+        for (let c = 0; c < 3; ++c) position.array[3 * v + c] = part.data.low[c] + part.data.unit * part.frames[f][3 * m + c];
+        const shade = part.openness[v] / 255;
+        open.array[v] = shade + share * (1 - shade);  // what unfolds comes out of the shade
+      });
+      normalsOf(position.array, part.turning, normal.array, part.turns);
+      position.needsUpdate = normal.needsUpdate = open.needsUpdate = true;
+    }
+    from = frame === 0 ? from : -2;
+    frameSlider.value = String(frame);
+    titleFrames();
+    follow();
+    if (chooser.value === 'facing') paint(); else draw();
+  }
+  function titleFrames() {
+    const words = scene.filter((part) => part.frames.length > 1 && isShown(part)).map((part) =>
+      (patches.length > 1 ? part.title + ': ' : '') + (part.titles[Math.round(frame / Math.max(1, last) * (part.frames.length - 1))] || ''));
+    byId('frame-title').textContent = words.join('; ');
   }
 
   // The eye turns about `target`: parallel projection, a quaternion for the turn.
   const camera = new THREE.OrthographicCamera(-1, 1, 1, -1, 0.1, 10000);
   const eye = { target: new THREE.Vector3(), turn: new THREE.Quaternion(), half: 100 };
-  // The box of the region in the first and the last frame.
-  function regionBox() {
-    const now = boxOf((v) => inRegion[v] === 1);
-    if (frames.length < 2) return now;
-    const shown = frame;
-    show(shown === 0 ? frames.length - 1 : 0);
-    const other = boxOf((v) => inRegion[v] === 1);
-    show(shown);
-    return { middle: now.middle.map((x, c) => 0.5 * (x + other.middle[c])), size: Math.max(now.size, other.size) };
+  const whole = joined(scene.map((part) => boxOf(part.shapes[base].at)));
+  const boxNow = () => joined(scene.filter(isShown).map((part) => boxOf(part.at)));
+  // Half the height of the picture that holds a box as it is turned now.
+  function halfFor(box) {
+    const back = eye.turn.clone().conjugate();
+    let wide = 0, high = 0;
+    for (let n = 0; n < 8; ++n) {
+      const corner = new THREE.Vector3(...[0, 1, 2].map((c) => (n >> c & 1 ? 0.5 : -0.5) * (box.high[c] - box.low[c]))).applyQuaternion(back);
+      wide = Math.max(wide, Math.abs(corner.x));
+      high = Math.max(high, Math.abs(corner.y));
+    }
+    return 1.05 * Math.max(high, wide * canvas.clientHeight / canvas.clientWidth);
   }
-  function lookAt(focus, share) {
-    eye.target.set(...focus.middle);
-    eye.half = share * focus.size * Math.max(1, canvas.clientHeight / canvas.clientWidth);
-    const from = data.viewpoint ? new THREE.Vector3(...data.viewpoint).sub(eye.target) : new THREE.Vector3(-1, 0, 0);
-    const up = Math.abs(from.clone().normalize().z) > 0.9 ? new THREE.Vector3(0, 1, 0) : new THREE.Vector3(0, 0, 1);
-    const matrix = new THREE.Matrix4().lookAt(from, new THREE.Vector3(), up);
-    eye.turn.setFromRotationMatrix(matrix);
+  function lookAt(box, half, direction) {
+    eye.target.set(...box.middle);
+    const up = Math.abs(direction.clone().normalize().z) > 0.9 ? new THREE.Vector3(0, 1, 0) : new THREE.Vector3(0, 0, 1);
+    eye.turn.setFromRotationMatrix(new THREE.Matrix4().lookAt(direction, new THREE.Vector3(), up));
+    eye.half = half || halfFor(box);
     draw();
   }
-  const resetView = () => lookAt(region.length > 0 ? regionBox() : whole, region.length > 0 ? 0.4 : 0.36);
-  const wholeView = () => lookAt(whole, 0.36);
+  const directions = { above: [0, 0, 1], left: [-1, 0, 0], right: [1, 0, 0], front: [0, 1, 0], back: [0, -1, 0], below: [0, 0, -1] };
+  function wholeView() {
+    const viewpoint = !hasShapes && scene[0].viewpoint;
+    const box = boxNow();
+    const direction = viewpoint ? new THREE.Vector3(...viewpoint).sub(new THREE.Vector3(...box.middle))
+      : new THREE.Vector3(...directions[hasShapes ? byId('from').value : 'left']);
+    lookAt(box, 0, direction);
+  }
+  let patchAt = -1;
+  // The patch from its viewpoint, as large as its box in the first and the last frame; of several the next.
+  function resetView() {
+    const seen = patches.filter(isShown);
+    if (seen.length === 0) { wholeView(); return; }
+    patchAt = (patchAt + 1) % seen.length;
+    const part = seen[patchAt], filter = (v) => part.inRegion[v] === 1;
+    const here = frame;
+    const boxes = [0, last].map((f) => { show(f); return boxOf(part.at, filter); });
+    show(here);
+    const box = { middle: boxes[0].middle.map((x, c) => 0.5 * (x + boxes[1].middle[c])), size: Math.max(boxes[0].size, boxes[1].size) };
+    const direction = part.viewpoint ? new THREE.Vector3(...part.viewpoint).sub(new THREE.Vector3(...box.middle)) : new THREE.Vector3(-1, 0, 0);
+    lookAt(box, 0.4 * box.size * Math.max(1, canvas.clientHeight / canvas.clientWidth), direction);
+  }
   let pending = false;
   function draw() {
     if (pending) return;
@@ -316,12 +463,12 @@ async function showEvolution(source, isStopped, onStop) {
       camera.far = 10 * whole.size;
       camera.updateProjectionMatrix();
       camera.updateMatrixWorld();
-      renderer.render(scene, camera);
+      renderer.render(stage, camera);
+      canvas.dataset.drawn = String(Number(canvas.dataset.drawn || 0) + 1);
     });
   }
   function rotate(dx, dy) {
-    const turn = new THREE.Quaternion().setFromEuler(new THREE.Euler(-dy, -dx, 0));
-    eye.turn.multiply(turn);
+    eye.turn.multiply(new THREE.Quaternion().setFromEuler(new THREE.Euler(-dy, -dx, 0)));
     draw();
   }
   function zoom(factor) {
@@ -334,102 +481,7 @@ async function showEvolution(source, isStopped, onStop) {
     draw();
   }
 
-  const slider = byId('frame');
-  const title = byId('frame-title');
-  const play = byId('play');
-  const chooser = byId('map');
-  const alone = byId('alone');
-  let frame = 0;
-  let playing = null;
-  let followMark = () => {};
-
-  const linear = (byte) => Math.pow(byte / 255, 2.2);
-  function paint() {
-    const choice = chooser.value;
-    const bar = byId('bar');
-    if (choice === 'facing') {
-      // Cosine between the outward normal and the direction to the viewpoint: the flux density now.
-      const eyeAt = data.viewpoint || [whole.middle[0] - 1e4, whole.middle[1], whole.middle[2]];
-      const ramp = facingMap.colours;
-      for (let v = 0; v < vertexCount; ++v) {
-        let x = eyeAt[0] - positions[3 * v], y = eyeAt[1] - positions[3 * v + 1], z = eyeAt[2] - positions[3 * v + 2];
-        const cosine = (x * normals[3 * v] + y * normals[3 * v + 1] + z * normals[3 * v + 2]) / Math.hypot(x, y, z);
-        const entry = 3 * Math.round(127 * (1 + Math.max(-1, Math.min(1, cosine))));
-        for (let c = 0; c < 3; ++c) colours[3 * v + c] = linear(ramp[entry + c]);
-      }
-    } else if (choice === 'none') {
-      // The region is made of the faces with all corners in it: its colour ends at its rim.
-      paintEach((f) => (faceInRegion(f) ? [0.80, 0.50, 0.28] : [0.60, 0.58, 0.56]));
-    } else if (choice.startsWith('label')) {
-      const map = labelMaps[Number(choice.slice(5))];
-      paintFaces((v) => map.entries[v], (entry) => (entry < 0 ? [0.60, 0.58, 0.56]
-        : [0, 1, 2].map((c) => linear(map.colours[3 * entry + c]))));
-    } else {
-      const map = maps[Number(choice)];
-      for (let v = 0; v < vertexCount; ++v) {
-        const value = map.values[v] > 65534 ? NaN : map.least + map.step * map.values[v];
-        const share = Math.max(0, Math.min(1, (value - map.low) / (map.high - map.low)));
-        const entry = Number.isNaN(value) ? 3 * 255 : 3 * Math.round(254 * share);
-        for (let c = 0; c < 3; ++c) colours[3 * v + c] = linear(map.colours[entry + c]);
-      }
-    }
-    const byFace = choice === 'none' || choice.startsWith('label');
-    mesh.visible = !byFace;
-    flatMesh.visible = byFace;
-    const shown = byFace ? null : (choice === 'facing' ? facingMap : maps[Number(choice)]);
-    bar.style.display = shown ? 'block' : 'none';
-    if (shown) {
-      byId('bar-title').textContent = shown.name + (shown.unit ? ' [' + shown.unit + ']' : '');
-      byId('bar-high').textContent = String(Number(shown.high.toPrecision(3)));
-      byId('bar-low').textContent = String(Number(shown.low.toPrecision(3)));
-      const pen = byId('bar-colours').getContext('2d');
-      for (let y = 0; y < 128; ++y) {
-        const entry = 3 * Math.round(254 * (1 - y / 127));
-        pen.fillStyle = 'rgb(' + shown.colours[entry] + ',' + shown.colours[entry + 1] + ',' + shown.colours[entry + 2] + ')';
-        pen.fillRect(0, y, 14, 1);
-      }
-    }
-    geometry.attributes.tone.needsUpdate = true;
-    draw();
-  }
-
-  function show(number) {
-    frame = Math.max(0, Math.min(frames.length - 1, number));
-    if (frames.length > 0) {
-      const now = frames[frame];
-      for (let m = 0; m < moved.length; ++m) {
-        for (let c = 0; c < 3; ++c) positions[3 * moved[m] + c] = data.low[c] + data.unit * now[3 * m + c];
-      }
-    }
-    computeNormals();
-    followRim();
-    followMark();
-    // What unfolds comes out of the shade.
-    const share = frames.length > 1 ? frame / (frames.length - 1) : 0;
-    for (let v = 0; v < vertexCount; ++v) {
-      const shade = openness[v] / 255;
-      open[v] = isMoved[v] ? shade + share * (1 - shade) : shade;
-    }
-    for (const name of ['position', 'normal', 'open']) geometry.attributes[name].needsUpdate = true;
-    followFlat();
-    slider.value = String(frame);
-    title.textContent = data.titles[frame] || '';
-    if (chooser.value === 'facing') paint(); else draw();
-  }
-  function pause() {
-    clearInterval(playing);
-    playing = null;
-    play.textContent = '\u25b6';
-  }
-  function togglePlay() {
-    if (playing !== null) { pause(); return; }
-    if (frame >= frames.length - 1) show(0);
-    play.textContent = '\u23f8';
-    playing = setInterval(() => {
-      if (frame >= frames.length - 1) pause(); else show(frame + 1);
-    }, 100);
-  }
-
+  // Maps by their names: one colour bar for all parts.
   const facingMap = { name: 'facing the viewpoint (1 = directly)', unit: '', low: -1, high: 1, colours: new Uint8Array(3 * 256) };
   for (let e = 0; e < 256; ++e) {
     const t = e / 254;
@@ -437,98 +489,176 @@ async function showEvolution(source, isStopped, onStop) {
     const ends = t < 0.5 ? [[30, 70, 150], [236, 236, 236], 2 * t] : [[236, 236, 236], [150, 75, 10], 2 * t - 1];
     for (let c = 0; c < 3; ++c) facingMap.colours[3 * e + c] = mix(ends[0][c], ends[1][c], Math.min(1, ends[2]));
   }
-  const addChoice = (value, text) => {
-    const option = document.createElement('option');
-    option.value = value;
-    option.textContent = text;
-    chooser.appendChild(option);
-  };
-  addChoice('none', moved.length > 0 && !isWhole ? 'region' : 'plain');
-  addChoice('facing', 'facing the viewpoint (1 = directly)');
-  maps.forEach((map, m) => addChoice(String(m), map.name));
-  labelMaps.forEach((map, m) => addChoice('label' + m, map.name));
-  slider.max = String(Math.max(0, frames.length - 1));
-  if (frames.length < 2) {
-    for (const id of ['play', 'frame', 'before-after']) byId(id).disabled = true;
+  const addChoice = (value, text) => chooser.add(new Option(text, value));
+  addChoice('none', patches.length > 0 ? 'patch' : 'plain');
+  if (patches.length > 0 || !hasShapes) addChoice('facing', facingMap.name);
+  const kinds = (kind) => [...new Set(scene.flatMap((part) => part[kind].map((map) => map.name)))];
+  const mapNames = kinds('maps'), labelNames = kinds('labels');
+  mapNames.forEach((name, m) => addChoice(String(m), name));
+  labelNames.forEach((name, m) => addChoice('label' + m, name));
+  const mapOf = (part, choice) => part.maps.find((map) => map.name === mapNames[Number(choice)]);
+  const labelOf = (part, choice) => part.labels.find((map) => map.name === labelNames[Number(choice.slice(5))]);
+  function barOf(choice) {
+    const found = scene.map((part) => mapOf(part, choice)).filter(Boolean);
+    return { ...found[0], low: Math.min(...found.map((map) => map.low)), high: Math.max(...found.map((map) => map.high)) };
+  }
+  const valueOf = (map, v) => (map.values[v] > 65534 ? NaN : map.least + map.step * map.values[v]);
+  const linear = Float32Array.from({ length: 256 }, (_, byte) => Math.pow(byte / 255, 2.2));
+  const plain = [0.60, 0.58, 0.56];
+  // Sulci dark and gyri light where the folds are no longer seen.
+  function foldTones(part) {
+    const folds = part.maps.find((map) => map.name.includes('curvature'));
+    return (v) => (folds && hasShapes ? (valueOf(folds, v) > 0 ? [0.30, 0.29, 0.28] : [0.62, 0.60, 0.58]) : plain);
+  }
+  function paint() {
+    const choice = chooser.value, isLabel = choice.startsWith('label');
+    uniforms.byFace.value = choice === 'none' || isLabel ? 1 : 0;
+    const shownMap = choice === 'none' || isLabel ? null : choice === 'facing' ? facingMap : barOf(choice);
+    for (const part of scene) {
+      const tone = part.geometry.attributes.tone.array;
+      const put = (v, colours, entry) => { for (let c = 0; c < 3; ++c) tone[3 * v + c] = linear[colours[entry + c]]; };
+      const map = isLabel ? labelOf(part, choice) : shownMap === facingMap ? facingMap : mapOf(part, choice);
+      const folds = foldTones(part);
+      if (choice === 'none' || !map) {
+        for (let v = 0; v < part.count; ++v) tone.set(part.inRegion[v] && !part.isWhole && choice === 'none' ? [0.80, 0.50, 0.28] : folds(v), 3 * v);
+      } else if (isLabel) {
+        for (let v = 0; v < part.count; ++v) if (map.entries[v] < 0) tone.set(folds(v), 3 * v); else put(v, map.colours, 3 * map.entries[v]);
+      } else if (map === facingMap) {
+        // Cosine between the outward normal and the direction to the viewpoint: the flux density now.
+        const eyeAt = part.viewpoint || [whole.middle[0] - 1e4, whole.middle[1], whole.middle[2]];
+        const normals = part.geometry.attributes.normal.array;
+        for (let v = 0; v < part.count; ++v) {
+          const [x, y, z] = [0, 1, 2].map((c) => eyeAt[c] - part.at[3 * v + c]);
+          const cosine = (x * normals[3 * v] + y * normals[3 * v + 1] + z * normals[3 * v + 2]) / Math.hypot(x, y, z);
+          put(v, map.colours, 3 * Math.round(127 * (1 + Math.max(-1, Math.min(1, cosine)))));
+        }
+      } else {
+        for (let v = 0; v < part.count; ++v) {
+          const value = valueOf(map, v), share = (value - shownMap.low) / (shownMap.high - shownMap.low);
+          if (Number.isNaN(value) && hasShapes) tone.set(folds(v), 3 * v);
+          else put(v, map.colours, Number.isNaN(value) ? 3 * 255 : 3 * Math.round(254 * Math.max(0, Math.min(1, share))));
+        }
+      }
+      part.geometry.attributes.tone.needsUpdate = true;
+    }
+    const bar = byId('bar');
+    bar.style.display = shownMap ? 'block' : 'none';
+    if (shownMap) {
+      byId('bar-title').textContent = shownMap.name + (shownMap.unit ? ' [' + shownMap.unit + ']' : '');
+      byId('bar-high').textContent = String(Number(shownMap.high.toPrecision(3)));
+      byId('bar-low').textContent = String(Number(shownMap.low.toPrecision(3)));
+      const pen = byId('bar-colours').getContext('2d');
+      for (let y = 0; y < 128; ++y) {
+        const entry = 3 * Math.round(254 * (1 - y / 127));
+        pen.fillStyle = 'rgb(' + shownMap.colours.slice(entry, entry + 3).join(',') + ')';
+        pen.fillRect(0, y, 14, 1);
+      }
+    }
+    draw();
   }
 
-  slider.addEventListener('input', () => { pause(); show(Number(slider.value)); });
+  function pause() {
+    clearInterval(playing);
+    playing = null;
+    play.textContent = '\u25b6';
+  }
+  function togglePlay() {
+    if (playing !== null) { pause(); return; }
+    if (frame >= last) show(0);
+    play.textContent = '\u23f8';
+    playing = setInterval(() => { if (frame >= last) pause(); else show(frame + 1); }, 100);
+  }
+  frameSlider.max = String(last);
+  shapeSlider.max = String(names.length - 1);
+  sides.add(new Option('both', 'all'));
+  for (const part of scene) sides.add(new Option(part.title, part.title));
+  // A step of the slider that changes how large the whole is keeps it in sight.
+  function toShape(to) {
+    if (frame !== 0) show(0);
+    const before = halfFor(boxNow());
+    morph(to);
+    const now = boxNow();
+    eye.half *= halfFor(now) / before;
+    if (!alone.checked) eye.target.set(...now.middle);
+    draw();
+  }
+  frameSlider.addEventListener('input', () => { pause(); show(Number(frameSlider.value)); });
+  shapeSlider.addEventListener('input', () => { pause(); toShape(Number(shapeSlider.value)); });
   play.addEventListener('click', togglePlay);
   chooser.addEventListener('change', paint);
-  byId('before-after').addEventListener('click', () => { pause(); show(frame === 0 ? frames.length - 1 : 0); });
+  sides.addEventListener('change', () => { titleFrames(); follow(); wholeView(); });
+  byId('from').addEventListener('change', wholeView);
+  byId('before-after').addEventListener('click', () => { pause(); show(frame === 0 ? last : 0); });
   byId('reset').addEventListener('click', resetView);
   byId('whole').addEventListener('click', wholeView);
-  function partOrAll() {
-    geometry.setIndex(alone.checked ? someFaces : allFaces);
-    flatGeometry.setIndex(alone.checked ? flatSome : flatWhole);
-  }
-  alone.addEventListener('change', () => { partOrAll(); resetView(); });
+  alone.addEventListener('change', () => { follow(); if (alone.checked) resetView(); else wholeView(); });
 
-  // The value under the pointer: of the nearest corner of the face that it points at.
-  const reading = byId('under-pointer');
-  const caster = new THREE.Raycaster();
+  // The nearest face under the pointer by the projection of all vertices, and its corner nearest to the pointer.
   const readable = (x) => String(Number(x.toPrecision(3)));
-  function valueAt(v) {
-    const choice = chooser.value;
-    if (choice === 'none') return isWhole ? '' : inRegion[v] ? 'in the region' : 'outside the region';
-    if (choice.startsWith('label')) {
-      const map = labelMaps[Number(choice.slice(5))];
-      return map.name + ': ' + (map.entries[v] < 0 ? 'none' : map.names[map.entries[v]]);
+  function wordsAt(part, v) {
+    const choice = chooser.value, words = [];
+    if (scene.length > 1) words.push(part.title);
+    for (const map of part.labels) if (map.entries[v] >= 0) words.push(map.names[map.entries[v]]);
+    if (choice === 'none' && patches.length > 0) words.push(part.inRegion[v] ? 'in the patch' : 'outside the patch');
+    const map = !choice.startsWith('label') && choice !== 'none' && choice !== 'facing' && mapOf(part, choice);
+    if (map) {
+      const value = valueOf(map, v);
+      words.push(map.name + ': ' + (Number.isNaN(value) ? 'not known' : readable(value) + (map.unit ? ' ' + map.unit : '')));
     }
-    if (choice === 'facing') return '';
-    const map = maps[Number(choice)];
-    const known = map.values[v] <= 65534;
-    return map.name + ': ' + (known ? readable(map.least + map.step * map.values[v]) + (map.unit ? ' ' + map.unit : '') : 'not known');
+    return [...new Set(words)].join(', ') + ' (vertex ' + v + ')';
   }
-  let asked = false, pointedAt = -1;
+  function under(x, y) {
+    const box = canvas.getBoundingClientRect();
+    const toX = 2 * (x - box.left) / box.width - 1, toY = 1 - 2 * (y - box.top) / box.height;
+    const e = new THREE.Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse).elements;
+    let found = null, least = Infinity;
+    for (const part of scene.filter(isShown)) {
+      const px = new Float32Array(part.count), py = new Float32Array(part.count), at = part.at;
+      for (let v = 0, i = 0; v < part.count; ++v, i += 3) {
+        px[v] = e[0] * at[i] + e[4] * at[i + 1] + e[8] * at[i + 2] + e[12] - toX;
+        py[v] = e[1] * at[i] + e[5] * at[i + 1] + e[9] * at[i + 2] + e[13] - toY;
+      }
+      const faces = part.geometry.index.array;
+      for (let f = 0; f < faces.length; f += 3) {
+        const a = faces[f], b = faces[f + 1], c = faces[f + 2];
+        const s = px[a] * py[b] - px[b] * py[a], t = px[b] * py[c] - px[c] * py[b], u = px[c] * py[a] - px[a] * py[c];
+        if ((s < 0 || t < 0 || u < 0) && (s > 0 || t > 0 || u > 0)) continue;
+        const sum = s + t + u;
+        if (sum === 0) continue;
+        let depth = 0;
+        for (const [v, share] of [[a, t / sum], [b, u / sum], [c, s / sum]]) {
+          depth += share * (e[2] * at[3 * v] + e[6] * at[3 * v + 1] + e[10] * at[3 * v + 2]);
+        }
+        if (depth >= least) continue;
+        least = depth;
+        const vertex = [a, b, c].reduce((best, v) => (px[v] ** 2 + py[v] ** 2 < px[best] ** 2 + py[best] ** 2 ? v : best));
+        found = { part, vertex };
+      }
+    }
+    return found;
+  }
+  let asked = false, pointedAt = null;
   function readUnder(x, y) {
     if (asked) return;
     asked = true;
     requestAnimationFrame(() => {
       asked = false;
-      const box = canvas.getBoundingClientRect();
-      caster.setFromCamera({ x: 2 * (x - box.left) / box.width - 1, y: 1 - 2 * (y - box.top) / box.height }, camera);
-      geometry.boundingSphere = new THREE.Sphere(new THREE.Vector3(...whole.middle), 2 * whole.size);
-      const wasVisible = mesh.visible;
-      mesh.visible = true;
-      const hit = caster.intersectObject(mesh)[0];
-      mesh.visible = wasVisible;
-      pointedAt = -1;
-      if (!hit) { reading.textContent = ''; return; }
-      let nearest = hit.face.a, least = Infinity;
-      for (const v of [hit.face.a, hit.face.b, hit.face.c]) {
-        const far = Math.hypot(...[0, 1, 2].map((c) => positions[3 * v + c] - hit.point.getComponent(c)));
-        if (far < least) { least = far; nearest = v; }
-      }
-      pointedAt = nearest;
-      reading.textContent = valueAt(nearest) + ' (vertex ' + nearest + ')';
+      pointedAt = under(x, y);
+      byId('under-pointer').textContent = pointedAt ? wordsAt(pointedAt.part, pointedAt.vertex) : '';
     });
   }
-  // The place where the slices are, marked on the surface, and the other way round.
-  const mark = new THREE.Points(new THREE.BufferGeometry(),
-    new THREE.PointsMaterial({ color: 0x00a5cf, size: 11, sizeAttenuation: false, depthTest: false }));
-  mark.geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(3), 3));
-  mark.frustumCulled = false;
-  mark.visible = false;
-  mark.renderOrder = 1;
-  scene.add(mark);
-  let marked = -1;
-  const firstPlace = (v) => [0, 1, 2].map((c) => data.low[c] + data.unit * start[3 * v + c]);
-  followMark = () => {
-    mark.visible = marked >= 0;
-    if (marked < 0) return;
-    for (let c = 0; c < 3; ++c) mark.geometry.attributes.position.array[c] = positions[3 * marked + c];
-    mark.geometry.attributes.position.needsUpdate = true;
-  };
+  const firstPlace = ({ part, vertex }) => [0, 1, 2].map((c) => part.shapes[base].at[3 * vertex + c]);
   function markPlace(event) {
-    const farthest = 15;  // mm; beyond, the slices are off this surface
-    let least = farthest;
-    marked = -1;
-    for (let v = 0; v < vertexCount; ++v) {
-      const far = Math.hypot(...firstPlace(v).map((x, c) => x - event.detail.at[c]));
-      if (far < least) { least = far; marked = v; }
+    let least = 15;  // mm; beyond, the slices are off these surfaces
+    marked = null;
+    for (const part of scene) {
+      const at = part.shapes[base].at;
+      for (let v = 0; v < part.count; ++v) {
+        const far = Math.hypot(at[3 * v] - event.detail.at[0], at[3 * v + 1] - event.detail.at[1], at[3 * v + 2] - event.detail.at[2]);
+        if (far < least) { least = far; marked = { part, vertex: v }; }
+      }
     }
-    followMark();
+    follow();
     draw();
   }
   document.addEventListener('place', markPlace);
@@ -559,7 +689,8 @@ async function showEvolution(source, isStopped, onStop) {
   });
   for (const name of ['pointerup', 'pointercancel']) canvas.addEventListener(name, (event) => pointers.delete(event.pointerId));
   canvas.addEventListener('click', () => {
-    if (!wasDragged && pointedAt >= 0) document.dispatchEvent(new CustomEvent('place', { detail: { at: firstPlace(pointedAt), from: 'surface', view: source.dataset.title, vertex: pointedAt } }));
+    if (wasDragged || !pointedAt) return;
+    document.dispatchEvent(new CustomEvent('place', { detail: { at: firstPlace(pointedAt), from: 'surface', view: pointedAt.part.title, vertex: pointedAt.vertex } }));
   });
   canvas.addEventListener('contextmenu', (event) => event.preventDefault());
   canvas.addEventListener('wheel', (event) => { event.preventDefault(); zoom(Math.exp(0.001 * event.deltaY)); }, { passive: false });
@@ -568,10 +699,11 @@ async function showEvolution(source, isStopped, onStop) {
       ArrowLeft: () => rotate(-0.1, 0), ArrowRight: () => rotate(0.1, 0), ArrowUp: () => rotate(0, -0.1), ArrowDown: () => rotate(0, 0.1),
       '+': () => zoom(0.9), '=': () => zoom(0.9), '-': () => zoom(1.1), ' ': togglePlay,
       ',': () => { pause(); show(frame - 1); }, '.': () => { pause(); show(frame + 1); },
-      b: () => byId('before-after').click(), r: resetView
+      '[': () => { pause(); toShape(Math.ceil(place) - 1); }, ']': () => { pause(); toShape(Math.floor(place) + 1); },
+      b: () => byId('before-after').click(), r: resetView, w: wholeView
     };
     const action = actions[event.key] || actions[event.key.toLowerCase()];
-    if (!action) return;
+    if (!action || event.ctrlKey || event.metaKey) return;
     event.preventDefault();
     action();
   });
@@ -580,15 +712,15 @@ async function showEvolution(source, isStopped, onStop) {
     clearInterval(playing);
     window.removeEventListener('resize', draw);
     document.removeEventListener('place', markPlace);
-    renderer.dispose();
     renderer.forceContextLoss();
   });
 
   message.textContent = '';
-  if (data.detached) { alone.checked = true; partOrAll(); }
+  if (hasShapes && mapNames.length > 0) chooser.value = '0';
+  alone.checked = scene.some((part) => part.data.detached);
   show(0);
   paint();
-  (alone.checked ? resetView : wholeView)();
+  if (alone.checked) resetView(); else wholeView();
   canvas.dataset.ready = 'true';
 }
 })();
@@ -605,13 +737,10 @@ async function showSlices(data) {
   const [nx, ny] = data.size;
   const grey = Uint8Array.from(await unpackIntegers(data.grey));
   const surfaces = [];
-  let before = null;
-  for (const packed of data.surfaces) {
-    const steps = await unpackIntegers(packed.positions);
-    const faces = packed.faces ? await unpackIntegers(packed.faces) : before.faces;
-    if (!packed.faces) for (let i = 0; i < steps.length; ++i) steps[i] += before.steps[i];
-    before = { faces, steps };
-    surfaces.push({ faces, colour: packed.colour, at: Float32Array.from(steps, (s, i) => data.low[i % 3] + data.step * s) });
+  for (const { part: title, shape: name, colour } of data.surfaces) {
+    const source = [...document.querySelectorAll('script.evolution')].find((one) => one.dataset.title === title);
+    const part = source && await partOf(source), shape = part && part.shapes.find((one) => one.name === name);
+    if (shape) surfaces.push({ faces: part.faces, colour, at: shape.at });
   }
   const side = data.leftOnRight ? -1 : 1;
   // Axes across, up and through, and which way the first goes.

@@ -43,7 +43,7 @@ QGroupBox* regionGroup(Panels& p) {
   form->addRow("Label", p.regionKey);
   form->addRow("Map above", above);
   form->addRow(p.regionSays);
-  return group("Region", form);
+  return group("1. Choose: press C over a place, or take a label", form);
 }
 
 QGroupBox* viewGroup(Panels& p) {
@@ -64,7 +64,7 @@ QGroupBox* viewGroup(Panels& p) {
   form->addRow("Distance", p.distance);
   form->addRow("Surroundings", p.surround);
   form->addRow("Target", p.target);
-  return group("Viewpoint and surroundings", form);
+  return group("2. Look: turn it until the fold faces you, press V", form);
 }
 
 QGroupBox* runGroup(Panels& p) {
@@ -78,7 +78,7 @@ QGroupBox* runGroup(Panels& p) {
                      static_cast<QWidget*>(p.stateSays)}) {
     column->addWidget(w);
   }
-  return group("Run", column);
+  return group("3. Unfold: press the space bar", column);
 }
 
 QGroupBox* mapGroup(Panels& p) {
@@ -93,9 +93,9 @@ QGroupBox* mapGroup(Panels& p) {
   range->addWidget(p.low, 1);
   range->addWidget(new QLabel("to"));
   range->addWidget(p.high, 1);
-  form->addRow("Colours", range);
+  form->addRow("Range", range);
   form->addRow("", p.automatic);
-  return group("Map", form);
+  return group("Colours", form);
 }
 
 }  // namespace
@@ -103,7 +103,7 @@ QGroupBox* mapGroup(Panels& p) {
 Panels buildPanels(QMainWindow& window) {
   Panels p;
   auto* column = new QVBoxLayout;
-  for (QGroupBox* box : {mapGroup(p), regionGroup(p), viewGroup(p), runGroup(p)}) {
+  for (QGroupBox* box : {regionGroup(p), viewGroup(p), runGroup(p), mapGroup(p)}) {
     column->addWidget(box);
   }
   column->addStretch();

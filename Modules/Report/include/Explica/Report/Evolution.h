@@ -24,9 +24,17 @@ struct EvolutionLabels {
   std::vector<LegendEntry> legend;
 };
 
+/// Another shape of the same vertices, such as the inflated surface.
+struct EvolutionShape {
+  std::string name;     ///< "white", "middle", "pial", "inflated", "sphere"
+  Positions positions;  ///< V x 3, RAS mm; empty: those of the mesh itself
+};
+
 /// A surface of which some vertices move from frame to frame: what the interactive view plays.
 struct Evolution {
   std::string title = {};                ///< "left": tells it from others on the page
+  std::string scene = {};                ///< those of one scene are shown together
+  std::vector<EvolutionShape> shapes;    ///< between which the view morphs, in this order
   TriangleMesh mesh;                     ///< as it is at the start
   std::vector<std::int32_t> moved;       ///< vertices that differ in any frame, ascending
   std::vector<Positions> frames;         ///< positions of `moved`; the first frame is the start
@@ -42,11 +50,7 @@ struct Evolution {
 /// @throws InvalidInput  no mesh, or meshes that differ in faces or number of vertices
 [[nodiscard]] Evolution evolutionOf(const std::vector<TriangleMesh>& frames);
 
-/// Leaves only the region and what moves with it: of a page with several patches, whole surfaces
-/// for each would not fit.  Vertices keep their numbers; those off the patch are of no face.
-void leaveOutSurroundings(Evolution& evolution);
-
-/// The evolution as JSON for the page's script: positions quantised to 1/65535 of the box, frames
+/// The evolution as JSON for the page's script: positions quantised to 1/8191 of the box, frames
 /// as differences, everything deflated.
 [[nodiscard]] std::string evolutionJson(const Evolution& evolution);
 

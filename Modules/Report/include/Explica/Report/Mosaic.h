@@ -27,6 +27,8 @@ struct MosaicOutline {
   const TriangleMesh* mesh = nullptr;  ///< not owned
   std::string name;                    ///< "white surface": outlines of one name share a switch
   std::string colour;                  ///< "#ff3b30", for HTML
+  std::string part = {};               ///< title of the evolution on the page that has it
+  std::string shape = {};              ///< which of that evolution's shapes it is
 };
 
 /// One slice, and the words and lines that lie on it.

@@ -9,13 +9,13 @@
 
 namespace explica::report {
 
-/// What a page's viewer of slices needs: an image at full resolution, the surfaces whose cut lines
-/// are drawn at any slice, and the places to step through.
+/// What a page's viewer of slices needs: an image at full resolution, the places to step through,
+/// and which shapes of the page's evolutions are cut: the outlines' `part` and `shape`.
 ///
 /// The image is sampled trilinearly on a lattice along the head's axes with the image's least
 /// spacing, through the centre of its first voxel: for an image along the axes these are its own
 /// voxels.  It reaches 10 mm beyond the outlines.  Above 12 million voxels the lattice is coarser,
-/// so that the page stays below 15 MB; `"voxel"` states it.  Vertices are rounded to 0.01 mm.
+/// so that the page stays below 15 MB; `"voxel"` states it.
 /// @return a JSON object
 /// @throws InvalidInput  no outline with vertices, or a subject of another size than the image
 [[nodiscard]] std::string sliceStackJson(const Volume<float>& image,

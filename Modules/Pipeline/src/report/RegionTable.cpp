@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: The Explica developers
+// SPDX-License-Identifier: Apache-2.0
+#include "../Table.h"
+#include "ReportParts.h"
+
+#include <array>
+#include <map>
+
+namespace explica::pipeline {
+namespace {
+
+struct Shown {
+  const char* measure;  ///< as regions.tsv has it
+  const char* heading;
+};
+constexpr std::array kShown = {Shown{"thickness_mean", "mean thickness [mm]"},
+                               Shown{"thickness_sd_vertices", "its SD over vertices [mm]"},
+                               Shown{"area", "area [mm\u00b2]"},
+                               Shown{"volume", "volume [mm\u00b3]"}, Shown{"vertices", "vertices"}};
+
+}  // namespace
+
+void tabulateRegions(ResultFolder& results, const StepFolder& step) {
+  const Table read = readTable(step.folder / "regions.tsv");
+  const auto *names = read.text("region"), *measures = read.text("measure");
+  const auto* values = read.column("value");
+  if (names == nullptr || measures == nullptr || values == nullptr) return;
+  std::map<std::string, std::array<std::string, kShown.size()>> rows;
+  for (std::size_t n = 0; n < read.rows(); ++n) {
+    for (std::size_t c = 0; c < kShown.size(); ++c) {
+      if ((*measures)[n] == kShown[c].measure) rows[(*names)[n]][c] = readable((*values)[n]);
+    }
+  }
+  report::ReportTable table{"",
+                            "Regions" + (step.side().empty() ? "" : ", " + step.side()),
+                            "The mean is over the area; regions.tsv has all digits and measures.",
+                            {"region"},
+                            {}};
+  for (const Shown& shown : kShown) table.columns.emplace_back(shown.heading);
+  for (const auto& [name, cells] : rows) {
+    table.rows.push_back({name});
+    table.rows.back().insert(table.rows.back().end(), cells.begin(), cells.end());
+  }
+  results.content().tables.push_back(std::move(table));
+}
+
+}  // namespace explica::pipeline

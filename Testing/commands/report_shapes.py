@@ -1,0 +1,61 @@
+# SPDX-FileCopyrightText: The Explica developers
+# SPDX-License-Identifier: Apache-2.0
+"""Morphs the surfaces of a run's report in headless Chromium; one fact a line, ends with 0 if the slider shows each
+shape by its name, the patch opens on the shape of which it is, and the pointer names what it is on."""
+import sys
+import time
+
+from browser import check, faults, start
+
+driver = start(1200, logging=True, drawing=True)
+
+
+def ask(script):
+    return driver.execute_script("const byId = (id) => document.getElementById(id); " + script)
+
+
+def picture():
+    time.sleep(0.7)
+    return ask("return byId('canvas').toDataURL()")
+
+
+def change(control, value, event):
+    ask("byId('%s').value = '%s'; byId('%s').dispatchEvent(new Event('%s'))" % (control, value, control, event))
+    return picture()
+
+
+try:
+    driver.get("file://" + sys.argv[1])
+    end = time.time() + 60
+    while time.time() < end and ask("return byId('canvas').dataset.ready") != "true":
+        time.sleep(0.2)
+    shown, names = [], []
+    for n in range(1 + int(ask("return byId('shape').max"))):
+        shown.append(change("shape", n, "input"))
+        names.append(ask("return byId('shape-title').textContent"))
+    check("shapes: " + ", ".join(names), names == ["white", "middle", "pial", "inflated", "sphere", "flat"])
+    check("each is another picture", len(set(shown)) == len(shown))
+    change("shape", 3.5, "input")
+    between = ask("return byId('shape-title').textContent")
+    check("between two shapes: " + between, between == "inflated to sphere")
+    opened = change("frame", ask("return byId('frame').max"), "input")
+    check("the patch opens on the middle surface", ask("return byId('shape-title').textContent") == "middle")
+    check("which changes it", opened != shown[1])
+    check("and a shape closes it", change("shape", 1, "input") == shown[1] and ask("return byId('frame').value") == "0")
+    bar = ask("return byId('bar-title').textContent")
+    check("a map has a bar with its unit: " + bar, "[mm]" in bar)
+    ask("""const c = byId('canvas'), box = c.getBoundingClientRect();
+        c.dispatchEvent(new PointerEvent('pointermove',
+            {clientX: box.left + box.width / 2, clientY: box.top + box.height / 2}))""")
+    time.sleep(0.7)
+    reading = ask("return byId('under-pointer').textContent")
+    check("under the pointer: " + reading, "vertex" in reading and "thickness" in reading)
+    slices = ask("return byId('cut-1').toDataURL()")
+    ask("byId('canvas').dispatchEvent(new MouseEvent('click'))")
+    time.sleep(0.7)
+    check("a click moves the slices", ask("return byId('cut-1').toDataURL()") != slices)
+    for entry in driver.get_log("browser"):
+        check("console: " + entry["message"][:200], entry["level"] != "SEVERE")
+finally:
+    driver.quit()
+sys.exit(1 if faults else 0)
