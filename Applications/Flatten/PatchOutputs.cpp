@@ -61,15 +61,15 @@ Eigen::VectorXd onWhole(const Eigen::VectorXd& part, const flattening::Disc& dis
   return (count.array() > 0).select(sum.cwiseQuotient(count), elsewhere);
 }
 
-/// FreeSurfer's files name their maps with the folder they came from; those of `explica sample` by
-/// depth alone.
+/// FreeSurfer's files name their maps with the folder they came from; frames of `explica sample` go
+/// without their volume.
 std::string mapName(const std::string& file, const std::string& name) {
   const std::string own = std::filesystem::path(name.empty() ? file : name).filename().string();
   std::string stem = std::filesystem::path(file).filename().string();
   constexpr std::string_view kSampled = ".func.gii";
   if (name.empty() || !stem.ends_with(kSampled)) return own;
   stem.resize(stem.size() - kSampled.size());
-  return stem + " " + own;
+  return own.starts_with(stem + " ") ? own : stem + " " + own;
 }
 
 /// Maps on the patch's vertices, and how the first colours the picture.

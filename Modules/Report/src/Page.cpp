@@ -106,7 +106,7 @@ constexpr const char* kViewHtml = R"(<section id="view3d"><h3>In three dimension
 <label class="of-shapes">Shape <input id="shape" type="range" min="0" max="0" value="0" step="0.02" aria-label="Shape"> <output id="shape-title"></output></label>
 <label>Map <select id="map"></select></label>
 <label class="of-sides">Show <select id="sides"></select></label>
-<label class="of-shapes">from <select id="from"><option>above</option><option>left</option><option>right</option><option>front</option><option>back</option><option>below</option></select></label>
+<label class="of-views">from <select id="from"><option>above</option><option>left</option><option>right</option><option>front</option><option>back</option><option>below</option></select></label>
 <button id="whole" type="button">Whole surface</button>
 <button id="reset" type="button">To the patch</button>
 <label class="of-part"><input id="alone" type="checkbox"> patch alone</label>
@@ -114,7 +114,7 @@ constexpr const char* kViewHtml = R"(<section id="view3d"><h3>In three dimension
 <input id="frame" type="range" min="0" max="0" value="0" step="1" aria-label="Frame">
 <button id="before-after" type="button">Before / after</button></span>
 <output id="frame-title"></output></div>
-<p class="quiet">Drag to rotate, wheel or two fingers to zoom, right drag to move; region and value under the pointer are shown, a click moves the slices there. Keys: arrows rotate, + and - zoom, W the whole, R the view of the patch<span class="of-shapes">, [ and ] the shape before and after</span><span class="of-frames">, space plays, comma and full stop step, B before/after</span>.<span class="of-part"> The dark line is the rim of the patch.</span><span class="of-shapes"> The flat shape is the sphere in an equal-area projection about its lateral side.</span></p></section>
+<p class="quiet">Drag to rotate, wheel or two fingers to zoom, right drag to move; region and value under the pointer are shown, a click moves the slices there. Keys: arrows rotate, + and - zoom, W the whole, R the view of the patch<span class="of-shapes">, [ and ] the shape before and after</span><span class="of-frames">, space plays, comma and full stop step, B before/after</span>.<span class="of-part"> The dark line is the rim of the patch.</span><span class="of-views"> The flat shape is the sphere in an equal-area projection about its lateral side.</span></p></section>
 )";
 
 // What the script of the slices fills.

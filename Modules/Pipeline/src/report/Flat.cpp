@@ -1,14 +1,11 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 #include "../Table.h"
-#include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/Pipeline/FlatStack.h"
 #include "Explica/Report/Chart.h"
 #include "Explica/Report/Evolution.h"
-#include "Explica/Report/Figure.h"
 #include "ReportParts.h"
-#include "StandardViews.h"
 
 #include "Explica/Core/FileText.h"
 
@@ -17,14 +14,12 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numeric>
 
 namespace explica::pipeline {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::size_t kMostFlatMaps = 6;  // drawn folded, unfolded and flat
-constexpr double kWholeHemisphere = 0.6;  // share of the surface's area from which it counts as all
 
 /// A patch and the shapes in which it is shown.
 struct FlatPatch {
@@ -33,7 +28,6 @@ struct FlatPatch {
   std::optional<TriangleMesh> unfolded;  ///< as it was given, if it is another shape than that
   TriangleMesh flat;                     ///< the patch alone
   std::string side;
-  bool whole = false;  ///< a hemisphere with cuts
 };
 
 std::vector<std::int32_t> patchVertices(const StepFolder& step) {
@@ -62,8 +56,6 @@ std::optional<FlatPatch> readPatch(const StepFolder& step) {
                     std::all_of(patch.vertices.begin(), patch.vertices.end(),
                                 [&](std::int32_t v) { return v >= 0 && v < count; });
   if (!fits || (patch.unfolded && patch.unfolded->vertexCount() != count)) return {};
-  patch.whole =
-      geometry::totalArea(patch.flat) > kWholeHemisphere * geometry::totalArea(patch.reference);
   return patch;
 }
 
@@ -87,73 +79,23 @@ Eigen::VectorXd onPatch(const FlatPatch& patch, const Eigen::VectorXd& whole) {
   return part;
 }
 
-/// Shapes of a patch, ready for pictures of any number of maps.
-class PatchShapes {
- public:
-  explicit PatchShapes(const FlatPatch& patch) : patch_(patch) {
-    report::FigureView against;
-    against.towards = sightOf(patch);
-    against.focus = patch.vertices;
-    if (patch.whole) {
-      for (const auto& [title, name] : standardViews(patch.side)) {
-        if (shapes_.size() == 2) break;
-        report::FigureView view;
-        view.name = name;
-        shapes_.push_back({title, &patch.reference, view, true});
-      }
-    } else {
-      shapes_.push_back({"on the surface", &patch.reference, against, true});
-    }
-    if (patch.unfolded) shapes_.push_back({"unfolded", &*patch.unfolded, against, true});
-    report::FigureView above;
-    above.towards = Vector(0, 0, -1);
-    above.up = Vector(0, 1, 0);
-    shapes_.push_back({"flat", &patch.flat, above, false});
-    for (Shape& shape : shapes_) scenes_.emplace_back(*shape.mesh);
-  }
+/// The patch's vertices of a whole surface.
+Positions positionsOf(const FlatPatch& patch, const TriangleMesh& whole) {
+  return whole.positions(patch.vertices, Eigen::all);
+}
 
-  [[nodiscard]] report::ReportViews draw(const std::string& name, const std::string& unit,
-                                         const Eigen::VectorXd& values) const {
-    report::SurfacePictureOptions size{.width = 400, .height = 320};
-    const Eigen::VectorXd part = onPatch(patch_, values);
-    report::SurfacePaint whole;
-    whole.values = values;
-    whole.scale = report::scaleFor(part, name, unit);
-    whole.region.setZero(values.size());
-    for (const std::int32_t v : patch_.vertices) whole.region[v] = 1;
-    report::ReportViews views;
-    views.id = kFlatPlace;
-    views.title = name + (patch_.unfolded ? " on the surface, unfolded and flat"
-                                          : " on the surface and flat");
-    views.caption =
-        "The same values on each; what lies off the patch is pale, what is not known "
-        "dark grey.";
-    views.scale = whole.scale;
-    for (std::size_t n = 0; n < shapes_.size(); ++n) {
-      const Shape& shape = shapes_[n];
-      const auto colours = shape.isWhole ? report::coloursOf(whole, values.size())
-                                         : report::coloursOf(part, whole.scale);
-      report::SurfacePictureOptions look = size;
-      if (!shape.isWhole) look.occlusion = 0;
-      views.views.push_back(
-          {shape.title,
-           scenes_[n].render(report::cameraOf(*shape.mesh, shape.view, size.width, size.height),
-                             colours, report::Filling::Smooth, look)});
-    }
-    return views;
-  }
-
- private:
-  struct Shape {
-    std::string title;
-    const TriangleMesh* mesh;
-    report::FigureView view;
-    bool isWhole;
-  };
-  const FlatPatch& patch_;
-  std::vector<Shape> shapes_;
-  std::vector<report::SurfaceScene> scenes_;
-};
+/// The flat map where the patch is, facing the one who looks along `sight`.
+Positions flatInPlace(const FlatPatch& patch, const Vector& sight) {
+  const Vector up = std::abs(sight.z()) > 0.9 ? Vector(0, 1, 0) : Vector(0, 0, 1);
+  const Vector right = sight.cross(up).normalized();
+  Eigen::Matrix<double, 2, 3> axes;
+  axes << right.transpose(), right.cross(sight).transpose();
+  const Positions folded = positionsOf(patch, patch.reference);
+  const Eigen::RowVector2d middle = patch.flat.positions.leftCols(2).colwise().mean();
+  Positions placed = (patch.flat.positions.leftCols(2).rowwise() - middle) * axes;
+  placed.rowwise() += folded.colwise().mean();
+  return placed;
+}
 
 /// The maps that the command was given, and the reader's.
 std::vector<GivenMap> mapsOf(ResultFolder& results, const StepFolder& step,
@@ -179,11 +121,24 @@ void showShapes(ResultFolder& results, const StepFolder& step, const std::vector
     const auto strain = mapNamed(step.folder / "distortion.shape.gii", count, "edge strain");
     if (strain) maps.push_back({"edge strain of the flat map", "", "", strain->values});
   }
-  if (maps.size() > kMostFlatMaps) maps.resize(kMostFlatMaps);
-  const PatchShapes shapes(*patch);
-  for (const GivenMap& map : maps) {
-    results.content().views.push_back(shapes.draw(map.name, map.unit, map.values));
+  report::Evolution evolution;
+  evolution.title = "patch";
+  evolution.mesh = {positionsOf(*patch, patch->reference), patch->flat.faces};
+  evolution.shapes = {{"on the surface", {}}};
+  if (patch->unfolded) {
+    evolution.shapes.push_back({"unfolded", positionsOf(*patch, *patch->unfolded)});
   }
+  const Vector sight = sightOf(*patch);
+  evolution.shapes.push_back({"flat", flatInPlace(*patch, sight)});
+  evolution.region.resize(patch->vertices.size());
+  std::iota(evolution.region.begin(), evolution.region.end(), 0);
+  constexpr double kFar = 1e5;  // mm
+  evolution.viewpoint = evolution.mesh.positions.colwise().mean().transpose() - kFar * sight;
+  for (const GivenMap& map : maps) {
+    const Eigen::VectorXd part = onPatch(*patch, map.values);
+    evolution.maps.push_back({part, report::scaleFor(part, map.name, map.unit)});
+  }
+  results.content().evolutions.push_back(std::move(evolution));
 }
 
 void showStack(ResultFolder& results, const fs::path& file) {
@@ -250,7 +205,7 @@ void showPicture(ResultFolder& results, const StepFolder& step) {
     return name.starts_with("patch_") && name.ends_with(".label.gii");
   });
   results.content().drawings.push_back(
-      {"", "The flat map",
+      {kFlatPlace, "The flat map",
        std::string("Sulci are darker than gyri. ") +
            (outlined ? "Regions are outlined in their own colours. " : "") +
            "The scale bar holds everywhere up to the area error.",

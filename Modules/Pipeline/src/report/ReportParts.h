@@ -56,7 +56,7 @@ void showUnfolding(ResultFolder& results, const StepFolder& step,
 void showCrossings(ResultFolder& results, const StepFolder& step,
                    const FolderReportOptions& options);
 
-/// The inflation: what the interactive view plays, and the surface before and after.
+/// The inflation: what the interactive view plays.
 void showInflation(ResultFolder& results, const StepFolder& step);
 
 /// Frames that a step has written, thinned to what a page can hold.
@@ -84,8 +84,8 @@ void tabulateRegions(ResultFolder& results, const StepFolder& step);
 /// Profiles over depth or layers, by region, and their course over time.
 void showProfiles(ResultFolder& results, const StepFolder& step);
 
-/// A flat map: its picture, the patch with its maps folded, unfolded and flat, stacks of depths,
-/// the table of regions, histograms of the distortion.
+/// A flat map: its picture, the patch with its maps in the view in three dimensions, stacks of
+/// depths, the table of regions, histograms of the distortion.
 void showFlat(ResultFolder& results, const StepFolder& step, const std::vector<GivenMap>& maps);
 
 /// Pictures that a command has drawn itself: SVG and PNG files of its folder.

@@ -30,11 +30,8 @@ struct Hemisphere {
   std::string side;
   TriangleMesh white;
   TriangleMesh pial;
-  std::optional<report::SurfaceScene> pialScene, whiteScene;
+  std::optional<report::SurfaceScene> scene;  ///< of the pial surface
 };
-
-/// Which of a hemisphere's surfaces carries a map: the white one shows what lies in the sulci.
-enum class Drawn { Pial, White };
 
 /// A scan that shows the anatomy of a label volume: beside it in the folder of a FreeSurfer subject
 /// or of fMRIPrep.
@@ -86,28 +83,6 @@ Eigen::VectorXd known(Eigen::VectorXd values, const Eigen::VectorXd& thickness) 
   return values;
 }
 
-/// One colour a vertex, `count` of the standard views of every hemisphere.
-report::ReportViews drawViews(const std::vector<const Hemisphere*>& all,
-                              const std::vector<std::vector<report::Colour>>& colours,
-                              std::size_t count, Drawn drawn) {
-  const report::SurfacePictureOptions size = viewSize();
-  report::ReportViews views;
-  const double half = commonHalfHeight(all);
-  for (std::size_t h = 0; h < all.size(); ++h) {
-    const auto standard = standardViews(all[h]->side);
-    const report::SurfaceScene& scene =
-        drawn == Drawn::Pial ? *all[h]->pialScene : *all[h]->whiteScene;
-    for (std::size_t n = 0; n < std::min(count, standard.size()); ++n) {
-      report::Camera camera =
-          report::cameraFor(all[h]->pial, standard[n].second, size.width, size.height);
-      camera.halfHeight = half;
-      views.views.push_back({(all[h]->side.empty() ? "" : all[h]->side + ", ") + standard[n].first,
-                             scene.render(camera, colours[h], report::Filling::Smooth, size)});
-    }
-  }
-  return views;
-}
-
 /// One scale for a map of every hemisphere.
 report::ColourScale commonScale(const std::vector<Eigen::VectorXd>& values, const std::string& name,
                                 const std::string& unit) {
@@ -119,17 +94,6 @@ report::ColourScale commonScale(const std::vector<Eigen::VectorXd>& values, cons
   const Eigen::VectorXd pool =
       Eigen::Map<const Eigen::VectorXd>(pooled.data(), static_cast<Eigen::Index>(pooled.size()));
   return report::scaleFor(pool, name, unit);
-}
-
-/// A map of every hemisphere on one scale; the words are the caller's.
-report::ReportViews drawMap(const std::vector<const Hemisphere*>& all,
-                            const std::vector<Eigen::VectorXd>& values,
-                            const report::ColourScale& scale, std::size_t count, Drawn drawn) {
-  std::vector<std::vector<report::Colour>> colours;
-  for (const auto& v : values) colours.push_back(report::coloursOf(v, scale));
-  report::ReportViews views = drawViews(all, colours, count, drawn);
-  views.scale = scale;
-  return views;
 }
 
 /// A map of `explica surface` for the view in three dimensions.
@@ -157,43 +121,35 @@ std::optional<std::pair<std::vector<Eigen::VectorXd>, report::ColourScale>> addM
 void showThickness(ResultFolder& results, const std::vector<const Hemisphere*>& all) {
   const auto map = addMap(results, all, "thickness.shape.gii", "thickness");
   if (!map) return;
-  report::ReportViews views = drawMap(all, map->first, map->second, 6, Drawn::Pial);
+  const report::SurfacePictureOptions size = viewSize();
+  const double half = commonHalfHeight(all);
+  report::ReportViews views;
+  views.scale = map->second;
+  for (std::size_t h = 0; h < all.size(); ++h) {
+    const auto colours = report::coloursOf(map->first[h], map->second);
+    for (const auto& [title, view] : standardViews(all[h]->side)) {
+      report::Camera camera = report::cameraFor(all[h]->pial, view, size.width, size.height);
+      camera.halfHeight = half;
+      views.views.push_back(
+          {(all[h]->side.empty() ? "" : all[h]->side + ", ") + title,
+           all[h]->scene->render(camera, colours, report::Filling::Smooth, size)});
+    }
+  }
   views.id = kThicknessPlace;
   views.title = "Thickness on the pial surface";
   views.caption = "Grey: not measured, as on the medial wall.";
   results.content().views.push_back(std::move(views));
 }
 
-/// The reader's maps on the hemispheres that they fit; those of one name on one scale.
-void showGiven(ResultFolder& results, const std::vector<const Hemisphere*>& all,
-               const std::vector<GivenMap>& maps) {
-  std::vector<std::string> names;
-  for (const GivenMap& map : maps) {
-    if (std::find(names.begin(), names.end(), map.name) == names.end()) names.push_back(map.name);
-  }
-  for (const std::string& name : names) {
-    std::vector<const Hemisphere*> shown;
-    std::vector<Eigen::VectorXd> values;
-    std::string unit;
-    for (const Hemisphere* h : all) {
-      const auto map = std::find_if(maps.begin(), maps.end(), [&](const GivenMap& m) {
-        return m.name == name && m.fits(h->pial.vertexCount(), h->side);
-      });
-      if (map == maps.end()) continue;
-      shown.push_back(h);
-      values.push_back(map->values);
-      unit = map->unit;
+/// The reader's maps on the hemispheres that they fit, for the view in three dimensions.
+void addGiven(ResultFolder& results, const std::vector<Hemisphere>& all,
+              const std::vector<GivenMap>& maps) {
+  for (std::size_t h = 0; h < all.size(); ++h) {
+    for (const GivenMap& map : maps) {
+      if (!map.fits(all[h].pial.vertexCount(), all[h].side)) continue;
+      results.content().evolutions[h].maps.push_back(
+          {map.values, report::scaleFor(map.values, map.name, map.unit)});
     }
-    if (shown.empty()) continue;
-    const report::ColourScale scale = commonScale(values, name, unit);
-    for (std::size_t n = 0; n < shown.size(); ++n) {
-      const auto h = std::find(all.begin(), all.end(), shown[n]) - all.begin();
-      results.content().evolutions[static_cast<std::size_t>(h)].maps.push_back({values[n], scale});
-    }
-    report::ReportViews views = drawMap(shown, values, scale, 4, Drawn::White);
-    views.title = name + " on the white surface";
-    views.caption = "Dark grey: not known.";
-    results.content().views.push_back(std::move(views));
   }
 }
 
@@ -384,16 +340,12 @@ void showSurfaces(ResultFolder& results, const FolderReportOptions& options,
                    step->side(),
                    io::readSurface(step->folder / "white.surf.gii").mesh,
                    io::readSurface(step->folder / "pial.surf.gii").mesh,
-                   {},
                    {}});
   }
   if (all.empty()) return;
   std::sort(all.begin(), all.end(),
             [](const Hemisphere& a, const Hemisphere& b) { return a.side < b.side; });
-  for (Hemisphere& h : all) {
-    h.pialScene.emplace(h.pial);
-    h.whiteScene.emplace(h.white);
-  }
+  for (Hemisphere& h : all) h.scene.emplace(h.pial);
   for (const Hemisphere& h : all) results.content().evolutions.push_back(brainOf(results, h));
   results.attempt("Outlines on the image", [&] { showOutlines(results, all, options); });
   std::vector<const Hemisphere*> shown;
@@ -405,7 +357,7 @@ void showSurfaces(ResultFolder& results, const FolderReportOptions& options,
     results.attempt(word,
                     [&, file = file, word = word] { (void)addMap(results, shown, file, word); });
   }
-  results.attempt("Given maps", [&] { showGiven(results, shown, maps); });
+  results.attempt("Given maps", [&] { addGiven(results, all, maps); });
   results.attempt("Thickness histogram", [&] { chartSurfaceThickness(results, all, options); });
 }
 

@@ -246,6 +246,7 @@ async function showScene({ sources: ofScene }, isStopped, onStop) {
   shown('.of-part', patches.length > 0);
   shown('.of-shapes', hasShapes);
   shown('.of-sides', scene.length > 1);
+  shown('.of-views', hasShapes && !isWhole);
   shown('.of-frames', scene.some((part) => part.frames.length > 1));
   byId('reset').textContent = patches.length > 0 ? 'To the patch' : 'Reset the view';
 
@@ -423,7 +424,7 @@ async function showScene({ sources: ofScene }, isStopped, onStop) {
   }
   const directions = { above: [0, 0, 1], left: [-1, 0, 0], right: [1, 0, 0], front: [0, 1, 0], back: [0, -1, 0], below: [0, 0, -1] };
   function wholeView() {
-    const viewpoint = !hasShapes && scene[0].viewpoint;
+    const viewpoint = (!hasShapes || isWhole) && scene[0].viewpoint;
     const box = boxNow();
     const direction = viewpoint ? new THREE.Vector3(...viewpoint).sub(new THREE.Vector3(...box.middle))
       : new THREE.Vector3(...directions[hasShapes ? byId('from').value : 'left']);
