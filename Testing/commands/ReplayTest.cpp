@@ -95,11 +95,18 @@ TEST_F(Replay, OfARunLeavesTheChoicesForItsStepsToTheRun) {
                 .exitCode,
             0);
   writeSides(folder_);
-  std::vector<std::string> words = {"run",          folder_ / "p/t1.nii.gz",
-                                    "--atlas",      folder_ / "sides.nii.gz",
-                                    "--hemisphere", "L",
-                                    "--template",   "none",
-                                    "--steps",      "segment,surface"};
+  std::vector<std::string> words = {"run",
+                                    folder_ / "p/t1.nii.gz",
+                                    "--atlas",
+                                    folder_ / "sides.nii.gz",
+                                    "--hemisphere",
+                                    "L",
+                                    "--template",
+                                    "none",
+                                    "--steps",
+                                    "segment,surface",
+                                    "--surface.faces",
+                                    "1000"};
   std::string pial;
   for (const std::string out : {"chosen", "said"}) {
     if (out == "said") words = words + std::vector<std::string>{"--surface.fluid", "0"};
