@@ -170,15 +170,15 @@ std::vector<double> coordinatesOf(const planar::Viewpoints& view) {
   return all;
 }
 
-/// Says beforehand how long the knot energy takes, which grows with the square of the size.
+/// Says beforehand how long the exact knot energy takes, which grows with the square of the size.
 void sayHowLongUnfoldingIs(Context& context, const PolygonSettings& s, const Task& task) {
   constexpr double kSumsPerIteration = 2.5, kPairsPerSecond = 1.2e7;
-  if (s.unfolding.noTopology || s.unfolding.knotWeight == 0) return;
+  if (s.unfolding.noTopology || s.unfolding.knot != planar::PolygonKnot::AllPairs) return;
   const double pairs = kSumsPerIteration * task.region.edgeCount * task.curve.edgeCount();
   if (pairs < kPairsPerSecond) return;
   context.info(
       printed("knot energy, each iteration: %.2g pairs of edges, about %.0f s on one processor; "
-              "--knot-weight 0 leaves it out",
+              "--knot auto or tree sums it in n log n",
               pairs, std::ceil(pairs / kPairsPerSecond)));
 }
 

@@ -90,13 +90,13 @@ TEST(Polygon, SaysHowLongWorkTakesThatGrowsWithTheSquare) {
   writeWavyRing(folder / "ring.csv", 6000);
   CommandSetting setting;
   setting.signal = SIGTERM;
-  setting.signalWhen = "--knot-weight 0";
+  setting.signalWhen = "--knot auto or tree";
   const auto told = explica({"polygon", folder / "ring.csv", "--region", "100:2900", "--direction",
-                             "0,1", "--out", folder / "out"},
+                             "0,1", "--knot", "all-pairs", "--out", folder / "out"},
                             setting);
   EXPECT_EQ(told.exitCode, 3) << told;
   EXPECT_NE(told.err.find("pairs of edges, about "), std::string::npos) << told;
-  EXPECT_NE(told.err.find("--knot-weight 0 leaves it out"), std::string::npos) << told;
+  EXPECT_NE(told.err.find("--knot auto or tree sums it in n log n"), std::string::npos) << told;
 }
 
 TEST(Polygon, OfFiftyThousandVerticesTakesLessThanTenSecondsOfOneProcessor) {
@@ -108,7 +108,7 @@ TEST(Polygon, OfFiftyThousandVerticesTakesLessThanTenSecondsOfOneProcessor) {
   const auto done = runProgram({"bash", "-c",
                                 "ulimit -t 10; exec '" EXPLICA_EXECUTABLE
                                 "' polygon ring.csv --region 1000:24000 --direction 0,1 "
-                                "--knot-weight 0 --max-iterations 3 --out out"},
+                                "--max-iterations 3 --out out"},
                                here);
   EXPECT_EQ(done.exitCode, 3) << done;  // 137 or 152: it took longer
 }

@@ -34,7 +34,6 @@ inline constexpr std::array kFormerOptions = std::to_array<FormerOption>(
      {"inflate", "global-flow", "", kByPage},
      {"inflate", "global-measures", "", kByPage},
      {"polygon", "global-flow", "", kByPage},
-     {"polygon", "knot", "", "every pair of edges is summed; --knot-weight 0 leaves them out"},
      {"polygon", "label", "label-key"},
      {"polygon", "viewing-radius", "", kByPage},
      {"sample", "vertex-map", "", "explica resample brings maps to other surfaces"},

@@ -37,7 +37,7 @@ void unfold(benchmark::State& state, const PolygonPhantom& phantom, PolygonMetho
   state.counters["topology_share"] = result.secondsTopology / result.seconds;
 }
 
-void knot(benchmark::State& state) {
+void knot(benchmark::State& state, PolygonKnot method) {
   const int n = static_cast<int>(state.range(0));
   Curve ring;
   ring.positions.resize(n, 2);
@@ -47,9 +47,16 @@ void knot(benchmark::State& state) {
     ring.positions.row(v) << r * std::cos(a), r * std::sin(a);
   }
   const std::vector<bool> moving(n, true);
+  const auto exact =
+      makePolygonKnotEnergy(PolygonKnot::AllPairs, ring, moving)->evaluate(ring.positions);
+  const auto energy = makePolygonKnotEnergy(method, ring, moving);
+  PolygonKnotValue value;
   for ([[maybe_unused]] auto _ : state) {
-    benchmark::DoNotOptimize(polygonKnotEnergy(ring, moving).value);
+    value = energy->evaluate(ring.positions);
+    benchmark::DoNotOptimize(value.value);
   }
+  state.counters["gradient_error"] =
+      (value.gradient - exact.gradient).norm() / exact.gradient.norm();
 }
 
 BENCHMARK_CAPTURE(unfold, polygon19_implicit, makePolygon19(), PolygonMethod::Implicit,
@@ -73,7 +80,8 @@ BENCHMARK_CAPTURE(unfold, polygon34_thesis, makePolygon34(), PolygonMethod::Thes
 BENCHMARK_CAPTURE(unfold, polygon34_no_length_thesis, makePolygon34(), PolygonMethod::Thesis,
                   Without::Length)
     ->Unit(benchmark::kMillisecond);
-BENCHMARK(knot)->RangeMultiplier(4)->Range(128, 2048);
+BENCHMARK_CAPTURE(knot, all_pairs, PolygonKnot::AllPairs)->RangeMultiplier(4)->Range(128, 2048);
+BENCHMARK_CAPTURE(knot, tree, PolygonKnot::Tree)->RangeMultiplier(4)->Range(128, 2048);
 
 }  // namespace
 }  // namespace explica::planar

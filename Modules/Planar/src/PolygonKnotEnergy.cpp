@@ -3,6 +3,7 @@
 
 #include "Explica/Planar/PolygonKnotEnergy.h"
 
+#include "EdgeTree.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
 #include "Segment.h"
@@ -80,11 +81,40 @@ void addPanel(const std::array<Point2, 4>& p, double u0, double u1, int halvings
   }
 }
 
+/// Charge and second moments of edges, seen from far.
+EdgePairIntegral farIntegral(const Point2& a, const Point2& b, const EdgeTree::Node& cluster) {
+  // Two Gauss points on the near edge.
+  const Point2 ab = b - a;
+  const double length = ab.norm();
+  const Point2 tangent = ab / length;
+  EdgePairIntegral result;
+  for (const double node : {-0.57735026918962576, 0.57735026918962576}) {
+    const double u = 0.5 + 0.5 * node;
+    const Point2 r = a + u * ab - cluster.centre;
+    const double inverse = 1 / r.norm();
+    const double inverse2 = inverse * inverse;
+    const double inverse3 = inverse2 * inverse;
+    const Point2 mr = cluster.moments * r;
+    const double rmr = r.dot(mr);
+    const double trace = cluster.moments.trace();
+    // 1/|r - y| to second order in y: 1/r + (3 r'Mr - r^2 tr M) / (2 r^5).
+    const double phi = cluster.charge * inverse + 0.5 * inverse3 * (3 * rmr * inverse2 - trace);
+    const Point2 phiByX = -cluster.charge * inverse3 * r +
+                          inverse3 * inverse2 * (3 * mr + 1.5 * trace * r) -
+                          7.5 * inverse3 * inverse2 * inverse2 * rmr * r;
+    result.value += 0.5 * length * phi;
+    result.gradient[0] += 0.5 * (length * (1 - u) * phiByX - phi * tangent);
+    result.gradient[1] += 0.5 * (length * u * phiByX + phi * tangent);
+  }
+  return result;
+}
+
 /// One edge's own part and its share of every pair.
 struct EdgeSum {
   double value = 0;
   Point2 byStart = Point2::Zero();
   Point2 byEnd = Point2::Zero();
+  std::size_t pairs = 0;
 };
 
 class Summation {
@@ -118,6 +148,7 @@ class Summation {
       sum.byEnd += pair.gradient[1];
     }
     sum.value += moves_[j] ? 0.5 * pair.value : pair.value;
+    ++sum.pairs;
   }
 
   void addSelf(int e, EdgeSum& sum) const {
@@ -129,9 +160,70 @@ class Summation {
     sum.byEnd += gradient;
   }
 
+  void addFar(int e, const EdgeTree::Node& cluster, EdgeSum& sum) const {
+    const EdgePairIntegral far =
+        farIntegral(curve_.point(e), curve_.point(curve_.next(e)), cluster);
+    sum.value += (cluster.anyMoves ? 0.5 : 1.0) * far.value;
+    sum.byStart += far.gradient[0];
+    sum.byEnd += far.gradient[1];
+  }
+
  private:
   const Curve& curve_;
   std::vector<bool> moves_;
+};
+
+/// Sums what each moving edge has with all others, given by addOthers(edge, sum).
+template <class AddOthers>
+PolygonKnotValue sumOverEdges(const Curve& curve, const std::vector<bool>& moving,
+                              const Summation& summation, const AddOthers& addOthers) {
+  constexpr std::size_t kPairsPerTask = 8192;  // about a millisecond: less is not worth a thread
+  const int n = curve.edgeCount();
+  const std::size_t grain = kPairsPerTask / static_cast<std::size_t>(n) + 1;
+  std::vector<EdgeSum> sums(n);
+  parallelFor(n, grain, [&](std::size_t index) {
+    const int i = static_cast<int>(index);
+    if (!summation.moves(i)) return;
+    summation.addSelf(i, sums[i]);
+    addOthers(i, sums[i]);
+  });
+  PolygonKnotValue result{.gradient = Positions2::Zero(curve.vertexCount(), 2)};
+  for (int e = 0; e < n; ++e) {
+    result.value += sums[e].value;
+    result.pairs += sums[e].pairs;
+    result.gradient.row(e) += sums[e].byStart.transpose();
+    result.gradient.row(curve.next(e)) += sums[e].byEnd.transpose();
+  }
+  for (int v = 0; v < curve.vertexCount(); ++v) {
+    if (!moving[v]) result.gradient.row(v).setZero();
+  }
+  return result;
+}
+
+/// @param openingRatio  0: every pair by itself
+class ClusterSum final : public PolygonKnotEnergy {
+ public:
+  ClusterSum(const Curve& curve, const std::vector<bool>& moving, double openingRatio)
+      : closed_(curve.closed), moving_(moving), openingRatio_(openingRatio) {}
+
+  [[nodiscard]] PolygonKnotValue evaluate(const Positions2& positions) const override {
+    const Curve curve{positions, closed_};
+    const Summation summation(curve, moving_);
+    const EdgeTree tree(curve, [&](int e) { return summation.moves(e); });
+    return sumOverEdges(curve, moving_, summation, [&](int i, EdgeSum& sum) {
+      tree.traverse(
+          curve.point(i), curve.point(curve.next(i)), openingRatio_,
+          [&](const EdgeTree::Node& cluster) { summation.addFar(i, cluster, sum); },
+          [&](int j) {
+            if (j != i) summation.addPair(i, j, sum);
+          });
+    });
+  }
+
+ private:
+  bool closed_;
+  std::vector<bool> moving_;
+  double openingRatio_;
 };
 
 }  // namespace
@@ -214,33 +306,31 @@ EdgePairIntegral joinedEdgesIntegral(const Point2& a, const Point2& b, const Poi
   return result;
 }
 
-PolygonKnotValue polygonKnotEnergy(const Curve& curve, const std::vector<bool>& moving) {
+std::unique_ptr<PolygonKnotEnergy> makePolygonKnotEnergy(PolygonKnot method, const Curve& curve,
+                                                         const std::vector<bool>& moving,
+                                                         double openingRatio) {
   if (static_cast<int>(moving.size()) != curve.vertexCount()) {
     throw InvalidInput("knot energy: " + std::to_string(moving.size()) + " marks for " +
                        std::to_string(curve.vertexCount()) + " vertices, one each is needed");
   }
-  constexpr std::size_t kPairsPerTask = 8192;  // about a millisecond: less is not worth a thread
-  const int n = curve.edgeCount();
-  const Summation summation(curve, moving);
-  std::vector<EdgeSum> sums(n);
-  parallelFor(n, kPairsPerTask / static_cast<std::size_t>(n) + 1, [&](std::size_t index) {
-    const int i = static_cast<int>(index);
-    if (!summation.moves(i)) return;
-    summation.addSelf(i, sums[i]);
-    for (int j = 0; j < n; ++j) {
-      if (j != i) summation.addPair(i, j, sums[i]);
+  if (!(openingRatio > 0 && openingRatio < 1)) {
+    throw InvalidInput("knot energy: the opening ratio must lie between 0 and 1");
+  }
+  switch (method) {
+    case PolygonKnot::Auto: {
+      constexpr double kMostPairs = 4e6;  // a third of a second on one processor
+      const auto movers = static_cast<double>(std::count(moving.begin(), moving.end(), true));
+      const bool few = movers * curve.edgeCount() <= kMostPairs;
+      return std::make_unique<ClusterSum>(curve, moving, few ? 0 : openingRatio);
     }
-  });
-  PolygonKnotValue result{.gradient = Positions2::Zero(curve.vertexCount(), 2)};
-  for (int e = 0; e < n; ++e) {
-    result.value += sums[e].value;
-    result.gradient.row(e) += sums[e].byStart.transpose();
-    result.gradient.row(curve.next(e)) += sums[e].byEnd.transpose();
+    case PolygonKnot::Tree:
+      return std::make_unique<ClusterSum>(curve, moving, openingRatio);
+    case PolygonKnot::AllPairs:
+      return std::make_unique<ClusterSum>(curve, moving, 0);
+    case PolygonKnot::Off:
+      break;
   }
-  for (int v = 0; v < curve.vertexCount(); ++v) {
-    if (!moving[v]) result.gradient.row(v).setZero();
-  }
-  return result;
+  return nullptr;
 }
 
 }  // namespace explica::planar

@@ -52,14 +52,14 @@ UnfoldingProblem::UnfoldingProblem(const Curve& curve, const Region& region, con
   for (const int e : edgesOf(curve, movingRegion)) {
     if (!inRegion[e]) softEdges_.push_back(e);
   }
-  const bool implicit = options.method == PolygonMethod::Implicit;
-  hasKnot_ = !options.noTopology && (implicit ? options.knotWeight : options.repulsionGain) > 0;
+  knot_ =
+      makePolygonKnotEnergy(options.noTopology ? PolygonKnot::Off : options.knot, curve, moving_);
 }
 
 std::pair<double, Positions2> UnfoldingProblem::knot(const Curve& curve) {
-  if (!hasKnot_) return {0.0, Positions2::Zero(curve.vertexCount(), 2)};
+  if (!knot_) return {0.0, Positions2::Zero(curve.vertexCount(), 2)};
   const PhaseClock watch(secondsTopology_);
-  PolygonKnotValue value = polygonKnotEnergy(curve, moving_);
+  PolygonKnotValue value = knot_->evaluate(curve.positions);
   lastKnot_ = value.value;
   return {value.value, std::move(value.gradient)};
 }

@@ -67,7 +67,7 @@ class UnfoldingProblem {
   std::vector<int> keptEdges_;
   std::vector<int> softEdges_;
   Eigen::VectorXd restLengths_;
-  bool hasKnot_ = false;
+  std::unique_ptr<PolygonKnotEnergy> knot_;  ///< null if there is none
   StartSizes start_;
   double lastKnot_ = 0;
   double lastLeastDistance_ = kInfinity;

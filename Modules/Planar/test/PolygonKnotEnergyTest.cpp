@@ -125,7 +125,9 @@ std::vector<bool> all(const Curve& curve) {
 }
 
 double energyOf(const Curve& curve) {
-  return polygonKnotEnergy(curve, all(curve)).value;
+  return makePolygonKnotEnergy(PolygonKnot::AllPairs, curve, all(curve))
+      ->evaluate(curve.positions)
+      .value;
 }
 
 TEST(PolygonKnotEnergy, DoesNotChangeWhenAnEdgeIsSplit) {
@@ -144,7 +146,9 @@ TEST(PolygonKnotEnergy, DoesNotChangeWhenAnEdgeIsSplit) {
 TEST(PolygonKnotEnergy, GradientEqualsDifferences) {
   const Curve curve = makePolygon19().curve;
   const Positions2 numeric = centralDifferences(curve, energyOf, 1e-4);
-  const Positions2 exact = polygonKnotEnergy(curve, all(curve)).gradient;
+  const Positions2 exact = makePolygonKnotEnergy(PolygonKnot::AllPairs, curve, all(curve))
+                               ->evaluate(curve.positions)
+                               .gradient;
   EXPECT_LT((numeric - exact).norm(), 1e-7 * exact.norm());
 }
 
@@ -152,22 +156,27 @@ TEST(PolygonKnotEnergy, GradientWithVerticesAtRestIsThatOfThoseThatMove) {
   const Curve curve = makePolygon19().curve;
   std::vector<bool> some(curve.vertexCount(), false);
   for (int v = 3; v < 9; ++v) some[v] = true;
-  const Positions2 whole = polygonKnotEnergy(curve, all(curve)).gradient;
-  const Positions2 part = polygonKnotEnergy(curve, some).gradient;
+  const Positions2 whole = makePolygonKnotEnergy(PolygonKnot::AllPairs, curve, all(curve))
+                               ->evaluate(curve.positions)
+                               .gradient;
+  const auto energy = makePolygonKnotEnergy(PolygonKnot::AllPairs, curve, some);
+  const Positions2 part = energy->evaluate(curve.positions).gradient;
   for (int v = 0; v < curve.vertexCount(); ++v) {
     const Eigen::RowVector2d expected =
         some[v] ? Eigen::RowVector2d(whole.row(v)) : Eigen::RowVector2d::Zero();
     EXPECT_LT((part.row(v) - expected).norm(), 1e-12);
   }
   // And the value changes as its gradient says.
-  const auto value = [&](const Curve& c) { return polygonKnotEnergy(c, some).value; };
+  const auto value = [&](const Curve& c) { return energy->evaluate(c.positions).value; };
   const Positions2 numeric = centralDifferences(curve, value, 1e-4);
   for (int v = 3; v < 9; ++v) EXPECT_LT((numeric.row(v) - part.row(v)).norm(), 1e-6);
 }
 
 TEST(PolygonKnotEnergy, ForcesAndTorqueVanishInAll) {
   const Curve curve = makePolygon34().curve;
-  const Positions2 g = polygonKnotEnergy(curve, all(curve)).gradient;
+  const Positions2 g = makePolygonKnotEnergy(PolygonKnot::AllPairs, curve, all(curve))
+                           ->evaluate(curve.positions)
+                           .gradient;
   EXPECT_LT(g.colwise().sum().norm(), 1e-9 * g.norm());
   double torque = 0;
   for (int v = 0; v < curve.vertexCount(); ++v) {
@@ -185,13 +194,64 @@ TEST(PolygonKnotEnergy, ScalesWithLength) {
   EXPECT_NEAR(energyOf(scaled), 4 * energyOf(curve) + 4 * std::log(4) * length, 1e-8);
 }
 
+TEST(PolygonKnotEnergy, AutoTakesPairsWhileTheyAreFewAndTheTreeBeyond) {
+  const auto ring = [](int n) {
+    Curve curve;
+    curve.positions.resize(n, 2);
+    for (int v = 0; v < n; ++v) {
+      curve.positions.row(v) << std::cos(2 * kPi * v / n), std::sin(2 * kPi * v / n);
+    }
+    return curve;
+  };
+  for (const auto& [n, expected] :
+       {std::pair{200, PolygonKnot::AllPairs}, std::pair{2400, PolygonKnot::Tree}}) {
+    const Curve curve = ring(n);
+    const std::vector<bool> moving(n, true);
+    const auto valueBy = [&](PolygonKnot method) {
+      return makePolygonKnotEnergy(method, curve, moving)->evaluate(curve.positions);
+    };
+    const PolygonKnotValue chosen = valueBy(PolygonKnot::Auto), wanted = valueBy(expected);
+    EXPECT_EQ(chosen.value, wanted.value) << n;
+    EXPECT_EQ(chosen.pairs, wanted.pairs) << n;
+  }
+}
+
+TEST(PolygonKnotEnergy, TreeTendsToAllPairs) {
+  // A wavy ring with many edges, part of it moving.
+  Curve ring;
+  const int n = 1200;
+  ring.positions.resize(n, 2);
+  for (int v = 0; v < n; ++v) {
+    const double a = 2 * kPi * v / n;
+    const double r = 50 + 12 * std::sin(9 * a);
+    ring.positions.row(v) << r * std::cos(a), r * std::sin(a);
+  }
+  std::vector<bool> moving(n, false);
+  for (int v = 0; v < 400; ++v) moving[v] = true;
+  const PolygonKnotValue exact =
+      makePolygonKnotEnergy(PolygonKnot::AllPairs, ring, moving)->evaluate(ring.positions);
+  double before = kInfinity;
+  for (const double ratio : {0.5, 0.25, 0.125}) {
+    const PolygonKnotValue tree =
+        makePolygonKnotEnergy(PolygonKnot::Tree, ring, moving, ratio)->evaluate(ring.positions);
+    const double error = (tree.gradient - exact.gradient).norm() / exact.gradient.norm();
+    EXPECT_LT(error, before / 3);
+    EXPECT_LT(std::abs(tree.value / exact.value - 1), ratio * ratio * ratio);
+    before = error;
+    EXPECT_LT(tree.pairs, exact.pairs / 2);
+  }
+  EXPECT_LT(before, 1e-4);
+}
+
 TEST(PolygonKnotEnergy, DoesNotDependOnTheNumberOfThreads) {
   const Curve curve = makePolygon34().curve;
   const int threads = threadCount();
   setThreadCount(1);
-  const PolygonKnotValue one = polygonKnotEnergy(curve, all(curve));
+  const PolygonKnotValue one =
+      makePolygonKnotEnergy(PolygonKnot::AllPairs, curve, all(curve))->evaluate(curve.positions);
   setThreadCount(4);
-  const PolygonKnotValue four = polygonKnotEnergy(curve, all(curve));
+  const PolygonKnotValue four =
+      makePolygonKnotEnergy(PolygonKnot::AllPairs, curve, all(curve))->evaluate(curve.positions);
   setThreadCount(threads);
   EXPECT_EQ(one.value, four.value);
   EXPECT_EQ(one.gradient, four.gradient);
@@ -199,7 +259,10 @@ TEST(PolygonKnotEnergy, DoesNotDependOnTheNumberOfThreads) {
 
 TEST(PolygonKnotEnergy, BadArgumentsAreRefused) {
   const Curve curve = makeCircle(8, 1);
-  EXPECT_THROW((void)polygonKnotEnergy(curve, {true}), InvalidInput);
+  EXPECT_THROW((void)makePolygonKnotEnergy(PolygonKnot::Tree, curve, {true}), InvalidInput);
+  EXPECT_THROW((void)makePolygonKnotEnergy(PolygonKnot::Tree, curve, all(curve), 1.0),
+               InvalidInput);
+  EXPECT_EQ(makePolygonKnotEnergy(PolygonKnot::Off, curve, all(curve)), nullptr);
 }
 
 }  // namespace

@@ -96,9 +96,9 @@ TEST(PolygonUnfolding, MakesBothRegionsVisibleAtTheirLengths) {
 
 TEST(PolygonUnfolding, NoStateOnTheWayCrossesItself) {
   for (const Case& c : cases()) {
-    for (const double knotWeight : {PolygonUnfoldingOptions().knotWeight, 0.0}) {
+    for (const PolygonKnot knot : {PolygonKnot::AllPairs, PolygonKnot::Tree, PolygonKnot::Off}) {
       PolygonUnfoldingOptions options;
-      options.knotWeight = knotWeight;
+      options.knot = knot;
       const PolygonUnfolding result = unfold(c.phantom, options);
       for (std::size_t k = 0; k < result.path.size(); ++k) {
         Curve at = result.curve;
@@ -106,7 +106,7 @@ TEST(PolygonUnfolding, NoStateOnTheWayCrossesItself) {
         ASSERT_TRUE(intersectingEdges(at).empty()) << "iteration " << k;
       }
       for (const PolygonIteration& row : result.history) EXPECT_LT(row.lengthError, 1e-6);
-      EXPECT_GE(result.history.back().visibility, 0.99) << knotWeight;
+      EXPECT_GE(result.history.back().visibility, 0.99) << nameOf(knot);
     }
   }
 }

@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "Explica/Core/Describe.h"
 #include "Explica/Planar/Curve.h"
 
 #include <array>
+#include <cstddef>
+#include <memory>
 #include <vector>
 
 namespace explica::planar {
@@ -39,8 +42,9 @@ struct EdgePairIntegral {
 
 /// Knot energy and how it changes with the vertices.
 struct PolygonKnotValue {
-  double value = 0;     ///< mm
-  Positions2 gradient;  ///< V x 2, no unit; zero rows at vertices that do not move
+  double value = 0;       ///< mm
+  Positions2 gradient;    ///< V x 2, no unit; zero rows at vertices that do not move
+  std::size_t pairs = 0;  ///< edge pairs integrated one by one
 };
 
 /// Self-repulsion of a polygon, [Thesis, Eq. 4.19] with the weight of its first sum corrected:
@@ -51,11 +55,34 @@ struct PolygonKnotValue {
 /// The finite part of (1/2) integral integral 1/|x - y| gives the first sum the weight 1; printed
 /// is 2.  With 1, splitting an edge leaves E unchanged, as it must; with 2 it does not.
 ///
-/// To be minimised: motion descends the gradient.  The plane's twin of repulsion::KnotEnergy; every
-/// pair of edges is summed, and the number of threads changes no bit.
-/// @param moving  V flags
-/// @throws InvalidInput  flags of another size
-[[nodiscard]] PolygonKnotValue polygonKnotEnergy(const Curve& curve,
-                                                 const std::vector<bool>& moving);
+/// To be minimised: motion descends the gradient.  The plane's twin of repulsion::KnotEnergy.
+class PolygonKnotEnergy {
+ public:
+  virtual ~PolygonKnotEnergy() = default;
+
+  /// @param positions  V x 2; vertices that do not move must be where they were at construction
+  [[nodiscard]] virtual PolygonKnotValue evaluate(const Positions2& positions) const = 0;
+};
+
+/// How the repulsive (knot) energy is evaluated.
+enum class PolygonKnot {
+  Auto,      ///< every pair up to four million, the tree beyond, whose time grows as n log n
+  Tree,      ///< far clusters by charge and second moments; errs by about openingRatio^3
+  AllPairs,  ///< every pair of edges, exactly
+  Off        ///< no knot energy
+};
+constexpr auto enumWords(PolygonKnot) {
+  using enum PolygonKnot;
+  return std::to_array<EnumWord<PolygonKnot>>(
+      {{Auto, "auto"}, {Tree, "tree"}, {AllPairs, "all-pairs"}, {Off, "off"}});
+}
+
+/// The evaluator of this name; null for Off.  Results do not depend on the number of threads.
+/// @param moving        V flags
+/// @param openingRatio  tree only: cluster radius over distance below which it is taken as a whole
+/// @throws InvalidInput  flags of another size, opening ratio not in (0, 1)
+[[nodiscard]] std::unique_ptr<PolygonKnotEnergy> makePolygonKnotEnergy(
+    PolygonKnot method, const Curve& curve, const std::vector<bool>& moving,
+    double openingRatio = 0.25);
 
 }  // namespace explica::planar

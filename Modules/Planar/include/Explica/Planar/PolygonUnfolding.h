@@ -6,6 +6,7 @@
 #include "Explica/Core/Monitor.h"
 #include "Explica/Core/Termination.h"
 #include "Explica/Planar/Curve.h"
+#include "Explica/Planar/PolygonKnotEnergy.h"
 #include "Explica/Planar/PolygonVisibility.h"
 
 #include <array>
@@ -42,7 +43,8 @@ struct PolygonUnfoldingOptions {
   bool noLength = false;     ///< let the region's edges change their length
   bool noTopology = false;   ///< no knot energy, no barrier, no collision detection
   bool noCollision = false;  ///< the knot energy alone keeps edges apart, as in the thesis
-  double knotWeight = 0.02;  ///< implicit method: knot energy against total flux
+  PolygonKnot knot = PolygonKnot::Auto;
+  double knotWeight = 0.02;         ///< implicit method: knot energy against total flux
   double targetVisibility = 0.995;  ///< variance is then below 0.01, since f^2 <= 1
   int maxIterations = 20000;
   double maxTime = 600;          ///< s
@@ -64,8 +66,8 @@ void describe(PolygonUnfoldingOptions& options, Visitor&& visit) {
               "no barrier and no collision detection: the knot energy alone keeps edges apart, as "
               "in the thesis"},
         options.noCollision);
-  visit(Field{"knot-weight", "", "implicit method: weight of the knot energy, 0 for none"},
-        options.knotWeight);
+  visit(Field{"knot", "", "how the knot energy is summed"}, options.knot);
+  visit(Field{"knot-weight", "", "implicit method: weight of the knot energy"}, options.knotWeight);
   visit(Field{"target-visibility", "", "stop at this average visibility"},
         options.targetVisibility);
   visit(Field{"max-iterations", "", "stop after this many iterations", 0, 1e9},
