@@ -584,7 +584,7 @@ const WrongInput kWrongInputs[] = {
     {"FramesNegative", nothing, onDisc({"--direction", "0,0,1", "--frames", "-1"}), "0 to 1000",
      ""},
     {"IterationsZero", nothing, onDisc({"--direction", "0,0,1", "--max-iterations", "0"}),
-     "not a whole number, 1 to", ""},
+     "not within 1 to", ""},
     {"TimeNegative", nothing, onDisc({"--direction", "0,0,1", "--max-time", "-1"}), "above 0", ""},
     {"TooManyFrames", nothing, onDisc({"--direction", "0,0,1", "--frames", "1000000000"}),
      "0 to 1000", ""},
