@@ -174,6 +174,10 @@ Grid split(Grid grid, const Vector& times) {
 
 }  // namespace
 
+bool hasLongVoxels(const Grid& grid) {
+  return splitsOf(grid) != Vector::Ones();
+}
+
 harmonic::Annulus annulusBetween(const TriangleMesh& white, const CorticalTissue& tissue,
                                  const Monitor& monitor) {
   using harmonic::Site;

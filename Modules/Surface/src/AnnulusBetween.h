@@ -45,6 +45,9 @@ class GridCrossings {
                                                const CorticalTissue& tissue,
                                                const Monitor& monitor);
 
+/// Whether an axis has voxels at least half as long again as the shortest.
+[[nodiscard]] bool hasLongVoxels(const Grid& grid);
+
 /// The tissue between two closed surfaces, on a grid whose voxels are nearly cubes: long ones are
 /// split, since cortex is hardly thicker than they are long.  White matter and sulci thinner than a
 /// voxel cut the links across them.

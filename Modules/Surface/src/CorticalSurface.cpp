@@ -523,9 +523,10 @@ CorticalSurfaces build(const CorticalTissue& tissue, const Volume<float>* image,
   result.seconds.trajectories = watch.lap();
   result.shortened = shortenAstray(result.white.mesh, voxelSize(tissue.white.grid), ribbon.paths);
   growSurfaces(ribbon, trajectories, result, partOf(monitor, 0.7, 0.96));
-  // What is measured is what is written: levels on long voxels join banks that the surfaces part.
+  // Levels on long voxels join banks that the surfaces part; on cubes they know crowns and floors
+  // better than a mesh.
   std::optional<correspondence::Ribbon> between;
-  if (byMesh) {
+  if (byMesh && hasLongVoxels(ribbon.tissue.insulated.grid)) {
     between = solve(
         annulusBetween(result.white.mesh, result.pial, ribbon.tissue.insulated, silent(monitor)),
         silent(monitor));
