@@ -27,6 +27,9 @@ void declareRun(Declaration& d, RunSettings& s) {
           "labels in the input's space, as AAL's: tell a T1's hemispheres apart instead of "
           "a template's, and are the regions of regions.tsv",
           s.atlas)
+      .inputOption("t2", FileKind::Volume,
+                   "T2 or FLAIR of the same head: the outer border of cortex is placed by both",
+                   s.t2)
       .options("Run", s.plan)
       .option("Run",
               Field{"resume", "", "keep steps of an earlier run into --out that are still true"},

@@ -101,6 +101,16 @@ void settleFluid(const Context& context, const pipeline::PlannedStep& step, Json
   if (summary.contains("fluid_of_white")) values["fluid"] = summary["fluid_of_white"];
 }
 
+/// The surfaces' second image; what has no first one has no use for it.
+void settleT2(const RunSettings& s, Json& values) {
+  if (!s.t2) return;
+  if (!values.contains("image")) {
+    throw UsageError("run: --t2 places the outer border beside a T1, and " + s.input +
+                     " has surfaces or labels alone");
+  }
+  values["t2"] = *s.t2;
+}
+
 /// The first step that this one needs and that has no outputs.
 const std::string* missingNeed(const pipeline::PlannedStep& step,
                                const std::vector<pipeline::StepNote>& notes) {
@@ -121,7 +131,10 @@ void runStep(Context& context, const RunSettings& s, const pipeline::PlannedStep
     throw EnvironmentError("explica " + step.command + " is not part of this build");
   Json values = valuesOf(context, s, step);
   if (step.command == "unfold") settleView(context, step, values);
-  if (step.command == "surface") settleFluid(context, step, values);
+  if (step.command == "surface") {
+    settleFluid(context, step, values);
+    settleT2(s, values);
+  }
   std::optional<Outcome> outcome;
   if (s.resume) outcome = context.reuseCommand(*command, step.name, values);
   if (outcome) {
@@ -216,7 +229,13 @@ void sayWhatIsUsed(Context& context, const RunSettings& s, const pipeline::Plan&
 void checkBeforehand(Context& context, const RunSettings& s, const pipeline::Plan& plan) {
   context.judged();
   sayWhatIsUsed(context, s, plan);
-  if (s.atlas) static_cast<void>(io::readGrid(*s.atlas));
+  for (const auto* file : {&s.atlas, &s.t2}) {
+    if (*file) static_cast<void>(io::readGrid(**file));
+  }
+  for (const pipeline::PlannedStep& step : plan.steps) {
+    Json values = *step.values;
+    if (step.command == "surface") settleT2(s, values);
+  }
   if (!context.given("dry-run")) return;
   for (const pipeline::PlannedStep& step : plan.steps) {
     Json values = valuesOf(context, s, step);

@@ -19,7 +19,7 @@ inline constexpr std::array kStepCommands = {"segment",    "thickness", "surface
 /// What `explica run` is asked for.
 struct RunSettings {
   std::string input;
-  std::optional<std::string> atlas;
+  std::optional<std::string> atlas, t2;
   pipeline::PlanOptions plan;
   bool resume = false;
   std::vector<std::string> accept;

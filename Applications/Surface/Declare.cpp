@@ -53,6 +53,10 @@ void declareVolumes(Declaration& d, SurfaceSettings& s) {
                    "image whose labels these are, such as a T1: white and outer border are placed "
                    "by it, within a voxel of the labels' border",
                    s.image)
+      .inputOption("t2", FileKind::Volume,
+                   "T2 or FLAIR of the same head beside --image: the outer border is placed by "
+                   "both; it is brought onto the image by a rigid motion",
+                   s.t2)
       .option("TissueInputs",
               Field{"level", "",
                     "value on the boundaries of level volumes (default: half the "
@@ -149,7 +153,7 @@ void declareSurface(Declaration& d, SurfaceSettings& s) {
       .excludes("outer-level", {"grey-share"})
       .needs({"outer-level", "grey-share", "insulated-mask", "level"}, {"inner-level"})
       .needs({"atlas-legend"}, {"atlas"})
-      .needs({"fluid"}, {"image"})
+      .needs({"fluid", "t2"}, {"image"})
       .needs({"surface-space"}, {"white-surface"});
   declareAccept(d, s.accept);
   declareOutputs(d);

@@ -50,7 +50,7 @@ struct SurfaceSettings {
   std::optional<std::string> outerLevel;
   std::optional<std::string> greyShare;
   std::optional<std::string> insulatedMask;
-  std::optional<std::string> image;
+  std::optional<std::string> image, t2;
   std::optional<double> level;
   std::optional<std::string> whiteSurface, pialSurface, midSurface;
   io::SurfaceSpace surfaceSpace = io::SurfaceSpace::Stated;

@@ -139,7 +139,8 @@ Termination run(Context& context, const SurfaceSettings& s) {
   const bool given = surfacesGiven(s);
   TissueInputs inputs;
   surface::CorticalSurfaces made;
-  for (const auto* file : {&s.image, &s.fsVolume}) {  // read later: whether it can be is said now
+  for (const auto* file :
+       {&s.image, &s.t2, &s.fsVolume}) {  // read later: whether it can be is said now
     if (*file) static_cast<void>(io::readGrid(**file));
   }
   if (given) made = readGivenSurfaces(context, s, inputs.tissue.structure);
@@ -150,12 +151,17 @@ Termination run(Context& context, const SurfaceSettings& s) {
     throw UsageError("surface: --image places the borders of closed surfaces, not of sheets");
   }
   const std::optional<Grid> fsGrid = freeSurferGrid(s, inputs);
-  if (!given) made = makeSurfaces(context, s, inputs, readImage(context, s));
+  SurfaceImages images;
+  if (!given) {
+    images = readImages(context, s);
+    made = makeSurfaces(context, s, inputs, images);
+  }
   const std::vector<WrittenSurface> surfaces = namedSurfaces(made, tissue.hasGrey);
   surface::SurfaceSummary summary;
   {
     auto step = context.step("check");
     summary = summaryOf(s, tissue, made);
+    summary.secondMoved = images.secondMoved;
   }
   {
     auto step = context.step("write");

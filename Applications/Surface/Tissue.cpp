@@ -7,6 +7,7 @@
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Maps/Folding.h"
 #include "Explica/Provenance/Doubts.h"
+#include "Explica/Registration/AffineRegistration.h"
 
 #include <algorithm>
 #include <cmath>
@@ -77,24 +78,45 @@ TissueInputs readTissue(Context& context, const SurfaceSettings& s) {
   return inputs;
 }
 
-std::optional<Volume<float>> readImage(Context& context, const SurfaceSettings& s) {
-  if (!s.image) return {};
+SurfaceImages readImages(Context& context, const SurfaceSettings& s) {
+  SurfaceImages images;
   io::VolumeReadOptions reading = s.reading;
   reading.dimension = 3;
   reading.frame.reset();
-  return scaled(readScalars(context, "image", *s.image, reading), s.scale);
+  const auto read = [&](const char* name, const std::optional<std::string>& file) {
+    std::optional<Volume<float>> image;
+    if (file) image = scaled(readScalars(context, name, *file, reading), s.scale);
+    return image;
+  };
+  images.first = read("image", s.image);
+  images.second = read("t2", s.t2);
+  if (!images.second) return images;
+  auto step = context.step("align");
+  const Eigen::Isometry3d motion =
+      registration::registerNearby(*images.first, *images.second, context.monitor());
+  Grid& moved = images.second->grid;
+  moved.origin = motion.inverse() * moved.origin;
+  moved.direction = motion.linear().transpose() * moved.direction;
+  const Grid& grid = images.first->grid;
+  images.secondMoved = 0;
+  for (int c = 0; c < 8; ++c) {
+    const Point corner = grid.toWorld(
+        Vector((c & 1) * grid.size[0], (c >> 1 & 1) * grid.size[1], (c >> 2) * grid.size[2]));
+    images.secondMoved = std::max(*images.secondMoved, (motion * corner - corner).norm());
+  }
+  return images;
 }
 
 surface::CorticalSurfaces makeSurfaces(Context& context, const SurfaceSettings& s,
-                                       const TissueInputs& inputs,
-                                       const std::optional<Volume<float>>& image) {
+                                       const TissueInputs& inputs, const SurfaceImages& images) {
   auto step = context.step("surfaces");
   if (inputs.block) {
     return surface::buildSheets(*inputs.block, s.surface, context.monitor());
   }
   const surface::CorticalTissue& tissue = inputs.tissue;
-  if (tissue.hasGrey && image) {
-    return surface::buildSurfaces(tissue, *image, s.surface, context.monitor());
+  if (tissue.hasGrey && images.first) {
+    const Volume<float>* second = images.second ? &*images.second : nullptr;
+    return surface::buildSurfaces(tissue, {*images.first, second}, s.surface, context.monitor());
   }
   if (tissue.hasGrey) return surface::buildSurfaces(tissue, s.surface, context.monitor());
   context.warn("no grey matter given: only the white surface is made");

@@ -20,12 +20,19 @@ struct TissueInputs {
 
 [[nodiscard]] TissueInputs readTissue(Context& context, const SurfaceSettings& s);
 
-/// The image that places the borders, where one is given.
-[[nodiscard]] std::optional<Volume<float>> readImage(Context& context, const SurfaceSettings& s);
+/// The images that place the borders, where they are given.
+struct SurfaceImages {
+  std::optional<Volume<float>> first;
+  std::optional<Volume<float>> second;  ///< in the frame of the first
+  std::optional<double> secondMoved;    ///< mm, farthest, onto the first
+};
+
+/// Brings the second image onto the first by a rigid motion.
+[[nodiscard]] SurfaceImages readImages(Context& context, const SurfaceSettings& s);
 
 [[nodiscard]] surface::CorticalSurfaces makeSurfaces(Context& context, const SurfaceSettings& s,
                                                      const TissueInputs& inputs,
-                                                     const std::optional<Volume<float>>& image);
+                                                     const SurfaceImages& images);
 
 /// Tells what of the labels is cut, guessed or not known.
 /// @param sheet  which is meant to end at the image's edge, and says which vertices it concerns

@@ -50,9 +50,19 @@ TEST_P(CortexWithDura, IsAsThickAsItIs) {
   const double fluid =
       readJson(folder.path() / "segment/summary.json")["fluid_of_white"].get<double>();
   EXPECT_NEAR(fluid, 35.0 / 115.0, 0.03);
-  EXPECT_NEAR(
-      thickness({"--image", folder / "phantom/t1.nii.gz", "--fluid", std::to_string(fluid)}), 2.5,
-      0.08);
+  std::vector<std::string> images = {"--image", folder / "phantom/t1.nii.gz", "--fluid",
+                                     std::to_string(fluid)};
+  EXPECT_NEAR(thickness(images), 2.5, 0.08);
+  // Fluid bright, and not where the header says.
+  Volume<float> t2 = io::readScalars(folder / "phantom/t1.nii.gz").volume;
+  for (float& value : t2.data) value = 200 - value;
+  const Vector off(2, -1, 1.5);
+  t2.grid.origin += off;
+  io::writeVolume(folder / "t2.nii.gz", t2);
+  images.insert(images.end(), {"--t2", folder / "t2.nii.gz"});
+  EXPECT_NEAR(thickness(images), 2.5, 0.08);
+  EXPECT_NEAR(readJson(folder.path() / "surface/summary.json")["t2_moved"].get<double>(),
+              off.norm(), 0.8);  // a ball says little of turns
 }
 
 /// What a scanner with turned axes and voxels of that size sees: means over what of the head is in

@@ -292,6 +292,15 @@ TEST(Run, BothHemispheresAreDoneWhereLabelsTellThemApart) {
   EXPECT_NE(readText(out / "report.html").find("right"), std::string::npos);
 }
 
+TEST(Run, ASecondImageWithoutAFirstIsRefused) {
+  TemporaryFolder folder;
+  makePhantom(folder);
+  const auto run = explica(smallRun(folder, "out", {"--t2", folder / "phantom/t1.nii.gz"}));
+  EXPECT_EQ(run.exitCode, 1) << run;
+  EXPECT_NE(run.err.find("--t2"), std::string::npos) << run;
+  EXPECT_FALSE(fs::exists(folder / "out"));
+}
+
 TEST(Run, AT1WithoutTemplateAndAtlasHasNoHemispheres) {
   TemporaryFolder folder;
   makePhantom(folder);

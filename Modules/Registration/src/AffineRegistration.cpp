@@ -4,6 +4,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
+#include "Explica/Core/StopScope.h"
 #include "Filters.h"
 
 #include <algorithm>
@@ -345,6 +346,25 @@ AffineRegistration registerAffine(const Volume<float>& image, const Volume<float
     best = climb(level, from, Point::Zero(), best, scaled(allDirections(0.25)), 5, 1e-5);
   }
   return {mapOf(best.parameters, from, Point::Zero()), best.value};
+}
+
+Eigen::Isometry3d registerNearby(const Volume<float>& image, const Volume<float>& second,
+                                 const Monitor& monitor) {
+  const Volume<float> head = headOf(image);
+  const Point centre = centreOf(head);
+  Found found{Parameters::Zero(), 0};
+  for (const double spacing : {4.0, 2.0}) {
+    checkpoint(monitor);
+    const Level level = makeLevel(second, image, head, spacing);
+    std::vector<Parameters> directions = rigidAndScale(spacing / 8);
+    directions.pop_back();  // the scale
+    found = climb(level, centre, centre, found, std::move(directions), 12, 1e-7);
+  }
+  const Eigen::Affine3d map = mapOf(found.parameters, centre, centre);
+  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+  motion.linear() = map.linear();
+  motion.translation() = map.translation();
+  return motion;
 }
 
 }  // namespace explica::registration

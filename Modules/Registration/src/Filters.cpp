@@ -153,4 +153,25 @@ Volume<float> inCubes(const Volume<float>& volume, double spacing) {
   return resampled(volume, cubicGrid(volume.grid, Vector::Zero(), last, spacing));
 }
 
+Volume<float> headOf(const Volume<float>& image) {
+  double sum = 0;
+  for (const float value : image.data) sum += value;
+  const double mean = sum / static_cast<double>(image.size());
+  Volume<float> head(image.grid);
+  for (std::size_t v = 0; v < head.size(); ++v) head[v] = image[v] > mean ? 1.0F : 0.0F;
+  return head;
+}
+
+Point centreOf(const Volume<float>& head) {
+  Point sum = Point::Zero();
+  double count = 0;
+  for (std::size_t v = 0; v < head.size(); ++v) {
+    if (head[v] <= 0) continue;
+    const auto [i, j, k] = head.grid.subscripts(v);
+    sum += Point(i, j, k);
+    ++count;
+  }
+  return head.grid.toWorld(sum / std::max(count, 1.0));
+}
+
 }  // namespace explica::registration

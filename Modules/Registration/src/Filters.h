@@ -32,4 +32,10 @@ void forPlanes(const Grid& grid, const std::function<void(int k)>& work);
 /// The whole volume in cubes of this size, as resampled().
 [[nodiscard]] Volume<float> inCubes(const Volume<float>& volume, double spacing);
 
+/// Voxels in which there is a head, roughly: 1 where brighter than the mean, else 0.
+[[nodiscard]] Volume<float> headOf(const Volume<float>& image);
+
+/// Centre of the voxels above 0, RAS mm.
+[[nodiscard]] Point centreOf(const Volume<float>& head);
+
 }  // namespace explica::registration

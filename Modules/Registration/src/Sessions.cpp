@@ -37,28 +37,6 @@ Motion halfOf(const Motion& motion) {
   return result;
 }
 
-/// Voxels in which there is a head, roughly: brighter than the mean.
-Volume<float> headOf(const Volume<float>& image) {
-  double sum = 0;
-  for (const float value : image.data) sum += value;
-  const double mean = sum / static_cast<double>(image.size());
-  Volume<float> head(image.grid);
-  for (std::size_t v = 0; v < head.size(); ++v) head[v] = image[v] > mean ? 1.0F : 0.0F;
-  return head;
-}
-
-Point centreOf(const Volume<float>& head) {
-  Point sum = Point::Zero();
-  double count = 0;
-  for (std::size_t v = 0; v < head.size(); ++v) {
-    if (head[v] <= 0) continue;
-    const auto [i, j, k] = head.grid.subscripts(v);
-    sum += Point(i, j, k);
-    ++count;
-  }
-  return head.grid.toWorld(sum / std::max(count, 1.0));
-}
-
 /// Cubes along the world's axes that hold what all sessions show.
 Grid commonGrid(const std::vector<Grid>& grids, const std::vector<Motion>& toSession,
                 double spacing) {

@@ -3,6 +3,7 @@
 #include "Explica/Registration/Sessions.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Registration/AffineRegistration.h"
 
 #include <gtest/gtest.h>
 
@@ -114,6 +115,15 @@ TEST(SessionAverage, LiesHalfwayAndFavoursNone) {
     off += std::abs(average.sessions[0][v] - average.sessions[1][v]);
   }
   EXPECT_LT(off / sum, 0.05);  // noise of 2, brightness of 80, and blurred edges
+}
+
+TEST(NearbyRegistration, BringsAnImageOfAnotherContrastOntoTheFirst) {
+  const Motion moved = placed(4, {0.2, -0.6, 1}, {5, -3, 4});
+  const Volume<float> a = session(Motion::Identity(), 1, 0, 1);
+  Volume<float> b = session(moved, 1, 20, 2);  // with the jaw open
+  for (float& value : b.data) value = 250 - 1.5F * value;
+  EXPECT_LT(apart(registerNearby(a, b), moved), 0.05 * kSpacing);
+  EXPECT_THROW((void)registerNearby(a, Volume<float>(grid(), 1.0F)), InvalidInput);
 }
 
 TEST(SessionAverage, OfThreeTurnsToNoneInTheMean) {

@@ -273,7 +273,7 @@ bool flattens(const GuardedMesh& mesh, std::int32_t v, const Point& to, double l
 }
 
 /// Moves the white surface and the tissue's outer border to where an image changes most steeply.
-void placeByImage(const Volume<float>& image, double fluid, GrowingColumns& ribbon,
+void placeByImage(const BorderImages& images, double fluid, GrowingColumns& ribbon,
                   CorticalSurfaces& result) {
   const double voxel = voxelSize(ribbon.tissue.white.grid);
   TriangleMesh& white = result.white.mesh;
@@ -281,7 +281,7 @@ void placeByImage(const Volume<float>& image, double fluid, GrowingColumns& ribb
   options.fluid = fluid;
   options.search = ribbon.tissue.byBrightness;
   const LevelSet inner = distanceLevelOf(ribbon.tissue.white);
-  const ImageBorders borders = findBorders(ribbon.paths, white, inner, image, voxel, options);
+  const ImageBorders borders = findBorders(ribbon.paths, white, inner, images, voxel, options);
   result.image.missingWhite = borders.missingWhite;
   result.image.missingOuter = borders.missingOuter;
   result.image.voxel = voxel;
@@ -487,7 +487,7 @@ namespace {
 
 constexpr double kBrightestFluid = 10;  // over white matter, of any contrast
 
-CorticalSurfaces build(const CorticalTissue& tissue, const Volume<float>* image,
+CorticalSurfaces build(const CorticalTissue& tissue, const BorderImages* images,
                        const SurfaceOptions& options, const Monitor& monitor) {
   if (!tissue.hasGrey) {
     throw InvalidInput("grey: no voxel found; middle and outer surface need grey matter");
@@ -503,15 +503,15 @@ CorticalSurfaces build(const CorticalTissue& tissue, const Volume<float>* image,
   Stopwatch watch;
   GrowingColumns ribbon;
   ribbon.tissue = corrected(tissue, result.white.level);
-  if (image != nullptr) {
+  if (images != nullptr) {
     takePathsForImage(result.white.mesh, partOf(monitor, 0.5, 0.6), ribbon);
-    placeByImage(*image, options.fluid, ribbon, result);
+    placeByImage(*images, options.fluid, ribbon, result);
     result.seconds.image = watch.lap();
   }
   // A mesh whose edges are longer cuts off what the grid shows.
   constexpr double kFineEdge = 1.5;  // voxels
   const bool isFine = result.white.edgeLength <= kFineEdge * voxelSize(tissue.white.grid);
-  const bool byMesh = image != nullptr && isFine;
+  const bool byMesh = images != nullptr && isFine;
   const correspondence::Ribbon first =
       solve(byMesh ? annulusBetween(result.white.mesh, ribbon.tissue, silent(monitor))
                    : annulusOf(ribbon.tissue, silent(monitor)),
@@ -558,9 +558,9 @@ CorticalSurfaces buildSurfaces(const CorticalTissue& tissue, const SurfaceOption
   return build(tissue, nullptr, options, monitor);
 }
 
-CorticalSurfaces buildSurfaces(const CorticalTissue& tissue, const Volume<float>& image,
+CorticalSurfaces buildSurfaces(const CorticalTissue& tissue, const BorderImages& images,
                                const SurfaceOptions& options, const Monitor& monitor) {
-  return build(tissue, &image, options, monitor);
+  return build(tissue, &images, options, monitor);
 }
 
 }  // namespace explica::surface

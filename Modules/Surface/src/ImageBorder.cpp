@@ -50,8 +50,11 @@ struct Tissues {
   Eigen::VectorXd grey, outside;
   double noise = 0;         ///< standard deviation in white matter
   Eigen::VectorXd covered;  ///< share of the outside that the image's mask has not cut away
-  double sign = 1;          ///< 1 if white matter is brighter than grey matter
+  double sign = 1;          ///< 1 if brightness falls outward, or -1
 };
+
+/// By which border the sense of an image is told.
+enum class SenseOf { White, Outer };
 
 /// Sums and counts of white matter's brightness deep inside, along each trajectory.
 /// @param inner  as distanceLevelOf(): positive in white matter
@@ -82,7 +85,7 @@ double noiseOf(const Eigen::VectorXd& white, const geometry::MeshTopology& topol
 
 Tissues brightnessOf(const std::vector<Trajectory>& paths, const MaskedImage& masked,
                      const LevelSet& inner, const geometry::MeshTopology& topology, double edge,
-                     double voxel) {
+                     double voxel, SenseOf sense) {
   const Volume<float>& image = masked.image;
   const auto n = static_cast<Eigen::Index>(paths.size());
   Tissues found;
@@ -99,8 +102,16 @@ Tissues brightnessOf(const std::vector<Trajectory>& paths, const MaskedImage& ma
       grey += valueAt(image, along(path, share * path.length()));
     found.grey[static_cast<Eigen::Index>(v)] = grey / kGreyShares.size();
   });
+  const auto beyond = [&](const Trajectory& path, int k) {
+    return along(path, path.length() + kOutsideReach * voxel * k / (kOutsideSamples - 1));
+  };
   std::vector<double> contrast(paths.size());
-  for (Eigen::Index v = 0; v < n; ++v) contrast[v] = found.white[v] - found.grey[v];
+  parallelFor(paths.size(), 256, [&](std::size_t v) {
+    const auto row = static_cast<Eigen::Index>(v);
+    contrast[v] = sense == SenseOf::White
+                      ? found.white[row] - found.grey[row]
+                      : found.grey[row] - valueAt(image, beyond(paths[v], kOutsideSamples / 2));
+  });
   found.sign = median(contrast) < 0 ? -1 : 1;
   parallelFor(paths.size(), 256, [&](std::size_t v) {
     const Trajectory& path = paths[v];
@@ -108,8 +119,7 @@ Tissues brightnessOf(const std::vector<Trajectory>& paths, const MaskedImage& ma
     double least = kInfinity;  // vessels and meninges beside fluid must not hide it
     int seen = 0;
     for (int k = 0; k < kOutsideSamples; ++k) {
-      const double beyond = kOutsideReach * voxel * k / (kOutsideSamples - 1);
-      const Point at = along(path, path.length() + beyond);
+      const Point at = beyond(path, k);
       const double value = found.sign * valueAt(image, at);
       if (value < least) least = value;
       seen += masked.seenAt(at) > 0.5;
@@ -165,6 +175,12 @@ Edge edgeBesideFluid(const Eigen::VectorXd& grey, const Eigen::VectorXd& darkest
   return edge;
 }
 
+/// What is bright in fluid shows dura, bone and the flow in vessels dark: beyond half the
+/// brightness of grey matter there is none.
+double missOfDark(double value, double grey) {
+  return (value - 0.5 * grey) / (0.5 * grey);
+}
+
 /// How far brightness is from the border's level at each place, in contrasts: positive inside.
 /// The edge of the image's mask is a border, too, if brightness shows none before it.
 std::vector<Profile> missesOf(const std::vector<Trajectory>& paths, bool outer,
@@ -176,50 +192,173 @@ std::vector<Profile> missesOf(const std::vector<Trajectory>& paths, bool outer,
     contrast[v] = sign * (edge.inside[row] - edge.outside[row]);
   }
   const double least = flat * median(contrast);
+  const bool darkIsOutside = outer && sign < 0;
   std::vector<Profile> profiles(paths.size());
   parallelFor(paths.size(), 256, [&](std::size_t v) {
     profiles[v].fill(static_cast<float>(kNaN));
     const auto row = static_cast<Eigen::Index>(v);
-    if (!(contrast[v] > least) && edge.covered[row] > 0.5) return;
+    const bool isFlat = !(contrast[v] > least) && edge.covered[row] > 0.5;
+    if (isFlat && !darkIsOutside) return;
     const double border = outer ? paths[v].length() : 0;
+    bool any = !isFlat;
+    Profile found;
     for (int k = 0; k < kPlaces; ++k) {
       const Point at = along(paths[v], border + (k - kSide) * step);
       const double value = valueAt(masked.image, at);
-      const double miss = sign * (value - edge.level[row]) / edge.contrast[row];
+      double miss = isFlat ? 1 : sign * (value - edge.level[row]) / edge.contrast[row];
+      if (darkIsOutside) miss = std::min(miss, missOfDark(value, edge.inside[row]));
+      any = any || miss < 0;
       const double within = outer ? 2 * masked.seenAt(at) - 1 : 1;
       // What is brighter than fluid up to the mask's edge is tissue, however little brighter.
       const bool cutOff = edge.covered[row] < 0.5 && miss > 0;
-      profiles[v][k] = static_cast<float>(cutOff ? within : std::min(miss, within));
+      found[k] = static_cast<float>(cutOff ? within : std::min(miss, within));
     }
+    if (any) profiles[v] = found;
   });
   return profiles;
+}
+
+/// What an image says of one border.
+struct Sight {
+  std::vector<Profile> misses;  ///< of the border's level
+  Eigen::VectorXd noise;        ///< of brightness, in the same contrasts
+  Eigen::VectorXd covered;      ///< share of the outside that the image shows
+};
+
+/// An image, and the tissues that it shows along trajectories.
+class Look {
+ public:
+  Look(const std::vector<Trajectory>& paths, const MaskedImage& masked, const LevelSet& inner,
+       const geometry::MeshTopology& topology, double edge, double voxel, SenseOf sense)
+      : paths_(paths),
+        masked_(masked),
+        topology_(topology),
+        edge_(edge),
+        voxel_(voxel),
+        tissues_(brightnessOf(paths, masked, inner, topology, edge, voxel, sense)) {}
+
+  [[nodiscard]] const Tissues& tissues() const { return tissues_; }
+
+  /// @param fluid  brightness of pure fluid, of that of white matter; 0: not known
+  [[nodiscard]] Sight at(bool outer, double fluid, double step,
+                         const ImageBorderOptions& options) const {
+    const EdgeOptions& chosen = optionsAt(outer, fluid, options);
+    const Eigen::VectorXd inside = outer ? over(tissues_.grey, chosen.spread) : tissues_.white;
+    const Eigen::VectorXd outside = over(outer ? tissues_.outside : tissues_.grey, chosen.spread);
+    const Edge edge = outer && fluid > 0 ? edgeBesideFluid(inside, outside, fluid * tissues_.white,
+                                                           over(tissues_.covered, chosen.spread))
+                                         : edgeBetween(inside, outside, chosen.level);
+    return {missesOf(paths_, outer, masked_, step, tissues_.sign, edge, options.flat),
+            tissues_.noise * edge.contrast.cwiseInverse(), edge.covered};
+  }
+
+  static const EdgeOptions& optionsAt(bool outer, double fluid, const ImageBorderOptions& options) {
+    return outer && fluid > 0 ? options.besideFluid : outer ? options.outer : options.white;
+  }
+
+ private:
+  [[nodiscard]] Eigen::VectorXd over(const Eigen::VectorXd& values, double spread) const {
+    return averaged(values, topology_, timesFor(spread * voxel_, edge_));
+  }
+
+  const std::vector<Trajectory>& paths_;
+  const MaskedImage& masked_;
+  const geometry::MeshTopology& topology_;
+  double edge_, voxel_;
+  Tissues tissues_;
+};
+
+/// Brightness of pure fluid in the second image, of that of its white matter: where fluid is so
+/// wide that the first shows it pure.  0 where that is nowhere, or not known of the first.
+double fluidInSecond(const Tissues& first, double fluid, const Tissues& second) {
+  constexpr double kPure = 0.9;  // of the contrast
+  if (!(fluid > 0)) return 0;
+  std::vector<double> seen;
+  for (Eigen::Index v = 0; v < first.grey.size(); ++v) {
+    const double depth =
+        (first.grey[v] - first.outside[v]) / (first.grey[v] - fluid * first.white[v]);
+    if (depth >= kPure) seen.push_back(second.outside[v] / second.white[v]);
+  }
+  const double found = seen.empty() ? 0 : median(std::move(seen));
+  return std::isfinite(found) ? found : 0;
+}
+
+/// How far brightness falls outward along a profile, contrasts.
+float fallOf(const Profile& misses) {
+  float highest = misses[0], fall = 0;
+  for (const float miss : misses) {
+    highest = std::max(highest, miss);
+    fall = std::max(fall, highest - miss);
+  }
+  return fall;
+}
+
+/// Two sights of one border as one: means by the inverse of the variances of its place, which are
+/// those of noise over the square of the slope, and by how much of the outside each shows.
+Sight meanOf(Sight first, const Sight& second) {
+  static constexpr double kLeastNoise = 1e-6;  // contrasts: images without any have equal weights
+  const auto weightOf = [](const Sight& sight, std::size_t v) {
+    const auto row = static_cast<Eigen::Index>(v);
+    const double slope = fallOf(sight.misses[v]) / std::max(sight.noise[row], kLeastNoise);
+    const double weight = sight.covered[row] * slope * slope;
+    return std::isfinite(weight) && std::isfinite(sight.misses[v][kSide]) ? weight : 0;
+  };
+  parallelFor(first.misses.size(), 1024, [&](std::size_t v) {
+    const auto row = static_cast<Eigen::Index>(v);
+    const double one = weightOf(first, v), two = weightOf(second, v);
+    if (!(two > 0)) return;
+    const auto share = static_cast<float>(two / (one + two));
+    for (int k = 0; k < kPlaces; ++k) {
+      const float own = first.misses[v][k], other = second.misses[v][k];
+      first.misses[v][k] = one > 0 ? own + share * (other - own) : other;
+    }
+    first.noise[row] = one > 0
+                           ? std::hypot((1 - share) * first.noise[row], share * second.noise[row])
+                           : second.noise[row];
+    first.covered[row] = std::max(first.covered[row], second.covered[row]);
+  });
+  return first;
+}
+
+/// Standard deviations of the chosen places, mm.
+Eigen::VectorXd doubtOf(const std::vector<Trajectory>& paths, bool outer, double voxel,
+                        const Eigen::VectorXd& ways, const Eigen::VectorXd& deviations,
+                        const Eigen::VectorXd& covered) {
+  const double usual = usualLength(paths);
+  Eigen::VectorXd doubt = Eigen::VectorXd::Zero(ways.size());
+  for (Eigen::Index v = 0; v < ways.size(); ++v) {
+    if (paths[v].end == TrajectoryEnd::NoRibbon) continue;
+    const bool isThin = paths[v].length() + ways[v] < kThinShare * usual;
+    const double unseen = (1 - covered[v]) * (isThin ? 1 : kUniform) * voxel;
+    const bool isMiddle = outer && paths[v].end == TrajectoryEnd::Bank;
+    const double most = (isMiddle ? kMiddleKnown : 1) * voxel;
+    doubt[v] = std::min(most, std::hypot(deviations[v], unseen));
+  }
+  return doubt;
 }
 
 }  // namespace
 
 ImageBorders findBorders(const std::vector<Trajectory>& given, const TriangleMesh& white,
-                         const LevelSet& inner, const Volume<float>& seen, double voxel,
+                         const LevelSet& inner, const BorderImages& images, double voxel,
                          const ImageBorderOptions& options) {
-  const MaskedImage masked = beyondMask(seen, kBeyondMask * voxel);
-  const Volume<float>& image = masked.image;
+  const MaskedImage masked = beyondMask(images.image, kBeyondMask * voxel);
   const auto topology = geometry::buildTopology(white.faces, white.vertexCount());
   const double step = options.reach * voxel / kSide;
-  const double edgeLength = meanEdge(white);
-  const auto over = [&](const Eigen::VectorXd& values, double spread) -> Eigen::VectorXd {
-    return averaged(values, topology, timesFor(spread * voxel, edgeLength));
-  };
+  const double edge = meanEdge(white);
   ImageBorders borders;
   borders.white = borders.outer = Eigen::VectorXd::Zero(white.vertexCount());
   borders.doubt = Eigen::MatrixXd::Zero(white.vertexCount(), 2);
   std::vector<Trajectory> paths = given;
   if (options.search) {
-    borders.white = searchWhite(given, topology, edgeLength, image, voxel);
+    borders.white = searchWhite(given, topology, edge, masked.image, voxel);
     parallelFor(paths.size(), 256, [&](std::size_t v) {
       if (paths[v].end == TrajectoryEnd::NoRibbon) return;
       paths[v] = between(given[v], borders.white[static_cast<Eigen::Index>(v)], given[v].length());
     });
-    const Tissues tissues = brightnessOf(paths, masked, inner, topology, edgeLength, voxel);
-    borders.outer = searchOuter(paths, topology, edgeLength, masked, voxel, tissues.sign,
+    const Tissues tissues =
+        brightnessOf(paths, masked, inner, topology, edge, voxel, SenseOf::White);
+    borders.outer = searchOuter(paths, topology, edge, masked, voxel, tissues.sign,
                                 fluidContrast(tissues, options.fluid));
     for (std::size_t v = 0; v < paths.size(); ++v) {
       const double way = borders.outer[static_cast<Eigen::Index>(v)];
@@ -228,33 +367,22 @@ ImageBorders findBorders(const std::vector<Trajectory>& given, const TriangleMes
       paths[v].end = TrajectoryEnd::Outer;
     }
   }
-  const Tissues tissues = brightnessOf(paths, masked, inner, topology, edgeLength, voxel);
-  const double usual = usualLength(paths);
+  const Look look(paths, masked, inner, topology, edge, voxel, SenseOf::White);
   for (const bool outer : {false, true}) {
-    const bool besideFluid = outer && options.fluid > 0;
-    const EdgeOptions& chosen =
-        besideFluid ? options.besideFluid : (outer ? options.outer : options.white);
-    const Eigen::VectorXd inside = outer ? over(tissues.grey, chosen.spread) : tissues.white;
-    const Eigen::VectorXd outside = over(outer ? tissues.outside : tissues.grey, chosen.spread);
-    const Edge edge = besideFluid ? edgeBesideFluid(inside, outside, options.fluid * tissues.white,
-                                                    over(tissues.covered, chosen.spread))
-                                  : edgeBetween(inside, outside, chosen.level);
+    Sight sight = look.at(outer, options.fluid, step, options);
+    if (outer && images.second != nullptr) {
+      const MaskedImage second = beyondMask(*images.second, kBeyondMask * voxel);
+      const Look other(paths, second, inner, topology, edge, voxel, SenseOf::Outer);
+      const double fluid = fluidInSecond(look.tissues(), options.fluid, other.tissues());
+      sight = meanOf(std::move(sight), other.at(outer, fluid, step, options));
+    }
     std::vector<Choice> choices(paths.size());
     for (std::size_t v = 0; v < paths.size(); ++v) choices[v] = choiceOn(paths[v], outer, step);
-    const BorderChooser chooser(
-        missesOf(paths, outer, masked, step, tissues.sign, edge, options.flat), std::move(choices),
-        topology, step, voxel, chosen.costs);
+    const BorderChooser chooser(std::move(sight.misses), std::move(choices), topology, step, voxel,
+                                Look::optionsAt(outer, options.fluid, options).costs);
     const Eigen::VectorXd ways = chooser.choose(options.rounds);
-    const Eigen::VectorXd deviations =
-        chooser.deviations(ways, tissues.noise * edge.contrast.cwiseInverse(), voxel);
-    for (Eigen::Index v = 0; v < ways.size(); ++v) {
-      if (paths[v].end == TrajectoryEnd::NoRibbon) continue;
-      const bool isThin = paths[v].length() + ways[v] < kThinShare * usual;
-      const double unseen = (1 - edge.covered[v]) * (isThin ? 1 : kUniform) * voxel;
-      const bool isMiddle = outer && paths[v].end == TrajectoryEnd::Bank;
-      const double most = (isMiddle ? kMiddleKnown : 1) * voxel;
-      borders.doubt(v, outer) = std::min(most, std::hypot(deviations[v], unseen));
-    }
+    borders.doubt.col(outer ? 1 : 0) = doubtOf(
+        paths, outer, voxel, ways, chooser.deviations(ways, sight.noise, voxel), sight.covered);
     (outer ? borders.outer : borders.white) += ways;
     (outer ? borders.missingOuter : borders.missingWhite) = chooser.missing();
   }

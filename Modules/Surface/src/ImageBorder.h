@@ -5,6 +5,7 @@
 #include "BorderChooser.h"
 #include "Explica/Core/TriangleMesh.h"
 #include "Explica/Core/Volume.h"
+#include "Explica/Surface/CorticalSurface.h"
 #include "Explica/Surface/LevelSet.h"
 #include "RibbonPaths.h"
 
@@ -57,10 +58,14 @@ struct ImageBorders {
 /// borders): a vessel or meninges, where it rises, are no edge.  A trajectory that ends between two
 /// banks of a sulcus is carried on by half a voxel only, as well as their middle is known: the
 /// other bank's edge is not its own.
+///
+/// A second image, such as a T2 or FLAIR, is looked at beside the first at the outer border alone:
+/// the misses of both, each in contrasts of its own tissues, are averaged by the inverse of their
+/// variances by noise, as of two measurements of one place.
 /// @param inner  white matter's level as distanceLevelOf()
 [[nodiscard]] ImageBorders findBorders(const std::vector<Trajectory>& paths,
                                        const TriangleMesh& white, const LevelSet& inner,
-                                       const Volume<float>& image, double voxel,
+                                       const BorderImages& images, double voxel,
                                        const ImageBorderOptions& options = {});
 
 }  // namespace explica::surface

@@ -204,6 +204,9 @@ void describeImage(Results& t, const SurfaceSummary& s, const CorticalSurfaces& 
            where(placed, image.movedWhite));
   t.number("moved_by_image_outer", "Mean displacement of the outer border by the image", "mm", "",
            where(placed, image.movedOuter));
+  t.number("t2_moved", "Farthest way of the T2 onto the image", "mm",
+           "How far the rigid motion that brings the T2 onto the image takes a corner of it.",
+           s.secondMoved);
 }
 
 void describeSheet(Results& t, const SurfaceSummary& s, const SheetFacts& sheet) {

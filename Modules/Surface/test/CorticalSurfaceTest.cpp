@@ -466,6 +466,42 @@ TEST(CorticalSurface, AWhiteBorderIsFoundAcrossACortexOfEvenBrightness) {
   EXPECT_LT(sum[1] / count[1], 0.2);
 }
 
+TEST(CorticalSurface, ASecondImageShowsDuraThatTheFirstDoesNot) {
+  // Upwards, dura as bright as grey matter lies on the cortex without fluid between, and the labels
+  // took half a millimetre of it for cortex.  In the second image it is dark, and fluid is bright.
+  const Grid grid = lattice(56, Vector::Constant(0.8));
+  const auto step = [](double x) { return 0.5 * (1 + std::erf(x / (0.6 * std::sqrt(2.0)))); };
+  const auto seen = [&](double white, double grey, double dura, double fluid) {
+    return volumeOf(grid, [&, white, grey, dura, fluid](const Point& p) {
+      const double r = p.norm(), wide = p.z() > 8 ? 19 : 17;
+      return static_cast<float>(fluid + (dura - fluid) * step(wide - r) +
+                                (grey - dura) * step(17 - r) + (white - grey) * step(14 - r));
+    });
+  };
+  CorticalTissue tissue = tissueFromShares(
+      volumeOf(grid, [](const Point& p) { return shareOf(p, 14, 4); }),
+      volumeOf(grid, [](const Point& p) { return shareOf(p, p.z() > 8 ? 17.5 : 17, 4); }));
+  tissue.byBrightness = false;
+  const Volume<float> t1 = seen(110, 75, 75, 25), t2 = seen(75, 105, 10, 200);
+  SurfaceOptions options;
+  options.faces = 6000;
+  const auto beyond = [&](const BorderImages& images) {  // mean, mm, below the dura
+    const auto made = buildSurfaces(tissue, images, options);
+    expectSound(made.pial);
+    double sum = 0, count = 0;
+    for (Eigen::Index v = 0; v < made.pial.vertexCount(); ++v) {
+      const Point p = made.pial.positions.row(v);
+      if (p.z() < 11) continue;
+      sum += p.norm() - 17;
+      count += 1;
+    }
+    return sum / count;
+  };
+  const double alone = beyond(t1);
+  EXPECT_GT(alone, 0.4);
+  EXPECT_LT(beyond({t1, &t2}), 0.6 * alone);  // the labels keep a say
+}
+
 TEST(CorticalSurface, AnOuterBorderBeyondASinussWallIsFound) {
   // Upwards, a wall as bright as dark grey matter lies on the cortex, 5 mm thick, with cerebellum
   // beyond, and the shares take the wall for tissue.

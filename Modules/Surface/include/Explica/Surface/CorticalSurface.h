@@ -116,6 +116,16 @@ struct CorticalSurfaces {
                                              const SurfaceOptions& options = {},
                                              const Monitor& monitor = {});
 
+/// What borders are placed by.
+struct BorderImages {
+  // NOLINTNEXTLINE(google-explicit-constructor): most have one
+  BorderImages(const Volume<float>& only, const Volume<float>* besides = nullptr)
+      : image(only), second(besides) {}
+  const Volume<float>& image;   ///< any contrast between white and grey matter and fluid, as a T1
+  const Volume<float>* second;  ///< in its frame, with a contrast between grey matter and fluid, as
+                                ///< a T2 or FLAIR; null: none
+};
+
 /// As above, the borders placed by the image whose labels these are: white and outer border lie
 /// where it changes most steeply along each trajectory, within about a voxel of the labels' border,
 /// weighed against the neighbours' places.  Change of the usual sense only (most vertices' own)
@@ -123,9 +133,10 @@ struct CorticalSurfaces {
 /// labels' border stays, and is counted.  Where the tissue comes of shares, not of labels
 /// (`byBrightness`), the white border is first searched up to 4 voxels inward: one brightness for a
 /// neighbourhood may have put it into bright cortex.  Topology is kept, and nothing meets.
-/// @param image  any contrast between white and grey matter and fluid, such as a T1; on any grid
+/// A second image has its say at the outer border.
+/// @param images  on any grids
 [[nodiscard]] CorticalSurfaces buildSurfaces(const CorticalTissue& tissue,
-                                             const Volume<float>& image,
+                                             const BorderImages& images,
                                              const SurfaceOptions& options = {},
                                              const Monitor& monitor = {});
 

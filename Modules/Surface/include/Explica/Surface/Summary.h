@@ -52,6 +52,7 @@ struct SurfaceSummary {
   std::optional<ThicknessMeans> thickness = ThicknessMeans{};
   std::optional<double> thicknessKnown = kNaN;  ///< of a sheet, where it is known
   bool hasImage = true;
+  std::optional<double> secondMoved = kNaN;  ///< mm: a second image's way onto the first, farthest
   std::optional<std::size_t> regions = 0;
   std::optional<double> cerebrumVolume = kNaN;  ///< ml, both sides; of human labels
 
