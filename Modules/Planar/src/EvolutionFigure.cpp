@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 namespace explica::planar {
 namespace {
@@ -160,31 +161,46 @@ void drawLegend(std::string& page, double top, double scale, bool anyCrossing) {
   page += text(x + 14, y + 5, "edges cross");
 }
 
+/// Of vertices in order, the first, the last, and those between that a page tells apart.
+std::vector<int> drawnOf(const Curve& curve, const std::vector<int>& vertices, const Panel& panel) {
+  constexpr double kApart = 0.2;  // SVG units
+  std::vector<int> drawn;
+  for (const int& v : vertices) {
+    const Point2 p = panel.place(curve.point(v));
+    if (drawn.empty() || &v == &vertices.back() ||
+        (p - panel.place(curve.point(drawn.back()))).norm() >= kApart) {
+      drawn.push_back(v);
+    }
+  }
+  return drawn;
+}
+
 /// Returns the number of pairs of edges that cross.
 std::size_t drawStage(std::string& page, const Panel& panel, bool closed, const Viewpoints& view,
                       const EvolutionStage& stage) {
   const Curve curve{stage.positions, closed};
   const Region& region = stage.region;
   const PolygonVisibility visibility = polygonVisibility(curve, region, view);
+  std::vector<int> all(static_cast<std::size_t>(curve.vertexCount()));
+  std::iota(all.begin(), all.end(), 0);
   std::string points;
-  for (int v = 0; v < curve.vertexCount(); ++v) {
-    const Point2 p = panel.place(curve.point(v));
-    points += pair(p) + " ";
-  }
+  for (const int v : drawnOf(curve, all, panel)) points += pair(panel.place(curve.point(v))) + " ";
   page +=
       curve.closed ? "<polygon fill=\"#f3e3dc\" fill-rule=\"evenodd\"" : "<polyline fill=\"none\"";
   page += " stroke=\"#8a7f7a\" stroke-width=\"1\" points=\"" + points + "\"/>\n";
   const double width =
       std::clamp(0.12 * panel.scale * visibility.length / region.edgeCount, 1.4, 3.2);
-  for (int k = 0; k < region.edgeCount; ++k) {
-    const int e = (region.firstEdge + k) % curve.edgeCount();
-    const Point2 a = panel.place(curve.point(e));
-    const Point2 b = panel.place(curve.point(curve.next(e)));
-    page += "<path d=\"M" + pair(a) + " L" + pair(b) + "\" stroke=\"" +
-            fluxColour(visibility.edgeFlux[k]) + "\" stroke-width=\"" + printed("%.2f", width) +
+  std::vector<int> around = verticesOf(curve, region);
+  if (region.edgeCount == curve.vertexCount()) around.push_back(around.front());
+  const std::vector<int> drawn = drawnOf(curve, around, panel);
+  for (std::size_t k = 0; k + 1 < drawn.size(); ++k) {
+    const int edge = (drawn[k] - region.firstEdge + curve.edgeCount()) % curve.edgeCount();
+    page += "<path d=\"M" + pair(panel.place(curve.point(drawn[k]))) + " L" +
+            pair(panel.place(curve.point(drawn[k + 1]))) + "\" stroke=\"" +
+            fluxColour(visibility.edgeFlux[edge]) + "\" stroke-width=\"" + printed("%.2f", width) +
             "\" stroke-linecap=\"round\"/>\n";
   }
-  for (int v : verticesOf(curve, region)) {
+  for (const int v : drawn) {
     const Point2 p = panel.place(curve.point(v));
     page += "<circle cx=\"" + printed("%.2f", p.x()) + "\" cy=\"" + printed("%.2f", p.y()) +
             "\" r=\"" + printed("%.2f", 0.75 * width) + "\" fill=\"#222\"/>\n";
