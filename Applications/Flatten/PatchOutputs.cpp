@@ -171,8 +171,7 @@ Eigen::VectorXd measure(Context& context, const Subject& subject, const flatteni
                         Termination& termination) {
   const TriangleMesh& before = disc.mesh;
   const auto all = everyFace(flat.faces);
-  unfolding::DistortionOptions plain{.geodesicSources = 0};
-  const auto distortion = unfolding::measureDistortion(before, flat.positions, all, plain);
+  const auto distortion = unfolding::measureDistortion(before, flat.positions, all);
   const Eigen::VectorXd angleDeg = distortion.angleErrorRad * (180 / kPi);
   const Eigen::VectorXd ratio = unfolding::vertexMeans(before, all, distortion.areaRatio, 1);
   const auto whole = [&](const Eigen::VectorXd& part, double elsewhere) {

@@ -68,8 +68,7 @@ void measureDistances(const Inflated& u, inflation::InflateSummary& summary) {
 
 unfolding::Distortion writeDistortion(Context& context, const Inflated& u) {
   const auto all = everyFace(u.before);
-  unfolding::DistortionOptions plain{.geodesicSources = 0};
-  auto d = unfolding::measureDistortion(u.before, u.result.mesh.positions, all, plain);
+  auto d = unfolding::measureDistortion(u.before, u.result.mesh.positions, all);
   const Eigen::VectorXd angleDeg = d.angleErrorRad * (180 / kPi);
   io::writeGiftiShape(
       context.output("distortion.shape.gii"),

@@ -34,10 +34,6 @@ void declareUnfold(Declaration& d, UnfoldSettings& s) {
               s.labelKeys)
       .option("Region", Field{"above", "", "value beyond which the map --label is in the region"},
               s.above)
-      .option(
-          "Region",
-          Field{"adjust-region", "", "grow or shrink the region until its visibility is positive"},
-          s.adjustRegion)
       .excludes("label", {"center", "vertex", "radius", "metric", "cone"})
       .excludes("label-key", {"above"})
       .excludes("center", {"vertex"})

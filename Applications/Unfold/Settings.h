@@ -24,7 +24,6 @@ struct UnfoldSettings {
   std::vector<std::string> labels;
   std::vector<std::string> labelKeys;
   std::optional<double> above;
-  bool adjustRegion = false;
   bool repair = true;
   unfolding::UnfoldOptions unfold;
   bool resume = false;

@@ -148,14 +148,6 @@ Aim chooseAim(Context& context, const TriangleMesh& mesh, const UnfoldSettings& 
     aim.view = viewOf(s, mesh, unfolding::centroidOf(mesh, aim.region));
   }
   unfolding::requireViewFromOutside(mesh, aim.view);
-  if (s.adjustRegion) {
-    const std::size_t before = aim.region.faces.size();
-    aim.region = unfolding::adjustRegion(mesh, aim.region, s.region, aim.view);
-    if (aim.region.faces.size() != before) {
-      context.warn("the region was adjusted from " + std::to_string(before) + " to " +
-                   std::to_string(aim.region.faces.size()) + " faces");
-    }
-  }
   if (aim.region.pieces > 1) {
     context.warn("the region has " + std::to_string(aim.region.pieces) +
                  " pieces; each unfolds on its own");

@@ -576,8 +576,6 @@ const WrongInput kWrongInputs[] = {
      ""},
     {"ViewpointOnTheSurface", nothing, onDisc({"--viewpoint", "0,0,0"}), "on the surface"},
     {"ViewedFromBehind", nothing, onDisc({"--direction", "0,0,-1"}), "average visibility"},
-    {"NotAdjustable", nothing, onDisc({"--direction", "0,0,-1", "--adjust-region"}),
-     "look from another side"},
     {"ConeTooWide", nothing, onDisc({"--cone", "120", "--direction", "0,0,1"}), "cone"},
     {"TargetAboveOne", nothing, onDisc({"--direction", "0,0,1", "--target-visibility", "1.5"}),
      "above 0, at most 1", ""},
@@ -785,21 +783,6 @@ TEST(UnfoldCommand, TouchingPartsUnfoldOnceTheyAreRepaired) {
   const auto summary = readJson(folder / "out/summary.json");
   EXPECT_EQ(summary["self_intersections_final"], 0);
   EXPECT_GT(summary["visibility_final"], summary["visibility_initial"].get<double>() + 0.1);
-}
-
-TEST(UnfoldCommand, AdjustsTheRegionUntilItIsSeen) {
-  // The middle of a slope that looks away; a whole wave, up and down, is seen.
-  const TemporaryFolder folder;
-  io::writeSurface(folder / "sheet.off", makeCorrugated());
-  std::vector<std::string> words = {
-      "unfold",  folder / "sheet.off", "--center", "10.47,10,0", "--radius",    "3", "--direction",
-      "1,0,0.5", "--max-iterations",   "2",        "--out",      folder / "out"};
-  EXPECT_EQ(explica(words).exitCode, 2);
-  words.push_back("--adjust-region");
-  const auto result = explica(words);
-  EXPECT_EQ(result.exitCode, 3) << result;
-  EXPECT_NE(result.err.find("the region was adjusted from"), std::string::npos) << result;
-  EXPECT_GT(readJson(folder / "out/summary.json")["visibility_initial"], 0);
 }
 
 TEST(UnfoldCentre, GivenInFreeSurfersOtherFrameIsNamed) {

@@ -149,7 +149,7 @@ NOT_TRIED = {
     "surface-space": INPUT, "xform": INPUT, "frame": INPUT, "scale": INPUT, "level-inside": INPUT,
     "viewpoint": PLACE, "direction": PLACE, "view-weights": PLACE, "view-line": PLACE, "center": PLACE,
     "vertex": PLACE, "radius": PLACE, "metric": PLACE, "cone": PLACE, "label-key": PLACE, "above": PLACE,
-    "adjust-region": PLACE, "repair": "needs a surface that crosses itself", "max-time": "a limit", "resume": "goes on with a run",
+    "repair": "needs a surface that crosses itself", "max-time": "a limit", "resume": "goes on with a run",
     "inner": PLACE, "tissue": PLACE, "outer": PLACE, "insulated": PLACE, "white-label": PLACE, "grey-label": PLACE,
     "fill": PLACE, "preset": PLACE, "hemisphere": PLACE, "no-fill": SPECIES, "core-depth": SPECIES,
     "stripped": SPECIES, "open-ends": SPECIES, "per-slice": SPECIES, "rv-insertion": PLACE, "rv-insertion-image-axis": PLACE,

@@ -48,6 +48,7 @@ inline constexpr std::array kFormerOptions = std::to_array<FormerOption>(
      {"thickness", "grid", "cells"},
      {"thickness", "image-edge", "", "valid.nii.gz marks where the image's edge may matter"},
      {"thickness", "rv-insertion", "", kByHeart},
+     {"unfold", "adjust-region", "", "another --radius or view makes the visibility positive"},
      {"unfold", "area-weight", "", kTrade},
      {"unfold", "atlas", "label"},
      {"unfold", "collar-weight", "", kTrade},

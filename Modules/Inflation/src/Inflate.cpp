@@ -165,8 +165,8 @@ class Inflation {
     unfolder_.setDirections(field_.spread(directions));
     const double aim = aimFor(options_.targetSeen), drive = unfolder_.state().drive;
     const bool slow = !looks_.empty() && now.visibility - looks_.back().visibility < kSlowGain;
-    if (slow && !unfolder_.state().separating && now.visibility < aim && drive < kLargestDrive) {
-      unfolder_.raiseDrive(std::min(driveFactor(now.visibility, aim), kLargestDrive / drive));
+    if (slow && now.visibility < aim && drive < kLargestDrive) {
+      unfolder_.steer(std::min(drive * driveFactor(now.visibility, aim), kLargestDrive));
     }
     looks_.push_back(now);
   }

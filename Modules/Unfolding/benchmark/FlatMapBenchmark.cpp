@@ -67,7 +67,7 @@ const Case& caseOf(int n) {
 void report(benchmark::State& state, const TriangleMesh& before, const Positions& after) {
   std::vector<std::int32_t> faces(static_cast<std::size_t>(before.faceCount()));
   std::iota(faces.begin(), faces.end(), 0);
-  const Distortion d = measureDistortion(before, after, faces, {.geodesicSources = 0});
+  const Distortion d = measureDistortion(before, after, faces);
   state.counters["faces"] = static_cast<double>(faces.size());
   state.counters["log_area"] = d.areaRatio.array().max(1e-12).log().abs().mean();
   state.counters["area_error"] = d.areaErrorMean;

@@ -16,9 +16,7 @@ SurfaceComparison compare(const TriangleMesh& reference, const TriangleMesh& aft
                           const flattening::DistancePairs& pairs) {
   using flattening::DistanceKind;
   SurfaceComparison found;
-  DistortionOptions plain;
-  plain.geodesicSources = 0;
-  found.distortion = measureDistortion(reference, after.positions, faces, plain);
+  found.distortion = measureDistortion(reference, after.positions, faces);
   const TriangleMesh whole{after.positions, reference.faces};
   const bool flat = flattening::isFlatMap(whole, faces);
   const auto kind = flat ? DistanceKind::Straight : DistanceKind::Surface;

@@ -11,9 +11,10 @@
 namespace explica::unfolding {
 namespace {
 
-constexpr int kWindow = 10;             // iterations in which a run at rest changes by half of that
-constexpr double kOpen = 0.9;           // visibility below which folds are closed: no model holds
-constexpr double kMostSteering = 1.15;  // factor of the visibility term a step
+constexpr int kWindow = 10;              // iterations in which a run at rest hardly changes
+constexpr double kSunk = 0.01;           // of the region's area: less than that below is no reason
+constexpr double kNear = 2 * kAccuracy;  // of the visibility's aim
+constexpr double kMostSteering = 1.15;   // factor of the visibility term a step
 
 void requireUsable(const UnfoldOptions& options) {
   if (options.targetVisibility &&
@@ -39,15 +40,15 @@ double limitOf(const std::vector<IterationRecord>& history, double IterationReco
 }
 
 /// The most that visibility, or strain by what it is worth, has changed over the window; by how
-/// much the visibility has risen where nothing else is sought (the thesis's flow); infinity if it
-/// is not that long ago that the run was changed from outside.
-double changeOver(const std::vector<IterationRecord>& history, int since,
-                  const UnfoldOptions& options) {
+/// much the visibility has risen where nothing else is sought (the thesis's flow); infinity of runs
+/// that are not as long, or where too little of the region is seen but more and more.
+double changeOver(const std::vector<IterationRecord>& history, const UnfoldOptions& options) {
+  if (history.size() <= kWindow) return kInfinity;
   const IterationRecord& last = history.back();
-  if (last.iteration - since < kWindow || history.size() <= kWindow) return kInfinity;
   const IterationRecord& then = history[history.size() - 1 - kWindow];
   const double rise = last.visibility - then.visibility;
   if (options.unfolder.method == Method::Thesis) return rise;
+  if (last.seen < kGoalSeen && !(last.seen - then.seen < kAccuracy / 2)) return kInfinity;
   return std::max(std::abs(rise),
                   std::abs(last.edgeStrainMean - then.edgeStrainMean) / options.trade);
 }
@@ -58,17 +59,6 @@ double largestDrive(const UnfoldOptions& options) {
   const double share = kGoalStrain / options.unfolder.yieldStrain;
   const double slope = 2 * kGoalStrain / std::sqrt(1 + share * share);
   return options.trade * options.unfolder.weights[Term::Spring] * slope;
-}
-
-/// True if too little of the region is seen, but more from one look to the next.
-bool isStillAppearing(Unfolder& unfolder) {
-  const Look before = unfolder.state().look;
-  const bool looked = before.iteration >= 0;
-  if (looked && unfolder.state().iteration - before.iteration < kWindow / 2) {
-    return before.seen < kGoalSeen;
-  }
-  const double seen = unfolder.look();
-  return seen < kGoalSeen && (!looked || seen > before.seen + kAccuracy);
 }
 
 }  // namespace
@@ -90,64 +80,55 @@ Continuation::Continuation(const UnfoldOptions& options) : options_(options) {
 
 /// Where a run is and where it leads.
 struct Continuation::Outlook {
-  const IterationRecord& last;
-  double change = kInfinity;  ///< over the window, of visibility or what strain is worth
+  double aim = 1;             ///< visibility to aim at
   double visibility = kNaN;   ///< that the run is bound for
-  double strain = kNaN;       ///< ...
-  [[nodiscard]] bool rests() const { return change < kAccuracy / 2; }
+  double change = kInfinity;  ///< over the window, of visibility or what strain is worth
+  bool rests = false;         ///< nothing changes, and the visibility term's strength is at its end
+  bool kept = false;          ///< areas are
+  bool rises = false;         ///< the region, which is below its surroundings
 };
 
 Continuation::Outlook Continuation::outlook(const Unfolder& unfolder,
                                             const std::vector<IterationRecord>& history) const {
-  Outlook now{history.back()};
-  if (options_.unfolder.method == Method::Thesis || !unfolder.state().separating) {
-    now.change = changeOver(history, unfolder.state().driveIteration, options_);
-  }
+  Outlook now;
+  now.aim = aimAt(options_, limitOf(history, &IterationRecord::edgeStrainMean));
   now.visibility = limitOf(history, &IterationRecord::visibility);
-  now.strain = limitOf(history, &IterationRecord::edgeStrainMean);
+  now.change = changeOver(history, options_);
+  const bool strongest = unfolder.state().drive >= largestDrive(options_);
+  now.rests = now.change < kAccuracy / 2 && (strongest || now.visibility > now.aim - kNear);
+  now.kept = history.back().areaErrorMean <= options_.areaTolerance;
+  now.rises = now.change > kNear && unfolder.sunkShare() > kSunk;
   return now;
 }
 
-Termination Continuation::endOf(Unfolder& unfolder, const Outlook& now) const {
+Termination Continuation::endOf(const Outlook& now, const IterationRecord& last) const {
   const auto& target = options_.targetVisibility;
-  const IterationRecord& last = now.last;
   const bool reached = target && last.visibility >= *target;
   if (options_.unfolder.method == Method::Thesis) {
     if (reached) return Termination::TargetReached;
-    if (!now.rests()) return Termination::NotRun;
+    if (now.change >= kAccuracy / 2) return Termination::NotRun;
     return target ? Termination::Stalled : Termination::Converged;
   }
-  if (unfolder.state().separating || unfolder.isHeldBelow()) return Termination::NotRun;
-  const bool enough =
-      !target && merit(last.visibility, last.edgeStrainMean, kNaN, options_.trade) > kAccuracy;
-  const bool kept = last.areaErrorMean <= options_.areaTolerance;
-  if (!kept || !(enough || now.rests())) return Termination::NotRun;
-  if (target) return reached ? Termination::TargetReached : Termination::Stalled;
-  return isStillAppearing(unfolder) ? Termination::NotRun : Termination::Converged;
+  const bool enough = !target && merit(last, options_) > kAccuracy;
+  if (now.rises || !now.kept || !(enough || now.rests)) return Termination::NotRun;
+  if (target && !reached) return Termination::Stalled;
+  return target ? Termination::TargetReached : Termination::Converged;
 }
 
 void Continuation::steer(Unfolder& unfolder, const Outlook& now) const {
-  unfolder.steer(Phase::Opening, 1);
-  if (unfolder.state().separating || options_.unfolder.method == Method::Thesis) return;
-  if (unfolder.isHeldBelow()) {
-    if (now.change < 2 * kAccuracy) unfolder.makeWay();  // it hardly opens any more
-    return;
-  }
-  const double open = std::min(kOpen, options_.targetVisibility.value_or(1));
-  if (!now.rests() && now.last.visibility <= open) return;
-  const double aim = aimAt(options_, now.strain);
+  if (options_.unfolder.method == Method::Thesis) return;
   const double drive = unfolder.state().drive, most = std::max(drive, largestDrive(options_));
-  const bool slow = now.rests() || (drive >= most && now.change < 3 * kAccuracy);
-  const bool kept = now.last.areaErrorMean <= options_.areaTolerance;
-  const bool settles = !kept && (slow || now.visibility > aim - 2 * kAccuracy);
-  unfolder.steer(settles ? Phase::Settling : Phase::Weighing,
-                 std::min(most, drive * steering(now.visibility, aim)) / drive);
+  if (now.rises) return unfolder.steer(drive, Phase::Opening);
+  const bool slow = now.rests || (drive >= most && now.change < 3 * kAccuracy);
+  const bool settles = !now.kept && (slow || now.visibility > now.aim - kNear);
+  unfolder.steer(std::min(most, drive * steering(now.visibility, now.aim)),
+                 settles ? Phase::Settling : Phase::Weighing);
 }
 
 Termination Continuation::next(Unfolder& unfolder,
                                const std::vector<IterationRecord>& history) const {
   const Outlook now = outlook(unfolder, history);
-  const Termination end = endOf(unfolder, now);
+  const Termination end = endOf(now, history.back());
   if (end != Termination::NotRun) return end;
   if (static_cast<int>(history.size()) > options_.maxIterations) return Termination::MaxIterations;
   steer(unfolder, now);

@@ -4,8 +4,6 @@
 #include "Explica/Unfolding/Distortion.h"
 
 #include "Explica/Core/Errors.h"
-#include "Explica/Core/Parallel.h"
-#include "Explica/Geometry/Geodesic.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
 
@@ -13,7 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <vector>
 
 namespace explica::unfolding {
@@ -36,38 +33,10 @@ double percentile(std::vector<double> values, double share) {
   return *at;
 }
 
-double geodesicError(const TriangleMesh& before, const TriangleMesh& after,
-                     const DistortionOptions& options) {
-  const auto topology = geometry::buildTopology(before.faces, before.vertexCount());
-  std::mt19937 random(options.seed);
-  std::vector<std::int32_t> sources;
-  for (int n = 0; n < options.geodesicSources; ++n) {
-    sources.push_back(static_cast<std::int32_t>(random() % before.vertexCount()));
-  }
-  std::vector<double> sums(sources.size(), 0), counts(sources.size(), 0);
-  parallelFor(sources.size(), 1, [&](std::size_t n) {
-    const std::array<std::int32_t, 1> source = {sources[n]};
-    const Eigen::VectorXd d0 = geometry::geodesicDistances(before, topology, source);
-    const Eigen::VectorXd d1 = geometry::geodesicDistances(after, topology, source);
-    for (Eigen::Index v = 0; v < d0.size(); ++v) {
-      if (!(d0[v] > 0) || !std::isfinite(d0[v]) || !std::isfinite(d1[v])) continue;
-      sums[n] += std::abs(d1[v] / d0[v] - 1);
-      counts[n] += 1;
-    }
-  });
-  double sum = 0, count = 0;
-  for (std::size_t n = 0; n < sums.size(); ++n) {
-    sum += sums[n];
-    count += counts[n];
-  }
-  return count > 0 ? sum / count : kNaN;
-}
-
 }  // namespace
 
 Distortion measureDistortion(const TriangleMesh& reference, const Positions& deformed,
-                             std::span<const std::int32_t> faces,
-                             const DistortionOptions& options) {
+                             std::span<const std::int32_t> faces) {
   if (deformed.rows() != reference.vertexCount()) {
     throw InvalidInput("deformed: " + std::to_string(deformed.rows()) + " positions for " +
                        std::to_string(reference.vertexCount()) + " vertices");
@@ -102,7 +71,6 @@ Distortion measureDistortion(const TriangleMesh& reference, const Positions& def
   }
   d.edgeStrainMean = d.edgeStrain.mean();
   d.edgeStrainP95 = percentile({d.edgeStrain.begin(), d.edgeStrain.end()}, 0.95);
-  if (options.geodesicSources > 0) d.geodesicErrorMean = geodesicError(before, after, options);
   return d;
 }
 

@@ -15,9 +15,6 @@ namespace {
 
 using collision::Contact;
 
-constexpr double kSeparated = 0.25;  // of their range: pairs that start nearer are parted first
-constexpr double kStillSeparating = 0.6;   // of the contact energy before: above it the rest ...
-constexpr int kSeparatingIterations = 60;  // ... or after these goes on beside the unfolding
 constexpr double kLargestMultiplier = 20;  // times the pull of the visibility term
 constexpr double kLargestMove = 3;         // mean edges that a vertex goes in a step at most
 constexpr double kLeastDamping = 0.1;      // below it steps overshoot the quadratic model
@@ -58,7 +55,6 @@ class ImplicitStep {
   void accept(Motion& motion);
   void tightenAreas();
   void updateMultipliers();
-  void endSeparationIfDone();
 
   Unfolder::Implementation& u_;
   UnfoldState& state_;
@@ -78,7 +74,6 @@ ImplicitStep::ImplicitStep(Unfolder::Implementation& unfolder)
     const PhaseClock clock(now_.phases.collision);
     contacts_ = u_.contacts.within(state_.positions);
   }
-  if (state_.separating) endSeparationIfDone();
   couplings_ = u_.setup.couplings;
   for (const Contact& contact : contacts_) {
     for (int i = 0; i < 4; ++i) {
@@ -226,7 +221,6 @@ void ImplicitStep::accept(Motion& motion) {
 void ImplicitStep::tightenAreas() {
   const bool slow = std::abs(now_.visibility - u_.record.visibility) < kSlowGain;
   now_.phase = u_.asked.value_or(slow ? Phase::Settling : Phase::Opening);
-  if (state_.separating) now_.phase = Phase::Parting;
   if (now_.phase != Phase::Settling) return;
   state_.areaStiffness =
       std::min(kTightest * u_.options.weights[Term::Area], kTightening * state_.areaStiffness);
@@ -247,32 +241,10 @@ void ImplicitStep::updateMultipliers() {
   });
 }
 
-void ImplicitStep::endSeparationIfDone() {
-  double least = 1;
-  for (const Contact& c : contacts_) {
-    least = std::min(least, std::sqrt(squaredDistance(c, state_.positions)) / c.range);
-  }
-  const double energy = collision::contactEnergy(contacts_, state_.positions);
-  if (least > kSeparated || energy > kStillSeparating * state_.separatingEnergy ||
-      state_.iteration >= kSeparatingIterations) {
-    state_.separating = false;
-    state_.driveIteration = state_.iteration;
-  }
-  state_.separatingEnergy = energy;
-}
-
 }  // namespace
 
 bool Unfolder::Implementation::implicitStep() {
-  const double damping = state.damping;
   if (ImplicitStep(*this).take()) return true;
-  if (state.separating) {
-    // What is held from both sides cannot be parted: the rest unfolds beside it.
-    state.separating = false;
-    state.driveIteration = state.iteration;
-    state.damping = damping;
-    return implicitStep();
-  }
   state.stalled = true;
   return false;
 }

@@ -9,7 +9,7 @@
 #include "Explica/Geometry/Geodesic.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
-#include "Explica/Visibility/AverageVisibility.h"
+#include "Explica/Visibility/Viewpoints.h"
 
 #include <algorithm>
 #include <cmath>
@@ -45,10 +45,6 @@ void requireNear(const TriangleMesh& mesh, const Point& wanted, std::int32_t ver
   throw InvalidInput("center: is " + text(distance) + " mm from the surface (limit " + text(most) +
                      " mm); nearest vertex " + std::to_string(vertex) + " at " + text(nearest[0]) +
                      "," + text(nearest[1]) + "," + text(nearest[2]));
-}
-
-geometry::IndexLists neighboursOf(const TriangleMesh& mesh) {
-  return geometry::buildTopology(mesh.faces, mesh.vertexCount()).vertexVertices;
 }
 
 std::vector<bool> connectedWithin(const geometry::IndexLists& neighbours, std::int32_t centre,
@@ -208,52 +204,6 @@ Region selectRegion(const TriangleMesh& mesh, const RegionOptions& options,
   region.centre = centre;
   region.radius = options.radius;
   return region;
-}
-
-Region adjustRegion(const TriangleMesh& mesh, const Region& region, const RegionOptions& options,
-                    const visibility::Viewpoints& viewpoints) {
-  const auto isPositive = [&](const Region& candidate) {
-    return visibility::AverageVisibility(mesh.faces, candidate.faces, viewpoints)
-               .value(mesh.positions) > 0;
-  };
-  if (isPositive(region)) return region;
-  if (region.centre >= 0) {
-    for (int tenths = 1; tenths <= 10; ++tenths) {
-      for (const double factor : {1 - 0.1 * tenths, 1 + 0.1 * tenths}) {
-        if (factor < 0.5 - 1e-9) continue;
-        RegionOptions changed = options;
-        changed.radius *= factor;
-        if (changed.cone) *changed.cone *= factor;
-        try {
-          Region candidate = selectRegion(mesh, changed, &viewpoints);
-          if (isPositive(candidate)) return candidate;
-        } catch (const InvalidInput&) {
-          continue;  // too small or everything: the other direction may still do
-        }
-      }
-    }
-  } else {
-    const auto neighbours = neighboursOf(mesh);
-    std::vector<bool> marked(static_cast<std::size_t>(mesh.vertexCount()), false);
-    for (const std::int32_t v : region.vertices) marked[v] = true;
-    for (int ring = 0; ring < 20; ++ring) {
-      const std::vector<bool> before = marked;
-      for (std::size_t v = 0; v < marked.size(); ++v) {
-        for (const std::int32_t w : neighbours[v]) marked[v] = marked[v] && before[w];
-      }
-      if (std::find(marked.begin(), marked.end(), true) == marked.end()) break;
-      try {
-        Region candidate = regionOfMarked(mesh, marked);
-        if (isPositive(candidate)) return candidate;
-      } catch (const InvalidInput&) {
-        break;  // no face left
-      }
-    }
-  }
-  throw InvalidInput(
-      "region: its average visibility is not positive, and no larger or smaller one nearby is; "
-      "look "
-      "from another side");
 }
 
 double usualDistance(const TriangleMesh& mesh) {

@@ -112,8 +112,6 @@ void describe(Results& t, const UnfoldSummary& s) {
   describe(t, s.distortion);
   expectAreasKept(t);
   t["edge_strain_mean"].atMost(kGoalStrain, Judgement::Doubt, "the goal of an unfolding");
-  t.share("geodesic_error_mean", "Mean error of distances", "Along the surface within the region.",
-          s.distortion.geodesicErrorMean);
   describeCollar(t, s);
   t.count("iteration_written", "Iteration that is written",
           "The last, or the best if that was better.", s.iterationWritten);

@@ -19,7 +19,7 @@ namespace {
 Distortion distortionOf(const TriangleMesh& mesh, const Positions& flat) {
   std::vector<std::int32_t> faces(static_cast<std::size_t>(mesh.faceCount()));
   std::iota(faces.begin(), faces.end(), 0);
-  return measureDistortion(mesh, flat, faces, {.geodesicSources = 0});
+  return measureDistortion(mesh, flat, faces);
 }
 
 /// A sheet rolled about a cylinder: its flat map is exact but for the chords.

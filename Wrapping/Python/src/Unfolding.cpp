@@ -165,14 +165,13 @@ void bindUnfolding(py::module_& m) {
             "angle_error_rad"_a = std::move(d.angleErrorRad),
             "edge_strain"_a = std::move(d.edgeStrain), "area_error_mean"_a = d.areaErrorMean,
             "area_error_max"_a = d.areaErrorMax, "angle_error_mean_rad"_a = d.angleErrorMeanRad,
-            "edge_strain_mean"_a = d.edgeStrainMean, "edge_strain_p95"_a = d.edgeStrainP95,
-            "geodesic_error_mean"_a = d.geodesicErrorMean);
+            "edge_strain_mean"_a = d.edgeStrainMean, "edge_strain_p95"_a = d.edgeStrainP95);
       },
       "positions"_a, "faces"_a, "deformed"_a, "region"_a,
       "How the listed faces differ between two embeddings of the same mesh, the surface and\n"
       "`deformed` (V, 3), mm: area_ratio and angle_error_rad of each face, edge_strain of each "
       "edge,\n"
-      "their means and maxima, and the mean relative change of distances along the surface.");
+      "their means and maxima.");
   m.def(
       "backfacing_share",
       [](const PositionsIn& positions, const FacesIn& faces,

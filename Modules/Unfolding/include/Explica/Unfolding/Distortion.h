@@ -9,12 +9,6 @@
 
 namespace explica::unfolding {
 
-struct DistortionOptions {
-  int geodesicSources =
-      20;             ///< vertices from which distances along the surface are compared; 0: none
-  unsigned seed = 1;  ///< of their choice
-};
-
 /// How a deformed patch differs from the reference that it came from.
 struct Distortion {
   Eigen::VectorXd areaRatio;      ///< per listed face: deformed area over reference area
@@ -25,15 +19,13 @@ struct Distortion {
   double angleErrorMeanRad = kNaN;
   double edgeStrainMean = kNaN;
   double edgeStrainP95 = kNaN;
-  double geodesicErrorMean = kNaN;  ///< mean |d / d0 - 1| within the patch; NaN if not asked for
 };
 
 /// Compares the listed faces of two embeddings of the same mesh.  Faces of zero reference area
 /// count as ratio 1.
 /// @throws InvalidInput  sizes that differ, or no face
 [[nodiscard]] Distortion measureDistortion(const TriangleMesh& reference, const Positions& deformed,
-                                           std::span<const std::int32_t> faces,
-                                           const DistortionOptions& options = {});
+                                           std::span<const std::int32_t> faces);
 
 inline void describe(Results& t, const Distortion& d) {
   t.share("area_error_mean", "Mean area error", "Mean of |area ratio - 1| over faces.",

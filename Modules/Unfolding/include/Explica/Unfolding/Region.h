@@ -72,15 +72,6 @@ struct Region {
 /// counted from.
 [[nodiscard]] Point centroidOf(const TriangleMesh& mesh, const Region& region);
 
-/// The condition of the method ([Thesis, section 5.1]): average visibility above zero at the start.
-///
-/// Grows or shrinks the radius, by a tenth at a time and the smaller change first, until the region
-/// satisfies it.  A region without radius loses its outermost ring of faces at a time.
-/// @throws InvalidInput  no radius from half to twice the first, or no ring, makes it positive
-[[nodiscard]] Region adjustRegion(const TriangleMesh& mesh, const Region& region,
-                                  const RegionOptions& options,
-                                  const visibility::Viewpoints& viewpoints);
-
 /// How far off a viewpoint is of which only the direction is given: 1000 mm, or three times the
 /// extent of a surface that is larger, such as one in micrometres.
 [[nodiscard]] double usualDistance(const TriangleMesh& mesh);
