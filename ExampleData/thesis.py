@@ -644,12 +644,13 @@ def strip(work, name, frames, direction, region, size=270):
 
 def clear_visibility(work, before, name):
     """Visibility of the last frame before one with crossing faces, and whether all were without."""
-    frames = frames_of(work.path(name))
-    compared = work.run(name + "-compared", "compare", before, *frames, "--pairs", 100, "--sources", 4)
+    summary = json.loads((work.path(name) / "summary.json").read_text())
+    if summary["self_intersections_frames_max"] == 0:
+        return summary["frame_visibilities"][-1], True
+    work.run(name + "-compared", "compare", before, *frames_of(work.path(name)), "--pairs", 100, "--sources", 4)
     table = (work.path(name + "-compared") / "comparison.tsv").read_text().splitlines()
     columns = table[0].split("\t")
     crossings = [int(float(line.split("\t")[columns.index("crossings")])) for line in table[1:]]
-    summary = json.loads((work.path(name) / "summary.json").read_text())
     reached, clear = summary["visibility_initial"], True
     for count, visibility in zip(crossings, summary["frame_visibilities"]):
         if count > 0:

@@ -233,26 +233,6 @@ bool inferAll(Context& context, const GlmSettings& s, const Observations& o,
   return complete;
 }
 
-GlmSummary summaryOf(const GlmSettings& s, const Observations& o, const GlmResults& results) {
-  GlmSummary summary;
-  summary.people = static_cast<std::int64_t>(o.people.size());
-  (o.placeNames.empty() ? summary.vertices : summary.regions) = o.places;
-  summary.degreesOfFreedom =
-      static_cast<double>(results.design.matrix.rows() - results.design.matrix.cols());
-  if (results.smoothness) summary.fwhm = results.smoothness->fwhm;
-  if (o.surface) {
-    summary.clusters = 0;
-    for (const auto& inference : results.inferences) {
-      *summary.clusters += static_cast<std::int64_t>(inference.clusters.size());
-    }
-  }
-  if (s.permutations > 0) {
-    summary.shuffles = static_cast<std::int64_t>(results.inferences.front().shuffles);
-    summary.exchange = std::string(nameOf(results.inferences.front().exchange));
-  }
-  return summary;
-}
-
 /// @return  whether all is written: without the page, whose pictures take seconds, after a stop
 bool writeAll(Context& context, const GlmSettings& s, const Observations& o,
               const Eigen::MatrixXd& fitted, const GlmResults& results) {

@@ -4,7 +4,6 @@
 #include "Observations.h"
 
 #include "Explica/Core/Errors.h"
-#include "Explica/Core/FileText.h"
 #include "Explica/Core/Types.h"
 #include "Explica/Geometry/Fixtures.h"
 #include "Explica/IO/StatedHemisphere.h"
@@ -22,10 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using statistics::Table;
-
-Table readTable(const std::string& path) {
-  return statistics::parseTable(fileText(path), path);
-}
 
 /// The column that names people: as asked for, or the first one.
 std::size_t personColumn(const Table& table, const GlmSettings& s) {
@@ -173,12 +168,6 @@ void readAtlases(const GlmSettings& s, Observations& o) {
   }
 }
 
-bool isNumeric(const Table& table, std::size_t column) {
-  return std::all_of(table.rows.begin(), table.rows.end(), [&](const auto& row) {
-    return statistics::isMissing(row[column]) || statistics::numberIn(row[column]);
-  });
-}
-
 /// Columns of regions: those that --columns names, else the model's response, else all numbers that
 /// the model does not use.
 std::vector<std::size_t> regionColumns(const Table& table, const GlmSettings& s) {
@@ -195,7 +184,7 @@ std::vector<std::size_t> regionColumns(const Table& table, const GlmSettings& s)
     } else if (table.find(formula.response)) {
       wanted = name == formula.response;
     } else {
-      wanted = c != personColumn(table, s) && isNumeric(table, c) &&
+      wanted = c != personColumn(table, s) && statistics::isNumeric(table, c) &&
                std::none_of(formula.terms.begin(), formula.terms.end(), [&](const auto& term) {
                  return std::find(term.begin(), term.end(), name) != term.end();
                });
@@ -210,28 +199,10 @@ std::vector<std::size_t> regionColumns(const Table& table, const GlmSettings& s)
   return columns;
 }
 
-Eigen::MatrixXd valuesOf(const Table& table, const std::vector<std::size_t>& rows,
-                         const std::vector<std::size_t>& columns) {
-  Eigen::MatrixXd values(static_cast<Eigen::Index>(rows.size()),
-                         static_cast<Eigen::Index>(columns.size()));
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    for (std::size_t c = 0; c < columns.size(); ++c) {
-      const std::string& cell = table.rows[rows[i]][columns[c]];
-      const auto number = statistics::numberIn(cell);
-      if (!number && !statistics::isMissing(cell)) {
-        throw InvalidInput("'" + table.name + "': '" + cell + "' in column '" +
-                           table.columns[columns[c]] + "' is no number");
-      }
-      values(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)) = number.value_or(kNaN);
-    }
-  }
-  return values;
-}
-
 /// The people of a list with their rows of participants.tsv; which rows of the list they are.
 std::vector<std::size_t> findPeople(const Table& list, const GlmSettings& s, Observations& o) {
   const auto all = peopleOf(list, s);
-  const Table about = s.table ? readTable(*s.table) : list;
+  const Table about = s.table ? statistics::readTable(*s.table) : list;
   auto joined = statistics::joinPeople(all, list.name, about, about.columns[personColumn(about, s)],
                                        s.subset);
   for (const std::size_t row : joined.used) o.people.push_back(all[row]);
@@ -248,7 +219,8 @@ void observeRegions(const GlmSettings& s, const Table& table, Observations& o) {
   for (const std::size_t c : columns) o.placeNames.push_back(table.columns[c]);
   o.places = static_cast<Eigen::Index>(columns.size());
   o.mask.assign(columns.size(), true);
-  o.reader = [values = valuesOf(table, rows, columns)](std::size_t person, std::span<double> out) {
+  o.reader = [values = statistics::numbersIn(table, rows, columns)](std::size_t person,
+                                                                    std::span<double> out) {
     const Eigen::VectorXd row = values.row(static_cast<Eigen::Index>(person));
     std::copy(row.begin(), row.end(), out.begin());
   };
@@ -294,7 +266,7 @@ Observations readObservations(Context& context, const GlmSettings& s) {
   if (s.regions.has_value() == s.maps.has_value()) {
     throw UsageError("give a list of maps or a table of regions: LIST, or --maps");
   }
-  const Table list = readTable(s.maps ? *s.maps : *s.regions);
+  const Table list = statistics::readTable(s.maps ? *s.maps : *s.regions);
   if (list.rows.empty()) throw InvalidInput("'" + list.name + "': holds nobody");
   Observations o;
   if (s.maps || list.find("file") || list.find("left") || list.find("right")) {

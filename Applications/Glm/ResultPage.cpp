@@ -176,14 +176,6 @@ std::vector<Eigen::Index> placesToPlot(const Observations& o, const GlmResults& 
   return places;
 }
 
-std::string nameOfPlace(const Observations& o, Eigen::Index v) {
-  const std::string region = regionOf(o, v);
-  if (!o.placeNames.empty()) return region;
-  const Hemisphere& side = hemisphereOf(o, v);
-  return side.structure + " " + std::to_string(v - side.first) +
-         (region.empty() ? "" : " (" + region + ")");
-}
-
 void addPlots(const Observations& o, const GlmResults& r, const Eigen::MatrixXd* values,
               report::ReportContent& page) {
   if (values == nullptr) return;

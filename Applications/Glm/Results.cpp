@@ -154,4 +154,32 @@ std::string regionTable(const Observations& o, const GlmResults& r) {
   return text;
 }
 
+std::string nameOfPlace(const Observations& o, Eigen::Index v) {
+  const std::string region = regionOf(o, v);
+  if (!o.placeNames.empty()) return region;
+  const Hemisphere& side = hemisphereOf(o, v);
+  return side.structure + " " + std::to_string(v - side.first) +
+         (region.empty() ? "" : " (" + region + ")");
+}
+
+GlmSummary summaryOf(const GlmSettings& s, const Observations& o, const GlmResults& results) {
+  GlmSummary summary;
+  summary.people = static_cast<std::int64_t>(o.people.size());
+  (o.placeNames.empty() ? summary.vertices : summary.regions) = o.places;
+  summary.degreesOfFreedom =
+      static_cast<double>(results.design.matrix.rows() - results.design.matrix.cols());
+  if (results.smoothness) summary.fwhm = results.smoothness->fwhm;
+  if (o.surface) {
+    summary.clusters = 0;
+    for (const auto& inference : results.inferences) {
+      *summary.clusters += static_cast<std::int64_t>(inference.clusters.size());
+    }
+  }
+  if (s.permutations > 0) {
+    summary.shuffles = static_cast<std::int64_t>(results.inferences.front().shuffles);
+    summary.exchange = std::string(nameOf(results.inferences.front().exchange));
+  }
+  return summary;
+}
+
 }  // namespace explica::app

@@ -42,6 +42,9 @@ inline void describe(Results& t, const GlmSummary& r) {
   t.text("exchange", "Exchanged", "", r.exchange);
 }
 
+[[nodiscard]] GlmSummary summaryOf(const GlmSettings& settings, const Observations& observations,
+                                   const GlmResults& results);
+
 /// A contrast's name as files have it: letters, digits, '.', '_' and '-'.
 [[nodiscard]] std::string fileName(const std::string& contrast);
 
@@ -57,6 +60,8 @@ void writeMaps(Context& context, const Observations& observations, const GlmResu
 
 /// The region of a vertex, "" where there is no atlas, and the hemisphere that it is on.
 [[nodiscard]] std::string regionOf(const Observations& observations, Eigen::Index place);
+/// A region's name, or a vertex's hemisphere, number and region.
+[[nodiscard]] std::string nameOfPlace(const Observations& observations, Eigen::Index place);
 [[nodiscard]] const Hemisphere& hemisphereOf(const Observations& observations, Eigen::Index place);
 
 /// "0.0123", "n/a" of what is not known.

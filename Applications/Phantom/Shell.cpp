@@ -3,10 +3,7 @@
 // The command to imitate: settings, one declaration, one run.
 
 #include "Explica/Phantom/Shell.h"
-#include "Explica/Application/Command.h"
-#include "Explica/IO/VolumeFile.h"
-
-#include <nlohmann/json.hpp>
+#include "AnnulusKind.h"
 
 namespace explica::app {
 namespace {
@@ -28,47 +25,27 @@ void declare(Declaration& d, Settings& s) {
       .output("level.nii.gz", FileKind::Volume,
               "distance from the inner sphere, mm, negative inside")
       .output("outer_level.nii.gz", FileKind::Volume,
-              "distance from the outer sphere, mm, negative inside")
-      .output("harmonic.nii.gz", FileKind::Volume, "exact harmonic function, 0 inside to 1 outside")
-      .output("thickness.nii.gz", FileKind::Volume, "exact thickness, mm")
-      .output("inner_distance.nii.gz", FileKind::Volume, "exact L0, mm")
-      .output("outer_distance.nii.gz", FileKind::Volume, "exact L1, mm")
-      .output("inner_point.nii.gz", FileKind::PointVolume, "exact phi0, RAS mm")
-      .output("outer_point.nii.gz", FileKind::PointVolume, "exact phi1, RAS mm");
+              "distance from the outer sphere, mm, negative inside");
+  declareAnswers(d);
 }
 
 /// Read, call, write, report.  Loops over voxels belong in modules.
 Termination run(Context& context, const Settings& s) {
   // A command with inputs reads and checks them here, before its first step: --dry-run ends there.
   phantom::Shell shell;
+  harmonic::PhantomAnswers answers;
   {
     auto step = context.step("generate");  // timed until the end of its scope
     shell = phantom::makeShell(s.shell);
+    answers = harmonic::answersOf(shell);
   }
   auto step = context.step("write");
   io::writeVolume(context.output("labels.nii.gz"), shell.labels);
-  io::writeVolume(context.output("level.nii.gz"), shell.level);
+  io::writeVolume(context.output("level.nii.gz"), shell.innerLevel);
   io::writeVolume(context.output("outer_level.nii.gz"), shell.outerLevel);
-  io::writeVolume(context.output("harmonic.nii.gz"), shell.harmonic);
-  io::writeVolume(context.output("thickness.nii.gz"), shell.thicknessMap);
-  io::writeVolume(context.output("inner_distance.nii.gz"), shell.innerDistance);
-  io::writeVolume(context.output("outer_distance.nii.gz"), shell.outerDistance);
-  io::writeVolume(context.output("inner_point.nii.gz"), shell.innerPoint);
-  io::writeVolume(context.output("outer_point.nii.gz"), shell.outerPoint);
-
-  using Names = nlohmann::ordered_json;
-  context.result("labels", Names{{"outside", phantom::Shell::kOuter},
-                                 {"inner", phantom::Shell::kInner},
-                                 {"tissue", phantom::Shell::kTissue}});
-  context.result("answers", Names{{"level", "level.nii.gz"},
-                                  {"outer_level", "outer_level.nii.gz"},
-                                  {"harmonic", "harmonic.nii.gz"},
-                                  {"thickness", "thickness.nii.gz"},
-                                  {"inner_distance", "inner_distance.nii.gz"},
-                                  {"outer_distance", "outer_distance.nii.gz"},
-                                  {"inner_point", "inner_point.nii.gz"},
-                                  {"outer_point", "outer_point.nii.gz"}});
-  context.result("thickness", shell.thickness);
+  writeAnswers(context, answers);
+  tellAnswers(context, shell, {{"level", "level.nii.gz"}, {"outer_level", "outer_level.nii.gz"}});
+  context.result("thickness", shell.thickness());
   context.result("inner_radius", shell.innerRadius);
   context.result("outer_radius", shell.outerRadius);
   return Termination::NotRun;  // nothing was iterated; an iterative command returns how it ended

@@ -61,11 +61,10 @@ void declare(Declaration& d, Settings& s) {
       .oneByOne("MAP")
       .inputOption("from", FileKind::Surface, "sphere with the maps' vertices", s.from)
       .require("from")
-      .option("Target",
-              Field{"to", "",
-                    "sphere in register, or fsaverage3 ... fsaverage6, fsaverage, "
-                    "fs_LR-32k"},
-              s.to)
+      .option(
+          "Target",
+          Field{"to", "", "sphere in register, or fsaverage3 ... fsaverage6, fsaverage, fs_LR-32k"},
+          s.to)
       .require("to")
       .option("Target", Field{"template", "", "folder with fs_LR's spheres"}, s.templateFolder)
       .option("Weights", Field{"method", "", "how maps are weighted"}, s.method)

@@ -6,6 +6,7 @@
 #include "Explica/Application/Plausible.h"
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/OrderStatistics.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Geometry/MeshMeasures.h"
@@ -102,8 +103,7 @@ surface::SurfaceSummary summaryOf(const SurfaceSettings& s, const surface::Corti
               [&](std::size_t n) { summary.checks[n] = surface::checkOf(*meshes[n]); });
   const Eigen::VectorXd angles = geometry::smallestAnglesRad(made.white.mesh);
   std::vector<double> sorted(angles.begin(), angles.end());
-  std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 20, sorted.end());
-  summary.smallestAngleDeg = sorted[sorted.size() / 20] * 180 / kPi;
+  summary.smallestAngleDeg = nthSmallest(sorted, sorted.size() / 20) * 180 / kPi;
   summary.thickness.reset();
   if (tissue.hasGrey) {
     summary.thickness =

@@ -98,11 +98,12 @@ function(explica_add_module name)
   endif()
 endfunction()
 
-# explica_add_test_executable(<target> LABEL unit|property|slow|command SOURCES ... LINKS ...)
-# One GoogleTest executable. Its command and slow tests appear in CTest one by one; unit and property tests, most of
-# which last less than a start of the executable, as one test.
+# explica_add_test_executable(<target> LABEL unit|property|slow|command SOURCES ... LINKS ... WHOLE suite...)
+# One GoogleTest executable. Its command and slow tests appear in CTest one by one, but for suites that are WHOLE,
+# whose tests share what they are tried on; unit and property tests, most of which last less than a start of the
+# executable, as one test.
 function(explica_add_test_executable target)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "LABEL" "SOURCES;LINKS")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "LABEL" "SOURCES;LINKS;WHOLE")
   add_executable(${target} ${arg_SOURCES})
   target_link_libraries(${target} PRIVATE ${arg_LINKS} GTest::gtest_main)
   target_compile_definitions(${target} PRIVATE EXPLICA_REAL_DATA="${EXPLICA_REAL_DATA}")
@@ -115,12 +116,18 @@ function(explica_add_test_executable target)
     set_tests_properties(${target} PROPERTIES LABELS ${arg_LABEL} TIMEOUT 600)
     return()
   endif()
-  set(timeout 120)
+  set(timeout 300)
   if(arg_LABEL STREQUAL "slow")
     set(timeout 600)
   endif()
-  gtest_discover_tests(${target} DISCOVERY_MODE PRE_TEST
-    PROPERTIES LABELS ${arg_LABEL} TIMEOUT ${timeout} SKIP_REGULAR_EXPRESSION "skipped: no real data")
+  set(properties LABELS ${arg_LABEL} TIMEOUT ${timeout} SKIP_REGULAR_EXPRESSION "skipped: no real data")
+  set(others "")
+  foreach(suite IN LISTS arg_WHOLE)
+    add_test(NAME ${suite} COMMAND ${target} --gtest_filter=${suite}.*)
+    set_tests_properties(${suite} PROPERTIES ${properties})
+    string(APPEND others ":${suite}.*")
+  endforeach()
+  gtest_discover_tests(${target} DISCOVERY_MODE PRE_TEST TEST_FILTER "-${others}" PROPERTIES ${properties})
 endfunction()
 
 # Writes and installs ExplicaConfig.cmake: find_package(Explica [COMPONENTS Module...]).

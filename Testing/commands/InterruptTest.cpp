@@ -41,13 +41,13 @@ TEST_P(Interrupt, WritesAndMarksWhatWasReachedAndResumes) {
   EXPECT_EQ(explica({"verify", folder / "a"}).exitCode, 0);
 }
 
-TEST_P(Interrupt, InflationGoesOnToTheBytesOfARunThatNeverStopped) {
+TEST(Interrupts, InflationGoesOnToTheBytesOfARunThatNeverStopped) {
   TemporaryFolder folder;
   io::writeSurface(folder / "sphere.surf.gii", geometry::makeFoldedSphere(5, 30.0, 0.5, 9));
   const std::vector<std::string> words = {"inflate", folder / "sphere.surf.gii", "--out",
                                           folder / "a"};
   CommandSetting setting;
-  setting.signal = GetParam();
+  setting.signal = SIGINT;
   setting.signalWhen = "iteration 2";
   const auto stopped = explica(words, setting);
   ASSERT_EQ(stopped.exitCode, 3) << stopped;
@@ -63,7 +63,7 @@ TEST_P(Interrupt, InflationGoesOnToTheBytesOfARunThatNeverStopped) {
   EXPECT_EQ(readText(folder / "a/inflated.surf.gii"), readText(folder / "b/inflated.surf.gii"));
 }
 
-TEST_P(Interrupt, AFlatMapGoesOnToTheBytesOfARunThatNeverStopped) {
+TEST(Interrupts, AFlatMapGoesOnToTheBytesOfARunThatNeverStopped) {
   TemporaryFolder folder;
   io::writeSurface(folder / "sphere.surf.gii", geometry::makeFoldedSphere(5, 30.0));
   const std::vector<std::string> words = {
@@ -73,7 +73,7 @@ TEST_P(Interrupt, AFlatMapGoesOnToTheBytesOfARunThatNeverStopped) {
   for (const std::string moment : {"cut 1", "iteration 2 on 10"}) {
     const std::vector<std::string> here = {"--out", folder / "a", "--force"};
     CommandSetting setting;
-    setting.signal = GetParam();
+    setting.signal = SIGUSR1;
     setting.signalWhen = moment;
     const auto stopped = explica(words + here, setting);
     ASSERT_EQ(stopped.exitCode, 3) << stopped;
@@ -96,7 +96,7 @@ TEST_P(Interrupt, AFlatMapGoesOnToTheBytesOfARunThatNeverStopped) {
   }
 }
 
-TEST_P(Interrupt, AComparisonHoldsTheSurfacesThatItHasMeasured) {
+TEST(Interrupts, AComparisonHoldsTheSurfacesThatItHasMeasured) {
   TemporaryFolder folder;
   std::vector<std::string> words = {"compare"};
   for (const std::string name : {"before", "first", "second", "third"}) {
@@ -104,7 +104,7 @@ TEST_P(Interrupt, AComparisonHoldsTheSurfacesThatItHasMeasured) {
     words.push_back(folder / (name + ".surf.gii"));
   }
   CommandSetting setting;
-  setting.signal = GetParam();
+  setting.signal = SIGINT;
   setting.signalWhen = "second.surf.gii: ";
   const auto stopped = explica(words + std::vector<std::string>{"--out", folder / "a"}, setting);
   ASSERT_EQ(stopped.exitCode, 3) << stopped;

@@ -39,11 +39,16 @@ class KillsAndDisks : public PreparedRun {
     ASSERT_EQ(differences(stableHashes(out), expected_), std::vector<std::string>());
   }
 
+  void expectWholeFilesAfterKills() const;
+  void expectStopsAreInterruptions() const;
+  void expectBytesOrASentenceAtLimits() const;
+  void expectWholeFilesOnAFullDisk() const;
+
   Hashes expected_;
   int exitCode_ = -1;
 };
 
-TEST_P(KillsAndDisks, AKillLeavesWholeFilesAndTheRerunGivesTheSameBytes) {
+void KillsAndDisks::expectWholeFilesAfterKills() const {
   constexpr int kKills = 2;
   const auto before = folder_.entries();
   KillMoments moments(20261122);
@@ -66,13 +71,13 @@ TEST_P(KillsAndDisks, AKillLeavesWholeFilesAndTheRerunGivesTheSameBytes) {
 
 /// Wherever it is asked to end: interrupted, never a verdict on the data.  What is reached is
 /// there, marked and verified, or nothing is.
-TEST_P(KillsAndDisks, AStopAtAnyCheckIsInterruptedAndNothingElse) {
+void KillsAndDisks::expectStopsAreInterruptions() const {
   const auto entries = folder_.entries();
   const std::string out = folder_ / "out";
   const long checks = checksFor(into(out));
   ASSERT_GT(checks, 0);
   fs::remove_all(out);
-  for (const long check : momentsOf(checks, 10)) {
+  for (const long check : momentsOf(checks, GetParam().stops)) {
     SCOPED_TRACE("check " + std::to_string(check) + " of " + std::to_string(checks));
     const CommandResult ended = explica(into(out), stopAtCheck(check));
     ASSERT_TRUE(isInterrupted(ended)) << ended;
@@ -84,10 +89,11 @@ TEST_P(KillsAndDisks, AStopAtAnyCheckIsInterruptedAndNothingElse) {
     ASSERT_EQ(folder_.entries(), entries);  // neither stage nor lock
   }
   expectTheSameBytesIn(out);
+  fs::remove_all(out);
 }
 
 /// Of memory, then of time: the first of those is over before any work, the second at some moment.
-TEST_P(KillsAndDisks, ALimitGivesTheSameBytesOrASentence) {
+void KillsAndDisks::expectBytesOrASentenceAtLimits() const {
   const auto before = folder_.entries();
   const std::string out = folder_ / "out";
   for (const char* megabytes : {"64", "160", "400"}) {
@@ -128,7 +134,7 @@ long kilobytesOf(const fs::path& folder) {
   return sum;
 }
 
-TEST_P(KillsAndDisks, AFullDiskLeavesWholeFilesAndMoreRoomGivesTheSameBytes) {
+void KillsAndDisks::expectWholeFilesOnAFullDisk() const {
   const long needed = kilobytesOf(folder_ / "undisturbed");
   for (const long eighths : {1, 7}) {
     const long size = std::max(8L, needed * eighths / 8 / 4 * 4);
@@ -143,6 +149,14 @@ TEST_P(KillsAndDisks, AFullDiskLeavesWholeFilesAndMoreRoomGivesTheSameBytes) {
     disk.resize("100m");
     expectTheSameBytesIn(out);
   }
+}
+
+/// One test a command: all four are held to the one undisturbed run.
+TEST_P(KillsAndDisks, LeaveWholeFilesOrNoneAndTheRerunGivesTheSameBytes) {
+  expectWholeFilesAfterKills();
+  expectStopsAreInterruptions();
+  expectBytesOrASentenceAtLimits();
+  expectWholeFilesOnAFullDisk();
 }
 
 INSTANTIATE_TEST_SUITE_P(Quick, KillsAndDisks, ::testing::ValuesIn(quickRuns()),

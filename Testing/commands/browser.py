@@ -1,6 +1,8 @@
 # SPDX-FileCopyrightText: The Explica developers
 # SPDX-License-Identifier: Apache-2.0
 """Debian's Chromium without a window, and what was found not to hold in it."""
+import time
+
 from selenium import webdriver
 from selenium.webdriver.chrome.options import Options
 from selenium.webdriver.chrome.service import Service
@@ -26,3 +28,16 @@ def start(width, logging=False, drawing=False):
     if logging:
         options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
     return webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
+
+
+def ask(driver, script):
+    """What a script says that may call byId()."""
+    return driver.execute_script("const byId = (id) => document.getElementById(id); " + script)
+
+
+def wait_until_ready(driver, page, canvas):
+    """Opens a page and waits until it has drawn a canvas; a minute at most."""
+    driver.get("file://" + page)
+    end = time.time() + 60
+    while time.time() < end and ask(driver, "return byId('%s').dataset.ready" % canvas) != "true":
+        time.sleep(0.2)

@@ -2,16 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Morphs the surfaces of a run's report in headless Chromium; one fact a line, ends with 0 if the slider shows each
 shape by its name, the patch opens on the shape of which it is, and the pointer names what it is on."""
+import functools
 import sys
 import time
 
-from browser import check, faults, start
+import browser
+from browser import check, faults
 
-driver = start(1200, logging=True, drawing=True)
-
-
-def ask(script):
-    return driver.execute_script("const byId = (id) => document.getElementById(id); " + script)
+driver = browser.start(1200, logging=True, drawing=True)
+ask = functools.partial(browser.ask, driver)
 
 
 def picture():
@@ -25,10 +24,7 @@ def change(control, value, event):
 
 
 try:
-    driver.get("file://" + sys.argv[1])
-    end = time.time() + 60
-    while time.time() < end and ask("return byId('canvas').dataset.ready") != "true":
-        time.sleep(0.2)
+    browser.wait_until_ready(driver, sys.argv[1], "canvas")
     shown, names = [], []
     for n in range(1 + int(ask("return byId('shape').max"))):
         shown.append(change("shape", n, "input"))

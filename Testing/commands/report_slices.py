@@ -2,16 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Scrolls, zooms and rates the slices of a report in headless Chromium; one fact a line, ends with 0 if each
 does what it says.  Of a place told by the view in three dimensions, the slices go there."""
+import functools
 import sys
 import time
 
-from browser import check, faults, start
+import browser
+from browser import check, faults
 
-driver = start(1200, logging=True, drawing=True)
-
-
-def ask(script):
-    return driver.execute_script("const byId = (id) => document.getElementById(id); " + script)
+driver = browser.start(1200, logging=True, drawing=True)
+ask = functools.partial(browser.ask, driver)
 
 
 def pictures():
@@ -33,10 +32,7 @@ def press(key):
 
 
 try:
-    driver.get("file://" + sys.argv[1])
-    end = time.time() + 60
-    while time.time() < end and ask("return byId('cuts').dataset.ready") != "true":
-        time.sleep(0.2)
+    browser.wait_until_ready(driver, sys.argv[1], "cuts")
     colours = ask("""const c = byId('cut-0'), pen = c.getContext('2d');
         return new Set(new Uint32Array(pen.getImageData(0, 0, c.width, c.height).data.buffer)).size""")
     check("a slice has %d colours" % colours, colours > 5)

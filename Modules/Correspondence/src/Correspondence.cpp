@@ -3,6 +3,7 @@
 #include "Explica/Correspondence/Correspondence.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/OrderStatistics.h"
 #include "Explica/Core/Parallel.h"
 #include "Field.h"
 
@@ -58,11 +59,10 @@ Steps stepsOf(const Tracer& tracer) {
                         .norm() *
                     tracer.finest);
   }
-  const auto small =
-      slope.begin() + static_cast<std::ptrdiff_t>(kSmallSlopes * static_cast<double>(slope.size()));
-  std::nth_element(slope.begin(), small, slope.end());
+  const auto small = nthSmallest(
+      slope, static_cast<std::size_t>(kSmallSlopes * static_cast<double>(slope.size())));
   const auto count = static_cast<int>(
-      *small > 0 ? std::clamp(std::ceil(kStepsPerVoxel / *small), kFewest, kMost) : kMost);
+      small > 0 ? std::clamp(std::ceil(kStepsPerVoxel / small), kFewest, kMost) : kMost);
   Steps steps;
   steps.count = count;
   steps.of.resize(n);
@@ -733,9 +733,8 @@ ThicknessSummary summaryOf(const Correspondence& correspondence) {
   summary.meanOfVoxels = sum / static_cast<double>(known.size());
   summary.mean = weights > 0 ? weighted / weights : kNaN;
   const auto quantile = [&](double q) {
-    const auto at = known.begin() + std::lround(q * static_cast<double>(known.size() - 1));
-    std::nth_element(known.begin(), at, known.end());
-    return *at;
+    return nthSmallest(
+        known, static_cast<std::size_t>(std::lround(q * static_cast<double>(known.size() - 1))));
   };
   summary.median = quantile(0.5);
   summary.p05 = quantile(0.05);

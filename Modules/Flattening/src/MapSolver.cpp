@@ -65,48 +65,23 @@ void MapSolver::assemble(const FlatPositions& flat) {
   system_.damp(kDamping);
 }
 
-MapSolver::Run MapSolver::lower(FlatPositions& flat, int maxIterations, double tolerance,
-                                const Monitor& monitor, const std::function<void(int)>& taken) {
-  Run run;
-  run.energy = value(flat);
-  run.termination = Termination::MaxIterations;
-  FlatPositions step = FlatPositions::Zero(flat.rows(), 2);
-  while (run.iterations < maxIterations) {
-    if (monitor.shouldStop()) {
-      run.termination = Termination::Interrupted;
-      break;
-    }
-    assemble(flat);
-    if (!system_.solve()) {
-      run.termination = Termination::Stalled;
-      break;
-    }
-    const double promised = system_.promised();
-    if (promised <= std::max(tolerance * run.energy, kRounding)) {
-      run.termination = Termination::Converged;
-      break;
-    }
-    for (const std::int32_t v : system_.vertices()) step.row(v) = system_.stepAt(v).transpose();
-    double share = energy_.largestStep(flat, step);
-    share = std::min(share, contact_.largestStep(flat, share * step) * share);
-    bool moved = false;
-    for (int halving = 0; halving < 30; ++halving, share /= 2) {
-      const FlatPositions tried = flat + share * step;
-      const double energy = value(tried);
-      if (!(energy <= run.energy - kSufficient * share * promised)) continue;
-      flat = tried;
-      run.energy = energy;
-      moved = true;
-      break;
-    }
-    ++run.iterations;
-    if (!moved) {
-      run.termination = Termination::Stalled;
-      break;
-    }
-    if (taken) taken(run.iterations);
-  }
-  return run;
+bool MapSolver::findStep(const FlatPositions& flat) {
+  assemble(flat);
+  if (!system_.solve()) return false;
+  step_.setZero(flat.rows(), 2);
+  for (const std::int32_t v : system_.vertices()) step_.row(v) = system_.stepAt(v).transpose();
+  return true;
+}
+
+double MapSolver::largestShare(const FlatPositions& flat) const {
+  const double share = energy_.largestStep(flat, step_);
+  return std::min(share, contact_.largestStep(flat, share * step_) * share);
+}
+
+geometry::Descent MapSolver::lower(FlatPositions& flat, int maxIterations, double tolerance,
+                                   const Monitor& monitor, const std::function<void(int)>& taken) {
+  return geometry::lowerByNewton(*this, flat, {maxIterations, tolerance, kRounding}, monitor,
+                                 taken);
 }
 
 }  // namespace explica::flattening

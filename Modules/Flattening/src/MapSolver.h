@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "Explica/Core/Monitor.h"
-#include "Explica/Core/Termination.h"
 #include "Explica/Flattening/MapEnergy.h"
 #include "Explica/Flattening/RimContact.h"
 #include "Explica/Geometry/FaceSystem.h"
+#include "Explica/Geometry/NewtonDescent.h"
 
 #include <functional>
 #include <vector>
@@ -20,19 +19,19 @@ class MapSolver {
   MapSolver(const IntrinsicMesh& mesh, const Loop& rim, double areaWeight, double contactRange,
             std::vector<double> faceWeights = {});
 
-  struct Run {
-    int iterations = 0;
-    double energy = kNaN;
-    Termination termination = Termination::NotRun;
-  };
   /// Iterates until a step promises less than `tolerance` of the energy, or less than rounding lets
-  /// the energy tell: a sheet that unrolls has none.  An iteration depends on nothing but the map,
-  /// so that a run can go on from where it was stopped.
+  /// the energy tell: a sheet that unrolls has none.
   /// @param taken  called after every step with the number of iterations
-  Run lower(FlatPositions& flat, int maxIterations, double tolerance, const Monitor& monitor,
-            const std::function<void(int)>& taken = {});
+  geometry::Descent lower(FlatPositions& flat, int maxIterations, double tolerance,
+                          const Monitor& monitor, const std::function<void(int)>& taken = {});
 
   [[nodiscard]] double value(const FlatPositions& flat) const;
+  [[nodiscard]] bool findStep(const FlatPositions& flat);
+  [[nodiscard]] double promised() const { return system_.promised(); }
+  [[nodiscard]] double largestShare(const FlatPositions& flat) const;
+  [[nodiscard]] FlatPositions moved(const FlatPositions& flat, double share) const {
+    return flat + share * step_;
+  }
   void setAreaWeight(double weight) { energy_.setAreaWeight(weight); }
 
  private:
@@ -42,6 +41,7 @@ class MapSolver {
   MapEnergy energy_;
   RimContact contact_;
   geometry::FaceSystem system_;
+  FlatPositions step_;
 };
 
 }  // namespace explica::flattening

@@ -62,15 +62,15 @@ ExactAnnulus exactShell(double a, double b, int dimension) {
   exact.outerLevel = [=](const Point& x) { return radius(x) - b; };
   exact.answer = [=](const Point& x) {
     const double r = radius(x);
-    Point direction = x / r;
-    if (dimension == 2) direction[2] = 0;
+    Point from = x;
+    if (dimension == 2) from[2] = 0;
     ExactAnswer answer;
     answer.u =
         dimension == 2 ? std::log(r / a) / std::log(b / a) : (1 / a - 1 / r) / (1 / a - 1 / b);
     answer.innerDistance = r - a;
     answer.outerDistance = b - r;
-    answer.innerPoint = a * direction;
-    answer.outerPoint = b * direction;
+    answer.innerPoint = a / r * from;
+    answer.outerPoint = b / r * from;
     if (dimension == 2) answer.innerPoint[2] = answer.outerPoint[2] = x[2];
     return answer;
   };
@@ -80,7 +80,6 @@ ExactAnnulus exactShell(double a, double b, int dimension) {
 ExactAnnulus exactEccentric(double r0, double r1, double offset) {
   // Circles tau = const have centres a coth tau and radii a / sinh tau on the first axis.
   const double d1 = 0.5 * ((r1 * r1 - r0 * r0) / offset + offset);
-  const double d0 = d1 - offset;
   const double a = std::sqrt(d1 * d1 - r1 * r1);
   const double tau0 = std::asinh(a / r0), tau1 = std::asinh(a / r1);
   ExactAnnulus exact;
@@ -102,7 +101,6 @@ ExactAnnulus exactEccentric(double r0, double r1, double offset) {
                        .innerPoint = at(tau0),
                        .outerPoint = at(tau1)};
   };
-  (void)d0;
   return exact;
 }
 

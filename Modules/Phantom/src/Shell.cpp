@@ -4,7 +4,6 @@
 #include "Explica/Phantom/Shell.h"
 
 #include "Explica/Core/Errors.h"
-#include "Explica/Core/Parallel.h"
 
 #include <cmath>
 #include <string>
@@ -36,30 +35,14 @@ Shell makeShell(const ShellOptions& options) {
   Shell shell;
   shell.innerRadius = options.innerRadius * halfWidth;
   shell.outerRadius = options.outerRadius * halfWidth;
-  shell.thickness = shell.outerRadius - shell.innerRadius;
+  shell.exact = harmonic::exactShell(shell.innerRadius, shell.outerRadius);
+  shell.innerLevel = harmonic::sampled(grid, shell.exact.innerLevel);
+  shell.outerLevel = harmonic::sampled(grid, shell.exact.outerLevel);
+  shell.labelNames = {{"outside", 0}, {"inner", 1}, {"tissue", 2}};
   shell.labels = Volume<Label>(grid);
-  shell.level = shell.outerLevel = shell.harmonic = Volume<float>(grid);
-  shell.innerDistance = shell.outerDistance = shell.thicknessMap = Volume<float>(grid, 0);
-  shell.innerPoint = shell.outerPoint = Volume<Eigen::Vector3f>(grid, Eigen::Vector3f::Zero());
-  const double a = shell.innerRadius, b = shell.outerRadius;
-  constexpr std::size_t kGrain = 16384;  // elements a task
-  parallelFor(grid.voxelCount(), kGrain, [&](std::size_t v) {
-    const auto [i, j, k] = grid.subscripts(v);
-    const Point x = grid.toWorld({double(i), double(j), double(k)});
-    const double r = x.norm();
-    shell.labels[v] = r < a ? Shell::kInner : r < b ? Shell::kTissue : Shell::kOuter;
-    shell.level[v] = static_cast<float>(r - a);
-    shell.outerLevel[v] = static_cast<float>(r - b);
-    shell.harmonic[v] = r <= a   ? 0.f
-                        : r >= b ? 1.f
-                                 : static_cast<float>((1 / a - 1 / r) / (1 / a - 1 / b));
-    if (shell.labels[v] != Shell::kTissue) return;
-    shell.innerDistance[v] = static_cast<float>(r - a);
-    shell.outerDistance[v] = static_cast<float>(b - r);
-    shell.thicknessMap[v] = static_cast<float>(b - a);
-    shell.innerPoint[v] = (a / r * x).cast<float>();
-    shell.outerPoint[v] = (b / r * x).cast<float>();
-  });
+  for (std::size_t v = 0; v < grid.voxelCount(); ++v) {
+    shell.labels[v] = shell.innerLevel[v] < 0 ? 1 : shell.outerLevel[v] < 0 ? 2 : 0;
+  }
   return shell;
 }
 

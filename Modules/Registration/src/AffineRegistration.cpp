@@ -3,6 +3,7 @@
 #include "Explica/Registration/AffineRegistration.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/OrderStatistics.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Core/StopScope.h"
 #include "Filters.h"
@@ -57,10 +58,8 @@ struct Binning {
 };
 
 Binning binningOf(std::vector<float> values) {
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(0.995 * (values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  const float high = *at;
   const float low = *std::min_element(values.begin(), values.end());
+  const float high = quantileOf(std::move(values), 0.995);
   return {low, high > low ? (kBins - 1) / (high - low) : 0.0f};
 }
 
@@ -277,9 +276,7 @@ std::vector<Point> centresOf(const Level& level, double reach) {
     heights.push_back(image.grid.toWorld(Vector(i, j, k)).z());
   }
   if (heights.empty()) throw InvalidInput("T1: holds one value only");
-  const auto high = heights.begin() + static_cast<std::ptrdiff_t>(0.995 * (heights.size() - 1));
-  std::nth_element(heights.begin(), high, heights.end());
-  return {centre(-kInfinity), centre(*high - reach)};
+  return {centre(-kInfinity), centre(quantileOf(std::move(heights), 0.995) - reach)};
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "Explica/Registration/Deformation.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/OrderStatistics.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Core/StopScope.h"
 #include "Filters.h"
@@ -303,9 +304,7 @@ Volume<float> normalised(Volume<float> volume) {
     if (value > 0) sorted.push_back(value);
   }
   if (sorted.empty()) throw InvalidInput("T1: holds no value above 0");
-  const auto at = sorted.begin() + static_cast<std::ptrdiff_t>(0.99 * (sorted.size() - 1));
-  std::nth_element(sorted.begin(), at, sorted.end());
-  const float scale = 1 / *at;
+  const float scale = 1 / quantileOf(std::move(sorted), 0.99);
   forVoxels(volume.size(),
             [&](std::size_t v) { volume[v] = std::clamp(volume[v] * scale, 0.0f, 2.0f); });
   return volume;

@@ -3,6 +3,7 @@
 #include "Explica/Registration/Sessions.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/OrderStatistics.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Core/StopScope.h"
 #include "Explica/Registration/AffineRegistration.h"
@@ -148,9 +149,7 @@ double deviationOf(const Halfway& halfway, double gain) {
   for (const std::size_t v : halfway.head) {
     off.push_back(std::abs(halfway.a[v] - static_cast<float>(gain) * halfway.b[v]));
   }
-  const auto middle = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2);
-  std::nth_element(off.begin(), middle, off.end());
-  return 1.4826 * *middle;
+  return 1.4826 * upperMedian(std::move(off));
 }
 
 /// The step (translation, rotation about the centre, logarithm of the gain) that lowers the

@@ -3,6 +3,7 @@
 #include "Explica/Report/Mosaic.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/OrderStatistics.h"
 #include "Explica/Core/Text.h"
 #include "Explica/Report/Figure.h"
 
@@ -145,9 +146,7 @@ ColourScale greyScale(const Volume<float>& image, const Volume<float>* subject) 
   }
   ColourScale grey{ColourMap::Grey, 0, 1, "", ""};
   if (values.empty()) return grey;
-  const auto bright = values.end() - 1 - static_cast<std::ptrdiff_t>(values.size() / 200);
-  std::nth_element(values.begin(), bright, values.end());
-  grey.high = 1.05 * *bright;
+  grey.high = 1.05 * nthSmallest(values, values.size() - 1 - values.size() / 200);
   return grey;
 }
 

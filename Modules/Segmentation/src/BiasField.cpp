@@ -3,6 +3,7 @@
 #include "BiasField.h"
 
 #include "BlockWindow.h"
+#include "Explica/Core/OrderStatistics.h"
 #include "Explica/Core/Parallel.h"
 
 #include <algorithm>
@@ -173,10 +174,7 @@ std::vector<float> fitBiasField(const Grid& grid, const BiasSamples& samples, do
 std::vector<float> sharpenHistogram(const Grid& grid, const std::vector<std::size_t>& voxel,
                                     const std::vector<float>& intensity, double width) {
   // Tissue only: the logarithm of dark fluid is all noise.
-  std::vector<float> sorted = intensity;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  const float dark = kDarkShare * *middle;
+  const float dark = kDarkShare * upperMedian(intensity);
   std::vector<std::size_t> chosen;
   std::vector<float> logarithm;
   const std::size_t stride = std::max<std::size_t>(1, voxel.size() / kMostSamples);

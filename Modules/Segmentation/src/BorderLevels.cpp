@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "BorderLevels.h"
 
+#include "Explica/Core/OrderStatistics.h"
 #include "Explica/Core/Parallel.h"
 
 #include <algorithm>
@@ -42,10 +43,7 @@ float medianOfPure(const std::vector<std::uint8_t>& pure, const Value& valueAt) 
   for (std::size_t v = 0; v < pure.size(); ++v) {
     if (pure[v] != 0) noise.push_back(valueAt(v));
   }
-  if (noise.empty()) return 0;
-  const auto middle = noise.begin() + static_cast<std::ptrdiff_t>(noise.size() / 2);
-  std::nth_element(noise.begin(), middle, noise.end());
-  return *middle;
+  return noise.empty() ? 0 : upperMedian(std::move(noise));
 }
 
 /// Length of the gradient, without noise.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Segmentation/Hemisphere.h"
 
+#include "Explica/Core/OrderStatistics.h"
 #include "Explica/Core/VoxelSets.h"
 
 #include <algorithm>
@@ -134,9 +135,7 @@ VoxelSet findStem(const AtlasMap& map, const AtlasLegend& legend, const Volume<L
   }
   VoxelSet stem(grid, 0);
   if (heights.empty()) return stem;
-  const auto low = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 20);
-  std::nth_element(heights.begin(), low, heights.end());
-  const double top = *low;
+  const double top = nthSmallest(heights, heights.size() / 20);
 
   const NearestAxis right = axisAlong(grid, 0);
   const NearestAxis front = axisAlong(grid, 1);
@@ -593,9 +592,7 @@ void labelVentricles(const Volume<float>& brain, Volume<Label>& atlas, AtlasLege
     if (cortex[v] != 0 && brain[v] > 0) values.push_back(brain[v]);
   }
   if (values.empty()) return;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  const double dark = kFluidOverCortex * *middle;
+  const double dark = kFluidOverCortex * upperMedian(std::move(values));
   const VoxelSet outside = setWhere(grid, [&](std::size_t v) { return !(brain[v] > 0); });
   const auto inside = static_cast<double>(brain.size() - voxelsIn(outside));
   const double depth = kDeepShare * std::cbrt(0.75 / kPi * inside * grid.voxelVolume());

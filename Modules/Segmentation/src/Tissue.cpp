@@ -4,6 +4,7 @@
 
 #include "BiasField.h"
 #include "BorderLevels.h"
+#include "Explica/Core/OrderStatistics.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Core/VoxelSets.h"
 
@@ -500,10 +501,7 @@ class Classifier {
     for (std::size_t b = 0; b < brain_.size(); ++b) {
       if (brain_.rim[b] == 0 && squared[brain_.voxel[b]] > far * far) deep.push_back(corrected_[b]);
     }
-    if (deep.size() < kFewestDeep) return mixture_.mean[0];
-    const auto middle = deep.begin() + static_cast<std::ptrdiff_t>(deep.size() / 2);
-    std::nth_element(deep.begin(), middle, deep.end());
-    return *middle;
+    return deep.size() < kFewestDeep ? mixture_.mean[0] : upperMedian(std::move(deep));
   }
 
   /// @param dark  voxels that are fluid without being looked at

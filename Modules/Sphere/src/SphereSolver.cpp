@@ -61,43 +61,14 @@ Positions SphereSolver::moved(const Positions& sphere, double share) const {
   return tried;
 }
 
-SphereSolver::Run SphereSolver::lower(Positions& sphere, int maxIterations, double tolerance,
+double SphereSolver::largestShare(const Positions& sphere) const {
+  const double longest = std::sqrt(step_.rowwise().squaredNorm().maxCoeff());
+  return std::min(energy_.largestStep(sphere, step_), kFarthest / longest);
+}
+
+geometry::Descent SphereSolver::lower(Positions& sphere, int maxIterations, double tolerance,
                                       const Monitor& monitor) {
-  Run run;
-  run.energy = value(sphere);
-  run.termination = Termination::MaxIterations;
-  while (run.iterations < maxIterations) {
-    if (monitor.shouldStop()) {
-      run.termination = Termination::Interrupted;
-      break;
-    }
-    if (!findStep(sphere)) {
-      run.termination = Termination::Stalled;
-      break;
-    }
-    const double promised = system_.promised();
-    if (promised <= std::max(tolerance * run.energy, kRounding)) {
-      run.termination = Termination::Converged;
-      break;
-    }
-    const double longest = std::sqrt(step_.rowwise().squaredNorm().maxCoeff());
-    double share = std::min(energy_.largestStep(sphere, step_), kFarthest / longest);
-    bool lower = false;
-    for (int halving = 0; halving < 30 && !lower; ++halving, share /= 2) {
-      Positions tried = moved(sphere, share);
-      const double energy = value(tried);
-      if (!(energy <= run.energy - flattening::kSufficient * share * promised)) continue;
-      sphere.swap(tried);
-      run.energy = energy;
-      lower = true;
-    }
-    ++run.iterations;
-    if (!lower) {
-      run.termination = Termination::Stalled;
-      break;
-    }
-  }
-  return run;
+  return geometry::lowerByNewton(*this, sphere, {maxIterations, tolerance, kRounding}, monitor);
 }
 
 }  // namespace explica::sphere

@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "Explica/Core/Monitor.h"
-#include "Explica/Core/Termination.h"
+#include "Explica/Geometry/NewtonDescent.h"
 #include "Explica/Sphere/SphereEnergy.h"
 
 namespace explica::sphere {
@@ -24,21 +23,18 @@ class SphereSolver {
   SphereSolver(const SphereEnergy& energy, Eigen::Index vertexCount,
                const VertexEnergy* beside = nullptr);
 
-  struct Run {
-    int iterations = 0;
-    double energy = kNaN;
-    Termination termination = Termination::NotRun;
-  };
   /// Iterates until a step promises less than `tolerance` of the energy.
   /// @param sphere  unit vectors; rows of vertices without a face are left alone
-  Run lower(Positions& sphere, int maxIterations, double tolerance, const Monitor& monitor);
+  geometry::Descent lower(Positions& sphere, int maxIterations, double tolerance,
+                          const Monitor& monitor);
 
   [[nodiscard]] double value(const Positions& sphere) const;
-
- private:
   [[nodiscard]] bool findStep(const Positions& sphere);
+  [[nodiscard]] double promised() const { return system_.promised(); }
+  [[nodiscard]] double largestShare(const Positions& sphere) const;
   [[nodiscard]] Positions moved(const Positions& sphere, double share) const;
 
+ private:
   const SphereEnergy& energy_;
   const VertexEnergy* beside_;
   geometry::FaceSystem system_;

@@ -3,6 +3,7 @@
 
 #include "Explica/Statistics/GroupMaps.h"
 
+#include "Explica/Core/OrderStatistics.h"
 #include "Explica/Core/Types.h"
 #include "Explica/Statistics/Distributions.h"
 
@@ -65,9 +66,7 @@ double typicalDistance(const Eigen::VectorXd& z, Eigen::Index others) {
     if (std::isfinite(value)) sizes.push_back(std::abs(value));
   }
   if (sizes.empty() || others < 2) return kNaN;
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return *middle / tQuantile(0.25, static_cast<double>(others - 1));
+  return upperMedian(std::move(sizes)) / tQuantile(0.25, static_cast<double>(others - 1));
 }
 
 }  // namespace explica::statistics

@@ -3,6 +3,8 @@
 #include "Explica/Statistics/Table.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/FileText.h"
+#include "Explica/Core/Types.h"
 
 #include <algorithm>
 #include <array>
@@ -106,6 +108,33 @@ std::optional<double> numberIn(std::string_view cell) {
   const auto [end, fault] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
   if (fault != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value)) return {};
   return value;
+}
+
+Table readTable(const std::string& path) {
+  return parseTable(fileText(path), path);
+}
+
+bool isNumeric(const Table& table, std::size_t column) {
+  return std::all_of(table.rows.begin(), table.rows.end(), [&](const auto& row) {
+    return isMissing(row[column]) || numberIn(row[column]);
+  });
+}
+
+Eigen::MatrixXd numbersIn(const Table& table, const std::vector<std::size_t>& rows,
+                          const std::vector<std::size_t>& columns) {
+  Eigen::MatrixXd values(rows.size(), columns.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      const std::string& cell = table.rows[rows[i]][columns[c]];
+      const auto number = numberIn(cell);
+      if (!number && !isMissing(cell)) {
+        throw InvalidInput("'" + table.name + "': '" + cell + "' in column '" +
+                           table.columns[columns[c]] + "' is no number");
+      }
+      values(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)) = number.value_or(kNaN);
+    }
+  }
+  return values;
 }
 
 JoinedPeople joinPeople(const std::vector<std::string>& people, std::string_view listName,

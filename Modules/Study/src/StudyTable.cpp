@@ -6,6 +6,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/FileText.h"
 #include "Explica/Core/Folders.h"
+#include "Explica/Core/OrderStatistics.h"
 #include "Explica/Core/StopScope.h"
 #include "Explica/Core/Text.h"
 #include "Explica/Provenance/Doubts.h"
@@ -204,10 +205,10 @@ std::optional<double> numberIn(const StudyRow& row, const std::string& column) {
 }
 
 double medianOf(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  if (values.size() % 2 == 1) return *middle;
-  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
+  const std::size_t half = values.size() / 2;
+  const double upper = nthSmallest(values, half);
+  if (values.size() % 2 == 1) return upper;
+  return 0.5 * (upper + nthSmallest(values, half - 1));
 }
 
 /// What of a row's inputs was cut, guessed or contradicted.

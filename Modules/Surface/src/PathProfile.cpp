@@ -3,6 +3,7 @@
 
 #include "PathProfile.h"
 
+#include "Explica/Core/OrderStatistics.h"
 #include "Explica/Core/Parallel.h"
 
 #include <algorithm>
@@ -61,10 +62,7 @@ double valueAt(const Volume<float>& image, const Point& p) {
 
 double median(std::vector<double> values) {
   std::erase_if(values, [](double value) { return !std::isfinite(value); });
-  if (values.empty()) return kNaN;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return values.empty() ? kNaN : upperMedian(std::move(values));
 }
 
 double usualLength(const std::vector<Trajectory>& paths) {

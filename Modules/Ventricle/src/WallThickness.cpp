@@ -3,6 +3,7 @@
 #include "Explica/Ventricle/WallThickness.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/OrderStatistics.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Core/StopScope.h"
 #include "IntactSlices.h"
@@ -28,10 +29,7 @@ constexpr double kEndReach = 1;
 
 double median(std::vector<double> values) {
   std::erase_if(values, [](double v) { return std::isnan(v); });
-  if (values.empty()) return kNaN;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return values.empty() ? kNaN : upperMedian(std::move(values));
 }
 
 /// Faces between the cavity and what is neither cavity nor wall nor insulated, RAS mm.

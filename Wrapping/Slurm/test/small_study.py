@@ -24,8 +24,8 @@ parameters:
   unfold: {direction: [0, 0, 1], radius: 8, max-iterations: 2}
 subjects:
   "01":
-  "02": {parameters: {surface: {faces: 60000}, unfold: {radius: 14, max-iterations: 12}}}
-  "03": {parameters: {surface: {faces: 60000}, unfold: {radius: 14, max-iterations: 12}}}
+  "02": {parameters: {surface: {faces: 30000}, unfold: {radius: 14, max-iterations: 12}}}
+  "03": {parameters: {surface: {faces: 30000}, unfold: {radius: 14, max-iterations: 12}}}
   "04":
 """
 

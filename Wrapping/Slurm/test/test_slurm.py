@@ -99,7 +99,7 @@ class Slurm(unittest.TestCase):
         page = (SCRIPT.parents[2] / "ExampleData/study/README.md").read_text()
         line = next(x.strip() for x in page.splitlines() if "/explica-study-slurm " in x)
         study = small_study.make(self.folder)
-        study.write_text(study.read_text().replace("[surface, unfold]", "[surface]").replace("60000", "3000"))
+        study.write_text(study.read_text().replace("[surface, unfold]", "[surface]").replace("30000", "3000"))
         self.node.environment["EXPLICA_SOURCE"] = str(SCRIPT.parents[2])
         numbers = self.node.run("sh", "-c", line, cwd=self.folder).split()
         self.assertEqual(set(self.wait_for(numbers[0]).values()), {"COMPLETED"}, self.logs())
@@ -109,7 +109,7 @@ class Slurm(unittest.TestCase):
     def test_one_task_may_take_several_subjects(self):
         study = small_study.make(self.folder)
         study.write_text(study.read_text().replace("[surface, unfold]", "[surface]")
-                         .replace("60000", "3000"))
+                         .replace("30000", "3000"))
         array, table = self.submit(study, "--per-task", "3", "--cpus-per-task=2")
         self.assertEqual(self.wait_for(array), {0: "COMPLETED", 1: "COMPLETED"}, self.logs())
         self.assertEqual(self.wait_for(table), {-1: "COMPLETED"}, self.logs())

@@ -42,7 +42,7 @@ class Snakemake(unittest.TestCase):
 
     def test_a_failed_subject_is_a_row_and_only_what_changed_is_done_again(self):
         study = small_study.make(self.folder, broken=["04"])
-        study.write_text(study.read_text().replace("60000", "3000").replace("14,", "8,"))
+        study.write_text(study.read_text().replace("30000", "3000").replace("14,", "8,"))
         local = ("--cores", "2", "--keep-going")
         first = self.snakemake(study, *local, check=False)
         self.assertEqual(first.returncode, 1, first.stdout)

@@ -13,7 +13,6 @@ namespace explica::flattening {
 using FlatPositions = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;  ///< V x 2, mm
 
 // What searches for better maps, of the plane and of the sphere, have in common.
-inline constexpr double kSufficient = 1e-4;    ///< of the decrease that is promised [Armijo1966]
 inline constexpr double kShareOfWay = 0.8;     ///< to the first face without area, in one step
 inline constexpr double kEnoughOfStar = 1e-2;  ///< of its energy: neighbours will move it again
 inline constexpr int kHalvings = 50;           ///< down to the rounding of the coordinates

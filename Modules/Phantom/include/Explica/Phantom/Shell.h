@@ -3,7 +3,7 @@
 #pragma once
 
 #include "Explica/Core/Describe.h"
-#include "Explica/Core/Volume.h"
+#include "Explica/Harmonic/Phantoms.h"
 
 namespace explica::phantom {
 
@@ -25,20 +25,11 @@ void describe(ShellOptions& options, Visitor&& visit) {
   visit(Field{"aspect", "", "voxel size along each axis over --spacing"}, options.aspect);
 }
 
-/// Labels and what is known of them exactly.
-struct Shell {
-  static constexpr Label kOuter = 0, kInner = 1, kTissue = 2;
-  Volume<Label> labels;  ///< by the voxel centre's distance from the centre
-  Volume<float> level;   ///< distance from the centre minus the inner radius, mm: subvoxel boundary
-  Volume<float> outerLevel;                    ///< distance from the centre minus the outer radius
-  Volume<float> innerDistance, outerDistance;  ///< L0, L1 in the tissue, mm; 0 elsewhere
-  Volume<float> thicknessMap;                  ///< L0 + L1 in the tissue, mm; 0 elsewhere
-  Volume<Eigen::Vector3f> innerPoint,
-      outerPoint;          ///< phi0, phi1 in the tissue, RAS mm; 0 elsewhere
-  Volume<float> harmonic;  ///< u = (1/a - 1/r) / (1/a - 1/b) in the tissue, 0 inside, 1 outside
-  double thickness = 0;    ///< mm, everywhere
-  double innerRadius = 0;  ///< a, mm
-  double outerRadius = 0;  ///< b, mm
+/// Labels 1 inside, 2 tissue, 0 outside; levels are distances from the spheres.
+struct Shell : harmonic::Phantom {
+  double innerRadius = 0;                                                       ///< a, mm
+  double outerRadius = 0;                                                       ///< b, mm
+  [[nodiscard]] double thickness() const { return outerRadius - innerRadius; }  ///< everywhere
 };
 
 /// Concentric spheres of radii a < b: trajectories are radii, thickness is b - a everywhere, and

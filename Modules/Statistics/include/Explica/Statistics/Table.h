@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Core>
+
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -26,11 +28,23 @@ struct Table {
 /// @throws InvalidInput  no heading, a column named twice, or a row of another length
 [[nodiscard]] Table parseTable(std::string_view text, std::string name);
 
+/// The table in a file.
+/// @throws InvalidInput  as parseTable; IOError  the file cannot be read
+[[nodiscard]] Table readTable(const std::string& path);
+
 /// True of what BIDS and others write for a value that is not known: "", "n/a", "NA", "NaN".
 [[nodiscard]] bool isMissing(std::string_view cell);
 
 /// The number in a cell; none if it is missing or no finite number.
 [[nodiscard]] std::optional<double> numberIn(std::string_view cell);
+
+/// True if a column holds nothing but numbers and missing values.
+[[nodiscard]] bool isNumeric(const Table& table, std::size_t column);
+
+/// Numbers of the table, a row for each of `rows`; NaN where one is missing.
+/// @throws InvalidInput  a word: names it and its column
+[[nodiscard]] Eigen::MatrixXd numbersIn(const Table& table, const std::vector<std::size_t>& rows,
+                                        const std::vector<std::size_t>& columns);
 
 /// One row a person of `about`, in the order of `people`, with the names checked in both lists.
 struct JoinedPeople {
