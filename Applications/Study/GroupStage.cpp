@@ -105,12 +105,6 @@ std::string headOf(const std::vector<std::string>& columns) {
   return head + "\n";
 }
 
-std::string oneLine(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c == '\t' || c == '\n' || c == '\r'; }, ' ');
-  return text;
-}
-
 std::string peopleTable(const std::vector<Member>& members, const AboutPeople& about) {
   const auto columns = columnsOf(about);
   std::string text = "participant_id\themisphere\tin_group\treason";
@@ -120,8 +114,9 @@ std::string peopleTable(const std::vector<Member>& members, const AboutPeople& a
     const study::StudyRow& row = *member.row;
     text += row.participant + "\t" + row.hemisphere + "\t" +
             (member.reason.empty() ? "yes" : "no") + "\t" +
-            (member.reason.empty() ? row.state == "done" ? "n/a" : "included: " + oneLine(row.state)
-                                   : oneLine(member.reason));
+            (member.reason.empty()
+                 ? row.state == "done" ? "n/a" : "included: " + study::cellText(row.state)
+                 : study::cellText(member.reason));
     for (const char* measure : kMeasures) {
       const auto value = row.values.find(std::string("group.distance_") + measure);
       text += "\t" + (value == row.values.end() ? "n/a" : value->second);
@@ -232,7 +227,7 @@ std::string writeGroup(Context& context, const GroupSettings& s, const AboutPeop
   for (const Member& member : members) {
     const std::string label = labelOf(*member.row);
     member.reason.empty() ? summary.in.push_back(label)
-                          : summary.out.push_back(label + ": " + oneLine(member.reason));
+                          : summary.out.push_back(label + ": " + study::cellText(member.reason));
     if (member.reason.empty()) hemispheres.insert(member.row->hemisphere);
   }
   std::vector<Side> sides;

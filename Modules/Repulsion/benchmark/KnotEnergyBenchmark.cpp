@@ -159,6 +159,7 @@ void run(benchmark::State& state, const Scene& scene, const Options&... options)
 void PatchTree(benchmark::State& state) {
   const double radius = static_cast<double>(state.range(1)) / 2;
   run<MultipoleTree>(state, patch(static_cast<int>(state.range(0)), radius));
+  state.SetLabel(MultipoleTree::instructionSet());
 }
 /// Near distance in mean edges; relative error per mille.
 void PatchThesisTree(benchmark::State& state) {
@@ -168,6 +169,7 @@ void PatchThesisTree(benchmark::State& state) {
 }
 void ClosedTree(benchmark::State& state) {
   run<MultipoleTree>(state, closed(static_cast<int>(state.range(0)), state.range(1) != 0));
+  state.SetLabel(MultipoleTree::instructionSet());
 }
 
 BENCHMARK(PatchTree)

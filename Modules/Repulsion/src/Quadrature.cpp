@@ -65,6 +65,14 @@ Rule triangleRule7() {
   return rule;
 }
 
+Rule triangleRule12() {
+  static const auto rule =
+      fromOrbits<12>({{0.249286745170910, 0.249286745170910, 0.116786275726379},
+                      {0.063089014491502, 0.063089014491502, 0.050844906370207},
+                      {0.053145049844817, 0.310352451033784, 0.082851075618374}});
+  return rule;
+}
+
 Rule triangleRule16() {
   static const auto rule =
       fromOrbits<16>({{0.459292588292723, 0.459292588292723, 0.095091634267285},

@@ -17,6 +17,7 @@ using Rule = std::span<const RulePoint>;
 /// Symmetric rules on the triangle, weights sum to 1, by degree of exactness [Dunavant1985].
 [[nodiscard]] Rule triangleRule3();   ///< degree 2
 [[nodiscard]] Rule triangleRule7();   ///< degree 5
+[[nodiscard]] Rule triangleRule12();  ///< degree 6
 [[nodiscard]] Rule triangleRule16();  ///< degree 8
 
 /// Gauss-Legendre on the segment: coordinates (1 - s, s, 0); degree 2 n - 1.

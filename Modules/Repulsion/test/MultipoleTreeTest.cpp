@@ -7,6 +7,7 @@
 #include "Explica/Core/Parallel.h"
 #include "Explica/Geometry/Fixtures.h"
 #include "Explica/Repulsion/AllPairs.h"
+#include "Explica/Testing/InstructionSets.h"
 #include "Explica/Testing/Meshes.h"
 #include "Explica/Testing/Selections.h"
 
@@ -90,7 +91,7 @@ TEST(MultipoleTree, ErrorFallsWithTheNearRatio) {
   EXPECT_LT(error(MultipoleTreeOptions().nearRatio), 2e-3);
 }
 
-TEST(MultipoleTree, GivesTheSameWhenItIsUsedAgain) {
+TEST(MultipoleTree, GivesTheSameWhenItsMemoryIsUsedAgain) {
   const TriangleMesh folded = geometry::makeFoldedSphere(3);
   const MultipoleTree tree(folded, cap(folded, 0.3));
   const KnotValue first = tree.evaluate(folded.positions);
@@ -155,6 +156,17 @@ TEST(MultipoleTree, DoesNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(one.gradient, two.gradient);
   EXPECT_EQ(one.value, four.value);
   EXPECT_EQ(one.gradient, four.gradient);
+}
+
+TEST(MultipoleTree, InstructionSetsDifferByTheRoundingOfSinglePrecision) {
+  const TriangleMesh folded = geometry::makeFoldedSphere(3);
+  const MultipoleTree tree(folded, everyVertex(folded));
+  const KnotValue widest = tree.evaluate(folded.positions);
+  testing::forEachNarrowerInstructionSet([&](std::int64_t target) {
+    const KnotValue narrow = tree.evaluate(folded.positions);
+    EXPECT_NEAR(narrow.value, widest.value, 1e-6 * widest.value) << target;
+    EXPECT_LT((narrow.gradient - widest.gradient).norm(), 1e-5 * widest.gradient.norm()) << target;
+  });
 }
 
 TEST(MultipoleTree, StaysFiniteForFacesWithoutAreaAndSheetsInContact) {

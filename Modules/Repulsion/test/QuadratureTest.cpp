@@ -41,8 +41,8 @@ double segmentError(Rule rule, int degree) {
 }
 
 TEST(Quadrature, TriangleRulesAreExactToTheirDegreeAndNoFurther) {
-  const std::array<std::pair<Rule, int>, 3> rules = {
-      {{triangleRule3(), 2}, {triangleRule7(), 5}, {triangleRule16(), 8}}};
+  const std::array<std::pair<Rule, int>, 4> rules = {
+      {{triangleRule3(), 2}, {triangleRule7(), 5}, {triangleRule12(), 6}, {triangleRule16(), 8}}};
   for (const auto& [rule, degree] : rules) {
     EXPECT_LT(triangleError(rule, degree), 1e-14) << degree;
     EXPECT_GT(triangleError(rule, degree + 1), 1e-9) << degree;

@@ -8,6 +8,7 @@
 #include "Explica/Core/Folders.h"
 #include "Explica/Core/Text.h"
 #include "Explica/Provenance/Json.h"
+#include "Explica/Study/StudyTable.h"
 #include "HeartColumns.h"
 
 #include <algorithm>
@@ -165,13 +166,6 @@ std::vector<std::string> segmentColumns(const std::vector<HeartRow>& rows) {
     }
   }
   return {names.begin(), names.end()};
-}
-
-/// No tab or line end may stand in a cell.
-std::string cellText(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c == '\t' || c == '\n' || c == '\r'; }, ' ');
-  return text;
 }
 
 }  // namespace

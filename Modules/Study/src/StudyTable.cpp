@@ -76,10 +76,7 @@ constexpr std::size_t kFewestRows = 8;  // below, a median and its spread say li
 
 std::string textOf(const Json& value) {
   if (value.is_null()) return "n/a";
-  std::string text = value.is_string() ? value.get<std::string>() : provenance::textOf(value);
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c == '\t' || c == '\n' || c == '\r'; }, ' ');
-  return text;
+  return cellText(value.is_string() ? value.get<std::string>() : provenance::textOf(value));
 }
 
 /// Numbers and words of a step's summary; lists and objects do not fit a table, times do not
@@ -243,6 +240,12 @@ void flagOutliers(const std::vector<StudyRow>& rows, const std::vector<std::size
 }
 
 }  // namespace
+
+std::string cellText(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == '\t' || c == '\n' || c == '\r'; }, ' ');
+  return text;
+}
 
 std::vector<StudyRow> collectRows(const fs::path& out, const std::string& subject) {
   const fs::path runs = out / "runs";

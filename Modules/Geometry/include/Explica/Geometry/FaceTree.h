@@ -57,7 +57,14 @@ class BoxTree {
   std::vector<Box> boxes_;
 };
 
-/// Hierarchy over a mesh's faces with distance queries.  Keeps a copy of the mesh.
+/// Eight boxes side by side, for vector arithmetic: single precision, rounded outwards.
+struct alignas(64) BoxBlock {
+  static constexpr int kLanes = 8;
+  float lower[3][kLanes], upper[3][kLanes];
+};
+
+/// Hierarchy over a mesh's faces, eight to a node, with distance queries.  Keeps a copy of the
+/// mesh.
 class FaceTree {
  public:
   explicit FaceTree(TriangleMesh mesh);
@@ -70,9 +77,15 @@ class FaceTree {
 
  private:
   [[nodiscard]] ClosestPoint nearerThan(ClosestPoint best, const Point& query) const;
+  void fillLevels();
 
   TriangleMesh mesh_;
-  BoxTree tree_;
+  Point origin_ = Point::Zero();
+  double perMm_ = 1;                           ///< boxes count in half sizes of the mesh
+  std::vector<std::int32_t> items_;            ///< faces in the order of level 0's lanes
+  std::vector<std::array<Point, 3>> corners_;  ///< theirs
+  /// Lane n of the level above bounds block n of a level.
+  std::vector<std::vector<BoxBlock>> levels_;
 };
 
 /// Boxes of a mesh's faces, widened by `margin` mm on every side.

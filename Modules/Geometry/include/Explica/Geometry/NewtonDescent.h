@@ -11,14 +11,12 @@
 
 namespace explica::geometry {
 
-/// How far a descent has come.
 struct Descent {
   int iterations = 0;
   double energy = kNaN;
   Termination termination = Termination::NotRun;
 };
 
-/// When a descent ends.
 struct DescentLimits {
   int maxIterations;
   double tolerance;  ///< of the energy: a step that promises less ends it
@@ -37,12 +35,8 @@ template <class Problem, class Place>
 Descent lowerByNewton(Problem& problem, Place& place, const DescentLimits& limits,
                       const Monitor& monitor, const std::function<void(int)>& taken = {}) {
   constexpr double kSufficient = 1e-4;  // of the decrease that is promised [Armijo1966]
-  constexpr int kHalvings = 30;
   Descent run{.energy = problem.value(place), .termination = Termination::MaxIterations};
-  const auto endedBy = [&run](Termination termination) {
-    run.termination = termination;
-    return run;
-  };
+  const auto endedBy = [&run](Termination end) { return Descent{run.iterations, run.energy, end}; };
   while (run.iterations < limits.maxIterations) {
     if (monitor.shouldStop()) return endedBy(Termination::Interrupted);
     if (!problem.findStep(place)) return endedBy(Termination::Stalled);
@@ -52,7 +46,7 @@ Descent lowerByNewton(Problem& problem, Place& place, const DescentLimits& limit
     }
     double share = problem.largestShare(place);
     bool lower = false;
-    for (int halving = 0; halving < kHalvings && !lower; ++halving, share /= 2) {
+    for (int halving = 0; halving < 30 && !lower; ++halving, share /= 2) {
       Place tried = problem.moved(place, share);
       const double energy = problem.value(tried);
       if (!(energy <= run.energy - kSufficient * share * promised)) continue;

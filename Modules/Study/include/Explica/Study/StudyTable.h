@@ -63,6 +63,9 @@ struct StudyFlag {
 /// people.
 [[nodiscard]] std::string regionsText(const std::vector<StudyRow>& rows);
 
+/// A text as it may stand in a cell: on one line, without tabs.
+[[nodiscard]] std::string cellText(std::string text);
+
 /// Begins the name of a column that holds a region's mean thickness, its .sd, .area or .volume.
 inline constexpr std::string_view kRegionPrefix = "region.";
 /// Begins the name of a column of participants.tsv.
